@@ -1,0 +1,163 @@
+//! An app that renders one camera into an image, frame by frame, without a
+//! window.
+
+use std::time::Duration;
+
+use bevy::{
+    app::{PluginGroupBuilder, PluginsState},
+    asset::{AssetPlugin, RenderAssetUsages},
+    camera::{ImageRenderTarget, RenderTarget},
+    log::LogPlugin,
+    prelude::*,
+    render::{
+        RenderApp, RenderPlugin,
+        render_asset::RenderAssets,
+        render_resource::{TextureFormat, TextureUsages},
+        texture::GpuImage,
+    },
+    time::TimeUpdateStrategy,
+    window::ExitCondition,
+    winit::WinitPlugin,
+};
+
+use super::read_back;
+
+/// The command that gives a bare Debian machine an adapter.
+pub const INSTALL_ADAPTER: &str = "apt-get install mesa-vulkan-drivers libvulkan1";
+
+/// What a headless app needs to know.
+#[derive(Clone, Debug)]
+pub struct HeadlessOptions {
+    /// Size of the picture in pixels.
+    pub size: UVec2,
+    /// Format of the picture; `Rgba8UnormSrgb` unless a test wants another.
+    pub format: TextureFormat,
+    /// Physical pixels per logical pixel.
+    pub scale_factor: f32,
+    /// Whether the engine may log.
+    pub log: bool,
+    /// Folder of assets, absolute or relative to the working directory.
+    pub assets: String,
+    /// Whether assets that change on disk are loaded again.
+    pub watch: bool,
+}
+
+impl Default for HeadlessOptions {
+    fn default() -> Self {
+        Self {
+            size: UVec2::new(640, 480),
+            format: TextureFormat::Rgba8UnormSrgb,
+            scale_factor: 1.0,
+            log: false,
+            assets: concat!(env!("CARGO_MANIFEST_DIR"), "/assets").into(),
+            watch: false,
+        }
+    }
+}
+
+/// The engine's plugins without a window, without pipelined rendering, and with
+/// every pipeline compiled before it is used.
+pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
+    let group = DefaultPlugins
+        .set(WindowPlugin {
+            primary_window: None,
+            exit_condition: ExitCondition::DontExit,
+            ..default()
+        })
+        .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
+        .set(AssetPlugin {
+            file_path: options.assets.clone(),
+            watch_for_changes_override: Some(options.watch),
+            unapproved_path_mode: bevy::asset::UnapprovedPathMode::Allow,
+            ..default()
+        })
+        .disable::<WinitPlugin>()
+        .disable::<bevy::render::pipelined_rendering::PipelinedRenderingPlugin>();
+    if options.log {
+        group.set(LogPlugin { filter: "error,bevy_comics=warn".into(), ..default() })
+    } else {
+        group.disable::<LogPlugin>()
+    }
+}
+
+/// Name of the adapter that will render, or how to get one.
+pub fn adapter() -> Result<wgpu::AdapterInfo, String> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    let request = instance.request_adapter(&wgpu::RequestAdapterOptions::default());
+    match bevy::tasks::block_on(request) {
+        Ok(adapter) => Ok(adapter.get_info()),
+        Err(_) => Err(format!(
+            "no graphics adapter; on Debian this installs one that runs on the CPU: {INSTALL_ADAPTER}"
+        )),
+    }
+}
+
+/// A running headless app.
+pub struct Headless {
+    pub app: App,
+    pub target: Handle<Image>,
+    pub options: HeadlessOptions,
+}
+
+impl Headless {
+    /// Starts the engine with `extra` plugins; panics with the command that
+    /// installs an adapter where there is none.
+    pub fn new<M>(options: HeadlessOptions, extra: impl Plugins<M>) -> Self {
+        if let Err(message) = adapter() {
+            panic!("{message}");
+        }
+        let mut app = App::new();
+        app.add_plugins(plugins(&options)).add_plugins(extra);
+        // One frame is a sixtieth of a second, whatever the machine does.
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_micros(16_667)));
+        let target = new_target(app.world_mut(), options.size, options.format);
+        while app.plugins_state() == PluginsState::Adding {
+            bevy::tasks::tick_global_task_pools_on_main_thread();
+        }
+        app.finish();
+        app.cleanup();
+        Self { app, target, options }
+    }
+
+    /// The render target of the picture, for a camera.
+    pub fn render_target(&self) -> RenderTarget {
+        RenderTarget::Image(ImageRenderTarget {
+            handle: self.target.clone(),
+            scale_factor: self.options.scale_factor,
+        })
+    }
+
+    /// Renders frames.
+    pub fn step(&mut self, frames: usize) {
+        for _ in 0..frames {
+            self.app.update();
+        }
+    }
+
+    /// The picture as RGBA codes, row by row.
+    pub fn picture(&mut self) -> image::RgbaImage {
+        let target = self.target.clone();
+        self.picture_of(&target)
+    }
+
+    /// Another target's picture.
+    pub fn picture_of(&mut self, target: &Handle<Image>) -> image::RgbaImage {
+        let world = self.app.sub_app(RenderApp).world();
+        let gpu_image = world
+            .resource::<RenderAssets<GpuImage>>()
+            .get(target)
+            .expect("the target was rendered to at least once");
+        let texture = gpu_image.texture.clone();
+        let size = gpu_image.texture_descriptor.size;
+        let bytes = read_back::texture_bytes(world, &texture);
+        image::RgbaImage::from_raw(size.width, size.height, bytes).expect("four bytes a pixel")
+    }
+}
+
+/// A picture to render to and to read back.
+pub fn new_target(world: &mut World, size: UVec2, format: TextureFormat) -> Handle<Image> {
+    let mut image = Image::new_target_texture(size.x, size.y, format, None);
+    image.texture_descriptor.usage |= TextureUsages::COPY_SRC;
+    image.asset_usage = RenderAssetUsages::default();
+    world.resource_mut::<Assets<Image>>().add(image)
+}

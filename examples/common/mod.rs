@@ -1,0 +1,7 @@
+//! What the examples and the tests share: scenes made by code, and an app that
+//! renders without a window.
+#![allow(dead_code, reason = "every example and test uses its own part of this")]
+
+pub mod headless;
+pub mod read_back;
+pub mod scenes;

@@ -1,0 +1,254 @@
+//! Reads what the last frame left on the GPU: pictures, depth, normals.
+
+use bevy::{
+    core_pipeline::prepass::ViewPrepassTextures,
+    ecs::{entity::Entity, world::World},
+    render::{
+        renderer::{RenderDevice, RenderQueue},
+        view::ViewTarget,
+    },
+};
+use half::f16;
+
+/// Pixels of four floats, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FloatImage {
+    pub width: u32,
+    pub height: u32,
+    pub pixels: Vec<[f32; 4]>,
+}
+
+/// Raw depth bits: `samples` values a pixel, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DepthImage {
+    pub width: u32,
+    pub height: u32,
+    pub samples: u32,
+    pub bits: Vec<u32>,
+}
+
+impl DepthImage {
+    pub fn at(&self, x: u32, y: u32, sample: u32) -> f32 {
+        f32::from_bits(self.bits[((y * self.width + x) * self.samples + sample) as usize])
+    }
+}
+
+fn map_buffer(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Vec<u8> {
+    buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("the buffer maps"));
+    device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+    let bytes = buffer.slice(..).get_mapped_range().to_vec();
+    buffer.unmap();
+    bytes
+}
+
+/// The bytes of a single-sampled colour texture, rows without padding.
+pub fn texture_bytes(render_world: &World, texture: &wgpu::Texture) -> Vec<u8> {
+    let device = render_world.resource::<RenderDevice>().wgpu_device().clone();
+    let queue = render_world.resource::<RenderQueue>();
+    let texel = texture.format().block_copy_size(None).expect("a colour format");
+    let row = texture.width() * texel;
+    let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: u64::from(padded) * u64::from(texture.height()),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(padded),
+                rows_per_image: None,
+            },
+        },
+        texture.size(),
+    );
+    queue.submit([encoder.finish()]);
+    map_buffer(&device, &buffer)
+        .chunks_exact(padded as usize)
+        .flat_map(|chunk| chunk[..row as usize].to_vec())
+        .collect()
+}
+
+fn srgb_to_linear(code: u8) -> f32 {
+    let c = f64::from(code) / 255.0;
+    (if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }) as f32
+}
+
+/// The values a shader reads from a colour texture.
+pub fn float_image(render_world: &World, texture: &wgpu::Texture) -> FloatImage {
+    let bytes = texture_bytes(render_world, texture);
+    let unorm = |b: u8| f32::from(b) / 255.0;
+    let pixels = match texture.format() {
+        wgpu::TextureFormat::Rgba16Float => bytes
+            .chunks_exact(8)
+            .map(|p| [0, 2, 4, 6].map(|i| f16::from_le_bytes([p[i], p[i + 1]]).to_f32()))
+            .collect(),
+        wgpu::TextureFormat::Rgba8Unorm => {
+            bytes.chunks_exact(4).map(|p| [0, 1, 2, 3].map(|i| unorm(p[i]))).collect()
+        }
+        wgpu::TextureFormat::Rgba8UnormSrgb => bytes
+            .chunks_exact(4)
+            .map(|p| {
+                [srgb_to_linear(p[0]), srgb_to_linear(p[1]), srgb_to_linear(p[2]), unorm(p[3])]
+            })
+            .collect(),
+        other => panic!("no reader for {other:?}"),
+    };
+    FloatImage { width: texture.width(), height: texture.height(), pixels }
+}
+
+/// What the last post-process pass of the view read and wrote; the same picture
+/// twice where none ran.
+pub fn last_pass(render_world: &World, view: Entity, ran: bool) -> Option<(FloatImage, FloatImage)> {
+    let target = render_world.get::<ViewTarget>(view)?;
+    let output = float_image(render_world, target.main_texture());
+    let input = if ran {
+        float_image(render_world, target.main_texture_other())
+    } else {
+        output.clone()
+    };
+    Some((input, output))
+}
+
+/// Runs a small compute shader that stores `words` words for every pixel.
+fn read_texels(
+    render_world: &World,
+    texture: &wgpu::Texture,
+    shader: &str,
+    words: u32,
+) -> Vec<u32> {
+    let device = render_world.resource::<RenderDevice>().wgpu_device().clone();
+    let queue = render_world.resource::<RenderQueue>();
+    let size = u64::from(texture.width()) * u64::from(texture.height()) * u64::from(words) * 4;
+    let storage = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    });
+    let staging = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: None,
+        source: wgpu::ShaderSource::Wgsl(shader.into()),
+    });
+    let layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: None,
+        entries: &[
+            wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: texture.sample_count() > 1,
+                },
+                count: None,
+            },
+            wgpu::BindGroupLayoutEntry {
+                binding: 1,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Storage { read_only: false },
+                    has_dynamic_offset: false,
+                    min_binding_size: None,
+                },
+                count: None,
+            },
+        ],
+    });
+    let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(&layout)],
+        immediate_size: 0,
+    });
+    let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: None,
+        layout: Some(&pipeline_layout),
+        module: &module,
+        entry_point: Some("read"),
+        compilation_options: wgpu::PipelineCompilationOptions::default(),
+        cache: None,
+    });
+    let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+    let bind_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &layout,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) },
+            wgpu::BindGroupEntry { binding: 1, resource: storage.as_entire_binding() },
+        ],
+    });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+        pass.set_pipeline(&pipeline);
+        pass.set_bind_group(0, &bind_group, &[]);
+        pass.dispatch_workgroups(texture.width().div_ceil(64), texture.height(), 1);
+    }
+    encoder.copy_buffer_to_buffer(&storage, 0, &staging, 0, size);
+    queue.submit([encoder.finish()]);
+    map_buffer(&device, &staging)
+        .chunks_exact(4)
+        .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+        .collect()
+}
+
+/// The raw depth that the view's prepass left, every sample, to the bit.
+pub fn depth(render_world: &World, view: Entity) -> Option<DepthImage> {
+    let prepass = render_world.get::<ViewPrepassTextures>(view)?;
+    let texture: &wgpu::Texture = &prepass.depth.as_ref()?.texture.texture;
+    let samples = texture.sample_count();
+    let kind = if samples > 1 { "texture_multisampled_2d<f32>" } else { "texture_2d<f32>" };
+    let shader = format!(
+        "@group(0) @binding(0) var source: {kind};
+         @group(0) @binding(1) var<storage, read_write> result: array<u32>;
+         @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {{
+             let size = textureDimensions(source);
+             if id.x >= size.x {{ return; }}
+             for (var s = 0; s < {samples}; s++) {{
+                 let d = textureLoad(source, vec2<i32>(id.xy), s).r;
+                 result[(id.y * size.x + id.x) * {samples}u + u32(s)] = bitcast<u32>(d);
+             }}
+         }}"
+    );
+    let bits = read_texels(render_world, texture, &shader, samples);
+    Some(DepthImage { width: texture.width(), height: texture.height(), samples, bits })
+}
+
+/// World normals of the first sample, decoded; none where the view has no
+/// normal prepass.
+pub fn normals(render_world: &World, view: Entity) -> Option<FloatImage> {
+    let prepass = render_world.get::<ViewPrepassTextures>(view)?;
+    let texture: &wgpu::Texture = &prepass.normal.as_ref()?.texture.texture;
+    let kind = if texture.sample_count() > 1 {
+        "texture_multisampled_2d<f32>"
+    } else {
+        "texture_2d<f32>"
+    };
+    let shader = format!(
+        "@group(0) @binding(0) var source: {kind};
+         @group(0) @binding(1) var<storage, read_write> result: array<vec4<f32>>;
+         @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {{
+             let size = textureDimensions(source);
+             if id.x >= size.x {{ return; }}
+             let n = textureLoad(source, vec2<i32>(id.xy), 0);
+             result[id.y * size.x + id.x] = vec4(n.xyz * 2.0 - 1.0, n.w);
+         }}"
+    );
+    let words = read_texels(render_world, texture, &shader, 4);
+    let pixels = words
+        .chunks_exact(4)
+        .map(|w| [0, 1, 2, 3].map(|i| f32::from_bits(w[i])))
+        .collect();
+    Some(FloatImage { width: texture.width(), height: texture.height(), pixels })
+}

@@ -1,0 +1,163 @@
+//! Builds meshes from coloured primitives.
+
+use bevy::{
+    asset::RenderAssetUsages,
+    math::{Affine3A, Mat3A},
+    mesh::{Indices, PrimitiveTopology},
+    prelude::*,
+};
+
+/// A growing triangle mesh with a colour for every vertex.
+#[derive(Clone, Default)]
+pub struct Shape {
+    pub positions: Vec<[f32; 3]>,
+    pub normals: Vec<[f32; 3]>,
+    pub colors: Vec<[f32; 4]>,
+    pub indices: Vec<u32>,
+}
+
+/// Linear RGBA of an sRGB code such as `0xc8413a`.
+pub fn rgb(hex: u32) -> [f32; 4] {
+    let [_, r, g, b] = hex.to_be_bytes();
+    Color::srgb_u8(r, g, b).to_linear().to_f32_array()
+}
+
+/// A colour, lighter or darker.
+pub fn shade(color: [f32; 4], factor: f32) -> [f32; 4] {
+    [color[0] * factor, color[1] * factor, color[2] * factor, color[3]]
+}
+
+pub fn blend(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
+    std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t.clamp(0.0, 1.0))
+}
+
+impl Shape {
+    pub fn into_mesh(self) -> Mesh {
+        Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, self.positions)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, self.normals)
+            .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, self.colors)
+            .with_inserted_indices(Indices::U32(self.indices))
+    }
+
+    pub fn vertex(&mut self, position: Vec3, normal: Vec3, color: [f32; 4]) -> u32 {
+        self.positions.push(position.to_array());
+        self.normals.push(normal.to_array());
+        self.colors.push(color);
+        self.positions.len() as u32 - 1
+    }
+
+    /// A flat polygon, counter-clockwise as seen from outside.
+    pub fn polygon(&mut self, corners: &[Vec3], color: [f32; 4]) {
+        let normal = (corners[1] - corners[0])
+            .cross(corners[corners.len() - 1] - corners[0])
+            .normalize_or(Vec3::Y);
+        let first = self.positions.len() as u32;
+        for corner in corners {
+            self.vertex(*corner, normal, color);
+        }
+        for i in 2..corners.len() as u32 {
+            self.indices.extend([first, first + i - 1, first + i]);
+        }
+    }
+
+    /// An axis-aligned box between two corners.
+    pub fn cuboid(&mut self, low: Vec3, high: Vec3, color: [f32; 4]) {
+        let p = |x: bool, y: bool, z: bool| {
+            Vec3::new(
+                if x { high.x } else { low.x },
+                if y { high.y } else { low.y },
+                if z { high.z } else { low.z },
+            )
+        };
+        let (f, t) = (false, true);
+        for quad in [
+            [p(f, f, t), p(t, f, t), p(t, t, t), p(f, t, t)],
+            [p(t, f, f), p(f, f, f), p(f, t, f), p(t, t, f)],
+            [p(t, f, t), p(t, f, f), p(t, t, f), p(t, t, t)],
+            [p(f, f, f), p(f, f, t), p(f, t, t), p(f, t, f)],
+            [p(f, t, t), p(t, t, t), p(t, t, f), p(f, t, f)],
+            [p(f, f, f), p(t, f, f), p(t, f, t), p(f, f, t)],
+        ] {
+            self.polygon(&quad, color);
+        }
+    }
+
+    /// A cone, a cylinder, or anything between, standing on `base`.
+    pub fn frustum(
+        &mut self,
+        base: Vec3,
+        height: f32,
+        radii: (f32, f32),
+        sides: u32,
+        color: [f32; 4],
+    ) {
+        let slope = (radii.0 - radii.1) / height;
+        let ring = |i: u32, radius: f32, y: f32| {
+            let angle = std::f32::consts::TAU * i as f32 / sides as f32;
+            base + Vec3::new(radius * angle.cos(), y, radius * angle.sin())
+        };
+        let normal = |i: f32| {
+            let angle = std::f32::consts::TAU * i / sides as f32;
+            Vec3::new(angle.cos(), slope, angle.sin()).normalize()
+        };
+        for i in 0..sides {
+            let (n0, n1) = (normal(i as f32), normal(i as f32 + 1.0));
+            let a = self.vertex(ring(i, radii.0, 0.0), n0, color);
+            let b = self.vertex(ring(i + 1, radii.0, 0.0), n1, color);
+            let c = self.vertex(ring(i + 1, radii.1, height), n1, color);
+            let d = self.vertex(ring(i, radii.1, height), n0, color);
+            self.indices.extend([a, d, c, a, c, b]);
+        }
+        if radii.1 > 0.0 {
+            let top: Vec<_> = (0..sides).rev().map(|i| ring(i, radii.1, height)).collect();
+            self.polygon(&top, color);
+        }
+    }
+
+    /// A ball whose radius is bent by `bump(direction)`.
+    pub fn blob(
+        &mut self,
+        centre: Vec3,
+        radius: Vec3,
+        rings: u32,
+        color: impl Fn(Vec3) -> [f32; 4],
+        bump: impl Fn(Vec3) -> f32,
+    ) {
+        let sides = rings * 2;
+        let direction = |i: u32, j: u32| {
+            let polar = std::f32::consts::PI * i as f32 / rings as f32;
+            let around = std::f32::consts::TAU * (j % sides) as f32 / sides as f32;
+            Vec3::new(polar.sin() * around.cos(), polar.cos(), polar.sin() * around.sin())
+        };
+        let first = self.positions.len() as u32;
+        for i in 0..=rings {
+            for j in 0..=sides {
+                let d = direction(i, j);
+                let normal = (d / radius).normalize_or(Vec3::Y);
+                self.vertex(centre + d * radius * (1.0 + bump(d)), normal, color(d));
+            }
+        }
+        let at = |i: u32, j: u32| first + i * (sides + 1) + j;
+        for i in 0..rings {
+            for j in 0..sides {
+                self.indices.extend([at(i, j), at(i, j + 1), at(i + 1, j + 1)]);
+                self.indices.extend([at(i, j), at(i + 1, j + 1), at(i + 1, j)]);
+            }
+        }
+    }
+
+    /// Adds a copy of another shape, moved.
+    pub fn add(&mut self, other: &Shape, transform: Transform) {
+        let affine: Affine3A = transform.compute_affine();
+        let normals: Mat3A = affine.matrix3.inverse().transpose();
+        let first = self.positions.len() as u32;
+        self.positions
+            .extend(other.positions.iter().map(|p| affine.transform_point3(Vec3::from(*p)).to_array()));
+        self.normals.extend(
+            other.normals.iter().map(|n| (normals * Vec3::from(*n)).normalize_or(Vec3::Y).to_array()),
+        );
+        self.colors.extend(&other.colors);
+        self.indices.extend(other.indices.iter().map(|i| first + i));
+    }
+}

@@ -1,0 +1,121 @@
+#define_import_path bevy_comics::depth::map
+
+// The depth map: raw reversed depth d (near 1, sky 0) to D in [0, 1], 0 at the
+// nearest and 1 at the farthest end of a range. Pure functions.
+
+const ORTHOGRAPHIC: u32 = 1u;
+const LOGARITHMIC: u32 = 2u;
+const EMPTY: u32 = 4u;
+
+struct DepthFrame {
+    // Raw depth of the near and the far end of the range.
+    near: f32,
+    far: f32,
+    // a = clip_from_view[2][2]: d + a is proportional to 1/z in perspective.
+    offset: f32,
+    // The smallest range that is spread over [0, 1]: relative to near + a in
+    // perspective, in raw depth under an orthographic projection.
+    floor: f32,
+    // Orthographic view depth is plane_far - d * extent.
+    plane_far: f32,
+    extent: f32,
+    // ORTHOGRAPHIC | LOGARITHMIC | EMPTY
+    flags: u32,
+}
+
+// Sky, and everything that is no depth: zero, subnormal (arithmetic may flush
+// it), above one, negative, NaN.
+fn is_background(d: f32) -> bool {
+    let bits = bitcast<u32>(d);
+    return bits < 0x00800000u || bits > 0x3f800000u;
+}
+
+fn has(f: DepthFrame, flag: u32) -> bool {
+    return (f.flags & flag) != 0u;
+}
+
+// ln(large / small) with full relative precision near 1, given the exact
+// difference large - small. Within a factor of two: 2 atanh(s), s <= 1/3, whose
+// ninth term is below half an ulp.
+fn log_ratio(large: f32, small: f32, difference: f32) -> f32 {
+    let s = difference / (large + small);
+    if abs(s) > 0.3333 {
+        return log(large / small);
+    }
+    let q = s * s;
+    var sum = 1.0 / 15.0;
+    sum = sum * q + 1.0 / 13.0;
+    sum = sum * q + 1.0 / 11.0;
+    sum = sum * q + 1.0 / 9.0;
+    sum = sum * q + 1.0 / 7.0;
+    sum = sum * q + 1.0 / 5.0;
+    sum = sum * q + 1.0 / 3.0;
+    sum = sum * q + 1.0;
+    return 2.0 * s * sum;
+}
+
+// ln(z(q) / z(p)) for raw depths p (nearer) and q (farther).
+fn log_distance(f: DepthFrame, p: f32, q: f32) -> f32 {
+    if has(f, ORTHOGRAPHIC) {
+        // An orthographic near plane may lie at or behind the eye: distances
+        // below 1e-4 of the extent count as that.
+        let least = 1e-4 * f.extent;
+        let zp = max(f.plane_far - p * f.extent, least);
+        let zq = max(f.plane_far - q * f.extent, least);
+        return log_ratio(zq, zp, select((p - q) * f.extent, zq - zp, min(zp, zq) == least));
+    }
+    return log_ratio(p + f.offset, q + f.offset, p - q);
+}
+
+fn spread_floor(f: DepthFrame) -> f32 {
+    if has(f, ORTHOGRAPHIC) {
+        return f.floor;
+    }
+    return f.floor * (f.near + f.offset);
+}
+
+// (D, L): the depth map and its complement, each computed on its own, because
+// a square root of 1 - D would expose the cancellation.
+fn depth_map(f: DepthFrame, d: f32) -> vec2<f32> {
+    if has(f, EMPTY) || is_background(d) {
+        return vec2(1.0, 0.0);
+    }
+    let spread = f.near - f.far;
+    let least = spread_floor(f);
+    let floored = !(spread > least);
+    var map: vec2<f32>;
+    if has(f, LOGARITHMIC) && !floored {
+        let whole = log_distance(f, f.near, f.far);
+        map = vec2(log_distance(f, f.near, d), log_distance(f, d, f.far)) / whole;
+    } else {
+        let divisor = select(spread, least, floored);
+        map = vec2((f.near - d) / divisor, (d - f.far) / divisor);
+        if !has(f, ORTHOGRAPHIC) {
+            map *= vec2(f.far + f.offset, f.near + f.offset) / (d + f.offset);
+        }
+    }
+    if floored {
+        map.y = 1.0 - clamp(map.x, 0.0, 1.0);
+    }
+    return clamp(map, vec2(0.0), vec2(1.0));
+}
+
+// D(d) - D(p) without forming either: exact zero for equal depths, no
+// cancellation for close ones. Both are first brought into the range.
+fn depth_step(f: DepthFrame, d_raw: f32, p_raw: f32) -> f32 {
+    let d = clamp(d_raw, f.far, f.near);
+    let p = clamp(p_raw, f.far, f.near);
+    let spread = f.near - f.far;
+    let least = spread_floor(f);
+    let floored = !(spread > least);
+    if has(f, LOGARITHMIC) && !floored {
+        return log_distance(f, p, d) / log_distance(f, f.near, f.far);
+    }
+    let divisor = select(spread, least, floored);
+    var step = (p - d) / divisor;
+    if !has(f, ORTHOGRAPHIC) {
+        step *= (f.near + f.offset) / (d + f.offset);
+        step *= (f.far + f.offset) / (p + f.offset);
+    }
+    return step;
+}

@@ -1,0 +1,224 @@
+//! The paper's own reduction ([CS] 3.1): a chain of fragment passes.
+
+use bevy::{
+    asset::{AssetServer, Handle, load_embedded_asset},
+    core_pipeline::FullscreenShader,
+    ecs::resource::Resource,
+    math::UVec2,
+    render::{
+        render_resource::{
+            BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource,
+            Buffer, ColorTargetState, ColorWrites, CommandEncoder, Extent3d, FragmentState,
+            LoadOp, Operations, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
+            RenderPipeline, RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline,
+            StoreOp, TexelCopyBufferInfo, TexelCopyBufferLayout, Texture, TextureDescriptor,
+            TextureDimension, TextureFormat, TextureSampleType, TextureUsages, TextureView,
+            TextureViewDescriptor,
+            binding_types::{texture_2d, texture_2d_multisampled, uniform_buffer},
+        },
+        renderer::RenderDevice,
+    },
+    shader::Shader,
+};
+
+use super::range::RangeView;
+
+const FORMAT: TextureFormat = TextureFormat::R32Uint;
+
+#[derive(Resource)]
+pub(crate) struct PingPongPipeline {
+    fullscreen: FullscreenShader,
+    shader: Handle<Shader>,
+}
+
+impl PingPongPipeline {
+    pub fn new(fullscreen: &FullscreenShader, assets: &AssetServer) -> Self {
+        Self {
+            fullscreen: fullscreen.clone(),
+            shader: load_embedded_asset!(assets, "ping_pong.wgsl"),
+        }
+    }
+
+    fn first_layout(multisampled: bool) -> BindGroupLayoutDescriptor {
+        let unfilterable = TextureSampleType::Float { filterable: false };
+        let depth = if multisampled {
+            texture_2d_multisampled(unfilterable)
+        } else {
+            texture_2d(unfilterable)
+        };
+        BindGroupLayoutDescriptor::new(
+            "comics_ping_pong_first",
+            &BindGroupLayoutEntries::sequential(
+                ShaderStages::FRAGMENT,
+                (depth, uniform_buffer::<RangeView>(true)),
+            ),
+        )
+    }
+
+    fn next_layout() -> BindGroupLayoutDescriptor {
+        BindGroupLayoutDescriptor::new(
+            "comics_ping_pong_next",
+            &BindGroupLayoutEntries::single(
+                ShaderStages::FRAGMENT,
+                texture_2d(TextureSampleType::Uint),
+            ),
+        )
+    }
+}
+
+impl SpecializedRenderPipeline for PingPongPipeline {
+    /// First pass, multisampled depth, oblique projection.
+    type Key = (bool, bool, bool);
+
+    fn specialize(&self, (first, multisampled, oblique): Self::Key) -> RenderPipelineDescriptor {
+        let mut shader_defs = Vec::new();
+        if first {
+            shader_defs.push("FIRST".into());
+        }
+        if multisampled {
+            shader_defs.push("MULTISAMPLED".into());
+        }
+        if oblique {
+            shader_defs.push("OBLIQUE".into());
+        }
+        let layout = if first { Self::first_layout(multisampled) } else { Self::next_layout() };
+        RenderPipelineDescriptor {
+            label: Some("comics_ping_pong".into()),
+            layout: vec![layout],
+            vertex: self.fullscreen.to_vertex_state(),
+            fragment: Some(FragmentState {
+                shader: self.shader.clone(),
+                shader_defs,
+                entry_point: Some("reduce".into()),
+                targets: vec![Some(ColorTargetState {
+                    format: FORMAT,
+                    blend: None,
+                    write_mask: ColorWrites::ALL,
+                })],
+            }),
+            ..Default::default()
+        }
+    }
+}
+
+/// The sizes of T1, T2, ... down to (2, 1) for a depth of this size: column
+/// pairs and rows are halved and rounded up.
+pub(crate) fn chain_sizes(size: UVec2) -> Vec<UVec2> {
+    let mut sizes = vec![UVec2::new(2 * size.x.div_ceil(2).max(1), size.y.div_ceil(2).max(1))];
+    while let Some(&last) = sizes.last() {
+        if last == UVec2::new(2, 1) {
+            break;
+        }
+        sizes.push(UVec2::new(2 * last.x.div_ceil(4), last.y.div_ceil(2)));
+    }
+    sizes
+}
+
+/// The textures of one view's chain.
+pub(crate) struct PingPong {
+    rect_size: UVec2,
+    levels: Vec<(Texture, TextureView)>,
+}
+
+impl PingPong {
+    pub fn new(device: &RenderDevice, rect_size: UVec2) -> Self {
+        let levels = chain_sizes(rect_size)
+            .into_iter()
+            .map(|size| {
+                let texture = device.create_texture(&TextureDescriptor {
+                    label: Some("comics_ping_pong"),
+                    size: Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+                    mip_level_count: 1,
+                    sample_count: 1,
+                    dimension: TextureDimension::D2,
+                    format: FORMAT,
+                    usage: TextureUsages::RENDER_ATTACHMENT
+                        | TextureUsages::TEXTURE_BINDING
+                        | TextureUsages::COPY_SRC,
+                    view_formats: &[],
+                });
+                let view = texture.create_view(&TextureViewDescriptor::default());
+                (texture, view)
+            })
+            .collect();
+        Self { rect_size, levels }
+    }
+
+    pub fn rect_size(&self) -> UVec2 {
+        self.rect_size
+    }
+
+    /// Records every pass of the chain and the copy of its result into `keys`.
+    pub fn record(
+        &self,
+        device: &RenderDevice,
+        encoder: &mut CommandEncoder,
+        cache: &PipelineCache,
+        _pipeline: &PingPongPipeline,
+        (first, next): (&RenderPipeline, &RenderPipeline),
+        (depth, range_view, offset, multisampled): (&TextureView, BindingResource, u32, bool),
+        keys: &Buffer,
+    ) {
+        let mut source: Option<&TextureView> = None;
+        for (_, target) in &self.levels {
+            let bind_group = match source {
+                None => device.create_bind_group(
+                    "comics_ping_pong_first",
+                    &cache.get_bind_group_layout(&PingPongPipeline::first_layout(multisampled)),
+                    &BindGroupEntries::sequential((depth, range_view.clone())),
+                ),
+                Some(view) => device.create_bind_group(
+                    "comics_ping_pong_next",
+                    &cache.get_bind_group_layout(&PingPongPipeline::next_layout()),
+                    &BindGroupEntries::single(view),
+                ),
+            };
+            let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+                label: Some("comics_ping_pong"),
+                color_attachments: &[Some(RenderPassColorAttachment {
+                    view: target,
+                    depth_slice: None,
+                    resolve_target: None,
+                    ops: Operations { load: LoadOp::Clear(Default::default()), store: StoreOp::Store },
+                })],
+                depth_stencil_attachment: None,
+                timestamp_writes: None,
+                occlusion_query_set: None,
+                multiview_mask: None,
+            });
+            if source.is_none() {
+                pass.set_pipeline(first);
+                pass.set_bind_group(0, &bind_group, &[offset]);
+            } else {
+                pass.set_pipeline(next);
+                pass.set_bind_group(0, &bind_group, &[]);
+            }
+            pass.draw(0..3, 0..1);
+            drop(pass);
+            source = Some(target);
+        }
+        if let Some((result, _)) = self.levels.last() {
+            encoder.copy_texture_to_buffer(
+                result.as_image_copy(),
+                TexelCopyBufferInfo { buffer: keys, layout: TexelCopyBufferLayout::default() },
+                Extent3d { width: 2, height: 1, depth_or_array_layers: 1 },
+            );
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_size_ends_at_two_by_one() {
+        for width in 1..70 {
+            for height in 1..70 {
+                let sizes = chain_sizes(UVec2::new(width, height));
+                assert_eq!(sizes.last(), Some(&UVec2::new(2, 1)), "{width}x{height}");
+                assert!(sizes.len() <= 9, "{width}x{height} takes {} passes", sizes.len());
+            }
+        }
+    }
+}

@@ -1,0 +1,153 @@
+#define_import_path bevy_comics::depth::range
+
+// The nearest and farthest depth of a view in one dispatch. Bits are compared,
+// not floats: for positive floats they order alike, nothing is rounded or
+// flushed, and integer atomics make the result exact in any order. Both keys
+// are maxima whose identity is zero, so a cleared buffer means "no geometry".
+
+#import bevy_comics::depth::raw::{RawDepth, raw_depth_key}
+
+struct RangeView {
+    // Origin and size of the viewport, in pixels of the depth texture.
+    rect: vec4<u32>,
+    raw: RawDepth,
+}
+
+struct RangeKeys {
+    near: atomic<u32>,
+    far: atomic<u32>,
+}
+
+#ifdef MULTISAMPLED
+@group(0) @binding(0) var depth_texture: texture_multisampled_2d<f32>;
+#else
+@group(0) @binding(0) var depth_texture: texture_2d<f32>;
+#endif
+@group(0) @binding(1) var<uniform> view: RangeView;
+@group(0) @binding(2) var<storage, read_write> keys: RangeKeys;
+#ifndef MULTISAMPLED
+@group(0) @binding(3) var nearest_sampler: sampler;
+#endif
+
+// (near key, far key) of one depth; zeros for background.
+fn key_pair(bits: u32) -> vec2<u32> {
+    return vec2(bits, select(0u - bits, 0u, bits == 0u));
+}
+
+// The 2x2 block whose upper left pixel is `at` (relative to the viewport);
+// pixels beyond the viewport count as background.
+fn block_keys(at: vec2<u32>) -> vec2<u32> {
+    let corner = view.rect.xy + at;
+    let right = at.x + 1u < view.rect.z;
+    let below = at.y + 1u < view.rect.w;
+#ifdef MULTISAMPLED
+    var found = vec2(0u);
+    let samples = i32(textureNumSamples(depth_texture));
+    let last = view.rect.xy + view.rect.zw - 1u;
+    for (var i = 0u; i < 4u; i++) {
+        let pixel = min(corner + vec2(i & 1u, i >> 1u), last);
+        for (var s = 0; s < samples; s++) {
+            let d = textureLoad(depth_texture, vec2<i32>(pixel), s).r;
+            found = max(found, key_pair(raw_depth_key(view.raw, pixel, d)));
+        }
+    }
+    return found;
+#else
+    let size = vec2<f32>(textureDimensions(depth_texture));
+    // The texels of a gather, from the middle of the block: (0,1) (1,1) (1,0) (0,0).
+    let d = textureGather(0, depth_texture, nearest_sampler, vec2<f32>(corner + 1u) / size);
+    var found = key_pair(raw_depth_key(view.raw, corner, d.w));
+    if right {
+        found = max(found, key_pair(raw_depth_key(view.raw, corner + vec2(1u, 0u), d.z)));
+    }
+    if below {
+        found = max(found, key_pair(raw_depth_key(view.raw, corner + vec2(0u, 1u), d.x)));
+    }
+    if right && below {
+        found = max(found, key_pair(raw_depth_key(view.raw, corner + 1u, d.y)));
+    }
+    return found;
+#endif
+}
+
+#ifdef BARRIER_FREE
+// For CPU adapters, on which barriers are ruinous: an invocation walks a strip
+// of two rows by 256 columns and says its result once.
+const STRIP: u32 = 256u;
+
+@compute @workgroup_size(8)
+fn reduce(@builtin(global_invocation_id) id: vec3<u32>) {
+    let y = id.x * 2u;
+    let start = id.y * STRIP;
+    if y >= view.rect.w || start >= view.rect.z {
+        return;
+    }
+    var found = vec2(0u);
+    let end = min(start + STRIP, view.rect.z);
+    for (var x = start; x < end; x += 2u) {
+        found = max(found, block_keys(vec2(x, y)));
+    }
+    if found.x != 0u {
+        atomicMax(&keys.near, found.x);
+        atomicMax(&keys.far, found.y);
+    }
+}
+#else
+// For GPUs: 16x16 invocations read 8x2 pixels each, a tile of 128x32.
+var<workgroup> tile: RangeKeys;
+#ifndef SUBGROUP
+var<workgroup> tree: array<vec2<u32>, 256>;
+#endif
+
+@compute @workgroup_size(16, 16)
+fn reduce(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+#ifdef SUBGROUP
+    @builtin(subgroup_invocation_id) lane: u32,
+#endif
+) {
+    var found = vec2(0u);
+    let y = id.y * 2u;
+    for (var i = 0u; i < 4u; i++) {
+        let x = id.x * 8u + i * 2u;
+        if x < view.rect.z && y < view.rect.w {
+            found = max(found, block_keys(vec2(x, y)));
+        }
+    }
+#ifdef SUBGROUP
+    if local == 0u {
+        atomicStore(&tile.near, 0u);
+        atomicStore(&tile.far, 0u);
+    }
+    workgroupBarrier();
+    let best = vec2(subgroupMax(found.x), subgroupMax(found.y));
+    // One lane of each subgroup speaks for it.
+    if lane == 0u {
+        atomicMax(&tile.near, best.x);
+        atomicMax(&tile.far, best.y);
+    }
+    workgroupBarrier();
+    if local == 0u {
+        let near = atomicLoad(&tile.near);
+        if near != 0u {
+            atomicMax(&keys.near, near);
+            atomicMax(&keys.far, atomicLoad(&tile.far));
+        }
+    }
+#else
+    tree[local] = found;
+    workgroupBarrier();
+    for (var half = 128u; half > 0u; half >>= 1u) {
+        if local < half {
+            tree[local] = max(tree[local], tree[local + half]);
+        }
+        workgroupBarrier();
+    }
+    if local == 0u && tree[0].x != 0u {
+        atomicMax(&keys.near, tree[0].x);
+        atomicMax(&keys.far, tree[0].y);
+    }
+#endif
+}
+#endif

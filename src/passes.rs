@@ -1,0 +1,294 @@
+//! From a camera's plan to this frame's passes: pipelines, uniforms and the
+//! buffers that belong to the view.
+
+use bevy::{
+    asset::AssetServer,
+    core_pipeline::{FullscreenShader, prepass::ViewPrepassTextures},
+    ecs::{
+        entity::{Entity, EntityHashMap},
+        resource::Resource,
+        system::{Commands, Query, Res, ResMut},
+        world::{FromWorld, World},
+    },
+    math::{IVec4, UVec2, UVec4, Vec2, Vec4Swizzles},
+    render::{
+        camera::ExtractedCamera,
+        render_resource::{
+            Buffer, BufferDescriptor, BufferUsages, CachedRenderPipelineId, DynamicUniformBuffer,
+            PipelineCache, ShaderType, SpecializedComputePipelines, SpecializedRenderPipelines,
+        },
+        renderer::{RenderAdapterInfo, RenderDevice, RenderQueue},
+        view::{ExtractedView, ViewTarget},
+    },
+};
+
+use crate::{
+    depth::{
+        ProjectionKind, RawDepth,
+        frame::DepthProjection,
+        ping_pong::{PingPong, PingPongPipeline},
+        range::{RangePass, RangePipeline, RangeShape, RangeView},
+        readback::{RangeReadback, RangeReadings},
+    },
+    diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
+    stylize::{ComicsUniform, StylizeKey, StylizePipeline},
+    view::{ComicsView, Plan},
+};
+
+/// The passes of one view, this frame.
+pub(crate) struct ViewPass {
+    pub camera: Entity,
+    /// The plan as it can be drawn: without depth where the view has none.
+    pub plan: Plan,
+    pub projection: DepthProjection,
+    pub key: StylizeKey,
+    pub stylize: Option<CachedRenderPipelineId>,
+    pub uniform_offset: u32,
+    pub range: Option<RangePass>,
+    pub range_view_offset: u32,
+    /// Keys of the nearest and farthest depth; kept while a range is wanted.
+    pub keys: Option<Buffer>,
+    pub ping_pong: Option<PingPong>,
+    pub readback: RangeReadback,
+    live: bool,
+}
+
+/// Every styled view's passes, by render entity. Made anew when the device is,
+/// and a view's buffers go when the view does.
+#[derive(Resource)]
+pub(crate) struct ViewPasses {
+    pub views: EntityHashMap<ViewPass>,
+    pub uniforms: DynamicUniformBuffer<ComicsUniform>,
+    pub range_views: DynamicUniformBuffer<RangeView>,
+}
+
+impl FromWorld for ViewPasses {
+    fn from_world(_world: &mut World) -> Self {
+        let mut uniforms = DynamicUniformBuffer::default();
+        uniforms.set_label(Some("comics_uniforms"));
+        let mut range_views = DynamicUniformBuffer::default();
+        range_views.set_label(Some("comics_range_views"));
+        Self { views: EntityHashMap::default(), uniforms, range_views }
+    }
+}
+
+pub(crate) fn init_pipelines(
+    mut commands: Commands,
+    device: Res<RenderDevice>,
+    fullscreen: Res<FullscreenShader>,
+    assets: Res<AssetServer>,
+) {
+    commands.insert_resource(StylizePipeline::new(&fullscreen, &assets));
+    commands.insert_resource(RangePipeline::new(&device, &assets));
+    commands.insert_resource(PingPongPipeline::new(&fullscreen, &assets));
+}
+
+fn keys_buffer(device: &RenderDevice) -> Buffer {
+    device.create_buffer(&BufferDescriptor {
+        label: Some("comics_depth_range"),
+        size: 16,
+        usage: BufferUsages::STORAGE
+            | BufferUsages::UNIFORM
+            | BufferUsages::COPY_SRC
+            | BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+fn uniform(view: &ComicsView, plan: &Plan, viewport: UVec4) -> ComicsUniform {
+    let size = viewport.zw().max(UVec2::ONE);
+    let depth_scale = view
+        .main_pass_size
+        .map_or(Vec2::ONE, |main| (main.as_vec2() / size.as_vec2()).clamp(Vec2::ZERO, Vec2::ONE));
+    ComicsUniform {
+        viewport: IVec4::from_array(viewport.to_array().map(|v| v as i32)),
+        depth_scale,
+        flip: u32::from(plan.depth_map.flip),
+        raw: raw_depth(view, viewport),
+        depth: view.projection.frame(&plan.depth_map),
+        desaturation: plan.desaturation.map(|s| s.uniform()).unwrap_or_default(),
+        colorization: plan.colorization.map(|s| s.uniform()).unwrap_or_default(),
+        contours: plan
+            .contours
+            .map(|s| s.uniform(view.scale_factor, plan.depth_map.sky_gap))
+            .unwrap_or_default(),
+        black_flats: plan.black_flats.map(|s| s.uniform(viewport.w)).unwrap_or_default(),
+    }
+}
+
+fn raw_depth(view: &ComicsView, viewport: UVec4) -> RawDepth {
+    view.projection.raw(&view.clip_from_view, viewport)
+}
+
+pub(crate) fn prepare_view_passes(
+    views: Query<(
+        Entity,
+        &ComicsView,
+        &ExtractedCamera,
+        &ExtractedView,
+        Option<&ViewPrepassTextures>,
+        Option<&ViewTarget>,
+    )>,
+    mut passes: ResMut<ViewPasses>,
+    mut ledger: ResMut<StageLedger>,
+    mut stylize_pipelines: ResMut<SpecializedRenderPipelines<StylizePipeline>>,
+    mut range_pipelines: ResMut<SpecializedComputePipelines<RangePipeline>>,
+    mut ping_pong_pipelines: ResMut<SpecializedRenderPipelines<PingPongPipeline>>,
+    (stylize_pipeline, range_pipeline, ping_pong_pipeline): (
+        Res<StylizePipeline>,
+        Res<RangePipeline>,
+        Res<PingPongPipeline>,
+    ),
+    cache: Res<PipelineCache>,
+    device: Res<RenderDevice>,
+    queue: Res<RenderQueue>,
+    adapter: Res<RenderAdapterInfo>,
+) {
+    let passes = &mut *passes;
+    passes.uniforms.clear();
+    passes.range_views.clear();
+    for pass in passes.views.values_mut() {
+        pass.live = false;
+    }
+
+    for (entity, view, camera, extracted, prepass, target) in &views {
+        if target.is_none() || extracted.viewport.z == 0 || extracted.viewport.w == 0 {
+            continue;
+        }
+        let wanted = &view.plan;
+        let depth = prepass.and_then(|textures| textures.depth.as_ref());
+        let samples = depth.map(|depth| depth.texture.texture.sample_count());
+        let plan = if depth.is_some() { *wanted } else { wanted.without_depth() };
+
+        for stage in ComicsStage::ALL {
+            ledger.set(view.camera, stage, StageOutcome::LeftOut(wanted.reason(stage)));
+        }
+        if wanted.needs_depth() && depth.is_none() {
+            report_missing_depth(&mut ledger, view);
+        }
+        if depth.is_some() {
+            ledger.set(view.camera, ComicsStage::DepthPrepass, StageOutcome::Ran);
+        }
+
+        let pass = passes.views.entry(entity).or_insert_with(|| ViewPass {
+            camera: view.camera,
+            plan,
+            projection: view.projection,
+            key: StylizeKey::default(),
+            stylize: None,
+            uniform_offset: 0,
+            range: None,
+            range_view_offset: 0,
+            keys: None,
+            ping_pong: None,
+            readback: RangeReadback::default(),
+            live: true,
+        });
+        pass.live = true;
+        pass.camera = view.camera;
+        pass.plan = plan;
+        pass.projection = view.projection;
+        pass.stylize = None;
+        pass.range = None;
+
+        let oblique = view.projection.kind() == ProjectionKind::Oblique;
+        if let Some(samples) = samples.filter(|_| plan.needs_range()) {
+            let shape =
+                RangeShape::choose(plan.depth_map.reduction, &adapter, &device);
+            pass.keys.get_or_insert_with(|| keys_buffer(&device));
+            let rect = depth_rect(extracted.viewport, view.main_pass_size);
+            pass.range_view_offset = passes
+                .range_views
+                .push(&RangeView { rect, raw: raw_depth(view, extracted.viewport) });
+            pass.range = Some(match shape {
+                Some(shape) => {
+                    pass.ping_pong = None;
+                    RangePass::compute(
+                        shape,
+                        range_pipelines.specialize(
+                            &cache,
+                            &range_pipeline,
+                            (shape, samples > 1, oblique),
+                        ),
+                        rect,
+                        samples,
+                    )
+                }
+                None => {
+                    if pass.ping_pong.as_ref().is_none_or(|p| p.rect_size() != rect.zw()) {
+                        pass.ping_pong = Some(PingPong::new(&device, rect.zw()));
+                    }
+                    let mut specialize = |first| {
+                        ping_pong_pipelines.specialize(
+                            &cache,
+                            &ping_pong_pipeline,
+                            (first, samples > 1, oblique),
+                        )
+                    };
+                    RangePass::PingPong { first: specialize(true), next: specialize(false), samples }
+                }
+            });
+        } else {
+            pass.keys = None;
+            pass.ping_pong = None;
+        }
+        if !plan.readback {
+            pass.readback = RangeReadback::default();
+        }
+
+        if plan.draws() {
+            pass.key = StylizeKey::new(&plan, extracted.target_format, camera.compositing_space)
+                .with_depth(samples.unwrap_or(1), oblique);
+            pass.stylize =
+                Some(stylize_pipelines.specialize(&cache, &stylize_pipeline, pass.key));
+            pass.uniform_offset =
+                passes.uniforms.push(&uniform(view, &plan, extracted.viewport));
+        }
+    }
+    passes.views.retain(|_, pass| pass.live);
+    passes.uniforms.write_buffer(&device, &queue);
+    passes.range_views.write_buffer(&device, &queue);
+}
+
+/// The part of the depth texture that the main pass has drawn.
+fn depth_rect(viewport: UVec4, main_pass_size: Option<UVec2>) -> UVec4 {
+    let size = main_pass_size.map_or(viewport.zw(), |main| {
+        main.clamp(UVec2::ONE, viewport.zw())
+    });
+    UVec4::new(viewport.x, viewport.y, size.x, size.y)
+}
+
+fn report_missing_depth(ledger: &mut StageLedger, view: &ComicsView) {
+    bevy::log::warn_once!(
+        "{} has a depth style and no depth prepass: its picture passes without that style",
+        view.camera
+    );
+    let missing = StageOutcome::LeftOut(LeftOut::NoDepthPrepass);
+    let wanted = &view.plan;
+    let left = wanted.without_depth();
+    for (stage, lost) in [
+        (ComicsStage::DepthPrepass, true),
+        (ComicsStage::DepthRange, wanted.needs_range()),
+        (ComicsStage::RangeReadback, wanted.readback),
+        (ComicsStage::Desaturation, wanted.desaturation.is_some()),
+        (ComicsStage::Colorization, wanted.colorization.is_some() && left.colorization.is_none()),
+        (ComicsStage::BlackFlats, wanted.black_flats.is_some() && left.black_flats.is_none()),
+        (ComicsStage::Contours, wanted.contours.is_some()),
+    ] {
+        if lost {
+            ledger.set(view.camera, stage, missing);
+        }
+    }
+}
+
+pub(crate) fn map_readbacks(mut passes: ResMut<ViewPasses>, readings: Res<RangeReadings>) {
+    for pass in passes.views.values_mut() {
+        let camera = pass.camera;
+        pass.readback.map(camera, &readings);
+    }
+}
+
+/// The size of a uniform as a binding.
+pub(crate) fn binding_size<T: ShaderType>() -> Option<std::num::NonZeroU64> {
+    Some(T::min_size())
+}

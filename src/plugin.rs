@@ -1,0 +1,132 @@
+//! The plugin: one frame, top to bottom.
+
+use bevy::{
+    anti_alias::{fxaa::fxaa, smaa::smaa},
+    app::{App, Plugin, PostUpdate, PreUpdate, Update},
+    asset::{AssetApp, embedded_asset},
+    core_pipeline::{
+        schedule::{Core3d, Core3dSystems},
+        tonemapping::tonemapping,
+    },
+    ecs::{
+        schedule::{IntoScheduleConfigs, SystemSet},
+    },
+    render::{
+        ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
+        render_resource::{SpecializedComputePipelines, SpecializedRenderPipelines},
+    },
+    shader::load_shader_library,
+};
+
+use crate::{
+    depth::{
+        DepthMap, VisibleDepthRange,
+        ping_pong::PingPongPipeline,
+        range::{RangePipeline, reduce_depth_range},
+        readback::{RangeReadings, receive_ranges},
+    },
+    diagnostics::{ComicsDiagnostics, StageLedger, publish_ledger, read_ledger},
+    passes::{ViewPasses, init_pipelines, map_readbacks, prepare_view_passes},
+    styles::{
+        BlackFlats, Colorization, ComicStyle, ComicStyleHandle, Contours, Desaturation,
+        StyleLoader, apply_styles,
+    },
+    stylize::{StylizePipeline, stylize},
+    view::{extract_views, request_depth_prepass, warn_unsupported},
+};
+
+/// Adds comics stylization: every [`Camera3d`](bevy::camera::Camera3d) with a
+/// style component is drawn as a comic.
+///
+/// In an app without a renderer the plugin registers its types and does
+/// nothing else.
+#[derive(Default)]
+pub struct ComicsPlugin;
+
+/// The render-world systems of this crate, in the `Core3d` schedule of a camera:
+/// order your own passes against them.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ComicsSystems {
+    /// The depth range is found: after `Core3dSystems::Prepass`, before
+    /// `Core3dSystems::MainPass`.
+    DepthRange,
+    /// The picture is stylized: in `Core3dSystems::PostProcess`, after
+    /// tonemapping and before FXAA and SMAA, which then smooth the ink.
+    Stylize,
+}
+
+impl Plugin for ComicsPlugin {
+    fn build(&self, app: &mut App) {
+        load_shader_library!(app, "styles/color.wgsl");
+        load_shader_library!(app, "styles/desaturation.wgsl");
+        load_shader_library!(app, "styles/colorization.wgsl");
+        load_shader_library!(app, "styles/black_flats.wgsl");
+        load_shader_library!(app, "styles/contours/contours.wgsl");
+        load_shader_library!(app, "depth/map.wgsl");
+        load_shader_library!(app, "depth/raw.wgsl");
+        load_shader_library!(app, "stylize/bindings.wgsl");
+        load_shader_library!(app, "stylize/taps.wgsl");
+        embedded_asset!(app, "stylize/stylize.wgsl");
+        embedded_asset!(app, "depth/range.wgsl");
+        embedded_asset!(app, "depth/ping_pong.wgsl");
+
+        app.register_type::<DepthMap>()
+            .register_type::<VisibleDepthRange>()
+            .register_type::<Desaturation>()
+            .register_type::<Colorization>()
+            .register_type::<BlackFlats>()
+            .register_type::<Contours>()
+            .register_type::<ComicStyleHandle>()
+            .register_type::<ComicsDiagnostics>()
+            .init_resource::<ComicsDiagnostics>()
+            .init_asset::<ComicStyle>()
+            .register_asset_reflect::<ComicStyle>()
+            .init_asset_loader::<StyleLoader>()
+            .add_systems(Update, apply_styles)
+            .add_systems(PostUpdate, (request_depth_prepass, warn_unsupported));
+
+        let ledger = StageLedger::default();
+        let readings = RangeReadings::default();
+        if app.get_sub_app(RenderApp).is_none() {
+            return;
+        }
+        app.insert_resource(ledger.reader())
+            .insert_resource(readings.clone())
+            .add_systems(PreUpdate, (read_ledger, receive_ranges));
+
+        let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+            return;
+        };
+        render_app
+            .insert_resource(ledger)
+            .insert_resource(readings)
+            .init_gpu_resource::<SpecializedRenderPipelines<StylizePipeline>>()
+            .init_gpu_resource::<SpecializedComputePipelines<RangePipeline>>()
+            .init_gpu_resource::<SpecializedRenderPipelines<PingPongPipeline>>()
+            .init_gpu_resource::<ViewPasses>()
+            .add_systems(RenderStartup, init_pipelines)
+            .add_systems(ExtractSchedule, extract_views)
+            .add_systems(
+                Render,
+                (
+                    prepare_view_passes.in_set(RenderSystems::PrepareBindGroups),
+                    (map_readbacks, publish_ledger).in_set(RenderSystems::Cleanup),
+                ),
+            )
+            .add_systems(
+                Core3d,
+                (
+                    reduce_depth_range
+                        .in_set(ComicsSystems::DepthRange)
+                        .after(Core3dSystems::Prepass)
+                        .before(Core3dSystems::MainPass),
+                    stylize
+                        .in_set(ComicsSystems::Stylize)
+                        .in_set(Core3dSystems::PostProcess)
+                        .after(tonemapping)
+                        .before(fxaa)
+                        .before(smaa),
+                ),
+            );
+    }
+}

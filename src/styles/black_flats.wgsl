@@ -1,0 +1,38 @@
+#define_import_path bevy_comics::styles::black_flats
+
+#import bevy_comics::styles::color
+
+struct BlackFlats {
+    color: vec3<f32>,
+    opacity: f32,
+    // Prewitt response above which a slope is filled, and where it is full.
+    slope_low: f32,
+    slope_high: f32,
+    // Display value below which an area is filled, and the width of its edge.
+    value: f32,
+    feather: f32,
+    // 1: the value threshold shrinks to nothing at the far end of the depth map.
+    depth_weight: f32,
+    // The response is measured as on a map of 512 rows.
+    slope_scale: f32,
+}
+
+// How dark an area is, against the threshold on V of the display code.
+fn dark_area(s: BlackFlats, linear: vec3<f32>, l: f32) -> f32 {
+    let threshold = s.value * mix(1.0, l, s.depth_weight);
+    if threshold <= 0.0 {
+        return 0.0;
+    }
+    let value = color::srgb_encode(vec3(color::largest(linear))).r;
+    let low = threshold * (1.0 - s.feather);
+    let high = threshold * (1.0 + s.feather);
+    return 1.0 - smoothstep(low, high, value);
+}
+
+fn steep_area(s: BlackFlats, prewitt: f32) -> f32 {
+    return smoothstep(s.slope_low, s.slope_high, prewitt * s.slope_scale);
+}
+
+fn fill(s: BlackFlats, linear: vec3<f32>, coverage: f32) -> vec3<f32> {
+    return mix(linear, s.color, clamp(coverage * s.opacity, 0.0, 1.0));
+}

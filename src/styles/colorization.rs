@@ -1,0 +1,133 @@
+//! The atmosphere: one hue for everything, or more of it with distance
+//! ([CS] Eq. 8 to 11).
+
+use bevy::{
+    color::{Color, ColorToComponents, Hsva, Oklaba},
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::Vec2,
+    reflect::{Reflect, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use super::{ColorMethod, file_color, oklab};
+use crate::sanitize::{bounded, displayable};
+
+/// Colours the picture with an atmosphere ([CS] Eq. 8 to 11).
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq)]
+#[serde(default, deny_unknown_fields)]
+pub struct Colorization {
+    /// Which equation. Default: [`ColorizationMode::Quadratic`].
+    pub mode: ColorizationMode,
+    /// The atmosphere. Its hue is `a_h`; in the corrected method its saturation
+    /// counts too: a grey pixel of this lightness becomes this very colour.
+    /// Default: a warm red, `#c8413a`. Components are clamped to what a display
+    /// shows; a colour that is not finite becomes the default.
+    #[serde(with = "file_color")]
+    pub color: Color,
+    /// How much of the change is applied. Range 0 (none, and the pass leaves
+    /// the style out) to 1. Default 1.
+    pub amount: f32,
+    /// [`ColorMethod::Corrected`] blends chroma vectors in `OKLab` and keeps
+    /// lightness. [`ColorMethod::Faithful`] moves HSV hue as printed: greys
+    /// never tint, and hues wrap round on the way.
+    pub method: ColorMethod,
+}
+
+/// The four models of [CS].
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash)]
+pub enum ColorizationMode {
+    /// Eq. 8: every pixel keeps its hue. Nothing is done, and the pass leaves
+    /// the style out.
+    Hue,
+    /// Eq. 9: every pixel takes the atmosphere, near or far.
+    Atmosphere,
+    /// Eq. 10: the atmosphere grows linearly with the depth map.
+    Linear,
+    /// Eq. 11: it grows with the square root, fast in the foreground.
+    #[default]
+    Quadratic,
+}
+
+const DEFAULT_COLOR: Color = Color::srgb(200.0 / 255.0, 65.0 / 255.0, 58.0 / 255.0);
+
+impl Default for Colorization {
+    fn default() -> Self {
+        Self {
+            mode: ColorizationMode::default(),
+            color: DEFAULT_COLOR,
+            amount: 1.0,
+            method: ColorMethod::Corrected,
+        }
+    }
+}
+
+impl Colorization {
+    /// Old paper: everything in the brown of a faded photograph ([CS] Figure 3).
+    pub const SEPIA: Self = Self {
+        mode: ColorizationMode::Atmosphere,
+        color: Color::srgb(0.62, 0.50, 0.34),
+        amount: 1.0,
+        method: ColorMethod::Corrected,
+    };
+
+    /// The settings that are used: every number in its documented range, what
+    /// is not finite replaced by its default.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        Self {
+            color: displayable(self.color, DEFAULT_COLOR),
+            amount: bounded(self.amount, 1.0, 0.0, 1.0),
+            ..self
+        }
+    }
+
+    /// Whether the amount of the atmosphere depends on the depth map.
+    pub fn depends_on_depth(&self) -> bool {
+        matches!(self.mode, ColorizationMode::Linear | ColorizationMode::Quadratic)
+    }
+
+    pub(crate) fn is_negligible(&self) -> bool {
+        self.amount == 0.0 || self.mode == ColorizationMode::Hue
+    }
+
+    pub(crate) fn uniform(&self) -> ColorizationUniform {
+        let hue = Hsva::from(self.color).hue / 360.0;
+        let [lightness, a, b, _] = Oklaba::from(self.color).to_f32_array().map(f64::from);
+        let chroma = a.hypot(b);
+        // A grey atmosphere has no hue: it takes colour away.
+        let direction = if chroma > 1e-4 { [a / chroma, b / chroma] } else { [1.0, 0.0] };
+        let cusp = oklab::cusp(direction);
+        let room = oklab::room(lightness, cusp);
+        let saturation =
+            if chroma > 1e-4 && room > 1e-6 { (chroma / room).min(1.0) } else { 0.0 };
+        ColorizationUniform {
+            direction: Vec2::new(direction[0] as f32, direction[1] as f32),
+            cusp_lightness: cusp.0 as f32,
+            cusp_chroma: (cusp.1 * saturation) as f32,
+            hue: if hue.is_finite() { hue.rem_euclid(1.0) } else { 0.0 },
+            amount: self.amount,
+            mode: match self.mode {
+                ColorizationMode::Hue => 0,
+                ColorizationMode::Atmosphere => 1,
+                ColorizationMode::Linear => 2,
+                ColorizationMode::Quadratic => 3,
+            },
+            faithful: u32::from(self.method == ColorMethod::Faithful),
+        }
+    }
+}
+
+/// `Colorization` of `colorization.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct ColorizationUniform {
+    direction: Vec2,
+    cusp_lightness: f32,
+    cusp_chroma: f32,
+    hue: f32,
+    amount: f32,
+    mode: u32,
+    faithful: u32,
+}

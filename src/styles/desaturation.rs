@@ -1,0 +1,76 @@
+//! Colours fade with distance ([CS] Eq. 5 to 7).
+
+use bevy::{
+    ecs::{component::Component, reflect::ReflectComponent},
+    reflect::{Reflect, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use super::ColorMethod;
+use crate::sanitize::bounded;
+
+/// Takes saturation away with distance: the nearest geometry keeps its colours,
+/// the farthest and the sky turn grey ([CS] Eq. 6 and 7).
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq)]
+#[serde(default, deny_unknown_fields)]
+pub struct Desaturation {
+    /// How much of the saturation goes at the far end. Range 0 (none, and the
+    /// pass leaves the style out) to 1 (all). Default 1.
+    pub amount: f32,
+    /// The exponent on `1 - D`: 1 is Eq. 6, 0.5 is Eq. 7, which keeps colours
+    /// longer and drops them late. Range 0.25 to 4, default 1.
+    pub exponent: f32,
+    /// What stays while the colour goes. [`ColorMethod::Corrected`] keeps the
+    /// luminance of the light; [`ColorMethod::Faithful`] keeps HSV value
+    /// (Eq. 5), which makes full blue fourteen times as bright.
+    pub method: ColorMethod,
+}
+
+impl Default for Desaturation {
+    fn default() -> Self {
+        Self { amount: 1.0, exponent: 1.0, method: ColorMethod::Corrected }
+    }
+}
+
+impl Desaturation {
+    /// [CS] Eq. 6 as printed.
+    pub const LINEAR: Self =
+        Self { amount: 1.0, exponent: 1.0, method: ColorMethod::Faithful };
+    /// [CS] Eq. 7 as printed.
+    pub const QUADRATIC: Self =
+        Self { amount: 1.0, exponent: 0.5, method: ColorMethod::Faithful };
+
+    /// The settings that are used: every number in its documented range, what
+    /// is not finite replaced by its default.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        let default = Self::default();
+        Self {
+            amount: bounded(self.amount, default.amount, 0.0, 1.0),
+            exponent: bounded(self.exponent, default.exponent, 0.25, 4.0),
+            ..self
+        }
+    }
+
+    pub(crate) fn is_negligible(&self) -> bool {
+        self.amount == 0.0
+    }
+
+    pub(crate) fn uniform(&self) -> DesaturationUniform {
+        DesaturationUniform {
+            amount: self.amount,
+            exponent: self.exponent,
+            faithful: u32::from(self.method == ColorMethod::Faithful),
+        }
+    }
+}
+
+/// `Desaturation` of `desaturation.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct DesaturationUniform {
+    amount: f32,
+    exponent: f32,
+    faithful: u32,
+}

@@ -1,0 +1,34 @@
+#define_import_path bevy_comics::styles::desaturation
+
+#import bevy_comics::styles::color
+
+struct Desaturation {
+    amount: f32,
+    exponent: f32,
+    faithful: u32,
+}
+
+// What is left of the saturation: Eq. 6 (exponent 1) and Eq. 7 (exponent 1/2),
+// from the complement L of the depth map, which keeps its relative precision
+// where 1 - D would have none.
+fn saturation_left(s: Desaturation, l: f32) -> f32 {
+    var k = l;
+    if s.exponent == 0.5 {
+        k = sqrt(max(l, 0.0));
+    } else if s.exponent != 1.0 {
+        k = select(pow(max(l, 1e-30), s.exponent), 0.0, l <= 0.0);
+    }
+    return 1.0 - s.amount * (1.0 - k);
+}
+
+// Eq. 5-7. Faithful: towards the value V of the display code. Corrected:
+// towards the luminance of the light, so that nothing grows brighter.
+fn desaturate(s: Desaturation, linear: vec3<f32>, k: f32) -> vec3<f32> {
+    if s.faithful != 0u {
+        let c = color::srgb_encode(linear);
+        let value = vec3(color::largest(c));
+        return color::srgb_decode(value + (c - value) * k);
+    }
+    let grey = vec3(color::luminance(linear));
+    return grey + (linear - grey) * k;
+}
