@@ -15,7 +15,7 @@ use bevy::{
         camera::ExtractedCamera,
         render_resource::{
             Buffer, BufferDescriptor, BufferUsages, CachedRenderPipelineId, DynamicUniformBuffer,
-            PipelineCache, ShaderType, SpecializedComputePipelines, SpecializedRenderPipelines,
+            PipelineCache, SpecializedComputePipelines, SpecializedRenderPipelines,
         },
         renderer::{RenderAdapterInfo, RenderDevice, RenderQueue},
         view::{ExtractedView, ViewTarget},
@@ -286,9 +286,4 @@ pub(crate) fn map_readbacks(mut passes: ResMut<ViewPasses>, readings: Res<RangeR
         let camera = pass.camera;
         pass.readback.map(camera, &readings);
     }
-}
-
-/// The size of a uniform as a binding.
-pub(crate) fn binding_size<T: ShaderType>() -> Option<std::num::NonZeroU64> {
-    Some(T::min_size())
 }

@@ -13,6 +13,7 @@ use bevy::{
         RenderApp, RenderPlugin,
         render_asset::RenderAssets,
         render_resource::{TextureFormat, TextureUsages},
+        settings::WgpuSettings,
         texture::GpuImage,
     },
     time::TimeUpdateStrategy,
@@ -64,7 +65,11 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
             exit_condition: ExitCondition::DontExit,
             ..default()
         })
-        .set(RenderPlugin { synchronous_pipeline_compilation: true, ..default() })
+        .set(RenderPlugin {
+            render_creation: WgpuSettings { backends: Some(backends()), ..default() }.into(),
+            synchronous_pipeline_compilation: true,
+            ..default()
+        })
         .set(AssetPlugin {
             file_path: options.assets.clone(),
             watch_for_changes_override: Some(options.watch),
@@ -80,16 +85,45 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
     }
 }
 
-/// Name of the adapter that will render, or how to get one.
-pub fn adapter() -> Result<wgpu::AdapterInfo, String> {
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+/// Vulkan, Metal or DirectX 12, unless `WGPU_BACKEND` says otherwise: OpenGL
+/// wants a display.
+fn backends() -> wgpu::Backends {
+    wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY)
+}
+
+/// The adapter that will render, and what it can do.
+#[derive(Clone, Debug)]
+pub struct Adapter {
+    pub info: wgpu::AdapterInfo,
+    /// Largest width and height of a picture.
+    pub max_size: u32,
+    /// Sample counts of multisampling, for colour, HDR colour and depth alike.
+    pub samples: Vec<u32>,
+}
+
+/// Asks for the adapter, or says how to get one.
+pub fn adapter() -> Result<Adapter, String> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends: backends(),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
     let request = instance.request_adapter(&wgpu::RequestAdapterOptions::default());
-    match bevy::tasks::block_on(request) {
-        Ok(adapter) => Ok(adapter.get_info()),
-        Err(_) => Err(format!(
+    let Ok(adapter) = bevy::tasks::block_on(request) else {
+        return Err(format!(
             "no graphics adapter; on Debian this installs one that runs on the CPU: {INSTALL_ADAPTER}"
-        )),
-    }
+        ));
+    };
+    let supported = |count: &u32| {
+        use wgpu::TextureFormat::{Depth32Float, Rgba8UnormSrgb, Rgba16Float};
+        [Rgba8UnormSrgb, Rgba16Float, Depth32Float].into_iter().all(|format| {
+            adapter.get_texture_format_features(format).flags.sample_count_supported(*count)
+        })
+    };
+    Ok(Adapter {
+        info: adapter.get_info(),
+        max_size: adapter.limits().max_texture_dimension_2d,
+        samples: [1, 2, 4, 8].into_iter().filter(supported).collect(),
+    })
 }
 
 /// A running headless app.
@@ -102,7 +136,7 @@ pub struct Headless {
 impl Headless {
     /// Starts the engine with `extra` plugins; panics with the command that
     /// installs an adapter where there is none.
-    pub fn new<M>(options: HeadlessOptions, extra: impl Plugins<M>) -> Self {
+    pub fn new<M>(options: HeadlessOptions, extra: impl bevy::app::Plugins<M>) -> Self {
         if let Err(message) = adapter() {
             panic!("{message}");
         }

@@ -5,3 +5,4 @@
 pub mod headless;
 pub mod read_back;
 pub mod scenes;
+pub mod studio;

@@ -18,12 +18,12 @@ struct Comics {
     depth_scale: vec2<f32>,
     // 1: near and far of the depth map change places for the colours.
     flip: u32,
-    raw: RawDepth,
-    depth: DepthFrame,
-    desaturation: Desaturation,
-    colorization: Colorization,
-    contours: Contours,
-    black_flats: BlackFlats,
+    @align(16) raw: RawDepth,
+    @align(16) depth: DepthFrame,
+    @align(16) desaturation: Desaturation,
+    @align(16) colorization: Colorization,
+    @align(16) contours: Contours,
+    @align(16) black_flats: BlackFlats,
 }
 
 @group(0) @binding(0) var source: texture_2d<f32>;

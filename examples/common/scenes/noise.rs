@@ -29,8 +29,8 @@ impl Random {
         low + (high - low) * self.unit()
     }
 
-    pub fn pick<T: Copy>(&mut self, from: &[T]) -> T {
-        from[((self.unit() * from.len() as f32) as usize).min(from.len() - 1)]
+    pub fn pick<T: Clone>(&mut self, from: &[T]) -> T {
+        from[((self.unit() * from.len() as f32) as usize).min(from.len() - 1)].clone()
     }
 }
 

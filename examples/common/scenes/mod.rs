@@ -1,0 +1,128 @@
+//! The scenes, all made by code: each with its lights, its sky and a camera
+//! that shows it well.
+
+pub mod mountains;
+pub mod noise;
+pub mod shape;
+pub mod sky;
+pub mod teapot;
+pub mod village;
+
+use bevy::{
+    camera::ScalingMode, core_pipeline::tonemapping::Tonemapping, ecs::system::SystemParam,
+    light::Skybox, prelude::*,
+};
+
+/// The built-in scenes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BuiltIn {
+    Mountains,
+    Teapot,
+    Village,
+}
+
+impl BuiltIn {
+    pub const ALL: [Self; 3] = [Self::Mountains, Self::Teapot, Self::Village];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mountains => "mountains",
+            Self::Teapot => "teapot",
+            Self::Village => "village",
+        }
+    }
+
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|scene| scene.name() == name)
+    }
+}
+
+/// Where a scene is best seen from.
+#[derive(Clone, Debug)]
+pub struct Vantage {
+    pub eye: Vec3,
+    pub target: Vec3,
+    /// Vertical field of view, radians.
+    pub fov: f32,
+    pub near: f32,
+    pub far: f32,
+    /// Height of an orthographic view that frames the same subject.
+    pub ortho_height: f32,
+    pub sky: Handle<Image>,
+    pub sky_brightness: f32,
+}
+
+/// What a scene is built with.
+#[derive(SystemParam)]
+pub struct Stage<'w, 's> {
+    pub commands: Commands<'w, 's>,
+    pub meshes: ResMut<'w, Assets<Mesh>>,
+    pub materials: ResMut<'w, Assets<StandardMaterial>>,
+    pub images: ResMut<'w, Assets<Image>>,
+}
+
+/// Everything that belongs to the current scene; despawn these to leave it.
+#[derive(Component, Clone, Copy, Default)]
+pub struct ScenePart;
+
+impl Stage<'_, '_> {
+    pub fn spawn(&mut self, scene: BuiltIn) -> Vantage {
+        match scene {
+            BuiltIn::Mountains => mountains::spawn(self),
+            BuiltIn::Teapot => teapot::spawn(self),
+            BuiltIn::Village => village::spawn(self),
+        }
+    }
+
+    /// A mesh with vertex colours in a matt material.
+    pub fn solid(&mut self, mesh: Handle<Mesh>, material: Handle<StandardMaterial>, at: Transform) {
+        self.commands.spawn((ScenePart, Mesh3d(mesh), MeshMaterial3d(material), at));
+    }
+
+    pub fn matt(&mut self) -> Handle<StandardMaterial> {
+        self.materials.add(StandardMaterial {
+            perceptual_roughness: 0.95,
+            reflectance: 0.15,
+            ..default()
+        })
+    }
+}
+
+impl Vantage {
+    pub fn transform(&self) -> Transform {
+        Transform::from_translation(self.eye).looking_at(self.target, Vec3::Y)
+    }
+
+    pub fn perspective(&self) -> Projection {
+        Projection::Perspective(PerspectiveProjection {
+            fov: self.fov,
+            near: self.near,
+            far: self.far,
+            ..default()
+        })
+    }
+
+    pub fn orthographic(&self, height: f32) -> Projection {
+        Projection::Orthographic(OrthographicProjection {
+            near: -self.far * 0.1,
+            far: self.far,
+            scaling_mode: ScalingMode::FixedVertical { viewport_height: height },
+            ..OrthographicProjection::default_3d()
+        })
+    }
+
+    /// The camera of this view, without a style.
+    pub fn camera(&self) -> impl Bundle {
+        (
+            Camera3d::default(),
+            self.transform(),
+            self.perspective(),
+            Tonemapping::AcesFitted,
+            Skybox {
+                image: Some(self.sky.clone()),
+                brightness: self.sky_brightness,
+                ..default()
+            },
+        )
+    }
+}

@@ -1,0 +1,319 @@
+//! A large landscape: a meadow full of flowers, trees, hills and, far behind,
+//! mountains; one million vertices of ground ([CS] Figure 4).
+
+use bevy::{
+    light::{CascadeShadowConfigBuilder, light_consts::lux},
+    math::{Vec2, Vec3Swizzles},
+    prelude::*,
+};
+
+use super::{
+    ScenePart, Stage, Vantage,
+    noise::{Random, fractal, noise2, ridges, smoothstep},
+    shape::{Shape, blend, rgb, shade},
+    sky::Sky,
+};
+
+/// Vertices along each side of the ground: a million in all.
+const SIDE: u32 = 1000;
+/// The ground is cut into tiles, so that what is not in view is not drawn.
+const TILES: u32 = 10;
+/// Half the width of the world, metres.
+const REACH: f32 = 6000.0;
+
+/// Height of the ground, metres.
+pub fn height(p: Vec2) -> f32 {
+    let r = p.length();
+    let meadow = 1.1 * noise2(p / 31.0) + 0.22 * noise2(p / 7.0);
+    let hills = 34.0 * (fractal(p / 340.0 + 3.7, 4) + 0.25) * smoothstep(60.0, 420.0, r);
+    // A valley opens to the north, and the range closes it.
+    let valley = smoothstep(0.05, 0.6, (p.x / r.max(1.0)).abs());
+    let rise = smoothstep(700.0 + 500.0 * (1.0 - valley), 4200.0, r);
+    let peaks = ridges(p / 1500.0 + Vec2::new(11.3, 5.1), 7);
+    meadow + hills + rise * (120.0 + 1500.0 * peaks)
+}
+
+/// The grid is dense around the meadow and wide at the horizon.
+fn warp(t: f32) -> f32 {
+    let u = 2.0 * t - 1.0;
+    REACH * u * (0.012 + 0.988 * u.abs().powf(2.1))
+}
+
+fn ground_color(p: Vec3, normal: Vec3) -> [f32; 4] {
+    let steep = 1.0 - normal.y;
+    let patch = fractal(p.xz() / 23.0, 3);
+    let grass = blend(rgb(0x5f9a2e), rgb(0x9cbf45), 0.5 + patch);
+    let forest = blend(rgb(0x2e6638), rgb(0x4d8040), 0.5 + fractal(p.xz() / 90.0, 4));
+    let rock = blend(rgb(0x7b7486), rgb(0xa89d94), 0.5 + fractal(p.xz() / 60.0 + 9.0, 4));
+    let snow = rgb(0xf4f7fb);
+    let r = p.xz().length();
+    let mut color = blend(grass, forest, smoothstep(140.0, 600.0, r + 120.0 * patch));
+    let tree_line = 330.0 + 120.0 * fractal(p.xz() / 200.0, 3);
+    color = blend(color, rock, smoothstep(tree_line - 90.0, tree_line + 60.0, p.y));
+    color = blend(color, rock, smoothstep(0.28, 0.42, steep) * smoothstep(60.0, 180.0, p.y));
+    let snow_line = 620.0 + 160.0 * fractal(p.xz() / 260.0 + 4.0, 4);
+    blend(color, snow, smoothstep(snow_line, snow_line + 110.0, p.y) * smoothstep(0.62, 0.4, steep))
+}
+
+/// The tiles of the ground; together they have `SIDE` x `SIDE` vertices, plus
+/// the seams that neighbouring tiles share.
+fn ground() -> Vec<Shape> {
+    let position = |i: u32, j: u32| {
+        let p = Vec2::new(warp(i as f32 / (SIDE - 1) as f32), warp(j as f32 / (SIDE - 1) as f32));
+        Vec3::new(p.x, height(p), p.y)
+    };
+    let rows: Vec<Vec<Vec3>> = (0..SIDE).map(|j| (0..SIDE).map(|i| position(i, j)).collect()).collect();
+    let at = |i: i64, j: i64| {
+        let last = i64::from(SIDE) - 1;
+        rows[j.clamp(0, last) as usize][i.clamp(0, last) as usize]
+    };
+    let step = SIDE / TILES;
+    let mut tiles = Vec::new();
+    for tile_y in 0..TILES {
+        for tile_x in 0..TILES {
+            let mut shape = Shape::default();
+            let (x0, y0) = (tile_x * step, tile_y * step);
+            let (x1, y1) = ((x0 + step).min(SIDE - 1), (y0 + step).min(SIDE - 1));
+            for j in y0..=y1 {
+                for i in x0..=x1 {
+                    let (i, j) = (i64::from(i), i64::from(j));
+                    let east = at(i + 1, j) - at(i - 1, j);
+                    let south = at(i, j + 1) - at(i, j - 1);
+                    let normal = south.cross(east).normalize_or(Vec3::Y);
+                    shape.vertex(at(i, j), normal, ground_color(at(i, j), normal));
+                }
+            }
+            let width = x1 - x0 + 1;
+            for j in 0..y1 - y0 {
+                for i in 0..x1 - x0 {
+                    let a = j * width + i;
+                    shape.indices.extend([a, a + width, a + 1, a + 1, a + width, a + width + 1]);
+                }
+            }
+            tiles.push(shape);
+        }
+    }
+    tiles
+}
+
+pub fn conifer(random: &mut Random) -> Shape {
+    let mut tree = Shape::default();
+    tree.frustum(Vec3::ZERO, 1.6, (0.22, 0.16), 7, rgb(0x6a4a32));
+    let green = blend(rgb(0x1f5a35), rgb(0x35803f), random.unit());
+    for (y, radius, rise) in [(0.9, 1.75, 2.4), (2.2, 1.35, 2.1), (3.4, 0.95, 1.9)] {
+        let tier = shade(green, 0.85 + 0.1 * y);
+        tree.frustum(Vec3::new(0.0, y, 0.0), rise, (radius, 0.0), 11, tier);
+        let skirt: Vec<_> = (0..11)
+            .map(|i| {
+                let a = std::f32::consts::TAU * i as f32 / 11.0;
+                Vec3::new(radius * a.cos(), y, radius * a.sin())
+            })
+            .collect();
+        tree.polygon(&skirt, shade(tier, 0.55));
+    }
+    tree
+}
+
+pub fn broadleaf(random: &mut Random, leaf: [f32; 4]) -> Shape {
+    let mut tree = Shape::default();
+    tree.frustum(Vec3::ZERO, 2.6, (0.32, 0.2), 8, rgb(0x74523a));
+    let seed = random.range(0.0, 100.0);
+    for (offset, size) in [
+        (Vec3::new(0.0, 4.1, 0.0), 1.9),
+        (Vec3::new(1.1, 3.3, 0.4), 1.25),
+        (Vec3::new(-0.9, 3.4, 0.7), 1.3),
+        (Vec3::new(-0.1, 3.2, -1.1), 1.2),
+    ] {
+        tree.blob(
+            offset,
+            Vec3::new(size, size * 0.85, size),
+            9,
+            |d| shade(leaf, 0.8 + 0.35 * d.y.max(-0.3)),
+            |d| 0.12 * super::noise::noise3(d * 2.7 + seed),
+        );
+    }
+    tree
+}
+
+/// One flower: a stem with leaves, petals around an eye.
+fn flower(random: &mut Random, petal: [f32; 4]) -> Shape {
+    let mut shape = Shape::default();
+    let tall = random.range(0.28, 0.62);
+    shape.frustum(Vec3::ZERO, tall, (0.012, 0.008), 5, rgb(0x4e8a2c));
+    for side in [0.0, 2.4] {
+        let out = Vec3::new(f32::cos(side), 0.0, f32::sin(side));
+        let base = Vec3::Y * tall * 0.25;
+        let tip = base + out * 0.13 + Vec3::Y * 0.12;
+        let across = out.cross(Vec3::Y) * 0.03;
+        let middle = base.midpoint(tip) + Vec3::Y * 0.015;
+        shape.polygon(&[base, middle + across, tip], rgb(0x5c9c34));
+        shape.polygon(&[base, tip, middle - across], rgb(0x4e8a2c));
+    }
+    let radius = random.range(0.075, 0.125);
+    let tilt = Quat::from_rotation_x(random.range(-0.5, 0.75))
+        * Quat::from_rotation_z(random.range(-0.5, 0.5));
+    let centre = Vec3::Y * tall;
+    let petals = 5 + (random.unit() * 3.0) as u32;
+    for k in 0..petals {
+        let a = std::f32::consts::TAU * k as f32 / petals as f32;
+        let half = std::f32::consts::TAU / petals as f32 * 0.46;
+        let out = |angle: f32, r: f32, y: f32| {
+            centre + tilt * Vec3::new(angle.cos() * r, y, angle.sin() * r)
+        };
+        let tone = shade(petal, if k % 2 == 0 { 1.0 } else { 0.88 });
+        shape.polygon(
+            &[
+                out(a, radius * 0.15, 0.0),
+                out(a + half, radius * 0.75, 0.02),
+                out(a + half * 0.45, radius * 1.05, 0.035),
+                out(a - half * 0.45, radius * 1.05, 0.035),
+                out(a - half, radius * 0.75, 0.02),
+            ],
+            tone,
+        );
+    }
+    shape.blob(
+        centre + tilt * Vec3::Y * 0.012,
+        Vec3::splat(radius * 0.34),
+        4,
+        |_| rgb(0xf2b51d),
+        |_| 0.0,
+    );
+    shape
+}
+
+const PETALS: [u32; 8] =
+    [0xe0332f, 0xf6d327, 0xffffff, 0x8d4fd0, 0xf26fa8, 0x3f6fe0, 0xf58a1f, 0xd03fae];
+
+fn meadow(random: &mut Random) -> Shape {
+    let mut shape = Shape::default();
+    let kinds: Vec<Shape> =
+        (0..24).map(|i| flower(random, rgb(PETALS[i % PETALS.len()]))).collect();
+    let grounded = |p: Vec2| Vec3::new(p.x, height(p), p.y);
+    // More and more of them towards the camera, which looks north from here.
+    let scatter = |random: &mut Random, far: f32| {
+        let distance = 1.1 + far * random.unit().powf(1.7);
+        let across = random.range(-1.0, 1.0) * (0.9 + 0.85 * distance);
+        EYE.xz() + Vec2::new(across, -distance)
+    };
+    for _ in 0..2600 {
+        let p = scatter(random, 34.0);
+        // Colours grow in drifts.
+        let drift = (noise2(p / 3.1) * 0.5 + 0.5) * kinds.len() as f32;
+        let kind = (drift as usize + (random.unit() * 5.0) as usize) % kinds.len();
+        let size = random.range(0.7, 1.15);
+        let turn = Quat::from_rotation_y(random.range(0.0, 6.3));
+        shape.add(
+            &kinds[kind],
+            Transform::from_translation(grounded(p)).with_rotation(turn).with_scale(Vec3::splat(size)),
+        );
+    }
+    for _ in 0..14000 {
+        let base = grounded(scatter(random, 40.0));
+        let lean = Vec3::new(random.range(-0.09, 0.09), 0.0, random.range(-0.09, 0.09));
+        let tip = base + lean + Vec3::Y * random.range(0.1, 0.3);
+        let side = Vec3::new(random.range(-1.0, 1.0), 0.0, random.range(-0.4, 0.4)) * 0.014;
+        let color = blend(rgb(0x568f2b), rgb(0xa2c64a), random.unit());
+        let first = shape.vertex(base - side, Vec3::Y, shade(color, 0.65));
+        shape.vertex(base + side, Vec3::Y, shade(color, 0.65));
+        shape.vertex(tip, Vec3::Y, color);
+        shape.indices.extend([first, first + 1, first + 2]);
+    }
+    shape
+}
+
+const EYE: Vec3 = Vec3::new(4.0, 0.0, 26.0);
+
+pub fn spawn(stage: &mut Stage) -> Vantage {
+    let sun = Vec3::new(-0.62, 0.55, 0.42);
+    let mut random = Random::new(2010);
+    let matt = stage.matt();
+    let leaf = stage.materials.add(StandardMaterial {
+        perceptual_roughness: 0.9,
+        reflectance: 0.2,
+        double_sided: true,
+        cull_mode: None,
+        ..default()
+    });
+
+    for tile in ground() {
+        let mesh = stage.meshes.add(tile.into_mesh());
+        stage.solid(mesh, matt.clone(), Transform::IDENTITY);
+    }
+    let flowers = stage.meshes.add(meadow(&mut random).into_mesh());
+    stage.solid(flowers, leaf.clone(), Transform::IDENTITY);
+
+    let conifers: Vec<_> =
+        (0..3).map(|_| stage.meshes.add(conifer(&mut random).into_mesh())).collect();
+    let broad: Vec<_> = [0x6fa53a, 0x8fb544, 0xd98a2b]
+        .map(|hex| stage.meshes.add(broadleaf(&mut random, rgb(hex)).into_mesh()))
+        .to_vec();
+    let plant = |stage: &mut Stage, p: Vec2, mesh: &Handle<Mesh>, size: f32, turn: f32| {
+        let at = Vec3::new(p.x, height(p) - 0.1, p.y);
+        let transform = Transform::from_translation(at)
+            .with_rotation(Quat::from_rotation_y(turn))
+            .with_scale(Vec3::new(size, size * 1.1, size));
+        stage.solid(mesh.clone(), leaf.clone(), transform);
+    };
+    for (x, z, kind, size) in
+        [(-7.5, 8.0, 0, 1.35), (15.5, 2.0, 2, 1.5), (-17.0, -16.0, 1, 1.6), (24.0, -26.0, 0, 1.7)]
+    {
+        plant(stage, Vec2::new(x, z), &broad[kind], size, x);
+    }
+    for _ in 0..420 {
+        let distance = 38.0 + 620.0 * random.unit().powf(1.6);
+        let angle = random.range(-1.05, 1.05);
+        let p = EYE.xz() + distance * Vec2::new(angle.sin(), -angle.cos());
+        // Woods with clearings, and a view through the middle.
+        if fractal(p / 120.0 + 1.7, 3) < -0.04 || (p.x - EYE.x).abs() < 0.13 * distance {
+            continue;
+        }
+        let mesh = random.pick(&conifers);
+        let size = random.range(1.2, 2.3);
+        plant(stage, p, &mesh, size, angle * 9.0);
+    }
+
+    stage.commands.spawn((
+        ScenePart,
+        DirectionalLight {
+            illuminance: lux::AMBIENT_DAYLIGHT,
+            color: Color::srgb(1.0, 0.95, 0.85),
+            shadow_maps_enabled: true,
+            ..default()
+        },
+        Transform::from_translation(sun).looking_at(Vec3::ZERO, Vec3::Y),
+        CascadeShadowConfigBuilder {
+            num_cascades: 3,
+            first_cascade_far_bound: 14.0,
+            maximum_distance: 260.0,
+            ..default()
+        }
+        .build(),
+    ));
+    stage.commands.insert_resource(GlobalAmbientLight {
+        color: Color::srgb(0.68, 0.8, 1.0),
+        brightness: 1200.0,
+        ..default()
+    });
+
+    let sky = Sky {
+        zenith: 0x3c78bd,
+        middle: 0x8fc0e4,
+        horizon: 0xe9eef0,
+        ground: 0x9fae8a,
+        cloud: 0xffffff,
+        cover: 0.47,
+        sun,
+    };
+    let eye = EYE.with_y(height(EYE.xz()) + 1.15);
+    Vantage {
+        eye,
+        target: eye + Vec3::new(-0.5, 0.62, -10.0),
+        fov: 54f32.to_radians(),
+        near: 0.1,
+        far: 12_000.0,
+        ortho_height: 60.0,
+        sky: stage.images.add(sky.image()),
+        sky_brightness: 1000.0,
+    }
+}

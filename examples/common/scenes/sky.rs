@@ -1,0 +1,87 @@
+//! A painted sky as a cube map: a gradient, a sun and a few clouds. It has no
+//! depth, as a sky should.
+
+use bevy::{
+    asset::RenderAssetUsages,
+    math::Vec2,
+    prelude::*,
+    render::render_resource::{
+        Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,
+    },
+};
+use half::f16;
+
+use super::{
+    noise::{fractal, smoothstep},
+    shape::{blend, rgb},
+};
+
+pub struct Sky {
+    pub zenith: u32,
+    pub middle: u32,
+    pub horizon: u32,
+    pub ground: u32,
+    pub cloud: u32,
+    /// Share of the sky under clouds, 0 to 1.
+    pub cover: f32,
+    /// Direction to the sun.
+    pub sun: Vec3,
+}
+
+const SIDE: u32 = 256;
+
+impl Sky {
+    pub fn color(&self, direction: Vec3) -> [f32; 4] {
+        let up = direction.y;
+        if up < 0.0 {
+            return blend(rgb(self.horizon), rgb(self.ground), smoothstep(0.0, 0.25, -up));
+        }
+        let low = blend(rgb(self.horizon), rgb(self.middle), smoothstep(0.0, 0.22, up));
+        let mut color = blend(low, rgb(self.zenith), smoothstep(0.18, 0.9, up));
+        // Clouds on a plane overhead, thinning out towards the horizon.
+        let plane = Vec2::new(direction.x, direction.z) / (up + 0.12);
+        let density = fractal(plane * 1.1 + 7.3, 5) * 0.5 + 0.5;
+        let edge = 1.0 - self.cover;
+        let cloud = smoothstep(edge, edge + 0.16, density) * smoothstep(0.02, 0.2, up);
+        color = blend(color, rgb(self.cloud), cloud * 0.9);
+        let towards = direction.dot(self.sun.normalize()).max(0.0);
+        blend(color, [1.0, 0.95, 0.8, 1.0], 0.35 * towards.powi(24) + smoothstep(0.9985, 0.9993, towards))
+    }
+
+    pub fn image(&self) -> Image {
+        let mut data = Vec::with_capacity((SIDE * SIDE * 6 * 8) as usize);
+        for face in 0..6 {
+            for y in 0..SIDE {
+                for x in 0..SIDE {
+                    let u = (x as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0;
+                    let v = (y as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0;
+                    let direction = match face {
+                        0 => Vec3::new(1.0, -v, -u),
+                        1 => Vec3::new(-1.0, -v, u),
+                        2 => Vec3::new(u, 1.0, v),
+                        3 => Vec3::new(u, -1.0, -v),
+                        4 => Vec3::new(u, -v, 1.0),
+                        _ => Vec3::new(-u, -v, -1.0),
+                    };
+                    // The engine looks cube maps up left-handed: z is mirrored.
+                    let direction = (direction * Vec3::new(1.0, 1.0, -1.0)).normalize();
+                    for c in self.color(direction) {
+                        data.extend(f16::from_f32(c).to_le_bytes());
+                    }
+                }
+            }
+        }
+        let mut image = Image::new(
+            Extent3d { width: SIDE, height: SIDE, depth_or_array_layers: 6 },
+            TextureDimension::D2,
+            data,
+            TextureFormat::Rgba16Float,
+            RenderAssetUsages::RENDER_WORLD,
+        );
+        image.texture_view_descriptor = Some(TextureViewDescriptor {
+            dimension: Some(TextureViewDimension::Cube),
+            ..default()
+        });
+        image
+    }
+}

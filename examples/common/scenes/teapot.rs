@@ -1,0 +1,205 @@
+//! The Utah teapot on a cube on a plane ([CL] Figure 6).
+
+use bevy::{
+    light::{CascadeShadowConfigBuilder, light_consts::lux},
+    prelude::*,
+};
+
+use super::{
+    ScenePart, Stage, Vantage,
+    shape::{Shape, rgb},
+    sky::Sky,
+};
+
+/// Martin Newell's profile curves (University of Utah, 1975): radius and
+/// height of the control points of the patches that stand around the axis.
+const PROFILES: [[[f32; 2]; 4]; 6] = [
+    // Rim, the two halves of the body, and the bottom.
+    [[1.4, 2.4], [1.3375, 2.53125], [1.4375, 2.53125], [1.5, 2.4]],
+    [[1.5, 2.4], [1.75, 1.875], [2.0, 1.35], [2.0, 0.9]],
+    [[2.0, 0.9], [2.0, 0.45], [1.5, 0.225], [1.5, 0.15]],
+    [[1.5, 0.15], [1.5, 0.075], [1.425, 0.0], [0.0, 0.0]],
+    // The knob and the lid.
+    [[0.0, 3.15], [0.8, 3.15], [0.0, 2.85], [0.2, 2.7]],
+    [[0.2, 2.7], [0.4, 2.55], [1.3, 2.55], [1.3, 2.4]],
+];
+
+/// A quarter circle as a cubic: the middle points lie this far along.
+const QUARTER: f32 = 0.56;
+
+/// Handle and spout, one side of the plane of symmetry: rows of control points.
+const HANDLE: [[[[f32; 3]; 4]; 4]; 2] = [
+    [
+        [[-1.6, 0.0, 2.025], [-1.6, -0.3, 2.025], [-1.5, -0.3, 2.25], [-1.5, 0.0, 2.25]],
+        [[-2.3, 0.0, 2.025], [-2.3, -0.3, 2.025], [-2.5, -0.3, 2.25], [-2.5, 0.0, 2.25]],
+        [[-2.7, 0.0, 2.025], [-2.7, -0.3, 2.025], [-3.0, -0.3, 2.25], [-3.0, 0.0, 2.25]],
+        [[-2.7, 0.0, 1.8], [-2.7, -0.3, 1.8], [-3.0, -0.3, 1.8], [-3.0, 0.0, 1.8]],
+    ],
+    [
+        [[-2.7, 0.0, 1.8], [-2.7, -0.3, 1.8], [-3.0, -0.3, 1.8], [-3.0, 0.0, 1.8]],
+        [[-2.7, 0.0, 1.575], [-2.7, -0.3, 1.575], [-3.0, -0.3, 1.35], [-3.0, 0.0, 1.35]],
+        [[-2.5, 0.0, 1.125], [-2.5, -0.3, 1.125], [-2.65, -0.3, 0.9375], [-2.65, 0.0, 0.9375]],
+        [[-2.0, 0.0, 0.9], [-2.0, -0.3, 0.9], [-1.9, -0.3, 0.6], [-1.9, 0.0, 0.6]],
+    ],
+];
+const SPOUT: [[[[f32; 3]; 4]; 4]; 2] = [
+    [
+        [[1.7, 0.0, 1.425], [1.7, -0.66, 1.425], [1.7, -0.66, 0.6], [1.7, 0.0, 0.6]],
+        [[2.6, 0.0, 1.425], [2.6, -0.66, 1.425], [3.1, -0.66, 0.825], [3.1, 0.0, 0.825]],
+        [[2.3, 0.0, 2.1], [2.3, -0.25, 2.1], [2.4, -0.25, 2.025], [2.4, 0.0, 2.025]],
+        [[2.7, 0.0, 2.4], [2.7, -0.25, 2.4], [3.3, -0.25, 2.4], [3.3, 0.0, 2.4]],
+    ],
+    [
+        [[2.7, 0.0, 2.4], [2.7, -0.25, 2.4], [3.3, -0.25, 2.4], [3.3, 0.0, 2.4]],
+        [[2.8, 0.0, 2.475], [2.8, -0.25, 2.475], [3.525, -0.25, 2.49375], [3.525, 0.0, 2.49375]],
+        [[2.9, 0.0, 2.475], [2.9, -0.15, 2.475], [3.45, -0.15, 2.5125], [3.45, 0.0, 2.5125]],
+        [[2.8, 0.0, 2.4], [2.8, -0.15, 2.4], [3.2, -0.15, 2.4], [3.2, 0.0, 2.4]],
+    ],
+];
+
+/// A bicubic Bezier patch in the data's frame, z up.
+pub type Patch = [[Vec3; 4]; 4];
+
+/// The 32 patches of the teapot.
+pub fn patches() -> Vec<Patch> {
+    let mut patches = Vec::with_capacity(32);
+    for profile in PROFILES {
+        for quarter in 0..4 {
+            let turn = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2 * quarter as f32);
+            patches.push(profile.map(|[r, z]| {
+                [[1.0, 0.0], [1.0, -QUARTER], [QUARTER, -1.0], [0.0, -1.0]]
+                    .map(|[x, y]| turn * Vec3::new(r * x, r * y, z))
+            }));
+        }
+    }
+    for half in [HANDLE, SPOUT].into_iter().flatten() {
+        let patch = half.map(|row| row.map(Vec3::from));
+        patches.push(patch);
+        // The mirror image, its columns in the other order to face outwards.
+        let mirrored = patch.map(|row| {
+            let [a, b, c, d] = row.map(|p| p * Vec3::new(1.0, -1.0, 1.0));
+            [d, c, b, a]
+        });
+        patches.push(mirrored);
+    }
+    patches
+}
+
+fn cubic(p: [Vec3; 4], t: f32) -> (Vec3, Vec3) {
+    let s = 1.0 - t;
+    let value =
+        p[0] * s * s * s + p[1] * 3.0 * s * s * t + p[2] * 3.0 * s * t * t + p[3] * t * t * t;
+    let slope = ((p[1] - p[0]) * s * s + (p[2] - p[1]) * 2.0 * s * t + (p[3] - p[2]) * t * t) * 3.0;
+    (value, slope)
+}
+
+fn surface(patch: &Patch, u: f32, v: f32) -> (Vec3, Vec3) {
+    let rows = patch.map(|row| cubic(row, u));
+    let (position, along_v) = cubic(rows.map(|r| r.0), v);
+    let (along_u, _) = cubic(rows.map(|r| r.1), v);
+    (position, along_u.cross(along_v))
+}
+
+/// The teapot, y up, standing on the origin; its body is four units across.
+pub fn mesh(steps: u32, color: [f32; 4]) -> Shape {
+    let mut shape = Shape::default();
+    let y_up = |p: Vec3| Vec3::new(p.x, p.z, -p.y);
+    for patch in patches() {
+        let first = shape.positions.len() as u32;
+        for i in 0..=steps {
+            for j in 0..=steps {
+                let (u, v) = (j as f32 / steps as f32, i as f32 / steps as f32);
+                let (position, mut normal) = surface(&patch, u, v);
+                if normal.length_squared() < 1e-10 {
+                    // A patch that shrinks to a point: the pole of the lid or
+                    // the bottom. Its neighbour knows the direction.
+                    normal = surface(&patch, u.clamp(0.02, 0.98), v.clamp(0.02, 0.98)).1;
+                }
+                shape.vertex(y_up(position), y_up(normal).normalize_or(Vec3::Y), color);
+            }
+        }
+        for i in 0..steps {
+            for j in 0..steps {
+                let at = |i: u32, j: u32| first + i * (steps + 1) + j;
+                shape.indices.extend([at(i, j), at(i + 1, j + 1), at(i + 1, j)]);
+                shape.indices.extend([at(i, j), at(i, j + 1), at(i + 1, j + 1)]);
+            }
+        }
+    }
+    shape
+}
+
+pub fn spawn(stage: &mut Stage) -> Vantage {
+    let sun = Vec3::new(0.55, 0.75, 0.5);
+    let sky = Sky {
+        zenith: 0x4f8fc4,
+        middle: 0xa9d3e6,
+        horizon: 0xf2ead8,
+        ground: 0xd9c9a8,
+        cloud: 0xffffff,
+        cover: 0.32,
+        sun,
+    };
+    let china = stage.materials.add(StandardMaterial {
+        perceptual_roughness: 0.22,
+        reflectance: 0.6,
+        ..default()
+    });
+    let matt = stage.matt();
+
+    let teapot = stage.meshes.add(mesh(12, rgb(0xd6452f)).into_mesh());
+    stage.solid(teapot, china, Transform::from_xyz(0.0, 4.0, 0.0));
+
+    let mut cube = Shape::default();
+    cube.cuboid(Vec3::new(-3.0, 0.0, -3.0), Vec3::new(3.0, 4.0, 3.0), rgb(0x2f7f79));
+    let cube = stage.meshes.add(cube.into_mesh());
+    stage.solid(cube, matt.clone(), Transform::from_rotation(Quat::from_rotation_y(0.5)));
+
+    let mut floor = Shape::default();
+    let (r, c) = (3000.0, rgb(0xe3c98a));
+    floor.polygon(
+        &[
+            Vec3::new(-r, 0.0, r),
+            Vec3::new(r, 0.0, r),
+            Vec3::new(r, 0.0, -r),
+            Vec3::new(-r, 0.0, -r),
+        ],
+        c,
+    );
+    let floor = stage.meshes.add(floor.into_mesh());
+    stage.solid(floor, matt, Transform::IDENTITY);
+
+    stage.commands.spawn((
+        ScenePart,
+        DirectionalLight {
+            illuminance: lux::AMBIENT_DAYLIGHT * 0.85,
+            color: Color::srgb(1.0, 0.96, 0.88),
+            shadow_maps_enabled: true,
+            ..default()
+        },
+        Transform::from_translation(sun).looking_at(Vec3::ZERO, Vec3::Y),
+        CascadeShadowConfigBuilder {
+            num_cascades: 2,
+            first_cascade_far_bound: 26.0,
+            maximum_distance: 60.0,
+            ..default()
+        }
+        .build(),
+    ));
+    stage.commands.insert_resource(GlobalAmbientLight {
+        color: Color::srgb(0.72, 0.82, 1.0),
+        brightness: 1200.0,
+        ..default()
+    });
+
+    Vantage {
+        eye: Vec3::new(5.2, 8.4, 11.5),
+        target: Vec3::new(0.1, 4.15, 0.0),
+        fov: 42f32.to_radians(),
+        near: 0.1,
+        far: 1000.0,
+        ortho_height: 12.0,
+        sky: stage.images.add(sky.image()),
+        sky_brightness: 1000.0,
+    }
+}

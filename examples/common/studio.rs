@@ -1,0 +1,49 @@
+//! One scene, one camera, any number of styles.
+
+use bevy::{camera::RenderTarget, ecs::system::RunSystemOnce, prelude::*, render::view::Msaa};
+use bevy_comics::{ComicStyle, ComicsPlugin};
+
+use super::{
+    headless::{Headless, HeadlessOptions},
+    scenes::{BuiltIn, Stage, Vantage},
+};
+
+/// Frames until a change of style is on the picture: the prepass takes one, the
+/// pipelines another, and the range is of the same frame.
+const SETTLE: usize = 4;
+
+pub struct Studio {
+    pub headless: Headless,
+    pub camera: Entity,
+    pub vantage: Vantage,
+}
+
+impl Studio {
+    pub fn new(scene: BuiltIn, size: UVec2, msaa: Msaa) -> Self {
+        let options = HeadlessOptions { size, ..default() };
+        Self::with_options(scene, options, msaa)
+    }
+
+    pub fn with_options(scene: BuiltIn, options: HeadlessOptions, msaa: Msaa) -> Self {
+        let mut headless = Headless::new(options, ComicsPlugin);
+        let vantage = headless
+            .app
+            .world_mut()
+            .run_system_once(move |mut stage: Stage| stage.spawn(scene))
+            .expect("the stage is there");
+        let target: RenderTarget = headless.render_target();
+        let camera = headless.app.world_mut().spawn((vantage.camera(), target, msaa)).id();
+        headless.step(2);
+        Self { headless, camera, vantage }
+    }
+
+    /// The scene in a style; the original for `None`.
+    pub fn shoot(&mut self, style: Option<&ComicStyle>) -> image::RgbaImage {
+        let none = ComicStyle::default();
+        let world = self.headless.app.world_mut();
+        style.unwrap_or(&none).apply(&mut world.commands().entity(self.camera));
+        world.flush();
+        self.headless.step(SETTLE);
+        self.headless.picture()
+    }
+}

@@ -1,0 +1,74 @@
+//! Renders pictures of every scene in every style, without a window.
+//!
+//! ```text
+//! cargo run --example pictures -- contact-sheet [--size WxH] [--out FILE.png]
+//! cargo run --example pictures -- figures [--out DIR]
+//! cargo run --example pictures -- golden [--out DIR]
+//! ```
+
+#[path = "../common/mod.rs"]
+mod common;
+mod figures;
+mod sheet;
+
+use std::{path::PathBuf, process::ExitCode};
+
+use bevy::math::UVec2;
+
+const USAGE: &str = "\
+usage: pictures contact-sheet [--size WxH] [--out FILE.png]   every scene in every preset
+       pictures figures [--out DIR]                           the figures of the paper
+       pictures golden [--out DIR]                            the tests' reference pictures";
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("pictures: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn run() -> Result<(), String> {
+    use lexopt::prelude::*;
+    let mut parser = lexopt::Parser::from_env();
+    let wrong = |error: lexopt::Error| format!("{error}\n{USAGE}");
+    let (mut what, mut size, mut out) = (None, UVec2::new(480, 270), None);
+    while let Some(argument) = parser.next().map_err(wrong)? {
+        match argument {
+            Value(value) if what.is_none() => what = Some(value.to_string_lossy().into_owned()),
+            Long("size") => {
+                let text = parser.value().and_then(|v| v.string()).map_err(wrong)?;
+                size = text
+                    .split_once('x')
+                    .and_then(|(w, h)| Some(UVec2::new(w.parse().ok()?, h.parse().ok()?)))
+                    .filter(|size| size.min_element() >= 16 && size.max_element() <= 4096)
+                    .ok_or_else(|| format!("--size {text}: possible are 16x16 to 4096x4096"))?;
+            }
+            Long("out") => out = Some(PathBuf::from(parser.value().map_err(wrong)?)),
+            Short('h') | Long("help") => {
+                println!("{USAGE}");
+                return Ok(());
+            }
+            other => return Err(wrong(other.unexpected())),
+        }
+    }
+    common::headless::adapter()?;
+    let or = |path: &str| out.clone().unwrap_or_else(|| PathBuf::from(path));
+    match what.as_deref() {
+        Some("contact-sheet") => sheet::contact_sheet(size, &or("target/contact-sheet.png")),
+        Some("figures") => figures::write(&or("target/figures")),
+        Some("golden") => sheet::golden(&or("tests/golden")),
+        Some(other) => Err(format!("no pictures called {other:?}\n{USAGE}")),
+        None => Err(USAGE.into()),
+    }
+}
+
+fn save(picture: &image::RgbaImage, path: &std::path::Path) -> Result<(), String> {
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder)
+            .map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
+    }
+    picture.save(path).map_err(|error| format!("cannot write {}: {error}", path.display()))
+}

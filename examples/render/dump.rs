@@ -1,0 +1,163 @@
+//! What a frame was made of: the pass's input and output, the raw depth, the
+//! normals, and what was decided.
+
+use std::path::Path;
+
+use bevy::{
+    prelude::*,
+    render::{RenderApp, sync_world::RenderEntity},
+};
+use bevy_comics::{
+    ComicStyle, ComicsDiagnostics, ComicsStage, ProjectionKind, StageOutcome, VisibleDepthRange,
+};
+use exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, Layer, LayerAttributes, SpecificChannels,
+    WritableImage,
+};
+use serde_json::{Value, json};
+
+use crate::{
+    arguments::{Arguments, SceneChoice},
+    common::{
+        headless::{Adapter, Headless},
+        read_back::{self, DepthImage, FloatImage},
+    },
+};
+
+pub fn write(
+    headless: &mut Headless,
+    camera: Entity,
+    arguments: &Arguments,
+    adapter: &Adapter,
+    folder: &Path,
+) -> Result<(), String> {
+    std::fs::create_dir_all(folder)
+        .map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
+    // The ledger and the range of the last frame arrive with the next update.
+    let view = headless.app.world().get::<RenderEntity>(camera).map(|e| e.id());
+    let render_world = headless.app.sub_app(RenderApp).world();
+    let view = view.ok_or("the camera was not rendered")?;
+    let stylized = arguments.style.is_some();
+    let (input, output) = read_back::last_pass(render_world, view, stylized)
+        .ok_or("the camera has no picture")?;
+    write_rgba(&folder.join("input.exr"), &input)?;
+    write_rgba(&folder.join("output.exr"), &output)?;
+    if let Some(depth) = read_back::depth(render_world, view) {
+        write_depth(&folder.join("depth.exr"), &depth)?;
+    }
+    if let Some(normals) = read_back::normals(render_world, view) {
+        write_rgba(&folder.join("normal.exr"), &normals)?;
+    }
+    headless.step(3);
+    let frame = describe(headless, camera, arguments, adapter);
+    let text = serde_json::to_string_pretty(&frame).map_err(|error| error.to_string())?;
+    let path = folder.join("frame.json");
+    std::fs::write(&path, text + "\n").map_err(|error| format!("cannot write {}: {error}", path.display()))
+}
+
+fn write_rgba(path: &Path, picture: &FloatImage) -> Result<(), String> {
+    let width = picture.width as usize;
+    let image = ExrImage::from_channels(
+        (width, picture.height as usize),
+        SpecificChannels::rgba(|at: exr::math::Vec2<usize>| {
+            let [r, g, b, a] = picture.pixels[at.y() * width + at.x()];
+            (r, g, b, a)
+        }),
+    );
+    image
+        .write()
+        .to_file(path)
+        .map_err(|error| format!("cannot write {}: {error}", path.display()))
+}
+
+/// One lossless channel a sample: `Z` for the first, `Z1`, `Z2` ... for the
+/// others.
+fn write_depth(path: &Path, depth: &DepthImage) -> Result<(), String> {
+    let channels = (0..depth.samples)
+        .map(|sample| {
+            let name = if sample == 0 { "Z".to_owned() } else { format!("Z{sample}") };
+            let values = depth
+                .bits
+                .iter()
+                .skip(sample as usize)
+                .step_by(depth.samples as usize)
+                .map(|bits| f32::from_bits(*bits))
+                .collect();
+            AnyChannel::new(name.as_str(), FlatSamples::F32(values))
+        })
+        .collect();
+    let layer = Layer::new(
+        (depth.width as usize, depth.height as usize),
+        LayerAttributes::named("depth"),
+        Encoding::FAST_LOSSLESS,
+        AnyChannels::sort(channels),
+    );
+    ExrImage::from_layer(layer)
+        .write()
+        .to_file(path)
+        .map_err(|error| format!("cannot write {}: {error}", path.display()))
+}
+
+fn describe(headless: &Headless, camera: Entity, arguments: &Arguments, adapter: &Adapter) -> Value {
+    let world = headless.app.world();
+    let range = match world.get::<VisibleDepthRange>(camera) {
+        Some(VisibleDepthRange::Visible { near, far, raw_near, raw_far }) => json!({
+            "raw": [raw_near, raw_far],
+            "raw_bits": [raw_near.to_bits(), raw_far.to_bits()],
+            "distance": [near, far],
+        }),
+        Some(VisibleDepthRange::Empty) => json!("empty"),
+        _ => Value::Null,
+    };
+    let mut ran = Vec::new();
+    let mut left_out = serde_json::Map::new();
+    let diagnostics = world.resource::<ComicsDiagnostics>();
+    let stages = diagnostics.cameras.get(&camera);
+    for stage in ComicsStage::ALL {
+        match stages.and_then(|stages| stages.outcome(stage)) {
+            Some(StageOutcome::Ran) => ran.push(json!(stage.name())),
+            Some(StageOutcome::Reduced(method)) => {
+                ran.push(json!(format!("{} ({method:?})", stage.name())));
+            }
+            Some(StageOutcome::LeftOut(reason)) => {
+                left_out.insert(stage.name().into(), json!(reason.to_string()));
+            }
+            None => {}
+        }
+    }
+    let clip = world.get::<Camera>(camera).map(Camera::clip_from_view).unwrap_or_default();
+    let style = arguments.style.as_ref().map(ComicStyle::sanitized);
+    let resolved = style.map(|style| serde_json::to_value(style).unwrap_or_default());
+    let plane = |pick: fn(&Projection) -> f32| world.get::<Projection>(camera).map(pick);
+    json!({
+        "scene": match &arguments.scene {
+            SceneChoice::BuiltIn(scene) => scene.name().to_owned(),
+            SceneChoice::Model(path) => path.display().to_string(),
+        },
+        "size": [arguments.size.x, arguments.size.y],
+        "samples": arguments.msaa,
+        "hdr": arguments.hdr,
+        "range": range,
+        "projection": match ProjectionKind::of(&clip) {
+            ProjectionKind::Perspective => "perspective",
+            ProjectionKind::Orthographic => "orthographic",
+            ProjectionKind::Oblique => "oblique",
+        },
+        "near": plane(|p| match p {
+            Projection::Perspective(p) => p.near,
+            Projection::Orthographic(p) => p.near,
+            Projection::Custom(_) => f32::NAN,
+        }),
+        "far": plane(|p| match p {
+            Projection::Perspective(p) => p.far,
+            Projection::Orthographic(p) => p.far,
+            Projection::Custom(p) => p.far(),
+        }),
+        "clip_from_view": clip.to_cols_array_2d(),
+        "passes_run": ran,
+        "passes_left_out": left_out,
+        "style": resolved,
+        "adapter": adapter.info.name,
+        "driver": format!("{} {}", adapter.info.driver, adapter.info.driver_info),
+    })
+}
