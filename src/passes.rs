@@ -110,7 +110,7 @@ fn uniform(view: &ComicsView, plan: &Plan, viewport: UVec4) -> ComicsUniform {
         colorization: plan.colorization.map(|s| s.uniform()).unwrap_or_default(),
         contours: plan
             .contours
-            .map(|s| s.uniform(view.scale_factor, plan.depth_map.sky_gap))
+            .map(|s| s.uniform(view.scale_factor))
             .unwrap_or_default(),
         black_flats: plan.black_flats.map(|s| s.uniform(viewport.w)).unwrap_or_default(),
     }

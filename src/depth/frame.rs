@@ -49,6 +49,7 @@ pub(crate) struct DepthFrame {
     pub floor: f32,
     pub plane_far: f32,
     pub extent: f32,
+    pub sky_gap: f32,
     pub flags: u32,
 }
 
@@ -172,6 +173,7 @@ impl DepthProjection {
             },
             plane_far: (self.shift * extent) as f32,
             extent: extent as f32,
+            sky_gap: map.sky_gap,
             flags,
         }
     }

@@ -19,6 +19,8 @@ struct DepthFrame {
     // Orthographic view depth is plane_far - d * extent.
     plane_far: f32,
     extent: f32,
+    // The sky lies at D = 1 + sky_gap for the contours.
+    sky_gap: f32,
     // ORTHOGRAPHIC | LOGARITHMIC | EMPTY
     flags: u32,
 }

@@ -93,24 +93,24 @@ fn reduce(@builtin(global_invocation_id) id: vec3<u32>) {
     }
 }
 #else
-// For GPUs: 16x16 invocations read 8x2 pixels each, a tile of 128x32.
+// For GPUs: 16 rows of 16 invocations read 8x2 pixels each, a tile of 128x32.
 var<workgroup> tile: RangeKeys;
 #ifndef SUBGROUP
 var<workgroup> tree: array<vec2<u32>, 256>;
 #endif
 
-@compute @workgroup_size(16, 16)
+@compute @workgroup_size(256)
 fn reduce(
-    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 #ifdef SUBGROUP
     @builtin(subgroup_invocation_id) lane: u32,
 #endif
 ) {
     var found = vec2(0u);
-    let y = id.y * 2u;
+    let y = group.y * 32u + (local / 16u) * 2u;
     for (var i = 0u; i < 4u; i++) {
-        let x = id.x * 8u + i * 2u;
+        let x = group.x * 128u + (local % 16u) * 8u + i * 2u;
         if x < view.rect.z && y < view.rect.w {
             found = max(found, block_keys(vec2(x, y)));
         }

@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::styles::black_flats
 
-#import bevy_comics::styles::color
+#import bevy_comics::styles::color::{largest, srgb_encode}
 
 struct BlackFlats {
     color: vec3<f32>,
@@ -23,7 +23,7 @@ fn dark_area(s: BlackFlats, linear: vec3<f32>, l: f32) -> f32 {
     if threshold <= 0.0 {
         return 0.0;
     }
-    let value = color::srgb_encode(vec3(color::largest(linear))).r;
+    let value = srgb_encode(vec3(largest(linear))).r;
     let low = threshold * (1.0 - s.feather);
     let high = threshold * (1.0 + s.feather);
     return 1.0 - smoothstep(low, high, value);

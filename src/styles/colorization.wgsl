@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::styles::colorization
 
-#import bevy_comics::styles::color
+#import bevy_comics::styles::color::{hue_color, hue_of, largest, linear_to_oklab, oklab_to_linear, smallest, srgb_decode, srgb_encode}
 
 const MODE_HUE: u32 = 0u;
 const MODE_ATMOSPHERE: u32 = 1u;
@@ -36,17 +36,17 @@ fn atmosphere_weight(mode: u32, d: f32, l: f32) -> f32 {
 // Eq. 9-11 as printed, on HSV hue of the display code. Value and saturation
 // stay, so greys never tint, and the weights of Eq. 11 sum to more than one.
 fn faithful_colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32) -> vec3<f32> {
-    let c = color::srgb_encode(linear);
-    let value = color::largest(c);
-    let chroma = value - color::smallest(c);
+    let c = srgb_encode(linear);
+    let value = largest(c);
+    let chroma = value - smallest(c);
     var hue = s.hue;
     if s.mode == MODE_LINEAR {
-        hue = fract(color::hue_of(c) * l + s.hue * d);
+        hue = fract(hue_of(c) * l + s.hue * d);
     } else if s.mode == MODE_QUADRATIC {
-        hue = fract(color::hue_of(c) * sqrt(max(l, 0.0)) + s.hue * sqrt(max(d, 0.0)));
+        hue = fract(hue_of(c) * sqrt(max(l, 0.0)) + s.hue * sqrt(max(d, 0.0)));
     }
-    let tinted = vec3(value) - chroma * (1.0 - color::hue_color(hue));
-    return color::srgb_decode(mix(c, tinted, s.amount));
+    let tinted = vec3(value) - chroma * (1.0 - hue_color(hue));
+    return srgb_decode(mix(c, tinted, s.amount));
 }
 
 // Blends chroma vectors in OKLab: no hue wraps round, opposite hues meet in
@@ -59,7 +59,7 @@ fn colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32, saturation: f32)
     if s.faithful != 0u {
         return faithful_colorize(s, linear, d, l);
     }
-    let lab = color::linear_to_oklab(linear);
+    let lab = linear_to_oklab(linear);
     let room = min(lab.x / s.cusp_lightness, (1.0 - lab.x) / (1.0 - s.cusp_lightness));
     var atmosphere = s.direction * (s.cusp_chroma * clamp(room, 0.0, 1.0));
     if s.mode == MODE_ATMOSPHERE {
@@ -67,5 +67,5 @@ fn colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32, saturation: f32)
     }
     let w = s.amount * atmosphere_weight(s.mode, d, l);
     let chroma = lab.yz * (1.0 - w) + atmosphere * w;
-    return color::oklab_to_linear(vec3(lab.x, chroma));
+    return oklab_to_linear(vec3(lab.x, chroma));
 }

@@ -62,6 +62,11 @@ impl Desaturation {
         DesaturationUniform {
             amount: self.amount,
             exponent: self.exponent,
+            curve: match self.exponent {
+                1.0 => 0,
+                0.5 => 1,
+                _ => 2,
+            },
             faithful: u32::from(self.method == ColorMethod::Faithful),
         }
     }
@@ -72,5 +77,6 @@ impl Desaturation {
 pub(crate) struct DesaturationUniform {
     amount: f32,
     exponent: f32,
+    curve: u32,
     faithful: u32,
 }

@@ -1,10 +1,16 @@
 #define_import_path bevy_comics::styles::desaturation
 
-#import bevy_comics::styles::color
+#import bevy_comics::styles::color::{largest, luminance, srgb_decode, srgb_encode}
+
+const CURVE_LINEAR: u32 = 0u;
+const CURVE_ROOT: u32 = 1u;
+const CURVE_POWER: u32 = 2u;
 
 struct Desaturation {
     amount: f32,
     exponent: f32,
+    // How the exponent is applied: CURVE_LINEAR, CURVE_ROOT or CURVE_POWER.
+    curve: u32,
     faithful: u32,
 }
 
@@ -13,9 +19,9 @@ struct Desaturation {
 // where 1 - D would have none.
 fn saturation_left(s: Desaturation, l: f32) -> f32 {
     var k = l;
-    if s.exponent == 0.5 {
+    if s.curve == CURVE_ROOT {
         k = sqrt(max(l, 0.0));
-    } else if s.exponent != 1.0 {
+    } else if s.curve == CURVE_POWER {
         k = select(pow(max(l, 1e-30), s.exponent), 0.0, l <= 0.0);
     }
     return 1.0 - s.amount * (1.0 - k);
@@ -25,10 +31,10 @@ fn saturation_left(s: Desaturation, l: f32) -> f32 {
 // towards the luminance of the light, so that nothing grows brighter.
 fn desaturate(s: Desaturation, linear: vec3<f32>, k: f32) -> vec3<f32> {
     if s.faithful != 0u {
-        let c = color::srgb_encode(linear);
-        let value = vec3(color::largest(c));
-        return color::srgb_decode(value + (c - value) * k);
+        let c = srgb_encode(linear);
+        let value = vec3(largest(c));
+        return srgb_decode(value + (c - value) * k);
     }
-    let grey = vec3(color::luminance(linear));
+    let grey = vec3(luminance(linear));
     return grey + (linear - grey) * k;
 }

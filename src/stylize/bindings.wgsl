@@ -10,6 +10,8 @@
 #import bevy_comics::styles::contours::Contours
 #import bevy_comics::styles::black_flats::BlackFlats
 
+// Uniform structs inside a struct must start at multiples of 16 bytes, so each
+// of them is a multiple of 16 bytes long.
 struct Comics {
     // Origin and size of the viewport in pixels.
     viewport: vec4<i32>,
@@ -18,12 +20,12 @@ struct Comics {
     depth_scale: vec2<f32>,
     // 1: near and far of the depth map change places for the colours.
     flip: u32,
-    @align(16) raw: RawDepth,
-    @align(16) depth: DepthFrame,
-    @align(16) desaturation: Desaturation,
-    @align(16) colorization: Colorization,
-    @align(16) contours: Contours,
-    @align(16) black_flats: BlackFlats,
+    raw: RawDepth,
+    depth: DepthFrame,
+    desaturation: Desaturation,
+    colorization: Colorization,
+    contours: Contours,
+    black_flats: BlackFlats,
 }
 
 @group(0) @binding(0) var source: texture_2d<f32>;

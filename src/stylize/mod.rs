@@ -44,17 +44,11 @@ pub(crate) struct ComicsUniform {
     pub viewport: IVec4,
     pub depth_scale: Vec2,
     pub flip: u32,
-    #[shader(align(16))]
     pub raw: RawDepth,
-    #[shader(align(16))]
     pub depth: DepthFrame,
-    #[shader(align(16))]
     pub desaturation: DesaturationUniform,
-    #[shader(align(16))]
     pub colorization: ColorizationUniform,
-    #[shader(align(16))]
     pub contours: ContoursUniform,
-    #[shader(align(16))]
     pub black_flats: BlackFlatsUniform,
 }
 

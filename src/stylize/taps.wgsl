@@ -6,7 +6,7 @@
 #import bevy_comics::stylize::bindings::{comics, load_depth, sample_count}
 #import bevy_comics::depth::map::{DepthFrame, depth_map}
 #import bevy_comics::styles::contours::{
-    Contours, Window, LAPLACE, PREWITT, ROBERTS,
+    Contours, Window, PREWITT,
     MISSING_W, MISSING_E, MISSING_N, MISSING_S,
     contour_response, faithful_response, line, nearest_depth,
 }

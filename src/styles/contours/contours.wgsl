@@ -17,8 +17,6 @@ struct Contours {
     radius: f32,
     // Share of the opacity that is gone at the far end of the depth map.
     fade: f32,
-    // The sky lies at D = 1 + gap.
-    sky_gap: f32,
     operator_kind: u32,
     faithful: u32,
 }
@@ -187,9 +185,9 @@ fn contour_response(s: Contours, f: DepthFrame, win: Window) -> f32 {
         return 0.0;
     }
     if s.faithful != 0u {
-        return faithful_response(f, s.sky_gap, s.operator_kind, win);
+        return faithful_response(f, f.sky_gap, s.operator_kind, win);
     }
-    return plane_response(f, s.sky_gap, s.operator_kind, win);
+    return plane_response(f, f.sky_gap, s.operator_kind, win);
 }
 
 // How much of a line there is at this response.

@@ -114,9 +114,8 @@ impl Contours {
         self.opacity == 0.0
     }
 
-    /// `scale` is physical pixels per logical pixel, `sky_gap` that of the
-    /// depth map.
-    pub(crate) fn uniform(&self, scale: f32, sky_gap: f32) -> ContoursUniform {
+    /// `scale` is physical pixels per logical pixel.
+    pub(crate) fn uniform(&self, scale: f32) -> ContoursUniform {
         // smoothstep needs its ends apart: a hard line rises over a thousandth.
         let half_ramp = self.threshold * self.softness.max(1e-3);
         ContoursUniform {
@@ -126,7 +125,6 @@ impl Contours {
             high: self.threshold + half_ramp,
             radius: (0.5 * self.width * scale).clamp(0.125, 64.0),
             fade: self.fade,
-            sky_gap,
             operator_kind: match self.operator {
                 ContourOperator::Prewitt => 0,
                 ContourOperator::Sobel => 1,
@@ -147,7 +145,6 @@ pub(crate) struct ContoursUniform {
     high: f32,
     radius: f32,
     fade: f32,
-    sky_gap: f32,
     operator_kind: u32,
     faithful: u32,
 }
