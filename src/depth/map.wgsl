@@ -88,6 +88,10 @@ fn depth_map(f: DepthFrame, d: f32) -> vec2<f32> {
     var map: vec2<f32>;
     if has(f, LOGARITHMIC) && !floored {
         let whole = log_distance(f, f.near, f.far);
+        if !(whole > 0.0) {
+            // An orthographic range that lies at or behind the eye.
+            return vec2(0.0, 1.0);
+        }
         map = vec2(log_distance(f, f.near, d), log_distance(f, d, f.far)) / whole;
     } else {
         let divisor = select(spread, least, floored);
@@ -111,7 +115,8 @@ fn depth_step(f: DepthFrame, d_raw: f32, p_raw: f32) -> f32 {
     let least = spread_floor(f);
     let floored = !(spread > least);
     if has(f, LOGARITHMIC) && !floored {
-        return log_distance(f, p, d) / log_distance(f, f.near, f.far);
+        let whole = log_distance(f, f.near, f.far);
+        return select(0.0, log_distance(f, p, d) / whole, whole > 0.0);
     }
     let divisor = select(spread, least, floored);
     var step = (p - d) / divisor;

@@ -33,8 +33,8 @@ fn desaturate(s: Desaturation, linear: vec3<f32>, k: f32) -> vec3<f32> {
     if s.faithful != 0u {
         let c = srgb_encode(linear);
         let value = vec3(largest(c));
-        return srgb_decode(value + (c - value) * k);
+        return srgb_decode(value * (1.0 - k) + c * k);
     }
     let grey = vec3(luminance(linear));
-    return grey + (linear - grey) * k;
+    return grey * (1.0 - k) + linear * k;
 }

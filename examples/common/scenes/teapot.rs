@@ -135,7 +135,7 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
         zenith: 0x4f8fc4,
         middle: 0xa9d3e6,
         horizon: 0xf2ead8,
-        ground: 0xd9c9a8,
+        ground: 0xb9c4c0,
         cloud: 0xffffff,
         cover: 0.32,
         sun,
@@ -155,17 +155,9 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     let cube = stage.meshes.add(cube.into_mesh());
     stage.solid(cube, matt.clone(), Transform::from_rotation(Quat::from_rotation_y(0.5)));
 
+    // A round table top: an endless floor would leave the teapot no depth.
     let mut floor = Shape::default();
-    let (r, c) = (3000.0, rgb(0xe3c98a));
-    floor.polygon(
-        &[
-            Vec3::new(-r, 0.0, r),
-            Vec3::new(r, 0.0, r),
-            Vec3::new(r, 0.0, -r),
-            Vec3::new(-r, 0.0, -r),
-        ],
-        c,
-    );
+    floor.frustum(Vec3::new(0.0, -0.6, 0.0), 0.6, (15.0, 15.0), 96, rgb(0xe3c98a));
     let floor = stage.meshes.add(floor.into_mesh());
     stage.solid(floor, matt, Transform::IDENTITY);
 

@@ -1,0 +1,136 @@
+//! A bare device for the shipped functions: one body, many inputs.
+
+use std::sync::OnceLock;
+
+use crate::{common::headless::INSTALL_ADAPTER, wgsl};
+
+pub struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+}
+
+/// The device of all function tests; fails with the command that installs an
+/// adapter where there is none.
+pub fn gpu() -> &'static Gpu {
+    static GPU: OnceLock<Gpu> = OnceLock::new();
+    GPU.get_or_init(|| {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY),
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
+        let adapter = bevy::tasks::block_on(
+            instance.request_adapter(&wgpu::RequestAdapterOptions::default()),
+        )
+        .unwrap_or_else(|_| panic!("no graphics adapter: {INSTALL_ADAPTER}"));
+        let (device, queue) =
+            bevy::tasks::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+                required_features: adapter.features()
+                    & (wgpu::Features::SUBGROUP | wgpu::Features::SHADER_F16),
+                required_limits: adapter.limits(),
+                ..Default::default()
+            }))
+            .expect("a device of the adapter");
+        Gpu { device, queue }
+    })
+}
+
+impl Gpu {
+    pub fn shader(&self, module: wgpu::naga::Module) -> wgpu::ShaderModule {
+        self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(module)),
+        })
+    }
+
+    pub fn buffer(&self, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: bytes.len() as u64,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.queue.write_buffer(&buffer, 0, bytes);
+        buffer
+    }
+
+    pub fn read(&self, buffer: &wgpu::Buffer) -> Vec<u8> {
+        let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: buffer.size(),
+            usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
+        self.queue.submit([encoder.finish()]);
+        staging.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("mapped"));
+        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+        let bytes = staging.slice(..).get_mapped_range().to_vec();
+        staging.unmap();
+        bytes
+    }
+
+    /// Runs `body`, which sees `i(0)`, `i(1)` ... as its inputs and returns a
+    /// `vec4<f32>`, once for every row of `rows`.
+    pub fn evaluate<const N: usize>(
+        &self,
+        imports: &str,
+        body: &str,
+        rows: &[[f32; N]],
+    ) -> Vec<[f32; 4]> {
+        let source = format!(
+            "{imports}
+            @group(0) @binding(0) var<storage, read> rows: array<u32>;
+            @group(0) @binding(1) var<storage, read_write> results: array<vec4<f32>>;
+            var<private> row: u32;
+            fn i(n: u32) -> f32 {{ return bitcast<f32>(rows[row * {N}u + n]); }}
+            fn u(n: u32) -> u32 {{ return u32(i(n)); }}
+            fn body() -> vec4<f32> {{ {body} }}
+            @compute @workgroup_size(64)
+            fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {{
+                row = id.y * 65536u + id.x;
+                if row < arrayLength(&results) {{ results[row] = body(); }}
+            }}"
+        );
+        let module = wgsl::module(&source, &["DEPTH"]).unwrap_or_else(|error| panic!("{error}"));
+        let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: None,
+            layout: None,
+            module: &self.shader(module),
+            entry_point: Some("evaluate"),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        let bytes: Vec<u8> = rows.iter().flatten().flat_map(|x| x.to_bits().to_le_bytes()).collect();
+        let input = self.buffer(&bytes, wgpu::BufferUsages::STORAGE);
+        let output = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: None,
+            size: rows.len() as u64 * 16,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        });
+        let bind_group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &pipeline.get_bind_group_layout(0),
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: input.as_entire_binding() },
+                wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
+            ],
+        });
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            pass.set_pipeline(&pipeline);
+            pass.set_bind_group(0, &bind_group, &[]);
+            let count = rows.len() as u32;
+            pass.dispatch_workgroups(count.min(65536).div_ceil(64), count.div_ceil(65536), 1);
+        }
+        self.queue.submit([encoder.finish()]);
+        self.read(&output)
+            .chunks_exact(16)
+            .map(|c| {
+                [0, 4, 8, 12].map(|k| f32::from_le_bytes([c[k], c[k + 1], c[k + 2], c[k + 3]]))
+            })
+            .collect()
+    }
+}

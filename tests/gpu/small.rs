@@ -1,0 +1,156 @@
+//! A scene small enough for a hundred apps: cubes before a wall of sky.
+
+use bevy::{
+    camera::RenderTarget,
+    core_pipeline::tonemapping::Tonemapping,
+    prelude::*,
+    render::{
+        RenderApp,
+        error_handler::{RenderErrorHandler, RenderErrorPolicy},
+        sync_world::RenderEntity,
+        view::Msaa,
+    },
+};
+use bevy_comics::{ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, VisibleDepthRange};
+
+use crate::common::{
+    headless::{Headless, HeadlessOptions},
+    read_back::{self, DepthImage, FloatImage},
+};
+
+/// Errors that the renderer reported.
+#[derive(Resource, Default)]
+pub struct RenderErrors(pub usize);
+
+pub struct Small {
+    pub headless: Headless,
+    pub camera: Entity,
+}
+
+pub fn size() -> UVec2 {
+    UVec2::new(96, 64)
+}
+
+pub fn options(size: UVec2) -> HeadlessOptions {
+    HeadlessOptions { size, ..default() }
+}
+
+/// The camera of the small scene.
+pub fn camera(target: RenderTarget, msaa: Msaa) -> impl Bundle {
+    (
+        Camera3d::default(),
+        Camera { clear_color: Color::srgb(0.3, 0.5, 0.8).into(), ..default() },
+        Transform::from_xyz(1.5, 2.4, 6.0).looking_at(Vec3::new(0.0, 0.4, 0.0), Vec3::Y),
+        Tonemapping::None,
+        target,
+        msaa,
+    )
+}
+
+impl Small {
+    pub fn new(size: UVec2, msaa: Msaa) -> Self {
+        Self::with(options(size), msaa)
+    }
+
+    pub fn with(options: HeadlessOptions, msaa: Msaa) -> Self {
+        let mut headless = Headless::new(options, ComicsPlugin);
+        headless.app.init_resource::<RenderErrors>().insert_resource(RenderErrorHandler(
+            |_, main, _| {
+                main.resource_mut::<RenderErrors>().0 += 1;
+                RenderErrorPolicy::Ignore
+            },
+        ));
+        spawn_objects(headless.app.world_mut());
+        let target = headless.render_target();
+        let camera = headless.app.world_mut().spawn(camera(target, msaa)).id();
+        Self { headless, camera }
+    }
+
+    pub fn world(&mut self) -> &mut World {
+        self.headless.app.world_mut()
+    }
+
+    pub fn insert(&mut self, bundle: impl Bundle) -> &mut Self {
+        let camera = self.camera;
+        self.world().entity_mut(camera).insert(bundle);
+        self
+    }
+
+    pub fn style(&mut self, style: &ComicStyle) {
+        let camera = self.camera;
+        let world = self.world();
+        style.apply(&mut world.commands().entity(camera));
+        world.flush();
+    }
+
+    /// Renders until a change has arrived everywhere, the ledger included.
+    pub fn settle(&mut self) -> &mut Self {
+        self.headless.step(5);
+        self
+    }
+
+    pub fn picture(&mut self) -> image::RgbaImage {
+        self.headless.picture()
+    }
+
+    pub fn ran(&self, stage: ComicsStage) -> bool {
+        self.headless.app.world().resource::<ComicsDiagnostics>().ran(self.camera, stage)
+    }
+
+    pub fn errors(&self) -> usize {
+        self.headless.app.world().resource::<RenderErrors>().0
+    }
+
+    pub fn range(&self) -> Option<VisibleDepthRange> {
+        self.headless.app.world().get(self.camera).copied()
+    }
+
+    fn view(&self) -> Entity {
+        self.headless.app.world().get::<RenderEntity>(self.camera).expect("extracted").id()
+    }
+
+    pub fn render_world(&self) -> &World {
+        self.headless.app.sub_app(RenderApp).world()
+    }
+
+    pub fn depth(&self) -> Option<DepthImage> {
+        read_back::depth(self.render_world(), self.view())
+    }
+
+    /// What the fused pass read and wrote.
+    pub fn pass(&self) -> (FloatImage, FloatImage) {
+        read_back::last_pass(self.render_world(), self.view(), self.ran(ComicsStage::Stylize))
+            .expect("a picture")
+    }
+}
+
+/// Marks what the small scene shows.
+#[derive(Component)]
+pub struct Object;
+
+fn spawn_objects(world: &mut World) {
+    let cube = world.resource_mut::<Assets<Mesh>>().add(Cuboid::default());
+    let ground = world.resource_mut::<Assets<Mesh>>().add(Plane3d::default().mesh().size(9.0, 9.0));
+    let mut material = |color: Color| {
+        world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial {
+            base_color: color,
+            unlit: true,
+            ..default()
+        })
+    };
+    let [red, green, grey, sand] = [
+        Color::srgb(0.85, 0.2, 0.15),
+        Color::srgb(0.15, 0.6, 0.3),
+        Color::srgb(0.5, 0.5, 0.5),
+        Color::srgb(0.8, 0.7, 0.5),
+    ]
+    .map(&mut material);
+    for (mesh, material, at) in [
+        (&cube, red, Transform::from_xyz(-0.6, 0.5, 1.2).with_rotation(Quat::from_rotation_y(0.5))),
+        (&cube, green, Transform::from_xyz(1.1, 0.9, -0.9).with_scale(Vec3::splat(1.6))),
+        (&cube, grey, Transform::from_xyz(-1.9, 0.6, -2.6)),
+        (&ground, sand, Transform::IDENTITY),
+    ] {
+        world.spawn((Object, Mesh3d(mesh.clone()), MeshMaterial3d(material), at));
+    }
+}

@@ -1,0 +1,35 @@
+//! Twin of `styles/black_flats.wgsl`.
+
+use super::{
+    Rgb,
+    color::{largest, srgb_encode_one},
+    mix, smoothstep,
+};
+use bevy_comics::BlackFlats;
+
+fn feather(s: &BlackFlats) -> f64 {
+    f64::from(s.feather).max(1e-3)
+}
+
+pub fn dark_area(s: &BlackFlats, linear: Rgb, l: f64) -> f64 {
+    let threshold = f64::from(s.value.unwrap_or(0.0)) * mix(1.0, l, f64::from(s.depth_weight));
+    if threshold <= 0.0 {
+        return 0.0;
+    }
+    let value = srgb_encode_one(largest(linear));
+    1.0 - smoothstep(threshold * (1.0 - feather(s)), threshold * (1.0 + feather(s)), value)
+}
+
+/// `prewitt` is the response per pixel of a view of `rows` rows.
+pub fn steep_area(s: &BlackFlats, prewitt: f64, rows: u32) -> f64 {
+    let Some(slope) = s.slope.map(f64::from) else { return 0.0 };
+    let response = prewitt * f64::from(rows) / 512.0;
+    smoothstep(slope * (1.0 - feather(s)), slope * (1.0 + feather(s)), response)
+}
+
+pub fn fill(s: &BlackFlats, linear: Rgb, coverage: f64) -> Rgb {
+    let ink = s.color.to_linear();
+    let ink = [ink.red, ink.green, ink.blue].map(f64::from);
+    let t = (coverage * f64::from(s.opacity)).clamp(0.0, 1.0);
+    std::array::from_fn(|i| mix(linear[i], ink[i], t))
+}

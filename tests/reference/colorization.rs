@@ -1,0 +1,81 @@
+//! Twin of `styles/colorization.wgsl` ([CS] Eq. 8 to 11).
+
+use super::{
+    Rgb,
+    color::{
+        hue_color, hue_of, largest, linear_to_oklab, oklab_to_linear, smallest, srgb_decode,
+        srgb_encode,
+    },
+    mix,
+};
+use bevy::color::{Color, Hsva};
+use bevy_comics::{ColorMethod, Colorization, ColorizationMode};
+
+fn linear_of(color: Color) -> Rgb {
+    let c = color.to_linear();
+    [c.red, c.green, c.blue].map(f64::from)
+}
+
+/// Lightness and chroma of the most saturated displayable colour of a hue: a
+/// scan of the gamut's surface, fine enough for single precision.
+fn cusp(a: f64, b: f64) -> (f64, f64) {
+    let at = |s: f64| oklab_to_linear([1.0, s * a, s * b]);
+    let (mut low, mut high) = (0.0f64, 2.0f64);
+    while high - low > 1e-14 {
+        let s = low.midpoint(high);
+        if smallest(at(s)) >= 0.0 { low = s } else { high = s }
+    }
+    let lightness = largest(at(low)).recip().cbrt();
+    (lightness, lightness * low)
+}
+
+fn room(l: f64, cusp: (f64, f64)) -> f64 {
+    cusp.1 * (l / cusp.0).min((1.0 - l) / (1.0 - cusp.0)).clamp(0.0, 1.0)
+}
+
+/// Direction of the atmosphere's chroma, lightness of its hue's cusp, and the
+/// chroma that it asks for there.
+pub fn atmosphere(color: Color) -> ([f64; 2], f64, f64) {
+    let [l, a, b] = linear_to_oklab(linear_of(color));
+    let chroma = a.hypot(b);
+    if chroma <= 1e-4 {
+        return ([1.0, 0.0], cusp(1.0, 0.0).0, 0.0);
+    }
+    let direction = [a / chroma, b / chroma];
+    let cusp = cusp(direction[0], direction[1]);
+    let share = if room(l, cusp) > 1e-6 { (chroma / room(l, cusp)).min(1.0) } else { 0.0 };
+    (direction, cusp.0, cusp.1 * share)
+}
+
+pub fn colorize(s: &Colorization, linear: Rgb, d: f64, l: f64, saturation: f64) -> Rgb {
+    if s.mode == ColorizationMode::Hue {
+        return linear;
+    }
+    let amount = f64::from(s.amount);
+    if s.method == ColorMethod::Faithful {
+        let c = srgb_encode(linear);
+        let (v, chroma) = (largest(c), largest(c) - smallest(c));
+        let atmosphere = f64::from(Hsva::from(s.color).hue) / 360.0;
+        let hue = match s.mode {
+            ColorizationMode::Linear => hue_of(c) * l + atmosphere * d,
+            ColorizationMode::Quadratic => hue_of(c) * l.sqrt() + atmosphere * d.sqrt(),
+            _ => atmosphere,
+        };
+        let p = hue_color(hue);
+        let tinted = p.map(|p| v - chroma * (1.0 - p));
+        return srgb_decode(std::array::from_fn(|i| mix(c[i], tinted[i], amount)));
+    }
+    let lab = linear_to_oklab(linear);
+    let (direction, lightness, chroma) = atmosphere(s.color);
+    let mut atmosphere = direction.map(|x| x * room(lab[0], (lightness, chroma)));
+    let w = match s.mode {
+        ColorizationMode::Atmosphere => {
+            atmosphere = atmosphere.map(|x| x * saturation);
+            1.0
+        }
+        ColorizationMode::Linear => d,
+        _ => d.sqrt() / (d.sqrt() + l.sqrt()),
+    } * amount;
+    oklab_to_linear([lab[0], mix(lab[1], atmosphere[0], w), mix(lab[2], atmosphere[1], w)])
+}
+

@@ -1,0 +1,26 @@
+//! The shaders' twins in double precision, named as the WGSL files they mirror.
+//! Each is written from the definition, not from the shader.
+
+pub mod bindings;
+pub mod black_flats;
+pub mod color;
+pub mod colorization;
+pub mod contours;
+pub mod desaturation;
+pub mod map;
+pub mod ping_pong;
+pub mod range;
+pub mod raw;
+pub mod stylize;
+pub mod taps;
+
+pub type Rgb = [f64; 3];
+
+pub fn mix(a: f64, b: f64, t: f64) -> f64 {
+    a * (1.0 - t) + b * t
+}
+
+pub fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
