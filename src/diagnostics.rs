@@ -166,17 +166,19 @@ impl ComicsDiagnostics {
     }
 }
 
-/// The render world's side of [`ComicsDiagnostics`].
-#[derive(Resource, Clone, Default)]
+/// The render world's side of [`ComicsDiagnostics`]. Render systems write it
+/// through a lock, so that it gives them no order that they do not need.
+#[derive(Resource, Default)]
 pub(crate) struct StageLedger {
     /// What the current frame has done so far.
-    pub current: EntityHashMap<CameraStages>,
+    current: Mutex<EntityHashMap<CameraStages>>,
     published: Arc<Mutex<EntityHashMap<CameraStages>>>,
 }
 
 impl StageLedger {
-    pub fn set(&mut self, camera: Entity, stage: ComicsStage, outcome: StageOutcome) {
-        self.current.entry(camera).or_default().set(stage, outcome);
+    pub fn set(&self, camera: Entity, stage: ComicsStage, outcome: StageOutcome) {
+        let mut current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
+        current.entry(camera).or_default().set(stage, outcome);
     }
 
     /// A ledger that shares what is published with this one.
@@ -189,8 +191,9 @@ impl StageLedger {
 #[derive(Resource)]
 pub(crate) struct LedgerReader(Arc<Mutex<EntityHashMap<CameraStages>>>);
 
-pub(crate) fn publish_ledger(mut ledger: ResMut<StageLedger>) {
-    let current = std::mem::take(&mut ledger.current);
+pub(crate) fn publish_ledger(ledger: Res<StageLedger>) {
+    let current =
+        std::mem::take(&mut *ledger.current.lock().unwrap_or_else(PoisonError::into_inner));
     *ledger.published.lock().unwrap_or_else(PoisonError::into_inner) = current;
 }
 

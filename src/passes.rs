@@ -1,6 +1,8 @@
 //! From a camera's plan to this frame's passes: pipelines, uniforms and the
 //! buffers that belong to the view.
 
+use std::sync::{Mutex, PoisonError, atomic::AtomicBool};
+
 use bevy::{
     asset::AssetServer,
     core_pipeline::{FullscreenShader, prepass::ViewPrepassTextures},
@@ -49,7 +51,9 @@ pub(crate) struct ViewPass {
     /// Keys of the nearest and farthest depth; kept while a range is wanted.
     pub keys: Option<Buffer>,
     pub ping_pong: Option<PingPong>,
-    pub readback: RangeReadback,
+    /// Whether this frame's reduction was recorded.
+    pub range_found: AtomicBool,
+    pub readback: Mutex<RangeReadback>,
     live: bool,
 }
 
@@ -130,7 +134,7 @@ pub(crate) fn prepare_view_passes(
         Option<&ViewTarget>,
     )>,
     mut passes: ResMut<ViewPasses>,
-    mut ledger: ResMut<StageLedger>,
+    ledger: Res<StageLedger>,
     mut stylize_pipelines: ResMut<SpecializedRenderPipelines<StylizePipeline>>,
     mut range_pipelines: ResMut<SpecializedComputePipelines<RangePipeline>>,
     mut ping_pong_pipelines: ResMut<SpecializedRenderPipelines<PingPongPipeline>>,
@@ -164,7 +168,7 @@ pub(crate) fn prepare_view_passes(
             ledger.set(view.camera, stage, StageOutcome::LeftOut(wanted.reason(stage)));
         }
         if wanted.needs_depth() && depth.is_none() {
-            report_missing_depth(&mut ledger, view);
+            report_missing_depth(&ledger, view);
         }
         if depth.is_some() {
             ledger.set(view.camera, ComicsStage::DepthPrepass, StageOutcome::Ran);
@@ -181,7 +185,8 @@ pub(crate) fn prepare_view_passes(
             range_view_offset: 0,
             keys: None,
             ping_pong: None,
-            readback: RangeReadback::default(),
+            range_found: AtomicBool::new(false),
+            readback: Mutex::default(),
             live: true,
         });
         pass.live = true;
@@ -190,6 +195,7 @@ pub(crate) fn prepare_view_passes(
         pass.projection = view.projection;
         pass.stylize = None;
         pass.range = None;
+        pass.range_found = AtomicBool::new(false);
 
         let oblique = view.projection.kind() == ProjectionKind::Oblique;
         if let Some(samples) = samples.filter(|_| plan.needs_range()) {
@@ -233,7 +239,7 @@ pub(crate) fn prepare_view_passes(
             pass.ping_pong = None;
         }
         if !plan.readback {
-            pass.readback = RangeReadback::default();
+            pass.readback = Mutex::default();
         }
 
         if plan.draws() {
@@ -258,7 +264,7 @@ fn depth_rect(viewport: UVec4, main_pass_size: Option<UVec2>) -> UVec4 {
     UVec4::new(viewport.x, viewport.y, size.x, size.y)
 }
 
-fn report_missing_depth(ledger: &mut StageLedger, view: &ComicsView) {
+fn report_missing_depth(ledger: &StageLedger, view: &ComicsView) {
     bevy::log::warn_once!(
         "{} has a depth style and no depth prepass: its picture passes without that style",
         view.camera
@@ -284,6 +290,7 @@ fn report_missing_depth(ledger: &mut StageLedger, view: &ComicsView) {
 pub(crate) fn map_readbacks(mut passes: ResMut<ViewPasses>, readings: Res<RangeReadings>) {
     for pass in passes.views.values_mut() {
         let camera = pass.camera;
-        pass.readback.map(camera, &readings);
+        let readback = pass.readback.get_mut().unwrap_or_else(PoisonError::into_inner);
+        readback.map(camera, &readings);
     }
 }

@@ -3,14 +3,12 @@
 use bevy::{
     anti_alias::{fxaa::fxaa, smaa::smaa},
     app::{App, Plugin, PostUpdate, PreUpdate, Update},
-    asset::{AssetApp, embedded_asset},
+    asset::{AssetApp, AssetServer, embedded_asset},
     core_pipeline::{
         schedule::{Core3d, Core3dSystems},
         tonemapping::tonemapping,
     },
-    ecs::{
-        schedule::{IntoScheduleConfigs, SystemSet},
-    },
+    ecs::schedule::{IntoScheduleConfigs, SystemSet},
     render::{
         ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
         render_resource::{SpecializedComputePipelines, SpecializedRenderPipelines},
@@ -57,6 +55,26 @@ pub enum ComicsSystems {
 
 impl Plugin for ComicsPlugin {
     fn build(&self, app: &mut App) {
+        app.register_type::<DepthMap>()
+            .register_type::<VisibleDepthRange>()
+            .register_type::<Desaturation>()
+            .register_type::<Colorization>()
+            .register_type::<BlackFlats>()
+            .register_type::<Contours>()
+            .register_type::<ComicStyleHandle>()
+            .register_type::<ComicsDiagnostics>()
+            .init_resource::<ComicsDiagnostics>()
+            .add_systems(PostUpdate, (request_depth_prepass, warn_unsupported));
+        if app.world().contains_resource::<AssetServer>() {
+            app.init_asset::<ComicStyle>()
+                .register_asset_reflect::<ComicStyle>()
+                .init_asset_loader::<StyleLoader>()
+                .add_systems(Update, apply_styles);
+        }
+        if app.get_sub_app(RenderApp).is_none() {
+            return;
+        }
+
         load_shader_library!(app, "styles/color.wgsl");
         load_shader_library!(app, "styles/desaturation.wgsl");
         load_shader_library!(app, "styles/colorization.wgsl");
@@ -70,26 +88,8 @@ impl Plugin for ComicsPlugin {
         embedded_asset!(app, "depth/range.wgsl");
         embedded_asset!(app, "depth/ping_pong.wgsl");
 
-        app.register_type::<DepthMap>()
-            .register_type::<VisibleDepthRange>()
-            .register_type::<Desaturation>()
-            .register_type::<Colorization>()
-            .register_type::<BlackFlats>()
-            .register_type::<Contours>()
-            .register_type::<ComicStyleHandle>()
-            .register_type::<ComicsDiagnostics>()
-            .init_resource::<ComicsDiagnostics>()
-            .init_asset::<ComicStyle>()
-            .register_asset_reflect::<ComicStyle>()
-            .init_asset_loader::<StyleLoader>()
-            .add_systems(Update, apply_styles)
-            .add_systems(PostUpdate, (request_depth_prepass, warn_unsupported));
-
         let ledger = StageLedger::default();
         let readings = RangeReadings::default();
-        if app.get_sub_app(RenderApp).is_none() {
-            return;
-        }
         app.insert_resource(ledger.reader())
             .insert_resource(readings.clone())
             .add_systems(PreUpdate, (read_ledger, receive_ranges));

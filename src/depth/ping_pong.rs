@@ -154,7 +154,6 @@ impl PingPong {
         device: &RenderDevice,
         encoder: &mut CommandEncoder,
         cache: &PipelineCache,
-        _pipeline: &PingPongPipeline,
         (first, next): (&RenderPipeline, &RenderPipeline),
         (depth, range_view, offset, multisampled): (&TextureView, BindingResource, u32, bool),
         keys: &Buffer,

@@ -1,11 +1,13 @@
 //! The min/max reduction: nearest and farthest depth of a view.
 
+use std::sync::{PoisonError, atomic::Ordering};
+
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::{
         resource::Resource,
-        system::{Res, ResMut},
+        system::Res,
     },
     math::UVec4,
     render::{
@@ -27,7 +29,7 @@ use bevy::{
 };
 use wgpu_types::DeviceType;
 
-use super::{RawDepth, ReductionMethod, ping_pong};
+use super::{RawDepth, ReductionMethod};
 use crate::{
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     passes::ViewPasses,
@@ -189,24 +191,22 @@ impl SpecializedComputePipeline for RangePipeline {
 /// Finds the range of the view and sends it on its way to the game.
 pub(crate) fn reduce_depth_range(
     view: ViewQuery<&ViewPrepassTextures>,
-    mut passes: ResMut<ViewPasses>,
-    mut ledger: ResMut<StageLedger>,
+    passes: Res<ViewPasses>,
+    ledger: Res<StageLedger>,
     pipeline: Res<RangePipeline>,
-    ping_pong_pipeline: Res<ping_pong::PingPongPipeline>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
     let entity = view.entity();
     let prepass = view.into_inner();
-    let ViewPasses { views, range_views, .. } = &mut *passes;
-    let Some(pass) = views.get_mut(&entity) else { return };
+    let ViewPasses { views, range_views, .. } = &*passes;
+    let Some(pass) = views.get(&entity) else { return };
     let (Some(range), Some(keys)) = (pass.range, pass.keys.clone()) else { return };
     let (Some(depth), Some(range_view)) = (prepass.depth.as_ref(), range_views.binding()) else {
         return;
     };
     let (RangePass::Compute { samples, .. } | RangePass::PingPong { samples, .. }) = range;
     if depth.texture.texture.sample_count() != samples {
-        pass.range = None;
         ledger.set(
             pass.camera,
             ComicsStage::DepthRange,
@@ -221,9 +221,7 @@ pub(crate) fn reduce_depth_range(
     let outcome = match range {
         RangePass::Compute { shape, pipeline: id, workgroups, .. } => {
             let Some(compute) = cache.get_compute_pipeline(id) else {
-                not_ready(&mut ledger, pass.camera);
-                pass.range = None;
-                return;
+                return not_ready(&ledger, pass.camera);
             };
             let layout = cache.get_bind_group_layout(&RangePipeline::layout(samples > 1));
             let depth_view = &depth.texture.default_view;
@@ -270,9 +268,7 @@ pub(crate) fn reduce_depth_range(
                 cache.get_render_pipeline(next),
                 pass.ping_pong.as_ref(),
             ) else {
-                not_ready(&mut ledger, pass.camera);
-                pass.range = None;
-                return;
+                return not_ready(&ledger, pass.camera);
             };
             let encoder = ctx.command_encoder();
             let span = diagnostics.time_span(encoder, "comics_depth_range");
@@ -280,7 +276,6 @@ pub(crate) fn reduce_depth_range(
                 &device,
                 encoder,
                 &cache,
-                &ping_pong_pipeline,
                 (first, next),
                 (&depth.texture.default_view, range_view, pass.range_view_offset, samples > 1),
                 &keys,
@@ -289,17 +284,19 @@ pub(crate) fn reduce_depth_range(
             ReductionMethod::PingPong
         }
     };
+    pass.range_found.store(true, Ordering::Relaxed);
     ledger.set(pass.camera, ComicsStage::DepthRange, StageOutcome::Reduced(outcome));
 
     if pass.plan.readback {
-        let copied = pass.readback.copy(&device, ctx.command_encoder(), &keys, pass.projection);
+        let mut readback = pass.readback.lock().unwrap_or_else(PoisonError::into_inner);
+        let copied = readback.copy(&device, ctx.command_encoder(), &keys, pass.projection);
         let outcome =
             if copied { StageOutcome::Ran } else { StageOutcome::LeftOut(LeftOut::Busy) };
         ledger.set(pass.camera, ComicsStage::RangeReadback, outcome);
     }
 }
 
-fn not_ready(ledger: &mut StageLedger, camera: bevy::ecs::entity::Entity) {
+fn not_ready(ledger: &StageLedger, camera: bevy::ecs::entity::Entity) {
     let outcome = StageOutcome::LeftOut(LeftOut::PipelineNotReady);
     ledger.set(camera, ComicsStage::DepthRange, outcome);
 }

@@ -1,13 +1,15 @@
 //! The fused full-screen pass: every style of a camera in one read and one
 //! write of its picture.
 
+use std::sync::atomic::Ordering;
+
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
     camera::CompositingSpace,
     core_pipeline::{FullscreenShader, prepass::ViewPrepassTextures},
     ecs::{
         resource::Resource,
-        system::{Res, ResMut},
+        system::Res,
     },
     math::{IVec4, Vec2},
     render::{
@@ -186,7 +188,7 @@ impl SpecializedRenderPipeline for StylizePipeline {
 pub(crate) fn stylize(
     view: ViewQuery<(&ViewTarget, Option<&ViewPrepassTextures>)>,
     passes: Res<ViewPasses>,
-    mut ledger: ResMut<StageLedger>,
+    ledger: Res<StageLedger>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
@@ -195,7 +197,7 @@ pub(crate) fn stylize(
     let Some(pass) = passes.views.get(&entity) else { return };
     let (Some(id), Some(uniforms)) = (pass.stylize, passes.uniforms.binding()) else { return };
     let key = &pass.key;
-    let mut pass_through = |reason| {
+    let pass_through = |reason| {
         ledger.set(pass.camera, ComicsStage::Stylize, StageOutcome::LeftOut(reason));
     };
     let Some(pipeline) = cache.get_render_pipeline(id) else {
@@ -206,7 +208,8 @@ pub(crate) fn stylize(
         return pass_through(LeftOut::SampleCountMismatch);
     }
     // A range that was not found this frame is not drawn with.
-    let keys = pass.keys.as_ref().filter(|_| pass.range.is_some());
+    let found = pass.range_found.load(Ordering::Relaxed);
+    let keys = pass.keys.as_ref().filter(|_| found);
     if key.visible_range && keys.is_none() {
         return pass_through(LeftOut::PipelineNotReady);
     }

@@ -6,8 +6,14 @@ mod common;
 mod reference;
 
 mod device;
+mod failures;
 mod functions;
+mod golden;
+mod left_out;
+mod lines;
+mod pictures;
 mod range;
 mod shaders;
 mod small;
+mod styles;
 mod wgsl;

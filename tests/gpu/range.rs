@@ -247,7 +247,7 @@ impl bevy::camera::CameraProjection for Tilted {
     fn far(&self) -> f32 {
         self.0.far
     }
-    fn get_frustum_corners(&self, near: f32, far: f32) -> [bevy::math::Vec3A; 8] {
+    fn get_frustum_corners(&self, near: f32, far: f32) -> [Vec3A; 8] {
         self.0.get_frustum_corners(near, far)
     }
 }
@@ -270,7 +270,7 @@ impl bevy::camera::CameraProjection for Finite {
     fn far(&self) -> f32 {
         self.0.far
     }
-    fn get_frustum_corners(&self, near: f32, far: f32) -> [bevy::math::Vec3A; 8] {
+    fn get_frustum_corners(&self, near: f32, far: f32) -> [Vec3A; 8] {
         self.0.get_frustum_corners(near, far)
     }
 }

@@ -1,0 +1,210 @@
+//! The whole fused pass against its twin, pixel by pixel, from what the pass
+//! really read.
+
+use bevy::{
+    camera::{CompositingSpace, Hdr, Viewport},
+    prelude::*,
+    render::view::Msaa,
+};
+use bevy_comics::{
+    BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ContourForm,
+    ContourOperator, Contours, DepthMap, DepthMapping, Desaturation, VisibleDepthRange, presets,
+};
+
+use crate::{
+    reference::{
+        bindings::View,
+        color,
+        map::{Frame, Projection},
+        stylize::stylize,
+    },
+    small::Small,
+};
+
+const ONE_CODE: f64 = 1.0 / 255.0;
+
+/// The depth frame of the small scene's infinite perspective.
+fn frame(small: &Small, map: &DepthMap) -> Frame {
+    const NEAR: f64 = 0.1;
+    const FAR: f64 = 1000.0;
+    let ends = match map.mapping {
+        DepthMapping::MinMax | DepthMapping::MinMaxLogarithmic => match small.range() {
+            Some(VisibleDepthRange::Visible { raw_near, raw_far, .. }) => {
+                Some([f64::from(raw_near), f64::from(raw_far)])
+            }
+            other => panic!("no range: {other:?}"),
+        },
+        DepthMapping::Linear | DepthMapping::Logarithmic => Some([NEAR / NEAR, NEAR / FAR]),
+        DepthMapping::Fixed { near, far } | DepthMapping::FixedLogarithmic { near, far } => {
+            Some([NEAR / f64::from(near), NEAR / f64::from(far)])
+        }
+    };
+    Frame {
+        projection: Projection::Perspective { offset: 0.0 },
+        ends,
+        logarithmic: map.mapping.is_logarithmic(),
+        floor: f64::from(map.floor),
+        sky_gap: f64::from(map.sky_gap),
+    }
+}
+
+/// Compares every pixel; pixels whose colour hangs on a threshold within the
+/// response's error are counted, not compared.
+fn assert_pass_is_its_twin(small: &mut Small, style: &ComicStyle, viewport: Option<[u32; 4]>, what: &str) {
+    small.insert(VisibleDepthRange::default());
+    small.style(style);
+    small.settle();
+    let (input, output) = small.pass();
+    let map = style.depth_map.unwrap_or_default();
+    let depth = small.depth().unwrap_or_else(|| panic!("{what}: no depth"));
+    let view = View {
+        viewport: viewport.unwrap_or([0, 0, input.width, input.height]),
+        samples: depth.samples,
+        width: depth.width,
+        depth_bits: &depth.bits,
+        frame: frame(small, &map),
+        flip: map.flip,
+    };
+    let mut undecided = 0;
+    // A camera that composites in gamma-encoded colour stores display codes.
+    let encoded = small.headless.app.world().get::<CompositingSpace>(small.camera)
+        == Some(&CompositingSpace::Srgb);
+    let light = |stored: [f32; 4]| {
+        let [r, g, b, a] = stored;
+        if !encoded {
+            return stored;
+        }
+        let [r, g, b] = [r, g, b].map(|c| color::srgb_decode_one(f64::from(c)) as f32);
+        [r, g, b, a]
+    };
+    for y in 0..input.height {
+        for x in 0..input.width {
+            let at = (y * input.width + x) as usize;
+            let (read, wrote) = (light(input.pixels[at]), light(output.pixels[at]));
+            if !view.contains(x, y) {
+                assert_eq!(read, wrote, "{what}: ({x}, {y}) lies outside the viewport");
+                continue;
+            }
+            assert_eq!(read[3], wrote[3], "{what}: alpha at ({x}, {y})");
+            let encode = |c: [f64; 3]| color::srgb_encode(c.map(|v| v.max(0.0)));
+            let got = encode([wrote[0], wrote[1], wrote[2]].map(f64::from));
+            let [want, more, less] =
+                [0.0, 1e-5, -1e-5].map(|nudge| encode(stylize(style, &view, read, x, y, nudge)));
+            let apart = |a: [f64; 3], b: [f64; 3]| {
+                (0..3).map(|i| (a[i].min(1.0) - b[i].min(1.0)).abs()).fold(0.0, f64::max)
+            };
+            // Half a code of rounding in the target on top of the one allowed.
+            if apart(got, want) <= 1.5 * ONE_CODE {
+                continue;
+            }
+            assert!(
+                apart(more, less) > ONE_CODE,
+                "{what}: ({x}, {y}) is {got:?}, its twin {want:?}, from {read:?}"
+            );
+            undecided += 1;
+        }
+    }
+    let pixels = input.width * input.height;
+    assert!(undecided * 200 <= pixels, "{what}: {undecided} of {pixels} pixels undecided");
+}
+
+#[test]
+fn every_preset_is_its_twin_with_and_without_msaa() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let mut small = Small::new(UVec2::new(80, 56), msaa);
+        for name in presets::NAMES {
+            let style = presets::preset(name).expect("listed").expect("readable").sanitized();
+            assert_pass_is_its_twin(&mut small, &style, None, &format!("{name}, {msaa:?}"));
+        }
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+fn everything(method: ColorMethod, mode: ColorizationMode, form: ContourForm, mapping: DepthMapping) -> ComicStyle {
+    ComicStyle {
+        version: 1,
+        name: "everything".into(),
+        depth_map: Some(DepthMap { mapping, ..default() }),
+        desaturation: Some(Desaturation { amount: 0.7, exponent: 0.5, method }),
+        colorization: Some(Colorization { mode, method, amount: 0.8, ..default() }),
+        black_flats: Some(BlackFlats { slope: Some(0.3), value: Some(0.2), depth_weight: 0.5, ..default() }),
+        contours: Some(Contours { form, width: 2.5, threshold: 0.06, fade: 0.4, ..default() }),
+    }
+}
+
+#[test]
+fn every_mode_of_every_style_is_its_twin() {
+    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
+    let mappings = [
+        DepthMapping::MinMax,
+        DepthMapping::MinMaxLogarithmic,
+        DepthMapping::Linear,
+        DepthMapping::Logarithmic,
+        DepthMapping::Fixed { near: 4.0, far: 9.0 },
+        DepthMapping::FixedLogarithmic { near: 4.0, far: 9.0 },
+    ];
+    let modes = [ColorizationMode::Hue, ColorizationMode::Atmosphere, ColorizationMode::Linear, ColorizationMode::Quadratic];
+    for (i, mapping) in mappings.into_iter().enumerate() {
+        for (j, method) in [ColorMethod::Corrected, ColorMethod::Faithful].into_iter().enumerate() {
+            let form = if (i + j) % 2 == 0 { ContourForm::PlaneAware } else { ContourForm::Faithful };
+            let style = everything(method, modes[(i + 2 * j) % 4], form, mapping);
+            assert_pass_is_its_twin(&mut small, &style, None, &format!("{style:?}"));
+        }
+    }
+    for operator in [ContourOperator::Prewitt, ContourOperator::Sobel, ContourOperator::Laplace, ContourOperator::Roberts] {
+        for form in [ContourForm::PlaneAware, ContourForm::Faithful] {
+            for width in [0.5, 1.0, 3.0, 7.5] {
+                let style = ComicStyle {
+                    contours: Some(Contours { operator, form, width, softness: 0.3, threshold: 0.08, ..default() }),
+                    ..default()
+                };
+                assert_pass_is_its_twin(&mut small, &style, None, &format!("{operator:?} {form:?} {width} px"));
+            }
+        }
+    }
+    let flipped = ComicStyle {
+        depth_map: Some(DepthMap { flip: true, ..default() }),
+        desaturation: Some(Desaturation::default()),
+        ..default()
+    };
+    assert_pass_is_its_twin(&mut small, &flipped, None, "flipped");
+    assert_eq!(small.errors(), 0);
+}
+
+/// Failure 3.
+#[test]
+fn a_viewport_is_styled_inside_and_untouched_outside() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let mut small = Small::new(UVec2::new(90, 60), msaa);
+        small.insert(Camera {
+            viewport: Some(Viewport {
+                physical_position: UVec2::new(13, 7),
+                physical_size: UVec2::new(51, 41),
+                ..default()
+            }),
+            ..default()
+        });
+        let style = everything(ColorMethod::Corrected, ColorizationMode::Quadratic, ContourForm::PlaneAware, DepthMapping::MinMax);
+        assert_pass_is_its_twin(&mut small, &style, Some([13, 7, 51, 41]), &format!("viewport, {msaa:?}"));
+    }
+}
+
+/// Failure 2: linear and gamma-encoded storage.
+#[test]
+fn a_camera_that_stores_display_codes_is_its_twin() {
+    let mut small = Small::new(UVec2::new(64, 48), Msaa::Off);
+    small.insert(CompositingSpace::Srgb);
+    let style = everything(ColorMethod::Corrected, ColorizationMode::Linear, ContourForm::PlaneAware, DepthMapping::MinMax);
+    assert_pass_is_its_twin(&mut small, &style, None, "gamma-encoded");
+}
+
+/// Failure 2, the HDR half, and 9's bright colours.
+#[test]
+fn an_hdr_camera_is_its_twin() {
+    let mut small = Small::new(UVec2::new(64, 48), Msaa::Off);
+    small.insert(Hdr);
+    let style = everything(ColorMethod::Corrected, ColorizationMode::Linear, ContourForm::PlaneAware, DepthMapping::MinMax);
+    assert_pass_is_its_twin(&mut small, &style, None, "hdr");
+    let style = everything(ColorMethod::Faithful, ColorizationMode::Quadratic, ContourForm::Faithful, DepthMapping::MinMax);
+    assert_pass_is_its_twin(&mut small, &style, None, "hdr, faithful");
+}
