@@ -1,0 +1,226 @@
+//! A window on every scene in every preset.
+//!
+//! Drag to orbit, wheel to come closer; the keys are on the screen.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod orbit;
+mod split;
+
+use bevy::{
+    camera::Hdr, ecs::system::SystemParam, prelude::*, render::view::Msaa, window::WindowResolution,
+};
+use bevy_comics::{
+    ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, StageOutcome, VisibleDepthRange,
+    presets,
+};
+use common::scenes::{BuiltIn, ScenePart, Stage, Vantage};
+use orbit::Orbit;
+use split::Split;
+
+/// What is on show.
+#[derive(Resource)]
+struct Show {
+    scene: BuiltIn,
+    /// Index into the presets.
+    style: usize,
+    orthographic: bool,
+    help: bool,
+    vantage: Option<Vantage>,
+}
+
+/// The camera with the style.
+#[derive(Component)]
+struct Styled;
+
+#[derive(Component)]
+struct HelpText;
+
+const HELP: &str = "\
+1 2 3        scene
+Left Right   style
+O            perspective / orthographic
+M            samples: 1 / 4
+D            HDR on / off
+C            compare with the original
+[ ]          move the split
+R            camera back to the start
+H            hide this";
+
+fn main() {
+    App::new()
+        .add_plugins(
+            DefaultPlugins.set(WindowPlugin {
+                primary_window: Some(Window {
+                    title: "bevy_comics gallery".into(),
+                    resolution: WindowResolution::new(1280, 720),
+                    ..default()
+                }),
+                ..default()
+            }),
+        )
+        .add_plugins((ComicsPlugin, orbit::OrbitPlugin, split::SplitPlugin))
+        .insert_resource(Show {
+            scene: BuiltIn::Mountains,
+            style: 0,
+            orthographic: false,
+            help: true,
+            vantage: None,
+        })
+        .add_systems(Startup, (spawn_text, open_scene))
+        .add_systems(Update, (choose, describe).chain())
+        .run();
+}
+
+fn spawn_text(mut commands: Commands) {
+    commands.spawn((
+        HelpText,
+        Text::default(),
+        TextFont { font_size: FontSize::Px(15.0), ..default() },
+        Node {
+            position_type: PositionType::Absolute,
+            top: Val::Px(10.0),
+            left: Val::Px(10.0),
+            padding: UiRect::all(Val::Px(10.0)),
+            ..default()
+        },
+        BackgroundColor(Color::srgba(0.05, 0.05, 0.08, 0.72)),
+    ));
+}
+
+/// Leaves the old scene and builds the chosen one.
+fn open_scene(
+    mut stage: Stage,
+    mut show: ResMut<Show>,
+    old: Query<Entity, Or<(With<ScenePart>, With<Styled>)>>,
+) {
+    for entity in &old {
+        stage.commands.entity(entity).despawn();
+    }
+    let scene = show.scene;
+    let vantage = stage.spawn(scene);
+    let camera = stage
+        .commands
+        .spawn((Styled, vantage.camera(), Orbit::of(&vantage), Msaa::Sample4, VisibleDepthRange::default()))
+        .id();
+    show.orthographic = false;
+    show.vantage = Some(vantage);
+    apply(&mut stage.commands, camera, show.style);
+}
+
+fn style(index: usize) -> Option<ComicStyle> {
+    presets::preset(presets::NAMES[index]).and_then(Result::ok)
+}
+
+fn apply(commands: &mut Commands, camera: Entity, index: usize) {
+    if let Some(style) = style(index) {
+        style.apply(&mut commands.entity(camera));
+    }
+}
+
+#[derive(SystemParam)]
+struct StyledCamera<'w, 's> {
+    cameras: Query<
+        'w,
+        's,
+        (Entity, &'static mut Projection, &'static mut Orbit, &'static mut Msaa, Has<Hdr>),
+        With<Styled>,
+    >,
+}
+
+fn choose(
+    keys: Res<ButtonInput<KeyCode>>,
+    mut commands: Commands,
+    mut show: ResMut<Show>,
+    mut split: ResMut<Split>,
+    mut camera: StyledCamera,
+) {
+    let digits = [KeyCode::Digit1, KeyCode::Digit2, KeyCode::Digit3];
+    for (key, scene) in digits.into_iter().zip(BuiltIn::ALL) {
+        if keys.just_pressed(key) {
+            show.scene = scene;
+            commands.run_system_cached(open_scene);
+            return;
+        }
+    }
+    let Ok((entity, mut projection, mut orbit, mut msaa, hdr)) = camera.cameras.single_mut() else {
+        return;
+    };
+    let count = presets::NAMES.len();
+    if keys.just_pressed(KeyCode::ArrowRight) {
+        show.style = (show.style + 1) % count;
+        apply(&mut commands, entity, show.style);
+    }
+    if keys.just_pressed(KeyCode::ArrowLeft) {
+        show.style = (show.style + count - 1) % count;
+        apply(&mut commands, entity, show.style);
+    }
+    if keys.just_pressed(KeyCode::KeyM) {
+        *msaa = if *msaa == Msaa::Off { Msaa::Sample4 } else { Msaa::Off };
+    }
+    if keys.just_pressed(KeyCode::KeyD) {
+        if hdr {
+            commands.entity(entity).remove::<Hdr>();
+        } else {
+            commands.entity(entity).insert(Hdr);
+        }
+    }
+    if keys.just_pressed(KeyCode::KeyO)
+        && let Some(vantage) = &show.vantage
+    {
+        *projection = if show.orthographic {
+            vantage.perspective()
+        } else {
+            vantage.orthographic(vantage.ortho_height)
+        };
+        show.orthographic = !show.orthographic;
+    }
+    if keys.just_pressed(KeyCode::KeyR)
+        && let Some(vantage) = &show.vantage
+    {
+        *orbit = Orbit::of(vantage);
+    }
+    if keys.just_pressed(KeyCode::KeyC) {
+        split.on = !split.on;
+    }
+    for (key, step) in [(KeyCode::BracketLeft, -0.05), (KeyCode::BracketRight, 0.05)] {
+        if keys.just_pressed(key) {
+            split.at = (split.at + step).clamp(0.05, 0.95);
+        }
+    }
+    if keys.just_pressed(KeyCode::KeyH) {
+        show.help = !show.help;
+    }
+}
+
+/// Help, and what the style does in this frame.
+fn describe(
+    show: Res<Show>,
+    diagnostics: Res<ComicsDiagnostics>,
+    camera: Query<(Entity, &VisibleDepthRange), With<Styled>>,
+    mut text: Query<(&mut Text, &mut Visibility), With<HelpText>>,
+) {
+    let (Ok((mut text, mut visibility)), Ok((camera, range))) = (text.single_mut(), camera.single())
+    else {
+        return;
+    };
+    *visibility = if show.help { Visibility::Visible } else { Visibility::Hidden };
+    let name = presets::NAMES[show.style];
+    let title = style(show.style).map(|style| style.name).unwrap_or_default();
+    let mut lines = format!("{} in {title} ({name})\n\n{HELP}\n\n", show.scene.name());
+    if let Some((near, far)) = range.distances() {
+        lines += &format!("visible from {near:.1} to {far:.1}\n");
+    }
+    for stage in ComicsStage::ALL {
+        let outcome = diagnostics.cameras.get(&camera).and_then(|stages| stages.outcome(stage));
+        lines += &match outcome {
+            Some(StageOutcome::Ran) => format!("{}\n", stage.name()),
+            Some(StageOutcome::Reduced(method)) => format!("{} ({method:?})\n", stage.name()),
+            Some(StageOutcome::LeftOut(reason)) => format!("no {}: {reason}\n", stage.name()),
+            None => String::new(),
+        };
+    }
+    if **text != lines {
+        **text = lines;
+    }
+}
