@@ -4,7 +4,10 @@ use bevy::prelude::*;
 use bevy_comics::prelude::*;
 
 fn main() {
-    App::new().add_plugins((DefaultPlugins, ComicsPlugin)).add_systems(Startup, setup).run();
+    App::new()
+        .add_plugins((DefaultPlugins, ComicsPlugin))
+        .add_systems(Startup, setup)
+        .run();
 }
 
 fn setup(
@@ -19,11 +22,17 @@ fn setup(
         Desaturation::default(),
     ));
     commands.spawn((
-        DirectionalLight { shadow_maps_enabled: true, ..default() },
+        DirectionalLight {
+            shadow_maps_enabled: true,
+            ..default()
+        },
         Transform::from_xyz(3.0, 6.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y),
     ));
     let ground = meshes.add(Plane3d::default().mesh().size(30.0, 30.0));
-    commands.spawn((Mesh3d(ground), MeshMaterial3d(materials.add(Color::srgb(0.85, 0.75, 0.5)))));
+    commands.spawn((
+        Mesh3d(ground),
+        MeshMaterial3d(materials.add(Color::srgb(0.85, 0.75, 0.5))),
+    ));
     for i in 0..12 {
         let (angle, hue) = (i as f32 * 1.9, i as f32 * 30.0);
         let at = Vec3::new(angle.sin() * i as f32 * 0.8, 0.75, 2.0 - i as f32);

@@ -130,7 +130,10 @@ pub struct CameraStages {
 impl CameraStages {
     /// The outcome of a stage; `None` if the camera was not looked at yet.
     pub fn outcome(&self, stage: ComicsStage) -> Option<StageOutcome> {
-        self.stages.iter().find(|(s, _)| *s == stage).map(|(_, outcome)| *outcome)
+        self.stages
+            .iter()
+            .find(|(s, _)| *s == stage)
+            .map(|(_, outcome)| *outcome)
     }
 
     /// Whether a stage ran.
@@ -162,7 +165,9 @@ pub struct ComicsDiagnostics {
 impl ComicsDiagnostics {
     /// Whether a stage ran for a camera.
     pub fn ran(&self, camera: Entity, stage: ComicsStage) -> bool {
-        self.cameras.get(&camera).is_some_and(|stages| stages.ran(stage))
+        self.cameras
+            .get(&camera)
+            .is_some_and(|stages| stages.ran(stage))
     }
 }
 
@@ -192,9 +197,16 @@ impl StageLedger {
 pub(crate) struct LedgerReader(Arc<Mutex<EntityHashMap<CameraStages>>>);
 
 pub(crate) fn publish_ledger(ledger: Res<StageLedger>) {
-    let current =
-        std::mem::take(&mut *ledger.current.lock().unwrap_or_else(PoisonError::into_inner));
-    *ledger.published.lock().unwrap_or_else(PoisonError::into_inner) = current;
+    let current = std::mem::take(
+        &mut *ledger
+            .current
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner),
+    );
+    *ledger
+        .published
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner) = current;
 }
 
 pub(crate) fn read_ledger(reader: Res<LedgerReader>, mut diagnostics: ResMut<ComicsDiagnostics>) {

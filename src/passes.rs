@@ -72,7 +72,11 @@ impl FromWorld for ViewPasses {
         uniforms.set_label(Some("comics_uniforms"));
         let mut range_views = DynamicUniformBuffer::default();
         range_views.set_label(Some("comics_range_views"));
-        Self { views: EntityHashMap::default(), uniforms, range_views }
+        Self {
+            views: EntityHashMap::default(),
+            uniforms,
+            range_views,
+        }
     }
 }
 
@@ -101,9 +105,9 @@ fn keys_buffer(device: &RenderDevice) -> Buffer {
 
 fn uniform(view: &ComicsView, plan: &Plan, viewport: UVec4) -> ComicsUniform {
     let size = viewport.zw().max(UVec2::ONE);
-    let depth_scale = view
-        .main_pass_size
-        .map_or(Vec2::ONE, |main| (main.as_vec2() / size.as_vec2()).clamp(Vec2::ZERO, Vec2::ONE));
+    let depth_scale = view.main_pass_size.map_or(Vec2::ONE, |main| {
+        (main.as_vec2() / size.as_vec2()).clamp(Vec2::ZERO, Vec2::ONE)
+    });
     ComicsUniform {
         viewport: IVec4::from_array(viewport.to_array().map(|v| v as i32)),
         depth_scale,
@@ -116,7 +120,10 @@ fn uniform(view: &ComicsView, plan: &Plan, viewport: UVec4) -> ComicsUniform {
             .contours
             .map(|s| s.uniform(view.scale_factor))
             .unwrap_or_default(),
-        black_flats: plan.black_flats.map(|s| s.uniform(viewport.w)).unwrap_or_default(),
+        black_flats: plan
+            .black_flats
+            .map(|s| s.uniform(viewport.w))
+            .unwrap_or_default(),
     }
 }
 
@@ -162,10 +169,18 @@ pub(crate) fn prepare_view_passes(
         let wanted = &view.plan;
         let depth = prepass.and_then(|textures| textures.depth.as_ref());
         let samples = depth.map(|depth| depth.texture.texture.sample_count());
-        let plan = if depth.is_some() { *wanted } else { wanted.without_depth() };
+        let plan = if depth.is_some() {
+            *wanted
+        } else {
+            wanted.without_depth()
+        };
 
         for stage in ComicsStage::ALL {
-            ledger.set(view.camera, stage, StageOutcome::LeftOut(wanted.reason(stage)));
+            ledger.set(
+                view.camera,
+                stage,
+                StageOutcome::LeftOut(wanted.reason(stage)),
+            );
         }
         if wanted.needs_depth() && depth.is_none() {
             report_missing_depth(&ledger, view);
@@ -199,13 +214,13 @@ pub(crate) fn prepare_view_passes(
 
         let oblique = view.projection.kind() == ProjectionKind::Oblique;
         if let Some(samples) = samples.filter(|_| plan.needs_range()) {
-            let shape =
-                RangeShape::choose(plan.depth_map.reduction, &adapter, &device);
+            let shape = RangeShape::choose(plan.depth_map.reduction, &adapter, &device);
             pass.keys.get_or_insert_with(|| keys_buffer(&device));
             let rect = depth_rect(extracted.viewport, view.main_pass_size);
-            pass.range_view_offset = passes
-                .range_views
-                .push(&RangeView { rect, raw: raw_depth(view, extracted.viewport) });
+            pass.range_view_offset = passes.range_views.push(&RangeView {
+                rect,
+                raw: raw_depth(view, extracted.viewport),
+            });
             pass.range = Some(match shape {
                 Some(shape) => {
                     pass.ping_pong = None;
@@ -221,7 +236,11 @@ pub(crate) fn prepare_view_passes(
                     )
                 }
                 None => {
-                    if pass.ping_pong.as_ref().is_none_or(|p| p.rect_size() != rect.zw()) {
+                    if pass
+                        .ping_pong
+                        .as_ref()
+                        .is_none_or(|p| p.rect_size() != rect.zw())
+                    {
                         pass.ping_pong = Some(PingPong::new(&device, rect.zw()));
                     }
                     let mut specialize = |first| {
@@ -231,7 +250,11 @@ pub(crate) fn prepare_view_passes(
                             (first, samples > 1, oblique),
                         )
                     };
-                    RangePass::PingPong { first: specialize(true), next: specialize(false), samples }
+                    RangePass::PingPong {
+                        first: specialize(true),
+                        next: specialize(false),
+                        samples,
+                    }
                 }
             });
         } else {
@@ -245,10 +268,10 @@ pub(crate) fn prepare_view_passes(
         if plan.draws() {
             pass.key = StylizeKey::new(&plan, extracted.target_format, camera.compositing_space)
                 .with_depth(samples.unwrap_or(1), oblique);
-            pass.stylize =
-                Some(stylize_pipelines.specialize(&cache, &stylize_pipeline, pass.key));
-            pass.uniform_offset =
-                passes.uniforms.push(&uniform(view, &plan, extracted.viewport));
+            pass.stylize = Some(stylize_pipelines.specialize(&cache, &stylize_pipeline, pass.key));
+            pass.uniform_offset = passes
+                .uniforms
+                .push(&uniform(view, &plan, extracted.viewport));
         }
     }
     passes.views.retain(|_, pass| pass.live);
@@ -258,9 +281,7 @@ pub(crate) fn prepare_view_passes(
 
 /// The part of the depth texture that the main pass has drawn.
 fn depth_rect(viewport: UVec4, main_pass_size: Option<UVec2>) -> UVec4 {
-    let size = main_pass_size.map_or(viewport.zw(), |main| {
-        main.clamp(UVec2::ONE, viewport.zw())
-    });
+    let size = main_pass_size.map_or(viewport.zw(), |main| main.clamp(UVec2::ONE, viewport.zw()));
     UVec4::new(viewport.x, viewport.y, size.x, size.y)
 }
 
@@ -277,8 +298,14 @@ fn report_missing_depth(ledger: &StageLedger, view: &ComicsView) {
         (ComicsStage::DepthRange, wanted.needs_range()),
         (ComicsStage::RangeReadback, wanted.readback),
         (ComicsStage::Desaturation, wanted.desaturation.is_some()),
-        (ComicsStage::Colorization, wanted.colorization.is_some() && left.colorization.is_none()),
-        (ComicsStage::BlackFlats, wanted.black_flats.is_some() && left.black_flats.is_none()),
+        (
+            ComicsStage::Colorization,
+            wanted.colorization.is_some() && left.colorization.is_none(),
+        ),
+        (
+            ComicsStage::BlackFlats,
+            wanted.black_flats.is_some() && left.black_flats.is_none(),
+        ),
         (ComicsStage::Contours, wanted.contours.is_some()),
     ] {
         if lost {
@@ -290,7 +317,10 @@ fn report_missing_depth(ledger: &StageLedger, view: &ComicsView) {
 pub(crate) fn map_readbacks(mut passes: ResMut<ViewPasses>, readings: Res<RangeReadings>) {
     for pass in passes.views.values_mut() {
         let camera = pass.camera;
-        let readback = pass.readback.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let readback = pass
+            .readback
+            .get_mut()
+            .unwrap_or_else(PoisonError::into_inner);
         readback.map(camera, &readings);
     }
 }

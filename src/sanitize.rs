@@ -32,17 +32,31 @@ pub(crate) fn displayable(color: Color, default: Color) -> Color {
     if parts.iter().all(|part| (0.0..=1.0).contains(part)) {
         // Keeps the caller's colour space, so that a sane colour comes back
         // equal.
-        return if linear(color) == parts { color } else { default };
+        return if linear(color) == parts {
+            color
+        } else {
+            default
+        };
     }
     let [red, green, blue, alpha] = parts.map(|part| part.clamp(0.0, 1.0));
-    LinearRgba { red, green, blue, alpha }.into()
+    LinearRgba {
+        red,
+        green,
+        blue,
+        alpha,
+    }
+    .into()
 }
 
 /// A near and a far distance: positive, finite, and far beyond near.
 pub(crate) fn ordered_planes(near: f32, far: f32) -> (f32, f32) {
     let near = bounded(near, 0.1, 1e-6, 1e30);
     let far = bounded(far, 1000.0, 1e-6, 1e36);
-    let (near, far) = if near <= far { (near, far) } else { (far, near) };
+    let (near, far) = if near <= far {
+        (near, far)
+    } else {
+        (far, near)
+    };
     (near, far.max(near * (1.0 + 1e-3)))
 }
 
@@ -50,17 +64,29 @@ pub(crate) fn ordered_planes(near: f32, far: f32) -> (f32, f32) {
 mod tests {
     use bevy::color::Color;
 
-    use crate::{
-        BlackFlats, Colorization, Contours, DepthMap, DepthMapping, Desaturation,
-    };
+    use crate::{BlackFlats, Colorization, Contours, DepthMap, DepthMapping, Desaturation};
 
     /// A million floats: hand-picked edges, then every exponent and sign with
     /// random mantissas, NaN and infinities among them.
     fn floats() -> impl Iterator<Item = f32> {
         let edges = [
-            0.0, -0.0, 1.0, -1.0, 0.25, 4.0, f32::NAN, -f32::NAN, f32::INFINITY,
-            f32::NEG_INFINITY, f32::MAX, f32::MIN, f32::MIN_POSITIVE, f32::EPSILON, 1e-45,
-            f32::from_bits(0x7f80_0001), f32::from_bits(0xffff_ffff),
+            0.0,
+            -0.0,
+            1.0,
+            -1.0,
+            0.25,
+            4.0,
+            f32::NAN,
+            -f32::NAN,
+            f32::INFINITY,
+            f32::NEG_INFINITY,
+            f32::MAX,
+            f32::MIN,
+            f32::MIN_POSITIVE,
+            f32::EPSILON,
+            1e-45,
+            f32::from_bits(0x7f80_0001),
+            f32::from_bits(0xffff_ffff),
         ];
         let mut state = 0x2545_f491_4f6c_dd1du64;
         let random = std::iter::repeat_with(move || {
@@ -79,7 +105,10 @@ mod tests {
         let mut kept = 0;
         for value in floats() {
             let used = through(value);
-            assert!((low..=high).contains(&used), "{field}: {value} became {used}");
+            assert!(
+                (low..=high).contains(&used),
+                "{field}: {value} became {used}"
+            );
             if (low..=high).contains(&value) {
                 assert_eq!(used, value, "{field} changed a value of its range");
                 kept += 1;
@@ -91,18 +120,43 @@ mod tests {
     #[test]
     fn a_million_floats_in_every_field_of_the_colour_styles() {
         fuzz("Desaturation::amount", 0.0, 1.0, |x| {
-            Desaturation { amount: x, ..Default::default() }.sanitized().amount
+            Desaturation {
+                amount: x,
+                ..Default::default()
+            }
+            .sanitized()
+            .amount
         });
         fuzz("Desaturation::exponent", 0.25, 4.0, |x| {
-            Desaturation { exponent: x, ..Default::default() }.sanitized().exponent
+            Desaturation {
+                exponent: x,
+                ..Default::default()
+            }
+            .sanitized()
+            .exponent
         });
         fuzz("Colorization::amount", 0.0, 1.0, |x| {
-            Colorization { amount: x, ..Default::default() }.sanitized().amount
+            Colorization {
+                amount: x,
+                ..Default::default()
+            }
+            .sanitized()
+            .amount
         });
         fuzz("Colorization::color", 0.0, 1.0, |x| {
             let color = Color::linear_rgb(x, 0.5, 0.5);
-            let used = Colorization { color, ..Default::default() }.sanitized().color.to_linear();
-            assert!([used.green, used.blue].iter().all(|c| (0.0..=1.0).contains(c)));
+            let used = Colorization {
+                color,
+                ..Default::default()
+            }
+            .sanitized()
+            .color
+            .to_linear();
+            assert!(
+                [used.green, used.blue]
+                    .iter()
+                    .all(|c| (0.0..=1.0).contains(c))
+            );
             used.red
         });
     }
@@ -117,7 +171,9 @@ mod tests {
             }
         };
         let threshold = contours(|c, x| c.threshold = x);
-        fuzz("Contours::threshold", 1e-6, 100.0, |x| threshold(x).threshold);
+        fuzz("Contours::threshold", 1e-6, 100.0, |x| {
+            threshold(x).threshold
+        });
         let width = contours(|c, x| c.width = x);
         fuzz("Contours::width", 0.5, 16.0, |x| width(x).width);
         let softness = contours(|c, x| c.softness = x);
@@ -135,11 +191,17 @@ mod tests {
             }
         };
         let slope = flats(|b, x| b.slope = Some(x));
-        fuzz("BlackFlats::slope", 1e-6, 100.0, |x| slope(x).slope.unwrap_or(f32::NAN));
+        fuzz("BlackFlats::slope", 1e-6, 100.0, |x| {
+            slope(x).slope.unwrap_or(f32::NAN)
+        });
         let value = flats(|b, x| b.value = Some(x));
-        fuzz("BlackFlats::value", 0.0, 1.0, |x| value(x).value.unwrap_or(f32::NAN));
+        fuzz("BlackFlats::value", 0.0, 1.0, |x| {
+            value(x).value.unwrap_or(f32::NAN)
+        });
         let weight = flats(|b, x| b.depth_weight = x);
-        fuzz("BlackFlats::depth_weight", 0.0, 1.0, |x| weight(x).depth_weight);
+        fuzz("BlackFlats::depth_weight", 0.0, 1.0, |x| {
+            weight(x).depth_weight
+        });
         let feather = flats(|b, x| b.feather = x);
         fuzz("BlackFlats::feather", 0.0, 1.0, |x| feather(x).feather);
         let opacity = flats(|b, x| b.opacity = x);
@@ -160,15 +222,24 @@ mod tests {
         let floor = map(|m, x| m.floor = x);
         fuzz("DepthMap::floor", 0.0, 1.0, |x| floor(x).floor);
         let floor = map(|m, x| m.orthographic_floor = x);
-        fuzz("DepthMap::orthographic_floor", 0.0, 1e6, |x| floor(x).orthographic_floor);
+        fuzz("DepthMap::orthographic_floor", 0.0, 1e6, |x| {
+            floor(x).orthographic_floor
+        });
         for (a, b) in floats().zip(floats().skip(7)) {
             let mapping = DepthMapping::Fixed { near: a, far: b };
-            let DepthMapping::Fixed { near, far } =
-                DepthMap { mapping, ..Default::default() }.sanitized().mapping
+            let DepthMapping::Fixed { near, far } = DepthMap {
+                mapping,
+                ..Default::default()
+            }
+            .sanitized()
+            .mapping
             else {
                 panic!("the mapping changed its kind");
             };
-            assert!(near > 0.0 && far > near && far.is_finite(), "{a}, {b}: {near}, {far}");
+            assert!(
+                near > 0.0 && far > near && far.is_finite(),
+                "{a}, {b}: {near}, {far}"
+            );
         }
     }
 }

@@ -3,9 +3,7 @@
 //! compiled, bound nor dispatched.
 
 use bevy::{
-    camera::{
-        Camera, Camera2d, Camera3d, MainPassResolutionOverride, Projection, RenderTarget,
-    },
+    camera::{Camera, Camera2d, Camera3d, MainPassResolutionOverride, Projection, RenderTarget},
     core_pipeline::prepass::DepthPrepass,
     ecs::{
         component::Component,
@@ -69,12 +67,21 @@ fn kept<T: Copy>(
 
 impl Plan {
     fn new(item: &ComicsComponentsItem<'_, '_>) -> Self {
-        let (desaturation, n0) =
-            kept(item.desaturation, Desaturation::sanitized, Desaturation::is_negligible);
-        let (colorization, n1) =
-            kept(item.colorization, Colorization::sanitized, Colorization::is_negligible);
-        let (black_flats, n2) =
-            kept(item.black_flats, BlackFlats::sanitized, BlackFlats::is_negligible);
+        let (desaturation, n0) = kept(
+            item.desaturation,
+            Desaturation::sanitized,
+            Desaturation::is_negligible,
+        );
+        let (colorization, n1) = kept(
+            item.colorization,
+            Colorization::sanitized,
+            Colorization::is_negligible,
+        );
+        let (black_flats, n2) = kept(
+            item.black_flats,
+            BlackFlats::sanitized,
+            BlackFlats::is_negligible,
+        );
         let (contours, n3) = kept(item.contours, Contours::sanitized, Contours::is_negligible);
         Self {
             depth_map: item.depth_map.copied().unwrap_or_default().sanitized(),
@@ -124,7 +131,11 @@ impl Plan {
             colorization: self.colorization.filter(|c| !c.depends_on_depth()),
             black_flats: self
                 .black_flats
-                .map(|b| BlackFlats { slope: None, depth_weight: 0.0, ..b })
+                .map(|b| BlackFlats {
+                    slope: None,
+                    depth_weight: 0.0,
+                    ..b
+                })
                 .filter(|b| !b.is_negligible()),
             readback: false,
             ..self
@@ -134,7 +145,11 @@ impl Plan {
     /// Why a stage of this plan does not run.
     pub fn reason(&self, stage: ComicsStage) -> LeftOut {
         let style = |index: usize| {
-            if self.negligible[index] { LeftOut::Negligible } else { LeftOut::NotRequested }
+            if self.negligible[index] {
+                LeftOut::Negligible
+            } else {
+                LeftOut::NotRequested
+            }
         };
         match stage {
             ComicsStage::Desaturation => style(0),
@@ -158,16 +173,25 @@ pub(crate) struct OwnDepthPrepass;
 pub(crate) fn request_depth_prepass(
     mut commands: Commands,
     styled: Query<
-        (Entity, ComicsComponents, Has<DepthPrepass>, Has<OwnDepthPrepass>),
+        (
+            Entity,
+            ComicsComponents,
+            Has<DepthPrepass>,
+            Has<OwnDepthPrepass>,
+        ),
         (With<Camera3d>, Or<(AnyComics, With<OwnDepthPrepass>)>),
     >,
 ) {
     for (camera, components, has_prepass, own) in &styled {
         let needs_depth = Plan::new(&components).needs_depth();
         if needs_depth && !has_prepass {
-            commands.entity(camera).insert((DepthPrepass, OwnDepthPrepass));
+            commands
+                .entity(camera)
+                .insert((DepthPrepass, OwnDepthPrepass));
         } else if !needs_depth && own {
-            commands.entity(camera).remove::<(DepthPrepass, OwnDepthPrepass)>();
+            commands
+                .entity(camera)
+                .remove::<(DepthPrepass, OwnDepthPrepass)>();
         }
     }
 }

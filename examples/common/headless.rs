@@ -66,7 +66,11 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
             ..default()
         })
         .set(RenderPlugin {
-            render_creation: WgpuSettings { backends: Some(backends()), ..default() }.into(),
+            render_creation: WgpuSettings {
+                backends: Some(backends()),
+                ..default()
+            }
+            .into(),
             synchronous_pipeline_compilation: true,
             ..default()
         })
@@ -79,7 +83,10 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
         .disable::<WinitPlugin>()
         .disable::<bevy::render::pipelined_rendering::PipelinedRenderingPlugin>();
     if options.log {
-        group.set(LogPlugin { filter: "error,bevy_comics=warn".into(), ..default() })
+        group.set(LogPlugin {
+            filter: "error,bevy_comics=warn".into(),
+            ..default()
+        })
     } else {
         group.disable::<LogPlugin>()
     }
@@ -115,9 +122,14 @@ pub fn adapter() -> Result<Adapter, String> {
     };
     let supported = |count: &u32| {
         use wgpu::TextureFormat::{Depth32Float, Rgba8UnormSrgb, Rgba16Float};
-        [Rgba8UnormSrgb, Rgba16Float, Depth32Float].into_iter().all(|format| {
-            adapter.get_texture_format_features(format).flags.sample_count_supported(*count)
-        })
+        [Rgba8UnormSrgb, Rgba16Float, Depth32Float]
+            .into_iter()
+            .all(|format| {
+                adapter
+                    .get_texture_format_features(format)
+                    .flags
+                    .sample_count_supported(*count)
+            })
     };
     Ok(Adapter {
         info: adapter.get_info(),
@@ -143,14 +155,20 @@ impl Headless {
         let mut app = App::new();
         app.add_plugins(plugins(&options)).add_plugins(extra);
         // One frame is a sixtieth of a second, whatever the machine does.
-        app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_micros(16_667)));
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_micros(
+            16_667,
+        )));
         let target = new_target(app.world_mut(), options.size, options.format);
         while app.plugins_state() == PluginsState::Adding {
             bevy::tasks::tick_global_task_pools_on_main_thread();
         }
         app.finish();
         app.cleanup();
-        Self { app, target, options }
+        Self {
+            app,
+            target,
+            options,
+        }
     }
 
     /// The render target of the picture, for a camera.

@@ -34,8 +34,12 @@ impl DepthImage {
 }
 
 fn map_buffer(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Vec<u8> {
-    buffer.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("the buffer maps"));
-    device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+    buffer.slice(..).map_async(wgpu::MapMode::Read, |result| {
+        result.expect("the buffer maps")
+    });
+    device
+        .poll(wgpu::PollType::wait_indefinitely())
+        .expect("the device answers");
     let bytes = buffer.slice(..).get_mapped_range().to_vec();
     buffer.unmap();
     bytes
@@ -43,9 +47,15 @@ fn map_buffer(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Vec<u8> {
 
 /// The bytes of a single-sampled colour texture, rows without padding.
 pub fn texture_bytes(render_world: &World, texture: &wgpu::Texture) -> Vec<u8> {
-    let device = render_world.resource::<RenderDevice>().wgpu_device().clone();
+    let device = render_world
+        .resource::<RenderDevice>()
+        .wgpu_device()
+        .clone();
     let queue = render_world.resource::<RenderQueue>();
-    let texel = texture.format().block_copy_size(None).expect("a colour format");
+    let texel = texture
+        .format()
+        .block_copy_size(None)
+        .expect("a colour format");
     let row = texture.width() * texel;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
     let buffer = device.create_buffer(&wgpu::BufferDescriptor {
@@ -76,7 +86,11 @@ pub fn texture_bytes(render_world: &World, texture: &wgpu::Texture) -> Vec<u8> {
 
 fn srgb_to_linear(code: u8) -> f32 {
     let c = f64::from(code) / 255.0;
-    (if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }) as f32
+    (if c <= 0.04045 {
+        c / 12.92
+    } else {
+        ((c + 0.055) / 1.055).powf(2.4)
+    }) as f32
 }
 
 /// The values a shader reads from a colour texture.
@@ -88,23 +102,37 @@ pub fn float_image(render_world: &World, texture: &wgpu::Texture) -> FloatImage 
             .chunks_exact(8)
             .map(|p| [0, 2, 4, 6].map(|i| f16::from_le_bytes([p[i], p[i + 1]]).to_f32()))
             .collect(),
-        wgpu::TextureFormat::Rgba8Unorm => {
-            bytes.chunks_exact(4).map(|p| [0, 1, 2, 3].map(|i| unorm(p[i]))).collect()
-        }
+        wgpu::TextureFormat::Rgba8Unorm => bytes
+            .chunks_exact(4)
+            .map(|p| [0, 1, 2, 3].map(|i| unorm(p[i])))
+            .collect(),
         wgpu::TextureFormat::Rgba8UnormSrgb => bytes
             .chunks_exact(4)
             .map(|p| {
-                [srgb_to_linear(p[0]), srgb_to_linear(p[1]), srgb_to_linear(p[2]), unorm(p[3])]
+                [
+                    srgb_to_linear(p[0]),
+                    srgb_to_linear(p[1]),
+                    srgb_to_linear(p[2]),
+                    unorm(p[3]),
+                ]
             })
             .collect(),
         other => panic!("no reader for {other:?}"),
     };
-    FloatImage { width: texture.width(), height: texture.height(), pixels }
+    FloatImage {
+        width: texture.width(),
+        height: texture.height(),
+        pixels,
+    }
 }
 
 /// What the last post-process pass of the view read and wrote; the same picture
 /// twice where none ran.
-pub fn last_pass(render_world: &World, view: Entity, ran: bool) -> Option<(FloatImage, FloatImage)> {
+pub fn last_pass(
+    render_world: &World,
+    view: Entity,
+    ran: bool,
+) -> Option<(FloatImage, FloatImage)> {
     let target = render_world.get::<ViewTarget>(view)?;
     let output = float_image(render_world, target.main_texture());
     let input = if ran {
@@ -122,7 +150,10 @@ fn read_texels(
     shader: &str,
     words: u32,
 ) -> Vec<u32> {
-    let device = render_world.resource::<RenderDevice>().wgpu_device().clone();
+    let device = render_world
+        .resource::<RenderDevice>()
+        .wgpu_device()
+        .clone();
     let queue = render_world.resource::<RenderQueue>();
     let size = u64::from(texture.width()) * u64::from(texture.height()) * u64::from(words) * 4;
     let storage = device.create_buffer(&wgpu::BufferDescriptor {
@@ -184,8 +215,14 @@ fn read_texels(
         label: None,
         layout: &layout,
         entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&view) },
-            wgpu::BindGroupEntry { binding: 1, resource: storage.as_entire_binding() },
+            wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(&view),
+            },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: storage.as_entire_binding(),
+            },
         ],
     });
     let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -208,7 +245,11 @@ pub fn depth(render_world: &World, view: Entity) -> Option<DepthImage> {
     let prepass = render_world.get::<ViewPrepassTextures>(view)?;
     let texture: &wgpu::Texture = &prepass.depth.as_ref()?.texture.texture;
     let samples = texture.sample_count();
-    let kind = if samples > 1 { "texture_multisampled_2d<f32>" } else { "texture_2d<f32>" };
+    let kind = if samples > 1 {
+        "texture_multisampled_2d<f32>"
+    } else {
+        "texture_2d<f32>"
+    };
     let shader = format!(
         "@group(0) @binding(0) var source: {kind};
          @group(0) @binding(1) var<storage, read_write> result: array<u32>;
@@ -222,7 +263,12 @@ pub fn depth(render_world: &World, view: Entity) -> Option<DepthImage> {
          }}"
     );
     let bits = read_texels(render_world, texture, &shader, samples);
-    Some(DepthImage { width: texture.width(), height: texture.height(), samples, bits })
+    Some(DepthImage {
+        width: texture.width(),
+        height: texture.height(),
+        samples,
+        bits,
+    })
 }
 
 /// World normals of the first sample, decoded; none where the view has no
@@ -250,5 +296,9 @@ pub fn normals(render_world: &World, view: Entity) -> Option<FloatImage> {
         .chunks_exact(4)
         .map(|w| [0, 1, 2, 3].map(|i| f32::from_bits(w[i])))
         .collect();
-    Some(FloatImage { width: texture.width(), height: texture.height(), pixels })
+    Some(FloatImage {
+        width: texture.width(),
+        height: texture.height(),
+        pixels,
+    })
 }

@@ -32,16 +32,26 @@ impl Studio {
             .run_system_once(move |mut stage: Stage| stage.spawn(scene))
             .expect("the stage is there");
         let target: RenderTarget = headless.render_target();
-        let camera = headless.app.world_mut().spawn((vantage.camera(), target, msaa)).id();
+        let camera = headless
+            .app
+            .world_mut()
+            .spawn((vantage.camera(), target, msaa))
+            .id();
         headless.step(2);
-        Self { headless, camera, vantage }
+        Self {
+            headless,
+            camera,
+            vantage,
+        }
     }
 
     /// The scene in a style; the original for `None`.
     pub fn shoot(&mut self, style: Option<&ComicStyle>) -> image::RgbaImage {
         let none = ComicStyle::default();
         let world = self.headless.app.world_mut();
-        style.unwrap_or(&none).apply(&mut world.commands().entity(self.camera));
+        style
+            .unwrap_or(&none)
+            .apply(&mut world.commands().entity(self.camera));
         world.flush();
         self.headless.step(SETTLE);
         self.headless.picture()

@@ -49,16 +49,14 @@ H            hide this";
 
 fn main() {
     App::new()
-        .add_plugins(
-            DefaultPlugins.set(WindowPlugin {
-                primary_window: Some(Window {
-                    title: "bevy_comics gallery".into(),
-                    resolution: WindowResolution::new(1280, 720),
-                    ..default()
-                }),
+        .add_plugins(DefaultPlugins.set(WindowPlugin {
+            primary_window: Some(Window {
+                title: "bevy_comics gallery".into(),
+                resolution: WindowResolution::new(1280, 720),
                 ..default()
             }),
-        )
+            ..default()
+        }))
         .add_plugins((ComicsPlugin, orbit::OrbitPlugin, split::SplitPlugin))
         .insert_resource(Show {
             scene: BuiltIn::Mountains,
@@ -76,7 +74,10 @@ fn spawn_text(mut commands: Commands) {
     commands.spawn((
         HelpText,
         Text::default(),
-        TextFont { font_size: FontSize::Px(15.0), ..default() },
+        TextFont {
+            font_size: FontSize::Px(15.0),
+            ..default()
+        },
         Node {
             position_type: PositionType::Absolute,
             top: Val::Px(10.0),
@@ -101,7 +102,13 @@ fn open_scene(
     let vantage = stage.spawn(scene);
     let camera = stage
         .commands
-        .spawn((Styled, vantage.camera(), Orbit::of(&vantage), Msaa::Sample4, VisibleDepthRange::default()))
+        .spawn((
+            Styled,
+            vantage.camera(),
+            Orbit::of(&vantage),
+            Msaa::Sample4,
+            VisibleDepthRange::default(),
+        ))
         .id();
     show.orthographic = false;
     show.vantage = Some(vantage);
@@ -123,7 +130,13 @@ struct StyledCamera<'w, 's> {
     cameras: Query<
         'w,
         's,
-        (Entity, &'static mut Projection, &'static mut Orbit, &'static mut Msaa, Has<Hdr>),
+        (
+            Entity,
+            &'static mut Projection,
+            &'static mut Orbit,
+            &'static mut Msaa,
+            Has<Hdr>,
+        ),
         With<Styled>,
     >,
 }
@@ -156,7 +169,11 @@ fn choose(
         apply(&mut commands, entity, show.style);
     }
     if keys.just_pressed(KeyCode::KeyM) {
-        *msaa = if *msaa == Msaa::Off { Msaa::Sample4 } else { Msaa::Off };
+        *msaa = if *msaa == Msaa::Off {
+            Msaa::Sample4
+        } else {
+            Msaa::Off
+        };
     }
     if keys.just_pressed(KeyCode::KeyD) {
         if hdr {
@@ -200,19 +217,29 @@ fn describe(
     camera: Query<(Entity, &VisibleDepthRange), With<Styled>>,
     mut text: Query<(&mut Text, &mut Visibility), With<HelpText>>,
 ) {
-    let (Ok((mut text, mut visibility)), Ok((camera, range))) = (text.single_mut(), camera.single())
+    let (Ok((mut text, mut visibility)), Ok((camera, range))) =
+        (text.single_mut(), camera.single())
     else {
         return;
     };
-    *visibility = if show.help { Visibility::Visible } else { Visibility::Hidden };
+    *visibility = if show.help {
+        Visibility::Visible
+    } else {
+        Visibility::Hidden
+    };
     let name = presets::NAMES[show.style];
-    let title = style(show.style).map(|style| style.name).unwrap_or_default();
+    let title = style(show.style)
+        .map(|style| style.name)
+        .unwrap_or_default();
     let mut lines = format!("{} in {title} ({name})\n\n{HELP}\n\n", show.scene.name());
     if let Some((near, far)) = range.distances() {
         lines += &format!("visible from {near:.1} to {far:.1}\n");
     }
     for stage in ComicsStage::ALL {
-        let outcome = diagnostics.cameras.get(&camera).and_then(|stages| stages.outcome(stage));
+        let outcome = diagnostics
+            .cameras
+            .get(&camera)
+            .and_then(|stages| stages.outcome(stage));
         lines += &match outcome {
             Some(StageOutcome::Ran) => format!("{}\n", stage.name()),
             Some(StageOutcome::Reduced(method)) => format!("{} ({method:?})\n", stage.name()),

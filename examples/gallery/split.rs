@@ -3,8 +3,8 @@
 
 use bevy::{
     camera::{CameraOutputMode, ClearColorConfig, Hdr, Viewport},
-    light::Skybox,
     core_pipeline::tonemapping::Tonemapping,
+    light::Skybox,
     prelude::*,
     render::view::Msaa,
     window::PrimaryWindow,
@@ -16,7 +16,8 @@ pub struct SplitPlugin;
 
 impl Plugin for SplitPlugin {
     fn build(&self, app: &mut App) {
-        app.insert_resource(Split { on: false, at: 0.5 }).add_systems(PostUpdate, follow);
+        app.insert_resource(Split { on: false, at: 0.5 })
+            .add_systems(PostUpdate, follow);
     }
 }
 
@@ -73,7 +74,9 @@ fn follow(
     if let Ok(mut camera) = cameras.get_mut(entity) {
         let right = (half(left, size.x - left), sub_view(left, size.x - left));
         let same = match (&camera.viewport, &right.0) {
-            (Some(a), Some(b)) => a.physical_position == b.physical_position && a.physical_size == b.physical_size,
+            (Some(a), Some(b)) => {
+                a.physical_position == b.physical_position && a.physical_size == b.physical_size
+            }
             (None, None) => true,
             _ => false,
         };
@@ -87,7 +90,9 @@ fn follow(
         }
         return;
     }
-    let original = originals.single().unwrap_or_else(|_| commands.spawn(Original).id());
+    let original = originals
+        .single()
+        .unwrap_or_else(|_| commands.spawn(Original).id());
     let mut original = commands.entity(original);
     original.insert((
         Camera3d::default(),

@@ -52,7 +52,13 @@ fn grid(rows: &[Vec<RgbaImage>]) -> RgbaImage {
 
 /// A style of which only the depth map is set.
 fn depth_style(mapping: DepthMapping) -> ComicStyle {
-    ComicStyle { depth_map: Some(DepthMap { mapping, ..default() }), ..default() }
+    ComicStyle {
+        depth_map: Some(DepthMap {
+            mapping,
+            ..default()
+        }),
+        ..default()
+    }
 }
 
 /// The depth map of the last frame, from its raw depth: pixels and the share of
@@ -70,26 +76,37 @@ fn measure(
     mapping: DepthMapping,
     plane_far: f32,
 ) -> Result<Measured, String> {
-    let view = headless.app.world().get::<RenderEntity>(camera).ok_or("no view")?.id();
-    let depth = read_back::depth(headless.app.sub_app(RenderApp).world(), view).ok_or("no depth")?;
+    let view = headless
+        .app
+        .world()
+        .get::<RenderEntity>(camera)
+        .ok_or("no view")?
+        .id();
+    let depth =
+        read_back::depth(headless.app.sub_app(RenderApp).world(), view).ok_or("no depth")?;
     let distances: Vec<Option<f64>> = depth
         .bits
         .iter()
-        .map(|bits| Some(f64::from(NEAR) / f64::from(f32::from_bits(*bits))).filter(|z| z.is_finite()))
+        .map(|bits| {
+            Some(f64::from(NEAR) / f64::from(f32::from_bits(*bits))).filter(|z| z.is_finite())
+        })
         .collect();
     let seen = || distances.iter().flatten().copied();
     let (near, far) = match mapping {
-        DepthMapping::MinMax => {
-            (seen().fold(f64::MAX, f64::min), seen().fold(f64::MIN, f64::max))
-        }
+        DepthMapping::MinMax => (
+            seen().fold(f64::MAX, f64::min),
+            seen().fold(f64::MIN, f64::max),
+        ),
         _ => (f64::from(NEAR), f64::from(plane_far)),
     };
     let map = |z: f64| match mapping {
         DepthMapping::Logarithmic => (z / near).ln() / (far / near).ln(),
         _ => (z - near) / (far - near),
     };
-    let values: Vec<Option<f64>> =
-        distances.iter().map(|z| z.map(|z| map(z).clamp(0.0, 1.0))).collect();
+    let values: Vec<Option<f64>> = distances
+        .iter()
+        .map(|z| z.map(|z| map(z).clamp(0.0, 1.0)))
+        .collect();
     let used = || values.iter().flatten().copied();
     let extent = used().fold(f64::MIN, f64::max) - used().fold(f64::MAX, f64::min);
     let mut hit = [false; 256];
@@ -102,7 +119,11 @@ fn measure(
         let grey = value.map_or(0, |d| ((1.0 - d) * 255.0).round() as u8);
         Rgba([grey, grey, grey, 255])
     });
-    Ok(Measured { picture, extent, levels: hit.iter().filter(|h| **h).count() })
+    Ok(Measured {
+        picture,
+        extent,
+        levels: hit.iter().filter(|h| **h).count(),
+    })
 }
 
 /// Objects of figure 2: the same group, near the near plane or near the far one.
@@ -115,23 +136,45 @@ fn group(headless: &mut Headless, distance: f32) -> Result<Entity, String> {
         .map_err(|error| error.to_string())?;
     // Seen from far away through a long lens, the group fills the same frame.
     let away = (vantage.eye - vantage.target).normalize();
-    let fov = 2.0 * ((0.5 * vantage.fov).tan() * vantage.eye.distance(vantage.target) / distance).atan();
-    let vantage = Vantage { eye: vantage.target + away * distance, fov, near: NEAR, far: FAR, ..vantage };
-    Ok(headless.app.world_mut().spawn((vantage.camera(), target, Msaa::Off)).id())
+    let fov =
+        2.0 * ((0.5 * vantage.fov).tan() * vantage.eye.distance(vantage.target) / distance).atan();
+    let vantage = Vantage {
+        eye: vantage.target + away * distance,
+        fov,
+        near: NEAR,
+        far: FAR,
+        ..vantage
+    };
+    Ok(headless
+        .app
+        .world_mut()
+        .spawn((vantage.camera(), target, Msaa::Off))
+        .id())
 }
 
 fn figure_2(folder: &Path) -> Result<(), String> {
     let mut rows = vec![Vec::new(), Vec::new()];
     println!("figure 2: share of [0, 1] that the geometry uses, and levels of 256");
-    println!("  {:12} {:>22} {:>22}", "mapping", "near the near plane", "near the far plane");
+    println!(
+        "  {:12} {:>22} {:>22}",
+        "mapping", "near the near plane", "near the far plane"
+    );
     let mut numbers = Vec::new();
     for (name, mapping) in MAPPINGS {
         let mut line = format!("  {name:12}");
         for (row, distance) in [14.0, 960.0].into_iter().enumerate() {
-            let mut headless =
-                Headless::new(HeadlessOptions { size: SIZE, ..default() }, ComicsPlugin);
+            let mut headless = Headless::new(
+                HeadlessOptions {
+                    size: SIZE,
+                    ..default()
+                },
+                ComicsPlugin,
+            );
             let camera = group(&mut headless, distance)?;
-            let style = ComicStyle { desaturation: Some(Desaturation::default()), ..depth_style(mapping) };
+            let style = ComicStyle {
+                desaturation: Some(Desaturation::default()),
+                ..depth_style(mapping)
+            };
             style.apply(&mut headless.app.world_mut().commands().entity(camera));
             headless.step(5);
             let measured = measure(&headless, camera, mapping, FAR)?;
@@ -146,31 +189,52 @@ fn figure_2(folder: &Path) -> Result<(), String> {
     }
     let text = serde_json::to_string_pretty(&numbers).map_err(|error| error.to_string())?;
     let path = folder.join("figure-2.json");
-    std::fs::write(&path, text + "\n").map_err(|e| format!("cannot write {}: {e}", path.display()))?;
+    std::fs::write(&path, text + "\n")
+        .map_err(|e| format!("cannot write {}: {e}", path.display()))?;
     save(&grid(&rows), &folder.join("figure-2.png"))
 }
 
-/// The three maps of a landscape, and the same sepia and desaturation with each.
+/// The three maps of an object, and the same sepia and desaturation with each.
 fn figure_3(folder: &Path) -> Result<(), String> {
     // A far plane that suits the whole game, not this view.
-    const PLANE_FAR: f32 = 20_000.0;
-    let mut studio = Studio::new(BuiltIn::Village, SIZE, Msaa::Off);
+    const PLANE_FAR: f32 = 1000.0;
+    let mut studio = Studio::new(BuiltIn::Teapot, SIZE, Msaa::Off);
     let mut rows = vec![vec![studio.shoot(None)], Vec::new(), Vec::new()];
     for (_, mapping) in MAPPINGS {
         let style = ComicStyle {
-            depth_map: Some(DepthMap { mapping, ..default() }),
-            desaturation: Some(Desaturation { exponent: 0.5, ..default() }),
+            depth_map: Some(DepthMap {
+                mapping,
+                ..default()
+            }),
+            desaturation: Some(Desaturation {
+                exponent: 0.5,
+                ..default()
+            }),
             colorization: Some(Colorization {
                 mode: ColorizationMode::Quadratic,
                 color: Colorization::SEPIA.color,
                 ..default()
             }),
-            contours: Some(Contours { threshold: 0.03, width: 1.5, ..default() }),
+            contours: Some(Contours {
+                threshold: 0.03,
+                width: 1.5,
+                ..default()
+            }),
             ..default()
         };
-        let projection = Vantage { near: NEAR, far: PLANE_FAR, ..studio.vantage.clone() }.perspective();
+        let projection = Vantage {
+            near: NEAR,
+            far: PLANE_FAR,
+            ..studio.vantage.clone()
+        }
+        .perspective();
         let camera = studio.camera;
-        studio.headless.app.world_mut().entity_mut(camera).insert(projection);
+        studio
+            .headless
+            .app
+            .world_mut()
+            .entity_mut(camera)
+            .insert(projection);
         let picture = studio.shoot(Some(&style));
         rows[1].push(measure(&studio.headless, studio.camera, mapping, PLANE_FAR)?.picture);
         rows[2].push(picture);
@@ -187,7 +251,9 @@ fn figure_4(folder: &Path) -> Result<(), String> {
         (BuiltIn::Teapot, "museum-print"),
         (BuiltIn::Mountains, "emerald-ink"),
     ] {
-        let style = presets::preset(name).ok_or("no preset")?.map_err(|error| error.to_string())?;
+        let style = presets::preset(name)
+            .ok_or("no preset")?
+            .map_err(|error| error.to_string())?;
         let mut faithful = style.clone();
         if let Some(s) = &mut faithful.desaturation {
             s.method = ColorMethod::Faithful;
@@ -196,17 +262,25 @@ fn figure_4(folder: &Path) -> Result<(), String> {
             s.method = ColorMethod::Faithful;
         }
         let mut studio = Studio::new(scene, SIZE, Msaa::Sample4);
-        rows.push(vec![studio.shoot(None), studio.shoot(Some(&style)), studio.shoot(Some(&faithful))]);
+        rows.push(vec![
+            studio.shoot(None),
+            studio.shoot(Some(&style)),
+            studio.shoot(Some(&faithful)),
+        ]);
         println!("figure 4: {name}");
     }
     save(&grid(&rows), &folder.join("figure-4.png"))
 }
 
 pub fn write(folder: &Path) -> Result<(), String> {
-    std::fs::create_dir_all(folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+    std::fs::create_dir_all(folder)
+        .map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
     figure_2(folder)?;
     figure_3(folder)?;
     figure_4(folder)?;
-    println!("wrote figure-2.png, figure-2.json, figure-3.png and figure-4.png in {}", folder.display());
+    println!(
+        "wrote figure-2.png, figure-2.json, figure-3.png and figure-4.png in {}",
+        folder.display()
+    );
     Ok(())
 }

@@ -66,9 +66,14 @@ fn run() -> Result<(), String> {
 }
 
 fn save(picture: &image::RgbaImage, path: &std::path::Path) -> Result<(), String> {
-    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+    if let Some(folder) = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+    {
         std::fs::create_dir_all(folder)
             .map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
     }
-    picture.save(path).map_err(|error| format!("cannot write {}: {error}", path.display()))
+    picture
+        .save(path)
+        .map_err(|error| format!("cannot write {}: {error}", path.display()))
 }

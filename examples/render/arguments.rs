@@ -109,7 +109,9 @@ impl Arguments {
         if let (Some(near), Some(far)) = (arguments.near, arguments.far)
             && near >= far
         {
-            return Err(format!("--near {near} --far {far}: near must be smaller than far"));
+            return Err(format!(
+                "--near {near} --far {far}: near must be smaller than far"
+            ));
         }
         arguments.style = match style.as_deref() {
             Some("none") => None,
@@ -167,7 +169,9 @@ fn scene(text: &str) -> Result<SceneChoice, String> {
         .is_some_and(|e| e.eq_ignore_ascii_case("glb") || e.eq_ignore_ascii_case("gltf"));
     if !is_model {
         let names = BuiltIn::ALL.map(BuiltIn::name).join(", ");
-        return Err(format!("no scene {text:?}; possible are {names}, or a .glb or .gltf file"));
+        return Err(format!(
+            "no scene {text:?}; possible are {names}, or a .glb or .gltf file"
+        ));
     }
     std::fs::File::open(&path).map_err(|error| format!("cannot read {text}: {error}"))?;
     Ok(SceneChoice::Model(path))
@@ -175,8 +179,8 @@ fn scene(text: &str) -> Result<SceneChoice, String> {
 
 fn read_style(name: &str) -> Result<ComicStyle, String> {
     if name.ends_with(".comic.ron") {
-        let text =
-            std::fs::read_to_string(name).map_err(|error| format!("cannot read {name}: {error}"))?;
+        let text = std::fs::read_to_string(name)
+            .map_err(|error| format!("cannot read {name}: {error}"))?;
         return ComicStyle::from_ron(&text).map_err(|error| format!("{name}: {error}"));
     }
     match presets::preset(name) {
@@ -189,7 +193,8 @@ fn read_style(name: &str) -> Result<ComicStyle, String> {
 }
 
 fn number<T: FromStr>(option: &str, text: &str) -> Result<T, String> {
-    text.parse().map_err(|_| format!("{option} {text}: not a number that this option takes"))
+    text.parse()
+        .map_err(|_| format!("{option} {text}: not a number that this option takes"))
 }
 
 fn positive(option: &str, text: &str) -> Result<f32, String> {
@@ -197,7 +202,9 @@ fn positive(option: &str, text: &str) -> Result<f32, String> {
     if value.is_finite() && value > 0.0 {
         Ok(value)
     } else {
-        Err(format!("{option} {text}: must be a positive, finite number"))
+        Err(format!(
+            "{option} {text}: must be a positive, finite number"
+        ))
     }
 }
 
@@ -208,16 +215,26 @@ fn size(text: &str) -> Result<UVec2, String> {
         width.parse().map_err(|_| wrong())?,
         height.parse().map_err(|_| wrong())?,
     );
-    if size.min_element() == 0 { Err(wrong()) } else { Ok(size) }
+    if size.min_element() == 0 {
+        Err(wrong())
+    } else {
+        Ok(size)
+    }
 }
 
 fn camera(text: &str) -> Result<(Vec3, Vec3), String> {
     let wrong = || {
-        format!("--camera {text}: must be six finite numbers EX,EY,EZ,TX,TY,TZ, eye and target apart")
+        format!(
+            "--camera {text}: must be six finite numbers EX,EY,EZ,TX,TY,TZ, eye and target apart"
+        )
     };
-    let parts: Vec<f32> =
-        text.split(',').map(|p| p.trim().parse().map_err(|_| wrong())).collect::<Result<_, _>>()?;
-    let [ex, ey, ez, tx, ty, tz] = parts[..] else { return Err(wrong()) };
+    let parts: Vec<f32> = text
+        .split(',')
+        .map(|p| p.trim().parse().map_err(|_| wrong()))
+        .collect::<Result<_, _>>()?;
+    let [ex, ey, ez, tx, ty, tz] = parts[..] else {
+        return Err(wrong());
+    };
     let (eye, target) = (Vec3::new(ex, ey, ez), Vec3::new(tx, ty, tz));
     if eye.is_finite() && target.is_finite() && eye.distance(target) > 1e-6 {
         Ok((eye, target))

@@ -11,8 +11,8 @@ use bevy_comics::{
     ComicStyle, ComicsDiagnostics, ComicsStage, ProjectionKind, StageOutcome, VisibleDepthRange,
 };
 use exr::prelude::{
-    AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, Layer, LayerAttributes, SpecificChannels,
-    WritableImage,
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, Layer, LayerAttributes,
+    SpecificChannels, WritableImage,
 };
 use serde_json::{Value, json};
 
@@ -34,12 +34,16 @@ pub fn write(
     std::fs::create_dir_all(folder)
         .map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
     // The ledger and the range of the last frame arrive with the next update.
-    let view = headless.app.world().get::<RenderEntity>(camera).map(|e| e.id());
+    let view = headless
+        .app
+        .world()
+        .get::<RenderEntity>(camera)
+        .map(|e| e.id());
     let render_world = headless.app.sub_app(RenderApp).world();
     let view = view.ok_or("the camera was not rendered")?;
     let stylized = arguments.style.is_some();
-    let (input, output) = read_back::last_pass(render_world, view, stylized)
-        .ok_or("the camera has no picture")?;
+    let (input, output) =
+        read_back::last_pass(render_world, view, stylized).ok_or("the camera has no picture")?;
     write_rgba(&folder.join("input.exr"), &input)?;
     write_rgba(&folder.join("output.exr"), &output)?;
     if let Some(depth) = read_back::depth(render_world, view) {
@@ -52,7 +56,8 @@ pub fn write(
     let frame = describe(headless, camera, arguments, adapter);
     let text = serde_json::to_string_pretty(&frame).map_err(|error| error.to_string())?;
     let path = folder.join("frame.json");
-    std::fs::write(&path, text + "\n").map_err(|error| format!("cannot write {}: {error}", path.display()))
+    std::fs::write(&path, text + "\n")
+        .map_err(|error| format!("cannot write {}: {error}", path.display()))
 }
 
 fn write_rgba(path: &Path, picture: &FloatImage) -> Result<(), String> {
@@ -75,7 +80,11 @@ fn write_rgba(path: &Path, picture: &FloatImage) -> Result<(), String> {
 fn write_depth(path: &Path, depth: &DepthImage) -> Result<(), String> {
     let channels = (0..depth.samples)
         .map(|sample| {
-            let name = if sample == 0 { "Z".to_owned() } else { format!("Z{sample}") };
+            let name = if sample == 0 {
+                "Z".to_owned()
+            } else {
+                format!("Z{sample}")
+            };
             let values = depth
                 .bits
                 .iter()
@@ -98,10 +107,20 @@ fn write_depth(path: &Path, depth: &DepthImage) -> Result<(), String> {
         .map_err(|error| format!("cannot write {}: {error}", path.display()))
 }
 
-fn describe(headless: &Headless, camera: Entity, arguments: &Arguments, adapter: &Adapter) -> Value {
+fn describe(
+    headless: &Headless,
+    camera: Entity,
+    arguments: &Arguments,
+    adapter: &Adapter,
+) -> Value {
     let world = headless.app.world();
     let range = match world.get::<VisibleDepthRange>(camera) {
-        Some(VisibleDepthRange::Visible { near, far, raw_near, raw_far }) => json!({
+        Some(VisibleDepthRange::Visible {
+            near,
+            far,
+            raw_near,
+            raw_far,
+        }) => json!({
             "raw": [raw_near, raw_far],
             "raw_bits": [raw_near.to_bits(), raw_far.to_bits()],
             "distance": [near, far],
@@ -125,7 +144,10 @@ fn describe(headless: &Headless, camera: Entity, arguments: &Arguments, adapter:
             None => {}
         }
     }
-    let clip = world.get::<Camera>(camera).map(Camera::clip_from_view).unwrap_or_default();
+    let clip = world
+        .get::<Camera>(camera)
+        .map(Camera::clip_from_view)
+        .unwrap_or_default();
     let style = arguments.style.as_ref().map(ComicStyle::sanitized);
     let resolved = style.map(|style| serde_json::to_value(style).unwrap_or_default());
     let plane = |pick: fn(&Projection) -> f32| world.get::<Projection>(camera).map(pick);

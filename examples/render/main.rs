@@ -7,10 +7,10 @@
 //! ```
 
 mod arguments;
-mod dump;
-mod model;
 #[path = "../common/mod.rs"]
 mod common;
+mod dump;
+mod model;
 
 use std::process::ExitCode;
 
@@ -33,12 +33,21 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Result<(), String> {
-    let Some(arguments) = Arguments::parse()? else { return Ok(()) };
+    let Some(arguments) = Arguments::parse()? else {
+        return Ok(());
+    };
     let adapter = headless::adapter()?;
     arguments.check_against(&adapter)?;
-    println!("adapter: {} ({:?})", adapter.info.name, adapter.info.device_type);
+    println!(
+        "adapter: {} ({:?})",
+        adapter.info.name, adapter.info.device_type
+    );
 
-    let options = HeadlessOptions { size: arguments.size, log: true, ..default() };
+    let options = HeadlessOptions {
+        size: arguments.size,
+        log: true,
+        ..default()
+    };
     let mut headless = Headless::new(options, ComicsPlugin);
     let mut vantage = match &arguments.scene {
         SceneChoice::BuiltIn(scene) => {
@@ -62,7 +71,8 @@ fn run() -> Result<(), String> {
 
     let picture = headless.picture();
     if let Some(folder) = arguments.out.parent().filter(|f| !f.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+        std::fs::create_dir_all(folder)
+            .map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
     }
     picture
         .save(&arguments.out)

@@ -3,13 +3,8 @@
 use std::path::Path;
 
 use bevy::{
-    asset::LoadState,
-    camera::primitives::Aabb,
-    ecs::system::RunSystemOnce,
-    gltf::GltfAssetLabel,
-    light::light_consts::lux,
-    prelude::*,
-    world_serialization::WorldAssetRoot,
+    asset::LoadState, camera::primitives::Aabb, ecs::system::RunSystemOnce, gltf::GltfAssetLabel,
+    light::light_consts::lux, prelude::*, world_serialization::WorldAssetRoot,
 };
 
 use crate::common::{
@@ -22,7 +17,9 @@ use crate::common::{
 const PATIENCE: usize = 20_000;
 
 pub fn load(headless: &mut Headless, path: &Path) -> Result<Vantage, String> {
-    let full = path.canonicalize().map_err(|e| format!("cannot read {}: {e}", path.display()))?;
+    let full = path
+        .canonicalize()
+        .map_err(|e| format!("cannot read {}: {e}", path.display()))?;
     let server = headless.app.world().resource::<AssetServer>().clone();
     let scene = server.load(GltfAssetLabel::Scene(0).from_asset(full));
     println!("loading {}", path.display());
@@ -41,7 +38,10 @@ pub fn load(headless: &mut Headless, path: &Path) -> Result<Vantage, String> {
             println!("still loading");
         }
     }
-    headless.app.world_mut().spawn((ScenePart, WorldAssetRoot(scene)));
+    headless
+        .app
+        .world_mut()
+        .spawn((ScenePart, WorldAssetRoot(scene)));
     // Spawning takes a frame, bounds and transforms another.
     headless.step(4);
 
@@ -67,7 +67,10 @@ pub fn load(headless: &mut Headless, path: &Path) -> Result<Vantage, String> {
         .ok()
         .flatten();
     let Some((low, high)) = bounds.filter(|(low, high)| low.is_finite() && high.is_finite()) else {
-        return Err(format!("{} has nothing to see: no mesh in its first scene", path.display()));
+        return Err(format!(
+            "{} has nothing to see: no mesh in its first scene",
+            path.display()
+        ));
     };
     headless
         .app

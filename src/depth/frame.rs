@@ -98,7 +98,11 @@ impl DepthProjection {
 
     /// The near distance that scales the reciprocal depth of oblique views.
     fn oblique_near(&self) -> f64 {
-        if self.near.is_finite() && self.near > 1e-6 { self.near } else { 1e-3 }
+        if self.near.is_finite() && self.near > 1e-6 {
+            self.near
+        } else {
+            1e-3
+        }
     }
 
     /// Raw depth of a distance in world units.
@@ -165,7 +169,11 @@ impl DepthProjection {
         DepthFrame {
             near: raw_near as f32,
             far: raw_far as f32,
-            offset: if self.kind == ProjectionKind::Perspective { self.scale as f32 } else { 0.0 },
+            offset: if self.kind == ProjectionKind::Perspective {
+                self.scale as f32
+            } else {
+                0.0
+            },
             floor: if orthographic {
                 (f64::from(map.orthographic_floor) * self.scale) as f32
             } else {
@@ -183,7 +191,11 @@ impl DepthProjection {
         if self.kind == ProjectionKind::Orthographic {
             return distance;
         }
-        if distance.is_finite() && distance > 0.0 { distance } else { default }
+        if distance.is_finite() && distance > 0.0 {
+            distance
+        } else {
+            default
+        }
     }
 }
 
@@ -195,5 +207,9 @@ fn custom_near(clip_from_view: &Mat4) -> f32 {
         ProjectionKind::Orthographic => (b - 1.0) / a,
         _ => b / (1.0 + a),
     };
-    if near.is_finite() && near > 0.0 { near } else { 0.1 }
+    if near.is_finite() && near > 0.0 {
+        near
+    } else {
+        0.1
+    }
 }

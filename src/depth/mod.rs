@@ -11,8 +11,8 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-pub(crate) use frame::{DepthFrame, RawDepth};
 pub use frame::ProjectionKind;
+pub(crate) use frame::{DepthFrame, RawDepth};
 pub use readback::VisibleDepthRange;
 
 use crate::sanitize::{bounded, ordered_planes};

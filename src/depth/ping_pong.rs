@@ -8,8 +8,8 @@ use bevy::{
     render::{
         render_resource::{
             BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource,
-            Buffer, ColorTargetState, ColorWrites, CommandEncoder, Extent3d, FragmentState,
-            LoadOp, Operations, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
+            Buffer, ColorTargetState, ColorWrites, CommandEncoder, Extent3d, FragmentState, LoadOp,
+            Operations, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
             RenderPipeline, RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline,
             StoreOp, TexelCopyBufferInfo, TexelCopyBufferLayout, Texture, TextureDescriptor,
             TextureDimension, TextureFormat, TextureSampleType, TextureUsages, TextureView,
@@ -81,7 +81,11 @@ impl SpecializedRenderPipeline for PingPongPipeline {
         if oblique {
             shader_defs.push("OBLIQUE".into());
         }
-        let layout = if first { Self::first_layout(multisampled) } else { Self::next_layout() };
+        let layout = if first {
+            Self::first_layout(multisampled)
+        } else {
+            Self::next_layout()
+        };
         RenderPipelineDescriptor {
             label: Some("comics_ping_pong".into()),
             layout: vec![layout],
@@ -104,7 +108,10 @@ impl SpecializedRenderPipeline for PingPongPipeline {
 /// The sizes of T1, T2, ... down to (2, 1) for a depth of this size: column
 /// pairs and rows are halved and rounded up.
 pub(crate) fn chain_sizes(size: UVec2) -> Vec<UVec2> {
-    let mut sizes = vec![UVec2::new(2 * size.x.div_ceil(2).max(1), size.y.div_ceil(2).max(1))];
+    let mut sizes = vec![UVec2::new(
+        2 * size.x.div_ceil(2).max(1),
+        size.y.div_ceil(2).max(1),
+    )];
     while let Some(&last) = sizes.last() {
         if last == UVec2::new(2, 1) {
             break;
@@ -127,7 +134,11 @@ impl PingPong {
             .map(|size| {
                 let texture = device.create_texture(&TextureDescriptor {
                     label: Some("comics_ping_pong"),
-                    size: Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+                    size: Extent3d {
+                        width: size.x,
+                        height: size.y,
+                        depth_or_array_layers: 1,
+                    },
                     mip_level_count: 1,
                     sample_count: 1,
                     dimension: TextureDimension::D2,
@@ -178,7 +189,10 @@ impl PingPong {
                     view: target,
                     depth_slice: None,
                     resolve_target: None,
-                    ops: Operations { load: LoadOp::Clear(Default::default()), store: StoreOp::Store },
+                    ops: Operations {
+                        load: LoadOp::Clear(Default::default()),
+                        store: StoreOp::Store,
+                    },
                 })],
                 depth_stencil_attachment: None,
                 timestamp_writes: None,
@@ -199,8 +213,15 @@ impl PingPong {
         if let Some((result, _)) = self.levels.last() {
             encoder.copy_texture_to_buffer(
                 result.as_image_copy(),
-                TexelCopyBufferInfo { buffer: keys, layout: TexelCopyBufferLayout::default() },
-                Extent3d { width: 2, height: 1, depth_or_array_layers: 1 },
+                TexelCopyBufferInfo {
+                    buffer: keys,
+                    layout: TexelCopyBufferLayout::default(),
+                },
+                Extent3d {
+                    width: 2,
+                    height: 1,
+                    depth_or_array_layers: 1,
+                },
             );
         }
     }
@@ -216,7 +237,11 @@ mod tests {
             for height in 1..70 {
                 let sizes = chain_sizes(UVec2::new(width, height));
                 assert_eq!(sizes.last(), Some(&UVec2::new(2, 1)), "{width}x{height}");
-                assert!(sizes.len() <= 9, "{width}x{height} takes {} passes", sizes.len());
+                assert!(
+                    sizes.len() <= 9,
+                    "{width}x{height} takes {} passes",
+                    sizes.len()
+                );
             }
         }
     }

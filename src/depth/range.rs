@@ -5,10 +5,7 @@ use std::sync::{PoisonError, atomic::Ordering};
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
     core_pipeline::prepass::ViewPrepassTextures,
-    ecs::{
-        resource::Resource,
-        system::Res,
-    },
+    ecs::{resource::Resource, system::Res},
     math::UVec4,
     render::{
         diagnostic::RecordDiagnostics,
@@ -19,8 +16,7 @@ use bevy::{
             SamplerDescriptor, ShaderStages, ShaderType, SpecializedComputePipeline,
             TextureSampleType, WgpuFeatures,
             binding_types::{
-                sampler, storage_buffer_sized, texture_2d, texture_2d_multisampled,
-                uniform_buffer,
+                sampler, storage_buffer_sized, texture_2d, texture_2d_multisampled, uniform_buffer,
             },
         },
         renderer::{RenderAdapterInfo, RenderContext, RenderDevice, ViewQuery},
@@ -61,9 +57,15 @@ impl RangeShape {
             return None;
         }
         let subgroups = device.features().contains(WgpuFeatures::SUBGROUP);
-        let for_gpus = if subgroups { Self::Subgroup } else { Self::SharedMemory };
+        let for_gpus = if subgroups {
+            Self::Subgroup
+        } else {
+            Self::SharedMemory
+        };
         match method {
-            ReductionMethod::Auto if adapter.device_type == DeviceType::Cpu => Some(Self::BarrierFree),
+            ReductionMethod::Auto if adapter.device_type == DeviceType::Cpu => {
+                Some(Self::BarrierFree)
+            }
             ReductionMethod::Auto | ReductionMethod::Subgroup => Some(for_gpus),
             ReductionMethod::BarrierFree => Some(Self::BarrierFree),
             ReductionMethod::SharedMemory => Some(Self::SharedMemory),
@@ -111,7 +113,12 @@ impl RangePass {
         rect: UVec4,
         samples: u32,
     ) -> Self {
-        Self::Compute { shape, pipeline, workgroups: shape.workgroups(rect), samples }
+        Self::Compute {
+            shape,
+            pipeline,
+            workgroups: shape.workgroups(rect),
+            samples,
+        }
     }
 }
 
@@ -199,9 +206,15 @@ pub(crate) fn reduce_depth_range(
 ) {
     let entity = view.entity();
     let prepass = view.into_inner();
-    let ViewPasses { views, range_views, .. } = &*passes;
-    let Some(pass) = views.get(&entity) else { return };
-    let (Some(range), Some(keys)) = (pass.range, pass.keys.clone()) else { return };
+    let ViewPasses {
+        views, range_views, ..
+    } = &*passes;
+    let Some(pass) = views.get(&entity) else {
+        return;
+    };
+    let (Some(range), Some(keys)) = (pass.range, pass.keys.clone()) else {
+        return;
+    };
     let (Some(depth), Some(range_view)) = (prepass.depth.as_ref(), range_views.binding()) else {
         return;
     };
@@ -219,7 +232,12 @@ pub(crate) fn reduce_depth_range(
     let diagnostics = ctx.diagnostic_recorder();
     let diagnostics = diagnostics.as_deref();
     let outcome = match range {
-        RangePass::Compute { shape, pipeline: id, workgroups, .. } => {
+        RangePass::Compute {
+            shape,
+            pipeline: id,
+            workgroups,
+            ..
+        } => {
             let Some(compute) = cache.get_compute_pipeline(id) else {
                 return not_ready(&ledger, pass.camera);
             };
@@ -277,7 +295,12 @@ pub(crate) fn reduce_depth_range(
                 encoder,
                 &cache,
                 (first, next),
-                (&depth.texture.default_view, range_view, pass.range_view_offset, samples > 1),
+                (
+                    &depth.texture.default_view,
+                    range_view,
+                    pass.range_view_offset,
+                    samples > 1,
+                ),
                 &keys,
             );
             span.end(encoder);
@@ -285,13 +308,20 @@ pub(crate) fn reduce_depth_range(
         }
     };
     pass.range_found.store(true, Ordering::Relaxed);
-    ledger.set(pass.camera, ComicsStage::DepthRange, StageOutcome::Reduced(outcome));
+    ledger.set(
+        pass.camera,
+        ComicsStage::DepthRange,
+        StageOutcome::Reduced(outcome),
+    );
 
     if pass.plan.readback {
         let mut readback = pass.readback.lock().unwrap_or_else(PoisonError::into_inner);
         let copied = readback.copy(&device, ctx.command_encoder(), &keys, pass.projection);
-        let outcome =
-            if copied { StageOutcome::Ran } else { StageOutcome::LeftOut(LeftOut::Busy) };
+        let outcome = if copied {
+            StageOutcome::Ran
+        } else {
+            StageOutcome::LeftOut(LeftOut::Busy)
+        };
         ledger.set(pass.camera, ComicsStage::RangeReadback, outcome);
     }
 }

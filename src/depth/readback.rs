@@ -16,9 +16,7 @@ use bevy::{
     },
     reflect::{Reflect, std_traits::ReflectDefault},
     render::{
-        render_resource::{
-            Buffer, BufferDescriptor, BufferUsages, CommandEncoder, MapMode,
-        },
+        render_resource::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder, MapMode},
         renderer::RenderDevice,
     },
 };
@@ -108,7 +106,10 @@ impl RangeReadback {
         keys: &Buffer,
         projection: DepthProjection,
     ) -> bool {
-        let free = self.slots.iter().position(|slot| !slot.busy.load(Ordering::Acquire));
+        let free = self
+            .slots
+            .iter()
+            .position(|slot| !slot.busy.load(Ordering::Acquire));
         let index = match free {
             Some(index) => index,
             None if self.slots.len() < SLOTS => {
@@ -136,27 +137,36 @@ impl RangeReadback {
     /// Asks for the copies of this frame, once they have been submitted.
     pub fn map(&mut self, camera: Entity, readings: &RangeReadings) {
         for slot in &mut self.slots {
-            let Some(projection) = slot.copied.take() else { continue };
+            let Some(projection) = slot.copied.take() else {
+                continue;
+            };
             let (buffer, busy) = (slot.buffer.clone(), slot.busy.clone());
             let readings = readings.0.clone();
-            slot.buffer.slice(..).map_async(MapMode::Read, move |result| {
-                // A lost device maps nothing; the buffers go with it.
-                if result.is_ok() {
-                    let keys = {
-                        let bytes = buffer.slice(..).get_mapped_range();
-                        let word = |i: usize| {
-                            u32::from_le_bytes([bytes[i], bytes[i + 1], bytes[i + 2], bytes[i + 3]])
+            slot.buffer
+                .slice(..)
+                .map_async(MapMode::Read, move |result| {
+                    // A lost device maps nothing; the buffers go with it.
+                    if result.is_ok() {
+                        let keys = {
+                            let bytes = buffer.slice(..).get_mapped_range();
+                            let word = |i: usize| {
+                                u32::from_le_bytes([
+                                    bytes[i],
+                                    bytes[i + 1],
+                                    bytes[i + 2],
+                                    bytes[i + 3],
+                                ])
+                            };
+                            [word(0), word(4)]
                         };
-                        [word(0), word(4)]
-                    };
-                    buffer.unmap();
-                    readings
-                        .lock()
-                        .unwrap_or_else(PoisonError::into_inner)
-                        .insert(camera, VisibleDepthRange::of_keys(keys, &projection));
-                }
-                busy.store(false, Ordering::Release);
-            });
+                        buffer.unmap();
+                        readings
+                            .lock()
+                            .unwrap_or_else(PoisonError::into_inner)
+                            .insert(camera, VisibleDepthRange::of_keys(keys, &projection));
+                    }
+                    busy.store(false, Ordering::Release);
+                });
         }
     }
 }

@@ -86,7 +86,10 @@ impl Colorization {
 
     /// Whether the amount of the atmosphere depends on the depth map.
     pub fn depends_on_depth(&self) -> bool {
-        matches!(self.mode, ColorizationMode::Linear | ColorizationMode::Quadratic)
+        matches!(
+            self.mode,
+            ColorizationMode::Linear | ColorizationMode::Quadratic
+        )
     }
 
     pub(crate) fn is_negligible(&self) -> bool {
@@ -98,16 +101,27 @@ impl Colorization {
         let [lightness, a, b, _] = Oklaba::from(self.color).to_f32_array().map(f64::from);
         let chroma = a.hypot(b);
         // A grey atmosphere has no hue: it takes colour away.
-        let direction = if chroma > 1e-4 { [a / chroma, b / chroma] } else { [1.0, 0.0] };
+        let direction = if chroma > 1e-4 {
+            [a / chroma, b / chroma]
+        } else {
+            [1.0, 0.0]
+        };
         let cusp = oklab::cusp(direction);
         let room = oklab::room(lightness, cusp);
-        let saturation =
-            if chroma > 1e-4 && room > 1e-6 { (chroma / room).min(1.0) } else { 0.0 };
+        let saturation = if chroma > 1e-4 && room > 1e-6 {
+            (chroma / room).min(1.0)
+        } else {
+            0.0
+        };
         ColorizationUniform {
             direction: Vec2::new(direction[0] as f32, direction[1] as f32),
             cusp_lightness: cusp.0 as f32,
             cusp_chroma: (cusp.1 * saturation) as f32,
-            hue: if hue.is_finite() { hue.rem_euclid(1.0) } else { 0.0 },
+            hue: if hue.is_finite() {
+                hue.rem_euclid(1.0)
+            } else {
+                0.0
+            },
             amount: self.amount,
             mode: match self.mode {
                 ColorizationMode::Hue => 0,

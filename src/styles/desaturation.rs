@@ -30,17 +30,27 @@ pub struct Desaturation {
 
 impl Default for Desaturation {
     fn default() -> Self {
-        Self { amount: 1.0, exponent: 1.0, method: ColorMethod::Corrected }
+        Self {
+            amount: 1.0,
+            exponent: 1.0,
+            method: ColorMethod::Corrected,
+        }
     }
 }
 
 impl Desaturation {
     /// [CS] Eq. 6 as printed.
-    pub const LINEAR: Self =
-        Self { amount: 1.0, exponent: 1.0, method: ColorMethod::Faithful };
+    pub const LINEAR: Self = Self {
+        amount: 1.0,
+        exponent: 1.0,
+        method: ColorMethod::Faithful,
+    };
     /// [CS] Eq. 7 as printed.
-    pub const QUADRATIC: Self =
-        Self { amount: 1.0, exponent: 0.5, method: ColorMethod::Faithful };
+    pub const QUADRATIC: Self = Self {
+        amount: 1.0,
+        exponent: 0.5,
+        method: ColorMethod::Faithful,
+    };
 
     /// The settings that are used: every number in its documented range, what
     /// is not finite replaced by its default.

@@ -18,8 +18,8 @@ pub use black_flats::BlackFlats;
 pub use colorization::{Colorization, ColorizationMode};
 pub use contours::{ContourForm, ContourOperator, Contours};
 pub use desaturation::Desaturation;
-pub(crate) use style::{StyleLoader, apply_styles};
 pub use style::{ComicStyle, ComicStyleError, ComicStyleHandle};
+pub(crate) use style::{StyleLoader, apply_styles};
 
 /// Which form of a colour style is computed.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]

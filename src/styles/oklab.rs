@@ -25,15 +25,18 @@ pub(super) fn cusp(direction: [f64; 2]) -> (f64, f64) {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..40 {
         let middle = 0.5 * (low + high);
-        let inside = linear_from_oklab(1.0, middle * a, middle * b).iter().all(|c| *c >= 0.0);
+        let inside = linear_from_oklab(1.0, middle * a, middle * b)
+            .iter()
+            .all(|c| *c >= 0.0);
         if inside {
             low = middle;
         } else {
             high = middle;
         }
     }
-    let brightest =
-        linear_from_oklab(1.0, low * a, low * b).into_iter().fold(f64::MIN, f64::max);
+    let brightest = linear_from_oklab(1.0, low * a, low * b)
+        .into_iter()
+        .fold(f64::MIN, f64::max);
     let lightness = (1.0 / brightest).cbrt();
     (lightness, lightness * low)
 }
@@ -41,7 +44,10 @@ pub(super) fn cusp(direction: [f64; 2]) -> (f64, f64) {
 /// The chroma that a hue offers at a lightness: a triangle from black over the
 /// cusp to white.
 pub(super) fn room(lightness: f64, cusp: (f64, f64)) -> f64 {
-    cusp.1 * (lightness / cusp.0).min((1.0 - lightness) / (1.0 - cusp.0)).clamp(0.0, 1.0)
+    cusp.1
+        * (lightness / cusp.0)
+            .min((1.0 - lightness) / (1.0 - cusp.0))
+            .clamp(0.0, 1.0)
 }
 
 #[cfg(test)]
@@ -57,7 +63,10 @@ mod tests {
             let low = rgb.into_iter().fold(f64::MAX, f64::min);
             let high = rgb.into_iter().fold(f64::MIN, f64::max);
             assert!(low.abs() < 1e-6, "hue {degree}: smallest component {low}");
-            assert!((high - 1.0).abs() < 1e-6, "hue {degree}: largest component {high}");
+            assert!(
+                (high - 1.0).abs() < 1e-6,
+                "hue {degree}: largest component {high}"
+            );
         }
     }
 }

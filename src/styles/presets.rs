@@ -47,8 +47,14 @@ mod tests {
     #[test]
     fn every_preset_reads_and_is_within_its_ranges() {
         for name in NAMES {
-            let style = preset(name).expect("listed").unwrap_or_else(|e| panic!("{name}: {e}"));
-            assert_eq!(style, style.sanitized(), "{name} is changed by its own clamps");
+            let style = preset(name)
+                .expect("listed")
+                .unwrap_or_else(|e| panic!("{name}: {e}"));
+            assert_eq!(
+                style,
+                style.sanitized(),
+                "{name} is changed by its own clamps"
+            );
             assert!(!style.name.is_empty(), "{name} has no title");
         }
     }

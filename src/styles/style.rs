@@ -2,15 +2,13 @@
 //! components.
 
 use bevy::{
-    asset::{
-        Asset, AssetEvent, AssetLoader, Assets, Handle, LoadContext, io::Reader,
-    },
+    asset::{Asset, AssetEvent, AssetLoader, Assets, Handle, LoadContext, io::Reader},
     ecs::{
         change_detection::{DetectChanges, Ref},
         component::Component,
         entity::Entity,
-        message::MessageReader,
         lifecycle::RemovedComponents,
+        message::MessageReader,
         query::With,
         reflect::ReflectComponent,
         system::{Commands, EntityCommands, Query, Res},
@@ -98,7 +96,9 @@ impl ComicStyle {
     pub fn from_ron(text: &str) -> Result<Self, ComicStyleError> {
         let style: Self = ron_options().from_str(text)?;
         if style.version != Self::VERSION {
-            return Err(ComicStyleError::Version { found: style.version });
+            return Err(ComicStyleError::Version {
+                found: style.version,
+            });
         }
         Ok(style)
     }

@@ -7,18 +7,15 @@ use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
     camera::CompositingSpace,
     core_pipeline::{FullscreenShader, prepass::ViewPrepassTextures},
-    ecs::{
-        resource::Resource,
-        system::Res,
-    },
+    ecs::{resource::Resource, system::Res},
     math::{IVec4, Vec2},
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
-            BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries,
-            ColorTargetState, ColorWrites, FragmentState, Operations, PipelineCache,
-            RenderPassColorAttachment, RenderPassDescriptor, RenderPipelineDescriptor,
-            ShaderStages, ShaderType, SpecializedRenderPipeline, TextureFormat, TextureSampleType,
+            BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, ColorTargetState,
+            ColorWrites, FragmentState, Operations, PipelineCache, RenderPassColorAttachment,
+            RenderPassDescriptor, RenderPipelineDescriptor, ShaderStages, ShaderType,
+            SpecializedRenderPipeline, TextureFormat, TextureSampleType,
             binding_types::{
                 texture_2d, texture_2d_multisampled, uniform_buffer, uniform_buffer_sized,
             },
@@ -95,7 +92,15 @@ impl StylizeKey {
 
     /// What is compiled in depends on the depth only where depth is read.
     pub fn with_depth(self, samples: u32, oblique: bool) -> Self {
-        if self.depth { Self { samples, oblique, ..self } } else { self }
+        if self.depth {
+            Self {
+                samples,
+                oblique,
+                ..self
+            }
+        } else {
+            self
+        }
     }
 
     fn shader_defs(&self) -> Vec<ShaderDefVal> {
@@ -126,7 +131,10 @@ impl StylizeKey {
         let unfilterable = TextureSampleType::Float { filterable: false };
         let mut entries = BindGroupLayoutEntries::sequential(
             ShaderStages::FRAGMENT,
-            (texture_2d(unfilterable), uniform_buffer::<ComicsUniform>(true)),
+            (
+                texture_2d(unfilterable),
+                uniform_buffer::<ComicsUniform>(true),
+            ),
         )
         .to_vec();
         if self.depth {
@@ -194,11 +202,19 @@ pub(crate) fn stylize(
 ) {
     let entity = view.entity();
     let (target, prepass) = view.into_inner();
-    let Some(pass) = passes.views.get(&entity) else { return };
-    let (Some(id), Some(uniforms)) = (pass.stylize, passes.uniforms.binding()) else { return };
+    let Some(pass) = passes.views.get(&entity) else {
+        return;
+    };
+    let (Some(id), Some(uniforms)) = (pass.stylize, passes.uniforms.binding()) else {
+        return;
+    };
     let key = &pass.key;
     let pass_through = |reason| {
-        ledger.set(pass.camera, ComicsStage::Stylize, StageOutcome::LeftOut(reason));
+        ledger.set(
+            pass.camera,
+            ComicsStage::Stylize,
+            StageOutcome::LeftOut(reason),
+        );
     };
     let Some(pipeline) = cache.get_render_pipeline(id) else {
         return pass_through(LeftOut::PipelineNotReady);
@@ -221,7 +237,10 @@ pub(crate) fn stylize(
     let post = target.post_process_write();
     let device = ctx.render_device();
     let depth_view = depth.map(|depth| &depth.texture.default_view);
-    let bind_group = match (depth_view.filter(|_| key.depth), keys.filter(|_| key.visible_range)) {
+    let bind_group = match (
+        depth_view.filter(|_| key.depth),
+        keys.filter(|_| key.visible_range),
+    ) {
         (Some(depth), Some(keys)) => device.create_bind_group(
             "comics_stylize",
             &layout,

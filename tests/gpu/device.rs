@@ -36,10 +36,11 @@ pub fn gpu() -> &'static Gpu {
 
 impl Gpu {
     pub fn shader(&self, module: wgpu::naga::Module) -> wgpu::ShaderModule {
-        self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: None,
-            source: wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(module)),
-        })
+        self.device
+            .create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: None,
+                source: wgpu::ShaderSource::Naga(std::borrow::Cow::Owned(module)),
+            })
     }
 
     pub fn buffer(&self, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
@@ -63,8 +64,12 @@ impl Gpu {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
         self.queue.submit([encoder.finish()]);
-        staging.slice(..).map_async(wgpu::MapMode::Read, |result| result.expect("mapped"));
-        self.device.poll(wgpu::PollType::wait_indefinitely()).expect("the device answers");
+        staging
+            .slice(..)
+            .map_async(wgpu::MapMode::Read, |result| result.expect("mapped"));
+        self.device
+            .poll(wgpu::PollType::wait_indefinitely())
+            .expect("the device answers");
         let bytes = staging.slice(..).get_mapped_range().to_vec();
         staging.unmap();
         bytes
@@ -93,15 +98,21 @@ impl Gpu {
             }}"
         );
         let module = wgsl::module(&source, &["DEPTH"]).unwrap_or_else(|error| panic!("{error}"));
-        let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: None,
-            layout: None,
-            module: &self.shader(module),
-            entry_point: Some("evaluate"),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-        let bytes: Vec<u8> = rows.iter().flatten().flat_map(|x| x.to_bits().to_le_bytes()).collect();
+        let pipeline = self
+            .device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: None,
+                layout: None,
+                module: &self.shader(module),
+                entry_point: Some("evaluate"),
+                compilation_options: Default::default(),
+                cache: None,
+            });
+        let bytes: Vec<u8> = rows
+            .iter()
+            .flatten()
+            .flat_map(|x| x.to_bits().to_le_bytes())
+            .collect();
         let input = self.buffer(&bytes, wgpu::BufferUsages::STORAGE);
         let output = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -113,8 +124,14 @@ impl Gpu {
             label: None,
             layout: &pipeline.get_bind_group_layout(0),
             entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: input.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: input.as_entire_binding(),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: output.as_entire_binding(),
+                },
             ],
         });
         let mut encoder = self.device.create_command_encoder(&Default::default());

@@ -14,7 +14,11 @@ fn flip_mean(reference: &image::RgbaImage, picture: &image::RgbaImage) -> f32 {
         let bytes: Vec<u8> = p.pixels().flat_map(|p| [p.0[0], p.0[1], p.0[2]]).collect();
         FlipImageRgb8::with_data(p.width(), p.height(), &bytes)
     };
-    let map = nv_flip::flip(rgb(reference), rgb(picture), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
+    let map = nv_flip::flip(
+        rgb(reference),
+        rgb(picture),
+        nv_flip::DEFAULT_PIXELS_PER_DEGREE,
+    );
     FlipPool::from_image(&map).mean()
 }
 
@@ -38,7 +42,10 @@ fn check(scene: BuiltIn) {
         let reference = image::open(&path)
             .unwrap_or_else(|error| panic!("{}: {error}", path.display()))
             .to_rgba8();
-        let (flip, off) = (flip_mean(&reference, &picture), far_off(&reference, &picture));
+        let (flip, off) = (
+            flip_mean(&reference, &picture),
+            far_off(&reference, &picture),
+        );
         assert!(
             flip <= 0.01 && off <= 0.001,
             "{}: FLIP {flip:.4}, {:.2} % of the pixels far off",
@@ -50,7 +57,10 @@ fn check(scene: BuiltIn) {
     // The comparison can fail: another preset is not this one.
     let (reference, _) = first.expect("there are presets");
     let other = studio.shoot(None);
-    assert!(flip_mean(&reference, &other) > 0.01, "the measure sees no difference");
+    assert!(
+        flip_mean(&reference, &other) > 0.01,
+        "the measure sees no difference"
+    );
 }
 
 #[test]

@@ -15,7 +15,11 @@ fn small() -> Small {
 /// What ran, and why the rest did not.
 fn stages(small: &Small) -> (Vec<ComicsStage>, Vec<(ComicsStage, LeftOut)>) {
     let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
-    let stages = &diagnostics.cameras.get(&small.camera).expect("listed").stages;
+    let stages = &diagnostics
+        .cameras
+        .get(&small.camera)
+        .expect("listed")
+        .stages;
     let mut ran = Vec::new();
     let mut left = Vec::new();
     for (stage, outcome) in stages {
@@ -28,18 +32,39 @@ fn stages(small: &Small) -> (Vec<ComicsStage>, Vec<(ComicsStage, LeftOut)>) {
 }
 
 fn has_prepass(small: &Small) -> bool {
-    small.headless.app.world().get::<DepthPrepass>(small.camera).is_some()
+    small
+        .headless
+        .app
+        .world()
+        .get::<DepthPrepass>(small.camera)
+        .is_some()
 }
 
 #[test]
 fn a_camera_without_styles_costs_nothing() {
     let mut small = small();
     small.settle();
-    assert!(small.headless.app.world().resource::<ComicsDiagnostics>().cameras.is_empty());
+    assert!(
+        small
+            .headless
+            .app
+            .world()
+            .resource::<ComicsDiagnostics>()
+            .cameras
+            .is_empty()
+    );
     assert!(!has_prepass(&small) && small.depth().is_none());
     // A depth map alone asks for nothing.
     small.insert(DepthMap::default()).settle();
-    assert!(small.headless.app.world().resource::<ComicsDiagnostics>().cameras.is_empty());
+    assert!(
+        small
+            .headless
+            .app
+            .world()
+            .resource::<ComicsDiagnostics>()
+            .cameras
+            .is_empty()
+    );
     assert!(!has_prepass(&small));
 }
 
@@ -55,7 +80,12 @@ fn one_atmosphere_for_all_reads_no_depth() {
     assert!(!has_prepass(&small));
     small.insert(BlackFlats::default()).settle();
     assert!(!has_prepass(&small), "flats of one threshold read no depth");
-    small.insert(BlackFlats { depth_weight: 0.5, ..default() }).settle();
+    small
+        .insert(BlackFlats {
+            depth_weight: 0.5,
+            ..default()
+        })
+        .settle();
     assert!(has_prepass(&small));
 }
 
@@ -65,13 +95,37 @@ fn a_fixed_range_has_no_reduction() {
     for mapping in [
         DepthMapping::Linear,
         DepthMapping::Logarithmic,
-        DepthMapping::Fixed { near: 2.0, far: 12.0 },
-        DepthMapping::FixedLogarithmic { near: 2.0, far: 12.0 },
+        DepthMapping::Fixed {
+            near: 2.0,
+            far: 12.0,
+        },
+        DepthMapping::FixedLogarithmic {
+            near: 2.0,
+            far: 12.0,
+        },
     ] {
-        small.insert((DepthMap { mapping, ..default() }, Contours::default())).settle();
+        small
+            .insert((
+                DepthMap {
+                    mapping,
+                    ..default()
+                },
+                Contours::default(),
+            ))
+            .settle();
         let (ran, left) = stages(&small);
-        assert_eq!(ran, [ComicsStage::DepthPrepass, ComicsStage::Contours, ComicsStage::Stylize]);
-        assert!(left.contains(&(ComicsStage::DepthRange, LeftOut::FixedRange)), "{mapping:?}");
+        assert_eq!(
+            ran,
+            [
+                ComicsStage::DepthPrepass,
+                ComicsStage::Contours,
+                ComicsStage::Stylize
+            ]
+        );
+        assert!(
+            left.contains(&(ComicsStage::DepthRange, LeftOut::FixedRange)),
+            "{mapping:?}"
+        );
     }
     small.insert(DepthMap::default()).settle();
     assert!(small.ran(ComicsStage::DepthRange));
@@ -84,15 +138,32 @@ fn what_changes_nothing_is_left_out() {
     let original = small.picture();
     small
         .insert((
-            Desaturation { amount: 0.0, ..default() },
-            Colorization { mode: ColorizationMode::Hue, ..default() },
-            BlackFlats { value: None, ..default() },
-            Contours { opacity: -3.0, ..default() },
+            Desaturation {
+                amount: 0.0,
+                ..default()
+            },
+            Colorization {
+                mode: ColorizationMode::Hue,
+                ..default()
+            },
+            BlackFlats {
+                value: None,
+                ..default()
+            },
+            Contours {
+                opacity: -3.0,
+                ..default()
+            },
         ))
         .settle();
     let (ran, left) = stages(&small);
     assert_eq!(ran, []);
-    for stage in [ComicsStage::Desaturation, ComicsStage::Colorization, ComicsStage::BlackFlats, ComicsStage::Contours] {
+    for stage in [
+        ComicsStage::Desaturation,
+        ComicsStage::Colorization,
+        ComicsStage::BlackFlats,
+        ComicsStage::Contours,
+    ] {
         assert!(left.contains(&(stage, LeftOut::Negligible)), "{stage:?}");
     }
     assert!(left.contains(&(ComicsStage::Stylize, LeftOut::NothingToDraw)));
@@ -107,11 +178,24 @@ fn the_game_can_ask_for_the_range_alone() {
     let original = small.picture();
     small.insert(VisibleDepthRange::default()).settle();
     let (ran, _) = stages(&small);
-    assert_eq!(ran, [ComicsStage::DepthPrepass, ComicsStage::DepthRange, ComicsStage::RangeReadback]);
+    assert_eq!(
+        ran,
+        [
+            ComicsStage::DepthPrepass,
+            ComicsStage::DepthRange,
+            ComicsStage::RangeReadback
+        ]
+    );
     assert_eq!(small.picture(), original);
-    let (near, far) = small.range().and_then(VisibleDepthRange::distances).expect("a range");
+    let (near, far) = small
+        .range()
+        .and_then(VisibleDepthRange::distances)
+        .expect("a range");
     // The camera stands 6.6 before the middle of a ground of 9 by 9.
-    assert!(1.0 < near && near < 5.0 && 8.0 < far && far < 14.0, "{near} to {far}");
+    assert!(
+        1.0 < near && near < 5.0 && 8.0 < far && far < 14.0,
+        "{near} to {far}"
+    );
 }
 
 #[test]

@@ -3,10 +3,17 @@
 use bevy::{camera::ScalingMode, prelude::*, render::view::Msaa};
 use bevy_comics::{ContourOperator, Contours, DepthMap, DepthMapping};
 
-use crate::{common::read_back::DepthImage, small::{Object, Small}};
+use crate::{
+    common::read_back::DepthImage,
+    small::{Object, Small},
+};
 
-const OPERATORS: [ContourOperator; 4] =
-    [ContourOperator::Prewitt, ContourOperator::Sobel, ContourOperator::Laplace, ContourOperator::Roberts];
+const OPERATORS: [ContourOperator; 4] = [
+    ContourOperator::Prewitt,
+    ContourOperator::Sobel,
+    ContourOperator::Laplace,
+    ContourOperator::Roberts,
+];
 
 /// A white world of our own, without anti-aliasing: every dark pixel is ink.
 fn empty_world(size: UVec2, msaa: Msaa) -> Small {
@@ -19,25 +26,37 @@ fn empty_world(size: UVec2, msaa: Msaa) -> Small {
     for object in objects {
         small.world().despawn(object);
     }
-    small.insert(Camera { clear_color: Color::WHITE.into(), ..default() });
+    small.insert(Camera {
+        clear_color: Color::WHITE.into(),
+        ..default()
+    });
     small
 }
 
 fn add(small: &mut Small, mesh: impl Into<Mesh>, at: Transform) {
     let mesh = small.world().resource_mut::<Assets<Mesh>>().add(mesh);
-    let material = small.world().resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial {
-        base_color: Color::WHITE,
-        unlit: true,
-        cull_mode: None,
-        ..default()
-    });
-    small.world().spawn((Mesh3d(mesh), MeshMaterial3d(material), at));
+    let material = small
+        .world()
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: Color::WHITE,
+            unlit: true,
+            cull_mode: None,
+            ..default()
+        });
+    small
+        .world()
+        .spawn((Mesh3d(mesh), MeshMaterial3d(material), at));
 }
 
 /// Coordinates of the inked pixels.
 fn ink(small: &mut Small) -> Vec<(u32, u32)> {
     let picture = small.picture();
-    picture.enumerate_pixels().filter(|(_, _, p)| p.0[0] < 200).map(|(x, y, _)| (x, y)).collect()
+    picture
+        .enumerate_pixels()
+        .filter(|(_, _, p)| p.0[0] < 200)
+        .map(|(x, y, _)| (x, y))
+        .collect()
 }
 
 fn is_sky(depth: &DepthImage, x: u32, y: u32) -> bool {
@@ -61,20 +80,37 @@ fn a_grazing_ground_to_the_horizon_has_one_line_the_skyline() {
     for operator in OPERATORS {
         for (name, eye) in [("a hand", 0.1), ("eye height", 1.7), ("a tower", 40.0)] {
             let mut small = empty_world(UVec2::new(200, 120), Msaa::Off);
-            add(&mut small, Plane3d::default().mesh().size(4000.0, 4000.0), Transform::IDENTITY);
+            add(
+                &mut small,
+                Plane3d::default().mesh().size(4000.0, 4000.0),
+                Transform::IDENTITY,
+            );
             small.insert((
                 Transform::from_xyz(0.0, eye, 0.0).looking_to(Vec3::new(0.3, -0.05, -1.0), Vec3::Y),
-                Contours { operator, softness: 0.0, ..default() },
+                Contours {
+                    operator,
+                    softness: 0.0,
+                    ..default()
+                },
             ));
             small.settle();
             let depth = small.depth().expect("depth");
             let inked = ink(&mut small);
-            let false_lines: Vec<_> =
-                inked.iter().filter(|(x, y)| !at_the_skyline(&depth, *x, *y, 2)).collect();
-            assert!(false_lines.is_empty(), "{operator:?} from {name}: {false_lines:?}");
+            let false_lines: Vec<_> = inked
+                .iter()
+                .filter(|(x, y)| !at_the_skyline(&depth, *x, *y, 2))
+                .collect();
+            assert!(
+                false_lines.is_empty(),
+                "{operator:?} from {name}: {false_lines:?}"
+            );
             let columns: std::collections::HashSet<_> = inked.iter().map(|(x, _)| *x).collect();
             // The pixel at either border has no neighbour to differ from.
-            assert!(columns.len() >= 196, "{operator:?} from {name}: skyline in {} of 200 columns", columns.len());
+            assert!(
+                columns.len() >= 196,
+                "{operator:?} from {name}: skyline in {} of 200 columns",
+                columns.len()
+            );
         }
     }
 }
@@ -91,12 +127,19 @@ fn the_border_of_the_picture_is_no_line() {
             );
             small.insert((
                 Transform::from_xyz(0.0, 3.0, 9.0).looking_at(Vec3::ZERO, Vec3::Y),
-                Contours { operator, width: 6.0, ..default() },
+                Contours {
+                    operator,
+                    width: 6.0,
+                    ..default()
+                },
             ));
             small.settle();
             let depth = small.depth().expect("depth");
             for (x, y) in ink(&mut small) {
-                assert!(at_the_skyline(&depth, x, y, 4), "{msaa:?} {operator:?}: ({x}, {y})");
+                assert!(
+                    at_the_skyline(&depth, x, y, 4),
+                    "{msaa:?} {operator:?}: ({x}, {y})"
+                );
             }
         }
     }
@@ -105,8 +148,16 @@ fn the_border_of_the_picture_is_no_line() {
 #[test]
 fn the_farthest_object_has_a_line_against_the_sky_and_the_sky_has_none() {
     let mut small = empty_world(UVec2::new(100, 80), Msaa::Off);
-    add(&mut small, Cuboid::default(), Transform::from_xyz(-1.5, 0.0, 0.0));
-    add(&mut small, Cuboid::default(), Transform::from_xyz(3.0, 0.0, -9.0).with_scale(Vec3::splat(3.0)));
+    add(
+        &mut small,
+        Cuboid::default(),
+        Transform::from_xyz(-1.5, 0.0, 0.0),
+    );
+    add(
+        &mut small,
+        Cuboid::default(),
+        Transform::from_xyz(3.0, 0.0, -9.0).with_scale(Vec3::splat(3.0)),
+    );
     small.insert((
         Transform::from_xyz(0.0, 0.0, 6.0).looking_at(Vec3::ZERO, Vec3::Y),
         Contours::default(),
@@ -120,35 +171,58 @@ fn the_farthest_object_has_a_line_against_the_sky_and_the_sky_has_none() {
         for x in 1..depth.width - 1 {
             if !is_sky(&depth, x, y) && at_the_skyline(&depth, x, y, 1) {
                 outline += 1;
-                assert!(inked.contains(&(x, y)), "({x}, {y}) is an edge against the sky");
+                assert!(
+                    inked.contains(&(x, y)),
+                    "({x}, {y}) is an edge against the sky"
+                );
             }
         }
     }
     assert!(outline > 80, "only {outline} pixels of outline");
     for (x, y) in inked {
-        assert!(at_the_skyline(&depth, x, y, 1) || !is_sky(&depth, x, y), "({x}, {y}) lies in the sky");
+        assert!(
+            at_the_skyline(&depth, x, y, 1) || !is_sky(&depth, x, y),
+            "({x}, {y}) lies in the sky"
+        );
     }
 }
 
 #[test]
 fn an_orthographic_view_draws_the_same_lines() {
     let mut small = empty_world(UVec2::new(100, 80), Msaa::Off);
-    add(&mut small, Cuboid::default(), Transform::from_xyz(0.0, 0.5, 0.0));
-    add(&mut small, Plane3d::default().mesh().size(30.0, 30.0), Transform::IDENTITY);
+    add(
+        &mut small,
+        Cuboid::default(),
+        Transform::from_xyz(0.0, 0.5, 0.0),
+    );
+    add(
+        &mut small,
+        Plane3d::default().mesh().size(30.0, 30.0),
+        Transform::IDENTITY,
+    );
     small.insert((
         Projection::Orthographic(OrthographicProjection {
             near: -50.0,
             far: 200.0,
-            scaling_mode: ScalingMode::FixedVertical { viewport_height: 4.0 },
+            scaling_mode: ScalingMode::FixedVertical {
+                viewport_height: 4.0,
+            },
             ..OrthographicProjection::default_3d()
         }),
         Transform::from_xyz(3.0, 2.5, 6.0).looking_at(Vec3::Y * 0.4, Vec3::Y),
-        Contours { threshold: 0.03, softness: 0.0, ..default() },
+        Contours {
+            threshold: 0.03,
+            softness: 0.0,
+            ..default()
+        },
     ));
     small.settle();
     let inked = ink(&mut small);
     assert!(inked.len() > 60, "{} pixels of ink", inked.len());
-    let border = inked.iter().filter(|(x, y)| *x == 0 || *y == 0 || *x == 99 || *y == 79).count();
+    let border = inked
+        .iter()
+        .filter(|(x, y)| *x == 0 || *y == 0 || *x == 99 || *y == 79)
+        .count();
     assert_eq!(border, 0, "lines at the border");
     // The sloping ground in view is a plane: its corners are clean.
     for corner in [(5, 75), (95, 75), (5, 5), (95, 5)] {
@@ -158,7 +232,15 @@ fn an_orthographic_view_draws_the_same_lines() {
 
 #[test]
 fn a_line_is_as_wide_as_asked_at_every_scale() {
-    for (width, scale) in [(1.0f32, 1.0f32), (2.0, 1.0), (3.0, 1.0), (4.0, 1.0), (2.0, 1.5), (2.0, 2.0), (8.0, 1.0)] {
+    for (width, scale) in [
+        (1.0f32, 1.0f32),
+        (2.0, 1.0),
+        (3.0, 1.0),
+        (4.0, 1.0),
+        (2.0, 1.5),
+        (2.0, 2.0),
+        (8.0, 1.0),
+    ] {
         let options = crate::common::headless::HeadlessOptions {
             scale_factor: scale,
             ..crate::small::options(UVec2::new(120, 60))
@@ -172,9 +254,16 @@ fn a_line_is_as_wide_as_asked_at_every_scale() {
         for object in objects {
             small.world().despawn(object);
         }
-        add(&mut small, Rectangle::new(20.0, 40.0), Transform::from_xyz(-10.0, 0.0, 0.0));
+        add(
+            &mut small,
+            Rectangle::new(20.0, 40.0),
+            Transform::from_xyz(-10.0, 0.0, 0.0),
+        );
         small.insert((
-            Camera { clear_color: Color::WHITE.into(), ..default() },
+            Camera {
+                clear_color: Color::WHITE.into(),
+                ..default()
+            },
             Transform::from_xyz(0.0, 0.0, 6.0),
             Contours { width, ..default() },
         ));
@@ -183,10 +272,17 @@ fn a_line_is_as_wide_as_asked_at_every_scale() {
         // Coverage across the vertical edge in the middle row; the ink is black
         // over white in linear light.
         let covered: f64 = (0..120)
-            .map(|x| 1.0 - crate::reference::color::srgb_decode_one(f64::from(picture.get_pixel(x, 30).0[0]) / 255.0))
+            .map(|x| {
+                1.0 - crate::reference::color::srgb_decode_one(
+                    f64::from(picture.get_pixel(x, 30).0[0]) / 255.0,
+                )
+            })
             .sum();
         let asked = f64::from(width * scale);
-        assert!((covered - asked).abs() <= 0.5, "{width} px at scale {scale}: {covered} for {asked}");
+        assert!(
+            (covered - asked).abs() <= 0.5,
+            "{width} px at scale {scale}: {covered} for {asked}"
+        );
     }
 }
 
@@ -197,13 +293,29 @@ fn one_threshold_serves_every_scale_of_world() {
     let mut pictures = Vec::new();
     for scale in [1e-3f32, 1.0, 1e3] {
         let mut small = empty_world(UVec2::new(100, 70), Msaa::Off);
-        add(&mut small, Cuboid::default(), Transform::from_xyz(0.0, 0.5 * scale, 0.0).with_scale(Vec3::splat(scale)));
-        add(&mut small, Plane3d::default().mesh().size(9.0, 9.0), Transform::from_scale(Vec3::splat(scale)));
+        add(
+            &mut small,
+            Cuboid::default(),
+            Transform::from_xyz(0.0, 0.5 * scale, 0.0).with_scale(Vec3::splat(scale)),
+        );
+        add(
+            &mut small,
+            Plane3d::default().mesh().size(9.0, 9.0),
+            Transform::from_scale(Vec3::splat(scale)),
+        );
         small.insert((
-            Projection::Perspective(PerspectiveProjection { near: 0.01 * scale, far: 1e6, ..default() }),
-            Transform::from_xyz(2.0 * scale, 2.0 * scale, 4.0 * scale).looking_at(Vec3::ZERO, Vec3::Y),
+            Projection::Perspective(PerspectiveProjection {
+                near: 0.01 * scale,
+                far: 1e6,
+                ..default()
+            }),
+            Transform::from_xyz(2.0 * scale, 2.0 * scale, 4.0 * scale)
+                .looking_at(Vec3::ZERO, Vec3::Y),
             Contours::default(),
-            DepthMap { mapping: DepthMapping::MinMax, ..default() },
+            DepthMap {
+                mapping: DepthMapping::MinMax,
+                ..default()
+            },
         ));
         small.settle();
         pictures.push(ink(&mut small));
@@ -211,6 +323,9 @@ fn one_threshold_serves_every_scale_of_world() {
     for other in &pictures[1..] {
         let both = pictures[0].iter().filter(|p| other.contains(p)).count();
         let any = pictures[0].len() + other.len() - both;
-        assert!(both as f64 >= 0.99 * any as f64, "{both} of {any} inked pixels agree");
+        assert!(
+            both as f64 >= 0.99 * any as f64,
+            "{both} of {any} inked pixels agree"
+        );
     }
 }

@@ -29,9 +29,9 @@ fn frame(small: &Small, map: &DepthMap) -> Frame {
     const FAR: f64 = 1000.0;
     let ends = match map.mapping {
         DepthMapping::MinMax | DepthMapping::MinMaxLogarithmic => match small.range() {
-            Some(VisibleDepthRange::Visible { raw_near, raw_far, .. }) => {
-                Some([f64::from(raw_near), f64::from(raw_far)])
-            }
+            Some(VisibleDepthRange::Visible {
+                raw_near, raw_far, ..
+            }) => Some([f64::from(raw_near), f64::from(raw_far)]),
             other => panic!("no range: {other:?}"),
         },
         DepthMapping::Linear | DepthMapping::Logarithmic => Some([NEAR / NEAR, NEAR / FAR]),
@@ -50,7 +50,12 @@ fn frame(small: &Small, map: &DepthMap) -> Frame {
 
 /// Compares every pixel; pixels whose colour hangs on a threshold within the
 /// response's error are counted, not compared.
-fn assert_pass_is_its_twin(small: &mut Small, style: &ComicStyle, viewport: Option<[u32; 4]>, what: &str) {
+fn assert_pass_is_its_twin(
+    small: &mut Small,
+    style: &ComicStyle,
+    viewport: Option<[u32; 4]>,
+    what: &str,
+) {
     small.insert(VisibleDepthRange::default());
     small.style(style);
     small.settle();
@@ -67,7 +72,11 @@ fn assert_pass_is_its_twin(small: &mut Small, style: &ComicStyle, viewport: Opti
     };
     let mut undecided = 0;
     // A camera that composites in gamma-encoded colour stores display codes.
-    let encoded = small.headless.app.world().get::<CompositingSpace>(small.camera)
+    let encoded = small
+        .headless
+        .app
+        .world()
+        .get::<CompositingSpace>(small.camera)
         == Some(&CompositingSpace::Srgb);
     let light = |stored: [f32; 4]| {
         let [r, g, b, a] = stored;
@@ -91,7 +100,9 @@ fn assert_pass_is_its_twin(small: &mut Small, style: &ComicStyle, viewport: Opti
             let [want, more, less] =
                 [0.0, 1e-5, -1e-5].map(|nudge| encode(stylize(style, &view, read, x, y, nudge)));
             let apart = |a: [f64; 3], b: [f64; 3]| {
-                (0..3).map(|i| (a[i].min(1.0) - b[i].min(1.0)).abs()).fold(0.0, f64::max)
+                (0..3)
+                    .map(|i| (a[i].min(1.0) - b[i].min(1.0)).abs())
+                    .fold(0.0, f64::max)
             };
             // Half a code of rounding in the target on top of the one allowed.
             if apart(got, want) <= 1.5 * ONE_CODE {
@@ -105,7 +116,10 @@ fn assert_pass_is_its_twin(small: &mut Small, style: &ComicStyle, viewport: Opti
         }
     }
     let pixels = input.width * input.height;
-    assert!(undecided * 200 <= pixels, "{what}: {undecided} of {pixels} pixels undecided");
+    assert!(
+        undecided * 200 <= pixels,
+        "{what}: {undecided} of {pixels} pixels undecided"
+    );
 }
 
 #[test]
@@ -113,22 +127,53 @@ fn every_preset_is_its_twin_with_and_without_msaa() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
         let mut small = Small::new(UVec2::new(80, 56), msaa);
         for name in presets::NAMES {
-            let style = presets::preset(name).expect("listed").expect("readable").sanitized();
+            let style = presets::preset(name)
+                .expect("listed")
+                .expect("readable")
+                .sanitized();
             assert_pass_is_its_twin(&mut small, &style, None, &format!("{name}, {msaa:?}"));
         }
         assert_eq!(small.errors(), 0);
     }
 }
 
-fn everything(method: ColorMethod, mode: ColorizationMode, form: ContourForm, mapping: DepthMapping) -> ComicStyle {
+fn everything(
+    method: ColorMethod,
+    mode: ColorizationMode,
+    form: ContourForm,
+    mapping: DepthMapping,
+) -> ComicStyle {
     ComicStyle {
         version: 1,
         name: "everything".into(),
-        depth_map: Some(DepthMap { mapping, ..default() }),
-        desaturation: Some(Desaturation { amount: 0.7, exponent: 0.5, method }),
-        colorization: Some(Colorization { mode, method, amount: 0.8, ..default() }),
-        black_flats: Some(BlackFlats { slope: Some(0.3), value: Some(0.2), depth_weight: 0.5, ..default() }),
-        contours: Some(Contours { form, width: 2.5, threshold: 0.06, fade: 0.4, ..default() }),
+        depth_map: Some(DepthMap {
+            mapping,
+            ..default()
+        }),
+        desaturation: Some(Desaturation {
+            amount: 0.7,
+            exponent: 0.5,
+            method,
+        }),
+        colorization: Some(Colorization {
+            mode,
+            method,
+            amount: 0.8,
+            ..default()
+        }),
+        black_flats: Some(BlackFlats {
+            slope: Some(0.3),
+            value: Some(0.2),
+            depth_weight: 0.5,
+            ..default()
+        }),
+        contours: Some(Contours {
+            form,
+            width: 2.5,
+            threshold: 0.06,
+            fade: 0.4,
+            ..default()
+        }),
     }
 }
 
@@ -140,30 +185,68 @@ fn every_mode_of_every_style_is_its_twin() {
         DepthMapping::MinMaxLogarithmic,
         DepthMapping::Linear,
         DepthMapping::Logarithmic,
-        DepthMapping::Fixed { near: 4.0, far: 9.0 },
-        DepthMapping::FixedLogarithmic { near: 4.0, far: 9.0 },
+        DepthMapping::Fixed {
+            near: 4.0,
+            far: 9.0,
+        },
+        DepthMapping::FixedLogarithmic {
+            near: 4.0,
+            far: 9.0,
+        },
     ];
-    let modes = [ColorizationMode::Hue, ColorizationMode::Atmosphere, ColorizationMode::Linear, ColorizationMode::Quadratic];
+    let modes = [
+        ColorizationMode::Hue,
+        ColorizationMode::Atmosphere,
+        ColorizationMode::Linear,
+        ColorizationMode::Quadratic,
+    ];
     for (i, mapping) in mappings.into_iter().enumerate() {
-        for (j, method) in [ColorMethod::Corrected, ColorMethod::Faithful].into_iter().enumerate() {
-            let form = if (i + j) % 2 == 0 { ContourForm::PlaneAware } else { ContourForm::Faithful };
+        for (j, method) in [ColorMethod::Corrected, ColorMethod::Faithful]
+            .into_iter()
+            .enumerate()
+        {
+            let form = if (i + j) % 2 == 0 {
+                ContourForm::PlaneAware
+            } else {
+                ContourForm::Faithful
+            };
             let style = everything(method, modes[(i + 2 * j) % 4], form, mapping);
             assert_pass_is_its_twin(&mut small, &style, None, &format!("{style:?}"));
         }
     }
-    for operator in [ContourOperator::Prewitt, ContourOperator::Sobel, ContourOperator::Laplace, ContourOperator::Roberts] {
+    for operator in [
+        ContourOperator::Prewitt,
+        ContourOperator::Sobel,
+        ContourOperator::Laplace,
+        ContourOperator::Roberts,
+    ] {
         for form in [ContourForm::PlaneAware, ContourForm::Faithful] {
             for width in [0.5, 1.0, 3.0, 7.5] {
                 let style = ComicStyle {
-                    contours: Some(Contours { operator, form, width, softness: 0.3, threshold: 0.08, ..default() }),
+                    contours: Some(Contours {
+                        operator,
+                        form,
+                        width,
+                        softness: 0.3,
+                        threshold: 0.08,
+                        ..default()
+                    }),
                     ..default()
                 };
-                assert_pass_is_its_twin(&mut small, &style, None, &format!("{operator:?} {form:?} {width} px"));
+                assert_pass_is_its_twin(
+                    &mut small,
+                    &style,
+                    None,
+                    &format!("{operator:?} {form:?} {width} px"),
+                );
             }
         }
     }
     let flipped = ComicStyle {
-        depth_map: Some(DepthMap { flip: true, ..default() }),
+        depth_map: Some(DepthMap {
+            flip: true,
+            ..default()
+        }),
         desaturation: Some(Desaturation::default()),
         ..default()
     };
@@ -184,8 +267,18 @@ fn a_viewport_is_styled_inside_and_untouched_outside() {
             }),
             ..default()
         });
-        let style = everything(ColorMethod::Corrected, ColorizationMode::Quadratic, ContourForm::PlaneAware, DepthMapping::MinMax);
-        assert_pass_is_its_twin(&mut small, &style, Some([13, 7, 51, 41]), &format!("viewport, {msaa:?}"));
+        let style = everything(
+            ColorMethod::Corrected,
+            ColorizationMode::Quadratic,
+            ContourForm::PlaneAware,
+            DepthMapping::MinMax,
+        );
+        assert_pass_is_its_twin(
+            &mut small,
+            &style,
+            Some([13, 7, 51, 41]),
+            &format!("viewport, {msaa:?}"),
+        );
     }
 }
 
@@ -194,7 +287,12 @@ fn a_viewport_is_styled_inside_and_untouched_outside() {
 fn a_camera_that_stores_display_codes_is_its_twin() {
     let mut small = Small::new(UVec2::new(64, 48), Msaa::Off);
     small.insert(CompositingSpace::Srgb);
-    let style = everything(ColorMethod::Corrected, ColorizationMode::Linear, ContourForm::PlaneAware, DepthMapping::MinMax);
+    let style = everything(
+        ColorMethod::Corrected,
+        ColorizationMode::Linear,
+        ContourForm::PlaneAware,
+        DepthMapping::MinMax,
+    );
     assert_pass_is_its_twin(&mut small, &style, None, "gamma-encoded");
 }
 
@@ -203,8 +301,18 @@ fn a_camera_that_stores_display_codes_is_its_twin() {
 fn an_hdr_camera_is_its_twin() {
     let mut small = Small::new(UVec2::new(64, 48), Msaa::Off);
     small.insert(Hdr);
-    let style = everything(ColorMethod::Corrected, ColorizationMode::Linear, ContourForm::PlaneAware, DepthMapping::MinMax);
+    let style = everything(
+        ColorMethod::Corrected,
+        ColorizationMode::Linear,
+        ContourForm::PlaneAware,
+        DepthMapping::MinMax,
+    );
     assert_pass_is_its_twin(&mut small, &style, None, "hdr");
-    let style = everything(ColorMethod::Faithful, ColorizationMode::Quadratic, ContourForm::Faithful, DepthMapping::MinMax);
+    let style = everything(
+        ColorMethod::Faithful,
+        ColorizationMode::Quadratic,
+        ContourForm::Faithful,
+        DepthMapping::MinMax,
+    );
     assert_pass_is_its_twin(&mut small, &style, None, "hdr, faithful");
 }

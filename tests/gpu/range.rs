@@ -30,38 +30,66 @@ fn reduce(shape: &[&str], depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Opt
     let source = std::fs::read_to_string(path).expect("the shader");
     let module = wgsl::module(&source, shape).unwrap_or_else(|error| panic!("{error}"));
     let compute = wgpu::ShaderStages::COMPUTE;
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: compute, ty, count: None };
-    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
-    let layout = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: None,
-        entries: &[
-            entry(0, wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            }),
-            entry(1, buffer(wgpu::BufferBindingType::Uniform)),
-            entry(2, buffer(wgpu::BufferBindingType::Storage { read_only: false })),
-            entry(3, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering)),
-        ],
-    });
-    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &[Some(&layout)],
-        immediate_size: 0,
-    });
-    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: None,
-        layout: Some(&pipeline_layout),
-        module: &gpu.shader(module),
-        entry_point: Some("reduce"),
-        compilation_options: wgpu::PipelineCompilationOptions {
-            zero_initialize_workgroup_memory: false,
-            ..Default::default()
-        },
-        cache: None,
-    });
-    let extent = wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 };
+    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: compute,
+        ty,
+        count: None,
+    };
+    let buffer = |ty| wgpu::BindingType::Buffer {
+        ty,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let layout = gpu
+        .device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: None,
+            entries: &[
+                entry(
+                    0,
+                    wgpu::BindingType::Texture {
+                        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                        view_dimension: wgpu::TextureViewDimension::D2,
+                        multisampled: false,
+                    },
+                ),
+                entry(1, buffer(wgpu::BufferBindingType::Uniform)),
+                entry(
+                    2,
+                    buffer(wgpu::BufferBindingType::Storage { read_only: false }),
+                ),
+                entry(
+                    3,
+                    wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
+                ),
+            ],
+        });
+    let pipeline_layout = gpu
+        .device
+        .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+    let pipeline = gpu
+        .device
+        .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: None,
+            layout: Some(&pipeline_layout),
+            module: &gpu.shader(module),
+            entry_point: Some("reduce"),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                zero_initialize_workgroup_memory: false,
+                ..Default::default()
+            },
+            cache: None,
+        });
+    let extent = wgpu::Extent3d {
+        width: size[0],
+        height: size[1],
+        depth_or_array_layers: 1,
+    };
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size: extent,
@@ -72,11 +100,18 @@ fn reduce(shape: &[&str], depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Opt
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    let bytes: Vec<u8> = depths.iter().flat_map(|d| d.to_bits().to_le_bytes()).collect();
+    let bytes: Vec<u8> = depths
+        .iter()
+        .flat_map(|d| d.to_bits().to_le_bytes())
+        .collect();
     gpu.queue.write_texture(
         texture.as_image_copy(),
         &bytes,
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(size[0] * 4), rows_per_image: None },
+        wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(size[0] * 4),
+            rows_per_image: None,
+        },
         extent,
     );
     let mut view = [0u8; 80];
@@ -84,17 +119,34 @@ fn reduce(shape: &[&str], depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Opt
         view[4 * i..4 * i + 4].copy_from_slice(&value.to_le_bytes());
     }
     let uniform = gpu.buffer(&view, wgpu::BufferUsages::UNIFORM);
-    let keys = gpu.buffer(&[0; 16], wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
-    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor::default());
+    let keys = gpu.buffer(
+        &[0; 16],
+        wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+    );
+    let sampler = gpu
+        .device
+        .create_sampler(&wgpu::SamplerDescriptor::default());
     let texture_view = texture.create_view(&wgpu::TextureViewDescriptor::default());
     let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
         layout: &layout,
         entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: wgpu::BindingResource::TextureView(&texture_view) },
-            wgpu::BindGroupEntry { binding: 1, resource: uniform.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 2, resource: keys.as_entire_binding() },
-            wgpu::BindGroupEntry { binding: 3, resource: wgpu::BindingResource::Sampler(&sampler) },
+            wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(&texture_view),
+            },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: uniform.as_entire_binding(),
+            },
+            wgpu::BindGroupEntry {
+                binding: 2,
+                resource: keys.as_entire_binding(),
+            },
+            wgpu::BindGroupEntry {
+                binding: 3,
+                resource: wgpu::BindingResource::Sampler(&sampler),
+            },
         ],
     });
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -115,9 +167,11 @@ fn reduce(shape: &[&str], depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Opt
 }
 
 fn expected(depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Option<[u32; 2]> {
-    range::scan((rect[1]..rect[1] + rect[3]).flat_map(|y| {
-        (rect[0]..rect[0] + rect[2]).map(move |x| (x, y))
-    }).map(|(x, y)| depths[(y * size[0] + x) as usize]))
+    range::scan(
+        (rect[1]..rect[1] + rect[3])
+            .flat_map(|y| (rect[0]..rect[0] + rect[2]).map(move |x| (x, y)))
+            .map(|(x, y)| depths[(y * size[0] + x) as usize]),
+    )
 }
 
 /// Every kind of float that a texture may hold, most of them depths.
@@ -132,22 +186,58 @@ fn any_depth() -> impl Strategy<Value = f32> {
 
 #[test]
 fn every_shape_finds_the_scan_of_any_depth_in_any_viewport() {
-    let sizes = select(vec![[1u32, 1], [2, 1], [1, 2], [3, 3], [7, 5], [129, 33], [257, 2], [300, 17], [64, 64], [1, 97]]);
-    let case = (sizes, any::<[u16; 4]>(), vec(any_depth(), 8), any::<u64>(), 0.0f64..=1.0);
-    let config = ProptestConfig { cases: 60, max_shrink_iters: 32, ..ProptestConfig::default() };
+    let sizes = select(vec![
+        [1u32, 1],
+        [2, 1],
+        [1, 2],
+        [3, 3],
+        [7, 5],
+        [129, 33],
+        [257, 2],
+        [300, 17],
+        [64, 64],
+        [1, 97],
+    ]);
+    let case = (
+        sizes,
+        any::<[u16; 4]>(),
+        vec(any_depth(), 8),
+        any::<u64>(),
+        0.0f64..=1.0,
+    );
+    let config = ProptestConfig {
+        cases: 60,
+        max_shrink_iters: 32,
+        ..ProptestConfig::default()
+    };
     TestRunner::new(config)
         .run(&case, |(size, cut, values, seed, sky)| {
             let mut random = crate::common::scenes::noise::Random::new(seed);
             let depths: Vec<f32> = (0..size[0] * size[1])
-                .map(|_| if f64::from(random.unit()) < sky { 0.0 } else { random.pick(&values) })
+                .map(|_| {
+                    if f64::from(random.unit()) < sky {
+                        0.0
+                    } else {
+                        random.pick(&values)
+                    }
+                })
                 .collect();
             let x = u32::from(cut[0]) % size[0];
             let y = u32::from(cut[1]) % size[1];
-            let rect = [x, y, 1 + u32::from(cut[2]) % (size[0] - x), 1 + u32::from(cut[3]) % (size[1] - y)];
+            let rect = [
+                x,
+                y,
+                1 + u32::from(cut[2]) % (size[0] - x),
+                1 + u32::from(cut[3]) % (size[1] - y),
+            ];
             for rect in [[0, 0, size[0], size[1]], rect] {
                 let want = expected(&depths, size, rect);
                 for shape in SHAPES {
-                    assert_eq!(reduce(shape, &depths, size, rect), want, "{shape:?} on {size:?}, {rect:?}");
+                    assert_eq!(
+                        reduce(shape, &depths, size, rect),
+                        want,
+                        "{shape:?} on {size:?}, {rect:?}"
+                    );
                 }
             }
             Ok(())
@@ -166,7 +256,11 @@ fn the_widest_and_the_tallest_texture_are_reduced() {
         depths[middle] = f32::from_bits(0x0080_0001);
         for shape in SHAPES {
             let found = reduce(shape, &depths, size, [0, 0, size[0], size[1]]);
-            assert_eq!(found, Some([0.75f32.to_bits(), 0x0080_0001]), "{shape:?} on {size:?}");
+            assert_eq!(
+                found,
+                Some([0.75f32.to_bits(), 0x0080_0001]),
+                "{shape:?} on {size:?}"
+            );
         }
     }
 }
@@ -175,10 +269,15 @@ fn the_widest_and_the_tallest_texture_are_reduced() {
 fn the_papers_index_arithmetic_loses_no_pixel() {
     for width in 1..40usize {
         for height in 1..40usize {
-            let mut random = crate::common::scenes::noise::Random::new((width * 100 + height) as u64);
+            let mut random =
+                crate::common::scenes::noise::Random::new((width * 100 + height) as u64);
             let depths: Vec<f32> = (0..width * height).map(|_| random.unit()).collect();
             let (_, found) = ping_pong::reduce(&depths, width, height);
-            assert_eq!(found, range::scan(depths.iter().copied()), "{width}x{height}");
+            assert_eq!(
+                found,
+                range::scan(depths.iter().copied()),
+                "{width}x{height}"
+            );
         }
     }
 }
@@ -191,12 +290,21 @@ fn msaa_of(samples: u32) -> Msaa {
 fn assert_range_is_the_scan(small: &Small, rect: Option<[u32; 4]>, what: &str) {
     let depth = small.depth().unwrap_or_else(|| panic!("{what}: no depth"));
     let [x, y, w, h] = rect.unwrap_or([0, 0, depth.width, depth.height]);
-    let scan = range::scan((y..y + h).flat_map(|y| (x..x + w).map(move |x| (x, y))).flat_map(|(x, y)| {
-        let depth = &depth;
-        (0..depth.samples).map(move |s| depth.at(x, y, s))
-    }));
+    let scan = range::scan(
+        (y..y + h)
+            .flat_map(|y| (x..x + w).map(move |x| (x, y)))
+            .flat_map(|(x, y)| {
+                let depth = &depth;
+                (0..depth.samples).map(move |s| depth.at(x, y, s))
+            }),
+    );
     match (small.range(), scan) {
-        (Some(VisibleDepthRange::Visible { raw_near, raw_far, .. }), Some(scan)) => {
+        (
+            Some(VisibleDepthRange::Visible {
+                raw_near, raw_far, ..
+            }),
+            Some(scan),
+        ) => {
             assert_eq!([raw_near.to_bits(), raw_far.to_bits()], scan, "{what}");
         }
         (Some(VisibleDepthRange::Empty), None) => {}
@@ -216,8 +324,19 @@ fn every_method_reads_every_sample_of_a_rendered_view() {
             ReductionMethod::SharedMemory,
             ReductionMethod::PingPong,
         ] {
-            small.insert((DepthMap { reduction, ..default() }, VisibleDepthRange::default())).settle();
-            assert!(small.ran(ComicsStage::DepthRange), "{reduction:?} did not run");
+            small
+                .insert((
+                    DepthMap {
+                        reduction,
+                        ..default()
+                    },
+                    VisibleDepthRange::default(),
+                ))
+                .settle();
+            assert!(
+                small.ran(ComicsStage::DepthRange),
+                "{reduction:?} did not run"
+            );
             assert_range_is_the_scan(&small, None, &format!("{reduction:?}, {samples} samples"));
         }
         assert_eq!(small.errors(), 0);
@@ -281,10 +400,16 @@ fn distances_are_right_under_every_projection() {
     let ortho = OrthographicProjection {
         near: -5.0,
         far: 60.0,
-        scaling_mode: ScalingMode::FixedVertical { viewport_height: 6.0 },
+        scaling_mode: ScalingMode::FixedVertical {
+            viewport_height: 6.0,
+        },
         ..OrthographicProjection::default_3d()
     };
-    let perspective = PerspectiveProjection { near: 0.1, far: 40.0, ..default() };
+    let perspective = PerspectiveProjection {
+        near: 0.1,
+        far: 40.0,
+        ..default()
+    };
     for (name, projection) in [
         ("perspective", Projection::Perspective(perspective.clone())),
         ("orthographic", Projection::Orthographic(ortho)),
@@ -301,10 +426,26 @@ fn distances_are_right_under_every_projection() {
         for object in objects {
             small.world().despawn(object);
         }
-        let mesh = small.world().resource_mut::<Assets<Mesh>>().add(Rectangle::new(200.0, 200.0));
-        let material = small.world().resource_mut::<Assets<StandardMaterial>>().add(Color::WHITE);
-        small.world().spawn((Mesh3d(mesh), MeshMaterial3d(material), Transform::from_xyz(0.0, 0.0, -7.0)));
-        small.insert((projection, Transform::IDENTITY, VisibleDepthRange::default())).settle();
+        let mesh = small
+            .world()
+            .resource_mut::<Assets<Mesh>>()
+            .add(Rectangle::new(200.0, 200.0));
+        let material = small
+            .world()
+            .resource_mut::<Assets<StandardMaterial>>()
+            .add(Color::WHITE);
+        small.world().spawn((
+            Mesh3d(mesh),
+            MeshMaterial3d(material),
+            Transform::from_xyz(0.0, 0.0, -7.0),
+        ));
+        small
+            .insert((
+                projection,
+                Transform::IDENTITY,
+                VisibleDepthRange::default(),
+            ))
+            .settle();
         let Some((near, far)) = small.range().and_then(VisibleDepthRange::distances) else {
             panic!("{name}: {:?}", small.range());
         };
@@ -343,8 +484,17 @@ fn the_range_stays_inside_the_viewport() {
 #[test]
 fn an_empty_and_a_transparent_view_have_an_empty_range_and_a_defined_picture() {
     let mut small = Small::new(UVec2::new(48, 32), Msaa::Sample4);
-    small.insert((bevy_comics::Contours::default(), bevy_comics::Desaturation::default(), VisibleDepthRange::default())).settle();
-    assert!(matches!(small.range(), Some(VisibleDepthRange::Visible { .. })));
+    small
+        .insert((
+            bevy_comics::Contours::default(),
+            bevy_comics::Desaturation::default(),
+            VisibleDepthRange::default(),
+        ))
+        .settle();
+    assert!(matches!(
+        small.range(),
+        Some(VisibleDepthRange::Visible { .. })
+    ));
     let materials: Vec<_> = {
         let world = small.world();
         let mut query = world.query::<&MeshMaterial3d<StandardMaterial>>();
@@ -356,7 +506,11 @@ fn an_empty_and_a_transparent_view_have_an_empty_range_and_a_defined_picture() {
         material.alpha_mode = AlphaMode::Blend;
     }
     small.settle();
-    assert_eq!(small.range(), Some(VisibleDepthRange::Empty), "transparent things have no depth");
+    assert_eq!(
+        small.range(),
+        Some(VisibleDepthRange::Empty),
+        "transparent things have no depth"
+    );
     assert!(small.ran(ComicsStage::Stylize));
     let (_, output) = small.pass();
     assert!(output.pixels.iter().flatten().all(|c| c.is_finite()));

@@ -5,7 +5,10 @@ use std::fs;
 use crate::wgsl::{files, module};
 
 fn shader(name: &str) -> String {
-    let path = files().into_iter().find(|path| path.ends_with(name)).expect("a shader of the crate");
+    let path = files()
+        .into_iter()
+        .find(|path| path.ends_with(name))
+        .expect("a shader of the crate");
     fs::read_to_string(path).expect("readable")
 }
 
@@ -13,7 +16,12 @@ fn shader(name: &str) -> String {
 fn subsets<'a>(choices: &[&'a str]) -> Vec<Vec<&'a str>> {
     (0..1u32 << choices.len())
         .map(|bits| {
-            choices.iter().enumerate().filter(|(i, _)| bits >> i & 1 == 1).map(|(_, c)| *c).collect()
+            choices
+                .iter()
+                .enumerate()
+                .filter(|(i, _)| bits >> i & 1 == 1)
+                .map(|(_, c)| *c)
+                .collect()
         })
         .collect()
 }
@@ -27,7 +35,13 @@ fn every_combination_of_styles_composes_and_validates() {
         &["DEPTH"],
         &["DEPTH", "VISIBLE_RANGE"],
         &["DEPTH", "VISIBLE_RANGE", "MULTISAMPLED"],
-        &["DEPTH", "VISIBLE_RANGE", "OBLIQUE", "STEEP_FLATS", "STORED_SRGB"],
+        &[
+            "DEPTH",
+            "VISIBLE_RANGE",
+            "OBLIQUE",
+            "STEEP_FLATS",
+            "STORED_SRGB",
+        ],
     ];
     for style in &styles {
         for depth in depths {

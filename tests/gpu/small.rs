@@ -39,7 +39,10 @@ pub fn options(size: UVec2) -> HeadlessOptions {
 pub fn camera(target: RenderTarget, msaa: Msaa) -> impl Bundle {
     (
         Camera3d::default(),
-        Camera { clear_color: Color::srgb(0.3, 0.5, 0.8).into(), ..default() },
+        Camera {
+            clear_color: Color::srgb(0.3, 0.5, 0.8).into(),
+            ..default()
+        },
         Transform::from_xyz(1.5, 2.4, 6.0).looking_at(Vec3::new(0.0, 0.4, 0.0), Vec3::Y),
         Tonemapping::None,
         target,
@@ -54,12 +57,13 @@ impl Small {
 
     pub fn with(options: HeadlessOptions, msaa: Msaa) -> Self {
         let mut headless = Headless::new(options, ComicsPlugin);
-        headless.app.init_resource::<RenderErrors>().insert_resource(RenderErrorHandler(
-            |_, main, _| {
+        headless
+            .app
+            .init_resource::<RenderErrors>()
+            .insert_resource(RenderErrorHandler(|_, main, _| {
                 main.resource_mut::<RenderErrors>().0 += 1;
                 RenderErrorPolicy::Ignore
-            },
-        ));
+            }));
         spawn_objects(headless.app.world_mut());
         let target = headless.render_target();
         let camera = headless.app.world_mut().spawn(camera(target, msaa)).id();
@@ -94,7 +98,11 @@ impl Small {
     }
 
     pub fn ran(&self, stage: ComicsStage) -> bool {
-        self.headless.app.world().resource::<ComicsDiagnostics>().ran(self.camera, stage)
+        self.headless
+            .app
+            .world()
+            .resource::<ComicsDiagnostics>()
+            .ran(self.camera, stage)
     }
 
     pub fn errors(&self) -> usize {
@@ -106,7 +114,12 @@ impl Small {
     }
 
     fn view(&self) -> Entity {
-        self.headless.app.world().get::<RenderEntity>(self.camera).expect("extracted").id()
+        self.headless
+            .app
+            .world()
+            .get::<RenderEntity>(self.camera)
+            .expect("extracted")
+            .id()
     }
 
     pub fn render_world(&self) -> &World {
@@ -119,8 +132,12 @@ impl Small {
 
     /// What the fused pass read and wrote.
     pub fn pass(&self) -> (FloatImage, FloatImage) {
-        read_back::last_pass(self.render_world(), self.view(), self.ran(ComicsStage::Stylize))
-            .expect("a picture")
+        read_back::last_pass(
+            self.render_world(),
+            self.view(),
+            self.ran(ComicsStage::Stylize),
+        )
+        .expect("a picture")
     }
 }
 
@@ -130,13 +147,17 @@ pub struct Object;
 
 fn spawn_objects(world: &mut World) {
     let cube = world.resource_mut::<Assets<Mesh>>().add(Cuboid::default());
-    let ground = world.resource_mut::<Assets<Mesh>>().add(Plane3d::default().mesh().size(9.0, 9.0));
+    let ground = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Plane3d::default().mesh().size(9.0, 9.0));
     let mut material = |color: Color| {
-        world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial {
-            base_color: color,
-            unlit: true,
-            ..default()
-        })
+        world
+            .resource_mut::<Assets<StandardMaterial>>()
+            .add(StandardMaterial {
+                base_color: color,
+                unlit: true,
+                ..default()
+            })
     };
     let [red, green, grey, sand] = [
         Color::srgb(0.85, 0.2, 0.15),
@@ -146,8 +167,16 @@ fn spawn_objects(world: &mut World) {
     ]
     .map(&mut material);
     for (mesh, material, at) in [
-        (&cube, red, Transform::from_xyz(-0.6, 0.5, 1.2).with_rotation(Quat::from_rotation_y(0.5))),
-        (&cube, green, Transform::from_xyz(1.1, 0.9, -0.9).with_scale(Vec3::splat(1.6))),
+        (
+            &cube,
+            red,
+            Transform::from_xyz(-0.6, 0.5, 1.2).with_rotation(Quat::from_rotation_y(0.5)),
+        ),
+        (
+            &cube,
+            green,
+            Transform::from_xyz(1.1, 0.9, -0.9).with_scale(Vec3::splat(1.6)),
+        ),
         (&cube, grey, Transform::from_xyz(-1.9, 0.6, -2.6)),
         (&ground, sand, Transform::IDENTITY),
     ] {

@@ -26,74 +26,144 @@ fn number() -> impl Strategy<Value = f32> {
 
 fn colors() -> impl Strategy<Value = Color> {
     (any::<[u8; 4]>(), 0.0f32..=1.0, any::<bool>()).prop_map(|([r, g, b, a], x, codes)| {
-        if codes { Color::srgba_u8(r, g, b, a) } else { Color::srgba(x, 0.123_456_7, 0.9, 1.0) }
+        if codes {
+            Color::srgba_u8(r, g, b, a)
+        } else {
+            Color::srgba(x, 0.123_456_7, 0.9, 1.0)
+        }
     })
 }
 
 fn styles() -> impl Strategy<Value = ComicStyle> {
     let methods = || select(vec![ColorMethod::Corrected, ColorMethod::Faithful]);
-    let map = (number(), number(), number(), any::<bool>(), 0..6usize).prop_map(|(near, far, gap, flip, kind)| DepthMap {
-        mapping: [
-            DepthMapping::MinMax,
-            DepthMapping::MinMaxLogarithmic,
-            DepthMapping::Linear,
-            DepthMapping::Logarithmic,
-            DepthMapping::Fixed { near, far },
-            DepthMapping::FixedLogarithmic { near, far },
-        ][kind],
-        flip,
-        sky_gap: gap,
-        reduction: ReductionMethod::PingPong,
-        ..default()
-    });
-    let desaturation = (number(), number(), methods())
-        .prop_map(|(amount, exponent, method)| Desaturation { amount, exponent, method });
-    let colorization = (colors(), number(), methods(), 0..4usize).prop_map(|(color, amount, method, mode)| Colorization {
-        mode: [ColorizationMode::Hue, ColorizationMode::Atmosphere, ColorizationMode::Linear, ColorizationMode::Quadratic][mode],
-        color,
-        amount,
-        method,
-    });
-    let flats = (option::of(number()), option::of(number()), number(), colors())
-        .prop_map(|(slope, value, feather, color)| BlackFlats { slope, value, feather, color, ..default() });
-    let contours = (number(), number(), colors(), 0..4usize, any::<bool>()).prop_map(|(threshold, width, color, operator, faithful)| Contours {
-        operator: [ContourOperator::Prewitt, ContourOperator::Sobel, ContourOperator::Laplace, ContourOperator::Roberts][operator],
-        form: if faithful { ContourForm::Faithful } else { ContourForm::PlaneAware },
-        threshold,
-        width,
-        color,
-        ..default()
-    });
-    (".{0,12}", option::of(map), option::of(desaturation), option::of(colorization), option::of(flats), option::of(contours)).prop_map(
-        |(name, depth_map, desaturation, colorization, black_flats, contours)| ComicStyle {
-            version: 1, name, depth_map, desaturation, colorization, black_flats, contours,
+    let map = (number(), number(), number(), any::<bool>(), 0..6usize).prop_map(
+        |(near, far, gap, flip, kind)| DepthMap {
+            mapping: [
+                DepthMapping::MinMax,
+                DepthMapping::MinMaxLogarithmic,
+                DepthMapping::Linear,
+                DepthMapping::Logarithmic,
+                DepthMapping::Fixed { near, far },
+                DepthMapping::FixedLogarithmic { near, far },
+            ][kind],
+            flip,
+            sky_gap: gap,
+            reduction: ReductionMethod::PingPong,
+            ..default()
         },
+    );
+    let desaturation =
+        (number(), number(), methods()).prop_map(|(amount, exponent, method)| Desaturation {
+            amount,
+            exponent,
+            method,
+        });
+    let colorization =
+        (colors(), number(), methods(), 0..4usize).prop_map(|(color, amount, method, mode)| {
+            Colorization {
+                mode: [
+                    ColorizationMode::Hue,
+                    ColorizationMode::Atmosphere,
+                    ColorizationMode::Linear,
+                    ColorizationMode::Quadratic,
+                ][mode],
+                color,
+                amount,
+                method,
+            }
+        });
+    let flats = (
+        option::of(number()),
+        option::of(number()),
+        number(),
+        colors(),
     )
+        .prop_map(|(slope, value, feather, color)| BlackFlats {
+            slope,
+            value,
+            feather,
+            color,
+            ..default()
+        });
+    let contours = (number(), number(), colors(), 0..4usize, any::<bool>()).prop_map(
+        |(threshold, width, color, operator, faithful)| Contours {
+            operator: [
+                ContourOperator::Prewitt,
+                ContourOperator::Sobel,
+                ContourOperator::Laplace,
+                ContourOperator::Roberts,
+            ][operator],
+            form: if faithful {
+                ContourForm::Faithful
+            } else {
+                ContourForm::PlaneAware
+            },
+            threshold,
+            width,
+            color,
+            ..default()
+        },
+    );
+    (
+        ".{0,12}",
+        option::of(map),
+        option::of(desaturation),
+        option::of(colorization),
+        option::of(flats),
+        option::of(contours),
+    )
+        .prop_map(
+            |(name, depth_map, desaturation, colorization, black_flats, contours)| ComicStyle {
+                version: 1,
+                name,
+                depth_map,
+                desaturation,
+                colorization,
+                black_flats,
+                contours,
+            },
+        )
 }
 
 #[test]
 fn a_style_saved_and_loaded_is_equal() {
-    TestRunner::new(ProptestConfig { cases: 2000, ..default() })
-        .run(&styles(), |style| {
-            let text = style.to_ron().expect("every style has a text");
-            let back = ComicStyle::from_ron(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-            // Bit for bit, so that -0 stays what it is.
-            assert_eq!(format!("{style:?}"), format!("{back:?}"), "{text}");
-            Ok(())
-        })
-        .unwrap_or_else(|error| panic!("{error}"));
+    TestRunner::new(ProptestConfig {
+        cases: 2000,
+        ..default()
+    })
+    .run(&styles(), |style| {
+        let text = style.to_ron().expect("every style has a text");
+        let back = ComicStyle::from_ron(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        // Bit for bit, so that -0 stays what it is.
+        assert_eq!(format!("{style:?}"), format!("{back:?}"), "{text}");
+        Ok(())
+    })
+    .unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[test]
 fn errors_name_the_line_and_what_is_wrong() {
-    let error = |text: &str| ComicStyle::from_ron(text).expect_err("must not read").to_string();
+    let error = |text: &str| {
+        ComicStyle::from_ron(text)
+            .expect_err("must not read")
+            .to_string()
+    };
     let unknown = error("(\n    version: 1,\n    contours: (\n        treshold: 0.1,\n    ),\n)");
-    assert!(unknown.contains("line 4") && unknown.contains("treshold"), "{unknown}");
+    assert!(
+        unknown.contains("line 4") && unknown.contains("treshold"),
+        "{unknown}"
+    );
     let broken = error("(version: 1,\n contours: (\n");
     assert!(broken.contains("line 2"), "{broken}");
     let colour = error("(version: 1, contours: (color: \"reddish\"))");
-    assert!(colour.contains("reddish") || colour.contains("#rrggbb"), "{colour}");
-    assert!(matches!(ComicStyle::from_ron("(version: 7)"), Err(ComicStyleError::Version { found: 7 })));
+    assert!(
+        colour.contains("reddish") || colour.contains("#rrggbb"),
+        "{colour}"
+    );
+    assert!(matches!(
+        ComicStyle::from_ron("(version: 7)"),
+        Err(ComicStyleError::Version { found: 7 })
+    ));
 }
 
 /// A folder that is gone when the test is.
@@ -133,25 +203,60 @@ fn a_style_file_is_loaded_reloaded_and_survives_being_broken() {
     let file = folder.0.join("mine.comic.ron");
     fs::write(&file, "(version: 1, contours: (width: 3.0))").expect("written");
     let assets = folder.0.to_string_lossy().into_owned();
-    let mut small = Small::with(HeadlessOptions { assets, watch: true, ..options(size()) }, Msaa::Off);
-    let handle = small.world().resource::<AssetServer>().load("mine.comic.ron");
+    let mut small = Small::with(
+        HeadlessOptions {
+            assets,
+            watch: true,
+            ..options(size())
+        },
+        Msaa::Off,
+    );
+    let handle = small
+        .world()
+        .resource::<AssetServer>()
+        .load("mine.comic.ron");
     small.insert(ComicStyleHandle(handle));
-    assert!(wait(&mut small, |c| c.is_some_and(|c| c.width == 3.0)), "the style did not load");
+    assert!(
+        wait(&mut small, |c| c.is_some_and(|c| c.width == 3.0)),
+        "the style did not load"
+    );
 
-    fs::write(&file, "(version: 1, contours: (width: 5.0), desaturation: ())").expect("written");
-    assert!(wait(&mut small, |c| c.is_some_and(|c| c.width == 5.0)), "the change did not arrive");
+    fs::write(
+        &file,
+        "(version: 1, contours: (width: 5.0), desaturation: ())",
+    )
+    .expect("written");
+    assert!(
+        wait(&mut small, |c| c.is_some_and(|c| c.width == 5.0)),
+        "the change did not arrive"
+    );
     let camera = small.camera;
     assert!(small.world().get::<Desaturation>(camera).is_some());
 
     fs::write(&file, "(version: 1, contours: (width: ").expect("written");
-    assert!(!wait_briefly(&mut small, |c| c.is_none_or(|c| c.width != 5.0)), "the last good look is kept");
+    assert!(
+        !wait_briefly(&mut small, |c| c.is_none_or(|c| c.width != 5.0)),
+        "the last good look is kept"
+    );
 
     fs::write(&file, "(version: 1, contours: (width: 7.0))").expect("written");
-    assert!(wait(&mut small, |c| c.is_some_and(|c| c.width == 7.0)), "mended, it is back");
-    assert!(small.world().get::<Desaturation>(camera).is_none(), "what the style lost, the camera lost");
+    assert!(
+        wait(&mut small, |c| c.is_some_and(|c| c.width == 7.0)),
+        "mended, it is back"
+    );
+    assert!(
+        small.world().get::<Desaturation>(camera).is_none(),
+        "what the style lost, the camera lost"
+    );
 
-    small.world().entity_mut(camera).remove::<ComicStyleHandle>();
-    assert!(wait(&mut small, |c| c.is_none()), "without the handle there is no look");
+    small
+        .world()
+        .entity_mut(camera)
+        .remove::<ComicStyleHandle>();
+    assert!(
+        wait(&mut small, |c| c.is_none()),
+        "without the handle there is no look"
+    );
 }
 
 fn wait_briefly(small: &mut Small, done: impl Fn(Option<&Contours>) -> bool) -> bool {

@@ -1,6 +1,10 @@
 //! The shipped WGSL, composed as the engine composes it.
 
-use std::{collections::HashMap, fs, path::{Path, PathBuf}};
+use std::{
+    collections::HashMap,
+    fs,
+    path::{Path, PathBuf},
+};
 
 use naga_oil::compose::{
     ComposableModuleDescriptor, Composer, NagaModuleDescriptor, ShaderDefValue,
@@ -20,7 +24,10 @@ pub fn files() -> Vec<PathBuf> {
         }
     }
     let mut found = Vec::new();
-    walk(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut found);
+    walk(
+        &Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
+        &mut found,
+    );
     found.sort();
     found
 }
@@ -41,8 +48,10 @@ pub fn module(source: &str, defs: &[&str]) -> Result<wgpu::naga::Module, String>
     for import in wanted {
         add(&mut composer, &modules, &import.import)?;
     }
-    let shader_defs =
-        defs.iter().map(|def| ((*def).to_owned(), ShaderDefValue::Bool(true))).collect();
+    let shader_defs = defs
+        .iter()
+        .map(|def| ((*def).to_owned(), ShaderDefValue::Bool(true)))
+        .collect();
     composer
         .make_naga_module(NagaModuleDescriptor {
             source,
@@ -59,8 +68,9 @@ fn add(composer: &mut Composer, modules: &Modules, name: &str) -> Result<(), Str
     if composer.contains_module(name) {
         return Ok(());
     }
-    let (text, imports) =
-        modules.get(name).ok_or_else(|| format!("no module {name:?} in the crate"))?;
+    let (text, imports) = modules
+        .get(name)
+        .ok_or_else(|| format!("no module {name:?} in the crate"))?;
     for import in imports {
         add(composer, modules, &import.import)?;
     }

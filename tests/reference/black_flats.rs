@@ -17,14 +17,24 @@ pub fn dark_area(s: &BlackFlats, linear: Rgb, l: f64) -> f64 {
         return 0.0;
     }
     let value = srgb_encode_one(largest(linear));
-    1.0 - smoothstep(threshold * (1.0 - feather(s)), threshold * (1.0 + feather(s)), value)
+    1.0 - smoothstep(
+        threshold * (1.0 - feather(s)),
+        threshold * (1.0 + feather(s)),
+        value,
+    )
 }
 
 /// `prewitt` is the response per pixel of a view of `rows` rows.
 pub fn steep_area(s: &BlackFlats, prewitt: f64, rows: u32) -> f64 {
-    let Some(slope) = s.slope.map(f64::from) else { return 0.0 };
+    let Some(slope) = s.slope.map(f64::from) else {
+        return 0.0;
+    };
     let response = prewitt * f64::from(rows) / 512.0;
-    smoothstep(slope * (1.0 - feather(s)), slope * (1.0 + feather(s)), response)
+    smoothstep(
+        slope * (1.0 - feather(s)),
+        slope * (1.0 + feather(s)),
+        response,
+    )
 }
 
 pub fn fill(s: &BlackFlats, linear: Rgb, coverage: f64) -> Rgb {

@@ -14,13 +14,21 @@ pub fn finite(x: f32) -> f64 {
 
 pub fn srgb_encode_one(c: f64) -> f64 {
     let m = c.abs();
-    let e = if m <= 0.003_130_8 { 12.92 * m } else { 1.055 * m.powf(1.0 / 2.4) - 0.055 };
+    let e = if m <= 0.003_130_8 {
+        12.92 * m
+    } else {
+        1.055 * m.powf(1.0 / 2.4) - 0.055
+    };
     e.copysign(c)
 }
 
 pub fn srgb_decode_one(c: f64) -> f64 {
     let m = c.abs();
-    let d = if m <= 0.040_45 { m / 12.92 } else { ((m + 0.055) / 1.055).powf(2.4) };
+    let d = if m <= 0.040_45 {
+        m / 12.92
+    } else {
+        ((m + 0.055) / 1.055).powf(2.4)
+    };
     d.copysign(c)
 }
 

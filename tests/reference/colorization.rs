@@ -23,7 +23,11 @@ fn cusp(a: f64, b: f64) -> (f64, f64) {
     let (mut low, mut high) = (0.0f64, 2.0f64);
     while high - low > 1e-14 {
         let s = low.midpoint(high);
-        if smallest(at(s)) >= 0.0 { low = s } else { high = s }
+        if smallest(at(s)) >= 0.0 {
+            low = s
+        } else {
+            high = s
+        }
     }
     let lightness = largest(at(low)).recip().cbrt();
     (lightness, lightness * low)
@@ -43,7 +47,11 @@ pub fn atmosphere(color: Color) -> ([f64; 2], f64, f64) {
     }
     let direction = [a / chroma, b / chroma];
     let cusp = cusp(direction[0], direction[1]);
-    let share = if room(l, cusp) > 1e-6 { (chroma / room(l, cusp)).min(1.0) } else { 0.0 };
+    let share = if room(l, cusp) > 1e-6 {
+        (chroma / room(l, cusp)).min(1.0)
+    } else {
+        0.0
+    };
     (direction, cusp.0, cusp.1 * share)
 }
 
@@ -76,6 +84,9 @@ pub fn colorize(s: &Colorization, linear: Rgb, d: f64, l: f64, saturation: f64) 
         ColorizationMode::Linear => d,
         _ => d.sqrt() / (d.sqrt() + l.sqrt()),
     } * amount;
-    oklab_to_linear([lab[0], mix(lab[1], atmosphere[0], w), mix(lab[2], atmosphere[1], w)])
+    oklab_to_linear([
+        lab[0],
+        mix(lab[1], atmosphere[0], w),
+        mix(lab[2], atmosphere[1], w),
+    ])
 }
-

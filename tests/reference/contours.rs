@@ -20,7 +20,10 @@ type Steps = [[f64; 3]; 3];
 
 /// The raw kernels, as matrices.
 fn convolve(steps: &Steps, kernel: [[f64; 3]; 3]) -> f64 {
-    (0..3).flat_map(|r| (0..3).map(move |c| (r, c))).map(|(r, c)| steps[r][c] * kernel[r][c]).sum()
+    (0..3)
+        .flat_map(|r| (0..3).map(move |c| (r, c)))
+        .map(|(r, c)| steps[r][c] * kernel[r][c])
+        .sum()
 }
 
 const PREWITT: [[f64; 3]; 3] = [[-1.0, 0.0, 1.0]; 3];
@@ -71,7 +74,11 @@ fn plane_steps(frame: &Frame, win: &Window) -> Steps {
         let (before, after) = (d[row][column], d[r2][c2]);
         let s = slope(before, c, after);
         let over = |d: f64, p: f64| {
-            let p = if is_background(c) { 0.0 } else { p.clamp(far, near) };
+            let p = if is_background(c) {
+                0.0
+            } else {
+                p.clamp(far, near)
+            };
             frame.with_sky(d) - frame.with_sky(p)
         };
         steps[row][column] = over(before, c - s);

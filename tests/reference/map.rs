@@ -64,7 +64,11 @@ impl Frame {
         }
         if self.logarithmic {
             let whole = self.log_z(far) - self.log_z(near);
-            return if whole > 0.0 { (self.log_z(d) - self.log_z(near)) / whole } else { 0.0 };
+            return if whole > 0.0 {
+                (self.log_z(d) - self.log_z(near)) / whole
+            } else {
+                0.0
+            };
         }
         // (z - min) / (max - min) as the exact quotient of the stored depths:
         // differences of reciprocals would cancel, in double precision too.
@@ -78,7 +82,9 @@ impl Frame {
 
     /// (D, L).
     pub fn depth_map(&self, d: f64) -> [f64; 2] {
-        let Some([near, far]) = self.ends else { return [1.0, 0.0] };
+        let Some([near, far]) = self.ends else {
+            return [1.0, 0.0];
+        };
         if is_background(d) {
             return [1.0, 0.0];
         }
@@ -97,7 +103,13 @@ impl Frame {
 
     /// The map with the sky a gap behind everything.
     pub fn with_sky(&self, d: f64) -> f64 {
-        let Some([near, far]) = self.ends else { return 1.0 };
-        if is_background(d) { 1.0 + self.sky_gap } else { self.open(d.clamp(far, near)) }
+        let Some([near, far]) = self.ends else {
+            return 1.0;
+        };
+        if is_background(d) {
+            1.0 + self.sky_gap
+        } else {
+            self.open(d.clamp(far, near))
+        }
     }
 }

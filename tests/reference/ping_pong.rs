@@ -6,7 +6,11 @@ use super::raw;
 pub fn reduce(depths: &[f32], width: usize, height: usize) -> (usize, Option<[u32; 2]>) {
     let key = |x: usize, y: usize, far: bool| {
         let key = raw::key(depths[y.min(height - 1) * width + x.min(width - 1)]);
-        if far && key != 0 { key.wrapping_neg() } else { key }
+        if far && key != 0 {
+            key.wrapping_neg()
+        } else {
+            key
+        }
     };
     let (mut w, mut h) = (2 * width.div_ceil(2), height.div_ceil(2));
     let mut table: Vec<u32> = (0..h)
@@ -14,7 +18,9 @@ pub fn reduce(depths: &[f32], width: usize, height: usize) -> (usize, Option<[u3
         .map(|(x, y)| {
             // t(x + i, 2y + j) in even columns, t(x - i, 2y + j) in odd ones.
             let start = x & !1;
-            (0..4).map(|i| key(start + (i & 1), 2 * y + (i >> 1), x & 1 == 1)).fold(0, u32::max)
+            (0..4)
+                .map(|i| key(start + (i & 1), 2 * y + (i >> 1), x & 1 == 1))
+                .fold(0, u32::max)
         })
         .collect();
     let mut passes = 1;
@@ -39,5 +45,8 @@ pub fn reduce(depths: &[f32], width: usize, height: usize) -> (usize, Option<[u3
         (w, h) = (nw, nh);
         passes += 1;
     }
-    (passes, (table[0] != 0).then(|| [table[0], table[1].wrapping_neg()]))
+    (
+        passes,
+        (table[0] != 0).then(|| [table[0], table[1].wrapping_neg()]),
+    )
 }

@@ -1,13 +1,18 @@
 //! Twin of `stylize/stylize.wgsl`: the whole fused pass for one pixel.
 
-use super::{
-    Rgb, bindings::View, black_flats, color, colorization, contours, desaturation, taps,
-};
+use super::{Rgb, bindings::View, black_flats, color, colorization, contours, desaturation, taps};
 use bevy_comics::ComicStyle;
 
 /// The pixel in linear light, and how far thresholds could move it: the same
 /// pixel with every contour and flat a little more and a little less covered.
-pub fn stylize(style: &ComicStyle, view: &View, stored: [f32; 4], x: u32, y: u32, nudge: f64) -> Rgb {
+pub fn stylize(
+    style: &ComicStyle,
+    view: &View,
+    stored: [f32; 4],
+    x: u32,
+    y: u32,
+    nudge: f64,
+) -> Rgb {
     let source = [stored[0], stored[1], stored[2]].map(color::finite);
     let mut linear = source;
     let mut depth = taps::pixel_depth(view, x, y);

@@ -21,7 +21,12 @@ pub fn window(view: &View, x: u32, y: u32, reach: u32, sample: u32) -> Window {
     let row = |j: i64| (y + j * reach).clamp(y0, y0 + h - 1) as u32;
     Window {
         depths: [-1, 0, 1].map(|j| [-1, 0, 1].map(|i| view.depth(column(i), row(j), sample))),
-        missing: [x - reach < x0, x + reach >= x0 + w, y - reach < y0, y + reach >= y0 + h],
+        missing: [
+            x - reach < x0,
+            x + reach >= x0 + w,
+            y - reach < y0,
+            y + reach >= y0 + h,
+        ],
     }
 }
 
@@ -53,7 +58,10 @@ pub fn contour(s: &Contours, view: &View, x: u32, y: u32, scale: f64) -> [f64; 2
         let inner = ring_line(s, view, [x, y], whole, 0);
         if part > 0.0 {
             let outer = ring_line(s, view, [x, y], whole + 1, 0);
-            [mix(inner[0], inner[0].max(outer[0]), part), inner[1].max(outer[1])]
+            [
+                mix(inner[0], inner[0].max(outer[0]), part),
+                inner[1].max(outer[1]),
+            ]
         } else {
             inner
         }

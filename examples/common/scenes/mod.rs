@@ -76,7 +76,8 @@ impl Stage<'_, '_> {
 
     /// A mesh with vertex colours in a matt material.
     pub fn solid(&mut self, mesh: Handle<Mesh>, material: Handle<StandardMaterial>, at: Transform) {
-        self.commands.spawn((ScenePart, Mesh3d(mesh), MeshMaterial3d(material), at));
+        self.commands
+            .spawn((ScenePart, Mesh3d(mesh), MeshMaterial3d(material), at));
     }
 
     pub fn matt(&mut self) -> Handle<StandardMaterial> {
@@ -106,7 +107,9 @@ impl Vantage {
         Projection::Orthographic(OrthographicProjection {
             near: -self.far * 0.1,
             far: self.far,
-            scaling_mode: ScalingMode::FixedVertical { viewport_height: height },
+            scaling_mode: ScalingMode::FixedVertical {
+                viewport_height: height,
+            },
             ..OrthographicProjection::default_3d()
         })
     }

@@ -43,26 +43,51 @@ fn ground_color(p: Vec3, normal: Vec3) -> [f32; 4] {
     let steep = 1.0 - normal.y;
     let patch = fractal(p.xz() / 23.0, 3);
     let grass = blend(rgb(0x5f9a2e), rgb(0x9cbf45), 0.5 + patch);
-    let forest = blend(rgb(0x2e6638), rgb(0x4d8040), 0.5 + fractal(p.xz() / 90.0, 4));
-    let rock = blend(rgb(0x7b7486), rgb(0xa89d94), 0.5 + fractal(p.xz() / 60.0 + 9.0, 4));
+    let forest = blend(
+        rgb(0x2e6638),
+        rgb(0x4d8040),
+        0.5 + fractal(p.xz() / 90.0, 4),
+    );
+    let rock = blend(
+        rgb(0x7b7486),
+        rgb(0xa89d94),
+        0.5 + fractal(p.xz() / 60.0 + 9.0, 4),
+    );
     let snow = rgb(0xf4f7fb);
     let r = p.xz().length();
     let mut color = blend(grass, forest, smoothstep(140.0, 600.0, r + 120.0 * patch));
     let tree_line = 330.0 + 120.0 * fractal(p.xz() / 200.0, 3);
-    color = blend(color, rock, smoothstep(tree_line - 90.0, tree_line + 60.0, p.y));
-    color = blend(color, rock, smoothstep(0.28, 0.42, steep) * smoothstep(60.0, 180.0, p.y));
+    color = blend(
+        color,
+        rock,
+        smoothstep(tree_line - 90.0, tree_line + 60.0, p.y),
+    );
+    color = blend(
+        color,
+        rock,
+        smoothstep(0.28, 0.42, steep) * smoothstep(60.0, 180.0, p.y),
+    );
     let snow_line = 620.0 + 160.0 * fractal(p.xz() / 260.0 + 4.0, 4);
-    blend(color, snow, smoothstep(snow_line, snow_line + 110.0, p.y) * smoothstep(0.62, 0.4, steep))
+    blend(
+        color,
+        snow,
+        smoothstep(snow_line, snow_line + 110.0, p.y) * smoothstep(0.62, 0.4, steep),
+    )
 }
 
 /// The tiles of the ground; together they have `SIDE` x `SIDE` vertices, plus
 /// the seams that neighbouring tiles share.
 fn ground() -> Vec<Shape> {
     let position = |i: u32, j: u32| {
-        let p = Vec2::new(warp(i as f32 / (SIDE - 1) as f32), warp(j as f32 / (SIDE - 1) as f32));
+        let p = Vec2::new(
+            warp(i as f32 / (SIDE - 1) as f32),
+            warp(j as f32 / (SIDE - 1) as f32),
+        );
         Vec3::new(p.x, height(p), p.y)
     };
-    let rows: Vec<Vec<Vec3>> = (0..SIDE).map(|j| (0..SIDE).map(|i| position(i, j)).collect()).collect();
+    let rows: Vec<Vec<Vec3>> = (0..SIDE)
+        .map(|j| (0..SIDE).map(|i| position(i, j)).collect())
+        .collect();
     let at = |i: i64, j: i64| {
         let last = i64::from(SIDE) - 1;
         rows[j.clamp(0, last) as usize][i.clamp(0, last) as usize]
@@ -87,7 +112,9 @@ fn ground() -> Vec<Shape> {
             for j in 0..y1 - y0 {
                 for i in 0..x1 - x0 {
                     let a = j * width + i;
-                    shape.indices.extend([a, a + width, a + 1, a + 1, a + width, a + width + 1]);
+                    shape
+                        .indices
+                        .extend([a, a + width, a + 1, a + 1, a + width, a + width + 1]);
                 }
             }
             tiles.push(shape);
@@ -182,13 +209,15 @@ fn flower(random: &mut Random, petal: [f32; 4]) -> Shape {
     shape
 }
 
-const PETALS: [u32; 8] =
-    [0xe0332f, 0xf6d327, 0xffffff, 0x8d4fd0, 0xf26fa8, 0x3f6fe0, 0xf58a1f, 0xd03fae];
+const PETALS: [u32; 8] = [
+    0xe0332f, 0xf6d327, 0xffffff, 0x8d4fd0, 0xf26fa8, 0x3f6fe0, 0xf58a1f, 0xd03fae,
+];
 
 fn meadow(random: &mut Random) -> Shape {
     let mut shape = Shape::default();
-    let kinds: Vec<Shape> =
-        (0..24).map(|i| flower(random, rgb(PETALS[i % PETALS.len()]))).collect();
+    let kinds: Vec<Shape> = (0..24)
+        .map(|i| flower(random, rgb(PETALS[i % PETALS.len()])))
+        .collect();
     let grounded = |p: Vec2| Vec3::new(p.x, height(p), p.y);
     // More and more of them towards the camera, which looks north from here.
     let scatter = |random: &mut Random, far: f32| {
@@ -205,7 +234,9 @@ fn meadow(random: &mut Random) -> Shape {
         let turn = Quat::from_rotation_y(random.range(0.0, 6.3));
         shape.add(
             &kinds[kind],
-            Transform::from_translation(grounded(p)).with_rotation(turn).with_scale(Vec3::splat(size)),
+            Transform::from_translation(grounded(p))
+                .with_rotation(turn)
+                .with_scale(Vec3::splat(size)),
         );
     }
     for _ in 0..14000 {
@@ -243,10 +274,15 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     let flowers = stage.meshes.add(meadow(&mut random).into_mesh());
     stage.solid(flowers, leaf.clone(), Transform::IDENTITY);
 
-    let conifers: Vec<_> =
-        (0..3).map(|_| stage.meshes.add(conifer(&mut random).into_mesh())).collect();
+    let conifers: Vec<_> = (0..3)
+        .map(|_| stage.meshes.add(conifer(&mut random).into_mesh()))
+        .collect();
     let broad: Vec<_> = [0x6fa53a, 0x8fb544, 0xd98a2b]
-        .map(|hex| stage.meshes.add(broadleaf(&mut random, rgb(hex)).into_mesh()))
+        .map(|hex| {
+            stage
+                .meshes
+                .add(broadleaf(&mut random, rgb(hex)).into_mesh())
+        })
         .to_vec();
     let plant = |stage: &mut Stage, p: Vec2, mesh: &Handle<Mesh>, size: f32, turn: f32| {
         let at = Vec3::new(p.x, height(p) - 0.1, p.y);
@@ -255,9 +291,12 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
             .with_scale(Vec3::new(size, size * 1.1, size));
         stage.solid(mesh.clone(), leaf.clone(), transform);
     };
-    for (x, z, kind, size) in
-        [(-7.5, 8.0, 0, 1.35), (15.5, 2.0, 2, 1.5), (-17.0, -16.0, 1, 1.6), (24.0, -26.0, 0, 1.7)]
-    {
+    for (x, z, kind, size) in [
+        (-7.5, 8.0, 0, 1.35),
+        (15.5, 2.0, 2, 1.5),
+        (-17.0, -16.0, 1, 1.6),
+        (24.0, -26.0, 0, 1.7),
+    ] {
         plant(stage, Vec2::new(x, z), &broad[kind], size, x);
     }
     for _ in 0..420 {

@@ -24,7 +24,12 @@ pub fn rgb(hex: u32) -> [f32; 4] {
 
 /// A colour, lighter or darker.
 pub fn shade(color: [f32; 4], factor: f32) -> [f32; 4] {
-    [color[0] * factor, color[1] * factor, color[2] * factor, color[3]]
+    [
+        color[0] * factor,
+        color[1] * factor,
+        color[2] * factor,
+        color[3],
+    ]
 }
 
 pub fn blend(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
@@ -33,11 +38,14 @@ pub fn blend(a: [f32; 4], b: [f32; 4], t: f32) -> [f32; 4] {
 
 impl Shape {
     pub fn into_mesh(self) -> Mesh {
-        Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::RENDER_WORLD)
-            .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, self.positions)
-            .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, self.normals)
-            .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, self.colors)
-            .with_inserted_indices(Indices::U32(self.indices))
+        Mesh::new(
+            PrimitiveTopology::TriangleList,
+            RenderAssetUsages::RENDER_WORLD,
+        )
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, self.positions)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, self.normals)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, self.colors)
+        .with_inserted_indices(Indices::U32(self.indices))
     }
 
     pub fn vertex(&mut self, position: Vec3, normal: Vec3, color: [f32; 4]) -> u32 {
@@ -128,7 +136,11 @@ impl Shape {
         let direction = |i: u32, j: u32| {
             let polar = std::f32::consts::PI * i as f32 / rings as f32;
             let around = std::f32::consts::TAU * (j % sides) as f32 / sides as f32;
-            Vec3::new(polar.sin() * around.cos(), polar.cos(), polar.sin() * around.sin())
+            Vec3::new(
+                polar.sin() * around.cos(),
+                polar.cos(),
+                polar.sin() * around.sin(),
+            )
         };
         let first = self.positions.len() as u32;
         for i in 0..=rings {
@@ -141,8 +153,10 @@ impl Shape {
         let at = |i: u32, j: u32| first + i * (sides + 1) + j;
         for i in 0..rings {
             for j in 0..sides {
-                self.indices.extend([at(i, j), at(i, j + 1), at(i + 1, j + 1)]);
-                self.indices.extend([at(i, j), at(i + 1, j + 1), at(i + 1, j)]);
+                self.indices
+                    .extend([at(i, j), at(i, j + 1), at(i + 1, j + 1)]);
+                self.indices
+                    .extend([at(i, j), at(i + 1, j + 1), at(i + 1, j)]);
             }
         }
     }
@@ -152,10 +166,17 @@ impl Shape {
         let affine: Affine3A = transform.compute_affine();
         let normals: Mat3A = affine.matrix3.inverse().transpose();
         let first = self.positions.len() as u32;
-        self.positions
-            .extend(other.positions.iter().map(|p| affine.transform_point3(Vec3::from(*p)).to_array()));
+        self.positions.extend(
+            other
+                .positions
+                .iter()
+                .map(|p| affine.transform_point3(Vec3::from(*p)).to_array()),
+        );
         self.normals.extend(
-            other.normals.iter().map(|n| (normals * Vec3::from(*n)).normalize_or(Vec3::Y).to_array()),
+            other
+                .normals
+                .iter()
+                .map(|n| (normals * Vec3::from(*n)).normalize_or(Vec3::Y).to_array()),
         );
         self.colors.extend(&other.colors);
         self.indices.extend(other.indices.iter().map(|i| first + i));

@@ -42,7 +42,11 @@ fn ground() -> Shape {
             let flat = Vec2::new(p.x, p.z);
             let field = fractal(flat / 60.0 + 5.0, 3);
             let grass = blend(rgb(0x6c9f3c), rgb(0xb5bd55), 0.5 + field * 1.4);
-            let color = blend(grass, rgb(0x4a7d45), smoothstep(200.0, 700.0, flat.length()));
+            let color = blend(
+                grass,
+                rgb(0x4a7d45),
+                smoothstep(200.0, 700.0, flat.length()),
+            );
             shape.vertex(p, normal.normalize_or(Vec3::Y), color);
         }
     }
@@ -50,7 +54,9 @@ fn ground() -> Shape {
     for j in 0..side as u32 {
         for i in 0..side as u32 {
             let a = j * width + i;
-            shape.indices.extend([a, a + width, a + 1, a + 1, a + width, a + width + 1]);
+            shape
+                .indices
+                .extend([a, a + width, a + 1, a + 1, a + width, a + width + 1]);
         }
     }
     shape
@@ -68,7 +74,11 @@ fn house(h: &House, random: &mut Random) -> Shape {
     let mut s = Shape::default();
     let (x, y, z) = (h.size.x / 2.0, h.size.y, h.size.z / 2.0);
     s.cuboid(Vec3::new(-x, -0.5, -z), Vec3::new(x, y, z), h.wall);
-    s.cuboid(Vec3::new(-x - 0.06, -0.5, -z - 0.06), Vec3::new(x + 0.06, 0.45, z + 0.06), rgb(0x8c8377));
+    s.cuboid(
+        Vec3::new(-x - 0.06, -0.5, -z - 0.06),
+        Vec3::new(x + 0.06, 0.45, z + 0.06),
+        rgb(0x8c8377),
+    );
     let ridge = y + h.roof;
     for front in [1.0, -1.0] {
         let gable = [
@@ -90,11 +100,46 @@ fn house(h: &House, random: &mut Random) -> Shape {
             }
             s.polygon(&q, c);
         };
-        quad(&mut s, [eave(ez, thick), eave(-ez, thick), top(-ez, thick), top(ez, thick)], h.tiles);
-        quad(&mut s, [top(ez, 0.0), top(-ez, 0.0), eave(-ez, 0.0), eave(ez, 0.0)], shade(h.tiles, 0.5));
-        quad(&mut s, [eave(ez, 0.0), eave(-ez, 0.0), eave(-ez, thick), eave(ez, thick)], shade(h.tiles, 0.8));
-        quad(&mut s, [eave(ez, 0.0), eave(ez, thick), top(ez, thick), top(ez, 0.0)], rgb(0x6d4c33));
-        quad(&mut s, [top(-ez, 0.0), top(-ez, thick), eave(-ez, thick), eave(-ez, 0.0)], rgb(0x6d4c33));
+        quad(
+            &mut s,
+            [
+                eave(ez, thick),
+                eave(-ez, thick),
+                top(-ez, thick),
+                top(ez, thick),
+            ],
+            h.tiles,
+        );
+        quad(
+            &mut s,
+            [top(ez, 0.0), top(-ez, 0.0), eave(-ez, 0.0), eave(ez, 0.0)],
+            shade(h.tiles, 0.5),
+        );
+        quad(
+            &mut s,
+            [
+                eave(ez, 0.0),
+                eave(-ez, 0.0),
+                eave(-ez, thick),
+                eave(ez, thick),
+            ],
+            shade(h.tiles, 0.8),
+        );
+        quad(
+            &mut s,
+            [eave(ez, 0.0), eave(ez, thick), top(ez, thick), top(ez, 0.0)],
+            rgb(0x6d4c33),
+        );
+        quad(
+            &mut s,
+            [
+                top(-ez, 0.0),
+                top(-ez, thick),
+                eave(-ez, thick),
+                eave(-ez, 0.0),
+            ],
+            rgb(0x6d4c33),
+        );
     }
     let cx = x * 0.45;
     s.cuboid(
@@ -109,7 +154,11 @@ fn house(h: &House, random: &mut Random) -> Shape {
     for front in [1.0f32, -1.0] {
         let face = |s: &mut Shape, cx: f32, low: f32, high: f32, half: f32, out: f32, c| {
             let (a, b) = (front * z, front * (z + out));
-            s.cuboid(Vec3::new(cx - half, low, a.min(b)), Vec3::new(cx + half, high, a.max(b)), c);
+            s.cuboid(
+                Vec3::new(cx - half, low, a.min(b)),
+                Vec3::new(cx + half, high, a.max(b)),
+                c,
+            );
         };
         face(&mut s, 0.0, 0.0, 2.25, 0.62, 0.06, frame);
         face(&mut s, 0.0, 0.0, 2.15, 0.5, 0.1, shutter);
@@ -128,9 +177,17 @@ fn house(h: &House, random: &mut Random) -> Shape {
     for side in [1.0f32, -1.0] {
         for wz in [-z * 0.5, z * 0.5] {
             let (a, b) = (side * x, side * (x + 0.06));
-            s.cuboid(Vec3::new(a.min(b), 1.2, wz - 0.45), Vec3::new(a.max(b), 2.3, wz + 0.45), frame);
+            s.cuboid(
+                Vec3::new(a.min(b), 1.2, wz - 0.45),
+                Vec3::new(a.max(b), 2.3, wz + 0.45),
+                frame,
+            );
             let b = side * (x + 0.09);
-            s.cuboid(Vec3::new(a.min(b), 1.3, wz - 0.35), Vec3::new(a.max(b), 2.2, wz + 0.35), glass);
+            s.cuboid(
+                Vec3::new(a.min(b), 1.3, wz - 0.35),
+                Vec3::new(a.max(b), 2.2, wz + 0.35),
+                glass,
+            );
         }
     }
     s
@@ -139,16 +196,37 @@ fn house(h: &House, random: &mut Random) -> Shape {
 fn church() -> Shape {
     let mut random = Random::new(4);
     let wall = rgb(0xeee3cf);
-    let nave = House { size: Vec3::new(8.0, 6.0, 15.0), roof: 4.2, wall, tiles: rgb(0x5b6a7c) };
+    let nave = House {
+        size: Vec3::new(8.0, 6.0, 15.0),
+        roof: 4.2,
+        wall,
+        tiles: rgb(0x5b6a7c),
+    };
     let mut s = house(&nave, &mut random);
     s.cuboid(Vec3::new(-2.2, -0.5, 7.0), Vec3::new(2.2, 14.0, 11.4), wall);
     for side in [-1.0f32, 1.0] {
-        s.cuboid(Vec3::new(side * 0.8 - 0.45, 10.6, 11.4), Vec3::new(side * 0.8 + 0.45, 12.8, 11.5), rgb(0x3b4454));
+        s.cuboid(
+            Vec3::new(side * 0.8 - 0.45, 10.6, 11.4),
+            Vec3::new(side * 0.8 + 0.45, 12.8, 11.5),
+            rgb(0x3b4454),
+        );
     }
-    s.cuboid(Vec3::new(-2.5, 14.0, 6.7), Vec3::new(2.5, 14.5, 11.7), rgb(0xc9bda6));
+    s.cuboid(
+        Vec3::new(-2.5, 14.0, 6.7),
+        Vec3::new(2.5, 14.5, 11.7),
+        rgb(0xc9bda6),
+    );
     s.frustum(Vec3::new(0.0, 14.5, 9.2), 8.0, (3.1, 0.0), 4, rgb(0x5b6a7c));
-    s.cuboid(Vec3::new(-0.06, 22.2, 9.14), Vec3::new(0.06, 24.0, 9.26), rgb(0xd9a92f));
-    s.cuboid(Vec3::new(-0.5, 23.2, 9.14), Vec3::new(0.5, 23.35, 9.26), rgb(0xd9a92f));
+    s.cuboid(
+        Vec3::new(-0.06, 22.2, 9.14),
+        Vec3::new(0.06, 24.0, 9.26),
+        rgb(0xd9a92f),
+    );
+    s.cuboid(
+        Vec3::new(-0.5, 23.2, 9.14),
+        Vec3::new(0.5, 23.35, 9.26),
+        rgb(0xd9a92f),
+    );
     s
 }
 
@@ -160,8 +238,16 @@ fn windmill() -> Shape {
     s.blob(hub, Vec3::splat(0.5), 6, |_| rgb(0x5a4030), |_| 0.0);
     for k in 0..4 {
         let mut sail = Shape::default();
-        sail.cuboid(Vec3::new(-0.12, 0.0, -0.08), Vec3::new(0.12, 8.5, 0.08), rgb(0x5a4030));
-        sail.cuboid(Vec3::new(0.12, 1.6, -0.05), Vec3::new(1.5, 8.3, 0.05), rgb(0xe8d9b5));
+        sail.cuboid(
+            Vec3::new(-0.12, 0.0, -0.08),
+            Vec3::new(0.12, 8.5, 0.08),
+            rgb(0x5a4030),
+        );
+        sail.cuboid(
+            Vec3::new(0.12, 1.6, -0.05),
+            Vec3::new(1.5, 8.3, 0.05),
+            rgb(0xe8d9b5),
+        );
         let turn = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2 * k as f32 + 0.5);
         s.add(&sail, Transform::from_translation(hub).with_rotation(turn));
     }
@@ -184,7 +270,11 @@ fn well() -> Shape {
     s.frustum(Vec3::ZERO, 1.0, (1.25, 1.2), 14, rgb(0xa39a8c));
     s.frustum(Vec3::Y * 1.0, 0.03, (0.95, 0.95), 14, rgb(0x2b3a48));
     for side in [-1.0f32, 1.0] {
-        s.cuboid(Vec3::new(side * 1.05 - 0.1, 0.9, -0.1), Vec3::new(side * 1.05 + 0.1, 2.9, 0.1), rgb(0x6d4c33));
+        s.cuboid(
+            Vec3::new(side * 1.05 - 0.1, 0.9, -0.1),
+            Vec3::new(side * 1.05 + 0.1, 2.9, 0.1),
+            rgb(0x6d4c33),
+        );
     }
     s.frustum(Vec3::Y * 2.8, 1.1, (1.9, 0.0), 4, rgb(0xb5533c));
     s
@@ -204,10 +294,18 @@ fn fence(length: f32) -> Shape {
     let posts = (length / 0.45) as u32;
     for i in 0..=posts {
         let x = length * i as f32 / posts as f32;
-        s.cuboid(Vec3::new(x - 0.06, 0.0, -0.03), Vec3::new(x + 0.06, 1.0, 0.03), wood);
+        s.cuboid(
+            Vec3::new(x - 0.06, 0.0, -0.03),
+            Vec3::new(x + 0.06, 1.0, 0.03),
+            wood,
+        );
     }
     for y in [0.35, 0.75] {
-        s.cuboid(Vec3::new(0.0, y - 0.05, -0.055), Vec3::new(length, y + 0.05, -0.02), shade(wood, 0.85));
+        s.cuboid(
+            Vec3::new(0.0, y - 0.05, -0.055),
+            Vec3::new(length, y + 0.05, -0.02),
+            shade(wood, 0.85),
+        );
     }
     s
 }
@@ -233,8 +331,18 @@ fn cart() -> Shape {
                 .with_rotation(Quat::from_rotation_z(-side * std::f32::consts::FRAC_PI_2)),
         );
     }
-    for (x, z, r, hex) in [(-0.3, -0.6, 0.34, 0xe07f28), (0.35, -0.4, 0.3, 0xd8611f), (0.0, 0.3, 0.36, 0xeb9a37)] {
-        s.blob(Vec3::new(x, 0.7 + r * 0.7, z), Vec3::new(r, r * 0.8, r), 8, |_| rgb(hex), |d| 0.04 * (d.x.atan2(d.z) * 7.0).cos());
+    for (x, z, r, hex) in [
+        (-0.3, -0.6, 0.34, 0xe07f28),
+        (0.35, -0.4, 0.3, 0xd8611f),
+        (0.0, 0.3, 0.36, 0xeb9a37),
+    ] {
+        s.blob(
+            Vec3::new(x, 0.7 + r * 0.7, z),
+            Vec3::new(r, r * 0.8, r),
+            8,
+            |_| rgb(hex),
+            |d| 0.04 * (d.x.atan2(d.z) * 7.0).cos(),
+        );
     }
     s
 }
@@ -262,15 +370,32 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     place(stage, &matt, ground(), 0.0, 0.0, 0.0);
     // The road, and the square around the well: flat, a hand above the grass.
     let mut road = Shape::default();
-    road.cuboid(Vec3::new(-3.4, -0.3, -120.0), Vec3::new(3.4, 0.05, 34.0), rgb(0xd9c59a));
-    road.frustum(Vec3::new(0.0, -0.3, -22.0), 0.38, (13.0, 13.0), 40, rgb(0xcdbb96));
+    road.cuboid(
+        Vec3::new(-3.4, -0.3, -120.0),
+        Vec3::new(3.4, 0.05, 34.0),
+        rgb(0xd9c59a),
+    );
+    road.frustum(
+        Vec3::new(0.0, -0.3, -22.0),
+        0.38,
+        (13.0, 13.0),
+        40,
+        rgb(0xcdbb96),
+    );
     place(stage, &matt, road, 0.0, 0.0, 0.0);
 
-    let walls = [0xf4e7c8, 0xe9b872, 0xd98f6a, 0xf1d9d0, 0xc9d6c3, 0xb9cbd9, 0xf0c94f].map(rgb);
+    let walls = [
+        0xf4e7c8, 0xe9b872, 0xd98f6a, 0xf1d9d0, 0xc9d6c3, 0xb9cbd9, 0xf0c94f,
+    ]
+    .map(rgb);
     let tiles = [0xb5533c, 0x9c3d33, 0xc46a3a, 0x7d4a3c, 0x5b6a7c].map(rgb);
     let build = |stage: &mut Stage, random: &mut Random, x: f32, z: f32, turn: f32, size: f32| {
         let plan = House {
-            size: Vec3::new(random.range(5.2, 6.8), random.range(2.9, 5.0), random.range(6.0, 8.6)) * size,
+            size: Vec3::new(
+                random.range(5.2, 6.8),
+                random.range(2.9, 5.0),
+                random.range(6.0, 8.6),
+            ) * size,
             roof: random.range(2.1, 3.2) * size,
             wall: random.pick(&walls),
             tiles: random.pick(&tiles),
@@ -278,13 +403,32 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
         let shape = house(&plan, random);
         place(stage, &matt, shape, x, z, turn);
     };
-    for (i, z) in [12.0f32, 1.5, -9.0, -36.0, -48.0, -60.0, -73.0, -87.0].into_iter().enumerate() {
+    for (i, z) in [12.0f32, 1.5, -9.0, -36.0, -48.0, -60.0, -73.0, -87.0]
+        .into_iter()
+        .enumerate()
+    {
         for side in [-1.0f32, 1.0] {
             let x = side * (9.4 + random.range(0.0, 1.6));
-            build(stage, &mut random, x, z + side * 1.3, -side * std::f32::consts::FRAC_PI_2 + 0.06 * i as f32, 1.0);
+            build(
+                stage,
+                &mut random,
+                x,
+                z + side * 1.3,
+                -side * std::f32::consts::FRAC_PI_2 + 0.06 * i as f32,
+                1.0,
+            );
         }
     }
-    for (x, z, turn) in [(-24.0, -18.0, 0.4), (25.0, -30.0, -0.6), (-30.0, -48.0, 0.9), (33.0, -62.0, -0.3), (-44.0, -80.0, 0.2), (47.0, -95.0, 1.2), (-16.0, -112.0, 0.1), (18.0, -118.0, -0.2)] {
+    for (x, z, turn) in [
+        (-24.0, -18.0, 0.4),
+        (25.0, -30.0, -0.6),
+        (-30.0, -48.0, 0.9),
+        (33.0, -62.0, -0.3),
+        (-44.0, -80.0, 0.2),
+        (47.0, -95.0, 1.2),
+        (-16.0, -112.0, 0.1),
+        (18.0, -118.0, -0.2),
+    ] {
         build(stage, &mut random, x, z, turn, 1.05);
     }
 
@@ -292,7 +436,13 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     place(stage, &matt, windmill(), 96.0, -215.0, -0.35);
     place(stage, &matt, well(), 1.5, -22.0, 0.6);
     place(stage, &matt, cart(), -4.3, 14.6, 0.5);
-    for (x, z) in [(4.6, 16.9), (5.2, 16.0), (4.4, 15.6), (-4.8, -4.0), (5.0, -13.0)] {
+    for (x, z) in [
+        (4.6, 16.9),
+        (5.2, 16.0),
+        (4.4, 15.6),
+        (-4.8, -4.0),
+        (5.0, -13.0),
+    ] {
         place(stage, &matt, barrel(), x, z, x);
     }
     for z in [8.0, -6.0, -34.0, -52.0, -70.0] {
@@ -304,7 +454,10 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     }
     let leaves = [0x6fa53a, 0x8fb544, 0x4f8f3f, 0xd98a2b].map(rgb);
     for _ in 0..130 {
-        let (angle, r) = (random.range(0.0, 6.3), 24.0 + 300.0 * random.unit().powf(1.4));
+        let (angle, r) = (
+            random.range(0.0, 6.3),
+            24.0 + 300.0 * random.unit().powf(1.4),
+        );
         let (x, z) = (r * angle.cos(), r * angle.sin() - 40.0);
         if x.abs() < 14.0 {
             continue;
@@ -317,7 +470,13 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
         };
         place(stage, &matt, tree, x, z, angle);
     }
-    for (x, z, i) in [(-9.5, 21.5, 3), (-15.0, 6.5, 0), (15.5, -14.0, 1), (-14.0, -24.0, 2), (12.5, 22.0, 1)] {
+    for (x, z, i) in [
+        (-9.5, 21.5, 3),
+        (-15.0, 6.5, 0),
+        (15.5, -14.0, 1),
+        (-14.0, -24.0, 2),
+        (12.5, 22.0, 1),
+    ] {
         let tree = broadleaf(&mut random, leaves[i]);
         place(stage, &matt, tree, x, z, z);
     }
