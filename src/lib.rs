@@ -1,4 +1,37 @@
 //! Turns any 3D scene into a comic, in real time.
+//!
+//! ```no_run
+//! use bevy::prelude::*;
+//! use bevy_comics::prelude::*;
+//!
+//! fn main() {
+//!     App::new().add_plugins((DefaultPlugins, ComicsPlugin)).add_systems(Startup, setup).run();
+//! }
+//!
+//! fn setup(mut commands: Commands) {
+//!     commands.spawn((Camera3d::default(), Contours::default(), Desaturation::default()));
+//! }
+//! ```
+//!
+//! Add the plugin, put a style component on a camera, and that camera draws a
+//! comic. In every frame:
+//!
+//! 1. the components of a camera become a plan; what is absent, or changes
+//!    nothing, is left out, down to the shader ([`ComicsDiagnostics`] says what
+//!    and why);
+//! 2. a compute shader finds the nearest and farthest depth that is visible
+//!    ([`ReductionMethod`], [`VisibleDepthRange`]);
+//! 3. depth becomes the map `D`, 0 at the near end and 1 at the far end of the
+//!    range ([`DepthMap`]);
+//! 4. one full-screen pass after tonemapping applies [`Desaturation`],
+//!    [`Colorization`], [`BlackFlats`] and [`Contours`], in this order.
+//!
+//! Whole looks are assets: [`ComicStyle`], with [`presets`].
+//!
+//! Equations are those of *Comics stylizations of 3D scenes using GPU*
+//! (Suarez, Belhadj, Boyer), cited as \[CS\]. Every setting is brought into its
+//! documented range before it is used; no value makes a panic or a NaN.
+
 mod depth;
 mod diagnostics;
 mod passes;

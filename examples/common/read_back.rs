@@ -35,7 +35,7 @@ impl DepthImage {
 
 fn map_buffer(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Vec<u8> {
     buffer.slice(..).map_async(wgpu::MapMode::Read, |result| {
-        result.expect("the buffer maps")
+        result.expect("the buffer maps");
     });
     device
         .poll(wgpu::PollType::wait_indefinitely())

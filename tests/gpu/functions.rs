@@ -415,7 +415,7 @@ fn dark_areas_are_their_twin() {
 const MAP: &str = "#import bevy_comics::depth::map::{DepthFrame, depth_map, depth_step}";
 const FRAME: &str = "let f = DepthFrame(i(0u), i(1u), i(2u), i(3u), i(4u), i(5u), i(6u), u(7u));";
 
-/// near, far, offset, floor, plane_far, extent, gap, flags, and two depths.
+/// near, far, offset, floor, `plane_far`, extent, gap, flags, and two depths.
 type MapRow = [f32; 10];
 
 fn frame_of(row: &MapRow) -> Frame {
@@ -467,7 +467,7 @@ fn perspective_rows(logarithmic: bool) -> impl Strategy<Value = MapRow> {
             } else {
                 0.0
             };
-            let raw = |z: f64| (((plane * (1.0 + offset)) / z - offset).max(0.0).min(1.0)) as f32;
+            let raw = |z: f64| (((plane * (1.0 + offset)) / z - offset).clamp(0.0, 1.0)) as f32;
             let at = |t: f64| {
                 if ratio {
                     near * (far / near).powf(t)

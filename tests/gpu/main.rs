@@ -6,7 +6,9 @@ mod common;
 mod reference;
 
 mod device;
+mod extremes;
 mod failures;
+mod fresh_crate;
 mod functions;
 mod golden;
 mod left_out;

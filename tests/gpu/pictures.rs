@@ -34,7 +34,7 @@ fn frame(small: &Small, map: &DepthMap) -> Frame {
             }) => Some([f64::from(raw_near), f64::from(raw_far)]),
             other => panic!("no range: {other:?}"),
         },
-        DepthMapping::Linear | DepthMapping::Logarithmic => Some([NEAR / NEAR, NEAR / FAR]),
+        DepthMapping::Linear | DepthMapping::Logarithmic => Some([1.0, NEAR / FAR]),
         DepthMapping::Fixed { near, far } | DepthMapping::FixedLogarithmic { near, far } => {
             Some([NEAR / f64::from(near), NEAR / f64::from(far)])
         }

@@ -2,7 +2,7 @@
 
 use bevy::{
     camera::RenderTarget,
-    core_pipeline::tonemapping::Tonemapping,
+    core_pipeline::tonemapping::{DebandDither, Tonemapping},
     prelude::*,
     render::{
         RenderApp,
@@ -45,6 +45,8 @@ pub fn camera(target: RenderTarget, msaa: Msaa) -> impl Bundle {
         },
         Transform::from_xyz(1.5, 2.4, 6.0).looking_at(Vec3::new(0.0, 0.4, 0.0), Vec3::Y),
         Tonemapping::None,
+        // The engine's own noise would be in every comparison.
+        DebandDither::Disabled,
         target,
         msaa,
     )

@@ -24,9 +24,9 @@ fn cusp(a: f64, b: f64) -> (f64, f64) {
     while high - low > 1e-14 {
         let s = low.midpoint(high);
         if smallest(at(s)) >= 0.0 {
-            low = s
+            low = s;
         } else {
-            high = s
+            high = s;
         }
     }
     let lightness = largest(at(low)).recip().cbrt();

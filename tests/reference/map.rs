@@ -6,7 +6,7 @@
 pub enum Projection {
     /// d + offset = scale / z.
     Perspective { offset: f64 },
-    /// z = plane_far - d * extent.
+    /// z = `plane_far` - d * extent.
     Orthographic { plane_far: f64, extent: f64 },
 }
 

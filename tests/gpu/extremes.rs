@@ -1,0 +1,264 @@
+//! The table of extreme cases, on rendered views: by name, defined and finite.
+//! The cases that are questions of arithmetic (near to far ratios, narrow
+//! ranges, square roots at the ends) are in `functions.rs`, those of the range
+//! (denormal depth, odd sizes, viewports, samples) in `range.rs`.
+
+use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
+use bevy_comics::{
+    ColorMethod, Colorization, ColorizationMode, ComicStyle, ComicsStage, Contours, DepthMap,
+    Desaturation, VisibleDepthRange,
+};
+
+use crate::small::{Object, Small};
+
+fn bare(size: UVec2) -> Small {
+    let mut small = Small::new(size, Msaa::Off);
+    let objects: Vec<Entity> = {
+        let world = small.world();
+        let mut query = world.query_filtered::<Entity, With<Object>>();
+        query.iter(world).collect()
+    };
+    for object in objects {
+        small.world().despawn(object);
+    }
+    small.insert((Transform::IDENTITY, VisibleDepthRange::default()));
+    small
+}
+
+fn wall(small: &mut Small, size: f32, distance: f32, color: Color) {
+    let mesh = small
+        .world()
+        .resource_mut::<Assets<Mesh>>()
+        .add(Rectangle::new(size, size));
+    let material = small
+        .world()
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: color,
+            unlit: true,
+            ..default()
+        });
+    small.world().spawn((
+        Mesh3d(mesh),
+        MeshMaterial3d(material),
+        Transform::from_xyz(0.0, 0.0, -distance),
+    ));
+}
+
+fn full() -> ComicStyle {
+    ComicStyle {
+        desaturation: Some(Desaturation {
+            exponent: 0.5,
+            ..default()
+        }),
+        colorization: Some(Colorization::default()),
+        contours: Some(Contours::default()),
+        ..default()
+    }
+}
+
+fn assert_finite(small: &Small, what: &str) {
+    let (_, output) = small.pass();
+    assert!(
+        output.pixels.iter().flatten().all(|c| c.is_finite()),
+        "{what}: not finite"
+    );
+}
+
+#[test]
+fn a_flat_wall_keeps_its_colour_and_has_no_line() {
+    for distance in [0.2f32, 3.0, 500.0, 90_000.0] {
+        let mut small = bare(UVec2::new(40, 30));
+        wall(
+            &mut small,
+            distance * 10.0,
+            distance,
+            Color::srgb(0.8, 0.3, 0.2),
+        );
+        small.settle();
+        let original = small.picture();
+        small.style(&full());
+        small.settle();
+        assert!(small.ran(ComicsStage::Stylize));
+        // D = 0 all over: the picture is constant, and what it was.
+        let picture = small.picture();
+        let first = *picture.get_pixel(0, 0);
+        assert!(
+            picture.pixels().all(|p| *p == first),
+            "a wall at {distance} is not constant"
+        );
+        let same = (0..3).all(|i| first.0[i].abs_diff(original.get_pixel(0, 0).0[i]) <= 1);
+        assert!(same, "a wall at {distance} changed its colour");
+    }
+}
+
+#[test]
+fn all_sky_takes_the_atmosphere_and_nothing_else() {
+    let mut small = bare(UVec2::new(40, 30));
+    small.style(&full());
+    small.settle();
+    assert_eq!(small.range(), Some(VisibleDepthRange::Empty));
+    let picture = small.picture();
+    let first = *picture.get_pixel(0, 0);
+    assert!(picture.pixels().all(|p| *p == first));
+    assert!(
+        first.0[0] > first.0[2],
+        "the default atmosphere is warm: {first:?}"
+    );
+    assert_finite(&small, "all sky");
+}
+
+#[test]
+fn one_pixel_of_geometry_is_a_range_of_one_depth() {
+    let mut small = bare(UVec2::new(41, 31));
+    wall(&mut small, 0.1, 5.0, Color::WHITE);
+    small.style(&full());
+    small.settle();
+    let Some((near, far)) = small.range().and_then(VisibleDepthRange::distances) else {
+        panic!("nothing was seen");
+    };
+    assert_eq!(near, far);
+    assert!((near - 5.0).abs() < 1e-4, "{near}");
+    assert_finite(&small, "one pixel");
+}
+
+#[test]
+fn a_target_of_one_pixel_is_styled() {
+    for size in [UVec2::ONE, UVec2::new(1, 9), UVec2::new(9, 1)] {
+        let mut small = bare(size);
+        wall(&mut small, 30.0, 4.0, Color::srgb(0.2, 0.4, 0.9));
+        small.style(&full());
+        small.settle();
+        assert!(
+            small.ran(ComicsStage::Stylize) && small.ran(ComicsStage::DepthRange),
+            "{size}"
+        );
+        assert_finite(&small, "one pixel of target");
+    }
+}
+
+#[test]
+fn a_range_of_depth_buffer_noise_does_not_become_a_pattern() {
+    // Two walls one part in a million apart: the floor of the map, 2^-14, lets
+    // them span 1.7 % of it, which is at most five codes of 255.
+    let mut small = bare(UVec2::new(40, 30));
+    wall(&mut small, 40.0, 5.0, Color::srgb(0.7, 0.2, 0.2));
+    wall(&mut small, 2.0, 5.0 - 5e-6, Color::srgb(0.7, 0.2, 0.2));
+    small.insert((
+        Desaturation::default(),
+        Colorization { mode: ColorizationMode::Linear, ..default() },
+        Contours::default(),
+    ));
+    small.settle();
+    let picture = small.picture();
+    let first = *picture.get_pixel(0, 0);
+    let apart = picture
+        .pixels()
+        .map(|p| (0..3).map(|i| p.0[i].abs_diff(first.0[i])).max().unwrap_or(0))
+        .max();
+    assert!(apart <= Some(5), "noise spans {apart:?} codes");
+}
+
+#[test]
+fn greys_stay_grey_under_the_faithful_equations() {
+    let mut small = bare(UVec2::new(60, 40));
+    for (i, grey) in [0.1f32, 0.5, 0.9].into_iter().enumerate() {
+        wall(
+            &mut small,
+            3.0,
+            4.0 + 3.0 * i as f32,
+            Color::srgb(grey, grey, grey),
+        );
+    }
+    small.insert(Camera {
+        clear_color: Color::srgb(0.3, 0.3, 0.3).into(),
+        ..default()
+    });
+    for mode in [
+        ColorizationMode::Atmosphere,
+        ColorizationMode::Linear,
+        ColorizationMode::Quadratic,
+    ] {
+        small
+            .insert((
+                Desaturation::QUADRATIC,
+                Colorization {
+                    mode,
+                    method: ColorMethod::Faithful,
+                    ..default()
+                },
+            ))
+            .settle();
+        let picture = small.picture();
+        assert!(
+            picture
+                .pixels()
+                .all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]),
+            "{mode:?} tinted a grey"
+        );
+    }
+}
+
+#[test]
+fn bright_light_grows_with_its_gain() {
+    let mut last = 0.0f32;
+    for gain in [0.5f32, 1.0, 4.0, 100.0, 10_000.0, 65_504.0] {
+        let mut small = bare(UVec2::new(16, 12));
+        small.insert(Hdr);
+        wall(
+            &mut small,
+            30.0,
+            4.0,
+            Color::linear_rgb(gain, 0.4 * gain, 0.1 * gain),
+        );
+        wall(&mut small, 1.0, 2.0, Color::WHITE);
+        small.style(&full());
+        small.settle();
+        let (_, output) = small.pass();
+        let red = output.pixels[0][0];
+        assert!(
+            red.is_finite() && red >= last,
+            "gain {gain}: {red} after {last}"
+        );
+        last = red;
+    }
+}
+
+#[test]
+fn a_transparent_surface_is_coloured_by_the_depth_behind_it() {
+    // A red pane at arm's length before a far wall: it takes the wall's
+    // atmosphere, not the foreground's.
+    let mut small = bare(UVec2::new(60, 40));
+    wall(&mut small, 400.0, 100.0, Color::srgb(0.5, 0.5, 0.5));
+    wall(&mut small, 0.4, 1.0, Color::srgb(0.5, 0.5, 0.5));
+    wall(&mut small, 0.5, 0.9, Color::srgba(0.9, 0.1, 0.1, 0.5));
+    let panes: Vec<_> = {
+        let world = small.world();
+        let mut query = world.query::<(&MeshMaterial3d<StandardMaterial>, &Transform)>();
+        query
+            .iter(world)
+            .filter(|(_, at)| at.translation.z == -0.9)
+            .map(|(m, _)| m.0.clone())
+            .collect()
+    };
+    for pane in panes {
+        let mut assets = small.world().resource_mut::<Assets<StandardMaterial>>();
+        assets.get_mut(&pane).expect("the pane").alpha_mode = AlphaMode::Blend;
+    }
+    small
+        .insert((Desaturation::default(), DepthMap::default()))
+        .settle();
+    let picture = small.picture();
+    let saturation = |x: u32, y: u32| {
+        let p = picture.get_pixel(x, y).0;
+        p[..3].iter().max().copied().unwrap_or(0) - p[..3].iter().min().copied().unwrap_or(0)
+    };
+    // The pane covers more than the near wall: inside that it keeps its red,
+    // beyond it the far wall's depth has taken it.
+    let row: Vec<u8> = (0..60).map(|x| saturation(x, 20)).collect();
+    assert!(row[30] > 60, "before the near wall: {row:?}");
+    assert!(
+        row.iter().filter(|s| **s > 20).count() < 24,
+        "the pane kept its colour before the far wall: {row:?}"
+    );
+}
