@@ -185,17 +185,24 @@ fn choose(
     if keys.just_pressed(KeyCode::KeyO)
         && let Some(vantage) = &show.vantage
     {
-        *projection = if show.orthographic {
-            vantage.perspective()
+        (*projection, *orbit) = if show.orthographic {
+            (vantage.perspective(), Orbit::of(vantage))
         } else {
-            vantage.orthographic(vantage.ortho_height)
+            (
+                vantage.orthographic(vantage.ortho_height),
+                Orbit::of(&vantage.from_above()),
+            )
         };
         show.orthographic = !show.orthographic;
     }
     if keys.just_pressed(KeyCode::KeyR)
         && let Some(vantage) = &show.vantage
     {
-        *orbit = Orbit::of(vantage);
+        *orbit = Orbit::of(&if show.orthographic {
+            vantage.from_above()
+        } else {
+            vantage.clone()
+        });
     }
     if keys.just_pressed(KeyCode::KeyC) {
         split.on = !split.on;

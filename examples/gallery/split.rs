@@ -2,7 +2,7 @@
 //! depth map follows each camera's own half, as it would in split screen.
 
 use bevy::{
-    camera::{CameraOutputMode, ClearColorConfig, Hdr, Viewport},
+    camera::{ClearColorConfig, Hdr, Viewport},
     core_pipeline::tonemapping::Tonemapping,
     light::Skybox,
     prelude::*,
@@ -90,20 +90,27 @@ fn follow(
         }
         return;
     }
-    let original = originals
-        .single()
-        .unwrap_or_else(|_| commands.spawn(Original).id());
+    let original = match originals.single() {
+        Ok(original) => original,
+        Err(_) => commands
+            .spawn((
+                Original,
+                Camera3d::default(),
+                Camera {
+                    order: 1,
+                    clear_color: ClearColorConfig::None,
+                    ..default()
+                },
+            ))
+            .id(),
+    };
+    let part = (half(0, left), sub_view(0, left));
     let mut original = commands.entity(original);
+    // The camera component is edited, not replaced: it remembers its target.
+    original.entry::<Camera>().and_modify(move |mut camera| {
+        (camera.viewport, camera.sub_camera_view) = part;
+    });
     original.insert((
-        Camera3d::default(),
-        Camera {
-            order: 1,
-            viewport: half(0, left),
-            sub_camera_view: sub_view(0, left),
-            clear_color: ClearColorConfig::None,
-            output_mode: CameraOutputMode::default(),
-            ..default()
-        },
         *transform,
         projection.clone(),
         sky.clone(),

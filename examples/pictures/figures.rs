@@ -12,7 +12,7 @@ use bevy_comics::{
     ColorMethod, Colorization, ColorizationMode, ComicStyle, ComicsPlugin, Contours, DepthMap,
     DepthMapping, Desaturation, presets,
 };
-use image::{Rgba, RgbaImage, imageops};
+use image::{Rgba, RgbaImage};
 
 use crate::{
     common::{
@@ -22,6 +22,7 @@ use crate::{
         studio::Studio,
     },
     save,
+    sheet::grid,
 };
 
 const SIZE: UVec2 = UVec2::new(480, 270);
@@ -35,19 +36,9 @@ const MAPPINGS: [(&str, DepthMapping); 3] = [
     ("minmax", DepthMapping::MinMax),
 ];
 
-/// Pictures side by side and one below the other.
-fn grid(rows: &[Vec<RgbaImage>]) -> RgbaImage {
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0) as u32;
-    let cell = SIZE + UVec2::splat(GAP);
-    let size = cell * UVec2::new(columns, rows.len() as u32) + UVec2::splat(GAP);
-    let mut sheet = RgbaImage::from_pixel(size.x, size.y, Rgba([250, 248, 242, 255]));
-    for (y, row) in rows.iter().enumerate() {
-        for (x, picture) in row.iter().enumerate() {
-            let at = UVec2::splat(GAP) + cell * UVec2::new(x as u32, y as u32);
-            imageops::replace(&mut sheet, picture, i64::from(at.x), i64::from(at.y));
-        }
-    }
-    sheet
+fn sheet(rows: &[Vec<RgbaImage>]) -> RgbaImage {
+    let rows: Vec<Vec<&RgbaImage>> = rows.iter().map(|row| row.iter().collect()).collect();
+    grid(&rows, SIZE, GAP)
 }
 
 /// A style of which only the depth map is set.
@@ -191,7 +182,7 @@ fn figure_2(folder: &Path) -> Result<(), String> {
     let path = folder.join("figure-2.json");
     std::fs::write(&path, text + "\n")
         .map_err(|e| format!("cannot write {}: {e}", path.display()))?;
-    save(&grid(&rows), &folder.join("figure-2.png"))
+    save(&sheet(&rows), &folder.join("figure-2.png"))
 }
 
 /// The three maps of an object, and the same sepia and desaturation with each.
@@ -239,7 +230,7 @@ fn figure_3(folder: &Path) -> Result<(), String> {
         rows[1].push(measure(&studio.headless, studio.camera, mapping, PLANE_FAR)?.picture);
         rows[2].push(picture);
     }
-    save(&grid(&rows), &folder.join("figure-3.png"))
+    save(&sheet(&rows), &folder.join("figure-3.png"))
 }
 
 /// The three rows of figure 4: the original, the style, and the style as the
@@ -269,7 +260,7 @@ fn figure_4(folder: &Path) -> Result<(), String> {
         ]);
         println!("figure 4: {name}");
     }
-    save(&grid(&rows), &folder.join("figure-4.png"))
+    save(&sheet(&rows), &folder.join("figure-4.png"))
 }
 
 pub fn write(folder: &Path) -> Result<(), String> {

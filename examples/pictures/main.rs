@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! cargo run --example pictures -- contact-sheet [--size WxH] [--out FILE.png]
+//! cargo run --example pictures -- banner [--out FILE.png]
 //! cargo run --example pictures -- figures [--out DIR]
 //! cargo run --example pictures -- golden [--out DIR]
 //! ```
@@ -17,6 +18,7 @@ use bevy::math::UVec2;
 
 const USAGE: &str = "\
 usage: pictures contact-sheet [--size WxH] [--out FILE.png]   every scene in every preset
+       pictures banner [--out FILE.png]                       the README's first picture
        pictures figures [--out DIR]                           the figures of the paper
        pictures golden [--out DIR]                            the tests' reference pictures";
 
@@ -58,6 +60,7 @@ fn run() -> Result<(), String> {
     let or = |path: &str| out.clone().unwrap_or_else(|| PathBuf::from(path));
     match what.as_deref() {
         Some("contact-sheet") => sheet::contact_sheet(size, &or("target/contact-sheet.png")),
+        Some("banner") => sheet::banner(&or("target/banner.png")),
         Some("figures") => figures::write(&or("target/figures")),
         Some("golden") => sheet::golden(&or("tests/golden")),
         Some(other) => Err(format!("no pictures called {other:?}\n{USAGE}")),
@@ -73,7 +76,15 @@ fn save(picture: &image::RgbaImage, path: &std::path::Path) -> Result<(), String
         std::fs::create_dir_all(folder)
             .map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
     }
-    picture
-        .save(path)
+    // Pictures that may be committed: no alpha, compressed as far as it goes.
+    let rgb = image::DynamicImage::ImageRgba8(picture.clone()).into_rgb8();
+    let file = std::fs::File::create(path)
+        .map_err(|error| format!("cannot write {}: {error}", path.display()))?;
+    let encoder = image::codecs::png::PngEncoder::new_with_quality(
+        std::io::BufWriter::new(file),
+        image::codecs::png::CompressionType::Best,
+        image::codecs::png::FilterType::Adaptive,
+    );
+    rgb.write_with_encoder(encoder)
         .map_err(|error| format!("cannot write {}: {error}", path.display()))
 }

@@ -19,34 +19,71 @@ fn style(name: &str) -> Result<bevy_comics::ComicStyle, String> {
         .map_err(|error| format!("{name}: {error}"))
 }
 
-/// Rows of presets, the original first; columns of scenes.
-pub fn contact_sheet(size: UVec2, out: &Path) -> Result<(), String> {
-    let columns = BuiltIn::ALL.len() as u32;
-    let rows = presets::NAMES.len() as u32 + 1;
-    let paper = image::Rgba([250, 248, 242, 255]);
-    let mut sheet = RgbaImage::from_pixel(
-        columns * (size.x + GAP) + GAP,
-        rows * (size.y + GAP) + GAP,
-        paper,
-    );
-    for (column, scene) in BuiltIn::ALL.into_iter().enumerate() {
+/// A preset, or the original.
+type Look = Option<&'static str>;
+
+/// One picture for every scene and look, scene by scene.
+fn shoot_all(size: UVec2, looks: &[Look]) -> Result<Vec<Vec<RgbaImage>>, String> {
+    let mut pictures = Vec::new();
+    for scene in BuiltIn::ALL {
         println!("{}: building", scene.name());
         let mut studio = Studio::new(scene, size, Msaa::Sample4);
-        for row in 0..rows {
-            let name = row.checked_sub(1).map(|i| presets::NAMES[i as usize]);
-            let picture = match name {
+        let mut row = Vec::new();
+        for look in looks {
+            row.push(match look {
                 Some(name) => studio.shoot(Some(&style(name)?)),
                 None => studio.shoot(None),
-            };
-            let x = GAP + column as u32 * (size.x + GAP);
-            let y = GAP + row * (size.y + GAP);
-            imageops::replace(&mut sheet, &picture, i64::from(x), i64::from(y));
-            println!("{}: {}", scene.name(), name.unwrap_or("original"));
+            });
+            println!("{}: {}", scene.name(), look.unwrap_or("original"));
         }
+        pictures.push(row);
     }
-    save(&sheet, out)?;
+    Ok(pictures)
+}
+
+/// Rows of presets, the original first; columns of scenes.
+pub fn contact_sheet(size: UVec2, out: &Path) -> Result<(), String> {
+    let looks: Vec<Look> = std::iter::once(None)
+        .chain(presets::NAMES.iter().copied().map(Some))
+        .collect();
+    let columns = shoot_all(size, &looks)?;
+    let rows: Vec<Vec<&RgbaImage>> = (0..looks.len())
+        .map(|row| columns.iter().map(|column| &column[row]).collect())
+        .collect();
+    save(&grid(&rows, size, GAP), out)?;
     println!("wrote {}", out.display());
     Ok(())
+}
+
+/// The picture at the top of the README: rows of scenes, columns of a few looks.
+pub fn banner(out: &Path) -> Result<(), String> {
+    let size = UVec2::new(300, 169);
+    let looks = [
+        None,
+        Some("crimson-dusk"),
+        Some("ligne-claire"),
+        Some("noir"),
+    ];
+    let rows = shoot_all(size, &looks)?;
+    let rows: Vec<Vec<&RgbaImage>> = rows.iter().map(|row| row.iter().collect()).collect();
+    save(&grid(&rows, size, GAP), out)?;
+    println!("wrote {}", out.display());
+    Ok(())
+}
+
+/// Pictures side by side and one below the other, on paper.
+pub fn grid(rows: &[Vec<&RgbaImage>], size: UVec2, gap: u32) -> RgbaImage {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0) as u32;
+    let cell = size + UVec2::splat(gap);
+    let whole = cell * UVec2::new(columns, rows.len() as u32) + UVec2::splat(gap);
+    let mut sheet = RgbaImage::from_pixel(whole.x, whole.y, image::Rgba([250, 248, 242, 255]));
+    for (y, row) in rows.iter().enumerate() {
+        for (x, picture) in row.iter().enumerate() {
+            let at = UVec2::splat(gap) + cell * UVec2::new(x as u32, y as u32);
+            imageops::replace(&mut sheet, *picture, i64::from(at.x), i64::from(at.y));
+        }
+    }
+    sheet
 }
 
 /// The reference pictures of the tests: every preset x scene at 320x180.

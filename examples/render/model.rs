@@ -127,6 +127,10 @@ fn frame(mut stage: Stage, low: Vec3, high: Vec3, dark: bool) -> Vantage {
         fov,
         near: radius * 0.02,
         far: radius * 100.0,
+        ortho: (
+            centre + Vec3::new(0.62, 0.55, 1.0).normalize() * radius * 4.0,
+            centre,
+        ),
         ortho_height: radius * 2.2,
         sky: stage.images.add(sky.image()),
         sky_brightness: 1000.0,

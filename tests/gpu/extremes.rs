@@ -13,14 +13,7 @@ use crate::small::{Object, Small};
 
 fn bare(size: UVec2) -> Small {
     let mut small = Small::new(size, Msaa::Off);
-    let objects: Vec<Entity> = {
-        let world = small.world();
-        let mut query = world.query_filtered::<Entity, With<Object>>();
-        query.iter(world).collect()
-    };
-    for object in objects {
-        small.world().despawn(object);
-    }
+    small.clear();
     small.insert((Transform::IDENTITY, VisibleDepthRange::default()));
     small
 }
@@ -146,15 +139,22 @@ fn a_range_of_depth_buffer_noise_does_not_become_a_pattern() {
     wall(&mut small, 2.0, 5.0 - 5e-6, Color::srgb(0.7, 0.2, 0.2));
     small.insert((
         Desaturation::default(),
-        Colorization { mode: ColorizationMode::Linear, ..default() },
-        Contours::default(),
+        Colorization {
+            mode: ColorizationMode::Linear,
+            ..default()
+        },
     ));
     small.settle();
     let picture = small.picture();
     let first = *picture.get_pixel(0, 0);
     let apart = picture
         .pixels()
-        .map(|p| (0..3).map(|i| p.0[i].abs_diff(first.0[i])).max().unwrap_or(0))
+        .map(|p| {
+            (0..3)
+                .map(|i| p.0[i].abs_diff(first.0[i]))
+                .max()
+                .unwrap_or(0)
+        })
         .max();
     assert!(apart <= Some(5), "noise spans {apart:?} codes");
 }

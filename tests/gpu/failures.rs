@@ -88,7 +88,13 @@ fn failure_02_hdr_is_toggled_and_targets_differ() {
 
 #[test]
 fn failure_04_cameras_on_one_target_have_ranges_of_their_own() {
-    let mut small = Small::new(UVec2::new(120, 48), Msaa::Off);
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        two_cameras_on_one_target(msaa);
+    }
+}
+
+fn two_cameras_on_one_target(msaa: Msaa) {
+    let mut small = Small::new(UVec2::new(120, 48), msaa);
     let half = |x: u32, order: isize| Camera {
         order,
         viewport: Some(Viewport {
@@ -110,7 +116,7 @@ fn failure_04_cameras_on_one_target_have_ranges_of_their_own() {
     let second = small
         .world()
         .spawn((
-            camera(target, Msaa::Off),
+            camera(target, msaa),
             Contours::default(),
             Desaturation::default(),
             VisibleDepthRange::default(),
@@ -139,7 +145,7 @@ fn failure_04_cameras_on_one_target_have_ranges_of_their_own() {
     small.settle();
     let alone = small.picture();
     for (x, y, pixel) in both.enumerate_pixels().filter(|(x, ..)| *x < 60) {
-        assert_eq!(pixel, alone.get_pixel(x, y), "({x}, {y})");
+        assert_eq!(pixel, alone.get_pixel(x, y), "{msaa:?}: ({x}, {y})");
     }
 }
 

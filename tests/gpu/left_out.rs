@@ -199,6 +199,27 @@ fn the_game_can_ask_for_the_range_alone() {
 }
 
 #[test]
+fn both_passes_have_time_spans_in_the_engines_diagnostics() {
+    use bevy::{diagnostic::DiagnosticsStore, render::diagnostic::RenderDiagnosticsPlugin};
+    let mut headless = crate::common::headless::Headless::new(
+        crate::small::options(size()),
+        (bevy_comics::ComicsPlugin, RenderDiagnosticsPlugin),
+    );
+    let target = headless.render_target();
+    let camera = crate::small::camera(target, Msaa::Off);
+    headless
+        .app
+        .world_mut()
+        .spawn((camera, Contours::default()));
+    headless.step(20);
+    let store = headless.app.world().resource::<DiagnosticsStore>();
+    for pass in ["comics_depth_range", "comics_stylize"] {
+        let measured = store.iter().any(|d| d.path().as_str().contains(pass));
+        assert!(measured, "{pass} is not among the diagnostics");
+    }
+}
+
+#[test]
 fn a_prepass_of_the_games_own_stays() {
     let mut small = small();
     small.insert((DepthPrepass, Contours::default())).settle();

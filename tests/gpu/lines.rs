@@ -18,14 +18,7 @@ const OPERATORS: [ContourOperator; 4] = [
 /// A white world of our own, without anti-aliasing: every dark pixel is ink.
 fn empty_world(size: UVec2, msaa: Msaa) -> Small {
     let mut small = Small::new(size, msaa);
-    let objects: Vec<Entity> = {
-        let world = small.world();
-        let mut query = world.query_filtered::<Entity, With<Object>>();
-        query.iter(world).collect()
-    };
-    for object in objects {
-        small.world().despawn(object);
-    }
+    small.clear();
     small.insert(Camera {
         clear_color: Color::WHITE.into(),
         ..default()
@@ -246,14 +239,7 @@ fn a_line_is_as_wide_as_asked_at_every_scale() {
             ..crate::small::options(UVec2::new(120, 60))
         };
         let mut small = Small::with(options, Msaa::Off);
-        let objects: Vec<Entity> = {
-            let world = small.world();
-            let mut query = world.query_filtered::<Entity, With<Object>>();
-            query.iter(world).collect()
-        };
-        for object in objects {
-            small.world().despawn(object);
-        }
+        small.clear();
         add(
             &mut small,
             Rectangle::new(20.0, 40.0),

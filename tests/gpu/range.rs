@@ -418,14 +418,7 @@ fn distances_are_right_under_every_projection() {
     ] {
         let mut small = Small::new(UVec2::new(64, 64), Msaa::Off);
         // One wall across the view, seven before the camera, and nothing else.
-        let objects: Vec<Entity> = {
-            let world = small.world();
-            let mut query = world.query_filtered::<Entity, With<crate::small::Object>>();
-            query.iter(world).collect()
-        };
-        for object in objects {
-            small.world().despawn(object);
-        }
+        small.clear();
         let mesh = small
             .world()
             .resource_mut::<Assets<Mesh>>()

@@ -82,6 +82,16 @@ impl Small {
         self
     }
 
+    /// Takes every object out of the scene.
+    pub fn clear(&mut self) {
+        let world = self.world();
+        let mut query = world.query_filtered::<Entity, With<Object>>();
+        let objects: Vec<Entity> = query.iter(world).collect();
+        for object in objects {
+            world.despawn(object);
+        }
+    }
+
     pub fn style(&mut self, style: &ComicStyle) {
         let camera = self.camera;
         let world = self.world();

@@ -46,7 +46,9 @@ pub struct Vantage {
     pub fov: f32,
     pub near: f32,
     pub far: f32,
-    /// Height of an orthographic view that frames the same subject.
+    /// Where an orthographic view stands, and what it looks at.
+    pub ortho: (Vec3, Vec3),
+    /// Height of that view, world units.
     pub ortho_height: f32,
     pub sky: Handle<Image>,
     pub sky_brightness: f32,
@@ -105,13 +107,22 @@ impl Vantage {
 
     pub fn orthographic(&self, height: f32) -> Projection {
         Projection::Orthographic(OrthographicProjection {
-            near: -self.far * 0.1,
+            near: 0.0,
             far: self.far,
             scaling_mode: ScalingMode::FixedVertical {
                 viewport_height: height,
             },
             ..OrthographicProjection::default_3d()
         })
+    }
+
+    /// The same scene as an orthographic view frames it.
+    pub fn from_above(&self) -> Self {
+        Self {
+            eye: self.ortho.0,
+            target: self.ortho.1,
+            ..self.clone()
+        }
     }
 
     /// The camera of this view, without a style.

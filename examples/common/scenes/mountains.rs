@@ -351,7 +351,8 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
         fov: 54f32.to_radians(),
         near: 0.1,
         far: 12_000.0,
-        ortho_height: 60.0,
+        ortho: (Vec3::new(150.0, 190.0, 330.0), Vec3::new(2.0, 6.0, -12.0)),
+        ortho_height: 62.0,
         sky: stage.images.add(sky.image()),
         sky_brightness: 1000.0,
     }

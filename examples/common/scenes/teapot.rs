@@ -288,6 +288,7 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
         fov: 42f32.to_radians(),
         near: 0.1,
         far: 1000.0,
+        ortho: (Vec3::new(16.0, 21.0, 33.0), Vec3::new(0.1, 4.0, 0.0)),
         ortho_height: 12.0,
         sky: stage.images.add(sky.image()),
         sky_brightness: 1000.0,

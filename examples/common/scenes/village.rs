@@ -518,7 +518,8 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
         fov: 50f32.to_radians(),
         near: 0.1,
         far: 4000.0,
-        ortho_height: 22.0,
+        ortho: (Vec3::new(95.0, 90.0, 110.0), Vec3::new(2.0, 0.0, -14.0)),
+        ortho_height: 52.0,
         sky: stage.images.add(sky.image()),
         sky_brightness: 1000.0,
     }
