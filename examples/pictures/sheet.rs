@@ -57,7 +57,7 @@ pub fn contact_sheet(size: UVec2, out: &Path) -> Result<(), String> {
 
 /// The picture at the top of the README: rows of scenes, columns of a few looks.
 pub fn banner(out: &Path) -> Result<(), String> {
-    let size = UVec2::new(300, 169);
+    let size = UVec2::new(272, 153);
     let looks = [
         None,
         Some("crimson-dusk"),

@@ -9,7 +9,7 @@ use bevy_comics::{
     Desaturation, VisibleDepthRange,
 };
 
-use crate::small::{Object, Small};
+use crate::small::Small;
 
 fn bare(size: UVec2) -> Small {
     let mut small = Small::new(size, Msaa::Off);

@@ -3,10 +3,7 @@
 use bevy::{camera::ScalingMode, prelude::*, render::view::Msaa};
 use bevy_comics::{ContourOperator, Contours, DepthMap, DepthMapping};
 
-use crate::{
-    common::read_back::DepthImage,
-    small::{Object, Small},
-};
+use crate::{common::read_back::DepthImage, small::Small};
 
 const OPERATORS: [ContourOperator; 4] = [
     ContourOperator::Prewitt,
