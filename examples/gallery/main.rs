@@ -190,7 +190,7 @@ fn choose(
         } else {
             (
                 vantage.orthographic(vantage.ortho_height),
-                Orbit::of(&vantage.from_above()),
+                Orbit::of(&vantage.orthographic_vantage()),
             )
         };
         show.orthographic = !show.orthographic;
@@ -199,7 +199,7 @@ fn choose(
         && let Some(vantage) = &show.vantage
     {
         *orbit = Orbit::of(&if show.orthographic {
-            vantage.from_above()
+            vantage.orthographic_vantage()
         } else {
             vantage.clone()
         });

@@ -142,7 +142,7 @@ impl Arguments {
     /// The scene's view, with what the command line changes.
     pub fn adjust(&self, vantage: &mut Vantage) {
         if self.ortho.is_some() {
-            *vantage = vantage.from_above();
+            *vantage = vantage.orthographic_vantage();
         }
         if let Some((eye, target)) = self.camera {
             vantage.eye = eye;

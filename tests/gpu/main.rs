@@ -5,6 +5,7 @@ mod common;
 #[path = "../reference/mod.rs"]
 mod reference;
 
+mod command_line;
 mod device;
 mod extremes;
 mod failures;
@@ -15,6 +16,8 @@ mod left_out;
 mod lines;
 mod pictures;
 mod range;
+mod range_views;
+mod scenes;
 mod shaders;
 mod small;
 mod styles;

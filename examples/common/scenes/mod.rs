@@ -1,6 +1,7 @@
 //! The scenes, all made by code: each with its lights, its sky and a camera
 //! that shows it well.
 
+pub mod buildings;
 pub mod mountains;
 pub mod noise;
 pub mod shape;
@@ -117,7 +118,7 @@ impl Vantage {
     }
 
     /// The same scene as an orthographic view frames it.
-    pub fn from_above(&self) -> Self {
+    pub fn orthographic_vantage(&self) -> Self {
         Self {
             eye: self.ortho.0,
             target: self.ortho.1,

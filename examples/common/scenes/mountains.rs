@@ -77,7 +77,7 @@ fn ground_color(p: Vec3, normal: Vec3) -> [f32; 4] {
 
 /// The tiles of the ground; together they have `SIDE` x `SIDE` vertices, plus
 /// the seams that neighbouring tiles share.
-fn ground() -> Vec<Shape> {
+pub fn ground() -> Vec<Shape> {
     let position = |i: u32, j: u32| {
         let p = Vec2::new(
             warp(i as f32 / (SIDE - 1) as f32),

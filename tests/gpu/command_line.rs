@@ -1,0 +1,233 @@
+//! The `render` example as a newcomer meets it: its files, and its errors.
+
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::{Command, Output},
+    sync::OnceLock,
+};
+
+use serde_json::Value;
+
+use crate::reference::range;
+
+/// The example, built once.
+fn render() -> &'static Path {
+    static RENDER: OnceLock<PathBuf> = OnceLock::new();
+    RENDER.get_or_init(|| {
+        let debug = env::current_exe()
+            .expect("this test")
+            .ancestors()
+            .find(|path| path.file_name().is_some_and(|name| name == "debug"))
+            .expect("the target folder")
+            .to_owned();
+        let status = Command::new(env::var("CARGO").unwrap_or_else(|_| "cargo".into()))
+            .args(["build", "--quiet", "--example", "render"])
+            .current_dir(env!("CARGO_MANIFEST_DIR"))
+            .env("CARGO_TARGET_DIR", debug.parent().expect("a parent"))
+            .status()
+            .expect("cargo runs");
+        assert!(status.success(), "the example does not build");
+        debug.join("examples/render")
+    })
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(render())
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .expect("it starts")
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = env::temp_dir().join(format!("bevy-comics-{name}-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
+#[test]
+fn what_cannot_be_done_is_one_line_that_says_what_can() {
+    let folder = folder("errors");
+    fs::write(
+        folder.join("broken.comic.ron"),
+        "(version: 1, contours: (thresh: 1))",
+    )
+    .expect("written");
+    fs::write(folder.join("broken.gltf"), "{ not json").expect("written");
+    for (arguments, says) in [
+        (&["moonscape"][..], "mountains, teapot, village"),
+        (&["--style", "nope"], "crimson-dusk, museum-print"),
+        (
+            &["--style", "missing.comic.ron"],
+            "cannot read missing.comic.ron",
+        ),
+        (&["--style", "broken.comic.ron"], "line 1"),
+        (&["--size", "0x10"], "WxH"),
+        (&["--size", "999999x10"], "this adapter draws"),
+        (&["--msaa", "3"], "1, 2, 4, 8"),
+        (&["--camera", "1,2,3"], "EX,EY,EZ,TX,TY,TZ"),
+        (&["--camera", "1,2,3,nan,0,0"], "finite"),
+        (&["--near", "-1"], "positive"),
+        (&["--near", "5", "--far", "2"], "near must be smaller"),
+        (&["--ortho", "inf"], "finite"),
+        (&["--frames", "0"], "1 to 100000"),
+        (&["--out", "picture.bmp"], ".png"),
+        (&["--polish"], "--help"),
+        (&["missing.glb"], "cannot read missing.glb"),
+        (&["broken.gltf"], "is no glTF model"),
+    ] {
+        let output = run(&folder, arguments);
+        let errors = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
+        // What the driver and the engine say about this machine is not ours.
+        let ours: Vec<_> = errors
+            .lines()
+            .filter(|line| line.starts_with("render: "))
+            .collect();
+        assert!(
+            ours.len() == 1 && ours[0].contains(says),
+            "{arguments:?}: {errors}"
+        );
+        assert!(!errors.contains("panicked"), "{arguments:?}: {errors}");
+    }
+    fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+#[test]
+fn a_dump_holds_the_depth_without_loss_and_says_what_was_decided() {
+    let folder = folder("dump");
+    let arguments = [
+        "teapot",
+        "--style",
+        "crimson-dusk",
+        "--size",
+        "64x48",
+        "--msaa",
+        "1",
+        "--frames",
+        "4",
+        "--hdr",
+        "--out",
+        "p.png",
+        "--dump",
+        "d",
+    ];
+    let output = run(&folder, &arguments);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    assert_eq!(
+        image::image_dimensions(folder.join("p.png")).expect("a PNG"),
+        (64, 48)
+    );
+
+    let frame: Value =
+        serde_json::from_slice(&fs::read(folder.join("d/frame.json")).expect("frame.json"))
+            .expect("JSON");
+    assert_eq!(frame["projection"], "perspective");
+    assert_eq!(frame["style"]["name"], "Crimson dusk");
+    let ran: Vec<_> = frame["passes_run"]
+        .as_array()
+        .expect("a list")
+        .iter()
+        .filter_map(Value::as_str)
+        .collect();
+    assert!(
+        ran.contains(&"stylize") && ran.contains(&"contours"),
+        "{ran:?}"
+    );
+    assert_eq!(frame["passes_left_out"]["desaturation"], "not requested");
+    for key in ["near", "far", "adapter", "clip_from_view"] {
+        assert!(!frame[key].is_null(), "{key} is missing");
+    }
+
+    // The range is the scan of the depth that was written.
+    let depth = exr::prelude::read_first_flat_layer_from_file(folder.join("d/depth.exr"))
+        .expect("depth.exr");
+    let channel = &depth.layer_data.channel_data.list[0];
+    assert_eq!(channel.name.to_string(), "Z");
+    let exr::prelude::FlatSamples::F32(values) = &channel.sample_data else {
+        panic!("depth is not f32")
+    };
+    assert_eq!(values.len(), 64 * 48);
+    let scan = range::scan(values.iter().copied()).expect("geometry");
+    let bits: Vec<_> = frame["range"]["raw_bits"]
+        .as_array()
+        .expect("bits")
+        .iter()
+        .filter_map(Value::as_u64)
+        .collect();
+    assert_eq!(bits, scan.map(u64::from));
+
+    // What the pass wrote differs from what it read.
+    let rgba = |name: &str| {
+        let image =
+            exr::prelude::read_first_flat_layer_from_file(folder.join("d").join(name)).expect(name);
+        let channels = &image.layer_data.channel_data.list;
+        channels
+            .iter()
+            .flat_map(|c| c.sample_data.values_as_f32())
+            .collect::<Vec<f32>>()
+    };
+    assert_ne!(rgba("input.exr"), rgba("output.exr"));
+    fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+/// A triangle with no light and no camera, a hundredth of a unit across.
+const TRIANGLE: &str = r#"{
+  "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+  "buffers": [{"uri": "triangle.bin", "byteLength": 36}],
+  "bufferViews": [{"buffer": 0, "byteLength": 36}],
+  "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+    "min": [0, 0, 0], "max": [0.01, 0.01, 0]}]
+}"#;
+
+#[test]
+fn a_gltf_file_is_framed_and_lit() {
+    let folder = folder("model");
+    fs::write(folder.join("triangle.gltf"), TRIANGLE).expect("written");
+    let corners = [[0.0f32, 0.0, 0.0], [0.01, 0.0, 0.0], [0.0, 0.01, 0.0]];
+    let bytes: Vec<u8> = corners
+        .iter()
+        .flatten()
+        .flat_map(|x| x.to_le_bytes())
+        .collect();
+    fs::write(folder.join("triangle.bin"), bytes).expect("written");
+    let output = run(
+        &folder,
+        &[
+            "triangle.gltf",
+            "--size",
+            "64x64",
+            "--out",
+            "p.png",
+            "--style",
+            "none",
+            "--dump",
+            "d",
+        ],
+    );
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let frame: Value =
+        serde_json::from_slice(&fs::read(folder.join("d/frame.json")).expect("frame.json"))
+            .expect("JSON");
+    // Framed: seen from about as far as it is wide; lit: not black.
+    let near = frame["range"]["distance"][0]
+        .as_f64()
+        .expect("it is in view");
+    assert!(near > 0.005 && near < 0.1, "{near}");
+    let picture = image::open(folder.join("p.png"))
+        .expect("a picture")
+        .to_rgb8();
+    let middle = picture.get_pixel(28, 34).0;
+    assert!(middle.iter().any(|c| *c > 40), "{middle:?}");
+    fs::remove_dir_all(folder).expect("the folder goes");
+}

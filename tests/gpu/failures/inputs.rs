@@ -1,0 +1,175 @@
+//! Settings, colours and depth as they should not be.
+
+use super::*;
+
+/// Takes the depth prepass away as soon as anyone asks for it.
+fn forbid_prepass(mut commands: Commands, cameras: Query<Entity, With<DepthPrepass>>) {
+    for camera in &cameras {
+        commands.entity(camera).remove::<DepthPrepass>();
+    }
+}
+
+#[test]
+fn failure_06_without_a_prepass_the_colour_styles_remain() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.settle();
+    let original = small.picture();
+    small.headless.app.add_systems(Last, forbid_prepass);
+    small
+        .insert((Contours::default(), Desaturation::default()))
+        .settle();
+    assert_eq!(
+        small.picture(),
+        original,
+        "nothing can be drawn without depth"
+    );
+    let camera = small.camera;
+    let missing = Some(StageOutcome::LeftOut(LeftOut::NoDepthPrepass));
+    assert_eq!(outcome(&small, camera, ComicsStage::Contours), missing);
+    assert_eq!(outcome(&small, camera, ComicsStage::DepthRange), missing);
+    small.insert(Colorization::SEPIA).settle();
+    assert!(small.ran(ComicsStage::Colorization));
+    assert_ne!(small.picture(), original);
+    assert_eq!(small.errors(), 0);
+}
+
+#[test]
+fn failure_08_absurd_settings_equal_their_sanitized_selves() {
+    let wild = [
+        f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        -1e30,
+        1e30,
+        -0.0,
+        f32::MIN_POSITIVE,
+    ];
+    let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
+    for (i, value) in wild.into_iter().enumerate() {
+        let other = wild[(i + 3) % wild.len()];
+        let style = ComicStyle {
+            depth_map: Some(DepthMap {
+                mapping: DepthMapping::Fixed {
+                    near: value,
+                    far: other,
+                },
+                sky_gap: other,
+                floor: value,
+                orthographic_floor: other,
+                ..default()
+            }),
+            desaturation: Some(Desaturation {
+                amount: value,
+                exponent: other,
+                ..default()
+            }),
+            colorization: Some(Colorization {
+                mode: ColorizationMode::Linear,
+                color: Color::srgb(value, other, 0.5),
+                amount: other,
+                ..default()
+            }),
+            black_flats: Some(bevy_comics::BlackFlats {
+                slope: Some(value),
+                value: Some(other),
+                depth_weight: value,
+                feather: other,
+                color: Color::hsl(other, value, 0.2),
+                opacity: value,
+            }),
+            contours: Some(Contours {
+                threshold: value,
+                width: other,
+                softness: value,
+                color: Color::srgb(other, value, value),
+                opacity: other,
+                fade: value,
+                ..default()
+            }),
+            ..default()
+        };
+        small.style(&style);
+        small.settle();
+        let (_, output) = small.pass();
+        assert!(
+            output.pixels.iter().flatten().all(|c| c.is_finite()),
+            "{value}, {other}"
+        );
+        let picture = small.picture();
+        small.style(&style.sanitized());
+        small.settle();
+        assert_eq!(picture, small.picture(), "{value}, {other}");
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+#[test]
+fn failure_09_wild_colours_stay_finite_and_where_they_are() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.insert(Hdr);
+    small.style(&full_style());
+    small.settle();
+    let calm = small.pass().1;
+    for (name, emissive) in [
+        ("NaN", LinearRgba::rgb(f32::NAN, 0.5, 0.5)),
+        ("infinity", LinearRgba::rgb(f32::INFINITY, 1.0, 0.0)),
+        ("negative", LinearRgba::rgb(-4.0, 0.2, 0.1)),
+        ("bright", LinearRgba::rgb(60_000.0, 900.0, 3.0)),
+    ] {
+        let material = {
+            let world = small.world();
+            let mut query =
+                world.query_filtered::<&MeshMaterial3d<StandardMaterial>, With<Object>>();
+            query.iter(world).next().expect("an object").0.clone()
+        };
+        {
+            let mut assets = small.world().resource_mut::<Assets<StandardMaterial>>();
+            let mut material = assets.get_mut(&material).expect("its material");
+            material.base_color = Color::LinearRgba(emissive);
+        }
+        small.settle();
+        let (input, output) = small.pass();
+        assert!(
+            output.pixels.iter().flatten().all(|c| c.is_finite()),
+            "{name} reached the screen"
+        );
+        for ((read, wrote), was) in input.pixels.iter().zip(&output.pixels).zip(&calm.pixels) {
+            // Pixels that do not show the object do not change.
+            let ordinary = read.iter().all(|c| (0.0..=1.0).contains(c));
+            if ordinary && !(name == "NaN" && read[0] == 0.0) {
+                let moved = (0..3)
+                    .map(|i| (wrote[i] - was[i]).abs())
+                    .fold(0.0, f32::max);
+                assert!(moved < 0.02, "{name} spread: {was:?} became {wrote:?}");
+            }
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// The faithful mode is there for comparison: it draws slopes, the default not.
+#[test]
+fn the_default_draws_no_slopes_and_the_faithful_form_does() {
+    let mut small = Small::new(size(), Msaa::Off);
+    let ink = |small: &mut Small, form| {
+        small
+            .insert(Contours {
+                form,
+                threshold: 0.03,
+                softness: 0.0,
+                ..default()
+            })
+            .settle();
+        small
+            .picture()
+            .pixels()
+            .filter(|p| p.0[..3] == [0, 0, 0])
+            .count()
+    };
+    let faithful = ink(&mut small, ContourForm::Faithful);
+    let plane_aware = ink(&mut small, ContourForm::PlaneAware);
+    assert!(
+        plane_aware > 100 && faithful > 2 * plane_aware,
+        "{plane_aware} and {faithful}"
+    );
+}

@@ -1,0 +1,206 @@
+//! What comes, goes, and is not ready.
+
+use super::*;
+
+/// 5 and 18: until the pipeline is there the picture passes through unchanged.
+#[test]
+fn failure_05_18_a_picture_is_never_lost_while_a_pipeline_is_missing() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.settle();
+    let original = small.picture();
+    small.style(&full_style());
+    for _ in 0..6 {
+        small.headless.step(1);
+        let picture = small.picture();
+        let background = picture.get_pixel(1, 1).0;
+        assert_ne!(background, [0, 0, 0, 0], "the picture was lost");
+    }
+    assert_ne!(small.picture(), original);
+
+    // A broken shader: the picture passes through, and comes back when mended.
+    let styled = small.picture();
+    let (id, source) = shader(&mut small, "stylize.wgsl");
+    replace(
+        &mut small,
+        id,
+        "@fragment fn stylize() -> nonsense {".into(),
+    );
+    small.settle();
+    assert_eq!(
+        small.picture(),
+        original,
+        "a broken shader must pass the picture through"
+    );
+    let camera = small.camera;
+    assert_eq!(
+        outcome(&small, camera, ComicsStage::Stylize),
+        Some(StageOutcome::LeftOut(LeftOut::PipelineNotReady))
+    );
+    replace(&mut small, id, source);
+    small.settle();
+    assert_eq!(small.picture(), styled);
+}
+
+fn shader(small: &mut Small, name: &str) -> (AssetId<Shader>, String) {
+    let shaders = small.world().resource::<Assets<Shader>>();
+    let (id, shader) = shaders
+        .iter()
+        .find(|(_, shader)| shader.path.ends_with(name) && shader.path.contains("bevy_comics"))
+        .expect("the shader is an asset");
+    let bevy::shader::Source::Wgsl(text) = &shader.source else {
+        panic!("not WGSL")
+    };
+    (id, text.to_string())
+}
+
+fn replace(small: &mut Small, id: AssetId<Shader>, text: String) {
+    let mut shaders = small.world().resource_mut::<Assets<Shader>>();
+    let path = shaders.get(id).expect("there").path.clone();
+    shaders
+        .insert(id, Shader::from_wgsl(text, path))
+        .expect("replaced");
+}
+
+#[test]
+fn failure_14_without_a_renderer_the_plugin_does_nothing() {
+    let mut app = App::new();
+    app.add_plugins((MinimalPlugins, ComicsPlugin));
+    let mut with_assets = App::new();
+    with_assets.add_plugins((MinimalPlugins, AssetPlugin::default(), ComicsPlugin));
+    with_assets.update();
+    let camera = app
+        .world_mut()
+        .spawn((Contours::default(), Desaturation::default()))
+        .id();
+    for _ in 0..3 {
+        app.update();
+    }
+    assert!(app.world().get::<Contours>(camera).is_some());
+    assert!(
+        app.world()
+            .resource::<ComicsDiagnostics>()
+            .cameras
+            .is_empty()
+    );
+}
+
+#[test]
+fn failure_15_nothing_stale_runs() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.settle();
+    let original = small.picture();
+    small.style(&full_style());
+    small.settle();
+    assert_ne!(small.picture(), original);
+    small.style(&ComicStyle::default());
+    small.settle();
+    assert_eq!(small.picture(), original, "a removed style leaves no trace");
+    let camera = small.camera;
+    assert!(
+        small
+            .headless
+            .app
+            .world()
+            .get::<DepthPrepass>(camera)
+            .is_none(),
+        "our prepass stays"
+    );
+    assert!(
+        !small
+            .headless
+            .app
+            .world()
+            .resource::<ComicsDiagnostics>()
+            .cameras
+            .contains_key(&camera)
+    );
+
+    small.style(&full_style());
+    small.settle();
+    let activate = |small: &mut Small, is_active| {
+        small
+            .world()
+            .get_mut::<Camera>(camera)
+            .expect("a camera")
+            .is_active = is_active;
+        small.settle();
+    };
+    activate(&mut small, false);
+    assert!(
+        !small
+            .headless
+            .app
+            .world()
+            .resource::<ComicsDiagnostics>()
+            .cameras
+            .contains_key(&camera)
+    );
+    activate(&mut small, true);
+    let stages = small
+        .headless
+        .app
+        .world()
+        .resource::<ComicsDiagnostics>()
+        .cameras
+        .get(&camera)
+        .cloned();
+    assert!(small.ran(ComicsStage::Stylize), "{stages:?}");
+    small.world().despawn(camera);
+    small.headless.step(3);
+    assert!(
+        small
+            .headless
+            .app
+            .world()
+            .resource::<ComicsDiagnostics>()
+            .cameras
+            .is_empty()
+    );
+    assert_eq!(small.errors(), 0);
+}
+
+#[test]
+fn failure_15_views_that_come_and_go_leave_no_buffers() {
+    let mut small = styled(Msaa::Off);
+    let buffers = |small: &Small| {
+        let device = small
+            .headless
+            .app
+            .sub_app(RenderApp)
+            .world()
+            .resource::<bevy::render::renderer::RenderDevice>()
+            .clone();
+        device
+            .wgpu_device()
+            .get_internal_counters()
+            .hal
+            .buffers
+            .read()
+    };
+    small.headless.step(6);
+    let before = buffers(&small);
+    for _ in 0..6 {
+        let target: RenderTarget = small.headless.render_target();
+        let extra = small
+            .world()
+            .spawn((
+                camera(target, Msaa::Off),
+                Contours::default(),
+                VisibleDepthRange::default(),
+            ))
+            .insert(Camera {
+                order: 1,
+                ..default()
+            })
+            .id();
+        small.headless.step(3);
+        small.world().despawn(extra);
+        small.headless.step(3);
+    }
+    small.headless.step(6);
+    assert!(
+        buffers(&small) <= before + 8,
+        "{before} buffers grew to {}",
+        buffers(&small)
+    );
+}

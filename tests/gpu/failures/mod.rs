@@ -1,0 +1,67 @@
+//! How such plugins fail: every case that must hold from the first version, by
+//! its number in the list.
+
+mod inputs;
+mod lifetimes;
+mod views;
+
+use bevy::{
+    anti_alias::{fxaa::Fxaa, smaa::Smaa},
+    camera::{Hdr, RenderTarget, Viewport},
+    core_pipeline::prepass::{DeferredPrepass, DepthPrepass},
+    prelude::*,
+    render::{RenderApp, render_resource::TextureFormat, view::Msaa},
+};
+use bevy_comics::{
+    Colorization, ColorizationMode, ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage,
+    ContourForm, Contours, DepthMap, DepthMapping, Desaturation, LeftOut, StageOutcome,
+    VisibleDepthRange,
+};
+
+use crate::{
+    common::headless::{HeadlessOptions, new_target},
+    small::{Object, Small, camera, options, size},
+};
+
+fn full_style() -> ComicStyle {
+    ComicStyle {
+        desaturation: Some(Desaturation::default()),
+        colorization: Some(Colorization::default()),
+        contours: Some(Contours {
+            threshold: 0.05,
+            ..default()
+        }),
+        ..default()
+    }
+}
+
+fn styled(msaa: Msaa) -> Small {
+    let mut small = Small::new(size(), msaa);
+    small.style(&full_style());
+    small.settle();
+    small
+}
+
+/// Share of pixels that differ by more than a code.
+fn changed(a: &image::RgbaImage, b: &image::RgbaImage) -> f64 {
+    assert_eq!(a.dimensions(), b.dimensions());
+    let differs = |(p, q): (&image::Rgba<u8>, &image::Rgba<u8>)| {
+        p.0.iter().zip(q.0).any(|(a, b)| a.abs_diff(b) > 1)
+    };
+    a.pixels()
+        .zip(b.pixels())
+        .filter(|pair| differs(*pair))
+        .count() as f64
+        / f64::from(a.width() * a.height())
+}
+
+fn outcome(small: &Small, camera: Entity, stage: ComicsStage) -> Option<StageOutcome> {
+    small
+        .headless
+        .app
+        .world()
+        .resource::<ComicsDiagnostics>()
+        .cameras
+        .get(&camera)?
+        .outcome(stage)
+}

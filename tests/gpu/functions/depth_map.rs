@@ -1,0 +1,244 @@
+//! The depth map and its differences.
+
+use super::*;
+
+const MAP: &str = "#import bevy_comics::depth::map::{DepthFrame, depth_map, depth_step}";
+const FRAME: &str = "let f = DepthFrame(i(0u), i(1u), i(2u), i(3u), i(4u), i(5u), i(6u), u(7u));";
+
+/// near, far, offset, floor, `plane_far`, extent, gap, flags, and two depths.
+type MapRow = [f32; 10];
+
+fn frame_of(row: &MapRow) -> Frame {
+    let orthographic = row[7] as u32 & 1 == 1;
+    Frame {
+        projection: if orthographic {
+            Projection::Orthographic {
+                plane_far: f64::from(row[4]),
+                extent: f64::from(row[5]),
+            }
+        } else {
+            Projection::Perspective {
+                offset: f64::from(row[2]),
+            }
+        },
+        ends: Some([f64::from(row[0]), f64::from(row[1])]),
+        logarithmic: row[7] as u32 & 2 == 2,
+        floor: f64::from(row[3]),
+        sky_gap: f64::from(row[6]),
+    }
+}
+
+/// Ranges from the table of extreme cases, by near plane and distances.
+fn perspective_rows(logarithmic: bool) -> impl Strategy<Value = MapRow> {
+    let ranges = select(vec![
+        (0.1, 0.1, 1e6),
+        (0.1, 10.0, 10.01),
+        (0.1, 100.0, 100.001),
+        (0.1, 1e5, 1e7),
+        (1e3, 1e3, 1e38),
+        (0.1, 10_000.0, 10_100.0),
+        (0.01, 1.0, 2.0),
+        (1.0, 1.0, 1.5),
+        (0.1, 0.1, 1e-1 * 1.000_001),
+    ]);
+    let offsets = select(vec![0.0f64, 1e-4, 1e-7, 0.5]);
+    (ranges, offsets, 0.0f64..=1.0, 0.0f64..=1.0, any::<bool>()).prop_map(
+        move |((plane, near, far), offset, t, t2, ratio): (
+            (f64, f64, f64),
+            f64,
+            f64,
+            f64,
+            bool,
+        )| {
+            // With an offset a the far plane is at plane (1 + a) / a: ranges
+            // beyond it are seen by an infinite projection.
+            let offset = if offset * far < plane * (1.0 + offset) {
+                offset
+            } else {
+                0.0
+            };
+            let raw = |z: f64| (((plane * (1.0 + offset)) / z - offset).clamp(0.0, 1.0)) as f32;
+            let at = |t: f64| {
+                if ratio {
+                    near * (far / near).powf(t)
+                } else {
+                    near + (far - near) * t
+                }
+            };
+            let flags = if logarithmic { 2.0 } else { 0.0 };
+            let (n, f) = (raw(near), raw(far).max(f32::MIN_POSITIVE));
+            [
+                n,
+                f,
+                offset as f32,
+                0.0,
+                0.0,
+                0.0,
+                0.05,
+                flags,
+                raw(at(t)).clamp(f, n),
+                raw(at(t2)).clamp(f, n),
+            ]
+        },
+    )
+}
+
+fn orthographic_rows(logarithmic: bool) -> impl Strategy<Value = MapRow> {
+    (
+        select(vec![(0.0f32, 100.0f32), (-50.0, 1000.0), (0.1, 10.0)]),
+        0.0f32..=1.0,
+        0.0f32..=1.0,
+        0.0f32..=1.0,
+        0.0f32..=1.0,
+    )
+        .prop_map(move |((near, far), a, b, t, t2)| {
+            let extent = far - near;
+            let (n, f) = (a.max(b).max(1e-6), a.min(b).max(1e-7));
+            let at = |t: f32| (f + (n - f) * t).clamp(f, n);
+            let flags = if logarithmic { 3.0 } else { 1.0 };
+            [n, f, 0.0, 1e-12, far, extent, 0.05, flags, at(t), at(t2)]
+        })
+}
+
+#[test]
+fn the_linear_map_is_within_5_ulp_of_the_exact_quotient() {
+    for rows_of in [
+        perspective_rows(false).boxed(),
+        orthographic_rows(false).boxed(),
+    ] {
+        for_batches(rows_of, |rows| {
+            let results = gpu().evaluate(
+                MAP,
+                &format!("{FRAME} return vec4(depth_map(f, i(8u)), 0.0, 0.0);"),
+                rows,
+            );
+            for (row, result) in rows.iter().zip(results) {
+                if row[0] <= row[1] {
+                    continue;
+                }
+                let [d, l] = frame_of(row).depth_map(f64::from(row[8]));
+                for (got, want) in [(result[0], d), (result[1], l)] {
+                    assert!(
+                        ulps(got, want) <= 5.0,
+                        "{row:?}: {got} for {want}, {} ulp",
+                        ulps(got, want)
+                    );
+                }
+            }
+        });
+    }
+}
+
+#[test]
+fn the_logarithmic_map_keeps_its_relative_precision() {
+    // log() may be 3 ulp off, twice, and two divisions 2.5 ulp each; the inputs
+    // of an orthographic logarithm are distances that were rounded before.
+    for (rows_of, orthographic) in [
+        (perspective_rows(true).boxed(), false),
+        (orthographic_rows(true).boxed(), true),
+    ] {
+        for_batches(rows_of, |rows| {
+            let results = gpu().evaluate(
+                MAP,
+                &format!("{FRAME} return vec4(depth_map(f, i(8u)), 0.0, 0.0);"),
+                rows,
+            );
+            for (row, result) in rows.iter().zip(results) {
+                if f64::from(row[0]) - f64::from(row[1]) < 1e-3 * f64::from(row[0]) && orthographic
+                    || row[0] <= row[1]
+                {
+                    continue;
+                }
+                let [d, _] = frame_of(row).depth_map(f64::from(row[8]));
+                let tolerance = if orthographic {
+                    2e-4
+                } else {
+                    16.0 * 2f64.powi(-23) * d.max(2f64.powi(-20))
+                };
+                assert!(
+                    (f64::from(result[0]) - d).abs() <= tolerance,
+                    "{row:?}: {} for {d}",
+                    result[0]
+                );
+            }
+        });
+    }
+}
+
+#[test]
+fn what_is_no_depth_lies_at_the_far_end() {
+    let rows: Vec<MapRow> = [
+        0.0,
+        -0.0,
+        1e-40,
+        -0.5,
+        1.5,
+        f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+    ]
+    .map(|d| [0.5, 0.001, 0.0, 0.0, 0.0, 0.0, 0.05, 0.0, d, 0.0])
+    .to_vec();
+    for (row, result) in rows.iter().zip(gpu().evaluate(
+        MAP,
+        &format!("{FRAME} return vec4(depth_map(f, i(8u)), 0.0, 0.0);"),
+        &rows,
+    )) {
+        assert_eq!([result[0], result[1]], [1.0, 0.0], "{}", row[8]);
+    }
+    // A flat wall is all near; an empty view is all far.
+    let flat = [
+        0.25,
+        0.25,
+        0.0,
+        1.0 / 16384.0,
+        0.0,
+        0.0,
+        0.05,
+        0.0,
+        0.25,
+        0.0,
+    ];
+    let mut empty = flat;
+    empty[7] = 4.0;
+    let results = gpu().evaluate(
+        MAP,
+        &format!("{FRAME} return vec4(depth_map(f, i(8u)), 0.0, 0.0);"),
+        &[flat, empty],
+    );
+    assert_eq!(results[0][..2], [0.0, 1.0]);
+    assert_eq!(results[1][..2], [1.0, 0.0]);
+}
+
+#[test]
+fn steps_of_the_map_do_not_cancel() {
+    for rows_of in [
+        perspective_rows(false).boxed(),
+        orthographic_rows(false).boxed(),
+    ] {
+        for_batches(rows_of, |rows| {
+            let results = gpu().evaluate(
+                MAP,
+                &format!("{FRAME} return vec4(depth_step(f, i(8u), i(9u)));"),
+                rows,
+            );
+            for (row, result) in rows.iter().zip(results) {
+                if row[0] <= row[1] {
+                    continue;
+                }
+                // D(d) - D(p) in closed form, from the stored depths.
+                let [near, far, a, d, p] = [0, 1, 2, 8, 9].map(|k| f64::from(row[k]));
+                let step = if row[7] == 0.0 {
+                    (p - d) / (near - far) * ((near + a) / (d + a)) * ((far + a) / (p + a))
+                } else {
+                    (p - d) / (near - far)
+                };
+                assert!(
+                    ulps(result[0], step) <= 10.0,
+                    "{row:?}: {} for {step}",
+                    result[0]
+                );
+            }
+        });
+    }
+}

@@ -1,0 +1,238 @@
+//! The depth range of rendered views, as the game reads it.
+
+use bevy::{
+    camera::{OrthographicProjection, PerspectiveProjection, Projection, ScalingMode, Viewport},
+    prelude::*,
+    render::view::Msaa,
+};
+use bevy_comics::{ComicsStage, DepthMap, ReductionMethod, VisibleDepthRange};
+
+use crate::{common::headless, reference::range, small::Small};
+
+fn msaa_of(samples: u32) -> Msaa {
+    Msaa::from_samples(samples)
+}
+
+/// The range that the game reads against a scan of the depth texture.
+fn assert_range_is_the_scan(small: &Small, rect: Option<[u32; 4]>, what: &str) {
+    let depth = small.depth().unwrap_or_else(|| panic!("{what}: no depth"));
+    let [x, y, w, h] = rect.unwrap_or([0, 0, depth.width, depth.height]);
+    let scan = range::scan(
+        (y..y + h)
+            .flat_map(|y| (x..x + w).map(move |x| (x, y)))
+            .flat_map(|(x, y)| {
+                let depth = &depth;
+                (0..depth.samples).map(move |s| depth.at(x, y, s))
+            }),
+    );
+    match (small.range(), scan) {
+        (
+            Some(VisibleDepthRange::Visible {
+                raw_near, raw_far, ..
+            }),
+            Some(scan),
+        ) => {
+            assert_eq!([raw_near.to_bits(), raw_far.to_bits()], scan, "{what}");
+        }
+        (Some(VisibleDepthRange::Empty), None) => {}
+        (got, want) => panic!("{what}: {got:?} for {want:?}"),
+    }
+}
+
+#[test]
+fn every_method_reads_every_sample_of_a_rendered_view() {
+    let samples = headless::adapter().expect("an adapter").samples;
+    for samples in samples {
+        let mut small = Small::new(UVec2::new(71, 53), msaa_of(samples));
+        for reduction in [
+            ReductionMethod::Auto,
+            ReductionMethod::BarrierFree,
+            ReductionMethod::Subgroup,
+            ReductionMethod::SharedMemory,
+            ReductionMethod::PingPong,
+        ] {
+            small
+                .insert((
+                    DepthMap {
+                        reduction,
+                        ..default()
+                    },
+                    VisibleDepthRange::default(),
+                ))
+                .settle();
+            assert!(
+                small.ran(ComicsStage::DepthRange),
+                "{reduction:?} did not run"
+            );
+            assert_range_is_the_scan(&small, None, &format!("{reduction:?}, {samples} samples"));
+        }
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+fn oblique(clip: Mat4) -> Mat4 {
+    let mut rows = clip.transpose();
+    rows.z_axis.y = 0.02;
+    rows.transpose()
+}
+
+/// A projection whose near plane is tilted, as a mirror's is.
+#[derive(Clone, Debug)]
+struct Tilted(PerspectiveProjection);
+
+impl bevy::camera::CameraProjection for Tilted {
+    fn get_clip_from_view(&self) -> Mat4 {
+        oblique(self.0.get_clip_from_view())
+    }
+    fn get_clip_from_view_for_sub(&self, view: &bevy::camera::SubCameraView) -> Mat4 {
+        oblique(self.0.get_clip_from_view_for_sub(view))
+    }
+    fn update(&mut self, width: f32, height: f32) {
+        self.0.update(width, height);
+    }
+    fn far(&self) -> f32 {
+        self.0.far
+    }
+    fn get_frustum_corners(&self, near: f32, far: f32) -> [Vec3A; 8] {
+        self.0.get_frustum_corners(near, far)
+    }
+}
+
+/// A perspective with a far plane, which the engine's own has not.
+#[derive(Clone, Debug)]
+struct Finite(PerspectiveProjection);
+
+impl bevy::camera::CameraProjection for Finite {
+    fn get_clip_from_view(&self) -> Mat4 {
+        let p = &self.0;
+        Mat4::perspective_rh(p.fov, p.aspect_ratio, p.far, p.near)
+    }
+    fn get_clip_from_view_for_sub(&self, _view: &bevy::camera::SubCameraView) -> Mat4 {
+        self.get_clip_from_view()
+    }
+    fn update(&mut self, width: f32, height: f32) {
+        self.0.update(width, height);
+    }
+    fn far(&self) -> f32 {
+        self.0.far
+    }
+    fn get_frustum_corners(&self, near: f32, far: f32) -> [Vec3A; 8] {
+        self.0.get_frustum_corners(near, far)
+    }
+}
+
+/// Failure 16: the distance that the game reads, under every projection.
+#[test]
+fn distances_are_right_under_every_projection() {
+    let ortho = OrthographicProjection {
+        near: -5.0,
+        far: 60.0,
+        scaling_mode: ScalingMode::FixedVertical {
+            viewport_height: 6.0,
+        },
+        ..OrthographicProjection::default_3d()
+    };
+    let perspective = PerspectiveProjection {
+        near: 0.1,
+        far: 40.0,
+        ..default()
+    };
+    for (name, projection) in [
+        ("perspective", Projection::Perspective(perspective.clone())),
+        ("orthographic", Projection::Orthographic(ortho)),
+        ("finite", Projection::custom(Finite(perspective.clone()))),
+        ("oblique", Projection::custom(Tilted(perspective))),
+    ] {
+        let mut small = Small::new(UVec2::new(64, 64), Msaa::Off);
+        // One wall across the view, seven before the camera, and nothing else.
+        small.clear();
+        let mesh = small
+            .world()
+            .resource_mut::<Assets<Mesh>>()
+            .add(Rectangle::new(200.0, 200.0));
+        let material = small
+            .world()
+            .resource_mut::<Assets<StandardMaterial>>()
+            .add(Color::WHITE);
+        small.world().spawn((
+            Mesh3d(mesh),
+            MeshMaterial3d(material),
+            Transform::from_xyz(0.0, 0.0, -7.0),
+        ));
+        small
+            .insert((
+                projection,
+                Transform::IDENTITY,
+                VisibleDepthRange::default(),
+            ))
+            .settle();
+        let Some((near, far)) = small.range().and_then(VisibleDepthRange::distances) else {
+            panic!("{name}: {:?}", small.range());
+        };
+        // A rasterised plane is as exact as single-precision interpolation
+        // between corners a hundred units off.
+        for distance in [near, far] {
+            assert!((distance - 7.0).abs() < 2e-3, "{name}: {near} to {far}");
+        }
+        if name != "oblique" {
+            assert_range_is_the_scan(&small, None, name);
+        }
+        assert_eq!(small.errors(), 0, "{name}");
+    }
+}
+
+/// Failure 3, the range's half.
+#[test]
+fn the_range_stays_inside_the_viewport() {
+    let mut small = Small::new(UVec2::new(90, 60), Msaa::Off);
+    small.insert((
+        Camera {
+            viewport: Some(Viewport {
+                physical_position: UVec2::new(13, 7),
+                physical_size: UVec2::new(41, 37),
+                ..default()
+            }),
+            ..default()
+        },
+        VisibleDepthRange::default(),
+    ));
+    small.settle();
+    assert_range_is_the_scan(&small, Some([13, 7, 41, 37]), "viewport");
+}
+
+/// Failure 7.
+#[test]
+fn an_empty_and_a_transparent_view_have_an_empty_range_and_a_defined_picture() {
+    let mut small = Small::new(UVec2::new(48, 32), Msaa::Sample4);
+    small
+        .insert((
+            bevy_comics::Contours::default(),
+            bevy_comics::Desaturation::default(),
+            VisibleDepthRange::default(),
+        ))
+        .settle();
+    assert!(matches!(
+        small.range(),
+        Some(VisibleDepthRange::Visible { .. })
+    ));
+    let materials: Vec<_> = {
+        let world = small.world();
+        let mut query = world.query::<&MeshMaterial3d<StandardMaterial>>();
+        query.iter(world).map(|m| m.0.clone()).collect()
+    };
+    for material in materials {
+        let mut assets = small.world().resource_mut::<Assets<StandardMaterial>>();
+        let mut material = assets.get_mut(&material).expect("a material of the scene");
+        material.alpha_mode = AlphaMode::Blend;
+    }
+    small.settle();
+    assert_eq!(
+        small.range(),
+        Some(VisibleDepthRange::Empty),
+        "transparent things have no depth"
+    );
+    assert!(small.ran(ComicsStage::Stylize));
+    let (_, output) = small.pass();
+    assert!(output.pixels.iter().flatten().all(|c| c.is_finite()));
+    assert_eq!(small.errors(), 0);
+}
