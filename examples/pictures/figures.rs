@@ -5,6 +5,7 @@ use std::path::Path;
 
 use bevy::{
     ecs::system::RunSystemOnce,
+    light::NotShadowCaster,
     prelude::*,
     render::{RenderApp, sync_world::RenderEntity, view::Msaa},
 };
@@ -263,14 +264,52 @@ fn figure_4(folder: &Path) -> Result<(), String> {
     save(&sheet(&rows), &folder.join("figure-4.png"))
 }
 
+/// What a transparent surface looks like: a pane of red glass before half of
+/// the view takes the depth, and so the grey, of what is behind it.
+fn transparency(folder: &Path) -> Result<(), String> {
+    let mut studio = Studio::new(BuiltIn::Teapot, SIZE, Msaa::Sample4);
+    let forward = (studio.vantage.target - studio.vantage.eye).normalize();
+    let at = studio
+        .vantage
+        .transform()
+        .with_translation(studio.vantage.eye + forward * 6.0);
+    let world = studio.headless.app.world_mut();
+    let mesh = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Rectangle::new(4.0, 3.4));
+    let material = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: Color::srgba(0.85, 0.1, 0.1, 0.55),
+            alpha_mode: AlphaMode::Blend,
+            unlit: true,
+            ..default()
+        });
+    let pane = at.with_translation(at.translation + at.right() * 2.0);
+    world.spawn((
+        Mesh3d(mesh),
+        MeshMaterial3d(material),
+        pane,
+        NotShadowCaster,
+    ));
+    let style = ComicStyle {
+        desaturation: Some(Desaturation::default()),
+        contours: Some(Contours::default()),
+        ..default()
+    };
+    let rows = [vec![studio.shoot(None), studio.shoot(Some(&style))]];
+    save(&sheet(&rows), &folder.join("transparency.png"))
+}
+
 pub fn write(folder: &Path) -> Result<(), String> {
     std::fs::create_dir_all(folder)
         .map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
     figure_2(folder)?;
     figure_3(folder)?;
     figure_4(folder)?;
+    transparency(folder)?;
     println!(
-        "wrote figure-2.png, figure-2.json, figure-3.png and figure-4.png in {}",
+        "wrote figure-2.png, figure-2.json, figure-3.png, figure-4.png and\n      transparency.png in {}",
         folder.display()
     );
     Ok(())
