@@ -21,7 +21,7 @@ use crate::sanitize::{bounded, ordered_planes};
 /// nearest and 1 at the farthest end of a range and drives every depth style.
 ///
 /// Without this component a camera uses the default: the range of what is
-/// visible in this very frame ([CS] Eq. 4).
+/// visible in this very frame (\[CS\] Eq. 4).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[serde(default, deny_unknown_fields)]
@@ -30,7 +30,7 @@ pub struct DepthMap {
     /// Default: [`DepthMapping::MinMax`].
     pub mapping: DepthMapping,
     /// Exchanges near and far for the colour styles: the literal reading of
-    /// [CS] Eq. 6 to 11, in which the foreground takes the atmosphere.
+    /// \[CS\] Eq. 6 to 11, in which the foreground takes the atmosphere.
     /// Contours do not change. Default: `false`.
     pub flip: bool,
     /// How far behind the farthest geometry the sky counts, in units of the
@@ -89,7 +89,7 @@ impl DepthMap {
 #[reflect(Default, Clone, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub enum DepthMapping {
-    /// [CS] Eq. 4: the nearest visible distance becomes 0, the farthest 1,
+    /// \[CS\] Eq. 4: the nearest visible distance becomes 0, the farthest 1,
     /// linear in between.
     #[default]
     MinMax,
@@ -97,10 +97,10 @@ pub enum DepthMapping {
     /// equal steps, so that a large landscape keeps contours and colours apart
     /// in its foreground.
     MinMaxLogarithmic,
-    /// [CS] Eq. 2: linear between the camera's near and far plane, whatever is
+    /// \[CS\] Eq. 2: linear between the camera's near and far plane, whatever is
     /// visible. The paper's counter-example.
     Linear,
-    /// [CS] Eq. 3: logarithmic between the camera's near and far plane. Under
+    /// \[CS\] Eq. 3: logarithmic between the camera's near and far plane. Under
     /// an orthographic projection, distances below 1e-4 of the distance between
     /// the planes count as that.
     Logarithmic,
@@ -170,7 +170,7 @@ pub enum ReductionMethod {
     /// One compute dispatch with a tree in workgroup memory.
     SharedMemory,
     /// The paper's own chain of fragment passes, each half the size of the one
-    /// before ([CS] 3.1). Needs no compute shaders; slower. Where the adapter
+    /// before (\[CS\] 3.1). Needs no compute shaders; slower. Where the adapter
     /// has no compute shaders, every method is this one.
     PingPong,
 }

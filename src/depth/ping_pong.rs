@@ -1,4 +1,4 @@
-//! The paper's own reduction ([CS] 3.1): a chain of fragment passes.
+//! The paper's own reduction (\[CS\] 3.1): a chain of fragment passes.
 
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},

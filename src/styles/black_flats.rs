@@ -1,4 +1,4 @@
-//! Areas of solid ink: steep slopes and deep shadows ([CS] 3.2, Figure 4).
+//! Areas of solid ink: steep slopes and deep shadows (\[CS\] 3.2, Figure 4).
 
 use bevy::{
     color::{Color, ColorToComponents},

@@ -1,5 +1,5 @@
 //! The atmosphere: one hue for everything, or more of it with distance
-//! ([CS] Eq. 8 to 11).
+//! (\[CS\] Eq. 8 to 11).
 
 use bevy::{
     color::{Color, ColorToComponents, Hsva, Oklaba},
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::{ColorMethod, file_color, oklab};
 use crate::sanitize::{bounded, displayable};
 
-/// Colours the picture with an atmosphere ([CS] Eq. 8 to 11).
+/// Colours the picture with an atmosphere (\[CS\] Eq. 8 to 11).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[serde(default, deny_unknown_fields)]
@@ -35,7 +35,7 @@ pub struct Colorization {
     pub method: ColorMethod,
 }
 
-/// The four models of [CS].
+/// The four models of \[CS\].
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash)]
 pub enum ColorizationMode {
@@ -65,7 +65,7 @@ impl Default for Colorization {
 }
 
 impl Colorization {
-    /// Old paper: everything in the brown of a faded photograph ([CS] Figure 3).
+    /// Old paper: everything in the brown of a faded photograph (\[CS\] Figure 3).
     pub const SEPIA: Self = Self {
         mode: ColorizationMode::Atmosphere,
         color: Color::srgb(0.62, 0.50, 0.34),

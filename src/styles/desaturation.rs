@@ -1,4 +1,4 @@
-//! Colours fade with distance ([CS] Eq. 5 to 7).
+//! Colours fade with distance (\[CS\] Eq. 5 to 7).
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
@@ -11,7 +11,7 @@ use super::ColorMethod;
 use crate::sanitize::bounded;
 
 /// Takes saturation away with distance: the nearest geometry keeps its colours,
-/// the farthest and the sky turn grey ([CS] Eq. 6 and 7).
+/// the farthest and the sky turn grey (\[CS\] Eq. 6 and 7).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[serde(default, deny_unknown_fields)]
@@ -39,13 +39,13 @@ impl Default for Desaturation {
 }
 
 impl Desaturation {
-    /// [CS] Eq. 6 as printed.
+    /// \[CS\] Eq. 6 as printed.
     pub const LINEAR: Self = Self {
         amount: 1.0,
         exponent: 1.0,
         method: ColorMethod::Faithful,
     };
-    /// [CS] Eq. 7 as printed.
+    /// \[CS\] Eq. 7 as printed.
     pub const QUADRATIC: Self = Self {
         amount: 1.0,
         exponent: 0.5,

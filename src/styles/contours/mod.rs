@@ -1,4 +1,4 @@
-//! Lines where the depth map jumps ([CS] 3.2).
+//! Lines where the depth map jumps (\[CS\] 3.2).
 
 use bevy::{
     color::{Color, ColorToComponents},
@@ -54,12 +54,12 @@ pub struct Contours {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash)]
 pub enum ContourOperator {
-    /// First differences of three rows and columns ([CS]): even lines.
+    /// First differences of three rows and columns (\[CS\]): even lines.
     #[default]
     Prewitt,
     /// As Prewitt, the middle weighted double: a little crisper.
     Sobel,
-    /// Second differences of all eight neighbours ([CS]): stresses corners and
+    /// Second differences of all eight neighbours (\[CS\]): stresses corners and
     /// thin things.
     Laplace,
     /// Differences along the diagonals alone: lighter, more broken lines.
