@@ -282,7 +282,9 @@ fn a_viewport_is_styled_inside_and_untouched_outside() {
     }
 }
 
-/// Failure 2: linear and gamma-encoded storage.
+/// Failure 2: linear and gamma-encoded storage. The picture is not that of a
+/// linear camera: Bevy 0.19.1 draws unlit meshes darker there without any style,
+/// so the pass is held to its twin on what it was given.
 #[test]
 fn a_camera_that_stores_display_codes_is_its_twin() {
     let mut small = Small::new(UVec2::new(64, 48), Msaa::Off);
