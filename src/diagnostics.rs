@@ -22,12 +22,22 @@ use crate::depth::ReductionMethod;
 pub enum ComicsStage {
     /// The engine's depth prepass, asked for by this crate or by the game.
     DepthPrepass,
+    /// The engine's normal prepass, which creases need.
+    NormalPrepass,
+    /// The ids of the objects.
+    ObjectIds,
     /// The min/max reduction of the depth.
     DepthRange,
     /// The copy of the range to the game ([`VisibleDepthRange`]).
     ///
     /// [`VisibleDepthRange`]: crate::VisibleDepthRange
     RangeReadback,
+    /// The pass that finds the edges of the outlines.
+    OutlineEdges,
+    /// The jump flood that carries wide lines.
+    LineFlood,
+    /// Tone bands, inside the fused pass.
+    ToneBands,
     /// Desaturation, inside the fused pass.
     Desaturation,
     /// Colorization, inside the fused pass.
@@ -36,20 +46,31 @@ pub enum ComicsStage {
     BlackFlats,
     /// Contours, inside the fused pass.
     Contours,
+    /// Outlines, inside the fused pass.
+    Outlines,
+    /// The sketch, inside the fused pass.
+    Sketch,
     /// The fused full-screen pass.
     Stylize,
 }
 
 impl ComicsStage {
     /// Every stage, in order.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 15] = [
         Self::DepthPrepass,
+        Self::NormalPrepass,
+        Self::ObjectIds,
         Self::DepthRange,
         Self::RangeReadback,
+        Self::OutlineEdges,
+        Self::LineFlood,
+        Self::ToneBands,
         Self::Desaturation,
         Self::Colorization,
         Self::BlackFlats,
         Self::Contours,
+        Self::Outlines,
+        Self::Sketch,
         Self::Stylize,
     ];
 
@@ -57,12 +78,19 @@ impl ComicsStage {
     pub fn name(self) -> &'static str {
         match self {
             Self::DepthPrepass => "depth prepass",
+            Self::NormalPrepass => "normal prepass",
+            Self::ObjectIds => "object ids",
             Self::DepthRange => "depth range",
             Self::RangeReadback => "range readback",
+            Self::OutlineEdges => "outline edges",
+            Self::LineFlood => "line flood",
+            Self::ToneBands => "tone bands",
             Self::Desaturation => "desaturation",
             Self::Colorization => "colorization",
             Self::BlackFlats => "black flats",
             Self::Contours => "contours",
+            Self::Outlines => "outlines",
+            Self::Sketch => "sketch",
             Self::Stylize => "stylize",
         }
     }
@@ -88,6 +116,12 @@ pub enum LeftOut {
     Negligible,
     /// No style of this camera reads depth.
     NoDepthStyle,
+    /// No style of this camera reads the depth map, only depth itself.
+    NoMapStyle,
+    /// No outline of this camera needs it.
+    NoSuchLines,
+    /// The lines are narrow: the fused pass finds them by itself.
+    NarrowLines,
     /// The depth map spans fixed distances.
     FixedRange,
     /// The view has no depth prepass.
@@ -110,6 +144,9 @@ impl fmt::Display for LeftOut {
             Self::NotRequested => "not requested",
             Self::Negligible => "its settings change nothing",
             Self::NoDepthStyle => "no style reads depth",
+            Self::NoMapStyle => "no style reads the depth map",
+            Self::NoSuchLines => "no outline needs it",
+            Self::NarrowLines => "the lines are narrow",
             Self::FixedRange => "the range is fixed",
             Self::NoDepthPrepass => "the view has no depth prepass",
             Self::NothingToDraw => "no style to draw",

@@ -34,6 +34,8 @@
 
 mod depth;
 mod diagnostics;
+mod objects;
+mod outlining;
 mod passes;
 mod plugin;
 mod sanitize;
@@ -43,17 +45,23 @@ mod view;
 
 pub use depth::{DepthMap, DepthMapping, ProjectionKind, ReductionMethod, VisibleDepthRange};
 pub use diagnostics::{CameraStages, ComicsDiagnostics, ComicsStage, LeftOut, StageOutcome};
+#[cfg(feature = "objects")]
+pub use objects::{ContourStyle, LineKinds, NoContours};
 pub use plugin::{ComicsPlugin, ComicsSystems};
 pub use styles::{
     BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ComicStyleError,
-    ComicStyleHandle, ContourForm, ContourOperator, Contours, Desaturation, presets,
+    ComicStyleHandle, ContourForm, ContourOperator, Contours, Creases, Desaturation, EdgeForm,
+    ObjectEdges, Outlines, Silhouettes, Sketch, ToneBandMethod, ToneBands, presets,
 };
 
 /// What most games need: `use bevy_comics::prelude::*;`.
 pub mod prelude {
     pub use crate::{
         BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ComicStyleHandle,
-        ComicsPlugin, ContourForm, ContourOperator, Contours, DepthMap, DepthMapping, Desaturation,
-        VisibleDepthRange,
+        ComicsPlugin, ContourForm, ContourOperator, Contours, Creases, DepthMap, DepthMapping,
+        Desaturation, EdgeForm, ObjectEdges, Outlines, Silhouettes, Sketch, ToneBandMethod,
+        ToneBands, VisibleDepthRange,
     };
+    #[cfg(feature = "objects")]
+    pub use crate::{ContourStyle, LineKinds, NoContours};
 }

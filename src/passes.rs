@@ -9,7 +9,7 @@ use bevy::{
     ecs::{
         entity::{Entity, EntityHashMap},
         resource::Resource,
-        system::{Commands, Query, Res, ResMut},
+        system::{Commands, Query, Res, ResMut, SystemParam},
         world::{FromWorld, World},
     },
     math::{IVec4, UVec2, UVec4, Vec2, Vec4Swizzles},
@@ -17,7 +17,7 @@ use bevy::{
         camera::ExtractedCamera,
         render_resource::{
             Buffer, BufferDescriptor, BufferUsages, CachedRenderPipelineId, DynamicUniformBuffer,
-            PipelineCache, SpecializedComputePipelines, SpecializedRenderPipelines,
+            PipelineCache, SpecializedComputePipelines, SpecializedRenderPipelines, TextureFormat,
         },
         renderer::{RenderAdapterInfo, RenderDevice, RenderQueue},
         view::{ExtractedView, ViewTarget},
@@ -33,6 +33,11 @@ use crate::{
         readback::{RangeReadback, RangeReadings},
     },
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
+    objects::{ObjectStyleBuffer, ObjectStyles},
+    outlining::{
+        FloodPass, FloodPipeline, GATHER_REACH, OutlineKey, OutlinePass, OutlinePipeline,
+        ViewTexture, reach,
+    },
     stylize::{ComicsUniform, StylizeKey, StylizePipeline},
     view::{ComicsView, Plan},
 };
@@ -54,6 +59,11 @@ pub(crate) struct ViewPass {
     /// Whether this frame's reduction was recorded.
     pub range_found: AtomicBool,
     pub readback: Mutex<RangeReadback>,
+    /// Which object is seen where; kept while lines want to know.
+    pub ids: Option<ViewTexture>,
+    pub outline: Option<OutlinePass>,
+    /// Whether this frame's outlines were recorded.
+    pub outlines_found: AtomicBool,
     live: bool,
 }
 
@@ -89,6 +99,8 @@ pub(crate) fn init_pipelines(
     commands.insert_resource(StylizePipeline::new(&fullscreen, &assets));
     commands.insert_resource(RangePipeline::new(&device, &assets));
     commands.insert_resource(PingPongPipeline::new(&fullscreen, &assets));
+    commands.insert_resource(OutlinePipeline::new(&fullscreen, &assets));
+    commands.insert_resource(FloodPipeline::new(&assets));
 }
 
 fn keys_buffer(device: &RenderDevice) -> Buffer {
@@ -101,6 +113,27 @@ fn keys_buffer(device: &RenderDevice) -> Buffer {
             | BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })
+}
+
+/// How far around a pixel this view's lines are looked for, in pixels.
+fn lines_reach(view: &ComicsView, plan: &Plan) -> i32 {
+    let Some(outlines) = plan.outlines else {
+        return 0;
+    };
+    let camera = if outlines.has_wide_lines() {
+        outlines.width
+    } else {
+        0.0
+    };
+    let widest = if plan.object_styles {
+        camera.max(view.widest_object)
+    } else {
+        camera
+    };
+    if widest == 0.0 {
+        return 0;
+    }
+    reach(0.5 * widest * view.scale_factor)
 }
 
 fn uniform(view: &ComicsView, plan: &Plan, viewport: UVec4) -> ComicsUniform {
@@ -124,11 +157,80 @@ fn uniform(view: &ComicsView, plan: &Plan, viewport: UVec4) -> ComicsUniform {
             .black_flats
             .map(|s| s.uniform(viewport.w))
             .unwrap_or_default(),
+        tone_bands: plan
+            .tone_bands
+            .map(|s| s.uniform(view.scale_factor))
+            .unwrap_or_default(),
+        outlines: plan
+            .outlines
+            .map(|s| {
+                let reference = view.projection.jump_reference(&view.clip_from_view);
+                s.uniform(view.scale_factor, reference, lines_reach(view, plan))
+            })
+            .unwrap_or_default(),
+        sketch: plan
+            .sketch
+            .map(|s| s.uniform(view.scale_factor, view.drawing))
+            .unwrap_or_default(),
     }
 }
 
 fn raw_depth(view: &ComicsView, viewport: UVec4) -> RawDepth {
     view.projection.raw(&view.clip_from_view, viewport)
+}
+
+/// What the outlines' passes are made of.
+#[derive(SystemParam)]
+pub(crate) struct Outlining<'w> {
+    edge_pipelines: ResMut<'w, SpecializedRenderPipelines<OutlinePipeline>>,
+    flood_pipelines: ResMut<'w, SpecializedRenderPipelines<FloodPipeline>>,
+    edge_pipeline: Res<'w, OutlinePipeline>,
+    flood_pipeline: Res<'w, FloodPipeline>,
+    buffer: ResMut<'w, ObjectStyleBuffer>,
+    styles: Res<'w, ObjectStyles>,
+}
+
+impl Outlining<'_> {
+    /// This frame's outlines of a view; what still fits is kept.
+    fn prepare(
+        &mut self,
+        old: Option<OutlinePass>,
+        cache: &PipelineCache,
+        device: &RenderDevice,
+        plan: &Plan,
+        (samples, size): (u32, UVec2),
+        oblique: bool,
+        reach: i32,
+    ) -> Option<OutlinePass> {
+        let key = OutlineKey::new(plan, samples, oblique)?;
+        let new_texture =
+            |label| ViewTexture::new(device, label, size, 1, TextureFormat::Rgba16Uint);
+        let (edges, flood) = old.map_or((None, None), |old| (Some(old.edges), old.flood));
+        let strayed = plan.sketch.is_some_and(|s| s.strokes > 1 && reach > 0);
+        let flood = (reach > GATHER_REACH || strayed).then(|| FloodPass {
+            first: self
+                .flood_pipelines
+                .specialize(cache, &self.flood_pipeline, true),
+            next: self
+                .flood_pipelines
+                .specialize(cache, &self.flood_pipeline, false),
+            strides: FloodPass::strides(reach),
+            textures: flood
+                .map(|flood| flood.textures)
+                .filter(|textures| textures[0].fits(size, 1))
+                .unwrap_or_else(|| [new_texture("comics_lines_a"), new_texture("comics_lines_b")]),
+        });
+        Some(OutlinePass {
+            key,
+            pipeline: self
+                .edge_pipelines
+                .specialize(cache, &self.edge_pipeline, key),
+            edges: edges
+                .filter(|edges| edges.fits(size, 1))
+                .unwrap_or_else(|| new_texture("comics_edges")),
+            flood,
+        })
+    }
 }
 
 pub(crate) fn prepare_view_passes(
@@ -150,6 +252,7 @@ pub(crate) fn prepare_view_passes(
         Res<RangePipeline>,
         Res<PingPongPipeline>,
     ),
+    mut outlining: Outlining,
     cache: Res<PipelineCache>,
     device: Res<RenderDevice>,
     queue: Res<RenderQueue>,
@@ -158,6 +261,7 @@ pub(crate) fn prepare_view_passes(
     let passes = &mut *passes;
     passes.uniforms.clear();
     passes.range_views.clear();
+    outlining.buffer.update(&outlining.styles, &device, &queue);
     for pass in passes.views.values_mut() {
         pass.live = false;
     }
@@ -169,11 +273,15 @@ pub(crate) fn prepare_view_passes(
         let wanted = &view.plan;
         let depth = prepass.and_then(|textures| textures.depth.as_ref());
         let samples = depth.map(|depth| depth.texture.texture.sample_count());
-        let plan = if depth.is_some() {
+        let mut plan = if depth.is_some() {
             *wanted
         } else {
             wanted.without_depth()
         };
+        let normals = prepass.and_then(|textures| textures.normal.as_ref());
+        if normals.is_none() {
+            plan = plan.without_normals();
+        }
 
         for stage in ComicsStage::ALL {
             ledger.set(
@@ -187,6 +295,9 @@ pub(crate) fn prepare_view_passes(
         }
         if depth.is_some() {
             ledger.set(view.camera, ComicsStage::DepthPrepass, StageOutcome::Ran);
+        }
+        if normals.is_some() {
+            ledger.set(view.camera, ComicsStage::NormalPrepass, StageOutcome::Ran);
         }
 
         let pass = passes.views.entry(entity).or_insert_with(|| ViewPass {
@@ -202,6 +313,9 @@ pub(crate) fn prepare_view_passes(
             ping_pong: None,
             range_found: AtomicBool::new(false),
             readback: Mutex::default(),
+            ids: None,
+            outline: None,
+            outlines_found: AtomicBool::new(false),
             live: true,
         });
         pass.live = true;
@@ -211,6 +325,7 @@ pub(crate) fn prepare_view_passes(
         pass.stylize = None;
         pass.range = None;
         pass.range_found = AtomicBool::new(false);
+        pass.outlines_found = AtomicBool::new(false);
 
         let oblique = view.projection.kind() == ProjectionKind::Oblique;
         if let Some(samples) = samples.filter(|_| plan.needs_range()) {
@@ -266,12 +381,52 @@ pub(crate) fn prepare_view_passes(
         }
 
         if plan.draws() {
+            let size = depth.map(|d| {
+                let size = d.texture.texture.size();
+                UVec2::new(size.width, size.height)
+            });
+            let found = samples.zip(size).zip(plan.outlines);
+            let old = pass.outline.take();
+            if let Some(((samples, size), _)) = found {
+                pass.outline = outlining.prepare(
+                    old,
+                    &cache,
+                    &device,
+                    &plan,
+                    (samples, size),
+                    oblique,
+                    lines_reach(view, &plan),
+                );
+            }
+            pass.ids = pass
+                .ids
+                .take()
+                .filter(|_| plan.draws_ids())
+                .filter(|ids| size.zip(samples).is_some_and(|(z, s)| ids.fits(z, s)));
+            if plan.draws_ids()
+                && pass.ids.is_none()
+                && let Some((size, samples)) = size.zip(samples)
+            {
+                let format = TextureFormat::Rg16Uint;
+                pass.ids = Some(ViewTexture::new(
+                    &device,
+                    "comics_object_ids",
+                    size,
+                    samples,
+                    format,
+                ));
+            }
+            let flooded = pass.outline.as_ref().is_some_and(|o| o.flood.is_some());
             pass.key = StylizeKey::new(&plan, extracted.target_format, camera.compositing_space)
-                .with_depth(samples.unwrap_or(1), oblique);
+                .with_depth(samples.unwrap_or(1), oblique)
+                .with_flood(flooded);
             pass.stylize = Some(stylize_pipelines.specialize(&cache, &stylize_pipeline, pass.key));
             pass.uniform_offset = passes
                 .uniforms
                 .push(&uniform(view, &plan, extracted.viewport));
+        } else {
+            pass.outline = None;
+            pass.ids = None;
         }
     }
     passes.views.retain(|_, pass| pass.live);
@@ -307,6 +462,8 @@ fn report_missing_depth(ledger: &StageLedger, view: &ComicsView) {
             wanted.black_flats.is_some() && left.black_flats.is_none(),
         ),
         (ComicsStage::Contours, wanted.contours.is_some()),
+        (ComicsStage::Outlines, wanted.outlines.is_some()),
+        (ComicsStage::Sketch, wanted.sketch.is_some()),
     ] {
         if lost {
             ledger.set(view.camera, stage, missing);

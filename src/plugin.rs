@@ -16,6 +16,8 @@ use bevy::{
     shader::load_shader_library,
 };
 
+#[cfg(feature = "objects")]
+use crate::objects::{ContourStyle, NoContours, assign_object_styles};
 use crate::{
     depth::{
         DepthMap, VisibleDepthRange,
@@ -24,13 +26,15 @@ use crate::{
         readback::{RangeReadings, receive_ranges},
     },
     diagnostics::{ComicsDiagnostics, StageLedger, publish_ledger, read_ledger},
+    objects::{ObjectStyleBuffer, ObjectStyles},
+    outlining::{FloodPipeline, OutlinePipeline, find_outlines},
     passes::{ViewPasses, init_pipelines, map_readbacks, prepare_view_passes},
     styles::{
-        BlackFlats, Colorization, ComicStyle, ComicStyleHandle, Contours, Desaturation,
-        StyleLoader, apply_styles,
+        BlackFlats, Colorization, ComicStyle, ComicStyleHandle, Contours, Desaturation, Outlines,
+        Sketch, StyleLoader, ToneBands, apply_styles,
     },
     stylize::{StylizePipeline, stylize},
-    view::{extract_views, request_depth_prepass, warn_unsupported},
+    view::{extract_views, request_prepasses, warn_unsupported},
 };
 
 /// Adds comics stylization: every [`Camera3d`](bevy::camera::Camera3d) with a
@@ -48,6 +52,9 @@ pub enum ComicsSystems {
     /// The depth range is found: after `Core3dSystems::Prepass`, before
     /// `Core3dSystems::MainPass`.
     DepthRange,
+    /// The outlines are found: after the depth range, before
+    /// `Core3dSystems::MainPass`.
+    Outlines,
     /// The picture is stylized: in `Core3dSystems::PostProcess`, after
     /// tonemapping and before FXAA and SMAA, which then smooth the ink.
     Stylize,
@@ -61,10 +68,18 @@ impl Plugin for ComicsPlugin {
             .register_type::<Colorization>()
             .register_type::<BlackFlats>()
             .register_type::<Contours>()
+            .register_type::<ToneBands>()
+            .register_type::<Outlines>()
+            .register_type::<Sketch>()
             .register_type::<ComicStyleHandle>()
             .register_type::<ComicsDiagnostics>()
             .init_resource::<ComicsDiagnostics>()
-            .add_systems(PostUpdate, (request_depth_prepass, warn_unsupported));
+            .init_resource::<ObjectStyles>()
+            .add_systems(PostUpdate, (request_prepasses, warn_unsupported));
+        #[cfg(feature = "objects")]
+        app.register_type::<ContourStyle>()
+            .register_type::<NoContours>()
+            .add_systems(PostUpdate, assign_object_styles);
         if app.world().contains_resource::<AssetServer>() {
             app.init_asset::<ComicStyle>()
                 .register_asset_reflect::<ComicStyle>()
@@ -80,10 +95,18 @@ impl Plugin for ComicsPlugin {
         load_shader_library!(app, "styles/colorization.wgsl");
         load_shader_library!(app, "styles/black_flats.wgsl");
         load_shader_library!(app, "styles/contours/contours.wgsl");
+        load_shader_library!(app, "styles/outlines/outlines.wgsl");
+        load_shader_library!(app, "styles/tone_bands.wgsl");
+        load_shader_library!(app, "styles/sketch.wgsl");
         load_shader_library!(app, "depth/map.wgsl");
         load_shader_library!(app, "depth/raw.wgsl");
         load_shader_library!(app, "stylize/bindings.wgsl");
         load_shader_library!(app, "stylize/taps.wgsl");
+        load_shader_library!(app, "stylize/lines.wgsl");
+        embedded_asset!(app, "outlining/detect.wgsl");
+        embedded_asset!(app, "outlining/flood.wgsl");
+        #[cfg(feature = "objects")]
+        embedded_asset!(app, "objects/ids.wgsl");
         embedded_asset!(app, "stylize/stylize.wgsl");
         embedded_asset!(app, "depth/range.wgsl");
         embedded_asset!(app, "depth/ping_pong.wgsl");
@@ -103,7 +126,11 @@ impl Plugin for ComicsPlugin {
             .init_gpu_resource::<SpecializedRenderPipelines<StylizePipeline>>()
             .init_gpu_resource::<SpecializedComputePipelines<RangePipeline>>()
             .init_gpu_resource::<SpecializedRenderPipelines<PingPongPipeline>>()
+            .init_gpu_resource::<SpecializedRenderPipelines<OutlinePipeline>>()
+            .init_gpu_resource::<SpecializedRenderPipelines<FloodPipeline>>()
+            .init_gpu_resource::<ObjectStyleBuffer>()
             .init_gpu_resource::<ViewPasses>()
+            .init_resource::<ObjectStyles>()
             .add_systems(RenderStartup, init_pipelines)
             .add_systems(ExtractSchedule, extract_views)
             .add_systems(
@@ -120,6 +147,11 @@ impl Plugin for ComicsPlugin {
                         .in_set(ComicsSystems::DepthRange)
                         .after(Core3dSystems::Prepass)
                         .before(Core3dSystems::MainPass),
+                    find_outlines
+                        .in_set(ComicsSystems::Outlines)
+                        .after(ComicsSystems::DepthRange)
+                        .after(Core3dSystems::Prepass)
+                        .before(Core3dSystems::MainPass),
                     stylize
                         .in_set(ComicsSystems::Stylize)
                         .in_set(Core3dSystems::PostProcess)
@@ -128,5 +160,24 @@ impl Plugin for ComicsPlugin {
                         .before(smaa),
                 ),
             );
+    }
+
+    fn finish(&self, app: &mut App) {
+        // Ids are drawn with the engine's own mesh pipelines.
+        #[cfg(feature = "objects")]
+        if app.is_plugin_added::<bevy::pbr::PbrPlugin>() {
+            crate::objects::ids::build(app);
+            if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+                render_app.add_systems(
+                    Core3d,
+                    crate::objects::ids::draw_object_ids
+                        .after(Core3dSystems::Prepass)
+                        .before(ComicsSystems::Outlines)
+                        .before(Core3dSystems::MainPass),
+                );
+            }
+        }
+        #[cfg(not(feature = "objects"))]
+        let _ = app;
     }
 }

@@ -4,41 +4,49 @@
 
 use bevy::{
     camera::{Camera, Camera2d, Camera3d, MainPassResolutionOverride, Projection, RenderTarget},
-    core_pipeline::prepass::DepthPrepass,
+    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     ecs::{
         component::Component,
         entity::{Entity, EntityHashSet},
         query::{Has, Or, QueryData, With},
-        system::{Commands, Local, Query},
+        system::{Commands, Local, Query, Res},
     },
     log::warn_once,
     math::{Mat4, UVec2},
     render::{Extract, sync_world::RenderEntity},
+    time::Time,
 };
 
 use crate::{
     depth::{DepthMap, VisibleDepthRange, frame::DepthProjection},
     diagnostics::{ComicsStage, LeftOut},
-    styles::{BlackFlats, Colorization, Contours, Desaturation},
+    objects::ObjectStyles,
+    styles::{BlackFlats, Colorization, Contours, Desaturation, Outlines, Sketch, ToneBands},
 };
 
 /// Every component that makes a camera a comics camera.
 #[derive(QueryData)]
 pub(crate) struct ComicsComponents {
     depth_map: Option<&'static DepthMap>,
+    tone_bands: Option<&'static ToneBands>,
     desaturation: Option<&'static Desaturation>,
     colorization: Option<&'static Colorization>,
     black_flats: Option<&'static BlackFlats>,
     contours: Option<&'static Contours>,
+    outlines: Option<&'static Outlines>,
+    sketch: Option<&'static Sketch>,
     range: Has<VisibleDepthRange>,
 }
 
 /// Matches a camera with at least one component that asks for something.
 type AnyComics = Or<(
+    With<ToneBands>,
     With<Desaturation>,
     With<Colorization>,
     With<BlackFlats>,
     With<Contours>,
+    With<Outlines>,
+    With<Sketch>,
     With<VisibleDepthRange>,
 )>;
 
@@ -46,13 +54,18 @@ type AnyComics = Or<(
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Plan {
     pub depth_map: DepthMap,
+    pub tone_bands: Option<ToneBands>,
     pub desaturation: Option<Desaturation>,
     pub colorization: Option<Colorization>,
     pub black_flats: Option<BlackFlats>,
     pub contours: Option<Contours>,
+    pub outlines: Option<Outlines>,
+    pub sketch: Option<Sketch>,
+    /// Objects have lines of their own, or none.
+    pub object_styles: bool,
     /// The game reads the range.
     pub readback: bool,
-    negligible: [bool; 4],
+    negligible: [bool; 6],
 }
 
 fn kept<T: Copy>(
@@ -65,44 +78,75 @@ fn kept<T: Copy>(
     (sanitized.filter(|c| !negligible(c)), skipped)
 }
 
+/// What a sketch draws on a camera without outlines of its own.
+fn sketched_outlines() -> Outlines {
+    Outlines {
+        objects: None,
+        width: 1.5,
+        ..Outlines::default()
+    }
+}
+
 impl Plan {
-    fn new(item: &ComicsComponentsItem<'_, '_>) -> Self {
-        let (desaturation, n0) = kept(
+    fn new(item: &ComicsComponentsItem<'_, '_>, object_styles: bool) -> Self {
+        let (tone_bands, n0) = kept(
+            item.tone_bands,
+            ToneBands::sanitized,
+            ToneBands::is_negligible,
+        );
+        let (desaturation, n1) = kept(
             item.desaturation,
             Desaturation::sanitized,
             Desaturation::is_negligible,
         );
-        let (colorization, n1) = kept(
+        let (colorization, n2) = kept(
             item.colorization,
             Colorization::sanitized,
             Colorization::is_negligible,
         );
-        let (black_flats, n2) = kept(
+        let (black_flats, n3) = kept(
             item.black_flats,
             BlackFlats::sanitized,
             BlackFlats::is_negligible,
         );
-        let (contours, n3) = kept(item.contours, Contours::sanitized, Contours::is_negligible);
+        let (contours, n4) = kept(item.contours, Contours::sanitized, Contours::is_negligible);
+        let sketched = sketched_outlines();
+        let (outlines, n5) = kept(
+            item.outlines.or(item.sketch.map(|_| &sketched)),
+            |o| o.sanitized().effective(),
+            Outlines::is_negligible,
+        );
         Self {
             depth_map: item.depth_map.copied().unwrap_or_default().sanitized(),
+            tone_bands,
             desaturation,
             colorization,
             black_flats,
             contours,
+            outlines,
+            // Without lines there is nothing to sketch: the picture stays.
+            sketch: item
+                .sketch
+                .filter(|_| outlines.is_some())
+                .map(|s| s.sanitized()),
+            object_styles: object_styles && outlines.is_some(),
             readback: item.range,
-            negligible: [n0, n1, n2, n3],
+            negligible: [n0, n1, n2, n3, n4, n5],
         }
     }
 
     /// Whether any style draws.
     pub fn draws(&self) -> bool {
-        self.desaturation.is_some()
+        self.tone_bands.is_some()
+            || self.desaturation.is_some()
             || self.colorization.is_some()
             || self.black_flats.is_some()
             || self.contours.is_some()
+            || self.outlines.is_some()
+            || self.sketch.is_some()
     }
 
-    /// Whether any style reads the depth map.
+    /// Whether the fused pass reads the depth map.
     pub fn draws_with_depth(&self) -> bool {
         self.desaturation.is_some()
             || self.contours.is_some()
@@ -115,12 +159,29 @@ impl Plan {
         self.draws_with_depth() && self.depth_map.mapping.follows_visible_range()
     }
 
+    /// Whether outlines fade with the depth map.
+    fn lines_fade(&self) -> bool {
+        self.outlines
+            .is_some_and(|o| o.width_fade > 0.0 || o.opacity_fade > 0.0)
+    }
+
     pub fn needs_range(&self) -> bool {
-        self.readback || self.draws_with_range()
+        let map = self.draws_with_depth() || self.lines_fade();
+        self.readback || (map && self.depth_map.mapping.follows_visible_range())
     }
 
     pub fn needs_depth(&self) -> bool {
-        self.readback || self.draws_with_depth()
+        self.readback || self.draws_with_depth() || self.outlines.is_some()
+    }
+
+    pub fn needs_normals(&self) -> bool {
+        self.outlines.is_some_and(|o| o.creases.is_some())
+    }
+
+    /// Whether the ids of objects are drawn for this camera.
+    pub fn draws_ids(&self) -> bool {
+        self.outlines
+            .is_some_and(|o| o.objects.is_some() || self.object_styles)
     }
 
     /// The plan without what reads depth, for views that have none.
@@ -128,6 +189,9 @@ impl Plan {
         Self {
             desaturation: None,
             contours: None,
+            outlines: None,
+            sketch: None,
+            object_styles: false,
             colorization: self.colorization.filter(|c| !c.depends_on_depth()),
             black_flats: self
                 .black_flats
@@ -142,6 +206,17 @@ impl Plan {
         }
     }
 
+    /// The plan without creases, for views that have no normals (yet).
+    pub fn without_normals(self) -> Self {
+        let outlines = self.outlines.map(|o| Outlines { creases: None, ..o });
+        let outlines = outlines.filter(|o| !o.is_negligible());
+        Self {
+            outlines,
+            sketch: self.sketch.filter(|_| outlines.is_some()),
+            ..self
+        }
+    }
+
     /// Why a stage of this plan does not run.
     pub fn reason(&self, stage: ComicsStage) -> LeftOut {
         let style = |index: usize| {
@@ -151,15 +226,24 @@ impl Plan {
                 LeftOut::NotRequested
             }
         };
+        let maps = self.draws_with_depth() || self.lines_fade();
         match stage {
-            ComicsStage::Desaturation => style(0),
-            ComicsStage::Colorization => style(1),
-            ComicsStage::BlackFlats => style(2),
-            ComicsStage::Contours => style(3),
+            ComicsStage::ToneBands => style(0),
+            ComicsStage::Desaturation => style(1),
+            ComicsStage::Colorization => style(2),
+            ComicsStage::BlackFlats => style(3),
+            ComicsStage::Contours => style(4),
+            ComicsStage::Outlines => style(5),
+            ComicsStage::Sketch | ComicsStage::RangeReadback => LeftOut::NotRequested,
             ComicsStage::DepthPrepass => LeftOut::NoDepthStyle,
-            ComicsStage::DepthRange if self.draws_with_depth() => LeftOut::FixedRange,
+            ComicsStage::NormalPrepass | ComicsStage::ObjectIds | ComicsStage::OutlineEdges => {
+                LeftOut::NoSuchLines
+            }
+            ComicsStage::LineFlood if self.outlines.is_some() => LeftOut::NarrowLines,
+            ComicsStage::LineFlood => LeftOut::NoSuchLines,
+            ComicsStage::DepthRange if maps => LeftOut::FixedRange,
+            ComicsStage::DepthRange if self.outlines.is_some() => LeftOut::NoMapStyle,
             ComicsStage::DepthRange => LeftOut::NoDepthStyle,
-            ComicsStage::RangeReadback => LeftOut::NotRequested,
             ComicsStage::Stylize => LeftOut::NothingToDraw,
         }
     }
@@ -169,29 +253,46 @@ impl Plan {
 #[derive(Component)]
 pub(crate) struct OwnDepthPrepass;
 
-/// Gives cameras a depth prepass while a style reads depth, and no longer.
-pub(crate) fn request_depth_prepass(
+/// Marks a normal prepass that this crate asked for and takes away again.
+#[derive(Component)]
+pub(crate) struct OwnNormalPrepass;
+
+/// Gives cameras the prepasses that their styles read, and no longer.
+pub(crate) fn request_prepasses(
     mut commands: Commands,
     styled: Query<
         (
             Entity,
             ComicsComponents,
-            Has<DepthPrepass>,
-            Has<OwnDepthPrepass>,
+            (Has<DepthPrepass>, Has<OwnDepthPrepass>),
+            (Has<NormalPrepass>, Has<OwnNormalPrepass>),
         ),
-        (With<Camera3d>, Or<(AnyComics, With<OwnDepthPrepass>)>),
+        (
+            With<Camera3d>,
+            Or<(AnyComics, With<OwnDepthPrepass>, With<OwnNormalPrepass>)>,
+        ),
     >,
 ) {
-    for (camera, components, has_prepass, own) in &styled {
-        let needs_depth = Plan::new(&components).needs_depth();
-        if needs_depth && !has_prepass {
-            commands
-                .entity(camera)
-                .insert((DepthPrepass, OwnDepthPrepass));
-        } else if !needs_depth && own {
-            commands
-                .entity(camera)
-                .remove::<(DepthPrepass, OwnDepthPrepass)>();
+    for (camera, components, (has_depth, own_depth), (has_normals, own_normals)) in &styled {
+        let plan = Plan::new(&components, false);
+        let mut camera = commands.entity(camera);
+        match (plan.needs_depth(), has_depth) {
+            (true, false) => {
+                camera.insert((DepthPrepass, OwnDepthPrepass));
+            }
+            (false, _) if own_depth => {
+                camera.remove::<(DepthPrepass, OwnDepthPrepass)>();
+            }
+            _ => {}
+        }
+        match (plan.needs_normals(), has_normals) {
+            (true, false) => {
+                camera.insert((NormalPrepass, OwnNormalPrepass));
+            }
+            (false, _) if own_normals => {
+                camera.remove::<(NormalPrepass, OwnNormalPrepass)>();
+            }
+            _ => {}
         }
     }
 }
@@ -222,6 +323,10 @@ pub(crate) struct ComicsView {
     pub scale_factor: f32,
     /// Size of the main pass, where it is not the viewport's.
     pub main_pass_size: Option<UVec2>,
+    /// Which drawing of a sketch is shown.
+    pub drawing: u32,
+    /// The widest line of any object with one of its own, logical pixels.
+    pub widest_object: f32,
 }
 
 pub(crate) fn extract_views(
@@ -239,6 +344,8 @@ pub(crate) fn extract_views(
             (With<Camera3d>, AnyComics),
         >,
     >,
+    time: Extract<Option<Res<Time>>>,
+    objects: Extract<Res<ObjectStyles>>,
     stale: Query<Entity, With<ComicsView>>,
     mut seen: Local<EntityHashSet>,
 ) {
@@ -247,7 +354,8 @@ pub(crate) fn extract_views(
         if !camera.is_active {
             continue;
         }
-        let plan = Plan::new(&components);
+        let plan = Plan::new(&components, objects.any());
+        let seconds = time.as_ref().map_or(0.0, |time| time.elapsed_secs_f64());
         let clip_from_view = camera.clip_from_view();
         seen.insert(render_entity);
         commands.entity(render_entity).insert(ComicsView {
@@ -257,6 +365,8 @@ pub(crate) fn extract_views(
             clip_from_view,
             scale_factor: camera.target_scaling_factor().unwrap_or(1.0),
             main_pass_size: resolution.map(|size| size.0),
+            drawing: plan.sketch.map_or(0, |sketch| sketch.drawing(seconds)),
+            widest_object: objects.max_width(),
         });
     }
     for entity in &stale {

@@ -125,6 +125,23 @@ impl DepthProjection {
         }
     }
 
+    /// What a jump in raw depth is a share of, as (factor, constant) of the
+    /// largest raw depth nearby: the reciprocal distance, which is free of units
+    /// and planes; under an orthographic projection, whose raw depth knows no
+    /// distance, the distance from which a perspective view of 45 degrees would
+    /// show as much.
+    pub fn jump_reference(&self, clip_from_view: &Mat4) -> [f32; 2] {
+        match self.kind {
+            ProjectionKind::Perspective => [1.0, self.scale as f32],
+            ProjectionKind::Oblique => [1.0, 0.0],
+            ProjectionKind::Orthographic => {
+                let height = 2.0 / f64::from(clip_from_view.y_axis.y).abs().max(1e-30);
+                let distance = height / (2.0 * (std::f64::consts::FRAC_PI_8).tan());
+                [0.0, (self.scale * distance) as f32]
+            }
+        }
+    }
+
     pub fn raw(&self, clip_from_view: &Mat4, viewport: UVec4) -> RawDepth {
         if self.kind != ProjectionKind::Oblique {
             return RawDepth::default();

@@ -1,5 +1,6 @@
-//! The styles, in the order in which they apply to a pixel: desaturation,
-//! colorization, black flats, contours. Each is a camera component, on while
+//! The styles, in the order in which they apply to a pixel: tone bands,
+//! desaturation, colorization, black flats, contours, outlines or a sketch of
+//! them. Each is a camera component, on while
 //! it is present, and imports nothing of the others.
 
 pub(crate) mod black_flats;
@@ -8,8 +9,11 @@ pub(crate) mod contours;
 pub(crate) mod desaturation;
 mod file_color;
 mod oklab;
+pub(crate) mod outlines;
 pub mod presets;
+pub(crate) mod sketch;
 mod style;
+pub(crate) mod tone_bands;
 
 use bevy::reflect::{Reflect, std_traits::ReflectDefault};
 use serde::{Deserialize, Serialize};
@@ -18,8 +22,11 @@ pub use black_flats::BlackFlats;
 pub use colorization::{Colorization, ColorizationMode};
 pub use contours::{ContourForm, ContourOperator, Contours};
 pub use desaturation::Desaturation;
+pub use outlines::{Creases, EdgeForm, ObjectEdges, Outlines, Silhouettes};
+pub use sketch::Sketch;
 pub use style::{ComicStyle, ComicStyleError, ComicStyleHandle};
 pub(crate) use style::{StyleLoader, apply_styles};
+pub use tone_bands::{ToneBandMethod, ToneBands};
 
 /// Which form of a colour style is computed.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]

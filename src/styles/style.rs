@@ -18,7 +18,7 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::{BlackFlats, Colorization, Contours, Desaturation};
+use super::{BlackFlats, Colorization, Contours, Desaturation, Outlines, Sketch, ToneBands};
 use crate::depth::DepthMap;
 
 /// A look: every comics component a camera may have, in one asset.
@@ -46,6 +46,9 @@ pub struct ComicStyle {
     /// The depth map; its default where absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub depth_map: Option<DepthMap>,
+    /// Tone bands, if any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tone_bands: Option<ToneBands>,
     /// Desaturation, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub desaturation: Option<Desaturation>,
@@ -58,6 +61,12 @@ pub struct ComicStyle {
     /// Contours, if any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub contours: Option<Contours>,
+    /// Outlines, if any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub outlines: Option<Outlines>,
+    /// A sketch, if any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sketch: Option<Sketch>,
 }
 
 /// Why a style file was not understood.
@@ -121,10 +130,13 @@ impl ComicStyle {
             version: self.version,
             name: self.name.clone(),
             depth_map: self.depth_map.map(DepthMap::sanitized),
+            tone_bands: self.tone_bands.map(ToneBands::sanitized),
             desaturation: self.desaturation.map(Desaturation::sanitized),
             colorization: self.colorization.map(Colorization::sanitized),
             black_flats: self.black_flats.map(BlackFlats::sanitized),
             contours: self.contours.map(Contours::sanitized),
+            outlines: self.outlines.map(Outlines::sanitized),
+            sketch: self.sketch.map(Sketch::sanitized),
         }
     }
 
@@ -138,10 +150,13 @@ impl ComicStyle {
             };
         }
         set(camera, self.depth_map);
+        set(camera, self.tone_bands);
         set(camera, self.desaturation);
         set(camera, self.colorization);
         set(camera, self.black_flats);
         set(camera, self.contours);
+        set(camera, self.outlines);
+        set(camera, self.sketch);
     }
 }
 

@@ -12,13 +12,11 @@ use bevy::{
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
-            BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, ColorTargetState,
-            ColorWrites, FragmentState, Operations, PipelineCache, RenderPassColorAttachment,
-            RenderPassDescriptor, RenderPipelineDescriptor, ShaderStages, ShaderType,
-            SpecializedRenderPipeline, TextureFormat, TextureSampleType,
-            binding_types::{
-                texture_2d, texture_2d_multisampled, uniform_buffer, uniform_buffer_sized,
-            },
+            BindGroupEntry, BindGroupLayoutDescriptor, BindGroupLayoutEntries, ColorTargetState,
+            ColorWrites, FragmentState, IntoBinding, Operations, PipelineCache,
+            RenderPassColorAttachment, RenderPassDescriptor, RenderPipelineDescriptor,
+            ShaderStages, ShaderType, SpecializedRenderPipeline, TextureFormat, TextureSampleType,
+            binding_types::{texture_2d, texture_2d_multisampled, uniform_buffer},
         },
         renderer::{RenderContext, ViewQuery},
         view::ViewTarget,
@@ -29,10 +27,13 @@ use bevy::{
 use crate::{
     depth::{DepthFrame, RawDepth},
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
+    objects::ObjectStyleBuffer,
+    outlining::{edges_entry, object_styles_entry, range_entry},
     passes::ViewPasses,
     styles::{
         black_flats::BlackFlatsUniform, colorization::ColorizationUniform,
-        contours::ContoursUniform, desaturation::DesaturationUniform,
+        contours::ContoursUniform, desaturation::DesaturationUniform, outlines::OutlinesUniform,
+        sketch::SketchUniform, tone_bands::ToneBandsUniform,
     },
     view::Plan,
 };
@@ -49,6 +50,9 @@ pub(crate) struct ComicsUniform {
     pub colorization: ColorizationUniform,
     pub contours: ContoursUniform,
     pub black_flats: BlackFlatsUniform,
+    pub tone_bands: ToneBandsUniform,
+    pub outlines: OutlinesUniform,
+    pub sketch: SketchUniform,
 }
 
 /// What is compiled in: the presence of styles, never their numbers.
@@ -65,6 +69,11 @@ pub(crate) struct StylizeKey {
     black_flats: bool,
     steep_flats: bool,
     contours: bool,
+    tone_bands: bool,
+    edges: bool,
+    flood: bool,
+    object_styles: bool,
+    sketch: bool,
 }
 
 impl Default for StylizeKey {
@@ -87,7 +96,17 @@ impl StylizeKey {
             black_flats: plan.black_flats.is_some(),
             steep_flats: plan.black_flats.is_some_and(|b| b.slope.is_some()),
             contours: plan.contours.is_some(),
+            tone_bands: plan.tone_bands.is_some(),
+            edges: plan.outlines.is_some(),
+            flood: false,
+            object_styles: plan.object_styles && plan.outlines.is_some(),
+            sketch: plan.sketch.is_some(),
         }
+    }
+
+    /// Whether lines come from a flood.
+    pub fn with_flood(self, flood: bool) -> Self {
+        Self { flood, ..self }
     }
 
     /// What is compiled in depends on the depth only where depth is read.
@@ -119,6 +138,11 @@ impl StylizeKey {
             (self.black_flats, "BLACK_FLATS"),
             (self.steep_flats, "STEEP_FLATS"),
             (self.contours, "CONTOURS"),
+            (self.tone_bands, "TONE_BANDS"),
+            (self.edges, "EDGES"),
+            (self.flood, "FLOOD"),
+            (self.object_styles, "OBJECT_STYLES"),
+            (self.sketch, "SKETCH"),
         ]
         .into_iter()
         .filter_map(|(on, name)| on.then_some(name))
@@ -146,8 +170,16 @@ impl StylizeKey {
             entries.push(depth.build(2, ShaderStages::FRAGMENT));
         }
         if self.visible_range {
-            let size = std::num::NonZeroU64::new(16);
-            entries.push(uniform_buffer_sized(false, size).build(3, ShaderStages::FRAGMENT));
+            entries.push(range_entry());
+        }
+        if self.edges {
+            entries.push(edges_entry(4));
+        }
+        if self.flood {
+            entries.push(edges_entry(5));
+        }
+        if self.object_styles {
+            entries.push(object_styles_entry());
         }
         BindGroupLayoutDescriptor::new("comics_stylize", &entries)
     }
@@ -196,6 +228,7 @@ impl SpecializedRenderPipeline for StylizePipeline {
 pub(crate) fn stylize(
     view: ViewQuery<(&ViewTarget, Option<&ViewPrepassTextures>)>,
     passes: Res<ViewPasses>,
+    object_styles: Res<ObjectStyleBuffer>,
     ledger: Res<StageLedger>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
@@ -233,30 +266,37 @@ pub(crate) fn stylize(
         return pass_through(LeftOut::PipelineNotReady);
     }
 
+    let outline = pass.outline.as_ref();
+    let lines_found = pass.outlines_found.load(Ordering::Relaxed);
+    if key.edges && (outline.is_none() || !lines_found) {
+        return pass_through(LeftOut::PipelineNotReady);
+    }
+    let style_table = object_styles.buffer();
+    if key.object_styles && style_table.is_none() {
+        return pass_through(LeftOut::PipelineNotReady);
+    }
+
     let layout = cache.get_bind_group_layout(&key.layout());
     let post = target.post_process_write();
+    let entry = |binding, resource| BindGroupEntry { binding, resource };
+    let mut entries = vec![entry(0, post.source.into_binding()), entry(1, uniforms)];
+    if let Some(depth) = depth.filter(|_| key.depth) {
+        entries.push(entry(2, (&depth.texture.default_view).into_binding()));
+    }
+    if let Some(keys) = keys.filter(|_| key.visible_range) {
+        entries.push(entry(3, keys.as_entire_binding()));
+    }
+    if let Some(outline) = outline.filter(|_| key.edges) {
+        entries.push(entry(4, (&outline.edges.view).into_binding()));
+        if let Some(flood) = outline.flood.as_ref().filter(|_| key.flood) {
+            entries.push(entry(5, (&flood.result().view).into_binding()));
+        }
+    }
+    if let Some(styles) = style_table.filter(|_| key.object_styles) {
+        entries.push(entry(6, styles.as_entire_binding()));
+    }
     let device = ctx.render_device();
-    let depth_view = depth.map(|depth| &depth.texture.default_view);
-    let bind_group = match (
-        depth_view.filter(|_| key.depth),
-        keys.filter(|_| key.visible_range),
-    ) {
-        (Some(depth), Some(keys)) => device.create_bind_group(
-            "comics_stylize",
-            &layout,
-            &BindGroupEntries::sequential((post.source, uniforms, depth, keys.as_entire_binding())),
-        ),
-        (Some(depth), None) => device.create_bind_group(
-            "comics_stylize",
-            &layout,
-            &BindGroupEntries::sequential((post.source, uniforms, depth)),
-        ),
-        _ => device.create_bind_group(
-            "comics_stylize",
-            &layout,
-            &BindGroupEntries::sequential((post.source, uniforms)),
-        ),
-    };
+    let bind_group = device.create_bind_group("comics_stylize", &layout, &entries);
 
     let diagnostics = ctx.diagnostic_recorder();
     let diagnostics = diagnostics.as_deref();
@@ -283,10 +323,13 @@ pub(crate) fn stylize(
     span.end(encoder);
 
     for (stage, ran) in [
+        (ComicsStage::ToneBands, pass.plan.tone_bands.is_some()),
         (ComicsStage::Desaturation, pass.plan.desaturation.is_some()),
         (ComicsStage::Colorization, pass.plan.colorization.is_some()),
         (ComicsStage::BlackFlats, pass.plan.black_flats.is_some()),
         (ComicsStage::Contours, pass.plan.contours.is_some()),
+        (ComicsStage::Outlines, pass.plan.outlines.is_some()),
+        (ComicsStage::Sketch, pass.plan.sketch.is_some()),
         (ComicsStage::Stylize, true),
     ] {
         if ran {

@@ -1,6 +1,9 @@
 // The fused pass: one read of the picture, one write, every style in between.
 
 #import bevy_comics::stylize::bindings::{comics, source}
+#ifdef EDGES
+#import bevy_comics::stylize::lines::{draw_lines, lines_at, total_ink}
+#endif
 #ifdef DEPTH
 #import bevy_comics::stylize::bindings::{depth_frame}
 #endif
@@ -12,6 +15,8 @@
 #import bevy_comics::styles::colorization::{colorize}
 #import bevy_comics::styles::contours::{draw_contour}
 #import bevy_comics::styles::black_flats::{dark_area, fill, steep_area}
+#import bevy_comics::styles::tone_bands::{lightness, tone_bands}
+#import bevy_comics::styles::sketch::{add_stroke, draw_sketch, pen_pressure, stray}
 
 // The picture is display-referred. The styles take linear light.
 fn to_linear(stored: vec3<f32>) -> vec3<f32> {
@@ -39,11 +44,18 @@ fn to_stored(linear: vec3<f32>) -> vec3<f32> {
 fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(position.xy);
     let stored = textureLoad(source, pixel, 0);
+    var linear = to_linear(stored.rgb);
+#ifdef TONE_BANDS
+    // Derivatives want every pixel, so this comes before any is sent away.
+    let change = fwidth(lightness(linear));
+#endif
     let inside = pixel - comics.viewport.xy;
     if any(inside < vec2(0)) || any(inside >= comics.viewport.zw) {
         return stored;
     }
-    var linear = to_linear(stored.rgb);
+#ifdef TONE_BANDS
+    linear = tone_bands(comics.tone_bands, linear, change);
+#endif
 
     // x: 0 near, 1 far; y: its complement.
     var depth = vec2(1.0, 0.0);
@@ -71,6 +83,16 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 #ifdef CONTOURS
     let line = contour(comics.contours, frame, pixel);
     linear = draw_contour(comics.contours, linear, line.x, line.y);
+#endif
+#ifdef SKETCH
+    var inked = 0.0;
+    for (var stroke = 0u; stroke < comics.sketch.strokes; stroke++) {
+        let at = position.xy + stray(comics.sketch, vec2<f32>(inside), stroke);
+        inked = add_stroke(inked, total_ink(lines_at(at)) * pen_pressure(comics.sketch, vec2<f32>(inside), stroke));
+    }
+    linear = draw_sketch(comics.sketch, linear, inked);
+#else ifdef EDGES
+    linear = draw_lines(linear, lines_at(position.xy));
 #endif
     return vec4(to_stored(linear), stored.a);
 }

@@ -174,6 +174,7 @@ fn everything(
             fade: 0.4,
             ..default()
         }),
+        ..default()
     }
 }
 

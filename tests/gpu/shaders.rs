@@ -29,7 +29,20 @@ fn subsets<'a>(choices: &[&'a str]) -> Vec<Vec<&'a str>> {
 #[test]
 fn every_combination_of_styles_composes_and_validates() {
     let source = shader("stylize/stylize.wgsl");
-    let styles = subsets(&["DESATURATION", "COLORIZATION", "BLACK_FLATS", "CONTOURS"]);
+    let styles = subsets(&[
+        "TONE_BANDS",
+        "DESATURATION",
+        "COLORIZATION",
+        "BLACK_FLATS",
+        "CONTOURS",
+    ]);
+    let lines: [&[&str]; 5] = [
+        &[],
+        &["EDGES"],
+        &["EDGES", "FLOOD"],
+        &["EDGES", "OBJECT_STYLES"],
+        &["EDGES", "FLOOD", "OBJECT_STYLES", "SKETCH"],
+    ];
     let depths: [&[&str]; 5] = [
         &[],
         &["DEPTH"],
@@ -48,9 +61,13 @@ fn every_combination_of_styles_composes_and_validates() {
             if depth.is_empty() && style.contains(&"CONTOURS") {
                 continue;
             }
-            let defs: Vec<_> = style.iter().chain(depth).copied().collect();
-            if let Err(error) = module(&source, &defs) {
-                panic!("{defs:?}: {error}");
+            // Lines are read apart from depth: every form of them with some
+            // combinations is every combination of what meets in the code.
+            for lines in lines.iter().take(if style.len() < 2 { 5 } else { 1 }) {
+                let defs: Vec<_> = style.iter().chain(depth).chain(*lines).copied().collect();
+                if let Err(error) = module(&source, &defs) {
+                    panic!("{defs:?}: {error}");
+                }
             }
         }
     }
@@ -70,4 +87,27 @@ fn every_shape_of_the_reduction_composes_and_validates() {
     for defs in subsets(&["FIRST", "MULTISAMPLED", "OBLIQUE"]) {
         module(&source, &defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
     }
+}
+
+#[test]
+fn every_kind_of_outline_composes_and_validates() {
+    let source = shader("outlining/detect.wgsl");
+    for kinds in subsets(&["SILHOUETTES", "CREASES", "OBJECT_EDGES", "OBJECT_STYLES"]) {
+        for view in subsets(&["MULTISAMPLED", "OBLIQUE", "FADING"]) {
+            let mut defs = vec!["DEPTH"];
+            defs.extend(kinds.iter().chain(&view));
+            if kinds.contains(&"OBJECT_EDGES") || kinds.contains(&"OBJECT_STYLES") {
+                defs.push("OBJECT_IDS");
+            }
+            if view.contains(&"FADING") {
+                defs.push("VISIBLE_RANGE");
+            }
+            module(&source, &defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
+        }
+    }
+    let source = shader("outlining/flood.wgsl");
+    for defs in [&["EDGES", "FIRST"][..], &["FLOOD"]] {
+        module(&source, defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
+    }
+    module(&shader("objects/ids.wgsl"), &[]).expect("the ids");
 }

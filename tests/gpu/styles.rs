@@ -5,8 +5,9 @@ use std::{fs, time::Duration};
 use bevy::{color::Color, prelude::*, render::view::Msaa};
 use bevy_comics::{
     BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ComicStyleError,
-    ComicStyleHandle, ContourForm, ContourOperator, Contours, DepthMap, DepthMapping, Desaturation,
-    ReductionMethod,
+    ComicStyleHandle, ContourForm, ContourOperator, Contours, Creases, DepthMap, DepthMapping,
+    Desaturation, EdgeForm, ObjectEdges, Outlines, ReductionMethod, Silhouettes, Sketch,
+    ToneBandMethod, ToneBands,
 };
 use proptest::{
     option,
@@ -111,18 +112,87 @@ fn styles() -> impl Strategy<Value = ComicStyle> {
         option::of(colorization),
         option::of(flats),
         option::of(contours),
+        cartoon_styles(),
     )
         .prop_map(
-            |(name, depth_map, desaturation, colorization, black_flats, contours)| ComicStyle {
-                version: 1,
-                name,
-                depth_map,
-                desaturation,
-                colorization,
-                black_flats,
-                contours,
+            |(name, depth_map, desaturation, colorization, black_flats, contours, cartoon)| {
+                let (tone_bands, outlines, sketch) = cartoon;
+                ComicStyle {
+                    version: 1,
+                    name,
+                    depth_map,
+                    tone_bands,
+                    desaturation,
+                    colorization,
+                    black_flats,
+                    contours,
+                    outlines,
+                    sketch,
+                }
             },
         )
+}
+
+fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines>, Option<Sketch>)>
+{
+    let forms = || select(vec![EdgeForm::Measured, EdgeForm::Faithful]);
+    let bands = (0u32..99, number(), number(), any::<bool>()).prop_map(
+        |(levels, feather, amount, faithful)| ToneBands {
+            method: if faithful {
+                ToneBandMethod::Faithful
+            } else {
+                ToneBandMethod::Levels
+            },
+            levels,
+            feather,
+            amount,
+        },
+    );
+    let silhouettes =
+        (forms(), number(), number(), colors()).prop_map(|(form, threshold, softness, color)| {
+            Silhouettes {
+                form,
+                threshold,
+                softness,
+                color,
+                ..default()
+            }
+        });
+    let creases =
+        (forms(), number(), number(), colors()).prop_map(|(form, angle, edge_limit, color)| {
+            Creases {
+                form,
+                angle,
+                edge_limit,
+                color,
+                ..default()
+            }
+        });
+    let objects = (colors(), number()).prop_map(|(color, opacity)| ObjectEdges { color, opacity });
+    let outlines = (
+        option::of(silhouettes),
+        option::of(creases),
+        option::of(objects),
+        number(),
+        number(),
+    )
+        .prop_map(|(silhouettes, creases, objects, width, fade)| Outlines {
+            silhouettes,
+            creases,
+            objects,
+            width,
+            width_fade: fade,
+            opacity_fade: fade,
+        });
+    let sketch =
+        (colors(), colors(), number(), 0u32..9).prop_map(|(paper, ink, jitter, strokes)| Sketch {
+            paper,
+            ink,
+            jitter,
+            strokes,
+            ..default()
+        });
+    (option::of(bands), option::of(outlines), option::of(sketch))
 }
 
 #[test]

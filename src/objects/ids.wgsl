@@ -1,0 +1,9 @@
+// Writes which object is seen at a pixel: its id and the slot of its style.
+// The vertex shader is that of the prepass.
+
+@group(1) @binding(0) var<storage, read> objects: array<vec2<u32>>;
+
+@fragment
+fn object_id(@location(7) @interpolate(flat) instance: u32) -> @location(0) vec2<u32> {
+    return objects[min(instance, arrayLength(&objects) - 1u)];
+}

@@ -1,0 +1,15 @@
+//! What single objects ask of the lines: no lines, or lines of their own. And
+//! the ids by which lines know where one object ends and another begins.
+
+#[cfg(feature = "objects")]
+pub(crate) mod ids;
+pub(crate) mod table;
+
+#[cfg(feature = "objects")]
+mod components;
+#[cfg(feature = "objects")]
+pub(crate) use components::assign_object_styles;
+#[cfg(feature = "objects")]
+pub use components::{ContourStyle, LineKinds, NoContours};
+
+pub(crate) use table::{ObjectStyleBuffer, ObjectStyles};

@@ -1,0 +1,198 @@
+// Finds the outlines: for every pixel, along which of its sides a line runs
+// that belongs to it, of which kind, how inked and how wide.
+
+#import bevy_comics::stylize::bindings::{comics, kinds_of, load_depth}
+#ifdef FADING
+#import bevy_comics::stylize::bindings::{depth_frame}
+#import bevy_comics::depth::map::{depth_map}
+#endif
+#ifdef CREASES
+#import bevy_comics::stylize::bindings::{load_normal}
+#endif
+#ifdef OBJECT_IDS
+#import bevy_comics::stylize::bindings::{load_object}
+#endif
+#ifdef OBJECT_STYLES
+#import bevy_comics::stylize::bindings::{object_styles}
+#endif
+#import bevy_comics::depth::map::{is_background}
+#import bevy_comics::styles::outlines::{
+    CREASE, OBJECT, SILHOUETTE, Edge, WHOLE_CREASE, WHOLE_SILHOUETTE,
+    component_response, edge_response, gradient_extremes, normal_extremes, normal_step, on_edge,
+    pack_edge, step_excess,
+}
+
+// What lies outside the viewport goes on as it was heading: the point mirror
+// image of the inside keeps a plane a plane, so that the border is no edge.
+fn depth_at(pixel: vec2<i32>) -> f32 {
+    let first = comics.viewport.xy;
+    let last = first + comics.viewport.zw - 1;
+    let border = clamp(pixel, first, last);
+    let d = load_depth(border, 0);
+    if all(border == pixel) {
+        return d;
+    }
+    let mirror = clamp(2 * border - pixel, first, last);
+    return max(2.0 * d - load_depth(mirror, 0), 0.0);
+}
+
+#ifdef CREASES
+fn normal_at(pixel: vec2<i32>) -> vec4<f32> {
+    let first = comics.viewport.xy;
+    let at = clamp(pixel, first, first + comics.viewport.zw - 1);
+    return load_normal(at) * vec4(1.0, 1.0, 1.0, select(1.0, 0.0, is_background(load_depth(at, 0))));
+}
+#endif
+
+// Index steps in a 5 x 5 window: west, east, north, south.
+fn side_step(side: u32) -> i32 {
+    return select(5, 1, side < 2u) * select(-1, 1, (side & 1u) == 1u);
+}
+
+// Of the two pixels along a line between surfaces of like depth, the line is
+// the one's that has lines at all, else the nearer one's, else the one's to the
+// west or north: whatever the other pixel decides, it is the opposite.
+fn owns(here: f32, there: f32, has_here: bool, has_there: bool, side: u32) -> bool {
+    if has_here != has_there {
+        return has_here;
+    }
+    if here != there {
+        return here > there;
+    }
+    return (side & 1u) == 1u;
+}
+
+@fragment
+fn detect(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
+    let pixel = vec2<i32>(position.xy);
+    let inside = pixel - comics.viewport.xy;
+    if any(inside < vec2(0)) || any(inside >= comics.viewport.zw) {
+        return vec4(0u);
+    }
+    let s = comics.outlines;
+    var depths: array<f32, 25>;
+    var nearest = 0.0;
+    for (var i = 0; i < 25; i++) {
+        let d = depth_at(pixel + vec2(i % 5, i / 5) - 2);
+        depths[i] = d;
+        nearest = max(nearest, d);
+    }
+    let here = depths[12];
+    if nearest <= 0.0 {
+        return vec4(0u);
+    }
+
+    var edge: Edge;
+    // No line runs along the border of the viewport.
+    let rim = comics.viewport.zw - 1;
+    var open = array<bool, 4>(inside.x > 0, inside.x != rim.x, inside.y > 0, inside.y != rim.y);
+    var slot = 0u;
+    var others = array<u32, 4>(0u, 0u, 0u, 0u);
+#ifdef OBJECT_IDS
+    let object = load_object(pixel);
+    slot = object.y;
+    var differs = array<bool, 4>(false, false, false, false);
+    for (var side = 0u; side < 4u; side++) {
+        if open[side] {
+            let way = select(vec2(0, 1), vec2(1, 0), side < 2u) * select(-1, 1, (side & 1u) == 1u);
+            let other = load_object(pixel + way);
+            others[side] = other.y;
+            differs[side] = other.x != object.x;
+        }
+    }
+#endif
+    let kinds = kinds_of(slot);
+    edge.slot = slot;
+
+    let reference = s.reference_factor * nearest + s.reference_constant;
+    // A jump that hides something: what lies behind it is no neighbour.
+    let jump = 2.0 * s.silhouette_k * reference;
+    let g = gradient_extremes(&depths);
+#ifdef SILHOUETTES
+    if s.silhouette_faithful != 0u {
+        let p = edge_response(g, s.silhouette_k);
+        edge.ink.x = smoothstep(s.silhouette_low, s.silhouette_high, p) * f32(kinds & 1u);
+        edge.sides |= WHOLE_SILHOUETTE;
+    } else if (kinds & 1u) != 0u {
+        // Rounding of the buffer is no jump.
+        let p = edge_response(g, max(s.silhouette_k, 1e-6) * reference);
+        edge.ink.x = smoothstep(s.silhouette_low, s.silhouette_high, p);
+        if edge.ink.x > 0.0 {
+            for (var side = 0u; side < 4u; side++) {
+                let step = side_step(side);
+                let excess = step_excess(depths[12 - step], here, depths[12 + step], depths[12 + 2 * step]);
+                if open[side] && on_edge(excess, g) {
+                    edge.sides |= 1u << (4u * SILHOUETTE + side);
+                }
+            }
+        }
+    }
+#endif
+#ifdef CREASES
+    var normals: array<vec4<f32>, 25>;
+    for (var i = 0; i < 25; i++) {
+        normals[i] = normal_at(pixel + vec2(i % 5, i / 5) - 2);
+    }
+    if s.crease_faithful != 0u {
+        let p = component_response(&normals, s.crease_k);
+        edge.ink.y = smoothstep(s.crease_low, s.crease_high, p) * f32((kinds >> 1u) & 1u);
+        edge.sides |= WHOLE_CREASE;
+    } else {
+        let gn = normal_extremes(&normals);
+        let p = edge_response(gn, s.crease_k);
+        edge.ink.y = smoothstep(s.crease_low, s.crease_high, p);
+        if edge.ink.y > 0.0 {
+            for (var side = 0u; side < 4u; side++) {
+                let step = side_step(side);
+                let n = normals[12 + step];
+                let fold = normal_step(normals[12], n);
+                let around = max(normal_step(normals[12 - step], normals[12]), normal_step(n, normals[12 + 2 * step]));
+                let there = depths[12 + step];
+                // A fold is where one surface goes on as another.
+                let joined = abs(step_excess(depths[12 - step], here, there, depths[12 + 2 * step])) < jump
+                    && abs(step_excess(depths[12 + 2 * step], there, here, depths[12 - step])) < jump;
+                let mine = owns(here, there, (kinds & 2u) != 0u, (kinds_of(others[side]) & 2u) != 0u, side);
+                if open[side] && joined && mine && (kinds & 2u) != 0u && on_edge(fold - around, gn) {
+                    edge.sides |= 1u << (4u * CREASE + side);
+                }
+            }
+        }
+    }
+#endif
+#ifdef OBJECT_EDGES
+    edge.ink.z = 1.0;
+    for (var side = 0u; side < 4u; side++) {
+        let there = depths[12 + side_step(side)];
+        let has_there = (kinds_of(others[side]) & 4u) != 0u;
+        // In front of something far behind it, the line is the nearer object's,
+        // whatever it says.
+        let hides = abs(here - there) > jump;
+        let mine = select(
+            owns(here, there, (kinds & 4u) != 0u, has_there, side),
+            here > there,
+            hides,
+        );
+        if differs[side] && mine && (kinds & 4u) != 0u {
+            edge.sides |= 1u << (4u * OBJECT + side);
+        }
+    }
+#endif
+    if (edge.sides & 0x3fffu) == 0u {
+        return vec4(0u);
+    }
+#ifdef FADING
+    let depth = depth_map(depth_frame(), here).x;
+    edge.ink *= 1.0 - s.opacity_fade * depth;
+#endif
+    edge.half_width = s.half_width;
+#ifdef OBJECT_STYLES
+    if slot != 0u {
+        let own = object_styles[min(slot, arrayLength(&object_styles) - 1u)].half_width;
+        edge.half_width = select(edge.half_width, own * s.scale, own >= 0.0);
+    }
+#endif
+#ifdef FADING
+    edge.half_width *= 1.0 - s.width_fade * depth;
+#endif
+    return pack_edge(edge);
+}

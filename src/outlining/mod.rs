@@ -1,0 +1,475 @@
+//! The passes behind the outlines: one that finds edges, and for wide lines a
+//! jump flood that tells every pixel its nearest line.
+
+use std::sync::atomic::Ordering;
+
+use bevy::{
+    asset::{AssetServer, Handle, load_embedded_asset},
+    core_pipeline::{FullscreenShader, prepass::ViewPrepassTextures},
+    ecs::{resource::Resource, system::Res},
+    math::UVec2,
+    render::{
+        diagnostic::RecordDiagnostics,
+        render_resource::{
+            BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
+            BindingResource, CachedRenderPipelineId, ColorTargetState, ColorWrites, CommandEncoder,
+            Extent3d, FragmentState, IntoBinding, LoadOp, Operations, PipelineCache,
+            RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
+            RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline, StoreOp, Texture,
+            TextureDescriptor, TextureDimension, TextureFormat, TextureSampleType, TextureUsages,
+            TextureView, TextureViewDescriptor, VertexState,
+            binding_types::{
+                storage_buffer_read_only_sized, texture_2d, texture_2d_multisampled,
+                uniform_buffer, uniform_buffer_sized,
+            },
+        },
+        renderer::{RenderContext, RenderDevice, ViewQuery},
+    },
+    shader::{Shader, ShaderDefVal},
+};
+
+use crate::{
+    diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
+    objects::ObjectStyleBuffer,
+    passes::{ViewPass, ViewPasses},
+    stylize::ComicsUniform,
+    view::Plan,
+};
+
+/// Lines up to this far from their pixel, in pixels, are found by looking at
+/// every pixel around; wider ones by a flood. Measured: see ARCHITECTURE.md.
+pub(crate) const GATHER_REACH: i32 = 2;
+
+const EDGE_FORMAT: TextureFormat = TextureFormat::Rgba16Uint;
+
+/// How far around a pixel lines of this half width are looked for.
+pub(crate) fn reach(half_width: f32) -> i32 {
+    (half_width + 1.0).ceil() as i32 - 1
+}
+
+/// What is compiled into the pass that finds edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct OutlineKey {
+    pub samples: u32,
+    pub oblique: bool,
+    pub silhouettes: bool,
+    pub creases: bool,
+    pub object_edges: bool,
+    pub ids: bool,
+    pub object_styles: bool,
+    pub fading: bool,
+    pub visible_range: bool,
+}
+
+impl OutlineKey {
+    pub fn new(plan: &Plan, samples: u32, oblique: bool) -> Option<Self> {
+        let outlines = plan.outlines?;
+        let fading = outlines.width_fade > 0.0 || outlines.opacity_fade > 0.0;
+        Some(Self {
+            samples,
+            oblique,
+            silhouettes: outlines.silhouettes.is_some(),
+            creases: outlines.creases.is_some(),
+            object_edges: outlines.objects.is_some(),
+            ids: plan.draws_ids(),
+            object_styles: plan.object_styles,
+            fading,
+            visible_range: fading && plan.depth_map.mapping.follows_visible_range(),
+        })
+    }
+
+    fn shader_defs(&self) -> Vec<ShaderDefVal> {
+        [
+            (true, "DEPTH"),
+            (self.samples > 1, "MULTISAMPLED"),
+            (self.oblique, "OBLIQUE"),
+            (self.silhouettes, "SILHOUETTES"),
+            (self.creases, "CREASES"),
+            (self.object_edges, "OBJECT_EDGES"),
+            (self.ids, "OBJECT_IDS"),
+            (self.object_styles, "OBJECT_STYLES"),
+            (self.fading, "FADING"),
+            (self.visible_range, "VISIBLE_RANGE"),
+        ]
+        .into_iter()
+        .filter_map(|(on, name)| on.then(|| name.into()))
+        .collect()
+    }
+
+    fn layout(&self) -> BindGroupLayoutDescriptor {
+        let stages = ShaderStages::FRAGMENT;
+        let texture = |sample_type| {
+            if self.samples > 1 {
+                texture_2d_multisampled(sample_type)
+            } else {
+                texture_2d(sample_type)
+            }
+        };
+        let float = TextureSampleType::Float { filterable: false };
+        let mut entries = vec![
+            uniform_buffer::<ComicsUniform>(true).build(1, stages),
+            texture(float).build(2, stages),
+        ];
+        if self.visible_range {
+            entries.push(range_entry());
+        }
+        if self.object_styles {
+            entries.push(object_styles_entry());
+        }
+        if self.creases {
+            entries.push(texture(float).build(7, stages));
+        }
+        if self.ids {
+            entries.push(texture(TextureSampleType::Uint).build(8, stages));
+        }
+        BindGroupLayoutDescriptor::new("comics_outlines", &entries)
+    }
+}
+
+/// The layout entry of the visible range, everywhere.
+pub(crate) fn range_entry() -> BindGroupLayoutEntry {
+    let size = std::num::NonZeroU64::new(16);
+    uniform_buffer_sized(false, size).build(3, ShaderStages::FRAGMENT)
+}
+
+/// The layout entry of a texture of edges or lines.
+pub(crate) fn edges_entry(binding: u32) -> BindGroupLayoutEntry {
+    texture_2d(TextureSampleType::Uint).build(binding, ShaderStages::FRAGMENT)
+}
+
+/// The layout entry of the objects' styles.
+pub(crate) fn object_styles_entry() -> BindGroupLayoutEntry {
+    let size = std::num::NonZeroU64::new(32);
+    storage_buffer_read_only_sized(false, size).build(6, ShaderStages::FRAGMENT)
+}
+
+#[derive(Resource)]
+pub(crate) struct OutlinePipeline {
+    fullscreen: FullscreenShader,
+    detect: Handle<Shader>,
+}
+
+impl OutlinePipeline {
+    pub fn new(fullscreen: &FullscreenShader, assets: &AssetServer) -> Self {
+        Self {
+            fullscreen: fullscreen.clone(),
+            detect: load_embedded_asset!(assets, "detect.wgsl"),
+        }
+    }
+}
+
+fn edge_target() -> Vec<Option<ColorTargetState>> {
+    vec![Some(ColorTargetState {
+        format: EDGE_FORMAT,
+        blend: None,
+        write_mask: ColorWrites::ALL,
+    })]
+}
+
+impl SpecializedRenderPipeline for OutlinePipeline {
+    type Key = OutlineKey;
+
+    fn specialize(&self, key: OutlineKey) -> RenderPipelineDescriptor {
+        RenderPipelineDescriptor {
+            label: Some("comics_outlines".into()),
+            layout: vec![key.layout()],
+            vertex: self.fullscreen.to_vertex_state(),
+            fragment: Some(FragmentState {
+                shader: self.detect.clone(),
+                shader_defs: key.shader_defs(),
+                entry_point: Some("detect".into()),
+                targets: edge_target(),
+            }),
+            ..Default::default()
+        }
+    }
+}
+
+#[derive(Resource)]
+pub(crate) struct FloodPipeline {
+    shader: Handle<Shader>,
+}
+
+impl FloodPipeline {
+    pub fn new(assets: &AssetServer) -> Self {
+        Self {
+            shader: load_embedded_asset!(assets, "flood.wgsl"),
+        }
+    }
+
+    fn layout(first: bool) -> BindGroupLayoutDescriptor {
+        BindGroupLayoutDescriptor::new(
+            "comics_line_flood",
+            &[
+                uniform_buffer::<ComicsUniform>(true).build(1, ShaderStages::FRAGMENT),
+                edges_entry(if first { 4 } else { 5 }),
+            ],
+        )
+    }
+}
+
+impl SpecializedRenderPipeline for FloodPipeline {
+    /// Whether it is the first step, which reads the edges.
+    type Key = bool;
+
+    fn specialize(&self, first: bool) -> RenderPipelineDescriptor {
+        let shader_defs: Vec<ShaderDefVal> = if first {
+            vec!["EDGES".into(), "FIRST".into()]
+        } else {
+            vec!["FLOOD".into()]
+        };
+        RenderPipelineDescriptor {
+            label: Some("comics_line_flood".into()),
+            layout: vec![Self::layout(first)],
+            vertex: VertexState {
+                shader: self.shader.clone(),
+                shader_defs: shader_defs.clone(),
+                entry_point: Some("flood_vertex".into()),
+                buffers: vec![],
+            },
+            fragment: Some(FragmentState {
+                shader: self.shader.clone(),
+                shader_defs,
+                entry_point: Some("flood".into()),
+                targets: edge_target(),
+            }),
+            ..Default::default()
+        }
+    }
+}
+
+/// A texture that a view's passes write and read.
+pub(crate) struct ViewTexture {
+    pub texture: Texture,
+    pub view: TextureView,
+}
+
+impl ViewTexture {
+    pub fn new(
+        device: &RenderDevice,
+        label: &str,
+        size: UVec2,
+        samples: u32,
+        format: TextureFormat,
+    ) -> Self {
+        let texture = device.create_texture(&TextureDescriptor {
+            label: Some(label),
+            size: Extent3d {
+                width: size.x,
+                height: size.y,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: samples,
+            dimension: TextureDimension::D2,
+            format,
+            usage: TextureUsages::RENDER_ATTACHMENT
+                | TextureUsages::TEXTURE_BINDING
+                | TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&TextureViewDescriptor::default());
+        Self { texture, view }
+    }
+
+    pub fn fits(&self, size: UVec2, samples: u32) -> bool {
+        let own = self.texture.size();
+        UVec2::new(own.width, own.height) == size && self.texture.sample_count() == samples
+    }
+}
+
+/// The outlines of one view, this frame.
+pub(crate) struct OutlinePass {
+    pub key: OutlineKey,
+    pub pipeline: CachedRenderPipelineId,
+    pub edges: ViewTexture,
+    pub flood: Option<FloodPass>,
+}
+
+/// The flood: a first step and one for each stride, between two textures.
+pub(crate) struct FloodPass {
+    pub first: CachedRenderPipelineId,
+    pub next: CachedRenderPipelineId,
+    pub strides: Vec<u32>,
+    pub textures: [ViewTexture; 2],
+}
+
+impl FloodPass {
+    /// The strides that carry a line this far, in pixels.
+    pub fn strides(reach: i32) -> Vec<u32> {
+        let longest = (reach.max(1) as u32).next_power_of_two();
+        (0..=longest.ilog2()).rev().map(|k| 1 << k).collect()
+    }
+
+    /// Where the last step writes.
+    pub fn result(&self) -> &ViewTexture {
+        &self.textures[self.strides.len() % 2]
+    }
+}
+
+fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
+    BindGroupEntry { binding, resource }
+}
+
+fn draw(
+    encoder: &mut CommandEncoder,
+    label: &str,
+    target: &ViewTexture,
+    pipeline: &RenderPipeline,
+    bind_group: &BindGroup,
+    offset: u32,
+    instance: u32,
+) {
+    let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+        label: Some(label),
+        color_attachments: &[Some(RenderPassColorAttachment {
+            view: &target.view,
+            depth_slice: None,
+            resolve_target: None,
+            ops: Operations {
+                load: LoadOp::Clear(Default::default()),
+                store: StoreOp::Store,
+            },
+        })],
+        depth_stencil_attachment: None,
+        timestamp_writes: None,
+        occlusion_query_set: None,
+        multiview_mask: None,
+    });
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, bind_group, &[offset]);
+    pass.draw(0..3, instance..instance + 1);
+}
+
+/// Finds the outlines of the view.
+pub(crate) fn find_outlines(
+    view: ViewQuery<Option<&ViewPrepassTextures>>,
+    passes: Res<ViewPasses>,
+    object_styles: Res<ObjectStyleBuffer>,
+    ledger: Res<StageLedger>,
+    cache: Res<PipelineCache>,
+    mut ctx: RenderContext,
+) {
+    let entity = view.entity();
+    let prepass = view.into_inner();
+    let Some(pass) = passes.views.get(&entity) else {
+        return;
+    };
+    let Some(outline) = &pass.outline else {
+        return;
+    };
+    match record(
+        pass,
+        outline,
+        prepass,
+        &passes,
+        &object_styles,
+        &cache,
+        &mut ctx,
+    ) {
+        Ok(()) => {
+            pass.outlines_found.store(true, Ordering::Relaxed);
+            ledger.set(pass.camera, ComicsStage::OutlineEdges, StageOutcome::Ran);
+            if outline.flood.is_some() {
+                ledger.set(pass.camera, ComicsStage::LineFlood, StageOutcome::Ran);
+            }
+        }
+        Err(reason) => ledger.set(
+            pass.camera,
+            ComicsStage::OutlineEdges,
+            StageOutcome::LeftOut(reason),
+        ),
+    }
+}
+
+fn record(
+    pass: &ViewPass,
+    outline: &OutlinePass,
+    prepass: Option<&ViewPrepassTextures>,
+    passes: &ViewPasses,
+    object_styles: &ObjectStyleBuffer,
+    cache: &PipelineCache,
+    ctx: &mut RenderContext,
+) -> Result<(), LeftOut> {
+    let key = &outline.key;
+    let not_ready = LeftOut::PipelineNotReady;
+    let pipeline = cache
+        .get_render_pipeline(outline.pipeline)
+        .ok_or(not_ready)?;
+    let uniforms = passes.uniforms.binding().ok_or(not_ready)?;
+    let prepass = prepass.ok_or(LeftOut::NoDepthPrepass)?;
+    let depth = prepass.depth.as_ref().ok_or(LeftOut::NoDepthPrepass)?;
+    if depth.texture.texture.sample_count() != key.samples {
+        return Err(LeftOut::SampleCountMismatch);
+    }
+    let flood = match &outline.flood {
+        Some(flood) => Some((
+            flood,
+            cache.get_render_pipeline(flood.first).ok_or(not_ready)?,
+            cache.get_render_pipeline(flood.next).ok_or(not_ready)?,
+        )),
+        None => None,
+    };
+
+    let mut entries = vec![
+        entry(1, uniforms.clone()),
+        entry(2, (&depth.texture.default_view).into_binding()),
+    ];
+    if key.visible_range {
+        let found = pass.range_found.load(Ordering::Relaxed);
+        let keys = pass.keys.as_ref().filter(|_| found).ok_or(not_ready)?;
+        entries.push(entry(3, keys.as_entire_binding()));
+    }
+    if key.object_styles {
+        let styles = object_styles.buffer().ok_or(not_ready)?;
+        entries.push(entry(6, styles.as_entire_binding()));
+    }
+    if key.creases {
+        let normal = prepass.normal.as_ref().ok_or(not_ready)?;
+        entries.push(entry(7, (&normal.texture.default_view).into_binding()));
+    }
+    if key.ids {
+        let ids = pass.ids.as_ref().ok_or(not_ready)?;
+        entries.push(entry(8, (&ids.view).into_binding()));
+    }
+    let device = ctx.render_device().clone();
+    let layout = cache.get_bind_group_layout(&key.layout());
+    let bind_group = device.create_bind_group("comics_outlines", &layout, &entries);
+
+    let diagnostics = ctx.diagnostic_recorder();
+    let diagnostics = diagnostics.as_deref();
+    let encoder = ctx.command_encoder();
+    let span = diagnostics.time_span(encoder, "comics_outlines");
+    let offset = pass.uniform_offset;
+    draw(
+        encoder,
+        "comics_outlines",
+        &outline.edges,
+        pipeline,
+        &bind_group,
+        offset,
+        0,
+    );
+    if let Some((flood, first, next)) = flood {
+        let step = |source: &ViewTexture, is_first: bool| {
+            device.create_bind_group(
+                "comics_line_flood",
+                &cache.get_bind_group_layout(&FloodPipeline::layout(is_first)),
+                &[
+                    entry(1, uniforms.clone()),
+                    entry(if is_first { 4 } else { 5 }, (&source.view).into_binding()),
+                ],
+            )
+        };
+        let label = "comics_line_flood";
+        let group = step(&outline.edges, true);
+        draw(encoder, label, &flood.textures[0], first, &group, offset, 0);
+        for (i, stride) in flood.strides.iter().enumerate() {
+            let group = step(&flood.textures[i % 2], false);
+            let target = &flood.textures[(i + 1) % 2];
+            draw(encoder, label, target, next, &group, offset, *stride);
+        }
+    }
+    span.end(encoder);
+    Ok(())
+}

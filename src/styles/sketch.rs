@@ -1,0 +1,122 @@
+//! A drawing of outlines alone (\[CL\] 3.2, Figure 8).
+
+use bevy::{
+    color::{Color, ColorToComponents},
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::Vec3,
+    reflect::{Reflect, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use super::file_color;
+use crate::sanitize::{bounded, displayable};
+
+/// Draws the outlines of the camera as ink on paper, and nothing else.
+///
+/// The lines are those of [`Outlines`](crate::Outlines); a camera without that
+/// component sketches its silhouettes and creases. Several strokes, each with a
+/// wobble of its own that changes a few times a second, make it look drawn.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq)]
+#[serde(default, deny_unknown_fields)]
+pub struct Sketch {
+    /// Colour of the paper. Clamped to what a display shows; its alpha is not
+    /// used. Default: a warm white.
+    #[serde(with = "file_color")]
+    pub paper: Color,
+    /// Colour of the ink. Clamped to what a display shows; its alpha is not
+    /// used. Default: a soft black.
+    #[serde(with = "file_color")]
+    pub ink: Color,
+    /// How much of the picture shows through the paper, as a wash of colour.
+    /// Range 0 to 1, default 0.
+    pub wash: f32,
+    /// Exponent on the ink: below 1 strengthens faint lines, above 1 thins them
+    /// out. Range 0.25 to 4, default 1.
+    pub gamma: f32,
+    /// How many times every line is drawn. Range 1 to 3, default 2.
+    pub strokes: u32,
+    /// How far a stroke strays from its line, logical pixels. Range 0 to 8,
+    /// default 1.5.
+    pub jitter: f32,
+    /// Length of a stroke's waves, logical pixels. Range 2 to 256, default 40.
+    pub wavelength: f32,
+    /// How often a second the strokes are drawn anew. Range 0 (they stand
+    /// still) to 60, default 8.
+    pub rate: f32,
+    /// How much the pressure of the pen varies along a stroke. Range 0 to 1,
+    /// default 0.4.
+    pub pressure: f32,
+}
+
+impl Default for Sketch {
+    fn default() -> Self {
+        Self {
+            paper: Color::srgb(0.97, 0.955, 0.915),
+            ink: Color::srgb(0.13, 0.12, 0.14),
+            wash: 0.0,
+            gamma: 1.0,
+            strokes: 2,
+            jitter: 1.5,
+            wavelength: 40.0,
+            rate: 8.0,
+            pressure: 0.4,
+        }
+    }
+}
+
+impl Sketch {
+    /// The settings that are used: every number in its documented range, what
+    /// is not finite replaced by its default.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        let default = Self::default();
+        Self {
+            paper: displayable(self.paper, default.paper),
+            ink: displayable(self.ink, default.ink),
+            wash: bounded(self.wash, default.wash, 0.0, 1.0),
+            gamma: bounded(self.gamma, default.gamma, 0.25, 4.0),
+            strokes: self.strokes.clamp(1, 3),
+            jitter: bounded(self.jitter, default.jitter, 0.0, 8.0),
+            wavelength: bounded(self.wavelength, default.wavelength, 2.0, 256.0),
+            rate: bounded(self.rate, default.rate, 0.0, 60.0),
+            pressure: bounded(self.pressure, default.pressure, 0.0, 1.0),
+        }
+    }
+
+    /// Which drawing of the strokes is shown at a time in seconds.
+    pub(crate) fn drawing(&self, seconds: f64) -> u32 {
+        (seconds * f64::from(self.rate)).floor().rem_euclid(65536.0) as u32
+    }
+
+    /// `scale` is physical pixels per logical pixel.
+    pub(crate) fn uniform(&self, scale: f32, drawing: u32) -> SketchUniform {
+        let rgb = |color: Color| Vec3::from_array(color.to_linear().to_f32_array_no_alpha());
+        SketchUniform {
+            paper: rgb(self.paper),
+            wash: self.wash,
+            ink: rgb(self.ink),
+            gamma: self.gamma,
+            jitter: self.jitter * scale,
+            wavelength: self.wavelength * scale,
+            pressure: self.pressure,
+            strokes: self.strokes,
+            drawing,
+        }
+    }
+}
+
+/// `Sketch` of `sketch.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct SketchUniform {
+    paper: Vec3,
+    wash: f32,
+    ink: Vec3,
+    gamma: f32,
+    jitter: f32,
+    wavelength: f32,
+    pressure: f32,
+    strokes: u32,
+    drawing: u32,
+}

@@ -1,0 +1,68 @@
+#define_import_path bevy_comics::styles::tone_bands
+
+#import bevy_comics::styles::color::{largest, luminance, srgb_decode, srgb_encode}
+
+struct ToneBands {
+    // How many bands; with the paper's equation always three.
+    levels: f32,
+    // Physical pixels that the step between two bands takes.
+    feather: f32,
+    amount: f32,
+    faithful: u32,
+}
+
+// Lightness as it is seen: the display code of the luminance.
+fn lightness(linear: vec3<f32>) -> f32 {
+    return clamp(srgb_encode(vec3(max(luminance(linear), 0.0))).r, 0.0, 1.0);
+}
+
+// [CL] Eq. 6, its ranges joined at 0.33 and 0.66, for one channel of the code.
+fn equation_6(c: f32) -> f32 {
+    if c < 0.33 {
+        return c / 1.5;
+    }
+    if c < 0.66 {
+        return 0.33 + (c - 0.33) / 2.0;
+    }
+    return 0.66 + (c - 0.66) / 2.0;
+}
+
+// The tone of the band that a lightness falls into, 0 to 1: the darkest band is
+// black, the lightest white. `change` is how much the lightness changes over a
+// pixel; the step between two bands takes `feather` pixels, and never more than
+// one band.
+fn band_tone(s: ToneBands, y: f32, change: f32) -> f32 {
+    let t = y * s.levels;
+    let step = clamp(round(t), 1.0, s.levels - 1.0);
+    let half = 0.5 * clamp(s.feather * change * s.levels, 1e-5, 1.0);
+    return (step - 1.0 + smoothstep(step - half, step + half, t)) / (s.levels - 1.0);
+}
+
+// Light of another luminance, chroma kept, as far as the display can show it.
+fn with_luminance(linear: vec3<f32>, target_luminance: f32) -> vec3<f32> {
+    let y = luminance(linear);
+    let grey = vec3(target_luminance);
+    if y < 1e-6 {
+        return grey;
+    }
+    let scaled = linear * (target_luminance / y);
+    let over = largest(scaled) - 1.0;
+    if over <= 0.0 {
+        return scaled;
+    }
+    // Towards grey until it fits.
+    let room = clamp((1.0 - target_luminance) / max(largest(scaled) - target_luminance, 1e-6), 0.0, 1.0);
+    return mix(grey, scaled, room);
+}
+
+fn tone_bands(s: ToneBands, linear: vec3<f32>, change: f32) -> vec3<f32> {
+    var banded: vec3<f32>;
+    if s.faithful != 0u {
+        let c = srgb_encode(linear);
+        banded = srgb_decode(vec3(equation_6(c.r), equation_6(c.g), equation_6(c.b)));
+    } else {
+        let tone = band_tone(s, lightness(linear), change);
+        banded = with_luminance(linear, srgb_decode(vec3(tone)).r);
+    }
+    return mix(linear, banded, s.amount);
+}

@@ -1,0 +1,106 @@
+#define_import_path bevy_comics::stylize::lines
+
+// Reads the lines that the outlines' passes have found.
+
+#ifdef EDGES
+#import bevy_comics::stylize::bindings::{comics, edge_texture}
+#ifdef FLOOD
+#import bevy_comics::stylize::bindings::{flood_texture}
+#endif
+#ifdef OBJECT_STYLES
+#import bevy_comics::stylize::bindings::{object_styles}
+#endif
+#import bevy_comics::styles::outlines::{
+    CREASE, OBJECT, SILHOUETTE, WHOLE_CREASE, WHOLE_SILHOUETTE, Edge,
+    ink_color, line_coverage, line_offset, unpack_edge,
+}
+
+// Ink at a place, by kind, and the style slots of the objects it belongs to.
+struct Lines {
+    ink: vec3<f32>,
+    slots: vec3<u32>,
+}
+
+fn inside_viewport(pixel: vec2<i32>) -> vec2<i32> {
+    let first = comics.viewport.xy;
+    return clamp(pixel, first, first + comics.viewport.zw - 1);
+}
+
+// The lines of one pixel's edge, seen from a place.
+fn add_edge(lines: ptr<function, Lines>, edge: Edge, owner: vec2<i32>, at: vec2<f32>) {
+    let centre = vec2<f32>(owner) + 0.5;
+    for (var side = 0u; side < 4u; side++) {
+        let runs = vec3<u32>(edge.sides >> side, edge.sides >> (4u + side), edge.sides >> (8u + side)) & vec3(1u);
+        if any(runs != vec3(0u)) {
+            let line = centre + line_offset(side, edge.half_width);
+            let covered = line_coverage(distance(line, at), edge.half_width);
+            let ink = edge.ink * vec3<f32>(runs) * covered;
+            (*lines).slots = select((*lines).slots, vec3(edge.slot), ink > (*lines).ink);
+            (*lines).ink = max((*lines).ink, ink);
+        }
+    }
+}
+
+// The lines at a place in pixels.
+fn lines_at(at: vec2<f32>) -> Lines {
+    let pixel = inside_viewport(vec2<i32>(floor(at)));
+    let own = unpack_edge(textureLoad(edge_texture, pixel, 0));
+    var lines: Lines;
+    // The faithful forms: the pixel is the line.
+    lines.ink = own.ink * vec3(
+        select(0.0, 1.0, (own.sides & WHOLE_SILHOUETTE) != 0u),
+        select(0.0, 1.0, (own.sides & WHOLE_CREASE) != 0u),
+        0.0,
+    );
+    lines.slots = vec3(own.slot);
+#ifdef FLOOD
+    let seed = textureLoad(flood_texture, pixel, 0);
+    if seed.w != 0u {
+        let owner = vec2<i32>(seed.xy);
+        var edge = unpack_edge(textureLoad(edge_texture, owner, 0));
+        // This side of the pixel alone is the nearest.
+        edge.sides &= 0x111u << (seed.w & 3u);
+        add_edge(&lines, edge, owner, at);
+    }
+#else
+    let reach = comics.outlines.reach;
+    for (var y = -reach; y <= reach; y++) {
+        for (var x = -reach; x <= reach; x++) {
+            let owner = inside_viewport(pixel + vec2(x, y));
+            let texel = textureLoad(edge_texture, owner, 0);
+            if (texel.x & 0xfffu) != 0u {
+                add_edge(&lines, unpack_edge(texel), owner, at);
+            }
+        }
+    }
+#endif
+    return lines;
+}
+
+fn own_color(slot: u32, color: vec3<f32>) -> vec3<f32> {
+#ifdef OBJECT_STYLES
+    if slot != 0u {
+        let own = object_styles[min(slot, arrayLength(&object_styles) - 1u)];
+        return select(color, own.color, own.has_color > 0.0);
+    }
+#endif
+    return color;
+}
+
+// Ink over the picture: creases, then object edges, then silhouettes on top.
+fn draw_lines(linear: vec3<f32>, lines: Lines) -> vec3<f32> {
+    let s = comics.outlines;
+    let crease = ink_color(s, CREASE);
+    let object = ink_color(s, OBJECT);
+    let silhouette = ink_color(s, SILHOUETTE);
+    var c = mix(linear, own_color(lines.slots.y, crease.rgb), lines.ink.y * crease.a);
+    c = mix(c, own_color(lines.slots.z, object.rgb), lines.ink.z * object.a);
+    return mix(c, own_color(lines.slots.x, silhouette.rgb), lines.ink.x * silhouette.a);
+}
+
+// All kinds together, as a sketch draws them (Eq. 5).
+fn total_ink(lines: Lines) -> f32 {
+    let s = comics.outlines;
+    return max(lines.ink.x * s.silhouette_opacity, max(lines.ink.y * s.crease_opacity, lines.ink.z * s.object_opacity));
+}
+#endif
