@@ -32,6 +32,8 @@
 //! (Suarez, Belhadj, Boyer), cited as \[CS\]. Every setting is brought into its
 //! documented range before it is used; no value makes a panic or a NaN.
 
+#[cfg(feature = "cartoon")]
+mod cartoon;
 mod depth;
 mod diagnostics;
 mod objects;
@@ -43,10 +45,12 @@ mod styles;
 mod stylize;
 mod view;
 
+#[cfg(feature = "cartoon")]
+pub use cartoon::{CartoonLight, CartoonMaterial, CartoonScene};
 pub use depth::{DepthMap, DepthMapping, ProjectionKind, ReductionMethod, VisibleDepthRange};
 pub use diagnostics::{CameraStages, ComicsDiagnostics, ComicsStage, LeftOut, StageOutcome};
 #[cfg(feature = "objects")]
-pub use objects::{ContourStyle, LineKinds, NoContours};
+pub use objects::{ContourStyle, LineKinds, NoContours, ViewObjectIds, object_id};
 pub use plugin::{ComicsPlugin, ComicsSystems};
 pub use styles::{
     BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ComicStyleError,
@@ -62,6 +66,8 @@ pub mod prelude {
         Desaturation, EdgeForm, ObjectEdges, Outlines, Silhouettes, Sketch, ToneBandMethod,
         ToneBands, VisibleDepthRange,
     };
+    #[cfg(feature = "cartoon")]
+    pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};
     #[cfg(feature = "objects")]
     pub use crate::{ContourStyle, LineKinds, NoContours};
 }

@@ -86,6 +86,8 @@ impl Plugin for ComicsPlugin {
                 .init_asset_loader::<StyleLoader>()
                 .add_systems(Update, apply_styles);
         }
+        #[cfg(feature = "cartoon")]
+        crate::cartoon::build(app);
         if app.get_sub_app(RenderApp).is_none() {
             return;
         }
@@ -107,6 +109,8 @@ impl Plugin for ComicsPlugin {
         embedded_asset!(app, "outlining/flood.wgsl");
         #[cfg(feature = "objects")]
         embedded_asset!(app, "objects/ids.wgsl");
+        #[cfg(feature = "cartoon")]
+        load_shader_library!(app, "cartoon/light.wgsl");
         embedded_asset!(app, "stylize/stylize.wgsl");
         embedded_asset!(app, "depth/range.wgsl");
         embedded_asset!(app, "depth/ping_pong.wgsl");
@@ -163,6 +167,8 @@ impl Plugin for ComicsPlugin {
     }
 
     fn finish(&self, app: &mut App) {
+        #[cfg(feature = "cartoon")]
+        crate::cartoon::finish(app);
         // Ids are drawn with the engine's own mesh pipelines.
         #[cfg(feature = "objects")]
         if app.is_plugin_added::<bevy::pbr::PbrPlugin>() {

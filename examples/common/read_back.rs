@@ -8,6 +8,7 @@ use bevy::{
         view::ViewTarget,
     },
 };
+use bevy_comics::ViewObjectIds;
 use half::f16;
 
 /// Pixels of four floats, row by row.
@@ -143,6 +144,14 @@ pub fn last_pass(
     Some((input, output))
 }
 
+/// (id, style slot) of each pixel's object, row by row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct IdImage {
+    pub width: u32,
+    pub height: u32,
+    pub pixels: Vec<[u32; 2]>,
+}
+
 /// Runs a small compute shader that stores `words` words for every pixel.
 fn read_texels(
     render_world: &World,
@@ -150,6 +159,12 @@ fn read_texels(
     shader: &str,
     words: u32,
 ) -> Vec<u32> {
+    let sample_type = match texture.format() {
+        wgpu::TextureFormat::Rg16Uint | wgpu::TextureFormat::Rgba16Uint => {
+            wgpu::TextureSampleType::Uint
+        }
+        _ => wgpu::TextureSampleType::Float { filterable: false },
+    };
     let device = render_world
         .resource::<RenderDevice>()
         .wgpu_device()
@@ -179,7 +194,7 @@ fn read_texels(
                 binding: 0,
                 visibility: wgpu::ShaderStages::COMPUTE,
                 ty: wgpu::BindingType::Texture {
-                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                    sample_type,
                     view_dimension: wgpu::TextureViewDimension::D2,
                     multisampled: texture.sample_count() > 1,
                 },
@@ -300,5 +315,30 @@ pub fn normals(render_world: &World, view: Entity) -> Option<FloatImage> {
         width: texture.width(),
         height: texture.height(),
         pixels,
+    })
+}
+
+/// The objects of the first sample; none where no ids were drawn.
+pub fn object_ids(render_world: &World, view: Entity) -> Option<IdImage> {
+    let texture: &wgpu::Texture = &render_world.get::<ViewObjectIds>(view)?.texture;
+    let kind = if texture.sample_count() > 1 {
+        "texture_multisampled_2d<u32>"
+    } else {
+        "texture_2d<u32>"
+    };
+    let shader = format!(
+        "@group(0) @binding(0) var source: {kind};
+         @group(0) @binding(1) var<storage, read_write> result: array<vec2<u32>>;
+         @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {{
+             let size = textureDimensions(source);
+             if id.x >= size.x {{ return; }}
+             result[id.y * size.x + id.x] = textureLoad(source, vec2<i32>(id.xy), 0).xy;
+         }}"
+    );
+    let words = read_texels(render_world, texture, &shader, 2);
+    Some(IdImage {
+        width: texture.width(),
+        height: texture.height(),
+        pixels: words.chunks_exact(2).map(|w| [w[0], w[1]]).collect(),
     })
 }

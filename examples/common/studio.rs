@@ -1,11 +1,11 @@
 //! One scene, one camera, any number of styles.
 
 use bevy::{camera::RenderTarget, ecs::system::RunSystemOnce, prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, ComicsPlugin};
+use bevy_comics::{CartoonScene, ComicStyle, ComicsPlugin};
 
 use super::{
     headless::{Headless, HeadlessOptions},
-    scenes::{BuiltIn, Stage, Vantage},
+    scenes::{BuiltIn, ScenePart, Stage, Vantage},
 };
 
 /// Frames until a change of style is on the picture: the prepass takes one, the
@@ -55,5 +55,18 @@ impl Studio {
         world.flush();
         self.headless.step(SETTLE);
         self.headless.picture()
+    }
+}
+
+/// Draws every part of the scene with the cartoon material, or as it was.
+pub fn set_cartoon(world: &mut World, on: bool) {
+    let mut parts = world.query_filtered::<Entity, (With<ScenePart>, Without<ChildOf>)>();
+    let parts: Vec<Entity> = parts.iter(world).collect();
+    for part in parts {
+        if on {
+            world.entity_mut(part).insert(CartoonScene::default());
+        } else {
+            world.entity_mut(part).remove::<CartoonScene>();
+        }
     }
 }

@@ -12,8 +12,9 @@ use crate::common::{
 
 const USAGE: &str = "\
 usage: render [SCENE] [options]
-  SCENE                    mountains (default), teapot, village, or a .glb/.gltf file
+  SCENE                    mountains (default), teapot, theatre, village, or a .glb/.gltf file
   --style NAME|FILE        a preset, a .comic.ron file, or none (default: the scene's own)
+  --material standard|cartoon  how the scene is lit (default: cartoon for theatre)
   --size WxH               pixels (default 960x540)
   --camera EX,EY,EZ,TX,TY,TZ   eye and target, world units
   --near N  --far F        clipping planes, world units
@@ -22,7 +23,8 @@ usage: render [SCENE] [options]
   --hdr                    HDR camera
   --frames N               frames to render before the picture (default 8)
   --out FILE.png           the picture (default target/render.png)
-  --dump DIR               also write the pass's input, output, depth and frame.json";
+  --dump DIR               also write the pass's input, output, depth, normals,
+                           object ids and frame.json";
 
 pub enum SceneChoice {
     BuiltIn(BuiltIn),
@@ -33,6 +35,8 @@ pub struct Arguments {
     pub scene: SceneChoice,
     /// `None`: the original picture.
     pub style: Option<ComicStyle>,
+    /// Whether the scene is drawn with the cartoon material.
+    pub cartoon: bool,
     pub size: UVec2,
     pub camera: Option<(Vec3, Vec3)>,
     pub near: Option<f32>,
@@ -52,6 +56,7 @@ impl Arguments {
         let mut arguments = Self {
             scene: SceneChoice::BuiltIn(BuiltIn::Mountains),
             style: None,
+            cartoon: false,
             size: UVec2::new(960, 540),
             camera: None,
             near: None,
@@ -63,7 +68,7 @@ impl Arguments {
             out: PathBuf::from("target/render.png"),
             dump: None,
         };
-        let mut style = None;
+        let (mut style, mut material) = (None, None);
         let mut scenes = 0;
         let mut parser = lexopt::Parser::from_env();
         let wrong = |error: lexopt::Error| format!("{error}; --help lists the options");
@@ -81,6 +86,18 @@ impl Arguments {
                     arguments.scene = scene(&value.to_string_lossy())?;
                 }
                 Long("style") => style = Some(text(&mut parser)?),
+                Long("material") => {
+                    let value = text(&mut parser)?;
+                    material = Some(match value.as_str() {
+                        "standard" => false,
+                        "cartoon" => true,
+                        _ => {
+                            return Err(format!(
+                                "--material {value}: possible are standard, cartoon"
+                            ));
+                        }
+                    });
+                }
                 Long("size") => arguments.size = size(&text(&mut parser)?)?,
                 Long("camera") => arguments.camera = Some(camera(&text(&mut parser)?)?),
                 Long("near") => arguments.near = Some(positive("--near", &text(&mut parser)?)?),
@@ -113,6 +130,8 @@ impl Arguments {
                 "--near {near} --far {far}: near must be smaller than far"
             ));
         }
+        let flat = matches!(arguments.scene, SceneChoice::BuiltIn(BuiltIn::Theatre));
+        arguments.cartoon = material.unwrap_or(flat);
         arguments.style = match style.as_deref() {
             Some("none") => None,
             Some(name) => Some(read_style(name)?),
@@ -158,6 +177,7 @@ fn own_style(scene: &SceneChoice) -> &'static str {
     match scene {
         SceneChoice::BuiltIn(BuiltIn::Mountains) => "crimson-dusk",
         SceneChoice::BuiltIn(BuiltIn::Teapot) => "museum-print",
+        SceneChoice::BuiltIn(BuiltIn::Theatre) => "saturday-morning",
         _ => "ligne-claire",
     }
 }

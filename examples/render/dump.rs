@@ -20,7 +20,7 @@ use crate::{
     arguments::{Arguments, SceneChoice},
     common::{
         headless::{Adapter, Headless},
-        read_back::{self, DepthImage, FloatImage},
+        read_back::{self, DepthImage, FloatImage, IdImage},
     },
 };
 
@@ -52,6 +52,9 @@ pub fn write(
     if let Some(normals) = read_back::normals(render_world, view) {
         write_rgba(&folder.join("normal.exr"), &normals)?;
     }
+    if let Some(ids) = read_back::object_ids(render_world, view) {
+        write_ids(&folder.join("ids.exr"), &ids)?;
+    }
     headless.step(3);
     let frame = describe(headless, camera, arguments, adapter);
     let text = serde_json::to_string_pretty(&frame).map_err(|error| error.to_string())?;
@@ -70,6 +73,28 @@ fn write_rgba(path: &Path, picture: &FloatImage) -> Result<(), String> {
         }),
     );
     image
+        .write()
+        .to_file(path)
+        .map_err(|error| format!("cannot write {}: {error}", path.display()))
+}
+
+/// `id` and `style`, as whole numbers.
+fn write_ids(path: &Path, ids: &IdImage) -> Result<(), String> {
+    let channel = |name: &str, index: usize| {
+        let values = ids.pixels.iter().map(|pixel| pixel[index]).collect();
+        AnyChannel::new(name, FlatSamples::U32(values))
+    };
+    let layer = Layer::new(
+        (ids.width as usize, ids.height as usize),
+        LayerAttributes::named("ids"),
+        Encoding::FAST_LOSSLESS,
+        AnyChannels::sort(
+            [channel("id", 0), channel("style", 1)]
+                .into_iter()
+                .collect(),
+        ),
+    );
+    ExrImage::from_layer(layer)
         .write()
         .to_file(path)
         .map_err(|error| format!("cannot write {}: {error}", path.display()))
@@ -105,6 +130,26 @@ fn write_depth(path: &Path, depth: &DepthImage) -> Result<(), String> {
         .write()
         .to_file(path)
         .map_err(|error| format!("cannot write {}: {error}", path.display()))
+}
+
+/// How many lights of each kind the scene has.
+fn lights(headless: &Headless) -> Value {
+    let world = headless.app.world();
+    let count = |kind: Option<bevy::ecs::component::ComponentId>| {
+        kind.map_or(0, |kind| {
+            world
+                .archetypes()
+                .iter()
+                .filter(|archetype| archetype.contains(kind))
+                .map(bevy::ecs::archetype::Archetype::len)
+                .sum()
+        })
+    };
+    json!({
+        "directional": count(world.component_id::<DirectionalLight>()),
+        "point": count(world.component_id::<PointLight>()),
+        "spot": count(world.component_id::<SpotLight>()),
+    })
 }
 
 fn describe(
@@ -159,6 +204,8 @@ fn describe(
         "size": [arguments.size.x, arguments.size.y],
         "samples": arguments.msaa,
         "hdr": arguments.hdr,
+        "material": if arguments.cartoon { "cartoon" } else { "standard" },
+        "lights": lights(headless),
         "range": range,
         "projection": match ProjectionKind::of(&clip) {
             ProjectionKind::Perspective => "perspective",

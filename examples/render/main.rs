@@ -20,6 +20,7 @@ use bevy_comics::ComicsPlugin;
 use common::{
     headless::{self, Headless, HeadlessOptions},
     scenes::{Stage, Vantage},
+    studio::set_cartoon,
 };
 
 fn main() -> ExitCode {
@@ -62,6 +63,9 @@ fn run() -> Result<(), String> {
         SceneChoice::Model(path) => model::load(&mut headless, path)?,
     };
     arguments.adjust(&mut vantage);
+    if arguments.cartoon {
+        set_cartoon(headless.app.world_mut(), true);
+    }
     let camera = spawn_camera(&mut headless, &arguments, &vantage);
 
     for frame in 0..arguments.frames {

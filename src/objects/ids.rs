@@ -12,6 +12,7 @@ use bevy::{
     camera::{MainPassResolutionOverride, Viewport},
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::{
+        component::Component,
         entity::{Entity, EntityHash},
         resource::Resource,
         schedule::IntoScheduleConfigs,
@@ -51,7 +52,7 @@ use bevy::{
             LoadOp, Operations, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
             RenderPipelineDescriptor, ShaderStages, SpecializedMeshPipeline,
             SpecializedMeshPipelineError, SpecializedMeshPipelines, StorageBuffer, StoreOp,
-            TextureFormat, binding_types::storage_buffer_read_only,
+            Texture, TextureFormat, binding_types::storage_buffer_read_only,
         },
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
         sync_world::MainEntity,
@@ -71,10 +72,45 @@ use crate::{
 /// (id, style slot).
 pub(crate) const ID_FORMAT: TextureFormat = TextureFormat::Rg16Uint;
 
-/// The id of an object, 1 to 65535. Entities whose indices differ by a multiple
-/// of 65535 share one, and would have no edge between them.
-fn object_id(entity: MainEntity) -> u32 {
-    entity.id().index_u32() % 65535 + 1
+/// The id that an entity has in [`ViewObjectIds`], 1 to 65535. Entities whose
+/// indices differ by a multiple of 65535 share one, and have no
+/// [object edge](crate::ObjectEdges) between them.
+pub fn object_id(entity: Entity) -> u16 {
+    (entity.index_u32() % 65535 + 1) as u16
+}
+
+/// In the render world, on a view whose object ids are drawn: which object is
+/// seen at each pixel. As large as the depth texture, with as many samples.
+#[derive(Component, Clone, Debug)]
+pub struct ViewObjectIds {
+    /// `Rg16Uint`: the [`object_id`] (0: none) and the slot of its contour style
+    /// (0: none of its own).
+    pub texture: Texture,
+}
+
+/// Publishes the textures of the views.
+fn publish_object_ids(
+    mut commands: Commands,
+    passes: Res<ViewPasses>,
+    published: Query<(Entity, &ViewObjectIds)>,
+) {
+    for (view, ids) in &published {
+        let texture = passes.views.get(&view).and_then(|pass| pass.ids.as_ref());
+        if texture.is_none_or(|own| own.texture.id() != ids.texture.id()) {
+            commands.entity(view).remove::<ViewObjectIds>();
+        }
+    }
+    for (view, pass) in &passes.views {
+        if let Some(ids) = &pass.ids
+            && !published
+                .get(*view)
+                .is_ok_and(|(_, known)| known.texture.id() == ids.texture.id())
+        {
+            commands.entity(*view).insert(ViewObjectIds {
+                texture: ids.texture.clone(),
+            });
+        }
+    }
 }
 
 pub(crate) struct ObjectIdItem {
@@ -379,7 +415,8 @@ fn prepare_object_table(
             objects.resize(at + 1, UVec2::ZERO);
         }
         let slot = styles.slots.get(&item.main_entity().id()).copied();
-        objects[at] = UVec2::new(object_id(item.main_entity()), u32::from(slot.unwrap_or(0)));
+        let id = object_id(item.main_entity().id());
+        objects[at] = UVec2::new(u32::from(id), u32::from(slot.unwrap_or(0)));
     }
     table.bind_group = None;
     if objects.is_empty() {
@@ -486,6 +523,7 @@ pub(crate) fn build(app: &mut App) {
                 queue_object_ids.in_set(RenderSystems::QueueMeshes),
                 sort_phase_system::<ObjectIdItem>.in_set(RenderSystems::PhaseSort),
                 prepare_object_table.in_set(RenderSystems::PrepareBindGroups),
+                publish_object_ids.in_set(RenderSystems::Cleanup),
             ),
         );
 }

@@ -11,5 +11,7 @@ mod components;
 pub(crate) use components::assign_object_styles;
 #[cfg(feature = "objects")]
 pub use components::{ContourStyle, LineKinds, NoContours};
+#[cfg(feature = "objects")]
+pub use ids::{ViewObjectIds, object_id};
 
 pub(crate) use table::{ObjectStyleBuffer, ObjectStyles};

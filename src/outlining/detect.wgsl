@@ -18,7 +18,7 @@
 #import bevy_comics::depth::map::{is_background}
 #import bevy_comics::styles::outlines::{
     CREASE, OBJECT, SILHOUETTE, Edge, WHOLE_CREASE, WHOLE_SILHOUETTE,
-    component_response, edge_response, gradient_extremes, normal_extremes, normal_step, on_edge,
+    component_response, edge_response, gradient_extremes, normal_extremes, normal_step, on_edge, on_fold,
     pack_edge, step_excess,
 }
 
@@ -114,16 +114,16 @@ fn detect(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
         edge.ink.x = smoothstep(s.silhouette_low, s.silhouette_high, p) * f32(kinds & 1u);
         edge.sides |= WHOLE_SILHOUETTE;
     } else if (kinds & 1u) != 0u {
-        // Rounding of the buffer is no jump.
-        let p = edge_response(g, max(s.silhouette_k, 1e-6) * reference);
-        edge.ink.x = smoothstep(s.silhouette_low, s.silhouette_high, p);
-        if edge.ink.x > 0.0 {
-            for (var side = 0u; side < 4u; side++) {
-                let step = side_step(side);
-                let excess = step_excess(depths[12 - step], here, depths[12 + step], depths[12 + 2 * step]);
-                if open[side] && on_edge(excess, g) {
-                    edge.sides |= 1u << (4u * SILHOUETTE + side);
-                }
+        for (var side = 0u; side < 4u; side++) {
+            let step = side_step(side);
+            let excess = step_excess(depths[12 - step], here, depths[12 + step], depths[12 + 2 * step]);
+            // Eq. 2 on the step itself: as along a straight edge, but without
+            // the unrest of its staircase.
+            let p = edge_response(vec2(0.0, 0.5 * excess), s.silhouette_k * reference);
+            let ink = smoothstep(s.silhouette_low, s.silhouette_high, p);
+            if open[side] && ink > 0.0 && on_edge(excess, g) {
+                edge.ink.x = max(edge.ink.x, ink);
+                edge.sides |= 1u << (4u * SILHOUETTE + side);
             }
         }
     }
@@ -139,22 +139,26 @@ fn detect(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
         edge.sides |= WHOLE_CREASE;
     } else {
         let gn = normal_extremes(&normals);
-        let p = edge_response(gn, s.crease_k);
-        edge.ink.y = smoothstep(s.crease_low, s.crease_high, p);
-        if edge.ink.y > 0.0 {
-            for (var side = 0u; side < 4u; side++) {
-                let step = side_step(side);
-                let n = normals[12 + step];
-                let fold = normal_step(normals[12], n);
-                let around = max(normal_step(normals[12 - step], normals[12]), normal_step(n, normals[12 + 2 * step]));
-                let there = depths[12 + step];
-                // A fold is where one surface goes on as another.
-                let joined = abs(step_excess(depths[12 - step], here, there, depths[12 + 2 * step])) < jump
-                    && abs(step_excess(depths[12 + 2 * step], there, here, depths[12 - step])) < jump;
-                let mine = owns(here, there, (kinds & 2u) != 0u, (kinds_of(others[side]) & 2u) != 0u, side);
-                if open[side] && joined && mine && (kinds & 2u) != 0u && on_edge(fold - around, gn) {
-                    edge.sides |= 1u << (4u * CREASE + side);
-                }
+        for (var side = 0u; side < 4u; side++) {
+            let step = side_step(side);
+            let n = normals[12 + step];
+            let fold = normal_step(normals[12], n);
+            let p = edge_response(vec2(0.0, 0.5 * fold), s.crease_k);
+            let ink = smoothstep(s.crease_low, s.crease_high, p);
+            if !open[side] || ink <= 0.0 || (kinds & 2u) == 0u {
+                continue;
+            }
+            let before = normals[12 - step];
+            let beyond = normals[12 + 2 * step];
+            let around = max(normal_step(before, normals[12]), normal_step(n, beyond));
+            let there = depths[12 + step];
+            // A fold is where one surface goes on as another.
+            let joined = abs(step_excess(depths[12 - step], here, there, depths[12 + 2 * step])) < jump
+                && abs(step_excess(depths[12 + 2 * step], there, here, depths[12 - step])) < jump;
+            let mine = owns(here, there, true, (kinds_of(others[side]) & 2u) != 0u, side);
+            if joined && mine && on_fold(fold, around, before.w * beyond.w, gn) {
+                edge.ink.y = max(edge.ink.y, ink);
+                edge.sides |= 1u << (4u * CREASE + side);
             }
         }
     }

@@ -30,6 +30,17 @@ presets![
     "misty-morning",
     "golden-hour",
     "blueprint",
+    "saturday-morning",
+    "graphic-novel",
+    "pencil-sketch",
+    "figure-7a",
+    "figure-7b",
+    "figure-8a",
+    "figure-8b",
+    "figure-8c",
+    "twilight-toon",
+    "watercolor",
+    "clear-bands",
 ];
 
 /// The preset of this name; `None` if there is none.

@@ -27,15 +27,14 @@ fn equation_6(c: f32) -> f32 {
     return 0.66 + (c - 0.66) / 2.0;
 }
 
-// The tone of the band that a lightness falls into, 0 to 1: the darkest band is
-// black, the lightest white. `change` is how much the lightness changes over a
+// The tone in the middle of the band that a lightness falls into. `change` is how much the lightness changes over a
 // pixel; the step between two bands takes `feather` pixels, and never more than
 // one band.
 fn band_tone(s: ToneBands, y: f32, change: f32) -> f32 {
     let t = y * s.levels;
     let step = clamp(round(t), 1.0, s.levels - 1.0);
     let half = 0.5 * clamp(s.feather * change * s.levels, 1e-5, 1.0);
-    return (step - 1.0 + smoothstep(step - half, step + half, t)) / (s.levels - 1.0);
+    return (step - 0.5 + smoothstep(step - half, step + half, t)) / s.levels;
 }
 
 // Light of another luminance, chroma kept, as far as the display can show it.

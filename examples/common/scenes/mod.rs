@@ -7,6 +7,7 @@ pub mod noise;
 pub mod shape;
 pub mod sky;
 pub mod teapot;
+pub mod theatre;
 pub mod village;
 
 use bevy::{
@@ -19,16 +20,18 @@ use bevy::{
 pub enum BuiltIn {
     Mountains,
     Teapot,
+    Theatre,
     Village,
 }
 
 impl BuiltIn {
-    pub const ALL: [Self; 3] = [Self::Mountains, Self::Teapot, Self::Village];
+    pub const ALL: [Self; 4] = [Self::Mountains, Self::Teapot, Self::Theatre, Self::Village];
 
     pub fn name(self) -> &'static str {
         match self {
             Self::Mountains => "mountains",
             Self::Teapot => "teapot",
+            Self::Theatre => "theatre",
             Self::Village => "village",
         }
     }
@@ -73,6 +76,7 @@ impl Stage<'_, '_> {
         match scene {
             BuiltIn::Mountains => mountains::spawn(self),
             BuiltIn::Teapot => teapot::spawn(self),
+            BuiltIn::Theatre => theatre::spawn(self),
             BuiltIn::Village => village::spawn(self),
         }
     }

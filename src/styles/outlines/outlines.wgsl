@@ -132,6 +132,13 @@ fn on_edge(excess: f32, g: vec2<f32>) -> bool {
     return excess > 0.0 && excess >= 0.5 * (g.y - g.x);
 }
 
+// A fold runs between two pixels if it is the sharpest around and explains the
+// response (a straight fold answers with half its step). Next to the rim of a
+// surface, where a neighbour is missing, the curvature of the rim is no fold.
+fn on_fold(fold: f32, around: f32, complete: f32, g: vec2<f32>) -> bool {
+    return complete > 0.0 && fold >= around && fold >= g.y - g.x;
+}
+
 // What an edge's line is made of, found by detect.wgsl, read by the fused pass.
 struct Edge {
     // Bits 4 * kind + side: where the pixel's lines run. Bits 12, 13: the pixel

@@ -1,0 +1,412 @@
+//! A toy theatre: a robot, a chick and their props under a sun, a lamp and a
+//! spot. Texture, highlight, both kinds of shadow and every kind of line are in
+//! plain sight.
+
+use bevy::{
+    asset::RenderAssetUsages,
+    light::{CascadeShadowConfigBuilder, PointLight, SpotLight},
+    prelude::*,
+    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
+};
+
+use super::{
+    ScenePart, Stage, Vantage,
+    shape::{Shape, rgb, shade},
+    sky::Sky,
+};
+
+/// A texture of `width` x 1 or `width` x `height` flat texels.
+fn texels(stage: &mut Stage, width: u32, colors: &[u32]) -> Handle<Image> {
+    // Texels are repeated so that filtering does not blur their borders.
+    const SCALE: u32 = 64;
+    let height = colors.len() as u32 / width;
+    let mut bytes = Vec::new();
+    for y in 0..height * SCALE {
+        for x in 0..width * SCALE {
+            let [_, r, g, b] = colors[((y / SCALE) * width + x / SCALE) as usize].to_be_bytes();
+            bytes.extend([r, g, b, 255]);
+        }
+    }
+    stage.images.add(Image::new(
+        Extent3d {
+            width: width * SCALE,
+            height: height * SCALE,
+            depth_or_array_layers: 1,
+        },
+        TextureDimension::D2,
+        bytes,
+        TextureFormat::Rgba8UnormSrgb,
+        RenderAssetUsages::RENDER_WORLD,
+    ))
+}
+
+struct Workshop<'a, 'w, 's> {
+    stage: &'a mut Stage<'w, 's>,
+}
+
+impl Workshop<'_, '_, '_> {
+    fn paint(&mut self, color: u32, roughness: f32) -> Handle<StandardMaterial> {
+        let [_, r, g, b] = color.to_be_bytes();
+        self.stage.materials.add(StandardMaterial {
+            base_color: Color::srgb_u8(r, g, b),
+            perceptual_roughness: roughness,
+            reflectance: 0.5,
+            ..default()
+        })
+    }
+
+    fn textured(&mut self, texture: Handle<Image>, roughness: f32) -> Handle<StandardMaterial> {
+        self.stage.materials.add(StandardMaterial {
+            base_color_texture: Some(texture),
+            perceptual_roughness: roughness,
+            ..default()
+        })
+    }
+
+    fn put(
+        &mut self,
+        mesh: impl Into<Mesh>,
+        material: &Handle<StandardMaterial>,
+        at: Transform,
+    ) -> Entity {
+        let mesh = self.stage.meshes.add(mesh);
+        self.stage
+            .commands
+            .spawn((
+                ScenePart,
+                Mesh3d(mesh),
+                MeshMaterial3d(material.clone()),
+                at,
+            ))
+            .id()
+    }
+}
+
+fn at(x: f32, y: f32, z: f32) -> Transform {
+    Transform::from_xyz(x, y, z)
+}
+
+fn ball(radius: f32) -> Mesh {
+    Sphere::new(radius).mesh().uv(48, 24)
+}
+
+fn cone(radius: f32, height: f32) -> Mesh {
+    let mut shape = Shape::default();
+    shape.frustum(Vec3::ZERO, height, (radius, 0.001), 40, [1.0; 4]);
+    shape.into_mesh()
+}
+
+fn tube(bottom: f32, top: f32, height: f32) -> Mesh {
+    let mut shape = Shape::default();
+    shape.frustum(Vec3::ZERO, height, (bottom, top), 40, [1.0; 4]);
+    shape.into_mesh()
+}
+
+fn robot(shop: &mut Workshop, place: Transform) {
+    let tin = shop.paint(0x5b8fd6, 0.35);
+    let dark = shop.paint(0x27364f, 0.6);
+    let glass = shop.paint(0xfff3c4, 0.2);
+    let red = shop.paint(0xd8423a, 0.4);
+    let mut put = |mesh: Mesh, material: &Handle<StandardMaterial>, local: Transform| {
+        shop.put(mesh, material, place * local);
+    };
+    let block = |x: f32, y: f32, z: f32| Mesh::from(Cuboid::new(x, y, z));
+    // Legs, body, head.
+    for side in [-1.0, 1.0] {
+        put(tube(0.2, 0.17, 0.62), &dark, at(0.27 * side, 0.12, 0.0));
+        put(block(0.42, 0.16, 0.56), &tin, at(0.27 * side, 0.08, 0.08));
+    }
+    put(block(1.15, 1.2, 0.8), &tin, at(0.0, 1.32, 0.0));
+    put(block(0.6, 0.36, 0.06), &dark, at(0.0, 1.42, 0.42));
+    for (x, lamp) in [(-0.16, &red), (0.0, &glass), (0.16, &red)] {
+        put(ball(0.06), lamp, at(x, 1.42, 0.46));
+    }
+    put(tube(0.22, 0.22, 0.14), &dark, at(0.0, 1.92, 0.0));
+    put(block(0.86, 0.66, 0.7), &tin, at(0.0, 2.38, 0.0));
+    for side in [-1.0, 1.0] {
+        put(ball(0.15), &glass, at(0.2 * side, 2.45, 0.34));
+        put(ball(0.065), &dark, at(0.2 * side, 2.45, 0.47));
+        put(ball(0.2), &dark, at(0.66 * side, 1.72, 0.0));
+        let arm = at(0.74 * side, 1.68, 0.0).with_rotation(Quat::from_rotation_z(
+            side * if side > 0.0 { 2.35 } else { -2.75 },
+        ));
+        put(tube(0.12, 0.14, 0.8), &tin, arm);
+        put(ball(0.19), &red, arm * at(0.0, 0.88, 0.0));
+    }
+    put(block(0.42, 0.05, 0.04), &dark, at(0.0, 2.2, 0.36));
+    put(tube(0.03, 0.03, 0.36), &dark, at(0.0, 2.7, 0.0));
+    put(ball(0.1), &red, at(0.0, 3.12, 0.0));
+}
+
+fn chick(shop: &mut Workshop, place: Transform) {
+    let down = shop.paint(0xf6c832, 0.75);
+    let orange = shop.paint(0xea7a1f, 0.6);
+    let black = shop.paint(0x1d1a1f, 0.25);
+    let mut put = |mesh: Mesh, material: &Handle<StandardMaterial>, local: Transform| {
+        shop.put(mesh, material, place * local);
+    };
+    let mut body = Shape::default();
+    body.blob(
+        Vec3::ZERO,
+        Vec3::new(0.62, 0.66, 0.68),
+        24,
+        |_| [1.0; 4],
+        |_| 0.0,
+    );
+    put(body.into_mesh(), &down, at(0.0, 0.86, 0.0));
+    put(ball(0.43), &down, at(0.0, 1.62, 0.14));
+    put(
+        cone(0.15, 0.34),
+        &orange,
+        at(0.0, 1.6, 0.5).with_rotation(Quat::from_rotation_x(1.57)),
+    );
+    for side in [-1.0, 1.0] {
+        put(ball(0.075), &black, at(0.17 * side, 1.72, 0.5));
+        let wing = at(0.6 * side, 0.95, -0.05)
+            .with_rotation(Quat::from_rotation_z(0.35 * side))
+            .with_scale(Vec3::new(0.28, 0.8, 0.9));
+        put(ball(0.46), &down, wing);
+        put(tube(0.05, 0.05, 0.3), &orange, at(0.22 * side, 0.0, 0.05));
+        put(
+            Cuboid::new(0.24, 0.06, 0.4).into(),
+            &orange,
+            at(0.22 * side, 0.03, 0.15),
+        );
+    }
+    for (lean, height) in [(-0.35f32, 0.2), (0.0, 0.28), (0.35, 0.2)] {
+        put(
+            cone(0.05, height),
+            &orange,
+            at(0.0, 2.0, 0.1).with_rotation(Quat::from_rotation_z(lean)),
+        );
+    }
+}
+
+fn props(shop: &mut Workshop) {
+    // Two crates, one on the other, flush in front: only their ids part them.
+    let plank = texels(
+        shop.stage,
+        4,
+        &[
+            0xc8935a, 0xc8935a, 0xc8935a, 0xc8935a, 0xb67f47, 0xb67f47, 0xb67f47, 0xb67f47,
+            0xc8935a, 0xc8935a, 0xc8935a, 0xc8935a, 0xb67f47, 0xb67f47, 0xb67f47, 0xb67f47,
+        ],
+    );
+    let wood = shop.textured(plank, 0.9);
+    let turn = Quat::from_rotation_y(0.42);
+    for y in [0.6, 1.8] {
+        shop.put(
+            Cuboid::new(1.2, 1.2, 1.2),
+            &wood,
+            at(2.75, y, -0.7).with_rotation(turn),
+        );
+    }
+    // A beach ball: texture and highlight.
+    let stripes = texels(
+        shop.stage,
+        6,
+        &[0xe23b3b, 0xf7f2e6, 0x2f7fd1, 0xf7f2e6, 0xf2b430, 0xf7f2e6],
+    );
+    let rubber = shop.textured(stripes, 0.28);
+    shop.put(
+        ball(0.62),
+        &rubber,
+        at(1.35, 0.62, 1.75).with_rotation(Quat::from_euler(EulerRot::XYZ, 0.5, 0.3, 0.6)),
+    );
+    // A lamp that lights what stands around it.
+    let brass = shop.paint(0xb98d3a, 0.35);
+    let shade_material = shop.stage.materials.add(StandardMaterial {
+        base_color: Color::srgb_u8(0x3f, 0x8f, 0x6b),
+        perceptual_roughness: 0.8,
+        double_sided: true,
+        cull_mode: None,
+        ..default()
+    });
+    let bulb = shop.stage.materials.add(StandardMaterial {
+        base_color: Color::srgb(1.0, 0.93, 0.7),
+        unlit: true,
+        ..default()
+    });
+    let foot = at(-3.1, 0.0, 0.5);
+    shop.put(tube(0.5, 0.42, 0.14), &brass, foot);
+    shop.put(tube(0.07, 0.07, 2.5), &brass, foot * at(0.0, 0.14, 0.0));
+    let glow = shop.put(ball(0.2), &bulb, foot * at(0.0, 2.72, 0.0));
+    shop.stage
+        .commands
+        .entity(glow)
+        .insert(bevy::light::NotShadowCaster);
+    let mut hood = Shape::default();
+    for i in 0..40u32 {
+        let ring = |k: u32, radius: f32, y: f32| {
+            let a = std::f32::consts::TAU * k as f32 / 40.0;
+            Vec3::new(radius * a.cos(), y, radius * a.sin())
+        };
+        let (n0, n1) = (ring(i, 0.9, 0.35), ring(i + 1, 0.9, 0.35));
+        let corners = [
+            (ring(i, 0.72, 0.0), n0),
+            (ring(i + 1, 0.72, 0.0), n1),
+            (ring(i + 1, 0.34, 0.62), n1),
+            (ring(i, 0.34, 0.62), n0),
+        ]
+        .map(|(p, n)| hood.vertex(p, n.normalize(), [1.0; 4]));
+        let [a, b, c, d] = corners;
+        hood.indices.extend([a, d, c, a, c, b]);
+    }
+    shop.put(hood.into_mesh(), &shade_material, foot * at(0.0, 2.6, 0.0));
+    // Books.
+    for (i, (color, width, angle)) in [
+        (0x7b3f8c, 1.0, 0.2),
+        (0x2f8c7b, 0.86, -0.15),
+        (0xc2453d, 0.92, 0.45),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let cloth = shop.paint(color, 0.85);
+        shop.put(
+            Cuboid::new(width, 0.18, 0.66),
+            &cloth,
+            at(-1.0, 0.09 + 0.18 * i as f32, 2.15).with_rotation(Quat::from_rotation_y(angle)),
+        );
+    }
+}
+
+fn room(shop: &mut Workshop) {
+    let checks: Vec<u32> = (0..48)
+        .map(|i| {
+            if (i % 6 + i / 6) % 2 == 0 {
+                0xdcb987
+            } else {
+                0xcfa56c
+            }
+        })
+        .collect();
+    let boards = texels(shop.stage, 6, &checks);
+    let floor = shop.textured(boards, 0.9);
+    shop.put(Cuboid::new(12.0, 0.5, 8.0), &floor, at(0.0, -0.25, 0.5));
+    let mut wall = Shape::default();
+    // A folding screen: creases between its leaves.
+    let color = rgb(0xf1e3c6);
+    for i in 0..6 {
+        let x = -5.1 + 1.7 * i as f32;
+        let z = |k: i32| -3.0 + if k % 2 == 0 { 0.0 } else { 0.85 };
+        let (z0, z1) = (z(i), z(i + 1));
+        let tone = if i % 2 == 0 {
+            color
+        } else {
+            shade(color, 0.93)
+        };
+        let p = |x: f32, y: f32, z: f32| Vec3::new(x, y, z);
+        wall.polygon(
+            &[
+                p(x, 0.0, z0),
+                p(x + 1.7, 0.0, z1),
+                p(x + 1.7, 4.6, z1),
+                p(x, 4.6, z0),
+            ],
+            tone,
+        );
+        wall.polygon(
+            &[
+                p(x, 4.6, z0),
+                p(x + 1.7, 4.6, z1),
+                p(x + 1.7, 4.6, z1 - 0.15),
+                p(x, 4.6, z0 - 0.15),
+            ],
+            tone,
+        );
+        wall.polygon(
+            &[
+                p(x + 1.7, 0.0, z1 - 0.15),
+                p(x, 0.0, z0 - 0.15),
+                p(x, 4.6, z0 - 0.15),
+                p(x + 1.7, 4.6, z1 - 0.15),
+            ],
+            tone,
+        );
+    }
+    let paper = shop.stage.matt();
+    shop.put(wall.into_mesh(), &paper, Transform::IDENTITY);
+}
+
+pub fn spawn(stage: &mut Stage) -> Vantage {
+    let sun = Vec3::new(-0.55, 0.8, 0.62);
+    let sky = Sky {
+        zenith: 0x4a6fa8,
+        middle: 0x9cc4de,
+        horizon: 0xf4e6cf,
+        ground: 0x8d97a5,
+        cloud: 0xffffff,
+        cover: 0.3,
+        sun,
+    };
+    let mut shop = Workshop { stage };
+    room(&mut shop);
+    robot(
+        &mut shop,
+        at(0.35, 0.0, -0.6).with_rotation(Quat::from_rotation_y(-0.18)),
+    );
+    chick(
+        &mut shop,
+        at(-1.55, 0.0, 0.35).with_rotation(Quat::from_rotation_y(0.42)),
+    );
+    props(&mut shop);
+
+    stage.commands.spawn((
+        ScenePart,
+        DirectionalLight {
+            illuminance: 3000.0,
+            color: Color::srgb(1.0, 0.95, 0.86),
+            shadow_maps_enabled: true,
+            ..default()
+        },
+        Transform::from_translation(sun).looking_at(Vec3::ZERO, Vec3::Y),
+        CascadeShadowConfigBuilder {
+            num_cascades: 1,
+            maximum_distance: 26.0,
+            ..default()
+        }
+        .build(),
+    ));
+    stage.commands.spawn((
+        ScenePart,
+        PointLight {
+            intensity: 240_000.0,
+            color: Color::srgb(1.0, 0.78, 0.45),
+            range: 7.0,
+            shadow_maps_enabled: true,
+            ..default()
+        },
+        Transform::from_xyz(-3.1, 2.72, 0.5),
+    ));
+    stage.commands.spawn((
+        ScenePart,
+        SpotLight {
+            intensity: 2_000_000.0,
+            color: Color::srgb(0.72, 0.84, 1.0),
+            range: 20.0,
+            outer_angle: 0.34,
+            inner_angle: 0.3,
+            shadow_maps_enabled: true,
+            ..default()
+        },
+        Transform::from_xyz(5.0, 6.5, 4.6).looking_at(Vec3::new(0.4, 1.0, -0.8), Vec3::Y),
+    ));
+    stage.commands.insert_resource(GlobalAmbientLight {
+        color: Color::srgb(0.78, 0.84, 1.0),
+        brightness: 330.0,
+        ..default()
+    });
+
+    Vantage {
+        eye: Vec3::new(0.6, 3.5, 11.0),
+        target: Vec3::new(-0.05, 1.45, 0.0),
+        fov: 32f32.to_radians(),
+        near: 0.1,
+        far: 1000.0,
+        ortho: (Vec3::new(10.0, 9.0, 16.0), Vec3::new(0.0, 1.4, 0.0)),
+        ortho_height: 8.5,
+        sky: stage.images.add(sky.image()),
+        sky_brightness: 1000.0,
+    }
+}

@@ -1,0 +1,46 @@
+//! The cartoon material: uniformly lit areas with hard shadows ([CL] 2.2, 2.3,
+//! after Decaudin).
+
+mod material;
+mod scene;
+
+use bevy::{
+    app::{App, PostUpdate, Update},
+    asset::{AssetApp, embedded_asset},
+    ecs::schedule::IntoScheduleConfigs,
+    pbr::{MaterialPlugin, PbrPlugin},
+    render::RenderApp,
+};
+
+pub use material::{CartoonLight, CartoonMaterial};
+pub use scene::CartoonScene;
+
+/// Registers types and shaders, and the material where meshes are drawn.
+pub(crate) fn build(app: &mut App) {
+    app.register_type::<CartoonLight>()
+        .register_type::<CartoonScene>();
+    if app.get_sub_app(RenderApp).is_some() {
+        embedded_asset!(app, "cartoon.wgsl");
+    }
+    add_material(app);
+}
+
+/// The engine's plugins may have come after ours.
+pub(crate) fn finish(app: &mut App) {
+    add_material(app);
+}
+
+fn add_material(app: &mut App) {
+    if !app.is_plugin_added::<PbrPlugin>()
+        || app.is_plugin_added::<MaterialPlugin<CartoonMaterial>>()
+    {
+        return;
+    }
+    app.add_plugins(MaterialPlugin::<CartoonMaterial>::default())
+        .register_asset_reflect::<CartoonMaterial>()
+        .add_systems(Update, material::keep_forward)
+        .add_systems(
+            PostUpdate,
+            (scene::follow_materials, scene::restore, scene::convert).chain(),
+        );
+}

@@ -1,0 +1,171 @@
+//! One component turns a whole scene into a cartoon, and back.
+
+use bevy::{
+    asset::{AssetEvent, AssetId, Assets, Handle},
+    ecs::{
+        change_detection::{DetectChanges, Ref},
+        component::Component,
+        entity::Entity,
+        hierarchy::ChildOf,
+        lifecycle::RemovedComponents,
+        message::MessageReader,
+        query::With,
+        reflect::ReflectComponent,
+        system::{Commands, Local, Query, Res, ResMut},
+    },
+    material::OpaqueRendererMethod,
+    pbr::{MeshMaterial3d, StandardMaterial},
+    platform::collections::HashMap,
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+use serde::{Deserialize, Serialize};
+
+use super::{CartoonLight, CartoonMaterial};
+
+/// Draws this entity and everything below it with [`CartoonMaterial`]: put it on
+/// the root of a glTF scene.
+///
+/// Every `MeshMaterial3d<StandardMaterial>` there is replaced by a cartoon copy
+/// of its material, also when it is spawned later; changes of the original and
+/// of this component's settings reach the copy. Removing the component gives the
+/// standard materials back. Of several on the way up, the nearest counts.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq)]
+#[serde(default, deny_unknown_fields)]
+pub struct CartoonScene {
+    /// How the materials take the light. Default: [`CartoonLight::default`].
+    pub light: CartoonLight,
+}
+
+/// What a converted mesh was drawn with, and under which root.
+#[derive(Component)]
+pub(super) struct Original {
+    material: Handle<StandardMaterial>,
+    root: Entity,
+}
+
+/// The copies, by root and original, so that a material that many meshes share
+/// stays one.
+pub(super) type Copies = HashMap<(Entity, AssetId<StandardMaterial>), Handle<CartoonMaterial>>;
+
+/// The nearest root above an entity, itself included.
+fn root_of(
+    entity: Entity,
+    parents: &Query<&ChildOf>,
+    roots: &Query<Ref<CartoonScene>>,
+) -> Option<Entity> {
+    let above = parents.iter_ancestors(entity);
+    std::iter::once(entity)
+        .chain(above)
+        .find(|e| roots.contains(*e))
+}
+
+fn copy(original: &StandardMaterial, light: CartoonLight) -> CartoonMaterial {
+    CartoonMaterial {
+        base: StandardMaterial {
+            opaque_render_method: OpaqueRendererMethod::Forward,
+            ..original.clone()
+        },
+        extension: light,
+    }
+}
+
+/// Converts what stands below a root with a standard material.
+pub(super) fn convert(
+    mut commands: Commands,
+    roots: Query<Ref<CartoonScene>>,
+    parents: Query<&ChildOf>,
+    meshes: Query<(Entity, &MeshMaterial3d<StandardMaterial>)>,
+    standard: Res<Assets<StandardMaterial>>,
+    mut cartoon: ResMut<Assets<CartoonMaterial>>,
+    mut copies: Local<Copies>,
+) {
+    if roots.is_empty() {
+        copies.clear();
+        return;
+    }
+    // A copy that no mesh uses any more is dropped by its handle's count.
+    copies.retain(|(root, _), _| roots.contains(*root));
+    for (entity, material) in &meshes {
+        let Some(root) = root_of(entity, &parents, &roots) else {
+            continue;
+        };
+        let (Some(original), Ok(scene)) = (standard.get(&material.0), roots.get(root)) else {
+            continue;
+        };
+        let handle = copies
+            .entry((root, material.0.id()))
+            .or_insert_with(|| cartoon.add(copy(original, scene.light)))
+            .clone();
+        commands
+            .entity(entity)
+            .remove::<MeshMaterial3d<StandardMaterial>>()
+            .insert((
+                MeshMaterial3d(handle),
+                Original {
+                    material: material.0.clone(),
+                    root,
+                },
+            ));
+    }
+}
+
+/// Gives meshes that are no longer below their root what they had.
+pub(super) fn restore(
+    mut commands: Commands,
+    mut removed: RemovedComponents<CartoonScene>,
+    roots: Query<Ref<CartoonScene>>,
+    parents: Query<&ChildOf>,
+    moved: Query<(), bevy::ecs::query::Changed<ChildOf>>,
+    converted: Query<(Entity, &Original), With<MeshMaterial3d<CartoonMaterial>>>,
+) {
+    let root_gone = removed.read().count() > 0;
+    let root_new = roots.iter().any(|root| root.is_added());
+    if !root_gone && !root_new && moved.is_empty() {
+        return;
+    }
+    for (entity, original) in &converted {
+        if root_of(entity, &parents, &roots) != Some(original.root) {
+            commands
+                .entity(entity)
+                .remove::<(MeshMaterial3d<CartoonMaterial>, Original)>()
+                .insert(MeshMaterial3d(original.material.clone()));
+        }
+    }
+}
+
+/// Carries changes of originals and of settings to the copies.
+pub(super) fn follow_materials(
+    mut events: MessageReader<AssetEvent<StandardMaterial>>,
+    roots: Query<Ref<CartoonScene>>,
+    converted: Query<(&Original, &MeshMaterial3d<CartoonMaterial>)>,
+    standard: Res<Assets<StandardMaterial>>,
+    mut cartoon: ResMut<Assets<CartoonMaterial>>,
+) {
+    let changed: Vec<_> = events
+        .read()
+        .filter_map(|event| match event {
+            AssetEvent::Modified { id } => Some(*id),
+            _ => None,
+        })
+        .collect();
+    let tuned = roots
+        .iter()
+        .any(|root| root.is_changed() && !root.is_added());
+    if changed.is_empty() && !tuned {
+        return;
+    }
+    for (original, handle) in &converted {
+        let Ok(scene) = roots.get(original.root) else {
+            continue;
+        };
+        if !scene.is_changed() && !changed.contains(&original.material.id()) {
+            continue;
+        }
+        if let Some(source) = standard.get(&original.material)
+            && let Some(mut material) = cartoon.get_mut(&handle.0)
+        {
+            *material = copy(source, scene.light);
+        }
+    }
+}
