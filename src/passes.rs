@@ -206,8 +206,7 @@ impl Outlining<'_> {
         let new_texture =
             |label| ViewTexture::new(device, label, size, 1, TextureFormat::Rgba16Uint);
         let (edges, flood) = old.map_or((None, None), |old| (Some(old.edges), old.flood));
-        let strayed = plan.sketch.is_some_and(|s| s.strokes > 1 && reach > 0);
-        let flood = (reach > GATHER_REACH || strayed).then(|| FloodPass {
+        let flood = (reach > GATHER_REACH).then(|| FloodPass {
             first: self
                 .flood_pipelines
                 .specialize(cache, &self.flood_pipeline, true),

@@ -11,8 +11,7 @@
 #import bevy_comics::stylize::bindings::{object_styles}
 #endif
 #import bevy_comics::styles::outlines::{
-    CREASE, OBJECT, SILHOUETTE, WHOLE_CREASE, WHOLE_SILHOUETTE, Edge,
-    ink_color, line_coverage, line_offset, unpack_edge,
+    WHOLE_CREASE, WHOLE_SILHOUETTE, Edge, line_coverage, line_offset, unpack_edge,
 }
 
 // Ink at a place, by kind, and the style slots of the objects it belongs to.
@@ -57,10 +56,8 @@ fn lines_at(at: vec2<f32>) -> Lines {
     let seed = textureLoad(flood_texture, pixel, 0);
     if seed.w != 0u {
         let owner = vec2<i32>(seed.xy);
-        var edge = unpack_edge(textureLoad(edge_texture, owner, 0));
-        // This side of the pixel alone is the nearest.
-        edge.sides &= 0x111u << (seed.w & 3u);
-        add_edge(&lines, edge, owner, at);
+        // All sides of it: at a corner two lines are as near.
+        add_edge(&lines, unpack_edge(textureLoad(edge_texture, owner, 0)), owner, at);
     }
 #else
     let reach = comics.outlines.reach;
@@ -87,15 +84,25 @@ fn own_color(slot: u32, color: vec3<f32>) -> vec3<f32> {
     return color;
 }
 
-// Ink over the picture: creases, then object edges, then silhouettes on top.
+// Ink over the picture: the strongest line alone (Eq. 5 takes the maximum), and
+// of equals, within a hundredth, the silhouette, then the object edge.
 fn draw_lines(linear: vec3<f32>, lines: Lines) -> vec3<f32> {
     let s = comics.outlines;
-    let crease = ink_color(s, CREASE);
-    let object = ink_color(s, OBJECT);
-    let silhouette = ink_color(s, SILHOUETTE);
-    var c = mix(linear, own_color(lines.slots.y, crease.rgb), lines.ink.y * crease.a);
-    c = mix(c, own_color(lines.slots.z, object.rgb), lines.ink.z * object.a);
-    return mix(c, own_color(lines.slots.x, silhouette.rgb), lines.ink.x * silhouette.a);
+    let alpha = lines.ink * vec3(s.silhouette_opacity, s.crease_opacity, s.object_opacity);
+    var slot = lines.slots.x;
+    var color = s.silhouette_color;
+    var strongest = alpha.x;
+    if alpha.z > strongest + 0.01 {
+        slot = lines.slots.z;
+        color = s.object_color;
+        strongest = alpha.z;
+    }
+    if alpha.y > strongest + 0.01 {
+        slot = lines.slots.y;
+        color = s.crease_color;
+        strongest = alpha.y;
+    }
+    return mix(linear, own_color(slot, color), strongest);
 }
 
 // All kinds together, as a sketch draws them (Eq. 5).

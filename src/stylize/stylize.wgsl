@@ -43,11 +43,14 @@ fn to_stored(linear: vec3<f32>) -> vec3<f32> {
 @fragment
 fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(position.xy);
-    let stored = textureLoad(source, pixel, 0);
+    // At the border of an odd target there are pixels that exist only for their
+    // neighbours' derivatives.
+    let last = vec2<i32>(textureDimensions(source)) - 1;
+    let stored = textureLoad(source, min(pixel, last), 0);
     var linear = to_linear(stored.rgb);
 #ifdef TONE_BANDS
     // Derivatives want every pixel, so this comes before any is sent away.
-    let change = fwidth(lightness(linear));
+    let change = fwidthFine(lightness(linear));
 #endif
     let inside = pixel - comics.viewport.xy;
     if any(inside < vec2(0)) || any(inside >= comics.viewport.zw) {

@@ -8,15 +8,17 @@ use bevy::{
 };
 use bevy_comics::{
     BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ContourForm,
-    ContourOperator, Contours, DepthMap, DepthMapping, Desaturation, VisibleDepthRange, presets,
+    ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, EdgeForm, Outlines,
+    Silhouettes, Sketch, ToneBandMethod, ToneBands, VisibleDepthRange, presets,
 };
 
 use crate::{
     reference::{
         bindings::View,
         color,
+        lines::Edges,
         map::{Frame, Projection},
-        stylize::stylize,
+        stylize::{Input, stylize},
     },
     small::Small,
 };
@@ -62,6 +64,7 @@ fn assert_pass_is_its_twin(
     let (input, output) = small.pass();
     let map = style.depth_map.unwrap_or_default();
     let depth = small.depth().unwrap_or_else(|| panic!("{what}: no depth"));
+    let (normals, ids) = (small.normals(), small.object_ids());
     let view = View {
         viewport: viewport.unwrap_or([0, 0, input.width, input.height]),
         samples: depth.samples,
@@ -69,7 +72,17 @@ fn assert_pass_is_its_twin(
         depth_bits: &depth.bits,
         frame: frame(small, &map),
         flip: map.flip,
+        normals: normals.as_ref(),
+        ids: ids.as_ref(),
+        height: 0.0,
     };
+    let outlines = style.outlines.or(style.sketch.map(|_| Outlines {
+        objects: None,
+        width: 1.5,
+        ..default()
+    }));
+    let edges =
+        outlines.map(|outlines| (outlines, Edges::new(&outlines, &view, depth.height, 1.0)));
     let mut undecided = 0;
     // A camera that composites in gamma-encoded colour stores display codes.
     let encoded = small
@@ -86,6 +99,21 @@ fn assert_pass_is_its_twin(
         let [r, g, b] = [r, g, b].map(|c| color::srgb_decode_one(f64::from(c)) as f32);
         [r, g, b, a]
     };
+    let seconds = small
+        .headless
+        .app
+        .world()
+        .resource::<Time>()
+        .elapsed_secs_f64();
+    let light_of = |x: u32, y: u32| light(input.pixels[(y * input.width + x) as usize]);
+    let read_by_pass = Input {
+        picture: &light_of,
+        size: [input.width, input.height],
+        lines: edges.as_ref().map(|(outlines, edges)| (outlines, edges)),
+        drawing: style
+            .sketch
+            .map_or(0, |s| (seconds * f64::from(s.rate)).floor() as u32),
+    };
     for y in 0..input.height {
         for x in 0..input.width {
             let at = (y * input.width + x) as usize;
@@ -97,8 +125,8 @@ fn assert_pass_is_its_twin(
             assert_eq!(read[3], wrote[3], "{what}: alpha at ({x}, {y})");
             let encode = |c: [f64; 3]| color::srgb_encode(c.map(|v| v.max(0.0)));
             let got = encode([wrote[0], wrote[1], wrote[2]].map(f64::from));
-            let [want, more, less] =
-                [0.0, 1e-5, -1e-5].map(|nudge| encode(stylize(style, &view, read, x, y, nudge)));
+            let [want, more, less] = [0.0, 1e-5, -1e-5]
+                .map(|nudge| encode(stylize(style, &view, &read_by_pass, x, y, nudge)));
             let apart = |a: [f64; 3], b: [f64; 3]| {
                 (0..3)
                     .map(|i| (a[i].min(1.0) - b[i].min(1.0)).abs())
@@ -253,6 +281,121 @@ fn every_mode_of_every_style_is_its_twin() {
     };
     assert_pass_is_its_twin(&mut small, &flipped, None, "flipped");
     assert_eq!(small.errors(), 0);
+}
+
+fn outlined(outlines: Outlines) -> ComicStyle {
+    ComicStyle {
+        outlines: Some(outlines),
+        ..default()
+    }
+}
+
+#[test]
+fn outlines_of_every_kind_form_and_width_are_their_twin() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let mut small = Small::new(UVec2::new(72, 48), msaa);
+        for width in [0.5, 1.0, 1.7, 2.0, 3.0, 4.0] {
+            let style = outlined(Outlines {
+                width,
+                width_fade: 0.3,
+                opacity_fade: 0.5,
+                ..default()
+            });
+            assert_pass_is_its_twin(&mut small, &style, None, &format!("{width} px, {msaa:?}"));
+        }
+        for kind in 0..3 {
+            let all = Outlines::default();
+            let style = outlined(Outlines {
+                silhouettes: all.silhouettes.filter(|_| kind == 0),
+                creases: all.creases.filter(|_| kind == 1),
+                objects: all.objects.filter(|_| kind == 2),
+                width: 3.0,
+                ..all
+            });
+            assert_pass_is_its_twin(&mut small, &style, None, &format!("kind {kind}, {msaa:?}"));
+        }
+        let faithful = outlined(Outlines {
+            silhouettes: Some(Silhouettes {
+                form: EdgeForm::Faithful,
+                threshold: 0.0008,
+                edge_limit: 0.7,
+                ..default()
+            }),
+            creases: Some(Creases {
+                form: EdgeForm::Faithful,
+                color: Color::srgb(0.6, 0.1, 0.1),
+                ..default()
+            }),
+            ..default()
+        });
+        assert_pass_is_its_twin(&mut small, &faithful, None, &format!("faithful, {msaa:?}"));
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+/// A flood knows one line a pixel; where two objects' lines cross, a jump can
+/// land on the other. Wide lines of one colour have no such places.
+#[test]
+fn wide_lines_are_their_twin() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    for width in [5.0, 6.5, 8.0, 12.0, 16.0] {
+        let style = outlined(Outlines { width, ..default() });
+        assert_pass_is_its_twin(&mut small, &style, None, &format!("{width} px"));
+    }
+}
+
+/// The two papers on one camera in one pass.
+#[test]
+fn everything_at_once_is_its_twin() {
+    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
+    let both = |sketch| ComicStyle {
+        tone_bands: Some(ToneBands {
+            levels: 5,
+            feather: 0.0,
+            ..default()
+        }),
+        outlines: Some(Outlines {
+            width: 2.5,
+            opacity_fade: 0.4,
+            ..default()
+        }),
+        sketch,
+        ..everything(
+            ColorMethod::Corrected,
+            ColorizationMode::Quadratic,
+            ContourForm::PlaneAware,
+            DepthMapping::MinMax,
+        )
+    };
+    assert_pass_is_its_twin(&mut small, &both(None), None, "both papers");
+    let sketch = Sketch {
+        wash: 0.5,
+        ..default()
+    };
+    assert_pass_is_its_twin(
+        &mut small,
+        &both(Some(sketch)),
+        None,
+        "both papers, sketched",
+    );
+    for method in [ToneBandMethod::Levels, ToneBandMethod::Faithful] {
+        for feather in [0.0, 1.0, 3.0] {
+            let style = ComicStyle {
+                tone_bands: Some(ToneBands {
+                    method,
+                    feather,
+                    ..default()
+                }),
+                ..default()
+            };
+            assert_pass_is_its_twin(
+                &mut small,
+                &style,
+                None,
+                &format!("{method:?}, {feather} px"),
+            );
+        }
+    }
 }
 
 /// Failure 3.

@@ -15,7 +15,7 @@ use bevy_comics::{ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Visi
 
 use crate::common::{
     headless::{Headless, HeadlessOptions},
-    read_back::{self, DepthImage, FloatImage},
+    read_back::{self, DepthImage, FloatImage, IdImage},
 };
 
 /// Errors that the renderer reported.
@@ -140,6 +140,14 @@ impl Small {
 
     pub fn depth(&self) -> Option<DepthImage> {
         read_back::depth(self.render_world(), self.view())
+    }
+
+    pub fn normals(&self) -> Option<FloatImage> {
+        read_back::normals(self.render_world(), self.view())
+    }
+
+    pub fn object_ids(&self) -> Option<IdImage> {
+        read_back::object_ids(self.render_world(), self.view())
     }
 
     /// What the fused pass read and wrote.

@@ -7,12 +7,19 @@ pub mod color;
 pub mod colorization;
 pub mod contours;
 pub mod desaturation;
+pub mod detect;
+#[allow(dead_code, reason = "the light is tested function by function")]
+pub mod light;
+pub mod lines;
 pub mod map;
+pub mod outlines;
 pub mod ping_pong;
 pub mod range;
 pub mod raw;
+pub mod sketch;
 pub mod stylize;
 pub mod taps;
+pub mod tone_bands;
 
 pub type Rgb = [f64; 3];
 

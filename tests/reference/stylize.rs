@@ -1,21 +1,55 @@
 //! Twin of `stylize/stylize.wgsl`: the whole fused pass for one pixel.
 
-use super::{Rgb, bindings::View, black_flats, color, colorization, contours, desaturation, taps};
-use bevy_comics::ComicStyle;
+use super::{
+    Rgb,
+    bindings::View,
+    black_flats, color, colorization, contours, desaturation,
+    lines::{self, Edges},
+    sketch, taps, tone_bands,
+};
+use bevy_comics::{ComicStyle, Outlines};
+
+/// What the pass reads: the picture, in light, and the lines.
+pub struct Input<'a> {
+    pub picture: &'a dyn Fn(u32, u32) -> [f32; 4],
+    /// Size of the picture.
+    pub size: [u32; 2],
+    pub lines: Option<(&'a Outlines, &'a Edges)>,
+    /// Which drawing of a sketch is shown.
+    pub drawing: u32,
+}
+
+impl Input<'_> {
+    fn light(&self, x: u32, y: u32) -> Rgb {
+        let [r, g, b, _] = (self.picture)(x.min(self.size[0] - 1), y.min(self.size[1] - 1));
+        [r, g, b].map(color::finite)
+    }
+
+    /// How much the lightness changes over a pixel, within its block of 2 x 2.
+    fn change(&self, x: u32, y: u32) -> f64 {
+        let at = |x, y| tone_bands::lightness(self.light(x, y));
+        (at(x, y) - at(x ^ 1, y)).abs() + (at(x, y) - at(x, y ^ 1)).abs()
+    }
+}
 
 /// The pixel in linear light, and how far thresholds could move it: the same
 /// pixel with every contour and flat a little more and a little less covered.
-pub fn stylize(
-    style: &ComicStyle,
-    view: &View,
-    stored: [f32; 4],
-    x: u32,
-    y: u32,
-    nudge: f64,
-) -> Rgb {
-    let source = [stored[0], stored[1], stored[2]].map(color::finite);
+pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, nudge: f64) -> Rgb {
+    let source = input.light(x, y);
     let mut linear = source;
-    let mut depth = taps::pixel_depth(view, x, y);
+    if let Some(s) = &style.tone_bands {
+        let nudged = linear.map(|c| (c + nudge).max(0.0));
+        linear = tone_bands::tone_bands(s, nudged, input.change(x, y), 1.0);
+    }
+    let reads_map = style.desaturation.is_some()
+        || style.colorization.is_some()
+        || style.black_flats.is_some()
+        || style.contours.is_some();
+    let mut depth = if reads_map {
+        taps::pixel_depth(view, x, y)
+    } else {
+        [1.0, 0.0]
+    };
     if view.flip {
         depth.reverse();
     }
@@ -39,6 +73,31 @@ pub fn stylize(
         let [coverage, near] =
             taps::contour(&bevy_comics::Contours { threshold, ..*s }, view, x, y, 1.0);
         linear = contours::draw(s, linear, coverage, near);
+    }
+    // More strokes than one, or lines wider than the fused pass looks around.
+    let flooded = style.sketch.is_some_and(|s| s.strokes > 1)
+        || input
+            .lines
+            .is_some_and(|(outlines, _)| outlines.width > 4.0);
+    let place = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+    match (&style.sketch, input.lines) {
+        (Some(s), Some((outlines, edges))) => {
+            let inside = [x - view.viewport[0], y - view.viewport[1]].map(f64::from);
+            let blank = (0..s.strokes).fold(1.0, |blank, stroke| {
+                let by = sketch::stray(s, inside, stroke, input.drawing, 1.0);
+                let at = [place[0] + by[0], place[1] + by[1]];
+                let pressure = sketch::pen_pressure(s, inside, stroke, input.drawing, 1.0);
+                blank
+                    * (1.0
+                        - (lines::total(outlines, edges.ink(at, flooded, nudge)) * pressure)
+                            .clamp(0.0, 1.0))
+            });
+            linear = sketch::draw_sketch(s, linear, 1.0 - blank);
+        }
+        (None, Some((outlines, edges))) => {
+            linear = lines::draw(outlines, linear, edges.ink(place, flooded, nudge));
+        }
+        _ => {}
     }
     linear
 }

@@ -190,13 +190,3 @@ fn line_offset(side: u32, half_width: f32) -> vec2<f32> {
 fn line_coverage(distance: f32, half_width: f32) -> f32 {
     return clamp(half_width + 0.5 - distance, 0.0, min(2.0 * half_width, 1.0));
 }
-
-fn ink_color(s: Outlines, kind: u32) -> vec4<f32> {
-    if kind == SILHOUETTE {
-        return vec4(s.silhouette_color, s.silhouette_opacity);
-    }
-    if kind == CREASE {
-        return vec4(s.crease_color, s.crease_opacity);
-    }
-    return vec4(s.object_color, s.object_opacity);
-}

@@ -1,6 +1,7 @@
 //! The shipped functions on the GPU against their twins, on random and
 //! adversarial inputs.
 
+mod cartoon_styles;
 mod color_styles;
 mod contour_response;
 mod depth_map;
@@ -12,7 +13,7 @@ use bevy_comics::{
 };
 use proptest::{
     collection::vec,
-    prelude::{ProptestConfig, Strategy, any, prop_oneof},
+    prelude::{Just, ProptestConfig, Strategy, any, prop_oneof},
     sample::select,
     test_runner::TestRunner,
 };

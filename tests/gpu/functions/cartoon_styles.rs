@@ -1,0 +1,475 @@
+//! Outlines, tone bands, sketch and the cartoon's light against their twins.
+
+use super::*;
+use crate::reference::{light, outlines, sketch, tone_bands};
+use bevy_comics::{CartoonLight, Sketch, ToneBandMethod, ToneBands};
+
+const OUTLINES: &str = "#import bevy_comics::styles::outlines::{gradient, gradient_extremes, edge_response, normal_extremes, component_response, step_excess, line_coverage, line_offset, pack_edge, unpack_edge, Edge}";
+
+/// 25 depths: steps, ramps, and anything.
+fn window() -> impl Strategy<Value = [f32; 27]> {
+    let value = prop_oneof![4 => 0.0f32..=1.0, 1 => select(vec![0.0f32, 1.0, 0.5])];
+    (vec(value, 25), 0u8..3, 1e-4f32..0.5, 1e-3f32..1.0).prop_map(|(values, kind, k, height)| {
+        let mut row = [0.0; 27];
+        for (n, slot) in row[..25].iter_mut().enumerate() {
+            let (x, y) = ((n % 5) as f32, (n / 5) as f32);
+            *slot = match kind {
+                0 => values[n],
+                1 => height * if x + y * values[0] > 2.0 { 1.0 } else { 0.3 },
+                _ => height * (0.2 + 0.1 * values[0] * x + 0.05 * values[1] * y),
+            };
+        }
+        row[25] = k;
+        row
+    })
+}
+
+#[test]
+fn gradient_and_response_are_equations_1_and_2() {
+    for_batches(window(), |rows| {
+        let results = gpu().evaluate(
+            OUTLINES,
+            "var v: array<f32, 25>;
+             for (var n = 0u; n < 25u; n++) { v[n] = i(n); }
+             let g = gradient_extremes(&v);
+             return vec4(g, edge_response(g, i(25u)), step_excess(v[11], v[12], v[13], v[14]));",
+            rows,
+        );
+        for (row, result) in rows.iter().zip(results) {
+            let w: [[f64; 5]; 5] =
+                std::array::from_fn(|r| std::array::from_fn(|c| f64::from(row[5 * r + c])));
+            let g = outlines::gradient_extremes(&w, |a: f64, b: f64| (a - b).abs());
+            // Eight weighted differences of numbers up to one: 12 roundings of
+            // half an ulp each, over eight.
+            let step = 12.0 * 2f64.powi(-24);
+            assert!(
+                (f64::from(result[0]) - g[0]).abs() <= step,
+                "{row:?}: {result:?}, {g:?}"
+            );
+            assert!(
+                (f64::from(result[1]) - g[1]).abs() <= step,
+                "{row:?}: {result:?}, {g:?}"
+            );
+            let k = f64::from(row[25]);
+            let p = outlines::edge_response(g, k);
+            // p = r^2, so dp = 2 r dr with r up to 1 where it counts.
+            let slack = (2.0 * 2.0 * step / k).max(4.0 * 2f64.powi(-23));
+            assert!(
+                (f64::from(result[2]) - p).abs() <= slack,
+                "{row:?}: {result:?}, {p}"
+            );
+            let excess = outlines::step_excess(w[2][1], w[2][2], w[2][3], w[2][4]);
+            assert!(
+                (f64::from(result[3]) - excess).abs() <= 2f64.powi(-22),
+                "{row:?}"
+            );
+        }
+    });
+}
+
+/// An axis ramp answers with its slope, a plane with no edge: the weights.
+#[test]
+fn a_ramp_answers_with_its_slope_and_a_plane_with_no_edge() {
+    for slope in [1e-5, 0.01, 0.2] {
+        let ramp: [[f64; 5]; 5] =
+            std::array::from_fn(|_| std::array::from_fn(|c| slope * c as f64));
+        let g = outlines::gradient_extremes(&ramp, |a: f64, b: f64| (a - b).abs());
+        assert!(
+            (g[0] - slope).abs() < 1e-15 && (g[1] - slope).abs() < 1e-15,
+            "{g:?}"
+        );
+        // A step of height h answers with h / 2 on the columns beside it.
+        let step: [[f64; 5]; 5] =
+            std::array::from_fn(|_| std::array::from_fn(|c| if c > 2 { slope } else { 0.0 }));
+        let g = outlines::gradient_extremes(&step, |a: f64, b: f64| (a - b).abs());
+        assert!((g[1] - g[0] - 0.5 * slope).abs() < 1e-15, "{g:?}");
+    }
+}
+
+/// Nine by nine degrees of freedom: unit normals, some missing.
+#[test]
+fn creases_are_their_twin_in_both_forms() {
+    let row = (
+        vec((-1.0f32..1.0, -1.0f32..1.0, -1.0f32..1.0, 0u8..12), 25),
+        0.02f32..1.0,
+    )
+        .prop_map(|(normals, k)| {
+            let mut row = [0.0f32; 101];
+            for (n, (x, y, z, there)) in normals.into_iter().enumerate() {
+                let length = (x * x + y * y + z * z).sqrt().max(1e-3);
+                row[4 * n..4 * n + 4].copy_from_slice(&[
+                    x / length,
+                    y / length,
+                    z / length,
+                    f32::from(u8::from(there > 0)),
+                ]);
+            }
+            row[100] = k;
+            row
+        });
+    for_batches(row, |rows| {
+        let results = gpu().evaluate(
+            OUTLINES,
+            "var v: array<vec4<f32>, 25>;
+             for (var n = 0u; n < 25u; n++) { v[n] = vec4(i(4u*n), i(4u*n+1u), i(4u*n+2u), i(4u*n+3u)); }
+             return vec4(normal_extremes(&v), component_response(&v, i(100u)), 0.0);",
+            rows,
+        );
+        for (row, result) in rows.iter().zip(results) {
+            let w: [[outlines::Normal; 5]; 5] = std::array::from_fn(|r| {
+                std::array::from_fn(|c| {
+                    let n = &row[4 * (5 * r + c)..];
+                    (n[3] > 0.0).then(|| [n[0], n[1], n[2]].map(f64::from))
+                })
+            });
+            let g = outlines::gradient_extremes(&w, outlines::normal_step);
+            let step = 40.0 * 2f64.powi(-24);
+            assert!(
+                (f64::from(result[0]) - g[0]).abs() <= step,
+                "{result:?} {g:?}"
+            );
+            assert!(
+                (f64::from(result[1]) - g[1]).abs() <= step,
+                "{result:?} {g:?}"
+            );
+            let k = f64::from(row[100]);
+            let p = outlines::component_response(&w, k);
+            assert!(
+                (f64::from(result[2]) - p).abs() <= 4.0 * step / k,
+                "{result:?} {p}"
+            );
+        }
+    });
+}
+
+#[test]
+fn a_turned_scene_has_the_same_measured_creases() {
+    // Faithful creases are per component and depend on the axes: the design.
+    let turn = |n: [f64; 3], a: f64| {
+        [
+            n[0] * a.cos() - n[1] * a.sin(),
+            n[0] * a.sin() + n[1] * a.cos(),
+            n[2],
+        ]
+    };
+    let fold = |a: f64| -> [[outlines::Normal; 5]; 5] {
+        std::array::from_fn(|_| {
+            std::array::from_fn(|c| {
+                let n = if c > 2 {
+                    [0.5, 0.0, 0.75f64.sqrt()]
+                } else {
+                    [-0.5, 0.0, 0.75f64.sqrt()]
+                };
+                Some(turn(n, a))
+            })
+        })
+    };
+    let g0 = outlines::gradient_extremes(&fold(0.0), outlines::normal_step);
+    let p0 = outlines::component_response(&fold(0.0), 1.0);
+    let mut moved = 0.0f64;
+    for k in 1..12 {
+        let a = f64::from(k) * 0.13;
+        let g = outlines::gradient_extremes(&fold(a), outlines::normal_step);
+        assert!((g[1] - g0[1]).abs() < 1e-12, "{a}: {g:?}");
+        moved = moved.max((outlines::component_response(&fold(a), 1.0) - p0).abs());
+    }
+    assert!(
+        moved > 0.05,
+        "the faithful form is not supposed to be invariant: {moved}"
+    );
+    // A fold of 60 degrees: sin(30 degrees) is the full response.
+    assert!((g0[1] - g0[0] - 0.5).abs() < 1e-12, "{g0:?}");
+}
+
+#[test]
+fn a_line_covers_what_it_should_and_packs_without_loss() {
+    let row = (0.0f32..20.0, 0.1f32..16.0, vec(0.0f32..=1.0, 3), 0u8..4)
+        .prop_map(|(d, h, ink, side)| [d, h, ink[0], ink[1], ink[2], f32::from(side)]);
+    for_batches(row, |rows| {
+        let results = gpu().evaluate(
+            OUTLINES,
+            "var e: Edge; e.sides = 0xabcu; e.ink = vec3(i(2u), i(3u), i(4u)); e.half_width = i(1u); e.slot = 77u;
+             let back = unpack_edge(pack_edge(e));
+             let kept = select(0.0, 1.0, back.sides == 0xabcu && back.slot == 77u
+                 && all(abs(back.ink - e.ink) <= vec3(0.502 / 255.0)));
+             return vec4(line_coverage(i(0u), i(1u)), length(line_offset(u(5u), i(1u))), back.half_width, kept);",
+            rows,
+        );
+        for (row, result) in rows.iter().zip(results) {
+            let (d, h) = (f64::from(row[0]), f64::from(row[1]));
+            let want = outlines::line_coverage(d, h);
+            assert!(
+                (f64::from(result[0]) - want).abs() < 1e-5,
+                "{row:?} {result:?} {want}"
+            );
+            let offset = outlines::line_offset(h);
+            assert!(
+                (f64::from(result[1]) - offset).abs() < 1e-5,
+                "{row:?} {result:?} {offset}"
+            );
+            assert!(
+                (f64::from(result[2]) - h).abs() <= 0.501 / 512.0,
+                "{row:?} {result:?}"
+            );
+            assert_eq!(result[3], 1.0, "{row:?}");
+        }
+    });
+}
+
+/// The width of a line is the sum of what it covers: exact at every width.
+#[test]
+fn coverage_adds_up_to_the_width() {
+    for k in 1..=64 {
+        let h = 0.125 * f64::from(k);
+        let sum: f64 = (-40..40)
+            .map(|n| {
+                outlines::line_coverage((f64::from(n) + 0.5 - outlines::line_offset(h)).abs(), h)
+            })
+            .sum();
+        assert!((sum - 2.0 * h).abs() < 1e-12, "{h}: {sum}");
+    }
+}
+
+#[test]
+fn tone_bands_are_their_twin() {
+    let row = (
+        (component(), component(), component()),
+        2u8..9,
+        0.0f32..4.0,
+        prop_oneof![Just(0.0f32), 0.0f32..0.3],
+        0.0f32..=1.0,
+        any::<bool>(),
+    )
+        .prop_map(|((r, g, b), levels, feather, change, amount, faithful)| {
+            [
+                r,
+                g,
+                b,
+                f32::from(levels),
+                feather,
+                change,
+                amount,
+                f32::from(u8::from(faithful)),
+            ]
+        });
+    let undecided = std::cell::Cell::new(0usize);
+    for_batches(row, |rows| {
+        let results = gpu().evaluate(
+            "#import bevy_comics::styles::tone_bands::{ToneBands, tone_bands}",
+            "let s = ToneBands(i(3u), i(4u), i(6u), u(7u));
+             return vec4(tone_bands(s, vec3(i(0u), i(1u), i(2u)), i(5u)), 0.0);",
+            rows,
+        );
+        for (row, result) in rows.iter().zip(results) {
+            let s = ToneBands {
+                method: if row[7] == 1.0 {
+                    ToneBandMethod::Faithful
+                } else {
+                    ToneBandMethod::Levels
+                },
+                levels: row[3] as u32,
+                feather: row[4],
+                amount: row[6],
+            };
+            let change = f64::from(row[5]);
+            let at = |nudge: f64| {
+                let c = rgb(row).map(|c| c * (1.0 + nudge) + nudge.abs() * 1e-3);
+                tone_bands::tone_bands(&s, c, change, 1.0)
+            };
+            if codes_apart(result, at(0.0)) <= 1.0 {
+                continue;
+            }
+            // A border between bands, within the rounding of the lightness.
+            let apart = codes_apart([0, 1, 2, 0].map(|i: usize| at(1e-5)[i] as f32), at(-1e-5));
+            assert!(apart > 1.0, "{row:?}: {result:?}, {:?}", at(0.0));
+            undecided.set(undecided.get() + 1);
+        }
+    });
+    assert!(
+        undecided.get() < 12 * 2048 / 200,
+        "{} undecided",
+        undecided.get()
+    );
+}
+
+#[test]
+fn equation_6_is_closed_monotone_and_makes_white_0_83() {
+    let codes: Vec<f64> = (0..=255)
+        .map(|c| tone_bands::equation_6(f64::from(c) / 255.0))
+        .collect();
+    // The printed ranges leave out codes 85, 86, 169 and 170: here every code
+    // has a tone.
+    assert!(codes.windows(2).all(|w| w[1] > w[0]), "{codes:?}");
+    assert!((codes[255] - 0.83).abs() < 1e-12);
+    assert!((tone_bands::equation_6(0.5) - 0.415).abs() < 1e-12);
+}
+
+#[test]
+fn the_levels_are_as_many_as_asked_and_keep_the_chroma() {
+    for levels in 2..=8u32 {
+        let s = ToneBands {
+            levels,
+            feather: 0.0,
+            ..ToneBands::default()
+        };
+        let mut tones: Vec<i64> = (0..4094)
+            .map(|n| {
+                let v = f64::from(n) / 4093.0;
+                let light = color::srgb_decode([v; 3]);
+                (tone_bands::lightness(tone_bands::tone_bands(&s, light, 0.0, 1.0)) * 1e6).round()
+                    as i64
+            })
+            .collect();
+        tones.dedup();
+        assert_eq!(tones.len(), levels as usize, "{tones:?}");
+    }
+    let s = ToneBands {
+        feather: 0.0,
+        ..ToneBands::default()
+    };
+    let red = [0.2, 0.05, 0.02];
+    let banded = tone_bands::tone_bands(&s, red, 0.0, 1.0);
+    for i in 1..3 {
+        assert!(
+            (banded[i] / banded[0] - red[i] / red[0]).abs() < 1e-12,
+            "{banded:?}"
+        );
+    }
+}
+
+#[test]
+fn the_sketch_is_its_twin() {
+    let row = (
+        (0.0f32..2000.0, 0.0f32..2000.0),
+        0u8..3,
+        0u16..60000,
+        (0.0f32..8.0, 2.0f32..256.0, 0.0f32..=1.0),
+        (0.0f32..=1.0, 0.25f32..4.0, component()),
+    )
+        .prop_map(
+            |((x, y), stroke, drawing, (jitter, wavelength, pressure), (ink, gamma, wash))| {
+                [
+                    x,
+                    y,
+                    f32::from(stroke),
+                    f32::from(drawing),
+                    jitter,
+                    wavelength,
+                    pressure,
+                    ink,
+                    gamma,
+                    wash,
+                ]
+            },
+        );
+    for_batches(row, |rows| {
+        let import =
+            "#import bevy_comics::styles::sketch::{Sketch, stray, pen_pressure, draw_sketch}";
+        let setup = "var s: Sketch; s.jitter = i(4u); s.wavelength = i(5u); s.pressure = i(6u); s.drawing = u(3u);
+             s.gamma = i(8u); s.wash = i(9u); s.paper = vec3(0.9, 0.8, 0.7); s.ink = vec3(0.1, 0.05, 0.02);
+             let at = vec2(i(0u), i(1u));";
+        let strays = gpu().evaluate(
+            import,
+            &format!("{setup} return vec4(stray(s, at, u(2u)), pen_pressure(s, at, u(2u)), 0.0);"),
+            rows,
+        );
+        let drawn = gpu().evaluate(
+            import,
+            &format!("{setup} return vec4(draw_sketch(s, vec3(0.3, 0.5, 0.7), i(7u)), 0.0);"),
+            rows,
+        );
+        for (row, (strayed, drawn)) in rows.iter().zip(strays.into_iter().zip(drawn)) {
+            let s = Sketch {
+                jitter: row[4],
+                wavelength: row[5],
+                pressure: row[6],
+                gamma: row[8],
+                wash: row[9],
+                paper: Color::linear_rgb(0.9, 0.8, 0.7),
+                ink: Color::linear_rgb(0.1, 0.05, 0.02),
+                ..Sketch::default()
+            };
+            let at = [row[0], row[1]].map(f64::from);
+            let (stroke, drawing) = (row[2] as u32, row[3] as u32);
+            let want = sketch::stray(&s, at, stroke, drawing, 1.0);
+            // The place in waves has 24 bits: an ulp of up to 1000 waves, on a
+            // curve no steeper than 3 a wave.
+            let slack = 3.0 * 1700.0 * 2f64.powi(-23) * (1.0 + f64::from(row[4]));
+            for i in 0..2 {
+                assert!(
+                    (f64::from(strayed[i]) - want[i]).abs() < slack,
+                    "{row:?} {strayed:?} {want:?}"
+                );
+            }
+            let pressure = sketch::pen_pressure(&s, at, stroke, drawing, 1.0);
+            assert!((f64::from(strayed[2]) - pressure).abs() < slack, "{row:?}");
+            assert_same_color(
+                row,
+                drawn,
+                sketch::draw_sketch(&s, [0.3, 0.5, 0.7], f64::from(row[7])),
+            );
+        }
+    });
+}
+
+#[test]
+fn the_cartoons_light_is_its_twin() {
+    let row = (
+        (0.05f32..1.0, 0.0f32..=1.0, 0.0f32..0.1),
+        (0.01f32..2000.0, 0.0f32..0.01, 0.01f32..100.0, 0.0f32..0.1),
+        prop_oneof![Just(0.0f32), 0.25f32..4.0],
+    )
+        .prop_map(
+            |((rough, n_dot_h, width), (d2, inverse, bright, pixel), falloff)| {
+                [rough, n_dot_h, width, d2, inverse, bright, pixel, falloff]
+            },
+        );
+    let import = "#import bevy_comics::cartoon::light::{CartoonLight, highlight, highlight_share, flat_falloff}";
+    let undecided = std::cell::Cell::new(0usize);
+    for_batches(row, |rows| {
+        let results = gpu().evaluate(
+            import,
+            "let s = CartoonLight(0.08, 1.0, 1.0, 1.0, 0.5, i(7u));
+             return vec4(highlight_share(i(0u), i(1u)), highlight(s, i(0u), i(1u), i(2u)),
+                 flat_falloff(s, i(3u), i(4u), i(5u), i(6u)), 0.0);",
+            rows,
+        );
+        for (row, result) in rows.iter().zip(results) {
+            let r = row.map(f64::from);
+            let s = CartoonLight {
+                falloff: row[7],
+                ..CartoonLight::default()
+            };
+            // 1 - cos^2 loses what cos^2 rounds away: 2^-23 over a^2, twice.
+            let share = light::highlight_share(r[0], r[1]);
+            let slack = (8.0 * 2f64.powi(-23) / (r[0] * r[0])).min(1.0);
+            assert!(
+                (f64::from(result[0]) - share).abs() <= slack.max(1e-6),
+                "{row:?} {result:?} {share}"
+            );
+            let close = |got: f32, want: [f64; 3], what: &str| {
+                let [want, low, high] = want;
+                let spread = (high - low).abs() + 2e-4 * want.abs().max(1e-6);
+                let off = (f64::from(got) - want).abs();
+                if off > spread.min(2e-4 * want.abs().max(1e-6)) {
+                    assert!(
+                        off <= spread,
+                        "{what}: {row:?}: {got}, {want} within {spread}"
+                    );
+                    undecided.set(undecided.get() + 1);
+                }
+            };
+            let at = |n: f64| light::highlight(&s, r[0], (r[1] + n).clamp(0.0, 1.0), r[2]);
+            if r[0] > 0.1 {
+                close(result[1], [at(0.0), at(-3e-6), at(3e-6)], "highlight");
+            }
+            let at = |n: f64| light::flat_falloff(&s, r[3] * (1.0 + n), r[4], r[5], r[6]);
+            close(result[2], [at(0.0), at(-1e-5), at(1e-5)], "falloff");
+        }
+    });
+    assert!(
+        undecided.get() < 12 * 2048 / 20,
+        "{} undecided",
+        undecided.get()
+    );
+}

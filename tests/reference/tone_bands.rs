@@ -1,0 +1,66 @@
+//! Twin of `styles/tone_bands.wgsl`.
+
+use super::{
+    Rgb,
+    color::{srgb_decode, srgb_encode},
+    mix, smoothstep,
+};
+use bevy_comics::{ToneBandMethod, ToneBands};
+
+fn luminance(c: Rgb) -> f64 {
+    0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]
+}
+
+pub fn lightness(linear: Rgb) -> f64 {
+    srgb_encode([luminance(linear).max(0.0); 3])[0].clamp(0.0, 1.0)
+}
+
+/// [CL] Eq. 6, closed.
+pub fn equation_6(c: f64) -> f64 {
+    match c {
+        c if c < 0.33 => c / 1.5,
+        c if c < 0.66 => 0.33 + (c - 0.33) / 2.0,
+        c => 0.66 + (c - 0.66) / 2.0,
+    }
+}
+
+/// `feather` in physical pixels; `change` of the lightness over a pixel.
+pub fn band_tone(levels: f64, feather: f64, y: f64, change: f64) -> f64 {
+    let half = 0.5 * (feather * change * levels).clamp(1e-5, 1.0);
+    // Every border that is passed is one band more.
+    let t = y * levels;
+    let border = t.round().clamp(1.0, levels - 1.0);
+    let below = border - 1.0;
+    let passed = smoothstep(border - half, border + half, t);
+    (below + 0.5 + passed) / levels
+}
+
+pub fn with_luminance(linear: Rgb, target: f64) -> Rgb {
+    let y = luminance(linear);
+    if y < 1e-6 {
+        return [target; 3];
+    }
+    let scaled = linear.map(|c| c * target / y);
+    let largest = scaled.into_iter().fold(f64::MIN, f64::max);
+    if largest <= 1.0 {
+        return scaled;
+    }
+    let room = ((1.0 - target) / (largest - target).max(1e-6)).clamp(0.0, 1.0);
+    scaled.map(|c| mix(target, c, room))
+}
+
+pub fn tone_bands(s: &ToneBands, linear: Rgb, change: f64, scale: f64) -> Rgb {
+    let banded = match s.method {
+        ToneBandMethod::Faithful => srgb_decode(srgb_encode(linear).map(equation_6)),
+        ToneBandMethod::Levels => {
+            let tone = band_tone(
+                f64::from(s.levels),
+                f64::from(s.feather) * scale,
+                lightness(linear),
+                change,
+            );
+            with_luminance(linear, srgb_decode([tone; 3])[0])
+        }
+    };
+    std::array::from_fn(|i| mix(linear[i], banded[i], f64::from(s.amount)))
+}
