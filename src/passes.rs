@@ -206,7 +206,10 @@ impl Outlining<'_> {
         let new_texture =
             |label| ViewTexture::new(device, label, size, 1, TextureFormat::Rgba16Uint);
         let (edges, flood) = old.map_or((None, None), |old| (Some(old.edges), old.flood));
-        let flood = (reach > GATHER_REACH).then(|| FloodPass {
+        // A sketch asks several times a pixel, between pixels: a flood answers
+        // each time with four lines.
+        let sketched = plan.sketch.is_some() && reach > 0;
+        let flood = (reach > GATHER_REACH || sketched).then(|| FloodPass {
             first: self
                 .flood_pipelines
                 .specialize(cache, &self.flood_pipeline, true),

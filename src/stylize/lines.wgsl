@@ -40,6 +40,18 @@ fn add_edge(lines: ptr<function, Lines>, edge: Edge, owner: vec2<i32>, at: vec2<
     }
 }
 
+#ifdef FLOOD
+// The lines of the pixel whose line is nearest to this one. All sides of it: at
+// a corner two lines are as near.
+fn add_flooded(lines: ptr<function, Lines>, pixel: vec2<i32>, at: vec2<f32>) {
+    let seed = textureLoad(flood_texture, pixel, 0);
+    if seed.w != 0u {
+        let owner = vec2<i32>(seed.xy);
+        add_edge(lines, unpack_edge(textureLoad(edge_texture, owner, 0)), owner, at);
+    }
+}
+#endif
+
 // The lines at a place in pixels.
 fn lines_at(at: vec2<f32>) -> Lines {
     let pixel = inside_viewport(vec2<i32>(floor(at)));
@@ -53,12 +65,15 @@ fn lines_at(at: vec2<f32>) -> Lines {
     );
     lines.slots = vec3(own.slot);
 #ifdef FLOOD
-    let seed = textureLoad(flood_texture, pixel, 0);
-    if seed.w != 0u {
-        let owner = vec2<i32>(seed.xy);
-        // All sides of it: at a corner two lines are as near.
-        add_edge(&lines, unpack_edge(textureLoad(edge_texture, owner, 0)), owner, at);
+#ifdef SKETCH
+    // A stroke runs between pixels: the lines that all four around it know.
+    let corner = vec2<i32>(floor(at - 0.5));
+    for (var i = 0; i < 4; i++) {
+        add_flooded(&lines, inside_viewport(corner + vec2(i & 1, i >> 1u)), at);
     }
+#else
+    add_flooded(&lines, pixel, at);
+#endif
 #else
     let reach = comics.outlines.reach;
     for (var y = -reach; y <= reach; y++) {

@@ -74,50 +74,88 @@ impl Edges {
         lines
     }
 
+    /// The pixel whose line's border is nearest to the centre of this one, as a
+    /// flood knows it. Where two are as near, `nudge` takes the more or the less
+    /// inked at a place.
+    fn flooded(&self, px: i64, py: i64, at: [f64; 2], nudge: f64) -> Option<[i64; 2]> {
+        let lines = self.lines(px, py);
+        let centre = [px as f64 + 0.5, py as f64 + 0.5];
+        let border = |line: &Line| line.distance(centre) - line.edge.half_width;
+        let nearest = lines.iter().map(border).fold(f64::INFINITY, f64::min);
+        let mut owners: Vec<[i64; 2]> = lines
+            .iter()
+            .filter(|line| border(line) <= nearest + 4e-3)
+            .map(|line| line.owner)
+            .collect();
+        let inked = |owner: &[i64; 2]| -> f64 {
+            let own = lines.iter().filter(|line| line.owner == *owner);
+            own.map(|line| line.ink(at, nudge).into_iter().fold(0.0, f64::max))
+                .fold(0.0, f64::max)
+        };
+        owners.sort_by(|a, b| inked(a).total_cmp(&inked(b)));
+        if nudge > 0.0 {
+            owners.last().copied()
+        } else {
+            owners.first().copied()
+        }
+    }
+
     /// Ink by kind at a place in pixels. Gathered lines are all lines around;
-    /// of flooded ones a pixel knows those of the one pixel whose border is
-    /// nearest to its centre. Where two are as near, `nudge` takes the more or
-    /// the less inked.
-    pub fn ink(&self, at: [f64; 2], flooded: bool, nudge: f64) -> [f64; 3] {
+    /// flooded ones those that the pixel knows, or between pixels the four.
+    pub fn ink(&self, at: [f64; 2], lookup: Lookup, nudge: f64) -> [f64; 3] {
         let (px, py) = (at[0].floor() as i64, at[1].floor() as i64);
         let mut ink = [0.0f64; 3];
         if let Some(own) = self.at(px, py) {
             for kind in 0..3 {
                 if own.whole[kind] {
-                    ink[kind] = own.ink[kind];
+                    ink[kind] = stored_ink(own.ink[kind], nudge);
                 }
             }
         }
-        let mut lines = self.lines(px, py);
-        if flooded {
-            let centre = [px as f64 + 0.5, py as f64 + 0.5];
-            let border = |line: &Line| line.distance(centre) - line.edge.half_width;
-            let nearest = lines.iter().map(border).fold(f64::INFINITY, f64::min);
-            let mut owners: Vec<[i64; 2]> = lines
-                .iter()
-                .filter(|line| border(line) <= nearest + 4e-3)
-                .map(|line| line.owner)
-                .collect();
-            owners.dedup();
-            let inked = |owner: &[i64; 2]| -> f64 {
-                let own = lines.iter().filter(|line| line.owner == *owner);
-                own.map(|line| line.ink(at).into_iter().fold(0.0, f64::max))
-                    .fold(0.0, f64::max)
-            };
-            owners.sort_by(|a, b| inked(a).total_cmp(&inked(b)));
-            let owner = if nudge > 0.0 {
-                owners.last().copied()
-            } else {
-                owners.first().copied()
-            };
-            lines.retain(|line| Some(line.owner) == owner);
-        }
-        for line in &lines {
-            let own = line.ink(at);
-            ink = std::array::from_fn(|kind| ink[kind].max(own[kind]));
+        let corner = at.map(|v| (v - 0.5).floor() as i64);
+        let known: Vec<[i64; 2]> = match lookup {
+            Lookup::Gather => Vec::new(),
+            Lookup::Flood => vec![[px, py]],
+            Lookup::FourFlooded => (0..4)
+                .map(|i| [corner[0] + (i & 1), corner[1] + (i >> 1)])
+                .collect(),
+        };
+        let owners: Vec<[i64; 2]> = known
+            .into_iter()
+            .map(|[x, y]| self.inside(x, y))
+            .filter_map(|[x, y]| self.flooded(x, y, at, nudge))
+            .collect();
+        for line in self.lines(px, py) {
+            if lookup == Lookup::Gather || owners.contains(&line.owner) {
+                let own = line.ink(at, nudge);
+                ink = std::array::from_fn(|kind| ink[kind].max(own[kind]));
+            }
         }
         ink
     }
+
+    fn inside(&self, x: i64, y: i64) -> [i64; 2] {
+        [
+            x.clamp(0, i64::from(self.width) - 1),
+            y.clamp(0, i64::from(self.height) - 1),
+        ]
+    }
+}
+
+/// How lines are looked up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lookup {
+    Gather,
+    Flood,
+    FourFlooded,
+}
+
+/// Ink is stored in eight bits; where it hangs between two codes, `nudge` takes
+/// the one or the other.
+fn stored_ink(ink: f64, nudge: f64) -> f64 {
+    let code = 255.0 * ink.clamp(0.0, 1.0);
+    let undecided = 0.02 * nudge.signum() * if nudge == 0.0 { 0.0 } else { 1.0 };
+    (code + undecided).round().min(255.0) / 255.0
 }
 
 struct Line<'a> {
@@ -132,11 +170,11 @@ impl Line<'_> {
         (self.at[0] - to[0]).hypot(self.at[1] - to[1])
     }
 
-    fn ink(&self, at: [f64; 2]) -> [f64; 3] {
+    fn ink(&self, at: [f64; 2], nudge: f64) -> [f64; 3] {
         let covered = line_coverage(self.distance(at), self.edge.half_width);
         [0, 1, 2].map(|kind: usize| {
             if self.kinds[kind] {
-                self.edge.ink[kind] * covered
+                stored_ink(self.edge.ink[kind], nudge) * covered
             } else {
                 0.0
             }

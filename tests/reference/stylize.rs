@@ -4,7 +4,7 @@ use super::{
     Rgb,
     bindings::View,
     black_flats, color, colorization, contours, desaturation,
-    lines::{self, Edges},
+    lines::{self, Edges, Lookup},
     sketch, taps, tone_bands,
 };
 use bevy_comics::{ComicStyle, Outlines};
@@ -38,7 +38,9 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
     let source = input.light(x, y);
     let mut linear = source;
     if let Some(s) = &style.tone_bands {
-        let nudged = linear.map(|c| (c + nudge).max(0.0));
+        // A step between bands is steep: what `pow` may be off (2^-10 of the
+        // light, here) moves it by whole codes.
+        let nudged = linear.map(|c| c * (1.0 + 100.0 * nudge));
         linear = tone_bands::tone_bands(s, nudged, input.change(x, y), 1.0);
     }
     let reads_map = style.desaturation.is_some()
@@ -74,11 +76,13 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
             taps::contour(&bevy_comics::Contours { threshold, ..*s }, view, x, y, 1.0);
         linear = contours::draw(s, linear, coverage, near);
     }
-    // More strokes than one, or lines wider than the fused pass looks around.
-    let flooded = style.sketch.is_some_and(|s| s.strokes > 1)
-        || input
-            .lines
-            .is_some_and(|(outlines, _)| outlines.width > 4.0);
+    // Lines wider than the fused pass looks around come from a flood, and those
+    // of a sketch.
+    let lookup = match (&style.sketch, input.lines) {
+        (Some(_), _) => Lookup::FourFlooded,
+        (None, Some((outlines, _))) if outlines.width > 4.0 => Lookup::Flood,
+        _ => Lookup::Gather,
+    };
     let place = [f64::from(x) + 0.5, f64::from(y) + 0.5];
     match (&style.sketch, input.lines) {
         (Some(s), Some((outlines, edges))) => {
@@ -89,13 +93,13 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
                 let pressure = sketch::pen_pressure(s, inside, stroke, input.drawing, 1.0);
                 blank
                     * (1.0
-                        - (lines::total(outlines, edges.ink(at, flooded, nudge)) * pressure)
+                        - (lines::total(outlines, edges.ink(at, lookup, nudge)) * pressure)
                             .clamp(0.0, 1.0))
             });
             linear = sketch::draw_sketch(s, linear, 1.0 - blank);
         }
         (None, Some((outlines, edges))) => {
-            linear = lines::draw(outlines, linear, edges.ink(place, flooded, nudge));
+            linear = lines::draw(outlines, linear, edges.ink(place, lookup, nudge));
         }
         _ => {}
     }
