@@ -1,7 +1,7 @@
 //! One scene, one camera, any number of styles.
 
 use bevy::{camera::RenderTarget, ecs::system::RunSystemOnce, prelude::*, render::view::Msaa};
-use bevy_comics::{CartoonScene, ComicStyle, ComicsPlugin};
+use bevy_comics::{CartoonScene, ComicStyle, ComicsPlugin, presets};
 
 use super::{
     headless::{Headless, HeadlessOptions},
@@ -31,6 +31,7 @@ impl Studio {
             .world_mut()
             .run_system_once(move |mut stage: Stage| stage.spawn(scene))
             .expect("the stage is there");
+        set_cartoon(headless.app.world_mut(), scene == BuiltIn::Theatre);
         let target: RenderTarget = headless.render_target();
         let camera = headless
             .app
@@ -56,6 +57,19 @@ impl Studio {
         self.headless.step(SETTLE);
         self.headless.picture()
     }
+}
+
+/// The presets that a scene has a reference picture of. The mountains are the
+/// first paper's, the theatre is the second's, the teapot shows everything.
+pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
+    let is_cartoon = |name: &str| presets::NAMES.iter().position(|n| *n == name) >= Some(10);
+    let wanted = |name: &&str| match scene {
+        BuiltIn::Teapot => true,
+        BuiltIn::Theatre => is_cartoon(name),
+        BuiltIn::Mountains => !is_cartoon(name),
+        BuiltIn::Village => !is_cartoon(name) || *name == "graphic-novel",
+    };
+    presets::NAMES.iter().copied().filter(wanted).collect()
 }
 
 /// Draws every part of the scene with the cartoon material, or as it was.

@@ -37,7 +37,7 @@ struct Styled;
 struct HelpText;
 
 const HELP: &str = "\
-1 2 3        scene
+1 2 3 4      scene
 Left Right   style
 O            perspective / orthographic
 M            samples: 1 / 4
@@ -148,7 +148,12 @@ fn choose(
     mut split: ResMut<Split>,
     mut camera: StyledCamera,
 ) {
-    let digits = [KeyCode::Digit1, KeyCode::Digit2, KeyCode::Digit3];
+    let digits = [
+        KeyCode::Digit1,
+        KeyCode::Digit2,
+        KeyCode::Digit3,
+        KeyCode::Digit4,
+    ];
     for (key, scene) in digits.into_iter().zip(BuiltIn::ALL) {
         if keys.just_pressed(key) {
             show.scene = scene;

@@ -7,7 +7,10 @@ use bevy_comics::presets;
 use image::{RgbaImage, imageops};
 
 use crate::{
-    common::{scenes::BuiltIn, studio::Studio},
+    common::{
+        scenes::BuiltIn,
+        studio::{Studio, golden_presets},
+    },
     save,
 };
 
@@ -86,11 +89,11 @@ pub fn grid(rows: &[Vec<&RgbaImage>], size: UVec2, gap: u32) -> RgbaImage {
     sheet
 }
 
-/// The reference pictures of the tests: every preset x scene at 320x180.
+/// The reference pictures of the tests, 320x180.
 pub fn golden(folder: &Path) -> Result<(), String> {
     for scene in BuiltIn::ALL {
         let mut studio = Studio::new(scene, UVec2::new(320, 180), Msaa::Off);
-        for name in presets::NAMES {
+        for name in golden_presets(scene) {
             let picture = studio.shoot(Some(&style(name)?));
             let path = folder.join(format!("{}-{name}.png", scene.name()));
             save(&picture, &path)?;

@@ -1,4 +1,4 @@
-//! Reference pictures of every preset on every scene, 320x180. To make them
+//! Reference pictures of every preset, on the scenes it is for, 320x180. To make them
 //! anew: `cargo run --example pictures -- golden`, then look at them.
 
 use std::path::PathBuf;
@@ -7,7 +7,10 @@ use bevy::{math::UVec2, render::view::Msaa};
 use bevy_comics::presets;
 use nv_flip::{FlipImageRgb8, FlipPool};
 
-use crate::common::{scenes::BuiltIn, studio::Studio};
+use crate::common::{
+    scenes::BuiltIn,
+    studio::{Studio, golden_presets},
+};
 
 fn flip_mean(reference: &image::RgbaImage, picture: &image::RgbaImage) -> f32 {
     let rgb = |p: &image::RgbaImage| -> FlipImageRgb8 {
@@ -35,7 +38,7 @@ fn check(scene: BuiltIn) {
     let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden"));
     let mut studio = Studio::new(scene, UVec2::new(320, 180), Msaa::Off);
     let mut first: Option<(image::RgbaImage, image::RgbaImage)> = None;
-    for name in presets::NAMES {
+    for name in golden_presets(scene) {
         let style = presets::preset(name).expect("listed").expect("readable");
         let picture = studio.shoot(Some(&style));
         let path = folder.join(format!("{}-{name}.png", scene.name()));
@@ -76,4 +79,9 @@ fn the_teapot_looks_as_it_did() {
 #[test]
 fn the_village_looks_as_it_did() {
     check(BuiltIn::Village);
+}
+
+#[test]
+fn the_theatre_looks_as_it_did() {
+    check(BuiltIn::Theatre);
 }

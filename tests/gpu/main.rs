@@ -5,6 +5,7 @@ mod common;
 #[path = "../reference/mod.rs"]
 mod reference;
 
+mod cartoon;
 mod command_line;
 mod device;
 mod extremes;
@@ -14,6 +15,8 @@ mod functions;
 mod golden;
 mod left_out;
 mod lines;
+mod objects;
+mod outlines;
 mod pictures;
 mod range;
 mod range_views;

@@ -39,9 +39,10 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
     let mut linear = source;
     if let Some(s) = &style.tone_bands {
         // A step between bands is steep: what `pow` may be off (2^-10 of the
-        // light, here) moves it by whole codes.
+        // light, here) moves it by whole codes, and its width as well.
         let nudged = linear.map(|c| c * (1.0 + 100.0 * nudge));
-        linear = tone_bands::tone_bands(s, nudged, input.change(x, y), 1.0);
+        let change = (input.change(x, y) + 200.0 * nudge).max(0.0);
+        linear = tone_bands::tone_bands(s, nudged, change, 1.0);
     }
     let reads_map = style.desaturation.is_some()
         || style.colorization.is_some()

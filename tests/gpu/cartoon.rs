@@ -1,0 +1,516 @@
+//! The cartoon material: its light, its shadows against a ray cast, and scenes
+//! that are converted and back.
+
+use bevy::{
+    camera::Exposure,
+    core_pipeline::prepass::{DeferredPrepass, DepthPrepass},
+    light::CascadeShadowConfigBuilder,
+    prelude::*,
+    render::view::Msaa,
+};
+use bevy_comics::{
+    CartoonLight, CartoonMaterial, CartoonScene, ObjectEdges, Outlines, VisibleDepthRange,
+    object_id,
+};
+
+use crate::small::{Object, Small};
+
+const SIZE: UVec2 = UVec2::new(240, 160);
+/// The caster: an axis-aligned box on the ground.
+const LOW: Vec3 = Vec3::new(-0.6, 0.0, -0.5);
+const HIGH: Vec3 = Vec3::new(0.5, 1.4, 0.6);
+
+enum Kind {
+    Sun(Vec3),
+    Lamp(Vec3),
+    Spot(Vec3, Vec3),
+}
+
+struct Stage {
+    small: Small,
+    ground: Entity,
+    eye: Transform,
+    projection: PerspectiveProjection,
+}
+
+fn material(small: &mut Small, light: CartoonLight) -> MeshMaterial3d<CartoonMaterial> {
+    MeshMaterial3d(
+        small
+            .world()
+            .resource_mut::<Assets<CartoonMaterial>>()
+            .add(CartoonMaterial {
+                base: StandardMaterial {
+                    base_color: Color::WHITE,
+                    perceptual_roughness: 1.0,
+                    ..default()
+                },
+                extension: light,
+            }),
+    )
+}
+
+/// Ground, box and one light; outlines whose ink nobody sees ask for the ids.
+fn stage(light: &Kind, msaa: Msaa) -> Stage {
+    let mut small = Small::new(SIZE, msaa);
+    small.clear();
+    let white = material(
+        &mut small,
+        CartoonLight {
+            // A light in no rings, so that lit is one thing.
+            falloff: 0.0,
+            ..default()
+        },
+    );
+    let world = small.world();
+    let ground = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Plane3d::default().mesh().size(12.0, 12.0));
+    let caster = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Cuboid::from_size(HIGH - LOW));
+    let ground = world
+        .spawn((Object, Mesh3d(ground), white.clone(), Transform::IDENTITY))
+        .id();
+    let middle = Transform::from_translation((LOW + HIGH) / 2.0);
+    world.spawn((Object, Mesh3d(caster), white, middle));
+    world.insert_resource(GlobalAmbientLight {
+        brightness: 100.0,
+        ..default()
+    });
+    match *light {
+        Kind::Sun(to) => {
+            world.spawn((
+                DirectionalLight {
+                    illuminance: 1500.0,
+                    shadow_maps_enabled: true,
+                    ..default()
+                },
+                Transform::from_translation(to).looking_at(Vec3::ZERO, Vec3::Y),
+                CascadeShadowConfigBuilder {
+                    num_cascades: 1,
+                    maximum_distance: 16.0,
+                    ..default()
+                }
+                .build(),
+            ));
+        }
+        Kind::Lamp(at) => {
+            world.spawn((
+                PointLight {
+                    intensity: 600_000.0,
+                    range: 40.0,
+                    shadow_maps_enabled: true,
+                    ..default()
+                },
+                Transform::from_translation(at),
+            ));
+        }
+        Kind::Spot(at, to) => {
+            world.spawn((
+                SpotLight {
+                    intensity: 900_000.0,
+                    range: 40.0,
+                    outer_angle: 1.0,
+                    inner_angle: 0.95,
+                    shadow_maps_enabled: true,
+                    ..default()
+                },
+                Transform::from_translation(at).looking_at(to, Vec3::Y),
+            ));
+        }
+    }
+    let eye = Transform::from_xyz(2.6, 3.4, 5.0).looking_at(Vec3::new(0.0, 0.4, 0.0), Vec3::Y);
+    let projection = PerspectiveProjection {
+        near: 0.1,
+        far: 100.0,
+        ..default()
+    };
+    let camera = small.camera;
+    small.world().entity_mut(camera).insert((
+        eye,
+        Projection::Perspective(projection.clone()),
+        Exposure::default(),
+        VisibleDepthRange::default(),
+        Outlines {
+            silhouettes: None,
+            creases: None,
+            objects: Some(ObjectEdges {
+                color: Color::WHITE,
+                opacity: 1e-6,
+            }),
+            ..default()
+        },
+    ));
+    small.headless.step(6);
+    Stage {
+        small,
+        ground,
+        eye,
+        projection,
+    }
+}
+
+/// Where the ray through a pixel's centre meets the ground.
+fn ground_point(stage: &Stage, x: u32, y: u32) -> Option<Vec3> {
+    let size = SIZE.as_vec2();
+    let ndc = (Vec2::new(x as f32, y as f32) + 0.5) / size * 2.0 - 1.0;
+    let tan = (0.5 * stage.projection.fov).tan();
+    let direction =
+        stage.eye.rotation * Vec3::new(ndc.x * tan * size.x / size.y, -ndc.y * tan, -1.0);
+    let t = -stage.eye.translation.y / direction.y;
+    (t > 0.0).then(|| stage.eye.translation + direction * t)
+}
+
+/// Whether a segment from the ground towards the light meets the box.
+fn blocked(from: Vec3, to: Vec3, low: Vec3, high: Vec3) -> bool {
+    let d = to - from;
+    let (mut enter, mut leave) = (0.0f32, 1.0f32);
+    for i in 0..3 {
+        let (a, b) = ((low[i] - from[i]) / d[i], (high[i] - from[i]) / d[i]);
+        enter = enter.max(a.min(b));
+        leave = leave.min(a.max(b));
+    }
+    enter < leave
+}
+
+/// The share of ground pixels whose shadow is not the ray cast's, among those
+/// farther than `texel` from its border; and how many were looked at.
+fn wrong_share(stage: &mut Stage, light: &Kind, texel: f32) -> (f64, usize, usize) {
+    let ids = stage.small.object_ids().expect("ids are drawn");
+    let (_, picture) = stage.small.pass();
+    let id = u32::from(object_id(stage.ground));
+    let (mut wrong, mut looked, mut dark) = (0, 0, 0);
+    for y in 0..SIZE.y {
+        for x in 0..SIZE.x {
+            let i = (y * SIZE.x + x) as usize;
+            if ids.pixels[i][0] != id {
+                continue;
+            }
+            let Some(point) = ground_point(stage, x, y) else {
+                continue;
+            };
+            let (towards, extra) = match *light {
+                Kind::Sun(to) => (point + to.normalize() * 50.0, 0.0),
+                Kind::Lamp(at) => (at, 0.0),
+                Kind::Spot(at, to) => {
+                    // Outside the cone it is dark, and near its rim undecided.
+                    let angle = (to - at).angle_between(point - at);
+                    if angle > 0.9 {
+                        continue;
+                    }
+                    (at, 0.0)
+                }
+            };
+            let grow = Vec3::splat(texel + extra);
+            let large = blocked(point, towards, LOW - grow, HIGH + grow);
+            let little = blocked(point, towards, LOW + grow, HIGH - grow);
+            if large != little {
+                continue;
+            }
+            looked += 1;
+            dark += usize::from(large);
+            // Ambient alone is 100 / 1000 / pi; any of the lights is far more.
+            let light_here = picture.pixels[i][1];
+            let shaded = light_here < 0.16;
+            wrong += usize::from(shaded != large);
+        }
+    }
+    (wrong as f64 / looked.max(1) as f64, looked, dark)
+}
+
+/// The projected shadow that [CL] draws in the wrong place (its Figure 10).
+#[test]
+fn cast_shadows_are_where_a_ray_cast_puts_them() {
+    let lights = [
+        ("sun", Kind::Sun(Vec3::new(-0.6, 1.0, 0.35)), 16.0 / 2048.0),
+        ("lamp", Kind::Lamp(Vec3::new(-1.8, 3.0, 1.2)), 0.012),
+        (
+            "spot",
+            Kind::Spot(Vec3::new(-2.0, 3.4, 1.0), Vec3::new(0.3, 0.0, -0.2)),
+            0.012,
+        ),
+    ];
+    for (name, light, texel) in lights {
+        for msaa in [Msaa::Off, Msaa::Sample4] {
+            let mut stage = stage(&light, msaa);
+            // A texel on the ground, seen slanted, and the filter's other half.
+            let (share, looked, dark) = wrong_share(&mut stage, &light, 2.0 * texel);
+            println!(
+                "{name}, {msaa:?}: {:.3} % of {looked} wrong, {dark} in shadow",
+                100.0 * share
+            );
+            assert!(
+                dark > 500 && looked > dark + 5000,
+                "{name}: {looked}, {dark}"
+            );
+            assert!(share <= 0.002, "{name}, {msaa:?}: {share}");
+            assert_eq!(stage.small.errors(), 0);
+        }
+    }
+}
+
+/// No acne on a curved surface: what a light faces well is lit, without a hole.
+#[test]
+fn a_sphere_is_lit_on_one_side_and_dark_on_the_other() {
+    for light in [
+        Kind::Sun(Vec3::new(-0.7, 0.6, 0.6)),
+        Kind::Lamp(Vec3::new(-3.0, 2.6, 2.6)),
+        Kind::Spot(Vec3::new(-3.0, 2.6, 2.6), Vec3::ZERO),
+    ] {
+        let mut stage = stage(&light, Msaa::Off);
+        stage.small.clear();
+        let white = material(
+            &mut stage.small,
+            CartoonLight {
+                falloff: 0.0,
+                highlight: 0.0,
+                ..default()
+            },
+        );
+        let world = stage.small.world();
+        let ball = world
+            .resource_mut::<Assets<Mesh>>()
+            .add(Sphere::new(1.0).mesh().uv(96, 48));
+        let ball = world
+            .spawn((Object, Mesh3d(ball), white, Transform::IDENTITY))
+            .id();
+        stage.small.headless.step(6);
+        let normals = {
+            stage
+                .small
+                .insert(bevy::core_pipeline::prepass::NormalPrepass);
+            stage.small.headless.step(4);
+            stage.small.normals().expect("a normal prepass")
+        };
+        let ids = stage.small.object_ids().expect("drawn");
+        let (_, picture) = stage.small.pass();
+        let (mut wrong, mut lit, mut dark) = (0, 0, 0);
+        for (i, n) in normals.pixels.iter().enumerate() {
+            if ids.pixels[i][0] != u32::from(object_id(ball)) {
+                continue;
+            }
+            let n = Vec3::new(n[0], n[1], n[2]);
+            // The unit sphere's normal is its place.
+            let towards = match light {
+                Kind::Sun(to) => to.normalize(),
+                Kind::Lamp(at) | Kind::Spot(at, _) => (at - n).normalize(),
+            };
+            let cosine = n.dot(towards);
+            // The default terminator lies at 0.08; ten bits and a pixel blur it.
+            if (cosine - 0.08).abs() < 0.05 {
+                continue;
+            }
+            let bright = picture.pixels[i][1] > 0.16;
+            wrong += usize::from(bright != (cosine > 0.08));
+            lit += usize::from(bright);
+            dark += usize::from(!bright);
+        }
+        assert!(lit > 1000 && dark > 500, "{lit} {dark}");
+        // A pixel of the rim may show a surface that is not at its centre.
+        assert!(wrong * 1000 <= lit + dark, "{wrong} of {}", lit + dark);
+    }
+}
+
+/// [CL] 2.3: what a light reaches is one colour, however it is turned.
+#[test]
+fn an_area_is_one_colour_and_lights_add_up() {
+    let sun = Kind::Sun(Vec3::new(-0.6, 1.0, 0.35));
+    let mut stage = stage(&sun, Msaa::Off);
+    let lit: Vec<f32> = {
+        let (_, picture) = stage.small.pass();
+        picture
+            .pixels
+            .iter()
+            .map(|p| p[1])
+            .filter(|g| *g > 0.25 && *g < 0.9)
+            .collect()
+    };
+    // E / pi + ambient, exposed; the camera's exposure is 2^-9.7 / 1.2.
+    let exposure = 1.0 / (2f32.powf(9.7) * 1.2);
+    let expected = (1500.0 / std::f32::consts::PI + 100.0) * exposure;
+    let close = lit.iter().filter(|g| (**g - expected).abs() < 0.02).count();
+    assert!(
+        close * 100 > lit.len() * 97,
+        "{close} of {} near {expected}",
+        lit.len()
+    );
+    assert!(lit.len() > 8000);
+    // Two suns are twice the light.
+    stage.small.world().spawn((
+        DirectionalLight {
+            illuminance: 700.0,
+            ..default()
+        },
+        Transform::from_xyz(0.3, 1.0, 0.2).looking_at(Vec3::ZERO, Vec3::Y),
+    ));
+    stage.small.headless.step(4);
+    let (_, picture) = stage.small.pass();
+    let both = (2200.0 / std::f32::consts::PI + 100.0) * exposure;
+    let close = picture
+        .pixels
+        .iter()
+        .filter(|p| (p[1] - both).abs() < 0.02)
+        .count();
+    assert!(close > 8000, "{close} near {both}");
+}
+
+fn picture_of(small: &mut Small) -> image::RgbaImage {
+    small.headless.step(6);
+    small.picture()
+}
+
+#[test]
+fn a_scene_is_converted_with_one_component_and_back() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let world = small.world();
+    let root = world
+        .spawn((Transform::default(), Visibility::default()))
+        .id();
+    let mut parts = world.query_filtered::<Entity, With<Object>>();
+    let parts: Vec<Entity> = parts.iter(world).collect();
+    world.entity_mut(root).add_children(&parts);
+    let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+    let ids: Vec<_> = materials.ids().collect();
+    for id in &ids {
+        materials.get_mut(*id).expect("listed").unlit = false;
+    }
+    world.spawn((
+        DirectionalLight::default(),
+        Transform::from_xyz(1.0, 2.0, 1.5).looking_at(Vec3::ZERO, Vec3::Y),
+    ));
+    let standard = picture_of(&mut small);
+    small
+        .world()
+        .entity_mut(root)
+        .insert(CartoonScene::default());
+    let cartoon = picture_of(&mut small);
+    assert_ne!(standard, cartoon);
+    for part in &parts {
+        assert!(
+            small
+                .world()
+                .get::<MeshMaterial3d<CartoonMaterial>>(*part)
+                .is_some()
+        );
+        assert!(
+            small
+                .world()
+                .get::<MeshMaterial3d<StandardMaterial>>(*part)
+                .is_none()
+        );
+    }
+    // A change of an original reaches its copy, and so do the settings.
+    let first = ids[0];
+    small
+        .world()
+        .resource_mut::<Assets<StandardMaterial>>()
+        .get_mut(first)
+        .expect("listed")
+        .base_color = Color::srgb(0.1, 0.9, 0.9);
+    assert_ne!(picture_of(&mut small), cartoon);
+    let changed = small
+        .world()
+        .resource::<Assets<CartoonMaterial>>()
+        .iter()
+        .any(|(_, m)| m.base.base_color == Color::srgb(0.1, 0.9, 0.9));
+    assert!(changed);
+    small.world().entity_mut(root).insert(CartoonScene {
+        light: CartoonLight {
+            terminator: 0.5,
+            ..default()
+        },
+    });
+    small.headless.step(2);
+    assert!(
+        small
+            .world()
+            .resource::<Assets<CartoonMaterial>>()
+            .iter()
+            .all(|(_, m)| m.extension.terminator == 0.5)
+    );
+    // A part that comes later is converted as well.
+    let mesh = small
+        .world()
+        .resource_mut::<Assets<Mesh>>()
+        .add(Cuboid::default());
+    let late = small
+        .world()
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(Color::WHITE);
+    let late = small
+        .world()
+        .spawn((Mesh3d(mesh), MeshMaterial3d(late), ChildOf(root)))
+        .id();
+    small.headless.step(2);
+    assert!(
+        small
+            .world()
+            .get::<MeshMaterial3d<CartoonMaterial>>(late)
+            .is_some()
+    );
+    small.world().despawn(late);
+    small.world().entity_mut(root).remove::<CartoonScene>();
+    small
+        .world()
+        .resource_mut::<Assets<StandardMaterial>>()
+        .get_mut(first)
+        .expect("listed")
+        .base_color = Color::srgb(0.85, 0.2, 0.15);
+    small.headless.step(4);
+    for part in &parts {
+        assert!(
+            small
+                .world()
+                .get::<MeshMaterial3d<CartoonMaterial>>(*part)
+                .is_none()
+        );
+        assert!(
+            small
+                .world()
+                .get::<MeshMaterial3d<StandardMaterial>>(*part)
+                .is_some()
+        );
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// Forward meshes among deferred ones: the same picture.
+#[test]
+fn a_deferred_camera_draws_the_same_cartoon() {
+    let sun = Kind::Sun(Vec3::new(-0.6, 1.0, 0.35));
+    let mut forward = stage(&sun, Msaa::Off);
+    let mut deferred = stage(&sun, Msaa::Off);
+    deferred.small.insert((DepthPrepass, DeferredPrepass));
+    deferred
+        .small
+        .world()
+        .insert_resource(bevy::pbr::DefaultOpaqueRendererMethod::deferred());
+    // A material that asks for the deferred pass is set right.
+    let ids: Vec<_> = deferred
+        .small
+        .world()
+        .resource::<Assets<CartoonMaterial>>()
+        .ids()
+        .collect();
+    for id in ids {
+        deferred
+            .small
+            .world()
+            .resource_mut::<Assets<CartoonMaterial>>()
+            .get_mut(id)
+            .expect("listed")
+            .base
+            .opaque_render_method = bevy::material::OpaqueRendererMethod::Deferred;
+    }
+    let (a, b) = (
+        picture_of(&mut forward.small),
+        picture_of(&mut deferred.small),
+    );
+    let apart = a
+        .pixels()
+        .zip(b.pixels())
+        .filter(|(a, b)| a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 2))
+        .count();
+    assert!(apart * 200 < a.pixels().len(), "{apart} pixels differ");
+    assert_eq!(deferred.small.errors(), 0);
+}

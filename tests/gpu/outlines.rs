@@ -1,0 +1,324 @@
+//! What the outlines promise, measured on rendered scenes: freedom of scale, no
+//! false lines, the asked width.
+
+use bevy::{prelude::*, render::view::Msaa};
+use bevy_comics::{ComicStyle, EdgeForm, Outlines, Silhouettes};
+
+use crate::{
+    common::{headless::HeadlessOptions, read_back::IdImage},
+    small::{Object, Small, options},
+};
+
+/// How much ink every pixel has: what the pass took from its light.
+pub fn ink(small: &mut Small, outlines: Outlines) -> Vec<f32> {
+    small.style(&ComicStyle {
+        outlines: Some(outlines),
+        ..default()
+    });
+    small.settle();
+    let (input, output) = small.pass();
+    input
+        .pixels
+        .iter()
+        .zip(&output.pixels)
+        .map(|(a, b)| {
+            let light = |p: &[f32; 4]| p[0] + p[1] + p[2];
+            1.0 - light(b) / light(a).max(1e-6)
+        })
+        .collect()
+}
+
+fn unlit(world: &mut World, color: Color) -> Handle<StandardMaterial> {
+    world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: color,
+            unlit: true,
+            double_sided: true,
+            cull_mode: None,
+            ..default()
+        })
+}
+
+fn put(small: &mut Small, mesh: impl Into<Mesh>, color: Color, at: Transform) -> Entity {
+    let world = small.world();
+    let material = unlit(world, color);
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+    world
+        .spawn((Object, Mesh3d(mesh), MeshMaterial3d(material), at))
+        .id()
+}
+
+fn look(small: &mut Small, eye: Vec3, target: Vec3, near: f32) {
+    small.insert((
+        Transform::from_translation(eye).looking_at(target, Vec3::Y),
+        Projection::Perspective(PerspectiveProjection {
+            near,
+            far: near * 1e6,
+            ..default()
+        }),
+    ));
+}
+
+/// The small scene, `scale` times as large.
+fn scaled(scale: f32, near: f32, form: EdgeForm) -> Vec<bool> {
+    let mut small = Small::new(UVec2::new(240, 160), Msaa::Off);
+    let world = small.world();
+    let mut objects = world.query_filtered::<&mut Transform, With<Object>>();
+    for mut transform in objects.iter_mut(world) {
+        transform.translation *= scale;
+        transform.scale *= scale;
+    }
+    let eye = Vec3::new(1.5, 2.4, 6.0) * scale;
+    look(&mut small, eye, Vec3::new(0.0, 0.4, 0.0) * scale, near);
+    let threshold = match form {
+        EdgeForm::Measured => 0.02,
+        EdgeForm::Faithful => 0.0008,
+    };
+    let outlines = Outlines {
+        silhouettes: Some(Silhouettes {
+            form,
+            threshold,
+            ..default()
+        }),
+        ..Outlines::SILHOUETTES
+    };
+    ink(&mut small, outlines).iter().map(|i| *i > 0.5).collect()
+}
+
+fn overlap(a: &[bool], b: &[bool]) -> f64 {
+    let both = a.iter().zip(b).filter(|(a, b)| **a && **b).count();
+    let any = a.iter().zip(b).filter(|(a, b)| **a || **b).count();
+    both as f64 / any.max(1) as f64
+}
+
+const SCALES: [(f32, f32); 8] = [
+    (1.0, 1e-3),
+    (1.0, 1.0),
+    (1e-3, 1e-4),
+    (1e-3, 1e-3),
+    (1e3, 1e-3),
+    (1e3, 0.1),
+    (1e3, 1.0),
+    (1e3, 10.0),
+];
+
+#[test]
+fn the_same_scene_has_the_same_outlines_at_any_scale() {
+    let reference = scaled(1.0, 0.1, EdgeForm::Measured);
+    assert!(reference.iter().filter(|line| **line).count() > 400);
+    for (scale, near) in SCALES {
+        let mask = scaled(scale, near, EdgeForm::Measured);
+        let same = overlap(&reference, &mask);
+        println!("measured, scale {scale:e}, near {near:e}: IoU {same:.4}");
+        assert!(same >= 0.99, "scale {scale:e}, near {near:e}: IoU {same}");
+    }
+    // The paper's buffer depends on both: its own k_p fits one of them.
+    let reference = scaled(1.0, 0.1, EdgeForm::Faithful);
+    let worst = SCALES
+        .map(|(scale, near)| {
+            let same = overlap(&reference, &scaled(scale, near, EdgeForm::Faithful));
+            println!("faithful, scale {scale:e}, near {near:e}: IoU {same:.4}");
+            same
+        })
+        .into_iter()
+        .fold(1.0, f64::min);
+    assert!(
+        worst < 0.5,
+        "the faithful form is not free of scale: {worst}"
+    );
+}
+
+/// An orthographic view, whatever its near and far planes and units.
+#[test]
+fn an_orthographic_view_has_the_same_outlines_at_any_scale() {
+    let mask = |scale: f32, far: f32| -> Vec<bool> {
+        let mut small = Small::new(UVec2::new(240, 160), Msaa::Off);
+        let world = small.world();
+        let mut objects = world.query_filtered::<&mut Transform, With<Object>>();
+        for mut transform in objects.iter_mut(world) {
+            transform.translation *= scale;
+            transform.scale *= scale;
+        }
+        let eye = Vec3::new(1.5, 2.4, 6.0) * scale;
+        small.insert((
+            Transform::from_translation(eye).looking_at(Vec3::ZERO, Vec3::Y),
+            Projection::Orthographic(OrthographicProjection {
+                near: 0.0,
+                far,
+                scaling_mode: bevy::camera::ScalingMode::FixedVertical {
+                    viewport_height: 5.0 * scale,
+                },
+                ..OrthographicProjection::default_3d()
+            }),
+        ));
+        let outlines = Outlines::SILHOUETTES;
+        ink(&mut small, outlines).iter().map(|i| *i > 0.5).collect()
+    };
+    let reference = mask(1.0, 100.0);
+    assert!(reference.iter().filter(|line| **line).count() > 300);
+    for (scale, far) in [(1.0, 20.0), (1.0, 1000.0), (1e-3, 0.1), (1e3, 1e5)] {
+        let same = overlap(&reference, &mask(scale, far));
+        println!("orthographic, scale {scale:e}, far {far:e}: IoU {same:.4}");
+        assert!(same >= 0.99, "scale {scale:e}, far {far:e}: IoU {same}");
+    }
+}
+
+/// The share of pixels with ink that lie farther than this from any border
+/// between objects.
+fn false_share(small: &mut Small, ink: &[f32], margin: i64) -> f64 {
+    let ids: IdImage = small.object_ids().expect("ids are drawn");
+    let (w, h) = (i64::from(ids.width), i64::from(ids.height));
+    let id = |x: i64, y: i64| ids.pixels[(y * w + x) as usize][0];
+    let near_border = |x: i64, y: i64| {
+        (-margin..=margin).any(|j| {
+            (-margin..=margin).any(|i| {
+                let (u, v) = (x + i, y + j);
+                (0..w).contains(&u) && (0..h).contains(&v) && id(u, v) != id(x, y)
+            })
+        })
+    };
+    let wrong = (0..h)
+        .flat_map(|y| (0..w).map(move |x| (x, y)))
+        .filter(|(x, y)| ink[(y * w + x) as usize] > 0.02 && !near_border(*x, *y))
+        .count();
+    wrong as f64 / (w * h) as f64
+}
+
+#[test]
+fn a_grazing_plane_a_corridor_and_a_sphere_have_no_false_lines() {
+    let size = UVec2::new(320, 180);
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        // A plane to the horizon, from eye height and from a hand above it.
+        for height in [1.7, 0.05] {
+            let mut small = Small::new(size, msaa);
+            small.clear();
+            let sand = Color::srgb(0.8, 0.7, 0.5);
+            let plane = Plane3d::default().mesh().size(40_000.0, 40_000.0);
+            put(&mut small, plane, sand, Transform::IDENTITY);
+            let eye = Vec3::new(0.0, height, 0.0);
+            look(&mut small, eye, eye - Vec3::new(0.3, 0.02, 1.0), 0.1);
+            let ink = ink(&mut small, Outlines::default());
+            assert_eq!(
+                false_share(&mut small, &ink, 2),
+                0.0,
+                "plane, {height} m, {msaa:?}"
+            );
+        }
+
+        // A corridor of four walls, 200 m long.
+        let mut small = Small::new(size, msaa);
+        small.clear();
+        for (k, color) in [0.3, 0.5, 0.7, 0.9].into_iter().enumerate() {
+            let turn = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2 * k as f32);
+            put(
+                &mut small,
+                Plane3d::default().mesh().size(3.0, 200.0),
+                Color::srgb(color, 0.6, 0.5),
+                Transform::from_rotation(turn) * Transform::from_xyz(0.0, -1.5, -100.0),
+            );
+        }
+        look(
+            &mut small,
+            Vec3::new(0.4, 0.2, -0.5),
+            Vec3::new(0.0, 0.0, -50.0),
+            0.1,
+        );
+        let lines = ink(&mut small, Outlines::default());
+        assert_eq!(
+            false_share(&mut small, &lines, 2),
+            0.0,
+            "corridor, {msaa:?}"
+        );
+        assert!(lines.iter().any(|i| *i > 0.9), "its corners have lines");
+
+        // A smooth sphere.
+        let mut small = Small::new(size, msaa);
+        small.clear();
+        let ball = Sphere::new(1.0).mesh().ico(40).expect("not too fine");
+        put(
+            &mut small,
+            ball,
+            Color::srgb(0.8, 0.3, 0.3),
+            Transform::IDENTITY,
+        );
+        look(&mut small, Vec3::new(0.0, 0.5, 3.0), Vec3::ZERO, 0.1);
+        let lines = ink(&mut small, Outlines::default());
+        assert_eq!(false_share(&mut small, &lines, 2), 0.0, "sphere, {msaa:?}");
+        assert!(lines.iter().any(|i| *i > 0.9), "it has an outline");
+    }
+}
+
+/// The border of the picture is no edge, on a slope either.
+#[test]
+fn the_border_of_the_picture_is_no_line() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    small.clear();
+    let plane = Plane3d::default().mesh().size(100.0, 100.0);
+    put(
+        &mut small,
+        plane,
+        Color::srgb(0.7, 0.7, 0.7),
+        Transform::IDENTITY,
+    );
+    look(
+        &mut small,
+        Vec3::new(0.0, 2.0, 0.0),
+        Vec3::new(0.6, 0.0, -2.0),
+        0.1,
+    );
+    let lines = ink(&mut small, Outlines::default());
+    assert!(
+        lines.iter().all(|i| *i < 0.02),
+        "the whole picture is one plane"
+    );
+}
+
+/// A line's width is what it covers, row by row.
+#[test]
+fn a_line_is_as_wide_as_asked_at_every_scale_and_resolution() {
+    let mut worst = 0.0f32;
+    for (size, scale_factor) in [
+        (UVec2::new(200, 60), 1.0),
+        (UVec2::new(320, 90), 1.5),
+        (UVec2::new(480, 120), 2.0),
+        (UVec2::new(480, 120), 1.0),
+        (UVec2::new(200, 60), 2.0),
+    ] {
+        let mut small = Small::with(
+            HeadlessOptions {
+                scale_factor,
+                ..options(size)
+            },
+            Msaa::Off,
+        );
+        small.clear();
+        // A post whose left side is in the middle of the picture.
+        put(
+            &mut small,
+            Cuboid::new(400.0, 400.0, 1.0),
+            Color::srgb(0.9, 0.9, 0.9),
+            Transform::from_xyz(200.0, 0.0, -30.0),
+        );
+        look(&mut small, Vec3::ZERO, Vec3::NEG_Z, 0.1);
+        for width in [0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.5, 8.0, 12.0, 16.0] {
+            let lines = ink(
+                &mut small,
+                Outlines {
+                    width,
+                    ..Outlines::SILHOUETTES
+                },
+            );
+            let row = size.y as usize / 2 * size.x as usize;
+            let measured: f32 = lines[row..row + size.x as usize].iter().sum();
+            let off = (measured - width * scale_factor).abs();
+            worst = worst.max(off);
+            assert!(
+                off <= 0.5,
+                "{width} px at {scale_factor}, {size}: {measured} physical pixels"
+            );
+        }
+        assert_eq!(small.errors(), 0);
+    }
+    println!("largest difference from the asked width: {worst} physical pixels");
+}
