@@ -64,7 +64,10 @@ pub(crate) fn ordered_planes(near: f32, far: f32) -> (f32, f32) {
 mod tests {
     use bevy::color::Color;
 
-    use crate::{BlackFlats, Colorization, Contours, DepthMap, DepthMapping, Desaturation};
+    use crate::{
+        BlackFlats, Colorization, Contours, Creases, DepthMap, DepthMapping, Desaturation,
+        ObjectEdges, Outlines, Silhouettes, Sketch, ToneBands,
+    };
 
     /// A million floats: hand-picked edges, then every exponent and sign with
     /// random mantissas, NaN and infinities among them.
@@ -241,5 +244,125 @@ mod tests {
                 "{a}, {b}: {near}, {far}"
             );
         }
+    }
+
+    #[test]
+    fn a_million_floats_in_every_field_of_the_lines() {
+        let outlines = |edit: fn(&mut Outlines, f32)| {
+            move |x| {
+                let mut o = Outlines::default();
+                edit(&mut o, x);
+                o.sanitized()
+            }
+        };
+        let width = outlines(|o, x| o.width = x);
+        fuzz("Outlines::width", 0.5, 16.0, |x| width(x).width);
+        let fade = outlines(|o, x| o.width_fade = x);
+        fuzz("Outlines::width_fade", 0.0, 1.0, |x| fade(x).width_fade);
+        let fade = outlines(|o, x| o.opacity_fade = x);
+        fuzz("Outlines::opacity_fade", 0.0, 1.0, |x| fade(x).opacity_fade);
+        let silhouettes = |edit: fn(&mut Silhouettes, f32)| {
+            move |x| {
+                let mut s = Silhouettes::default();
+                edit(&mut s, x);
+                s.sanitized()
+            }
+        };
+        let threshold = silhouettes(|s, x| s.threshold = x);
+        fuzz("Silhouettes::threshold", 1e-6, 1.0, |x| {
+            threshold(x).threshold
+        });
+        let limit = silhouettes(|s, x| s.edge_limit = x);
+        fuzz("Silhouettes::edge_limit", 0.01, 0.99, |x| {
+            limit(x).edge_limit
+        });
+        let softness = silhouettes(|s, x| s.softness = x);
+        fuzz("Silhouettes::softness", 0.0, 1.0, |x| softness(x).softness);
+        fuzz("Creases::angle", 3.0, 180.0, |x| {
+            Creases {
+                angle: x,
+                ..Default::default()
+            }
+            .sanitized()
+            .angle
+        });
+        fuzz("ObjectEdges::opacity", 0.0, 1.0, |x| {
+            ObjectEdges {
+                opacity: x,
+                ..Default::default()
+            }
+            .sanitized()
+            .opacity
+        });
+    }
+
+    #[test]
+    fn a_million_floats_in_every_field_of_sketch_and_bands() {
+        let sketch = |edit: fn(&mut Sketch, f32)| {
+            move |x| {
+                let mut s = Sketch::default();
+                edit(&mut s, x);
+                s.sanitized()
+            }
+        };
+        let jitter = sketch(|s, x| s.jitter = x);
+        fuzz("Sketch::jitter", 0.0, 8.0, |x| jitter(x).jitter);
+        let wave = sketch(|s, x| s.wavelength = x);
+        fuzz("Sketch::wavelength", 2.0, 256.0, |x| wave(x).wavelength);
+        let gamma = sketch(|s, x| s.gamma = x);
+        fuzz("Sketch::gamma", 0.25, 4.0, |x| gamma(x).gamma);
+        let rate = sketch(|s, x| s.rate = x);
+        fuzz("Sketch::rate", 0.0, 60.0, |x| rate(x).rate);
+        let wash = sketch(|s, x| s.wash = x);
+        fuzz("Sketch::wash", 0.0, 1.0, |x| wash(x).wash);
+        let pressure = sketch(|s, x| s.pressure = x);
+        fuzz("Sketch::pressure", 0.0, 1.0, |x| pressure(x).pressure);
+        fuzz("ToneBands::feather", 0.0, 16.0, |x| {
+            ToneBands {
+                feather: x,
+                ..Default::default()
+            }
+            .sanitized()
+            .feather
+        });
+        fuzz("ToneBands::amount", 0.0, 1.0, |x| {
+            ToneBands {
+                amount: x,
+                ..Default::default()
+            }
+            .sanitized()
+            .amount
+        });
+    }
+
+    #[cfg(feature = "cartoon")]
+    #[test]
+    fn a_million_floats_in_every_field_of_the_cartoon_light() {
+        use crate::CartoonLight;
+        let light = |edit: fn(&mut CartoonLight, f32)| {
+            move |x| {
+                let mut l = CartoonLight::default();
+                edit(&mut l, x);
+                l.sanitized()
+            }
+        };
+        let terminator = light(|l, x| l.terminator = x);
+        fuzz("CartoonLight::terminator", 0.0, 0.9, |x| {
+            terminator(x).terminator
+        });
+        let strength = light(|l, x| l.shadow_strength = x);
+        fuzz("CartoonLight::shadow_strength", 0.0, 1.0, |x| {
+            strength(x).shadow_strength
+        });
+        let highlight = light(|l, x| l.highlight = x);
+        fuzz("CartoonLight::highlight", 0.0, 4.0, |x| {
+            highlight(x).highlight
+        });
+        let edge = light(|l, x| l.highlight_edge = x);
+        fuzz("CartoonLight::highlight_edge", 0.01, 0.99, |x| {
+            edge(x).highlight_edge
+        });
+        let falloff = light(|l, x| l.falloff = x);
+        fuzz("CartoonLight::falloff", 0.0, 4.0, |x| falloff(x).falloff);
     }
 }

@@ -11,8 +11,8 @@ use bevy::{
     camera::Hdr, ecs::system::SystemParam, prelude::*, render::view::Msaa, window::WindowResolution,
 };
 use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, StageOutcome, VisibleDepthRange,
-    presets,
+    CartoonScene, ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, StageOutcome,
+    VisibleDepthRange, presets,
 };
 use common::scenes::{BuiltIn, ScenePart, Stage, Vantage};
 use orbit::Orbit;
@@ -25,6 +25,8 @@ struct Show {
     /// Index into the presets.
     style: usize,
     orthographic: bool,
+    /// Whether the scene is drawn with the cartoon material.
+    cartoon: bool,
     help: bool,
     vantage: Option<Vantage>,
 }
@@ -39,6 +41,7 @@ struct HelpText;
 const HELP: &str = "\
 1 2 3 4      scene
 Left Right   style
+L            light: standard / cartoon
 O            perspective / orthographic
 M            samples: 1 / 4
 D            HDR on / off
@@ -62,11 +65,12 @@ fn main() {
             scene: BuiltIn::Mountains,
             style: 0,
             orthographic: false,
+            cartoon: false,
             help: true,
             vantage: None,
         })
         .add_systems(Startup, (spawn_text, open_scene))
-        .add_systems(Update, (choose, describe).chain())
+        .add_systems(Update, (choose, light_scene, describe).chain())
         .run();
 }
 
@@ -112,7 +116,23 @@ fn open_scene(
         .id();
     show.orthographic = false;
     show.vantage = Some(vantage);
+    show.cartoon = scene == BuiltIn::Theatre;
     apply(&mut stage.commands, camera, show.style);
+}
+
+/// Draws the scene with the material that is chosen.
+fn light_scene(
+    mut commands: Commands,
+    show: Res<Show>,
+    parts: Query<(Entity, Has<CartoonScene>), (With<ScenePart>, Without<ChildOf>)>,
+) {
+    for (part, is_cartoon) in &parts {
+        if show.cartoon && !is_cartoon {
+            commands.entity(part).insert(CartoonScene::default());
+        } else if !show.cartoon && is_cartoon {
+            commands.entity(part).remove::<CartoonScene>();
+        }
+    }
 }
 
 fn style(index: usize) -> Option<ComicStyle> {
@@ -172,6 +192,9 @@ fn choose(
     if keys.just_pressed(KeyCode::ArrowLeft) {
         show.style = (show.style + count - 1) % count;
         apply(&mut commands, entity, show.style);
+    }
+    if keys.just_pressed(KeyCode::KeyL) {
+        show.cartoon = !show.cartoon;
     }
     if keys.just_pressed(KeyCode::KeyM) {
         *msaa = if *msaa == Msaa::Off {

@@ -20,8 +20,9 @@ pub struct ToneBands {
     /// always has three.
     pub levels: u32,
     /// Width of the step between two bands in logical pixels, where the tone
-    /// changes slowly: 1 is anti-aliased, 0 hard, more is soft. Range 0 to 16,
-    /// default 1. [`ToneBandMethod::Faithful`] has hard steps.
+    /// changes slowly: 1 is anti-aliased, more is soft, 0 as hard as can be: a
+    /// step always spans two codes of the display, so that the dither of a flat
+    /// area does not speckle. Range 0 to 16, default 1. [`ToneBandMethod::Faithful`] has hard steps.
     pub feather: f32,
     /// How much of the banded picture is mixed in. Range 0 (the style is left
     /// out) to 1, default 1.

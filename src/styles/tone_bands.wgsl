@@ -33,7 +33,9 @@ fn equation_6(c: f32) -> f32 {
 fn band_tone(s: ToneBands, y: f32, change: f32) -> f32 {
     let t = y * s.levels;
     let step = clamp(round(t), 1.0, s.levels - 1.0);
-    let half = 0.5 * clamp(s.feather * change * s.levels, 1e-5, 1.0);
+    // A code on both sides at least, or the dither of a flat area that lies on a
+    // step would speckle.
+    let half = 0.5 * clamp(s.feather * change * s.levels, s.levels / 128.0, 1.0);
     return (step - 0.5 + smoothstep(step - half, step + half, t)) / s.levels;
 }
 

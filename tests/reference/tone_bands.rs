@@ -26,7 +26,7 @@ pub fn equation_6(c: f64) -> f64 {
 
 /// `feather` in physical pixels; `change` of the lightness over a pixel.
 pub fn band_tone(levels: f64, feather: f64, y: f64, change: f64) -> f64 {
-    let half = 0.5 * (feather * change * levels).clamp(1e-5, 1.0);
+    let half = 0.5 * (feather * change * levels).clamp(levels / 128.0, 1.0);
     // Every border that is passed is one band more.
     let t = y * levels;
     let border = t.round().clamp(1.0, levels - 1.0);

@@ -1,1 +1,310 @@
-fn main() {}
+//! Which lines are there, and which should be: our outlines and those of
+//! bevy_edge_detection_outline 0.4.1, each at its defaults, on the same frames.
+//!
+//! ```text
+//! cargo run --manifest-path benches/peers/Cargo.toml
+//! ```
+//!
+//! The truth is the same scene at four times the resolution, read from its raw
+//! depth, normals and object ids: a pixel has a silhouette where the depth of two
+//! neighbours differs by more than 2 % beyond the slopes on both sides, a crease
+//! where their normals differ by more than 30 degrees on one surface, an object
+//! edge where their ids differ.
+
+#[path = "../../../examples/common/mod.rs"]
+mod common;
+
+use bevy::{
+    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
+    core_pipeline::tonemapping::{DebandDither, Tonemapping},
+    prelude::*,
+    render::{RenderApp, sync_world::RenderEntity, view::Msaa},
+};
+use bevy_comics::{ComicStyle, ComicsPlugin, ObjectEdges, Outlines};
+use bevy_edge_detection_outline::{EdgeDetection, EdgeDetectionPlugin};
+use common::{
+    headless::{Headless, HeadlessOptions},
+    read_back,
+    scenes::{BuiltIn, Stage},
+};
+
+const SIZE: UVec2 = UVec2::new(480, 270);
+const FINE: u32 = 4;
+
+/// Truth, by kind.
+struct Truth {
+    width: usize,
+    height: usize,
+    kinds: [Vec<bool>; 3],
+}
+
+type Build = fn(&mut Headless) -> Transform;
+
+struct Shot {
+    picture: image::RgbaImage,
+    depth: Vec<f32>,
+    normals: Vec<[f32; 4]>,
+    ids: Vec<u32>,
+}
+
+enum Lines {
+    None,
+    Ours,
+    Peer,
+}
+
+fn shoot(build: Build, size: UVec2, lines: &Lines) -> Shot {
+    let options = HeadlessOptions { size, ..default() };
+    let mut headless = Headless::new(options, (ComicsPlugin, EdgeDetectionPlugin));
+    let view = build(&mut headless);
+    let target = headless.render_target();
+    let world = headless.app.world_mut();
+    let camera = world
+        .spawn((
+            Camera3d::default(),
+            Projection::Perspective(PerspectiveProjection {
+                fov: 32f32.to_radians(),
+                ..default()
+            }),
+            view,
+            target,
+            Msaa::Off,
+            Tonemapping::None,
+            DebandDither::Disabled,
+            DepthPrepass,
+            NormalPrepass,
+        ))
+        .id();
+    match lines {
+        // Ids are drawn for edges that nobody sees.
+        Lines::None => {
+            world.entity_mut(camera).insert(Outlines {
+                silhouettes: None,
+                creases: None,
+                objects: Some(ObjectEdges {
+                    opacity: 1e-6,
+                    ..default()
+                }),
+                ..default()
+            });
+        }
+        Lines::Ours => {
+            let style = ComicStyle {
+                outlines: Some(Outlines::default()),
+                ..default()
+            };
+            style.apply(&mut world.commands().entity(camera));
+            world.flush();
+        }
+        Lines::Peer => {
+            world.entity_mut(camera).insert(EdgeDetection::default());
+        }
+    }
+    headless.step(8);
+    let picture = headless.picture();
+    let view = headless.app.world().get::<RenderEntity>(camera).expect("drawn").id();
+    let render_world = headless.app.sub_app(RenderApp).world();
+    let depth = read_back::depth(render_world, view).expect("a prepass");
+    Shot {
+        picture,
+        depth: depth.bits.iter().map(|bits| f32::from_bits(*bits)).collect(),
+        normals: read_back::normals(render_world, view).expect("a prepass").pixels,
+        ids: read_back::object_ids(render_world, view)
+            .map(|ids| ids.pixels.iter().map(|p| p[0]).collect())
+            .unwrap_or_default(),
+    }
+}
+
+fn truth(build: Build) -> Truth {
+    let size = SIZE * FINE;
+    let shot = shoot(build, size, &Lines::None);
+    let (w, h) = (size.x as usize, size.y as usize);
+    let (width, height) = (SIZE.x as usize, SIZE.y as usize);
+    let mut kinds = [0; 3].map(|_| vec![false; width * height]);
+    let fine = FINE as usize;
+    for y in 1..h - 2 {
+        for x in 1..w - 2 {
+            let i = y * w + x;
+            for step in [1, w] {
+                let j = i + step;
+                let (a, b) = (shot.depth[i], shot.depth[j]);
+                let (before, beyond) = (shot.depth[i - step], shot.depth[j + step]);
+                let near = a.max(b);
+                if near <= 0.0 {
+                    continue;
+                }
+                let (here, there, back, ahead) = if a >= b {
+                    (a, b, before, beyond)
+                } else {
+                    (b, a, beyond, before)
+                };
+                let excess = (here - there) - (back - here).max(there - ahead).max(0.0);
+                let at = (y / fine) * width + x / fine;
+                let silhouette = excess > 0.02 * near;
+                kinds[0][at] |= silhouette;
+                let (m, n) = (shot.normals[i], shot.normals[j]);
+                let dot = m[0] * n[0] + m[1] * n[1] + m[2] * n[2];
+                let both = a > 0.0 && b > 0.0;
+                kinds[1][at] |= both && !silhouette && dot < 30f32.to_radians().cos();
+                kinds[2][at] |= shot.ids[i] != shot.ids[j];
+            }
+        }
+    }
+    Truth {
+        width,
+        height,
+        kinds,
+    }
+}
+
+/// Which pixels a line has changed by more than a quarter.
+fn mask(plain: &image::RgbaImage, lined: &image::RgbaImage) -> Vec<bool> {
+    plain
+        .pixels()
+        .zip(lined.pixels())
+        .map(|(a, b)| {
+            let largest = (0..3).map(|i| a.0[i].abs_diff(b.0[i])).max().unwrap_or(0);
+            let light = a.0[..3].iter().copied().max().unwrap_or(0);
+            f32::from(largest) > 0.25 * f32::from(light.max(24))
+        })
+        .collect()
+}
+
+fn near(mask: &[bool], width: usize, height: usize, at: usize, reach: i64) -> bool {
+    let (x, y) = ((at % width) as i64, (at / width) as i64);
+    (-reach..=reach).any(|j| {
+        (-reach..=reach).any(|i| {
+            let (u, v) = (x + i, y + j);
+            (0..width as i64).contains(&u)
+                && (0..height as i64).contains(&v)
+                && mask[v as usize * width + u as usize]
+        })
+    })
+}
+
+fn share(all: impl Iterator<Item = bool>) -> String {
+    let (mut yes, mut total) = (0usize, 0usize);
+    for hit in all {
+        yes += usize::from(hit);
+        total += 1;
+    }
+    if total == 0 {
+        return "-".into();
+    }
+    format!("{:.1} %", 100.0 * yes as f64 / total as f64)
+}
+
+fn report(name: &str, build: Build) {
+    let truth = truth(build);
+    let plain = shoot(build, SIZE, &Lines::None).picture;
+    let (w, h) = (truth.width, truth.height);
+    let any: Vec<bool> = (0..w * h).map(|i| truth.kinds.iter().any(|kind| kind[i])).collect();
+    // The engine reads one pixel beyond the picture's rim for neither.
+    let inside = |i: &usize| (3..w - 3).contains(&(i % w)) && (3..h - 3).contains(&(i / w));
+    for (who, lines) in [("bevy_comics", Lines::Ours), ("bevy_edge_detection_outline", Lines::Peer)] {
+        let lined = shoot(build, SIZE, &lines).picture;
+        let mask = mask(&plain, &lined);
+        let folder = std::path::Path::new("target/peers");
+        let _ = std::fs::create_dir_all(folder);
+        let _ = lined.save(folder.join(format!("{name}-{who}.png")));
+        let recall = |kind: usize| {
+            share(
+                (0..w * h)
+                    .filter(inside)
+                    .filter(|i| truth.kinds[kind][*i])
+                    .map(|i| near(&mask, w, h, i, 1)),
+            )
+        };
+        let precision = share(
+            (0..w * h)
+                .filter(inside)
+                .filter(|i| mask[*i])
+                .map(|i| near(&any, w, h, i, 2)),
+        );
+        let wrong = (0..w * h)
+            .filter(inside)
+            .filter(|i| mask[*i] && !near(&any, w, h, *i, 2))
+            .count();
+        println!(
+            "| {name} | {who} | {} | {} | {} | {precision} | {:.3} % |",
+            recall(0),
+            recall(1),
+            recall(2),
+            100.0 * wrong as f64 / (w * h) as f64
+        );
+    }
+}
+
+fn theatre(headless: &mut Headless) -> Transform {
+    use bevy::ecs::system::RunSystemOnce;
+    let world = headless.app.world_mut();
+    let vantage = world.run_system_once(|mut stage: Stage| stage.spawn(BuiltIn::Theatre));
+    unlit(world);
+    vantage.expect("the stage is there").transform()
+}
+
+fn village(headless: &mut Headless) -> Transform {
+    use bevy::ecs::system::RunSystemOnce;
+    let world = headless.app.world_mut();
+    let vantage = world.run_system_once(|mut stage: Stage| stage.spawn(BuiltIn::Village));
+    unlit(world);
+    vantage.expect("the stage is there").transform()
+}
+
+/// Lines alone should change the picture.
+fn unlit(world: &mut World) {
+    for (_, material) in world.resource_mut::<Assets<StandardMaterial>>().iter_mut() {
+        material.unlit = true;
+    }
+}
+
+fn put(headless: &mut Headless, mesh: impl Into<Mesh>, at: Transform, tone: f32) {
+    let world = headless.app.world_mut();
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+    let material = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial {
+        base_color: Color::srgb(tone, tone, tone),
+        unlit: true,
+        ..default()
+    });
+    world.spawn((Mesh3d(mesh), MeshMaterial3d(material), at));
+}
+
+fn plane(headless: &mut Headless) -> Transform {
+    put(headless, Plane3d::default().mesh().size(4e4, 4e4), Transform::IDENTITY, 0.7);
+    let eye = Vec3::new(0.0, 1.7, 0.0);
+    Transform::from_translation(eye).looking_at(eye - Vec3::new(0.3, 0.02, 1.0), Vec3::Y)
+}
+
+fn corridor(headless: &mut Headless) -> Transform {
+    for k in 0..4u8 {
+        let turn = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2 * f32::from(k));
+        put(
+            headless,
+            Plane3d::default().mesh().size(3.0, 200.0),
+            Transform::from_rotation(turn) * Transform::from_xyz(0.0, -1.5, -100.0),
+            0.4 + 0.1 * f32::from(k),
+        );
+    }
+    Transform::from_xyz(0.4, 0.2, -0.5).looking_at(Vec3::new(0.0, 0.0, -50.0), Vec3::Y)
+}
+
+fn sphere(headless: &mut Headless) -> Transform {
+    let ball = Sphere::new(1.0).mesh().ico(40).expect("not too fine");
+    put(headless, ball, Transform::IDENTITY, 0.7);
+    Transform::from_xyz(0.0, 0.5, 4.5).looking_at(Vec3::ZERO, Vec3::Y)
+}
+
+fn main() {
+    println!("| scene | | silhouettes found | creases found | object edges found | precision | false pixels |");
+    println!("|---|---|---|---|---|---|---|");
+    let scenes: [(&str, Build); 5] = [
+        ("theatre", theatre),
+        ("village", village),
+        ("plane", plane),
+        ("corridor", corridor),
+        ("sphere", sphere),
+    ];
+    for (name, build) in scenes {
+        report(name, build);
+    }
+}
