@@ -25,8 +25,8 @@ use crate::sanitize::{bounded_option, displayable};
 /// depth prepass (opaque and alpha-masked, lit or not, skinned, morphed,
 /// instanced by the engine). Transparent meshes have no lines anyway.
 ///
-/// Both [`Outlines`](crate::Outlines) and [`Contours`](crate::Contours) leave
-/// the object out.
+/// This is about [`Outlines`](crate::Outlines): [`Contours`](crate::Contours)
+/// are drawn on the depth map, which knows no objects.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct NoContours {

@@ -92,7 +92,8 @@ impl OutlineKey {
             (self.visible_range, "VISIBLE_RANGE"),
         ]
         .into_iter()
-        .filter_map(|(on, name)| on.then(|| name.into()))
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| name.into())
         .collect()
     }
 

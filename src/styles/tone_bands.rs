@@ -33,8 +33,8 @@ pub struct ToneBands {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash)]
 pub enum ToneBandMethod {
-    /// Lightness, as it is seen, is rounded to the middle of its band; hue and
-    /// saturation stay.
+    /// Lightness, as it is seen (the root of the luminance), is rounded to the
+    /// middle of its band; hue and saturation stay.
     #[default]
     Levels,
     /// \[CL\] Eq. 6, for every channel of the display colour: three ranges, each

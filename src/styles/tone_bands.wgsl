@@ -11,9 +11,10 @@ struct ToneBands {
     faithful: u32,
 }
 
-// Lightness as it is seen: the display code of the luminance.
+// Lightness as it is seen, by Hunter's formula (1948): the root of the luminance.
+// A root is exact where a power is not, and a step between bands is steep.
 fn lightness(linear: vec3<f32>) -> f32 {
-    return clamp(srgb_encode(vec3(max(luminance(linear), 0.0))).r, 0.0, 1.0);
+    return sqrt(clamp(luminance(linear), 0.0, 1.0));
 }
 
 // [CL] Eq. 6, its ranges joined at 0.33 and 0.66, for one channel of the code.
@@ -63,7 +64,7 @@ fn tone_bands(s: ToneBands, linear: vec3<f32>, change: f32) -> vec3<f32> {
         banded = srgb_decode(vec3(equation_6(c.r), equation_6(c.g), equation_6(c.b)));
     } else {
         let tone = band_tone(s, lightness(linear), change);
-        banded = with_luminance(linear, srgb_decode(vec3(tone)).r);
+        banded = with_luminance(linear, tone * tone);
     }
     return mix(linear, banded, s.amount);
 }

@@ -3,7 +3,8 @@
 use bevy::{core_pipeline::prepass::DepthPrepass, prelude::*, render::view::Msaa};
 use bevy_comics::{
     BlackFlats, Colorization, ColorizationMode, ComicsDiagnostics, ComicsStage, Contours, DepthMap,
-    DepthMapping, Desaturation, LeftOut, StageOutcome, VisibleDepthRange,
+    DepthMapping, Desaturation, LeftOut, Outlines, Sketch, StageOutcome, ToneBands,
+    VisibleDepthRange,
 };
 
 use crate::small::{Small, size};
@@ -169,6 +170,70 @@ fn what_changes_nothing_is_left_out() {
     assert!(left.contains(&(ComicsStage::Stylize, LeftOut::NothingToDraw)));
     assert!(!has_prepass(&small));
     assert_eq!(small.picture(), original);
+}
+
+/// Outlines pay for what they draw: no range without a fade, no normals without
+/// creases, no ids without object edges, no flood for narrow lines.
+#[test]
+fn outlines_run_what_they_need_and_no_more() {
+    let mut small = small();
+    small.insert(Outlines::SILHOUETTES).settle();
+    let (ran, left) = stages(&small);
+    assert_eq!(
+        ran,
+        [
+            ComicsStage::DepthPrepass,
+            ComicsStage::OutlineEdges,
+            ComicsStage::Outlines,
+            ComicsStage::Stylize,
+        ]
+    );
+    assert!(left.contains(&(ComicsStage::DepthRange, LeftOut::NoMapStyle)));
+    assert!(left.contains(&(ComicsStage::LineFlood, LeftOut::NarrowLines)));
+    assert!(left.contains(&(ComicsStage::NormalPrepass, LeftOut::NoSuchLines)));
+    assert!(left.contains(&(ComicsStage::ObjectIds, LeftOut::NoSuchLines)));
+    small
+        .insert(Outlines {
+            width: 9.0,
+            opacity_fade: 0.5,
+            ..default()
+        })
+        .settle();
+    for stage in [
+        ComicsStage::NormalPrepass,
+        ComicsStage::ObjectIds,
+        ComicsStage::DepthRange,
+        ComicsStage::LineFlood,
+    ] {
+        assert!(small.ran(stage), "{stage:?}");
+    }
+    let camera = small.camera;
+    small.world().entity_mut(camera).remove::<Outlines>();
+    small.settle();
+    assert!(!has_prepass(&small));
+    // Bands alone read no depth.
+    small.insert(ToneBands::default()).settle();
+    let (ran, _) = stages(&small);
+    assert_eq!(ran, [ComicsStage::ToneBands, ComicsStage::Stylize]);
+    // A sketch of lines that nobody sees is the picture itself.
+    let camera = small.camera;
+    small.world().entity_mut(camera).remove::<ToneBands>();
+    small.settle();
+    let original = small.picture();
+    small
+        .insert((
+            Sketch::default(),
+            Outlines {
+                silhouettes: None,
+                creases: None,
+                objects: None,
+                ..default()
+            },
+        ))
+        .settle();
+    assert_eq!(stages(&small).0, []);
+    assert_eq!(small.picture(), original);
+    assert_eq!(small.errors(), 0);
 }
 
 #[test]

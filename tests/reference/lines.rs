@@ -106,11 +106,13 @@ impl Edges {
         let (px, py) = (at[0].floor() as i64, at[1].floor() as i64);
         let mut ink = [0.0f64; 3];
         if let Some(own) = self.at(px, py) {
-            for kind in 0..3 {
+            ink = std::array::from_fn(|kind| {
                 if own.whole[kind] {
-                    ink[kind] = stored_ink(own.ink[kind], nudge);
+                    stored_ink(own.ink[kind], nudge)
+                } else {
+                    0.0
                 }
-            }
+            });
         }
         let corner = at.map(|v| (v - 0.5).floor() as i64);
         let known: Vec<[i64; 2]> = match lookup {

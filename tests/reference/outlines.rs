@@ -15,7 +15,7 @@ pub fn gradient<T: Copy>(window: [[T; 3]; 3], difference: impl Fn(T, T) -> f64) 
         / 8.0
 }
 
-/// (g_min, g_max) of the 3 x 3 gradients in a 5 x 5 window.
+/// (`g_min`, `g_max`) of the 3 x 3 gradients in a 5 x 5 window.
 pub fn gradient_extremes<T: Copy>(
     window: &[[T; 5]; 5],
     difference: impl Fn(T, T) -> f64 + Copy,

@@ -38,10 +38,8 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
     let source = input.light(x, y);
     let mut linear = source;
     if let Some(s) = &style.tone_bands {
-        // A step between bands is steep: what `pow` may be off (2^-10 of the
-        // light, here) moves it by whole codes, and its width as well.
-        let nudged = linear.map(|c| c * (1.0 + 100.0 * nudge));
-        let change = (input.change(x, y) + 200.0 * nudge).max(0.0);
+        let nudged = linear.map(|c| c * (1.0 + nudge));
+        let change = (input.change(x, y) + nudge).max(0.0);
         linear = tone_bands::tone_bands(s, nudged, change, 1.0);
     }
     let reads_map = style.desaturation.is_some()

@@ -11,8 +11,9 @@ fn luminance(c: Rgb) -> f64 {
     0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]
 }
 
+/// Hunter's lightness.
 pub fn lightness(linear: Rgb) -> f64 {
-    srgb_encode([luminance(linear).max(0.0); 3])[0].clamp(0.0, 1.0)
+    luminance(linear).clamp(0.0, 1.0).sqrt()
 }
 
 /// [CL] Eq. 6, closed.
@@ -59,7 +60,7 @@ pub fn tone_bands(s: &ToneBands, linear: Rgb, change: f64, scale: f64) -> Rgb {
                 lightness(linear),
                 change,
             );
-            with_luminance(linear, srgb_decode([tone; 3])[0])
+            with_luminance(linear, tone * tone)
         }
     };
     std::array::from_fn(|i| mix(linear[i], banded[i], f64::from(s.amount)))

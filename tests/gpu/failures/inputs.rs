@@ -1,6 +1,7 @@
 //! Settings, colours and depth as they should not be.
 
 use super::*;
+use bevy_comics::{Creases, Outlines, Silhouettes, Sketch, ToneBands};
 
 /// Takes the depth prepass away as soon as anyone asks for it.
 fn forbid_prepass(mut commands: Commands, cameras: Query<Entity, With<DepthPrepass>>) {
@@ -84,6 +85,41 @@ fn failure_08_absurd_settings_equal_their_sanitized_selves() {
                 color: Color::srgb(other, value, value),
                 opacity: other,
                 fade: value,
+                ..default()
+            }),
+            tone_bands: Some(ToneBands {
+                feather: value,
+                amount: other,
+                levels: 1_000_000,
+                ..default()
+            }),
+            outlines: Some(Outlines {
+                silhouettes: Some(Silhouettes {
+                    threshold: value,
+                    edge_limit: other,
+                    softness: value,
+                    color: Color::srgb(value, other, 0.1),
+                    ..default()
+                }),
+                creases: Some(Creases {
+                    angle: value,
+                    edge_limit: value,
+                    opacity: other,
+                    ..default()
+                }),
+                width: value,
+                width_fade: other,
+                opacity_fade: value,
+                ..default()
+            }),
+            // The strokes change with time, which the comparison must not see.
+            sketch: (other > 0.0).then_some(Sketch {
+                wash: other,
+                gamma: value,
+                jitter: value,
+                wavelength: other,
+                pressure: value,
+                rate: 0.0,
                 ..default()
             }),
             ..default()
