@@ -23,13 +23,19 @@
 //!    ([`ReductionMethod`], [`VisibleDepthRange`]);
 //! 3. depth becomes the map `D`, 0 at the near end and 1 at the far end of the
 //!    range ([`DepthMap`]);
-//! 4. one full-screen pass after tonemapping applies [`Desaturation`],
-//!    [`Colorization`], [`BlackFlats`] and [`Contours`], in this order.
+//! 4. where [`Outlines`] are asked for, silhouettes, creases and edges between
+//!    objects are found, and wide lines carried by a jump flood;
+//! 5. one full-screen pass after tonemapping applies [`ToneBands`],
+//!    [`Desaturation`], [`Colorization`], [`BlackFlats`], [`Contours`], and then
+//!    the outlines or a [`Sketch`] of them, in this order.
 //!
-//! Whole looks are assets: [`ComicStyle`], with [`presets`].
+//! Whole looks are assets: [`ComicStyle`], with [`presets`]. On meshes, the
+//! feature `objects` adds `NoContours` and `ContourStyle`, and the feature
+//! `cartoon` adds `CartoonMaterial` and `CartoonScene`; both are on by default.
 //!
 //! Equations are those of *Comics stylizations of 3D scenes using GPU*
-//! (Suarez, Belhadj, Boyer), cited as \[CS\]. Every setting is brought into its
+//! (Suarez, Belhadj, Boyer), cited as \[CS\], and of *Cartoon-Looking Rendering
+//! of 3D-Scenes* (Wang, after Decaudin), cited as \[CL\]. Every setting is brought into its
 //! documented range before it is used; no value makes a panic or a NaN.
 
 #[cfg(feature = "cartoon")]
