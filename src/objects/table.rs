@@ -2,14 +2,9 @@
 //! object its slot in it.
 
 use bevy::{
-    ecs::{
-        entity::EntityHashMap,
-        resource::Resource,
-        system::{Res, ResMut},
-    },
+    ecs::{entity::EntityHashMap, resource::Resource},
     math::Vec3,
     render::{
-        Extract,
         render_resource::{Buffer, ShaderType, StorageBuffer},
         renderer::{RenderDevice, RenderQueue},
     },
@@ -37,6 +32,7 @@ impl Default for ObjectStyleUniform {
 
 /// The most styles that differ from one another; further ones are drawn like
 /// the last, with a warning.
+#[cfg(feature = "objects")]
 pub(crate) const MOST_STYLES: usize = 255;
 
 /// The objects with a style of their own, in both worlds.
@@ -82,9 +78,10 @@ impl ObjectStyles {
     }
 }
 
+#[cfg(feature = "objects")]
 pub(crate) fn extract_object_styles(
-    main: Extract<Res<ObjectStyles>>,
-    mut styles: ResMut<ObjectStyles>,
+    main: bevy::render::Extract<bevy::ecs::system::Res<ObjectStyles>>,
+    mut styles: bevy::ecs::system::ResMut<ObjectStyles>,
 ) {
     if *styles != **main {
         styles.clone_from(&main);

@@ -52,7 +52,7 @@ fn frame(small: &Small, map: &DepthMap) -> Frame {
 
 /// Compares every pixel; pixels whose colour hangs on a threshold within the
 /// response's error are counted, not compared.
-fn assert_pass_is_its_twin(
+pub fn assert_pass_is_its_twin(
     small: &mut Small,
     style: &ComicStyle,
     viewport: Option<[u32; 4]>,
@@ -283,7 +283,7 @@ fn every_mode_of_every_style_is_its_twin() {
     assert_eq!(small.errors(), 0);
 }
 
-fn outlined(outlines: Outlines) -> ComicStyle {
+pub fn outlined(outlines: Outlines) -> ComicStyle {
     ComicStyle {
         outlines: Some(outlines),
         ..default()
@@ -330,17 +330,6 @@ fn outlines_of_every_kind_form_and_width_are_their_twin() {
         });
         assert_pass_is_its_twin(&mut small, &faithful, None, &format!("faithful, {msaa:?}"));
         assert_eq!(small.errors(), 0);
-    }
-}
-
-/// A flood knows one line a pixel; where two objects' lines cross, a jump can
-/// land on the other. Wide lines of one colour have no such places.
-#[test]
-fn wide_lines_are_their_twin() {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
-    for width in [5.0, 6.5, 8.0, 12.0, 16.0] {
-        let style = outlined(Outlines { width, ..default() });
-        assert_pass_is_its_twin(&mut small, &style, None, &format!("{width} px"));
     }
 }
 
