@@ -9,7 +9,7 @@ use bevy::{
     ecs::{
         entity::{Entity, EntityHashMap},
         resource::Resource,
-        system::{Commands, Query, Res, ResMut, SystemParam},
+        system::{Commands, Query, Res, ResMut},
         world::{FromWorld, World},
     },
     math::{IVec4, UVec2, UVec4, Vec2, Vec4Swizzles},
@@ -33,10 +33,8 @@ use crate::{
         readback::{RangeReadback, RangeReadings},
     },
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
-    objects::{ObjectStyleBuffer, ObjectStyles},
     outlining::{
-        FloodPass, FloodPipeline, GATHER_REACH, OutlineKey, OutlinePass, OutlinePipeline,
-        ViewTexture, reach,
+        FloodPipeline, OutlinePass, OutlinePipeline, ViewTexture, prepare::Outlining, reach,
     },
     stylize::{ComicsUniform, StylizeKey, StylizePipeline},
     view::{ComicsView, Plan},
@@ -177,62 +175,6 @@ fn uniform(view: &ComicsView, plan: &Plan, viewport: UVec4) -> ComicsUniform {
 
 fn raw_depth(view: &ComicsView, viewport: UVec4) -> RawDepth {
     view.projection.raw(&view.clip_from_view, viewport)
-}
-
-/// What the outlines' passes are made of.
-#[derive(SystemParam)]
-pub(crate) struct Outlining<'w> {
-    edge_pipelines: ResMut<'w, SpecializedRenderPipelines<OutlinePipeline>>,
-    flood_pipelines: ResMut<'w, SpecializedRenderPipelines<FloodPipeline>>,
-    edge_pipeline: Res<'w, OutlinePipeline>,
-    flood_pipeline: Res<'w, FloodPipeline>,
-    buffer: ResMut<'w, ObjectStyleBuffer>,
-    styles: Res<'w, ObjectStyles>,
-}
-
-impl Outlining<'_> {
-    /// This frame's outlines of a view; what still fits is kept.
-    fn prepare(
-        &mut self,
-        old: Option<OutlinePass>,
-        cache: &PipelineCache,
-        device: &RenderDevice,
-        plan: &Plan,
-        (samples, size): (u32, UVec2),
-        oblique: bool,
-        reach: i32,
-    ) -> Option<OutlinePass> {
-        let key = OutlineKey::new(plan, samples, oblique)?;
-        let new_texture =
-            |label| ViewTexture::new(device, label, size, 1, TextureFormat::Rgba16Uint);
-        let (edges, flood) = old.map_or((None, None), |old| (Some(old.edges), old.flood));
-        // A sketch asks several times a pixel, between pixels: a flood answers
-        // each time with four lines.
-        let sketched = plan.sketch.is_some() && reach > 0;
-        let flood = (reach > GATHER_REACH || sketched).then(|| FloodPass {
-            first: self
-                .flood_pipelines
-                .specialize(cache, &self.flood_pipeline, true),
-            next: self
-                .flood_pipelines
-                .specialize(cache, &self.flood_pipeline, false),
-            strides: FloodPass::strides(reach),
-            textures: flood
-                .map(|flood| flood.textures)
-                .filter(|textures| textures[0].fits(size, 1))
-                .unwrap_or_else(|| [new_texture("comics_lines_a"), new_texture("comics_lines_b")]),
-        });
-        Some(OutlinePass {
-            key,
-            pipeline: self
-                .edge_pipelines
-                .specialize(cache, &self.edge_pipeline, key),
-            edges: edges
-                .filter(|edges| edges.fits(size, 1))
-                .unwrap_or_else(|| new_texture("comics_edges")),
-            flood,
-        })
-    }
 }
 
 pub(crate) fn prepare_view_passes(

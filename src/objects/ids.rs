@@ -4,8 +4,12 @@
 //! alpha masks come out right, since the vertex shader is the prepass's and what
 //! it discarded fails the test for equal depth.
 
-use std::ops::Range;
-
+use super::{ObjectStyles, phase::ObjectIdItem};
+use crate::{
+    diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
+    passes::ViewPasses,
+    view::ComicsView,
+};
 use bevy::{
     app::App,
     asset::{AssetServer, Handle, load_embedded_asset},
@@ -13,7 +17,7 @@ use bevy::{
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::{
         component::Component,
-        entity::{Entity, EntityHash},
+        entity::Entity,
         resource::Resource,
         schedule::IntoScheduleConfigs,
         system::{Commands, Query, Res, ResMut, SystemParamItem, lifetimeless::SRes},
@@ -24,7 +28,7 @@ use bevy::{
         AlphaMode, MaterialProperties,
         key::{ErasedMaterialPipelineKey, ErasedMeshPipelineKey},
     },
-    math::{FloatOrd, UVec2},
+    math::UVec2,
     mesh::{Mesh3d, MeshVertexBufferLayoutRef},
     pbr::{
         DrawMesh, MeshPipeline, MeshPipelineKey, PreparedMaterial, PrepassFragmentShader,
@@ -41,32 +45,22 @@ use bevy::{
         mesh::RenderMesh,
         render_asset::RenderAssets,
         render_phase::{
-            AddRenderCommand, CachedRenderPipelinePhaseItem, DrawFunctionId, DrawFunctions,
-            PhaseItem, PhaseItemExtraIndex, RenderCommand, RenderCommandResult, SetItemPipeline,
-            SortedPhaseItem, SortedRenderPhasePlugin, TrackedRenderPass, ViewSortedRenderPhases,
-            sort_phase_system,
+            AddRenderCommand, DrawFunctions, PhaseItem, PhaseItemExtraIndex, RenderCommand,
+            RenderCommandResult, SetItemPipeline, SortedRenderPhasePlugin, TrackedRenderPass,
+            ViewSortedRenderPhases, sort_phase_system,
         },
         render_resource::{
             BindGroup, BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries,
-            CachedRenderPipelineId, ColorTargetState, ColorWrites, CompareFunction, FragmentState,
-            LoadOp, Operations, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
+            ColorTargetState, ColorWrites, CompareFunction, FragmentState, LoadOp, Operations,
+            PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
             RenderPipelineDescriptor, ShaderStages, SpecializedMeshPipeline,
             SpecializedMeshPipelineError, SpecializedMeshPipelines, StorageBuffer, StoreOp,
             Texture, TextureFormat, binding_types::storage_buffer_read_only,
         },
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
-        sync_world::MainEntity,
         view::{ExtractedView, Msaa, RenderVisibleEntities, RetainedViewEntity, ViewDepthTexture},
     },
     shader::Shader,
-};
-use indexmap::IndexMap;
-
-use super::ObjectStyles;
-use crate::{
-    diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
-    passes::ViewPasses,
-    view::ComicsView,
 };
 
 /// (id, style slot).
@@ -110,78 +104,6 @@ fn publish_object_ids(
                 texture: ids.texture.clone(),
             });
         }
-    }
-}
-
-pub(crate) struct ObjectIdItem {
-    entity: (Entity, MainEntity),
-    pipeline: CachedRenderPipelineId,
-    draw_function: DrawFunctionId,
-    batch_range: Range<u32>,
-    extra_index: PhaseItemExtraIndex,
-    indexed: bool,
-}
-
-impl PhaseItem for ObjectIdItem {
-    // An instance is an object: instances are not merged, so that the first
-    // index of an item is that of its object.
-    const AUTOMATIC_BATCHING: bool = false;
-
-    fn entity(&self) -> Entity {
-        self.entity.0
-    }
-
-    fn main_entity(&self) -> MainEntity {
-        self.entity.1
-    }
-
-    fn draw_function(&self) -> DrawFunctionId {
-        self.draw_function
-    }
-
-    fn batch_range(&self) -> &Range<u32> {
-        &self.batch_range
-    }
-
-    fn batch_range_mut(&mut self) -> &mut Range<u32> {
-        &mut self.batch_range
-    }
-
-    fn extra_index(&self) -> PhaseItemExtraIndex {
-        self.extra_index.clone()
-    }
-
-    fn batch_range_and_extra_index_mut(&mut self) -> (&mut Range<u32>, &mut PhaseItemExtraIndex) {
-        (&mut self.batch_range, &mut self.extra_index)
-    }
-}
-
-impl SortedPhaseItem for ObjectIdItem {
-    // The depth is there: any order will do, so pipelines are kept together.
-    type SortKey = (FloatOrd, usize);
-
-    fn sort_key(&self) -> Self::SortKey {
-        (FloatOrd(0.0), self.pipeline.id())
-    }
-
-    fn sort(items: &mut IndexMap<(Entity, MainEntity), Self, EntityHash>) {
-        items.sort_by_key(|_, item| item.pipeline.id());
-    }
-
-    fn recalculate_sort_keys(
-        _items: &mut IndexMap<(Entity, MainEntity), Self, EntityHash>,
-        _view: &ExtractedView,
-    ) {
-    }
-
-    fn indexed(&self) -> bool {
-        self.indexed
-    }
-}
-
-impl CachedRenderPipelinePhaseItem for ObjectIdItem {
-    fn cached_pipeline(&self) -> CachedRenderPipelineId {
-        self.pipeline
     }
 }
 

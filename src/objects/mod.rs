@@ -3,6 +3,8 @@
 
 #[cfg(feature = "objects")]
 pub(crate) mod ids;
+#[cfg(feature = "objects")]
+mod phase;
 pub(crate) mod table;
 
 #[cfg(feature = "objects")]

@@ -1,6 +1,8 @@
 //! The passes behind the outlines: one that finds edges, and for wide lines a
 //! jump flood that tells every pixel its nearest line.
 
+pub(crate) mod prepare;
+
 use std::sync::atomic::Ordering;
 
 use bevy::{
