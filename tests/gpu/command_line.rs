@@ -56,8 +56,9 @@ fn what_cannot_be_done_is_one_line_that_says_what_can() {
     .expect("written");
     fs::write(folder.join("broken.gltf"), "{ not json").expect("written");
     for (arguments, says) in [
-        (&["moonscape"][..], "mountains, teapot, village"),
+        (&["moonscape"][..], "mountains, teapot, theatre, village"),
         (&["--style", "nope"], "crimson-dusk, museum-print"),
+        (&["--material", "wood"], "possible are standard, cartoon"),
         (
             &["--style", "missing.comic.ron"],
             "cannot read missing.comic.ron",
@@ -173,6 +174,40 @@ fn a_dump_holds_the_depth_without_loss_and_says_what_was_decided() {
             .collect::<Vec<f32>>()
     };
     assert_ne!(rgba("input.exr"), rgba("output.exr"));
+    assert!(!folder.join("d/ids.exr").exists(), "no line wants ids");
+    fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+#[test]
+fn a_dump_of_outlines_holds_ids_and_counts_the_lights() {
+    let folder = folder("dump-ids");
+    let arguments = [
+        "theatre", "--size", "64x48", "--msaa", "1", "--frames", "4", "--out", "p.png", "--dump",
+        "d",
+    ];
+    let output = run(&folder, &arguments);
+    assert!(
+        output.status.success(),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let frame: Value =
+        serde_json::from_slice(&fs::read(folder.join("d/frame.json")).expect("frame.json"))
+            .expect("JSON");
+    assert_eq!(frame["material"], "cartoon");
+    for kind in ["directional", "point", "spot"] {
+        assert_eq!(frame["lights"][kind], 1, "{kind}");
+    }
+    let ids =
+        exr::prelude::read_first_flat_layer_from_file(folder.join("d/ids.exr")).expect("ids.exr");
+    let channel = &ids.layer_data.channel_data.list[0];
+    assert_eq!(channel.name.to_string(), "id");
+    let exr::prelude::FlatSamples::U32(values) = &channel.sample_data else {
+        panic!("ids are not whole numbers")
+    };
+    let different: std::collections::BTreeSet<u32> = values.iter().copied().collect();
+    assert!(different.len() > 10, "{} objects", different.len());
+    assert!(folder.join("d/normal.exr").exists());
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 

@@ -49,12 +49,19 @@ fn two_cubes(msaa: Msaa) -> (Small, [Entity; 2]) {
     let mut small = Small::new(UVec2::new(120, 60), msaa);
     small.clear();
     let plain = material(&mut small, |_| {});
-    let left = cube(
-        &mut small,
-        plain.clone(),
-        Transform::from_xyz(-0.5, 0.0, 0.0),
-    );
-    let right = cube(&mut small, plain, Transform::from_xyz(0.5, 0.0, 0.0));
+    // One mesh and one material: the engine draws both as instances of one.
+    let world = small.world();
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(Cuboid::default());
+    let [left, right] = [-0.5, 0.5].map(|x| {
+        let at = Transform::from_xyz(x, 0.0, 0.0);
+        let parts = (
+            Object,
+            Mesh3d(mesh.clone()),
+            MeshMaterial3d(plain.clone()),
+            at,
+        );
+        world.spawn(parts).id()
+    });
     small.insert(Transform::from_xyz(0.0, 0.0, 2.2).looking_at(Vec3::ZERO, Vec3::Y));
     (small, [left, right])
 }
