@@ -10,6 +10,9 @@ use serde::{Deserialize, Serialize};
 use crate::sanitize::bounded;
 
 /// Gathers the tones of the picture into a few flat bands, whatever lit it.
+///
+/// Bevy's cameras dither by default; an area whose tone lies right on a step
+/// shows that as faint dots. `DebandDither::Disabled` on the camera ends it.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[serde(default, deny_unknown_fields)]
