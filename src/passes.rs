@@ -17,7 +17,7 @@ use bevy::{
         camera::ExtractedCamera,
         render_resource::{
             Buffer, BufferDescriptor, BufferUsages, CachedRenderPipelineId, DynamicUniformBuffer,
-            PipelineCache, SpecializedComputePipelines, SpecializedRenderPipelines, TextureFormat,
+            PipelineCache, SpecializedComputePipelines, SpecializedRenderPipelines,
         },
         renderer::{RenderAdapterInfo, RenderDevice, RenderQueue},
         view::{ExtractedView, ViewTarget},
@@ -33,6 +33,7 @@ use crate::{
         readback::{RangeReadback, RangeReadings},
     },
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
+    objects::ID_FORMAT,
     outlining::{
         FloodPipeline, OutlinePass, OutlinePipeline, ViewTexture, prepare::Outlining, reach,
     },
@@ -351,13 +352,12 @@ pub(crate) fn prepare_view_passes(
                 && pass.ids.is_none()
                 && let Some((size, samples)) = size.zip(samples)
             {
-                let format = TextureFormat::Rg16Uint;
                 pass.ids = Some(ViewTexture::new(
                     &device,
                     "comics_object_ids",
                     size,
                     samples,
-                    format,
+                    ID_FORMAT,
                 ));
             }
             let flooded = pass.outline.as_ref().is_some_and(|o| o.flood.is_some());

@@ -1,6 +1,9 @@
 //! One scene, one camera, any number of styles.
 
-use bevy::{camera::RenderTarget, ecs::system::RunSystemOnce, prelude::*, render::view::Msaa};
+use bevy::{
+    camera::RenderTarget, core_pipeline::tonemapping::DebandDither, ecs::system::RunSystemOnce,
+    prelude::*, render::view::Msaa,
+};
 use bevy_comics::{CartoonScene, ComicStyle, ComicsPlugin, presets};
 
 use super::{
@@ -50,13 +53,24 @@ impl Studio {
     pub fn shoot(&mut self, style: Option<&ComicStyle>) -> image::RgbaImage {
         let none = ComicStyle::default();
         let world = self.headless.app.world_mut();
-        style
-            .unwrap_or(&none)
-            .apply(&mut world.commands().entity(self.camera));
+        wear(
+            &mut world.commands().entity(self.camera),
+            style.unwrap_or(&none),
+        );
         world.flush();
         self.headless.step(SETTLE);
         self.headless.picture()
     }
+}
+
+/// Gives a camera a look. The engine's dither would speckle flat areas whose
+/// tone lies on a step between bands, so bands go without it.
+pub fn wear(camera: &mut EntityCommands, style: &ComicStyle) {
+    camera.insert(match style.tone_bands {
+        Some(_) => DebandDither::Disabled,
+        None => DebandDither::Enabled,
+    });
+    style.apply(camera);
 }
 
 /// The presets that a scene has a reference picture of. The mountains are the

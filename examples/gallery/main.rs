@@ -14,7 +14,10 @@ use bevy_comics::{
     CartoonScene, ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, StageOutcome,
     VisibleDepthRange, presets,
 };
-use common::scenes::{BuiltIn, ScenePart, Stage, Vantage};
+use common::{
+    scenes::{BuiltIn, ScenePart, Stage, Vantage},
+    studio::wear,
+};
 use orbit::Orbit;
 use split::Split;
 
@@ -141,7 +144,7 @@ fn style(index: usize) -> Option<ComicStyle> {
 
 fn apply(commands: &mut Commands, camera: Entity, index: usize) {
     if let Some(style) = style(index) {
-        style.apply(&mut commands.entity(camera));
+        wear(&mut commands.entity(camera), &style);
     }
 }
 

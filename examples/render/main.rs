@@ -20,7 +20,7 @@ use bevy_comics::ComicsPlugin;
 use common::{
     headless::{self, Headless, HeadlessOptions},
     scenes::{Stage, Vantage},
-    studio::set_cartoon,
+    studio::{set_cartoon, wear},
 };
 
 fn main() -> ExitCode {
@@ -108,7 +108,7 @@ fn spawn_camera(headless: &mut Headless, arguments: &Arguments, vantage: &Vantag
     }
     let camera = camera.id();
     if let Some(style) = &arguments.style {
-        style.apply(&mut world.commands().entity(camera));
+        wear(&mut world.commands().entity(camera), style);
         world.flush();
     }
     camera

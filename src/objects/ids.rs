@@ -4,7 +4,7 @@
 //! alpha masks come out right, since the vertex shader is the prepass's and what
 //! it discarded fails the test for equal depth.
 
-use super::{ObjectStyles, phase::ObjectIdItem};
+use super::{ID_FORMAT, ObjectStyles, phase::ObjectIdItem};
 use crate::{
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     passes::ViewPasses,
@@ -14,7 +14,6 @@ use bevy::{
     app::App,
     asset::{AssetServer, Handle, load_embedded_asset},
     camera::{MainPassResolutionOverride, Viewport},
-    core_pipeline::prepass::ViewPrepassTextures,
     ecs::{
         component::Component,
         entity::Entity,
@@ -55,16 +54,13 @@ use bevy::{
             PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
             RenderPipelineDescriptor, ShaderStages, SpecializedMeshPipeline,
             SpecializedMeshPipelineError, SpecializedMeshPipelines, StorageBuffer, StoreOp,
-            Texture, TextureFormat, binding_types::storage_buffer_read_only,
+            Texture, binding_types::storage_buffer_read_only,
         },
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
         view::{ExtractedView, Msaa, RenderVisibleEntities, RetainedViewEntity, ViewDepthTexture},
     },
     shader::Shader,
 };
-
-/// (id, style slot).
-pub(crate) const ID_FORMAT: TextureFormat = TextureFormat::Rg16Uint;
 
 /// The id that an entity has in [`ViewObjectIds`], 1 to 65535. Entities whose
 /// indices differ by a multiple of 65535 share one, and have no
@@ -361,7 +357,6 @@ pub(crate) fn draw_object_ids(
         &ExtractedCamera,
         &ExtractedView,
         &ViewDepthTexture,
-        Option<&ViewPrepassTextures>,
         Option<&MainPassResolutionOverride>,
     )>,
     passes: Res<ViewPasses>,
@@ -370,7 +365,7 @@ pub(crate) fn draw_object_ids(
     mut ctx: RenderContext,
 ) {
     let entity = view.entity();
-    let (camera, extracted, depth, _, resolution) = view.into_inner();
+    let (camera, extracted, depth, resolution) = view.into_inner();
     let Some((pass, target)) = passes
         .views
         .get(&entity)

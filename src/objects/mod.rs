@@ -17,3 +17,7 @@ pub use components::{ContourStyle, LineKinds, NoContours};
 pub use ids::{ViewObjectIds, object_id};
 
 pub(crate) use table::{ObjectStyleBuffer, ObjectStyles};
+
+/// The ids' texture: (id, style slot).
+pub(crate) const ID_FORMAT: bevy::render::render_resource::TextureFormat =
+    bevy::render::render_resource::TextureFormat::Rg16Uint;

@@ -107,8 +107,8 @@ fn detect(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     let reference = s.reference_factor * nearest + s.reference_constant;
     // A jump that hides something: what lies behind it is no neighbour.
     let jump = 2.0 * s.silhouette_k * reference;
-    let g = gradient_extremes(&depths);
 #ifdef SILHOUETTES
+    let g = gradient_extremes(&depths);
     if s.silhouette_faithful != 0u {
         let p = edge_response(g, s.silhouette_k);
         edge.ink.x = smoothstep(s.silhouette_low, s.silhouette_high, p) * f32(kinds & 1u);
