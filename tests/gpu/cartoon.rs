@@ -456,7 +456,11 @@ fn a_scene_is_converted_with_one_component_and_back() {
         .get_mut(first)
         .expect("listed")
         .base_color = Color::srgb(0.85, 0.2, 0.15);
-    small.headless.step(4);
+    assert_eq!(
+        picture_of(&mut small),
+        standard,
+        "the standard picture is back"
+    );
     for part in &parts {
         assert!(
             small
