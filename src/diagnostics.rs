@@ -28,6 +28,10 @@ pub enum ComicsStage {
     ObjectIds,
     /// The min/max reduction of the depth.
     DepthRange,
+    /// The step that keeps the range from flickering ([`RangeSmoothing`]).
+    ///
+    /// [`RangeSmoothing`]: crate::RangeSmoothing
+    RangeSmoothing,
     /// The copy of the range to the game ([`VisibleDepthRange`]).
     ///
     /// [`VisibleDepthRange`]: crate::VisibleDepthRange
@@ -56,11 +60,12 @@ pub enum ComicsStage {
 
 impl ComicsStage {
     /// Every stage, in order.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::DepthPrepass,
         Self::NormalPrepass,
         Self::ObjectIds,
         Self::DepthRange,
+        Self::RangeSmoothing,
         Self::RangeReadback,
         Self::OutlineEdges,
         Self::LineFlood,
@@ -81,6 +86,7 @@ impl ComicsStage {
             Self::NormalPrepass => "normal prepass",
             Self::ObjectIds => "object ids",
             Self::DepthRange => "depth range",
+            Self::RangeSmoothing => "range smoothing",
             Self::RangeReadback => "range readback",
             Self::OutlineEdges => "outline edges",
             Self::LineFlood => "line flood",

@@ -53,7 +53,10 @@ mod view;
 
 #[cfg(feature = "cartoon")]
 pub use cartoon::{CartoonLight, CartoonMaterial, CartoonScene};
-pub use depth::{DepthMap, DepthMapping, ProjectionKind, ReductionMethod, VisibleDepthRange};
+pub use depth::{
+    CameraCut, DepthMap, DepthMapping, ProjectionKind, RangeSmoothing, ReductionMethod,
+    VisibleDepthRange,
+};
 pub use diagnostics::{CameraStages, ComicsDiagnostics, ComicsStage, LeftOut, StageOutcome};
 #[cfg(feature = "objects")]
 pub use objects::{ContourStyle, LineKinds, NoContours, ViewObjectIds, object_id};
@@ -67,10 +70,10 @@ pub use styles::{
 /// What most games need: `use bevy_comics::prelude::*;`.
 pub mod prelude {
     pub use crate::{
-        BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ComicStyleHandle,
-        ComicsPlugin, ContourForm, ContourOperator, Contours, Creases, DepthMap, DepthMapping,
-        Desaturation, EdgeForm, ObjectEdges, Outlines, Silhouettes, Sketch, ToneBandMethod,
-        ToneBands, VisibleDepthRange,
+        BlackFlats, CameraCut, ColorMethod, Colorization, ColorizationMode, ComicStyle,
+        ComicStyleHandle, ComicsPlugin, ContourForm, ContourOperator, Contours, Creases, DepthMap,
+        DepthMapping, Desaturation, EdgeForm, ObjectEdges, Outlines, RangeSmoothing, Silhouettes,
+        Sketch, ToneBandMethod, ToneBands, VisibleDepthRange,
     };
     #[cfg(feature = "cartoon")]
     pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};

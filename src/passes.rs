@@ -16,10 +16,9 @@ use bevy::{
     render::{
         camera::ExtractedCamera,
         render_resource::{
-            Buffer, BufferDescriptor, BufferUsages, CachedRenderPipelineId, DynamicUniformBuffer,
-            PipelineCache, SpecializedComputePipelines, SpecializedRenderPipelines,
+            CachedRenderPipelineId, DynamicUniformBuffer, PipelineCache, SpecializedRenderPipelines,
         },
-        renderer::{RenderAdapterInfo, RenderDevice, RenderQueue},
+        renderer::{RenderDevice, RenderQueue},
         view::{ExtractedView, ViewTarget},
     },
 };
@@ -28,9 +27,11 @@ use crate::{
     depth::{
         ProjectionKind, RawDepth,
         frame::DepthProjection,
-        ping_pong::{PingPong, PingPongPipeline},
-        range::{RangePass, RangePipeline, RangeShape, RangeView},
+        ping_pong::PingPongPipeline,
+        prepare::{RangeUniforms, Ranging, ViewRange},
+        range::RangePipeline,
         readback::{RangeReadback, RangeReadings},
+        smoothing::SmoothingPipeline,
     },
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     objects::ID_FORMAT,
@@ -50,13 +51,8 @@ pub(crate) struct ViewPass {
     pub key: StylizeKey,
     pub stylize: Option<CachedRenderPipelineId>,
     pub uniform_offset: u32,
-    pub range: Option<RangePass>,
-    pub range_view_offset: u32,
-    /// Keys of the nearest and farthest depth; kept while a range is wanted.
-    pub keys: Option<Buffer>,
-    pub ping_pong: Option<PingPong>,
-    /// Whether this frame's reduction was recorded.
-    pub range_found: AtomicBool,
+    /// The range; kept while one is wanted.
+    pub range: Option<ViewRange>,
     pub readback: Mutex<RangeReadback>,
     /// Which object is seen where; kept while lines want to know.
     pub ids: Option<ViewTexture>,
@@ -72,19 +68,17 @@ pub(crate) struct ViewPass {
 pub(crate) struct ViewPasses {
     pub views: EntityHashMap<ViewPass>,
     pub uniforms: DynamicUniformBuffer<ComicsUniform>,
-    pub range_views: DynamicUniformBuffer<RangeView>,
+    pub range_uniforms: RangeUniforms,
 }
 
 impl FromWorld for ViewPasses {
     fn from_world(_world: &mut World) -> Self {
         let mut uniforms = DynamicUniformBuffer::default();
         uniforms.set_label(Some("comics_uniforms"));
-        let mut range_views = DynamicUniformBuffer::default();
-        range_views.set_label(Some("comics_range_views"));
         Self {
             views: EntityHashMap::default(),
             uniforms,
-            range_views,
+            range_uniforms: RangeUniforms::default(),
         }
     }
 }
@@ -98,20 +92,9 @@ pub(crate) fn init_pipelines(
     commands.insert_resource(StylizePipeline::new(&fullscreen, &assets));
     commands.insert_resource(RangePipeline::new(&device, &assets));
     commands.insert_resource(PingPongPipeline::new(&fullscreen, &assets));
+    commands.insert_resource(SmoothingPipeline::new(&assets));
     commands.insert_resource(OutlinePipeline::new(&fullscreen, &assets));
     commands.insert_resource(FloodPipeline::new(&assets));
-}
-
-fn keys_buffer(device: &RenderDevice) -> Buffer {
-    device.create_buffer(&BufferDescriptor {
-        label: Some("comics_depth_range"),
-        size: 16,
-        usage: BufferUsages::STORAGE
-            | BufferUsages::UNIFORM
-            | BufferUsages::COPY_SRC
-            | BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
 }
 
 /// How far around a pixel this view's lines are looked for, in pixels.
@@ -190,22 +173,17 @@ pub(crate) fn prepare_view_passes(
     mut passes: ResMut<ViewPasses>,
     ledger: Res<StageLedger>,
     mut stylize_pipelines: ResMut<SpecializedRenderPipelines<StylizePipeline>>,
-    mut range_pipelines: ResMut<SpecializedComputePipelines<RangePipeline>>,
-    mut ping_pong_pipelines: ResMut<SpecializedRenderPipelines<PingPongPipeline>>,
-    (stylize_pipeline, range_pipeline, ping_pong_pipeline): (
-        Res<StylizePipeline>,
-        Res<RangePipeline>,
-        Res<PingPongPipeline>,
-    ),
+    stylize_pipeline: Res<StylizePipeline>,
+    mut ranging: Ranging,
     mut outlining: Outlining,
     cache: Res<PipelineCache>,
     device: Res<RenderDevice>,
     queue: Res<RenderQueue>,
-    adapter: Res<RenderAdapterInfo>,
 ) {
     let passes = &mut *passes;
     passes.uniforms.clear();
-    passes.range_views.clear();
+    passes.range_uniforms.views.clear();
+    passes.range_uniforms.smoothings.clear();
     outlining.buffer.update(&outlining.styles, &device, &queue);
     for pass in passes.views.values_mut() {
         pass.live = false;
@@ -253,10 +231,6 @@ pub(crate) fn prepare_view_passes(
             stylize: None,
             uniform_offset: 0,
             range: None,
-            range_view_offset: 0,
-            keys: None,
-            ping_pong: None,
-            range_found: AtomicBool::new(false),
             readback: Mutex::default(),
             ids: None,
             outline: None,
@@ -268,58 +242,20 @@ pub(crate) fn prepare_view_passes(
         pass.plan = plan;
         pass.projection = view.projection;
         pass.stylize = None;
-        pass.range = None;
-        pass.range_found = AtomicBool::new(false);
         pass.outlines_found = AtomicBool::new(false);
 
         let oblique = view.projection.kind() == ProjectionKind::Oblique;
+        let old_range = pass.range.take();
         if let Some(samples) = samples.filter(|_| plan.needs_range()) {
-            let shape = RangeShape::choose(plan.depth_map.reduction, &adapter, &device);
-            pass.keys.get_or_insert_with(|| keys_buffer(&device));
             let rect = depth_rect(extracted.viewport, view.main_pass_size);
-            pass.range_view_offset = passes.range_views.push(&RangeView {
-                rect,
-                raw: raw_depth(view, extracted.viewport),
-            });
-            pass.range = Some(match shape {
-                Some(shape) => {
-                    pass.ping_pong = None;
-                    RangePass::compute(
-                        shape,
-                        range_pipelines.specialize(
-                            &cache,
-                            &range_pipeline,
-                            (shape, samples > 1, oblique),
-                        ),
-                        rect,
-                        samples,
-                    )
-                }
-                None => {
-                    if pass
-                        .ping_pong
-                        .as_ref()
-                        .is_none_or(|p| p.rect_size() != rect.zw())
-                    {
-                        pass.ping_pong = Some(PingPong::new(&device, rect.zw()));
-                    }
-                    let mut specialize = |first| {
-                        ping_pong_pipelines.specialize(
-                            &cache,
-                            &ping_pong_pipeline,
-                            (first, samples > 1, oblique),
-                        )
-                    };
-                    RangePass::PingPong {
-                        first: specialize(true),
-                        next: specialize(false),
-                        samples,
-                    }
-                }
-            });
-        } else {
-            pass.keys = None;
-            pass.ping_pong = None;
+            pass.range = Some(ranging.prepare(
+                old_range,
+                &cache,
+                &device,
+                &mut passes.range_uniforms,
+                (view, &plan),
+                (rect, raw_depth(view, extracted.viewport), samples),
+            ));
         }
         if !plan.readback {
             pass.readback = Mutex::default();
@@ -375,7 +311,9 @@ pub(crate) fn prepare_view_passes(
     }
     passes.views.retain(|_, pass| pass.live);
     passes.uniforms.write_buffer(&device, &queue);
-    passes.range_views.write_buffer(&device, &queue);
+    passes.range_uniforms.views.write_buffer(&device, &queue);
+    let smoothings = &mut passes.range_uniforms.smoothings;
+    smoothings.write_buffer(&device, &queue);
 }
 
 /// The part of the depth texture that the main pass has drawn.
@@ -395,6 +333,7 @@ fn report_missing_depth(ledger: &StageLedger, view: &ComicsView) {
     for (stage, lost) in [
         (ComicsStage::DepthPrepass, true),
         (ComicsStage::DepthRange, wanted.needs_range()),
+        (ComicsStage::RangeSmoothing, wanted.smooths()),
         (ComicsStage::RangeReadback, wanted.readback),
         (ComicsStage::Desaturation, wanted.desaturation.is_some()),
         (

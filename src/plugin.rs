@@ -20,10 +20,11 @@ use bevy::{
 use crate::objects::{ContourStyle, NoContours, assign_object_styles};
 use crate::{
     depth::{
-        DepthMap, VisibleDepthRange,
+        CameraCut, DepthMap, VisibleDepthRange,
         ping_pong::PingPongPipeline,
         range::{RangePipeline, reduce_depth_range},
         readback::{RangeReadings, receive_ranges},
+        smoothing::{SmoothingPipeline, count_cut},
     },
     diagnostics::{ComicsDiagnostics, StageLedger, publish_ledger, read_ledger},
     objects::{ObjectStyleBuffer, ObjectStyles},
@@ -64,6 +65,7 @@ impl Plugin for ComicsPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<DepthMap>()
             .register_type::<VisibleDepthRange>()
+            .register_type::<CameraCut>()
             .register_type::<Desaturation>()
             .register_type::<Colorization>()
             .register_type::<BlackFlats>()
@@ -75,6 +77,7 @@ impl Plugin for ComicsPlugin {
             .register_type::<ComicsDiagnostics>()
             .init_resource::<ComicsDiagnostics>()
             .init_resource::<ObjectStyles>()
+            .add_observer(count_cut)
             .add_systems(PostUpdate, (request_prepasses, warn_unsupported));
         #[cfg(feature = "objects")]
         app.register_type::<ContourStyle>()
@@ -112,6 +115,8 @@ impl Plugin for ComicsPlugin {
         #[cfg(feature = "cartoon")]
         load_shader_library!(app, "cartoon/light.wgsl");
         embedded_asset!(app, "stylize/stylize.wgsl");
+        // Both an entry point and a library: the reduction counts in its bins.
+        load_shader_library!(app, "depth/smoothing.wgsl");
         embedded_asset!(app, "depth/range.wgsl");
         embedded_asset!(app, "depth/ping_pong.wgsl");
 
@@ -130,6 +135,7 @@ impl Plugin for ComicsPlugin {
             .init_gpu_resource::<SpecializedRenderPipelines<StylizePipeline>>()
             .init_gpu_resource::<SpecializedComputePipelines<RangePipeline>>()
             .init_gpu_resource::<SpecializedRenderPipelines<PingPongPipeline>>()
+            .init_gpu_resource::<SpecializedComputePipelines<SmoothingPipeline>>()
             .init_gpu_resource::<SpecializedRenderPipelines<OutlinePipeline>>()
             .init_gpu_resource::<SpecializedRenderPipelines<FloodPipeline>>()
             .init_gpu_resource::<ObjectStyleBuffer>()

@@ -14,11 +14,11 @@ use bevy::{
     log::warn_once,
     math::{Mat4, UVec2},
     render::{Extract, sync_world::RenderEntity},
-    time::Time,
+    time::{Real, Time},
 };
 
 use crate::{
-    depth::{DepthMap, VisibleDepthRange, frame::DepthProjection},
+    depth::{DepthMap, VisibleDepthRange, frame::DepthProjection, smoothing::CameraCuts},
     diagnostics::{ComicsStage, LeftOut},
     objects::ObjectStyles,
     styles::{BlackFlats, Colorization, Contours, Desaturation, Outlines, Sketch, ToneBands},
@@ -165,6 +165,13 @@ impl Plan {
             .is_some_and(|o| o.width_fade > 0.0 || o.opacity_fade > 0.0)
     }
 
+    /// Whether the range that is drawn with is more than this frame's own.
+    pub fn smooths(&self) -> bool {
+        let map = self.draws_with_depth() || self.lines_fade();
+        map && self.depth_map.mapping.follows_visible_range()
+            && (self.depth_map.smoothing.is_some() || self.depth_map.locked)
+    }
+
     pub fn needs_range(&self) -> bool {
         let map = self.draws_with_depth() || self.lines_fade();
         self.readback || (map && self.depth_map.mapping.follows_visible_range())
@@ -241,9 +248,16 @@ impl Plan {
             }
             ComicsStage::LineFlood if self.outlines.is_some() => LeftOut::NarrowLines,
             ComicsStage::LineFlood => LeftOut::NoSuchLines,
-            ComicsStage::DepthRange if maps => LeftOut::FixedRange,
-            ComicsStage::DepthRange if self.outlines.is_some() => LeftOut::NoMapStyle,
-            ComicsStage::DepthRange => LeftOut::NoDepthStyle,
+            ComicsStage::RangeSmoothing
+                if self.depth_map.smoothing.is_none() && !self.depth_map.locked =>
+            {
+                LeftOut::NotRequested
+            }
+            ComicsStage::DepthRange | ComicsStage::RangeSmoothing if maps => LeftOut::FixedRange,
+            ComicsStage::DepthRange | ComicsStage::RangeSmoothing if self.outlines.is_some() => {
+                LeftOut::NoMapStyle
+            }
+            ComicsStage::DepthRange | ComicsStage::RangeSmoothing => LeftOut::NoDepthStyle,
             ComicsStage::Stylize => LeftOut::NothingToDraw,
         }
     }
@@ -327,6 +341,10 @@ pub(crate) struct ComicsView {
     pub drawing: u32,
     /// The widest line of any object with one of its own, logical pixels.
     pub widest_object: f32,
+    /// Real time since the last frame, seconds: a paused game still looks around.
+    pub seconds: f32,
+    /// How often the camera was cut.
+    pub cuts: u32,
 }
 
 pub(crate) fn extract_views(
@@ -339,18 +357,21 @@ pub(crate) fn extract_views(
                 &Camera,
                 Option<&Projection>,
                 Option<&MainPassResolutionOverride>,
+                Option<&CameraCuts>,
                 ComicsComponents,
             ),
             (With<Camera3d>, AnyComics),
         >,
     >,
     time: Extract<Option<Res<Time>>>,
+    real_time: Extract<Option<Res<Time<Real>>>>,
     objects: Extract<Res<ObjectStyles>>,
     stale: Query<Entity, With<ComicsView>>,
     mut seen: Local<EntityHashSet>,
 ) {
     seen.clear();
-    for (entity, render_entity, camera, projection, resolution, components) in &cameras {
+    let since_last = real_time.as_ref().map_or(0.0, |time| time.delta_secs());
+    for (entity, render_entity, camera, projection, resolution, cuts, components) in &cameras {
         if !camera.is_active {
             continue;
         }
@@ -367,6 +388,8 @@ pub(crate) fn extract_views(
             main_pass_size: resolution.map(|size| size.0),
             drawing: plan.sketch.map_or(0, |sketch| sketch.drawing(seconds)),
             widest_object: objects.max_width(),
+            seconds: since_last,
+            cuts: cuts.map_or(0, |cuts| cuts.0),
         });
     }
     for entity in &stale {

@@ -63,7 +63,7 @@ pub(crate) struct RawDepth {
 }
 
 /// A view's projection in double precision: raw depth to distance and back.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DepthProjection {
     kind: ProjectionKind,
     /// clip z = scale * view z + shift, view z negative before the camera.
@@ -94,6 +94,15 @@ impl DepthProjection {
 
     pub fn kind(&self) -> ProjectionKind {
         self.kind
+    }
+
+    /// What added to raw depth makes it proportional to the reciprocal distance.
+    pub fn offset(&self) -> f32 {
+        if self.kind == ProjectionKind::Perspective {
+            self.scale as f32
+        } else {
+            0.0
+        }
     }
 
     /// The near distance that scales the reciprocal depth of oblique views.
@@ -186,11 +195,7 @@ impl DepthProjection {
         DepthFrame {
             near: raw_near as f32,
             far: raw_far as f32,
-            offset: if self.kind == ProjectionKind::Perspective {
-                self.scale as f32
-            } else {
-                0.0
-            },
+            offset: self.offset(),
             floor: if orthographic {
                 (f64::from(map.orthographic_floor) * self.scale) as f32
             } else {

@@ -2,8 +2,10 @@
 
 pub(crate) mod frame;
 pub(crate) mod ping_pong;
+pub(crate) mod prepare;
 pub(crate) mod range;
 pub(crate) mod readback;
+pub(crate) mod smoothing;
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
@@ -14,6 +16,7 @@ use serde::{Deserialize, Serialize};
 pub use frame::ProjectionKind;
 pub(crate) use frame::{DepthFrame, RawDepth};
 pub use readback::VisibleDepthRange;
+pub use smoothing::{CameraCut, RangeSmoothing};
 
 use crate::sanitize::{bounded, ordered_planes};
 
@@ -47,6 +50,15 @@ pub struct DepthMap {
     /// How the visible range is found. Every method gives the same bits.
     /// Default: [`ReductionMethod::Auto`].
     pub reduction: ReductionMethod,
+    /// Keeps the visible range from flickering; without it the range is that of
+    /// every single frame. Default: none.
+    pub smoothing: Option<RangeSmoothing>,
+    /// Holds the visible range as it is, whatever enters or leaves the view,
+    /// until this is `false` again: for a scene that must not change its look,
+    /// or a photograph. A camera that has not seen anything yet locks onto the
+    /// first thing that it sees. The reduction still runs;
+    /// [`DepthMapping::Fixed`] spares it. Default: `false`.
+    pub locked: bool,
 }
 
 impl Default for DepthMap {
@@ -58,6 +70,8 @@ impl Default for DepthMap {
             floor: 1.0 / 16384.0,
             orthographic_floor: 1e-4,
             reduction: ReductionMethod::default(),
+            smoothing: None,
+            locked: false,
         }
     }
 }
@@ -78,6 +92,10 @@ impl DepthMap {
                 0.0,
                 1e6,
             ),
+            smoothing: self
+                .smoothing
+                .map(RangeSmoothing::sanitized)
+                .filter(|smoothing| !smoothing.is_negligible()),
             ..self
         }
     }

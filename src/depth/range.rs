@@ -10,9 +10,9 @@ use bevy::{
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
-            BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries,
+            BindGroupEntry, BindGroupLayoutDescriptor, BindGroupLayoutEntries,
             CachedComputePipelineId, CachedRenderPipelineId, ComputePassDescriptor,
-            ComputePipelineDescriptor, PipelineCache, Sampler, SamplerBindingType,
+            ComputePipelineDescriptor, IntoBinding, PipelineCache, Sampler, SamplerBindingType,
             SamplerDescriptor, ShaderStages, ShaderType, SpecializedComputePipeline,
             TextureSampleType, WgpuFeatures,
             binding_types::{
@@ -120,6 +120,12 @@ impl RangePass {
             samples,
         }
     }
+
+    pub fn samples(&self) -> u32 {
+        match self {
+            Self::Compute { samples, .. } | Self::PingPong { samples, .. } => *samples,
+        }
+    }
 }
 
 #[derive(Resource)]
@@ -139,54 +145,63 @@ impl RangePipeline {
         }
     }
 
-    fn layout(multisampled: bool) -> BindGroupLayoutDescriptor {
+    fn layout(key: RangeKey) -> BindGroupLayoutDescriptor {
         let unfilterable = TextureSampleType::Float { filterable: false };
-        let entries = if multisampled {
-            BindGroupLayoutEntries::sequential(
-                ShaderStages::COMPUTE,
-                (
-                    texture_2d_multisampled(unfilterable),
-                    uniform_buffer::<RangeView>(true),
-                    storage_buffer_sized(false, None),
-                ),
-            )
-            .to_vec()
+        let depth = if key.multisampled {
+            texture_2d_multisampled(unfilterable)
         } else {
-            BindGroupLayoutEntries::sequential(
-                ShaderStages::COMPUTE,
-                (
-                    texture_2d(unfilterable),
-                    uniform_buffer::<RangeView>(true),
-                    storage_buffer_sized(false, None),
-                    sampler(SamplerBindingType::NonFiltering),
-                ),
-            )
-            .to_vec()
+            texture_2d(unfilterable)
         };
+        let compute = ShaderStages::COMPUTE;
+        let mut entries = BindGroupLayoutEntries::sequential(
+            compute,
+            (
+                depth,
+                uniform_buffer::<RangeView>(true),
+                storage_buffer_sized(false, None),
+            ),
+        )
+        .to_vec();
+        if !key.multisampled {
+            entries.push(sampler(SamplerBindingType::NonFiltering).build(3, compute));
+        }
+        if key.histogram {
+            entries.push(storage_buffer_sized(false, None).build(4, compute));
+        }
         BindGroupLayoutDescriptor::new("comics_depth_range", &entries)
     }
 }
 
-impl SpecializedComputePipeline for RangePipeline {
-    /// Shape, multisampled depth, oblique projection.
-    type Key = (RangeShape, bool, bool);
+/// What else is compiled into a shape.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct RangeKey {
+    pub multisampled: bool,
+    pub oblique: bool,
+    pub histogram: bool,
+}
 
-    fn specialize(&self, (shape, multisampled, oblique): Self::Key) -> ComputePipelineDescriptor {
+impl SpecializedComputePipeline for RangePipeline {
+    type Key = (RangeShape, RangeKey);
+
+    fn specialize(&self, (shape, key): Self::Key) -> ComputePipelineDescriptor {
         let mut shader_defs = Vec::new();
         match shape {
             RangeShape::BarrierFree => shader_defs.push("BARRIER_FREE".into()),
             RangeShape::Subgroup => shader_defs.push("SUBGROUP".into()),
             RangeShape::SharedMemory => {}
         }
-        if multisampled {
+        if key.multisampled {
             shader_defs.push("MULTISAMPLED".into());
         }
-        if oblique {
+        if key.oblique {
             shader_defs.push("OBLIQUE".into());
+        }
+        if key.histogram {
+            shader_defs.push("HISTOGRAM".into());
         }
         ComputePipelineDescriptor {
             label: Some("comics_depth_range".into()),
-            layout: vec![Self::layout(multisampled)],
+            layout: vec![Self::layout(key)],
             shader: self.shader.clone(),
             shader_defs,
             entry_point: Some("reduce".into()),
@@ -207,86 +222,101 @@ pub(crate) fn reduce_depth_range(
     let entity = view.entity();
     let prepass = view.into_inner();
     let ViewPasses {
-        views, range_views, ..
+        views,
+        range_uniforms,
+        ..
     } = &*passes;
-    let Some(pass) = views.get(&entity) else {
+    let Some((pass, range)) = views
+        .get(&entity)
+        .and_then(|pass| Some((pass, pass.range.as_ref()?)))
+    else {
         return;
     };
-    let (Some(range), Some(keys)) = (pass.range, pass.keys.clone()) else {
+    let (Some(depth), Some(range_view)) = (prepass.depth.as_ref(), range_uniforms.views.binding())
+    else {
         return;
     };
-    let (Some(depth), Some(range_view)) = (prepass.depth.as_ref(), range_views.binding()) else {
-        return;
+    let leave_out = |reason| {
+        let outcome = StageOutcome::LeftOut(reason);
+        ledger.set(pass.camera, ComicsStage::DepthRange, outcome);
     };
-    let (RangePass::Compute { samples, .. } | RangePass::PingPong { samples, .. }) = range;
-    if depth.texture.texture.sample_count() != samples {
-        ledger.set(
-            pass.camera,
-            ComicsStage::DepthRange,
-            StageOutcome::LeftOut(LeftOut::SampleCountMismatch),
-        );
-        return;
+    if depth.texture.texture.sample_count() != range.pass.samples() {
+        return leave_out(LeftOut::SampleCountMismatch);
     }
+    // All of it or nothing: a range that is not smoothed would jump.
+    let follow = match (&range.smoothing, range_uniforms.smoothings.binding()) {
+        (None, _) => None,
+        (Some((smoothing, id)), Some(uniforms)) => {
+            let Some(pipeline) = cache.get_compute_pipeline(*id) else {
+                return leave_out(LeftOut::PipelineNotReady);
+            };
+            Some((smoothing, pipeline, uniforms))
+        }
+        (Some(_), None) => return leave_out(LeftOut::PipelineNotReady),
+    };
 
     let device = ctx.render_device().clone();
     let diagnostics = ctx.diagnostic_recorder();
     let diagnostics = diagnostics.as_deref();
-    let outcome = match range {
+    let outcome = match range.pass {
         RangePass::Compute {
             shape,
             pipeline: id,
             workgroups,
-            ..
+            samples,
         } => {
             let Some(compute) = cache.get_compute_pipeline(id) else {
-                return not_ready(&ledger, pass.camera);
+                return leave_out(LeftOut::PipelineNotReady);
             };
-            let layout = cache.get_bind_group_layout(&RangePipeline::layout(samples > 1));
-            let depth_view = &depth.texture.default_view;
-            let bind_group = if samples > 1 {
-                device.create_bind_group(
-                    "comics_depth_range",
-                    &layout,
-                    &BindGroupEntries::sequential((
-                        depth_view,
-                        range_view,
-                        keys.as_entire_binding(),
-                    )),
-                )
-            } else {
-                device.create_bind_group(
-                    "comics_depth_range",
-                    &layout,
-                    &BindGroupEntries::sequential((
-                        depth_view,
-                        range_view,
-                        keys.as_entire_binding(),
-                        &pipeline.nearest_sampler,
-                    )),
-                )
+            let histogram = range.histogram();
+            let key = RangeKey {
+                multisampled: samples > 1,
+                oblique: false,
+                histogram: histogram.is_some(),
             };
+            let entry = |binding, resource| BindGroupEntry { binding, resource };
+            let mut entries = vec![
+                entry(0, (&depth.texture.default_view).into_binding()),
+                entry(1, range_view),
+                entry(2, range.keys.as_entire_binding()),
+            ];
+            if !key.multisampled {
+                entries.push(entry(3, (&pipeline.nearest_sampler).into_binding()));
+            }
+            if let Some(histogram) = histogram {
+                entries.push(entry(4, histogram.as_entire_binding()));
+            }
+            let layout = cache.get_bind_group_layout(&RangePipeline::layout(key));
+            let bind_group = device.create_bind_group("comics_depth_range", &layout, &entries);
             let encoder = ctx.command_encoder();
             let span = diagnostics.time_span(encoder, "comics_depth_range");
-            encoder.clear_buffer(&keys, 0, None);
+            encoder.clear_buffer(&range.keys, 0, None);
+            if let Some(histogram) = histogram {
+                encoder.clear_buffer(histogram, 0, None);
+            }
             {
                 let mut compute_pass = encoder.begin_compute_pass(&ComputePassDescriptor {
                     label: Some("comics_depth_range"),
                     timestamp_writes: None,
                 });
                 compute_pass.set_pipeline(compute);
-                compute_pass.set_bind_group(0, &bind_group, &[pass.range_view_offset]);
+                compute_pass.set_bind_group(0, &bind_group, &[range.view_offset]);
                 compute_pass.dispatch_workgroups(workgroups.0, workgroups.1, 1);
             }
             span.end(encoder);
             shape.method()
         }
-        RangePass::PingPong { first, next, .. } => {
+        RangePass::PingPong {
+            first,
+            next,
+            samples,
+        } => {
             let (Some(first), Some(next), Some(chain)) = (
                 cache.get_render_pipeline(first),
                 cache.get_render_pipeline(next),
-                pass.ping_pong.as_ref(),
+                range.ping_pong.as_ref(),
             ) else {
-                return not_ready(&ledger, pass.camera);
+                return leave_out(LeftOut::PipelineNotReady);
             };
             let encoder = ctx.command_encoder();
             let span = diagnostics.time_span(encoder, "comics_depth_range");
@@ -298,25 +328,33 @@ pub(crate) fn reduce_depth_range(
                 (
                     &depth.texture.default_view,
                     range_view,
-                    pass.range_view_offset,
+                    range.view_offset,
                     samples > 1,
                 ),
-                &keys,
+                &range.keys,
             );
             span.end(encoder);
             ReductionMethod::PingPong
         }
     };
-    pass.range_found.store(true, Ordering::Relaxed);
     ledger.set(
         pass.camera,
         ComicsStage::DepthRange,
         StageOutcome::Reduced(outcome),
     );
+    if let Some((smoothing, pipeline, uniforms)) = follow {
+        let encoder = ctx.command_encoder();
+        let span = diagnostics.time_span(encoder, "comics_range_smoothing");
+        smoothing.record(&device, encoder, &cache, pipeline, uniforms, &range.keys);
+        span.end(encoder);
+        ledger.set(pass.camera, ComicsStage::RangeSmoothing, StageOutcome::Ran);
+    }
+    range.found.store(true, Ordering::Relaxed);
 
     if pass.plan.readback {
         let mut readback = pass.readback.lock().unwrap_or_else(PoisonError::into_inner);
-        let copied = readback.copy(&device, ctx.command_encoder(), &keys, pass.projection);
+        let keys = &range.keys;
+        let copied = readback.copy(&device, ctx.command_encoder(), keys, pass.projection);
         let outcome = if copied {
             StageOutcome::Ran
         } else {
@@ -324,9 +362,4 @@ pub(crate) fn reduce_depth_range(
         };
         ledger.set(pass.camera, ComicsStage::RangeReadback, outcome);
     }
-}
-
-fn not_ready(ledger: &StageLedger, camera: bevy::ecs::entity::Entity) {
-    let outcome = StageOutcome::LeftOut(LeftOut::PipelineNotReady);
-    ledger.set(camera, ComicsStage::DepthRange, outcome);
 }

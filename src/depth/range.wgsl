@@ -6,6 +6,9 @@
 // are maxima whose identity is zero, so a cleared buffer means "no geometry".
 
 #import bevy_comics::depth::raw::{RawDepth, raw_depth_key}
+#ifdef HISTOGRAM
+#import bevy_comics::depth::smoothing::bin_of
+#endif
 
 struct RangeView {
     // Origin and size of the viewport, in pixels of the depth texture.
@@ -29,8 +32,51 @@ struct RangeKeys {
 @group(0) @binding(3) var nearest_sampler: sampler;
 #endif
 
+#ifdef HISTOGRAM
+// Histogram of smoothing.wgsl.
+struct Counts {
+    bins: array<atomic<u32>, 256>,
+    total: atomic<u32>,
+}
+
+@group(0) @binding(4) var<storage, read_write> counts: Counts;
+
+// Depths of one bin in a row are counted once, when the bin changes: neighbours
+// are mostly alike.
+var<private> run_bin: u32;
+var<private> run: u32;
+var<private> counted: u32;
+
+fn end_run() {
+    if run != 0u {
+#ifdef BARRIER_FREE
+        atomicAdd(&counts.bins[run_bin], run);
+#else
+        atomicAdd(&tile_bins[run_bin], run);
+#endif
+    }
+    counted += run;
+    run = 0u;
+}
+
+fn count(bits: u32) {
+    if bits == 0u {
+        return;
+    }
+    let bin = bin_of(bits);
+    if bin != run_bin {
+        end_run();
+        run_bin = bin;
+    }
+    run++;
+}
+#endif
+
 // (near key, far key) of one depth; zeros for background.
 fn key_pair(bits: u32) -> vec2<u32> {
+#ifdef HISTOGRAM
+    count(bits);
+#endif
     return vec2(bits, select(0u - bits, 0u, bits == 0u));
 }
 
@@ -45,7 +91,10 @@ fn block_keys(at: vec2<u32>) -> vec2<u32> {
     let samples = i32(textureNumSamples(depth_texture));
     let last = view.rect.xy + view.rect.zw - 1u;
     for (var i = 0u; i < 4u; i++) {
-        let pixel = min(corner + vec2(i & 1u, i >> 1u), last);
+        let pixel = corner + vec2(i & 1u, i >> 1u);
+        if any(pixel > last) {
+            continue;
+        }
         for (var s = 0; s < samples; s++) {
             let d = textureLoad(depth_texture, vec2<i32>(pixel), s).r;
             found = max(found, key_pair(raw_depth_key(view.raw, pixel, d)));
@@ -91,12 +140,21 @@ fn reduce(@builtin(global_invocation_id) id: vec3<u32>) {
         atomicMax(&keys.near, found.x);
         atomicMax(&keys.far, found.y);
     }
+#ifdef HISTOGRAM
+    end_run();
+    if counted != 0u {
+        atomicAdd(&counts.total, counted);
+    }
+#endif
 }
 #else
 // For GPUs: 16 rows of 16 invocations read 8x2 pixels each, a tile of 128x32.
 var<workgroup> tile: RangeKeys;
 #ifndef SUBGROUP
 var<workgroup> tree: array<vec2<u32>, 256>;
+#endif
+#ifdef HISTOGRAM
+var<workgroup> tile_bins: array<atomic<u32>, 256>;
 #endif
 
 @compute @workgroup_size(256)
@@ -107,6 +165,10 @@ fn reduce(
     @builtin(subgroup_invocation_id) lane: u32,
 #endif
 ) {
+#ifdef HISTOGRAM
+    atomicStore(&tile_bins[local], 0u);
+    workgroupBarrier();
+#endif
     var found = vec2(0u);
     let y = group.y * 32u + (local / 16u) * 2u;
     for (var i = 0u; i < 4u; i++) {
@@ -115,6 +177,15 @@ fn reduce(
             found = max(found, block_keys(vec2(x, y)));
         }
     }
+#ifdef HISTOGRAM
+    end_run();
+    workgroupBarrier();
+    let tile_count = atomicLoad(&tile_bins[local]);
+    if tile_count != 0u {
+        atomicAdd(&counts.bins[local], tile_count);
+        atomicAdd(&counts.total, tile_count);
+    }
+#endif
 #ifdef SUBGROUP
     if local == 0u {
         atomicStore(&tile.near, 0u);

@@ -422,8 +422,8 @@ fn record(
         entry(2, (&depth.texture.default_view).into_binding()),
     ];
     if key.visible_range {
-        let found = pass.range_found.load(Ordering::Relaxed);
-        let keys = pass.keys.as_ref().filter(|_| found).ok_or(not_ready)?;
+        let range = pass.range.as_ref().ok_or(not_ready)?;
+        let keys = range.drawn().ok_or(not_ready)?;
         entries.push(entry(3, keys.as_entire_binding()));
     }
     if key.object_styles {

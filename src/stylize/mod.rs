@@ -25,7 +25,7 @@ use bevy::{
 };
 
 use crate::{
-    depth::{DepthFrame, RawDepth},
+    depth::{DepthFrame, RawDepth, prepare::ViewRange},
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     objects::ObjectStyleBuffer,
     outlining::{edges_entry, object_styles_entry, range_entry},
@@ -257,8 +257,7 @@ pub(crate) fn stylize(
         return pass_through(LeftOut::SampleCountMismatch);
     }
     // A range that was not found this frame is not drawn with.
-    let found = pass.range_found.load(Ordering::Relaxed);
-    let keys = pass.keys.as_ref().filter(|_| found);
+    let keys = pass.range.as_ref().and_then(ViewRange::drawn);
     if key.visible_range && keys.is_none() {
         return pass_through(LeftOut::PipelineNotReady);
     }

@@ -24,5 +24,7 @@ mod range_views;
 mod scenes;
 mod shaders;
 mod small;
+mod smoothing;
+mod smoothing_views;
 mod styles;
 mod wgsl;

@@ -9,7 +9,7 @@ use proptest::{
 
 use crate::{
     device::gpu,
-    reference::{ping_pong, range},
+    reference::{ping_pong, range, smoothing},
     wgsl,
 };
 
@@ -17,7 +17,18 @@ const SHAPES: [&[&str]; 3] = [&["BARRIER_FREE"], &["SUBGROUP"], &[]];
 
 /// Runs a shape of `range.wgsl` over a table of depths.
 fn reduce(shape: &[&str], depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Option<[u32; 2]> {
+    reduce_and_count(shape, depths, size, rect).0
+}
+
+/// The same; with `HISTOGRAM`, bins and total as well.
+fn reduce_and_count(
+    shape: &[&str],
+    depths: &[f32],
+    size: [u32; 2],
+    rect: [u32; 4],
+) -> (Option<[u32; 2]>, Vec<u32>) {
     let gpu = gpu();
+    let counts = shape.contains(&"HISTOGRAM");
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/depth/range.wgsl");
     let source = std::fs::read_to_string(path).expect("the shader");
     let module = wgsl::module(&source, shape).unwrap_or_else(|error| panic!("{error}"));
@@ -33,6 +44,7 @@ fn reduce(shape: &[&str], depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Opt
         has_dynamic_offset: false,
         min_binding_size: None,
     };
+    let storage = || buffer(wgpu::BufferBindingType::Storage { read_only: false });
     let layout = gpu
         .device
         .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -47,15 +59,13 @@ fn reduce(shape: &[&str], depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Opt
                     },
                 ),
                 entry(1, buffer(wgpu::BufferBindingType::Uniform)),
-                entry(
-                    2,
-                    buffer(wgpu::BufferBindingType::Storage { read_only: false }),
-                ),
+                entry(2, storage()),
                 entry(
                     3,
                     wgpu::BindingType::Sampler(wgpu::SamplerBindingType::NonFiltering),
                 ),
-            ],
+                entry(4, storage()),
+            ][..if counts { 5 } else { 4 }],
         });
     let pipeline_layout = gpu
         .device
@@ -115,6 +125,10 @@ fn reduce(shape: &[&str], depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Opt
         &[0; 16],
         wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
     );
+    let histogram = gpu.buffer(
+        &[0; 1040],
+        wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
+    );
     let sampler = gpu
         .device
         .create_sampler(&wgpu::SamplerDescriptor::default());
@@ -139,7 +153,11 @@ fn reduce(shape: &[&str], depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Opt
                 binding: 3,
                 resource: wgpu::BindingResource::Sampler(&sampler),
             },
-        ],
+            wgpu::BindGroupEntry {
+                binding: 4,
+                resource: histogram.as_entire_binding(),
+            },
+        ][..if counts { 5 } else { 4 }],
     });
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     {
@@ -153,9 +171,14 @@ fn reduce(shape: &[&str], depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Opt
         }
     }
     gpu.queue.submit([encoder.finish()]);
-    let bytes = gpu.read(&keys);
-    let word = |i: usize| u32::from_le_bytes([bytes[i], bytes[i + 1], bytes[i + 2], bytes[i + 3]]);
-    (word(0) != 0).then(|| [word(0), word(4).wrapping_neg()])
+    let words = |buffer| -> Vec<u32> {
+        let bytes = gpu.read(buffer);
+        let word = |b: &[u8]| u32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+        bytes.chunks_exact(4).map(word).collect()
+    };
+    let found = words(&keys);
+    let range = (found[0] != 0).then(|| [found[0], found[1].wrapping_neg()]);
+    (range, words(&histogram))
 }
 
 fn expected(depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Option<[u32; 2]> {
@@ -235,6 +258,48 @@ fn every_shape_finds_the_scan_of_any_depth_in_any_viewport() {
             Ok(())
         })
         .unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn every_shape_counts_every_depth_once() {
+    let mut random = crate::common::scenes::noise::Random::new(11);
+    for size in [[1u32, 1], [7, 5], [129, 33], [300, 67], [256, 64]] {
+        // Runs of like depths, as in pictures, sky and what is no depth between.
+        let mut d = 0.5f32;
+        let depths: Vec<f32> = (0..size[0] * size[1])
+            .map(|_| {
+                match random.unit() {
+                    x if x < 0.1 => d = f32::from_bits((random.unit() * 1_065_353_216.0) as u32),
+                    x if x < 0.15 => return 0.0,
+                    x if x < 0.16 => return f32::NAN,
+                    x if x < 0.17 => return 1.0,
+                    x if x < 0.3 => d *= 0.97,
+                    _ => {}
+                }
+                d
+            })
+            .collect();
+        let cut = [
+            size[0] / 3,
+            size[1] / 4,
+            size[0] - size[0] / 3,
+            size[1] - size[1] / 4,
+        ];
+        for rect in [[0, 0, size[0], size[1]], cut] {
+            let inside = (rect[1]..rect[1] + rect[3])
+                .flat_map(|y| (rect[0]..rect[0] + rect[2]).map(move |x| (x, y)))
+                .map(|(x, y)| depths[(y * size[0] + x) as usize]);
+            let (bins, total) = smoothing::histogram(inside);
+            for shape in SHAPES {
+                let defs: Vec<&str> = shape.iter().copied().chain(["HISTOGRAM"]).collect();
+                let (range, counted) = reduce_and_count(&defs, &depths, size, rect);
+                let what = format!("{shape:?} on {size:?}, {rect:?}");
+                assert_eq!(range, expected(&depths, size, rect), "{what}");
+                assert_eq!(counted[..256], bins, "{what}");
+                assert_eq!(counted[256], total, "{what}");
+            }
+        }
+    }
 }
 
 #[test]

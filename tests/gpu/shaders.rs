@@ -78,10 +78,14 @@ fn every_combination_of_styles_composes_and_validates() {
 fn every_shape_of_the_reduction_composes_and_validates() {
     let source = shader("depth/range.wgsl");
     for shape in [&[][..], &["BARRIER_FREE"], &["SUBGROUP"]] {
-        for view in subsets(&["MULTISAMPLED", "OBLIQUE"]) {
+        for view in subsets(&["MULTISAMPLED", "OBLIQUE", "HISTOGRAM"]) {
             let defs: Vec<_> = shape.iter().chain(&view).copied().collect();
             module(&source, &defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
         }
+    }
+    let source = shader("depth/smoothing.wgsl");
+    for defs in subsets(&["HISTOGRAM"]) {
+        module(&source, &defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
     }
     let source = shader("depth/ping_pong.wgsl");
     for defs in subsets(&["FIRST", "MULTISAMPLED", "OBLIQUE"]) {

@@ -17,6 +17,7 @@ pub mod ping_pong;
 pub mod range;
 pub mod raw;
 pub mod sketch;
+pub mod smoothing;
 pub mod stylize;
 pub mod taps;
 pub mod tone_bands;

@@ -1,0 +1,366 @@
+//! A range that does not flicker (\[CS\] leaves it as future work): settings,
+//! the cut that resets it, and the pass that follows it on the GPU.
+
+use std::sync::Arc;
+
+use bevy::{
+    asset::{AssetServer, Handle, load_embedded_asset},
+    camera::Camera,
+    ecs::{
+        component::Component,
+        entity::Entity,
+        event::EntityEvent,
+        observer::On,
+        query::With,
+        resource::Resource,
+        system::{Commands, Query},
+    },
+    math::UVec2,
+    reflect::{Reflect, std_traits::ReflectDefault},
+    render::{
+        render_resource::{
+            BindGroupEntry, BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource,
+            Buffer, BufferDescriptor, BufferUsages, CommandEncoder, ComputePassDescriptor,
+            ComputePipeline, ComputePipelineDescriptor, PipelineCache, ShaderStages, ShaderType,
+            SpecializedComputePipeline,
+            binding_types::{storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer},
+        },
+        renderer::RenderDevice,
+    },
+    shader::Shader,
+};
+use serde::{Deserialize, Serialize};
+
+use super::{DepthMap, ProjectionKind, frame::DepthProjection};
+use crate::sanitize::bounded;
+
+/// Keeps the range of a [`DepthMap`] from flickering when something small,
+/// short-lived or undecided enters or leaves the view. Without it the range is
+/// that of every single frame, as the paper has it.
+///
+/// Four stages, in this order, each of which a zero (or `false`) leaves out:
+/// percentiles, the median of three frames, hysteresis, and an exponential
+/// approach. A range that lags behind the scene saturates at its ends; it never
+/// breaks the picture. The state stays on the GPU, one per camera, and starts
+/// anew with the first frame that shows geometry, after a [`CameraCut`], when
+/// the size of the view changes, and when the near or far plane does.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq)]
+#[serde(default, deny_unknown_fields)]
+pub struct RangeSmoothing {
+    /// Share of the visible pixels that may lie beyond either end of the range:
+    /// what covers less of the picture does not move the range at all, and what
+    /// covers more moves it in proportion. Range 0 to 0.2, default 0.005.
+    ///
+    /// Needs compute shaders; with [`ReductionMethod::PingPong`] it is left out.
+    ///
+    /// [`ReductionMethod::PingPong`]: crate::ReductionMethod::PingPong
+    pub outliers: f32,
+    /// Takes the median of the last three frames: what is there for one frame
+    /// changes nothing, for one frame of delay. Default: `true`.
+    pub despike: bool,
+    /// An end of the range stays where it is until the scene's end has left it
+    /// by so many octaves of distance; then it follows to within a quarter of
+    /// that. Under an orthographic projection an octave is the length of the
+    /// range. Range 0 to 4, default 0.07 (5 % of a distance).
+    pub hysteresis: f32,
+    /// Time constant with which the range grows, seconds: 63 % of the way after
+    /// once that time, 95 % after three times, whatever the frame rate.
+    /// Range 0 to 60, default 0.1.
+    pub expand: f32,
+    /// Time constant with which the range shrinks, seconds. Range 0 to 60,
+    /// default 1.
+    pub shrink: f32,
+}
+
+impl Default for RangeSmoothing {
+    fn default() -> Self {
+        Self {
+            outliers: 0.005,
+            despike: true,
+            hysteresis: 0.07,
+            expand: 0.1,
+            shrink: 1.0,
+        }
+    }
+}
+
+impl RangeSmoothing {
+    /// Every stage left out: the range of every frame.
+    pub const OFF: Self = Self {
+        outliers: 0.0,
+        despike: false,
+        hysteresis: 0.0,
+        expand: 0.0,
+        shrink: 0.0,
+    };
+
+    /// The settings that are used: every number in its documented range, what
+    /// is not finite replaced by its default.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        let default = Self::default();
+        Self {
+            outliers: bounded(self.outliers, default.outliers, 0.0, 0.2),
+            despike: self.despike,
+            hysteresis: bounded(self.hysteresis, default.hysteresis, 0.0, 4.0),
+            expand: bounded(self.expand, default.expand, 0.0, 60.0),
+            shrink: bounded(self.shrink, default.shrink, 0.0, 60.0),
+        }
+    }
+
+    /// Whether it changes nothing.
+    pub fn is_negligible(&self) -> bool {
+        *self == Self::OFF
+    }
+}
+
+/// Tells a camera that its next frame has nothing to do with the last one: a
+/// cut, a teleport. Its smoothed range starts anew.
+///
+/// ```
+/// # use bevy::ecs::prelude::*;
+/// # use bevy_comics::CameraCut;
+/// fn cut(mut commands: Commands, camera: Entity) {
+///     commands.trigger(CameraCut { entity: camera });
+/// }
+/// ```
+#[derive(EntityEvent, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CameraCut {
+    /// The camera.
+    pub entity: Entity,
+}
+
+/// How often a camera was cut.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct CameraCuts(pub u32);
+
+pub(crate) fn count_cut(
+    cut: On<CameraCut>,
+    mut cameras: Query<Option<&mut CameraCuts>, With<Camera>>,
+    mut commands: Commands,
+) {
+    match cameras.get_mut(cut.entity) {
+        Ok(Some(mut cuts)) => cuts.0 = cuts.0.wrapping_add(1),
+        Ok(None) => {
+            commands.entity(cut.entity).insert(CameraCuts(1));
+        }
+        Err(_) => bevy::log::warn_once!("{} was cut and is no camera", cut.entity),
+    }
+}
+
+const ORTHOGRAPHIC: u32 = 1;
+const SNAP: u32 = 2;
+const HOLD: u32 = 4;
+const DESPIKE: u32 = 8;
+
+/// `Smoothing` of `smoothing.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct SmoothingUniform {
+    pub offset: f32,
+    pub outliers: f32,
+    pub hysteresis: f32,
+    pub expand: f32,
+    pub shrink: f32,
+    pub flags: u32,
+}
+
+/// Share of the way towards a goal after `seconds` with a time constant.
+fn way(seconds: f32, constant: f32) -> f32 {
+    if constant > 0.0 {
+        -(-f64::from(seconds) / f64::from(constant)).exp_m1() as f32
+    } else {
+        1.0
+    }
+}
+
+impl SmoothingUniform {
+    pub fn new(map: &DepthMap, projection: &DepthProjection, seconds: f32, snap: bool) -> Self {
+        let smoothing = map.smoothing.unwrap_or(RangeSmoothing::OFF);
+        let orthographic = projection.kind() == ProjectionKind::Orthographic;
+        let flag = |on: bool, flag: u32| if on { flag } else { 0 };
+        Self {
+            offset: projection.offset(),
+            outliers: smoothing.outliers,
+            hysteresis: smoothing.hysteresis,
+            expand: way(seconds, smoothing.expand),
+            shrink: way(seconds, smoothing.shrink),
+            flags: flag(orthographic, ORTHOGRAPHIC)
+                | flag(snap, SNAP)
+                | flag(map.locked, HOLD)
+                | flag(smoothing.despike, DESPIKE),
+        }
+    }
+}
+
+/// Bytes of `RangeState`, `Histogram` and of a pair of keys.
+const STATE_SIZE: u64 = 64;
+const HISTOGRAM_SIZE: u64 = 1040;
+
+/// A view's smoothed range: what it was, and what it was found under.
+pub(crate) struct ViewSmoothing {
+    state: Buffer,
+    /// The keys that are drawn with.
+    pub drawn: Buffer,
+    pub histogram: Option<Buffer>,
+    /// What a change of starts it anew.
+    origin: (u32, UVec2, DepthProjection),
+    /// Whether the next frame starts it anew; kept until a frame was recorded.
+    snap: Arc<std::sync::atomic::AtomicBool>,
+    pub uniform_offset: u32,
+}
+
+impl ViewSmoothing {
+    pub fn new(device: &RenderDevice, origin: (u32, UVec2, DepthProjection)) -> Self {
+        let buffer = |label, size, usage| {
+            device.create_buffer(&BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: BufferUsages::STORAGE | usage,
+                mapped_at_creation: false,
+            })
+        };
+        Self {
+            state: buffer("comics_range_state", STATE_SIZE, BufferUsages::empty()),
+            drawn: buffer(
+                "comics_smoothed_range",
+                16,
+                BufferUsages::UNIFORM | BufferUsages::COPY_SRC,
+            ),
+            histogram: None,
+            origin,
+            snap: Arc::default(),
+            uniform_offset: 0,
+        }
+    }
+
+    /// Takes note of a cut, of another size, of other planes.
+    pub fn compare(&mut self, origin: (u32, UVec2, DepthProjection)) {
+        if origin != self.origin {
+            self.origin = origin;
+            self.snap.store(true, std::sync::atomic::Ordering::Relaxed);
+        }
+    }
+
+    pub fn snaps(&self) -> bool {
+        self.snap.load(std::sync::atomic::Ordering::Relaxed)
+    }
+
+    /// Keeps a histogram, or none.
+    pub fn keep_histogram(&mut self, device: &RenderDevice, wanted: bool) {
+        if !wanted {
+            self.histogram = None;
+        } else if self.histogram.is_none() {
+            self.histogram = Some(device.create_buffer(&BufferDescriptor {
+                label: Some("comics_depth_histogram"),
+                size: HISTOGRAM_SIZE,
+                usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            }));
+        }
+    }
+
+    /// Records the step of this frame.
+    pub fn record(
+        &self,
+        device: &RenderDevice,
+        encoder: &mut CommandEncoder,
+        cache: &PipelineCache,
+        pipeline: &ComputePipeline,
+        uniforms: BindingResource,
+        found: &Buffer,
+    ) {
+        let entry = |binding, resource| BindGroupEntry { binding, resource };
+        let mut entries = vec![
+            entry(0, uniforms),
+            entry(1, found.as_entire_binding()),
+            entry(2, self.state.as_entire_binding()),
+            entry(3, self.drawn.as_entire_binding()),
+        ];
+        if let Some(histogram) = &self.histogram {
+            entries.push(entry(4, histogram.as_entire_binding()));
+        }
+        let layout = SmoothingPipeline::layout(self.histogram.is_some());
+        let bind_group = device.create_bind_group(
+            "comics_range_smoothing",
+            &cache.get_bind_group_layout(&layout),
+            &entries,
+        );
+        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+            label: Some("comics_range_smoothing"),
+            timestamp_writes: None,
+        });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &bind_group, &[self.uniform_offset]);
+        pass.dispatch_workgroups(1, 1, 1);
+        drop(pass);
+        self.snap.store(false, std::sync::atomic::Ordering::Relaxed);
+    }
+}
+
+#[derive(Resource)]
+pub(crate) struct SmoothingPipeline {
+    shader: Handle<Shader>,
+}
+
+impl SmoothingPipeline {
+    pub fn new(assets: &AssetServer) -> Self {
+        Self {
+            shader: load_embedded_asset!(assets, "smoothing.wgsl"),
+        }
+    }
+
+    fn layout(histogram: bool) -> BindGroupLayoutDescriptor {
+        let mut entries = BindGroupLayoutEntries::sequential(
+            ShaderStages::COMPUTE,
+            (
+                uniform_buffer::<SmoothingUniform>(true),
+                storage_buffer_read_only_sized(false, None),
+                storage_buffer_sized(false, None),
+                storage_buffer_sized(false, None),
+            ),
+        )
+        .to_vec();
+        if histogram {
+            entries
+                .push(storage_buffer_read_only_sized(false, None).build(4, ShaderStages::COMPUTE));
+        }
+        BindGroupLayoutDescriptor::new("comics_range_smoothing", &entries)
+    }
+}
+
+impl SpecializedComputePipeline for SmoothingPipeline {
+    /// Whether there is a histogram.
+    type Key = bool;
+
+    fn specialize(&self, histogram: Self::Key) -> ComputePipelineDescriptor {
+        ComputePipelineDescriptor {
+            label: Some("comics_range_smoothing".into()),
+            layout: vec![Self::layout(histogram)],
+            shader: self.shader.clone(),
+            shader_defs: if histogram {
+                vec!["HISTOGRAM".into()]
+            } else {
+                Vec::new()
+            },
+            entry_point: Some("follow".into()),
+            ..Default::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ten_short_steps_are_one_long_step() {
+        for constant in [0.05, 0.1, 1.0, 30.0] {
+            let once = f64::from(way(0.1, constant));
+            let left = 1.0 - f64::from(way(0.01, constant));
+            assert!((1.0 - left.powi(10) - once).abs() < 1e-6, "{constant}");
+        }
+        assert_eq!(way(0.016, 0.0), 1.0);
+        assert_eq!(way(0.0, 1.0), 0.0);
+    }
+}

@@ -1,0 +1,484 @@
+//! The smoothed range, frame by frame, against its twin.
+
+use std::sync::OnceLock;
+
+use crate::{
+    common::scenes::noise::Random,
+    device::gpu,
+    reference::smoothing::{self, Range, Smoothing},
+    wgsl,
+};
+
+const ORTHOGRAPHIC: u32 = 1;
+const SNAP: u32 = 2;
+const HOLD: u32 = 4;
+const DESPIKE: u32 = 8;
+
+/// One frame: what is found (near, far), how long it lasts, how it is followed.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    found: Option<[f32; 2]>,
+    seconds: f64,
+    flags: u32,
+}
+
+fn frame(near: f32, far: f32, seconds: f64) -> Frame {
+    Frame {
+        found: Some([near, far]),
+        seconds,
+        flags: 0,
+    }
+}
+
+struct Follow {
+    pipeline: wgpu::ComputePipeline,
+    with_histogram: wgpu::ComputePipeline,
+}
+
+fn follow() -> &'static Follow {
+    static FOLLOW: OnceLock<Follow> = OnceLock::new();
+    FOLLOW.get_or_init(|| {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/depth/smoothing.wgsl");
+        let source = std::fs::read_to_string(path).expect("the shader");
+        let pipeline = |defs: &[&str]| {
+            let module = wgsl::module(&source, defs).unwrap_or_else(|error| panic!("{error}"));
+            gpu()
+                .device
+                .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                    label: None,
+                    layout: None,
+                    module: &gpu().shader(module),
+                    entry_point: Some("follow"),
+                    compilation_options: Default::default(),
+                    cache: None,
+                })
+        };
+        Follow {
+            pipeline: pipeline(&[]),
+            with_histogram: pipeline(&["HISTOGRAM"]),
+        }
+    })
+}
+
+fn words(values: &[u32]) -> Vec<u8> {
+    values.iter().flat_map(|v| v.to_le_bytes()).collect()
+}
+
+fn way(seconds: f64, constant: f64) -> f32 {
+    if constant > 0.0 {
+        (1.0 - (-seconds / constant).exp()) as f32
+    } else {
+        1.0
+    }
+}
+
+/// Bits of (near, far) that are drawn in each frame.
+fn run(
+    s: &Smoothing,
+    frames: &[Frame],
+    outliers: Option<(f32, &[u32], u32)>,
+) -> Vec<Option<[u32; 2]>> {
+    let gpu = gpu();
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
+    let state = gpu.buffer(&[0; 64], usage);
+    let drawn = gpu.buffer(&[0; 16], usage);
+    let all = gpu.buffer(&vec![0; frames.len() * 16], usage);
+    let pipeline = match outliers {
+        Some(_) => &follow().with_histogram,
+        None => &follow().pipeline,
+    };
+    let layout = pipeline.get_bind_group_layout(0);
+    let histogram = outliers.map(|(_, bins, total)| {
+        let mut table = bins.to_vec();
+        table.push(total);
+        gpu.buffer(&words(&table), wgpu::BufferUsages::STORAGE)
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    for (i, frame) in frames.iter().enumerate() {
+        let flags = frame.flags
+            | if s.despike { DESPIKE } else { 0 }
+            | if s.offset.is_none() { ORTHOGRAPHIC } else { 0 };
+        let floats = [
+            s.offset.unwrap_or(0.0) as f32,
+            outliers.map_or(0.0, |(share, _, _)| share),
+            s.hysteresis as f32,
+            way(frame.seconds, s.expand),
+            way(frame.seconds, s.shrink),
+        ];
+        let mut uniform: Vec<u32> = floats.iter().map(|f| f.to_bits()).collect();
+        uniform.extend([flags, 0, 0]);
+        let uniform = gpu.buffer(&words(&uniform), wgpu::BufferUsages::UNIFORM);
+        let keys = frame.found.map_or([0; 4], |[near, far]| {
+            [near.to_bits(), far.to_bits().wrapping_neg(), 0, 0]
+        });
+        let found = gpu.buffer(&words(&keys), wgpu::BufferUsages::STORAGE);
+        let buffers = [&uniform, &found, &state, &drawn];
+        let mut entries: Vec<_> = buffers
+            .into_iter()
+            .chain(&histogram)
+            .enumerate()
+            .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                binding: binding as u32,
+                resource: buffer.as_entire_binding(),
+            })
+            .collect();
+        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &layout,
+            entries: &entries,
+        });
+        entries.clear();
+        {
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+        }
+        encoder.copy_buffer_to_buffer(&drawn, 0, &all, i as u64 * 16, 16);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    gpu.read(&all)
+        .chunks_exact(16)
+        .map(|b| {
+            let near = u32::from_le_bytes([b[0], b[1], b[2], b[3]]);
+            let far = u32::from_le_bytes([b[4], b[5], b[6], b[7]]);
+            (near != 0).then(|| [near, far.wrapping_neg()])
+        })
+        .collect()
+}
+
+/// The depths that are drawn in each frame.
+fn depths(s: &Smoothing, frames: &[Frame]) -> Vec<[f32; 2]> {
+    run(s, frames, None)
+        .into_iter()
+        .map(|bits| bits.expect("geometry").map(f32::from_bits))
+        .collect()
+}
+
+const DEFAULT: Smoothing = Smoothing {
+    offset: Some(0.0),
+    despike: true,
+    hysteresis: 0.07,
+    expand: 0.1,
+    shrink: 1.0,
+};
+
+/// Only the exponential.
+const SMOOTH: Smoothing = Smoothing {
+    despike: false,
+    hysteresis: 0.0,
+    ..DEFAULT
+};
+
+fn octaves(a: f32, b: f32) -> f64 {
+    (f64::from(a) / f64::from(b)).log2()
+}
+
+#[test]
+fn random_views_are_followed_as_the_twin_does() {
+    let mut random = Random::new(5);
+    for offset in [Some(0.0), Some(1e-3), Some(0.25), None] {
+        for despike in [false, true] {
+            for hysteresis in [0.0, 0.07, 0.5] {
+                let s = Smoothing {
+                    offset,
+                    despike,
+                    hysteresis,
+                    expand: 0.1,
+                    shrink: 0.7,
+                };
+                let mut ends = [0.5f32, 1e-3];
+                let frames: Vec<Frame> = (0..120)
+                    .map(|i| {
+                        for end in &mut ends {
+                            *end = match random.unit() {
+                                x if x < 0.1 => {
+                                    (*end * (random.unit() * 6.0 - 3.0).exp2()).min(1.0)
+                                }
+                                x if x < 0.5 => {
+                                    (*end * (1.0 + 0.02 * (random.unit() - 0.5))).min(1.0)
+                                }
+                                _ => *end,
+                            };
+                        }
+                        let (near, far) = (ends[0].max(ends[1]), ends[0].min(ends[1]));
+                        Frame {
+                            found: (random.unit() > 0.05).then_some([near, far]),
+                            seconds: f64::from(random.unit()) * 0.05,
+                            flags: if i % 50 == 49 { SNAP } else { 0 },
+                        }
+                    })
+                    .collect();
+                let mut twin = Range::default();
+                for (i, (got, frame)) in run(&s, &frames, None).iter().zip(&frames).enumerate() {
+                    let want = twin.step(
+                        frame.found.map(|f| f.map(f64::from)),
+                        &s,
+                        frame.seconds,
+                        frame.flags & SNAP != 0,
+                    );
+                    assert_eq!(got.is_some(), want.is_some(), "{s:?}, frame {i}");
+                    let (Some(got), Some(want)) = (got, want) else {
+                        continue;
+                    };
+                    for (got, want) in got.map(f32::from_bits).into_iter().zip(want) {
+                        // Levels near -10 have ulps of 1e-6; a bound that is
+                        // there in one and almost there in the other differs by
+                        // what counts as there.
+                        let scale = want + s.offset.unwrap_or(0.0);
+                        let apart = (f64::from(got) - want).abs() / scale;
+                        assert!(apart < 4e-4, "{s:?}, frame {i}: {got} for {want}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn logarithm_and_power_are_exact_to_a_few_units() {
+    let rows: Vec<[f32; 1]> = (0..4000)
+        .map(|i| [2f32.powf(-126.0 + i as f32 * 0.0315) * (1.0 + (i % 17) as f32 / 17.0)])
+        .chain([
+            [1.0],
+            [f32::MIN_POSITIVE],
+            [0.5],
+            [0.999_999_9],
+            [1.4142135],
+            [1.414_213_6],
+        ])
+        .collect();
+    let imports = "#import bevy_comics::depth::smoothing::{exact_log2, exact_exp2}";
+    let results = gpu().evaluate(
+        imports,
+        "return vec4(exact_log2(i(0u)), exact_exp2(exact_log2(i(0u))), 0.0, 0.0);",
+        &rows,
+    );
+    for ([x], [log, back, ..]) in rows.iter().zip(results) {
+        let want = f64::from(*x).log2();
+        let slack = 2.0 * f64::from(f32::EPSILON) * want.abs().max(0.25);
+        assert!(
+            (f64::from(log) - want).abs() <= slack,
+            "log2({x}) = {log}, not {want}"
+        );
+        // An error of the level is an error of the power.
+        let apart = (f64::from(back) / f64::from(*x) - 1.0).abs();
+        assert!(
+            apart <= slack + 4.0 * f64::from(f32::EPSILON),
+            "{x} comes back as {back}"
+        );
+    }
+}
+
+#[test]
+fn one_long_frame_is_ten_short_ones() {
+    for offset in [Some(0.0), Some(0.1), None] {
+        let s = Smoothing { offset, ..SMOOTH };
+        let long = [frame(0.5, 0.01, 0.0), frame(0.9, 0.3, 0.1)];
+        let mut short = vec![long[0]];
+        short.extend([frame(0.9, 0.3, 0.01); 10]);
+        let (long, short) = (depths(&s, &long), depths(&s, &short));
+        for end in 0..2 {
+            let (a, b) = (long[1][end], short[10][end]);
+            assert!((a / b - 1.0).abs() < 1e-5, "{offset:?}: {a} and {b}");
+        }
+        assert_ne!(long[1], long[0], "{offset:?} has moved");
+    }
+}
+
+#[test]
+fn jitter_changes_nothing() {
+    for jitter in [1u32, 1000, 100_000] {
+        let frames: Vec<Frame> = (0..60u32)
+            .map(|i| {
+                let by = (i * 7919 % 5) * jitter;
+                let near = f32::from_bits(0.25f32.to_bits() - by);
+                let far = f32::from_bits(0.001f32.to_bits() + by);
+                frame(near, far, 0.016)
+            })
+            .collect();
+        let drawn = run(&DEFAULT, &frames, None);
+        let first = drawn[0].expect("geometry");
+        assert_eq!(first, [0.25f32.to_bits(), 0.001f32.to_bits()]);
+        assert!(drawn.iter().all(|d| *d == Some(first)), "{jitter} ulp");
+    }
+    // Without hysteresis it is followed, so the test can fail.
+    let loose = run(
+        &SMOOTH,
+        &[frame(0.25, 0.001, 0.0), frame(0.2, 0.001, 0.016)],
+        None,
+    );
+    assert_ne!(loose[0], loose[1]);
+}
+
+#[test]
+fn an_intruder_of_one_frame_changes_nothing() {
+    let mut frames = vec![frame(0.1, 0.001, 0.016); 30];
+    frames[9] = frame(0.9, 0.001, 0.016);
+    frames[19] = frame(0.1, 1e-6, 0.016);
+    let drawn = run(&DEFAULT, &frames, None);
+    assert!(drawn.iter().all(|d| *d == drawn[0]), "{drawn:?}");
+    // Two frames are something.
+    frames[20] = frames[19];
+    let drawn = run(&DEFAULT, &frames, None);
+    assert!(drawn.iter().any(|d| *d != drawn[0]));
+}
+
+#[test]
+fn a_step_settles_in_the_stated_time() {
+    // (from, to, end, constant): growing towards the eye and away, shrinking.
+    for (from, to, constant) in [
+        ([0.1, 0.01], [0.8, 0.01], DEFAULT.expand),
+        ([0.1, 0.01], [0.1, 0.0001], DEFAULT.expand),
+        ([0.8, 0.01], [0.1, 0.01], DEFAULT.shrink),
+        ([0.1, 0.0001], [0.1, 0.01], DEFAULT.shrink),
+    ] {
+        let mut frames = vec![frame(from[0], from[1], 0.01)];
+        frames.extend(vec![frame(to[0], to[1], 0.01); 1200]);
+        let drawn = depths(&SMOOTH, &frames);
+        let end = usize::from(from[0] == to[0]);
+        let whole = octaves(to[end], from[end]);
+        let after = |times: f64| {
+            let i = (times * constant / 0.01).round() as usize;
+            octaves(drawn[i][end], from[end]) / whole
+        };
+        assert!((after(1.0) - 0.632_12).abs() < 1e-3, "{}", after(1.0));
+        assert!((after(3.0) - 0.950_21).abs() < 1e-3, "{}", after(3.0));
+        // And it arrives, to the bit.
+        assert_eq!(after(12.0), 1.0);
+        assert_eq!(drawn.last(), Some(&to));
+    }
+}
+
+#[test]
+fn a_slow_drift_is_followed_within_the_hysteresis() {
+    // The range grows by an octave in four seconds, then stands.
+    let frames: Vec<Frame> = (0..900)
+        .map(|i| {
+            frame(
+                0.1,
+                0.05 * 2f32.powf(-(i as f32 / 240.0).min(1.0)),
+                1.0 / 60.0,
+            )
+        })
+        .collect();
+    let drawn = depths(&DEFAULT, &frames);
+    for (d, f) in drawn.iter().zip(&frames).skip(60) {
+        let found = f.found.expect("geometry");
+        let behind = octaves(d[1], found[1]).abs();
+        // The hysteresis, and what the lag of 0.1 s lets it get ahead.
+        assert!(behind < 0.07 + 0.25 * 0.1 + 0.01, "{behind} octaves behind");
+    }
+}
+
+#[test]
+fn nothing_freezes_the_state_and_a_lock_holds_it() {
+    let gone = Frame {
+        found: None,
+        seconds: 10.0,
+        flags: 0,
+    };
+    let near = frame(0.5, 0.1, 0.01);
+    let drawn = run(&DEFAULT, &[gone, near, gone, near], None);
+    assert_eq!(drawn[0], None);
+    assert_eq!(drawn[2], None);
+    assert_eq!(drawn[3], drawn[1], "it goes on where it was");
+
+    let hold = |found: Option<[f32; 2]>| Frame {
+        found,
+        seconds: 1.0,
+        flags: HOLD,
+    };
+    let drawn = run(
+        &DEFAULT,
+        &[
+            hold(None),
+            hold(Some([0.5, 0.1])),
+            hold(Some([0.9, 0.001])),
+            hold(None),
+        ],
+        None,
+    );
+    let locked = Some([0.5f32.to_bits(), 0.1f32.to_bits()]);
+    assert_eq!(drawn, [None, locked, locked, locked]);
+}
+
+#[test]
+fn ends_that_would_pass_each_other_meet() {
+    let s = Smoothing {
+        expand: 10.0,
+        shrink: 0.01,
+        ..SMOOTH
+    };
+    // From [0.5, 0.4] to [0.002, 0.001]: the near end hurries, the far one
+    // crawls.
+    let mut frames = vec![frame(0.5, 0.4, 0.01)];
+    frames.extend(vec![frame(0.002, 0.001, 0.05); 5]);
+    for [near, far] in depths(&s, &frames) {
+        assert!(far <= near, "{near} {far}");
+    }
+}
+
+#[test]
+fn percentiles_are_the_twins_and_grow_with_the_area() {
+    let mut random = Random::new(3);
+    for share in [0.001f32, 0.005, 0.05, 0.2] {
+        for cluster in [0.0f32, 0.5] {
+            let mut table: Vec<f32> = (0..20_000)
+                .map(|_| {
+                    if random.unit() < cluster {
+                        0.031
+                    } else {
+                        2f32.powf(-1.0 - 9.0 * random.unit())
+                    }
+                })
+                .collect();
+            let mut before: Option<[f32; 2]> = None;
+            for intruders in [0usize, 1, 10, 40, 80, 160, 1000] {
+                for d in table.iter_mut().take(intruders) {
+                    *d = 0.97;
+                }
+                let (bins, total) = smoothing::histogram(table.iter().copied());
+                let ends = [
+                    table.iter().copied().fold(0.0, f32::max),
+                    table.iter().copied().fold(1.0, f32::min),
+                ];
+                let found = [frame(ends[0], ends[1], 0.0)];
+                let got = run(&SMOOTH, &found, Some((share, &bins, total)))[0]
+                    .expect("geometry")
+                    .map(f32::from_bits);
+                let want =
+                    smoothing::percentiles(&bins, total, f64::from(share), ends.map(f64::from));
+                for (got, want) in got.iter().zip(want) {
+                    let apart = (f64::from(*got) / want - 1.0).abs();
+                    assert!(apart < 1e-5, "{share}, {intruders}: {got} for {want}");
+                }
+                if let Some(before) = before
+                    && intruders == 1
+                {
+                    // One pixel of twenty thousand is a twentieth of a thousandth:
+                    // far below the hysteresis of 0.07 octaves.
+                    assert!(
+                        octaves(got[0], before[0]).abs() < 0.02,
+                        "{before:?} {got:?}"
+                    );
+                }
+                if intruders as f32 > 1.5 * share * 20_000.0 {
+                    assert!(got[0] > 0.75, "a share of {intruders} counts: {got:?}");
+                }
+                before = Some(got);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_flat_wall_keeps_its_exact_depth_under_percentiles() {
+    let (bins, total) = smoothing::histogram(vec![0.123f32; 500]);
+    let drawn = run(
+        &DEFAULT,
+        &[frame(0.123, 0.123, 0.0)],
+        Some((0.005, &bins, total)),
+    );
+    assert_eq!(drawn[0], Some([0.123f32.to_bits(); 2]));
+}

@@ -1,0 +1,306 @@
+//! The smoothed range in an app: what starts it anew, and what does not.
+
+use bevy::{camera::PerspectiveProjection, prelude::*, render::view::Msaa};
+use bevy_comics::{
+    CameraCut, Colorization, ComicStyle, ComicsStage, Contours, DepthMap, RangeSmoothing,
+    ReductionMethod, VisibleDepthRange,
+};
+
+use crate::{
+    common::headless::{HeadlessOptions, new_target},
+    small::{Small, options, size},
+};
+
+/// Slow enough to be seen, and exact once it is there.
+const SLOW: RangeSmoothing = RangeSmoothing {
+    outliers: 0.0,
+    despike: false,
+    hysteresis: 0.07,
+    expand: 5.0,
+    shrink: 5.0,
+};
+
+fn look(smoothing: Option<RangeSmoothing>) -> ComicStyle {
+    ComicStyle {
+        depth_map: Some(DepthMap {
+            smoothing,
+            ..default()
+        }),
+        colorization: Some(Colorization::default()),
+        ..default()
+    }
+}
+
+fn small() -> Small {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.style(&look(Some(SLOW)));
+    small.settle();
+    small
+}
+
+/// A wall right before the camera, in the corner of the view.
+fn intrude(small: &mut Small) -> Entity {
+    let world = small.world();
+    let mesh = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Cuboid::from_length(0.3));
+    let material = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            unlit: true,
+            ..default()
+        });
+    let at = Transform::from_xyz(1.0, 2.3, 4.9);
+    world
+        .spawn((Mesh3d(mesh), MeshMaterial3d(material), at))
+        .id()
+}
+
+/// The picture as it is once the range has nothing to remember.
+fn unsmoothed(small: &mut Small) -> image::RgbaImage {
+    small.style(&look(None));
+    small.settle();
+    let picture = small.picture();
+    small.style(&look(Some(SLOW)));
+    picture
+}
+
+#[test]
+fn a_new_view_starts_with_its_own_range_and_then_lags() {
+    let mut small = small();
+    assert!(small.ran(ComicsStage::RangeSmoothing));
+    let smoothed = small.picture();
+    assert_eq!(smoothed, unsmoothed(&mut small));
+    small.settle();
+
+    intrude(&mut small);
+    small.settle();
+    let lagging = small.picture();
+    let there = unsmoothed(&mut small);
+    assert_ne!(lagging, there, "the range lags behind the intruder");
+    assert_eq!(small.errors(), 0);
+}
+
+#[test]
+fn a_cut_a_resize_and_another_near_plane_start_anew() {
+    type Change = fn(&mut Small);
+    let changes: [(&str, Change); 3] = [
+        ("cut", |small| {
+            let entity = small.camera;
+            small.world().commands().trigger(CameraCut { entity });
+            small.world().flush();
+        }),
+        ("resize", |small| {
+            let larger = new_target(
+                small.world(),
+                size() + UVec2::new(8, 4),
+                wgpu::TextureFormat::Rgba8UnormSrgb,
+            );
+            small.headless.target = larger;
+            let target = small.headless.render_target();
+            small.insert(target);
+        }),
+        ("projection", |small| {
+            small.insert(Projection::Perspective(PerspectiveProjection {
+                near: 0.2,
+                ..default()
+            }));
+        }),
+    ];
+    for (name, change) in changes {
+        let mut small = small();
+        intrude(&mut small);
+        small.settle();
+        change(&mut small);
+        small.settle();
+        let anew = small.picture();
+        assert_eq!(anew, unsmoothed(&mut small), "{name}");
+    }
+}
+
+#[test]
+fn turning_the_camera_and_zooming_do_not_start_anew() {
+    let mut small = small();
+    small.insert(Projection::Perspective(PerspectiveProjection {
+        fov: 0.5,
+        ..default()
+    }));
+    small.settle();
+    intrude(&mut small);
+    small.settle();
+    assert_ne!(small.picture(), unsmoothed(&mut small));
+}
+
+#[test]
+fn a_lock_holds_the_range_until_it_is_taken_away() {
+    let mut small = Small::new(size(), Msaa::Off);
+    let mut style = look(None);
+    let locked = |style: &mut ComicStyle, on| {
+        style.depth_map = Some(DepthMap {
+            locked: on,
+            ..default()
+        });
+        style.clone()
+    };
+    // Locked before anything was seen: it takes the first thing.
+    small.style(&locked(&mut style, true));
+    small.settle();
+    let first = small.picture();
+    let intruder = intrude(&mut small);
+    small.settle();
+    let held = small.picture();
+    assert!(small.ran(ComicsStage::RangeSmoothing));
+    let background = |p: &image::RgbaImage| *p.get_pixel(3, 60);
+    assert_eq!(background(&held), background(&first));
+
+    small.style(&locked(&mut style, false));
+    small.settle();
+    assert!(!small.ran(ComicsStage::RangeSmoothing));
+    assert_ne!(background(&small.picture()), background(&first));
+    small.world().despawn(intruder);
+    small.settle();
+    assert_eq!(small.picture(), first);
+}
+
+#[test]
+fn the_range_that_the_game_reads_is_the_exact_one() {
+    let mut small = small();
+    small.insert(VisibleDepthRange::default());
+    intrude(&mut small);
+    small.settle();
+    let Some(VisibleDepthRange::Visible { raw_near, .. }) = small.range() else {
+        panic!("{:?}", small.range());
+    };
+    let depth = small.depth().expect("a prepass");
+    let nearest = depth.bits.iter().copied().max().expect("pixels");
+    assert_eq!(raw_near.to_bits(), nearest);
+}
+
+#[test]
+fn every_method_and_sample_count_smooths() {
+    let samples = crate::common::headless::adapter()
+        .expect("an adapter")
+        .samples;
+    for samples in samples {
+        let mut small = Small::new(size(), Msaa::from_samples(samples));
+        for reduction in [
+            ReductionMethod::BarrierFree,
+            ReductionMethod::Subgroup,
+            ReductionMethod::SharedMemory,
+            ReductionMethod::PingPong,
+        ] {
+            let mut style = look(Some(RangeSmoothing {
+                // Within the outermost bins: clamped to the extremes.
+                outliers: 1e-7,
+                ..RangeSmoothing::default()
+            }));
+            if let Some(map) = &mut style.depth_map {
+                map.reduction = reduction;
+            }
+            small.style(&style);
+            small.settle();
+            assert!(small.ran(ComicsStage::RangeSmoothing), "{reduction:?}");
+            let (_, smoothed) = small.pass();
+            small.style(&look(None));
+            small.settle();
+            let (_, plain) = small.pass();
+            assert_eq!(smoothed, plain, "{reduction:?}, {samples} samples");
+        }
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+#[test]
+fn percentiles_leave_a_speck_out_of_the_picture() {
+    let mut small = Small::with(
+        HeadlessOptions {
+            size: UVec2::new(320, 200),
+            ..options(size())
+        },
+        Msaa::Off,
+    );
+    let robust = look(Some(RangeSmoothing {
+        outliers: 0.02,
+        ..RangeSmoothing::OFF
+    }));
+    small.style(&robust);
+    small.settle();
+    let before = small.picture();
+    let speck = intrude(&mut small);
+    // A tenth of a per cent of the picture.
+    let at = Transform::from_xyz(1.0, 2.3, 4.9).with_scale(Vec3::splat(0.1));
+    small.world().entity_mut(speck).insert(at);
+    small.settle();
+    let after = small.picture();
+    let changed = before
+        .pixels()
+        .zip(after.pixels())
+        .filter(|(a, b)| (0..3).any(|i| a.0[i].abs_diff(b.0[i]) > 2))
+        .count();
+    assert!(changed > 0, "the speck itself is seen");
+    assert!(changed < 400, "{changed} pixels changed");
+    small.style(&look(None));
+    small.settle();
+    let plain = small.picture();
+    let apart = after
+        .pixels()
+        .zip(plain.pixels())
+        .filter(|(a, b)| (0..3).any(|i| a.0[i].abs_diff(b.0[i]) > 2))
+        .count();
+    assert!(
+        apart > 5000,
+        "the extremes would have changed {apart} pixels"
+    );
+}
+
+#[test]
+fn cameras_have_ranges_of_their_own() {
+    let mut small = small();
+    let second = new_target(small.world(), size(), wgpu::TextureFormat::Rgba8UnormSrgb);
+    let style = look(Some(SLOW));
+    let other = small
+        .world()
+        .spawn(crate::small::camera(second.clone().into(), Msaa::Off))
+        .id();
+    style.apply(&mut small.world().commands().entity(other));
+    small.world().flush();
+    // The second camera is far away: another range.
+    let back = Transform::from_xyz(3.0, 6.0, 20.0).looking_at(Vec3::ZERO, Vec3::Y);
+    small.world().entity_mut(other).insert(back);
+    small.settle();
+    let first = small.picture();
+    let both = small.headless.picture_of(&second);
+    small.world().despawn(other);
+    small.settle();
+    assert_eq!(small.picture(), first);
+    assert_ne!(first, both);
+}
+
+#[test]
+fn wild_settings_are_clamped() {
+    for wild in [f32::NAN, f32::INFINITY, -3.0, 1e30] {
+        let mut small = Small::new(size(), Msaa::Off);
+        small.style(&look(Some(RangeSmoothing {
+            outliers: wild,
+            despike: true,
+            hysteresis: wild,
+            expand: wild,
+            shrink: wild,
+        })));
+        small.insert(Contours::default());
+        small.settle();
+        let picture = small.picture();
+        small.style(&look(None));
+        small.insert(Contours::default());
+        small.settle();
+        let plain = small.picture();
+        assert_eq!(small.errors(), 0);
+        // What is not a number becomes the default and what is too small or too
+        // large the limit: 20 % of outliers at most.
+        let mean = |p: &image::RgbaImage| {
+            p.pixels().map(|p| f64::from(p.0[0])).sum::<f64>() / f64::from(p.width() * p.height())
+        };
+        let apart = (mean(&picture) - mean(&plain)).abs();
+        assert!(apart < 60.0, "{wild}: {apart}");
+    }
+}
