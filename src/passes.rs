@@ -296,14 +296,14 @@ pub(crate) fn prepare_view_passes(
                     ID_FORMAT,
                 ));
             }
+            let uniform = uniform(view, &plan, extracted.viewport);
             let flooded = pass.outline.as_ref().is_some_and(|o| o.flood.is_some());
             pass.key = StylizeKey::new(&plan, extracted.target_format, camera.compositing_space)
                 .with_depth(samples.unwrap_or(1), oblique)
-                .with_flood(flooded);
+                .with_flood(flooded)
+                .with_modes(&uniform);
             pass.stylize = Some(stylize_pipelines.specialize(&cache, &stylize_pipeline, pass.key));
-            pass.uniform_offset = passes
-                .uniforms
-                .push(&uniform(view, &plan, extracted.viewport));
+            pass.uniform_offset = passes.uniforms.push(&uniform);
         } else {
             pass.outline = None;
             pass.ids = None;

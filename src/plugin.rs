@@ -184,6 +184,7 @@ impl Plugin for ComicsPlugin {
                     Core3d,
                     crate::objects::ids::draw_object_ids
                         .after(Core3dSystems::Prepass)
+                        .after(ComicsSystems::DepthRange)
                         .before(ComicsSystems::Outlines)
                         .before(Core3dSystems::MainPass),
                 );

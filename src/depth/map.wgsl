@@ -32,8 +32,14 @@ fn is_background(d: f32) -> bool {
     return bits < 0x00800000u || bits > 0x3f800000u;
 }
 
+// The fused pass is compiled for its kind of map: a CPU adapter runs both sides
+// of a branch, whatever the condition.
 fn has(f: DepthFrame, flag: u32) -> bool {
+#ifdef MAP_FLAGS
+    return ((#{MAP_FLAGS}u | (f.flags & EMPTY)) & flag) != 0u;
+#else
     return (f.flags & flag) != 0u;
+#endif
 }
 
 // ln(large / small) with full relative precision near 1, given the exact

@@ -142,6 +142,6 @@ pub(crate) struct ColorizationUniform {
     cusp_chroma: f32,
     hue: f32,
     amount: f32,
-    mode: u32,
-    faithful: u32,
+    pub(crate) mode: u32,
+    pub(crate) faithful: u32,
 }

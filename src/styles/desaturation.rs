@@ -87,6 +87,6 @@ impl Desaturation {
 pub(crate) struct DesaturationUniform {
     amount: f32,
     exponent: f32,
-    curve: u32,
-    faithful: u32,
+    pub(crate) curve: u32,
+    pub(crate) faithful: u32,
 }

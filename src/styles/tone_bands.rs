@@ -92,5 +92,5 @@ pub(crate) struct ToneBandsUniform {
     levels: f32,
     feather: f32,
     amount: f32,
-    faithful: u32,
+    pub(crate) faithful: u32,
 }

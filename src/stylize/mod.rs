@@ -55,7 +55,70 @@ pub(crate) struct ComicsUniform {
     pub sketch: SketchUniform,
 }
 
-/// What is compiled in: the presence of styles, never their numbers.
+/// The modes of the styles, which are compiled in: an adapter that runs on the
+/// CPU executes both sides of a branch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+struct Modes {
+    map: u32,
+    desaturation: [u32; 2],
+    colorization: [u32; 2],
+    contours: [u32; 2],
+    /// Contours that are a whole number of pixels wide on either side.
+    whole_contours: bool,
+    /// Contours that do not fade.
+    steady_contours: bool,
+    tone_bands: u32,
+}
+
+impl Modes {
+    fn of(uniform: &ComicsUniform) -> Self {
+        let ComicsUniform {
+            depth,
+            desaturation,
+            colorization,
+            contours,
+            tone_bands,
+            ..
+        } = uniform;
+        Self {
+            map: depth.flags,
+            desaturation: [desaturation.curve, desaturation.faithful],
+            colorization: [colorization.mode, colorization.faithful],
+            contours: [contours.operator_kind, contours.faithful],
+            whole_contours: contours.radius.fract() == 0.0,
+            steady_contours: contours.fade == 0.0,
+            tone_bands: tone_bands.faithful,
+        }
+    }
+
+    fn shader_defs(self) -> impl Iterator<Item = ShaderDefVal> {
+        let numbers = [
+            ("MAP_FLAGS", self.map),
+            ("DESATURATION_CURVE", self.desaturation[0]),
+            ("DESATURATION_FAITHFUL", self.desaturation[1]),
+            ("COLORIZATION_MODE", self.colorization[0]),
+            ("COLORIZATION_FAITHFUL", self.colorization[1]),
+            ("CONTOUR_OPERATOR", self.contours[0]),
+            ("CONTOUR_FAITHFUL", self.contours[1]),
+            ("TONE_BANDS_FAITHFUL", self.tone_bands),
+        ];
+        let flags = [
+            (true, "MODES"),
+            (self.whole_contours, "WHOLE_CONTOURS"),
+            (self.steady_contours, "STEADY_CONTOURS"),
+        ];
+        let flags = flags
+            .into_iter()
+            .filter_map(|(on, name)| on.then(|| name.into()));
+        numbers
+            .into_iter()
+            .map(|(name, value)| ShaderDefVal::UInt(name.into(), value))
+            .chain(flags)
+    }
+}
+
+/// What is compiled in: the presence of styles and their modes, never their
+/// other numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct StylizeKey {
     format: TextureFormat,
@@ -74,6 +137,7 @@ pub(crate) struct StylizeKey {
     flood: bool,
     object_styles: bool,
     sketch: bool,
+    modes: Modes,
 }
 
 impl Default for StylizeKey {
@@ -101,6 +165,15 @@ impl StylizeKey {
             flood: false,
             object_styles: plan.object_styles && plan.outlines.is_some(),
             sketch: plan.sketch.is_some(),
+            modes: Modes::default(),
+        }
+    }
+
+    /// The modes that this uniform holds.
+    pub fn with_modes(self, uniform: &ComicsUniform) -> Self {
+        Self {
+            modes: Modes::of(uniform),
+            ..self
         }
     }
 
@@ -148,6 +221,7 @@ impl StylizeKey {
         .filter_map(|(on, name)| on.then_some(name))
         .chain(space)
         .map(ShaderDefVal::from)
+        .chain(self.modes.shader_defs())
         .collect()
     }
 

@@ -56,8 +56,13 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     if any(inside < vec2(0)) || any(inside >= comics.viewport.zw) {
         return stored;
     }
+    // Modes are compiled in, where they are known: see has() in map.wgsl.
 #ifdef TONE_BANDS
-    linear = tone_bands(comics.tone_bands, linear, change);
+    var bands = comics.tone_bands;
+#ifdef MODES
+    bands.faithful = #{TONE_BANDS_FAITHFUL}u;
+#endif
+    linear = tone_bands(bands, linear, change);
 #endif
 
     // x: 0 near, 1 far; y: its complement.
@@ -70,11 +75,21 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 
     var saturation = 1.0;
 #ifdef DESATURATION
-    saturation = saturation_left(comics.desaturation, depth.y);
-    linear = desaturate(comics.desaturation, linear, saturation);
+    var grey = comics.desaturation;
+#ifdef MODES
+    grey.curve = #{DESATURATION_CURVE}u;
+    grey.faithful = #{DESATURATION_FAITHFUL}u;
+#endif
+    saturation = saturation_left(grey, depth.y);
+    linear = desaturate(grey, linear, saturation);
 #endif
 #ifdef COLORIZATION
-    linear = colorize(comics.colorization, linear, depth.x, depth.y, saturation);
+    var tint = comics.colorization;
+#ifdef MODES
+    tint.mode = #{COLORIZATION_MODE}u;
+    tint.faithful = #{COLORIZATION_FAITHFUL}u;
+#endif
+    linear = colorize(tint, linear, depth.x, depth.y, saturation);
 #endif
 #ifdef BLACK_FLATS
     var flats = dark_area(comics.black_flats, to_linear(stored.rgb), depth.y);
@@ -84,8 +99,13 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     linear = fill(comics.black_flats, linear, flats);
 #endif
 #ifdef CONTOURS
-    let line = contour(comics.contours, frame, pixel);
-    linear = draw_contour(comics.contours, linear, line.x, line.y);
+    var contours = comics.contours;
+#ifdef MODES
+    contours.operator_kind = #{CONTOUR_OPERATOR}u;
+    contours.faithful = #{CONTOUR_FAITHFUL}u;
+#endif
+    let line = contour(contours, frame, pixel);
+    linear = draw_contour(contours, linear, line.x, line.y);
 #endif
 #ifdef SKETCH
     var inked = 0.0;

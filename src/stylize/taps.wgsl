@@ -78,10 +78,15 @@ fn contour(s: Contours, frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
 #else
     let inner = ring_line(s, frame, pixel, whole, 0);
     found = inner;
+#ifndef WHOLE_CONTOURS
     if part > 0.0 {
         let outer = ring_line(s, frame, pixel, whole + 1, 0);
         found = vec2(mix(inner.x, max(inner.x, outer.x), part), max(inner.y, outer.y));
     }
+#endif
+#endif
+#ifdef STEADY_CONTOURS
+    return vec2(found.x, 0.0);
 #endif
     return vec2(found.x, depth_map(frame, found.y).x);
 }

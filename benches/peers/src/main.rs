@@ -3,7 +3,10 @@
 //!
 //! ```text
 //! cargo run --manifest-path benches/peers/Cargo.toml
+//! cargo run --manifest-path benches/peers/Cargo.toml -- times FILE ROUNDS FRAMES
 //! ```
+//!
+//! The second form times passes instead, for the report: see `times.rs`.
 //!
 //! The truth is the same scene at four times the resolution, read from its raw
 //! depth, normals and object ids: a pixel has a silhouette where the depth of two
@@ -13,6 +16,7 @@
 
 #[path = "../../../examples/common/mod.rs"]
 mod common;
+mod times;
 
 use bevy::{
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
@@ -26,17 +30,10 @@ use common::{
     headless::{Headless, HeadlessOptions},
     read_back,
     scenes::{BuiltIn, Stage},
+    truth::{FINE, Truth, mask},
 };
 
 const SIZE: UVec2 = UVec2::new(480, 270);
-const FINE: u32 = 4;
-
-/// Truth, by kind.
-struct Truth {
-    width: usize,
-    height: usize,
-    kinds: [Vec<bool>; 3],
-}
 
 type Build = fn(&mut Headless) -> Transform;
 
@@ -116,78 +113,12 @@ fn shoot(build: Build, size: UVec2, lines: &Lines) -> Shot {
 }
 
 fn truth(build: Build) -> Truth {
-    let size = SIZE * FINE;
-    let shot = shoot(build, size, &Lines::None);
-    let (w, h) = (size.x as usize, size.y as usize);
-    let (width, height) = (SIZE.x as usize, SIZE.y as usize);
-    let mut kinds = [0; 3].map(|_| vec![false; width * height]);
-    let fine = FINE as usize;
-    for y in 1..h - 2 {
-        for x in 1..w - 2 {
-            let i = y * w + x;
-            for step in [1, w] {
-                let j = i + step;
-                let (a, b) = (shot.depth[i], shot.depth[j]);
-                let (before, beyond) = (shot.depth[i - step], shot.depth[j + step]);
-                let near = a.max(b);
-                if near <= 0.0 {
-                    continue;
-                }
-                let (here, there, back, ahead) = if a >= b {
-                    (a, b, before, beyond)
-                } else {
-                    (b, a, beyond, before)
-                };
-                let excess = (here - there) - (back - here).max(there - ahead).max(0.0);
-                let at = (y / fine) * width + x / fine;
-                let silhouette = excess > 0.02 * near;
-                kinds[0][at] |= silhouette;
-                let (m, n) = (shot.normals[i], shot.normals[j]);
-                let dot = m[0] * n[0] + m[1] * n[1] + m[2] * n[2];
-                let both = a > 0.0 && b > 0.0;
-                kinds[1][at] |= both && !silhouette && dot < 30f32.to_radians().cos();
-                kinds[2][at] |= shot.ids[i] != shot.ids[j];
-            }
-        }
-    }
-    Truth {
-        width,
-        height,
-        kinds,
-    }
+    let shot = shoot(build, SIZE * FINE, &Lines::None);
+    let [width, height] = SIZE.to_array().map(|v| v as usize);
+    Truth::new(width, height, &shot.depth, &shot.normals, &shot.ids)
 }
 
-/// Which pixels a line has changed by more than a quarter.
-fn mask(plain: &image::RgbaImage, lined: &image::RgbaImage) -> Vec<bool> {
-    plain
-        .pixels()
-        .zip(lined.pixels())
-        .map(|(a, b)| {
-            let largest = (0..3).map(|i| a.0[i].abs_diff(b.0[i])).max().unwrap_or(0);
-            let light = a.0[..3].iter().copied().max().unwrap_or(0);
-            f32::from(largest) > 0.25 * f32::from(light.max(24))
-        })
-        .collect()
-}
-
-fn near(mask: &[bool], width: usize, height: usize, at: usize, reach: i64) -> bool {
-    let (x, y) = ((at % width) as i64, (at / width) as i64);
-    (-reach..=reach).any(|j| {
-        (-reach..=reach).any(|i| {
-            let (u, v) = (x + i, y + j);
-            (0..width as i64).contains(&u)
-                && (0..height as i64).contains(&v)
-                && mask[v as usize * width + u as usize]
-        })
-    })
-}
-
-fn share(all: impl Iterator<Item = bool>) -> String {
-    let (mut yes, mut total) = (0usize, 0usize);
-    for hit in all {
-        yes += usize::from(hit);
-        total += 1;
-    }
+fn share((yes, total): (usize, usize)) -> String {
     if total == 0 {
         return "-".into();
     }
@@ -197,40 +128,23 @@ fn share(all: impl Iterator<Item = bool>) -> String {
 fn report(name: &str, build: Build) {
     let truth = truth(build);
     let plain = shoot(build, SIZE, &Lines::None).picture;
-    let (w, h) = (truth.width, truth.height);
-    let any: Vec<bool> = (0..w * h).map(|i| truth.kinds.iter().any(|kind| kind[i])).collect();
-    // The engine reads one pixel beyond the picture's rim for neither.
-    let inside = |i: &usize| (3..w - 3).contains(&(i % w)) && (3..h - 3).contains(&(i / w));
+    let any = truth.any(&[0, 1, 2]);
     for (who, lines) in [("bevy_comics", Lines::Ours), ("bevy_edge_detection_outline", Lines::Peer)] {
         let lined = shoot(build, SIZE, &lines).picture;
         let mask = mask(&plain, &lined);
         let folder = std::path::Path::new("target/peers");
         let _ = std::fs::create_dir_all(folder);
         let _ = lined.save(folder.join(format!("{name}-{who}.png")));
-        let recall = |kind: usize| {
-            share(
-                (0..w * h)
-                    .filter(inside)
-                    .filter(|i| truth.kinds[kind][*i])
-                    .map(|i| near(&mask, w, h, i, 1)),
-            )
-        };
-        let precision = share(
-            (0..w * h)
-                .filter(inside)
-                .filter(|i| mask[*i])
-                .map(|i| near(&any, w, h, i, 2)),
-        );
-        let wrong = (0..w * h)
-            .filter(inside)
-            .filter(|i| mask[*i] && !near(&any, w, h, *i, 2))
-            .count();
+        let recall = |kind: usize| share(truth.recall(&truth.kinds[kind], &mask));
+        let (right, drawn) = truth.precision(&any, &mask);
+        let precision = share((right, drawn));
+        let wrong = drawn - right;
         println!(
             "| {name} | {who} | {} | {} | {} | {precision} | {:.3} % |",
             recall(0),
             recall(1),
             recall(2),
-            100.0 * wrong as f64 / (w * h) as f64
+            100.0 * wrong as f64 / (truth.width * truth.height) as f64
         );
     }
 }
@@ -295,6 +209,15 @@ fn sphere(headless: &mut Headless) -> Transform {
 }
 
 fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let [mode, file, rounds, frames] = &arguments[..]
+        && mode == "times"
+    {
+        let number = |text: &String| text.parse().expect("a number of rounds and of frames");
+        std::fs::write(file, times::measure(number(rounds), number(frames)))
+            .unwrap_or_else(|error| panic!("{file}: {error}"));
+        return;
+    }
     println!("| scene | | silhouettes found | creases found | object edges found | precision | false pixels |");
     println!("|---|---|---|---|---|---|---|");
     let scenes: [(&str, Build); 5] = [

@@ -143,8 +143,8 @@ pub(crate) struct ContoursUniform {
     opacity: f32,
     low: f32,
     high: f32,
-    radius: f32,
-    fade: f32,
-    operator_kind: u32,
-    faithful: u32,
+    pub(crate) radius: f32,
+    pub(crate) fade: f32,
+    pub(crate) operator_kind: u32,
+    pub(crate) faithful: u32,
 }

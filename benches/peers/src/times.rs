@@ -1,0 +1,271 @@
+//! What each crate's passes take, in one app and one run, in turn.
+
+use bevy::{
+    anti_alias::{contrast_adaptive_sharpening::ContrastAdaptiveSharpening, fxaa::Fxaa},
+    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
+    core_pipeline::tonemapping::{DebandDither, Tonemapping},
+    ecs::system::RunSystemOnce,
+    post_process::effect_stack::Vignette,
+    prelude::*,
+    render::view::Msaa,
+};
+use bevy_comics::{
+    ColorMethod, Colorization, ComicStyle, ComicsPlugin, Contours, Desaturation, EdgeForm,
+    Outlines, Silhouettes,
+};
+use bevy_edge_detection_outline::{EdgeDetection, EdgeDetectionPlugin, EdgeOperator};
+use bevy_mod_outline::{OutlineMode, OutlinePlugin, OutlineVolume};
+use bevy_shader_mtoon::{MtoonMaterial, MtoonPlugin, MtoonSun, VrmOutlineMode};
+use cloudiful_bevy_outline::{GpmoOutlinePlugin, OutlineAssets, spawn_default_outline_mesh};
+
+use crate::common::{
+    bench::{self, BenchPlugin, Blit, Laps},
+    headless::{Headless, HeadlessOptions},
+    scenes::{BuiltIn, ScenePart, Stage},
+};
+
+const SIZE: UVec2 = UVec2::new(960, 540);
+
+/// A mesh that only some variants show.
+#[derive(Component)]
+struct Shell;
+
+struct Bench {
+    headless: Headless,
+    camera: Entity,
+    /// The scene's own materials, to go back to.
+    plain: Vec<(Entity, Handle<Mesh>, Handle<StandardMaterial>)>,
+    toon: Handle<MtoonMaterial>,
+}
+
+type Put = fn(&mut Bench);
+
+impl Bench {
+    fn new() -> Self {
+        let options = HeadlessOptions { size: SIZE, ..default() };
+        let mut headless = Headless::new(
+            options,
+            (
+                ComicsPlugin,
+                EdgeDetectionPlugin,
+                OutlinePlugin::EXTRUDE_VERTEX,
+                MtoonPlugin,
+                GpmoOutlinePlugin::default(),
+                BenchPlugin,
+            ),
+        );
+        let target = headless.render_target();
+        let world = headless.app.world_mut();
+        let vantage = world
+            .run_system_once(|mut stage: Stage| stage.spawn(BuiltIn::Teapot))
+            .expect("the stage is there");
+        let camera = world.spawn(vantage.camera()).id();
+        world.entity_mut(camera).insert((
+            target,
+            Msaa::Off,
+            Tonemapping::None,
+            DebandDither::Disabled,
+            // Everybody has them, so nobody pays for them.
+            DepthPrepass,
+            NormalPrepass,
+        ));
+        let mut parts =
+            world.query_filtered::<(Entity, &Mesh3d, &MeshMaterial3d<StandardMaterial>), With<ScenePart>>();
+        let plain: Vec<_> = parts
+            .iter(world)
+            .map(|(entity, mesh, material)| (entity, mesh.0.clone(), material.0.clone()))
+            .collect();
+        let mut suns = world.query_filtered::<Entity, With<DirectionalLight>>();
+        let sun = suns.iter(world).next();
+        if let Some(sun) = sun {
+            world.entity_mut(sun).insert(MtoonSun);
+        }
+        let toon = world.resource_mut::<Assets<MtoonMaterial>>().add(MtoonMaterial {
+            outline_mode: VrmOutlineMode::default(),
+            ..default()
+        });
+        headless.step(3);
+        Self {
+            headless,
+            camera,
+            plain,
+            toon,
+        }
+    }
+
+    fn camera(&mut self) -> EntityWorldMut<'_> {
+        self.headless.app.world_mut().entity_mut(self.camera)
+    }
+
+    /// Takes away whatever a variant has put.
+    fn clear(&mut self) {
+        let world = self.headless.app.world_mut();
+        ComicStyle::default().apply(&mut world.commands().entity(self.camera));
+        world.flush();
+        world
+            .entity_mut(self.camera)
+            .remove::<(Blit, EdgeDetection, Fxaa, ContrastAdaptiveSharpening, Vignette)>();
+        for (part, _, material) in &self.plain {
+            world
+                .entity_mut(*part)
+                .remove::<(OutlineVolume, OutlineMode, MeshMaterial3d<MtoonMaterial>)>()
+                .insert(MeshMaterial3d(material.clone()));
+        }
+        let mut shells = world.query_filtered::<Entity, With<Shell>>();
+        for shell in shells.iter(world).collect::<Vec<_>>() {
+            world.despawn(shell);
+        }
+    }
+
+    fn style(&mut self, style: &ComicStyle) {
+        let world = self.headless.app.world_mut();
+        style.apply(&mut world.commands().entity(self.camera));
+        world.flush();
+    }
+
+    fn edges(&mut self, operator: EdgeOperator) {
+        self.camera().insert(EdgeDetection { operator, ..default() });
+    }
+
+    fn volumes(&mut self, mode: &OutlineMode) {
+        let world = self.headless.app.world_mut();
+        for (part, _, _) in &self.plain {
+            world.entity_mut(*part).insert((
+                OutlineVolume {
+                    visible: true,
+                    colour: Color::BLACK,
+                    width: 2.0,
+                },
+                mode.clone(),
+            ));
+        }
+    }
+}
+
+fn comic() -> ComicStyle {
+    ComicStyle {
+        desaturation: Some(Desaturation {
+            method: ColorMethod::Corrected,
+            ..default()
+        }),
+        colorization: Some(Colorization::default()),
+        contours: Some(Contours::default()),
+        ..default()
+    }
+}
+
+fn outlines(outlines: Outlines) -> ComicStyle {
+    ComicStyle {
+        outlines: Some(outlines),
+        ..default()
+    }
+}
+
+const VARIANTS: &[(&str, Put)] = &[
+    ("nothing", |_| {}),
+    ("blit", |b| {
+        b.camera().insert(Blit);
+    }),
+    ("bevy_comics: default comic", |b| b.style(&comic())),
+    ("bevy_comics: contours", |b| {
+        b.style(&ComicStyle {
+            contours: Some(Contours::default()),
+            ..default()
+        });
+    }),
+    ("bevy_comics: silhouettes", |b| b.style(&outlines(Outlines::SILHOUETTES))),
+    ("bevy_comics: silhouettes + creases", |b| {
+        b.style(&outlines(Outlines {
+            objects: None,
+            ..default()
+        }));
+    }),
+    ("bevy_comics: faithful silhouettes", |b| {
+        b.style(&outlines(Outlines {
+            silhouettes: Some(Silhouettes {
+                form: EdgeForm::Faithful,
+                ..default()
+            }),
+            ..Outlines::SILHOUETTES
+        }));
+    }),
+    ("bevy_edge_detection_outline 0.4.1: Sobel; depth + normals", |b| {
+        b.edges(EdgeOperator::Sobel);
+    }),
+    ("bevy_edge_detection_outline 0.4.1: Roberts; depth + normals", |b| {
+        b.edges(EdgeOperator::RobertsCross);
+    }),
+    ("bevy_mod_outline 0.13.0: extruded", |b| b.volumes(&OutlineMode::ExtrudeFlat)),
+    ("bevy_mod_outline 0.13.0: jump flood", |b| b.volumes(&OutlineMode::FloodFlat)),
+    ("bevy_shader_mtoon 0.4.0: material", |b| {
+        let toon = b.toon.clone();
+        let world = b.headless.app.world_mut();
+        for (part, _, _) in &b.plain {
+            world
+                .entity_mut(*part)
+                .remove::<MeshMaterial3d<StandardMaterial>>()
+                .insert(MeshMaterial3d(toon.clone()));
+        }
+    }),
+    ("cloudiful-bevy-outline 0.3.0: shells", |b| {
+        let plain = b.plain.clone();
+        let world = b.headless.app.world_mut();
+        world.resource_scope(|world, assets: Mut<OutlineAssets>| {
+            for (part, mesh, _) in plain {
+                world.commands().entity(part).with_children(|parent| {
+                    spawn_default_outline_mesh(parent, &assets, mesh, Visibility::Visible)
+                        .insert(Shell);
+                });
+            }
+            world.flush();
+        });
+    }),
+    ("Bevy: FXAA", |b| {
+        b.camera().insert(Fxaa::default());
+    }),
+    ("Bevy: contrast adaptive sharpening", |b| {
+        b.camera().insert(ContrastAdaptiveSharpening::default());
+    }),
+    ("Bevy: vignette", |b| {
+        b.camera().insert(Vignette::default());
+    }),
+    ("blit again", |b| {
+        b.camera().insert(Blit);
+    }),
+];
+
+/// Rows of the report's table of times.
+pub fn measure(rounds: usize, frames: usize) -> String {
+    let mut bench = Bench::new();
+    let mut rows = vec![
+        "section,scene,variant,width,height,round,prepass,range,lines,main,post".to_owned(),
+    ];
+    // One round for pipelines and textures.
+    for round in 0..=rounds {
+        for (name, put) in VARIANTS {
+            bench.clear();
+            put(&mut bench);
+            bench.headless.step(4);
+            let laps = bench::laps(&mut bench.headless, frames);
+            let mut middle: Laps = [0.0; bench::LAPS];
+            for (lap, value) in middle.iter_mut().enumerate() {
+                let mut times: Vec<f64> = laps.iter().map(|l| l[lap]).collect();
+                times.sort_by(f64::total_cmp);
+                *value = times[times.len() / 2];
+            }
+            if round == 0 {
+                let folder = std::path::Path::new("target/peers");
+                let _ = std::fs::create_dir_all(folder);
+                let file = name.replace([':', ';', ' '], "-");
+                let _ = bench.headless.picture().save(folder.join(format!("time-{file}.png")));
+                continue;
+            }
+            let ms: Vec<String> = middle.iter().map(|ms| format!("{ms:.4}")).collect();
+            let [w, h] = SIZE.to_array();
+            let round = round - 1;
+            rows.push(format!("peers,teapot,{name},{w},{h},{round},{}", ms.join(",")));
+        }
+        println!("round {round} of {rounds}");
+    }
+    rows.join("\n") + "\n"
+}

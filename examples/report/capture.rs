@@ -1,0 +1,223 @@
+//! Moving views as plain numbers: what the range and the map are made of.
+
+use bevy::{prelude::*, render::sync_world::RenderEntity};
+use bevy_comics::{ColorMethod, Colorization, ComicStyle, Desaturation};
+use nv_flip::{FlipImageRgb8, FlipPool};
+
+use crate::{
+    Run,
+    common::{headless::Headless, read_back, scenes::BuiltIn},
+    reference::{
+        color::{srgb_decode, srgb_encode},
+        colorization, desaturation,
+        map::{Frame, Projection as MapProjection},
+    },
+    rig::{Rig, Wear},
+};
+
+/// A short flight through a scene.
+pub struct Capture {
+    pub name: String,
+    pub size: UVec2,
+    pub shots: Vec<Shot>,
+}
+
+pub struct Shot {
+    /// Raw reversed depth of an infinite perspective view, row by row.
+    pub depth: Vec<f32>,
+    /// The picture without a style, in linear light.
+    pub picture: Vec<[f64; 3]>,
+}
+
+impl Shot {
+    /// Nearest and farthest depth; `None` of an empty view.
+    pub fn ends(&self) -> Option<[f32; 2]> {
+        crate::reference::range::scan(self.depth.iter().copied())
+            .map(|bits| bits.map(f32::from_bits))
+    }
+}
+
+/// What a camera sees now.
+pub fn shoot(headless: &mut Headless, camera: Entity) -> Shot {
+    headless.step(1);
+    let view = headless
+        .app
+        .world()
+        .get::<RenderEntity>(camera)
+        .expect("extracted")
+        .id();
+    let picture = headless.picture();
+    let world = headless.app.sub_app(bevy::render::RenderApp).world();
+    let depth = read_back::depth(world, view).expect("a prepass");
+    Shot {
+        depth: depth.bits.iter().map(|b| f32::from_bits(*b)).collect(),
+        picture: picture
+            .pixels()
+            .map(|p| srgb_decode([0, 1, 2].map(|i| f64::from(p.0[i]) / 255.0)))
+            .collect(),
+    }
+}
+
+/// The camera's way: ahead and a little aside, a hundredth of the way to what
+/// it looks at in every frame.
+fn way(from: Transform, target: Vec3, frame: usize) -> Transform {
+    let step = (target - from.translation).length() * 0.01 * frame as f32;
+    let moved = from.translation + from.forward() * step + from.right() * (0.3 * step);
+    Transform {
+        translation: moved,
+        ..from
+    }
+}
+
+/// Wires a fraction of a pixel wide, near and far: what strides miss.
+fn wires(rig: &mut Rig) {
+    let world = rig.headless.app.world_mut();
+    let wire = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Cuboid::new(0.004, 3.0, 0.004));
+    let wall = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Plane3d::new(Vec3::Z, Vec2::splat(30.0)));
+    let material = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: Color::srgb(0.8, 0.5, 0.3),
+            unlit: true,
+            ..default()
+        });
+    for i in 0..24u8 {
+        let z = -1.0 - 0.35 * f32::from(i);
+        let at = Transform::from_xyz(0.11 * (f32::from(i) - 12.0), 0.0, z);
+        world.spawn((
+            Mesh3d(wire.clone()),
+            MeshMaterial3d(material.clone()),
+            at.with_rotation(Quat::from_rotation_z(0.02 * f32::from(i))),
+        ));
+    }
+    world.spawn((
+        Mesh3d(wall),
+        MeshMaterial3d(material),
+        Transform::from_xyz(0.0, 0.0, -12.0),
+    ));
+}
+
+/// Small balls all over: many objects of a few pixels.
+fn specks(rig: &mut Rig) {
+    let world = rig.headless.app.world_mut();
+    let ball = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Sphere::new(0.03).mesh().uv(8, 6));
+    let material = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: Color::srgb(0.3, 0.6, 0.4),
+            unlit: true,
+            ..default()
+        });
+    let mut random = crate::common::scenes::noise::Random::new(8);
+    for _ in 0..300 {
+        let z = -(1.0 + 40.0 * random.unit() * random.unit());
+        let at = Vec3::new(
+            z * (random.unit() - 0.5),
+            z * (random.unit() - 0.5) * 0.6,
+            z,
+        );
+        world.spawn((
+            Mesh3d(ball.clone()),
+            MeshMaterial3d(material.clone()),
+            Transform::from_translation(at),
+        ));
+    }
+}
+
+pub const FRAMES: usize = 17;
+
+/// The built-in scenes and two stiff ones, in motion.
+pub fn captures(run: &Run, frames: usize) -> Vec<Capture> {
+    let size = if run.quick {
+        UVec2::new(160, 90)
+    } else {
+        UVec2::new(640, 360)
+    };
+    let mut all = Vec::new();
+    let built_in = BuiltIn::ALL
+        .into_iter()
+        .map(|scene| (scene.name(), Some(scene)));
+    for (name, scene) in built_in.chain([("wires", None), ("specks", None)]) {
+        let mut rig = Rig::new(scene, size);
+        match name {
+            "wires" => wires(&mut rig),
+            "specks" => specks(&mut rig),
+            _ => {}
+        }
+        let (from, target) = match &rig.vantage {
+            Some(vantage) => (vantage.transform(), vantage.target),
+            None => (Transform::IDENTITY, Vec3::new(0.0, 0.0, -4.0)),
+        };
+        rig.wear(&Wear::Nothing);
+        let camera = rig.camera;
+        let world = rig.headless.app.world_mut();
+        world
+            .entity_mut(camera)
+            .insert(bevy::core_pipeline::prepass::DepthPrepass);
+        rig.headless.step(2);
+        let shots = (0..frames)
+            .map(|frame| {
+                let world = rig.headless.app.world_mut();
+                world.entity_mut(camera).insert(way(from, target, frame));
+                shoot(&mut rig.headless, camera)
+            })
+            .collect();
+        run.say(&format!("{name} captured"));
+        all.push(Capture {
+            name: name.to_owned(),
+            size,
+            shots,
+        });
+    }
+    all
+}
+
+/// The linear min-max map between two depths of an infinite perspective view.
+pub fn frame(ends: [f64; 2]) -> Frame {
+    Frame {
+        projection: MapProjection::Perspective { offset: 0.0 },
+        ends: Some(ends),
+        logarithmic: false,
+        floor: 1.0 / 16384.0,
+        sky_gap: 0.05,
+    }
+}
+
+/// The look that errors of the map are judged in: Eq. 7 and 10 at full strength.
+pub fn look() -> ComicStyle {
+    ComicStyle {
+        desaturation: Some(Desaturation {
+            method: ColorMethod::Corrected,
+            ..Desaturation::default()
+        }),
+        colorization: Some(Colorization::default()),
+        ..ComicStyle::default()
+    }
+}
+
+/// A pixel in that look, as display codes.
+pub fn styled(style: &ComicStyle, light: [f64; 3], [d, l]: [f64; 2]) -> [u8; 3] {
+    let mut linear = light;
+    let mut saturation = 1.0;
+    if let Some(s) = &style.desaturation {
+        saturation = desaturation::saturation_left(s, l);
+        linear = desaturation::desaturate(s, linear, saturation);
+    }
+    if let Some(s) = &style.colorization {
+        linear = colorization::colorize(s, linear, d, l, saturation);
+    }
+    srgb_encode(linear).map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8)
+}
+
+/// Mean FLIP between two pictures of display codes.
+pub fn flip(size: UVec2, a: &[[u8; 3]], b: &[[u8; 3]]) -> f64 {
+    let image = |p: &[[u8; 3]]| FlipImageRgb8::with_data(size.x, size.y, p.as_flattened());
+    let map = nv_flip::flip(image(a), image(b), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
+    f64::from(FlipPool::from_image(&map).mean())
+}

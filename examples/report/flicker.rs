@@ -1,0 +1,366 @@
+//! The range over time: how much the picture changes because the range does,
+//! and how far a smoothed range lags.
+//!
+//! Flicker of a frame is the difference between the frame as it is drawn and the
+//! same frame drawn with the range of the frame before: what the scene's own
+//! change does not explain.
+
+use bevy::{core_pipeline::prepass::DepthPrepass, prelude::*};
+use bevy_comics::RangeSmoothing;
+
+use crate::{
+    Run,
+    capture::{self, Shot, shoot},
+    common::scenes::BuiltIn,
+    reference::smoothing::{self, Range, Smoothing},
+    rig::{Rig, Wear},
+    table::Table,
+};
+
+pub const SECONDS: f64 = 1.0 / 60.0;
+
+struct Sequence {
+    shots: Vec<Shot>,
+    /// Frames before which the camera was cut.
+    cuts: Vec<usize>,
+}
+
+/// Each stage alone, and all of them.
+pub fn variants() -> Vec<(&'static str, Option<RangeSmoothing>)> {
+    let off = RangeSmoothing::OFF;
+    let all = RangeSmoothing::default();
+    vec![
+        ("off", None),
+        (
+            "percentiles",
+            Some(RangeSmoothing {
+                outliers: all.outliers,
+                ..off
+            }),
+        ),
+        (
+            "median of three",
+            Some(RangeSmoothing {
+                despike: true,
+                ..off
+            }),
+        ),
+        (
+            "hysteresis",
+            Some(RangeSmoothing {
+                hysteresis: all.hysteresis,
+                ..off
+            }),
+        ),
+        (
+            "exponential",
+            Some(RangeSmoothing {
+                expand: all.expand,
+                shrink: all.shrink,
+                ..off
+            }),
+        ),
+        ("all", Some(all)),
+    ]
+}
+
+/// The ranges that are drawn, frame by frame, by the twin of the shader.
+fn ranges(sequence: &Sequence, settings: Option<RangeSmoothing>) -> Vec<Option<[f64; 2]>> {
+    let mut range = Range::default();
+    sequence
+        .shots
+        .iter()
+        .enumerate()
+        .map(|(i, shot)| {
+            let mut ends = shot.ends().map(|e| e.map(f64::from));
+            let Some(s) = settings else {
+                return ends;
+            };
+            if s.outliers > 0.0 {
+                let (bins, total) = smoothing::histogram(shot.depth.iter().copied());
+                let share = f64::from(s.outliers);
+                ends = ends.map(|e| smoothing::percentiles(&bins, total, share, e));
+            }
+            let twin = Smoothing {
+                offset: Some(0.0),
+                despike: s.despike,
+                hysteresis: f64::from(s.hysteresis),
+                expand: f64::from(s.expand),
+                shrink: f64::from(s.shrink),
+            };
+            range.step(ends, &twin, SECONDS, sequence.cuts.contains(&i))
+        })
+        .collect()
+}
+
+fn intruder(rig: &mut Rig) -> Entity {
+    let world = rig.headless.app.world_mut();
+    let mesh = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Sphere::new(0.12).mesh().uv(24, 16));
+    let material = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: Color::srgb(0.8, 0.2, 0.1),
+            unlit: true,
+            ..default()
+        });
+    world
+        .spawn((Mesh3d(mesh), MeshMaterial3d(material), Visibility::Hidden))
+        .id()
+}
+
+fn mountain(rig: &mut Rig) -> Entity {
+    let world = rig.headless.app.world_mut();
+    let mesh = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Cone::new(900.0, 1400.0));
+    let material = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: Color::srgb(0.4, 0.45, 0.5),
+            unlit: true,
+            ..default()
+        });
+    world
+        .spawn((Mesh3d(mesh), MeshMaterial3d(material), Visibility::Hidden))
+        .id()
+}
+
+fn particles(rig: &mut Rig) -> Vec<Entity> {
+    let world = rig.headless.app.world_mut();
+    let mesh = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Sphere::new(0.02).mesh().uv(6, 4));
+    let material = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: Color::WHITE,
+            unlit: true,
+            ..default()
+        });
+    (0..60)
+        .map(|_| {
+            world
+                .spawn((
+                    Mesh3d(mesh.clone()),
+                    MeshMaterial3d(material.clone()),
+                    Transform::default(),
+                ))
+                .id()
+        })
+        .collect()
+}
+
+const FRAMES: usize = 72;
+
+fn play(name: &str, size: UVec2) -> Sequence {
+    let scene = if name == "fly-through" || name == "far mountain" {
+        BuiltIn::Mountains
+    } else {
+        BuiltIn::Teapot
+    };
+    let mut rig = Rig::new(Some(scene), size);
+    rig.wear(&Wear::Nothing);
+    let camera = rig.camera;
+    let vantage = rig.vantage.clone().expect("a built-in scene");
+    let from = vantage.transform();
+    let ahead = |distance: f32, aside: f32| {
+        from.translation + from.forward() * distance + from.right() * aside
+    };
+    rig.headless
+        .app
+        .world_mut()
+        .entity_mut(camera)
+        .insert(DepthPrepass);
+    let extra = match name {
+        "far mountain" => mountain(&mut rig),
+        _ => intruder(&mut rig),
+    };
+    let dust = if name == "particles" {
+        particles(&mut rig)
+    } else {
+        Vec::new()
+    };
+    rig.headless.step(3);
+    let mut cuts = Vec::new();
+    let mut random = crate::common::scenes::noise::Random::new(4);
+    let shots = (0..FRAMES)
+        .map(|frame| {
+            let world = rig.headless.app.world_mut();
+            let t = frame as f32 / FRAMES as f32;
+            let mut shown = None;
+            match name {
+                "intruder, 1 frame" if frame == 20 => shown = Some(ahead(0.9, 0.1)),
+                "intruder, 30 frames" if (20..50).contains(&frame) => {
+                    let part = (frame - 20) as f32 / 30.0;
+                    shown = Some(ahead(0.9, 0.7 - 1.4 * part));
+                }
+                "far mountain" if (24..60).contains(&frame) => {
+                    let mut at = ahead(9000.0, 500.0);
+                    at.y = from.translation.y;
+                    shown = Some(at);
+                }
+                "fly-through" => {
+                    let at = from.translation + from.forward() * (120.0 * t) + Vec3::Y * (12.0 * t);
+                    let turn = Quat::from_rotation_y(0.5 * t) * from.rotation;
+                    world
+                        .entity_mut(camera)
+                        .insert(Transform::from_translation(at).with_rotation(turn));
+                }
+                "camera cut" if frame == 30 => {
+                    cuts.push(frame);
+                    let at = from.translation * 3.0;
+                    let cut = Transform::from_translation(at).looking_at(vantage.target, Vec3::Y);
+                    world.entity_mut(camera).insert(cut);
+                }
+                _ => {}
+            }
+            let mut object = world.entity_mut(extra);
+            match shown {
+                Some(at) => object.insert((Transform::from_translation(at), Visibility::Visible)),
+                None => object.insert(Visibility::Hidden),
+            };
+            for (i, speck) in dust.iter().enumerate() {
+                // Each lives for some frames somewhere before the camera.
+                let alive = (frame + 7 * i) % 29 < 9;
+                if (frame + 7 * i) % 29 == 0 || frame == 0 {
+                    let distance = 0.6 + 6.0 * random.unit();
+                    let at = ahead(distance, 0.4 * distance * (random.unit() - 0.5))
+                        + Vec3::Y * (0.3 * distance * (random.unit() - 0.5));
+                    world
+                        .entity_mut(*speck)
+                        .insert(Transform::from_translation(at));
+                }
+                let seen = if alive {
+                    Visibility::Visible
+                } else {
+                    Visibility::Hidden
+                };
+                world.entity_mut(*speck).insert(seen);
+            }
+            shoot(&mut rig.headless, camera)
+        })
+        .collect();
+    Sequence { shots, cuts }
+}
+
+pub const SEQUENCES: [&str; 6] = [
+    "intruder, 1 frame",
+    "intruder, 30 frames",
+    "far mountain",
+    "fly-through",
+    "camera cut",
+    "particles",
+];
+
+fn draw(shot: &Shot, range: Option<[f64; 2]>) -> Vec<[u8; 3]> {
+    let style = capture::look();
+    let frame = range.map(capture::frame);
+    shot.depth
+        .iter()
+        .zip(&shot.picture)
+        .map(|(d, light)| {
+            let map = match &frame {
+                Some(frame) => frame.depth_map(f64::from(*d)),
+                None => [1.0, 0.0],
+            };
+            capture::styled(&style, *light, map)
+        })
+        .collect()
+}
+
+/// (mean, 99th percentile) of the change in display codes.
+fn change(a: &[[u8; 3]], b: &[[u8; 3]]) -> [f64; 2] {
+    let mut all: Vec<u8> = a
+        .iter()
+        .zip(b)
+        .map(|(a, b)| (0..3).map(|i| a[i].abs_diff(b[i])).max().unwrap_or(0))
+        .collect();
+    all.sort_unstable();
+    let mean = all.iter().map(|c| f64::from(*c)).sum::<f64>() / all.len() as f64;
+    [mean, f64::from(all[(all.len() - 1) * 99 / 100])]
+}
+
+fn octaves(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> f64 {
+    match (a, b) {
+        (Some(a), Some(b)) => (0..2)
+            .map(|i| (a[i] / b[i]).log2().abs())
+            .fold(0.0, f64::max),
+        _ => 0.0,
+    }
+}
+
+pub fn measure(run: &Run) -> Result<(), String> {
+    let size = if run.quick {
+        UVec2::new(64, 36)
+    } else {
+        UVec2::new(192, 108)
+    };
+    let mut table = Table::new(&["sequence", "variant", "frame", "mean", "p99", "lag"]);
+    let names = if run.quick {
+        &SEQUENCES[..2]
+    } else {
+        &SEQUENCES[..]
+    };
+    for name in names {
+        let sequence = play(name, size);
+        let exact = ranges(&sequence, None);
+        for (variant, settings) in variants() {
+            let drawn = ranges(&sequence, settings);
+            for frame in 1..sequence.shots.len() {
+                let [mean, p99] = if drawn[frame] == drawn[frame - 1] {
+                    [0.0; 2]
+                } else {
+                    let shot = &sequence.shots[frame];
+                    change(&draw(shot, drawn[frame]), &draw(shot, drawn[frame - 1]))
+                };
+                table.push(&[
+                    &name.replace(',', ";"),
+                    &variant,
+                    &frame,
+                    &format!("{mean:.4}"),
+                    &format!("{p99:.0}"),
+                    &format!("{:.4}", octaves(drawn[frame], exact[frame])),
+                ]);
+            }
+        }
+        run.say(&format!("{name}: flicker measured"));
+        if *name == "intruder, 30 frames" && !run.quick {
+            strip(run, &sequence, size)?;
+        }
+    }
+    run.save("flicker", &table)
+}
+
+/// Six moments of the intruder's passage, without smoothing above, with it below.
+fn strip(run: &Run, sequence: &Sequence, size: UVec2) -> Result<(), String> {
+    let moments = [18usize, 20, 24, 35, 51, 66];
+    let gap = 4;
+    let mut picture = image::RgbaImage::from_pixel(
+        moments.len() as u32 * (size.x + gap) - gap,
+        2 * size.y + gap,
+        image::Rgba([255, 255, 255, 255]),
+    );
+    for (row, settings) in [None, Some(RangeSmoothing::default())]
+        .into_iter()
+        .enumerate()
+    {
+        let drawn = ranges(sequence, settings);
+        for (column, frame) in moments.into_iter().enumerate() {
+            let pixels = draw(&sequence.shots[frame], drawn[frame]);
+            for (i, p) in pixels.iter().enumerate() {
+                let (x, y) = (i as u32 % size.x, i as u32 / size.x);
+                picture.put_pixel(
+                    column as u32 * (size.x + gap) + x,
+                    row as u32 * (size.y + gap) + y,
+                    image::Rgba([p[0], p[1], p[2], 255]),
+                );
+            }
+        }
+    }
+    let path = run.folder().join("flicker.png");
+    picture
+        .save(&path)
+        .map_err(|error| format!("{}: {error}", path.display()))
+}

@@ -1,0 +1,95 @@
+//! How the cost grows: with pixels, with vertices, with cameras; and the
+//! paper's own experiment.
+
+use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*, render::view::Msaa};
+
+use crate::{
+    Run,
+    common::{bench, headless::new_target, scenes::BuiltIn},
+    ladder::ball,
+    lines::default_comic,
+    rig::{self, Rig, Wear},
+    table::Table,
+};
+
+pub fn measure(run: &Run) -> Result<(), String> {
+    let comic = [("default comic".to_owned(), Wear::style(default_comic()))];
+    let mut times = rig::times();
+    let sizes: &[(u32, u32)] = if run.quick {
+        &[(128, 128), (256, 256)]
+    } else {
+        &[
+            (256, 256),
+            (512, 512),
+            (1024, 1024),
+            (1920, 1080),
+            (2048, 2048),
+            (3840, 2160),
+        ]
+    };
+    for &(width, height) in sizes {
+        let mut rig = Rig::new(Some(BuiltIn::Teapot), UVec2::new(width, height));
+        let what = format!("{width}x{height}");
+        rig::record(run, &mut times, "pixels", &what, &mut rig, &comic);
+    }
+    let counts: &[u32] = if run.quick {
+        &[1_000, 30_000]
+    } else {
+        &[1_000, 10_000, 100_000, 1_000_000, 4_000_000]
+    };
+    for &vertices in counts {
+        let mut rig = Rig::new(None, UVec2::splat(512));
+        ball(&mut rig, vertices);
+        rig.headless.step(2);
+        let what = vertices.to_string();
+        rig::record(run, &mut times, "vertices", &what, &mut rig, &comic);
+    }
+    for cameras in 1..=4u32 {
+        let mut rig = Rig::new(Some(BuiltIn::Teapot), UVec2::splat(256));
+        for _ in 1..cameras {
+            let world = rig.headless.app.world_mut();
+            let target = new_target(
+                world,
+                UVec2::splat(256),
+                wgpu::TextureFormat::Rgba8UnormSrgb,
+            );
+            let vantage = rig.vantage.clone().expect("a built-in scene");
+            let camera = world
+                .spawn((
+                    vantage.camera(),
+                    bevy::camera::RenderTarget::from(target),
+                    Msaa::Off,
+                ))
+                .insert(Tonemapping::None)
+                .id();
+            rig.others.push(camera);
+        }
+        let what = cameras.to_string();
+        rig::record(run, &mut times, "cameras", &what, &mut rig, &comic);
+    }
+    run.save("growth_times", &times)?;
+    paper(run)
+}
+
+/// One million vertices at 512x512, with and without the model, whole frames.
+fn paper(run: &Run) -> Result<(), String> {
+    let mut table = Table::new(&["app", "round", "milliseconds"]);
+    let vertices = if run.quick { 10_000 } else { 1_000_000 };
+    let mut rig = Rig::new(None, UVec2::splat(512));
+    ball(&mut rig, vertices);
+    let rounds = if run.quick { 3 } else { 20 };
+    for round in 0..=rounds {
+        for (name, wear) in [
+            ("without the model", Wear::Nothing),
+            ("with the model", Wear::style(default_comic())),
+        ] {
+            rig.wear(&wear);
+            rig.headless.step(3);
+            let ms = bench::whole_frame(&mut rig.headless);
+            if round > 0 {
+                table.push(&[&name, &round, &format!("{ms:.4}")]);
+            }
+        }
+    }
+    run.save("paper_times", &table)
+}

@@ -1,0 +1,168 @@
+//! What a scene does not need is left out: counted, and timed.
+
+use bevy::{core_pipeline::prepass::DepthPrepass, prelude::*};
+use bevy_comics::ComicsPlugin;
+
+use crate::{
+    Run,
+    common::{
+        bench,
+        headless::{Headless, HeadlessOptions},
+        scenes::BuiltIn,
+        work,
+    },
+    rig::{self, Rig, Wear},
+    table::Table,
+};
+
+/// The header of the table of counted work.
+pub const WORK: [&str; 8] = [
+    "style", "passes", "ran", "left_out", "bindings", "fetches", "most", "bytes",
+];
+
+/// One counted style as its row.
+pub fn work_row(work: &work::Work) -> Vec<String> {
+    vec![
+        work.name.replace(',', ";"),
+        work.ran.len().to_string(),
+        work.ran.join(" + "),
+        work.left_out.to_string(),
+        work.bindings.to_string(),
+        format!("{:.2}", work.fetches[0]),
+        format!("{:.0}", work.fetches[1]),
+        format!("{:.2}", work.bytes),
+    ]
+}
+
+/// Whole frames of an app without the plugin, and with it and no style, in turn.
+fn idle(run: &Run) -> Result<(), String> {
+    let size = UVec2::new(320, 180);
+    let mut apps: Vec<(&str, Headless)> = Vec::new();
+    for name in [
+        "without the plugin",
+        "idle plugin",
+        "without the plugin again",
+    ] {
+        let options = HeadlessOptions { size, ..default() };
+        let mut headless = if name == "idle plugin" {
+            Headless::new(options, ComicsPlugin)
+        } else {
+            Headless::new(options, ())
+        };
+        let target = headless.render_target();
+        let world = headless.app.world_mut();
+        let mesh = world
+            .resource_mut::<Assets<Mesh>>()
+            .add(Cuboid::from_length(1.0));
+        let material = world
+            .resource_mut::<Assets<StandardMaterial>>()
+            .add(StandardMaterial::default());
+        world.spawn((Mesh3d(mesh), MeshMaterial3d(material)));
+        let at = Transform::from_xyz(2.0, 2.0, 3.0).looking_at(Vec3::ZERO, Vec3::Y);
+        world.spawn((Camera3d::default(), at, target, Msaa::Off));
+        headless.step(10);
+        apps.push((name, headless));
+    }
+    let mut table = Table::new(&["app", "round", "milliseconds"]);
+    let rounds = if run.quick { 10 } else { 300 };
+    for round in 0..rounds {
+        for (name, headless) in &mut apps {
+            let ms = bench::whole_frame(headless);
+            table.push(&[name, &round, &format!("{ms:.4}")]);
+        }
+    }
+    run.say("idle plugin timed");
+    run.save("idle_times", &table)
+}
+
+/// A lit ball of about a million vertices in the middle of the view.
+pub fn ball(rig: &mut Rig, vertices: u32) -> Entity {
+    let side = (f64::from(vertices).sqrt().round() as u32).max(4);
+    let world = rig.headless.app.world_mut();
+    let mesh = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Sphere::new(1.0).mesh().uv(side - 1, side - 1));
+    let material = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: Color::srgb(0.7, 0.4, 0.3),
+            ..default()
+        });
+    let light = DirectionalLight::default();
+    world.spawn((light, Transform::from_rotation(Quat::from_rotation_x(-0.7))));
+    world
+        .spawn((
+            Mesh3d(mesh),
+            MeshMaterial3d(material),
+            Transform::from_xyz(0.0, 0.0, -3.0),
+        ))
+        .id()
+}
+
+/// The engine's passes with a depth prepass and without: what a style that needs
+/// depth alone pays for it, or wins.
+fn prepass(run: &Run) -> Result<(), String> {
+    let size = if run.quick {
+        UVec2::new(320, 180)
+    } else {
+        UVec2::new(640, 360)
+    };
+    let mut table = Table::new(&["scene", "prepass", "round", "milliseconds"]);
+    let scenes = BuiltIn::ALL.into_iter().map(Some).chain([None]);
+    for scene in scenes {
+        let name = scene.map_or("a million vertices", BuiltIn::name);
+        let mut rig = Rig::new(scene, size);
+        if scene.is_none() {
+            ball(&mut rig, 1_000_000);
+        }
+        for round in 0..=run.rounds {
+            for with in ["no", "yes"] {
+                let mut camera = rig.headless.app.world_mut().entity_mut(rig.camera);
+                match with {
+                    "yes" => camera.insert(DepthPrepass),
+                    _ => camera.remove::<DepthPrepass>(),
+                };
+                rig.headless.step(3);
+                let laps = bench::laps(&mut rig.headless, run.frames);
+                let mut sums: Vec<f64> = laps
+                    .iter()
+                    .map(|l| l[bench::Lap::Prepass as usize] + l[bench::Lap::Main as usize])
+                    .collect();
+                sums.sort_by(f64::total_cmp);
+                if round > 0 {
+                    let ms = format!("{:.4}", sums[sums.len() / 2]);
+                    table.push(&[&name, &with, &round, &ms]);
+                }
+            }
+        }
+        run.say(&format!("{name}: prepass timed"));
+    }
+    run.save("prepass_times", &table)
+}
+
+pub fn measure(run: &Run) -> Result<(), String> {
+    let mut counted = Table::new(&WORK);
+    let styles = work::ladder();
+    for (name, style) in &styles {
+        let work = work::count(name, style);
+        counted.rows.push(work_row(&work));
+    }
+    run.say("work counted");
+    run.save("work", &counted)?;
+
+    let size = if run.quick {
+        UVec2::new(320, 180)
+    } else {
+        UVec2::new(1280, 720)
+    };
+    let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
+    let variants: Vec<(String, Wear)> = styles
+        .into_iter()
+        .map(|(name, style)| (name.replace(',', ";"), Wear::style(style)))
+        .collect();
+    let mut times = rig::times();
+    rig::record(run, &mut times, "ladder", "teapot", &mut rig, &variants);
+    run.save("ladder_times", &times)?;
+    idle(run)?;
+    prepass(run)
+}

@@ -1,0 +1,214 @@
+//! Error against run time, stability, what is left out, growth, flicker:
+//! measures everything and writes the report.
+//!
+//! ```text
+//! cargo run --release --example report                # docs/report, half an hour
+//! cargo run --example report -- --quick --out target/report
+//! cargo run --example report -- --render              # the text anew, from the CSV
+//! ```
+
+mod bare;
+mod capture;
+#[path = "../common/mod.rs"]
+mod common;
+#[path = "../../tests/gpu/device.rs"]
+mod device;
+mod document;
+mod encodings;
+mod flicker;
+mod growth;
+mod ladder;
+mod lines;
+mod peers;
+mod plots;
+mod ranges;
+#[path = "../../tests/reference/mod.rs"]
+#[allow(dead_code, reason = "the tests use the rest")]
+mod reference;
+mod rig;
+mod stability;
+mod table;
+#[path = "../../tests/gpu/wgsl.rs"]
+#[allow(dead_code, reason = "the tests use the rest")]
+mod wgsl;
+
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+    process::ExitCode,
+    time::Instant,
+};
+
+use lexopt::prelude::*;
+use table::Table;
+
+/// How much is measured.
+struct Run {
+    pub quick: bool,
+    pub rounds: usize,
+    pub frames: usize,
+    folder: PathBuf,
+    started: Instant,
+}
+
+impl Run {
+    pub fn say(&self, what: &str) {
+        let seconds = self.started.elapsed().as_secs();
+        println!("{:3}:{:02}  {what}", seconds / 60, seconds % 60);
+        let _ = std::io::stdout().flush();
+    }
+
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    pub fn save(&self, name: &str, table: &Table) -> Result<(), String> {
+        let path = self.folder.join(format!("{name}.csv"));
+        table
+            .save(&path)
+            .map_err(|error| format!("{}: {error}", path.display()))
+    }
+}
+
+const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
+
+  --quick          small pictures, few repetitions, no peers
+  --out FOLDER     where the report goes; default docs/report
+  --only SECTION   measures one section anew: ranges, encodings, lines, stability,
+                   ladder, growth, peers or flicker
+  --render         measures nothing; writes text and plots from the CSV files";
+
+type Section = fn(&Run) -> Result<(), String>;
+
+const SECTIONS: [(&str, Section); 8] = [
+    ("ranges", ranges::measure),
+    ("encodings", encodings::measure),
+    ("lines", lines::measure),
+    ("stability", stability::measure),
+    ("ladder", ladder::measure),
+    ("growth", growth::measure),
+    ("peers", peers::measure),
+    ("flicker", flicker::measure),
+];
+
+fn run() -> Result<(), String> {
+    let mut quick = false;
+    let mut render = false;
+    let mut only: Option<String> = None;
+    let mut out = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/report"));
+    let mut arguments = lexopt::Parser::from_env();
+    let complain = |error: lexopt::Error| format!("{error}\n\n{USAGE}");
+    while let Some(argument) = arguments.next().map_err(complain)? {
+        match argument {
+            Long("quick") => quick = true,
+            Long("render") => render = true,
+            Long("out") => out = arguments.value().map_err(complain)?.into(),
+            Long("only") => {
+                only = Some(
+                    arguments
+                        .value()
+                        .and_then(|v| v.string())
+                        .map_err(complain)?,
+                );
+            }
+            Long("help") => {
+                println!("{USAGE}");
+                return Ok(());
+            }
+            other => return Err(complain(other.unexpected())),
+        }
+    }
+    if let Some(name) = &only
+        && !SECTIONS.iter().any(|(section, _)| section == name)
+    {
+        return Err(format!("no section {name:?}\n\n{USAGE}"));
+    }
+    let problem = |error| format!("{}: {error}", out.display());
+    std::fs::create_dir_all(&out).map_err(problem)?;
+    if !render {
+        let run = Run {
+            quick,
+            rounds: if quick { 2 } else { 7 },
+            frames: if quick { 1 } else { 3 },
+            folder: out.clone(),
+            started: Instant::now(),
+        };
+        common::headless::adapter()?;
+        for (name, measure) in SECTIONS {
+            if only.as_deref().is_none_or(|o| o == name) {
+                run.say(name);
+                measure(&run)?;
+            }
+        }
+        if only.is_none() || !out.join("machine.csv").exists() {
+            machine(&run)?;
+        }
+    }
+    let text = document::render(&out)?;
+    std::fs::write(out.join("report.md"), text).map_err(problem)?;
+
+    plots::draw(&out)?;
+    println!("{}", out.join("report.md").display());
+    Ok(())
+}
+
+/// What it was measured on.
+fn machine(run: &Run) -> Result<(), String> {
+    let adapter = common::headless::adapter()?;
+    let headless = common::headless::Headless::new(
+        common::headless::HeadlessOptions {
+            size: bevy::math::UVec2::new(16, 16),
+            ..Default::default()
+        },
+        bevy_comics::ComicsPlugin,
+    );
+    let clean = |text: String| text.replace([',', '\n'], ";");
+    let info = &adapter.info;
+    let mut table = Table::new(&["what", "value"]);
+    let cores = std::thread::available_parallelism().map_or(0, usize::from);
+    for (what, value) in [
+        ("adapter", info.name.clone()),
+        ("kind", format!("{:?}", info.device_type)),
+        ("backend", info.backend.to_string()),
+        ("driver", format!("{} {}", info.driver, info.driver_info)),
+        ("cores", cores.to_string()),
+        ("operating system", std::env::consts::OS.to_owned()),
+        ("architecture", std::env::consts::ARCH.to_owned()),
+        (
+            "build",
+            if cfg!(debug_assertions) {
+                "dev"
+            } else {
+                "release"
+            }
+            .to_owned(),
+        ),
+        ("times", common::bench::method(&headless).to_owned()),
+        (
+            "repetitions",
+            format!("{} rounds of {} frames", run.rounds, run.frames),
+        ),
+        (
+            "measured in",
+            format!("{} s", run.started.elapsed().as_secs()),
+        ),
+    ] {
+        table.push(&[&what, &clean(value)]);
+    }
+    run.save("machine", &table)
+}
+
+/// Every CSV of a report, by name.
+fn load(folder: &Path, name: &str) -> Result<Table, String> {
+    Table::load(&folder.join(format!("{name}.csv")))
+}
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("{message}");
+            ExitCode::FAILURE
+        }
+    }
+}

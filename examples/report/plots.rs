@@ -1,0 +1,264 @@
+//! The plots of the report, from its tables.
+
+use std::path::Path;
+
+use plotters::prelude::*;
+
+use crate::{
+    document::{OWN, bare_costs, costs, growth_exponent, line_score},
+    load,
+    table::largest,
+};
+
+struct Plot<'a> {
+    file: &'a str,
+    title: &'a str,
+    x: &'a str,
+    y: &'a str,
+    logarithmic: [bool; 2],
+    joined: bool,
+}
+
+/// A point and what it is called.
+type Point = (f64, f64, String);
+
+fn bounds(values: impl Iterator<Item = f64>, logarithmic: bool) -> (f64, f64) {
+    let (low, high) = values.fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
+    if logarithmic {
+        (low / 2.0, high * 3.0)
+    } else {
+        let space = 0.12 * (high - low).max(1e-6);
+        ((low - space).max(0.0), high + 2.0 * space)
+    }
+}
+
+fn scatter(folder: &Path, plot: &Plot, points: &[Point]) -> Result<(), String> {
+    let points: Vec<&Point> = points
+        .iter()
+        .filter(|(x, y, _)| x.is_finite() && y.is_finite())
+        .filter(|(x, y, _)| !(plot.logarithmic[0] && *x <= 0.0 || plot.logarithmic[1] && *y <= 0.0))
+        .collect();
+    if points.is_empty() {
+        return Ok(());
+    }
+    // Logarithmic axes are drawn as their logarithms, so that one chart does.
+    let on_axis = |value: f64, axis: usize| {
+        if plot.logarithmic[axis] {
+            value.log10()
+        } else {
+            value
+        }
+    };
+    let range = |axis: usize| {
+        let values = points.iter().map(|p| if axis == 0 { p.0 } else { p.1 });
+        let (low, high) = bounds(values, plot.logarithmic[axis]);
+        on_axis(low, axis)..on_axis(high, axis)
+    };
+    let path = folder.join(plot.file);
+    let area = SVGBackend::new(&path, (760, 460)).into_drawing_area();
+    let problem = |error: DrawingAreaErrorKind<_>| format!("{}: {error}", plot.file);
+    area.fill(&WHITE).map_err(problem)?;
+    let mut chart = ChartBuilder::on(&area)
+        .caption(plot.title, ("sans-serif", 20))
+        .margin(14)
+        .x_label_area_size(44)
+        .y_label_area_size(76)
+        .build_cartesian_2d(range(0), range(1))
+        .map_err(problem)?;
+    let label = |axis: usize| {
+        move |value: &f64| {
+            let value = if plot.logarithmic[axis] {
+                10f64.powf(*value)
+            } else {
+                *value
+            };
+            if value != 0.0 && !(0.01..10_000.0).contains(&value.abs()) {
+                format!("{value:.0e}")
+            } else if value.abs() < 1.0 {
+                format!("{value:.2}")
+            } else {
+                format!("{value:.1}")
+            }
+        }
+    };
+    let (x_label, y_label) = (label(0), label(1));
+    chart
+        .configure_mesh()
+        .x_desc(plot.x)
+        .y_desc(plot.y)
+        .x_labels(8)
+        .y_labels(8)
+        .x_label_formatter(&x_label)
+        .y_label_formatter(&y_label)
+        .light_line_style(WHITE)
+        .draw()
+        .map_err(problem)?;
+    let at = |p: &Point| (on_axis(p.0, 0), on_axis(p.1, 1));
+    if plot.joined {
+        chart
+            .draw_series(LineSeries::new(points.iter().map(|p| at(p)), &BLUE))
+            .map_err(problem)?;
+    }
+    chart
+        .draw_series(points.iter().map(|p| Circle::new(at(p), 4, BLUE.filled())))
+        .map_err(problem)?;
+    // Labels move down until they lie over none that is there already.
+    let mut taken: Vec<(i32, i32, i32)> = Vec::new();
+    for point in &points {
+        let (px, py) = chart.backend_coord(&at(point));
+        let width = 6 * point.2.chars().count() as i32;
+        let left = if px + 8 + width > 750 {
+            px - 8 - width
+        } else {
+            px + 8
+        };
+        let mut top = py - 6;
+        while taken
+            .iter()
+            .any(|(x, y, w)| (top - y).abs() < 13 && left < x + w && *x < left + width)
+        {
+            top += 13;
+        }
+        taken.push((left, top, width));
+        area.draw(&Text::new(
+            point.2.clone(),
+            (left, top),
+            ("sans-serif", 12).into_font(),
+        ))
+        .map_err(problem)?;
+    }
+    area.present().map_err(problem)
+}
+
+pub fn draw(folder: &Path) -> Result<(), String> {
+    // Errors of the range against time.
+    let errors = load(folder, "range_errors")?;
+    let times = load(folder, "range_times")?;
+    let bare = bare_costs(&load(folder, "range_bare_times")?, "method");
+    let shipped = costs(&times, "ranges", "teapot", &["range"]);
+    let of_shipped = |name: &str| shipped.iter().find(|c| c.name == name).map(|c| c.ratio[1]);
+    let of_bare = |name: &str| bare.iter().find(|b| b.0 == name).map(|b| b.2);
+    let points: Vec<Point> = crate::ranges::METHODS
+        .iter()
+        .filter_map(|method| {
+            let x = match *method {
+                "full" | "previous frame" => of_shipped("BarrierFree")?,
+                "ping-pong" => of_shipped("PingPong")?,
+                // A sixteenth of the pixels a frame, as stride 4.
+                "rotating 4" => of_bare("stride 4")?,
+                stride if stride.starts_with("stride") => of_bare(stride)?,
+                _ => of_shipped("percentiles")?,
+            };
+            let rows = errors.matching(&[("method", method)]);
+            // Exact is drawn at half an ulp of the map.
+            let y = largest(&errors.numbers(&rows, "map")).max(6e-8);
+            Some((x, y, (*method).to_owned()))
+        })
+        .collect();
+    scatter(
+        folder,
+        &Plot {
+            file: "range.svg",
+            title: "The range: worst error of the map over all scenes",
+            x: "time, blits",
+            y: "largest error of D (6e-8: none)",
+            logarithmic: [true, true],
+            joined: false,
+        },
+        &points,
+    )?;
+
+    let errors = load(folder, "encoding_errors")?;
+    let points: Vec<Point> = bare_costs(&load(folder, "encoding_times")?, "encoding")
+        .into_iter()
+        .filter(|(name, ..)| !name.starts_with("blit"))
+        .map(|(name, _, ratio)| {
+            let stored = if name.starts_with("none") {
+                "f32 depth".to_owned()
+            } else {
+                name.clone()
+            };
+            let rows = errors.matching(&[("encoding", &stored)]);
+            (ratio, largest(&errors.numbers(&rows, "map")), name)
+        })
+        .collect();
+    scatter(
+        folder,
+        &Plot {
+            file: "encoding.svg",
+            title: "What depth is kept in: worst error of the map over all scenes",
+            x: "time of writing and mapping, blits",
+            y: "largest error of D",
+            logarithmic: [false, true],
+            joined: false,
+        },
+        &points,
+    )?;
+
+    let scores = load(folder, "line_scores")?;
+    let costs_of = costs(&load(folder, "line_times")?, "lines", "teapot", &OWN);
+    let all: Vec<&Vec<String>> = scores.rows.iter().collect();
+    let points: Vec<Point> = scores
+        .distinct(&all, "detector")
+        .into_iter()
+        .filter_map(|name| {
+            let cost = costs_of.iter().find(|c| c.name == name)?;
+            let [_, _, f1] = line_score(&scores, &name, "every line");
+            Some((cost.ratio[1], 1.0 - f1, name))
+        })
+        .collect();
+    scatter(
+        folder,
+        &Plot {
+            file: "lines.svg",
+            title: "Lines: error against time",
+            x: "time, blits",
+            y: "1 - F1, every line of all scenes",
+            logarithmic: [false, false],
+            joined: false,
+        },
+        &points,
+    )?;
+
+    let (_, points) = growth_exponent(&load(folder, "growth_times")?, "pixels", &OWN);
+    let points: Vec<Point> = points
+        .into_iter()
+        .map(|(x, y)| (x, y, format!("{y:.1} ms")))
+        .collect();
+    scatter(
+        folder,
+        &Plot {
+            file: "growth.svg",
+            title: "The default comic's passes",
+            x: "pixels",
+            y: "milliseconds",
+            logarithmic: [true, true],
+            joined: true,
+        },
+        &points,
+    )?;
+
+    let flicker = load(folder, "flicker")?;
+    let all: Vec<&Vec<String>> = flicker.rows.iter().collect();
+    let points: Vec<Point> = flicker
+        .distinct(&all, "variant")
+        .into_iter()
+        .map(|variant| {
+            let rows = flicker.matching(&[("variant", &variant)]);
+            let mean = |name| flicker.numbers(&rows, name).iter().sum::<f64>() / rows.len() as f64;
+            (mean("lag"), mean("mean"), variant)
+        })
+        .collect();
+    scatter(
+        folder,
+        &Plot {
+            file: "flicker.svg",
+            title: "Flicker against lag, mean over all sequences",
+            x: "lag, octaves of distance",
+            y: "flicker, display codes",
+            logarithmic: [false, false],
+            joined: false,
+        },
+        &points,
+    )
+}

@@ -1,0 +1,174 @@
+//! One scene, one camera, variants timed in turn: A B C A B C.
+
+use std::collections::BTreeMap;
+
+use bevy::{
+    core_pipeline::tonemapping::{DebandDither, Tonemapping},
+    ecs::system::RunSystemOnce,
+    prelude::*,
+    render::view::Msaa,
+};
+use bevy_comics::{ComicStyle, ComicsPlugin};
+
+use crate::{
+    Run,
+    common::{
+        bench::{self, BenchPlugin, Blit, Lap, Laps},
+        headless::{Headless, HeadlessOptions},
+        scenes::{BuiltIn, Stage, Vantage},
+    },
+    table::Table,
+};
+
+pub struct Rig {
+    pub headless: Headless,
+    pub camera: Entity,
+    /// Further cameras that wear the same.
+    pub others: Vec<Entity>,
+    pub vantage: Option<Vantage>,
+    pub size: UVec2,
+}
+
+/// What a camera wears while it is timed.
+#[derive(Clone, Debug)]
+pub enum Wear {
+    Nothing,
+    Blit,
+    Style(Box<ComicStyle>),
+}
+
+impl Wear {
+    pub fn style(style: ComicStyle) -> Self {
+        Self::Style(Box::new(style))
+    }
+}
+
+impl Rig {
+    /// A built-in scene, or an empty world.
+    pub fn new(scene: Option<BuiltIn>, size: UVec2) -> Self {
+        let options = HeadlessOptions { size, ..default() };
+        let mut headless = Headless::new(options, (ComicsPlugin, BenchPlugin));
+        let target = headless.render_target();
+        let world = headless.app.world_mut();
+        let vantage = scene.map(|scene| {
+            world
+                .run_system_once(move |mut stage: Stage| stage.spawn(scene))
+                .expect("the stage is there")
+        });
+        let camera = match &vantage {
+            Some(vantage) => world.spawn(vantage.camera()).id(),
+            None => world.spawn(Camera3d::default()).id(),
+        };
+        // Nothing but the passes under test between the main pass and the end.
+        world.entity_mut(camera).insert((
+            target,
+            Msaa::Off,
+            Tonemapping::None,
+            DebandDither::Disabled,
+        ));
+        headless.step(3);
+        Self {
+            headless,
+            camera,
+            others: Vec::new(),
+            vantage,
+            size,
+        }
+    }
+
+    pub fn wear(&mut self, wear: &Wear) {
+        let world = self.headless.app.world_mut();
+        let none = ComicStyle::default();
+        let style = match wear {
+            Wear::Style(style) => style,
+            _ => &none,
+        };
+        for camera in std::iter::once(&self.camera).chain(&self.others) {
+            style.apply(&mut world.commands().entity(*camera));
+            world.flush();
+            match wear {
+                Wear::Blit => world.entity_mut(*camera).insert(Blit),
+                _ => world.entity_mut(*camera).remove::<Blit>(),
+            };
+        }
+    }
+
+    /// The laps of every variant, round by round; each round is the median of
+    /// its frames.
+    pub fn compare(&mut self, run: &Run, variants: &[(String, Wear)]) -> Vec<Vec<Laps>> {
+        let mut all = vec![Vec::new(); variants.len()];
+        // One round for pipelines and textures.
+        for round in 0..=run.rounds {
+            for (i, (_, wear)) in variants.iter().enumerate() {
+                self.wear(wear);
+                self.headless.step(3);
+                let frames = bench::laps(&mut self.headless, run.frames);
+                let mut middle = [0.0; bench::LAPS];
+                for (lap, value) in middle.iter_mut().enumerate() {
+                    let mut times: Vec<f64> = frames.iter().map(|f| f[lap]).collect();
+                    times.sort_by(f64::total_cmp);
+                    *value = times[times.len() / 2];
+                }
+                if round > 0 {
+                    all[i].push(middle);
+                }
+            }
+        }
+        all
+    }
+}
+
+/// Header of every table of times.
+pub fn times() -> Table {
+    Table::new(&[
+        "section", "scene", "variant", "width", "height", "round", "prepass", "range", "lines",
+        "main", "post",
+    ])
+}
+
+/// Times variants beside nothing, a blit, and a second blit as the noise bar,
+/// and writes the rows.
+pub fn record(
+    run: &Run,
+    table: &mut Table,
+    section: &str,
+    scene: &str,
+    rig: &mut Rig,
+    variants: &[(String, Wear)],
+) {
+    let mut all = vec![
+        ("nothing".to_owned(), Wear::Nothing),
+        ("blit".to_owned(), Wear::Blit),
+    ];
+    all.extend(variants.iter().cloned());
+    all.push(("blit again".to_owned(), Wear::Blit));
+    let laps = rig.compare(run, &all);
+    for ((name, _), rounds) in all.iter().zip(&laps) {
+        for (round, laps) in rounds.iter().enumerate() {
+            let ms: Vec<String> = laps.iter().map(|ms| format!("{ms:.4}")).collect();
+            table.push(&[
+                &section,
+                &scene,
+                name,
+                &rig.size.x,
+                &rig.size.y,
+                &round,
+                &ms[0],
+                &ms[1],
+                &ms[2],
+                &ms[3],
+                &ms[4],
+            ]);
+        }
+    }
+    let mut of: BTreeMap<&str, f64> = BTreeMap::new();
+    for ((name, _), rounds) in all.iter().zip(&laps) {
+        let mut post: Vec<f64> = rounds.iter().map(|l| l[Lap::Post as usize]).collect();
+        post.sort_by(f64::total_cmp);
+        of.insert(name, post[post.len() / 2]);
+    }
+    run.say(&format!(
+        "{section}, {scene}: blit {:.2} ms over nothing",
+        of["blit"] - of["nothing"]
+    ));
+}
