@@ -276,6 +276,7 @@ pub(crate) fn prepare_view_passes(
                     &plan,
                     (samples, size),
                     oblique,
+                    view.main_pass_size.is_none(),
                     lines_reach(view, &plan),
                 );
             }

@@ -144,6 +144,9 @@ pub fn captures(run: &Run, frames: usize) -> Vec<Capture> {
         .into_iter()
         .map(|scene| (scene.name(), Some(scene)));
     for (name, scene) in built_in.chain([("wires", None), ("specks", None)]) {
+        if run.quick && !matches!(name, "teapot" | "wires") {
+            continue;
+        }
         let mut rig = Rig::new(scene, size);
         match name {
             "wires" => wires(&mut rig),

@@ -109,11 +109,11 @@ fn prepass(run: &Run) -> Result<(), String> {
     };
     let mut table = Table::new(&["scene", "prepass", "round", "milliseconds"]);
     let scenes = BuiltIn::ALL.into_iter().map(Some).chain([None]);
-    for scene in scenes {
+    for scene in scenes.skip(if run.quick { 4 } else { 0 }) {
         let name = scene.map_or("a million vertices", BuiltIn::name);
         let mut rig = Rig::new(scene, size);
         if scene.is_none() {
-            ball(&mut rig, 1_000_000);
+            ball(&mut rig, if run.quick { 10_000 } else { 1_000_000 });
         }
         for round in 0..=run.rounds {
             for with in ["no", "yes"] {
@@ -156,6 +156,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         UVec2::new(1280, 720)
     };
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
+    rig.unlight();
     let variants: Vec<(String, Wear)> = styles
         .into_iter()
         .map(|(name, style)| (name.replace(',', ";"), Wear::style(style)))

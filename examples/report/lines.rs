@@ -64,18 +64,9 @@ fn detectors() -> Vec<(String, ComicStyle)> {
     all
 }
 
-/// Lines alone should change the picture.
-fn unlit(rig: &mut Rig) {
-    let world = rig.headless.app.world_mut();
-    let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
-    for (_, material) in materials.iter_mut() {
-        material.unlit = true;
-    }
-}
-
 fn truth(scene: BuiltIn, size: UVec2) -> Truth {
     let mut rig = Rig::new(Some(scene), size * FINE);
-    unlit(&mut rig);
+    rig.unlight();
     // Ids are drawn for edges that nobody sees.
     rig.wear(&Wear::style(outlines(Outlines {
         silhouettes: None,
@@ -121,7 +112,7 @@ fn score(run: &Run) -> Result<(), String> {
     for &scene in scenes {
         let truth = truth(scene, size);
         let mut rig = Rig::new(Some(scene), size);
-        unlit(&mut rig);
+        rig.unlight();
         rig.wear(&Wear::Nothing);
         rig.headless.step(4);
         let plain = rig.headless.picture();
@@ -274,6 +265,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     };
     let mut times = rig::times();
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
+    rig.unlight();
     let mut variants: Vec<(String, Wear)> = detectors()
         .into_iter()
         .map(|(name, style)| (name, Wear::style(style)))
@@ -290,6 +282,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     rig::record(run, &mut times, "lines", "teapot", &mut rig, &variants);
     // Twice the pixels along each edge: what 2x2 samples draw.
     let mut fine = Rig::new(Some(BuiltIn::Teapot), size * 2);
+    fine.unlight();
     let variants = [
         ("tone bands hard".to_owned(), Wear::style(bands(0.0))),
         (

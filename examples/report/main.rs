@@ -129,7 +129,7 @@ fn run() -> Result<(), String> {
         let run = Run {
             quick,
             rounds: if quick { 2 } else { 7 },
-            frames: if quick { 1 } else { 3 },
+            frames: if quick { 1 } else { 2 },
             folder: out.clone(),
             started: Instant::now(),
         };

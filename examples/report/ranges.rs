@@ -262,6 +262,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     };
     let mut times = rig::times();
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
+    rig.unlight();
     let smoothing = |outliers| {
         Some(RangeSmoothing {
             outliers,
@@ -301,7 +302,10 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let strided = Strided::new();
     let blit = Blit::new(size.to_array());
     // The teapot's depth, enlarged: what is timed is the reading.
-    let small = &captures[1];
+    let small = captures
+        .iter()
+        .find(|capture| capture.name == "teapot")
+        .ok_or("no teapot")?;
     let depth: Vec<f32> = (0..size.y)
         .flat_map(|y| (0..size.x).map(move |x| (x, y)))
         .map(|(x, y)| {

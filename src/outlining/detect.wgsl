@@ -37,10 +37,14 @@ fn depth_at(pixel: vec2<i32>) -> f32 {
 }
 
 #ifdef CREASES
-fn normal_at(pixel: vec2<i32>) -> vec4<f32> {
+// The normal at a pixel of the 5 x 5 window, and whether there is one: the
+// border's outside the viewport.
+fn normal_at(pixel: vec2<i32>, i: i32, depths: ptr<function, array<f32, 25>>) -> vec4<f32> {
     let first = comics.viewport.xy;
-    let at = clamp(pixel, first, first + comics.viewport.zw - 1);
-    return load_normal(at) * vec4(1.0, 1.0, 1.0, select(1.0, 0.0, is_background(load_depth(at, 0))));
+    let at = clamp(pixel + vec2(i % 5, i / 5) - 2, first, first + comics.viewport.zw - 1);
+    let inside = at - pixel + 2;
+    let sky = is_background((*depths)[5 * inside.y + inside.x]);
+    return load_normal(at) * vec4(1.0, 1.0, 1.0, select(1.0, 0.0, sky));
 }
 #endif
 
@@ -69,7 +73,12 @@ fn detect(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     if any(inside < vec2(0)) || any(inside >= comics.viewport.zw) {
         return vec4(0u);
     }
-    let s = comics.outlines;
+    var s = comics.outlines;
+    // Forms are compiled in, where they are known: see has() in map.wgsl.
+#ifdef FORMS
+    s.silhouette_faithful = #{SILHOUETTE_FAITHFUL}u;
+    s.crease_faithful = #{CREASE_FAITHFUL}u;
+#endif
     var depths: array<f32, 25>;
     var nearest = 0.0;
     for (var i = 0; i < 25; i++) {
@@ -131,7 +140,7 @@ fn detect(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
 #ifdef CREASES
     var normals: array<vec4<f32>, 25>;
     for (var i = 0; i < 25; i++) {
-        normals[i] = normal_at(pixel + vec2(i % 5, i / 5) - 2);
+        normals[i] = normal_at(pixel, i, &depths);
     }
     if s.crease_faithful != 0u {
         let p = component_response(&normals, s.crease_k);

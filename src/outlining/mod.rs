@@ -34,6 +34,7 @@ use crate::{
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     objects::ObjectStyleBuffer,
     passes::{ViewPass, ViewPasses},
+    styles::EdgeForm,
     stylize::ComicsUniform,
     view::Plan,
 };
@@ -61,6 +62,10 @@ pub(crate) struct OutlineKey {
     pub object_styles: bool,
     pub fading: bool,
     pub visible_range: bool,
+    /// Forms of the silhouettes and the creases.
+    pub faithful: [bool; 2],
+    /// A pixel of the depth is a pixel of the picture.
+    pub same_size: bool,
 }
 
 impl OutlineKey {
@@ -77,12 +82,25 @@ impl OutlineKey {
             object_styles: plan.object_styles,
             fading,
             visible_range: fading && plan.depth_map.mapping.follows_visible_range(),
+            faithful: [
+                outlines.silhouettes.map(|s| s.form),
+                outlines.creases.map(|c| c.form),
+            ]
+            .map(|form| form == Some(EdgeForm::Faithful)),
+            same_size: true,
         })
     }
 
     fn shader_defs(&self) -> Vec<ShaderDefVal> {
+        let number = |name: &str, on| ShaderDefVal::UInt(name.into(), u32::from(on));
+        let forms = [
+            number("SILHOUETTE_FAITHFUL", self.faithful[0]),
+            number("CREASE_FAITHFUL", self.faithful[1]),
+        ];
         [
             (true, "DEPTH"),
+            (true, "FORMS"),
+            (self.same_size, "SAME_SIZE"),
             (self.samples > 1, "MULTISAMPLED"),
             (self.oblique, "OBLIQUE"),
             (self.silhouettes, "SILHOUETTES"),
@@ -96,6 +114,7 @@ impl OutlineKey {
         .into_iter()
         .filter(|(on, _)| *on)
         .map(|(_, name)| name.into())
+        .chain(forms)
         .collect()
     }
 

@@ -38,9 +38,13 @@ impl Outlining<'_> {
         plan: &Plan,
         (samples, size): (u32, UVec2),
         oblique: bool,
+        same_size: bool,
         reach: i32,
     ) -> Option<OutlinePass> {
-        let key = OutlineKey::new(plan, samples, oblique)?;
+        let key = OutlineKey {
+            same_size,
+            ..OutlineKey::new(plan, samples, oblique)?
+        };
         let new_texture =
             |label| ViewTexture::new(device, label, size, 1, TextureFormat::Rgba16Uint);
         let (edges, flood) = old.map_or((None, None), |old| (Some(old.edges), old.flood));

@@ -89,6 +89,9 @@ struct ObjectStyle {
 #ifdef DEPTH
 // The depth texture's pixel of a pixel of the viewport.
 fn depth_pixel(pixel: vec2<i32>) -> vec2<i32> {
+#ifdef SAME_SIZE
+    return pixel;
+#endif
     let inside = floor((vec2<f32>(pixel - comics.viewport.xy) + 0.5) * comics.depth_scale);
     return comics.viewport.xy + vec2<i32>(inside);
 }

@@ -68,11 +68,14 @@ struct Modes {
     /// Contours that do not fade.
     steady_contours: bool,
     tone_bands: u32,
+    /// A pixel of the depth is a pixel of the picture.
+    same_size: bool,
 }
 
 impl Modes {
     fn of(uniform: &ComicsUniform) -> Self {
         let ComicsUniform {
+            depth_scale,
             depth,
             desaturation,
             colorization,
@@ -88,6 +91,7 @@ impl Modes {
             whole_contours: contours.radius.fract() == 0.0,
             steady_contours: contours.fade == 0.0,
             tone_bands: tone_bands.faithful,
+            same_size: *depth_scale == Vec2::ONE,
         }
     }
 
@@ -104,6 +108,7 @@ impl Modes {
         ];
         let flags = [
             (true, "MODES"),
+            (self.same_size, "SAME_SIZE"),
             (self.whole_contours, "WHOLE_CONTOURS"),
             (self.steady_contours, "STEADY_CONTOURS"),
         ];

@@ -8,7 +8,7 @@
 #import bevy_comics::styles::contours::{
     Contours, Window, PREWITT,
     MISSING_W, MISSING_E, MISSING_N, MISSING_S,
-    contour_response, faithful_response, line, nearest_depth,
+    contour_response, faithful_response, gap_behind, line, nearest_depth,
 }
 
 // (D, L) of a pixel, the mean of its samples, as its colour is theirs.
@@ -93,6 +93,6 @@ fn contour(s: Contours, frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
 
 // The Prewitt response of the depth map, slopes and all, per pixel.
 fn slope(frame: DepthFrame, pixel: vec2<i32>) -> f32 {
-    return faithful_response(frame, 0.0, PREWITT, window(pixel, 1, 0));
+    return faithful_response(frame, gap_behind(frame, 0.0), PREWITT, window(pixel, 1, 0));
 }
 #endif

@@ -11,25 +11,28 @@ use serde_json::Value;
 
 use crate::reference::range;
 
+/// Builds an example and gives its path.
+pub fn example(name: &str) -> PathBuf {
+    let debug = env::current_exe()
+        .expect("this test")
+        .ancestors()
+        .find(|path| path.file_name().is_some_and(|name| name == "debug"))
+        .expect("the target folder")
+        .to_owned();
+    let status = Command::new(env::var("CARGO").unwrap_or_else(|_| "cargo".into()))
+        .args(["build", "--quiet", "--example", name])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .env("CARGO_TARGET_DIR", debug.parent().expect("a parent"))
+        .status()
+        .expect("cargo runs");
+    assert!(status.success(), "the example does not build");
+    debug.join("examples").join(name)
+}
+
 /// The example, built once.
 fn render() -> &'static Path {
     static RENDER: OnceLock<PathBuf> = OnceLock::new();
-    RENDER.get_or_init(|| {
-        let debug = env::current_exe()
-            .expect("this test")
-            .ancestors()
-            .find(|path| path.file_name().is_some_and(|name| name == "debug"))
-            .expect("the target folder")
-            .to_owned();
-        let status = Command::new(env::var("CARGO").unwrap_or_else(|_| "cargo".into()))
-            .args(["build", "--quiet", "--example", "render"])
-            .current_dir(env!("CARGO_MANIFEST_DIR"))
-            .env("CARGO_TARGET_DIR", debug.parent().expect("a parent"))
-            .status()
-            .expect("cargo runs");
-        assert!(status.success(), "the example does not build");
-        debug.join("examples/render")
-    })
+    RENDER.get_or_init(|| example("render"))
 }
 
 fn run(folder: &Path, arguments: &[&str]) -> Output {

@@ -21,6 +21,7 @@ mod outlines;
 mod pictures;
 mod range;
 mod range_views;
+mod report;
 mod scenes;
 mod shaders;
 mod small;

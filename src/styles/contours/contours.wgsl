@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::styles::contours
 
-#import bevy_comics::depth::map::{DepthFrame, EMPTY, depth_map, depth_step, has, is_background}
+#import bevy_comics::depth::map::{DepthFrame, EMPTY, depth_step, has, is_background, spread_floor}
 
 const PREWITT: u32 = 0u;
 const SOBEL: u32 = 1u;
@@ -50,19 +50,19 @@ fn minmod(a: f32, b: f32) -> f32 {
     return select(b, a, abs(a) < abs(b));
 }
 
-// D(d) - D(p), where the sky lies a gap behind the farthest geometry.
+// How far behind the farthest geometry the sky lies: a gap behind D = 1, which
+// the farthest reaches wherever the range is not below its floor.
+fn gap_behind(f: DepthFrame, gap: f32) -> f32 {
+    let least = spread_floor(f);
+    return gap + select(1.0 - (f.near - f.far) / least, 0.0, f.near - f.far > least);
+}
+
+// D(d) - D(p), where the sky lies a gap behind the farthest geometry. No branch:
+// the sky's depth is the far end, and the gap is added.
 fn step_from(f: DepthFrame, gap: f32, d: f32, p: f32, p_is_sky: bool) -> f32 {
     let d_is_sky = is_background(d);
-    if d_is_sky && p_is_sky {
-        return 0.0;
-    }
-    if d_is_sky {
-        return depth_map(f, clamp(p, f.far, f.near)).y + gap;
-    }
-    if p_is_sky {
-        return -(depth_map(f, d).y + gap);
-    }
-    return depth_step(f, d, p);
+    let behind = select(0.0, gap, d_is_sky) - select(0.0, gap, p_is_sky);
+    return depth_step(f, select(d, f.far, d_is_sky), select(p, f.far, p_is_sky)) + behind;
 }
 
 // Two opposite neighbours against the plane through the centre. Raw depth is
@@ -185,9 +185,9 @@ fn contour_response(s: Contours, f: DepthFrame, win: Window) -> f32 {
         return 0.0;
     }
     if s.faithful != 0u {
-        return faithful_response(f, f.sky_gap, s.operator_kind, win);
+        return faithful_response(f, gap_behind(f, f.sky_gap), s.operator_kind, win);
     }
-    return plane_response(f, f.sky_gap, s.operator_kind, win);
+    return plane_response(f, gap_behind(f, f.sky_gap), s.operator_kind, win);
 }
 
 // How much of a line there is at this response.

@@ -1,0 +1,235 @@
+//! The report says what its numbers say, and the work that it counted has not
+//! grown.
+
+use std::{collections::HashMap, fs, path::PathBuf, process::Command};
+
+use crate::{command_line::example, common::work};
+
+fn folder() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/report"))
+}
+
+/// A table as (header, rows), read without the report's own code.
+fn csv(name: &str) -> (Vec<String>, Vec<HashMap<String, String>>) {
+    let path = folder().join(format!("{name}.csv"));
+    let text = fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    let mut lines = text.lines();
+    let header: Vec<String> = lines
+        .next()
+        .expect("a header")
+        .split(',')
+        .map(str::to_owned)
+        .collect();
+    let rows = lines
+        .map(|line| {
+            header
+                .iter()
+                .cloned()
+                .zip(line.split(',').map(str::to_owned))
+                .collect()
+        })
+        .collect();
+    (header, rows)
+}
+
+fn number(row: &HashMap<String, String>, name: &str) -> f64 {
+    row[name]
+        .parse()
+        .unwrap_or_else(|_| panic!("{name} of {row:?}"))
+}
+
+/// The middle of some numbers, between two where they are even.
+fn middle(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_by(f64::total_cmp);
+    let n = numbers.len();
+    0.5 * (numbers[(n - 1) / 2] + numbers[n / 2])
+}
+
+#[test]
+fn the_text_is_made_of_the_tables() {
+    let copy = tempfolder("report");
+    for entry in fs::read_dir(folder()).expect("docs/report") {
+        let path = entry.expect("entry").path();
+        let name = path.file_name().expect("a name").to_owned();
+        if path.extension().is_some_and(|e| e == "csv" || e == "png") {
+            fs::copy(&path, copy.join(name)).expect("copied");
+        }
+    }
+    let output = Command::new(example("report"))
+        .args(["--render", "--out"])
+        .arg(&copy)
+        .output()
+        .expect("the example runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    for name in ["report.md", "range.svg", "flicker.svg"] {
+        let made = fs::read_to_string(copy.join(name)).expect("made");
+        let kept = fs::read_to_string(folder().join(name)).expect("kept");
+        assert!(made == kept, "{name} is not what its tables make");
+    }
+    fs::remove_dir_all(copy).expect("removed");
+}
+
+fn tempfolder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("bevy_comics_{name}_{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a temporary folder");
+    folder
+}
+
+#[test]
+fn ratios_and_exponents_come_out_again() {
+    let text = fs::read_to_string(folder().join("report.md")).expect("the report");
+    // The default comic in blits: paired in every round.
+    let (_, rows) = csv("line_times");
+    let own = |variant: &str, round: usize| {
+        let row = rows
+            .iter()
+            .find(|r| {
+                r["section"] == "lines"
+                    && r["variant"] == variant
+                    && r["round"] == round.to_string()
+            })
+            .expect("a row");
+        number(row, "range") + number(row, "lines") + number(row, "post")
+    };
+    let post = |variant: &str, round: usize| {
+        let row = rows
+            .iter()
+            .find(|r| {
+                r["section"] == "lines"
+                    && r["variant"] == variant
+                    && r["round"] == round.to_string()
+            })
+            .expect("a row");
+        number(row, "post")
+    };
+    let rounds = rows
+        .iter()
+        .filter(|r| r["section"] == "lines" && r["variant"] == "blit")
+        .count();
+    let ratio = middle(
+        (0..rounds)
+            .map(|round| {
+                (own("default comic", round) - own("nothing", round))
+                    / (post("blit", round) - post("nothing", round))
+            })
+            .collect(),
+    );
+    let line = text
+        .lines()
+        .find(|l| l.starts_with("| default comic, in blits"))
+        .expect("the target");
+    assert!(line.contains(&format!("| {ratio:.2} |")), "{ratio}: {line}");
+
+    // The exponent over pixels, from the medians, by the normal equations.
+    let (_, rows) = csv("growth_times");
+    let mut points: Vec<(f64, f64)> = Vec::new();
+    for row in rows.iter().filter(|r| r["section"] == "pixels") {
+        let pixels = number(row, "width") * number(row, "height");
+        if points.iter().any(|(x, _)| *x == pixels.ln()) {
+            continue;
+        }
+        let of = |variant: &str| -> Vec<f64> {
+            rows.iter()
+                .filter(|r| {
+                    r["section"] == "pixels"
+                        && r["scene"] == row["scene"]
+                        && r["variant"] == variant
+                })
+                .map(|r| number(r, "range") + number(r, "lines") + number(r, "post"))
+                .collect()
+        };
+        let over = of("default comic")
+            .into_iter()
+            .zip(of("nothing"))
+            .map(|(a, b)| a - b)
+            .collect();
+        points.push((pixels.ln(), middle(over).ln()));
+    }
+    let n = points.len() as f64;
+    let sum = |f: fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>();
+    let (x, y) = (sum(|p| p.0), sum(|p| p.1));
+    let slope = (n * sum(|p| p.0 * p.1) - x * y) / (n * sum(|p| p.0 * p.0) - x * x);
+    assert!(
+        text.contains(&format!("Fitted exponent: {slope:.3}.")),
+        "{slope}"
+    );
+
+    // F1 of the silhouettes, from the counts.
+    let (_, rows) = csv("line_scores");
+    let mut sums = [0.0; 4];
+    for row in rows
+        .iter()
+        .filter(|r| r["detector"] == "silhouettes" && r["truth"] == "silhouettes")
+    {
+        for (sum, name) in sums.iter_mut().zip(["found", "true", "right", "drawn"]) {
+            *sum += number(row, name);
+        }
+    }
+    let (recall, precision) = (sums[0] / sums[1], sums[2] / sums[3]);
+    let f1 = 2.0 / (1.0 / recall + 1.0 / precision);
+    let line = text
+        .lines()
+        .find(|l| l.starts_with("| silhouettes |"))
+        .expect("the detector");
+    assert!(line.contains(&format!("| {f1:.3} |")), "{f1}: {line}");
+}
+
+#[test]
+fn nothing_in_the_report_is_not_finite() {
+    let (_, rows) = csv("stability");
+    assert!(rows.len() > 20);
+    for row in &rows {
+        assert_eq!(row["wild"], "0", "{row:?}");
+    }
+    // Where the textbook's form loses everything, ours keeps its few units.
+    let hard = rows
+        .iter()
+        .find(|r| r["case"] == "z 100 to 100.001")
+        .expect("the case");
+    assert!(number(hard, "textbook_ulp") > 1e5 && number(hard, "ulp") < 5.0);
+    for row in rows.iter().filter(|r| r["kind"] == "depth map") {
+        assert!(number(row, "ulp") <= 5.0, "{row:?}");
+    }
+    // Exact methods are exact.
+    let (_, rows) = csv("range_errors");
+    for row in &rows {
+        if row["method"] == "full" || row["method"] == "ping-pong" {
+            for name in ["near", "far", "map", "band", "flip"] {
+                assert_eq!(number(row, name), 0.0, "{row:?}");
+            }
+        }
+    }
+}
+
+/// The gate: passes, bindings, texels and bytes are what the committed report
+/// counted, on whatever machine.
+#[test]
+fn no_style_does_more_work_than_the_report_says() {
+    let (_, rows) = csv("work");
+    let ladder = work::ladder();
+    assert_eq!(rows.len(), ladder.len());
+    for (row, (name, style)) in rows.iter().zip(&ladder) {
+        let now = work::count(name, style);
+        assert_eq!(row["style"], name.replace(',', ";"));
+        assert_eq!(row["ran"], now.ran.join(" + "), "{name}");
+        assert_eq!(number(row, "left_out") as usize, now.left_out, "{name}");
+        assert!(
+            now.bindings as f64 <= number(row, "bindings"),
+            "{name}: {now:?}"
+        );
+        // A line moves by a pixel between adapters: two per cent.
+        assert!(
+            now.fetches[0] <= 1.02 * number(row, "fetches") + 0.01,
+            "{name}: {now:?}"
+        );
+        assert!(now.fetches[1] <= number(row, "most"), "{name}: {now:?}");
+        assert!(
+            now.bytes <= 1.02 * number(row, "bytes") + 0.01,
+            "{name}: {now:?}"
+        );
+    }
+    // And it counts: everything is more than nothing.
+    let last = rows.last().expect("a style");
+    assert!(number(last, "fetches") > 10.0 && number(&rows[0], "fetches") == 0.0);
+}
