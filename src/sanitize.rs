@@ -66,7 +66,7 @@ mod tests {
 
     use crate::{
         BlackFlats, Colorization, Contours, Creases, DepthMap, DepthMapping, Desaturation,
-        ObjectEdges, Outlines, Silhouettes, Sketch, ToneBands,
+        ObjectEdges, Outlines, RangeSmoothing, Silhouettes, Sketch, ToneBands,
     };
 
     /// A million floats: hand-picked edges, then every exponent and sign with
@@ -225,6 +225,25 @@ mod tests {
         let floor = map(|m, x| m.floor = x);
         fuzz("DepthMap::floor", 0.0, 1.0, |x| floor(x).floor);
         let floor = map(|m, x| m.orthographic_floor = x);
+        let smoothing = |edit: fn(&mut RangeSmoothing, f32)| {
+            move |x| {
+                let mut s = RangeSmoothing::default();
+                edit(&mut s, x);
+                s.sanitized()
+            }
+        };
+        let outliers = smoothing(|s, x| s.outliers = x);
+        fuzz("RangeSmoothing::outliers", 0.0, 0.2, |x| {
+            outliers(x).outliers
+        });
+        let hysteresis = smoothing(|s, x| s.hysteresis = x);
+        fuzz("RangeSmoothing::hysteresis", 0.0, 4.0, |x| {
+            hysteresis(x).hysteresis
+        });
+        let expand = smoothing(|s, x| s.expand = x);
+        fuzz("RangeSmoothing::expand", 0.0, 60.0, |x| expand(x).expand);
+        let shrink = smoothing(|s, x| s.shrink = x);
+        fuzz("RangeSmoothing::shrink", 0.0, 60.0, |x| shrink(x).shrink);
         fuzz("DepthMap::orthographic_floor", 0.0, 1e6, |x| {
             floor(x).orthographic_floor
         });

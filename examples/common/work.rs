@@ -110,10 +110,23 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
         ),
         ("default comic", comic.clone()),
         (
-            "default comic, smoothed range",
+            "default comic, range of every frame",
             ComicStyle {
                 depth_map: Some(DepthMap {
-                    smoothing: Some(RangeSmoothing::default()),
+                    smoothing: None,
+                    ..default()
+                }),
+                ..comic.clone()
+            },
+        ),
+        (
+            "default comic, percentiles",
+            ComicStyle {
+                depth_map: Some(DepthMap {
+                    smoothing: Some(RangeSmoothing {
+                        outliers: 0.005,
+                        ..default()
+                    }),
                     ..default()
                 }),
                 ..comic.clone()
@@ -140,10 +153,6 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
             ComicStyle {
                 tone_bands: Some(ToneBands::default()),
                 outlines: Some(Outlines::default()),
-                depth_map: Some(DepthMap {
-                    smoothing: Some(RangeSmoothing::default()),
-                    ..default()
-                }),
                 ..comic
             },
         ),

@@ -1,6 +1,10 @@
 //! Moving views as plain numbers: what the range and the map are made of.
 
-use bevy::{prelude::*, render::sync_world::RenderEntity};
+use bevy::{
+    core_pipeline::{prepass::DepthPrepass, tonemapping::Tonemapping},
+    prelude::*,
+    render::sync_world::RenderEntity,
+};
 use bevy_comics::{ColorMethod, Colorization, ComicStyle, Desaturation};
 use nv_flip::{FlipImageRgb8, FlipPool};
 
@@ -162,7 +166,7 @@ pub fn captures(run: &Run, frames: usize) -> Vec<Capture> {
         let world = rig.headless.app.world_mut();
         world
             .entity_mut(camera)
-            .insert(bevy::core_pipeline::prepass::DepthPrepass);
+            .insert((DepthPrepass, Tonemapping::AcesFitted));
         rig.headless.step(2);
         let shots = (0..frames)
             .map(|frame| {

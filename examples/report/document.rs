@@ -647,6 +647,7 @@ fn flicker(out: &mut String, folder: &Path) -> Result<(), String> {
          Given are the mean over all pixels and frames, the worst frame's mean, and the worst \
          frame's 99th percentile; the lag is the mean distance of the drawn range from the \
          exact one, in octaves of distance (outliers that percentiles leave out count as lag). \
+         A cut is announced, and starts every variant anew. \
          The ranges are those of the shader's twin, which the tests hold to the shader.\n\n\
          | sequence | stage | flicker, mean | worst frame | its 99 % | lag, octaves |\n\
          |---|---|---|---|---|---|\n",
@@ -670,7 +671,7 @@ fn flicker(out: &mut String, folder: &Path) -> Result<(), String> {
     if folder.join("flicker.png").exists() {
         out.push_str(
             "\nAn intruder crosses near the camera for half a second: without smoothing (above) \
-             and with all stages (below). Frames 18, 20, 24, 35, 51 and 66; it comes at 20 and \
+             and with the default (below). Frames 18, 20, 24, 35, 51 and 66; it comes at 20 and \
              is gone at 50.\n\n![Six frames without and with smoothing](flicker.png)\n",
         );
     }

@@ -5,7 +5,10 @@
 //! same frame drawn with the range of the frame before: what the scene's own
 //! change does not explain.
 
-use bevy::{core_pipeline::prepass::DepthPrepass, prelude::*};
+use bevy::{
+    core_pipeline::{prepass::DepthPrepass, tonemapping::Tonemapping},
+    prelude::*,
+};
 use bevy_comics::RangeSmoothing;
 
 use crate::{
@@ -29,15 +32,10 @@ struct Sequence {
 pub fn variants() -> Vec<(&'static str, Option<RangeSmoothing>)> {
     let off = RangeSmoothing::OFF;
     let all = RangeSmoothing::default();
+    let outliers = 0.005;
     vec![
         ("off", None),
-        (
-            "percentiles",
-            Some(RangeSmoothing {
-                outliers: all.outliers,
-                ..off
-            }),
-        ),
+        ("percentiles", Some(RangeSmoothing { outliers, ..off })),
         (
             "median of three",
             Some(RangeSmoothing {
@@ -60,7 +58,11 @@ pub fn variants() -> Vec<(&'static str, Option<RangeSmoothing>)> {
                 ..off
             }),
         ),
-        ("all", Some(all)),
+        ("the default", Some(all)),
+        (
+            "the default and percentiles",
+            Some(RangeSmoothing { outliers, ..all }),
+        ),
     ]
 }
 
@@ -114,7 +116,7 @@ fn mountain(rig: &mut Rig) -> Entity {
     let world = rig.headless.app.world_mut();
     let mesh = world
         .resource_mut::<Assets<Mesh>>()
-        .add(Cone::new(900.0, 1400.0));
+        .add(Cone::new(9.0, 14.0));
     let material = world
         .resource_mut::<Assets<StandardMaterial>>()
         .add(StandardMaterial {
@@ -155,7 +157,7 @@ fn particles(rig: &mut Rig) -> Vec<Entity> {
 const FRAMES: usize = 72;
 
 fn play(name: &str, size: UVec2) -> Sequence {
-    let scene = if name == "fly-through" || name == "far mountain" {
+    let scene = if name == "fly-through" {
         BuiltIn::Mountains
     } else {
         BuiltIn::Teapot
@@ -172,12 +174,12 @@ fn play(name: &str, size: UVec2) -> Sequence {
         .app
         .world_mut()
         .entity_mut(camera)
-        .insert(DepthPrepass);
+        .insert((DepthPrepass, Tonemapping::AcesFitted));
     let extra = match name {
         "far mountain" => mountain(&mut rig),
         _ => intruder(&mut rig),
     };
-    let dust = if name == "particles" {
+    let dust = if name.starts_with("particles") {
         particles(&mut rig)
     } else {
         Vec::new()
@@ -197,7 +199,7 @@ fn play(name: &str, size: UVec2) -> Sequence {
                     shown = Some(ahead(0.9, 0.7 - 1.4 * part));
                 }
                 "far mountain" if (24..60).contains(&frame) => {
-                    let mut at = ahead(9000.0, 500.0);
+                    let mut at = ahead(70.0, 6.0);
                     at.y = from.translation.y;
                     shown = Some(at);
                 }

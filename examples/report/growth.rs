@@ -13,6 +13,8 @@ use crate::{
 };
 
 pub fn measure(run: &Run) -> Result<(), String> {
+    // Large pictures take long and vary little.
+    let few = run.with_rounds(run.rounds.min(3));
     let comic = [("default comic".to_owned(), Wear::style(default_comic()))];
     let mut times = rig::times();
     let sizes: &[(u32, u32)] = if run.quick {
@@ -31,6 +33,11 @@ pub fn measure(run: &Run) -> Result<(), String> {
         let mut rig = Rig::new(Some(BuiltIn::Teapot), UVec2::new(width, height));
         rig.unlight();
         let what = format!("{width}x{height}");
+        let run = if width * height > 3_000_000 {
+            &few
+        } else {
+            run
+        };
         rig::record(run, &mut times, "pixels", &what, &mut rig, &comic);
     }
     let counts: &[u32] = if run.quick {
@@ -43,6 +50,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         ball(&mut rig, vertices);
         rig.headless.step(2);
         let what = vertices.to_string();
+        let run = if vertices > 500_000 { &few } else { run };
         rig::record(run, &mut times, "vertices", &what, &mut rig, &comic);
     }
     for cameras in 1..=4u32 {

@@ -131,10 +131,13 @@ fn rotating(strided: &Strided, textures: &[wgpu::Texture], frame: usize) -> Opti
     ends
 }
 
+/// The share that the report takes for an outlier.
+pub const OUTLIERS: f64 = 0.005;
+
 fn percentiles(shot: &Shot) -> Option<[f32; 2]> {
     let ends = shot.ends()?;
     let (bins, total) = smoothing::histogram(shot.depth.iter().copied());
-    let share = f64::from(RangeSmoothing::default().outliers);
+    let share = OUTLIERS;
     let found = smoothing::percentiles(&bins, total, share, ends.map(f64::from));
     Some(found.map(|d| d as f32))
 }
@@ -280,6 +283,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         .map(|reduction| {
             let map = DepthMap {
                 reduction,
+                smoothing: None,
                 ..DepthMap::default()
             };
             (format!("{reduction:?}"), with_map(map))

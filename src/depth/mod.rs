@@ -24,7 +24,7 @@ use crate::sanitize::{bounded, ordered_planes};
 /// nearest and 1 at the farthest end of a range and drives every depth style.
 ///
 /// Without this component a camera uses the default: the range of what is
-/// visible in this very frame (\[CS\] Eq. 4).
+/// visible (\[CS\] Eq. 4), smoothed over time so that it does not flicker.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[serde(default, deny_unknown_fields)]
@@ -50,8 +50,10 @@ pub struct DepthMap {
     /// How the visible range is found. Every method gives the same bits.
     /// Default: [`ReductionMethod::Auto`].
     pub reduction: ReductionMethod,
-    /// Keeps the visible range from flickering; without it the range is that of
-    /// every single frame. Default: none.
+    /// Keeps the visible range from flickering; `None` takes the range of every
+    /// single frame, as the paper does. A view that stands still has the same
+    /// range either way. Default: [`RangeSmoothing::default`]; what it brings and
+    /// costs is measured in `docs/report`.
     pub smoothing: Option<RangeSmoothing>,
     /// Holds the visible range as it is, whatever enters or leaves the view,
     /// until this is `false` again: for a scene that must not change its look,
@@ -70,7 +72,7 @@ impl Default for DepthMap {
             floor: 1.0 / 16384.0,
             orthographic_floor: 1e-4,
             reduction: ReductionMethod::default(),
-            smoothing: None,
+            smoothing: Some(RangeSmoothing::default()),
             locked: false,
         }
     }

@@ -75,14 +75,17 @@ fn lines_at(at: vec2<f32>) -> Lines {
     add_flooded(&lines, pixel, at);
 #endif
 #else
+#ifdef LINE_REACH
+    let reach = #{LINE_REACH}i;
+#else
     let reach = comics.outlines.reach;
-    for (var y = -reach; y <= reach; y++) {
-        for (var x = -reach; x <= reach; x++) {
-            let owner = inside_viewport(pixel + vec2(x, y));
-            let texel = textureLoad(edge_texture, owner, 0);
-            if (texel.x & 0xfffu) != 0u {
-                add_edge(&lines, unpack_edge(texel), owner, at);
-            }
+#endif
+    let side = 2 * reach + 1;
+    for (var i = 0; i < side * side; i++) {
+        let owner = inside_viewport(pixel + vec2(i % side, i / side) - reach);
+        let texel = textureLoad(edge_texture, owner, 0);
+        if (texel.x & 0xfffu) != 0u {
+            add_edge(&lines, unpack_edge(texel), owner, at);
         }
     }
 #endif

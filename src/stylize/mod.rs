@@ -28,7 +28,7 @@ use crate::{
     depth::{DepthFrame, RawDepth, prepare::ViewRange},
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     objects::ObjectStyleBuffer,
-    outlining::{edges_entry, object_styles_entry, range_entry},
+    outlining::{GATHER_REACH, edges_entry, object_styles_entry, range_entry},
     passes::ViewPasses,
     styles::{
         black_flats::BlackFlatsUniform, colorization::ColorizationUniform,
@@ -65,9 +65,13 @@ struct Modes {
     contours: [u32; 2],
     /// Contours that are a whole number of pixels wide on either side.
     whole_contours: bool,
+    /// Those that one ring of taps draws.
+    single_ring: bool,
     /// Contours that do not fade.
     steady_contours: bool,
     tone_bands: u32,
+    /// How far around a pixel lines are looked for without a flood.
+    reach: u32,
     /// A pixel of the depth is a pixel of the picture.
     same_size: bool,
 }
@@ -81,6 +85,7 @@ impl Modes {
             colorization,
             contours,
             tone_bands,
+            outlines,
             ..
         } = uniform;
         Self {
@@ -89,8 +94,10 @@ impl Modes {
             colorization: [colorization.mode, colorization.faithful],
             contours: [contours.operator_kind, contours.faithful],
             whole_contours: contours.radius.fract() == 0.0,
+            single_ring: contours.radius == 1.0 || contours.radius == 2.0,
             steady_contours: contours.fade == 0.0,
             tone_bands: tone_bands.faithful,
+            reach: outlines.reach.clamp(0, GATHER_REACH) as u32,
             same_size: *depth_scale == Vec2::ONE,
         }
     }
@@ -105,11 +112,13 @@ impl Modes {
             ("CONTOUR_OPERATOR", self.contours[0]),
             ("CONTOUR_FAITHFUL", self.contours[1]),
             ("TONE_BANDS_FAITHFUL", self.tone_bands),
+            ("LINE_REACH", self.reach),
         ];
         let flags = [
             (true, "MODES"),
             (self.same_size, "SAME_SIZE"),
             (self.whole_contours, "WHOLE_CONTOURS"),
+            (self.single_ring, "SINGLE_RING"),
             (self.steady_contours, "STEADY_CONTOURS"),
         ];
         let flags = flags

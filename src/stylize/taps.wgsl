@@ -54,6 +54,10 @@ fn window(pixel: vec2<i32>, reach: i32, sample: i32) -> Window {
 // as well, or thin objects would fall through.
 fn ring_line(s: Contours, frame: DepthFrame, pixel: vec2<i32>, reach: i32, sample: i32) -> vec2<f32> {
     var found = vec2(0.0);
+#ifdef SINGLE_RING
+    let win = window(pixel, reach, sample);
+    return vec2(line(s, contour_response(s, frame, win)), nearest_depth(win));
+#endif
     for (var r = reach; r > 0; r -= 2) {
         let win = window(pixel, r, sample);
         found = max(found, vec2(line(s, contour_response(s, frame, win)), nearest_depth(win)));

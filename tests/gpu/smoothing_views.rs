@@ -138,6 +138,7 @@ fn a_lock_holds_the_range_until_it_is_taken_away() {
     let locked = |style: &mut ComicStyle, on| {
         style.depth_map = Some(DepthMap {
             locked: on,
+            smoothing: None,
             ..default()
         });
         style.clone()

@@ -6,8 +6,8 @@ use bevy::{color::Color, prelude::*, render::view::Msaa};
 use bevy_comics::{
     BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ComicStyleError,
     ComicStyleHandle, ContourForm, ContourOperator, Contours, Creases, DepthMap, DepthMapping,
-    Desaturation, EdgeForm, ObjectEdges, Outlines, ReductionMethod, Silhouettes, Sketch,
-    ToneBandMethod, ToneBands,
+    Desaturation, EdgeForm, ObjectEdges, Outlines, RangeSmoothing, ReductionMethod, Silhouettes,
+    Sketch, ToneBandMethod, ToneBands,
 };
 use proptest::{
     option,
@@ -50,6 +50,13 @@ fn styles() -> impl Strategy<Value = ComicStyle> {
             flip,
             sky_gap: gap,
             reduction: ReductionMethod::PingPong,
+            smoothing: (kind > 0).then_some(RangeSmoothing {
+                outliers: gap,
+                despike: flip,
+                expand: near,
+                ..default()
+            }),
+            locked: kind == 2,
             ..default()
         },
     );

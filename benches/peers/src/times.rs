@@ -1,6 +1,7 @@
 //! What each crate's passes take, in one app and one run, in turn.
 
 use bevy::{
+    asset::RenderAssetUsages,
     anti_alias::{contrast_adaptive_sharpening::ContrastAdaptiveSharpening, fxaa::Fxaa},
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
@@ -59,6 +60,10 @@ impl Bench {
         let vantage = world
             .run_system_once(|mut stage: Stage| stage.spawn(BuiltIn::Teapot))
             .expect("the stage is there");
+        // Crates that draw shells of meshes read them.
+        for (_, mesh) in world.resource_mut::<Assets<Mesh>>().iter_mut() {
+            mesh.asset_usage = RenderAssetUsages::default();
+        }
         let camera = world.spawn(vantage.camera()).id();
         world.entity_mut(camera).insert((
             target,

@@ -182,6 +182,6 @@ pub(crate) struct OutlinesUniform {
     opacity_fade: f32,
     reference_factor: f32,
     reference_constant: f32,
-    reach: i32,
+    pub(crate) reach: i32,
     unused: u32,
 }
