@@ -90,6 +90,7 @@ fn scatter(folder: &Path, plot: &Plot, points: &[Point]) -> Result<(), String> {
         .y_labels(8)
         .x_label_formatter(&x_label)
         .y_label_formatter(&y_label)
+        .bold_line_style(RGBColor(225, 225, 225))
         .light_line_style(WHITE)
         .draw()
         .map_err(problem)?;
@@ -102,7 +103,7 @@ fn scatter(folder: &Path, plot: &Plot, points: &[Point]) -> Result<(), String> {
     chart
         .draw_series(points.iter().map(|p| Circle::new(at(p), 4, BLUE.filled())))
         .map_err(problem)?;
-    // Labels move down until they lie over none that is there already.
+    // Labels move up or down until they lie over none that is there already.
     let mut taken: Vec<(i32, i32, i32)> = Vec::new();
     for point in &points {
         let (px, py) = chart.backend_coord(&at(point));
@@ -112,13 +113,16 @@ fn scatter(folder: &Path, plot: &Plot, points: &[Point]) -> Result<(), String> {
         } else {
             px + 8
         };
-        let mut top = py - 6;
-        while taken
-            .iter()
-            .any(|(x, y, w)| (top - y).abs() < 13 && left < x + w && *x < left + width)
-        {
-            top += 13;
-        }
+        let is_free = |top: i32| {
+            !taken
+                .iter()
+                .any(|(x, y, w)| (top - y).abs() < 13 && left < x + w && *x < left + width)
+        };
+        let top = [0, -13, 13, -26, 26, -39, 39]
+            .into_iter()
+            .map(|by| py - 6 + by)
+            .find(|top| is_free(*top))
+            .unwrap_or(py - 6);
         taken.push((left, top, width));
         area.draw(&Text::new(
             point.2.clone(),
