@@ -245,7 +245,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         row(
             "none: the depth texture itself",
             time(repeat, |e| {
-                draw(e, &direct.decode.0, &direct_group, &direct.result_view)
+                draw(e, &direct.decode.0, &direct_group, &direct.result_view);
             }),
         );
         for (name, passes) in &all {

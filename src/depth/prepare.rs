@@ -42,12 +42,11 @@ impl ViewRange {
 
     /// The keys that styles are drawn with, once they were recorded.
     pub fn drawn(&self) -> Option<&Buffer> {
-        self.found
-            .load(Ordering::Relaxed)
-            .then(|| match &self.smoothing {
-                Some((smoothing, _)) => &smoothing.drawn,
-                None => &self.keys,
-            })
+        let keys = match &self.smoothing {
+            Some((smoothing, _)) => &smoothing.drawn,
+            None => &self.keys,
+        };
+        self.found.load(Ordering::Relaxed).then_some(keys)
     }
 }
 

@@ -123,7 +123,8 @@ impl Modes {
         ];
         let flags = flags
             .into_iter()
-            .filter_map(|(on, name)| on.then(|| name.into()));
+            .filter(|(on, _)| *on)
+            .map(|(_, name)| name.into());
         numbers
             .into_iter()
             .map(|(name, value)| ShaderDefVal::UInt(name.into(), value))
