@@ -11,6 +11,7 @@ mod bare;
 mod capture;
 #[path = "../common/mod.rs"]
 mod common;
+mod costs;
 #[path = "../../tests/gpu/device.rs"]
 mod device;
 mod document;

@@ -5,7 +5,7 @@ use std::path::Path;
 use plotters::prelude::*;
 
 use crate::{
-    document::{OWN, bare_costs, costs, growth_exponent, line_score},
+    costs::{OWN, bare_costs, costs, growth_exponent, line_score},
     load,
     table::largest,
 };

@@ -81,7 +81,7 @@ fn ratios_and_exponents_come_out_again() {
     let text = fs::read_to_string(folder().join("report.md")).expect("the report");
     // The default comic in blits: paired in every round.
     let (_, rows) = csv("line_times");
-    let own = |variant: &str, round: usize| {
+    let laps = |variant: &str, round: usize, laps: &[&str]| -> f64 {
         let row = rows
             .iter()
             .find(|r| {
@@ -90,19 +90,10 @@ fn ratios_and_exponents_come_out_again() {
                     && r["round"] == round.to_string()
             })
             .expect("a row");
-        number(row, "range") + number(row, "lines") + number(row, "post")
+        laps.iter().map(|lap| number(row, lap)).sum()
     };
-    let post = |variant: &str, round: usize| {
-        let row = rows
-            .iter()
-            .find(|r| {
-                r["section"] == "lines"
-                    && r["variant"] == variant
-                    && r["round"] == round.to_string()
-            })
-            .expect("a row");
-        number(row, "post")
-    };
+    let own = |variant, round| laps(variant, round, &["range", "lines", "post"]);
+    let post = |variant, round| laps(variant, round, &["post"]);
     let rounds = rows
         .iter()
         .filter(|r| r["section"] == "lines" && r["variant"] == "blit")

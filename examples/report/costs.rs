@@ -1,0 +1,127 @@
+//! What the tables of times and of scores come to.
+
+use std::fmt::Write;
+
+use crate::table::{Table, exponent, median, quantile};
+
+/// Columns of the laps, in a table of times.
+pub const LAPS: [&str; 5] = ["prepass", "range", "lines", "main", "post"];
+
+/// The laps that hold this crate's own passes.
+pub const OWN: [&str; 3] = ["range", "lines", "post"];
+
+/// What one variant takes: milliseconds over nothing, and its ratio to a blit
+/// in the same round; each with its 10th and 90th percentile.
+pub struct Cost {
+    pub name: String,
+    pub milliseconds: f64,
+    pub ratio: [f64; 3],
+}
+
+/// The costs of every variant of a section and scene.
+pub fn costs(times: &Table, section: &str, scene: &str, laps: &[&str]) -> Vec<Cost> {
+    let rows = times.matching(&[("section", section), ("scene", scene)]);
+    let of = |variant: &str, laps: &[&str]| -> Vec<f64> {
+        rows.iter()
+            .filter(|row| times.cell(row, "variant") == variant)
+            .map(|row| laps.iter().map(|lap| times.number(row, lap)).sum())
+            .collect()
+    };
+    let (nothing, nothing_post) = (of("nothing", laps), of("nothing", &["post"]));
+    let blit = of("blit", &["post"]);
+    times
+        .distinct(&rows, "variant")
+        .into_iter()
+        .filter(|name| name != "nothing")
+        .map(|name| {
+            let own = of(&name, laps);
+            let over: Vec<f64> = own.iter().zip(&nothing).map(|(v, n)| v - n).collect();
+            let ratios: Vec<f64> = over
+                .iter()
+                .zip(blit.iter().zip(&nothing_post))
+                .map(|(v, (b, n))| v / (b - n))
+                .collect();
+            Cost {
+                name,
+                milliseconds: median(&over),
+                ratio: [0.1, 0.5, 0.9].map(|q| quantile(&ratios, q)),
+            }
+        })
+        .collect()
+}
+
+/// Without a sign where it rounds to zero.
+pub fn unsigned_zero(x: f64, digits: i32) -> f64 {
+    if x.abs() < 0.5 * 10f64.powi(-digits) {
+        0.0
+    } else {
+        x
+    }
+}
+
+/// The passes of a lap that a blit has nothing of.
+pub fn cost_table(out: &mut String, costs: &[Cost]) {
+    let _ = writeln!(out, "| | ms | blits | 10 % to 90 % |\n|---|---|---|---|");
+    for cost in costs.iter().filter(|c| !c.name.starts_with("blit")) {
+        let [low, middle, high] = cost.ratio;
+        let _ = writeln!(
+            out,
+            "| {} | {:.2} | {middle:.2} | {low:.2} to {high:.2} |",
+            cost.name, cost.milliseconds
+        );
+    }
+    out.push('\n');
+}
+
+/// (name, median milliseconds, median ratio to the blit of the round).
+pub fn bare_costs(times: &Table, column: &str) -> Vec<(String, f64, f64)> {
+    let all: Vec<&Vec<String>> = times.rows.iter().collect();
+    let of = |name: &str| times.numbers(&times.matching(&[(column, name)]), "milliseconds");
+    let blit = of("blit");
+    times
+        .distinct(&all, column)
+        .into_iter()
+        .map(|name| {
+            let own = of(&name);
+            let ratios: Vec<f64> = own.iter().zip(&blit).map(|(a, b)| a / b).collect();
+            (name, median(&own), median(&ratios))
+        })
+        .collect()
+}
+
+pub fn size(times: &Table) -> String {
+    times.rows.first().map_or_else(String::new, |row| {
+        format!("{}x{}", times.cell(row, "width"), times.cell(row, "height"))
+    })
+}
+
+/// (recall, precision, F1) of a detector over all scenes.
+pub fn line_score(scores: &Table, detector: &str, truth: &str) -> [f64; 3] {
+    let rows = scores.matching(&[("detector", detector), ("truth", truth)]);
+    let sum = |name| scores.numbers(&rows, name).iter().sum::<f64>();
+    let recall = sum("found") / sum("true").max(1.0);
+    let precision = sum("right") / sum("drawn").max(1.0);
+    let f1 = 2.0 * recall * precision / (recall + precision).max(1e-9);
+    [recall, precision, f1]
+}
+
+/// (exponent of the cost of this crate's passes, points) over pixels, vertices
+/// or cameras.
+pub fn growth_exponent(times: &Table, section: &str, laps: &[&str]) -> (f64, Vec<(f64, f64)>) {
+    let rows = times.matching(&[("section", section)]);
+    let points: Vec<(f64, f64)> = times
+        .distinct(&rows, "scene")
+        .into_iter()
+        .filter_map(|scene| {
+            let x = match scene.split_once('x') {
+                Some((w, h)) => w.parse::<f64>().ok()? * h.parse::<f64>().ok()?,
+                None => scene.parse().ok()?,
+            };
+            let cost = costs(times, section, &scene, laps)
+                .into_iter()
+                .find(|c| c.name == "default comic")?;
+            Some((x, cost.milliseconds))
+        })
+        .collect();
+    (exponent(&points), points)
+}

@@ -1,0 +1,271 @@
+//! Stability, what is left out, growth.
+
+use std::{fmt::Write, path::Path};
+
+use crate::{
+    costs::{LAPS, OWN, costs, growth_exponent, size, unsigned_zero},
+    load,
+    table::{exponent, median, quantile},
+};
+
+pub fn stability(out: &mut String, folder: &Path) -> Result<(), String> {
+    let table = load(folder, "stability")?;
+    out.push_str(
+        "## 2. Stability on stiff and extreme cases\n\nThe depth map (Eq. 4) on the adapter \
+         against the exact quotient of the stored depths. The textbook's form turns depth into \
+         distance first and then takes `(z - min) / (max - min)`; ours is the quotient of \
+         differences of raw depth. The condition is the factor by which a relative error of a \
+         depth grows in the map. `wild` counts results that are not finite. The floor that \
+         hides noise (`DepthMap::floor`) is off here. One depth alone has no quotient: it is 0 \
+         by definition. Subnormal depths count as sky.\n\n\
+         | case | condition | textbook, ulp | codes | wild | ours, ulp | codes | wild |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    for row in table.matching(&[("kind", "depth map")]) {
+        let cell = |name| table.cell(row, name);
+        let number = |name| {
+            let x = table.number(row, name);
+            if (0.01..1e4).contains(&x) || x == 0.0 {
+                format!("{x:.2}")
+            } else {
+                format!("{x:.1e}")
+            }
+        };
+        let _ = writeln!(
+            out,
+            "| {} | {} | {} | {} | {} | {} | {} | {} |",
+            cell("case"),
+            cell("condition"),
+            number("textbook_ulp"),
+            number("textbook_codes"),
+            cell("textbook_wild"),
+            number("ulp"),
+            number("codes"),
+            cell("wild"),
+        );
+    }
+    out.push_str(
+        "\nPictures with every style at once, then sketched, on an HDR camera: how many pixels \
+         were not finite before this crate's pass, and after it.\n\n\
+         | case | before | after |\n|---|---|---|\n",
+    );
+    for row in table.matching(&[("kind", "picture")]) {
+        let _ = writeln!(
+            out,
+            "| {} | {} | {} |",
+            table.cell(row, "case"),
+            table.cell(row, "textbook_wild"),
+            table.cell(row, "wild")
+        );
+    }
+    let moved = load(folder, "moved")?;
+    out.push_str(
+        "\nThe same scene, scaled with its near plane or moved with its camera, against the \
+         scene as it is (FLIP; the engine's own positions are single floats, which at 1e6 have \
+         steps of 6 cm):\n\n| | FLIP |\n|---|---|\n",
+    );
+    for row in &moved.rows {
+        let _ = writeln!(
+            out,
+            "| {} | {:.4} |",
+            moved.cell(row, "case"),
+            moved.number(row, "flip")
+        );
+    }
+    out.push('\n');
+    Ok(())
+}
+
+pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
+    let work = load(folder, "work")?;
+    let times = load(folder, "ladder_times")?;
+    let costs = costs(&times, "ladder", "teapot", &OWN);
+    let _ = writeln!(
+        out,
+        "## 3. What is left out\n\nFrom no style to everything: the passes that ran (the \
+         engine's prepasses among them), of eight; the bindings of the fused pass; the texels \
+         and bytes that it fetches for a pixel, counted by the shader itself on the teapot at \
+         160x90; the time of this crate's passes at {}.\n\n\
+         | style | passes | bindings | texels, mean (most) | bytes | ms | blits | of everything |\n\
+         |---|---|---|---|---|---|---|---|",
+        size(&times)
+    );
+    let whole = costs
+        .iter()
+        .find(|c| c.name == "everything")
+        .map_or(f64::NAN, |c| c.milliseconds);
+    for row in &work.rows {
+        let cell = |name| work.cell(row, name);
+        let cost = costs.iter().find(|c| c.name == cell("style"));
+        let (ms, ratio) = cost.map_or((f64::NAN, f64::NAN), |c| (c.milliseconds, c.ratio[1]));
+        let _ = writeln!(
+            out,
+            "| {} | {} | {} | {} ({}) | {} | {:.2} | {:.2} | {:.0} % |",
+            cell("style"),
+            cell("passes"),
+            cell("bindings"),
+            cell("fetches"),
+            cell("most"),
+            cell("bytes"),
+            unsigned_zero(ms, 2),
+            unsigned_zero(ratio, 2),
+            unsigned_zero(100.0 * ms / whole, 0),
+        );
+    }
+    out.push_str("\nWhich passes those are:\n\n");
+    for row in &work.rows {
+        let ran = work.cell(row, "ran");
+        let _ = writeln!(
+            out,
+            "* {}: {}",
+            work.cell(row, "style"),
+            if ran.is_empty() { "none" } else { ran }
+        );
+    }
+    let idle = load(folder, "idle_times")?;
+    out.push_str(
+        "\n### An idle plugin\n\nWhole frames of three apps, in turn: one without the plugin, \
+         one with it and no style on any camera, and the first once more as the noise bar.\n\n\
+         | | ms, median | 10 % to 90 % |\n|---|---|---|\n",
+    );
+    let all: Vec<&Vec<String>> = idle.rows.iter().collect();
+    for app in idle.distinct(&all, "app") {
+        let ms = idle.numbers(&idle.matching(&[("app", &app)]), "milliseconds");
+        let _ = writeln!(
+            out,
+            "| {app} | {:.3} | {:.3} to {:.3} |",
+            median(&ms),
+            quantile(&ms, 0.1),
+            quantile(&ms, 0.9)
+        );
+    }
+    let prepass = load(folder, "prepass_times")?;
+    out.push_str(
+        "\n### Depth from a prepass, or from the main pass?\n\nThe engine's prepass and main \
+         pass together, with a depth prepass and without. A style that reads depth alone could \
+         read the main pass's instead.\n\n\
+         | scene | without, ms | with, ms | with / without |\n|---|---|---|---|\n",
+    );
+    let all: Vec<&Vec<String>> = prepass.rows.iter().collect();
+    let (mut won, mut lost) = (0, 0);
+    for scene in prepass.distinct(&all, "scene") {
+        let of = |with| {
+            let rows = prepass.matching(&[("scene", &scene), ("prepass", with)]);
+            prepass.numbers(&rows, "milliseconds")
+        };
+        let (without, with) = (of("no"), of("yes"));
+        let ratios: Vec<f64> = with.iter().zip(&without).map(|(a, b)| a / b).collect();
+        if median(&ratios) < 1.0 {
+            won += 1;
+        } else {
+            lost += 1;
+        }
+        let _ = writeln!(
+            out,
+            "| {scene} | {:.1} | {:.1} | {:.2} |",
+            median(&without),
+            median(&with),
+            median(&ratios)
+        );
+    }
+    let _ = writeln!(
+        out,
+        "\nThe prepass pays for itself in {won} of {} scenes here, because the main pass then \
+         shades no pixel that is hidden later.\n",
+        won + lost
+    );
+    Ok(())
+}
+
+pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
+    let times = load(folder, "growth_times")?;
+    out.push_str(
+        "## 4. Cost and its growth\n\nThe default comic (desaturation, colorization, \
+         contours), this crate's passes alone: range, lines and fused pass.\n\n",
+    );
+    for (section, title) in [("pixels", "pixels"), ("vertices", "vertices, at 512x512")] {
+        let (p, points) = growth_exponent(&times, section, &OWN);
+        let _ = writeln!(out, "| {title} | ms | blits |\n|---|---|---|");
+        let rows = times.matching(&[("section", section)]);
+        for (scene, (_, ms)) in times.distinct(&rows, "scene").iter().zip(&points) {
+            let ratio = costs(&times, section, scene, &OWN)
+                .into_iter()
+                .find(|c| c.name == "default comic")
+                .map_or(f64::NAN, |c| c.ratio[1]);
+            let _ = writeln!(out, "| {scene} | {ms:.2} | {ratio:.2} |");
+        }
+        let _ = writeln!(out, "\nFitted exponent: {p:.3}.\n");
+        if section == "pixels" {
+            let pixels: Vec<f64> = points.iter().map(|(x, _)| *x).collect();
+            let large: Vec<(f64, f64)> = points
+                .iter()
+                .copied()
+                .filter(|(x, _)| *x >= 512.0 * 512.0)
+                .collect();
+            if large.len() > 2 && large.len() < pixels.len() {
+                let _ = writeln!(out, "From 512x512 on: {:.3}.\n", exponent(&large));
+            }
+        }
+    }
+    out.push_str(
+        "The engine's prepass, which the style asks for, grows with the vertices as the main \
+         pass does:\n\n| vertices | prepass, ms | main pass with it, ms | main pass without a style, ms |\n|---|---|---|---|\n",
+    );
+    let rows = times.matching(&[("section", "vertices")]);
+    for scene in times.distinct(&rows, "scene") {
+        let of = |variant, lap| {
+            let rows = times.matching(&[
+                ("section", "vertices"),
+                ("scene", &scene),
+                ("variant", variant),
+            ]);
+            median(&times.numbers(&rows, lap))
+        };
+        let _ = writeln!(
+            out,
+            "| {scene} | {:.2} | {:.2} | {:.2} |",
+            of("default comic", "prepass"),
+            of("default comic", "main"),
+            of("nothing", "main"),
+        );
+    }
+    out.push_str(
+        "\nWith several cameras that wear the style, 256x256 each:\n\n| cameras | own passes of \
+         all, ms | whole frame of all, ms |\n|---|---|---|\n",
+    );
+    let rows = times.matching(&[("section", "cameras")]);
+    for scene in times.distinct(&rows, "scene") {
+        let cost = costs(&times, "cameras", &scene, &OWN)
+            .into_iter()
+            .find(|c| c.name == "default comic")
+            .map_or(f64::NAN, |c| c.milliseconds);
+        let rows = times.matching(&[
+            ("section", "cameras"),
+            ("scene", &scene),
+            ("variant", "default comic"),
+        ]);
+        let whole: Vec<f64> = rows
+            .iter()
+            .map(|row| LAPS.iter().map(|lap| times.number(row, lap)).sum())
+            .collect();
+        let _ = writeln!(out, "| {scene} | {cost:.2} | {:.2} |", median(&whole));
+    }
+    let paper = load(folder, "paper_times")?;
+    let fps = |app: &str| {
+        let rows = paper.matching(&[("app", app)]);
+        1000.0 / median(&paper.numbers(&rows, "milliseconds"))
+    };
+    let (without, with) = (fps("without the model"), fps("with the model"));
+    let _ = writeln!(
+        out,
+        "\n### The paper's experiment\n\nOne million vertices, 512x512, whole frames, without \
+         the model and with it (the default comic), prepass included.\n\n\
+         | | without, frames/s | with, frames/s | with / without |\n|---|---|---|---|\n\
+         | [CS], GPU unnamed, 2010 | 512 | 260 | {:.2} |\n\
+         | here | {without:.2} | {with:.2} | {:.2} |\n",
+        260.0 / 512.0,
+        with / without
+    );
+    out.push_str("![Cost against pixels](growth.svg)\n\n");
+    Ok(())
+}
