@@ -82,15 +82,20 @@ fn spread_floor(f: DepthFrame) -> f32 {
     return f.floor * (f.near + f.offset);
 }
 
+// What differences of raw depth are divided by: the range, or its floor. Never
+// zero, which one depth alone without a floor would be.
+fn spread_divisor(f: DepthFrame) -> f32 {
+    let divisor = max(f.near - f.far, spread_floor(f));
+    return select(divisor, 1e-30, divisor == 0.0);
+}
+
 // (D, L): the depth map and its complement, each computed on its own, because
 // a square root of 1 - D would expose the cancellation.
 fn depth_map(f: DepthFrame, d: f32) -> vec2<f32> {
     if has(f, EMPTY) || is_background(d) {
         return vec2(1.0, 0.0);
     }
-    let spread = f.near - f.far;
-    let least = spread_floor(f);
-    let floored = !(spread > least);
+    let floored = !(f.near - f.far > spread_floor(f));
     var map: vec2<f32>;
     if has(f, LOGARITHMIC) && !floored {
         let whole = log_distance(f, f.near, f.far);
@@ -100,7 +105,7 @@ fn depth_map(f: DepthFrame, d: f32) -> vec2<f32> {
         }
         map = vec2(log_distance(f, f.near, d), log_distance(f, d, f.far)) / whole;
     } else {
-        let divisor = select(spread, least, floored);
+        let divisor = spread_divisor(f);
         map = vec2((f.near - d) / divisor, (d - f.far) / divisor);
         if !has(f, ORTHOGRAPHIC) {
             map *= vec2(f.far + f.offset, f.near + f.offset) / (d + f.offset);
@@ -117,15 +122,11 @@ fn depth_map(f: DepthFrame, d: f32) -> vec2<f32> {
 fn depth_step(f: DepthFrame, d_raw: f32, p_raw: f32) -> f32 {
     let d = clamp(d_raw, f.far, f.near);
     let p = clamp(p_raw, f.far, f.near);
-    let spread = f.near - f.far;
-    let least = spread_floor(f);
-    let floored = !(spread > least);
-    if has(f, LOGARITHMIC) && !floored {
+    if has(f, LOGARITHMIC) && f.near - f.far > spread_floor(f) {
         let whole = log_distance(f, f.near, f.far);
         return select(0.0, log_distance(f, p, d) / whole, whole > 0.0);
     }
-    let divisor = select(spread, least, floored);
-    var step = (p - d) / divisor;
+    var step = (p - d) / spread_divisor(f);
     if !has(f, ORTHOGRAPHIC) {
         step *= (f.near + f.offset) / (d + f.offset);
         step *= (f.far + f.offset) / (p + f.offset);

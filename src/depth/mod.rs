@@ -58,8 +58,9 @@ pub struct DepthMap {
     /// Holds the visible range as it is, whatever enters or leaves the view,
     /// until this is `false` again: for a scene that must not change its look,
     /// or a photograph. A camera that has not seen anything yet locks onto the
-    /// first thing that it sees. The reduction still runs;
-    /// [`DepthMapping::Fixed`] spares it. Default: `false`.
+    /// first thing that it sees; when its near or far plane changes, it locks
+    /// anew. The reduction still runs; [`DepthMapping::Fixed`] spares it.
+    /// Default: `false`.
     pub locked: bool,
 }
 

@@ -95,22 +95,15 @@ impl Ranging<'_> {
             None => (None, None, None),
         };
         let has_compute = device.limits().max_compute_workgroup_size_x > 0;
-        let smoothing = plan.depth_map.smoothing.unwrap_or_default();
+        let counts = plan.depth_map.smoothing.is_some_and(|s| s.outliers > 0.0);
         let smoothing = (plan.smooths() && has_compute).then(|| {
-            let origin = (view.cuts, rect.zw(), view.projection);
             let mut kept = match smoothed {
                 Some((kept, _)) => kept,
-                None => ViewSmoothing::new(device, origin),
+                None => ViewSmoothing::new(device, view, rect.zw()),
             };
-            kept.compare(origin);
-            let counts = plan.depth_map.smoothing.is_some() && smoothing.outliers > 0.0;
             kept.keep_histogram(device, counts && shape.is_some());
-            kept.uniform_offset = uniforms.smoothings.push(&SmoothingUniform::new(
-                &plan.depth_map,
-                &view.projection,
-                view.seconds,
-                kept.snaps(),
-            ));
+            let uniform = kept.uniform(&plan.depth_map, view, rect.zw());
+            kept.uniform_offset = uniforms.smoothings.push(&uniform);
             let pipeline = self.smoothing_pipelines.specialize(
                 cache,
                 &self.smoothing_pipeline,

@@ -32,7 +32,7 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use super::{DepthMap, ProjectionKind, frame::DepthProjection};
-use crate::sanitize::bounded;
+use crate::{sanitize::bounded, view::ComicsView};
 
 /// Keeps the range of a [`DepthMap`] from flickering when something small,
 /// short-lived or undecided enters or leaves the view. Without it the range is
@@ -156,6 +156,7 @@ const ORTHOGRAPHIC: u32 = 1;
 const SNAP: u32 = 2;
 const HOLD: u32 = 4;
 const DESPIKE: u32 = 8;
+const RESET: u32 = 16;
 
 /// `Smoothing` of `smoothing.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
@@ -178,7 +179,12 @@ fn way(seconds: f32, constant: f32) -> f32 {
 }
 
 impl SmoothingUniform {
-    pub fn new(map: &DepthMap, projection: &DepthProjection, seconds: f32, snap: bool) -> Self {
+    pub fn new(
+        map: &DepthMap,
+        projection: &DepthProjection,
+        seconds: f32,
+        [snap, reset]: [bool; 2],
+    ) -> Self {
         let smoothing = map.smoothing.unwrap_or(RangeSmoothing::OFF);
         let orthographic = projection.kind() == ProjectionKind::Orthographic;
         let flag = |on: bool, flag: u32| if on { flag } else { 0 };
@@ -190,6 +196,7 @@ impl SmoothingUniform {
             shrink: way(seconds, smoothing.shrink),
             flags: flag(orthographic, ORTHOGRAPHIC)
                 | flag(snap, SNAP)
+                | flag(reset, RESET)
                 | flag(map.locked, HOLD)
                 | flag(smoothing.despike, DESPIKE),
         }
@@ -206,15 +213,20 @@ pub(crate) struct ViewSmoothing {
     /// The keys that are drawn with.
     pub drawn: Buffer,
     pub histogram: Option<Buffer>,
-    /// What a change of starts it anew.
-    origin: (u32, UVec2, DepthProjection),
-    /// Whether the next frame starts it anew; kept until a frame was recorded.
+    /// Cuts and size: what a change of starts it anew, unless it is locked.
+    origin: (u32, UVec2),
+    /// What raw depth means: a change of it starts it anew, locked or not.
+    projection: DepthProjection,
+    /// Whether the next frame starts it anew, for either reason; kept until a
+    /// frame was recorded that did.
     snap: AtomicBool,
+    reset: AtomicBool,
+    locked: bool,
     pub uniform_offset: u32,
 }
 
 impl ViewSmoothing {
-    pub fn new(device: &RenderDevice, origin: (u32, UVec2, DepthProjection)) -> Self {
+    pub fn new(device: &RenderDevice, view: &ComicsView, size: UVec2) -> Self {
         let buffer = |label, size, usage| {
             device.create_buffer(&BufferDescriptor {
                 label: Some(label),
@@ -231,22 +243,28 @@ impl ViewSmoothing {
                 BufferUsages::UNIFORM | BufferUsages::COPY_SRC,
             ),
             histogram: None,
-            origin,
+            origin: (view.cuts, size),
+            projection: view.projection,
             snap: AtomicBool::new(false),
+            reset: AtomicBool::new(false),
+            locked: false,
             uniform_offset: 0,
         }
     }
 
-    /// Takes note of a cut, of another size, of other planes.
-    pub fn compare(&mut self, origin: (u32, UVec2, DepthProjection)) {
-        if origin != self.origin {
-            self.origin = origin;
-            self.snap.store(true, Ordering::Relaxed);
+    /// This frame's settings, after a look at what has changed since the last.
+    pub fn uniform(&mut self, map: &DepthMap, view: &ComicsView, size: UVec2) -> SmoothingUniform {
+        if self.origin != (view.cuts, size) {
+            self.origin = (view.cuts, size);
+            self.snap = AtomicBool::new(true);
         }
-    }
-
-    pub fn snaps(&self) -> bool {
-        self.snap.load(Ordering::Relaxed)
+        if self.projection != view.projection {
+            self.projection = view.projection;
+            self.reset = AtomicBool::new(true);
+        }
+        self.locked = map.locked;
+        let starts = [&self.snap, &self.reset].map(|flag| flag.load(Ordering::Relaxed));
+        SmoothingUniform::new(map, &view.projection, view.seconds, starts)
     }
 
     /// Keeps a histogram, or none.
@@ -297,7 +315,11 @@ impl ViewSmoothing {
         pass.set_bind_group(0, &bind_group, &[self.uniform_offset]);
         pass.dispatch_workgroups(1, 1, 1);
         drop(pass);
-        self.snap.store(false, Ordering::Relaxed);
+        // A locked range has not taken notice of a cut; it will, once it is free.
+        if !self.locked {
+            self.snap.store(false, Ordering::Relaxed);
+        }
+        self.reset.store(false, Ordering::Relaxed);
     }
 }
 

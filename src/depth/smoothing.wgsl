@@ -5,12 +5,14 @@
 // frame; its state never leaves the GPU.
 
 const ORTHOGRAPHIC: u32 = 1u;
-// Nothing of the past counts: a cut, a resize, another projection.
+// Nothing of the past counts: a cut, a resize.
 const SNAP: u32 = 2u;
 // The range stays as it is.
 const HOLD: u32 = 4u;
 // The median of three frames.
 const DESPIKE: u32 = 8u;
+// Raw depth means something else than before: not even a held range stays.
+const RESET: u32 = 16u;
 
 struct Smoothing {
     // a = clip_from_view[2][2]: d + a is proportional to 1/z in perspective.
@@ -211,6 +213,9 @@ fn from_far(near: u32, far: u32, rank: f32) -> u32 {
 
 @compute @workgroup_size(1)
 fn follow() {
+    if (smoothing.flags & RESET) != 0u {
+        state.valid = 0u;
+    }
     let hold = (smoothing.flags & HOLD) != 0u && state.valid == 1u;
     if found.x == 0u && !hold {
         // No geometry: the state waits for some.

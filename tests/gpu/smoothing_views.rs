@@ -164,6 +164,38 @@ fn a_lock_holds_the_range_until_it_is_taken_away() {
 }
 
 #[test]
+fn a_locked_range_is_no_older_than_the_planes_and_follows_a_cut_once_free() {
+    let map = |locked| DepthMap {
+        smoothing: Some(SLOW),
+        locked,
+        ..default()
+    };
+    let mut small = small();
+    small.insert(map(true)).settle();
+    // Raw depth of another near plane is another distance: what was locked in
+    // the old one's would be wrong everywhere.
+    small.insert(Projection::Perspective(PerspectiveProjection {
+        near: 0.4,
+        ..default()
+    }));
+    small.settle();
+    let locked = small.picture();
+    assert_eq!(locked, unsmoothed(&mut small));
+
+    small.insert(map(true)).settle();
+    intrude(&mut small);
+    let entity = small.camera;
+    small.world().commands().trigger(CameraCut { entity });
+    small.world().flush();
+    small.settle();
+    let held = small.picture();
+    small.insert(map(false)).settle();
+    let free = small.picture();
+    assert_ne!(held, free, "a lock holds through a cut");
+    assert_eq!(free, unsmoothed(&mut small), "and the cut is not forgotten");
+}
+
+#[test]
 fn the_range_that_the_game_reads_is_the_exact_one() {
     let mut small = small();
     small.insert(VisibleDepthRange::default());

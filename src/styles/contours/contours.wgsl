@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::styles::contours
 
-#import bevy_comics::depth::map::{DepthFrame, EMPTY, depth_step, has, is_background, spread_floor}
+#import bevy_comics::depth::map::{DepthFrame, EMPTY, depth_step, has, is_background, spread_divisor}
 
 const PREWITT: u32 = 0u;
 const SOBEL: u32 = 1u;
@@ -53,8 +53,7 @@ fn minmod(a: f32, b: f32) -> f32 {
 // How far behind the farthest geometry the sky lies: a gap behind D = 1, which
 // the farthest reaches wherever the range is not below its floor.
 fn gap_behind(f: DepthFrame, gap: f32) -> f32 {
-    let least = spread_floor(f);
-    return gap + select(1.0 - (f.near - f.far) / least, 0.0, f.near - f.far > least);
+    return gap + (1.0 - (f.near - f.far) / spread_divisor(f));
 }
 
 // D(d) - D(p), where the sky lies a gap behind the farthest geometry. No branch:

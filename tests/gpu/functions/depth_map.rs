@@ -242,3 +242,45 @@ fn steps_of_the_map_do_not_cancel() {
         });
     }
 }
+
+#[test]
+fn one_depth_without_a_floor_is_a_flat_wall_and_no_number_is_lost() {
+    // Linear, orthographic, logarithmic, both; before the sky and without it.
+    let mut rows = Vec::new();
+    for flags in 0..4u8 {
+        for sky in [0.0, 0.25] {
+            let row = [
+                0.25,
+                0.25,
+                0.0,
+                0.0,
+                10.0,
+                10.0,
+                0.05,
+                f32::from(flags),
+                0.25,
+                sky,
+            ];
+            rows.push(row);
+        }
+    }
+    let results = gpu().evaluate(
+        "#import bevy_comics::depth::map::{DepthFrame, depth_map, depth_step}
+         #import bevy_comics::styles::contours::{Contours, Window, contour_response}",
+        &format!(
+            "{FRAME} var s: Contours;
+             let w = Window(i(9u), i(9u), i(9u), i(8u), i(8u), i(8u), i(8u), i(8u), i(8u), 0u);
+             return vec4(depth_map(f, i(8u)), depth_step(f, i(8u), i(8u)), contour_response(s, f, w));"
+        ),
+        &rows,
+    );
+    for (row, [d, l, step, response]) in rows.iter().zip(results) {
+        assert_eq!([d, l, step], [0.0, 1.0, 0.0], "{row:?}");
+        if row[9] == 0.0 {
+            // The sky lies a gap behind D = 1, the wall at D = 0.
+            assert!((response - 1.05).abs() < 0.02, "{row:?}: {response}");
+        } else {
+            assert_eq!(response, 0.0, "{row:?}");
+        }
+    }
+}
