@@ -13,8 +13,8 @@ use bevy::{
     shader::Source,
 };
 use bevy_comics::{
-    ColorMethod, Colorization, ComicStyle, ComicsDiagnostics, ComicsStage, Contours, DepthMap,
-    DepthMapping, Desaturation, Outlines, RangeSmoothing, Sketch, ToneBands,
+    Colorization, ComicStyle, ComicsDiagnostics, ComicsStage, Contours, DepthMap, DepthMapping,
+    Desaturation, Outlines, RangeSmoothing, Sketch, ToneBands,
 };
 
 use super::{read_back, scenes::BuiltIn, studio::Studio};
@@ -47,19 +47,21 @@ const PASSES: [ComicsStage; 8] = [
     ComicsStage::Stylize,
 ];
 
+/// Desaturation, colorization and contours: what the targets speak of.
+pub fn default_comic() -> ComicStyle {
+    ComicStyle {
+        desaturation: Some(Desaturation::default()),
+        colorization: Some(Colorization::default()),
+        contours: Some(Contours::default()),
+        ..default()
+    }
+}
+
 /// From nothing to everything.
 pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
     let none = ComicStyle::default();
-    let saturation = Some(Desaturation {
-        method: ColorMethod::Corrected,
-        ..default()
-    });
-    let comic = ComicStyle {
-        desaturation: saturation,
-        colorization: Some(Colorization::default()),
-        contours: Some(Contours::default()),
-        ..none.clone()
-    };
+    let saturation = Some(Desaturation::default());
+    let comic = default_comic();
     let outlined = |outlines| ComicStyle {
         outlines: Some(outlines),
         ..ComicStyle::default()

@@ -3,14 +3,14 @@
 use bevy::{
     core_pipeline::{prepass::DepthPrepass, tonemapping::Tonemapping},
     prelude::*,
-    render::sync_world::RenderEntity,
+    render::RenderApp,
 };
 use bevy_comics::{ColorMethod, Colorization, ComicStyle, Desaturation};
 use nv_flip::{FlipImageRgb8, FlipPool};
 
 use crate::{
     Run,
-    common::{headless::Headless, read_back, scenes::BuiltIn},
+    common::{read_back, scenes::BuiltIn},
     reference::{
         color::{srgb_decode, srgb_encode},
         colorization, desaturation,
@@ -42,16 +42,11 @@ impl Shot {
 }
 
 /// What a camera sees now.
-pub fn shoot(headless: &mut Headless, camera: Entity) -> Shot {
-    headless.step(1);
-    let view = headless
-        .app
-        .world()
-        .get::<RenderEntity>(camera)
-        .expect("extracted")
-        .id();
-    let picture = headless.picture();
-    let world = headless.app.sub_app(bevy::render::RenderApp).world();
+pub fn shoot(rig: &mut Rig) -> Shot {
+    rig.headless.step(1);
+    let view = rig.view();
+    let picture = rig.headless.picture();
+    let world = rig.headless.app.sub_app(RenderApp).world();
     let depth = read_back::depth(world, view).expect("a prepass");
     Shot {
         depth: depth.bits.iter().map(|b| f32::from_bits(*b)).collect(),
@@ -172,7 +167,7 @@ pub fn captures(run: &Run, frames: usize) -> Vec<Capture> {
             .map(|frame| {
                 let world = rig.headless.app.world_mut();
                 world.entity_mut(camera).insert(way(from, target, frame));
-                shoot(&mut rig.headless, camera)
+                shoot(&mut rig)
             })
             .collect();
         run.say(&format!("{name} captured"));

@@ -241,7 +241,7 @@ fn play(name: &str, size: UVec2) -> Sequence {
                 };
                 world.entity_mut(*speck).insert(seen);
             }
-            shoot(&mut rig.headless, camera)
+            shoot(&mut rig)
         })
         .collect();
     Sequence { shots, cuts }

@@ -5,9 +5,8 @@ use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*, render::view::Ms
 
 use crate::{
     Run,
-    common::{bench, headless::new_target, scenes::BuiltIn},
+    common::{bench, headless::new_target, scenes::BuiltIn, work::default_comic},
     ladder::ball,
-    lines::default_comic,
     rig::{self, Rig, Wear},
     table::Table,
 };

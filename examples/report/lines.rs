@@ -4,12 +4,9 @@
 use bevy::{
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     prelude::*,
-    render::{RenderApp, sync_world::RenderEntity},
+    render::RenderApp,
 };
-use bevy_comics::{
-    ColorMethod, Colorization, ComicStyle, ContourOperator, Contours, Desaturation, ObjectEdges,
-    Outlines, ToneBands,
-};
+use bevy_comics::{ComicStyle, ContourOperator, Contours, ObjectEdges, Outlines, ToneBands};
 
 use crate::{
     Run, capture,
@@ -17,6 +14,7 @@ use crate::{
         read_back,
         scenes::BuiltIn,
         truth::{FINE, Truth, mask},
+        work::default_comic,
     },
     rig::{self, Rig, Wear},
     table::Table,
@@ -82,13 +80,7 @@ fn truth(scene: BuiltIn, size: UVec2) -> Truth {
         .entity_mut(rig.camera)
         .insert((DepthPrepass, NormalPrepass));
     rig.headless.step(4);
-    let view = rig
-        .headless
-        .app
-        .world()
-        .get::<RenderEntity>(rig.camera)
-        .expect("extracted")
-        .id();
+    let view = rig.view();
     let world = rig.headless.app.sub_app(RenderApp).world();
     let depth = read_back::depth(world, view).expect("a prepass");
     let depth: Vec<f32> = depth.bits.iter().map(|b| f32::from_bits(*b)).collect();
@@ -240,19 +232,6 @@ fn smooth(run: &Run) -> Result<(), String> {
         }
     }
     run.save("smoothing_errors", &table)
-}
-
-/// The default comic: what the targets speak of.
-pub fn default_comic() -> ComicStyle {
-    ComicStyle {
-        desaturation: Some(Desaturation {
-            method: ColorMethod::Corrected,
-            ..default()
-        }),
-        colorization: Some(Colorization::default()),
-        contours: Some(Contours::default()),
-        ..default()
-    }
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {

@@ -6,7 +6,7 @@ use bevy::{
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
     ecs::system::RunSystemOnce,
     prelude::*,
-    render::view::Msaa,
+    render::{sync_world::RenderEntity, view::Msaa},
 };
 use bevy_comics::{ComicStyle, ComicsPlugin};
 
@@ -74,6 +74,15 @@ impl Rig {
             vantage,
             size,
         }
+    }
+
+    /// The camera in the render world.
+    pub fn view(&self) -> Entity {
+        let world = self.headless.app.world();
+        world
+            .get::<RenderEntity>(self.camera)
+            .expect("extracted")
+            .id()
     }
 
     /// Takes the light off every material, so that lines alone change the picture

@@ -1,16 +1,12 @@
 //! Stiff and extreme cases: the condition of the problem, the error of the
 //! textbook's form and of ours.
 
-use bevy::{
-    camera::Hdr,
-    prelude::*,
-    render::{RenderApp, sync_world::RenderEntity},
-};
+use bevy::{camera::Hdr, prelude::*, render::RenderApp};
 use bevy_comics::{ComicStyle, Outlines, Sketch, ToneBands, presets};
 
 use crate::{
     Run, capture,
-    common::{read_back, scenes::BuiltIn},
+    common::{read_back, scenes::BuiltIn, work::default_comic},
     device::gpu,
     reference::map::{Frame, Projection as MapProjection},
     rig::{Rig, Wear},
@@ -214,7 +210,7 @@ fn map_cases(table: &mut Table, run: &Run) {
 fn everything() -> ComicStyle {
     let preset = presets::preset("graphic-novel").expect("listed");
     let mut style = preset.unwrap_or_default();
-    let comic = crate::lines::default_comic();
+    let comic = default_comic();
     style.desaturation = comic.desaturation;
     style.colorization = comic.colorization;
     style.contours = comic.contours;
@@ -334,13 +330,7 @@ fn rendered(table: &mut Table, run: &Run) {
         for style in [&style, &sketch] {
             rig.wear(&Wear::style(style.clone()));
             rig.headless.step(4);
-            let view = rig
-                .headless
-                .app
-                .world()
-                .get::<RenderEntity>(rig.camera)
-                .expect("extracted")
-                .id();
+            let view = rig.view();
             let world = rig.headless.app.sub_app(RenderApp).world();
             let (read, wrote) = read_back::last_pass(world, view, true).expect("a picture");
             let wild = |image: &read_back::FloatImage| {

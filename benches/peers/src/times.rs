@@ -10,10 +10,7 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{
-    ColorMethod, Colorization, ComicStyle, ComicsPlugin, Contours, Desaturation, EdgeForm,
-    Outlines, Silhouettes,
-};
+use bevy_comics::{ComicStyle, ComicsPlugin, Contours, EdgeForm, Outlines, Silhouettes};
 use bevy_edge_detection_outline::{EdgeDetection, EdgeDetectionPlugin, EdgeOperator};
 use bevy_mod_outline::{OutlineMode, OutlinePlugin, OutlineVolume};
 use bevy_shader_mtoon::{MtoonMaterial, MtoonPlugin, MtoonSun, VrmOutlineMode};
@@ -23,6 +20,7 @@ use crate::common::{
     bench::{self, BenchPlugin, Blit, Laps},
     headless::{Headless, HeadlessOptions},
     scenes::{BuiltIn, ScenePart, Stage},
+    work::default_comic,
 };
 
 const SIZE: UVec2 = UVec2::new(960, 540);
@@ -147,18 +145,6 @@ impl Bench {
     }
 }
 
-fn comic() -> ComicStyle {
-    ComicStyle {
-        desaturation: Some(Desaturation {
-            method: ColorMethod::Corrected,
-            ..default()
-        }),
-        colorization: Some(Colorization::default()),
-        contours: Some(Contours::default()),
-        ..default()
-    }
-}
-
 fn outlines(outlines: Outlines) -> ComicStyle {
     ComicStyle {
         outlines: Some(outlines),
@@ -171,7 +157,7 @@ const VARIANTS: &[(&str, Put)] = &[
     ("blit", |b| {
         b.camera().insert(Blit);
     }),
-    ("bevy_comics: default comic", |b| b.style(&comic())),
+    ("bevy_comics: default comic", |b| b.style(&default_comic())),
     ("bevy_comics: contours", |b| {
         b.style(&ComicStyle {
             contours: Some(Contours::default()),
