@@ -168,6 +168,9 @@ impl fmt::Display for LeftOut {
 pub struct CameraStages {
     /// Every stage with its outcome, in order.
     pub stages: Vec<(ComicsStage, StageOutcome)>,
+    /// A pipeline of the camera's look is still being compiled: meanwhile the
+    /// last look is drawn, or none where there is no last one.
+    pub compiling: bool,
 }
 
 impl CameraStages {
@@ -206,6 +209,13 @@ pub struct ComicsDiagnostics {
 }
 
 impl ComicsDiagnostics {
+    /// Whether a camera waits for a pipeline of its look.
+    pub fn is_compiling(&self, camera: Entity) -> bool {
+        self.cameras
+            .get(&camera)
+            .is_some_and(|stages| stages.compiling)
+    }
+
     /// Whether a stage ran for a camera.
     pub fn ran(&self, camera: Entity, stage: ComicsStage) -> bool {
         self.cameras
@@ -227,6 +237,11 @@ impl StageLedger {
     pub fn set(&self, camera: Entity, stage: ComicsStage, outcome: StageOutcome) {
         let mut current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
         current.entry(camera).or_default().set(stage, outcome);
+    }
+
+    pub fn set_compiling(&self, camera: Entity) {
+        let mut current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
+        current.entry(camera).or_default().compiling = true;
     }
 
     /// A ledger that shares what is published with this one.

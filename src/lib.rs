@@ -42,6 +42,9 @@
 mod cartoon;
 mod depth;
 mod diagnostics;
+mod finish;
+#[cfg(feature = "inspector")]
+pub mod inspector;
 mod objects;
 mod outlining;
 mod passes;
@@ -49,23 +52,31 @@ mod plugin;
 mod sanitize;
 mod styles;
 mod stylize;
+pub mod timing;
 mod view;
 
 #[cfg(feature = "cartoon")]
 pub use cartoon::{CartoonLight, CartoonMaterial, CartoonScene};
 pub use depth::{
-    CameraCut, DepthMap, DepthMapping, ProjectionKind, RangeSmoothing, ReductionMethod,
-    VisibleDepthRange,
+    CameraCut, DepthBin, DepthHistogram, DepthMap, DepthMapping, ProjectionKind, RangeSmoothing,
+    ReductionMethod, VisibleDepthRange,
 };
 pub use diagnostics::{CameraStages, ComicsDiagnostics, ComicsStage, LeftOut, StageOutcome};
+pub use finish::{DebugView, SplitView, StyleWeight};
 #[cfg(feature = "objects")]
 pub use objects::{ContourStyle, LineKinds, NoContours, ViewObjectIds, object_id};
 pub use plugin::{ComicsPlugin, ComicsSystems};
 pub use styles::{
     BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ComicStyleError,
     ComicStyleHandle, ContourForm, ContourOperator, Contours, Creases, Desaturation, EdgeForm,
-    ObjectEdges, Outlines, Silhouettes, Sketch, ToneBandMethod, ToneBands, presets,
+    FieldRange, HueWheel, ObjectEdges, Outlines, Silhouettes, Sketch, StyleTransition,
+    StyleTransitionFinished, ToneBandMethod, ToneBands, TransitionEasing, presets,
 };
+
+/// The guide's code, compiled.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/your-own-style.md")]
+struct Guide;
 
 /// What most games need: `use bevy_comics::prelude::*;`.
 pub mod prelude {
@@ -73,7 +84,8 @@ pub mod prelude {
         BlackFlats, CameraCut, ColorMethod, Colorization, ColorizationMode, ComicStyle,
         ComicStyleHandle, ComicsPlugin, ContourForm, ContourOperator, Contours, Creases, DepthMap,
         DepthMapping, Desaturation, EdgeForm, ObjectEdges, Outlines, RangeSmoothing, Silhouettes,
-        Sketch, ToneBandMethod, ToneBands, VisibleDepthRange,
+        Sketch, SplitView, StyleTransition, StyleTransitionFinished, StyleWeight, ToneBandMethod,
+        ToneBands, VisibleDepthRange,
     };
     #[cfg(feature = "cartoon")]
     pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};

@@ -16,11 +16,13 @@ use bevy::{
     render::{
         camera::ExtractedCamera,
         render_resource::{
-            CachedRenderPipelineId, DynamicUniformBuffer, PipelineCache, SpecializedRenderPipelines,
+            CachedPipelineState, CachedRenderPipelineId, DynamicUniformBuffer, PipelineCache,
+            SpecializedRenderPipelines,
         },
         renderer::{RenderDevice, RenderQueue},
         view::{ExtractedView, ViewTarget},
     },
+    shader::ShaderCacheError,
 };
 
 use crate::{
@@ -29,7 +31,7 @@ use crate::{
         frame::DepthProjection,
         ping_pong::PingPongPipeline,
         prepare::{RangeUniforms, Ranging, ViewRange},
-        range::RangePipeline,
+        range::{RangePass, RangePipeline},
         readback::{RangeReadback, RangeReadings},
         smoothing::SmoothingPipeline,
     },
@@ -57,6 +59,8 @@ pub(crate) struct ViewPass {
     /// Which object is seen where; kept while lines want to know.
     pub ids: Option<ViewTexture>,
     pub outline: Option<OutlinePass>,
+    /// The last plan of which every pipeline was compiled.
+    pub ready: Option<Plan>,
     /// Whether this frame's outlines were recorded.
     pub outlines_found: AtomicBool,
     live: bool,
@@ -64,6 +68,39 @@ pub(crate) struct ViewPass {
 
 /// Every styled view's passes, by render entity. Made anew when the device is,
 /// and a view's buffers go when the view does.
+impl ViewPass {
+    /// Whether a pipeline is still on its way. One that failed is not: then the
+    /// picture passes through, and the log says why.
+    fn is_compiling(&self, cache: &PipelineCache) -> bool {
+        let compute = |id| is_under_way(cache.get_compute_pipeline_state(id));
+        let render = |id| is_under_way(cache.get_render_pipeline_state(id));
+        let range = self.range.as_ref().is_some_and(|range| {
+            let reduction = match range.pass {
+                RangePass::Compute { pipeline, .. } => compute(pipeline),
+                RangePass::PingPong { first, next, .. } => render(first) || render(next),
+            };
+            reduction || range.smoothing.as_ref().is_some_and(|(_, id)| compute(*id))
+        });
+        let lines = self.outline.as_ref().is_some_and(|outline| {
+            let flood = outline.flood.as_ref();
+            render(outline.pipeline) || flood.is_some_and(|f| render(f.first) || render(f.next))
+        });
+        range || lines || self.stylize.is_some_and(render)
+    }
+}
+
+fn is_under_way(state: &CachedPipelineState) -> bool {
+    match state {
+        CachedPipelineState::Queued | CachedPipelineState::Creating(_) => true,
+        // These are tried again.
+        CachedPipelineState::Err(error) => matches!(
+            error,
+            ShaderCacheError::ShaderNotLoaded(_) | ShaderCacheError::ShaderImportNotYetAvailable
+        ),
+        CachedPipelineState::Ok(_) => false,
+    }
+}
+
 #[derive(Resource)]
 pub(crate) struct ViewPasses {
     pub views: EntityHashMap<ViewPass>,
@@ -152,8 +189,9 @@ fn uniform(view: &ComicsView, plan: &Plan, viewport: UVec4) -> ComicsUniform {
             .unwrap_or_default(),
         sketch: plan
             .sketch
-            .map(|s| s.uniform(view.scale_factor, view.drawing))
+            .map(|s| s.uniform(view.scale_factor, view.drawing, plan.own_lines))
             .unwrap_or_default(),
+        finish: plan.finish.uniform(viewport.z),
     }
 }
 
@@ -176,7 +214,7 @@ pub(crate) fn prepare_view_passes(
     stylize_pipeline: Res<StylizePipeline>,
     mut ranging: Ranging,
     mut outlining: Outlining,
-    cache: Res<PipelineCache>,
+    mut cache: ResMut<PipelineCache>,
     device: Res<RenderDevice>,
     queue: Res<RenderQueue>,
 ) {
@@ -235,79 +273,100 @@ pub(crate) fn prepare_view_passes(
             ids: None,
             outline: None,
             outlines_found: AtomicBool::new(false),
+            ready: None,
             live: true,
         });
         pass.live = true;
         pass.camera = view.camera;
-        pass.plan = plan;
         pass.projection = view.projection;
-        pass.stylize = None;
-        pass.outlines_found = AtomicBool::new(false);
-
         let oblique = view.projection.kind() == ProjectionKind::Oblique;
-        let old_range = pass.range.take();
-        if let Some(samples) = samples.filter(|_| plan.needs_range()) {
-            let rect = depth_rect(extracted.viewport, view.main_pass_size);
-            pass.range = Some(ranging.prepare(
-                old_range,
-                &cache,
-                &device,
-                &mut passes.range_uniforms,
-                (view, &plan),
-                (rect, raw_depth(view, extracted.viewport), samples),
-            ));
-        }
-        if !plan.readback {
-            pass.readback = Mutex::default();
-        }
 
-        if plan.draws() {
-            let size = depth.map(|d| {
-                let size = d.texture.texture.size();
-                UVec2::new(size.width, size.height)
-            });
-            let found = samples.zip(size).zip(plan.outlines);
-            let old = pass.outline.take();
-            if let Some(((samples, size), _)) = found {
-                pass.outline = outlining.prepare(
-                    old,
+        // While a pipeline of this look compiles, the last one stays.
+        let last = pass.ready.map(|ready| match (depth, normals) {
+            (None, _) => ready.without_depth(),
+            (_, None) => ready.without_normals(),
+            _ => ready,
+        });
+        let choices = [Some(plan), last.filter(|last| *last != plan)];
+        for plan in choices.into_iter().flatten() {
+            pass.plan = plan;
+            pass.stylize = None;
+            pass.outlines_found = AtomicBool::new(false);
+            let old_range = pass.range.take();
+            if let Some(samples) = samples.filter(|_| plan.needs_range()) {
+                let rect = depth_rect(extracted.viewport, view.main_pass_size);
+                pass.range = Some(ranging.prepare(
+                    old_range,
                     &cache,
                     &device,
-                    &plan,
-                    (samples, size),
-                    oblique,
-                    view.main_pass_size.is_none(),
-                    lines_reach(view, &plan),
-                );
-            }
-            pass.ids = pass
-                .ids
-                .take()
-                .filter(|_| plan.draws_ids())
-                .filter(|ids| size.zip(samples).is_some_and(|(z, s)| ids.fits(z, s)));
-            if plan.draws_ids()
-                && pass.ids.is_none()
-                && let Some((size, samples)) = size.zip(samples)
-            {
-                pass.ids = Some(ViewTexture::new(
-                    &device,
-                    "comics_object_ids",
-                    size,
-                    samples,
-                    ID_FORMAT,
+                    &mut passes.range_uniforms,
+                    (view, &plan),
+                    (rect, raw_depth(view, extracted.viewport), samples),
                 ));
             }
-            let uniform = uniform(view, &plan, extracted.viewport);
-            let flooded = pass.outline.as_ref().is_some_and(|o| o.flood.is_some());
-            pass.key = StylizeKey::new(&plan, extracted.target_format, camera.compositing_space)
-                .with_depth(samples.unwrap_or(1), oblique)
-                .with_flood(flooded)
-                .with_modes(&uniform);
-            pass.stylize = Some(stylize_pipelines.specialize(&cache, &stylize_pipeline, pass.key));
-            pass.uniform_offset = passes.uniforms.push(&uniform);
-        } else {
-            pass.outline = None;
-            pass.ids = None;
+            if !plan.readback && !plan.histogram {
+                pass.readback = Mutex::default();
+            }
+
+            if plan.draws() {
+                let size = depth.map(|d| {
+                    let size = d.texture.texture.size();
+                    UVec2::new(size.width, size.height)
+                });
+                let found = samples.zip(size).zip(plan.outlines);
+                let old = pass.outline.take();
+                if let Some(((samples, size), _)) = found {
+                    pass.outline = outlining.prepare(
+                        old,
+                        &cache,
+                        &device,
+                        &plan,
+                        (samples, size),
+                        oblique,
+                        view.main_pass_size.is_none(),
+                        lines_reach(view, &plan),
+                    );
+                }
+                pass.ids = pass
+                    .ids
+                    .take()
+                    .filter(|_| plan.draws_ids())
+                    .filter(|ids| size.zip(samples).is_some_and(|(z, s)| ids.fits(z, s)));
+                if plan.draws_ids()
+                    && pass.ids.is_none()
+                    && let Some((size, samples)) = size.zip(samples)
+                {
+                    pass.ids = Some(ViewTexture::new(
+                        &device,
+                        "comics_object_ids",
+                        size,
+                        samples,
+                        ID_FORMAT,
+                    ));
+                }
+                let uniform = uniform(view, &plan, extracted.viewport);
+                let flooded = pass.outline.as_ref().is_some_and(|o| o.flood.is_some());
+                pass.key =
+                    StylizeKey::new(&plan, extracted.target_format, camera.compositing_space)
+                        .with_depth(samples.unwrap_or(1), oblique)
+                        .with_flood(flooded)
+                        .with_modes(&uniform);
+                let id = stylize_pipelines.specialize(&cache, &stylize_pipeline, pass.key);
+                pass.stylize = Some(id);
+                pass.uniform_offset = passes.uniforms.push(&uniform);
+            } else {
+                pass.outline = None;
+                pass.ids = None;
+            }
+            // Where pipelines are compiled at once, they are now.
+            if pass.is_compiling(&cache) {
+                cache.process_queue();
+            }
+            if !pass.is_compiling(&cache) {
+                pass.ready = Some(plan);
+                break;
+            }
+            ledger.set_compiling(view.camera);
         }
     }
     passes.views.retain(|_, pass| pass.live);

@@ -20,19 +20,20 @@ use bevy::{
 use crate::objects::{ContourStyle, NoContours, assign_object_styles};
 use crate::{
     depth::{
-        CameraCut, DepthMap, VisibleDepthRange,
+        CameraCut, DepthHistogram, DepthMap, VisibleDepthRange,
         ping_pong::PingPongPipeline,
         range::{RangePipeline, reduce_depth_range},
         readback::{RangeReadings, receive_ranges},
         smoothing::{SmoothingPipeline, count_cut},
     },
     diagnostics::{ComicsDiagnostics, StageLedger, publish_ledger, read_ledger},
+    finish::{DebugView, SplitView, StyleWeight},
     objects::{ObjectStyleBuffer, ObjectStyles},
     outlining::{FloodPipeline, OutlinePipeline, find_outlines},
     passes::{ViewPasses, init_pipelines, map_readbacks, prepare_view_passes},
     styles::{
         BlackFlats, Colorization, ComicStyle, ComicStyleHandle, Contours, Desaturation, Outlines,
-        Sketch, StyleLoader, ToneBands, apply_styles,
+        Sketch, StyleLoader, StyleTransition, ToneBands, apply_styles, run_transitions,
     },
     stylize::{StylizePipeline, stylize},
     view::{extract_views, request_prepasses, warn_unsupported},
@@ -65,7 +66,12 @@ impl Plugin for ComicsPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<DepthMap>()
             .register_type::<VisibleDepthRange>()
+            .register_type::<DepthHistogram>()
             .register_type::<CameraCut>()
+            .register_type::<StyleWeight>()
+            .register_type::<SplitView>()
+            .register_type::<DebugView>()
+            .register_type::<StyleTransition>()
             .register_type::<Desaturation>()
             .register_type::<Colorization>()
             .register_type::<BlackFlats>()
@@ -87,7 +93,7 @@ impl Plugin for ComicsPlugin {
             app.init_asset::<ComicStyle>()
                 .register_asset_reflect::<ComicStyle>()
                 .init_asset_loader::<StyleLoader>()
-                .add_systems(Update, apply_styles);
+                .add_systems(Update, (apply_styles, run_transitions).chain());
         }
         #[cfg(feature = "cartoon")]
         crate::cartoon::build(app);
@@ -103,6 +109,7 @@ impl Plugin for ComicsPlugin {
         load_shader_library!(app, "styles/outlines/outlines.wgsl");
         load_shader_library!(app, "styles/tone_bands.wgsl");
         load_shader_library!(app, "styles/sketch.wgsl");
+        load_shader_library!(app, "finish/finish.wgsl");
         load_shader_library!(app, "depth/map.wgsl");
         load_shader_library!(app, "depth/raw.wgsl");
         load_shader_library!(app, "stylize/bindings.wgsl");

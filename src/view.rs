@@ -18,24 +18,27 @@ use bevy::{
 };
 
 use crate::{
-    depth::{DepthMap, VisibleDepthRange, frame::DepthProjection, smoothing::CameraCuts},
+    depth::{
+        DepthHistogram, DepthMap, VisibleDepthRange, frame::DepthProjection, smoothing::CameraCuts,
+    },
     diagnostics::{ComicsStage, LeftOut},
+    finish::{DebugView, Finish, SplitView, StyleWeight},
     objects::ObjectStyles,
-    styles::{BlackFlats, Colorization, Contours, Desaturation, Outlines, Sketch, ToneBands},
+    styles::{
+        BlackFlats, Colorization, Contours, Creases, Desaturation, Look, Outlines, Silhouettes,
+        Sketch, ToneBands,
+    },
 };
 
 /// Every component that makes a camera a comics camera.
 #[derive(QueryData)]
 pub(crate) struct ComicsComponents {
-    depth_map: Option<&'static DepthMap>,
-    tone_bands: Option<&'static ToneBands>,
-    desaturation: Option<&'static Desaturation>,
-    colorization: Option<&'static Colorization>,
-    black_flats: Option<&'static BlackFlats>,
-    contours: Option<&'static Contours>,
-    outlines: Option<&'static Outlines>,
-    sketch: Option<&'static Sketch>,
+    look: Look,
     range: Has<VisibleDepthRange>,
+    histogram: Has<DepthHistogram>,
+    weight: Option<&'static StyleWeight>,
+    split: Option<&'static SplitView>,
+    view: Option<&'static DebugView>,
 }
 
 /// Matches a camera with at least one component that asks for something.
@@ -48,6 +51,8 @@ type AnyComics = Or<(
     With<Outlines>,
     With<Sketch>,
     With<VisibleDepthRange>,
+    With<DepthHistogram>,
+    With<DebugView>,
 )>;
 
 /// The sanitised styles of a camera; `None` is absent or without effect.
@@ -65,7 +70,14 @@ pub(crate) struct Plan {
     pub object_styles: bool,
     /// The game reads the range.
     pub readback: bool,
-    negligible: [bool; 6],
+    /// The game reads how the depths are distributed.
+    pub histogram: bool,
+    /// The outlines are the camera's own, not only a sketch's.
+    pub own_lines: bool,
+    pub finish: Finish,
+    /// What is shown instead of the picture.
+    pub view: Option<DebugView>,
+    negligible: [bool; 7],
 }
 
 fn kept<T: Copy>(
@@ -79,7 +91,7 @@ fn kept<T: Copy>(
 }
 
 /// What a sketch draws on a camera without outlines of its own.
-fn sketched_outlines() -> Outlines {
+pub(crate) fn sketched_outlines() -> Outlines {
     Outlines {
         objects: None,
         width: 1.5,
@@ -90,34 +102,39 @@ fn sketched_outlines() -> Outlines {
 impl Plan {
     fn new(item: &ComicsComponentsItem<'_, '_>, object_styles: bool) -> Self {
         let (tone_bands, n0) = kept(
-            item.tone_bands,
+            item.look.tone_bands,
             ToneBands::sanitized,
             ToneBands::is_negligible,
         );
         let (desaturation, n1) = kept(
-            item.desaturation,
+            item.look.desaturation,
             Desaturation::sanitized,
             Desaturation::is_negligible,
         );
         let (colorization, n2) = kept(
-            item.colorization,
+            item.look.colorization,
             Colorization::sanitized,
             Colorization::is_negligible,
         );
         let (black_flats, n3) = kept(
-            item.black_flats,
+            item.look.black_flats,
             BlackFlats::sanitized,
             BlackFlats::is_negligible,
         );
-        let (contours, n4) = kept(item.contours, Contours::sanitized, Contours::is_negligible);
+        let (contours, n4) = kept(
+            item.look.contours,
+            Contours::sanitized,
+            Contours::is_negligible,
+        );
+        let (sketch, n6) = kept(item.look.sketch, Sketch::sanitized, Sketch::is_negligible);
         let sketched = sketched_outlines();
         let (outlines, n5) = kept(
-            item.outlines.or(item.sketch.map(|_| &sketched)),
+            item.look.outlines.or(sketch.map(|_| &sketched)),
             |o| o.sanitized().effective(),
             Outlines::is_negligible,
         );
-        Self {
-            depth_map: item.depth_map.copied().unwrap_or_default().sanitized(),
+        let plan = Self {
+            depth_map: item.look.depth_map.copied().unwrap_or_default().sanitized(),
             tone_bands,
             desaturation,
             colorization,
@@ -125,14 +142,64 @@ impl Plan {
             contours,
             outlines,
             // Without lines there is nothing to sketch: the picture stays.
-            sketch: item
-                .sketch
-                .filter(|_| outlines.is_some())
-                .map(|s| s.sanitized()),
+            sketch: sketch.filter(|_| outlines.is_some()),
             object_styles: object_styles && outlines.is_some(),
             readback: item.range,
-            negligible: [n0, n1, n2, n3, n4, n5],
+            histogram: item.histogram,
+            own_lines: item.look.outlines.is_some(),
+            finish: Finish::new(item.weight, item.split),
+            view: item
+                .view
+                .copied()
+                .filter(|view| !view.reads_ids() || cfg!(feature = "objects")),
+            negligible: [n0, n1, n2, n3, n4, n5, n6],
+        };
+        match plan.view {
+            Some(view) => plan.shown_as(view),
+            None if plan.finish.weight == 0.0 || plan.finish.split >= 1.0 => plan.unseen(),
+            None => plan,
         }
+    }
+
+    /// Nothing of the style is seen, so nothing of it runs.
+    fn unseen(self) -> Self {
+        Self {
+            depth_map: self.depth_map,
+            readback: self.readback,
+            histogram: self.histogram,
+            finish: self.finish,
+            negligible: [true; 7],
+            ..Self::default()
+        }
+    }
+
+    /// The plan with what a view shows, whether a style asks for it or not.
+    fn shown_as(mut self, view: DebugView) -> Self {
+        self.finish.weight = 1.0;
+        let lines = self.outlines.unwrap_or(Outlines {
+            silhouettes: None,
+            creases: None,
+            objects: None,
+            ..Outlines::default()
+        });
+        match view {
+            DebugView::Silhouettes => {
+                let silhouettes = lines.silhouettes.or(Some(Silhouettes::default()));
+                self.outlines = Some(Outlines {
+                    silhouettes,
+                    ..lines
+                });
+            }
+            DebugView::Creases => {
+                let creases = lines.creases.or(Some(Creases::default()));
+                self.outlines = Some(Outlines { creases, ..lines });
+            }
+            DebugView::ToneBands => {
+                self.tone_bands = self.tone_bands.or(Some(ToneBands::default()));
+            }
+            _ => {}
+        }
+        self
     }
 
     /// Whether any style draws.
@@ -144,6 +211,7 @@ impl Plan {
             || self.contours.is_some()
             || self.outlines.is_some()
             || self.sketch.is_some()
+            || self.view.is_some()
     }
 
     /// Whether the fused pass reads the depth map.
@@ -152,6 +220,7 @@ impl Plan {
             || self.contours.is_some()
             || self.colorization.is_some_and(|c| c.depends_on_depth())
             || self.black_flats.is_some_and(|b| b.depends_on_depth())
+            || self.view.is_some_and(|v| v.reads_map() || v.reads_ids())
     }
 
     /// Whether the fused pass reads the visible range.
@@ -172,13 +241,19 @@ impl Plan {
             && (self.depth_map.smoothing.is_some() || self.depth_map.locked)
     }
 
+    /// Whether the range goes through the step that smooths it, which also
+    /// keeps the histogram.
+    pub fn follows_range(&self) -> bool {
+        self.smooths() || self.histogram
+    }
+
     pub fn needs_range(&self) -> bool {
         let map = self.draws_with_depth() || self.lines_fade();
-        self.readback || (map && self.depth_map.mapping.follows_visible_range())
+        self.readback || self.histogram || (map && self.depth_map.mapping.follows_visible_range())
     }
 
     pub fn needs_depth(&self) -> bool {
-        self.readback || self.draws_with_depth() || self.outlines.is_some()
+        self.readback || self.histogram || self.draws_with_depth() || self.outlines.is_some()
     }
 
     pub fn needs_normals(&self) -> bool {
@@ -187,8 +262,10 @@ impl Plan {
 
     /// Whether the ids of objects are drawn for this camera.
     pub fn draws_ids(&self) -> bool {
-        self.outlines
-            .is_some_and(|o| o.objects.is_some() || self.object_styles)
+        let lines = self
+            .outlines
+            .is_some_and(|o| o.objects.is_some() || self.object_styles);
+        lines || self.view.is_some_and(DebugView::reads_ids)
     }
 
     /// The plan without what reads depth, for views that have none.
@@ -208,6 +285,8 @@ impl Plan {
                     ..b
                 })
                 .filter(|b| !b.is_negligible()),
+            view: self.view.filter(|v| !v.needs_depth()),
+            histogram: false,
             readback: false,
             ..self
         }
@@ -241,7 +320,8 @@ impl Plan {
             ComicsStage::BlackFlats => style(3),
             ComicsStage::Contours => style(4),
             ComicsStage::Outlines => style(5),
-            ComicsStage::Sketch | ComicsStage::RangeReadback => LeftOut::NotRequested,
+            ComicsStage::Sketch => style(6),
+            ComicsStage::RangeReadback => LeftOut::NotRequested,
             ComicsStage::DepthPrepass => LeftOut::NoDepthStyle,
             ComicsStage::NormalPrepass | ComicsStage::ObjectIds | ComicsStage::OutlineEdges => {
                 LeftOut::NoSuchLines

@@ -9,7 +9,6 @@ use bevy::{
         blit::{BlitPipeline, BlitPipelineKey},
         schedule::{Core3d, Core3dSystems},
     },
-    ecs::schedule::ApplyDeferred,
     platform::collections::HashMap,
     prelude::*,
     render::{
@@ -17,16 +16,16 @@ use bevy::{
         extract_component::{ExtractComponent, ExtractComponentPlugin},
         render_resource::{
             CachedRenderPipelineId, Operations, PipelineCache, RenderPassColorAttachment,
-            RenderPassDescriptor, SpecializedRenderPipeline, TextureFormat, WgpuFeatures,
+            RenderPassDescriptor, SpecializedRenderPipeline, TextureFormat,
         },
-        renderer::{
-            PendingCommandBuffers, RenderAdapterInfo, RenderContext, RenderDevice, RenderQueue,
-            ViewQuery,
-        },
+        renderer::{RenderContext, RenderDevice, ViewQuery},
         view::ViewTarget,
     },
 };
-use bevy_comics::ComicsSystems;
+use bevy_comics::{
+    ComicsSystems,
+    timing::{self, Stopwatch},
+};
 
 use super::headless::Headless;
 
@@ -50,121 +49,9 @@ pub const LAPS: usize = 5;
 /// Milliseconds of each lap.
 pub type Laps = [f64; LAPS];
 
-/// The laps of the frames since it was last emptied; several cameras add up.
-#[derive(Resource, Default)]
-pub struct Stopwatch {
-    frame: Laps,
-    pub frames: Vec<Laps>,
-    timestamps: Option<Timestamps>,
-}
-
-struct Timestamps {
-    queries: wgpu::QuerySet,
-    used: Vec<Option<Lap>>,
-}
-
-const QUERIES: u32 = 64;
-
-/// Whether the adapter's own timestamps are used.
-fn has_timestamps(info: &RenderAdapterInfo, device: &RenderDevice) -> bool {
-    let wanted = WgpuFeatures::TIMESTAMP_QUERY | WgpuFeatures::TIMESTAMP_QUERY_INSIDE_ENCODERS;
-    info.device_type != wgpu::DeviceType::Cpu && device.features().contains(wanted)
-}
-
 /// How times are taken on this adapter, in words.
 pub fn method(headless: &Headless) -> &'static str {
-    let world = headless.app.sub_app(RenderApp).world();
-    let info = world.resource::<RenderAdapterInfo>();
-    if has_timestamps(info, world.resource::<RenderDevice>()) {
-        "timestamps of the adapter"
-    } else {
-        "wall time of a submit that holds only the passes, waited for"
-    }
-}
-
-/// Ends a lap; `None` ends what is not measured.
-fn mark(lap: Option<Lap>) -> impl FnMut(&mut World) {
-    move |world| {
-        let buffers = world.resource_mut::<PendingCommandBuffers>().take();
-        let device = world.resource::<RenderDevice>().clone();
-        let queue = world.resource::<RenderQueue>().clone();
-        let info = world.resource::<RenderAdapterInfo>();
-        if has_timestamps(info, &device) {
-            let mut watch = world.resource_mut::<Stopwatch>();
-            let stamps = watch.timestamps.get_or_insert_with(|| Timestamps {
-                queries: device
-                    .wgpu_device()
-                    .create_query_set(&wgpu::QuerySetDescriptor {
-                        label: None,
-                        ty: wgpu::QueryType::Timestamp,
-                        count: QUERIES,
-                    }),
-                used: Vec::new(),
-            });
-            let at = stamps.used.len() as u32;
-            assert!(at < QUERIES, "too many cameras for the stopwatch");
-            let mut encoder = device.create_command_encoder(&Default::default());
-            encoder.write_timestamp(&stamps.queries, at);
-            stamps.used.push(lap);
-            let mut pending = world.resource_mut::<PendingCommandBuffers>();
-            pending.push(buffers);
-            pending.push([encoder.finish()]);
-            return;
-        }
-        let start = Instant::now();
-        queue.submit(buffers);
-        wait(&device);
-        let elapsed = start.elapsed().as_secs_f64() * 1e3;
-        if let Some(lap) = lap {
-            world.resource_mut::<Stopwatch>().frame[lap as usize] += elapsed;
-        }
-    }
-}
-
-fn wait(device: &RenderDevice) {
-    device
-        .wgpu_device()
-        .poll(wgpu::PollType::wait_indefinitely())
-        .expect("the device answers");
-}
-
-fn end_frame(mut watch: ResMut<Stopwatch>, device: Res<RenderDevice>, queue: Res<RenderQueue>) {
-    if let Some(stamps) = watch.timestamps.take_if(|stamps| !stamps.used.is_empty()) {
-        let count = stamps.used.len() as u32;
-        let new_buffer = |usage| {
-            device.wgpu_device().create_buffer(&wgpu::BufferDescriptor {
-                label: None,
-                size: u64::from(QUERIES) * 8,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
-        let resolved = new_buffer(wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC);
-        let staging = new_buffer(wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ);
-        let mut encoder = device.create_command_encoder(&Default::default());
-        encoder.resolve_query_set(&stamps.queries, 0..count, &resolved, 0);
-        encoder.copy_buffer_to_buffer(&resolved, 0, &staging, 0, u64::from(QUERIES) * 8);
-        queue.submit([encoder.finish()]);
-        staging
-            .slice(..)
-            .map_async(wgpu::MapMode::Read, |result| result.expect("mapped"));
-        wait(&device);
-        let period = f64::from(queue.get_timestamp_period()) * 1e-6;
-        let times: Vec<u64> = staging
-            .slice(..)
-            .get_mapped_range()
-            .chunks_exact(8)
-            .map(|b| u64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]]))
-            .collect();
-        for (i, lap) in stamps.used.iter().enumerate() {
-            if let Some(lap) = lap {
-                let ticks = times[i].saturating_sub(times[i - 1]);
-                watch.frame[*lap as usize] += ticks as f64 * period;
-            }
-        }
-    }
-    let frame = std::mem::take(&mut watch.frame);
-    watch.frames.push(frame);
+    timing::method(headless.app.sub_app(RenderApp).world())
 }
 
 /// A post-process pass that only copies: what every ratio is to.
@@ -223,7 +110,7 @@ impl Plugin for BenchPlugin {
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;
         };
-        let lap = |lap| (ApplyDeferred, mark(lap)).chain();
+        let lap = |lap: Option<Lap>| timing::lap(lap.map(|lap| lap as usize));
         render_app
             .init_resource::<Stopwatch>()
             .add_systems(
@@ -251,16 +138,19 @@ impl Plugin for BenchPlugin {
             )
             .add_systems(
                 bevy::render::Render,
-                end_frame.in_set(bevy::render::RenderSystems::Cleanup),
+                timing::end_frame.in_set(bevy::render::RenderSystems::Cleanup),
             );
     }
 }
 
 /// Renders `frames` frames and gives their laps.
 pub fn laps(headless: &mut Headless, frames: usize) -> Vec<Laps> {
-    let empty = |headless: &mut Headless| {
+    let empty = |headless: &mut Headless| -> Vec<Laps> {
         let world = headless.app.sub_app_mut(RenderApp).world_mut();
-        std::mem::take(&mut world.resource_mut::<Stopwatch>().frames)
+        let frames = std::mem::take(&mut world.resource_mut::<Stopwatch>().frames);
+        let padded =
+            |frame: Vec<f64>| std::array::from_fn(|lap| frame.get(lap).copied().unwrap_or(0.0));
+        frames.into_iter().map(padded).collect()
     };
     empty(headless);
     headless.step(frames);
@@ -272,6 +162,6 @@ pub fn whole_frame(headless: &mut Headless) -> f64 {
     let start = Instant::now();
     headless.step(1);
     let world = headless.app.sub_app(RenderApp).world();
-    wait(world.resource::<RenderDevice>());
+    timing::wait(world.resource::<RenderDevice>());
     start.elapsed().as_secs_f64() * 1e3
 }

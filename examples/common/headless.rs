@@ -41,6 +41,8 @@ pub struct HeadlessOptions {
     pub assets: String,
     /// Whether assets that change on disk are loaded again.
     pub watch: bool,
+    /// Whether pipelines compile while frames are drawn, as in a game.
+    pub background_pipelines: bool,
 }
 
 impl Default for HeadlessOptions {
@@ -52,6 +54,7 @@ impl Default for HeadlessOptions {
             log: false,
             assets: concat!(env!("CARGO_MANIFEST_DIR"), "/assets").into(),
             watch: false,
+            background_pipelines: false,
         }
     }
 }
@@ -71,7 +74,7 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
                 ..default()
             }
             .into(),
-            synchronous_pipeline_compilation: true,
+            synchronous_pipeline_compilation: !options.background_pipelines,
             ..default()
         })
         .set(AssetPlugin {

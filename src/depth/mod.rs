@@ -15,10 +15,13 @@ use serde::{Deserialize, Serialize};
 
 pub use frame::ProjectionKind;
 pub(crate) use frame::{DepthFrame, RawDepth};
-pub use readback::VisibleDepthRange;
+pub use readback::{DepthBin, DepthHistogram, VisibleDepthRange};
 pub use smoothing::{CameraCut, RangeSmoothing};
 
-use crate::sanitize::{bounded, ordered_planes};
+use crate::{
+    FieldRange,
+    sanitize::{bounded, ordered_planes},
+};
 
 /// How a camera turns distance into the depth map `D`, which is 0 at the
 /// nearest and 1 at the farthest end of a range and drives every depth style.
@@ -39,13 +42,16 @@ pub struct DepthMap {
     /// How far behind the farthest geometry the sky counts, in units of the
     /// depth map; without it the farthest object has no contour.
     /// Range 0 to 10, default 0.05.
+    #[reflect(@FieldRange::linear(0.0, 10.0))]
     pub sky_gap: f32,
     /// The smallest range that is spread over the map, as a share of the
     /// nearest distance's reciprocal: a flat wall stays flat instead of showing
     /// the noise of the depth buffer. Range 0 to 1, default 2^-14.
+    #[reflect(@FieldRange::logarithmic(0.0, 1.0))]
     pub floor: f32,
     /// The same under an orthographic projection, in world units.
     /// Range 0 to 1e6, default 1e-4.
+    #[reflect(@FieldRange::logarithmic(0.0, 1e6).unit("units"))]
     pub orthographic_floor: f32,
     /// How the visible range is found. Every method gives the same bits.
     /// Default: [`ReductionMethod::Auto`].
@@ -129,16 +135,20 @@ pub enum DepthMapping {
     Fixed {
         /// The distance that becomes 0, world units. Range 1e-6 to 1e30;
         /// default 0.1 where it is not a number.
+        #[reflect(@FieldRange::logarithmic(1e-6, 1e30).unit("units"))]
         near: f32,
         /// The distance that becomes 1, world units; at least 1.001 times
         /// `near`. The two change places when given the other way round.
+        #[reflect(@FieldRange::logarithmic(1e-6, 1e36).unit("units"))]
         far: f32,
     },
     /// Logarithmic between two distances of your own; no reduction runs.
     FixedLogarithmic {
         /// As in [`DepthMapping::Fixed`].
+        #[reflect(@FieldRange::logarithmic(1e-6, 1e30).unit("units"))]
         near: f32,
         /// As in [`DepthMapping::Fixed`].
+        #[reflect(@FieldRange::logarithmic(1e-6, 1e36).unit("units"))]
         far: f32,
     },
 }

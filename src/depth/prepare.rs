@@ -95,8 +95,9 @@ impl Ranging<'_> {
             None => (None, None, None),
         };
         let has_compute = device.limits().max_compute_workgroup_size_x > 0;
-        let counts = plan.depth_map.smoothing.is_some_and(|s| s.outliers > 0.0);
-        let smoothing = (plan.smooths() && has_compute).then(|| {
+        let outliers = plan.depth_map.smoothing.is_some_and(|s| s.outliers > 0.0);
+        let counts = plan.histogram || (outliers && plan.smooths());
+        let smoothing = (plan.follows_range() && has_compute).then(|| {
             let mut kept = match smoothed {
                 Some((kept, _)) => kept,
                 None => ViewSmoothing::new(device, view, rect.zw()),

@@ -351,10 +351,15 @@ pub(crate) fn reduce_depth_range(
     }
     range.found.store(true, Ordering::Relaxed);
 
-    if pass.plan.readback {
+    if pass.plan.readback || pass.plan.histogram {
         let mut readback = pass.readback.lock().unwrap_or_else(PoisonError::into_inner);
         let keys = &range.keys;
-        let copied = readback.copy(&device, ctx.command_encoder(), keys, pass.projection);
+        let histogram = range
+            .drawn()
+            .filter(|_| pass.plan.histogram)
+            .zip(range.histogram());
+        let encoder = ctx.command_encoder();
+        let copied = readback.copy(&device, encoder, keys, histogram, pass.projection);
         let outcome = if copied {
             StageOutcome::Ran
         } else {

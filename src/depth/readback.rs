@@ -8,6 +8,7 @@ use std::sync::{
 
 use bevy::{
     ecs::{
+        change_detection::DetectChangesMut,
         component::Component,
         entity::{Entity, EntityHashMap},
         reflect::ReflectComponent,
@@ -75,7 +76,69 @@ impl VisibleDepthRange {
     }
 }
 
-type Readings = Arc<Mutex<EntityHashMap<VisibleDepthRange>>>;
+/// Put it on a camera to learn how the visible depths are distributed, and
+/// which range its styles are drawn with.
+///
+/// As with [`VisibleDepthRange`], the value is that of a frame or a few ago,
+/// and asking for it makes the depth prepass and the reduction run. The counts
+/// are exact. Without compute shaders, or with
+/// [`ReductionMethod::PingPong`](crate::ReductionMethod::PingPong), it stays
+/// empty.
+#[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq)]
+pub struct DepthHistogram {
+    /// From near to far, without gaps; eight bins double the raw depth. Empty
+    /// where nothing is visible or nothing was read yet.
+    pub bins: Vec<DepthBin>,
+    /// Near and far view depth that the styles are drawn with, world units:
+    /// the visible range after [`RangeSmoothing`](crate::RangeSmoothing).
+    pub drawn: Option<(f32, f32)>,
+}
+
+/// One bin of a [`DepthHistogram`].
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
+pub struct DepthBin {
+    /// View depth at which the bin begins, world units.
+    pub near: f32,
+    /// View depth at which it ends, world units; infinite in the last bin of
+    /// what lies too far to be told apart.
+    pub far: f32,
+    /// Visible depth samples in it: pixels, times the samples of a pixel.
+    pub count: u32,
+}
+
+impl DepthHistogram {
+    fn of_words(words: &[u32], projection: &DepthProjection) -> Self {
+        let (drawn, counts) = words.split_at(DRAWN_WORDS);
+        let drawn = VisibleDepthRange::of_keys([drawn[0], drawn[1]], projection).distances();
+        let counts = &counts[..BINS];
+        let used = |count: &u32| *count > 0;
+        let bins = match (counts.iter().position(used), counts.iter().rposition(used)) {
+            (Some(first), Some(last)) => (first..=last)
+                .rev()
+                .map(|bin| {
+                    let edge = |bin: usize| f32::from_bits((bin as u32 + FIRST_BIN) << 20);
+                    DepthBin {
+                        near: projection.distance(edge(bin + 1)) as f32,
+                        far: projection.distance(edge(bin)) as f32,
+                        count: counts[bin],
+                    }
+                })
+                .collect(),
+            _ => Vec::new(),
+        };
+        Self { bins, drawn }
+    }
+}
+
+/// What one copy brings.
+#[derive(Clone, Debug)]
+pub(crate) struct RangeReading {
+    range: VisibleDepthRange,
+    histogram: Option<DepthHistogram>,
+}
+
+type Readings = Arc<Mutex<EntityHashMap<RangeReading>>>;
 
 /// What has arrived from the GPU; both worlds hold it.
 #[derive(Resource, Clone, Default)]
@@ -85,6 +148,8 @@ pub(crate) struct RangeReadings(Readings);
 #[derive(Default)]
 pub(crate) struct RangeReadback {
     slots: Vec<Slot>,
+    /// Whether the slots have room for a histogram.
+    histogram: bool,
 }
 
 struct Slot {
@@ -95,7 +160,12 @@ struct Slot {
 
 /// So many copies may be under way at once.
 const SLOTS: usize = 4;
-const KEYS_SIZE: u64 = 8;
+const KEYS_SIZE: u64 = 16;
+const DRAWN_SIZE: u64 = 16;
+const DRAWN_WORDS: usize = 4;
+/// Of `smoothing.wgsl`.
+const BINS: usize = 256;
+const FIRST_BIN: u32 = 761;
 
 impl RangeReadback {
     /// Records a copy of the range; false if every buffer is still under way.
@@ -104,8 +174,17 @@ impl RangeReadback {
         device: &RenderDevice,
         encoder: &mut CommandEncoder,
         keys: &Buffer,
+        histogram: Option<(&Buffer, &Buffer)>,
         projection: DepthProjection,
     ) -> bool {
+        if self.histogram != histogram.is_some() {
+            self.slots.clear();
+            self.histogram = histogram.is_some();
+        }
+        let size = match histogram {
+            Some((_, counts)) => KEYS_SIZE + DRAWN_SIZE + counts.size(),
+            None => KEYS_SIZE,
+        };
         let free = self
             .slots
             .iter()
@@ -116,7 +195,7 @@ impl RangeReadback {
                 self.slots.push(Slot {
                     buffer: device.create_buffer(&BufferDescriptor {
                         label: Some("comics_range_readback"),
-                        size: KEYS_SIZE,
+                        size,
                         usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
                         mapped_at_creation: false,
                     }),
@@ -130,7 +209,13 @@ impl RangeReadback {
         let slot = &mut self.slots[index];
         slot.busy.store(true, Ordering::Release);
         slot.copied = Some(projection);
-        encoder.copy_buffer_to_buffer(keys, 0, &slot.buffer, 0, KEYS_SIZE);
+        let into = &slot.buffer;
+        encoder.copy_buffer_to_buffer(keys, 0, into, 0, KEYS_SIZE);
+        if let Some((drawn, counts)) = histogram {
+            let after = KEYS_SIZE + DRAWN_SIZE;
+            encoder.copy_buffer_to_buffer(drawn, 0, into, KEYS_SIZE, DRAWN_SIZE);
+            encoder.copy_buffer_to_buffer(counts, 0, into, after, counts.size());
+        }
         true
     }
 
@@ -147,23 +232,24 @@ impl RangeReadback {
                 .map_async(MapMode::Read, move |result| {
                     // A lost device maps nothing; the buffers go with it.
                     if result.is_ok() {
-                        let keys = {
-                            let bytes = buffer.slice(..).get_mapped_range();
-                            let word = |i: usize| {
-                                u32::from_le_bytes([
-                                    bytes[i],
-                                    bytes[i + 1],
-                                    bytes[i + 2],
-                                    bytes[i + 3],
-                                ])
-                            };
-                            [word(0), word(4)]
-                        };
+                        let words: Vec<u32> = buffer
+                            .slice(..)
+                            .get_mapped_range()
+                            .chunks_exact(4)
+                            .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+                            .collect();
                         buffer.unmap();
+                        let (keys, rest) = words.split_at((KEYS_SIZE / 4) as usize);
+                        let keys = [keys[0], keys[1]];
+                        let reading = RangeReading {
+                            range: VisibleDepthRange::of_keys(keys, &projection),
+                            histogram: (!rest.is_empty())
+                                .then(|| DepthHistogram::of_words(rest, &projection)),
+                        };
                         readings
                             .lock()
                             .unwrap_or_else(PoisonError::into_inner)
-                            .insert(camera, VisibleDepthRange::of_keys(keys, &projection));
+                            .insert(camera, reading);
                     }
                     busy.store(false, Ordering::Release);
                 });
@@ -173,14 +259,17 @@ impl RangeReadback {
 
 pub(crate) fn receive_ranges(
     readings: Res<RangeReadings>,
-    mut cameras: Query<&mut VisibleDepthRange>,
+    mut ranges: Query<&mut VisibleDepthRange>,
+    mut histograms: Query<&mut DepthHistogram>,
 ) {
     let mut readings = readings.0.lock().unwrap_or_else(PoisonError::into_inner);
     for (camera, reading) in readings.drain() {
-        if let Ok(mut range) = cameras.get_mut(camera)
-            && *range != reading
+        if let Ok(mut range) = ranges.get_mut(camera) {
+            range.set_if_neq(reading.range);
+        }
+        if let (Ok(mut histogram), Some(reading)) = (histograms.get_mut(camera), reading.histogram)
         {
-            *range = reading;
+            histogram.set_if_neq(reading);
         }
     }
 }

@@ -32,7 +32,7 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use super::{DepthMap, ProjectionKind, frame::DepthProjection};
-use crate::{sanitize::bounded, view::ComicsView};
+use crate::{FieldRange, sanitize::bounded, view::ComicsView};
 
 /// Keeps the range of a [`DepthMap`] from flickering when something small,
 /// short-lived or undecided enters or leaves the view. Without it the range is
@@ -58,6 +58,7 @@ pub struct RangeSmoothing {
     /// Needs compute shaders; with [`ReductionMethod::PingPong`] it is left out.
     ///
     /// [`ReductionMethod::PingPong`]: crate::ReductionMethod::PingPong
+    #[reflect(@FieldRange::linear(0.0, 0.2))]
     pub outliers: f32,
     /// Takes the median of the last three frames: what is there for one frame
     /// changes nothing, for one frame of delay. Default: `true`.
@@ -66,13 +67,16 @@ pub struct RangeSmoothing {
     /// by so many octaves of distance; then it follows to within a quarter of
     /// that. Under an orthographic projection an octave is the length of the
     /// range. Range 0 to 4, default 0.07 (5 % of a distance).
+    #[reflect(@FieldRange::linear(0.0, 4.0).unit("oct"))]
     pub hysteresis: f32,
     /// Time constant with which the range grows, seconds: 63 % of the way after
     /// once that time, 95 % after three times, whatever the frame rate.
     /// Range 0 to 60, default 0.1.
+    #[reflect(@FieldRange::linear(0.0, 60.0).unit("s"))]
     pub expand: f32,
     /// Time constant with which the range shrinks, seconds. Range 0 to 60,
     /// default 1.
+    #[reflect(@FieldRange::linear(0.0, 60.0).unit("s"))]
     pub shrink: f32,
 }
 

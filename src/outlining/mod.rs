@@ -142,7 +142,7 @@ impl OutlineKey {
             entries.push(texture(float).build(7, stages));
         }
         if self.ids {
-            entries.push(texture(TextureSampleType::Uint).build(8, stages));
+            entries.push(ids_entry(self.samples > 1));
         }
         BindGroupLayoutDescriptor::new("comics_outlines", &entries)
     }
@@ -157,6 +157,16 @@ pub(crate) fn range_entry() -> BindGroupLayoutEntry {
 /// The layout entry of a texture of edges or lines.
 pub(crate) fn edges_entry(binding: u32) -> BindGroupLayoutEntry {
     texture_2d(TextureSampleType::Uint).build(binding, ShaderStages::FRAGMENT)
+}
+
+/// The layout entry of the objects' ids.
+pub(crate) fn ids_entry(multisampled: bool) -> BindGroupLayoutEntry {
+    let texture = if multisampled {
+        texture_2d_multisampled(TextureSampleType::Uint)
+    } else {
+        texture_2d(TextureSampleType::Uint)
+    };
+    texture.build(8, ShaderStages::FRAGMENT)
 }
 
 /// The layout entry of the objects' styles.

@@ -9,7 +9,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::file_color;
+use super::{FieldRange, file_color};
 use crate::sanitize::{bounded, bounded_option, displayable};
 
 /// Fills slopes of the depth map and dark areas with flat ink.
@@ -21,16 +21,20 @@ pub struct BlackFlats {
     /// above this: the paper's second threshold. Measured as on a map of 512
     /// rows, so that it does not depend on the size of the window. Range 1e-6
     /// to 100; `None` fills no slopes. Default: `None`.
+    #[reflect(@FieldRange::logarithmic(1e-6, 100.0))]
     pub slope: Option<f32>,
     /// Fill where the value V of the display colour is below this. Range 0 to
     /// 1; `None` fills no shadows. Default: 0.25.
+    #[reflect(@FieldRange::SHARE)]
     pub value: Option<f32>,
     /// How much the value threshold shrinks with distance: at 1 it is
     /// `value * (1 - D)`, so that only the foreground is inked. Range 0 to 1,
     /// default 0.
+    #[reflect(@FieldRange::SHARE)]
     pub depth_weight: f32,
     /// Softness of the edge of an area, as a share of its threshold. Range 0
     /// to 1, default 0.1.
+    #[reflect(@FieldRange::SHARE)]
     pub feather: f32,
     /// Colour of the ink. Clamped to what a display shows; its alpha is not
     /// used. Default: black.
@@ -38,6 +42,7 @@ pub struct BlackFlats {
     pub color: Color,
     /// Opacity of the ink. Range 0 (none, and the pass leaves the style out)
     /// to 1. Default 1.
+    #[reflect(@FieldRange::SHARE)]
     pub opacity: f32,
 }
 

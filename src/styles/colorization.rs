@@ -10,7 +10,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::{ColorMethod, file_color, oklab};
+use super::{ColorMethod, FieldRange, HueWheel, file_color, oklab};
 use crate::sanitize::{bounded, displayable};
 
 /// Colours the picture with an atmosphere (\[CS\] Eq. 8 to 11).
@@ -25,9 +25,11 @@ pub struct Colorization {
     /// Default: a warm red, `#c8413a`. Components are clamped to what a display
     /// shows; a colour that is not finite becomes the default.
     #[serde(with = "file_color")]
+    #[reflect(@HueWheel)]
     pub color: Color,
     /// How much of the change is applied. Range 0 (none, and the pass leaves
     /// the style out) to 1. Default 1.
+    #[reflect(@FieldRange::SHARE)]
     pub amount: f32,
     /// [`ColorMethod::Corrected`] blends chroma vectors in `OKLab` and keeps
     /// lightness. [`ColorMethod::Faithful`] moves HSV hue as printed: greys

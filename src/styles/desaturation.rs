@@ -7,7 +7,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::ColorMethod;
+use super::{ColorMethod, FieldRange};
 use crate::sanitize::bounded;
 
 /// Takes saturation away with distance: the nearest geometry keeps its colours,
@@ -18,9 +18,11 @@ use crate::sanitize::bounded;
 pub struct Desaturation {
     /// How much of the saturation goes at the far end. Range 0 (none, and the
     /// pass leaves the style out) to 1 (all). Default 1.
+    #[reflect(@FieldRange::SHARE)]
     pub amount: f32,
     /// The exponent on `1 - D`: 1 is Eq. 6, 0.5 is Eq. 7, which keeps colours
     /// longer and drops them late. Range 0.25 to 4, default 1.
+    #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
     pub exponent: f32,
     /// What stays while the colour goes. [`ColorMethod::Corrected`] keeps the
     /// luminance of the light; [`ColorMethod::Faithful`] keeps HSV value

@@ -9,7 +9,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::file_color;
+use super::{FieldRange, file_color};
 use crate::sanitize::{bounded, displayable};
 
 /// Draws the outlines of the camera as ink on paper, and nothing else.
@@ -21,6 +21,10 @@ use crate::sanitize::{bounded, displayable};
 #[reflect(Component, Default, Clone, PartialEq)]
 #[serde(default, deny_unknown_fields)]
 pub struct Sketch {
+    /// How much of the drawing covers the picture with its outlines. Range 0
+    /// (none, and the pass leaves the style out) to 1, default 1.
+    #[reflect(@FieldRange::SHARE)]
+    pub amount: f32,
     /// Colour of the paper. Clamped to what a display shows; its alpha is not
     /// used. Default: a warm white.
     #[serde(with = "file_color")]
@@ -31,28 +35,36 @@ pub struct Sketch {
     pub ink: Color,
     /// How much of the picture shows through the paper, as a wash of colour.
     /// Range 0 to 1, default 0.
+    #[reflect(@FieldRange::SHARE)]
     pub wash: f32,
     /// Exponent on the ink: below 1 strengthens faint lines, above 1 thins them
     /// out. Range 0.25 to 4, default 1.
+    #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
     pub gamma: f32,
     /// How many times every line is drawn. Range 1 to 3, default 2.
+    #[reflect(@FieldRange::linear(1.0, 3.0))]
     pub strokes: u32,
     /// How far a stroke strays from its line, logical pixels. Range 0 to 8,
     /// default 1.5.
+    #[reflect(@FieldRange::linear(0.0, 8.0).unit("px"))]
     pub jitter: f32,
     /// Length of a stroke's waves, logical pixels. Range 2 to 256, default 40.
+    #[reflect(@FieldRange::logarithmic(2.0, 256.0).unit("px"))]
     pub wavelength: f32,
     /// How often a second the strokes are drawn anew. Range 0 (they stand
     /// still) to 60, default 8.
+    #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"))]
     pub rate: f32,
     /// How much the pressure of the pen varies along a stroke. Range 0 to 1,
     /// default 0.4.
+    #[reflect(@FieldRange::SHARE)]
     pub pressure: f32,
 }
 
 impl Default for Sketch {
     fn default() -> Self {
         Self {
+            amount: 1.0,
             paper: Color::srgb(0.97, 0.955, 0.915),
             ink: Color::srgb(0.13, 0.12, 0.14),
             wash: 0.0,
@@ -73,6 +85,7 @@ impl Sketch {
     pub fn sanitized(self) -> Self {
         let default = Self::default();
         Self {
+            amount: bounded(self.amount, default.amount, 0.0, 1.0),
             paper: displayable(self.paper, default.paper),
             ink: displayable(self.ink, default.ink),
             wash: bounded(self.wash, default.wash, 0.0, 1.0),
@@ -90,8 +103,13 @@ impl Sketch {
         (seconds * f64::from(self.rate)).floor().rem_euclid(65536.0) as u32
     }
 
-    /// `scale` is physical pixels per logical pixel.
-    pub(crate) fn uniform(&self, scale: f32, drawing: u32) -> SketchUniform {
+    pub(crate) fn is_negligible(&self) -> bool {
+        self.amount == 0.0
+    }
+
+    /// `scale` is physical pixels per logical pixel; `own_lines` says whether
+    /// the picture below has outlines, or only the sketch.
+    pub(crate) fn uniform(&self, scale: f32, drawing: u32, own_lines: bool) -> SketchUniform {
         let rgb = |color: Color| Vec3::from_array(color.to_linear().to_f32_array_no_alpha());
         SketchUniform {
             paper: rgb(self.paper),
@@ -103,6 +121,8 @@ impl Sketch {
             pressure: self.pressure,
             strokes: self.strokes,
             drawing,
+            amount: self.amount,
+            lines_below: if own_lines { 1.0 } else { 0.0 },
         }
     }
 }
@@ -119,4 +139,6 @@ pub(crate) struct SketchUniform {
     pressure: f32,
     strokes: u32,
     drawing: u32,
+    pub(crate) amount: f32,
+    lines_below: f32,
 }

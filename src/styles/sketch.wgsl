@@ -12,6 +12,10 @@ struct Sketch {
     strokes: u32,
     // Which drawing of the strokes this is: changes a few times a second.
     drawing: u32,
+    // How much of the drawing covers the picture.
+    amount: f32,
+    // 1: the picture below has these lines; 0: only the sketch has them.
+    lines_below: f32,
 }
 
 // A 32-bit hash of the PCG family (Jarzynski and Olano 2020).

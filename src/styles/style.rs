@@ -9,9 +9,10 @@ use bevy::{
         entity::Entity,
         lifecycle::RemovedComponents,
         message::MessageReader,
-        query::With,
+        query::{QueryData, With},
         reflect::ReflectComponent,
         system::{Commands, EntityCommands, Query, Res},
+        world::EntityRef,
     },
     reflect::{Reflect, TypePath, std_traits::ReflectDefault},
 };
@@ -140,6 +141,14 @@ impl ComicStyle {
         }
     }
 
+    /// The style that a camera's components are, without a name.
+    pub fn of(camera: EntityRef) -> Self {
+        // Every part of a look is optional, so that every entity has one.
+        camera
+            .get_components::<Look>()
+            .map_or_else(|_| Self::default(), |look| look.style())
+    }
+
     /// Makes the camera look like this style: inserts the components that it
     /// has and removes those that it has not.
     pub fn apply(&self, camera: &mut EntityCommands) {
@@ -157,6 +166,36 @@ impl ComicStyle {
         set(camera, self.contours);
         set(camera, self.outlines);
         set(camera, self.sketch);
+    }
+}
+
+/// What a camera looks like now.
+#[derive(QueryData)]
+pub(crate) struct Look {
+    pub depth_map: Option<&'static DepthMap>,
+    pub tone_bands: Option<&'static ToneBands>,
+    pub desaturation: Option<&'static Desaturation>,
+    pub colorization: Option<&'static Colorization>,
+    pub black_flats: Option<&'static BlackFlats>,
+    pub contours: Option<&'static Contours>,
+    pub outlines: Option<&'static Outlines>,
+    pub sketch: Option<&'static Sketch>,
+}
+
+impl LookItem<'_, '_> {
+    pub fn style(&self) -> ComicStyle {
+        ComicStyle {
+            version: ComicStyle::VERSION,
+            name: String::new(),
+            depth_map: self.depth_map.copied(),
+            tone_bands: self.tone_bands.copied(),
+            desaturation: self.desaturation.copied(),
+            colorization: self.colorization.copied(),
+            black_flats: self.black_flats.copied(),
+            contours: self.contours.copied(),
+            outlines: self.outlines.copied(),
+            sketch: self.sketch.copied(),
+        }
     }
 }
 

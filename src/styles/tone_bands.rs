@@ -7,6 +7,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
+use super::FieldRange;
 use crate::sanitize::bounded;
 
 /// Gathers the tones of the picture into a few flat bands, whatever lit it.
@@ -21,14 +22,17 @@ pub struct ToneBands {
     pub method: ToneBandMethod,
     /// Number of bands. Range 2 to 8, default 4; [`ToneBandMethod::Faithful`]
     /// always has three.
+    #[reflect(@FieldRange::linear(2.0, 8.0))]
     pub levels: u32,
     /// Width of the step between two bands in logical pixels, where the tone
     /// changes slowly: 1 is anti-aliased, more is soft, 0 as hard as can be: a
     /// step always spans two codes of the display, so that the dither of a flat
     /// area does not speckle. Range 0 to 16, default 1. [`ToneBandMethod::Faithful`] has hard steps.
+    #[reflect(@FieldRange::linear(0.0, 16.0).unit("px"))]
     pub feather: f32,
     /// How much of the banded picture is mixed in. Range 0 (the style is left
     /// out) to 1, default 1.
+    #[reflect(@FieldRange::SHARE)]
     pub amount: f32,
 }
 

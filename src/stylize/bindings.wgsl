@@ -12,6 +12,7 @@
 #import bevy_comics::styles::tone_bands::ToneBands
 #import bevy_comics::styles::outlines::Outlines
 #import bevy_comics::styles::sketch::Sketch
+#import bevy_comics::finish::Finish
 
 // Uniform structs inside a struct must start at multiples of 16 bytes, so each
 // of them is a multiple of 16 bytes long.
@@ -32,6 +33,7 @@ struct Comics {
     tone_bands: ToneBands,
     outlines: Outlines,
     sketch: Sketch,
+    finish: Finish,
 }
 
 // What an object's lines have of their own (objects/style.rs). Slot 0 is an

@@ -27,8 +27,9 @@ use bevy::{
 use crate::{
     depth::{DepthFrame, RawDepth, prepare::ViewRange},
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
+    finish::{DebugView, FinishUniform},
     objects::ObjectStyleBuffer,
-    outlining::{GATHER_REACH, edges_entry, object_styles_entry, range_entry},
+    outlining::{GATHER_REACH, edges_entry, ids_entry, object_styles_entry, range_entry},
     passes::ViewPasses,
     styles::{
         black_flats::BlackFlatsUniform, colorization::ColorizationUniform,
@@ -53,6 +54,7 @@ pub(crate) struct ComicsUniform {
     pub tone_bands: ToneBandsUniform,
     pub outlines: OutlinesUniform,
     pub sketch: SketchUniform,
+    pub finish: FinishUniform,
 }
 
 /// The modes of the styles, which are compiled in: an adapter that runs on the
@@ -72,6 +74,10 @@ struct Modes {
     tone_bands: u32,
     /// How far around a pixel lines are looked for without a flood.
     reach: u32,
+    /// A sketch that covers only a part of the picture.
+    sketch_fades: bool,
+    /// Something of the original is seen.
+    finish: bool,
     /// A pixel of the depth is a pixel of the picture.
     same_size: bool,
 }
@@ -86,6 +92,8 @@ impl Modes {
             contours,
             tone_bands,
             outlines,
+            sketch,
+            finish,
             ..
         } = uniform;
         Self {
@@ -98,6 +106,8 @@ impl Modes {
             steady_contours: contours.fade == 0.0,
             tone_bands: tone_bands.faithful,
             reach: outlines.reach.clamp(0, GATHER_REACH) as u32,
+            sketch_fades: sketch.amount < 1.0,
+            finish: finish.weight < 1.0 || finish.split > 0.0,
             same_size: *depth_scale == Vec2::ONE,
         }
     }
@@ -117,6 +127,8 @@ impl Modes {
         let flags = [
             (true, "MODES"),
             (self.same_size, "SAME_SIZE"),
+            (self.sketch_fades, "SKETCH_FADES"),
+            (self.finish, "FINISH"),
             (self.whole_contours, "WHOLE_CONTOURS"),
             (self.single_ring, "SINGLE_RING"),
             (self.steady_contours, "STEADY_CONTOURS"),
@@ -152,6 +164,7 @@ pub(crate) struct StylizeKey {
     flood: bool,
     object_styles: bool,
     sketch: bool,
+    pub view: Option<DebugView>,
     modes: Modes,
 }
 
@@ -180,6 +193,7 @@ impl StylizeKey {
             flood: false,
             object_styles: plan.object_styles && plan.outlines.is_some(),
             sketch: plan.sketch.is_some(),
+            view: plan.view,
             modes: Modes::default(),
         }
     }
@@ -235,9 +249,15 @@ impl StylizeKey {
         .into_iter()
         .filter_map(|(on, name)| on.then_some(name))
         .chain(space)
+        .chain(self.view.map(DebugView::shader_def))
+        .chain(self.shows_ids().then_some("OBJECT_IDS"))
         .map(ShaderDefVal::from)
         .chain(self.modes.shader_defs())
         .collect()
+    }
+
+    fn shows_ids(&self) -> bool {
+        self.view.is_some_and(DebugView::reads_ids)
     }
 
     fn layout(&self) -> BindGroupLayoutDescriptor {
@@ -269,6 +289,9 @@ impl StylizeKey {
         }
         if self.object_styles {
             entries.push(object_styles_entry());
+        }
+        if self.shows_ids() {
+            entries.push(ids_entry(self.samples > 1));
         }
         BindGroupLayoutDescriptor::new("comics_stylize", &entries)
     }
@@ -364,6 +387,11 @@ pub(crate) fn stylize(
         return pass_through(LeftOut::PipelineNotReady);
     }
 
+    let ids = pass.ids.as_ref();
+    if key.shows_ids() && ids.is_none() {
+        return pass_through(LeftOut::PipelineNotReady);
+    }
+
     let layout = cache.get_bind_group_layout(&key.layout());
     let post = target.post_process_write();
     let entry = |binding, resource| BindGroupEntry { binding, resource };
@@ -382,6 +410,9 @@ pub(crate) fn stylize(
     }
     if let Some(styles) = style_table.filter(|_| key.object_styles) {
         entries.push(entry(6, styles.as_entire_binding()));
+    }
+    if let Some(ids) = ids.filter(|_| key.shows_ids()) {
+        entries.push(entry(8, (&ids.view).into_binding()));
     }
     let device = ctx.render_device();
     let bind_group = device.create_bind_group("comics_stylize", &layout, &entries);

@@ -1,6 +1,13 @@
 // The fused pass: one read of the picture, one write, every style in between.
 
 #import bevy_comics::stylize::bindings::{comics, source}
+#import bevy_comics::finish::{compare, difference, object_color, range_share}
+#ifdef VIEW_OBJECT_IDS
+#import bevy_comics::stylize::bindings::{load_object}
+#endif
+#ifdef VIEW_RAW_RANGE
+#import bevy_comics::stylize::bindings::{load_depth}
+#endif
 #ifdef EDGES
 #import bevy_comics::stylize::lines::{draw_lines, lines_at, total_ink}
 #endif
@@ -64,6 +71,9 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 #endif
     linear = tone_bands(bands, linear, change);
 #endif
+#ifdef VIEW_TONE_BANDS
+    let banded = linear;
+#endif
 
     // x: 0 near, 1 far; y: its complement.
     var depth = vec2(1.0, 0.0);
@@ -113,9 +123,39 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         let at = position.xy + stray(comics.sketch, vec2<f32>(inside), stroke);
         inked = add_stroke(inked, total_ink(lines_at(at)) * pen_pressure(comics.sketch, vec2<f32>(inside), stroke));
     }
-    linear = draw_sketch(comics.sketch, linear, inked);
+    let drawing = draw_sketch(comics.sketch, linear, inked);
+#ifdef SKETCH_FADES
+    let below = draw_lines(linear, lines_at(position.xy));
+    linear = mix(mix(linear, below, comics.sketch.lines_below), drawing, comics.sketch.amount);
+#else
+    linear = drawing;
+#endif
 #else ifdef EDGES
     linear = draw_lines(linear, lines_at(position.xy));
+#endif
+#ifdef VIEW_DEPTH_MAP
+    linear = srgb_decode(vec3(clamp(depth.x, 0.0, 1.0)));
+#else ifdef VIEW_RAW_RANGE
+    linear = srgb_decode(vec3(range_share(frame, load_depth(pixel, 0))));
+#else ifdef VIEW_SILHOUETTES
+#ifdef EDGES
+    linear = srgb_decode(vec3(1.0 - clamp(lines_at(position.xy).ink.x, 0.0, 1.0)));
+#endif
+#else ifdef VIEW_CREASES
+#ifdef EDGES
+    linear = srgb_decode(vec3(1.0 - clamp(lines_at(position.xy).ink.y, 0.0, 1.0)));
+#endif
+#else ifdef VIEW_OBJECT_IDS
+    linear = srgb_decode(object_color(load_object(pixel).x));
+#else ifdef VIEW_TONE_BANDS
+    linear = srgb_decode(vec3(clamp(lightness(banded), 0.0, 1.0)));
+#else ifdef VIEW_SATURATION
+    linear = srgb_decode(vec3(saturation));
+#else ifdef VIEW_DIFFERENCE
+    linear = srgb_decode(difference(srgb_encode(to_linear(stored.rgb)), srgb_encode(linear)));
+#endif
+#ifdef FINISH
+    linear = compare(comics.finish, to_linear(stored.rgb), linear, f32(inside.x));
 #endif
     return vec4(to_stored(linear), stored.a);
 }

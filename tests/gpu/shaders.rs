@@ -72,6 +72,37 @@ fn every_combination_of_styles_composes_and_validates() {
         }
     }
     module(&source, &["COLORIZATION", "STORED_OKLAB"]).expect("the OKLab store");
+    for view in [
+        "VIEW_DEPTH_MAP",
+        "VIEW_RAW_RANGE",
+        "VIEW_SILHOUETTES",
+        "VIEW_CREASES",
+        "VIEW_OBJECT_IDS",
+        "VIEW_TONE_BANDS",
+        "VIEW_SATURATION",
+        "VIEW_DIFFERENCE",
+        "SKETCH_FADES",
+    ] {
+        for samples in subsets(&["MULTISAMPLED", "OBLIQUE", "FINISH"]) {
+            let mut defs = vec![
+                view,
+                "DEPTH",
+                "VISIBLE_RANGE",
+                "TONE_BANDS",
+                "DESATURATION",
+                "EDGES",
+                "FLOOD",
+                "SKETCH",
+            ];
+            defs.extend(&samples);
+            if view == "VIEW_OBJECT_IDS" {
+                defs.push("OBJECT_IDS");
+            }
+            if let Err(error) = module(&source, &defs) {
+                panic!("{defs:?}: {error}");
+            }
+        }
+    }
 }
 
 #[test]

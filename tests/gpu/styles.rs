@@ -35,7 +35,7 @@ fn colors() -> impl Strategy<Value = Color> {
     })
 }
 
-fn styles() -> impl Strategy<Value = ComicStyle> {
+pub fn styles() -> impl Strategy<Value = ComicStyle> {
     let methods = || select(vec![ColorMethod::Corrected, ColorMethod::Faithful]);
     let map = (number(), number(), number(), any::<bool>(), 0..6usize).prop_map(
         |(near, far, gap, flip, kind)| DepthMap {

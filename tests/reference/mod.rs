@@ -8,6 +8,7 @@ pub mod colorization;
 pub mod contours;
 pub mod desaturation;
 pub mod detect;
+pub mod finish;
 #[allow(dead_code, reason = "the light is tested function by function")]
 pub mod light;
 pub mod lines;

@@ -9,7 +9,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::file_color;
+use super::{FieldRange, file_color};
 use crate::sanitize::{bounded, displayable};
 
 /// Draws a line wherever the depth map jumps: around objects, and between near
@@ -30,13 +30,16 @@ pub struct Contours {
     /// faithful form applies it to the raw kernels, which answer a straight
     /// jump of 0.02 with 0.06 (Prewitt, Laplace), 0.08 (Sobel) or 0.028
     /// (Roberts). Range 1e-6 to 100, default 0.02.
+    #[reflect(@FieldRange::logarithmic(1e-6, 100.0))]
     pub threshold: f32,
     /// Width of a line in logical pixels, half on either side of the jump.
     /// Range 0.5 to 16, default 2.
+    #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub width: f32,
     /// How gradually a line sets in around the threshold: 0 draws it hard, 1
     /// lets it grow from nothing to twice the threshold. Range 0 to 1,
     /// default 0.5.
+    #[reflect(@FieldRange::SHARE)]
     pub softness: f32,
     /// Colour of the line. Clamped to what a display shows; its alpha is not
     /// used. Default: black.
@@ -44,9 +47,11 @@ pub struct Contours {
     pub color: Color,
     /// Opacity of the line. Range 0 (none, and the pass leaves the style out)
     /// to 1. Default 1.
+    #[reflect(@FieldRange::SHARE)]
     pub opacity: f32,
     /// Share of the opacity that is lost at the far end of the depth map.
     /// Range 0 to 1, default 0.
+    #[reflect(@FieldRange::SHARE)]
     pub fade: f32,
 }
 

@@ -6,7 +6,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::super::file_color;
+use super::super::{FieldRange, file_color};
 use crate::sanitize::{bounded, displayable};
 
 /// What an outline's response is measured against, and how wide it is.
@@ -40,18 +40,22 @@ pub struct Silhouettes {
     /// projection a share of 1.2 times the height of the view. Faithful: the
     /// paper's number on the buffer of 0 to 1. Range 1e-6 to 1; measured from
     /// 0.005 to 0.1 is useful. Default 0.02.
+    #[reflect(@FieldRange::logarithmic(1e-6, 1.0))]
     pub threshold: f32,
     /// The paper's edge-limit-value: the response, 0 to 1, above which there is
     /// a line. Range 0.01 to 0.99, default 0.5.
+    #[reflect(@FieldRange::linear(0.01, 0.99))]
     pub edge_limit: f32,
     /// Softness of that limit: 0 is a hard step, 1 lets the ink follow the
     /// response, as a sketch wants it. Range 0 to 1, default 0.5.
+    #[reflect(@FieldRange::SHARE)]
     pub softness: f32,
     /// Colour of the line. Clamped to what a display shows; its alpha is not
     /// used. Default: black.
     #[serde(with = "file_color")]
     pub color: Color,
     /// Opacity of the line. Range 0 (the kind is left out) to 1. Default 1.
+    #[reflect(@FieldRange::SHARE)]
     pub opacity: f32,
 }
 
@@ -105,16 +109,20 @@ pub struct Creases {
     /// The fold that is a full line, degrees between the normals of its two
     /// sides. Range 3 to 180, default 40. Faithful: `k_p` of Eq. 2 is the sine
     /// of half of it, applied to every component of the normal.
+    #[reflect(@FieldRange::linear(3.0, 180.0).unit("°"))]
     pub angle: f32,
     /// As [`Silhouettes::edge_limit`]. Range 0.01 to 0.99, default 0.5.
+    #[reflect(@FieldRange::linear(0.01, 0.99))]
     pub edge_limit: f32,
     /// As [`Silhouettes::softness`]. Range 0 to 1, default 0.5.
+    #[reflect(@FieldRange::SHARE)]
     pub softness: f32,
     /// Colour of the line. Clamped to what a display shows; its alpha is not
     /// used. Default: black.
     #[serde(with = "file_color")]
     pub color: Color,
     /// Opacity of the line. Range 0 (the kind is left out) to 1. Default 1.
+    #[reflect(@FieldRange::SHARE)]
     pub opacity: f32,
 }
 
@@ -163,6 +171,7 @@ pub struct ObjectEdges {
     #[serde(with = "file_color")]
     pub color: Color,
     /// Opacity of the line. Range 0 (the kind is left out) to 1. Default 1.
+    #[reflect(@FieldRange::SHARE)]
     pub opacity: f32,
 }
 

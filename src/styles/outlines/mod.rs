@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 pub use kinds::{Creases, EdgeForm, ObjectEdges, Silhouettes};
 
+use super::FieldRange;
 use crate::sanitize::bounded;
 
 /// Draws the outlines of things: where one surface hides another, where a
@@ -46,12 +47,15 @@ pub struct Outlines {
     pub objects: Option<ObjectEdges>,
     /// Width of the lines in logical pixels. Range 0.5 to 16, default 2.
     /// [`EdgeForm::Faithful`] lines have the paper's four columns instead.
+    #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub width: f32,
     /// Share of the width that is lost at the far end of the depth map.
     /// Range 0 to 1, default 0.
+    #[reflect(@FieldRange::SHARE)]
     pub width_fade: f32,
     /// Share of the opacity that is lost at the far end of the depth map.
     /// Range 0 to 1, default 0.
+    #[reflect(@FieldRange::SHARE)]
     pub opacity_fade: f32,
 }
 

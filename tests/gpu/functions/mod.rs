@@ -5,6 +5,7 @@ mod cartoon_styles;
 mod color_styles;
 mod contour_response;
 mod depth_map;
+mod finish;
 
 use bevy::color::{Color, Hsva};
 use bevy_comics::{

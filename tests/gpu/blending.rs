@@ -1,0 +1,330 @@
+//! From one style to another: in numbers, in pictures, over time.
+
+use std::time::Duration;
+
+use bevy::{asset::Assets, prelude::*, render::view::Msaa};
+use bevy_comics::{
+    ComicStyle, ComicStyleHandle, ComicsDiagnostics, ComicsStage, Contours, Desaturation,
+    StyleTransition, StyleTransitionFinished, TransitionEasing, presets,
+};
+use image::RgbaImage;
+use proptest::{prelude::ProptestConfig, test_runner::TestRunner};
+
+use crate::{
+    common::headless::HeadlessOptions,
+    small::{Small, options, size},
+    styles::styles,
+};
+
+fn preset(name: &str) -> ComicStyle {
+    let mut style = presets::preset(name).expect(name).expect("it reads");
+    if let Some(sketch) = &mut style.sketch {
+        // A drawing that is done anew is no step of a transition.
+        sketch.rate = 0.0;
+    }
+    style
+}
+
+#[test]
+fn whatever_lies_between_two_styles_is_a_style() {
+    let config = ProptestConfig {
+        cases: 256,
+        ..ProptestConfig::default()
+    };
+    let ways = (styles(), styles(), -0.5f32..1.5);
+    TestRunner::new(config)
+        .run(&ways, |(a, b, t)| {
+            let between = a.blend(&b, t);
+            if t <= 0.0 {
+                assert_eq!(format!("{between:?}"), format!("{a:?}"));
+            } else if t >= 1.0 {
+                assert_eq!(format!("{between:?}"), format!("{b:?}"));
+            } else {
+                assert_eq!(between, between.sanitized(), "in its ranges at {t}");
+            }
+            assert_eq!(
+                format!("{:?}", a.blend(&b, f32::NAN)),
+                format!("{a:?}"),
+                "no number is no way"
+            );
+            Ok(())
+        })
+        .unwrap_or_else(|error| panic!("{error}"));
+}
+
+fn shoot(small: &mut Small, style: &ComicStyle) -> RgbaImage {
+    small.style(style);
+    small.settle();
+    small.picture()
+}
+
+fn mean_apart(a: &RgbaImage, b: &RgbaImage) -> f64 {
+    let sum: u64 = a
+        .pixels()
+        .zip(b.pixels())
+        .map(|(a, b)| (0..3).map(|i| u64::from(a[i].abs_diff(b[i]))).sum::<u64>())
+        .sum();
+    sum as f64 / f64::from(a.width() * a.height() * 3)
+}
+
+/// At the ends, where effects begin and end, and in the middle, where modes
+/// change, a small step changes the picture little: a thousandth of the way
+/// moves no pixel by more than its share and the rounding of a code.
+#[test]
+fn no_picture_jumps_on_the_way() {
+    let mut small = Small::new(UVec2::new(128, 80), Msaa::Off);
+    for (from, to) in [
+        ("ligne-claire", "pencil-sketch"),
+        ("graphic-novel", "cobalt-night"),
+        ("noir", "watercolor"),
+        ("figure-7a", "figure-8b"),
+        ("crimson-dusk", "twilight-toon"),
+        ("blueprint", "clear-bands"),
+        ("sepia", "misty-morning"),
+    ] {
+        let (a, b) = (preset(from), preset(to));
+        let whole = mean_apart(&shoot(&mut small, &a), &shoot(&mut small, &b));
+        assert!(whole > 4.0, "{from} and {to} differ: {whole}");
+        let step = 1.0 / 1024.0;
+        for (before, after) in [
+            (0.0, step),
+            (0.5 - 0.5 * step, 0.5 + 0.5 * step),
+            (1.0 - step, 1.0),
+        ] {
+            let pictures = [before, after].map(|t| shoot(&mut small, &a.blend(&b, t)));
+            let apart = mean_apart(&pictures[0], &pictures[1]);
+            assert!(
+                apart < 1.0,
+                "{from} to {to}: {apart} codes from {before} to {after}, of {whole} in all"
+            );
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+fn look(small: &Small) -> ComicStyle {
+    ComicStyle::of(small.headless.app.world().entity(small.camera))
+}
+
+fn unnamed(style: &ComicStyle) -> ComicStyle {
+    ComicStyle {
+        name: String::new(),
+        ..style.clone()
+    }
+}
+
+#[derive(Resource, Default)]
+struct Arrivals(Vec<Entity>);
+
+#[test]
+fn a_transition_takes_its_time_and_arrives() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.headless.app.init_resource::<Arrivals>().add_observer(
+        |arrived: On<StyleTransitionFinished>, mut arrivals: ResMut<Arrivals>| {
+            arrivals.0.push(arrived.entity);
+        },
+    );
+    let arrivals = |small: &Small| small.headless.app.world().resource::<Arrivals>().0.len();
+    let fading = |small: &Small| {
+        small
+            .headless
+            .app
+            .world()
+            .get::<StyleTransition>(small.camera)
+            .is_some()
+    };
+    let (a, b) = (preset("ligne-claire"), preset("noir"));
+    small.style(&a);
+    small.settle();
+    // Sixty frames are a second here.
+    let slow = StyleTransition::to(b.clone(), 1.0).with_easing(TransitionEasing::Linear);
+    small.insert(slow);
+    small.headless.step(31);
+    let half = look(&small);
+    assert!(fading(&small) && half != unnamed(&a) && half != unnamed(&b));
+    let want = unnamed(&a).blend(&b, 0.5);
+    let width = |style: &ComicStyle| style.contours.map(|c| c.width).expect("contours");
+    assert!(
+        (width(&half) - width(&want)).abs() < 0.05,
+        "{} {}",
+        width(&half),
+        width(&want)
+    );
+
+    // Another one from here: no jump back.
+    let c = preset("golden-hour");
+    small.insert(StyleTransition::to(c.clone(), 0.5));
+    small.headless.step(1);
+    assert_eq!(
+        look(&small).contours,
+        half.contours,
+        "it starts where the last one was"
+    );
+    small.headless.step(40);
+    assert!(!fading(&small));
+    assert_eq!(look(&small), unnamed(&c), "it arrives exactly");
+    assert_eq!(
+        arrivals(&small),
+        1,
+        "the one that was replaced did not arrive"
+    );
+
+    // At once, and with numbers that are none.
+    for seconds in [0.0, -1.0, f32::NAN] {
+        small.insert(StyleTransition::to(a.clone(), seconds));
+        small.headless.step(2);
+        assert_eq!(look(&small), unnamed(&a), "{seconds}");
+        small.insert(StyleTransition::to(b.clone(), 0.0));
+        small.headless.step(2);
+    }
+    // A camera that goes takes its transition along.
+    small.insert(StyleTransition::to(a, 1.0));
+    small.headless.step(2);
+    let camera = small.camera;
+    small.world().despawn(camera);
+    small.headless.step(3);
+    assert_eq!(small.errors(), 0);
+}
+
+#[test]
+fn a_transition_and_the_cameras_file_agree() {
+    let mut small = Small::new(size(), Msaa::Off);
+    let add = |small: &mut Small, style: ComicStyle| {
+        small
+            .world()
+            .resource_mut::<Assets<ComicStyle>>()
+            .add(style)
+    };
+    let first = add(&mut small, preset("noir"));
+    let second = add(&mut small, preset("sepia"));
+    small.insert(ComicStyleHandle(first.clone()));
+    small.settle();
+    small.insert(StyleTransition::to_asset(second.clone(), 0.1));
+    small.headless.step(12);
+    assert_eq!(look(&small), unnamed(&preset("sepia")));
+    let handle = small
+        .headless
+        .app
+        .world()
+        .get::<ComicStyleHandle>(small.camera);
+    assert_eq!(
+        handle,
+        Some(&ComicStyleHandle(second.clone())),
+        "its file goes on with it"
+    );
+
+    // To a style that is no file: the old file has no say any more.
+    small.insert(StyleTransition::to(preset("blueprint"), 0.0));
+    small.headless.step(3);
+    assert_eq!(look(&small), unnamed(&preset("blueprint")));
+    if let Some(mut style) = small
+        .world()
+        .resource_mut::<Assets<ComicStyle>>()
+        .get_mut(&second)
+    {
+        style.sketch = None;
+        style.contours = None;
+    }
+    small.headless.step(4);
+    assert_eq!(
+        look(&small),
+        unnamed(&preset("blueprint")),
+        "a file that it left is not read"
+    );
+
+    // A file that cannot be read ends it where it is.
+    let missing = small
+        .world()
+        .resource::<AssetServer>()
+        .load("styles/no-such-file.comic.ron");
+    small.insert(StyleTransition::to_asset(missing, 0.1));
+    for _ in 0..200 {
+        small.headless.step(1);
+        std::thread::sleep(Duration::from_millis(2));
+        if small
+            .headless
+            .app
+            .world()
+            .get::<StyleTransition>(small.camera)
+            .is_none()
+        {
+            break;
+        }
+    }
+    assert!(
+        small
+            .headless
+            .app
+            .world()
+            .get::<StyleTransition>(small.camera)
+            .is_none()
+    );
+    assert_eq!(look(&small), unnamed(&preset("blueprint")));
+}
+
+/// Where pipelines compile in the background, as in a game, a change of the
+/// look never shows the bare picture.
+#[test]
+fn a_look_stays_until_the_next_one_is_compiled() {
+    let mut small = Small::with(
+        HeadlessOptions {
+            background_pipelines: true,
+            ..options(size())
+        },
+        Msaa::Off,
+    );
+    let until_complete = |small: &mut Small| {
+        for _ in 0..2000 {
+            small.headless.step(1);
+            let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
+            if small.ran(ComicsStage::Stylize) && !diagnostics.is_compiling(small.camera) {
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        panic!("the pipelines do not compile");
+    };
+    small.insert(Desaturation::default());
+    until_complete(&mut small);
+    // The engine's own pipelines compile as well: until nothing changes.
+    let still = |small: &mut Small| {
+        let mut last = small.picture();
+        let mut unchanged = 0;
+        while unchanged < 40 {
+            small.headless.step(1);
+            std::thread::sleep(Duration::from_millis(10));
+            let now = small.picture();
+            unchanged = if now == last { unchanged + 1 } else { 0 };
+            last = now;
+        }
+        last
+    };
+    let grey = still(&mut small);
+    small.insert(Contours {
+        width: 3.3,
+        fade: 0.2,
+        ..default()
+    });
+    let mut frames = Vec::new();
+    for _ in 0..4000 {
+        small.headless.step(1);
+        frames.push(small.picture());
+        if frames.last() != Some(&grey) {
+            break;
+        }
+    }
+    until_complete(&mut small);
+    let inked = still(&mut small);
+    assert_ne!(inked, grey);
+    let waited = frames.iter().filter(|frame| **frame == grey).count();
+    for (i, frame) in frames.iter().enumerate() {
+        assert!(
+            *frame == grey || *frame == inked,
+            "frame {i} shows neither look: {:.3} codes from the old, {:.3} from the new",
+            mean_apart(frame, &grey),
+            mean_apart(frame, &inked)
+        );
+    }
+    assert!(waited > 0, "there was something to wait for");
+    assert_eq!(small.errors(), 0);
+}

@@ -1,0 +1,276 @@
+//! Weights, the split, the debug views and the histogram, in pictures.
+
+use bevy::{prelude::*, render::view::Msaa};
+use bevy_comics::{
+    ComicStyle, ComicsStage, Contours, DebugView, DepthHistogram, Desaturation, Outlines, Sketch,
+    SplitView, StyleWeight, ToneBands, VisibleDepthRange,
+};
+use image::RgbaImage;
+
+use crate::{
+    reference::color,
+    small::{Small, size},
+};
+
+fn styled() -> Small {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.insert((Desaturation::default(), Contours::default()));
+    small
+}
+
+fn shoot(small: &mut Small) -> RgbaImage {
+    small.settle();
+    small.picture()
+}
+
+fn linear(picture: &RgbaImage, x: u32, y: u32) -> [f64; 3] {
+    let [r, g, b, _] = picture.get_pixel(x, y).0;
+    color::srgb_decode([r, g, b].map(|c| f64::from(c) / 255.0))
+}
+
+#[test]
+fn a_weight_mixes_and_none_costs_nothing() {
+    let mut small = styled();
+    let full = shoot(&mut small);
+    small.insert(StyleWeight(1.0));
+    assert_eq!(
+        shoot(&mut small),
+        full,
+        "all of it is as without the component"
+    );
+    small.insert(StyleWeight(f32::NAN));
+    assert_eq!(shoot(&mut small), full, "what is no number counts as 1");
+    small.insert(StyleWeight(0.0));
+    let none = shoot(&mut small);
+    assert!(!small.ran(ComicsStage::Stylize) && !small.ran(ComicsStage::DepthRange));
+    small.insert(StyleWeight(-3.0));
+    assert_eq!(shoot(&mut small), none, "a weight is clamped");
+    small.insert(StyleWeight(0.5));
+    let half = shoot(&mut small);
+    let mut changed = 0;
+    for (x, y, pixel) in half.enumerate_pixels() {
+        let (a, b) = (linear(&none, x, y), linear(&full, x, y));
+        let want = color::srgb_encode(std::array::from_fn(|i| 0.5 * (a[i] + b[i])));
+        for i in 0..3 {
+            let apart = (f64::from(pixel[i]) - want[i] * 255.0).abs();
+            // Both ends were rounded to codes, and so is the mix.
+            assert!(apart <= 2.0, "{x}, {y}: {pixel:?}, {want:?}");
+        }
+        changed += u32::from(none.get_pixel(x, y) != pixel);
+    }
+    assert!(changed > 500, "the style does something: {changed}");
+
+    // The original itself.
+    let world = small.headless.app.world_mut();
+    let camera = small.camera;
+    world
+        .entity_mut(camera)
+        .remove::<(Desaturation, Contours, StyleWeight)>();
+    assert_eq!(
+        shoot(&mut small),
+        none,
+        "nothing of the style is the original"
+    );
+}
+
+#[test]
+fn a_split_shows_both_pictures_to_the_bit() {
+    let mut small = styled();
+    let full = shoot(&mut small);
+    small.insert(StyleWeight(0.0));
+    let none = shoot(&mut small);
+    small.insert((StyleWeight(1.0), SplitView { at: 0.25 }));
+    let both = shoot(&mut small);
+    let line = size().x / 4;
+    for (x, y, pixel) in both.enumerate_pixels() {
+        let want = if x < line { &none } else { &full };
+        assert_eq!(pixel, want.get_pixel(x, y), "{x}, {y}");
+    }
+    small.insert(SplitView { at: 7.0 });
+    assert_eq!(shoot(&mut small), none);
+    small.insert(SplitView { at: f32::NAN });
+    shoot(&mut small);
+    assert_eq!(small.errors(), 0);
+}
+
+fn is_grey(picture: &RgbaImage) -> bool {
+    picture.pixels().all(|p| p[0] == p[1] && p[1] == p[2])
+}
+
+fn codes(picture: &RgbaImage) -> std::collections::BTreeSet<[u8; 3]> {
+    picture.pixels().map(|p| [p[0], p[1], p[2]]).collect()
+}
+
+#[test]
+fn every_view_shows_what_it_says() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let mut small = Small::new(size(), msaa);
+        let original = shoot(&mut small);
+        let show = |small: &mut Small, view: DebugView| {
+            small.insert(view);
+            let picture = shoot(small);
+            assert_eq!(small.errors(), 0, "{view:?}");
+            assert_ne!(picture, original, "{view:?}");
+            picture
+        };
+        // Without any style on the camera: a view brings what it needs.
+        let map = show(&mut small, DebugView::DepthMap);
+        assert!(is_grey(&map) && small.ran(ComicsStage::DepthRange));
+        let shades = codes(&map);
+        assert!(shades.contains(&[255; 3]), "the sky is far");
+        assert!(shades.iter().any(|s| s[0] < 12), "something is near");
+        assert!(shades.len() > 20, "and much in between");
+        let raw = show(&mut small, DebugView::RawRange);
+        assert!(is_grey(&raw));
+        // Nearer is brighter there, farther is brighter here.
+        for (a, b) in map.pixels().zip(raw.pixels()) {
+            if a[0] < 8 {
+                assert!(b[0] > 200, "{a:?} {b:?}");
+            }
+            if a[0] == 255 {
+                assert!(b[0] < 40, "{a:?} {b:?}");
+            }
+        }
+        for view in [DebugView::Silhouettes, DebugView::Creases] {
+            let lines = show(&mut small, view);
+            let dark = lines.pixels().filter(|p| p[0] < 128).count();
+            assert!(is_grey(&lines) && dark > 20, "{view:?}: {dark} dark pixels");
+            assert!(
+                dark < (size().x * size().y / 3) as usize,
+                "{view:?} is mostly paper"
+            );
+        }
+        #[cfg(feature = "objects")]
+        {
+            let ids = show(&mut small, DebugView::ObjectIds);
+            assert!(small.ran(ComicsStage::ObjectIds));
+            assert!(codes(&ids).len() >= 4, "objects have colours of their own");
+            assert!(codes(&ids).contains(&[0; 3]), "the sky is no object");
+        }
+        let bands = show(&mut small, DebugView::ToneBands);
+        assert!(is_grey(&bands) && codes(&bands).len() < 40);
+        let kept = show(&mut small, DebugView::Saturation);
+        assert_eq!(codes(&kept).len(), 1, "no style takes colour away");
+        let same = show(&mut small, DebugView::Difference);
+        assert_eq!(codes(&same), [[0; 3]].into(), "no style is no difference");
+
+        small.insert((Desaturation::default(), ToneBands::default()));
+        let kept = show(&mut small, DebugView::Saturation);
+        assert!(is_grey(&kept) && codes(&kept).len() > 20);
+        let apart = show(&mut small, DebugView::Difference);
+        assert!(codes(&apart).len() > 20);
+        // A weight does not hide a view, and a split goes through it.
+        small.insert((StyleWeight(0.0), SplitView { at: 0.5 }));
+        let split = show(&mut small, DebugView::DepthMap);
+        for (x, y, pixel) in split.enumerate_pixels() {
+            let want = if x < size().x / 2 { &original } else { &map };
+            assert_eq!(pixel, want.get_pixel(x, y), "{x}, {y}");
+        }
+    }
+}
+
+#[test]
+fn the_histogram_counts_every_depth_once() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.insert((
+        DepthHistogram::default(),
+        VisibleDepthRange::default(),
+        DebugView::DepthMap,
+    ));
+    let map = shoot(&mut small);
+    small.settle();
+    let world = small.headless.app.world();
+    let histogram = world
+        .get::<DepthHistogram>(small.camera)
+        .expect("asked for");
+    let (near, far) = small
+        .range()
+        .and_then(VisibleDepthRange::distances)
+        .expect("geometry");
+    let counted: u32 = histogram.bins.iter().map(|bin| bin.count).sum();
+    let sky = map.pixels().filter(|p| p[0] == 255).count() as u32;
+    let all = size().x * size().y;
+    // White is the sky, and the very farthest geometry with it.
+    assert!(
+        counted >= all - sky && counted < all,
+        "{counted} of {all}, {sky} white"
+    );
+    let first = histogram.bins.first().expect("bins");
+    let last = histogram.bins.last().expect("bins");
+    assert!(first.near <= near && near <= first.far, "{first:?}, {near}");
+    assert!(last.near <= far && far <= last.far, "{last:?}, {far}");
+    for pair in histogram.bins.windows(2) {
+        assert_eq!(pair[0].far, pair[1].near, "no gaps");
+    }
+    let drawn = histogram.drawn.expect("a range is drawn with");
+    assert!(
+        (drawn.0 - near).abs() < 1e-3 * near && (drawn.1 - far).abs() < 1e-3 * far,
+        "{drawn:?}"
+    );
+
+    // Without smoothing as well, and with nothing to see.
+    small.insert(bevy_comics::DepthMap {
+        smoothing: None,
+        ..default()
+    });
+    small.settle();
+    let world = small.headless.app.world();
+    let again = world
+        .get::<DepthHistogram>(small.camera)
+        .expect("asked for");
+    assert_eq!(again.bins.iter().map(|bin| bin.count).sum::<u32>(), counted);
+    small.clear();
+    small.settle();
+    let world = small.headless.app.world();
+    let empty = world
+        .get::<DepthHistogram>(small.camera)
+        .expect("asked for");
+    assert!(empty.bins.is_empty() && empty.drawn.is_none(), "{empty:?}");
+    assert_eq!(small.errors(), 0);
+}
+
+/// A sketch that has just begun hardly changes the picture, with outlines below
+/// it and without.
+#[test]
+fn a_sketch_fades_in() {
+    let mut small = Small::new(UVec2::new(160, 96), Msaa::Off);
+    let sketch = |amount| Sketch {
+        amount,
+        rate: 0.0,
+        ..default()
+    };
+    for lines in [
+        None,
+        Some(Outlines {
+            objects: None,
+            ..default()
+        }),
+    ] {
+        let style = |sketch: Option<Sketch>| ComicStyle {
+            outlines: lines,
+            sketch,
+            ..default()
+        };
+        small.style(&style(None));
+        let before = shoot(&mut small);
+        small.style(&style(Some(sketch(0.0))));
+        assert_eq!(shoot(&mut small), before, "no amount is no sketch");
+        assert!(!small.ran(ComicsStage::Sketch));
+        small.style(&style(Some(sketch(0.004))));
+        let begun = shoot(&mut small);
+        let apart = before
+            .pixels()
+            .zip(begun.pixels())
+            .map(|(a, b)| u32::from(a[0].abs_diff(b[0])))
+            .sum::<u32>() as f64
+            / f64::from(160 * 96);
+        assert!(apart < 2.0, "with lines {}: {apart} codes", lines.is_some());
+        small.style(&style(Some(sketch(1.0))));
+        let whole = shoot(&mut small);
+        small.style(&style(Some(sketch(0.9999))));
+        let nearly = shoot(&mut small);
+        for (a, b) in whole.pixels().zip(nearly.pixels()) {
+            assert!((0..3).all(|i| a[i].abs_diff(b[i]) <= 1), "{a:?} {b:?}");
+        }
+    }
+}
