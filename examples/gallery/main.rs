@@ -1,6 +1,7 @@
 //! A window on every scene in every preset.
 //!
-//! Drag to orbit, wheel to come closer; the keys are on the screen.
+//! Drag to orbit, wheel to come closer; the keys are on the screen. With the
+//! feature `inspector`, F10 opens the panel.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -54,27 +55,29 @@ R            camera back to the start
 H            hide this";
 
 fn main() {
-    App::new()
-        .add_plugins(DefaultPlugins.set(WindowPlugin {
-            primary_window: Some(Window {
-                title: "bevy_comics gallery".into(),
-                resolution: WindowResolution::new(1280, 720),
-                ..default()
-            }),
+    let mut app = App::new();
+    app.add_plugins(DefaultPlugins.set(WindowPlugin {
+        primary_window: Some(Window {
+            title: "bevy_comics gallery".into(),
+            resolution: WindowResolution::new(1280, 720),
             ..default()
-        }))
-        .add_plugins((ComicsPlugin, orbit::OrbitPlugin, split::SplitPlugin))
-        .insert_resource(Show {
-            scene: BuiltIn::Mountains,
-            style: 0,
-            orthographic: false,
-            cartoon: false,
-            help: true,
-            vantage: None,
-        })
-        .add_systems(Startup, (spawn_text, open_scene))
-        .add_systems(Update, (choose, light_scene, describe).chain())
-        .run();
+        }),
+        ..default()
+    }))
+    .add_plugins((ComicsPlugin, orbit::OrbitPlugin, split::SplitPlugin))
+    .insert_resource(Show {
+        scene: BuiltIn::Mountains,
+        style: 0,
+        orthographic: false,
+        cartoon: false,
+        help: true,
+        vantage: None,
+    })
+    .add_systems(Startup, (spawn_text, open_scene))
+    .add_systems(Update, (choose, light_scene, describe).chain());
+    #[cfg(feature = "inspector")]
+    app.add_plugins(bevy_comics::inspector::ComicsInspectorPlugin::default());
+    app.run();
 }
 
 fn spawn_text(mut commands: Commands) {

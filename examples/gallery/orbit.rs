@@ -11,8 +11,17 @@ pub struct OrbitPlugin;
 
 impl Plugin for OrbitPlugin {
     fn build(&self, app: &mut App) {
+        #[cfg(feature = "inspector")]
+        app.add_systems(Update, turn.run_if(is_free));
+        #[cfg(not(feature = "inspector"))]
         app.add_systems(Update, turn);
     }
+}
+
+/// Whether the pointer is not the panel's.
+#[cfg(feature = "inspector")]
+fn is_free(inspector: Option<Res<bevy_comics::inspector::ComicsInspector>>) -> bool {
+    inspector.is_none_or(|inspector| !inspector.wants_pointer)
 }
 
 /// Where the camera is, seen from its target.

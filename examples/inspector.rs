@@ -1,0 +1,277 @@
+//! The style inspector on a built-in scene, with one camera or two.
+//!
+//! `cargo run --features inspector --example inspector -- --help`
+
+#[path = "common/mod.rs"]
+mod common;
+#[path = "gallery/orbit.rs"]
+mod orbit;
+
+use std::{fs, path::PathBuf, time::Instant};
+
+use bevy::{
+    camera::{Viewport, visibility::RenderLayers},
+    prelude::*,
+    render::view::Msaa,
+    window::WindowResolution,
+};
+use bevy_comics::{
+    ComicStyle, ComicsDiagnostics, ComicsPlugin, DebugView, SplitView, StyleWeight,
+    inspector::{ComicsInspector, ComicsInspectorPlugin},
+    presets,
+};
+use common::{
+    scenes::{BuiltIn, Stage},
+    studio::wear,
+};
+use orbit::{Orbit, OrbitPlugin};
+
+const HELP: &str = "\
+The style inspector on a built-in scene. F10 opens and closes the panel.
+
+    --scene NAME       mountains, teapot, theatre or village (village)
+    --style NAME       a preset to begin with (ligne-claire)
+    --cameras N        1, or 2 side by side (1)
+    --size WxH         of the window, physical pixels (1280x720)
+    --scale FACTOR     scale factor of the window (the system's)
+    --styles FOLDER    where style files are (assets/styles)
+    --pictures FOLDER  where pictures go (screenshots)
+    --memory FILE      what the panel remembers, `none` for nothing
+    --open             open the panel at once
+    --state FILE       write what the panel shows to a JSON file, every frame
+    --bench FRAMES     print the mean time of so many frames, then end
+    --help             this
+";
+
+#[derive(Resource, Clone)]
+struct Options {
+    scene: BuiltIn,
+    style: String,
+    cameras: u32,
+    size: UVec2,
+    scale: Option<f32>,
+    plugin: ComicsInspectorPlugin,
+    open: bool,
+    state: Option<PathBuf>,
+    bench: Option<u32>,
+}
+
+fn options() -> Result<Options, lexopt::Error> {
+    use lexopt::prelude::*;
+    let mut options = Options {
+        scene: BuiltIn::Village,
+        style: "ligne-claire".into(),
+        cameras: 1,
+        size: UVec2::new(1280, 720),
+        scale: None,
+        plugin: ComicsInspectorPlugin::default(),
+        open: false,
+        state: None,
+        bench: None,
+    };
+    let mut parser = lexopt::Parser::from_env();
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Long("scene") => {
+                let name = parser.value()?.string()?;
+                options.scene = BuiltIn::from_name(&name).ok_or("no scene of this name")?;
+            }
+            Long("style") => options.style = parser.value()?.string()?,
+            Long("cameras") => options.cameras = parser.value()?.parse::<u32>()?.clamp(1, 2),
+            Long("size") => {
+                let text = parser.value()?.string()?;
+                let (width, height) = text.split_once('x').ok_or("a size is WIDTHxHEIGHT")?;
+                let side = |text: &str| text.parse().map_err(|_| "a size is WIDTHxHEIGHT");
+                options.size = UVec2::new(side(width)?, side(height)?);
+            }
+            Long("scale") => options.scale = Some(parser.value()?.parse()?),
+            Long("styles") => options.plugin.styles = parser.value()?.into(),
+            Long("pictures") => options.plugin.pictures = parser.value()?.into(),
+            Long("memory") => {
+                let path = PathBuf::from(parser.value()?);
+                options.plugin.memory = (path.as_os_str() != "none").then_some(path);
+            }
+            Long("open") => options.open = true,
+            Long("state") => options.state = Some(parser.value()?.into()),
+            Long("bench") => options.bench = Some(parser.value()?.parse()?),
+            Long("help") => {
+                print!("{HELP}");
+                std::process::exit(0);
+            }
+            _ => return Err(argument.unexpected()),
+        }
+    }
+    Ok(options)
+}
+
+fn main() {
+    let options = options().unwrap_or_else(|error| {
+        eprintln!("{error}\n\n{HELP}");
+        std::process::exit(2);
+    });
+    let mut resolution = WindowResolution::new(options.size.x, options.size.y);
+    if let Some(scale) = options.scale {
+        resolution = resolution.with_scale_factor_override(scale);
+    }
+    App::new()
+        .add_plugins(DefaultPlugins.set(WindowPlugin {
+            primary_window: Some(Window {
+                title: "bevy_comics inspector".into(),
+                resolution,
+                present_mode: bevy::window::PresentMode::AutoNoVsync,
+                ..default()
+            }),
+            ..default()
+        }))
+        .add_plugins((ComicsPlugin, OrbitPlugin, options.plugin.clone()))
+        .insert_resource(options)
+        .add_systems(Startup, setup)
+        .add_systems(Update, lay_out)
+        .add_systems(Last, (tell, bench))
+        .run();
+}
+
+/// The side of a camera that shares the window.
+#[derive(Component)]
+struct Half(u32);
+
+fn setup(mut stage: Stage, options: Res<Options>, mut inspector: ResMut<ComicsInspector>) {
+    inspector.open = options.open;
+    let vantage = stage.spawn(options.scene);
+    for i in 0..options.cameras {
+        let mut view = vantage.clone();
+        if i == 1 {
+            // From a little aside.
+            let away = view.eye - view.target;
+            view.eye = view.target + Quat::from_rotation_y(0.35) * away;
+        }
+        let mut camera = stage.commands.spawn((
+            Name::new(if i == 0 {
+                "Main camera"
+            } else {
+                "Second camera"
+            }),
+            Half(i),
+            view.camera(),
+            Orbit::of(&view),
+            Msaa::Off,
+            RenderLayers::default(),
+        ));
+        if let Some(Ok(style)) = presets::preset(&options.style) {
+            wear(&mut camera, &style);
+        }
+    }
+}
+
+/// Two cameras share the window; the second is drawn after the first.
+fn lay_out(
+    options: Res<Options>,
+    window: Single<&Window>,
+    mut cameras: Query<(&mut Camera, &Half)>,
+) {
+    if options.cameras < 2 {
+        return;
+    }
+    let size = window.physical_size();
+    if size.x < 2 || size.y == 0 {
+        return;
+    }
+    for (mut camera, half) in &mut cameras {
+        if camera
+            .viewport
+            .as_ref()
+            .is_some_and(|v| v.physical_size.y > size.y)
+        {
+            // A picture is being taken.
+            continue;
+        }
+        let width = size.x / 2;
+        let viewport = Viewport {
+            physical_position: UVec2::new(half.0 * width, 0),
+            physical_size: UVec2::new(width, size.y),
+            ..default()
+        };
+        if camera.order != half.0 as isize {
+            camera.order = half.0 as isize;
+            if half.0 > 0 {
+                camera.clear_color = ClearColorConfig::None;
+            }
+        }
+        if camera
+            .viewport
+            .as_ref()
+            .is_none_or(|v| v.physical_size != viewport.physical_size)
+        {
+            camera.viewport = Some(viewport);
+        }
+    }
+}
+
+/// Writes what the panel shows, for whoever watches from outside.
+fn tell(world: &mut World) {
+    let Some(path) = world.resource::<Options>().state.clone() else {
+        return;
+    };
+    let cameras: Vec<Entity> = world
+        .query_filtered::<Entity, With<Half>>()
+        .iter(world)
+        .collect();
+    let diagnostics = world.resource::<ComicsDiagnostics>();
+    let cameras: Vec<_> = cameras
+        .into_iter()
+        .map(|camera| {
+            let entity = world.entity(camera);
+            serde_json::json!({
+                "name": entity.get::<Name>().map(|name| name.to_string()),
+                "style": ComicStyle::of(entity).to_ron().unwrap_or_default(),
+                "compiling": diagnostics.is_compiling(camera),
+                "weight": entity.get::<StyleWeight>().map(|weight| weight.0),
+                "split": entity.get::<SplitView>().map(|split| split.at),
+                "view": entity.get::<DebugView>().map(|view| format!("{view:?}")),
+                "fading": entity.contains::<bevy_comics::StyleTransition>(),
+            })
+        })
+        .collect();
+    // The panel's own camera is the only one without depth here.
+    let panel_cameras = world
+        .query_filtered::<(), With<Camera2d>>()
+        .iter(world)
+        .count();
+    let inspector = world.resource::<ComicsInspector>();
+    let state = serde_json::json!({
+        "frame": world.resource::<bevy::diagnostic::FrameCount>().0,
+        "open": inspector.open,
+        "wants_pointer": inspector.wants_pointer,
+        "widgets": inspector.widgets,
+        "panel_cameras": panel_cameras,
+        "cameras": cameras,
+    });
+    // Whoever reads it finds all of it.
+    let part = path.with_extension("part");
+    if let Err(error) = fs::write(&part, state.to_string()).and_then(|()| fs::rename(&part, &path))
+    {
+        error!("{}: {error}", path.display());
+    }
+}
+
+/// The mean time of a frame, once everything is compiled and shown.
+fn bench(
+    options: Res<Options>,
+    mut frames: Local<u32>,
+    mut started: Local<Option<Instant>>,
+    mut exit: MessageWriter<AppExit>,
+) {
+    const WARM_UP: u32 = 60;
+    let Some(wanted) = options.bench else {
+        return;
+    };
+    *frames += 1;
+    if *frames == WARM_UP {
+        *started = Some(Instant::now());
+    }
+    if let Some(started) = started.filter(|_| *frames >= WARM_UP + wanted) {
+        let mean = started.elapsed().as_secs_f64() * 1e3 / f64::from(wanted);
+        println!("{mean:.3} ms a frame, mean of {wanted}");
+        exit.write(AppExit::Success);
+    }
+}

@@ -1,0 +1,401 @@
+//! Style files: loaded, saved, watched.
+
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+use bevy::ecs::entity::{Entity, EntityHashMap};
+use bevy_egui::egui::{TextEdit, Ui};
+
+use super::{
+    Widgets,
+    fields::{self, button},
+    note,
+};
+use crate::{ComicStyle, ComicStyleError};
+
+const SUFFIX: &str = ".comic.ron";
+/// How often files are looked at.
+const WATCH: Duration = Duration::from_millis(250);
+
+/// The file that a camera's style came from or went to.
+struct OpenFile {
+    path: PathBuf,
+    /// The style as the file has it.
+    saved: ComicStyle,
+    /// The last text that was seen in the file, good or broken.
+    seen: String,
+    /// Why the file is not a style; the last good style stays.
+    error: Option<String>,
+    looked: Instant,
+}
+
+impl OpenFile {
+    fn is_saved(&self, style: &ComicStyle) -> bool {
+        let named = ComicStyle {
+            name: self.saved.name.clone(),
+            version: self.saved.version,
+            ..style.clone()
+        };
+        // What is out of its range in the file is not a change.
+        named == self.saved.sanitized()
+    }
+}
+
+/// The open files of all cameras.
+pub struct Files {
+    folder: PathBuf,
+    open: EntityHashMap<OpenFile>,
+    /// What stands in the field for a file name.
+    name: String,
+    title: String,
+    message: Option<String>,
+}
+
+/// The text of a file and its style, or the text as far as there is one and why
+/// it is no style.
+fn read(path: &Path) -> Result<(String, ComicStyle), (String, String)> {
+    let text = fs::read_to_string(path)
+        .map_err(|error| (String::new(), ComicStyleError::from(error).to_string()))?;
+    match ComicStyle::from_ron(&text) {
+        Ok(style) => Ok((text, style)),
+        Err(error) => Err((text, error.to_string())),
+    }
+}
+
+impl Files {
+    pub fn new(folder: PathBuf) -> Self {
+        Self {
+            folder,
+            open: EntityHashMap::default(),
+            name: String::new(),
+            title: String::new(),
+            message: None,
+        }
+    }
+
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The style comes from no file any more.
+    pub fn forget(&mut self, camera: Entity) {
+        self.open.remove(&camera);
+    }
+
+    fn path(&self) -> Option<PathBuf> {
+        let name = self.name.trim();
+        if name.is_empty() {
+            return None;
+        }
+        let mut path = PathBuf::from(name);
+        if !name.ends_with(SUFFIX) {
+            path = PathBuf::from(format!("{name}{SUFFIX}"));
+        }
+        if path
+            .parent()
+            .is_none_or(|parent| parent.as_os_str().is_empty())
+        {
+            path = self.folder.join(path);
+        }
+        Some(path)
+    }
+
+    /// One line: the file, and whether the style is as it stands there.
+    pub fn mark(&self, ui: &mut Ui, camera: Entity, style: &ComicStyle) {
+        let Some(open) = self.open.get(&camera) else {
+            return;
+        };
+        let file = open.path.file_name().unwrap_or_default().to_string_lossy();
+        if open.is_saved(style) {
+            ui.label(file.into_owned());
+        } else {
+            ui.strong(format!("● {file}"))
+                .on_hover_text("Changed since it was saved");
+        }
+        if let Some(error) = &open.error {
+            fields::error(ui, error);
+        }
+    }
+
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        camera: Entity,
+        style: &mut ComicStyle,
+        widgets: &mut Widgets,
+    ) {
+        ui.horizontal(|ui| {
+            let name = ui.add(TextEdit::singleline(&mut self.name).hint_text("file name"));
+            note(widgets, "files.name", &name);
+            name.on_hover_text("With folders, or a name in the folder of styles");
+            ui.label("File");
+        });
+        ui.horizontal(|ui| {
+            let title = ui.add(TextEdit::singleline(&mut self.title).hint_text("title"));
+            note(widgets, "files.title", &title);
+            ui.label("Title");
+        });
+        let named = self.path().is_some();
+        ui.horizontal(|ui| {
+            if button(ui, widgets, "files.load", "Load", named)
+                && let Some(path) = self.path()
+                && let Some(loaded) = self.load(camera, &path)
+            {
+                *style = loaded;
+            }
+            let is_open = self.open.contains_key(&camera);
+            if button(ui, widgets, "files.save", "Save", is_open) {
+                self.save(camera, style);
+            }
+            if button(ui, widgets, "files.save_as", "Save as", named)
+                && let Some(path) = self.path()
+            {
+                self.save_as(camera, style, path);
+            }
+            if button(ui, widgets, "files.new", "New", true) {
+                self.forget(camera);
+                self.name.clear();
+                self.title.clear();
+                *style = ComicStyle {
+                    version: ComicStyle::VERSION,
+                    ..ComicStyle::default()
+                };
+            }
+        });
+        if let Some(message) = &self.message {
+            fields::error(ui, message);
+        }
+        if let Some(OpenFile { path, error, .. }) = self.open.get(&camera) {
+            ui.label(format!("Open: {}", path.display()));
+            if let Some(error) = error {
+                let error = fields::error(ui, error);
+                note(widgets, "files.error", &error);
+                ui.label("The last good style stays until the file is mended.");
+            }
+        }
+        ui.separator();
+        ui.label(format!("In {}:", self.folder.display()));
+        for path in style_files(&self.folder) {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let open = self.open.get(&camera).is_some_and(|open| open.path == path);
+            let item = ui.selectable_label(open, name.as_ref());
+            note(widgets, format!("files.{name}"), &item);
+            if item.clicked()
+                && let Some(loaded) = self.load(camera, &path)
+            {
+                *style = loaded;
+            }
+        }
+    }
+
+    fn load(&mut self, camera: Entity, path: &Path) -> Option<ComicStyle> {
+        match read(path) {
+            Ok((seen, saved)) => {
+                self.message = None;
+                self.name = self.shown(path);
+                self.title.clone_from(&saved.name);
+                let open = OpenFile {
+                    path: path.to_owned(),
+                    saved: saved.clone(),
+                    seen,
+                    error: None,
+                    looked: Instant::now(),
+                };
+                self.open.insert(camera, open);
+                Some(saved)
+            }
+            Err((_, error)) => {
+                self.message = Some(format!("{}: {error}", path.display()));
+                None
+            }
+        }
+    }
+
+    /// A path as it stands in the field.
+    fn shown(&self, path: &Path) -> String {
+        let inside = path.parent() == Some(self.folder.as_path());
+        let shown = if inside {
+            path.file_name().map(Path::new).unwrap_or(path)
+        } else {
+            path
+        };
+        let text = shown.to_string_lossy();
+        text.strip_suffix(SUFFIX).unwrap_or(&text).to_owned()
+    }
+
+    /// Saves to the open file.
+    pub fn save(&mut self, camera: Entity, style: &ComicStyle) {
+        match self
+            .open
+            .get(&camera)
+            .map(|open| open.path.clone())
+            .or_else(|| self.path())
+        {
+            Some(path) => self.save_as(camera, style, path),
+            None => self.message = Some("It has no file yet: give it a name under Files.".into()),
+        }
+    }
+
+    fn save_as(&mut self, camera: Entity, style: &ComicStyle, path: PathBuf) {
+        let title = if self.title.trim().is_empty() {
+            self.shown(&path)
+        } else {
+            self.title.clone()
+        };
+        let saved = ComicStyle {
+            version: ComicStyle::VERSION,
+            name: title.clone(),
+            ..style.clone()
+        };
+        let written = saved.to_ron().and_then(|text| {
+            write(&path, &text)?;
+            Ok(text)
+        });
+        match written {
+            Ok(seen) => {
+                self.message = None;
+                self.name = self.shown(&path);
+                self.title = title;
+                let open = OpenFile {
+                    path,
+                    saved,
+                    seen,
+                    error: None,
+                    looked: Instant::now(),
+                };
+                self.open.insert(camera, open);
+            }
+            Err(error) => self.message = Some(format!("{}: {error}", path.display())),
+        }
+    }
+
+    /// The new style of a camera's file, if somebody else has changed it.
+    pub fn watch(&mut self, camera: Entity, style: &ComicStyle) -> Option<ComicStyle> {
+        let open = self.open.get_mut(&camera)?;
+        if open.looked.elapsed() < WATCH {
+            return None;
+        }
+        open.looked = Instant::now();
+        match read(&open.path) {
+            Ok((text, _)) if text == open.seen => None,
+            Ok((text, read)) => {
+                open.seen = text;
+                open.error = None;
+                open.saved = read.clone();
+                self.title.clone_from(&read.name);
+                let named = ComicStyle {
+                    name: style.name.clone(),
+                    ..read.clone()
+                };
+                (named != *style).then_some(read)
+            }
+            Err((text, error)) => {
+                open.seen = text;
+                open.error = Some(error);
+                None
+            }
+        }
+    }
+}
+
+/// All of it or nothing: a game that watches the file never reads half of it.
+fn write(path: &Path, text: &str) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    let part = path.with_extension("part");
+    fs::write(&part, text)?;
+    fs::rename(&part, path)
+}
+
+/// The style files of a folder, by name.
+pub fn style_files(folder: &Path) -> Vec<PathBuf> {
+    let mut files: Vec<PathBuf> = fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.to_string_lossy().ends_with(SUFFIX))
+        .collect();
+    files.sort();
+    files
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Contours;
+
+    fn folder(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("comics-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).expect("a folder");
+        folder
+    }
+
+    fn inked(width: f32) -> ComicStyle {
+        ComicStyle {
+            version: ComicStyle::VERSION,
+            contours: Some(Contours {
+                width,
+                ..Contours::default()
+            }),
+            ..ComicStyle::default()
+        }
+    }
+
+    fn wait(files: &mut Files, camera: Entity, style: &ComicStyle) -> Option<ComicStyle> {
+        std::thread::sleep(WATCH + Duration::from_millis(20));
+        files.watch(camera, style)
+    }
+
+    #[test]
+    fn a_file_goes_there_and_back() {
+        let folder = folder("files");
+        let mut files = Files::new(folder.clone());
+        let camera = Entity::PLACEHOLDER;
+        files.save(camera, &inked(3.0));
+        assert!(files.message.is_some(), "no name, no file");
+        files.name = "mine".into();
+        files.save(camera, &inked(3.0));
+        assert_eq!(files.message, None);
+        let path = folder.join("mine.comic.ron");
+        assert_eq!(style_files(&folder), std::slice::from_ref(&path));
+        assert!(files.open[&camera].is_saved(&inked(3.0)));
+        assert!(
+            !files.open[&camera].is_saved(&inked(4.0)),
+            "a change is marked"
+        );
+
+        // What the panel itself has written is no news.
+        assert_eq!(wait(&mut files, camera, &inked(4.0)), None);
+
+        // Somebody edits it, breaks it, mends it, deletes it.
+        fs::write(&path, "(version: 1, contours: (width: 7.0))").expect("written");
+        let read = wait(&mut files, camera, &inked(4.0)).expect("news");
+        assert_eq!(read.contours.map(|c| c.width), Some(7.0));
+        fs::write(&path, "(version: 1,\n contours: (widht: 7.0))").expect("written");
+        assert_eq!(
+            wait(&mut files, camera, &inked(7.0)),
+            None,
+            "the last good one stays"
+        );
+        let error = files.open[&camera].error.clone().expect("an error");
+        assert!(
+            error.contains("line 2") && error.contains("column"),
+            "{error}"
+        );
+        fs::write(&path, "(version: 1, contours: (width: 8.0))").expect("written");
+        assert!(wait(&mut files, camera, &inked(7.0)).is_some());
+        assert_eq!(files.open[&camera].error, None);
+        fs::remove_file(&path).expect("removed");
+        assert_eq!(wait(&mut files, camera, &inked(8.0)), None);
+        assert!(
+            files.open[&camera].error.is_some(),
+            "a file that is gone is said"
+        );
+        fs::remove_dir_all(&folder).expect("removed");
+    }
+}

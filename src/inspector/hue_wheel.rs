@@ -1,0 +1,99 @@
+//! A wheel of hues: the angle is the hue, the distance from the middle the
+//! saturation, at the colour's own value.
+
+use std::f32::consts::TAU;
+
+use bevy_egui::egui::{
+    Color32, Mesh, Pos2, Response, Sense, Shape, Stroke, Ui, Vec2, ecolor::Hsva, vec2,
+};
+
+const SECTORS: u32 = 48;
+
+/// Draws the wheel; returns whether the colour (hue, saturation and value, each
+/// 0 to 1) was changed. The arrow keys turn and push it while it has the focus.
+pub fn hue_wheel(ui: &mut Ui, hsv: &mut [f32; 3], diameter: f32) -> Response {
+    let (rect, mut response) =
+        ui.allocate_exact_size(Vec2::splat(diameter), Sense::click_and_drag());
+    let (centre, radius) = (rect.center(), 0.5 * diameter - 2.0);
+    let [hue, saturation, value] = *hsv;
+
+    let mut turned = None;
+    if let Some(at) = response.interact_pointer_pos()
+        && (response.dragged() || response.clicked())
+    {
+        turned = Some(hue_at(centre, radius, at));
+    }
+    if response.has_focus() {
+        let step = ui.input(|input| {
+            use bevy_egui::egui::Key;
+            let pressed = |key| f32::from(u8::from(input.key_pressed(key)));
+            vec2(
+                pressed(Key::ArrowRight) - pressed(Key::ArrowLeft),
+                pressed(Key::ArrowUp) - pressed(Key::ArrowDown),
+            )
+        });
+        if step != Vec2::ZERO {
+            turned = Some((
+                (hue + step.x / 72.0).rem_euclid(1.0),
+                (saturation + step.y * 0.02).clamp(0.0, 1.0),
+            ));
+        }
+    }
+    if let Some((hue, saturation)) = turned {
+        *hsv = [hue, saturation, value];
+        response.mark_changed();
+    }
+
+    let color =
+        |hue: f32, saturation: f32| Color32::from(Hsva::new(hue, saturation, value.max(0.35), 1.0));
+    let mut mesh = Mesh::default();
+    mesh.colored_vertex(centre, color(0.0, 0.0));
+    for i in 0..=SECTORS {
+        let hue = i as f32 / SECTORS as f32;
+        mesh.colored_vertex(place(centre, radius, hue, 1.0), color(hue, 1.0));
+        if i > 0 {
+            mesh.add_triangle(0, i, i + 1);
+        }
+    }
+    let painter = ui.painter();
+    painter.add(Shape::mesh(mesh));
+    let rim = ui.style().interact(&response).fg_stroke;
+    painter.circle_stroke(centre, radius, rim);
+    let [hue, saturation, _] = *hsv;
+    let knob = place(centre, radius, hue, saturation);
+    painter.circle(
+        knob,
+        6.0,
+        Color32::from(Hsva::new(hue, saturation, value, 1.0)),
+        Stroke::new(2.0, Color32::WHITE),
+    );
+    painter.circle_stroke(knob, 7.5, Stroke::new(1.0, Color32::BLACK));
+    response
+}
+
+fn place(centre: Pos2, radius: f32, hue: f32, saturation: f32) -> Pos2 {
+    let (sin, cos) = (hue * TAU).sin_cos();
+    centre + radius * saturation * vec2(cos, -sin)
+}
+
+fn hue_at(centre: Pos2, radius: f32, at: Pos2) -> (f32, f32) {
+    let way = at - centre;
+    let hue = (-way.y).atan2(way.x) / TAU;
+    (hue.rem_euclid(1.0), (way.length() / radius).clamp(0.0, 1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_on_the_wheel_is_its_hue() {
+        let centre = Pos2::new(100.0, 80.0);
+        for (hue, saturation) in [(0.0, 1.0), (0.1, 0.5), (0.5, 0.25), (0.99, 0.9)] {
+            let found = hue_at(centre, 50.0, place(centre, 50.0, hue, saturation));
+            assert!((found.0 - hue).abs() < 1e-4, "{found:?}");
+            assert!((found.1 - saturation).abs() < 1e-4, "{found:?}");
+        }
+        assert_eq!(hue_at(centre, 50.0, Pos2::new(1e6, 80.0)), (0.0, 1.0));
+    }
+}

@@ -1,0 +1,350 @@
+//! The frame of the panel: which camera, which page, what changes.
+
+mod toolbar;
+
+use std::path::PathBuf;
+
+use bevy::{
+    camera::{Camera, Camera3d},
+    ecs::{
+        entity::{Entity, EntityHashMap},
+        name::Name,
+        query::{With, Without},
+        resource::Resource,
+        world::World,
+    },
+};
+use bevy_egui::egui::{self, Align2, ComboBox, RichText, ScrollArea, Ui};
+
+use super::{
+    ComicsInspector, ComicsInspectorPlugin, Helper, Widgets,
+    clipboard::Clipboard,
+    cost::Costs,
+    fields::{self, button},
+    files::Files,
+    history::History,
+    memory::{Dock, Memory, Tab},
+    note,
+    photo::Photo,
+    presets::Presets,
+    views,
+};
+use crate::{ComicStyle, DebugView, StyleTransition, StyleWeight};
+
+/// What the panel knows about a camera.
+#[derive(Default)]
+struct CameraState {
+    history: History,
+    /// The other of the two looks that are compared.
+    other: Option<ComicStyle>,
+    /// Whether the second of them is shown.
+    shows_b: bool,
+    /// The weight that the game had given, while the original is shown.
+    weight_before: Option<Option<StyleWeight>>,
+}
+
+/// The panel, from one frame to the next.
+#[derive(Resource)]
+pub struct Panel {
+    memory: Memory,
+    memory_path: Option<PathBuf>,
+    cameras: EntityHashMap<CameraState>,
+    files: Files,
+    presets: Presets,
+    costs: Costs,
+    photo: Photo,
+    clipboard: Clipboard,
+    /// Cameras that the panel may have given a debug view.
+    debugged: Vec<Entity>,
+    message: Option<String>,
+    /// Counts the presses of the pointer: a drag is one step of the history.
+    presses: u64,
+}
+
+impl Panel {
+    pub fn new(plugin: &ComicsInspectorPlugin) -> Self {
+        Self {
+            memory: Memory::load(plugin.memory.as_deref()),
+            memory_path: plugin.memory.clone(),
+            cameras: EntityHashMap::default(),
+            files: Files::new(plugin.styles.clone()),
+            presets: Presets::default(),
+            costs: Costs::default(),
+            photo: Photo::new(plugin.pictures.clone()),
+            clipboard: Clipboard::default(),
+            debugged: Vec::new(),
+            message: None,
+            presses: 0,
+        }
+    }
+
+    /// Puts everything back that only the panel needs.
+    pub fn close(&mut self, world: &mut World) {
+        if let Some(path) = &self.memory_path {
+            self.memory.save(path);
+        }
+        let cameras: Vec<Entity> = self.cameras.keys().copied().collect();
+        for camera in cameras {
+            self.show_original(world, camera, false);
+        }
+        views::leave(world);
+        let shown: Vec<Entity> = self.debugged.drain(..).collect();
+        for camera in shown {
+            if let Ok(mut camera) = world.get_entity_mut(camera) {
+                camera.remove::<DebugView>();
+            }
+        }
+        self.costs.close(world);
+        self.presets.close(world);
+        self.message = None;
+    }
+
+    /// Before the engine looks at its cameras: one that draws to something else
+    /// from now on has to be seen by it in the same frame.
+    pub fn take_pictures(&mut self, world: &mut World) {
+        self.photo.step(world);
+    }
+
+    pub fn show(&mut self, ui: &mut Ui, world: &mut World) {
+        let mut widgets = Widgets::default();
+        let before = self.memory.clone();
+        if ui.ctx().zoom_factor() != self.memory.zoom && ui.ctx().cumulative_pass_nr() == 0 {
+            ui.ctx().set_zoom_factor(self.memory.zoom);
+        }
+        self.memory.zoom = ui.ctx().zoom_factor();
+        // Rows come and go with what they say; that is no mistake.
+        ui.ctx()
+            .all_styles_mut(|style| style.debug.warn_if_rect_changes_id = false);
+        if ui.input(|input| input.pointer.any_pressed()) {
+            self.presses += 1;
+        }
+        let hidden = self.photo.is_under_way();
+        let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(8.0);
+        if hidden {
+            // The picture is taken without the panel's own cameras.
+        } else if self.memory.dock == Dock::Floating {
+            egui::Window::new("Comics")
+                .id(egui::Id::new("comics_inspector"))
+                .default_width(self.memory.width)
+                .default_height(560.0)
+                .pivot(Align2::LEFT_TOP)
+                .default_pos([16.0, 16.0])
+                .show(ui.ctx(), |ui| self.contents(ui, world, &mut widgets));
+        } else {
+            let panel = if self.memory.dock == Dock::Left {
+                egui::Panel::left("comics_inspector_left")
+            } else {
+                egui::Panel::right("comics_inspector_right")
+            };
+            let shown = panel
+                .frame(frame)
+                .resizable(true)
+                .default_size(self.memory.width)
+                .min_size(240.0)
+                .show_inside(ui, |ui| self.contents(ui, world, &mut widgets));
+            self.memory.width = shown.response.rect.width().round();
+        }
+        if self.memory != before
+            && !ui.input(|input| input.pointer.any_down())
+            && let Some(path) = &self.memory_path
+        {
+            self.memory.save(path);
+        }
+        self.presets.step(world);
+        world.resource_mut::<ComicsInspector>().widgets = widgets;
+    }
+
+    fn contents(&mut self, ui: &mut Ui, world: &mut World, widgets: &mut Widgets) {
+        let cameras = cameras(world);
+        self.cameras
+            .retain(|camera, _| cameras.iter().any(|(c, _)| c == camera));
+        let chosen = world.resource::<ComicsInspector>().camera;
+        let camera = cameras
+            .iter()
+            .map(|(camera, _)| *camera)
+            .find(|camera| Some(*camera) == chosen)
+            .or_else(|| cameras.first().map(|(camera, _)| *camera));
+
+        self.head(ui, world, &cameras, camera, widgets);
+        ui.separator();
+        let Some(camera) = camera else {
+            ui.label("There is no 3D camera to style.");
+            return;
+        };
+        world.resource_mut::<ComicsInspector>().camera = Some(camera);
+
+        let mut before = ComicStyle::of(world.entity(camera));
+        let mut style = before.clone();
+        if self.toolbar(ui, world, camera, &mut style, widgets) {
+            // A step back is no change of its own.
+            before = style.clone();
+        }
+        if let Some(message) = &self.message {
+            fields::error(ui, message);
+        }
+        ui.separator();
+        ScrollArea::vertical()
+            .auto_shrink([false, false])
+            .id_salt(self.memory.tab.name())
+            .show(ui, |ui| {
+                ui.spacing_mut().slider_width = (ui.available_width() - 240.0).clamp(60.0, 400.0);
+                match self.memory.tab {
+                    Tab::Style => {
+                        if world.entity(camera).contains::<StyleTransition>() {
+                            ui.label("A transition is under way: a change ends it.");
+                        }
+                        fields::style(ui, &mut style, widgets);
+                    }
+                    Tab::Presets => self.presets.show(
+                        ui,
+                        world,
+                        camera,
+                        self.files.folder(),
+                        &mut self.memory.fade,
+                        widgets,
+                    ),
+                    Tab::Files => self.files.show(ui, camera, &mut style, widgets),
+                    Tab::Views => {
+                        // A view that the game has chosen stays the game's.
+                        if !world.entity(camera).contains::<DebugView>()
+                            && !self.debugged.contains(&camera)
+                        {
+                            self.debugged.push(camera);
+                        }
+                        views::show(ui, world, camera, widgets);
+                    }
+                    Tab::Cost => self.costs.show(ui, world, camera, widgets),
+                    Tab::Photo => {
+                        self.photo
+                            .show(ui, world, &mut self.memory.multiple, widgets);
+                    }
+                }
+            });
+        if self.memory.tab != Tab::Views {
+            views::leave(world);
+        }
+        if self.memory.tab != Tab::Cost {
+            self.costs.close(world);
+        }
+        if let Some(preset) = self.presets.chosen.take() {
+            // A fade is a step like any other; the panel need not be open for it.
+            self.record(camera, before.clone(), None);
+            self.files.forget(camera);
+            let fade = StyleTransition::to(preset, self.memory.fade);
+            world.entity_mut(camera).insert(fade);
+            return;
+        }
+        if let Some(reloaded) = self.files.watch(camera, &style) {
+            style = reloaded;
+        }
+        self.change(ui, world, camera, before, style);
+    }
+
+    /// Puts a changed style on its camera, as a step of the history.
+    fn change(
+        &mut self,
+        ui: &Ui,
+        world: &mut World,
+        camera: Entity,
+        before: ComicStyle,
+        style: ComicStyle,
+    ) {
+        let style = style.sanitized();
+        // What the game has put there out of range is no change of the panel's.
+        if style == before.sanitized() {
+            return;
+        }
+        let gesture = ui
+            .input(|input| input.pointer.any_down())
+            .then_some(self.presses);
+        self.record(camera, before, gesture);
+        put(world, camera, &style);
+    }
+
+    fn record(&mut self, camera: Entity, before: ComicStyle, gesture: Option<u64>) {
+        let state = self.cameras.entry(camera).or_default();
+        state.history.record(before, gesture);
+    }
+
+    fn head(
+        &mut self,
+        ui: &mut Ui,
+        world: &mut World,
+        cameras: &[(Entity, String)],
+        camera: Option<Entity>,
+        widgets: &mut Widgets,
+    ) {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new("Comics").heading());
+            let name = |camera: Option<Entity>| {
+                cameras
+                    .iter()
+                    .find(|(c, _)| Some(*c) == camera)
+                    .map_or("no camera", |(_, name)| name.as_str())
+            };
+            let mut chosen = camera;
+            let combo = ComboBox::from_id_salt("camera")
+                .selected_text(name(camera))
+                .show_ui(ui, |ui| {
+                    for (camera, name) in cameras {
+                        let item = ui.selectable_value(&mut chosen, Some(*camera), name);
+                        note(widgets, format!("camera.{name}"), &item);
+                    }
+                });
+            note(widgets, "camera", &combo.response);
+            world.resource_mut::<ComicsInspector>().camera = chosen;
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                if button(ui, widgets, "close", "✖", true) {
+                    world.resource_mut::<ComicsInspector>().open = false;
+                }
+                let dock = ComboBox::from_id_salt("dock")
+                    .selected_text(self.memory.dock.name())
+                    .width(64.0)
+                    .show_ui(ui, |ui| {
+                        for dock in Dock::ALL {
+                            let item =
+                                ui.selectable_value(&mut self.memory.dock, dock, dock.name());
+                            note(widgets, format!("dock.{}", dock.name()), &item);
+                        }
+                    });
+                note(widgets, "dock", &dock.response);
+            });
+        });
+        ui.horizontal_wrapped(|ui| {
+            for tab in Tab::ALL {
+                let item = ui.selectable_label(self.memory.tab == tab, tab.name());
+                note(widgets, format!("tab.{}", tab.name()), &item);
+                if item.clicked() {
+                    self.memory.tab = tab;
+                    self.message = None;
+                }
+            }
+        });
+    }
+}
+
+/// Puts a style on a camera; a transition that is under way ends there.
+fn put(world: &mut World, camera: Entity, style: &ComicStyle) {
+    let mut commands = world.commands();
+    let mut camera = commands.entity(camera);
+    camera.remove::<StyleTransition>();
+    style.apply(&mut camera);
+    world.flush();
+}
+
+/// The 3D cameras, with what they are called.
+fn cameras(world: &mut World) -> Vec<(Entity, String)> {
+    let mut found: Vec<(isize, Entity, String)> = world
+        .query_filtered::<(Entity, &Camera, Option<&Name>), (With<Camera3d>, Without<Helper>)>()
+        .iter(world)
+        .map(|(entity, camera, name)| {
+            let name = name.map_or_else(|| format!("Camera {entity}"), ToString::to_string);
+            (camera.order, entity, name)
+        })
+        .collect();
+    found.sort_by_key(|(order, entity, _)| (*order, *entity));
+    found
+        .into_iter()
+        .map(|(_, entity, name)| (entity, name))
+        .collect()
+}

@@ -1,0 +1,217 @@
+//! What the styles are made of: debug views, the range, the histogram.
+
+use bevy::ecs::{component::Component, entity::Entity, query::With, world::World};
+use bevy_egui::egui::{Color32, Grid, Ui};
+use egui_plot::{Bar, BarChart, Plot, VLine};
+
+use super::{Widgets, fields::section, note};
+use crate::{DebugView, DepthBin, DepthHistogram, VisibleDepthRange};
+
+/// A camera that the panel reads the range of, and what it has put there.
+#[derive(Component)]
+struct Probed {
+    range: bool,
+    histogram: bool,
+}
+
+fn label(view: DebugView) -> &'static str {
+    match view {
+        DebugView::DepthMap => "Depth map",
+        DebugView::RawRange => "Raw range",
+        DebugView::Silhouettes => "Silhouettes",
+        DebugView::Creases => "Creases",
+        DebugView::ObjectIds => "Object ids",
+        DebugView::ToneBands => "Tone bands",
+        DebugView::Saturation => "Saturation mask",
+        DebugView::Difference => "Difference to the original",
+    }
+}
+
+fn explanation(view: DebugView) -> &'static str {
+    match view {
+        DebugView::DepthMap => "Black is near, white is far.",
+        DebugView::RawRange => "The depth buffer between the ends of the range: white is near.",
+        DebugView::Silhouettes | DebugView::Creases => "Black is a full line.",
+        DebugView::ObjectIds => "A colour for every object; black has none.",
+        DebugView::ToneBands => "The lightness after the bands.",
+        DebugView::Saturation => "White keeps its colours, black loses them.",
+        DebugView::Difference => "In display codes, four times as bright.",
+    }
+}
+
+pub fn show(ui: &mut Ui, world: &mut World, camera: Entity, widgets: &mut Widgets) {
+    probe(world, camera);
+    let mut entity = world.entity_mut(camera);
+    let before = entity.get::<DebugView>().copied();
+    let mut view = before;
+    section(ui, "Shown instead of the picture", |ui| {
+        let none = ui.radio_value(&mut view, None, "The picture");
+        note(widgets, "view.none", &none);
+        for choice in DebugView::ALL {
+            let enabled = cfg!(feature = "objects") || choice != DebugView::ObjectIds;
+            ui.add_enabled_ui(enabled, |ui| {
+                let radio = ui.radio_value(&mut view, Some(choice), label(choice));
+                note(widgets, format!("view.{choice:?}"), &radio);
+                radio.on_hover_text(explanation(choice));
+            });
+        }
+        if let Some(view) = view {
+            ui.weak(explanation(view));
+        }
+    });
+    if view != before {
+        match view {
+            Some(view) => entity.insert(view),
+            None => entity.remove::<DebugView>(),
+        };
+    }
+    let range = entity
+        .get::<VisibleDepthRange>()
+        .copied()
+        .unwrap_or_default();
+    let histogram = entity.get::<DepthHistogram>().cloned().unwrap_or_default();
+    section(ui, "Range", |ui| numbers(ui, range, histogram.drawn));
+    section(ui, "Depths", |ui| plot(ui, &histogram, widgets));
+    ui.ctx().request_repaint();
+}
+
+fn numbers(ui: &mut Ui, range: VisibleDepthRange, drawn: Option<(f32, f32)>) {
+    let text = |pair: Option<(f32, f32)>| match pair {
+        Some((near, far)) => [format!("{near:.3}"), format!("{far:.3}")],
+        None => ["-".to_owned(), "-".to_owned()],
+    };
+    let raw = match range {
+        VisibleDepthRange::Visible {
+            raw_near, raw_far, ..
+        } => [format!("{raw_near:.6}"), format!("{raw_far:.6}")],
+        _ => text(None),
+    };
+    Grid::new("range").striped(true).show(ui, |ui| {
+        ui.label("");
+        ui.strong("nearest");
+        ui.strong("farthest");
+        ui.end_row();
+        for (name, [near, far]) in [
+            ("visible, world units", text(range.distances())),
+            ("drawn with, world units", text(drawn)),
+            ("visible, raw depth", raw),
+        ] {
+            ui.label(name);
+            ui.monospace(near);
+            ui.monospace(far);
+            ui.end_row();
+        }
+    });
+    match range {
+        VisibleDepthRange::Pending => ui.weak("Nothing was read yet."),
+        VisibleDepthRange::Empty => ui.weak("No opaque geometry is visible."),
+        VisibleDepthRange::Visible { .. } => ui.weak("Measured along the camera's forward axis."),
+    };
+}
+
+/// Octaves where every edge has one.
+fn is_logarithmic(bins: &[DepthBin]) -> bool {
+    bins.iter().all(|bin| bin.near > 0.0 && bin.far.is_finite())
+}
+
+fn plot(ui: &mut Ui, histogram: &DepthHistogram, widgets: &mut Widgets) {
+    if histogram.bins.is_empty() {
+        ui.weak("No depths were counted: nothing is visible, or the adapter cannot count.");
+        return;
+    }
+    let logarithmic = is_logarithmic(&histogram.bins);
+    let place = move |distance: f32| {
+        let distance = f64::from(distance);
+        if logarithmic {
+            distance.log10()
+        } else {
+            distance.clamp(-1e9, 1e9)
+        }
+    };
+    let total: f64 = histogram.bins.iter().map(|bin| f64::from(bin.count)).sum();
+    let bars = histogram
+        .bins
+        .iter()
+        .map(|bin| {
+            let (near, far) = (place(bin.near), place(bin.far));
+            Bar::new(
+                0.5 * (near + far),
+                100.0 * f64::from(bin.count) / total.max(1.0),
+            )
+            .width((far - near).abs().max(1e-9))
+        })
+        .collect();
+    let distance = move |x: f64| if logarithmic { 10f64.powf(x) } else { x };
+    let shown = Plot::new("depths")
+        .height(140.0)
+        .allow_zoom(false)
+        .allow_drag(false)
+        .allow_scroll(false)
+        .include_y(0.0)
+        .x_axis_formatter(move |mark, _| format!("{:.3}", distance(mark.value)))
+        .y_axis_formatter(|mark, _| format!("{:.0} %", mark.value))
+        .show(ui, |plot| {
+            plot.bar_chart(BarChart::new("share of the pixels", bars).color(Color32::LIGHT_BLUE));
+            if let Some((near, far)) = histogram.drawn {
+                for (name, at) in [("nearest", near), ("farthest", far)] {
+                    plot.vline(
+                        VLine::new(name, place(at))
+                            .color(Color32::from_rgb(230, 90, 70))
+                            .width(2.0),
+                    );
+                }
+            }
+        });
+    note(widgets, "histogram", &shown.response);
+    ui.weak("Distance in world units; the lines are the ends that styles are drawn with.");
+}
+
+fn probe(world: &mut World, camera: Entity) {
+    let others: Vec<Entity> = world
+        .query_filtered::<Entity, With<Probed>>()
+        .iter(world)
+        .filter(|entity| *entity != camera)
+        .collect();
+    for other in others {
+        unprobe(world, other);
+    }
+    let mut entity = world.entity_mut(camera);
+    if entity.contains::<Probed>() {
+        return;
+    }
+    let probed = Probed {
+        range: !entity.contains::<VisibleDepthRange>(),
+        histogram: !entity.contains::<DepthHistogram>(),
+    };
+    if probed.range {
+        entity.insert(VisibleDepthRange::default());
+    }
+    if probed.histogram {
+        entity.insert(DepthHistogram::default());
+    }
+    entity.insert(probed);
+}
+
+fn unprobe(world: &mut World, camera: Entity) {
+    let mut entity = world.entity_mut(camera);
+    let Some(probed) = entity.take::<Probed>() else {
+        return;
+    };
+    if probed.range {
+        entity.remove::<VisibleDepthRange>();
+    }
+    if probed.histogram {
+        entity.remove::<DepthHistogram>();
+    }
+}
+
+/// Reads no camera's range any more.
+pub fn leave(world: &mut World) {
+    let cameras: Vec<Entity> = world
+        .query_filtered::<Entity, With<Probed>>()
+        .iter(world)
+        .collect();
+    for camera in cameras {
+        unprobe(world, camera);
+    }
+}
