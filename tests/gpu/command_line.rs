@@ -13,6 +13,19 @@ use crate::reference::range;
 
 /// Builds an example and gives its path.
 pub fn example(name: &str) -> PathBuf {
+    example_with(name, FEATURES)
+}
+
+/// The features of this very test: an example built with others would build
+/// half of the engine anew.
+const FEATURES: &[&str] = if cfg!(feature = "inspector") {
+    &["--features", "inspector"]
+} else {
+    &[]
+};
+
+/// The same with arguments for cargo.
+pub fn example_with(name: &str, arguments: &[&str]) -> PathBuf {
     let debug = env::current_exe()
         .expect("this test")
         .ancestors()
@@ -21,6 +34,7 @@ pub fn example(name: &str) -> PathBuf {
         .to_owned();
     let status = Command::new(env::var("CARGO").unwrap_or_else(|_| "cargo".into()))
         .args(["build", "--quiet", "--example", name])
+        .args(arguments)
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .env("CARGO_TARGET_DIR", debug.parent().expect("a parent"))
         .status()
@@ -268,4 +282,17 @@ fn a_gltf_file_is_framed_and_lit() {
     let middle = picture.get_pixel(28, 34).0;
     assert!(middle.iter().any(|c| *c > 40), "{middle:?}");
     fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+/// The game plays a level by itself, from its title to its end, and says how it
+/// went.
+#[test]
+fn the_game_finishes_a_level() {
+    let output = Command::new(example("game"))
+        .args(["--play", "--level", "1"])
+        .output()
+        .expect("it starts");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("won, 10 of 10 lanterns"), "{said}");
 }

@@ -1,0 +1,191 @@
+//! Styles that do a game's work: every level has its own, danger is a red
+//! atmosphere that comes from the distance, slow motion is a sketch, a hit is
+//! ink, a lantern is light.
+
+use bevy::prelude::*;
+use bevy_comics::{
+    BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, Contours, Desaturation,
+    Outlines, Sketch, StyleTransition, StyleTransitionFinished, ToneBands, presets,
+};
+
+/// What the picture should say.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mood {
+    #[default]
+    Title,
+    Flying,
+    Slow,
+    Paused,
+    Won,
+    Lost,
+}
+
+/// What is on the camera, and what was.
+#[derive(Resource, Debug, Default)]
+pub struct Looks {
+    pub level: ComicStyle,
+    pub mood: Mood,
+    /// 0 safe, 1 as dangerous as it gets.
+    pub danger: f32,
+    shown: Option<Mood>,
+    /// A hit or a lantern, on its way there and back.
+    flash: Option<ComicStyle>,
+    /// Whether the camera is on its way to one.
+    flashing: bool,
+    /// The danger that the camera shows.
+    tinted: f32,
+}
+
+impl Looks {
+    /// Begins a level in its own style.
+    pub fn enter(&mut self, level: ComicStyle) {
+        self.level = level;
+        self.shown = None;
+        self.flashing = false;
+    }
+
+    pub fn hit(&mut self) {
+        let blow = ComicStyle {
+            tone_bands: Some(ToneBands {
+                levels: 2,
+                ..default()
+            }),
+            desaturation: Some(Desaturation::default()),
+            black_flats: Some(BlackFlats {
+                value: Some(0.45),
+                ..default()
+            }),
+            colorization: Some(Colorization {
+                mode: ColorizationMode::Atmosphere,
+                color: Color::srgb(0.85, 0.12, 0.1),
+                amount: 0.85,
+                method: ColorMethod::Corrected,
+            }),
+            ..self.level.clone()
+        };
+        self.flash = Some(blow);
+    }
+
+    pub fn lantern(&mut self) {
+        let glow = ComicStyle {
+            colorization: Some(Colorization {
+                mode: ColorizationMode::Atmosphere,
+                color: Color::srgb(1.0, 0.82, 0.35),
+                amount: 0.55,
+                method: ColorMethod::Corrected,
+            }),
+            ..self.level.clone()
+        };
+        self.flash = Some(glow);
+    }
+
+    /// The level, red with distance.
+    fn in_danger(&self) -> ComicStyle {
+        let red = ComicStyle {
+            colorization: Some(Colorization {
+                mode: ColorizationMode::Linear,
+                color: Color::srgb(0.9, 0.1, 0.08),
+                amount: 1.0,
+                method: ColorMethod::Corrected,
+            }),
+            contours: Some(Contours {
+                color: Color::srgb(0.25, 0.0, 0.02),
+                ..self.level.contours.unwrap_or_default()
+            }),
+            ..self.level.clone()
+        };
+        self.level.blend(&red, self.danger)
+    }
+
+    fn style(&self) -> ComicStyle {
+        match self.mood {
+            Mood::Flying => self.in_danger(),
+            Mood::Slow => ComicStyle {
+                version: ComicStyle::VERSION,
+                outlines: Some(Outlines {
+                    width: 1.6,
+                    ..Outlines::default()
+                }),
+                sketch: Some(Sketch {
+                    wash: 0.45,
+                    strokes: 2,
+                    ..Sketch::default()
+                }),
+                ..ComicStyle::default()
+            },
+            Mood::Title => self.level.clone(),
+            Mood::Paused => ComicStyle {
+                desaturation: None,
+                colorization: Some(Colorization {
+                    amount: 0.9,
+                    ..Colorization::SEPIA
+                }),
+                ..self.level.clone()
+            },
+            Mood::Won => named("golden-hour", &self.level),
+            Mood::Lost => named("noir", &self.level),
+        }
+    }
+}
+
+/// A preset of the crate.
+pub fn named(name: &str, otherwise: &ComicStyle) -> ComicStyle {
+    match presets::preset(name) {
+        Some(Ok(style)) => style,
+        _ => otherwise.clone(),
+    }
+}
+
+/// The camera that wears the looks.
+#[derive(Component)]
+pub struct Dressed;
+
+/// Puts the look of the moment on the camera: fades where the mood changes,
+/// follows the danger where it does not.
+pub fn dress(
+    mut looks: ResMut<Looks>,
+    mut commands: Commands,
+    camera: Single<(Entity, Has<StyleTransition>), With<Dressed>>,
+) {
+    let (camera, fading) = *camera;
+    let Ok(mut camera) = commands.get_entity(camera) else {
+        return;
+    };
+    if let Some(flash) = looks.flash.take() {
+        camera.insert(StyleTransition::to(flash, 0.09));
+        looks.flashing = true;
+        return;
+    }
+    let mood = looks.mood;
+    if looks.shown != Some(mood) {
+        let seconds = match (looks.shown, mood) {
+            (None, _) => 0.0,
+            (_, Mood::Slow) => 0.3,
+            (Some(Mood::Slow), _) => 0.5,
+            _ => 0.6,
+        };
+        camera.insert(StyleTransition::to(looks.style(), seconds));
+        looks.shown = Some(mood);
+        looks.flashing = false;
+        looks.tinted = looks.danger;
+        return;
+    }
+    if mood == Mood::Flying && !fading && (looks.danger - looks.tinted).abs() > 0.004 {
+        looks.tinted = looks.danger;
+        looks.in_danger().apply(&mut camera);
+    }
+}
+
+/// After a flash the look comes back.
+pub fn come_back(
+    finished: On<StyleTransitionFinished>,
+    mut looks: ResMut<Looks>,
+    mut commands: Commands,
+) {
+    if std::mem::take(&mut looks.flashing)
+        && let Ok(mut camera) = commands.get_entity(finished.entity)
+    {
+        looks.tinted = looks.danger;
+        camera.insert(StyleTransition::to(looks.style(), 0.4));
+    }
+}
