@@ -119,3 +119,51 @@ fn the_lines_of_the_readme_compile_and_draw_in_a_crate_of_their_own() {
     cargo(&folder, &target, &["run", "--offline", "--bin", "render"]);
     fs::remove_dir_all(&folder).expect("the folder goes");
 }
+
+/// The packages of a build for a game, without those of examples and tests.
+fn packages(features: &[&str]) -> std::collections::BTreeSet<String> {
+    let output = Command::new(env::var("CARGO").unwrap_or_else(|_| "cargo".into()))
+        .args([
+            "tree", "--locked", "--edges", "normal", "--prefix", "none", "--format", "{p}",
+        ])
+        .args(features)
+        .current_dir(ROOT)
+        .output()
+        .expect("cargo runs");
+    assert!(output.status.success(), "cargo tree");
+    String::from_utf8_lossy(&output.stdout)
+        .lines()
+        .map(|line| {
+            line.split_whitespace()
+                .take(2)
+                .collect::<Vec<_>>()
+                .join(" ")
+        })
+        .filter(|package| !package.is_empty())
+        .collect()
+}
+
+/// Without its feature nothing of the inspector is compiled: on Linux a game
+/// builds as many crates as before there was one.
+#[test]
+#[cfg(target_os = "linux")]
+fn the_inspector_is_not_built_unasked() {
+    let without = packages(&[]);
+    let with = packages(&["--features", "inspector"]);
+    assert!(without.is_subset(&with));
+    for name in ["bevy_egui", "egui", "egui_plot", "arboard", "dirs"] {
+        let named = |packages: &std::collections::BTreeSet<String>| {
+            packages
+                .iter()
+                .any(|package| package.split(' ').next() == Some(name))
+        };
+        assert!(!named(&without), "{name} is built without the feature");
+        assert!(named(&with), "{name} is built with it");
+    }
+    // `cargo tree --edges normal` of the commit before the inspector: 208.
+    assert_eq!(
+        without.len(),
+        208,
+        "the default build has other crates than before"
+    );
+}

@@ -5,19 +5,24 @@ mod common;
 #[path = "../reference/mod.rs"]
 mod reference;
 
+mod blending;
 mod cartoon;
 mod command_line;
 mod device;
 mod extremes;
 mod failures;
+mod finish;
 mod flood;
 mod fresh_crate;
 mod functions;
 mod golden;
+mod guide;
 mod ids;
 mod left_out;
 mod lines;
 mod outlines;
+#[cfg(feature = "inspector")]
+mod panel;
 mod pictures;
 mod range;
 mod range_views;

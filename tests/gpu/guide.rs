@@ -1,0 +1,231 @@
+//! The documentation of style files: what it says is so.
+
+use std::{fs, path::Path};
+
+use bevy::render::view::Msaa;
+use bevy_comics::{ComicStyle, ComicStyleError};
+
+use crate::small::{Small, size};
+
+fn page(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("docs")
+        .join(name);
+    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The blocks of a language, in order.
+fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
+    page.split("```")
+        .skip(1)
+        .step_by(2)
+        .filter_map(|block| block.strip_prefix(language)?.strip_prefix('\n'))
+        .collect()
+}
+
+/// Every step of the page is a style that draws something else than the last.
+#[test]
+fn the_steps_of_the_ten_minutes_can_be_followed() {
+    let page = page("your-own-style.md");
+    let steps = blocks(&page, "ron");
+    assert!(steps.len() >= 5, "{} steps", steps.len());
+    let mut small = Small::new(size(), Msaa::Off);
+    small.settle();
+    let mut last = small.picture();
+    for (i, step) in steps.iter().enumerate() {
+        let style =
+            ComicStyle::from_ron(step).unwrap_or_else(|error| panic!("step {}: {error}", i + 1));
+        assert_eq!(style, style.sanitized(), "step {} is in its ranges", i + 1);
+        small.style(&style);
+        small.settle();
+        let picture = small.picture();
+        assert_ne!(picture, last, "step {} changes nothing", i + 1);
+        last = picture;
+    }
+    assert_eq!(small.errors(), 0);
+    // The error that the page promises is the one that comes.
+    let broken = blocks(&page, "text")
+        .first()
+        .expect("the broken file's message")
+        .trim();
+    let error = ComicStyle::from_ron("(\n    version: 1,\n    contours: (widht: 3.0),\n)")
+        .expect_err("broken");
+    assert_eq!(error.to_string(), broken);
+    // So are its commands.
+    for command in blocks(&page, "sh").iter().flat_map(|block| block.lines()) {
+        if let Some((_, example)) = command.split_once("--example ") {
+            let name = example.split_whitespace().next().expect("a name");
+            let source = Path::new(env!("CARGO_MANIFEST_DIR"))
+                .join("examples")
+                .join(name);
+            assert!(
+                source.with_extension("rs").exists() || source.join("main.rs").exists(),
+                "{command}: there is no such example"
+            );
+        }
+    }
+}
+
+#[test]
+fn an_unknown_version_and_an_unknown_field_are_said() {
+    let error = ComicStyle::from_ron("(version: 2)").expect_err("another version");
+    assert!(
+        matches!(error, ComicStyleError::Version { found: 2 }),
+        "{error}"
+    );
+    for text in [
+        "(version: 1, glitter: ())",
+        "(version: 1, sketch: (glitter: 1))",
+        "(version: 1, depth_map: (smoothing: (glitter: 1)))",
+    ] {
+        let error = ComicStyle::from_ron(text).expect_err(text).to_string();
+        assert!(
+            error.contains("glitter") && error.contains("line 1, column"),
+            "{error}"
+        );
+    }
+    let error = ComicStyle::from_ron("(name: \"no version\")")
+        .expect_err("no version")
+        .to_string();
+    assert!(error.contains("version"), "{error}");
+}
+
+/// The reference of the format is made from the types themselves.
+#[cfg(feature = "inspector")]
+#[test]
+fn the_reference_of_the_format_is_that_of_the_types() {
+    let made = reference::page();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/style-format.md");
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        fs::write(&path, &made).expect("written");
+    }
+    assert_eq!(
+        page("style-format.md"),
+        made,
+        "UPDATE_DOCS=1 cargo test --features inspector --test gpu -- the_reference_of_the_format"
+    );
+}
+
+#[cfg(feature = "inspector")]
+mod reference {
+    use std::fmt::Write;
+
+    use bevy::reflect::{NamedField, TypeInfo, Typed};
+    use bevy_comics::{
+        BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ContourForm,
+        ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, EdgeForm,
+        FieldRange, ObjectEdges, Outlines, RangeSmoothing, ReductionMethod, Silhouettes, Sketch,
+        ToneBandMethod, ToneBands,
+    };
+
+    const HEAD: &str = "\
+# The format of style files
+
+A style file is [RON](https://docs.rs/ron) with implicit `Some`, ends in `.comic.ron`, and holds one
+`ComicStyle`. `version` is the version of the format and must be 1; another one, an unknown field or a
+wrong type is an error that names line and column. Everything else may be left out: an effect that is
+left out is off, a field that is left out has its default. Colours are `\"#rrggbb\"`, `\"#rrggbbaa\"` or four
+sRGB components. Numbers outside their range count as its nearest end. What a game adds later than
+version 1 will be optional fields; what cannot be read by this version gets another number.
+
+This page is made from the types by a test, which fails where the two differ.
+";
+
+    fn plain(docs: Option<&str>) -> String {
+        // Examples have a page of their own.
+        let (docs, _) = docs
+            .unwrap_or_default()
+            .split_once("```")
+            .unwrap_or((docs.unwrap_or_default(), ""));
+        let joined: Vec<&str> = docs.lines().map(str::trim).collect();
+        let joined = joined.join(" ");
+        // Links to items lead nowhere from here.
+        let text: Vec<&str> = joined.trim().split('`').collect();
+        text.join("`")
+            .replace("[`", "`")
+            .replace("`]", "`")
+            .replace('|', "\\|")
+    }
+
+    fn kind(field: &NamedField) -> String {
+        let name = field.type_path_table().short_path().to_owned();
+        match FieldRange::of(field) {
+            Some(range) => {
+                let unit = match range.unit {
+                    "" => String::new(),
+                    unit => format!(" {unit}"),
+                };
+                format!("{name}, {} to {}{unit}", range.min, range.max)
+            }
+            None => name,
+        }
+    }
+
+    fn fields<'a>(page: &mut String, fields: impl Iterator<Item = &'a NamedField>) {
+        page.push_str("\n| field | type, range | meaning |\n|---|---|---|\n");
+        for field in fields {
+            let _ = writeln!(
+                page,
+                "| `{}` | {} | {} |",
+                field.name(),
+                kind(field),
+                plain(field.docs())
+            );
+        }
+    }
+
+    fn section<T: Typed>(page: &mut String) {
+        let info = T::type_info();
+        let name = info.type_path_table().short_path();
+        let _ = write!(page, "\n## {name}\n\n{}\n", plain(info.docs()));
+        match info {
+            TypeInfo::Struct(info) => fields(page, info.iter()),
+            TypeInfo::Enum(info) => {
+                page.push_str("\n| variant | meaning |\n|---|---|\n");
+                for variant in info.iter() {
+                    let shown = match variant.as_struct_variant() {
+                        Ok(inner) => {
+                            let names: Vec<&str> = inner.iter().map(NamedField::name).collect();
+                            format!("{}({})", variant.name(), names.join(", "))
+                        }
+                        Err(_) => variant.name().to_owned(),
+                    };
+                    let _ = writeln!(page, "| `{shown}` | {} |", plain(variant.docs()));
+                }
+                for variant in info.iter() {
+                    if let Ok(inner) = variant.as_struct_variant() {
+                        let _ = write!(page, "\n`{}`:\n", variant.name());
+                        fields(page, inner.iter());
+                    }
+                }
+            }
+            _ => panic!("{name} is no type of a style file"),
+        }
+    }
+
+    pub fn page() -> String {
+        let mut page = HEAD.to_owned();
+        section::<ComicStyle>(&mut page);
+        section::<DepthMap>(&mut page);
+        section::<DepthMapping>(&mut page);
+        section::<RangeSmoothing>(&mut page);
+        section::<ReductionMethod>(&mut page);
+        section::<ToneBands>(&mut page);
+        section::<ToneBandMethod>(&mut page);
+        section::<Desaturation>(&mut page);
+        section::<Colorization>(&mut page);
+        section::<ColorizationMode>(&mut page);
+        section::<ColorMethod>(&mut page);
+        section::<BlackFlats>(&mut page);
+        section::<Contours>(&mut page);
+        section::<ContourOperator>(&mut page);
+        section::<ContourForm>(&mut page);
+        section::<Outlines>(&mut page);
+        section::<Silhouettes>(&mut page);
+        section::<Creases>(&mut page);
+        section::<ObjectEdges>(&mut page);
+        section::<EdgeForm>(&mut page);
+        section::<Sketch>(&mut page);
+        page
+    }
+}
