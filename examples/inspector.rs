@@ -40,6 +40,7 @@ The style inspector on a built-in scene. F10 opens and closes the panel.
     --open             open the panel at once
     --state FILE       write what the panel shows to a JSON file, every frame
     --bench FRAMES     print the mean time of so many frames, then end
+    --bare             without the inspector, to compare with
     --help             this
 ";
 
@@ -52,6 +53,7 @@ struct Options {
     scale: Option<f32>,
     plugin: ComicsInspectorPlugin,
     open: bool,
+    bare: bool,
     state: Option<PathBuf>,
     bench: Option<u32>,
 }
@@ -66,6 +68,7 @@ fn options() -> Result<Options, lexopt::Error> {
         scale: None,
         plugin: ComicsInspectorPlugin::default(),
         open: false,
+        bare: false,
         state: None,
         bench: None,
     };
@@ -91,6 +94,7 @@ fn options() -> Result<Options, lexopt::Error> {
                 let path = PathBuf::from(parser.value()?);
                 options.plugin.memory = (path.as_os_str() != "none").then_some(path);
             }
+            Long("bare") => options.bare = true,
             Long("open") => options.open = true,
             Long("state") => options.state = Some(parser.value()?.into()),
             Long("bench") => options.bench = Some(parser.value()?.parse()?),
@@ -113,18 +117,21 @@ fn main() {
     if let Some(scale) = options.scale {
         resolution = resolution.with_scale_factor_override(scale);
     }
-    App::new()
-        .add_plugins(DefaultPlugins.set(WindowPlugin {
-            primary_window: Some(Window {
-                title: "bevy_comics inspector".into(),
-                resolution,
-                present_mode: bevy::window::PresentMode::AutoNoVsync,
-                ..default()
-            }),
+    let mut app = App::new();
+    app.add_plugins(DefaultPlugins.set(WindowPlugin {
+        primary_window: Some(Window {
+            title: "bevy_comics inspector".into(),
+            resolution,
+            present_mode: bevy::window::PresentMode::AutoNoVsync,
             ..default()
-        }))
-        .add_plugins((ComicsPlugin, OrbitPlugin, options.plugin.clone()))
-        .insert_resource(options)
+        }),
+        ..default()
+    }))
+    .add_plugins((ComicsPlugin, OrbitPlugin));
+    if !options.bare {
+        app.add_plugins(options.plugin.clone());
+    }
+    app.insert_resource(options)
         .add_systems(Startup, setup)
         .add_systems(Update, lay_out)
         .add_systems(Last, (tell, bench))
@@ -135,8 +142,10 @@ fn main() {
 #[derive(Component)]
 struct Half(u32);
 
-fn setup(mut stage: Stage, options: Res<Options>, mut inspector: ResMut<ComicsInspector>) {
-    inspector.open = options.open;
+fn setup(mut stage: Stage, options: Res<Options>, inspector: Option<ResMut<ComicsInspector>>) {
+    if let Some(mut inspector) = inspector {
+        inspector.open = options.open;
+    }
     let vantage = stage.spawn(options.scene);
     for i in 0..options.cameras {
         let mut view = vantage.clone();
@@ -212,14 +221,17 @@ fn tell(world: &mut World) {
     let Some(path) = world.resource::<Options>().state.clone() else {
         return;
     };
-    let cameras: Vec<Entity> = world
-        .query_filtered::<Entity, With<Half>>()
+    // Always in the same order, whatever components come and go.
+    let mut cameras: Vec<(u32, Entity)> = world
+        .query::<(Entity, &Half)>()
         .iter(world)
+        .map(|(camera, half)| (half.0, camera))
         .collect();
+    cameras.sort_unstable();
     let diagnostics = world.resource::<ComicsDiagnostics>();
     let cameras: Vec<_> = cameras
         .into_iter()
-        .map(|camera| {
+        .map(|(_, camera)| {
             let entity = world.entity(camera);
             serde_json::json!({
                 "name": entity.get::<Name>().map(|name| name.to_string()),
@@ -237,12 +249,13 @@ fn tell(world: &mut World) {
         .query_filtered::<(), With<Camera2d>>()
         .iter(world)
         .count();
-    let inspector = world.resource::<ComicsInspector>();
+    let inspector = world.get_resource::<ComicsInspector>();
     let state = serde_json::json!({
         "frame": world.resource::<bevy::diagnostic::FrameCount>().0,
-        "open": inspector.open,
-        "wants_pointer": inspector.wants_pointer,
-        "widgets": inspector.widgets,
+        "open": inspector.map(|inspector| inspector.open),
+        "wants_pointer": inspector.map(|inspector| inspector.wants_pointer),
+        "focused": inspector.and_then(|inspector| inspector.focused.as_ref()),
+        "widgets": inspector.map(|inspector| &inspector.widgets),
         "panel_cameras": panel_cameras,
         "cameras": cameras,
     });

@@ -49,6 +49,7 @@ mod objects;
 mod outlining;
 mod passes;
 mod plugin;
+mod prepasses;
 mod sanitize;
 mod styles;
 mod stylize;

@@ -31,12 +31,13 @@ use crate::{
     objects::{ObjectStyleBuffer, ObjectStyles},
     outlining::{FloodPipeline, OutlinePipeline, find_outlines},
     passes::{ViewPasses, init_pipelines, map_readbacks, prepare_view_passes},
+    prepasses::{request_prepasses, warn_unsupported},
     styles::{
         BlackFlats, Colorization, ComicStyle, ComicStyleHandle, Contours, Desaturation, Outlines,
         Sketch, StyleLoader, StyleTransition, ToneBands, apply_styles, run_transitions,
     },
     stylize::{StylizePipeline, stylize},
-    view::{extract_views, request_prepasses, warn_unsupported},
+    view::extract_views,
 };
 
 /// Adds comics stylization: every [`Camera3d`](bevy::camera::Camera3d) with a

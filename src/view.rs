@@ -3,15 +3,13 @@
 //! compiled, bound nor dispatched.
 
 use bevy::{
-    camera::{Camera, Camera2d, Camera3d, MainPassResolutionOverride, Projection, RenderTarget},
-    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
+    camera::{Camera, Camera3d, MainPassResolutionOverride, Projection},
     ecs::{
         component::Component,
         entity::{Entity, EntityHashSet},
         query::{Has, Or, QueryData, With},
         system::{Commands, Local, Query, Res},
     },
-    log::warn_once,
     math::{Mat4, UVec2},
     render::{Extract, sync_world::RenderEntity},
     time::{Real, Time},
@@ -42,7 +40,7 @@ pub(crate) struct ComicsComponents {
 }
 
 /// Matches a camera with at least one component that asks for something.
-type AnyComics = Or<(
+pub(crate) type AnyComics = Or<(
     With<ToneBands>,
     With<Desaturation>,
     With<Colorization>,
@@ -100,7 +98,7 @@ pub(crate) fn sketched_outlines() -> Outlines {
 }
 
 impl Plan {
-    fn new(item: &ComicsComponentsItem<'_, '_>, object_styles: bool) -> Self {
+    pub fn new(item: &ComicsComponentsItem<'_, '_>, object_styles: bool) -> Self {
         let (tone_bands, n0) = kept(
             item.look.tone_bands,
             ToneBands::sanitized,
@@ -339,69 +337,6 @@ impl Plan {
             }
             ComicsStage::DepthRange | ComicsStage::RangeSmoothing => LeftOut::NoDepthStyle,
             ComicsStage::Stylize => LeftOut::NothingToDraw,
-        }
-    }
-}
-
-/// Marks a depth prepass that this crate asked for and takes away again.
-#[derive(Component)]
-pub(crate) struct OwnDepthPrepass;
-
-/// Marks a normal prepass that this crate asked for and takes away again.
-#[derive(Component)]
-pub(crate) struct OwnNormalPrepass;
-
-/// Gives cameras the prepasses that their styles read, and no longer.
-pub(crate) fn request_prepasses(
-    mut commands: Commands,
-    styled: Query<
-        (
-            Entity,
-            ComicsComponents,
-            (Has<DepthPrepass>, Has<OwnDepthPrepass>),
-            (Has<NormalPrepass>, Has<OwnNormalPrepass>),
-        ),
-        (
-            With<Camera3d>,
-            Or<(AnyComics, With<OwnDepthPrepass>, With<OwnNormalPrepass>)>,
-        ),
-    >,
-) {
-    for (camera, components, (has_depth, own_depth), (has_normals, own_normals)) in &styled {
-        let plan = Plan::new(&components, false);
-        let mut camera = commands.entity(camera);
-        match (plan.needs_depth(), has_depth) {
-            (true, false) => {
-                camera.insert((DepthPrepass, OwnDepthPrepass));
-            }
-            (false, _) if own_depth => {
-                camera.remove::<(DepthPrepass, OwnDepthPrepass)>();
-            }
-            _ => {}
-        }
-        match (plan.needs_normals(), has_normals) {
-            (true, false) => {
-                camera.insert((NormalPrepass, OwnNormalPrepass));
-            }
-            (false, _) if own_normals => {
-                camera.remove::<(NormalPrepass, OwnNormalPrepass)>();
-            }
-            _ => {}
-        }
-    }
-}
-
-/// Says once what will not work, instead of doing nothing in silence.
-pub(crate) fn warn_unsupported(
-    flat: Query<Entity, (With<Camera2d>, AnyComics)>,
-    targets: Query<(Entity, &RenderTarget), (With<Camera3d>, AnyComics)>,
-) {
-    if let Some(camera) = flat.iter().next() {
-        warn_once!("{camera} is a Camera2d: comics styles need a Camera3d and leave it alone");
-    }
-    for (camera, target) in &targets {
-        if matches!(target, RenderTarget::None { .. }) {
-            warn_once!("{camera} has no colour target: comics styles leave it alone");
         }
     }
 }

@@ -1,21 +1,15 @@
 //! What a frame costs, pass by pass, what was left out and why, and the known
 //! error of what was chosen, beside its time.
 
-use std::{collections::HashMap, sync::LazyLock};
-
 use bevy::ecs::{entity::Entity, world::World};
 use bevy_egui::egui::{Color32, Grid, Label, RichText, Ui};
-use egui_plot::{Legend, Line, Plot, PlotPoints};
+use egui_plot::{Legend, Line, Plot, PlotPoint, PlotPoints, Points, Text, VLine};
 
-use super::{Widgets, fields::section, note};
+use super::{Widgets, fields::section, known, note};
 use crate::{
-    ComicStyle, ComicsDiagnostics, ContourForm, DepthMap, RangeSmoothing, StageOutcome,
+    ComicStyle, ComicsDiagnostics, ContourForm, StageOutcome,
     timing::{Pass, PassTimes},
 };
-
-/// The report's own figures.
-const LINES: &str = include_str!("../../docs/report/line_scores.csv");
-const FLICKER: &str = include_str!("../../docs/report/flicker.csv");
 
 const COLORS: [Color32; Pass::ALL.len()] = [
     Color32::from_rgb(130, 130, 140),
@@ -32,11 +26,6 @@ pub struct Costs {
     running: bool,
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
-}
-
 impl Costs {
     pub fn show(&mut self, ui: &mut Ui, world: &mut World, camera: Entity, widgets: &mut Widgets) {
         let times = world.resource::<PassTimes>();
@@ -44,7 +33,7 @@ impl Costs {
         self.running = true;
         let frames = times.frames();
         let medians: [f64; Pass::ALL.len()] =
-            std::array::from_fn(|i| median(frames.iter().map(|frame| frame[i]).collect()));
+            std::array::from_fn(|i| known::median(frames.iter().map(|frame| frame[i]).collect()));
         section(ui, "Time of the passes, all cameras together", |ui| {
             self.chart(ui, &frames, widgets);
             ui.weak(times.method().unwrap_or("Waiting for the first frame."));
@@ -69,7 +58,7 @@ impl Costs {
             stages(ui, world, camera);
         });
         section(ui, "Known error beside its time", |ui| {
-            errors(ui, &ComicStyle::of(world.entity(camera)), &medians);
+            errors(ui, &ComicStyle::of(world.entity(camera)), &medians, widgets);
         });
         ui.ctx().request_repaint();
     }
@@ -137,85 +126,41 @@ fn stages(ui: &mut Ui, world: &World, camera: Entity) {
         });
 }
 
-/// (share of the lines that are missed, share of the ink that is on none), mean
-/// over the report's scenes.
-fn line_error(detector: &str) -> Option<(f64, f64)> {
-    let mut sum = (0.0, 0.0);
-    let mut scenes = 0.0;
-    for row in LINES.lines().skip(1) {
-        let cells: Vec<&str> = row.split(',').collect();
-        let [_, name, "every line", numbers @ ..] = cells.as_slice() else {
-            continue;
-        };
-        if *name != detector {
-            continue;
-        }
-        let numbers: Vec<f64> = numbers.iter().filter_map(|n| n.parse().ok()).collect();
-        let [found, all, right, drawn] = numbers.as_slice() else {
-            continue;
-        };
-        if *all > 0.0 && *drawn > 0.0 {
-            sum.0 += 1.0 - found / all;
-            sum.1 += 1.0 - right / drawn;
-            scenes += 1.0;
-        }
-    }
-    (scenes > 0.0).then(|| (sum.0 / scenes, sum.1 / scenes))
+/// A row: what was chosen, its error, its time.
+struct Known {
+    what: String,
+    error: String,
+    time: String,
 }
 
-/// (mean change of the picture from frame to frame in display codes, largest
-/// lag of the range in octaves) over the report's sequences.
-fn flicker(variant: &str) -> Option<(f64, f64)> {
-    // Thousands of rows: read once, not in every frame.
-    static READ: LazyLock<HashMap<&str, Option<(f64, f64)>>> = LazyLock::new(|| {
-        let variants = ["off", "the default", "the default and percentiles"];
-        variants
-            .map(|variant| (variant, read_flicker(variant)))
-            .into()
-    });
-    READ.get(variant).copied().flatten()
-}
-
-fn read_flicker(variant: &str) -> Option<(f64, f64)> {
-    let (mut sum, mut frames, mut lag) = (0.0, 0.0, 0.0f64);
-    for row in FLICKER.lines().skip(1) {
-        let cells: Vec<&str> = row.split(',').collect();
-        let [_, name, _, mean, _, late] = cells.as_slice() else {
-            continue;
-        };
-        if *name != variant {
-            continue;
-        }
-        if let (Ok(mean), Ok(late)) = (mean.parse::<f64>(), late.parse::<f64>()) {
-            sum += mean;
-            frames += 1.0;
-            lag = lag.max(late);
-        }
-    }
-    (frames > 0.0).then(|| (sum / frames, lag))
-}
-
-/// The report's name for a way of smoothing.
-fn smoothing_variant(map: &DepthMap) -> Option<&'static str> {
-    let default = RangeSmoothing::default();
-    match map.smoothing {
-        None => Some("off"),
-        Some(s) if s == default => Some("the default"),
-        Some(s) if (RangeSmoothing { outliers: 0.0, ..s }) == default => {
-            Some("the default and percentiles")
-        }
-        Some(_) => None,
+fn line_error(detector: &str) -> String {
+    match known::lines(detector) {
+        Some(lines) => format!(
+            "misses {:.0} % of the lines, {:.0} % of its ink is on none",
+            100.0 * lines.missed,
+            100.0 * lines.stray
+        ),
+        None => "not in the report".into(),
     }
 }
 
-fn errors(ui: &mut Ui, style: &ComicStyle, medians: &[f64; Pass::ALL.len()]) {
+fn errors(
+    ui: &mut Ui,
+    style: &ComicStyle,
+    medians: &[f64; Pass::ALL.len()],
+    widgets: &mut Widgets,
+) {
     let time = |pass: Pass| format!("{:.3} ms", medians[pass as usize]);
     let map = style.depth_map.unwrap_or_default();
-    let mut rows: Vec<(String, String, String)> = Vec::new();
+    let mut rows: Vec<Known> = Vec::new();
+    let mut detectors: Vec<String> = Vec::new();
     if map.mapping.follows_visible_range() {
-        let range = format!("depth range ({:?})", map.reduction);
-        rows.push((range, "exact, to the bit".into(), time(Pass::DepthRange)));
-        let known = smoothing_variant(&map).map(|variant| (variant, flicker(variant)));
+        rows.push(Known {
+            what: format!("depth range ({:?})", map.reduction),
+            error: "exact, to the bit".into(),
+            time: time(Pass::DepthRange),
+        });
+        let known = known::smoothing(&map).map(|variant| (variant, known::flicker(variant)));
         let error = match known {
             Some((_, Some((codes, lag)))) => {
                 format!("flickers {codes:.3} codes a frame, lags up to {lag:.1} octaves")
@@ -223,85 +168,115 @@ fn errors(ui: &mut Ui, style: &ComicStyle, medians: &[f64; Pass::ALL.len()]) {
             _ => "settings that the report has not measured".into(),
         };
         let name = known.map_or("range smoothing", |(variant, _)| variant);
-        rows.push((format!("smoothing: {name}"), error, "in the above".into()));
+        rows.push(Known {
+            what: format!("smoothing: {name}"),
+            error,
+            time: "in the above".into(),
+        });
     }
-    let lines = |detector: &str| match line_error(detector) {
-        Some((missed, stray)) => format!(
-            "misses {:.0} % of the lines, {:.0} % of its ink is on none",
-            100.0 * missed,
-            100.0 * stray
-        ),
-        None => "not in the report".into(),
-    };
     if let Some(contours) = &style.contours {
-        let detector = format!("{:?}", contours.operator);
+        let detector = known::contours(contours.operator);
         let error = if contours.form == ContourForm::PlaneAware {
-            lines(&detector)
+            line_error(&detector)
         } else {
             "the faithful form is not in the report".into()
         };
-        rows.push((format!("contours: {detector}"), error, time(Pass::Stylize)));
+        rows.push(Known {
+            what: format!("contours: {detector}"),
+            error,
+            time: time(Pass::Stylize),
+        });
+        if contours.form == ContourForm::PlaneAware {
+            detectors.push(detector);
+        }
     }
     if let Some(outlines) = &style.outlines {
-        let detector = match (&outlines.silhouettes, &outlines.creases, &outlines.objects) {
-            (Some(_), Some(_), Some(_)) => "all outlines",
-            (Some(_), Some(_), None) => "silhouettes + creases",
-            (Some(_), None, None) => "silhouettes",
-            _ => "another choice of kinds",
-        };
-        rows.push((
-            format!("outlines: {detector}"),
-            lines(detector),
-            time(Pass::Outlines),
-        ));
+        let detector = known::outlines(outlines);
+        rows.push(Known {
+            what: format!("outlines: {detector}"),
+            error: line_error(detector),
+            time: time(Pass::Outlines),
+        });
+        detectors.push(detector.to_owned());
     }
     if rows.is_empty() {
         ui.label("Nothing of this style has an error to speak of: it is computed as documented.");
         return;
     }
-    for (what, error, time) in rows {
+    for row in rows {
         ui.horizontal_wrapped(|ui| {
-            ui.strong(what);
-            ui.monospace(time);
+            ui.strong(row.what);
+            ui.monospace(row.time);
         });
-        ui.add(Label::new(error).wrap());
+        ui.add(Label::new(row.error).wrap());
         ui.separator();
     }
     ui.weak("Errors with default settings, mean over the scenes of docs/report; times are of now.");
+    if !detectors.is_empty() {
+        let now = [Pass::DepthRange, Pass::Outlines, Pass::Stylize]
+            .map(|pass| medians[pass as usize])
+            .iter()
+            .sum();
+        error_against_time(ui, &detectors, now, widgets);
+    }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_reports_figures_are_found() {
-        for detector in [
-            "Roberts",
-            "Prewitt",
-            "Sobel",
-            "Laplace",
-            "silhouettes",
-            "silhouettes + creases",
-            "all outlines",
-        ] {
-            let (missed, stray) = line_error(detector).expect(detector);
-            assert!((0.0..=1.0).contains(&missed) && (0.0..=1.0).contains(&stray));
-        }
-        assert_eq!(line_error("nonsense"), None);
-        let off = flicker("off").expect("off");
-        let default = flicker("the default").expect("the default");
-        assert!(flicker("the default and percentiles").is_some());
-        assert!(
-            default.0 < off.0,
-            "smoothing flickers less: {default:?} against {off:?}"
-        );
-        assert_eq!(off.1, 0.0, "what is not smoothed does not lag");
-    }
-
-    #[test]
-    fn medians() {
-        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(Vec::new()), 0.0);
-    }
+/// Every way of finding lines by its error and its time, the chosen ones filled,
+/// and what the styles take now.
+fn error_against_time(ui: &mut Ui, chosen: &[String], now: f64, widgets: &mut Widgets) {
+    ui.add_space(4.0);
+    ui.strong("Error of lines against run time");
+    // Decades: a fast adapter and a slow one are on one chart.
+    let place = |time: f64| time.max(1e-3).log10();
+    let shown = Plot::new("error against time")
+        .height(170.0)
+        .allow_zoom(false)
+        .allow_drag(false)
+        .allow_scroll(false)
+        .include_y(0.0)
+        .include_y(100.0)
+        .include_x(place(now) - 0.1)
+        .include_x(place(now) + 0.1)
+        .x_axis_formatter(|mark, _| format!("{:.3} ms", 10f64.powf(mark.value)))
+        .y_axis_formatter(|mark, _| format!("{:.0} %", mark.value))
+        .label_formatter(|name, value| {
+            format!("{name}\n{:.3} ms\n{:.1} %", 10f64.powf(value.x), value.y)
+        })
+        .show(ui, |plot| {
+            for detector in known::DETECTORS {
+                let Some(lines) = known::lines(detector) else {
+                    continue;
+                };
+                let is_chosen = chosen.iter().any(|name| name == detector);
+                let color = if is_chosen {
+                    COLORS[Pass::Outlines as usize]
+                } else {
+                    Color32::GRAY
+                };
+                let at = [place(lines.time), 100.0 * lines.error()];
+                plot.points(
+                    Points::new(detector, vec![at])
+                        .radius(if is_chosen { 6.0 } else { 4.0 })
+                        .filled(is_chosen)
+                        .color(color),
+                );
+                if is_chosen {
+                    plot.text(
+                        Text::new(detector, PlotPoint::new(at[0], at[1] + 8.0), detector)
+                            .color(color),
+                    );
+                }
+            }
+            plot.vline(
+                VLine::new("now", place(now))
+                    .color(Color32::from_rgb(230, 90, 70))
+                    .width(2.0),
+            );
+        });
+    note(widgets, "errors", &shown.response);
+    ui.weak(format!(
+        "0 % draws every line and nothing else (1 − F₁). Dots: all of this crate's passes at \
+         1280x720 on {}, filled where chosen; the red line: what they take now, here.",
+        known::adapter()
+    ));
 }

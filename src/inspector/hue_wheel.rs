@@ -4,7 +4,7 @@
 use std::f32::consts::TAU;
 
 use bevy_egui::egui::{
-    Color32, Mesh, Pos2, Response, Sense, Shape, Stroke, Ui, Vec2, ecolor::Hsva, vec2,
+    Color32, EventFilter, Mesh, Pos2, Response, Sense, Shape, Stroke, Ui, Vec2, ecolor::Hsva, vec2,
 };
 
 const SECTORS: u32 = 48;
@@ -24,6 +24,17 @@ pub fn hue_wheel(ui: &mut Ui, hsv: &mut [f32; 3], diameter: f32) -> Response {
         turned = Some(hue_at(centre, radius, at));
     }
     if response.has_focus() {
+        // The arrows turn the wheel and do not leave it.
+        ui.memory_mut(|memory| {
+            memory.set_focus_lock_filter(
+                response.id,
+                EventFilter {
+                    horizontal_arrows: true,
+                    vertical_arrows: true,
+                    ..EventFilter::default()
+                },
+            );
+        });
         let step = ui.input(|input| {
             use bevy_egui::egui::Key;
             let pressed = |key| f32::from(u8::from(input.key_pressed(key)));

@@ -11,6 +11,7 @@ mod fields;
 mod files;
 mod history;
 mod hue_wheel;
+mod known;
 mod memory;
 mod panel;
 mod photo;
@@ -51,8 +52,8 @@ use bevy::{
     window::{PrimaryWindow, WindowRef},
 };
 use bevy_egui::{
-    EguiContext, EguiContextSettings, EguiFullOutput, EguiGlobalSettings, EguiInput, EguiPlugin,
-    EguiPostUpdateSet, egui,
+    EguiContext, EguiContextSettings, EguiFullOutput, EguiGlobalSettings, EguiInput, EguiOutput,
+    EguiPlugin, EguiPostUpdateSet, egui,
 };
 
 use crate::timing::PassTimesPlugin;
@@ -116,15 +117,35 @@ pub struct ComicsInspector {
     /// points of the window (left, top, right, bottom), by name: what a test
     /// or a tutorial points at. Settings are named by their path in
     /// [`ComicStyle`](crate::ComicStyle), such as `contours.width`.
-    pub widgets: Widgets,
+    pub widgets: HashMap<String, [f32; 4]>,
+    /// The widget that has the keyboard's focus, by the same names.
+    pub focused: Option<String>,
 }
 
-/// Rectangles by name.
-pub type Widgets = HashMap<String, [f32; 4]>;
+/// What is known of the widgets of a frame.
+#[derive(Default)]
+struct Widgets {
+    rects: HashMap<String, [f32; 4]>,
+    focused: Option<String>,
+}
 
+/// Remembers a widget by its name.
 fn note(widgets: &mut Widgets, name: impl Into<String>, response: &egui::Response) {
-    let r = response.rect;
-    widgets.insert(name.into(), [r.min.x, r.min.y, r.max.x, r.max.y]);
+    let name = name.into();
+    if response.has_focus() {
+        widgets.focused = Some(name.clone());
+    }
+    // Whoever comes with the keyboard sees where he is.
+    if response.gained_focus() && !response.ctx.input(|input| input.pointer.any_down()) {
+        response.scroll_to_me(None);
+    }
+    // Parts of the panel's own points, which are larger or smaller than the
+    // window's when the text is zoomed.
+    let zoom = response.ctx.zoom_factor();
+    let rect = response.rect * zoom;
+    widgets
+        .rects
+        .insert(name, [rect.min.x, rect.min.y, rect.max.x, rect.max.y]);
 }
 
 /// The camera that draws the panel, and nothing else.
@@ -150,7 +171,8 @@ impl Plugin for ComicsInspectorPlugin {
                 camera: None,
                 wants_pointer: false,
                 wants_keyboard: false,
-                widgets: Widgets::default(),
+                widgets: HashMap::default(),
+                focused: None,
             })
             .insert_resource(Panel::new(self))
             .add_systems(PreUpdate, (toggle.after(InputSystems), take_pictures))
@@ -208,6 +230,10 @@ fn show_or_hide(world: &mut World) {
         .next();
     match (open, camera) {
         (true, None) => {
+            let zoom = world.resource::<Panel>().zoom();
+            let scale = window_size(world).map_or(1.0, |(_, scale)| scale);
+            let mut context = EguiContext::default();
+            context.get_mut().set_zoom_factor(zoom);
             world.spawn((
                 Name::new("comics inspector"),
                 PanelCamera,
@@ -226,7 +252,12 @@ fn show_or_hide(world: &mut World) {
                 RenderTarget::Window(WindowRef::Primary),
                 Msaa::Off,
                 RenderLayers::none(),
-                EguiContext::default(),
+                context,
+                // What the first layout is measured with.
+                EguiOutput {
+                    pixels_per_point: scale * zoom,
+                    ..EguiOutput::default()
+                },
                 EguiContextSettings {
                     run_manually: true,
                     ..EguiContextSettings::default()
@@ -240,6 +271,7 @@ fn show_or_hide(world: &mut World) {
             inspector.wants_pointer = false;
             inspector.wants_keyboard = false;
             inspector.widgets.clear();
+            inspector.focused = None;
         }
         _ => {}
     }
@@ -256,6 +288,15 @@ fn run_panel(world: &mut World) {
     let Ok((mut context, mut input)) = cameras.single_mut(world) else {
         return;
     };
+    // A camera that has just come does not know its window yet.
+    let knows_its_window = input.screen_rect.is_some()
+        && input
+            .viewports
+            .get(&egui::ViewportId::ROOT)
+            .is_some_and(|viewport| viewport.native_pixels_per_point.is_some());
+    if !knows_its_window {
+        return;
+    }
     let context = context.get_mut().clone();
     let input = input.take();
     let output = world.resource_scope(|world, mut panel: Mut<Panel>| {

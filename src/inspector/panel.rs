@@ -78,6 +78,11 @@ impl Panel {
         }
     }
 
+    /// Size of the text against the window's own scale.
+    pub fn zoom(&self) -> f32 {
+        self.memory.zoom
+    }
+
     /// Puts everything back that only the panel needs.
     pub fn close(&mut self, world: &mut World) {
         if let Some(path) = &self.memory_path {
@@ -108,13 +113,13 @@ impl Panel {
     pub fn show(&mut self, ui: &mut Ui, world: &mut World) {
         let mut widgets = Widgets::default();
         let before = self.memory.clone();
-        if ui.ctx().zoom_factor() != self.memory.zoom && ui.ctx().cumulative_pass_nr() == 0 {
-            ui.ctx().set_zoom_factor(self.memory.zoom);
-        }
         self.memory.zoom = ui.ctx().zoom_factor();
         // Rows come and go with what they say; that is no mistake.
         ui.ctx()
             .all_styles_mut(|style| style.debug.warn_if_rect_changes_id = false);
+        // A click in a frame that takes a second is a click.
+        ui.ctx()
+            .options_mut(|options| options.input_options.max_click_duration = f64::INFINITY);
         if ui.input(|input| input.pointer.any_pressed()) {
             self.presses += 1;
         }
@@ -151,7 +156,9 @@ impl Panel {
             self.memory.save(path);
         }
         self.presets.step(world);
-        world.resource_mut::<ComicsInspector>().widgets = widgets;
+        let mut inspector = world.resource_mut::<ComicsInspector>();
+        inspector.widgets = widgets.rects;
+        inspector.focused = widgets.focused;
     }
 
     fn contents(&mut self, ui: &mut Ui, world: &mut World, widgets: &mut Widgets) {
@@ -159,13 +166,13 @@ impl Panel {
         self.cameras
             .retain(|camera, _| cameras.iter().any(|(c, _)| c == camera));
         let chosen = world.resource::<ComicsInspector>().camera;
-        let camera = cameras
+        let mut camera = cameras
             .iter()
             .map(|(camera, _)| *camera)
             .find(|camera| Some(*camera) == chosen)
             .or_else(|| cameras.first().map(|(camera, _)| *camera));
 
-        self.head(ui, world, &cameras, camera, widgets);
+        self.head(ui, world, &cameras, &mut camera, widgets);
         ui.separator();
         let Some(camera) = camera else {
             ui.label("There is no 3D camera to style.");
@@ -271,28 +278,29 @@ impl Panel {
         ui: &mut Ui,
         world: &mut World,
         cameras: &[(Entity, String)],
-        camera: Option<Entity>,
+        chosen: &mut Option<Entity>,
         widgets: &mut Widgets,
     ) {
         ui.horizontal(|ui| {
             ui.label(RichText::new("Comics").heading());
-            let name = |camera: Option<Entity>| {
-                cameras
-                    .iter()
-                    .find(|(c, _)| Some(*c) == camera)
-                    .map_or("no camera", |(_, name)| name.as_str())
-            };
-            let mut chosen = camera;
+            let name = cameras
+                .iter()
+                .find(|(camera, _)| Some(*camera) == *chosen)
+                .map_or("no camera", |(_, name)| name.as_str());
+            let before = *chosen;
             let combo = ComboBox::from_id_salt("camera")
-                .selected_text(name(camera))
+                .selected_text(name)
                 .show_ui(ui, |ui| {
                     for (camera, name) in cameras {
-                        let item = ui.selectable_value(&mut chosen, Some(*camera), name);
+                        let item = ui.selectable_value(chosen, Some(*camera), name);
                         note(widgets, format!("camera.{name}"), &item);
                     }
                 });
             note(widgets, "camera", &combo.response);
-            world.resource_mut::<ComicsInspector>().camera = chosen;
+            if let Some(left) = before.filter(|_| before != *chosen) {
+                // Whoever lets go of a button does so on another camera's.
+                self.show_original(world, left, false);
+            }
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 if button(ui, widgets, "close", "✖", true) {
                     world.resource_mut::<ComicsInspector>().open = false;

@@ -194,45 +194,86 @@ fn mixed_map(a: DepthMap, b: DepthMap, t: f32) -> DepthMap {
     }
 }
 
-impl Blend for ToneBands {
-    fn faded(self, strength: f32) -> Self {
-        Self {
-            amount: self.amount * strength,
-            ..self
-        }
-    }
+/// How the fields of an effect are mixed. A field that has no line here does not
+/// compile.
+macro_rules! blend_fields {
+    ($($Effect:ident {
+        strength: $strength:ident,
+        $(modes: [$($mode:ident),*],)?
+        $(linear: [$($linear:ident),*],)?
+        $(ratios: [$($ratio:ident),*],)?
+        $(colors: [$($color:ident),*],)?
+        $(switched: [$($switched:ident),*],)?
+    })*) => {
+        $(impl Blend for $Effect {
+            fn faded(self, strength: f32) -> Self {
+                Self {
+                    $strength: self.$strength * strength,
+                    ..self
+                }
+            }
 
-    fn same_modes(&self, other: &Self) -> bool {
-        (self.method, self.levels) == (other.method, other.levels)
-    }
+            fn same_modes(&self, _other: &Self) -> bool {
+                true $($(&& self.$mode == _other.$mode)*)?
+            }
 
-    fn mixed(self, other: Self, t: f32) -> Self {
-        Self {
-            feather: self.feather.lerp(other.feather, t),
-            amount: self.amount.lerp(other.amount, t),
-            ..self
-        }
-    }
+            fn mixed(self, other: Self, t: f32) -> Self {
+                Self {
+                    $strength: self.$strength.lerp(other.$strength, t),
+                    $($($mode: self.$mode,)*)?
+                    $($($linear: self.$linear.lerp(other.$linear, t),)*)?
+                    $($($ratio: ratio(self.$ratio, other.$ratio, t),)*)?
+                    $($($color: color(self.$color, other.$color, t),)*)?
+                    $($($switched: self.$switched,)*)?
+                }
+            }
+        })*
+    };
 }
 
-impl Blend for Desaturation {
-    fn faded(self, strength: f32) -> Self {
-        Self {
-            amount: self.amount * strength,
-            ..self
-        }
+blend_fields! {
+    ToneBands {
+        strength: amount,
+        modes: [method, levels],
+        linear: [feather],
     }
-
-    fn same_modes(&self, other: &Self) -> bool {
-        self.method == other.method
+    Desaturation {
+        strength: amount,
+        modes: [method],
+        ratios: [exponent],
     }
-
-    fn mixed(self, other: Self, t: f32) -> Self {
-        Self {
-            amount: self.amount.lerp(other.amount, t),
-            exponent: ratio(self.exponent, other.exponent, t),
-            ..self
-        }
+    Contours {
+        strength: opacity,
+        modes: [operator, form],
+        linear: [width, softness, fade],
+        ratios: [threshold],
+        colors: [color],
+    }
+    Silhouettes {
+        strength: opacity,
+        modes: [form],
+        linear: [edge_limit, softness],
+        ratios: [threshold],
+        colors: [color],
+    }
+    Creases {
+        strength: opacity,
+        modes: [form],
+        linear: [angle, edge_limit, softness],
+        colors: [color],
+    }
+    ObjectEdges {
+        strength: opacity,
+        colors: [color],
+    }
+    // A drawing that changes its strokes, which move all at once, does not fade
+    // away for it.
+    Sketch {
+        strength: amount,
+        linear: [wash, jitter, pressure],
+        ratios: [gamma],
+        colors: [paper, ink],
+        switched: [strokes, wavelength, rate],
     }
 }
 
@@ -292,31 +333,6 @@ impl Blend for BlackFlats {
     }
 }
 
-impl Blend for Contours {
-    fn faded(self, strength: f32) -> Self {
-        Self {
-            opacity: self.opacity * strength,
-            ..self
-        }
-    }
-
-    fn same_modes(&self, other: &Self) -> bool {
-        (self.operator, self.form) == (other.operator, other.form)
-    }
-
-    fn mixed(self, other: Self, t: f32) -> Self {
-        Self {
-            threshold: ratio(self.threshold, other.threshold, t),
-            width: self.width.lerp(other.width, t),
-            softness: self.softness.lerp(other.softness, t),
-            color: color(self.color, other.color, t),
-            opacity: self.opacity.lerp(other.opacity, t),
-            fade: self.fade.lerp(other.fade, t),
-            ..self
-        }
-    }
-}
-
 impl Blend for Outlines {
     fn faded(self, strength: f32) -> Self {
         Self {
@@ -340,102 +356,6 @@ impl Blend for Outlines {
             width: self.width.lerp(other.width, t),
             width_fade: self.width_fade.lerp(other.width_fade, t),
             opacity_fade: self.opacity_fade.lerp(other.opacity_fade, t),
-        }
-    }
-}
-
-impl Blend for Silhouettes {
-    fn faded(self, strength: f32) -> Self {
-        Self {
-            opacity: self.opacity * strength,
-            ..self
-        }
-    }
-
-    fn same_modes(&self, other: &Self) -> bool {
-        self.form == other.form
-    }
-
-    fn mixed(self, other: Self, t: f32) -> Self {
-        Self {
-            threshold: ratio(self.threshold, other.threshold, t),
-            edge_limit: self.edge_limit.lerp(other.edge_limit, t),
-            softness: self.softness.lerp(other.softness, t),
-            color: color(self.color, other.color, t),
-            opacity: self.opacity.lerp(other.opacity, t),
-            ..self
-        }
-    }
-}
-
-impl Blend for Creases {
-    fn faded(self, strength: f32) -> Self {
-        Self {
-            opacity: self.opacity * strength,
-            ..self
-        }
-    }
-
-    fn same_modes(&self, other: &Self) -> bool {
-        self.form == other.form
-    }
-
-    fn mixed(self, other: Self, t: f32) -> Self {
-        Self {
-            angle: self.angle.lerp(other.angle, t),
-            edge_limit: self.edge_limit.lerp(other.edge_limit, t),
-            softness: self.softness.lerp(other.softness, t),
-            color: color(self.color, other.color, t),
-            opacity: self.opacity.lerp(other.opacity, t),
-            ..self
-        }
-    }
-}
-
-impl Blend for ObjectEdges {
-    fn faded(self, strength: f32) -> Self {
-        Self {
-            opacity: self.opacity * strength,
-            ..self
-        }
-    }
-
-    fn same_modes(&self, _: &Self) -> bool {
-        true
-    }
-
-    fn mixed(self, other: Self, t: f32) -> Self {
-        Self {
-            color: color(self.color, other.color, t),
-            opacity: self.opacity.lerp(other.opacity, t),
-        }
-    }
-}
-
-impl Blend for Sketch {
-    fn faded(self, strength: f32) -> Self {
-        Self {
-            amount: self.amount * strength,
-            ..self
-        }
-    }
-
-    /// A drawing that changes its strokes does not fade away for it.
-    fn same_modes(&self, _: &Self) -> bool {
-        true
-    }
-
-    fn mixed(self, other: Self, t: f32) -> Self {
-        Self {
-            amount: self.amount.lerp(other.amount, t),
-            paper: color(self.paper, other.paper, t),
-            ink: color(self.ink, other.ink, t),
-            wash: self.wash.lerp(other.wash, t),
-            gamma: ratio(self.gamma, other.gamma, t),
-            jitter: self.jitter.lerp(other.jitter, t),
-            pressure: self.pressure.lerp(other.pressure, t),
-            // These move every stroke at once.
-            ..self
         }
     }
 }

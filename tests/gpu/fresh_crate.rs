@@ -82,9 +82,20 @@ fn the_lines_of_the_readme_compile_and_draw_in_a_crate_of_their_own() {
     let manifest = fs::read_to_string(Path::new(ROOT).join("Cargo.toml")).expect("our manifest");
     // The engine's features, and our tests' other dependencies, are those of
     // our own build, so that the compiled engine is shared and not built twice.
+    let features = if cfg!(feature = "inspector") {
+        "features = [\"inspector\"], "
+    } else {
+        ""
+    };
+    // What the harness of our examples uses besides, as we ask for it.
+    let wgpu = section(&manifest, "dependencies")
+        .lines()
+        .find(|line| line.starts_with("wgpu = "))
+        .expect("wgpu")
+        .to_owned();
     let text = format!(
         "[package]\nname = \"newcomer\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[workspace]\n\n\
-         [dependencies]\nbevy_comics = {{ path = {ROOT:?} }}\n{}\n\n[profile.dev]\n{}\n\n[profile.dev.package.\"*\"]\n{}\n",
+         [dependencies]\nbevy_comics = {{ {features}path = {ROOT:?} }}\n{wgpu}\n{}\n\n[profile.dev]\n{}\n\n[profile.dev.package.\"*\"]\n{}\n",
         section(&manifest, "dev-dependencies"),
         section(&manifest, "profile.dev"),
         section(&manifest, "profile.dev.package.\"*\""),

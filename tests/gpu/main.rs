@@ -34,3 +34,5 @@ mod smoothing;
 mod smoothing_views;
 mod styles;
 mod wgsl;
+#[cfg(feature = "inspector")]
+mod window;

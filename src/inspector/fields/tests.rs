@@ -101,7 +101,7 @@ fn looking_changes_nothing() {
         "tone_bands.levels",
         "depth_map.flip",
     ] {
-        assert!(widgets.contains_key(path), "{path} has no widget");
+        assert!(widgets.rects.contains_key(path), "{path} has no widget");
     }
 }
 

@@ -1,0 +1,218 @@
+//! The figures of the crate's own report, `docs/report`: the known error of a
+//! choice, and what it took there.
+
+use std::{collections::HashMap, sync::LazyLock};
+
+use crate::{ContourOperator, DepthMap, Outlines, RangeSmoothing};
+
+const SCORES: &str = include_str!("../../docs/report/line_scores.csv");
+const TIMES: &str = include_str!("../../docs/report/line_times.csv");
+const FLICKER: &str = include_str!("../../docs/report/flicker.csv");
+const MACHINE: &str = include_str!("../../docs/report/machine.csv");
+
+/// What finds lines, by the names of the report.
+pub const DETECTORS: [&str; 7] = [
+    "Roberts",
+    "Prewitt",
+    "Sobel",
+    "Laplace",
+    "silhouettes",
+    "silhouettes + creases",
+    "all outlines",
+];
+
+/// How well lines are found, mean over the report's scenes, and how fast.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lines {
+    /// Share of the lines that are missed.
+    pub missed: f64,
+    /// Share of the ink that is on no line.
+    pub stray: f64,
+    /// All of the crate's passes at 1280x720, median, milliseconds.
+    pub time: f64,
+}
+
+impl Lines {
+    /// One number for both: 1 − F₁, 0 where every line and nothing else is
+    /// drawn.
+    pub fn error(&self) -> f64 {
+        let (recall, precision) = (1.0 - self.missed, 1.0 - self.stray);
+        1.0 - 2.0 * recall * precision / (recall + precision).max(f64::MIN_POSITIVE)
+    }
+}
+
+/// The adapter that the report's times are of.
+pub fn adapter() -> &'static str {
+    MACHINE
+        .lines()
+        .find_map(|line| line.strip_prefix("adapter,"))
+        .unwrap_or("an adapter that was not noted")
+}
+
+pub fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// What the report knows of a detector of lines.
+pub fn lines(detector: &str) -> Option<Lines> {
+    static READ: LazyLock<HashMap<&str, Lines>> = LazyLock::new(|| {
+        DETECTORS
+            .into_iter()
+            .filter_map(|detector| Some((detector, read_lines(detector)?)))
+            .collect()
+    });
+    READ.get(detector).copied()
+}
+
+fn numbers(cells: &[&str]) -> Option<Vec<f64>> {
+    cells.iter().map(|cell| cell.parse().ok()).collect()
+}
+
+fn read_lines(detector: &str) -> Option<Lines> {
+    let (mut missed, mut stray, mut scenes) = (0.0, 0.0, 0.0);
+    for row in SCORES.lines().skip(1) {
+        let cells: Vec<&str> = row.split(',').collect();
+        let [_, name, "every line", rest @ ..] = cells.as_slice() else {
+            continue;
+        };
+        if *name != detector {
+            continue;
+        }
+        let [found, all, right, drawn] = *numbers(rest)?.as_slice() else {
+            return None;
+        };
+        if all > 0.0 && drawn > 0.0 {
+            missed += 1.0 - found / all;
+            stray += 1.0 - right / drawn;
+            scenes += 1.0;
+        }
+    }
+    let mut times = Vec::new();
+    for row in TIMES.lines().skip(1) {
+        let cells: Vec<&str> = row.split(',').collect();
+        let [_, _, name, _, _, _, rest @ ..] = cells.as_slice() else {
+            continue;
+        };
+        if *name != detector {
+            continue;
+        }
+        // The prepass and the main pass are the engine's.
+        let [_, range, lines, _, post] = *numbers(rest)?.as_slice() else {
+            return None;
+        };
+        times.push(range + lines + post);
+    }
+    (scenes > 0.0 && !times.is_empty()).then(|| Lines {
+        missed: missed / scenes,
+        stray: stray / scenes,
+        time: median(times),
+    })
+}
+
+/// The report's name for what finds contours.
+pub fn contours(operator: ContourOperator) -> String {
+    format!("{operator:?}")
+}
+
+/// The report's name for the kinds of outlines.
+pub fn outlines(outlines: &Outlines) -> &'static str {
+    match (&outlines.silhouettes, &outlines.creases, &outlines.objects) {
+        (Some(_), Some(_), Some(_)) => "all outlines",
+        (Some(_), Some(_), None) => "silhouettes + creases",
+        (Some(_), None, None) => "silhouettes",
+        _ => "another choice of kinds",
+    }
+}
+
+/// (mean change of the picture from frame to frame in display codes, largest
+/// lag of the range in octaves) over the report's sequences.
+pub fn flicker(variant: &str) -> Option<(f64, f64)> {
+    // Thousands of rows: read once, not in every frame.
+    static READ: LazyLock<HashMap<&str, Option<(f64, f64)>>> = LazyLock::new(|| {
+        let variants = ["off", "the default", "the default and percentiles"];
+        variants
+            .map(|variant| (variant, read_flicker(variant)))
+            .into()
+    });
+    READ.get(variant).copied().flatten()
+}
+
+fn read_flicker(variant: &str) -> Option<(f64, f64)> {
+    let (mut sum, mut frames, mut lag) = (0.0, 0.0, 0.0f64);
+    for row in FLICKER.lines().skip(1) {
+        let cells: Vec<&str> = row.split(',').collect();
+        let [_, name, _, mean, _, late] = cells.as_slice() else {
+            continue;
+        };
+        if *name != variant {
+            continue;
+        }
+        if let (Ok(mean), Ok(late)) = (mean.parse::<f64>(), late.parse::<f64>()) {
+            sum += mean;
+            frames += 1.0;
+            lag = lag.max(late);
+        }
+    }
+    (frames > 0.0).then(|| (sum / frames, lag))
+}
+
+/// The report's name for a way of smoothing.
+pub fn smoothing(map: &DepthMap) -> Option<&'static str> {
+    let default = RangeSmoothing::default();
+    match map.smoothing {
+        None => Some("off"),
+        Some(s) if s == default => Some("the default"),
+        Some(s) if (RangeSmoothing { outliers: 0.0, ..s }) == default => {
+            Some("the default and percentiles")
+        }
+        Some(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_reports_figures_are_found() {
+        for detector in DETECTORS {
+            let lines = lines(detector).expect(detector);
+            for share in [lines.missed, lines.stray, lines.error()] {
+                assert!((0.0..=1.0).contains(&share), "{detector}: {lines:?}");
+            }
+            assert!(lines.time > 0.0);
+        }
+        assert_eq!(lines("nonsense"), None);
+        let default = contours(ContourOperator::default());
+        assert!(DETECTORS.contains(&default.as_str()));
+        let off = flicker("off").expect("off");
+        let default = flicker("the default").expect("the default");
+        assert!(flicker("the default and percentiles").is_some());
+        assert!(
+            default.0 < off.0,
+            "smoothing flickers less: {default:?} against {off:?}"
+        );
+        assert_eq!(off.1, 0.0, "what is not smoothed does not lag");
+        assert!(adapter().len() > 3);
+    }
+
+    #[test]
+    fn one_number_for_both_errors() {
+        let lines = |missed, stray| Lines {
+            missed,
+            stray,
+            time: 1.0,
+        };
+        assert_eq!(lines(0.0, 0.0).error(), 0.0);
+        assert_eq!(lines(1.0, 1.0).error(), 1.0);
+        // Recall 1/2 and precision 1: F₁ = 2/3.
+        assert!((lines(0.5, 0.0).error() - 1.0 / 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn medians() {
+        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(Vec::new()), 0.0);
+    }
+}
