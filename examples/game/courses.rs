@@ -127,24 +127,33 @@ pub struct CloudAt(pub usize);
 #[derive(Component)]
 pub struct Plane;
 
-/// A folded sheet: two wings and the keel between them.
+/// A folded sheet: two wings, which rise a little, and the keel between them, red
+/// so that the plane is found in every picture.
 fn paper_plane() -> Mesh {
-    let nose = Vec3::new(0.0, 0.0, -1.1);
-    let (left, right) = (Vec3::new(-0.85, 0.12, 0.75), Vec3::new(0.85, 0.12, 0.75));
-    let (inner_left, inner_right) = (Vec3::new(-0.1, 0.0, 0.75), Vec3::new(0.1, 0.0, 0.75));
-    let keel = Vec3::new(0.0, -0.42, 0.7);
+    const PAPER: [f32; 4] = [1.0, 0.98, 0.92, 1.0];
+    const RED: [f32; 4] = [0.85, 0.08, 0.06, 1.0];
+    let nose = Vec3::new(0.0, 0.0, -1.7);
+    let (left, right) = (Vec3::new(-1.45, 0.42, 1.15), Vec3::new(1.45, 0.42, 1.15));
+    let (inner_left, inner_right) = (Vec3::new(-0.16, 0.0, 1.15), Vec3::new(0.16, 0.0, 1.15));
+    let keel = Vec3::new(0.0, -0.6, 1.05);
     let triangles = [
-        [nose, left, inner_left],
-        [nose, inner_right, right],
-        [nose, inner_left, keel],
-        [nose, keel, inner_right],
+        ([nose, left, inner_left], PAPER),
+        ([nose, inner_right, right], PAPER),
+        ([nose, inner_left, keel], RED),
+        ([nose, keel, inner_right], RED),
     ];
-    let positions: Vec<[f32; 3]> = triangles.iter().flatten().map(Vec3::to_array).collect();
+    let corners = |(triangle, color): &([Vec3; 3], [f32; 4])| triangle.map(|at| (at, *color));
+    let (positions, colors): (Vec<[f32; 3]>, Vec<[f32; 4]>) = triangles
+        .iter()
+        .flat_map(corners)
+        .map(|(at, color)| (at.to_array(), color))
+        .unzip();
     let mut mesh = Mesh::new(
         PrimitiveTopology::TriangleList,
         RenderAssetUsages::RENDER_WORLD,
     )
-    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions);
+    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+    .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors);
     mesh.compute_flat_normals();
     mesh
 }
@@ -210,7 +219,8 @@ pub fn build(stage: &mut Stage, level: &Level, flight: &Flight) -> Vantage {
         }
     }
     let paper = stage.materials.add(StandardMaterial {
-        base_color: Color::srgb(0.98, 0.96, 0.9),
+        // Thin paper: what shines on one side is seen on the other.
+        diffuse_transmission: 0.6,
         double_sided: true,
         cull_mode: None,
         perceptual_roughness: 0.9,

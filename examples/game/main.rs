@@ -283,7 +283,7 @@ struct Chase {
 impl Chase {
     fn goal(flight: &Flight) -> (Vec3, Vec3) {
         let heading = Quat::from_rotation_y(flight.yaw);
-        let eye = flight.at + heading * Vec3::new(0.0, 1.9, 6.5);
+        let eye = flight.at + heading * Vec3::new(0.0, 2.8, 6.5);
         let target = flight.at + heading * Vec3::new(0.0, 0.6 + 6.0 * flight.pitch, -12.0);
         (eye, target)
     }

@@ -3,7 +3,7 @@
 
 use bevy::ecs::{entity::Entity, world::World};
 use bevy_egui::egui::{Color32, Grid, Label, RichText, Ui};
-use egui_plot::{Legend, Line, Plot, PlotPoint, PlotPoints, Points, Text, VLine};
+use egui_plot::{GridInput, GridMark, Line, Plot, PlotPoint, PlotPoints, Points, Text, VLine};
 
 use super::{Widgets, fields::section, known, note};
 use crate::{
@@ -39,9 +39,10 @@ impl Costs {
             ui.weak(times.method().unwrap_or("Waiting for the first frame."));
             Grid::new("passes")
                 .striped(true)
-                .num_columns(2)
+                .num_columns(3)
                 .show(ui, |ui| {
                     for pass in Pass::ALL {
+                        ui.colored_label(COLORS[pass as usize], "●");
                         let name = RichText::new(pass.name());
                         ui.label(if pass.is_comics() {
                             name.strong()
@@ -66,7 +67,6 @@ impl Costs {
     fn chart(&self, ui: &mut Ui, frames: &[[f64; Pass::ALL.len()]], widgets: &mut Widgets) {
         let shown = Plot::new("times")
             .height(160.0)
-            .legend(Legend::default())
             .allow_zoom(false)
             .allow_drag(false)
             .allow_scroll(false)
@@ -211,7 +211,7 @@ fn errors(
         ui.add(Label::new(row.error).wrap());
         ui.separator();
     }
-    ui.weak("Errors with default settings, mean over the scenes of docs/report; times are of now.");
+    ui.weak("Errors with default settings, over all pixels of the scenes of docs/report; times are of now.");
     if !detectors.is_empty() {
         let now = [Pass::DepthRange, Pass::Outlines, Pass::Stylize]
             .map(|pass| medians[pass as usize])
@@ -228,6 +228,27 @@ fn error_against_time(ui: &mut Ui, chosen: &[String], now: f64, widgets: &mut Wi
     ui.strong("Error of lines against run time");
     // Decades: a fast adapter and a slow one are on one chart.
     let place = |time: f64| time.max(1e-3).log10();
+    let decades = |input: GridInput| {
+        let (from, to) = input.bounds;
+        let first = (from.floor().clamp(-4.0, 6.0)) as i32;
+        let last = (to.ceil().clamp(-4.0, 6.0)) as i32;
+        (first..=last)
+            .flat_map(|decade| {
+                [1.0f64, 2.0, 5.0].map(|step| GridMark {
+                    value: f64::from(decade) + step.log10(),
+                    step_size: 0.3,
+                })
+            })
+            .collect::<Vec<_>>()
+    };
+    let quarters = |_: GridInput| {
+        (0..=4)
+            .map(|i| GridMark {
+                value: 25.0 * f64::from(i),
+                step_size: 25.0,
+            })
+            .collect::<Vec<_>>()
+    };
     let shown = Plot::new("error against time")
         .height(170.0)
         .allow_zoom(false)
@@ -237,7 +258,13 @@ fn error_against_time(ui: &mut Ui, chosen: &[String], now: f64, widgets: &mut Wi
         .include_y(100.0)
         .include_x(place(now) - 0.1)
         .include_x(place(now) + 0.1)
-        .x_axis_formatter(|mark, _| format!("{:.3} ms", 10f64.powf(mark.value)))
+        .x_grid_spacer(decades)
+        .y_grid_spacer(quarters)
+        .x_axis_formatter(|mark, _| {
+            let time = 10f64.powf(mark.value);
+            let digits = (-mark.value.floor()).clamp(0.0, 4.0) as usize;
+            format!("{time:.digits$} ms")
+        })
         .y_axis_formatter(|mark, _| format!("{:.0} %", mark.value))
         .label_formatter(|name, value| {
             format!("{name}\n{:.3} ms\n{:.1} %", 10f64.powf(value.x), value.y)

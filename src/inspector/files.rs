@@ -103,8 +103,9 @@ impl Files {
         Some(path)
     }
 
-    /// One line: the file, and whether the style is as it stands there.
-    pub fn mark(&self, ui: &mut Ui, camera: Entity, style: &ComicStyle) {
+    /// The file, and whether the style is as it stands there; where the file is
+    /// broken, how, in full or in a word.
+    pub fn mark(&self, ui: &mut Ui, camera: Entity, style: &ComicStyle, in_full: bool) {
         let Some(open) = self.open.get(&camera) else {
             return;
         };
@@ -116,7 +117,7 @@ impl Files {
                 .on_hover_text("Changed since it was saved");
         }
         if let Some(error) = &open.error {
-            fields::error(ui, error);
+            fields::error(ui, if in_full { error } else { "is broken" });
         }
     }
 

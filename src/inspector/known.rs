@@ -21,7 +21,8 @@ pub const DETECTORS: [&str; 7] = [
     "all outlines",
 ];
 
-/// How well lines are found, mean over the report's scenes, and how fast.
+/// How well lines are found, over the pixels of all of the report's scenes, and
+/// how fast.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lines {
     /// Share of the lines that are missed.
@@ -70,42 +71,36 @@ fn numbers(cells: &[&str]) -> Option<Vec<f64>> {
 }
 
 fn read_lines(detector: &str) -> Option<Lines> {
-    let (mut missed, mut stray, mut scenes) = (0.0, 0.0, 0.0);
+    // Pixels: of the lines and of those found, of the ink and of that on lines.
+    let mut sums = [0.0; 4];
     for row in SCORES.lines().skip(1) {
         let cells: Vec<&str> = row.split(',').collect();
-        let [_, name, "every line", rest @ ..] = cells.as_slice() else {
-            continue;
-        };
-        if *name != detector {
-            continue;
-        }
-        let [found, all, right, drawn] = *numbers(rest)?.as_slice() else {
-            return None;
-        };
-        if all > 0.0 && drawn > 0.0 {
-            missed += 1.0 - found / all;
-            stray += 1.0 - right / drawn;
-            scenes += 1.0;
+        if let [_, name, "every line", rest @ ..] = cells.as_slice()
+            && *name == detector
+        {
+            let pixels = numbers(rest)?;
+            for (sum, pixels) in sums.iter_mut().zip(pixels) {
+                *sum += pixels;
+            }
         }
     }
+    let [found, all, right, drawn] = sums;
     let mut times = Vec::new();
     for row in TIMES.lines().skip(1) {
         let cells: Vec<&str> = row.split(',').collect();
-        let [_, _, name, _, _, _, rest @ ..] = cells.as_slice() else {
-            continue;
-        };
-        if *name != detector {
-            continue;
+        if let ["lines", _, name, _, _, _, rest @ ..] = cells.as_slice()
+            && *name == detector
+        {
+            // The prepass and the main pass are the engine's.
+            let [_, range, lines, _, post] = *numbers(rest)?.as_slice() else {
+                return None;
+            };
+            times.push(range + lines + post);
         }
-        // The prepass and the main pass are the engine's.
-        let [_, range, lines, _, post] = *numbers(rest)?.as_slice() else {
-            return None;
-        };
-        times.push(range + lines + post);
     }
-    (scenes > 0.0 && !times.is_empty()).then(|| Lines {
-        missed: missed / scenes,
-        stray: stray / scenes,
+    (all > 0.0 && drawn > 0.0 && !times.is_empty()).then(|| Lines {
+        missed: 1.0 - found / all,
+        stray: 1.0 - right / drawn,
         time: median(times),
     })
 }
@@ -195,6 +190,29 @@ mod tests {
         );
         assert_eq!(off.1, 0.0, "what is not smoothed does not lag");
         assert!(adapter().len() > 3);
+    }
+
+    /// The table of the report is made elsewhere, from the same files.
+    #[test]
+    fn they_are_the_reports() {
+        let report = include_str!("../../docs/report/report.md");
+        let (_, table) = report.split_once("### Lines").expect("the table");
+        for detector in DETECTORS {
+            let row = table
+                .lines()
+                .find(|line| line.starts_with(&format!("| {detector} |")))
+                .expect(detector);
+            let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+            let lines = lines(detector).expect(detector);
+            let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+            assert_eq!(cells[4], percent(1.0 - lines.missed), "{row}");
+            assert_eq!(cells[5], percent(1.0 - lines.stray), "{row}");
+            assert_eq!(cells[6], format!("{:.3}", 1.0 - lines.error()), "{row}");
+            // Its own median is of a few rounds that it corrects by what the
+            // empty frame takes.
+            let time: f64 = cells[7].parse().expect("a time");
+            assert!((lines.time / time - 1.0).abs() < 0.05, "{row}: {lines:?}");
+        }
     }
 
     #[test]

@@ -39,7 +39,7 @@ use bevy::{
         query::With,
         resource::Resource,
         schedule::IntoScheduleConfigs,
-        system::{Res, ResMut},
+        system::{Query, Res, ResMut},
         world::{Mut, World},
     },
     input::{ButtonInput, InputSystems, keyboard::KeyCode},
@@ -49,7 +49,7 @@ use bevy::{
         render_resource::{BlendState, PipelineCache},
         view::Msaa,
     },
-    window::{PrimaryWindow, WindowRef},
+    window::{PrimaryWindow, Window, WindowRef},
 };
 use bevy_egui::{
     EguiContext, EguiContextSettings, EguiFullOutput, EguiGlobalSettings, EguiInput, EguiOutput,
@@ -175,7 +175,14 @@ impl Plugin for ComicsInspectorPlugin {
                 focused: None,
             })
             .insert_resource(Panel::new(self))
-            .add_systems(PreUpdate, (toggle.after(InputSystems), take_pictures))
+            .add_systems(
+                PreUpdate,
+                (
+                    toggle.after(InputSystems),
+                    point.after(InputSystems),
+                    take_pictures,
+                ),
+            )
             .add_systems(
                 PostUpdate,
                 (show_or_hide, run_panel.run_if(is_open))
@@ -218,6 +225,22 @@ fn toggle(keys: Option<Res<ButtonInput<KeyCode>>>, mut inspector: ResMut<ComicsI
         && keys.just_pressed(key)
     {
         inspector.open = !inspector.open;
+    }
+}
+
+/// The game is asked before the panel is: what came with this frame's pointer,
+/// a turn of the wheel say, belongs to whoever lies under it now.
+fn point(
+    mut inspector: ResMut<ComicsInspector>,
+    panel: Res<Panel>,
+    window: Query<&Window, With<PrimaryWindow>>,
+) {
+    let Some(pointer) = window.single().ok().and_then(Window::cursor_position) else {
+        return;
+    };
+    let over = inspector.open && panel.covers(pointer);
+    if over && !inspector.wants_pointer {
+        inspector.wants_pointer = true;
     }
 }
 
@@ -283,9 +306,13 @@ fn take_pictures(world: &mut World) {
 
 /// Lays the panel out and acts on what was done with it.
 fn run_panel(world: &mut World) {
-    let mut cameras =
-        world.query_filtered::<(&mut EguiContext, &mut EguiInput), With<PanelCamera>>();
-    let Ok((mut context, mut input)) = cameras.single_mut(world) else {
+    let mut cameras = world.query_filtered::<(
+        &mut EguiContext,
+        &mut EguiInput,
+        &EguiOutput,
+        &mut EguiFullOutput,
+    ), With<PanelCamera>>();
+    let Ok((mut context, mut input, output, mut full)) = cameras.single_mut(world) else {
         return;
     };
     // A camera that has just come does not know its window yet.
@@ -295,6 +322,10 @@ fn run_panel(world: &mut World) {
             .get(&egui::ViewportId::ROOT)
             .is_some_and(|viewport| viewport.native_pixels_per_point.is_some());
     if !knows_its_window {
+        **full = Some(egui::FullOutput {
+            pixels_per_point: output.pixels_per_point,
+            ..egui::FullOutput::default()
+        });
         return;
     }
     let context = context.get_mut().clone();
@@ -314,7 +345,7 @@ fn run_panel(world: &mut World) {
 /// The primary window's size in physical pixels and its scale factor.
 fn window_size(world: &mut World) -> Option<(bevy::math::UVec2, f32)> {
     world
-        .query_filtered::<&bevy::window::Window, With<PrimaryWindow>>()
+        .query_filtered::<&Window, With<PrimaryWindow>>()
         .single(world)
         .ok()
         .map(|window| (window.physical_size(), window.scale_factor()))

@@ -13,6 +13,7 @@ use bevy::{
         resource::Resource,
         world::World,
     },
+    math::Vec2,
 };
 use bevy_egui::egui::{self, Align2, ComboBox, RichText, ScrollArea, Ui};
 
@@ -57,6 +58,8 @@ pub struct Panel {
     /// Cameras that the panel may have given a debug view.
     debugged: Vec<Entity>,
     message: Option<String>,
+    /// Where it was drawn last, logical points of the window.
+    place: Option<egui::Rect>,
     /// Counts the presses of the pointer: a drag is one step of the history.
     presses: u64,
 }
@@ -74,8 +77,15 @@ impl Panel {
             clipboard: Clipboard::default(),
             debugged: Vec::new(),
             message: None,
+            place: None,
             presses: 0,
         }
+    }
+
+    /// Whether a place in the window, in logical points, is the panel's.
+    pub fn covers(&self, at: Vec2) -> bool {
+        self.place
+            .is_some_and(|place| place.contains(egui::pos2(at.x, at.y)))
     }
 
     /// Size of the text against the window's own scale.
@@ -102,6 +112,7 @@ impl Panel {
         self.costs.close(world);
         self.presets.close(world);
         self.message = None;
+        self.place = None;
     }
 
     /// Before the engine looks at its cameras: one that draws to something else
@@ -124,17 +135,20 @@ impl Panel {
             self.presses += 1;
         }
         let hidden = self.photo.is_under_way();
+        self.place = None;
+        let zoom = ui.ctx().zoom_factor();
         let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(8.0);
         if hidden {
             // The picture is taken without the panel's own cameras.
         } else if self.memory.dock == Dock::Floating {
-            egui::Window::new("Comics")
+            let shown = egui::Window::new("Comics")
                 .id(egui::Id::new("comics_inspector"))
                 .default_width(self.memory.width)
                 .default_height(560.0)
                 .pivot(Align2::LEFT_TOP)
                 .default_pos([16.0, 16.0])
                 .show(ui.ctx(), |ui| self.contents(ui, world, &mut widgets));
+            self.place = shown.map(|shown| shown.response.rect * zoom);
         } else {
             let panel = if self.memory.dock == Dock::Left {
                 egui::Panel::left("comics_inspector_left")
@@ -148,6 +162,7 @@ impl Panel {
                 .min_size(240.0)
                 .show_inside(ui, |ui| self.contents(ui, world, &mut widgets));
             self.memory.width = shown.response.rect.width().round();
+            self.place = Some(shown.response.rect * zoom);
         }
         if self.memory != before
             && !ui.input(|input| input.pointer.any_down())

@@ -4,7 +4,7 @@ use bevy::ecs::{entity::Entity, world::World};
 use bevy_egui::egui::{self, Key, Modifiers, Ui};
 
 use super::{
-    super::{Widgets, fields::button, note},
+    super::{Widgets, fields::button, memory::Tab, note},
     Panel, put,
 };
 use crate::{ComicStyle, ComicsDiagnostics, SplitView, StyleWeight};
@@ -123,7 +123,9 @@ impl Panel {
                     entity.insert(StyleWeight(weight));
                 }
             }
-            self.files.mark(ui, camera, style);
+            // Its own page says it at length.
+            let in_full = self.memory.tab != Tab::Files;
+            self.files.mark(ui, camera, style, in_full);
         });
         if save_key {
             self.files.save(camera, style);
