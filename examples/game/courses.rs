@@ -29,7 +29,7 @@ pub const LEVELS: [Level; 3] = [
         style: "emerald-ink",
     },
     Level {
-        name: "The village by night",
+        name: "The village at dusk",
         scene: BuiltIn::Village,
         style: "cobalt-night",
     },

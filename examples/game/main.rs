@@ -353,8 +353,10 @@ fn follow(
     >,
 ) {
     let flight = &game.flight;
+    // Its nose is shown lower than it is, so that the wings are seen in a climb.
+    let lower = Quat::from_rotation_x(-0.12 - 0.5 * flight.pitch.max(0.0));
     for mut plane in &mut plane {
-        *plane = Transform::from_translation(flight.at).with_rotation(flight.rotation());
+        *plane = Transform::from_translation(flight.at).with_rotation(flight.rotation() * lower);
     }
     for (mut transform, cloud) in &mut clouds {
         if cloud.0 < flight.course.clouds.len() {

@@ -2,7 +2,7 @@
 //! error of what was chosen, beside its time.
 
 use bevy::ecs::{entity::Entity, world::World};
-use bevy_egui::egui::{Color32, Grid, Label, RichText, Ui};
+use bevy_egui::egui::{Color32, Grid, Label, RichText, Sense, Ui, Vec2};
 use egui_plot::{GridInput, GridMark, Line, Plot, PlotPoint, PlotPoints, Points, Text, VLine};
 
 use super::{Widgets, fields::section, known, note};
@@ -42,7 +42,7 @@ impl Costs {
                 .num_columns(3)
                 .show(ui, |ui| {
                     for pass in Pass::ALL {
-                        ui.colored_label(COLORS[pass as usize], "●");
+                        dot(ui, COLORS[pass as usize]);
                         let name = RichText::new(pass.name());
                         ui.label(if pass.is_comics() {
                             name.strong()
@@ -94,6 +94,12 @@ impl Costs {
             self.running = false;
         }
     }
+}
+
+/// What ties a row of the table to its line in the chart.
+fn dot(ui: &mut Ui, color: Color32) {
+    let (rect, _) = ui.allocate_exact_size(Vec2::splat(12.0), Sense::hover());
+    ui.painter().circle_filled(rect.center(), 4.0, color);
 }
 
 fn stages(ui: &mut Ui, world: &World, camera: Entity) {
@@ -236,9 +242,11 @@ fn error_against_time(ui: &mut Ui, chosen: &[String], now: f64, widgets: &mut Wi
             .flat_map(|decade| {
                 [1.0f64, 2.0, 5.0].map(|step| GridMark {
                     value: f64::from(decade) + step.log10(),
-                    step_size: 0.3,
+                    // Every one has its label.
+                    step_size: 1.0,
                 })
             })
+            .filter(|mark| (from..=to).contains(&mark.value))
             .collect::<Vec<_>>()
     };
     let quarters = |_: GridInput| {

@@ -11,8 +11,8 @@ use bevy::{
     },
 };
 use bevy_egui::egui::{
-    self, CollapsingHeader, Color32, ComboBox, DragValue, Response, RichText, Slider,
-    SliderClamping, Ui, collapsing_header::CollapsingState,
+    self, CollapsingHeader, ComboBox, DragValue, Response, RichText, Slider, SliderClamping, Ui,
+    collapsing_header::CollapsingState,
 };
 
 use super::{Widgets, hue_wheel::hue_wheel, note};
@@ -413,13 +413,7 @@ pub fn section<R>(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui) -> R)
 
 /// What an error looks like.
 pub fn error(ui: &mut Ui, text: &str) -> Response {
-    // The toolkit's own red is hard to read on its own dark.
-    let color = if ui.visuals().dark_mode {
-        Color32::from_rgb(255, 128, 110)
-    } else {
-        ui.visuals().error_fg_color
-    };
-    ui.colored_label(color, text)
+    ui.colored_label(ui.visuals().error_fg_color, text)
 }
 
 /// A button that is noted.

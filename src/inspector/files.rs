@@ -113,7 +113,7 @@ impl Files {
         if open.is_saved(style) {
             ui.label(file.into_owned());
         } else {
-            ui.strong(format!("● {file}"))
+            ui.strong(format!("• {file}"))
                 .on_hover_text("Changed since it was saved");
         }
         if let Some(error) = &open.error {

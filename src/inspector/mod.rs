@@ -321,14 +321,18 @@ fn run_panel(world: &mut World) {
             .viewports
             .get(&egui::ViewportId::ROOT)
             .is_some_and(|viewport| viewport.native_pixels_per_point.is_some());
+    let context = context.get_mut().clone();
     if !knows_its_window {
-        **full = Some(egui::FullOutput {
-            pixels_per_point: output.pixels_per_point,
-            ..egui::FullOutput::default()
-        });
+        // The toolkit wants a pass in every frame: one without anything in it.
+        let mut nothing = egui::RawInput::default();
+        nothing
+            .viewports
+            .entry(egui::ViewportId::ROOT)
+            .or_default()
+            .native_pixels_per_point = Some(output.pixels_per_point / context.zoom_factor());
+        **full = Some(context.run_ui(nothing, |_| {}));
         return;
     }
-    let context = context.get_mut().clone();
     let input = input.take();
     let output = world.resource_scope(|world, mut panel: Mut<Panel>| {
         context.run_ui(input, |ui| panel.show(ui, world))

@@ -15,7 +15,7 @@ use bevy::{
     },
     math::Vec2,
 };
-use bevy_egui::egui::{self, Align2, ComboBox, RichText, ScrollArea, Ui};
+use bevy_egui::egui::{self, Align2, Color32, ComboBox, RichText, ScrollArea, Ui};
 
 use super::{
     ComicsInspector, ComicsInspectorPlugin, Helper, Widgets,
@@ -125,9 +125,15 @@ impl Panel {
         let mut widgets = Widgets::default();
         let before = self.memory.clone();
         self.memory.zoom = ui.ctx().zoom_factor();
-        // Rows come and go with what they say; that is no mistake.
-        ui.ctx()
-            .all_styles_mut(|style| style.debug.warn_if_rect_changes_id = false);
+        ui.ctx().all_styles_mut(|style| {
+            // Rows come and go with what they say; that is no mistake.
+            style.debug.warn_if_rect_changes_id = false;
+            if style.visuals.dark_mode {
+                // The toolkit's own are hard to read on its own dark.
+                style.visuals.weak_text_color = Some(Color32::from_gray(145));
+                style.visuals.error_fg_color = Color32::from_rgb(255, 128, 110);
+            }
+        });
         // A click in a frame that takes a second is a click.
         ui.ctx()
             .options_mut(|options| options.input_options.max_click_duration = f64::INFINITY);
