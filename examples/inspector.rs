@@ -16,7 +16,7 @@ use bevy::{
     window::WindowResolution,
 };
 use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, ComicsPlugin, DebugView, SplitView, StyleWeight,
+    ComicStyle, ComicsDiagnostics, ComicsPlugin, DebugView, EffectRegistry, SplitView, StyleWeight,
     inspector::{ComicsInspector, ComicsInspectorPlugin},
     presets,
 };
@@ -229,13 +229,14 @@ fn tell(world: &mut World) {
         .collect();
     cameras.sort_unstable();
     let diagnostics = world.resource::<ComicsDiagnostics>();
+    let effects = world.resource::<EffectRegistry>();
     let cameras: Vec<_> = cameras
         .into_iter()
         .map(|(_, camera)| {
             let entity = world.entity(camera);
             serde_json::json!({
                 "name": entity.get::<Name>().map(|name| name.to_string()),
-                "style": ComicStyle::of(entity).to_ron().unwrap_or_default(),
+                "style": ComicStyle::of(entity, effects).to_ron().unwrap_or_default(),
                 "compiling": diagnostics.is_compiling(camera),
                 "weight": entity.get::<StyleWeight>().map(|weight| weight.0),
                 "split": entity.get::<SplitView>().map(|split| split.at),

@@ -42,17 +42,17 @@
 mod cartoon;
 mod depth;
 mod diagnostics;
+mod effect;
+mod effects;
 mod finish;
 #[cfg(feature = "inspector")]
 pub mod inspector;
+mod lines;
 mod objects;
-mod outlining;
-mod passes;
 mod plugin;
-mod prepasses;
-mod sanitize;
-mod styles;
-mod stylize;
+mod schedule;
+mod settings;
+mod style;
 pub mod timing;
 mod view;
 
@@ -63,15 +63,24 @@ pub use depth::{
     ReductionMethod, VisibleDepthRange,
 };
 pub use diagnostics::{CameraStages, ComicsDiagnostics, ComicsStage, LeftOut, StageOutcome};
+pub use effect::{
+    AnyEffect, Effect, EffectPlugin, EffectRegistry, EffectSet, EffectShader, EffectStage, EffectType,
+    EffectView, Needs, NoUniform, Variants, ViewFacts,
+};
+pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
+pub use lines::{Creases, EdgeForm, LineSettings, ObjectEdges, Silhouettes};
 #[cfg(feature = "objects")]
 pub use objects::{ContourStyle, LineKinds, NoContours, ViewObjectIds, object_id};
-pub use plugin::{ComicsPlugin, ComicsSystems};
-pub use styles::{
-    BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ComicStyleError,
-    ComicStyleHandle, ContourForm, ContourOperator, Contours, Creases, Desaturation, EdgeForm,
-    FieldRange, HueWheel, ObjectEdges, Outlines, Silhouettes, Sketch, StyleTransition,
-    StyleTransitionFinished, ToneBandMethod, ToneBands, TransitionEasing, presets,
+pub use plugin::ComicsPlugin;
+pub use schedule::ComicsSystems;
+pub use settings::{
+    BlendField, FieldRange, HueWheel, blend_color, blend_ratio, bounded, bounded_option,
+    displayable, file_color, linear_rgb,
+};
+pub use style::{
+    ComicStyle, ComicStyleError, ComicStyleHandle, StyleTransition, StyleTransitionFinished,
+    TransitionEasing, presets,
 };
 
 /// The guide's code, compiled.
@@ -82,11 +91,9 @@ struct Guide;
 /// What most games need: `use bevy_comics::prelude::*;`.
 pub mod prelude {
     pub use crate::{
-        BlackFlats, CameraCut, ColorMethod, Colorization, ColorizationMode, ComicStyle,
-        ComicStyleHandle, ComicsPlugin, ContourForm, ContourOperator, Contours, Creases, DepthMap,
-        DepthMapping, Desaturation, EdgeForm, ObjectEdges, Outlines, RangeSmoothing, Silhouettes,
-        Sketch, SplitView, StyleTransition, StyleTransitionFinished, StyleWeight, ToneBandMethod,
-        ToneBands, VisibleDepthRange,
+        CameraCut, ComicStyle, ComicStyleHandle, ComicsPlugin, Creases, DepthMap, DepthMapping,
+        EdgeForm, Effect, EffectPlugin, ObjectEdges, RangeSmoothing, Silhouettes, SplitView,
+        StyleTransition, StyleTransitionFinished, StyleWeight, VisibleDepthRange, effects::*,
     };
     #[cfg(feature = "cartoon")]
     pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};

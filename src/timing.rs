@@ -35,7 +35,7 @@ use bevy::{
     },
 };
 
-use crate::ComicsSystems;
+use crate::schedule::ComicsSystems;
 
 /// Milliseconds of the laps of one frame, by lap; several cameras add up.
 pub type Laps = Vec<f64>;

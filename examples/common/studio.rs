@@ -4,7 +4,7 @@ use bevy::{
     camera::RenderTarget, core_pipeline::tonemapping::DebandDither, ecs::system::RunSystemOnce,
     prelude::*, render::view::Msaa,
 };
-use bevy_comics::{CartoonScene, ComicStyle, ComicsPlugin, presets};
+use bevy_comics::{CartoonScene, ComicStyle, ComicsPlugin, DepthMap, ToneBands, presets};
 
 use super::{
     headless::{Headless, HeadlessOptions},
@@ -66,11 +66,17 @@ impl Studio {
 /// Gives a camera a look. The engine's dither would speckle flat areas whose
 /// tone lies on a step between bands, so bands go without it.
 pub fn wear(camera: &mut EntityCommands, style: &ComicStyle) {
-    camera.insert(match style.tone_bands {
+    camera.insert(match style.get::<ToneBands>() {
         Some(_) => DebandDither::Disabled,
         None => DebandDither::Enabled,
     });
     style.apply(camera);
+}
+
+/// The same style with this depth map.
+pub fn with_map(mut style: ComicStyle, map: DepthMap) -> ComicStyle {
+    style.depth_map = Some(map);
+    style
 }
 
 /// The presets that a scene has a reference picture of. The mountains are the

@@ -1,6 +1,8 @@
 //! Counts what a style does, whatever the machine: passes, bindings, and the
 //! texels that the fused pass fetches, counted by the shader itself.
 
+use std::borrow::Cow;
+
 use bevy::{
     camera::Hdr,
     prelude::*,
@@ -17,14 +19,18 @@ use bevy_comics::{
     Desaturation, Outlines, RangeSmoothing, Sketch, ToneBands,
 };
 
-use super::{read_back, scenes::BuiltIn, studio::Studio};
+use super::{
+    read_back,
+    scenes::BuiltIn,
+    studio::{Studio, with_map},
+};
 
 /// What a style does for one camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Work {
     pub name: &'static str,
     /// The engine's prepasses and this crate's passes that ran.
-    pub ran: Vec<&'static str>,
+    pub ran: Vec<Cow<'static, str>>,
     /// The passes that were left out.
     pub left_out: usize,
     /// Bindings of the fused pass.
@@ -49,90 +55,61 @@ const PASSES: [ComicsStage; 8] = [
 
 /// Desaturation, colorization and contours: what the targets speak of.
 pub fn default_comic() -> ComicStyle {
-    ComicStyle {
-        desaturation: Some(Desaturation::default()),
-        colorization: Some(Colorization::default()),
-        contours: Some(Contours::default()),
-        ..default()
-    }
+    ComicStyle::new()
+        .with(Desaturation::default())
+        .with(Colorization::default())
+        .with(Contours::default())
 }
 
 /// From nothing to everything.
 pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
-    let none = ComicStyle::default();
-    let saturation = Some(Desaturation::default());
+    let none = ComicStyle::new();
+    let saturation = none.clone().with(Desaturation::default());
     let comic = default_comic();
-    let outlined = |outlines| ComicStyle {
-        outlines: Some(outlines),
-        ..ComicStyle::default()
+    let outlined = |outlines: Outlines| ComicStyle::new().with(outlines);
+    let fixed = DepthMapping::Fixed {
+        near: 1.0,
+        far: 20.0,
     };
     vec![
         ("no style", none.clone()),
-        (
-            "one tint (sepia)",
-            ComicStyle {
-                colorization: Some(Colorization::SEPIA),
-                ..none.clone()
-            },
-        ),
-        (
-            "tone bands",
-            ComicStyle {
-                tone_bands: Some(ToneBands::default()),
-                ..none.clone()
-            },
-        ),
+        ("one tint (sepia)", none.clone().with(Colorization::SEPIA)),
+        ("tone bands", none.clone().with(ToneBands::default())),
         (
             "desaturation by a fixed range",
-            ComicStyle {
-                depth_map: Some(DepthMap {
-                    mapping: DepthMapping::Fixed {
-                        near: 1.0,
-                        far: 20.0,
-                    },
+            with_map(
+                saturation.clone(),
+                DepthMap {
+                    mapping: fixed,
                     ..default()
-                }),
-                desaturation: saturation,
-                ..none.clone()
-            },
+                },
+            ),
         ),
-        (
-            "desaturation",
-            ComicStyle {
-                desaturation: saturation,
-                ..none.clone()
-            },
-        ),
-        (
-            "contours",
-            ComicStyle {
-                contours: Some(Contours::default()),
-                ..none.clone()
-            },
-        ),
+        ("desaturation", saturation),
+        ("contours", none.clone().with(Contours::default())),
         ("default comic", comic.clone()),
         (
             "default comic, range of every frame",
-            ComicStyle {
-                depth_map: Some(DepthMap {
+            with_map(
+                comic.clone(),
+                DepthMap {
                     smoothing: None,
                     ..default()
-                }),
-                ..comic.clone()
-            },
+                },
+            ),
         ),
         (
             "default comic, percentiles",
-            ComicStyle {
-                depth_map: Some(DepthMap {
+            with_map(
+                comic.clone(),
+                DepthMap {
                     smoothing: Some(RangeSmoothing {
                         outliers: 0.005,
                         ..default()
                     }),
                     ..default()
-                }),
-                ..comic.clone()
-            },
+                },
+            ),
         ),
         ("silhouettes", outlined(Outlines::SILHOUETTES)),
         ("outlines", outlined(Outlines::default())),
@@ -143,20 +120,10 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
                 ..default()
             }),
         ),
-        (
-            "sketch",
-            ComicStyle {
-                sketch: Some(Sketch::default()),
-                ..none
-            },
-        ),
+        ("sketch", none.with(Sketch::default())),
         (
             "everything",
-            ComicStyle {
-                tone_bands: Some(ToneBands::default()),
-                outlines: Some(Outlines::default()),
-                ..comic
-            },
+            comic.with(ToneBands::default()).with(Outlines::default()),
         ),
     ]
 }
@@ -170,49 +137,68 @@ fn texel_size(line: &str) -> Option<u32> {
     })
 }
 
-const COUNTER: &str = "
+/// The fused pass.
+const FUSED: &str = "bevy_comics/effect/fused.wgsl";
+/// The files that read textures for it, sorted.
+const READERS: [&str; 5] = [
+    "bevy_comics/depth/normal.wgsl",
+    "bevy_comics/depth/view.wgsl",
+    FUSED,
+    "bevy_comics/lines/read.wgsl",
+    "bevy_comics/objects/objects.wgsl",
+];
+
+/// The counter: a module that all of them import.
+const COUNTER: &str = "#define_import_path bevy_comics_count::tally
+
 var<private> fetched: vec2<f32>;
 fn tally(bytes: f32) { fetched += vec2(1.0, bytes); }
 fn fetched_so_far() -> vec2<f32> { return fetched; }
 ";
+const IMPORT: &str = "#import bevy_comics_count::tally::{tally, fetched_so_far}";
+
+/// Keeps the counter's module loaded.
+#[derive(Resource)]
+struct Counter {
+    _module: Handle<Shader>,
+}
 
 /// Puts a counter before every fetch, and gives the count instead of a colour.
-fn counting(path: &str, text: &str) -> Option<String> {
+fn counting(path: &str, text: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
-    let is = |name: &str| path.ends_with(name);
-    if !(is("bindings.wgsl") || is("lines.wgsl") || is("stylize.wgsl")) {
-        return None;
+    if path == FUSED {
+        lines.push(IMPORT.to_owned());
     }
+    let mut fetches = 0;
     for line in text.lines() {
         if let Some(bytes) = texel_size(line) {
             lines.push(format!("tally({bytes}.0);"));
+            fetches += 1;
         }
         lines.push(line.to_owned());
-        let first_import =
-            line.starts_with("#define_import_path") || line.starts_with("// The fused");
-        if first_import && !is("bindings.wgsl") {
-            lines
-                .push("#import bevy_comics::stylize::bindings::{tally, fetched_so_far}".to_owned());
-        }
-        if line.starts_with("@group(0) @binding(1)") && is("bindings.wgsl") {
-            lines.push(COUNTER.to_owned());
+        if line.starts_with("#define_import_path") {
+            lines.push(IMPORT.to_owned());
         }
     }
+    assert!(fetches > 0, "{path} fetches nothing");
     let text = lines.join("\n");
-    let result = "return vec4(to_stored(linear), stored.a);";
-    if is("stylize.wgsl") {
-        assert!(text.contains(result), "the end of the fused pass has moved");
+    if path != FUSED {
+        return text;
     }
-    Some(text.replace(
+    let result = "return vec4(to_stored(p.color), stored.a);";
+    assert!(text.contains(result), "the end of the fused pass has moved");
+    text.replace(
         result,
-        "return vec4(fetched_so_far(), to_stored(linear).r, 1.0);",
-    ))
+        "return vec4(fetched_so_far(), to_stored(p.color).r, 1.0);",
+    )
 }
 
-fn instrument(world: &mut World) -> usize {
+/// Changes the shaders that fetch texels, and gives the names of their files.
+fn instrument(world: &mut World) -> Vec<&'static str> {
     let mut shaders = world.resource_mut::<Assets<Shader>>();
     let ids: Vec<_> = shaders.ids().collect();
-    let mut changed = 0;
+    let module = shaders.add(Shader::from_wgsl(COUNTER, "bevy_comics_count/tally.wgsl"));
+    let mut changed = Vec::new();
     for id in ids {
         let Some(shader) = shaders.get(id) else {
             continue;
@@ -220,15 +206,15 @@ fn instrument(world: &mut World) -> usize {
         let Source::Wgsl(text) = &shader.source else {
             continue;
         };
-        if !shader.path.contains("bevy_comics/stylize/") {
+        let Some(file) = READERS.iter().find(|file| shader.path.ends_with(**file)) else {
             continue;
-        }
-        if let Some(text) = counting(&shader.path, text) {
-            let shader = Shader::from_wgsl(text, shader.path.clone());
-            let _ = shaders.insert(id, shader);
-            changed += 1;
-        }
+        };
+        let shader = Shader::from_wgsl(counting(file, text), shader.path.clone());
+        let _ = shaders.insert(id, shader);
+        changed.push(*file);
     }
+    world.insert_resource(Counter { _module: module });
+    changed.sort_unstable();
     changed
 }
 
@@ -244,7 +230,7 @@ pub fn count(name: &'static str, style: &ComicStyle) -> Work {
         .insert(Hdr);
     studio.headless.step(2);
     let changed = instrument(studio.headless.app.world_mut());
-    assert_eq!(changed, 3, "the fused pass is made of other files");
+    assert_eq!(changed, READERS, "the fused pass is made of other files");
     studio.shoot(Some(style));
     studio.headless.step(4);
 

@@ -12,8 +12,8 @@ use bevy::{
     camera::Hdr, ecs::system::SystemParam, prelude::*, render::view::Msaa, window::WindowResolution,
 };
 use bevy_comics::{
-    CartoonScene, ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, StageOutcome,
-    VisibleDepthRange, presets,
+    CartoonScene, ComicStyle, ComicsDiagnostics, ComicsPlugin, StageOutcome, VisibleDepthRange,
+    presets,
 };
 use common::{
     scenes::{BuiltIn, ScenePart, Stage, Vantage},
@@ -276,16 +276,13 @@ fn describe(
     if let Some((near, far)) = range.distances() {
         lines += &format!("visible from {near:.1} to {far:.1}\n");
     }
-    for stage in ComicsStage::ALL {
-        let outcome = diagnostics
-            .cameras
-            .get(&camera)
-            .and_then(|stages| stages.outcome(stage));
+    let stages = diagnostics.cameras.get(&camera).map(|drawn| &drawn.stages);
+    for (stage, outcome) in stages.into_iter().flatten() {
         lines += &match outcome {
-            Some(StageOutcome::Ran) => format!("{}\n", stage.name()),
-            Some(StageOutcome::Reduced(method)) => format!("{} ({method:?})\n", stage.name()),
-            Some(StageOutcome::LeftOut(reason)) => format!("no {}: {reason}\n", stage.name()),
-            None => String::new(),
+            StageOutcome::Ran => format!("{}\n", stage.name()),
+            StageOutcome::RanAs(method) => format!("{} ({method})\n", stage.name()),
+            StageOutcome::LeftOut(reason) => format!("no {}: {reason}\n", stage.name()),
+            _ => String::new(),
         };
     }
     if **text != lines {

@@ -45,83 +45,77 @@ impl Looks {
     }
 
     pub fn hit(&mut self) {
-        let blow = ComicStyle {
-            tone_bands: Some(ToneBands {
+        let blow = self
+            .level
+            .clone()
+            .with(ToneBands {
                 levels: 2,
                 ..default()
-            }),
-            desaturation: Some(Desaturation::default()),
-            black_flats: Some(BlackFlats {
+            })
+            .with(Desaturation::default())
+            .with(BlackFlats {
                 value: Some(0.45),
                 ..default()
-            }),
-            colorization: Some(Colorization {
+            })
+            .with(Colorization {
                 mode: ColorizationMode::Atmosphere,
                 color: Color::srgb(0.85, 0.12, 0.1),
                 amount: 0.85,
                 method: ColorMethod::Corrected,
-            }),
-            ..self.level.clone()
-        };
+            });
         self.flash = Some(blow);
     }
 
     pub fn lantern(&mut self) {
-        let glow = ComicStyle {
-            colorization: Some(Colorization {
-                mode: ColorizationMode::Atmosphere,
-                color: Color::srgb(1.0, 0.82, 0.35),
-                amount: 0.55,
-                method: ColorMethod::Corrected,
-            }),
-            ..self.level.clone()
-        };
+        let glow = self.level.clone().with(Colorization {
+            mode: ColorizationMode::Atmosphere,
+            color: Color::srgb(1.0, 0.82, 0.35),
+            amount: 0.55,
+            method: ColorMethod::Corrected,
+        });
         self.flash = Some(glow);
     }
 
     /// The level, red with distance.
     fn in_danger(&self) -> ComicStyle {
-        let red = ComicStyle {
-            colorization: Some(Colorization {
+        let contours = self.level.get::<Contours>().copied();
+        let red = self
+            .level
+            .clone()
+            .with(Colorization {
                 mode: ColorizationMode::Linear,
                 color: Color::srgb(0.9, 0.1, 0.08),
                 amount: 1.0,
                 method: ColorMethod::Corrected,
-            }),
-            contours: Some(Contours {
+            })
+            .with(Contours {
                 color: Color::srgb(0.25, 0.0, 0.02),
-                ..self.level.contours.unwrap_or_default()
-            }),
-            ..self.level.clone()
-        };
+                ..contours.unwrap_or_default()
+            });
         self.level.blend(&red, self.danger)
     }
 
     fn style(&self) -> ComicStyle {
         match self.mood {
             Mood::Flying => self.in_danger(),
-            Mood::Slow => ComicStyle {
-                version: ComicStyle::VERSION,
-                outlines: Some(Outlines {
+            Mood::Slow => ComicStyle::new()
+                .with(Outlines {
                     width: 1.6,
                     ..Outlines::default()
-                }),
-                sketch: Some(Sketch {
+                })
+                .with(Sketch {
                     wash: 0.45,
                     strokes: 2,
                     ..Sketch::default()
                 }),
-                ..ComicStyle::default()
-            },
             Mood::Title => self.level.clone(),
-            Mood::Paused => ComicStyle {
-                desaturation: None,
-                colorization: Some(Colorization {
+            Mood::Paused => {
+                let level = self.level.clone().without::<Desaturation>();
+                level.with(Colorization {
                     amount: 0.9,
                     ..Colorization::SEPIA
-                }),
-                ..self.level.clone()
-            },
+                })
+            }
             Mood::Won => named("golden-hour", &self.level),
             Mood::Lost => named("noir", &self.level),
         }

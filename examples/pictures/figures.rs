@@ -20,7 +20,7 @@ use crate::{
         headless::{Headless, HeadlessOptions},
         read_back,
         scenes::{BuiltIn, Stage, Vantage},
-        studio::Studio,
+        studio::{Studio, with_map},
     },
     save,
     sheet::grid,
@@ -44,13 +44,13 @@ fn sheet(rows: &[Vec<RgbaImage>]) -> RgbaImage {
 
 /// A style of which only the depth map is set.
 fn depth_style(mapping: DepthMapping) -> ComicStyle {
-    ComicStyle {
-        depth_map: Some(DepthMap {
+    with_map(
+        ComicStyle::new(),
+        DepthMap {
             mapping,
             ..default()
-        }),
-        ..default()
-    }
+        },
+    )
 }
 
 /// The depth map of the last frame, from its raw depth: pixels and the share of
@@ -163,10 +163,7 @@ fn figure_2(folder: &Path) -> Result<(), String> {
                 ComicsPlugin,
             );
             let camera = group(&mut headless, distance)?;
-            let style = ComicStyle {
-                desaturation: Some(Desaturation::default()),
-                ..depth_style(mapping)
-            };
+            let style = depth_style(mapping).with(Desaturation::default());
             style.apply(&mut headless.app.world_mut().commands().entity(camera));
             headless.step(5);
             let measured = measure(&headless, camera, mapping, FAR)?;
@@ -193,27 +190,21 @@ fn figure_3(folder: &Path) -> Result<(), String> {
     let mut studio = Studio::new(BuiltIn::Teapot, SIZE, Msaa::Off);
     let mut rows = vec![vec![studio.shoot(None)], Vec::new(), Vec::new()];
     for (_, mapping) in MAPPINGS {
-        let style = ComicStyle {
-            depth_map: Some(DepthMap {
-                mapping,
-                ..default()
-            }),
-            desaturation: Some(Desaturation {
+        let style = depth_style(mapping)
+            .with(Desaturation {
                 exponent: 0.5,
                 ..default()
-            }),
-            colorization: Some(Colorization {
+            })
+            .with(Colorization {
                 mode: ColorizationMode::Quadratic,
                 color: Colorization::SEPIA.color,
                 ..default()
-            }),
-            contours: Some(Contours {
+            })
+            .with(Contours {
                 threshold: 0.03,
                 width: 1.5,
                 ..default()
-            }),
-            ..default()
-        };
+            });
         let projection = Vantage {
             near: NEAR,
             far: PLANE_FAR,
@@ -247,10 +238,10 @@ fn figure_4(folder: &Path) -> Result<(), String> {
             .ok_or("no preset")?
             .map_err(|error| error.to_string())?;
         let mut faithful = style.clone();
-        if let Some(s) = &mut faithful.desaturation {
+        if let Some(s) = faithful.get_mut::<Desaturation>() {
             s.method = ColorMethod::Faithful;
         }
-        if let Some(s) = &mut faithful.colorization {
+        if let Some(s) = faithful.get_mut::<Colorization>() {
             s.method = ColorMethod::Faithful;
         }
         let mut studio = Studio::new(scene, SIZE, Msaa::Sample4);
@@ -292,11 +283,9 @@ fn transparency(folder: &Path) -> Result<(), String> {
         pane,
         NotShadowCaster,
     ));
-    let style = ComicStyle {
-        desaturation: Some(Desaturation::default()),
-        contours: Some(Contours::default()),
-        ..default()
-    };
+    let style = ComicStyle::new()
+        .with(Desaturation::default())
+        .with(Contours::default());
     let rows = [vec![studio.shoot(None), studio.shoot(Some(&style))]];
     save(&sheet(&rows), &folder.join("transparency.png"))
 }

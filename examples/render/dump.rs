@@ -7,9 +7,7 @@ use bevy::{
     prelude::*,
     render::{RenderApp, sync_world::RenderEntity},
 };
-use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, ComicsStage, ProjectionKind, StageOutcome, VisibleDepthRange,
-};
+use bevy_comics::{ComicStyle, ComicsDiagnostics, ProjectionKind, StageOutcome, VisibleDepthRange};
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, Layer, LayerAttributes,
     SpecificChannels, WritableImage,
@@ -176,17 +174,17 @@ fn describe(
     let mut ran = Vec::new();
     let mut left_out = serde_json::Map::new();
     let diagnostics = world.resource::<ComicsDiagnostics>();
-    let stages = diagnostics.cameras.get(&camera);
-    for stage in ComicsStage::ALL {
-        match stages.and_then(|stages| stages.outcome(stage)) {
-            Some(StageOutcome::Ran) => ran.push(json!(stage.name())),
-            Some(StageOutcome::Reduced(method)) => {
-                ran.push(json!(format!("{} ({method:?})", stage.name())));
+    let stages = diagnostics.cameras.get(&camera).map(|drawn| &drawn.stages);
+    for (stage, outcome) in stages.into_iter().flatten() {
+        match outcome {
+            StageOutcome::Ran => ran.push(json!(stage.name())),
+            StageOutcome::RanAs(method) => {
+                ran.push(json!(format!("{} ({method})", stage.name())));
             }
-            Some(StageOutcome::LeftOut(reason)) => {
+            StageOutcome::LeftOut(reason) => {
                 left_out.insert(stage.name().into(), json!(reason.to_string()));
             }
-            None => {}
+            _ => {}
         }
     }
     let clip = world

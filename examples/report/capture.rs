@@ -193,25 +193,23 @@ pub fn frame(ends: [f64; 2]) -> Frame {
 
 /// The look that errors of the map are judged in: Eq. 7 and 10 at full strength.
 pub fn look() -> ComicStyle {
-    ComicStyle {
-        desaturation: Some(Desaturation {
+    ComicStyle::new()
+        .with(Desaturation {
             method: ColorMethod::Corrected,
             ..Desaturation::default()
-        }),
-        colorization: Some(Colorization::default()),
-        ..ComicStyle::default()
-    }
+        })
+        .with(Colorization::default())
 }
 
 /// A pixel in that look, as display codes.
 pub fn styled(style: &ComicStyle, light: [f64; 3], [d, l]: [f64; 2]) -> [u8; 3] {
     let mut linear = light;
     let mut saturation = 1.0;
-    if let Some(s) = &style.desaturation {
+    if let Some(s) = style.get::<Desaturation>() {
         saturation = desaturation::saturation_left(s, l);
         linear = desaturation::desaturate(s, linear, saturation);
     }
-    if let Some(s) = &style.colorization {
+    if let Some(s) = style.get::<Colorization>() {
         linear = colorization::colorize(s, linear, d, l, saturation);
     }
     srgb_encode(linear).map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8)

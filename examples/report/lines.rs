@@ -28,20 +28,14 @@ const SCENES: [BuiltIn; 4] = [
 ];
 
 fn contours(operator: ContourOperator) -> ComicStyle {
-    ComicStyle {
-        contours: Some(Contours {
-            operator,
-            ..default()
-        }),
+    ComicStyle::new().with(Contours {
+        operator,
         ..default()
-    }
+    })
 }
 
 fn outlines(outlines: Outlines) -> ComicStyle {
-    ComicStyle {
-        outlines: Some(outlines),
-        ..default()
-    }
+    ComicStyle::new().with(outlines)
 }
 
 fn detectors() -> Vec<(String, ComicStyle)> {
@@ -146,13 +140,10 @@ fn shrunk(picture: &image::RgbaImage, by: u32) -> Vec<[u8; 3]> {
 }
 
 fn bands(feather: f32) -> ComicStyle {
-    ComicStyle {
-        tone_bands: Some(ToneBands {
-            feather,
-            ..default()
-        }),
+    ComicStyle::new().with(ToneBands {
+        feather,
         ..default()
-    }
+    })
 }
 
 fn soft_outlines(scale: f32) -> ComicStyle {
@@ -165,14 +156,11 @@ fn soft_outlines(scale: f32) -> ComicStyle {
 }
 
 fn soft_contours(scale: f32, softness: f32) -> ComicStyle {
-    ComicStyle {
-        contours: Some(Contours {
-            softness,
-            width: 2.0 * scale,
-            ..default()
-        }),
+    ComicStyle::new().with(Contours {
+        softness,
+        width: 2.0 * scale,
         ..default()
-    }
+    })
 }
 
 /// Each method against the same look drawn at eight times the resolution: what

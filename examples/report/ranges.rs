@@ -7,7 +7,7 @@ use crate::{
     Run,
     bare::{self, Blit, time, upload, view, words},
     capture::{self, Capture, Shot},
-    common::scenes::BuiltIn,
+    common::{scenes::BuiltIn, studio::with_map},
     device::gpu,
     reference::smoothing,
     rig::{self, Rig, Wear},
@@ -245,12 +245,9 @@ fn measure_errors(run: &Run, captures: &[Capture]) -> Table {
     table
 }
 
-fn with_map(map: DepthMap) -> Wear {
-    Wear::style(ComicStyle {
-        depth_map: Some(map),
-        colorization: Some(Colorization::default()),
-        ..ComicStyle::default()
-    })
+fn tinted_by(map: DepthMap) -> Wear {
+    let tint = ComicStyle::new().with(Colorization::default());
+    Wear::style(with_map(tint, map))
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
@@ -286,7 +283,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
                 smoothing: None,
                 ..DepthMap::default()
             };
-            (format!("{reduction:?}"), with_map(map))
+            (format!("{reduction:?}"), tinted_by(map))
         })
         .collect();
     for (name, outliers) in [
@@ -297,7 +294,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
             smoothing: smoothing(outliers),
             ..DepthMap::default()
         };
-        variants.push((name.to_owned(), with_map(map)));
+        variants.push((name.to_owned(), tinted_by(map)));
     }
     rig::record(run, &mut times, "ranges", "teapot", &mut rig, &variants);
     run.save("range_times", &times)?;

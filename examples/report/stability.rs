@@ -210,13 +210,10 @@ fn map_cases(table: &mut Table, run: &Run) {
 fn everything() -> ComicStyle {
     let preset = presets::preset("graphic-novel").expect("listed");
     let mut style = preset.unwrap_or_default();
-    let comic = default_comic();
-    style.desaturation = comic.desaturation;
-    style.colorization = comic.colorization;
-    style.contours = comic.contours;
-    style.outlines = Some(Outlines::default());
-    style.tone_bands = Some(ToneBands::default());
-    style
+    for effect in default_comic().effects() {
+        style.insert_any(effect.boxed());
+    }
+    style.with(Outlines::default()).with(ToneBands::default())
 }
 
 type Scene = fn(&mut Rig);
@@ -317,10 +314,7 @@ fn rendered(table: &mut Table, run: &Run) {
         UVec2::new(320, 200)
     };
     let style = everything();
-    let sketch = ComicStyle {
-        sketch: Some(Sketch::default()),
-        ..style.clone()
-    };
+    let sketch = style.clone().with(Sketch::default());
     for (name, scene) in rendered_cases() {
         let mut rig = Rig::new(None, size);
         scene(&mut rig);

@@ -11,7 +11,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::sanitize::bounded;
+use crate::settings::bounded;
 
 /// A [`StandardMaterial`] that is lit like a cartoon:
 ///

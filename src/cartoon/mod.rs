@@ -5,29 +5,35 @@ mod material;
 mod scene;
 
 use bevy::{
-    app::{App, PostUpdate, Update},
+    app::{App, Plugin, PostUpdate, Update},
     asset::{AssetApp, embedded_asset},
     ecs::schedule::IntoScheduleConfigs,
     pbr::{MaterialPlugin, PbrPlugin},
     render::RenderApp,
+    shader::load_shader_library,
 };
 
 pub use material::{CartoonLight, CartoonMaterial};
 pub use scene::CartoonScene;
 
 /// Registers types and shaders, and the material where meshes are drawn.
-pub(crate) fn build(app: &mut App) {
-    app.register_type::<CartoonLight>()
-        .register_type::<CartoonScene>();
-    if app.get_sub_app(RenderApp).is_some() {
-        embedded_asset!(app, "cartoon.wgsl");
-    }
-    add_material(app);
-}
+pub(crate) struct CartoonPlugin;
 
-/// The engine's plugins may have come after ours.
-pub(crate) fn finish(app: &mut App) {
-    add_material(app);
+impl Plugin for CartoonPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<CartoonLight>()
+            .register_type::<CartoonScene>();
+        if app.get_sub_app(RenderApp).is_some() {
+            load_shader_library!(app, "light.wgsl");
+            embedded_asset!(app, "cartoon.wgsl");
+        }
+        add_material(app);
+    }
+
+    /// The engine's plugins may have come after ours.
+    fn finish(&self, app: &mut App) {
+        add_material(app);
+    }
 }
 
 fn add_material(app: &mut App) {

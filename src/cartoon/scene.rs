@@ -76,8 +76,10 @@ pub(super) fn convert(
     roots: Query<Ref<CartoonScene>>,
     parents: Query<&ChildOf>,
     meshes: Query<(Entity, &MeshMaterial3d<StandardMaterial>)>,
-    standard: Res<Assets<StandardMaterial>>,
-    mut cartoon: ResMut<Assets<CartoonMaterial>>,
+    (standard, mut cartoon): (
+        Res<Assets<StandardMaterial>>,
+        ResMut<Assets<CartoonMaterial>>,
+    ),
     mut copies: Local<Copies>,
 ) {
     if roots.is_empty() {

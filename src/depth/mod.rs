@@ -1,11 +1,15 @@
 //! The depth map and the range it spans: what the styles know about distance.
 
 pub(crate) mod frame;
-pub(crate) mod ping_pong;
+mod ping_pong;
+pub(crate) mod plugin;
 pub(crate) mod prepare;
-pub(crate) mod range;
+mod range;
 pub(crate) mod readback;
+mod reduce;
+pub(crate) mod request;
 pub(crate) mod smoothing;
+pub(crate) mod view;
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
@@ -18,10 +22,7 @@ pub(crate) use frame::{DepthFrame, RawDepth};
 pub use readback::{DepthBin, DepthHistogram, VisibleDepthRange};
 pub use smoothing::{CameraCut, RangeSmoothing};
 
-use crate::{
-    FieldRange,
-    sanitize::{bounded, ordered_planes},
-};
+use crate::settings::{FieldRange, bounded, ordered_planes};
 
 /// How a camera turns distance into the depth map `D`, which is 0 at the
 /// nearest and 1 at the farthest end of a range and drives every depth style.
@@ -204,4 +205,17 @@ pub enum ReductionMethod {
     /// before (\[CS\] 3.1). Needs no compute shaders; slower. Where the adapter
     /// has no compute shaders, every method is this one.
     PingPong,
+}
+
+impl ReductionMethod {
+    /// The method's name in reports and diagnostics.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "Auto",
+            Self::BarrierFree => "BarrierFree",
+            Self::Subgroup => "Subgroup",
+            Self::SharedMemory => "SharedMemory",
+            Self::PingPong => "PingPong",
+        }
+    }
 }

@@ -8,15 +8,15 @@ use bevy::{
     render::{
         render_resource::{
             BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource,
-            Buffer, ColorTargetState, ColorWrites, CommandEncoder, Extent3d, FragmentState, LoadOp,
+            Buffer, ColorTargetState, ColorWrites, CommandEncoder, Extent3d, FragmentState,
             Operations, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
             RenderPipeline, RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline,
-            StoreOp, TexelCopyBufferInfo, TexelCopyBufferLayout, Texture, TextureDescriptor,
-            TextureDimension, TextureFormat, TextureSampleType, TextureUsages, TextureView,
-            TextureViewDescriptor,
+            TexelCopyBufferInfo, TexelCopyBufferLayout, TextureDescriptor, TextureDimension,
+            TextureFormat, TextureSampleType, TextureUsages, TextureView,
             binding_types::{texture_2d, texture_2d_multisampled, uniform_buffer},
         },
         renderer::RenderDevice,
+        texture::{CachedTexture, TextureCache},
     },
     shader::Shader,
 };
@@ -121,110 +121,104 @@ pub(crate) fn chain_sizes(size: UVec2) -> Vec<UVec2> {
     sizes
 }
 
-/// The textures of one view's chain.
-pub(crate) struct PingPong {
+/// The textures of a chain, from the frame's cache.
+pub(crate) fn chain_textures(
+    textures: &mut TextureCache,
+    device: &RenderDevice,
     rect_size: UVec2,
-    levels: Vec<(Texture, TextureView)>,
+) -> Vec<CachedTexture> {
+    let texture = |size: UVec2| {
+        let descriptor = TextureDescriptor {
+            label: Some("comics_ping_pong"),
+            size: Extent3d {
+                width: size.x,
+                height: size.y,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: TextureDimension::D2,
+            format: FORMAT,
+            usage: TextureUsages::RENDER_ATTACHMENT
+                | TextureUsages::TEXTURE_BINDING
+                | TextureUsages::COPY_SRC,
+            view_formats: &[],
+        };
+        textures.get(device, descriptor)
+    };
+    chain_sizes(rect_size).into_iter().map(texture).collect()
 }
 
-impl PingPong {
-    pub fn new(device: &RenderDevice, rect_size: UVec2) -> Self {
-        let levels = chain_sizes(rect_size)
-            .into_iter()
-            .map(|size| {
-                let texture = device.create_texture(&TextureDescriptor {
-                    label: Some("comics_ping_pong"),
-                    size: Extent3d {
-                        width: size.x,
-                        height: size.y,
-                        depth_or_array_layers: 1,
-                    },
-                    mip_level_count: 1,
-                    sample_count: 1,
-                    dimension: TextureDimension::D2,
-                    format: FORMAT,
-                    usage: TextureUsages::RENDER_ATTACHMENT
-                        | TextureUsages::TEXTURE_BINDING
-                        | TextureUsages::COPY_SRC,
-                    view_formats: &[],
-                });
-                let view = texture.create_view(&TextureViewDescriptor::default());
-                (texture, view)
-            })
-            .collect();
-        Self { rect_size, levels }
-    }
+/// What a chain reads: a depth texture, and the view's entry in its uniform.
+pub(crate) struct ChainSource<'a> {
+    pub depth: &'a TextureView,
+    pub view: BindingResource<'a>,
+    pub offset: u32,
+    pub multisampled: bool,
+}
 
-    pub fn rect_size(&self) -> UVec2 {
-        self.rect_size
+/// Records every pass of a chain and the copy of its result into `keys`.
+pub(crate) fn record_chain(
+    chain: &[CachedTexture],
+    device: &RenderDevice,
+    encoder: &mut CommandEncoder,
+    cache: &PipelineCache,
+    (first, next): (&RenderPipeline, &RenderPipeline),
+    (from, keys): (&ChainSource, &Buffer),
+) {
+    let mut source: Option<&TextureView> = None;
+    for target in chain {
+        let bind_group = match source {
+            None => device.create_bind_group(
+                "comics_ping_pong_first",
+                &cache.get_bind_group_layout(&PingPongPipeline::first_layout(from.multisampled)),
+                &BindGroupEntries::sequential((from.depth, from.view.clone())),
+            ),
+            Some(view) => device.create_bind_group(
+                "comics_ping_pong_next",
+                &cache.get_bind_group_layout(&PingPongPipeline::next_layout()),
+                &BindGroupEntries::single(view),
+            ),
+        };
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("comics_ping_pong"),
+            color_attachments: &[Some(RenderPassColorAttachment {
+                view: &target.default_view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: Operations::default(),
+            })],
+            ..Default::default()
+        });
+        if source.is_none() {
+            pass.set_pipeline(first);
+            pass.set_bind_group(0, &bind_group, &[from.offset]);
+        } else {
+            pass.set_pipeline(next);
+            pass.set_bind_group(0, &bind_group, &[]);
+        }
+        pass.draw(0..3, 0..1);
+        drop(pass);
+        source = Some(&target.default_view);
     }
+    if let Some(result) = chain.last() {
+        copy_keys(encoder, result, keys);
+    }
+}
 
-    /// Records every pass of the chain and the copy of its result into `keys`.
-    pub fn record(
-        &self,
-        device: &RenderDevice,
-        encoder: &mut CommandEncoder,
-        cache: &PipelineCache,
-        (first, next): (&RenderPipeline, &RenderPipeline),
-        (depth, range_view, offset, multisampled): (&TextureView, BindingResource, u32, bool),
-        keys: &Buffer,
-    ) {
-        let mut source: Option<&TextureView> = None;
-        for (_, target) in &self.levels {
-            let bind_group = match source {
-                None => device.create_bind_group(
-                    "comics_ping_pong_first",
-                    &cache.get_bind_group_layout(&PingPongPipeline::first_layout(multisampled)),
-                    &BindGroupEntries::sequential((depth, range_view.clone())),
-                ),
-                Some(view) => device.create_bind_group(
-                    "comics_ping_pong_next",
-                    &cache.get_bind_group_layout(&PingPongPipeline::next_layout()),
-                    &BindGroupEntries::single(view),
-                ),
-            };
-            let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
-                label: Some("comics_ping_pong"),
-                color_attachments: &[Some(RenderPassColorAttachment {
-                    view: target,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: Operations {
-                        load: LoadOp::Clear(Default::default()),
-                        store: StoreOp::Store,
-                    },
-                })],
-                depth_stencil_attachment: None,
-                timestamp_writes: None,
-                occlusion_query_set: None,
-                multiview_mask: None,
-            });
-            if source.is_none() {
-                pass.set_pipeline(first);
-                pass.set_bind_group(0, &bind_group, &[offset]);
-            } else {
-                pass.set_pipeline(next);
-                pass.set_bind_group(0, &bind_group, &[]);
-            }
-            pass.draw(0..3, 0..1);
-            drop(pass);
-            source = Some(target);
-        }
-        if let Some((result, _)) = self.levels.last() {
-            encoder.copy_texture_to_buffer(
-                result.as_image_copy(),
-                TexelCopyBufferInfo {
-                    buffer: keys,
-                    layout: TexelCopyBufferLayout::default(),
-                },
-                Extent3d {
-                    width: 2,
-                    height: 1,
-                    depth_or_array_layers: 1,
-                },
-            );
-        }
-    }
+fn copy_keys(encoder: &mut CommandEncoder, result: &CachedTexture, keys: &Buffer) {
+    encoder.copy_texture_to_buffer(
+        result.texture.as_image_copy(),
+        TexelCopyBufferInfo {
+            buffer: keys,
+            layout: TexelCopyBufferLayout::default(),
+        },
+        Extent3d {
+            width: 2,
+            height: 1,
+            depth_or_array_layers: 1,
+        },
+    );
 }
 
 #[cfg(test)]

@@ -1,49 +1,75 @@
-//! From a plan to this frame's range: pipelines and buffers.
+//! From a request to this frame's range: buffers and uniforms of the view.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{
+    Mutex, PoisonError,
+    atomic::{AtomicBool, Ordering},
+};
 
 use bevy::{
-    ecs::system::{Res, ResMut, SystemParam},
-    math::{UVec4, Vec4Swizzles},
+    ecs::{
+        component::Component,
+        entity::Entity,
+        query::{With, Without},
+        resource::Resource,
+        system::{Commands, Query, Res, ResMut},
+    },
+    math::Vec4Swizzles,
     render::{
-        render_resource::{
-            Buffer, BufferDescriptor, BufferUsages, CachedComputePipelineId, DynamicUniformBuffer,
-            PipelineCache, SpecializedComputePipelines, SpecializedRenderPipelines,
-        },
-        renderer::{RenderAdapterInfo, RenderDevice},
+        render_resource::{Buffer, BufferDescriptor, BufferUsages, DynamicUniformBuffer},
+        renderer::{RenderDevice, RenderQueue},
+        texture::{CachedTexture, TextureCache},
     },
 };
 
 use super::{
-    ProjectionKind, RawDepth,
-    ping_pong::{PingPong, PingPongPipeline},
-    range::{RangeKey, RangePass, RangePipeline, RangeShape, RangeView},
-    smoothing::{SmoothingPipeline, SmoothingUniform, ViewSmoothing},
+    ping_pong::chain_textures,
+    range::RangeView,
+    readback::{RangeReadback, RangeReadings},
+    request::{RangePasses, RangeRequest, Reduction},
+    smoothing::{SmoothingUniform, ViewSmoothing},
 };
-use crate::view::{ComicsView, Plan};
 
-/// The range of one view, this frame.
-pub(crate) struct ViewRange {
-    pub pass: RangePass,
+/// On a view in the render world: its visible range. Kept as long as a range is
+/// requested, whatever else the view draws.
+#[derive(Component)]
+pub(crate) struct ViewDepthRange {
+    pub request: RangeRequest,
+    pub passes: RangePasses,
+    /// Where this view's entry is in [`RangeUniforms`].
     pub view_offset: u32,
     /// Keys of the nearest and farthest depth of this frame.
     pub keys: Buffer,
-    pub ping_pong: Option<PingPong>,
-    pub smoothing: Option<(ViewSmoothing, CachedComputePipelineId)>,
+    /// The textures of the ping-pong, if that is the reduction.
+    pub chain: Vec<CachedTexture>,
+    pub smoothing: Option<ViewSmoothing>,
     /// Whether this frame's range was recorded.
     pub found: AtomicBool,
+    pub readback: Mutex<RangeReadback>,
 }
 
-impl ViewRange {
-    /// Where the reduction counts depths, if it does.
-    pub fn histogram(&self) -> Option<&Buffer> {
-        self.smoothing.as_ref()?.0.histogram.as_ref()
+impl ViewDepthRange {
+    fn new(device: &RenderDevice, request: &RangeRequest, passes: RangePasses) -> Self {
+        Self {
+            request: request.clone(),
+            passes,
+            view_offset: 0,
+            keys: keys_buffer(device),
+            chain: Vec::new(),
+            smoothing: None,
+            found: AtomicBool::new(false),
+            readback: Mutex::default(),
+        }
     }
 
-    /// The keys that styles are drawn with, once they were recorded.
+    /// Where the reduction counts depths, if it does.
+    pub fn histogram(&self) -> Option<&Buffer> {
+        self.smoothing.as_ref()?.histogram.as_ref()
+    }
+
+    /// The keys that the depth map is drawn with, once they were recorded.
     pub fn drawn(&self) -> Option<&Buffer> {
         let keys = match &self.smoothing {
-            Some((smoothing, _)) => &smoothing.drawn,
+            Some(smoothing) => &smoothing.drawn,
             None => &self.keys,
         };
         self.found.load(Ordering::Relaxed).then_some(keys)
@@ -51,6 +77,7 @@ impl ViewRange {
 }
 
 /// The uniforms of all views' ranges.
+#[derive(Resource)]
 pub(crate) struct RangeUniforms {
     pub views: DynamicUniformBuffer<RangeView>,
     pub smoothings: DynamicUniformBuffer<SmoothingUniform>,
@@ -66,96 +93,82 @@ impl Default for RangeUniforms {
     }
 }
 
-/// What the range's passes are made of.
-#[derive(SystemParam)]
-pub(crate) struct Ranging<'w> {
-    range_pipelines: ResMut<'w, SpecializedComputePipelines<RangePipeline>>,
-    ping_pong_pipelines: ResMut<'w, SpecializedRenderPipelines<PingPongPipeline>>,
-    smoothing_pipelines: ResMut<'w, SpecializedComputePipelines<SmoothingPipeline>>,
-    range_pipeline: Res<'w, RangePipeline>,
-    ping_pong_pipeline: Res<'w, PingPongPipeline>,
-    smoothing_pipeline: Res<'w, SmoothingPipeline>,
-    adapter: Res<'w, RenderAdapterInfo>,
+pub(crate) fn prepare_view_ranges(
+    mut commands: Commands,
+    mut views: Query<(
+        Entity,
+        &RangeRequest,
+        &RangePasses,
+        Option<&mut ViewDepthRange>,
+    )>,
+    stale: Query<Entity, (With<ViewDepthRange>, Without<RangeRequest>)>,
+    mut uniforms: ResMut<RangeUniforms>,
+    mut textures: ResMut<TextureCache>,
+    (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
+) {
+    uniforms.views.clear();
+    uniforms.smoothings.clear();
+    for (entity, request, passes, range) in &mut views {
+        match range {
+            Some(mut range) => range.prepare(
+                request,
+                *passes,
+                &mut uniforms,
+                (&device, textures.as_mut()),
+            ),
+            None => {
+                let mut range = ViewDepthRange::new(&device, request, *passes);
+                range.prepare(
+                    request,
+                    *passes,
+                    &mut uniforms,
+                    (&device, textures.as_mut()),
+                );
+                commands.entity(entity).insert(range);
+            }
+        }
+    }
+    for entity in &stale {
+        commands.entity(entity).remove::<ViewDepthRange>();
+    }
+    uniforms.views.write_buffer(&device, &queue);
+    uniforms.smoothings.write_buffer(&device, &queue);
 }
 
-impl Ranging<'_> {
-    /// This frame's range of a view; what still fits is kept.
-    pub fn prepare(
+impl ViewDepthRange {
+    /// Makes this frame's range; what still fits is kept.
+    fn prepare(
         &mut self,
-        old: Option<ViewRange>,
-        cache: &PipelineCache,
-        device: &RenderDevice,
+        request: &RangeRequest,
+        passes: RangePasses,
         uniforms: &mut RangeUniforms,
-        (view, plan): (&ComicsView, &Plan),
-        (rect, raw, samples): (UVec4, RawDepth, u32),
-    ) -> ViewRange {
-        let shape = RangeShape::choose(plan.depth_map.reduction, &self.adapter, device);
-        let (keys, ping_pong, smoothed) = match old {
-            Some(old) => (Some(old.keys), old.ping_pong, old.smoothing),
-            None => (None, None, None),
-        };
-        let has_compute = device.limits().max_compute_workgroup_size_x > 0;
-        let outliers = plan.depth_map.smoothing.is_some_and(|s| s.outliers > 0.0);
-        let counts = plan.histogram || (outliers && plan.smooths());
-        let smoothing = (plan.follows_range() && has_compute).then(|| {
-            let mut kept = match smoothed {
-                Some((kept, _)) => kept,
-                None => ViewSmoothing::new(device, view, rect.zw()),
-            };
-            kept.keep_histogram(device, counts && shape.is_some());
-            let uniform = kept.uniform(&plan.depth_map, view, rect.zw());
-            kept.uniform_offset = uniforms.smoothings.push(&uniform);
-            let pipeline = self.smoothing_pipelines.specialize(
-                cache,
-                &self.smoothing_pipeline,
-                kept.histogram.is_some(),
-            );
-            (kept, pipeline)
-        });
-        let histogram = smoothing
-            .as_ref()
-            .is_some_and(|(smoothing, _)| smoothing.histogram.is_some());
-
-        let key = RangeKey {
-            multisampled: samples > 1,
-            oblique: view.projection.kind() == ProjectionKind::Oblique,
-            histogram,
-        };
-        let (pass, ping_pong) = match shape {
-            Some(shape) => {
-                let pipeline =
-                    self.range_pipelines
-                        .specialize(cache, &self.range_pipeline, (shape, key));
-                let pass = RangePass::compute(shape, pipeline, rect, samples);
-                (pass, None)
-            }
-            None => {
-                let chain = ping_pong
-                    .filter(|chain| chain.rect_size() == rect.zw())
-                    .unwrap_or_else(|| PingPong::new(device, rect.zw()));
-                let mut specialize = |first| {
-                    self.ping_pong_pipelines.specialize(
-                        cache,
-                        &self.ping_pong_pipeline,
-                        (first, key.multisampled, key.oblique),
-                    )
-                };
-                let pass = RangePass::PingPong {
-                    first: specialize(true),
-                    next: specialize(false),
-                    samples,
-                };
-                (pass, Some(chain))
-            }
-        };
-        ViewRange {
-            pass,
-            view_offset: uniforms.views.push(&RangeView { rect, raw }),
-            keys: keys.unwrap_or_else(|| keys_buffer(device)),
-            ping_pong,
-            smoothing,
-            found: AtomicBool::new(false),
+        (device, textures): (&RenderDevice, &mut TextureCache),
+    ) {
+        let size = request.rect.zw();
+        if passes.smoothing.is_some() {
+            let smoothing = self
+                .smoothing
+                .get_or_insert_with(|| ViewSmoothing::new(device, request, size));
+            smoothing.keep_histogram(device, passes.counts);
+            let uniform = smoothing.uniform(request, size);
+            smoothing.uniform_offset = uniforms.smoothings.push(&uniform);
+        } else {
+            self.smoothing = None;
         }
+        self.chain = match passes.reduction {
+            Reduction::PingPong { .. } => chain_textures(textures, device, size),
+            Reduction::Compute { .. } => Vec::new(),
+        };
+        self.view_offset = uniforms.views.push(&RangeView {
+            rect: request.rect,
+            raw: request.raw,
+        });
+        if !request.readback && !request.histogram {
+            self.readback = Mutex::default();
+        }
+        self.found = AtomicBool::new(false);
+        self.passes = passes;
+        self.request.clone_from(request);
     }
 }
 
@@ -169,4 +182,16 @@ fn keys_buffer(device: &RenderDevice) -> Buffer {
             | BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })
+}
+
+/// Asks for the copies of this frame, once they have been submitted.
+pub(crate) fn map_readbacks(mut ranges: Query<&mut ViewDepthRange>, readings: Res<RangeReadings>) {
+    for mut range in &mut ranges {
+        let camera = range.request.camera;
+        let readback = range
+            .readback
+            .get_mut()
+            .unwrap_or_else(PoisonError::into_inner);
+        readback.map(camera, &readings);
+    }
 }

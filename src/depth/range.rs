@@ -1,35 +1,25 @@
 //! The min/max reduction: nearest and farthest depth of a view.
 
-use std::sync::{PoisonError, atomic::Ordering};
-
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
-    core_pipeline::prepass::ViewPrepassTextures,
-    ecs::{resource::Resource, system::Res},
+    ecs::resource::Resource,
     math::UVec4,
     render::{
-        diagnostic::RecordDiagnostics,
         render_resource::{
-            BindGroupEntry, BindGroupLayoutDescriptor, BindGroupLayoutEntries,
-            CachedComputePipelineId, CachedRenderPipelineId, ComputePassDescriptor,
-            ComputePipelineDescriptor, IntoBinding, PipelineCache, Sampler, SamplerBindingType,
-            SamplerDescriptor, ShaderStages, ShaderType, SpecializedComputePipeline,
-            TextureSampleType, WgpuFeatures,
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, ComputePipelineDescriptor, Sampler,
+            SamplerBindingType, SamplerDescriptor, ShaderStages, ShaderType,
+            SpecializedComputePipeline, TextureSampleType, WgpuFeatures,
             binding_types::{
                 sampler, storage_buffer_sized, texture_2d, texture_2d_multisampled, uniform_buffer,
             },
         },
-        renderer::{RenderAdapterInfo, RenderContext, RenderDevice, ViewQuery},
+        renderer::{RenderAdapterInfo, RenderDevice},
     },
     shader::Shader,
 };
 use wgpu_types::DeviceType;
 
 use super::{RawDepth, ReductionMethod};
-use crate::{
-    diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
-    passes::ViewPasses,
-};
 
 /// `RangeView` of `range.wgsl` and `PingPongView` of `ping_pong.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug)]
@@ -73,7 +63,7 @@ impl RangeShape {
         }
     }
 
-    fn method(self) -> ReductionMethod {
+    pub fn method(self) -> ReductionMethod {
         match self {
             Self::BarrierFree => ReductionMethod::BarrierFree,
             Self::Subgroup => ReductionMethod::Subgroup,
@@ -82,7 +72,7 @@ impl RangeShape {
     }
 
     /// Workgroups for a rectangle; the counterpart of `range.wgsl`'s tiling.
-    fn workgroups(self, rect: UVec4) -> (u32, u32) {
+    pub fn workgroups(self, rect: UVec4) -> (u32, u32) {
         match self {
             Self::BarrierFree => (rect.w.div_ceil(2 * 8), rect.z.div_ceil(256)),
             Self::Subgroup | Self::SharedMemory => (rect.z.div_ceil(128), rect.w.div_ceil(32)),
@@ -90,48 +80,10 @@ impl RangeShape {
     }
 }
 
-/// A reduction that is ready to be recorded.
-#[derive(Clone, Copy)]
-pub(crate) enum RangePass {
-    Compute {
-        shape: RangeShape,
-        pipeline: CachedComputePipelineId,
-        workgroups: (u32, u32),
-        samples: u32,
-    },
-    PingPong {
-        first: CachedRenderPipelineId,
-        next: CachedRenderPipelineId,
-        samples: u32,
-    },
-}
-
-impl RangePass {
-    pub fn compute(
-        shape: RangeShape,
-        pipeline: CachedComputePipelineId,
-        rect: UVec4,
-        samples: u32,
-    ) -> Self {
-        Self::Compute {
-            shape,
-            pipeline,
-            workgroups: shape.workgroups(rect),
-            samples,
-        }
-    }
-
-    pub fn samples(&self) -> u32 {
-        match self {
-            Self::Compute { samples, .. } | Self::PingPong { samples, .. } => *samples,
-        }
-    }
-}
-
 #[derive(Resource)]
 pub(crate) struct RangePipeline {
     shader: Handle<Shader>,
-    nearest_sampler: Sampler,
+    pub nearest_sampler: Sampler,
 }
 
 impl RangePipeline {
@@ -145,7 +97,7 @@ impl RangePipeline {
         }
     }
 
-    fn layout(key: RangeKey) -> BindGroupLayoutDescriptor {
+    pub fn layout(key: RangeKey) -> BindGroupLayoutDescriptor {
         let unfilterable = TextureSampleType::Float { filterable: false };
         let depth = if key.multisampled {
             texture_2d_multisampled(unfilterable)
@@ -207,164 +159,5 @@ impl SpecializedComputePipeline for RangePipeline {
             entry_point: Some("reduce".into()),
             ..Default::default()
         }
-    }
-}
-
-/// Finds the range of the view and sends it on its way to the game.
-pub(crate) fn reduce_depth_range(
-    view: ViewQuery<&ViewPrepassTextures>,
-    passes: Res<ViewPasses>,
-    ledger: Res<StageLedger>,
-    pipeline: Res<RangePipeline>,
-    cache: Res<PipelineCache>,
-    mut ctx: RenderContext,
-) {
-    let entity = view.entity();
-    let prepass = view.into_inner();
-    let ViewPasses {
-        views,
-        range_uniforms,
-        ..
-    } = &*passes;
-    let Some((pass, range)) = views
-        .get(&entity)
-        .and_then(|pass| Some((pass, pass.range.as_ref()?)))
-    else {
-        return;
-    };
-    let (Some(depth), Some(range_view)) = (prepass.depth.as_ref(), range_uniforms.views.binding())
-    else {
-        return;
-    };
-    let leave_out = |reason| {
-        let outcome = StageOutcome::LeftOut(reason);
-        ledger.set(pass.camera, ComicsStage::DepthRange, outcome);
-    };
-    if depth.texture.texture.sample_count() != range.pass.samples() {
-        return leave_out(LeftOut::SampleCountMismatch);
-    }
-    // All of it or nothing: a range that is not smoothed would jump.
-    let follow = match (&range.smoothing, range_uniforms.smoothings.binding()) {
-        (None, _) => None,
-        (Some((smoothing, id)), Some(uniforms)) => {
-            let Some(pipeline) = cache.get_compute_pipeline(*id) else {
-                return leave_out(LeftOut::PipelineNotReady);
-            };
-            Some((smoothing, pipeline, uniforms))
-        }
-        (Some(_), None) => return leave_out(LeftOut::PipelineNotReady),
-    };
-
-    let device = ctx.render_device().clone();
-    let diagnostics = ctx.diagnostic_recorder();
-    let diagnostics = diagnostics.as_deref();
-    let outcome = match range.pass {
-        RangePass::Compute {
-            shape,
-            pipeline: id,
-            workgroups,
-            samples,
-        } => {
-            let Some(compute) = cache.get_compute_pipeline(id) else {
-                return leave_out(LeftOut::PipelineNotReady);
-            };
-            let histogram = range.histogram();
-            let key = RangeKey {
-                multisampled: samples > 1,
-                oblique: false,
-                histogram: histogram.is_some(),
-            };
-            let entry = |binding, resource| BindGroupEntry { binding, resource };
-            let mut entries = vec![
-                entry(0, (&depth.texture.default_view).into_binding()),
-                entry(1, range_view),
-                entry(2, range.keys.as_entire_binding()),
-            ];
-            if !key.multisampled {
-                entries.push(entry(3, (&pipeline.nearest_sampler).into_binding()));
-            }
-            if let Some(histogram) = histogram {
-                entries.push(entry(4, histogram.as_entire_binding()));
-            }
-            let layout = cache.get_bind_group_layout(&RangePipeline::layout(key));
-            let bind_group = device.create_bind_group("comics_depth_range", &layout, &entries);
-            let encoder = ctx.command_encoder();
-            let span = diagnostics.time_span(encoder, "comics_depth_range");
-            encoder.clear_buffer(&range.keys, 0, None);
-            if let Some(histogram) = histogram {
-                encoder.clear_buffer(histogram, 0, None);
-            }
-            {
-                let mut compute_pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-                    label: Some("comics_depth_range"),
-                    timestamp_writes: None,
-                });
-                compute_pass.set_pipeline(compute);
-                compute_pass.set_bind_group(0, &bind_group, &[range.view_offset]);
-                compute_pass.dispatch_workgroups(workgroups.0, workgroups.1, 1);
-            }
-            span.end(encoder);
-            shape.method()
-        }
-        RangePass::PingPong {
-            first,
-            next,
-            samples,
-        } => {
-            let (Some(first), Some(next), Some(chain)) = (
-                cache.get_render_pipeline(first),
-                cache.get_render_pipeline(next),
-                range.ping_pong.as_ref(),
-            ) else {
-                return leave_out(LeftOut::PipelineNotReady);
-            };
-            let encoder = ctx.command_encoder();
-            let span = diagnostics.time_span(encoder, "comics_depth_range");
-            chain.record(
-                &device,
-                encoder,
-                &cache,
-                (first, next),
-                (
-                    &depth.texture.default_view,
-                    range_view,
-                    range.view_offset,
-                    samples > 1,
-                ),
-                &range.keys,
-            );
-            span.end(encoder);
-            ReductionMethod::PingPong
-        }
-    };
-    ledger.set(
-        pass.camera,
-        ComicsStage::DepthRange,
-        StageOutcome::Reduced(outcome),
-    );
-    if let Some((smoothing, pipeline, uniforms)) = follow {
-        let encoder = ctx.command_encoder();
-        let span = diagnostics.time_span(encoder, "comics_range_smoothing");
-        smoothing.record(&device, encoder, &cache, pipeline, uniforms, &range.keys);
-        span.end(encoder);
-        ledger.set(pass.camera, ComicsStage::RangeSmoothing, StageOutcome::Ran);
-    }
-    range.found.store(true, Ordering::Relaxed);
-
-    if pass.plan.readback || pass.plan.histogram {
-        let mut readback = pass.readback.lock().unwrap_or_else(PoisonError::into_inner);
-        let keys = &range.keys;
-        let histogram = range
-            .drawn()
-            .filter(|_| pass.plan.histogram)
-            .zip(range.histogram());
-        let encoder = ctx.command_encoder();
-        let copied = readback.copy(&device, encoder, keys, histogram, pass.projection);
-        let outcome = if copied {
-            StageOutcome::Ran
-        } else {
-            StageOutcome::LeftOut(LeftOut::Busy)
-        };
-        ledger.set(pass.camera, ComicsStage::RangeReadback, outcome);
     }
 }

@@ -31,8 +31,8 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::{DepthMap, ProjectionKind, frame::DepthProjection};
-use crate::{FieldRange, sanitize::bounded, view::ComicsView};
+use super::{DepthMap, ProjectionKind, frame::DepthProjection, request::RangeRequest};
+use crate::settings::{FieldRange, bounded};
 
 /// Keeps the range of a [`DepthMap`] from flickering when something small,
 /// short-lived or undecided enters or leaves the view. Without it the range is
@@ -230,7 +230,7 @@ pub(crate) struct ViewSmoothing {
 }
 
 impl ViewSmoothing {
-    pub fn new(device: &RenderDevice, view: &ComicsView, size: UVec2) -> Self {
+    pub fn new(device: &RenderDevice, request: &RangeRequest, size: UVec2) -> Self {
         let buffer = |label, size, usage| {
             device.create_buffer(&BufferDescriptor {
                 label: Some(label),
@@ -247,8 +247,8 @@ impl ViewSmoothing {
                 BufferUsages::UNIFORM | BufferUsages::COPY_SRC,
             ),
             histogram: None,
-            origin: (view.cuts, size),
-            projection: view.projection,
+            origin: (request.cuts, size),
+            projection: request.projection,
             snap: AtomicBool::new(false),
             reset: AtomicBool::new(false),
             locked: false,
@@ -257,18 +257,18 @@ impl ViewSmoothing {
     }
 
     /// This frame's settings, after a look at what has changed since the last.
-    pub fn uniform(&mut self, map: &DepthMap, view: &ComicsView, size: UVec2) -> SmoothingUniform {
-        if self.origin != (view.cuts, size) {
-            self.origin = (view.cuts, size);
+    pub fn uniform(&mut self, request: &RangeRequest, size: UVec2) -> SmoothingUniform {
+        if self.origin != (request.cuts, size) {
+            self.origin = (request.cuts, size);
             self.snap = AtomicBool::new(true);
         }
-        if self.projection != view.projection {
-            self.projection = view.projection;
+        if self.projection != request.projection {
+            self.projection = request.projection;
             self.reset = AtomicBool::new(true);
         }
-        self.locked = map.locked;
+        self.locked = request.map.locked;
         let starts = [&self.snap, &self.reset].map(|flag| flag.load(Ordering::Relaxed));
-        SmoothingUniform::new(map, &view.projection, view.seconds, starts)
+        SmoothingUniform::new(&request.map, &request.projection, request.seconds, starts)
     }
 
     /// Keeps a histogram, or none.
@@ -292,8 +292,7 @@ impl ViewSmoothing {
         encoder: &mut CommandEncoder,
         cache: &PipelineCache,
         pipeline: &ComputePipeline,
-        uniforms: BindingResource,
-        found: &Buffer,
+        (uniforms, found): (BindingResource, &Buffer),
     ) {
         let entry = |binding, resource| BindGroupEntry { binding, resource };
         let mut entries = vec![

@@ -4,7 +4,7 @@
 // show what the styles are made of.
 
 #import bevy_comics::depth::map::{DepthFrame, EMPTY}
-#import bevy_comics::styles::sketch::{hash}
+#import bevy_comics::effect::noise::{hash}
 
 struct Finish {
     // How much of the style is seen.

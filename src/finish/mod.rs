@@ -2,13 +2,15 @@
 //! is shown beside them, and the views that show what they are made of.
 
 use bevy::{
+    app::{App, Plugin},
     ecs::{component::Component, reflect::ReflectComponent},
     math::Vec2,
     reflect::{Reflect, std_traits::ReflectDefault},
-    render::render_resource::ShaderType,
+    render::{RenderApp, render_resource::ShaderType},
+    shader::load_shader_library,
 };
 
-use crate::{sanitize::bounded, styles::FieldRange};
+use crate::settings::{FieldRange, bounded};
 
 /// How much of a camera's style is seen: the styled picture is mixed with the
 /// original, in linear light. 1 is as without this component; at 0 nothing of
@@ -61,6 +63,7 @@ impl SplitView {
 /// the view alone. [`StyleWeight`] does not apply; [`SplitView`] does.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[reflect(Component, Clone, PartialEq, Hash)]
+#[non_exhaustive]
 pub enum DebugView {
     /// The depth map `D`: black is near, white is far.
     DepthMap,
@@ -74,36 +77,35 @@ pub enum DebugView {
     /// A colour of its own for every object; black has none. Needs the feature
     /// `objects`.
     ObjectIds,
-    /// The lightness after the tone bands, alone.
-    ToneBands,
     /// What desaturation leaves: white keeps its colours, black loses them.
     Saturation,
     /// How far the styled picture is from the original, in display codes,
     /// four times as bright.
     Difference,
+    /// What an effect computes, by the effect's name: of the effects of this
+    /// crate, `"tone_bands"` shows the lightness after the bands, alone. An
+    /// effect that the camera has not got is shown with its default settings.
+    Effect(&'static str),
 }
 
 impl DebugView {
-    /// Every view, in the order of a menu.
-    pub const ALL: [Self; 8] = [
+    /// The views that belong to no effect, in the order of a menu.
+    pub const SHARED: &'static [Self] = &[
         Self::DepthMap,
         Self::RawRange,
         Self::Silhouettes,
         Self::Creases,
         Self::ObjectIds,
-        Self::ToneBands,
         Self::Saturation,
         Self::Difference,
     ];
 
-    /// Whether the view shows the depth map or its range.
-    pub(crate) fn reads_map(self) -> bool {
-        matches!(self, Self::DepthMap | Self::RawRange)
-    }
-
     /// Whether there is nothing to show without a depth prepass.
     pub(crate) fn needs_depth(self) -> bool {
-        !matches!(self, Self::ToneBands | Self::Saturation | Self::Difference)
+        !matches!(
+            self,
+            Self::Saturation | Self::Difference | Self::Effect(_)
+        )
     }
 
     pub(crate) fn reads_ids(self) -> bool {
@@ -118,9 +120,9 @@ impl DebugView {
             Self::Silhouettes => "VIEW_SILHOUETTES",
             Self::Creases => "VIEW_CREASES",
             Self::ObjectIds => "VIEW_OBJECT_IDS",
-            Self::ToneBands => "VIEW_TONE_BANDS",
             Self::Saturation => "VIEW_SATURATION",
             Self::Difference => "VIEW_DIFFERENCE",
+            Self::Effect(_) => "VIEW_EFFECT",
         }
     }
 }
@@ -167,4 +169,18 @@ pub(crate) struct FinishUniform {
     /// Pixels from the left edge of the viewport.
     pub split: f32,
     unused: Vec2,
+}
+
+/// The components and the WGSL of what comes after the effects.
+pub(crate) struct FinishPlugin;
+
+impl Plugin for FinishPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<StyleWeight>()
+            .register_type::<SplitView>()
+            .register_type::<DebugView>();
+        if app.get_sub_app(RenderApp).is_some() {
+            load_shader_library!(app, "finish.wgsl");
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! Style files: loaded, saved, watched.
 
+mod page;
+
 use std::{
     fs, io,
     path::{Path, PathBuf},
@@ -7,14 +9,8 @@ use std::{
 };
 
 use bevy::ecs::entity::{Entity, EntityHashMap};
-use bevy_egui::egui::{TextEdit, Ui};
 
-use super::{
-    Widgets,
-    fields::{self, button},
-    note,
-};
-use crate::{ComicStyle, ComicStyleError};
+use crate::{ComicStyle, ComicStyleError, EffectRegistry};
 
 const SUFFIX: &str = ".comic.ron";
 /// How often files are looked at.
@@ -47,6 +43,7 @@ impl OpenFile {
 /// The open files of all cameras.
 pub struct Files {
     folder: PathBuf,
+    registry: EffectRegistry,
     open: EntityHashMap<OpenFile>,
     /// What stands in the field for a file name.
     name: String,
@@ -56,19 +53,20 @@ pub struct Files {
 
 /// The text of a file and its style, or the text as far as there is one and why
 /// it is no style.
-fn read(path: &Path) -> Result<(String, ComicStyle), (String, String)> {
+fn read(path: &Path, registry: &EffectRegistry) -> Result<(String, ComicStyle), (String, String)> {
     let text = fs::read_to_string(path)
         .map_err(|error| (String::new(), ComicStyleError::from(error).to_string()))?;
-    match ComicStyle::from_ron(&text) {
+    match registry.style_from_ron(&text) {
         Ok(style) => Ok((text, style)),
         Err(error) => Err((text, error.to_string())),
     }
 }
 
 impl Files {
-    pub fn new(folder: PathBuf) -> Self {
+    pub fn new(folder: PathBuf, registry: EffectRegistry) -> Self {
         Self {
             folder,
+            registry,
             open: EntityHashMap::default(),
             name: String::new(),
             title: String::new(),
@@ -103,97 +101,8 @@ impl Files {
         Some(path)
     }
 
-    /// The file, and whether the style is as it stands there; where the file is
-    /// broken, how, in full or in a word.
-    pub fn mark(&self, ui: &mut Ui, camera: Entity, style: &ComicStyle, in_full: bool) {
-        let Some(open) = self.open.get(&camera) else {
-            return;
-        };
-        let file = open.path.file_name().unwrap_or_default().to_string_lossy();
-        if open.is_saved(style) {
-            ui.label(file.into_owned());
-        } else {
-            ui.strong(format!("• {file}"))
-                .on_hover_text("Changed since it was saved");
-        }
-        if let Some(error) = &open.error {
-            fields::error(ui, if in_full { error } else { "is broken" });
-        }
-    }
-
-    pub fn show(
-        &mut self,
-        ui: &mut Ui,
-        camera: Entity,
-        style: &mut ComicStyle,
-        widgets: &mut Widgets,
-    ) {
-        ui.horizontal(|ui| {
-            let name = ui.add(TextEdit::singleline(&mut self.name).hint_text("file name"));
-            note(widgets, "files.name", &name);
-            name.on_hover_text("With folders, or a name in the folder of styles");
-            ui.label("File");
-        });
-        ui.horizontal(|ui| {
-            let title = ui.add(TextEdit::singleline(&mut self.title).hint_text("title"));
-            note(widgets, "files.title", &title);
-            ui.label("Title");
-        });
-        let named = self.path().is_some();
-        ui.horizontal(|ui| {
-            if button(ui, widgets, "files.load", "Load", named)
-                && let Some(path) = self.path()
-                && let Some(loaded) = self.load(camera, &path)
-            {
-                *style = loaded;
-            }
-            let is_open = self.open.contains_key(&camera);
-            if button(ui, widgets, "files.save", "Save", is_open) {
-                self.save(camera, style);
-            }
-            if button(ui, widgets, "files.save_as", "Save as", named)
-                && let Some(path) = self.path()
-            {
-                self.save_as(camera, style, path);
-            }
-            if button(ui, widgets, "files.new", "New", true) {
-                self.forget(camera);
-                self.name.clear();
-                self.title.clear();
-                *style = ComicStyle {
-                    version: ComicStyle::VERSION,
-                    ..ComicStyle::default()
-                };
-            }
-        });
-        if let Some(message) = &self.message {
-            fields::error(ui, message);
-        }
-        if let Some(OpenFile { path, error, .. }) = self.open.get(&camera) {
-            ui.label(format!("Open: {}", path.display()));
-            if let Some(error) = error {
-                let error = fields::error(ui, error);
-                note(widgets, "files.error", &error);
-                ui.label("The last good style stays until the file is mended.");
-            }
-        }
-        ui.separator();
-        ui.label(format!("In {}:", self.folder.display()));
-        for path in style_files(&self.folder) {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            let open = self.open.get(&camera).is_some_and(|open| open.path == path);
-            let item = ui.selectable_label(open, name.as_ref());
-            note(widgets, format!("files.{name}"), &item);
-            if item.clicked()
-                && let Some(loaded) = self.load(camera, &path)
-            {
-                *style = loaded;
-            }
-        }
-    }
-
     fn load(&mut self, camera: Entity, path: &Path) -> Option<ComicStyle> {
-        match read(path) {
+        match read(path, &self.registry) {
             Ok((seen, saved)) => {
                 self.message = None;
                 self.name = self.shown(path);
@@ -280,7 +189,7 @@ impl Files {
             return None;
         }
         open.looked = Instant::now();
-        match read(&open.path) {
+        match read(&open.path, &self.registry) {
             Ok((text, _)) if text == open.seen => None,
             Ok((text, read)) => {
                 open.seen = text;
@@ -337,14 +246,10 @@ mod tests {
     }
 
     fn inked(width: f32) -> ComicStyle {
-        ComicStyle {
-            version: ComicStyle::VERSION,
-            contours: Some(Contours {
-                width,
-                ..Contours::default()
-            }),
-            ..ComicStyle::default()
-        }
+        ComicStyle::new().with(Contours {
+            width,
+            ..Contours::default()
+        })
     }
 
     fn wait(files: &mut Files, camera: Entity, style: &ComicStyle) -> Option<ComicStyle> {
@@ -355,7 +260,7 @@ mod tests {
     #[test]
     fn a_file_goes_there_and_back() {
         let folder = folder("files");
-        let mut files = Files::new(folder.clone());
+        let mut files = Files::new(folder.clone(), EffectRegistry::built_in());
         let camera = Entity::PLACEHOLDER;
         files.save(camera, &inked(3.0));
         assert!(files.message.is_some(), "no name, no file");
@@ -376,7 +281,7 @@ mod tests {
         // Somebody edits it, breaks it, mends it, deletes it.
         fs::write(&path, "(version: 1, contours: (width: 7.0))").expect("written");
         let read = wait(&mut files, camera, &inked(4.0)).expect("news");
-        assert_eq!(read.contours.map(|c| c.width), Some(7.0));
+        assert_eq!(read.get::<Contours>().map(|c| c.width), Some(7.0));
         fs::write(&path, "(version: 1,\n contours: (widht: 7.0))").expect("written");
         assert_eq!(
             wait(&mut files, camera, &inked(7.0)),

@@ -24,25 +24,7 @@ pub fn hue_wheel(ui: &mut Ui, hsv: &mut [f32; 3], diameter: f32) -> Response {
         turned = Some(hue_at(centre, radius, at));
     }
     if response.has_focus() {
-        // The arrows turn the wheel and do not leave it.
-        ui.memory_mut(|memory| {
-            memory.set_focus_lock_filter(
-                response.id,
-                EventFilter {
-                    horizontal_arrows: true,
-                    vertical_arrows: true,
-                    ..EventFilter::default()
-                },
-            );
-        });
-        let step = ui.input(|input| {
-            use bevy_egui::egui::Key;
-            let pressed = |key| f32::from(u8::from(input.key_pressed(key)));
-            vec2(
-                pressed(Key::ArrowRight) - pressed(Key::ArrowLeft),
-                pressed(Key::ArrowUp) - pressed(Key::ArrowDown),
-            )
-        });
+        let step = arrows(ui, &response);
         if step != Vec2::ZERO {
             turned = Some((
                 (hue + step.x / 72.0).rem_euclid(1.0),
@@ -55,6 +37,36 @@ pub fn hue_wheel(ui: &mut Ui, hsv: &mut [f32; 3], diameter: f32) -> Response {
         response.mark_changed();
     }
 
+    paint(ui, &response, centre, radius, *hsv);
+    response
+}
+
+/// The steps of the arrow keys in this frame: right and up are positive.
+fn arrows(ui: &Ui, response: &Response) -> Vec2 {
+    // The arrows turn the wheel and do not leave it.
+    ui.memory_mut(|memory| {
+        memory.set_focus_lock_filter(
+            response.id,
+            EventFilter {
+                horizontal_arrows: true,
+                vertical_arrows: true,
+                ..EventFilter::default()
+            },
+        );
+    });
+    ui.input(|input| {
+        use bevy_egui::egui::Key;
+        let pressed = |key| f32::from(u8::from(input.key_pressed(key)));
+        vec2(
+            pressed(Key::ArrowRight) - pressed(Key::ArrowLeft),
+            pressed(Key::ArrowUp) - pressed(Key::ArrowDown),
+        )
+    })
+}
+
+/// Draws the disc, its rim, and the knob at the colour's place.
+fn paint(ui: &Ui, response: &Response, centre: Pos2, radius: f32, hsv: [f32; 3]) {
+    let [hue, saturation, value] = hsv;
     let color =
         |hue: f32, saturation: f32| Color32::from(Hsva::new(hue, saturation, value.max(0.35), 1.0));
     let mut mesh = Mesh::default();
@@ -68,9 +80,8 @@ pub fn hue_wheel(ui: &mut Ui, hsv: &mut [f32; 3], diameter: f32) -> Response {
     }
     let painter = ui.painter();
     painter.add(Shape::mesh(mesh));
-    let rim = ui.style().interact(&response).fg_stroke;
+    let rim = ui.style().interact(response).fg_stroke;
     painter.circle_stroke(centre, radius, rim);
-    let [hue, saturation, _] = *hsv;
     let knob = place(centre, radius, hue, saturation);
     painter.circle(
         knob,
@@ -79,7 +90,6 @@ pub fn hue_wheel(ui: &mut Ui, hsv: &mut [f32; 3], diameter: f32) -> Response {
         Stroke::new(2.0, Color32::WHITE),
     );
     painter.circle_stroke(knob, 7.5, Stroke::new(1.0, Color32::BLACK));
-    response
 }
 
 fn place(centre: Pos2, radius: f32, hue: f32, saturation: f32) -> Pos2 {

@@ -3,7 +3,7 @@
 
 use std::{collections::HashMap, sync::LazyLock};
 
-use crate::{ContourOperator, DepthMap, Outlines, RangeSmoothing};
+use crate::{DepthMap, RangeSmoothing};
 
 const SCORES: &str = include_str!("../../docs/report/line_scores.csv");
 const TIMES: &str = include_str!("../../docs/report/line_times.csv");
@@ -105,21 +105,6 @@ fn read_lines(detector: &str) -> Option<Lines> {
     })
 }
 
-/// The report's name for what finds contours.
-pub fn contours(operator: ContourOperator) -> String {
-    format!("{operator:?}")
-}
-
-/// The report's name for the kinds of outlines.
-pub fn outlines(outlines: &Outlines) -> &'static str {
-    match (&outlines.silhouettes, &outlines.creases, &outlines.objects) {
-        (Some(_), Some(_), Some(_)) => "all outlines",
-        (Some(_), Some(_), None) => "silhouettes + creases",
-        (Some(_), None, None) => "silhouettes",
-        _ => "another choice of kinds",
-    }
-}
-
 /// (mean change of the picture from frame to frame in display codes, largest
 /// lag of the range in octaves) over the report's sequences.
 pub fn flicker(variant: &str) -> Option<(f64, f64)> {
@@ -179,8 +164,11 @@ mod tests {
             assert!(lines.time > 0.0);
         }
         assert_eq!(lines("nonsense"), None);
-        let default = contours(ContourOperator::default());
-        assert!(DETECTORS.contains(&default.as_str()));
+        for effect in crate::EffectRegistry::built_in().types() {
+            if let Some(name) = (effect.default)().any_report_name() {
+                assert!(DETECTORS.contains(&name.as_str()), "{name}");
+            }
+        }
         let off = flicker("off").expect("off");
         let default = flicker("the default").expect("the default");
         assert!(flicker("the default and percentiles").is_some());

@@ -56,7 +56,7 @@ use bevy_egui::{
     EguiPlugin, EguiPostUpdateSet, egui,
 };
 
-use crate::timing::PassTimesPlugin;
+use crate::{EffectRegistry, timing::PassTimesPlugin};
 use panel::Panel;
 
 /// Adds the inspector: a key opens a panel in the primary window.
@@ -164,6 +164,11 @@ impl Plugin for ComicsInspectorPlugin {
                 settings.auto_create_primary_context = false;
             }
         }
+        // One list for both, whichever plugin comes first.
+        let registry = app
+            .world_mut()
+            .get_resource_or_init::<EffectRegistry>()
+            .clone();
         app.add_plugins(PassTimesPlugin)
             .insert_resource(ComicsInspector {
                 open: false,
@@ -174,7 +179,7 @@ impl Plugin for ComicsInspectorPlugin {
                 widgets: HashMap::default(),
                 focused: None,
             })
-            .insert_resource(Panel::new(self))
+            .insert_resource(Panel::new(self, &registry))
             .add_systems(
                 PreUpdate,
                 (

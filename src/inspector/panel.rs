@@ -1,5 +1,6 @@
 //! The frame of the panel: which camera, which page, what changes.
 
+mod pages;
 mod toolbar;
 
 use std::path::PathBuf;
@@ -30,7 +31,7 @@ use super::{
     presets::Presets,
     views,
 };
-use crate::{ComicStyle, DebugView, StyleTransition, StyleWeight};
+use crate::{ComicStyle, DebugView, EffectRegistry, StyleTransition, StyleWeight};
 
 /// What the panel knows about a camera.
 #[derive(Default)]
@@ -65,13 +66,13 @@ pub struct Panel {
 }
 
 impl Panel {
-    pub fn new(plugin: &ComicsInspectorPlugin) -> Self {
+    pub fn new(plugin: &ComicsInspectorPlugin, registry: &EffectRegistry) -> Self {
         Self {
             memory: Memory::load(plugin.memory.as_deref()),
             memory_path: plugin.memory.clone(),
             cameras: EntityHashMap::default(),
-            files: Files::new(plugin.styles.clone()),
-            presets: Presets::default(),
+            files: Files::new(plugin.styles.clone(), registry.clone()),
+            presets: Presets::new(registry.clone()),
             costs: Costs::default(),
             photo: Photo::new(plugin.pictures.clone()),
             clipboard: Clipboard::default(),
@@ -186,12 +187,7 @@ impl Panel {
         let cameras = cameras(world);
         self.cameras
             .retain(|camera, _| cameras.iter().any(|(c, _)| c == camera));
-        let chosen = world.resource::<ComicsInspector>().camera;
-        let mut camera = cameras
-            .iter()
-            .map(|(camera, _)| *camera)
-            .find(|camera| Some(*camera) == chosen)
-            .or_else(|| cameras.first().map(|(camera, _)| *camera));
+        let mut camera = chosen_camera(world, &cameras);
 
         self.head(ui, world, &cameras, &mut camera, widgets);
         ui.separator();
@@ -201,7 +197,8 @@ impl Panel {
         };
         world.resource_mut::<ComicsInspector>().camera = Some(camera);
 
-        let mut before = ComicStyle::of(world.entity(camera));
+        let registry = world.resource::<EffectRegistry>().clone();
+        let mut before = ComicStyle::of(world.entity(camera), &registry);
         let mut style = before.clone();
         if self.toolbar(ui, world, camera, &mut style, widgets) {
             // A step back is no change of its own.
@@ -216,44 +213,9 @@ impl Panel {
             .id_salt(self.memory.tab.name())
             .show(ui, |ui| {
                 ui.spacing_mut().slider_width = (ui.available_width() - 240.0).clamp(60.0, 400.0);
-                match self.memory.tab {
-                    Tab::Style => {
-                        if world.entity(camera).contains::<StyleTransition>() {
-                            ui.label("A transition is under way: a change ends it.");
-                        }
-                        fields::style(ui, &mut style, widgets);
-                    }
-                    Tab::Presets => self.presets.show(
-                        ui,
-                        world,
-                        camera,
-                        self.files.folder(),
-                        &mut self.memory.fade,
-                        widgets,
-                    ),
-                    Tab::Files => self.files.show(ui, camera, &mut style, widgets),
-                    Tab::Views => {
-                        // A view that the game has chosen stays the game's.
-                        if !world.entity(camera).contains::<DebugView>()
-                            && !self.debugged.contains(&camera)
-                        {
-                            self.debugged.push(camera);
-                        }
-                        views::show(ui, world, camera, widgets);
-                    }
-                    Tab::Cost => self.costs.show(ui, world, camera, widgets),
-                    Tab::Photo => {
-                        self.photo
-                            .show(ui, world, &mut self.memory.multiple, widgets);
-                    }
-                }
+                self.page(ui, world, camera, &mut style, widgets);
             });
-        if self.memory.tab != Tab::Views {
-            views::leave(world);
-        }
-        if self.memory.tab != Tab::Cost {
-            self.costs.close(world);
-        }
+        self.leave_other_pages(world);
         if let Some(preset) = self.presets.chosen.take() {
             // A fade is a step like any other; the panel need not be open for it.
             self.record(camera, before.clone(), None);
@@ -359,6 +321,16 @@ fn put(world: &mut World, camera: Entity, style: &ComicStyle) {
     camera.remove::<StyleTransition>();
     style.apply(&mut camera);
     world.flush();
+}
+
+/// The camera whose style is shown: the first one where the chosen one is gone.
+fn chosen_camera(world: &World, cameras: &[(Entity, String)]) -> Option<Entity> {
+    let chosen = world.resource::<ComicsInspector>().camera;
+    cameras
+        .iter()
+        .map(|(camera, _)| *camera)
+        .find(|camera| Some(*camera) == chosen)
+        .or_else(|| cameras.first().map(|(camera, _)| *camera))
 }
 
 /// The 3D cameras, with what they are called.

@@ -16,7 +16,7 @@ use bevy::{
 };
 use bevy_egui::{
     EguiTextureHandle, EguiUserTextures,
-    egui::{self, Button, Slider, TextureId, Ui, vec2},
+    egui::{self, Button, Slider, TextureId, Ui, Vec2, vec2},
 };
 
 use super::{
@@ -25,7 +25,7 @@ use super::{
     files::style_files,
     note,
 };
-use crate::{ComicStyle, ComicsDiagnostics, ComicsStage, presets};
+use crate::{ComicStyle, ComicsDiagnostics, ComicsStage, EffectRegistry, presets};
 
 const WIDTH: u32 = 240;
 const HEIGHT: u32 = 135;
@@ -54,8 +54,8 @@ struct Sitting {
     complete: u32,
 }
 
-#[derive(Default)]
 pub struct Presets {
+    registry: EffectRegistry,
     entries: Option<Vec<Entry>>,
     thumbnails: HashMap<String, Thumbnail>,
     queue: VecDeque<String>,
@@ -65,7 +65,7 @@ pub struct Presets {
     pub chosen: Option<ComicStyle>,
 }
 
-fn entries(folder: &Path) -> Vec<Entry> {
+fn entries(folder: &Path, registry: &EffectRegistry) -> Vec<Entry> {
     let own = presets::NAMES.iter().filter_map(|name| {
         let style = presets::preset(name)?.map_err(|error| error.to_string());
         Some(Entry::new((*name).to_owned(), style))
@@ -78,7 +78,11 @@ fn entries(folder: &Path) -> Vec<Entry> {
         }
         let style = std::fs::read_to_string(&path)
             .map_err(|error| error.to_string())
-            .and_then(|text| ComicStyle::from_ron(&text).map_err(|error| error.to_string()));
+            .and_then(|text| {
+                registry
+                    .style_from_ron(&text)
+                    .map_err(|error| error.to_string())
+            });
         Some(Entry::new(name, style))
     });
     own.chain(files).collect()
@@ -92,9 +96,49 @@ impl Entry {
         };
         Self { name, title, style }
     }
+
+    /// Draws the picture with its title; gives the style if it was clicked.
+    fn show(
+        &self,
+        ui: &mut Ui,
+        thumbnail: Option<&Thumbnail>,
+        size: Vec2,
+        widgets: &mut Widgets,
+    ) -> Option<ComicStyle> {
+        let picture = match thumbnail {
+            Some(thumbnail) => {
+                let image = egui::Image::new((thumbnail.texture, size));
+                ui.add(Button::image(image).min_size(size).frame(false))
+            }
+            None => ui.add_sized(size, Button::new("…")),
+        };
+        note(widgets, format!("presets.{}", self.name), &picture);
+        match &self.style {
+            Ok(style) => {
+                ui.label(&self.title);
+                picture.clicked().then(|| style.clone())
+            }
+            Err(error) => {
+                fields::error(ui, &self.title).on_hover_text(error);
+                None
+            }
+        }
+    }
 }
 
 impl Presets {
+    pub fn new(registry: EffectRegistry) -> Self {
+        Self {
+            registry,
+            entries: None,
+            thumbnails: HashMap::default(),
+            queue: VecDeque::new(),
+            sitting: None,
+            source: None,
+            chosen: None,
+        }
+    }
+
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -125,6 +169,11 @@ impl Presets {
         if waiting > 0 {
             ui.label(format!("{waiting} pictures to take"));
         }
+        self.pictures(ui, widgets);
+    }
+
+    /// The pictures, in as many columns as there is room for.
+    fn pictures(&mut self, ui: &mut Ui, widgets: &mut Widgets) {
         let wide = ui.available_width();
         let columns = (wide / 170.0).floor().max(1.0);
         let width = (wide / columns - 10.0).max(80.0);
@@ -134,25 +183,8 @@ impl Presets {
                 ui.allocate_ui(vec2(width, size.y + 24.0), |ui| {
                     ui.vertical(|ui| {
                         let thumbnail = self.thumbnails.get(&entry.name);
-                        let picture = match thumbnail {
-                            Some(thumbnail) => {
-                                let image = egui::Image::new((thumbnail.texture, size));
-                                ui.add(Button::image(image).min_size(size).frame(false))
-                            }
-                            None => ui.add_sized(size, Button::new("…")),
-                        };
-                        note(widgets, format!("presets.{}", entry.name), &picture);
-                        let chosen = picture.clicked();
-                        match &entry.style {
-                            Ok(style) => {
-                                ui.label(&entry.title);
-                                if chosen {
-                                    self.chosen = Some(style.clone());
-                                }
-                            }
-                            Err(error) => {
-                                fields::error(ui, &entry.title).on_hover_text(error);
-                            }
+                        if let Some(style) = entry.show(ui, thumbnail, size, widgets) {
+                            self.chosen = Some(style);
                         }
                     });
                 });
@@ -162,7 +194,7 @@ impl Presets {
 
     fn refresh(&mut self, world: &mut World, folder: &Path) {
         self.stop(world);
-        let entries = entries(folder);
+        let entries = entries(folder, &self.registry);
         self.queue = entries
             .iter()
             .filter(|entry| entry.style.is_ok())

@@ -5,7 +5,7 @@ use bevy_egui::egui::{Color32, Grid, Ui};
 use egui_plot::{Bar, BarChart, Plot, VLine};
 
 use super::{Widgets, fields::section, note};
-use crate::{DebugView, DepthBin, DepthHistogram, VisibleDepthRange};
+use crate::{DebugView, DepthBin, DepthHistogram, EffectRegistry, EffectType, VisibleDepthRange};
 
 /// A camera that the panel reads the range of, and what it has put there.
 #[derive(Component)]
@@ -14,49 +14,62 @@ struct Probed {
     histogram: bool,
 }
 
-fn label(view: DebugView) -> &'static str {
+/// What a menu calls a view, and what it shows.
+fn describe(view: DebugView, types: &[&EffectType]) -> (&'static str, &'static str) {
     match view {
-        DebugView::DepthMap => "Depth map",
-        DebugView::RawRange => "Raw range",
-        DebugView::Silhouettes => "Silhouettes",
-        DebugView::Creases => "Creases",
-        DebugView::ObjectIds => "Object ids",
-        DebugView::ToneBands => "Tone bands",
-        DebugView::Saturation => "Saturation mask",
-        DebugView::Difference => "Difference to the original",
-    }
-}
-
-fn explanation(view: DebugView) -> &'static str {
-    match view {
-        DebugView::DepthMap => "Black is near, white is far.",
-        DebugView::RawRange => "The depth buffer between the ends of the range: white is near.",
-        DebugView::Silhouettes | DebugView::Creases => "Black is a full line.",
-        DebugView::ObjectIds => "A colour for every object; black has none.",
-        DebugView::ToneBands => "The lightness after the bands.",
-        DebugView::Saturation => "White keeps its colours, black loses them.",
-        DebugView::Difference => "In display codes, four times as bright.",
+        DebugView::DepthMap => ("Depth map", "Black is near, white is far."),
+        DebugView::RawRange => (
+            "Raw range",
+            "The depth buffer between the ends of the range: white is near.",
+        ),
+        DebugView::Silhouettes => ("Silhouettes", "Black is a full line."),
+        DebugView::Creases => ("Creases", "Black is a full line."),
+        DebugView::ObjectIds => ("Object ids", "A colour for every object; black has none."),
+        DebugView::Saturation => (
+            "Saturation mask",
+            "White keeps its colours, black loses them.",
+        ),
+        DebugView::Difference => (
+            "Difference to the original",
+            "In display codes, four times as bright.",
+        ),
+        DebugView::Effect(name) => types
+            .iter()
+            .find(|effect| effect.name == name)
+            .and_then(|effect| effect.view)
+            .map_or((name, ""), |view| (view.label, view.explanation)),
     }
 }
 
 pub fn show(ui: &mut Ui, world: &mut World, camera: Entity, widgets: &mut Widgets) {
     probe(world, camera);
+    let types = world.resource::<EffectRegistry>().types();
+    let of_effects = types
+        .iter()
+        .filter(|effect| effect.view.is_some())
+        .map(|effect| DebugView::Effect(effect.name));
+    let choices: Vec<DebugView> = DebugView::SHARED.iter().copied().chain(of_effects).collect();
     let mut entity = world.entity_mut(camera);
     let before = entity.get::<DebugView>().copied();
     let mut view = before;
     section(ui, "Shown instead of the picture", |ui| {
         let none = ui.radio_value(&mut view, None, "The picture");
         note(widgets, "view.none", &none);
-        for choice in DebugView::ALL {
+        for choice in choices {
+            let (label, explanation) = describe(choice, &types);
             let enabled = cfg!(feature = "objects") || choice != DebugView::ObjectIds;
             ui.add_enabled_ui(enabled, |ui| {
-                let radio = ui.radio_value(&mut view, Some(choice), label(choice));
-                note(widgets, format!("view.{choice:?}"), &radio);
-                radio.on_hover_text(explanation(choice));
+                let radio = ui.radio_value(&mut view, Some(choice), label);
+                let name = match choice {
+                    DebugView::Effect(name) => name.to_owned(),
+                    shared => format!("{shared:?}"),
+                };
+                note(widgets, format!("view.{name}"), &radio);
+                radio.on_hover_text(explanation);
             });
         }
         if let Some(view) = view {
-            ui.weak(explanation(view));
+            ui.weak(describe(view, &types).1);
         }
     });
     if view != before {

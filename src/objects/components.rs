@@ -1,7 +1,7 @@
 //! Components on mesh entities.
 
 use bevy::{
-    color::{Color, ColorToComponents},
+    color::Color,
     ecs::{
         change_detection::DetectChangesMut,
         component::Component,
@@ -11,12 +11,11 @@ use bevy::{
         reflect::ReflectComponent,
         system::{Query, ResMut},
     },
-    math::Vec3,
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
 use super::table::{ObjectStyleUniform, ObjectStyles};
-use crate::sanitize::{bounded_option, displayable};
+use crate::settings::{bounded_option, displayable, linear_rgb};
 
 /// This object has no lines of its own.
 ///
@@ -100,14 +99,13 @@ impl ContourStyle {
 
     fn uniform(self) -> ObjectStyleUniform {
         let style = self.sanitized();
-        let color = style.color.unwrap_or(Color::BLACK).to_linear();
         let LineKinds {
             silhouettes,
             creases,
             objects,
         } = style.kinds;
         ObjectStyleUniform {
-            color: Vec3::from_array(color.to_f32_array_no_alpha()),
+            color: linear_rgb(style.color.unwrap_or(Color::BLACK)),
             has_color: if style.color.is_some() { 1.0 } else { 0.0 },
             half_width: style.width.map_or(-1.0, |w| 0.5 * w),
             kinds: u32::from(silhouettes) | u32::from(creases) << 1 | u32::from(objects) << 2,

@@ -10,7 +10,7 @@ use bevy::{
     },
 };
 
-/// `ObjectStyle` of `bindings.wgsl`.
+/// `ObjectStyle` of `objects.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ObjectStyleUniform {
     pub color: Vec3,

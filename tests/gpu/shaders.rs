@@ -1,8 +1,10 @@
 //! Every entry point in every combination of what may be compiled in.
 
-use std::fs;
+use std::{fs, ops::Range};
 
-use crate::wgsl::{files, module};
+use bevy_comics::{DebugView, EffectRegistry};
+
+use crate::wgsl::{Definition, files, module, module_with};
 
 fn shader(name: &str) -> String {
     let path = files()
@@ -13,7 +15,7 @@ fn shader(name: &str) -> String {
 }
 
 /// Every subset of `choices`.
-fn subsets<'a>(choices: &[&'a str]) -> Vec<Vec<&'a str>> {
+fn subsets<T: Copy>(choices: &[T]) -> Vec<Vec<T>> {
     (0..1u32 << choices.len())
         .map(|bits| {
             choices
@@ -26,80 +28,290 @@ fn subsets<'a>(choices: &[&'a str]) -> Vec<Vec<&'a str>> {
         .collect()
 }
 
-#[test]
-fn every_combination_of_styles_composes_and_validates() {
-    let source = shader("stylize/stylize.wgsl");
-    let styles = subsets(&[
-        "TONE_BANDS",
-        "DESATURATION",
-        "COLORIZATION",
-        "BLACK_FLATS",
-        "CONTOURS",
-    ]);
-    let lines: [&[&str]; 5] = [
-        &[],
-        &["EDGES"],
-        &["EDGES", "FLOOD"],
-        &["EDGES", "OBJECT_STYLES"],
-        &["EDGES", "FLOOD", "OBJECT_STYLES", "SKETCH"],
-    ];
-    let depths: [&[&str]; 5] = [
-        &[],
-        &["DEPTH"],
-        &["DEPTH", "VISIBLE_RANGE"],
-        &["DEPTH", "VISIBLE_RANGE", "MULTISAMPLED"],
-        &[
-            "DEPTH",
-            "VISIBLE_RANGE",
-            "OBLIQUE",
-            "STEEP_FLATS",
-            "STORED_SRGB",
+/// Definitions that are set together.
+type Definitions = Vec<Definition<'static>>;
+
+fn flags(names: &[&'static str]) -> Definitions {
+    names.iter().map(|name| (*name, None)).collect()
+}
+
+/// A definition that is always one of these numbers.
+fn numbers(name: &'static str, values: Range<u32>) -> Vec<Definitions> {
+    values.map(|value| vec![(name, Some(value))]).collect()
+}
+
+/// Flags that each may be set or not.
+fn optional(names: &[&'static str]) -> Vec<Definitions> {
+    subsets(names).iter().map(|names| flags(names)).collect()
+}
+
+/// One choice of every list, in all combinations.
+fn product(lists: &[Vec<Definitions>]) -> Vec<Definitions> {
+    let all = |found: Vec<Definitions>, list: &Vec<Definitions>| {
+        let with = |before: &Definitions| {
+            let before = before.clone();
+            list.iter().map(move |one| [&before[..], one].concat())
+        };
+        found.iter().flat_map(with).collect()
+    };
+    lists.iter().fold(vec![Vec::new()], all)
+}
+
+/// An effect of the crate with every mode that it draws in: the definitions that
+/// its `variants` set, and those of what it needs.
+type Modes = (&'static str, Vec<Definitions>);
+
+/// The effects that read colour and depth alone.
+fn picture_effects() -> [Modes; 5] {
+    let mapped = |more: Definition<'static>| [flags(&["MAP", "DEPTH"]), vec![more]].concat();
+    [
+        (
+            "tone_bands",
+            product(&[
+                vec![flags(&["TONE_BANDS", "LIGHTNESS_CHANGE"])],
+                numbers("TONE_BANDS_FAITHFUL", 0..2),
+            ]),
+        ),
+        (
+            "desaturation",
+            product(&[
+                vec![flags(&["DESATURATION", "MAP", "DEPTH"])],
+                numbers("DESATURATION_CURVE", 0..3),
+                numbers("DESATURATION_FAITHFUL", 0..2),
+            ]),
+        ),
+        (
+            "colorization",
+            // Mode 0 changes nothing and is never drawn.
+            product(&[
+                vec![flags(&["COLORIZATION"])],
+                vec![
+                    vec![("COLORIZATION_MODE", Some(1))],
+                    mapped(("COLORIZATION_MODE", Some(2))),
+                    mapped(("COLORIZATION_MODE", Some(3))),
+                ],
+                numbers("COLORIZATION_FAITHFUL", 0..2),
+            ]),
+        ),
+        (
+            "black_flats",
+            product(&[
+                vec![flags(&["BLACK_FLATS"])],
+                vec![
+                    Vec::new(),
+                    flags(&["MAP", "DEPTH"]),
+                    mapped(("BLACK_FLATS_STEEP", None)),
+                ],
+            ]),
+        ),
+        (
+            "contours",
+            product(&[
+                vec![flags(&["CONTOURS", "MAP", "DEPTH"])],
+                numbers("CONTOURS_OPERATOR", 0..4),
+                numbers("CONTOURS_FAITHFUL", 0..2),
+                vec![
+                    Vec::new(),
+                    flags(&["CONTOURS_WHOLE"]),
+                    flags(&["CONTOURS_WHOLE", "CONTOURS_SINGLE_RING"]),
+                ],
+                optional(&["CONTOURS_STEADY"]),
+            ]),
+        ),
+    ]
+}
+
+/// The effects that draw lines, of which a camera has one at a time: the sketch
+/// draws in place of the outlines.
+fn line_effects() -> [Modes; 2] {
+    let flood = |reach| vec![("FLOOD", None), ("LINE_REACH", Some(reach))];
+    let gather = |reach| vec![("LINE_REACH", Some(reach))];
+    [
+        (
+            "outlines",
+            product(&[
+                vec![flags(&["OUTLINES", "LINES"])],
+                vec![gather(0), gather(1), gather(2), flood(2)],
+                optional(&["OBJECT_STYLES"]),
+            ]),
+        ),
+        (
+            "sketch",
+            // Lines that are read anywhere come from a flood, unless the pixels
+            // are the lines.
+            product(&[
+                vec![flags(&["SKETCH", "LINES", "LINES_ANYWHERE"])],
+                vec![gather(0), flood(1), flood(2)],
+                optional(&["OBJECT_STYLES", "SKETCH_FADES"]),
+            ]),
+        ),
+    ]
+}
+
+/// Every debug view with what it needs.
+fn debug_views() -> Vec<Definitions> {
+    let lines = |view| vec![(view, None), ("LINES", None), ("LINE_REACH", Some(1))];
+    vec![
+        flags(&["VIEW_DEPTH_MAP", "MAP", "DEPTH"]),
+        flags(&["VIEW_RAW_RANGE", "MAP", "DEPTH"]),
+        lines("VIEW_SILHOUETTES"),
+        lines("VIEW_CREASES"),
+        flags(&["VIEW_OBJECT_IDS", "OBJECT_IDS"]),
+        flags(&["VIEW_SATURATION"]),
+        flags(&["VIEW_DIFFERENCE"]),
+        vec![
+            ("VIEW_EFFECT", None),
+            ("VIEW_TONE_BANDS", None),
+            ("TONE_BANDS", None),
+            ("TONE_BANDS_FAITHFUL", Some(0)),
+            ("LIGHTNESS_CHANGE", None),
         ],
-    ];
-    for style in &styles {
-        for depth in depths {
-            if depth.is_empty() && style.contains(&"CONTOURS") {
-                continue;
-            }
-            // Lines are read apart from depth: every form of them with some
-            // combinations is every combination of what meets in the code.
-            for lines in lines.iter().take(if style.len() < 2 { 5 } else { 1 }) {
-                let defs: Vec<_> = style.iter().chain(depth).chain(*lines).copied().collect();
-                if let Err(error) = module(&source, &defs) {
-                    panic!("{defs:?}: {error}");
-                }
+    ]
+}
+
+/// Composes the fused pass with the definitions that production sets: what says
+/// how depth is read is left out where nothing reads it, and two numbers are
+/// always there.
+fn compose(source: &str, parts: &[&[Definition<'static>]]) {
+    let mut all = parts.concat();
+    let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
+    let depth = names.contains(&"DEPTH");
+    all.retain(|(name, _)| match *name {
+        "VISIBLE_RANGE" => names.contains(&"MAP"),
+        "OBLIQUE" => depth,
+        "MULTISAMPLED" => depth || names.contains(&"NORMALS") || names.contains(&"OBJECT_IDS"),
+        _ => true,
+    });
+    for number in ["MAP_FLAGS", "LINE_REACH"] {
+        if !names.contains(&number) {
+            all.push((number, Some(0)));
+        }
+    }
+    if let Err(error) = module_with(source, &all) {
+        panic!("{all:?}: {error}");
+    }
+}
+
+/// How the picture is stored and depth is seen, each in some of the forms.
+fn views() -> Vec<Definitions> {
+    let view = |names: &[&'static str], map_flags| {
+        [flags(names), vec![("MAP_FLAGS", Some(map_flags))]].concat()
+    };
+    vec![
+        view(&["SAME_SIZE"], 0),
+        view(&["SAME_SIZE", "VISIBLE_RANGE", "STORED_SRGB"], 2),
+        view(&["VISIBLE_RANGE", "MULTISAMPLED", "FINISH"], 0),
+        view(
+            &["SAME_SIZE", "OBLIQUE", "VISIBLE_RANGE", "STORED_OKLAB"],
+            2,
+        ),
+        view(&["SAME_SIZE", "MULTISAMPLED", "OBLIQUE", "STORED_SRGB"], 1),
+        view(&["VISIBLE_RANGE", "STORED_OKLAB", "FINISH"], 3),
+    ]
+}
+
+#[test]
+fn every_effect_of_the_crate_is_composed() {
+    let modes = picture_effects().into_iter().chain(line_effects());
+    let composed: Vec<&str> = modes.map(|(name, _)| name).collect();
+    let types = EffectRegistry::built_in().types();
+    let known: Vec<&str> = types.iter().map(|effect| effect.name).collect();
+    assert_eq!(composed, known);
+    let of_effects = types.iter().filter(|effect| effect.view.is_some()).count();
+    assert_eq!(debug_views().len(), DebugView::SHARED.len() + of_effects);
+}
+
+#[test]
+fn every_mode_of_every_effect_composes_and_validates() {
+    let source = EffectRegistry::built_in().shader();
+    let views = views();
+    compose(&source, &[]);
+    for (_, modes) in picture_effects().iter().chain(&line_effects()) {
+        for mode in modes {
+            for view in &views {
+                compose(&source, &[mode, view]);
             }
         }
     }
-    module(&source, &["COLORIZATION", "STORED_OKLAB"]).expect("the OKLab store");
-    for view in [
-        "VIEW_DEPTH_MAP",
-        "VIEW_RAW_RANGE",
-        "VIEW_SILHOUETTES",
-        "VIEW_CREASES",
-        "VIEW_OBJECT_IDS",
-        "VIEW_TONE_BANDS",
-        "VIEW_SATURATION",
-        "VIEW_DIFFERENCE",
-        "SKETCH_FADES",
-    ] {
-        for samples in subsets(&["MULTISAMPLED", "OBLIQUE", "FINISH"]) {
-            let mut defs = vec![
-                view,
-                "DEPTH",
-                "VISIBLE_RANGE",
-                "TONE_BANDS",
-                "DESATURATION",
-                "EDGES",
-                "FLOOD",
-                "SKETCH",
-            ];
-            defs.extend(&samples);
-            if view == "VIEW_OBJECT_IDS" {
-                defs.push("OBJECT_IDS");
+}
+
+#[test]
+fn every_combination_of_effects_composes_and_validates() {
+    let source = EffectRegistry::built_in().shader();
+    let views = views();
+    let pictures = picture_effects();
+    let lines = line_effects();
+    let mut turn = 0;
+    for chosen in subsets(&[0, 1, 2, 3, 4]) {
+        for line in [None, Some(&lines[0]), Some(&lines[1])] {
+            for view in &views {
+                // In another mode every time.
+                turn += 1;
+                let modes = chosen.iter().map(|i| &pictures[*i]).chain(line);
+                let mut parts: Vec<&[Definition]> = modes
+                    .map(|(_, modes)| &modes[turn % modes.len()][..])
+                    .collect();
+                parts.push(view);
+                compose(&source, &parts);
             }
-            if let Err(error) = module(&source, &defs) {
-                panic!("{defs:?}: {error}");
+        }
+    }
+}
+
+#[test]
+fn every_form_of_a_view_composes_and_validates() {
+    let source = EffectRegistry::built_in().shader();
+    let pictures = picture_effects();
+    let lines = line_effects();
+    let mut turn = 0;
+    let forms = [
+        "MULTISAMPLED",
+        "OBLIQUE",
+        "VISIBLE_RANGE",
+        "SAME_SIZE",
+        "FINISH",
+    ];
+    for form in optional(&forms) {
+        for stored in [&[][..], &["STORED_SRGB"], &["STORED_OKLAB"]] {
+            for line in &lines {
+                turn += 1;
+                let map = [("MAP_FLAGS", Some(turn as u32 % 4))];
+                let stored = flags(stored);
+                let modes = pictures.iter().chain([line]);
+                let mut parts: Vec<&[Definition]> = modes
+                    .map(|(_, modes)| &modes[turn % modes.len()][..])
+                    .collect();
+                parts.extend([&form[..], &stored, &map]);
+                compose(&source, &parts);
+            }
+        }
+    }
+    // What effects of games may read besides.
+    for needs in optional(&[
+        "NORMALS",
+        "OBJECT_IDS",
+        "DEPTH",
+        "MULTISAMPLED",
+        "SAME_SIZE",
+    ]) {
+        compose(&source, &[&needs]);
+    }
+}
+
+#[test]
+fn every_debug_view_composes_and_validates() {
+    let source = EffectRegistry::built_in().shader();
+    let pictures = picture_effects();
+    let lines = line_effects();
+    let everything: Vec<&[Definition]> = pictures.iter().map(|(_, modes)| &modes[0][..]).collect();
+    for view in debug_views() {
+        for form in optional(&["MULTISAMPLED", "OBLIQUE", "FINISH"]) {
+            // On a camera without effects, with a sketch, and with outlines.
+            compose(&source, &[&view, &form]);
+            for (_, modes) in &lines {
+                let mut parts = everything.clone();
+                parts.extend([&view[..], &form, &modes[modes.len() - 1]]);
+                compose(&source, &parts);
             }
         }
     }
@@ -126,23 +338,37 @@ fn every_shape_of_the_reduction_composes_and_validates() {
 
 #[test]
 fn every_kind_of_outline_composes_and_validates() {
-    let source = shader("outlining/detect.wgsl");
+    let source = shader("lines/detect.wgsl");
+    let forms = product(&[
+        numbers("SILHOUETTE_FAITHFUL", 0..2),
+        numbers("CREASE_FAITHFUL", 0..2),
+    ]);
     for kinds in subsets(&["SILHOUETTES", "CREASES", "OBJECT_EDGES", "OBJECT_STYLES"]) {
-        for view in subsets(&["MULTISAMPLED", "OBLIQUE", "FADING"]) {
-            let mut defs = vec!["DEPTH"];
+        for view in subsets(&["MULTISAMPLED", "OBLIQUE", "SAME_SIZE", "FADING"]) {
+            let mut defs = vec!["DEPTH", "FORMS"];
             defs.extend(kinds.iter().chain(&view));
+            if kinds.contains(&"CREASES") {
+                defs.push("NORMALS");
+            }
             if kinds.contains(&"OBJECT_EDGES") || kinds.contains(&"OBJECT_STYLES") {
                 defs.push("OBJECT_IDS");
             }
             if view.contains(&"FADING") {
                 defs.push("VISIBLE_RANGE");
             }
-            module(&source, &defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
+            for form in &forms {
+                // A kind that is not drawn has no form.
+                let drawn = |kind, at: usize| form[at].1 == Some(0) || kinds.contains(&kind);
+                if drawn("SILHOUETTES", 0) && drawn("CREASES", 1) {
+                    let all = [&flags(&defs)[..], form].concat();
+                    module_with(&source, &all).unwrap_or_else(|error| panic!("{all:?}: {error}"));
+                }
+            }
         }
     }
-    let source = shader("outlining/flood.wgsl");
-    for defs in [&["EDGES", "FIRST"][..], &["FLOOD"]] {
-        module(&source, defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
+    let source = shader("lines/flood.wgsl");
+    for defs in subsets(&["FIRST"]) {
+        module(&source, &defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
     }
     module(&shader("objects/ids.wgsl"), &[]).expect("the ids");
 }

@@ -1,9 +1,11 @@
 //! The shipped WGSL, composed as the engine composes it.
 
 use std::{
+    cell::RefCell,
     collections::HashMap,
     fs,
     path::{Path, PathBuf},
+    sync::OnceLock,
 };
 
 use naga_oil::compose::{
@@ -32,37 +34,62 @@ pub fn files() -> Vec<PathBuf> {
     found
 }
 
+/// A shader definition: a flag, or a number.
+pub type Definition<'a> = (&'a str, Option<u32>);
+
 /// Composes an entry point: `source` may import every module of the crate.
-pub fn module(source: &str, defs: &[&str]) -> Result<wgpu::naga::Module, String> {
-    let mut modules = HashMap::new();
-    for path in files() {
-        let text = fs::read_to_string(&path).expect("a WGSL file");
-        let (name, imports, _) = get_preprocessor_data(&text);
-        if let Some(name) = name {
-            modules.insert(name, (text, imports));
+pub fn module(source: &str, flags: &[&str]) -> Result<wgpu::naga::Module, String> {
+    let definitions: Vec<Definition> = flags.iter().map(|flag| (*flag, None)).collect();
+    module_with(source, &definitions)
+}
+
+/// As [`module`], with numbers among the definitions.
+pub fn module_with(source: &str, definitions: &[Definition]) -> Result<wgpu::naga::Module, String> {
+    // Modules are the same for every entry point: each thread parses them once.
+    thread_local! {
+        static COMPOSER: RefCell<Composer> = RefCell::default();
+    }
+    COMPOSER.with_borrow_mut(|composer| {
+        composer.capabilities = wgpu::naga::valid::Capabilities::all();
+        let (_, wanted, _) = get_preprocessor_data(source);
+        for import in wanted {
+            add(composer, modules(), &import.import)?;
         }
-    }
-    let (_, wanted, _) = get_preprocessor_data(source);
-    let mut composer = Composer::default();
-    composer.capabilities = wgpu::naga::valid::Capabilities::all();
-    for import in wanted {
-        add(&mut composer, &modules, &import.import)?;
-    }
-    let shader_defs = defs
-        .iter()
-        .map(|def| ((*def).to_owned(), ShaderDefValue::Bool(true)))
-        .collect();
-    composer
-        .make_naga_module(NagaModuleDescriptor {
-            source,
-            file_path: "entry.wgsl",
-            shader_defs,
-            ..Default::default()
-        })
-        .map_err(|error| error.emit_to_string(&composer))
+        let shader_defs = definitions
+            .iter()
+            .map(|(name, number)| {
+                let value = number.map_or(ShaderDefValue::Bool(true), ShaderDefValue::UInt);
+                ((*name).to_owned(), value)
+            })
+            .collect();
+        composer
+            .make_naga_module(NagaModuleDescriptor {
+                source,
+                file_path: "entry.wgsl",
+                shader_defs,
+                ..Default::default()
+            })
+            .map_err(|error| error.emit_to_string(composer))
+    })
 }
 
 type Modules = HashMap<String, (String, Vec<naga_oil::compose::ImportDefinition>)>;
+
+/// What can be imported: text and imports by name.
+fn modules() -> &'static Modules {
+    static MODULES: OnceLock<Modules> = OnceLock::new();
+    MODULES.get_or_init(|| {
+        let mut modules = HashMap::new();
+        for path in files() {
+            let text = fs::read_to_string(&path).expect("a WGSL file");
+            let (name, imports, _) = get_preprocessor_data(&text);
+            if let Some(name) = name {
+                modules.insert(name, (text, imports));
+            }
+        }
+        modules
+    })
+}
 
 fn add(composer: &mut Composer, modules: &Modules, name: &str) -> Result<(), String> {
     if composer.contains_module(name) {

@@ -1,4 +1,4 @@
-//! Twin of `styles/black_flats.wgsl`.
+//! Twin of `effects/black_flats/black_flats.wgsl`.
 
 use super::{
     Rgb,

@@ -1,4 +1,4 @@
-//! Twin of `styles/color.wgsl`.
+//! Twin of `effect/color.wgsl`.
 
 use super::Rgb;
 
@@ -42,6 +42,11 @@ pub fn srgb_decode(c: Rgb) -> Rgb {
 
 pub fn luminance([r, g, b]: Rgb) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+/// Hunter's lightness.
+pub fn lightness(linear: Rgb) -> f64 {
+    luminance(linear).clamp(0.0, 1.0).sqrt()
 }
 
 pub fn largest(c: Rgb) -> f64 {

@@ -1,41 +1,15 @@
-//! Twin of `styles/contours/contours.wgsl`.
+//! Twin of `effects/contours/contours.wgsl`.
 
 use super::{
     Rgb,
     map::{Frame, is_background},
     mix, smoothstep,
+    view::{View, load_window},
+    window::{Steps, Window, gradient, map_steps, prewitt},
 };
 use bevy_comics::{ContourForm, ContourOperator, Contours};
 
-/// Depths of 3 x 3 taps, row by row, and which sides lie outside the viewport.
-#[derive(Clone, Copy, Debug)]
-pub struct Window {
-    pub depths: [[f64; 3]; 3],
-    /// West, east, north, south.
-    pub missing: [bool; 4],
-}
-
-/// What every neighbour has over its reference, row by row, the middle zero.
-type Steps = [[f64; 3]; 3];
-
-/// The raw kernels, as matrices.
-fn convolve(steps: &Steps, kernel: [[f64; 3]; 3]) -> f64 {
-    (0..3)
-        .flat_map(|r| (0..3).map(move |c| (r, c)))
-        .map(|(r, c)| steps[r][c] * kernel[r][c])
-        .sum()
-}
-
-const PREWITT: [[f64; 3]; 3] = [[-1.0, 0.0, 1.0]; 3];
 const SOBEL: [[f64; 3]; 3] = [[-1.0, 0.0, 1.0], [-2.0, 0.0, 2.0], [-1.0, 0.0, 1.0]];
-
-fn transposed(k: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
-    std::array::from_fn(|r| std::array::from_fn(|c| k[c][r]))
-}
-
-fn gradient(steps: &Steps, kernel: [[f64; 3]; 3]) -> f64 {
-    convolve(steps, kernel).hypot(convolve(steps, transposed(kernel)))
-}
 
 /// The plane's continuation past the centre: the smaller of two slopes that
 /// agree, none where they do not; where one side is sky, the other's.
@@ -93,14 +67,13 @@ pub fn response(s: &Contours, frame: &Frame, win: &Window) -> f64 {
     }
     let faithful = s.form == ContourForm::Faithful;
     let steps = if faithful {
-        let c = frame.with_sky(win.depths[1][1]);
-        win.depths.map(|row| row.map(|d| frame.with_sky(d) - c))
+        map_steps(frame, win)
     } else {
         plane_steps(frame, win)
     };
     let unit = |gain: f64| if faithful { 1.0 } else { gain };
     match s.operator {
-        ContourOperator::Prewitt => gradient(&steps, PREWITT) / unit(3.0),
+        ContourOperator::Prewitt => prewitt(&steps) / unit(3.0),
         ContourOperator::Sobel => gradient(&steps, SOBEL) / unit(4.0),
         ContourOperator::Laplace => steps.iter().flatten().sum::<f64>().abs() / unit(3.0),
         ContourOperator::Roberts if faithful => steps[2][2].hypot(steps[1][2] - steps[2][1]),
@@ -121,4 +94,43 @@ pub fn draw(s: &Contours, linear: Rgb, coverage: f64, depth: f64) -> Rgb {
     let ink = [ink.red, ink.green, ink.blue].map(f64::from);
     let t = (coverage * f64::from(s.opacity) * (1.0 - f64::from(s.fade) * depth)).clamp(0.0, 1.0);
     std::array::from_fn(|i| mix(linear[i], ink[i], t))
+}
+
+fn ring_line(s: &Contours, view: &View, at: [u32; 2], reach: u32, sample: u32) -> [f64; 2] {
+    let mut found = [0.0f64; 2];
+    let mut r = reach;
+    while r > 0 {
+        let win = load_window(view, at[0], at[1], r, sample);
+        let covered = line(s, response(s, &view.frame, &win));
+        let nearest = win.depths.iter().flatten().copied().fold(0.0, f64::max);
+        found = [found[0].max(covered), found[1].max(nearest)];
+        r = r.saturating_sub(2);
+    }
+    found
+}
+
+/// (coverage, D of the nearer side). `scale`: physical pixels a logical one.
+pub fn contour(s: &Contours, view: &View, x: u32, y: u32, scale: f64) -> [f64; 2] {
+    let radius = (0.5 * f64::from(s.width) * scale).clamp(0.125, 64.0);
+    let (whole, part) = (radius.floor() as u32, radius.fract());
+    let found = if view.samples > 1 {
+        let n = f64::from(view.samples);
+        (0..view.samples).fold([0.0, 0.0f64], |found, i| {
+            let wider = part * n > f64::from(i) + 0.5;
+            let one = ring_line(s, view, [x, y], whole + u32::from(wider), i);
+            [found[0] + one[0] / n, found[1].max(one[1])]
+        })
+    } else {
+        let inner = ring_line(s, view, [x, y], whole, 0);
+        if part > 0.0 {
+            let outer = ring_line(s, view, [x, y], whole + 1, 0);
+            [
+                mix(inner[0], inner[0].max(outer[0]), part),
+                inner[1].max(outer[1]),
+            ]
+        } else {
+            inner
+        }
+    };
+    [found[0], view.frame.depth_map(found[1])[0]]
 }

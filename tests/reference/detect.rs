@@ -1,12 +1,12 @@
-//! Twin of `outlining/detect.wgsl`: the edges of a whole view.
+//! Twin of `lines/detect.wgsl`: the edges of a whole view.
 
 use super::{
-    bindings::View,
-    map::is_background,
-    outlines::{
+    edge::{
         Normal, component_response, edge_response, gradient_extremes, normal_step, step_excess,
     },
+    map::is_background,
     smoothstep,
+    view::View,
 };
 use bevy_comics::{EdgeForm, Outlines};
 

@@ -1,6 +1,6 @@
 //! Twin of `finish/finish.wgsl`.
 
-use super::{Rgb, mix, sketch};
+use super::{Rgb, mix, noise};
 
 pub fn compare(weight: f64, split: f64, original: Rgb, styled: Rgb, x: f64) -> Rgb {
     let seen = if x < split { 0.0 } else { weight };
@@ -21,7 +21,7 @@ pub fn object_color(id: u32) -> Rgb {
     if id == 0 {
         return [0.0; 3];
     }
-    let bytes = sketch::hash(id).to_le_bytes();
+    let bytes = noise::hash(id).to_le_bytes();
     std::array::from_fn(|i| 0.2 + 0.8 * f64::from(bytes[i]) / 255.0)
 }
 

@@ -1,12 +1,12 @@
-//! Twin of `stylize/lines.wgsl` and, for its result, of `outlining/flood.wgsl`:
-//! the lines at a place, looked for everywhere.
+//! Twin of `lines/read.wgsl` and, for its result, of `lines/flood.wgsl`: the
+//! lines at a place, looked for everywhere.
 
 use super::{
     Rgb,
-    bindings::View,
     detect::{Edge, edge},
+    edge::{line_coverage, line_offset},
     mix,
-    outlines::{line_coverage, line_offset},
+    view::View,
 };
 use bevy_comics::Outlines;
 

@@ -1,27 +1,29 @@
-//! The shaders' twins in double precision, named as the WGSL files they mirror.
-//! Each is written from the definition, not from the shader.
+//! The shaders' twins in double precision, named as the WGSL files they mirror
+//! (`lines.rs`: `lines/read.wgsl` and `lines/flood.wgsl`). Each is written from the
+//! definition, not from the shader.
 
-pub mod bindings;
 pub mod black_flats;
 pub mod color;
 pub mod colorization;
 pub mod contours;
 pub mod desaturation;
 pub mod detect;
+pub mod edge;
 pub mod finish;
+pub mod fused;
 #[allow(dead_code, reason = "the light is tested function by function")]
 pub mod light;
 pub mod lines;
 pub mod map;
-pub mod outlines;
+pub mod noise;
 pub mod ping_pong;
 pub mod range;
 pub mod raw;
 pub mod sketch;
 pub mod smoothing;
-pub mod stylize;
-pub mod taps;
 pub mod tone_bands;
+pub mod view;
+pub mod window;
 
 pub type Rgb = [f64; 3];
 

@@ -1,20 +1,11 @@
-//! Twin of `styles/tone_bands.wgsl`.
+//! Twin of `effects/tone_bands/tone_bands.wgsl`.
 
 use super::{
     Rgb,
-    color::{srgb_decode, srgb_encode},
+    color::{lightness, luminance, srgb_decode, srgb_encode},
     mix, smoothstep,
 };
 use bevy_comics::{ToneBandMethod, ToneBands};
-
-fn luminance(c: Rgb) -> f64 {
-    0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]
-}
-
-/// Hunter's lightness.
-pub fn lightness(linear: Rgb) -> f64 {
-    luminance(linear).clamp(0.0, 1.0).sqrt()
-}
 
 /// [CL] Eq. 6, closed.
 pub fn equation_6(c: f64) -> f64 {
@@ -50,7 +41,7 @@ pub fn with_luminance(linear: Rgb, target: f64) -> Rgb {
     scaled.map(|c| mix(target, c, room))
 }
 
-pub fn tone_bands(s: &ToneBands, linear: Rgb, change: f64, scale: f64) -> Rgb {
+pub fn banded_color(s: &ToneBands, linear: Rgb, change: f64, scale: f64) -> Rgb {
     let banded = match s.method {
         ToneBandMethod::Faithful => srgb_decode(srgb_encode(linear).map(equation_6)),
         ToneBandMethod::Levels => {

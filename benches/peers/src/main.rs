@@ -86,10 +86,7 @@ fn shoot(build: Build, size: UVec2, lines: &Lines) -> Shot {
             });
         }
         Lines::Ours => {
-            let style = ComicStyle {
-                outlines: Some(Outlines::default()),
-                ..default()
-            };
+            let style = ComicStyle::new().with(Outlines::default());
             style.apply(&mut world.commands().entity(camera));
             world.flush();
         }

@@ -146,10 +146,7 @@ impl Bench {
 }
 
 fn outlines(outlines: Outlines) -> ComicStyle {
-    ComicStyle {
-        outlines: Some(outlines),
-        ..default()
-    }
+    ComicStyle::new().with(outlines)
 }
 
 const VARIANTS: &[(&str, Put)] = &[
@@ -159,10 +156,7 @@ const VARIANTS: &[(&str, Put)] = &[
     }),
     ("bevy_comics: default comic", |b| b.style(&default_comic())),
     ("bevy_comics: contours", |b| {
-        b.style(&ComicStyle {
-            contours: Some(Contours::default()),
-            ..default()
-        });
+        b.style(&ComicStyle::new().with(Contours::default()));
     }),
     ("bevy_comics: silhouettes", |b| b.style(&outlines(Outlines::SILHOUETTES))),
     ("bevy_comics: silhouettes + creases", |b| {

@@ -3,6 +3,7 @@
 use bevy::reflect::{TypeInfo, Typed};
 
 use super::*;
+use crate::EffectRegistry;
 
 /// Every number has a documented range and every field a documentation, or
 /// its widget would have neither.
@@ -32,23 +33,20 @@ fn every_field_says_what_it_is() {
     check(DepthMap::type_info(), "DepthMap");
     check(crate::DepthMapping::type_info(), "DepthMapping");
     check(RangeSmoothing::type_info(), "RangeSmoothing");
-    check(ToneBands::type_info(), "ToneBands");
-    check(Desaturation::type_info(), "Desaturation");
-    check(Colorization::type_info(), "Colorization");
-    check(BlackFlats::type_info(), "BlackFlats");
-    check(Contours::type_info(), "Contours");
-    check(Outlines::type_info(), "Outlines");
+    for effect in EffectRegistry::built_in().types() {
+        check((effect.type_info)(), effect.name);
+    }
     check(Silhouettes::type_info(), "Silhouettes");
     check(Creases::type_info(), "Creases");
     check(ObjectEdges::type_info(), "ObjectEdges");
-    check(Sketch::type_info(), "Sketch");
 }
 
 /// The panel of a style with everything in it, laid out without a window,
 /// changes nothing that nobody touched.
 #[test]
 fn looking_changes_nothing() {
-    let full = ComicStyle {
+    let types = EffectRegistry::built_in().types();
+    let mut full = ComicStyle {
         version: ComicStyle::VERSION,
         depth_map: Some(DepthMap {
             mapping: crate::DepthMapping::Fixed {
@@ -57,36 +55,23 @@ fn looking_changes_nothing() {
             },
             ..DepthMap::default()
         }),
-        tone_bands: Some(ToneBands::default()),
-        desaturation: Some(Desaturation::default()),
-        colorization: Some(Colorization::default()),
-        black_flats: Some(BlackFlats::default()),
-        contours: Some(Contours::default()),
-        outlines: Some(Outlines::default()),
-        sketch: Some(Sketch::default()),
         ..ComicStyle::default()
     };
+    for effect in &types {
+        full.insert_any((effect.default)());
+    }
     let context = egui::Context::default();
     let mut edited = full.clone();
     let mut widgets = Widgets::default();
     for _ in 0..3 {
         let _ = context.run_ui(egui::RawInput::default(), |ui| {
-            for path in [
-                "depth_map",
-                "tone_bands",
-                "desaturation",
-                "colorization",
-                "black_flats",
-                "contours",
-                "outlines",
-                "sketch",
-            ] {
+            for path in types.iter().map(|effect| effect.name).chain(["depth_map"]) {
                 let id = ui.make_persistent_id(("effect", path));
                 let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, true);
                 state.set_open(true);
                 state.store(ui.ctx());
             }
-            style(ui, &mut edited, &mut widgets);
+            style(ui, &mut edited, &types, &mut widgets);
         });
     }
     assert_eq!(edited, full);

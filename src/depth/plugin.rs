@@ -1,0 +1,103 @@
+//! The depth service in an app.
+
+use bevy::{
+    app::{App, Plugin, PreUpdate},
+    asset::{AssetServer, embedded_asset},
+    core_pipeline::{
+        FullscreenShader,
+        schedule::{Core3d, Core3dSystems},
+    },
+    ecs::{
+        entity::Entity,
+        query::With,
+        schedule::IntoScheduleConfigs,
+        system::{Commands, Query, Res},
+    },
+    render::{
+        GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
+        render_resource::{SpecializedComputePipelines, SpecializedRenderPipelines},
+        renderer::RenderDevice,
+    },
+    shader::load_shader_library,
+};
+
+use super::{
+    CameraCut, DepthHistogram, DepthMap, VisibleDepthRange,
+    ping_pong::PingPongPipeline,
+    prepare::{RangeUniforms, ViewDepthRange, map_readbacks, prepare_view_ranges},
+    range::RangePipeline,
+    readback::{RangeReadings, receive_ranges},
+    reduce::reduce_depth_range,
+    smoothing::{SmoothingPipeline, count_cut},
+};
+use crate::schedule::{ComicsSystems, PrepareComics};
+
+/// Finds, follows and reads back the visible range of the views that ask for
+/// it, and owns the WGSL of the depth map.
+pub(crate) struct DepthPlugin;
+
+impl Plugin for DepthPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<DepthMap>()
+            .register_type::<VisibleDepthRange>()
+            .register_type::<DepthHistogram>()
+            .register_type::<CameraCut>()
+            .add_observer(count_cut);
+        if app.get_sub_app(RenderApp).is_none() {
+            return;
+        }
+        load_shader_library!(app, "map.wgsl");
+        load_shader_library!(app, "raw.wgsl");
+        load_shader_library!(app, "view.wgsl");
+        load_shader_library!(app, "window.wgsl");
+        load_shader_library!(app, "normal.wgsl");
+        // Both an entry point and a library: the reduction counts in its bins.
+        load_shader_library!(app, "smoothing.wgsl");
+        embedded_asset!(app, "range.wgsl");
+        embedded_asset!(app, "ping_pong.wgsl");
+
+        let readings = RangeReadings::default();
+        app.insert_resource(readings.clone())
+            .add_systems(PreUpdate, receive_ranges);
+        let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+            return;
+        };
+        render_app
+            .insert_resource(readings)
+            .init_gpu_resource::<SpecializedComputePipelines<RangePipeline>>()
+            .init_gpu_resource::<SpecializedRenderPipelines<PingPongPipeline>>()
+            .init_gpu_resource::<SpecializedComputePipelines<SmoothingPipeline>>()
+            .init_gpu_resource::<RangeUniforms>()
+            .add_systems(RenderStartup, init_pipelines)
+            .add_systems(
+                Render,
+                (
+                    prepare_view_ranges.in_set(PrepareComics::Services),
+                    map_readbacks.in_set(RenderSystems::Cleanup),
+                ),
+            )
+            .add_systems(
+                Core3d,
+                reduce_depth_range
+                    .in_set(ComicsSystems::DepthRange)
+                    .after(Core3dSystems::Prepass)
+                    .before(Core3dSystems::MainPass),
+            );
+    }
+}
+
+fn init_pipelines(
+    mut commands: Commands,
+    device: Res<RenderDevice>,
+    fullscreen: Res<FullscreenShader>,
+    assets: Res<AssetServer>,
+    ranges: Query<Entity, With<ViewDepthRange>>,
+) {
+    // This runs again on a new device: buffers of the old one are of no use.
+    for view in &ranges {
+        commands.entity(view).remove::<ViewDepthRange>();
+    }
+    commands.insert_resource(RangePipeline::new(&device, &assets));
+    commands.insert_resource(PingPongPipeline::new(&fullscreen, &assets));
+    commands.insert_resource(SmoothingPipeline::new(&assets));
+}

@@ -1,0 +1,225 @@
+//! Records the passes of a view's range.
+
+use std::sync::{PoisonError, atomic::Ordering};
+
+use bevy::{
+    core_pipeline::prepass::ViewPrepassTextures,
+    ecs::system::Res,
+    render::{
+        diagnostic::RecordDiagnostics,
+        render_resource::{
+            BindGroupEntry, BindingResource, CachedComputePipelineId, CachedRenderPipelineId,
+            ComputePassDescriptor, IntoBinding, PipelineCache, TextureView,
+        },
+        renderer::{RenderContext, ViewQuery},
+    },
+};
+
+use super::{
+    ReductionMethod,
+    ping_pong::{ChainSource, record_chain},
+    prepare::{RangeUniforms, ViewDepthRange},
+    range::{RangeKey, RangePipeline, RangeShape},
+    request::Reduction,
+};
+use crate::diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome};
+
+/// Finds the range of the view and sends it on its way to the game.
+pub(crate) fn reduce_depth_range(
+    view: ViewQuery<(&ViewPrepassTextures, &ViewDepthRange)>,
+    uniforms: Res<RangeUniforms>,
+    ledger: Res<StageLedger>,
+    pipeline: Res<RangePipeline>,
+    cache: Res<PipelineCache>,
+    mut ctx: RenderContext,
+) {
+    let (prepass, range) = view.into_inner();
+    let camera = range.request.camera;
+    let frame = Frame {
+        range,
+        uniforms: &uniforms,
+        cache: &cache,
+    };
+    match frame.record(prepass, &pipeline, &mut ctx) {
+        Ok(method) => {
+            let outcome = StageOutcome::RanAs(method.name());
+            ledger.set(camera, ComicsStage::DepthRange, outcome);
+            if range.smoothing.is_some() {
+                ledger.set(camera, ComicsStage::RangeSmoothing, StageOutcome::Ran);
+            }
+            frame.read_back(&ledger, &mut ctx);
+        }
+        Err(reason) => {
+            let outcome = StageOutcome::LeftOut(reason);
+            ledger.set(camera, ComicsStage::DepthRange, outcome);
+        }
+    }
+}
+
+struct Frame<'a> {
+    range: &'a ViewDepthRange,
+    uniforms: &'a RangeUniforms,
+    cache: &'a PipelineCache,
+}
+
+impl Frame<'_> {
+    /// All of it or nothing: a range that is not smoothed would jump.
+    fn record(
+        &self,
+        prepass: &ViewPrepassTextures,
+        pipeline: &RangePipeline,
+        ctx: &mut RenderContext,
+    ) -> Result<ReductionMethod, LeftOut> {
+        let not_ready = LeftOut::PipelineNotReady;
+        let depth = prepass.depth.as_ref().ok_or(LeftOut::NoDepthPrepass)?;
+        if depth.texture.texture.sample_count() != self.range.request.samples {
+            return Err(LeftOut::SampleCountMismatch);
+        }
+        let view = self.uniforms.views.binding().ok_or(not_ready)?;
+        let smoothing = match (self.range.passes.smoothing, &self.range.smoothing) {
+            (Some(id), Some(smoothing)) => Some((
+                smoothing,
+                self.cache.get_compute_pipeline(id).ok_or(not_ready)?,
+                self.uniforms.smoothings.binding().ok_or(not_ready)?,
+            )),
+            _ => None,
+        };
+        let depth = &depth.texture.default_view;
+        let method = match self.range.passes.reduction {
+            Reduction::Compute {
+                shape,
+                pipeline: id,
+            } => self.dispatch((shape, id), (depth, view), pipeline, ctx)?,
+            Reduction::PingPong { first, next } => {
+                self.ping_pong((first, next), (depth, view), ctx)?
+            }
+        };
+        if let Some((smoothing, pipeline, uniforms)) = smoothing {
+            let device = ctx.render_device().clone();
+            let diagnostics = ctx.diagnostic_recorder();
+            let diagnostics = diagnostics.as_deref();
+            let encoder = ctx.command_encoder();
+            let span = diagnostics.time_span(encoder, "comics_range_smoothing");
+            let keys = &self.range.keys;
+            smoothing.record(&device, encoder, self.cache, pipeline, (uniforms, keys));
+            span.end(encoder);
+        }
+        self.range.found.store(true, Ordering::Relaxed);
+        Ok(method)
+    }
+
+    fn dispatch(
+        &self,
+        (shape, id): (RangeShape, CachedComputePipelineId),
+        (depth, view): (&TextureView, BindingResource),
+        pipeline: &RangePipeline,
+        ctx: &mut RenderContext,
+    ) -> Result<ReductionMethod, LeftOut> {
+        let range = self.range;
+        let compute = self
+            .cache
+            .get_compute_pipeline(id)
+            .ok_or(LeftOut::PipelineNotReady)?;
+        let histogram = range.histogram();
+        let key = RangeKey {
+            multisampled: range.request.samples > 1,
+            oblique: false,
+            histogram: histogram.is_some(),
+        };
+        let entry = |binding, resource| BindGroupEntry { binding, resource };
+        let mut entries = vec![
+            entry(0, depth.into_binding()),
+            entry(1, view),
+            entry(2, range.keys.as_entire_binding()),
+        ];
+        if !key.multisampled {
+            entries.push(entry(3, (&pipeline.nearest_sampler).into_binding()));
+        }
+        if let Some(histogram) = histogram {
+            entries.push(entry(4, histogram.as_entire_binding()));
+        }
+        let layout = self
+            .cache
+            .get_bind_group_layout(&RangePipeline::layout(key));
+        let device = ctx.render_device();
+        let bind_group = device.create_bind_group("comics_depth_range", &layout, &entries);
+        let diagnostics = ctx.diagnostic_recorder();
+        let diagnostics = diagnostics.as_deref();
+        let encoder = ctx.command_encoder();
+        let span = diagnostics.time_span(encoder, "comics_depth_range");
+        encoder.clear_buffer(&range.keys, 0, None);
+        if let Some(histogram) = histogram {
+            encoder.clear_buffer(histogram, 0, None);
+        }
+        let (x, y) = shape.workgroups(range.request.rect);
+        {
+            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+                label: Some("comics_depth_range"),
+                timestamp_writes: None,
+            });
+            pass.set_pipeline(compute);
+            pass.set_bind_group(0, &bind_group, &[range.view_offset]);
+            pass.dispatch_workgroups(x, y, 1);
+        }
+        span.end(encoder);
+        Ok(shape.method())
+    }
+
+    fn ping_pong(
+        &self,
+        (first, next): (CachedRenderPipelineId, CachedRenderPipelineId),
+        (depth, view): (&TextureView, BindingResource),
+        ctx: &mut RenderContext,
+    ) -> Result<ReductionMethod, LeftOut> {
+        let pipeline = |id| {
+            self.cache
+                .get_render_pipeline(id)
+                .ok_or(LeftOut::PipelineNotReady)
+        };
+        let pipelines = (pipeline(first)?, pipeline(next)?);
+        let source = ChainSource {
+            depth,
+            view,
+            offset: self.range.view_offset,
+            multisampled: self.range.request.samples > 1,
+        };
+        let device = ctx.render_device().clone();
+        let diagnostics = ctx.diagnostic_recorder();
+        let diagnostics = diagnostics.as_deref();
+        let encoder = ctx.command_encoder();
+        let span = diagnostics.time_span(encoder, "comics_depth_range");
+        record_chain(
+            &self.range.chain,
+            &device,
+            encoder,
+            self.cache,
+            pipelines,
+            (&source, &self.range.keys),
+        );
+        span.end(encoder);
+        Ok(ReductionMethod::PingPong)
+    }
+
+    /// Copies what the game has asked for.
+    fn read_back(&self, ledger: &StageLedger, ctx: &mut RenderContext) {
+        let range = self.range;
+        let request = &range.request;
+        if !request.readback && !request.histogram {
+            return;
+        }
+        let histogram = range
+            .drawn()
+            .filter(|_| request.histogram)
+            .zip(range.histogram());
+        let device = ctx.render_device().clone();
+        let encoder = ctx.command_encoder();
+        let mut readback = range.readback.lock().unwrap_or_else(PoisonError::into_inner);
+        let copied = readback.copy(&device, encoder, &range.keys, histogram, request.projection);
+        let outcome = if copied {
+            StageOutcome::Ran
+        } else {
+            StageOutcome::LeftOut(LeftOut::Busy)
+        };
+        ledger.set(request.camera, ComicsStage::RangeReadback, outcome);
+    }
+}

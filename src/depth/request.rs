@@ -1,0 +1,131 @@
+//! What is asked of a view's depth, and the pipelines that answer.
+
+use bevy::{
+    ecs::{
+        component::Component,
+        entity::Entity,
+        system::{Res, ResMut, SystemParam},
+    },
+    math::UVec4,
+    render::{
+        render_resource::{
+            CachedComputePipelineId, CachedRenderPipelineId, PipelineCache,
+            SpecializedComputePipelines, SpecializedRenderPipelines,
+        },
+        renderer::{RenderAdapterInfo, RenderDevice},
+    },
+};
+
+use super::{
+    DepthMap, ProjectionKind, RawDepth,
+    frame::DepthProjection,
+    ping_pong::PingPongPipeline,
+    range::{RangeKey, RangePipeline, RangeShape},
+    smoothing::SmoothingPipeline,
+};
+
+/// On a view in the render world: its visible range is to be found. Whoever
+/// plans the frame writes it anew for every frame.
+#[derive(Component, Clone, Debug)]
+pub(crate) struct RangeRequest {
+    pub camera: Entity,
+    pub map: DepthMap,
+    pub projection: DepthProjection,
+    pub raw: RawDepth,
+    /// The part of the depth texture that the main pass draws: x, y, width,
+    /// height.
+    pub rect: UVec4,
+    /// Samples of the depth texture.
+    pub samples: u32,
+    /// The range that is drawn with is more than this frame's own.
+    pub smooths: bool,
+    /// The game reads the range.
+    pub readback: bool,
+    /// The game reads how the depths are distributed.
+    pub histogram: bool,
+    /// Real time since the last frame, seconds.
+    pub seconds: f32,
+    /// How often the camera was cut.
+    pub cuts: u32,
+}
+
+impl RangeRequest {
+    /// Whether percentiles are taken of the range that is drawn with.
+    fn has_outliers(&self) -> bool {
+        self.smooths && self.map.smoothing.is_some_and(|s| s.outliers > 0.0)
+    }
+}
+
+/// The pipelines of one view's range.
+#[derive(Component, Clone, Copy, Debug)]
+pub(crate) struct RangePasses {
+    pub reduction: Reduction,
+    /// The step that keeps the range from flickering, if it runs.
+    pub smoothing: Option<CachedComputePipelineId>,
+    /// Whether the reduction counts depths.
+    pub counts: bool,
+}
+
+/// The pipelines of a reduction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Reduction {
+    Compute {
+        shape: RangeShape,
+        pipeline: CachedComputePipelineId,
+    },
+    PingPong {
+        first: CachedRenderPipelineId,
+        next: CachedRenderPipelineId,
+    },
+}
+
+/// Gives the pipelines for a request.
+#[derive(SystemParam)]
+pub(crate) struct RangePipelines<'w> {
+    ranges: ResMut<'w, SpecializedComputePipelines<RangePipeline>>,
+    ping_pongs: ResMut<'w, SpecializedRenderPipelines<PingPongPipeline>>,
+    smoothings: ResMut<'w, SpecializedComputePipelines<SmoothingPipeline>>,
+    range: Res<'w, RangePipeline>,
+    ping_pong: Res<'w, PingPongPipeline>,
+    smoothing: Res<'w, SmoothingPipeline>,
+    adapter: Res<'w, RenderAdapterInfo>,
+    device: Res<'w, RenderDevice>,
+}
+
+impl RangePipelines<'_> {
+    /// The pipelines that answer a request, queued where they are new.
+    pub fn get(&mut self, cache: &PipelineCache, request: &RangeRequest) -> RangePasses {
+        let shape = RangeShape::choose(request.map.reduction, &self.adapter, &self.device);
+        let has_compute = self.device.limits().max_compute_workgroup_size_x > 0;
+        let follows = (request.smooths || request.histogram) && has_compute;
+        let counts = follows && shape.is_some() && (request.histogram || request.has_outliers());
+        let key = RangeKey {
+            multisampled: request.samples > 1,
+            oblique: request.projection.kind() == ProjectionKind::Oblique,
+            histogram: counts,
+        };
+        let reduction = match shape {
+            Some(shape) => Reduction::Compute {
+                shape,
+                pipeline: self.ranges.specialize(cache, &self.range, (shape, key)),
+            },
+            None => {
+                let mut chain = |first| {
+                    let key = (first, key.multisampled, key.oblique);
+                    self.ping_pongs.specialize(cache, &self.ping_pong, key)
+                };
+                Reduction::PingPong {
+                    first: chain(true),
+                    next: chain(false),
+                }
+            }
+        };
+        let smoothing =
+            follows.then(|| (self.smoothings).specialize(cache, &self.smoothing, counts));
+        RangePasses {
+            reduction,
+            smoothing,
+            counts,
+        }
+    }
+}

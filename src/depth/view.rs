@@ -1,0 +1,54 @@
+//! A view's picture and depth, as shaders know them.
+
+use bevy::{
+    math::{IVec4, UVec2, UVec4, Vec2, Vec4Swizzles},
+    render::render_resource::ShaderType,
+};
+
+use super::{DepthFrame, RawDepth};
+
+/// `View` of `view.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct ViewUniform {
+    pub viewport: IVec4,
+    pub depth_scale: Vec2,
+    pub flip: u32,
+    pub unused: u32,
+    pub raw: RawDepth,
+    pub depth: DepthFrame,
+}
+
+impl ViewUniform {
+    /// `viewport` is x, y, width, height in physical pixels; `main_pass_size` the
+    /// size of the main pass where that is not the viewport's.
+    pub fn new(
+        viewport: UVec4,
+        main_pass_size: Option<UVec2>,
+        flip: bool,
+        raw: RawDepth,
+        depth: DepthFrame,
+    ) -> Self {
+        Self {
+            viewport: viewport.as_ivec4(),
+            depth_scale: depth_scale(viewport, main_pass_size),
+            flip: u32::from(flip),
+            unused: 0,
+            raw,
+            depth,
+        }
+    }
+}
+
+/// Depth pixels per pixel of the viewport.
+pub(crate) fn depth_scale(viewport: UVec4, main_pass_size: Option<UVec2>) -> Vec2 {
+    let size = viewport.zw().max(UVec2::ONE);
+    main_pass_size.map_or(Vec2::ONE, |main| {
+        (main.as_vec2() / size.as_vec2()).clamp(Vec2::ZERO, Vec2::ONE)
+    })
+}
+
+/// The part of the depth texture that the main pass draws.
+pub(crate) fn depth_rect(viewport: UVec4, main_pass_size: Option<UVec2>) -> UVec4 {
+    let size = main_pass_size.map_or(viewport.zw(), |main| main.clamp(UVec2::ONE, viewport.zw()));
+    UVec4::new(viewport.x, viewport.y, size.x, size.y)
+}

@@ -1,0 +1,134 @@
+#define_import_path bevy_comics::depth::view
+
+// The view that is drawn and its depth: the only owner of bindings 2 (depth) and
+// 3 (visible range). An entry point calls set_view() first, with the view of its
+// own uniform, since passes have different uniforms.
+
+#import bevy_comics::depth::map::{DepthFrame, EMPTY, depth_map}
+#import bevy_comics::depth::raw::{RawDepth, raw_depth}
+#import bevy_comics::depth::window::{MISSING_E, MISSING_N, MISSING_S, MISSING_W, Window, gap_behind, map_steps, prewitt}
+
+// A multiple of 16 bytes, as uniform structs inside a struct have to be.
+struct View {
+    // Origin and size of the viewport, physical pixels.
+    viewport: vec4<i32>,
+    // Depth pixels per colour pixel (1 unless the main pass has a resolution of
+    // its own).
+    depth_scale: vec2<f32>,
+    // 1: near and far of the depth map are exchanged for the colours.
+    flip: u32,
+    unused: u32,
+    raw: RawDepth,
+    depth: DepthFrame,
+}
+
+var<private> view: View;
+
+fn set_view(drawn: View) {
+    view = drawn;
+}
+
+// The pixel of the viewport nearest to a pixel of the target.
+fn inside_viewport(pixel: vec2<i32>) -> vec2<i32> {
+    let first = view.viewport.xy;
+    return clamp(pixel, first, first + view.viewport.zw - 1);
+}
+
+#ifdef DEPTH
+#ifdef MULTISAMPLED
+@group(0) @binding(2) var depth_texture: texture_multisampled_2d<f32>;
+#else
+@group(0) @binding(2) var depth_texture: texture_2d<f32>;
+#endif
+#endif
+#ifdef VISIBLE_RANGE
+// (key of the nearest, key of the farthest): see range.wgsl.
+@group(0) @binding(3) var<uniform> range_keys: vec4<u32>;
+#endif
+
+// The depth texture's pixel of a pixel of the viewport.
+fn depth_pixel(pixel: vec2<i32>) -> vec2<i32> {
+#ifdef SAME_SIZE
+    return pixel;
+#endif
+    let inside = floor((vec2<f32>(pixel - view.viewport.xy) + 0.5) * view.depth_scale);
+    return view.viewport.xy + vec2<i32>(inside);
+}
+
+#ifdef DEPTH
+fn sample_count() -> i32 {
+#ifdef MULTISAMPLED
+    return i32(textureNumSamples(depth_texture));
+#else
+    return 1;
+#endif
+}
+
+// Raw depth at a pixel of the viewport; the caller has clamped it.
+fn load_depth(pixel: vec2<i32>, sample: i32) -> f32 {
+    let at = depth_pixel(pixel);
+#ifdef MULTISAMPLED
+    let d = textureLoad(depth_texture, at, sample).r;
+#else
+    let d = textureLoad(depth_texture, at, 0).r;
+#endif
+    return raw_depth(view.raw, vec2<u32>(at), d);
+}
+
+// The range that the depth map spans in this frame.
+fn depth_frame() -> DepthFrame {
+    var frame = view.depth;
+#ifdef VISIBLE_RANGE
+    frame.near = bitcast<f32>(range_keys.x);
+    frame.far = bitcast<f32>(0u - range_keys.y);
+    if range_keys.x == 0u {
+        frame.flags |= EMPTY;
+    }
+#endif
+    return frame;
+}
+
+// (D, L) of a pixel, the mean of its samples, as its colour is theirs.
+fn pixel_depth(frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
+#ifdef MULTISAMPLED
+    var sum = vec2(0.0);
+    let samples = sample_count();
+    for (var s = 0; s < samples; s++) {
+        sum += depth_map(frame, load_depth(pixel, s));
+    }
+    return sum / f32(samples);
+#else
+    return depth_map(frame, load_depth(pixel, 0));
+#endif
+}
+
+// The depths at `reach` pixels around one; what lies outside the viewport is
+// read at its border and marked.
+fn load_window(pixel: vec2<i32>, reach: i32, sample: i32) -> Window {
+    let first = view.viewport.xy;
+    let last = first + view.viewport.zw - 1;
+    let low = pixel - reach;
+    let high = pixel + reach;
+    let a = max(low, first);
+    let b = min(high, last);
+    var win: Window;
+    win.centre = load_depth(pixel, sample);
+    win.nw = load_depth(a, sample);
+    win.n = load_depth(vec2(pixel.x, a.y), sample);
+    win.ne = load_depth(vec2(b.x, a.y), sample);
+    win.w = load_depth(vec2(a.x, pixel.y), sample);
+    win.e = load_depth(vec2(b.x, pixel.y), sample);
+    win.sw = load_depth(vec2(a.x, b.y), sample);
+    win.s = load_depth(vec2(pixel.x, b.y), sample);
+    win.se = load_depth(b, sample);
+    win.missing = select(0u, MISSING_W, low.x < first.x) | select(0u, MISSING_E, high.x > last.x)
+        | select(0u, MISSING_N, low.y < first.y) | select(0u, MISSING_S, high.y > last.y);
+    return win;
+}
+
+// The Prewitt response of the depth map, slopes and all, per pixel. The sky lies
+// at the far end.
+fn map_slope(frame: DepthFrame, pixel: vec2<i32>) -> f32 {
+    return prewitt(map_steps(frame, gap_behind(frame, 0.0), load_window(pixel, 1, 0)));
+}
+#endif

@@ -1,0 +1,159 @@
+//! An effect whose type is known only at run time.
+
+use std::any::Any;
+
+use bevy::{
+    ecs::world::EntityWorldMut,
+    reflect::structs::Struct,
+    render::render_resource::encase::UniformBuffer,
+};
+
+use super::{Effect, EffectType, Needs, Variants, ViewFacts};
+use crate::lines::LineSettings;
+
+/// An [`Effect`] of any type. Implemented by every effect; for lists of effects
+/// and tools.
+pub trait AnyEffect: Any + Send + Sync + std::fmt::Debug {
+    /// What the effect's type says about itself.
+    fn effect_type(&self) -> &'static EffectType;
+    /// The effect as a reflected struct.
+    fn as_struct(&self) -> &dyn Struct;
+    /// The effect as a reflected struct, to be edited.
+    fn as_struct_mut(&mut self) -> &mut dyn Struct;
+    /// For a downcast.
+    fn as_any(&self) -> &dyn Any;
+    /// For a downcast.
+    fn as_any_mut(&mut self) -> &mut dyn Any;
+    /// For a downcast.
+    fn into_any(self: Box<Self>) -> Box<dyn Any>;
+    /// A copy.
+    fn boxed(&self) -> Box<dyn AnyEffect>;
+    /// Whether the other effect is of the same type and equal.
+    fn equals(&self, other: &dyn AnyEffect) -> bool;
+    /// For a serializer.
+    fn as_serialize(&self) -> &dyn erased_serde::Serialize;
+    /// As [`Effect::sanitized`].
+    fn any_sanitized(&self) -> Box<dyn AnyEffect>;
+    /// As [`Effect::strength`].
+    fn any_strength(&self) -> f32;
+    /// As [`Effect::needs`].
+    fn any_needs(&self) -> Needs;
+    /// As [`Effect::without`].
+    fn any_without(&self, missing: Needs) -> Option<Box<dyn AnyEffect>>;
+    /// As [`Effect::lines`].
+    fn any_lines(&self) -> Option<LineSettings>;
+    /// As [`Effect::implied`].
+    fn any_implied(&self) -> Option<Box<dyn AnyEffect>>;
+    /// As [`Effect::variants`].
+    fn any_variants(&self, view: &ViewFacts, variants: &mut Variants);
+    /// As [`Effect::report_name`].
+    fn any_report_name(&self) -> Option<String>;
+    /// The bytes of [`Effect::uniform`].
+    fn uniform_bytes(&self, view: &ViewFacts) -> Vec<u8>;
+    /// Puts the effect on an entity.
+    fn insert_into(&self, entity: &mut EntityWorldMut);
+}
+
+impl<E: Effect> AnyEffect for E {
+    fn effect_type(&self) -> &'static EffectType {
+        EffectType::of::<E>()
+    }
+
+    fn as_struct(&self) -> &dyn Struct {
+        self
+    }
+
+    fn as_struct_mut(&mut self) -> &mut dyn Struct {
+        self
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
+    }
+
+    fn as_any_mut(&mut self) -> &mut dyn Any {
+        self
+    }
+
+    fn into_any(self: Box<Self>) -> Box<dyn Any> {
+        self
+    }
+
+    fn boxed(&self) -> Box<dyn AnyEffect> {
+        Box::new(self.clone())
+    }
+
+    fn equals(&self, other: &dyn AnyEffect) -> bool {
+        other.as_any().downcast_ref::<E>() == Some(self)
+    }
+
+    fn as_serialize(&self) -> &dyn erased_serde::Serialize {
+        self
+    }
+
+    fn any_sanitized(&self) -> Box<dyn AnyEffect> {
+        Box::new(self.clone().sanitized())
+    }
+
+    fn any_strength(&self) -> f32 {
+        self.strength()
+    }
+
+    fn any_needs(&self) -> Needs {
+        self.needs()
+    }
+
+    fn any_without(&self, missing: Needs) -> Option<Box<dyn AnyEffect>> {
+        let effect = self.clone().without(missing)?;
+        Some(Box::new(effect))
+    }
+
+    fn any_lines(&self) -> Option<LineSettings> {
+        self.lines()
+    }
+
+    fn any_implied(&self) -> Option<Box<dyn AnyEffect>> {
+        self.implied()
+    }
+
+    fn any_variants(&self, view: &ViewFacts, variants: &mut Variants) {
+        self.variants(view, variants);
+    }
+
+    fn any_report_name(&self) -> Option<String> {
+        self.report_name()
+    }
+
+    fn uniform_bytes(&self, view: &ViewFacts) -> Vec<u8> {
+        encode(&self.uniform(view))
+    }
+
+    fn insert_into(&self, entity: &mut EntityWorldMut) {
+        entity.insert(self.clone());
+    }
+}
+
+impl Clone for Box<dyn AnyEffect> {
+    fn clone(&self) -> Self {
+        (**self).boxed()
+    }
+}
+
+impl PartialEq for dyn AnyEffect {
+    fn eq(&self, other: &Self) -> bool {
+        self.equals(other)
+    }
+}
+
+/// The bytes of a uniform, as WGSL lays it out.
+pub(crate) fn encode<T>(value: &T) -> Vec<u8>
+where
+    T: bevy::render::render_resource::ShaderType
+        + bevy::render::render_resource::encase::internal::WriteInto,
+{
+    let mut buffer = UniformBuffer::new(Vec::new());
+    // A vector grows: there is nothing that can fail.
+    let written = buffer.write(value);
+    debug_assert!(written.is_ok(), "a uniform was not written");
+    buffer.into_inner()
+}

@@ -1,0 +1,99 @@
+//! What lies between two effects of one type.
+//!
+//! Numbers are interpolated: ratios where a ratio is what the eye sees, colours
+//! in `OKLab`. A mode cannot be: its effect fades out until half of the way,
+//! changes its mode where it has no strength, and fades in again. So no picture
+//! jumps.
+
+use bevy::{
+    color::Color,
+    math::FloatExt,
+    reflect::{NamedField, TypeInfo},
+};
+
+use super::Effect;
+use crate::settings::{BlendField, FieldRange, blend_color, blend_ratio, dip};
+
+/// The effect `t` of the way from `a` to `b`; one that only one side has fades.
+/// `remapped`: what depends on the depth map fades out half of the way.
+pub(super) fn blend<E: Effect>(
+    a: Option<E>,
+    b: Option<E>,
+    t: f32,
+    remapped: bool,
+) -> Option<E> {
+    let effect = match (a, b) {
+        (None, None) => return None,
+        (Some(a), None) => a.faded(1.0 - t),
+        (None, Some(b)) => b.faded(t),
+        (Some(a), Some(b)) => {
+            let mixed = if t < 0.5 {
+                a.mixed(&b, t)
+            } else {
+                b.mixed(&a, 1.0 - t)
+            };
+            if !a.same_modes(&b) {
+                // Its map need not fade any more: it is gone half of the way.
+                return Some(mixed.faded(dip(t)));
+            }
+            mixed
+        }
+    };
+    Some(if remapped {
+        effect.map_faded(dip(t))
+    } else {
+        effect
+    })
+}
+
+/// The fields of an effect. Effects are structs by the bound of the trait.
+fn fields<E: Effect>() -> impl Iterator<Item = &'static NamedField> {
+    let info = match E::type_info() {
+        TypeInfo::Struct(info) => Some(info),
+        _ => None,
+    };
+    info.into_iter().flat_map(|info| info.iter())
+}
+
+pub(super) fn mixed<E: Effect>(a: &E, b: &E, t: f32) -> E {
+    let mut mixed = a.clone();
+    for field in fields::<E>() {
+        if field.has_attribute::<BlendField>() {
+            continue;
+        }
+        let name = field.name();
+        let (Some(slot), Some(other)) = (mixed.field_mut(name), b.field(name)) else {
+            continue;
+        };
+        if let (Some(slot), Some(other)) = (
+            slot.try_downcast_mut::<f32>(),
+            other.try_downcast_ref::<f32>(),
+        ) {
+            let by_ratio = FieldRange::of(field).is_some_and(|range| range.logarithmic);
+            *slot = if by_ratio {
+                blend_ratio(*slot, *other, t)
+            } else {
+                slot.lerp(*other, t)
+            };
+        } else if let (Some(slot), Some(other)) = (
+            slot.try_downcast_mut::<Color>(),
+            other.try_downcast_ref::<Color>(),
+        ) {
+            *slot = blend_color(*slot, *other, t);
+        }
+    }
+    mixed
+}
+
+pub(super) fn same_modes<E: Effect>(a: &E, b: &E) -> bool {
+    fields::<E>().all(|field| {
+        let name = field.name();
+        let (Some(a), Some(b)) = (a.field(name), b.field(name)) else {
+            return true;
+        };
+        field.has_attribute::<BlendField>()
+            || a.try_downcast_ref::<f32>().is_some()
+            || a.try_downcast_ref::<Color>().is_some()
+            || a.reflect_partial_eq(b).unwrap_or(false)
+    })
+}

@@ -1,0 +1,173 @@
+//! Chooses what every view draws in this frame: the plan that is wanted, or while
+//! a pipeline of it compiles the last one that was complete. Then the services
+//! are told, once, what to prepare.
+
+use std::sync::Arc;
+
+use bevy::{
+    core_pipeline::prepass::ViewPrepassTextures,
+    ecs::{
+        component::Component,
+        entity::Entity,
+        query::{With, Without},
+        system::{Commands, Query, Res, ResMut},
+    },
+    math::{Mat4, UVec2},
+    render::{
+        camera::ExtractedCamera,
+        render_resource::PipelineCache,
+        view::{ExtractedView, ViewTarget},
+    },
+};
+
+use super::{
+    EffectRegistry, Plan,
+    prepare::FusedRequest,
+    requests::{Scene, Services},
+};
+use crate::{
+    depth::{
+        frame::DepthProjection,
+        request::{RangePasses, RangeRequest},
+    },
+    diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
+    lines::request::{LinePasses, LineRequest},
+    objects::{IdRequest, IdsWanted},
+};
+
+/// On a view in the render world: what its camera asks for.
+#[derive(Component, Clone, Debug)]
+pub(crate) struct ViewPlan {
+    pub camera: Entity,
+    pub plan: Arc<Plan>,
+    /// The plan's number in the main world; grows whenever it changes.
+    pub number: u64,
+    pub projection: DepthProjection,
+    pub clip_from_view: Mat4,
+    /// Physical pixels per logical pixel.
+    pub scale_factor: f32,
+    /// Size of the main pass, where it is not the viewport's.
+    pub main_pass_size: Option<UVec2>,
+    /// The widest line of any object with one of its own, logical pixels.
+    pub widest_object: f32,
+    /// Seconds of the app's default clock.
+    pub time: f64,
+    /// Real time since the last frame, seconds: a paused game still looks around.
+    pub seconds: f32,
+    /// How often the camera was cut.
+    pub cuts: u32,
+}
+
+/// The last plan of a view of which every pipeline was compiled.
+#[derive(Component)]
+pub(crate) struct ReadyPlan(Arc<Plan>);
+
+/// Everything that a choice leaves on a view.
+type Chosen = (
+    (RangeRequest, RangePasses),
+    (LineRequest, LinePasses),
+    (IdRequest, IdsWanted),
+    (FusedRequest, ReadyPlan),
+);
+
+pub(crate) fn choose_plans(
+    mut commands: Commands,
+    views: Query<(
+        Entity,
+        &ViewPlan,
+        &ExtractedCamera,
+        &ExtractedView,
+        Option<&ViewPrepassTextures>,
+        (Option<&ViewTarget>, Option<&ReadyPlan>),
+    )>,
+    stale: Query<Entity, (With<ReadyPlan>, Without<ViewPlan>)>,
+    (ledger, registry): (Res<StageLedger>, Res<EffectRegistry>),
+    mut services: Services,
+    mut cache: ResMut<PipelineCache>,
+) {
+    for entity in &stale {
+        commands.entity(entity).remove::<Chosen>();
+    }
+    for (entity, view, camera, extracted, prepass, (target, ready)) in &views {
+        if target.is_none() || extracted.viewport.z == 0 || extracted.viewport.w == 0 {
+            commands.entity(entity).remove::<Chosen>();
+            continue;
+        }
+        let scene = Scene::new(extracted, prepass);
+        let wanted = scene.reduce(&view.plan);
+        report(&ledger, &registry, (view, &wanted), &scene);
+
+        // While a pipeline of this plan compiles, the last one stays.
+        let last = ready.map(|ready| scene.reduce(&ready.0));
+        let last = last.filter(|last| *last != wanted);
+        let mut requests = services.requests(&cache, (&wanted, view), &scene, (extracted, camera));
+        // Where pipelines are compiled at once, they are now.
+        if requests.is_compiling(&cache) {
+            cache.process_queue();
+        }
+        let compiling = requests.is_compiling(&cache);
+        if compiling {
+            ledger.set_compiling(view.camera);
+            if let Some(last) = &last {
+                requests = services.requests(&cache, (last, view), &scene, (extracted, camera));
+            }
+        } else {
+            ledger.set_drawn(view.camera, view.number);
+            commands.entity(entity).insert(ReadyPlan(wanted.clone()));
+        }
+        let drawn_needs_ids = compiling && last.is_some_and(|last| last.draws_ids());
+        if view.plan.draws_ids() || drawn_needs_ids {
+            commands.entity(entity).insert(IdsWanted);
+        } else {
+            commands.entity(entity).remove::<IdsWanted>();
+        }
+        requests.put(entity, &mut commands);
+    }
+}
+
+/// Says of every stage why it does not run; those that do say so later.
+fn report(
+    ledger: &StageLedger,
+    registry: &EffectRegistry,
+    (view, drawn): (&ViewPlan, &Plan),
+    scene: &Scene,
+) {
+    let wanted = &view.plan;
+    let camera = view.camera;
+    let missing = StageOutcome::LeftOut(LeftOut::NoDepthPrepass);
+    let lacks_depth = wanted.needs_depth() && scene.depth.is_none();
+    if lacks_depth {
+        bevy::log::warn_once!(
+            "{camera} has a depth style and no depth prepass: its picture passes without that style"
+        );
+    }
+    for stage in ComicsStage::SERVICES.iter().copied() {
+        let lost = lacks_depth
+            && match stage {
+                ComicsStage::DepthPrepass => true,
+                ComicsStage::DepthRange => wanted.needs_range(),
+                ComicsStage::RangeSmoothing => wanted.smooths(),
+                ComicsStage::RangeReadback => wanted.readback,
+                _ => false,
+            };
+        let outcome = if lost {
+            missing
+        } else {
+            StageOutcome::LeftOut(wanted.reason(stage))
+        };
+        ledger.set(camera, stage, outcome);
+    }
+    for (stage, reason) in drawn.effect_stages(&registry.types()) {
+        // What is drawn runs with the fused pass, which says so.
+        let reason = reason.unwrap_or(LeftOut::PipelineNotReady);
+        ledger.set(camera, stage, StageOutcome::LeftOut(reason));
+    }
+    let nothing = StageOutcome::LeftOut(LeftOut::NothingToDraw);
+    ledger.set(camera, ComicsStage::Stylize, nothing);
+    if scene.depth.is_some() {
+        ledger.set(camera, ComicsStage::DepthPrepass, StageOutcome::Ran);
+    }
+    if scene.normals {
+        ledger.set(camera, ComicsStage::NormalPrepass, StageOutcome::Ran);
+    }
+}

@@ -1,0 +1,117 @@
+#define_import_path bevy_comics::effect::color
+
+// Colour conversions shared by the effects. Effects take and return linear
+// light; the papers' own formulas work on display codes and convert inside.
+
+// NaN and infinity are found by their bits: a compiler may assume that neither
+// exists and fold `x != x` away.
+fn finite(x: f32) -> f32 {
+    let bits = bitcast<u32>(x);
+    if (bits & 0x7fffffffu) < 0x7f800000u {
+        return x;
+    }
+    // +inf is very bright; NaN and -inf are nothing at all.
+    return select(0.0, 65504.0, bits == 0x7f800000u);
+}
+
+fn finite_color(c: vec3<f32>) -> vec3<f32> {
+    return vec3(finite(c.r), finite(c.g), finite(c.b));
+}
+
+// sRGB transfer function (IEC 61966-2-1), odd about zero and unbounded above,
+// so that negative and over-range components stay finite and monotone.
+fn srgb_encode(c: vec3<f32>) -> vec3<f32> {
+    let m = abs(c);
+    let low = m * 12.92;
+    let high = 1.055 * pow(max(m, vec3(0.0031308)), vec3(1.0 / 2.4)) - 0.055;
+    return sign(c) * select(high, low, m <= vec3(0.0031308));
+}
+
+fn srgb_decode(c: vec3<f32>) -> vec3<f32> {
+    let m = abs(c);
+    let low = m / 12.92;
+    let high = pow((max(m, vec3(0.04045)) + 0.055) / 1.055, vec3(2.4));
+    return sign(c) * select(high, low, m <= vec3(0.04045));
+}
+
+// Luminance of linear light, ITU-R BT.709.
+fn luminance(c: vec3<f32>) -> f32 {
+    return dot(c, vec3(0.2126, 0.7152, 0.0722));
+}
+
+// Lightness as it is seen, by Hunter's formula (1948): the root of the luminance.
+// A root is exact where a power is not, which matters to steep steps.
+fn lightness(linear: vec3<f32>) -> f32 {
+    return sqrt(clamp(luminance(linear), 0.0, 1.0));
+}
+
+fn largest(c: vec3<f32>) -> f32 {
+    return max(c.r, max(c.g, c.b));
+}
+
+fn smallest(c: vec3<f32>) -> f32 {
+    return min(c.r, min(c.g, c.b));
+}
+
+// HSV hue in [0, 1); greys have hue 0.
+fn hue_of(c: vec3<f32>) -> f32 {
+    let value = largest(c);
+    let chroma = value - smallest(c);
+    if chroma <= 0.0 {
+        return 0.0;
+    }
+    var h: f32;
+    if value == c.r {
+        h = (c.g - c.b) / chroma;
+    } else if value == c.g {
+        h = 2.0 + (c.b - c.r) / chroma;
+    } else {
+        h = 4.0 + (c.r - c.g) / chroma;
+    }
+    h = h / 6.0;
+    return select(h, h + 1.0, h < 0.0);
+}
+
+// P(h): the fully saturated colour of a hue.
+fn hue_color(hue: f32) -> vec3<f32> {
+    let p = abs(fract(vec3(hue) + vec3(1.0, 2.0 / 3.0, 1.0 / 3.0)) * 6.0 - 3.0);
+    return clamp(p - 1.0, vec3(0.0), vec3(1.0));
+}
+
+// A first guess from the exponent's third, then two steps of Halley: exact to
+// a unit or two in the last place, and cheaper than pow on a CPU.
+fn cube_root(x: f32) -> f32 {
+    let m = max(abs(x), 1e-30);
+    var r = bitcast<f32>(bitcast<u32>(m) / 3u + 0x2a514067u);
+    for (var i = 0; i < 2; i++) {
+        let c = r * r * r;
+        r *= (c + 2.0 * m) / (2.0 * c + m);
+    }
+    return select(sign(x) * r, 0.0, x == 0.0);
+}
+
+// OKLab (Ottosson 2020): x is lightness, yz the chroma vector (a, b).
+fn linear_to_oklab(c: vec3<f32>) -> vec3<f32> {
+    let l = cube_root(dot(c, vec3(0.4122214708, 0.5363325363, 0.0514459929)));
+    let m = cube_root(dot(c, vec3(0.2119034982, 0.6806995451, 0.1073969566)));
+    let s = cube_root(dot(c, vec3(0.0883024619, 0.2817188376, 0.6299787005)));
+    return vec3(
+        0.2104542553 * l + 0.7936177850 * m - 0.0040720468 * s,
+        1.9779984951 * l - 2.4285922050 * m + 0.4505937099 * s,
+        0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s,
+    );
+}
+
+fn oklab_to_linear(lab: vec3<f32>) -> vec3<f32> {
+    let l = lab.x + 0.3963377774 * lab.y + 0.2158037573 * lab.z;
+    let m = lab.x - 0.1055613458 * lab.y - 0.0638541728 * lab.z;
+    let s = lab.x - 0.0894841775 * lab.y - 1.2914855480 * lab.z;
+    let l3 = l * l * l;
+    let m3 = m * m * m;
+    let s3 = s * s * s;
+    return vec3(
+        4.0767416621 * l3 - 3.3077115913 * m3 + 0.2309699292 * s3,
+        -1.2684380046 * l3 + 2.6097574011 * m3 - 0.3413193965 * s3,
+        -0.0041960863 * l3 - 0.7034186147 * m3 + 1.7076147010 * s3,
+    );
+}

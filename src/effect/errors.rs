@@ -1,0 +1,79 @@
+//! Which effect's shader is to blame when the fused pass has no pipeline.
+
+use std::sync::{Mutex, PoisonError};
+
+use bevy::{
+    ecs::resource::Resource,
+    log::error,
+    platform::collections::HashSet,
+    render::render_resource::{CachedPipelineState, PipelineCache},
+    shader::ShaderCacheError,
+};
+use naga_oil::compose::ErrSource;
+
+use super::{AnyEffect, EffectType, prepare::FusedRequest};
+use crate::diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome};
+
+/// The effects whose errors the log has shown.
+#[derive(Resource, Default)]
+pub(super) struct ShaderErrors(Mutex<HashSet<&'static str>>);
+
+impl ShaderErrors {
+    /// Names the effect whose shader has an error, if that is why a pipeline is
+    /// missing: in the diagnostics, and once in the log.
+    pub fn report(&self, cache: &PipelineCache, request: &FusedRequest, ledger: &StageLedger) {
+        let state = cache.get_render_pipeline_state(request.pipeline);
+        let CachedPipelineState::Err(failure) = state else {
+            return;
+        };
+        let effects = request.plan.drawn().map(AnyEffect::effect_type);
+        let Some((effect, message)) = culprit(failure, effects) else {
+            return;
+        };
+        let outcome = StageOutcome::LeftOut(LeftOut::ShaderError);
+        ledger.set(request.camera, ComicsStage::Effect(effect.name), outcome);
+        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if known.insert(effect.name) {
+            error!(
+                "the shader of the effect `{}` ({}) has an error, so pictures with it pass through: {message}",
+                effect.name, effect.shader.path
+            );
+        }
+    }
+}
+
+/// The effect that an error is about, and the error in words.
+fn culprit(
+    failure: &ShaderCacheError,
+    mut effects: impl Iterator<Item = &'static EffectType>,
+) -> Option<(&'static EffectType, String)> {
+    match failure {
+        ShaderCacheError::ProcessShaderError(error) => {
+            let message = error.inner.to_string();
+            let place = match &error.source {
+                ErrSource::Module { name, .. } => name,
+                ErrSource::Constructing { path, .. } => path,
+            };
+            let effect = effects.find(|effect| {
+                place == effect.shader.path || *place == file_path(effect) || message.contains(&decorated(effect))
+            })?;
+            Some((effect, message))
+        }
+        ShaderCacheError::CreateShaderModule(message) => {
+            let effect = effects.find(|effect| message.contains(&decorated(effect)))?;
+            Some((effect, message.clone()))
+        }
+        _ => None,
+    }
+}
+
+/// The path under which an effect's module is in the app's shaders, and which the
+/// composer's own messages show.
+pub(super) fn file_path(effect: &EffectType) -> String {
+    format!("effect `{}`: {}", effect.name, effect.shader.path)
+}
+
+/// The start of the name that the composer gives to an effect's function.
+fn decorated(effect: &EffectType) -> String {
+    format!("{}X_naga_oil", effect.name)
+}

@@ -1,0 +1,108 @@
+// The fused pass: one read of the picture, one write, every effect in between.
+// compose.rs replaces the lines that begin with "//@" by one entry for each
+// registered effect.
+
+#import bevy_comics::depth::normal::load_normal
+#import bevy_comics::depth::view::{View, depth_frame, load_depth, pixel_depth, set_view}
+#import bevy_comics::effect::color::{
+    finite_color, lightness, linear_to_oklab, oklab_to_linear, srgb_decode, srgb_encode,
+}
+#import bevy_comics::effect::pixel::Pixel
+#import bevy_comics::finish::{Finish, compare, difference, object_color, range_share}
+#import bevy_comics::lines::edge::Lines
+#import bevy_comics::lines::read::{lines_at, set_lines}
+#import bevy_comics::objects::load_object
+//@imports
+
+// Only what is there, in the order of the chain; uniform structs inside a struct
+// start at multiples of 16 bytes.
+struct Comics {
+    view: View,
+    finish: Finish,
+#ifdef LINES
+    @align(16) lines: Lines,
+#endif
+    //@members
+}
+
+@group(0) @binding(0) var source: texture_2d<f32>;
+@group(0) @binding(1) var<uniform> comics: Comics;
+
+// The picture is display-referred. The effects take linear light.
+fn to_linear(stored: vec3<f32>) -> vec3<f32> {
+    let c = finite_color(stored);
+#ifdef STORED_SRGB
+    return srgb_decode(c);
+#else ifdef STORED_OKLAB
+    return oklab_to_linear(c);
+#else
+    return c;
+#endif
+}
+
+fn to_stored(linear: vec3<f32>) -> vec3<f32> {
+#ifdef STORED_SRGB
+    return srgb_encode(linear);
+#else ifdef STORED_OKLAB
+    return linear_to_oklab(linear);
+#else
+    return linear;
+#endif
+}
+
+@fragment
+fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let pixel = vec2<i32>(position.xy);
+    // At the border of an odd target there are pixels that exist only for their
+    // neighbours' derivatives.
+    let last = vec2<i32>(textureDimensions(source)) - 1;
+    let stored = textureLoad(source, min(pixel, last), 0);
+    var p: Pixel;
+    p.original = to_linear(stored.rgb);
+    p.color = p.original;
+#ifdef LIGHTNESS_CHANGE
+    // Must run before the early return: derivatives need all pixels of a quad.
+    p.change = fwidthFine(lightness(p.original));
+#endif
+    set_view(comics.view);
+    let inside = pixel - comics.view.viewport.xy;
+    if any(inside < vec2(0)) || any(inside >= comics.view.viewport.zw) {
+        return stored;
+    }
+#ifdef LINES
+    set_lines(comics.lines);
+#endif
+    p.position = position.xy;
+    p.inside = vec2<f32>(inside);
+    p.saturation = 1.0;
+    p.depth = vec2(1.0, 0.0);
+#ifdef MAP
+    let frame = depth_frame();
+    let true_depth = pixel_depth(frame, pixel);
+    p.depth = select(true_depth, true_depth.yx, comics.view.flip != 0u);
+#endif
+
+    //@calls
+
+#ifdef VIEW_DEPTH_MAP
+    p.color = srgb_decode(vec3(clamp(p.depth.x, 0.0, 1.0)));
+#else ifdef VIEW_RAW_RANGE
+    p.color = srgb_decode(vec3(range_share(frame, load_depth(pixel, 0))));
+#else ifdef VIEW_SILHOUETTES
+    p.color = srgb_decode(vec3(1.0 - clamp(lines_at(position.xy).ink.x, 0.0, 1.0)));
+#else ifdef VIEW_CREASES
+    p.color = srgb_decode(vec3(1.0 - clamp(lines_at(position.xy).ink.y, 0.0, 1.0)));
+#else ifdef VIEW_OBJECT_IDS
+    p.color = srgb_decode(object_color(load_object(pixel).x));
+#else ifdef VIEW_SATURATION
+    p.color = srgb_decode(vec3(p.saturation));
+#else ifdef VIEW_DIFFERENCE
+    p.color = srgb_decode(difference(srgb_encode(p.original), srgb_encode(p.color)));
+#else ifdef VIEW_EFFECT
+    p.color = srgb_decode(shown);
+#endif
+#ifdef FINISH
+    p.color = compare(comics.finish, p.original, p.color, p.inside.x);
+#endif
+    return vec4(to_stored(p.color), stored.a);
+}

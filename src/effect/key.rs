@@ -1,0 +1,225 @@
+//! What selects a pipeline of the fused pass.
+
+use bevy::{
+    camera::CompositingSpace,
+    math::Vec2,
+    render::render_resource::{
+        BindGroupLayoutDescriptor, BindGroupLayoutEntries, ShaderStages, TextureFormat,
+        TextureSampleType,
+        binding_types::{texture_2d, texture_2d_multisampled, uniform_buffer_sized},
+    },
+    shader::ShaderDefVal,
+};
+
+use super::{Needs, Plan, ViewFacts, compose::definition};
+use crate::{
+    depth::view::ViewUniform,
+    finish::DebugView,
+    lines::{GATHER_REACH, edges_entry, range_entry},
+    objects::{ids_entry, object_styles_entry},
+};
+
+/// Modes of an effect that select a shader variant. Each becomes a shader
+/// definition: the effect's name in capitals, an underscore, and the variant's
+/// name, so `MODE` of an effect `rain` is `RAIN_MODE`.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Variants {
+    effect: &'static str,
+    entries: Vec<(&'static str, &'static str, Option<u32>)>,
+}
+
+impl Variants {
+    /// Sets a definition where `on` holds.
+    pub fn flag(&mut self, name: &'static str, on: bool) {
+        if on {
+            self.entries.push((self.effect, name, None));
+        }
+    }
+
+    /// Sets a definition to a number.
+    pub fn number(&mut self, name: &'static str, value: u32) {
+        self.entries.push((self.effect, name, Some(value)));
+    }
+
+    fn shader_defs(&self) -> impl Iterator<Item = ShaderDefVal> {
+        self.entries.iter().map(|(effect, name, value)| {
+            let name = format!("{}_{name}", definition(effect));
+            match value {
+                Some(value) => ShaderDefVal::UInt(name, *value),
+                None => name.into(),
+            }
+        })
+    }
+}
+
+/// What of a view selects a pipeline, besides its plan.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct KeyInputs {
+    pub format: TextureFormat,
+    pub space: Option<CompositingSpace>,
+    /// Samples of the depth texture, if there is one.
+    pub samples: Option<u32>,
+    pub oblique: bool,
+    pub view: ViewUniform,
+    /// How far around a pixel lines are looked for, in pixels.
+    pub reach: i32,
+    /// Whether lines come from a flood.
+    pub flood: bool,
+}
+
+/// What is compiled into the fused pass: which effects there are and their modes,
+/// never their other numbers.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct StylizeKey {
+    pub format: TextureFormat,
+    space: CompositingSpace,
+    pub samples: u32,
+    oblique: bool,
+    effects: Vec<&'static str>,
+    variants: Variants,
+    needs: Needs,
+    /// Depth is bound.
+    pub depth: bool,
+    pub visible_range: bool,
+    pub lines: bool,
+    flood: bool,
+    pub object_styles: bool,
+    view: Option<DebugView>,
+    map_flags: u32,
+    reach: u32,
+    finish: bool,
+    same_size: bool,
+}
+
+impl StylizeKey {
+    pub fn new(plan: &Plan, inputs: &KeyInputs, facts: &ViewFacts) -> Self {
+        let needs = plan.needs();
+        let depth = needs.intersects(Needs::MAP | Needs::DEPTH);
+        let reads_pixels = depth || needs.intersects(Needs::NORMALS | Needs::IDS);
+        let lines = needs.intersects(Needs::LINES);
+        let mut variants = Variants::default();
+        for effect in plan.drawn() {
+            variants.effect = effect.effect_type().name;
+            effect.any_variants(facts, &mut variants);
+        }
+        variants.effect = "";
+        Self {
+            format: inputs.format,
+            space: inputs.space.unwrap_or(CompositingSpace::Linear),
+            // What is compiled in depends on the depth only where that is read.
+            samples: inputs.samples.filter(|_| reads_pixels).unwrap_or(1),
+            oblique: depth && inputs.oblique,
+            effects: plan.drawn().map(|e| e.effect_type().name).collect(),
+            variants,
+            needs,
+            depth,
+            visible_range: plan.draws_with_range(),
+            lines,
+            flood: lines && inputs.flood,
+            object_styles: lines && plan.object_styles,
+            view: plan.view,
+            map_flags: inputs.view.depth.flags,
+            reach: if lines {
+                inputs.reach.clamp(0, GATHER_REACH) as u32
+            } else {
+                0
+            },
+            finish: plan.finish.weight < 1.0 || plan.finish.split > 0.0,
+            same_size: inputs.view.depth_scale == Vec2::ONE,
+        }
+    }
+
+    pub fn normals(&self) -> bool {
+        self.needs.contains(Needs::NORMALS)
+    }
+
+    pub fn ids(&self) -> bool {
+        self.needs.contains(Needs::IDS)
+    }
+
+    /// Whether a flood carries the lines.
+    pub fn flooded(&self) -> bool {
+        self.flood
+    }
+
+    pub fn shader_defs(&self) -> Vec<ShaderDefVal> {
+        let space = match self.space {
+            CompositingSpace::Linear => None,
+            CompositingSpace::Srgb => Some("STORED_SRGB"),
+            CompositingSpace::Oklab => Some("STORED_OKLAB"),
+        };
+        let needs = self.needs;
+        let number = |name: &str, value| ShaderDefVal::UInt(name.into(), value);
+        [
+            (self.depth, "DEPTH"),
+            (needs.contains(Needs::MAP), "MAP"),
+            (self.visible_range, "VISIBLE_RANGE"),
+            (self.samples > 1, "MULTISAMPLED"),
+            (self.oblique, "OBLIQUE"),
+            (self.normals(), "NORMALS"),
+            (self.ids(), "OBJECT_IDS"),
+            (self.lines, "LINES"),
+            (needs.contains(Needs::LINES_ANYWHERE), "LINES_ANYWHERE"),
+            (self.flood, "FLOOD"),
+            (self.object_styles, "OBJECT_STYLES"),
+            (needs.contains(Needs::LIGHTNESS_CHANGE), "LIGHTNESS_CHANGE"),
+            (self.same_size, "SAME_SIZE"),
+            (self.finish, "FINISH"),
+        ]
+        .into_iter()
+        .filter_map(|(on, name)| on.then_some(name))
+        .chain(space)
+        .map(ShaderDefVal::from)
+        .chain(self.view.into_iter().flat_map(view_definitions))
+        .chain(self.effects.iter().map(|name| definition(name).into()))
+        .chain([
+            number("MAP_FLAGS", self.map_flags),
+            number("LINE_REACH", self.reach),
+        ])
+        .chain(self.variants.shader_defs())
+        .collect()
+    }
+
+    pub fn layout(&self) -> BindGroupLayoutDescriptor {
+        let unfilterable = TextureSampleType::Float { filterable: false };
+        let prepass = |binding| {
+            let texture = if self.samples > 1 {
+                texture_2d_multisampled(unfilterable)
+            } else {
+                texture_2d(unfilterable)
+            };
+            texture.build(binding, ShaderStages::FRAGMENT)
+        };
+        let mut entries = BindGroupLayoutEntries::sequential(
+            ShaderStages::FRAGMENT,
+            (texture_2d(unfilterable), uniform_buffer_sized(false, None)),
+        )
+        .to_vec();
+        let optional = [
+            (self.depth, prepass(2)),
+            (self.visible_range, range_entry()),
+            (self.lines, edges_entry(4)),
+            (self.flood, edges_entry(5)),
+            (self.object_styles, object_styles_entry()),
+            (self.normals(), prepass(7)),
+            (self.ids(), ids_entry(self.samples > 1)),
+        ];
+        entries.extend(
+            optional
+                .into_iter()
+                .filter_map(|(on, entry)| on.then_some(entry)),
+        );
+        BindGroupLayoutDescriptor::new("comics_stylize", &entries)
+    }
+}
+
+/// The definitions of a debug view.
+fn view_definitions(view: DebugView) -> Vec<ShaderDefVal> {
+    match view {
+        DebugView::Effect(name) => vec![
+            "VIEW_EFFECT".into(),
+            format!("VIEW_{}", definition(name)).into(),
+        ],
+        other => vec![other.shader_def().into()],
+    }
+}

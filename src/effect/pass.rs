@@ -1,0 +1,212 @@
+//! The fused full-screen pass: every effect of a camera in one read and one write
+//! of its picture.
+
+use bevy::{
+    asset::Handle,
+    core_pipeline::{FullscreenShader, prepass::ViewPrepassTextures},
+    ecs::{resource::Resource, system::Res},
+    render::{
+        diagnostic::RecordDiagnostics,
+        render_resource::{
+            BindGroupEntry, BindingResource, ColorTargetState, ColorWrites, FragmentState,
+            IntoBinding, Operations, PipelineCache, RenderPassColorAttachment,
+            RenderPassDescriptor, RenderPipelineDescriptor, SpecializedRenderPipeline, TextureView,
+        },
+        renderer::{RenderContext, ViewQuery},
+        view::ViewTarget,
+    },
+    shader::Shader,
+};
+
+use super::{
+    errors::ShaderErrors,
+    key::StylizeKey,
+    prepare::{FusedRequest, ViewFused},
+};
+use crate::{
+    depth::prepare::ViewDepthRange,
+    diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
+    lines::ViewLines,
+    objects::{ObjectStyleBuffer, ViewObjectIds},
+};
+
+#[derive(Resource)]
+pub(crate) struct StylizePipeline {
+    fullscreen: FullscreenShader,
+    shader: Handle<Shader>,
+}
+
+impl StylizePipeline {
+    pub fn new(fullscreen: &FullscreenShader, shader: Handle<Shader>) -> Self {
+        Self {
+            fullscreen: fullscreen.clone(),
+            shader,
+        }
+    }
+}
+
+impl SpecializedRenderPipeline for StylizePipeline {
+    type Key = StylizeKey;
+
+    fn specialize(&self, key: Self::Key) -> RenderPipelineDescriptor {
+        RenderPipelineDescriptor {
+            label: Some("comics_stylize".into()),
+            layout: vec![key.layout()],
+            vertex: self.fullscreen.to_vertex_state(),
+            fragment: Some(FragmentState {
+                shader: self.shader.clone(),
+                shader_defs: key.shader_defs(),
+                entry_point: Some("stylize".into()),
+                targets: vec![Some(ColorTargetState {
+                    format: key.format,
+                    blend: None,
+                    write_mask: ColorWrites::ALL,
+                })],
+            }),
+            ..Default::default()
+        }
+    }
+}
+
+/// What the services have found for the view in this frame.
+type Found<'a> = (
+    Option<&'a ViewPrepassTextures>,
+    Option<&'a ViewDepthRange>,
+    Option<&'a ViewLines>,
+    Option<&'a ViewObjectIds>,
+);
+
+/// Draws the effects of the view. The picture is taken from the view only when
+/// everything is there to give it back.
+pub(super) fn stylize(
+    view: ViewQuery<(
+        (&ViewTarget, &FusedRequest, &ViewFused),
+        (
+            Option<&ViewPrepassTextures>,
+            Option<&ViewDepthRange>,
+            Option<&ViewLines>,
+            Option<&ViewObjectIds>,
+        ),
+    )>,
+    object_styles: Res<ObjectStyleBuffer>,
+    (ledger, errors): (Res<StageLedger>, Res<ShaderErrors>),
+    cache: Res<PipelineCache>,
+    mut ctx: RenderContext,
+) {
+    let ((target, request, fused), found) = view.into_inner();
+    let Some(pipeline) = cache.get_render_pipeline(request.pipeline) else {
+        errors.report(&cache, request, &ledger);
+        return pass_through(request, &ledger, LeftOut::PipelineNotReady);
+    };
+    let inputs = if target.main_texture_format() == request.key.format {
+        inputs(&request.key, found, &object_styles)
+    } else {
+        Err(LeftOut::PipelineNotReady)
+    };
+    let mut entries = match inputs {
+        Ok(entries) => entries,
+        Err(reason) => return pass_through(request, &ledger, reason),
+    };
+    let layout = cache.get_bind_group_layout(&request.key.layout());
+    let post = target.post_process_write();
+    entries.push(entry(0, post.source.into_binding()));
+    entries.push(entry(1, fused.uniform.as_entire_binding()));
+    let device = ctx.render_device();
+    let bind_group = device.create_bind_group("comics_stylize", &layout, &entries);
+
+    let diagnostics = ctx.diagnostic_recorder();
+    let diagnostics = diagnostics.as_deref();
+    let encoder = ctx.command_encoder();
+    let span = diagnostics.time_span(encoder, "comics_stylize");
+    {
+        let mut render_pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("comics_stylize"),
+            color_attachments: &[Some(RenderPassColorAttachment {
+                view: post.destination,
+                depth_slice: None,
+                resolve_target: None,
+                ops: Operations::default(),
+            })],
+            ..Default::default()
+        });
+        render_pass.set_pipeline(pipeline);
+        render_pass.set_bind_group(0, &bind_group, &[]);
+        render_pass.draw(0..3, 0..1);
+    }
+    span.end(encoder);
+
+    ran(request, &ledger);
+}
+
+fn ran(request: &FusedRequest, ledger: &StageLedger) {
+    for effect in request.plan.drawn() {
+        let stage = ComicsStage::Effect(effect.effect_type().name);
+        ledger.set(request.camera, stage, StageOutcome::Ran);
+    }
+    ledger.set(request.camera, ComicsStage::Stylize, StageOutcome::Ran);
+}
+
+fn pass_through(request: &FusedRequest, ledger: &StageLedger, reason: LeftOut) {
+    let outcome = StageOutcome::LeftOut(reason);
+    ledger.set(request.camera, ComicsStage::Stylize, outcome);
+}
+
+fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
+    BindGroupEntry { binding, resource }
+}
+
+/// What the pass reads besides the picture and its uniform; an error if anything
+/// of it was not found in this frame.
+fn inputs<'a>(
+    key: &StylizeKey,
+    (prepass, range, lines, ids): Found<'a>,
+    object_styles: &'a ObjectStyleBuffer,
+) -> Result<Vec<BindGroupEntry<'a>>, LeftOut> {
+    let not_ready = LeftOut::PipelineNotReady;
+    let mut entries = Vec::new();
+    if key.depth {
+        let depth = prepass.and_then(|textures| textures.depth.as_ref());
+        let depth = depth.ok_or(LeftOut::SampleCountMismatch)?;
+        entries.push(entry(2, sampled(&depth.texture, key.samples)?));
+    }
+    if key.visible_range {
+        let keys = range.and_then(ViewDepthRange::drawn).ok_or(not_ready)?;
+        entries.push(entry(3, keys.as_entire_binding()));
+    }
+    if key.lines {
+        let lines = lines.ok_or(not_ready)?;
+        let edges = lines.found().ok_or(not_ready)?;
+        entries.push(entry(4, (&edges.default_view).into_binding()));
+        if key.flooded() {
+            let flood = lines.flood.as_ref().ok_or(not_ready)?;
+            entries.push(entry(5, (&flood.result().default_view).into_binding()));
+        }
+    }
+    if key.object_styles {
+        let styles = object_styles.buffer().ok_or(not_ready)?;
+        entries.push(entry(6, styles.as_entire_binding()));
+    }
+    if key.normals() {
+        let normal = prepass.and_then(|textures| textures.normal.as_ref());
+        let normal = normal.ok_or(not_ready)?;
+        entries.push(entry(7, sampled(&normal.texture, key.samples)?));
+    }
+    if key.ids() {
+        let ids = ids.ok_or(not_ready)?;
+        entries.push(entry(8, (&ids.view).into_binding()));
+    }
+    Ok(entries)
+}
+
+/// The binding of a prepass texture that has as many samples as were compiled in.
+fn sampled(
+    texture: &bevy::render::texture::CachedTexture,
+    samples: u32,
+) -> Result<BindingResource<'_>, LeftOut> {
+    let view: &TextureView = &texture.default_view;
+    if texture.texture.sample_count() == samples {
+        Ok(view.into_binding())
+    } else {
+        Err(LeftOut::SampleCountMismatch)
+    }
+}

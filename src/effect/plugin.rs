@@ -1,0 +1,124 @@
+//! The fused pass in an app.
+
+use bevy::{
+    anti_alias::{fxaa::fxaa, smaa::smaa},
+    app::{App, Plugin},
+    asset::{Assets, Handle},
+    core_pipeline::{
+        FullscreenShader,
+        schedule::{Core3d, Core3dSystems},
+        tonemapping::tonemapping,
+    },
+    ecs::{
+        entity::Entity,
+        query::With,
+        resource::Resource,
+        schedule::IntoScheduleConfigs,
+        system::{Commands, Query, Res},
+    },
+    render::{
+        GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
+        render_resource::SpecializedRenderPipelines,
+    },
+    shader::{Shader, load_shader_library},
+};
+
+use super::{
+    EffectRegistry, EffectType,
+    choose::choose_plans,
+    errors::{ShaderErrors, file_path},
+    pass::{StylizePipeline, stylize},
+    prepare::{ViewFused, prepare_fused_pass},
+};
+use crate::schedule::{ComicsSystems, PrepareComics};
+
+/// Chooses what every view draws, and draws it in one pass.
+pub(crate) struct FusedPlugin;
+
+/// The modules of the effects, which nothing else keeps alive.
+#[derive(Resource)]
+struct EffectModules {
+    _modules: Vec<Handle<Shader>>,
+}
+
+/// The composed pass.
+#[derive(Resource)]
+struct FusedShader(Handle<Shader>);
+
+impl Plugin for FusedPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<EffectRegistry>();
+        if app.get_sub_app(RenderApp).is_none() {
+            return;
+        }
+        load_shader_library!(app, "color.wgsl");
+        load_shader_library!(app, "noise.wgsl");
+        load_shader_library!(app, "pixel.wgsl");
+        let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+            return;
+        };
+        render_app
+            .init_gpu_resource::<SpecializedRenderPipelines<StylizePipeline>>()
+            .init_resource::<ShaderErrors>()
+            .configure_sets(
+                Render,
+                (
+                    PrepareComics::Choose,
+                    PrepareComics::Services,
+                    PrepareComics::Fused,
+                )
+                    .chain()
+                    .in_set(RenderSystems::PrepareBindGroups),
+            )
+            .add_systems(RenderStartup, init_pipeline)
+            .add_systems(
+                Render,
+                (
+                    choose_plans.in_set(PrepareComics::Choose),
+                    prepare_fused_pass.in_set(PrepareComics::Fused),
+                ),
+            )
+            .add_systems(
+                Core3d,
+                stylize
+                    .in_set(ComicsSystems::Stylize)
+                    .in_set(Core3dSystems::PostProcess)
+                    .after(tonemapping)
+                    .before(fxaa)
+                    .before(smaa),
+            );
+    }
+
+    /// All effects are registered by now.
+    fn finish(&self, app: &mut App) {
+        let registry = app.world().resource::<EffectRegistry>().clone();
+        let Some(mut shaders) = app.world_mut().get_resource_mut::<Assets<Shader>>() else {
+            return;
+        };
+        let module = |effect: &&EffectType| {
+            shaders.add(Shader::from_wgsl(effect.shader.source, file_path(effect)))
+        };
+        let modules = registry.types().iter().map(module).collect();
+        let fused = Shader::from_wgsl(registry.shader(), "bevy_comics/effect/fused.wgsl");
+        let fused = shaders.add(fused);
+        app.insert_resource(EffectModules { _modules: modules });
+        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+            render_app
+                .insert_resource(registry)
+                .insert_resource(FusedShader(fused));
+        }
+    }
+}
+
+fn init_pipeline(
+    mut commands: Commands,
+    fullscreen: Res<FullscreenShader>,
+    shader: Res<FusedShader>,
+    fused: Query<Entity, With<ViewFused>>,
+) {
+    // This runs again on a new device: buffers of the old one are of no use.
+    for view in &fused {
+        commands.entity(view).remove::<ViewFused>();
+    }
+    commands.insert_resource(StylizePipeline::new(&fullscreen, shader.0.clone()));
+}

@@ -1,0 +1,88 @@
+//! From a request to this frame's fused pass: the uniform of the view.
+
+use std::sync::Arc;
+
+use bevy::{
+    ecs::{
+        component::Component,
+        entity::Entity,
+        query::{With, Without},
+        system::{Commands, Query, Res},
+    },
+    render::{
+        render_resource::{Buffer, BufferDescriptor, BufferUsages, CachedRenderPipelineId},
+        renderer::{RenderDevice, RenderQueue},
+    },
+};
+
+use super::{Plan, ViewFacts, any::encode, key::StylizeKey};
+use crate::{depth::view::ViewUniform, lines::LinesUniform};
+
+/// On a view in the render world: it is stylized in this frame.
+#[derive(Component, Clone, Debug)]
+pub(crate) struct FusedRequest {
+    pub camera: Entity,
+    pub plan: Arc<Plan>,
+    pub key: StylizeKey,
+    pub pipeline: CachedRenderPipelineId,
+    pub facts: ViewFacts,
+    pub view: ViewUniform,
+    pub lines: Option<LinesUniform>,
+}
+
+impl FusedRequest {
+    /// `Comics` of the fused pass: only what is there, each part at a multiple of
+    /// 16 bytes.
+    fn uniform_bytes(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let mut push = |part: Vec<u8>| {
+            bytes.extend(part);
+            bytes.resize(bytes.len().next_multiple_of(16), 0);
+        };
+        push(encode(&self.view));
+        push(encode(&self.plan.finish.uniform(self.facts.viewport.z)));
+        if let Some(lines) = self.lines.filter(|_| self.key.lines) {
+            push(encode(&lines));
+        }
+        for effect in self.plan.drawn() {
+            if effect.effect_type().shader.settings.is_some() {
+                push(effect.uniform_bytes(&self.facts));
+            }
+        }
+        bytes
+    }
+}
+
+/// On a view in the render world: the uniform of its fused pass.
+#[derive(Component)]
+pub(crate) struct ViewFused {
+    pub uniform: Buffer,
+}
+
+pub(super) fn prepare_fused_pass(
+    mut commands: Commands,
+    views: Query<(Entity, &FusedRequest, Option<&ViewFused>)>,
+    stale: Query<Entity, (With<ViewFused>, Without<FusedRequest>)>,
+    (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
+) {
+    for (entity, request, fused) in &views {
+        let bytes = request.uniform_bytes();
+        let fits = fused.filter(|fused| fused.uniform.size() >= bytes.len() as u64);
+        match fits {
+            Some(fused) => queue.write_buffer(&fused.uniform, 0, &bytes),
+            None => {
+                let uniform = device.create_buffer(&BufferDescriptor {
+                    label: Some("comics_uniform"),
+                    size: bytes.len() as u64,
+                    usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                });
+                queue.write_buffer(&uniform, 0, &bytes);
+                commands.entity(entity).insert(ViewFused { uniform });
+            }
+        }
+    }
+    for entity in &stale {
+        commands.entity(entity).remove::<ViewFused>();
+    }
+}

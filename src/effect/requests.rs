@@ -1,0 +1,275 @@
+//! From a plan to what is asked of every service, on one view.
+
+use std::sync::Arc;
+
+use bevy::{
+    core_pipeline::prepass::ViewPrepassTextures,
+    ecs::{
+        entity::Entity,
+        system::{Commands, Res, ResMut, SystemParam},
+    },
+    math::{UVec2, UVec4},
+    render::{
+        camera::ExtractedCamera,
+        render_resource::{
+            CachedPipelineState, CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines,
+        },
+        view::ExtractedView,
+    },
+    shader::ShaderCacheError,
+};
+
+use super::{
+    Needs, Plan, ViewFacts, ViewPlan,
+    key::{KeyInputs, StylizeKey},
+    pass::StylizePipeline,
+    plan::Prepasses,
+    prepare::FusedRequest,
+};
+use crate::{
+    depth::{
+        ProjectionKind,
+        request::{RangePasses, RangePipelines, RangeRequest, Reduction},
+        view::{ViewUniform, depth_rect},
+    },
+    lines::request::{LinePasses, LinePipelines, LineRequest},
+    objects::IdRequest,
+};
+
+/// What a view has got to draw with.
+#[derive(Clone, Copy)]
+pub(super) struct Scene {
+    viewport: UVec4,
+    /// Size and samples of the depth prepass, if there is one.
+    pub depth: Option<(UVec2, u32)>,
+    pub normals: bool,
+}
+
+impl Scene {
+    pub fn new(extracted: &ExtractedView, prepass: Option<&ViewPrepassTextures>) -> Self {
+        let depth = prepass.and_then(|textures| textures.depth.as_ref());
+        Self {
+            viewport: extracted.viewport,
+            depth: depth.map(|depth| {
+                let texture = &depth.texture.texture;
+                let size = UVec2::new(texture.width(), texture.height());
+                (size, texture.sample_count())
+            }),
+            normals: prepass.is_some_and(|textures| textures.normal.is_some()),
+        }
+    }
+
+    /// The plan as this view can draw it.
+    pub fn reduce(&self, plan: &Arc<Plan>) -> Arc<Plan> {
+        let mut reduced = plan.clone();
+        if self.depth.is_none() && reduced.needs_depth() {
+            reduced = Arc::new(reduced.without(Prepasses::Depth));
+        }
+        if !self.normals && reduced.needs_normals() {
+            reduced = Arc::new(reduced.without(Prepasses::Normals));
+        }
+        reduced
+    }
+}
+
+/// What one plan asks of the services, on one view, and the pipelines for it.
+pub(super) struct Requests {
+    range: Option<(RangeRequest, RangePasses)>,
+    lines: Option<(LineRequest, LinePasses)>,
+    ids: Option<IdRequest>,
+    fused: Option<FusedRequest>,
+}
+
+/// Makes requests of plans.
+#[derive(SystemParam)]
+pub(crate) struct Services<'w> {
+    ranges: RangePipelines<'w>,
+    lines: LinePipelines<'w>,
+    stylize: ResMut<'w, SpecializedRenderPipelines<StylizePipeline>>,
+    stylize_pipeline: Res<'w, StylizePipeline>,
+}
+
+impl Services<'_> {
+    pub fn requests(
+        &mut self,
+        cache: &PipelineCache,
+        (plan, view): (&Arc<Plan>, &ViewPlan),
+        scene: &Scene,
+        (extracted, camera): (&ExtractedView, &ExtractedCamera),
+    ) -> Requests {
+        let uniform = view_uniform(view, plan, scene);
+        let lines = line_request(view, plan, scene, uniform);
+        let fused = plan.draws().then(|| {
+            let inputs = KeyInputs {
+                format: extracted.target_format,
+                space: camera.compositing_space,
+                samples: scene.depth.map(|(_, samples)| samples),
+                oblique: view.projection.kind() == ProjectionKind::Oblique,
+                view: uniform,
+                reach: lines.as_ref().map_or(0, |request| request.lines.reach),
+                flood: lines.as_ref().is_some_and(LineRequest::floods),
+            };
+            self.fused(cache, (plan, view), scene, (&inputs, lines.as_ref()))
+        });
+        let range = range_request(view, plan, scene).map(|request| {
+            let passes = self.ranges.get(cache, &request);
+            (request, passes)
+        });
+        let lines = lines.map(|request| {
+            let passes = self.lines.get(cache, &request);
+            (request, passes)
+        });
+        let ids = scene
+            .depth
+            .filter(|_| plan.draws() && plan.draws_ids())
+            .map(|(size, samples)| IdRequest {
+                camera: view.camera,
+                size,
+                samples,
+            });
+        Requests {
+            range,
+            lines,
+            ids,
+            fused,
+        }
+    }
+
+    fn fused(
+        &mut self,
+        cache: &PipelineCache,
+        (plan, view): (&Arc<Plan>, &ViewPlan),
+        scene: &Scene,
+        (inputs, lines): (&KeyInputs, Option<&LineRequest>),
+    ) -> FusedRequest {
+        let facts = ViewFacts {
+            viewport: scene.viewport,
+            scale_factor: view.scale_factor,
+            seconds: view.time,
+            lines_implied: plan.lines_implied(),
+        };
+        let key = StylizeKey::new(plan, inputs, &facts);
+        FusedRequest {
+            camera: view.camera,
+            plan: plan.clone(),
+            facts,
+            view: inputs.view,
+            lines: lines.map(|request| request.lines),
+            pipeline: self
+                .stylize
+                .specialize(cache, &self.stylize_pipeline, key.clone()),
+            key,
+        }
+    }
+}
+
+fn view_uniform(view: &ViewPlan, plan: &Plan, scene: &Scene) -> ViewUniform {
+    ViewUniform::new(
+        scene.viewport,
+        view.main_pass_size,
+        plan.depth_map.flip,
+        view.projection.raw(&view.clip_from_view, scene.viewport),
+        view.projection.frame(&plan.depth_map),
+    )
+}
+
+fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeRequest> {
+    let (_, samples) = scene.depth.filter(|_| plan.needs_range())?;
+    Some(RangeRequest {
+        camera: view.camera,
+        map: plan.depth_map,
+        projection: view.projection,
+        raw: view.projection.raw(&view.clip_from_view, scene.viewport),
+        rect: depth_rect(scene.viewport, view.main_pass_size),
+        samples,
+        smooths: plan.smooths(),
+        readback: plan.readback,
+        histogram: plan.histogram,
+        seconds: view.seconds,
+        cuts: view.cuts,
+    })
+}
+
+fn line_request(
+    view: &ViewPlan,
+    plan: &Plan,
+    scene: &Scene,
+    uniform: ViewUniform,
+) -> Option<LineRequest> {
+    let settings = plan.lines.filter(|_| plan.draws())?;
+    let (size, samples) = scene.depth?;
+    let widest_object = if plan.object_styles {
+        view.widest_object
+    } else {
+        0.0
+    };
+    let reach = settings.reach(view.scale_factor, widest_object);
+    let reference = view.projection.jump_reference(&view.clip_from_view);
+    Some(LineRequest {
+        camera: view.camera,
+        settings,
+        view: uniform,
+        lines: settings.uniform(view.scale_factor, reference, reach),
+        size,
+        samples,
+        oblique: view.projection.kind() == ProjectionKind::Oblique,
+        visible_range: plan.depth_map.mapping.follows_visible_range(),
+        ids: plan.draws_ids(),
+        object_styles: plan.object_styles,
+        anywhere: plan.needs().contains(Needs::LINES_ANYWHERE),
+    })
+}
+
+impl Requests {
+    /// Whether a pipeline is still on its way. One that failed is not: then the
+    /// picture passes through, and the log says why.
+    pub fn is_compiling(&self, cache: &PipelineCache) -> bool {
+        let compute = |id| is_under_way(cache.get_compute_pipeline_state(id));
+        let render = |id: CachedRenderPipelineId| is_under_way(cache.get_render_pipeline_state(id));
+        let range = self.range.as_ref().is_some_and(|(_, passes)| {
+            let reduction = match passes.reduction {
+                Reduction::Compute { pipeline, .. } => compute(pipeline),
+                Reduction::PingPong { first, next } => render(first) || render(next),
+            };
+            reduction || passes.smoothing.is_some_and(compute)
+        });
+        let lines = self.lines.as_ref().is_some_and(|(_, passes)| {
+            render(passes.detect) || passes.flood.is_some_and(|ids| ids.into_iter().any(render))
+        });
+        let fused = self.fused.as_ref().is_some_and(|f| render(f.pipeline));
+        range || lines || fused
+    }
+
+    /// Puts the requests on the view, and takes away those of the last frame.
+    pub fn put(self, entity: Entity, commands: &mut Commands) {
+        let mut view = commands.entity(entity);
+        match self.range {
+            Some(range) => view.insert(range),
+            None => view.remove::<(RangeRequest, RangePasses)>(),
+        };
+        match self.lines {
+            Some(lines) => view.insert(lines),
+            None => view.remove::<(LineRequest, LinePasses)>(),
+        };
+        match self.ids {
+            Some(ids) => view.insert(ids),
+            None => view.remove::<IdRequest>(),
+        };
+        match self.fused {
+            Some(fused) => view.insert(fused),
+            None => view.remove::<FusedRequest>(),
+        };
+    }
+}
+
+fn is_under_way(state: &CachedPipelineState) -> bool {
+    match state {
+        CachedPipelineState::Queued | CachedPipelineState::Creating(_) => true,
+        // These are tried again.
+        CachedPipelineState::Err(error) => matches!(
+            error,
+            ShaderCacheError::ShaderNotLoaded(_) | ShaderCacheError::ShaderImportNotYetAvailable
+        ),
+        CachedPipelineState::Ok(_) => false,
+    }
+}

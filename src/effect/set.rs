@@ -1,0 +1,66 @@
+//! A set of effects, at most one of each type.
+
+use super::{AnyEffect, Effect, EffectStage};
+
+/// Effects in the order of their stages, and within a stage in the order in which
+/// they came.
+#[derive(Clone, Debug, Default)]
+pub struct EffectSet(Vec<Box<dyn AnyEffect>>);
+
+impl EffectSet {
+    /// The effects, in order.
+    pub fn iter(&self) -> impl Iterator<Item = &dyn AnyEffect> {
+        self.0.iter().map(AsRef::as_ref)
+    }
+
+    /// The effect of this name, if it is there.
+    pub fn by_name(&self, name: &str) -> Option<&dyn AnyEffect> {
+        self.iter().find(|effect| effect.effect_type().name == name)
+    }
+
+    /// The effect of this type, if it is there.
+    pub fn get<E: Effect>(&self) -> Option<&E> {
+        self.iter().find_map(|effect| effect.as_any().downcast_ref())
+    }
+
+    /// The effect of this type, to be edited.
+    pub fn get_mut<E: Effect>(&mut self) -> Option<&mut E> {
+        self.0
+            .iter_mut()
+            .find_map(|effect| effect.as_any_mut().downcast_mut())
+    }
+
+    /// Adds an effect, in place of another one of its type.
+    pub fn insert(&mut self, effect: Box<dyn AnyEffect>) {
+        let key = |e: &dyn AnyEffect| -> EffectStage { e.effect_type().stage };
+        let name = effect.effect_type().name;
+        if let Some(known) = self.0.iter_mut().find(|e| e.effect_type().name == name) {
+            *known = effect;
+            return;
+        }
+        let at = self
+            .0
+            .partition_point(|e| key(e.as_ref()) <= key(effect.as_ref()));
+        self.0.insert(at, effect);
+    }
+
+    /// Takes the effect of this name out.
+    pub fn remove(&mut self, name: &str) -> Option<Box<dyn AnyEffect>> {
+        let at = self
+            .0
+            .iter()
+            .position(|effect| effect.effect_type().name == name)?;
+        Some(self.0.remove(at))
+    }
+}
+
+impl PartialEq for EffectSet {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.len() == other.0.len()
+            && self.iter().all(|effect| {
+                other
+                    .by_name(effect.effect_type().name)
+                    .is_some_and(|theirs| effect.equals(theirs))
+            })
+    }
+}

@@ -1,0 +1,97 @@
+#define_import_path bevy_comics::effects::colorization
+
+// The atmosphere ([CS] Eq. 8 to 11).
+
+#import bevy_comics::effect::color::{hue_color, hue_of, largest, linear_to_oklab, oklab_to_linear, smallest, srgb_decode, srgb_encode}
+#import bevy_comics::effect::pixel::Pixel
+
+const MODE_HUE: u32 = 0u;
+const MODE_ATMOSPHERE: u32 = 1u;
+const MODE_LINEAR: u32 = 2u;
+const MODE_QUADRATIC: u32 = 3u;
+
+struct Colorization {
+    // Unit chroma direction of the atmosphere in OKLab (a, b).
+    direction: vec2<f32>,
+    // Lightness of that hue's most saturated colour, and the chroma the
+    // atmosphere asks for there.
+    cusp_lightness: f32,
+    cusp_chroma: f32,
+    // HSV hue of the atmosphere, [0, 1).
+    hue: f32,
+    amount: f32,
+    mode: u32,
+    faithful: u32,
+}
+
+// Modes are compiled in where they are known: see has() in map.wgsl.
+fn mode_of(s: Colorization) -> u32 {
+#ifdef COLORIZATION_MODE
+    return #{COLORIZATION_MODE}u;
+#else
+    return s.mode;
+#endif
+}
+
+fn is_faithful(s: Colorization) -> bool {
+#ifdef COLORIZATION_FAITHFUL
+    return #{COLORIZATION_FAITHFUL}u != 0u;
+#else
+    return s.faithful != 0u;
+#endif
+}
+
+// How far the hue has moved to the atmosphere, for the chroma blend.
+fn atmosphere_weight(mode: u32, d: f32, l: f32) -> f32 {
+    if mode == MODE_ATMOSPHERE {
+        return 1.0;
+    }
+    if mode == MODE_LINEAR {
+        return d;
+    }
+    let far = sqrt(max(d, 0.0));
+    return far / (far + sqrt(max(l, 0.0)));
+}
+
+// Eq. 9-11 as printed, on HSV hue of the display code. Value and saturation
+// stay, so greys never tint, and the weights of Eq. 11 sum to more than one.
+fn faithful_colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32) -> vec3<f32> {
+    let c = srgb_encode(linear);
+    let value = largest(c);
+    let chroma = value - smallest(c);
+    var hue = s.hue;
+    if mode_of(s) == MODE_LINEAR {
+        hue = fract(hue_of(c) * l + s.hue * d);
+    } else if mode_of(s) == MODE_QUADRATIC {
+        hue = fract(hue_of(c) * sqrt(max(l, 0.0)) + s.hue * sqrt(max(d, 0.0)));
+    }
+    let tinted = vec3(value) - chroma * (1.0 - hue_color(hue));
+    return srgb_decode(mix(c, tinted, s.amount));
+}
+
+// Blends chroma vectors in OKLab: no hue wraps round, opposite hues meet in
+// grey, and greys take the atmosphere too. `saturation` is what desaturation
+// has left; under Eq. 9 the atmosphere obeys it.
+fn colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32, saturation: f32) -> vec3<f32> {
+    if mode_of(s) == MODE_HUE {
+        return linear;
+    }
+    if is_faithful(s) {
+        return faithful_colorize(s, linear, d, l);
+    }
+    let lab = linear_to_oklab(linear);
+    let room = min(lab.x / s.cusp_lightness, (1.0 - lab.x) / (1.0 - s.cusp_lightness));
+    var atmosphere = s.direction * (s.cusp_chroma * clamp(room, 0.0, 1.0));
+    if mode_of(s) == MODE_ATMOSPHERE {
+        atmosphere *= saturation;
+    }
+    let w = s.amount * atmosphere_weight(mode_of(s), d, l);
+    let chroma = lab.yz * (1.0 - w) + atmosphere * w;
+    return oklab_to_linear(vec3(lab.x, chroma));
+}
+
+fn colorization(s: Colorization, p: Pixel) -> Pixel {
+    var out = p;
+    out.color = colorize(s, p.color, p.depth.x, p.depth.y, p.saturation);
+    return out;
+}

@@ -1,0 +1,215 @@
+//! The atmosphere: one hue for everything, or more of it with distance
+//! (\[CS\] Eq. 8 to 11).
+
+mod oklab;
+
+use bevy::{
+    color::{Color, ColorToComponents, Hsva, Oklaba},
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::{FloatExt, Vec2},
+    reflect::{Reflect, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use super::ColorMethod;
+use crate::{
+    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
+    settings::{FieldRange, HueWheel, blend_color, bounded, displayable, file_color},
+};
+
+/// Colours the picture with an atmosphere (\[CS\] Eq. 8 to 11).
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq)]
+#[serde(default, deny_unknown_fields)]
+pub struct Colorization {
+    /// Which equation. Default: [`ColorizationMode::Quadratic`].
+    pub mode: ColorizationMode,
+    /// The atmosphere. Its hue is `a_h`; in the corrected method its saturation
+    /// counts too: a grey pixel of this lightness becomes this very colour.
+    /// Default: a warm red, `#c8413a`. Components are clamped to what a display
+    /// shows; a colour that is not finite becomes the default.
+    #[serde(with = "file_color")]
+    #[reflect(@HueWheel)]
+    pub color: Color,
+    /// How much of the change is applied. Range 0 (none, and the pass leaves
+    /// the style out) to 1. Default 1.
+    #[reflect(@FieldRange::SHARE)]
+    pub amount: f32,
+    /// [`ColorMethod::Corrected`] blends chroma vectors in `OKLab` and keeps
+    /// lightness. [`ColorMethod::Faithful`] moves HSV hue as printed: greys
+    /// never tint, and hues wrap round on the way.
+    pub method: ColorMethod,
+}
+
+/// The four models of \[CS\].
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash)]
+pub enum ColorizationMode {
+    /// Eq. 8: every pixel keeps its hue. Nothing is done, and the pass leaves
+    /// the style out.
+    Hue,
+    /// Eq. 9: every pixel takes the atmosphere, near or far.
+    Atmosphere,
+    /// Eq. 10: the atmosphere grows linearly with the depth map.
+    Linear,
+    /// Eq. 11: it grows with the square root, fast in the foreground.
+    #[default]
+    Quadratic,
+}
+
+const DEFAULT_COLOR: Color = Color::srgb(200.0 / 255.0, 65.0 / 255.0, 58.0 / 255.0);
+
+impl Default for Colorization {
+    fn default() -> Self {
+        Self {
+            mode: ColorizationMode::default(),
+            color: DEFAULT_COLOR,
+            amount: 1.0,
+            method: ColorMethod::Corrected,
+        }
+    }
+}
+
+impl Colorization {
+    /// Old paper: everything in the brown of a faded photograph (\[CS\] Figure 3).
+    pub const SEPIA: Self = Self {
+        mode: ColorizationMode::Atmosphere,
+        color: Color::srgb(0.62, 0.50, 0.34),
+        amount: 1.0,
+        method: ColorMethod::Corrected,
+    };
+
+    /// Whether the amount of the atmosphere depends on the depth map.
+    pub fn depends_on_depth(&self) -> bool {
+        matches!(
+            self.mode,
+            ColorizationMode::Linear | ColorizationMode::Quadratic
+        )
+    }
+
+    /// Number of the equation in the shader.
+    fn mode_number(&self) -> u32 {
+        match self.mode {
+            ColorizationMode::Hue => 0,
+            ColorizationMode::Atmosphere => 1,
+            ColorizationMode::Linear => 2,
+            ColorizationMode::Quadratic => 3,
+        }
+    }
+
+    fn is_faithful(&self) -> bool {
+        self.method == ColorMethod::Faithful
+    }
+}
+
+impl Effect for Colorization {
+    const NAME: &'static str = "colorization";
+    const STAGE: EffectStage = EffectStage::Color;
+    const SHADER: EffectShader = EffectShader {
+        path: "bevy_comics::effects::colorization",
+        source: include_str!("colorization.wgsl"),
+        settings: Some("Colorization"),
+    };
+    type Uniform = ColorizationUniform;
+
+    fn sanitized(self) -> Self {
+        Self {
+            color: displayable(self.color, DEFAULT_COLOR),
+            amount: bounded(self.amount, 1.0, 0.0, 1.0),
+            ..self
+        }
+    }
+
+    fn strength(&self) -> f32 {
+        if self.mode == ColorizationMode::Hue {
+            0.0
+        } else {
+            self.amount
+        }
+    }
+
+    fn faded(self, fraction: f32) -> Self {
+        Self {
+            amount: self.amount * fraction,
+            ..self
+        }
+    }
+
+    fn needs(&self) -> Needs {
+        if self.depends_on_depth() {
+            Needs::MAP
+        } else {
+            Needs::empty()
+        }
+    }
+
+    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+        variants.number("MODE", self.mode_number());
+        variants.number("FAITHFUL", u32::from(self.is_faithful()));
+    }
+
+    fn uniform(&self, _: &ViewFacts) -> ColorizationUniform {
+        let hue = Hsva::from(self.color).hue / 360.0;
+        let [lightness, a, b, _] = Oklaba::from(self.color).to_f32_array().map(f64::from);
+        let chroma = a.hypot(b);
+        // A grey atmosphere has no hue: it takes colour away.
+        let direction = if chroma > 1e-4 {
+            [a / chroma, b / chroma]
+        } else {
+            [1.0, 0.0]
+        };
+        let cusp = oklab::cusp(direction);
+        let room = oklab::room(lightness, cusp);
+        let saturation = if chroma > 1e-4 && room > 1e-6 {
+            (chroma / room).min(1.0)
+        } else {
+            0.0
+        };
+        ColorizationUniform {
+            direction: Vec2::new(direction[0] as f32, direction[1] as f32),
+            cusp_lightness: cusp.0 as f32,
+            cusp_chroma: (cusp.1 * saturation) as f32,
+            hue: if hue.is_finite() {
+                hue.rem_euclid(1.0)
+            } else {
+                0.0
+            },
+            amount: self.amount,
+            mode: self.mode_number(),
+            faithful: u32::from(self.is_faithful()),
+        }
+    }
+
+    fn same_modes(&self, other: &Self) -> bool {
+        // The faithful method turns hues the long way round: between two of
+        // them there is no way.
+        let hues = !self.is_faithful() || self.color == other.color;
+        (self.mode, self.method) == (other.mode, other.method) && hues
+    }
+
+    fn mixed(&self, other: &Self, t: f32) -> Self {
+        let color = if self.is_faithful() {
+            self.color
+        } else {
+            blend_color(self.color, other.color, t)
+        };
+        Self {
+            color,
+            amount: self.amount.lerp(other.amount, t),
+            ..*self
+        }
+    }
+}
+
+/// `Colorization` of `colorization.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct ColorizationUniform {
+    direction: Vec2,
+    cusp_lightness: f32,
+    cusp_chroma: f32,
+    hue: f32,
+    amount: f32,
+    mode: u32,
+    faithful: u32,
+}

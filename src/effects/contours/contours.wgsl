@@ -1,0 +1,223 @@
+#define_import_path bevy_comics::effects::contours
+
+// Lines where the depth map jumps ([CS] 3.2).
+
+#import bevy_comics::depth::map::{DepthFrame, EMPTY, depth_map, has, is_background}
+#import bevy_comics::depth::view::{depth_frame, load_window, sample_count}
+#import bevy_comics::depth::window::{
+    MISSING_E, MISSING_N, MISSING_S, MISSING_W, Steps, Window, gap_behind, map_steps, nearest_depth, prewitt, step_from,
+}
+#import bevy_comics::effect::pixel::Pixel
+
+const PREWITT: u32 = 0u;
+const SOBEL: u32 = 1u;
+const LAPLACE: u32 = 2u;
+const ROBERTS: u32 = 3u;
+
+struct Contours {
+    color: vec3<f32>,
+    opacity: f32,
+    // The response at which a line begins to show, and where it is full.
+    low: f32,
+    high: f32,
+    // Half the line's width in physical pixels.
+    radius: f32,
+    // Share of the opacity that is gone at the far end of the depth map.
+    fade: f32,
+    operator_kind: u32,
+    faithful: u32,
+}
+
+// The slope limiter: the smaller of two slopes that agree in sign, else none.
+fn minmod(a: f32, b: f32) -> f32 {
+    if (a > 0.0) != (b > 0.0) {
+        return 0.0;
+    }
+    return select(b, a, abs(a) < abs(b));
+}
+
+// Two opposite neighbours against the plane through the centre. Raw depth is
+// affine over a plane, in perspective too, so the plane goes on with the
+// smaller of the two slopes and a flat surface answers zero at any angle.
+fn plane_pair(f: DepthFrame, gap: f32, before: f32, c: f32, after: f32) -> vec2<f32> {
+    let sky = is_background(c);
+    var slope = 0.0;
+    if !sky {
+        let no_before = is_background(before);
+        let no_after = is_background(after);
+        let back = c - before;
+        let ahead = after - c;
+        if !no_before && !no_after {
+            slope = minmod(back, ahead);
+        } else if no_before && !no_after {
+            slope = ahead;
+        } else if no_after && !no_before {
+            slope = back;
+        }
+    }
+    return vec2(
+        step_from(f, gap, before, c - slope, sky),
+        step_from(f, gap, after, c + slope, sky),
+    );
+}
+
+// A pair of which one side lies outside the viewport says nothing: the border
+// of the picture is no contour.
+fn plane_steps(f: DepthFrame, gap: f32, win: Window) -> Steps {
+    var steps: Steps;
+    let across = (win.missing & (MISSING_W | MISSING_E)) == 0u;
+    let along = (win.missing & (MISSING_N | MISSING_S)) == 0u;
+    if across {
+        let h = plane_pair(f, gap, win.w, win.centre, win.e);
+        steps.w = h.x;
+        steps.e = h.y;
+    }
+    if along {
+        let v = plane_pair(f, gap, win.n, win.centre, win.s);
+        steps.n = v.x;
+        steps.s = v.y;
+    }
+    if across && along {
+        let a = plane_pair(f, gap, win.nw, win.centre, win.se);
+        let b = plane_pair(f, gap, win.ne, win.centre, win.sw);
+        steps.nw = a.x;
+        steps.se = a.y;
+        steps.ne = b.x;
+        steps.sw = b.y;
+    }
+    return steps;
+}
+
+fn sobel(s: Steps) -> f32 {
+    return length(vec2(
+        (s.ne + 2.0 * s.e + s.se) - (s.nw + 2.0 * s.w + s.sw),
+        (s.sw + 2.0 * s.s + s.se) - (s.nw + 2.0 * s.n + s.ne),
+    ));
+}
+
+fn laplace(s: Steps) -> f32 {
+    return abs(s.nw + s.n + s.ne + s.w + s.e + s.sw + s.s + s.se);
+}
+
+// The raw kernels of [CS] on the depth map: a straight step of height h answers
+// 3h (Prewitt, Laplace), 4h (Sobel), sqrt(2) h (Roberts).
+fn faithful_response(f: DepthFrame, gap: f32, operator_kind: u32, win: Window) -> f32 {
+    let s = map_steps(f, gap, win);
+    if operator_kind == SOBEL {
+        return sobel(s);
+    }
+    if operator_kind == LAPLACE {
+        return laplace(s);
+    }
+    if operator_kind == ROBERTS {
+        return length(vec2(s.se, s.e - s.s));
+    }
+    return prewitt(s);
+}
+
+// The same kernels on departures from the local plane, scaled so that a
+// straight step answers with its height, whichever the operator.
+fn plane_response(f: DepthFrame, gap: f32, operator_kind: u32, win: Window) -> f32 {
+    let s = plane_steps(f, gap, win);
+    if operator_kind == SOBEL {
+        return sobel(s) / 4.0;
+    }
+    if operator_kind == LAPLACE {
+        return laplace(s) / 3.0;
+    }
+    if operator_kind == ROBERTS {
+        return length(vec2(s.se - s.nw, s.sw - s.ne)) / 1.41421356;
+    }
+    return prewitt(s) / 3.0;
+}
+
+// Modes are compiled in where they are known: see has() in map.wgsl.
+fn operator_of(s: Contours) -> u32 {
+#ifdef CONTOURS_OPERATOR
+    return #{CONTOURS_OPERATOR}u;
+#else
+    return s.operator_kind;
+#endif
+}
+
+fn is_faithful(s: Contours) -> bool {
+#ifdef CONTOURS_FAITHFUL
+    return #{CONTOURS_FAITHFUL}u != 0u;
+#else
+    return s.faithful != 0u;
+#endif
+}
+
+fn contour_response(s: Contours, f: DepthFrame, win: Window) -> f32 {
+    if has(f, EMPTY) {
+        return 0.0;
+    }
+    if is_faithful(s) {
+        return faithful_response(f, gap_behind(f, f.sky_gap), operator_of(s), win);
+    }
+    return plane_response(f, gap_behind(f, f.sky_gap), operator_of(s), win);
+}
+
+// How much of a line there is at this response.
+fn line(s: Contours, response: f32) -> f32 {
+    return smoothstep(s.low, s.high, response);
+}
+
+// Ink over the picture, in linear light. The line fades with the depth of the
+// nearer side, to which it belongs.
+fn draw_contour(s: Contours, linear: vec3<f32>, coverage: f32, depth: f32) -> vec3<f32> {
+    return mix(linear, s.color, clamp(coverage * s.opacity * (1.0 - s.fade * depth), 0.0, 1.0));
+}
+
+// (line, nearest raw depth) of one sample with the taps `reach` pixels away,
+// which makes a line of 2 * reach pixels. Wide lines look at rings in between
+// as well, or thin objects would fall through.
+fn ring_line(s: Contours, frame: DepthFrame, pixel: vec2<i32>, reach: i32, sample: i32) -> vec2<f32> {
+    var found = vec2(0.0);
+#ifdef CONTOURS_SINGLE_RING
+    let win = load_window(pixel, reach, sample);
+    return vec2(line(s, contour_response(s, frame, win)), nearest_depth(win));
+#endif
+    for (var r = reach; r > 0; r -= 2) {
+        let win = load_window(pixel, r, sample);
+        found = max(found, vec2(line(s, contour_response(s, frame, win)), nearest_depth(win)));
+    }
+    return found;
+}
+
+// (coverage, D of the nearer side) of the contours at a pixel. A width between
+// two whole reaches is a mix of both: over the samples where there are several,
+// which anti-aliases the line itself, else of two lines.
+fn contour(s: Contours, frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
+    let whole = i32(floor(s.radius));
+    let part = s.radius - floor(s.radius);
+    var found = vec2(0.0);
+#ifdef MULTISAMPLED
+    let samples = sample_count();
+    for (var i = 0; i < samples; i++) {
+        let wider = part * f32(samples) > f32(i) + 0.5;
+        let one = ring_line(s, frame, pixel, whole + select(0, 1, wider), i);
+        found = vec2(found.x + one.x / f32(samples), max(found.y, one.y));
+    }
+#else
+    let inner = ring_line(s, frame, pixel, whole, 0);
+    found = inner;
+#ifndef CONTOURS_WHOLE
+    if part > 0.0 {
+        let outer = ring_line(s, frame, pixel, whole + 1, 0);
+        found = vec2(mix(inner.x, max(inner.x, outer.x), part), max(inner.y, outer.y));
+    }
+#endif
+#endif
+#ifdef CONTOURS_STEADY
+    return vec2(found.x, 0.0);
+#endif
+    return vec2(found.x, depth_map(frame, found.y).x);
+}
+
+fn contours(s: Contours, p: Pixel) -> Pixel {
+    var out = p;
+    let found = contour(s, depth_frame(), vec2<i32>(p.position));
+    out.color = draw_contour(s, p.color, found.x, found.y);
+    return out;
+}

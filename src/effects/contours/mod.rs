@@ -1,0 +1,205 @@
+//! Lines where the depth map jumps (\[CS\] 3.2).
+
+use bevy::{
+    color::Color,
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::Vec3,
+    reflect::{Reflect, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
+    settings::{FieldRange, bounded, displayable, file_color, linear_rgb},
+};
+
+/// Draws a line wherever the depth map jumps: around objects, and between near
+/// and far ones.
+///
+/// Contours see what the depth prepass sees: opaque and alpha-masked geometry.
+/// A transparent surface is coloured, and outlined, by the depth behind it.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq)]
+#[serde(default, deny_unknown_fields)]
+pub struct Contours {
+    /// The detector. Default: [`ContourOperator::Prewitt`].
+    pub operator: ContourOperator,
+    /// What it detects. Default: [`ContourForm::PlaneAware`].
+    pub form: ContourForm,
+    /// The response at which a line is half drawn, in units of the depth map:
+    /// in the plane-aware form 0.02 is a jump of 2 % of the visible range. The
+    /// faithful form applies it to the raw kernels, which answer a straight
+    /// jump of 0.02 with 0.06 (Prewitt, Laplace), 0.08 (Sobel) or 0.028
+    /// (Roberts). Range 1e-6 to 100, default 0.02.
+    #[reflect(@FieldRange::logarithmic(1e-6, 100.0))]
+    pub threshold: f32,
+    /// Width of a line in logical pixels, half on either side of the jump.
+    /// Range 0.5 to 16, default 2.
+    #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
+    pub width: f32,
+    /// How gradually a line sets in around the threshold: 0 draws it hard, 1
+    /// lets it grow from nothing to twice the threshold. Range 0 to 1,
+    /// default 0.5.
+    #[reflect(@FieldRange::SHARE)]
+    pub softness: f32,
+    /// Colour of the line. Clamped to what a display shows; its alpha is not
+    /// used. Default: black.
+    #[serde(with = "file_color")]
+    pub color: Color,
+    /// Opacity of the line. Range 0 (none, and the pass leaves the style out)
+    /// to 1. Default 1.
+    #[reflect(@FieldRange::SHARE)]
+    pub opacity: f32,
+    /// Share of the opacity that is lost at the far end of the depth map.
+    /// Range 0 to 1, default 0.
+    #[reflect(@FieldRange::SHARE)]
+    pub fade: f32,
+}
+
+/// The edge detectors of the depth map.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash)]
+pub enum ContourOperator {
+    /// First differences of three rows and columns (\[CS\]): even lines.
+    #[default]
+    Prewitt,
+    /// As Prewitt, the middle weighted double: a little crisper.
+    Sobel,
+    /// Second differences of all eight neighbours (\[CS\]): stresses corners and
+    /// thin things.
+    Laplace,
+    /// Differences along the diagonals alone: lighter, more broken lines.
+    Roberts,
+}
+
+/// What a contour is.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash)]
+pub enum ContourForm {
+    /// A departure from the plane through the pixel. Raw depth is affine over
+    /// any plane, so no plane, however grazing, has a line of its own.
+    #[default]
+    PlaneAware,
+    /// Any change of the depth map, slopes included, as the paper draws it.
+    Faithful,
+}
+
+impl Default for Contours {
+    fn default() -> Self {
+        Self {
+            operator: ContourOperator::default(),
+            form: ContourForm::default(),
+            threshold: 0.02,
+            width: 2.0,
+            softness: 0.5,
+            color: Color::BLACK,
+            opacity: 1.0,
+            fade: 0.0,
+        }
+    }
+}
+
+impl Effect for Contours {
+    const NAME: &'static str = "contours";
+    const STAGE: EffectStage = EffectStage::Ink;
+    const SHADER: EffectShader = EffectShader {
+        path: "bevy_comics::effects::contours",
+        source: include_str!("contours.wgsl"),
+        settings: Some("Contours"),
+    };
+    type Uniform = ContoursUniform;
+
+    fn sanitized(self) -> Self {
+        let default = Self::default();
+        Self {
+            threshold: bounded(self.threshold, default.threshold, 1e-6, 100.0),
+            width: bounded(self.width, default.width, 0.5, 16.0),
+            softness: bounded(self.softness, default.softness, 0.0, 1.0),
+            color: displayable(self.color, default.color),
+            opacity: bounded(self.opacity, default.opacity, 0.0, 1.0),
+            fade: bounded(self.fade, default.fade, 0.0, 1.0),
+            ..self
+        }
+    }
+
+    fn strength(&self) -> f32 {
+        self.opacity
+    }
+
+    fn faded(self, fraction: f32) -> Self {
+        Self {
+            opacity: self.opacity * fraction,
+            ..self
+        }
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::MAP
+    }
+
+    fn variants(&self, view: &ViewFacts, variants: &mut Variants) {
+        let radius = self.radius(view);
+        variants.number("OPERATOR", self.operator_number());
+        variants.number("FAITHFUL", u32::from(self.is_faithful()));
+        variants.flag("WHOLE", radius.fract() == 0.0);
+        variants.flag("SINGLE_RING", radius == 1.0 || radius == 2.0);
+        variants.flag("STEADY", self.fade == 0.0);
+    }
+
+    fn uniform(&self, view: &ViewFacts) -> ContoursUniform {
+        // smoothstep needs its ends apart: a hard line rises over a thousandth.
+        let half_ramp = self.threshold * self.softness.max(1e-3);
+        ContoursUniform {
+            color: linear_rgb(self.color),
+            opacity: self.opacity,
+            low: self.threshold - half_ramp,
+            high: self.threshold + half_ramp,
+            radius: self.radius(view),
+            fade: self.fade,
+            operator_kind: self.operator_number(),
+            faithful: u32::from(self.is_faithful()),
+        }
+    }
+
+    fn report_name(&self) -> Option<String> {
+        Some(match self.form {
+            ContourForm::PlaneAware => format!("{:?}", self.operator),
+            ContourForm::Faithful => format!("{:?}, faithful form", self.operator),
+        })
+    }
+}
+
+impl Contours {
+    /// Half the line's width in physical pixels.
+    fn radius(&self, view: &ViewFacts) -> f32 {
+        (0.5 * self.width * view.scale_factor).clamp(0.125, 64.0)
+    }
+
+    fn is_faithful(&self) -> bool {
+        self.form == ContourForm::Faithful
+    }
+
+    /// Number of the operator in the shader.
+    fn operator_number(&self) -> u32 {
+        match self.operator {
+            ContourOperator::Prewitt => 0,
+            ContourOperator::Sobel => 1,
+            ContourOperator::Laplace => 2,
+            ContourOperator::Roberts => 3,
+        }
+    }
+}
+
+/// `Contours` of `contours.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContoursUniform {
+    color: Vec3,
+    opacity: f32,
+    low: f32,
+    high: f32,
+    radius: f32,
+    fade: f32,
+    operator_kind: u32,
+    faithful: u32,
+}

@@ -1,0 +1,176 @@
+//! A drawing of outlines alone (\[CL\] 3.2, Figure 8).
+
+use bevy::{
+    color::Color,
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::Vec3,
+    reflect::{Reflect, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use super::Outlines;
+use crate::{
+    effect::{AnyEffect, Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
+    settings::{BlendField, FieldRange, bounded, displayable, file_color, linear_rgb},
+};
+
+/// Draws the outlines of the camera as ink on paper, and nothing else.
+///
+/// The lines are those of [`Outlines`](crate::Outlines); a camera without that
+/// component sketches its silhouettes and creases. Several strokes, each with a
+/// wobble of its own that changes a few times a second, make it look drawn.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq)]
+#[serde(default, deny_unknown_fields)]
+pub struct Sketch {
+    /// How much of the drawing covers the picture with its outlines. Range 0
+    /// (none, and the pass leaves the style out) to 1, default 1.
+    #[reflect(@FieldRange::SHARE)]
+    pub amount: f32,
+    /// Colour of the paper. Clamped to what a display shows; its alpha is not
+    /// used. Default: a warm white.
+    #[serde(with = "file_color")]
+    pub paper: Color,
+    /// Colour of the ink. Clamped to what a display shows; its alpha is not
+    /// used. Default: a soft black.
+    #[serde(with = "file_color")]
+    pub ink: Color,
+    /// How much of the picture shows through the paper, as a wash of colour.
+    /// Range 0 to 1, default 0.
+    #[reflect(@FieldRange::SHARE)]
+    pub wash: f32,
+    /// Exponent on the ink: below 1 strengthens faint lines, above 1 thins them
+    /// out. Range 0.25 to 4, default 1.
+    #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
+    pub gamma: f32,
+    /// How many times every line is drawn. Range 1 to 3, default 2.
+    #[reflect(@FieldRange::linear(1.0, 3.0), @BlendField::Switch)]
+    pub strokes: u32,
+    /// How far a stroke strays from its line, logical pixels. Range 0 to 8,
+    /// default 1.5.
+    #[reflect(@FieldRange::linear(0.0, 8.0).unit("px"))]
+    pub jitter: f32,
+    /// Length of a stroke's waves, logical pixels. Range 2 to 256, default 40.
+    #[reflect(@FieldRange::logarithmic(2.0, 256.0).unit("px"), @BlendField::Switch)]
+    pub wavelength: f32,
+    /// How often a second the strokes are drawn anew. Range 0 (they stand
+    /// still) to 60, default 8.
+    #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"), @BlendField::Switch)]
+    pub rate: f32,
+    /// How much the pressure of the pen varies along a stroke. Range 0 to 1,
+    /// default 0.4.
+    #[reflect(@FieldRange::SHARE)]
+    pub pressure: f32,
+}
+
+impl Default for Sketch {
+    fn default() -> Self {
+        Self {
+            amount: 1.0,
+            paper: Color::srgb(0.97, 0.955, 0.915),
+            ink: Color::srgb(0.13, 0.12, 0.14),
+            wash: 0.0,
+            gamma: 1.0,
+            strokes: 2,
+            jitter: 1.5,
+            wavelength: 40.0,
+            rate: 8.0,
+            pressure: 0.4,
+        }
+    }
+}
+
+impl Effect for Sketch {
+    const NAME: &'static str = "sketch";
+    const STAGE: EffectStage = EffectStage::Ink;
+    const SHADER: EffectShader = EffectShader {
+        path: "bevy_comics::effects::sketch",
+        source: include_str!("sketch.wgsl"),
+        settings: Some("Sketch"),
+    };
+    const REPLACES: &'static [&'static str] = &[Outlines::NAME];
+    type Uniform = SketchUniform;
+
+    fn sanitized(self) -> Self {
+        let default = Self::default();
+        Self {
+            amount: bounded(self.amount, default.amount, 0.0, 1.0),
+            paper: displayable(self.paper, default.paper),
+            ink: displayable(self.ink, default.ink),
+            wash: bounded(self.wash, default.wash, 0.0, 1.0),
+            gamma: bounded(self.gamma, default.gamma, 0.25, 4.0),
+            strokes: self.strokes.clamp(1, 3),
+            jitter: bounded(self.jitter, default.jitter, 0.0, 8.0),
+            wavelength: bounded(self.wavelength, default.wavelength, 2.0, 256.0),
+            rate: bounded(self.rate, default.rate, 0.0, 60.0),
+            pressure: bounded(self.pressure, default.pressure, 0.0, 1.0),
+        }
+    }
+
+    fn strength(&self) -> f32 {
+        self.amount
+    }
+
+    fn faded(self, fraction: f32) -> Self {
+        Self {
+            amount: self.amount * fraction,
+            ..self
+        }
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::LINES | Needs::LINES_ANYWHERE
+    }
+
+    fn implied(&self) -> Option<Box<dyn AnyEffect>> {
+        Some(Box::new(Outlines {
+            objects: None,
+            width: 1.5,
+            ..Outlines::default()
+        }))
+    }
+
+    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+        variants.flag("FADES", self.amount < 1.0);
+    }
+
+    fn uniform(&self, view: &ViewFacts) -> SketchUniform {
+        SketchUniform {
+            paper: linear_rgb(self.paper),
+            wash: self.wash,
+            ink: linear_rgb(self.ink),
+            gamma: self.gamma,
+            jitter: self.jitter * view.scale_factor,
+            wavelength: self.wavelength * view.scale_factor,
+            pressure: self.pressure,
+            strokes: self.strokes,
+            drawing: self.drawing(view.seconds),
+            amount: self.amount,
+            lines_below: if view.lines_implied { 0.0 } else { 1.0 },
+        }
+    }
+}
+
+impl Sketch {
+    /// Which drawing of the strokes is shown at a time in seconds.
+    fn drawing(&self, seconds: f64) -> u32 {
+        (seconds * f64::from(self.rate)).floor().rem_euclid(65536.0) as u32
+    }
+}
+
+/// `Sketch` of `sketch.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct SketchUniform {
+    paper: Vec3,
+    wash: f32,
+    ink: Vec3,
+    gamma: f32,
+    jitter: f32,
+    wavelength: f32,
+    pressure: f32,
+    strokes: u32,
+    drawing: u32,
+    amount: f32,
+    lines_below: f32,
+}

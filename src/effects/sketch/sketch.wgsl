@@ -1,0 +1,71 @@
+#define_import_path bevy_comics::effects::sketch
+
+// A drawing of outlines alone ([CL] 3.2, Figure 8).
+
+#import bevy_comics::effect::noise::wave
+#import bevy_comics::effect::pixel::Pixel
+#ifdef LINES
+#import bevy_comics::lines::read::{draw_lines, lines_at, total_ink}
+#endif
+
+struct Sketch {
+    paper: vec3<f32>,
+    wash: f32,
+    ink: vec3<f32>,
+    gamma: f32,
+    // Physical pixels.
+    jitter: f32,
+    wavelength: f32,
+    pressure: f32,
+    strokes: u32,
+    // Which drawing of the strokes this is: changes a few times a second.
+    drawing: u32,
+    // How much of the drawing covers the picture.
+    amount: f32,
+    // 1: the picture below has these lines; 0: only the sketch has them.
+    lines_below: f32,
+}
+
+// How far a stroke strays at a place, in pixels.
+fn stray(s: Sketch, at: vec2<f32>, stroke: u32) -> vec2<f32> {
+    let seed = s.drawing * 16u + stroke * 4u;
+    let p = at / s.wavelength;
+    return s.jitter * vec2(wave(p, seed), wave(p, seed + 1u));
+}
+
+// How hard the pen is pressed at a place, 0 to 1.
+fn pen_pressure(s: Sketch, at: vec2<f32>, stroke: u32) -> f32 {
+    let n = wave(at / s.wavelength * 1.7, s.drawing * 16u + stroke * 4u + 2u);
+    return 1.0 - s.pressure * (0.5 + 0.5 * n);
+}
+
+// One stroke over what is already there.
+fn add_stroke(inked: f32, stroke: f32) -> f32 {
+    return 1.0 - (1.0 - inked) * (1.0 - clamp(stroke, 0.0, 1.0));
+}
+
+// Ink on paper, in linear light.
+fn draw_sketch(s: Sketch, picture: vec3<f32>, inked: f32) -> vec3<f32> {
+    let ground = mix(s.paper, s.paper * picture, s.wash);
+    let ink = select(pow(max(inked, 1e-30), s.gamma), 0.0, inked <= 0.0);
+    return mix(ground, s.ink, clamp(ink, 0.0, 1.0));
+}
+
+#ifdef LINES
+fn sketch(s: Sketch, p: Pixel) -> Pixel {
+    var out = p;
+    var inked = 0.0;
+    for (var stroke = 0u; stroke < s.strokes; stroke++) {
+        let at = p.position + stray(s, p.inside, stroke);
+        inked = add_stroke(inked, total_ink(lines_at(at)) * pen_pressure(s, p.inside, stroke));
+    }
+    let drawing = draw_sketch(s, p.color, inked);
+#ifdef SKETCH_FADES
+    let below = draw_lines(p.color, lines_at(p.position));
+    out.color = mix(mix(p.color, below, s.lines_below), drawing, s.amount);
+#else
+    out.color = drawing;
+#endif
+    return out;
+}
+#endif

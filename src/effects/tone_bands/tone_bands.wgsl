@@ -1,0 +1,87 @@
+#define_import_path bevy_comics::effects::tone_bands
+
+// Uniformly coloured areas ([CL] 3.1, Eq. 6).
+
+#import bevy_comics::effect::color::{largest, lightness, luminance, srgb_decode, srgb_encode}
+#import bevy_comics::effect::pixel::Pixel
+
+struct ToneBands {
+    // How many bands; with the paper's equation always three.
+    levels: f32,
+    // Physical pixels that the step between two bands takes.
+    feather: f32,
+    amount: f32,
+    faithful: u32,
+}
+
+// Modes are compiled in where they are known: see has() in map.wgsl.
+fn is_faithful(s: ToneBands) -> bool {
+#ifdef TONE_BANDS_FAITHFUL
+    return #{TONE_BANDS_FAITHFUL}u != 0u;
+#else
+    return s.faithful != 0u;
+#endif
+}
+
+// [CL] Eq. 6, its ranges joined at 0.33 and 0.66, for one channel of the code.
+fn equation_6(c: f32) -> f32 {
+    if c < 0.33 {
+        return c / 1.5;
+    }
+    if c < 0.66 {
+        return 0.33 + (c - 0.33) / 2.0;
+    }
+    return 0.66 + (c - 0.66) / 2.0;
+}
+
+// The tone in the middle of the band that a lightness falls into. `change` is how much the lightness changes over a
+// pixel; the step between two bands takes `feather` pixels, and never more than
+// one band.
+fn band_tone(s: ToneBands, y: f32, change: f32) -> f32 {
+    let t = y * s.levels;
+    let step = clamp(round(t), 1.0, s.levels - 1.0);
+    // A code on both sides at least, or the dither of a flat area that lies on a
+    // step would speckle.
+    let half = 0.5 * clamp(s.feather * change * s.levels, s.levels / 128.0, 1.0);
+    return (step - 0.5 + smoothstep(step - half, step + half, t)) / s.levels;
+}
+
+// Light of another luminance, chroma kept, as far as the display can show it.
+fn with_luminance(linear: vec3<f32>, target_luminance: f32) -> vec3<f32> {
+    let y = luminance(linear);
+    let grey = vec3(target_luminance);
+    if y < 1e-6 {
+        return grey;
+    }
+    let scaled = linear * (target_luminance / y);
+    let over = largest(scaled) - 1.0;
+    if over <= 0.0 {
+        return scaled;
+    }
+    // Towards grey until it fits.
+    let room = clamp((1.0 - target_luminance) / max(largest(scaled) - target_luminance, 1e-6), 0.0, 1.0);
+    return mix(grey, scaled, room);
+}
+
+fn banded_color(s: ToneBands, linear: vec3<f32>, change: f32) -> vec3<f32> {
+    var banded: vec3<f32>;
+    if is_faithful(s) {
+        let c = srgb_encode(linear);
+        banded = srgb_decode(vec3(equation_6(c.r), equation_6(c.g), equation_6(c.b)));
+    } else {
+        let tone = band_tone(s, lightness(linear), change);
+        banded = with_luminance(linear, tone * tone);
+    }
+    return mix(linear, banded, s.amount);
+}
+
+fn tone_bands(s: ToneBands, p: Pixel) -> Pixel {
+    var out = p;
+    out.color = banded_color(s, p.color, p.change);
+    return out;
+}
+
+// The debug view, in display codes: the lightness after the bands, alone.
+fn tone_bands_view(s: ToneBands, p: Pixel) -> vec3<f32> {
+    return vec3(clamp(lightness(p.color), 0.0, 1.0));
+}

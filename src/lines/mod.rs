@@ -1,0 +1,87 @@
+//! Lines from depth, normals and object ids: one pass finds edges, and for wide
+//! lines a jump flood tells every pixel its nearest line. The fused pass reads
+//! them (`read.wgsl`).
+
+mod draw;
+mod kinds;
+mod pipelines;
+mod prepare;
+pub(crate) mod request;
+mod settings;
+
+use bevy::{
+    app::{App, Plugin},
+    asset::{AssetServer, embedded_asset},
+    core_pipeline::{
+        FullscreenShader,
+        schedule::{Core3d, Core3dSystems},
+    },
+    ecs::{
+        entity::Entity,
+        query::With,
+        schedule::IntoScheduleConfigs,
+        system::{Commands, Query, Res},
+    },
+    render::{
+        GpuResourceAppExt, Render, RenderApp, RenderStartup,
+        render_resource::SpecializedRenderPipelines,
+    },
+    shader::load_shader_library,
+};
+
+pub use kinds::{Creases, EdgeForm, ObjectEdges, Silhouettes};
+pub(crate) use pipelines::{GATHER_REACH, edges_entry, range_entry, reach};
+pub(crate) use prepare::ViewLines;
+pub use settings::LineSettings;
+pub(crate) use settings::LinesUniform;
+
+use crate::schedule::{ComicsSystems, PrepareComics};
+use pipelines::{FloodPipeline, OutlinePipeline};
+
+/// Finds the lines of the views that ask for them.
+pub(crate) struct LinesPlugin;
+
+impl Plugin for LinesPlugin {
+    fn build(&self, app: &mut App) {
+        if app.get_sub_app(RenderApp).is_none() {
+            return;
+        }
+        load_shader_library!(app, "edge.wgsl");
+        load_shader_library!(app, "read.wgsl");
+        embedded_asset!(app, "detect.wgsl");
+        embedded_asset!(app, "flood.wgsl");
+        let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+            return;
+        };
+        render_app
+            .init_gpu_resource::<SpecializedRenderPipelines<OutlinePipeline>>()
+            .init_gpu_resource::<SpecializedRenderPipelines<FloodPipeline>>()
+            .add_systems(RenderStartup, init_pipelines)
+            .add_systems(
+                Render,
+                prepare::prepare_view_lines.in_set(PrepareComics::Services),
+            )
+            .add_systems(
+                Core3d,
+                draw::find_lines
+                    .in_set(ComicsSystems::Outlines)
+                    .after(ComicsSystems::DepthRange)
+                    .after(Core3dSystems::Prepass)
+                    .before(Core3dSystems::MainPass),
+            );
+    }
+}
+
+fn init_pipelines(
+    mut commands: Commands,
+    fullscreen: Res<FullscreenShader>,
+    assets: Res<AssetServer>,
+    lines: Query<Entity, With<ViewLines>>,
+) {
+    // This runs again on a new device: buffers of the old one are of no use.
+    for view in &lines {
+        commands.entity(view).remove::<ViewLines>();
+    }
+    commands.insert_resource(OutlinePipeline::new(&fullscreen, &assets));
+    commands.insert_resource(FloodPipeline::new(&assets));
+}

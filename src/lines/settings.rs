@@ -1,0 +1,146 @@
+//! Which lines are found and how they are inked: the service's settings.
+
+use bevy::{math::Vec3, render::render_resource::ShaderType};
+
+use super::kinds::{Creases, EdgeForm, ObjectEdges, Silhouettes, ramp};
+use crate::settings::linear_rgb;
+
+/// Lines that an effect asks for ([`Effect::lines`](crate::Effect::lines)). Every
+/// number is in the range that [`Outlines`](crate::Outlines) documents for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineSettings {
+    /// Lines where a surface ends in front of another or of the sky, if any.
+    pub silhouettes: Option<Silhouettes>,
+    /// Lines where a surface folds, if any.
+    pub creases: Option<Creases>,
+    /// Lines where two objects meet, if any.
+    pub objects: Option<ObjectEdges>,
+    /// Width in logical pixels.
+    pub width: f32,
+    /// Fraction of the width that is lost at the far end of the depth map.
+    pub width_fade: f32,
+    /// Fraction of the opacity that is lost at the far end of the depth map.
+    pub opacity_fade: f32,
+}
+
+impl LineSettings {
+    /// No kind of line, of the default width.
+    pub const NONE: Self = Self {
+        silhouettes: None,
+        creases: None,
+        objects: None,
+        width: 2.0,
+        width_fade: 0.0,
+        opacity_fade: 0.0,
+    };
+
+    /// The kinds that can be seen: those without opacity are taken out, and
+    /// object edges where the crate is built without ids.
+    #[must_use]
+    pub fn visible(self) -> Self {
+        Self {
+            silhouettes: self.silhouettes.filter(|s| s.opacity > 0.0),
+            creases: self.creases.filter(|c| c.opacity > 0.0),
+            objects: self
+                .objects
+                .filter(|o| o.opacity > 0.0 && cfg!(feature = "objects")),
+            ..self
+        }
+    }
+
+    /// Whether there is no kind of line.
+    pub fn is_empty(&self) -> bool {
+        self.silhouettes.is_none() && self.creases.is_none() && self.objects.is_none()
+    }
+
+    /// Whether the lines fade with the depth map.
+    pub fn fades(&self) -> bool {
+        self.width_fade > 0.0 || self.opacity_fade > 0.0
+    }
+
+    /// Whether any kind has lines of the width that is set.
+    fn has_wide_lines(&self) -> bool {
+        self.objects.is_some()
+            || self
+                .silhouettes
+                .is_some_and(|s| s.form != EdgeForm::Faithful)
+            || self.creases.is_some_and(|c| c.form != EdgeForm::Faithful)
+    }
+
+    /// How far around a pixel lines are looked for, in physical pixels. `scale`
+    /// is physical pixels per logical pixel, `widest_object` the widest line of
+    /// an object that has its own, logical pixels.
+    pub(crate) fn reach(&self, scale: f32, widest_object: f32) -> i32 {
+        let own = if self.has_wide_lines() {
+            self.width
+        } else {
+            0.0
+        };
+        let widest = own.max(widest_object);
+        if widest == 0.0 {
+            return 0;
+        }
+        super::reach(0.5 * widest * scale)
+    }
+
+    /// `reference` turns the largest raw depth nearby into what a silhouette's
+    /// jump is measured against: (factor, constant).
+    pub(crate) fn uniform(&self, scale: f32, reference: [f32; 2], reach: i32) -> LinesUniform {
+        let s = self.silhouettes.unwrap_or_default();
+        let c = self.creases.unwrap_or_default();
+        let o = self.objects.unwrap_or_default();
+        let [silhouette_low, silhouette_high] = ramp(s.edge_limit, s.softness);
+        let [crease_low, crease_high] = ramp(c.edge_limit, c.softness);
+        LinesUniform {
+            silhouette_color: linear_rgb(s.color),
+            silhouette_opacity: s.opacity,
+            crease_color: linear_rgb(c.color),
+            crease_opacity: c.opacity,
+            object_color: linear_rgb(o.color),
+            object_opacity: o.opacity,
+            silhouette_low,
+            silhouette_high,
+            silhouette_k: s.k(),
+            silhouette_faithful: u32::from(s.form == EdgeForm::Faithful),
+            crease_low,
+            crease_high,
+            crease_k: c.k(),
+            crease_faithful: u32::from(c.form == EdgeForm::Faithful),
+            half_width: 0.5 * self.width * scale,
+            scale,
+            width_fade: self.width_fade,
+            opacity_fade: self.opacity_fade,
+            reference_factor: reference[0],
+            reference_constant: reference[1],
+            reach,
+            unused: 0,
+        }
+    }
+}
+
+/// `Lines` of `edge.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct LinesUniform {
+    silhouette_color: Vec3,
+    silhouette_opacity: f32,
+    crease_color: Vec3,
+    crease_opacity: f32,
+    object_color: Vec3,
+    object_opacity: f32,
+    silhouette_low: f32,
+    silhouette_high: f32,
+    silhouette_k: f32,
+    silhouette_faithful: u32,
+    crease_low: f32,
+    crease_high: f32,
+    crease_k: f32,
+    crease_faithful: u32,
+    half_width: f32,
+    scale: f32,
+    width_fade: f32,
+    opacity_fade: f32,
+    reference_factor: f32,
+    reference_constant: f32,
+    pub reach: i32,
+    unused: u32,
+}

@@ -1,0 +1,61 @@
+//! Settings come from files, sliders and arithmetic: every number is brought
+//! into its documented range before it reaches the GPU.
+
+use bevy::color::{Color, LinearRgba};
+
+/// `value` in `[low, high]`; anything that is not a finite number becomes
+/// `default`.
+pub fn bounded(value: f32, default: f32, low: f32, high: f32) -> f32 {
+    if value.is_finite() {
+        value.clamp(low, high)
+    } else {
+        default
+    }
+}
+
+/// As [`bounded`], for a setting that may be off.
+pub fn bounded_option(value: Option<f32>, default: f32, low: f32, high: f32) -> Option<f32> {
+    value.map(|value| bounded(value, default, low, high))
+}
+
+/// A displayable colour: every component in `[0, 1]` of linear light; a colour
+/// with a component that is not finite becomes `default`.
+pub fn displayable(color: Color, default: Color) -> Color {
+    let linear = |color: Color| {
+        let c = color.to_linear();
+        [c.red, c.green, c.blue, c.alpha]
+    };
+    let mut parts = linear(color);
+    if parts.iter().any(|part| !part.is_finite()) {
+        parts = linear(default);
+    }
+    if parts.iter().all(|part| (0.0..=1.0).contains(part)) {
+        // Keeps the caller's colour space, so that a sane colour comes back
+        // equal.
+        return if linear(color) == parts {
+            color
+        } else {
+            default
+        };
+    }
+    let [red, green, blue, alpha] = parts.map(|part| part.clamp(0.0, 1.0));
+    LinearRgba {
+        red,
+        green,
+        blue,
+        alpha,
+    }
+    .into()
+}
+
+/// A near and a far distance: positive, finite, and far beyond near.
+pub(crate) fn ordered_planes(near: f32, far: f32) -> (f32, f32) {
+    let near = bounded(near, 0.1, 1e-6, 1e30);
+    let far = bounded(far, 1000.0, 1e-6, 1e36);
+    let (near, far) = if near <= far {
+        (near, far)
+    } else {
+        (far, near)
+    };
+    (near, far.max(near * (1.0 + 1e-3)))
+}

@@ -1,0 +1,46 @@
+//! Colours in style files: `"#rrggbb"` where 8 bits per component are exact, else
+//! four sRGB components.
+//!
+//! For a field of an effect: `#[serde(with = "bevy_comics::file_color")]`.
+
+use bevy::color::{Color, Srgba};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum FileColor {
+    Hex(String),
+    Components(f32, f32, f32, f32),
+}
+
+/// Writes a colour.
+///
+/// # Errors
+/// Those of the serializer.
+pub fn serialize<S: Serializer>(color: &Color, serializer: S) -> Result<S::Ok, S::Error> {
+    let srgba = color.to_srgba();
+    let hex = srgba.to_hex();
+    let file_color = match Srgba::hex(&hex) {
+        Ok(same) if same == srgba => FileColor::Hex(hex),
+        _ => FileColor::Components(srgba.red, srgba.green, srgba.blue, srgba.alpha),
+    };
+    file_color.serialize(serializer)
+}
+
+/// Reads a colour.
+///
+/// # Errors
+/// If the value is neither a hexadecimal string nor four numbers.
+pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Color, D::Error> {
+    match FileColor::deserialize(deserializer) {
+        Ok(FileColor::Hex(hex)) => Srgba::hex(&hex)
+            .map(Color::Srgba)
+            .map_err(|error| D::Error::custom(format!("colour {hex:?}: {error}"))),
+        Ok(FileColor::Components(red, green, blue, alpha)) => {
+            Ok(Color::srgba(red, green, blue, alpha))
+        }
+        Err(_) => Err(D::Error::custom(
+            "a colour is \"#rrggbb\", \"#rrggbbaa\" or four sRGB components (red, green, blue, alpha)",
+        )),
+    }
+}

@@ -1,0 +1,24 @@
+//! What all settings share: documented ranges, clamps, colours in files.
+
+mod blend;
+mod bounds;
+mod field;
+pub mod file_color;
+#[cfg(test)]
+mod tests;
+
+pub use blend::{blend_color, blend_ratio};
+pub(crate) use blend::{Blend, dip};
+pub use bounds::{bounded, bounded_option, displayable};
+pub(crate) use bounds::ordered_planes;
+pub use field::{BlendField, FieldRange, HueWheel};
+
+use bevy::{
+    color::{Color, ColorToComponents},
+    math::Vec3,
+};
+
+/// The linear components of a colour, without its alpha, as a shader takes them.
+pub fn linear_rgb(color: Color) -> Vec3 {
+    color.to_linear().to_vec3()
+}

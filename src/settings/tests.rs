@@ -1,0 +1,390 @@
+//! Settings out of their ranges.
+
+use bevy::color::Color;
+
+use crate::{
+    Effect,
+    BlackFlats, Colorization, Contours, Creases, DepthMap, DepthMapping, Desaturation,
+    ObjectEdges, Outlines, RangeSmoothing, Silhouettes, Sketch, ToneBands,
+};
+
+/// A million floats: hand-picked edges, then every exponent and sign with
+/// random mantissas, NaN and infinities among them.
+fn floats() -> impl Iterator<Item = f32> {
+    let edges = [
+        0.0,
+        -0.0,
+        1.0,
+        -1.0,
+        0.25,
+        4.0,
+        f32::NAN,
+        -f32::NAN,
+        f32::INFINITY,
+        f32::NEG_INFINITY,
+        f32::MAX,
+        f32::MIN,
+        f32::MIN_POSITIVE,
+        f32::EPSILON,
+        1e-45,
+        f32::from_bits(0x7f80_0001),
+        f32::from_bits(0xffff_ffff),
+    ];
+    let mut state = 0x2545_f491_4f6c_dd1du64;
+    let random = std::iter::repeat_with(move || {
+        // xorshift64*, Marsaglia and Vigna.
+        state ^= state >> 12;
+        state ^= state << 25;
+        state ^= state >> 27;
+        f32::from_bits((state.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 32) as u32)
+    });
+    edges.into_iter().chain(random).take(1_000_000)
+}
+
+/// A million values of a field end up inside its range; those that were
+/// inside are kept.
+fn fuzz(field: &str, low: f32, high: f32, through: impl Fn(f32) -> f32) {
+    let mut kept = 0;
+    for value in floats() {
+        let used = through(value);
+        assert!(
+            (low..=high).contains(&used),
+            "{field}: {value} became {used}"
+        );
+        if (low..=high).contains(&value) {
+            assert_eq!(used, value, "{field} changed a value of its range");
+            kept += 1;
+        }
+    }
+    assert!(kept > 0, "{field}: no value was inside its range");
+}
+
+/// What a tool shows as a field's range is what the field is clamped to.
+#[test]
+fn the_range_on_a_field_is_the_range_that_is_used() {
+    use bevy::reflect::{TypeInfo, Typed, structs::Struct};
+
+    fn check<T: Struct + Typed + Default + Clone>(sanitized: impl Fn(T) -> T) {
+        let TypeInfo::Struct(info) = T::type_info() else {
+            panic!("{} is no struct", T::type_path());
+        };
+        let mut numbers = 0;
+        for field in info.iter() {
+            let Some(range) = crate::FieldRange::of(field) else {
+                continue;
+            };
+            for (asked, wanted) in [(f32::MAX, range.max), (f32::MIN, range.min)] {
+                let mut value = T::default();
+                let slot = value.field_mut(field.name()).expect("its own field");
+                let whole = if asked > 0.0 { u32::MAX } else { 0 };
+                if let Some(number) = slot.try_downcast_mut::<f32>() {
+                    *number = asked;
+                } else if let Some(number) = slot.try_downcast_mut::<Option<f32>>() {
+                    *number = Some(asked);
+                } else if let Some(number) = slot.try_downcast_mut::<u32>() {
+                    *number = whole;
+                } else {
+                    panic!("{} has a range and is no number", field.name());
+                }
+                let used = sanitized(value);
+                let slot = used.field(field.name()).expect("its own field");
+                let used = slot
+                    .try_downcast_ref::<f32>()
+                    .map(|x| f64::from(*x))
+                    .or(slot
+                        .try_downcast_ref::<Option<f32>>()
+                        .and_then(|x| x.map(f64::from)))
+                    .or(slot.try_downcast_ref::<u32>().map(|x| f64::from(*x)))
+                    .expect("a number");
+                let apart = (used - wanted).abs();
+                assert!(
+                    apart <= 1e-6 * wanted.abs(),
+                    "{}::{}: {used} is used, {wanted} is shown",
+                    T::type_path(),
+                    field.name()
+                );
+            }
+            numbers += 1;
+        }
+        assert!(numbers > 0, "{} has no numbers", T::type_path());
+    }
+    check(ToneBands::sanitized);
+    check(Desaturation::sanitized);
+    check(Colorization::sanitized);
+    check(BlackFlats::sanitized);
+    check(Contours::sanitized);
+    check(Outlines::sanitized);
+    check(Silhouettes::sanitized);
+    check(Creases::sanitized);
+    check(ObjectEdges::sanitized);
+    check(Sketch::sanitized);
+    check(DepthMap::sanitized);
+    check(RangeSmoothing::sanitized);
+}
+
+#[test]
+fn a_million_floats_in_every_field_of_the_colour_styles() {
+    fuzz("Desaturation::amount", 0.0, 1.0, |x| {
+        Desaturation {
+            amount: x,
+            ..Default::default()
+        }
+        .sanitized()
+        .amount
+    });
+    fuzz("Desaturation::exponent", 0.25, 4.0, |x| {
+        Desaturation {
+            exponent: x,
+            ..Default::default()
+        }
+        .sanitized()
+        .exponent
+    });
+    fuzz("Colorization::amount", 0.0, 1.0, |x| {
+        Colorization {
+            amount: x,
+            ..Default::default()
+        }
+        .sanitized()
+        .amount
+    });
+    fuzz("Colorization::color", 0.0, 1.0, |x| {
+        let color = Color::linear_rgb(x, 0.5, 0.5);
+        let used = Colorization {
+            color,
+            ..Default::default()
+        }
+        .sanitized()
+        .color
+        .to_linear();
+        assert!(
+            [used.green, used.blue]
+                .iter()
+                .all(|c| (0.0..=1.0).contains(c))
+        );
+        used.red
+    });
+}
+
+#[test]
+fn a_million_floats_in_every_field_of_the_ink_styles() {
+    let contours = |edit: fn(&mut Contours, f32)| {
+        move |x| {
+            let mut c = Contours::default();
+            edit(&mut c, x);
+            c.sanitized()
+        }
+    };
+    let threshold = contours(|c, x| c.threshold = x);
+    fuzz("Contours::threshold", 1e-6, 100.0, |x| {
+        threshold(x).threshold
+    });
+    let width = contours(|c, x| c.width = x);
+    fuzz("Contours::width", 0.5, 16.0, |x| width(x).width);
+    let softness = contours(|c, x| c.softness = x);
+    fuzz("Contours::softness", 0.0, 1.0, |x| softness(x).softness);
+    let opacity = contours(|c, x| c.opacity = x);
+    fuzz("Contours::opacity", 0.0, 1.0, |x| opacity(x).opacity);
+    let fade = contours(|c, x| c.fade = x);
+    fuzz("Contours::fade", 0.0, 1.0, |x| fade(x).fade);
+
+    let flats = |edit: fn(&mut BlackFlats, f32)| {
+        move |x| {
+            let mut b = BlackFlats::default();
+            edit(&mut b, x);
+            b.sanitized()
+        }
+    };
+    let slope = flats(|b, x| b.slope = Some(x));
+    fuzz("BlackFlats::slope", 1e-6, 100.0, |x| {
+        slope(x).slope.unwrap_or(f32::NAN)
+    });
+    let value = flats(|b, x| b.value = Some(x));
+    fuzz("BlackFlats::value", 0.0, 1.0, |x| {
+        value(x).value.unwrap_or(f32::NAN)
+    });
+    let weight = flats(|b, x| b.depth_weight = x);
+    fuzz("BlackFlats::depth_weight", 0.0, 1.0, |x| {
+        weight(x).depth_weight
+    });
+    let feather = flats(|b, x| b.feather = x);
+    fuzz("BlackFlats::feather", 0.0, 1.0, |x| feather(x).feather);
+    let opacity = flats(|b, x| b.opacity = x);
+    fuzz("BlackFlats::opacity", 0.0, 1.0, |x| opacity(x).opacity);
+}
+
+#[test]
+fn a_million_floats_in_every_field_of_the_depth_map() {
+    let map = |edit: fn(&mut DepthMap, f32)| {
+        move |x| {
+            let mut m = DepthMap::default();
+            edit(&mut m, x);
+            m.sanitized()
+        }
+    };
+    let gap = map(|m, x| m.sky_gap = x);
+    fuzz("DepthMap::sky_gap", 0.0, 10.0, |x| gap(x).sky_gap);
+    let floor = map(|m, x| m.floor = x);
+    fuzz("DepthMap::floor", 0.0, 1.0, |x| floor(x).floor);
+    let floor = map(|m, x| m.orthographic_floor = x);
+    let smoothing = |edit: fn(&mut RangeSmoothing, f32)| {
+        move |x| {
+            let mut s = RangeSmoothing::default();
+            edit(&mut s, x);
+            s.sanitized()
+        }
+    };
+    let outliers = smoothing(|s, x| s.outliers = x);
+    fuzz("RangeSmoothing::outliers", 0.0, 0.2, |x| {
+        outliers(x).outliers
+    });
+    let hysteresis = smoothing(|s, x| s.hysteresis = x);
+    fuzz("RangeSmoothing::hysteresis", 0.0, 4.0, |x| {
+        hysteresis(x).hysteresis
+    });
+    let expand = smoothing(|s, x| s.expand = x);
+    fuzz("RangeSmoothing::expand", 0.0, 60.0, |x| expand(x).expand);
+    let shrink = smoothing(|s, x| s.shrink = x);
+    fuzz("RangeSmoothing::shrink", 0.0, 60.0, |x| shrink(x).shrink);
+    fuzz("DepthMap::orthographic_floor", 0.0, 1e6, |x| {
+        floor(x).orthographic_floor
+    });
+    for (a, b) in floats().zip(floats().skip(7)) {
+        let mapping = DepthMapping::Fixed { near: a, far: b };
+        let DepthMapping::Fixed { near, far } = DepthMap {
+            mapping,
+            ..Default::default()
+        }
+        .sanitized()
+        .mapping
+        else {
+            panic!("the mapping changed its kind");
+        };
+        assert!(
+            near > 0.0 && far > near && far.is_finite(),
+            "{a}, {b}: {near}, {far}"
+        );
+    }
+}
+
+#[test]
+fn a_million_floats_in_every_field_of_the_lines() {
+    let outlines = |edit: fn(&mut Outlines, f32)| {
+        move |x| {
+            let mut o = Outlines::default();
+            edit(&mut o, x);
+            o.sanitized()
+        }
+    };
+    let width = outlines(|o, x| o.width = x);
+    fuzz("Outlines::width", 0.5, 16.0, |x| width(x).width);
+    let fade = outlines(|o, x| o.width_fade = x);
+    fuzz("Outlines::width_fade", 0.0, 1.0, |x| fade(x).width_fade);
+    let fade = outlines(|o, x| o.opacity_fade = x);
+    fuzz("Outlines::opacity_fade", 0.0, 1.0, |x| fade(x).opacity_fade);
+    let silhouettes = |edit: fn(&mut Silhouettes, f32)| {
+        move |x| {
+            let mut s = Silhouettes::default();
+            edit(&mut s, x);
+            s.sanitized()
+        }
+    };
+    let threshold = silhouettes(|s, x| s.threshold = x);
+    fuzz("Silhouettes::threshold", 1e-6, 1.0, |x| {
+        threshold(x).threshold
+    });
+    let limit = silhouettes(|s, x| s.edge_limit = x);
+    fuzz("Silhouettes::edge_limit", 0.01, 0.99, |x| {
+        limit(x).edge_limit
+    });
+    let softness = silhouettes(|s, x| s.softness = x);
+    fuzz("Silhouettes::softness", 0.0, 1.0, |x| softness(x).softness);
+    fuzz("Creases::angle", 3.0, 180.0, |x| {
+        Creases {
+            angle: x,
+            ..Default::default()
+        }
+        .sanitized()
+        .angle
+    });
+    fuzz("ObjectEdges::opacity", 0.0, 1.0, |x| {
+        ObjectEdges {
+            opacity: x,
+            ..Default::default()
+        }
+        .sanitized()
+        .opacity
+    });
+}
+
+#[test]
+fn a_million_floats_in_every_field_of_sketch_and_bands() {
+    let sketch = |edit: fn(&mut Sketch, f32)| {
+        move |x| {
+            let mut s = Sketch::default();
+            edit(&mut s, x);
+            s.sanitized()
+        }
+    };
+    let jitter = sketch(|s, x| s.jitter = x);
+    fuzz("Sketch::jitter", 0.0, 8.0, |x| jitter(x).jitter);
+    let wave = sketch(|s, x| s.wavelength = x);
+    fuzz("Sketch::wavelength", 2.0, 256.0, |x| wave(x).wavelength);
+    let gamma = sketch(|s, x| s.gamma = x);
+    fuzz("Sketch::gamma", 0.25, 4.0, |x| gamma(x).gamma);
+    let rate = sketch(|s, x| s.rate = x);
+    fuzz("Sketch::rate", 0.0, 60.0, |x| rate(x).rate);
+    let amount = sketch(|s, x| s.amount = x);
+    fuzz("Sketch::amount", 0.0, 1.0, |x| amount(x).amount);
+    let wash = sketch(|s, x| s.wash = x);
+    fuzz("Sketch::wash", 0.0, 1.0, |x| wash(x).wash);
+    let pressure = sketch(|s, x| s.pressure = x);
+    fuzz("Sketch::pressure", 0.0, 1.0, |x| pressure(x).pressure);
+    fuzz("ToneBands::feather", 0.0, 16.0, |x| {
+        ToneBands {
+            feather: x,
+            ..Default::default()
+        }
+        .sanitized()
+        .feather
+    });
+    fuzz("ToneBands::amount", 0.0, 1.0, |x| {
+        ToneBands {
+            amount: x,
+            ..Default::default()
+        }
+        .sanitized()
+        .amount
+    });
+}
+
+#[cfg(feature = "cartoon")]
+#[test]
+fn a_million_floats_in_every_field_of_the_cartoon_light() {
+    use crate::CartoonLight;
+    let light = |edit: fn(&mut CartoonLight, f32)| {
+        move |x| {
+            let mut l = CartoonLight::default();
+            edit(&mut l, x);
+            l.sanitized()
+        }
+    };
+    let terminator = light(|l, x| l.terminator = x);
+    fuzz("CartoonLight::terminator", 0.0, 0.9, |x| {
+        terminator(x).terminator
+    });
+    let strength = light(|l, x| l.shadow_strength = x);
+    fuzz("CartoonLight::shadow_strength", 0.0, 1.0, |x| {
+        strength(x).shadow_strength
+    });
+    let highlight = light(|l, x| l.highlight = x);
+    fuzz("CartoonLight::highlight", 0.0, 4.0, |x| {
+        highlight(x).highlight
+    });
+    let edge = light(|l, x| l.highlight_edge = x);
+    fuzz("CartoonLight::highlight_edge", 0.01, 0.99, |x| {
+        edge(x).highlight_edge
+    });
+    let falloff = light(|l, x| l.falloff = x);
+    fuzz("CartoonLight::falloff", 0.0, 4.0, |x| falloff(x).falloff);
+}

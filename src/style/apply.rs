@@ -1,0 +1,101 @@
+//! Cameras that follow a style asset.
+
+use bevy::{
+    asset::{AssetEvent, AssetLoader, Assets, Handle, LoadContext, io::Reader},
+    ecs::{
+        change_detection::{DetectChanges, Ref},
+        component::Component,
+        entity::Entity,
+        lifecycle::RemovedComponents,
+        message::MessageReader,
+        query::With,
+        reflect::ReflectComponent,
+        system::{Commands, Query, Res},
+        world::{FromWorld, World},
+    },
+    reflect::{Reflect, TypePath, std_traits::ReflectDefault},
+};
+
+use super::{ComicStyle, ComicStyleError};
+use crate::effect::EffectRegistry;
+
+/// Gives a camera the look of a [`ComicStyle`] asset.
+///
+/// The style's components are put on the camera when the asset has loaded and
+/// again whenever it changes; between that they are the camera's own and may be
+/// edited. A file that becomes unreadable keeps the last good look. Removing
+/// this component removes the look.
+#[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq)]
+pub struct ComicStyleHandle(pub Handle<ComicStyle>);
+
+pub(super) fn apply_styles(
+    mut commands: Commands,
+    cameras: Query<(Entity, Ref<ComicStyleHandle>)>,
+    mut removed: RemovedComponents<ComicStyleHandle>,
+    existing: Query<(), With<ComicStyleHandle>>,
+    mut events: MessageReader<AssetEvent<ComicStyle>>,
+    styles: Res<Assets<ComicStyle>>,
+) {
+    for entity in removed.read() {
+        if !existing.contains(entity)
+            && let Ok(mut camera) = commands.get_entity(entity)
+        {
+            ComicStyle::default().apply(&mut camera);
+        }
+    }
+    let changed: Vec<_> = events
+        .read()
+        .filter_map(|event| match event {
+            AssetEvent::Added { id } | AssetEvent::Modified { id } => Some(*id),
+            _ => None,
+        })
+        .collect();
+    for (entity, handle) in &cameras {
+        if !handle.is_changed() && !changed.contains(&handle.0.id()) {
+            continue;
+        }
+        if let Some(style) = styles.get(&handle.0)
+            && let Ok(mut camera) = commands.get_entity(entity)
+        {
+            style.apply(&mut camera);
+        }
+    }
+}
+
+/// Reads style files with the effects that the app knows.
+#[derive(TypePath)]
+pub(super) struct StyleLoader {
+    registry: EffectRegistry,
+}
+
+impl FromWorld for StyleLoader {
+    fn from_world(world: &mut World) -> Self {
+        Self {
+            registry: world.get_resource_or_init::<EffectRegistry>().clone(),
+        }
+    }
+}
+
+impl AssetLoader for StyleLoader {
+    type Asset = ComicStyle;
+    type Settings = ();
+    type Error = ComicStyleError;
+
+    async fn load(
+        &self,
+        reader: &mut dyn Reader,
+        _settings: &(),
+        _load_context: &mut LoadContext<'_>,
+    ) -> Result<ComicStyle, ComicStyleError> {
+        let mut bytes = Vec::new();
+        reader.read_to_end(&mut bytes).await?;
+        let text = String::from_utf8(bytes)
+            .map_err(|error| std::io::Error::new(std::io::ErrorKind::InvalidData, error))?;
+        self.registry.style_from_ron(&text)
+    }
+
+    fn extensions(&self) -> &[&str] {
+        &["comic.ron"]
+    }
+}

@@ -1,0 +1,118 @@
+//! What lies between two styles.
+
+use bevy::math::FloatExt;
+
+use super::ComicStyle;
+use crate::{
+    depth::{DepthMap, DepthMapping, RangeSmoothing},
+    effect::EffectSet,
+    settings::blend_ratio,
+};
+
+impl ComicStyle {
+    /// The style that lies `t` of the way from this one to another: this one
+    /// at 0 and below, the other at 1 and above. As a picture it is continuous
+    /// in `t`.
+    ///
+    /// * Numbers are interpolated, colours in `OKLab`; an effect that only one
+    ///   of the two has fades in or out.
+    /// * An effect whose mode changes (an operator, a method, the number of
+    ///   tone bands) fades out until `t = 0.5`, changes there, and fades in.
+    /// * When the mapping of the depth map changes, every effect that reads
+    ///   the map does so.
+    /// * What has no strength of its own changes at `t = 0.5`: the strokes of
+    ///   a sketch and how often they are drawn anew, `despike`, `locked`.
+    #[must_use]
+    pub fn blend(&self, other: &Self, t: f32) -> Self {
+        if t.is_nan() || t <= 0.0 {
+            return self.clone();
+        }
+        if t >= 1.0 {
+            return other.clone();
+        }
+        let (a, b) = (self.sanitized(), other.sanitized());
+        let (map_a, map_b) = (
+            a.depth_map.unwrap_or_default(),
+            b.depth_map.unwrap_or_default(),
+        );
+        let remapped = map_a.flip != map_b.flip
+            || std::mem::discriminant(&map_a.mapping) != std::mem::discriminant(&map_b.mapping);
+        let named = if t < 0.5 { &a } else { &b };
+        let (from, to) = (a.with_implied(), b.with_implied());
+        let mut effects = EffectSet::default();
+        for effect in from.iter().chain(to.iter()) {
+            let effect = effect.effect_type();
+            if effects.by_name(effect.name).is_none()
+                && let Some(blended) = (effect.blend)(
+                    from.by_name(effect.name),
+                    to.by_name(effect.name),
+                    t,
+                    remapped,
+                )
+            {
+                effects.insert(blended);
+            }
+        }
+        Self {
+            version: Self::VERSION,
+            name: named.name.clone(),
+            depth_map: (a.depth_map.is_some() || b.depth_map.is_some())
+                .then(|| mixed_map(map_a, map_b, t)),
+            effects,
+        }
+    }
+
+    /// The effects, those among them that others draw with.
+    fn with_implied(&self) -> EffectSet {
+        let mut all = self.effects.clone();
+        for effect in self.effects.iter().filter_map(|e| e.any_implied()) {
+            if all.by_name(effect.effect_type().name).is_none() {
+                all.insert(effect);
+            }
+        }
+        all
+    }
+}
+
+fn mixed_map(a: DepthMap, b: DepthMap, t: f32) -> DepthMap {
+    let modes = if t < 0.5 { a } else { b };
+    let mapping = match (a.mapping, b.mapping) {
+        (
+            DepthMapping::Fixed { near, far },
+            DepthMapping::Fixed {
+                near: near_b,
+                far: far_b,
+            },
+        ) => DepthMapping::Fixed {
+            near: blend_ratio(near, near_b, t),
+            far: blend_ratio(far, far_b, t),
+        },
+        (
+            DepthMapping::FixedLogarithmic { near, far },
+            DepthMapping::FixedLogarithmic {
+                near: near_b,
+                far: far_b,
+            },
+        ) => DepthMapping::FixedLogarithmic {
+            near: blend_ratio(near, near_b, t),
+            far: blend_ratio(far, far_b, t),
+        },
+        _ => modes.mapping,
+    };
+    let [s_a, s_b] = [a, b].map(|map| map.smoothing.unwrap_or(RangeSmoothing::OFF));
+    let smoothing = (a.smoothing.is_some() || b.smoothing.is_some()).then(|| RangeSmoothing {
+        outliers: s_a.outliers.lerp(s_b.outliers, t),
+        despike: if t < 0.5 { s_a.despike } else { s_b.despike },
+        hysteresis: s_a.hysteresis.lerp(s_b.hysteresis, t),
+        expand: s_a.expand.lerp(s_b.expand, t),
+        shrink: s_a.shrink.lerp(s_b.shrink, t),
+    });
+    DepthMap {
+        mapping,
+        sky_gap: a.sky_gap.lerp(b.sky_gap, t),
+        floor: blend_ratio(a.floor, b.floor, t),
+        orthographic_floor: blend_ratio(a.orthographic_floor, b.orthographic_floor, t),
+        smoothing,
+        ..modes
+    }
+}

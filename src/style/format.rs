@@ -1,0 +1,219 @@
+//! The file format of styles: RON, with an entry for each effect.
+
+use std::fmt;
+
+use serde::{
+    Deserialize, Deserializer, Serialize, Serializer,
+    de::{DeserializeSeed, Error, MapAccess, Visitor},
+    ser::SerializeStruct,
+};
+use thiserror::Error;
+
+use super::ComicStyle;
+use crate::effect::{AnyEffect, EffectRegistry, EffectType};
+
+/// Why a style file was not understood.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ComicStyleError {
+    /// The file could not be read.
+    #[error("cannot read the style: {0}")]
+    Io(#[from] std::io::Error),
+    /// The file is not a style: bad syntax, an unknown field, a wrong type.
+    #[error("not a comic style, line {}, column {}: {}", .0.span.start.line, .0.span.start.col, .0.code)]
+    Syntax(#[from] ron::error::SpannedError),
+    /// The file was written for another version of this crate.
+    #[error("style format version {found} is not known; this crate reads version {known}", known = ComicStyle::VERSION)]
+    Version {
+        /// The version that the file states.
+        found: u32,
+    },
+    /// The style could not be written as text.
+    #[error("cannot write the style: {0}")]
+    Write(#[from] ron::Error),
+}
+
+fn ron_options() -> ron::Options {
+    ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
+}
+
+impl ComicStyle {
+    /// Reads a style from the text of a `.comic.ron` file, with the effects of
+    /// this crate. [`EffectRegistry::style_from_ron`] knows those of an app as
+    /// well.
+    ///
+    /// # Errors
+    /// [`ComicStyleError::Syntax`] with line and column, or
+    /// [`ComicStyleError::Version`].
+    pub fn from_ron(text: &str) -> Result<Self, ComicStyleError> {
+        EffectRegistry::built_in().style_from_ron(text)
+    }
+
+    /// The text of a `.comic.ron` file that reads back equal.
+    ///
+    /// # Errors
+    /// [`ComicStyleError::Write`] if a value has no RON form.
+    pub fn to_ron(&self) -> Result<String, ComicStyleError> {
+        let pretty = ron::ser::PrettyConfig::default().indentor("    ");
+        let mut text = ron_options().to_string_pretty(self, pretty)?;
+        text.push('\n');
+        Ok(text)
+    }
+}
+
+impl EffectRegistry {
+    /// Reads a style from the text of a `.comic.ron` file, with the effects that
+    /// are registered.
+    ///
+    /// # Errors
+    /// As [`ComicStyle::from_ron`].
+    pub fn style_from_ron(&self, text: &str) -> Result<ComicStyle, ComicStyleError> {
+        let types = self.types();
+        let mut deserializer = ron::Deserializer::from_str_with_options(text, &ron_options())?;
+        let style = StyleSeed(&types)
+            .deserialize(&mut deserializer)
+            .and_then(|style| deserializer.end().map(|()| style))
+            .map_err(|error| deserializer.span_error(error))?;
+        if style.version != ComicStyle::VERSION {
+            return Err(ComicStyleError::Version {
+                found: style.version,
+            });
+        }
+        Ok(style)
+    }
+}
+
+impl Serialize for ComicStyle {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let effects = self.effects().count();
+        let entries = 2 + usize::from(self.depth_map.is_some()) + effects;
+        let mut file = serializer.serialize_struct("ComicStyle", entries)?;
+        file.serialize_field("version", &self.version)?;
+        file.serialize_field("name", &self.name)?;
+        if self.depth_map.is_some() {
+            file.serialize_field("depth_map", &self.depth_map)?;
+        }
+        for effect in self.effects() {
+            file.serialize_field(effect.effect_type().name, &Present(effect))?;
+        }
+        file.end()
+    }
+}
+
+/// An effect that is there: an `Option` in the file, as `None` may be written.
+struct Present<'a>(&'a dyn AnyEffect);
+
+impl Serialize for Present<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_some(&Erased(self.0))
+    }
+}
+
+struct Erased<'a>(&'a dyn AnyEffect);
+
+impl Serialize for Erased<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        erased_serde::serialize(self.0.as_serialize(), serializer)
+    }
+}
+
+/// With the effects of this crate.
+impl<'de> Deserialize<'de> for ComicStyle {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        StyleSeed(&EffectRegistry::built_in().types()).deserialize(deserializer)
+    }
+}
+
+/// Reads a style with these effects.
+struct StyleSeed<'a>(&'a [&'static EffectType]);
+
+impl<'de> DeserializeSeed<'de> for StyleSeed<'_> {
+    type Value = ComicStyle;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<ComicStyle, D::Error> {
+        deserializer.deserialize_struct("ComicStyle", &[], self)
+    }
+}
+
+impl<'de> Visitor<'de> for StyleSeed<'_> {
+    type Value = ComicStyle;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a comic style")
+    }
+
+    fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<ComicStyle, M::Error> {
+        let mut style = ComicStyle::default();
+        let mut version = None;
+        let mut seen: Vec<String> = Vec::new();
+        while let Some(Key(key)) = map.next_key()? {
+            if seen.contains(&key) {
+                return Err(M::Error::custom(format_args!(
+                    "the entry `{key}` is there twice"
+                )));
+            }
+            match key.as_str() {
+                "version" => version = Some(map.next_value()?),
+                "name" => style.name = map.next_value()?,
+                "depth_map" => style.depth_map = map.next_value()?,
+                name => {
+                    let Some(effect) = self.0.iter().find(|effect| effect.name == name) else {
+                        return Err(M::Error::custom(self.unknown(name)));
+                    };
+                    if let Some(effect) = map.next_value_seed(EffectSeed(effect))? {
+                        style.insert_any(effect);
+                    }
+                }
+            }
+            seen.push(key);
+        }
+        style.version = version.ok_or_else(|| M::Error::missing_field("version"))?;
+        Ok(style)
+    }
+}
+
+impl StyleSeed<'_> {
+    fn unknown(&self, name: &str) -> String {
+        let keys: Vec<String> = ["version", "name", "depth_map"]
+            .into_iter()
+            .chain(self.0.iter().map(|effect| effect.name))
+            .map(|key| format!("`{key}`"))
+            .collect();
+        format!(
+            "no effect is called `{name}`; the entries of a style are {}",
+            keys.join(", ")
+        )
+    }
+}
+
+/// An entry's name: an identifier in RON, a string elsewhere.
+struct Key(String);
+
+impl<'de> Deserialize<'de> for Key {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Name;
+        impl Visitor<'_> for Name {
+            type Value = Key;
+
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("the name of an entry")
+            }
+
+            fn visit_str<E: Error>(self, name: &str) -> Result<Key, E> {
+                Ok(Key(name.to_owned()))
+            }
+        }
+        deserializer.deserialize_identifier(Name)
+    }
+}
+
+struct EffectSeed(&'static EffectType);
+
+impl<'de> DeserializeSeed<'de> for EffectSeed {
+    type Value = Option<Box<dyn AnyEffect>>;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        let mut erased = <dyn erased_serde::Deserializer>::erase(deserializer);
+        (self.0.read)(&mut erased).map_err(D::Error::custom)
+    }
+}

@@ -1,0 +1,196 @@
+//! From one style to another over time.
+
+use bevy::{
+    asset::{AssetServer, Assets, Handle},
+    ecs::{
+        component::Component,
+        entity::Entity,
+        event::EntityEvent,
+        query::Has,
+        reflect::ReflectComponent,
+        system::{Commands, Query, Res},
+        world::{EntityRef, EntityWorldMut},
+    },
+    log::warn,
+    math::{
+        Curve,
+        curve::{EaseFunction, EasingCurve},
+    },
+    reflect::Reflect,
+    time::Time,
+};
+
+use super::{ComicStyle, ComicStyleHandle};
+use crate::{diagnostics::ComicsDiagnostics, effect::EffectRegistry};
+
+/// Carries a camera from the look that it has to another one, over time.
+///
+/// The look it starts from is what the camera's components are when this one
+/// is put there, in the midst of another transition too. What lies between the
+/// two is [`ComicStyle::blend`]: continuous, with modes that change where
+/// their effect has no strength. When it is over the camera has exactly the
+/// other style, this component is gone, and [`StyleTransitionFinished`] is
+/// triggered on the camera.
+///
+/// It runs on the default [`Time`], so that a paused game pauses it, and its
+/// clock stands while pipelines compile that the camera has never needed
+/// before. Styles that the game puts on the camera meanwhile are overwritten.
+///
+/// ```
+/// # use bevy::prelude::*;
+/// # use bevy_comics::{StyleTransition, presets};
+/// fn hit(mut commands: Commands, camera: Single<Entity, With<Camera3d>>) {
+///     if let Some(Ok(style)) = presets::preset("crimson-dusk") {
+///         commands.entity(*camera).insert(StyleTransition::to(style, 0.4));
+///     }
+/// }
+/// ```
+#[derive(Component, Reflect, Clone, Debug, PartialEq)]
+#[reflect(Component, Clone, PartialEq)]
+pub struct StyleTransition {
+    target: StyleTarget,
+    seconds: f32,
+    easing: TransitionEasing,
+    from: Option<ComicStyle>,
+    elapsed: f32,
+}
+
+#[allow(
+    clippy::large_enum_variant,
+    reason = "there is one on a camera, and a box is not reflected"
+)]
+#[derive(Reflect, Clone, Debug, PartialEq)]
+enum StyleTarget {
+    Style(ComicStyle),
+    Asset(Handle<ComicStyle>),
+}
+
+/// How a transition moves.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TransitionEasing {
+    /// With the same speed all the way.
+    Linear,
+    /// Slow at both ends.
+    #[default]
+    Smooth,
+}
+
+/// A [`StyleTransition`] has arrived.
+#[derive(EntityEvent, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StyleTransitionFinished {
+    /// The camera.
+    pub entity: Entity,
+}
+
+impl StyleTransition {
+    /// To a style, in so many seconds; 0, or what is not a positive number, is
+    /// at once. The camera's [`ComicStyleHandle`], if it has one, is emptied: no
+    /// file has a say in its look any more.
+    pub fn to(style: ComicStyle, seconds: f32) -> Self {
+        Self::new(StyleTarget::Style(style), seconds)
+    }
+
+    /// To the style of an asset, which the camera keeps as its
+    /// [`ComicStyleHandle`]. Starts when the asset has loaded; an asset that
+    /// fails to load ends it where it is, with a warning.
+    pub fn to_asset(style: Handle<ComicStyle>, seconds: f32) -> Self {
+        Self::new(StyleTarget::Asset(style), seconds)
+    }
+
+    fn new(target: StyleTarget, seconds: f32) -> Self {
+        Self {
+            target,
+            seconds,
+            easing: TransitionEasing::default(),
+            from: None,
+            elapsed: 0.0,
+        }
+    }
+
+    /// The same transition with another easing.
+    #[must_use]
+    pub fn with_easing(self, easing: TransitionEasing) -> Self {
+        Self { easing, ..self }
+    }
+
+    /// How much of the time has passed, 0 to 1.
+    pub fn progress(&self) -> f32 {
+        if self.seconds > 0.0 {
+            (self.elapsed / self.seconds).clamp(0.0, 1.0)
+        } else {
+            1.0
+        }
+    }
+
+    /// How far the look has come, 0 to 1.
+    fn fraction(&self) -> f32 {
+        let curve = match self.easing {
+            TransitionEasing::Linear => EaseFunction::Linear,
+            TransitionEasing::Smooth => EaseFunction::SmoothStep,
+        };
+        EasingCurve::new(0.0, 1.0, curve).sample_clamped(self.progress())
+    }
+}
+
+pub(super) fn run_transitions(
+    mut commands: Commands,
+    mut cameras: Query<(Entity, &mut StyleTransition, Has<ComicStyleHandle>)>,
+    styles: Option<Res<Assets<ComicStyle>>>,
+    assets: Option<Res<AssetServer>>,
+    diagnostics: Res<ComicsDiagnostics>,
+    time: Option<Res<Time>>,
+) {
+    for (entity, mut transition, has_handle) in &mut cameras {
+        let Ok(mut camera) = commands.get_entity(entity) else {
+            continue;
+        };
+        let target = match &transition.target {
+            StyleTarget::Style(style) => Some(style),
+            StyleTarget::Asset(handle) => {
+                let failed = assets
+                    .as_ref()
+                    .is_some_and(|assets| assets.load_state(handle).is_failed());
+                if failed {
+                    warn!("{entity} keeps its style: the one it was to take failed to load");
+                    camera.remove::<StyleTransition>();
+                    continue;
+                }
+                styles.as_ref().and_then(|styles| styles.get(handle))
+            }
+        };
+        let Some(target) = target.cloned() else {
+            continue;
+        };
+        if transition.from.is_none() {
+            camera.queue(start);
+            if matches!(transition.target, StyleTarget::Style(_)) {
+                // Taking it away would take the look along.
+                camera.insert_if(ComicStyleHandle::default(), || has_handle);
+            }
+        } else if !diagnostics.is_compiling(entity) {
+            transition.elapsed += time.as_ref().map_or(0.0, |time| time.delta_secs());
+        }
+        if transition.progress() >= 1.0 {
+            target.apply(&mut camera);
+            if let StyleTarget::Asset(handle) = &transition.target {
+                camera.insert(ComicStyleHandle(handle.clone()));
+            }
+            camera.remove::<StyleTransition>();
+            commands.trigger(StyleTransitionFinished { entity });
+        } else if let Some(from) = &transition.from {
+            from.blend(&target, transition.fraction())
+                .apply(&mut camera);
+        }
+    }
+}
+
+/// Remembers the look from which the camera's transition starts.
+fn start(mut camera: EntityWorldMut) {
+    let Some(registry) = camera.world().get_resource::<EffectRegistry>().cloned() else {
+        return;
+    };
+    let from = ComicStyle::of(EntityRef::from(&camera), &registry);
+    if let Some(mut transition) = camera.get_mut::<StyleTransition>() {
+        transition.from = Some(from);
+    }
+}

@@ -1,0 +1,71 @@
+//! The way of a plan to the render world.
+
+use bevy::{
+    camera::{Camera, Camera3d, MainPassResolutionOverride, Projection},
+    ecs::{
+        entity::{Entity, EntityHashSet},
+        query::With,
+        system::{Commands, Local, Query, Res},
+    },
+    render::{Extract, sync_world::RenderEntity},
+    time::{Real, Time},
+};
+
+use super::CameraPlan;
+use crate::{
+    depth::{frame::DepthProjection, smoothing::CameraCuts},
+    effect::ViewPlan,
+    objects::ObjectStyles,
+};
+
+pub(super) fn extract_views(
+    mut commands: Commands,
+    cameras: Extract<
+        Query<
+            (
+                Entity,
+                RenderEntity,
+                &Camera,
+                &CameraPlan,
+                Option<&Projection>,
+                Option<&MainPassResolutionOverride>,
+                Option<&CameraCuts>,
+            ),
+            With<Camera3d>,
+        >,
+    >,
+    (time, real_time): (
+        Extract<Option<Res<Time>>>,
+        Extract<Option<Res<Time<Real>>>>,
+    ),
+    objects: Extract<Res<ObjectStyles>>,
+    stale: Query<Entity, With<ViewPlan>>,
+    mut seen: Local<EntityHashSet>,
+) {
+    seen.clear();
+    for (entity, render_entity, camera, asked, projection, resolution, cuts) in &cameras {
+        if !camera.is_active {
+            continue;
+        }
+        let clip_from_view = camera.clip_from_view();
+        seen.insert(render_entity);
+        commands.entity(render_entity).insert(ViewPlan {
+            camera: entity,
+            plan: asked.plan.clone(),
+            number: asked.number,
+            projection: DepthProjection::new(&clip_from_view, projection),
+            clip_from_view,
+            scale_factor: camera.target_scaling_factor().unwrap_or(1.0),
+            main_pass_size: resolution.map(|size| size.0),
+            widest_object: objects.max_width(),
+            time: time.as_ref().map_or(0.0, |time| time.elapsed_secs_f64()),
+            seconds: real_time.as_ref().map_or(0.0, |time| time.delta_secs()),
+            cuts: cuts.map_or(0, |cuts| cuts.0),
+        });
+    }
+    for entity in &stale {
+        if !seen.contains(&entity) {
+            commands.entity(entity).remove::<ViewPlan>();
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! A camera in the main world: its plan, the prepasses that the plan reads, and
+//! its way to the render world.
+
+mod extract;
+mod prepasses;
+
+use std::sync::Arc;
+
+use bevy::{
+    app::{App, Plugin, PostUpdate},
+    camera::{Camera2d, Camera3d, RenderTarget},
+    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
+    ecs::{
+        component::Component,
+        query::With,
+        schedule::IntoScheduleConfigs,
+        system::{Commands, Query, Res},
+        world::EntityRef,
+    },
+    log::warn_once,
+    render::{ExtractSchedule, RenderApp},
+};
+
+use crate::{
+    effect::{EffectRegistry, Plan},
+    objects::ObjectStyles,
+};
+use prepasses::{give_up_claims, request_prepasses};
+
+/// On a camera in the main world: what it asks for, by its components.
+#[derive(Component, Clone, Debug)]
+struct CameraPlan {
+    plan: Arc<Plan>,
+    /// Grows whenever the plan changes.
+    number: u64,
+}
+
+/// Plans every camera, and sends the plans to the render world.
+pub(crate) struct ViewPlugin;
+
+impl Plugin for ViewPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_observer(give_up_claims::<DepthPrepass>)
+            .add_observer(give_up_claims::<NormalPrepass>)
+            .add_systems(
+                PostUpdate,
+                (
+                    (plan_cameras, request_prepasses).chain().in_set(PlanCameras),
+                    warn_unsupported,
+                ),
+            );
+        #[cfg(feature = "objects")]
+        app.configure_sets(
+            PostUpdate,
+            PlanCameras.after(crate::objects::assign_object_styles),
+        );
+        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+            render_app.add_systems(ExtractSchedule, extract::extract_views);
+        }
+    }
+}
+
+#[derive(bevy::ecs::schedule::SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct PlanCameras;
+
+fn plan_cameras(
+    mut commands: Commands,
+    cameras: Query<EntityRef, With<Camera3d>>,
+    registry: Res<EffectRegistry>,
+    objects: Res<ObjectStyles>,
+) {
+    let types = registry.types();
+    for camera in &cameras {
+        let known = camera.get::<CameraPlan>();
+        let mut entity = commands.entity(camera.id());
+        match (Plan::new(camera, &types, objects.any()), known) {
+            (Some(plan), Some(known)) if *known.plan == plan => {}
+            (Some(plan), known) => {
+                entity.insert(CameraPlan {
+                    plan: Arc::new(plan),
+                    number: known.map_or(1, |known| known.number + 1),
+                });
+            }
+            (None, Some(_)) => {
+                entity.remove::<CameraPlan>();
+            }
+            (None, None) => {}
+        }
+    }
+}
+
+/// Says once what will not work, instead of doing nothing in silence.
+fn warn_unsupported(
+    flat: Query<EntityRef, With<Camera2d>>,
+    targets: Query<(bevy::ecs::entity::Entity, &RenderTarget), With<CameraPlan>>,
+    registry: Res<EffectRegistry>,
+) {
+    let types = registry.types();
+    for camera in &flat {
+        if Plan::new(camera, &types, false).is_some() {
+            warn_once!(
+                "{} is a Camera2d: comics styles need a Camera3d and leave it alone",
+                camera.id()
+            );
+        }
+    }
+    for (camera, target) in &targets {
+        if matches!(target, RenderTarget::None { .. }) {
+            warn_once!("{camera} has no colour target: comics styles leave it alone");
+        }
+    }
+}

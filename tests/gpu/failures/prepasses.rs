@@ -1,0 +1,238 @@
+//! Prepasses that this crate asks for, and when it takes them back.
+
+use std::time::Duration;
+
+use bevy::{core_pipeline::prepass::NormalPrepass, pbr::ScreenSpaceAmbientOcclusion};
+use bevy_comics::{Creases, Outlines, RangeSmoothing, ToneBands};
+
+use super::*;
+
+fn has<C: Component>(small: &Small) -> bool {
+    let world = small.headless.app.world();
+    world.get::<C>(small.camera).is_some()
+}
+
+fn remove<B: Bundle>(small: &mut Small) {
+    let camera = small.camera;
+    small.world().entity_mut(camera).remove::<B>();
+}
+
+/// An app whose pipelines compile while frames are drawn, as a game's do.
+fn in_background() -> Small {
+    Small::with(
+        HeadlessOptions {
+            background_pipelines: true,
+            ..options(size())
+        },
+        Msaa::Off,
+    )
+}
+
+fn step(small: &mut Small) {
+    small.headless.step(1);
+    std::thread::sleep(Duration::from_millis(5));
+}
+
+fn is_compiling(small: &Small) -> bool {
+    let world = small.headless.app.world();
+    let diagnostics = world.resource::<ComicsDiagnostics>();
+    diagnostics.is_compiling(small.camera)
+}
+
+/// Steps until the look is complete and the picture has stood still.
+fn still(small: &mut Small) -> image::RgbaImage {
+    let mut last = small.picture();
+    let mut unchanged = 0;
+    for _ in 0..4000 {
+        step(small);
+        let now = small.picture();
+        let same = now == last && !is_compiling(small);
+        unchanged = if same { unchanged + 1 } else { 0 };
+        last = now;
+        if unchanged == 60 {
+            return last;
+        }
+    }
+    panic!("the picture does not come to rest");
+}
+
+/// From a look that reads depth to one that does not: the first look stays until
+/// the pipeline of the second is there. Its prepass used to go at once, which
+/// showed the bare picture.
+#[test]
+fn a_look_keeps_its_prepass_until_the_next_one_is_compiled() {
+    let mut small = in_background();
+    let bare = still(&mut small);
+    small.insert(Desaturation::default());
+    let grey = still(&mut small);
+    assert_ne!(grey, bare);
+    remove::<Desaturation>(&mut small);
+    small.insert(Colorization {
+        amount: 0.9,
+        ..Colorization::SEPIA
+    });
+    let mut waited = 0;
+    for _ in 0..4000 {
+        step(&mut small);
+        let picture = small.picture();
+        assert_ne!(picture, bare, "the bare picture after {waited} frames");
+        if picture != grey {
+            break;
+        }
+        waited += 1;
+    }
+    assert!(waited > 0, "there was nothing to wait for");
+    let sepia = still(&mut small);
+    assert_ne!(sepia, grey);
+    assert!(!has::<DepthPrepass>(&small), "nothing reads depth any more");
+    assert_eq!(small.errors(), 0);
+}
+
+/// The normals of creases stay as long as a look that draws them.
+#[test]
+fn creases_keep_their_normals_until_the_next_look_is_compiled() {
+    let mut small = in_background();
+    small.insert(Outlines {
+        creases: Some(Creases::default()),
+        objects: None,
+        ..default()
+    });
+    let creased = still(&mut small);
+    small.insert(Outlines {
+        creases: None,
+        objects: None,
+        width: 3.0,
+        ..default()
+    });
+    let mut frames = vec![];
+    for _ in 0..4000 {
+        step(&mut small);
+        frames.push(small.picture());
+        if frames.last() != Some(&creased) && !is_compiling(&small) {
+            break;
+        }
+    }
+    let plain = still(&mut small);
+    for (i, frame) in frames.iter().enumerate() {
+        assert!(
+            *frame == creased || *frame == plain,
+            "frame {i} shows neither look"
+        );
+    }
+    assert!(!has::<NormalPrepass>(&small) && has::<DepthPrepass>(&small));
+}
+
+/// A prepass that something of the game's requires stays when the style goes. It
+/// used to be taken away, and the engine panicked.
+#[test]
+fn a_prepass_that_ambient_occlusion_requires_stays() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.insert(Outlines::default()).settle();
+    assert!(has::<DepthPrepass>(&small) && has::<NormalPrepass>(&small));
+    small.insert(ScreenSpaceAmbientOcclusion::default()).settle();
+    remove::<Outlines>(&mut small);
+    small.settle();
+    small.settle();
+    assert!(has::<DepthPrepass>(&small) && has::<NormalPrepass>(&small));
+    assert_eq!(small.errors(), 0);
+    // Without it, nobody needs what this crate has put there.
+    remove::<ScreenSpaceAmbientOcclusion>(&mut small);
+    small.settle();
+    assert!(!has::<DepthPrepass>(&small) && !has::<NormalPrepass>(&small));
+    assert_eq!(small.errors(), 0);
+}
+
+/// What the game inserts itself is the game's, also where this crate was first.
+#[test]
+fn a_prepass_that_the_game_inserts_later_stays() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.insert(Contours::default()).settle();
+    small.insert(DepthPrepass).settle();
+    remove::<Contours>(&mut small);
+    small.settle();
+    small.settle();
+    assert!(has::<DepthPrepass>(&small));
+}
+
+/// Mean difference of two pictures, display codes.
+fn mean_apart(a: &image::RgbaImage, b: &image::RgbaImage) -> f64 {
+    let codes = a.as_raw().iter().zip(b.as_raw());
+    codes.map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / a.as_raw().len() as f64
+}
+
+/// A switch of style keeps the state of the smoothed range, and while the new
+/// pipeline compiles nothing is allocated.
+#[test]
+fn a_switch_keeps_the_range_and_allocates_nothing_while_it_compiles() {
+    let mut small = in_background();
+    // A range that takes minutes to follow.
+    let slow = DepthMap {
+        smoothing: Some(RangeSmoothing {
+            expand: 60.0,
+            shrink: 60.0,
+            ..default()
+        }),
+        ..default()
+    };
+    small.insert((slow, Desaturation::default()));
+    let before_move = still(&mut small);
+    // The camera backs away: the range lags, and everything is far.
+    let camera = small.camera;
+    let move_back = |small: &mut Small| {
+        let mut transform = small.world().get_mut::<Transform>(camera).expect("placed");
+        let back = transform.back() * 12.0;
+        transform.translation += back;
+    };
+    move_back(&mut small);
+    small.headless.step(4);
+    let lagging = small.picture();
+    assert!(mean_apart(&lagging, &before_move) > 1.0);
+
+    let counts = |small: &Small| {
+        let world = small.headless.app.sub_app(RenderApp).world();
+        let instance = world.resource::<bevy::render::renderer::RenderInstance>();
+        let report = instance.generate_report().expect("a report");
+        let hub = report.hub_report();
+        (hub.buffers.num_allocated, hub.textures.num_allocated)
+    };
+    small.headless.step(8);
+    let allocated = counts(&small);
+    small.insert(ToneBands {
+        amount: 0.01,
+        ..default()
+    });
+    let mut waited = 0;
+    for _ in 0..4000 {
+        small.headless.step(1);
+        if !is_compiling(&small) && small.ran(ComicsStage::of::<ToneBands>()) {
+            break;
+        }
+        if is_compiling(&small) {
+            waited += 1;
+            let now = counts(&small);
+            // The picture's own way to the test, and the engine's, may hold a
+            // few more for a frame or two.
+            assert!(
+                now.0 <= allocated.0 + 4 && now.1 <= allocated.1 + 1,
+                "{allocated:?} grew to {now:?} after {waited} frames"
+            );
+        }
+    }
+    assert!(waited > 0, "there was nothing to wait for");
+    remove::<ToneBands>(&mut small);
+    small.headless.step(6);
+    let after = small.picture();
+    // The look of a range found anew, for comparison.
+    small.insert(DepthMap {
+        smoothing: None,
+        ..slow
+    });
+    small.headless.step(6);
+    let anew = small.picture();
+    let kept = mean_apart(&after, &lagging);
+    let lost = mean_apart(&anew, &lagging);
+    assert!(
+        kept < 0.25 * lost,
+        "the range jumped: {kept} codes, {lost} for a range found anew"
+    );
+}

@@ -1,0 +1,188 @@
+//! The layout of the crate: which module imports which.
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs,
+    path::{Path, PathBuf},
+};
+
+fn source() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
+}
+
+fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).expect("a folder of the crate") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            rust_files(&path, found);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// The top-level module of a file.
+fn room(path: &Path) -> String {
+    let relative = path.strip_prefix(source()).expect("a file of the crate");
+    let first = relative.components().next().expect("a name");
+    let name = first.as_os_str().to_string_lossy();
+    name.trim_end_matches(".rs").to_owned()
+}
+
+/// The code without comments and without its unit tests.
+fn code(path: &Path) -> String {
+    let text = fs::read_to_string(path).expect("a source file");
+    let text = text.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
+    text.lines()
+        .map(|line| line.split("//").next().unwrap_or_default())
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+/// The first names of the paths inside `crate::...`: `a` and `B` of
+/// `crate::{a::C, B}`, and `a` of `crate::a::C`.
+fn heads(code: &str) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for after in code.split("crate::").skip(1) {
+        let Some(group) = after.strip_prefix('{') else {
+            found.insert(identifier(after));
+            continue;
+        };
+        let mut depth = 0;
+        let mut start = true;
+        for (at, c) in group.char_indices() {
+            match c {
+                '{' => depth += 1,
+                '}' if depth == 0 => break,
+                '}' => depth -= 1,
+                ',' if depth == 0 => start = true,
+                c if depth == 0 && start && !c.is_whitespace() => {
+                    found.insert(identifier(&group[at..]));
+                    start = false;
+                }
+                _ => {}
+            }
+        }
+    }
+    found
+}
+
+fn identifier(text: &str) -> String {
+    text.chars()
+        .take_while(|c| c.is_alphanumeric() || *c == '_')
+        .collect()
+}
+
+/// Which module each name at the crate's root comes from.
+fn exports() -> BTreeMap<String, String> {
+    let mut origin = BTreeMap::new();
+    let root = code(&source().join("lib.rs"));
+    for statement in root.split("pub use ").skip(1) {
+        let statement = statement.split(';').next().unwrap_or_default();
+        let module = identifier(statement);
+        for name in statement[module.len()..].split(|c: char| !c.is_alphanumeric() && c != '_') {
+            if !name.is_empty() {
+                origin.entry(name.to_owned()).or_insert(module.clone());
+            }
+        }
+    }
+    // `pub use effects::*`: every type that the module's list names.
+    let effects = code(&source().join("effects/mod.rs"));
+    for name in effects.split(|c: char| !c.is_alphanumeric()) {
+        if name.starts_with(char::is_uppercase) {
+            origin
+                .entry(name.to_owned())
+                .or_insert_with(|| "effects".to_owned());
+        }
+    }
+    origin
+}
+
+/// Module -> the modules that it imports, through the crate's root too.
+fn imports() -> BTreeMap<String, BTreeSet<String>> {
+    let mut files = Vec::new();
+    rust_files(&source(), &mut files);
+    let rooms: BTreeSet<String> = files.iter().map(|path| room(path)).collect();
+    let exports = exports();
+    let mut graph: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for path in &files {
+        let own = room(path);
+        // The root and the plugin put everything together.
+        if ["lib", "plugin"].contains(&own.as_str()) || path.ends_with("tests.rs") {
+            continue;
+        }
+        for head in heads(&code(path)) {
+            let module = exports.get(&head).cloned().unwrap_or(head);
+            if rooms.contains(&module) && module != own {
+                graph.entry(own.clone()).or_default().insert(module);
+            }
+        }
+    }
+    graph
+}
+
+/// A path from a module back to itself, if there is one.
+fn circle(graph: &BTreeMap<String, BTreeSet<String>>) -> Option<Vec<String>> {
+    fn walk(
+        graph: &BTreeMap<String, BTreeSet<String>>,
+        path: &mut Vec<String>,
+        done: &mut BTreeSet<String>,
+    ) -> Option<Vec<String>> {
+        let here = path.last().expect("a module").clone();
+        for next in graph.get(&here).into_iter().flatten() {
+            if let Some(at) = path.iter().position(|known| known == next) {
+                return Some(path[at..].to_vec());
+            }
+            if !done.contains(next) {
+                path.push(next.clone());
+                if let Some(found) = walk(graph, path, done) {
+                    return Some(found);
+                }
+                path.pop();
+            }
+        }
+        done.insert(here);
+        None
+    }
+    let mut done = BTreeSet::new();
+    graph
+        .keys()
+        .find_map(|start| walk(graph, &mut vec![start.clone()], &mut done))
+}
+
+#[test]
+fn no_modules_import_each_other_in_a_circle() {
+    let graph = imports();
+    assert!(
+        graph.get("effects").is_some_and(|e| e.contains("effect")),
+        "the check sees no imports: {graph:#?}"
+    );
+    assert_eq!(circle(&graph), None, "{graph:#?}");
+}
+
+/// What several effects share knows nothing of any effect.
+#[test]
+fn services_import_nothing_of_the_effects() {
+    let graph = imports();
+    for service in ["depth", "lines", "objects"] {
+        let imported = &graph[service];
+        for above in ["effect", "effects", "style", "view", "inspector"] {
+            assert!(!imported.contains(above), "{service} imports {above}");
+        }
+    }
+}
+
+/// The check itself finds a circle where there is one.
+#[test]
+fn a_circle_is_found() {
+    let edge = |to: &[&str]| to.iter().map(ToString::to_string).collect::<BTreeSet<_>>();
+    let mut graph = BTreeMap::from([
+        ("a".to_owned(), edge(&["b"])),
+        ("b".to_owned(), edge(&["c"])),
+    ]);
+    assert_eq!(circle(&graph), None);
+    graph.insert("c".to_owned(), edge(&["b"]));
+    assert_eq!(circle(&graph), Some(vec!["b".to_owned(), "c".to_owned()]));
+    let names = heads("use crate::{a::{B, C}, D}; crate::e::F");
+    assert_eq!(names, edge(&["a", "D", "e"]));
+}

@@ -1,0 +1,108 @@
+//! Twin of `effect/fused.wgsl` with the effects of this crate: the whole fused pass
+//! for one pixel.
+
+use super::{
+    Rgb, black_flats, color, colorization, contours, desaturation,
+    lines::{self, Edges, Lookup},
+    sketch, tone_bands,
+    view::{View, map_slope, pixel_depth},
+};
+use bevy_comics::{
+    BlackFlats, Colorization, ComicStyle, Contours, Desaturation, Outlines, Sketch, ToneBands,
+};
+
+/// What the pass reads: the picture, in light, and the lines.
+pub struct Input<'a> {
+    pub picture: &'a dyn Fn(u32, u32) -> [f32; 4],
+    /// Size of the picture.
+    pub size: [u32; 2],
+    pub lines: Option<(&'a Outlines, &'a Edges)>,
+    /// Which drawing of a sketch is shown.
+    pub drawing: u32,
+}
+
+impl Input<'_> {
+    fn light(&self, x: u32, y: u32) -> Rgb {
+        let [r, g, b, _] = (self.picture)(x.min(self.size[0] - 1), y.min(self.size[1] - 1));
+        [r, g, b].map(color::finite)
+    }
+
+    /// How much the lightness changes over a pixel, within its block of 2 x 2.
+    fn change(&self, x: u32, y: u32) -> f64 {
+        let at = |x, y| color::lightness(self.light(x, y));
+        (at(x, y) - at(x ^ 1, y)).abs() + (at(x, y) - at(x, y ^ 1)).abs()
+    }
+}
+
+/// The pixel in linear light, and how far thresholds could move it: the same
+/// pixel with every contour and flat a little more and a little less covered.
+pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, nudge: f64) -> Rgb {
+    let source = input.light(x, y);
+    let mut linear = source;
+    if let Some(s) = style.get::<ToneBands>() {
+        let nudged = linear.map(|c| c * (1.0 + nudge));
+        let change = (input.change(x, y) + nudge).max(0.0);
+        linear = tone_bands::banded_color(s, nudged, change, 1.0);
+    }
+    let reads_map = style.get::<Desaturation>().is_some()
+        || style.get::<Colorization>().is_some()
+        || style.get::<BlackFlats>().is_some()
+        || style.get::<Contours>().is_some();
+    let mut depth = if reads_map {
+        pixel_depth(view, x, y)
+    } else {
+        [1.0, 0.0]
+    };
+    if view.flip {
+        depth.reverse();
+    }
+    let [d, l] = depth;
+    let mut saturation = 1.0;
+    if let Some(s) = style.get::<Desaturation>() {
+        saturation = desaturation::saturation_left(s, l);
+        linear = desaturation::desaturate(s, linear, saturation);
+    }
+    if let Some(s) = style.get::<Colorization>() {
+        linear = colorization::colorize(s, linear, d, l, saturation);
+    }
+    if let Some(s) = style.get::<BlackFlats>() {
+        let slope = map_slope(view, x, y) + nudge;
+        let dark = black_flats::dark_area(s, source.map(|c| c - nudge), l);
+        let steep = black_flats::steep_area(s, slope, view.viewport[3]);
+        linear = black_flats::fill(s, linear, dark.max(steep));
+    }
+    if let Some(s) = style.get::<Contours>() {
+        let threshold = s.threshold - nudge as f32;
+        let [coverage, near] = contours::contour(&Contours { threshold, ..*s }, view, x, y, 1.0);
+        linear = contours::draw(s, linear, coverage, near);
+    }
+    // Lines wider than the fused pass looks around come from a flood, and those
+    // of a sketch.
+    let sketch = style.get::<Sketch>();
+    let lookup = match (sketch, input.lines) {
+        (Some(_), _) => Lookup::FourFlooded,
+        (None, Some((outlines, _))) if outlines.width > 4.0 => Lookup::Flood,
+        _ => Lookup::Gather,
+    };
+    let place = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+    match (sketch, input.lines) {
+        (Some(s), Some((outlines, edges))) => {
+            let inside = [x - view.viewport[0], y - view.viewport[1]].map(f64::from);
+            let blank = (0..s.strokes).fold(1.0, |blank, stroke| {
+                let by = sketch::stray(s, inside, stroke, input.drawing, 1.0);
+                let at = [place[0] + by[0], place[1] + by[1]];
+                let pressure = sketch::pen_pressure(s, inside, stroke, input.drawing, 1.0);
+                blank
+                    * (1.0
+                        - (lines::total(outlines, edges.ink(at, lookup, nudge)) * pressure)
+                            .clamp(0.0, 1.0))
+            });
+            linear = sketch::draw_sketch(s, linear, 1.0 - blank);
+        }
+        (None, Some((outlines, edges))) => {
+            linear = lines::draw(outlines, linear, edges.ink(place, lookup, nudge));
+        }
+        _ => {}
+    }
+    linear
+}

@@ -1,0 +1,86 @@
+//! Twin of `depth/view.wgsl`: what a view gives the passes, and its depth around a
+//! pixel.
+
+use super::{
+    map::{Frame, Projection},
+    window::{self, Window},
+};
+use crate::common::read_back::{FloatImage, IdImage};
+
+/// A view: its viewport, its depth and its depth map.
+pub struct View<'a> {
+    /// Origin and size of the viewport in pixels.
+    pub viewport: [u32; 4],
+    pub samples: u32,
+    /// Size of the target's rows in pixels.
+    pub width: u32,
+    pub depth_bits: &'a [u32],
+    pub frame: Frame,
+    pub flip: bool,
+    /// World normals, decoded.
+    pub normals: Option<&'a FloatImage>,
+    pub ids: Option<&'a IdImage>,
+    /// Height of an orthographic view, world units.
+    pub height: f64,
+}
+
+impl View<'_> {
+    pub fn contains(&self, x: u32, y: u32) -> bool {
+        let [x0, y0, w, h] = self.viewport;
+        (x0..x0 + w).contains(&x) && (y0..y0 + h).contains(&y)
+    }
+
+    /// What a jump is a share of: the reciprocal of the distance of the nearest
+    /// depth around, in the buffer's units; in an orthographic view the depth
+    /// that lies between the camera and where 45 degrees show as much.
+    pub fn jump_reference(&self, nearest: f64) -> f64 {
+        match self.frame.projection {
+            Projection::Perspective { offset } => nearest + offset,
+            Projection::Orthographic { extent, .. } => {
+                let distance = 0.5 * self.height / 22.5f64.to_radians().tan();
+                distance / extent
+            }
+        }
+    }
+
+    pub fn depth(&self, x: u32, y: u32, sample: u32) -> f64 {
+        let index = (y * self.width + x) * self.samples + sample;
+        f64::from(f32::from_bits(self.depth_bits[index as usize]))
+    }
+}
+
+/// (D, L), the mean of the samples.
+pub fn pixel_depth(view: &View, x: u32, y: u32) -> [f64; 2] {
+    let n = f64::from(view.samples);
+    let maps = (0..view.samples).map(|s| view.frame.depth_map(view.depth(x, y, s)));
+    let sum = maps.fold([0.0; 2], |a, m| [a[0] + m[0], a[1] + m[1]]);
+    sum.map(|v| v / n)
+}
+
+/// The depths at `reach` pixels around one, and which of them lie outside the
+/// viewport.
+pub fn load_window(view: &View, x: u32, y: u32, reach: u32, sample: u32) -> Window {
+    let [x0, y0, w, h] = view.viewport.map(i64::from);
+    let (x, y, reach) = (i64::from(x), i64::from(y), i64::from(reach));
+    let column = |i: i64| (x + i * reach).clamp(x0, x0 + w - 1) as u32;
+    let row = |j: i64| (y + j * reach).clamp(y0, y0 + h - 1) as u32;
+    Window {
+        depths: [-1, 0, 1].map(|j| [-1, 0, 1].map(|i| view.depth(column(i), row(j), sample))),
+        missing: [
+            x - reach < x0,
+            x + reach >= x0 + w,
+            y - reach < y0,
+            y + reach >= y0 + h,
+        ],
+    }
+}
+
+/// The Prewitt response of the plain depth map, the sky at its far end.
+pub fn map_slope(view: &View, x: u32, y: u32) -> f64 {
+    let mut frame = view.frame;
+    frame.sky_gap = 0.0;
+    if frame.ends.is_none() {
+        return 0.0;
+    }
+    window::prewitt(&window::map_steps(&frame, &load_window(view, x, y, 1, 0)))
+}

@@ -1,0 +1,44 @@
+//! Twin of `depth/window.wgsl`: differences of the depth map in a window of 3 x 3
+//! depths.
+
+use super::map::Frame;
+
+/// Depths of 3 x 3 taps, row by row, and which sides lie outside the viewport.
+#[derive(Clone, Copy, Debug)]
+pub struct Window {
+    pub depths: [[f64; 3]; 3],
+    /// West, east, north, south.
+    pub missing: [bool; 4],
+}
+
+/// What every neighbour has over its reference, row by row, the middle zero.
+pub type Steps = [[f64; 3]; 3];
+
+/// The raw kernels, as matrices.
+fn convolve(steps: &Steps, kernel: [[f64; 3]; 3]) -> f64 {
+    (0..3)
+        .flat_map(|r| (0..3).map(move |c| (r, c)))
+        .map(|(r, c)| steps[r][c] * kernel[r][c])
+        .sum()
+}
+
+const PREWITT: [[f64; 3]; 3] = [[-1.0, 0.0, 1.0]; 3];
+
+fn transposed(k: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    std::array::from_fn(|r| std::array::from_fn(|c| k[c][r]))
+}
+
+/// Both directions of a kernel.
+pub fn gradient(steps: &Steps, kernel: [[f64; 3]; 3]) -> f64 {
+    convolve(steps, kernel).hypot(convolve(steps, transposed(kernel)))
+}
+
+/// The plain differences of the depth map, slopes included.
+pub fn map_steps(frame: &Frame, win: &Window) -> Steps {
+    let c = frame.with_sky(win.depths[1][1]);
+    win.depths.map(|row| row.map(|d| frame.with_sky(d) - c))
+}
+
+pub fn prewitt(steps: &Steps) -> f64 {
+    gradient(steps, PREWITT)
+}
