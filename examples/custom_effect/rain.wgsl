@@ -63,7 +63,7 @@ fn rain(s: Rain, p: Pixel) -> Pixel {
     var out = p;
     let depth = p.depth.x;
     // Drops too far to be told apart are a haze.
-    var clear = 1.0 - 0.35 * s.amount * depth * depth;
+    var clear = 1.0 - 0.25 * s.amount * depth * depth;
     for (var layer = 0; layer < LAYERS; layer++) {
         let far = f32(layer) / f32(LAYERS - 1);
         let layer_depth = 0.85 * far;

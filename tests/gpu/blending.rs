@@ -5,7 +5,7 @@ use std::time::Duration;
 use bevy::{asset::Assets, prelude::*, render::view::Msaa};
 use bevy_comics::{
     ComicStyle, ComicStyleHandle, ComicsDiagnostics, ComicsStage, Contours, Desaturation,
-    StyleTransition, StyleTransitionFinished, TransitionEasing, presets,
+    EffectRegistry, Sketch, StyleTransition, StyleTransitionFinished, TransitionEasing, presets,
 };
 use image::RgbaImage;
 use proptest::{prelude::ProptestConfig, test_runner::TestRunner};
@@ -18,7 +18,7 @@ use crate::{
 
 fn preset(name: &str) -> ComicStyle {
     let mut style = presets::preset(name).expect(name).expect("it reads");
-    if let Some(sketch) = &mut style.sketch {
+    if let Some(sketch) = style.get_mut::<Sketch>() {
         // A drawing that is done anew is no step of a transition.
         sketch.rate = 0.0;
     }
@@ -103,7 +103,11 @@ fn no_picture_jumps_on_the_way() {
 }
 
 fn look(small: &Small) -> ComicStyle {
-    ComicStyle::of(small.headless.app.world().entity(small.camera))
+    let world = small.headless.app.world();
+    ComicStyle::of(
+        world.entity(small.camera),
+        world.resource::<EffectRegistry>(),
+    )
 }
 
 fn unnamed(style: &ComicStyle) -> ComicStyle {
@@ -143,7 +147,7 @@ fn a_transition_takes_its_time_and_arrives() {
     let half = look(&small);
     assert!(fading(&small) && half != unnamed(&a) && half != unnamed(&b));
     let want = unnamed(&a).blend(&b, 0.5);
-    let width = |style: &ComicStyle| style.contours.map(|c| c.width).expect("contours");
+    let width = |style: &ComicStyle| style.get::<Contours>().expect("contours").width;
     assert!(
         (width(&half) - width(&want)).abs() < 0.05,
         "{} {}",
@@ -156,8 +160,8 @@ fn a_transition_takes_its_time_and_arrives() {
     small.insert(StyleTransition::to(c.clone(), 0.5));
     small.headless.step(1);
     assert_eq!(
-        look(&small).contours,
-        half.contours,
+        look(&small).get::<Contours>(),
+        half.get::<Contours>(),
         "it starts where the last one was"
     );
     small.headless.step(40);
@@ -222,8 +226,8 @@ fn a_transition_and_the_cameras_file_agree() {
         .resource_mut::<Assets<ComicStyle>>()
         .get_mut(&second)
     {
-        style.sketch = None;
-        style.contours = None;
+        style.remove::<Sketch>();
+        style.remove::<Contours>();
     }
     small.headless.step(4);
     assert_eq!(

@@ -39,17 +39,15 @@ fn wall(small: &mut Small, size: f32, distance: f32, color: Color) {
 }
 
 fn full() -> ComicStyle {
-    ComicStyle {
-        desaturation: Some(Desaturation {
+    ComicStyle::default()
+        .with(Desaturation {
             exponent: 0.5,
             ..default()
-        }),
-        colorization: Some(Colorization::default()),
-        contours: Some(Contours::default()),
-        tone_bands: Some(ToneBands::default()),
-        outlines: Some(Outlines::default()),
-        ..default()
-    }
+        })
+        .with(Colorization::default())
+        .with(Contours::default())
+        .with(ToneBands::default())
+        .with(Outlines::default())
 }
 
 fn assert_finite(small: &Small, what: &str) {
@@ -72,11 +70,8 @@ fn a_flat_wall_keeps_its_colour_and_has_no_line() {
         );
         small.settle();
         let original = small.picture();
-        small.style(&ComicStyle {
-            // Bands change flat colours, as they should.
-            tone_bands: None,
-            ..full()
-        });
+        // Bands change flat colours, as they should.
+        small.style(&full().without::<ToneBands>());
         small.settle();
         assert!(small.ran(ComicsStage::Stylize));
         // D = 0 all over: the picture is constant, and what it was.

@@ -9,7 +9,7 @@ use image::RgbaImage;
 
 use crate::{
     reference::color,
-    small::{Small, size},
+    small::{Small, size, with_option},
 };
 
 fn styled() -> Small {
@@ -147,7 +147,7 @@ fn every_view_shows_what_it_says() {
             assert!(codes(&ids).len() >= 4, "objects have colours of their own");
             assert!(codes(&ids).contains(&[0; 3]), "the sky is no object");
         }
-        let bands = show(&mut small, DebugView::ToneBands);
+        let bands = show(&mut small, DebugView::Effect("tone_bands"));
         assert!(is_grey(&bands) && codes(&bands).len() < 40);
         let kept = show(&mut small, DebugView::Saturation);
         assert_eq!(codes(&kept).len(), 1, "no style takes colour away");
@@ -246,16 +246,13 @@ fn a_sketch_fades_in() {
             ..default()
         }),
     ] {
-        let style = |sketch: Option<Sketch>| ComicStyle {
-            outlines: lines,
-            sketch,
-            ..default()
-        };
+        let style =
+            |sketch: Option<Sketch>| with_option(with_option(ComicStyle::default(), lines), sketch);
         small.style(&style(None));
         let before = shoot(&mut small);
         small.style(&style(Some(sketch(0.0))));
         assert_eq!(shoot(&mut small), before, "no amount is no sketch");
-        assert!(!small.ran(ComicsStage::Sketch));
+        assert!(!small.ran(ComicsStage::of::<Sketch>()));
         small.style(&style(Some(sketch(0.004))));
         let begun = shoot(&mut small);
         let apart = before

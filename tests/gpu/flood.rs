@@ -1,4 +1,4 @@
-//! `outlining/flood.wgsl`: wide lines against a search of everything.
+//! `lines/flood.wgsl`: wide lines against a search of everything.
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::Outlines;

@@ -99,7 +99,7 @@ fn small_changes_are_seen() {
     let mut studio = Studio::new(BuiltIn::Teapot, UVec2::new(320, 180), Msaa::Off);
     let name = "ligne-claire";
     let style = preset(name);
-    let contours = style.contours.expect("it has contours");
+    let contours = *style.get::<Contours>().expect("it has contours");
     for changed in [
         Contours {
             width: contours.width + 0.5,
@@ -110,10 +110,7 @@ fn small_changes_are_seen() {
             ..contours
         },
     ] {
-        let picture = studio.shoot(Some(&ComicStyle {
-            contours: Some(changed),
-            ..style.clone()
-        }));
+        let picture = studio.shoot(Some(&style.clone().with(changed)));
         for path in references(BuiltIn::Teapot, name) {
             let (flip, off) = apart(&path, &picture);
             assert!(

@@ -114,8 +114,8 @@ mod reference {
     use bevy_comics::{
         BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ContourForm,
         ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, EdgeForm,
-        FieldRange, ObjectEdges, Outlines, RangeSmoothing, ReductionMethod, Silhouettes, Sketch,
-        ToneBandMethod, ToneBands,
+        EffectRegistry, EffectType, FieldRange, ObjectEdges, Outlines, RangeSmoothing,
+        ReductionMethod, Silhouettes, Sketch, ToneBandMethod, ToneBands,
     };
 
     const HEAD: &str = "\
@@ -133,10 +133,7 @@ This page is made from the types by a test, which fails where the two differ.
 
     fn plain(docs: Option<&str>) -> String {
         // Examples have a page of their own.
-        let (docs, _) = docs
-            .unwrap_or_default()
-            .split_once("```")
-            .unwrap_or((docs.unwrap_or_default(), ""));
+        let docs: String = docs.unwrap_or_default().split("```").step_by(2).collect();
         let joined: Vec<&str> = docs.lines().map(str::trim).collect();
         let joined = joined.join(" ");
         // Links to items lead nowhere from here.
@@ -203,9 +200,31 @@ This page is made from the types by a test, which fails where the two differ.
         }
     }
 
+    /// The style itself, which has an entry for each effect that is registered.
+    fn style(page: &mut String, effects: &[&EffectType]) {
+        let docs = plain(ComicStyle::type_info().docs());
+        let _ = write!(
+            page,
+            "\n## ComicStyle\n\n{docs}\n\n| entry | type | meaning |\n|---|---|---|\n\
+             | `version` | u32 | Version of the file format; 1 is the only one. |\n\
+             | `name` | String | What people call it. |\n\
+             | `depth_map` | Option<DepthMap> | The depth map; its default where absent. |\n"
+        );
+        for effect in effects {
+            let info = (effect.type_info)();
+            let name = info.type_path_table().short_path();
+            // What it is, in a paragraph: the rest follows in its own section.
+            let docs: Vec<&str> = info.docs().unwrap_or_default().lines().collect();
+            let about = docs.split(|line| line.trim().is_empty()).next();
+            let about = plain(about.map(|lines| lines.join("\n")).as_deref());
+            let _ = writeln!(page, "| `{}` | Option<{name}> | {about} |", effect.name);
+        }
+    }
+
     pub fn page() -> String {
         let mut page = HEAD.to_owned();
-        section::<ComicStyle>(&mut page);
+        let effects = EffectRegistry::built_in().types();
+        style(&mut page, &effects);
         section::<DepthMap>(&mut page);
         section::<DepthMapping>(&mut page);
         section::<RangeSmoothing>(&mut page);
@@ -226,6 +245,11 @@ This page is made from the types by a test, which fails where the two differ.
         section::<ObjectEdges>(&mut page);
         section::<EdgeForm>(&mut page);
         section::<Sketch>(&mut page);
+        for effect in effects {
+            let name = (effect.type_info)().type_path_table().short_path();
+            let heading = format!("\n## {name}\n");
+            assert!(page.contains(&heading), "{name} has no section");
+        }
         page
     }
 }

@@ -74,10 +74,13 @@ fn one_atmosphere_for_all_reads_no_depth() {
     let mut small = small();
     small.insert(Colorization::SEPIA).settle();
     let (ran, left) = stages(&small);
-    assert_eq!(ran, [ComicsStage::Colorization, ComicsStage::Stylize]);
+    assert_eq!(
+        ran,
+        [ComicsStage::of::<Colorization>(), ComicsStage::Stylize]
+    );
     assert!(left.contains(&(ComicsStage::DepthPrepass, LeftOut::NoDepthStyle)));
     assert!(left.contains(&(ComicsStage::DepthRange, LeftOut::NoDepthStyle)));
-    assert!(left.contains(&(ComicsStage::Contours, LeftOut::NotRequested)));
+    assert!(left.contains(&(ComicsStage::of::<Contours>(), LeftOut::NotRequested)));
     assert!(!has_prepass(&small));
     small.insert(BlackFlats::default()).settle();
     assert!(!has_prepass(&small), "flats of one threshold read no depth");
@@ -119,7 +122,7 @@ fn a_fixed_range_has_no_reduction() {
             ran,
             [
                 ComicsStage::DepthPrepass,
-                ComicsStage::Contours,
+                ComicsStage::of::<Contours>(),
                 ComicsStage::Stylize
             ]
         );
@@ -160,10 +163,10 @@ fn what_changes_nothing_is_left_out() {
     let (ran, left) = stages(&small);
     assert_eq!(ran, []);
     for stage in [
-        ComicsStage::Desaturation,
-        ComicsStage::Colorization,
-        ComicsStage::BlackFlats,
-        ComicsStage::Contours,
+        ComicsStage::of::<Desaturation>(),
+        ComicsStage::of::<Colorization>(),
+        ComicsStage::of::<BlackFlats>(),
+        ComicsStage::of::<Contours>(),
     ] {
         assert!(left.contains(&(stage, LeftOut::Negligible)), "{stage:?}");
     }
@@ -184,7 +187,7 @@ fn outlines_run_what_they_need_and_no_more() {
         [
             ComicsStage::DepthPrepass,
             ComicsStage::OutlineEdges,
-            ComicsStage::Outlines,
+            ComicsStage::of::<Outlines>(),
             ComicsStage::Stylize,
         ]
     );
@@ -214,7 +217,7 @@ fn outlines_run_what_they_need_and_no_more() {
     // Bands alone read no depth.
     small.insert(ToneBands::default()).settle();
     let (ran, _) = stages(&small);
-    assert_eq!(ran, [ComicsStage::ToneBands, ComicsStage::Stylize]);
+    assert_eq!(ran, [ComicsStage::of::<ToneBands>(), ComicsStage::Stylize]);
     // A sketch of lines that nobody sees is the picture itself.
     let camera = small.camera;
     small.world().entity_mut(camera).remove::<ToneBands>();
@@ -233,6 +236,28 @@ fn outlines_run_what_they_need_and_no_more() {
         .settle();
     assert_eq!(stages(&small).0, []);
     assert_eq!(small.picture(), original);
+    assert_eq!(small.errors(), 0);
+}
+
+/// A sketch draws the lines of the outlines in their place, with outlines of its
+/// own where the camera has none.
+#[test]
+fn a_sketch_draws_in_place_of_the_outlines() {
+    let mut small = small();
+    small.insert(Sketch::default()).settle();
+    for (own, reason) in [(false, LeftOut::NotRequested), (true, LeftOut::Replaced)] {
+        if own {
+            small.insert(Outlines::default()).settle();
+        }
+        let (ran, left) = stages(&small);
+        for stage in [ComicsStage::OutlineEdges, ComicsStage::of::<Sketch>()] {
+            assert!(ran.contains(&stage), "{stage:?}, {own}");
+        }
+        assert!(
+            left.contains(&(ComicsStage::of::<Outlines>(), reason)),
+            "{own}: {left:?}"
+        );
+    }
     assert_eq!(small.errors(), 0);
 }
 

@@ -17,13 +17,17 @@ mod fresh_crate;
 mod functions;
 mod golden;
 mod guide;
+mod house;
 mod ids;
 mod left_out;
 mod lines;
 mod outlines;
+mod outside;
+mod own_effect;
 #[cfg(feature = "inspector")]
 mod panel;
 mod pictures;
+mod pipelines;
 mod range;
 mod range_views;
 mod report;

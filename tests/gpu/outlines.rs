@@ -11,10 +11,7 @@ use crate::{
 
 /// How much ink every pixel has: what the pass took from its light.
 pub fn ink(small: &mut Small, outlines: Outlines) -> Vec<f32> {
-    small.style(&ComicStyle {
-        outlines: Some(outlines),
-        ..default()
-    });
+    small.style(&ComicStyle::default().with(outlines));
     small.settle();
     let (input, output) = small.pass();
     input

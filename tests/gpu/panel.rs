@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use bevy_comics::{ComicStyle, Contours};
+use bevy_comics::{Colorization, ComicStyle, Contours, Sketch};
 use image::RgbImage;
 use serde_json::Value;
 
@@ -18,13 +18,18 @@ fn picture(window: &Window) -> RgbImage {
     image::imageops::crop_imm(&window.picture(), 0, 0, PICTURE, HEIGHT).to_image()
 }
 
+/// The contours of a style, the default ones where it has none.
+fn contours(style: &ComicStyle) -> Contours {
+    style.get().copied().unwrap_or_default()
+}
+
 fn width(window: &Window) -> f32 {
-    window.style(0).contours.unwrap_or_default().width
+    contours(&window.style(0)).width
 }
 
 fn until_width(window: &Window, wanted: f32) {
     window.until_style("the width", 0, |style| {
-        style.contours.is_some_and(|c| c.width == wanted)
+        style.get::<Contours>().is_some_and(|c| c.width == wanted)
     });
 }
 
@@ -56,7 +61,7 @@ fn a_style_is_tuned_in_a_window() {
 
     // Undo and redo by key: a drag is one step.
     window.chord(&["ctrl"], "z");
-    until_width(&window, start.contours.unwrap_or_default().width);
+    until_width(&window, contours(&start).width);
     let back = picture(&window);
     let left = changed(&before, &back);
     assert!(
@@ -66,7 +71,7 @@ fn a_style_is_tuned_in_a_window() {
     window.chord(&["ctrl", "shift"], "z");
     until_width(&window, wide);
     window.click("undo");
-    until_width(&window, start.contours.unwrap_or_default().width);
+    until_width(&window, contours(&start).width);
     window.click("redo");
     until_width(&window, wide);
 
@@ -97,16 +102,15 @@ fn a_style_is_tuned_in_a_window() {
     window.click("files.save_as");
     let path = window.folder.join("styles").join("mine.comic.ron");
     let saved = ComicStyle::from_ron(&fs::read_to_string(&path).expect("saved")).expect("it reads");
-    assert_eq!(saved.contours, window.style(0).contours);
+    assert_eq!(saved.get::<Contours>(), window.style(0).get::<Contours>());
     assert_eq!(saved.version, ComicStyle::VERSION);
 
     // Somebody else edits the file.
-    let edit = |width: f32| ComicStyle {
-        contours: Some(Contours {
+    let edit = |width: f32| {
+        saved.clone().with(Contours {
             width,
-            ..saved.contours.unwrap_or_default()
-        }),
-        ..saved.clone()
+            ..contours(&saved)
+        })
     };
     fs::write(&path, edit(1.25).to_ron().expect("text")).expect("written");
     until_width(&window, 1.25);
@@ -234,7 +238,7 @@ fn the_keyboard_alone_tunes_a_style() {
         window.key("Right");
     }
     window.until_style("wider lines", 0, |style| {
-        style.contours.is_some_and(|c| c.width > start)
+        style.get::<Contours>().is_some_and(|c| c.width > start)
     });
     window.chord(&["ctrl"], "z");
     window.chord(&["ctrl"], "z");
@@ -244,7 +248,7 @@ fn the_keyboard_alone_tunes_a_style() {
     // An effect further down, which has to be scrolled to.
     tab_to(&window, "sketch");
     window.key("space");
-    window.until_style("the sketch", 0, |style| style.sketch.is_some());
+    window.until_style("the sketch", 0, |style| style.get::<Sketch>().is_some());
 
     // Another page and back, and the end.
     tab_to(&window, "tab.Views");
@@ -285,7 +289,9 @@ fn two_cameras_have_styles_of_their_own() {
     window.click("camera");
     window.click("camera.Second camera");
     window.click("colorization");
-    window.until_style("an atmosphere", 1, |style| style.colorization.is_some());
+    window.until_style("an atmosphere", 1, |style| {
+        style.get::<Colorization>().is_some()
+    });
     assert_eq!(window.style(0), first);
     window.click("compare.split");
     let state = window.until("the split", |state| state["cameras"][1]["split"] == 0.5);
@@ -295,7 +301,7 @@ fn two_cameras_have_styles_of_their_own() {
     window.click("camera.Main camera");
     window.chord(&["ctrl"], "z");
     window.frames(3);
-    assert!(window.style(1).colorization.is_some());
+    assert!(window.style(1).get::<Colorization>().is_some());
 
     // A style goes from one camera to the other through the clipboard.
     window.click("camera");
@@ -305,11 +311,16 @@ fn two_cameras_have_styles_of_their_own() {
     window.click("camera.Main camera");
     window.click("paste");
     window.until_style("the same atmosphere", 0, |style| {
-        style.colorization.is_some()
+        style.get::<Colorization>().is_some()
     });
-    assert_eq!(window.style(0).colorization, window.style(1).colorization);
+    assert_eq!(
+        window.style(0).get::<Colorization>(),
+        window.style(1).get::<Colorization>()
+    );
     window.chord(&["ctrl"], "z");
-    window.until_style("the first style", 0, |style| style.colorization.is_none());
+    window.until_style("the first style", 0, |style| {
+        style.get::<Colorization>().is_none()
+    });
 
     // The panel goes where it is put.
     let left = |state: &Value| state["widgets"]["tab.Style"][0].as_f64();

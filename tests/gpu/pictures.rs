@@ -13,14 +13,15 @@ use bevy_comics::{
 };
 
 use crate::{
+    common::studio::with_map,
     reference::{
-        bindings::View,
         color,
+        fused::{Input, stylize},
         lines::Edges,
         map::{Frame, Projection},
-        stylize::{Input, stylize},
+        view::View,
     },
-    small::Small,
+    small::{Small, with_option},
 };
 
 const ONE_CODE: f64 = 1.0 / 255.0;
@@ -76,11 +77,13 @@ pub fn assert_pass_is_its_twin(
         ids: ids.as_ref(),
         height: 0.0,
     };
-    let outlines = style.outlines.or(style.sketch.map(|_| Outlines {
+    let sketch = style.get::<Sketch>();
+    let implied = sketch.map(|_| Outlines {
         objects: None,
         width: 1.5,
         ..default()
-    }));
+    });
+    let outlines = style.get::<Outlines>().copied().or(implied);
     let edges =
         outlines.map(|outlines| (outlines, Edges::new(&outlines, &view, depth.height, 1.0)));
     let mut undecided = 0;
@@ -110,9 +113,7 @@ pub fn assert_pass_is_its_twin(
         picture: &light_of,
         size: [input.width, input.height],
         lines: edges.as_ref().map(|(outlines, edges)| (outlines, edges)),
-        drawing: style
-            .sketch
-            .map_or(0, |s| (seconds * f64::from(s.rate)).floor() as u32),
+        drawing: sketch.map_or(0, |s| (seconds * f64::from(s.rate)).floor() as u32),
     };
     for y in 0..input.height {
         for x in 0..input.width {
@@ -171,39 +172,38 @@ fn everything(
     form: ContourForm,
     mapping: DepthMapping,
 ) -> ComicStyle {
-    ComicStyle {
-        version: 1,
-        name: "everything".into(),
-        depth_map: Some(DepthMap {
-            mapping,
-            ..default()
-        }),
-        desaturation: Some(Desaturation {
+    let mut style = ComicStyle::new();
+    style.name = "everything".into();
+    style = style
+        .with(Desaturation {
             amount: 0.7,
             exponent: 0.5,
             method,
-        }),
-        colorization: Some(Colorization {
+        })
+        .with(Colorization {
             mode,
             method,
             amount: 0.8,
             ..default()
-        }),
-        black_flats: Some(BlackFlats {
+        })
+        .with(BlackFlats {
             slope: Some(0.3),
             value: Some(0.2),
             depth_weight: 0.5,
             ..default()
-        }),
-        contours: Some(Contours {
+        })
+        .with(Contours {
             form,
             width: 2.5,
             threshold: 0.06,
             fade: 0.4,
             ..default()
-        }),
+        });
+    let map = DepthMap {
+        mapping,
         ..default()
-    }
+    };
+    with_map(style, map)
 }
 
 #[test]
@@ -251,17 +251,14 @@ fn every_mode_of_every_style_is_its_twin() {
     ] {
         for form in [ContourForm::PlaneAware, ContourForm::Faithful] {
             for width in [0.5, 1.0, 3.0, 7.5] {
-                let style = ComicStyle {
-                    contours: Some(Contours {
-                        operator,
-                        form,
-                        width,
-                        softness: 0.3,
-                        threshold: 0.08,
-                        ..default()
-                    }),
+                let style = ComicStyle::default().with(Contours {
+                    operator,
+                    form,
+                    width,
+                    softness: 0.3,
+                    threshold: 0.08,
                     ..default()
-                };
+                });
                 assert_pass_is_its_twin(
                     &mut small,
                     &style,
@@ -271,23 +268,17 @@ fn every_mode_of_every_style_is_its_twin() {
             }
         }
     }
-    let flipped = ComicStyle {
-        depth_map: Some(DepthMap {
-            flip: true,
-            ..default()
-        }),
-        desaturation: Some(Desaturation::default()),
+    let flip = DepthMap {
+        flip: true,
         ..default()
     };
+    let flipped = with_map(ComicStyle::default().with(Desaturation::default()), flip);
     assert_pass_is_its_twin(&mut small, &flipped, None, "flipped");
     assert_eq!(small.errors(), 0);
 }
 
 pub fn outlined(outlines: Outlines) -> ComicStyle {
-    ComicStyle {
-        outlines: Some(outlines),
-        ..default()
-    }
+    ComicStyle::default().with(outlines)
 }
 
 #[test]
@@ -337,24 +328,24 @@ fn outlines_of_every_kind_form_and_width_are_their_twin() {
 #[test]
 fn everything_at_once_is_its_twin() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
-    let both = |sketch| ComicStyle {
-        tone_bands: Some(ToneBands {
-            levels: 5,
-            feather: 0.0,
-            ..default()
-        }),
-        outlines: Some(Outlines {
-            width: 2.5,
-            opacity_fade: 0.4,
-            ..default()
-        }),
-        sketch,
-        ..everything(
+    let both = |sketch: Option<Sketch>| {
+        let style = everything(
             ColorMethod::Corrected,
             ColorizationMode::Quadratic,
             ContourForm::PlaneAware,
             DepthMapping::MinMax,
         )
+        .with(ToneBands {
+            levels: 5,
+            feather: 0.0,
+            ..default()
+        })
+        .with(Outlines {
+            width: 2.5,
+            opacity_fade: 0.4,
+            ..default()
+        });
+        with_option(style, sketch)
     };
     assert_pass_is_its_twin(&mut small, &both(None), None, "both papers");
     let sketch = Sketch {
@@ -371,14 +362,11 @@ fn everything_at_once_is_its_twin() {
     let mut small = Small::new(UVec2::new(144, 96), Msaa::Off);
     for method in [ToneBandMethod::Levels, ToneBandMethod::Faithful] {
         for feather in [0.0, 1.0, 3.0] {
-            let style = ComicStyle {
-                tone_bands: Some(ToneBands {
-                    method,
-                    feather,
-                    ..default()
-                }),
+            let style = ComicStyle::default().with(ToneBands {
+                method,
+                feather,
                 ..default()
-            };
+            });
             assert_pass_is_its_twin(
                 &mut small,
                 &style,

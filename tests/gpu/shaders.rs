@@ -233,6 +233,11 @@ fn every_mode_of_every_effect_composes_and_validates() {
             }
         }
     }
+    // A mode that is not compiled in is read from the settings.
+    let modes = picture_effects().into_iter().chain(line_effects());
+    let mut read: Definitions = modes.flat_map(|(_, modes)| modes[0].clone()).collect();
+    read.retain(|(name, number)| number.is_none() && !name.starts_with("SKETCH"));
+    module_with(&source, &read).unwrap_or_else(|error| panic!("{read:?}: {error}"));
 }
 
 #[test]

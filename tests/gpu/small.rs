@@ -11,7 +11,9 @@ use bevy::{
         view::Msaa,
     },
 };
-use bevy_comics::{ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, VisibleDepthRange};
+use bevy_comics::{
+    ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Effect, VisibleDepthRange,
+};
 
 use crate::common::{
     headless::{Headless, HeadlessOptions},
@@ -158,6 +160,14 @@ impl Small {
             self.ran(ComicsStage::Stylize),
         )
         .expect("a picture")
+    }
+}
+
+/// The style with an effect, or as it is for `None`.
+pub fn with_option<E: Effect>(style: ComicStyle, effect: Option<E>) -> ComicStyle {
+    match effect {
+        Some(effect) => style.with(effect),
+        None => style,
     }
 }
 

@@ -7,7 +7,10 @@ use bevy_comics::{
 };
 
 use crate::{
-    common::headless::{HeadlessOptions, new_target},
+    common::{
+        headless::{HeadlessOptions, new_target},
+        studio::with_map,
+    },
     small::{Small, options, size},
 };
 
@@ -21,14 +24,11 @@ const SLOW: RangeSmoothing = RangeSmoothing {
 };
 
 fn look(smoothing: Option<RangeSmoothing>) -> ComicStyle {
-    ComicStyle {
-        depth_map: Some(DepthMap {
-            smoothing,
-            ..default()
-        }),
-        colorization: Some(Colorization::default()),
+    let map = DepthMap {
+        smoothing,
         ..default()
-    }
+    };
+    with_map(ComicStyle::default().with(Colorization::default()), map)
 }
 
 fn small() -> Small {

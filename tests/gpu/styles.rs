@@ -18,7 +18,7 @@ use proptest::{
 
 use crate::{
     common::headless::HeadlessOptions,
-    small::{Small, options, size},
+    small::{Small, options, size, with_option},
 };
 
 fn number() -> impl Strategy<Value = f32> {
@@ -124,18 +124,16 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
         .prop_map(
             |(name, depth_map, desaturation, colorization, black_flats, contours, cartoon)| {
                 let (tone_bands, outlines, sketch) = cartoon;
-                ComicStyle {
-                    version: 1,
-                    name,
-                    depth_map,
-                    tone_bands,
-                    desaturation,
-                    colorization,
-                    black_flats,
-                    contours,
-                    outlines,
-                    sketch,
-                }
+                let mut style = ComicStyle::new();
+                style.name = name;
+                style.depth_map = depth_map;
+                style = with_option(style, tone_bands);
+                style = with_option(style, desaturation);
+                style = with_option(style, colorization);
+                style = with_option(style, black_flats);
+                style = with_option(style, contours);
+                style = with_option(style, outlines);
+                with_option(style, sketch)
             },
         )
 }

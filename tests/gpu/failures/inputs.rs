@@ -1,6 +1,7 @@
 //! Settings, colours and depth as they should not be.
 
 use super::*;
+use crate::common::studio::with_map;
 use bevy_comics::{Creases, Outlines, Silhouettes, Sketch, ToneBands};
 
 /// Takes the depth prepass away as soon as anyone asks for it.
@@ -26,10 +27,13 @@ fn failure_06_without_a_prepass_the_colour_styles_remain() {
     );
     let camera = small.camera;
     let missing = Some(StageOutcome::LeftOut(LeftOut::NoDepthPrepass));
-    assert_eq!(outcome(&small, camera, ComicsStage::Contours), missing);
+    assert_eq!(
+        outcome(&small, camera, ComicsStage::of::<Contours>()),
+        missing
+    );
     assert_eq!(outcome(&small, camera, ComicsStage::DepthRange), missing);
     small.insert(Colorization::SEPIA).settle();
-    assert!(small.ran(ComicsStage::Colorization));
+    assert!(small.ran(ComicsStage::of::<Colorization>()));
     assert_ne!(small.picture(), original);
     assert_eq!(small.errors(), 0);
 }
@@ -48,37 +52,37 @@ fn failure_08_absurd_settings_equal_their_sanitized_selves() {
     let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
     for (i, value) in wild.into_iter().enumerate() {
         let other = wild[(i + 3) % wild.len()];
-        let style = ComicStyle {
-            depth_map: Some(DepthMap {
-                mapping: DepthMapping::Fixed {
-                    near: value,
-                    far: other,
-                },
-                sky_gap: other,
-                floor: value,
-                orthographic_floor: other,
-                ..default()
-            }),
-            desaturation: Some(Desaturation {
+        let map = DepthMap {
+            mapping: DepthMapping::Fixed {
+                near: value,
+                far: other,
+            },
+            sky_gap: other,
+            floor: value,
+            orthographic_floor: other,
+            ..default()
+        };
+        let style = with_map(ComicStyle::default(), map)
+            .with(Desaturation {
                 amount: value,
                 exponent: other,
                 ..default()
-            }),
-            colorization: Some(Colorization {
+            })
+            .with(Colorization {
                 mode: ColorizationMode::Linear,
                 color: Color::srgb(value, other, 0.5),
                 amount: other,
                 ..default()
-            }),
-            black_flats: Some(bevy_comics::BlackFlats {
+            })
+            .with(bevy_comics::BlackFlats {
                 slope: Some(value),
                 value: Some(other),
                 depth_weight: value,
                 feather: other,
                 color: Color::hsl(other, value, 0.2),
                 opacity: value,
-            }),
-            contours: Some(Contours {
+            })
+            .with(Contours {
                 threshold: value,
                 width: other,
                 softness: value,
@@ -86,14 +90,14 @@ fn failure_08_absurd_settings_equal_their_sanitized_selves() {
                 opacity: other,
                 fade: value,
                 ..default()
-            }),
-            tone_bands: Some(ToneBands {
+            })
+            .with(ToneBands {
                 feather: value,
                 amount: other,
                 levels: 1_000_000,
                 ..default()
-            }),
-            outlines: Some(Outlines {
+            })
+            .with(Outlines {
                 silhouettes: Some(Silhouettes {
                     threshold: value,
                     edge_limit: other,
@@ -111,19 +115,18 @@ fn failure_08_absurd_settings_equal_their_sanitized_selves() {
                 width_fade: other,
                 opacity_fade: value,
                 ..default()
-            }),
-            // The strokes change with time, which the comparison must not see.
-            sketch: (other > 0.0).then_some(Sketch {
-                wash: other,
-                gamma: value,
-                jitter: value,
-                wavelength: other,
-                pressure: value,
-                rate: 0.0,
-                ..default()
-            }),
+            });
+        // The strokes change with time, which the comparison must not see.
+        let sketch = Sketch {
+            wash: other,
+            gamma: value,
+            jitter: value,
+            wavelength: other,
+            pressure: value,
+            rate: 0.0,
             ..default()
         };
+        let style = with_option(style, (other > 0.0).then_some(sketch));
         small.style(&style);
         small.settle();
         let (_, output) = small.pass();

@@ -19,7 +19,7 @@ fn failure_05_18_a_picture_is_never_lost_while_a_pipeline_is_missing() {
 
     // A broken shader: the picture passes through, and comes back when mended.
     let styled = small.picture();
-    let (id, source) = shader(&mut small, "stylize.wgsl");
+    let (id, source) = shader(&mut small, "effect/fused.wgsl");
     replace(
         &mut small,
         id,

@@ -3,6 +3,7 @@
 
 mod inputs;
 mod lifetimes;
+mod prepasses;
 mod views;
 
 use bevy::{
@@ -20,19 +21,17 @@ use bevy_comics::{
 
 use crate::{
     common::headless::{HeadlessOptions, new_target},
-    small::{Object, Small, camera, options, size},
+    small::{Object, Small, camera, options, size, with_option},
 };
 
 fn full_style() -> ComicStyle {
-    ComicStyle {
-        desaturation: Some(Desaturation::default()),
-        colorization: Some(Colorization::default()),
-        contours: Some(Contours {
+    ComicStyle::default()
+        .with(Desaturation::default())
+        .with(Colorization::default())
+        .with(Contours {
             threshold: 0.05,
             ..default()
-        }),
-        ..default()
-    }
+        })
 }
 
 fn styled(msaa: Msaa) -> Small {

@@ -86,9 +86,9 @@ fn two_cameras_on_one_target(msaa: Msaa) {
         .expect("a range");
     assert!(first.1 < second_range.0, "{first:?} and {second_range:?}");
     let diagnostics = world.resource::<ComicsDiagnostics>();
-    assert!(diagnostics.ran(small.camera, ComicsStage::Contours));
-    assert!(diagnostics.ran(second, ComicsStage::Desaturation));
-    assert!(!diagnostics.ran(small.camera, ComicsStage::Desaturation));
+    assert!(diagnostics.ran(small.camera, ComicsStage::of::<Contours>()));
+    assert!(diagnostics.ran(second, ComicsStage::of::<Desaturation>()));
+    assert!(!diagnostics.ran(small.camera, ComicsStage::of::<Desaturation>()));
     assert_eq!(small.errors(), 0);
     // The first camera's half is what it is alone.
     let both = small.picture();

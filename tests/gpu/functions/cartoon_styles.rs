@@ -1,10 +1,10 @@
 //! Outlines, tone bands, sketch and the cartoon's light against their twins.
 
 use super::*;
-use crate::reference::{light, outlines, sketch, tone_bands};
+use crate::reference::{edge, light, sketch, tone_bands};
 use bevy_comics::{CartoonLight, Sketch, ToneBandMethod, ToneBands};
 
-const OUTLINES: &str = "#import bevy_comics::styles::outlines::{gradient, gradient_extremes, edge_response, normal_extremes, component_response, step_excess, line_coverage, line_offset, pack_edge, unpack_edge, Edge}";
+const EDGE: &str = "#import bevy_comics::lines::edge::{gradient, gradient_extremes, edge_response, normal_extremes, component_response, step_excess, line_coverage, line_offset, pack_edge, unpack_edge, Edge}";
 
 /// 25 depths: steps, ramps, and anything.
 fn window() -> impl Strategy<Value = [f32; 27]> {
@@ -28,7 +28,7 @@ fn window() -> impl Strategy<Value = [f32; 27]> {
 fn gradient_and_response_are_equations_1_and_2() {
     for_batches(window(), |rows| {
         let results = gpu().evaluate(
-            OUTLINES,
+            EDGE,
             "var v: array<f32, 25>;
              for (var n = 0u; n < 25u; n++) { v[n] = i(n); }
              let g = gradient_extremes(&v);
@@ -38,7 +38,7 @@ fn gradient_and_response_are_equations_1_and_2() {
         for (row, result) in rows.iter().zip(results) {
             let w: [[f64; 5]; 5] =
                 std::array::from_fn(|r| std::array::from_fn(|c| f64::from(row[5 * r + c])));
-            let g = outlines::gradient_extremes(&w, |a: f64, b: f64| (a - b).abs());
+            let g = edge::gradient_extremes(&w, |a: f64, b: f64| (a - b).abs());
             // Eight weighted differences of numbers up to one: 12 roundings of
             // half an ulp each, over eight.
             let step = 12.0 * 2f64.powi(-24);
@@ -51,14 +51,14 @@ fn gradient_and_response_are_equations_1_and_2() {
                 "{row:?}: {result:?}, {g:?}"
             );
             let k = f64::from(row[25]);
-            let p = outlines::edge_response(g, k);
+            let p = edge::edge_response(g, k);
             // p = r^2, so dp = 2 r dr with r up to 1 where it counts.
             let slack = (2.0 * 2.0 * step / k).max(4.0 * 2f64.powi(-23));
             assert!(
                 (f64::from(result[2]) - p).abs() <= slack,
                 "{row:?}: {result:?}, {p}"
             );
-            let excess = outlines::step_excess(w[2][1], w[2][2], w[2][3], w[2][4]);
+            let excess = edge::step_excess(w[2][1], w[2][2], w[2][3], w[2][4]);
             assert!(
                 (f64::from(result[3]) - excess).abs() <= 2f64.powi(-22),
                 "{row:?}"
@@ -73,7 +73,7 @@ fn a_ramp_answers_with_its_slope_and_a_plane_with_no_edge() {
     for slope in [1e-5, 0.01, 0.2] {
         let ramp: [[f64; 5]; 5] =
             std::array::from_fn(|_| std::array::from_fn(|c| slope * c as f64));
-        let g = outlines::gradient_extremes(&ramp, |a: f64, b: f64| (a - b).abs());
+        let g = edge::gradient_extremes(&ramp, |a: f64, b: f64| (a - b).abs());
         assert!(
             (g[0] - slope).abs() < 1e-15 && (g[1] - slope).abs() < 1e-15,
             "{g:?}"
@@ -81,7 +81,7 @@ fn a_ramp_answers_with_its_slope_and_a_plane_with_no_edge() {
         // A step of height h answers with h / 2 on the columns beside it.
         let step: [[f64; 5]; 5] =
             std::array::from_fn(|_| std::array::from_fn(|c| if c > 2 { slope } else { 0.0 }));
-        let g = outlines::gradient_extremes(&step, |a: f64, b: f64| (a - b).abs());
+        let g = edge::gradient_extremes(&step, |a: f64, b: f64| (a - b).abs());
         assert!((g[1] - g[0] - 0.5 * slope).abs() < 1e-15, "{g:?}");
     }
 }
@@ -109,20 +109,20 @@ fn creases_are_their_twin_in_both_forms() {
         });
     for_batches(row, |rows| {
         let results = gpu().evaluate(
-            OUTLINES,
+            EDGE,
             "var v: array<vec4<f32>, 25>;
              for (var n = 0u; n < 25u; n++) { v[n] = vec4(i(4u*n), i(4u*n+1u), i(4u*n+2u), i(4u*n+3u)); }
              return vec4(normal_extremes(&v), component_response(&v, i(100u)), 0.0);",
             rows,
         );
         for (row, result) in rows.iter().zip(results) {
-            let w: [[outlines::Normal; 5]; 5] = std::array::from_fn(|r| {
+            let w: [[edge::Normal; 5]; 5] = std::array::from_fn(|r| {
                 std::array::from_fn(|c| {
                     let n = &row[4 * (5 * r + c)..];
                     (n[3] > 0.0).then(|| [n[0], n[1], n[2]].map(f64::from))
                 })
             });
-            let g = outlines::gradient_extremes(&w, outlines::normal_step);
+            let g = edge::gradient_extremes(&w, edge::normal_step);
             let step = 40.0 * 2f64.powi(-24);
             assert!(
                 (f64::from(result[0]) - g[0]).abs() <= step,
@@ -133,7 +133,7 @@ fn creases_are_their_twin_in_both_forms() {
                 "{result:?} {g:?}"
             );
             let k = f64::from(row[100]);
-            let p = outlines::component_response(&w, k);
+            let p = edge::component_response(&w, k);
             assert!(
                 (f64::from(result[2]) - p).abs() <= 4.0 * step / k,
                 "{result:?} {p}"
@@ -152,7 +152,7 @@ fn a_turned_scene_has_the_same_measured_creases() {
             n[2],
         ]
     };
-    let fold = |a: f64| -> [[outlines::Normal; 5]; 5] {
+    let fold = |a: f64| -> [[edge::Normal; 5]; 5] {
         std::array::from_fn(|_| {
             std::array::from_fn(|c| {
                 let n = if c > 2 {
@@ -164,14 +164,14 @@ fn a_turned_scene_has_the_same_measured_creases() {
             })
         })
     };
-    let g0 = outlines::gradient_extremes(&fold(0.0), outlines::normal_step);
-    let p0 = outlines::component_response(&fold(0.0), 1.0);
+    let g0 = edge::gradient_extremes(&fold(0.0), edge::normal_step);
+    let p0 = edge::component_response(&fold(0.0), 1.0);
     let mut moved = 0.0f64;
     for k in 1..12 {
         let a = f64::from(k) * 0.13;
-        let g = outlines::gradient_extremes(&fold(a), outlines::normal_step);
+        let g = edge::gradient_extremes(&fold(a), edge::normal_step);
         assert!((g[1] - g0[1]).abs() < 1e-12, "{a}: {g:?}");
-        moved = moved.max((outlines::component_response(&fold(a), 1.0) - p0).abs());
+        moved = moved.max((edge::component_response(&fold(a), 1.0) - p0).abs());
     }
     assert!(
         moved > 0.05,
@@ -187,7 +187,7 @@ fn a_line_covers_what_it_should_and_packs_without_loss() {
         .prop_map(|(d, h, ink, side)| [d, h, ink[0], ink[1], ink[2], f32::from(side)]);
     for_batches(row, |rows| {
         let results = gpu().evaluate(
-            OUTLINES,
+            EDGE,
             "var e: Edge; e.sides = 0xabcu; e.ink = vec3(i(2u), i(3u), i(4u)); e.half_width = i(1u); e.slot = 77u;
              let back = unpack_edge(pack_edge(e));
              let kept = select(0.0, 1.0, back.sides == 0xabcu && back.slot == 77u
@@ -197,12 +197,12 @@ fn a_line_covers_what_it_should_and_packs_without_loss() {
         );
         for (row, result) in rows.iter().zip(results) {
             let (d, h) = (f64::from(row[0]), f64::from(row[1]));
-            let want = outlines::line_coverage(d, h);
+            let want = edge::line_coverage(d, h);
             assert!(
                 (f64::from(result[0]) - want).abs() < 1e-5,
                 "{row:?} {result:?} {want}"
             );
-            let offset = outlines::line_offset(h);
+            let offset = edge::line_offset(h);
             assert!(
                 (f64::from(result[1]) - offset).abs() < 1e-5,
                 "{row:?} {result:?} {offset}"
@@ -222,9 +222,7 @@ fn coverage_adds_up_to_the_width() {
     for k in 1..=64 {
         let h = 0.125 * f64::from(k);
         let sum: f64 = (-40..40)
-            .map(|n| {
-                outlines::line_coverage((f64::from(n) + 0.5 - outlines::line_offset(h)).abs(), h)
-            })
+            .map(|n| edge::line_coverage((f64::from(n) + 0.5 - edge::line_offset(h)).abs(), h))
             .sum();
         assert!((sum - 2.0 * h).abs() < 1e-12, "{h}: {sum}");
     }
@@ -255,9 +253,9 @@ fn tone_bands_are_their_twin() {
     let undecided = std::cell::Cell::new(0usize);
     for_batches(row, |rows| {
         let results = gpu().evaluate(
-            "#import bevy_comics::styles::tone_bands::{ToneBands, tone_bands}",
+            "#import bevy_comics::effects::tone_bands::{ToneBands, banded_color}",
             "let s = ToneBands(i(3u), i(4u), i(6u), u(7u));
-             return vec4(tone_bands(s, vec3(i(0u), i(1u), i(2u)), i(5u)), 0.0);",
+             return vec4(banded_color(s, vec3(i(0u), i(1u), i(2u)), i(5u)), 0.0);",
             rows,
         );
         for (row, result) in rows.iter().zip(results) {
@@ -274,7 +272,7 @@ fn tone_bands_are_their_twin() {
             let change = f64::from(row[5]);
             let at = |nudge: f64| {
                 let c = rgb(row).map(|c| c * (1.0 + nudge));
-                tone_bands::tone_bands(&s, c, change, 1.0)
+                tone_bands::banded_color(&s, c, change, 1.0)
             };
             if codes_apart(result, at(0.0)) <= 1.0 {
                 continue;
@@ -322,8 +320,8 @@ fn the_levels_are_as_many_as_asked_and_keep_the_chroma() {
             .filter(off_step)
             .map(|v| {
                 let light = [v * v; 3];
-                let banded = tone_bands::tone_bands(&s, light, 0.0, 1.0);
-                (tone_bands::lightness(banded) * 1e6).round() as i64
+                let banded = tone_bands::banded_color(&s, light, 0.0, 1.0);
+                (color::lightness(banded) * 1e6).round() as i64
             })
             .collect();
         tones.dedup();
@@ -334,7 +332,7 @@ fn the_levels_are_as_many_as_asked_and_keep_the_chroma() {
         ..ToneBands::default()
     };
     let red = [0.2, 0.05, 0.02];
-    let banded = tone_bands::tone_bands(&s, red, 0.0, 1.0);
+    let banded = tone_bands::banded_color(&s, red, 0.0, 1.0);
     for i in 1..3 {
         assert!(
             (banded[i] / banded[0] - red[i] / red[0]).abs() < 1e-12,
@@ -370,7 +368,7 @@ fn the_sketch_is_its_twin() {
         );
     for_batches(row, |rows| {
         let import =
-            "#import bevy_comics::styles::sketch::{Sketch, stray, pen_pressure, draw_sketch}";
+            "#import bevy_comics::effects::sketch::{Sketch, stray, pen_pressure, draw_sketch}";
         let setup = "var s: Sketch; s.jitter = i(4u); s.wavelength = i(5u); s.pressure = i(6u); s.drawing = u(3u);
              s.gamma = i(8u); s.wash = i(9u); s.paper = vec3(0.9, 0.8, 0.7); s.ink = vec3(0.1, 0.05, 0.02);
              let at = vec2(i(0u), i(1u));";

@@ -139,7 +139,7 @@ fn desaturation_is_its_twin_and_keeps_greys() {
         });
     for_batches(row, |rows| {
         let results = gpu().evaluate(
-            "#import bevy_comics::styles::desaturation::{Desaturation, desaturate, saturation_left}",
+            "#import bevy_comics::effects::desaturation::{Desaturation, desaturate, saturation_left}",
             "var curve = 2u; if i(1u) == 1.0 { curve = 0u; } if i(1u) == 0.5 { curve = 1u; }
              let s = Desaturation(i(0u), i(1u), curve, u(2u));
              let k = saturation_left(s, i(6u));
@@ -250,7 +250,7 @@ fn colorization_is_its_twin_and_faithful_greys_stay_grey() {
             })
             .collect();
         let results = gpu().evaluate(
-            "#import bevy_comics::styles::colorization::{Colorization, colorize}",
+            "#import bevy_comics::effects::colorization::{Colorization, colorize}",
             "let s = Colorization(vec2(i(0u), i(1u)), i(2u), i(3u), i(4u), i(5u), u(6u), u(7u));
              return vec4(colorize(s, vec3(i(8u), i(9u), i(10u)), i(11u), i(12u), 0.75), 0.0);",
             &packed,
@@ -286,7 +286,7 @@ fn dark_areas_are_their_twin() {
         .prop_map(|(r, g, b, value, feather, weight, l)| [r, g, b, value, feather, weight, l]);
     for_batches(row, |rows| {
         let results = gpu().evaluate(
-            "#import bevy_comics::styles::black_flats::{BlackFlats, dark_area, fill}",
+            "#import bevy_comics::effects::black_flats::{BlackFlats, dark_area, fill}",
             "let s = BlackFlats(vec3(0.02, 0.0, 0.05), 0.9, 1.0, 2.0, i(3u), i(4u), i(5u), 1.0);
              let c = vec3(i(0u), i(1u), i(2u));
              let dark = dark_area(s, c, i(6u));

@@ -48,7 +48,8 @@ fn every_operator_answers_as_its_twin() {
     for_batches(row, |rows| {
         let results = gpu().evaluate(
             "#import bevy_comics::depth::map::{DepthFrame}
-             #import bevy_comics::styles::contours::{Contours, Window, contour_response}",
+             #import bevy_comics::depth::window::{Window}
+             #import bevy_comics::effects::contours::{Contours, contour_response}",
             "let f = DepthFrame(i(0u), i(1u), 0.0, 0.00006103515625, 0.0, 0.0, 0.05, 0u);
              var s: Contours; s.operator_kind = u(2u); s.faithful = u(3u);
              let w = Window(i(5u), i(6u), i(7u), i(8u), i(9u), i(10u), i(11u), i(12u), i(13u), u(4u));
@@ -79,7 +80,7 @@ fn every_operator_answers_as_its_twin() {
                 sky_gap: 0.05,
             };
             let bits = row[4] as u32;
-            let win = contours::Window {
+            let win = window::Window {
                 depths: std::array::from_fn(|r| {
                     std::array::from_fn(|c| f64::from(row[5 + 3 * r + c]))
                 }),
@@ -121,7 +122,8 @@ fn no_plane_has_a_contour_at_any_angle() {
         .collect();
     let results = gpu().evaluate(
         "#import bevy_comics::depth::map::{DepthFrame}
-         #import bevy_comics::styles::contours::{Contours, Window, contour_response}",
+         #import bevy_comics::depth::window::{Window}
+         #import bevy_comics::effects::contours::{Contours, contour_response}",
         "let f = DepthFrame(1.0, 0.001, 0.0, 0.00006103515625, 0.0, 0.0, 0.05, 0u);
          var s: Contours; s.operator_kind = u(0u);
          let w = Window(i(1u), i(2u), i(3u), i(4u), i(5u), i(6u), i(7u), i(8u), i(9u), 0u);

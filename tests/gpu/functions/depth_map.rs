@@ -266,7 +266,8 @@ fn one_depth_without_a_floor_is_a_flat_wall_and_no_number_is_lost() {
     }
     let results = gpu().evaluate(
         "#import bevy_comics::depth::map::{DepthFrame, depth_map, depth_step}
-         #import bevy_comics::styles::contours::{Contours, Window, contour_response}",
+         #import bevy_comics::depth::window::{Window}
+         #import bevy_comics::effects::contours::{Contours, contour_response}",
         &format!(
             "{FRAME} var s: Contours;
              let w = Window(i(9u), i(9u), i(9u), i(8u), i(8u), i(8u), i(8u), i(8u), i(8u), 0u);

@@ -24,10 +24,11 @@ use crate::{
     reference::{
         Rgb, black_flats, color, colorization, contours, desaturation,
         map::{Frame, Projection},
+        window,
     },
 };
 
-const COLOR: &str = "#import bevy_comics::styles::color::{srgb_encode, srgb_decode, linear_to_oklab, oklab_to_linear, finite, hue_of, hue_color}";
+const COLOR: &str = "#import bevy_comics::effect::color::{srgb_encode, srgb_decode, linear_to_oklab, oklab_to_linear, finite, hue_of, hue_color}";
 
 /// One code of an 8-bit display.
 const ONE_CODE: f64 = 1.0 / 255.0;

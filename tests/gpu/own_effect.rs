@@ -1,0 +1,163 @@
+//! An effect outside the repository: the code of `docs/your-own-effect.md` compiles in a crate of
+//! its own, and does there what the page says.
+
+use std::{fs, path::Path};
+
+use crate::outside::{OutsideCrate, ROOT};
+
+/// The blocks of a language, in order.
+fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
+    page.split("```")
+        .skip(1)
+        .step_by(2)
+        .filter_map(|block| block.strip_prefix(language)?.strip_prefix('\n'))
+        .collect()
+}
+
+/// The page's effect without a window, and the page's functions called.
+const HEADLESS_MAIN: &str = r##"
+#[path = "../tint.rs"]
+mod tint;
+
+mod common {
+    #[path = "@ROOT@/examples/common/headless.rs"]
+    pub mod headless;
+    #[path = "@ROOT@/examples/common/read_back.rs"]
+    pub mod read_back;
+}
+
+use bevy::{ecs::system::RunSystemOnce, prelude::*};
+use bevy_comics::*;
+use common::headless::{Headless, HeadlessOptions};
+use tint::Tint;
+
+const STYLE: &str = r#"@STYLE@"#;
+
+/// The picture after the camera got these components, and whether the effect ran.
+fn picture(
+    headless: &mut Headless,
+    camera: Entity,
+    components: impl Bundle,
+) -> (image::RgbaImage, bool) {
+    headless.app.world_mut().entity_mut(camera).insert(components);
+    headless.step(5);
+    let diagnostics = headless.app.world().resource::<ComicsDiagnostics>();
+    let ran = diagnostics.ran(camera, ComicsStage::of::<Tint>());
+    (headless.picture(), ran)
+}
+
+fn main() {
+    let options = HeadlessOptions { size: UVec2::new(96, 64), ..default() };
+    let plugins = (ComicsPlugin, EffectPlugin::<Tint>::default());
+    let mut headless = Headless::new(options, plugins);
+    let target = headless.render_target();
+    let world = headless.app.world_mut();
+    world.insert_resource(ClearColor(Color::WHITE));
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(Cuboid::default());
+    let material = world.resource_mut::<Assets<StandardMaterial>>().add(StandardMaterial {
+        base_color: Color::WHITE,
+        unlit: true,
+        ..default()
+    });
+    let at = Transform::from_xyz(0.0, 0.0, -3.0);
+    world.spawn((Mesh3d(mesh), MeshMaterial3d(material), at));
+    let camera = world.spawn((Camera3d::default(), target)).id();
+
+    // It runs where a camera has it, and changes the picture there.
+    let (original, ran) = picture(&mut headless, camera, ());
+    assert!(!ran, "no camera has the effect");
+    let (tinted, ran) = picture(&mut headless, camera, Tint::default());
+    assert!(ran, "the effect did not run");
+    let (before, after) = (original.get_pixel(48, 32), tinted.get_pixel(48, 32));
+    assert!(after[2] + 20 < before[2], "from {before:?} to {after:?}");
+
+    // Its variant reads the depth map: the cube keeps its colour, the sky does not.
+    let far_only = Tint { far_only: true, ..default() };
+    let (far, ran) = picture(&mut headless, camera, far_only);
+    assert!(ran, "the variant did not run");
+    assert_eq!(far.get_pixel(48, 32), before, "the nearest thing");
+    assert_eq!(far.get_pixel(2, 2), tinted.get_pixel(2, 2), "the sky");
+
+    // A style file has it: for the app, not for the crate alone.
+    let registry = headless.app.world().resource::<EffectRegistry>().clone();
+    let style = registry.style_from_ron(STYLE).expect("the page's style");
+    let tint = style.get::<Tint>().expect("its tint");
+    assert_eq!((tint.amount, tint.far_only), (0.6, false));
+    let error = ComicStyle::from_ron(STYLE).expect_err("no effect of this crate");
+    assert!(error.to_string().contains("`tint`"), "{error}");
+    let text = style.to_ron().expect("written");
+    assert_eq!(registry.style_from_ron(&text).expect("read again"), style);
+    let world = headless.app.world_mut();
+    style.apply(&mut world.commands().entity(camera));
+    world.flush();
+    let (styled, ran) = picture(&mut headless, camera, ());
+    assert!(ran && styled != tinted && styled != original);
+    assert_eq!(headless.app.world().get::<Tint>(camera), style.get());
+
+    // It has a transition, a debug view, and a place in the shader.
+    headless.app.world_mut().run_system_once(dusk).expect("run").expect("a style");
+    headless.step(150);
+    assert_eq!(headless.app.world().get::<Tint>(camera).expect("there").amount, 1.0);
+    let half = Tint { amount: 0.5, ..default() };
+    let (view, _) = picture(&mut headless, camera, (half, DebugView::Effect("tint")));
+    assert!(view.get_pixel(48, 32)[0].abs_diff(128) <= 1, "{:?}", view.get_pixel(48, 32));
+    let world = headless.app.world_mut();
+    world.run_system_once(log_tint).expect("run");
+    world.run_system_once(print_shader).expect("run");
+}
+"##;
+
+#[test]
+fn the_effect_of_the_page_runs_in_a_crate_of_its_own() {
+    let page = Path::new(ROOT).join("docs/your-own-effect.md");
+    let page = fs::read_to_string(page).expect("the page");
+    let rust = blocks(&page, "rust");
+    let [effect, main, functions @ ..] = rust.as_slice() else {
+        panic!("{} blocks of Rust", rust.len());
+    };
+    let wgsl = blocks(&page, "wgsl");
+    let style = blocks(&page, "ron");
+    let headless = HEADLESS_MAIN
+        .replace("@ROOT@", ROOT)
+        .replace("@STYLE@", style.first().expect("a style"));
+    let headless = format!("#![allow(dead_code)]\n{headless}\n{}", functions.join("\n"));
+    let files = [
+        ("tint.rs", *effect),
+        ("tint.wgsl", wgsl.first().expect("the shader")),
+        ("main.rs", *main),
+        ("bin/own_effect_headless.rs", &headless),
+    ];
+    let own = OutsideCrate::new("own-effect", &["serde", "wgpu"], &files);
+    own.cargo(&["build", "--offline", "--bins"]);
+    let shader = own.cargo(&["run", "--offline", "--bin", "own_effect_headless"]);
+    for part in ["#ifdef TINT\n", "#ifdef VIEW_TINT\n", "my_game::tint"] {
+        assert!(shader.contains(part), "{part:?} is not in\n{shader}");
+    }
+}
+
+/// The page says what the trait says: every item of it is in its tables.
+#[test]
+fn the_page_has_every_item_of_the_trait() {
+    let read = |path: &str| fs::read_to_string(Path::new(ROOT).join(path)).expect("there");
+    let page = read("docs/your-own-effect.md");
+    let source = read("src/effect/mod.rs");
+    let (_, body) = source.split_once("pub trait Effect:").expect("the trait");
+    let (body, _) = body.split_once("\n}\n").expect("its end");
+    let mut items = 0;
+    for line in body.lines() {
+        let Some(item) = ["    fn ", "    const ", "    type "]
+            .iter()
+            .find_map(|kind| line.strip_prefix(kind))
+        else {
+            continue;
+        };
+        let end = |c: char| !c.is_alphanumeric() && c != '_';
+        let name = item.split(end).next().expect("a name");
+        assert!(
+            page.contains(&format!("| `{name}` |")),
+            "{name} is not on the page"
+        );
+        items += 1;
+    }
+    assert!(items > 10, "{items} items");
+}
