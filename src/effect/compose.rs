@@ -1,5 +1,7 @@
 //! Composes the WGSL of the fused pass from the registered effects.
 
+use naga_oil::compose::get_preprocessor_data;
+
 use super::EffectType;
 
 /// The recipe; lines that begin with `//@` are replaced.
@@ -7,6 +9,21 @@ const RECIPE: &str = include_str!("fused.wgsl");
 
 /// The keys of a style file that are no effects.
 const FILE_KEYS: [&str; 3] = ["version", "name", "depth_map"];
+
+/// The modules of this crate that an effect may import.
+const MODULES: [&str; 11] = [
+    "bevy_comics::depth::map",
+    "bevy_comics::depth::normal",
+    "bevy_comics::depth::raw",
+    "bevy_comics::depth::view",
+    "bevy_comics::depth::window",
+    "bevy_comics::effect::color",
+    "bevy_comics::effect::noise",
+    "bevy_comics::effect::pixel",
+    "bevy_comics::lines::edge",
+    "bevy_comics::lines::read",
+    "bevy_comics::objects",
+];
 
 /// Definitions of the fused pass that are no effects, in lower case.
 const DEFINITIONS: [&str; 18] = [
@@ -48,6 +65,10 @@ pub(super) fn refuses(effect: &EffectType, known: &[&EffectType]) -> Option<&'st
     } else if DEFINITIONS.contains(&name) || FILE_KEYS.contains(&name) || name.starts_with("view_")
     {
         Some("its name is reserved")
+    } else if !defines(effect.shader.source, effect.shader.path) {
+        Some("its WGSL does not define the import path that the effect states")
+    } else if imports_unknown(effect, known) {
+        Some("its WGSL imports a module of bevy_comics that does not exist")
     } else if known.iter().any(|other| other.name == name) {
         Some("another effect has its name")
     } else {
@@ -55,12 +76,27 @@ pub(super) fn refuses(effect: &EffectType, known: &[&EffectType]) -> Option<&'st
     }
 }
 
+fn defines(source: &str, path: &str) -> bool {
+    get_preprocessor_data(source).0.as_deref() == Some(path)
+}
+
+/// A module that is missing would keep every camera's pass from compiling, since
+/// the engine waits for all imports of a shader.
+fn imports_unknown(effect: &EffectType, known: &[&EffectType]) -> bool {
+    let (_, imports, _) = get_preprocessor_data(effect.shader.source);
+    imports.iter().any(|import| {
+        let path = import.import.as_str();
+        path.starts_with("bevy_comics::")
+            && !MODULES.contains(&path)
+            && !known.iter().any(|other| other.shader.path == path)
+    })
+}
+
 /// The text of the fused pass.
 pub(super) fn fused_pass(types: &[&EffectType]) -> String {
     let mut text = String::from("// Composed by bevy_comics.\n");
     for line in RECIPE.lines() {
         let entries: fn(&EffectType) -> String = match line.trim() {
-            "//@imports" => imports,
             "//@members" => members,
             "//@calls" => calls,
             _ => {
@@ -76,37 +112,29 @@ pub(super) fn fused_pass(types: &[&EffectType]) -> String {
     text
 }
 
-fn imports(effect: &EffectType) -> String {
-    let name = effect.name;
-    let path = effect.shader.path;
-    let mut items: Vec<String> = effect.shader.settings.iter().map(ToString::to_string).collect();
-    items.push(name.to_owned());
-    if effect.view.is_some() {
-        items.push(format!("{name}_view"));
-    }
-    format!("#import {path}::{{{}}}\n", items.join(", "))
-}
-
-/// The member must not be called like the function, which is imported: the
-/// composer would take one for the other.
+/// Names of other crates are written with their full paths, so that two effects may
+/// use the same ones. The suffix keeps a member apart from the names that the recipe
+/// imports, which the composer would take for one another.
 fn members(effect: &EffectType) -> String {
     let Some(settings) = effect.shader.settings else {
         return String::new();
     };
     let (name, definition) = (effect.name, definition(effect.name));
-    format!("#ifdef {definition}\n    @align(16) {name}_settings: {settings},\n#endif\n")
+    let path = effect.shader.path;
+    format!("#ifdef {definition}\n    @align(16) {name}_settings: {path}::{settings},\n#endif\n")
 }
 
 fn calls(effect: &EffectType) -> String {
     let (name, definition) = (effect.name, definition(effect.name));
+    let path = effect.shader.path;
     let arguments = match effect.shader.settings {
         Some(_) => format!("comics.{name}_settings, p"),
         None => "p".to_owned(),
     };
-    let mut call = format!("#ifdef {definition}\n    p = {name}({arguments});\n");
+    let mut call = format!("#ifdef {definition}\n    p = {path}::{name}({arguments});\n");
     if effect.view.is_some() {
         call.push_str(&format!(
-            "#ifdef VIEW_{definition}\n    let shown = {name}_view({arguments});\n#endif\n"
+            "#ifdef VIEW_{definition}\n    let shown = {path}::{name}_view({arguments});\n#endif\n"
         ));
     }
     call.push_str("#endif\n");

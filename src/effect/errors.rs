@@ -9,7 +9,7 @@ use bevy::{
     render::render_resource::{CachedPipelineState, PipelineCache},
     shader::ShaderCacheError,
 };
-use naga_oil::compose::ErrSource;
+use naga_oil::compose::{Composer, ErrSource};
 
 use super::{AnyEffect, EffectType, prepare::FusedRequest};
 use crate::diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome};
@@ -73,7 +73,7 @@ pub(super) fn file_path(effect: &EffectType) -> String {
     format!("effect `{}`: {}", effect.name, effect.shader.path)
 }
 
-/// The start of the name that the composer gives to an effect's function.
+/// What the composer adds to every name of an effect's module.
 fn decorated(effect: &EffectType) -> String {
-    format!("{}X_naga_oil", effect.name)
+    Composer::decorated_name(Some(effect.shader.path), "")
 }

@@ -12,7 +12,6 @@
 #import bevy_comics::lines::edge::Lines
 #import bevy_comics::lines::read::{lines_at, set_lines}
 #import bevy_comics::objects::load_object
-//@imports
 
 // Only what is there, in the order of the chain; uniform structs inside a struct
 // start at multiples of 16 bytes.

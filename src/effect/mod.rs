@@ -184,6 +184,9 @@ pub enum EffectStage {
 
 /// An effect's WGSL module.
 ///
+/// Its struct of settings must be laid out as [`Effect::Uniform`]: where that is
+/// smaller, the shader reads what lies behind it.
+///
 /// The module defines its own import path, a struct of settings, and the function
 /// that applies the effect:
 ///

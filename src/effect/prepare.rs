@@ -30,6 +30,11 @@ pub(crate) struct FusedRequest {
     pub lines: Option<LinesUniform>,
 }
 
+/// Bytes behind the uniform. An effect whose [`Effect::Uniform`](super::Effect::Uniform)
+/// is smaller than its WGSL struct reads them; a buffer that is too small would be
+/// an error of the renderer, which ends the app.
+const SLACK: u64 = 1024;
+
 impl FusedRequest {
     /// `Comics` of the fused pass: only what is there, each part at a multiple of
     /// 16 bytes.
@@ -73,7 +78,7 @@ pub(super) fn prepare_fused_pass(
             None => {
                 let uniform = device.create_buffer(&BufferDescriptor {
                     label: Some("comics_uniform"),
-                    size: bytes.len() as u64,
+                    size: bytes.len() as u64 + SLACK,
                     usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
                     mapped_at_creation: false,
                 });

@@ -49,7 +49,8 @@ impl ComicStyle {
         EffectRegistry::built_in().style_from_ron(text)
     }
 
-    /// The text of a `.comic.ron` file that reads back equal.
+    /// The text of a `.comic.ron` file that reads back as the same look. Colours come
+    /// back in sRGB, whatever space they were written from.
     ///
     /// # Errors
     /// [`ComicStyleError::Write`] if a value has no RON form.

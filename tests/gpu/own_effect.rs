@@ -31,7 +31,7 @@ use bevy_comics::*;
 use common::headless::{Headless, HeadlessOptions};
 use tint::Tint;
 
-const STYLE: &str = r#"@STYLE@"#;
+const STYLE: &str = include_str!("../amber.comic.ron");
 
 /// The picture after the camera got these components, and whether the effect ran.
 fn picture(
@@ -47,7 +47,11 @@ fn picture(
 }
 
 fn main() {
-    let options = HeadlessOptions { size: UVec2::new(96, 64), ..default() };
+    let options = HeadlessOptions {
+        size: UVec2::new(96, 64),
+        assets: concat!(env!("CARGO_MANIFEST_DIR"), "/src").into(),
+        ..default()
+    };
     let plugins = (ComicsPlugin, EffectPlugin::<Tint>::default());
     let mut headless = Headless::new(options, plugins);
     let target = headless.render_target();
@@ -86,16 +90,23 @@ fn main() {
     let error = ComicStyle::from_ron(STYLE).expect_err("no effect of this crate");
     assert!(error.to_string().contains("`tint`"), "{error}");
     let text = style.to_ron().expect("written");
-    assert_eq!(registry.style_from_ron(&text).expect("read again"), style);
-    let world = headless.app.world_mut();
-    style.apply(&mut world.commands().entity(camera));
-    world.flush();
+    let again = registry.style_from_ron(&text).expect("read again");
+    assert_eq!(again.get::<Tint>(), style.get());
+    let handle = headless.app.world().resource::<AssetServer>().load("amber.comic.ron");
+    headless.app.world_mut().entity_mut(camera).insert(ComicStyleHandle(handle));
+    for _ in 0..500 {
+        headless.step(1);
+        if headless.app.world().get::<Tint>(camera) == style.get() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    assert_eq!(headless.app.world().get::<Tint>(camera), style.get(), "from the file");
     let (styled, ran) = picture(&mut headless, camera, ());
     assert!(ran && styled != tinted && styled != original);
-    assert_eq!(headless.app.world().get::<Tint>(camera), style.get());
 
     // It has a transition, a debug view, and a place in the shader.
-    headless.app.world_mut().run_system_once(dusk).expect("run").expect("a style");
+    headless.app.world_mut().run_system_once::<_, (), _>(dusk).expect("run");
     headless.step(150);
     assert_eq!(headless.app.world().get::<Tint>(camera).expect("there").amount, 1.0);
     let half = Tint { amount: 0.5, ..default() };
@@ -117,13 +128,12 @@ fn the_effect_of_the_page_runs_in_a_crate_of_its_own() {
     };
     let wgsl = blocks(&page, "wgsl");
     let style = blocks(&page, "ron");
-    let headless = HEADLESS_MAIN
-        .replace("@ROOT@", ROOT)
-        .replace("@STYLE@", style.first().expect("a style"));
+    let headless = HEADLESS_MAIN.replace("@ROOT@", ROOT);
     let headless = format!("#![allow(dead_code)]\n{headless}\n{}", functions.join("\n"));
     let files = [
         ("tint.rs", *effect),
         ("tint.wgsl", wgsl.first().expect("the shader")),
+        ("amber.comic.ron", style.first().expect("a style")),
         ("main.rs", *main),
         ("bin/own_effect_headless.rs", &headless),
     ];

@@ -138,7 +138,9 @@ fn a_dragged_slider_compiles_what_the_documentation_says() {
             let compiled = pipelines(&small) - before;
             let documented = documented(&name);
             if compiled > documented {
-                too_many.push(format!("{name}: {compiled} pipelines, {documented} documented"));
+                too_many.push(format!(
+                    "{name}: {compiled} pipelines, {documented} documented"
+                ));
             }
             seen += 1;
         }

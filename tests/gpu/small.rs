@@ -175,7 +175,7 @@ pub fn with_option<E: Effect>(style: ComicStyle, effect: Option<E>) -> ComicStyl
 #[derive(Component)]
 pub struct Object;
 
-fn spawn_objects(world: &mut World) {
+pub fn spawn_objects(world: &mut World) {
     let cube = world.resource_mut::<Assets<Mesh>>().add(Cuboid::default());
     let ground = world
         .resource_mut::<Assets<Mesh>>()

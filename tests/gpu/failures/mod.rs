@@ -1,6 +1,7 @@
 //! How such plugins fail: every case that must hold from the first version, by
 //! its number in the list.
 
+mod effects;
 mod inputs;
 mod lifetimes;
 mod prepasses;
