@@ -64,8 +64,8 @@ pub use depth::{
 };
 pub use diagnostics::{CameraStages, ComicsDiagnostics, ComicsStage, LeftOut, StageOutcome};
 pub use effect::{
-    AnyEffect, Effect, EffectPlugin, EffectRegistry, EffectSet, EffectShader, EffectStage, EffectType,
-    EffectView, Needs, NoUniform, Variants, ViewFacts,
+    AnyEffect, Effect, EffectPlugin, EffectRegistry, EffectSet, EffectShader, EffectStage,
+    EffectType, EffectView, Needs, NoUniform, Variants, ViewFacts,
 };
 pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};

@@ -213,7 +213,10 @@ impl Frame<'_> {
             .zip(range.histogram());
         let device = ctx.render_device().clone();
         let encoder = ctx.command_encoder();
-        let mut readback = range.readback.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut readback = range
+            .readback
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
         let copied = readback.copy(&device, encoder, &range.keys, histogram, request.projection);
         let outcome = if copied {
             StageOutcome::Ran

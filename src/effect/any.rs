@@ -3,8 +3,7 @@
 use std::any::Any;
 
 use bevy::{
-    ecs::world::EntityWorldMut,
-    reflect::structs::Struct,
+    ecs::world::EntityWorldMut, reflect::structs::Struct,
     render::render_resource::encase::UniformBuffer,
 };
 

@@ -16,12 +16,7 @@ use crate::settings::{BlendField, FieldRange, blend_color, blend_ratio, dip};
 
 /// The effect `t` of the way from `a` to `b`; one that only one side has fades.
 /// `remapped`: what depends on the depth map fades out half of the way.
-pub(super) fn blend<E: Effect>(
-    a: Option<E>,
-    b: Option<E>,
-    t: f32,
-    remapped: bool,
-) -> Option<E> {
+pub(super) fn blend<E: Effect>(a: Option<E>, b: Option<E>, t: f32, remapped: bool) -> Option<E> {
     let effect = match (a, b) {
         (None, None) => return None,
         (Some(a), None) => a.faded(1.0 - t),

@@ -55,7 +55,9 @@ fn culprit(
                 ErrSource::Constructing { path, .. } => path,
             };
             let effect = effects.find(|effect| {
-                place == effect.shader.path || *place == file_path(effect) || message.contains(&decorated(effect))
+                place == effect.shader.path
+                    || *place == file_path(effect)
+                    || message.contains(&decorated(effect))
             })?;
             Some((effect, message))
         }

@@ -86,7 +86,10 @@ impl Plan {
         plan.show(types);
         if plan.view.is_none() && (plan.finish.weight == 0.0 || plan.finish.split >= 1.0) {
             plan.effects.clear();
-            plan.left_out = types.iter().map(|t| (t.name, LeftOut::Negligible)).collect();
+            plan.left_out = types
+                .iter()
+                .map(|t| (t.name, LeftOut::Negligible))
+                .collect();
         }
         plan.resolve();
         Some(plan)
@@ -134,7 +137,11 @@ impl Plan {
         let DebugView::Effect(name) = view else {
             return;
         };
-        if self.effects.iter().any(|p| p.effect.effect_type().name == name) {
+        if self
+            .effects
+            .iter()
+            .any(|p| p.effect.effect_type().name == name)
+        {
             return;
         }
         if let Some(effect) = types.iter().find(|effect| effect.name == name) {
@@ -338,7 +345,10 @@ impl Plan {
     ) -> Vec<(ComicsStage, Option<LeftOut>)> {
         let reason = |name: &str| {
             let left = self.left_out.iter().rev().find(|(known, _)| *known == name);
-            let planned = self.effects.iter().find(|p| p.effect.effect_type().name == name);
+            let planned = self
+                .effects
+                .iter()
+                .find(|p| p.effect.effect_type().name == name);
             match (left, planned) {
                 (_, Some(p)) if p.replaced && p.implied => Some(LeftOut::NotRequested),
                 (_, Some(p)) if p.replaced => Some(LeftOut::Replaced),

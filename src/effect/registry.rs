@@ -44,12 +44,8 @@ type ReadEffect = for<'a, 'de> fn(
 
 /// From one to the other, `t` of the way; the flag says that the mapping of the
 /// depth map changes.
-type BlendEffects = fn(
-    Option<&dyn AnyEffect>,
-    Option<&dyn AnyEffect>,
-    f32,
-    bool,
-) -> Option<Box<dyn AnyEffect>>;
+type BlendEffects =
+    fn(Option<&dyn AnyEffect>, Option<&dyn AnyEffect>, f32, bool) -> Option<Box<dyn AnyEffect>>;
 
 impl EffectType {
     /// The description of an effect's type.

@@ -20,7 +20,8 @@ impl EffectSet {
 
     /// The effect of this type, if it is there.
     pub fn get<E: Effect>(&self) -> Option<&E> {
-        self.iter().find_map(|effect| effect.as_any().downcast_ref())
+        self.iter()
+            .find_map(|effect| effect.as_any().downcast_ref())
     }
 
     /// The effect of this type, to be edited.

@@ -102,10 +102,7 @@ impl DebugView {
 
     /// Whether there is nothing to show without a depth prepass.
     pub(crate) fn needs_depth(self) -> bool {
-        !matches!(
-            self,
-            Self::Saturation | Self::Difference | Self::Effect(_)
-        )
+        !matches!(self, Self::Saturation | Self::Difference | Self::Effect(_))
     }
 
     pub(crate) fn reads_ids(self) -> bool {

@@ -48,7 +48,11 @@ pub fn show(ui: &mut Ui, world: &mut World, camera: Entity, widgets: &mut Widget
         .iter()
         .filter(|effect| effect.view.is_some())
         .map(|effect| DebugView::Effect(effect.name));
-    let choices: Vec<DebugView> = DebugView::SHARED.iter().copied().chain(of_effects).collect();
+    let choices: Vec<DebugView> = DebugView::SHARED
+        .iter()
+        .copied()
+        .chain(of_effects)
+        .collect();
     let mut entity = world.entity_mut(camera);
     let before = entity.get::<DebugView>().copied();
     let mut view = before;

@@ -77,9 +77,7 @@ fn record(
     let edges = lines.edges.as_ref().ok_or(not_ready)?;
     let uniform = lines.uniform.binding().ok_or(not_ready)?;
     let flood = match (passes.flood, &lines.flood) {
-        (Some([first, next]), Some(flood)) => {
-            Some((flood, [pipeline(first)?, pipeline(next)?]))
-        }
+        (Some([first, next]), Some(flood)) => Some((flood, [pipeline(first)?, pipeline(next)?])),
         _ => None,
     };
     let entries = entries(parts, object_styles, uniform.clone())?;

@@ -5,9 +5,7 @@ use bevy::{
     ecs::{
         entity::Entity,
         resource::Resource,
-        system::{
-            Commands, Res, ResMut, SystemParam, SystemParamItem, lifetimeless::SRes,
-        },
+        system::{Commands, Res, ResMut, SystemParam, SystemParamItem, lifetimeless::SRes},
     },
     log::error_once,
     material::{

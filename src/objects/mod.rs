@@ -34,9 +34,7 @@ use bevy::{
         render_resource::{
             BindGroupLayoutEntry, ShaderStages, Texture, TextureFormat, TextureSampleType,
             TextureView,
-            binding_types::{
-                storage_buffer_read_only_sized, texture_2d, texture_2d_multisampled,
-            },
+            binding_types::{storage_buffer_read_only_sized, texture_2d, texture_2d_multisampled},
         },
         renderer::{RenderDevice, RenderQueue},
     },
@@ -124,10 +122,7 @@ impl Plugin for ObjectsPlugin {
         render_app
             .init_gpu_resource::<ObjectStyleBuffer>()
             .init_resource::<ObjectStyles>()
-            .add_systems(
-                Render,
-                update_object_styles.in_set(PrepareComics::Services),
-            );
+            .add_systems(Render, update_object_styles.in_set(PrepareComics::Services));
     }
 
     fn finish(&self, app: &mut App) {

@@ -7,10 +7,10 @@ pub mod file_color;
 #[cfg(test)]
 mod tests;
 
-pub use blend::{blend_color, blend_ratio};
 pub(crate) use blend::{Blend, dip};
-pub use bounds::{bounded, bounded_option, displayable};
+pub use blend::{blend_color, blend_ratio};
 pub(crate) use bounds::ordered_planes;
+pub use bounds::{bounded, bounded_option, displayable};
 pub use field::{BlendField, FieldRange, HueWheel};
 
 use bevy::{

@@ -3,8 +3,7 @@
 use bevy::color::Color;
 
 use crate::{
-    Effect,
-    BlackFlats, Colorization, Contours, Creases, DepthMap, DepthMapping, Desaturation,
+    BlackFlats, Colorization, Contours, Creases, DepthMap, DepthMapping, Desaturation, Effect,
     ObjectEdges, Outlines, RangeSmoothing, Silhouettes, Sketch, ToneBands,
 };
 

@@ -215,6 +215,7 @@ impl<'de> DeserializeSeed<'de> for EffectSeed {
 
     fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
         let mut erased = <dyn erased_serde::Deserializer>::erase(deserializer);
-        (self.0.read)(&mut erased).map_err(D::Error::custom)
+        (self.0.read)(&mut erased)
+            .map_err(|error| D::Error::custom(format_args!("{}: {error}", self.0.name)))
     }
 }

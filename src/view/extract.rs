@@ -34,10 +34,7 @@ pub(super) fn extract_views(
             With<Camera3d>,
         >,
     >,
-    (time, real_time): (
-        Extract<Option<Res<Time>>>,
-        Extract<Option<Res<Time<Real>>>>,
-    ),
+    (time, real_time): (Extract<Option<Res<Time>>>, Extract<Option<Res<Time<Real>>>>),
     objects: Extract<Res<ObjectStyles>>,
     stale: Query<Entity, With<ViewPlan>>,
     mut seen: Local<EntityHashSet>,

@@ -45,7 +45,9 @@ impl Plugin for ViewPlugin {
             .add_systems(
                 PostUpdate,
                 (
-                    (plan_cameras, request_prepasses).chain().in_set(PlanCameras),
+                    (plan_cameras, request_prepasses)
+                        .chain()
+                        .in_set(PlanCameras),
                     warn_unsupported,
                 ),
             );

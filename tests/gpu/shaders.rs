@@ -2,7 +2,7 @@
 
 use std::{fs, ops::Range};
 
-use bevy_comics::{DebugView, EffectRegistry};
+use bevy_comics::{DebugView, EffectRegistry, Needs};
 
 use crate::wgsl::{Definition, files, module, module_with};
 
@@ -210,12 +210,49 @@ fn views() -> Vec<Definitions> {
     ]
 }
 
+/// The effects without a table of their own: as their defaults are drawn.
+fn other_effects() -> Vec<Modes> {
+    let tables: Vec<&str> = picture_effects()
+        .iter()
+        .chain(&line_effects())
+        .map(|(name, _)| *name)
+        .collect();
+    let types = EffectRegistry::built_in().types();
+    let others = types.iter().filter(|effect| !tables.contains(&effect.name));
+    others
+        .map(|effect| {
+            let needs = (effect.default)().any_needs();
+            let name: &'static str = effect.name.to_uppercase().leak();
+            let mut mode = flags(&[name]);
+            for (need, definition) in [
+                (Needs::MAP, "MAP"),
+                (Needs::MAP | Needs::DEPTH, "DEPTH"),
+                (Needs::NORMALS, "NORMALS"),
+                (Needs::IDS, "OBJECT_IDS"),
+                (Needs::LINES, "LINES"),
+                (Needs::LIGHTNESS_CHANGE, "LIGHTNESS_CHANGE"),
+            ] {
+                if needs.intersects(need) {
+                    mode.push((definition, None));
+                }
+            }
+            (effect.name, vec![mode])
+        })
+        .collect()
+}
+
 #[test]
 fn every_effect_of_the_crate_is_composed() {
-    let modes = picture_effects().into_iter().chain(line_effects());
-    let composed: Vec<&str> = modes.map(|(name, _)| name).collect();
+    let mut composed: Vec<&str> = picture_effects()
+        .iter()
+        .chain(&line_effects())
+        .chain(&other_effects())
+        .map(|(name, _)| *name)
+        .collect();
     let types = EffectRegistry::built_in().types();
-    let known: Vec<&str> = types.iter().map(|effect| effect.name).collect();
+    let mut known: Vec<&str> = types.iter().map(|effect| effect.name).collect();
+    composed.sort_unstable();
+    known.sort_unstable();
     assert_eq!(composed, known);
     let of_effects = types.iter().filter(|effect| effect.view.is_some()).count();
     assert_eq!(debug_views().len(), DebugView::SHARED.len() + of_effects);
@@ -226,7 +263,12 @@ fn every_mode_of_every_effect_composes_and_validates() {
     let source = EffectRegistry::built_in().shader();
     let views = views();
     compose(&source, &[]);
-    for (_, modes) in picture_effects().iter().chain(&line_effects()) {
+    let others = other_effects();
+    for (_, modes) in picture_effects()
+        .iter()
+        .chain(&line_effects())
+        .chain(&others)
+    {
         for mode in modes {
             for view in &views {
                 compose(&source, &[mode, view]);

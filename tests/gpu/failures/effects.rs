@@ -152,10 +152,11 @@ fn an_effect_reads_normals_and_depth() {
         let (_, shown) = small.pass();
         let mut seen = 0;
         for (pixel, normal) in shown.pixels.iter().zip(&normals.pixels) {
-            let squared: f32 = normal[..3].iter().map(|n| (n * 2.0 - 1.0).powi(2)).sum();
+            // Decoded: from -1 to 1, and (-1, -1, -1) where there is none.
+            let squared: f32 = normal[..3].iter().map(|n| n * n).sum();
             let want = if (0.5..=1.5).contains(&squared) {
                 seen += 1;
-                [normal[0], normal[1], normal[2]]
+                [normal[0], normal[1], normal[2]].map(|n| n * 0.5 + 0.5)
             } else {
                 [0.0; 3]
             };

@@ -134,7 +134,9 @@ fn a_prepass_that_ambient_occlusion_requires_stays() {
     let mut small = Small::new(size(), Msaa::Off);
     small.insert(Outlines::default()).settle();
     assert!(has::<DepthPrepass>(&small) && has::<NormalPrepass>(&small));
-    small.insert(ScreenSpaceAmbientOcclusion::default()).settle();
+    small
+        .insert(ScreenSpaceAmbientOcclusion::default())
+        .settle();
     remove::<Outlines>(&mut small);
     small.settle();
     small.settle();
