@@ -34,6 +34,7 @@ effects! {
     contours: Contours, ContourForm, ContourOperator;
     outlines: Outlines;
     sketch: Sketch;
+    vignette: Vignette;
 }
 
 impl EffectRegistry {

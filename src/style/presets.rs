@@ -41,6 +41,7 @@ presets![
     "twilight-toon",
     "watercolor",
     "clear-bands",
+    "silent-film",
 ];
 
 /// The preset of this name; `None` if there is none.

@@ -37,6 +37,7 @@ mod small;
 mod smoothing;
 mod smoothing_views;
 mod styles;
+mod vignette;
 mod wgsl;
 #[cfg(feature = "inspector")]
 mod window;

@@ -23,6 +23,7 @@ pub mod sketch;
 pub mod smoothing;
 pub mod tone_bands;
 pub mod view;
+pub mod vignette;
 pub mod window;
 
 pub type Rgb = [f64; 3];

@@ -1,0 +1,106 @@
+//! The corners of the picture sink into ink.
+
+use bevy::{
+    color::Color,
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::{Vec2, Vec3},
+    reflect::{Reflect, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    effect::{Effect, EffectShader, EffectStage, ViewFacts},
+    settings::{FieldRange, bounded, displayable, file_color, linear_rgb},
+};
+
+/// Mixes a colour into the picture towards the corners of the viewport, lines
+/// included: a spotlight, an old film, the edge of a panel.
+///
+/// Distances are fractions of the way from the centre of the viewport to its
+/// corners, so that the vignette is an ellipse of the viewport's shape.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq)]
+#[serde(default, deny_unknown_fields)]
+pub struct Vignette {
+    /// How much of the colour is mixed in outside of the vignette. Range 0 (none,
+    /// and the effect is left out) to 1 (the colour alone), default 0.6.
+    #[reflect(@FieldRange::linear(0.0, 1.0))]
+    pub amount: f32,
+    /// Distance from the centre at which half of the amount is mixed in. Range 0
+    /// (the centre) to 1 (the corners), default 0.8.
+    #[reflect(@FieldRange::linear(0.0, 1.0))]
+    pub radius: f32,
+    /// Width of the transition, the same unit as `radius`: 0 is a hard edge.
+    /// Range 0 to 1, default 0.5.
+    #[reflect(@FieldRange::linear(0.0, 1.0))]
+    pub softness: f32,
+    /// The colour that is mixed in. Clamped to what a display shows; its alpha is
+    /// not used. Default: black.
+    #[serde(with = "file_color")]
+    pub color: Color,
+}
+
+impl Default for Vignette {
+    fn default() -> Self {
+        Self {
+            amount: 0.6,
+            radius: 0.8,
+            softness: 0.5,
+            color: Color::BLACK,
+        }
+    }
+}
+
+impl Effect for Vignette {
+    const NAME: &'static str = "vignette";
+    const STAGE: EffectStage = EffectStage::Page;
+    const SHADER: EffectShader = EffectShader {
+        path: "bevy_comics::effects::vignette",
+        source: include_str!("vignette.wgsl"),
+        settings: Some("Vignette"),
+    };
+    type Uniform = VignetteUniform;
+
+    fn sanitized(self) -> Self {
+        let default = Self::default();
+        Self {
+            amount: bounded(self.amount, default.amount, 0.0, 1.0),
+            radius: bounded(self.radius, default.radius, 0.0, 1.0),
+            softness: bounded(self.softness, default.softness, 0.0, 1.0),
+            color: displayable(self.color, default.color),
+        }
+    }
+
+    fn strength(&self) -> f32 {
+        self.amount
+    }
+
+    fn faded(self, fraction: f32) -> Self {
+        let amount = self.amount * fraction;
+        Self { amount, ..self }
+    }
+
+    fn uniform(&self, view: &ViewFacts) -> VignetteUniform {
+        let size = Vec2::new(view.viewport.z as f32, view.viewport.w as f32).max(Vec2::ONE);
+        // smoothstep needs its ends apart: a hard edge rises over a thousandth.
+        let half = 0.5 * self.softness.max(1e-3);
+        VignetteUniform {
+            color: linear_rgb(self.color),
+            amount: self.amount,
+            scale: 2.0 / size,
+            low: self.radius - half,
+            high: self.radius + half,
+        }
+    }
+}
+
+/// `Vignette` of `vignette.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct VignetteUniform {
+    color: Vec3,
+    amount: f32,
+    scale: Vec2,
+    low: f32,
+    high: f32,
+}

@@ -1,0 +1,30 @@
+#define_import_path bevy_comics::effects::vignette
+
+// The corners of the picture sink into ink.
+
+#import bevy_comics::effect::pixel::Pixel
+
+struct Vignette {
+    color: vec3<f32>,
+    amount: f32,
+    // 2 / size of the viewport, per physical pixel.
+    scale: vec2<f32>,
+    // Distances at which the colour begins and is full, as fractions of the way
+    // from the centre to the corners.
+    low: f32,
+    high: f32,
+}
+
+// How much of the colour covers a place, physical pixels from the viewport's
+// corner.
+fn vignette_cover(s: Vignette, at: vec2<f32>) -> f32 {
+    let from_centre = at * s.scale - 1.0;
+    let distance = length(from_centre) / sqrt(2.0);
+    return s.amount * smoothstep(s.low, s.high, distance);
+}
+
+fn vignette(s: Vignette, p: Pixel) -> Pixel {
+    var out = p;
+    out.color = mix(p.color, s.color, vignette_cover(s, p.inside + 0.5));
+    return out;
+}

@@ -1,0 +1,20 @@
+//! Twin of `effects/vignette/vignette.wgsl`.
+
+use super::{Rgb, mix, smoothstep};
+use bevy_comics::{Vignette, linear_rgb};
+
+/// How much of the colour covers a place, pixels from the viewport's corner.
+pub fn cover(s: &Vignette, at: [f64; 2], size: [f64; 2]) -> f64 {
+    let half = 0.5 * f64::from(s.softness.max(1e-3));
+    let radius = f64::from(s.radius);
+    // Half the diagonal of a square of two by two is the way to a corner.
+    let [x, y] = [0, 1].map(|i| (at[i] - 0.5 * size[i]) / (0.5 * size[i]));
+    let distance = x.hypot(y) / 2f64.sqrt();
+    f64::from(s.amount) * smoothstep(radius - half, radius + half, distance)
+}
+
+pub fn vignette(s: &Vignette, linear: Rgb, at: [f64; 2], size: [f64; 2]) -> Rgb {
+    let ink = linear_rgb(s.color).to_array().map(f64::from);
+    let cover = cover(s, at, size);
+    std::array::from_fn(|i| mix(linear[i], ink[i], cover))
+}
