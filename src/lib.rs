@@ -25,9 +25,10 @@
 //!    range ([`DepthMap`]);
 //! 4. where [`Outlines`] are asked for, silhouettes, creases and edges between
 //!    objects are found, and wide lines carried by a jump flood;
-//! 5. one full-screen pass after tonemapping applies [`ToneBands`],
-//!    [`Desaturation`], [`Colorization`], [`BlackFlats`], [`Contours`], and then
-//!    the outlines or a [`Sketch`] of them, in this order.
+//! 5. one full-screen pass after tonemapping applies the effects: [`ToneBands`],
+//!    [`Desaturation`], [`Colorization`], [`BlackFlats`], [`Contours`], the
+//!    outlines or a [`Sketch`] of them, and [`Vignette`], in this order, and those
+//!    of the game ([`Effect`]) at the end of their [`EffectStage`].
 //!
 //! Whole looks are assets: [`ComicStyle`], with [`presets`]. On meshes, the
 //! feature `objects` adds `NoContours` and `ContourStyle`, and the feature

@@ -21,8 +21,8 @@ use crate::{
 /// Adds comics stylization: every [`Camera3d`](bevy::camera::Camera3d) with an
 /// effect is drawn as a comic.
 ///
-/// In an app without a renderer the plugin registers its types and does
-/// nothing else.
+/// In an app without a renderer the plugin registers its types and plans what
+/// cameras would draw; nothing is drawn.
 #[derive(Default)]
 pub struct ComicsPlugin;
 

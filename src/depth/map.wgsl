@@ -36,7 +36,8 @@ fn is_background(d: f32) -> bool {
 // of a branch, whatever the condition.
 fn has(f: DepthFrame, flag: u32) -> bool {
 #ifdef MAP_FLAGS
-    return ((#{MAP_FLAGS}u | (f.flags & EMPTY)) & flag) != 0u;
+    let compiled = #{MAP_FLAGS}u;
+    return ((compiled | (f.flags & EMPTY)) & flag) != 0u;
 #else
     return (f.flags & flag) != 0u;
 #endif

@@ -9,7 +9,7 @@ use bevy::{
     ecs::{
         component::Component,
         entity::Entity,
-        query::{With, Without},
+        query::{Or, With, Without},
         system::{Commands, Query, Res, ResMut},
     },
     math::{Mat4, UVec2},
@@ -58,9 +58,10 @@ pub(crate) struct ViewPlan {
     pub cuts: u32,
 }
 
-/// The last plan of a view of which every pipeline was compiled.
+/// On a view that something was chosen for: the last plan of which every pipeline
+/// was compiled, if there was one.
 #[derive(Component)]
-pub(crate) struct ReadyPlan(Arc<Plan>);
+pub(crate) struct ReadyPlan(Option<Arc<Plan>>);
 
 /// Everything that a choice leaves on a view.
 type Chosen = (
@@ -69,6 +70,9 @@ type Chosen = (
     (IdRequest, IdsWanted),
     (FusedRequest, ReadyPlan),
 );
+
+/// A view whose camera asks for nothing any more, or has nowhere to draw.
+type NotDrawn = Or<(Without<ViewPlan>, Without<ExtractedCamera>)>;
 
 pub(crate) fn choose_plans(
     mut commands: Commands,
@@ -80,7 +84,7 @@ pub(crate) fn choose_plans(
         Option<&ViewPrepassTextures>,
         (Option<&ViewTarget>, Option<&ReadyPlan>),
     )>,
-    stale: Query<Entity, (With<ReadyPlan>, Without<ViewPlan>)>,
+    stale: Query<Entity, (With<ReadyPlan>, NotDrawn)>,
     (ledger, registry): (Res<StageLedger>, Res<EffectRegistry>),
     mut services: Services,
     mut cache: ResMut<PipelineCache>,
@@ -98,7 +102,9 @@ pub(crate) fn choose_plans(
         report(&ledger, &registry, (view, &wanted), &scene);
 
         // While a pipeline of this plan compiles, the last one stays.
-        let last = ready.map(|ready| scene.reduce(&ready.0));
+        let last = ready
+            .and_then(|ready| ready.0.as_ref())
+            .map(|ready| scene.reduce(ready));
         let last = last.filter(|last| *last != wanted);
         let mut requests = services.requests(&cache, (&wanted, view), &scene, (extracted, camera));
         // Where pipelines are compiled at once, they are now.
@@ -108,18 +114,17 @@ pub(crate) fn choose_plans(
         let compiling = requests.is_compiling(&cache);
         if compiling {
             ledger.set_compiling(view.camera);
+            if ready.is_none() {
+                commands.entity(entity).insert(ReadyPlan(None));
+            }
             if let Some(last) = &last {
                 requests = services.requests(&cache, (last, view), &scene, (extracted, camera));
             }
         } else {
             ledger.set_drawn(view.camera, view.number);
-            commands.entity(entity).insert(ReadyPlan(wanted.clone()));
-        }
-        let drawn_needs_ids = compiling && last.is_some_and(|last| last.draws_ids());
-        if view.plan.draws_ids() || drawn_needs_ids {
-            commands.entity(entity).insert(IdsWanted);
-        } else {
-            commands.entity(entity).remove::<IdsWanted>();
+            commands
+                .entity(entity)
+                .insert(ReadyPlan(Some(wanted.clone())));
         }
         requests.put(entity, &mut commands);
     }
@@ -129,7 +134,7 @@ pub(crate) fn choose_plans(
 fn report(
     ledger: &StageLedger,
     registry: &EffectRegistry,
-    (view, drawn): (&ViewPlan, &Plan),
+    (view, reduced): (&ViewPlan, &Plan),
     scene: &Scene,
 ) {
     let wanted = &view.plan;
@@ -157,7 +162,7 @@ fn report(
         };
         ledger.set(camera, stage, outcome);
     }
-    for (stage, reason) in drawn.effect_stages(&registry.types()) {
+    for (stage, reason) in reduced.effect_stages(&registry.types()) {
         // What is drawn runs with the fused pass, which says so.
         let reason = reason.unwrap_or(LeftOut::PipelineNotReady);
         ledger.set(camera, stage, StageOutcome::LeftOut(reason));

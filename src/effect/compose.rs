@@ -67,6 +67,12 @@ pub(super) fn refuses(effect: &EffectType, known: &[&EffectType]) -> Option<&'st
         Some("its name is reserved")
     } else if !defines(effect.shader.source, effect.shader.path) {
         Some("its WGSL does not define the import path that the effect states")
+    } else if MODULES.contains(&effect.shader.path)
+        || known
+            .iter()
+            .any(|other| other.shader.path == effect.shader.path)
+    {
+        Some("another module has the import path of its WGSL")
     } else if imports_unknown(effect, known) {
         Some("its WGSL imports a module of bevy_comics that does not exist")
     } else if known.iter().any(|other| other.name == name) {

@@ -12,8 +12,8 @@ pub struct ViewFacts {
     pub scale_factor: f32,
     /// Seconds of the app's default clock ([`Time`](bevy::time::Time)).
     pub seconds: f64,
-    /// The lines of the view were asked for by an effect that the camera has not
-    /// itself ([`Effect::implied`](crate::Effect::implied)).
+    /// The effect that requests the lines is implied, not on the camera
+    /// ([`Effect::implied`](crate::Effect::implied)).
     pub lines_implied: bool,
 }
 

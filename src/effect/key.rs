@@ -118,14 +118,18 @@ impl StylizeKey {
             flood: lines && inputs.flood,
             object_styles: lines && plan.object_styles,
             view: plan.view,
-            map_flags: inputs.view.depth.flags,
+            map_flags: if needs.contains(Needs::MAP) {
+                inputs.view.depth.flags
+            } else {
+                0
+            },
             reach: if lines {
                 inputs.reach.clamp(0, GATHER_REACH) as u32
             } else {
                 0
             },
             finish: plan.finish.weight < 1.0 || plan.finish.split > 0.0,
-            same_size: inputs.view.depth_scale == Vec2::ONE,
+            same_size: reads_pixels && inputs.view.depth_scale == Vec2::ONE,
         }
     }
 
@@ -221,5 +225,17 @@ fn view_definitions(view: DebugView) -> Vec<ShaderDefVal> {
             format!("VIEW_{}", definition(name)).into(),
         ],
         other => vec![other.shader_def().into()],
+    }
+}
+
+impl DebugView {
+    /// What the view reads.
+    pub(super) fn needs(self) -> Needs {
+        match self {
+            Self::DepthMap | Self::RawRange => Needs::MAP,
+            Self::Silhouettes | Self::Creases => Needs::LINES,
+            Self::ObjectIds => Needs::IDS,
+            Self::Saturation | Self::Difference | Self::Effect(_) => Needs::empty(),
+        }
     }
 }

@@ -111,8 +111,8 @@ pub trait Effect:
         (!self.needs().intersects(missing)).then_some(self)
     }
 
-    /// Which lines are to be found on this effect's account. Of several effects
-    /// of a camera the first one in the chain decides. Default: none.
+    /// Lines that this effect requests. Of several effects of a camera the first one
+    /// in the chain decides. Default: none.
     fn lines(&self) -> Option<LineSettings> {
         None
     }
@@ -133,7 +133,7 @@ pub trait Effect:
     fn uniform(&self, view: &ViewFacts) -> Self::Uniform;
 
     /// The effect `t` (0 to 1) of the way to another of equal modes. Default: by
-    /// the fields; numbers are interpolated (by ratio where their
+    /// the fields; `f32` fields are interpolated (by ratio where their
     /// [`FieldRange`](crate::FieldRange) is logarithmic), colours in `OKLab`, and
     /// the rest is this effect's own.
     #[must_use]

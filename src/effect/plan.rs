@@ -235,7 +235,9 @@ impl Plan {
         for planned in std::mem::take(&mut plan.effects) {
             let name = planned.effect.effect_type().name;
             match planned.effect.any_without(needs) {
-                Some(effect) if effect.any_strength() > 0.0 => {
+                Some(effect)
+                    if effect.any_strength() > 0.0 && !effect.any_needs().intersects(needs) =>
+                {
                     plan.effects.push(Planned { effect, ..planned });
                 }
                 _ => plan.left_out.push((name, reason)),
@@ -263,7 +265,7 @@ impl Plan {
             .map(|planned| planned.effect.as_ref())
     }
 
-    /// Whether the camera has not itself the effect that asks for its lines.
+    /// True if the effect that requests the lines is implied, not on the camera.
     pub fn lines_implied(&self) -> bool {
         self.effects
             .iter()
@@ -275,7 +277,7 @@ impl Plan {
     pub fn needs(&self) -> Needs {
         let effects = self.drawn().map(AnyEffect::any_needs);
         let needs = effects.fold(Needs::empty(), |all, one| all | one);
-        // Who reads lines anywhere reads them at all.
+        // LINES_ANYWHERE includes LINES.
         let needs = if needs.contains(Needs::LINES_ANYWHERE) {
             needs | Needs::LINES
         } else {
@@ -384,18 +386,6 @@ impl Plan {
             ComicsStage::DepthRange | ComicsStage::RangeSmoothing if lines => LeftOut::NoMapStyle,
             ComicsStage::DepthRange | ComicsStage::RangeSmoothing => LeftOut::NoDepthStyle,
             ComicsStage::Stylize => LeftOut::NothingToDraw,
-        }
-    }
-}
-
-impl DebugView {
-    /// What the view reads.
-    fn needs(self) -> Needs {
-        match self {
-            Self::DepthMap | Self::RawRange => Needs::MAP,
-            Self::Silhouettes | Self::Creases => Needs::LINES,
-            Self::ObjectIds => Needs::IDS,
-            Self::Saturation | Self::Difference | Self::Effect(_) => Needs::empty(),
         }
     }
 }

@@ -92,6 +92,7 @@ impl Plugin for FusedPlugin {
     /// All effects are registered by now.
     fn finish(&self, app: &mut App) {
         let registry = app.world().resource::<EffectRegistry>().clone();
+        registry.seal();
         let Some(mut shaders) = app.world_mut().get_resource_mut::<Assets<Shader>>() else {
             return;
         };

@@ -72,7 +72,7 @@ pub(super) fn prepare_fused_pass(
 ) {
     for (entity, request, fused) in &views {
         let bytes = request.uniform_bytes();
-        let fits = fused.filter(|fused| fused.uniform.size() >= bytes.len() as u64);
+        let fits = fused.filter(|fused| fused.uniform.size() >= bytes.len() as u64 + SLACK);
         match fits {
             Some(fused) => queue.write_buffer(&fused.uniform, 0, &bytes),
             None => {

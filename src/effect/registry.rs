@@ -110,7 +110,14 @@ fn blended<E: Effect>(
 /// The effects that an app knows, in the order in which they apply to a pixel.
 /// Clones share one list.
 #[derive(Resource, Clone, Debug, Default)]
-pub struct EffectRegistry(Arc<RwLock<Vec<&'static EffectType>>>);
+pub struct EffectRegistry(Arc<RwLock<Registered>>);
+
+#[derive(Debug, Default)]
+struct Registered {
+    types: Vec<&'static EffectType>,
+    /// The fused pass is composed: there is no room for another effect.
+    sealed: bool,
+}
 
 impl EffectRegistry {
     /// Every registered effect, in the order of the chain.
@@ -118,6 +125,7 @@ impl EffectRegistry {
         self.0
             .read()
             .unwrap_or_else(PoisonError::into_inner)
+            .types
             .clone()
     }
 
@@ -132,11 +140,21 @@ impl EffectRegistry {
         compose::fused_pass(&self.types())
     }
 
+    /// Refuses every further effect: the fused pass is composed.
+    pub(crate) fn seal(&self) {
+        let mut known = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        known.sealed = true;
+    }
+
     /// Adds an effect at the end of its stage. An effect whose name is taken, or
     /// no name, is refused with an error in the log.
     pub(crate) fn register(&self, effect: &'static EffectType) {
-        let mut types = self.0.write().unwrap_or_else(PoisonError::into_inner);
-        if let Some(reason) = compose::refuses(effect, &types) {
+        let mut known = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        let late = known
+            .sealed
+            .then_some("the shader is composed already; add its plugin before the app runs");
+        let types = &mut known.types;
+        if let Some(reason) = late.or_else(|| compose::refuses(effect, types)) {
             error!("the effect `{}` is not registered: {reason}", effect.name);
             return;
         }

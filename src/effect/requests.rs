@@ -36,7 +36,7 @@ use crate::{
     objects::IdRequest,
 };
 
-/// What a view has got to draw with.
+/// Inputs that the view provides.
 #[derive(Clone, Copy)]
 pub(super) struct Scene {
     viewport: UVec4,

@@ -1,6 +1,8 @@
 //! The effects of this crate, in the order in which they apply to a pixel. Each
 //! is a folder: settings, packing and one WGSL function.
 
+use std::sync::LazyLock;
+
 use bevy::{
     app::App,
     reflect::{Reflect, std_traits::ReflectDefault},
@@ -40,11 +42,15 @@ effects! {
 impl EffectRegistry {
     /// The effects of this crate, for what runs without an app.
     pub fn built_in() -> Self {
-        let registry = Self::default();
-        for effect in TYPES {
-            registry.register(effect);
-        }
-        registry
+        static BUILT_IN: LazyLock<EffectRegistry> = LazyLock::new(|| {
+            let registry = EffectRegistry::default();
+            for effect in TYPES {
+                registry.register(effect);
+            }
+            registry.seal();
+            registry
+        });
+        BUILT_IN.clone()
     }
 }
 

@@ -4,11 +4,11 @@ use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
     core_pipeline::FullscreenShader,
     ecs::resource::Resource,
-    math::Vec2,
+    math::{UVec4, Vec2},
     render::render_resource::{
         BindGroupLayoutDescriptor, BindGroupLayoutEntry, ColorTargetState, ColorWrites,
-        FragmentState, RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline,
-        TextureFormat, TextureSampleType, VertexState,
+        FragmentState, RenderPipelineDescriptor, ShaderStages, ShaderType,
+        SpecializedRenderPipeline, TextureFormat, TextureSampleType, VertexState,
         binding_types::{
             texture_2d, texture_2d_multisampled, uniform_buffer, uniform_buffer_sized,
         },
@@ -133,8 +133,7 @@ impl OutlineKey {
 
 /// The layout entry of the visible range, everywhere.
 pub(crate) fn range_entry() -> BindGroupLayoutEntry {
-    let size = std::num::NonZeroU64::new(16);
-    uniform_buffer_sized(false, size).build(3, ShaderStages::FRAGMENT)
+    uniform_buffer_sized(false, Some(UVec4::min_size())).build(3, ShaderStages::FRAGMENT)
 }
 
 /// The layout entry of a texture of edges or lines.

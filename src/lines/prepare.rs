@@ -64,8 +64,8 @@ pub(crate) struct Flood {
 }
 
 impl Flood {
-    /// The strides that carry a line this far, in pixels; the last two once
-    /// more, which mends nearly all that a flood gets wrong.
+    /// The strides that carry a line this far, in pixels; the last two strides are
+    /// repeated, which corrects nearly all errors of the flood.
     pub fn strides(reach: i32) -> Vec<u32> {
         let longest = (reach.max(1) as u32).next_power_of_two();
         let halving = (0..=longest.ilog2()).rev().map(|k| 1 << k);

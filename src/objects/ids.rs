@@ -178,7 +178,8 @@ fn draw_object_ids(
         .as_ref()
         .and_then(|phases| phases.get(&extracted.retained_view_entity))
     else {
-        return;
+        let outcome = StageOutcome::LeftOut(LeftOut::PipelineNotReady);
+        return ledger.set(request.camera, ComicsStage::ObjectIds, outcome);
     };
     if depth.texture.sample_count() != request.samples {
         let outcome = StageOutcome::LeftOut(LeftOut::SampleCountMismatch);

@@ -12,8 +12,6 @@ mod table;
 #[cfg(feature = "objects")]
 mod components;
 #[cfg(feature = "objects")]
-pub(crate) use components::assign_object_styles;
-#[cfg(feature = "objects")]
 pub use components::{ContourStyle, LineKinds, NoContours};
 #[cfg(feature = "objects")]
 pub use ids::object_id;
@@ -32,7 +30,7 @@ use bevy::{
     render::{
         GpuResourceAppExt, Render, RenderApp,
         render_resource::{
-            BindGroupLayoutEntry, ShaderStages, Texture, TextureFormat, TextureSampleType,
+            BindGroupLayoutEntry, ShaderStages, ShaderType, Texture, TextureSampleType,
             TextureView,
             binding_types::{storage_buffer_read_only_sized, texture_2d, texture_2d_multisampled},
         },
@@ -44,9 +42,11 @@ use bevy::{
 use crate::schedule::PrepareComics;
 
 /// The ids' texture: (id, style slot).
-pub(crate) const ID_FORMAT: TextureFormat = TextureFormat::Rg16Uint;
+#[cfg(feature = "objects")]
+pub(crate) const ID_FORMAT: bevy::render::render_resource::TextureFormat =
+    bevy::render::render_resource::TextureFormat::Rg16Uint;
 
-/// On a view in the render world: a look that is wanted reads the objects' ids.
+/// On a view in the render world: the wanted plan reads object ids.
 #[derive(Component)]
 pub(crate) struct IdsWanted;
 
@@ -55,7 +55,7 @@ pub(crate) struct IdsWanted;
 #[derive(Component)]
 #[cfg_attr(
     not(feature = "objects"),
-    expect(dead_code, reason = "only the feature `objects` draws ids")
+    allow(dead_code, reason = "only the feature `objects` draws ids")
 )]
 pub(crate) struct IdRequest {
     pub camera: Entity,
@@ -68,6 +68,10 @@ pub(crate) struct IdRequest {
 /// seen at each pixel. As large as the depth texture, with as many samples. The
 /// texture may be another one in every frame.
 #[derive(Component, Clone, Debug)]
+#[cfg_attr(
+    not(feature = "objects"),
+    allow(dead_code, reason = "only the feature `objects` draws ids")
+)]
 pub struct ViewObjectIds {
     /// `Rg16Uint`: the [`object_id`](crate::object_id) (0: none) and the slot of
     /// its contour style (0: none of its own).
@@ -87,8 +91,8 @@ pub(crate) fn ids_entry(multisampled: bool) -> BindGroupLayoutEntry {
 
 /// The layout entry of the objects' styles.
 pub(crate) fn object_styles_entry() -> BindGroupLayoutEntry {
-    let size = std::num::NonZeroU64::new(32);
-    storage_buffer_read_only_sized(false, size).build(6, ShaderStages::FRAGMENT)
+    let size = table::ObjectStyleUniform::min_size();
+    storage_buffer_read_only_sized(false, Some(size)).build(6, ShaderStages::FRAGMENT)
 }
 
 fn update_object_styles(
@@ -109,7 +113,7 @@ impl Plugin for ObjectsPlugin {
         #[cfg(feature = "objects")]
         app.register_type::<ContourStyle>()
             .register_type::<NoContours>()
-            .add_systems(bevy::app::PostUpdate, assign_object_styles);
+            .add_systems(bevy::app::PostUpdate, components::assign_object_styles);
         if app.get_sub_app(RenderApp).is_none() {
             return;
         }

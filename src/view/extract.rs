@@ -1,4 +1,4 @@
-//! The way of a plan to the render world.
+//! Copies plans to the render world.
 
 use bevy::{
     camera::{Camera, Camera3d, MainPassResolutionOverride, Projection},
@@ -15,7 +15,7 @@ use super::CameraPlan;
 use crate::{
     depth::{frame::DepthProjection, smoothing::CameraCuts},
     effect::ViewPlan,
-    objects::ObjectStyles,
+    objects::{IdsWanted, ObjectStyles},
 };
 
 pub(super) fn extract_views(
@@ -46,7 +46,14 @@ pub(super) fn extract_views(
         }
         let clip_from_view = camera.clip_from_view();
         seen.insert(render_entity);
-        commands.entity(render_entity).insert(ViewPlan {
+        let mut view = commands.entity(render_entity);
+        // Known before objects are queued, in the frame that first reads ids.
+        if asked.plan.draws_ids() {
+            view.insert(IdsWanted);
+        } else {
+            view.remove::<IdsWanted>();
+        }
+        view.insert(ViewPlan {
             camera: entity,
             plan: asked.plan.clone(),
             number: asked.number,
@@ -62,7 +69,7 @@ pub(super) fn extract_views(
     }
     for entity in &stale {
         if !seen.contains(&entity) {
-            commands.entity(entity).remove::<ViewPlan>();
+            commands.entity(entity).remove::<(ViewPlan, IdsWanted)>();
         }
     }
 }

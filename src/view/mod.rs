@@ -7,7 +7,7 @@ mod prepasses;
 use std::sync::Arc;
 
 use bevy::{
-    app::{App, Plugin, PostUpdate},
+    app::{App, Last, Plugin},
     camera::{Camera2d, Camera3d, RenderTarget},
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     ecs::{
@@ -43,27 +43,15 @@ impl Plugin for ViewPlugin {
         app.add_observer(give_up_claims::<DepthPrepass>)
             .add_observer(give_up_claims::<NormalPrepass>)
             .add_systems(
-                PostUpdate,
-                (
-                    (plan_cameras, request_prepasses)
-                        .chain()
-                        .in_set(PlanCameras),
-                    warn_unsupported,
-                ),
+                // After everything that changes a camera's components.
+                Last,
+                ((plan_cameras, request_prepasses).chain(), warn_unsupported),
             );
-        #[cfg(feature = "objects")]
-        app.configure_sets(
-            PostUpdate,
-            PlanCameras.after(crate::objects::assign_object_styles),
-        );
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
             render_app.add_systems(ExtractSchedule, extract::extract_views);
         }
     }
 }
-
-#[derive(bevy::ecs::schedule::SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-struct PlanCameras;
 
 fn plan_cameras(
     mut commands: Commands,

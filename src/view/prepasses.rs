@@ -89,7 +89,9 @@ impl Request<'_> {
         };
         let is_read = reads(&plan.plan);
         match (own, is_read) {
-            (None, true) if !self.camera.contains::<P>() => {
+            (_, true) if !self.camera.contains::<P>() => {
+                // A claim that is there when the prepass comes would be given up.
+                commands.remove::<OwnPrepass<P>>();
                 commands.insert(P::default());
                 commands.insert(claim(None));
             }

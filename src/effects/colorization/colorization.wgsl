@@ -35,7 +35,8 @@ fn mode_of(s: Colorization) -> u32 {
 
 fn is_faithful(s: Colorization) -> bool {
 #ifdef COLORIZATION_FAITHFUL
-    return #{COLORIZATION_FAITHFUL}u != 0u;
+    let compiled = #{COLORIZATION_FAITHFUL}u;
+    return compiled != 0u;
 #else
     return s.faithful != 0u;
 #endif

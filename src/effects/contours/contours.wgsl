@@ -142,7 +142,8 @@ fn operator_of(s: Contours) -> u32 {
 
 fn is_faithful(s: Contours) -> bool {
 #ifdef CONTOURS_FAITHFUL
-    return #{CONTOURS_FAITHFUL}u != 0u;
+    let compiled = #{CONTOURS_FAITHFUL}u;
+    return compiled != 0u;
 #else
     return s.faithful != 0u;
 #endif

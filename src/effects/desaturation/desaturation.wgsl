@@ -28,7 +28,8 @@ fn curve_of(s: Desaturation) -> u32 {
 
 fn is_faithful(s: Desaturation) -> bool {
 #ifdef DESATURATION_FAITHFUL
-    return #{DESATURATION_FAITHFUL}u != 0u;
+    let compiled = #{DESATURATION_FAITHFUL}u;
+    return compiled != 0u;
 #else
     return s.faithful != 0u;
 #endif

@@ -17,7 +17,8 @@ struct ToneBands {
 // Modes are compiled in where they are known: see has() in map.wgsl.
 fn is_faithful(s: ToneBands) -> bool {
 #ifdef TONE_BANDS_FAITHFUL
-    return #{TONE_BANDS_FAITHFUL}u != 0u;
+    let compiled = #{TONE_BANDS_FAITHFUL}u;
+    return compiled != 0u;
 #else
     return s.faithful != 0u;
 #endif

@@ -243,3 +243,55 @@ fn a_switch_keeps_the_range_and_allocates_nothing_while_it_compiles() {
         "the range jumped: {kept} codes, {lost} for a range found anew"
     );
 }
+
+/// A style that goes before its first pipeline is there leaves nothing behind. Its
+/// requests used to stay, and were drawn once the pipeline came.
+#[test]
+fn a_style_that_goes_before_its_pipeline_comes_leaves_nothing() {
+    let mut small = in_background();
+    let bare = still(&mut small);
+    small.insert(Colorization {
+        amount: 0.87,
+        ..Colorization::SEPIA
+    });
+    small.headless.step(1);
+    assert!(is_compiling(&small) || small.picture() == bare);
+    remove::<Colorization>(&mut small);
+    for _ in 0..200 {
+        step(&mut small);
+    }
+    assert_eq!(small.picture(), bare);
+    let world = small.headless.app.world();
+    let diagnostics = world.resource::<ComicsDiagnostics>();
+    assert!(!diagnostics.cameras.contains_key(&small.camera));
+}
+
+/// A prepass that the game takes away comes back while a style reads it.
+#[test]
+fn a_prepass_that_is_taken_away_comes_back() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.insert(Contours::default()).settle();
+    let inked = small.picture();
+    remove::<DepthPrepass>(&mut small);
+    small.settle();
+    assert!(has::<DepthPrepass>(&small));
+    assert_eq!(small.picture(), inked);
+    // And it is still this crate's to take back.
+    remove::<Contours>(&mut small);
+    small.settle();
+    assert!(!has::<DepthPrepass>(&small));
+}
+
+/// Ids are drawn in the first frame that reads them: with compiled pipelines the
+/// first picture is the last one.
+#[test]
+fn the_first_frame_with_ids_has_them() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.insert(Outlines::default()).settle();
+    let lined = small.picture();
+    remove::<Outlines>(&mut small);
+    small.settle();
+    small.insert(Outlines::default());
+    small.headless.step(1);
+    assert_eq!(small.picture(), lined);
+}
