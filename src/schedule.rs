@@ -2,10 +2,13 @@
 
 use bevy::ecs::schedule::SystemSet;
 
-/// The render-world systems of this crate, in the `Core3d` schedule of a camera:
-/// order your own passes against them.
+/// The systems of this crate: order your own against them. Those of the render
+/// world are in the `Core3d` schedule of a camera.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ComicsSystems {
+    /// In the main world's schedule [`Last`](bevy::app::Last): what cameras draw is
+    /// planned from their components, and prepasses are asked for or released.
+    Plan,
     /// The depth range is found: after `Core3dSystems::Prepass`, before
     /// `Core3dSystems::MainPass`.
     DepthRange,

@@ -24,6 +24,7 @@ use bevy::{
 use crate::{
     effect::{EffectRegistry, Plan},
     objects::ObjectStyles,
+    schedule::ComicsSystems,
 };
 use prepasses::{give_up_claims, request_prepasses};
 
@@ -45,7 +46,12 @@ impl Plugin for ViewPlugin {
             .add_systems(
                 // After everything that changes a camera's components.
                 Last,
-                ((plan_cameras, request_prepasses).chain(), warn_unsupported),
+                (
+                    (plan_cameras, request_prepasses)
+                        .chain()
+                        .in_set(ComicsSystems::Plan),
+                    warn_unsupported,
+                ),
             );
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
             render_app.add_systems(ExtractSchedule, extract::extract_views);

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::common::studio::with_map;
-use bevy_comics::{Creases, Outlines, Silhouettes, Sketch, ToneBands};
+use bevy_comics::{ComicsSystems, Creases, Outlines, Silhouettes, Sketch, ToneBands};
 
 /// Takes the depth prepass away as soon as anyone asks for it.
 fn forbid_prepass(mut commands: Commands, cameras: Query<Entity, With<DepthPrepass>>) {
@@ -16,7 +16,10 @@ fn failure_06_without_a_prepass_the_colour_styles_remain() {
     let mut small = Small::new(size(), Msaa::Off);
     small.settle();
     let original = small.picture();
-    small.headless.app.add_systems(Last, forbid_prepass);
+    small
+        .headless
+        .app
+        .add_systems(Last, forbid_prepass.after(ComicsSystems::Plan));
     small
         .insert((Contours::default(), Desaturation::default()))
         .settle();
