@@ -6,9 +6,11 @@ use super::{
     lines::{self, Edges, Lookup},
     sketch, tone_bands,
     view::{View, map_slope, pixel_depth},
+    vignette,
 };
 use bevy_comics::{
     BlackFlats, Colorization, ComicStyle, Contours, Desaturation, Outlines, Sketch, ToneBands,
+    Vignette,
 };
 
 /// What the pass reads: the picture, in light, and the lines.
@@ -103,6 +105,11 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
             linear = lines::draw(outlines, linear, edges.ink(place, lookup, nudge));
         }
         _ => {}
+    }
+    if let Some(s) = style.get::<Vignette>() {
+        let [left, top, width, height] = view.viewport.map(f64::from);
+        let at = [place[0] - left, place[1] - top];
+        linear = vignette::vignette(s, linear, at, [width, height]);
     }
     linear
 }
