@@ -122,9 +122,12 @@ pub(crate) fn choose_plans(
             }
         } else {
             ledger.set_drawn(view.camera, view.number);
-            commands
-                .entity(entity)
-                .insert(ReadyPlan(Some(wanted.clone())));
+            let known = ready.and_then(|ready| ready.0.as_ref());
+            if !known.is_some_and(|known| Arc::ptr_eq(known, &wanted)) {
+                commands
+                    .entity(entity)
+                    .insert(ReadyPlan(Some(wanted.clone())));
+            }
         }
         requests.put(entity, &mut commands);
     }

@@ -15,7 +15,7 @@ fn page(name: &str) -> String {
 }
 
 /// The blocks of a language, in order.
-fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
+pub fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
     page.split("```")
         .skip(1)
         .step_by(2)

@@ -3,16 +3,10 @@
 
 use std::{fs, path::Path};
 
-use crate::outside::{OutsideCrate, ROOT};
-
-/// The blocks of a language, in order.
-fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
-    page.split("```")
-        .skip(1)
-        .step_by(2)
-        .filter_map(|block| block.strip_prefix(language)?.strip_prefix('\n'))
-        .collect()
-}
+use crate::{
+    guide::blocks,
+    outside::{OutsideCrate, ROOT},
+};
 
 /// The page's effect without a window, and the page's functions called.
 const HEADLESS_MAIN: &str = r##"

@@ -17,8 +17,8 @@ use crate::{
     reference::{
         color,
         fused::{Input, stylize},
-        lines::Edges,
         map::{Frame, Projection},
+        read::Edges,
         view::View,
     },
     small::{Small, with_option},

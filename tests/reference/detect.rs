@@ -53,9 +53,8 @@ fn normal(view: &View, x: i64, y: i64) -> Normal {
         y.clamp(y0, y0 + h - 1) as u32,
     );
     let n = view.normals.as_ref()?.pixels[(y * view.width + x) as usize].map(f64::from);
-    let squared = n[..3].iter().map(|c| c * c).sum::<f64>();
-    let there = !is_background(view.depth(x, y, 0)) && (0.5..=1.5).contains(&squared);
-    there.then_some([n[0], n[1], n[2]])
+    let found = super::normal::there([n[0], n[1], n[2]]);
+    found.filter(|_| !is_background(view.depth(x, y, 0)))
 }
 
 /// `reference`: what jumps are measured against, for the largest raw depth

@@ -3,7 +3,7 @@
 
 use super::{
     Rgb, black_flats, color, colorization, contours, desaturation,
-    lines::{self, Edges, Lookup},
+    read::{self, Edges, Lookup},
     sketch, tone_bands,
     view::{View, map_slope, pixel_depth},
     vignette,
@@ -96,13 +96,13 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
                 let pressure = sketch::pen_pressure(s, inside, stroke, input.drawing, 1.0);
                 blank
                     * (1.0
-                        - (lines::total(outlines, edges.ink(at, lookup, nudge)) * pressure)
+                        - (read::total(outlines, edges.ink(at, lookup, nudge)) * pressure)
                             .clamp(0.0, 1.0))
             });
             linear = sketch::draw_sketch(s, linear, 1.0 - blank);
         }
         (None, Some((outlines, edges))) => {
-            linear = lines::draw(outlines, linear, edges.ink(place, lookup, nudge));
+            linear = read::draw(outlines, linear, edges.ink(place, lookup, nudge));
         }
         _ => {}
     }

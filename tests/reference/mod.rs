@@ -1,5 +1,5 @@
 //! The shaders' twins in double precision, named as the WGSL files they mirror
-//! (`lines.rs`: `lines/read.wgsl` and `lines/flood.wgsl`). Each is written from the
+//! (`read.rs`: `lines/read.wgsl` and `lines/flood.wgsl`). Each is written from the
 //! definition, not from the shader.
 
 pub mod black_flats;
@@ -13,12 +13,13 @@ pub mod finish;
 pub mod fused;
 #[allow(dead_code, reason = "the light is tested function by function")]
 pub mod light;
-pub mod lines;
 pub mod map;
 pub mod noise;
+pub mod normal;
 pub mod ping_pong;
 pub mod range;
 pub mod raw;
+pub mod read;
 pub mod sketch;
 pub mod smoothing;
 pub mod tone_bands;

@@ -6,6 +6,7 @@ mod color_styles;
 mod contour_response;
 mod depth_map;
 mod finish;
+mod normal;
 
 use bevy::color::{Color, Hsva};
 use bevy_comics::{

@@ -1,0 +1,60 @@
+//! Decoding the normal prepass, against its twin and against the encoding.
+
+use super::*;
+use crate::reference::normal;
+
+const NORMAL: &str = "#import bevy_comics::depth::normal::decode_normal";
+
+/// Texels of ten bits a component: of unit normals, and any.
+#[test]
+fn a_texel_is_its_normal_or_none() {
+    let ten_bits = |c: f32| ((c * 0.5 + 0.5) * 1023.0).round() / 1023.0;
+    let row = (vec(-1.0f32..1.0, 3), any::<bool>()).prop_map(move |(v, unit)| {
+        let length = v.iter().map(|c| c * c).sum::<f32>().sqrt().max(1e-3);
+        let scale = if unit { 1.0 / length } else { 1.0 };
+        [0, 1, 2].map(|i| ten_bits((v[i] * scale).clamp(-1.0, 1.0)))
+    });
+    for_batches(row, |rows| {
+        let results = gpu().evaluate(
+            NORMAL,
+            "return decode_normal(vec3(i(0u), i(1u), i(2u)));",
+            rows,
+        );
+        for (row, result) in rows.iter().zip(results) {
+            let wide = row.map(f64::from);
+            let want = normal::decode(wide);
+            let squared: f64 = wide.iter().map(|c| (2.0 * c - 1.0).powi(2)).sum();
+            // Within rounding of a limit either answer is right.
+            let close = [0.5, 1.5]
+                .iter()
+                .any(|limit| (squared - limit).abs() < 1e-5);
+            assert!(
+                close || (result[3] > 0.0) == want.is_some(),
+                "{row:?}: {result:?}"
+            );
+            for (i, n) in want.into_iter().flatten().enumerate() {
+                assert!(
+                    (f64::from(result[i]) - n).abs() <= 2f64.powi(-22),
+                    "{row:?}"
+                );
+            }
+        }
+    });
+}
+
+/// The rule: ten bits keep a unit normal to a step of the code, and what the
+/// prepass clears to is none.
+#[test]
+fn unit_normals_survive_ten_bits_and_the_sky_has_none() {
+    for k in 0..2000 {
+        let (a, b) = (f64::from(k) * 2.399_963, 1.0 - f64::from(k) / 1000.0);
+        let r = (1.0 - b * b).max(0.0).sqrt();
+        let n = [r * a.cos(), r * a.sin(), b];
+        let texel = n.map(|c| ((c * 0.5 + 0.5) * 1023.0).round() / 1023.0);
+        let back = normal::decode(texel).expect("a normal");
+        for (c, back) in n.iter().zip(back) {
+            assert!((c - back).abs() <= 1.0 / 1023.0 + 1e-12, "{n:?}");
+        }
+    }
+    assert_eq!(normal::decode([0.0; 3]), None);
+}
