@@ -92,7 +92,7 @@ fn setup(mut commands: Commands, assets: Res<AssetServer>) {
 fn toggle_rain(world: &mut World) -> Result {
     let (camera, rains, _) = world.query::<(Entity, Has<Rain>, &Camera3d)>().single(world)?;
     let rain = if rains { "" } else { "rain: (amount: 0.8)" };
-    let text = format!("(version: 1, outlines: (), desaturation: (), {rain})");
+    let text = format!("(version: 2, outlines: (), desaturation: (), {rain})");
     let style = world.resource::<EffectRegistry>().style_from_ron(&text)?;
     world.entity_mut(camera).insert(StyleTransition::to(style, 2.0));
     Ok(())

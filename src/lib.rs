@@ -31,7 +31,7 @@
 //!    of the game ([`Effect`]) at the end of their [`EffectStage`].
 //!
 //! Whole looks are assets: [`ComicStyle`], with [`presets`]. On meshes, the
-//! feature `objects` adds `NoContours` and `ContourStyle`, and the feature
+//! feature `objects` adds `NoOutlines` and `OutlineStyle`, and the feature
 //! `cartoon` adds `CartoonMaterial` and `CartoonScene`; both are on by default.
 //!
 //! Equations are those of *Comics stylizations of 3D scenes using GPU*
@@ -70,13 +70,13 @@ pub use effect::{
 };
 pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
-pub use lines::{Creases, EdgeForm, LineSettings, ObjectEdges, Silhouettes};
+pub use lines::{Creases, LineSettings, ObjectEdges, Silhouettes};
 #[cfg(feature = "objects")]
-pub use objects::{ContourStyle, LineKinds, NoContours, ViewObjectIds, object_id};
+pub use objects::{NoOutlines, OutlineKinds, OutlineStyle, ViewObjectIds, object_id};
 pub use plugin::ComicsPlugin;
 pub use schedule::ComicsSystems;
 pub use settings::{
-    BlendField, FieldRange, HueWheel, blend_color, blend_ratio, bounded, bounded_option,
+    BlendField, FieldRange, Form, HueWheel, blend_color, blend_ratio, bounded, bounded_option,
     displayable, file_color, linear_rgb,
 };
 pub use style::{
@@ -93,11 +93,11 @@ struct Guide;
 pub mod prelude {
     pub use crate::{
         CameraCut, ComicStyle, ComicStyleHandle, ComicsPlugin, Creases, DepthMap, DepthMapping,
-        EdgeForm, Effect, EffectPlugin, ObjectEdges, RangeSmoothing, Silhouettes, SplitView,
+        Effect, EffectPlugin, Form, ObjectEdges, RangeSmoothing, Silhouettes, SplitView,
         StyleTransition, StyleTransitionFinished, StyleWeight, VisibleDepthRange, effects::*,
     };
     #[cfg(feature = "cartoon")]
     pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};
     #[cfg(feature = "objects")]
-    pub use crate::{ContourStyle, LineKinds, NoContours};
+    pub use crate::{NoOutlines, OutlineKinds, OutlineStyle};
 }

@@ -5,6 +5,7 @@ use bevy::ecs::schedule::SystemSet;
 /// The systems of this crate: order your own against them. Those of the render
 /// world are in the `Core3d` schedule of a camera.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum ComicsSystems {
     /// In the main world's schedule [`Last`](bevy::app::Last): what cameras draw is
     /// planned from their components, and prepasses are asked for or released.

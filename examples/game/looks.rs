@@ -4,8 +4,8 @@
 
 use bevy::prelude::*;
 use bevy_comics::{
-    BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, Contours, Desaturation,
-    Outlines, Sketch, StyleTransition, StyleTransitionFinished, ToneBands, presets,
+    BlackFlats, Colorization, ColorizationMode, ComicStyle, Contours, Desaturation, Form, Outlines,
+    Sketch, StyleTransition, StyleTransitionFinished, ToneBands, presets,
 };
 
 /// What the picture should say.
@@ -61,7 +61,7 @@ impl Looks {
                 mode: ColorizationMode::Atmosphere,
                 color: Color::srgb(0.85, 0.12, 0.1),
                 amount: 0.85,
-                method: ColorMethod::Corrected,
+                form: Form::Corrected,
             });
         self.flash = Some(blow);
     }
@@ -71,7 +71,7 @@ impl Looks {
             mode: ColorizationMode::Atmosphere,
             color: Color::srgb(1.0, 0.82, 0.35),
             amount: 0.55,
-            method: ColorMethod::Corrected,
+            form: Form::Corrected,
         });
         self.flash = Some(glow);
     }
@@ -86,7 +86,7 @@ impl Looks {
                 mode: ColorizationMode::Linear,
                 color: Color::srgb(0.9, 0.1, 0.08),
                 amount: 1.0,
-                method: ColorMethod::Corrected,
+                form: Form::Corrected,
             })
             .with(Contours {
                 color: Color::srgb(0.25, 0.0, 0.02),

@@ -10,8 +10,8 @@ use bevy::{
     render::{RenderApp, sync_world::RenderEntity, view::Msaa},
 };
 use bevy_comics::{
-    ColorMethod, Colorization, ColorizationMode, ComicStyle, ComicsPlugin, Contours, DepthMap,
-    DepthMapping, Desaturation, presets,
+    Colorization, ColorizationMode, ComicStyle, ComicsPlugin, Contours, DepthMap, DepthMapping,
+    Desaturation, Form, presets,
 };
 use image::{Rgba, RgbaImage};
 
@@ -239,10 +239,10 @@ fn figure_4(folder: &Path) -> Result<(), String> {
             .map_err(|error| error.to_string())?;
         let mut faithful = style.clone();
         if let Some(s) = faithful.get_mut::<Desaturation>() {
-            s.method = ColorMethod::Faithful;
+            s.form = Form::Faithful;
         }
         if let Some(s) = faithful.get_mut::<Colorization>() {
-            s.method = ColorMethod::Faithful;
+            s.form = Form::Faithful;
         }
         let mut studio = Studio::new(scene, SIZE, Msaa::Sample4);
         rows.push(vec![

@@ -5,7 +5,7 @@ use bevy::{
     prelude::*,
     render::RenderApp,
 };
-use bevy_comics::{ColorMethod, Colorization, ComicStyle, Desaturation};
+use bevy_comics::{Colorization, ComicStyle, Desaturation, Form};
 use nv_flip::{FlipImageRgb8, FlipPool};
 
 use crate::{
@@ -195,7 +195,7 @@ pub fn frame(ends: [f64; 2]) -> Frame {
 pub fn look() -> ComicStyle {
     ComicStyle::new()
         .with(Desaturation {
-            method: ColorMethod::Corrected,
+            form: Form::Corrected,
             ..Desaturation::default()
         })
         .with(Colorization::default())

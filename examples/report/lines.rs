@@ -139,9 +139,9 @@ fn shrunk(picture: &image::RgbaImage, by: u32) -> Vec<[u8; 3]> {
     pixels
 }
 
-fn bands(feather: f32) -> ComicStyle {
+fn bands(softness: f32) -> ComicStyle {
     ComicStyle::new().with(ToneBands {
-        feather,
+        softness,
         ..default()
     })
 }

@@ -5,7 +5,7 @@ use bevy::{
     ecs::{message::MessageReader, system::ResMut},
     material::OpaqueRendererMethod,
     pbr::{ExtendedMaterial, MaterialExtension, StandardMaterial},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::{AsBindGroup, ShaderType},
     shader::ShaderRef,
 };
@@ -36,7 +36,7 @@ pub type CartoonMaterial = ExtendedMaterial<StandardMaterial, CartoonLight>;
 /// How a [`CartoonMaterial`] takes the light.
 #[derive(Asset, AsBindGroup, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[uniform(100, CartoonLightUniform)]
-#[reflect(Default, Clone, PartialEq)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CartoonLight {
     /// Where the backface shadow begins: the cosine of the angle between normal

@@ -16,7 +16,7 @@ use bevy::{
     material::OpaqueRendererMethod,
     pbr::{MeshMaterial3d, StandardMaterial},
     platform::collections::HashMap,
-    reflect::{Reflect, std_traits::ReflectDefault},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
 };
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +30,7 @@ use super::{CartoonLight, CartoonMaterial};
 /// of this component's settings reach the copy. Removing the component gives the
 /// standard materials back. Of several on the way up, the nearest counts.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[reflect(Component, Default, Clone, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CartoonScene {
     /// How the materials take the light. Default: [`CartoonLight::default`].

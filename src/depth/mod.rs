@@ -13,7 +13,7 @@ pub(crate) mod view;
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
 };
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +30,7 @@ use crate::settings::{FieldRange, bounded, ordered_planes};
 /// Without this component a camera uses the default: the range of what is
 /// visible (\[CS\] Eq. 4), smoothed over time so that it does not flicker.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[reflect(Component, Default, Clone, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DepthMap {
     /// Which distances become 0 and 1, and what lies between.
@@ -114,8 +114,9 @@ impl DepthMap {
 /// Which distances the depth map spans. Distances are view depths in world
 /// units: along the camera's forward axis, not along the ray.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub enum DepthMapping {
     /// \[CS\] Eq. 4: the nearest visible distance becomes 0, the farthest 1,
     /// linear in between.
@@ -187,7 +188,8 @@ impl DepthMapping {
 /// How the visible range is found. The result is the same to the bit; the time
 /// is not.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq, Hash)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum ReductionMethod {
     /// [`BarrierFree`](Self::BarrierFree) on CPU adapters, else
     /// [`Subgroup`](Self::Subgroup).

@@ -31,6 +31,7 @@ use super::frame::DepthProjection;
 /// style needs them.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum VisibleDepthRange {
     /// No frame has been read yet.
     #[default]

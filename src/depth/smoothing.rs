@@ -16,7 +16,7 @@ use bevy::{
         system::{Commands, Query},
     },
     math::UVec2,
-    reflect::{Reflect, std_traits::ReflectDefault},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::{
         render_resource::{
             BindGroupEntry, BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource,
@@ -45,7 +45,7 @@ use crate::settings::{FieldRange, bounded};
 /// anew with the first frame that shows geometry, after a [`CameraCut`], when
 /// the size of the view changes, and when the near or far plane does.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RangeSmoothing {
     /// Share of the visible pixels that may lie beyond either end of the range:

@@ -3,11 +3,7 @@
 
 use std::sync::LazyLock;
 
-use bevy::{
-    app::App,
-    reflect::{Reflect, std_traits::ReflectDefault},
-};
-use serde::{Deserialize, Serialize};
+use bevy::app::App;
 
 use crate::effect::{EffectPlugin, EffectRegistry, EffectType};
 
@@ -29,11 +25,11 @@ macro_rules! effects {
 }
 
 effects! {
-    tone_bands: ToneBands, ToneBandMethod;
+    tone_bands: ToneBands;
     desaturation: Desaturation;
     colorization: Colorization, ColorizationMode;
     black_flats: BlackFlats;
-    contours: Contours, ContourForm, ContourOperator;
+    contours: Contours, ContourOperator;
     outlines: Outlines;
     sketch: Sketch;
     vignette: Vignette;
@@ -52,16 +48,4 @@ impl EffectRegistry {
         });
         BUILT_IN.clone()
     }
-}
-
-/// Which form of a colour effect is computed.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq, Hash)]
-pub enum ColorMethod {
-    /// The paper's intention without its flaws: luminance is kept, hues blend
-    /// without wrapping, greys take the atmosphere.
-    #[default]
-    Corrected,
-    /// The paper's equations as printed, on HSV of the display codes.
-    Faithful,
 }

@@ -40,7 +40,7 @@ impl StyleWeight {
 pub struct SplitView {
     /// Where the line is, as a share of the viewport's width from the left.
     /// Range 0 (all styled) to 1 (all original), default 0.5.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub at: f32,
 }
 

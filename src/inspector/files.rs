@@ -279,10 +279,10 @@ mod tests {
         assert_eq!(wait(&mut files, camera, &inked(4.0)), None);
 
         // Somebody edits it, breaks it, mends it, deletes it.
-        fs::write(&path, "(version: 1, contours: (width: 7.0))").expect("written");
+        fs::write(&path, "(version: 2, contours: (width: 7.0))").expect("written");
         let read = wait(&mut files, camera, &inked(4.0)).expect("news");
         assert_eq!(read.get::<Contours>().map(|c| c.width), Some(7.0));
-        fs::write(&path, "(version: 1,\n contours: (widht: 7.0))").expect("written");
+        fs::write(&path, "(version: 2,\n contours: (widht: 7.0))").expect("written");
         assert_eq!(
             wait(&mut files, camera, &inked(7.0)),
             None,
@@ -293,7 +293,7 @@ mod tests {
             error.contains("line 2") && error.contains("column"),
             "{error}"
         );
-        fs::write(&path, "(version: 1, contours: (width: 8.0))").expect("written");
+        fs::write(&path, "(version: 2, contours: (width: 8.0))").expect("written");
         assert!(wait(&mut files, camera, &inked(7.0)).is_some());
         assert_eq!(files.open[&camera].error, None);
         fs::remove_file(&path).expect("removed");

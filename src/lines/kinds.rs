@@ -3,45 +3,35 @@
 use bevy::{
     color::Color,
     math::FloatExt,
-    reflect::{Reflect, std_traits::ReflectDefault},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
 };
 use serde::{Deserialize, Serialize};
 
 use crate::settings::{
-    Blend, FieldRange, blend_color, blend_ratio, bounded, displayable, file_color,
+    Blend, FieldRange, Form, blend_color, blend_ratio, bounded, displayable, file_color,
 };
-
-/// What an outline's response is measured against, and how wide it is.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq, Hash)]
-pub enum EdgeForm {
-    /// Independent of units, planes and rotation, and drawn as a line of the
-    /// asked width along the edge itself.
-    #[default]
-    Measured,
-    /// \[CL\] Eq. 1 and 2 on the buffers as they are: the response depends on
-    /// the near plane and the scale of the world (silhouettes) or on the world's
-    /// axes (creases), and every edge answers on four columns of pixels, which
-    /// are the line.
-    Faithful,
-}
 
 /// Outlines where a surface ends before another one (\[CL\] Eq. 1, 2).
 ///
 /// The filter is run on the raw depth buffer, which is affine over any plane:
 /// no plane, however grazing, has a silhouette of its own.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Silhouettes {
-    /// How the jump is measured. Default: [`EdgeForm::Measured`].
-    pub form: EdgeForm,
+    /// How the jump is measured. [`Form::Corrected`] does not depend on the
+    /// world's units, the clipping planes or the camera's rotation, and draws a
+    /// line of the given width along the edge. [`Form::Faithful`] is \[CL\]
+    /// Eq. 1 and 2 on the depth buffer as it is: the response depends on the
+    /// near plane and the scale of the world, and the line is the four columns
+    /// of pixels that respond. Default: [`Form::Corrected`].
+    pub form: Form,
     /// The detection threshold `k_p` of Eq. 2; the lower, the more lines.
-    /// Measured: the jump in depth, as a share of the distance, that is a full
+    /// Corrected: the jump in depth, as a share of the distance, that is a full
     /// line (a straight edge answers with half its jump); under an orthographic
     /// projection a share of 1.2 times the height of the view. Faithful: the
-    /// paper's number on the buffer of 0 to 1. Range 1e-6 to 1; measured from
-    /// 0.005 to 0.1 is useful. Default 0.02.
+    /// paper's number on the buffer of 0 to 1. Range 1e-6 to 1; in the corrected
+    /// form 0.005 to 0.1 is useful. Default 0.02.
     #[reflect(@FieldRange::logarithmic(1e-6, 1.0))]
     pub threshold: f32,
     /// The paper's edge-limit-value: the response, 0 to 1, above which there is
@@ -50,20 +40,20 @@ pub struct Silhouettes {
     pub edge_limit: f32,
     /// Softness of that limit: 0 is a hard step, 1 lets the ink follow the
     /// response, as a sketch wants it. Range 0 to 1, default 0.5.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
     /// Colour of the line. Clamped to what a display shows; its alpha is not
     /// used. Default: black.
     #[serde(with = "file_color")]
     pub color: Color,
     /// Opacity of the line. Range 0 (the kind is left out) to 1. Default 1.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
 }
 
 impl Silhouettes {
     pub(crate) const DEFAULT: Self = Self {
-        form: EdgeForm::Measured,
+        form: Form::Corrected,
         threshold: 0.02,
         edge_limit: 0.5,
         softness: 0.5,
@@ -88,8 +78,8 @@ impl Silhouettes {
     /// `k` of Eq. 2. A straight step of height h makes `g_max - g_min = h / 2`.
     pub(crate) fn k(&self) -> f32 {
         match self.form {
-            EdgeForm::Measured => 0.5 * self.threshold,
-            EdgeForm::Faithful => self.threshold,
+            Form::Corrected => 0.5 * self.threshold,
+            Form::Faithful => self.threshold,
         }
     }
 }
@@ -103,11 +93,14 @@ impl Default for Silhouettes {
 /// Outlines where a surface folds: Decaudin's creases, which \[CL\] leaves out.
 /// Needs the normal prepass, which the camera gets.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Creases {
-    /// How the fold is measured. Default: [`EdgeForm::Measured`].
-    pub form: EdgeForm,
+    /// How the crease is measured. [`Form::Corrected`] uses the angle between
+    /// the normals of its two sides. [`Form::Faithful`] is \[CL\] Eq. 1 and 2 on
+    /// each component of the normal: the response depends on the direction of
+    /// the world's axes. Default: [`Form::Corrected`].
+    pub form: Form,
     /// The fold that is a full line, degrees between the normals of its two
     /// sides. Range 3 to 180, default 40. Faithful: `k_p` of Eq. 2 is the sine
     /// of half of it, applied to every component of the normal.
@@ -117,14 +110,14 @@ pub struct Creases {
     #[reflect(@FieldRange::linear(0.01, 0.99))]
     pub edge_limit: f32,
     /// As [`Silhouettes::softness`]. Range 0 to 1, default 0.5.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
     /// Colour of the line. Clamped to what a display shows; its alpha is not
     /// used. Default: black.
     #[serde(with = "file_color")]
     pub color: Color,
     /// Opacity of the line. Range 0 (the kind is left out) to 1. Default 1.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
 }
 
@@ -152,7 +145,7 @@ impl Creases {
 impl Default for Creases {
     fn default() -> Self {
         Self {
-            form: EdgeForm::Measured,
+            form: Form::Corrected,
             angle: 40.0,
             edge_limit: 0.5,
             softness: 0.5,
@@ -165,7 +158,7 @@ impl Default for Creases {
 /// Outlines where two objects meet, even at the same depth and slope. Objects
 /// are mesh entities; their ids are drawn in a pass of their own.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ObjectEdges {
     /// Colour of the line. Clamped to what a display shows; its alpha is not
@@ -173,7 +166,7 @@ pub struct ObjectEdges {
     #[serde(with = "file_color")]
     pub color: Color,
     /// Opacity of the line. Range 0 (the kind is left out) to 1. Default 1.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
 }
 

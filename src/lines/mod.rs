@@ -29,7 +29,7 @@ use bevy::{
     shader::load_shader_library,
 };
 
-pub use kinds::{Creases, EdgeForm, ObjectEdges, Silhouettes};
+pub use kinds::{Creases, ObjectEdges, Silhouettes};
 pub(crate) use pipelines::{GATHER_REACH, edges_entry, range_entry, reach};
 pub(crate) use prepare::ViewLines;
 pub use settings::LineSettings;

@@ -16,11 +16,11 @@ use bevy::{
     shader::{Shader, ShaderDefVal},
 };
 
-use super::{
-    kinds::EdgeForm,
-    request::{LinePassUniform, LineRequest},
+use super::request::{LinePassUniform, LineRequest};
+use crate::{
+    objects::{ids_entry, object_styles_entry},
+    settings::Form,
 };
-use crate::objects::{ids_entry, object_styles_entry};
 
 /// Lines up to this far from their pixel, in pixels, are found by looking at
 /// every pixel around; wider ones by a flood. Measured: see ARCHITECTURE.md.
@@ -68,7 +68,7 @@ impl OutlineKey {
                 lines.silhouettes.map(|s| s.form),
                 lines.creases.map(|c| c.form),
             ]
-            .map(|form| form == Some(EdgeForm::Faithful)),
+            .map(|form| form == Some(Form::Faithful)),
             same_size: request.view.depth_scale == Vec2::ONE,
         }
     }

@@ -2,8 +2,8 @@
 
 use bevy::{math::Vec3, render::render_resource::ShaderType};
 
-use super::kinds::{Creases, EdgeForm, ObjectEdges, Silhouettes, ramp};
-use crate::settings::linear_rgb;
+use super::kinds::{Creases, ObjectEdges, Silhouettes, ramp};
+use crate::settings::{Form, linear_rgb};
 
 /// Lines that an effect asks for ([`Effect::lines`](crate::Effect::lines)). Every
 /// number is in the range that [`Outlines`](crate::Outlines) documents for it.
@@ -61,10 +61,8 @@ impl LineSettings {
     /// Whether any kind has lines of the width that is set.
     fn has_wide_lines(&self) -> bool {
         self.objects.is_some()
-            || self
-                .silhouettes
-                .is_some_and(|s| s.form != EdgeForm::Faithful)
-            || self.creases.is_some_and(|c| c.form != EdgeForm::Faithful)
+            || self.silhouettes.is_some_and(|s| s.form != Form::Faithful)
+            || self.creases.is_some_and(|c| c.form != Form::Faithful)
     }
 
     /// How far around a pixel lines are looked for, in physical pixels. `scale`
@@ -101,11 +99,11 @@ impl LineSettings {
             silhouette_low,
             silhouette_high,
             silhouette_k: s.k(),
-            silhouette_faithful: u32::from(s.form == EdgeForm::Faithful),
+            silhouette_faithful: u32::from(s.form == Form::Faithful),
             crease_low,
             crease_high,
             crease_k: c.k(),
-            crease_faithful: u32::from(c.form == EdgeForm::Faithful),
+            crease_faithful: u32::from(c.form == Form::Faithful),
             half_width: 0.5 * self.width * scale,
             scale,
             width_fade: self.width_fade,

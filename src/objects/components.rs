@@ -28,14 +28,14 @@ use crate::settings::{bounded_option, displayable, linear_rgb};
 /// are drawn on the depth map, which knows no objects.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
-pub struct NoContours {
+pub struct NoOutlines {
     /// Whether it holds for all descendants as well, except those with a
-    /// [`ContourStyle`] or `NoContours` of their own: what the root of a glTF
+    /// [`OutlineStyle`] or `NoOutlines` of their own: what the root of a glTF
     /// scene wants. Default: `false`.
     pub inherit: bool,
 }
 
-impl NoContours {
+impl NoOutlines {
     /// For an object and everything below it.
     pub const INHERITED: Self = Self { inherit: true };
 }
@@ -45,12 +45,12 @@ impl NoContours {
 ///
 /// A line belongs to the nearer of the two surfaces that it parts; where both
 /// are at the same depth, to the one that has lines at all. Objects under
-/// [`NoContours`] have none, whatever else they carry.
+/// [`NoOutlines`] have none, whatever else they carry.
 ///
 /// No more than 255 styles that differ from one another are told apart.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
-pub struct ContourStyle {
+pub struct OutlineStyle {
     /// Colour of all lines; `None` keeps the camera's. Clamped to what a
     /// display shows; its alpha is not used. Default: `None`.
     pub color: Option<Color>,
@@ -59,15 +59,15 @@ pub struct ContourStyle {
     pub width: Option<f32>,
     /// Which kinds of line are drawn, of those that the camera draws.
     /// Default: all.
-    pub kinds: LineKinds,
-    /// As [`NoContours::inherit`]. Default: `false`.
+    pub kinds: OutlineKinds,
+    /// As [`NoOutlines::inherit`]. Default: `false`.
     pub inherit: bool,
 }
 
 /// The kinds of outline.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Default, Clone, PartialEq)]
-pub struct LineKinds {
+pub struct OutlineKinds {
     /// Where the object ends in front of something.
     pub silhouettes: bool,
     /// Where its surface folds.
@@ -76,7 +76,7 @@ pub struct LineKinds {
     pub objects: bool,
 }
 
-impl Default for LineKinds {
+impl Default for OutlineKinds {
     fn default() -> Self {
         Self {
             silhouettes: true,
@@ -86,7 +86,7 @@ impl Default for LineKinds {
     }
 }
 
-impl ContourStyle {
+impl OutlineStyle {
     /// The settings that are used.
     #[must_use]
     pub fn sanitized(self) -> Self {
@@ -99,7 +99,7 @@ impl ContourStyle {
 
     fn uniform(self) -> ObjectStyleUniform {
         let style = self.sanitized();
-        let LineKinds {
+        let OutlineKinds {
             silhouettes,
             creases,
             objects,
@@ -116,11 +116,11 @@ impl ContourStyle {
 /// Gives every styled object its slot in the table.
 pub(crate) fn assign_object_styles(
     styled: Query<
-        (Entity, Option<&ContourStyle>, Option<&NoContours>),
-        Or<(With<ContourStyle>, With<NoContours>)>,
+        (Entity, Option<&OutlineStyle>, Option<&NoOutlines>),
+        Or<(With<OutlineStyle>, With<NoOutlines>)>,
     >,
     children: Query<&Children>,
-    own: Query<(), Or<(With<ContourStyle>, With<NoContours>)>>,
+    own: Query<(), Or<(With<OutlineStyle>, With<NoOutlines>)>>,
     mut styles: ResMut<ObjectStyles>,
 ) {
     if styled.is_empty() && !styles.any() {

@@ -12,7 +12,7 @@ mod table;
 #[cfg(feature = "objects")]
 mod components;
 #[cfg(feature = "objects")]
-pub use components::{ContourStyle, LineKinds, NoContours};
+pub use components::{NoOutlines, OutlineKinds, OutlineStyle};
 #[cfg(feature = "objects")]
 pub use ids::object_id;
 
@@ -111,8 +111,8 @@ impl Plugin for ObjectsPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<ObjectStyles>();
         #[cfg(feature = "objects")]
-        app.register_type::<ContourStyle>()
-            .register_type::<NoContours>()
+        app.register_type::<OutlineStyle>()
+            .register_type::<NoOutlines>()
             .add_systems(bevy::app::PostUpdate, components::assign_object_styles);
         if app.get_sub_app(RenderApp).is_none() {
             return;

@@ -26,7 +26,7 @@ pub struct FieldRange {
 
 impl FieldRange {
     /// Shares and amounts.
-    pub const SHARE: Self = Self::linear(0.0, 1.0);
+    pub const FRACTION: Self = Self::linear(0.0, 1.0);
 
     /// A range in which equal differences are equal steps.
     pub const fn linear(min: f64, max: f64) -> Self {
@@ -65,6 +65,7 @@ pub struct HueWheel;
 /// not say it: by default numbers and colours are interpolated, and everything
 /// else is a mode (the effect fades out, changes its mode, and fades in).
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum BlendField {
     /// Changes half of the way, without a fade.
     Switch,

@@ -4,6 +4,7 @@ mod blend;
 mod bounds;
 mod field;
 pub mod file_color;
+mod form;
 #[cfg(test)]
 mod tests;
 
@@ -12,6 +13,7 @@ pub use blend::{blend_color, blend_ratio};
 pub(crate) use bounds::ordered_planes;
 pub use bounds::{bounded, bounded_option, displayable};
 pub use field::{BlendField, FieldRange, HueWheel};
+pub use form::Form;
 
 use bevy::{
     color::{Color, ColorToComponents},

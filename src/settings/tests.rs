@@ -184,8 +184,8 @@ fn a_million_floats_in_every_field_of_the_ink_styles() {
     fuzz("Contours::softness", 0.0, 1.0, |x| softness(x).softness);
     let opacity = contours(|c, x| c.opacity = x);
     fuzz("Contours::opacity", 0.0, 1.0, |x| opacity(x).opacity);
-    let fade = contours(|c, x| c.fade = x);
-    fuzz("Contours::fade", 0.0, 1.0, |x| fade(x).fade);
+    let fade = contours(|c, x| c.opacity_fade = x);
+    fuzz("Contours::opacity_fade", 0.0, 1.0, |x| fade(x).opacity_fade);
 
     let flats = |edit: fn(&mut BlackFlats, f32)| {
         move |x| {
@@ -206,8 +206,8 @@ fn a_million_floats_in_every_field_of_the_ink_styles() {
     fuzz("BlackFlats::depth_weight", 0.0, 1.0, |x| {
         weight(x).depth_weight
     });
-    let feather = flats(|b, x| b.feather = x);
-    fuzz("BlackFlats::feather", 0.0, 1.0, |x| feather(x).feather);
+    let softness = flats(|b, x| b.softness = x);
+    fuzz("BlackFlats::softness", 0.0, 1.0, |x| softness(x).softness);
     let opacity = flats(|b, x| b.opacity = x);
     fuzz("BlackFlats::opacity", 0.0, 1.0, |x| opacity(x).opacity);
 }
@@ -339,13 +339,13 @@ fn a_million_floats_in_every_field_of_sketch_and_bands() {
     fuzz("Sketch::wash", 0.0, 1.0, |x| wash(x).wash);
     let pressure = sketch(|s, x| s.pressure = x);
     fuzz("Sketch::pressure", 0.0, 1.0, |x| pressure(x).pressure);
-    fuzz("ToneBands::feather", 0.0, 16.0, |x| {
+    fuzz("ToneBands::softness", 0.0, 16.0, |x| {
         ToneBands {
-            feather: x,
+            softness: x,
             ..Default::default()
         }
         .sanitized()
-        .feather
+        .softness
     });
     fuzz("ToneBands::amount", 0.0, 1.0, |x| {
         ToneBands {

@@ -44,7 +44,7 @@ use crate::{
 ///
 /// ```ron
 /// (
-///     version: 1,
+///     version: 2,
 ///     name: "Old photograph",
 ///     colorization: (mode: Atmosphere, color: "#9e8057"),
 ///     contours: (threshold: 0.03),
@@ -66,7 +66,7 @@ pub struct ComicStyle {
 
 impl ComicStyle {
     /// The version of the file format that this crate reads and writes.
-    pub const VERSION: u32 = 1;
+    pub const VERSION: u32 = 2;
 
     /// A style without effects.
     pub fn new() -> Self {

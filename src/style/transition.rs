@@ -67,6 +67,7 @@ enum StyleTarget {
 
 /// How a transition moves.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum TransitionEasing {
     /// With the same speed all the way.
     Linear,

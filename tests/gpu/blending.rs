@@ -306,7 +306,7 @@ fn a_look_stays_until_the_next_one_is_compiled() {
     let grey = still(&mut small);
     small.insert(Contours {
         width: 3.3,
-        fade: 0.2,
+        opacity_fade: 0.2,
         ..default()
     });
     let mut frames = Vec::new();

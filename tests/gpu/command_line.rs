@@ -68,7 +68,7 @@ fn what_cannot_be_done_is_one_line_that_says_what_can() {
     let folder = folder("errors");
     fs::write(
         folder.join("broken.comic.ron"),
-        "(version: 1, contours: (thresh: 1))",
+        "(version: 2, contours: (thresh: 1))",
     )
     .expect("written");
     fs::write(folder.join("broken.gltf"), "{ not json").expect("written");

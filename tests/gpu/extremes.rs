@@ -5,8 +5,8 @@
 
 use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    ColorMethod, Colorization, ColorizationMode, ComicStyle, ComicsStage, Contours, DepthMap,
-    Desaturation, Outlines, ToneBands, VisibleDepthRange,
+    Colorization, ColorizationMode, ComicStyle, ComicsStage, Contours, DepthMap, Desaturation,
+    Form, Outlines, ToneBands, VisibleDepthRange,
 };
 
 use crate::small::Small;
@@ -185,7 +185,7 @@ fn greys_stay_grey_under_the_faithful_equations() {
                 Desaturation::QUADRATIC,
                 Colorization {
                     mode,
-                    method: ColorMethod::Faithful,
+                    form: Form::Faithful,
                     ..default()
                 },
             ))

@@ -48,7 +48,7 @@ fn the_steps_of_the_ten_minutes_can_be_followed() {
         .first()
         .expect("the broken file's message")
         .trim();
-    let error = ComicStyle::from_ron("(\n    version: 1,\n    contours: (widht: 3.0),\n)")
+    let error = ComicStyle::from_ron("(\n    version: 2,\n    contours: (widht: 3.0),\n)")
         .expect_err("broken");
     assert_eq!(error.to_string(), broken);
     // So are its commands.
@@ -74,9 +74,9 @@ fn an_unknown_version_and_an_unknown_field_are_said() {
         "{error}"
     );
     for text in [
-        "(version: 1, glitter: ())",
-        "(version: 1, sketch: (glitter: 1))",
-        "(version: 1, depth_map: (smoothing: (glitter: 1)))",
+        "(version: 2, glitter: ())",
+        "(version: 2, sketch: (glitter: 1))",
+        "(version: 2, depth_map: (smoothing: (glitter: 1)))",
     ] {
         let error = ComicStyle::from_ron(text).expect_err(text).to_string();
         assert!(
@@ -112,10 +112,9 @@ mod reference {
 
     use bevy::reflect::{NamedField, TypeInfo, Typed};
     use bevy_comics::{
-        BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ContourForm,
-        ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, EdgeForm,
-        EffectRegistry, EffectType, FieldRange, ObjectEdges, Outlines, RangeSmoothing,
-        ReductionMethod, Silhouettes, Sketch, ToneBandMethod, ToneBands,
+        BlackFlats, Colorization, ColorizationMode, ComicStyle, ContourOperator, Contours, Creases,
+        DepthMap, DepthMapping, Desaturation, EffectRegistry, EffectType, FieldRange, Form,
+        ObjectEdges, Outlines, RangeSmoothing, ReductionMethod, Silhouettes, Sketch, ToneBands,
     };
 
     const HEAD: &str = "\
@@ -233,20 +232,20 @@ This page is made from the types by a test, which fails where the two differ.
         section::<RangeSmoothing>(&mut page);
         section::<ReductionMethod>(&mut page);
         section::<ToneBands>(&mut page);
-        section::<ToneBandMethod>(&mut page);
+        section::<Form>(&mut page);
         section::<Desaturation>(&mut page);
         section::<Colorization>(&mut page);
         section::<ColorizationMode>(&mut page);
-        section::<ColorMethod>(&mut page);
+        section::<Form>(&mut page);
         section::<BlackFlats>(&mut page);
         section::<Contours>(&mut page);
         section::<ContourOperator>(&mut page);
-        section::<ContourForm>(&mut page);
+        section::<Form>(&mut page);
         section::<Outlines>(&mut page);
         section::<Silhouettes>(&mut page);
         section::<Creases>(&mut page);
         section::<ObjectEdges>(&mut page);
-        section::<EdgeForm>(&mut page);
+        section::<Form>(&mut page);
         section::<Sketch>(&mut page);
         for effect in effects {
             let info = (effect.type_info)();

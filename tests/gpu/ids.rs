@@ -10,7 +10,7 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{ContourStyle, LineKinds, NoContours, ObjectEdges, Outlines, object_id};
+use bevy_comics::{NoOutlines, ObjectEdges, OutlineKinds, OutlineStyle, Outlines, object_id};
 
 use crate::{
     outlines::ink,
@@ -117,7 +117,7 @@ fn touching_objects_of_like_depth_and_normal_have_an_edge() {
 fn an_object_without_contours_has_none_and_its_neighbour_keeps_its_own() {
     let (mut small, [left, right]) = two_cubes(Msaa::Off);
     let both = ink(&mut small, Outlines::default());
-    small.world().entity_mut(left).insert(NoContours::default());
+    small.world().entity_mut(left).insert(NoOutlines::default());
     let one = ink(&mut small, Outlines::default());
     assert!(total(&one, 0..56) < 0.05, "the left cube is bare");
     assert!(seam(&one) > 0.9, "the seam is the right cube's");
@@ -125,11 +125,11 @@ fn an_object_without_contours_has_none_and_its_neighbour_keeps_its_own() {
     small
         .world()
         .entity_mut(right)
-        .insert(NoContours::default());
+        .insert(NoOutlines::default());
     let none = ink(&mut small, Outlines::default());
     assert!(none.iter().all(|i| *i < 0.02), "nobody draws the seam");
     for cube in [left, right] {
-        small.world().entity_mut(cube).remove::<NoContours>();
+        small.world().entity_mut(cube).remove::<NoOutlines>();
     }
     assert_eq!(ink(&mut small, Outlines::default()), both, "and back");
 }
@@ -145,7 +145,7 @@ fn a_bare_object_in_front_hides_and_one_behind_is_outlined_over() {
     small
         .world()
         .entity_mut(right)
-        .insert(NoContours::default());
+        .insert(NoOutlines::default());
     let bare_front = ink(
         &mut small,
         Outlines {
@@ -159,8 +159,8 @@ fn a_bare_object_in_front_hides_and_one_behind_is_outlined_over() {
             .fold(1.0, f32::min)
     };
     assert!(front_edge(&bare_front) < 0.02, "the nearer one decides");
-    small.world().entity_mut(right).remove::<NoContours>();
-    small.world().entity_mut(left).insert(NoContours::default());
+    small.world().entity_mut(right).remove::<NoOutlines>();
+    small.world().entity_mut(left).insert(NoOutlines::default());
     let bare_back = ink(
         &mut small,
         Outlines {
@@ -182,7 +182,7 @@ fn an_object_has_its_own_colour_width_and_kinds() {
             ..default()
         },
     );
-    small.world().entity_mut(left).insert(ContourStyle {
+    small.world().entity_mut(left).insert(OutlineStyle {
         color: Some(Color::srgb(1.0, 0.0, 0.0)),
         width: Some(6.0),
         ..default()
@@ -211,8 +211,8 @@ fn an_object_has_its_own_colour_width_and_kinds() {
     // Half of the lines, three times as wide.
     let ratio = red as f32 / (0.5 * before as f32);
     assert!((2.3..3.8).contains(&ratio), "{red} red, {before} before");
-    small.world().entity_mut(left).insert(ContourStyle {
-        kinds: LineKinds {
+    small.world().entity_mut(left).insert(OutlineStyle {
+        kinds: OutlineKinds {
             silhouettes: false,
             ..default()
         },
@@ -237,16 +237,16 @@ fn styles_are_inherited_where_asked() {
         .spawn((Transform::default(), Visibility::default()))
         .id();
     world.entity_mut(root).add_children(&[left, right]);
-    world.entity_mut(root).insert(NoContours::default());
+    world.entity_mut(root).insert(NoOutlines::default());
     let own = ink(&mut small, Outlines::default());
     assert!(own.iter().any(|i| *i > 0.9), "not asked, not inherited");
-    small.world().entity_mut(root).insert(NoContours::INHERITED);
+    small.world().entity_mut(root).insert(NoOutlines::INHERITED);
     let inherited = ink(&mut small, Outlines::default());
     assert!(inherited.iter().all(|i| *i < 0.02));
     small
         .world()
         .entity_mut(right)
-        .insert(ContourStyle::default());
+        .insert(OutlineStyle::default());
     let nearest = ink(&mut small, Outlines::default());
     assert!(total(&nearest, 0..56) < 0.05 && total(&nearest, 64..120) > 10.0);
 }

@@ -2,7 +2,7 @@
 //! false lines, the asked width.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, EdgeForm, Outlines, Silhouettes};
+use bevy_comics::{ComicStyle, Form, Outlines, Silhouettes};
 
 use crate::{
     common::{headless::HeadlessOptions, read_back::IdImage},
@@ -58,7 +58,7 @@ fn look(small: &mut Small, eye: Vec3, target: Vec3, near: f32) {
 }
 
 /// The small scene, `scale` times as large.
-fn scaled(scale: f32, near: f32, form: EdgeForm) -> Vec<bool> {
+fn scaled(scale: f32, near: f32, form: Form) -> Vec<bool> {
     let mut small = Small::new(UVec2::new(240, 160), Msaa::Off);
     let world = small.world();
     let mut objects = world.query_filtered::<&mut Transform, With<Object>>();
@@ -69,8 +69,8 @@ fn scaled(scale: f32, near: f32, form: EdgeForm) -> Vec<bool> {
     let eye = Vec3::new(1.5, 2.4, 6.0) * scale;
     look(&mut small, eye, Vec3::new(0.0, 0.4, 0.0) * scale, near);
     let threshold = match form {
-        EdgeForm::Measured => 0.02,
-        EdgeForm::Faithful => 0.0008,
+        Form::Corrected => 0.02,
+        Form::Faithful => 0.0008,
     };
     let outlines = Outlines {
         silhouettes: Some(Silhouettes {
@@ -102,19 +102,19 @@ const SCALES: [(f32, f32); 8] = [
 
 #[test]
 fn the_same_scene_has_the_same_outlines_at_any_scale() {
-    let reference = scaled(1.0, 0.1, EdgeForm::Measured);
+    let reference = scaled(1.0, 0.1, Form::Corrected);
     assert!(reference.iter().filter(|line| **line).count() > 400);
     for (scale, near) in SCALES {
-        let mask = scaled(scale, near, EdgeForm::Measured);
+        let mask = scaled(scale, near, Form::Corrected);
         let same = overlap(&reference, &mask);
         println!("measured, scale {scale:e}, near {near:e}: IoU {same:.4}");
         assert!(same >= 0.99, "scale {scale:e}, near {near:e}: IoU {same}");
     }
     // The paper's buffer depends on both: its own k_p fits one of them.
-    let reference = scaled(1.0, 0.1, EdgeForm::Faithful);
+    let reference = scaled(1.0, 0.1, Form::Faithful);
     let worst = SCALES
         .map(|(scale, near)| {
-            let same = overlap(&reference, &scaled(scale, near, EdgeForm::Faithful));
+            let same = overlap(&reference, &scaled(scale, near, Form::Faithful));
             println!("faithful, scale {scale:e}, near {near:e}: IoU {same:.4}");
             same
         })

@@ -121,7 +121,7 @@ fn a_style_is_tuned_in_a_window() {
     );
 
     // Break it: the last good style stays, the panel says where it is broken.
-    fs::write(&path, "(version: 1,\n    contours: (widht: 3.0))").expect("written");
+    fs::write(&path, "(version: 2,\n    contours: (widht: 3.0))").expect("written");
     window.until("the error", |state| {
         state["widgets"]["files.error"].is_array()
     });

@@ -7,9 +7,9 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ContourForm,
-    ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, EdgeForm, Outlines,
-    Silhouettes, Sketch, ToneBandMethod, ToneBands, VisibleDepthRange, presets,
+    BlackFlats, Colorization, ColorizationMode, ComicStyle, ContourOperator, Contours, Creases,
+    DepthMap, DepthMapping, Desaturation, Form, Outlines, Silhouettes, Sketch, ToneBands,
+    VisibleDepthRange, presets,
 };
 
 use crate::{
@@ -41,6 +41,7 @@ fn frame(small: &Small, map: &DepthMap) -> Frame {
         DepthMapping::Fixed { near, far } | DepthMapping::FixedLogarithmic { near, far } => {
             Some([NEAR / f64::from(near), NEAR / f64::from(far)])
         }
+        other => panic!("no twin of {other:?}"),
     };
     Frame {
         projection: Projection::Perspective { offset: 0.0 },
@@ -167,9 +168,9 @@ fn every_preset_is_its_twin_with_and_without_msaa() {
 }
 
 fn everything(
-    method: ColorMethod,
+    color: Form,
     mode: ColorizationMode,
-    form: ContourForm,
+    form: Form,
     mapping: DepthMapping,
 ) -> ComicStyle {
     let mut style = ComicStyle::new();
@@ -178,11 +179,11 @@ fn everything(
         .with(Desaturation {
             amount: 0.7,
             exponent: 0.5,
-            method,
+            form: color,
         })
         .with(Colorization {
             mode,
-            method,
+            form: color,
             amount: 0.8,
             ..default()
         })
@@ -196,7 +197,7 @@ fn everything(
             form,
             width: 2.5,
             threshold: 0.06,
-            fade: 0.4,
+            opacity_fade: 0.4,
             ..default()
         });
     let map = DepthMap {
@@ -230,14 +231,11 @@ fn every_mode_of_every_style_is_its_twin() {
         ColorizationMode::Quadratic,
     ];
     for (i, mapping) in mappings.into_iter().enumerate() {
-        for (j, method) in [ColorMethod::Corrected, ColorMethod::Faithful]
-            .into_iter()
-            .enumerate()
-        {
+        for (j, method) in [Form::Corrected, Form::Faithful].into_iter().enumerate() {
             let form = if (i + j) % 2 == 0 {
-                ContourForm::PlaneAware
+                Form::Corrected
             } else {
-                ContourForm::Faithful
+                Form::Faithful
             };
             let style = everything(method, modes[(i + 2 * j) % 4], form, mapping);
             assert_pass_is_its_twin(&mut small, &style, None, &format!("{style:?}"));
@@ -249,7 +247,7 @@ fn every_mode_of_every_style_is_its_twin() {
         ContourOperator::Laplace,
         ContourOperator::Roberts,
     ] {
-        for form in [ContourForm::PlaneAware, ContourForm::Faithful] {
+        for form in [Form::Corrected, Form::Faithful] {
             for width in [0.5, 1.0, 3.0, 7.5] {
                 let style = ComicStyle::default().with(Contours {
                     operator,
@@ -307,13 +305,13 @@ fn outlines_of_every_kind_form_and_width_are_their_twin() {
         }
         let faithful = outlined(Outlines {
             silhouettes: Some(Silhouettes {
-                form: EdgeForm::Faithful,
+                form: Form::Faithful,
                 threshold: 0.0008,
                 edge_limit: 0.7,
                 ..default()
             }),
             creases: Some(Creases {
-                form: EdgeForm::Faithful,
+                form: Form::Faithful,
                 color: Color::srgb(0.6, 0.1, 0.1),
                 ..default()
             }),
@@ -330,14 +328,14 @@ fn everything_at_once_is_its_twin() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     let both = |sketch: Option<Sketch>| {
         let style = everything(
-            ColorMethod::Corrected,
+            Form::Corrected,
             ColorizationMode::Quadratic,
-            ContourForm::PlaneAware,
+            Form::Corrected,
             DepthMapping::MinMax,
         )
         .with(ToneBands {
             levels: 5,
-            feather: 0.0,
+            softness: 0.0,
             ..default()
         })
         .with(Outlines {
@@ -360,18 +358,18 @@ fn everything_at_once_is_its_twin() {
     );
     // Larger, since every pixel of an edge lies on a steep step between bands.
     let mut small = Small::new(UVec2::new(144, 96), Msaa::Off);
-    for method in [ToneBandMethod::Levels, ToneBandMethod::Faithful] {
-        for feather in [0.0, 1.0, 3.0] {
+    for method in [Form::Corrected, Form::Faithful] {
+        for softness in [0.0, 1.0, 3.0] {
             let style = ComicStyle::default().with(ToneBands {
-                method,
-                feather,
+                form: method,
+                softness,
                 ..default()
             });
             assert_pass_is_its_twin(
                 &mut small,
                 &style,
                 None,
-                &format!("{method:?}, {feather} px"),
+                &format!("{method:?}, {softness} px"),
             );
         }
     }
@@ -391,9 +389,9 @@ fn a_viewport_is_styled_inside_and_untouched_outside() {
             ..default()
         });
         let style = everything(
-            ColorMethod::Corrected,
+            Form::Corrected,
             ColorizationMode::Quadratic,
-            ContourForm::PlaneAware,
+            Form::Corrected,
             DepthMapping::MinMax,
         );
         assert_pass_is_its_twin(
@@ -413,9 +411,9 @@ fn a_camera_that_stores_display_codes_is_its_twin() {
     let mut small = Small::new(UVec2::new(64, 48), Msaa::Off);
     small.insert(CompositingSpace::Srgb);
     let style = everything(
-        ColorMethod::Corrected,
+        Form::Corrected,
         ColorizationMode::Linear,
-        ContourForm::PlaneAware,
+        Form::Corrected,
         DepthMapping::MinMax,
     );
     assert_pass_is_its_twin(&mut small, &style, None, "gamma-encoded");
@@ -427,16 +425,16 @@ fn an_hdr_camera_is_its_twin() {
     let mut small = Small::new(UVec2::new(64, 48), Msaa::Off);
     small.insert(Hdr);
     let style = everything(
-        ColorMethod::Corrected,
+        Form::Corrected,
         ColorizationMode::Linear,
-        ContourForm::PlaneAware,
+        Form::Corrected,
         DepthMapping::MinMax,
     );
     assert_pass_is_its_twin(&mut small, &style, None, "hdr");
     let style = everything(
-        ColorMethod::Faithful,
+        Form::Faithful,
         ColorizationMode::Quadratic,
-        ContourForm::Faithful,
+        Form::Faithful,
         DepthMapping::MinMax,
     );
     assert_pass_is_its_twin(&mut small, &style, None, "hdr, faithful");

@@ -4,10 +4,9 @@ use std::{fs, time::Duration};
 
 use bevy::{color::Color, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    BlackFlats, ColorMethod, Colorization, ColorizationMode, ComicStyle, ComicStyleError,
-    ComicStyleHandle, ContourForm, ContourOperator, Contours, Creases, DepthMap, DepthMapping,
-    Desaturation, EdgeForm, ObjectEdges, Outlines, RangeSmoothing, ReductionMethod, Silhouettes,
-    Sketch, ToneBandMethod, ToneBands,
+    BlackFlats, Colorization, ColorizationMode, ComicStyle, ComicStyleError, ComicStyleHandle,
+    ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, ObjectEdges,
+    Outlines, RangeSmoothing, ReductionMethod, Silhouettes, Sketch, ToneBands,
 };
 use proptest::{
     option,
@@ -36,7 +35,7 @@ fn colors() -> impl Strategy<Value = Color> {
 }
 
 pub fn styles() -> impl Strategy<Value = ComicStyle> {
-    let methods = || select(vec![ColorMethod::Corrected, ColorMethod::Faithful]);
+    let methods = || select(vec![Form::Corrected, Form::Faithful]);
     let map = (number(), number(), number(), any::<bool>(), 0..6usize).prop_map(
         |(near, far, gap, flip, kind)| DepthMap {
             mapping: [
@@ -64,7 +63,7 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
         (number(), number(), methods()).prop_map(|(amount, exponent, method)| Desaturation {
             amount,
             exponent,
-            method,
+            form: method,
         });
     let colorization =
         (colors(), number(), methods(), 0..4usize).prop_map(|(color, amount, method, mode)| {
@@ -77,7 +76,7 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
                 ][mode],
                 color,
                 amount,
-                method,
+                form: method,
             }
         });
     let flats = (
@@ -86,10 +85,10 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
         number(),
         colors(),
     )
-        .prop_map(|(slope, value, feather, color)| BlackFlats {
+        .prop_map(|(slope, value, softness, color)| BlackFlats {
             slope,
             value,
-            feather,
+            softness,
             color,
             ..default()
         });
@@ -102,9 +101,9 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
                 ContourOperator::Roberts,
             ][operator],
             form: if faithful {
-                ContourForm::Faithful
+                Form::Faithful
             } else {
-                ContourForm::PlaneAware
+                Form::Corrected
             },
             threshold,
             width,
@@ -140,16 +139,16 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
 
 fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines>, Option<Sketch>)>
 {
-    let forms = || select(vec![EdgeForm::Measured, EdgeForm::Faithful]);
+    let forms = || select(vec![Form::Corrected, Form::Faithful]);
     let bands = (0u32..99, number(), number(), any::<bool>()).prop_map(
-        |(levels, feather, amount, faithful)| ToneBands {
-            method: if faithful {
-                ToneBandMethod::Faithful
+        |(levels, softness, amount, faithful)| ToneBands {
+            form: if faithful {
+                Form::Faithful
             } else {
-                ToneBandMethod::Levels
+                Form::Corrected
             },
             levels,
-            feather,
+            softness,
             amount,
         },
     );
@@ -223,14 +222,14 @@ fn errors_name_the_line_and_what_is_wrong() {
             .expect_err("must not read")
             .to_string()
     };
-    let unknown = error("(\n    version: 1,\n    contours: (\n        treshold: 0.1,\n    ),\n)");
+    let unknown = error("(\n    version: 2,\n    contours: (\n        treshold: 0.1,\n    ),\n)");
     assert!(
         unknown.contains("line 4") && unknown.contains("treshold"),
         "{unknown}"
     );
-    let broken = error("(version: 1,\n contours: (\n");
+    let broken = error("(version: 2,\n contours: (\n");
     assert!(broken.contains("line 2"), "{broken}");
-    let colour = error("(version: 1, contours: (color: \"reddish\"))");
+    let colour = error("(version: 2, contours: (color: \"reddish\"))");
     assert!(
         colour.contains("reddish") || colour.contains("#rrggbb"),
         "{colour}"
@@ -276,7 +275,7 @@ fn wait(small: &mut Small, done: impl Fn(Option<&Contours>) -> bool) -> bool {
 fn a_style_file_is_loaded_reloaded_and_survives_being_broken() {
     let folder = Folder::new("styles");
     let file = folder.0.join("mine.comic.ron");
-    fs::write(&file, "(version: 1, contours: (width: 3.0))").expect("written");
+    fs::write(&file, "(version: 2, contours: (width: 3.0))").expect("written");
     let assets = folder.0.to_string_lossy().into_owned();
     let mut small = Small::with(
         HeadlessOptions {
@@ -298,7 +297,7 @@ fn a_style_file_is_loaded_reloaded_and_survives_being_broken() {
 
     fs::write(
         &file,
-        "(version: 1, contours: (width: 5.0), desaturation: ())",
+        "(version: 2, contours: (width: 5.0), desaturation: ())",
     )
     .expect("written");
     assert!(
@@ -308,13 +307,13 @@ fn a_style_file_is_loaded_reloaded_and_survives_being_broken() {
     let camera = small.camera;
     assert!(small.world().get::<Desaturation>(camera).is_some());
 
-    fs::write(&file, "(version: 1, contours: (width: ").expect("written");
+    fs::write(&file, "(version: 2, contours: (width: ").expect("written");
     assert!(
         !wait_briefly(&mut small, |c| c.is_none_or(|c| c.width != 5.0)),
         "the last good look is kept"
     );
 
-    fs::write(&file, "(version: 1, contours: (width: 7.0))").expect("written");
+    fs::write(&file, "(version: 2, contours: (width: 7.0))").expect("written");
     assert!(
         wait(&mut small, |c| c.is_some_and(|c| c.width == 7.0)),
         "mended, it is back"

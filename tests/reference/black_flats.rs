@@ -7,8 +7,8 @@ use super::{
 };
 use bevy_comics::BlackFlats;
 
-fn feather(s: &BlackFlats) -> f64 {
-    f64::from(s.feather).max(1e-3)
+fn softness(s: &BlackFlats) -> f64 {
+    f64::from(s.softness).max(1e-3)
 }
 
 pub fn dark_area(s: &BlackFlats, linear: Rgb, l: f64) -> f64 {
@@ -18,8 +18,8 @@ pub fn dark_area(s: &BlackFlats, linear: Rgb, l: f64) -> f64 {
     }
     let value = srgb_encode_one(largest(linear));
     1.0 - smoothstep(
-        threshold * (1.0 - feather(s)),
-        threshold * (1.0 + feather(s)),
+        threshold * (1.0 - softness(s)),
+        threshold * (1.0 + softness(s)),
         value,
     )
 }
@@ -31,8 +31,8 @@ pub fn steep_area(s: &BlackFlats, prewitt: f64, rows: u32) -> f64 {
     };
     let response = prewitt * f64::from(rows) / 512.0;
     smoothstep(
-        slope * (1.0 - feather(s)),
-        slope * (1.0 + feather(s)),
+        slope * (1.0 - softness(s)),
+        slope * (1.0 + softness(s)),
         response,
     )
 }

@@ -9,7 +9,7 @@ use super::{
     mix,
 };
 use bevy::color::{Color, Hsva};
-use bevy_comics::{ColorMethod, Colorization, ColorizationMode};
+use bevy_comics::{Colorization, ColorizationMode, Form};
 
 fn linear_of(color: Color) -> Rgb {
     let c = color.to_linear();
@@ -60,7 +60,7 @@ pub fn colorize(s: &Colorization, linear: Rgb, d: f64, l: f64, saturation: f64) 
         return linear;
     }
     let amount = f64::from(s.amount);
-    if s.method == ColorMethod::Faithful {
+    if s.form == Form::Faithful {
         let c = srgb_encode(linear);
         let (v, chroma) = (largest(c), largest(c) - smallest(c));
         let atmosphere = f64::from(Hsva::from(s.color).hue) / 360.0;

@@ -7,7 +7,7 @@ use super::{
     view::{View, load_window},
     window::{Steps, Window, gradient, map_steps, prewitt},
 };
-use bevy_comics::{ContourForm, ContourOperator, Contours};
+use bevy_comics::{ContourOperator, Contours, Form};
 
 const SOBEL: [[f64; 3]; 3] = [[-1.0, 0.0, 1.0], [-2.0, 0.0, 2.0], [-1.0, 0.0, 1.0]];
 
@@ -65,7 +65,7 @@ pub fn response(s: &Contours, frame: &Frame, win: &Window) -> f64 {
     if frame.ends.is_none() {
         return 0.0;
     }
-    let faithful = s.form == ContourForm::Faithful;
+    let faithful = s.form == Form::Faithful;
     let steps = if faithful {
         map_steps(frame, win)
     } else {
@@ -80,6 +80,7 @@ pub fn response(s: &Contours, frame: &Frame, win: &Window) -> f64 {
         ContourOperator::Roberts => {
             (steps[2][2] - steps[0][0]).hypot(steps[2][0] - steps[0][2]) / 2f64.sqrt()
         }
+        other => panic!("no twin of {other:?}"),
     }
 }
 
@@ -92,7 +93,8 @@ pub fn line(s: &Contours, response: f64) -> f64 {
 pub fn draw(s: &Contours, linear: Rgb, coverage: f64, depth: f64) -> Rgb {
     let ink = s.color.to_linear();
     let ink = [ink.red, ink.green, ink.blue].map(f64::from);
-    let t = (coverage * f64::from(s.opacity) * (1.0 - f64::from(s.fade) * depth)).clamp(0.0, 1.0);
+    let t = (coverage * f64::from(s.opacity) * (1.0 - f64::from(s.opacity_fade) * depth))
+        .clamp(0.0, 1.0);
     std::array::from_fn(|i| mix(linear[i], ink[i], t))
 }
 

@@ -8,7 +8,7 @@ use super::{
     smoothstep,
     view::View,
 };
-use bevy_comics::{EdgeForm, Outlines};
+use bevy_comics::{Form, Outlines};
 
 /// The edges that belong to a pixel.
 #[derive(Clone, Copy, Debug, Default)]
@@ -80,7 +80,7 @@ pub fn edge(s: &Outlines, view: &View, x: u32, y: u32, scale: f64) -> Edge {
 
     if let Some(k) = s.silhouettes {
         let threshold = f64::from(k.threshold);
-        if k.form == EdgeForm::Faithful {
+        if k.form == Form::Faithful {
             edge.whole[0] = true;
             edge.ink[0] = ink(k.edge_limit, k.softness, edge_response(g, threshold));
         } else {
@@ -102,7 +102,7 @@ pub fn edge(s: &Outlines, view: &View, x: u32, y: u32, scale: f64) -> Edge {
         });
         let n = |v: [i64; 2], i: i64| normals[(2 + v[1] * i) as usize][(2 + v[0] * i) as usize];
         let kn = (0.5 * f64::from(k.angle)).to_radians().sin().max(0.02);
-        if k.form == EdgeForm::Faithful {
+        if k.form == Form::Faithful {
             edge.whole[1] = true;
             edge.ink[1] = ink(k.edge_limit, k.softness, component_response(&normals, kn));
         } else {

@@ -5,7 +5,7 @@ use super::{
     color::{lightness, luminance, srgb_decode, srgb_encode},
     mix, smoothstep,
 };
-use bevy_comics::{ToneBandMethod, ToneBands};
+use bevy_comics::{Form, ToneBands};
 
 /// [CL] Eq. 6, closed.
 pub fn equation_6(c: f64) -> f64 {
@@ -16,9 +16,9 @@ pub fn equation_6(c: f64) -> f64 {
     }
 }
 
-/// `feather` in physical pixels; `change` of the lightness over a pixel.
-pub fn band_tone(levels: f64, feather: f64, y: f64, change: f64) -> f64 {
-    let half = 0.5 * (feather * change * levels).clamp(levels / 128.0, 1.0);
+/// `softness` in physical pixels; `change` of the lightness over a pixel.
+pub fn band_tone(levels: f64, softness: f64, y: f64, change: f64) -> f64 {
+    let half = 0.5 * (softness * change * levels).clamp(levels / 128.0, 1.0);
     // Every border that is passed is one band more.
     let t = y * levels;
     let border = t.round().clamp(1.0, levels - 1.0);
@@ -42,12 +42,12 @@ pub fn with_luminance(linear: Rgb, target: f64) -> Rgb {
 }
 
 pub fn banded_color(s: &ToneBands, linear: Rgb, change: f64, scale: f64) -> Rgb {
-    let banded = match s.method {
-        ToneBandMethod::Faithful => srgb_decode(srgb_encode(linear).map(equation_6)),
-        ToneBandMethod::Levels => {
+    let banded = match s.form {
+        Form::Faithful => srgb_decode(srgb_encode(linear).map(equation_6)),
+        Form::Corrected => {
             let tone = band_tone(
                 f64::from(s.levels),
-                f64::from(s.feather) * scale,
+                f64::from(s.softness) * scale,
                 lightness(linear),
                 change,
             );

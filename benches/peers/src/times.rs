@@ -10,7 +10,7 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{ComicStyle, ComicsPlugin, Contours, EdgeForm, Outlines, Silhouettes};
+use bevy_comics::{ComicStyle, ComicsPlugin, Contours, Form, Outlines, Silhouettes};
 use bevy_edge_detection_outline::{EdgeDetection, EdgeDetectionPlugin, EdgeOperator};
 use bevy_mod_outline::{OutlineMode, OutlinePlugin, OutlineVolume};
 use bevy_shader_mtoon::{MtoonMaterial, MtoonPlugin, MtoonSun, VrmOutlineMode};
@@ -168,7 +168,7 @@ const VARIANTS: &[(&str, Put)] = &[
     ("bevy_comics: faithful silhouettes", |b| {
         b.style(&outlines(Outlines {
             silhouettes: Some(Silhouettes {
-                form: EdgeForm::Faithful,
+                form: Form::Faithful,
                 ..default()
             }),
             ..Outlines::SILHOUETTES

@@ -16,7 +16,7 @@ struct BlackFlats {
     slope_high: f32,
     // Display value below which an area is filled, and the width of its edge.
     value: f32,
-    feather: f32,
+    softness: f32,
     // 1: the value threshold shrinks to nothing at the far end of the depth map.
     depth_weight: f32,
     // The response is measured as on a map of 512 rows.
@@ -30,8 +30,8 @@ fn dark_area(s: BlackFlats, linear: vec3<f32>, l: f32) -> f32 {
         return 0.0;
     }
     let value = srgb_encode(vec3(largest(linear))).r;
-    let low = threshold * (1.0 - s.feather);
-    let high = threshold * (1.0 + s.feather);
+    let low = threshold * (1.0 - s.softness);
+    let high = threshold * (1.0 + s.softness);
     return 1.0 - smoothstep(low, high, value);
 }
 

@@ -4,7 +4,7 @@ use bevy::{
     color::Color,
     ecs::{component::Component, reflect::ReflectComponent},
     math::{FloatExt, Vec3},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
 use serde::{Deserialize, Serialize};
@@ -19,7 +19,7 @@ use crate::{
 
 /// Fills slopes of the depth map and dark areas with flat ink.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[reflect(Component, Default, Clone, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BlackFlats {
     /// Fill where the Prewitt response of the depth map, slopes included, is
@@ -30,24 +30,24 @@ pub struct BlackFlats {
     pub slope: Option<f32>,
     /// Fill where the value V of the display colour is below this. Range 0 to
     /// 1; `None` fills no shadows. Default: 0.25.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub value: Option<f32>,
     /// How much the value threshold shrinks with distance: at 1 it is
     /// `value * (1 - D)`, so that only the foreground is inked. Range 0 to 1,
     /// default 0.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub depth_weight: f32,
     /// Softness of the edge of an area, as a share of its threshold. Range 0
     /// to 1, default 0.1.
-    #[reflect(@FieldRange::SHARE)]
-    pub feather: f32,
+    #[reflect(@FieldRange::FRACTION)]
+    pub softness: f32,
     /// Colour of the ink. Clamped to what a display shows; its alpha is not
     /// used. Default: black.
     #[serde(with = "file_color")]
     pub color: Color,
     /// Opacity of the ink. Range 0 (none, and the pass leaves the style out)
     /// to 1. Default 1.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
 }
 
@@ -60,7 +60,7 @@ impl Default for BlackFlats {
             slope: None,
             value: Some(DEFAULT_VALUE),
             depth_weight: 0.0,
-            feather: 0.1,
+            softness: 0.1,
             color: Color::BLACK,
             opacity: 1.0,
         }
@@ -91,7 +91,7 @@ impl Effect for BlackFlats {
             slope: bounded_option(self.slope, DEFAULT_SLOPE, 1e-6, 100.0),
             value: bounded_option(self.value, DEFAULT_VALUE, 0.0, 1.0),
             depth_weight: bounded(self.depth_weight, default.depth_weight, 0.0, 1.0),
-            feather: bounded(self.feather, default.feather, 0.0, 1.0),
+            softness: bounded(self.softness, default.softness, 0.0, 1.0),
             color: displayable(self.color, default.color),
             opacity: bounded(self.opacity, default.opacity, 0.0, 1.0),
         }
@@ -137,15 +137,15 @@ impl Effect for BlackFlats {
 
     fn uniform(&self, view: &ViewFacts) -> BlackFlatsUniform {
         // smoothstep needs its ends apart: a hard edge rises over a thousandth.
-        let feather = self.feather.max(1e-3);
+        let softness = self.softness.max(1e-3);
         let slope = self.slope.unwrap_or(1e30);
         BlackFlatsUniform {
             color: linear_rgb(self.color),
             opacity: self.opacity,
-            slope_low: slope * (1.0 - feather),
-            slope_high: slope * (1.0 + feather),
+            slope_low: slope * (1.0 - softness),
+            slope_high: slope * (1.0 + softness),
             value: self.value.unwrap_or(0.0),
-            feather,
+            softness,
             depth_weight: self.depth_weight,
             slope_scale: view.viewport.w.max(1) as f32 / 512.0,
         }
@@ -163,7 +163,7 @@ impl Effect for BlackFlats {
             value: (self.value.is_some() || other.value.is_some())
                 .then(|| values[0].lerp(values[1], t)),
             depth_weight: self.depth_weight.lerp(other.depth_weight, t),
-            feather: self.feather.lerp(other.feather, t),
+            softness: self.softness.lerp(other.softness, t),
             color: blend_color(self.color, other.color, t),
             opacity: self.opacity.lerp(other.opacity, t),
         }
@@ -178,7 +178,7 @@ pub struct BlackFlatsUniform {
     slope_low: f32,
     slope_high: f32,
     value: f32,
-    feather: f32,
+    softness: f32,
     depth_weight: f32,
     slope_scale: f32,
 }

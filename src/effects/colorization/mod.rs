@@ -7,20 +7,19 @@ use bevy::{
     color::{Color, ColorToComponents, Hsva, Oklaba},
     ecs::{component::Component, reflect::ReflectComponent},
     math::{FloatExt, Vec2},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
 use serde::{Deserialize, Serialize};
 
-use super::ColorMethod;
 use crate::{
     effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
-    settings::{FieldRange, HueWheel, blend_color, bounded, displayable, file_color},
+    settings::{FieldRange, Form, HueWheel, blend_color, bounded, displayable, file_color},
 };
 
 /// Colours the picture with an atmosphere (\[CS\] Eq. 8 to 11).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[reflect(Component, Default, Clone, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Colorization {
     /// Which equation. Default: [`ColorizationMode::Quadratic`].
@@ -34,17 +33,18 @@ pub struct Colorization {
     pub color: Color,
     /// How much of the change is applied. Range 0 (none, and the pass leaves
     /// the style out) to 1. Default 1.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
-    /// [`ColorMethod::Corrected`] blends chroma vectors in `OKLab` and keeps
-    /// lightness. [`ColorMethod::Faithful`] moves HSV hue as printed: greys
+    /// [`Form::Corrected`] blends chroma vectors in `OKLab` and keeps
+    /// lightness. [`Form::Faithful`] moves HSV hue as printed: greys
     /// never tint, and hues wrap round on the way.
-    pub method: ColorMethod,
+    pub form: Form,
 }
 
 /// The four models of \[CS\].
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq, Hash)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum ColorizationMode {
     /// Eq. 8: every pixel keeps its hue. Nothing is done, and the pass leaves
     /// the style out.
@@ -66,7 +66,7 @@ impl Default for Colorization {
             mode: ColorizationMode::default(),
             color: DEFAULT_COLOR,
             amount: 1.0,
-            method: ColorMethod::Corrected,
+            form: Form::Corrected,
         }
     }
 }
@@ -77,7 +77,7 @@ impl Colorization {
         mode: ColorizationMode::Atmosphere,
         color: Color::srgb(0.62, 0.50, 0.34),
         amount: 1.0,
-        method: ColorMethod::Corrected,
+        form: Form::Corrected,
     };
 
     /// Whether the amount of the atmosphere depends on the depth map.
@@ -99,7 +99,7 @@ impl Colorization {
     }
 
     fn is_faithful(&self) -> bool {
-        self.method == ColorMethod::Faithful
+        self.form == Form::Faithful
     }
 }
 
@@ -185,7 +185,7 @@ impl Effect for Colorization {
         // The faithful method turns hues the long way round: between two of
         // them there is no way.
         let hues = !self.is_faithful() || self.color == other.color;
-        (self.mode, self.method) == (other.mode, other.method) && hues
+        (self.mode, self.form) == (other.mode, other.form) && hues
     }
 
     fn mixed(&self, other: &Self, t: f32) -> Self {

@@ -23,7 +23,7 @@ struct Contours {
     // Half the line's width in physical pixels.
     radius: f32,
     // Share of the opacity that is gone at the far end of the depth map.
-    fade: f32,
+    opacity_fade: f32,
     operator_kind: u32,
     faithful: u32,
 }
@@ -167,7 +167,7 @@ fn line(s: Contours, response: f32) -> f32 {
 // Ink over the picture, in linear light. The line fades with the depth of the
 // nearer side, to which it belongs.
 fn draw_contour(s: Contours, linear: vec3<f32>, coverage: f32, depth: f32) -> vec3<f32> {
-    return mix(linear, s.color, clamp(coverage * s.opacity * (1.0 - s.fade * depth), 0.0, 1.0));
+    return mix(linear, s.color, clamp(coverage * s.opacity * (1.0 - s.opacity_fade * depth), 0.0, 1.0));
 }
 
 // (line, nearest raw depth) of one sample with the taps `reach` pixels away,

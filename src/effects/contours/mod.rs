@@ -4,14 +4,14 @@ use bevy::{
     color::Color,
     ecs::{component::Component, reflect::ReflectComponent},
     math::Vec3,
-    reflect::{Reflect, std_traits::ReflectDefault},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
 use serde::{Deserialize, Serialize};
 
 use crate::{
     effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
-    settings::{FieldRange, bounded, displayable, file_color, linear_rgb},
+    settings::{FieldRange, Form, bounded, displayable, file_color, linear_rgb},
 };
 
 /// Draws a line wherever the depth map jumps: around objects, and between near
@@ -20,15 +20,19 @@ use crate::{
 /// Contours see what the depth prepass sees: opaque and alpha-masked geometry.
 /// A transparent surface is coloured, and outlined, by the depth behind it.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[reflect(Component, Default, Clone, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Contours {
     /// The detector. Default: [`ContourOperator::Prewitt`].
     pub operator: ContourOperator,
-    /// What it detects. Default: [`ContourForm::PlaneAware`].
-    pub form: ContourForm,
+    /// What it detects. [`Form::Corrected`] finds where the surface leaves the
+    /// plane through the pixel: raw depth is affine over a plane, so a plane at
+    /// a grazing angle has no line. [`Form::Faithful`] finds every change of the
+    /// depth map, slopes included, as the paper draws it. Default:
+    /// [`Form::Corrected`].
+    pub form: Form,
     /// The response at which a line is half drawn, in units of the depth map:
-    /// in the plane-aware form 0.02 is a jump of 2 % of the visible range. The
+    /// in the corrected form 0.02 is a jump of 2 % of the visible range. The
     /// faithful form applies it to the raw kernels, which answer a straight
     /// jump of 0.02 with 0.06 (Prewitt, Laplace), 0.08 (Sobel) or 0.028
     /// (Roberts). Range 1e-6 to 100, default 0.02.
@@ -41,7 +45,7 @@ pub struct Contours {
     /// How gradually a line sets in around the threshold: 0 draws it hard, 1
     /// lets it grow from nothing to twice the threshold. Range 0 to 1,
     /// default 0.5.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
     /// Colour of the line. Clamped to what a display shows; its alpha is not
     /// used. Default: black.
@@ -49,17 +53,18 @@ pub struct Contours {
     pub color: Color,
     /// Opacity of the line. Range 0 (none, and the pass leaves the style out)
     /// to 1. Default 1.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
     /// Share of the opacity that is lost at the far end of the depth map.
     /// Range 0 to 1, default 0.
-    #[reflect(@FieldRange::SHARE)]
-    pub fade: f32,
+    #[reflect(@FieldRange::FRACTION)]
+    pub opacity_fade: f32,
 }
 
 /// The edge detectors of the depth map.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq, Hash)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum ContourOperator {
     /// First differences of three rows and columns (\[CS\]): even lines.
     #[default]
@@ -73,29 +78,17 @@ pub enum ContourOperator {
     Roberts,
 }
 
-/// What a contour is.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq, Hash)]
-pub enum ContourForm {
-    /// A departure from the plane through the pixel. Raw depth is affine over
-    /// any plane, so no plane, however grazing, has a line of its own.
-    #[default]
-    PlaneAware,
-    /// Any change of the depth map, slopes included, as the paper draws it.
-    Faithful,
-}
-
 impl Default for Contours {
     fn default() -> Self {
         Self {
             operator: ContourOperator::default(),
-            form: ContourForm::default(),
+            form: Form::default(),
             threshold: 0.02,
             width: 2.0,
             softness: 0.5,
             color: Color::BLACK,
             opacity: 1.0,
-            fade: 0.0,
+            opacity_fade: 0.0,
         }
     }
 }
@@ -118,7 +111,7 @@ impl Effect for Contours {
             softness: bounded(self.softness, default.softness, 0.0, 1.0),
             color: displayable(self.color, default.color),
             opacity: bounded(self.opacity, default.opacity, 0.0, 1.0),
-            fade: bounded(self.fade, default.fade, 0.0, 1.0),
+            opacity_fade: bounded(self.opacity_fade, default.opacity_fade, 0.0, 1.0),
             ..self
         }
     }
@@ -144,7 +137,7 @@ impl Effect for Contours {
         variants.number("FAITHFUL", u32::from(self.is_faithful()));
         variants.flag("WHOLE", radius.fract() == 0.0);
         variants.flag("SINGLE_RING", radius == 1.0 || radius == 2.0);
-        variants.flag("STEADY", self.fade == 0.0);
+        variants.flag("STEADY", self.opacity_fade == 0.0);
     }
 
     fn uniform(&self, view: &ViewFacts) -> ContoursUniform {
@@ -156,7 +149,7 @@ impl Effect for Contours {
             low: self.threshold - half_ramp,
             high: self.threshold + half_ramp,
             radius: self.radius(view),
-            fade: self.fade,
+            opacity_fade: self.opacity_fade,
             operator_kind: self.operator_number(),
             faithful: u32::from(self.is_faithful()),
         }
@@ -164,8 +157,8 @@ impl Effect for Contours {
 
     fn report_name(&self) -> Option<String> {
         Some(match self.form {
-            ContourForm::PlaneAware => format!("{:?}", self.operator),
-            ContourForm::Faithful => format!("{:?}, faithful form", self.operator),
+            Form::Corrected => format!("{:?}", self.operator),
+            Form::Faithful => format!("{:?}, faithful form", self.operator),
         })
     }
 }
@@ -177,7 +170,7 @@ impl Contours {
     }
 
     fn is_faithful(&self) -> bool {
-        self.form == ContourForm::Faithful
+        self.form == Form::Faithful
     }
 
     /// Number of the operator in the shader.
@@ -199,7 +192,7 @@ pub struct ContoursUniform {
     low: f32,
     high: f32,
     radius: f32,
-    fade: f32,
+    opacity_fade: f32,
     operator_kind: u32,
     faithful: u32,
 }

@@ -2,35 +2,34 @@
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
 use serde::{Deserialize, Serialize};
 
-use super::ColorMethod;
 use crate::{
     effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
-    settings::{FieldRange, bounded},
+    settings::{FieldRange, Form, bounded},
 };
 
 /// Takes saturation away with distance: the nearest geometry keeps its colours,
 /// the farthest and the sky turn grey (\[CS\] Eq. 6 and 7).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[reflect(Component, Default, Clone, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Desaturation {
     /// How much of the saturation goes at the far end. Range 0 (none, and the
     /// pass leaves the style out) to 1 (all). Default 1.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
     /// The exponent on `1 - D`: 1 is Eq. 6, 0.5 is Eq. 7, which keeps colours
     /// longer and drops them late. Range 0.25 to 4, default 1.
     #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
     pub exponent: f32,
-    /// What stays while the colour goes. [`ColorMethod::Corrected`] keeps the
-    /// luminance of the light; [`ColorMethod::Faithful`] keeps HSV value
+    /// What stays while the colour goes. [`Form::Corrected`] keeps the
+    /// luminance of the light; [`Form::Faithful`] keeps HSV value
     /// (Eq. 5), which makes full blue fourteen times as bright.
-    pub method: ColorMethod,
+    pub form: Form,
 }
 
 impl Default for Desaturation {
@@ -38,7 +37,7 @@ impl Default for Desaturation {
         Self {
             amount: 1.0,
             exponent: 1.0,
-            method: ColorMethod::Corrected,
+            form: Form::Corrected,
         }
     }
 }
@@ -48,13 +47,13 @@ impl Desaturation {
     pub const LINEAR: Self = Self {
         amount: 1.0,
         exponent: 1.0,
-        method: ColorMethod::Faithful,
+        form: Form::Faithful,
     };
     /// \[CS\] Eq. 7 as printed.
     pub const QUADRATIC: Self = Self {
         amount: 1.0,
         exponent: 0.5,
-        method: ColorMethod::Faithful,
+        form: Form::Faithful,
     };
 }
 
@@ -118,7 +117,7 @@ impl Desaturation {
     }
 
     fn is_faithful(&self) -> bool {
-        self.method == ColorMethod::Faithful
+        self.form == Form::Faithful
     }
 }
 

@@ -4,7 +4,7 @@
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
     math::FloatExt,
-    reflect::{Reflect, std_traits::ReflectDefault},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
 };
 use serde::{Deserialize, Serialize};
 
@@ -20,16 +20,16 @@ use crate::{
 /// The three kinds are found separately and the strongest is drawn
 /// (\[CL\] Eq. 5). They are measured so that the same settings fit a tabletop
 /// and a landscape, whatever the near and far planes; the papers' own form is
-/// [`EdgeForm::Faithful`](crate::EdgeForm::Faithful), kind by kind.
+/// [`Form::Faithful`](crate::Form::Faithful), kind by kind.
 ///
 /// What has no depth in the prepass has no outline: transparent surfaces are
-/// drawn over by the lines of what lies behind them. [`ContourStyle`] and
-/// [`NoContours`] change the lines of single objects.
+/// drawn over by the lines of what lies behind them. [`OutlineStyle`] and
+/// [`NoOutlines`] change the lines of single objects.
 ///
-/// [`ContourStyle`]: crate::ContourStyle
-/// [`NoContours`]: crate::NoContours
+/// [`OutlineStyle`]: crate::OutlineStyle
+/// [`NoOutlines`]: crate::NoOutlines
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[reflect(Component, Default, Clone, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Outlines {
     /// Lines where a surface ends in front of another or of the sky.
@@ -43,16 +43,16 @@ pub struct Outlines {
     /// are missing. Default: [`ObjectEdges::default`].
     pub objects: Option<ObjectEdges>,
     /// Width of the lines in logical pixels. Range 0.5 to 16, default 2.
-    /// [`EdgeForm::Faithful`](crate::EdgeForm::Faithful) lines have the paper's four columns instead.
+    /// [`Form::Faithful`](crate::Form::Faithful) lines have the paper's four columns instead.
     #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub width: f32,
     /// Share of the width that is lost at the far end of the depth map.
     /// Range 0 to 1, default 0.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub width_fade: f32,
     /// Share of the opacity that is lost at the far end of the depth map.
     /// Range 0 to 1, default 0.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub opacity_fade: f32,
 }
 

@@ -4,7 +4,7 @@ use bevy::{
     color::Color,
     ecs::{component::Component, reflect::ReflectComponent},
     math::Vec3,
-    reflect::{Reflect, std_traits::ReflectDefault},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
 use serde::{Deserialize, Serialize};
@@ -21,12 +21,12 @@ use crate::{
 /// component sketches its silhouettes and creases. Several strokes, each with a
 /// wobble of its own that changes a few times a second, make it look drawn.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[reflect(Component, Default, Clone, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Sketch {
     /// How much of the drawing covers the picture with its outlines. Range 0
     /// (none, and the pass leaves the style out) to 1, default 1.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
     /// Colour of the paper. Clamped to what a display shows; its alpha is not
     /// used. Default: a warm white.
@@ -38,7 +38,7 @@ pub struct Sketch {
     pub ink: Color,
     /// How much of the picture shows through the paper, as a wash of colour.
     /// Range 0 to 1, default 0.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub wash: f32,
     /// Exponent on the ink: below 1 strengthens faint lines, above 1 thins them
     /// out. Range 0.25 to 4, default 1.
@@ -60,7 +60,7 @@ pub struct Sketch {
     pub rate: f32,
     /// How much the pressure of the pen varies along a stroke. Range 0 to 1,
     /// default 0.4.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub pressure: f32,
 }
 

@@ -2,14 +2,14 @@
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
 use serde::{Deserialize, Serialize};
 
 use crate::{
     effect::{Effect, EffectShader, EffectStage, EffectView, Needs, Variants, ViewFacts},
-    settings::{FieldRange, bounded},
+    settings::{FieldRange, Form, bounded},
 };
 
 /// Gathers the tones of the picture into a few flat bands, whatever lit it.
@@ -17,47 +17,38 @@ use crate::{
 /// Bevy's cameras dither by default; an area whose tone lies right on a step
 /// shows that as faint dots. `DebandDither::Disabled` on the camera ends it.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[reflect(Component, Default, Clone, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ToneBands {
-    /// How. Default: [`ToneBandMethod::Levels`].
-    pub method: ToneBandMethod,
-    /// Number of bands. Range 2 to 8, default 4; [`ToneBandMethod::Faithful`]
+    /// How tones are banded. [`Form::Corrected`] rounds the lightness (the root
+    /// of the luminance) to the middle of its band and keeps hue and saturation.
+    /// [`Form::Faithful`] is \[CL\] Eq. 6 on every channel of the display
+    /// colour: three ranges, each compressed, with the gaps that the paper
+    /// leaves at 0.33 and 0.66 closed; white becomes 0.83. Default:
+    /// [`Form::Corrected`].
+    pub form: Form,
+    /// Number of bands. Range 2 to 8, default 4; [`Form::Faithful`]
     /// always has three.
     #[reflect(@FieldRange::linear(2.0, 8.0))]
     pub levels: u32,
     /// Width of the step between two bands in logical pixels, where the tone
     /// changes slowly: 1 is anti-aliased, more is soft, 0 as hard as can be: a
     /// step always spans two codes of the display, so that the dither of a flat
-    /// area does not speckle. Range 0 to 16, default 1. [`ToneBandMethod::Faithful`] has hard steps.
+    /// area does not speckle. Range 0 to 16, default 1. [`Form::Faithful`] has hard steps.
     #[reflect(@FieldRange::linear(0.0, 16.0).unit("px"))]
-    pub feather: f32,
+    pub softness: f32,
     /// How much of the banded picture is mixed in. Range 0 (the style is left
     /// out) to 1, default 1.
-    #[reflect(@FieldRange::SHARE)]
+    #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
-}
-
-/// What becomes of a tone.
-#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq, Hash)]
-pub enum ToneBandMethod {
-    /// Lightness, as it is seen (the root of the luminance), is rounded to the
-    /// middle of its band; hue and saturation stay.
-    #[default]
-    Levels,
-    /// \[CL\] Eq. 6, for every channel of the display colour: three ranges, each
-    /// compressed. The gaps that the paper leaves at 0.33 and 0.66 are closed.
-    /// White becomes 0.83.
-    Faithful,
 }
 
 impl Default for ToneBands {
     fn default() -> Self {
         Self {
-            method: ToneBandMethod::default(),
+            form: Form::default(),
             levels: 4,
-            feather: 1.0,
+            softness: 1.0,
             amount: 1.0,
         }
     }
@@ -80,9 +71,9 @@ impl Effect for ToneBands {
     fn sanitized(self) -> Self {
         let default = Self::default();
         Self {
-            method: self.method,
+            form: self.form,
             levels: self.levels.clamp(2, 8),
-            feather: bounded(self.feather, default.feather, 0.0, 16.0),
+            softness: bounded(self.softness, default.softness, 0.0, 16.0),
             amount: bounded(self.amount, default.amount, 0.0, 1.0),
         }
     }
@@ -109,7 +100,7 @@ impl Effect for ToneBands {
     fn uniform(&self, view: &ViewFacts) -> ToneBandsUniform {
         ToneBandsUniform {
             levels: self.levels as f32,
-            feather: self.feather * view.scale_factor,
+            softness: self.softness * view.scale_factor,
             amount: self.amount,
             faithful: u32::from(self.is_faithful()),
         }
@@ -118,7 +109,7 @@ impl Effect for ToneBands {
 
 impl ToneBands {
     fn is_faithful(&self) -> bool {
-        self.method == ToneBandMethod::Faithful
+        self.form == Form::Faithful
     }
 }
 
@@ -126,7 +117,7 @@ impl ToneBands {
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub struct ToneBandsUniform {
     levels: f32,
-    feather: f32,
+    softness: f32,
     amount: f32,
     faithful: u32,
 }

@@ -9,7 +9,7 @@ struct ToneBands {
     // How many bands; with the paper's equation always three.
     levels: f32,
     // Physical pixels that the step between two bands takes.
-    feather: f32,
+    softness: f32,
     amount: f32,
     faithful: u32,
 }
@@ -36,14 +36,14 @@ fn equation_6(c: f32) -> f32 {
 }
 
 // The tone in the middle of the band that a lightness falls into. `change` is how much the lightness changes over a
-// pixel; the step between two bands takes `feather` pixels, and never more than
+// pixel; the step between two bands takes `softness` pixels, and never more than
 // one band.
 fn band_tone(s: ToneBands, y: f32, change: f32) -> f32 {
     let t = y * s.levels;
     let step = clamp(round(t), 1.0, s.levels - 1.0);
     // A code on both sides at least, or the dither of a flat area that lies on a
     // step would speckle.
-    let half = 0.5 * clamp(s.feather * change * s.levels, s.levels / 128.0, 1.0);
+    let half = 0.5 * clamp(s.softness * change * s.levels, s.levels / 128.0, 1.0);
     return (step - 0.5 + smoothstep(step - half, step + half, t)) / s.levels;
 }
 

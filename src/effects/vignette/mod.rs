@@ -4,7 +4,7 @@ use bevy::{
     color::Color,
     ecs::{component::Component, reflect::ReflectComponent},
     math::{Vec2, Vec3},
-    reflect::{Reflect, std_traits::ReflectDefault},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
 use serde::{Deserialize, Serialize};
@@ -20,7 +20,7 @@ use crate::{
 /// Distances are fractions of the way from the centre of the viewport to its
 /// corners, so that the vignette is an ellipse of the viewport's shape.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[reflect(Component, Default, Clone, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Vignette {
     /// How much of the colour is mixed in outside of the vignette. Range 0 (none,

@@ -81,7 +81,7 @@ fn failure_08_absurd_settings_equal_their_sanitized_selves() {
                 slope: Some(value),
                 value: Some(other),
                 depth_weight: value,
-                feather: other,
+                softness: other,
                 color: Color::hsl(other, value, 0.2),
                 opacity: value,
             })
@@ -91,11 +91,11 @@ fn failure_08_absurd_settings_equal_their_sanitized_selves() {
                 softness: value,
                 color: Color::srgb(other, value, value),
                 opacity: other,
-                fade: value,
+                opacity_fade: value,
                 ..default()
             })
             .with(ToneBands {
-                feather: value,
+                softness: value,
                 amount: other,
                 levels: 1_000_000,
                 ..default()
@@ -208,8 +208,8 @@ fn the_default_draws_no_slopes_and_the_faithful_form_does() {
             .filter(|p| p.0[..3] == [0, 0, 0])
             .count()
     };
-    let faithful = ink(&mut small, ContourForm::Faithful);
-    let plane_aware = ink(&mut small, ContourForm::PlaneAware);
+    let faithful = ink(&mut small, Form::Faithful);
+    let plane_aware = ink(&mut small, Form::Corrected);
     assert!(
         plane_aware > 100 && faithful > 2 * plane_aware,
         "{plane_aware} and {faithful}"

@@ -16,8 +16,7 @@ use bevy::{
 };
 use bevy_comics::{
     Colorization, ColorizationMode, ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage,
-    ContourForm, Contours, DepthMap, DepthMapping, Desaturation, LeftOut, StageOutcome,
-    VisibleDepthRange,
+    Contours, DepthMap, DepthMapping, Desaturation, Form, LeftOut, StageOutcome, VisibleDepthRange,
 };
 
 use crate::{

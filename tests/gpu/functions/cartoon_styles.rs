@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::reference::{edge, light, sketch, tone_bands};
-use bevy_comics::{CartoonLight, Sketch, ToneBandMethod, ToneBands};
+use bevy_comics::{CartoonLight, Form, Sketch, ToneBands};
 
 const EDGE: &str = "#import bevy_comics::lines::edge::{gradient, gradient_extremes, edge_response, normal_extremes, component_response, step_excess, line_coverage, line_offset, pack_edge, unpack_edge, Edge}";
 
@@ -238,13 +238,13 @@ fn tone_bands_are_their_twin() {
         0.0f32..=1.0,
         any::<bool>(),
     )
-        .prop_map(|((r, g, b), levels, feather, change, amount, faithful)| {
+        .prop_map(|((r, g, b), levels, softness, change, amount, faithful)| {
             [
                 r,
                 g,
                 b,
                 f32::from(levels),
-                feather,
+                softness,
                 change,
                 amount,
                 f32::from(u8::from(faithful)),
@@ -260,13 +260,13 @@ fn tone_bands_are_their_twin() {
         );
         for (row, result) in rows.iter().zip(results) {
             let s = ToneBands {
-                method: if row[7] == 1.0 {
-                    ToneBandMethod::Faithful
+                form: if row[7] == 1.0 {
+                    Form::Faithful
                 } else {
-                    ToneBandMethod::Levels
+                    Form::Corrected
                 },
                 levels: row[3] as u32,
-                feather: row[4],
+                softness: row[4],
                 amount: row[6],
             };
             let change = f64::from(row[5]);
@@ -307,7 +307,7 @@ fn the_levels_are_as_many_as_asked_and_keep_the_chroma() {
     for levels in 2..=8u32 {
         let s = ToneBands {
             levels,
-            feather: 0.0,
+            softness: 0.0,
             ..ToneBands::default()
         };
         // Away from the steps, which span a code on both sides.
@@ -328,7 +328,7 @@ fn the_levels_are_as_many_as_asked_and_keep_the_chroma() {
         assert_eq!(tones.len(), levels as usize, "{tones:?}");
     }
     let s = ToneBands {
-        feather: 0.0,
+        softness: 0.0,
         ..ToneBands::default()
     };
     let red = [0.2, 0.05, 0.02];

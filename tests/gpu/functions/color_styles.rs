@@ -114,10 +114,10 @@ fn desaturation_settings() -> impl Strategy<Value = Desaturation> {
         .prop_map(|(amount, exponent, faithful)| Desaturation {
             amount,
             exponent,
-            method: if faithful {
-                ColorMethod::Faithful
+            form: if faithful {
+                Form::Faithful
             } else {
-                ColorMethod::Corrected
+                Form::Corrected
             },
         })
 }
@@ -134,7 +134,7 @@ fn desaturation_is_its_twin_and_keeps_greys() {
     )
         .prop_map(|(s, r, g, b, (_, l), grey)| {
             let (g, b) = if grey { (r, r) } else { (g, b) };
-            let faithful = f32::from(u8::from(s.method == ColorMethod::Faithful));
+            let faithful = f32::from(u8::from(s.form == Form::Faithful));
             [s.amount, s.exponent, faithful, r, g, b, l]
         });
     for_batches(row, |rows| {
@@ -150,15 +150,15 @@ fn desaturation_is_its_twin_and_keeps_greys() {
             let s = Desaturation {
                 amount: row[0],
                 exponent: row[1],
-                method: if row[2] == 1.0 {
-                    ColorMethod::Faithful
+                form: if row[2] == 1.0 {
+                    Form::Faithful
                 } else {
-                    ColorMethod::Corrected
+                    Form::Corrected
                 },
             };
             let k = desaturation::saturation_left(&s, f64::from(row[6]));
             assert_same_color(row, result, desaturation::desaturate(&s, rgb(&row[3..]), k));
-            if s.method == ColorMethod::Faithful && row[3] == row[4] && row[4] == row[5] {
+            if s.form == Form::Faithful && row[3] == row[4] && row[4] == row[5] {
                 assert!(
                     result[0] == result[1] && result[1] == result[2],
                     "{row:?}: grey became {result:?}"
@@ -218,10 +218,10 @@ fn colorization_is_its_twin_and_faithful_greys_stay_grey() {
                     ColorizationMode::Linear,
                     ColorizationMode::Quadratic,
                 ][row[0] as usize],
-                method: if row[1] == 1.0 {
-                    ColorMethod::Faithful
+                form: if row[1] == 1.0 {
+                    Form::Faithful
                 } else {
-                    ColorMethod::Corrected
+                    Form::Corrected
                 },
                 color: Color::hsv(row[2], row[3], row[4]),
                 amount: row[5],
@@ -262,7 +262,7 @@ fn colorization_is_its_twin_and_faithful_greys_stay_grey() {
                 result,
                 colorization::colorize(s, rgb(&row[6..]), d, l, 0.75),
             );
-            if s.method == ColorMethod::Faithful && row[6] == row[7] && row[7] == row[8] {
+            if s.form == Form::Faithful && row[6] == row[7] && row[7] == row[8] {
                 assert!(
                     result[0] == result[1] && result[1] == result[2],
                     "{row:?}: grey became {result:?}"
@@ -283,7 +283,7 @@ fn dark_areas_are_their_twin() {
         0.0f32..=1.0,
         0.0f32..=1.0,
     )
-        .prop_map(|(r, g, b, value, feather, weight, l)| [r, g, b, value, feather, weight, l]);
+        .prop_map(|(r, g, b, value, softness, weight, l)| [r, g, b, value, softness, weight, l]);
     for_batches(row, |rows| {
         let results = gpu().evaluate(
             "#import bevy_comics::effects::black_flats::{BlackFlats, dark_area, fill}",
@@ -296,7 +296,7 @@ fn dark_areas_are_their_twin() {
         for (row, result) in rows.iter().zip(results) {
             let s = BlackFlats {
                 value: Some(row[3]),
-                feather: row[4],
+                softness: row[4],
                 depth_weight: row[5],
                 color: Color::linear_rgb(0.02, 0.0, 0.05),
                 opacity: 0.9,

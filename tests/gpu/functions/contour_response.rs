@@ -65,9 +65,9 @@ fn every_operator_answers_as_its_twin() {
                     ContourOperator::Roberts,
                 ][row[2] as usize],
                 form: if row[3] == 1.0 {
-                    ContourForm::Faithful
+                    Form::Faithful
                 } else {
-                    ContourForm::PlaneAware
+                    Form::Corrected
                 },
                 ..Contours::default()
             };

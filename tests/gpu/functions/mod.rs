@@ -10,8 +10,7 @@ mod normal;
 
 use bevy::color::{Color, Hsva};
 use bevy_comics::{
-    BlackFlats, ColorMethod, Colorization, ColorizationMode, ContourForm, ContourOperator,
-    Contours, Desaturation,
+    BlackFlats, Colorization, ColorizationMode, ContourOperator, Contours, Desaturation, Form,
 };
 use proptest::{
     collection::vec,
