@@ -166,8 +166,8 @@ fn setup(mut stage: Stage, options: Res<Options>, inspector: Option<ResMut<Comic
             Msaa::Off,
             RenderLayers::default(),
         ));
-        if let Some(Ok(style)) = presets::preset(&options.style) {
-            wear(&mut camera, &style);
+        if let Some(preset) = presets::find(&options.style) {
+            wear(&mut camera, &preset.style());
         }
     }
 }

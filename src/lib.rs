@@ -80,8 +80,8 @@ pub use settings::{
     displayable, file_color, linear_rgb,
 };
 pub use style::{
-    ComicStyle, ComicStyleError, ComicStyleHandle, StyleTransition, StyleTransitionFinished,
-    TransitionEasing, presets,
+    ComicStyle, ComicStyleError, ComicStyleHandle, ComicStyleHandleTemplate, Preset,
+    StyleTransition, StyleTransitionFinished, TransitionEasing, presets,
 };
 
 /// The guide's code, compiled.

@@ -2,7 +2,8 @@
 
 use bevy::{
     app::{App, Plugin, PreUpdate},
-    ecs::schedule::IntoScheduleConfigs,
+    asset::AssetServer,
+    ecs::{resource::Resource, schedule::IntoScheduleConfigs},
     render::{Render, RenderApp, RenderSystems},
 };
 
@@ -12,7 +13,7 @@ use crate::{
     effect::FusedPlugin,
     effects,
     finish::FinishPlugin,
-    lines::LinesPlugin,
+    lines,
     objects::ObjectsPlugin,
     style::StylePlugin,
     view::ViewPlugin,
@@ -21,6 +22,8 @@ use crate::{
 /// Adds comics stylization: every [`Camera3d`](bevy::camera::Camera3d) with an
 /// effect is drawn as a comic.
 ///
+/// It may be added before or after Bevy's `DefaultPlugins`.
+///
 /// In an app without a renderer the plugin registers its types and plans what
 /// cameras would draw; nothing is drawn.
 #[derive(Default)]
@@ -28,31 +31,71 @@ pub struct ComicsPlugin;
 
 impl Plugin for ComicsPlugin {
     fn build(&self, app: &mut App) {
+        // The main world: effects on cameras, styles, and what a camera asks for.
         app.register_type::<ComicsDiagnostics>()
             .init_resource::<ComicsDiagnostics>();
-        // The main world: effects on cameras, styles, and what a camera asks for.
         effects::add(app);
-        app.add_plugins((StylePlugin, ViewPlugin));
-        // The render world: what is asked of depth, objects and lines, and the
-        // pass that draws with it.
         app.add_plugins((
+            StylePlugin,
+            ViewPlugin,
             DepthPlugin,
             ObjectsPlugin,
-            LinesPlugin,
             FinishPlugin,
             FusedPlugin,
         ));
         #[cfg(feature = "cartoon")]
         app.add_plugins(crate::cartoon::CartoonPlugin);
-        // Back to the main world: what ran.
-        let ledger = StageLedger::default();
-        let reader = ledger.reader();
-        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-            render_app
-                .insert_resource(ledger)
-                .add_systems(Render, publish_ledger.in_set(RenderSystems::Cleanup));
-            app.insert_resource(reader)
-                .add_systems(PreUpdate, read_ledger);
-        }
+        build_engine_parts(app);
+    }
+
+    /// If the engine's plugins were added after this one, they are there now.
+    fn finish(&self, app: &mut App) {
+        build_engine_parts(app);
+    }
+}
+
+/// The engine parts that are built. Each is built once: in `build` if the
+/// engine's plugin came before [`ComicsPlugin`], otherwise in `finish`.
+#[derive(Resource, Clone, Copy, Default)]
+struct EngineParts {
+    assets: bool,
+    render: bool,
+}
+
+fn build_engine_parts(app: &mut App) {
+    let built = *app.world_mut().get_resource_or_init::<EngineParts>();
+    let parts = EngineParts {
+        assets: app.world().contains_resource::<AssetServer>(),
+        render: app.get_sub_app(RenderApp).is_some(),
+    };
+    if parts.assets && !built.assets {
+        StylePlugin::build_assets(app);
+    }
+    if parts.render && !built.render {
+        build_render(app);
+    }
+    app.insert_resource(parts);
+}
+
+/// The render world: what is asked of depth, objects and lines, and the pass
+/// that draws with it.
+fn build_render(app: &mut App) {
+    ViewPlugin::build_render(app);
+    DepthPlugin::build_render(app);
+    ObjectsPlugin::build_render(app);
+    lines::build_render(app);
+    FinishPlugin::build_render(app);
+    FusedPlugin::build_render(app);
+    #[cfg(feature = "cartoon")]
+    crate::cartoon::CartoonPlugin::build_render(app);
+    // Back to the main world: what ran.
+    let ledger = StageLedger::default();
+    let reader = ledger.reader();
+    if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+        render_app
+            .insert_resource(ledger)
+            .add_systems(Render, publish_ledger.in_set(RenderSystems::Cleanup));
+        app.insert_resource(reader)
+            .add_systems(PreUpdate, read_ledger);
     }
 }

@@ -82,14 +82,18 @@ pub fn with_map(mut style: ComicStyle, map: DepthMap) -> ComicStyle {
 /// The presets that a scene has a reference picture of. The mountains are the
 /// first paper's, the theatre is the second's, the teapot shows everything.
 pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
-    let is_cartoon = |name: &str| presets::NAMES.iter().position(|n| *n == name) >= Some(10);
+    let is_cartoon = |name: &str| presets::ALL.iter().position(|p| p.name() == name) >= Some(10);
     let wanted = |name: &&str| match scene {
         BuiltIn::Teapot => true,
         BuiltIn::Theatre => is_cartoon(name),
         BuiltIn::Mountains => !is_cartoon(name),
         BuiltIn::Village => !is_cartoon(name) || *name == "graphic-novel",
     };
-    presets::NAMES.iter().copied().filter(wanted).collect()
+    presets::ALL
+        .iter()
+        .map(|preset| preset.name())
+        .filter(wanted)
+        .collect()
 }
 
 /// Draws every part of the scene with the cartoon material, or as it was.

@@ -12,8 +12,7 @@ use bevy::{
     camera::Hdr, ecs::system::SystemParam, prelude::*, render::view::Msaa, window::WindowResolution,
 };
 use bevy_comics::{
-    CartoonScene, ComicStyle, ComicsDiagnostics, ComicsPlugin, StageOutcome, VisibleDepthRange,
-    presets,
+    CartoonScene, ComicsDiagnostics, ComicsPlugin, Preset, StageOutcome, VisibleDepthRange, presets,
 };
 use common::{
     scenes::{BuiltIn, ScenePart, Stage, Vantage},
@@ -141,14 +140,12 @@ fn light_scene(
     }
 }
 
-fn style(index: usize) -> Option<ComicStyle> {
-    presets::preset(presets::NAMES[index]).and_then(Result::ok)
+fn preset(index: usize) -> Preset {
+    presets::ALL.get(index).copied().unwrap_or(presets::NOIR)
 }
 
 fn apply(commands: &mut Commands, camera: Entity, index: usize) {
-    if let Some(style) = style(index) {
-        wear(&mut commands.entity(camera), &style);
-    }
+    wear(&mut commands.entity(camera), &preset(index).style());
 }
 
 #[derive(SystemParam)]
@@ -190,7 +187,7 @@ fn choose(
     let Ok((entity, mut projection, mut orbit, mut msaa, hdr)) = camera.cameras.single_mut() else {
         return;
     };
-    let count = presets::NAMES.len();
+    let count = presets::ALL.len();
     if keys.just_pressed(KeyCode::ArrowRight) {
         show.style = (show.style + 1) % count;
         apply(&mut commands, entity, show.style);
@@ -268,11 +265,9 @@ fn describe(
     } else {
         Visibility::Hidden
     };
-    let name = presets::NAMES[show.style];
-    let title = style(show.style)
-        .map(|style| style.name)
-        .unwrap_or_default();
-    let mut lines = format!("{} in {title} ({name})\n\n{HELP}\n\n", show.scene.name());
+    let preset = preset(show.style);
+    let title = preset.style().name;
+    let mut lines = format!("{} in {title} ({preset})\n\n{HELP}\n\n", show.scene.name());
     if let Some((near, far)) = range.distances() {
         lines += &format!("visible from {near:.1} to {far:.1}\n");
     }

@@ -5,7 +5,7 @@
 use bevy::prelude::*;
 use bevy_comics::{
     BlackFlats, Colorization, ColorizationMode, ComicStyle, Contours, Desaturation, Form, Outlines,
-    Sketch, StyleTransition, StyleTransitionFinished, ToneBands, presets,
+    Preset, Sketch, StyleTransition, StyleTransitionFinished, ToneBands, presets,
 };
 
 /// What the picture should say.
@@ -124,10 +124,7 @@ impl Looks {
 
 /// A preset of the crate.
 pub fn named(name: &str, otherwise: &ComicStyle) -> ComicStyle {
-    match presets::preset(name) {
-        Some(Ok(style)) => style,
-        _ => otherwise.clone(),
-    }
+    presets::find(name).map_or_else(|| otherwise.clone(), Preset::style)
 }
 
 /// The camera that wears the looks.

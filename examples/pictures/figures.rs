@@ -229,14 +229,12 @@ fn figure_3(folder: &Path) -> Result<(), String> {
 /// paper prints its equations.
 fn figure_4(folder: &Path) -> Result<(), String> {
     let mut rows = Vec::new();
-    for (scene, name) in [
-        (BuiltIn::Mountains, "crimson-dusk"),
-        (BuiltIn::Teapot, "museum-print"),
-        (BuiltIn::Mountains, "emerald-ink"),
+    for (scene, preset) in [
+        (BuiltIn::Mountains, presets::CRIMSON_DUSK),
+        (BuiltIn::Teapot, presets::MUSEUM_PRINT),
+        (BuiltIn::Mountains, presets::EMERALD_INK),
     ] {
-        let style = presets::preset(name)
-            .ok_or("no preset")?
-            .map_err(|error| error.to_string())?;
+        let style = preset.style();
         let mut faithful = style.clone();
         if let Some(s) = faithful.get_mut::<Desaturation>() {
             s.form = Form::Faithful;
@@ -250,7 +248,7 @@ fn figure_4(folder: &Path) -> Result<(), String> {
             studio.shoot(Some(&style)),
             studio.shoot(Some(&faithful)),
         ]);
-        println!("figure 4: {name}");
+        println!("figure 4: {preset}");
     }
     save(&sheet(&rows), &folder.join("figure-4.png"))
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use bevy::{math::UVec2, render::view::Msaa};
-use bevy_comics::presets;
+use bevy_comics::{Preset, presets};
 use image::{RgbaImage, imageops};
 
 use crate::{
@@ -17,9 +17,9 @@ use crate::{
 const GAP: u32 = 6;
 
 fn style(name: &str) -> Result<bevy_comics::ComicStyle, String> {
-    presets::preset(name)
-        .ok_or_else(|| format!("no preset {name}"))?
-        .map_err(|error| format!("{name}: {error}"))
+    presets::find(name)
+        .map(Preset::style)
+        .ok_or_else(|| format!("no preset {name}"))
 }
 
 /// A preset, or the original.
@@ -47,7 +47,7 @@ fn shoot_all(size: UVec2, looks: &[Look]) -> Result<Vec<Vec<RgbaImage>>, String>
 /// Rows of presets, the original first; columns of scenes.
 pub fn contact_sheet(size: UVec2, out: &Path) -> Result<(), String> {
     let looks: Vec<Look> = std::iter::once(None)
-        .chain(presets::NAMES.iter().copied().map(Some))
+        .chain(presets::ALL.iter().map(|preset| Some(preset.name())))
         .collect();
     let columns = shoot_all(size, &looks)?;
     let rows: Vec<Vec<&RgbaImage>> = (0..looks.len())

@@ -206,13 +206,14 @@ fn read_style(name: &str) -> Result<ComicStyle, String> {
             .map_err(|error| format!("cannot read {name}: {error}"))?;
         return ComicStyle::from_ron(&text).map_err(|error| format!("{name}: {error}"));
     }
-    match presets::preset(name) {
-        Some(style) => style.map_err(|error| format!("{name}: {error}")),
-        None => Err(format!(
-            "no style {name:?}; possible are none, {}, or a .comic.ron file",
-            presets::NAMES.join(", ")
-        )),
+    if let Some(preset) = presets::find(name) {
+        return Ok(preset.style());
     }
+    let names: Vec<&str> = presets::ALL.iter().map(|preset| preset.name()).collect();
+    Err(format!(
+        "no style {name:?}; possible are none, {}, or a .comic.ron file",
+        names.join(", ")
+    ))
 }
 
 fn number<T: FromStr>(option: &str, text: &str) -> Result<T, String> {

@@ -208,8 +208,7 @@ fn map_cases(table: &mut Table, run: &Run) {
 
 /// Everything at once, on HDR colour.
 fn everything() -> ComicStyle {
-    let preset = presets::preset("graphic-novel").expect("listed");
-    let mut style = preset.unwrap_or_default();
+    let mut style = presets::GRAPHIC_NOVEL.style();
     for effect in default_comic().effects() {
         style.insert_any(effect.boxed());
     }

@@ -9,7 +9,6 @@ use bevy::{
     asset::{AssetApp, embedded_asset},
     ecs::schedule::IntoScheduleConfigs,
     pbr::{MaterialPlugin, PbrPlugin},
-    render::RenderApp,
     shader::load_shader_library,
 };
 
@@ -23,16 +22,20 @@ impl Plugin for CartoonPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<CartoonLight>()
             .register_type::<CartoonScene>();
-        if app.get_sub_app(RenderApp).is_some() {
-            load_shader_library!(app, "light.wgsl");
-            embedded_asset!(app, "cartoon.wgsl");
-        }
         add_material(app);
     }
 
     /// The engine's plugins may have come after ours.
     fn finish(&self, app: &mut App) {
         add_material(app);
+    }
+}
+
+impl CartoonPlugin {
+    /// The part that needs the engine's renderer.
+    pub(crate) fn build_render(app: &mut App) {
+        load_shader_library!(app, "light.wgsl");
+        embedded_asset!(app, "cartoon.wgsl");
     }
 }
 

@@ -43,9 +43,12 @@ impl Plugin for DepthPlugin {
             .register_type::<DepthHistogram>()
             .register_type::<CameraCut>()
             .add_observer(count_cut);
-        if app.get_sub_app(RenderApp).is_none() {
-            return;
-        }
+    }
+}
+
+impl DepthPlugin {
+    /// The part that needs the engine's renderer.
+    pub(crate) fn build_render(app: &mut App) {
         load_shader_library!(app, "map.wgsl");
         load_shader_library!(app, "raw.wgsl");
         load_shader_library!(app, "view.wgsl");

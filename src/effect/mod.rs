@@ -20,7 +20,7 @@ use std::fmt::Debug;
 
 use bevy::{
     ecs::component::{Component, Mutable},
-    reflect::{GetTypeRegistration, Typed, structs::Struct},
+    reflect::{FromReflect, GetTypeRegistration, Typed, structs::Struct},
     render::render_resource::{ShaderType, encase::internal::WriteInto},
 };
 use bitflags::bitflags;
@@ -52,6 +52,7 @@ use crate::{diagnostics::ComicsStage, lines::LineSettings};
 pub trait Effect:
     Component<Mutability = Mutable>
     + Struct
+    + FromReflect
     + Typed
     + GetTypeRegistration
     + Default

@@ -48,9 +48,33 @@ struct FusedShader(Handle<Shader>);
 impl Plugin for FusedPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<EffectRegistry>();
-        if app.get_sub_app(RenderApp).is_none() {
+    }
+
+    /// All effects are registered by now.
+    fn finish(&self, app: &mut App) {
+        let registry = app.world().resource::<EffectRegistry>().clone();
+        registry.seal();
+        let Some(mut shaders) = app.world_mut().get_resource_mut::<Assets<Shader>>() else {
             return;
+        };
+        let module = |effect: &&EffectType| {
+            shaders.add(Shader::from_wgsl(effect.shader.source, file_path(effect)))
+        };
+        let modules = registry.types().iter().map(module).collect();
+        let fused = Shader::from_wgsl(registry.shader(), "bevy_comics/effect/fused.wgsl");
+        let fused = shaders.add(fused);
+        app.insert_resource(EffectModules { _modules: modules });
+        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+            render_app
+                .insert_resource(registry)
+                .insert_resource(FusedShader(fused));
         }
+    }
+}
+
+impl FusedPlugin {
+    /// The part that needs the engine's renderer.
+    pub(crate) fn build_render(app: &mut App) {
         load_shader_library!(app, "color.wgsl");
         load_shader_library!(app, "noise.wgsl");
         load_shader_library!(app, "pixel.wgsl");
@@ -87,27 +111,6 @@ impl Plugin for FusedPlugin {
                     .before(fxaa)
                     .before(smaa),
             );
-    }
-
-    /// All effects are registered by now.
-    fn finish(&self, app: &mut App) {
-        let registry = app.world().resource::<EffectRegistry>().clone();
-        registry.seal();
-        let Some(mut shaders) = app.world_mut().get_resource_mut::<Assets<Shader>>() else {
-            return;
-        };
-        let module = |effect: &&EffectType| {
-            shaders.add(Shader::from_wgsl(effect.shader.source, file_path(effect)))
-        };
-        let modules = registry.types().iter().map(module).collect();
-        let fused = Shader::from_wgsl(registry.shader(), "bevy_comics/effect/fused.wgsl");
-        let fused = shaders.add(fused);
-        app.insert_resource(EffectModules { _modules: modules });
-        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-            render_app
-                .insert_resource(registry)
-                .insert_resource(FusedShader(fused));
-        }
     }
 }
 

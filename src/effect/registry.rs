@@ -9,7 +9,7 @@ use bevy::{
     app::{App, Plugin},
     ecs::{resource::Resource, world::EntityRef},
     log::error,
-    reflect::TypeInfo,
+    reflect::{ReflectDeserialize, ReflectSerialize, TypeInfo},
 };
 use serde::Deserialize;
 
@@ -183,6 +183,8 @@ impl<E> Default for EffectPlugin<E> {
 impl<E: Effect> Plugin for EffectPlugin<E> {
     fn build(&self, app: &mut App) {
         app.register_type::<E>()
+            .register_type_data::<E, ReflectSerialize>()
+            .register_type_data::<E, ReflectDeserialize>()
             .world_mut()
             .get_resource_or_init::<EffectRegistry>()
             .register(EffectType::of::<E>());

@@ -6,7 +6,7 @@ use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
     math::Vec2,
     reflect::{Reflect, std_traits::ReflectDefault},
-    render::{RenderApp, render_resource::ShaderType},
+    render::render_resource::ShaderType,
     shader::load_shader_library,
 };
 
@@ -176,8 +176,12 @@ impl Plugin for FinishPlugin {
         app.register_type::<StyleWeight>()
             .register_type::<SplitView>()
             .register_type::<DebugView>();
-        if app.get_sub_app(RenderApp).is_some() {
-            load_shader_library!(app, "finish.wgsl");
-        }
+    }
+}
+
+impl FinishPlugin {
+    /// The part that needs the engine's renderer.
+    pub(crate) fn build_render(app: &mut App) {
+        load_shader_library!(app, "finish.wgsl");
     }
 }

@@ -32,7 +32,6 @@ impl OpenFile {
     fn is_saved(&self, style: &ComicStyle) -> bool {
         let named = ComicStyle {
             name: self.saved.name.clone(),
-            version: self.saved.version,
             ..style.clone()
         };
         // What is out of its range in the file is not a change.
@@ -156,7 +155,6 @@ impl Files {
             self.title.clone()
         };
         let saved = ComicStyle {
-            version: ComicStyle::VERSION,
             name: title.clone(),
             ..style.clone()
         };

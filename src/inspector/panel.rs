@@ -319,7 +319,7 @@ fn put(world: &mut World, camera: Entity, style: &ComicStyle) {
     let mut commands = world.commands();
     let mut camera = commands.entity(camera);
     camera.remove::<StyleTransition>();
-    style.apply(&mut camera);
+    style.set_as_own(&mut camera);
     world.flush();
 }
 

@@ -66,14 +66,13 @@ pub struct Presets {
 }
 
 fn entries(folder: &Path, registry: &EffectRegistry) -> Vec<Entry> {
-    let own = presets::NAMES.iter().filter_map(|name| {
-        let style = presets::preset(name)?.map_err(|error| error.to_string());
-        Some(Entry::new((*name).to_owned(), style))
-    });
+    let own = presets::ALL
+        .iter()
+        .map(|preset| Entry::new(preset.name().to_owned(), Ok(preset.style())));
     let files = style_files(folder).into_iter().filter_map(|path: PathBuf| {
         let file = path.file_name()?.to_string_lossy().into_owned();
         let name = file.strip_suffix(".comic.ron")?.to_owned();
-        if presets::NAMES.contains(&name.as_str()) {
+        if presets::find(&name).is_some() {
             return None;
         }
         let style = std::fs::read_to_string(&path)

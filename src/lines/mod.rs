@@ -10,7 +10,7 @@ pub(crate) mod request;
 mod settings;
 
 use bevy::{
-    app::{App, Plugin},
+    app::App,
     asset::{AssetServer, embedded_asset},
     core_pipeline::{
         FullscreenShader,
@@ -39,37 +39,30 @@ use crate::schedule::{ComicsSystems, PrepareComics};
 use pipelines::{FloodPipeline, OutlinePipeline};
 
 /// Finds the lines of the views that ask for them.
-pub(crate) struct LinesPlugin;
-
-impl Plugin for LinesPlugin {
-    fn build(&self, app: &mut App) {
-        if app.get_sub_app(RenderApp).is_none() {
-            return;
-        }
-        load_shader_library!(app, "edge.wgsl");
-        load_shader_library!(app, "read.wgsl");
-        embedded_asset!(app, "detect.wgsl");
-        embedded_asset!(app, "flood.wgsl");
-        let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
-            return;
-        };
-        render_app
-            .init_gpu_resource::<SpecializedRenderPipelines<OutlinePipeline>>()
-            .init_gpu_resource::<SpecializedRenderPipelines<FloodPipeline>>()
-            .add_systems(RenderStartup, init_pipelines)
-            .add_systems(
-                Render,
-                prepare::prepare_view_lines.in_set(PrepareComics::Services),
-            )
-            .add_systems(
-                Core3d,
-                draw::find_lines
-                    .in_set(ComicsSystems::Outlines)
-                    .after(ComicsSystems::DepthRange)
-                    .after(Core3dSystems::Prepass)
-                    .before(Core3dSystems::MainPass),
-            );
-    }
+pub(crate) fn build_render(app: &mut App) {
+    load_shader_library!(app, "edge.wgsl");
+    load_shader_library!(app, "read.wgsl");
+    embedded_asset!(app, "detect.wgsl");
+    embedded_asset!(app, "flood.wgsl");
+    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+        return;
+    };
+    render_app
+        .init_gpu_resource::<SpecializedRenderPipelines<OutlinePipeline>>()
+        .init_gpu_resource::<SpecializedRenderPipelines<FloodPipeline>>()
+        .add_systems(RenderStartup, init_pipelines)
+        .add_systems(
+            Render,
+            prepare::prepare_view_lines.in_set(PrepareComics::Services),
+        )
+        .add_systems(
+            Core3d,
+            draw::find_lines
+                .in_set(ComicsSystems::Outlines)
+                .after(ComicsSystems::DepthRange)
+                .after(Core3dSystems::Prepass)
+                .before(Core3dSystems::MainPass),
+        );
 }
 
 fn init_pipelines(

@@ -114,19 +114,6 @@ impl Plugin for ObjectsPlugin {
         app.register_type::<OutlineStyle>()
             .register_type::<NoOutlines>()
             .add_systems(bevy::app::PostUpdate, components::assign_object_styles);
-        if app.get_sub_app(RenderApp).is_none() {
-            return;
-        }
-        load_shader_library!(app, "objects.wgsl");
-        #[cfg(feature = "objects")]
-        bevy::asset::embedded_asset!(app, "ids.wgsl");
-        let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
-            return;
-        };
-        render_app
-            .init_gpu_resource::<ObjectStyleBuffer>()
-            .init_resource::<ObjectStyles>()
-            .add_systems(Render, update_object_styles.in_set(PrepareComics::Services));
     }
 
     fn finish(&self, app: &mut App) {
@@ -137,5 +124,21 @@ impl Plugin for ObjectsPlugin {
         }
         #[cfg(not(feature = "objects"))]
         let _ = app;
+    }
+}
+
+impl ObjectsPlugin {
+    /// The part that needs the engine's renderer.
+    pub(crate) fn build_render(app: &mut App) {
+        load_shader_library!(app, "objects.wgsl");
+        #[cfg(feature = "objects")]
+        bevy::asset::embedded_asset!(app, "ids.wgsl");
+        let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+            return;
+        };
+        render_app
+            .init_gpu_resource::<ObjectStyleBuffer>()
+            .init_resource::<ObjectStyles>()
+            .add_systems(Render, update_object_styles.in_set(PrepareComics::Services));
     }
 }

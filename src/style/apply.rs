@@ -11,21 +11,27 @@ use bevy::{
         query::With,
         reflect::ReflectComponent,
         system::{Commands, Query, Res},
+        template::FromTemplate,
         world::{FromWorld, World},
     },
+    log::warn,
     reflect::{Reflect, TypePath, std_traits::ReflectDefault},
 };
 
-use super::{ComicStyle, ComicStyleError};
+use super::{ComicStyle, ComicStyleError, format};
 use crate::effect::EffectRegistry;
 
 /// Gives a camera the look of a [`ComicStyle`] asset.
 ///
-/// The style's components are put on the camera when the asset has loaded and
-/// again whenever it changes; between that they are the camera's own and may be
-/// edited. A file that becomes unreadable keeps the last good look. Removing
-/// this component removes the look.
-#[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
+/// The style is [applied](ComicStyle::apply) to the camera when the asset has
+/// loaded, and again whenever it changes. Between those moments the camera's
+/// components may be edited. If a file becomes unreadable, the camera keeps its
+/// last look. Removing this component takes the style off: the camera has its
+/// own look again.
+///
+/// A scene in code can name a path: the component's template takes one in the
+/// handle's place.
+#[derive(Component, FromTemplate, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct ComicStyleHandle(pub Handle<ComicStyle>);
 
@@ -41,7 +47,7 @@ pub(super) fn apply_styles(
         if !existing.contains(entity)
             && let Ok(mut camera) = commands.get_entity(entity)
         {
-            ComicStyle::default().apply(&mut camera);
+            ComicStyle::remove_from(&mut camera);
         }
     }
     let changed: Vec<_> = events
@@ -86,13 +92,17 @@ impl AssetLoader for StyleLoader {
         &self,
         reader: &mut dyn Reader,
         _settings: &(),
-        _load_context: &mut LoadContext<'_>,
+        load_context: &mut LoadContext<'_>,
     ) -> Result<ComicStyle, ComicStyleError> {
         let mut bytes = Vec::new();
         reader.read_to_end(&mut bytes).await?;
         let text = String::from_utf8(bytes)
             .map_err(|error| std::io::Error::new(std::io::ErrorKind::InvalidData, error))?;
-        self.registry.style_from_ron(&text)
+        let read = format::read(&text, &self.registry.types())?;
+        if let Some(advice) = read.advice {
+            warn!("{}: {advice}", load_context.path());
+        }
+        Ok(read.style)
     }
 
     fn extensions(&self) -> &[&str] {

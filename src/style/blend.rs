@@ -22,6 +22,9 @@ impl ComicStyle {
     ///   the map does so.
     /// * What has no strength of its own changes at `t = 0.5`: the strokes of
     ///   a sketch and how often they are drawn anew, `despike`, `locked`.
+    ///
+    /// Both count as complete styles. For a partial one, lay it
+    /// [`over`](Self::over) the camera's own look first.
     #[must_use]
     pub fn blend(&self, other: &Self, t: f32) -> Self {
         if t.is_nan() || t <= 0.0 {
@@ -54,11 +57,11 @@ impl ComicStyle {
             }
         }
         Self {
-            version: Self::VERSION,
             name: named.name.clone(),
             depth_map: (a.depth_map.is_some() || b.depth_map.is_some())
                 .then(|| mixed_map(map_a, map_b, t)),
             effects,
+            ..Self::new()
         }
     }
 

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use bevy::log::warn;
 use serde::{
     Deserialize, Deserializer, Serialize, Serializer,
     de::{DeserializeSeed, Error, MapAccess, Visitor},
@@ -9,28 +10,54 @@ use serde::{
 };
 use thiserror::Error;
 
-use super::ComicStyle;
+use super::{
+    ComicStyle,
+    version_1::{self, Upgraded},
+};
 use crate::effect::{AnyEffect, EffectRegistry, EffectType};
 
-/// Why a style file was not understood.
+/// Why a style was not read or written.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ComicStyleError {
     /// The file could not be read.
     #[error("cannot read the style: {0}")]
     Io(#[from] std::io::Error),
-    /// The file is not a style: bad syntax, an unknown field, a wrong type.
-    #[error("not a comic style, line {}, column {}: {}", .0.span.start.line, .0.span.start.col, .0.code)]
-    Syntax(#[from] ron::error::SpannedError),
-    /// The file was written for another version of this crate.
-    #[error("style format version {found} is not known; this crate reads version {known}", known = ComicStyle::VERSION)]
+    /// The text is not a style: bad syntax, an unknown field, a wrong type.
+    #[error("not a comic style, line {line}, column {column}: {message}")]
+    #[non_exhaustive]
+    Syntax {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Column of that line in characters, from 1.
+        column: usize,
+        /// What is wrong there.
+        message: String,
+    },
+    /// The format's version is not one that this crate reads.
+    #[error("style format version {found} is not known; this crate reads versions 1 to {VERSION}")]
+    #[non_exhaustive]
     Version {
         /// The version that the file states.
         found: u32,
     },
     /// The style could not be written as text.
-    #[error("cannot write the style: {0}")]
-    Write(#[from] ron::Error),
+    #[error("cannot write the style: {message}")]
+    #[non_exhaustive]
+    Write {
+        /// The reason.
+        message: String,
+    },
+}
+
+/// The version of the file format that this crate writes. It reads version 1 too.
+const VERSION: u32 = 2;
+
+/// A style that was read.
+pub(super) struct Read {
+    pub style: ComicStyle,
+    /// What to change in a file of an older version.
+    pub advice: Option<String>,
 }
 
 fn ron_options() -> ron::Options {
@@ -39,8 +66,9 @@ fn ron_options() -> ron::Options {
 
 impl ComicStyle {
     /// Reads a style from the text of a `.comic.ron` file, with the effects of
-    /// this crate. [`EffectRegistry::style_from_ron`] knows those of an app as
-    /// well.
+    /// this crate. [`EffectRegistry::style_from_ron`] also knows those of an app.
+    /// A file of format version 1 is read with one warning in the log, which says
+    /// what to rename.
     ///
     /// # Errors
     /// [`ComicStyleError::Syntax`] with line and column, or
@@ -49,14 +77,18 @@ impl ComicStyle {
         EffectRegistry::built_in().style_from_ron(text)
     }
 
-    /// The text of a `.comic.ron` file that reads back as the same look. Colours come
-    /// back in sRGB, whatever space they were written from.
+    /// The text of a `.comic.ron` file that reads back as the same style. Colours
+    /// are written in sRGB, whatever their colour space.
     ///
     /// # Errors
     /// [`ComicStyleError::Write`] if a value has no RON form.
     pub fn to_ron(&self) -> Result<String, ComicStyleError> {
         let pretty = ron::ser::PrettyConfig::default().indentor("    ");
-        let mut text = ron_options().to_string_pretty(self, pretty)?;
+        let mut text = ron_options()
+            .to_string_pretty(self, pretty)
+            .map_err(|error| ComicStyleError::Write {
+                message: error.to_string(),
+            })?;
         text.push('\n');
         Ok(text)
     }
@@ -69,33 +101,65 @@ impl EffectRegistry {
     /// # Errors
     /// As [`ComicStyle::from_ron`].
     pub fn style_from_ron(&self, text: &str) -> Result<ComicStyle, ComicStyleError> {
-        let types = self.types();
-        let mut deserializer = ron::Deserializer::from_str_with_options(text, &ron_options())?;
-        let style = StyleSeed(&types)
-            .deserialize(&mut deserializer)
-            .and_then(|style| deserializer.end().map(|()| style))
-            .map_err(|error| deserializer.span_error(error))?;
-        if style.version != ComicStyle::VERSION {
-            return Err(ComicStyleError::Version {
-                found: style.version,
-            });
+        let read = read(text, &self.types())?;
+        if let Some(advice) = read.advice {
+            warn!("{advice}");
         }
-        Ok(style)
+        Ok(read.style)
     }
+}
+
+/// Reads the text of a style file.
+pub(super) fn read(text: &str, types: &[&'static EffectType]) -> Result<Read, ComicStyleError> {
+    let current = match version_1::version(text) {
+        Some(1) => version_1::upgraded(text),
+        None | Some(VERSION) => Upgraded::unchanged(text),
+        Some(found) => return Err(ComicStyleError::Version { found }),
+    };
+    let style = parse(&current.text, types).map_err(|error| {
+        let at = error.span.start;
+        ComicStyleError::Syntax {
+            line: at.line,
+            column: current.original_column(at.line, at.col),
+            message: error.code.to_string(),
+        }
+    })?;
+    Ok(Read {
+        style,
+        advice: current.advice(),
+    })
+}
+
+fn parse(
+    text: &str,
+    types: &[&'static EffectType],
+) -> Result<ComicStyle, ron::error::SpannedError> {
+    let mut deserializer = ron::Deserializer::from_str_with_options(text, &ron_options())?;
+    StyleSeed(types)
+        .deserialize(&mut deserializer)
+        .and_then(|style| deserializer.end().map(|()| style))
+        .map_err(|error| deserializer.span_error(error))
 }
 
 impl Serialize for ComicStyle {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let effects = self.effects().count();
-        let entries = 2 + usize::from(self.depth_map.is_some()) + effects;
+        let off = if self.partial { self.off.len() } else { 0 };
+        let optional = usize::from(self.partial) + usize::from(self.depth_map.is_some());
+        let entries = 2 + optional + self.effects().count() + off;
         let mut file = serializer.serialize_struct("ComicStyle", entries)?;
-        file.serialize_field("version", &self.version)?;
+        file.serialize_field("version", &VERSION)?;
         file.serialize_field("name", &self.name)?;
+        if self.partial {
+            file.serialize_field("partial", &true)?;
+        }
         if self.depth_map.is_some() {
             file.serialize_field("depth_map", &self.depth_map)?;
         }
         for effect in self.effects() {
             file.serialize_field(effect.effect_type().name, &Present(effect))?;
+        }
+        for name in self.off.iter().filter(|_| self.partial) {
+            file.serialize_field(name, &None::<()>)?;
         }
         file.end()
     }
@@ -154,28 +218,43 @@ impl<'de> Visitor<'de> for StyleSeed<'_> {
                 )));
             }
             match key.as_str() {
-                "version" => version = Some(map.next_value()?),
+                "version" => version = Some(map.next_value::<u32>()?),
                 "name" => style.name = map.next_value()?,
+                "partial" => style.partial = map.next_value()?,
                 "depth_map" => style.depth_map = map.next_value()?,
                 name => {
                     let Some(effect) = self.0.iter().find(|effect| effect.name == name) else {
                         return Err(M::Error::custom(self.unknown(name)));
                     };
-                    if let Some(effect) = map.next_value_seed(EffectSeed(effect))? {
-                        style.insert_any(effect);
+                    match map.next_value_seed(EffectSeed(effect))? {
+                        Some(effect) => style.insert_any(effect),
+                        None => {
+                            style.off.insert(effect.name);
+                        }
                     }
                 }
             }
             seen.push(key);
         }
-        style.version = version.ok_or_else(|| M::Error::missing_field("version"))?;
+        match version {
+            None => return Err(M::Error::missing_field("version")),
+            Some(VERSION) => {}
+            Some(found) => {
+                let error = ComicStyleError::Version { found };
+                return Err(M::Error::custom(error));
+            }
+        }
+        if !style.partial {
+            // Whatever a complete style does not have is off.
+            style.off.clear();
+        }
         Ok(style)
     }
 }
 
 impl StyleSeed<'_> {
     fn unknown(&self, name: &str) -> String {
-        let keys: Vec<String> = ["version", "name", "depth_map"]
+        let keys: Vec<String> = ["version", "name", "partial", "depth_map"]
             .into_iter()
             .chain(self.0.iter().map(|effect| effect.name))
             .map(|key| format!("`{key}`"))

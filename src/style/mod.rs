@@ -1,78 +1,104 @@
-//! A whole look as one asset, `*.comic.ron`, applied to a camera as its
-//! components.
+//! Whole looks as assets (`*.comic.ron`), and how they are put on cameras.
 
 mod apply;
 mod blend;
 mod format;
+mod layer;
 pub mod presets;
+#[cfg(test)]
+mod tests;
 mod transition;
+mod version_1;
+
+use std::collections::BTreeSet;
 
 use bevy::{
     app::{App, Plugin, Update},
-    asset::{Asset, AssetApp, AssetServer},
-    ecs::{
-        schedule::IntoScheduleConfigs,
-        system::EntityCommands,
-        world::{EntityRef, EntityWorldMut},
-    },
-    reflect::{Reflect, std_traits::ReflectDefault},
+    asset::{Asset, AssetApp},
+    ecs::schedule::IntoScheduleConfigs,
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
 };
 
-pub use apply::ComicStyleHandle;
+pub use apply::{ComicStyleHandle, ComicStyleHandleTemplate};
 pub use format::ComicStyleError;
+pub use presets::Preset;
 pub use transition::{StyleTransition, StyleTransitionFinished, TransitionEasing};
 
 use crate::{
     depth::DepthMap,
-    effect::{AnyEffect, Effect, EffectRegistry, EffectSet},
+    effect::{AnyEffect, Effect, EffectSet},
 };
 
-/// A look: the depth map and the effects of a camera, in one asset.
+/// A look: the effects of a camera and its depth map, in one asset.
 ///
 /// ```
-/// use bevy_comics::{ComicStyle, Contours, Desaturation};
+/// use bevy_comics::{ComicStyle, Desaturation, Outlines};
 ///
 /// let style = ComicStyle::new()
 ///     .with(Desaturation::default())
-///     .with(Contours { width: 3.0, ..Default::default() });
-/// assert_eq!(style.get::<Contours>().unwrap().width, 3.0);
+///     .with(Outlines { width: 3.0, ..Default::default() });
+/// assert_eq!(style.get::<Outlines>().unwrap().width, 3.0);
 /// ```
 ///
-/// Files end in `.comic.ron` and are written in RON with implicit `Some`; effects
-/// are entries by their names. What is left out is off, and fields that are left
-/// out have their default:
+/// Files end in `.comic.ron` and are written in RON with implicit `Some`. Each
+/// effect is an entry under its name. Fields that a file leaves out have their
+/// defaults:
 ///
 /// ```ron
 /// (
 ///     version: 2,
 ///     name: "Old photograph",
 ///     colorization: (mode: Atmosphere, color: "#9e8057"),
-///     contours: (threshold: 0.03),
+///     outlines: (width: 1.5),
 /// )
 /// ```
+///
+/// # Complete and partial styles
+///
+/// A style lies over the camera's own look: the effects and the [`DepthMap`]
+/// that the camera has without a style.
+///
+/// * A **complete** style (the default) decides about every effect: those that
+///   it does not mention are off.
+/// * A **partial** style changes the effects that it mentions; the camera keeps
+///   its own effects otherwise. `outlines: None` in the file, or
+///   [`turn_off`](Self::turn_off), turns one off.
+/// * Both leave the camera's own [`DepthMap`] alone unless they mention
+///   `depth_map`.
+///
+/// Effects are the smallest unit: a style that mentions `outlines` sets all
+/// fields of [`Outlines`](crate::Outlines). Another style takes the place of the
+/// last one; styles do not pile up. [`ComicStyle::over`] computes the result.
 #[derive(Asset, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(opaque)]
-#[reflect(Default, Clone, PartialEq, Debug)]
+#[reflect(Default, Clone, PartialEq, Debug, Serialize, Deserialize)]
 pub struct ComicStyle {
-    /// Version of the file format; 1 is the only one.
-    pub version: u32,
-    /// What people call it.
+    /// Title for people; any text. Default: empty.
     pub name: String,
-    /// The depth map; its default where absent.
+    /// Whether effects that the style does not mention stay as the camera has
+    /// them. Default: `false`, they are off.
+    pub partial: bool,
+    /// The depth map. `None` leaves the camera's own alone. Default: `None`.
     pub depth_map: Option<DepthMap>,
-    /// The effects; what is not among them is off.
+    /// The effects. Default: none.
     pub effects: EffectSet,
+    /// Names of the effects that a partial style turns off. A complete style
+    /// turns off all that it does not mention and needs no names. Default: none.
+    pub off: BTreeSet<&'static str>,
 }
 
 impl ComicStyle {
-    /// The version of the file format that this crate reads and writes.
-    pub const VERSION: u32 = 2;
-
-    /// A style without effects.
+    /// A complete style without effects.
     pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The same style as a partial one.
+    #[must_use]
+    pub fn partial(self) -> Self {
         Self {
-            version: Self::VERSION,
-            ..Self::default()
+            partial: true,
+            ..self
         }
     }
 
@@ -83,11 +109,20 @@ impl ComicStyle {
         self
     }
 
-    /// The same style without the effect of this type.
+    /// The same style without mention of this effect.
     #[must_use]
     pub fn without<E: Effect>(mut self) -> Self {
         self.remove::<E>();
         self
+    }
+
+    /// The same style with this depth map.
+    #[must_use]
+    pub fn with_depth_map(self, map: DepthMap) -> Self {
+        Self {
+            depth_map: Some(map),
+            ..self
+        }
     }
 
     /// The effect of this type, if the style has it.
@@ -102,13 +137,22 @@ impl ComicStyle {
 
     /// Adds an effect, in place of another one of its type.
     pub fn insert<E: Effect>(&mut self, effect: E) {
-        self.effects.insert(Box::new(effect));
+        self.insert_any(Box::new(effect));
     }
 
-    /// Takes the effect of this type out.
+    /// Removes every mention of this effect; the value if the style had one.
     pub fn remove<E: Effect>(&mut self) -> Option<E> {
-        let effect = self.effects.remove(E::NAME)?.into_any();
+        let effect = self.remove_by_name(E::NAME)?.into_any();
         effect.downcast().ok().map(|effect| *effect)
+    }
+
+    /// Turns this effect off, also where the camera has one of its own: for
+    /// partial styles.
+    #[must_use]
+    pub fn turn_off<E: Effect>(mut self) -> Self {
+        self.remove::<E>();
+        self.off.insert(E::NAME);
+        self
     }
 
     /// The style's effects, in the order of their stages.
@@ -123,11 +167,14 @@ impl ComicStyle {
 
     /// Adds an effect whose type is known at run time only.
     pub fn insert_any(&mut self, effect: Box<dyn AnyEffect>) {
+        self.off.remove(effect.effect_type().name);
         self.effects.insert(effect);
     }
 
-    /// Takes the effect of this name out.
+    /// Removes every mention of the effect of this name; the value if the style
+    /// had one.
     pub fn remove_by_name(&mut self, name: &str) -> Option<Box<dyn AnyEffect>> {
+        self.off.remove(name);
         self.effects.remove(name)
     }
 
@@ -139,71 +186,33 @@ impl ComicStyle {
             effects.insert(effect.any_sanitized());
         }
         Self {
-            version: self.version,
-            name: self.name.clone(),
             depth_map: self.depth_map.map(DepthMap::sanitized),
             effects,
-        }
-    }
-
-    /// The style that a camera's components are, without a name: of the effects
-    /// that `registry` knows.
-    pub fn of(camera: EntityRef, registry: &EffectRegistry) -> Self {
-        let mut style = Self {
-            depth_map: camera.get().copied(),
-            ..Self::new()
-        };
-        for effect in registry.types() {
-            if let Some(effect) = (effect.get)(camera) {
-                style.effects.insert(effect.boxed());
-            }
-        }
-        style
-    }
-
-    /// Makes the camera look like this style: inserts the components that it
-    /// has and removes those that it has not, of the effects that the app knows.
-    pub fn apply(&self, camera: &mut EntityCommands) {
-        let style = self.clone();
-        camera.queue(move |mut camera: EntityWorldMut| style.put(&mut camera));
-    }
-
-    fn put(&self, camera: &mut EntityWorldMut) {
-        let types = camera
-            .world()
-            .get_resource::<EffectRegistry>()
-            .map(EffectRegistry::types)
-            .unwrap_or_default();
-        match self.depth_map {
-            Some(map) => camera.insert(map),
-            None => camera.remove::<DepthMap>(),
-        };
-        for effect in types {
-            if self.effects.by_name(effect.name).is_none() {
-                (effect.remove)(camera);
-            }
-        }
-        for effect in self.effects.iter() {
-            effect.insert_into(camera);
+            ..self.clone()
         }
     }
 }
 
-/// Styles in an app: the asset, its loader, and transitions.
+/// Styles in an app: the asset, its loader, presets and transitions.
 pub(crate) struct StylePlugin;
 
 impl Plugin for StylePlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<StyleTransition>()
             .register_type::<ComicStyleHandle>();
-        if app.world().contains_resource::<AssetServer>() {
-            app.init_asset::<ComicStyle>()
-                .register_asset_reflect::<ComicStyle>()
-                .init_asset_loader::<apply::StyleLoader>()
-                .add_systems(
-                    Update,
-                    (apply::apply_styles, transition::run_transitions).chain(),
-                );
-        }
+    }
+}
+
+impl StylePlugin {
+    /// The part that needs the engine's assets.
+    pub(crate) fn build_assets(app: &mut App) {
+        presets::embed(app);
+        app.init_asset::<ComicStyle>()
+            .register_asset_reflect::<ComicStyle>()
+            .init_asset_loader::<apply::StyleLoader>()
+            .add_systems(
+                Update,
+                (apply::apply_styles, transition::run_transitions).chain(),
+            );
     }
 }

@@ -1,55 +1,159 @@
-//! Named looks that come with the crate: the files of `assets/styles/`, read at
-//! compile time, so that a game has them without copying anything.
+//! Named styles that come with the crate, as assets and as values.
+//!
+//! ```no_run
+//! # use bevy::prelude::*;
+//! # use bevy_comics::{ComicStyleHandle, StyleTransition, presets};
+//! # fn setup(mut commands: Commands, assets: Res<AssetServer>, camera: Single<Entity, With<Camera3d>>) {
+//! // As an asset: the camera follows it.
+//! commands.entity(*camera).insert(ComicStyleHandle(assets.load(presets::NOIR.path())));
+//! // As a value.
+//! commands.entity(*camera).insert(StyleTransition::to(presets::NOIR.style(), 0.4));
+//! # }
+//! ```
+//!
+//! They are the files of `assets/styles/`, part of the binary: a game copies
+//! nothing.
 
-use super::{ComicStyle, ComicStyleError};
+use std::{fmt, path::Path};
+
+use bevy::{app::App, asset::io::embedded::EmbeddedAssetRegistry, log::error};
+
+use super::ComicStyle;
+
+/// A style that comes with the crate.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Preset {
+    name: &'static str,
+    path: &'static str,
+    source: &'static str,
+}
+
+/// The scheme of the embedded assets of an app.
+const SCHEME: &str = "embedded://";
+
+impl Preset {
+    /// The name in lower case with hyphens, such as `ligne-claire`.
+    pub const fn name(self) -> &'static str {
+        self.name
+    }
+
+    /// The path of the asset, such as
+    /// `embedded://bevy_comics/styles/ligne-claire.comic.ron`.
+    pub const fn path(self) -> &'static str {
+        self.path
+    }
+
+    /// The text of the style file.
+    pub const fn source(self) -> &'static str {
+        self.source
+    }
+
+    /// The style as a value.
+    pub fn style(self) -> ComicStyle {
+        ComicStyle::from_ron(self.source).unwrap_or_else(|error| {
+            // Tests read every preset.
+            error!("the preset {self} is broken: {error}");
+            ComicStyle::new()
+        })
+    }
+}
+
+impl fmt::Display for Preset {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+impl fmt::Debug for Preset {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "Preset({:?})", self.name)
+    }
+}
+
+/// The preset of this name, such as `"ligne-claire"`.
+pub fn find(name: &str) -> Option<Preset> {
+    ALL.iter().copied().find(|preset| preset.name == name)
+}
 
 macro_rules! presets {
-    ($($name:literal),* $(,)?) => {
-        /// The names of the presets, in the order of the gallery.
-        pub const NAMES: &[&str] = &[$($name),*];
-
-        fn source(name: &str) -> Option<&'static str> {
-            match name {
-                $($name => Some(include_str!(concat!(
+    ($($(#[$docs:meta])* $CONSTANT:ident: $name:literal;)*) => {
+        $(
+            $(#[$docs])*
+            pub const $CONSTANT: Preset = Preset {
+                name: $name,
+                path: concat!("embedded://bevy_comics/styles/", $name, ".comic.ron"),
+                source: include_str!(concat!(
                     env!("CARGO_MANIFEST_DIR"), "/assets/styles/", $name, ".comic.ron"
-                ))),)*
-                _ => None,
-            }
-        }
+                )),
+            };
+        )*
+
+        /// Every preset, in the order of the gallery.
+        pub const ALL: &[Preset] = &[$($CONSTANT),*];
     };
 }
 
-presets![
-    "crimson-dusk",
-    "museum-print",
-    "emerald-ink",
-    "sepia",
-    "ligne-claire",
-    "noir",
-    "cobalt-night",
-    "misty-morning",
-    "golden-hour",
-    "blueprint",
-    "saturday-morning",
-    "graphic-novel",
-    "pencil-sketch",
-    "figure-7a",
-    "figure-7b",
-    "figure-8a",
-    "figure-8b",
-    "figure-8c",
-    "twilight-toon",
-    "watercolor",
-    "clear-bands",
-    "silent-film",
-];
+presets! {
+    /// A red atmosphere that grows with distance. \[CS\] Figure 4, row 1.
+    CRIMSON_DUSK: "crimson-dusk";
+    /// One warm atmosphere for the whole picture, and colours that fade with
+    /// distance. \[CS\] Figure 4, row 2.
+    MUSEUM_PRINT: "museum-print";
+    /// A green atmosphere with solid ink on steep and dark areas. \[CS\] Figure 4,
+    /// row 3.
+    EMERALD_INK: "emerald-ink";
+    /// A brown old photograph. \[CS\] Figure 3.
+    SEPIA: "sepia";
+    /// Even lines on clean colours that pale a little with distance.
+    LIGNE_CLAIRE: "ligne-claire";
+    /// Black and white, with shadows as solid ink.
+    NOIR: "noir";
+    /// Day for night: deep blue with solid shadows.
+    COBALT_NIGHT: "cobalt-night";
+    /// Colours drain into pale mist; white lines.
+    MISTY_MORNING: "misty-morning";
+    /// Warm light on what is far away, brown ink.
+    GOLDEN_HOUR: "golden-hour";
+    /// White lines on blue.
+    BLUEPRINT: "blueprint";
+    /// A television cartoon: strong outlines on flat colours.
+    SATURDAY_MORNING: "saturday-morning";
+    /// Four tones, heavy outlines, and a distance that turns blue.
+    GRAPHIC_NOVEL: "graphic-novel";
+    /// Graphite strokes on paper, drawn anew eight times a second.
+    PENCIL_SKETCH: "pencil-sketch";
+    /// Figure 7 (a) of \[CL\].
+    FIGURE_7A: "figure-7a";
+    /// Figure 7 (b) of \[CL\].
+    FIGURE_7B: "figure-7b";
+    /// Figure 8 (a) of \[CL\].
+    FIGURE_8A: "figure-8a";
+    /// Figure 8 (b) of \[CL\].
+    FIGURE_8B: "figure-8b";
+    /// Figure 8 (c) of \[CL\].
+    FIGURE_8C: "figure-8c";
+    /// Evening: violet distance, warm lines that thin out with it.
+    TWILIGHT_TOON: "twilight-toon";
+    /// Loose ink over a wash of the scene's own colours.
+    WATERCOLOR: "watercolor";
+    /// Three flat tones with an outline.
+    CLEAR_BANDS: "clear-bands";
+    /// Grey bands, outlines and dark corners.
+    SILENT_FILM: "silent-film";
+}
 
-/// The preset of this name; `None` if there is none.
-///
-/// # Errors
-/// As [`ComicStyle::from_ron`]; a test reads every preset, so none is expected.
-pub fn preset(name: &str) -> Option<Result<ComicStyle, ComicStyleError>> {
-    source(name).map(ComicStyle::from_ron)
+/// Makes the presets loadable.
+pub(super) fn embed(app: &mut App) {
+    let embedded = app
+        .world_mut()
+        .get_resource_or_init::<EmbeddedAssetRegistry>();
+    for preset in ALL {
+        let path = preset.path.strip_prefix(SCHEME).unwrap_or(preset.path);
+        let file = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("assets/styles")
+            .join(format!("{preset}.comic.ron"));
+        embedded.insert_asset(file, Path::new(path), preset.source.as_bytes());
+    }
 }
 
 #[cfg(test)]
@@ -58,16 +162,17 @@ mod tests {
 
     #[test]
     fn every_preset_reads_and_is_within_its_ranges() {
-        for name in NAMES {
-            let style = preset(name)
-                .expect("listed")
-                .unwrap_or_else(|e| panic!("{name}: {e}"));
+        for preset in ALL {
+            let style = ComicStyle::from_ron(preset.source)
+                .unwrap_or_else(|error| panic!("{preset}: {error}"));
             assert_eq!(
                 style,
                 style.sanitized(),
-                "{name} is changed by its own clamps"
+                "{preset} is changed by its own clamps"
             );
-            assert!(!style.name.is_empty(), "{name} has no title");
+            assert_eq!(style, preset.style());
+            assert!(!style.name.is_empty(), "{preset} has no title");
+            assert!(!style.partial, "{preset} is a complete look");
         }
     }
 
@@ -78,7 +183,15 @@ mod tests {
             let file = entry.expect("entry").file_name();
             let file = file.to_string_lossy();
             let name = file.strip_suffix(".comic.ron").expect("only styles");
-            assert!(NAMES.contains(&name), "{file} is not in the list");
+            assert!(find(name).is_some(), "{file} is not in the list");
         }
+    }
+
+    #[test]
+    fn names_are_found_and_unique() {
+        for preset in ALL {
+            assert_eq!(find(preset.name()), Some(*preset));
+        }
+        assert_eq!(find("no-such-preset"), None);
     }
 }

@@ -20,7 +20,7 @@ use bevy::{
     time::Time,
 };
 
-use super::{ComicStyle, ComicStyleHandle};
+use super::{ComicStyle, ComicStyleHandle, layer::own_look};
 use crate::{diagnostics::ComicsDiagnostics, effect::EffectRegistry};
 
 /// Carries a camera from the look that it has to another one, over time.
@@ -40,9 +40,8 @@ use crate::{diagnostics::ComicsDiagnostics, effect::EffectRegistry};
 /// # use bevy::prelude::*;
 /// # use bevy_comics::{StyleTransition, presets};
 /// fn hit(mut commands: Commands, camera: Single<Entity, With<Camera3d>>) {
-///     if let Some(Ok(style)) = presets::preset("crimson-dusk") {
-///         commands.entity(*camera).insert(StyleTransition::to(style, 0.4));
-///     }
+///     let style = presets::CRIMSON_DUSK.style();
+///     commands.entity(*camera).insert(StyleTransition::to(style, 0.4));
 /// }
 /// ```
 #[derive(Component, Reflect, Clone, Debug, PartialEq)]
@@ -51,8 +50,17 @@ pub struct StyleTransition {
     target: StyleTarget,
     seconds: f32,
     easing: TransitionEasing,
-    from: Option<ComicStyle>,
+    start: Option<Start>,
     elapsed: f32,
+}
+
+/// How the camera looked when a transition began.
+#[derive(Reflect, Clone, Debug, PartialEq)]
+struct Start {
+    /// All of it.
+    look: ComicStyle,
+    /// Without the style that was applied.
+    own: ComicStyle,
 }
 
 #[allow(
@@ -103,7 +111,7 @@ impl StyleTransition {
             target,
             seconds,
             easing: TransitionEasing::default(),
-            from: None,
+            start: None,
             elapsed: 0.0,
         }
     }
@@ -162,8 +170,8 @@ pub(super) fn run_transitions(
         let Some(target) = target.cloned() else {
             continue;
         };
-        if transition.from.is_none() {
-            camera.queue(start);
+        if transition.start.is_none() {
+            camera.queue(remember_start);
             if matches!(transition.target, StyleTarget::Style(_)) {
                 // Taking it away would take the look along.
                 camera.insert_if(ComicStyleHandle::default(), || has_handle);
@@ -178,20 +186,24 @@ pub(super) fn run_transitions(
             }
             camera.remove::<StyleTransition>();
             commands.trigger(StyleTransitionFinished { entity });
-        } else if let Some(from) = &transition.from {
-            from.blend(&target, transition.fraction())
+        } else if let Some(start) = &transition.start {
+            let target = target.over(&start.own);
+            start
+                .look
+                .blend(&target, transition.fraction())
                 .apply(&mut camera);
         }
     }
 }
 
 /// Remembers the look from which the camera's transition starts.
-fn start(mut camera: EntityWorldMut) {
+fn remember_start(mut camera: EntityWorldMut) {
     let Some(registry) = camera.world().get_resource::<EffectRegistry>().cloned() else {
         return;
     };
-    let from = ComicStyle::of(EntityRef::from(&camera), &registry);
+    let look = ComicStyle::of(EntityRef::from(&camera), &registry);
+    let own = own_look(&camera);
     if let Some(mut transition) = camera.get_mut::<StyleTransition>() {
-        transition.from = Some(from);
+        transition.start = Some(Start { look, own });
     }
 }

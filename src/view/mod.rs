@@ -53,6 +53,12 @@ impl Plugin for ViewPlugin {
                     warn_unsupported,
                 ),
             );
+    }
+}
+
+impl ViewPlugin {
+    /// The part that needs the engine's renderer.
+    pub(crate) fn build_render(app: &mut App) {
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
             render_app.add_systems(ExtractSchedule, extract::extract_views);
         }

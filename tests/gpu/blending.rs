@@ -17,7 +17,7 @@ use crate::{
 };
 
 fn preset(name: &str) -> ComicStyle {
-    let mut style = presets::preset(name).expect(name).expect("it reads");
+    let mut style = presets::find(name).expect(name).style();
     if let Some(sketch) = style.get_mut::<Sketch>() {
         // A drawing that is done anew is no step of a transition.
         sketch.rate = 0.0;

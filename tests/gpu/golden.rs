@@ -60,7 +60,7 @@ fn references(scene: BuiltIn, name: &str) -> Vec<PathBuf> {
 }
 
 fn preset(name: &str) -> ComicStyle {
-    presets::preset(name).expect("listed").expect("readable")
+    presets::find(name).expect("listed").style()
 }
 
 fn check(scene: BuiltIn) {

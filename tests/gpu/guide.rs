@@ -70,7 +70,7 @@ fn the_steps_of_the_ten_minutes_can_be_followed() {
 fn an_unknown_version_and_an_unknown_field_are_said() {
     let error = ComicStyle::from_ron("(version: 2)").expect_err("another version");
     assert!(
-        matches!(error, ComicStyleError::Version { found: 2 }),
+        matches!(error, ComicStyleError::Version { found: 2, .. }),
         "{error}"
     );
     for text in [

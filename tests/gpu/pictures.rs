@@ -156,12 +156,9 @@ pub fn assert_pass_is_its_twin(
 fn every_preset_is_its_twin_with_and_without_msaa() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
         let mut small = Small::new(UVec2::new(80, 56), msaa);
-        for name in presets::NAMES {
-            let style = presets::preset(name)
-                .expect("listed")
-                .expect("readable")
-                .sanitized();
-            assert_pass_is_its_twin(&mut small, &style, None, &format!("{name}, {msaa:?}"));
+        for preset in presets::ALL {
+            let style = preset.style().sanitized();
+            assert_pass_is_its_twin(&mut small, &style, None, &format!("{preset}, {msaa:?}"));
         }
         assert_eq!(small.errors(), 0);
     }

@@ -236,7 +236,7 @@ fn errors_name_the_line_and_what_is_wrong() {
     );
     assert!(matches!(
         ComicStyle::from_ron("(version: 7)"),
-        Err(ComicStyleError::Version { found: 7 })
+        Err(ComicStyleError::Version { found: 7, .. })
     ));
 }
 

@@ -47,7 +47,6 @@ fn every_field_says_what_it_is() {
 fn looking_changes_nothing() {
     let types = EffectRegistry::built_in().types();
     let mut full = ComicStyle {
-        version: ComicStyle::VERSION,
         depth_map: Some(DepthMap {
             mapping: crate::DepthMapping::Fixed {
                 near: 1.0,

@@ -90,10 +90,7 @@ impl Files {
                 self.forget(camera);
                 self.name.clear();
                 self.title.clear();
-                *style = ComicStyle {
-                    version: ComicStyle::VERSION,
-                    ..ComicStyle::default()
-                };
+                *style = ComicStyle::new();
             }
         });
     }

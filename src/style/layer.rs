@@ -1,0 +1,168 @@
+//! Styles over a camera's own look.
+
+use bevy::ecs::{
+    component::Component,
+    system::EntityCommands,
+    world::{EntityRef, EntityWorldMut},
+};
+
+use super::ComicStyle;
+use crate::{
+    depth::DepthMap,
+    effect::{EffectRegistry, EffectType},
+};
+
+/// On a camera that a style was applied to: what it looks like without.
+#[derive(Component, Clone, Debug)]
+struct StyleLayer {
+    /// The camera's own look.
+    own: ComicStyle,
+    /// The style that lies over it.
+    style: ComicStyle,
+    /// The result, as it was written to the camera's components.
+    written: ComicStyle,
+}
+
+impl StyleLayer {
+    /// The camera's own look, with what the game has changed since the style was
+    /// applied: components that the style says nothing about, and effects that
+    /// were added. Edits of what the style has set are gone with the style.
+    fn own_now(mut self, current: &ComicStyle, types: &[&'static EffectType]) -> ComicStyle {
+        for effect in types {
+            let name = effect.name;
+            let here = current.by_name(name);
+            let added = self.written.by_name(name).is_none() && here.is_some();
+            if added || !self.style.decides(name) {
+                self.own.remove_by_name(name);
+                if let Some(effect) = here {
+                    self.own.insert_any(effect.boxed());
+                }
+            }
+        }
+        if self.style.depth_map.is_none() {
+            self.own.depth_map = current.depth_map;
+        }
+        self.own
+    }
+}
+
+impl ComicStyle {
+    /// Whether the effect of this name is on or off by this style.
+    fn decides(&self, name: &str) -> bool {
+        !self.partial || self.by_name(name).is_some() || self.off.contains(name)
+    }
+
+    /// The look of a camera whose own look is `base` when this style lies over
+    /// it. The result is partial only if both are.
+    #[must_use]
+    pub fn over(&self, base: &Self) -> Self {
+        let mut look = if self.partial {
+            base.clone()
+        } else {
+            Self::new()
+        };
+        look.name.clone_from(&self.name);
+        look.depth_map = self.depth_map.or(base.depth_map);
+        for effect in self.effects.iter() {
+            look.insert_any(effect.boxed());
+        }
+        for name in &self.off {
+            look.remove_by_name(name);
+            if look.partial {
+                look.off.insert(name);
+            }
+        }
+        look
+    }
+
+    /// The look that a camera's components are, as a complete style without a
+    /// name: of the effects that `registry` knows.
+    pub fn of(camera: EntityRef, registry: &EffectRegistry) -> Self {
+        let mut style = Self {
+            depth_map: camera.get().copied(),
+            ..Self::new()
+        };
+        for effect in registry.types() {
+            if let Some(effect) = (effect.get)(camera) {
+                style.insert_any(effect.boxed());
+            }
+        }
+        style
+    }
+
+    /// Applies the style to a camera, over the camera's own look and in place
+    /// of the style that was applied before: inserts and removes the components
+    /// of the effects that the app knows. Between calls the components belong to
+    /// the game and may be edited.
+    pub fn apply(&self, camera: &mut EntityCommands) {
+        let style = self.clone();
+        camera.queue(move |mut camera: EntityWorldMut| style.lay_over(&mut camera));
+    }
+
+    /// Takes the applied style off a camera, which then has its own look again.
+    /// A camera without a style does not change.
+    pub fn remove_from(camera: &mut EntityCommands) {
+        camera.queue(|mut camera: EntityWorldMut| {
+            let own = own_look(&camera);
+            if camera.take::<StyleLayer>().is_some() {
+                own.write(&mut camera);
+            }
+        });
+    }
+
+    /// Makes this style the camera's own look, complete, with no style over it.
+    pub fn set_as_own(&self, camera: &mut EntityCommands) {
+        let style = self.clone();
+        camera.queue(move |mut camera: EntityWorldMut| {
+            camera.remove::<StyleLayer>();
+            style.write(&mut camera);
+        });
+    }
+
+    fn lay_over(self, camera: &mut EntityWorldMut) {
+        let own = own_look(camera);
+        let written = self.over(&own);
+        written.write(camera);
+        camera.insert(StyleLayer {
+            own,
+            style: self,
+            written,
+        });
+    }
+
+    /// Makes the camera's components those of this style, as a complete one.
+    fn write(&self, camera: &mut EntityWorldMut) {
+        match self.depth_map {
+            Some(map) => camera.insert(map),
+            None => camera.remove::<DepthMap>(),
+        };
+        for effect in known_types(camera) {
+            if self.by_name(effect.name).is_none() {
+                (effect.remove)(camera);
+            }
+        }
+        for effect in self.effects.iter() {
+            effect.insert_into(camera);
+        }
+    }
+}
+
+/// The camera's look without the style that was applied to it.
+pub(super) fn own_look(camera: &EntityWorldMut) -> ComicStyle {
+    let Some(registry) = camera.world().get_resource::<EffectRegistry>() else {
+        return ComicStyle::new();
+    };
+    let current = ComicStyle::of(EntityRef::from(camera), registry);
+    match camera.get::<StyleLayer>() {
+        Some(layer) => layer.clone().own_now(&current, &registry.types()),
+        None => current,
+    }
+}
+
+fn known_types(camera: &EntityWorldMut) -> Vec<&'static EffectType> {
+    camera
+        .world()
+        .get_resource::<EffectRegistry>()
+        .map(EffectRegistry::types)
+        .unwrap_or_default()
+}

@@ -1,0 +1,280 @@
+//! Styles over a camera's own look.
+
+use bevy::{
+    app::App,
+    asset::AssetPlugin,
+    camera::Camera3d,
+    ecs::{entity::Entity, template::FromTemplate},
+    prelude::{AppTypeRegistry, TaskPoolPlugin},
+    reflect::serde::{ReflectDeserializer, ReflectSerializer},
+    tasks::tick_global_task_pools_on_main_thread,
+};
+use serde::de::DeserializeSeed;
+
+use super::{ComicStyle, ComicStyleHandle, StyleTransition, presets};
+use crate::{
+    ComicsPlugin, Contours, DepthMap, DepthMapping, Desaturation, EffectRegistry, Outlines,
+    Vignette,
+};
+
+fn fixed() -> DepthMap {
+    DepthMap {
+        mapping: DepthMapping::Fixed {
+            near: 2.0,
+            far: 50.0,
+        },
+        ..DepthMap::default()
+    }
+}
+
+fn outlines(width: f32) -> Outlines {
+    Outlines {
+        width,
+        ..Outlines::default()
+    }
+}
+
+fn contours(width: f32) -> Contours {
+    Contours {
+        width,
+        ..Contours::default()
+    }
+}
+
+/// A camera with outlines and a fixed range of its own, in an app without a
+/// renderer.
+fn app() -> (App, Entity) {
+    let mut app = App::new();
+    app.add_plugins((
+        TaskPoolPlugin::default(),
+        AssetPlugin::default(),
+        ComicsPlugin,
+    ));
+    let camera = (Camera3d::default(), outlines(1.0), fixed());
+    let camera = app.world_mut().spawn(camera).id();
+    (app, camera)
+}
+
+fn apply(app: &mut App, camera: Entity, style: &ComicStyle) {
+    style.apply(&mut app.world_mut().commands().entity(camera));
+    app.world_mut().flush();
+}
+
+fn take_off(app: &mut App, camera: Entity) {
+    ComicStyle::remove_from(&mut app.world_mut().commands().entity(camera));
+    app.world_mut().flush();
+}
+
+fn look(app: &App, camera: Entity) -> ComicStyle {
+    let registry = app.world().resource::<EffectRegistry>();
+    ComicStyle::of(app.world().entity(camera), registry)
+}
+
+#[test]
+fn a_complete_style_decides_about_every_effect_but_keeps_the_depth_map() {
+    let (mut app, camera) = app();
+    let own = look(&app, camera);
+    apply(&mut app, camera, &ComicStyle::new().with(contours(3.0)));
+    let worn = look(&app, camera);
+    assert_eq!(worn.get::<Outlines>(), None);
+    assert_eq!(worn.get::<Contours>(), Some(&contours(3.0)));
+    assert_eq!(worn.depth_map, Some(fixed()));
+    // A style with a map, and another one without: the camera's own again.
+    let mapped = ComicStyle::new().with_depth_map(DepthMap::default());
+    apply(&mut app, camera, &mapped);
+    assert_eq!(look(&app, camera).depth_map, Some(DepthMap::default()));
+    apply(&mut app, camera, &ComicStyle::new());
+    assert_eq!(look(&app, camera).depth_map, Some(fixed()));
+    take_off(&mut app, camera);
+    assert_eq!(look(&app, camera), own);
+}
+
+#[test]
+fn a_partial_style_leaves_alone_what_it_does_not_mention() {
+    let (mut app, camera) = app();
+    let vignette = ComicStyle::new().partial().with(Vignette::default());
+    apply(&mut app, camera, &vignette);
+    let worn = look(&app, camera);
+    assert_eq!(worn.get::<Outlines>(), Some(&outlines(1.0)));
+    assert_eq!(worn.get::<Vignette>(), Some(&Vignette::default()));
+    assert_eq!(worn.depth_map, Some(fixed()));
+
+    // The next style takes its place: no vignette, and the outlines are off.
+    let without = ComicStyle::new()
+        .partial()
+        .with(contours(3.0))
+        .turn_off::<Outlines>();
+    apply(&mut app, camera, &without);
+    let worn = look(&app, camera);
+    assert_eq!(worn.get::<Outlines>(), None);
+    assert_eq!(worn.get::<Vignette>(), None);
+    assert_eq!(worn.get::<Contours>(), Some(&contours(3.0)));
+
+    // What the style changed comes back as it was.
+    let wide = ComicStyle::new().partial().with(outlines(9.0));
+    apply(&mut app, camera, &wide);
+    assert_eq!(look(&app, camera).get(), Some(&outlines(9.0)));
+    take_off(&mut app, camera);
+    let own = look(&app, camera);
+    assert_eq!(own.get::<Outlines>(), Some(&outlines(1.0)));
+    assert_eq!(own.effects().count(), 1);
+}
+
+#[test]
+fn what_the_game_changes_under_a_style_is_its_own() {
+    let (mut app, camera) = app();
+    let style = ComicStyle::new().partial().with(contours(3.0));
+    apply(&mut app, camera, &style);
+    // Effects that the style does not mention, and a new one, belong to the game.
+    let mut entity = app.world_mut().entity_mut(camera);
+    entity.insert((outlines(4.0), Desaturation::default(), contours(8.0)));
+    entity.remove::<DepthMap>();
+    take_off(&mut app, camera);
+    let own = look(&app, camera);
+    assert_eq!(own.get::<Outlines>(), Some(&outlines(4.0)));
+    assert_eq!(own.get::<Desaturation>(), Some(&Desaturation::default()));
+    assert_eq!(own.get::<Contours>(), None, "an edit of what the style set");
+    assert_eq!(own.depth_map, None);
+    // Nothing lies over the camera any more.
+    app.world_mut().entity_mut(camera).insert(contours(2.0));
+    take_off(&mut app, camera);
+    assert_eq!(look(&app, camera).get(), Some(&contours(2.0)));
+}
+
+#[test]
+fn a_style_can_become_the_cameras_own() {
+    let (mut app, camera) = app();
+    apply(&mut app, camera, &ComicStyle::new().with(contours(3.0)));
+    let own = ComicStyle::new().with(Vignette::default());
+    own.set_as_own(&mut app.world_mut().commands().entity(camera));
+    app.world_mut().flush();
+    take_off(&mut app, camera);
+    assert_eq!(look(&app, camera), own);
+}
+
+#[test]
+fn over_is_what_apply_does() {
+    let base = ComicStyle::new()
+        .with(outlines(1.0))
+        .with_depth_map(fixed());
+    let partial = ComicStyle::new().partial().with(contours(3.0));
+    let both = partial.over(&base);
+    assert_eq!(both.get::<Outlines>(), Some(&outlines(1.0)));
+    assert_eq!(both.get::<Contours>(), Some(&contours(3.0)));
+    assert!(!both.partial);
+    let off = ComicStyle::new().partial().turn_off::<Outlines>();
+    assert_eq!(off.over(&base).get::<Outlines>(), None);
+    // Partial styles merge into a partial style that does the same.
+    let merged = off.over(&partial);
+    assert!(merged.partial);
+    assert_eq!(merged.over(&base), off.over(&partial.over(&base)));
+    let merged = partial.over(&off);
+    assert_eq!(merged.over(&base), partial.over(&off.over(&base)));
+    let complete = ComicStyle::new().with(contours(3.0));
+    assert_eq!(complete.over(&base).get::<Outlines>(), None);
+}
+
+#[test]
+fn a_transition_to_a_partial_style_keeps_the_cameras_own() {
+    let (mut app, camera) = app();
+    apply(
+        &mut app,
+        camera,
+        &ComicStyle::new().partial().with(contours(3.0)),
+    );
+    let target = ComicStyle::new().partial().with(Vignette::default());
+    let transition = StyleTransition::to(target, 0.0);
+    app.world_mut().entity_mut(camera).insert(transition);
+    app.update();
+    app.update();
+    let end = look(&app, camera);
+    assert_eq!(end.get::<Outlines>(), Some(&outlines(1.0)));
+    assert_eq!(end.get::<Vignette>(), Some(&Vignette::default()));
+    assert_eq!(end.get::<Contours>(), None, "the last style's");
+    assert_eq!(end.depth_map, Some(fixed()));
+}
+
+#[test]
+fn partial_styles_are_files_too() {
+    let text = "(version: 2, partial: true, contours: None, outlines: (width: 3.0))";
+    let style = ComicStyle::from_ron(text).expect("readable");
+    let made = ComicStyle::new()
+        .partial()
+        .with(outlines(3.0))
+        .turn_off::<Contours>();
+    let written = style.to_ron().expect("writable");
+    assert_eq!(written, made.to_ron().expect("writable"));
+    assert_eq!(style.off, made.off);
+    // Colours come back in another space, so the text is compared.
+    let again = ComicStyle::from_ron(&written).expect("readable");
+    assert_eq!(again.to_ron().expect("writable"), written);
+    // A complete style needs no entry for what is off.
+    let complete = ComicStyle::from_ron("(version: 2, contours: None)").expect("readable");
+    assert_eq!(complete, ComicStyle::new());
+    // What a default style writes can be read.
+    let text = ComicStyle::default().to_ron().expect("writable");
+    assert_eq!(
+        ComicStyle::from_ron(&text).expect("readable"),
+        ComicStyle::new()
+    );
+}
+
+/// Loads until the camera has the style, or fails.
+fn load(app: &mut App, handle: &bevy::asset::Handle<ComicStyle>) -> ComicStyle {
+    for _ in 0..1000 {
+        app.update();
+        tick_global_task_pools_on_main_thread();
+        let styles = app.world().resource::<bevy::asset::Assets<ComicStyle>>();
+        if let Some(style) = styles.get(handle) {
+            return style.clone();
+        }
+        std::thread::yield_now();
+    }
+    panic!("{handle:?} does not load");
+}
+
+#[test]
+fn every_preset_is_an_asset_that_a_template_can_name() {
+    let (mut app, camera) = app();
+    app.finish();
+    app.cleanup();
+    for preset in presets::ALL {
+        let assets = app.world().resource::<bevy::asset::AssetServer>().clone();
+        let handle = assets.load(preset.path());
+        assert_eq!(load(&mut app, &handle), preset.style(), "{preset}");
+    }
+    // As a scene in code does it: the template holds the path.
+    let template = super::ComicStyleHandleTemplate(presets::NOIR.path().into());
+    let mut entity = app.world_mut().entity_mut(camera);
+    let handle = entity.build_template(&template).expect("a handle");
+    entity.insert(handle);
+    app.update();
+    app.update();
+    let noir = presets::NOIR.style();
+    assert!(noir.effects().count() > 0);
+    assert_eq!(look(&app, camera).effects, noir.effects);
+    app.world_mut()
+        .entity_mut(camera)
+        .remove::<ComicStyleHandle>();
+    app.update();
+    assert_eq!(look(&app, camera).get::<Outlines>(), Some(&outlines(1.0)));
+    let _: <ComicStyleHandle as FromTemplate>::Template = template;
+}
+
+#[test]
+fn every_effect_and_style_serializes_by_reflection() {
+    let (app, _) = app();
+    let registry = app.world().resource::<AppTypeRegistry>().read();
+    let style = presets::WATERCOLOR.style();
+    let text = ron::to_string(&ReflectSerializer::new(&style, &registry)).expect("written");
+    let mut deserializer = ron::Deserializer::from_str(&text).expect("RON");
+    let value = ReflectDeserializer::new(&registry).deserialize(&mut deserializer);
+    let value = value.unwrap_or_else(|error| panic!("{error}: {text}"));
+    let read = value.try_downcast_ref::<ComicStyle>().expect("a style");
+    assert_eq!(read.to_ron().expect("text"), style.to_ron().expect("text"));
+    for effect in app.world().resource::<EffectRegistry>().types() {
+        let id = (effect.type_info)().type_id();
+        let data = registry.get_type_data::<bevy::reflect::ReflectSerialize>(id);
+        assert!(data.is_some(), "{} does not reflect Serialize", effect.name);
+    }
+}
