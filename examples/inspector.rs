@@ -2,11 +2,6 @@
 //!
 //! `cargo run --features inspector --example inspector -- --help`
 
-#[path = "common/mod.rs"]
-mod common;
-#[path = "gallery/orbit.rs"]
-mod orbit;
-
 use std::{fs, path::PathBuf, time::Instant};
 
 use bevy::{
@@ -20,11 +15,11 @@ use bevy_comics::{
     inspector::{ComicsInspector, ComicsInspectorPlugin},
     presets,
 };
-use common::{
+use bevy_comics_testkit::{
+    orbit::{Orbit, OrbitPlugin},
     scenes::{BuiltIn, Stage},
     studio::wear,
 };
-use orbit::{Orbit, OrbitPlugin};
 
 const HELP: &str = "\
 The style inspector on a built-in scene. F10 opens and closes the panel.

@@ -38,6 +38,7 @@
 //! (Suarez, Belhadj, Boyer), cited as \[CS\], and of *Cartoon-Looking Rendering
 //! of 3D-Scenes* (Wang, after Decaudin), cited as \[CL\]. Every setting is brought into its
 //! documented range before it is used; no value makes a panic or a NaN.
+#![warn(missing_docs)]
 
 #[cfg(feature = "cartoon")]
 mod cartoon;
@@ -54,7 +55,8 @@ mod plugin;
 mod schedule;
 mod settings;
 mod style;
-pub mod timing;
+#[cfg(feature = "inspector")]
+mod timing;
 mod view;
 
 #[cfg(feature = "cartoon")]

@@ -3,9 +3,6 @@
 //! Drag to orbit, wheel to come closer; the keys are on the screen. With the
 //! feature `inspector`, F10 opens the panel.
 
-#[path = "../common/mod.rs"]
-mod common;
-mod orbit;
 mod split;
 
 use bevy::{
@@ -14,11 +11,11 @@ use bevy::{
 use bevy_comics::{
     CartoonScene, ComicsDiagnostics, ComicsPlugin, Preset, StageOutcome, VisibleDepthRange, presets,
 };
-use common::{
+use bevy_comics_testkit::{
+    orbit::{Orbit, OrbitPlugin},
     scenes::{BuiltIn, ScenePart, Stage, Vantage},
     studio::wear,
 };
-use orbit::Orbit;
 use split::Split;
 
 /// What is on show.
@@ -63,7 +60,7 @@ fn main() {
         }),
         ..default()
     }))
-    .add_plugins((ComicsPlugin, orbit::OrbitPlugin, split::SplitPlugin))
+    .add_plugins((ComicsPlugin, OrbitPlugin, split::SplitPlugin))
     .insert_resource(Show {
         scene: BuiltIn::Mountains,
         style: 0,

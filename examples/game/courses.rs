@@ -3,8 +3,9 @@
 use bevy::{asset::RenderAssetUsages, mesh::PrimitiveTopology, prelude::*};
 use bevy_comics::ComicStyle;
 
+use bevy_comics_testkit::scenes::{BuiltIn, ScenePart, Stage, Vantage, mountains};
+
 use crate::{
-    common::scenes::{BuiltIn, ScenePart, Stage, Vantage, mountains},
     looks::named,
     rules::{CLOUD_RADIUS, Course, Flight},
 };

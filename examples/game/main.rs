@@ -4,8 +4,6 @@
 //! `cargo run --example game`, or with `--features inspector` for a photo mode
 //! with the panel. Keys and gamepad are on the title page.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod courses;
 mod input;
 mod looks;
@@ -14,7 +12,7 @@ mod screen;
 
 use bevy::{prelude::*, render::view::Msaa, window::WindowResolution};
 use bevy_comics::{CameraCut, ComicsPlugin};
-use common::{
+use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
     scenes::{ScenePart, Stage},
 };

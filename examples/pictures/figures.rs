@@ -15,16 +15,14 @@ use bevy_comics::{
 };
 use image::{Rgba, RgbaImage};
 
-use crate::{
-    common::{
-        headless::{Headless, HeadlessOptions},
-        read_back,
-        scenes::{BuiltIn, Stage, Vantage},
-        studio::{Studio, with_map},
-    },
-    save,
-    sheet::grid,
+use bevy_comics_testkit::{
+    headless::{Headless, HeadlessOptions},
+    read_back,
+    scenes::{BuiltIn, Stage, Vantage},
+    studio::{Studio, with_map},
 };
+
+use crate::{save, sheet::grid};
 
 const SIZE: UVec2 = UVec2::new(480, 270);
 const GAP: u32 = 8;

@@ -7,8 +7,6 @@
 //! cargo run --example pictures -- golden [--out DIR]
 //! ```
 
-#[path = "../common/mod.rs"]
-mod common;
 mod figures;
 mod sheet;
 
@@ -56,7 +54,7 @@ fn run() -> Result<(), String> {
             other => return Err(wrong(other.unexpected())),
         }
     }
-    common::headless::adapter()?;
+    bevy_comics_testkit::headless::adapter()?;
     let or = |path: &str| out.clone().unwrap_or_else(|| PathBuf::from(path));
     match what.as_deref() {
         Some("contact-sheet") => sheet::contact_sheet(size, &or("target/contact-sheet.png")),

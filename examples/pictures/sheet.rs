@@ -6,13 +6,12 @@ use bevy::{math::UVec2, render::view::Msaa};
 use bevy_comics::{Preset, presets};
 use image::{RgbaImage, imageops};
 
-use crate::{
-    common::{
-        scenes::BuiltIn,
-        studio::{Studio, golden_presets},
-    },
-    save,
+use bevy_comics_testkit::{
+    scenes::BuiltIn,
+    studio::{Studio, golden_presets},
 };
+
+use crate::save;
 
 const GAP: u32 = 6;
 

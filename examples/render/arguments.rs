@@ -5,7 +5,7 @@ use std::{path::PathBuf, str::FromStr};
 use bevy::math::{UVec2, Vec3};
 use bevy_comics::{ComicStyle, presets};
 
-use crate::common::{
+use bevy_comics_testkit::{
     headless::Adapter,
     scenes::{BuiltIn, Vantage},
 };

@@ -14,13 +14,12 @@ use exr::prelude::{
 };
 use serde_json::{Value, json};
 
-use crate::{
-    arguments::{Arguments, SceneChoice},
-    common::{
-        headless::{Adapter, Headless},
-        read_back::{self, DepthImage, FloatImage, IdImage},
-    },
+use bevy_comics_testkit::{
+    headless::{Adapter, Headless},
+    read_back::{self, DepthImage, FloatImage, IdImage},
 };
+
+use crate::arguments::{Arguments, SceneChoice};
 
 pub fn write(
     headless: &mut Headless,

@@ -7,8 +7,6 @@
 //! ```
 
 mod arguments;
-#[path = "../common/mod.rs"]
-mod common;
 mod dump;
 mod model;
 
@@ -17,7 +15,7 @@ use std::process::ExitCode;
 use arguments::{Arguments, SceneChoice};
 use bevy::{camera::Hdr, ecs::system::RunSystemOnce, prelude::*, render::view::Msaa};
 use bevy_comics::ComicsPlugin;
-use common::{
+use bevy_comics_testkit::{
     headless::{self, Headless, HeadlessOptions},
     scenes::{Stage, Vantage},
     studio::{set_cartoon, wear},

@@ -7,7 +7,7 @@ use bevy::{
     light::light_consts::lux, prelude::*, world_serialization::WorldAssetRoot,
 };
 
-use crate::common::{
+use bevy_comics_testkit::{
     headless::Headless,
     scenes::{ScenePart, Stage, Vantage, sky::Sky},
 };

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::device::gpu;
+use bevy_comics_testkit::device::gpu;
 
 pub fn words(values: &[u32]) -> Vec<u8> {
     values.iter().flat_map(|v| v.to_le_bytes()).collect()
@@ -59,7 +59,8 @@ pub fn fullscreen(source: &str, format: wgpu::TextureFormat) -> wgpu::RenderPipe
             return vec4(f32(i & 1u) * 4.0 - 1.0, f32(i >> 1u) * 4.0 - 1.0, 0.0, 1.0);
         }}"
     );
-    let module = crate::wgsl::module(&source, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let module =
+        bevy_comics_testkit::wgsl::module(&source, &[]).unwrap_or_else(|error| panic!("{error}"));
     let module = gpu().shader(module);
     gpu()
         .device

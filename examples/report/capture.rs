@@ -8,14 +8,18 @@ use bevy::{
 use bevy_comics::{Colorization, ComicStyle, Desaturation, Form};
 use nv_flip::{FlipImageRgb8, FlipPool};
 
-use crate::{
-    Run,
-    common::{read_back, scenes::BuiltIn},
+use bevy_comics_testkit::{
+    read_back,
     reference::{
         color::{srgb_decode, srgb_encode},
         colorization, desaturation,
         map::{Frame, Projection as MapProjection},
     },
+    scenes::BuiltIn,
+};
+
+use crate::{
+    Run,
     rig::{Rig, Wear},
 };
 
@@ -36,7 +40,7 @@ pub struct Shot {
 impl Shot {
     /// Nearest and farthest depth; `None` of an empty view.
     pub fn ends(&self) -> Option<[f32; 2]> {
-        crate::reference::range::scan(self.depth.iter().copied())
+        bevy_comics_testkit::reference::range::scan(self.depth.iter().copied())
             .map(|bits| bits.map(f32::from_bits))
     }
 }
@@ -113,7 +117,7 @@ fn specks(rig: &mut Rig) {
             unlit: true,
             ..default()
         });
-    let mut random = crate::common::scenes::noise::Random::new(8);
+    let mut random = bevy_comics_testkit::scenes::noise::Random::new(8);
     for _ in 0..300 {
         let z = -(1.0 + 40.0 * random.unit() * random.unit());
         let at = Vec3::new(

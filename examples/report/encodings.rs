@@ -2,11 +2,12 @@
 
 use bevy::math::UVec2;
 
+use bevy_comics_testkit::device::gpu;
+
 use crate::{
     Run,
     bare::{self, Blit, draw, fullscreen, group, texture, time, upload, view},
     capture,
-    device::gpu,
     table::Table,
 };
 

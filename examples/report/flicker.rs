@@ -11,11 +11,14 @@ use bevy::{
 };
 use bevy_comics::RangeSmoothing;
 
+use bevy_comics_testkit::{
+    reference::smoothing::{self, Range, Smoothing},
+    scenes::BuiltIn,
+};
+
 use crate::{
     Run,
     capture::{self, Shot, shoot},
-    common::scenes::BuiltIn,
-    reference::smoothing::{self, Range, Smoothing},
     rig::{Rig, Wear},
     table::Table,
 };
@@ -186,7 +189,7 @@ fn play(name: &str, size: UVec2) -> Sequence {
     };
     rig.headless.step(3);
     let mut cuts = Vec::new();
-    let mut random = crate::common::scenes::noise::Random::new(4);
+    let mut random = bevy_comics_testkit::scenes::noise::Random::new(4);
     let shots = (0..FRAMES)
         .map(|frame| {
             let world = rig.headless.app.world_mut();

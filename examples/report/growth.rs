@@ -3,9 +3,10 @@
 
 use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*, render::view::Msaa};
 
+use bevy_comics_testkit::{bench, headless::new_target, scenes::BuiltIn, work::default_comic};
+
 use crate::{
     Run,
-    common::{bench, headless::new_target, scenes::BuiltIn, work::default_comic},
     ladder::ball,
     rig::{self, Rig, Wear},
     table::Table,

@@ -3,14 +3,15 @@
 use bevy::{core_pipeline::prepass::DepthPrepass, prelude::*};
 use bevy_comics::ComicsPlugin;
 
+use bevy_comics_testkit::{
+    bench,
+    headless::{Headless, HeadlessOptions},
+    scenes::BuiltIn,
+    work,
+};
+
 use crate::{
     Run,
-    common::{
-        bench,
-        headless::{Headless, HeadlessOptions},
-        scenes::BuiltIn,
-        work,
-    },
     rig::{self, Rig, Wear},
     table::Table,
 };

@@ -8,14 +8,15 @@ use bevy::{
 };
 use bevy_comics::{ComicStyle, ContourOperator, Contours, ObjectEdges, Outlines, ToneBands};
 
+use bevy_comics_testkit::{
+    read_back,
+    scenes::BuiltIn,
+    truth::{FINE, Truth, mask},
+    work::default_comic,
+};
+
 use crate::{
     Run, capture,
-    common::{
-        read_back,
-        scenes::BuiltIn,
-        truth::{FINE, Truth, mask},
-        work::default_comic,
-    },
     rig::{self, Rig, Wear},
     table::Table,
 };
@@ -120,7 +121,7 @@ fn score(run: &Run) -> Result<(), String> {
 
 /// A picture whose every pixel is the mean, in light, of a square of another's.
 fn shrunk(picture: &image::RgbaImage, by: u32) -> Vec<[u8; 3]> {
-    use crate::reference::color::{srgb_decode, srgb_encode};
+    use bevy_comics_testkit::reference::color::{srgb_decode, srgb_encode};
     let (w, h) = (picture.width() / by, picture.height() / by);
     let mut pixels = Vec::new();
     for y in 0..h {

@@ -9,11 +9,7 @@
 
 mod bare;
 mod capture;
-#[path = "../common/mod.rs"]
-mod common;
 mod costs;
-#[path = "../../tests/gpu/device.rs"]
-mod device;
 mod document;
 mod encodings;
 mod flicker;
@@ -23,15 +19,9 @@ mod lines;
 mod peers;
 mod plots;
 mod ranges;
-#[path = "../../tests/reference/mod.rs"]
-#[allow(dead_code, reason = "the tests use the rest")]
-mod reference;
 mod rig;
 mod stability;
 mod table;
-#[path = "../../tests/gpu/wgsl.rs"]
-#[allow(dead_code, reason = "the tests use the rest")]
-mod wgsl;
 
 use std::{
     io::Write,
@@ -40,6 +30,10 @@ use std::{
     time::Instant,
 };
 
+use bevy_comics_testkit::{
+    bench,
+    headless::{self, Headless, HeadlessOptions},
+};
 use lexopt::prelude::*;
 use table::Table;
 
@@ -143,7 +137,7 @@ fn run() -> Result<(), String> {
             folder: out.clone(),
             started: Instant::now(),
         };
-        common::headless::adapter()?;
+        headless::adapter()?;
         for (name, measure) in SECTIONS {
             if only.as_deref().is_none_or(|o| o == name) {
                 run.say(name);
@@ -164,9 +158,9 @@ fn run() -> Result<(), String> {
 
 /// What it was measured on.
 fn machine(run: &Run) -> Result<(), String> {
-    let adapter = common::headless::adapter()?;
-    let headless = common::headless::Headless::new(
-        common::headless::HeadlessOptions {
+    let adapter = headless::adapter()?;
+    let headless = Headless::new(
+        HeadlessOptions {
             size: bevy::math::UVec2::new(16, 16),
             ..Default::default()
         },
@@ -193,7 +187,7 @@ fn machine(run: &Run) -> Result<(), String> {
             }
             .to_owned(),
         ),
-        ("times", common::bench::method(&headless).to_owned()),
+        ("times", bench::method(&headless).to_owned()),
         (
             "repetitions",
             format!(

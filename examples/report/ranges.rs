@@ -3,13 +3,12 @@
 use bevy::math::UVec2;
 use bevy_comics::{Colorization, ComicStyle, DepthMap, RangeSmoothing, ReductionMethod};
 
+use bevy_comics_testkit::{device::gpu, reference::smoothing, scenes::BuiltIn, studio::with_map};
+
 use crate::{
     Run,
     bare::{self, Blit, time, upload, view, words},
     capture::{self, Capture, Shot},
-    common::{scenes::BuiltIn, studio::with_map},
-    device::gpu,
-    reference::smoothing,
     rig::{self, Rig, Wear},
     table::Table,
 };
@@ -44,7 +43,8 @@ struct Strided {
 
 impl Strided {
     fn new() -> Self {
-        let module = crate::wgsl::module(STRIDED, &[]).unwrap_or_else(|error| panic!("{error}"));
+        let module = bevy_comics_testkit::wgsl::module(STRIDED, &[])
+            .unwrap_or_else(|error| panic!("{error}"));
         Self {
             pipeline: gpu()
                 .device
@@ -212,7 +212,7 @@ fn measure_errors(run: &Run, captures: &[Capture]) -> Table {
                     // Selects as the scan does: the same extremes by another way.
                     "ping-pong" => {
                         let (w, h) = (size[0] as usize, size[1] as usize);
-                        crate::reference::ping_pong::reduce(&shot.depth, w, h)
+                        bevy_comics_testkit::reference::ping_pong::reduce(&shot.depth, w, h)
                             .1
                             .map(|bits| bits.map(f32::from_bits))
                     }

@@ -10,15 +10,13 @@ use bevy::{
 };
 use bevy_comics::{ComicStyle, ComicsPlugin};
 
-use crate::{
-    Run,
-    common::{
-        bench::{self, BenchPlugin, Blit, Lap, Laps},
-        headless::{Headless, HeadlessOptions},
-        scenes::{BuiltIn, Stage, Vantage},
-    },
-    table::Table,
+use bevy_comics_testkit::{
+    bench::{self, BenchPlugin, Blit, Lap, Laps},
+    headless::{Headless, HeadlessOptions},
+    scenes::{BuiltIn, Stage, Vantage},
 };
+
+use crate::{Run, table::Table};
 
 pub struct Rig {
     pub headless: Headless,

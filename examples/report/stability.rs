@@ -4,11 +4,16 @@
 use bevy::{camera::Hdr, prelude::*, render::RenderApp};
 use bevy_comics::{ComicStyle, Outlines, Sketch, ToneBands, presets};
 
+use bevy_comics_testkit::{
+    device::gpu,
+    read_back,
+    reference::map::{Frame, Projection as MapProjection},
+    scenes::BuiltIn,
+    work::default_comic,
+};
+
 use crate::{
     Run, capture,
-    common::{read_back, scenes::BuiltIn, work::default_comic},
-    device::gpu,
-    reference::map::{Frame, Projection as MapProjection},
     rig::{Rig, Wear},
     table::Table,
 };

@@ -46,7 +46,7 @@ impl Costs {
                 .striped(true)
                 .num_columns(3)
                 .show(ui, |ui| {
-                    for pass in Pass::ALL {
+                    for &pass in Pass::ALL {
                         dot(ui, COLORS[pass as usize]);
                         let name = RichText::new(pass.name());
                         ui.label(if pass.is_comics() {
@@ -81,7 +81,7 @@ impl Costs {
             .show_axes([false, true])
             .y_axis_formatter(|mark, _| format!("{} ms", mark.value))
             .show(ui, |plot| {
-                for pass in Pass::ALL {
+                for &pass in Pass::ALL {
                     let points: PlotPoints = frames
                         .iter()
                         .enumerate()

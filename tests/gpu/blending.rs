@@ -10,8 +10,9 @@ use bevy_comics::{
 use image::RgbaImage;
 use proptest::{prelude::ProptestConfig, test_runner::TestRunner};
 
+use bevy_comics_testkit::headless::HeadlessOptions;
+
 use crate::{
-    common::headless::HeadlessOptions,
     small::{Small, options, size},
     styles::styles,
 };

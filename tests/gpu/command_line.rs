@@ -9,7 +9,7 @@ use std::{
 
 use serde_json::Value;
 
-use crate::reference::range;
+use bevy_comics_testkit::reference::range;
 
 /// Builds an example and gives its path.
 pub fn example(name: &str) -> PathBuf {

@@ -7,10 +7,9 @@ use bevy_comics::{
 };
 use image::RgbaImage;
 
-use crate::{
-    reference::color,
-    small::{Small, size, with_option},
-};
+use bevy_comics_testkit::reference::color;
+
+use crate::small::{Small, size, with_option};
 
 fn styled() -> Small {
     let mut small = Small::new(size(), Msaa::Off);

@@ -8,7 +8,7 @@ use bevy::{math::UVec2, render::view::Msaa};
 use bevy_comics::{ComicStyle, Contours, presets};
 use nv_flip::{FlipImageRgb8, FlipPool};
 
-use crate::common::{
+use bevy_comics_testkit::{
     scenes::BuiltIn,
     studio::{Studio, golden_presets},
 };

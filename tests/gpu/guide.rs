@@ -91,7 +91,6 @@ fn an_unknown_version_and_an_unknown_field_are_said() {
 }
 
 /// The reference of the format is made from the types themselves.
-#[cfg(feature = "inspector")]
 #[test]
 fn the_reference_of_the_format_is_that_of_the_types() {
     let made = reference::page();

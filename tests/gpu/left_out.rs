@@ -291,7 +291,7 @@ fn the_game_can_ask_for_the_range_alone() {
 #[test]
 fn both_passes_have_time_spans_in_the_engines_diagnostics() {
     use bevy::{diagnostic::DiagnosticsStore, render::diagnostic::RenderDiagnosticsPlugin};
-    let mut headless = crate::common::headless::Headless::new(
+    let mut headless = bevy_comics_testkit::headless::Headless::new(
         crate::small::options(size()),
         (bevy_comics::ComicsPlugin, RenderDiagnosticsPlugin),
     );

@@ -3,7 +3,9 @@
 use bevy::{camera::ScalingMode, prelude::*, render::view::Msaa};
 use bevy_comics::{ContourOperator, Contours, DepthMap, DepthMapping};
 
-use crate::{common::read_back::DepthImage, small::Small};
+use bevy_comics_testkit::read_back::DepthImage;
+
+use crate::small::Small;
 
 const OPERATORS: [ContourOperator; 4] = [
     ContourOperator::Prewitt,
@@ -231,7 +233,7 @@ fn a_line_is_as_wide_as_asked_at_every_scale() {
         (2.0, 2.0),
         (8.0, 1.0),
     ] {
-        let options = crate::common::headless::HeadlessOptions {
+        let options = bevy_comics_testkit::headless::HeadlessOptions {
             scale_factor: scale,
             ..crate::small::options(UVec2::new(120, 60))
         };
@@ -256,7 +258,7 @@ fn a_line_is_as_wide_as_asked_at_every_scale() {
         // over white in linear light.
         let covered: f64 = (0..120)
             .map(|x| {
-                1.0 - crate::reference::color::srgb_decode_one(
+                1.0 - bevy_comics_testkit::reference::color::srgb_decode_one(
                     f64::from(picture.get_pixel(x, 30).0[0]) / 255.0,
                 )
             })

@@ -1,14 +1,8 @@
 //! Everything that needs a GPU, or a CPU that plays one, in one binary.
 
-#[path = "../../examples/common/mod.rs"]
-mod common;
-#[path = "../reference/mod.rs"]
-mod reference;
-
 mod blending;
 mod cartoon;
 mod command_line;
-mod device;
 mod extremes;
 mod failures;
 mod finish;
@@ -24,7 +18,6 @@ mod lines;
 mod outlines;
 mod outside;
 mod own_effect;
-#[cfg(feature = "inspector")]
 mod panel;
 mod pictures;
 mod pipelines;
@@ -38,6 +31,4 @@ mod smoothing;
 mod smoothing_views;
 mod styles;
 mod vignette;
-mod wgsl;
-#[cfg(feature = "inspector")]
 mod window;

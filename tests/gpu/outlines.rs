@@ -4,10 +4,9 @@
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{ComicStyle, Form, Outlines, Silhouettes};
 
-use crate::{
-    common::{headless::HeadlessOptions, read_back::IdImage},
-    small::{Object, Small, options},
-};
+use bevy_comics_testkit::{headless::HeadlessOptions, read_back::IdImage};
+
+use crate::small::{Object, Small, options};
 
 /// How much ink every pixel has: what the pass took from its light.
 pub fn ink(small: &mut Small, outlines: Outlines) -> Vec<f32> {

@@ -16,17 +16,12 @@ pub struct OutsideCrate {
 
 impl OutsideCrate {
     /// A crate with these source files, by their paths under `src`. It depends on this crate, on
-    /// the dependencies of ours that are listed, and on everything that our tests depend on: so
-    /// the engine has the same features, and is not built a second time.
+    /// the test kit, on the dependencies of ours that are listed, and on everything that our tests
+    /// depend on: so the engine has the same features, and is not built a second time.
     pub fn new(name: &str, dependencies: &[&str], files: &[(&str, &str)]) -> Self {
         let folder = env::temp_dir().join(format!("bevy-comics-{name}-{}", std::process::id()));
         let manifest =
             fs::read_to_string(Path::new(ROOT).join("Cargo.toml")).expect("our manifest");
-        let features = if cfg!(feature = "inspector") {
-            "features = [\"inspector\"], "
-        } else {
-            ""
-        };
         let own = section(&manifest, "dependencies");
         let listed: String = dependencies
             .iter()
@@ -40,9 +35,10 @@ impl OutsideCrate {
             .collect();
         let text = format!(
             "[package]\nname = {name:?}\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[workspace]\n\n\
-             [dependencies]\nbevy_comics = {{ {features}path = {ROOT:?} }}\n{listed}{}\n\n\
+             [dependencies]\nbevy = {{ version = \"*\", default-features = false }}\n{listed}{}\n\n\
              [profile.dev]\n{}\n\n[profile.dev.package.\"*\"]\n{}\n",
-            section(&manifest, "dev-dependencies"),
+            section(&manifest, "dev-dependencies")
+                .replace("path = \"", &format!("path = \"{ROOT}/")),
             section(&manifest, "profile.dev"),
             section(&manifest, "profile.dev.package.\"*\""),
         );

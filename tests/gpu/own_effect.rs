@@ -13,16 +13,9 @@ const HEADLESS_MAIN: &str = r##"
 #[path = "../tint.rs"]
 mod tint;
 
-mod common {
-    #[path = "@ROOT@/examples/common/headless.rs"]
-    pub mod headless;
-    #[path = "@ROOT@/examples/common/read_back.rs"]
-    pub mod read_back;
-}
-
 use bevy::{ecs::system::RunSystemOnce, prelude::*};
 use bevy_comics::*;
-use common::headless::{Headless, HeadlessOptions};
+use bevy_comics_testkit::headless::{Headless, HeadlessOptions};
 use tint::Tint;
 
 const STYLE: &str = include_str!("../amber.comic.ron");
@@ -122,8 +115,10 @@ fn the_effect_of_the_page_runs_in_a_crate_of_its_own() {
     };
     let wgsl = blocks(&page, "wgsl");
     let style = blocks(&page, "ron");
-    let headless = HEADLESS_MAIN.replace("@ROOT@", ROOT);
-    let headless = format!("#![allow(dead_code)]\n{headless}\n{}", functions.join("\n"));
+    let headless = format!(
+        "#![allow(dead_code)]\n{HEADLESS_MAIN}\n{}",
+        functions.join("\n")
+    );
     let files = [
         ("tint.rs", *effect),
         ("tint.wgsl", wgsl.first().expect("the shader")),

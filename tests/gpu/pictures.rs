@@ -12,8 +12,7 @@ use bevy_comics::{
     VisibleDepthRange, presets,
 };
 
-use crate::{
-    common::studio::with_map,
+use bevy_comics_testkit::{
     reference::{
         color,
         fused::{Input, stylize},
@@ -21,8 +20,10 @@ use crate::{
         read::Edges,
         view::View,
     },
-    small::{Small, with_option},
+    studio::with_map,
 };
+
+use crate::small::{Small, with_option};
 
 const ONE_CODE: f64 = 1.0 / 255.0;
 

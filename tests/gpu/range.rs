@@ -7,7 +7,7 @@ use proptest::{
     test_runner::TestRunner,
 };
 
-use crate::{
+use bevy_comics_testkit::{
     device::gpu,
     reference::{ping_pong, range, smoothing},
     wgsl,
@@ -227,7 +227,7 @@ fn every_shape_finds_the_scan_of_any_depth_in_any_viewport() {
     };
     TestRunner::new(config)
         .run(&case, |(size, cut, values, seed, sky)| {
-            let mut random = crate::common::scenes::noise::Random::new(seed);
+            let mut random = bevy_comics_testkit::scenes::noise::Random::new(seed);
             let depths: Vec<f32> = (0..size[0] * size[1])
                 .map(|_| {
                     if f64::from(random.unit()) < sky {
@@ -262,7 +262,7 @@ fn every_shape_finds_the_scan_of_any_depth_in_any_viewport() {
 
 #[test]
 fn every_shape_counts_every_depth_once() {
-    let mut random = crate::common::scenes::noise::Random::new(11);
+    let mut random = bevy_comics_testkit::scenes::noise::Random::new(11);
     for size in [[1u32, 1], [7, 5], [129, 33], [300, 67], [256, 64]] {
         // Runs of like depths, as in pictures, sky and what is no depth between.
         let mut d = 0.5f32;
@@ -327,7 +327,7 @@ fn the_papers_index_arithmetic_loses_no_pixel() {
     for width in 1..40usize {
         for height in 1..40usize {
             let mut random =
-                crate::common::scenes::noise::Random::new((width * 100 + height) as u64);
+                bevy_comics_testkit::scenes::noise::Random::new((width * 100 + height) as u64);
             let depths: Vec<f32> = (0..width * height).map(|_| random.unit()).collect();
             let (_, found) = ping_pong::reduce(&depths, width, height);
             assert_eq!(

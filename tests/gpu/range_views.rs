@@ -7,7 +7,9 @@ use bevy::{
 };
 use bevy_comics::{ComicsStage, DepthMap, ReductionMethod, VisibleDepthRange};
 
-use crate::{common::headless, reference::range, small::Small};
+use bevy_comics_testkit::{headless, reference::range};
+
+use crate::small::Small;
 
 fn msaa_of(samples: u32) -> Msaa {
     Msaa::from_samples(samples)

@@ -3,7 +3,9 @@
 
 use std::{collections::HashMap, fs, path::PathBuf, process::Command};
 
-use crate::{command_line::example, common::work};
+use bevy_comics_testkit::work;
+
+use crate::command_line::example;
 
 fn folder() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/report"))

@@ -1,6 +1,6 @@
 //! What the scenes promise.
 
-use crate::common::scenes::{mountains, teapot};
+use bevy_comics_testkit::scenes::{mountains, teapot};
 
 #[test]
 fn the_landscape_has_a_million_vertices() {

@@ -4,7 +4,7 @@ use std::{fs, ops::Range};
 
 use bevy_comics::{DebugView, EffectRegistry, Needs};
 
-use crate::wgsl::{Definition, files, module, module_with};
+use bevy_comics_testkit::wgsl::{Definition, files, module, module_with};
 
 fn shader(name: &str) -> String {
     let path = files()

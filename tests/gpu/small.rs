@@ -15,7 +15,7 @@ use bevy_comics::{
     ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Effect, VisibleDepthRange,
 };
 
-use crate::common::{
+use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
     read_back::{self, DepthImage, FloatImage, IdImage},
 };

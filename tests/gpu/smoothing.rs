@@ -2,10 +2,10 @@
 
 use std::sync::OnceLock;
 
-use crate::{
-    common::scenes::noise::Random,
+use bevy_comics_testkit::{
     device::gpu,
     reference::smoothing::{self, Range, Smoothing},
+    scenes::noise::Random,
     wgsl,
 };
 

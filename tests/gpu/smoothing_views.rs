@@ -6,13 +6,12 @@ use bevy_comics::{
     ReductionMethod, VisibleDepthRange,
 };
 
-use crate::{
-    common::{
-        headless::{HeadlessOptions, new_target},
-        studio::with_map,
-    },
-    small::{Small, options, size},
+use bevy_comics_testkit::{
+    headless::{HeadlessOptions, new_target},
+    studio::with_map,
 };
+
+use crate::small::{Small, options, size};
 
 /// Slow enough to be seen, and exact once it is there.
 const SLOW: RangeSmoothing = RangeSmoothing {
@@ -211,7 +210,7 @@ fn the_range_that_the_game_reads_is_the_exact_one() {
 
 #[test]
 fn every_method_and_sample_count_smooths() {
-    let samples = crate::common::headless::adapter()
+    let samples = bevy_comics_testkit::headless::adapter()
         .expect("an adapter")
         .samples;
     for samples in samples {

@@ -15,10 +15,9 @@ use proptest::{
     test_runner::TestRunner,
 };
 
-use crate::{
-    common::headless::HeadlessOptions,
-    small::{Small, options, size, with_option},
-};
+use bevy_comics_testkit::headless::HeadlessOptions;
+
+use crate::small::{Small, options, size, with_option};
 
 fn number() -> impl Strategy<Value = f32> {
     any::<f32>()

@@ -3,10 +3,9 @@
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{ComicsStage, Vignette};
 
-use crate::{
-    reference::vignette,
-    small::{Small, size},
-};
+use bevy_comics_testkit::reference::vignette;
+
+use crate::small::{Small, size};
 
 const INK: Color = Color::srgb(0.8, 0.1, 0.3);
 
@@ -41,8 +40,9 @@ fn every_pixel_is_its_twins() {
                 let source = [0, 1, 2].map(|c| f64::from(picture.pixels[i][c]));
                 let want = vignette::vignette(&settings, source, at, extent);
                 // One code of the display: the target has eight bits.
-                let codes =
-                    |light: f64| crate::reference::color::srgb_encode([light; 3])[0] * 255.0;
+                let codes = |light: f64| {
+                    bevy_comics_testkit::reference::color::srgb_encode([light; 3])[0] * 255.0
+                };
                 let apart = (0..3)
                     .map(|c| (codes(f64::from(shown.pixels[i][c])) - codes(want[c])).abs())
                     .fold(0.0, f64::max);

@@ -14,8 +14,6 @@
 //! where their normals differ by more than 30 degrees on one surface, an object
 //! edge where their ids differ.
 
-#[path = "../../../examples/common/mod.rs"]
-mod common;
 mod times;
 
 use bevy::{
@@ -26,7 +24,7 @@ use bevy::{
 };
 use bevy_comics::{ComicStyle, ComicsPlugin, ObjectEdges, Outlines};
 use bevy_edge_detection_outline::{EdgeDetection, EdgeDetectionPlugin};
-use common::{
+use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
     read_back,
     scenes::{BuiltIn, Stage},

@@ -16,7 +16,7 @@ use bevy_mod_outline::{OutlineMode, OutlinePlugin, OutlineVolume};
 use bevy_shader_mtoon::{MtoonMaterial, MtoonPlugin, MtoonSun, VrmOutlineMode};
 use cloudiful_bevy_outline::{GpmoOutlinePlugin, OutlineAssets, spawn_default_outline_mesh};
 
-use crate::common::{
+use bevy_comics_testkit::{
     bench::{self, BenchPlugin, Blit, Laps},
     headless::{Headless, HeadlessOptions},
     scenes::{BuiltIn, ScenePart, Stage},

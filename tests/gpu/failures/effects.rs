@@ -8,7 +8,7 @@ use bevy_comics::{
 use serde::{Deserialize, Serialize};
 
 use super::*;
-use crate::common::headless::Headless;
+use bevy_comics_testkit::headless::Headless;
 
 /// An effect that takes no settings: `$name`, its need, and its WGSL.
 macro_rules! test_effect {

@@ -1,8 +1,8 @@
 //! Settings, colours and depth as they should not be.
 
 use super::*;
-use crate::common::studio::with_map;
 use bevy_comics::{ComicsSystems, Creases, Outlines, Silhouettes, Sketch, ToneBands};
+use bevy_comics_testkit::studio::with_map;
 
 /// Takes the depth prepass away as soon as anyone asks for it.
 fn forbid_prepass(mut commands: Commands, cameras: Query<Entity, With<DepthPrepass>>) {

@@ -19,10 +19,9 @@ use bevy_comics::{
     Contours, DepthMap, DepthMapping, Desaturation, Form, LeftOut, StageOutcome, VisibleDepthRange,
 };
 
-use crate::{
-    common::headless::{HeadlessOptions, new_target},
-    small::{Object, Small, camera, options, size, with_option},
-};
+use bevy_comics_testkit::headless::{HeadlessOptions, new_target};
+
+use crate::small::{Object, Small, camera, options, size, with_option};
 
 fn full_style() -> ComicStyle {
     ComicStyle::default()

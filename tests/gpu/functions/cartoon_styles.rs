@@ -1,8 +1,8 @@
 //! Outlines, tone bands, sketch and the cartoon's light against their twins.
 
 use super::*;
-use crate::reference::{edge, light, sketch, tone_bands};
 use bevy_comics::{CartoonLight, Form, Sketch, ToneBands};
+use bevy_comics_testkit::reference::{edge, light, sketch, tone_bands};
 
 const EDGE: &str = "#import bevy_comics::lines::edge::{gradient, gradient_extremes, edge_response, normal_extremes, component_response, step_excess, line_coverage, line_offset, pack_edge, unpack_edge, Edge}";
 

@@ -1,7 +1,7 @@
 //! The end of the fused pass against its twin.
 
 use super::*;
-use crate::reference::finish;
+use bevy_comics_testkit::reference::finish;
 
 const FINISH: &str =
     "#import bevy_comics::finish::{Finish, compare, range_share, object_color, difference}

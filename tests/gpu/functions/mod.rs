@@ -19,7 +19,7 @@ use proptest::{
     test_runner::TestRunner,
 };
 
-use crate::{
+use bevy_comics_testkit::{
     device::gpu,
     reference::{
         Rgb, black_flats, color, colorization, contours, desaturation,

@@ -1,7 +1,7 @@
 //! Decoding the normal prepass, against its twin and against the encoding.
 
 use super::*;
-use crate::reference::normal;
+use bevy_comics_testkit::reference::normal;
 
 const NORMAL: &str = "#import bevy_comics::depth::normal::decode_normal";
 

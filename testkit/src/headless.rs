@@ -21,7 +21,7 @@ use bevy::{
     winit::WinitPlugin,
 };
 
-use super::read_back;
+use crate::{ROOT, read_back};
 
 /// The command that gives a bare Debian machine an adapter.
 pub const INSTALL_ADAPTER: &str = "apt-get install mesa-vulkan-drivers libvulkan1";
@@ -52,7 +52,7 @@ impl Default for HeadlessOptions {
             format: TextureFormat::Rgba8UnormSrgb,
             scale_factor: 1.0,
             log: false,
-            assets: concat!(env!("CARGO_MANIFEST_DIR"), "/assets").into(),
+            assets: format!("{ROOT}/assets"),
             watch: false,
             background_pipelines: false,
         }

@@ -22,12 +22,12 @@ use bevy::{
         view::ViewTarget,
     },
 };
-use bevy_comics::{
-    ComicsSystems,
-    timing::{self, Stopwatch},
-};
+use bevy_comics::ComicsSystems;
 
-use super::headless::Headless;
+use crate::{
+    headless::Headless,
+    stopwatch::{self, Stopwatch},
+};
 
 /// The parts of a camera's frame, in their order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +51,8 @@ pub type Laps = [f64; LAPS];
 
 /// How times are taken on this adapter, in words.
 pub fn method(headless: &Headless) -> &'static str {
-    timing::method(headless.app.sub_app(RenderApp).world())
+    let world = headless.app.sub_app(RenderApp).world();
+    stopwatch::method(world.resource(), world.resource())
 }
 
 /// A post-process pass that only copies: what every ratio is to.
@@ -110,9 +111,9 @@ impl Plugin for BenchPlugin {
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;
         };
-        let lap = |lap: Option<Lap>| timing::lap(lap.map(|lap| lap as usize));
+        let lap = |lap: Option<Lap>| stopwatch::lap(lap.map(|lap| lap as usize));
         render_app
-            .init_resource::<Stopwatch>()
+            .insert_resource(Stopwatch::new(true))
             .add_systems(
                 Core3d,
                 (
@@ -138,7 +139,7 @@ impl Plugin for BenchPlugin {
             )
             .add_systems(
                 bevy::render::Render,
-                timing::end_frame.in_set(bevy::render::RenderSystems::Cleanup),
+                stopwatch::end_frame.in_set(bevy::render::RenderSystems::Cleanup),
             );
     }
 }
@@ -162,6 +163,6 @@ pub fn whole_frame(headless: &mut Headless) -> f64 {
     let start = Instant::now();
     headless.step(1);
     let world = headless.app.sub_app(RenderApp).world();
-    timing::wait(world.resource::<RenderDevice>());
+    stopwatch::wait(world.resource::<RenderDevice>());
     start.elapsed().as_secs_f64() * 1e3
 }

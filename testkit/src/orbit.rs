@@ -1,30 +1,27 @@
-//! A camera that turns around what it looks at.
+//! A camera that orbits its target: drag to turn, wheel to zoom.
 
 use bevy::{
     input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollUnit},
     prelude::*,
 };
+use bevy_comics::inspector::ComicsInspector;
 
-use crate::common::scenes::Vantage;
+use crate::scenes::Vantage;
 
 pub struct OrbitPlugin;
 
 impl Plugin for OrbitPlugin {
     fn build(&self, app: &mut App) {
-        #[cfg(feature = "inspector")]
         app.add_systems(Update, turn.run_if(is_free));
-        #[cfg(not(feature = "inspector"))]
-        app.add_systems(Update, turn);
     }
 }
 
-/// Whether the pointer is not the panel's.
-#[cfg(feature = "inspector")]
-fn is_free(inspector: Option<Res<bevy_comics::inspector::ComicsInspector>>) -> bool {
+/// Whether the pointer is outside the panel.
+fn is_free(inspector: Option<Res<ComicsInspector>>) -> bool {
     inspector.is_none_or(|inspector| !inspector.wants_pointer)
 }
 
-/// Where the camera is, seen from its target.
+/// Position of the camera relative to its target.
 #[derive(Component, Clone)]
 pub struct Orbit {
     target: Vec3,

@@ -13,6 +13,8 @@ use naga_oil::compose::{
     get_preprocessor_data,
 };
 
+use crate::ROOT;
+
 /// Every WGSL file of the crate.
 pub fn files() -> Vec<PathBuf> {
     fn walk(folder: &Path, found: &mut Vec<PathBuf>) {
@@ -26,10 +28,7 @@ pub fn files() -> Vec<PathBuf> {
         }
     }
     let mut found = Vec::new();
-    walk(
-        &Path::new(env!("CARGO_MANIFEST_DIR")).join("src"),
-        &mut found,
-    );
+    walk(&Path::new(ROOT).join("src"), &mut found);
     found.sort();
     found
 }

@@ -11,7 +11,6 @@ pub mod detect;
 pub mod edge;
 pub mod finish;
 pub mod fused;
-#[allow(dead_code, reason = "the light is tested function by function")]
 pub mod light;
 pub mod map;
 pub mod noise;

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::{common::headless::INSTALL_ADAPTER, wgsl};
+use crate::{headless::INSTALL_ADAPTER, wgsl};
 
 pub struct Gpu {
     pub device: wgpu::Device,

@@ -5,7 +5,7 @@ use super::{
     map::{Frame, Projection},
     window::{self, Window},
 };
-use crate::common::read_back::{FloatImage, IdImage};
+use crate::read_back::{FloatImage, IdImage};
 
 /// A view: its viewport, its depth and its depth map.
 pub struct View<'a> {

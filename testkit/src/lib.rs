@@ -1,0 +1,21 @@
+//! Shared by the tests, the examples and the report: scenes made by code, an app
+//! that renders without a window, a bare GPU device, the shipped WGSL, and the
+//! shaders' twins in double precision.
+
+pub mod bench;
+pub mod device;
+pub mod headless;
+pub mod orbit;
+pub mod read_back;
+pub mod reference;
+pub mod scenes;
+// The crate's own stopwatch, included because it is private there.
+#[path = "../../src/timing/stopwatch.rs"]
+mod stopwatch;
+pub mod studio;
+pub mod truth;
+pub mod wgsl;
+pub mod work;
+
+/// The root of the repository.
+pub const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
