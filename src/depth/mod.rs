@@ -29,8 +29,8 @@ use crate::settings::{FieldRange, bounded, ordered_planes};
 /// range of distances, 1 at its far end. Every effect that depends on distance
 /// reads it.
 ///
-/// A camera without this component uses the default: the visible range, smoothed
-/// over time so that it does not flicker (\[CS\] Eq. 4).
+/// A camera without this component uses the default: the visible range, as in
+/// \[CS\] Eq. 4, but smoothed over time so that it does not flicker.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

@@ -45,11 +45,10 @@ pub enum VisibleDepthRange {
         near: f32,
         /// View depth of the farthest visible geometry in world units.
         far: f32,
-        /// Raw reversed depth of the nearest geometry, as in the depth texture; under
-        /// an oblique projection, the near distance divided by `near`.
+        /// Raw reversed depth of the nearest geometry, as in the depth texture. Under
+        /// an oblique projection: distance of the near plane over view depth.
         raw_near: f32,
-        /// Raw reversed depth of the farthest geometry; under an oblique projection,
-        /// the near distance divided by `far`.
+        /// Raw reversed depth of the farthest geometry, as `raw_near`.
         raw_far: f32,
     },
 }
@@ -78,8 +77,8 @@ impl VisibleDepthRange {
     }
 }
 
-/// The distribution of the visible depths of a camera, and the range that its depth
-/// map spans. Put it on the camera; its value is updated.
+/// The distribution of the visible depths of a camera, and its smoothed visible range.
+/// Put it on the camera; its value is updated.
 ///
 /// As with [`VisibleDepthRange`], the value is one or a few frames old, and the depth
 /// prepass and the reduction run for it. The counts are exact. Without compute

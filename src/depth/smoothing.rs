@@ -65,7 +65,7 @@ pub struct RangeSmoothing {
     /// Default: `true`.
     pub despike: bool,
     /// Change of distance, in octaves, that an end of the range ignores. An end that
-    /// has begun to move follows the scene until a quarter of this is left, then
+    /// has begun to move follows the scene until it is within a quarter of this, then
     /// comes to rest. Under an orthographic projection the unit is the length of the
     /// range. Range 0 to 4, default 0.07 (5 % of a distance).
     #[reflect(@FieldRange::linear(0.0, 4.0).unit("oct"))]

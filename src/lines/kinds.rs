@@ -28,7 +28,7 @@ pub struct Silhouettes {
     /// Default: [`Form::Corrected`]. Faithful: \[CL\] Eq. 1 and 2 on the depth
     /// buffer.
     pub form: Form,
-    /// Jump in depth that has the full response 1; the lower, the more lines.
+    /// Jump in depth at which the response is 1; the lower, the more lines.
     /// Range 1e-6 to 1, default 0.02.
     ///
     /// Corrected: a fraction of the distance to the surface behind, or of 1.2 times
@@ -108,8 +108,8 @@ pub struct Creases {
     /// Default: [`Form::Corrected`]. Faithful: \[CL\] Eq. 1 and 2 on each component
     /// of the normal.
     pub form: Form,
-    /// Angle between the normals of the two sides of a crease that has the full
-    /// response 1, in degrees; the lower, the more lines. Range 3 to 180, default 40.
+    /// Angle between the normals of the two sides of a crease at which the response
+    /// is 1, in degrees; the lower, the more lines. Range 3 to 180, default 40.
     /// Faithful: `k_p` of \[CL\] Eq. 2 is the sine of half of the angle.
     #[reflect(@FieldRange::linear(3.0, 180.0).unit("°"))]
     pub angle: f32,

@@ -217,7 +217,7 @@ impl IdItems<'_> {
         let pipeline = self
             .pipelines
             .specialize(&self.cache, &specializer, key, &mesh.layout)
-            .inspect_err(|error| error_once!("the object id of {:?} is not drawn: {error}", object.1))
+            .inspect_err(|error| error_once!("no object id for {:?}: {error}", object.1))
             .ok()?;
         let functions = self.draw_functions.read();
         Some(ObjectIdItem {
