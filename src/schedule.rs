@@ -2,33 +2,35 @@
 
 use bevy::ecs::schedule::SystemSet;
 
-/// The systems of this crate: order your own against them. Those of the render
-/// world are in the `Core3d` schedule of a camera.
+/// The systems of this crate, for ordering your own systems against them.
+///
+/// All sets but [`Plan`](Self::Plan) are in the render world, in the `Core3d`
+/// schedule that runs for each camera.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ComicsSystems {
-    /// In the main world's schedule [`Last`](bevy::app::Last): what cameras draw is
-    /// planned from their components, and prepasses are asked for or released.
+    /// Plans what each camera draws from its components, and adds or removes
+    /// prepasses: in the main world's schedule [`Last`](bevy::app::Last).
     Plan,
-    /// The depth range is found: after `Core3dSystems::Prepass`, before
+    /// Finds the visible depth range: after `Core3dSystems::Prepass`, before
     /// `Core3dSystems::MainPass`.
     DepthRange,
-    /// The outlines are found: after the depth range, before
+    /// Finds the outlines: after [`DepthRange`](Self::DepthRange), before
     /// `Core3dSystems::MainPass`.
     Outlines,
-    /// The picture is stylized: in `Core3dSystems::PostProcess`, after
+    /// Applies the effects to the picture: in `Core3dSystems::PostProcess`, after
     /// tonemapping and before FXAA and SMAA, which then smooth the ink.
     Stylize,
 }
 
-/// The order in which this crate prepares a frame, in
+/// The steps that prepare a frame, in this order, in
 /// `RenderSystems::PrepareBindGroups`.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum PrepareComics {
-    /// Chooses what every view draws, and writes the services' requests.
+    /// Chooses what every view draws, and writes a request for each service.
     Choose,
-    /// The services prepare what was requested.
+    /// Each service prepares what was requested of it.
     Services,
-    /// The fused pass is prepared.
+    /// Prepares the fused pass.
     Fused,
 }

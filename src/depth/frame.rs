@@ -1,4 +1,4 @@
-//! The projection, as the depth map needs it.
+//! A view's projection: the relation of raw depth to distance.
 
 use bevy::{
     camera::Projection,
@@ -9,20 +9,20 @@ use bevy::{
 
 use super::{DepthMap, DepthMapping};
 
-/// The kinds of projection that raw depth is read under.
+/// How raw depth depends on distance under a camera's projection.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ProjectionKind {
-    /// Raw depth plus a constant is proportional to the reciprocal distance.
+    /// Raw depth plus a constant is proportional to the reciprocal of the view depth.
     Perspective,
-    /// Raw depth is affine in the distance.
+    /// Raw depth is an affine function of the view depth.
     Orthographic,
-    /// Raw depth depends on the pixel as well (an oblique near plane, a custom
-    /// matrix): distances are unprojected for every pixel.
+    /// Raw depth also depends on the pixel (an oblique near plane, a custom
+    /// matrix), so that distances are unprojected for every pixel.
     Oblique,
 }
 
 impl ProjectionKind {
-    /// Tells the kind from the matrix: what raw depth depends on.
+    /// The kind of a projection matrix.
     pub fn of(clip_from_view: &Mat4) -> Self {
         let rows = clip_from_view.transpose();
         let (depth, w) = (rows.z_axis, rows.w_axis);
@@ -37,6 +37,7 @@ impl ProjectionKind {
     }
 }
 
+/// Bits of [`DepthFrame::flags`], as in `map.wgsl`.
 const ORTHOGRAPHIC: u32 = 1;
 const LOGARITHMIC: u32 = 2;
 
@@ -62,14 +63,15 @@ pub(crate) struct RawDepth {
     pub near: f32,
 }
 
-/// A view's projection in double precision: raw depth to distance and back.
+/// A view's projection in double precision: converts raw depth to distance and back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DepthProjection {
     kind: ProjectionKind,
-    /// clip z = scale * view z + shift, view z negative before the camera.
+    /// clip z = scale * view z + shift; view z is negative in front of the camera.
     scale: f64,
     shift: f64,
-    /// Stands for the near plane where there is none in the matrix.
+    /// Near and far plane in world units. An infinite or oblique matrix does not
+    /// contain both.
     near: f64,
     far: f64,
 }
@@ -96,7 +98,8 @@ impl DepthProjection {
         self.kind
     }
 
-    /// What added to raw depth makes it proportional to the reciprocal distance.
+    /// The constant that makes raw depth proportional to the reciprocal distance
+    /// when added to it; 0 unless the projection is a perspective.
     pub fn offset(&self) -> f32 {
         if self.kind == ProjectionKind::Perspective {
             self.scale as f32
@@ -105,7 +108,7 @@ impl DepthProjection {
         }
     }
 
-    /// The near distance that scales the reciprocal depth of oblique views.
+    /// Near distance in world units that scales the reciprocal distance of oblique views.
     fn oblique_near(&self) -> f64 {
         if self.near.is_finite() && self.near > 1e-6 {
             self.near
@@ -114,7 +117,8 @@ impl DepthProjection {
         }
     }
 
-    /// Raw depth of a distance in world units.
+    /// Raw depth at a distance in world units. For an oblique view: near / distance,
+    /// which stands for raw depth (see `raw.wgsl`).
     pub fn raw_depth(&self, distance: f64) -> f64 {
         match self.kind {
             ProjectionKind::Perspective => self.shift / distance - self.scale,
@@ -123,8 +127,8 @@ impl DepthProjection {
         }
     }
 
-    /// Distance in world units of a raw depth (of an oblique view: of the
-    /// reciprocal depth that stands for it).
+    /// Distance in world units at a raw depth: the inverse of
+    /// [`raw_depth`](Self::raw_depth).
     pub fn distance(&self, raw: f32) -> f64 {
         let raw = f64::from(raw);
         match self.kind {
@@ -134,11 +138,14 @@ impl DepthProjection {
         }
     }
 
-    /// What a jump in raw depth is a share of, as (factor, constant) of the
-    /// largest raw depth nearby: the reciprocal distance, which is free of units
-    /// and planes; under an orthographic projection, whose raw depth knows no
-    /// distance, the distance from which a perspective view of 45 degrees would
-    /// show as much.
+    /// The reference that a jump in raw depth is measured against, as (factor,
+    /// constant): factor * (largest raw depth nearby) + constant.
+    ///
+    /// In perspective it is proportional to the reciprocal distance. A jump is then
+    /// a fraction of the distance, whatever the world's unit and the planes are.
+    /// Raw depth of an orthographic projection does not tell how far away the camera
+    /// is. There the reference is the raw depth of a length: the distance from which
+    /// a perspective view of 45 degrees shows the same height (1.2 times the height).
     pub fn jump_reference(&self, clip_from_view: &Mat4) -> [f32; 2] {
         match self.kind {
             ProjectionKind::Perspective => [1.0, self.scale as f32],
@@ -151,6 +158,8 @@ impl DepthProjection {
         }
     }
 
+    /// What `raw_depth` of `raw.wgsl` reads: zeros unless the projection is oblique.
+    /// `viewport` is x, y, width, height in pixels.
     pub fn raw(&self, clip_from_view: &Mat4, viewport: UVec4) -> RawDepth {
         if self.kind != ProjectionKind::Oblique {
             return RawDepth::default();
@@ -166,9 +175,11 @@ impl DepthProjection {
         }
     }
 
+    /// The depth map's uniform. If the map spans the visible range, `near` and `far`
+    /// are 0: the shader takes them from the reduction's buffer.
     pub fn frame(&self, map: &DepthMap) -> DepthFrame {
         let orthographic = self.kind == ProjectionKind::Orthographic;
-        // Under an orthographic projection scale is 1 / (far - near).
+        // The scale of an orthographic projection is 1 / (far - near).
         let extent = if orthographic { 1.0 / self.scale } else { 0.0 };
         let (near, far) = match map.mapping {
             DepthMapping::MinMax | DepthMapping::MinMaxLogarithmic => (0.0, 0.0),
@@ -208,7 +219,8 @@ impl DepthProjection {
         }
     }
 
-    /// A plane of the camera for Eq. 2 and 3: perspective planes are positive.
+    /// The distance of a plane of the camera, for Eq. 2 and 3. In perspective,
+    /// `default` replaces one that is not positive and finite.
     fn plane(&self, distance: f64, default: f64) -> f64 {
         if self.kind == ProjectionKind::Orthographic {
             return distance;
@@ -221,8 +233,8 @@ impl DepthProjection {
     }
 }
 
-/// The near plane of a custom projection, as the matrix has it: reversed depth
-/// 1 on the view axis.
+/// The near plane of a custom projection in world units: the distance at which its
+/// matrix gives a reversed depth of 1 on the view axis; 0.1 if there is none.
 fn custom_near(clip_from_view: &Mat4) -> f32 {
     let (a, b) = (clip_from_view.z_axis.z, clip_from_view.w_axis.z);
     let near = match ProjectionKind::of(clip_from_view) {

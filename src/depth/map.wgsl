@@ -1,7 +1,7 @@
 #define_import_path bevy_comics::depth::map
 
-// The depth map: raw reversed depth d (near 1, sky 0) to D in [0, 1], 0 at the
-// nearest and 1 at the farthest end of a range. Pure functions.
+// The depth map: from raw reversed depth d (1 at the near plane, 0 for the sky) to
+// D in [0, 1], 0 at the near end of a range and 1 at its far end. Pure functions.
 
 const ORTHOGRAPHIC: u32 = 1u;
 const LOGARITHMIC: u32 = 2u;
@@ -11,29 +11,29 @@ struct DepthFrame {
     // Raw depth of the near and the far end of the range.
     near: f32,
     far: f32,
-    // a = clip_from_view[2][2]: d + a is proportional to 1/z in perspective.
+    // a = clip_from_view[2][2]: d + a is proportional to 1/z in perspective. 0 otherwise.
     offset: f32,
-    // The smallest range that is spread over [0, 1]: relative to near + a in
-    // perspective, in raw depth under an orthographic projection.
+    // Smallest range that fills [0, 1]: as a fraction of near + a in perspective, in
+    // raw depth under an orthographic projection.
     floor: f32,
-    // Orthographic view depth is plane_far - d * extent.
+    // Orthographic projections only: view depth in world units is plane_far - d * extent.
     plane_far: f32,
     extent: f32,
-    // The sky lies at D = 1 + sky_gap for the contours.
+    // Contours see the sky at D = 1 + sky_gap.
     sky_gap: f32,
-    // ORTHOGRAPHIC | LOGARITHMIC | EMPTY
+    // Any of ORTHOGRAPHIC, LOGARITHMIC, EMPTY (no geometry is visible).
     flags: u32,
 }
 
-// Sky, and everything that is no depth: zero, subnormal (arithmetic may flush
-// it), above one, negative, NaN.
+// True for the sky (0) and for values that are no depth: subnormal (arithmetic may
+// flush it to 0), above 1, negative, NaN.
 fn is_background(d: f32) -> bool {
     let bits = bitcast<u32>(d);
     return bits < 0x00800000u || bits > 0x3f800000u;
 }
 
-// The fused pass is compiled for its kind of map: a CPU adapter runs both sides
-// of a branch, whatever the condition.
+// Whether a flag is set. The fused pass compiles the flags in as MAP_FLAGS, except
+// EMPTY, because CPU adapters execute both sides of a branch on a runtime value.
 fn has(f: DepthFrame, flag: u32) -> bool {
 #ifdef MAP_FLAGS
     let compiled = #{MAP_FLAGS}u;
@@ -43,9 +43,9 @@ fn has(f: DepthFrame, flag: u32) -> bool {
 #endif
 }
 
-// ln(large / small) with full relative precision near 1, given the exact
-// difference large - small. Within a factor of two: 2 atanh(s), s <= 1/3, whose
-// ninth term is below half an ulp.
+// ln(large / small) with full relative precision where the ratio is near 1, given
+// the exact difference large - small. Up to a ratio of 2 it is 2 atanh(s), s <= 1/3,
+// as a series of eight terms: the ninth is below half an ulp.
 fn log_ratio(large: f32, small: f32, difference: f32) -> f32 {
     let s = difference / (large + small);
     if abs(s) > 0.3333 {
@@ -63,11 +63,11 @@ fn log_ratio(large: f32, small: f32, difference: f32) -> f32 {
     return 2.0 * s * sum;
 }
 
-// ln(z(q) / z(p)) for raw depths p (nearer) and q (farther).
+// ln(z(q) / z(p)), with z the view depth, for raw depths p (nearer) and q (farther).
 fn log_distance(f: DepthFrame, p: f32, q: f32) -> f32 {
     if has(f, ORTHOGRAPHIC) {
-        // An orthographic near plane may lie at or behind the eye: distances
-        // below 1e-4 of the extent count as that.
+        // An orthographic near plane can be at or behind the camera: distances below
+        // 1e-4 of the extent count as that distance.
         let least = 1e-4 * f.extent;
         let zp = max(f.plane_far - p * f.extent, least);
         let zq = max(f.plane_far - q * f.extent, least);
@@ -76,6 +76,7 @@ fn log_distance(f: DepthFrame, p: f32, q: f32) -> f32 {
     return log_ratio(p + f.offset, q + f.offset, p - q);
 }
 
+// The smallest range that fills the map, in raw depth.
 fn spread_floor(f: DepthFrame) -> f32 {
     if has(f, ORTHOGRAPHIC) {
         return f.floor;
@@ -83,15 +84,15 @@ fn spread_floor(f: DepthFrame) -> f32 {
     return f.floor * (f.near + f.offset);
 }
 
-// What differences of raw depth are divided by: the range, or its floor. Never
-// zero, which one depth alone without a floor would be.
+// The divisor for differences of raw depth: the range, or its floor if that is
+// larger. Not 0 even if all geometry is at one depth and the floor is 0.
 fn spread_divisor(f: DepthFrame) -> f32 {
     let divisor = max(f.near - f.far, spread_floor(f));
     return select(divisor, 1e-30, divisor == 0.0);
 }
 
-// (D, L): the depth map and its complement, each computed on its own, because
-// a square root of 1 - D would expose the cancellation.
+// (D, L): the depth map and its complement 1 - D. Both are computed separately: the
+// square root that [CS] Eq. 7 takes of L would amplify the cancellation of 1 - D.
 fn depth_map(f: DepthFrame, d: f32) -> vec2<f32> {
     if has(f, EMPTY) || is_background(d) {
         return vec2(1.0, 0.0);
@@ -101,7 +102,7 @@ fn depth_map(f: DepthFrame, d: f32) -> vec2<f32> {
     if has(f, LOGARITHMIC) && !floored {
         let whole = log_distance(f, f.near, f.far);
         if !(whole > 0.0) {
-            // An orthographic range that lies at or behind the eye.
+            // An orthographic range at or behind the camera.
             return vec2(0.0, 1.0);
         }
         map = vec2(log_distance(f, f.near, d), log_distance(f, d, f.far)) / whole;
@@ -118,8 +119,8 @@ fn depth_map(f: DepthFrame, d: f32) -> vec2<f32> {
     return clamp(map, vec2(0.0), vec2(1.0));
 }
 
-// D(d) - D(p) without forming either: exact zero for equal depths, no
-// cancellation for close ones. Both are first brought into the range.
+// D(d) - D(p), computed from d - p: exactly 0 for equal depths, without cancellation
+// for close ones. Both depths are first clamped to the range.
 fn depth_step(f: DepthFrame, d_raw: f32, p_raw: f32) -> f32 {
     let d = clamp(d_raw, f.far, f.near);
     let p = clamp(p_raw, f.far, f.near);

@@ -1,4 +1,5 @@
-//! The depth map and the range it spans: what the styles know about distance.
+//! The service of the depth map: the range of visible depths, and the map that
+//! effects read distance from.
 
 pub(crate) mod frame;
 mod ping_pong;
@@ -24,50 +25,57 @@ pub use smoothing::{CameraCut, RangeSmoothing};
 
 use crate::settings::{FieldRange, bounded, ordered_planes};
 
-/// How a camera turns distance into the depth map `D`, which is 0 at the
-/// nearest and 1 at the farthest end of a range and drives every depth style.
+/// How a camera turns distance into the depth map `D`: 0 at the near end of a
+/// range of distances, 1 at its far end. Every effect that depends on distance
+/// reads it.
 ///
-/// Without this component a camera uses the default: the range of what is
-/// visible (\[CS\] Eq. 4), smoothed over time so that it does not flicker.
+/// A camera without this component uses the default: the visible range, as in
+/// \[CS\] Eq. 4, but smoothed over time so that it does not flicker.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DepthMap {
-    /// Which distances become 0 and 1, and what lies between.
+    /// Distances that map to 0 and 1, and the scale between them.
     /// Default: [`DepthMapping::MinMax`].
     pub mapping: DepthMapping,
-    /// Exchanges near and far for the colour styles: the literal reading of
-    /// \[CS\] Eq. 6 to 11, in which the foreground takes the atmosphere.
-    /// Contours do not change. Default: `false`.
+    /// Exchanges near and far for the effects that read `D` as a gradient
+    /// (desaturation, colorization, the depth weight of black flats), so that the
+    /// foreground takes the atmosphere. Contours and outlines do not change.
+    /// Default: `false`. `true` is the literal reading of \[CS\] Eq. 6 to 11.
     pub flip: bool,
-    /// How far behind the farthest geometry the sky counts, in units of the
-    /// depth map; without it the farthest object has no contour.
+    /// Distance from the farthest geometry to the sky for contours, in units of the
+    /// depth map. At 0 the farthest object has no contour against the sky.
     /// Range 0 to 10, default 0.05.
     #[reflect(@FieldRange::linear(0.0, 10.0))]
     pub sky_gap: f32,
-    /// The smallest range that is spread over the map, as a share of the
-    /// nearest distance's reciprocal: a flat wall stays flat instead of showing
-    /// the noise of the depth buffer. Range 0 to 1, default 2^-14.
+    /// Smallest range that fills the whole map, as a fraction of its far distance:
+    /// `1 - near / far`. It keeps the noise of the depth buffer invisible where
+    /// all geometry is at nearly the same distance, for example a flat wall.
+    /// Range 0 to 1, default 2^-14. `orthographic_floor` replaces it under an
+    /// orthographic projection.
     #[reflect(@FieldRange::logarithmic(0.0, 1.0))]
     pub floor: f32,
-    /// The same under an orthographic projection, in world units.
-    /// Range 0 to 1e6, default 1e-4.
+    /// Smallest range that fills the whole map under an orthographic projection,
+    /// in world units. Range 0 to 1e6, default 1e-4.
     #[reflect(@FieldRange::logarithmic(0.0, 1e6).unit("units"))]
     pub orthographic_floor: f32,
-    /// How the visible range is found. Every method gives the same bits.
-    /// Default: [`ReductionMethod::Auto`].
+    /// Method that computes the visible range. Every method gives the same result,
+    /// bit for bit. Default: [`ReductionMethod::Auto`].
     pub reduction: ReductionMethod,
-    /// Keeps the visible range from flickering; `None` takes the range of every
-    /// single frame, as the paper does. A view that stands still has the same
-    /// range either way. Default: [`RangeSmoothing::default`]; what it brings and
-    /// costs is measured in `docs/report`.
+    /// Smooths the visible range over time so that it does not flicker; `None`
+    /// uses the range of each single frame, as the paper does. In a view that never
+    /// changes, both are the same unless `outliers` is above 0.
+    /// Default: [`RangeSmoothing::default`]. Its benefit and its cost are measured
+    /// in `docs/report`.
     pub smoothing: Option<RangeSmoothing>,
-    /// Holds the visible range as it is, whatever enters or leaves the view,
-    /// until this is `false` again: for a scene that must not change its look,
-    /// or a photograph. A camera that has not seen anything yet locks onto the
-    /// first thing that it sees; when its near or far plane changes, it locks
-    /// anew. The reduction still runs; [`DepthMapping::Fixed`] spares it.
+    /// Holds the visible range, whatever enters or leaves the view, until this is
+    /// `false` again: for a scene whose look must not change, or a photograph.
     /// Default: `false`.
+    ///
+    /// If the camera has not seen any geometry yet, it holds the range of the first
+    /// frame that shows some. A change of its near or far plane takes a new range.
+    /// The reduction still runs; [`DepthMapping::Fixed`] avoids it. Needs compute
+    /// shaders.
     pub locked: bool,
 }
 
@@ -88,7 +96,8 @@ impl Default for DepthMap {
 
 impl DepthMap {
     /// The settings that are used: every number in its documented range, what
-    /// is not finite replaced by its default, near and far in order.
+    /// is not finite replaced by its default, near and far in order, smoothing
+    /// that changes nothing replaced by `None`.
     #[must_use]
     pub fn sanitized(self) -> Self {
         let default = Self::default();
@@ -111,58 +120,62 @@ impl DepthMap {
     }
 }
 
-/// Which distances the depth map spans. Distances are view depths in world
-/// units: along the camera's forward axis, not along the ray.
+/// Which distances the depth map spans, and on which scale.
+///
+/// Distances are view depths in world units, measured along the camera's forward
+/// axis, not along the ray. Under an orthographic projection, logarithmic scales
+/// treat distances below 1e-4 of the distance between the camera's planes as that
+/// distance.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub enum DepthMapping {
-    /// \[CS\] Eq. 4: the nearest visible distance becomes 0, the farthest 1,
-    /// linear in between.
+    /// Linear from the nearest visible distance (0) to the farthest (1).
+    /// \[CS\] Eq. 4.
     #[default]
     MinMax,
-    /// The visible range, logarithmic in between: equal ratios of distance are
-    /// equal steps, so that a large landscape keeps contours and colours apart
-    /// in its foreground.
+    /// Logarithmic from the nearest visible distance (0) to the farthest (1): equal
+    /// ratios of distance are equal steps, so that contours and colours stay
+    /// distinct in the foreground of a large landscape.
     MinMaxLogarithmic,
-    /// \[CS\] Eq. 2: linear between the camera's near and far plane, whatever is
-    /// visible. The paper's counter-example.
+    /// Linear from the camera's near plane (0) to its far plane (1), whatever is
+    /// visible. \[CS\] Eq. 2, the paper's counter-example.
     Linear,
-    /// \[CS\] Eq. 3: logarithmic between the camera's near and far plane. Under
-    /// an orthographic projection, distances below 1e-4 of the distance between
-    /// the planes count as that.
+    /// Logarithmic from the camera's near plane (0) to its far plane (1), whatever
+    /// is visible. \[CS\] Eq. 3.
     Logarithmic,
-    /// Linear between two distances of your own; no reduction runs.
+    /// Linear between two given distances; no reduction runs.
     Fixed {
-        /// The distance that becomes 0, world units. Range 1e-6 to 1e30;
-        /// default 0.1 where it is not a number.
+        /// Distance that maps to 0, in world units. Range 1e-6 to 1e30; 0.1 if it
+        /// is not finite.
         #[reflect(@FieldRange::logarithmic(1e-6, 1e30).unit("units"))]
         near: f32,
-        /// The distance that becomes 1, world units; at least 1.001 times
-        /// `near`. The two change places when given the other way round.
+        /// Distance that maps to 1, in world units. Range 1e-6 to 1e36, at least
+        /// 1.001 times `near`; 1000 if it is not finite. If it is below `near`, the
+        /// two are exchanged.
         #[reflect(@FieldRange::logarithmic(1e-6, 1e36).unit("units"))]
         far: f32,
     },
-    /// Logarithmic between two distances of your own; no reduction runs.
+    /// Logarithmic between two given distances; no reduction runs.
     FixedLogarithmic {
-        /// As in [`DepthMapping::Fixed`].
+        /// Distance that maps to 0, as in [`DepthMapping::Fixed`].
         #[reflect(@FieldRange::logarithmic(1e-6, 1e30).unit("units"))]
         near: f32,
-        /// As in [`DepthMapping::Fixed`].
+        /// Distance that maps to 1, as in [`DepthMapping::Fixed`].
         #[reflect(@FieldRange::logarithmic(1e-6, 1e36).unit("units"))]
         far: f32,
     },
 }
 
 impl DepthMapping {
-    /// Whether the range is that of the visible geometry, found by the
-    /// reduction.
+    /// Whether the map spans the visible range, which the reduction computes in
+    /// every frame.
     pub fn follows_visible_range(self) -> bool {
         matches!(self, Self::MinMax | Self::MinMaxLogarithmic)
     }
 
-    /// Whether equal ratios of distance are equal steps of the map.
+    /// Whether the scale is logarithmic: equal ratios of distance are equal steps.
     pub fn is_logarithmic(self) -> bool {
         matches!(
             self,
@@ -185,27 +198,26 @@ impl DepthMapping {
     }
 }
 
-/// How the visible range is found. The result is the same to the bit; the time
-/// is not.
+/// Method that computes the visible range. Results are identical, bit for bit; only
+/// the times differ.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum ReductionMethod {
-    /// [`BarrierFree`](Self::BarrierFree) on CPU adapters, else
-    /// [`Subgroup`](Self::Subgroup).
+    /// `BarrierFree` on CPU adapters, otherwise `Subgroup`.
     #[default]
     Auto,
-    /// One compute dispatch in which every invocation walks a strip of its own:
-    /// no barrier, two atomics a strip.
+    /// One compute dispatch without barriers: every invocation reduces a strip of
+    /// 256 by 2 pixels and writes the result with two atomic operations.
     BarrierFree,
-    /// One compute dispatch with subgroup maxima. Where the adapter has no
-    /// subgroups, [`SharedMemory`](Self::SharedMemory) runs.
+    /// One compute dispatch that reduces with subgroup operations. Where the
+    /// adapter has none, `SharedMemory` runs instead.
     Subgroup,
-    /// One compute dispatch with a tree in workgroup memory.
+    /// One compute dispatch that reduces as a tree in workgroup memory.
     SharedMemory,
-    /// The paper's own chain of fragment passes, each half the size of the one
-    /// before (\[CS\] 3.1). Needs no compute shaders; slower. Where the adapter
-    /// has no compute shaders, every method is this one.
+    /// A chain of fragment passes, each of which reduces blocks of 2 by 2. Slower,
+    /// but needs no compute shaders: where the adapter has none, it runs instead of
+    /// every other method. \[CS\] 3.1.
     PingPong,
 }
 

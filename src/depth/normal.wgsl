@@ -1,11 +1,11 @@
 #define_import_path bevy_comics::depth::normal
 
-// The normal prepass: the only owner of binding 7.
+// The normal prepass: the only module that declares binding 7.
 
 #import bevy_comics::depth::view::depth_pixel
 
-// (normal, 1) of a texel; w is 0 where there is none: the sky, and whatever is not
-// of unit length within the precision of ten bits.
+// (normal, 1) of a texel; w is 0 where there is no normal. The squared length of a
+// normal is close to 1 (10 bits per component), that of a cleared texel (the sky) is 3.
 fn decode_normal(texel: vec3<f32>) -> vec4<f32> {
     let n = texel * 2.0 - 1.0;
     let squared = dot(n, n);
@@ -19,7 +19,7 @@ fn decode_normal(texel: vec3<f32>) -> vec4<f32> {
 @group(0) @binding(7) var normal_texture: texture_2d<f32>;
 #endif
 
-// World normal of a pixel's first sample; w is 0 where there is none.
+// (normal, 1) of a pixel's first sample, in world space; w is 0 where there is none.
 fn load_normal(pixel: vec2<i32>) -> vec4<f32> {
     return decode_normal(textureLoad(normal_texture, depth_pixel(pixel), 0).xyz);
 }

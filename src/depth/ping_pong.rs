@@ -1,4 +1,4 @@
-//! The paper's own reduction (\[CS\] 3.1): a chain of fragment passes.
+//! The reduction as a chain of fragment passes, as in the paper (\[CS\] 3.1).
 
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
@@ -67,7 +67,7 @@ impl PingPongPipeline {
 }
 
 impl SpecializedRenderPipeline for PingPongPipeline {
-    /// First pass, multisampled depth, oblique projection.
+    /// Whether it is the first pass, the depth is multisampled, the projection is oblique.
     type Key = (bool, bool, bool);
 
     fn specialize(&self, (first, multisampled, oblique): Self::Key) -> RenderPipelineDescriptor {
@@ -105,8 +105,9 @@ impl SpecializedRenderPipeline for PingPongPipeline {
     }
 }
 
-/// The sizes of T1, T2, ... down to (2, 1) for a depth of this size: column
-/// pairs and rows are halved and rounded up.
+/// The sizes of the textures T1, T2, ... of the chain, down to (2, 1), for a depth
+/// texture of `size` pixels. Each has half as many column pairs and rows as the one
+/// before, rounded up.
 pub(crate) fn chain_sizes(size: UVec2) -> Vec<UVec2> {
     let mut sizes = vec![UVec2::new(
         2 * size.x.div_ceil(2).max(1),
@@ -121,7 +122,7 @@ pub(crate) fn chain_sizes(size: UVec2) -> Vec<UVec2> {
     sizes
 }
 
-/// The textures of a chain, from the frame's cache.
+/// The textures of a chain, from the engine's texture cache.
 pub(crate) fn chain_textures(
     textures: &mut TextureCache,
     device: &RenderDevice,
@@ -149,7 +150,8 @@ pub(crate) fn chain_textures(
     chain_sizes(rect_size).into_iter().map(texture).collect()
 }
 
-/// What a chain reads: a depth texture, and the view's entry in its uniform.
+/// What the first pass of a chain reads: the depth texture, and the view's uniform at
+/// its offset in bytes.
 pub(crate) struct ChainSource<'a> {
     pub depth: &'a TextureView,
     pub view: BindingResource<'a>,
@@ -157,7 +159,7 @@ pub(crate) struct ChainSource<'a> {
     pub multisampled: bool,
 }
 
-/// Records every pass of a chain and the copy of its result into `keys`.
+/// Records all passes of a chain, then the copy of the result to `keys`.
 pub(crate) fn record_chain(
     chain: &[CachedTexture],
     device: &RenderDevice,

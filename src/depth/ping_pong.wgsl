@@ -1,10 +1,10 @@
 #define_import_path bevy_comics::depth::ping_pong
 
-// The reduction of [CS] 3.1 in fragment passes: the one form that needs no
-// compute. Even columns hold the key of the nearest depth, odd columns that of
-// the farthest; every pass halves the rows and the column pairs until (2, 1).
-// Sizes that are no power of two are rounded up and the last row or column
-// pair is read twice, which changes no extreme.
+// The reduction as a chain of fragment passes, which needs no compute shaders
+// ([CS] 3.1). Even columns hold the key of the nearest depth, odd columns that of the
+// farthest. Every pass halves the number of rows and of column pairs, down to a
+// texture of (2, 1). An odd number is rounded up: the last row or column pair is then
+// read twice, which does not change the maximum. T0 is the depth texture.
 
 #import bevy_comics::depth::raw::{RawDepth, raw_depth_key}
 
@@ -40,7 +40,7 @@ fn depth_key(pixel: vec2<u32>, farthest: bool) -> u32 {
     return best;
 }
 
-// T0 -> T1: a column pair reads the same 2x2 depths, once for each extreme.
+// T0 -> T1: both columns of a pair read the same 2 x 2 depths.
 @fragment
 fn reduce(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     let at = vec2<u32>(position.xy);
@@ -55,7 +55,7 @@ fn reduce(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     return vec4(best, 0u, 0u, 0u);
 }
 #else
-// Tn -> Tn+1: pairs 2m and 2m + 1 of rows 2y and 2y + 1.
+// Tn -> Tn+1: column pair m of row y reads pairs 2m and 2m + 1 of rows 2y and 2y + 1.
 @fragment
 fn reduce(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     let at = vec2<u32>(position.xy);

@@ -1,4 +1,4 @@
-//! The depth service in an app.
+//! Adds the depth service to an app.
 
 use bevy::{
     app::{App, Plugin, PreUpdate},
@@ -32,8 +32,8 @@ use super::{
 };
 use crate::schedule::{ComicsSystems, PrepareComics};
 
-/// Finds, follows and reads back the visible range of the views that ask for
-/// it, and owns the WGSL of the depth map.
+/// Computes, smooths and reads back the visible range of the views that request it,
+/// and loads the WGSL of the depth map.
 pub(crate) struct DepthPlugin;
 
 impl Plugin for DepthPlugin {
@@ -54,7 +54,7 @@ impl DepthPlugin {
         load_shader_library!(app, "view.wgsl");
         load_shader_library!(app, "window.wgsl");
         load_shader_library!(app, "normal.wgsl");
-        // Both an entry point and a library: the reduction counts in its bins.
+        // Both an entry point and a library: `range.wgsl` imports its bins.
         load_shader_library!(app, "smoothing.wgsl");
         embedded_asset!(app, "range.wgsl");
         embedded_asset!(app, "ping_pong.wgsl");
@@ -96,7 +96,7 @@ fn init_pipelines(
     assets: Res<AssetServer>,
     ranges: Query<Entity, With<ViewDepthRange>>,
 ) {
-    // This runs again on a new device: buffers of the old one are of no use.
+    // This runs again after a lost device, whose buffers are no longer valid.
     for view in &ranges {
         commands.entity(view).remove::<ViewDepthRange>();
     }

@@ -1,4 +1,4 @@
-//! From a request to this frame's range: buffers and uniforms of the view.
+//! Prepares the buffers and uniforms of the views whose range is requested.
 
 use std::sync::{
     Mutex, PoisonError,
@@ -29,20 +29,20 @@ use super::{
     smoothing::{SmoothingUniform, ViewSmoothing},
 };
 
-/// On a view in the render world: its visible range. Kept as long as a range is
-/// requested, whatever else the view draws.
+/// On a view in the render world: its visible range. It stays on the view, with the
+/// state of its smoothing, as long as a range is requested.
 #[derive(Component)]
 pub(crate) struct ViewDepthRange {
     pub request: RangeRequest,
     pub passes: RangePasses,
-    /// Where this view's entry is in [`RangeUniforms`].
+    /// Offset in bytes of this view's entry in [`RangeUniforms::views`].
     pub view_offset: u32,
     /// Keys of the nearest and farthest depth of this frame.
     pub keys: Buffer,
-    /// The textures of the ping-pong, if that is the reduction.
+    /// Textures of the ping-pong chain; empty if another reduction runs.
     pub chain: Vec<CachedTexture>,
     pub smoothing: Option<ViewSmoothing>,
-    /// Whether this frame's range was recorded.
+    /// Whether the passes of this frame were recorded.
     pub found: AtomicBool,
     pub readback: Mutex<RangeReadback>,
 }
@@ -61,12 +61,13 @@ impl ViewDepthRange {
         }
     }
 
-    /// Where the reduction counts depths, if it does.
+    /// The buffer in which the reduction counts depths, if it does.
     pub fn histogram(&self) -> Option<&Buffer> {
         self.smoothing.as_ref()?.histogram.as_ref()
     }
 
-    /// The keys that the depth map is drawn with, once they were recorded.
+    /// Keys of the range that the depth map spans, after smoothing; `None` unless the
+    /// passes of this frame were recorded.
     pub fn drawn(&self) -> Option<&Buffer> {
         let keys = match &self.smoothing {
             Some(smoothing) => &smoothing.drawn,
@@ -136,7 +137,7 @@ pub(crate) fn prepare_view_ranges(
 }
 
 impl ViewDepthRange {
-    /// Makes this frame's range; what still fits is kept.
+    /// Prepares this frame; buffers that still fit are kept.
     fn prepare(
         &mut self,
         request: &RangeRequest,
@@ -184,7 +185,7 @@ fn keys_buffer(device: &RenderDevice) -> Buffer {
     })
 }
 
-/// Asks for the copies of this frame, once they have been submitted.
+/// Maps the copies of this frame. Runs after they were submitted.
 pub(crate) fn map_readbacks(mut ranges: Query<&mut ViewDepthRange>, readings: Res<RangeReadings>) {
     for mut range in &mut ranges {
         let camera = range.request.camera;

@@ -1,4 +1,4 @@
-//! The min/max reduction: nearest and farthest depth of a view.
+//! The reduction: nearest and farthest depth of a view, in compute shaders.
 
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
@@ -28,7 +28,7 @@ pub(crate) struct RangeView {
     pub raw: RawDepth,
 }
 
-/// The compute shapes of the reduction.
+/// The forms of the reduction that are compute shaders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum RangeShape {
     BarrierFree,
@@ -37,7 +37,7 @@ pub(crate) enum RangeShape {
 }
 
 impl RangeShape {
-    /// The shape for a method on this adapter; `None` for the ping-pong.
+    /// The shape that runs a method on this adapter; `None` for the ping-pong chain.
     pub fn choose(
         method: ReductionMethod,
         adapter: &RenderAdapterInfo,
@@ -63,6 +63,7 @@ impl RangeShape {
         }
     }
 
+    /// The method that this shape implements.
     pub fn method(self) -> ReductionMethod {
         match self {
             Self::BarrierFree => ReductionMethod::BarrierFree,
@@ -71,7 +72,7 @@ impl RangeShape {
         }
     }
 
-    /// Workgroups for a rectangle; the counterpart of `range.wgsl`'s tiling.
+    /// Workgroups (x, y) for a rectangle, as `range.wgsl` divides it into tiles or strips.
     pub fn workgroups(self, rect: UVec4) -> (u32, u32) {
         match self {
             Self::BarrierFree => (rect.w.div_ceil(2 * 8), rect.z.div_ceil(256)),
@@ -124,7 +125,7 @@ impl RangePipeline {
     }
 }
 
-/// What else is compiled into a shape.
+/// What selects a shader variant of a shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct RangeKey {
     pub multisampled: bool,

@@ -1,9 +1,10 @@
 #define_import_path bevy_comics::depth::range
 
-// The nearest and farthest depth of a view in one dispatch. Bits are compared,
-// not floats: for positive floats they order alike, nothing is rounded or
-// flushed, and integer atomics make the result exact in any order. Both keys
-// are maxima whose identity is zero, so a cleared buffer means "no geometry".
+// Finds the nearest and the farthest depth of a view in one dispatch. It compares the
+// bits of depths instead of floats: bits of positive floats have the same order,
+// nothing is rounded or flushed to 0, and with integer atomics the result does not
+// depend on the order of the invocations. Both keys are maxima: of the bits (nearest)
+// and of 0 - bits (farthest). A buffer of zeros means "no geometry".
 
 #import bevy_comics::depth::raw::{RawDepth, raw_depth_key}
 #ifdef HISTOGRAM
@@ -11,7 +12,7 @@
 #endif
 
 struct RangeView {
-    // Origin and size of the viewport, in pixels of the depth texture.
+    // Origin and size of the viewport: x, y, width, height in pixels of the depth texture.
     rect: vec4<u32>,
     raw: RawDepth,
 }
@@ -33,7 +34,7 @@ struct RangeKeys {
 #endif
 
 #ifdef HISTOGRAM
-// Histogram of smoothing.wgsl.
+// `Histogram` of smoothing.wgsl, with atomics.
 struct Counts {
     bins: array<atomic<u32>, 256>,
     total: atomic<u32>,
@@ -41,12 +42,13 @@ struct Counts {
 
 @group(0) @binding(4) var<storage, read_write> counts: Counts;
 
-// Depths of one bin in a row are counted once, when the bin changes: neighbours
-// are mostly alike.
+// Neighbouring depths are mostly in the same bin, so an invocation adds a run of them
+// with one atomic operation, when the bin changes. `counted` is the sum of its runs.
 var<private> run_bin: u32;
 var<private> run: u32;
 var<private> counted: u32;
 
+// Adds the current run to its bin.
 fn end_run() {
     if run != 0u {
 #ifdef BARRIER_FREE
@@ -59,6 +61,7 @@ fn end_run() {
     run = 0u;
 }
 
+// Counts one depth, unless it is background (0).
 fn count(bits: u32) {
     if bits == 0u {
         return;
@@ -72,7 +75,7 @@ fn count(bits: u32) {
 }
 #endif
 
-// (near key, far key) of one depth; zeros for background.
+// (near key, far key) of the bits of one depth; zeros for background.
 fn key_pair(bits: u32) -> vec2<u32> {
 #ifdef HISTOGRAM
     count(bits);
@@ -80,8 +83,8 @@ fn key_pair(bits: u32) -> vec2<u32> {
     return vec2(bits, select(0u - bits, 0u, bits == 0u));
 }
 
-// The 2x2 block whose upper left pixel is `at` (relative to the viewport);
-// pixels beyond the viewport count as background.
+// Keys of a block of 2 x 2 pixels. `at` is its upper left pixel, relative to the
+// viewport. Pixels outside of the viewport count as background.
 fn block_keys(at: vec2<u32>) -> vec2<u32> {
     let corner = view.rect.xy + at;
     let right = at.x + 1u < view.rect.z;
@@ -103,7 +106,8 @@ fn block_keys(at: vec2<u32>) -> vec2<u32> {
     return found;
 #else
     let size = vec2<f32>(textureDimensions(depth_texture));
-    // The texels of a gather, from the middle of the block: (0,1) (1,1) (1,0) (0,0).
+    // A gather in the middle of the block returns its pixels (x, y) in the order
+    // (0, 1), (1, 1), (1, 0), (0, 0).
     let d = textureGather(0, depth_texture, nearest_sampler, vec2<f32>(corner + 1u) / size);
     var found = key_pair(raw_depth_key(view.raw, corner, d.w));
     if right {
@@ -120,8 +124,8 @@ fn block_keys(at: vec2<u32>) -> vec2<u32> {
 }
 
 #ifdef BARRIER_FREE
-// For CPU adapters, on which barriers are ruinous: an invocation walks a strip
-// of two rows by 256 columns and says its result once.
+// For CPU adapters, where barriers are very slow: each invocation reduces a strip of
+// 256 columns by two rows and writes its result once.
 const STRIP: u32 = 256u;
 
 @compute @workgroup_size(8)
@@ -148,7 +152,8 @@ fn reduce(@builtin(global_invocation_id) id: vec3<u32>) {
 #endif
 }
 #else
-// For GPUs: 16 rows of 16 invocations read 8x2 pixels each, a tile of 128x32.
+// For GPUs: a workgroup of 16 rows of 16 invocations, which read 8 x 2 pixels each,
+// reduces a tile of 128 x 32 pixels.
 var<workgroup> tile: RangeKeys;
 #ifndef SUBGROUP
 var<workgroup> tree: array<vec2<u32>, 256>;
@@ -193,7 +198,7 @@ fn reduce(
     }
     workgroupBarrier();
     let best = vec2(subgroupMax(found.x), subgroupMax(found.y));
-    // One lane of each subgroup speaks for it.
+    // One lane of each subgroup writes the subgroup's result.
     if lane == 0u {
         atomicMax(&tile.near, best.x);
         atomicMax(&tile.far, best.y);

@@ -1,23 +1,22 @@
 #define_import_path bevy_comics::depth::raw
 
-// How a texel of the depth texture becomes the raw depth that everything
-// downstream reads.
+// From a texel of the depth texture to the raw depth that all other shaders read.
 
 struct RawDepth {
-    // view_from_clip rows 2 and 3 (z and w of the view position), for oblique
-    // projections alone.
+    // Rows 2 and 3 of view_from_clip: z and w of the view position. All fields are 0
+    // unless the projection is oblique.
     view_z: vec4<f32>,
     view_w: vec4<f32>,
-    // Normalised device coordinates of a pixel: xy * pixel + zw.
+    // Normalised device coordinates of a position in pixels: xy * position + zw.
     ndc: vec4<f32>,
-    // 1 / near distance: scales the reciprocal distance into (0, 1].
+    // Near distance in world units: near / z is in (0, 1].
     near: f32,
 }
 
 #ifdef OBLIQUE
-// Under an oblique near plane, raw depth does not order pixels by distance.
-// The reciprocal of the view depth does, and is affine over planes as well:
-// near / z stands for the raw depth of a plain projection.
+// With an oblique near plane, raw depth does not order pixels by distance. The
+// reciprocal of the view depth z does, and like raw depth it is affine over a plane
+// on the screen: near / z takes the place of raw depth.
 fn raw_depth(r: RawDepth, pixel: vec2<u32>, d: f32) -> f32 {
     if !(d > 0.0) {
         return 0.0;
@@ -32,7 +31,7 @@ fn raw_depth(r: RawDepth, pixel: vec2<u32>, d: f32) -> f32 {
 }
 #endif
 
-// The bits of a depth, or zero for what is none: sky, negative, above one, NaN.
+// The bits of a depth; 0 for the sky and for what is no depth (negative, above 1, NaN).
 fn raw_depth_key(r: RawDepth, pixel: vec2<u32>, d: f32) -> u32 {
     let bits = bitcast<u32>(raw_depth(r, pixel, d));
     return select(bits, 0u, bits > 0x3f800000u);

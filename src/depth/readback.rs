@@ -1,5 +1,5 @@
-//! The visible range as data for the game: copied a few frames late, never
-//! waited for.
+//! The visible range as data for the game. The CPU never waits for the copy, so it
+//! arrives a few frames late.
 
 use std::sync::{
     Arc, Mutex, PoisonError,
@@ -24,37 +24,37 @@ use bevy::{
 
 use super::frame::DepthProjection;
 
-/// Put it on a camera to learn how near and how far the visible geometry is.
+/// The view depths of the nearest and farthest visible geometry of a camera. Put it
+/// on the camera; its value is updated.
 ///
-/// The value is that of a frame or a few ago: the copy is never waited for.
-/// Asking for it makes the depth prepass and the reduction run, even where no
-/// style needs them.
+/// The value is one or a few frames old. The depth prepass and the reduction run for
+/// it, even if no effect needs them.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum VisibleDepthRange {
-    /// No frame has been read yet.
+    /// No value has arrived yet.
     #[default]
     Pending,
-    /// The view showed no opaque geometry.
+    /// The view showed nothing in the depth prepass: no opaque or alpha-masked geometry.
     Empty,
-    /// The range of what the view showed.
+    /// The view showed geometry.
     Visible {
-        /// View depth of the nearest visible geometry, world units: measured
-        /// along the camera's forward axis.
+        /// View depth of the nearest visible geometry in world units, measured along
+        /// the camera's forward axis.
         near: f32,
-        /// View depth of the farthest visible geometry, world units.
+        /// View depth of the farthest visible geometry in world units.
         far: f32,
-        /// Raw reversed depth of the nearest geometry, as the depth texture
-        /// holds it.
+        /// Raw reversed depth of the nearest geometry, as in the depth texture. Under
+        /// an oblique projection: distance of the near plane over view depth.
         raw_near: f32,
-        /// Raw reversed depth of the farthest geometry.
+        /// Raw reversed depth of the farthest geometry, as `raw_near`.
         raw_far: f32,
     },
 }
 
 impl VisibleDepthRange {
-    /// Near and far view depth in world units, where there is geometry.
+    /// Near and far view depth in world units; `None` unless geometry is visible.
     pub fn distances(self) -> Option<(f32, f32)> {
         match self {
             Self::Visible { near, far, .. } => Some((near, far)),
@@ -77,34 +77,34 @@ impl VisibleDepthRange {
     }
 }
 
-/// Put it on a camera to learn how the visible depths are distributed, and
-/// which range its styles are drawn with.
+/// The distribution of the visible depths of a camera, and its smoothed visible range.
+/// Put it on the camera; its value is updated.
 ///
-/// As with [`VisibleDepthRange`], the value is that of a frame or a few ago,
-/// and asking for it makes the depth prepass and the reduction run. The counts
-/// are exact. Without compute shaders, or with
-/// [`ReductionMethod::PingPong`](crate::ReductionMethod::PingPong), it stays
-/// empty.
+/// As with [`VisibleDepthRange`], the value is one or a few frames old, and the depth
+/// prepass and the reduction run for it. The counts are exact. Without compute
+/// shaders, or with
+/// [`ReductionMethod::PingPong`](crate::ReductionMethod::PingPong), it stays empty.
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct DepthHistogram {
-    /// From near to far, without gaps; eight bins double the raw depth. Empty
-    /// where nothing is visible or nothing was read yet.
+    /// Bins from near to far, without gaps; raw depth doubles over eight bins. Empty
+    /// if no geometry is visible or no value has arrived yet.
     pub bins: Vec<DepthBin>,
-    /// Near and far view depth that the styles are drawn with, world units:
-    /// the visible range after [`RangeSmoothing`](crate::RangeSmoothing).
+    /// Near and far view depth in world units of the visible range after
+    /// [`RangeSmoothing`](crate::RangeSmoothing).
     pub drawn: Option<(f32, f32)>,
 }
 
 /// One bin of a [`DepthHistogram`].
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq)]
 pub struct DepthBin {
-    /// View depth at which the bin begins, world units.
+    /// View depth at the near end of the bin, in world units.
     pub near: f32,
-    /// View depth at which it ends, world units; infinite in the last bin of
-    /// what lies too far to be told apart.
+    /// View depth at the far end of the bin, in world units. The bin of the smallest
+    /// raw depths (about 2^-32) also counts what is farther away.
     pub far: f32,
-    /// Visible depth samples in it: pixels, times the samples of a pixel.
+    /// Number of visible depth samples in the bin: one per pixel, or one per sample
+    /// with MSAA.
     pub count: u32,
 }
 
@@ -132,7 +132,7 @@ impl DepthHistogram {
     }
 }
 
-/// What one copy brings.
+/// The values of one copy.
 #[derive(Clone, Debug)]
 pub(crate) struct RangeReading {
     range: VisibleDepthRange,
@@ -141,35 +141,38 @@ pub(crate) struct RangeReading {
 
 type Readings = Arc<Mutex<EntityHashMap<RangeReading>>>;
 
-/// What has arrived from the GPU; both worlds hold it.
+/// The values that have arrived from the GPU, by camera. Shared by both worlds.
 #[derive(Resource, Clone, Default)]
 pub(crate) struct RangeReadings(Readings);
 
-/// A view's buffers on their way to the CPU.
+/// A view's buffers for copies to the CPU.
 #[derive(Default)]
 pub(crate) struct RangeReadback {
     slots: Vec<Slot>,
-    /// Whether the slots have room for a histogram.
+    /// Whether the buffers have room for a histogram.
     histogram: bool,
 }
 
 struct Slot {
     buffer: Buffer,
+    /// From the recording of a copy until its values were read.
     busy: Arc<AtomicBool>,
+    /// The projection of a copy that was recorded and is not mapped yet.
     copied: Option<DepthProjection>,
 }
 
-/// So many copies may be under way at once.
+/// Most copies of a view that can be pending at once.
 const SLOTS: usize = 4;
 const KEYS_SIZE: u64 = 16;
 const DRAWN_SIZE: u64 = 16;
 const DRAWN_WORDS: usize = 4;
-/// Of `smoothing.wgsl`.
+/// `BINS` and `FIRST_BIN` of `smoothing.wgsl`.
 const BINS: usize = 256;
 const FIRST_BIN: u32 = 761;
 
 impl RangeReadback {
-    /// Records a copy of the range; false if every buffer is still under way.
+    /// Records a copy of the keys, and of the smoothed keys and the counts if there is
+    /// a histogram. Returns false if all buffers are still busy.
     pub fn copy(
         &mut self,
         device: &RenderDevice,
@@ -220,7 +223,7 @@ impl RangeReadback {
         true
     }
 
-    /// Asks for the copies of this frame, once they have been submitted.
+    /// Maps the copies of this frame. Call it after they were submitted.
     pub fn map(&mut self, camera: Entity, readings: &RangeReadings) {
         for slot in &mut self.slots {
             let Some(projection) = slot.copied.take() else {
@@ -231,7 +234,7 @@ impl RangeReadback {
             slot.buffer
                 .slice(..)
                 .map_async(MapMode::Read, move |result| {
-                    // A lost device maps nothing; the buffers go with it.
+                    // Mapping fails on a lost device, whose buffers are dropped.
                     if result.is_ok() {
                         let words: Vec<u32> = buffer
                             .slice(..)

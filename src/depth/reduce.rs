@@ -1,4 +1,4 @@
-//! Records the passes of a view's range.
+//! Records the passes that compute a view's visible range.
 
 use std::sync::{PoisonError, atomic::Ordering};
 
@@ -24,7 +24,7 @@ use super::{
 };
 use crate::diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome};
 
-/// Finds the range of the view and sends it on its way to the game.
+/// Records the reduction, the smoothing and the readback of a view's visible range.
 pub(crate) fn reduce_depth_range(
     view: ViewQuery<(&ViewPrepassTextures, &ViewDepthRange)>,
     uniforms: Res<RangeUniforms>,
@@ -63,7 +63,8 @@ struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// All of it or nothing: a range that is not smoothed would jump.
+    /// Records the reduction and the smoothing, or neither: the picture would jump if
+    /// a range were drawn without its smoothing.
     fn record(
         &self,
         prepass: &ViewPrepassTextures,
@@ -200,7 +201,7 @@ impl Frame<'_> {
         Ok(ReductionMethod::PingPong)
     }
 
-    /// Copies what the game has asked for.
+    /// Records the copies for `VisibleDepthRange` and `DepthHistogram`.
     fn read_back(&self, ledger: &StageLedger, ctx: &mut RenderContext) {
         let range = self.range;
         let request = &range.request;

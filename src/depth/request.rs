@@ -1,4 +1,4 @@
-//! What is asked of a view's depth, and the pipelines that answer.
+//! Requests for a view's visible range, and the pipelines that compute it.
 
 use bevy::{
     ecs::{
@@ -24,8 +24,8 @@ use super::{
     smoothing::SmoothingPipeline,
 };
 
-/// On a view in the render world: its visible range is to be found. Whoever
-/// plans the frame writes it anew for every frame.
+/// On a view in the render world: a request for its visible range, written in every
+/// frame by [`PrepareComics::Choose`](crate::schedule::PrepareComics::Choose).
 #[derive(Component, Clone, Debug)]
 pub(crate) struct RangeRequest {
     pub camera: Entity,
@@ -35,22 +35,22 @@ pub(crate) struct RangeRequest {
     /// The part of the depth texture that the main pass draws: x, y, width,
     /// height.
     pub rect: UVec4,
-    /// Samples of the depth texture.
+    /// Samples per pixel of the depth texture.
     pub samples: u32,
-    /// The range that is drawn with is more than this frame's own.
+    /// The depth map spans a smoothed or locked range, not that of this frame alone.
     pub smooths: bool,
-    /// The game reads the range.
+    /// The camera has a `VisibleDepthRange`.
     pub readback: bool,
-    /// The game reads how the depths are distributed.
+    /// The camera has a `DepthHistogram`.
     pub histogram: bool,
-    /// Real time since the last frame, seconds.
+    /// Real time since the last frame, in seconds.
     pub seconds: f32,
-    /// How often the camera was cut.
+    /// Number of cuts of the camera so far.
     pub cuts: u32,
 }
 
 impl RangeRequest {
-    /// Whether percentiles are taken of the range that is drawn with.
+    /// Whether the smoothed range is bounded by percentiles.
     fn has_outliers(&self) -> bool {
         self.smooths && self.map.smoothing.is_some_and(|s| s.outliers > 0.0)
     }
@@ -60,9 +60,9 @@ impl RangeRequest {
 #[derive(Component, Clone, Copy, Debug)]
 pub(crate) struct RangePasses {
     pub reduction: Reduction,
-    /// The step that keeps the range from flickering, if it runs.
+    /// The pass that smooths or holds the range, if it runs.
     pub smoothing: Option<CachedComputePipelineId>,
-    /// Whether the reduction counts depths.
+    /// Whether the reduction counts a histogram of the depths.
     pub counts: bool,
 }
 
@@ -79,7 +79,7 @@ pub(crate) enum Reduction {
     },
 }
 
-/// Gives the pipelines for a request.
+/// Specializes the pipelines for requests.
 #[derive(SystemParam)]
 pub(crate) struct RangePipelines<'w> {
     ranges: ResMut<'w, SpecializedComputePipelines<RangePipeline>>,
@@ -93,7 +93,7 @@ pub(crate) struct RangePipelines<'w> {
 }
 
 impl RangePipelines<'_> {
-    /// The pipelines that answer a request, queued where they are new.
+    /// The pipelines for a request; new ones are queued for compilation.
     pub fn get(&mut self, cache: &PipelineCache, request: &RangeRequest) -> RangePasses {
         let shape = RangeShape::choose(request.map.reduction, &self.adapter, &self.device);
         let has_compute = self.device.limits().max_compute_workgroup_size_x > 0;

@@ -1,5 +1,6 @@
-//! A range that does not flicker (\[CS\] leaves it as future work): settings,
-//! the cut that resets it, and the pass that follows it on the GPU.
+//! Smooths the visible range over time, so that the picture does not flicker: the
+//! settings, the event that resets it, and the compute pass. \[CS\] leaves this as
+//! future work.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -34,48 +35,48 @@ use serde::{Deserialize, Serialize};
 use super::{DepthMap, ProjectionKind, frame::DepthProjection, request::RangeRequest};
 use crate::settings::{FieldRange, bounded};
 
-/// Keeps the range of a [`DepthMap`] from flickering when something small,
-/// short-lived or undecided enters or leaves the view. Without it the range is
-/// that of every single frame, as the paper has it.
+/// Smooths the visible range of a [`DepthMap`] over time, so that it does not flicker
+/// when something small or short-lived enters or leaves the view.
 ///
-/// Four stages, in this order, each of which a zero (or `false`) leaves out:
-/// percentiles, the median of three frames, hysteresis, and an exponential
-/// approach. A range that lags behind the scene saturates at its ends; it never
-/// breaks the picture. The state stays on the GPU, one per camera, and starts
-/// anew with the first frame that shows geometry, after a [`CameraCut`], when
-/// the size of the view changes, and when the near or far plane does.
+/// There are four stages, in this order: percentiles, the median of three frames,
+/// hysteresis, and an exponential approach. A setting of 0 (or `false`) leaves its
+/// stage out. While the range lags behind the scene, distances outside of it map to
+/// 0 or 1.
+///
+/// The state is one per camera and stays on the GPU. It starts with the first frame
+/// that shows geometry, and anew after a [`CameraCut`], when the size of the view
+/// changes, and when the near or far plane changes. Without compute shaders there
+/// is no smoothing.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RangeSmoothing {
-    /// Share of the visible pixels that may lie beyond either end of the range:
-    /// what covers less of the picture does not move the range at all, and what
-    /// covers more moves it in proportion. Good against a few pixels that
-    /// stretch the range for nothing; where what covers about this share comes
-    /// and goes, it flickers more than without (measured: `docs/report`).
+    /// Fraction of the visible geometry, in pixels, that may be outside of the
+    /// range at each end, so that a few pixels do not stretch the range.
     /// Range 0 to 0.2, default 0; 0.005 is a good first value.
     ///
-    /// Needs compute shaders; with [`ReductionMethod::PingPong`] it is left out.
-    ///
-    /// [`ReductionMethod::PingPong`]: crate::ReductionMethod::PingPong
+    /// Where geometry that covers about this fraction comes and goes, the range
+    /// flickers more than with 0 (measured in `docs/report`). Has no effect with
+    /// `ReductionMethod::PingPong`.
     #[reflect(@FieldRange::linear(0.0, 0.2))]
     pub outliers: f32,
-    /// Takes the median of the last three frames: what is there for one frame
-    /// changes nothing, for one frame of delay. Default: `true`.
+    /// Takes the median of the last three frames, so that geometry that is visible
+    /// for one frame changes nothing. Delays the range by one frame.
+    /// Default: `true`.
     pub despike: bool,
-    /// An end of the range stays where it is until the scene's end has left it
-    /// by so many octaves of distance; then it follows to within a quarter of
-    /// that. Under an orthographic projection an octave is the length of the
+    /// Change of distance, in octaves, that an end of the range ignores. An end that
+    /// has begun to move follows the scene until it is within a quarter of this, then
+    /// comes to rest. Under an orthographic projection the unit is the length of the
     /// range. Range 0 to 4, default 0.07 (5 % of a distance).
     #[reflect(@FieldRange::linear(0.0, 4.0).unit("oct"))]
     pub hysteresis: f32,
-    /// Time constant with which the range grows, seconds: 63 % of the way after
-    /// once that time, 95 % after three times, whatever the frame rate.
-    /// Range 0 to 60, default 0.1.
+    /// Time constant with which the range grows, in seconds of real time: 63 % of a
+    /// change is made up after this time, 95 % after three times this time, at any
+    /// frame rate. Range 0 to 60, default 0.1.
     #[reflect(@FieldRange::linear(0.0, 60.0).unit("s"))]
     pub expand: f32,
-    /// Time constant with which the range shrinks, seconds. Range 0 to 60,
-    /// default 1.
+    /// Time constant with which the range shrinks, in seconds of real time.
+    /// Range 0 to 60, default 1.
     #[reflect(@FieldRange::linear(0.0, 60.0).unit("s"))]
     pub shrink: f32,
 }
@@ -93,7 +94,7 @@ impl Default for RangeSmoothing {
 }
 
 impl RangeSmoothing {
-    /// Every stage left out: the range of every frame.
+    /// No smoothing: the range of each single frame.
     pub const OFF: Self = Self {
         outliers: 0.0,
         despike: false,
@@ -122,8 +123,8 @@ impl RangeSmoothing {
     }
 }
 
-/// Tells a camera that its next frame has nothing to do with the last one: a
-/// cut, a teleport. Its smoothed range starts anew.
+/// Tells a camera that its next frame does not continue the last one, after a cut or
+/// a teleport. Its smoothed range starts anew.
 ///
 /// ```
 /// # use bevy::ecs::prelude::*;
@@ -134,11 +135,11 @@ impl RangeSmoothing {
 /// ```
 #[derive(EntityEvent, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CameraCut {
-    /// The camera.
+    /// The camera that was cut.
     pub entity: Entity,
 }
 
-/// How often a camera was cut.
+/// Number of cuts of a camera so far.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct CameraCuts(pub u32);
 
@@ -152,10 +153,11 @@ pub(crate) fn count_cut(
         Ok(None) => {
             commands.entity(cut.entity).insert(CameraCuts(1));
         }
-        Err(_) => bevy::log::warn_once!("{} was cut and is no camera", cut.entity),
+        Err(_) => bevy::log::warn_once!("CameraCut: {} is not a camera", cut.entity),
     }
 }
 
+/// Bits of [`SmoothingUniform::flags`], as in `smoothing.wgsl`.
 const ORTHOGRAPHIC: u32 = 1;
 const SNAP: u32 = 2;
 const HOLD: u32 = 4;
@@ -173,8 +175,9 @@ pub(crate) struct SmoothingUniform {
     pub flags: u32,
 }
 
-/// Share of the way towards a goal after `seconds` with a time constant.
-fn way(seconds: f32, constant: f32) -> f32 {
+/// Fraction of the difference to a goal that is made up in `seconds`, for a time
+/// constant in seconds.
+fn approach(seconds: f32, constant: f32) -> f32 {
     if constant > 0.0 {
         -(-f64::from(seconds) / f64::from(constant)).exp_m1() as f32
     } else {
@@ -196,8 +199,8 @@ impl SmoothingUniform {
             offset: projection.offset(),
             outliers: smoothing.outliers,
             hysteresis: smoothing.hysteresis,
-            expand: way(seconds, smoothing.expand),
-            shrink: way(seconds, smoothing.shrink),
+            expand: approach(seconds, smoothing.expand),
+            shrink: approach(seconds, smoothing.shrink),
             flags: flag(orthographic, ORTHOGRAPHIC)
                 | flag(snap, SNAP)
                 | flag(reset, RESET)
@@ -207,22 +210,26 @@ impl SmoothingUniform {
     }
 }
 
-/// Bytes of `RangeState`, `Histogram` and of a pair of keys.
+/// Bytes of the buffer of `RangeState`, which needs 52.
 const STATE_SIZE: u64 = 64;
+/// Bytes of the buffer of `Histogram`, which needs 1028.
 const HISTOGRAM_SIZE: u64 = 1040;
 
-/// A view's smoothed range: what it was, and what it was found under.
+/// A view's smoothed range: its buffers, and what they were last computed for.
 pub(crate) struct ViewSmoothing {
     state: Buffer,
-    /// The keys that are drawn with.
+    /// Keys of the range that the depth map spans.
     pub drawn: Buffer,
+    /// Counts of the reduction, if it counts.
     pub histogram: Option<Buffer>,
-    /// Cuts and size: what a change of starts it anew, unless it is locked.
+    /// Number of cuts and size of the view in depth pixels. If one changes, smoothing
+    /// starts anew, or waits for that while the range is locked.
     origin: (u32, UVec2),
-    /// What raw depth means: a change of it starts it anew, locked or not.
+    /// If it changes, raw depth has another meaning, and smoothing starts anew even if
+    /// the range is locked.
     projection: DepthProjection,
-    /// Whether the next frame starts it anew, for either reason; kept until a
-    /// frame was recorded that did.
+    /// Whether smoothing is to start anew, for a change of `origin` (snap) or of
+    /// `projection` (reset). Cleared when a frame that does so was recorded.
     snap: AtomicBool,
     reset: AtomicBool,
     locked: bool,
@@ -256,7 +263,7 @@ impl ViewSmoothing {
         }
     }
 
-    /// This frame's settings, after a look at what has changed since the last.
+    /// The uniform of this frame. Compares the request with that of the last frame.
     pub fn uniform(&mut self, request: &RangeRequest, size: UVec2) -> SmoothingUniform {
         if self.origin != (request.cuts, size) {
             self.origin = (request.cuts, size);
@@ -271,7 +278,7 @@ impl ViewSmoothing {
         SmoothingUniform::new(&request.map, &request.projection, request.seconds, starts)
     }
 
-    /// Keeps a histogram, or none.
+    /// Creates or drops the buffer of the histogram.
     pub fn keep_histogram(&mut self, device: &RenderDevice, wanted: bool) {
         if !wanted {
             self.histogram = None;
@@ -285,7 +292,7 @@ impl ViewSmoothing {
         }
     }
 
-    /// Records the step of this frame.
+    /// Records the smoothing of this frame. `found` holds the keys of the reduction.
     pub fn record(
         &self,
         device: &RenderDevice,
@@ -318,7 +325,7 @@ impl ViewSmoothing {
         pass.set_bind_group(0, &bind_group, &[self.uniform_offset]);
         pass.dispatch_workgroups(1, 1, 1);
         drop(pass);
-        // A locked range has not taken notice of a cut; it will, once it is free.
+        // A locked range ignores a cut; smoothing starts anew when it is unlocked.
         if !self.locked {
             self.snap.store(false, Ordering::Relaxed);
         }
@@ -358,7 +365,7 @@ impl SmoothingPipeline {
 }
 
 impl SpecializedComputePipeline for SmoothingPipeline {
-    /// Whether there is a histogram.
+    /// Whether the reduction counts a histogram.
     type Key = bool;
 
     fn specialize(&self, histogram: Self::Key) -> ComputePipelineDescriptor {
@@ -384,11 +391,11 @@ mod tests {
     #[test]
     fn ten_short_steps_are_one_long_step() {
         for constant in [0.05, 0.1, 1.0, 30.0] {
-            let once = f64::from(way(0.1, constant));
-            let left = 1.0 - f64::from(way(0.01, constant));
+            let once = f64::from(approach(0.1, constant));
+            let left = 1.0 - f64::from(approach(0.01, constant));
             assert!((1.0 - left.powi(10) - once).abs() < 1e-6, "{constant}");
         }
-        assert_eq!(way(0.016, 0.0), 1.0);
-        assert_eq!(way(0.0, 1.0), 0.0);
+        assert_eq!(approach(0.016, 0.0), 1.0);
+        assert_eq!(approach(0.0, 1.0), 0.0);
     }
 }

@@ -1,42 +1,45 @@
 #define_import_path bevy_comics::depth::smoothing
 
-// A range that does not flicker: percentiles instead of extremes, the median of
-// three frames, hysteresis, and an exponential approach. One invocation, once a
-// frame; its state never leaves the GPU.
+// Smooths the visible range over time: percentiles instead of extremes, the median of
+// three frames, hysteresis, and an exponential approach. One invocation per view and
+// frame; its state stays on the GPU.
 
 const ORTHOGRAPHIC: u32 = 1u;
-// Nothing of the past counts: a cut, a resize.
+// Discard the state, unless HOLD is set: after a cut or a change of the view's size.
 const SNAP: u32 = 2u;
-// The range stays as it is.
+// Keep the range as it is.
 const HOLD: u32 = 4u;
-// The median of three frames.
+// Take the median of three frames.
 const DESPIKE: u32 = 8u;
-// Raw depth means something else than before: not even a held range stays.
+// Discard the state, even with HOLD: the projection changed, and with it what raw depth
+// means.
 const RESET: u32 = 16u;
 
 struct Smoothing {
-    // a = clip_from_view[2][2]: d + a is proportional to 1/z in perspective.
+    // a = clip_from_view[2][2]: d + a is proportional to 1/z in perspective. 0 otherwise.
     offset: f32,
-    // Share of the pixels that may lie beyond either end.
+    // Fraction of the counted depths that may be outside of the range, at each end.
     outliers: f32,
-    // Octaves of distance; under an orthographic projection, share of the range.
+    // In octaves of distance; under an orthographic projection, as a fraction of the
+    // length of the range.
     hysteresis: f32,
-    // Share of the way that is made in this frame: 1 - exp(-dt / tau).
+    // Fraction of the remaining difference that this frame makes up: 1 - exp(-dt / tau).
     expand: f32,
     shrink: f32,
     flags: u32,
 }
 
-// One end of the range. Levels are log2(d + a), and d under an orthographic
-// projection.
+// One end of the range. A level is log2(d + a); under an orthographic projection it is
+// d itself.
 struct Bound {
+    // Where the bound is drawn, and the level that it approaches.
     level: f32,
     goal: f32,
-    // The goal's depth to the bit.
+    // Bits of the depth at the goal.
     goal_bits: u32,
-    // 1: the goal follows what is found.
+    // 1: the goal follows the depth that is found; 0: hysteresis keeps it.
     moving: u32,
-    // What was found one and two frames ago.
+    // Bits of the depths that were found one and two frames ago.
     before: u32,
     earlier: u32,
 }
@@ -44,11 +47,12 @@ struct Bound {
 struct RangeState {
     near: Bound,
     far: Bound,
-    // 0: nothing was found yet.
+    // 0: no geometry was found yet.
     valid: u32,
 }
 
-// Eight bins an octave over 32 octaves: the upper bits of a depth.
+// A bin is the exponent and the upper three bits of the mantissa of a raw depth: eight
+// bins per octave, 32 octaves. The farthest bin also counts everything beyond.
 const BINS: u32 = 256u;
 const FIRST_BIN: u32 = 761u;
 const BIN_WIDTH: u32 = 1048576u;
@@ -66,20 +70,21 @@ struct Histogram {
 @group(0) @binding(4) var<storage, read> histogram: Histogram;
 #endif
 
-// Within this many levels of its goal a bound is there: 0.02 % of a distance.
+// A bound this close to its goal, in levels, is set to the goal: 0.02 % of a distance.
+// Under an orthographic projection, as a fraction of the hysteresis.
 const SETTLED: f32 = 0.00025;
 
 fn bin_of(bits: u32) -> u32 {
     return clamp(bits >> 20u, FIRST_BIN, FIRST_BIN + BINS - 1u) - FIRST_BIN;
 }
 
-// Depth bits at the nearer edge of a bin.
+// Bits of the depth at the nearer edge of a bin.
 fn bin_edge(bin: u32) -> u32 {
     return (bin + FIRST_BIN + 1u) << 20u;
 }
 
-// log2 of a positive number. The built-in one may be as coarse as 2^-10 on CPU
-// adapters; this is one invocation, once a frame.
+// log2 of a positive number. The error of the built-in function can be 2^-10 on CPU
+// adapters. Speed does not matter here: one invocation per frame.
 fn exact_log2(x: f32) -> f32 {
     let bits = bitcast<u32>(max(x, 1.1754944e-38));
     var exponent = f32(bits >> 23u) - 127.0;
@@ -99,7 +104,7 @@ fn exact_log2(x: f32) -> f32 {
     return exponent + s * sum * 2.885390;
 }
 
-// 2^x for x in [-126, 127].
+// 2^x for x in [-126, 127]; x is clamped to that.
 fn exact_exp2(x: f32) -> f32 {
     let whole = clamp(round(x), -126.0, 127.0);
     let y = (x - whole) * 0.6931472;
@@ -114,6 +119,7 @@ fn exact_exp2(x: f32) -> f32 {
     return sum * bitcast<f32>(u32(i32(whole) + 127) << 23u);
 }
 
+// Level of the bits of a depth.
 fn level_of(s: Smoothing, bits: u32) -> f32 {
     let d = bitcast<f32>(bits);
     if (s.flags & ORTHOGRAPHIC) != 0u {
@@ -122,7 +128,7 @@ fn level_of(s: Smoothing, bits: u32) -> f32 {
     return exact_log2(d + s.offset);
 }
 
-// Depth bits of a level, within what the reduction can find.
+// Bits of the depth at a level, clamped to what the reduction can find.
 fn bits_of(s: Smoothing, level: f32) -> u32 {
     var d = level;
     if (s.flags & ORTHOGRAPHIC) == 0u {
@@ -135,8 +141,8 @@ fn median(a: u32, b: u32, c: u32) -> u32 {
     return max(min(a, b), min(max(a, b), c));
 }
 
-// A bound after a frame in which its end was found at `bits`. `outward` is 1
-// where a larger level widens the range, -1 where a smaller one does.
+// The bound after a frame in which the depth at its end has these bits. `outward` is 1
+// if a larger level widens the range (near), -1 if a smaller one does (far).
 fn follow_bound(s: Smoothing, old: Bound, bits: u32, outward: f32, hysteresis: f32) -> Bound {
     var b = old;
     var at = bits;
@@ -153,8 +159,8 @@ fn follow_bound(s: Smoothing, old: Bound, bits: u32, outward: f32, hysteresis: f
         b.goal = level;
         b.goal_bits = at;
     }
-    let way = b.goal - b.level;
-    b.level += select(s.shrink, s.expand, way * outward > 0.0) * way;
+    let rest = b.goal - b.level;
+    b.level += select(s.shrink, s.expand, rest * outward > 0.0) * rest;
     if abs(b.goal - b.level) <= 0.25 * hysteresis {
         b.moving = 0u;
     }
@@ -168,12 +174,14 @@ fn follow_bound(s: Smoothing, old: Bound, bits: u32, outward: f32, hysteresis: f
     return b;
 }
 
+// A bound without a past: at its goal.
 fn snapped(s: Smoothing, bits: u32) -> Bound {
     let level = level_of(s, bits);
     return Bound(level, level, bits, 0u, bits, bits);
 }
 
-// Depth bits at which a bound stands: exactly what was found, once it is there.
+// Bits of the depth at which a bound is drawn: exactly those that were found, once the
+// bound is at its goal.
 fn bound_bits(s: Smoothing, b: Bound) -> u32 {
     if b.level == b.goal {
         return b.goal_bits;
@@ -182,7 +190,8 @@ fn bound_bits(s: Smoothing, b: Bound) -> u32 {
 }
 
 #ifdef HISTOGRAM
-// Depth bits of the pixel of a rank, counted from the near end.
+// Bits of the depth that `rank` of the counted depths are nearer than, interpolated
+// within its bin.
 fn from_near(near: u32, far: u32, rank: f32) -> u32 {
     var passed = 0.0;
     for (var bin = bin_of(near); ; bin--) {
@@ -196,7 +205,7 @@ fn from_near(near: u32, far: u32, rank: f32) -> u32 {
     return near;
 }
 
-// The same from the far end.
+// Bits of the depth that `rank` of the counted depths are farther than.
 fn from_far(near: u32, far: u32, rank: f32) -> u32 {
     var passed = 0.0;
     for (var bin = bin_of(far); ; bin++) {
@@ -218,7 +227,7 @@ fn follow() {
     }
     let hold = (smoothing.flags & HOLD) != 0u && state.valid == 1u;
     if found.x == 0u && !hold {
-        // No geometry: the state waits for some.
+        // No geometry in this frame: the state stays as it is.
         drawn = vec4(0u);
         return;
     }
@@ -245,7 +254,7 @@ fn follow() {
         }
     }
     let near = bound_bits(smoothing, state.near);
-    // Ends that pass each other, where shrinking is the faster way, meet.
+    // The bounds can cross if shrinking is faster than expanding: then far is near.
     let far = min(bound_bits(smoothing, state.far), near);
     drawn = vec4(near, 0u - far, 0u, 0u);
 }

@@ -1,4 +1,4 @@
-//! A view's picture and depth, as shaders know them.
+//! Viewport, depth texture and depth map of a view, as shaders read them.
 
 use bevy::{
     math::{IVec4, UVec2, UVec4, Vec2, Vec4Swizzles},
@@ -19,8 +19,8 @@ pub(crate) struct ViewUniform {
 }
 
 impl ViewUniform {
-    /// `viewport` is x, y, width, height in physical pixels; `main_pass_size` the
-    /// size of the main pass where that is not the viewport's.
+    /// `viewport` is x, y, width, height in physical pixels. `main_pass_size` is the
+    /// size of the main pass in pixels, if it differs from the viewport's.
     pub fn new(
         viewport: UVec4,
         main_pass_size: Option<UVec2>,
@@ -39,7 +39,7 @@ impl ViewUniform {
     }
 }
 
-/// Depth pixels per pixel of the viewport.
+/// Pixels of the depth texture per physical pixel of the viewport, 0 to 1.
 pub(crate) fn depth_scale(viewport: UVec4, main_pass_size: Option<UVec2>) -> Vec2 {
     let size = viewport.zw().max(UVec2::ONE);
     main_pass_size.map_or(Vec2::ONE, |main| {
@@ -47,7 +47,7 @@ pub(crate) fn depth_scale(viewport: UVec4, main_pass_size: Option<UVec2>) -> Vec
     })
 }
 
-/// The part of the depth texture that the main pass draws.
+/// The part of the depth texture that the main pass draws: x, y, width, height.
 pub(crate) fn depth_rect(viewport: UVec4, main_pass_size: Option<UVec2>) -> UVec4 {
     let size = main_pass_size.map_or(viewport.zw(), |main| main.clamp(UVec2::ONE, viewport.zw()));
     UVec4::new(viewport.x, viewport.y, size.x, size.y)

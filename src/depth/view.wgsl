@@ -1,21 +1,21 @@
 #define_import_path bevy_comics::depth::view
 
-// The view that is drawn and its depth: the only owner of bindings 2 (depth) and
-// 3 (visible range). An entry point calls set_view() first, with the view of its
-// own uniform, since passes have different uniforms.
+// The view and its depth: the only module that declares bindings 2 (depth) and 3
+// (visible range). An entry point calls set_view() first, with the view of its own
+// uniform, because passes have different uniforms.
 
 #import bevy_comics::depth::map::{DepthFrame, EMPTY, depth_map}
 #import bevy_comics::depth::raw::{RawDepth, raw_depth}
 #import bevy_comics::depth::window::{MISSING_E, MISSING_N, MISSING_S, MISSING_W, Window, gap_behind, map_steps, prewitt}
 
-// A multiple of 16 bytes, as uniform structs inside a struct have to be.
+// Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
 struct View {
-    // Origin and size of the viewport, physical pixels.
+    // Origin and size of the viewport: x, y, width, height in physical pixels.
     viewport: vec4<i32>,
-    // Depth pixels per colour pixel (1 unless the main pass has a resolution of
-    // its own).
+    // Pixels of the depth texture per physical pixel of the viewport: 1 unless the
+    // main pass has another resolution.
     depth_scale: vec2<f32>,
-    // 1: near and far of the depth map are exchanged for the colours.
+    // 1: DepthMap::flip is set.
     flip: u32,
     unused: u32,
     raw: RawDepth,
@@ -28,7 +28,7 @@ fn set_view(drawn: View) {
     view = drawn;
 }
 
-// The pixel of the viewport nearest to a pixel of the target.
+// A pixel of the target, clamped to the viewport.
 fn inside_viewport(pixel: vec2<i32>) -> vec2<i32> {
     let first = view.viewport.xy;
     return clamp(pixel, first, first + view.viewport.zw - 1);
@@ -42,11 +42,11 @@ fn inside_viewport(pixel: vec2<i32>) -> vec2<i32> {
 #endif
 #endif
 #ifdef VISIBLE_RANGE
-// (key of the nearest, key of the farthest): see range.wgsl.
+// xy: keys of the nearest and the farthest depth, see range.wgsl.
 @group(0) @binding(3) var<uniform> range_keys: vec4<u32>;
 #endif
 
-// The depth texture's pixel of a pixel of the viewport.
+// The pixel of the depth texture that belongs to a pixel of the viewport.
 fn depth_pixel(pixel: vec2<i32>) -> vec2<i32> {
 #ifdef SAME_SIZE
     return pixel;
@@ -64,7 +64,7 @@ fn sample_count() -> i32 {
 #endif
 }
 
-// Raw depth at a pixel of the viewport; the caller has clamped it.
+// Raw depth at a pixel, which must be inside the viewport.
 fn load_depth(pixel: vec2<i32>, sample: i32) -> f32 {
     let at = depth_pixel(pixel);
 #ifdef MULTISAMPLED
@@ -75,7 +75,7 @@ fn load_depth(pixel: vec2<i32>, sample: i32) -> f32 {
     return raw_depth(view.raw, vec2<u32>(at), d);
 }
 
-// The range that the depth map spans in this frame.
+// The depth map of this frame: with the visible range, if that is what it spans.
 fn depth_frame() -> DepthFrame {
     var frame = view.depth;
 #ifdef VISIBLE_RANGE
@@ -88,7 +88,7 @@ fn depth_frame() -> DepthFrame {
     return frame;
 }
 
-// (D, L) of a pixel, the mean of its samples, as its colour is theirs.
+// (D, L) of a pixel: the mean over its samples, because its colour is their mean too.
 fn pixel_depth(frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
 #ifdef MULTISAMPLED
     var sum = vec2(0.0);
@@ -102,8 +102,8 @@ fn pixel_depth(frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
 #endif
 }
 
-// The depths at `reach` pixels around one; what lies outside the viewport is
-// read at its border and marked.
+// The depths of a pixel and of its eight neighbours `reach` pixels away. Positions
+// outside of the viewport are clamped to its border and marked in `missing`.
 fn load_window(pixel: vec2<i32>, reach: i32, sample: i32) -> Window {
     let first = view.viewport.xy;
     let last = first + view.viewport.zw - 1;
@@ -126,8 +126,8 @@ fn load_window(pixel: vec2<i32>, reach: i32, sample: i32) -> Window {
     return win;
 }
 
-// The Prewitt response of the depth map, slopes and all, per pixel. The sky lies
-// at the far end.
+// Prewitt response of the depth map per pixel. It includes slopes. The sky counts as
+// the far end of the range.
 fn map_slope(frame: DepthFrame, pixel: vec2<i32>) -> f32 {
     return prewitt(map_steps(frame, gap_behind(frame, 0.0), load_window(pixel, 1, 0)));
 }

@@ -1,11 +1,11 @@
 #define_import_path bevy_comics::depth::window
 
-// Differences of the depth map in a window of 3 x 3 depths: pure functions.
+// Differences of the depth map in a window of 3 x 3 depths. Pure functions.
 
 #import bevy_comics::depth::map::{DepthFrame, depth_step, is_background, spread_divisor}
 
-// Depths around a pixel, row by row; outside the viewport `centre` is repeated
-// and the bit of `missing` is set.
+// Raw depths around a pixel, row by row. Where a side is outside of the viewport, its
+// bit of `missing` is set and its depths are those of the viewport's border.
 struct Window {
     nw: f32, n: f32, ne: f32,
     w: f32, centre: f32, e: f32,
@@ -18,28 +18,29 @@ const MISSING_E: u32 = 2u;
 const MISSING_N: u32 = 4u;
 const MISSING_S: u32 = 8u;
 
-// What each neighbour's depth map has over its reference.
+// Difference of D between each neighbour and its reference, which is the centre or a
+// plane through it.
 struct Steps {
     nw: f32, n: f32, ne: f32,
     w: f32, e: f32,
     sw: f32, s: f32, se: f32,
 }
 
-// How far behind the farthest geometry the sky lies: a gap behind D = 1, which
-// the farthest reaches wherever the range is not below its floor.
+// Difference of D between the farthest geometry and the sky, which is at D = 1 + gap.
+// The farthest geometry is at D = 1, or below that if the range is below its floor.
 fn gap_behind(f: DepthFrame, gap: f32) -> f32 {
     return gap + (1.0 - (f.near - f.far) / spread_divisor(f));
 }
 
-// D(d) - D(p), where the sky lies a gap behind the farthest geometry. No branch:
-// the sky's depth is the far end, and the gap is added.
+// D(d) - D(p), with the sky `gap` behind the farthest geometry. Without a branch: the
+// sky's depth is replaced by the far end, and the gap is added.
 fn step_from(f: DepthFrame, gap: f32, d: f32, p: f32, p_is_sky: bool) -> f32 {
     let d_is_sky = is_background(d);
     let behind = select(0.0, gap, d_is_sky) - select(0.0, gap, p_is_sky);
     return depth_step(f, select(d, f.far, d_is_sky), select(p, f.far, p_is_sky)) + behind;
 }
 
-// The plain differences of the depth map, slopes included, as [CS] draws them.
+// Differences to the centre. They include slopes, as in [CS].
 fn map_steps(f: DepthFrame, gap: f32, win: Window) -> Steps {
     let c = win.centre;
     let sky = is_background(c);
@@ -55,10 +56,12 @@ fn map_steps(f: DepthFrame, gap: f32, win: Window) -> Steps {
     );
 }
 
+// Length of the Prewitt gradient.
 fn prewitt(s: Steps) -> f32 {
     return length(vec2((s.ne + s.e + s.se) - (s.nw + s.w + s.sw), (s.sw + s.s + s.se) - (s.nw + s.n + s.ne)));
 }
 
+// The largest raw depth of a window, which is that of the nearest geometry.
 fn nearest_depth(win: Window) -> f32 {
     let row = max(max(win.nw, win.n), max(win.ne, win.w));
     return max(max(row, win.centre), max(max(win.e, win.sw), max(win.s, win.se)));

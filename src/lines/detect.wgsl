@@ -1,11 +1,11 @@
-// Finds the outlines: for every pixel, along which of its sides a line runs
-// that belongs to it, of which kind, how inked and how wide.
+// Finds the outlines. For every pixel it writes an Edge: which sides have a line that
+// belongs to this pixel, of which kind, with how much ink, and how wide.
 
 #import bevy_comics::depth::map::{depth_map, is_background}
 #import bevy_comics::depth::view::{View, depth_frame, load_depth, set_view, view}
 #import bevy_comics::lines::edge::{
     CREASE, OBJECT, SILHOUETTE, Edge, Lines, WHOLE_CREASE, WHOLE_SILHOUETTE,
-    component_response, edge_response, gradient_extremes, normal_extremes, normal_step, on_edge, on_fold,
+    component_response, edge_response, gradient_extremes, normal_extremes, normal_step, on_crease, on_edge,
     pack_edge, step_excess,
 }
 #import bevy_comics::objects::kinds_of
@@ -26,8 +26,8 @@ struct DetectUniform {
 
 @group(0) @binding(1) var<uniform> detect_uniform: DetectUniform;
 
-// What lies outside the viewport goes on as it was heading: the point mirror
-// image of the inside keeps a plane a plane, so that the border is no edge.
+// Raw depth at a pixel. Outside of the viewport it is extrapolated by point reflection
+// at the border. This continues a plane, so that the border is not an edge.
 fn depth_at(pixel: vec2<i32>) -> f32 {
     let first = view.viewport.xy;
     let last = first + view.viewport.zw - 1;
@@ -41,8 +41,8 @@ fn depth_at(pixel: vec2<i32>) -> f32 {
 }
 
 #ifdef CREASES
-// The normal at a pixel of the 5 x 5 window, and whether there is one: the
-// border's outside the viewport.
+// (normal, 1) at index i of the 5 x 5 window around a pixel; w is 0 where there is no
+// normal. Positions outside of the viewport are clamped to its border.
 fn normal_at(pixel: vec2<i32>, i: i32, depths: ptr<function, array<f32, 25>>) -> vec4<f32> {
     let first = view.viewport.xy;
     let at = clamp(pixel + vec2(i % 5, i / 5) - 2, first, first + view.viewport.zw - 1);
@@ -52,14 +52,14 @@ fn normal_at(pixel: vec2<i32>, i: i32, depths: ptr<function, array<f32, 25>>) ->
 }
 #endif
 
-// Index steps in a 5 x 5 window: west, east, north, south.
+// Index difference in a 5 x 5 window to the neighbour at a side.
 fn side_step(side: u32) -> i32 {
     return select(5, 1, side < 2u) * select(-1, 1, (side & 1u) == 1u);
 }
 
-// Of the two pixels along a line between surfaces of like depth, the line is
-// the one's that has lines at all, else the nearer one's, else the one's to the
-// west or north: whatever the other pixel decides, it is the opposite.
+// Whether the line between two pixels belongs to this one. It belongs to the pixel
+// whose object draws this kind of line if the other's does not, otherwise to the nearer
+// one, otherwise to the one to the west or north. Both pixels come to opposite results.
 fn owns(here: f32, there: f32, has_here: bool, has_there: bool, side: u32) -> bool {
     if has_here != has_there {
         return has_here;
@@ -79,7 +79,7 @@ fn detect(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
         return vec4(0u);
     }
     var s = detect_uniform.settings;
-    // Forms are compiled in, where they are known: see has() in map.wgsl.
+    // The forms are compiled in, for the same reason as the flags in has() of map.wgsl.
 #ifdef FORMS
     s.silhouette_faithful = #{SILHOUETTE_FAITHFUL}u;
     s.crease_faithful = #{CREASE_FAITHFUL}u;
@@ -97,7 +97,7 @@ fn detect(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     }
 
     var edge: Edge;
-    // No line runs along the border of the viewport.
+    // Sides at the border of the viewport have no lines.
     let rim = view.viewport.zw - 1;
     var open = array<bool, 4>(inside.x > 0, inside.x != rim.x, inside.y > 0, inside.y != rim.y);
     var slot = 0u;
@@ -108,8 +108,8 @@ fn detect(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     var differs = array<bool, 4>(false, false, false, false);
     for (var side = 0u; side < 4u; side++) {
         if open[side] {
-            let way = select(vec2(0, 1), vec2(1, 0), side < 2u) * select(-1, 1, (side & 1u) == 1u);
-            let other = load_object(pixel + way);
+            let step = select(vec2(0, 1), vec2(1, 0), side < 2u) * select(-1, 1, (side & 1u) == 1u);
+            let other = load_object(pixel + step);
             others[side] = other.y;
             differs[side] = other.x != object.x;
         }
@@ -119,7 +119,8 @@ fn detect(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     edge.slot = slot;
 
     let reference = s.reference_factor * nearest + s.reference_constant;
-    // A jump that hides something: what lies behind it is no neighbour.
+    // The difference in raw depth from which one surface hides another, instead of
+    // meeting it.
     let jump = 2.0 * s.silhouette_k * reference;
 #ifdef SILHOUETTES
     let g = gradient_extremes(&depths);
@@ -131,8 +132,8 @@ fn detect(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
         for (var side = 0u; side < 4u; side++) {
             let step = side_step(side);
             let excess = step_excess(depths[12 - step], here, depths[12 + step], depths[12 + 2 * step]);
-            // Eq. 2 on the step itself: as along a straight edge, but without
-            // the unrest of its staircase.
+            // Eq. 2 for the excess of this step instead of g_max - g_min: the same along
+            // a straight edge, and steadier where the edge is a staircase of pixels.
             let p = edge_response(vec2(0.0, 0.5 * excess), s.silhouette_k * reference);
             let ink = smoothstep(s.silhouette_low, s.silhouette_high, p);
             if open[side] && ink > 0.0 && on_edge(excess, g) {
@@ -156,8 +157,8 @@ fn detect(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
         for (var side = 0u; side < 4u; side++) {
             let step = side_step(side);
             let n = normals[12 + step];
-            let fold = normal_step(normals[12], n);
-            let p = edge_response(vec2(0.0, 0.5 * fold), s.crease_k);
+            let turn = normal_step(normals[12], n);
+            let p = edge_response(vec2(0.0, 0.5 * turn), s.crease_k);
             let ink = smoothstep(s.crease_low, s.crease_high, p);
             if !open[side] || ink <= 0.0 || (kinds & 2u) == 0u {
                 continue;
@@ -166,11 +167,11 @@ fn detect(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
             let beyond = normals[12 + 2 * step];
             let around = max(normal_step(before, normals[12]), normal_step(n, beyond));
             let there = depths[12 + step];
-            // A fold is where one surface goes on as another.
+            // Both sides of a crease meet: there is no jump in depth between them.
             let joined = abs(step_excess(depths[12 - step], here, there, depths[12 + 2 * step])) < jump
                 && abs(step_excess(depths[12 + 2 * step], there, here, depths[12 - step])) < jump;
             let mine = owns(here, there, true, (kinds_of(others[side]) & 2u) != 0u, side);
-            if joined && mine && on_fold(fold, around, before.w * beyond.w, gn) {
+            if joined && mine && on_crease(turn, around, before.w * beyond.w, gn) {
                 edge.ink.y = max(edge.ink.y, ink);
                 edge.sides |= 1u << (4u * CREASE + side);
             }
@@ -182,8 +183,8 @@ fn detect(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     for (var side = 0u; side < 4u; side++) {
         let there = depths[12 + side_step(side)];
         let has_there = (kinds_of(others[side]) & 4u) != 0u;
-        // In front of something far behind it, the line is the nearer object's,
-        // whatever it says.
+        // If one object hides the other, the line belongs to the nearer one, even if
+        // that has no object edges: then there is none.
         let hides = abs(here - there) > jump;
         let mine = select(
             owns(here, there, (kinds & 4u) != 0u, has_there, side),

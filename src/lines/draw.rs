@@ -1,4 +1,4 @@
-//! Records the passes of a view's lines.
+//! Records the passes that find a view's lines.
 
 use std::sync::atomic::Ordering;
 
@@ -28,7 +28,7 @@ use crate::{
     objects::{ObjectStyleBuffer, ViewObjectIds},
 };
 
-/// What the passes of a view's lines are made of.
+/// The components of a view that its line passes read.
 type ViewParts<'a> = (
     (&'a LineRequest, &'a LinePasses, &'a ViewLines),
     Option<&'a ViewPrepassTextures>,
@@ -36,7 +36,7 @@ type ViewParts<'a> = (
     Option<&'a ViewObjectIds>,
 );
 
-/// Finds the lines of the view.
+/// Records the passes that find the lines of the view.
 pub(crate) fn find_lines(
     view: ViewQuery<(
         (&LineRequest, &LinePasses, &ViewLines),
@@ -102,7 +102,7 @@ fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
     BindGroupEntry { binding, resource }
 }
 
-/// What the pass that finds edges reads.
+/// The bindings of the pass that finds edges.
 fn entries<'a>(
     ((request, passes, _), prepass, range, ids): ViewParts<'a>,
     object_styles: &'a ObjectStyleBuffer,
@@ -138,6 +138,7 @@ fn entries<'a>(
     Ok(entries)
 }
 
+/// Records one full-screen pass. `instance` is the flood's stride.
 fn draw(
     encoder: &mut CommandEncoder,
     label: &str,

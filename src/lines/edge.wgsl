@@ -1,9 +1,9 @@
 #define_import_path bevy_comics::lines::edge
 
-// The response of [CL] and the geometry of the lines: pure functions.
+// The edge response of [CL] and the geometry of lines. Pure functions.
 
-// How the lines of a view are found and inked. A multiple of 16 bytes, as uniform
-// structs inside a struct have to be.
+// How the lines of a view are found and inked. Its size is a multiple of 16 bytes, as
+// WGSL requires of a struct inside a uniform.
 struct Lines {
     silhouette_color: vec3<f32>,
     silhouette_opacity: f32,
@@ -11,7 +11,8 @@ struct Lines {
     crease_opacity: f32,
     object_color: vec3<f32>,
     object_opacity: f32,
-    // Where ink begins and is full, on the response; k of Eq. 2.
+    // Responses at which ink begins (low) and is full (high), and k of [CL] Eq. 2.
+    // Faithful: 1 for Form::Faithful.
     silhouette_low: f32,
     silhouette_high: f32,
     silhouette_k: f32,
@@ -20,15 +21,16 @@ struct Lines {
     crease_high: f32,
     crease_k: f32,
     crease_faithful: u32,
-    // Physical pixels, and how many of them a logical pixel has.
+    // Half of the line width in physical pixels; physical pixels per logical pixel.
     half_width: f32,
     scale: f32,
+    // Fractions of width and opacity that are lost at D = 1.
     width_fade: f32,
     opacity_fade: f32,
-    // A jump is measured against factor * (largest raw depth) + constant.
+    // A jump is measured against factor * (largest raw depth nearby) + constant.
     reference_factor: f32,
     reference_constant: f32,
-    // How far away, in pixels, lines are looked for.
+    // Distance in physical pixels within which lines are searched around a pixel.
     reach: i32,
     unused: u32,
 }
@@ -37,26 +39,27 @@ const SILHOUETTE: u32 = 0u;
 const CREASE: u32 = 1u;
 const OBJECT: u32 = 2u;
 
-// Directions of a pixel's four sides, as bits and as numbers.
+// Numbers of a pixel's four sides.
 const WEST: u32 = 0u;
 const EAST: u32 = 1u;
 const NORTH: u32 = 2u;
 const SOUTH: u32 = 3u;
 
-// [CL] Eq. 1: A to H around x, row by row.
+// The gradient at x from its eight neighbours a to h, row by row ([CL] Eq. 1).
 fn gradient(a: f32, b: f32, c: f32, d: f32, x: f32, e: f32, f: f32, g: f32, h: f32) -> f32 {
     return (abs(a - x) + 2.0 * abs(b - x) + abs(c - x) + 2.0 * abs(d - x) + 2.0 * abs(e - x)
         + abs(f - x) + 2.0 * abs(g - x) + abs(h - x)) / 8.0;
 }
 
-// [CL] Eq. 2. g: (g_min, g_max) over 3 x 3 pixels.
+// The edge response, 0 to 1, of g = (g_min, g_max) over 3 x 3 pixels ([CL] Eq. 2).
 fn edge_response(g: vec2<f32>, k: f32) -> f32 {
     let r = (g.y - g.x) / k;
     return min(r * r, 1.0);
 }
 
-// The nine inner of 5 x 5 values, row by row, are written out: a CPU adapter
-// runs the body of a loop once more than it counts.
+// Extends (g_min, g_max) by the gradient at index i of 5 x 5 values. The nine calls
+// below are written out: CPU adapters execute the body of a loop once more than it
+// iterates.
 fn gradient_at(v: ptr<function, array<f32, 25>>, i: u32, found: vec2<f32>) -> vec2<f32> {
     let g = gradient(
         (*v)[i - 6u], (*v)[i - 5u], (*v)[i - 4u],
@@ -66,7 +69,7 @@ fn gradient_at(v: ptr<function, array<f32, 25>>, i: u32, found: vec2<f32>) -> ve
     return vec2(min(found.x, g), max(found.y, g));
 }
 
-// (g_min, g_max) around the middle of 5 x 5 values, row by row.
+// (g_min, g_max) of the 3 x 3 values in the middle of 5 x 5 values, row by row.
 fn gradient_extremes(v: ptr<function, array<f32, 25>>) -> vec2<f32> {
     var found = vec2(1e38, 0.0);
     found = gradient_at(v, 6u, found);
@@ -80,14 +83,14 @@ fn gradient_extremes(v: ptr<function, array<f32, 25>>) -> vec2<f32> {
     return gradient_at(v, 18u, found);
 }
 
-// The distance between two normals: 2 sin(angle / 2); none where either is
-// missing. w: 1 for a normal, 0 for none.
+// The distance between two normals: 2 sin(angle / 2). 0 if one of them is missing
+// (w = 0 instead of 1).
 fn normal_step(a: vec4<f32>, b: vec4<f32>) -> f32 {
     return length(a.xyz - b.xyz) * a.w * b.w;
 }
 
-// Eq. 1 with the distance between normals for the difference: invariant under
-// rotation.
+// As gradient_at, with the distance between normals as difference: it does not depend
+// on the axes in which normals are given.
 fn normal_gradient_at(v: ptr<function, array<vec4<f32>, 25>>, i: u32, found: vec2<f32>) -> vec2<f32> {
     let x = (*v)[i];
     let g = (normal_step((*v)[i - 6u], x) + 2.0 * normal_step((*v)[i - 5u], x) + normal_step((*v)[i - 4u], x)
@@ -109,7 +112,8 @@ fn normal_extremes(v: ptr<function, array<vec4<f32>, 25>>) -> vec2<f32> {
     return normal_gradient_at(v, 18u, found);
 }
 
-// Decaudin's crease: Eq. 1 and 2 on every component, the largest taken.
+// The largest of the responses of the three components of the normal (Decaudin's
+// crease, [CL] Eq. 1 and 2).
 fn component_response(v: ptr<function, array<vec4<f32>, 25>>, k: f32) -> f32 {
     var low = vec3(1e38);
     var high = vec3(0.0);
@@ -132,43 +136,45 @@ fn component_response(v: ptr<function, array<vec4<f32>, 25>>, k: f32) -> f32 {
     return max(p.x, max(p.y, p.z));
 }
 
-// What a step down from a pixel to its neighbour has over the slopes on both
-// sides of it: positive at an edge, zero or less on any plane. `before` lies
-// behind the pixel, `beyond` behind the neighbour.
+// The step in raw depth down from a pixel (here) to its neighbour (there), minus the
+// steeper of the slopes on its two sides, if that goes down too. It is positive at an
+// edge, and 0 or less on a plane. `before` and `beyond` are the next pixels outwards.
 fn step_excess(before: f32, here: f32, there: f32, beyond: f32) -> f32 {
     return (here - there) - max(0.0, max(before - here, there - beyond));
 }
 
-// An edge runs between two pixels if the step explains the response: half of
-// what a straight edge would have, at least.
+// Whether an edge runs between two pixels: the excess of their step must be at least
+// half of g_max - g_min. At a straight edge it is twice that difference, at a single
+// pixel that stands out 0.73 times.
 fn on_edge(excess: f32, g: vec2<f32>) -> bool {
     return excess > 0.0 && excess >= 0.5 * (g.y - g.x);
 }
 
-// A fold runs between two pixels if it is the sharpest around and explains the
-// response (a straight fold answers with half its step). Next to the rim of a
-// surface, where a neighbour is missing, the curvature of the rim is no fold.
-fn on_fold(fold: f32, around: f32, complete: f32, g: vec2<f32>) -> bool {
-    return complete > 0.0 && fold >= around && fold >= g.y - g.x;
+// Whether a crease runs between two pixels, with `step` between their normals. It must
+// be the largest step nearby (`around`) and at least g_max - g_min (at a straight crease
+// it is twice that). `complete` is 0 where a neighbour has no normal: next to the rim of
+// a surface, the curvature of the rim is not a crease.
+fn on_crease(step: f32, around: f32, complete: f32, g: vec2<f32>) -> bool {
+    return complete > 0.0 && step >= around && step >= g.y - g.x;
 }
 
-// What an edge's line is made of, found by detect.wgsl, read by the fused pass.
+// The lines that belong to one pixel: written by detect.wgsl, read by read.wgsl.
 struct Edge {
-    // Bits 4 * kind + side: where the pixel's lines run. Bits 12, 13: the pixel
-    // itself is the line (the faithful forms).
+    // Bit 4 * kind + side: a line of this kind runs along this side. Bits 12, 13: the
+    // pixel itself is the line (faithful silhouettes, faithful creases).
     sides: u32,
-    // Ink by kind, 0 to 1.
+    // Ink of each kind, 0 to 1, before its opacity.
     ink: vec3<f32>,
-    // Half the width, physical pixels.
+    // Half of the width in physical pixels.
     half_width: f32,
-    // Style of the object that the line belongs to; 0: none of its own.
+    // Slot of the OutlineStyle of the object that the lines belong to; 0: it has none.
     slot: u32,
 }
 
 const WHOLE_SILHOUETTE: u32 = 4096u;
 const WHOLE_CREASE: u32 = 8192u;
 
-// In four words of 16 bits.
+// An edge in four words of 16 bits.
 fn pack_edge(e: Edge) -> vec4<u32> {
     let ink = vec3<u32>(clamp(e.ink, vec3(0.0), vec3(1.0)) * 255.0 + 0.5);
     let width = u32(clamp(e.half_width, 0.0, 127.0) * 512.0 + 0.5);
@@ -184,22 +190,24 @@ fn unpack_edge(t: vec4<u32>) -> Edge {
     return e;
 }
 
+// Unit vector from the centre of a pixel towards a side; y points down.
 fn side_direction(side: u32) -> vec2<f32> {
-    let way = select(-1.0, 1.0, (side & 1u) == 1u);
-    return select(vec2(0.0, way), vec2(way, 0.0), side < 2u);
+    let sign = select(-1.0, 1.0, (side & 1u) == 1u);
+    return select(vec2(0.0, sign), vec2(sign, 0.0), side < 2u);
 }
 
-// Where the middle of a line lies, from the centre of the pixel it belongs to.
-// An edge runs between two pixels. Lines of an even width lie across it; those
-// of an odd width lie half a pixel further in, so that both are whole pixels.
+// Offset of the middle of a line from the centre of the pixel that it belongs to, in
+// pixels. The middle of a line of even width is the edge between the two pixels. With
+// an odd width it is half a pixel further in, at the centre, so that the line covers
+// whole pixels in both cases. In between, the offset is interpolated.
 fn line_offset(side: u32, half_width: f32) -> vec2<f32> {
     let width = 2.0 * half_width;
     let odd = select(abs(width - 2.0 * round(0.5 * width)), 1.0, width < 1.0);
     return side_direction(side) * (0.5 - 0.5 * odd);
 }
 
-// How much of a pixel a line covers whose middle is this far from its centre:
-// the exact share, for a line along the pixel's sides.
+// The fraction of a pixel that is covered by a line whose middle is at `distance` from
+// the pixel's centre. Exact for lines parallel to the pixel's sides.
 fn line_coverage(distance: f32, half_width: f32) -> f32 {
     return clamp(half_width + 0.5 - distance, 0.0, min(2.0 * half_width, 1.0));
 }

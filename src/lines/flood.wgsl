@@ -1,10 +1,10 @@
-// The nearest line of every pixel, by jump flooding (Rong and Tan 2006): each
-// step asks nine pixels, half as far away as the step before, for the nearest
-// line they know. Nearest is measured to the border of a line, so that a wide
-// line is not lost behind a thin one.
+// Finds the nearest line of every pixel by jump flooding (Rong and Tan 2006). Each step
+// reads the nearest lines known to nine pixels, `stride` pixels apart; strides are halved
+// from step to step. Distance is measured to the border of a line, so that a thin line
+// does not hide a wide one.
 //
-// A line is known by the pixel it belongs to, the side it runs along, and its
-// width: (x, y, half width, side + 4).
+// A texel describes a line by the pixel that owns it, its half width in 1/512 pixel, and
+// the side that it runs along: (x, y, half width, side + 4). w is 0 if there is none.
 
 #import bevy_comics::depth::view::View
 #import bevy_comics::lines::edge::{Lines, line_offset, unpack_edge}
@@ -21,14 +21,15 @@ struct FloodUniform {
 @group(0) @binding(5) var flood_texture: texture_2d<u32>;
 #endif
 
+// Distance in pixels from a position to the border of a line; negative inside of it.
 fn border_distance(seed: vec4<u32>, at: vec2<f32>) -> f32 {
     let half_width = f32(seed.z) / 512.0;
     let line = vec2<f32>(seed.xy) + 0.5 + line_offset(seed.w & 3u, half_width);
     return distance(line, at) - half_width;
 }
 
-// Immediate data would do; a vertex index is there already: the step is the
-// number of the instance that is drawn.
+// The stride of a step is the index of the instance that is drawn. This needs neither
+// immediate data nor a uniform for each step.
 struct Flood {
     @builtin(position) position: vec4<f32>,
     @location(0) @interpolate(flat) stride: i32,
@@ -52,10 +53,10 @@ fn flood(in: Flood) -> @location(0) vec4<u32> {
     let centre = vec2<f32>(pixel) + 0.5;
     var nearest = 1e30;
 #ifdef FIRST
-    // The pixel's own lines and its neighbours'.
+    // Lines of the pixel itself and of its four neighbours.
     for (var i = 0; i < 5; i++) {
-        let way = select(vec2(0, 0), vec2(select(0, i * 2 - 3, i < 3), select(0, i * 2 - 7, i > 2)), i > 0);
-        let at = clamp(pixel + way, first, last);
+        let offset = select(vec2(0, 0), vec2(select(0, i * 2 - 3, i < 3), select(0, i * 2 - 7, i > 2)), i > 0);
+        let at = clamp(pixel + offset, first, last);
         let texel = textureLoad(edge_texture, at, 0);
         let edge = unpack_edge(texel);
         let sides = (edge.sides | (edge.sides >> 4u) | (edge.sides >> 8u)) & 15u;

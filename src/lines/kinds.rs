@@ -1,4 +1,4 @@
-//! What makes a line: the three kinds of outline.
+//! The settings of the three kinds of outline: silhouettes, creases, object edges.
 
 use bevy::{
     color::Color,
@@ -11,42 +11,46 @@ use crate::settings::{
     Blend, FieldRange, Form, blend_color, blend_ratio, bounded, displayable, file_color,
 };
 
-/// Outlines where a surface ends before another one (\[CL\] Eq. 1, 2).
+/// Outlines where a surface ends in front of another one or of the sky.
 ///
-/// The filter is run on the raw depth buffer, which is affine over any plane:
-/// no plane, however grazing, has a silhouette of its own.
+/// They are found in the raw depth buffer. Raw depth is affine over a plane on the
+/// screen, so a plane has no silhouette inside of it, at any angle to the camera.
+/// \[CL\] Eq. 1 and 2.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Silhouettes {
-    /// How the jump is measured. [`Form::Corrected`] does not depend on the
-    /// world's units, the clipping planes or the camera's rotation, and draws a
-    /// line of the given width along the edge. [`Form::Faithful`] is \[CL\]
-    /// Eq. 1 and 2 on the depth buffer as it is: the response depends on the
-    /// near plane and the scale of the world, and the line is the four columns
-    /// of pixels that respond. Default: [`Form::Corrected`].
+    /// How a jump in depth is measured, and how wide its line is.
+    /// [`Form::Corrected`] does not depend on the world's unit, the clipping planes
+    /// or the camera's rotation, and draws a line of the given width along the edge.
+    /// With [`Form::Faithful`] the response depends on the near plane and the scale
+    /// of the world, and the line is the four columns of pixels that respond.
+    /// Default: [`Form::Corrected`]. Faithful: \[CL\] Eq. 1 and 2 on the depth
+    /// buffer.
     pub form: Form,
-    /// The detection threshold `k_p` of Eq. 2; the lower, the more lines.
-    /// Corrected: the jump in depth, as a share of the distance, that is a full
-    /// line (a straight edge answers with half its jump); under an orthographic
-    /// projection a share of 1.2 times the height of the view. Faithful: the
-    /// paper's number on the buffer of 0 to 1. Range 1e-6 to 1; in the corrected
-    /// form 0.005 to 0.1 is useful. Default 0.02.
+    /// Jump in depth at which the response is 1; the lower, the more lines.
+    /// Range 1e-6 to 1, default 0.02.
+    ///
+    /// Corrected: a fraction of the distance to the surface behind, or of 1.2 times
+    /// the height of the view under an orthographic projection; useful values are
+    /// 0.005 to 0.1. Faithful: the detection threshold `k_p` of \[CL\] Eq. 2, on a
+    /// depth buffer of 0 to 1.
     #[reflect(@FieldRange::logarithmic(1e-6, 1.0))]
     pub threshold: f32,
-    /// The paper's edge-limit-value: the response, 0 to 1, above which there is
-    /// a line. Range 0.01 to 0.99, default 0.5.
+    /// Response, 0 to 1, at which a line has half of its ink.
+    /// Range 0.01 to 0.99, default 0.5. The edge-limit-value of \[CL\].
     #[reflect(@FieldRange::linear(0.01, 0.99))]
     pub edge_limit: f32,
-    /// Softness of that limit: 0 is a hard step, 1 lets the ink follow the
-    /// response, as a sketch wants it. Range 0 to 1, default 0.5.
+    /// Softness of the transition at `edge_limit`, as a fraction of the widest
+    /// transition: 0 is a hard step; 1 lets the ink follow the response, which suits
+    /// a sketch. Range 0 to 1, default 0.5.
     #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
-    /// Colour of the line. Clamped to what a display shows; its alpha is not
-    /// used. Default: black.
+    /// Colour of the line, clamped to what a display shows; its alpha is not used.
+    /// Default: black.
     #[serde(with = "file_color")]
     pub color: Color,
-    /// Opacity of the line. Range 0 (the kind is left out) to 1. Default 1.
+    /// Opacity of the line. Range 0 (this kind of line is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
 }
@@ -75,7 +79,8 @@ impl Silhouettes {
         }
     }
 
-    /// `k` of Eq. 2. A straight step of height h makes `g_max - g_min = h / 2`.
+    /// `k` of Eq. 2. The corrected form halves the threshold, because a straight edge
+    /// of height h has `g_max - g_min = h / 2`.
     pub(crate) fn k(&self) -> f32 {
         match self.form {
             Form::Corrected => 0.5 * self.threshold,
@@ -90,33 +95,37 @@ impl Default for Silhouettes {
     }
 }
 
-/// Outlines where a surface folds: Decaudin's creases, which \[CL\] leaves out.
-/// Needs the normal prepass, which the camera gets.
+/// Outlines where a surface bends sharply. The normal prepass, which they are found
+/// in, is added to the camera. Decaudin's creases, which \[CL\] leaves out.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Creases {
-    /// How the crease is measured. [`Form::Corrected`] uses the angle between
-    /// the normals of its two sides. [`Form::Faithful`] is \[CL\] Eq. 1 and 2 on
-    /// each component of the normal: the response depends on the direction of
-    /// the world's axes. Default: [`Form::Corrected`].
+    /// How a crease is measured, and how wide its line is. [`Form::Corrected`] uses
+    /// the angle between the normals of its two sides and draws a line of the given
+    /// width. With [`Form::Faithful`] the response depends on the direction of the
+    /// world's axes, and the line is the pixels that respond.
+    /// Default: [`Form::Corrected`]. Faithful: \[CL\] Eq. 1 and 2 on each component
+    /// of the normal.
     pub form: Form,
-    /// The fold that is a full line, degrees between the normals of its two
-    /// sides. Range 3 to 180, default 40. Faithful: `k_p` of Eq. 2 is the sine
-    /// of half of it, applied to every component of the normal.
+    /// Angle between the normals of the two sides of a crease at which the response
+    /// is 1, in degrees; the lower, the more lines. Range 3 to 180, default 40.
+    /// Faithful: `k_p` of \[CL\] Eq. 2 is the sine of half of the angle.
     #[reflect(@FieldRange::linear(3.0, 180.0).unit("°"))]
     pub angle: f32,
-    /// As [`Silhouettes::edge_limit`]. Range 0.01 to 0.99, default 0.5.
+    /// Response, 0 to 1, at which a line has half of its ink.
+    /// Range 0.01 to 0.99, default 0.5. The edge-limit-value of \[CL\].
     #[reflect(@FieldRange::linear(0.01, 0.99))]
     pub edge_limit: f32,
-    /// As [`Silhouettes::softness`]. Range 0 to 1, default 0.5.
+    /// Softness of the transition at `edge_limit`, as in [`Silhouettes::softness`].
+    /// Range 0 to 1, default 0.5.
     #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
-    /// Colour of the line. Clamped to what a display shows; its alpha is not
-    /// used. Default: black.
+    /// Colour of the line, clamped to what a display shows; its alpha is not used.
+    /// Default: black.
     #[serde(with = "file_color")]
     pub color: Color,
-    /// Opacity of the line. Range 0 (the kind is left out) to 1. Default 1.
+    /// Opacity of the line. Range 0 (this kind of line is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
 }
@@ -136,7 +145,8 @@ impl Creases {
         }
     }
 
-    /// `k_n = sin(angle / 2)`, and never below what ten bits a component blur.
+    /// `k_n = sin(angle / 2)`, and at least the noise of normals with 10 bits per
+    /// component.
     pub(crate) fn k(&self) -> f32 {
         (0.5 * self.angle.to_radians()).sin().max(0.02)
     }
@@ -155,17 +165,17 @@ impl Default for Creases {
     }
 }
 
-/// Outlines where two objects meet, even at the same depth and slope. Objects
-/// are mesh entities; their ids are drawn in a pass of their own.
+/// Outlines where two objects meet, even if depth and normal are the same there. An
+/// object is a mesh entity. Its id is drawn in an additional pass.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ObjectEdges {
-    /// Colour of the line. Clamped to what a display shows; its alpha is not
-    /// used. Default: black.
+    /// Colour of the line, clamped to what a display shows; its alpha is not used.
+    /// Default: black.
     #[serde(with = "file_color")]
     pub color: Color,
-    /// Opacity of the line. Range 0 (the kind is left out) to 1. Default 1.
+    /// Opacity of the line. Range 0 (this kind of line is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
 }
@@ -191,9 +201,9 @@ impl Default for ObjectEdges {
     }
 }
 
-/// Where ink begins and where it is full, for a limit on the response.
+/// The responses at which ink begins and at which it is full.
 pub(crate) fn ramp(limit: f32, softness: f32) -> [f32; 2] {
-    // smoothstep needs its ends apart: a hard step rises over a thousandth.
+    // smoothstep needs different ends: a hard step uses a softness of 0.001.
     let half = softness.max(1e-3) * limit.min(1.0 - limit);
     [limit - half, limit + half]
 }

@@ -1,6 +1,6 @@
-//! Lines from depth, normals and object ids: one pass finds edges, and for wide
-//! lines a jump flood tells every pixel its nearest line. The fused pass reads
-//! them (`read.wgsl`).
+//! The service of lines: one pass finds edges in depth, normals and object ids. For
+//! wide lines, a jump flood then finds the nearest line of every pixel. The fused pass
+//! reads both with `read.wgsl`.
 
 mod draw;
 mod kinds;
@@ -38,7 +38,7 @@ pub(crate) use settings::LinesUniform;
 use crate::schedule::{ComicsSystems, PrepareComics};
 use pipelines::{FloodPipeline, OutlinePipeline};
 
-/// Finds the lines of the views that ask for them.
+/// Finds the lines of the views that request them.
 pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "edge.wgsl");
     load_shader_library!(app, "read.wgsl");
@@ -71,7 +71,7 @@ fn init_pipelines(
     assets: Res<AssetServer>,
     lines: Query<Entity, With<ViewLines>>,
 ) {
-    // This runs again on a new device: buffers of the old one are of no use.
+    // This runs again after a lost device, whose buffers are no longer valid.
     for view in &lines {
         commands.entity(view).remove::<ViewLines>();
     }

@@ -1,4 +1,4 @@
-//! The pipelines that find lines and carry wide ones.
+//! The pipelines that find edges and flood wide lines.
 
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
@@ -22,18 +22,19 @@ use crate::{
     settings::Form,
 };
 
-/// Lines up to this far from their pixel, in pixels, are found by looking at
-/// every pixel around; wider ones by a flood. Measured: see ARCHITECTURE.md.
+/// Up to this reach, in physical pixels, the fused pass finds lines by reading every
+/// pixel around; beyond it a flood is faster, as measured in `ARCHITECTURE.md`.
 pub(crate) const GATHER_REACH: i32 = 2;
 
 pub(crate) const EDGE_FORMAT: TextureFormat = TextureFormat::Rgba16Uint;
 
-/// How far around a pixel lines of this half width are looked for.
+/// Distance within which lines of this half width are searched around a pixel, both in
+/// physical pixels.
 pub(crate) fn reach(half_width: f32) -> i32 {
     (half_width + 1.0).ceil() as i32 - 1
 }
 
-/// What is compiled into the pass that finds edges.
+/// What selects a shader variant of the pass that finds edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct OutlineKey {
     pub samples: u32,
@@ -45,9 +46,9 @@ pub(crate) struct OutlineKey {
     pub object_styles: bool,
     pub fading: bool,
     pub visible_range: bool,
-    /// Forms of the silhouettes and the creases.
+    /// Whether silhouettes and creases have the faithful form.
     pub faithful: [bool; 2],
-    /// A pixel of the depth is a pixel of the picture.
+    /// The depth texture has one pixel per pixel of the viewport.
     pub same_size: bool,
 }
 
@@ -131,12 +132,12 @@ impl OutlineKey {
     }
 }
 
-/// The layout entry of the visible range, everywhere.
+/// The layout entry of the visible range, the same in all passes.
 pub(crate) fn range_entry() -> BindGroupLayoutEntry {
     uniform_buffer_sized(false, Some(UVec4::min_size())).build(3, ShaderStages::FRAGMENT)
 }
 
-/// The layout entry of a texture of edges or lines.
+/// The layout entry of the texture of edges or of the flood.
 pub(crate) fn edges_entry(binding: u32) -> BindGroupLayoutEntry {
     texture_2d(TextureSampleType::Uint).build(binding, ShaderStages::FRAGMENT)
 }
@@ -207,7 +208,7 @@ impl FloodPipeline {
 }
 
 impl SpecializedRenderPipeline for FloodPipeline {
-    /// Whether it is the first step, which reads the edges.
+    /// Whether it is the first step, which reads edges instead of flooded lines.
     type Key = bool;
 
     fn specialize(&self, first: bool) -> RenderPipelineDescriptor {

@@ -1,4 +1,4 @@
-//! From a request to this frame's lines: textures and uniforms of the view.
+//! Prepares the textures and uniforms of the views whose lines are requested.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -28,11 +28,11 @@ use super::{
 #[derive(Component)]
 pub(crate) struct ViewLines {
     pub uniform: UniformBuffer<LinePassUniform>,
-    /// An edge for every pixel.
+    /// The edge of every pixel, see `edge.wgsl`.
     pub edges: Option<CachedTexture>,
-    /// The flood's two textures and the strides of its steps, if there is one.
+    /// The flood's textures and strides, if there is a flood.
     pub flood: Option<Flood>,
-    /// Whether this frame's lines were recorded.
+    /// Whether the passes of this frame were recorded.
     pub found: AtomicBool,
 }
 
@@ -50,22 +50,24 @@ impl Default for ViewLines {
 }
 
 impl ViewLines {
-    /// The edges, once they were recorded.
+    /// The edges; `None` unless the passes of this frame were recorded.
     pub fn found(&self) -> Option<&CachedTexture> {
         let found = self.found.load(Ordering::Relaxed);
         self.edges.as_ref().filter(|_| found)
     }
 }
 
-/// A first step and one for each stride, between two textures.
+/// A jump flood: a first step, then one for each stride. The steps alternate between
+/// two textures.
 pub(crate) struct Flood {
     pub strides: Vec<u32>,
     pub textures: [CachedTexture; 2],
 }
 
 impl Flood {
-    /// The strides that carry a line this far, in pixels; the last two strides are
-    /// repeated, which corrects nearly all errors of the flood.
+    /// The strides, in pixels, of a flood over a distance of `reach` pixels. Beyond
+    /// [`GATHER_REACH`] the last two are repeated, which corrects nearly all errors of
+    /// the flood.
     pub fn strides(reach: i32) -> Vec<u32> {
         let longest = (reach.max(1) as u32).next_power_of_two();
         let halving = (0..=longest.ilog2()).rev().map(|k| 1 << k);
@@ -73,7 +75,7 @@ impl Flood {
         halving.chain(again).collect()
     }
 
-    /// Where the last step writes.
+    /// The texture that the last step writes.
     pub fn result(&self) -> &CachedTexture {
         &self.textures[self.strides.len() % 2]
     }

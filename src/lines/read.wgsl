@@ -1,8 +1,8 @@
 #define_import_path bevy_comics::lines::read
 
-// Reads the lines that the service has found: the only owner of bindings 4
-// (edges) and 5 (flood). An entry point calls set_lines() first, with the
-// settings of its own uniform.
+// Reads the lines that the service has found: the only module that declares bindings 4
+// (edges) and 5 (flood) for the fused pass. An entry point calls set_lines() first, with
+// the settings of its own uniform.
 
 #import bevy_comics::depth::view::inside_viewport
 #import bevy_comics::lines::edge::{
@@ -19,20 +19,21 @@ fn set_lines(lines: Lines) {
 }
 
 #ifdef LINES
-// An Edge for every pixel: see edge.wgsl.
+// The packed Edge of every pixel, see edge.wgsl.
 @group(0) @binding(4) var edge_texture: texture_2d<u32>;
 #ifdef FLOOD
-// The nearest line of every pixel: see flood.wgsl.
+// The nearest line of every pixel, see flood.wgsl.
 @group(0) @binding(5) var flood_texture: texture_2d<u32>;
 #endif
 
-// Ink at a place, by kind, and the style slots of the objects it belongs to.
+// Ink at a position, 0 to 1: x silhouettes, y creases, z object edges. For each, the
+// slot of the OutlineStyle of the object that the line belongs to (0: none).
 struct Found {
     ink: vec3<f32>,
     slots: vec3<u32>,
 }
 
-// The lines of one pixel's edge, seen from a place.
+// Adds the ink at a position, in pixels, of the lines that belong to the pixel `owner`.
 fn add_edge(lines: ptr<function, Found>, edge: Edge, owner: vec2<i32>, at: vec2<f32>) {
     let centre = vec2<f32>(owner) + 0.5;
     for (var side = 0u; side < 4u; side++) {
@@ -48,8 +49,8 @@ fn add_edge(lines: ptr<function, Found>, edge: Edge, owner: vec2<i32>, at: vec2<
 }
 
 #ifdef FLOOD
-// The lines of the pixel whose line is nearest to this one. All sides of it: at
-// a corner two lines are as near.
+// Adds the lines of the pixel that owns the line nearest to `pixel`. It adds all sides
+// of that pixel, because at a corner two lines are equally near.
 fn add_flooded(lines: ptr<function, Found>, pixel: vec2<i32>, at: vec2<f32>) {
     let seed = textureLoad(flood_texture, pixel, 0);
     if seed.w != 0u {
@@ -59,12 +60,12 @@ fn add_flooded(lines: ptr<function, Found>, pixel: vec2<i32>, at: vec2<f32>) {
 }
 #endif
 
-// The lines at a place in pixels.
+// The lines at a position in physical pixels from the target's top left corner.
 fn lines_at(at: vec2<f32>) -> Found {
     let pixel = inside_viewport(vec2<i32>(floor(at)));
     let own = unpack_edge(textureLoad(edge_texture, pixel, 0));
     var lines: Found;
-    // The faithful forms: the pixel is the line.
+    // In the faithful forms the pixel itself is the line.
     lines.ink = own.ink * vec3(
         select(0.0, 1.0, (own.sides & WHOLE_SILHOUETTE) != 0u),
         select(0.0, 1.0, (own.sides & WHOLE_CREASE) != 0u),
@@ -73,7 +74,7 @@ fn lines_at(at: vec2<f32>) -> Found {
     lines.slots = vec3(own.slot);
 #ifdef FLOOD
 #ifdef LINES_ANYWHERE
-    // Between pixels: the lines that all four pixels around the place know.
+    // Positions between pixels: the nearest lines of the four pixels around.
     let corner = vec2<i32>(floor(at - 0.5));
     for (var i = 0; i < 4; i++) {
         add_flooded(&lines, inside_viewport(corner + vec2(i & 1, i >> 1u)), at);
@@ -99,6 +100,7 @@ fn lines_at(at: vec2<f32>) -> Found {
     return lines;
 }
 
+// The colour of a line: that of the OutlineStyle in `slot`, if it has one, else `color`.
 fn own_color(slot: u32, color: vec3<f32>) -> vec3<f32> {
 #ifdef OBJECT_STYLES
     if slot != 0u {
@@ -109,8 +111,9 @@ fn own_color(slot: u32, color: vec3<f32>) -> vec3<f32> {
     return color;
 }
 
-// Ink over the picture: the strongest line alone (Eq. 5 takes the maximum), and
-// of equals, within a hundredth, the silhouette, then the object edge.
+// Draws the line of largest opacity over the picture, in linear light ([CL] Eq. 5 takes
+// the maximum). If opacities differ by at most 0.01, a silhouette goes before an object
+// edge, and an object edge before a crease.
 fn draw_lines(linear: vec3<f32>, lines: Found) -> vec3<f32> {
     let s = lines_drawn;
     let alpha = lines.ink * vec3(s.silhouette_opacity, s.crease_opacity, s.object_opacity);
@@ -130,7 +133,7 @@ fn draw_lines(linear: vec3<f32>, lines: Found) -> vec3<f32> {
     return mix(linear, own_color(slot, color), strongest);
 }
 
-// All kinds together, as a sketch draws them (Eq. 5).
+// Ink of all kinds together, 0 to 1: the maximum ([CL] Eq. 5).
 fn total_ink(lines: Found) -> f32 {
     let s = lines_drawn;
     return max(lines.ink.x * s.silhouette_opacity, max(lines.ink.y * s.crease_opacity, lines.ink.z * s.object_opacity));

@@ -1,4 +1,4 @@
-//! What is asked of a view's lines, and the pipelines that answer.
+//! Requests for a view's lines, and the pipelines that find them.
 
 use bevy::{
     ecs::{
@@ -18,31 +18,31 @@ use super::{
 };
 use crate::depth::view::ViewUniform;
 
-/// On a view in the render world: its lines are to be found. Whoever plans the
-/// frame writes it anew for every frame.
+/// On a view in the render world: a request for its lines, written in every frame by
+/// [`PrepareComics::Choose`](crate::schedule::PrepareComics::Choose).
 #[derive(Component, Clone, Debug)]
 pub(crate) struct LineRequest {
     pub camera: Entity,
     pub settings: LineSettings,
     pub view: ViewUniform,
     pub lines: LinesUniform,
-    /// Size and samples of the depth texture.
+    /// Size in pixels of the depth texture, and its samples per pixel.
     pub size: UVec2,
     pub samples: u32,
     pub oblique: bool,
     /// The depth map spans the visible range.
     pub visible_range: bool,
-    /// Object ids are drawn.
+    /// Object ids are drawn and can be read.
     pub ids: bool,
-    /// Objects have lines of their own, or none.
+    /// Some object has an `OutlineStyle` or `NoOutlines`.
     pub object_styles: bool,
-    /// Lines are read between pixels, several times per pixel.
+    /// An effect reads lines at positions between pixels, several times per pixel.
     pub anywhere: bool,
 }
 
 impl LineRequest {
-    /// Whether lines are carried by a flood. A flood answers every place with
-    /// four lines, however wide they are.
+    /// Whether a flood finds the nearest lines. Reading a position between pixels then
+    /// takes four lookups, whatever the width of the lines.
     pub fn floods(&self) -> bool {
         self.lines.reach > GATHER_REACH || (self.anywhere && self.lines.reach > 0)
     }
@@ -60,11 +60,11 @@ pub(crate) struct LinePassUniform {
 pub(crate) struct LinePasses {
     pub key: OutlineKey,
     pub detect: CachedRenderPipelineId,
-    /// First and further steps of the flood, if there is one.
+    /// The first and all further steps of the flood, if there is one.
     pub flood: Option<[CachedRenderPipelineId; 2]>,
 }
 
-/// Gives the pipelines for a request.
+/// Specializes the pipelines for requests.
 #[derive(SystemParam)]
 pub(crate) struct LinePipelines<'w> {
     edges: ResMut<'w, SpecializedRenderPipelines<OutlinePipeline>>,
@@ -74,7 +74,7 @@ pub(crate) struct LinePipelines<'w> {
 }
 
 impl LinePipelines<'_> {
-    /// The pipelines that answer a request, queued where they are new.
+    /// The pipelines for a request; new ones are queued for compilation.
     pub fn get(&mut self, cache: &PipelineCache, request: &LineRequest) -> LinePasses {
         let key = OutlineKey::new(request);
         let mut flood = |first| self.floods.specialize(cache, &self.flood, first);

@@ -1,21 +1,21 @@
-//! Which lines are found and how they are inked: the service's settings.
+//! The settings of the service of lines: which lines it finds, and their ink.
 
 use bevy::{math::Vec3, render::render_resource::ShaderType};
 
 use super::kinds::{Creases, ObjectEdges, Silhouettes, ramp};
 use crate::settings::{Form, linear_rgb};
 
-/// Lines that an effect asks for ([`Effect::lines`](crate::Effect::lines)). Every
-/// number is in the range that [`Outlines`](crate::Outlines) documents for it.
+/// Lines that an effect requests ([`Effect::lines`](crate::Effect::lines)). Every
+/// number must be in the range that [`Outlines`](crate::Outlines) documents for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineSettings {
-    /// Lines where a surface ends in front of another or of the sky, if any.
+    /// Lines where a surface ends in front of another or of the sky; `None` for none.
     pub silhouettes: Option<Silhouettes>,
-    /// Lines where a surface folds, if any.
+    /// Lines where a surface bends sharply; `None` for none.
     pub creases: Option<Creases>,
-    /// Lines where two objects meet, if any.
+    /// Lines where two objects meet; `None` for none.
     pub objects: Option<ObjectEdges>,
-    /// Width in logical pixels.
+    /// Width of the lines in logical pixels.
     pub width: f32,
     /// Fraction of the width that is lost at the far end of the depth map.
     pub width_fade: f32,
@@ -24,7 +24,7 @@ pub struct LineSettings {
 }
 
 impl LineSettings {
-    /// No kind of line, of the default width.
+    /// No kind of line; the numbers are the defaults.
     pub const NONE: Self = Self {
         silhouettes: None,
         creases: None,
@@ -34,8 +34,8 @@ impl LineSettings {
         opacity_fade: 0.0,
     };
 
-    /// The kinds that can be seen: those without opacity are taken out, and
-    /// object edges where the crate is built without ids.
+    /// The settings without the kinds that are invisible: those of opacity 0, and
+    /// object edges if the crate is built without the feature `objects`.
     #[must_use]
     pub fn visible(self) -> Self {
         Self {
@@ -48,26 +48,26 @@ impl LineSettings {
         }
     }
 
-    /// Whether there is no kind of line.
+    /// Whether all kinds of line are `None`.
     pub fn is_empty(&self) -> bool {
         self.silhouettes.is_none() && self.creases.is_none() && self.objects.is_none()
     }
 
-    /// Whether the lines fade with the depth map.
+    /// Whether width or opacity decreases along the depth map, which is then read.
     pub fn fades(&self) -> bool {
         self.width_fade > 0.0 || self.opacity_fade > 0.0
     }
 
-    /// Whether any kind has lines of the width that is set.
+    /// Whether any kind uses `width`. The faithful forms have their own width.
     fn has_wide_lines(&self) -> bool {
         self.objects.is_some()
             || self.silhouettes.is_some_and(|s| s.form != Form::Faithful)
             || self.creases.is_some_and(|c| c.form != Form::Faithful)
     }
 
-    /// How far around a pixel lines are looked for, in physical pixels. `scale`
-    /// is physical pixels per logical pixel, `widest_object` the widest line of
-    /// an object that has its own, logical pixels.
+    /// Distance in physical pixels within which lines are searched around a pixel.
+    /// `scale` is physical pixels per logical pixel. `widest_object` is the width of
+    /// the widest line of any `OutlineStyle`, in logical pixels.
     pub(crate) fn reach(&self, scale: f32, widest_object: f32) -> i32 {
         let own = if self.has_wide_lines() {
             self.width
@@ -81,8 +81,9 @@ impl LineSettings {
         super::reach(0.5 * widest * scale)
     }
 
-    /// `reference` turns the largest raw depth nearby into what a silhouette's
-    /// jump is measured against: (factor, constant).
+    /// The settings as shaders take them. `scale` is physical pixels per logical
+    /// pixel, `reference` that of `DepthProjection::jump_reference`, `reach` in
+    /// physical pixels.
     pub(crate) fn uniform(&self, scale: f32, reference: [f32; 2], reach: i32) -> LinesUniform {
         let s = self.silhouettes.unwrap_or_default();
         let c = self.creases.unwrap_or_default();

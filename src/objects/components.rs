@@ -1,4 +1,4 @@
-//! Components on mesh entities.
+//! Components that change or remove the outlines of single mesh entities.
 
 use bevy::{
     color::Color,
@@ -17,50 +17,51 @@ use bevy::{
 use super::table::{ObjectStyleUniform, ObjectStyles};
 use crate::settings::{bounded_option, displayable, linear_rgb};
 
-/// This object has no lines of its own.
+/// Removes the [`Outlines`](crate::Outlines) of this object.
 ///
-/// Other objects keep theirs: the outline of what stands in front of it is
-/// drawn, also where the two meet. Works on every mesh that is drawn in the
-/// depth prepass (opaque and alpha-masked, lit or not, skinned, morphed,
-/// instanced by the engine). Transparent meshes have no lines anyway.
+/// Other objects keep theirs: an object in front of this one still has its outline,
+/// also where the two meet. It works on every mesh in the depth prepass (opaque and
+/// alpha-masked, lit or unlit, skinned, morphed, instanced by the engine). Transparent
+/// meshes have no outlines anyway.
 ///
-/// This is about [`Outlines`](crate::Outlines): [`Contours`](crate::Contours)
-/// are drawn on the depth map, which knows no objects.
+/// [`Contours`](crate::Contours) do not change: they are found in the depth map, which
+/// does not distinguish objects.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct NoOutlines {
-    /// Whether it holds for all descendants as well, except those with a
-    /// [`OutlineStyle`] or `NoOutlines` of their own: what the root of a glTF
-    /// scene wants. Default: `false`.
+    /// Applies to all descendants as well, for example on the root of a glTF scene.
+    /// A descendant with an [`OutlineStyle`] or `NoOutlines` of its own is left out,
+    /// together with everything below it. Default: `false`.
     pub inherit: bool,
 }
 
 impl NoOutlines {
-    /// For an object and everything below it.
+    /// For an object and its descendants: [`inherit`](Self::inherit) is `true`.
     pub const INHERITED: Self = Self { inherit: true };
 }
 
-/// The lines of this object look different from the camera's
+/// Gives the lines of this object another look than the camera's
 /// [`Outlines`](crate::Outlines).
 ///
-/// A line belongs to the nearer of the two surfaces that it parts; where both
-/// are at the same depth, to the one that has lines at all. Objects under
-/// [`NoOutlines`] have none, whatever else they carry.
+/// Where one surface hides another, the line between them belongs to the nearer one.
+/// Where two objects or the two sides of a crease meet, it belongs to the one that
+/// draws this kind of line; if both do, to the nearer one. An object that also has
+/// [`NoOutlines`] has no lines.
 ///
-/// No more than 255 styles that differ from one another are told apart.
+/// There can be 255 different styles. Objects with a further one are drawn in the last
+/// of them, and a warning is logged.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct OutlineStyle {
-    /// Colour of all lines; `None` keeps the camera's. Clamped to what a
-    /// display shows; its alpha is not used. Default: `None`.
+    /// Colour of all lines, clamped to what a display shows; its alpha is not used.
+    /// `None` keeps the camera's. Default: `None`.
     pub color: Option<Color>,
-    /// Width in logical pixels; `None` keeps the camera's. Range 0.5 to 16.
-    /// Default: `None`.
+    /// Width of all lines in logical pixels; `None` keeps the camera's.
+    /// Range 0.5 to 16, default `None`.
     pub width: Option<f32>,
-    /// Which kinds of line are drawn, of those that the camera draws.
-    /// Default: all.
+    /// Kinds of line that are drawn, if the camera draws them too. Default: all.
     pub kinds: OutlineKinds,
-    /// As [`NoOutlines::inherit`]. Default: `false`.
+    /// Applies to all descendants as well, as [`NoOutlines::inherit`]. Default: `false`.
     pub inherit: bool,
 }
 
@@ -68,11 +69,12 @@ pub struct OutlineStyle {
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Default, Clone, PartialEq)]
 pub struct OutlineKinds {
-    /// Where the object ends in front of something.
+    /// Lines where the object ends in front of another surface or of the sky.
+    /// Default: `true`.
     pub silhouettes: bool,
-    /// Where its surface folds.
+    /// Lines where its surface bends sharply. Default: `true`.
     pub creases: bool,
-    /// Where it touches other objects.
+    /// Lines where it meets other objects. Default: `true`.
     pub objects: bool,
 }
 
@@ -87,7 +89,7 @@ impl Default for OutlineKinds {
 }
 
 impl OutlineStyle {
-    /// The settings that are used.
+    /// The settings that are used: width and colour in their documented ranges.
     #[must_use]
     pub fn sanitized(self) -> Self {
         Self {
@@ -113,7 +115,7 @@ impl OutlineStyle {
     }
 }
 
-/// Gives every styled object its slot in the table.
+/// Builds the table of outline styles, and gives each object that has one its slot.
 pub(crate) fn assign_object_styles(
     styled: Query<
         (Entity, Option<&OutlineStyle>, Option<&NoOutlines>),

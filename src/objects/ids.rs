@@ -1,8 +1,9 @@
-//! Draws the ids of the objects: every mesh of the depth prepass once more, at
-//! exactly the depth that the prepass found, so that each pixel knows its
-//! object. Skins, morph targets, materials with vertex shaders of their own and
-//! alpha masks come out right, since the vertex shader is the prepass's and what
-//! it discarded fails the test for equal depth.
+//! Draws object ids: every mesh of the depth prepass is drawn again where its depth is
+//! equal to that of the prepass.
+//!
+//! Skins, morph targets and materials with their own vertex shader are correct, because
+//! the vertex shader is that of the prepass. Alpha masks are correct, because what the
+//! prepass discarded fails the depth test.
 
 use bevy::{
     app::App,
@@ -52,14 +53,15 @@ use crate::{
     schedule::{ComicsSystems, PrepareComics},
 };
 
-/// The id that an entity has in [`ViewObjectIds`](super::ViewObjectIds), 1 to 65535. Entities whose
-/// indices differ by a multiple of 65535 share one, and have no
+/// The id of an entity in [`ViewObjectIds`](super::ViewObjectIds), 1 to 65535.
+///
+/// Entities whose indices differ by a multiple of 65535 have the same id, and no
 /// [object edge](crate::ObjectEdges) between them.
 pub fn object_id(entity: Entity) -> u16 {
     (entity.index_u32() % 65535 + 1) as u16
 }
 
-/// Takes this frame's textures from the cache.
+/// Gets the textures of this frame from the engine's texture cache.
 fn prepare_object_ids(
     mut commands: Commands,
     views: Query<(Entity, &IdRequest, Option<&ViewObjectIds>)>,
@@ -97,8 +99,8 @@ fn prepare_object_ids(
     }
 }
 
-/// Views whose ids are wanted, or were drawn in the last frame: while a pipeline
-/// compiles, the look that is drawn may need them longer than the one wanted.
+/// Views whose plan reads ids, or whose ids were drawn in the last frame: while a pipeline
+/// compiles, the older plan that is still drawn may read ids that the new one does not.
 type WithIds = Or<(With<IdsWanted>, With<IdRequest>)>;
 
 fn queue_object_ids(
@@ -158,7 +160,7 @@ fn prepare_object_table(
     }
 }
 
-/// Draws the ids of a view.
+/// Draws the object ids of a view.
 fn draw_object_ids(
     world: &World,
     view: ViewQuery<(
@@ -213,7 +215,7 @@ fn draw_object_ids(
     ledger.set(request.camera, ComicsStage::ObjectIds, StageOutcome::Ran);
 }
 
-/// Adds the pass, in an app that draws meshes.
+/// Adds the pass that draws ids. Needs the engine's `PbrPlugin`.
 pub(crate) fn build(app: &mut App) {
     app.add_plugins(SortedRenderPhasePlugin::<ObjectIdItem, MeshPipeline>::new(
         RenderDebugFlags::default(),

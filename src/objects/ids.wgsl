@@ -1,5 +1,5 @@
-// Writes which object is seen at a pixel: its id and the slot of its style.
-// The vertex shader is that of the prepass.
+// Writes the object at each pixel: its id and the slot of its outline style. The vertex
+// shader is that of the depth prepass.
 
 @group(1) @binding(0) var<storage, read> objects: array<vec2<u32>>;
 

@@ -1,4 +1,4 @@
-//! What draws the id of an object: its pipeline, and how it is found.
+//! The pipelines and draw commands that draw the ids of objects.
 
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
@@ -42,7 +42,7 @@ use bevy::{
 
 use super::{ID_FORMAT, phase::ObjectIdItem};
 
-/// What all pipelines of this pass have in common.
+/// The parts that all pipelines of this pass have in common.
 #[derive(Resource)]
 pub(super) struct ObjectIdPipeline {
     pub prepass: PrepassPipeline,
@@ -103,7 +103,7 @@ impl SpecializedMeshPipeline for ObjectIdSpecializer {
     }
 }
 
-/// By output index of the phase's instances: (id, style slot).
+/// (id, style slot) of each object, indexed by the instance index of its phase item.
 #[derive(Resource, Default)]
 pub(super) struct ObjectTable {
     pub objects: StorageBuffer<Vec<UVec2>>,
@@ -132,6 +132,7 @@ impl<P: PhaseItem, const I: usize> RenderCommand<P> for SetObjectTable<I> {
     }
 }
 
+/// Draws the id of an object whose material has no prepass shader.
 pub(super) type DrawId = (
     SetItemPipeline,
     SetPrepassViewBindGroup<0>,
@@ -141,7 +142,8 @@ pub(super) type DrawId = (
     DrawMesh,
 );
 
-/// For materials whose vertex shader may read their bindings.
+/// As [`DrawId`], for materials with a prepass shader, which may read the material's
+/// bindings.
 pub(super) type DrawIdWithMaterial = (
     SetItemPipeline,
     SetPrepassViewBindGroup<0>,
@@ -156,7 +158,7 @@ fn reads_material(properties: &MaterialProperties) -> bool {
         || properties.get_shader(PrepassFragmentShader).is_some()
 }
 
-/// Whether a material is drawn in the prepass.
+/// Whether the depth prepass draws meshes of this material.
 fn in_prepass(properties: &MaterialProperties) -> bool {
     properties.prepass_enabled
         && !properties.reads_view_transmission_texture
@@ -166,7 +168,7 @@ fn in_prepass(properties: &MaterialProperties) -> bool {
         )
 }
 
-/// What makes the item of an object.
+/// Makes the phase items of objects.
 #[derive(SystemParam)]
 pub(super) struct IdItems<'w> {
     draw_functions: Res<'w, DrawFunctions<ObjectIdItem>>,
@@ -180,7 +182,7 @@ pub(super) struct IdItems<'w> {
 }
 
 impl IdItems<'_> {
-    /// The item of an object; `None` if the prepass does not draw it.
+    /// The phase item of an object; `None` if the depth prepass does not draw it.
     pub fn item(&mut self, object: (Entity, MainEntity), msaa: Msaa) -> Option<ObjectIdItem> {
         let instance = self.instances.render_mesh_queue_data(object.1)?;
         let mesh = self.meshes.get(instance.mesh_asset_id())?;
@@ -215,7 +217,7 @@ impl IdItems<'_> {
         let pipeline = self
             .pipelines
             .specialize(&self.cache, &specializer, key, &mesh.layout)
-            .inspect_err(|error| error_once!("{:?} has no object id: {error}", object.1))
+            .inspect_err(|error| error_once!("no object id for {:?}: {error}", object.1))
             .ok()?;
         let functions = self.draw_functions.read();
         Some(ObjectIdItem {

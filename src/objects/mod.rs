@@ -1,5 +1,5 @@
-//! What single objects ask of the lines: no lines, or lines of their own. And
-//! the ids by which lines know where one object ends and another begins.
+//! The service of objects: components that change or remove the lines of single
+//! objects, and a texture of object ids, in which lines find where objects meet.
 
 #[cfg(feature = "objects")]
 mod ids;
@@ -41,17 +41,17 @@ use bevy::{
 
 use crate::schedule::PrepareComics;
 
-/// The ids' texture: (id, style slot).
+/// Format of the texture of object ids: (id, style slot).
 #[cfg(feature = "objects")]
 pub(crate) const ID_FORMAT: bevy::render::render_resource::TextureFormat =
     bevy::render::render_resource::TextureFormat::Rg16Uint;
 
-/// On a view in the render world: the wanted plan reads object ids.
+/// On a view in the render world: the plan of its camera reads object ids.
 #[derive(Component)]
 pub(crate) struct IdsWanted;
 
-/// On a view in the render world: the ids of its objects are to be drawn in this
-/// frame.
+/// On a view in the render world: a request for object ids, written in every frame by
+/// [`PrepareComics::Choose`].
 #[derive(Component)]
 #[cfg_attr(
     not(feature = "objects"),
@@ -59,27 +59,28 @@ pub(crate) struct IdsWanted;
 )]
 pub(crate) struct IdRequest {
     pub camera: Entity,
-    /// Size and samples of the depth texture.
+    /// Size in pixels of the depth texture, and its samples per pixel.
     pub size: UVec2,
     pub samples: u32,
 }
 
-/// In the render world, on a view whose object ids are drawn: which object is
-/// seen at each pixel. As large as the depth texture, with as many samples. The
-/// texture may be another one in every frame.
+/// On a view in the render world whose object ids are drawn: the object at each pixel.
+///
+/// The texture has the size and the number of samples of the depth texture. It can be
+/// another texture in every frame.
 #[derive(Component, Clone, Debug)]
 #[cfg_attr(
     not(feature = "objects"),
     allow(dead_code, reason = "only the feature `objects` draws ids")
 )]
 pub struct ViewObjectIds {
-    /// `Rg16Uint`: the [`object_id`](crate::object_id) (0: none) and the slot of
-    /// its contour style (0: none of its own).
+    /// `Rg16Uint`: red is the [`object_id`](crate::object_id) (0: no object), green is
+    /// the slot of the object's outline style (0: it has none).
     pub texture: Texture,
     pub(crate) view: TextureView,
 }
 
-/// The layout entry of the ids.
+/// The layout entry of the texture of object ids.
 pub(crate) fn ids_entry(multisampled: bool) -> BindGroupLayoutEntry {
     let texture = if multisampled {
         texture_2d_multisampled(TextureSampleType::Uint)
@@ -89,7 +90,7 @@ pub(crate) fn ids_entry(multisampled: bool) -> BindGroupLayoutEntry {
     texture.build(8, ShaderStages::FRAGMENT)
 }
 
-/// The layout entry of the objects' styles.
+/// The layout entry of the table of outline styles.
 pub(crate) fn object_styles_entry() -> BindGroupLayoutEntry {
     let size = table::ObjectStyleUniform::min_size();
     storage_buffer_read_only_sized(false, Some(size)).build(6, ShaderStages::FRAGMENT)
@@ -104,7 +105,8 @@ fn update_object_styles(
     buffer.update(&styles, &device, &queue);
 }
 
-/// Ids of objects and lines of their own, for the views that ask for them.
+/// Draws object ids for the views that request them, and uploads the outline styles of
+/// objects.
 pub(crate) struct ObjectsPlugin;
 
 impl Plugin for ObjectsPlugin {
@@ -117,7 +119,7 @@ impl Plugin for ObjectsPlugin {
     }
 
     fn finish(&self, app: &mut App) {
-        // Ids are drawn with the engine's own mesh pipelines.
+        // Ids are drawn with the engine's mesh pipelines, so they need its `PbrPlugin`.
         #[cfg(feature = "objects")]
         if app.is_plugin_added::<bevy::pbr::PbrPlugin>() {
             ids::build(app);

@@ -1,19 +1,19 @@
 #define_import_path bevy_comics::objects
 
-// Which object is seen where, and what its lines have of their own: the only
-// owner of bindings 6 (styles of objects) and 8 (ids).
+// Object ids and outline styles of objects: the only module that declares bindings 6
+// (styles) and 8 (ids).
 
 #import bevy_comics::depth::view::depth_pixel
 
-// What an object's lines have of their own (objects/table.rs). Slot 0 is an
-// object without a style.
+// An outline style: ObjectStyleUniform of objects/table.rs. Slot 0 of the table is for
+// objects without a style.
 struct ObjectStyle {
     color: vec3<f32>,
-    // 1: the colour is used.
+    // 1: the style overrides the colour; 0: it does not.
     has_color: f32,
-    // Half width in logical pixels; negative if the object does not override it.
+    // Half width in logical pixels; negative if the style does not override it.
     half_width: f32,
-    // Bits of the kinds that are drawn.
+    // Kinds that are drawn: bit 0 silhouettes, bit 1 creases, bit 2 object edges.
     kinds: u32,
 }
 
@@ -29,19 +29,20 @@ struct ObjectStyle {
 #endif
 
 #ifdef OBJECT_IDS
-// (id, style slot) of the object at a pixel's first sample; id 0: no object.
+// (id, style slot) of the object at a pixel's first sample; the id is 0 if there is none.
 fn load_object(pixel: vec2<i32>) -> vec2<u32> {
     return textureLoad(object_texture, depth_pixel(pixel), 0).xy;
 }
 #endif
 
 #ifdef OBJECT_STYLES
+// The style in a slot, which is clamped to the table.
 fn style_of(slot: u32) -> ObjectStyle {
     return object_styles[min(slot, arrayLength(&object_styles) - 1u)];
 }
 #endif
 
-// Which kinds of line an object of this style has, as bits.
+// The kinds of line that an object with this slot draws, as bits of ObjectStyle::kinds.
 fn kinds_of(slot: u32) -> u32 {
 #ifdef OBJECT_STYLES
     if slot != 0u {

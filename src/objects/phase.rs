@@ -1,4 +1,4 @@
-//! An object in the pass of ids.
+//! The phase item of an object in the pass that draws ids.
 
 use std::ops::Range;
 
@@ -27,8 +27,8 @@ pub(crate) struct ObjectIdItem {
 }
 
 impl PhaseItem for ObjectIdItem {
-    // An instance is an object: instances are not merged, so that the first
-    // index of an item is that of its object.
+    // Instances must not be batched: the first instance index of an item is the index of
+    // its object in the table.
     const AUTOMATIC_BATCHING: bool = false;
 
     fn entity(&self) -> Entity {
@@ -61,7 +61,7 @@ impl PhaseItem for ObjectIdItem {
 }
 
 impl SortedPhaseItem for ObjectIdItem {
-    // The depth is there: any order will do, so pipelines are kept together.
+    // Depth is already complete, so any order is right: sort by pipeline.
     type SortKey = (FloatOrd, usize);
 
     fn sort_key(&self) -> Self::SortKey {

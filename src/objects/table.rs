@@ -1,5 +1,4 @@
-//! The styles of objects as the shaders read them: a short table, and for every
-//! object its slot in it.
+//! The table of outline styles that shaders read, and the slot of each object in it.
 
 use bevy::{
     ecs::{entity::EntityHashMap, resource::Resource},
@@ -30,17 +29,17 @@ impl Default for ObjectStyleUniform {
     }
 }
 
-/// The most styles that differ from one another; further ones are drawn like
-/// the last, with a warning.
+/// Most outline styles that can be told apart: a slot is packed in 8 bits. Further ones
+/// are drawn like the last, with a warning.
 #[cfg(feature = "objects")]
 pub(crate) const MOST_STYLES: usize = 255;
 
-/// The objects with a style of their own, in both worlds.
+/// The objects that have an `OutlineStyle` or `NoOutlines`. Both worlds have a copy.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
 pub(crate) struct ObjectStyles {
-    /// Slot 0 is an object without a style.
+    /// The table, by slot. Slot 0 is for objects without a style.
     pub entries: Vec<ObjectStyleUniform>,
-    /// By main-world entity.
+    /// The slot of each object, by main-world entity.
     pub slots: EntityHashMap<u8>,
 }
 
@@ -49,7 +48,7 @@ impl ObjectStyles {
         !self.slots.is_empty()
     }
 
-    /// The widest line of any object, logical pixels.
+    /// Width of the widest line of any style, in logical pixels; 0 if no style sets it.
     pub fn max_width(&self) -> f32 {
         self.entries
             .iter()
@@ -57,7 +56,8 @@ impl ObjectStyles {
             .fold(0.0, f32::max)
     }
 
-    /// The slot of a style; styles that are equal share one.
+    /// The slot of a style, added to the table if it is new. Equal styles have the same
+    /// slot.
     #[cfg(feature = "objects")]
     pub fn slot(&mut self, style: ObjectStyleUniform) -> u8 {
         if self.entries.is_empty() {
@@ -67,7 +67,7 @@ impl ObjectStyles {
         let slot = known.map_or(self.entries.len(), |at| at + 1);
         if slot > MOST_STYLES {
             bevy::log::warn_once!(
-                "more than {MOST_STYLES} different contour styles: the others are drawn like the last"
+                "more than {MOST_STYLES} different outline styles: the others are drawn like the last"
             );
             return MOST_STYLES as u8;
         }
@@ -88,7 +88,7 @@ pub(crate) fn extract_object_styles(
     }
 }
 
-/// The table on the GPU.
+/// The table of outline styles on the GPU.
 #[derive(Resource, Default)]
 pub(crate) struct ObjectStyleBuffer {
     buffer: StorageBuffer<Vec<ObjectStyleUniform>>,

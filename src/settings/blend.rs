@@ -1,17 +1,19 @@
-//! What lies between two settings.
+//! Blending between two values of a setting.
 
 use bevy::{
     color::{Color, LinearRgba, Mix, Oklaba},
     math::FloatExt,
 };
 
-/// The colour `t` (0 to 1) of the way to another, through `OKLab`, clamped to what
-/// a display shows.
+/// The colour at fraction `t` (0 to 1) between two colours, mixed in `OKLab`.
+///
+/// Its components are clamped to 0 to 1 in linear light. Equal colours come back
+/// unchanged.
 pub fn blend_color(a: Color, b: Color, t: f32) -> Color {
     if a == b {
         return a;
     }
-    // Between two colours of a display may lie some that it does not show.
+    // A mixture of two displayable colours can be outside of the display's gamut.
     let mixed = LinearRgba::from(Oklaba::from(a).mix(&Oklaba::from(b), t));
     let shown = |part: f32| part.clamp(0.0, 1.0);
     LinearRgba {
@@ -23,8 +25,9 @@ pub fn blend_color(a: Color, b: Color, t: f32) -> Color {
     .into()
 }
 
-/// The positive number `t` (0 to 1) of the way to another in equal ratios;
-/// numbers that have no ratio are interpolated linearly.
+/// The number at fraction `t` (0 to 1) between two positive numbers, on a
+/// logarithmic scale: equal steps of `t` are equal ratios. If either number is 0 or
+/// negative, the interpolation is linear.
 pub fn blend_ratio(a: f32, b: f32, t: f32) -> f32 {
     if a == b || a <= 0.0 || b <= 0.0 {
         return a.lerp(b, t);
@@ -33,24 +36,26 @@ pub fn blend_ratio(a: f32, b: f32, t: f32) -> f32 {
     (a * (b / a).powf(f64::from(t))) as f32
 }
 
-/// The strength, 0 to 1, of what changes its mode half of the way.
+/// Strength, 0 to 1, of a setting that changes its mode halfway through a
+/// transition: 1 at both ends, 0 at `t = 0.5`.
 pub(crate) fn dip(t: f32) -> f32 {
     (1.0 - 2.0 * t).abs()
 }
 
-/// What can be faded and mixed with another of its kind.
+/// A group of settings that can be faded out and mixed with another of its type.
 pub(crate) trait Blend: Copy {
-    /// With this fraction of its strength; at 0 it changes nothing.
+    /// The settings with `fraction` of their strength; at 0 they change nothing.
     fn faded(self, fraction: f32) -> Self;
 
-    /// Whether numbers alone tell the two apart.
+    /// Whether the two differ in numbers and colours only, not in a mode.
     fn same_modes(&self, other: &Self) -> bool;
 
-    /// Every number `t` of the way to the other; modes stay.
+    /// Numbers and colours at fraction `t` between the two; modes of `self`.
     fn mixed(self, other: Self, t: f32) -> Self;
 
-    /// `t` of the way from one to the other: what only one side has fades, and
-    /// what changes its mode fades out, changes, and fades in.
+    /// The settings at fraction `t` between the two. If one is missing, the other
+    /// fades. If a mode differs, the settings fade out until `t = 0.5`, change the
+    /// mode there, and fade in again.
     fn blend(a: Option<Self>, b: Option<Self>, t: f32) -> Option<Self> {
         Some(match (a, b) {
             (None, None) => return None,

@@ -1,10 +1,9 @@
-//! Settings come from files, sliders and arithmetic: every number is brought
-//! into its documented range before it reaches the GPU.
+//! Clamps. Settings come from files, sliders and arithmetic, so every number is
+//! brought into its documented range before it reaches the GPU.
 
 use bevy::color::{Color, LinearRgba};
 
-/// `value` in `[low, high]`; anything that is not a finite number becomes
-/// `default`.
+/// `value` clamped to `low` to `high`; `default` if it is NaN or infinite.
 pub fn bounded(value: f32, default: f32, low: f32, high: f32) -> f32 {
     if value.is_finite() {
         value.clamp(low, high)
@@ -13,13 +12,14 @@ pub fn bounded(value: f32, default: f32, low: f32, high: f32) -> f32 {
     }
 }
 
-/// As [`bounded`], for a setting that may be off.
+/// As [`bounded`], for an optional setting: `None` stays `None`.
 pub fn bounded_option(value: Option<f32>, default: f32, low: f32, high: f32) -> Option<f32> {
     value.map(|value| bounded(value, default, low, high))
 }
 
-/// A displayable colour: every component in `[0, 1]` of linear light; a colour
-/// with a component that is not finite becomes `default`.
+/// A displayable colour: every component, alpha included, clamped to 0 to 1 in
+/// linear light. A colour with a component that is NaN or infinite becomes
+/// `default`.
 pub fn displayable(color: Color, default: Color) -> Color {
     let linear = |color: Color| {
         let c = color.to_linear();
@@ -30,8 +30,8 @@ pub fn displayable(color: Color, default: Color) -> Color {
         parts = linear(default);
     }
     if parts.iter().all(|part| (0.0..=1.0).contains(part)) {
-        // Keeps the caller's colour space, so that a sane colour comes back
-        // equal.
+        // Nothing was clamped: return the colour in its own colour space, so that
+        // it compares equal to the caller's.
         return if linear(color) == parts {
             color
         } else {
@@ -48,7 +48,9 @@ pub fn displayable(color: Color, default: Color) -> Color {
     .into()
 }
 
-/// A near and a far distance: positive, finite, and far beyond near.
+/// A near and a far distance in world units: near 1e-6 to 1e30, far 1e-6 to 1e36,
+/// exchanged if far is below near, and far at least 1.001 times near. What is not
+/// finite becomes 0.1 (near) or 1000 (far).
 pub(crate) fn ordered_planes(near: f32, far: f32) -> (f32, f32) {
     let near = bounded(near, 0.1, 1e-6, 1e30);
     let far = bounded(far, 1000.0, 1e-6, 1e36);

@@ -1,9 +1,9 @@
-//! What tools may know about a setting: its range and unit, on the field itself.
+//! Attributes on the fields of an effect: range, unit, and how a field is blended.
 
 use bevy::reflect::{NamedField, Reflect};
 
-/// The documented range of a number: a reflection attribute of every number of
-/// every style, so that a tool can make a slider of it.
+/// The documented range of a number: a reflection attribute of every numeric field
+/// of every effect. Tools make sliders from it.
 ///
 /// ```
 /// # use bevy::reflect::{TypeInfo, Typed};
@@ -14,21 +14,22 @@ use bevy::reflect::{NamedField, Reflect};
 /// ```
 #[derive(Reflect, Clone, Copy, Debug, PartialEq)]
 pub struct FieldRange {
-    /// The least value that is used; less counts as this.
+    /// Least value; a smaller one is clamped to it.
     pub min: f64,
-    /// The greatest value that is used; more counts as this.
+    /// Greatest value; a larger one is clamped to it.
     pub max: f64,
-    /// Whether equal ratios are equal steps for the eye.
+    /// Whether equal ratios, not equal differences, look like equal steps. Sliders
+    /// are then logarithmic, and transitions interpolate by ratio.
     pub logarithmic: bool,
-    /// The unit, as it stands behind a number; empty for a plain number.
+    /// Unit that is written after the number; empty if it has none.
     pub unit: &'static str,
 }
 
 impl FieldRange {
-    /// Shares and amounts.
+    /// 0 to 1: fractions, amounts and opacities.
     pub const FRACTION: Self = Self::linear(0.0, 1.0);
 
-    /// A range in which equal differences are equal steps.
+    /// A range with a linear scale: equal differences are equal steps.
     pub const fn linear(min: f64, max: f64) -> Self {
         Self {
             min,
@@ -38,7 +39,7 @@ impl FieldRange {
         }
     }
 
-    /// A range in which equal ratios are equal steps.
+    /// A range with a logarithmic scale: equal ratios are equal steps.
     pub const fn logarithmic(min: f64, max: f64) -> Self {
         Self {
             logarithmic: true,
@@ -57,16 +58,18 @@ impl FieldRange {
     }
 }
 
-/// Marks a colour of which the hue is what matters: tools show a hue wheel.
+/// Marks a colour field whose hue matters most: tools show a hue wheel for it.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HueWheel;
 
-/// How a field is mixed when a style changes into another, where its type does
-/// not say it: by default numbers and colours are interpolated, and everything
-/// else is a mode (the effect fades out, changes its mode, and fades in).
+/// How a field changes during a transition between two styles.
+///
+/// Without this attribute, `f32` numbers and colours are interpolated, and a field
+/// of any other type is a mode: the effect fades out, changes the mode halfway, and
+/// fades in again.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BlendField {
-    /// Changes half of the way, without a fade.
+    /// The field takes its new value halfway through the transition, without a fade.
     Switch,
 }

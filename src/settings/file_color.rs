@@ -1,7 +1,8 @@
-//! Colours in style files: `"#rrggbb"` where 8 bits per component are exact, else
-//! four sRGB components.
+//! Colours in style files: `"#rrggbb"` or `"#rrggbbaa"` where 8 bits per component
+//! are exact, otherwise four sRGB components (red, green, blue, alpha).
 //!
-//! For a field of an effect: `#[serde(with = "bevy_comics::file_color")]`.
+//! A colour field of an effect uses it with
+//! `#[serde(with = "bevy_comics::file_color")]`.
 
 use bevy::color::{Color, Srgba};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
@@ -13,10 +14,10 @@ enum FileColor {
     Components(f32, f32, f32, f32),
 }
 
-/// Writes a colour.
+/// Writes a colour in its shortest exact form.
 ///
 /// # Errors
-/// Those of the serializer.
+/// If the serializer fails.
 pub fn serialize<S: Serializer>(color: &Color, serializer: S) -> Result<S::Ok, S::Error> {
     let srgba = color.to_srgba();
     let hex = srgba.to_hex();
@@ -35,7 +36,7 @@ pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Color, 
     match FileColor::deserialize(deserializer) {
         Ok(FileColor::Hex(hex)) => Srgba::hex(&hex)
             .map(Color::Srgba)
-            .map_err(|error| D::Error::custom(format!("colour {hex:?}: {error}"))),
+            .map_err(|error| D::Error::custom(format!("invalid colour {hex:?}: {error}"))),
         Ok(FileColor::Components(red, green, blue, alpha)) => {
             Ok(Color::srgba(red, green, blue, alpha))
         }

@@ -1,4 +1,4 @@
-//! What all settings share: documented ranges, clamps, colours in files.
+//! What all settings have in common: ranges, clamps, blending, colours in files.
 
 mod blend;
 mod bounds;
@@ -20,7 +20,7 @@ use bevy::{
     math::Vec3,
 };
 
-/// The linear components of a colour, without its alpha, as a shader takes them.
+/// Red, green and blue of a colour in linear light, without alpha: as shaders take it.
 pub fn linear_rgb(color: Color) -> Vec3 {
     color.to_linear().to_vec3()
 }

@@ -1,4 +1,4 @@
-//! Settings out of their ranges.
+//! Every number is clamped to the range that its field documents.
 
 use bevy::color::Color;
 
@@ -7,8 +7,8 @@ use crate::{
     ObjectEdges, Outlines, RangeSmoothing, Silhouettes, Sketch, ToneBands,
 };
 
-/// A million floats: hand-picked edges, then every exponent and sign with
-/// random mantissas, NaN and infinities among them.
+/// A million floats: hand-picked edge cases, then random bit patterns, which
+/// include NaN and infinities.
 fn floats() -> impl Iterator<Item = f32> {
     let edges = [
         0.0,
@@ -40,8 +40,8 @@ fn floats() -> impl Iterator<Item = f32> {
     edges.into_iter().chain(random).take(1_000_000)
 }
 
-/// A million values of a field end up inside its range; those that were
-/// inside are kept.
+/// Asserts for a million values of a field that the clamped value is inside the
+/// range, and equal to the value if that was inside.
 fn fuzz(field: &str, low: f32, high: f32, through: impl Fn(f32) -> f32) {
     let mut kept = 0;
     for value in floats() {
@@ -58,7 +58,7 @@ fn fuzz(field: &str, low: f32, high: f32, through: impl Fn(f32) -> f32) {
     assert!(kept > 0, "{field}: no value was inside its range");
 }
 
-/// What a tool shows as a field's range is what the field is clamped to.
+/// The `FieldRange` of a field, which tools show, is the range of `sanitized`.
 #[test]
 fn the_range_on_a_field_is_the_range_that_is_used() {
     use bevy::reflect::{TypeInfo, Typed, structs::Struct};
@@ -122,7 +122,7 @@ fn the_range_on_a_field_is_the_range_that_is_used() {
 }
 
 #[test]
-fn a_million_floats_in_every_field_of_the_colour_styles() {
+fn a_million_floats_in_every_field_of_the_colour_effects() {
     fuzz("Desaturation::amount", 0.0, 1.0, |x| {
         Desaturation {
             amount: x,
@@ -166,7 +166,7 @@ fn a_million_floats_in_every_field_of_the_colour_styles() {
 }
 
 #[test]
-fn a_million_floats_in_every_field_of_the_ink_styles() {
+fn a_million_floats_in_every_field_of_the_ink_effects() {
     let contours = |edit: fn(&mut Contours, f32)| {
         move |x| {
             let mut c = Contours::default();

@@ -1,4 +1,4 @@
-//! Copies plans to the render world.
+//! Copies the plans of active cameras to the render world.
 
 use bevy::{
     camera::{Camera, Camera3d, MainPassResolutionOverride, Projection},
@@ -47,7 +47,8 @@ pub(super) fn extract_views(
         let clip_from_view = camera.clip_from_view();
         seen.insert(render_entity);
         let mut view = commands.entity(render_entity);
-        // Known before objects are queued, in the frame that first reads ids.
+        // Set during extraction, so that meshes are queued in the first frame that reads
+        // ids: plans are chosen only after queueing.
         if asked.plan.draws_ids() {
             view.insert(IdsWanted);
         } else {

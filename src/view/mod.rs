@@ -1,5 +1,5 @@
-//! A camera in the main world: its plan, the prepasses that the plan reads, and
-//! its way to the render world.
+//! A camera in the main world: its plan, the prepasses that the plan reads, and the
+//! extraction to the render world.
 
 mod extract;
 mod prepasses;
@@ -28,15 +28,15 @@ use crate::{
 };
 use prepasses::{give_up_claims, request_prepasses};
 
-/// On a camera in the main world: what it asks for, by its components.
+/// On a camera in the main world: what it draws, planned from its components.
 #[derive(Component, Clone, Debug)]
 struct CameraPlan {
     plan: Arc<Plan>,
-    /// Grows whenever the plan changes.
+    /// Increases with every change of the plan.
     number: u64,
 }
 
-/// Plans every camera, and sends the plans to the render world.
+/// Plans what every camera draws, and extracts the plans to the render world.
 pub(crate) struct ViewPlugin;
 
 impl Plugin for ViewPlugin {
@@ -44,7 +44,7 @@ impl Plugin for ViewPlugin {
         app.add_observer(give_up_claims::<DepthPrepass>)
             .add_observer(give_up_claims::<NormalPrepass>)
             .add_systems(
-                // After everything that changes a camera's components.
+                // After the systems that change a camera's components.
                 Last,
                 (
                     (plan_cameras, request_prepasses)
@@ -91,7 +91,7 @@ fn plan_cameras(
     }
 }
 
-/// Says once what will not work, instead of doing nothing in silence.
+/// Warns once about cameras with effects that this crate cannot draw on.
 fn warn_unsupported(
     flat: Query<EntityRef, With<Camera2d>>,
     targets: Query<(bevy::ecs::entity::Entity, &RenderTarget), With<CameraPlan>>,
@@ -101,14 +101,14 @@ fn warn_unsupported(
     for camera in &flat {
         if Plan::new(camera, &types, false).is_some() {
             warn_once!(
-                "{} is a Camera2d: comics styles need a Camera3d and leave it alone",
+                "{} is a Camera2d: its effects are not drawn, they need a Camera3d",
                 camera.id()
             );
         }
     }
     for (camera, target) in &targets {
         if matches!(target, RenderTarget::None { .. }) {
-            warn_once!("{camera} has no colour target: comics styles leave it alone");
+            warn_once!("{camera} has no colour target: its effects are not drawn");
         }
     }
 }

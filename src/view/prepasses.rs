@@ -1,5 +1,5 @@
-//! Gives cameras the prepasses that their plans read, and takes back what it gave
-//! when nothing needs it any more.
+//! Adds to cameras the prepasses that their plans read, and removes those that it
+//! added once nothing reads them.
 
 use std::marker::PhantomData;
 
@@ -19,21 +19,24 @@ use bevy::{
 use super::CameraPlan;
 use crate::{diagnostics::ComicsDiagnostics, effect::Plan};
 
-/// On a camera: this crate has put the prepass `P` there.
+/// On a camera: a claim that this crate added the prepass `P`.
 #[derive(Component)]
 pub(super) struct OwnPrepass<P: Component> {
-    /// The number of the first plan in a row that does not read it.
+    /// Number of the plan since which no plan has read the prepass; `None` if the
+    /// current plan reads it.
     unread_since: Option<u64>,
     prepass: PhantomData<fn() -> P>,
 }
 
-/// A prepass that the game inserts itself is the game's from then on.
+/// Removes the claim when the game inserts the prepass itself: this crate then never
+/// removes it.
 pub(super) fn give_up_claims<P: Component>(
     inserted: On<Insert, P>,
     owned: Query<(), With<OwnPrepass<P>>>,
     mut commands: Commands,
 ) {
-    // This crate's own claim comes after the prepass, so it is not seen here.
+    // This crate inserts its claim after the prepass, so its own insertion of the
+    // prepass does not get here.
     if owned.contains(inserted.entity) {
         commands.entity(inserted.entity).remove::<OwnPrepass<P>>();
     }
@@ -64,7 +67,7 @@ pub(super) fn request_prepasses(
 struct Request<'a> {
     camera: EntityRef<'a>,
     components: &'a Components,
-    /// The newest plan that is known to be drawn as it was asked for.
+    /// Number of the newest plan that the render world is known to draw.
     drawn: Option<u64>,
 }
 
@@ -81,7 +84,7 @@ impl Request<'_> {
             prepass: PhantomData,
         };
         let Some(plan) = plan else {
-            // Nothing is drawn, so nothing reads it.
+            // The camera draws no effects, so nothing reads the prepass.
             if own.is_some() && !self.is_required::<P>() {
                 commands.remove::<(P, OwnPrepass<P>)>();
             }
@@ -90,7 +93,7 @@ impl Request<'_> {
         let is_read = reads(&plan.plan);
         match (own, is_read) {
             (_, true) if !self.camera.contains::<P>() => {
-                // A claim that is there when the prepass comes would be given up.
+                // `give_up_claims` would remove a claim that is older than the prepass.
                 commands.remove::<OwnPrepass<P>>();
                 commands.insert(P::default());
                 commands.insert(claim(None));
@@ -102,8 +105,8 @@ impl Request<'_> {
                 None => {
                     commands.insert(claim(Some(plan.number)));
                 }
-                // While a pipeline compiles, an older plan is drawn that may
-                // read it.
+                // While a pipeline compiles, an older plan is drawn, which may read
+                // the prepass. Wait until this one is drawn.
                 Some(since) if self.drawn >= Some(since) && !self.is_required::<P>() => {
                     commands.remove::<(P, OwnPrepass<P>)>();
                 }
