@@ -136,7 +136,7 @@ impl fmt::Display for LeftOut {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::NotRequested => "not requested",
-            Self::Negligible => "its settings change nothing",
+            Self::Negligible => "it would change nothing",
             Self::NoDepthStyle => "no effect reads depth",
             Self::NoMapStyle => "no effect reads the depth map",
             Self::NoSuchLines => "no such lines are requested",

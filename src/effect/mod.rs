@@ -102,7 +102,8 @@ pub trait Effect:
     #[must_use]
     fn faded(self, fraction: f32) -> Self;
 
-    /// What the effect's WGSL reads besides its pixel's colour. Default: nothing.
+    /// The inputs that the effect's WGSL reads besides its pixel's colour. Default:
+    /// none.
     fn needs(&self) -> Needs {
         Needs::empty()
     }

@@ -56,7 +56,7 @@ pub struct Sketch {
     /// Length of a stroke's waves, in logical pixels. Range 2 to 256, default 40.
     #[reflect(@FieldRange::logarithmic(2.0, 256.0).unit("px"), @BlendField::Switch)]
     pub wavelength: f32,
-    /// How many times per second the strokes are drawn anew. Range 0 (they stand
+    /// How many times per second the strokes are redrawn. Range 0 (they stand
     /// still) to 60, default 8.
     #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"), @BlendField::Switch)]
     pub rate: f32,

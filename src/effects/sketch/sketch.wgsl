@@ -46,7 +46,7 @@ fn add_stroke(inked: f32, stroke: f32) -> f32 {
     return 1.0 - (1.0 - inked) * (1.0 - clamp(stroke, 0.0, 1.0));
 }
 
-// Ink on paper, in linear light.
+// Draws ink on paper, in linear light. `inked` is the coverage of the ink, 0 to 1.
 fn draw_sketch(s: Sketch, picture: vec3<f32>, inked: f32) -> vec3<f32> {
     let ground = mix(s.paper, s.paper * picture, s.wash);
     let ink = select(pow(max(inked, 1e-30), s.gamma), 0.0, inked <= 0.0);
