@@ -1,5 +1,5 @@
-// The cartoon material in the forward pass: [CL] 2.3, Eq. 5, without the
-// outlines, which are drawn later.
+// The cartoon material in the forward pass. The outlines are drawn later ([CL] 2.3,
+// Eq. 5).
 
 #import bevy_pbr::{
     clustered_forward as clustering,
@@ -22,7 +22,8 @@
 
 @group(#{MATERIAL_BIND_GROUP}) @binding(100) var<uniform> cartoon: CartoonLight;
 
-// What changes from a pixel to the next, taken where every pixel still runs.
+// Screen-space derivatives of world position and normal. Must be computed before
+// alpha_discard.
 struct Footprint {
     position_x: vec3<f32>,
     position_y: vec3<f32>,
@@ -30,27 +31,27 @@ struct Footprint {
     normal_y: vec3<f32>,
 }
 
-// k_d + specular of one light, or nothing where the surface faces away.
+// k_d + specular of one light. Does not depend on shadows.
 fn reflected(in: PbrInput, foot: Footprint, to_light: vec3<f32>) -> vec3<f32> {
     let base = in.material.base_color.rgb;
     let metallic = in.material.metallic;
-    let half_way = normalize(to_light + in.V);
-    let width = abs(dot(foot.normal_x, half_way)) + abs(dot(foot.normal_y, half_way));
-    let shine = highlight(cartoon, in.material.perceptual_roughness, saturate(dot(in.N, half_way)), width);
-    // What a polished surface gives back: its own colour if it is metal. The
-    // usual reflectance of one half is white.
+    let half_vector = normalize(to_light + in.V);
+    let width = abs(dot(foot.normal_x, half_vector)) + abs(dot(foot.normal_y, half_vector));
+    let shine = highlight(cartoon, in.material.perceptual_roughness, saturate(dot(in.N, half_vector)), width);
+    // Colour of the highlight: the base colour of a metal; otherwise white at the
+    // default reflectance of 0.5.
     let tint = mix(min(2.0 * in.material.reflectance, vec3(1.0)), base, metallic);
     return base + shine * tint;
 }
 
-// How much of a light arrives, 0 to 1: one minus its two shadows.
+// Fraction of a light that arrives: 1 minus the stronger of its two shadows.
+// `projected` is the value of the shadow map, 1 where the light arrives.
 fn unshadowed(in: PbrInput, foot: Footprint, to_light: vec3<f32>, projected: f32) -> f32 {
     let width = abs(dot(foot.normal_x, to_light)) + abs(dot(foot.normal_y, to_light));
     let lit = facing(cartoon, dot(in.N, to_light), width);
-    let back = (1.0 - lit) * cartoon.backface;
-    // What faces away has no projected shadow of its own to show.
-    let thrown = (1.0 - projected) * cartoon.projected;
-    return 1.0 - max(back, thrown);
+    let backface_shadow = (1.0 - lit) * cartoon.backface;
+    let projected_shadow = (1.0 - projected) * cartoon.projected;
+    return 1.0 - max(backface_shadow, projected_shadow);
 }
 
 fn directional_shadow(id: u32, in: PbrInput, at: vec3<f32>, view_z: f32) -> f32 {
@@ -101,13 +102,14 @@ fn cartoon_light(in: PbrInput, foot: Footprint) -> vec3<f32> {
         let id = clustering::get_clusterable_object_id(i);
         let light = &view_bindings::clustered_lights.data[id];
         let is_spot = i >= ranges.first_spot_light_index_offset;
-        let way = (*light).position_radius.xyz - at;
-        let to_light = normalize(way);
-        // Illuminance as if the surface faced the light.
+        let offset = (*light).position_radius.xyz - at;
+        let to_light = normalize(offset);
+        // Luminous intensity. Times the falloff, it is the illuminance of a surface
+        // that faces the light.
         var color = (*light).color_inverse_square_range.rgb;
         let brightest = max(color.r, max(color.g, color.b)) * exposure;
         let pixel = length(foot.position_x) + length(foot.position_y);
-        color *= flat_falloff(cartoon, dot(way, way), (*light).color_inverse_square_range.w, brightest, pixel);
+        color *= flat_falloff(cartoon, dot(offset, offset), (*light).color_inverse_square_range.w, brightest, pixel);
         var shadow = 1.0;
         let casts = receives && ((*light).flags & mesh_view_types::POINT_LIGHT_FLAGS_SHADOWS_ENABLED_BIT) != 0u;
         if is_spot {
@@ -117,7 +119,7 @@ fn cartoon_light(in: PbrInput, foot: Footprint) -> vec3<f32> {
                 axis.y = -axis.y;
             }
             let inside = dot(-axis, to_light) * (*light).light_custom_data.z + (*light).light_custom_data.w;
-            color *= cone(inside, pixel * inverseSqrt(dot(way, way)) * (*light).light_custom_data.z);
+            color *= cone(inside, pixel * inverseSqrt(dot(offset, offset)) * (*light).light_custom_data.z);
             if casts {
                 shadow = spot_shadow(id, in, at);
                 if shadow > 0.0 && shadow < 1.0 {
@@ -141,7 +143,7 @@ fn cartoon_light(in: PbrInput, foot: Footprint) -> vec3<f32> {
         light_sum += color * unshadowed(in, foot, to_light, shadow) * reflected(in, foot, to_light);
     }
 
-    // The standard material's diffuse reflection is k_d / pi.
+    // As the standard material, whose diffuse reflection is k_d / pi.
     let direct = light_sum / 3.14159265;
     let base = in.material.base_color.rgb;
     var indirect = view_bindings::lights.ambient_color.rgb * base * in.diffuse_occlusion;

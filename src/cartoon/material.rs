@@ -1,4 +1,4 @@
-//! The material and its settings.
+//! The cartoon material and its settings.
 
 use bevy::{
     asset::{Asset, AssetEvent, Assets},
@@ -13,53 +13,57 @@ use serde::{Deserialize, Serialize};
 
 use crate::settings::bounded;
 
-/// A [`StandardMaterial`] that is lit like a cartoon:
+/// A [`StandardMaterial`] with the lighting of a cartoon:
 ///
 /// ```text
-/// image = ambient + sum over lights (1 - S) light (k_d + specular)
+/// image = ambient + sum over lights of (1 - S) * light * (k_d + specular)
 /// ```
 ///
-/// (\[CL\] 2.3, Decaudin 1996). There is no N.L in it, so an area of one colour
-/// that a light reaches is one colour. `S` is 1 where the surface faces away from
-/// the light (backface shadow) or where the light's shadow map says so (projected
-/// shadow): both with a hard, anti-aliased edge. Directional, point and spot
-/// lights count, as many as there are.
+/// `k_d` is the base colour. `S` is the shadow, with a hard, anti-aliased edge: it is
+/// [`shadow_strength`](CartoonLight::shadow_strength) where the surface faces away
+/// from the light (backface shadow) or where the light's shadow map says that the
+/// light does not reach it (projected shadow), otherwise 0. The formula has no N·L
+/// term, so lit areas of one base colour are uniform. All directional, point and spot
+/// lights are used (\[CL\] 2.2, 2.3; Decaudin 1996).
 ///
-/// Everything else is the standard material's: textures, normal maps, vertex
-/// colours, alpha modes, emission, lightmaps, decals, fog, `unlit`. Reflected
-/// environments, transmission, clearcoat and anisotropy are not: they have no flat
-/// form. The light is computed in the forward pass; on a camera with a deferred
-/// prepass these meshes are drawn forward among the deferred ones, and
-/// `opaque_render_method` is set so.
+/// Textures, normal maps, vertex colours, alpha modes, emission, lightmaps, decals,
+/// fog and `unlit` work as in the standard material. Rectangular lights, light
+/// textures, environment maps, irradiance volumes, transmission, clearcoat and
+/// anisotropy are ignored. The light is computed in the forward pass:
+/// [`opaque_render_method`] is always set to forward, so that on a camera with a
+/// deferred prepass these meshes are drawn forward.
+///
+/// [`opaque_render_method`]: StandardMaterial::opaque_render_method
 pub type CartoonMaterial = ExtendedMaterial<StandardMaterial, CartoonLight>;
 
-/// How a [`CartoonMaterial`] takes the light.
+/// The lighting of a [`CartoonMaterial`].
 #[derive(Asset, AsBindGroup, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[uniform(100, CartoonLightUniform)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CartoonLight {
-    /// Where the backface shadow begins: the cosine of the angle between normal
-    /// and light. 0 is Decaudin's; a little more hides the facets of coarse
-    /// meshes, which shade themselves there. Range 0 to 0.9, default 0.08.
+    /// Moves the edge of the backface shadow towards the light: the cosine of the
+    /// angle between the normal and the direction to the light at which the shadow
+    /// begins. Range 0 to 0.9, default 0.08. Decaudin uses 0; a little more hides the
+    /// facets of coarse meshes, which shade themselves near the edge.
     pub terminator: f32,
-    /// Whether surfaces that face away from a light are in its shadow.
-    /// Default: `true`.
+    /// Darkens surfaces that face away from a light. Default: `true`.
     pub backface_shadows: bool,
-    /// Whether the lights' shadow maps are drawn. Default: `true`.
+    /// Draws the shadows of other surfaces, from the shadow maps of the lights.
+    /// Default: `true`.
     pub projected_shadows: bool,
-    /// How much of a light its shadow takes away. Range 0 to 1, default 1.
+    /// Fraction of a light that its shadows remove. Range 0 to 1, default 1.
     pub shadow_strength: f32,
-    /// Strength of the highlight. It is the larger and fainter the rougher the
-    /// material, hard-edged, and gone at a perceptual roughness of 0.72. Range 0
-    /// (none) to 4, default 1.
+    /// Strength of the highlights. Range 0 (none) to 4, default 1. A highlight has a
+    /// hard edge. The rougher the material, the larger and fainter it is; above a
+    /// perceptual roughness of 0.71 there is none.
     pub highlight: f32,
-    /// The share of its peak at which a highlight ends: the lower, the larger
-    /// it is. Range 0.01 to 0.99, default 0.5.
+    /// Fraction of its peak at which a highlight ends: the lower, the larger the
+    /// highlight. Range 0.01 to 0.99, default 0.5.
     pub highlight_edge: f32,
-    /// Point and spot lights fall off in steps of this many stops, so that their
-    /// light lies in flat rings; 0 lets them fall off smoothly. Range 0 to 4,
-    /// default 1.
+    /// Size of the steps, in stops (factors of 2), in which the light of point and
+    /// spot lights falls off with distance, so that it forms flat rings. Range 0 (no
+    /// steps) to 4, default 1.
     pub falloff: f32,
 }
 
@@ -78,8 +82,8 @@ impl Default for CartoonLight {
 }
 
 impl CartoonLight {
-    /// The settings that are used: every number in its documented range, what
-    /// is not finite replaced by its default.
+    /// The settings that are used: every number is clamped to its documented range,
+    /// and a number that is not finite is replaced by its default.
     #[must_use]
     pub fn sanitized(self) -> Self {
         let default = Self::default();
@@ -94,7 +98,7 @@ impl CartoonLight {
     }
 }
 
-/// `CartoonLight` of `cartoon.wgsl`.
+/// The uniform: `CartoonLight` in `light.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub struct CartoonLightUniform {
     terminator: f32,
@@ -126,7 +130,8 @@ impl MaterialExtension for CartoonLight {
     }
 }
 
-/// The deferred lighting pass knows the standard material's light alone.
+/// Sets every cartoon material to forward rendering: the engine's deferred lighting
+/// pass can compute only the standard material's lighting.
 pub(super) fn keep_forward(
     mut events: MessageReader<AssetEvent<CartoonMaterial>>,
     mut materials: ResMut<Assets<CartoonMaterial>>,

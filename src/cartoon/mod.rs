@@ -1,4 +1,4 @@
-//! The cartoon material: uniformly lit areas with hard shadows ([CL] 2.2, 2.3,
+//! The cartoon material: uniformly lit areas with hard shadows (\[CL\] 2.2, 2.3,
 //! after Decaudin).
 
 mod material;
@@ -15,7 +15,7 @@ use bevy::{
 pub use material::{CartoonLight, CartoonMaterial};
 pub use scene::CartoonScene;
 
-/// Registers types and shaders, and the material where meshes are drawn.
+/// Registers types, shaders and, if the app has [`PbrPlugin`], the material.
 pub(crate) struct CartoonPlugin;
 
 impl Plugin for CartoonPlugin {
@@ -25,7 +25,7 @@ impl Plugin for CartoonPlugin {
         add_material(app);
     }
 
-    /// The engine's plugins may have come after ours.
+    /// Adds the material if [`PbrPlugin`] was added after this plugin.
     fn finish(&self, app: &mut App) {
         add_material(app);
     }

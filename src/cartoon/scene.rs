@@ -1,4 +1,4 @@
-//! One component turns a whole scene into a cartoon, and back.
+//! A component that draws a whole scene with the cartoon material.
 
 use bevy::{
     asset::{AssetEvent, AssetId, Assets, Handle},
@@ -22,33 +22,34 @@ use serde::{Deserialize, Serialize};
 
 use super::{CartoonLight, CartoonMaterial};
 
-/// Draws this entity and everything below it with [`CartoonMaterial`]: put it on
-/// the root of a glTF scene.
+/// Draws an entity and all its descendants with [`CartoonMaterial`]. Put it on the
+/// root of a glTF scene, for example.
 ///
-/// Every `MeshMaterial3d<StandardMaterial>` there is replaced by a cartoon copy
-/// of its material, also when it is spawned later; changes of the original and
-/// of this component's settings reach the copy. Removing the component gives the
-/// standard materials back. Of several on the way up, the nearest counts.
+/// Every `MeshMaterial3d<StandardMaterial>` on these entities is replaced by a
+/// cartoon copy of its material, also on entities that are spawned later. The copy
+/// follows changes of the standard material and of this component. Removing the
+/// component restores the standard materials. If several ancestors of an entity have
+/// the component, the nearest one applies.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CartoonScene {
-    /// How the materials take the light. Default: [`CartoonLight::default`].
+    /// Lighting of the materials. Default: [`CartoonLight::default`].
     pub light: CartoonLight,
 }
 
-/// What a converted mesh was drawn with, and under which root.
+/// On a converted mesh: its standard material, and the root that converted it.
 #[derive(Component)]
 pub(super) struct Original {
     material: Handle<StandardMaterial>,
     root: Entity,
 }
 
-/// The copies, by root and original, so that a material that many meshes share
-/// stays one.
+/// The cartoon copies by root and standard material, so that meshes that share a
+/// material share its copy.
 pub(super) type Copies = HashMap<(Entity, AssetId<StandardMaterial>), Handle<CartoonMaterial>>;
 
-/// The nearest root above an entity, itself included.
+/// The nearest entity with a [`CartoonScene`] among an entity and its ancestors.
 fn root_of(
     entity: Entity,
     parents: &Query<&ChildOf>,
@@ -60,6 +61,7 @@ fn root_of(
         .find(|e| roots.contains(*e))
 }
 
+/// The cartoon copy of a standard material.
 fn copy(original: &StandardMaterial, light: CartoonLight) -> CartoonMaterial {
     CartoonMaterial {
         base: StandardMaterial {
@@ -70,7 +72,7 @@ fn copy(original: &StandardMaterial, light: CartoonLight) -> CartoonMaterial {
     }
 }
 
-/// Converts what stands below a root with a standard material.
+/// Converts the meshes below a root that have a standard material.
 pub(super) fn convert(
     mut commands: Commands,
     roots: Query<Ref<CartoonScene>>,
@@ -86,7 +88,7 @@ pub(super) fn convert(
         copies.clear();
         return;
     }
-    // A copy that no mesh uses any more is dropped by its handle's count.
+    // The copies of a root are kept as long as the root exists.
     copies.retain(|(root, _), _| roots.contains(*root));
     for (entity, material) in &meshes {
         let Some(root) = root_of(entity, &parents, &roots) else {
@@ -112,7 +114,7 @@ pub(super) fn convert(
     }
 }
 
-/// Gives meshes that are no longer below their root what they had.
+/// Restores the standard material of meshes whose nearest root has changed.
 pub(super) fn restore(
     mut commands: Commands,
     mut removed: RemovedComponents<CartoonScene>,
@@ -136,7 +138,7 @@ pub(super) fn restore(
     }
 }
 
-/// Carries changes of originals and of settings to the copies.
+/// Updates the copies after changes of standard materials or of a root's settings.
 pub(super) fn follow_materials(
     mut events: MessageReader<AssetEvent<StandardMaterial>>,
     roots: Query<Ref<CartoonScene>>,

@@ -1,4 +1,4 @@
-//! How the render world tells the main world what it did.
+//! Brings the diagnostics from the render world to the main world.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -10,12 +10,13 @@ use bevy::ecs::{
 
 use super::{CameraStages, ComicsDiagnostics, ComicsStage, StageOutcome};
 
-/// The render world's side of [`ComicsDiagnostics`]. Render systems write it
-/// through a lock, so that it gives them no order that they do not need.
+/// The render world's side of [`ComicsDiagnostics`]. Render systems write through a
+/// lock, so that they do not conflict and need no order.
 #[derive(Resource, Default)]
 pub(crate) struct StageLedger {
-    /// What the current frame has done so far.
+    /// The stages of the current frame so far.
     current: Mutex<EntityHashMap<CameraStages>>,
+    /// The stages of the last complete frame.
     published: Arc<Mutex<EntityHashMap<CameraStages>>>,
 }
 
@@ -25,24 +26,25 @@ impl StageLedger {
         current.entry(camera).or_default().set(stage, outcome);
     }
 
-    /// The plan of this number is drawn as the main world asked for it.
+    /// Records that the plan with this number is drawn as requested.
     pub fn set_drawn(&self, camera: Entity, plan: u64) {
         let mut current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
         current.entry(camera).or_default().drawn = Some(plan);
     }
 
+    /// Records that a pipeline of the camera's plan is compiling.
     pub fn set_compiling(&self, camera: Entity) {
         let mut current = self.current.lock().unwrap_or_else(PoisonError::into_inner);
         current.entry(camera).or_default().compiling = true;
     }
 
-    /// A ledger that shares what is published with this one.
+    /// A reader of the published stages, for the main world.
     pub fn reader(&self) -> LedgerReader {
         LedgerReader(self.published.clone())
     }
 }
 
-/// The main world's end of the ledger.
+/// The main world's side of the ledger.
 #[derive(Resource)]
 pub(crate) struct LedgerReader(Arc<Mutex<EntityHashMap<CameraStages>>>);
 

@@ -1,4 +1,4 @@
-//! What ran for each camera, what was left out, and why.
+//! Diagnostics: what ran for each camera, what was left out, and why.
 
 mod ledger;
 
@@ -15,41 +15,39 @@ use bevy::{
 
 pub(crate) use ledger::{StageLedger, publish_ledger, read_ledger};
 
-/// The stages of a styled camera's frame, in their order.
+/// The stages in the frame of a camera with effects, in order.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum ComicsStage {
-    /// The engine's depth prepass, asked for by this crate or by the game.
+    /// The engine's depth prepass, requested by this crate or by the game.
     DepthPrepass,
-    /// The engine's normal prepass.
+    /// The engine's normal prepass, requested by this crate or by the game.
     NormalPrepass,
-    /// The ids of the objects.
+    /// The pass that draws the ids of objects.
     ObjectIds,
-    /// The min/max reduction of the depth.
+    /// The reduction that finds the nearest and farthest visible depth.
     DepthRange,
-    /// The step that keeps the range from flickering ([`RangeSmoothing`]).
-    ///
-    /// [`RangeSmoothing`]: crate::RangeSmoothing
+    /// The smoothing or locking of that range over time
+    /// ([`RangeSmoothing`](crate::RangeSmoothing),
+    /// [`DepthMap::locked`](crate::DepthMap::locked)).
     RangeSmoothing,
-    /// The copy of the range to the game ([`VisibleDepthRange`]).
-    ///
-    /// [`VisibleDepthRange`]: crate::VisibleDepthRange
+    /// The copy of the range, or of the histogram, to the game
+    /// ([`VisibleDepthRange`](crate::VisibleDepthRange),
+    /// [`DepthHistogram`](crate::DepthHistogram)).
     RangeReadback,
     /// The pass that finds the edges of the outlines.
     OutlineEdges,
     /// The jump flood that carries wide lines.
     LineFlood,
-    /// An effect, inside the fused pass, by its name
-    /// ([`Effect::NAME`](crate::Effect::NAME)); see also
-    /// [`ComicsStage::of`].
+    /// An effect in the fused pass, by its name
+    /// ([`Effect::NAME`](crate::Effect::NAME)); see also [`ComicsStage::of`].
     Effect(&'static str),
     /// The fused full-screen pass.
     Stylize,
 }
 
 impl ComicsStage {
-    /// The stages that are passes of their own, before the fused pass and its
-    /// effects, in order.
+    /// The stages before the fused pass, in order.
     pub const SERVICES: &'static [Self] = &[
         Self::DepthPrepass,
         Self::NormalPrepass,
@@ -61,7 +59,7 @@ impl ComicsStage {
         Self::LineFlood,
     ];
 
-    /// The stage's name in reports and files.
+    /// The stage's name in reports and files: lower case, with spaces.
     pub fn name(self) -> Cow<'static, str> {
         Cow::Borrowed(match self {
             Self::DepthPrepass => "depth prepass",
@@ -78,16 +76,16 @@ impl ComicsStage {
     }
 }
 
-/// What became of a stage in a camera's last frame.
+/// The outcome of a stage in a camera's last frame.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum StageOutcome {
     /// It ran.
     Ran,
-    /// It ran, in this form: the name of a
-    /// [`ReductionMethod`](crate::ReductionMethod).
+    /// It ran with this method: a
+    /// [`ReductionMethod::name`](crate::ReductionMethod::name).
     RanAs(&'static str),
-    /// It was left out.
+    /// It was left out, for this reason.
     LeftOut(LeftOut),
 }
 
@@ -95,38 +93,42 @@ pub enum StageOutcome {
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum LeftOut {
-    /// The camera has no component that asks for it.
+    /// No component of the camera requests it.
     NotRequested,
-    /// Its settings change nothing (an amount or opacity of zero, Eq. 8).
+    /// It would change nothing: its amount or opacity is 0,
+    /// [`StyleWeight`](crate::StyleWeight) is 0, or [`SplitView`](crate::SplitView)
+    /// shows only the original.
     Negligible,
-    /// No style of this camera reads depth.
+    /// No effect of the camera reads depth.
     NoDepthStyle,
-    /// No style of this camera reads the depth map, only depth itself.
+    /// The effects of the camera read depth, but not the depth map.
     NoMapStyle,
-    /// No outline of this camera needs it.
+    /// The lines of the camera do not need it, or it needs lines and no effect
+    /// requests any.
     NoSuchLines,
-    /// The lines are narrow: the fused pass finds them by itself.
+    /// The lines are narrow (up to 4 physical pixels), so the fused pass finds them
+    /// without a flood.
     NarrowLines,
-    /// The depth map spans fixed distances.
+    /// The depth map spans fixed distances, not the visible range.
     FixedRange,
     /// The view has no depth prepass.
     NoDepthPrepass,
     /// The view has no normal prepass.
     NoNormalPrepass,
-    /// Another effect of this camera draws in its place.
+    /// Another effect of the camera replaces it
+    /// ([`Effect::REPLACES`](crate::Effect::REPLACES)).
     Replaced,
-    /// Its shader has an error, which the log shows: the picture passes
-    /// through.
+    /// Its shader has an error, which is in the log. The camera draws no effects.
     ShaderError,
-    /// No style is left to draw.
+    /// No effect of the camera is left to draw.
     NothingToDraw,
-    /// The depth texture belongs to a camera with another number of samples on
-    /// the same target.
+    /// The depth texture is missing or has another number of samples: another camera
+    /// with a different MSAA setting draws to the same target.
     SampleCountMismatch,
-    /// The pipeline is still compiling, or its shader has an error: the picture
-    /// passes through.
+    /// A pipeline is still compiling, its shader has an error, or an input is not
+    /// ready. The stage does not run in this frame.
     PipelineNotReady,
-    /// The last copies are still on their way.
+    /// Earlier copies to the game are not finished.
     Busy,
 }
 
@@ -134,20 +136,20 @@ impl fmt::Display for LeftOut {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::NotRequested => "not requested",
-            Self::Negligible => "its settings change nothing",
-            Self::NoDepthStyle => "no style reads depth",
-            Self::NoMapStyle => "no style reads the depth map",
-            Self::NoSuchLines => "no outline needs it",
+            Self::Negligible => "it would change nothing",
+            Self::NoDepthStyle => "no effect reads depth",
+            Self::NoMapStyle => "no effect reads the depth map",
+            Self::NoSuchLines => "no such lines are requested",
             Self::NarrowLines => "the lines are narrow",
             Self::FixedRange => "the range is fixed",
             Self::NoDepthPrepass => "the view has no depth prepass",
             Self::NoNormalPrepass => "the view has no normal prepass",
-            Self::Replaced => "another effect draws in its place",
+            Self::Replaced => "another effect replaces it",
             Self::ShaderError => "its shader has an error",
-            Self::NothingToDraw => "no style to draw",
-            Self::SampleCountMismatch => "the depth has another number of samples",
+            Self::NothingToDraw => "there is no effect to draw",
+            Self::SampleCountMismatch => "the depth texture has another number of samples",
             Self::PipelineNotReady => "the pipeline is not ready",
-            Self::Busy => "earlier copies are still on their way",
+            Self::Busy => "earlier copies are not finished",
         })
     }
 }
@@ -157,16 +159,17 @@ impl fmt::Display for LeftOut {
 pub struct CameraStages {
     /// Every stage with its outcome, in order.
     pub stages: Vec<(ComicsStage, StageOutcome)>,
-    /// A pipeline of the camera's look is still being compiled: meanwhile the
-    /// last look is drawn, or none where there is no last one.
+    /// Whether a pipeline for the camera's effects is compiling. Meanwhile the
+    /// effects are drawn as before the change; if there were none, the picture is
+    /// unstyled.
     pub compiling: bool,
-    /// The newest plan of the main world that was drawn as it was asked for.
+    /// The number of the newest plan that is drawn as requested.
     #[reflect(ignore)]
     pub(crate) drawn: Option<u64>,
 }
 
 impl CameraStages {
-    /// The outcome of a stage; `None` if the camera was not looked at yet.
+    /// The outcome of a stage; `None` if nothing was reported for it.
     pub fn outcome(&self, stage: ComicsStage) -> Option<StageOutcome> {
         self.stages
             .iter()
@@ -190,25 +193,24 @@ impl CameraStages {
     }
 }
 
-/// Per camera, which stages ran in its last rendered frame and which were left
-/// out, and why. A camera without comics components is not listed: nothing is
-/// done for it at all.
+/// For each camera: which stages ran in its last rendered frame, which were left out,
+/// and why. A camera that requests nothing of this crate is not listed.
 #[derive(Resource, Reflect, Clone, Debug, Default)]
 #[reflect(Resource, Default)]
 pub struct ComicsDiagnostics {
-    /// By camera entity.
+    /// The stages by camera entity.
     pub cameras: EntityHashMap<CameraStages>,
 }
 
 impl ComicsDiagnostics {
-    /// Whether a camera waits for a pipeline of its look.
+    /// Whether a pipeline for a camera's effects is compiling.
     pub fn is_compiling(&self, camera: Entity) -> bool {
         self.cameras
             .get(&camera)
             .is_some_and(|stages| stages.compiling)
     }
 
-    /// Whether a stage ran for a camera.
+    /// Whether a stage ran for a camera in its last frame.
     pub fn ran(&self, camera: Entity, stage: ComicsStage) -> bool {
         self.cameras
             .get(&camera)

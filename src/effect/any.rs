@@ -10,26 +10,26 @@ use bevy::{
 use super::{Effect, EffectType, Needs, Variants, ViewFacts};
 use crate::lines::LineSettings;
 
-/// An [`Effect`] of any type. Implemented by every effect; for lists of effects
-/// and tools.
+/// An [`Effect`] whose type is known only at run time. Every effect implements it;
+/// lists of effects and tools use it.
 pub trait AnyEffect: Any + Send + Sync + std::fmt::Debug {
-    /// What the effect's type says about itself.
+    /// The description of the effect's type.
     fn effect_type(&self) -> &'static EffectType;
     /// The effect as a reflected struct.
     fn as_struct(&self) -> &dyn Struct;
-    /// The effect as a reflected struct, to be edited.
+    /// The effect as a reflected struct, for editing.
     fn as_struct_mut(&mut self) -> &mut dyn Struct;
-    /// For a downcast.
+    /// The effect as `Any`, for a downcast to its type.
     fn as_any(&self) -> &dyn Any;
-    /// For a downcast.
+    /// The effect as `Any`, for a downcast to its type.
     fn as_any_mut(&mut self) -> &mut dyn Any;
-    /// For a downcast.
+    /// The effect as `Any`, for a downcast to its type.
     fn into_any(self: Box<Self>) -> Box<dyn Any>;
-    /// A copy.
+    /// A copy of the effect.
     fn boxed(&self) -> Box<dyn AnyEffect>;
-    /// Whether the other effect is of the same type and equal.
+    /// Whether the other effect has the same type and equal settings.
     fn equals(&self, other: &dyn AnyEffect) -> bool;
-    /// For a serializer.
+    /// The effect for a serializer.
     fn as_serialize(&self) -> &dyn erased_serde::Serialize;
     /// As [`Effect::sanitized`].
     fn any_sanitized(&self) -> Box<dyn AnyEffect>;
@@ -47,9 +47,9 @@ pub trait AnyEffect: Any + Send + Sync + std::fmt::Debug {
     fn any_variants(&self, view: &ViewFacts, variants: &mut Variants);
     /// As [`Effect::report_name`].
     fn any_report_name(&self) -> Option<String>;
-    /// The bytes of [`Effect::uniform`].
+    /// The bytes of [`Effect::uniform`] in WGSL's uniform layout.
     fn uniform_bytes(&self, view: &ViewFacts) -> Vec<u8>;
-    /// Puts the effect on an entity.
+    /// Inserts a copy of the effect as a component of an entity.
     fn insert_into(&self, entity: &mut EntityWorldMut);
 }
 
@@ -144,14 +144,14 @@ impl PartialEq for dyn AnyEffect {
     }
 }
 
-/// The bytes of a uniform, as WGSL lays it out.
+/// The bytes of a value in WGSL's uniform layout.
 pub(crate) fn encode<T>(value: &T) -> Vec<u8>
 where
     T: bevy::render::render_resource::ShaderType
         + bevy::render::render_resource::encase::internal::WriteInto,
 {
     let mut buffer = UniformBuffer::new(Vec::new());
-    // A vector grows: there is nothing that can fail.
+    // Cannot fail: the vector grows as needed.
     let written = buffer.write(value);
     debug_assert!(written.is_ok(), "a uniform was not written");
     buffer.into_inner()

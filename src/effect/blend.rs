@@ -1,9 +1,9 @@
-//! What lies between two effects of one type.
+//! Interpolates between two effects of one type.
 //!
-//! Numbers are interpolated: ratios where a ratio is what the eye sees, colours
-//! in `OKLab`. A mode cannot be: its effect fades out until half of the way,
-//! changes its mode where it has no strength, and fades in again. So no picture
-//! jumps.
+//! Numbers are interpolated linearly or by ratio, colours in `OKLab`. A mode has
+//! no value in between: the effect fades out, its mode changes at half time, when
+//! it has no strength, and it fades in again, so that the picture does not jump.
+//! Only fields with [`BlendField::Switch`] change at half time without a fade.
 
 use bevy::{
     color::Color,
@@ -14,8 +14,9 @@ use bevy::{
 use super::Effect;
 use crate::settings::{BlendField, FieldRange, blend_color, blend_ratio, dip};
 
-/// The effect `t` of the way from `a` to `b`; one that only one side has fades.
-/// `remapped`: what depends on the depth map fades out half of the way.
+/// The effect between `a` (`t` = 0) and `b` (`t` = 1). If only one side has it, it
+/// fades. If the depth map is `remapped`, the part that depends on the map fades
+/// out until half time, and in again.
 pub(super) fn blend<E: Effect>(a: Option<E>, b: Option<E>, t: f32, remapped: bool) -> Option<E> {
     let effect = match (a, b) {
         (None, None) => return None,
@@ -28,7 +29,8 @@ pub(super) fn blend<E: Effect>(a: Option<E>, b: Option<E>, t: f32, remapped: boo
                 b.mixed(&a, 1.0 - t)
             };
             if !a.same_modes(&b) {
-                // Its map need not fade any more: it is gone half of the way.
+                // No need to fade the map as well: the effect has no strength at
+                // half time.
                 return Some(mixed.faded(dip(t)));
             }
             mixed
@@ -41,7 +43,7 @@ pub(super) fn blend<E: Effect>(a: Option<E>, b: Option<E>, t: f32, remapped: boo
     })
 }
 
-/// The fields of an effect. Effects are structs by the bound of the trait.
+/// The fields of an effect, which the bounds of [`Effect`] require to be a struct.
 fn fields<E: Effect>() -> impl Iterator<Item = &'static NamedField> {
     let info = match E::type_info() {
         TypeInfo::Struct(info) => Some(info),

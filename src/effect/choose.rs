@@ -1,6 +1,6 @@
-//! Chooses what every view draws in this frame: the plan that is wanted, or while
-//! a pipeline of it compiles the last one that was complete. Then the services
-//! are told, once, what to prepare.
+//! Chooses the plan that every view draws in this frame: the requested one, or the
+//! last complete one while a pipeline of the requested one compiles. Then the
+//! services receive their requests, once.
 
 use std::sync::Arc;
 
@@ -35,35 +35,37 @@ use crate::{
     objects::{IdRequest, IdsWanted},
 };
 
-/// On a view in the render world: what its camera asks for.
+/// On a view in the render world: the plan of its camera, and facts about the
+/// camera.
 #[derive(Component, Clone, Debug)]
 pub(crate) struct ViewPlan {
     pub camera: Entity,
     pub plan: Arc<Plan>,
-    /// The plan's number in the main world; grows whenever it changes.
+    /// The number of the plan in the main world; it grows with every change.
     pub number: u64,
     pub projection: DepthProjection,
     pub clip_from_view: Mat4,
     /// Physical pixels per logical pixel.
     pub scale_factor: f32,
-    /// Size of the main pass, where it is not the viewport's.
+    /// Size of the main pass in physical pixels, if it differs from the viewport.
     pub main_pass_size: Option<UVec2>,
-    /// The widest line of any object with one of its own, logical pixels.
+    /// The largest line width that an object overrides, in logical pixels.
     pub widest_object: f32,
     /// Seconds of the app's default clock.
     pub time: f64,
-    /// Real time since the last frame, seconds: a paused game still looks around.
+    /// Real time since the last frame, in seconds. Not the game's time: the camera
+    /// of a paused game can still move.
     pub seconds: f32,
-    /// How often the camera was cut.
+    /// Number of camera cuts so far.
     pub cuts: u32,
 }
 
-/// On a view that something was chosen for: the last plan of which every pipeline
-/// was compiled, if there was one.
+/// On a view that a plan was chosen for: the last plan whose pipelines were all
+/// compiled, if there was one.
 #[derive(Component)]
 pub(crate) struct ReadyPlan(Option<Arc<Plan>>);
 
-/// Everything that a choice leaves on a view.
+/// All components that a choice puts on a view.
 type Chosen = (
     (RangeRequest, RangePasses),
     (LineRequest, LinePasses),
@@ -71,7 +73,7 @@ type Chosen = (
     (FusedRequest, ReadyPlan),
 );
 
-/// A view whose camera asks for nothing any more, or has nowhere to draw.
+/// A view that no longer has a plan or an extracted camera.
 type NotDrawn = Or<(Without<ViewPlan>, Without<ExtractedCamera>)>;
 
 pub(crate) fn choose_plans(
@@ -101,13 +103,13 @@ pub(crate) fn choose_plans(
         let wanted = scene.reduce(&view.plan);
         report(&ledger, &registry, (view, &wanted), &scene);
 
-        // While a pipeline of this plan compiles, the last one stays.
+        // Drawn instead while a pipeline of the wanted plan compiles.
         let last = ready
             .and_then(|ready| ready.0.as_ref())
             .map(|ready| scene.reduce(ready));
         let last = last.filter(|last| *last != wanted);
         let mut requests = services.requests(&cache, (&wanted, view), &scene, (extracted, camera));
-        // Where pipelines are compiled at once, they are now.
+        // If the engine compiles pipelines synchronously, this compiles them now.
         if requests.is_compiling(&cache) {
             cache.process_queue();
         }
@@ -133,7 +135,8 @@ pub(crate) fn choose_plans(
     }
 }
 
-/// Says of every stage why it does not run; those that do say so later.
+/// Reports for every stage why it does not run. Stages that run overwrite this
+/// later in the frame.
 fn report(
     ledger: &StageLedger,
     registry: &EffectRegistry,
@@ -146,7 +149,7 @@ fn report(
     let lacks_depth = wanted.needs_depth() && scene.depth.is_none();
     if lacks_depth {
         bevy::log::warn_once!(
-            "{camera} has a depth style and no depth prepass: its picture passes without that style"
+            "camera {camera} has no depth prepass: its effects that read depth are left out"
         );
     }
     for stage in ComicsStage::SERVICES.iter().copied() {
@@ -166,7 +169,7 @@ fn report(
         ledger.set(camera, stage, outcome);
     }
     for (stage, reason) in reduced.effect_stages(&registry.types()) {
-        // What is drawn runs with the fused pass, which says so.
+        // Drawn effects run in the fused pass, which overwrites this reason.
         let reason = reason.unwrap_or(LeftOut::PipelineNotReady);
         ledger.set(camera, stage, StageOutcome::LeftOut(reason));
     }

@@ -1,16 +1,17 @@
 #define_import_path bevy_comics::effect::color
 
 // Colour conversions shared by the effects. Effects take and return linear
-// light; the papers' own formulas work on display codes and convert inside.
+// light. The papers' formulas work on display codes (sRGB-encoded, 0 to 1), so
+// the faithful forms convert inside.
 
-// NaN and infinity are found by their bits: a compiler may assume that neither
-// exists and fold `x != x` away.
+// Replaces NaN and infinity. Tests the bits, since a compiler may assume that
+// neither exists and remove a test such as `x != x`.
 fn finite(x: f32) -> f32 {
     let bits = bitcast<u32>(x);
     if (bits & 0x7fffffffu) < 0x7f800000u {
         return x;
     }
-    // +inf is very bright; NaN and -inf are nothing at all.
+    // +inf becomes the largest 16-bit float; NaN and -inf become 0.
     return select(0.0, 65504.0, bits == 0x7f800000u);
 }
 
@@ -18,8 +19,9 @@ fn finite_color(c: vec3<f32>) -> vec3<f32> {
     return vec3(finite(c.r), finite(c.g), finite(c.b));
 }
 
-// sRGB transfer function (IEC 61966-2-1), odd about zero and unbounded above,
-// so that negative and over-range components stay finite and monotone.
+// Linear light to display codes: the sRGB transfer function (IEC 61966-2-1),
+// extended as an odd function and without an upper bound, so that components
+// outside 0 to 1 stay finite and monotone.
 fn srgb_encode(c: vec3<f32>) -> vec3<f32> {
     let m = abs(c);
     let low = m * 12.92;
@@ -27,6 +29,7 @@ fn srgb_encode(c: vec3<f32>) -> vec3<f32> {
     return sign(c) * select(high, low, m <= vec3(0.0031308));
 }
 
+// Display codes to linear light: the inverse of srgb_encode.
 fn srgb_decode(c: vec3<f32>) -> vec3<f32> {
     let m = abs(c);
     let low = m / 12.92;
@@ -34,13 +37,14 @@ fn srgb_decode(c: vec3<f32>) -> vec3<f32> {
     return sign(c) * select(high, low, m <= vec3(0.04045));
 }
 
-// Luminance of linear light, ITU-R BT.709.
+// Relative luminance of linear light (ITU-R BT.709).
 fn luminance(c: vec3<f32>) -> f32 {
     return dot(c, vec3(0.2126, 0.7152, 0.0722));
 }
 
-// Lightness as it is seen, by Hunter's formula (1948): the root of the luminance.
-// A root is exact where a power is not, which matters to steep steps.
+// Perceived lightness, 0 to 1: the square root of the luminance (Hunter 1948).
+// Some adapters compute sqrt exactly but pow coarsely, which would move the steps
+// between tone bands.
 fn lightness(linear: vec3<f32>) -> f32 {
     return sqrt(clamp(luminance(linear), 0.0, 1.0));
 }
@@ -72,14 +76,15 @@ fn hue_of(c: vec3<f32>) -> f32 {
     return select(h, h + 1.0, h < 0.0);
 }
 
-// P(h): the fully saturated colour of a hue.
+// The fully saturated colour, in display codes, of an HSV hue in [0, 1).
 fn hue_color(hue: f32) -> vec3<f32> {
     let p = abs(fract(vec3(hue) + vec3(1.0, 2.0 / 3.0, 1.0 / 3.0)) * 6.0 - 3.0);
     return clamp(p - 1.0, vec3(0.0), vec3(1.0));
 }
 
-// A first guess from the exponent's third, then two steps of Halley: exact to
-// a unit or two in the last place, and cheaper than pow on a CPU.
+// Cube root: a first guess from a third of the exponent, then two steps of
+// Halley's method. The error is one or two units in the last place. Cheaper than
+// pow on CPU adapters.
 fn cube_root(x: f32) -> f32 {
     let m = max(abs(x), 1e-30);
     var r = bitcast<f32>(bitcast<u32>(m) / 3u + 0x2a514067u);
@@ -90,7 +95,8 @@ fn cube_root(x: f32) -> f32 {
     return select(sign(x) * r, 0.0, x == 0.0);
 }
 
-// OKLab (Ottosson 2020): x is lightness, yz the chroma vector (a, b).
+// Linear sRGB to OKLab (Ottosson 2020): x is lightness, yz the chroma vector
+// (a, b).
 fn linear_to_oklab(c: vec3<f32>) -> vec3<f32> {
     let l = cube_root(dot(c, vec3(0.4122214708, 0.5363325363, 0.0514459929)));
     let m = cube_root(dot(c, vec3(0.2119034982, 0.6806995451, 0.1073969566)));
@@ -102,6 +108,7 @@ fn linear_to_oklab(c: vec3<f32>) -> vec3<f32> {
     );
 }
 
+// OKLab to linear sRGB.
 fn oklab_to_linear(lab: vec3<f32>) -> vec3<f32> {
     let l = lab.x + 0.3963377774 * lab.y + 0.2158037573 * lab.z;
     let m = lab.x - 0.1055613458 * lab.y - 0.0638541728 * lab.z;

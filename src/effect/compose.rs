@@ -4,10 +4,10 @@ use naga_oil::compose::get_preprocessor_data;
 
 use super::EffectType;
 
-/// The recipe; lines that begin with `//@` are replaced.
+/// The template of the pass; lines that begin with `//@` are replaced.
 const RECIPE: &str = include_str!("fused.wgsl");
 
-/// The keys of a style file that are no effects.
+/// The keys of a style file that do not name an effect.
 const FILE_KEYS: [&str; 3] = ["version", "name", "depth_map"];
 
 /// The modules of this crate that an effect may import.
@@ -25,7 +25,7 @@ const MODULES: [&str; 11] = [
     "bevy_comics::objects",
 ];
 
-/// Definitions of the fused pass that are no effects, in lower case.
+/// Shader definitions of the fused pass that do not name an effect, in lower case.
 const DEFINITIONS: [&str; 18] = [
     "depth",
     "map",
@@ -47,12 +47,12 @@ const DEFINITIONS: [&str; 18] = [
     "stored_oklab",
 ];
 
-/// The shader definition of an effect.
+/// The shader definition of the effect with this name.
 pub(super) fn definition(name: &str) -> String {
     name.to_uppercase()
 }
 
-/// Why an effect cannot join those that are registered; `None` if it can.
+/// Why an effect cannot be registered beside the `known` ones; `None` if it can.
 pub(super) fn refuses(effect: &EffectType, known: &[&EffectType]) -> Option<&'static str> {
     let name = effect.name;
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
@@ -61,33 +61,35 @@ pub(super) fn refuses(effect: &EffectType, known: &[&EffectType]) -> Option<&'st
         || !name.ends_with(|c: char| c.is_ascii_lowercase())
         || !name.chars().all(plain)
     {
-        Some("its name is not in snake_case, or ends with a digit")
+        Some("its name is not in snake_case, or ends with a digit or an underscore")
     } else if DEFINITIONS.contains(&name) || FILE_KEYS.contains(&name) || name.starts_with("view_")
     {
         Some("its name is reserved")
     } else if !defines(effect.shader.source, effect.shader.path) {
-        Some("its WGSL does not define the import path that the effect states")
+        Some("its WGSL does not define the import path in SHADER.path")
     } else if MODULES.contains(&effect.shader.path)
         || known
             .iter()
             .any(|other| other.shader.path == effect.shader.path)
     {
-        Some("another module has the import path of its WGSL")
+        Some("another module has the same import path")
     } else if imports_unknown(effect, known) {
         Some("its WGSL imports a module of bevy_comics that does not exist")
     } else if known.iter().any(|other| other.name == name) {
-        Some("another effect has its name")
+        Some("another effect has the same name")
     } else {
         None
     }
 }
 
+/// Whether a module defines this import path.
 fn defines(source: &str, path: &str) -> bool {
     get_preprocessor_data(source).0.as_deref() == Some(path)
 }
 
-/// A module that is missing would keep every camera's pass from compiling, since
-/// the engine waits for all imports of a shader.
+/// Whether an effect imports a module of this crate that does not exist. The
+/// engine waits for all imports of a shader, so such an effect would keep the
+/// fused pass of every camera from compiling.
 fn imports_unknown(effect: &EffectType, known: &[&EffectType]) -> bool {
     let (_, imports, _) = get_preprocessor_data(effect.shader.source);
     imports.iter().any(|import| {
@@ -98,7 +100,7 @@ fn imports_unknown(effect: &EffectType, known: &[&EffectType]) -> bool {
     })
 }
 
-/// The text of the fused pass.
+/// The WGSL of the fused pass with these effects, in this order.
 pub(super) fn fused_pass(types: &[&EffectType]) -> String {
     let mut text = String::from("// Composed by bevy_comics.\n");
     for line in RECIPE.lines() {
@@ -118,9 +120,10 @@ pub(super) fn fused_pass(types: &[&EffectType]) -> String {
     text
 }
 
-/// Names of other crates are written with their full paths, so that two effects may
-/// use the same ones. The suffix keeps a member apart from the names that the recipe
-/// imports, which the composer would take for one another.
+/// The member of `Comics` that holds an effect's settings. Its type has the full
+/// module path, so that two effects may use the same struct name. The suffix
+/// `_settings` keeps the member's name different from every name that the template
+/// imports: the composer would replace equal names.
 fn members(effect: &EffectType) -> String {
     let Some(settings) = effect.shader.settings else {
         return String::new();
@@ -130,6 +133,7 @@ fn members(effect: &EffectType) -> String {
     format!("#ifdef {definition}\n    @align(16) {name}_settings: {path}::{settings},\n#endif\n")
 }
 
+/// The call of an effect's function, and of its debug view if it has one.
 fn calls(effect: &EffectType) -> String {
     let (name, definition) = (effect.name, definition(effect.name));
     let path = effect.shader.path;

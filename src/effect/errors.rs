@@ -1,4 +1,4 @@
-//! Which effect's shader is to blame when the fused pass has no pipeline.
+//! Finds the effect whose shader keeps the fused pass from compiling.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -14,20 +14,21 @@ use naga_oil::compose::{Composer, ErrSource};
 use super::{AnyEffect, EffectType, prepare::FusedRequest};
 use crate::diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome};
 
-/// The effects whose errors the log has shown.
+/// Names of the effects whose shader errors were logged, so that each is logged
+/// once.
 #[derive(Resource, Default)]
 pub(super) struct ShaderErrors(Mutex<HashSet<&'static str>>);
 
 impl ShaderErrors {
-    /// Names the effect whose shader has an error, if that is why a pipeline is
-    /// missing: in the diagnostics, and once in the log.
+    /// If a pipeline is missing because the shader of an effect has an error,
+    /// reports the effect in the diagnostics, and once in the log.
     pub fn report(&self, cache: &PipelineCache, request: &FusedRequest, ledger: &StageLedger) {
         let state = cache.get_render_pipeline_state(request.pipeline);
         let CachedPipelineState::Err(failure) = state else {
             return;
         };
         let effects = request.plan.drawn().map(AnyEffect::effect_type);
-        let Some((effect, message)) = culprit(failure, effects) else {
+        let Some((effect, message)) = failed_effect(failure, effects) else {
             return;
         };
         let outcome = StageOutcome::LeftOut(LeftOut::ShaderError);
@@ -35,15 +36,15 @@ impl ShaderErrors {
         let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if known.insert(effect.name) {
             error!(
-                "the shader of the effect `{}` ({}) has an error, so pictures with it pass through: {message}",
+                "the shader of the effect `{}` ({}) has an error, so cameras with it draw no effects: {message}",
                 effect.name, effect.shader.path
             );
         }
     }
 }
 
-/// The effect that an error is about, and the error in words.
-fn culprit(
+/// The effect whose module caused an error, and the error message.
+fn failed_effect(
     failure: &ShaderCacheError,
     mut effects: impl Iterator<Item = &'static EffectType>,
 ) -> Option<(&'static EffectType, String)> {
@@ -69,13 +70,12 @@ fn culprit(
     }
 }
 
-/// The path under which an effect's module is in the app's shaders, and which the
-/// composer's own messages show.
+/// The asset path of an effect's module, which the composer's error messages show.
 pub(super) fn file_path(effect: &EffectType) -> String {
     format!("effect `{}`: {}", effect.name, effect.shader.path)
 }
 
-/// What the composer adds to every name of an effect's module.
+/// The suffix that the composer adds to every name of an effect's module.
 fn decorated(effect: &EffectType) -> String {
     Composer::decorated_name(Some(effect.shader.path), "")
 }

@@ -1,24 +1,27 @@
-//! What an effect may know about the view that it is packed for.
+//! The facts about a view that an effect can use.
 
 use bevy::math::UVec4;
 
-/// What an effect may know about a view when it packs its settings.
+/// Facts about a view that an effect can use when it selects its shader variants
+/// and packs its settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ViewFacts {
-    /// Origin and size of the viewport: x, y, width, height in physical pixels.
+    /// The viewport in physical pixels: x and y of its top left corner in the
+    /// render target, width, height.
     pub viewport: UVec4,
     /// Physical pixels per logical pixel.
     pub scale_factor: f32,
     /// Seconds of the app's default clock ([`Time`](bevy::time::Time)).
     pub seconds: f64,
-    /// The effect that requests the lines is implied, not on the camera
-    /// ([`Effect::implied`](crate::Effect::implied)).
+    /// The effect that requests the lines is not on the camera but implied by
+    /// another one ([`Effect::implied`](crate::Effect::implied)). Also true if no
+    /// effect requests lines.
     pub lines_implied: bool,
 }
 
 impl Default for ViewFacts {
-    /// A view of 1280 by 720 pixels at time 0.
+    /// A view of 1280 by 720 physical pixels, at scale factor 1 and time 0.
     fn default() -> Self {
         Self {
             viewport: UVec4::new(0, 0, 1280, 720),

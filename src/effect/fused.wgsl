@@ -1,6 +1,6 @@
-// The fused pass: one read of the picture, one write, every effect in between.
-// compose.rs replaces the lines that begin with "//@" by one entry for each
-// registered effect.
+// The fused pass: reads the picture once, applies every effect, and writes the
+// picture once. compose.rs replaces the lines that begin with "//@" by one entry
+// for each registered effect.
 
 #import bevy_comics::depth::normal::load_normal
 #import bevy_comics::depth::view::{View, depth_frame, load_depth, pixel_depth, set_view}
@@ -13,8 +13,8 @@
 #import bevy_comics::lines::read::{lines_at, set_lines}
 #import bevy_comics::objects::load_object
 
-// Only what is there, in the order of the chain; uniform structs inside a struct
-// start at multiples of 16 bytes.
+// Holds only the settings of the effects that are drawn, in the order of the
+// chain. Uniform structs inside a struct start at multiples of 16 bytes.
 struct Comics {
     view: View,
     finish: Finish,
@@ -27,7 +27,8 @@ struct Comics {
 @group(0) @binding(0) var source: texture_2d<f32>;
 @group(0) @binding(1) var<uniform> comics: Comics;
 
-// The picture is display-referred. The effects take linear light.
+// The picture, after tonemapping, in the compositing space of the camera, as linear
+// light: the effects work on linear light.
 fn to_linear(stored: vec3<f32>) -> vec3<f32> {
     let c = finite_color(stored);
 #ifdef STORED_SRGB
@@ -39,6 +40,7 @@ fn to_linear(stored: vec3<f32>) -> vec3<f32> {
 #endif
 }
 
+// The inverse of to_linear.
 fn to_stored(linear: vec3<f32>) -> vec3<f32> {
 #ifdef STORED_SRGB
     return srgb_encode(linear);
@@ -52,15 +54,14 @@ fn to_stored(linear: vec3<f32>) -> vec3<f32> {
 @fragment
 fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(position.xy);
-    // At the border of an odd target there are pixels that exist only for their
-    // neighbours' derivatives.
+    // Helper invocations at the border of a target of odd size lie outside it.
     let last = vec2<i32>(textureDimensions(source)) - 1;
     let stored = textureLoad(source, min(pixel, last), 0);
     var p: Pixel;
     p.original = to_linear(stored.rgb);
     p.color = p.original;
 #ifdef LIGHTNESS_CHANGE
-    // Must run before the early return: derivatives need all pixels of a quad.
+    // Must run before the early return: derivatives need all four pixels of a quad.
     p.change = fwidthFine(lightness(p.original));
 #endif
     set_view(comics.view);

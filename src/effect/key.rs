@@ -1,4 +1,4 @@
-//! What selects a pipeline of the fused pass.
+//! The key that selects a pipeline of the fused pass.
 
 use bevy::{
     camera::CompositingSpace,
@@ -20,8 +20,8 @@ use crate::{
 };
 
 /// Modes of an effect that select a shader variant. Each becomes a shader
-/// definition: the effect's name in capitals, an underscore, and the variant's
-/// name, so `MODE` of an effect `rain` is `RAIN_MODE`.
+/// definition, whose name is the effect's name in capitals, an underscore, and the
+/// variant's name: `MODE` of the effect `rain` becomes `RAIN_MODE`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Variants {
     effect: &'static str,
@@ -29,14 +29,14 @@ pub struct Variants {
 }
 
 impl Variants {
-    /// Sets a definition where `on` holds.
+    /// Adds a definition without a value if `on` is true.
     pub fn flag(&mut self, name: &'static str, on: bool) {
         if on {
             self.entries.push((self.effect, name, None));
         }
     }
 
-    /// Sets a definition to a number.
+    /// Adds a definition with a number as its value.
     pub fn number(&mut self, name: &'static str, value: u32) {
         self.entries.push((self.effect, name, Some(value)));
     }
@@ -52,23 +52,24 @@ impl Variants {
     }
 }
 
-/// What of a view selects a pipeline, besides its plan.
+/// The properties of a view that select a pipeline, besides its plan.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct KeyInputs {
     pub format: TextureFormat,
     pub space: Option<CompositingSpace>,
-    /// Samples of the depth texture, if there is one.
+    /// Samples per pixel of the depth texture, if there is one.
     pub samples: Option<u32>,
     pub oblique: bool,
     pub view: ViewUniform,
-    /// How far around a pixel lines are looked for, in pixels.
+    /// Distance, in physical pixels, within which lines are searched around a
+    /// pixel.
     pub reach: i32,
-    /// Whether lines come from a flood.
+    /// Whether a jump flood carries the lines.
     pub flood: bool,
 }
 
-/// What is compiled into the fused pass: which effects there are and their modes,
-/// never their other numbers.
+/// Everything that is compiled into the fused pass: the effects, their modes and
+/// their inputs. All other settings are in the uniform.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct StylizeKey {
     pub format: TextureFormat,
@@ -78,7 +79,7 @@ pub(crate) struct StylizeKey {
     effects: Vec<&'static str>,
     variants: Variants,
     needs: Needs,
-    /// Depth is bound.
+    /// Whether the depth texture is bound.
     pub depth: bool,
     pub visible_range: bool,
     pub lines: bool,
@@ -106,7 +107,8 @@ impl StylizeKey {
         Self {
             format: inputs.format,
             space: inputs.space.unwrap_or(CompositingSpace::Linear),
-            // What is compiled in depends on the depth only where that is read.
+            // A pass that reads no prepass texture is the same for any number of
+            // samples.
             samples: inputs.samples.filter(|_| reads_pixels).unwrap_or(1),
             oblique: depth && inputs.oblique,
             effects: plan.drawn().map(|e| e.effect_type().name).collect(),
@@ -141,7 +143,7 @@ impl StylizeKey {
         self.needs.contains(Needs::IDS)
     }
 
-    /// Whether a flood carries the lines.
+    /// Whether a jump flood carries the lines.
     pub fn flooded(&self) -> bool {
         self.flood
     }
@@ -217,7 +219,7 @@ impl StylizeKey {
     }
 }
 
-/// The definitions of a debug view.
+/// The shader definitions of a debug view.
 fn view_definitions(view: DebugView) -> Vec<ShaderDefVal> {
     match view {
         DebugView::Effect(name) => vec![
@@ -229,7 +231,7 @@ fn view_definitions(view: DebugView) -> Vec<ShaderDefVal> {
 }
 
 impl DebugView {
-    /// What the view reads.
+    /// The inputs that the view reads.
     pub(super) fn needs(self) -> Needs {
         match self {
             Self::DepthMap | Self::RawRange => Needs::MAP,

@@ -1,5 +1,5 @@
-//! What an effect is: the trait, the registry, the plan of a camera, and the
-//! fused pass that is composed from the registered effects.
+//! Effects: the trait, the registry, the plan of a camera, and the fused pass
+//! that is composed from the registered effects.
 
 mod any;
 mod blend;
@@ -36,19 +36,20 @@ pub(crate) use {choose::ViewPlan, plan::Plan};
 
 use crate::{diagnostics::ComicsStage, lines::LineSettings};
 
-/// A camera component that changes the picture: one function of a pixel, in
-/// WGSL, with the settings that it takes.
+/// A camera component that changes the picture: one WGSL function of a pixel, and
+/// its settings.
 ///
 /// All effects of a camera run in one full-screen pass. [`EffectPlugin`] registers
-/// an effect; from that one line follow its place in the pass, its entry in style
-/// files, transitions between styles, diagnostics and the inspector's panel. The
-/// effects of this crate use the same trait. A guide with a complete example is in
-/// `docs/your-own-effect.md`.
+/// an effect: it adds the effect to the pass, to style files, to transitions
+/// between styles, to the diagnostics and to the inspector's panel. The effects of
+/// this crate use the same trait. `docs/your-own-effect.md` is a guide with a
+/// complete example.
 ///
 /// The component derives `Component`, `Reflect`, `Clone`, `Debug`, `PartialEq`,
-/// `Serialize` and `Deserialize`, with `#[reflect(Default)]` and
-/// `#[serde(default, deny_unknown_fields)]`, and implements `Default`. Its numbers
-/// say their range by `#[reflect(@FieldRange::linear(0.0, 1.0))]`.
+/// `Serialize` and `Deserialize`, with `#[reflect(Component, Default)]` and
+/// `#[serde(default, deny_unknown_fields)]`, and implements `Default`. The
+/// attribute `#[reflect(@FieldRange::linear(0.0, 1.0))]` on a number states its
+/// range.
 pub trait Effect:
     Component<Mutability = Mutable>
     + Struct
@@ -62,70 +63,73 @@ pub trait Effect:
     + Serialize
     + DeserializeOwned
 {
-    /// The effect's name in `snake_case`, unique in the app: its key in style
-    /// files, the name of its WGSL function and, in capitals, its shader
-    /// definition.
+    /// The effect's name, unique in the app: its key in style files, the name of
+    /// its WGSL function and, in capitals, its shader definition. In `snake_case`;
+    /// the last character is a letter.
     const NAME: &'static str;
 
-    /// Where in the chain the effect applies. Within a stage, effects apply in
-    /// the order in which they are registered.
+    /// When the effect applies. Stages run in the order of [`EffectStage`]; within
+    /// a stage, effects run in the order in which they are registered.
     const STAGE: EffectStage;
 
-    /// The effect's WGSL.
+    /// The effect's WGSL module.
     const SHADER: EffectShader;
 
-    /// Names of effects that this one draws in place of, where a camera has both.
+    /// Names of the effects that this one replaces: on a camera that has both, only
+    /// this one is drawn. Default: none.
     const REPLACES: &'static [&'static str] = &[];
 
     /// A debug view that shows what the effect computes, if it has one. Its WGSL
-    /// function is called `NAME_view`; it takes the settings and the pixel as the
-    /// effect left it, and returns a display-encoded colour.
+    /// function is called `NAME_view`. It takes the settings and the pixel that the
+    /// effect returned, and returns a display-encoded (sRGB) colour. Default: none.
     const VIEW: Option<EffectView> = None;
 
-    /// The settings as the shader takes them; [`NoUniform`] if it takes none. On
-    /// the GPU it starts at a multiple of 16 bytes.
+    /// The settings in the layout of the WGSL struct; [`NoUniform`] if the function
+    /// takes none. In the uniform buffer it starts at a multiple of 16 bytes.
     type Uniform: ShaderType + WriteInto;
 
-    /// The settings that are used: every number in its documented range, what is
-    /// not finite replaced by its default. Must return what is already in range
-    /// unchanged.
+    /// The settings that are used: every number is clamped to its documented range,
+    /// and a number that is not finite is replaced by its default. Values in range
+    /// must be returned unchanged.
     #[must_use]
     fn sanitized(self) -> Self;
 
-    /// How much the effect changes, 0 to 1. An effect of strength 0 changes
-    /// nothing, and is neither compiled, packed nor run.
+    /// How much the effect changes the picture, 0 to 1. An effect of strength 0 is
+    /// neither compiled, packed nor run.
     fn strength(&self) -> f32;
 
-    /// The same effect with this fraction (0 to 1) of its strength: at 0 it
-    /// changes nothing. Transitions between styles fade effects with it.
+    /// The same effect at a fraction (0 to 1) of its strength; at 0 it changes
+    /// nothing. Transitions between styles use it to fade effects in and out.
     #[must_use]
     fn faded(self, fraction: f32) -> Self;
 
-    /// What the effect's WGSL reads besides its pixel's colour. Default: nothing.
+    /// The inputs that the effect's WGSL reads besides its pixel's colour. Default:
+    /// none.
     fn needs(&self) -> Needs {
         Needs::empty()
     }
 
-    /// The effect on a view that lacks what is `missing`: a form of it that does
-    /// not read that, or `None`. Default: `None` if the effect needs any of it.
+    /// The effect on a view that cannot provide the `missing` inputs: a version of
+    /// it that does not read them, or `None` to leave it out. Default: `None` if the
+    /// effect needs any of them.
     fn without(self, missing: Needs) -> Option<Self> {
         (!self.needs().intersects(missing)).then_some(self)
     }
 
-    /// Lines that this effect requests. Of several effects of a camera the first one
-    /// in the chain decides. Default: none.
+    /// The lines that this effect requests. If several effects of a camera request
+    /// lines, the request of the first one in the chain is used. Default: none.
     fn lines(&self) -> Option<LineSettings> {
         None
     }
 
-    /// An effect that this one draws with, where the camera has none of that
-    /// type. Default: none.
+    /// Another effect that this one depends on. It is added to the camera's plan if
+    /// the camera has no effect of that type. Default: none.
     fn implied(&self) -> Option<Box<dyn AnyEffect>> {
         None
     }
 
-    /// Modes that select a shader variant. A change of them compiles a pipeline,
-    /// so they should not follow a slider. Default: none.
+    /// Modes that select a shader variant. Every new combination compiles a
+    /// pipeline, so modes should not depend on a slider. Default: none.
     fn variants(&self, view: &ViewFacts, variants: &mut Variants) {
         let _ = (view, variants);
     }
@@ -133,26 +137,28 @@ pub trait Effect:
     /// Packs the settings for the shader.
     fn uniform(&self, view: &ViewFacts) -> Self::Uniform;
 
-    /// The effect `t` (0 to 1) of the way to another of equal modes. Default: by
-    /// the fields; `f32` fields are interpolated (by ratio where their
-    /// [`FieldRange`](crate::FieldRange) is logarithmic), colours in `OKLab`, and
-    /// the rest is this effect's own.
+    /// Interpolates between this effect (`t` = 0) and `other` (`t` = 1). Default:
+    /// `f32` fields are interpolated linearly, or by ratio if their
+    /// [`FieldRange`](crate::FieldRange) is logarithmic; colours are interpolated in
+    /// `OKLab`; all other fields keep this effect's values.
     #[must_use]
     fn mixed(&self, other: &Self, t: f32) -> Self {
         blend::mixed(self, other, t)
     }
 
     /// Whether [`Effect::mixed`] leads from this effect to the other without a
-    /// jump. If not, a transition fades the effect out, changes it half of the
-    /// way, and fades it in. Default: by the fields; whatever is no number, no
-    /// colour and not marked by [`BlendField`](crate::BlendField) is equal.
+    /// jump. If not, a transition fades the effect out, exchanges the settings at
+    /// half time, and fades the effect in. Default: true if all fields are equal
+    /// that are neither `f32` nor `Color` nor marked by
+    /// [`BlendField`](crate::BlendField).
     fn same_modes(&self, other: &Self) -> bool {
         blend::same_modes(self, other)
     }
 
-    /// The same effect with this fraction (0 to 1) of what depends on the depth
-    /// map; a transition that changes the mapping fades it with this. Default:
-    /// [`Effect::faded`] if the effect needs the map.
+    /// The same effect with only a fraction (0 to 1) of its dependence on the depth
+    /// map. Transitions that change the map's mapping use it to fade that part out
+    /// and in. Default: [`Effect::faded`] if the effect needs the map, otherwise the
+    /// effect itself.
     #[must_use]
     fn map_faded(self, fraction: f32) -> Self {
         if self.needs().contains(Needs::MAP) {
@@ -162,34 +168,34 @@ pub trait Effect:
         }
     }
 
-    /// Under which name `docs/report` has measured what the effect finds, if it
-    /// has: the panel shows the error beside the time. Default: none.
+    /// The name under which `docs/report` lists the measured accuracy of the
+    /// effect's lines, if it does. The panel shows that accuracy beside the time.
+    /// Default: none.
     fn report_name(&self) -> Option<String> {
         None
     }
 }
 
-/// Where in the chain an effect applies: stages run in this order.
+/// When an effect applies. The stages run in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum EffectStage {
-    /// Tones of the unstyled picture.
+    /// Changes the lightness of the picture, before colours and ink are added.
     Tone,
-    /// Colours.
+    /// Changes the colours of the picture.
     Color,
-    /// Lines and areas of ink.
+    /// Draws lines and areas of ink over the colours.
     Ink,
-    /// The page on which the picture is printed.
+    /// Changes the whole picture, ink included, as paper and print do.
     Page,
 }
 
 /// An effect's WGSL module.
 ///
-/// Its struct of settings must be laid out as [`Effect::Uniform`]: where that is
-/// smaller, the shader reads what lies behind it.
-///
 /// The module defines its own import path, a struct of settings, and the function
-/// that applies the effect:
+/// that applies the effect. The struct must have the layout of
+/// [`Effect::Uniform`]: if the uniform is smaller, the shader reads the bytes that
+/// follow it.
 ///
 /// ```wgsl
 /// #define_import_path my_game::tint
@@ -205,60 +211,62 @@ pub enum EffectStage {
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct EffectShader {
-    /// The path by which the module is imported, as its `#define_import_path`
-    /// says.
+    /// The import path that the module defines with `#define_import_path`.
     pub path: &'static str,
-    /// The module's text.
+    /// The WGSL text of the module.
     pub source: &'static str,
-    /// Name of the struct of settings, laid out as [`Effect::Uniform`]; `None` if
-    /// the function takes the pixel alone.
+    /// The name of the struct of settings; `None` if the function takes only the
+    /// pixel.
     pub settings: Option<&'static str>,
 }
 
-/// A debug view of an effect.
+/// The texts of an effect's debug view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct EffectView {
-    /// What a menu calls it.
+    /// The name in menus.
     pub label: &'static str,
-    /// What it shows, one sentence.
+    /// One sentence that says what the view shows.
     pub explanation: &'static str,
 }
 
 bitflags! {
-    /// What an effect's WGSL reads besides the colour of its pixel.
+    /// The inputs that an effect's WGSL reads besides the colour of its pixel.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
     pub struct Needs: u32 {
-        /// The depth map: `Pixel::depth`. Runs the depth prepass, and the
-        /// reduction if the map follows the visible range.
+        /// The depth map at the pixel, in `Pixel::depth`. Runs the depth prepass,
+        /// and the search for the visible range if the map follows it.
         const MAP = 1;
-        /// Raw depth of any pixel: `bevy_comics::depth::view::load_depth`. Runs
+        /// Raw depth at any pixel, by `bevy_comics::depth::view::load_depth`. Runs
         /// the depth prepass.
         const DEPTH = 1 << 1;
-        /// World-space normals: `bevy_comics::depth::normal::load_normal`. Runs
-        /// the normal prepass.
+        /// World-space normals at any pixel, by
+        /// `bevy_comics::depth::normal::load_normal`. Runs the depth prepass and the
+        /// normal prepass.
         const NORMALS = 1 << 2;
-        /// Ids of objects: `bevy_comics::objects::load_object`. Needs the crate's
-        /// feature `objects`.
+        /// Object ids at any pixel, by `bevy_comics::objects::load_object`. Runs the
+        /// depth prepass and the pass that draws ids. Needs the crate's feature
+        /// `objects`.
         const IDS = 1 << 3;
-        /// The lines at the pixel: `bevy_comics::lines::read::lines_at`. An effect
-        /// with this need is left out where no effect asks for lines.
+        /// The lines at the pixel, by `bevy_comics::lines::read::lines_at`. The
+        /// effect is left out if no effect of the camera requests lines.
         const LINES = 1 << 4;
-        /// The lines at other places than the pixel, several times per pixel.
+        /// The lines at any place, read several times per pixel. Includes
+        /// [`Needs::LINES`].
         const LINES_ANYWHERE = 1 << 5;
-        /// How much the lightness of the unstyled picture changes over a pixel:
+        /// The change of the unstyled picture's lightness over a pixel, in
         /// `Pixel::change`.
         const LIGHTNESS_CHANGE = 1 << 6;
     }
 }
 
-/// The uniform of an effect whose WGSL takes no settings.
+/// The uniform of an effect whose WGSL function takes no settings.
 #[derive(ShaderType, Clone, Copy, Debug, Default)]
 pub struct NoUniform {
     unused: u32,
 }
 
 impl ComicsStage {
-    /// The stage of an effect.
+    /// The stage that reports on an effect of this type.
     pub const fn of<E: Effect>() -> Self {
         Self::Effect(E::NAME)
     }

@@ -1,5 +1,5 @@
-//! The fused full-screen pass: every effect of a camera in one read and one write
-//! of its picture.
+//! The fused full-screen pass: reads the picture of a camera once, applies every
+//! effect, and writes the picture once.
 
 use bevy::{
     asset::Handle,
@@ -68,7 +68,8 @@ impl SpecializedRenderPipeline for StylizePipeline {
     }
 }
 
-/// What the services have found for the view in this frame.
+/// The textures and buffers that the services have prepared for the view in this
+/// frame.
 type Found<'a> = (
     Option<&'a ViewPrepassTextures>,
     Option<&'a ViewDepthRange>,
@@ -76,8 +77,9 @@ type Found<'a> = (
     Option<&'a ViewObjectIds>,
 );
 
-/// Draws the effects of the view. The picture is taken from the view only when
-/// everything is there to give it back.
+/// Draws the effects of the view. Calls `post_process_write`, which swaps the
+/// view's textures, only when all inputs are there: a swap without a draw would
+/// lose the picture.
 pub(super) fn stylize(
     view: ViewQuery<(
         (&ViewTarget, &FusedRequest, &ViewFused),
@@ -138,6 +140,7 @@ pub(super) fn stylize(
     ran(request, &ledger);
 }
 
+/// Reports that the pass and its effects ran.
 fn ran(request: &FusedRequest, ledger: &StageLedger) {
     for effect in request.plan.drawn() {
         let stage = ComicsStage::Effect(effect.effect_type().name);
@@ -146,6 +149,7 @@ fn ran(request: &FusedRequest, ledger: &StageLedger) {
     ledger.set(request.camera, ComicsStage::Stylize, StageOutcome::Ran);
 }
 
+/// Reports why the pass did not run. The picture stays as it is.
 fn pass_through(request: &FusedRequest, ledger: &StageLedger, reason: LeftOut) {
     let outcome = StageOutcome::LeftOut(reason);
     ledger.set(request.camera, ComicsStage::Stylize, outcome);
@@ -155,8 +159,8 @@ fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
     BindGroupEntry { binding, resource }
 }
 
-/// What the pass reads besides the picture and its uniform; an error if anything
-/// of it was not found in this frame.
+/// The bindings of the pass besides the picture and the uniform; an error if one of
+/// them is missing in this frame.
 fn inputs<'a>(
     key: &StylizeKey,
     (prepass, range, lines, ids): Found<'a>,
@@ -198,7 +202,8 @@ fn inputs<'a>(
     Ok(entries)
 }
 
-/// The binding of a prepass texture that has as many samples as were compiled in.
+/// The binding of a prepass texture; an error if its number of samples is not the
+/// one that was compiled in.
 fn sampled(
     texture: &bevy::render::texture::CachedTexture,
     samples: u32,

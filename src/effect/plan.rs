@@ -1,5 +1,5 @@
-//! What a camera asks for: its components become one plan. Whatever is absent
-//! from the plan is neither compiled, bound, packed nor dispatched.
+//! The plan of a camera, made from its components. Whatever is not in the plan is
+//! neither compiled, bound, packed nor dispatched.
 
 use std::fmt::Debug;
 
@@ -13,14 +13,14 @@ use crate::{
     lines::{Creases, LineSettings, Silhouettes},
 };
 
-/// An effect that a camera draws with.
+/// An effect in a camera's plan.
 #[derive(Clone, Debug)]
 struct Planned {
-    /// Sanitised, of a strength above 0.
+    /// Sanitised; its strength is above 0.
     effect: Box<dyn AnyEffect>,
-    /// The camera has not got it itself.
+    /// Not a component of the camera: another effect or the debug view implies it.
     implied: bool,
-    /// Another effect draws in its place.
+    /// Another effect of the plan replaces it.
     replaced: bool,
 }
 
@@ -39,22 +39,22 @@ pub(crate) struct Plan {
     effects: Vec<Planned>,
     /// The other registered effects, and why they are not drawn.
     left_out: Vec<(&'static str, LeftOut)>,
-    /// The lines that are found.
+    /// The lines to find.
     pub lines: Option<LineSettings>,
-    /// Objects have lines of their own, or none.
+    /// Some object has its own line style, or no lines.
     pub object_styles: bool,
-    /// The game reads the range.
+    /// The game reads the visible range.
     pub readback: bool,
-    /// The game reads how the depths are distributed.
+    /// The game reads the histogram of depths.
     pub histogram: bool,
     pub finish: Finish,
-    /// What is shown instead of the picture.
+    /// The debug view that replaces the picture.
     pub view: Option<DebugView>,
 }
 
 impl Plan {
-    /// The plan of a camera; `None` if none of its components asks for anything.
-    /// `object_styles`: some object has lines of its own, or none.
+    /// The plan of a camera; `None` if none of its components requests anything.
+    /// `object_styles`: some object has its own line style, or no lines.
     pub fn new(
         camera: EntityRef,
         types: &[&'static EffectType],
@@ -95,7 +95,8 @@ impl Plan {
         Some(plan)
     }
 
-    /// Takes the effects of the camera; whether it has any, negligible or not.
+    /// Adds the effects of the camera and those that they imply. Returns whether
+    /// the camera has any effect, negligible ones included.
     fn collect(&mut self, camera: EntityRef, types: &[&'static EffectType]) -> bool {
         let own: Vec<_> = types
             .iter()
@@ -128,7 +129,7 @@ impl Plan {
         asked
     }
 
-    /// Adds what a debug view shows, whether an effect asks for it or not.
+    /// Adds the effect that a debug view shows, if the camera does not have it.
     fn show(&mut self, types: &[&'static EffectType]) {
         let Some(view) = self.view else {
             return;
@@ -163,7 +164,7 @@ impl Plan {
         }
     }
 
-    /// Decides what follows from the effects that are left.
+    /// Derives the lines, and the effects that are left out or replaced.
     fn resolve(&mut self) {
         let asked = self.effects.iter().find_map(|p| p.effect.any_lines());
         self.lines = asked.map(LineSettings::visible).filter(|l| !l.is_empty());
@@ -184,7 +185,7 @@ impl Plan {
             planned.replaced = replaced.contains(&planned.effect.effect_type().name);
         }
         self.object_styles &= self.lines.is_some();
-        // A view of an effect that is not drawn has nothing to show.
+        // The debug view of an effect that is not drawn shows nothing.
         if let Some(DebugView::Effect(name)) = self.view
             && !self.drawn().any(|effect| effect.effect_type().name == name)
         {
@@ -192,7 +193,7 @@ impl Plan {
         }
     }
 
-    /// The lines that a debug view shows.
+    /// Adds the lines that a debug view shows.
     fn show_lines(&mut self) {
         let lines = self.lines.unwrap_or(LineSettings::NONE);
         match self.view {
@@ -211,6 +212,7 @@ impl Plan {
         }
     }
 
+    /// Removes the effects for which there is a reason, and records it.
     fn leave_out(&mut self, reason: impl Fn(&dyn AnyEffect) -> Option<LeftOut>) {
         let left_out = &mut self.left_out;
         self.effects.retain(|planned| {
@@ -222,7 +224,7 @@ impl Plan {
         });
     }
 
-    /// The plan on a view that has no depth prepass, or no normal prepass (yet).
+    /// The plan for a view that does not have this prepass, or does not have it yet.
     pub fn without(&self, missing: Prepasses) -> Self {
         let mut plan = self.clone();
         let (needs, reason) = match missing {
@@ -265,7 +267,8 @@ impl Plan {
             .map(|planned| planned.effect.as_ref())
     }
 
-    /// True if the effect that requests the lines is implied, not on the camera.
+    /// Whether the effect that requests the lines is implied, not on the camera.
+    /// Also true if no effect requests lines.
     pub fn lines_implied(&self) -> bool {
         self.effects
             .iter()
@@ -273,11 +276,10 @@ impl Plan {
             .is_none_or(|p| p.implied)
     }
 
-    /// What the fused pass reads.
+    /// The inputs that the fused pass reads.
     pub fn needs(&self) -> Needs {
         let effects = self.drawn().map(AnyEffect::any_needs);
         let needs = effects.fold(Needs::empty(), |all, one| all | one);
-        // LINES_ANYWHERE includes LINES.
         let needs = if needs.contains(Needs::LINES_ANYWHERE) {
             needs | Needs::LINES
         } else {
@@ -304,7 +306,7 @@ impl Plan {
         self.lines.is_some_and(|lines| lines.fades())
     }
 
-    /// Whether the range that is drawn with is more than this frame's own.
+    /// Whether the range depends on earlier frames: it is smoothed or locked.
     pub fn smooths(&self) -> bool {
         (self.reads_map() || self.lines_fade())
             && self.depth_map.mapping.follows_visible_range()
@@ -339,8 +341,8 @@ impl Plan {
         cfg!(feature = "objects") && (lines || self.needs().contains(Needs::IDS))
     }
 
-    /// Every effect's stage and why it does not run, in the order of the chain;
-    /// `None` if it is drawn.
+    /// The stage of every effect, in the order of the chain, and why it does not
+    /// run; `None` if it is drawn.
     pub fn effect_stages(
         &self,
         types: &[&'static EffectType],
@@ -365,7 +367,7 @@ impl Plan {
             .collect()
     }
 
-    /// Why a service does not run for this plan, if it does not.
+    /// The reason that is reported if a stage does not run for this plan.
     pub fn reason(&self, stage: ComicsStage) -> LeftOut {
         let lines = self.lines.is_some();
         let maps = self.reads_map() || self.lines_fade();

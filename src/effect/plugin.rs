@@ -1,4 +1,4 @@
-//! The fused pass in an app.
+//! Adds the fused pass to an app.
 
 use bevy::{
     anti_alias::{fxaa::fxaa, smaa::smaa},
@@ -32,16 +32,16 @@ use super::{
 };
 use crate::schedule::{ComicsSystems, PrepareComics};
 
-/// Chooses what every view draws, and draws it in one pass.
+/// Chooses the plan of every view, and draws its effects in one pass.
 pub(crate) struct FusedPlugin;
 
-/// The modules of the effects, which nothing else keeps alive.
+/// The shader modules of the effects. Keeps their assets alive.
 #[derive(Resource)]
 struct EffectModules {
     _modules: Vec<Handle<Shader>>,
 }
 
-/// The composed pass.
+/// The shader of the composed pass.
 #[derive(Resource)]
 struct FusedShader(Handle<Shader>);
 
@@ -50,7 +50,7 @@ impl Plugin for FusedPlugin {
         app.init_resource::<EffectRegistry>();
     }
 
-    /// All effects are registered by now.
+    /// Composes the shader here, when the plugins of all effects are built.
     fn finish(&self, app: &mut App) {
         let registry = app.world().resource::<EffectRegistry>().clone();
         registry.seal();
@@ -120,7 +120,7 @@ fn init_pipeline(
     shader: Res<FusedShader>,
     fused: Query<Entity, With<ViewFused>>,
 ) {
-    // This runs again on a new device: buffers of the old one are of no use.
+    // Runs again after the device was lost: the old device's buffers are invalid.
     for view in &fused {
         commands.entity(view).remove::<ViewFused>();
     }

@@ -1,4 +1,4 @@
-//! From a request to this frame's fused pass: the uniform of the view.
+//! Writes the uniform of the fused pass for every view.
 
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ use bevy::{
 use super::{Plan, ViewFacts, any::encode, key::StylizeKey};
 use crate::{depth::view::ViewUniform, lines::LinesUniform};
 
-/// On a view in the render world: it is stylized in this frame.
+/// On a view in the render world: draw its effects in this frame.
 #[derive(Component, Clone, Debug)]
 pub(crate) struct FusedRequest {
     pub camera: Entity,
@@ -30,14 +30,14 @@ pub(crate) struct FusedRequest {
     pub lines: Option<LinesUniform>,
 }
 
-/// Bytes behind the uniform. An effect whose [`Effect::Uniform`](super::Effect::Uniform)
-/// is smaller than its WGSL struct reads them; a buffer that is too small would be
-/// an error of the renderer, which ends the app.
+/// Bytes after the uniform. A shader whose WGSL struct is larger than
+/// [`Effect::Uniform`](super::Effect::Uniform) reads them. Without them the buffer
+/// would be too small for the shader: a validation error, which ends the app.
 const SLACK: u64 = 1024;
 
 impl FusedRequest {
-    /// `Comics` of the fused pass: only what is there, each part at a multiple of
-    /// 16 bytes.
+    /// The bytes of `Comics` in `fused.wgsl`: only the parts that the key compiles
+    /// in, each at a multiple of 16 bytes.
     fn uniform_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         let mut push = |part: Vec<u8>| {
@@ -58,7 +58,7 @@ impl FusedRequest {
     }
 }
 
-/// On a view in the render world: the uniform of its fused pass.
+/// On a view in the render world: the uniform buffer of its fused pass.
 #[derive(Component)]
 pub(crate) struct ViewFused {
     pub uniform: Buffer,

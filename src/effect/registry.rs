@@ -1,4 +1,4 @@
-//! The effects of an app.
+//! The registry of an app's effects.
 
 use std::{
     marker::PhantomData,
@@ -15,7 +15,7 @@ use serde::Deserialize;
 
 use super::{AnyEffect, Effect, EffectShader, EffectStage, EffectView, blend, compose};
 
-/// What an effect's type says about itself.
+/// The description of an effect's type.
 pub struct EffectType {
     /// [`Effect::NAME`].
     pub name: &'static str,
@@ -27,11 +27,11 @@ pub struct EffectType {
     pub replaces: &'static [&'static str],
     /// [`Effect::VIEW`].
     pub view: Option<EffectView>,
-    /// The reflected type.
+    /// The reflection data of the type.
     pub type_info: fn() -> &'static TypeInfo,
-    /// An effect with default settings.
+    /// Creates an effect with default settings.
     pub default: fn() -> Box<dyn AnyEffect>,
-    /// The effect of an entity, if it has one.
+    /// Gets the effect from an entity, if the entity has it.
     pub get: for<'w> fn(EntityRef<'w>) -> Option<&'w dyn AnyEffect>,
     pub(crate) remove: fn(&mut bevy::ecs::world::EntityWorldMut),
     pub(crate) read: ReadEffect,
@@ -42,8 +42,8 @@ type ReadEffect = for<'a, 'de> fn(
     &'a mut dyn erased_serde::Deserializer<'de>,
 ) -> Result<Option<Box<dyn AnyEffect>>, erased_serde::Error>;
 
-/// From one to the other, `t` of the way; the flag says that the mapping of the
-/// depth map changes.
+/// Interpolates from the first effect (`t` = 0) to the second (`t` = 1). The flag
+/// says whether the mapping of the depth map changes.
 type BlendEffects =
     fn(Option<&dyn AnyEffect>, Option<&dyn AnyEffect>, f32, bool) -> Option<Box<dyn AnyEffect>>;
 
@@ -107,7 +107,7 @@ fn blended<E: Effect>(
     Some(Box::new(effect))
 }
 
-/// The effects that an app knows, in the order in which they apply to a pixel.
+/// The registered effects of an app, in the order in which they apply to a pixel.
 /// Clones share one list.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct EffectRegistry(Arc<RwLock<Registered>>);
@@ -115,12 +115,12 @@ pub struct EffectRegistry(Arc<RwLock<Registered>>);
 #[derive(Debug, Default)]
 struct Registered {
     types: Vec<&'static EffectType>,
-    /// The fused pass is composed: there is no room for another effect.
+    /// The fused pass is composed, so no effect can be added any more.
     sealed: bool,
 }
 
 impl EffectRegistry {
-    /// Every registered effect, in the order of the chain.
+    /// All registered effects, in the order of the chain.
     pub fn types(&self) -> Vec<&'static EffectType> {
         self.0
             .read()
@@ -129,30 +129,30 @@ impl EffectRegistry {
             .clone()
     }
 
-    /// The effect of this name, if it is registered.
+    /// The effect with this name, if it is registered.
     pub fn get(&self, name: &str) -> Option<&'static EffectType> {
         self.types().into_iter().find(|effect| effect.name == name)
     }
 
-    /// The WGSL of the fused pass: what is in `#ifdef` runs on the cameras that
-    /// have the effect.
+    /// The WGSL of the fused pass before preprocessing. The code of each effect is
+    /// in an `#ifdef`: it runs only on cameras that have the effect.
     pub fn shader(&self) -> String {
         compose::fused_pass(&self.types())
     }
 
-    /// Refuses every further effect: the fused pass is composed.
+    /// Refuses every further effect, because the fused pass is composed now.
     pub(crate) fn seal(&self) {
         let mut known = self.0.write().unwrap_or_else(PoisonError::into_inner);
         known.sealed = true;
     }
 
-    /// Adds an effect at the end of its stage. An effect whose name is taken, or
-    /// no name, is refused with an error in the log.
+    /// Adds an effect at the end of its stage. An effect that cannot be composed
+    /// into the fused pass is refused with an error in the log.
     pub(crate) fn register(&self, effect: &'static EffectType) {
         let mut known = self.0.write().unwrap_or_else(PoisonError::into_inner);
         let late = known
             .sealed
-            .then_some("the shader is composed already; add its plugin before the app runs");
+            .then_some("the shader is already composed; add its plugin before the app runs");
         let types = &mut known.types;
         if let Some(reason) = late.or_else(|| compose::refuses(effect, types)) {
             error!("the effect `{}` is not registered: {reason}", effect.name);
@@ -163,9 +163,9 @@ impl EffectRegistry {
     }
 }
 
-/// Registers an effect with an app. The order of this plugin and
-/// [`ComicsPlugin`](crate::ComicsPlugin) does not matter, except that effects of
-/// one stage apply in the order of their registration.
+/// Registers an effect with an app. It may be added before or after
+/// [`ComicsPlugin`](crate::ComicsPlugin); the order only decides which effect of a
+/// stage applies first.
 ///
 /// ```no_run
 /// # use bevy::prelude::*;

@@ -1,4 +1,4 @@
-//! From a plan to what is asked of every service, on one view.
+//! Turns the plan of a view into requests to the services.
 
 use std::sync::Arc;
 
@@ -36,11 +36,11 @@ use crate::{
     objects::IdRequest,
 };
 
-/// Inputs that the view provides.
+/// The inputs that a view provides.
 #[derive(Clone, Copy)]
 pub(super) struct Scene {
     viewport: UVec4,
-    /// Size and samples of the depth prepass, if there is one.
+    /// Size in pixels and samples per pixel of the depth prepass, if there is one.
     pub depth: Option<(UVec2, u32)>,
     pub normals: bool,
 }
@@ -59,7 +59,7 @@ impl Scene {
         }
     }
 
-    /// The plan as this view can draw it.
+    /// The plan without the effects whose inputs this view does not provide.
     pub fn reduce(&self, plan: &Arc<Plan>) -> Arc<Plan> {
         let mut reduced = plan.clone();
         if self.depth.is_none() && reduced.needs_depth() {
@@ -72,7 +72,7 @@ impl Scene {
     }
 }
 
-/// What one plan asks of the services, on one view, and the pipelines for it.
+/// The requests of one plan to the services, for one view, and their pipelines.
 pub(super) struct Requests {
     range: Option<(RangeRequest, RangePasses)>,
     lines: Option<(LineRequest, LinePasses)>,
@@ -80,7 +80,7 @@ pub(super) struct Requests {
     fused: Option<FusedRequest>,
 }
 
-/// Makes requests of plans.
+/// Creates requests from plans.
 #[derive(SystemParam)]
 pub(crate) struct Services<'w> {
     ranges: RangePipelines<'w>,
@@ -221,11 +221,11 @@ fn line_request(
 }
 
 impl Requests {
-    /// Whether a pipeline is still on its way. One that failed is not: then the
-    /// picture passes through, and the log says why.
+    /// Whether a pipeline is still compiling. A pipeline that failed is not: its
+    /// pass does not run, and the log says why.
     pub fn is_compiling(&self, cache: &PipelineCache) -> bool {
-        let compute = |id| is_under_way(cache.get_compute_pipeline_state(id));
-        let render = |id: CachedRenderPipelineId| is_under_way(cache.get_render_pipeline_state(id));
+        let compute = |id| is_compiling(cache.get_compute_pipeline_state(id));
+        let render = |id: CachedRenderPipelineId| is_compiling(cache.get_render_pipeline_state(id));
         let range = self.range.as_ref().is_some_and(|(_, passes)| {
             let reduction = match passes.reduction {
                 Reduction::Compute { pipeline, .. } => compute(pipeline),
@@ -240,7 +240,7 @@ impl Requests {
         range || lines || fused
     }
 
-    /// Puts the requests on the view, and takes away those of the last frame.
+    /// Puts the requests on the view, and removes those of the last frame.
     pub fn put(self, entity: Entity, commands: &mut Commands) {
         let mut view = commands.entity(entity);
         match self.range {
@@ -262,10 +262,10 @@ impl Requests {
     }
 }
 
-fn is_under_way(state: &CachedPipelineState) -> bool {
+fn is_compiling(state: &CachedPipelineState) -> bool {
     match state {
         CachedPipelineState::Queued | CachedPipelineState::Creating(_) => true,
-        // These are tried again.
+        // The pipeline cache retries after these errors.
         CachedPipelineState::Err(error) => matches!(
             error,
             ShaderCacheError::ShaderNotLoaded(_) | ShaderCacheError::ShaderImportNotYetAvailable

@@ -2,8 +2,8 @@
 
 use super::{AnyEffect, Effect, EffectStage};
 
-/// Effects in the order of their stages, and within a stage in the order in which
-/// they came.
+/// Effects, at most one of each type, ordered by stage and, within a stage, by
+/// insertion.
 #[derive(Clone, Debug, Default)]
 pub struct EffectSet(Vec<Box<dyn AnyEffect>>);
 
@@ -13,25 +13,25 @@ impl EffectSet {
         self.0.iter().map(AsRef::as_ref)
     }
 
-    /// The effect of this name, if it is there.
+    /// The effect with this name, if the set contains it.
     pub fn by_name(&self, name: &str) -> Option<&dyn AnyEffect> {
         self.iter().find(|effect| effect.effect_type().name == name)
     }
 
-    /// The effect of this type, if it is there.
+    /// The effect of this type, if the set contains it.
     pub fn get<E: Effect>(&self) -> Option<&E> {
         self.iter()
             .find_map(|effect| effect.as_any().downcast_ref())
     }
 
-    /// The effect of this type, to be edited.
+    /// The effect of this type for editing, if the set contains it.
     pub fn get_mut<E: Effect>(&mut self) -> Option<&mut E> {
         self.0
             .iter_mut()
             .find_map(|effect| effect.as_any_mut().downcast_mut())
     }
 
-    /// Adds an effect, in place of another one of its type.
+    /// Adds an effect, or replaces the one with the same name.
     pub fn insert(&mut self, effect: Box<dyn AnyEffect>) {
         let key = |e: &dyn AnyEffect| -> EffectStage { e.effect_type().stage };
         let name = effect.effect_type().name;
@@ -45,7 +45,7 @@ impl EffectSet {
         self.0.insert(at, effect);
     }
 
-    /// Takes the effect of this name out.
+    /// Removes and returns the effect with this name.
     pub fn remove(&mut self, name: &str) -> Option<Box<dyn AnyEffect>> {
         let at = self
             .0

@@ -1,5 +1,5 @@
-//! The effects of this crate, in the order in which they apply to a pixel. Each
-//! is a folder: settings, packing and one WGSL function.
+//! The effects of this crate, in the order in which they are registered. Each has
+//! a folder with its settings, their packing and one WGSL function.
 
 use std::sync::LazyLock;
 
@@ -7,7 +7,7 @@ use bevy::app::App;
 
 use crate::effect::{EffectPlugin, EffectRegistry, EffectType};
 
-/// One line for each effect: its module, its component, and its other types.
+/// One line for each effect: its module, its component, and its other public types.
 macro_rules! effects {
     ($($module:ident: $Effect:ident $(, $Other:ident)*;)*) => {
         $(
@@ -17,7 +17,7 @@ macro_rules! effects {
 
         const TYPES: &[&EffectType] = &[$(EffectType::of::<$Effect>()),*];
 
-        /// Registers them, by the plugin that games use for their own.
+        /// Registers the effects, with the plugin that games use for theirs.
         pub(crate) fn add(app: &mut App) {
             $(app.add_plugins(EffectPlugin::<$Effect>::default());)*
         }
@@ -36,7 +36,7 @@ effects! {
 }
 
 impl EffectRegistry {
-    /// The effects of this crate, for what runs without an app.
+    /// A registry of this crate's effects, for code that runs without an app.
     pub fn built_in() -> Self {
         static BUILT_IN: LazyLock<EffectRegistry> = LazyLock::new(|| {
             let registry = EffectRegistry::default();

@@ -1,27 +1,29 @@
 #define_import_path bevy_comics::finish
 
-// What comes after the styles: the mix with the original, and the views that
-// show what the styles are made of.
+// What comes after the effects: the mix with the original picture, and the debug
+// views.
 
 #import bevy_comics::depth::map::{DepthFrame, EMPTY}
 #import bevy_comics::effect::noise::{hash}
 
 struct Finish {
-    // How much of the style is seen.
+    // Fraction of the styled picture in the mix with the original, 0 to 1.
     weight: f32,
-    // Pixels of the viewport, from the left, that show the original.
+    // Width of the part that shows the original: physical pixels from the left edge
+    // of the viewport.
     split: f32,
     unused: vec2<f32>,
 }
 
-// The styled picture as far as it is seen, `x` pixels from the left edge.
+// Mixes the two pictures, or shows the original left of the split. `x` is in physical
+// pixels from the left edge of the viewport.
 fn compare(s: Finish, original: vec3<f32>, styled: vec3<f32>, x: f32) -> vec3<f32> {
-    let seen = select(s.weight, 0.0, x < s.split);
-    return mix(original, styled, seen);
+    let weight = select(s.weight, 0.0, x < s.split);
+    return mix(original, styled, weight);
 }
 
-// Raw depth between the ends of the range: 1 near, 0 far, and 0 where there is
-// nothing.
+// Position of a raw depth between the ends of the range: 1 at the near end, 0 at the
+// far end and where there is no geometry.
 fn range_share(frame: DepthFrame, raw: f32) -> f32 {
     if raw == 0.0 || (frame.flags & EMPTY) != 0u {
         return 0.0;
@@ -33,7 +35,7 @@ fn range_share(frame: DepthFrame, raw: f32) -> f32 {
     return clamp((raw - frame.far) / span, 0.0, 1.0);
 }
 
-// A colour for an object, in display codes; black for none.
+// A random colour for an object id, in display codes; black for id 0 (no object).
 fn object_color(id: u32) -> vec3<f32> {
     if id == 0u {
         return vec3(0.0);
@@ -43,7 +45,7 @@ fn object_color(id: u32) -> vec3<f32> {
     return 0.2 + 0.8 * vec3<f32>(bytes) / 255.0;
 }
 
-// How far two pictures are apart, both in display codes.
+// Difference of two colours, times four; all in display codes.
 fn difference(original: vec3<f32>, styled: vec3<f32>) -> vec3<f32> {
     return min(4.0 * abs(styled - original), vec3(1.0));
 }

@@ -1,5 +1,5 @@
-//! What comes after the styles: how much of them is seen, where the original
-//! is shown beside them, and the views that show what they are made of.
+//! What comes after the effects: the mix with the original picture, the split view,
+//! and the debug views.
 
 use bevy::{
     app::{App, Plugin},
@@ -12,11 +12,11 @@ use bevy::{
 
 use crate::settings::{FieldRange, bounded};
 
-/// How much of a camera's style is seen: the styled picture is mixed with the
-/// original, in linear light. 1 is as without this component; at 0 nothing of
-/// the style runs.
+/// Mixes the styled picture of a camera with the original, in linear light: the
+/// fraction of the styled picture. Range 0 to 1, default 1.
 ///
-/// Range 0 to 1; what is not a finite number counts as 1.
+/// 1 has the same result as no component; at 0 no effect runs. A number that is not
+/// finite counts as 1.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct StyleWeight(pub f32);
@@ -33,13 +33,13 @@ impl StyleWeight {
     }
 }
 
-/// Shows the original left of a vertical line, and the styled picture right of
-/// it.
+/// Shows the original picture left of a vertical line, and the styled picture right
+/// of it.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct SplitView {
-    /// Where the line is, as a share of the viewport's width from the left.
-    /// Range 0 (all styled) to 1 (all original), default 0.5.
+    /// Position of the line from the left edge of the viewport, as a fraction of its
+    /// width. Range 0 (all styled) to 1 (all original), default 0.5.
     #[reflect(@FieldRange::FRACTION)]
     pub at: f32,
 }
@@ -56,40 +56,43 @@ impl SplitView {
     }
 }
 
-/// Shows on a camera what its styles are made of, instead of the picture.
+/// Shows an intermediate result of a camera's effects instead of the picture.
 ///
-/// What a view needs is computed for it, even where no style asks for it: the
-/// range, silhouettes, ids. A camera with this component and no style shows
-/// the view alone. [`StyleWeight`] does not apply; [`SplitView`] does.
+/// The view computes what it shows (the range, silhouettes, ids), even if no effect
+/// of the camera needs it; a camera without effects can have a debug view too.
+/// [`StyleWeight`] does not apply to a debug view; [`SplitView`] does.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[reflect(Component, Clone, PartialEq, Hash)]
 #[non_exhaustive]
 pub enum DebugView {
-    /// The depth map `D`: black is near, white is far.
+    /// The depth map `D`: black is near, white is far
+    /// ([`DepthMap::flip`](crate::DepthMap::flip) exchanges them).
     DepthMap,
-    /// Raw depth as the buffer holds it, spread between the two ends of the
-    /// range: white is near, black is far.
+    /// Raw depth of the buffer, scaled to the range: white is the near end, black is
+    /// the far end and where there is no geometry.
     RawRange,
-    /// Response of the silhouettes, black on white.
+    /// Ink of the silhouettes before colour and opacity: black on white.
     Silhouettes,
-    /// Response of the creases, black on white.
+    /// Ink of the creases before colour and opacity: black on white.
     Creases,
-    /// A colour of its own for every object; black has none. Needs the feature
-    /// `objects`.
+    /// A random colour for every object; black is no object. Needs the crate's
+    /// feature `objects`.
     ObjectIds,
-    /// What desaturation leaves: white keeps its colours, black loses them.
+    /// Saturation that [`Desaturation`](crate::Desaturation) leaves: white is all,
+    /// black is none.
     Saturation,
-    /// How far the styled picture is from the original, in display codes,
-    /// four times as bright.
+    /// Difference between the styled picture and the original, in display codes,
+    /// times four.
     Difference,
-    /// What an effect computes, by the effect's name: of the effects of this
-    /// crate, `"tone_bands"` shows the lightness after the bands, alone. An
-    /// effect that the camera has not got is shown with its default settings.
+    /// The debug view of the effect with this name
+    /// ([`Effect::VIEW`](crate::Effect::VIEW)). Of this crate's effects,
+    /// `"tone_bands"` has one: the lightness after banding. If the camera does not
+    /// have the effect, its default settings are used.
     Effect(&'static str),
 }
 
 impl DebugView {
-    /// The views that belong to no effect, in the order of a menu.
+    /// The views that do not belong to an effect, in the order of menus.
     pub const SHARED: &'static [Self] = &[
         Self::DepthMap,
         Self::RawRange,
@@ -100,7 +103,7 @@ impl DebugView {
         Self::Difference,
     ];
 
-    /// Whether there is nothing to show without a depth prepass.
+    /// Whether the view itself reads the depth prepass.
     pub(crate) fn needs_depth(self) -> bool {
         !matches!(self, Self::Saturation | Self::Difference | Self::Effect(_))
     }
@@ -109,7 +112,7 @@ impl DebugView {
         self == Self::ObjectIds
     }
 
-    /// The name that the shader knows it by.
+    /// The view's shader definition.
     pub(crate) fn shader_def(self) -> &'static str {
         match self {
             Self::DepthMap => "VIEW_DEPTH_MAP",
@@ -124,11 +127,11 @@ impl DebugView {
     }
 }
 
-/// What a camera's components say about the end of its pass.
+/// The settings of a camera for the end of its pass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Finish {
     pub weight: f32,
-    /// Share of the viewport's width.
+    /// Fraction of the viewport's width.
     pub split: f32,
 }
 
@@ -149,7 +152,7 @@ impl Finish {
         }
     }
 
-    /// `width` is that of the viewport in pixels.
+    /// Packs the settings; `width` is that of the viewport in physical pixels.
     pub fn uniform(self, width: u32) -> FinishUniform {
         FinishUniform {
             weight: self.weight,
@@ -159,16 +162,16 @@ impl Finish {
     }
 }
 
-/// `Finish` of `finish.wgsl`.
+/// The uniform: `Finish` in `finish.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct FinishUniform {
     pub weight: f32,
-    /// Pixels from the left edge of the viewport.
+    /// Physical pixels from the left edge of the viewport.
     pub split: f32,
     unused: Vec2,
 }
 
-/// The components and the WGSL of what comes after the effects.
+/// Registers the components and the WGSL module of the finish.
 pub(crate) struct FinishPlugin;
 
 impl Plugin for FinishPlugin {

@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::effects::black_flats
 
-// Areas of solid ink: steep slopes and deep shadows ([CS] 3.2, Figure 4).
+// Fills steep slopes and dark areas with solid ink ([CS] 3.2, Figure 4).
 
 #import bevy_comics::effect::color::{largest, srgb_encode}
 #import bevy_comics::effect::pixel::Pixel
@@ -11,19 +11,22 @@
 struct BlackFlats {
     color: vec3<f32>,
     opacity: f32,
-    // Prewitt response above which a slope is filled, and where it is full.
+    // Prewitt response at which the fill begins, and at which it is complete.
     slope_low: f32,
     slope_high: f32,
-    // Display value below which an area is filled, and the width of its edge.
+    // HSV value, in display codes, below which an area is filled.
     value: f32,
+    // Half the width of the transition, as a fraction of the threshold.
     softness: f32,
-    // 1: the value threshold shrinks to nothing at the far end of the depth map.
+    // Fraction of the value threshold that is lost at the far end of the depth map.
     depth_weight: f32,
-    // The response is measured as on a map of 512 rows.
+    // Rows of the viewport / 512: converts a response per pixel to that of a map
+    // with 512 rows.
     slope_scale: f32,
 }
 
-// How dark an area is, against the threshold on V of the display code.
+// Coverage of dark areas, 0 to 1. `linear` is the unstyled colour, `l` the
+// complement of the depth map.
 fn dark_area(s: BlackFlats, linear: vec3<f32>, l: f32) -> f32 {
     let threshold = s.value * mix(1.0, l, s.depth_weight);
     if threshold <= 0.0 {
@@ -35,6 +38,7 @@ fn dark_area(s: BlackFlats, linear: vec3<f32>, l: f32) -> f32 {
     return 1.0 - smoothstep(low, high, value);
 }
 
+// Coverage of steep slopes, 0 to 1. `prewitt` is the response per pixel.
 fn steep_area(s: BlackFlats, prewitt: f32) -> f32 {
     return smoothstep(s.slope_low, s.slope_high, prewitt * s.slope_scale);
 }

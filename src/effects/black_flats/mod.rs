@@ -1,4 +1,4 @@
-//! Areas of solid ink: steep slopes and deep shadows (\[CS\] 3.2, Figure 4).
+//! Fills steep slopes and dark areas with solid ink (\[CS\] 3.2, Figure 4).
 
 use bevy::{
     color::Color,
@@ -17,36 +17,37 @@ use crate::{
     },
 };
 
-/// Fills slopes of the depth map and dark areas with flat ink.
+/// Fills steep slopes of the depth map and dark areas with solid ink (\[CS\] 3.2,
+/// Figure 4).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BlackFlats {
-    /// Fill where the Prewitt response of the depth map, slopes included, is
-    /// above this: the paper's second threshold. Measured as on a map of 512
-    /// rows, so that it does not depend on the size of the window. Range 1e-6
-    /// to 100; `None` fills no slopes. Default: `None`.
+    /// Fills places where the depth map is steeper than this: where its Prewitt
+    /// response is above this threshold. On an even slope the response is six times
+    /// the change of the map over 1/512 of the viewport's height. Range 1e-6 to 100,
+    /// default `None` (no slope is filled). Source: the larger threshold of \[CS\]
+    /// 3.2.
     #[reflect(@FieldRange::logarithmic(1e-6, 100.0))]
     pub slope: Option<f32>,
-    /// Fill where the value V of the display colour is below this. Range 0 to
-    /// 1; `None` fills no shadows. Default: 0.25.
+    /// Fills areas of the unstyled picture whose HSV value, in display codes, is
+    /// below this threshold; `None` fills no dark areas. Range 0 to 1, default 0.25.
     #[reflect(@FieldRange::FRACTION)]
     pub value: Option<f32>,
-    /// How much the value threshold shrinks with distance: at 1 it is
-    /// `value * (1 - D)`, so that only the foreground is inked. Range 0 to 1,
-    /// default 0.
+    /// How much the threshold `value` decreases with distance: at 1 it is
+    /// `value * (1 - D)`, so that dark areas are filled in the foreground only.
+    /// Range 0 to 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub depth_weight: f32,
-    /// Softness of the edge of an area, as a share of its threshold. Range 0
-    /// to 1, default 0.1.
+    /// Softness of the edges of an area: half the width of the transition, as a
+    /// fraction of the threshold. Range 0 to 1, default 0.1.
     #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
-    /// Colour of the ink. Clamped to what a display shows; its alpha is not
-    /// used. Default: black.
+    /// Colour of the ink. Default: black. Components are clamped to what a display
+    /// shows; alpha is ignored.
     #[serde(with = "file_color")]
     pub color: Color,
-    /// Opacity of the ink. Range 0 (none, and the pass leaves the style out)
-    /// to 1. Default 1.
+    /// Opacity of the ink. Range 0 (the effect is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
 }
@@ -68,7 +69,8 @@ impl Default for BlackFlats {
 }
 
 impl BlackFlats {
-    /// Whether slopes are filled, or dark areas by their distance.
+    /// Whether the effect reads the depth map: it fills slopes, or its threshold for
+    /// dark areas depends on distance.
     pub fn depends_on_depth(&self) -> bool {
         self.slope.is_some() || (self.value.is_some() && self.depth_weight > 0.0)
     }
@@ -87,7 +89,6 @@ impl Effect for BlackFlats {
     fn sanitized(self) -> Self {
         let default = Self::default();
         Self {
-            // A slope that is no number becomes 0.02.
             slope: bounded_option(self.slope, DEFAULT_SLOPE, 1e-6, 100.0),
             value: bounded_option(self.value, DEFAULT_VALUE, 0.0, 1.0),
             depth_weight: bounded(self.depth_weight, default.depth_weight, 0.0, 1.0),
@@ -136,7 +137,8 @@ impl Effect for BlackFlats {
     }
 
     fn uniform(&self, view: &ViewFacts) -> BlackFlatsUniform {
-        // smoothstep needs its ends apart: a hard edge rises over a thousandth.
+        // smoothstep needs two different ends: a hard edge rises within 0.1 % of the
+        // threshold on either side.
         let softness = self.softness.max(1e-3);
         let slope = self.slope.unwrap_or(1e30);
         BlackFlatsUniform {
@@ -170,7 +172,7 @@ impl Effect for BlackFlats {
     }
 }
 
-/// `BlackFlats` of `black_flats.wgsl`.
+/// The uniform: `BlackFlats` in `black_flats.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub struct BlackFlatsUniform {
     color: Vec3,

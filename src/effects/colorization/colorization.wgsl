@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::effects::colorization
 
-// The atmosphere ([CS] Eq. 8 to 11).
+// Colours the picture with an atmosphere ([CS] Eq. 8 to 11).
 
 #import bevy_comics::effect::color::{hue_color, hue_of, largest, linear_to_oklab, oklab_to_linear, smallest, srgb_decode, srgb_encode}
 #import bevy_comics::effect::pixel::Pixel
@@ -11,20 +11,20 @@ const MODE_LINEAR: u32 = 2u;
 const MODE_QUADRATIC: u32 = 3u;
 
 struct Colorization {
-    // Unit chroma direction of the atmosphere in OKLab (a, b).
+    // Direction of the atmosphere's chroma in OKLab: a unit vector (a, b).
     direction: vec2<f32>,
-    // Lightness of that hue's most saturated colour, and the chroma the
-    // atmosphere asks for there.
+    // Lightness of the most saturated displayable colour of that hue, and the
+    // chroma of the atmosphere at that lightness.
     cusp_lightness: f32,
     cusp_chroma: f32,
-    // HSV hue of the atmosphere, [0, 1).
+    // HSV hue of the atmosphere in [0, 1).
     hue: f32,
     amount: f32,
     mode: u32,
     faithful: u32,
 }
 
-// Modes are compiled in where they are known: see has() in map.wgsl.
+// A constant where the pass defines it: see has() in map.wgsl.
 fn mode_of(s: Colorization) -> u32 {
 #ifdef COLORIZATION_MODE
     return #{COLORIZATION_MODE}u;
@@ -42,7 +42,8 @@ fn is_faithful(s: Colorization) -> bool {
 #endif
 }
 
-// How far the hue has moved to the atmosphere, for the chroma blend.
+// Fraction of the atmosphere in the chroma blend, 0 to 1, from the depth map `d`
+// and its complement `l`.
 fn atmosphere_weight(mode: u32, d: f32, l: f32) -> f32 {
     if mode == MODE_ATMOSPHERE {
         return 1.0;
@@ -54,8 +55,9 @@ fn atmosphere_weight(mode: u32, d: f32, l: f32) -> f32 {
     return far / (far + sqrt(max(l, 0.0)));
 }
 
-// Eq. 9-11 as printed, on HSV hue of the display code. Value and saturation
-// stay, so greys never tint, and the weights of Eq. 11 sum to more than one.
+// Replaces the HSV hue of the display code; value and saturation stay, so greys
+// stay grey. The weights of Eq. 11 sum to more than 1, as printed ([CS] Eq. 9 to
+// 11).
 fn faithful_colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32) -> vec3<f32> {
     let c = srgb_encode(linear);
     let value = largest(c);
@@ -70,9 +72,10 @@ fn faithful_colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32) -> vec3
     return srgb_decode(mix(c, tinted, s.amount));
 }
 
-// Blends chroma vectors in OKLab: no hue wraps round, opposite hues meet in
-// grey, and greys take the atmosphere too. `saturation` is what desaturation
-// has left; under Eq. 9 the atmosphere obeys it.
+// Blends chroma vectors in OKLab and keeps the lightness: hues do not wrap round,
+// opposite hues meet in grey, and greys take the atmosphere too. `saturation` is
+// the fraction that Desaturation has left; MODE_ATMOSPHERE, which does not depend
+// on distance itself, scales the atmosphere by it.
 fn colorize(s: Colorization, linear: vec3<f32>, d: f32, l: f32, saturation: f32) -> vec3<f32> {
     if mode_of(s) == MODE_HUE {
         return linear;

@@ -1,5 +1,5 @@
-//! The atmosphere: one hue for everything, or more of it with distance
-//! (\[CS\] Eq. 8 to 11).
+//! Colours the picture with the hue of an atmosphere, everywhere or increasingly
+//! with distance (\[CS\] Eq. 8 to 11).
 
 mod oklab;
 
@@ -17,43 +17,50 @@ use crate::{
     settings::{FieldRange, Form, HueWheel, blend_color, bounded, displayable, file_color},
 };
 
-/// Colours the picture with an atmosphere (\[CS\] Eq. 8 to 11).
+/// Colours the picture with the hue of an atmosphere, everywhere or increasingly
+/// with distance (\[CS\] Eq. 8 to 11).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Colorization {
-    /// Which equation. Default: [`ColorizationMode::Quadratic`].
+    /// Selects where the picture takes the hue of the atmosphere: nowhere,
+    /// everywhere, or increasingly with distance. Default:
+    /// [`ColorizationMode::Quadratic`].
     pub mode: ColorizationMode,
-    /// The atmosphere. Its hue is `a_h`; in the corrected method its saturation
-    /// counts too: a grey pixel of this lightness becomes this very colour.
-    /// Default: a warm red, `#c8413a`. Components are clamped to what a display
-    /// shows; a colour that is not finite becomes the default.
+    /// Colour of the atmosphere. [`Form::Corrected`] uses its hue and saturation: at
+    /// full effect, a grey of the same lightness becomes this colour.
+    /// [`Form::Faithful`] uses only its hue, `a_h` in \[CS\]. Default: `#c8413a`, a
+    /// warm red. Components are clamped to what a display shows; alpha is ignored; a
+    /// colour that is not finite becomes the default.
     #[serde(with = "file_color")]
     #[reflect(@HueWheel)]
     pub color: Color,
-    /// How much of the change is applied. Range 0 (none, and the pass leaves
-    /// the style out) to 1. Default 1.
+    /// Fraction of the change that is applied. Range 0 (the effect is left out) to
+    /// 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
-    /// [`Form::Corrected`] blends chroma vectors in `OKLab` and keeps
-    /// lightness. [`Form::Faithful`] moves HSV hue as printed: greys
-    /// never tint, and hues wrap round on the way.
+    /// Selects how colours change. [`Form::Corrected`] blends chroma in `OKLab` and
+    /// keeps the lightness; greys are tinted too. [`Form::Faithful`] changes the HSV
+    /// hue and keeps value and saturation; greys stay grey, and a hue between two
+    /// others can be unrelated to both. Default: [`Form::Corrected`]. Source of the
+    /// faithful form: \[CS\] Eq. 9 to 11 as printed.
     pub form: Form,
 }
 
-/// The four models of \[CS\].
+/// How the atmosphere depends on distance (\[CS\] Eq. 8 to 11).
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum ColorizationMode {
-    /// Eq. 8: every pixel keeps its hue. Nothing is done, and the pass leaves
-    /// the style out.
+    /// The picture keeps its hues; the effect is left out (Eq. 8).
     Hue,
-    /// Eq. 9: every pixel takes the atmosphere, near or far.
+    /// The whole picture takes the hue of the atmosphere, near and far (Eq. 9).
     Atmosphere,
-    /// Eq. 10: the atmosphere grows linearly with the depth map.
+    /// Near things keep their hues; the atmosphere increases linearly with the depth
+    /// map (Eq. 10).
     Linear,
-    /// Eq. 11: it grows with the square root, fast in the foreground.
+    /// Near things keep their hues; the atmosphere increases with the square root of
+    /// the depth map, fast in the foreground (Eq. 11).
     #[default]
     Quadratic,
 }
@@ -72,7 +79,7 @@ impl Default for Colorization {
 }
 
 impl Colorization {
-    /// Old paper: everything in the brown of a faded photograph (\[CS\] Figure 3).
+    /// The whole picture in the brown of a faded photograph (\[CS\] Figure 3).
     pub const SEPIA: Self = Self {
         mode: ColorizationMode::Atmosphere,
         color: Color::srgb(0.62, 0.50, 0.34),
@@ -80,7 +87,7 @@ impl Colorization {
         form: Form::Corrected,
     };
 
-    /// Whether the amount of the atmosphere depends on the depth map.
+    /// Whether the atmosphere depends on the depth map.
     pub fn depends_on_depth(&self) -> bool {
         matches!(
             self.mode,
@@ -88,7 +95,7 @@ impl Colorization {
         )
     }
 
-    /// Number of the equation in the shader.
+    /// The number of the mode in `colorization.wgsl`.
     fn mode_number(&self) -> u32 {
         match self.mode {
             ColorizationMode::Hue => 0,
@@ -153,7 +160,7 @@ impl Effect for Colorization {
         let hue = Hsva::from(self.color).hue / 360.0;
         let [lightness, a, b, _] = Oklaba::from(self.color).to_f32_array().map(f64::from);
         let chroma = a.hypot(b);
-        // A grey atmosphere has no hue: it takes colour away.
+        // A grey atmosphere has no hue: the blend only removes colour.
         let direction = if chroma > 1e-4 {
             [a / chroma, b / chroma]
         } else {
@@ -182,10 +189,10 @@ impl Effect for Colorization {
     }
 
     fn same_modes(&self, other: &Self) -> bool {
-        // The faithful method turns hues the long way round: between two of
-        // them there is no way.
-        let hues = !self.is_faithful() || self.color == other.color;
-        (self.mode, self.form) == (other.mode, other.form) && hues
+        // In the faithful form, hues between two colours are unrelated to both, so
+        // colours are not interpolated but count as modes.
+        let colors_mix = !self.is_faithful() || self.color == other.color;
+        (self.mode, self.form) == (other.mode, other.form) && colors_mix
     }
 
     fn mixed(&self, other: &Self, t: f32) -> Self {
@@ -202,7 +209,7 @@ impl Effect for Colorization {
     }
 }
 
-/// `Colorization` of `colorization.wgsl`.
+/// The uniform: `Colorization` in `colorization.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub struct ColorizationUniform {
     direction: Vec2,

@@ -1,5 +1,5 @@
-//! The most saturated displayable colour of an `OKLab` hue, which gives an
-//! atmosphere its room (Ottosson 2020).
+//! The largest chroma that the sRGB gamut has at an `OKLab` hue and lightness: the
+//! limit for the chroma of an atmosphere (`OKLab`: Ottosson 2020).
 
 /// Linear sRGB of an `OKLab` colour.
 fn linear_from_oklab(l: f64, a: f64, b: f64) -> [f64; 3] {
@@ -16,12 +16,12 @@ fn linear_from_oklab(l: f64, a: f64, b: f64) -> [f64; 3] {
     ]
 }
 
-/// Lightness and chroma of the cusp of the sRGB gamut at a hue, given as a unit
-/// vector (a, b).
+/// Lightness and chroma of the most saturated displayable colour of a hue: the cusp
+/// of the sRGB gamut. The hue is a unit vector (a, b).
 pub(super) fn cusp(direction: [f64; 2]) -> (f64, f64) {
     let [a, b] = direction;
-    // Saturation, chroma over lightness, is the same along a ray from black:
-    // the largest that keeps every component positive.
+    // Chroma / lightness is constant along a ray from black. Bisects for the largest
+    // ratio at which no component is negative.
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..40 {
         let middle = 0.5 * (low + high);
@@ -41,8 +41,8 @@ pub(super) fn cusp(direction: [f64; 2]) -> (f64, f64) {
     (lightness, lightness * low)
 }
 
-/// The chroma that a hue offers at a lightness: a triangle from black over the
-/// cusp to white.
+/// The largest chroma of a hue at a lightness, approximated by a triangle: it rises
+/// from 0 at black to the cusp and falls to 0 at white.
 pub(super) fn room(lightness: f64, cusp: (f64, f64)) -> f64 {
     cusp.1
         * (lightness / cusp.0)

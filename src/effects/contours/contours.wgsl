@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::effects::contours
 
-// Lines where the depth map jumps ([CS] 3.2).
+// Draws lines where the depth map jumps ([CS] 3.2).
 
 #import bevy_comics::depth::map::{DepthFrame, EMPTY, depth_map, has, is_background}
 #import bevy_comics::depth::view::{depth_frame, load_window, sample_count}
@@ -17,18 +17,18 @@ const ROBERTS: u32 = 3u;
 struct Contours {
     color: vec3<f32>,
     opacity: f32,
-    // The response at which a line begins to show, and where it is full.
+    // The response at which a line begins, and at which it is complete.
     low: f32,
     high: f32,
     // Half the line's width in physical pixels.
     radius: f32,
-    // Share of the opacity that is gone at the far end of the depth map.
+    // Fraction of the opacity that is lost at the far end of the depth map.
     opacity_fade: f32,
     operator_kind: u32,
     faithful: u32,
 }
 
-// The slope limiter: the smaller of two slopes that agree in sign, else none.
+// Slope limiter: the smaller of two slopes of the same sign, otherwise 0.
 fn minmod(a: f32, b: f32) -> f32 {
     if (a > 0.0) != (b > 0.0) {
         return 0.0;
@@ -36,9 +36,10 @@ fn minmod(a: f32, b: f32) -> f32 {
     return select(b, a, abs(a) < abs(b));
 }
 
-// Two opposite neighbours against the plane through the centre. Raw depth is
-// affine over a plane, in perspective too, so the plane goes on with the
-// smaller of the two slopes and a flat surface answers zero at any angle.
+// The steps of two opposite neighbours over the plane through the centre: (before,
+// after), in units of the depth map. Raw depth is affine over a plane, in
+// perspective too. The plane is continued by the smaller of the two slopes, so the
+// steps on a flat surface are 0 at any angle.
 fn plane_pair(f: DepthFrame, gap: f32, before: f32, c: f32, after: f32) -> vec2<f32> {
     let sky = is_background(c);
     var slope = 0.0;
@@ -61,8 +62,8 @@ fn plane_pair(f: DepthFrame, gap: f32, before: f32, c: f32, after: f32) -> vec2<
     );
 }
 
-// A pair of which one side lies outside the viewport says nothing: the border
-// of the picture is no contour.
+// The steps of all eight neighbours over local planes. A pair with one side outside
+// the viewport is left at 0: the border of the picture is no contour.
 fn plane_steps(f: DepthFrame, gap: f32, win: Window) -> Steps {
     var steps: Steps;
     let across = (win.missing & (MISSING_W | MISSING_E)) == 0u;
@@ -99,8 +100,8 @@ fn laplace(s: Steps) -> f32 {
     return abs(s.nw + s.n + s.ne + s.w + s.e + s.sw + s.s + s.se);
 }
 
-// The raw kernels of [CS] on the depth map: a straight step of height h answers
-// 3h (Prewitt, Laplace), 4h (Sobel), sqrt(2) h (Roberts).
+// The kernels applied to the depth map itself. The response to a straight step of
+// height h is 3h (Prewitt, Laplace), 4h (Sobel) or sqrt(2) h (Roberts) ([CS] 3.2).
 fn faithful_response(f: DepthFrame, gap: f32, operator_kind: u32, win: Window) -> f32 {
     let s = map_steps(f, gap, win);
     if operator_kind == SOBEL {
@@ -115,8 +116,8 @@ fn faithful_response(f: DepthFrame, gap: f32, operator_kind: u32, win: Window) -
     return prewitt(s);
 }
 
-// The same kernels on departures from the local plane, scaled so that a
-// straight step answers with its height, whichever the operator.
+// The same kernels applied to departures from the local plane, scaled so that the
+// response to a straight step of height h is h for every operator.
 fn plane_response(f: DepthFrame, gap: f32, operator_kind: u32, win: Window) -> f32 {
     let s = plane_steps(f, gap, win);
     if operator_kind == SOBEL {
@@ -131,7 +132,7 @@ fn plane_response(f: DepthFrame, gap: f32, operator_kind: u32, win: Window) -> f
     return prewitt(s) / 3.0;
 }
 
-// Modes are compiled in where they are known: see has() in map.wgsl.
+// A constant where the pass defines it: see has() in map.wgsl.
 fn operator_of(s: Contours) -> u32 {
 #ifdef CONTOURS_OPERATOR
     return #{CONTOURS_OPERATOR}u;
@@ -159,20 +160,20 @@ fn contour_response(s: Contours, f: DepthFrame, win: Window) -> f32 {
     return plane_response(f, gap_behind(f, f.sky_gap), operator_of(s), win);
 }
 
-// How much of a line there is at this response.
+// Strength of the line at this response, 0 to 1.
 fn line(s: Contours, response: f32) -> f32 {
     return smoothstep(s.low, s.high, response);
 }
 
-// Ink over the picture, in linear light. The line fades with the depth of the
-// nearer side, to which it belongs.
+// Draws ink over the picture, in linear light. `depth` is D of the nearer side,
+// which the line belongs to: the line fades with it.
 fn draw_contour(s: Contours, linear: vec3<f32>, coverage: f32, depth: f32) -> vec3<f32> {
     return mix(linear, s.color, clamp(coverage * s.opacity * (1.0 - s.opacity_fade * depth), 0.0, 1.0));
 }
 
-// (line, nearest raw depth) of one sample with the taps `reach` pixels away,
-// which makes a line of 2 * reach pixels. Wide lines look at rings in between
-// as well, or thin objects would fall through.
+// (line, nearest raw depth) of one sample, with the taps `reach` pixels away, which
+// makes a line of 2 * reach pixels. Wide lines also use the rings in between, every
+// two pixels; without them, thin objects would be missed.
 fn ring_line(s: Contours, frame: DepthFrame, pixel: vec2<i32>, reach: i32, sample: i32) -> vec2<f32> {
     var found = vec2(0.0);
 #ifdef CONTOURS_SINGLE_RING
@@ -186,9 +187,9 @@ fn ring_line(s: Contours, frame: DepthFrame, pixel: vec2<i32>, reach: i32, sampl
     return found;
 }
 
-// (coverage, D of the nearer side) of the contours at a pixel. A width between
-// two whole reaches is a mix of both: over the samples where there are several,
-// which anti-aliases the line itself, else of two lines.
+// (coverage, D of the nearer side) of the contours at a pixel. If the radius is not
+// a whole number, the two nearest reaches are mixed. With MSAA, each sample uses one
+// of the two, which also anti-aliases the line; otherwise two lines are blended.
 fn contour(s: Contours, frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
     let whole = i32(floor(s.radius));
     let part = s.radius - floor(s.radius);

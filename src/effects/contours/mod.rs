@@ -1,4 +1,4 @@
-//! Lines where the depth map jumps (\[CS\] 3.2).
+//! Draws lines where the depth map jumps (\[CS\] 3.2).
 
 use bevy::{
     color::Color,
@@ -14,49 +14,47 @@ use crate::{
     settings::{FieldRange, Form, bounded, displayable, file_color, linear_rgb},
 };
 
-/// Draws a line wherever the depth map jumps: around objects, and between near
-/// and far ones.
+/// Draws lines where the depth map jumps: around objects, and between near and far
+/// ones (\[CS\] 3.2).
 ///
-/// Contours see what the depth prepass sees: opaque and alpha-masked geometry.
-/// A transparent surface is coloured, and outlined, by the depth behind it.
+/// Contours are found in the depth prepass, which contains opaque and alpha-masked
+/// geometry. The lines on a transparent surface are those of the geometry behind it.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Contours {
-    /// The detector. Default: [`ContourOperator::Prewitt`].
+    /// Selects the edge detector. Default: [`ContourOperator::Prewitt`].
     pub operator: ContourOperator,
-    /// What it detects. [`Form::Corrected`] finds where the surface leaves the
-    /// plane through the pixel: raw depth is affine over a plane, so a plane at
-    /// a grazing angle has no line. [`Form::Faithful`] finds every change of the
-    /// depth map, slopes included, as the paper draws it. Default:
-    /// [`Form::Corrected`].
+    /// Selects what is detected. [`Form::Corrected`] finds departures from the plane
+    /// through the pixel, so a plane has no lines even at a grazing angle.
+    /// [`Form::Faithful`] finds every change of the depth map, slopes included.
+    /// Default: [`Form::Corrected`]. Source of the faithful form: \[CS\] 3.2.
     pub form: Form,
-    /// The response at which a line is half drawn, in units of the depth map:
-    /// in the corrected form 0.02 is a jump of 2 % of the visible range. The
-    /// faithful form applies it to the raw kernels, which answer a straight
-    /// jump of 0.02 with 0.06 (Prewitt, Laplace), 0.08 (Sobel) or 0.028
-    /// (Roberts). Range 1e-6 to 100, default 0.02.
+    /// The depth jump at which a line has half its opacity, in units of the depth
+    /// map: 0.02 is 2 % of the map's range. Range 1e-6 to 100, default 0.02.
+    /// [`Form::Faithful`] compares this threshold with the raw response of the
+    /// operator, which for a straight jump is 3 times (Prewitt, Laplace), 4 times
+    /// (Sobel) or 1.4 times (Roberts) the jump.
     #[reflect(@FieldRange::logarithmic(1e-6, 100.0))]
     pub threshold: f32,
-    /// Width of a line in logical pixels, half on either side of the jump.
+    /// Width of a line in logical pixels, half of it on either side of the jump.
     /// Range 0.5 to 16, default 2.
     #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub width: f32,
-    /// How gradually a line sets in around the threshold: 0 draws it hard, 1
-    /// lets it grow from nothing to twice the threshold. Range 0 to 1,
-    /// default 0.5.
+    /// Softness of the threshold: half the width of the transition, as a fraction of
+    /// the threshold. At 0 a line is drawn fully or not at all; at 1 its opacity
+    /// rises from no jump to twice the threshold. Range 0 to 1, default 0.5.
     #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
-    /// Colour of the line. Clamped to what a display shows; its alpha is not
-    /// used. Default: black.
+    /// Colour of the line. Default: black. Components are clamped to what a display
+    /// shows; alpha is ignored.
     #[serde(with = "file_color")]
     pub color: Color,
-    /// Opacity of the line. Range 0 (none, and the pass leaves the style out)
-    /// to 1. Default 1.
+    /// Opacity of the line. Range 0 (the effect is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
-    /// Share of the opacity that is lost at the far end of the depth map.
-    /// Range 0 to 1, default 0.
+    /// Fraction of the opacity that is lost at the far end of the depth map. Range 0
+    /// to 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub opacity_fade: f32,
 }
@@ -66,15 +64,16 @@ pub struct Contours {
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum ContourOperator {
-    /// First differences of three rows and columns (\[CS\]): even lines.
+    /// Even lines: first differences over three rows and three columns (\[CS\] 3.2).
     #[default]
     Prewitt,
-    /// As Prewitt, the middle weighted double: a little crisper.
+    /// Slightly crisper lines: as Prewitt, with the middle row and column weighted
+    /// double.
     Sobel,
-    /// Second differences of all eight neighbours (\[CS\]): stresses corners and
-    /// thin things.
+    /// Emphasises corners and thin things: second differences of all eight
+    /// neighbours (\[CS\] 3.2).
     Laplace,
-    /// Differences along the diagonals alone: lighter, more broken lines.
+    /// Lighter, more broken lines: differences along the two diagonals only.
     Roberts,
 }
 
@@ -141,7 +140,8 @@ impl Effect for Contours {
     }
 
     fn uniform(&self, view: &ViewFacts) -> ContoursUniform {
-        // smoothstep needs its ends apart: a hard line rises over a thousandth.
+        // smoothstep needs two different ends: a hard line rises within 0.1 % of the
+        // threshold on either side.
         let half_ramp = self.threshold * self.softness.max(1e-3);
         ContoursUniform {
             color: linear_rgb(self.color),
@@ -173,7 +173,7 @@ impl Contours {
         self.form == Form::Faithful
     }
 
-    /// Number of the operator in the shader.
+    /// The number of the operator in `contours.wgsl`.
     fn operator_number(&self) -> u32 {
         match self.operator {
             ContourOperator::Prewitt => 0,
@@ -184,7 +184,7 @@ impl Contours {
     }
 }
 
-/// `Contours` of `contours.wgsl`.
+/// The uniform: `Contours` in `contours.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContoursUniform {
     color: Vec3,

@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::effects::desaturation
 
-// Colours fade with distance ([CS] Eq. 5 to 7).
+// Removes saturation with distance ([CS] Eq. 5 to 7).
 
 #import bevy_comics::effect::color::{largest, luminance, srgb_decode, srgb_encode}
 #import bevy_comics::effect::pixel::Pixel
@@ -12,12 +12,13 @@ const CURVE_POWER: u32 = 2u;
 struct Desaturation {
     amount: f32,
     exponent: f32,
-    // How the exponent is applied: CURVE_LINEAR, CURVE_ROOT or CURVE_POWER.
+    // Formula of the exponent: CURVE_LINEAR (1), CURVE_ROOT (0.5) or CURVE_POWER
+    // (any).
     curve: u32,
     faithful: u32,
 }
 
-// Modes are compiled in where they are known: see has() in map.wgsl.
+// A constant where the pass defines it: see has() in map.wgsl.
 fn curve_of(s: Desaturation) -> u32 {
 #ifdef DESATURATION_CURVE
     return #{DESATURATION_CURVE}u;
@@ -35,9 +36,9 @@ fn is_faithful(s: Desaturation) -> bool {
 #endif
 }
 
-// What is left of the saturation: Eq. 6 (exponent 1) and Eq. 7 (exponent 1/2),
-// from the complement L of the depth map, which keeps its relative precision
-// where 1 - D would have none.
+// Fraction of the saturation that remains, from the complement `l` of the depth map,
+// which is precise where 1 - D would lose its digits ([CS] Eq. 6 with exponent 1,
+// Eq. 7 with 0.5).
 fn saturation_left(s: Desaturation, l: f32) -> f32 {
     var k = l;
     let curve = curve_of(s);
@@ -49,8 +50,9 @@ fn saturation_left(s: Desaturation, l: f32) -> f32 {
     return 1.0 - s.amount * (1.0 - k);
 }
 
-// Eq. 5-7. Faithful: towards the value V of the display code. Corrected:
-// towards the luminance of the light, so that nothing grows brighter.
+// Mixes a colour with grey; `k` is the fraction of the saturation that remains. The
+// grey has the same luminance or, in the faithful form, the same HSV value, which
+// makes colours brighter ([CS] Eq. 5).
 fn desaturate(s: Desaturation, linear: vec3<f32>, k: f32) -> vec3<f32> {
     if is_faithful(s) {
         let c = srgb_encode(linear);

@@ -1,4 +1,4 @@
-//! Colours fade with distance (\[CS\] Eq. 5 to 7).
+//! Removes saturation with distance (\[CS\] Eq. 5 to 7).
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
@@ -12,23 +12,25 @@ use crate::{
     settings::{FieldRange, Form, bounded},
 };
 
-/// Takes saturation away with distance: the nearest geometry keeps its colours,
-/// the farthest and the sky turn grey (\[CS\] Eq. 6 and 7).
+/// Removes saturation with distance: the nearest geometry keeps its colours, the
+/// farthest geometry and the sky turn grey (\[CS\] Eq. 5 to 7).
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Desaturation {
-    /// How much of the saturation goes at the far end. Range 0 (none, and the
-    /// pass leaves the style out) to 1 (all). Default 1.
+    /// Fraction of the saturation that is lost at the far end of the depth map.
+    /// Range 0 (the effect is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
-    /// The exponent on `1 - D`: 1 is Eq. 6, 0.5 is Eq. 7, which keeps colours
-    /// longer and drops them late. Range 0.25 to 4, default 1.
+    /// Shapes the loss of saturation with distance: `(1 - D)` to the power of this
+    /// exponent remains. Below 1, colours last longer and are lost late. Range 0.25
+    /// to 4, default 1. Source: \[CS\] Eq. 6 (1) and Eq. 7 (0.5).
     #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
     pub exponent: f32,
-    /// What stays while the colour goes. [`Form::Corrected`] keeps the
-    /// luminance of the light; [`Form::Faithful`] keeps HSV value
-    /// (Eq. 5), which makes full blue fourteen times as bright.
+    /// Selects what stays constant while saturation is lost. [`Form::Corrected`]
+    /// keeps the luminance. [`Form::Faithful`] keeps the HSV value, which makes full
+    /// blue fourteen times as bright. Default: [`Form::Corrected`]. Source of the
+    /// faithful form: \[CS\] Eq. 5.
     pub form: Form,
 }
 
@@ -43,13 +45,15 @@ impl Default for Desaturation {
 }
 
 impl Desaturation {
-    /// \[CS\] Eq. 6 as printed.
+    /// Saturation falls linearly with the depth map; HSV value is kept (\[CS\] Eq. 6
+    /// as printed).
     pub const LINEAR: Self = Self {
         amount: 1.0,
         exponent: 1.0,
         form: Form::Faithful,
     };
-    /// \[CS\] Eq. 7 as printed.
+    /// Saturation falls with the square root of `1 - D`; HSV value is kept (\[CS\]
+    /// Eq. 7 as printed).
     pub const QUADRATIC: Self = Self {
         amount: 1.0,
         exponent: 0.5,
@@ -107,7 +111,7 @@ impl Effect for Desaturation {
 }
 
 impl Desaturation {
-    /// How the exponent is applied: as it is, as a root, as a power.
+    /// The number of the exponent's formula in `desaturation.wgsl`.
     fn curve(&self) -> u32 {
         match self.exponent {
             1.0 => 0,
@@ -121,7 +125,7 @@ impl Desaturation {
     }
 }
 
-/// `Desaturation` of `desaturation.wgsl`.
+/// The uniform: `Desaturation` in `desaturation.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub struct DesaturationUniform {
     amount: f32,

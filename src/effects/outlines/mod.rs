@@ -1,5 +1,5 @@
-//! Outlines of the geometry ([CL] 2.1, after Decaudin): silhouettes from depth,
-//! creases from normals, edges between objects from their ids.
+//! Draws the outlines of the geometry: silhouettes from depth, creases from normals,
+//! edges between objects from their ids (\[CL\] 2.1, after Decaudin).
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
@@ -14,44 +14,41 @@ use crate::{
     settings::{Blend, FieldRange, bounded},
 };
 
-/// Draws the outlines of things: where one surface hides another, where a
-/// surface folds, where two objects touch.
+/// Draws outlines: silhouettes, where one surface hides another; creases, where a
+/// surface bends sharply; and edges between objects (\[CL\] 2.1).
 ///
-/// The three kinds are found separately and the strongest is drawn
-/// (\[CL\] Eq. 5). They are measured so that the same settings fit a tabletop
-/// and a landscape, whatever the near and far planes; the papers' own form is
-/// [`Form::Faithful`](crate::Form::Faithful), kind by kind.
+/// The three kinds are found separately, and where they overlap the strongest is
+/// drawn. By default the same settings fit a tabletop and a landscape, whatever the
+/// near and far planes. `Form::Faithful`, which silhouettes and creases have each,
+/// computes the paper's equations instead.
 ///
-/// What has no depth in the prepass has no outline: transparent surfaces are
-/// drawn over by the lines of what lies behind them. [`OutlineStyle`] and
-/// [`NoOutlines`] change the lines of single objects.
-///
-/// [`OutlineStyle`]: crate::OutlineStyle
-/// [`NoOutlines`]: crate::NoOutlines
+/// Geometry that is not in the depth prepass has no outlines: over a transparent
+/// surface, the lines of the geometry behind it are drawn. The components
+/// `OutlineStyle` and `NoOutlines` change the lines of single objects.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Outlines {
-    /// Lines where a surface ends in front of another or of the sky.
+    /// Draws lines where a surface ends in front of another one or of the sky;
     /// `None` draws none. Default: [`Silhouettes::default`].
     pub silhouettes: Option<Silhouettes>,
-    /// Lines where a surface folds. `None` draws none and spares the normal
-    /// prepass. Default: [`Creases::default`].
+    /// Draws lines along creases; `None` draws none and saves the normal prepass.
+    /// Default: [`Creases::default`].
     pub creases: Option<Creases>,
-    /// Lines where two objects meet, whatever their depth and normals. `None`
-    /// draws none. Needs the crate's feature `objects`, without which the lines
-    /// are missing. Default: [`ObjectEdges::default`].
+    /// Draws lines where two objects meet, whatever their depths and normals; `None`
+    /// draws none. Without the crate's feature `objects`, none are drawn either.
+    /// Default: [`ObjectEdges::default`].
     pub objects: Option<ObjectEdges>,
-    /// Width of the lines in logical pixels. Range 0.5 to 16, default 2.
-    /// [`Form::Faithful`](crate::Form::Faithful) lines have the paper's four columns instead.
+    /// Width of the lines in logical pixels. Range 0.5 to 16, default 2. Lines in the
+    /// faithful form are four physical pixels wide instead.
     #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub width: f32,
-    /// Share of the width that is lost at the far end of the depth map.
-    /// Range 0 to 1, default 0.
+    /// Fraction of the width that is lost at the far end of the depth map. Range 0 to
+    /// 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub width_fade: f32,
-    /// Share of the opacity that is lost at the far end of the depth map.
-    /// Range 0 to 1, default 0.
+    /// Fraction of the opacity that is lost at the far end of the depth map. Range 0
+    /// to 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub opacity_fade: f32,
 }
@@ -70,7 +67,8 @@ impl Default for Outlines {
 }
 
 impl Outlines {
-    /// Silhouettes alone, as \[CL\] draws them.
+    /// Silhouettes only, the one kind that \[CL\] 3.2 implements, in the corrected
+    /// form.
     pub const SILHOUETTES: Self = Self {
         silhouettes: Some(Silhouettes::DEFAULT),
         creases: None,
@@ -156,7 +154,8 @@ impl Effect for Outlines {
         }
     }
 
-    /// The kinds have modes of their own, which [`Effect::mixed`] knows.
+    /// Always true: [`Effect::mixed`] fades each kind separately when its mode
+    /// changes.
     fn same_modes(&self, _: &Self) -> bool {
         true
     }
@@ -175,12 +174,13 @@ impl Effect for Outlines {
             (Some(_), Some(_), Some(_)) => "all outlines",
             (Some(_), Some(_), None) => "silhouettes + creases",
             (Some(_), None, None) => "silhouettes",
-            _ => "another choice of kinds",
+            _ => "other kinds of outline",
         }))
     }
 }
 
 impl Outlines {
+    /// The kinds of line that can be seen, and how they are drawn.
     fn settings(&self) -> LineSettings {
         LineSettings {
             silhouettes: self.silhouettes,

@@ -1,7 +1,7 @@
 #define_import_path bevy_comics::effects::outlines
 
-// Ink along the outlines that lines/ has found. The inks are the service's own
-// settings, since other effects draw the same lines.
+// Draws the outlines that the lines service has found. Their colours and opacities
+// are settings of the service, since other effects draw the same lines.
 
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::lines::read::{draw_lines, lines_at}

@@ -1,4 +1,4 @@
-//! A drawing of outlines alone (\[CL\] 3.2, Figure 8).
+//! Draws the outlines as ink on paper (\[CL\] 3.2, Figure 8).
 
 use bevy::{
     color::Color,
@@ -15,51 +15,53 @@ use crate::{
     settings::{BlendField, FieldRange, bounded, displayable, file_color, linear_rgb},
 };
 
-/// Draws the outlines of the camera as ink on paper, and nothing else.
+/// Replaces the picture by a drawing of its outlines: ink on paper (\[CL\] 3.2,
+/// Figure 8).
 ///
-/// The lines are those of [`Outlines`](crate::Outlines); a camera without that
-/// component sketches its silhouettes and creases. Several strokes, each with a
-/// wobble of its own that changes a few times a second, make it look drawn.
+/// The lines are those of [`Outlines`]; on a camera without that component,
+/// silhouettes and creases are drawn. Every line is drawn with several strokes. Each
+/// stroke is displaced by its own noise, which changes a few times a second, so that
+/// the lines look hand-drawn.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Sketch {
-    /// How much of the drawing covers the picture with its outlines. Range 0
-    /// (none, and the pass leaves the style out) to 1, default 1.
+    /// How much of the drawing covers the picture and its outlines. Range 0 (the
+    /// effect is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
-    /// Colour of the paper. Clamped to what a display shows; its alpha is not
-    /// used. Default: a warm white.
+    /// Colour of the paper. Default: sRGB (0.97, 0.955, 0.915), a warm white.
+    /// Components are clamped to what a display shows; alpha is ignored.
     #[serde(with = "file_color")]
     pub paper: Color,
-    /// Colour of the ink. Clamped to what a display shows; its alpha is not
-    /// used. Default: a soft black.
+    /// Colour of the ink. Default: sRGB (0.13, 0.12, 0.14), a soft black. Components
+    /// are clamped to what a display shows; alpha is ignored.
     #[serde(with = "file_color")]
     pub ink: Color,
-    /// How much of the picture shows through the paper, as a wash of colour.
-    /// Range 0 to 1, default 0.
+    /// How much the picture tints the paper, like a wash of colour. Range 0 to 1,
+    /// default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub wash: f32,
-    /// Exponent on the ink: below 1 strengthens faint lines, above 1 thins them
-    /// out. Range 0.25 to 4, default 1.
+    /// Strengthens or weakens faint lines: the exponent on the ink. Below 1
+    /// strengthens them, above 1 weakens them. Range 0.25 to 4, default 1.
     #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
     pub gamma: f32,
-    /// How many times every line is drawn. Range 1 to 3, default 2.
+    /// Number of strokes that draw each line. Range 1 to 3, default 2.
     #[reflect(@FieldRange::linear(1.0, 3.0), @BlendField::Switch)]
     pub strokes: u32,
-    /// How far a stroke strays from its line, logical pixels. Range 0 to 8,
-    /// default 1.5.
+    /// Largest displacement of a stroke from its line, per axis, in logical pixels.
+    /// Range 0 to 8, default 1.5.
     #[reflect(@FieldRange::linear(0.0, 8.0).unit("px"))]
     pub jitter: f32,
-    /// Length of a stroke's waves, logical pixels. Range 2 to 256, default 40.
+    /// Length of a stroke's waves, in logical pixels. Range 2 to 256, default 40.
     #[reflect(@FieldRange::logarithmic(2.0, 256.0).unit("px"), @BlendField::Switch)]
     pub wavelength: f32,
-    /// How often a second the strokes are drawn anew. Range 0 (they stand
+    /// How many times per second the strokes are redrawn. Range 0 (they stand
     /// still) to 60, default 8.
     #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"), @BlendField::Switch)]
     pub rate: f32,
-    /// How much the pressure of the pen varies along a stroke. Range 0 to 1,
-    /// default 0.4.
+    /// Variation of the pen's pressure along a stroke: the ink varies between 1 minus
+    /// this and 1. Range 0 to 1, default 0.4.
     #[reflect(@FieldRange::FRACTION)]
     pub pressure: f32,
 }
@@ -153,13 +155,13 @@ impl Effect for Sketch {
 }
 
 impl Sketch {
-    /// Which drawing of the strokes is shown at a time in seconds.
+    /// Number of the drawing that is shown at a time in seconds.
     fn drawing(&self, seconds: f64) -> u32 {
         (seconds * f64::from(self.rate)).floor().rem_euclid(65536.0) as u32
     }
 }
 
-/// `Sketch` of `sketch.wgsl`.
+/// The uniform: `Sketch` in `sketch.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub struct SketchUniform {
     paper: Vec3,

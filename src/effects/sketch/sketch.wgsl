@@ -1,6 +1,6 @@
 #define_import_path bevy_comics::effects::sketch
 
-// A drawing of outlines alone ([CL] 3.2, Figure 8).
+// Draws the outlines as ink on paper ([CL] 3.2, Figure 8).
 
 #import bevy_comics::effect::noise::wave
 #import bevy_comics::effect::pixel::Pixel
@@ -13,38 +13,40 @@ struct Sketch {
     wash: f32,
     ink: vec3<f32>,
     gamma: f32,
-    // Physical pixels.
+    // Largest displacement of a stroke per axis, and the spacing of the noise that
+    // displaces it; physical pixels.
     jitter: f32,
     wavelength: f32,
+    // Variation of the ink along a stroke, 0 to 1.
     pressure: f32,
     strokes: u32,
-    // Which drawing of the strokes this is: changes a few times a second.
+    // Number of the drawing: seeds the noise, and increases `rate` times a second.
     drawing: u32,
-    // How much of the drawing covers the picture.
+    // Opacity of the drawing over the picture.
     amount: f32,
-    // 1: the picture below has these lines; 0: only the sketch has them.
+    // 1: the picture below the drawing shows the outlines; 0: it does not.
     lines_below: f32,
 }
 
-// How far a stroke strays at a place, in pixels.
+// Displacement of a stroke at a place; both in physical pixels.
 fn stray(s: Sketch, at: vec2<f32>, stroke: u32) -> vec2<f32> {
     let seed = s.drawing * 16u + stroke * 4u;
     let p = at / s.wavelength;
     return s.jitter * vec2(wave(p, seed), wave(p, seed + 1u));
 }
 
-// How hard the pen is pressed at a place, 0 to 1.
+// Pressure of the pen at a place, from 1 - s.pressure to 1.
 fn pen_pressure(s: Sketch, at: vec2<f32>, stroke: u32) -> f32 {
     let n = wave(at / s.wavelength * 1.7, s.drawing * 16u + stroke * 4u + 2u);
     return 1.0 - s.pressure * (0.5 + 0.5 * n);
 }
 
-// One stroke over what is already there.
+// Ink after one more stroke over the ink that is already there, both 0 to 1.
 fn add_stroke(inked: f32, stroke: f32) -> f32 {
     return 1.0 - (1.0 - inked) * (1.0 - clamp(stroke, 0.0, 1.0));
 }
 
-// Ink on paper, in linear light.
+// Draws ink on paper, in linear light. `inked` is the coverage of the ink, 0 to 1.
 fn draw_sketch(s: Sketch, picture: vec3<f32>, inked: f32) -> vec3<f32> {
     let ground = mix(s.paper, s.paper * picture, s.wash);
     let ink = select(pow(max(inked, 1e-30), s.gamma), 0.0, inked <= 0.0);

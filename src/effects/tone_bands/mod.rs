@@ -1,4 +1,4 @@
-//! Uniformly coloured areas (\[CL\] 3.1, Eq. 6).
+//! Divides the picture into areas of uniform tone (\[CL\] 3.1, Eq. 6).
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
@@ -12,33 +12,33 @@ use crate::{
     settings::{FieldRange, Form, bounded},
 };
 
-/// Gathers the tones of the picture into a few flat bands, whatever lit it.
+/// Reduces the tones of the picture to a few flat bands, however the scene is lit
+/// (\[CL\] 3.1).
 ///
-/// Bevy's cameras dither by default; an area whose tone lies right on a step
-/// shows that as faint dots. `DebandDither::Disabled` on the camera ends it.
+/// Bevy's cameras dither by default. On an area whose tone lies exactly between two
+/// bands, the dither shows as faint dots; `DebandDither::Disabled` on the camera
+/// removes them.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ToneBands {
-    /// How tones are banded. [`Form::Corrected`] rounds the lightness (the root
-    /// of the luminance) to the middle of its band and keeps hue and saturation.
-    /// [`Form::Faithful`] is \[CL\] Eq. 6 on every channel of the display
-    /// colour: three ranges, each compressed, with the gaps that the paper
-    /// leaves at 0.33 and 0.66 closed; white becomes 0.83. Default:
-    /// [`Form::Corrected`].
+    /// Selects how tones are banded. [`Form::Corrected`] moves the lightness (the
+    /// square root of the luminance) to the middle of its band and keeps hue and
+    /// saturation. [`Form::Faithful`] compresses each channel of the display colour
+    /// separately in three ranges; white becomes 0.83. Default: [`Form::Corrected`].
+    /// Source of the faithful form: \[CL\] Eq. 6, without its gaps at 0.33 and 0.66.
     pub form: Form,
-    /// Number of bands. Range 2 to 8, default 4; [`Form::Faithful`]
-    /// always has three.
+    /// Number of bands. Range 2 to 8, default 4. [`Form::Faithful`] always has three.
     #[reflect(@FieldRange::linear(2.0, 8.0))]
     pub levels: u32,
-    /// Width of the step between two bands in logical pixels, where the tone
-    /// changes slowly: 1 is anti-aliased, more is soft, 0 as hard as can be: a
-    /// step always spans two codes of the display, so that the dither of a flat
-    /// area does not speckle. Range 0 to 16, default 1. [`Form::Faithful`] has hard steps.
+    /// Width of the step between two bands, in logical pixels: 1 is anti-aliased,
+    /// more is softer. Range 0 to 16, default 1. A step spans at least two display
+    /// codes, so that the dither of a flat area does not speckle, and at most one
+    /// band. [`Form::Faithful`] has hard steps.
     #[reflect(@FieldRange::linear(0.0, 16.0).unit("px"))]
     pub softness: f32,
-    /// How much of the banded picture is mixed in. Range 0 (the style is left
-    /// out) to 1, default 1.
+    /// Fraction of the banded picture in the mix with the original. Range 0 (the
+    /// effect is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
 }
@@ -64,7 +64,7 @@ impl Effect for ToneBands {
     };
     const VIEW: Option<EffectView> = Some(EffectView {
         label: "Tone bands",
-        explanation: "The lightness after the bands.",
+        explanation: "The lightness of the picture after banding.",
     });
     type Uniform = ToneBandsUniform;
 
@@ -113,7 +113,7 @@ impl ToneBands {
     }
 }
 
-/// `ToneBands` of `tone_bands.wgsl`.
+/// The uniform: `ToneBands` in `tone_bands.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub struct ToneBandsUniform {
     levels: f32,

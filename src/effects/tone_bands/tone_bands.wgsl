@@ -1,20 +1,20 @@
 #define_import_path bevy_comics::effects::tone_bands
 
-// Uniformly coloured areas ([CL] 3.1, Eq. 6).
+// Divides the picture into areas of uniform tone ([CL] 3.1, Eq. 6).
 
 #import bevy_comics::effect::color::{largest, lightness, luminance, srgb_decode, srgb_encode}
 #import bevy_comics::effect::pixel::Pixel
 
 struct ToneBands {
-    // How many bands; with the paper's equation always three.
+    // Number of bands; the faithful form always has three.
     levels: f32,
-    // Physical pixels that the step between two bands takes.
+    // Width of the step between two bands, physical pixels.
     softness: f32,
     amount: f32,
     faithful: u32,
 }
 
-// Modes are compiled in where they are known: see has() in map.wgsl.
+// A constant where the pass defines it: see has() in map.wgsl.
 fn is_faithful(s: ToneBands) -> bool {
 #ifdef TONE_BANDS_FAITHFUL
     let compiled = #{TONE_BANDS_FAITHFUL}u;
@@ -24,7 +24,8 @@ fn is_faithful(s: ToneBands) -> bool {
 #endif
 }
 
-// [CL] Eq. 6, its ranges joined at 0.33 and 0.66, for one channel of the code.
+// Compresses one channel of a display code in three ranges ([CL] Eq. 6, without its
+// gaps at 0.33 and 0.66).
 fn equation_6(c: f32) -> f32 {
     if c < 0.33 {
         return c / 1.5;
@@ -35,19 +36,20 @@ fn equation_6(c: f32) -> f32 {
     return 0.66 + (c - 0.66) / 2.0;
 }
 
-// The tone in the middle of the band that a lightness falls into. `change` is how much the lightness changes over a
-// pixel; the step between two bands takes `softness` pixels, and never more than
-// one band.
+// The middle of the band that a lightness `y` falls into, 0 to 1. `change` is the
+// change of the lightness over a pixel. The step between two bands is `softness`
+// pixels wide, and at most one band.
 fn band_tone(s: ToneBands, y: f32, change: f32) -> f32 {
     let t = y * s.levels;
     let step = clamp(round(t), 1.0, s.levels - 1.0);
-    // A code on both sides at least, or the dither of a flat area that lies on a
-    // step would speckle.
+    // At least one display code on either side: otherwise the dither of a flat area
+    // whose tone lies on a step would speckle.
     let half = 0.5 * clamp(s.softness * change * s.levels, s.levels / 128.0, 1.0);
     return (step - 0.5 + smoothstep(step - half, step + half, t)) / s.levels;
 }
 
-// Light of another luminance, chroma kept, as far as the display can show it.
+// The colour with another luminance and the same chromaticity. If the display cannot
+// show it, it is mixed with grey of that luminance until it can.
 fn with_luminance(linear: vec3<f32>, target_luminance: f32) -> vec3<f32> {
     let y = luminance(linear);
     let grey = vec3(target_luminance);
@@ -59,7 +61,6 @@ fn with_luminance(linear: vec3<f32>, target_luminance: f32) -> vec3<f32> {
     if over <= 0.0 {
         return scaled;
     }
-    // Towards grey until it fits.
     let room = clamp((1.0 - target_luminance) / max(largest(scaled) - target_luminance, 1e-6), 0.0, 1.0);
     return mix(grey, scaled, room);
 }
@@ -82,7 +83,7 @@ fn tone_bands(s: ToneBands, p: Pixel) -> Pixel {
     return out;
 }
 
-// The debug view, in display codes: the lightness after the bands, alone.
+// The debug view, in display codes: the lightness after banding.
 fn tone_bands_view(s: ToneBands, p: Pixel) -> vec3<f32> {
     return vec3(clamp(lightness(p.color), 0.0, 1.0));
 }

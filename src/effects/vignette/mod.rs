@@ -1,4 +1,4 @@
-//! The corners of the picture sink into ink.
+//! Mixes a colour into the corners of the picture.
 
 use bevy::{
     color::Color,
@@ -14,29 +14,29 @@ use crate::{
     settings::{FieldRange, bounded, displayable, file_color, linear_rgb},
 };
 
-/// Mixes a colour into the picture towards the corners of the viewport, lines
-/// included: a spotlight, an old film, the edge of a panel.
+/// Mixes a colour into the picture towards the corners of the viewport, over lines
+/// too: a spotlight, an old film, the edge of a panel.
 ///
-/// Distances are fractions of the way from the centre of the viewport to its
-/// corners, so that the vignette is an ellipse of the viewport's shape.
+/// Distances are fractions of the distance from the centre of the viewport to its
+/// corners. The vignette is an ellipse with the viewport's aspect ratio.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Vignette {
-    /// How much of the colour is mixed in outside of the vignette. Range 0 (none,
-    /// and the effect is left out) to 1 (the colour alone), default 0.6.
+    /// How much of the colour is mixed in outside the ellipse. Range 0 (the effect is
+    /// left out) to 1 (the colour alone), default 0.6.
     #[reflect(@FieldRange::linear(0.0, 1.0))]
     pub amount: f32,
-    /// Distance from the centre at which half of the amount is mixed in. Range 0
-    /// (the centre) to 1 (the corners), default 0.8.
+    /// Distance from the centre at which half of the amount is mixed in, as a
+    /// fraction of the distance to the corners. Range 0 to 1, default 0.8.
     #[reflect(@FieldRange::linear(0.0, 1.0))]
     pub radius: f32,
-    /// Width of the transition, the same unit as `radius`: 0 is a hard edge.
-    /// Range 0 to 1, default 0.5.
+    /// Width of the transition, in the unit of `radius`. Range 0 (a hard edge) to 1,
+    /// default 0.5.
     #[reflect(@FieldRange::linear(0.0, 1.0))]
     pub softness: f32,
-    /// The colour that is mixed in. Clamped to what a display shows; its alpha is
-    /// not used. Default: black.
+    /// Colour that is mixed in. Default: black. Components are clamped to what a
+    /// display shows; alpha is ignored.
     #[serde(with = "file_color")]
     pub color: Color,
 }
@@ -83,7 +83,7 @@ impl Effect for Vignette {
 
     fn uniform(&self, view: &ViewFacts) -> VignetteUniform {
         let size = Vec2::new(view.viewport.z as f32, view.viewport.w as f32).max(Vec2::ONE);
-        // smoothstep needs its ends apart: a hard edge rises over a thousandth.
+        // smoothstep needs two different ends: a hard edge has a width of 0.001.
         let half = 0.5 * self.softness.max(1e-3);
         VignetteUniform {
             color: linear_rgb(self.color),
@@ -95,7 +95,7 @@ impl Effect for Vignette {
     }
 }
 
-/// `Vignette` of `vignette.wgsl`.
+/// The uniform: `Vignette` in `vignette.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub struct VignetteUniform {
     color: Vec3,

@@ -1,22 +1,22 @@
 #define_import_path bevy_comics::effects::vignette
 
-// The corners of the picture sink into ink.
+// Mixes a colour into the corners of the picture.
 
 #import bevy_comics::effect::pixel::Pixel
 
 struct Vignette {
     color: vec3<f32>,
     amount: f32,
-    // 2 / size of the viewport, per physical pixel.
+    // 2 / size of the viewport in physical pixels.
     scale: vec2<f32>,
-    // Distances at which the colour begins and is full, as fractions of the way
-    // from the centre to the corners.
+    // Distances from the centre at which the colour begins and is complete, as
+    // fractions of the distance to the corners.
     low: f32,
     high: f32,
 }
 
-// How much of the colour covers a place, physical pixels from the viewport's
-// corner.
+// Fraction of the colour in the mix at a place, in physical pixels from the
+// viewport's top left corner.
 fn vignette_cover(s: Vignette, at: vec2<f32>) -> f32 {
     let from_centre = at * s.scale - 1.0;
     let distance = length(from_centre) / sqrt(2.0);
