@@ -1,4 +1,4 @@
-//! The page of style files, and the mark of the open one.
+//! The page of style files, and the name of the open one in the toolbar.
 
 use bevy::ecs::entity::Entity;
 use bevy_egui::egui::{TextEdit, Ui};
@@ -14,8 +14,8 @@ use super::{
 use crate::ComicStyle;
 
 impl Files {
-    /// The file, and whether the style is as it stands there; where the file is
-    /// broken, how, in full or in a word.
+    /// Shows the open file, whether the style differs from it, and the file's
+    /// error: in full or as a hint.
     pub fn mark(&self, ui: &mut Ui, camera: Entity, style: &ComicStyle, in_full: bool) {
         let Some(open) = self.open.get(&camera) else {
             return;
@@ -25,10 +25,10 @@ impl Files {
             ui.label(file.into_owned());
         } else {
             ui.strong(format!("• {file}"))
-                .on_hover_text("Changed since it was saved");
+                .on_hover_text("The style has changes that are not saved");
         }
         if let Some(error) = &open.error {
-            fields::error(ui, if in_full { error } else { "is broken" });
+            fields::error(ui, if in_full { error } else { "has an error: see the page Files" });
         }
     }
 
@@ -51,7 +51,7 @@ impl Files {
         ui.horizontal(|ui| {
             let name = ui.add(TextEdit::singleline(&mut self.name).hint_text("file name"));
             note(widgets, "files.name", &name);
-            name.on_hover_text("With folders, or a name in the folder of styles");
+            name.on_hover_text("A name in the folder below, or a path");
             ui.label("File");
         });
         ui.horizontal(|ui| {
@@ -61,7 +61,7 @@ impl Files {
         });
     }
 
-    /// What can be done with the file that is named or open.
+    /// The buttons that load and save.
     fn buttons(
         &mut self,
         ui: &mut Ui,
@@ -95,7 +95,7 @@ impl Files {
         });
     }
 
-    /// What the last action said, and the open file.
+    /// The result of the last action, and the open file.
     fn state(&self, ui: &mut Ui, camera: Entity, widgets: &mut Widgets) {
         if let Some(message) = &self.message {
             fields::error(ui, message);
@@ -105,14 +105,14 @@ impl Files {
             if let Some(error) = error {
                 let error = fields::error(ui, error);
                 note(widgets, "files.error", &error);
-                ui.label("The last good style stays until the file is mended.");
+                ui.label("The camera keeps the last valid style until the file is corrected.");
             }
         }
     }
 
-    /// The files of the folder, to be loaded by a click.
+    /// The files of the folder. A click loads one.
     fn list(&mut self, ui: &mut Ui, camera: Entity, style: &mut ComicStyle, widgets: &mut Widgets) {
-        ui.label(format!("In {}:", self.folder.display()));
+        ui.label(format!("Files in {}:", self.folder.display()));
         for path in style_files(&self.folder) {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let open = self.open.get(&camera).is_some_and(|open| open.path == path);
