@@ -6,15 +6,20 @@ use bevy::{
         visibility::RenderLayers,
     },
     color::Color,
-    ecs::{component::Component, entity::Entity, name::Name, query::With, system::Local, world::{Mut, World}},
+    ecs::{
+        component::Component,
+        entity::Entity,
+        name::Name,
+        query::With,
+        system::Local,
+        world::{Mut, World},
+    },
     log::error_once,
     math::UVec2,
     render::{render_resource::BlendState, view::Msaa},
     window::{PrimaryWindow, Window, WindowRef},
 };
-use bevy_egui::{
-    EguiContext, EguiContextSettings, EguiFullOutput, EguiInput, EguiOutput, egui,
-};
+use bevy_egui::{EguiContext, EguiContextSettings, EguiFullOutput, EguiInput, EguiOutput, egui};
 
 use super::{ComicsInspector, Helper, panel::Panel, toolkit};
 
@@ -126,7 +131,9 @@ pub fn run_panel(world: &mut World) {
     if let Ok(mut full) = outputs.single_mut(world) {
         **full = Some(output);
     }
-    world.resource_mut::<Panel>().set_typing(context.text_edit_focused());
+    world
+        .resource_mut::<Panel>()
+        .set_typing(context.text_edit_focused());
     let mut inspector = world.resource_mut::<ComicsInspector>();
     inspector.wants_pointer = context.egui_wants_pointer_input();
     inspector.wants_keyboard = context.egui_wants_keyboard_input();

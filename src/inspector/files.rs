@@ -30,13 +30,24 @@ struct OpenFile {
 }
 
 impl OpenFile {
+    /// Whether a camera's style is as the file has it.
     fn is_saved(&self, style: &ComicStyle) -> bool {
         let named = ComicStyle {
             name: self.saved.name.clone(),
             ..style.clone()
         };
         // Values out of range in the file are not a change by the user.
-        named == self.saved.sanitized()
+        named == on_camera(&self.saved, style).sanitized()
+    }
+}
+
+/// The style of a camera after a style was loaded or pasted: a partial one keeps
+/// the effects that it does not mention.
+pub fn on_camera(loaded: &ComicStyle, camera: &ComicStyle) -> ComicStyle {
+    if loaded.partial {
+        loaded.over(camera)
+    } else {
+        loaded.clone()
     }
 }
 
@@ -146,7 +157,10 @@ impl Files {
             .or_else(|| self.path())
         {
             Some(path) => self.save_as(camera, style, path),
-            None => self.message = Some("The style has no file yet. Enter a file name on the page Files.".into()),
+            None => {
+                let message = "The style has no file yet. Enter a file name on the page Files.";
+                self.message = Some(message.into());
+            }
         }
     }
 
@@ -198,9 +212,9 @@ impl Files {
                 self.title.clone_from(&read.name);
                 let named = ComicStyle {
                     name: style.name.clone(),
-                    ..read.clone()
+                    ..on_camera(&read, style)
                 };
-                (named != *style).then_some(read)
+                (named != *style).then_some(named)
             }
             Err((text, error)) => {
                 open.seen = text;
@@ -236,7 +250,7 @@ pub fn style_files(folder: &Path) -> Vec<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Contours;
+    use crate::{Contours, ToneBands};
 
     fn folder(name: &str) -> PathBuf {
         let folder = std::env::temp_dir().join(format!("comics-{name}-{}", std::process::id()));
@@ -255,6 +269,22 @@ mod tests {
     fn wait(files: &mut Files, camera: Entity, style: &ComicStyle) -> Option<ComicStyle> {
         std::thread::sleep(WATCH + Duration::from_millis(20));
         files.watch(camera, style)
+    }
+
+    #[test]
+    fn a_partial_file_keeps_what_it_does_not_mention() {
+        let folder = folder("partial");
+        let path = folder.join("ink.comic.ron");
+        fs::write(&path, "(version: 2, partial: true, contours: (width: 7.0))").expect("written");
+        let mut files = Files::new(folder.clone(), EffectRegistry::built_in());
+        let loaded = files.load(Entity::PLACEHOLDER, &path).expect("loaded");
+        let toned = ComicStyle::new().with(ToneBands::default());
+        let style = on_camera(&loaded, &toned);
+        assert_eq!(style.get::<Contours>().map(|c| c.width), Some(7.0));
+        assert!(style.get::<ToneBands>().is_some() && !style.partial);
+        let open = &files.open[&Entity::PLACEHOLDER];
+        assert!(open.is_saved(&style) && !open.is_saved(&inked(3.0)));
+        fs::remove_dir_all(&folder).expect("removed");
     }
 
     #[test]

@@ -104,7 +104,10 @@ fn place(centre: Pos2, radius: f32, hue: f32, saturation: f32) -> Pos2 {
 fn hue_at(centre: Pos2, radius: f32, at: Pos2) -> (f32, f32) {
     let offset = at - centre;
     let hue = (-offset.y).atan2(offset.x) / TAU;
-    (hue.rem_euclid(1.0), (offset.length() / radius).clamp(0.0, 1.0))
+    (
+        hue.rem_euclid(1.0),
+        (offset.length() / radius).clamp(0.0, 1.0),
+    )
 }
 
 #[cfg(test)]

@@ -234,8 +234,8 @@ fn missing(app: &App) -> Option<&'static str> {
              app.add_plugins((DefaultPlugins, ComicsPlugin, ComicsInspectorPlugin::default()))",
         );
     }
-    let has_renderer = app.get_sub_app(RenderApp).is_some()
-        && app.world().contains_resource::<Assets<Shader>>();
+    let has_renderer =
+        app.get_sub_app(RenderApp).is_some() && app.world().contains_resource::<Assets<Shader>>();
     if !has_renderer {
         return Some("the app has no renderer; add bevy's RenderPlugin, or DefaultPlugins");
     }
@@ -281,9 +281,16 @@ fn toggle(
     };
     let types_text = |press: &KeyboardInput| {
         press.key_code == key
-            && press.text.as_ref().is_some_and(|text| !text.chars().any(char::is_control))
+            && press
+                .text
+                .as_ref()
+                .is_some_and(|text| !text.chars().any(char::is_control))
     };
-    let types_text = read.read(&presses).filter(|press| types_text(press)).count() > 0;
+    let types_text = read
+        .read(&presses)
+        .filter(|press| types_text(press))
+        .count()
+        > 0;
     if keys.just_pressed(key) && !(types_text && panel.is_typing()) {
         inspector.open = !inspector.open;
     }

@@ -1,5 +1,6 @@
 //! The panel: its state, its frame, and how its changes reach the cameras.
 
+mod head;
 mod pages;
 mod search_field;
 mod toolbar;
@@ -7,26 +8,26 @@ mod toolbar;
 use std::path::PathBuf;
 
 use bevy::{
-    camera::{Camera, Camera3d},
     ecs::{
         entity::{Entity, EntityHashMap},
-        name::Name,
-        query::{With, Without},
         resource::Resource,
         world::World,
     },
     math::Vec2,
     reflect::TypeRegistry,
 };
-use bevy_egui::egui::{self, Align2, Color32, ComboBox, RichText, ScrollArea, Ui};
+use bevy_egui::egui::{self, Align2, Color32, ScrollArea, Ui};
 
-use self::search_field::SearchField;
+use self::{
+    head::{cameras, chosen_camera},
+    search_field::SearchField,
+};
 use super::{
-    ComicsInspector, ComicsInspectorPlugin, Helper, Widgets,
+    ComicsInspector, ComicsInspectorPlugin, Widgets,
     clipboard::Clipboard,
     cost::Costs,
-    fields::{self, button},
-    files::Files,
+    fields,
+    files::{Files, on_camera},
     history::History,
     memory::{Dock, Memory, Tab},
     note,
@@ -201,12 +202,7 @@ impl Panel {
     }
 
     /// The panel at the left or right edge of the window; its rectangle.
-    fn show_docked(
-        &mut self,
-        ui: &mut Ui,
-        world: &mut World,
-        widgets: &mut Widgets,
-    ) -> egui::Rect {
+    fn show_docked(&mut self, ui: &mut Ui, world: &mut World, widgets: &mut Widgets) -> egui::Rect {
         let panel = if self.memory.dock == Dock::Left {
             egui::Panel::left("comics_inspector_left")
         } else {
@@ -265,7 +261,8 @@ impl Panel {
         self.leave_other_pages(world);
         if let Some(preset) = self.presets.chosen.take() {
             // The transition goes on if the panel is closed.
-            self.record(camera, before.clone(), &preset, None);
+            let after = on_camera(&preset, &before);
+            self.record(camera, before.clone(), &after, None);
             self.files.forget(camera);
             let fade = StyleTransition::to(preset, self.memory.fade);
             world.entity_mut(camera).insert(fade);
@@ -309,63 +306,7 @@ impl Panel {
         let state = self.cameras.entry(camera).or_default();
         state.shelf.keep(&before, after);
         state.history.record(before, gesture);
-    }
-
-    fn head(
-        &mut self,
-        ui: &mut Ui,
-        world: &mut World,
-        cameras: &[(Entity, String)],
-        chosen: &mut Option<Entity>,
-        widgets: &mut Widgets,
-    ) {
-        ui.horizontal(|ui| {
-            ui.label(RichText::new("Comics").heading());
-            let name = cameras
-                .iter()
-                .find(|(camera, _)| Some(*camera) == *chosen)
-                .map_or("no camera", |(_, name)| name.as_str());
-            let before = *chosen;
-            let combo = ComboBox::from_id_salt("camera")
-                .selected_text(name)
-                .show_ui(ui, |ui| {
-                    for (camera, name) in cameras {
-                        let item = ui.selectable_value(chosen, Some(*camera), name);
-                        note(widgets, format!("camera.{name}"), &item);
-                    }
-                });
-            note(widgets, "camera", &combo.response);
-            if let Some(left) = before.filter(|_| before != *chosen) {
-                // The button that showed the original is now the other camera's.
-                self.show_original(world, left, false);
-            }
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if button(ui, widgets, "close", "✖", true) {
-                    world.resource_mut::<ComicsInspector>().open = false;
-                }
-                let dock = ComboBox::from_id_salt("dock")
-                    .selected_text(self.memory.dock.name())
-                    .width(64.0)
-                    .show_ui(ui, |ui| {
-                        for &dock in Dock::ALL {
-                            let item =
-                                ui.selectable_value(&mut self.memory.dock, dock, dock.name());
-                            note(widgets, format!("dock.{}", dock.name()), &item);
-                        }
-                    });
-                note(widgets, "dock", &dock.response);
-            });
-        });
-        ui.horizontal_wrapped(|ui| {
-            for &tab in Tab::ALL {
-                let item = ui.selectable_label(self.memory.tab == tab, tab.name());
-                note(widgets, format!("tab.{}", tab.name()), &item);
-                if item.clicked() {
-                    self.memory.tab = tab;
-                    self.message = None;
-                }
-            }
-        });
+        self.message = None;
     }
 }
 
@@ -393,32 +334,4 @@ fn put(world: &mut World, camera: Entity, style: &ComicStyle) {
     camera.remove::<StyleTransition>();
     style.set_as_own(&mut camera);
     world.flush();
-}
-
-/// The camera whose style is shown: the chosen one, or the first one if that
-/// does not exist.
-fn chosen_camera(world: &World, cameras: &[(Entity, String)]) -> Option<Entity> {
-    let chosen = world.resource::<ComicsInspector>().camera;
-    cameras
-        .iter()
-        .map(|(camera, _)| *camera)
-        .find(|camera| Some(*camera) == chosen)
-        .or_else(|| cameras.first().map(|(camera, _)| *camera))
-}
-
-/// The 3D cameras with their names, in the order in which they draw.
-fn cameras(world: &mut World) -> Vec<(Entity, String)> {
-    let mut found: Vec<(isize, Entity, String)> = world
-        .query_filtered::<(Entity, &Camera, Option<&Name>), (With<Camera3d>, Without<Helper>)>()
-        .iter(world)
-        .map(|(entity, camera, name)| {
-            let name = name.map_or_else(|| format!("Camera {entity}"), ToString::to_string);
-            (camera.order, entity, name)
-        })
-        .collect();
-    found.sort_by_key(|(order, entity, _)| (*order, *entity));
-    found
-        .into_iter()
-        .map(|(_, entity, name)| (entity, name))
-        .collect()
 }

@@ -140,7 +140,10 @@ impl Photo {
             .unwrap_or_else(PoisonError::into_inner)
             .take();
         if answer.is_some() || shot.frames > PATIENCE {
-            self.last = Some(answer.unwrap_or_else(|| Err("The renderer did not deliver the screenshot.".into())));
+            self.last = Some(
+                answer
+                    .unwrap_or_else(|| Err("The renderer did not deliver the screenshot.".into())),
+            );
             if let Some(shot) = self.shot.take() {
                 end(world, shot);
             }

@@ -138,11 +138,23 @@ mod tests {
     fn words_are_found_in_labels_paths_names_and_documentation() {
         assert!(Search::of(" \t").is_none());
         // The name of the effect finds all of it, in any case.
-        assert_eq!(section::<Contours>("contours", "CONTOUR"), Some(Found::Whole));
-        assert_eq!(setting::<Contours>("contours.width", "contours"), Some(Found::Whole));
+        assert_eq!(
+            section::<Contours>("contours", "CONTOUR"),
+            Some(Found::Whole)
+        );
+        assert_eq!(
+            setting::<Contours>("contours.width", "contours"),
+            Some(Found::Whole)
+        );
         // The name of a setting finds that one.
-        assert_eq!(section::<Contours>("contours", "width"), Some(Found::Inside));
-        assert_eq!(setting::<Contours>("contours.width", "Width"), Some(Found::Whole));
+        assert_eq!(
+            section::<Contours>("contours", "width"),
+            Some(Found::Inside)
+        );
+        assert_eq!(
+            setting::<Contours>("contours.width", "Width"),
+            Some(Found::Whole)
+        );
         assert_eq!(setting::<Contours>("contours.opacity", "threshold"), None);
         // By path, by label, with words of both the effect and the setting.
         for text in ["contours.opacity_fade", "opacity fade", "fade contours"] {
@@ -150,18 +162,36 @@ mod tests {
             assert_eq!(found, Some(Found::Whole), "{text}");
         }
         // By the documentation of the setting and by the modes.
-        assert_eq!(setting::<Contours>("contours.width", "pixels"), Some(Found::Whole));
-        assert_eq!(setting::<Contours>("contours.operator", "laplace"), Some(Found::Whole));
+        assert_eq!(
+            setting::<Contours>("contours.width", "pixels"),
+            Some(Found::Whole)
+        );
+        assert_eq!(
+            setting::<Contours>("contours.operator", "laplace"),
+            Some(Found::Whole)
+        );
         assert_eq!(section::<Vignette>("vignette", "laplace"), None);
         assert_eq!(section::<Contours>("contours", "contours zzz"), None);
     }
 
     #[test]
     fn settings_inside_options_and_modes_are_found() {
-        assert_eq!(setting::<Outlines>("outlines.creases", "angle"), Some(Found::Inside));
-        assert_eq!(section::<Outlines>("outlines", "creases angle"), Some(Found::Inside));
-        assert_eq!(setting::<DepthMap>("depth_map.mapping", "near"), Some(Found::Whole));
-        assert_eq!(setting::<DepthMap>("depth_map.smoothing", "shrink"), Some(Found::Inside));
+        assert_eq!(
+            setting::<Outlines>("outlines.creases", "angle"),
+            Some(Found::Inside)
+        );
+        assert_eq!(
+            section::<Outlines>("outlines", "creases angle"),
+            Some(Found::Inside)
+        );
+        assert_eq!(
+            setting::<DepthMap>("depth_map.mapping", "near"),
+            Some(Found::Whole)
+        );
+        assert_eq!(
+            setting::<DepthMap>("depth_map.smoothing", "shrink"),
+            Some(Found::Inside)
+        );
         assert_eq!(setting::<DepthMap>("depth_map.locked", "shrink"), None);
     }
 }

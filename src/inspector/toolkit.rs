@@ -35,8 +35,7 @@ pub fn add(app: &mut App) {
         || app.world().contains_resource::<EguiGlobalSettings>();
     app.add_plugins(EguiPlugin::default());
     app.insert_resource(AddedHere { is_finished: false });
-    if !is_used
-        && let Some(mut settings) = app.world_mut().get_resource_mut::<EguiGlobalSettings>()
+    if !is_used && let Some(mut settings) = app.world_mut().get_resource_mut::<EguiGlobalSettings>()
     {
         settings.auto_create_primary_context = false;
     }

@@ -232,13 +232,25 @@ mod tests {
     fn markup_is_removed() {
         for (docs, plain_text) in [
             (" A [`Link`]\n to \\[CS\\]. ", "A Link to Suarez et al.."),
-            ("See [the guide](https://example.org/a_b).", "See the guide."),
+            (
+                "See [the guide](https://example.org/a_b).",
+                "See the guide.",
+            ),
             ("With [`Self::BarrierFree`].", "With Barrier free."),
-            ("[`BarrierFree`](Self::BarrierFree) runs.", "BarrierFree runs."),
-            ("`None` draws none. Default: `false`.", "Off draws none. Default: off."),
+            (
+                "[`BarrierFree`](Self::BarrierFree) runs.",
+                "BarrierFree runs.",
+            ),
+            (
+                "`None` draws none. Default: `false`.",
+                "Off draws none. Default: off.",
+            ),
             ("Is **bold** and `code`.", "Is bold and code."),
             ("Text.\n\n[`X`]: crate::X", "Text."),
-            ("Default: [`Creases::default`].", "Default: its default settings."),
+            (
+                "Default: [`Creases::default`].",
+                "Default: its default settings.",
+            ),
         ] {
             assert_eq!(plain(docs), plain_text);
         }

@@ -25,11 +25,11 @@ fn describe(view: DebugView, types: &[&EffectType]) -> (&'static str, &'static s
         ),
         DebugView::Silhouettes => ("Silhouettes", "Black: a full line."),
         DebugView::Creases => ("Creases", "Black: a full line."),
-        DebugView::ObjectIds => ("Object ids", "One colour for each object. Black: no object."),
-        DebugView::Saturation => (
-            "Saturation mask",
-            "White: full saturation. Black: none.",
+        DebugView::ObjectIds => (
+            "Object ids",
+            "One colour for each object. Black: no object.",
         ),
+        DebugView::Saturation => ("Saturation mask", "White: full saturation. Black: none."),
         DebugView::Difference => (
             "Difference from the original",
             "Absolute difference of the display colours, four times as bright.",
@@ -89,7 +89,9 @@ pub fn show(ui: &mut Ui, world: &mut World, camera: Entity, widgets: &mut Widget
         .unwrap_or_default();
     let histogram = entity.get::<DepthHistogram>().cloned().unwrap_or_default();
     section(ui, "Depth range", |ui| numbers(ui, range, histogram.drawn));
-    section(ui, "Histogram of visible depths", |ui| plot(ui, &histogram, widgets));
+    section(ui, "Histogram of visible depths", |ui| {
+        plot(ui, &histogram, widgets);
+    });
     ui.ctx().request_repaint();
 }
 
@@ -171,7 +173,9 @@ fn plot(ui: &mut Ui, histogram: &DepthHistogram, widgets: &mut Widgets) {
         .x_axis_formatter(move |mark, _| format!("{:.3}", distance(mark.value)))
         .y_axis_formatter(|mark, _| format!("{:.0} %", mark.value))
         .show(ui, |plot| {
-            plot.bar_chart(BarChart::new("fraction of the pixels", bars).color(Color32::LIGHT_BLUE));
+            plot.bar_chart(
+                BarChart::new("fraction of the pixels", bars).color(Color32::LIGHT_BLUE),
+            );
             if let Some((near, far)) = histogram.drawn {
                 for (name, at) in [("nearest", near), ("farthest", far)] {
                     plot.vline(

@@ -55,18 +55,25 @@ impl ComicStyle {
         if !self.name.is_empty() {
             fields.push(format!("name: {:?}.into(),", self.name));
         }
-        if let Some(map) = &self.depth_map {
-            fields.push(format!("depth_map: Some({}),", writer.value(map)));
+        if !self.off.is_empty() {
+            // By name: the types of the effects are not known here.
+            fields.push(format!("off: {:?}.into(),", Vec::from_iter(&self.off)));
         }
         let mut code = String::from("ComicStyle::new()");
         if !fields.is_empty() {
             fields.push(format!("..{code}"));
             code = format!("ComicStyle {}", block(&fields));
         }
-        let calls: Vec<String> = self
-            .effects()
-            .map(|effect| format!(".with({})", writer.effect(effect)))
-            .collect();
+        let mut calls = Vec::new();
+        if self.partial {
+            calls.push(".partial()".to_owned());
+        }
+        if let Some(map) = &self.depth_map {
+            calls.push(format!(".with_depth_map({})", writer.value(map)));
+        }
+        for effect in self.effects() {
+            calls.push(format!(".with({})", writer.effect(effect)));
+        }
         code + &chain(&calls, fields.is_empty())
     }
 }
@@ -119,7 +126,9 @@ impl Writer {
         match value.reflect_ref() {
             ReflectRef::Struct(fields) => {
                 let default = self.default_of(value);
-                let default = default.as_deref().and_then(|d| d.reflect_ref().as_struct().ok());
+                let default = default
+                    .as_deref()
+                    .and_then(|d| d.reflect_ref().as_struct().ok());
                 self.structure(fields, default)
             }
             ReflectRef::Enum(variant) => self.variant(variant),
@@ -162,7 +171,9 @@ impl Writer {
             return format!("{path} {}", block(&self.fields(value, |_, _| true)));
         };
         let differs = |name: &str, field: &dyn PartialReflect| {
-            let same = default.field(name).and_then(|d| field.reflect_partial_eq(d));
+            let same = default
+                .field(name)
+                .and_then(|d| field.reflect_partial_eq(d));
             same != Some(true)
         };
         let mut fields = self.fields(value, differs);
@@ -308,8 +319,7 @@ fn path_of(value: &dyn PartialReflect) -> String {
     let (module, name) = path.rsplit_once("::").unwrap_or(("", path));
     match module.split("::").next() {
         Some("bevy_comics") => {
-            let in_prelude =
-                module.starts_with("bevy_comics::effects") || PRELUDE.contains(&name);
+            let in_prelude = module.starts_with("bevy_comics::effects") || PRELUDE.contains(&name);
             let start = if in_prelude { "" } else { "bevy_comics::" };
             format!("{start}{name}")
         }

@@ -41,9 +41,7 @@ fn depth_range_rows(style: &ComicStyle, medians: &Medians) -> Vec<Known> {
     let known = known::smoothing(&map).map(|variant| (variant, known::flicker(variant)));
     let error = match known {
         Some((_, Some((codes, lag)))) => {
-            format!(
-                "mean change {codes:.3} 8-bit codes per frame; lags by up to {lag:.1} octaves"
-            )
+            format!("mean change {codes:.3} 8-bit codes per frame; lags by up to {lag:.1} octaves")
         }
         _ => "not measured in docs/report with these settings".into(),
     };

@@ -8,7 +8,10 @@ use bevy::reflect::{
 use bevy_egui::egui::Ui;
 
 use super::{
-    super::{note, search::{Search, option_type}},
+    super::{
+        note,
+        search::{Search, option_type},
+    },
     Editor, Setting, as_struct, edit, explained, reset_button, settings,
 };
 
@@ -93,6 +96,9 @@ fn turn(
 /// whose reflection does not allow it keeps its value.
 pub(super) fn apply(value: &mut dyn PartialReflect, new: &dyn PartialReflect) {
     if let Err(error) = value.try_apply(new) {
-        bevy::log::warn_once!("the panel cannot set {}: {error}", value.reflect_type_path());
+        bevy::log::warn_once!(
+            "the panel cannot set {}: {error}",
+            value.reflect_type_path()
+        );
     }
 }

@@ -1,13 +1,11 @@
-use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
-    reflect::{ReflectDeserialize, ReflectSerialize},
-};
-use serde::{Deserialize, Serialize};
+mod games_effect;
+
+use bevy::reflect::Typed;
 
 use super::{super::tooltip::plain, *};
 use crate::{
-    BlackFlats, Contours, Creases, DepthMapping, Effect, EffectRegistry, EffectShader, EffectStage,
-    NoUniform, ObjectEdges, Outlines, RangeSmoothing, Silhouettes, ViewFacts,
+    BlackFlats, ComicStyle, Contours, Creases, DepthMapping, EffectRegistry, ObjectEdges, Outlines,
+    RangeSmoothing, Silhouettes,
 };
 
 /// Every type with settings, by its name in paths.
@@ -77,15 +75,26 @@ fn every_tooltip_begins_with_plain_words_and_has_no_markup() {
         let tooltip = tooltip(docs);
         let first = tooltip.chars().next().expect(&name);
         assert!(first.is_uppercase(), "{name} starts with {tooltip:?}");
-        for start in ["Eq", "Fig", "Suarez", "Wang", "Range", "Default", "Source", "None"] {
-            assert!(!tooltip.starts_with(start), "{name} starts with {tooltip:?}");
+        for start in [
+            "Eq", "Fig", "Suarez", "Wang", "Range", "Default", "Source", "None",
+        ] {
+            assert!(
+                !tooltip.starts_with(start),
+                "{name} starts with {tooltip:?}"
+            );
         }
         for markup in ["[", "]", "`", "\\", "**", "::", "()", "<", "http"] {
-            assert!(!tooltip.contains(markup), "{name}: {markup:?} is left in {tooltip:?}");
+            assert!(
+                !tooltip.contains(markup),
+                "{name}: {markup:?} is left in {tooltip:?}"
+            );
         }
         // A citation in the text is a part of its sentence; any other one is in
         // the last line.
-        assert!(!tooltip.contains("(Suarez") && !tooltip.contains("(Wang"), "{tooltip:?}");
+        assert!(
+            !tooltip.contains("(Suarez") && !tooltip.contains("(Wang"),
+            "{tooltip:?}"
+        );
         assert!(!tooltip.contains(" ."), "{tooltip:?}");
     }
 }
@@ -142,7 +151,13 @@ impl Page {
                 shelf: &self.shelf,
                 types: &self.types,
             };
-            style(ui, &mut self.style, &self.effects, search.as_ref(), &mut editor);
+            style(
+                ui,
+                &mut self.style,
+                &self.effects,
+                search.as_ref(),
+                &mut editor,
+            );
         });
         self.style = self.style.sanitized();
         self.shelf.keep(&before, &self.style);
@@ -309,98 +324,10 @@ fn a_search_shows_what_it_finds() {
     assert!(page.widgets.rects.is_empty());
     page.search.clear();
     page.show();
-    assert!(page.has("sketch") && !page.has("contours.width"), "closed again");
-}
-
-/// An effect of a game, with types that this crate does not know.
-#[derive(Component, Reflect, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct Rain {
-    /// How it falls.
-    gusts: Option<Gusts>,
-    /// What falls.
-    drops: Drops,
-}
-
-#[derive(Reflect, Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
-struct Gusts {
-    /// How strong they are.
-    #[reflect(@FieldRange::linear(0.0, 9.0))]
-    strength: f32,
-}
-
-impl Default for Gusts {
-    fn default() -> Self {
-        Self { strength: 4.0 }
-    }
-}
-
-#[derive(Reflect, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
-enum Drops {
-    #[default]
-    Water,
-    Frogs(u32, bool),
-}
-
-impl Effect for Rain {
-    const NAME: &'static str = "rain";
-    const STAGE: EffectStage = EffectStage::Page;
-    const SHADER: EffectShader = EffectShader {
-        path: "my_game::rain",
-        source: "",
-        settings: None,
-    };
-    type Uniform = NoUniform;
-
-    fn sanitized(self) -> Self {
-        self
-    }
-
-    fn strength(&self) -> f32 {
-        1.0
-    }
-
-    fn faded(self, _: f32) -> Self {
-        self
-    }
-
-    fn uniform(&self, _: &ViewFacts) -> NoUniform {
-        NoUniform::default()
-    }
-}
-
-#[test]
-fn options_and_modes_of_a_games_effect_have_widgets() {
-    let mut page = Page::of(
-        ComicStyle::new().with(Rain::default()),
-        &[EffectType::of::<Rain>()],
+    assert!(
+        page.has("sketch") && !page.has("contours.width"),
+        "closed again"
     );
-    page.show();
-    page.click("rain.open");
-    page.click("rain.gusts.on");
-    let rain = |page: &Page| page.style.get::<Rain>().cloned().expect("rain");
-    assert_eq!(rain(&page).gusts, Some(Gusts::default()));
-    assert!(page.has("rain.gusts.strength"));
-    page.style.insert(Rain {
-        gusts: Some(Gusts { strength: 8.0 }),
-        drops: Drops::Frogs(3, true),
-    });
-    page.click("rain.gusts.on");
-    assert_eq!(rain(&page).gusts, None);
-    page.click("rain.gusts.on");
-    assert_eq!(rain(&page).gusts, Some(Gusts { strength: 8.0 }));
-    // Modes keep their values as well.
-    page.click("rain.drops");
-    page.click("rain.drops.Water");
-    assert_eq!(rain(&page).drops, Drops::Water);
-    page.click("rain.drops");
-    page.click("rain.drops.Frogs");
-    assert_eq!(rain(&page).drops, Drops::Frogs(3, true));
-    page.click("rain.drops.reset");
-    assert_eq!(rain(&page).drops, Drops::Water);
 }
 
 #[test]

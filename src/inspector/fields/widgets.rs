@@ -99,7 +99,12 @@ pub(super) fn modes(
     let before = current.variant_index();
     let chosen = mode_box(ui, current, info, default, setting, editor.widgets);
     if let Some(variant) = info.variant_at(chosen).filter(|_| chosen != before) {
-        choose_mode(current.as_partial_reflect_mut(), variant, setting.path, editor);
+        choose_mode(
+            current.as_partial_reflect_mut(),
+            variant,
+            setting.path,
+            editor,
+        );
     }
     mode_settings(ui, current, info, setting, editor);
 }

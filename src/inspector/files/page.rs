@@ -9,7 +9,7 @@ use super::{
         fields::{self, button},
         note,
     },
-    Files, OpenFile, style_files,
+    Files, OpenFile, on_camera, style_files,
 };
 use crate::ComicStyle;
 
@@ -28,7 +28,14 @@ impl Files {
                 .on_hover_text("The style has changes that are not saved");
         }
         if let Some(error) = &open.error {
-            fields::error(ui, if in_full { error } else { "has an error: see the page Files" });
+            fields::error(
+                ui,
+                if in_full {
+                    error
+                } else {
+                    "has an error: see the page Files"
+                },
+            );
         }
     }
 
@@ -75,7 +82,7 @@ impl Files {
                 && let Some(path) = self.path()
                 && let Some(loaded) = self.load(camera, &path)
             {
-                *style = loaded;
+                *style = on_camera(&loaded, style);
             }
             let is_open = self.open.contains_key(&camera);
             if button(ui, widgets, "files.save", "Save", is_open) {
@@ -100,8 +107,17 @@ impl Files {
         if let Some(message) = &self.message {
             fields::error(ui, message);
         }
-        if let Some(OpenFile { path, error, .. }) = self.open.get(&camera) {
+        if let Some(OpenFile {
+            path, error, saved, ..
+        }) = self.open.get(&camera)
+        {
             ui.label(format!("Open: {}", path.display()));
+            if saved.partial {
+                ui.label(
+                    "The file holds a partial style: it sets only some effects. Saving \
+                     writes all effects of the camera to it.",
+                );
+            }
             if let Some(error) = error {
                 let error = fields::error(ui, error);
                 note(widgets, "files.error", &error);
@@ -121,7 +137,7 @@ impl Files {
             if item.clicked()
                 && let Some(loaded) = self.load(camera, &path)
             {
-                *style = loaded;
+                *style = on_camera(&loaded, style);
             }
         }
     }

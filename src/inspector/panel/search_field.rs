@@ -2,12 +2,7 @@
 
 use bevy_egui::egui::{Id, Key, TextEdit, Ui};
 
-use super::super::{
-    Widgets,
-    fields::button_with_tooltip,
-    note,
-    search::Search,
-};
+use super::super::{Widgets, fields::button_with_tooltip, note, search::Search};
 
 #[derive(Default)]
 pub(super) struct SearchField {

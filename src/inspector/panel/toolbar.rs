@@ -7,6 +7,7 @@ use super::{
     super::{
         Widgets,
         fields::{button, button_with_tooltip},
+        files::on_camera,
         memory::Tab,
         note,
     },
@@ -112,6 +113,7 @@ impl Panel {
             return false;
         };
         state.shelf.keep(style, &step);
+        self.message = None;
         put(world, camera, &step);
         *style = step;
         true
@@ -125,7 +127,11 @@ impl Panel {
         style: &mut ComicStyle,
         widgets: &mut Widgets,
     ) {
-        let copy = ("copy", "Copy", "Copies the style as the text of a style file");
+        let copy = (
+            "copy",
+            "Copy",
+            "Copies the style as the text of a style file",
+        );
         if button_with_tooltip(ui, widgets, copy, true) {
             self.message = match style.to_ron() {
                 Ok(text) => self.copied(text, "The style is on the clipboard."),
@@ -152,7 +158,7 @@ impl Panel {
             let pasted = self.clipboard.paste();
             self.message = match pasted.map(|text| effects.style_from_ron(&text)) {
                 Some(Ok(pasted)) => {
-                    *style = pasted;
+                    *style = on_camera(&pasted, style);
                     None
                 }
                 Some(Err(error)) => Some(Message::Failed(format!(
@@ -178,9 +184,11 @@ impl Panel {
     ) {
         let state = self.cameras.entry(camera).or_default();
         for (letter, b) in [("A", false), ("B", true)] {
-            let item = ui.selectable_label(state.shows_b == b, letter).on_hover_text(
-                "Two styles to compare. Each keeps its own changes; B starts as a copy of A.",
-            );
+            let item = ui
+                .selectable_label(state.shows_b == b, letter)
+                .on_hover_text(
+                    "Two styles to compare. Each keeps its own changes; B starts as a copy of A.",
+                );
             note(widgets, format!("compare.{letter}"), &item);
             if item.clicked() && state.shows_b != b {
                 let other = state.other.take().unwrap_or_else(|| style.clone());

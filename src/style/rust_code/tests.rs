@@ -39,7 +39,17 @@ struct Wrapped(f32, Option<bool>);
 
 #[test]
 fn numbers_read_back_as_the_same_bits() {
-    for value in [0.0f32, -0.5, 3.0, 0.1, 1e-6, 1e36, 1.0 / 16384.0, f32::MIN_POSITIVE, f32::MAX] {
+    for value in [
+        0.0f32,
+        -0.5,
+        3.0,
+        0.1,
+        1e-6,
+        1e36,
+        1.0 / 16384.0,
+        f32::MIN_POSITIVE,
+        f32::MAX,
+    ] {
         let text = code(&value);
         assert_eq!(text.parse(), Ok(value), "{text}");
         assert!(text.contains(['.', 'e']), "{text} is a float literal");
@@ -60,11 +70,26 @@ fn colours_keep_their_space_and_value() {
         (Color::BLACK, "Color::BLACK"),
         (Color::WHITE, "Color::WHITE"),
         (Color::srgb_u8(158, 128, 87), "Color::srgb_u8(158, 128, 87)"),
-        (Color::srgb(0.97, 0.955, 0.915), "Color::srgb(0.97, 0.955, 0.915)"),
-        (Color::srgba(1.0, 0.0, 0.0, 0.5), "Color::srgba(1.0, 0.0, 0.0, 0.5)"),
-        (Color::linear_rgb(0.5, 2.0, 0.0), "Color::linear_rgb(0.5, 2.0, 0.0)"),
-        (Color::hsva(200.0, 0.5, 0.25, 0.75), "Color::hsva(200.0, 0.5, 0.25, 0.75)"),
-        (Color::srgb(f32::NAN, 0.0, 0.0), "Color::srgb(f32::NAN, 0.0, 0.0)"),
+        (
+            Color::srgb(0.97, 0.955, 0.915),
+            "Color::srgb(0.97, 0.955, 0.915)",
+        ),
+        (
+            Color::srgba(1.0, 0.0, 0.0, 0.5),
+            "Color::srgba(1.0, 0.0, 0.0, 0.5)",
+        ),
+        (
+            Color::linear_rgb(0.5, 2.0, 0.0),
+            "Color::linear_rgb(0.5, 2.0, 0.0)",
+        ),
+        (
+            Color::hsva(200.0, 0.5, 0.25, 0.75),
+            "Color::hsva(200.0, 0.5, 0.25, 0.75)",
+        ),
+        (
+            Color::srgb(f32::NAN, 0.0, 0.0),
+            "Color::srgb(f32::NAN, 0.0, 0.0)",
+        ),
     ] {
         assert_eq!(code(&color), text);
     }
@@ -74,14 +99,23 @@ fn colours_keep_their_space_and_value() {
 fn options_and_variants() {
     assert_eq!(code(&None::<f32>), "None");
     assert_eq!(code(&Some(0.25f32)), "Some(0.25)");
-    assert_eq!(code(&Some(Silhouettes::default())), "Some(Silhouettes::default())");
+    assert_eq!(
+        code(&Some(Silhouettes::default())),
+        "Some(Silhouettes::default())"
+    );
     assert_eq!(code(&ContourOperator::Sobel), "ContourOperator::Sobel");
     assert_eq!(
-        code(&DepthMapping::Fixed { near: 1.0, far: 30.0 }),
+        code(&DepthMapping::Fixed {
+            near: 1.0,
+            far: 30.0
+        }),
         "DepthMapping::Fixed {\n    near: 1.0,\n    far: 30.0,\n}"
     );
     // Not in the prelude.
-    assert_eq!(code(&ReductionMethod::PingPong), "bevy_comics::ReductionMethod::PingPong");
+    assert_eq!(
+        code(&ReductionMethod::PingPong),
+        "bevy_comics::ReductionMethod::PingPong"
+    );
 }
 
 #[test]
@@ -90,7 +124,10 @@ fn types_of_other_crates_are_written_by_their_path() {
         wind: Vec2::new(1.0, -2.0),
         title: "Rain".into(),
         drops: vec![1, 2],
-        inner: Some(Inner { size: 2.0, letter: 'x' }),
+        inner: Some(Inner {
+            size: 2.0,
+            letter: 'x',
+        }),
         pair: (0.5, true),
     };
     let inner = "Some(my_game::rain::Inner {\n        size: 2.0,\n        letter: 'x',\n    })";
@@ -103,10 +140,16 @@ fn types_of_other_crates_are_written_by_their_path() {
         )
     );
     assert_eq!(
-        code(&Game { drops: vec![3], ..Game::default() }),
+        code(&Game {
+            drops: vec![3],
+            ..Game::default()
+        }),
         "my_game::rain::Game {\n    drops: vec![3],\n    ..default()\n}"
     );
-    assert_eq!(code(&Wrapped(1.0, None)), "my_game::rain::Wrapped(1.0, None)");
+    assert_eq!(
+        code(&Wrapped(1.0, None)),
+        "my_game::rain::Wrapped(1.0, None)"
+    );
     // Without a registered default every field is written.
     assert!(code(&Inner::default()).contains("size: 0.0"));
 }
@@ -122,9 +165,16 @@ fn only_what_differs_from_the_default_is_written() {
         ..ComicStyle::new()
     }
     .with(ToneBands::default())
-    .with(BlackFlats { value: None, slope: Some(0.5), ..BlackFlats::default() })
+    .with(BlackFlats {
+        value: None,
+        slope: Some(0.5),
+        ..BlackFlats::default()
+    })
     .with(Outlines {
-        silhouettes: Some(Silhouettes { threshold: 0.1, ..Silhouettes::default() }),
+        silhouettes: Some(Silhouettes {
+            threshold: 0.1,
+            ..Silhouettes::default()
+        }),
         objects: None,
         ..Outlines::default()
     });
@@ -132,12 +182,12 @@ fn only_what_differs_from_the_default_is_written() {
         style.to_rust(),
         r#"ComicStyle {
     name: "Old \"photograph\"".into(),
-    depth_map: Some(DepthMap {
-        smoothing: None,
-        ..default()
-    }),
     ..ComicStyle::new()
 }
+.with_depth_map(DepthMap {
+    smoothing: None,
+    ..default()
+})
 .with(ToneBands::default())
 .with(BlackFlats {
     slope: Some(0.5),
@@ -154,10 +204,21 @@ fn only_what_differs_from_the_default_is_written() {
 })"#
     );
     assert_eq!(ComicStyle::new().to_rust(), "ComicStyle::new()");
-    let two = ComicStyle::new().with(ToneBands::default()).with(Contours::default());
+    let partial = ComicStyle::new().partial();
+    assert_eq!(partial.to_rust(), "ComicStyle::new().partial()");
+    assert_eq!(
+        partial.turn_off::<Contours>().to_rust(),
+        "ComicStyle {\n    off: [\"contours\"].into(),\n    ..ComicStyle::new()\n}\n.partial()"
+    );
+    let two = ComicStyle::new()
+        .with(ToneBands::default())
+        .with(Contours::default());
     assert_eq!(
         two.to_rust(),
         "ComicStyle::new()\n    .with(ToneBands::default())\n    .with(Contours::default())"
     );
-    assert_eq!(code(&RangeSmoothing::default()), "RangeSmoothing::default()");
+    assert_eq!(
+        code(&RangeSmoothing::default()),
+        "RangeSmoothing::default()"
+    );
 }

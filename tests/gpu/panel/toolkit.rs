@@ -11,11 +11,10 @@ use bevy_comics::{
     ComicsPlugin, Contours,
     inspector::{ComicsInspector, ComicsInspectorPlugin},
 };
+use bevy_comics_testkit::headless::{self, Headless, HeadlessOptions, new_target};
 use bevy_egui::{
     EguiContext, EguiContexts, EguiPlugin, EguiPrimaryContextPass, EguiRenderOutput, egui,
 };
-
-use crate::common::headless::{self, Headless, HeadlessOptions, new_target};
 
 fn options() -> HeadlessOptions {
     HeadlessOptions {
@@ -132,7 +131,10 @@ fn open_panel(app: &mut Headless) {
     app.app.world_mut().resource_mut::<ComicsInspector>().open = true;
     app.step(6);
     let inspector = app.app.world().resource::<ComicsInspector>();
-    assert!(inspector.widgets.contains_key("contours"), "the panel is laid out");
+    assert!(
+        inspector.widgets.contains_key("contours"),
+        "the panel is laid out"
+    );
 }
 
 #[test]
