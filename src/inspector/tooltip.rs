@@ -68,7 +68,7 @@ fn paragraphs(docs: &str) -> Vec<String> {
     }
     paragraphs
         .iter()
-        .map(|paragraph| without_markup(paragraph))
+        .map(|paragraph| without_markup(paragraph, true))
         .filter(|paragraph| !paragraph.is_empty())
         .collect()
 }
@@ -82,12 +82,14 @@ fn is_link_definition(line: &str) -> bool {
 }
 
 /// Text without the markup of links, code and escapes. Citations keep their
-/// brackets: `\[CS\]` becomes `[CS]`.
-fn without_markup(text: &str) -> String {
+/// brackets: `\[CS\]` becomes `[CS]`. `starts_sentence` if the text is the start of
+/// one.
+fn without_markup(text: &str, starts_sentence: bool) -> String {
     let mut plain = String::new();
     let mut rest = text;
     while let Some(c) = rest.chars().next() {
         rest = &rest[c.len_utf8()..];
+        let starts_sentence = (plain.is_empty() && starts_sentence) || plain.ends_with(". ");
         match c {
             '\\' => {
                 if let Some(escaped) = rest.chars().next() {
@@ -97,14 +99,13 @@ fn without_markup(text: &str) -> String {
             }
             '[' => match link(rest) {
                 Some((text, after)) => {
-                    plain.push_str(&without_markup(text));
+                    plain.push_str(&without_markup(text, starts_sentence));
                     rest = after;
                 }
                 None => plain.push('['),
             },
             '`' => {
                 let (code, after) = rest.split_once('`').unwrap_or((rest, ""));
-                let starts_sentence = plain.is_empty() || plain.ends_with(". ");
                 plain.push_str(&name_in_panel(code, starts_sentence));
                 rest = after;
             }
