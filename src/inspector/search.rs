@@ -1,6 +1,12 @@
 //! The search over the settings of all effects.
 
-use bevy::reflect::{NamedField, TypeInfo, enums::EnumInfo, enums::VariantInfo};
+use bevy::{
+    color::Color,
+    reflect::{
+        NamedField, TypeInfo,
+        enums::{EnumInfo, VariantInfo},
+    },
+};
 
 use super::{
     fields::{label, label_of_mode},
@@ -108,6 +114,7 @@ fn text_of(path: &str, field: &NamedField) -> String {
     );
     if let Some(TypeInfo::Enum(info)) = field.type_info()
         && !is_option(info)
+        && !info.is::<Color>()
     {
         for variant in info.iter() {
             text += " ";
@@ -184,6 +191,8 @@ mod tests {
             Some(Found::Whole)
         );
         assert_eq!(section::<Vignette>("vignette", "laplace"), None);
+        // But not by the colour spaces of a colour.
+        assert_eq!(setting::<Contours>("contours.color", "oklab"), None);
         assert_eq!(section::<Contours>("contours", "contours zzz"), None);
     }
 
