@@ -231,7 +231,7 @@ fn search_in(window: &Window, wide: f32) {
     assert_eq!(width(window), wide);
     window.key("Escape");
     window.until("all effects", |state| {
-        state["widgets"]["contours.width"].is_array()
+        state["widgets"]["contours"].is_array()
     });
     // The clear button.
     window.click("search");
@@ -241,7 +241,7 @@ fn search_in(window: &Window, wide: f32) {
     });
     window.click("search.clear");
     window.until("all effects", |state| {
-        state["widgets"]["contours.width"].is_array()
+        state["widgets"]["contours"].is_array()
     });
 }
 
