@@ -1,5 +1,5 @@
-//! What the examples and the tests share: scenes made by code, and an app that
-//! renders without a window.
+//! Shared by the examples and the tests: scenes made by code, and an app that renders
+//! without a window.
 #![allow(dead_code, reason = "every example and test uses its own part of this")]
 
 pub mod bench;
