@@ -1,5 +1,4 @@
-//! A painted sky as a cube map: a gradient, a sun and a few clouds. It has no
-//! depth, as a sky should.
+//! A painted sky as a cube map: a gradient, a sun and a few clouds.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -16,13 +15,14 @@ use super::{
     shape::{blend, rgb},
 };
 
+/// Colours are sRGB codes such as `0xc8413a`.
 pub struct Sky {
     pub zenith: u32,
     pub middle: u32,
     pub horizon: u32,
     pub ground: u32,
     pub cloud: u32,
-    /// Share of the sky under clouds, 0 to 1.
+    /// Cloudiness, 0 (no clouds) to 1.
     pub cover: f32,
     /// Direction to the sun.
     pub sun: Vec3,
@@ -46,7 +46,7 @@ impl Sky {
             smoothstep(0.0, 0.22, up),
         );
         let mut color = blend(low, rgb(self.zenith), smoothstep(0.18, 0.9, up));
-        // Clouds on a plane overhead, thinning out towards the horizon.
+        // Clouds on a plane overhead that fade out towards the horizon.
         let plane = Vec2::new(direction.x, direction.z) / (up + 0.12);
         let density = fractal(plane * 1.1 + 7.3, 5) * 0.5 + 0.5;
         let edge = 1.0 - self.cover;
@@ -75,7 +75,8 @@ impl Sky {
                         4 => Vec3::new(u, -v, 1.0),
                         _ => Vec3::new(-u, -v, -1.0),
                     };
-                    // The engine looks cube maps up left-handed: z is mirrored.
+                    // The engine samples cube maps in a left-handed frame: z is
+                    // mirrored.
                     let direction = (direction * Vec3::new(1.0, 1.0, -1.0)).normalize();
                     for c in self.color(direction) {
                         data.extend(f16::from_f32(c).to_le_bytes());
