@@ -152,11 +152,30 @@ impl Headless {
     /// Starts the engine with `extra` plugins. Without an adapter it panics, with the
     /// command that installs one.
     pub fn new<M>(options: HeadlessOptions, extra: impl bevy::app::Plugins<M>) -> Self {
+        Self::start(options, |app, engine| {
+            app.add_plugins(engine).add_plugins(extra);
+        })
+    }
+
+    /// The same with `first` added before the engine's plugins.
+    pub fn with_plugins_first<M>(
+        options: HeadlessOptions,
+        first: impl bevy::app::Plugins<M>,
+    ) -> Self {
+        Self::start(options, |app, engine| {
+            app.add_plugins(first).add_plugins(engine);
+        })
+    }
+
+    fn start(
+        options: HeadlessOptions,
+        add_plugins: impl FnOnce(&mut App, PluginGroupBuilder),
+    ) -> Self {
         if let Err(message) = adapter() {
             panic!("{message}");
         }
         let mut app = App::new();
-        app.add_plugins(plugins(&options)).add_plugins(extra);
+        add_plugins(&mut app, plugins(&options));
         // Every frame takes 1/60 s of the app's time, so that tests are repeatable.
         app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_micros(
             16_667,

@@ -21,6 +21,7 @@ mod own_effect;
 mod panel;
 mod pictures;
 mod pipelines;
+mod plugin_order;
 mod range;
 mod range_views;
 mod report;
