@@ -9,7 +9,7 @@ use bevy::{
     app::{App, Plugin},
     ecs::{resource::Resource, world::EntityRef},
     log::error,
-    reflect::{ReflectDeserialize, ReflectSerialize, TypeInfo},
+    reflect::{ReflectDeserialize, ReflectSerialize, TypeInfo, TypeRegistry},
 };
 use serde::Deserialize;
 
@@ -33,6 +33,8 @@ pub struct EffectType {
     pub default: fn() -> Box<dyn AnyEffect>,
     /// Gets the effect from an entity, if the entity has it.
     pub get: for<'w> fn(EntityRef<'w>) -> Option<&'w dyn AnyEffect>,
+    /// Registers the effect's type and those of its fields.
+    pub(crate) register: fn(&mut TypeRegistry),
     pub(crate) remove: fn(&mut bevy::ecs::world::EntityWorldMut),
     pub(crate) read: ReadEffect,
     pub(crate) blend: BlendEffects,
@@ -60,6 +62,7 @@ impl EffectType {
                 type_info: E::type_info,
                 default: default::<E>,
                 get: get::<E>,
+                register: TypeRegistry::register::<E>,
                 remove: remove::<E>,
                 read: read::<E>,
                 blend: blended::<E>,

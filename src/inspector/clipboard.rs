@@ -1,6 +1,7 @@
-//! Styles as text, from game to game.
+//! The clipboard.
 
-/// The system's clipboard, and what stands in for it where there is none.
+/// The system's clipboard, or a text of the panel's own where the system has no
+/// clipboard.
 #[derive(Default)]
 pub struct Clipboard {
     system: Option<arboard::Clipboard>,
@@ -17,7 +18,7 @@ impl Clipboard {
 
     pub fn copy(&mut self, text: String) {
         if let Some(system) = self.system() {
-            // Where the system refuses, the panel's own serves.
+            // If the system refuses, `paste` gives the panel's own text.
             let _ = system.set_text(text.clone());
         }
         self.own = Some(text);

@@ -1,5 +1,5 @@
-//! What a frame costs, pass by pass, what was left out and why, and the known
-//! error of what was chosen, beside its time.
+//! The page of costs: the time of every pass, which stages ran and which were
+//! left out, and the known errors of the chosen methods beside their times.
 
 mod errors;
 
@@ -13,6 +13,7 @@ use crate::{
     timing::{Pass, PassTimes},
 };
 
+/// The lines of the passes in the chart.
 const COLORS: [Color32; Pass::ALL.len()] = [
     Color32::from_rgb(130, 130, 140),
     Color32::from_rgb(90, 170, 250),
@@ -23,7 +24,7 @@ const COLORS: [Color32; Pass::ALL.len()] = [
     Color32::from_rgb(90, 90, 100),
 ];
 
-/// The median time of every pass, milliseconds.
+/// The median time of every pass in milliseconds.
 type Medians = [f64; Pass::ALL.len()];
 
 #[derive(Default)]
@@ -58,12 +59,12 @@ impl Costs {
                         ui.end_row();
                     }
                 });
-            ui.weak("Median of the frames in the chart; bold is this crate's.");
+            ui.weak("Medians of the frames in the chart. Bold: passes of bevy_comics.");
         });
-        section(ui, "What ran, and what was left out", |ui| {
+        section(ui, "Stages that ran or were left out", |ui| {
             stages(ui, world, camera);
         });
-        section(ui, "Known error beside its time", |ui| {
+        section(ui, "Known errors and times", |ui| {
             let registry = world.resource::<EffectRegistry>();
             let style = ComicStyle::of(world.entity(camera), registry);
             errors::show(ui, &style, &medians, widgets);
@@ -103,7 +104,7 @@ impl Costs {
     }
 }
 
-/// What ties a row of the table to its line in the chart.
+/// A dot in the colour of a pass's line in the chart.
 fn dot(ui: &mut Ui, color: Color32) {
     let (rect, _) = ui.allocate_exact_size(Vec2::splat(12.0), Sense::hover());
     ui.painter().circle_filled(rect.center(), 4.0, color);
@@ -112,7 +113,7 @@ fn dot(ui: &mut Ui, color: Color32) {
 fn stages(ui: &mut Ui, world: &World, camera: Entity) {
     let diagnostics = world.resource::<ComicsDiagnostics>();
     let Some(stages) = diagnostics.cameras.get(&camera) else {
-        ui.label("Nothing is done for this camera.");
+        ui.label("This camera has no effects.");
         return;
     };
     Grid::new("stages")

@@ -1,30 +1,81 @@
-//! Widgets for the settings of a style, made from what its types say about
-//! themselves: names, documentation, ranges, units, defaults. A new field shows
-//! up without a line here.
+//! Widgets for the settings of a style, made by reflection from the names,
+//! documentation, ranges, units and defaults of its fields. New fields and the
+//! effects of games need no code here.
 
+mod options;
+mod sections;
 mod widgets;
 
 use bevy::{
     color::Color,
-    reflect::{NamedField, PartialReflect, Typed, structs::Struct},
+    reflect::{
+        NamedField, PartialReflect, Reflect, ReflectMut, ReflectRef, TypeInfo, TypeRegistry,
+        std_traits::ReflectDefault, structs::Struct,
+    },
 };
-use bevy_egui::egui::{
-    self, CollapsingHeader, Response, RichText, Ui, collapsing_header::CollapsingState,
-};
+use bevy_egui::egui::{self, CollapsingHeader, Response, Ui};
 
-use self::widgets::{color, modes, number, option, whole_number};
-use super::{Widgets, note};
-use crate::{
-    ComicStyle, Creases, DepthMap, EffectType, FieldRange, HueWheel, ObjectEdges, RangeSmoothing,
-    Silhouettes,
+pub use self::sections::style;
+use self::{
+    options::option,
+    widgets::{color, modes, number, whole_number},
 };
+use super::{
+    Widgets, note,
+    search::{Found, Search},
+    shelf::Shelf,
+    tooltip::tooltip,
+};
+use crate::{DepthMap, EffectType, FieldRange, HueWheel, style::rust_code::is_option};
 
-/// What a setting is called and says about itself.
+/// What the widgets of a style share.
+pub struct Editor<'a> {
+    pub widgets: &'a mut Widgets,
+    /// Settings that come back when something is turned on again.
+    pub shelf: &'a Shelf,
+    /// The types of the style's values, for their defaults.
+    pub types: &'a TypeRegistry,
+}
+
+impl Editor<'_> {
+    /// The default of a type, if it is registered with one.
+    fn default_of(&self, info: &TypeInfo) -> Option<Box<dyn Reflect>> {
+        let default = self.types.get_type_data::<ReflectDefault>(info.type_id())?;
+        Some(default.default())
+    }
+
+    /// A value of a type that the settings did not have before. Floats are NaN,
+    /// which becomes the documented default when the style is brought into its
+    /// ranges.
+    fn new_value(&self, info: &TypeInfo) -> Option<Box<dyn PartialReflect>> {
+        if info.is::<f32>() {
+            return Some(Box::new(f32::NAN));
+        }
+        if info.is::<f64>() {
+            return Some(Box::new(f64::NAN));
+        }
+        Some(self.default_of(info)?.into_partial_reflect())
+    }
+}
+
+/// The types of a style's values.
+pub fn types(effects: &[&'static EffectType]) -> TypeRegistry {
+    let mut types = TypeRegistry::default();
+    types.register::<DepthMap>();
+    for effect in effects {
+        (effect.register)(&mut types);
+    }
+    types
+}
+
+/// The name, documentation and range of a setting.
 struct Setting<'a> {
+    /// In the style, such as `contours.width`.
     path: &'a str,
     label: String,
     docs: &'static str,
     range: Option<FieldRange>,
+    /// Whether a hue wheel is shown.
     wheel: bool,
 }
 
@@ -40,7 +91,8 @@ impl<'a> Setting<'a> {
     }
 }
 
-fn label(name: &str) -> String {
+/// `edge_limit` as words: "Edge limit".
+pub fn label(name: &str) -> String {
     let mut words = name.replace('_', " ");
     if let Some(first) = words.get_mut(..1) {
         first.make_ascii_uppercase();
@@ -48,8 +100,8 @@ fn label(name: &str) -> String {
     words
 }
 
-/// `MinMaxLogarithmic` as words.
-fn label_of_mode(name: &str) -> String {
+/// `MinMaxLogarithmic` as words: "Min max logarithmic".
+pub fn label_of_mode(name: &str) -> String {
     let mut words = String::new();
     for (i, c) in name.char_indices() {
         if i > 0 && c.is_ascii_uppercase() {
@@ -62,162 +114,51 @@ fn label_of_mode(name: &str) -> String {
     words
 }
 
-/// Documentation without its markup.
-fn plain(docs: &str) -> String {
-    let joined = docs
-        .trim()
-        .lines()
-        .map(str::trim)
-        .collect::<Vec<_>>()
-        .join(" ");
-    joined.replace(['[', ']', '`', '\\'], "")
-}
-
-/// The depth map and every registered effect: whether it is there, and its
-/// settings.
-pub fn style(
-    ui: &mut Ui,
-    style: &mut ComicStyle,
-    types: &[&'static EffectType],
-    widgets: &mut Widgets,
-) {
-    depth_map(ui, &mut style.depth_map, widgets);
-    for effect in types {
-        effect_section(ui, style, effect, widgets);
+/// Shows a tooltip over a widget. Its text is made only when it is shown.
+fn explained(response: Response, docs: &'static str) -> Response {
+    if docs.is_empty() {
+        return response;
     }
-}
-
-fn depth_map(ui: &mut Ui, map: &mut Option<DepthMap>, widgets: &mut Widgets) {
-    let default = DepthMap::default();
-    let mut part = Part {
-        path: "depth_map",
-        docs: DepthMap::type_info().docs().unwrap_or_default(),
-        on: map.is_some(),
-        edited: map.is_some_and(|map| map != default),
-    };
-    match part.head(ui, widgets, |ui, widgets| {
-        if let Some(map) = map {
-            settings(ui, map, Some(&default), "depth_map", widgets);
-        }
-    }) {
-        Some(Change::On | Change::Reset) => *map = Some(default),
-        Some(Change::Off) => *map = None,
-        None => {}
-    }
-}
-
-fn effect_section(
-    ui: &mut Ui,
-    style: &mut ComicStyle,
-    effect: &'static EffectType,
-    widgets: &mut Widgets,
-) {
-    let default = (effect.default)();
-    let mut own = style.remove_by_name(effect.name);
-    let mut part = Part {
-        path: effect.name,
-        docs: (effect.type_info)().docs().unwrap_or_default(),
-        on: own.is_some(),
-        edited: own
-            .as_ref()
-            .is_some_and(|own| !own.equals(default.as_ref())),
-    };
-    let change = part.head(ui, widgets, |ui, widgets| {
-        if let Some(own) = &mut own {
-            let default = Some(default.as_struct());
-            settings(ui, own.as_struct_mut(), default, effect.name, widgets);
-        }
-    });
-    match change {
-        Some(Change::On | Change::Reset) => own = Some(default),
-        Some(Change::Off) => own = None,
-        None => {}
-    }
-    if let Some(own) = own {
-        style.insert_any(own);
-    }
-}
-
-/// A part of a style, with a check box.
-struct Part<'a> {
-    path: &'a str,
-    docs: &'static str,
-    on: bool,
-    /// Differs from its default.
-    edited: bool,
-}
-
-/// What was done to a part as a whole.
-enum Change {
-    On,
-    Off,
-    Reset,
-}
-
-impl Part<'_> {
-    fn head(
-        &mut self,
-        ui: &mut Ui,
-        widgets: &mut Widgets,
-        body: impl FnOnce(&mut Ui, &mut Widgets),
-    ) -> Option<Change> {
-        let path = self.path;
-        let id = ui.make_persistent_id(("effect", path));
-        let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, false);
-        if !self.on {
-            state.set_open(false);
-        }
-        let mut change = None;
-        let header = state.show_header(ui, |ui| {
-            let check = ui.checkbox(&mut self.on, RichText::new(label(path)).strong());
-            note(widgets, path, &check);
-            let check = check.on_hover_text(plain(self.docs));
-            if check.changed() {
-                change = Some(if self.on { Change::On } else { Change::Off });
-            }
-            if self.edited && reset_button(ui, &format!("{path}.reset"), widgets).clicked() {
-                change = Some(Change::Reset);
-            }
-        });
-        let (button, ..) = header.body(|ui| body(ui, widgets));
-        note(widgets, format!("{path}.open"), &button);
-        if matches!(change, Some(Change::On)) {
-            let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, true);
-            state.set_open(true);
-            state.store(ui.ctx());
-        }
-        change
-    }
+    response.on_hover_ui(|ui| {
+        ui.set_max_width(360.0);
+        ui.label(tooltip(docs));
+    })
 }
 
 fn reset_button(ui: &mut Ui, path: &str, widgets: &mut Widgets) -> Response {
     let button = ui.small_button("↺");
     note(widgets, path, &button);
-    button.on_hover_text("Back to the default")
+    button.on_hover_text("Reset to the default")
 }
 
-/// The fields of a struct, one below the other.
+/// The fields of a struct, one below the other, by the path of the struct and
+/// the search that leaves some of them out.
 fn settings(
     ui: &mut Ui,
     value: &mut dyn Struct,
     default: Option<&dyn Struct>,
-    path: &str,
-    widgets: &mut Widgets,
+    (path, search): (&str, Option<&Search>),
+    editor: &mut Editor,
 ) {
     let Some(info) = value.get_represented_struct_info() else {
         return;
     };
     for (i, field) in info.iter().enumerate() {
         let path = format!("{path}.{}", field.name());
+        let search = match search.map(|search| (search, search.setting(&path, field))) {
+            Some((_, None)) => continue,
+            Some((search, Some(Found::Inside))) => Some(search),
+            Some((_, Some(Found::Whole))) | None => None,
+        };
         let setting = Setting::of(field, &path);
         let default = default.and_then(|default| default.field(field.name()));
         if let Some(value) = value.field_at_mut(i) {
-            edit(ui, value, default, &setting, widgets);
+            edit(ui, value, default, (&setting, search), editor);
         }
     }
 }
 
-/// A row: the widget, its name, and the way back to the default.
+/// A row: the widget, its name, and the button that resets it.
 fn row<T: PartialEq + Clone>(
     ui: &mut Ui,
     value: &mut T,
@@ -229,8 +170,8 @@ fn row<T: PartialEq + Clone>(
     ui.horizontal(|ui| {
         let response = widget(ui, value);
         note(widgets, setting.path, &response);
-        response.on_hover_text(plain(setting.docs));
-        ui.label(&setting.label).on_hover_text(plain(setting.docs));
+        explained(response, setting.docs);
+        explained(ui.label(&setting.label), setting.docs);
         if let Some(default) = default.filter(|default| *default != value)
             && reset_button(ui, &format!("{}.reset", setting.path), widgets).clicked()
         {
@@ -243,14 +184,14 @@ fn edit(
     ui: &mut Ui,
     value: &mut dyn PartialReflect,
     default: Option<&dyn PartialReflect>,
-    setting: &Setting,
-    widgets: &mut Widgets,
+    (setting, search): (&Setting, Option<&Search>),
+    editor: &mut Editor,
 ) {
     macro_rules! typed {
         ($($T:ty => $widget:expr),* $(,)?) => {
             $(if let Some(value) = value.try_downcast_mut::<$T>() {
                 let default = default.and_then(|default| default.try_downcast_ref::<$T>());
-                return row(ui, value, default, setting, widgets, $widget);
+                return row(ui, value, default, setting, editor.widgets, $widget);
             })*
         };
     }
@@ -260,23 +201,40 @@ fn edit(
         bool => |ui, value| ui.checkbox(value, ""),
         Color => |ui, value| color(ui, value, setting.wheel),
     }
-    macro_rules! optional {
-        ($($T:ty => $new:expr),* $(,)?) => {
-            $(if let Some(value) = value.try_downcast_mut::<Option<$T>>() {
-                let default = default.and_then(|default| default.try_downcast_ref::<Option<$T>>());
-                return option(ui, value, default, $new, setting, widgets);
-            })*
-        };
+    match value.get_represented_type_info() {
+        Some(TypeInfo::Enum(info)) if is_option(info) => {
+            option(ui, value, default, (setting, search), editor);
+        }
+        Some(TypeInfo::Enum(info)) => modes(ui, value, info, default, setting, editor),
+        Some(TypeInfo::Struct(_)) => nested(ui, value, default, (setting, search), editor),
+        _ => {
+            ui.label(format!("{}: no widget for this type", setting.label));
+        }
     }
-    optional! {
-        // What is not a number becomes the documented default.
-        f32 => f32::NAN,
-        Silhouettes => Silhouettes::default(),
-        Creases => Creases::default(),
-        ObjectEdges => ObjectEdges::default(),
-        RangeSmoothing => RangeSmoothing::default(),
+}
+
+/// The settings of a struct in a struct, below its name.
+fn nested(
+    ui: &mut Ui,
+    value: &mut dyn PartialReflect,
+    default: Option<&dyn PartialReflect>,
+    (setting, search): (&Setting, Option<&Search>),
+    editor: &mut Editor,
+) {
+    explained(ui.label(&setting.label), setting.docs);
+    ui.indent(setting.path, |ui| {
+        let default = default.and_then(as_struct);
+        if let ReflectMut::Struct(value) = value.reflect_mut() {
+            settings(ui, value, default, (setting.path, search), editor);
+        }
+    });
+}
+
+fn as_struct(value: &dyn PartialReflect) -> Option<&dyn Struct> {
+    match value.reflect_ref() {
+        ReflectRef::Struct(fields) => Some(fields),
+        _ => None,
     }
-    modes(ui, value, default, setting, widgets);
 }
 
 /// A section that opens and closes.
@@ -286,16 +244,30 @@ pub fn section<R>(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui) -> R)
         .show(ui, contents);
 }
 
-/// What an error looks like.
+/// The text of an error.
 pub fn error(ui: &mut Ui, text: &str) -> Response {
     ui.colored_label(ui.visuals().error_fg_color, text)
 }
 
-/// A button that is noted.
+/// A button whose place is published under a name; whether it was clicked.
 pub fn button(ui: &mut Ui, widgets: &mut Widgets, name: &str, text: &str, enabled: bool) -> bool {
+    button_with_tooltip(ui, widgets, (name, text, ""), enabled)
+}
+
+/// As [`button`], of a name, a text and a tooltip.
+pub fn button_with_tooltip(
+    ui: &mut Ui,
+    widgets: &mut Widgets,
+    (name, text, explanation): (&str, &str, &'static str),
+    enabled: bool,
+) -> bool {
     let button = ui.add_enabled(enabled, egui::Button::new(text));
     note(widgets, name, &button);
-    button.clicked()
+    let clicked = button.clicked();
+    if !explanation.is_empty() {
+        button.on_hover_text(explanation);
+    }
+    clicked
 }
 
 #[cfg(test)]

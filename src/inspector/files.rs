@@ -1,4 +1,4 @@
-//! Style files: loaded, saved, watched.
+//! Style files: loading, saving, and watching for changes by other programs.
 
 mod page;
 
@@ -13,29 +13,41 @@ use bevy::ecs::entity::{Entity, EntityHashMap};
 use crate::{ComicStyle, ComicStyleError, EffectRegistry};
 
 const SUFFIX: &str = ".comic.ron";
-/// How often files are looked at.
+/// How often the open file is read again.
 const WATCH: Duration = Duration::from_millis(250);
 
-/// The file that a camera's style came from or went to.
+/// The file that a camera's style was loaded from or saved to.
 struct OpenFile {
     path: PathBuf,
-    /// The style as the file has it.
+    /// The last style that was read from the file or written to it.
     saved: ComicStyle,
-    /// The last text that was seen in the file, good or broken.
+    /// The last text that was read from the file or written to it.
     seen: String,
-    /// Why the file is not a style; the last good style stays.
+    /// Why the file does not hold a style now. The camera keeps the last one.
     error: Option<String>,
+    /// When the file was last read.
     looked: Instant,
 }
 
 impl OpenFile {
+    /// Whether a camera's style is as the file has it.
     fn is_saved(&self, style: &ComicStyle) -> bool {
         let named = ComicStyle {
             name: self.saved.name.clone(),
             ..style.clone()
         };
-        // What is out of its range in the file is not a change.
-        named == self.saved.sanitized()
+        // Values out of range in the file are not a change by the user.
+        named == on_camera(&self.saved, style).sanitized()
+    }
+}
+
+/// The style of a camera after a style was loaded or pasted: a partial one keeps
+/// the effects that it does not mention.
+pub fn on_camera(loaded: &ComicStyle, camera: &ComicStyle) -> ComicStyle {
+    if loaded.partial {
+        loaded.over(camera)
+    } else {
+        loaded.clone()
     }
 }
 
@@ -44,14 +56,15 @@ pub struct Files {
     folder: PathBuf,
     registry: EffectRegistry,
     open: EntityHashMap<OpenFile>,
-    /// What stands in the field for a file name.
+    /// The text in the field for the file name.
     name: String,
+    /// The text in the field for the style's title.
     title: String,
     message: Option<String>,
 }
 
-/// The text of a file and its style, or the text as far as there is one and why
-/// it is no style.
+/// The text of a file and its style, or the text (empty if it cannot be read) and
+/// the error.
 fn read(path: &Path, registry: &EffectRegistry) -> Result<(String, ComicStyle), (String, String)> {
     let text = fs::read_to_string(path)
         .map_err(|error| (String::new(), ComicStyleError::from(error).to_string()))?;
@@ -77,7 +90,7 @@ impl Files {
         &self.folder
     }
 
-    /// The style comes from no file any more.
+    /// Closes a camera's file.
     pub fn forget(&mut self, camera: Entity) {
         self.open.remove(&camera);
     }
@@ -123,7 +136,7 @@ impl Files {
         }
     }
 
-    /// A path as it stands in the field.
+    /// A path as the field for the file name shows it.
     fn shown(&self, path: &Path) -> String {
         let inside = path.parent() == Some(self.folder.as_path());
         let shown = if inside {
@@ -144,7 +157,10 @@ impl Files {
             .or_else(|| self.path())
         {
             Some(path) => self.save_as(camera, style, path),
-            None => self.message = Some("It has no file yet: give it a name under Files.".into()),
+            None => {
+                let message = "The style has no file yet. Enter a file name on the page Files.";
+                self.message = Some(message.into());
+            }
         }
     }
 
@@ -180,7 +196,7 @@ impl Files {
         }
     }
 
-    /// The new style of a camera's file, if somebody else has changed it.
+    /// The new style of a camera's file, if another program has changed it.
     pub fn watch(&mut self, camera: Entity, style: &ComicStyle) -> Option<ComicStyle> {
         let open = self.open.get_mut(&camera)?;
         if open.looked.elapsed() < WATCH {
@@ -196,9 +212,9 @@ impl Files {
                 self.title.clone_from(&read.name);
                 let named = ComicStyle {
                     name: style.name.clone(),
-                    ..read.clone()
+                    ..on_camera(&read, style)
                 };
-                (named != *style).then_some(read)
+                (named != *style).then_some(named)
             }
             Err((text, error)) => {
                 open.seen = text;
@@ -209,7 +225,7 @@ impl Files {
     }
 }
 
-/// All of it or nothing: a game that watches the file never reads half of it.
+/// Writes a file at once, so that a game that watches it never reads a part.
 fn write(path: &Path, text: &str) -> io::Result<()> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder)?;
@@ -234,7 +250,7 @@ pub fn style_files(folder: &Path) -> Vec<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Contours;
+    use crate::{Contours, ToneBands};
 
     fn folder(name: &str) -> PathBuf {
         let folder = std::env::temp_dir().join(format!("comics-{name}-{}", std::process::id()));
@@ -256,6 +272,22 @@ mod tests {
     }
 
     #[test]
+    fn a_partial_file_keeps_what_it_does_not_mention() {
+        let folder = folder("partial");
+        let path = folder.join("ink.comic.ron");
+        fs::write(&path, "(version: 2, partial: true, contours: (width: 7.0))").expect("written");
+        let mut files = Files::new(folder.clone(), EffectRegistry::built_in());
+        let loaded = files.load(Entity::PLACEHOLDER, &path).expect("loaded");
+        let toned = ComicStyle::new().with(ToneBands::default());
+        let style = on_camera(&loaded, &toned);
+        assert_eq!(style.get::<Contours>().map(|c| c.width), Some(7.0));
+        assert!(style.get::<ToneBands>().is_some() && !style.partial);
+        let open = &files.open[&Entity::PLACEHOLDER];
+        assert!(open.is_saved(&style) && !open.is_saved(&inked(3.0)));
+        fs::remove_dir_all(&folder).expect("removed");
+    }
+
+    #[test]
     fn a_file_goes_there_and_back() {
         let folder = folder("files");
         let mut files = Files::new(folder.clone(), EffectRegistry::built_in());
@@ -273,18 +305,18 @@ mod tests {
             "a change is marked"
         );
 
-        // What the panel itself has written is no news.
+        // What the panel itself has written is not a change.
         assert_eq!(wait(&mut files, camera, &inked(4.0)), None);
 
-        // Somebody edits it, breaks it, mends it, deletes it.
+        // Another program edits it, breaks it, repairs it, deletes it.
         fs::write(&path, "(version: 2, contours: (width: 7.0))").expect("written");
-        let read = wait(&mut files, camera, &inked(4.0)).expect("news");
+        let read = wait(&mut files, camera, &inked(4.0)).expect("the new style");
         assert_eq!(read.get::<Contours>().map(|c| c.width), Some(7.0));
         fs::write(&path, "(version: 2,\n contours: (widht: 7.0))").expect("written");
         assert_eq!(
             wait(&mut files, camera, &inked(7.0)),
             None,
-            "the last good one stays"
+            "the last valid style stays"
         );
         let error = files.open[&camera].error.clone().expect("an error");
         assert!(
@@ -298,7 +330,7 @@ mod tests {
         assert_eq!(wait(&mut files, camera, &inked(8.0)), None);
         assert!(
             files.open[&camera].error.is_some(),
-            "a file that is gone is said"
+            "a missing file is an error"
         );
         fs::remove_dir_all(&folder).expect("removed");
     }

@@ -2,21 +2,21 @@
 
 use crate::ComicStyle;
 
-/// So many steps are kept.
+/// The largest number of steps that can be undone.
 const DEPTH: usize = 256;
 
-/// The styles that a camera had.
+/// The styles that a camera had before and after the current one.
 #[derive(Debug, Default)]
 pub struct History {
     undo: Vec<ComicStyle>,
     redo: Vec<ComicStyle>,
-    /// What the last step was a part of: a drag is one step.
+    /// The gesture of the last step.
     gesture: Option<u64>,
 }
 
 impl History {
-    /// A change away from `before`. Changes of one gesture, a drag or a hold of
-    /// a key, are one step.
+    /// Records a change away from `before`. All changes of one gesture, such as a
+    /// drag, are one step.
     pub fn record(&mut self, before: ComicStyle, gesture: Option<u64>) {
         self.redo.clear();
         if gesture.is_some() && self.gesture == gesture {
@@ -29,6 +29,7 @@ impl History {
         self.undo.push(before);
     }
 
+    /// The style before the last step, which becomes the current one.
     pub fn undo(&mut self, now: &ComicStyle) -> Option<ComicStyle> {
         self.gesture = None;
         let before = self.undo.pop()?;
@@ -36,6 +37,7 @@ impl History {
         Some(before)
     }
 
+    /// The style after the step that was undone last.
     pub fn redo(&mut self, now: &ComicStyle) -> Option<ComicStyle> {
         self.gesture = None;
         let after = self.redo.pop()?;
@@ -43,6 +45,7 @@ impl History {
         Some(after)
     }
 
+    /// The numbers of steps that can be undone and redone.
     pub fn steps(&self) -> (usize, usize) {
         (self.undo.len(), self.redo.len())
     }
@@ -86,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn only_so_many_steps_are_kept() {
+    fn the_number_of_steps_is_limited() {
         let mut history = History::default();
         for i in 0..DEPTH + 10 {
             history.record(named(&i.to_string()), None);

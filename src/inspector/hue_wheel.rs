@@ -1,5 +1,5 @@
-//! A wheel of hues: the angle is the hue, the distance from the middle the
-//! saturation, at the colour's own value.
+//! A colour wheel: the angle is the hue, the distance from the centre the
+//! saturation. The wheel keeps the colour's HSV value.
 
 use std::f32::consts::TAU;
 
@@ -7,10 +7,12 @@ use bevy_egui::egui::{
     Color32, EventFilter, Mesh, Pos2, Response, Sense, Shape, Stroke, Ui, Vec2, ecolor::Hsva, vec2,
 };
 
+/// Triangles of the disc.
 const SECTORS: u32 = 48;
 
-/// Draws the wheel; returns whether the colour (hue, saturation and value, each
-/// 0 to 1) was changed. The arrow keys turn and push it while it has the focus.
+/// Draws the wheel of a colour (hue, saturation and value, each 0 to 1). The
+/// response says whether the colour was changed: by the pointer, or by the arrow
+/// keys while the wheel has the focus.
 pub fn hue_wheel(ui: &mut Ui, hsv: &mut [f32; 3], diameter: f32) -> Response {
     let (rect, mut response) =
         ui.allocate_exact_size(Vec2::splat(diameter), Sense::click_and_drag());
@@ -41,9 +43,9 @@ pub fn hue_wheel(ui: &mut Ui, hsv: &mut [f32; 3], diameter: f32) -> Response {
     response
 }
 
-/// The steps of the arrow keys in this frame: right and up are positive.
+/// The steps of the arrow keys in this frame; right and up are positive.
 fn arrows(ui: &Ui, response: &Response) -> Vec2 {
-    // The arrows turn the wheel and do not leave it.
+    // Otherwise the arrow keys would move the focus to another widget.
     ui.memory_mut(|memory| {
         memory.set_focus_lock_filter(
             response.id,
@@ -64,7 +66,7 @@ fn arrows(ui: &Ui, response: &Response) -> Vec2 {
     })
 }
 
-/// Draws the disc, its rim, and the knob at the colour's place.
+/// Draws the disc, its rim, and the knob at the colour's position.
 fn paint(ui: &Ui, response: &Response, centre: Pos2, radius: f32, hsv: [f32; 3]) {
     let [hue, saturation, value] = hsv;
     let color =
@@ -92,15 +94,20 @@ fn paint(ui: &Ui, response: &Response, centre: Pos2, radius: f32, hsv: [f32; 3])
     painter.circle_stroke(knob, 7.5, Stroke::new(1.0, Color32::BLACK));
 }
 
+/// The position of a hue and saturation on the wheel.
 fn place(centre: Pos2, radius: f32, hue: f32, saturation: f32) -> Pos2 {
     let (sin, cos) = (hue * TAU).sin_cos();
     centre + radius * saturation * vec2(cos, -sin)
 }
 
+/// The hue and saturation at a position; outside of the wheel, at its rim.
 fn hue_at(centre: Pos2, radius: f32, at: Pos2) -> (f32, f32) {
-    let way = at - centre;
-    let hue = (-way.y).atan2(way.x) / TAU;
-    (hue.rem_euclid(1.0), (way.length() / radius).clamp(0.0, 1.0))
+    let offset = at - centre;
+    let hue = (-offset.y).atan2(offset.x) / TAU;
+    (
+        hue.rem_euclid(1.0),
+        (offset.length() / radius).clamp(0.0, 1.0),
+    )
 }
 
 #[cfg(test)]
@@ -108,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_place_on_the_wheel_is_its_hue() {
+    fn a_position_on_the_wheel_gives_its_hue_and_saturation() {
         let centre = Pos2::new(100.0, 80.0);
         for (hue, saturation) in [(0.0, 1.0), (0.1, 0.5), (0.5, 0.25), (0.99, 0.9)] {
             let found = hue_at(centre, 50.0, place(centre, 50.0, hue, saturation));

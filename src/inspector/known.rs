@@ -1,5 +1,4 @@
-//! The figures of the crate's own report, `docs/report`: the known error of a
-//! choice, and what it took there.
+//! Errors and times from the crate's report, `docs/report`.
 
 use std::{collections::HashMap, sync::LazyLock};
 
@@ -10,8 +9,8 @@ const TIMES: &str = include_str!("../../docs/report/line_times.csv");
 const FLICKER: &str = include_str!("../../docs/report/flicker.csv");
 const MACHINE: &str = include_str!("../../docs/report/machine.csv");
 
-/// What finds lines, by the names of the report.
-pub const DETECTORS: [&str; 7] = [
+/// The line detectors, by their names in the report.
+pub const DETECTORS: &[&str] = &[
     "Roberts",
     "Prewitt",
     "Sobel",
@@ -21,20 +20,20 @@ pub const DETECTORS: [&str; 7] = [
     "all outlines",
 ];
 
-/// How well lines are found, over the pixels of all of the report's scenes, and
-/// how fast.
+/// The quality and the time of a line detector, over the pixels of all scenes of
+/// the report.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lines {
-    /// Share of the lines that are missed.
+    /// Fraction of the lines' pixels that are missed.
     pub missed: f64,
-    /// Share of the ink that is on no line.
+    /// Fraction of the inked pixels that are not on a line.
     pub stray: f64,
-    /// All of the crate's passes at 1280x720, median, milliseconds.
+    /// Time of all the crate's passes at 1280x720 in milliseconds, median.
     pub time: f64,
 }
 
 impl Lines {
-    /// One number for both: 1 − F₁, 0 where every line and nothing else is
+    /// Both errors as one number: 1 − F₁. 0 if every line and nothing else is
     /// drawn.
     pub fn error(&self) -> f64 {
         let (recall, precision) = (1.0 - self.missed, 1.0 - self.stray);
@@ -42,25 +41,26 @@ impl Lines {
     }
 }
 
-/// The adapter that the report's times are of.
+/// The adapter on which the report's times were measured.
 pub fn adapter() -> &'static str {
     MACHINE
         .lines()
         .find_map(|line| line.strip_prefix("adapter,"))
-        .unwrap_or("an adapter that was not noted")
+        .unwrap_or("an unknown adapter")
 }
 
+/// The median; 0 if there are no values.
 pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// What the report knows of a detector of lines.
+/// The report's figures of a line detector.
 pub fn lines(detector: &str) -> Option<Lines> {
     static READ: LazyLock<HashMap<&str, Lines>> = LazyLock::new(|| {
         DETECTORS
-            .into_iter()
-            .filter_map(|detector| Some((detector, read_lines(detector)?)))
+            .iter()
+            .filter_map(|detector| Some((*detector, read_lines(detector)?)))
             .collect()
     });
     READ.get(detector).copied()
@@ -71,7 +71,7 @@ fn numbers(cells: &[&str]) -> Option<Vec<f64>> {
 }
 
 fn read_lines(detector: &str) -> Option<Lines> {
-    // Pixels: of the lines and of those found, of the ink and of that on lines.
+    // Pixels: of the lines found, of all lines, of the ink on lines, of all ink.
     let mut sums = [0.0; 4];
     for row in SCORES.lines().skip(1) {
         let cells: Vec<&str> = row.split(',').collect();
@@ -91,7 +91,7 @@ fn read_lines(detector: &str) -> Option<Lines> {
         if let ["lines", _, name, _, _, _, rest @ ..] = cells.as_slice()
             && *name == detector
         {
-            // The prepass and the main pass are the engine's.
+            // The times of the prepass and the main pass are the engine's.
             let [_, range, lines, _, post] = *numbers(rest)?.as_slice() else {
                 return None;
             };
@@ -105,10 +105,11 @@ fn read_lines(detector: &str) -> Option<Lines> {
     })
 }
 
-/// (mean change of the picture from frame to frame in display codes, largest
-/// lag of the range in octaves) over the report's sequences.
+/// The flicker of a way of smoothing, over the report's sequences: the mean change
+/// of the picture from frame to frame in 8-bit codes, and the largest lag of the
+/// range in octaves.
 pub fn flicker(variant: &str) -> Option<(f64, f64)> {
-    // Thousands of rows: read once, not in every frame.
+    // The file has thousands of rows.
     static READ: LazyLock<HashMap<&str, Option<(f64, f64)>>> = LazyLock::new(|| {
         let variants = ["off", "the default", "the default and percentiles"];
         variants
@@ -137,7 +138,7 @@ fn read_flicker(variant: &str) -> Option<(f64, f64)> {
     (frames > 0.0).then(|| (sum / frames, lag))
 }
 
-/// The report's name for a way of smoothing.
+/// The report's name of a map's smoothing, if it was measured.
 pub fn smoothing(map: &DepthMap) -> Option<&'static str> {
     let default = RangeSmoothing::default();
     match map.smoothing {
@@ -156,10 +157,10 @@ mod tests {
 
     #[test]
     fn the_reports_figures_are_found() {
-        for detector in DETECTORS {
+        for &detector in DETECTORS {
             let lines = lines(detector).expect(detector);
-            for share in [lines.missed, lines.stray, lines.error()] {
-                assert!((0.0..=1.0).contains(&share), "{detector}: {lines:?}");
+            for fraction in [lines.missed, lines.stray, lines.error()] {
+                assert!((0.0..=1.0).contains(&fraction), "{detector}: {lines:?}");
             }
             assert!(lines.time > 0.0);
         }
@@ -176,28 +177,28 @@ mod tests {
             default.0 < off.0,
             "smoothing flickers less: {default:?} against {off:?}"
         );
-        assert_eq!(off.1, 0.0, "what is not smoothed does not lag");
+        assert_eq!(off.1, 0.0, "a range without smoothing does not lag");
         assert!(adapter().len() > 3);
     }
 
-    /// The table of the report is made elsewhere, from the same files.
+    /// The report's own table is made by other code from the same files.
     #[test]
-    fn they_are_the_reports() {
+    fn the_figures_are_those_of_the_reports_table() {
         let report = include_str!("../../docs/report/report.md");
         let (_, table) = report.split_once("### Lines").expect("the table");
-        for detector in DETECTORS {
+        for &detector in DETECTORS {
             let row = table
                 .lines()
                 .find(|line| line.starts_with(&format!("| {detector} |")))
                 .expect(detector);
             let cells: Vec<&str> = row.split('|').map(str::trim).collect();
             let lines = lines(detector).expect(detector);
-            let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+            let percent = |fraction: f64| format!("{:.1} %", 100.0 * fraction);
             assert_eq!(cells[4], percent(1.0 - lines.missed), "{row}");
             assert_eq!(cells[5], percent(1.0 - lines.stray), "{row}");
             assert_eq!(cells[6], format!("{:.3}", 1.0 - lines.error()), "{row}");
-            // Its own median is of a few rounds that it corrects by what the
-            // empty frame takes.
+            // The report takes the median of a few rounds and subtracts the time
+            // of an empty frame.
             let time: f64 = cells[7].parse().expect("a time");
             assert!((lines.time / time - 1.0).abs() < 0.05, "{row}: {lines:?}");
         }

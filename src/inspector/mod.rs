@@ -1,10 +1,11 @@
-//! A panel to tune a comic while the game runs: every setting of every effect,
-//! style files, presets, what the styles are made of, what they cost, pictures.
+//! A panel to tune styles while the game runs: every setting of every effect,
+//! style files, presets, debug views, times, and screenshots.
 //!
-//! The panel is drawn by a camera of its own, above everything and after every
-//! style, which exists only while the panel is open. Closed, nothing of it is
+//! The panel is drawn by its own camera, above everything else and after every
+//! effect. The camera exists only while the panel is open: a closed panel is not
 //! drawn, laid out or timed.
 
+mod camera;
 mod clipboard;
 mod cost;
 mod fields;
@@ -16,6 +17,10 @@ mod memory;
 mod panel;
 mod photo;
 mod presets;
+mod search;
+mod shelf;
+mod toolkit;
+mod tooltip;
 mod views;
 
 use std::{
@@ -28,41 +33,34 @@ use std::{
 
 use bevy::{
     app::{App, Plugin, PostUpdate, PreUpdate},
-    camera::{
-        Camera, Camera2d, CameraOutputMode, ClearColorConfig, RenderTarget,
-        visibility::RenderLayers,
-    },
+    asset::Assets,
     ecs::{
         component::Component,
         entity::Entity,
-        name::Name,
+        message::{MessageCursor, Messages},
         query::With,
         resource::Resource,
         schedule::IntoScheduleConfigs,
-        system::{Query, Res, ResMut},
+        system::{Local, Query, Res, ResMut},
         world::{Mut, World},
     },
-    input::{ButtonInput, InputSystems, keyboard::KeyCode},
-    platform::collections::HashMap,
-    render::{
-        Render, RenderApp, RenderSystems,
-        render_resource::{BlendState, PipelineCache},
-        view::Msaa,
+    input::{
+        ButtonInput, InputPlugin, InputSystems,
+        keyboard::{KeyCode, KeyboardInput},
     },
-    window::{PrimaryWindow, Window, WindowRef},
+    log::error,
+    platform::collections::HashMap,
+    render::{Render, RenderApp, RenderSystems, render_resource::PipelineCache},
+    shader::Shader,
+    window::{PrimaryWindow, Window, WindowPlugin},
 };
-use bevy_egui::{
-    EguiContext, EguiContextSettings, EguiFullOutput, EguiGlobalSettings, EguiInput, EguiOutput,
-    EguiPlugin, EguiPostUpdateSet, egui,
-};
+use bevy_egui::{EguiPostUpdateSet, egui};
 
-use crate::{EffectRegistry, timing::PassTimesPlugin};
+use crate::{ComicsPlugin, EffectRegistry, timing::PassTimesPlugin};
+use camera::window_size;
 use panel::Panel;
 
 /// Adds the inspector: a key opens a panel in the primary window.
-///
-/// The app needs `bevy_winit`'s window and the keyboard. The panel uses
-/// `bevy_egui`, which is added where the game has not done so.
 ///
 /// ```no_run
 /// use bevy::prelude::*;
@@ -72,18 +70,37 @@ use panel::Panel;
 ///     .add_plugins((DefaultPlugins, ComicsPlugin, ComicsInspectorPlugin::default()))
 ///     .run();
 /// ```
+///
+/// The order of the plugins does not matter. If the app lacks something that the
+/// panel needs (`ComicsPlugin`, a renderer, windows, input), an error in the log
+/// names it when the app starts, and there is no panel.
+///
+/// # A game that uses `bevy_egui`
+///
+/// The panel is drawn with `bevy_egui`. A game with its own egui windows adds
+/// `EguiPlugin` itself, before or after this plugin, and its windows work as
+/// without the panel. If no plugin of the app adds `EguiPlugin`, this one does so
+/// when all plugins are built (in [`Plugin::finish`]); it then turns
+/// `EguiGlobalSettings::auto_create_primary_context` off, unless the game has
+/// systems in the schedule `EguiPrimaryContextPass` or has inserted
+/// `EguiGlobalSettings`. So a closed panel costs no egui pass.
+///
+/// A plugin that expects `EguiPlugin` while it is built itself, such as one with
+/// `assert!(app.is_plugin_added::<EguiPlugin>())`, needs
+/// `app.add_plugins(EguiPlugin::default())` before it.
 #[derive(Clone, Debug)]
 pub struct ComicsInspectorPlugin {
-    /// The key that opens and closes the panel. Default: F10.
+    /// The key that opens and closes the panel. While text is typed into the
+    /// panel, a key that types a character does not close it. Default: F10.
     pub toggle: KeyCode,
-    /// Where `*.comic.ron` files are listed and saved. Default: `assets/styles`
-    /// under the working folder.
+    /// Folder in which `*.comic.ron` files are listed and saved. Default:
+    /// `assets/styles` in the working directory.
     pub styles: PathBuf,
-    /// Where pictures are put. Default: `screenshots` under the working folder.
+    /// Folder for screenshots. Default: `screenshots` in the working directory.
     pub pictures: PathBuf,
-    /// The file in which the panel remembers where it stands. `None` remembers
-    /// nothing. Default: `bevy_comics/inspector.ron` in the user's folder of
-    /// settings.
+    /// File that stores the panel's place, page and sizes from one run to the
+    /// next; `None` stores nothing. Default: `bevy_comics/inspector.ron` in the
+    /// user's configuration directory.
     pub memory: Option<PathBuf>,
 }
 
@@ -98,49 +115,49 @@ impl Default for ComicsInspectorPlugin {
     }
 }
 
-/// The inspector, for the game.
+/// The state of the inspector, for the game to read and to set.
 #[derive(Resource, Debug)]
 pub struct ComicsInspector {
-    /// Whether the panel is there: set it to open or close it.
+    /// Whether the panel is open. Set it to open or close the panel.
     pub open: bool,
-    /// The key that opens and closes it; `None` leaves that to the game.
+    /// The key that opens and closes the panel; `None` leaves that to the game.
     pub toggle: Option<KeyCode>,
-    /// The camera whose style is shown; the first one where it is `None` or
-    /// gone.
+    /// The camera whose style is shown. If `None` or despawned, the first 3D
+    /// camera.
     pub camera: Option<Entity>,
-    /// Whether the pointer is over the panel, or held by it: a game that turns
-    /// its camera with the mouse asks this first.
+    /// Whether the pointer is over the panel or drags one of its widgets. A game
+    /// that turns its camera with the mouse does not do so while this is set.
     pub wants_pointer: bool,
-    /// Whether the panel takes what is typed.
+    /// Whether a widget of the panel has the keyboard focus.
     pub wants_keyboard: bool,
-    /// Where the panel's widgets were drawn in the last frame, in logical
-    /// points of the window (left, top, right, bottom), by name: what a test
-    /// or a tutorial points at. Settings are named by their path in
+    /// The rectangles of the panel's widgets in the last frame, in logical pixels
+    /// of the window (left, top, right, bottom), by name: for tests and
+    /// tutorials. Settings are named by their path in
     /// [`ComicStyle`](crate::ComicStyle), such as `contours.width`.
     pub widgets: HashMap<String, [f32; 4]>,
-    /// The widget that has the keyboard's focus, by the same names.
+    /// Name of the widget that has the keyboard focus.
     pub focused: Option<String>,
 }
 
-/// What is known of the widgets of a frame.
+/// The widgets of a frame.
 #[derive(Default)]
 struct Widgets {
     rects: HashMap<String, [f32; 4]>,
     focused: Option<String>,
 }
 
-/// Remembers a widget by its name.
+/// Publishes a widget's rectangle and focus under a name.
 fn note(widgets: &mut Widgets, name: impl Into<String>, response: &egui::Response) {
     let name = name.into();
     if response.has_focus() {
         widgets.focused = Some(name.clone());
     }
-    // Whoever comes with the keyboard sees where he is.
+    // A widget that gets the focus by keyboard may be scrolled out of view.
     if response.gained_focus() && !response.ctx.input(|input| input.pointer.any_down()) {
         response.scroll_to_me(None);
     }
-    // Parts of the panel's own points, which are larger or smaller than the
-    // window's when the text is zoomed.
+    // The panel's points differ from the window's logical pixels when its text
+    // is zoomed.
     let zoom = response.ctx.zoom_factor();
     let rect = response.rect * zoom;
     widgets
@@ -148,52 +165,53 @@ fn note(widgets: &mut Widgets, name: impl Into<String>, response: &egui::Respons
         .insert(name, [rect.min.x, rect.min.y, rect.max.x, rect.max.y]);
 }
 
-/// The camera that draws the panel, and nothing else.
-#[derive(Component)]
-struct PanelCamera;
-
 /// A camera of the inspector itself, which it does not list.
 #[derive(Component)]
 struct Helper;
 
 impl Plugin for ComicsInspectorPlugin {
     fn build(&self, app: &mut App) {
-        if !app.is_plugin_added::<EguiPlugin>() {
-            app.add_plugins(EguiPlugin::default());
-            if let Some(mut settings) = app.world_mut().get_resource_mut::<EguiGlobalSettings>() {
-                settings.auto_create_primary_context = false;
-            }
-        }
-        // One list for both, whichever plugin comes first.
+        // The registry is shared with `ComicsPlugin`, whichever comes first.
         let registry = app
             .world_mut()
             .get_resource_or_init::<EffectRegistry>()
             .clone();
-        app.add_plugins(PassTimesPlugin)
-            .insert_resource(ComicsInspector {
-                open: false,
-                toggle: Some(self.toggle),
-                camera: None,
-                wants_pointer: false,
-                wants_keyboard: false,
-                widgets: HashMap::default(),
-                focused: None,
-            })
-            .insert_resource(Panel::new(self, &registry))
-            .add_systems(
-                PreUpdate,
-                (
-                    toggle.after(InputSystems),
-                    point.after(InputSystems),
-                    take_pictures,
-                ),
-            )
-            .add_systems(
-                PostUpdate,
-                (show_or_hide, run_panel.run_if(is_open))
-                    .chain()
-                    .in_set(EguiPostUpdateSet::EndPass),
-            );
+        app.insert_resource(ComicsInspector {
+            open: false,
+            toggle: Some(self.toggle),
+            camera: None,
+            wants_pointer: false,
+            wants_keyboard: false,
+            widgets: HashMap::default(),
+            focused: None,
+        })
+        .insert_resource(Panel::new(self, &registry));
+    }
+
+    /// Every other plugin is built by now, whatever their order.
+    fn finish(&self, app: &mut App) {
+        if let Some(missing) = missing(app) {
+            error!("there is no comics panel: {missing}");
+            return;
+        }
+        toolkit::add(app);
+        if !app.is_plugin_added::<PassTimesPlugin>() {
+            app.add_plugins(PassTimesPlugin);
+        }
+        app.add_systems(
+            PreUpdate,
+            (
+                toggle.after(InputSystems),
+                claim_pointer.after(InputSystems),
+                take_pictures,
+            ),
+        )
+        .add_systems(
+            PostUpdate,
+            (camera::show_or_hide, camera::run_panel.run_if(is_open))
+                .chain()
+                .in_set(EguiPostUpdateSet::EndPass),
+        );
         let busy = PipelinesBusy::default();
         app.insert_resource(busy.clone());
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
@@ -202,11 +220,34 @@ impl Plugin for ComicsInspectorPlugin {
                 .add_systems(Render, watch_pipelines.in_set(RenderSystems::Cleanup));
         }
     }
+
+    fn cleanup(&self, app: &mut App) {
+        toolkit::finish(app);
+    }
 }
 
-/// Whether any pipeline of the whole renderer is still on its way: a camera with
-/// another target needs the engine's anew, and its picture is black until then.
-/// Both worlds hold it.
+/// What the app lacks for the panel, and how to add it.
+fn missing(app: &App) -> Option<&'static str> {
+    if !app.is_plugin_added::<ComicsPlugin>() {
+        return Some(
+            "ComicsInspectorPlugin needs ComicsPlugin; use \
+             app.add_plugins((DefaultPlugins, ComicsPlugin, ComicsInspectorPlugin::default()))",
+        );
+    }
+    let has_renderer =
+        app.get_sub_app(RenderApp).is_some() && app.world().contains_resource::<Assets<Shader>>();
+    if !has_renderer {
+        return Some("the app has no renderer; add bevy's RenderPlugin, or DefaultPlugins");
+    }
+    if !app.is_plugin_added::<WindowPlugin>() || !app.is_plugin_added::<InputPlugin>() {
+        return Some("the app has no windows or no input; add bevy's WindowPlugin and InputPlugin");
+    }
+    None
+}
+
+/// Whether the renderer compiles any pipeline. A camera with another target needs
+/// pipelines of the engine's own, and its picture is black until they are there.
+/// Shared by both worlds.
 #[derive(Resource, Clone, Default)]
 struct PipelinesBusy(Arc<AtomicBool>);
 
@@ -225,17 +266,39 @@ fn is_open(inspector: Res<ComicsInspector>) -> bool {
     inspector.open
 }
 
-fn toggle(keys: Option<Res<ButtonInput<KeyCode>>>, mut inspector: ResMut<ComicsInspector>) {
-    if let (Some(keys), Some(key)) = (keys, inspector.toggle)
-        && keys.just_pressed(key)
-    {
+fn toggle(
+    keys: Option<Res<ButtonInput<KeyCode>>>,
+    presses: Option<Res<Messages<KeyboardInput>>>,
+    mut read: Local<MessageCursor<KeyboardInput>>,
+    panel: Res<Panel>,
+    mut inspector: ResMut<ComicsInspector>,
+) {
+    let (Some(keys), Some(presses)) = (keys, presses) else {
+        return;
+    };
+    let Some(key) = inspector.toggle else {
+        return;
+    };
+    let types_text = |press: &KeyboardInput| {
+        press.key_code == key
+            && press
+                .text
+                .as_ref()
+                .is_some_and(|text| !text.chars().any(char::is_control))
+    };
+    let types_text = read
+        .read(&presses)
+        .filter(|press| types_text(press))
+        .count()
+        > 0;
+    if keys.just_pressed(key) && !(types_text && panel.is_typing()) {
         inspector.open = !inspector.open;
     }
 }
 
-/// The game is asked before the panel is: what came with this frame's pointer,
-/// a turn of the wheel say, belongs to whoever lies under it now.
-fn point(
+/// Claims the pointer before the game's systems run: the pointer input of this
+/// frame, such as a turn of the wheel, belongs to what is under the pointer now.
+fn claim_pointer(
     mut inspector: ResMut<ComicsInspector>,
     panel: Res<Panel>,
     window: Query<&Window, With<PrimaryWindow>>,
@@ -249,113 +312,6 @@ fn point(
     }
 }
 
-/// The panel's camera is there exactly while the panel is open.
-fn show_or_hide(world: &mut World) {
-    let open = world.resource::<ComicsInspector>().open;
-    let camera = world
-        .query_filtered::<Entity, With<PanelCamera>>()
-        .iter(world)
-        .next();
-    match (open, camera) {
-        (true, None) => {
-            let zoom = world.resource::<Panel>().zoom();
-            let scale = window_size(world).map_or(1.0, |(_, scale)| scale);
-            let mut context = EguiContext::default();
-            context.get_mut().set_zoom_factor(zoom);
-            world.spawn((
-                Name::new("comics inspector"),
-                PanelCamera,
-                Helper,
-                Camera2d,
-                Camera {
-                    // After whatever the game draws in this window.
-                    order: isize::MAX / 2,
-                    clear_color: ClearColorConfig::Custom(bevy::color::Color::NONE),
-                    output_mode: CameraOutputMode::Write {
-                        blend_state: Some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                        clear_color: ClearColorConfig::None,
-                    },
-                    ..Camera::default()
-                },
-                RenderTarget::Window(WindowRef::Primary),
-                Msaa::Off,
-                RenderLayers::none(),
-                context,
-                // What the first layout is measured with.
-                EguiOutput {
-                    pixels_per_point: scale * zoom,
-                    ..EguiOutput::default()
-                },
-                EguiContextSettings {
-                    run_manually: true,
-                    ..EguiContextSettings::default()
-                },
-            ));
-        }
-        (false, Some(camera)) => {
-            world.despawn(camera);
-            world.resource_scope(|world, mut panel: Mut<Panel>| panel.close(world));
-            let mut inspector = world.resource_mut::<ComicsInspector>();
-            inspector.wants_pointer = false;
-            inspector.wants_keyboard = false;
-            inspector.widgets.clear();
-            inspector.focused = None;
-        }
-        _ => {}
-    }
-}
-
 fn take_pictures(world: &mut World) {
     world.resource_scope(|world, mut panel: Mut<Panel>| panel.take_pictures(world));
-}
-
-/// Lays the panel out and acts on what was done with it.
-fn run_panel(world: &mut World) {
-    let mut cameras = world.query_filtered::<(
-        &mut EguiContext,
-        &mut EguiInput,
-        &EguiOutput,
-        &mut EguiFullOutput,
-    ), With<PanelCamera>>();
-    let Ok((mut context, mut input, output, mut full)) = cameras.single_mut(world) else {
-        return;
-    };
-    // A camera that has just come does not know its window yet.
-    let knows_its_window = input.screen_rect.is_some()
-        && input
-            .viewports
-            .get(&egui::ViewportId::ROOT)
-            .is_some_and(|viewport| viewport.native_pixels_per_point.is_some());
-    let context = context.get_mut().clone();
-    if !knows_its_window {
-        // The toolkit wants a pass in every frame: one without anything in it.
-        let mut nothing = egui::RawInput::default();
-        nothing
-            .viewports
-            .entry(egui::ViewportId::ROOT)
-            .or_default()
-            .native_pixels_per_point = Some(output.pixels_per_point / context.zoom_factor());
-        **full = Some(context.run_ui(nothing, |_| {}));
-        return;
-    }
-    let input = input.take();
-    let output = world.resource_scope(|world, mut panel: Mut<Panel>| {
-        context.run_ui(input, |ui| panel.show(ui, world))
-    });
-    let mut outputs = world.query_filtered::<&mut EguiFullOutput, With<PanelCamera>>();
-    if let Ok(mut full) = outputs.single_mut(world) {
-        **full = Some(output);
-    }
-    let mut inspector = world.resource_mut::<ComicsInspector>();
-    inspector.wants_pointer = context.egui_wants_pointer_input();
-    inspector.wants_keyboard = context.egui_wants_keyboard_input();
-}
-
-/// The primary window's size in physical pixels and its scale factor.
-fn window_size(world: &mut World) -> Option<(bevy::math::UVec2, f32)> {
-    world
-        .query_filtered::<&Window, With<PrimaryWindow>>()
-        .single(world)
-        .ok()
-        .map(|window| (window.physical_size(), window.scale_factor()))
 }

@@ -1,51 +1,57 @@
-//! The frame of the panel: which camera, which page, what changes.
+//! The panel: its state, its frame, and how its changes reach the cameras.
 
+mod head;
 mod pages;
+mod search_field;
 mod toolbar;
 
 use std::path::PathBuf;
 
 use bevy::{
-    camera::{Camera, Camera3d},
     ecs::{
         entity::{Entity, EntityHashMap},
-        name::Name,
-        query::{With, Without},
         resource::Resource,
         world::World,
     },
     math::Vec2,
+    reflect::TypeRegistry,
 };
-use bevy_egui::egui::{self, Align2, Color32, ComboBox, RichText, ScrollArea, Ui};
+use bevy_egui::egui::{self, Align2, Color32, ScrollArea, Ui};
 
+use self::{
+    head::{cameras, chosen_camera},
+    search_field::SearchField,
+};
 use super::{
-    ComicsInspector, ComicsInspectorPlugin, Helper, Widgets,
+    ComicsInspector, ComicsInspectorPlugin, Widgets,
     clipboard::Clipboard,
     cost::Costs,
-    fields::{self, button},
-    files::Files,
+    fields,
+    files::{Files, on_camera},
     history::History,
     memory::{Dock, Memory, Tab},
     note,
     photo::Photo,
     presets::Presets,
+    shelf::Shelf,
     views,
 };
 use crate::{ComicStyle, DebugView, EffectRegistry, StyleTransition, StyleWeight};
 
-/// What the panel knows about a camera.
+/// The panel's state of one camera.
 #[derive(Default)]
 struct CameraState {
     history: History,
-    /// The other of the two looks that are compared.
+    shelf: Shelf,
+    /// The one of the two styles A and B that is not shown.
     other: Option<ComicStyle>,
-    /// Whether the second of them is shown.
+    /// Whether style B is shown.
     shows_b: bool,
-    /// The weight that the game had given, while the original is shown.
+    /// The game's own weight while the original is shown.
     weight_before: Option<Option<StyleWeight>>,
 }
 
-/// The panel, from one frame to the next.
+/// The panel's state.
 #[derive(Resource)]
 pub struct Panel {
     memory: Memory,
@@ -56,13 +62,25 @@ pub struct Panel {
     costs: Costs,
     photo: Photo,
     clipboard: Clipboard,
+    /// The types of the settings, once all effects are registered.
+    types: Option<TypeRegistry>,
+    search: SearchField,
+    /// Whether a text field has the focus.
+    is_typing: bool,
     /// Cameras that the panel may have given a debug view.
     debugged: Vec<Entity>,
-    message: Option<String>,
-    /// Where it was drawn last, logical points of the window.
+    message: Option<Message>,
+    /// The panel's rectangle in the last frame, in logical pixels of the window.
     place: Option<egui::Rect>,
-    /// Counts the presses of the pointer: a drag is one step of the history.
+    /// Number of presses of the pointer: all changes of one press are one step of
+    /// the history.
     presses: u64,
+}
+
+/// The result of the last action.
+enum Message {
+    Done(&'static str),
+    Failed(String),
 }
 
 impl Panel {
@@ -76,6 +94,9 @@ impl Panel {
             costs: Costs::default(),
             photo: Photo::new(plugin.pictures.clone()),
             clipboard: Clipboard::default(),
+            types: None,
+            search: SearchField::default(),
+            is_typing: false,
             debugged: Vec::new(),
             message: None,
             place: None,
@@ -83,18 +104,27 @@ impl Panel {
         }
     }
 
-    /// Whether a place in the window, in logical points, is the panel's.
+    /// Whether the panel covers a position in the window, in logical pixels.
     pub fn covers(&self, at: Vec2) -> bool {
         self.place
             .is_some_and(|place| place.contains(egui::pos2(at.x, at.y)))
     }
 
-    /// Size of the text against the window's own scale.
+    /// Whether a text field of the panel has the focus.
+    pub fn is_typing(&self) -> bool {
+        self.is_typing
+    }
+
+    pub fn set_typing(&mut self, is_typing: bool) {
+        self.is_typing = is_typing;
+    }
+
+    /// Scale of the panel relative to the window's scale factor.
     pub fn zoom(&self) -> f32 {
         self.memory.zoom
     }
 
-    /// Puts everything back that only the panel needs.
+    /// Removes from the cameras what only an open panel needs.
     pub fn close(&mut self, world: &mut World) {
         if let Some(path) = &self.memory_path {
             self.memory.save(path);
@@ -114,62 +144,33 @@ impl Panel {
         self.presets.close(world);
         self.message = None;
         self.place = None;
+        self.is_typing = false;
     }
 
-    /// Before the engine looks at its cameras: one that draws to something else
-    /// from now on has to be seen by it in the same frame.
+    /// Runs before the engine reads the cameras' targets, so that it sees a
+    /// changed target in the same frame.
     pub fn take_pictures(&mut self, world: &mut World) {
         self.photo.step(world);
     }
 
+    /// Draws the panel and applies what was done with it.
     pub fn show(&mut self, ui: &mut Ui, world: &mut World) {
         let mut widgets = Widgets::default();
         let before = self.memory.clone();
         self.memory.zoom = ui.ctx().zoom_factor();
-        ui.ctx().all_styles_mut(|style| {
-            // Rows come and go with what they say; that is no mistake.
-            style.debug.warn_if_rect_changes_id = false;
-            if style.visuals.dark_mode {
-                // The toolkit's own are hard to read on its own dark.
-                style.visuals.weak_text_color = Some(Color32::from_gray(145));
-                style.visuals.error_fg_color = Color32::from_rgb(255, 128, 110);
-            }
-        });
-        // A click in a frame that takes a second is a click.
-        ui.ctx()
-            .options_mut(|options| options.input_options.max_click_duration = f64::INFINITY);
+        set_toolkit_options(ui);
         if ui.input(|input| input.pointer.any_pressed()) {
             self.presses += 1;
         }
-        let hidden = self.photo.is_under_way();
         self.place = None;
-        let zoom = ui.ctx().zoom_factor();
-        let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(8.0);
-        if hidden {
-            // The picture is taken without the panel's own cameras.
-        } else if self.memory.dock == Dock::Floating {
-            let shown = egui::Window::new("Comics")
-                .id(egui::Id::new("comics_inspector"))
-                .default_width(self.memory.width)
-                .default_height(560.0)
-                .pivot(Align2::LEFT_TOP)
-                .default_pos([16.0, 16.0])
-                .show(ui.ctx(), |ui| self.contents(ui, world, &mut widgets));
-            self.place = shown.map(|shown| shown.response.rect * zoom);
-        } else {
-            let panel = if self.memory.dock == Dock::Left {
-                egui::Panel::left("comics_inspector_left")
+        // While a screenshot is taken, the cameras do not draw to the window.
+        if !self.photo.is_under_way() {
+            let place = if self.memory.dock == Dock::Floating {
+                self.show_window(ui, world, &mut widgets)
             } else {
-                egui::Panel::right("comics_inspector_right")
+                Some(self.show_docked(ui, world, &mut widgets))
             };
-            let shown = panel
-                .frame(frame)
-                .resizable(true)
-                .default_size(self.memory.width)
-                .min_size(240.0)
-                .show_inside(ui, |ui| self.contents(ui, world, &mut widgets));
-            self.memory.width = shown.response.rect.width().round();
-            self.place = Some(shown.response.rect * zoom);
+            self.place = place.map(|place| place * ui.ctx().zoom_factor());
         }
         if self.memory != before
             && !ui.input(|input| input.pointer.any_down())
@@ -181,6 +182,41 @@ impl Panel {
         let mut inspector = world.resource_mut::<ComicsInspector>();
         inspector.widgets = widgets.rects;
         inspector.focused = widgets.focused;
+    }
+
+    /// The panel as a window that can be moved; its rectangle.
+    fn show_window(
+        &mut self,
+        ui: &Ui,
+        world: &mut World,
+        widgets: &mut Widgets,
+    ) -> Option<egui::Rect> {
+        let shown = egui::Window::new("Comics")
+            .id(egui::Id::new("comics_inspector"))
+            .default_width(self.memory.width)
+            .default_height(560.0)
+            .pivot(Align2::LEFT_TOP)
+            .default_pos([16.0, 16.0])
+            .show(ui.ctx(), |ui| self.contents(ui, world, widgets));
+        shown.map(|shown| shown.response.rect)
+    }
+
+    /// The panel at the left or right edge of the window; its rectangle.
+    fn show_docked(&mut self, ui: &mut Ui, world: &mut World, widgets: &mut Widgets) -> egui::Rect {
+        let panel = if self.memory.dock == Dock::Left {
+            egui::Panel::left("comics_inspector_left")
+        } else {
+            egui::Panel::right("comics_inspector_right")
+        };
+        let frame = egui::Frame::side_top_panel(ui.style()).inner_margin(8.0);
+        let shown = panel
+            .frame(frame)
+            .resizable(true)
+            .default_size(self.memory.width)
+            .min_size(240.0)
+            .show_inside(ui, |ui| self.contents(ui, world, widgets));
+        self.memory.width = shown.response.rect.width().round();
+        shown.response.rect
     }
 
     fn contents(&mut self, ui: &mut Ui, world: &mut World, widgets: &mut Widgets) {
@@ -201,13 +237,20 @@ impl Panel {
         let mut before = ComicStyle::of(world.entity(camera), &registry);
         let mut style = before.clone();
         if self.toolbar(ui, world, camera, &mut style, widgets) {
-            // A step back is no change of its own.
+            // Undo and redo are not recorded as new steps.
             before = style.clone();
         }
         if let Some(message) = &self.message {
-            fields::error(ui, message);
+            let shown = match message {
+                Message::Done(text) => ui.label(*text),
+                Message::Failed(text) => fields::error(ui, text),
+            };
+            note(widgets, "message", &shown);
         }
         ui.separator();
+        if self.memory.tab == Tab::Style {
+            self.search.show(ui, widgets);
+        }
         ScrollArea::vertical()
             .auto_shrink([false, false])
             .id_salt(self.memory.tab.name())
@@ -217,8 +260,9 @@ impl Panel {
             });
         self.leave_other_pages(world);
         if let Some(preset) = self.presets.chosen.take() {
-            // A fade is a step like any other; the panel need not be open for it.
-            self.record(camera, before.clone(), None);
+            // The transition goes on if the panel is closed.
+            let after = on_camera(&preset, &before);
+            self.record(camera, before.clone(), &after, None);
             self.files.forget(camera);
             let fade = StyleTransition::to(preset, self.memory.fade);
             world.entity_mut(camera).insert(fade);
@@ -240,112 +284,54 @@ impl Panel {
         style: ComicStyle,
     ) {
         let style = style.sanitized();
-        // What the game has put there out of range is no change of the panel's.
+        // Values that the game has set out of range are not a change by the panel.
         if style == before.sanitized() {
             return;
         }
         let gesture = ui
             .input(|input| input.pointer.any_down())
             .then_some(self.presses);
-        self.record(camera, before, gesture);
+        self.record(camera, before, &style, gesture);
         put(world, camera, &style);
     }
 
-    fn record(&mut self, camera: Entity, before: ComicStyle, gesture: Option<u64>) {
-        let state = self.cameras.entry(camera).or_default();
-        state.history.record(before, gesture);
-    }
-
-    fn head(
+    /// Records a step of the history, and the settings of what it turns off.
+    fn record(
         &mut self,
-        ui: &mut Ui,
-        world: &mut World,
-        cameras: &[(Entity, String)],
-        chosen: &mut Option<Entity>,
-        widgets: &mut Widgets,
+        camera: Entity,
+        before: ComicStyle,
+        after: &ComicStyle,
+        gesture: Option<u64>,
     ) {
-        ui.horizontal(|ui| {
-            ui.label(RichText::new("Comics").heading());
-            let name = cameras
-                .iter()
-                .find(|(camera, _)| Some(*camera) == *chosen)
-                .map_or("no camera", |(_, name)| name.as_str());
-            let before = *chosen;
-            let combo = ComboBox::from_id_salt("camera")
-                .selected_text(name)
-                .show_ui(ui, |ui| {
-                    for (camera, name) in cameras {
-                        let item = ui.selectable_value(chosen, Some(*camera), name);
-                        note(widgets, format!("camera.{name}"), &item);
-                    }
-                });
-            note(widgets, "camera", &combo.response);
-            if let Some(left) = before.filter(|_| before != *chosen) {
-                // Whoever lets go of a button does so on another camera's.
-                self.show_original(world, left, false);
-            }
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                if button(ui, widgets, "close", "✖", true) {
-                    world.resource_mut::<ComicsInspector>().open = false;
-                }
-                let dock = ComboBox::from_id_salt("dock")
-                    .selected_text(self.memory.dock.name())
-                    .width(64.0)
-                    .show_ui(ui, |ui| {
-                        for dock in Dock::ALL {
-                            let item =
-                                ui.selectable_value(&mut self.memory.dock, dock, dock.name());
-                            note(widgets, format!("dock.{}", dock.name()), &item);
-                        }
-                    });
-                note(widgets, "dock", &dock.response);
-            });
-        });
-        ui.horizontal_wrapped(|ui| {
-            for tab in Tab::ALL {
-                let item = ui.selectable_label(self.memory.tab == tab, tab.name());
-                note(widgets, format!("tab.{}", tab.name()), &item);
-                if item.clicked() {
-                    self.memory.tab = tab;
-                    self.message = None;
-                }
-            }
-        });
+        let state = self.cameras.entry(camera).or_default();
+        state.shelf.keep(&before, after);
+        state.history.record(before, gesture);
+        self.message = None;
     }
 }
 
-/// Puts a style on a camera; a transition that is under way ends there.
+/// The toolkit's options that differ from its defaults.
+fn set_toolkit_options(ui: &Ui) {
+    ui.ctx().all_styles_mut(|style| {
+        // Rows come and go with their settings; the toolkit takes that for a
+        // mistake in debug builds.
+        style.debug.warn_if_rect_changes_id = false;
+        if style.visuals.dark_mode {
+            // The default colours have too little contrast on the dark panel.
+            style.visuals.weak_text_color = Some(Color32::from_gray(145));
+            style.visuals.error_fg_color = Color32::from_rgb(255, 128, 110);
+        }
+    });
+    // A click in a frame that takes a second is still a click.
+    ui.ctx()
+        .options_mut(|options| options.input_options.max_click_duration = f64::INFINITY);
+}
+
+/// Puts a style on a camera and ends its transition, if one is running.
 fn put(world: &mut World, camera: Entity, style: &ComicStyle) {
     let mut commands = world.commands();
     let mut camera = commands.entity(camera);
     camera.remove::<StyleTransition>();
     style.set_as_own(&mut camera);
     world.flush();
-}
-
-/// The camera whose style is shown: the first one where the chosen one is gone.
-fn chosen_camera(world: &World, cameras: &[(Entity, String)]) -> Option<Entity> {
-    let chosen = world.resource::<ComicsInspector>().camera;
-    cameras
-        .iter()
-        .map(|(camera, _)| *camera)
-        .find(|camera| Some(*camera) == chosen)
-        .or_else(|| cameras.first().map(|(camera, _)| *camera))
-}
-
-/// The 3D cameras, with what they are called.
-fn cameras(world: &mut World) -> Vec<(Entity, String)> {
-    let mut found: Vec<(isize, Entity, String)> = world
-        .query_filtered::<(Entity, &Camera, Option<&Name>), (With<Camera3d>, Without<Helper>)>()
-        .iter(world)
-        .map(|(entity, camera, name)| {
-            let name = name.map_or_else(|| format!("Camera {entity}"), ToString::to_string);
-            (camera.order, entity, name)
-        })
-        .collect();
-    found.sort_by_key(|(order, entity, _)| (*order, *entity));
-    found
-        .into_iter()
-        .map(|(_, entity, name)| (entity, name))
-        .collect()
 }

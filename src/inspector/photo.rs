@@ -1,4 +1,4 @@
-//! Pictures of the window's 3D cameras, as large as wanted.
+//! Screenshots of the window's 3D cameras, several times as large as the window.
 
 use std::{
     fs,
@@ -35,35 +35,39 @@ use super::{
 };
 use crate::ComicsDiagnostics;
 
-/// A camera as it was before it was turned to the picture.
-struct Turned {
+/// A camera whose target is the screenshot, and its own target and viewport.
+struct Redirected {
     camera: Entity,
     target: RenderTarget,
     viewport: Option<Viewport>,
 }
 
-/// A picture in the making.
+/// A screenshot that is being taken.
 struct Shot {
     image: Handle<Image>,
-    /// With its scale factor: the engine tells targets apart by it.
+    /// The image with a scale factor, by which the engine tells targets apart.
     target: ImageRenderTarget,
-    cameras: Vec<Turned>,
+    cameras: Vec<Redirected>,
     frames: u32,
     /// Frames since the last pipeline was compiled.
     idle: u32,
+    /// Whether the engine was asked for the image's pixels.
     asked: bool,
+    /// The saved file or an error, from the engine's observer.
     answer: Arc<Mutex<Option<Result<PathBuf, String>>>>,
 }
 
+/// The page of screenshots.
 pub struct Photo {
     folder: PathBuf,
     shot: Option<Shot>,
+    /// The result of the last screenshot.
     last: Option<Result<PathBuf, String>>,
-    /// A picture that was asked for, so many times the window.
+    /// The size of a requested screenshot relative to the window.
     wanted: Option<u32>,
 }
 
-/// So many frames are waited for.
+/// Frames after which a screenshot is given up.
 const PATIENCE: u32 = 1200;
 
 impl Photo {
@@ -76,7 +80,7 @@ impl Photo {
         }
     }
 
-    /// Whether the panel stands back for a picture.
+    /// Whether a screenshot is being taken. The panel is hidden then.
     pub fn is_under_way(&self) -> bool {
         self.shot.is_some()
     }
@@ -89,20 +93,20 @@ impl Photo {
         widgets: &mut Widgets,
     ) {
         let Some((window, _)) = window_size(world) else {
-            ui.label("There is no window to take a picture of.");
+            ui.label("There is no window.");
             return;
         };
         let largest = largest(world, window);
         *multiple = (*multiple).clamp(1, largest);
-        let slider = ui.add(Slider::new(multiple, 1..=largest).text("times the window"));
+        let slider = ui.add(Slider::new(multiple, 1..=largest).text("× window size"));
         note(widgets, "photo.multiple", &slider);
         let size = window * *multiple;
         ui.label(format!("{} x {} pixels", size.x, size.y));
-        if button(ui, widgets, "photo.take", "Take a picture", true) {
+        if button(ui, widgets, "photo.take", "Take a screenshot", true) {
             self.last = None;
             self.wanted = Some(*multiple);
         }
-        ui.weak("Every 3D camera of the window, without its user interface; lines keep their share of the picture.");
+        ui.weak("Shows all 3D cameras of the window, without any user interface. Line widths grow with the picture.");
         match &self.last {
             Some(Ok(path)) => {
                 let label = ui.label(format!("Saved {}", path.display()));
@@ -115,15 +119,15 @@ impl Photo {
         }
     }
 
-    /// One step a frame: wait for pipelines, ask, wait for the answer, put
-    /// everything back.
+    /// One step of a screenshot per frame: wait for pipelines, request the pixels,
+    /// wait for them, give the cameras their targets back.
     pub fn step(&mut self, world: &mut World) {
         if let Some(multiple) = self.wanted.take()
             && let Some((window, _)) = window_size(world)
         {
             self.shot = begin(world, window, multiple);
             if self.shot.is_none() {
-                self.last = Some(Err("No 3D camera draws to the window.".into()));
+                self.last = Some(Err("No active 3D camera draws to the window.".into()));
             }
         }
         let Some(shot) = &mut self.shot else {
@@ -136,7 +140,10 @@ impl Photo {
             .unwrap_or_else(PoisonError::into_inner)
             .take();
         if answer.is_some() || shot.frames > PATIENCE {
-            self.last = Some(answer.unwrap_or_else(|| Err("the picture did not arrive".into())));
+            self.last = Some(
+                answer
+                    .unwrap_or_else(|| Err("The renderer did not deliver the screenshot.".into())),
+            );
             if let Some(shot) = self.shot.take() {
                 end(world, shot);
             }
@@ -146,8 +153,8 @@ impl Photo {
         let compiling = shot
             .cameras
             .iter()
-            .any(|turned| diagnostics.is_compiling(turned.camera));
-        // The two worlds are a frame or two apart.
+            .any(|redirected| diagnostics.is_compiling(redirected.camera));
+        // The render world is up to two frames behind.
         shot.idle = if compiling || world.resource::<PipelinesBusy>().get() {
             0
         } else {
@@ -167,7 +174,7 @@ impl Photo {
     }
 }
 
-/// The largest multiple that the adapter can draw.
+/// The largest multiple of the window's size that the adapter can draw.
 fn largest(world: &World, window: UVec2) -> u32 {
     let side = world
         .get_resource::<RenderDevice>()
@@ -175,6 +182,7 @@ fn largest(world: &World, window: UVec2) -> u32 {
     (side / window.max_element().max(1)).clamp(1, 8)
 }
 
+/// Redirects the window's 3D cameras to an image.
 fn begin(world: &mut World, window: UVec2, multiple: u32) -> Option<Shot> {
     let size = (window * multiple).max(UVec2::ONE);
     let image = Image::new_target_texture(size.x, size.y, TextureFormat::Rgba8UnormSrgb, None);
@@ -192,7 +200,7 @@ fn begin(world: &mut World, window: UVec2, multiple: u32) -> Option<Shot> {
             continue;
         }
         let into = RenderTarget::Image(target_image.clone());
-        cameras.push(Turned {
+        cameras.push(Redirected {
             camera: entity,
             target: std::mem::replace(&mut *target, into),
             viewport: camera.viewport.clone(),
@@ -218,17 +226,18 @@ fn begin(world: &mut World, window: UVec2, multiple: u32) -> Option<Shot> {
     })
 }
 
+/// Gives the cameras their targets back.
 fn end(world: &mut World, shot: Shot) {
-    for turned in shot.cameras {
-        let Ok(mut entity) = world.get_entity_mut(turned.camera) else {
+    for redirected in shot.cameras {
+        let Ok(mut entity) = world.get_entity_mut(redirected.camera) else {
             continue;
         };
-        entity.insert(turned.target);
+        entity.insert(redirected.target);
         if let Some(mut camera) = entity.get_mut::<Camera>() {
-            camera.viewport = turned.viewport;
+            camera.viewport = redirected.viewport;
         }
-        // The engine looks at the size of a target anew when the projection
-        // changes, and not when the target does.
+        // The engine updates a target's size when the projection changes, but not
+        // when the target does.
         if let Some(mut projection) = entity.get_mut::<Projection>() {
             projection.set_changed();
         }
@@ -236,21 +245,22 @@ fn end(world: &mut World, shot: Shot) {
     world.resource_mut::<Assets<Image>>().remove(&shot.image);
 }
 
+/// Saves the image as a PNG file without alpha.
 fn save(image: &Image, folder: &Path) -> Result<PathBuf, String> {
     let size = image.size();
-    let bytes = image.data.as_ref().ok_or("the picture is empty")?;
+    let bytes = image.data.as_ref().ok_or("The screenshot is empty.")?;
     let opaque: Vec<u8> = bytes
         .chunks_exact(4)
         .flat_map(|p| [p[0], p[1], p[2]])
         .collect();
     let picture = image::RgbImage::from_raw(size.x, size.y, opaque)
-        .ok_or("the picture has not the size that it should have")?;
-    let say = |error: &dyn std::fmt::Display| format!("{}: {error}", folder.display());
-    fs::create_dir_all(folder).map_err(|error| say(&error))?;
+        .ok_or("The screenshot has the wrong size.")?;
+    let in_folder = |error: &dyn std::fmt::Display| format!("{}: {error}", folder.display());
+    fs::create_dir_all(folder).map_err(|error| in_folder(&error))?;
     let now = SystemTime::now()
         .duration_since(UNIX_EPOCH)
         .map_or(0, |since| since.as_millis());
     let path = folder.join(format!("comic-{now}.png"));
-    picture.save(&path).map_err(|error| say(&error))?;
+    picture.save(&path).map_err(|error| in_folder(&error))?;
     Ok(path)
 }

@@ -1,4 +1,4 @@
-//! The looks there are, as pictures of the current scene.
+//! The page of presets and style files, as thumbnails of the current scene.
 
 use std::{
     collections::VecDeque,
@@ -27,44 +27,48 @@ use super::{
 };
 use crate::{ComicStyle, ComicsDiagnostics, ComicsStage, EffectRegistry, presets};
 
+/// Size of a thumbnail in pixels.
 const WIDTH: u32 = 240;
 const HEIGHT: u32 = 135;
-/// A look whose pipelines take longer has no picture.
+/// Frames after which a thumbnail is given up.
 const PATIENCE: u32 = 1200;
 
-/// A look in the browser.
+/// A preset or a style file.
 struct Entry {
     name: String,
     title: String,
     style: Result<ComicStyle, String>,
 }
 
+/// The picture of a style.
 struct Thumbnail {
     image: Handle<Image>,
     texture: TextureId,
 }
 
-/// A picture in the making: its camera stands where the game's does.
-struct Sitting {
+/// A thumbnail that is being drawn, by a copy of the game's camera.
+struct Session {
     name: String,
     camera: Entity,
     thumbnail: Thumbnail,
     frames: u32,
-    /// Frames since the look was complete.
+    /// Frames since all pipelines were ready.
     complete: u32,
 }
 
+/// The page of presets.
 pub struct Presets {
     registry: EffectRegistry,
     entries: Option<Vec<Entry>>,
     thumbnails: HashMap<String, Thumbnail>,
     queue: VecDeque<String>,
-    sitting: Option<Sitting>,
+    session: Option<Session>,
     source: Option<Entity>,
-    /// The look that was clicked.
+    /// The style that was clicked.
     pub chosen: Option<ComicStyle>,
 }
 
+/// The presets, and the style files of a folder.
 fn entries(folder: &Path, registry: &EffectRegistry) -> Vec<Entry> {
     let own = presets::ALL
         .iter()
@@ -96,7 +100,7 @@ impl Entry {
         Self { name, title, style }
     }
 
-    /// Draws the picture with its title; gives the style if it was clicked.
+    /// Draws the thumbnail with its title; the style if it was clicked.
     fn show(
         &self,
         ui: &mut Ui,
@@ -132,7 +136,7 @@ impl Presets {
             entries: None,
             thumbnails: HashMap::default(),
             queue: VecDeque::new(),
-            sitting: None,
+            session: None,
             source: None,
             chosen: None,
         }
@@ -156,22 +160,22 @@ impl Presets {
                 ui,
                 widgets,
                 "presets.refresh",
-                "Take the pictures anew",
+                "Redraw the thumbnails",
                 true,
             ) {
                 self.refresh(world, folder);
             }
-            let fade = ui.add(Slider::new(fade, 0.0..=3.0).suffix(" s").text("Fade"));
+            let fade = ui.add(Slider::new(fade, 0.0..=3.0).suffix(" s").text("Transition"));
             note(widgets, "presets.fade", &fade);
         });
-        let waiting = self.queue.len() + usize::from(self.sitting.is_some());
+        let waiting = self.queue.len() + usize::from(self.session.is_some());
         if waiting > 0 {
-            ui.label(format!("{waiting} pictures to take"));
+            ui.label(format!("{waiting} thumbnails left to draw"));
         }
         self.pictures(ui, widgets);
     }
 
-    /// The pictures, in as many columns as there is room for.
+    /// The thumbnails, in as many columns as fit.
     fn pictures(&mut self, ui: &mut Ui, widgets: &mut Widgets) {
         let wide = ui.available_width();
         let columns = (wide / 170.0).floor().max(1.0);
@@ -202,32 +206,32 @@ impl Presets {
         self.entries = Some(entries);
     }
 
-    /// One picture at a time, one step a frame.
+    /// One step of a thumbnail per frame, one thumbnail at a time.
     pub fn step(&mut self, world: &mut World) {
-        if let Some(sitting) = &mut self.sitting {
-            sitting.frames += 1;
+        if let Some(session) = &mut self.session {
+            session.frames += 1;
             let diagnostics = world.resource::<ComicsDiagnostics>();
-            let camera = sitting.camera;
+            let camera = session.camera;
             let ready = diagnostics.ran(camera, ComicsStage::Stylize)
                 && !diagnostics.is_compiling(camera)
                 && !world.resource::<PipelinesBusy>().get();
-            sitting.complete = if ready { sitting.complete + 1 } else { 0 };
-            if sitting.complete > 2 || sitting.frames > PATIENCE {
-                let complete = sitting.complete > 2;
+            session.complete = if ready { session.complete + 1 } else { 0 };
+            if session.complete > 2 || session.frames > PATIENCE {
+                let complete = session.complete > 2;
                 world.despawn(camera);
-                if let Some(sitting) = self.sitting.take() {
+                if let Some(session) = self.session.take() {
                     if complete {
-                        self.keep(world, sitting.name, sitting.thumbnail);
+                        self.keep(world, session.name, session.thumbnail);
                     } else {
-                        forget(world, &sitting.thumbnail);
+                        forget(world, &session.thumbnail);
                     }
                 }
             }
         }
-        if self.sitting.is_none()
+        if self.session.is_none()
             && let Some(name) = self.queue.pop_front()
         {
-            self.sitting = self.sit(world, name);
+            self.session = self.start(world, name);
         }
     }
 
@@ -237,7 +241,7 @@ impl Presets {
         }
     }
 
-    fn sit(&mut self, world: &mut World, name: String) -> Option<Sitting> {
+    fn start(&mut self, world: &mut World, name: String) -> Option<Session> {
         let source = self.source?;
         let entry = self
             .entries
@@ -251,11 +255,11 @@ impl Presets {
         let texture = world
             .resource_mut::<EguiUserTextures>()
             .add_image(EguiTextureHandle::Strong(image.clone()));
-        let camera = double(world, source)?;
+        let camera = copy_of(world, source)?;
         let mut entity = world.entity_mut(camera);
         entity.insert((Helper, place, RenderTarget::Image(image.clone().into())));
         if let Some(mut camera) = entity.get_mut::<Camera>() {
-            // Before everything that is shown.
+            // Before the cameras that draw to windows.
             camera.order = isize::MIN / 2;
             camera.viewport = None;
             camera.is_active = true;
@@ -263,7 +267,7 @@ impl Presets {
         let mut commands = world.commands();
         style.apply(&mut commands.entity(camera));
         world.flush();
-        Some(Sitting {
+        Some(Session {
             name,
             camera,
             thumbnail: Thumbnail { image, texture },
@@ -274,16 +278,16 @@ impl Presets {
 
     fn stop(&mut self, world: &mut World) {
         self.queue.clear();
-        if let Some(sitting) = self.sitting.take() {
-            world.despawn(sitting.camera);
-            forget(world, &sitting.thumbnail);
+        if let Some(session) = self.session.take() {
+            world.despawn(session.camera);
+            forget(world, &session.thumbnail);
         }
     }
 
-    /// What was not finished is taken up again at the next opening.
+    /// Stops; the remaining thumbnails are drawn when the panel is open again.
     pub fn close(&mut self, world: &mut World) {
-        if let Some(sitting) = &self.sitting {
-            self.queue.push_front(sitting.name.clone());
+        if let Some(session) = &self.session {
+            self.queue.push_front(session.name.clone());
         }
         let queue = std::mem::take(&mut self.queue);
         self.stop(world);
@@ -291,6 +295,7 @@ impl Presets {
     }
 }
 
+/// Frees a thumbnail.
 fn forget(world: &mut World, thumbnail: &Thumbnail) {
     world
         .resource_mut::<EguiUserTextures>()
@@ -300,11 +305,11 @@ fn forget(world: &mut World, thumbnail: &Thumbnail) {
         .remove(&thumbnail.image);
 }
 
-/// A camera that sees as another one does: with the engine's own components,
-/// and none of the game's, which would find two where there was one.
-fn double(world: &mut World, source: Entity) -> Option<Entity> {
+/// A copy of a camera with the engine's components only: a game may expect that
+/// only one camera has its own.
+fn copy_of(world: &mut World, source: Entity) -> Option<Entity> {
     let source_entity = world.get_entity(source).ok()?;
-    let seen = [
+    let modules = [
         "bevy_camera::",
         "bevy_core_pipeline::",
         "bevy_light::",
@@ -320,15 +325,15 @@ fn double(world: &mut World, source: Entity) -> Option<Entity> {
         .filter(|id| {
             world.components().get_info(*id).is_some_and(|info| {
                 let name = info.name().to_string();
-                seen.iter().any(|start| name.starts_with(start))
+                modules.iter().any(|start| name.starts_with(start))
             })
         })
         .collect();
-    let double = world.spawn_empty().id();
+    let copy = world.spawn_empty().id();
     let mut cloner = EntityCloner::build_opt_in(world);
     cloner.without_required_components(|cloner| {
         cloner.allow_by_ids(ids);
     });
-    cloner.clone_entity(source, double);
-    Some(double)
+    cloner.clone_entity(source, copy);
+    Some(copy)
 }

@@ -1,4 +1,4 @@
-//! What the styles are made of: debug views, the range, the histogram.
+//! The page of debug views, the depth range and the histogram of depths.
 
 use bevy::ecs::{component::Component, entity::Entity, query::With, world::World};
 use bevy_egui::egui::{Color32, Grid, Ui};
@@ -7,31 +7,32 @@ use egui_plot::{Bar, BarChart, Plot, VLine};
 use super::{Widgets, fields::section, note};
 use crate::{DebugView, DepthBin, DepthHistogram, EffectRegistry, EffectType, VisibleDepthRange};
 
-/// A camera that the panel reads the range of, and what it has put there.
+/// A camera whose depth range the panel reads, and which of the components for it
+/// the panel has inserted.
 #[derive(Component)]
 struct Probed {
     range: bool,
     histogram: bool,
 }
 
-/// What a menu calls a view, and what it shows.
+/// The label of a view, and what it shows.
 fn describe(view: DebugView, types: &[&EffectType]) -> (&'static str, &'static str) {
     match view {
         DebugView::DepthMap => ("Depth map", "Black is near, white is far."),
         DebugView::RawRange => (
             "Raw range",
-            "The depth buffer between the ends of the range: white is near.",
+            "The depth buffer, scaled to the range: white is near.",
         ),
-        DebugView::Silhouettes => ("Silhouettes", "Black is a full line."),
-        DebugView::Creases => ("Creases", "Black is a full line."),
-        DebugView::ObjectIds => ("Object ids", "A colour for every object; black has none."),
-        DebugView::Saturation => (
-            "Saturation mask",
-            "White keeps its colours, black loses them.",
+        DebugView::Silhouettes => ("Silhouettes", "Black: a full line."),
+        DebugView::Creases => ("Creases", "Black: a full line."),
+        DebugView::ObjectIds => (
+            "Object ids",
+            "One colour for each object. Black: no object.",
         ),
+        DebugView::Saturation => ("Saturation mask", "White: full saturation. Black: none."),
         DebugView::Difference => (
-            "Difference to the original",
-            "In display codes, four times as bright.",
+            "Difference from the original",
+            "Absolute difference of the display colours, four times as bright.",
         ),
         DebugView::Effect(name) => types
             .iter()
@@ -56,8 +57,8 @@ pub fn show(ui: &mut Ui, world: &mut World, camera: Entity, widgets: &mut Widget
     let mut entity = world.entity_mut(camera);
     let before = entity.get::<DebugView>().copied();
     let mut view = before;
-    section(ui, "Shown instead of the picture", |ui| {
-        let none = ui.radio_value(&mut view, None, "The picture");
+    section(ui, "Debug view", |ui| {
+        let none = ui.radio_value(&mut view, None, "None: the picture");
         note(widgets, "view.none", &none);
         for choice in choices {
             let (label, explanation) = describe(choice, &types);
@@ -87,11 +88,14 @@ pub fn show(ui: &mut Ui, world: &mut World, camera: Entity, widgets: &mut Widget
         .copied()
         .unwrap_or_default();
     let histogram = entity.get::<DepthHistogram>().cloned().unwrap_or_default();
-    section(ui, "Range", |ui| numbers(ui, range, histogram.drawn));
-    section(ui, "Depths", |ui| plot(ui, &histogram, widgets));
+    section(ui, "Depth range", |ui| numbers(ui, range, histogram.drawn));
+    section(ui, "Histogram of visible depths", |ui| {
+        plot(ui, &histogram, widgets);
+    });
     ui.ctx().request_repaint();
 }
 
+/// The table of the range, measured and `drawn` with.
 fn numbers(ui: &mut Ui, range: VisibleDepthRange, drawn: Option<(f32, f32)>) {
     let text = |pair: Option<(f32, f32)>| match pair {
         Some((near, far)) => [format!("{near:.3}"), format!("{far:.3}")],
@@ -110,7 +114,7 @@ fn numbers(ui: &mut Ui, range: VisibleDepthRange, drawn: Option<(f32, f32)>) {
         ui.end_row();
         for (name, [near, far]) in [
             ("visible, world units", text(range.distances())),
-            ("drawn with, world units", text(drawn)),
+            ("used for drawing, world units", text(drawn)),
             ("visible, raw depth", raw),
         ] {
             ui.label(name);
@@ -120,20 +124,21 @@ fn numbers(ui: &mut Ui, range: VisibleDepthRange, drawn: Option<(f32, f32)>) {
         }
     });
     match range {
-        VisibleDepthRange::Pending => ui.weak("Nothing was read yet."),
+        VisibleDepthRange::Pending => ui.weak("Not measured yet."),
         VisibleDepthRange::Empty => ui.weak("No opaque geometry is visible."),
-        VisibleDepthRange::Visible { .. } => ui.weak("Measured along the camera's forward axis."),
+        VisibleDepthRange::Visible { .. } => ui.weak("Distances along the camera's forward axis."),
     };
 }
 
-/// Octaves where every edge has one.
+/// Whether the bins can be drawn on a logarithmic axis.
 fn is_logarithmic(bins: &[DepthBin]) -> bool {
     bins.iter().all(|bin| bin.near > 0.0 && bin.far.is_finite())
 }
 
+/// The chart of the histogram.
 fn plot(ui: &mut Ui, histogram: &DepthHistogram, widgets: &mut Widgets) {
     if histogram.bins.is_empty() {
-        ui.weak("No depths were counted: nothing is visible, or the adapter cannot count.");
+        ui.weak("No depths: nothing is visible, or the adapter has no compute shaders.");
         return;
     }
     let logarithmic = is_logarithmic(&histogram.bins);
@@ -168,7 +173,9 @@ fn plot(ui: &mut Ui, histogram: &DepthHistogram, widgets: &mut Widgets) {
         .x_axis_formatter(move |mark, _| format!("{:.3}", distance(mark.value)))
         .y_axis_formatter(|mark, _| format!("{:.0} %", mark.value))
         .show(ui, |plot| {
-            plot.bar_chart(BarChart::new("share of the pixels", bars).color(Color32::LIGHT_BLUE));
+            plot.bar_chart(
+                BarChart::new("fraction of the pixels", bars).color(Color32::LIGHT_BLUE),
+            );
             if let Some((near, far)) = histogram.drawn {
                 for (name, at) in [("nearest", near), ("farthest", far)] {
                     plot.vline(
@@ -180,9 +187,10 @@ fn plot(ui: &mut Ui, histogram: &DepthHistogram, widgets: &mut Widgets) {
             }
         });
     note(widgets, "histogram", &shown.response);
-    ui.weak("Distance in world units; the lines are the ends that styles are drawn with.");
+    ui.weak("Distance in world units. Lines: the range that is used for drawing.");
 }
 
+/// Reads the depth range of this camera, and of no other.
 fn probe(world: &mut World, camera: Entity) {
     let others: Vec<Entity> = world
         .query_filtered::<Entity, With<Probed>>()
@@ -222,7 +230,7 @@ fn unprobe(world: &mut World, camera: Entity) {
     }
 }
 
-/// Reads no camera's range any more.
+/// Stops reading depth ranges.
 pub fn leave(world: &mut World) {
     let cameras: Vec<Entity> = world
         .query_filtered::<Entity, With<Probed>>()

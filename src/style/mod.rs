@@ -5,6 +5,7 @@ mod blend;
 mod format;
 mod layer;
 pub mod presets;
+pub(crate) mod rust_code;
 #[cfg(test)]
 mod tests;
 mod transition;

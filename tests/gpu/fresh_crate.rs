@@ -1,7 +1,12 @@
 //! A crate of a newcomer, outside the repository: the README's lines compile
 //! as they stand, and draw ink.
 
-use std::{env, fs, path::Path, process::Command};
+use std::{env, fmt::Write, fs, path::Path, process::Command};
+
+use bevy_comics::{
+    BlackFlats, ComicStyle, ContourOperator, Contours, DepthMap, DepthMapping, Outlines,
+    ReductionMethod, presets,
+};
 
 use crate::outside::{OutsideCrate, ROOT};
 
@@ -13,9 +18,14 @@ fn readme_lines() -> String {
 }
 
 /// What the README's `main` does, without a window; the camera of the README
-/// draws into a picture, before a cube.
+/// draws into a picture, before a cube. Before that, the Rust code of the presets
+/// is run.
 const HEADLESS_MAIN: &str = r#"
+#[path = "../styles.rs"]
+mod styles;
+
 fn main() {
+    styles::check();
     use bevy_comics_testkit::headless::{Headless, HeadlessOptions};
     let options = HeadlessOptions { size: UVec2::new(96, 64), ..default() };
     let mut headless = Headless::new(options, ComicsPlugin);
@@ -42,8 +52,56 @@ fn main() {
 }
 "#;
 
+/// A module with a function for every preset, which is the preset's Rust code,
+/// and a check that they build the presets. A last one builds a style with the
+/// types that no preset has.
+fn styles_as_rust() -> String {
+    let other = ComicStyle {
+        name: "A \"quoted\" name".into(),
+        ..ComicStyle::new()
+    }
+    .with_depth_map(DepthMap {
+        mapping: DepthMapping::Fixed {
+            near: 0.5,
+            far: 1e6,
+        },
+        reduction: ReductionMethod::PingPong,
+        smoothing: None,
+        ..DepthMap::default()
+    })
+    .with(BlackFlats {
+        slope: Some(1e-6),
+        value: None,
+        ..BlackFlats::default()
+    })
+    .with(Contours {
+        operator: ContourOperator::Roberts,
+        ..Contours::default()
+    })
+    .turn_off::<Outlines>()
+    .partial();
+    let mut styles: Vec<(String, ComicStyle)> = presets::ALL
+        .iter()
+        .map(|preset| (preset.name().replace('-', "_"), preset.style()))
+        .collect();
+    styles.push(("other".into(), other));
+    let mut code = String::from("use bevy::prelude::*;\nuse bevy_comics::prelude::*;\n");
+    let mut checks = String::new();
+    for (name, style) in styles {
+        let built = style.to_rust();
+        let file = style.to_ron().expect("text");
+        writeln!(code, "fn {name}() -> ComicStyle {{\n{built}\n}}").expect("written");
+        writeln!(
+            checks,
+            "assert_eq!({name}(), ComicStyle::from_ron({file:?}).unwrap(), {name:?});"
+        )
+        .expect("written");
+    }
+    format!("{code}pub fn check() {{\n{checks}}}\n")
+}
+
 #[test]
-fn the_lines_of_the_readme_compile_and_draw_in_a_crate_of_their_own() {
+fn the_lines_of_the_readme_and_exported_styles_work_in_a_crate_of_their_own() {
     let lines = readme_lines();
     assert!(
         lines.lines().filter(|l| !l.trim().is_empty()).count() <= 14,
@@ -56,6 +114,7 @@ fn the_lines_of_the_readme_compile_and_draw_in_a_crate_of_their_own() {
     let files = [
         ("main.rs", &*lines),
         ("bin/newcomer_headless.rs", &headless),
+        ("styles.rs", &styles_as_rust()),
     ];
     let newcomer = OutsideCrate::new("newcomer", &[], &files);
     newcomer.cargo(&["build", "--offline", "--bins"]);

@@ -1,4 +1,6 @@
-//! A session with the inspector, as a person has it.
+//! Sessions with the inspector, driven through keyboard and mouse.
+
+mod toolkit;
 
 use std::fs;
 
@@ -93,6 +95,28 @@ fn a_style_is_tuned_in_a_window() {
     });
     window.click("colorization");
     window.until("the end of the atmosphere", |state| !has(state));
+
+    // An effect that is turned off and on again has its settings back, and
+    // undo and redo go through the same styles.
+    let has_contours = |style: &ComicStyle| style.get::<Contours>().is_some();
+    window.click("contours");
+    window.until_style("no contours", 0, |style| !has_contours(style));
+    window.click("contours");
+    until_width(&window, wide);
+    window.click("undo");
+    window.until_style("no contours", 0, |style| !has_contours(style));
+    window.click("redo");
+    until_width(&window, wide);
+
+    search_in(&window, wide);
+
+    // The style as Rust code is not a style file.
+    window.click("copy_rust");
+    window.until("the message", |state| {
+        state["widgets"]["message"].is_array()
+    });
+    window.click("paste");
+    assert_eq!(width(&window), wide);
 
     // Save under a name, read it back.
     window.click("tab.Files");
@@ -192,6 +216,33 @@ fn a_style_is_tuned_in_a_window() {
     let state = window.until("the end", |state| state["panel_cameras"] == 0);
     assert_eq!(state["widgets"].as_object().map(|w| w.len()), Some(0));
     assert!(state["cameras"][0]["view"].is_null());
+}
+
+/// Searches for a setting in a style with contours of this width.
+fn search_in(window: &Window, wide: f32) {
+    window.chord(&["ctrl"], "f");
+    window.until("the field", |state| state["focused"] == "search");
+    window.xdotool(&["type", "--delay", "120", "jitter"]);
+    window.until("the sketch alone", |state| {
+        state["widgets"]["sketch.jitter"].is_array() && state["widgets"]["contours"].is_null()
+    });
+    // The shortcuts belong to the field while it has the focus.
+    window.chord(&["ctrl"], "z");
+    assert_eq!(width(window), wide);
+    window.key("Escape");
+    window.until("all effects", |state| {
+        state["widgets"]["contours.width"].is_array()
+    });
+    // The clear button.
+    window.click("search");
+    window.xdotool(&["type", "--delay", "120", "jitter"]);
+    window.until("the sketch alone", |state| {
+        state["widgets"]["contours"].is_null()
+    });
+    window.click("search.clear");
+    window.until("all effects", |state| {
+        state["widgets"]["contours.width"].is_array()
+    });
 }
 
 /// Presses Tab until a widget has the focus.

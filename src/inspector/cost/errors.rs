@@ -1,4 +1,4 @@
-//! The known error of what was chosen, beside its time.
+//! The known errors of the chosen methods, beside their times.
 
 use bevy_egui::egui::{Color32, Label, Ui};
 use egui_plot::{GridInput, GridMark, Plot, PlotPoint, PlotUi, Points, Text, VLine};
@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{ComicStyle, timing::Pass};
 
-/// A row: what was chosen, its error, its time.
+/// A chosen method with its error and time, as text.
 struct Known {
     what: String,
     error: String,
@@ -19,11 +19,11 @@ struct Known {
 fn line_error(detector: &str) -> String {
     match known::lines(detector) {
         Some(lines) => format!(
-            "misses {:.0} % of the lines, {:.0} % of its ink is on none",
+            "misses {:.0} % of the lines; {:.0} % of its ink is not on a line",
             100.0 * lines.missed,
             100.0 * lines.stray
         ),
-        None => "not in the report".into(),
+        None => "not measured in docs/report".into(),
     }
 }
 
@@ -31,7 +31,8 @@ fn time_of(pass: Pass, medians: &Medians) -> String {
     format!("{:.3} ms", medians[pass as usize])
 }
 
-/// The rows of the depth range and its smoothing, where the style looks for it.
+/// The rows of the depth range and its smoothing, if the style uses the visible
+/// range.
 fn depth_range_rows(style: &ComicStyle, medians: &Medians) -> Vec<Known> {
     let map = style.depth_map.unwrap_or_default();
     if !map.mapping.follows_visible_range() {
@@ -40,26 +41,26 @@ fn depth_range_rows(style: &ComicStyle, medians: &Medians) -> Vec<Known> {
     let known = known::smoothing(&map).map(|variant| (variant, known::flicker(variant)));
     let error = match known {
         Some((_, Some((codes, lag)))) => {
-            format!("flickers {codes:.3} codes a frame, lags up to {lag:.1} octaves")
+            format!("mean change {codes:.3} 8-bit codes per frame; lags by up to {lag:.1} octaves")
         }
-        _ => "settings that the report has not measured".into(),
+        _ => "not measured in docs/report with these settings".into(),
     };
     let name = known.map_or("range smoothing", |(variant, _)| variant);
     vec![
         Known {
             what: format!("depth range ({:?})", map.reduction),
-            error: "exact, to the bit".into(),
+            error: "exact".into(),
             time: time_of(Pass::DepthRange, medians),
         },
         Known {
             what: format!("smoothing: {name}"),
             error,
-            time: "in the above".into(),
+            time: "(included above)".into(),
         },
     ]
 }
 
-/// The rows of the effects that find lines, and what the report calls them.
+/// The rows of the effects that find lines, and their names in the report.
 fn detector_rows(style: &ComicStyle, medians: &Medians) -> (Vec<Known>, Vec<String>) {
     let mut rows = Vec::new();
     let mut detectors = Vec::new();
@@ -83,14 +84,14 @@ fn detector_rows(style: &ComicStyle, medians: &Medians) -> (Vec<Known>, Vec<Stri
     (rows, detectors)
 }
 
-/// A row for each choice that has a known error, and the chart of the detectors
-/// of lines.
+/// A row for each method that has a known error, and the chart of the line
+/// detectors.
 pub(super) fn show(ui: &mut Ui, style: &ComicStyle, medians: &Medians, widgets: &mut Widgets) {
     let mut rows = depth_range_rows(style, medians);
     let (found, detectors) = detector_rows(style, medians);
     rows.extend(found);
     if rows.is_empty() {
-        ui.label("Nothing of this style has an error to speak of: it is computed as documented.");
+        ui.label("No part of this style has a measured error.");
         return;
     }
     for row in rows {
@@ -101,7 +102,7 @@ pub(super) fn show(ui: &mut Ui, style: &ComicStyle, medians: &Medians, widgets: 
         ui.add(Label::new(row.error).wrap());
         ui.separator();
     }
-    ui.weak("Errors with default settings, over all pixels of the scenes of docs/report; times are of now.");
+    ui.weak("Errors: with default settings, over all scenes of docs/report. Times: now.");
     if !detectors.is_empty() {
         let now = [Pass::DepthRange, Pass::Outlines, Pass::Stylize]
             .map(|pass| medians[pass as usize])
@@ -111,13 +112,13 @@ pub(super) fn show(ui: &mut Ui, style: &ComicStyle, medians: &Medians, widgets: 
     }
 }
 
-/// Where a time is on the chart. Decades: a fast adapter and a slow one are on
-/// one chart.
+/// The position of a time in milliseconds on the chart's logarithmic axis, which
+/// has room for fast and slow adapters.
 fn place(time: f64) -> f64 {
     time.max(1e-3).log10()
 }
 
-/// The grid of times: 1, 2 and 5 of every decade in sight.
+/// The grid of times: 1, 2 and 5 of every visible decade.
 fn decades(input: GridInput) -> Vec<GridMark> {
     let (from, to) = input.bounds;
     let first = (from.floor().clamp(-4.0, 6.0)) as i32;
@@ -126,7 +127,7 @@ fn decades(input: GridInput) -> Vec<GridMark> {
         .flat_map(|decade| {
             [1.0f64, 2.0, 5.0].map(|step| GridMark {
                 value: f64::from(decade) + step.log10(),
-                // Every one has its label.
+                // Every grid line has a label.
                 step_size: 1.0,
             })
         })
@@ -144,14 +145,14 @@ fn quarters(_: GridInput) -> Vec<GridMark> {
         .collect()
 }
 
-/// The label of a place on the axis of times.
+/// The label of a position on the axis of times.
 fn time_label(place: f64) -> String {
     let time = 10f64.powf(place);
     let digits = (-place.floor()).clamp(0.0, 4.0) as usize;
     format!("{time:.digits$} ms")
 }
 
-/// The dot of a detector; its name too, where it is chosen.
+/// The dot of a detector; with its name if it is chosen.
 fn dot(plot: &mut PlotUi<'_>, detector: &str, lines: known::Lines, is_chosen: bool) {
     let color = if is_chosen {
         COLORS[Pass::Outlines as usize]
@@ -171,11 +172,11 @@ fn dot(plot: &mut PlotUi<'_>, detector: &str, lines: known::Lines, is_chosen: bo
     }
 }
 
-/// Every way of finding lines by its error and its time, the chosen ones filled,
-/// and what the styles take now.
+/// The chart of all line detectors by error and time. The chosen ones are filled;
+/// a line shows the current time.
 fn error_against_time(ui: &mut Ui, chosen: &[String], now: f64, widgets: &mut Widgets) {
     ui.add_space(4.0);
-    ui.strong("Error of lines against run time");
+    ui.strong("Line errors and times");
     let shown = Plot::new("error against time")
         .height(170.0)
         .allow_zoom(false)
@@ -207,8 +208,9 @@ fn error_against_time(ui: &mut Ui, chosen: &[String], now: f64, widgets: &mut Wi
         });
     note(widgets, "errors", &shown.response);
     ui.weak(format!(
-        "0 % draws every line and nothing else (1 − F₁). Dots: all of this crate's passes at \
-         1280x720 on {}, filled where chosen; the red line: what they take now, here.",
+        "Error: 1 − F₁; 0 % means that every line and nothing else is drawn. Dots: all passes \
+         of bevy_comics at 1280x720 on {}; chosen detectors are filled. Red line: the \
+         current time of these passes.",
         known::adapter()
     ));
 }

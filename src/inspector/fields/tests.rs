@@ -1,25 +1,48 @@
-//! What the widgets are made of is there, and looking changes nothing.
+mod games_effect;
 
-use bevy::reflect::{TypeInfo, Typed};
+use bevy::reflect::Typed;
 
-use super::*;
-use crate::EffectRegistry;
+use super::{super::tooltip::plain, *};
+use crate::{
+    BlackFlats, ComicStyle, Contours, Creases, DepthMapping, EffectRegistry, ObjectEdges, Outlines,
+    RangeSmoothing, Silhouettes,
+};
 
-/// Every number has a documented range and every field a documentation, or
-/// its widget would have neither.
+/// Every type with settings, by its name in paths.
+fn all_types() -> Vec<(&'static str, &'static TypeInfo)> {
+    let mut all = vec![
+        ("depth_map", DepthMap::type_info()),
+        ("depth_map.mapping", DepthMapping::type_info()),
+        ("depth_map.smoothing", RangeSmoothing::type_info()),
+        ("outlines.silhouettes", Silhouettes::type_info()),
+        ("outlines.creases", Creases::type_info()),
+        ("outlines.objects", ObjectEdges::type_info()),
+    ];
+    for effect in EffectRegistry::built_in().types() {
+        all.push((effect.name, (effect.type_info)()));
+    }
+    all
+}
+
+fn fields(info: &'static TypeInfo) -> Vec<&'static NamedField> {
+    match info {
+        TypeInfo::Struct(info) => info.iter().collect(),
+        TypeInfo::Enum(info) => info
+            .iter()
+            .filter_map(|variant| variant.as_struct_variant().ok())
+            .flat_map(|variant| variant.iter())
+            .collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// Without a range a number has no slider, and without documentation a setting
+/// has no tooltip.
 #[test]
-fn every_field_says_what_it_is() {
-    fn check(info: &'static TypeInfo, name: &str) {
-        let fields: Vec<&NamedField> = match info {
-            TypeInfo::Struct(info) => info.iter().collect(),
-            TypeInfo::Enum(info) => info
-                .iter()
-                .filter_map(|variant| variant.as_struct_variant().ok())
-                .flat_map(|variant| variant.iter())
-                .collect(),
-            _ => panic!("{name} is neither struct nor enum"),
-        };
-        for field in fields {
+fn every_field_is_documented_and_every_number_has_a_range() {
+    for (name, info) in all_types() {
+        assert!(!fields(info).is_empty(), "{name} has settings");
+        for field in fields(info) {
             let name = format!("{name}.{}", field.name());
             assert!(
                 !plain(field.docs().unwrap_or_default()).is_empty(),
@@ -30,50 +53,169 @@ fn every_field_says_what_it_is() {
             assert_eq!(FieldRange::of(field).is_some(), is_number, "{name}: {path}");
         }
     }
-    check(DepthMap::type_info(), "DepthMap");
-    check(crate::DepthMapping::type_info(), "DepthMapping");
-    check(RangeSmoothing::type_info(), "RangeSmoothing");
-    for effect in EffectRegistry::built_in().types() {
-        check((effect.type_info)(), effect.name);
-    }
-    check(Silhouettes::type_info(), "Silhouettes");
-    check(Creases::type_info(), "Creases");
-    check(ObjectEdges::type_info(), "ObjectEdges");
 }
 
-/// The panel of a style with everything in it, laid out without a window,
-/// changes nothing that nobody touched.
 #[test]
-fn looking_changes_nothing() {
-    let types = EffectRegistry::built_in().types();
+fn every_tooltip_begins_with_plain_words_and_has_no_markup() {
+    let mut docs: Vec<(String, &'static str)> = Vec::new();
+    for (name, info) in all_types() {
+        docs.push((name.into(), info.docs().unwrap_or_default()));
+        for field in fields(info) {
+            let name = format!("{name}.{}", field.name());
+            docs.push((name.clone(), field.docs().unwrap_or_default()));
+            if let Some(TypeInfo::Enum(info)) = field.type_info() {
+                docs.extend(info.iter().filter_map(|variant| {
+                    Some((format!("{name}.{}", variant.name()), variant.docs()?))
+                }));
+            }
+        }
+    }
+    assert!(docs.len() > 80, "{} texts", docs.len());
+    for (name, docs) in docs {
+        let tooltip = tooltip(docs);
+        let first = tooltip.chars().next().expect(&name);
+        assert!(first.is_uppercase(), "{name} starts with {tooltip:?}");
+        for start in [
+            "Eq", "Fig", "Suarez", "Wang", "Range", "Default", "Source", "None",
+        ] {
+            assert!(
+                !tooltip.starts_with(start),
+                "{name} starts with {tooltip:?}"
+            );
+        }
+        for markup in ["[", "]", "`", "\\", "**", "::", "()", "<", "http"] {
+            assert!(
+                !tooltip.contains(markup),
+                "{name}: {markup:?} is left in {tooltip:?}"
+            );
+        }
+        // A citation in the text is a part of its sentence; any other one is in
+        // the last line.
+        assert!(
+            !tooltip.contains("(Suarez") && !tooltip.contains("(Wang"),
+            "{tooltip:?}"
+        );
+        assert!(!tooltip.contains(" ."), "{tooltip:?}");
+    }
+}
+
+/// The page of a style, laid out without a window.
+struct Page {
+    context: egui::Context,
+    effects: Vec<&'static EffectType>,
+    types: TypeRegistry,
+    style: ComicStyle,
+    shelf: Shelf,
+    search: String,
+    widgets: Widgets,
+}
+
+impl Page {
+    fn of(style: ComicStyle, own: &[&'static EffectType]) -> Self {
+        let mut effects = EffectRegistry::built_in().types();
+        effects.extend(own);
+        let context = egui::Context::default();
+        // Sections open at once, so that the widgets below them do not move.
+        context.all_styles_mut(|style| style.animation_time = 0.0);
+        Self {
+            context,
+            types: types(&effects),
+            effects,
+            style,
+            shelf: Shelf::default(),
+            search: String::new(),
+            widgets: Widgets::default(),
+        }
+    }
+
+    /// Lays the page out twice, as sections take a frame to open.
+    fn show(&mut self) {
+        self.frame(Vec::new());
+        self.frame(Vec::new());
+    }
+
+    fn frame(&mut self, events: Vec<egui::Event>) {
+        let input = egui::RawInput {
+            screen_rect: Some(egui::Rect::from_min_size(
+                egui::Pos2::ZERO,
+                egui::vec2(600.0, 6000.0),
+            )),
+            events,
+            ..egui::RawInput::default()
+        };
+        let before = self.style.clone();
+        self.widgets = Widgets::default();
+        let search = Search::of(&self.search);
+        let _ = self.context.clone().run_ui(input, |ui| {
+            let mut editor = Editor {
+                widgets: &mut self.widgets,
+                shelf: &self.shelf,
+                types: &self.types,
+            };
+            style(
+                ui,
+                &mut self.style,
+                &self.effects,
+                search.as_ref(),
+                &mut editor,
+            );
+        });
+        self.style = self.style.sanitized();
+        self.shelf.keep(&before, &self.style);
+    }
+
+    fn click(&mut self, widget: &str) {
+        let [left, top, right, bottom] = *self
+            .widgets
+            .rects
+            .get(widget)
+            .unwrap_or_else(|| panic!("{widget} has no widget"));
+        let pos = egui::pos2(0.5 * (left + right), 0.5 * (top + bottom));
+        let button = |pressed| egui::Event::PointerButton {
+            pos,
+            button: egui::PointerButton::Primary,
+            pressed,
+            modifiers: egui::Modifiers::NONE,
+        };
+        self.frame(vec![egui::Event::PointerMoved(pos)]);
+        self.frame(vec![button(true)]);
+        self.frame(vec![button(false)]);
+        self.show();
+    }
+
+    fn has(&self, widget: &str) -> bool {
+        self.widgets.rects.contains_key(widget)
+    }
+}
+
+/// A style with every effect and the depth map.
+fn full(effects: &[&'static EffectType]) -> ComicStyle {
     let mut full = ComicStyle {
         depth_map: Some(DepthMap {
-            mapping: crate::DepthMapping::Fixed {
+            mapping: DepthMapping::Fixed {
                 near: 1.0,
                 far: 30.0,
             },
             ..DepthMap::default()
         }),
-        ..ComicStyle::default()
+        ..ComicStyle::new()
     };
-    for effect in &types {
+    for effect in effects {
         full.insert_any((effect.default)());
     }
-    let context = egui::Context::default();
-    let mut edited = full.clone();
-    let mut widgets = Widgets::default();
-    for _ in 0..3 {
-        let _ = context.run_ui(egui::RawInput::default(), |ui| {
-            for path in types.iter().map(|effect| effect.name).chain(["depth_map"]) {
-                let id = ui.make_persistent_id(("effect", path));
-                let mut state = CollapsingState::load_with_default_open(ui.ctx(), id, true);
-                state.set_open(true);
-                state.store(ui.ctx());
-            }
-            style(ui, &mut edited, &types, &mut widgets);
-        });
+    full
+}
+
+#[test]
+fn showing_a_style_does_not_change_it() {
+    let style = full(&EffectRegistry::built_in().types());
+    let mut page = Page::of(style.clone(), &[]);
+    page.show();
+    for effect in page.effects.clone() {
+        page.click(&format!("{}.open", effect.name));
     }
-    assert_eq!(edited, full);
+    page.click("depth_map.open");
+    assert_eq!(page.style, style);
     for path in [
         "contours.width",
         "contours.operator",
@@ -85,13 +227,112 @@ fn looking_changes_nothing() {
         "tone_bands.levels",
         "depth_map.flip",
     ] {
-        assert!(widgets.rects.contains_key(path), "{path} has no widget");
+        assert!(page.has(path), "{path} has no widget");
     }
 }
 
 #[test]
-fn words() {
+fn what_is_turned_on_again_has_its_last_settings() {
+    let contours = Contours {
+        width: 9.0,
+        ..Contours::default()
+    };
+    let outlines = Outlines {
+        creases: Some(Creases {
+            angle: 77.0,
+            ..Creases::default()
+        }),
+        objects: None,
+        ..Outlines::default()
+    };
+    let flats = BlackFlats {
+        slope: Some(0.5),
+        value: None,
+        ..BlackFlats::default()
+    };
+    let map = DepthMap {
+        mapping: DepthMapping::Fixed {
+            near: 2.0,
+            far: 9.0,
+        },
+        smoothing: Some(RangeSmoothing {
+            shrink: 7.0,
+            ..RangeSmoothing::default()
+        }),
+        ..DepthMap::default()
+    };
+    let style = ComicStyle {
+        depth_map: Some(map),
+        ..ComicStyle::new()
+    }
+    .with(contours)
+    .with(outlines)
+    .with(flats);
+    let mut page = Page::of(style.clone(), &[]);
+    page.show();
+    for section in ["contours", "outlines", "black_flats", "depth_map"] {
+        page.click(&format!("{section}.open"));
+    }
+    for toggle in [
+        "contours",
+        "outlines",
+        "depth_map",
+        "outlines.creases.on",
+        "black_flats.slope.on",
+        "depth_map.smoothing.on",
+    ] {
+        page.click(toggle);
+        assert_ne!(page.style, style, "{toggle} turns something off");
+        page.click(toggle);
+        assert_eq!(page.style, style, "{toggle} brings the settings back");
+    }
+    // Options that were never on get their documented defaults.
+    page.click("outlines.objects.on");
+    page.click("black_flats.value.on");
+    let objects = page.style.get::<Outlines>().and_then(|o| o.objects);
+    assert_eq!(objects, Some(ObjectEdges::default()));
+    let value = page.style.get::<BlackFlats>().and_then(|f| f.value);
+    assert_eq!(value, BlackFlats::default().value);
+}
+
+#[test]
+fn a_search_shows_what_it_finds() {
+    let mut page = Page::of(ComicStyle::new().with(Contours::default()), &[]);
+    page.search = "JITTER".into();
+    page.show();
+    assert!(page.has("sketch"), "an effect that is off is found as well");
+    assert!(page.has("sketch.jitter"), "its section is open");
+    assert!(!page.has("sketch.paper") && !page.has("contours"));
+    // The settings of an effect that is off are shown, but cannot be changed.
+    page.click("sketch.jitter");
+    assert_eq!(page.style, ComicStyle::new().with(Contours::default()));
+
+    page.search = "contours width".into();
+    page.show();
+    assert!(page.has("contours.width") && !page.has("contours.color"));
+    assert!(!page.has("sketch"));
+    // A found effect is shown with all its settings.
+    page.search = "contours".into();
+    page.show();
+    assert!(page.has("contours.width") && page.has("contours.color"));
+
+    page.search = "creases angle".into();
+    page.show();
+    assert!(page.has("outlines.creases.angle") && !page.has("outlines.width"));
+
+    page.search = "no such setting".into();
+    page.show();
+    assert!(page.widgets.rects.is_empty());
+    page.search.clear();
+    page.show();
+    assert!(
+        page.has("sketch") && !page.has("contours.width"),
+        "closed again"
+    );
+}
+
+#[test]
+fn labels() {
     assert_eq!(label("edge_limit"), "Edge limit");
     assert_eq!(label_of_mode("MinMaxLogarithmic"), "Min max logarithmic");
-    assert_eq!(plain(" A [`Link`]\n to \\[CS\\]. "), "A Link to CS.");
 }

@@ -1,22 +1,25 @@
-//! The widgets of the single values: numbers, colours, options, modes.
+//! The widgets of single values: numbers, colours and modes.
 
 use bevy::{
     color::{Color, Hsva},
     reflect::{
-        PartialReflect, ReflectMut, TypeInfo, Typed,
+        PartialReflect, ReflectMut, TypeInfo,
         enums::{DynamicEnum, DynamicVariant, Enum, EnumInfo, VariantInfo},
         structs::DynamicStruct,
+        tuple::DynamicTuple,
     },
 };
 use bevy_egui::egui::{ComboBox, DragValue, Response, Slider, SliderClamping, Ui};
 
 use super::{
     super::{Widgets, hue_wheel::hue_wheel, note},
-    Setting, edit, label_of_mode, plain, reset_button, row, settings,
+    Editor, Setting, edit, explained, label_of_mode,
+    options::apply,
+    reset_button,
 };
 use crate::FieldRange;
 
-/// Numbers whose range is too wide for a slider are dragged and typed.
+/// Whether a range is too wide for a slider; such a number is dragged or typed.
 fn is_too_wide(range: FieldRange) -> bool {
     range.logarithmic && range.min > 0.0 && range.max / range.min > 1e10
 }
@@ -81,78 +84,32 @@ pub(super) fn color(ui: &mut Ui, value: &mut Color, wheel: bool) -> Response {
     .inner
 }
 
-/// A check box, and below it the settings of what is checked.
-pub(super) fn option<T: PartialReflect + PartialEq + Clone + Typed>(
-    ui: &mut Ui,
-    value: &mut Option<T>,
-    default: Option<&Option<T>>,
-    new: T,
-    setting: &Setting,
-    widgets: &mut Widgets,
-) {
-    let on_path = format!("{}.on", setting.path);
-    let checked = Setting {
-        path: &on_path,
-        label: setting.label.clone(),
-        docs: setting.docs,
-        range: None,
-        wheel: false,
-    };
-    row(ui, value, default, &checked, widgets, |ui, value| {
-        let mut on = value.is_some();
-        let response = ui.checkbox(&mut on, "");
-        if response.changed() {
-            *value = on.then(|| new.clone());
-        }
-        response
-    });
-    let Some(inner) = value else {
-        return;
-    };
-    ui.indent(setting.path, |ui| {
-        let default = default.and_then(Option::as_ref);
-        if let TypeInfo::Struct(_) = T::type_info()
-            && let ReflectMut::Struct(fields) = inner.reflect_mut()
-        {
-            let whole_default = new;
-            let default = default.unwrap_or(&whole_default);
-            let default = default.reflect_ref().as_struct().ok();
-            settings(ui, fields, default, setting.path, widgets);
-        } else {
-            let default = default.map(PartialReflect::as_partial_reflect);
-            edit(
-                ui,
-                inner.as_partial_reflect_mut(),
-                default,
-                setting,
-                widgets,
-            );
-        }
-    });
-}
-
 /// A box of modes, and below it the settings of the chosen one.
 pub(super) fn modes(
     ui: &mut Ui,
     value: &mut dyn PartialReflect,
+    info: &'static EnumInfo,
     default: Option<&dyn PartialReflect>,
     setting: &Setting,
-    widgets: &mut Widgets,
+    editor: &mut Editor,
 ) {
-    let Some(TypeInfo::Enum(info)) = value.get_represented_type_info() else {
-        ui.label(format!("{}: no widget for this type", setting.label));
-        return;
-    };
     let ReflectMut::Enum(current) = value.reflect_mut() else {
         return;
     };
-    if let Some(variant) = mode_box(ui, current, info, default, setting, widgets) {
-        choose_mode(current, variant);
+    let before = current.variant_index();
+    let chosen = mode_box(ui, current, info, default, setting, editor.widgets);
+    if let Some(variant) = info.variant_at(chosen).filter(|_| chosen != before) {
+        choose_mode(
+            current.as_partial_reflect_mut(),
+            variant,
+            setting.path,
+            editor,
+        );
     }
-    mode_settings(ui, current, info, setting, widgets);
+    mode_settings(ui, current, info, setting, editor);
 }
 
-/// The box of modes in its row; gives the mode that was chosen anew.
+/// The box of modes in its row; the index of the chosen mode.
 fn mode_box(
     ui: &mut Ui,
     current: &mut dyn Enum,
@@ -160,52 +117,66 @@ fn mode_box(
     default: Option<&dyn PartialReflect>,
     setting: &Setting,
     widgets: &mut Widgets,
-) -> Option<&'static VariantInfo> {
+) -> usize {
     let mut chosen = current.variant_index();
-    let before = chosen;
     ui.horizontal(|ui| {
-        let docs_of = |variant: &VariantInfo| plain(variant.docs().unwrap_or_default());
         let combo = ComboBox::from_id_salt(setting.path)
             .selected_text(label_of_mode(current.variant_name()))
             .show_ui(ui, |ui| {
                 for (i, variant) in info.iter().enumerate() {
                     let item = ui.selectable_value(&mut chosen, i, label_of_mode(variant.name()));
-                    note(
-                        widgets,
-                        format!("{}.{}", setting.path, variant.name()),
-                        &item,
-                    );
-                    item.on_hover_text(docs_of(variant));
+                    let name = format!("{}.{}", setting.path, variant.name());
+                    note(widgets, name, &item);
+                    explained(item, variant.docs().unwrap_or_default());
                 }
             });
         note(widgets, setting.path, &combo.response);
-        combo.response.on_hover_text(plain(setting.docs));
-        ui.label(&setting.label).on_hover_text(plain(setting.docs));
+        explained(combo.response, setting.docs);
+        explained(ui.label(&setting.label), setting.docs);
         if let Some(default) = default
             && current.reflect_partial_eq(default) == Some(false)
             && reset_button(ui, &format!("{}.reset", setting.path), widgets).clicked()
         {
-            current.apply(default);
-            chosen = before;
+            apply(current.as_partial_reflect_mut(), default);
+            chosen = current.variant_index();
         }
     });
-    info.variant_at(chosen).filter(|_| chosen != before)
+    chosen
 }
 
-/// Puts a mode with its documented defaults in the place of the current one.
-fn choose_mode(current: &mut dyn Enum, variant: &'static VariantInfo) {
+/// Changes the mode: to the settings that it had last, else to its defaults. A
+/// mode with a value that has no default is not chosen.
+fn choose_mode(
+    current: &mut dyn PartialReflect,
+    variant: &'static VariantInfo,
+    path: &str,
+    editor: &Editor,
+) {
+    if let Some(last) = editor.shelf.variant(path, variant.name()) {
+        apply(current, last);
+        return;
+    }
+    let new = |info: Option<&'static TypeInfo>| editor.new_value(info?);
     let fields = match variant {
-        VariantInfo::Struct(variant) => {
-            let mut fields = DynamicStruct::default();
-            for field in variant.iter() {
-                // What is not a number becomes the documented default.
-                fields.insert(field.name(), f32::NAN);
-            }
-            DynamicVariant::Struct(fields)
-        }
-        _ => DynamicVariant::Unit,
+        VariantInfo::Unit(_) => Some(DynamicVariant::Unit),
+        VariantInfo::Struct(variant) => variant
+            .iter()
+            .try_fold(DynamicStruct::default(), |mut fields, field| {
+                fields.insert_boxed(field.name(), new(field.type_info())?);
+                Some(fields)
+            })
+            .map(DynamicVariant::Struct),
+        VariantInfo::Tuple(variant) => variant
+            .iter()
+            .try_fold(DynamicTuple::default(), |mut fields, field| {
+                fields.insert_boxed(new(field.type_info())?);
+                Some(fields)
+            })
+            .map(DynamicVariant::Tuple),
     };
-    current.apply(&DynamicEnum::new(variant.name(), fields));
+    if let Some(fields) = fields {
+        apply(current, &DynamicEnum::new(variant.name(), fields));
+    }
 }
 
 /// The settings of the current mode.
@@ -214,7 +185,7 @@ fn mode_settings(
     current: &mut dyn Enum,
     info: &'static EnumInfo,
     setting: &Setting,
-    widgets: &mut Widgets,
+    editor: &mut Editor,
 ) {
     let index = current.variant_index();
     if let Some(VariantInfo::Struct(variant)) = info.variant_at(index) {
@@ -223,7 +194,7 @@ fn mode_settings(
                 let path = format!("{}.{}", setting.path, field.name());
                 let setting = Setting::of(field, &path);
                 if let Some(value) = current.field_at_mut(i) {
-                    edit(ui, value, None, &setting, widgets);
+                    edit(ui, value, None, (&setting, None), editor);
                 }
             }
         });

@@ -1,4 +1,4 @@
-//! The page of style files, and the mark of the open one.
+//! The page of style files, and the name of the open one in the toolbar.
 
 use bevy::ecs::entity::Entity;
 use bevy_egui::egui::{TextEdit, Ui};
@@ -9,13 +9,13 @@ use super::{
         fields::{self, button},
         note,
     },
-    Files, OpenFile, style_files,
+    Files, OpenFile, on_camera, style_files,
 };
 use crate::ComicStyle;
 
 impl Files {
-    /// The file, and whether the style is as it stands there; where the file is
-    /// broken, how, in full or in a word.
+    /// Shows the open file, whether the style differs from it, and the file's
+    /// error: in full or as a hint.
     pub fn mark(&self, ui: &mut Ui, camera: Entity, style: &ComicStyle, in_full: bool) {
         let Some(open) = self.open.get(&camera) else {
             return;
@@ -25,10 +25,17 @@ impl Files {
             ui.label(file.into_owned());
         } else {
             ui.strong(format!("• {file}"))
-                .on_hover_text("Changed since it was saved");
+                .on_hover_text("The style has changes that are not saved");
         }
         if let Some(error) = &open.error {
-            fields::error(ui, if in_full { error } else { "is broken" });
+            fields::error(
+                ui,
+                if in_full {
+                    error
+                } else {
+                    "has an error: see the page Files"
+                },
+            );
         }
     }
 
@@ -51,7 +58,7 @@ impl Files {
         ui.horizontal(|ui| {
             let name = ui.add(TextEdit::singleline(&mut self.name).hint_text("file name"));
             note(widgets, "files.name", &name);
-            name.on_hover_text("With folders, or a name in the folder of styles");
+            name.on_hover_text("A name in the folder below, or a path");
             ui.label("File");
         });
         ui.horizontal(|ui| {
@@ -61,7 +68,7 @@ impl Files {
         });
     }
 
-    /// What can be done with the file that is named or open.
+    /// The buttons that load and save.
     fn buttons(
         &mut self,
         ui: &mut Ui,
@@ -75,7 +82,7 @@ impl Files {
                 && let Some(path) = self.path()
                 && let Some(loaded) = self.load(camera, &path)
             {
-                *style = loaded;
+                *style = on_camera(&loaded, style);
             }
             let is_open = self.open.contains_key(&camera);
             if button(ui, widgets, "files.save", "Save", is_open) {
@@ -95,24 +102,33 @@ impl Files {
         });
     }
 
-    /// What the last action said, and the open file.
+    /// The result of the last action, and the open file.
     fn state(&self, ui: &mut Ui, camera: Entity, widgets: &mut Widgets) {
         if let Some(message) = &self.message {
             fields::error(ui, message);
         }
-        if let Some(OpenFile { path, error, .. }) = self.open.get(&camera) {
+        if let Some(OpenFile {
+            path, error, saved, ..
+        }) = self.open.get(&camera)
+        {
             ui.label(format!("Open: {}", path.display()));
+            if saved.partial {
+                ui.label(
+                    "The file holds a partial style: it sets only some effects. Saving \
+                     writes all effects of the camera to it.",
+                );
+            }
             if let Some(error) = error {
                 let error = fields::error(ui, error);
                 note(widgets, "files.error", &error);
-                ui.label("The last good style stays until the file is mended.");
+                ui.label("The camera keeps the last valid style until the file is corrected.");
             }
         }
     }
 
-    /// The files of the folder, to be loaded by a click.
+    /// The files of the folder. A click loads one.
     fn list(&mut self, ui: &mut Ui, camera: Entity, style: &mut ComicStyle, widgets: &mut Widgets) {
-        ui.label(format!("In {}:", self.folder.display()));
+        ui.label(format!("Files in {}:", self.folder.display()));
         for path in style_files(&self.folder) {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
             let open = self.open.get(&camera).is_some_and(|open| open.path == path);
@@ -121,7 +137,7 @@ impl Files {
             if item.clicked()
                 && let Some(loaded) = self.load(camera, &path)
             {
-                *style = loaded;
+                *style = on_camera(&loaded, style);
             }
         }
     }

@@ -1,16 +1,21 @@
-//! The pages of the panel, and what they leave behind.
+//! The pages of the panel.
 
 use bevy::ecs::{entity::Entity, world::World};
 use bevy_egui::egui::Ui;
 
 use super::{
-    super::{Widgets, fields, memory::Tab, views},
+    super::{
+        Widgets,
+        fields::{self, Editor},
+        memory::Tab,
+        views,
+    },
     Panel,
 };
 use crate::{ComicStyle, DebugView, EffectRegistry, StyleTransition};
 
 impl Panel {
-    /// The page that is chosen.
+    /// Draws the chosen page.
     pub(super) fn page(
         &mut self,
         ui: &mut Ui,
@@ -22,10 +27,17 @@ impl Panel {
         match self.memory.tab {
             Tab::Style => {
                 if world.entity(camera).contains::<StyleTransition>() {
-                    ui.label("A transition is under way: a change ends it.");
+                    ui.label("The style is in transition to another one. A change ends it.");
                 }
-                let types = world.resource::<EffectRegistry>().types();
-                fields::style(ui, style, &types, widgets);
+                let effects = world.resource::<EffectRegistry>().types();
+                let types = self.types.get_or_insert_with(|| fields::types(&effects));
+                let mut editor = Editor {
+                    widgets,
+                    shelf: &self.cameras.entry(camera).or_default().shelf,
+                    types,
+                };
+                let search = self.search.search();
+                fields::style(ui, style, &effects, search.as_ref(), &mut editor);
             }
             Tab::Presets => self.presets.show(
                 ui,
@@ -37,7 +49,7 @@ impl Panel {
             ),
             Tab::Files => self.files.show(ui, camera, style, widgets),
             Tab::Views => {
-                // A view that the game has chosen stays the game's.
+                // A view that the game has set stays when the panel closes.
                 if !world.entity(camera).contains::<DebugView>() && !self.debugged.contains(&camera)
                 {
                     self.debugged.push(camera);
@@ -52,7 +64,7 @@ impl Panel {
         }
     }
 
-    /// Ends what only a page that is not shown needs.
+    /// Stops the measurements of the pages that are not shown.
     pub(super) fn leave_other_pages(&mut self, world: &mut World) {
         if self.memory.tab != Tab::Views {
             views::leave(world);

@@ -1,43 +1,55 @@
-//! Undo, the clipboard, and the ways to compare.
+//! The toolbar: undo, the clipboard, and comparisons.
 
 use bevy::ecs::{entity::Entity, world::World};
 use bevy_egui::egui::{self, Key, Modifiers, Ui};
 
 use super::{
-    super::{Widgets, fields::button, memory::Tab, note},
-    Panel, put,
+    super::{
+        Widgets,
+        fields::{button, button_with_tooltip},
+        files::on_camera,
+        memory::Tab,
+        note,
+    },
+    Message, Panel, put,
 };
 use crate::{ComicStyle, ComicsDiagnostics, EffectRegistry, SplitView, StyleWeight};
 
-/// The keys of the toolbar, in this frame.
+/// The toolbar's keyboard shortcuts that were pressed in this frame.
 struct Keys {
     undo: bool,
     redo: bool,
     save: bool,
+    find: bool,
 }
 
 impl Keys {
-    /// Takes them from the input, unless somebody types.
+    /// Takes the keys from the input. A text field that has the focus keeps its
+    /// own shortcuts.
     fn take(ui: &Ui) -> Self {
-        let typing = ui.ctx().text_edit_focused();
-        let key = |modifiers: Modifiers, key: Key| {
-            !typing
-                && ui
-                    .ctx()
-                    .input_mut(|input| input.consume_key(modifiers, key))
+        let is_typing = ui.ctx().text_edit_focused();
+        let consume = |modifiers: Modifiers, key: Key| {
+            ui.ctx()
+                .input_mut(|input| input.consume_key(modifiers, key))
         };
-        // Before undo, whose key is a part of this one.
+        let key = |modifiers: Modifiers, key: Key| !is_typing && consume(modifiers, key);
+        // Before undo: its keys match Ctrl+Shift+Z as well.
         let redo =
             key(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z) || key(Modifiers::COMMAND, Key::Y);
         let undo = key(Modifiers::COMMAND, Key::Z);
         let save = key(Modifiers::COMMAND, Key::S);
-        Self { undo, redo, save }
+        let find = consume(Modifiers::COMMAND, Key::F);
+        Self {
+            undo,
+            redo,
+            save,
+            find,
+        }
     }
 }
 
 impl Panel {
-    /// Undo, the clipboard and the comparisons; says whether a step was undone or
-    /// redone.
+    /// Draws the toolbar; whether a step was undone or redone.
     pub(super) fn toolbar(
         &mut self,
         ui: &mut Ui,
@@ -59,20 +71,24 @@ impl Panel {
         });
         ui.horizontal_wrapped(|ui| {
             weight(ui, world, camera, widgets);
-            // Its own page says it at length.
+            // The page of files shows the whole error.
             let in_full = self.memory.tab != Tab::Files;
             self.files.mark(ui, camera, style, in_full);
         });
         if keys.save {
             self.files.save(camera, style);
         }
+        if keys.find {
+            self.memory.tab = Tab::Style;
+            self.search.focus();
+        }
         if world.resource::<ComicsDiagnostics>().is_compiling(camera) {
-            ui.label("Compiling: the last look stays until it is done.");
+            ui.label("Compiling shaders. The picture changes when they are ready.");
         }
         stepped
     }
 
-    /// The steps of the history; says whether one was taken.
+    /// The buttons of the history; whether a step was taken.
     fn undo_and_redo(
         &mut self,
         ui: &mut Ui,
@@ -96,12 +112,14 @@ impl Panel {
         let Some(step) = step else {
             return false;
         };
+        state.shelf.keep(style, &step);
+        self.message = None;
         put(world, camera, &step);
         *style = step;
         true
     }
 
-    /// The style as text, to the clipboard and from it.
+    /// Buttons that copy the style to the clipboard and paste it from there.
     fn copy_and_paste(
         &mut self,
         ui: &mut Ui,
@@ -109,29 +127,54 @@ impl Panel {
         style: &mut ComicStyle,
         widgets: &mut Widgets,
     ) {
-        if button(ui, widgets, "copy", "Copy", true) {
-            match style.to_ron() {
-                Ok(text) => self.clipboard.copy(text),
-                Err(error) => self.message = Some(error.to_string()),
-            }
+        let copy = (
+            "copy",
+            "Copy",
+            "Copies the style as the text of a style file",
+        );
+        if button_with_tooltip(ui, widgets, copy, true) {
+            self.message = match style.to_ron() {
+                Ok(text) => self.copied(text, "The style is on the clipboard."),
+                Err(error) => Some(Message::Failed(error.to_string())),
+            };
         }
-        if button(ui, widgets, "paste", "Paste", true) {
-            self.message = None;
-            match self
-                .clipboard
-                .paste()
-                .map(|text| world.resource::<EffectRegistry>().style_from_ron(&text))
-            {
-                Some(Ok(pasted)) => *style = pasted,
-                Some(Err(error)) => {
-                    self.message = Some(format!("The clipboard holds no style: {error}"));
+        let rust = (
+            "copy_rust",
+            "Copy as Rust",
+            "Copies the style as a Rust expression, for a module that imports \
+             bevy::prelude::* and bevy_comics::prelude::*",
+        );
+        if button_with_tooltip(ui, widgets, rust, true) {
+            let done = "The style is on the clipboard, as Rust code.";
+            self.message = self.copied(style.to_rust(), done);
+        }
+        let paste = (
+            "paste",
+            "Paste",
+            "Replaces the style by the text of a style file from the clipboard",
+        );
+        if button_with_tooltip(ui, widgets, paste, true) {
+            let effects = world.resource::<EffectRegistry>();
+            let pasted = self.clipboard.paste();
+            self.message = match pasted.map(|text| effects.style_from_ron(&text)) {
+                Some(Ok(pasted)) => {
+                    *style = on_camera(&pasted, style);
+                    None
                 }
-                None => self.message = Some("The clipboard is empty.".into()),
-            }
+                Some(Err(error)) => Some(Message::Failed(format!(
+                    "The clipboard does not hold a style: {error}"
+                ))),
+                None => Some(Message::Failed("The clipboard is empty.".into())),
+            };
         }
     }
 
-    /// The two looks that are compared.
+    fn copied(&mut self, text: String, done: &'static str) -> Option<Message> {
+        self.clipboard.copy(text);
+        Some(Message::Done(done))
+    }
+
+    /// The buttons of the two styles that are compared.
     fn two_looks(
         &mut self,
         ui: &mut Ui,
@@ -141,9 +184,11 @@ impl Panel {
     ) {
         let state = self.cameras.entry(camera).or_default();
         for (letter, b) in [("A", false), ("B", true)] {
-            let item = ui.selectable_label(state.shows_b == b, letter).on_hover_text(
-                "Two looks to compare: each remembers its own changes. The second starts as a copy of the first.",
-            );
+            let item = ui
+                .selectable_label(state.shows_b == b, letter)
+                .on_hover_text(
+                    "Two styles to compare. Each keeps its own changes; B starts as a copy of A.",
+                );
             note(widgets, format!("compare.{letter}"), &item);
             if item.clicked() && state.shows_b != b {
                 let other = state.other.take().unwrap_or_else(|| style.clone());
@@ -153,17 +198,18 @@ impl Panel {
         }
     }
 
-    /// The button that shows the picture without its style.
+    /// The button that shows the picture without a style while it is held.
     fn original(&mut self, ui: &mut Ui, world: &mut World, camera: Entity, widgets: &mut Widgets) {
         let original = ui
             .button("Original")
-            .on_hover_text("Shows the picture without its style while it is held");
+            .on_hover_text("Shows the picture without a style while the button is held");
         note(widgets, "compare.original", &original);
         let held = original.is_pointer_button_down_on()
             || (original.has_focus() && ui.input(|input| input.key_down(Key::Space)));
         self.show_original(world, camera, held);
     }
 
+    /// Sets the style's weight to 0, or back to the game's value.
     pub(super) fn show_original(&mut self, world: &mut World, camera: Entity, held: bool) {
         let state = self.cameras.entry(camera).or_default();
         let Ok(mut entity) = world.get_entity_mut(camera) else {
@@ -181,7 +227,7 @@ impl Panel {
     }
 }
 
-/// Half of the picture without the style, and where it ends.
+/// The check box of the split view, and the slider of the split's position.
 fn split(ui: &mut Ui, world: &mut World, camera: Entity, widgets: &mut Widgets) {
     let mut entity = world.entity_mut(camera);
     let mut split = entity.contains::<SplitView>();
@@ -202,13 +248,13 @@ fn split(ui: &mut Ui, world: &mut World, camera: Entity, widgets: &mut Widgets) 
     }
 }
 
-/// How much of the style is seen.
+/// The slider of the style's weight.
 fn weight(ui: &mut Ui, world: &mut World, camera: Entity, widgets: &mut Widgets) {
     let mut entity = world.entity_mut(camera);
     let mut weight = entity.get::<StyleWeight>().copied().unwrap_or_default().0;
     let slider = ui
         .add(egui::Slider::new(&mut weight, 0.0..=1.0).text("Weight"))
-        .on_hover_text("How much of the style is seen (StyleWeight)");
+        .on_hover_text("How much of the style is mixed into the picture: 0 is the original, 1 the full style. Not part of the style; the component StyleWeight.");
     note(widgets, "weight", &slider);
     if slider.changed() {
         if weight == 1.0 {
