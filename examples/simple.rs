@@ -1,4 +1,4 @@
-//! The smallest comic: the first program of the README.
+//! The first program of the README.
 
 use bevy::prelude::*;
 use bevy_comics::prelude::*;
@@ -12,24 +12,23 @@ fn main() {
 
 fn setup(mut commands: Commands, assets: Res<AssetServer>) {
     let from = |x, y, z| Transform::from_xyz(x, y, z).looking_at(Vec3::ZERO, Vec3::Y);
-    commands.spawn((
-        Camera3d::default(),
-        from(0.0, 13.0, 11.0),
-        Outlines::default(),
-    ));
+    let eye = from(0.0, 13.0, 11.0);
+    commands.spawn((Camera3d::default(), eye, Outlines::default()));
+
     let sun = DirectionalLight {
         shadow_maps_enabled: true,
         ..default()
     };
     commands.spawn((sun, from(8.0, 9.0, 3.0)));
+
     for i in (0..300).map(|i| i as f32) {
-        let at = Transform::from_translation(Quat::from_rotation_y(2.4 * i) * Vec3::Z * i.sqrt());
-        let mesh = assets.add(Cylinder::new(0.75, 3.0 + i.sqrt().cos()).mesh().build());
-        let paint = assets.add(StandardMaterial::from(Color::oklch(0.72, 0.15, 137.5 * i)));
+        let mesh = Mesh::from(Cylinder::new(0.75, 3.0 + i.sqrt().cos()));
+        let paint = StandardMaterial::from(Color::oklch(0.72, 0.15, 137.5 * i));
+        let place = Quat::from_rotation_y(2.4 * i) * Vec3::Z * i.sqrt();
         commands.spawn((
-            Mesh3d(mesh),
-            MeshMaterial3d(paint),
-            at,
+            Mesh3d(assets.add(mesh)),
+            MeshMaterial3d(assets.add(paint)),
+            Transform::from_translation(place),
             CartoonScene::default(),
         ));
     }
