@@ -1,13 +1,17 @@
-//! The documentation of style files: what it says is so.
+//! The README and the pages of `docs/`: what they say is so.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use bevy::render::view::Msaa;
 use bevy_comics::{ComicStyle, ComicStyleError};
 
 use crate::small::{Small, size};
 
-fn page(name: &str) -> String {
+/// A page of `docs/`.
+pub fn page(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("docs")
         .join(name);
@@ -21,6 +25,89 @@ pub fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
         .step_by(2)
         .filter_map(|block| block.strip_prefix(language)?.strip_prefix('\n'))
         .collect()
+}
+
+/// The README and every page that is written by hand, with their paths.
+fn pages() -> Vec<(PathBuf, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let files = fs::read_dir(root.join("docs")).expect("the pages");
+    let mut paths: Vec<PathBuf> = files.map(|file| file.expect("a file").path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
+    paths.push(root.join("README.md"));
+    paths
+        .into_iter()
+        .map(|path| (path.clone(), fs::read_to_string(path).expect("a page")))
+        .collect()
+}
+
+/// The targets of a page's links and pictures.
+fn links(page: &str) -> impl Iterator<Item = &str> {
+    page.split("](")
+        .skip(1)
+        .filter_map(|rest| rest.split([')', '#', ' ']).next())
+        .filter(|link| !link.is_empty() && !link.contains("://"))
+}
+
+/// Links lead to files, commands name examples, and no command of the README builds the engine
+/// another time: other features or another profile would.
+#[test]
+fn links_and_commands_of_the_pages_lead_somewhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (mut linked, mut commands) = (0, 0);
+    for (path, page) in pages() {
+        let folder = path.parent().expect("a folder");
+        for link in links(&page) {
+            assert!(folder.join(link).exists(), "{}: {link}", path.display());
+            linked += 1;
+        }
+        for (_, rest) in page
+            .match_indices("--example ")
+            .map(|at| page.split_at(at.0))
+        {
+            let name = rest["--example ".len()..]
+                .split([' ', '`', '\n', ':'])
+                .next();
+            let source = root.join("examples").join(name.expect("a name"));
+            assert!(
+                source.with_extension("rs").exists() || source.join("main.rs").exists(),
+                "{}: there is no example {name:?}",
+                path.display()
+            );
+            commands += 1;
+        }
+    }
+    assert!(
+        linked > 50 && commands > 15,
+        "{linked} links, {commands} commands"
+    );
+    let readme = fs::read_to_string(root.join("README.md")).expect("the README");
+    for flag in ["--features", "--release", "--manifest-path"] {
+        assert!(
+            !readme.contains(flag),
+            "the README builds the engine anew: {flag}"
+        );
+    }
+}
+
+/// Pictures with a palette look speckled, as if the renderer were noisy.
+#[test]
+fn pictures_of_the_pages_are_in_true_colour() {
+    let mut pictures = 0;
+    for (path, page) in pages() {
+        for link in links(&page).filter(|link| link.ends_with(".png")) {
+            let file = path.parent().expect("a folder").join(link);
+            let bytes = fs::read(&file).expect("a picture");
+            // The header's colour type: 2 is RGB, 6 is RGB with alpha.
+            assert!(
+                bytes[24] == 8 && matches!(bytes[25], 2 | 6),
+                "{} has colour type {}",
+                file.display(),
+                bytes[25]
+            );
+            pictures += 1;
+        }
+    }
+    assert!(pictures > 10, "{pictures} pictures");
 }
 
 /// Every step of the page is a style that draws something else than the last.
@@ -48,29 +135,16 @@ fn the_steps_of_the_ten_minutes_can_be_followed() {
         .first()
         .expect("the broken file's message")
         .trim();
-    let error = ComicStyle::from_ron("(\n    version: 2,\n    contours: (widht: 3.0),\n)")
+    let error = ComicStyle::from_ron("(\n    version: 2,\n    outlines: (widht: 3.0),\n)")
         .expect_err("broken");
     assert_eq!(error.to_string(), broken);
-    // So are its commands.
-    for command in blocks(&page, "sh").iter().flat_map(|block| block.lines()) {
-        if let Some((_, example)) = command.split_once("--example ") {
-            let name = example.split_whitespace().next().expect("a name");
-            let source = Path::new(env!("CARGO_MANIFEST_DIR"))
-                .join("examples")
-                .join(name);
-            assert!(
-                source.with_extension("rs").exists() || source.join("main.rs").exists(),
-                "{command}: there is no such example"
-            );
-        }
-    }
 }
 
 #[test]
 fn an_unknown_version_and_an_unknown_field_are_said() {
-    let error = ComicStyle::from_ron("(version: 2)").expect_err("another version");
+    let error = ComicStyle::from_ron("(version: 3)").expect_err("a later version");
     assert!(
-        matches!(error, ComicStyleError::Version { found: 2, .. }),
+        matches!(error, ComicStyleError::Version { found: 3, .. }),
         "{error}"
     );
     for text in [
@@ -101,11 +175,10 @@ fn the_reference_of_the_format_is_that_of_the_types() {
     assert_eq!(
         page("style-format.md"),
         made,
-        "UPDATE_DOCS=1 cargo test --features inspector --test gpu -- the_reference_of_the_format"
+        "UPDATE_DOCS=1 cargo test --test gpu -- the_reference_of_the_format"
     );
 }
 
-#[cfg(feature = "inspector")]
 mod reference {
     use std::fmt::Write;
 
@@ -120,11 +193,11 @@ mod reference {
 # The format of style files
 
 A style file is [RON](https://docs.rs/ron) with implicit `Some`, ends in `.comic.ron`, and holds one
-`ComicStyle`. `version` is the version of the format and must be 1; another one, an unknown field or a
-wrong type is an error that names line and column. Everything else may be left out: an effect that is
-left out is off, a field that is left out has its default. Colours are `\"#rrggbb\"`, `\"#rrggbbaa\"` or four
-sRGB components. Numbers outside their range count as its nearest end. What a game adds later than
-version 1 will be optional fields; what cannot be read by this version gets another number.
+`ComicStyle`. `version` is the version of the format and must be there. This page is about version 2; a file of
+version 1 is read with a warning that says what to change. An unknown version, an unknown field or a wrong type
+is an error that names line and column. Every other entry is optional: an effect that is left out is off (in a
+partial style: as the camera has it), a field that is left out has its default. Colours are `\"#rrggbb\"`,
+`\"#rrggbbaa\"` or four sRGB components. Numbers outside their range count as its nearest end.
 
 This page is made from the types by a test, which fails where the two differ.
 ";
@@ -207,9 +280,11 @@ This page is made from the types by a test, which fails where the two differ.
         let _ = write!(
             page,
             "\n## ComicStyle\n\n{docs}\n\n| entry | type | meaning |\n|---|---|---|\n\
-             | `version` | u32 | Version of the file format; 1 is the only one. |\n\
-             | `name` | String | What people call it. |\n\
-             | `depth_map` | Option<DepthMap> | The depth map; its default where absent. |\n"
+             | `version` | u32 | Version of the file format: 2. |\n\
+             | `name` | String | Title for people. |\n\
+             | `partial` | bool | Whether effects that the file does not mention stay as the camera has \
+             them. Default: `false`. |\n\
+             | `depth_map` | Option<DepthMap> | The depth map; the camera's own where absent. |\n"
         );
         for effect in effects {
             let info = (effect.type_info)();
@@ -235,16 +310,13 @@ This page is made from the types by a test, which fails where the two differ.
         section::<Desaturation>(&mut page);
         section::<Colorization>(&mut page);
         section::<ColorizationMode>(&mut page);
-        section::<Form>(&mut page);
         section::<BlackFlats>(&mut page);
         section::<Contours>(&mut page);
         section::<ContourOperator>(&mut page);
-        section::<Form>(&mut page);
         section::<Outlines>(&mut page);
         section::<Silhouettes>(&mut page);
         section::<Creases>(&mut page);
         section::<ObjectEdges>(&mut page);
-        section::<Form>(&mut page);
         section::<Sketch>(&mut page);
         for effect in effects {
             let info = (effect.type_info)();

@@ -58,12 +58,19 @@ impl OutsideCrate {
         Self { folder, target }
     }
 
+    /// The folder of the crate's manifest; programs run in it.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
     /// Runs cargo in the crate's folder, which must succeed; what it printed.
     pub fn cargo(&self, arguments: &[&str]) -> String {
         let output = Command::new(env::var("CARGO").unwrap_or_else(|_| "cargo".into()))
             .args(arguments)
             .current_dir(&self.folder)
             .env("CARGO_TARGET_DIR", &self.target)
+            // Programs keep the user's settings as they are.
+            .env("XDG_CONFIG_HOME", &self.folder)
             .output()
             .expect("cargo runs");
         let printed = String::from_utf8_lossy(&output.stdout).into_owned();
