@@ -201,6 +201,13 @@ impl Headless {
         })
     }
 
+    /// Replaces the target by one of another size. Cameras keep the old one.
+    pub fn resize(&mut self, size: UVec2, scale_factor: f32) {
+        self.options.size = size;
+        self.options.scale_factor = scale_factor;
+        self.target = new_target(self.app.world_mut(), size, self.options.format);
+    }
+
     /// Renders frames.
     pub fn step(&mut self, frames: usize) {
         for _ in 0..frames {

@@ -1,7 +1,7 @@
-//! The table of extreme cases, on rendered views: by name, defined and finite.
-//! The cases that are questions of arithmetic (near to far ratios, narrow
-//! ranges, square roots at the ends) are in `functions.rs`, those of the range
-//! (denormal depth, odd sizes, viewports, samples) in `range.rs`.
+//! Extreme views: the picture is defined and finite. Extreme numbers (ratios of
+//! near to far, narrow ranges, square roots at the ends) are tested in
+//! `functions/`, extreme inputs of the range (denormal depth, odd sizes,
+//! viewports, samples) in `range.rs`.
 
 use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
 use bevy_comics::{
@@ -70,11 +70,11 @@ fn a_flat_wall_keeps_its_colour_and_has_no_line() {
         );
         small.settle();
         let original = small.picture();
-        // Bands change flat colours, as they should.
+        // Tone bands change flat colours by design.
         small.style(&full().without::<ToneBands>());
         small.settle();
         assert!(small.ran(ComicsStage::Stylize));
-        // D = 0 all over: the picture is constant, and what it was.
+        // D = 0 everywhere: the picture stays constant and unchanged.
         let picture = small.picture();
         let first = *picture.get_pixel(0, 0);
         assert!(
@@ -133,8 +133,8 @@ fn a_target_of_one_pixel_is_styled() {
 
 #[test]
 fn a_range_of_depth_buffer_noise_does_not_become_a_pattern() {
-    // Two walls one part in a million apart: the floor of the map, 2^-14, lets
-    // them span 1.7 % of it, which is at most five codes of 255.
+    // Two walls whose distances differ by 1e-6: with the floor of 2^-14 they span
+    // 1.7 % of the map, at most five codes of 255.
     let mut small = bare(UVec2::new(40, 30));
     wall(&mut small, 40.0, 5.0, Color::srgb(0.7, 0.2, 0.2));
     wall(&mut small, 2.0, 5.0 - 5e-6, Color::srgb(0.7, 0.2, 0.2));
@@ -227,8 +227,8 @@ fn bright_light_grows_with_its_gain() {
 
 #[test]
 fn a_transparent_surface_is_coloured_by_the_depth_behind_it() {
-    // A red pane at arm's length before a far wall: it takes the wall's
-    // atmosphere, not the foreground's.
+    // A red pane close to the camera, in front of a far wall: it is coloured by
+    // the depth of the wall.
     let mut small = bare(UVec2::new(60, 40));
     wall(&mut small, 400.0, 100.0, Color::srgb(0.5, 0.5, 0.5));
     wall(&mut small, 0.4, 1.0, Color::srgb(0.5, 0.5, 0.5));
@@ -254,8 +254,8 @@ fn a_transparent_surface_is_coloured_by_the_depth_behind_it() {
         let p = picture.get_pixel(x, y).0;
         p[..3].iter().max().copied().unwrap_or(0) - p[..3].iter().min().copied().unwrap_or(0)
     };
-    // The pane covers more than the near wall: inside that it keeps its red,
-    // beyond it the far wall's depth has taken it.
+    // In front of the near wall the pane keeps its red; beside that wall the depth
+    // of the far wall colours it.
     let row: Vec<u8> = (0..60).map(|x| saturation(x, 20)).collect();
     assert!(row[30] > 60, "before the near wall: {row:?}");
     assert!(

@@ -1,4 +1,4 @@
-//! The README and the pages of `docs/`: what they say is so.
+//! The README and the pages of `docs/` are correct.
 
 use std::{
     fs,
@@ -18,7 +18,7 @@ pub fn page(name: &str) -> String {
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The blocks of a language, in order.
+/// The code blocks of a language, in order.
 pub fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
     page.split("```")
         .skip(1)
@@ -110,7 +110,7 @@ fn pictures_of_the_pages_are_in_true_colour() {
     assert!(pictures > 10, "{pictures} pictures");
 }
 
-/// Every step of the page is a style that draws something else than the last.
+/// Every step of the page is a style, and draws another picture than the last.
 #[test]
 fn the_steps_of_the_ten_minutes_can_be_followed() {
     let page = page("your-own-style.md");
@@ -130,7 +130,7 @@ fn the_steps_of_the_ten_minutes_can_be_followed() {
         last = picture;
     }
     assert_eq!(small.errors(), 0);
-    // The error that the page promises is the one that comes.
+    // The error that the page quotes is the one that is reported.
     let broken = blocks(&page, "text")
         .first()
         .expect("the broken file's message")
@@ -164,7 +164,7 @@ fn an_unknown_version_and_an_unknown_field_are_said() {
     assert!(error.contains("version"), "{error}");
 }
 
-/// The reference of the format is made from the types themselves.
+/// The reference of the format is generated from the types.
 #[test]
 fn the_reference_of_the_format_is_that_of_the_types() {
     let made = reference::page();
@@ -203,11 +203,11 @@ This page is made from the types by a test, which fails where the two differ.
 ";
 
     fn plain(docs: Option<&str>) -> String {
-        // Examples have a page of their own.
+        // Examples are on another page.
         let docs: String = docs.unwrap_or_default().split("```").step_by(2).collect();
         let joined: Vec<&str> = docs.lines().map(str::trim).collect();
         let joined = joined.join(" ");
-        // Links to items lead nowhere from here.
+        // Links to items do not resolve here.
         let text: Vec<&str> = joined.trim().split('`').collect();
         text.join("`")
             .replace("[`", "`")
@@ -274,7 +274,7 @@ This page is made from the types by a test, which fails where the two differ.
         }
     }
 
-    /// The style itself, which has an entry for each effect that is registered.
+    /// The style, with an entry for each registered effect.
     fn style(page: &mut String, effects: &[&EffectType]) {
         let docs = plain(ComicStyle::type_info().docs());
         let _ = write!(
@@ -289,7 +289,7 @@ This page is made from the types by a test, which fails where the two differ.
         for effect in effects {
             let info = (effect.type_info)();
             let name = info.type_path_table().short_path();
-            // What it is, in a paragraph: the rest follows in its own section.
+            // The first paragraph; the rest follows in the section of the type.
             let docs: Vec<&str> = info.docs().unwrap_or_default().lines().collect();
             let about = docs.split(|line| line.trim().is_empty()).next();
             let about = plain(about.map(|lines| lines.join("\n")).as_deref());

@@ -1,4 +1,4 @@
-//! Everything that needs a GPU, or a CPU that plays one, in one binary.
+//! Everything that needs a GPU adapter (a CPU driver will do), in one binary.
 
 mod blending;
 mod cartoon;

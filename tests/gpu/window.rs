@@ -1,5 +1,4 @@
-//! The inspector in a real window, driven as a person drives it: keys and mouse
-//! through the X server.
+//! The inspector in a real window, driven by keys and mouse through the X server.
 
 use std::{
     cell::Cell,
@@ -15,22 +14,22 @@ use bevy_comics::ComicStyle;
 use image::RgbImage;
 use serde_json::Value;
 
-use crate::command_line::example_with;
+use crate::command_line::example;
 
-/// How long anything may take on a slow machine.
+/// Longest wait for a state, for slow machines.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The example in a window of its own X server.
 pub struct Window {
     /// Physical pixels.
     pub size: [u32; 2],
-    /// Physical pixels of a logical point.
+    /// Physical pixels per logical point.
     scale: f64,
     server: Child,
     app: Child,
     display: String,
     pub folder: PathBuf,
-    /// Whether a button is held, so that the pointer stays where it is.
+    /// Whether a button is held; the pointer must not move then.
     pub held: Cell<bool>,
 }
 
@@ -55,10 +54,10 @@ fn tool(name: &str) -> Command {
 }
 
 impl Window {
-    /// In a window of so many physical pixels, with so many to a logical point.
+    /// Opens a window of `size` physical pixels, `scale` of them per logical point.
     pub fn open(size: [u32; 2], scale: f64, arguments: &[&str]) -> Self {
-        let program = example_with("inspector", &["--features", "inspector"]);
-        // Two windows of one test run have two servers.
+        let program = example("inspector");
+        // Each window of a test run has its own server.
         static OPENED: AtomicU32 = AtomicU32::new(0);
         let opened = OPENED.fetch_add(1, Ordering::Relaxed);
         let number = 100 + (16 * std::process::id() + opened) % 20_000;
@@ -70,7 +69,7 @@ impl Window {
                 "0",
                 &format!("{}x{}x24", size[0], size[1]),
             ])
-            // A key that is held over slow frames is one press.
+            // No key repeat: a key held during a slow frame is one press.
             .arg("-r")
             .stderr(Stdio::null())
             .spawn()
@@ -133,7 +132,7 @@ impl Window {
         assert!(status.success(), "xdotool {arguments:?}");
     }
 
-    /// The end of what the app has said.
+    /// The last lines of the log.
     fn log(&self) -> String {
         let log = fs::read_to_string(self.folder.join("log")).unwrap_or_default();
         let lines: Vec<&str> = log.lines().collect();
@@ -145,7 +144,7 @@ impl Window {
         serde_json::from_str(&text).unwrap_or(Value::Null)
     }
 
-    /// Waits for a state, and gives it.
+    /// Waits for a state and returns it.
     pub fn until(&self, what: &str, is_so: impl Fn(&Value) -> bool) -> Value {
         let started = Instant::now();
         loop {
@@ -162,7 +161,7 @@ impl Window {
         }
     }
 
-    /// Lets frames go by.
+    /// Waits for `count` frames.
     pub fn frames(&self, count: u64) {
         let now = self.state()["frame"].as_u64().unwrap_or(0);
         self.until("the next frame", |state| {
@@ -170,8 +169,8 @@ impl Window {
         });
     }
 
-    /// A place in a widget: a share of its width, the middle of its height. What
-    /// has just come up is let come to rest.
+    /// A point in a widget: a fraction of its width, the middle of its height.
+    /// Waits until the widget no longer moves.
     fn place(&self, widget: &str, share: f64) -> [String; 2] {
         let mut state = self.until(widget, |state| state["widgets"][widget].is_array());
         loop {
@@ -195,8 +194,8 @@ impl Window {
         self.frames(2);
     }
 
-    /// Down and up at once: a press of more than 0.8 s is no click, and frames
-    /// are slow here.
+    /// Presses and releases at once: a press longer than 0.8 s is no click, and
+    /// frames are slow here.
     pub fn click(&self, widget: &str) {
         self.point(widget, 0.5);
         self.xdotool(&["click", "1"]);
@@ -215,7 +214,7 @@ impl Window {
         self.frames(3);
     }
 
-    /// A key with others held. The panel reads what is held once a frame.
+    /// A key with others held. The panel reads held keys once per frame.
     pub fn chord(&self, held: &[&str], key: &str) {
         for held in held {
             self.xdotool(&["keydown", held]);
@@ -242,7 +241,7 @@ impl Window {
         ComicStyle::from_ron(text).expect("it reads")
     }
 
-    /// Waits until a camera's style is as wanted.
+    /// Waits until a camera's style satisfies `is_so`.
     pub fn until_style(&self, what: &str, camera: usize, is_so: impl Fn(&ComicStyle) -> bool) {
         self.until(what, |state| {
             let text = state["cameras"][camera]["style"]
@@ -252,9 +251,9 @@ impl Window {
         });
     }
 
-    /// What is on the screen, once it is complete.
+    /// The screen, once no pipeline compiles.
     pub fn picture(&self) -> RgbImage {
-        // Where no tooltip comes up.
+        // Moves the pointer to where no tooltip appears.
         if !self.held.get() {
             let [x, y] = self.size.map(|v| (v - 12).to_string());
             self.xdotool(&["mousemove", &x, &y]);
@@ -271,7 +270,7 @@ impl Window {
             .status()
             .expect("import runs");
         assert!(status.success(), "no picture of the screen");
-        // The last one is there to be looked at when a test fails.
+        // Kept, to look at when a test fails.
         let _ = fs::copy(
             &path,
             Path::new(env!("CARGO_TARGET_TMPDIR")).join("panel.png"),
@@ -280,7 +279,7 @@ impl Window {
     }
 }
 
-/// Pixels that are not the same.
+/// Number of pixels that differ by more than 6 codes.
 pub fn changed(a: &RgbImage, b: &RgbImage) -> usize {
     let apart = |a: &image::Rgb<u8>, b: &image::Rgb<u8>| (0..3).any(|i| a[i].abs_diff(b[i]) > 6);
     a.pixels()
