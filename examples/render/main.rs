@@ -47,8 +47,13 @@ fn run() -> Result<(), String> {
         "adapter: {} ({:?})",
         adapter.info.name, adapter.info.device_type
     );
+    let scale_factor = match arguments.output {
+        Output::Sheet(_) => sheet::scale_factor(arguments.size),
+        Output::Picture(_) | Output::Turntable(..) => 1.0,
+    };
     let options = HeadlessOptions {
         size: arguments.size,
+        scale_factor,
         log: true,
         ..default()
     };

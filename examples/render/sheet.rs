@@ -16,6 +16,12 @@ const INK: [u8; 3] = [28, 26, 34];
 /// Width by height of the sheet.
 const ASPECT: f32 = 4.0 / 3.0;
 
+/// Physical pixels per logical pixel for pictures of this size: widths of lines
+/// are made for pictures that are 540 pixels high.
+pub fn scale_factor(size: UVec2) -> f32 {
+    (size.min_element() as f32 / 540.0).clamp(0.4, 1.0)
+}
+
 /// The scene without a style and in every preset, in rows.
 pub fn shoot(headless: &mut Headless, camera: Entity) -> Result<RgbaImage, String> {
     let mut looks = vec![("original", ComicStyle::default())];
@@ -59,7 +65,7 @@ fn labels(headless: &mut Headless, cell: UVec2, names: &[&str]) -> Vec<RgbaImage
         .spawn((
             Text::default(),
             TextFont {
-                font_size: FontSize::Px(0.62 * strip.y as f32),
+                font_size: FontSize::Px(0.7 * strip.y as f32),
                 ..default()
             },
             TextColor(Color::srgb_u8(INK[0], INK[1], INK[2])),
@@ -91,7 +97,7 @@ fn labels(headless: &mut Headless, cell: UVec2, names: &[&str]) -> Vec<RgbaImage
 }
 
 fn label_height(cell: UVec2) -> u32 {
-    (cell.x / 14).clamp(12, 40)
+    (cell.x / 11).clamp(12, 40)
 }
 
 fn gap(cell: UVec2) -> u32 {

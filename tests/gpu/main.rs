@@ -21,6 +21,7 @@ mod house;
 mod ids;
 mod left_out;
 mod lines;
+mod models;
 mod outlines;
 mod outside;
 mod own_effect;

@@ -61,6 +61,11 @@ impl Document {
         self.json[name].as_array().map_or(&[], Vec::as_slice)
     }
 
+    /// The same to be changed, where there is one.
+    pub fn list_mut(&mut self, name: &str) -> Option<&mut Vec<Value>> {
+        self.json.get_mut(name).and_then(Value::as_array_mut)
+    }
+
     /// The scene to show: the default one, or the first.
     pub fn scene(&self) -> usize {
         self.json["scene"].as_u64().unwrap_or(0) as usize

@@ -27,7 +27,7 @@ const LAMPS: [Lamp; 3] = [
     // Key.
     Lamp {
         towards: Vec3::new(-0.55, 0.62, 0.62),
-        level: 0.68,
+        level: 0.62,
         color: Color::srgb(1.0, 0.985, 0.96),
         shadows: true,
     },
@@ -108,23 +108,22 @@ impl OwnLights<'_, '_> {
         self.suns.is_empty() && self.points.is_empty() && self.spots.is_empty()
     }
 
-    /// Scales all lights by one factor, so that together they light the centre
-    /// of the model as the key and fill light of the studio do. Files state
-    /// intensities in units that differ by orders of magnitude between exporters.
+    /// Scales all lights by one factor, so that together they light the model,
+    /// where it is nearest to them, as the key light of the studio does. Exporters
+    /// differ by orders of magnitude in the intensities that they write.
     pub fn level(&mut self, centre: Vec3, radius: f32) {
-        // Candela at a distance; within the model, as at its surface.
-        let at_centre = |lumens: f32, transform: &GlobalTransform| {
-            let distance = transform.translation().distance(centre).max(radius);
+        // Lux at the nearest point of the model's sphere. Of a light within the
+        // sphere, lux at the distance of its radius.
+        let received = |lumens: f32, transform: &GlobalTransform| {
+            let distance = (transform.translation().distance(centre) - radius).max(radius);
             lumens / (4.0 * PI * distance * distance)
         };
         let points = self.points.iter();
         let spots = self.spots.iter();
         let total = self.suns.iter().map(|l| l.illuminance).sum::<f32>()
-            + points
-                .map(|(l, at)| at_centre(l.intensity, at))
-                .sum::<f32>()
-            + spots.map(|(l, at)| at_centre(l.intensity, at)).sum::<f32>();
-        let factor = illuminance(LAMPS[0].level + LAMPS[1].level) / total;
+            + points.map(|(l, at)| received(l.intensity, at)).sum::<f32>()
+            + spots.map(|(l, at)| received(l.intensity, at)).sum::<f32>();
+        let factor = illuminance(LAMPS[0].level) / total;
         if !(factor.is_finite() && factor > 0.0) {
             return;
         }

@@ -183,12 +183,12 @@ fn wait_for(
             return Ok(scene);
         }
         if let Some(LoadState::Failed(error)) = server.get_load_state(&scene) {
-            return Err(error.to_string());
+            return Err(first_line(&error));
         }
         if let Some(RecursiveDependencyLoadState::Failed(error)) =
             server.get_recursive_dependency_load_state(&scene)
         {
-            return Err(error.to_string());
+            return Err(first_line(&error));
         }
         headless.step(1);
         std::thread::sleep(std::time::Duration::from_millis(2));
@@ -197,4 +197,10 @@ fn wait_for(
         }
     }
     Err("it did not load in time".into())
+}
+
+/// The engine appends a backtrace to its errors where `RUST_BACKTRACE` is set.
+fn first_line(error: &dyn std::fmt::Display) -> String {
+    let text = error.to_string();
+    text.lines().next().unwrap_or_default().to_owned()
 }

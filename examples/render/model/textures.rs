@@ -187,27 +187,26 @@ fn decoding_error(bytes: &[u8], format: ImageFormat) -> Option<String> {
 /// Takes textures out of the document: its materials do without them. Textures
 /// that name their image only by an extension name it directly after this.
 pub fn take_out(document: &mut Document, textures: &[usize]) {
-    let images = document.list("images").len();
-    let json = &mut document.json;
-    if let Some(entries) = json["textures"].as_array_mut() {
-        for (index, entry) in entries.iter_mut().enumerate() {
-            if textures.contains(&index) {
-                *entry = json!({ "source": images });
-            } else if let Some(image) = image_index(entry) {
-                entry["source"] = json!(image);
-            }
+    let placeholder = document.list("images").len();
+    let entries = document.list_mut("textures").into_iter().flatten();
+    for (index, texture) in entries.enumerate() {
+        if textures.contains(&index) {
+            *texture = json!({ "source": placeholder });
+        } else if let Some(image) = image_index(texture) {
+            texture["source"] = json!(image);
         }
     }
     if !textures.is_empty() {
-        match json["images"].as_array_mut() {
-            Some(list) => list.push(json!({ "uri": PLACEHOLDER })),
-            None => json["images"] = json!([{ "uri": PLACEHOLDER }]),
+        let image = json!({ "uri": PLACEHOLDER });
+        match document.list_mut("images") {
+            Some(images) => images.push(image),
+            None => document.json["images"] = json!([image]),
         }
     }
-    if let Some(required) = json["extensionsRequired"].as_array_mut() {
+    if let Some(required) = document.list_mut("extensionsRequired") {
         required.retain(|name| !EXTENSIONS.iter().any(|known| name == known));
     }
-    for material in json["materials"].as_array_mut().into_iter().flatten() {
+    for material in document.list_mut("materials").into_iter().flatten() {
         strip(material, textures);
     }
 }
