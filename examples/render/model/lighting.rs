@@ -41,7 +41,7 @@ const LAMPS: [Lamp; 3] = [
     // Rim.
     Lamp {
         towards: Vec3::new(0.55, 0.5, -0.75),
-        level: 0.7,
+        level: 0.55,
         color: Color::WHITE,
         shadows: false,
     },
