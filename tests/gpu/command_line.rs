@@ -37,7 +37,8 @@ fn render() -> &'static Path {
     RENDER.get_or_init(|| example("render"))
 }
 
-fn run(folder: &Path, arguments: &[&str]) -> Output {
+/// The example's output, started in a folder.
+pub fn run(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(render())
         .args(arguments)
         .current_dir(folder)
@@ -45,7 +46,8 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
         .expect("it starts")
 }
 
-fn folder(name: &str) -> PathBuf {
+/// A folder for one test.
+pub fn folder(name: &str) -> PathBuf {
     let folder = env::temp_dir().join(format!("bevy-comics-{name}-{}", std::process::id()));
     fs::create_dir_all(&folder).expect("a folder");
     folder
@@ -79,6 +81,9 @@ fn what_cannot_be_done_is_one_line_that_says_what_can() {
         (&["--ortho", "inf"], "finite"),
         (&["--frames", "0"], "1 to 100000"),
         (&["--out", "picture.bmp"], ".png"),
+        (&["--turntable", "1"], "2 to 720"),
+        (&["--presets", "--out", "sheet"], ".png"),
+        (&["--presets", "--style", "noir"], "exclude each other"),
         (&["--polish"], "--help"),
         (&["missing.glb"], "cannot read missing.glb"),
         (&["broken.gltf"], "is no glTF model"),

@@ -15,6 +15,7 @@ mod house;
 mod ids;
 mod left_out;
 mod lines;
+mod models;
 mod outlines;
 mod outside;
 mod own_effect;
