@@ -1,4 +1,4 @@
-//! The first program of the README.
+// The first program of the README.
 
 use bevy::prelude::*;
 use bevy_comics::prelude::*;
@@ -12,7 +12,7 @@ fn main() {
 
 fn setup(mut commands: Commands, assets: Res<AssetServer>) {
     let from = |x, y, z| Transform::from_xyz(x, y, z).looking_at(Vec3::ZERO, Vec3::Y);
-    let eye = from(0.0, 13.0, 11.0);
+    let eye = from(0.0, 12.0, 10.0);
     commands.spawn((Camera3d::default(), eye, Outlines::default()));
 
     let sun = DirectionalLight {

@@ -10,7 +10,7 @@
 //!
 //! fn setup(mut commands: Commands, assets: Res<AssetServer>) {
 //!     let from = |x, y, z| Transform::from_xyz(x, y, z).looking_at(Vec3::ZERO, Vec3::Y);
-//!     let eye = from(0.0, 13.0, 11.0);
+//!     let eye = from(0.0, 12.0, 10.0);
 //!     commands.spawn((Camera3d::default(), eye, Outlines::default()));
 //!     let sun = DirectionalLight { shadow_maps_enabled: true, ..default() };
 //!     commands.spawn((sun, from(8.0, 9.0, 3.0)));

@@ -22,12 +22,23 @@ use image::RgbaImage;
 
 use crate::{save, sheet::grid};
 
+/// The first program of the README.
+mod first {
+    #![allow(dead_code, reason = "its `main` opens a window")]
+    include!("../simple.rs");
+
+    pub fn add_to(app: &mut App) {
+        app.add_systems(Startup, setup);
+    }
+}
+
 const SIZE: UVec2 = UVec2::new(480, 270);
 const GAP: u32 = 6;
 /// Frames until everything that was spawned is on the picture.
 const SETTLE: usize = 6;
 
 pub fn write(folder: &Path) -> Result<(), String> {
+    save(&simple()?, &folder.join("simple.png"))?;
     save(&objects(), &folder.join("objects.png"))?;
     save(&split_screen(), &folder.join("split-screen.png"))?;
     save(&transparency(), &folder.join("transparency.png"))?;
@@ -36,6 +47,20 @@ pub fn write(folder: &Path) -> Result<(), String> {
 
 fn pair(left: &RgbaImage, right: &RgbaImage) -> RgbaImage {
     grid(&[vec![left, right]], SIZE, GAP)
+}
+
+fn simple() -> Result<RgbaImage, String> {
+    let size = UVec2::new(800, 450);
+    let mut headless = Headless::new(HeadlessOptions { size, ..default() }, ComicsPlugin);
+    first::add_to(&mut headless.app);
+    headless.step(1);
+    let target = headless.render_target();
+    let world = headless.app.world_mut();
+    let mut cameras = world.query_filtered::<Entity, With<Camera3d>>();
+    let camera = cameras.single(world).map_err(|error| error.to_string())?;
+    world.entity_mut(camera).insert(target);
+    headless.step(SETTLE);
+    Ok(headless.picture())
 }
 
 /// Three toys: the camera's lines, lines of its own, no lines.
