@@ -156,7 +156,7 @@ fn a_turned_scene_has_the_same_measured_creases() {
             n[2],
         ]
     };
-    let fold = |a: f64| -> [[edge::Normal; 5]; 5] {
+    let crease = |a: f64| -> [[edge::Normal; 5]; 5] {
         std::array::from_fn(|_| {
             std::array::from_fn(|c| {
                 let n = if c > 2 {
@@ -168,14 +168,14 @@ fn a_turned_scene_has_the_same_measured_creases() {
             })
         })
     };
-    let g0 = edge::gradient_extremes(&fold(0.0), edge::normal_step);
-    let p0 = edge::component_response(&fold(0.0), 1.0);
+    let g0 = edge::gradient_extremes(&crease(0.0), edge::normal_step);
+    let p0 = edge::component_response(&crease(0.0), 1.0);
     let mut moved = 0.0f64;
     for k in 1..12 {
         let a = f64::from(k) * 0.13;
-        let g = edge::gradient_extremes(&fold(a), edge::normal_step);
+        let g = edge::gradient_extremes(&crease(a), edge::normal_step);
         assert!((g[1] - g0[1]).abs() < 1e-12, "{a}: {g:?}");
-        moved = moved.max((edge::component_response(&fold(a), 1.0) - p0).abs());
+        moved = moved.max((edge::component_response(&crease(a), 1.0) - p0).abs());
     }
     assert!(
         moved > 0.05,
