@@ -320,6 +320,7 @@ fn set_toolkit_options(ui: &Ui) {
             // The default colours have too little contrast on the dark panel.
             style.visuals.weak_text_color = Some(Color32::from_gray(145));
             style.visuals.error_fg_color = Color32::from_rgb(255, 128, 110);
+            style.visuals.disabled_alpha = 0.65;
         }
     });
     // A click in a frame that takes a second is still a click.

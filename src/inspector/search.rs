@@ -1,6 +1,12 @@
 //! The search over the settings of all effects.
 
-use bevy::reflect::{NamedField, TypeInfo, enums::EnumInfo, enums::VariantInfo};
+use bevy::{
+    color::Color,
+    reflect::{
+        NamedField, TypeInfo,
+        enums::{EnumInfo, VariantInfo},
+    },
+};
 
 use super::{
     fields::{label, label_of_mode},
@@ -8,11 +14,17 @@ use super::{
 };
 use crate::style::rust_code::is_option;
 
-/// What is searched for: a setting is found if its text has every word, in
-/// any order and case.
+/// What is searched for: a setting is found if every word of the search begins a
+/// word of the setting's text, in any order and case.
 pub struct Search {
-    /// In lower case.
     words: Vec<String>,
+}
+
+/// The words of a text in lower case. Parts of a path are words.
+fn words(text: &str) -> impl Iterator<Item = String> {
+    text.split(|c: char| !c.is_alphanumeric())
+        .filter(|word| !word.is_empty())
+        .map(str::to_lowercase)
 }
 
 /// Which part of a section or setting a search finds.
@@ -27,13 +39,14 @@ pub enum Found {
 impl Search {
     /// `None` if there is nothing to search for.
     pub fn of(text: &str) -> Option<Self> {
-        let words: Vec<String> = text.split_whitespace().map(str::to_lowercase).collect();
+        let words: Vec<String> = words(text).collect();
         (!words.is_empty()).then_some(Self { words })
     }
 
     fn matches(&self, text: &str) -> bool {
-        let text = text.to_lowercase();
-        self.words.iter().all(|word| text.contains(word.as_str()))
+        let text: Vec<String> = words(text).collect();
+        let begins_a_word = |start: &String| text.iter().any(|word| word.starts_with(start));
+        self.words.iter().all(begins_a_word)
     }
 
     /// What the search finds of an effect or the depth map, by its name in
@@ -101,6 +114,7 @@ fn text_of(path: &str, field: &NamedField) -> String {
     );
     if let Some(TypeInfo::Enum(info)) = field.type_info()
         && !is_option(info)
+        && !info.is::<Color>()
     {
         for variant in info.iter() {
             text += " ";
@@ -161,6 +175,12 @@ mod tests {
             let found = setting::<Contours>("contours.opacity_fade", text);
             assert_eq!(found, Some(Found::Whole), "{text}");
         }
+        // From the start of a word: not "increases".
+        assert_eq!(
+            section::<Outlines>("outlines", "crease"),
+            Some(Found::Inside)
+        );
+        assert_eq!(section::<Outlines>("outlines", "rease"), None);
         // By the documentation of the setting and by the modes.
         assert_eq!(
             setting::<Contours>("contours.width", "pixels"),
@@ -171,6 +191,8 @@ mod tests {
             Some(Found::Whole)
         );
         assert_eq!(section::<Vignette>("vignette", "laplace"), None);
+        // But not by the colour spaces of a colour.
+        assert_eq!(setting::<Contours>("contours.color", "oklab"), None);
         assert_eq!(section::<Contours>("contours", "contours zzz"), None);
     }
 

@@ -4,6 +4,8 @@
 //! source. Documentation comments are Markdown for rustdoc; the markup and what
 //! only programmers need is removed.
 
+use super::fields::label_of_mode;
+
 /// Words before whose full stop a sentence does not end.
 const ABBREVIATIONS: &[&str] = &["Eq", "Eqs", "Fig", "Figs", "e.g", "i.e", "cf", "vs", "Sec"];
 
@@ -20,7 +22,9 @@ pub fn tooltip(docs: &str) -> String {
         sources.extend(cited);
         let mut said = Vec::new();
         for sentence in sentences(&text) {
-            if let Some((cited, rest)) = leading_citation(&sentence) {
+            if is_citation(&sentence) {
+                sources.push(sentence.trim_end_matches('.').to_owned());
+            } else if let Some((cited, rest)) = leading_citation(&sentence) {
                 sources.push(cited);
                 said.push(capitalized(&rest));
             } else if sentence.starts_with("Range ") || sentence.starts_with("Default") {
@@ -33,8 +37,7 @@ pub fn tooltip(docs: &str) -> String {
             does.push(said.join(" "));
         }
     }
-    // A subject of its own cannot stand first: "[CS] leaves this open."
-    let mut lines: Vec<String> = does;
+    let mut lines = does;
     if !range.is_empty() {
         lines.push(range.join(" "));
     }
@@ -142,9 +145,11 @@ fn name_in_panel(code: &str, starts_sentence: bool) -> String {
         _ => match code.rsplit_once("::") {
             Some((_, "default" | "DEFAULT" | "default()")) => "its default settings",
             Some((_, name)) if name.starts_with(char::is_uppercase) => {
-                return super::fields::label_of_mode(name);
+                return label_of_mode(name);
             }
-            Some((_, name)) => return name.replace('_', " "),
+            Some((owner, name)) => return field_in_panel(owner, name),
+            // The label of a field, but not a variable such as `k_p`.
+            None if code.split('_').all(|part| part.len() > 1) => &code.replace('_', " "),
             None => code,
         },
     };
@@ -152,6 +157,15 @@ fn name_in_panel(code: &str, starts_sentence: bool) -> String {
         capitalized(word)
     } else {
         word.to_owned()
+    }
+}
+
+/// A field by its label, with its owner unless that is the documented type.
+fn field_in_panel(owner: &str, name: &str) -> String {
+    let name = name.replace('_', " ");
+    match owner.rsplit("::").next().unwrap_or(owner) {
+        "Self" => name,
+        owner => format!("{name} of {}", label_of_mode(owner).to_lowercase()),
     }
 }
 
@@ -173,10 +187,23 @@ fn sentences(text: &str) -> Vec<String> {
     sentences
 }
 
-/// Whether a text is nothing but a citation: a paper, an equation or a figure.
+/// The words with which a citation begins.
+const CITATION_WORDS: &[&str] = &[
+    "[CS]", "[CL]", "Eq.", "Eqs.", "Fig.", "Figs.", "Figure", "Figures", "Section",
+];
+
+/// Whether a text is nothing but a citation: a paper with its equations, figures
+/// and sections, and their numbers.
 fn is_citation(text: &str) -> bool {
-    let starts = ["[CS]", "[CL]", "Eq. ", "Eqs. ", "Figure ", "Fig. "];
-    starts.iter().any(|start| text.starts_with(start)) && text.len() < 40
+    let is_number = |word: &str| {
+        word.chars()
+            .all(|c| c.is_ascii_digit() || ".,-–".contains(c))
+    };
+    let begins = |word: &str| CITATION_WORDS.contains(&word.trim_end_matches(','));
+    text.split_whitespace().next().is_some_and(begins)
+        && text
+            .split_whitespace()
+            .all(|word| begins(word) || is_number(word) || ["and", "to"].contains(&word))
 }
 
 /// The text without citations in parentheses, and those citations.
@@ -249,6 +276,10 @@ mod tests {
             ("Is **bold** and `code`.", "Is bold and code."),
             ("Text.\n\n[`X`]: crate::X", "Text."),
             (
+                "`edge_limit` of `k_p`, as [`Creases::edge_limit`] and [`Self::low_end`].",
+                "Edge limit of k_p, as edge limit of creases and low end.",
+            ),
+            (
                 "Default: [`Creases::default`].",
                 "Default: its default settings.",
             ),
@@ -273,6 +304,11 @@ mod tests {
             "Linear between the planes. A counter-example, e.g. outdoors.\nSource: Wang Eq. 2."
         );
         assert_eq!(tooltip("Width of a line."), "Width of a line.");
+        assert_eq!(tooltip("Ends (1 to 2) and ()."), "Ends (1 to 2) and ().");
+        assert_eq!(
+            tooltip("Logarithmic. \\[CS\\] Eq. 3. Eq. 4 is linear."),
+            "Logarithmic. Eq. 4 is linear.\nSource: Suarez et al. Eq. 3."
+        );
         assert_eq!(
             tooltip("First.\n\nSecond, as in Eq. 4. Third."),
             "First.\nSecond, as in Eq. 4. Third."
