@@ -76,7 +76,7 @@ fn run() -> Result<(), String> {
             println!("wrote {}", path.display());
         }
         Output::Sheet(path) => {
-            output::save(sheet::shoot(&mut headless, camera)?, path)?;
+            output::save(sheet::shoot(&mut headless, camera), path)?;
             println!("wrote {}", path.display());
         }
         Output::Turntable(count, frames) => {

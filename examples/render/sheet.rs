@@ -23,12 +23,13 @@ pub fn scale_factor(size: UVec2) -> f32 {
 }
 
 /// The scene without a style and in every preset, in rows.
-pub fn shoot(headless: &mut Headless, camera: Entity) -> Result<RgbaImage, String> {
+pub fn shoot(headless: &mut Headless, camera: Entity) -> RgbaImage {
     let mut looks = vec![("original", ComicStyle::default())];
-    for name in presets::NAMES {
-        let style = presets::preset(name).ok_or_else(|| format!("no preset {name}"))?;
-        looks.push((name, style.map_err(|error| format!("{name}: {error}"))?));
-    }
+    looks.extend(
+        presets::ALL
+            .iter()
+            .map(|preset| (preset.name(), preset.style())),
+    );
     let size = headless.options.size;
     let names: Vec<&str> = looks.iter().map(|(name, _)| *name).collect();
     let labels = labels(headless, size, &names);
@@ -41,7 +42,7 @@ pub fn shoot(headless: &mut Headless, camera: Entity) -> Result<RgbaImage, Strin
         cells.push((headless.picture(), label));
         println!("{name}");
     }
-    Ok(arrange(&cells, size))
+    arrange(&cells, size)
 }
 
 /// The presets' names as strips of the width of a cell.

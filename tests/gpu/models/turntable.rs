@@ -133,7 +133,7 @@ fn a_sheet_shows_the_model_in_every_preset_with_its_name() {
         .expect("a sheet")
         .to_rgb8();
     // Five columns: gaps of 4 and labels of 12 pixels.
-    let count = bevy_comics::presets::NAMES.len() as u32 + 1;
+    let count = bevy_comics::presets::ALL.len() as u32 + 1;
     let rows = count.div_ceil(5);
     assert_eq!(sheet.dimensions(), (5 * 76 + 4, rows * 64 + 4));
     let (mut pictures, mut labels) = (HashSet::new(), HashSet::new());
