@@ -49,7 +49,7 @@ fn material(small: &mut Small, light: CartoonLight) -> MeshMaterial3d<CartoonMat
     )
 }
 
-/// Ground, box and one light; outlines whose ink nobody sees ask for the ids.
+/// Ground, box and one light. Outlines that are nearly invisible request the ids.
 fn stage(light: &Kind, msaa: Msaa) -> Stage {
     let mut small = Small::new(SIZE, msaa);
     small.clear();
@@ -175,7 +175,7 @@ fn blocked(from: Vec3, to: Vec3, low: Vec3, high: Vec3) -> bool {
 
 /// The fraction of ground pixels whose shadow differs from the ray cast, among
 /// those farther than `texel` from its border; and their number.
-fn wrong_share(stage: &mut Stage, light: &Kind, texel: f32) -> (f64, usize, usize) {
+fn wrong_fraction(stage: &mut Stage, light: &Kind, texel: f32) -> (f64, usize, usize) {
     let ids = stage.small.object_ids().expect("ids are drawn");
     let (_, picture) = stage.small.pass();
     let id = u32::from(object_id(stage.ground));
@@ -234,16 +234,16 @@ fn cast_shadows_are_where_a_ray_cast_puts_them() {
         for msaa in [Msaa::Off, Msaa::Sample4] {
             let mut stage = stage(&light, msaa);
             // A shadow texel on the ground, seen at a slant, and half the filter.
-            let (share, looked, dark) = wrong_share(&mut stage, &light, 2.0 * texel);
+            let (fraction, looked, dark) = wrong_fraction(&mut stage, &light, 2.0 * texel);
             println!(
                 "{name}, {msaa:?}: {:.3} % of {looked} wrong, {dark} in shadow",
-                100.0 * share
+                100.0 * fraction
             );
             assert!(
                 dark > 500 && looked > dark + 5000,
                 "{name}: {looked}, {dark}"
             );
-            assert!(share <= 0.002, "{name}, {msaa:?}: {share}");
+            assert!(fraction <= 0.002, "{name}, {msaa:?}: {fraction}");
             assert_eq!(stage.small.errors(), 0);
         }
     }

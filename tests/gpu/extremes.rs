@@ -9,13 +9,20 @@ use bevy_comics::{
     Form, Outlines, ToneBands, VisibleDepthRange,
 };
 
-use crate::small::Small;
+use crate::small::{Object, Small};
 
+/// An empty scene, seen from the origin.
 fn bare(size: UVec2) -> Small {
     let mut small = Small::new(size, Msaa::Off);
+    empty(&mut small);
+    small
+}
+
+/// Starts over with an empty scene.
+fn empty(small: &mut Small) {
+    small.restart(Msaa::Off);
     small.clear();
     small.insert((Transform::IDENTITY, VisibleDepthRange::default()));
-    small
 }
 
 fn wall(small: &mut Small, size: f32, distance: f32, color: Color) {
@@ -32,6 +39,7 @@ fn wall(small: &mut Small, size: f32, distance: f32, color: Color) {
             ..default()
         });
     small.world().spawn((
+        Object,
         Mesh3d(mesh),
         MeshMaterial3d(material),
         Transform::from_xyz(0.0, 0.0, -distance),
@@ -60,8 +68,9 @@ fn assert_finite(small: &Small, what: &str) {
 
 #[test]
 fn a_flat_wall_keeps_its_colour_and_has_no_line() {
+    let mut small = bare(UVec2::new(40, 30));
     for distance in [0.2f32, 3.0, 500.0, 90_000.0] {
-        let mut small = bare(UVec2::new(40, 30));
+        empty(&mut small);
         wall(
             &mut small,
             distance * 10.0,
@@ -118,8 +127,10 @@ fn one_pixel_of_geometry_is_a_range_of_one_depth() {
 
 #[test]
 fn a_target_of_one_pixel_is_styled() {
+    let mut small = bare(UVec2::ONE);
     for size in [UVec2::ONE, UVec2::new(1, 9), UVec2::new(9, 1)] {
-        let mut small = bare(size);
+        small.headless.resize(size, 1.0);
+        empty(&mut small);
         wall(&mut small, 30.0, 4.0, Color::srgb(0.2, 0.4, 0.9));
         small.style(&full());
         small.settle();
@@ -203,8 +214,9 @@ fn greys_stay_grey_under_the_faithful_equations() {
 #[test]
 fn bright_light_grows_with_its_gain() {
     let mut last = 0.0f32;
+    let mut small = bare(UVec2::new(16, 12));
     for gain in [0.5f32, 1.0, 4.0, 100.0, 10_000.0, 65_504.0] {
-        let mut small = bare(UVec2::new(16, 12));
+        empty(&mut small);
         small.insert(Hdr);
         wall(
             &mut small,

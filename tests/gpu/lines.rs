@@ -77,7 +77,7 @@ fn at_the_skyline(depth: &DepthImage, x: u32, y: u32, reach: u32) -> bool {
 fn a_grazing_ground_to_the_horizon_has_one_line_the_skyline() {
     let mut small = Small::new(UVec2::new(200, 120), Msaa::Off);
     for operator in OPERATORS {
-        for (name, eye) in [("a hand", 0.1), ("eye height", 1.7), ("a tower", 40.0)] {
+        for (name, eye) in [("10 cm", 0.1), ("eye height", 1.7), ("40 m", 40.0)] {
             empty(&mut small, Msaa::Off);
             add(
                 &mut small,

@@ -157,7 +157,7 @@ pub fn assert_pass_is_its_twin(
 fn every_preset_is_its_twin_with_and_without_msaa() {
     let mut small = Small::new(UVec2::new(80, 56), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let mut small = Small::new(UVec2::new(80, 56), msaa);
+        small.restart(msaa);
         for preset in presets::ALL {
             let style = preset.style().sanitized();
             assert_pass_is_its_twin(&mut small, &style, None, &format!("{preset}, {msaa:?}"));

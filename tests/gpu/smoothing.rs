@@ -100,7 +100,7 @@ fn run(
             | if s.offset.is_none() { ORTHOGRAPHIC } else { 0 };
         let floats = [
             s.offset.unwrap_or(0.0) as f32,
-            outliers.map_or(0.0, |(share, _, _)| share),
+            outliers.map_or(0.0, |(fraction, _, _)| fraction),
             s.hysteresis as f32,
             way(frame.seconds, s.expand),
             way(frame.seconds, s.shrink),
@@ -421,7 +421,7 @@ fn ends_that_would_pass_each_other_meet() {
 #[test]
 fn percentiles_are_the_twins_and_grow_with_the_area() {
     let mut random = Random::new(3);
-    for share in [0.001f32, 0.005, 0.05, 0.2] {
+    for fraction in [0.001f32, 0.005, 0.05, 0.2] {
         for cluster in [0.0f32, 0.5] {
             let mut table: Vec<f32> = (0..20_000)
                 .map(|_| {
@@ -443,14 +443,14 @@ fn percentiles_are_the_twins_and_grow_with_the_area() {
                     table.iter().copied().fold(1.0, f32::min),
                 ];
                 let found = [frame(ends[0], ends[1], 0.0)];
-                let got = run(&SMOOTH, &found, Some((share, &bins, total)))[0]
+                let got = run(&SMOOTH, &found, Some((fraction, &bins, total)))[0]
                     .expect("geometry")
                     .map(f32::from_bits);
                 let want =
-                    smoothing::percentiles(&bins, total, f64::from(share), ends.map(f64::from));
+                    smoothing::percentiles(&bins, total, f64::from(fraction), ends.map(f64::from));
                 for (got, want) in got.iter().zip(want) {
                     let apart = (f64::from(*got) / want - 1.0).abs();
-                    assert!(apart < 1e-5, "{share}, {intruders}: {got} for {want}");
+                    assert!(apart < 1e-5, "{fraction}, {intruders}: {got} for {want}");
                 }
                 if let Some(before) = before
                     && intruders == 1
@@ -462,8 +462,11 @@ fn percentiles_are_the_twins_and_grow_with_the_area() {
                         "{before:?} {got:?}"
                     );
                 }
-                if intruders as f32 > 1.5 * share * 20_000.0 {
-                    assert!(got[0] > 0.75, "a share of {intruders} counts: {got:?}");
+                if intruders as f32 > 1.5 * fraction * 20_000.0 {
+                    assert!(
+                        got[0] > 0.75,
+                        "{intruders} pixels of 20,000 are no outliers: {got:?}"
+                    );
                 }
                 before = Some(got);
             }

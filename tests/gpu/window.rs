@@ -171,7 +171,7 @@ impl Window {
 
     /// A point in a widget: a fraction of its width, the middle of its height.
     /// Waits until the widget no longer moves.
-    fn place(&self, widget: &str, share: f64) -> [String; 2] {
+    fn place(&self, widget: &str, fraction: f64) -> [String; 2] {
         let mut state = self.until(widget, |state| state["widgets"][widget].is_array());
         loop {
             self.frames(3);
@@ -183,13 +183,13 @@ impl Window {
             }
         }
         let side = |i: usize| state["widgets"][widget][i].as_f64().expect("a number");
-        let x = side(0) + share * (side(2) - side(0));
+        let x = side(0) + fraction * (side(2) - side(0));
         let y = 0.5 * (side(1) + side(3));
         [x, y].map(|v| format!("{}", (v * self.scale).round()))
     }
 
-    pub fn point(&self, widget: &str, share: f64) {
-        let [x, y] = self.place(widget, share);
+    pub fn point(&self, widget: &str, fraction: f64) {
+        let [x, y] = self.place(widget, fraction);
         self.xdotool(&["mousemove", &x, &y]);
         self.frames(2);
     }

@@ -168,9 +168,10 @@ fn a_deferred_camera_looks_like_a_forward_one() {
 
 #[test]
 fn styles_work_beside_the_engines_post_processes() {
+    let mut small = Small::new(size(), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         for hdr in [false, true] {
-            let mut small = Small::new(size(), msaa);
+            small.restart(msaa);
             small.style(&full_style());
             if hdr {
                 small.insert((Hdr, bevy::post_process::bloom::Bloom::NATURAL));
