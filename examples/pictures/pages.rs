@@ -101,7 +101,7 @@ fn objects() -> RgbaImage {
             .id()
     };
     let ground = Plane3d::default().mesh().size(40.0, 40.0).build();
-    spawn(ground, Color::srgb(0.93, 0.84, 0.66), Vec3::ZERO);
+    let ground = spawn(ground, Color::srgb(0.93, 0.84, 0.66), Vec3::ZERO);
     let [mut cubes, mut balls] = [[Entity::PLACEHOLDER; 3]; 2];
     for (i, hue) in [20.0, 150.0, 250.0].into_iter().enumerate() {
         let x = 2.6 * (i as f32 - 1.0);
@@ -126,6 +126,8 @@ fn objects() -> RgbaImage {
         world.entity_mut(middle).insert(own);
         world.entity_mut(right).insert(NoOutlines::default());
     }
+    // Where a toy stands, the line is the toy's.
+    world.entity_mut(ground).insert(NoOutlines::default());
     headless.step(SETTLE);
     headless.picture()
 }

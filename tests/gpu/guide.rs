@@ -202,17 +202,48 @@ partial style: as the camera has it), a field that is left out has its default. 
 This page is made from the types by a test, which fails where the two differ.
 ";
 
-    fn plain(docs: Option<&str>) -> String {
-        // Examples are on another page.
+    /// Documentation as Markdown, without its examples, and with names in place of links to items.
+    fn prose(docs: Option<&str>) -> String {
+        // Examples have their own page.
         let docs: String = docs.unwrap_or_default().split("```").step_by(2).collect();
-        let joined: Vec<&str> = docs.lines().map(str::trim).collect();
-        let joined = joined.join(" ");
-        // Links to items do not resolve here.
-        let text: Vec<&str> = joined.trim().split('`').collect();
-        text.join("`")
-            .replace("[`", "`")
-            .replace("`]", "`")
-            .replace('|', "\\|")
+        let mut text = String::new();
+        for line in docs.lines().map(str::trim) {
+            if line.starts_with('[') && line.contains("]: ") {
+                continue;
+            }
+            let line = line
+                .strip_prefix("# ")
+                .map_or(line.to_owned(), |title| format!("### {title}"));
+            text += &without_links(&line);
+            text.push('\n');
+        }
+        while text.contains("\n\n\n") {
+            text = text.replace("\n\n\n", "\n\n");
+        }
+        text.trim().to_owned()
+    }
+
+    fn without_links(line: &str) -> String {
+        let mut text = String::new();
+        let mut rest = line;
+        while let Some((before, link)) = rest.split_once("[`")
+            && let Some((name, after)) = link.split_once("`]")
+        {
+            text += &format!("{before}`{name}`");
+            rest = match after
+                .strip_prefix('(')
+                .and_then(|path| path.split_once(')'))
+            {
+                Some((_, after)) => after,
+                None => after,
+            };
+        }
+        text + rest
+    }
+
+    /// The same in one line, for a table.
+    fn plain(docs: Option<&str>) -> String {
+        prose(docs).replace('\n', " ").replace('|', "\\|")
     }
 
     fn kind(field: &NamedField) -> String {
@@ -248,7 +279,7 @@ This page is made from the types by a test, which fails where the two differ.
 
     fn section_of(info: &'static TypeInfo, page: &mut String) {
         let name = info.type_path_table().short_path();
-        let _ = write!(page, "\n## {name}\n\n{}\n", plain(info.docs()));
+        let _ = write!(page, "\n## {name}\n\n{}\n", prose(info.docs()));
         match info {
             TypeInfo::Struct(info) => fields(page, info.iter()),
             TypeInfo::Enum(info) => {
@@ -276,7 +307,7 @@ This page is made from the types by a test, which fails where the two differ.
 
     /// The style, with an entry for each registered effect.
     fn style(page: &mut String, effects: &[&EffectType]) {
-        let docs = plain(ComicStyle::type_info().docs());
+        let docs = prose(ComicStyle::type_info().docs());
         let _ = write!(
             page,
             "\n## ComicStyle\n\n{docs}\n\n| entry | type | meaning |\n|---|---|---|\n\
