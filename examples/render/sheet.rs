@@ -25,7 +25,11 @@ pub fn scale_factor(size: UVec2) -> f32 {
 /// The scene without a style and in every preset, in rows.
 pub fn shoot(headless: &mut Headless, camera: Entity) -> RgbaImage {
     let mut looks = vec![("original", ComicStyle::new())];
-    looks.extend(presets::ALL.iter().map(|preset| (preset.name(), preset.style())));
+    looks.extend(
+        presets::ALL
+            .iter()
+            .map(|preset| (preset.name(), preset.style())),
+    );
     let size = headless.options.size;
     let names: Vec<&str> = looks.iter().map(|(name, _)| *name).collect();
     let labels = labels(headless, size, &names);
