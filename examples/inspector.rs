@@ -1,6 +1,6 @@
-//! The style inspector on a built-in scene, with one camera or two.
+//! The inspector on a built-in scene, with one or two cameras.
 //!
-//! `cargo run --features inspector --example inspector -- --help`
+//! `cargo run --example inspector -- --help`
 
 use std::{fs, path::PathBuf, time::Instant};
 
@@ -22,21 +22,21 @@ use bevy_comics_testkit::{
 };
 
 const HELP: &str = "\
-The style inspector on a built-in scene. F10 opens and closes the panel.
+The inspector on a built-in scene. F10 opens and closes the panel.
 
     --scene NAME       mountains, teapot, theatre or village (village)
-    --style NAME       a preset to begin with (ligne-claire)
+    --style NAME       the first style, a preset (ligne-claire)
     --cameras N        1, or 2 side by side (1)
-    --size WxH         of the window, physical pixels (1280x720)
+    --size WxH         size of the window in physical pixels (1280x720)
     --scale FACTOR     scale factor of the window (the system's)
-    --styles FOLDER    where style files are (assets/styles)
-    --pictures FOLDER  where pictures go (screenshots)
-    --memory FILE      what the panel remembers, `none` for nothing
-    --open             open the panel at once
+    --styles FOLDER    folder of style files (assets/styles)
+    --pictures FOLDER  folder of screenshots (screenshots)
+    --memory FILE      file of the panel's settings, `none` for no file
+    --open             start with the panel open
     --state FILE       write what the panel shows to a JSON file, every frame
-    --bench FRAMES     print the mean time of so many frames, then end
-    --bare             without the inspector, to compare with
-    --help             this
+    --bench FRAMES     print the mean time of this number of frames, then exit
+    --bare             without the inspector
+    --help             print this text
 ";
 
 #[derive(Resource, Clone)]
@@ -133,7 +133,7 @@ fn main() {
         .run();
 }
 
-/// The side of a camera that shares the window.
+/// Marks a camera of the window: 0 is the left one or the only one, 1 the right.
 #[derive(Component)]
 struct Half(u32);
 
@@ -145,7 +145,7 @@ fn setup(mut stage: Stage, options: Res<Options>, inspector: Option<ResMut<Comic
     for i in 0..options.cameras {
         let mut view = vantage.clone();
         if i == 1 {
-            // From a little aside.
+            // A little to the side of the first camera.
             let away = view.eye - view.target;
             view.eye = view.target + Quat::from_rotation_y(0.35) * away;
         }
@@ -167,7 +167,8 @@ fn setup(mut stage: Stage, options: Res<Options>, inspector: Option<ResMut<Comic
     }
 }
 
-/// Two cameras share the window; the second is drawn after the first.
+/// Two cameras share the window: the first draws to its left half, the second to
+/// its right half.
 fn lay_out(
     options: Res<Options>,
     window: Single<&Window>,
@@ -186,7 +187,7 @@ fn lay_out(
             .as_ref()
             .is_some_and(|v| v.physical_size.y > size.y)
         {
-            // A picture is being taken.
+            // A screenshot is being taken.
             continue;
         }
         let width = size.x / 2;
@@ -211,12 +212,12 @@ fn lay_out(
     }
 }
 
-/// Writes what the panel shows, for whoever watches from outside.
+/// Writes the state of the panel and the cameras to a file, for tests.
 fn tell(world: &mut World) {
     let Some(path) = world.resource::<Options>().state.clone() else {
         return;
     };
-    // Always in the same order, whatever components come and go.
+    // Queries do not keep the order when components come and go.
     let mut cameras: Vec<(u32, Entity)> = world
         .query::<(Entity, &Half)>()
         .iter(world)
@@ -240,7 +241,7 @@ fn tell(world: &mut World) {
             })
         })
         .collect();
-    // The panel's own camera is the only one without depth here.
+    // The panel's camera is the only 2D camera here.
     let panel_cameras = world
         .query_filtered::<(), With<Camera2d>>()
         .iter(world)
@@ -255,7 +256,7 @@ fn tell(world: &mut World) {
         "panel_cameras": panel_cameras,
         "cameras": cameras,
     });
-    // Whoever reads it finds all of it.
+    // Readers never see a partial file.
     let part = path.with_extension("part");
     if let Err(error) = fs::write(&part, state.to_string()).and_then(|()| fs::rename(&part, &path))
     {
@@ -263,7 +264,7 @@ fn tell(world: &mut World) {
     }
 }
 
-/// The mean time of a frame, once everything is compiled and shown.
+/// Prints the mean time of a frame, after frames in which pipelines compile.
 fn bench(
     options: Res<Options>,
     mut frames: Local<u32>,
@@ -280,7 +281,7 @@ fn bench(
     }
     if let Some(started) = started.filter(|_| *frames >= WARM_UP + wanted) {
         let mean = started.elapsed().as_secs_f64() * 1e3 / f64::from(wanted);
-        println!("{mean:.3} ms a frame, mean of {wanted}");
+        println!("{mean:.3} ms per frame, mean of {wanted}");
         exit.write(AppExit::Success);
     }
 }

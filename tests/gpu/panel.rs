@@ -10,10 +10,10 @@ use serde_json::Value;
 
 use crate::window::{Window, changed};
 
-/// Size of the window; small, because a CPU may draw it.
+/// Size of the window in pixels; small, because a CPU may draw it.
 const WIDTH: u32 = 820;
 const HEIGHT: u32 = 600;
-/// Width of the part left of the panel, in pixels.
+/// Width of the picture left of the panel in pixels.
 const PICTURE: u32 = 330;
 
 fn picture(window: &Window) -> RgbImage {
@@ -35,8 +35,8 @@ fn until_width(window: &Window, wanted: f32) {
     });
 }
 
-/// A whole session: open, change, undo, save, edit the file outside, break it,
-/// repair it, compare, photograph, close.
+/// A whole session: open, change, undo, search, save, edit the file by another
+/// program, break it, repair it, compare, take a screenshot, close.
 #[test]
 fn a_style_is_tuned_in_a_window() {
     let window = Window::open([WIDTH, HEIGHT], 1.0, &[]);
@@ -128,7 +128,7 @@ fn a_style_is_tuned_in_a_window() {
     let saved = ComicStyle::from_ron(&fs::read_to_string(&path).expect("saved")).expect("it reads");
     assert_eq!(saved.get::<Contours>(), window.style(0).get::<Contours>());
 
-    // The file is edited outside.
+    // Another program edits the file.
     let edit = |width: f32| {
         saved.clone().with(Contours {
             width,
@@ -143,20 +143,20 @@ fn a_style_is_tuned_in_a_window() {
         "a file that is edited is seen at once"
     );
 
-    // Break it: the last good style stays, the panel says where it is broken.
+    // Break the file: the last valid style stays, the panel shows the error.
     fs::write(&path, "(version: 2,\n    contours: (widht: 3.0))").expect("written");
     window.until("the error", |state| {
         state["widgets"]["files.error"].is_array()
     });
     assert_eq!(width(&window), 1.25);
     assert!(changed(&thin, &picture(&window)) < 50, "the picture stays");
-    // Recover.
+    // Repair it.
     fs::write(&path, edit(5.0).to_ron().expect("text")).expect("written");
     until_width(&window, 5.0);
     window.until("no error", |state| {
         state["widgets"]["files.error"].is_null()
     });
-    // A change that came from the file can be undone.
+    // A change from the file can be undone.
     window.click("undo");
     until_width(&window, 1.25);
     window.click("files.load");
@@ -195,7 +195,7 @@ fn a_style_is_tuned_in_a_window() {
     window.click("tab.Cost");
     window.until("the times", |state| state["widgets"]["times"].is_array());
 
-    // A photograph, twice as large as the window.
+    // A screenshot, twice as large as the window.
     window.click("tab.Photo");
     window.click("photo.take");
     window.until("the photograph", |state| {
@@ -211,7 +211,7 @@ fn a_style_is_tuned_in_a_window() {
     let shades: std::collections::HashSet<_> = photo.pixels().collect();
     assert!(shades.len() > 200, "the photograph shows the scene");
 
-    // Close: no widget is left.
+    // Close: the panel leaves nothing behind.
     window.key("F10");
     let state = window.until("the end", |state| state["panel_cameras"] == 0);
     assert_eq!(state["widgets"].as_object().map(|w| w.len()), Some(0));

@@ -1,4 +1,5 @@
-//! The inspector in a real window, driven by keys and mouse through the X server.
+//! The inspector's example in a window of a virtual X server, driven by keyboard
+//! and mouse events of that server.
 
 use std::{
     cell::Cell,
@@ -16,20 +17,20 @@ use serde_json::Value;
 
 use crate::command_line::example;
 
-/// Longest wait for a state, for slow machines.
+/// Time after which an expected state is given up, also on a slow machine.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-/// The example in a window of its own X server.
+/// The running example and its X server.
 pub struct Window {
-    /// Physical pixels.
+    /// Size in physical pixels.
     pub size: [u32; 2],
-    /// Physical pixels per logical point.
+    /// Physical pixels per logical pixel.
     scale: f64,
     server: Child,
     app: Child,
     display: String,
     pub folder: PathBuf,
-    /// Whether a button is held; the pointer must not move then.
+    /// Whether a mouse button is held; the pointer is not moved then.
     pub held: Cell<bool>,
 }
 
@@ -54,10 +55,11 @@ fn tool(name: &str) -> Command {
 }
 
 impl Window {
-    /// Opens a window of `size` physical pixels, `scale` of them per logical point.
+    /// Starts the example in a window of a size in physical pixels, with `scale`
+    /// physical pixels per logical pixel.
     pub fn open(size: [u32; 2], scale: f64, arguments: &[&str]) -> Self {
         let program = example("inspector");
-        // Each window of a test run has its own server.
+        // Every window of a test run has its own server.
         static OPENED: AtomicU32 = AtomicU32::new(0);
         let opened = OPENED.fetch_add(1, Ordering::Relaxed);
         let number = 100 + (16 * std::process::id() + opened) % 20_000;
@@ -69,7 +71,7 @@ impl Window {
                 "0",
                 &format!("{}x{}x24", size[0], size[1]),
             ])
-            // No key repeat: a key held during a slow frame is one press.
+            // No key repeat: slow frames would make one press several.
             .arg("-r")
             .stderr(Stdio::null())
             .spawn()
@@ -117,7 +119,7 @@ impl Window {
         window
     }
 
-    /// The window's size in logical points.
+    /// The window's size in logical pixels.
     pub fn points(&self) -> [f64; 2] {
         self.size.map(|pixels| f64::from(pixels) / self.scale)
     }
@@ -132,7 +134,7 @@ impl Window {
         assert!(status.success(), "xdotool {arguments:?}");
     }
 
-    /// The last lines of the log.
+    /// The last lines of the app's log.
     fn log(&self) -> String {
         let log = fs::read_to_string(self.folder.join("log")).unwrap_or_default();
         let lines: Vec<&str> = log.lines().collect();
@@ -154,14 +156,14 @@ impl Window {
             }
             assert!(
                 started.elapsed() < PATIENCE,
-                "{what} does not come: {state}\n{}",
+                "timed out waiting for {what}: {state}\n{}",
                 self.log()
             );
             sleep(Duration::from_millis(15));
         }
     }
 
-    /// Waits for `count` frames.
+    /// Waits for this number of frames.
     pub fn frames(&self, count: u64) {
         let now = self.state()["frame"].as_u64().unwrap_or(0);
         self.until("the next frame", |state| {
@@ -169,8 +171,8 @@ impl Window {
         });
     }
 
-    /// A point in a widget: a fraction of its width, the middle of its height.
-    /// Waits until the widget no longer moves.
+    /// A position in a widget in physical pixels: at a fraction of its width, in the
+    /// middle of its height. Waits until the widget does not move.
     fn place(&self, widget: &str, fraction: f64) -> [String; 2] {
         let mut state = self.until(widget, |state| state["widgets"][widget].is_array());
         loop {
@@ -188,20 +190,22 @@ impl Window {
         [x, y].map(|v| format!("{}", (v * self.scale).round()))
     }
 
+    /// Moves the pointer to a widget.
     pub fn point(&self, widget: &str, fraction: f64) {
         let [x, y] = self.place(widget, fraction);
         self.xdotool(&["mousemove", &x, &y]);
         self.frames(2);
     }
 
-    /// Presses and releases at once: a press longer than 0.8 s is no click, and
-    /// frames are slow here.
+    /// Clicks a widget. The button goes down and up at once, because a long press
+    /// is not a click and frames may be slow.
     pub fn click(&self, widget: &str) {
         self.point(widget, 0.5);
         self.xdotool(&["click", "1"]);
         self.frames(3);
     }
 
+    /// Drags the pointer from one fraction of a widget's width to another.
     pub fn drag(&self, widget: &str, from: f64, to: f64) {
         let ends = [self.place(widget, from), self.place(widget, to)];
         self.xdotool(&["mousemove", &ends[0][0], &ends[0][1]]);
@@ -214,7 +218,8 @@ impl Window {
         self.frames(3);
     }
 
-    /// A key with others held. The panel reads held keys once per frame.
+    /// Presses a key while others are held. The panel reads held keys once per
+    /// frame.
     pub fn chord(&self, held: &[&str], key: &str) {
         for held in held {
             self.xdotool(&["keydown", held]);
@@ -251,9 +256,9 @@ impl Window {
         });
     }
 
-    /// The screen, once no pipeline compiles.
+    /// A picture of the screen when all pipelines are compiled.
     pub fn picture(&self) -> RgbImage {
-        // Moves the pointer to where no tooltip appears.
+        // No tooltip is in the picture.
         if !self.held.get() {
             let [x, y] = self.size.map(|v| (v - 12).to_string());
             self.xdotool(&["mousemove", &x, &y]);
@@ -270,7 +275,7 @@ impl Window {
             .status()
             .expect("import runs");
         assert!(status.success(), "no picture of the screen");
-        // Kept, to look at when a test fails.
+        // The last picture is kept, to look at when a test fails.
         let _ = fs::copy(
             &path,
             Path::new(env!("CARGO_TARGET_TMPDIR")).join("panel.png"),
@@ -279,7 +284,7 @@ impl Window {
     }
 }
 
-/// Number of pixels that differ by more than 6 codes.
+/// The number of pixels that differ visibly.
 pub fn changed(a: &RgbImage, b: &RgbImage) -> usize {
     let apart = |a: &image::Rgb<u8>, b: &image::Rgb<u8>| (0..3).any(|i| a[i].abs_diff(b[i]) > 6);
     a.pixels()
