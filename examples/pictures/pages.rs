@@ -169,14 +169,15 @@ fn split_screen() -> RgbaImage {
     studio.headless.picture()
 }
 
-/// A pane of red glass, this far in front of the camera and this far to the right of its axis.
-fn pane(studio: &mut Studio, distance: f32, right: f32) -> Entity {
+/// A pane of red glass: its distance from the camera, how far it is to the right of the camera's
+/// axis, and its height, world units.
+fn pane(studio: &mut Studio, [distance, right, height]: [f32; 3]) -> Entity {
     let eye = studio.vantage.transform();
     let at = eye.translation + eye.forward() * distance + eye.right() * right;
     let world = studio.headless.app.world_mut();
     let mesh = world
         .resource_mut::<Assets<Mesh>>()
-        .add(Rectangle::new(4.0, 3.4));
+        .add(Rectangle::new(1.2 * height, height));
     let material = world
         .resource_mut::<Assets<StandardMaterial>>()
         .add(StandardMaterial {
@@ -198,7 +199,7 @@ fn pane(studio: &mut Studio, distance: f32, right: f32) -> Entity {
 /// Glass before half of the view takes the depth, and so the grey, of what is behind it.
 fn transparency() -> RgbaImage {
     let mut studio = Studio::new(BuiltIn::Teapot, SIZE, Msaa::Sample4);
-    pane(&mut studio, 6.0, 2.0);
+    pane(&mut studio, [6.0, 2.0, 3.4]);
     let style = ComicStyle::new()
         .with(Desaturation::default())
         .with(Contours::default());
@@ -210,7 +211,7 @@ fn glass() -> RgbaImage {
     const AFTER: RenderLayers = RenderLayers::layer(1);
     let mut studio = Studio::new(BuiltIn::Teapot, SIZE, Msaa::Sample4);
     let distance = studio.vantage.eye.distance(studio.vantage.target);
-    let pane = pane(&mut studio, distance, 1.2);
+    let pane = pane(&mut studio, [distance, 3.4, 6.0]);
     let style = ComicStyle::new().with(Outlines::default());
     let under = studio.shoot(Some(&style));
     let target = studio.headless.render_target();
