@@ -259,22 +259,24 @@ fn styles_as_rust() -> String {
     })
     .turn_off::<Outlines>()
     .partial();
-    let mut styles: Vec<(String, ComicStyle)> = presets::ALL
-        .iter()
-        .map(|preset| (preset.name().replace('-', "_"), preset.style()))
-        .collect();
-    styles.push(("other".into(), other));
-    let mut code = String::from("use bevy::prelude::*;\nuse bevy_comics::prelude::*;\n");
+    let mut code = String::from("use bevy::prelude::*;\nuse bevy_comics::{prelude::*, presets};\n");
     let mut checks = String::new();
-    for (name, style) in styles {
+    let mut add = |function: &str, style: &ComicStyle, check: &str| {
         let built = style.to_rust();
         let file = style.to_ron().expect("text");
-        writeln!(code, "fn {name}() -> ComicStyle {{\n{built}\n}}").expect("written");
+        writeln!(code, "fn {function}() -> ComicStyle {{\n{built}\n}}").expect("written");
         writeln!(
             checks,
-            "assert_eq!({name}(), ComicStyle::from_ron({file:?}).unwrap(), {name:?});"
+            "assert_eq!({function}().to_ron().unwrap(), {file:?});\n{check}"
         )
         .expect("written");
+    };
+    add("other", &other, "");
+    for preset in presets::ALL {
+        let name = preset.name();
+        let function = name.replace('-', "_");
+        let check = format!("assert_eq!({function}(), presets::find({name:?}).unwrap().style());");
+        add(&function, &preset.style(), &check);
     }
     format!("{code}pub fn check() {{\n{checks}}}\n")
 }
