@@ -1,6 +1,6 @@
 //! A crate outside the repository, built with the engine that our own tests are built with.
 //!
-//! Tests add their files to one crate, so that bevy_comics is compiled once for all of them.
+//! Tests add their files to one crate, so that `bevy_comics` is compiled once for all of them.
 
 use std::{
     env, fs,
