@@ -1,4 +1,4 @@
-//! The smallest comic: the README's lines and something to look at.
+// The first program of the README.
 
 use bevy::prelude::*;
 use bevy_comics::prelude::*;
@@ -10,36 +10,26 @@ fn main() {
         .run();
 }
 
-fn setup(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    commands.spawn((
-        Camera3d::default(),
-        Transform::from_xyz(4.0, 3.0, 7.0).looking_at(Vec3::Y, Vec3::Y),
-        Contours::default(),
-        Desaturation::default(),
-    ));
-    commands.spawn((
-        DirectionalLight {
-            shadow_maps_enabled: true,
-            ..default()
-        },
-        Transform::from_xyz(3.0, 6.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y),
-    ));
-    let ground = meshes.add(Plane3d::default().mesh().size(30.0, 30.0));
-    commands.spawn((
-        Mesh3d(ground),
-        MeshMaterial3d(materials.add(Color::srgb(0.85, 0.75, 0.5))),
-    ));
-    for i in 0..12 {
-        let (angle, hue) = (i as f32 * 1.9, i as f32 * 30.0);
-        let at = Vec3::new(angle.sin() * i as f32 * 0.8, 0.75, 2.0 - i as f32);
+fn setup(mut commands: Commands, assets: Res<AssetServer>) {
+    let from = |x, y, z| Transform::from_xyz(x, y, z).looking_at(Vec3::ZERO, Vec3::Y);
+    let eye = from(0.0, 12.0, 10.0);
+    commands.spawn((Camera3d::default(), eye, Outlines::default()));
+
+    let sun = DirectionalLight {
+        shadow_maps_enabled: true,
+        ..default()
+    };
+    commands.spawn((sun, from(8.0, 9.0, 3.0)));
+
+    for i in (0..300).map(|i| i as f32) {
+        let mesh = Mesh::from(Cylinder::new(0.75, 3.0 + i.sqrt().cos()));
+        let paint = StandardMaterial::from(Color::oklch(0.72, 0.15, 137.5 * i));
+        let place = Quat::from_rotation_y(2.4 * i) * Vec3::Z * i.sqrt();
         commands.spawn((
-            Mesh3d(meshes.add(Sphere::new(0.75))),
-            MeshMaterial3d(materials.add(Color::hsl(hue, 0.8, 0.55))),
-            Transform::from_translation(at),
+            Mesh3d(assets.add(mesh)),
+            MeshMaterial3d(assets.add(paint)),
+            Transform::from_translation(place),
+            CartoonScene::default(),
         ));
     }
 }

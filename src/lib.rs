@@ -8,12 +8,27 @@
 //!     App::new().add_plugins((DefaultPlugins, ComicsPlugin)).add_systems(Startup, setup).run();
 //! }
 //!
-//! fn setup(mut commands: Commands) {
-//!     commands.spawn((Camera3d::default(), Contours::default(), Desaturation::default()));
+//! fn setup(mut commands: Commands, assets: Res<AssetServer>) {
+//!     let from = |x, y, z| Transform::from_xyz(x, y, z).looking_at(Vec3::ZERO, Vec3::Y);
+//!     let eye = from(0.0, 12.0, 10.0);
+//!     commands.spawn((Camera3d::default(), eye, Outlines::default()));
+//!     let sun = DirectionalLight { shadow_maps_enabled: true, ..default() };
+//!     commands.spawn((sun, from(8.0, 9.0, 3.0)));
+//!     for i in (0..300).map(|i| i as f32) {
+//!         let mesh = Mesh::from(Cylinder::new(0.75, 3.0 + i.sqrt().cos()));
+//!         let paint = StandardMaterial::from(Color::oklch(0.72, 0.15, 137.5 * i));
+//!         let place = Quat::from_rotation_y(2.4 * i) * Vec3::Z * i.sqrt();
+//!         commands.spawn((
+//!             Mesh3d(assets.add(mesh)),
+//!             MeshMaterial3d(assets.add(paint)),
+//!             Transform::from_translation(place),
+//!             CartoonScene::default(),
+//!         ));
+//!     }
 //! }
 //! ```
 //!
-//! Add the plugin, put a style component on a camera, and that camera draws a
+//! Add the plugin, put effects on a camera as components, and that camera draws a
 //! comic. In every frame:
 //!
 //! 1. the components of a camera become a plan; what is absent, or changes
@@ -86,10 +101,32 @@ pub use style::{
     StyleTransition, StyleTransitionFinished, TransitionEasing, presets,
 };
 
-/// The guide's code, compiled.
+/// The code of the README and of the pages, compiled as doctests. That of
+/// `your-own-effect.md` has several files and is compiled by `tests/gpu`.
 #[cfg(doctest)]
-#[doc = include_str!("../docs/your-own-style.md")]
-struct Guide;
+mod pages {
+    macro_rules! pages {
+        ($($Page:ident: $path:literal;)*) => {
+            $(#[doc = include_str!(concat!("../", $path))] struct $Page;)*
+        };
+    }
+
+    pages! {
+        Readme: "README.md";
+        YourOwnStyle: "docs/your-own-style.md";
+        StylesAndPresets: "docs/styles-and-presets.md";
+        OneObjectsLines: "docs/one-objects-lines.md";
+        ExcludeAnObject: "docs/exclude-an-object.md";
+        CartoonMaterial: "docs/cartoon-material.md";
+        FixedRange: "docs/fixed-range.md";
+        SplitScreen: "docs/split-screen.md";
+        TransparentThings: "docs/transparent-things.md";
+        Inspector: "docs/inspector.md";
+        Performance: "docs/performance.md";
+        Benchmarks: "docs/benchmarks.md";
+        Troubleshooting: "docs/troubleshooting.md";
+    }
+}
 
 /// What most games need: `use bevy_comics::prelude::*;`.
 pub mod prelude {

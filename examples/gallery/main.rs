@@ -1,7 +1,6 @@
 //! A window on every scene in every preset.
 //!
-//! Drag to orbit, wheel to come closer; the keys are on the screen. With the
-//! feature `inspector`, F10 opens the panel.
+//! Drag to orbit, wheel to come closer; the keys are on the screen.
 
 mod split;
 
@@ -9,7 +8,8 @@ use bevy::{
     camera::Hdr, ecs::system::SystemParam, prelude::*, render::view::Msaa, window::WindowResolution,
 };
 use bevy_comics::{
-    CartoonScene, ComicsDiagnostics, ComicsPlugin, Preset, StageOutcome, VisibleDepthRange, presets,
+    CartoonScene, ComicsDiagnostics, ComicsPlugin, Preset, StageOutcome, VisibleDepthRange,
+    inspector::ComicsInspectorPlugin, presets,
 };
 use bevy_comics_testkit::{
     orbit::{Orbit, OrbitPlugin},
@@ -48,6 +48,7 @@ D            HDR on / off
 C            compare with the original
 [ ]          move the split
 R            camera back to the start
+F10          the panel
 H            hide this";
 
 fn main() {
@@ -60,10 +61,11 @@ fn main() {
         }),
         ..default()
     }))
-    .add_plugins((ComicsPlugin, OrbitPlugin, split::SplitPlugin))
+    .add_plugins((ComicsPlugin, ComicsInspectorPlugin::default()))
+    .add_plugins((OrbitPlugin, split::SplitPlugin))
     .insert_resource(Show {
-        scene: BuiltIn::Mountains,
-        style: 0,
+        scene: BuiltIn::Village,
+        style: index_of(presets::GRAPHIC_NOVEL),
         orthographic: false,
         cartoon: false,
         help: true,
@@ -71,8 +73,6 @@ fn main() {
     })
     .add_systems(Startup, (spawn_text, open_scene))
     .add_systems(Update, (choose, light_scene, describe).chain());
-    #[cfg(feature = "inspector")]
-    app.add_plugins(bevy_comics::inspector::ComicsInspectorPlugin::default());
     app.run();
 }
 
@@ -137,8 +137,16 @@ fn light_scene(
     }
 }
 
+fn index_of(preset: Preset) -> usize {
+    let presets = presets::ALL;
+    presets.iter().position(|p| *p == preset).unwrap_or(0)
+}
+
 fn preset(index: usize) -> Preset {
-    presets::ALL.get(index).copied().unwrap_or(presets::NOIR)
+    presets::ALL
+        .get(index)
+        .copied()
+        .unwrap_or(presets::GRAPHIC_NOVEL)
 }
 
 fn apply(commands: &mut Commands, camera: Entity, index: usize) {

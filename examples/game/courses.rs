@@ -1,4 +1,4 @@
-//! The three courses, and what they are built of.
+//! The three levels: their courses and their scenes.
 
 use bevy::{asset::RenderAssetUsages, mesh::PrimitiveTopology, prelude::*};
 use bevy_comics::ComicStyle;
@@ -14,7 +14,7 @@ use crate::{
 pub struct Level {
     pub name: &'static str,
     pub scene: BuiltIn,
-    /// A preset.
+    /// Name of a preset.
     pub style: &'static str,
 }
 
@@ -42,6 +42,7 @@ impl Level {
     }
 }
 
+/// Offset of the `i`th object of a course, -1 to 1.
 fn wave(i: usize, pace: f32) -> f32 {
     (i as f32 * pace).sin()
 }
@@ -118,18 +119,20 @@ pub fn course(level: usize) -> Course {
     }
 }
 
-/// A part of the course: what is spawned for a level and goes with it.
+/// A lantern, by its index in [`Course::lanterns`].
 #[derive(Component)]
 pub struct LanternAt(pub usize);
 
+/// A storm cloud, by its index in [`Course::clouds`].
 #[derive(Component)]
 pub struct CloudAt(pub usize);
 
+/// The player's paper plane.
 #[derive(Component)]
 pub struct Plane;
 
-/// A folded sheet: two wings, which rise a little, and the keel between them, red
-/// so that the plane is found in every picture.
+/// A paper plane: two slightly raised wings, and between them a red keel, which makes the
+/// plane easy to see in every style.
 fn paper_plane() -> Mesh {
     const PAPER: [f32; 4] = [1.0, 0.98, 0.92, 1.0];
     const RED: [f32; 4] = [0.85, 0.08, 0.06, 1.0];
@@ -220,7 +223,7 @@ pub fn build(stage: &mut Stage, level: &Level, flight: &Flight) -> Vantage {
         }
     }
     let paper = stage.materials.add(StandardMaterial {
-        // Thin paper: what shines on one side is seen on the other.
+        // Thin paper transmits light.
         diffuse_transmission: 0.6,
         double_sided: true,
         cull_mode: None,

@@ -1,15 +1,16 @@
-//! Keyboard and gamepad, as one.
+//! The player's input, from keyboard and gamepad.
 
 use bevy::prelude::*;
 
 /// What the player does in this frame.
 #[derive(Resource, Clone, Copy, Debug, Default)]
 pub struct Input {
-    /// Right and up are positive, each -1 to 1.
+    /// Right and up are positive; its length is at most 1.
     pub steer: Vec2,
     pub boost: bool,
     pub slow: bool,
-    /// The rest is true in the frame of the press.
+    /// This field and those below are true only in the frame in which the button was
+    /// pressed.
     pub confirm: bool,
     pub pause: bool,
     pub photo: bool,
@@ -24,7 +25,7 @@ impl Plugin for InputPlugin {
     }
 }
 
-/// Sticks rest a little off their middle.
+/// Shorter deflections of a stick are ignored: sticks do not rest exactly in the middle.
 const DEAD_ZONE: f32 = 0.15;
 
 fn read(keys: Res<ButtonInput<KeyCode>>, pads: Query<&Gamepad>, mut input: ResMut<Input>) {

@@ -1,6 +1,5 @@
-//! Styles that do a game's work: every level has its own, danger is a red
-//! atmosphere that comes from the distance, slow motion is a sketch, a hit is
-//! ink, a lantern is light.
+//! Styles that tell the player what happens: every level has its own style, danger tints
+//! the distance red, slow motion is a sketch, a hit flashes in ink, a lantern in gold.
 
 use bevy::prelude::*;
 use bevy_comics::{
@@ -8,7 +7,7 @@ use bevy_comics::{
     Preset, Sketch, StyleTransition, StyleTransitionFinished, ToneBands, presets,
 };
 
-/// What the picture should say.
+/// The situation that the style shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mood {
     #[default]
@@ -20,19 +19,20 @@ pub enum Mood {
     Lost,
 }
 
-/// What is on the camera, and what was.
+/// The style of the camera: what is wanted, and what it has.
 #[derive(Resource, Debug, Default)]
 pub struct Looks {
     pub level: ComicStyle,
     pub mood: Mood,
-    /// 0 safe, 1 as dangerous as it gets.
+    /// 0 is safe, 1 is the greatest danger.
     pub danger: f32,
+    /// The mood whose style the camera has, or is getting.
     shown: Option<Mood>,
-    /// A hit or a lantern, on its way there and back.
+    /// The style of a hit or a lantern that is yet to flash.
     flash: Option<ComicStyle>,
-    /// Whether the camera is on its way to one.
+    /// Whether a transition to a flash is running.
     flashing: bool,
-    /// The danger that the camera shows.
+    /// The danger that the camera's style shows.
     tinted: f32,
 }
 
@@ -76,7 +76,7 @@ impl Looks {
         self.flash = Some(glow);
     }
 
-    /// The level, red with distance.
+    /// The style of the level, with a distance as red as the danger is great.
     fn in_danger(&self) -> ComicStyle {
         let contours = self.level.get::<Contours>().copied();
         let red = self
@@ -122,17 +122,17 @@ impl Looks {
     }
 }
 
-/// A preset of the crate.
+/// A preset by its name; `otherwise` if there is none.
 pub fn named(name: &str, otherwise: &ComicStyle) -> ComicStyle {
     presets::find(name).map_or_else(|| otherwise.clone(), Preset::style)
 }
 
-/// The camera that wears the looks.
+/// Marks the camera that gets the styles.
 #[derive(Component)]
 pub struct Dressed;
 
-/// Puts the look of the moment on the camera: fades where the mood changes,
-/// follows the danger where it does not.
+/// Gives the camera its style: by a transition when a flash begins or the mood changes,
+/// else at once when the danger changes.
 pub fn dress(
     mut looks: ResMut<Looks>,
     mut commands: Commands,
@@ -167,7 +167,7 @@ pub fn dress(
     }
 }
 
-/// After a flash the look comes back.
+/// Returns to the style of the mood after a flash.
 pub fn come_back(
     finished: On<StyleTransitionFinished>,
     mut looks: ResMut<Looks>,

@@ -1,8 +1,9 @@
-//! Paper Glider: fly a paper plane through a comic, collect the lanterns before
-//! the time is up, keep away from the storm clouds.
+//! Paper Glider: fly a paper plane through a comic, collect the lanterns before the time
+//! is up, and avoid the storm clouds.
 //!
-//! `cargo run --example game`, or with `--features inspector` for a photo mode
-//! with the panel. Keys and gamepad are on the title page.
+//! `cargo run --example game`. The title page lists the keys and gamepad buttons. The
+//! photo mode opens the inspector's panel (feature `inspector`, which is always on for
+//! this repository's examples).
 
 mod courses;
 mod input;
@@ -21,7 +22,7 @@ use input::{Input, InputPlugin};
 use looks::{Dressed, Looks, Mood, come_back, dress};
 use rules::{Controls, Event, Flight};
 
-/// What is on the screen.
+/// The page that is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Page {
     #[default]
@@ -38,11 +39,11 @@ struct Game {
     page: Page,
     level: usize,
     flight: Flight,
-    /// Of the levels before.
+    /// Points of the levels before this one.
     score: u32,
-    /// Who flies.
+    /// Whether the autopilot flies.
     autopilot: bool,
-    /// Whether the level has to be built.
+    /// Whether the level is still to be built.
     fresh: bool,
 }
 
@@ -68,10 +69,10 @@ impl Game {
 const HELP: &str = "\
 Paper Glider. Without arguments it opens a window.
 
-    --level N        begin with level 1, 2 or 3
-    --play           fly a level by itself, without a window, and say how it went
-    --picture FILE   with --play: a picture from the midst of the flight
-    --help           this
+    --level N        start with level 1, 2 or 3
+    --play           let the autopilot fly a level without a window, and print the result
+    --picture FILE   with --play: save a picture when half of the lanterns are found, and exit
+    --help           print this help
 ";
 
 fn main() {
@@ -117,8 +118,9 @@ fn start() -> Result<(), lexopt::Error> {
     Ok(())
 }
 
-/// Flies a level without a window, a twentieth of a second a frame; the exit
-/// code says whether it was won.
+/// Lets the autopilot fly a level without a window, at 1/20 s per frame. Returns the exit
+/// code: 0 for a won level or a saved picture, 1 for a lost level, 2 for a picture that
+/// cannot be saved.
 fn play_by_itself(level: usize, picture: Option<std::path::PathBuf>) -> i32 {
     let options = HeadlessOptions {
         size: if picture.is_some() {
@@ -163,7 +165,7 @@ fn play_by_itself(level: usize, picture: Option<std::path::PathBuf>) -> i32 {
             break;
         }
     }
-    // The look of the end fades in as well.
+    // Also runs the transition to the style of the last page.
     headless.step(30);
     let game = headless.app.world().resource::<Game>();
     let won = game.page == Page::Won;
@@ -179,11 +181,11 @@ fn play_by_itself(level: usize, picture: Option<std::path::PathBuf>) -> i32 {
     i32::from(!won)
 }
 
-/// Where the camera draws, if not to the window.
+/// The camera's render target, if it is not the window.
 #[derive(Resource)]
 struct Target(bevy::camera::RenderTarget);
 
-/// The game without input and text.
+/// The game without input devices and text.
 struct GamePlugin {
     level: usize,
 }
@@ -207,7 +209,7 @@ impl Plugin for GamePlugin {
     }
 }
 
-/// Menus: what a press of a button leads to.
+/// Changes the page when a button is pressed.
 fn turn_pages(mut game: ResMut<Game>, input: Res<Input>) {
     let page = game.page;
     game.page = match page {
@@ -266,12 +268,12 @@ fn open_level(
     if let Some(target) = target {
         camera.insert(target.0.clone());
     }
-    // Nothing of the last level's range counts here.
+    // The depth range must not be smoothed from the last level to this one.
     let camera = camera.id();
     stage.commands.trigger(CameraCut { entity: camera });
 }
 
-/// A camera that follows the plane a little late.
+/// A camera that follows the plane with a delay. Both places are in world units.
 #[derive(Component)]
 struct Chase {
     eye: Vec3,
@@ -310,7 +312,7 @@ fn fly(
                 slow: input.slow,
             }
         };
-        // A hitch is no reason to fly through a cloud.
+        // A longer step, after a slow frame, could pass through a cloud.
         let seconds = time.delta_secs().min(0.1);
         for event in game.flight.step(&controls, seconds) {
             match event {
@@ -331,7 +333,7 @@ fn fly(
     looks.mood = match game.page {
         Page::Title => Mood::Title,
         Page::Flying if game.flight.is_slow => Mood::Slow,
-        // A photograph is taken in the look of the flight.
+        // The photo mode keeps the style of the flight.
         Page::Flying | Page::Photo => Mood::Flying,
         Page::Paused => Mood::Paused,
         Page::Won => Mood::Won,
@@ -351,7 +353,7 @@ fn follow(
     >,
 ) {
     let flight = &game.flight;
-    // Its nose is shown lower than it is, so that the wings are seen in a climb.
+    // The nose is drawn lower than it is, so that the wings stay visible in a climb.
     let lower = Quat::from_rotation_x(-0.12 - 0.5 * flight.pitch.max(0.0));
     for mut plane in &mut plane {
         *plane = Transform::from_translation(flight.at).with_rotation(flight.rotation() * lower);
@@ -366,16 +368,16 @@ fn follow(
     }
     let (transform, chase) = &mut *camera;
     let (eye, target) = match game.page {
-        // Around the plane, slowly.
+        // A slow orbit around the plane.
         Page::Title => {
             let turn = Quat::from_rotation_y(0.5 + time.elapsed_secs() * 0.15);
             (flight.at + turn * Vec3::new(0.0, 1.6, 5.0), flight.at)
         }
         _ => Chase::goal(flight),
     };
-    let share = 1.0 - (-7.0 * time.delta_secs()).exp();
-    chase.eye = chase.eye.lerp(eye, share);
-    chase.target = chase.target.lerp(target, share * 0.9);
+    let fraction = 1.0 - (-7.0 * time.delta_secs()).exp();
+    chase.eye = chase.eye.lerp(eye, fraction);
+    chase.target = chase.target.lerp(target, fraction * 0.9);
     let lowest = (flight.course.ground)(Vec2::new(chase.eye.x, chase.eye.z)) + 0.6;
     chase.eye.y = chase.eye.y.max(lowest);
     **transform = Transform::from_translation(chase.eye).looking_at(chase.target, Vec3::Y);

@@ -1,12 +1,12 @@
-//! The game without its pictures: a paper plane, lanterns, storm clouds and a
-//! clock. No engine, so that a test can play it.
+//! The rules of the game: a paper plane, lanterns, storm clouds and a clock. They use no
+//! app and no renderer, so that unit tests can play the game. Lengths are in world units.
 
 use bevy::math::{EulerRot, Quat, Vec2, Vec3};
 
-/// What the player wants in a frame, whatever it was said with.
+/// The player's controls in a frame, independent of the input device.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Controls {
-    /// Right and up are positive, each -1 to 1.
+    /// Right and up are positive; each component -1 to 1.
     pub steer: Vec2,
     pub boost: bool,
     pub slow: bool,
@@ -16,40 +16,44 @@ pub struct Controls {
 #[derive(Clone, Debug)]
 pub struct Course {
     pub start: Vec3,
-    /// Radians, 0 looks along -z.
+    /// Direction at the start in radians; 0 is along -z.
     pub heading: f32,
     pub lanterns: Vec<Vec3>,
     pub clouds: Vec<Vec3>,
+    /// Time at the start, seconds.
     pub seconds: f32,
+    /// Height of the ground at (x, z).
     pub ground: fn(Vec2) -> f32,
 }
 
-/// What has happened in a step.
+/// What happened in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
+    /// The lantern of this index was collected.
     Lantern(usize),
     Hit,
     Won,
     Lost,
 }
 
-/// A flight under way.
+/// The state of a flight.
 #[derive(Clone, Debug)]
 pub struct Flight {
     pub course: Course,
     pub at: Vec3,
+    /// Angles in radians.
     pub yaw: f32,
     pub pitch: f32,
-    /// For the eye alone.
+    /// Drawn, but without effect on the flight.
     pub roll: f32,
     pub collected: Vec<bool>,
     pub seconds_left: f32,
     pub score: u32,
-    /// How much slow motion is left, 0 to 1.
+    /// Slow motion that is left, 0 to 1.
     pub focus: f32,
     pub is_slow: bool,
     pub is_over: bool,
-    /// Seconds for which nothing hurts any more.
+    /// Seconds until a hit counts again.
     shield: f32,
     /// Lanterns in a row without a hit.
     streak: u32,
@@ -57,12 +61,14 @@ pub struct Flight {
 }
 
 pub const CLOUD_RADIUS: f32 = 5.0;
+/// Distance from which a lantern is collected.
 const LANTERN_REACH: f32 = 5.5;
+/// Units per second, and the factor while boosting.
 const SPEED: f32 = 20.0;
 const BOOST: f32 = 1.6;
-/// How slow the world is in slow motion.
+/// Speed of time in slow motion.
 const SLOW: f32 = 0.35;
-/// Seconds that a lantern is worth, and that a hit costs.
+/// Seconds that a lantern adds, and that a hit takes.
 const GAIN: f32 = 1.5;
 const LOSS: f32 = 4.0;
 
@@ -98,13 +104,13 @@ impl Flight {
         self.collected.iter().filter(|c| **c).count()
     }
 
-    /// Where a cloud is now: they drift.
+    /// Where a cloud is now; clouds drift.
     pub fn cloud(&self, index: usize) -> Vec3 {
         let phase = self.time * 0.5 + index as f32 * 2.1;
         self.course.clouds[index] + Vec3::new(phase.sin() * 6.0, (phase * 0.7).cos() * 2.0, 0.0)
     }
 
-    /// 0 is safe, 1 is nearly hit or nearly out of time.
+    /// 0 is safe; 1 is close to a cloud, or out of time.
     pub fn danger(&self) -> f32 {
         let nearest = (0..self.course.clouds.len())
             .map(|i| self.cloud(i).distance(self.at))
@@ -114,7 +120,7 @@ impl Flight {
         clouds.max(clock)
     }
 
-    /// One step of so many seconds.
+    /// Advances the flight by `seconds` of real time.
     pub fn step(&mut self, controls: &Controls, seconds: f32) -> Vec<Event> {
         let mut events = Vec::new();
         if self.is_over {
@@ -180,8 +186,7 @@ impl Flight {
         events
     }
 
-    /// How a player would steer who looks at the next lantern and shies away
-    /// from clouds.
+    /// Steers towards the nearest lantern that is left, and away from clouds.
     pub fn autopilot(&self) -> Controls {
         let open = self
             .course
@@ -204,7 +209,7 @@ impl Flight {
         }
         let local = Quat::from_rotation_y(-self.yaw) * wanted.normalize_or_zero();
         let turn = local.x.atan2(-local.z);
-        // Too near to turn onto: fly on and come back.
+        // A lantern that is too near for a turn: flies on and comes back.
         let circling = turn.abs() > 1.0 && goal.distance(self.at) < 14.0;
         Controls {
             steer: Vec2::new(
@@ -288,7 +293,7 @@ mod tests {
         }
         assert!(
             !flight.is_slow || flight.focus < 0.05,
-            "it does not last for ever"
+            "slow motion has to run out"
         );
     }
 }

@@ -1,4 +1,4 @@
-//! Words on the screen.
+//! The text on the screen.
 
 use bevy::prelude::*;
 
@@ -14,11 +14,11 @@ impl Plugin for ScreenPlugin {
     }
 }
 
-/// What stands at the top during a flight.
+/// The line at the top left: level, lanterns, time, points.
 #[derive(Component)]
 struct Status;
 
-/// What stands in the middle between flights.
+/// The box at the bottom centre: title, pause, results.
 #[derive(Component)]
 struct Notice;
 
@@ -75,8 +75,8 @@ fn spawn(mut commands: Commands) {
 const TITLE: &str = "\
 PAPER GLIDER
 
-Collect the lanterns before the time is up.
-Storm clouds and the ground cost four seconds.
+Collect all lanterns before the time is up.
+Hitting a storm cloud or the ground costs four seconds.
 
 Steer  arrows, WASD or stick      Boost  Space or A
 Slow motion  Shift or X      Photo  F or Y      Pause  Esc or Start
@@ -100,14 +100,14 @@ fn write(
     );
     let middle = match game.page {
         Page::Title => TITLE.to_owned(),
-        Page::Paused => "PAUSED\n\nEsc flies on, R begins again, F takes photographs".to_owned(),
+        Page::Paused => "PAUSED\n\nEsc: continue   R: restart   F: photo mode".to_owned(),
         Page::Won if game.level + 1 == LEVELS.len() => {
-            format!("THE END\n\n{total} points\n\nEnter begins anew")
+            format!("THE END\n\n{total} points\n\nEnter: play again")
         }
-        Page::Won => format!("ALL LANTERNS!\n\n{total} points\n\nEnter for the next course"),
-        Page::Lost => "TIME IS UP\n\nEnter tries again".to_owned(),
+        Page::Won => format!("ALL LANTERNS!\n\n{total} points\n\nEnter: next course"),
+        Page::Lost => "TIME IS UP\n\nEnter: try again".to_owned(),
         Page::Photo if cfg!(feature = "inspector") => String::new(),
-        Page::Photo => "F goes back".to_owned(),
+        Page::Photo => "F: back".to_owned(),
         Page::Flying => String::new(),
     };
     let shows_status = !matches!(game.page, Page::Title | Page::Photo);
@@ -127,7 +127,7 @@ fn set(place: &mut (Mut<Text>, Mut<Visibility>), words: String) {
     }
 }
 
-/// A photograph is taken with the panel at hand.
+/// Opens the panel in the photo mode, and closes it afterwards.
 #[cfg(feature = "inspector")]
 fn photo_mode(
     game: Res<Game>,

@@ -5,7 +5,6 @@ use std::path::Path;
 
 use bevy::{
     ecs::system::RunSystemOnce,
-    light::NotShadowCaster,
     prelude::*,
     render::{RenderApp, sync_world::RenderEntity, view::Msaa},
 };
@@ -25,6 +24,8 @@ use bevy_comics_testkit::{
 use crate::{save, sheet::grid};
 
 const SIZE: UVec2 = UVec2::new(480, 270);
+/// Size of a picture among nine.
+const SMALL: UVec2 = UVec2::new(320, 180);
 const GAP: u32 = 8;
 const NEAR: f32 = 0.1;
 const FAR: f32 = 1000.0;
@@ -35,9 +36,9 @@ const MAPPINGS: [(&str, DepthMapping); 3] = [
     ("minmax", DepthMapping::MinMax),
 ];
 
-fn sheet(rows: &[Vec<RgbaImage>]) -> RgbaImage {
+fn sheet(rows: &[Vec<RgbaImage>], size: UVec2) -> RgbaImage {
     let rows: Vec<Vec<&RgbaImage>> = rows.iter().map(|row| row.iter().collect()).collect();
-    grid(&rows, SIZE, GAP)
+    grid(&rows, size, GAP)
 }
 
 /// A style of which only the depth map is set.
@@ -178,7 +179,7 @@ fn figure_2(folder: &Path) -> Result<(), String> {
     let path = folder.join("figure-2.json");
     std::fs::write(&path, text + "\n")
         .map_err(|e| format!("cannot write {}: {e}", path.display()))?;
-    save(&sheet(&rows), &folder.join("figure-2.png"))
+    save(&sheet(&rows, SIZE), &folder.join("figure-2.png"))
 }
 
 /// The three maps of an object, and the same sepia and desaturation with each.
@@ -220,7 +221,7 @@ fn figure_3(folder: &Path) -> Result<(), String> {
         rows[1].push(measure(&studio.headless, studio.camera, mapping, PLANE_FAR)?.picture);
         rows[2].push(picture);
     }
-    save(&sheet(&rows), &folder.join("figure-3.png"))
+    save(&sheet(&rows, SIZE), &folder.join("figure-3.png"))
 }
 
 /// The three rows of figure 4: the original, the style, and the style as the
@@ -240,7 +241,7 @@ fn figure_4(folder: &Path) -> Result<(), String> {
         if let Some(s) = faithful.get_mut::<Colorization>() {
             s.form = Form::Faithful;
         }
-        let mut studio = Studio::new(scene, SIZE, Msaa::Sample4);
+        let mut studio = Studio::new(scene, SMALL, Msaa::Sample4);
         rows.push(vec![
             studio.shoot(None),
             studio.shoot(Some(&style)),
@@ -248,42 +249,7 @@ fn figure_4(folder: &Path) -> Result<(), String> {
         ]);
         println!("figure 4: {preset}");
     }
-    save(&sheet(&rows), &folder.join("figure-4.png"))
-}
-
-/// What a transparent surface looks like: a pane of red glass before half of
-/// the view takes the depth, and so the grey, of what is behind it.
-fn transparency(folder: &Path) -> Result<(), String> {
-    let mut studio = Studio::new(BuiltIn::Teapot, SIZE, Msaa::Sample4);
-    let forward = (studio.vantage.target - studio.vantage.eye).normalize();
-    let at = studio
-        .vantage
-        .transform()
-        .with_translation(studio.vantage.eye + forward * 6.0);
-    let world = studio.headless.app.world_mut();
-    let mesh = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Rectangle::new(4.0, 3.4));
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: Color::srgba(0.85, 0.1, 0.1, 0.55),
-            alpha_mode: AlphaMode::Blend,
-            unlit: true,
-            ..default()
-        });
-    let pane = at.with_translation(at.translation + at.right() * 2.0);
-    world.spawn((
-        Mesh3d(mesh),
-        MeshMaterial3d(material),
-        pane,
-        NotShadowCaster,
-    ));
-    let style = ComicStyle::new()
-        .with(Desaturation::default())
-        .with(Contours::default());
-    let rows = [vec![studio.shoot(None), studio.shoot(Some(&style))]];
-    save(&sheet(&rows), &folder.join("transparency.png"))
+    save(&sheet(&rows, SMALL), &folder.join("figure-4.png"))
 }
 
 pub fn write(folder: &Path) -> Result<(), String> {
@@ -291,11 +257,5 @@ pub fn write(folder: &Path) -> Result<(), String> {
         .map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
     figure_2(folder)?;
     figure_3(folder)?;
-    figure_4(folder)?;
-    transparency(folder)?;
-    println!(
-        "wrote figure-2.png, figure-2.json, figure-3.png, figure-4.png and\n      transparency.png in {}",
-        folder.display()
-    );
-    Ok(())
+    figure_4(folder)
 }

@@ -1,13 +1,17 @@
-//! Renders pictures of every scene in every style, without a window.
+//! Renders the pictures of the documents and of the tests, without a window.
 //!
 //! ```text
 //! cargo run --example pictures -- contact-sheet [--size WxH] [--out FILE.png]
 //! cargo run --example pictures -- banner [--out FILE.png]
+//! cargo run --example pictures -- looks [--out FILE.png]
+//! cargo run --example pictures -- presets [--out FILE.png]
+//! cargo run --example pictures -- pages [--out DIR]
 //! cargo run --example pictures -- figures [--out DIR]
 //! cargo run --example pictures -- golden [--out DIR]
 //! ```
 
 mod figures;
+mod pages;
 mod sheet;
 
 use std::{path::PathBuf, process::ExitCode};
@@ -17,7 +21,10 @@ use bevy::math::UVec2;
 const USAGE: &str = "\
 usage: pictures contact-sheet [--size WxH] [--out FILE.png]   every scene in every preset
        pictures banner [--out FILE.png]                       the README's first picture
-       pictures figures [--out DIR]                           the figures of the paper
+       pictures looks [--out FILE.png]                        the README's row of looks
+       pictures presets [--out FILE.png]                      the page of the presets
+       pictures pages [--out DIR]                             the pages about single tasks
+       pictures figures [--out DIR]                           the figures of the first paper
        pictures golden [--out DIR]                            the tests' reference pictures";
 
 fn main() -> ExitCode {
@@ -59,6 +66,9 @@ fn run() -> Result<(), String> {
     match what.as_deref() {
         Some("contact-sheet") => sheet::contact_sheet(size, &or("target/contact-sheet.png")),
         Some("banner") => sheet::banner(&or("target/banner.png")),
+        Some("looks") => sheet::looks(&or("target/looks.png")),
+        Some("presets") => sheet::presets(&or("target/presets.png")),
+        Some("pages") => pages::write(&or("target/pages")),
         Some("figures") => figures::write(&or("target/figures")),
         Some("golden") => sheet::golden(&or("tests/golden")),
         Some(other) => Err(format!("no pictures called {other:?}\n{USAGE}")),
@@ -84,5 +94,7 @@ fn save(picture: &image::RgbaImage, path: &std::path::Path) -> Result<(), String
         image::codecs::png::FilterType::Adaptive,
     );
     rgb.write_with_encoder(encoder)
-        .map_err(|error| format!("cannot write {}: {error}", path.display()))
+        .map_err(|error| format!("cannot write {}: {error}", path.display()))?;
+    println!("wrote {}", path.display());
+    Ok(())
 }

@@ -14,6 +14,8 @@ use bevy_comics_testkit::{
 use crate::save;
 
 const GAP: u32 = 6;
+/// The colour of gutters.
+const PAPER: image::Rgba<u8> = image::Rgba([250, 248, 242, 255]);
 
 fn style(name: &str) -> Result<bevy_comics::ComicStyle, String> {
     presets::find(name)
@@ -24,21 +26,17 @@ fn style(name: &str) -> Result<bevy_comics::ComicStyle, String> {
 /// A preset, or the original.
 type Look = Option<&'static str>;
 
-/// One picture for every scene and look, scene by scene.
-fn shoot_all(size: UVec2, looks: &[Look]) -> Result<Vec<Vec<RgbaImage>>, String> {
+/// One picture of a scene for every look.
+fn shoot(scene: BuiltIn, size: UVec2, looks: &[Look]) -> Result<Vec<RgbaImage>, String> {
+    println!("{}: building", scene.name());
+    let mut studio = Studio::new(scene, size, Msaa::Sample4);
     let mut pictures = Vec::new();
-    for scene in BuiltIn::ALL {
-        println!("{}: building", scene.name());
-        let mut studio = Studio::new(scene, size, Msaa::Sample4);
-        let mut row = Vec::new();
-        for look in looks {
-            row.push(match look {
-                Some(name) => studio.shoot(Some(&style(name)?)),
-                None => studio.shoot(None),
-            });
-            println!("{}: {}", scene.name(), look.unwrap_or("original"));
-        }
-        pictures.push(row);
+    for look in looks {
+        pictures.push(match look {
+            Some(name) => studio.shoot(Some(&style(name)?)),
+            None => studio.shoot(None),
+        });
+        println!("{}: {}", scene.name(), look.unwrap_or("original"));
     }
     Ok(pictures)
 }
@@ -48,29 +46,84 @@ pub fn contact_sheet(size: UVec2, out: &Path) -> Result<(), String> {
     let looks: Vec<Look> = std::iter::once(None)
         .chain(presets::ALL.iter().map(|preset| Some(preset.name())))
         .collect();
-    let columns = shoot_all(size, &looks)?;
+    let columns: Vec<Vec<RgbaImage>> = BuiltIn::ALL
+        .into_iter()
+        .map(|scene| shoot(scene, size, &looks))
+        .collect::<Result<_, _>>()?;
     let rows: Vec<Vec<&RgbaImage>> = (0..looks.len())
         .map(|row| columns.iter().map(|column| &column[row]).collect())
         .collect();
-    save(&grid(&rows, size, GAP), out)?;
-    println!("wrote {}", out.display());
-    Ok(())
+    save(&grid(&rows, size, GAP), out)
 }
 
-/// The picture at the top of the README: rows of scenes, columns of a few looks.
+/// The looks of the banner, from left to right; `None` is the original.
+const BANNER: [Look; 5] = [
+    None,
+    Some("saturday-morning"),
+    Some("graphic-novel"),
+    Some("watercolor"),
+    Some("noir"),
+];
+
+/// The picture at the top of the README: one scene in several looks, in slanted panels.
 pub fn banner(out: &Path) -> Result<(), String> {
-    let size = UVec2::new(272, 153);
+    /// Half the width of the gutter between two panels, pixels.
+    const GUTTER: f32 = 3.0;
+    /// How far the gutters lean: pixels to the left for each pixel down.
+    const LEAN: f32 = 0.22;
+    let size = UVec2::new(1200, 480);
+    let pictures = shoot(BuiltIn::Village, size, &BANNER)?;
+    let panel = size.x as f32 / pictures.len() as f32;
+    let picture = RgbaImage::from_fn(size.x, size.y, |x, y| {
+        let across = x as f32 + 0.5 + LEAN * (y as f32 - 0.5 * size.y as f32);
+        let nearest = (across / panel)
+            .round()
+            .clamp(1.0, pictures.len() as f32 - 1.0);
+        let index = (across / panel).clamp(0.0, pictures.len() as f32 - 1.0) as usize;
+        let coverage = (GUTTER + 0.5 - (across - nearest * panel).abs()).clamp(0.0, 1.0);
+        let mut pixel = *pictures[index].get_pixel(x, y);
+        for (channel, paper) in pixel.0.iter_mut().zip(PAPER.0) {
+            *channel = (f32::from(*channel) * (1.0 - coverage) + f32::from(paper) * coverage) as u8;
+        }
+        pixel
+    });
+    save(&picture, out)
+}
+
+/// The README's row of looks.
+pub fn looks(out: &Path) -> Result<(), String> {
+    let size = UVec2::new(288, 162);
     let looks = [
-        None,
-        Some("crimson-dusk"),
-        Some("ligne-claire"),
-        Some("noir"),
+        "saturday-morning",
+        "graphic-novel",
+        "pencil-sketch",
+        "watercolor",
+    ]
+    .map(Some);
+    let pictures = shoot(BuiltIn::Theatre, size, &looks)?;
+    save(&grid(&[pictures.iter().collect()], size, GAP), out)
+}
+
+/// The page of the presets: one scene in twelve of them.
+pub fn presets(out: &Path) -> Result<(), String> {
+    let size = UVec2::new(288, 162);
+    let names = [
+        "saturday-morning",
+        "graphic-novel",
+        "twilight-toon",
+        "clear-bands",
+        "watercolor",
+        "pencil-sketch",
+        "silent-film",
+        "ligne-claire",
+        "noir",
+        "crimson-dusk",
+        "cobalt-night",
+        "blueprint",
     ];
-    let rows = shoot_all(size, &looks)?;
-    let rows: Vec<Vec<&RgbaImage>> = rows.iter().map(|row| row.iter().collect()).collect();
-    save(&grid(&rows, size, GAP), out)?;
-    println!("wrote {}", out.display());
-    Ok(())
+    let pictures = shoot(BuiltIn::Village, size, &names.map(Some))?;
+    let rows: Vec<Vec<&RgbaImage>> = pictures.chunks(3).map(|row| row.iter().collect()).collect();
+    save(&grid(&rows, size, GAP), out)
 }
 
 /// Pictures side by side and one below the other, on paper.
@@ -78,7 +131,7 @@ pub fn grid(rows: &[Vec<&RgbaImage>], size: UVec2, gap: u32) -> RgbaImage {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0) as u32;
     let cell = size + UVec2::splat(gap);
     let whole = cell * UVec2::new(columns, rows.len() as u32) + UVec2::splat(gap);
-    let mut sheet = RgbaImage::from_pixel(whole.x, whole.y, image::Rgba([250, 248, 242, 255]));
+    let mut sheet = RgbaImage::from_pixel(whole.x, whole.y, PAPER);
     for (y, row) in rows.iter().enumerate() {
         for (x, picture) in row.iter().enumerate() {
             let at = UVec2::splat(gap) + cell * UVec2::new(x as u32, y as u32);
@@ -96,7 +149,6 @@ pub fn golden(folder: &Path) -> Result<(), String> {
             let picture = studio.shoot(Some(&style(name)?));
             let path = folder.join(format!("{}-{name}.png", scene.name()));
             save(&picture, &path)?;
-            println!("wrote {}", path.display());
         }
     }
     Ok(())

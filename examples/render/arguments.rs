@@ -1,6 +1,6 @@
 //! The command line: everything is checked before anything is rendered.
 
-use std::{path::PathBuf, str::FromStr};
+use std::{collections::HashMap, path::PathBuf, str::FromStr};
 
 use bevy::math::{UVec2, Vec3};
 use bevy_comics::{ComicStyle, presets};
@@ -10,25 +10,67 @@ use bevy_comics_testkit::{
     scenes::{BuiltIn, Vantage},
 };
 
+use crate::{model::Model, output::Frames};
+
 const USAGE: &str = "\
 usage: render [SCENE] [options]
   SCENE                    mountains (default), teapot, theatre, village, or a .glb/.gltf file
+Look
   --style NAME|FILE        a preset, a .comic.ron file, or none (default: the scene's own)
-  --material standard|cartoon  how the scene is lit (default: cartoon for theatre)
-  --size WxH               pixels (default 960x540)
+  --material standard|cartoon  how the scene is shaded (default: cartoon for theatre)
+View (default: a model fills 85 % of the frame)
+  --size WxH               pixels (default 960x540; with --presets 480x270 a picture)
   --camera EX,EY,EZ,TX,TY,TZ   eye and target, world units
   --near N  --far F        clipping planes, world units
-  --ortho HEIGHT           orthographic view of this height, world units
+  --ortho HEIGHT|fit       orthographic view of this height in world units, or that fits
+Quality
   --msaa 1|2|4|8           samples a pixel (default 4)
   --hdr                    HDR camera
-  --frames N               frames to render before the picture (default 8)
+  --frames N               frames to render before the first picture (default 8)
+Output
   --out FILE.png           the picture (default target/render.png)
+  --turntable N            N pictures (2 to 720) around the scene: FILE.png is an animated PNG,
+                           NAME%03d.png are numbered files, DIR is a folder of numbered files
+  --presets                one sheet with the scene in every preset
   --dump DIR               also write the pass's input, output, depth, normals,
                            object ids and frame.json";
+
+/// Options that take a value.
+const VALUED: [&str; 12] = [
+    "style",
+    "material",
+    "size",
+    "camera",
+    "near",
+    "far",
+    "ortho",
+    "msaa",
+    "frames",
+    "out",
+    "turntable",
+    "dump",
+];
 
 pub enum SceneChoice {
     BuiltIn(BuiltIn),
     Model(PathBuf),
+}
+
+/// Height of an orthographic view.
+#[derive(Clone, Copy)]
+pub enum Ortho {
+    /// World units.
+    Height(f32),
+    /// As suits the scene.
+    Fit,
+}
+
+pub enum Output {
+    Picture(PathBuf),
+    /// Every preset on one sheet.
+    Sheet(PathBuf),
+    /// Pictures around the scene.
+    Turntable(u32, Frames),
 }
 
 pub struct Arguments {
@@ -41,88 +83,101 @@ pub struct Arguments {
     pub camera: Option<(Vec3, Vec3)>,
     pub near: Option<f32>,
     pub far: Option<f32>,
-    pub ortho: Option<f32>,
+    pub ortho: Option<Ortho>,
     pub msaa: u32,
     pub hdr: bool,
     pub frames: u32,
-    pub out: PathBuf,
+    pub output: Output,
     pub dump: Option<PathBuf>,
+}
+
+/// The command line as text.
+#[derive(Default)]
+struct Given {
+    scene: Option<String>,
+    values: HashMap<&'static str, String>,
+    hdr: bool,
+    presets: bool,
+}
+
+impl Given {
+    /// `None` when help was asked for.
+    fn read() -> Result<Option<Self>, String> {
+        use lexopt::prelude::*;
+        let wrong = |error: lexopt::Error| format!("{error}; --help lists the options");
+        let mut given = Self::default();
+        let mut parser = lexopt::Parser::from_env();
+        while let Some(argument) = parser.next().map_err(wrong)? {
+            match argument {
+                Short('h') | Long("help") => return Ok(None),
+                Long("hdr") => given.hdr = true,
+                Long("presets") => given.presets = true,
+                Long(name) => {
+                    let Some(name) = VALUED.iter().find(|known| **known == name) else {
+                        return Err(wrong(argument.unexpected()));
+                    };
+                    let value = parser.value().and_then(|v| v.string()).map_err(wrong)?;
+                    given.values.insert(name, value);
+                }
+                Value(value) if given.scene.is_none() => {
+                    given.scene = Some(value.to_string_lossy().into_owned());
+                }
+                other => return Err(wrong(other.unexpected())),
+            }
+        }
+        Ok(Some(given))
+    }
+
+    /// The value of an option, read by `parse`.
+    fn get<T>(
+        &self,
+        name: &str,
+        parse: impl Fn(&str) -> Result<T, String>,
+    ) -> Result<Option<T>, String> {
+        let value = self.values.get(name);
+        value.map(|text| parse(text)).transpose()
+    }
 }
 
 impl Arguments {
     /// `None` when only help was asked for.
     pub fn parse() -> Result<Option<Self>, String> {
-        use lexopt::prelude::*;
-        let mut arguments = Self {
-            scene: SceneChoice::BuiltIn(BuiltIn::Mountains),
-            style: None,
-            cartoon: false,
-            size: UVec2::new(960, 540),
-            camera: None,
-            near: None,
-            far: None,
-            ortho: None,
-            msaa: 4,
-            hdr: false,
-            frames: 8,
-            out: PathBuf::from("target/render.png"),
-            dump: None,
+        let Some(given) = Given::read()? else {
+            println!("{USAGE}");
+            return Ok(None);
         };
-        let (mut style, mut material) = (None, None);
-        let mut scenes = 0;
-        let mut parser = lexopt::Parser::from_env();
-        let wrong = |error: lexopt::Error| format!("{error}; --help lists the options");
-        while let Some(argument) = parser.next().map_err(wrong)? {
-            let text = |parser: &mut lexopt::Parser| -> Result<String, String> {
-                parser.value().and_then(|v| v.string()).map_err(wrong)
-            };
-            match argument {
-                Short('h') | Long("help") => {
-                    println!("{USAGE}");
-                    return Ok(None);
-                }
-                Value(value) if scenes == 0 => {
-                    scenes += 1;
-                    arguments.scene = scene(&value.to_string_lossy())?;
-                }
-                Long("style") => style = Some(text(&mut parser)?),
-                Long("material") => {
-                    let value = text(&mut parser)?;
-                    material = Some(match value.as_str() {
-                        "standard" => false,
-                        "cartoon" => true,
-                        _ => {
-                            return Err(format!(
-                                "--material {value}: possible are standard, cartoon"
-                            ));
-                        }
-                    });
-                }
-                Long("size") => arguments.size = size(&text(&mut parser)?)?,
-                Long("camera") => arguments.camera = Some(camera(&text(&mut parser)?)?),
-                Long("near") => arguments.near = Some(positive("--near", &text(&mut parser)?)?),
-                Long("far") => arguments.far = Some(positive("--far", &text(&mut parser)?)?),
-                Long("ortho") => arguments.ortho = Some(positive("--ortho", &text(&mut parser)?)?),
-                Long("msaa") => {
-                    let value = text(&mut parser)?;
-                    arguments.msaa = number("--msaa", &value)?;
-                    if ![1, 2, 4, 8].contains(&arguments.msaa) {
-                        return Err(format!("--msaa {value}: possible are 1, 2, 4, 8"));
-                    }
-                }
-                Long("hdr") => arguments.hdr = true,
-                Long("frames") => {
-                    let value = text(&mut parser)?;
-                    arguments.frames = number("--frames", &value)?;
-                    if !(1..=100_000).contains(&arguments.frames) {
-                        return Err(format!("--frames {value}: possible are 1 to 100000"));
-                    }
-                }
-                Long("out") => arguments.out = png(&text(&mut parser)?)?,
-                Long("dump") => arguments.dump = Some(PathBuf::from(text(&mut parser)?)),
-                other => return Err(wrong(other.unexpected())),
-            }
-        }
+        let scene = match &given.scene {
+            Some(text) => scene(text)?,
+            None => SceneChoice::BuiltIn(BuiltIn::Mountains),
+        };
+        let is_theatre = matches!(scene, SceneChoice::BuiltIn(BuiltIn::Theatre));
+        let style = match given.values.get("style").map(String::as_str) {
+            Some("none") => None,
+            Some(name) => Some(read_style(name)?),
+            None => Some(read_style(own_style(&scene))?),
+        };
+        let usual_size = if given.presets {
+            UVec2::new(480, 270)
+        } else {
+            UVec2::new(960, 540)
+        };
+        let arguments = Self {
+            style,
+            cartoon: given.get("material", material)?.unwrap_or(is_theatre),
+            size: given.get("size", size)?.unwrap_or(usual_size),
+            camera: given.get("camera", camera)?,
+            near: given.get("near", |text| positive("--near", text))?,
+            far: given.get("far", |text| positive("--far", text))?,
+            ortho: given.get("ortho", ortho)?,
+            msaa: given.get("msaa", msaa)?.unwrap_or(4),
+            hdr: given.hdr,
+            frames: given
+                .get("frames", |text| count("--frames", text, 1, 100_000))?
+                .unwrap_or(8),
+            output: output(&given)?,
+            dump: given.get("dump", |text| Ok(PathBuf::from(text)))?,
+            scene,
+        };
         if let (Some(near), Some(far)) = (arguments.near, arguments.far)
             && near >= far
         {
@@ -130,13 +185,6 @@ impl Arguments {
                 "--near {near} --far {far}: near must be smaller than far"
             ));
         }
-        let flat = matches!(arguments.scene, SceneChoice::BuiltIn(BuiltIn::Theatre));
-        arguments.cartoon = material.unwrap_or(flat);
-        arguments.style = match style.as_deref() {
-            Some("none") => None,
-            Some(name) => Some(read_style(name)?),
-            None => Some(read_style(own_style(&arguments.scene))?),
-        };
         Ok(Some(arguments))
     }
 
@@ -159,13 +207,16 @@ impl Arguments {
     }
 
     /// The scene's view, with what the command line changes.
-    pub fn adjust(&self, vantage: &mut Vantage) {
+    pub fn adjust(&self, vantage: &mut Vantage, model: Option<&Model>) {
         if self.ortho.is_some() {
             *vantage = vantage.orthographic_vantage();
         }
         if let Some((eye, target)) = self.camera {
             vantage.eye = eye;
             vantage.target = target;
+        }
+        if let Some(model) = model {
+            model.set_planes(vantage);
         }
         vantage.near = self.near.unwrap_or(vantage.near);
         vantage.far = self.far.unwrap_or(vantage.far).max(vantage.near * 1.001);
@@ -178,7 +229,8 @@ fn own_style(scene: &SceneChoice) -> &'static str {
         SceneChoice::BuiltIn(BuiltIn::Mountains) => "crimson-dusk",
         SceneChoice::BuiltIn(BuiltIn::Teapot) => "museum-print",
         SceneChoice::BuiltIn(BuiltIn::Theatre) => "saturday-morning",
-        _ => "ligne-claire",
+        SceneChoice::BuiltIn(BuiltIn::Village) => "ligne-claire",
+        SceneChoice::Model(_) => "saturday-morning",
     }
 }
 
@@ -216,9 +268,41 @@ fn read_style(name: &str) -> Result<ComicStyle, String> {
     ))
 }
 
+/// Where the pictures go, and how many there are.
+fn output(given: &Given) -> Result<Output, String> {
+    let out = given.values.get("out").map(String::as_str);
+    let out = out.unwrap_or("target/render.png");
+    let turntable = given.get("turntable", |text| count("--turntable", text, 2, 720))?;
+    if given.presets {
+        for (option, set) in [
+            ("--turntable", turntable.is_some()),
+            ("--style", given.values.contains_key("style")),
+            ("--dump", given.values.contains_key("dump")),
+        ] {
+            if set {
+                return Err(format!("--presets and {option} exclude each other"));
+            }
+        }
+        return Ok(Output::Sheet(png(out)?));
+    }
+    Ok(match turntable {
+        Some(count) => Output::Turntable(count, Frames::parse(out)),
+        None => Output::Picture(png(out)?),
+    })
+}
+
 fn number<T: FromStr>(option: &str, text: &str) -> Result<T, String> {
     text.parse()
         .map_err(|_| format!("{option} {text}: not a number that this option takes"))
+}
+
+fn count(option: &str, text: &str, least: u32, most: u32) -> Result<u32, String> {
+    let value = number(option, text)?;
+    if (least..=most).contains(&value) {
+        Ok(value)
+    } else {
+        Err(format!("{option} {text}: possible are {least} to {most}"))
+    }
 }
 
 fn positive(option: &str, text: &str) -> Result<f32, String> {
@@ -229,6 +313,30 @@ fn positive(option: &str, text: &str) -> Result<f32, String> {
         Err(format!(
             "{option} {text}: must be a positive, finite number"
         ))
+    }
+}
+
+fn material(text: &str) -> Result<bool, String> {
+    match text {
+        "standard" => Ok(false),
+        "cartoon" => Ok(true),
+        _ => Err(format!("--material {text}: possible are standard, cartoon")),
+    }
+}
+
+fn ortho(text: &str) -> Result<Ortho, String> {
+    match text {
+        "fit" => Ok(Ortho::Fit),
+        _ => positive("--ortho", text).map(Ortho::Height),
+    }
+}
+
+fn msaa(text: &str) -> Result<u32, String> {
+    let samples = number("--msaa", text)?;
+    if [1, 2, 4, 8].contains(&samples) {
+        Ok(samples)
+    } else {
+        Err(format!("--msaa {text}: possible are 1, 2, 4, 8"))
     }
 }
 

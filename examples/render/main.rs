@@ -1,25 +1,29 @@
-//! Renders a scene with a style into a PNG, without a window.
+//! Renders a scene or a glTF model with a style, without a window. See
+//! `docs/render.md`.
 //!
 //! ```text
-//! cargo run --example render -- [SCENE] [--style NAME|FILE.comic.ron] [--size WxH]
-//!     [--camera EX,EY,EZ,TX,TY,TZ] [--near N] [--far F] [--ortho HEIGHT] [--msaa 1|2|4|8]
-//!     [--hdr] [--frames N] [--out FILE.png] [--dump DIR]
+//! cargo run --example render -- model.glb --style ligne-claire --out picture.png
+//! cargo run --example render -- --help
 //! ```
 
 mod arguments;
 mod dump;
 mod model;
+mod output;
+mod sheet;
+mod turntable;
 
 use std::process::ExitCode;
 
-use arguments::{Arguments, SceneChoice};
+use arguments::{Arguments, Ortho, Output, SceneChoice};
 use bevy::{camera::Hdr, ecs::system::RunSystemOnce, prelude::*, render::view::Msaa};
 use bevy_comics::ComicsPlugin;
 use bevy_comics_testkit::{
     headless::{self, Headless, HeadlessOptions},
-    scenes::{Stage, Vantage},
+    scenes::{BuiltIn, Stage, Vantage},
     studio::{set_cartoon, wear},
 };
+use model::Model;
 
 fn main() -> ExitCode {
     match run() {
@@ -41,45 +45,45 @@ fn run() -> Result<(), String> {
         "adapter: {} ({:?})",
         adapter.info.name, adapter.info.device_type
     );
-
+    let scale_factor = match arguments.output {
+        Output::Sheet(_) => sheet::scale_factor(arguments.size),
+        Output::Picture(_) | Output::Turntable(..) => 1.0,
+    };
     let options = HeadlessOptions {
         size: arguments.size,
+        scale_factor,
         log: true,
         ..default()
     };
     let mut headless = Headless::new(options, ComicsPlugin);
-    let mut vantage = match &arguments.scene {
-        SceneChoice::BuiltIn(scene) => {
-            println!("building {}", scene.name());
-            let scene = *scene;
-            headless
-                .app
-                .world_mut()
-                .run_system_once(move |mut stage: Stage| stage.spawn(scene))
-                .map_err(|error| format!("cannot build {}: {error}", scene.name()))?
-        }
-        SceneChoice::Model(path) => model::load(&mut headless, path)?,
-    };
-    arguments.adjust(&mut vantage);
+    let (vantage, model) = open_scene(&mut headless, &arguments)?;
     if arguments.cartoon {
         set_cartoon(headless.app.world_mut(), true);
     }
     let camera = spawn_camera(&mut headless, &arguments, &vantage);
-
+    if let Some(model) = &model {
+        model.light(headless.app.world_mut(), camera, &vantage);
+    }
+    turntable::set_place(headless.app.world_mut(), camera, vantage.transform());
     for frame in 0..arguments.frames {
         headless.step(1);
         println!("frame {} of {}", frame + 1, arguments.frames);
     }
 
-    let picture = headless.picture();
-    if let Some(folder) = arguments.out.parent().filter(|f| !f.as_os_str().is_empty()) {
-        std::fs::create_dir_all(folder)
-            .map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+    match &arguments.output {
+        Output::Picture(path) => {
+            output::save(headless.picture(), path)?;
+            println!("wrote {}", path.display());
+        }
+        Output::Sheet(path) => {
+            output::save(sheet::shoot(&mut headless, camera), path)?;
+            println!("wrote {}", path.display());
+        }
+        Output::Turntable(count, frames) => {
+            let pivot = model.as_ref().map_or(vantage.target, |m| m.extent.centre);
+            turntable::write(&mut headless, camera, pivot, *count, frames)?;
+        }
     }
-    picture
-        .save(&arguments.out)
-        .map_err(|error| format!("cannot write {}: {error}", arguments.out.display()))?;
-    println!("wrote {}", arguments.out.display());
     if let Some(folder) = &arguments.dump {
         dump::write(&mut headless, camera, &arguments, &adapter, folder)?;
         println!("wrote {}", folder.display());
@@ -87,11 +91,41 @@ fn run() -> Result<(), String> {
     Ok(())
 }
 
+fn open_scene(
+    headless: &mut Headless,
+    arguments: &Arguments,
+) -> Result<(Vantage, Option<Model>), String> {
+    match &arguments.scene {
+        SceneChoice::BuiltIn(scene) => {
+            let mut vantage = build(headless, *scene)?;
+            arguments.adjust(&mut vantage, None);
+            Ok((vantage, None))
+        }
+        SceneChoice::Model(path) => {
+            let turned = matches!(arguments.output, Output::Turntable(..));
+            let model = model::load(headless, path, turned)?;
+            let mut vantage = model.vantage(headless.app.world_mut(), arguments.size);
+            arguments.adjust(&mut vantage, Some(&model));
+            Ok((vantage, Some(model)))
+        }
+    }
+}
+
+fn build(headless: &mut Headless, scene: BuiltIn) -> Result<Vantage, String> {
+    println!("building {}", scene.name());
+    headless
+        .app
+        .world_mut()
+        .run_system_once(move |mut stage: Stage| stage.spawn(scene))
+        .map_err(|error| format!("cannot build {}: {error}", scene.name()))
+}
+
 fn spawn_camera(headless: &mut Headless, arguments: &Arguments, vantage: &Vantage) -> Entity {
     let target = headless.render_target();
     let world = headless.app.world_mut();
     let projection = match arguments.ortho {
-        Some(height) => vantage.orthographic(height),
+        Some(Ortho::Height(height)) => vantage.orthographic(height),
+        Some(Ortho::Fit) => vantage.orthographic(vantage.ortho_height),
         None => vantage.perspective(),
     };
     let mut camera = world.spawn((

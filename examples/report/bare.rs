@@ -1,4 +1,4 @@
-//! Passes on a bare device: what exists only in this report.
+//! Passes on a device without the engine: for variants that exist only in this report.
 
 use std::time::Instant;
 
@@ -29,7 +29,7 @@ pub fn texture(
     })
 }
 
-/// A depth picture on the device.
+/// Copies raw depth to a texture.
 pub fn upload(size: [u32; 2], depth: &[f32]) -> wgpu::Texture {
     let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
     let texture = texture(size, wgpu::TextureFormat::R32Float, usage);
@@ -163,8 +163,8 @@ pub fn read(texture: &wgpu::Texture) -> Vec<u32> {
         .collect()
 }
 
-/// Milliseconds of one of `times` repetitions in a submit of their own, less an
-/// empty submit.
+/// Mean milliseconds of one of `times` repetitions in the same submit, without the time of
+/// an empty submit.
 pub fn time(times: u32, mut record: impl FnMut(&mut wgpu::CommandEncoder)) -> f64 {
     let mut submit = |times| {
         let mut encoder = gpu().device.create_command_encoder(&Default::default());
@@ -185,7 +185,7 @@ pub fn time(times: u32, mut record: impl FnMut(&mut wgpu::CommandEncoder)) -> f6
     (full - empty).max(0.0) / f64::from(times)
 }
 
-/// The copy that every ratio is to: eight bits a channel, nearest.
+/// The copying pass that is the unit of all ratios: eight bits per channel, nearest sample.
 pub struct Blit {
     pipeline: wgpu::RenderPipeline,
     group: wgpu::BindGroup,

@@ -1,4 +1,4 @@
-//! Moving views as plain numbers: what the range and the map are made of.
+//! Depth and picture of moving views, for what is computed on the CPU.
 
 use bevy::{
     core_pipeline::{prepass::DepthPrepass, tonemapping::Tonemapping},
@@ -33,19 +33,19 @@ pub struct Capture {
 pub struct Shot {
     /// Raw reversed depth of an infinite perspective view, row by row.
     pub depth: Vec<f32>,
-    /// The picture without a style, in linear light.
+    /// The unstyled, tonemapped picture in linear light, row by row.
     pub picture: Vec<[f64; 3]>,
 }
 
 impl Shot {
-    /// Nearest and farthest depth; `None` of an empty view.
+    /// Raw depth of the nearest and farthest geometry; `None` without any.
     pub fn ends(&self) -> Option<[f32; 2]> {
         bevy_comics_testkit::reference::range::scan(self.depth.iter().copied())
             .map(|bits| bits.map(f32::from_bits))
     }
 }
 
-/// What a camera sees now.
+/// Renders a frame and reads it back.
 pub fn shoot(rig: &mut Rig) -> Shot {
     rig.headless.step(1);
     let view = rig.view();
@@ -61,9 +61,9 @@ pub fn shoot(rig: &mut Rig) -> Shot {
     }
 }
 
-/// The camera's way: ahead and a little aside, a hundredth of the way to what
-/// it looks at in every frame.
-fn way(from: Transform, target: Vec3, frame: usize) -> Transform {
+/// The camera in a frame. Per frame it moves ahead by a hundredth of the distance to its
+/// target, and to the right by 0.3 of that.
+fn path(from: Transform, target: Vec3, frame: usize) -> Transform {
     let step = (target - from.translation).length() * 0.01 * frame as f32;
     let moved = from.translation + from.forward() * step + from.right() * (0.3 * step);
     Transform {
@@ -72,7 +72,8 @@ fn way(from: Transform, target: Vec3, frame: usize) -> Transform {
     }
 }
 
-/// Wires a fraction of a pixel wide, near and far: what strides miss.
+/// Wires 0.004 units wide, 1 to 9 units away. Most are narrower than a pixel: strides may
+/// miss them.
 fn wires(rig: &mut Rig) {
     let world = rig.headless.app.world_mut();
     let wire = world
@@ -104,7 +105,7 @@ fn wires(rig: &mut Rig) {
     ));
 }
 
-/// Small balls all over: many objects of a few pixels.
+/// 300 small balls, most of them a few pixels wide.
 fn specks(rig: &mut Rig) {
     let world = rig.headless.app.world_mut();
     let ball = world
@@ -135,7 +136,7 @@ fn specks(rig: &mut Rig) {
 
 pub const FRAMES: usize = 17;
 
-/// The built-in scenes and two stiff ones, in motion.
+/// The built-in scenes and two difficult ones, with a moving camera.
 pub fn captures(run: &Run, frames: usize) -> Vec<Capture> {
     let size = if run.quick {
         UVec2::new(160, 90)
@@ -170,7 +171,7 @@ pub fn captures(run: &Run, frames: usize) -> Vec<Capture> {
         let shots = (0..frames)
             .map(|frame| {
                 let world = rig.headless.app.world_mut();
-                world.entity_mut(camera).insert(way(from, target, frame));
+                world.entity_mut(camera).insert(path(from, target, frame));
                 shoot(&mut rig)
             })
             .collect();
@@ -184,7 +185,7 @@ pub fn captures(run: &Run, frames: usize) -> Vec<Capture> {
     all
 }
 
-/// The linear min-max map between two depths of an infinite perspective view.
+/// The linear min-max map between two raw depths of an infinite perspective view.
 pub fn frame(ends: [f64; 2]) -> Frame {
     Frame {
         projection: MapProjection::Perspective { offset: 0.0 },
@@ -195,7 +196,8 @@ pub fn frame(ends: [f64; 2]) -> Frame {
     }
 }
 
-/// The look that errors of the map are judged in: Eq. 7 and 10 at full strength.
+/// The style in which errors of the map are judged: the corrected forms of [CS] Eq. 6 and
+/// 11 at full strength.
 pub fn look() -> ComicStyle {
     ComicStyle::new()
         .with(Desaturation {
@@ -205,7 +207,7 @@ pub fn look() -> ComicStyle {
         .with(Colorization::default())
 }
 
-/// A pixel in that look, as display codes.
+/// Display codes of a pixel in that style. `light`: linear; then D and its complement.
 pub fn styled(style: &ComicStyle, light: [f64; 3], [d, l]: [f64; 2]) -> [u8; 3] {
     let mut linear = light;
     let mut saturation = 1.0;
@@ -219,7 +221,7 @@ pub fn styled(style: &ComicStyle, light: [f64; 3], [d, l]: [f64; 2]) -> [u8; 3] 
     srgb_encode(linear).map(|c| (c.clamp(0.0, 1.0) * 255.0).round() as u8)
 }
 
-/// Mean FLIP between two pictures of display codes.
+/// Mean FLIP difference of two pictures of display codes, 0 to 1.
 pub fn flip(size: UVec2, a: &[[u8; 3]], b: &[[u8; 3]]) -> f64 {
     let image = |p: &[[u8; 3]]| FlipImageRgb8::with_data(size.x, size.y, p.as_flattened());
     let map = nv_flip::flip(image(a), image(b), nv_flip::DEFAULT_PIXELS_PER_DEGREE);

@@ -1,24 +1,25 @@
-//! What the tables of times and of scores come to.
+//! Evaluates the tables of times and of scores.
 
 use std::fmt::Write;
 
 use crate::table::{Table, exponent, median, quantile};
 
-/// Columns of the laps, in a table of times.
+/// Columns of the laps in a table of times.
 pub const LAPS: [&str; 5] = ["prepass", "range", "lines", "main", "post"];
 
 /// The laps that hold this crate's own passes.
 pub const OWN: [&str; 3] = ["range", "lines", "post"];
 
-/// What one variant takes: milliseconds over nothing, and its ratio to a blit
-/// in the same round; each with its 10th and 90th percentile.
+/// The cost of a variant.
 pub struct Cost {
     pub name: String,
+    /// Milliseconds more than the frame without it, median of all rounds.
     pub milliseconds: f64,
+    /// Ratio to a blit of the same round: 10th, 50th and 90th percentile.
     pub ratio: [f64; 3],
 }
 
-/// The costs of every variant of a section and scene.
+/// The costs of all variants of a section and scene, in the sum of some laps.
 pub fn costs(times: &Table, section: &str, scene: &str, laps: &[&str]) -> Vec<Cost> {
     let rows = times.matching(&[("section", section), ("scene", scene)]);
     let of = |variant: &str, laps: &[&str]| -> Vec<f64> {
@@ -50,7 +51,7 @@ pub fn costs(times: &Table, section: &str, scene: &str, laps: &[&str]) -> Vec<Co
         .collect()
 }
 
-/// Without a sign where it rounds to zero.
+/// The number, or 0 if it rounds to 0: a negative zero would be printed as `-0.00`.
 pub fn unsigned_zero(x: f64, digits: i32) -> f64 {
     if x.abs() < 0.5 * 10f64.powi(-digits) {
         0.0
@@ -59,7 +60,7 @@ pub fn unsigned_zero(x: f64, digits: i32) -> f64 {
     }
 }
 
-/// The passes of a lap that a blit has nothing of.
+/// Writes a table of costs, without the blits.
 pub fn cost_table(out: &mut String, costs: &[Cost]) {
     let _ = writeln!(out, "| | ms | blits | 10 % to 90 % |\n|---|---|---|---|");
     for cost in costs.iter().filter(|c| !c.name.starts_with("blit")) {
@@ -89,6 +90,7 @@ pub fn bare_costs(times: &Table, column: &str) -> Vec<(String, f64, f64)> {
         .collect()
 }
 
+/// Size of the pictures of a table, as text.
 pub fn size(times: &Table) -> String {
     times.rows.first().map_or_else(String::new, |row| {
         format!("{}x{}", times.cell(row, "width"), times.cell(row, "height"))
@@ -105,8 +107,8 @@ pub fn line_score(scores: &Table, detector: &str, truth: &str) -> [f64; 3] {
     [recall, precision, f1]
 }
 
-/// (exponent of the cost of this crate's passes, points) over pixels, vertices
-/// or cameras.
+/// How the cost of the default comic grows with the pixels, vertices or cameras of a
+/// section: (fitted exponent, points of (size, milliseconds)).
 pub fn growth_exponent(times: &Table, section: &str, laps: &[&str]) -> (f64, Vec<(f64, f64)>) {
     let rows = times.matching(&[("section", section)]);
     let points: Vec<(f64, f64)> = times

@@ -1,4 +1,4 @@
-//! How wrong the depth map becomes when depth is kept in fewer bits.
+//! The error of the depth map when depth is stored in fewer bits.
 
 use bevy::math::UVec2;
 
@@ -14,9 +14,11 @@ use crate::{
 struct Encoding {
     name: &'static str,
     format: wgpu::TextureFormat,
-    /// What is kept: `value` is the raw depth, or the map.
+    /// Whether the map is stored, and not the raw depth.
     keeps_map: bool,
+    /// WGSL from `value` (raw depth or map) to `stored`.
     encode: &'static str,
+    /// WGSL from `texel` back to `value`.
     decode: &'static str,
 }
 
@@ -64,6 +66,7 @@ const ENCODINGS: [Encoding; 8] = {
     ]
 };
 
+/// Two passes: one stores the depth, the other reads it and computes the map.
 struct Passes {
     target: wgpu::TextureView,
     encode: (wgpu::RenderPipeline, wgpu::BindGroup),

@@ -1,9 +1,8 @@
-//! The range over time: how much the picture changes because the range does,
-//! and how far a smoothed range lags.
+//! The range over time: how much the picture changes because the range changes, and how
+//! far a smoothed range lags behind the exact one.
 //!
-//! Flicker of a frame is the difference between the frame as it is drawn and the
-//! same frame drawn with the range of the frame before: what the scene's own
-//! change does not explain.
+//! The flicker of a frame is the difference between the frame and the same frame drawn
+//! with the range of the frame before: the change that the scene itself does not cause.
 
 use bevy::{
     core_pipeline::{prepass::DepthPrepass, tonemapping::Tonemapping},
@@ -23,15 +22,16 @@ use crate::{
     table::Table,
 };
 
+/// Duration of a frame.
 pub const SECONDS: f64 = 1.0 / 60.0;
 
 struct Sequence {
     shots: Vec<Shot>,
-    /// Frames before which the camera was cut.
+    /// Frames that begin with a camera cut.
     cuts: Vec<usize>,
 }
 
-/// Each stage alone, and all of them.
+/// No smoothing, each stage alone, the default, and the default with percentiles.
 pub fn variants() -> Vec<(&'static str, Option<RangeSmoothing>)> {
     let off = RangeSmoothing::OFF;
     let all = RangeSmoothing::default();
@@ -69,7 +69,7 @@ pub fn variants() -> Vec<(&'static str, Option<RangeSmoothing>)> {
     ]
 }
 
-/// The ranges that are drawn, frame by frame, by the twin of the shader.
+/// The ranges that are drawn, frame by frame, computed by the twin of the shader.
 fn ranges(sequence: &Sequence, settings: Option<RangeSmoothing>) -> Vec<Option<[f64; 2]>> {
     let mut range = Range::default();
     sequence
@@ -83,8 +83,8 @@ fn ranges(sequence: &Sequence, settings: Option<RangeSmoothing>) -> Vec<Option<[
             };
             if s.outliers > 0.0 {
                 let (bins, total) = smoothing::histogram(shot.depth.iter().copied());
-                let share = f64::from(s.outliers);
-                ends = ends.map(|e| smoothing::percentiles(&bins, total, share, e));
+                let fraction = f64::from(s.outliers);
+                ends = ends.map(|e| smoothing::percentiles(&bins, total, fraction, e));
             }
             let twin = Smoothing {
                 offset: Some(0.0),
@@ -227,7 +227,8 @@ fn play(name: &str, size: UVec2) -> Sequence {
                 None => object.insert(Visibility::Hidden),
             };
             for (i, speck) in dust.iter().enumerate() {
-                // Each lives for some frames somewhere before the camera.
+                // Each is visible for 9 of 29 frames, at a random place before the
+                // camera.
                 let alive = (frame + 7 * i) % 29 < 9;
                 if (frame + 7 * i) % 29 == 0 || frame == 0 {
                     let distance = 0.6 + 6.0 * random.unit();
@@ -275,7 +276,8 @@ fn draw(shot: &Shot, range: Option<[f64; 2]>) -> Vec<[u8; 3]> {
         .collect()
 }
 
-/// (mean, 99th percentile) of the change in display codes.
+/// (mean, 99th percentile) over the pixels of the largest change of a channel, in display
+/// codes.
 fn change(a: &[[u8; 3]], b: &[[u8; 3]]) -> [f64; 2] {
     let mut all: Vec<u8> = a
         .iter()
@@ -287,6 +289,7 @@ fn change(a: &[[u8; 3]], b: &[[u8; 3]]) -> [f64; 2] {
     [mean, f64::from(all[(all.len() - 1) * 99 / 100])]
 }
 
+/// Distance of two ranges in octaves of distance: that of the end that differs more.
 fn octaves(a: Option<[f64; 2]>, b: Option<[f64; 2]>) -> f64 {
     match (a, b) {
         (Some(a), Some(b)) => (0..2)
@@ -338,7 +341,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     run.save("flicker", &table)
 }
 
-/// Six moments of the intruder's passage, without smoothing above, with it below.
+/// Writes a picture of six frames: without smoothing above, with the default below.
 fn strip(run: &Run, sequence: &Sequence, size: UVec2) -> Result<(), String> {
     let moments = [18usize, 20, 24, 35, 51, 66];
     let gap = 4;

@@ -1,5 +1,4 @@
-//! How the cost grows: with pixels, with vertices, with cameras; and the
-//! paper's own experiment.
+//! How the cost grows with pixels, vertices and cameras, and the experiment of [CS].
 
 use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*, render::view::Msaa};
 
@@ -13,7 +12,7 @@ use crate::{
 };
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    // Large pictures take long and vary little.
+    // Large pictures take long, and their times vary little.
     let few = run.with_rounds(run.rounds.min(3));
     let comic = [("default comic".to_owned(), Wear::style(default_comic()))];
     let mut times = rig::times();
@@ -80,7 +79,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     paper(run)
 }
 
-/// One million vertices at 512x512, with and without the model, whole frames.
+/// Whole frames of one million vertices at 512x512, with and without the default comic.
 fn paper(run: &Run) -> Result<(), String> {
     let mut table = Table::new(&["app", "round", "milliseconds"]);
     let vertices = if run.quick { 10_000 } else { 1_000_000 };

@@ -1,4 +1,4 @@
-//! What a scene does not need is left out: counted, and timed.
+//! What a style does not need is left out: its work is counted and timed.
 
 use bevy::{core_pipeline::prepass::DepthPrepass, prelude::*};
 use bevy_comics::ComicsPlugin;
@@ -21,7 +21,7 @@ pub const WORK: [&str; 8] = [
     "style", "passes", "ran", "left_out", "bindings", "fetches", "most", "bytes",
 ];
 
-/// One counted style as its row.
+/// The row of a counted style.
 pub fn work_row(work: &work::Work) -> Vec<String> {
     vec![
         work.name.replace(',', ";"),
@@ -35,7 +35,8 @@ pub fn work_row(work: &work::Work) -> Vec<String> {
     ]
 }
 
-/// Whole frames of an app without the plugin, and with it and no style, in turn.
+/// Times whole frames of an app without the plugin and of one with it but without a style,
+/// in turn.
 fn idle(run: &Run) -> Result<(), String> {
     let size = UVec2::new(320, 180);
     let mut apps: Vec<(&str, Headless)> = Vec::new();
@@ -76,7 +77,7 @@ fn idle(run: &Run) -> Result<(), String> {
     run.save("idle_times", &table)
 }
 
-/// A lit ball of about a million vertices in the middle of the view.
+/// Spawns a lit ball of about `vertices` vertices in the middle of the view.
 pub fn ball(rig: &mut Rig, vertices: u32) -> Entity {
     let side = (f64::from(vertices).sqrt().round() as u32).max(4);
     let world = rig.headless.app.world_mut();
@@ -100,8 +101,7 @@ pub fn ball(rig: &mut Rig, vertices: u32) -> Entity {
         .id()
 }
 
-/// The engine's passes with a depth prepass and without: what a style that needs
-/// depth alone pays for it, or wins.
+/// Times the engine's passes with and without a depth prepass, which may cost or save time.
 fn prepass(run: &Run) -> Result<(), String> {
     let size = if run.quick {
         UVec2::new(320, 180)

@@ -1,5 +1,5 @@
-//! Which lines the operators find and what they cost; what anti-aliasing of
-//! bands and lines costs and brings.
+//! Which lines the operators find and what they cost; error and cost of the anti-aliasing
+//! of bands and lines.
 
 use bevy::{
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
@@ -60,7 +60,7 @@ fn detectors() -> Vec<(String, ComicStyle)> {
 fn truth(scene: BuiltIn, size: UVec2) -> Truth {
     let mut rig = Rig::new(Some(scene), size * FINE);
     rig.unlight();
-    // Ids are drawn for edges that nobody sees.
+    // Invisible object edges, so that ids are drawn.
     rig.wear(&Wear::style(outlines(Outlines {
         silhouettes: None,
         creases: None,
@@ -119,7 +119,7 @@ fn score(run: &Run) -> Result<(), String> {
     run.save("line_scores", &table)
 }
 
-/// A picture whose every pixel is the mean, in light, of a square of another's.
+/// A smaller picture: each pixel is the mean, in linear light, of `by` x `by` pixels.
 fn shrunk(picture: &image::RgbaImage, by: u32) -> Vec<[u8; 3]> {
     use bevy_comics_testkit::reference::color::{srgb_decode, srgb_encode};
     let (w, h) = (picture.width() / by, picture.height() / by);
@@ -164,8 +164,8 @@ fn soft_contours(scale: f32, softness: f32) -> ComicStyle {
     })
 }
 
-/// Each method against the same look drawn at eight times the resolution: what
-/// a picture of infinite resolution would show through the same pixels.
+/// The error of each method against the same style at eight times the resolution, which
+/// stands for the exact mean over a pixel.
 fn smooth(run: &Run) -> Result<(), String> {
     const REFERENCE: u32 = 8;
     let size = if run.quick {
@@ -201,7 +201,7 @@ fn smooth(run: &Run) -> Result<(), String> {
             ("2x2 samples", hard(2.0), 2),
         ] {
             if what == "silhouettes" && method == "hard" {
-                // There is no hard form of them.
+                // They have no hard form.
                 continue;
             }
             let got = shrunk(&picture(size * factor, style), factor);
@@ -248,7 +248,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         variants.push((name.to_owned(), Wear::style(style)));
     }
     rig::record(run, &mut times, "lines", "teapot", &mut rig, &variants);
-    // Twice the pixels along each edge: what 2x2 samples draw.
+    // Twice the width and height: the cost of 2x2 samples.
     let mut fine = Rig::new(Some(BuiltIn::Teapot), size * 2);
     fine.unlight();
     let variants = [

@@ -1,10 +1,10 @@
-//! Error against run time, stability, what is left out, growth, flicker:
-//! measures everything and writes the report.
+//! Measures error against run time, stability, what is left out, growth and flicker, and
+//! writes the report.
 //!
 //! ```text
-//! cargo run --release --example report                # docs/report, half an hour
+//! cargo run --release --example report                # writes docs/report in half an hour
 //! cargo run --example report -- --quick --out target/report
-//! cargo run --example report -- --render              # the text anew, from the CSV
+//! cargo run --example report -- --render              # text and plots from the CSV files
 //! ```
 
 mod bare;
@@ -37,10 +37,12 @@ use bevy_comics_testkit::{
 use lexopt::prelude::*;
 use table::Table;
 
-/// How much is measured.
+/// How much is measured, and where the results go.
 struct Run {
     pub quick: bool,
+    /// Repetitions of every variant.
     pub rounds: usize,
+    /// Timed frames of a repetition.
     pub frames: usize,
     folder: PathBuf,
     started: Instant,
@@ -76,11 +78,11 @@ impl Run {
 
 const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
 
-  --quick          small pictures, few repetitions, no peers
-  --out FOLDER     where the report goes; default docs/report
-  --only SECTION   measures one section anew: ranges, encodings, lines, stability,
+  --quick          small pictures, few repetitions, no other crates
+  --out FOLDER     folder of the report; default docs/report
+  --only SECTION   measure one section only: ranges, encodings, lines, stability,
                    ladder, growth, peers or flicker
-  --render         measures nothing; writes text and plots from the CSV files";
+  --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
@@ -156,7 +158,7 @@ fn run() -> Result<(), String> {
     Ok(())
 }
 
-/// What it was measured on.
+/// Writes what the report was measured on.
 fn machine(run: &Run) -> Result<(), String> {
     let adapter = headless::adapter()?;
     let headless = Headless::new(
@@ -201,7 +203,7 @@ fn machine(run: &Run) -> Result<(), String> {
     run.save("machine", &table)
 }
 
-/// Every CSV of a report, by name.
+/// Loads a CSV file of a report, by its name without the extension.
 fn load(folder: &Path, name: &str) -> Result<Table, String> {
     Table::load(&folder.join(format!("{name}.csv")))
 }

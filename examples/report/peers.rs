@@ -1,4 +1,4 @@
-//! Other crates in the same app and run: `benches/peers`, a workspace of its own.
+//! Times of other crates in the same app and run: `benches/peers`, a separate workspace.
 
 use std::process::Command;
 
@@ -12,7 +12,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers/Cargo.toml");
     let file = std::env::temp_dir().join("bevy_comics_peer_times.csv");
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
-    // Its own target folder, unless the caller gives it one.
+    // A separate target folder, unless the caller sets one.
     let target = std::env::var_os("PEERS_TARGET_DIR").map_or_else(
         || concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers/target").into(),
         std::path::PathBuf::from,
@@ -33,7 +33,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         .status()
         .map_err(|error| format!("cargo: {error}"))?;
     if !status.success() {
-        return Err("the peers did not run; what they said is above".into());
+        return Err("the other crates were not measured; their output is above".into());
     }
     let table = crate::table::Table::load(&file)?;
     run.save("peer_times", &table)

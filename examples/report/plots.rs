@@ -19,7 +19,7 @@ struct Plot<'a> {
     joined: bool,
 }
 
-/// A point and what it is called.
+/// A point and its label.
 type Point = (f64, f64, String);
 
 fn bounds(values: impl Iterator<Item = f64>, logarithmic: bool) -> (f64, f64) {
@@ -41,7 +41,7 @@ fn scatter(folder: &Path, plot: &Plot, points: &[Point]) -> Result<(), String> {
     if points.is_empty() {
         return Ok(());
     }
-    // Logarithmic axes are drawn as their logarithms, so that one chart does.
+    // A logarithmic axis is a linear axis of logarithms: one kind of chart is enough.
     let on_axis = |value: f64, axis: usize| {
         if plot.logarithmic[axis] {
             value.log10()
@@ -103,7 +103,7 @@ fn scatter(folder: &Path, plot: &Plot, points: &[Point]) -> Result<(), String> {
     chart
         .draw_series(points.iter().map(|p| Circle::new(at(p), 4, BLUE.filled())))
         .map_err(problem)?;
-    // Labels move up or down until they lie over none that is there already.
+    // Labels move up or down until they cover no earlier label.
     let mut taken: Vec<(i32, i32, i32)> = Vec::new();
     for point in &points {
         let (px, py) = chart.backend_coord(&at(point));
@@ -148,13 +148,13 @@ pub fn draw(folder: &Path) -> Result<(), String> {
             let x = match *method {
                 "full" | "previous frame" => of_shipped("BarrierFree")?,
                 "ping-pong" => of_shipped("PingPong")?,
-                // A sixteenth of the pixels a frame, as stride 4.
+                // It reads a sixteenth of the pixels per frame, as stride 4.
                 "rotating 4" => of_bare("stride 4")?,
                 stride if stride.starts_with("stride") => of_bare(stride)?,
                 _ => of_shipped("percentiles")?,
             };
             let rows = errors.matching(&[("method", method)]);
-            // Exact is drawn at half an ulp of the map.
+            // An error of 0 is drawn at half an ulp of 1: the axis is logarithmic.
             let y = largest(&errors.numbers(&rows, "map")).max(6e-8);
             Some((x, y, (*method).to_owned()))
         })
@@ -190,8 +190,8 @@ pub fn draw(folder: &Path) -> Result<(), String> {
         folder,
         &Plot {
             file: "encoding.svg",
-            title: "What depth is kept in: worst error of the map over all scenes",
-            x: "time of writing and mapping, blits",
+            title: "Stored depth: worst error of the map over all scenes",
+            x: "time of storing and mapping, blits",
             y: "largest error of D",
             logarithmic: [false, true],
             joined: false,

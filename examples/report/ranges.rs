@@ -1,4 +1,4 @@
-//! How wrong a range may be that was found with less work.
+//! The error of depth ranges that are found with less work.
 
 use bevy::math::UVec2;
 use bevy_comics::{Colorization, ComicStyle, DepthMap, RangeSmoothing, ReductionMethod};
@@ -13,8 +13,9 @@ use crate::{
     table::Table,
 };
 
-/// Every `stride`-th pixel of every `stride`-th row, from a phase; at stride 1
-/// the shape is that of `ReductionMethod::BarrierFree` without its gathers.
+/// Reads every `stride`-th pixel of every `stride`-th row, starting at a phase. `job` is
+/// (stride, phase x, phase y). At stride 1 the shape is that of
+/// `ReductionMethod::BarrierFree`, without its texture gathers.
 const STRIDED: &str = "
     @group(0) @binding(0) var depth: texture_2d<f32>;
     @group(0) @binding(1) var<uniform> job: vec4<u32>;
@@ -114,13 +115,13 @@ impl Job<'_> {
     }
 }
 
-/// The rotating form: each frame looks at a sixteenth of the pixels and takes
-/// the extremes of the last sixteen frames.
+/// The rotating scan: each frame reads a sixteenth of the pixels; the range is that of the
+/// last sixteen frames.
 fn rotating(strided: &Strided, textures: &[wgpu::Texture], frame: usize) -> Option<[f32; 2]> {
     let mut ends: Option<[f32; 2]> = None;
     for back in 0..16usize.min(frame + 1) {
         let at = frame - back;
-        // A permutation of the sixteen phases, neighbours far apart.
+        // A permutation of the sixteen phases: successive ones are far apart.
         let phase = (at * 7) % 16;
         let job = strided.job(&textures[at], 4, [phase as u32 % 4, phase as u32 / 4]);
         if let Some([near, far]) = job.ends() {
@@ -131,14 +132,13 @@ fn rotating(strided: &Strided, textures: &[wgpu::Texture], frame: usize) -> Opti
     ends
 }
 
-/// The share that the report takes for an outlier.
+/// Fraction of the pixels that percentiles leave out at either end.
 pub const OUTLIERS: f64 = 0.005;
 
 fn percentiles(shot: &Shot) -> Option<[f32; 2]> {
     let ends = shot.ends()?;
     let (bins, total) = smoothing::histogram(shot.depth.iter().copied());
-    let share = OUTLIERS;
-    let found = smoothing::percentiles(&bins, total, share, ends.map(f64::from));
+    let found = smoothing::percentiles(&bins, total, OUTLIERS, ends.map(f64::from));
     Some(found.map(|d| d as f32))
 }
 
@@ -209,7 +209,7 @@ fn measure_errors(run: &Run, captures: &[Capture]) -> Table {
                 let stride = |k| strided.job(&textures[frame], k, [0, 0]).ends();
                 let found = match method {
                     "full" => stride(1),
-                    // Selects as the scan does: the same extremes by another way.
+                    // Computed by the twin.
                     "ping-pong" => {
                         let (w, h) = (size[0] as usize, size[1] as usize);
                         bevy_comics_testkit::reference::ping_pong::reduce(&shot.depth, w, h)
@@ -224,7 +224,7 @@ fn measure_errors(run: &Run, captures: &[Capture]) -> Table {
                     _ => percentiles(shot),
                 };
                 let Some(e) = errors(capture.size, shot, found) else {
-                    // It saw nothing where there is something: all wrong.
+                    // It found no geometry where there is some: every error is 1.
                     table.push(&[&capture.name, &method, &frame, &1, &1, &1, &1, &1]);
                     continue;
                 };
@@ -254,7 +254,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let captures = capture::captures(run, capture::FRAMES);
     run.save("range_errors", &measure_errors(run, &captures))?;
 
-    // Times: the shipped reductions in the app, the others beside stride 1.
+    // Times: the crate's reductions in the app, the others on a device without the engine.
     let size = if run.quick {
         UVec2::new(320, 180)
     } else {
@@ -302,7 +302,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let mut bare = Table::new(&["method", "width", "height", "round", "milliseconds"]);
     let strided = Strided::new();
     let blit = Blit::new(size.to_array());
-    // The teapot's depth, enlarged: what is timed is the reading.
+    // The depth of the teapot, enlarged: only reading it is timed.
     let small = captures
         .iter()
         .find(|capture| capture.name == "teapot")

@@ -1,4 +1,4 @@
-//! One scene, one camera, variants timed in turn: A B C A B C.
+//! Times variants of one scene and camera in turn: A B C A B C.
 
 use std::collections::BTreeMap;
 
@@ -21,13 +21,13 @@ use crate::{Run, table::Table};
 pub struct Rig {
     pub headless: Headless,
     pub camera: Entity,
-    /// Further cameras that wear the same.
+    /// Further cameras with the same style.
     pub others: Vec<Entity>,
     pub vantage: Option<Vantage>,
     pub size: UVec2,
 }
 
-/// What a camera wears while it is timed.
+/// What a camera draws while it is timed.
 #[derive(Clone, Debug)]
 pub enum Wear {
     Nothing,
@@ -57,7 +57,7 @@ impl Rig {
             Some(vantage) => world.spawn(vantage.camera()).id(),
             None => world.spawn(Camera3d::default()).id(),
         };
-        // Nothing but the passes under test between the main pass and the end.
+        // Between the main pass and the end of the frame, only the timed passes run.
         world.entity_mut(camera).insert((
             target,
             Msaa::Off,
@@ -83,8 +83,8 @@ impl Rig {
             .id()
     }
 
-    /// Takes the light off every material, so that lines alone change the picture
-    /// and the main pass takes little of the time of a run.
+    /// Makes every material unlit: only lines change the picture, and the main pass takes
+    /// little time.
     pub fn unlight(&mut self) {
         let world = self.headless.app.world_mut();
         let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
@@ -110,15 +110,15 @@ impl Rig {
         }
     }
 
-    /// The laps of every variant, round by round; each round is the median of
-    /// its frames.
+    /// The laps of every variant, round by round. The laps of a round are the medians of its
+    /// frames.
     pub fn compare(&mut self, run: &Run, variants: &[(String, Wear)]) -> Vec<Vec<Laps>> {
         let mut all = vec![Vec::new(); variants.len()];
-        // One round for pipelines and textures.
+        // Round 0 creates pipelines and textures, and is not counted.
         for round in 0..=run.rounds {
             for (i, (_, wear)) in variants.iter().enumerate() {
                 self.wear(wear);
-                // The prepass takes a frame to come, pipelines and textures another.
+                // A new prepass takes one frame, new pipelines and textures another.
                 self.headless.step(2);
                 let frames = bench::laps(&mut self.headless, run.frames);
                 let mut middle = [0.0; bench::LAPS];
@@ -144,8 +144,8 @@ pub fn times() -> Table {
     ])
 }
 
-/// Times variants beside nothing, a blit, and a second blit as the noise bar,
-/// and writes the rows.
+/// Times the variants together with nothing, a blit, and a second blit that shows the
+/// noise, and adds the rows to the table.
 pub fn record(
     run: &Run,
     table: &mut Table,

@@ -1,5 +1,5 @@
-//! Stiff and extreme cases: the condition of the problem, the error of the
-//! textbook's form and of ours.
+//! Stiff and extreme cases: the condition of the problem, and the errors of the textbook's
+//! form and of this crate's.
 
 use bevy::{camera::Hdr, prelude::*, render::RenderApp};
 use bevy_comics::{ComicStyle, Outlines, Sketch, ToneBands, presets};
@@ -27,13 +27,14 @@ struct Case {
 }
 
 enum Kind {
-    /// Near plane; no far plane.
+    /// A perspective projection with this near plane and no far plane.
     Infinite(f64),
-    /// Near and far plane.
+    /// A perspective projection with a near and a far plane.
     Finite(f64, f64),
-    /// From 0 to a far plane.
+    /// An orthographic projection from 0 to this far plane.
     Orthographic(f64),
-    /// Raw depths themselves, from the first to the last, in units of one ulp.
+    /// No projection: consecutive raw depths, as the bits of the first one and the number of
+    /// steps of one ulp.
     Bits(u32, u32),
 }
 
@@ -95,6 +96,7 @@ fn cases() -> Vec<Case> {
     ]
 }
 
+/// Error in units in the last place of the expected value as `f32`.
 fn ulps(got: f32, want: f64) -> f64 {
     let unit = f64::from((want as f32).abs().max(f32::MIN_POSITIVE));
     let ulp = 2f64.powi(unit.log2().floor() as i32 - 23);
@@ -102,7 +104,7 @@ fn ulps(got: f32, want: f64) -> f64 {
 }
 
 fn map_cases(table: &mut Table, run: &Run) {
-    // (D of ours, D of the textbook): distances first, then their share.
+    // (D of this crate, D of the textbook). The textbook's form computes distances first.
     let body = "
         var f: DepthFrame;
         f.near = i(1u); f.far = i(2u); f.offset = i(3u); f.floor = i(4u);
@@ -117,7 +119,7 @@ fn map_cases(table: &mut Table, run: &Run) {
         let count = if run.quick { 512 } else { 8192u32 };
         let (offset, scale, plane_far, extent) = match case.projection {
             Kind::Infinite(near) => (0.0, near, 0.0, 0.0),
-            // clip z = (near (far - z)) / ((far - near)), over z.
+            // d = near (far - z) / ((far - near) z).
             Kind::Finite(near, far) => (near / (far - near), near * far / (far - near), 0.0, 0.0),
             Kind::Orthographic(far) => (0.0, 0.0, far, far),
             Kind::Bits(..) => (0.0, 0.1, 0.0, 0.0),
@@ -141,7 +143,7 @@ fn map_cases(table: &mut Table, run: &Run) {
         let near = depths.iter().copied().fold(0.0, f32::max);
         let far = depths.iter().copied().fold(1.0, f32::min);
         let orthographic = matches!(case.projection, Kind::Orthographic(_));
-        // No floor: what it hides is what is looked at here.
+        // The floor is 0: it would hide the errors that are measured here.
         let rows: Vec<[f32; 9]> = depths
             .iter()
             .map(|d| {
@@ -183,7 +185,7 @@ fn map_cases(table: &mut Table, run: &Run) {
         let mut worst = [[0.0f64; 2]; 2];
         let mut wild = [0usize; 2];
         for (d, got) in depths.iter().zip(&got) {
-            // What the shader takes for sky is sky for both.
+            // Depths that count as sky are sky for the twin too.
             let want = exact.depth_map(f64::from(*d))[0];
             for form in 0..2 {
                 if got[form].is_finite() {
@@ -211,7 +213,7 @@ fn map_cases(table: &mut Table, run: &Run) {
     }
 }
 
-/// Everything at once, on HDR colour.
+/// The preset `graphic-novel` with the default comic, outlines and tone bands.
 fn everything() -> ComicStyle {
     let mut style = presets::GRAPHIC_NOVEL.style();
     for effect in default_comic().effects() {
@@ -361,7 +363,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     rendered(&mut table, run);
     run.save("stability", &table)?;
 
-    // The same scene, scaled and moved: the picture should not change.
+    // The same scene, scaled or moved: the picture should not change.
     let size = if run.quick {
         UVec2::new(96, 64)
     } else {
@@ -400,7 +402,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
             &format!("{:.5}", capture::flip(size, &plain, &other)),
         ]);
     }
-    // So that a zero means something.
+    // For comparison: the difference to an unrelated picture.
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
     rig.headless.step(2);
     let teapot: Vec<_> = rig

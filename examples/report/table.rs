@@ -1,4 +1,4 @@
-//! Tables of raw numbers, kept as CSV.
+//! Tables of raw numbers, stored as CSV files.
 
 use std::{fs, path::Path};
 
@@ -43,7 +43,7 @@ impl Table {
             .ok_or_else(|| format!("{} is empty", path.display()))?;
         let rows: Vec<_> = rows.collect();
         match rows.iter().position(|row| row.len() != header.len()) {
-            Some(at) => Err(format!("{}: line {} is torn", path.display(), at + 2)),
+            Some(at) => Err(format!("{}: line {} is incomplete", path.display(), at + 2)),
             None => Ok(Self { header, rows }),
         }
     }
@@ -65,7 +65,7 @@ impl Table {
         self.cell(row, name).parse().unwrap_or(f64::NAN)
     }
 
-    /// The rows whose cells are these.
+    /// The rows that have these cells, given as (column, cell).
     pub fn matching<'a>(&'a self, wanted: &[(&str, &str)]) -> Vec<&'a Vec<String>> {
         self.rows
             .iter()
@@ -77,7 +77,7 @@ impl Table {
             .collect()
     }
 
-    /// The different cells of a column among some rows, in their first order.
+    /// The different cells of a column in some rows, in order of first appearance.
     pub fn distinct(&self, rows: &[&Vec<String>], name: &str) -> Vec<String> {
         let mut found: Vec<String> = Vec::new();
         for row in rows {
@@ -94,15 +94,15 @@ impl Table {
     }
 }
 
-/// The value below which a share of the numbers lies, between two of them where
-/// it falls between; NaN of none.
-pub fn quantile(numbers: &[f64], share: f64) -> f64 {
+/// The value below which this fraction of the finite numbers lies, interpolated between two
+/// of them; NaN without any.
+pub fn quantile(numbers: &[f64], fraction: f64) -> f64 {
     let mut sorted: Vec<f64> = numbers.iter().copied().filter(|n| n.is_finite()).collect();
     if sorted.is_empty() {
         return f64::NAN;
     }
     sorted.sort_by(f64::total_cmp);
-    let at = share * (sorted.len() - 1) as f64;
+    let at = fraction * (sorted.len() - 1) as f64;
     let (low, part) = (at.floor() as usize, at.fract());
     let high = (low + 1).min(sorted.len() - 1);
     sorted[low] * (1.0 - part) + sorted[high] * part
@@ -116,7 +116,7 @@ pub fn largest(numbers: &[f64]) -> f64 {
     numbers.iter().copied().fold(f64::NAN, f64::max)
 }
 
-/// Exponent p of y = c x^p by least squares in logarithms.
+/// Exponent p of y = c x^p, by least squares of the logarithms.
 pub fn exponent(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<(f64, f64)> = points
         .iter()

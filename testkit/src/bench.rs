@@ -1,6 +1,6 @@
-//! Times what one camera's schedule does, part by part: on a CPU adapter the
-//! wall time of a submit that holds only that part, waited for; on a GPU, the
-//! adapter's own timestamps around it.
+//! Times the parts of one camera's frame. On a CPU adapter, a time is the wall time of
+//! a submit that holds only that part, until it is done. On a GPU, it is the difference
+//! of the adapter's timestamps before and after the part.
 
 use std::time::Instant;
 
@@ -29,7 +29,7 @@ use crate::{
     stopwatch::{self, Stopwatch},
 };
 
-/// The parts of a camera's frame, in their order.
+/// The parts of a camera's frame, in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Lap {
     /// The engine's depth and normal prepass.
@@ -40,22 +40,23 @@ pub enum Lap {
     Lines,
     /// The engine's main pass.
     Main,
-    /// Everything after it, up to the last picture.
+    /// All post-processing, up to the engine's upscaling pass.
     Post,
 }
 
 pub const LAPS: usize = 5;
 
-/// Milliseconds of each lap.
+/// Milliseconds of a frame, by [`Lap`].
 pub type Laps = [f64; LAPS];
 
-/// How times are taken on this adapter, in words.
+/// How times are measured on this adapter, in words.
 pub fn method(headless: &Headless) -> &'static str {
     let world = headless.app.sub_app(RenderApp).world();
     stopwatch::method(world.resource(), world.resource())
 }
 
-/// A post-process pass that only copies: what every ratio is to.
+/// On a camera: a post-process pass that only copies. Its time is the unit of all
+/// ratios.
 #[derive(Component, ExtractComponent, Clone, Copy, Default)]
 pub struct Blit;
 
@@ -102,7 +103,8 @@ fn blit(
     pass.draw(0..3, 0..1);
 }
 
-/// Adds the stopwatch and the blit. Frames take longer: every lap is waited for.
+/// Adds the stopwatch and the blit. On a CPU adapter frames take longer, since the end
+/// of every lap is waited for.
 pub struct BenchPlugin;
 
 impl Plugin for BenchPlugin {
@@ -144,7 +146,7 @@ impl Plugin for BenchPlugin {
     }
 }
 
-/// Renders `frames` frames and gives their laps.
+/// Renders `frames` frames and returns their laps.
 pub fn laps(headless: &mut Headless, frames: usize) -> Vec<Laps> {
     let empty = |headless: &mut Headless| -> Vec<Laps> {
         let world = headless.app.sub_app_mut(RenderApp).world_mut();
@@ -158,7 +160,7 @@ pub fn laps(headless: &mut Headless, frames: usize) -> Vec<Laps> {
     empty(headless)
 }
 
-/// Milliseconds of a whole frame, waited for, whatever the adapter.
+/// Milliseconds of wall time of a whole frame, until the device is done.
 pub fn whole_frame(headless: &mut Headless) -> f64 {
     let start = Instant::now();
     headless.step(1);

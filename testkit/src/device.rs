@@ -1,4 +1,4 @@
-//! A bare device for the shipped functions: one body, many inputs.
+//! A bare GPU device that evaluates shipped WGSL functions on many inputs.
 
 use std::sync::OnceLock;
 
@@ -9,8 +9,8 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
 }
 
-/// The device of all function tests; fails with the command that installs an
-/// adapter where there is none.
+/// The device, shared by all tests of a process. Without an adapter it panics with
+/// the command that installs one.
 pub fn gpu() -> &'static Gpu {
     static GPU: OnceLock<Gpu> = OnceLock::new();
     GPU.get_or_init(|| {

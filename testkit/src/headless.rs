@@ -23,25 +23,26 @@ use bevy::{
 
 use crate::{ROOT, read_back};
 
-/// The command that gives a bare Debian machine an adapter.
+/// The command that installs an adapter that runs on the CPU, on Debian.
 pub const INSTALL_ADAPTER: &str = "apt-get install mesa-vulkan-drivers libvulkan1";
 
-/// What a headless app needs to know.
+/// Options of a headless app.
 #[derive(Clone, Debug)]
 pub struct HeadlessOptions {
     /// Size of the picture in pixels.
     pub size: UVec2,
-    /// Format of the picture; `Rgba8UnormSrgb` unless a test wants another.
+    /// Format of the picture. Default: `Rgba8UnormSrgb`.
     pub format: TextureFormat,
-    /// Physical pixels per logical pixel.
+    /// Physical pixels per logical pixel. Default: 1.
     pub scale_factor: f32,
-    /// Whether the engine may log.
+    /// Whether errors of the engine and warnings of this crate are logged.
     pub log: bool,
-    /// Folder of assets, absolute or relative to the working directory.
+    /// Folder of assets, absolute or relative to the working folder.
     pub assets: String,
-    /// Whether assets that change on disk are loaded again.
+    /// Whether an asset is loaded again when its file changes.
     pub watch: bool,
-    /// Whether pipelines compile while frames are drawn, as in a game.
+    /// Whether pipelines compile while frames are drawn, as in a game; else every
+    /// pipeline is compiled before its first use.
     pub background_pipelines: bool,
 }
 
@@ -59,8 +60,7 @@ impl Default for HeadlessOptions {
     }
 }
 
-/// The engine's plugins without a window, without pipelined rendering, and with
-/// every pipeline compiled before it is used.
+/// The engine's plugins without a window and without pipelined rendering.
 pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
     let group = DefaultPlugins
         .set(WindowPlugin {
@@ -95,23 +95,23 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
     }
 }
 
-/// Vulkan, Metal or DirectX 12, unless `WGPU_BACKEND` says otherwise: OpenGL
-/// wants a display.
+/// The backends that `WGPU_BACKEND` names; by default all but OpenGL, which needs a
+/// display.
 fn backends() -> wgpu::Backends {
     wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY)
 }
 
-/// The adapter that will render, and what it can do.
+/// The adapter that renders, and its limits.
 #[derive(Clone, Debug)]
 pub struct Adapter {
     pub info: wgpu::AdapterInfo,
-    /// Largest width and height of a picture.
+    /// Largest width and height of a picture in pixels.
     pub max_size: u32,
-    /// Sample counts of multisampling, for colour, HDR colour and depth alike.
+    /// Sample counts that targets of colour, HDR colour and depth all support.
     pub samples: Vec<u32>,
 }
 
-/// Asks for the adapter, or says how to get one.
+/// Finds the adapter; the error names the command that installs one.
 pub fn adapter() -> Result<Adapter, String> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: backends(),
@@ -149,15 +149,34 @@ pub struct Headless {
 }
 
 impl Headless {
-    /// Starts the engine with `extra` plugins; panics with the command that
-    /// installs an adapter where there is none.
+    /// Starts the engine with `extra` plugins. Without an adapter it panics, with the
+    /// command that installs one.
     pub fn new<M>(options: HeadlessOptions, extra: impl bevy::app::Plugins<M>) -> Self {
+        Self::start(options, |app, engine| {
+            app.add_plugins(engine).add_plugins(extra);
+        })
+    }
+
+    /// The same with `first` added before the engine's plugins.
+    pub fn with_plugins_first<M>(
+        options: HeadlessOptions,
+        first: impl bevy::app::Plugins<M>,
+    ) -> Self {
+        Self::start(options, |app, engine| {
+            app.add_plugins(first).add_plugins(engine);
+        })
+    }
+
+    fn start(
+        options: HeadlessOptions,
+        add_plugins: impl FnOnce(&mut App, PluginGroupBuilder),
+    ) -> Self {
         if let Err(message) = adapter() {
             panic!("{message}");
         }
         let mut app = App::new();
-        app.add_plugins(plugins(&options)).add_plugins(extra);
-        // One frame is a sixtieth of a second, whatever the machine does.
+        add_plugins(&mut app, plugins(&options));
+        // Every frame takes 1/60 s of the app's time, so that tests are repeatable.
         app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_micros(
             16_667,
         )));
@@ -182,6 +201,13 @@ impl Headless {
         })
     }
 
+    /// Replaces the target by one of another size. Cameras keep the old one.
+    pub fn resize(&mut self, size: UVec2, scale_factor: f32) {
+        self.options.size = size;
+        self.options.scale_factor = scale_factor;
+        self.target = new_target(self.app.world_mut(), size, self.options.format);
+    }
+
     /// Renders frames.
     pub fn step(&mut self, frames: usize) {
         for _ in 0..frames {
@@ -189,13 +215,13 @@ impl Headless {
         }
     }
 
-    /// The picture as RGBA codes, row by row.
+    /// The last picture, read back.
     pub fn picture(&mut self) -> image::RgbaImage {
         let target = self.target.clone();
         self.picture_of(&target)
     }
 
-    /// Another target's picture.
+    /// The last picture of another target.
     pub fn picture_of(&mut self, target: &Handle<Image>) -> image::RgbaImage {
         let world = self.app.sub_app(RenderApp).world();
         let gpu_image = world
@@ -209,7 +235,7 @@ impl Headless {
     }
 }
 
-/// A picture to render to and to read back.
+/// An image that can be rendered to and read back.
 pub fn new_target(world: &mut World, size: UVec2, format: TextureFormat) -> Handle<Image> {
     let mut image = Image::new_target_texture(size.x, size.y, format, None);
     image.texture_descriptor.usage |= TextureUsages::COPY_SRC;

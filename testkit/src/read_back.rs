@@ -1,4 +1,4 @@
-//! Reads what the last frame left on the GPU: pictures, depth, normals.
+//! Reads textures of the last frame from the GPU: pictures, depth, normals, object ids.
 
 use bevy::{
     core_pipeline::prepass::ViewPrepassTextures,
@@ -19,7 +19,7 @@ pub struct FloatImage {
     pub pixels: Vec<[f32; 4]>,
 }
 
-/// Raw depth bits: `samples` values a pixel, row by row.
+/// Bits of raw depth: `samples` values per pixel, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DepthImage {
     pub width: u32,
@@ -94,7 +94,7 @@ fn srgb_to_linear(code: u8) -> f32 {
     }) as f32
 }
 
-/// The values a shader reads from a colour texture.
+/// The values that a shader reads from a colour texture: sRGB formats are decoded.
 pub fn float_image(render_world: &World, texture: &wgpu::Texture) -> FloatImage {
     let bytes = texture_bytes(render_world, texture);
     let unorm = |b: u8| f32::from(b) / 255.0;
@@ -127,8 +127,8 @@ pub fn float_image(render_world: &World, texture: &wgpu::Texture) -> FloatImage 
     }
 }
 
-/// What the last post-process pass of the view read and wrote; the same picture
-/// twice where none ran.
+/// What the last post-process pass of the view read and wrote. `ran`: whether there was
+/// one; if not, both are the same picture.
 pub fn last_pass(
     render_world: &World,
     view: Entity,
@@ -144,7 +144,7 @@ pub fn last_pass(
     Some((input, output))
 }
 
-/// (id, style slot) of each pixel's object, row by row.
+/// (id, style slot) of the object at each pixel, row by row; id 0 for no object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IdImage {
     pub width: u32,
@@ -152,7 +152,8 @@ pub struct IdImage {
     pub pixels: Vec<[u32; 2]>,
 }
 
-/// Runs a small compute shader that stores `words` words for every pixel.
+/// Runs a compute shader whose entry point `read` stores `words` words of 32 bits for
+/// every pixel, and returns them.
 fn read_texels(
     render_world: &World,
     texture: &wgpu::Texture,
@@ -255,7 +256,7 @@ fn read_texels(
         .collect()
 }
 
-/// The raw depth that the view's prepass left, every sample, to the bit.
+/// All samples of the view's raw depth, bit by bit; `None` without a depth prepass.
 pub fn depth(render_world: &World, view: Entity) -> Option<DepthImage> {
     let prepass = render_world.get::<ViewPrepassTextures>(view)?;
     let texture: &wgpu::Texture = &prepass.depth.as_ref()?.texture.texture;
@@ -286,8 +287,8 @@ pub fn depth(render_world: &World, view: Entity) -> Option<DepthImage> {
     })
 }
 
-/// World normals of the first sample, decoded; none where the view has no
-/// normal prepass.
+/// World normals of the first sample, components -1 to 1; `None` without a normal
+/// prepass.
 pub fn normals(render_world: &World, view: Entity) -> Option<FloatImage> {
     let prepass = render_world.get::<ViewPrepassTextures>(view)?;
     let texture: &wgpu::Texture = &prepass.normal.as_ref()?.texture.texture;
@@ -318,7 +319,7 @@ pub fn normals(render_world: &World, view: Entity) -> Option<FloatImage> {
     })
 }
 
-/// The objects of the first sample; none where no ids were drawn.
+/// The object at each pixel's first sample; `None` if no ids were drawn.
 pub fn object_ids(render_world: &World, view: Entity) -> Option<IdImage> {
     let texture: &wgpu::Texture = &render_world.get::<ViewObjectIds>(view)?.texture;
     let kind = if texture.sample_count() > 1 {

@@ -11,8 +11,8 @@ use super::{
     scenes::{BuiltIn, ScenePart, Stage, Vantage},
 };
 
-/// Frames until a change of style is on the picture: the prepass takes one, the
-/// pipelines another, and the range is of the same frame.
+/// Frames to render after a change of style: enough for a new prepass, which takes one
+/// frame, and for new pipelines, which take another. The depth range has no delay.
 const SETTLE: usize = 4;
 
 pub struct Studio {
@@ -49,7 +49,7 @@ impl Studio {
         }
     }
 
-    /// The scene in a style; the original for `None`.
+    /// The picture of the scene in a style; unstyled for `None`.
     pub fn shoot(&mut self, style: Option<&ComicStyle>) -> image::RgbaImage {
         let none = ComicStyle::default();
         let world = self.headless.app.world_mut();
@@ -63,8 +63,8 @@ impl Studio {
     }
 }
 
-/// Gives a camera a look. The engine's dither would speckle flat areas whose
-/// tone lies on a step between bands, so bands go without it.
+/// Gives a camera a style. Tone bands switch off the engine's dither, which would
+/// speckle flat areas whose tone lies at a step between two bands.
 pub fn wear(camera: &mut EntityCommands, style: &ComicStyle) {
     camera.insert(match style.get::<ToneBands>() {
         Some(_) => DebandDither::Disabled,
@@ -79,8 +79,9 @@ pub fn with_map(mut style: ComicStyle, map: DepthMap) -> ComicStyle {
     style
 }
 
-/// The presets that a scene has a reference picture of. The mountains are the
-/// first paper's, the theatre is the second's, the teapot shows everything.
+/// The presets that have a golden picture in a scene. The first ten presets are those of
+/// the first paper. The mountains show them, the theatre shows the others, the teapot
+/// shows all, and the village shows the first ten and `graphic-novel`.
 pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
     let is_cartoon = |name: &str| presets::ALL.iter().position(|p| p.name() == name) >= Some(10);
     let wanted = |name: &&str| match scene {
@@ -96,7 +97,7 @@ pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
         .collect()
 }
 
-/// Draws every part of the scene with the cartoon material, or as it was.
+/// Draws the whole scene with the cartoon material, or with its own materials.
 pub fn set_cartoon(world: &mut World, on: bool) {
     let mut parts = world.query_filtered::<Entity, (With<ScenePart>, Without<ChildOf>)>();
     let parts: Vec<Entity> = parts.iter(world).collect();

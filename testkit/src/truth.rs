@@ -1,11 +1,13 @@
-//! Which pixels should have a line, from the same scene at a higher resolution.
+//! Which pixels should have a line, from the same scene at [`FINE`] times the resolution.
 //!
-//! A pixel has a silhouette where the depth of two finer neighbours differs by
-//! more than 2 % beyond the slopes on both sides, a crease where their normals
-//! differ by more than 30 degrees on one surface, an object edge where their ids
-//! differ.
+//! A pixel has a line if two neighbours among its finer pixels differ:
+//!
+//! * silhouette: the step of their raw depth exceeds the slopes on both sides by more than
+//!   2 % of the nearer depth;
+//! * crease: no silhouette, and their normals differ by more than 30 degrees;
+//! * object edge: their ids differ.
 
-/// Pixels of the finer picture along an edge of a pixel.
+/// Finer pixels along each side of a pixel.
 pub const FINE: u32 = 4;
 
 /// The three kinds, one mask each: silhouettes, creases, object edges.
@@ -16,7 +18,7 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// From raw depth, normals and object ids of a picture [`FINE`] times as fine.
+    /// From raw depth, normals and object ids at [`FINE`] times the width and height.
     pub fn new(
         width: usize,
         height: usize,
@@ -62,21 +64,22 @@ impl Truth {
         }
     }
 
-    /// Where any of some kinds is.
+    /// The pixels that have a line of any of these kinds.
     pub fn any(&self, kinds: &[usize]) -> Vec<bool> {
         (0..self.width * self.height)
             .map(|i| kinds.iter().any(|kind| self.kinds[*kind][i]))
             .collect()
     }
 
-    /// The pixels that count: the rim reads beyond the picture.
+    /// The pixels that count. A rim of 3 pixels does not: detectors read beyond the
+    /// picture there.
     pub fn inside(&self) -> impl Iterator<Item = usize> {
         let (w, h) = (self.width, self.height);
         (0..w * h).filter(move |i| (3..w - 3).contains(&(i % w)) && (3..h - 3).contains(&(i / w)))
     }
 
-    /// (found, all) of the true pixels: one counts as found where a line lies
-    /// within a pixel.
+    /// (found, all) of the true pixels. A pixel is found if a line is at most one pixel
+    /// away.
     pub fn recall(&self, truth: &[bool], lines: &[bool]) -> (usize, usize) {
         count(
             self.inside()
@@ -85,8 +88,8 @@ impl Truth {
         )
     }
 
-    /// (right, all) of the drawn pixels: one is right within two pixels of the
-    /// truth.
+    /// (right, all) of the drawn pixels. A pixel is right if a true pixel is at most two
+    /// pixels away.
     pub fn precision(&self, truth: &[bool], lines: &[bool]) -> (usize, usize) {
         count(
             self.inside()
@@ -102,7 +105,8 @@ fn count(all: impl Iterator<Item = bool>) -> (usize, usize) {
     })
 }
 
-/// Which pixels a line has changed by more than a quarter.
+/// The pixels that lines have changed: some channel differs by more than a quarter of the
+/// brightest channel of the plain pixel, which counts as 24 codes at least.
 pub fn mask(plain: &image::RgbaImage, lined: &image::RgbaImage) -> Vec<bool> {
     plain
         .pixels()
@@ -115,6 +119,7 @@ pub fn mask(plain: &image::RgbaImage, lined: &image::RgbaImage) -> Vec<bool> {
         .collect()
 }
 
+/// Whether the mask is set within `reach` pixels along both axes.
 fn near(mask: &[bool], width: usize, height: usize, at: usize, reach: i64) -> bool {
     let (x, y) = ((at % width) as i64, (at / width) as i64);
     (-reach..=reach).any(|j| {

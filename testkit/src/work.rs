@@ -1,5 +1,5 @@
-//! Counts what a style does, whatever the machine: passes, bindings, and the
-//! texels that the fused pass fetches, counted by the shader itself.
+//! Counts the work of a style, which is the same on every machine: passes, bindings, and
+//! the texels that the fused pass fetches, counted in the shader.
 
 use std::borrow::Cow;
 
@@ -25,7 +25,7 @@ use super::{
     studio::{Studio, with_map},
 };
 
-/// What a style does for one camera.
+/// The work of a style for one camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Work {
     pub name: &'static str,
@@ -35,13 +35,13 @@ pub struct Work {
     pub left_out: usize,
     /// Bindings of the fused pass.
     pub bindings: usize,
-    /// Texels that the fused pass fetches for a pixel, mean and most.
+    /// Texels that the fused pass fetches per pixel: mean and maximum.
     pub fetches: [f64; 2],
-    /// Bytes that it fetches for a pixel, in the mean, on an 8-bit target.
+    /// Bytes that it fetches per pixel on an 8-bit target, mean.
     pub bytes: f64,
 }
 
-/// The stages that are passes of their own.
+/// The stages that are separate passes.
 const PASSES: [ComicsStage; 8] = [
     ComicsStage::DepthPrepass,
     ComicsStage::NormalPrepass,
@@ -53,7 +53,8 @@ const PASSES: [ComicsStage; 8] = [
     ComicsStage::Stylize,
 ];
 
-/// Desaturation, colorization and contours: what the targets speak of.
+/// Desaturation, colorization and contours: the style that the report's targets are set
+/// for.
 pub fn default_comic() -> ComicStyle {
     ComicStyle::new()
         .with(Desaturation::default())
@@ -61,7 +62,7 @@ pub fn default_comic() -> ComicStyle {
         .with(Contours::default())
 }
 
-/// From nothing to everything.
+/// The styles whose work is counted, from none to everything.
 pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
     let none = ComicStyle::new();
     let saturation = none.clone().with(Desaturation::default());
@@ -128,7 +129,7 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
     ]
 }
 
-/// Bytes of a texel, by the name of its binding.
+/// Bytes of the texel that a line of WGSL loads, by the name of its binding.
 fn texel_size(line: &str) -> Option<u32> {
     let name = line.split("textureLoad(").nth(1)?.split(',').next()?;
     Some(match name {
@@ -137,9 +138,9 @@ fn texel_size(line: &str) -> Option<u32> {
     })
 }
 
-/// The fused pass.
+/// The file of the fused pass.
 const FUSED: &str = "bevy_comics/effect/fused.wgsl";
-/// The files that read textures for it, sorted.
+/// The files whose functions read textures for the fused pass, sorted.
 const READERS: [&str; 5] = [
     "bevy_comics/depth/normal.wgsl",
     "bevy_comics/depth/view.wgsl",
@@ -148,7 +149,7 @@ const READERS: [&str; 5] = [
     "bevy_comics/objects/objects.wgsl",
 ];
 
-/// The counter: a module that all of them import.
+/// The counter: a module that all readers import.
 const COUNTER: &str = "#define_import_path bevy_comics_count::tally
 
 var<private> fetched: vec2<f32>;
@@ -163,7 +164,8 @@ struct Counter {
     _module: Handle<Shader>,
 }
 
-/// Puts a counter before every fetch, and gives the count instead of a colour.
+/// Adds a call of the counter before every fetch. The fused pass then returns the counts
+/// instead of the colour.
 fn counting(path: &str, text: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
     if path == FUSED {
@@ -193,7 +195,7 @@ fn counting(path: &str, text: &str) -> String {
     )
 }
 
-/// Changes the shaders that fetch texels, and gives the names of their files.
+/// Adds the counter to the shaders that fetch texels, and returns the names of their files.
 fn instrument(world: &mut World) -> Vec<&'static str> {
     let mut shaders = world.resource_mut::<Assets<Shader>>();
     let ids: Vec<_> = shaders.ids().collect();
@@ -218,7 +220,7 @@ fn instrument(world: &mut World) -> Vec<&'static str> {
     changed
 }
 
-/// Renders the teapot, small, in a style, and counts.
+/// Counts the work of a style on the teapot at 160 x 90 pixels.
 pub fn count(name: &'static str, style: &ComicStyle) -> Work {
     let mut studio = Studio::new(BuiltIn::Teapot, UVec2::new(160, 90), Msaa::Off);
     let camera = studio.camera;
@@ -230,7 +232,7 @@ pub fn count(name: &'static str, style: &ComicStyle) -> Work {
         .insert(Hdr);
     studio.headless.step(2);
     let changed = instrument(studio.headless.app.world_mut());
-    assert_eq!(changed, READERS, "the fused pass is made of other files");
+    assert_eq!(changed, READERS, "the files that read textures");
     studio.shoot(Some(style));
     studio.headless.step(4);
 

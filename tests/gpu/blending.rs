@@ -1,4 +1,4 @@
-//! From one style to another: in numbers, in pictures, over time.
+//! Transitions between styles: numbers, pictures, time.
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ use crate::{
 fn preset(name: &str) -> ComicStyle {
     let mut style = presets::find(name).expect(name).style();
     if let Some(sketch) = style.get_mut::<Sketch>() {
-        // A drawing that is done anew is no step of a transition.
+        // A new drawing of the sketch is not part of the transition.
         sketch.rate = 0.0;
     }
     style
@@ -69,8 +69,8 @@ fn mean_apart(a: &RgbaImage, b: &RgbaImage) -> f64 {
 }
 
 /// At the ends, where effects begin and end, and in the middle, where modes
-/// change, a small step changes the picture little: a thousandth of the way
-/// moves no pixel by more than its share and the rounding of a code.
+/// change, a small step changes the picture little: 0.001 of the transition moves
+/// no pixel by more than that fraction plus the rounding of a code.
 #[test]
 fn no_picture_jumps_on_the_way() {
     let mut small = Small::new(UVec2::new(128, 80), Msaa::Off);
@@ -141,7 +141,7 @@ fn a_transition_takes_its_time_and_arrives() {
     let (a, b) = (preset("ligne-claire"), preset("noir"));
     small.style(&a);
     small.settle();
-    // Sixty frames are a second here.
+    // The test clock advances 1/60 s per frame.
     let slow = StyleTransition::to(b.clone(), 1.0).with_easing(TransitionEasing::Linear);
     small.insert(slow);
     small.headless.step(31);
@@ -156,7 +156,7 @@ fn a_transition_takes_its_time_and_arrives() {
         width(&want)
     );
 
-    // Another one from here: no jump back.
+    // A second transition starts from the current state.
     let c = preset("golden-hour");
     small.insert(StyleTransition::to(c.clone(), 0.5));
     small.headless.step(1);
@@ -174,7 +174,7 @@ fn a_transition_takes_its_time_and_arrives() {
         "the one that was replaced did not arrive"
     );
 
-    // At once, and with numbers that are none.
+    // A duration of zero, and NaN.
     for seconds in [0.0, -1.0, f32::NAN] {
         small.insert(StyleTransition::to(a.clone(), seconds));
         small.headless.step(2);
@@ -182,7 +182,7 @@ fn a_transition_takes_its_time_and_arrives() {
         small.insert(StyleTransition::to(b.clone(), 0.0));
         small.headless.step(2);
     }
-    // A camera that goes takes its transition along.
+    // A despawned camera ends its transition.
     small.insert(StyleTransition::to(a, 1.0));
     small.headless.step(2);
     let camera = small.camera;
@@ -218,7 +218,7 @@ fn a_transition_and_the_cameras_file_agree() {
         "its file goes on with it"
     );
 
-    // To a style that is no file: the old file has no say any more.
+    // A transition to a style without a file: the old file no longer applies.
     small.insert(StyleTransition::to(preset("blueprint"), 0.0));
     small.headless.step(3);
     assert_eq!(look(&small), unnamed(&preset("blueprint")));
@@ -237,7 +237,7 @@ fn a_transition_and_the_cameras_file_agree() {
         "a file that it left is not read"
     );
 
-    // A file that cannot be read ends it where it is.
+    // A file that cannot be read ends the transition at its current state.
     let missing = small
         .world()
         .resource::<AssetServer>()
@@ -267,8 +267,8 @@ fn a_transition_and_the_cameras_file_agree() {
     assert_eq!(look(&small), unnamed(&preset("blueprint")));
 }
 
-/// Where pipelines compile in the background, as in a game, a change of the
-/// look never shows the bare picture.
+/// While pipelines compile in the background, as in a game, a change of style
+/// never shows the original picture.
 #[test]
 fn a_look_stays_until_the_next_one_is_compiled() {
     let mut small = Small::with(
@@ -291,7 +291,7 @@ fn a_look_stays_until_the_next_one_is_compiled() {
     };
     small.insert(Desaturation::default());
     until_complete(&mut small);
-    // The engine's own pipelines compile as well: until nothing changes.
+    // Pipelines of the engine compile too: wait until nothing changes.
     let still = |small: &mut Small| {
         let mut last = small.picture();
         let mut unchanged = 0;

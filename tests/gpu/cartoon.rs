@@ -1,5 +1,5 @@
-//! The cartoon material: its light, its shadows against a ray cast, and scenes
-//! that are converted and back.
+//! The cartoon material: light, shadows against a ray cast, and the conversion of
+//! scenes and back.
 
 use bevy::{
     camera::Exposure,
@@ -16,7 +16,7 @@ use bevy_comics::{
 use crate::small::{Object, Small};
 
 const SIZE: UVec2 = UVec2::new(240, 160);
-/// The caster: an axis-aligned box on the ground.
+/// The object that casts the shadow: an axis-aligned box on the ground.
 const LOW: Vec3 = Vec3::new(-0.6, 0.0, -0.5);
 const HIGH: Vec3 = Vec3::new(0.5, 1.4, 0.6);
 
@@ -49,14 +49,14 @@ fn material(small: &mut Small, light: CartoonLight) -> MeshMaterial3d<CartoonMat
     )
 }
 
-/// Ground, box and one light; outlines whose ink nobody sees ask for the ids.
+/// Ground, box and one light. Outlines that are nearly invisible request the ids.
 fn stage(light: &Kind, msaa: Msaa) -> Stage {
     let mut small = Small::new(SIZE, msaa);
     small.clear();
     let white = material(
         &mut small,
         CartoonLight {
-            // A light in no rings, so that lit is one thing.
+            // No rings in the light, so that every lit pixel has one colour.
             falloff: 0.0,
             ..default()
         },
@@ -173,9 +173,9 @@ fn blocked(from: Vec3, to: Vec3, low: Vec3, high: Vec3) -> bool {
     enter < leave
 }
 
-/// The share of ground pixels whose shadow is not the ray cast's, among those
-/// farther than `texel` from its border; and how many were looked at.
-fn wrong_share(stage: &mut Stage, light: &Kind, texel: f32) -> (f64, usize, usize) {
+/// The fraction of ground pixels whose shadow differs from the ray cast, among
+/// those farther than `texel` from its border; and their number.
+fn wrong_fraction(stage: &mut Stage, light: &Kind, texel: f32) -> (f64, usize, usize) {
     let ids = stage.small.object_ids().expect("ids are drawn");
     let (_, picture) = stage.small.pass();
     let id = u32::from(object_id(stage.ground));
@@ -193,7 +193,7 @@ fn wrong_share(stage: &mut Stage, light: &Kind, texel: f32) -> (f64, usize, usiz
                 Kind::Sun(to) => (point + to.normalize() * 50.0, 0.0),
                 Kind::Lamp(at) => (at, 0.0),
                 Kind::Spot(at, to) => {
-                    // Outside the cone it is dark, and near its rim undecided.
+                    // Dark outside the cone; near its rim, either is right.
                     let angle = (to - at).angle_between(point - at);
                     if angle > 0.9 {
                         continue;
@@ -209,7 +209,7 @@ fn wrong_share(stage: &mut Stage, light: &Kind, texel: f32) -> (f64, usize, usiz
             }
             looked += 1;
             dark += usize::from(large);
-            // Ambient alone is 100 / 1000 / pi; any of the lights is far more.
+            // Ambient light alone gives 100 / 1000 / pi; each light gives far more.
             let light_here = picture.pixels[i][1];
             let shaded = light_here < 0.16;
             wrong += usize::from(shaded != large);
@@ -233,23 +233,23 @@ fn cast_shadows_are_where_a_ray_cast_puts_them() {
     for (name, light, texel) in lights {
         for msaa in [Msaa::Off, Msaa::Sample4] {
             let mut stage = stage(&light, msaa);
-            // A texel on the ground, seen slanted, and the filter's other half.
-            let (share, looked, dark) = wrong_share(&mut stage, &light, 2.0 * texel);
+            // A shadow texel on the ground, seen at a slant, and half the filter.
+            let (fraction, looked, dark) = wrong_fraction(&mut stage, &light, 2.0 * texel);
             println!(
                 "{name}, {msaa:?}: {:.3} % of {looked} wrong, {dark} in shadow",
-                100.0 * share
+                100.0 * fraction
             );
             assert!(
                 dark > 500 && looked > dark + 5000,
                 "{name}: {looked}, {dark}"
             );
-            assert!(share <= 0.002, "{name}, {msaa:?}: {share}");
+            assert!(fraction <= 0.002, "{name}, {msaa:?}: {fraction}");
             assert_eq!(stage.small.errors(), 0);
         }
     }
 }
 
-/// No acne on a curved surface: what a light faces well is lit, without a hole.
+/// No shadow acne on a curved surface: what faces the light is lit everywhere.
 #[test]
 fn a_sphere_is_lit_on_one_side_and_dark_on_the_other() {
     for light in [
@@ -290,7 +290,7 @@ fn a_sphere_is_lit_on_one_side_and_dark_on_the_other() {
                 continue;
             }
             let n = Vec3::new(n[0], n[1], n[2]);
-            // The unit sphere's normal is its place.
+            // The normal of a unit sphere is the position.
             let towards = match light {
                 Kind::Sun(to) => to.normalize(),
                 Kind::Lamp(at) | Kind::Spot(at, _) => (at - n).normalize(),
@@ -306,12 +306,12 @@ fn a_sphere_is_lit_on_one_side_and_dark_on_the_other() {
             dark += usize::from(!bright);
         }
         assert!(lit > 1000 && dark > 500, "{lit} {dark}");
-        // A pixel of the rim may show a surface that is not at its centre.
+        // The centre of a pixel at the rim may lie off the sphere.
         assert!(wrong * 1000 <= lit + dark, "{wrong} of {}", lit + dark);
     }
 }
 
-/// [CL] 2.3: what a light reaches is one colour, however it is turned.
+/// \[CL\] 2.3: a lit area has one colour, whatever its normals.
 #[test]
 fn an_area_is_one_colour_and_lights_add_up() {
     let sun = Kind::Sun(Vec3::new(-0.6, 1.0, 0.35));
@@ -399,7 +399,7 @@ fn a_scene_is_converted_with_one_component_and_back() {
                 .is_none()
         );
     }
-    // A change of an original reaches its copy, and so do the settings.
+    // Changes of the original material and of the settings reach the copy.
     let first = ids[0];
     small
         .world()
@@ -428,7 +428,7 @@ fn a_scene_is_converted_with_one_component_and_back() {
             .iter()
             .all(|(_, m)| m.extension.terminator == 0.5)
     );
-    // A part that comes later is converted as well.
+    // A part that is added later is converted as well.
     let mesh = small
         .world()
         .resource_mut::<Assets<Mesh>>()
@@ -478,7 +478,7 @@ fn a_scene_is_converted_with_one_component_and_back() {
     assert_eq!(small.errors(), 0);
 }
 
-/// Forward meshes among deferred ones: the same picture.
+/// Cartoon meshes are drawn forward on a deferred camera: the same picture.
 #[test]
 fn a_deferred_camera_draws_the_same_cartoon() {
     let sun = Kind::Sun(Vec3::new(-0.6, 1.0, 0.35));
@@ -489,7 +489,7 @@ fn a_deferred_camera_draws_the_same_cartoon() {
         .small
         .world()
         .insert_resource(bevy::pbr::DefaultOpaqueRendererMethod::deferred());
-    // A material that asks for the deferred pass is set right.
+    // A material that requests the deferred pass is drawn forward.
     let ids: Vec<_> = deferred
         .small
         .world()

@@ -1,4 +1,4 @@
-//! The `render` example as a newcomer meets it: its files, and its errors.
+//! Examples on the command line: their output files and their errors.
 
 use std::{
     env, fs,
@@ -11,21 +11,8 @@ use serde_json::Value;
 
 use bevy_comics_testkit::reference::range;
 
-/// Builds an example and gives its path.
+/// Builds an example and returns its path.
 pub fn example(name: &str) -> PathBuf {
-    example_with(name, FEATURES)
-}
-
-/// The features of this very test: an example built with others would build
-/// half of the engine anew.
-const FEATURES: &[&str] = if cfg!(feature = "inspector") {
-    &["--features", "inspector"]
-} else {
-    &[]
-};
-
-/// The same with arguments for cargo.
-pub fn example_with(name: &str, arguments: &[&str]) -> PathBuf {
     let debug = env::current_exe()
         .expect("this test")
         .ancestors()
@@ -34,9 +21,10 @@ pub fn example_with(name: &str, arguments: &[&str]) -> PathBuf {
         .to_owned();
     let status = Command::new(env::var("CARGO").unwrap_or_else(|_| "cargo".into()))
         .args(["build", "--quiet", "--example", name])
-        .args(arguments)
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .env("CARGO_TARGET_DIR", debug.parent().expect("a parent"))
+        // `scripts/test` sets it for the test binary; build scripts would see it and run again.
+        .env_remove("RUSTC_BOOTSTRAP")
         .status()
         .expect("cargo runs");
     assert!(status.success(), "the example does not build");
@@ -49,7 +37,8 @@ fn render() -> &'static Path {
     RENDER.get_or_init(|| example("render"))
 }
 
-fn run(folder: &Path, arguments: &[&str]) -> Output {
+/// The example's output, started in a folder.
+pub fn run(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(render())
         .args(arguments)
         .current_dir(folder)
@@ -57,7 +46,8 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
         .expect("it starts")
 }
 
-fn folder(name: &str) -> PathBuf {
+/// A folder for one test.
+pub fn folder(name: &str) -> PathBuf {
     let folder = env::temp_dir().join(format!("bevy-comics-{name}-{}", std::process::id()));
     fs::create_dir_all(&folder).expect("a folder");
     folder
@@ -91,6 +81,9 @@ fn what_cannot_be_done_is_one_line_that_says_what_can() {
         (&["--ortho", "inf"], "finite"),
         (&["--frames", "0"], "1 to 100000"),
         (&["--out", "picture.bmp"], ".png"),
+        (&["--turntable", "1"], "2 to 720"),
+        (&["--presets", "--out", "sheet"], ".png"),
+        (&["--presets", "--style", "noir"], "exclude each other"),
         (&["--polish"], "--help"),
         (&["missing.glb"], "cannot read missing.glb"),
         (&["broken.gltf"], "is no glTF model"),
@@ -98,7 +91,7 @@ fn what_cannot_be_done_is_one_line_that_says_what_can() {
         let output = run(&folder, arguments);
         let errors = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {errors}");
-        // What the driver and the engine say about this machine is not ours.
+        // The driver and the engine may print warnings.
         let ours: Vec<_> = errors
             .lines()
             .filter(|line| line.starts_with("render: "))
@@ -180,7 +173,7 @@ fn a_dump_holds_the_depth_without_loss_and_says_what_was_decided() {
         .collect();
     assert_eq!(bits, scan.map(u64::from));
 
-    // What the pass wrote differs from what it read.
+    // The pass changed the picture.
     let rgba = |name: &str| {
         let image =
             exr::prelude::read_first_flat_layer_from_file(folder.join("d").join(name)).expect(name);
@@ -228,7 +221,7 @@ fn a_dump_of_outlines_holds_ids_and_counts_the_lights() {
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 
-/// A triangle with no light and no camera, a hundredth of a unit across.
+/// A triangle 0.01 units across, with no light and no camera.
 const TRIANGLE: &str = r#"{
   "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
   "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
@@ -271,7 +264,7 @@ fn a_gltf_file_is_framed_and_lit() {
     let frame: Value =
         serde_json::from_slice(&fs::read(folder.join("d/frame.json")).expect("frame.json"))
             .expect("JSON");
-    // Framed: seen from about as far as it is wide; lit: not black.
+    // Framed: its distance is about its width. Lit: it is not black.
     let near = frame["range"]["distance"][0]
         .as_f64()
         .expect("it is in view");
@@ -284,8 +277,7 @@ fn a_gltf_file_is_framed_and_lit() {
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 
-/// The game plays a level by itself, from its title to its end, and says how it
-/// went.
+/// The game plays a level by itself and prints the result.
 #[test]
 fn the_game_finishes_a_level() {
     let output = Command::new(example("game"))

@@ -1,7 +1,7 @@
-//! The table of extreme cases, on rendered views: by name, defined and finite.
-//! The cases that are questions of arithmetic (near to far ratios, narrow
-//! ranges, square roots at the ends) are in `functions.rs`, those of the range
-//! (denormal depth, odd sizes, viewports, samples) in `range.rs`.
+//! Extreme views: the picture is defined and finite. Extreme numbers (ratios of
+//! near to far, narrow ranges, square roots at the ends) are tested in
+//! `functions/`, extreme inputs of the range (denormal depth, odd sizes,
+//! viewports, samples) in `range.rs`.
 
 use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
 use bevy_comics::{
@@ -9,13 +9,20 @@ use bevy_comics::{
     Form, Outlines, ToneBands, VisibleDepthRange,
 };
 
-use crate::small::Small;
+use crate::small::{Object, Small};
 
+/// An empty scene, seen from the origin.
 fn bare(size: UVec2) -> Small {
     let mut small = Small::new(size, Msaa::Off);
+    empty(&mut small);
+    small
+}
+
+/// Starts over with an empty scene.
+fn empty(small: &mut Small) {
+    small.restart(Msaa::Off);
     small.clear();
     small.insert((Transform::IDENTITY, VisibleDepthRange::default()));
-    small
 }
 
 fn wall(small: &mut Small, size: f32, distance: f32, color: Color) {
@@ -32,6 +39,7 @@ fn wall(small: &mut Small, size: f32, distance: f32, color: Color) {
             ..default()
         });
     small.world().spawn((
+        Object,
         Mesh3d(mesh),
         MeshMaterial3d(material),
         Transform::from_xyz(0.0, 0.0, -distance),
@@ -60,8 +68,9 @@ fn assert_finite(small: &Small, what: &str) {
 
 #[test]
 fn a_flat_wall_keeps_its_colour_and_has_no_line() {
+    let mut small = bare(UVec2::new(40, 30));
     for distance in [0.2f32, 3.0, 500.0, 90_000.0] {
-        let mut small = bare(UVec2::new(40, 30));
+        empty(&mut small);
         wall(
             &mut small,
             distance * 10.0,
@@ -70,11 +79,11 @@ fn a_flat_wall_keeps_its_colour_and_has_no_line() {
         );
         small.settle();
         let original = small.picture();
-        // Bands change flat colours, as they should.
+        // Tone bands change flat colours by design.
         small.style(&full().without::<ToneBands>());
         small.settle();
         assert!(small.ran(ComicsStage::Stylize));
-        // D = 0 all over: the picture is constant, and what it was.
+        // D = 0 everywhere: the picture stays constant and unchanged.
         let picture = small.picture();
         let first = *picture.get_pixel(0, 0);
         assert!(
@@ -118,8 +127,10 @@ fn one_pixel_of_geometry_is_a_range_of_one_depth() {
 
 #[test]
 fn a_target_of_one_pixel_is_styled() {
+    let mut small = bare(UVec2::ONE);
     for size in [UVec2::ONE, UVec2::new(1, 9), UVec2::new(9, 1)] {
-        let mut small = bare(size);
+        small.headless.resize(size, 1.0);
+        empty(&mut small);
         wall(&mut small, 30.0, 4.0, Color::srgb(0.2, 0.4, 0.9));
         small.style(&full());
         small.settle();
@@ -133,8 +144,8 @@ fn a_target_of_one_pixel_is_styled() {
 
 #[test]
 fn a_range_of_depth_buffer_noise_does_not_become_a_pattern() {
-    // Two walls one part in a million apart: the floor of the map, 2^-14, lets
-    // them span 1.7 % of it, which is at most five codes of 255.
+    // Two walls whose distances differ by 1e-6: with the floor of 2^-14 they span
+    // 1.7 % of the map, at most five codes of 255.
     let mut small = bare(UVec2::new(40, 30));
     wall(&mut small, 40.0, 5.0, Color::srgb(0.7, 0.2, 0.2));
     wall(&mut small, 2.0, 5.0 - 5e-6, Color::srgb(0.7, 0.2, 0.2));
@@ -203,8 +214,9 @@ fn greys_stay_grey_under_the_faithful_equations() {
 #[test]
 fn bright_light_grows_with_its_gain() {
     let mut last = 0.0f32;
+    let mut small = bare(UVec2::new(16, 12));
     for gain in [0.5f32, 1.0, 4.0, 100.0, 10_000.0, 65_504.0] {
-        let mut small = bare(UVec2::new(16, 12));
+        empty(&mut small);
         small.insert(Hdr);
         wall(
             &mut small,
@@ -227,8 +239,8 @@ fn bright_light_grows_with_its_gain() {
 
 #[test]
 fn a_transparent_surface_is_coloured_by_the_depth_behind_it() {
-    // A red pane at arm's length before a far wall: it takes the wall's
-    // atmosphere, not the foreground's.
+    // A red pane close to the camera, in front of a far wall: it is coloured by
+    // the depth of the wall.
     let mut small = bare(UVec2::new(60, 40));
     wall(&mut small, 400.0, 100.0, Color::srgb(0.5, 0.5, 0.5));
     wall(&mut small, 0.4, 1.0, Color::srgb(0.5, 0.5, 0.5));
@@ -254,8 +266,8 @@ fn a_transparent_surface_is_coloured_by_the_depth_behind_it() {
         let p = picture.get_pixel(x, y).0;
         p[..3].iter().max().copied().unwrap_or(0) - p[..3].iter().min().copied().unwrap_or(0)
     };
-    // The pane covers more than the near wall: inside that it keeps its red,
-    // beyond it the far wall's depth has taken it.
+    // In front of the near wall the pane keeps its red; beside that wall the depth
+    // of the far wall colours it.
     let row: Vec<u8> = (0..60).map(|x| saturation(x, 20)).collect();
     assert!(row[30] > 60, "before the near wall: {row:?}");
     assert!(

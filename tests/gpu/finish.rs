@@ -1,4 +1,4 @@
-//! Weights, the split, the debug views and the histogram, in pictures.
+//! `StyleWeight`, `SplitView`, debug views and the histogram, in pictures.
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
@@ -52,7 +52,7 @@ fn a_weight_mixes_and_none_costs_nothing() {
         let want = color::srgb_encode(std::array::from_fn(|i| 0.5 * (a[i] + b[i])));
         for i in 0..3 {
             let apart = (f64::from(pixel[i]) - want[i] * 255.0).abs();
-            // Both ends were rounded to codes, and so is the mix.
+            // Both ends and the mix are rounded to 8-bit codes.
             assert!(apart <= 2.0, "{x}, {y}: {pixel:?}, {want:?}");
         }
         changed += u32::from(none.get_pixel(x, y) != pixel);
@@ -112,7 +112,7 @@ fn every_view_shows_what_it_says() {
             assert_ne!(picture, original, "{view:?}");
             picture
         };
-        // Without any style on the camera: a view brings what it needs.
+        // No effect on the camera: a debug view requests what it needs.
         let map = show(&mut small, DebugView::DepthMap);
         assert!(is_grey(&map) && small.ran(ComicsStage::DepthRange));
         let shades = codes(&map);
@@ -121,7 +121,7 @@ fn every_view_shows_what_it_says() {
         assert!(shades.len() > 20, "and much in between");
         let raw = show(&mut small, DebugView::RawRange);
         assert!(is_grey(&raw));
-        // Nearer is brighter there, farther is brighter here.
+        // In the one picture near is brighter, in the other far.
         for (a, b) in map.pixels().zip(raw.pixels()) {
             if a[0] < 8 {
                 assert!(b[0] > 200, "{a:?} {b:?}");
@@ -158,7 +158,7 @@ fn every_view_shows_what_it_says() {
         assert!(is_grey(&kept) && codes(&kept).len() > 20);
         let apart = show(&mut small, DebugView::Difference);
         assert!(codes(&apart).len() > 20);
-        // A weight does not hide a view, and a split goes through it.
+        // A weight does not hide a debug view; a split applies to it.
         small.insert((StyleWeight(0.0), SplitView { at: 0.5 }));
         let split = show(&mut small, DebugView::DepthMap);
         for (x, y, pixel) in split.enumerate_pixels() {
@@ -189,7 +189,7 @@ fn the_histogram_counts_every_depth_once() {
     let counted: u32 = histogram.bins.iter().map(|bin| bin.count).sum();
     let sky = map.pixels().filter(|p| p[0] == 255).count() as u32;
     let all = size().x * size().y;
-    // White is the sky, and the very farthest geometry with it.
+    // The sky and the farthest geometry are white.
     assert!(
         counted >= all - sky && counted < all,
         "{counted} of {all}, {sky} white"
@@ -207,7 +207,7 @@ fn the_histogram_counts_every_depth_once() {
         "{drawn:?}"
     );
 
-    // Without smoothing as well, and with nothing to see.
+    // Also without smoothing, and in an empty view.
     small.insert(bevy_comics::DepthMap {
         smoothing: None,
         ..default()
@@ -228,8 +228,8 @@ fn the_histogram_counts_every_depth_once() {
     assert_eq!(small.errors(), 0);
 }
 
-/// A sketch that has just begun hardly changes the picture, with outlines below
-/// it and without.
+/// A sketch with a small weight changes the picture little, with and without
+/// outlines on the camera.
 #[test]
 fn a_sketch_fades_in() {
     let mut small = Small::new(UVec2::new(160, 96), Msaa::Off);

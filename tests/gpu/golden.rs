@@ -1,6 +1,7 @@
-//! Reference pictures of every preset, on the scenes it is for, 320x180. To make them
-//! anew: `cargo run --example pictures -- golden`, then look at them.
-//! Those in `rounding` are kept by hand: what this test leaves in the target folder.
+//! Reference pictures of every preset, 320x180. To update them, run
+//! `cargo run --example pictures -- golden` and look at the result. Those in
+//! `rounding` are copied by hand from the pictures that a failing test leaves in
+//! the target folder.
 
 use std::path::{Path, PathBuf};
 
@@ -35,7 +36,7 @@ fn far_off(reference: &image::RgbaImage, picture: &image::RgbaImage) -> f64 {
     off as f64 / f64::from(reference.width() * reference.height())
 }
 
-/// FLIP and the share of the pixels that are far off, from a reference.
+/// FLIP and the fraction of pixels that differ by more than 5 codes.
 fn apart(reference: &Path, picture: &image::RgbaImage) -> (f32, f64) {
     let reference = image::open(reference)
         .unwrap_or_else(|error| panic!("{}: {error}", reference.display()))
@@ -47,9 +48,9 @@ fn is_alike((flip, off): (f32, f64)) -> bool {
     flip <= 0.01 && off <= 0.001
 }
 
-/// The reference; where there is one, also that of processors on which the
-/// scene itself is rounded otherwise: FLIP sees steps of one code where nothing
-/// dithers them, and bands have their steps elsewhere.
+/// The reference, and a second one for processors that round the scene differently,
+/// if there is one: FLIP sees steps of one code where nothing dithers them, and
+/// steps between tone bands move.
 fn references(scene: BuiltIn, name: &str) -> Vec<PathBuf> {
     let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden"));
     let file = format!("{}-{name}.png", scene.name());
@@ -82,9 +83,9 @@ fn check(scene: BuiltIn) {
     }
     assert!(
         failed.is_empty(),
-        "(FLIP, share of the pixels far off) of each reference: {failed:#?}"
+        "(FLIP, fraction of pixels far off) for each reference: {failed:#?}"
     );
-    // The comparison can fail: no style is none of the presets.
+    // The comparison can fail: the original matches no preset.
     let original = studio.shoot(None);
     for name in golden_presets(scene) {
         for path in references(scene, name) {

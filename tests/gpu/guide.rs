@@ -1,20 +1,24 @@
-//! The documentation of style files: what it says is so.
+//! The README and the pages of `docs/` are correct.
 
-use std::{fs, path::Path};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
 
 use bevy::render::view::Msaa;
 use bevy_comics::{ComicStyle, ComicStyleError};
 
 use crate::small::{Small, size};
 
-fn page(name: &str) -> String {
+/// A page of `docs/`.
+pub fn page(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("docs")
         .join(name);
     fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The blocks of a language, in order.
+/// The code blocks of a language, in order.
 pub fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
     page.split("```")
         .skip(1)
@@ -23,7 +27,90 @@ pub fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
         .collect()
 }
 
-/// Every step of the page is a style that draws something else than the last.
+/// The README and every page that is written by hand, with their paths.
+fn pages() -> Vec<(PathBuf, String)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let files = fs::read_dir(root.join("docs")).expect("the pages");
+    let mut paths: Vec<PathBuf> = files.map(|file| file.expect("a file").path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "md"));
+    paths.push(root.join("README.md"));
+    paths
+        .into_iter()
+        .map(|path| (path.clone(), fs::read_to_string(path).expect("a page")))
+        .collect()
+}
+
+/// The targets of a page's links and pictures.
+fn links(page: &str) -> impl Iterator<Item = &str> {
+    page.split("](")
+        .skip(1)
+        .filter_map(|rest| rest.split([')', '#', ' ']).next())
+        .filter(|link| !link.is_empty() && !link.contains("://"))
+}
+
+/// Links lead to files, commands name examples, and no command of the README builds the engine
+/// another time: other features or another profile would.
+#[test]
+fn links_and_commands_of_the_pages_lead_somewhere() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (mut linked, mut commands) = (0, 0);
+    for (path, page) in pages() {
+        let folder = path.parent().expect("a folder");
+        for link in links(&page) {
+            assert!(folder.join(link).exists(), "{}: {link}", path.display());
+            linked += 1;
+        }
+        for (_, rest) in page
+            .match_indices("--example ")
+            .map(|at| page.split_at(at.0))
+        {
+            let name = rest["--example ".len()..]
+                .split([' ', '`', '\n', ':'])
+                .next();
+            let source = root.join("examples").join(name.expect("a name"));
+            assert!(
+                source.with_extension("rs").exists() || source.join("main.rs").exists(),
+                "{}: there is no example {name:?}",
+                path.display()
+            );
+            commands += 1;
+        }
+    }
+    assert!(
+        linked > 50 && commands > 15,
+        "{linked} links, {commands} commands"
+    );
+    let readme = fs::read_to_string(root.join("README.md")).expect("the README");
+    for flag in ["--features", "--release", "--manifest-path"] {
+        assert!(
+            !readme.contains(flag),
+            "the README builds the engine anew: {flag}"
+        );
+    }
+}
+
+/// Pictures with a palette look speckled, as if the renderer were noisy.
+#[test]
+fn pictures_of_the_pages_are_in_true_colour() {
+    let mut pictures = 0;
+    for (path, page) in pages() {
+        for link in links(&page).filter(|link| link.ends_with(".png")) {
+            let file = path.parent().expect("a folder").join(link);
+            let bytes = fs::read(&file).expect("a picture");
+            // The header's colour type: 2 is RGB, 6 is RGB with alpha.
+            assert!(
+                bytes[24] == 8 && matches!(bytes[25], 2 | 6),
+                "{} has colour type {}",
+                file.display(),
+                bytes[25]
+            );
+            pictures += 1;
+        }
+    }
+    assert!(pictures > 10, "{pictures} pictures");
+}
+
+/// Every step of the page is a style, and draws another picture than the last.
 #[test]
 fn the_steps_of_the_ten_minutes_can_be_followed() {
     let page = page("your-own-style.md");
@@ -43,34 +130,21 @@ fn the_steps_of_the_ten_minutes_can_be_followed() {
         last = picture;
     }
     assert_eq!(small.errors(), 0);
-    // The error that the page promises is the one that comes.
+    // The error that the page quotes is the one that is reported.
     let broken = blocks(&page, "text")
         .first()
         .expect("the broken file's message")
         .trim();
-    let error = ComicStyle::from_ron("(\n    version: 2,\n    contours: (widht: 3.0),\n)")
+    let error = ComicStyle::from_ron("(\n    version: 2,\n    outlines: (widht: 3.0),\n)")
         .expect_err("broken");
     assert_eq!(error.to_string(), broken);
-    // So are its commands.
-    for command in blocks(&page, "sh").iter().flat_map(|block| block.lines()) {
-        if let Some((_, example)) = command.split_once("--example ") {
-            let name = example.split_whitespace().next().expect("a name");
-            let source = Path::new(env!("CARGO_MANIFEST_DIR"))
-                .join("examples")
-                .join(name);
-            assert!(
-                source.with_extension("rs").exists() || source.join("main.rs").exists(),
-                "{command}: there is no such example"
-            );
-        }
-    }
 }
 
 #[test]
 fn an_unknown_version_and_an_unknown_field_are_said() {
-    let error = ComicStyle::from_ron("(version: 2)").expect_err("another version");
+    let error = ComicStyle::from_ron("(version: 3)").expect_err("a later version");
     assert!(
-        matches!(error, ComicStyleError::Version { found: 2, .. }),
+        matches!(error, ComicStyleError::Version { found: 3, .. }),
         "{error}"
     );
     for text in [
@@ -90,7 +164,7 @@ fn an_unknown_version_and_an_unknown_field_are_said() {
     assert!(error.contains("version"), "{error}");
 }
 
-/// The reference of the format is made from the types themselves.
+/// The reference of the format is generated from the types.
 #[test]
 fn the_reference_of_the_format_is_that_of_the_types() {
     let made = reference::page();
@@ -101,11 +175,10 @@ fn the_reference_of_the_format_is_that_of_the_types() {
     assert_eq!(
         page("style-format.md"),
         made,
-        "UPDATE_DOCS=1 cargo test --features inspector --test gpu -- the_reference_of_the_format"
+        "UPDATE_DOCS=1 cargo test --test gpu -- the_reference_of_the_format"
     );
 }
 
-#[cfg(feature = "inspector")]
 mod reference {
     use std::fmt::Write;
 
@@ -120,26 +193,57 @@ mod reference {
 # The format of style files
 
 A style file is [RON](https://docs.rs/ron) with implicit `Some`, ends in `.comic.ron`, and holds one
-`ComicStyle`. `version` is the version of the format and must be 1; another one, an unknown field or a
-wrong type is an error that names line and column. Everything else may be left out: an effect that is
-left out is off, a field that is left out has its default. Colours are `\"#rrggbb\"`, `\"#rrggbbaa\"` or four
-sRGB components. Numbers outside their range count as its nearest end. What a game adds later than
-version 1 will be optional fields; what cannot be read by this version gets another number.
+`ComicStyle`. `version` is the version of the format and must be there. This page is about version 2; a file of
+version 1 is read with a warning that says what to change. An unknown version, an unknown field or a wrong type
+is an error that names line and column. Every other entry is optional: an effect that is left out is off (in a
+partial style: as the camera has it), a field that is left out has its default. Colours are `\"#rrggbb\"`,
+`\"#rrggbbaa\"` or four sRGB components. Numbers outside their range count as its nearest end.
 
 This page is made from the types by a test, which fails where the two differ.
 ";
 
-    fn plain(docs: Option<&str>) -> String {
-        // Examples have a page of their own.
+    /// Documentation as Markdown, without its examples, and with names in place of links to items.
+    fn prose(docs: Option<&str>) -> String {
+        // Examples have their own page.
         let docs: String = docs.unwrap_or_default().split("```").step_by(2).collect();
-        let joined: Vec<&str> = docs.lines().map(str::trim).collect();
-        let joined = joined.join(" ");
-        // Links to items lead nowhere from here.
-        let text: Vec<&str> = joined.trim().split('`').collect();
-        text.join("`")
-            .replace("[`", "`")
-            .replace("`]", "`")
-            .replace('|', "\\|")
+        let mut text = String::new();
+        for line in docs.lines().map(str::trim) {
+            if line.starts_with('[') && line.contains("]: ") {
+                continue;
+            }
+            let line = line
+                .strip_prefix("# ")
+                .map_or(line.to_owned(), |title| format!("### {title}"));
+            text += &without_links(&line);
+            text.push('\n');
+        }
+        while text.contains("\n\n\n") {
+            text = text.replace("\n\n\n", "\n\n");
+        }
+        text.trim().to_owned()
+    }
+
+    fn without_links(line: &str) -> String {
+        let mut text = String::new();
+        let mut rest = line;
+        while let Some((before, link)) = rest.split_once("[`")
+            && let Some((name, after)) = link.split_once("`]")
+        {
+            text += &format!("{before}`{name}`");
+            rest = match after
+                .strip_prefix('(')
+                .and_then(|path| path.split_once(')'))
+            {
+                Some((_, after)) => after,
+                None => after,
+            };
+        }
+        text + rest
+    }
+
+    /// The same in one line, for a table.
+    fn plain(docs: Option<&str>) -> String {
+        prose(docs).replace('\n', " ").replace('|', "\\|")
     }
 
     fn kind(field: &NamedField) -> String {
@@ -175,7 +279,7 @@ This page is made from the types by a test, which fails where the two differ.
 
     fn section_of(info: &'static TypeInfo, page: &mut String) {
         let name = info.type_path_table().short_path();
-        let _ = write!(page, "\n## {name}\n\n{}\n", plain(info.docs()));
+        let _ = write!(page, "\n## {name}\n\n{}\n", prose(info.docs()));
         match info {
             TypeInfo::Struct(info) => fields(page, info.iter()),
             TypeInfo::Enum(info) => {
@@ -201,20 +305,22 @@ This page is made from the types by a test, which fails where the two differ.
         }
     }
 
-    /// The style itself, which has an entry for each effect that is registered.
+    /// The style, with an entry for each registered effect.
     fn style(page: &mut String, effects: &[&EffectType]) {
-        let docs = plain(ComicStyle::type_info().docs());
+        let docs = prose(ComicStyle::type_info().docs());
         let _ = write!(
             page,
             "\n## ComicStyle\n\n{docs}\n\n| entry | type | meaning |\n|---|---|---|\n\
-             | `version` | u32 | Version of the file format; 1 is the only one. |\n\
-             | `name` | String | What people call it. |\n\
-             | `depth_map` | Option<DepthMap> | The depth map; its default where absent. |\n"
+             | `version` | u32 | Version of the file format: 2. |\n\
+             | `name` | String | Title for people. |\n\
+             | `partial` | bool | Whether effects that the file does not mention stay as the camera has \
+             them. Default: `false`. |\n\
+             | `depth_map` | Option<DepthMap> | The depth map; the camera's own where absent. |\n"
         );
         for effect in effects {
             let info = (effect.type_info)();
             let name = info.type_path_table().short_path();
-            // What it is, in a paragraph: the rest follows in its own section.
+            // The first paragraph; the rest follows in the section of the type.
             let docs: Vec<&str> = info.docs().unwrap_or_default().lines().collect();
             let about = docs.split(|line| line.trim().is_empty()).next();
             let about = plain(about.map(|lines| lines.join("\n")).as_deref());
@@ -235,16 +341,13 @@ This page is made from the types by a test, which fails where the two differ.
         section::<Desaturation>(&mut page);
         section::<Colorization>(&mut page);
         section::<ColorizationMode>(&mut page);
-        section::<Form>(&mut page);
         section::<BlackFlats>(&mut page);
         section::<Contours>(&mut page);
         section::<ContourOperator>(&mut page);
-        section::<Form>(&mut page);
         section::<Outlines>(&mut page);
         section::<Silhouettes>(&mut page);
         section::<Creases>(&mut page);
         section::<ObjectEdges>(&mut page);
-        section::<Form>(&mut page);
         section::<Sketch>(&mut page);
         for effect in effects {
             let info = (effect.type_info)();

@@ -160,7 +160,7 @@ fn no_modules_import_each_other_in_a_circle() {
     assert_eq!(circle(&graph), None, "{graph:#?}");
 }
 
-/// What several effects share knows nothing of any effect.
+/// Services that effects share import no effect.
 #[test]
 fn services_import_nothing_of_the_effects() {
     let graph = imports();
@@ -172,7 +172,7 @@ fn services_import_nothing_of_the_effects() {
     }
 }
 
-/// The check itself finds a circle where there is one.
+/// The check finds a circle in a graph that has one.
 #[test]
 fn a_circle_is_found() {
     let edge = |to: &[&str]| to.iter().map(ToString::to_string).collect::<BTreeSet<_>>();

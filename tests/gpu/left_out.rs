@@ -1,4 +1,4 @@
-//! What a view does not need is not there: passes, prepass, range, styles.
+//! What a view does not need does not run: passes, prepasses, range, effects.
 
 use bevy::{core_pipeline::prepass::DepthPrepass, prelude::*, render::view::Msaa};
 use bevy_comics::{
@@ -13,7 +13,7 @@ fn small() -> Small {
     Small::new(size(), Msaa::Off)
 }
 
-/// What ran, and why the rest did not.
+/// The stages that ran, and the reason for each that did not.
 fn stages(small: &Small) -> (Vec<ComicsStage>, Vec<(ComicsStage, LeftOut)>) {
     let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
     let stages = &diagnostics
@@ -55,7 +55,7 @@ fn a_camera_without_styles_costs_nothing() {
             .is_empty()
     );
     assert!(!has_prepass(&small) && small.depth().is_none());
-    // A depth map alone asks for nothing.
+    // A `DepthMap` alone requests nothing.
     small.insert(DepthMap::default()).settle();
     assert!(
         small
@@ -175,8 +175,8 @@ fn what_changes_nothing_is_left_out() {
     assert_eq!(small.picture(), original);
 }
 
-/// Outlines pay for what they draw: no range without a fade, no normals without
-/// creases, no ids without object edges, no flood for narrow lines.
+/// Outlines request only what they draw: no range without a fade, no normals
+/// without creases, no ids without object edges, no flood for narrow lines.
 #[test]
 fn outlines_run_what_they_need_and_no_more() {
     let mut small = small();
@@ -214,11 +214,11 @@ fn outlines_run_what_they_need_and_no_more() {
     small.world().entity_mut(camera).remove::<Outlines>();
     small.settle();
     assert!(!has_prepass(&small));
-    // Bands alone read no depth.
+    // Tone bands alone read no depth.
     small.insert(ToneBands::default()).settle();
     let (ran, _) = stages(&small);
     assert_eq!(ran, [ComicsStage::of::<ToneBands>(), ComicsStage::Stylize]);
-    // A sketch of lines that nobody sees is the picture itself.
+    // A sketch with invisible lines leaves the picture unchanged.
     let camera = small.camera;
     small.world().entity_mut(camera).remove::<ToneBands>();
     small.settle();
@@ -239,8 +239,8 @@ fn outlines_run_what_they_need_and_no_more() {
     assert_eq!(small.errors(), 0);
 }
 
-/// A sketch draws the lines of the outlines in their place, with outlines of its
-/// own where the camera has none.
+/// A sketch replaces the outlines and draws their lines; without `Outlines` on
+/// the camera it uses default lines.
 #[test]
 fn a_sketch_draws_in_place_of_the_outlines() {
     let mut small = small();
@@ -281,7 +281,7 @@ fn the_game_can_ask_for_the_range_alone() {
         .range()
         .and_then(VisibleDepthRange::distances)
         .expect("a range");
-    // The camera stands 6.6 before the middle of a ground of 9 by 9.
+    // The camera is 6.6 units from the centre of a ground of 9 by 9.
     assert!(
         1.0 < near && near < 5.0 && 8.0 < far && far < 14.0,
         "{near} to {far}"

@@ -1,11 +1,11 @@
-//! Where the default draws a line, and where it must not.
+//! Where the default contours draw lines, and where they must not.
 
 use bevy::{camera::ScalingMode, prelude::*, render::view::Msaa};
 use bevy_comics::{ContourOperator, Contours, DepthMap, DepthMapping};
 
 use bevy_comics_testkit::read_back::DepthImage;
 
-use crate::small::Small;
+use crate::small::{Object, Small};
 
 const OPERATORS: [ContourOperator; 4] = [
     ContourOperator::Prewitt,
@@ -14,15 +14,21 @@ const OPERATORS: [ContourOperator; 4] = [
     ContourOperator::Roberts,
 ];
 
-/// A white world of our own, without anti-aliasing: every dark pixel is ink.
+/// A white scene without anti-aliasing: every dark pixel is ink.
 fn empty_world(size: UVec2, msaa: Msaa) -> Small {
     let mut small = Small::new(size, msaa);
+    empty(&mut small, msaa);
+    small
+}
+
+/// Starts over with an empty, white scene.
+fn empty(small: &mut Small, msaa: Msaa) {
+    small.restart(msaa);
     small.clear();
     small.insert(Camera {
         clear_color: Color::WHITE.into(),
         ..default()
     });
-    small
 }
 
 fn add(small: &mut Small, mesh: impl Into<Mesh>, at: Transform) {
@@ -38,7 +44,7 @@ fn add(small: &mut Small, mesh: impl Into<Mesh>, at: Transform) {
         });
     small
         .world()
-        .spawn((Mesh3d(mesh), MeshMaterial3d(material), at));
+        .spawn((Object, Mesh3d(mesh), MeshMaterial3d(material), at));
 }
 
 /// Coordinates of the inked pixels.
@@ -69,9 +75,10 @@ fn at_the_skyline(depth: &DepthImage, x: u32, y: u32, reach: u32) -> bool {
 
 #[test]
 fn a_grazing_ground_to_the_horizon_has_one_line_the_skyline() {
+    let mut small = Small::new(UVec2::new(200, 120), Msaa::Off);
     for operator in OPERATORS {
-        for (name, eye) in [("a hand", 0.1), ("eye height", 1.7), ("a tower", 40.0)] {
-            let mut small = empty_world(UVec2::new(200, 120), Msaa::Off);
+        for (name, eye) in [("10 cm", 0.1), ("eye height", 1.7), ("40 m", 40.0)] {
+            empty(&mut small, Msaa::Off);
             add(
                 &mut small,
                 Plane3d::default().mesh().size(4000.0, 4000.0),
@@ -97,7 +104,7 @@ fn a_grazing_ground_to_the_horizon_has_one_line_the_skyline() {
                 "{operator:?} from {name}: {false_lines:?}"
             );
             let columns: std::collections::HashSet<_> = inked.iter().map(|(x, _)| *x).collect();
-            // The pixel at either border has no neighbour to differ from.
+            // Pixels at the border of the picture lack a neighbour.
             assert!(
                 columns.len() >= 196,
                 "{operator:?} from {name}: skyline in {} of 200 columns",
@@ -109,9 +116,10 @@ fn a_grazing_ground_to_the_horizon_has_one_line_the_skyline() {
 
 #[test]
 fn the_border_of_the_picture_is_no_line() {
+    let mut small = Small::new(UVec2::new(80, 60), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         for operator in OPERATORS {
-            let mut small = empty_world(UVec2::new(80, 60), msaa);
+            empty(&mut small, msaa);
             add(
                 &mut small,
                 Plane3d::default().mesh().size(40.0, 40.0),
@@ -157,7 +165,7 @@ fn the_farthest_object_has_a_line_against_the_sky_and_the_sky_has_none() {
     small.settle();
     let depth = small.depth().expect("depth");
     let inked = ink(&mut small);
-    // Every pixel of the outline, on the object's side, is inked.
+    // Every pixel along the border of the object, on its side, has ink.
     let mut outline = 0;
     for y in 1..depth.height - 1 {
         for x in 1..depth.width - 1 {
@@ -216,7 +224,7 @@ fn an_orthographic_view_draws_the_same_lines() {
         .filter(|(x, y)| *x == 0 || *y == 0 || *x == 99 || *y == 79)
         .count();
     assert_eq!(border, 0, "lines at the border");
-    // The sloping ground in view is a plane: its corners are clean.
+    // The ground is a plane: no line at its corners.
     for corner in [(5, 75), (95, 75), (5, 5), (95, 5)] {
         assert!(!inked.contains(&corner), "ink at {corner:?}");
     }
@@ -224,6 +232,7 @@ fn an_orthographic_view_draws_the_same_lines() {
 
 #[test]
 fn a_line_is_as_wide_as_asked_at_every_scale() {
+    let mut small = Small::new(UVec2::new(120, 60), Msaa::Off);
     for (width, scale) in [
         (1.0f32, 1.0f32),
         (2.0, 1.0),
@@ -233,29 +242,21 @@ fn a_line_is_as_wide_as_asked_at_every_scale() {
         (2.0, 2.0),
         (8.0, 1.0),
     ] {
-        let options = bevy_comics_testkit::headless::HeadlessOptions {
-            scale_factor: scale,
-            ..crate::small::options(UVec2::new(120, 60))
-        };
-        let mut small = Small::with(options, Msaa::Off);
-        small.clear();
+        small.headless.options.scale_factor = scale;
+        empty(&mut small, Msaa::Off);
         add(
             &mut small,
             Rectangle::new(20.0, 40.0),
             Transform::from_xyz(-10.0, 0.0, 0.0),
         );
         small.insert((
-            Camera {
-                clear_color: Color::WHITE.into(),
-                ..default()
-            },
             Transform::from_xyz(0.0, 0.0, 6.0),
             Contours { width, ..default() },
         ));
         small.settle();
         let picture = small.picture();
-        // Coverage across the vertical edge in the middle row; the ink is black
-        // over white in linear light.
+        // Coverage across the vertical edge in the middle row: black ink over
+        // white, in linear light.
         let covered: f64 = (0..120)
             .map(|x| {
                 1.0 - bevy_comics_testkit::reference::color::srgb_decode_one(
@@ -273,11 +274,11 @@ fn a_line_is_as_wide_as_asked_at_every_scale() {
 
 #[test]
 fn one_threshold_serves_every_scale_of_world() {
-    // The same picture of the same world a thousandth and a thousand times the
-    // size.
+    // A world scaled by 1/1000 and by 1000 gives the same picture.
     let mut pictures = Vec::new();
+    let mut small = Small::new(UVec2::new(100, 70), Msaa::Off);
     for scale in [1e-3f32, 1.0, 1e3] {
-        let mut small = empty_world(UVec2::new(100, 70), Msaa::Off);
+        empty(&mut small, Msaa::Off);
         add(
             &mut small,
             Cuboid::default(),

@@ -1,4 +1,4 @@
-//! Everything that needs a GPU, or a CPU that plays one, in one binary.
+//! Everything that needs a GPU adapter (a CPU driver will do), in one binary.
 
 mod blending;
 mod cartoon;
@@ -15,12 +15,14 @@ mod house;
 mod ids;
 mod left_out;
 mod lines;
+mod models;
 mod outlines;
 mod outside;
 mod own_effect;
 mod panel;
 mod pictures;
 mod pipelines;
+mod plugin_order;
 mod range;
 mod range_views;
 mod report;

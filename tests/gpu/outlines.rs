@@ -1,14 +1,14 @@
-//! What the outlines promise, measured on rendered scenes: freedom of scale, no
-//! false lines, the asked width.
+//! Properties of outlines, measured on rendered scenes: independence of scale, no
+//! false lines, the width as set.
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{ComicStyle, Form, Outlines, Silhouettes};
 
-use bevy_comics_testkit::{headless::HeadlessOptions, read_back::IdImage};
+use bevy_comics_testkit::read_back::IdImage;
 
-use crate::small::{Object, Small, options};
+use crate::small::{Object, Small};
 
-/// How much ink every pixel has: what the pass took from its light.
+/// Ink of every pixel: the fraction of its light that the pass removed.
 pub fn ink(small: &mut Small, outlines: Outlines) -> Vec<f32> {
     small.style(&ComicStyle::default().with(outlines));
     small.settle();
@@ -56,17 +56,22 @@ fn look(small: &mut Small, eye: Vec3, target: Vec3, near: f32) {
     ));
 }
 
-/// The small scene, `scale` times as large.
-fn scaled(scale: f32, near: f32, form: Form) -> Vec<bool> {
-    let mut small = Small::new(UVec2::new(240, 160), Msaa::Off);
+/// Starts over with the small scene, `scale` times as large.
+fn restart_scaled(small: &mut Small, scale: f32) {
+    small.restart(Msaa::Off);
     let world = small.world();
     let mut objects = world.query_filtered::<&mut Transform, With<Object>>();
     for mut transform in objects.iter_mut(world) {
         transform.translation *= scale;
         transform.scale *= scale;
     }
+}
+
+/// The outlines of the scaled scene, from the scaled distance.
+fn scaled(small: &mut Small, scale: f32, near: f32, form: Form) -> Vec<bool> {
+    restart_scaled(small, scale);
     let eye = Vec3::new(1.5, 2.4, 6.0) * scale;
-    look(&mut small, eye, Vec3::new(0.0, 0.4, 0.0) * scale, near);
+    look(small, eye, Vec3::new(0.0, 0.4, 0.0) * scale, near);
     let threshold = match form {
         Form::Corrected => 0.02,
         Form::Faithful => 0.0008,
@@ -79,7 +84,7 @@ fn scaled(scale: f32, near: f32, form: Form) -> Vec<bool> {
         }),
         ..Outlines::SILHOUETTES
     };
-    ink(&mut small, outlines).iter().map(|i| *i > 0.5).collect()
+    ink(small, outlines).iter().map(|i| *i > 0.5).collect()
 }
 
 fn overlap(a: &[bool], b: &[bool]) -> f64 {
@@ -101,6 +106,8 @@ const SCALES: [(f32, f32); 8] = [
 
 #[test]
 fn the_same_scene_has_the_same_outlines_at_any_scale() {
+    let mut small = Small::new(UVec2::new(240, 160), Msaa::Off);
+    let mut scaled = |scale, near, form| scaled(&mut small, scale, near, form);
     let reference = scaled(1.0, 0.1, Form::Corrected);
     assert!(reference.iter().filter(|line| **line).count() > 400);
     for (scale, near) in SCALES {
@@ -109,7 +116,7 @@ fn the_same_scene_has_the_same_outlines_at_any_scale() {
         println!("measured, scale {scale:e}, near {near:e}: IoU {same:.4}");
         assert!(same >= 0.99, "scale {scale:e}, near {near:e}: IoU {same}");
     }
-    // The paper's buffer depends on both: its own k_p fits one of them.
+    // The paper's depth buffer depends on both: its constant k_p fits only one.
     let reference = scaled(1.0, 0.1, Form::Faithful);
     let worst = SCALES
         .map(|(scale, near)| {
@@ -125,17 +132,12 @@ fn the_same_scene_has_the_same_outlines_at_any_scale() {
     );
 }
 
-/// An orthographic view, whatever its near and far planes and units.
+/// Orthographic views with other planes and units give the same lines.
 #[test]
 fn an_orthographic_view_has_the_same_outlines_at_any_scale() {
-    let mask = |scale: f32, far: f32| -> Vec<bool> {
-        let mut small = Small::new(UVec2::new(240, 160), Msaa::Off);
-        let world = small.world();
-        let mut objects = world.query_filtered::<&mut Transform, With<Object>>();
-        for mut transform in objects.iter_mut(world) {
-            transform.translation *= scale;
-            transform.scale *= scale;
-        }
+    let mut small = Small::new(UVec2::new(240, 160), Msaa::Off);
+    let mut mask = |scale: f32, far: f32| -> Vec<bool> {
+        restart_scaled(&mut small, scale);
         let eye = Vec3::new(1.5, 2.4, 6.0) * scale;
         small.insert((
             Transform::from_translation(eye).looking_at(Vec3::ZERO, Vec3::Y),
@@ -160,9 +162,9 @@ fn an_orthographic_view_has_the_same_outlines_at_any_scale() {
     }
 }
 
-/// The share of pixels with ink that lie farther than this from any border
-/// between objects.
-fn false_share(small: &mut Small, ink: &[f32], margin: i64) -> f64 {
+/// The fraction of all pixels that have ink and lie farther than `margin` pixels
+/// from any border between objects.
+fn false_fraction(small: &mut Small, ink: &[f32], margin: i64) -> f64 {
     let ids: IdImage = small.object_ids().expect("ids are drawn");
     let (w, h) = (i64::from(ids.width), i64::from(ids.height));
     let id = |x: i64, y: i64| ids.pixels[(y * w + x) as usize][0];
@@ -183,11 +185,11 @@ fn false_share(small: &mut Small, ink: &[f32], margin: i64) -> f64 {
 
 #[test]
 fn a_grazing_plane_a_corridor_and_a_sphere_have_no_false_lines() {
-    let size = UVec2::new(320, 180);
+    let mut small = Small::new(UVec2::new(320, 180), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        // A plane to the horizon, from eye height and from a hand above it.
+        // A plane to the horizon, seen from 1.7 m and from 5 cm above it.
         for height in [1.7, 0.05] {
-            let mut small = Small::new(size, msaa);
+            small.restart(msaa);
             small.clear();
             let sand = Color::srgb(0.8, 0.7, 0.5);
             let plane = Plane3d::default().mesh().size(40_000.0, 40_000.0);
@@ -196,14 +198,14 @@ fn a_grazing_plane_a_corridor_and_a_sphere_have_no_false_lines() {
             look(&mut small, eye, eye - Vec3::new(0.3, 0.02, 1.0), 0.1);
             let ink = ink(&mut small, Outlines::default());
             assert_eq!(
-                false_share(&mut small, &ink, 2),
+                false_fraction(&mut small, &ink, 2),
                 0.0,
                 "plane, {height} m, {msaa:?}"
             );
         }
 
         // A corridor of four walls, 200 m long.
-        let mut small = Small::new(size, msaa);
+        small.restart(msaa);
         small.clear();
         for (k, color) in [0.3, 0.5, 0.7, 0.9].into_iter().enumerate() {
             let turn = Quat::from_rotation_z(std::f32::consts::FRAC_PI_2 * k as f32);
@@ -222,14 +224,14 @@ fn a_grazing_plane_a_corridor_and_a_sphere_have_no_false_lines() {
         );
         let lines = ink(&mut small, Outlines::default());
         assert_eq!(
-            false_share(&mut small, &lines, 2),
+            false_fraction(&mut small, &lines, 2),
             0.0,
             "corridor, {msaa:?}"
         );
         assert!(lines.iter().any(|i| *i > 0.9), "its corners have lines");
 
         // A smooth sphere.
-        let mut small = Small::new(size, msaa);
+        small.restart(msaa);
         small.clear();
         let ball = Sphere::new(1.0).mesh().ico(40).expect("not too fine");
         put(
@@ -240,12 +242,16 @@ fn a_grazing_plane_a_corridor_and_a_sphere_have_no_false_lines() {
         );
         look(&mut small, Vec3::new(0.0, 0.5, 3.0), Vec3::ZERO, 0.1);
         let lines = ink(&mut small, Outlines::default());
-        assert_eq!(false_share(&mut small, &lines, 2), 0.0, "sphere, {msaa:?}");
+        assert_eq!(
+            false_fraction(&mut small, &lines, 2),
+            0.0,
+            "sphere, {msaa:?}"
+        );
         assert!(lines.iter().any(|i| *i > 0.9), "it has an outline");
     }
 }
 
-/// The border of the picture is no edge, on a slope either.
+/// The border of the picture is not an edge, not even on a slope.
 #[test]
 fn the_border_of_the_picture_is_no_line() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
@@ -270,10 +276,11 @@ fn the_border_of_the_picture_is_no_line() {
     );
 }
 
-/// A line's width is what it covers, row by row.
+/// In every row a line covers its width.
 #[test]
 fn a_line_is_as_wide_as_asked_at_every_scale_and_resolution() {
     let mut worst = 0.0f32;
+    let mut small = Small::new(UVec2::new(200, 60), Msaa::Off);
     for (size, scale_factor) in [
         (UVec2::new(200, 60), 1.0),
         (UVec2::new(320, 90), 1.5),
@@ -281,13 +288,8 @@ fn a_line_is_as_wide_as_asked_at_every_scale_and_resolution() {
         (UVec2::new(480, 120), 1.0),
         (UVec2::new(200, 60), 2.0),
     ] {
-        let mut small = Small::with(
-            HeadlessOptions {
-                scale_factor,
-                ..options(size)
-            },
-            Msaa::Off,
-        );
+        small.headless.resize(size, scale_factor);
+        small.restart(Msaa::Off);
         small.clear();
         // A post whose left side is in the middle of the picture.
         put(

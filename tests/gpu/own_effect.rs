@@ -1,16 +1,16 @@
-//! An effect outside the repository: the code of `docs/your-own-effect.md` compiles in a crate of
-//! its own, and does there what the page says.
+//! The code of `docs/your-own-effect.md` compiles in a crate outside the repository and works there
+//! as the page says.
 
 use std::{fs, path::Path};
 
 use crate::{
     guide::blocks,
-    outside::{OutsideCrate, ROOT},
+    outside::{self, File, ROOT},
 };
 
-/// The page's effect without a window, and the page's functions called.
+/// Runs the page's effect without a window and calls the page's functions.
 const HEADLESS_MAIN: &str = r##"
-#[path = "../tint.rs"]
+#[path = "../page/tint.rs"]
 mod tint;
 
 use bevy::{ecs::system::RunSystemOnce, prelude::*};
@@ -18,9 +18,9 @@ use bevy_comics::*;
 use bevy_comics_testkit::headless::{Headless, HeadlessOptions};
 use tint::Tint;
 
-const STYLE: &str = include_str!("../amber.comic.ron");
+const STYLE: &str = include_str!("../page/amber.comic.ron");
 
-/// The picture after the camera got these components, and whether the effect ran.
+/// Inserts components; returns the picture and whether the effect ran.
 fn picture(
     headless: &mut Headless,
     camera: Entity,
@@ -36,7 +36,7 @@ fn picture(
 fn main() {
     let options = HeadlessOptions {
         size: UVec2::new(96, 64),
-        assets: concat!(env!("CARGO_MANIFEST_DIR"), "/src").into(),
+        assets: concat!(env!("CARGO_MANIFEST_DIR"), "/src/page").into(),
         ..default()
     };
     let plugins = (ComicsPlugin, EffectPlugin::<Tint>::default());
@@ -105,8 +105,9 @@ fn main() {
 }
 "##;
 
-#[test]
-fn the_effect_of_the_page_runs_in_a_crate_of_its_own() {
+/// The page's program as it stands, as a module of the outside crate, and a binary that runs it
+/// without a window.
+pub fn files() -> Vec<File> {
     let page = Path::new(ROOT).join("docs/your-own-effect.md");
     let page = fs::read_to_string(page).expect("the page");
     let rust = blocks(&page, "rust");
@@ -119,22 +120,24 @@ fn the_effect_of_the_page_runs_in_a_crate_of_its_own() {
         "#![allow(dead_code)]\n{HEADLESS_MAIN}\n{}",
         functions.join("\n")
     );
-    let files = [
-        ("tint.rs", *effect),
-        ("tint.wgsl", wgsl.first().expect("the shader")),
-        ("amber.comic.ron", style.first().expect("a style")),
-        ("main.rs", *main),
-        ("bin/own_effect_headless.rs", &headless),
-    ];
-    let own = OutsideCrate::new("own-effect", &["serde", "wgpu"], &files);
-    own.cargo(&["build", "--offline", "--bins"]);
-    let shader = own.cargo(&["run", "--offline", "--bin", "own_effect_headless"]);
+    vec![
+        ("page/mod.rs", (*main).to_owned()),
+        ("page/tint.rs", (*effect).to_owned()),
+        ("page/tint.wgsl", wgsl[0].to_owned()),
+        ("page/amber.comic.ron", style[0].to_owned()),
+        ("bin/own_effect.rs", headless),
+    ]
+}
+
+#[test]
+fn the_effect_of_the_page_runs_in_a_crate_of_its_own() {
+    let shader = outside::run("own_effect", &[]);
     for part in ["#ifdef TINT\n", "#ifdef VIEW_TINT\n", "my_game::tint"] {
         assert!(shader.contains(part), "{part:?} is not in\n{shader}");
     }
 }
 
-/// The page says what the trait says: every item of it is in its tables.
+/// Every item of the trait is in the page's tables.
 #[test]
 fn the_page_has_every_item_of_the_trait() {
     let read = |path: &str| fs::read_to_string(Path::new(ROOT).join(path)).expect("there");

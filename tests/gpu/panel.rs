@@ -162,7 +162,7 @@ fn a_style_is_tuned_in_a_window() {
     window.click("files.load");
     until_width(&window, 5.0);
 
-    // The original beside the style, and instead of it.
+    // The original beside the style, then in its place.
     window.click("compare.split");
     window.until("the split", |state| state["cameras"][0]["split"] == 0.5);
     window.click("compare.split");
@@ -177,7 +177,7 @@ fn a_style_is_tuned_in_a_window() {
     window.held.set(false);
     window.until("the style", |state| state["cameras"][0]["weight"].is_null());
 
-    // A debug view, and what is measured.
+    // A debug view and the measurements.
     window.click("tab.Views");
     window.click("view.DepthMap");
     window.until("the view", |state| {
@@ -254,7 +254,7 @@ fn tab_to(window: &Window, widget: &str) {
         let state = window.state();
         let focused = state["focused"].as_str().unwrap_or("-").to_owned();
         if focused == widget {
-            // It is on the screen, and not somewhere below its end.
+            // It was scrolled into view.
             let rect = state["widgets"][widget].clone();
             let bottom = rect[3].as_f64().expect("a number");
             assert!(
@@ -277,7 +277,7 @@ fn the_keyboard_alone_tunes_a_style() {
     });
     let start = width(&window);
 
-    // The effect is unfolded, its slider moved, the mode chosen, all with keys.
+    // Keys unfold the effect and move its slider.
     tab_to(&window, "contours.open");
     window.key("space");
     window.until("the settings", |state| {
@@ -295,12 +295,12 @@ fn the_keyboard_alone_tunes_a_style() {
     window.chord(&["ctrl"], "z");
     until_width(&window, start);
 
-    // An effect further down, which has to be scrolled to.
+    // An effect further down: the panel scrolls to it.
     tab_to(&window, "sketch");
     window.key("space");
     window.until_style("the sketch", 0, |style| style.get::<Sketch>().is_some());
 
-    // Another page and back, and the end.
+    // Another page, then close.
     tab_to(&window, "tab.Views");
     window.key("space");
     window.until("the views", |state| {
@@ -313,7 +313,7 @@ fn the_keyboard_alone_tunes_a_style() {
     window.until("the end", |state| state["panel_cameras"] == 0);
 }
 
-/// Two cameras share a window of one and a half pixels to the point.
+/// Two cameras in a window with scale factor 1.5.
 #[test]
 fn two_cameras_have_styles_of_their_own() {
     let window = Window::open([1230, 840], 1.5, &["--cameras", "2"]);
@@ -325,7 +325,7 @@ fn two_cameras_have_styles_of_their_own() {
     let lies_in_the_window = |state: &Value| {
         for (name, rect) in state["widgets"].as_object().expect("widgets") {
             let side = |i: usize| rect[i].as_f64().expect("a number");
-            // What is scrolled away lies below.
+            // Widgets that are scrolled out of view lie below.
             assert!(
                 side(0) >= 0.0 && side(2) <= wide && side(1) >= 0.0,
                 "{name} at {rect} in {wide} x {high}"
@@ -334,7 +334,7 @@ fn two_cameras_have_styles_of_their_own() {
     };
     lies_in_the_window(&window.state());
 
-    // Changes go to the camera that was chosen.
+    // Changes go to the chosen camera.
     let first = window.style(0);
     window.click("camera");
     window.click("camera.Second camera");
@@ -346,14 +346,14 @@ fn two_cameras_have_styles_of_their_own() {
     window.click("compare.split");
     let state = window.until("the split", |state| state["cameras"][1]["split"] == 0.5);
     assert!(state["cameras"][0]["split"].is_null());
-    // Every camera has an undo of its own.
+    // Every camera has its own undo history.
     window.click("camera");
     window.click("camera.Main camera");
     window.chord(&["ctrl"], "z");
     window.frames(3);
     assert!(window.style(1).get::<Colorization>().is_some());
 
-    // A style goes from one camera to the other through the clipboard.
+    // The clipboard copies a style from one camera to the other.
     window.click("camera");
     window.click("camera.Second camera");
     window.click("copy");
@@ -372,7 +372,7 @@ fn two_cameras_have_styles_of_their_own() {
         style.get::<Colorization>().is_none()
     });
 
-    // The panel goes where it is put.
+    // The panel can be docked elsewhere.
     let left = |state: &Value| state["widgets"]["tab.Style"][0].as_f64();
     assert!(left(&window.state()) > Some(wide / 3.0));
     window.click("dock");
@@ -386,7 +386,7 @@ fn two_cameras_have_styles_of_their_own() {
     lies_in_the_window(&window.state());
     window.picture();
 
-    // The photograph has both pictures.
+    // The photograph shows both cameras.
     window.click("tab.Photo");
     window.click("photo.take");
     window.until("the photograph", |state| {

@@ -1,5 +1,4 @@
-//! What compiles a pipeline while a value is dragged: as the documentation of the
-//! performance page lists it, and nothing else.
+//! Dragging a slider compiles pipelines only where `docs/performance.md` says so.
 
 use bevy::{
     prelude::*,
@@ -14,7 +13,7 @@ use bevy_comics::{AnyEffect, EffectRegistry, FieldRange};
 
 use crate::small::Small;
 
-/// So many values of every number.
+/// Values tried for each number.
 const STEPS: usize = 13;
 
 /// A number of an effect: the names of the fields that lead to it, and its range.
@@ -46,7 +45,7 @@ fn present(value: &dyn PartialReflect) -> Option<&dyn Struct> {
     option.field_at(0)?.reflect_ref().as_struct().ok()
 }
 
-/// Sets a number of an effect; says whether it is one.
+/// Sets a number of an effect; false if the path leads to none.
 fn set(value: &mut dyn Struct, path: &[&str], number: f64) -> bool {
     let Some(field) = value.field_mut(path[0]) else {
         return false;
@@ -102,8 +101,8 @@ fn put(small: &mut Small, effect: &dyn AnyEffect) {
     small.headless.step(2);
 }
 
-/// How many pipelines a slider may compile from one end to the other, as
-/// `docs/performance.md` says: the others compile none.
+/// Pipelines that a slider may compile from one end to the other, as
+/// `docs/performance.md` lists them. Other sliders compile none.
 fn documented(slider: &str) -> usize {
     let page = include_str!("../../docs/performance.md");
     let row = page

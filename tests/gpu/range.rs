@@ -1,4 +1,4 @@
-//! The depth range, bit for bit.
+//! The depth range against a scan of all depths, bit for bit.
 
 use proptest::{
     collection::vec,
@@ -189,7 +189,7 @@ fn expected(depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Option<[u32; 2]> 
     )
 }
 
-/// Every kind of float that a texture may hold, most of them depths.
+/// Every kind of float that a texture may hold; most are valid depths.
 fn any_depth() -> impl Strategy<Value = f32> {
     prop_oneof![
         4 => (1u32..0x3f80_0000).prop_map(f32::from_bits),
@@ -264,7 +264,7 @@ fn every_shape_finds_the_scan_of_any_depth_in_any_viewport() {
 fn every_shape_counts_every_depth_once() {
     let mut random = bevy_comics_testkit::scenes::noise::Random::new(11);
     for size in [[1u32, 1], [7, 5], [129, 33], [300, 67], [256, 64]] {
-        // Runs of like depths, as in pictures, sky and what is no depth between.
+        // Runs of equal depths, as in pictures, with sky and invalid depths between.
         let mut d = 0.5f32;
         let depths: Vec<f32> = (0..size[0] * size[1])
             .map(|_| {

@@ -78,7 +78,7 @@ fn oblique(clip: Mat4) -> Mat4 {
     rows.transpose()
 }
 
-/// A projection whose near plane is tilted, as a mirror's is.
+/// A projection with an oblique near plane, as mirrors use.
 #[derive(Clone, Debug)]
 struct Tilted(PerspectiveProjection);
 
@@ -100,7 +100,7 @@ impl bevy::camera::CameraProjection for Tilted {
     }
 }
 
-/// A perspective with a far plane, which the engine's own has not.
+/// A perspective projection with a far plane; the engine's has none.
 #[derive(Clone, Debug)]
 struct Finite(PerspectiveProjection);
 
@@ -123,7 +123,7 @@ impl bevy::camera::CameraProjection for Finite {
     }
 }
 
-/// Failure 16: the distance that the game reads, under every projection.
+/// Distances are those of the geometry, under every projection.
 #[test]
 fn distances_are_right_under_every_projection() {
     let ortho = OrthographicProjection {
@@ -146,7 +146,7 @@ fn distances_are_right_under_every_projection() {
         ("oblique", Projection::custom(Tilted(perspective))),
     ] {
         let mut small = Small::new(UVec2::new(64, 64), Msaa::Off);
-        // One wall across the view, seven before the camera, and nothing else.
+        // Only a wall across the view, at distance 7.
         small.clear();
         let mesh = small
             .world()
@@ -171,8 +171,8 @@ fn distances_are_right_under_every_projection() {
         let Some((near, far)) = small.range().and_then(VisibleDepthRange::distances) else {
             panic!("{name}: {:?}", small.range());
         };
-        // A rasterised plane is as exact as single-precision interpolation
-        // between corners a hundred units off.
+        // Depth is interpolated in single precision between corners that are
+        // 100 units away.
         for distance in [near, far] {
             assert!((distance - 7.0).abs() < 2e-3, "{name}: {near} to {far}");
         }
@@ -183,7 +183,7 @@ fn distances_are_right_under_every_projection() {
     }
 }
 
-/// Failure 3, the range's half.
+/// Depth outside the viewport of the camera does not count.
 #[test]
 fn the_range_stays_inside_the_viewport() {
     let mut small = Small::new(UVec2::new(90, 60), Msaa::Off);
@@ -202,7 +202,7 @@ fn the_range_stays_inside_the_viewport() {
     assert_range_is_the_scan(&small, Some([13, 7, 41, 37]), "viewport");
 }
 
-/// Failure 7.
+/// Nothing that writes depth is in view.
 #[test]
 fn an_empty_and_a_transparent_view_have_an_empty_range_and_a_defined_picture() {
     let mut small = Small::new(UVec2::new(48, 32), Msaa::Sample4);

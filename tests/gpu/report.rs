@@ -1,5 +1,4 @@
-//! The report says what its numbers say, and the work that it counted has not
-//! grown.
+//! The text of the report matches its tables, and the counted work has not grown.
 
 use std::{collections::HashMap, fs, path::PathBuf, process::Command};
 
@@ -40,7 +39,7 @@ fn number(row: &HashMap<String, String>, name: &str) -> f64 {
         .unwrap_or_else(|_| panic!("{name} of {row:?}"))
 }
 
-/// The middle of some numbers, between two where they are even.
+/// The median.
 fn middle(mut numbers: Vec<f64>) -> f64 {
     numbers.sort_by(f64::total_cmp);
     let n = numbers.len();
@@ -81,7 +80,7 @@ fn tempfolder(name: &str) -> PathBuf {
 #[test]
 fn ratios_and_exponents_come_out_again() {
     let text = fs::read_to_string(folder().join("report.md")).expect("the report");
-    // The default comic in blits: paired in every round.
+    // The cost of the default comic in blits, paired in every round.
     let (_, rows) = csv("line_times");
     let laps = |variant: &str, round: usize, laps: &[&str]| -> f64 {
         let row = rows
@@ -114,7 +113,7 @@ fn ratios_and_exponents_come_out_again() {
         .expect("the target");
     assert!(line.contains(&format!("| {ratio:.2} |")), "{ratio}: {line}");
 
-    // The exponent over pixels, from the medians, by the normal equations.
+    // The exponent over pixels: least squares on the medians.
     let (_, rows) = csv("growth_times");
     let mut points: Vec<(f64, f64)> = Vec::new();
     for row in rows.iter().filter(|r| r["section"] == "pixels") {
@@ -175,7 +174,7 @@ fn nothing_in_the_report_is_not_finite() {
     for row in &rows {
         assert_eq!(row["wild"], "0", "{row:?}");
     }
-    // Where the textbook's form loses everything, ours keeps its few units.
+    // The textbook's form loses all precision here; ours stays within 5 ulp.
     let hard = rows
         .iter()
         .find(|r| r["case"] == "z 100 to 100.001")
@@ -195,8 +194,8 @@ fn nothing_in_the_report_is_not_finite() {
     }
 }
 
-/// The gate: passes, bindings, texels and bytes are what the committed report
-/// counted, on whatever machine.
+/// Passes, bindings, texels and bytes do not exceed those of the committed report,
+/// on any machine.
 #[test]
 fn no_style_does_more_work_than_the_report_says() {
     let (_, rows) = csv("work");
@@ -211,7 +210,7 @@ fn no_style_does_more_work_than_the_report_says() {
             now.bindings as f64 <= number(row, "bindings"),
             "{name}: {now:?}"
         );
-        // A line moves by a pixel between adapters: two per cent.
+        // Lines may move by a pixel between adapters: 2 % more is allowed.
         assert!(
             now.fetches[0] <= 1.02 * number(row, "fetches") + 0.01,
             "{name}: {now:?}"
@@ -222,7 +221,7 @@ fn no_style_does_more_work_than_the_report_says() {
             "{name}: {now:?}"
         );
     }
-    // And it counts: everything is more than nothing.
+    // The counter works: the largest style fetches texels, no style none.
     let last = rows.last().expect("a style");
     assert!(number(last, "fetches") > 10.0 && number(&rows[0], "fetches") == 0.0);
 }

@@ -1,4 +1,4 @@
-//! What the scenes promise.
+//! Properties of the built-in scenes.
 
 use bevy_comics_testkit::scenes::{mountains, teapot};
 
@@ -15,7 +15,7 @@ fn the_landscape_has_a_million_vertices() {
 fn the_teapot_is_32_patches_that_close() {
     let patches = teapot::patches();
     assert_eq!(patches.len(), 32);
-    // The volume under the outward normals is positive: nothing is inside out.
+    // The signed volume is positive: all triangles face outwards.
     let shape = teapot::mesh(6, [1.0; 4]);
     let volume: f32 = shape
         .indices

@@ -1,4 +1,4 @@
-//! Every entry point in every combination of what may be compiled in.
+//! Every entry point composes and validates with every combination of flags.
 
 use std::{fs, ops::Range};
 
@@ -57,11 +57,11 @@ fn product(lists: &[Vec<Definitions>]) -> Vec<Definitions> {
     lists.iter().fold(vec![Vec::new()], all)
 }
 
-/// An effect of the crate with every mode that it draws in: the definitions that
-/// its `variants` set, and those of what it needs.
+/// An effect with all of its variants: the definitions that `variants` sets and
+/// those of its needs.
 type Modes = (&'static str, Vec<Definitions>);
 
-/// The effects that read colour and depth alone.
+/// The effects that read only colour and depth.
 fn picture_effects() -> [Modes; 5] {
     let mapped = |more: Definition<'static>| [flags(&["MAP", "DEPTH"]), vec![more]].concat();
     [
@@ -82,7 +82,7 @@ fn picture_effects() -> [Modes; 5] {
         ),
         (
             "colorization",
-            // Mode 0 changes nothing and is never drawn.
+            // Mode 0 changes nothing and is never compiled.
             product(&[
                 vec![flags(&["COLORIZATION"])],
                 vec![
@@ -121,8 +121,8 @@ fn picture_effects() -> [Modes; 5] {
     ]
 }
 
-/// The effects that draw lines, of which a camera has one at a time: the sketch
-/// draws in place of the outlines.
+/// The effects that draw lines. Only one is compiled at a time, because the
+/// sketch replaces the outlines.
 fn line_effects() -> [Modes; 2] {
     let flood = |reach| vec![("FLOOD", None), ("LINE_REACH", Some(reach))];
     let gather = |reach| vec![("LINE_REACH", Some(reach))];
@@ -148,7 +148,7 @@ fn line_effects() -> [Modes; 2] {
     ]
 }
 
-/// Every debug view with what it needs.
+/// Every debug view with its needs.
 fn debug_views() -> Vec<Definitions> {
     let lines = |view| vec![(view, None), ("LINES", None), ("LINE_REACH", Some(1))];
     vec![
@@ -169,9 +169,8 @@ fn debug_views() -> Vec<Definitions> {
     ]
 }
 
-/// Composes the fused pass with the definitions that production sets: what says
-/// how depth is read is left out where nothing reads it, and two numbers are
-/// always there.
+/// Composes the fused pass with the definitions that the plugin sets. Definitions
+/// about depth are left out where nothing reads it; two numbers are always set.
 fn compose(source: &str, parts: &[&[Definition<'static>]]) {
     let mut all = parts.concat();
     let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
@@ -192,7 +191,7 @@ fn compose(source: &str, parts: &[&[Definition<'static>]]) {
     }
 }
 
-/// How the picture is stored and depth is seen, each in some of the forms.
+/// Storage of the picture and kind of projection, some of each.
 fn views() -> Vec<Definitions> {
     let view = |names: &[&'static str], map_flags| {
         [flags(names), vec![("MAP_FLAGS", Some(map_flags))]].concat()
@@ -210,7 +209,7 @@ fn views() -> Vec<Definitions> {
     ]
 }
 
-/// The effects without a table of their own: as their defaults are drawn.
+/// The effects that are not listed above, with their defaults.
 fn other_effects() -> Vec<Modes> {
     let tables: Vec<&str> = picture_effects()
         .iter()
@@ -275,7 +274,7 @@ fn every_mode_of_every_effect_composes_and_validates() {
             }
         }
     }
-    // A mode that is not compiled in is read from the settings.
+    // A mode that selects no variant is read from the settings.
     let modes = picture_effects().into_iter().chain(line_effects());
     let mut read: Definitions = modes.flat_map(|(_, modes)| modes[0].clone()).collect();
     read.retain(|(name, number)| number.is_none() && !name.starts_with("SKETCH"));
@@ -292,7 +291,7 @@ fn every_combination_of_effects_composes_and_validates() {
     for chosen in subsets(&[0, 1, 2, 3, 4]) {
         for line in [None, Some(&lines[0]), Some(&lines[1])] {
             for view in &views {
-                // In another mode every time.
+                // Another mode each time.
                 turn += 1;
                 let modes = chosen.iter().map(|i| &pictures[*i]).chain(line);
                 let mut parts: Vec<&[Definition]> = modes
@@ -333,7 +332,7 @@ fn every_form_of_a_view_composes_and_validates() {
             }
         }
     }
-    // What effects of games may read besides.
+    // What effects of a game may read in addition.
     for needs in optional(&[
         "NORMALS",
         "OBJECT_IDS",
@@ -404,7 +403,7 @@ fn every_kind_of_outline_composes_and_validates() {
                 defs.push("VISIBLE_RANGE");
             }
             for form in &forms {
-                // A kind that is not drawn has no form.
+                // The form of a kind that is not drawn does not matter.
                 let drawn = |kind, at: usize| form[at].1 == Some(0) || kinds.contains(&kind);
                 if drawn("SILHOUETTES", 0) && drawn("CREASES", 1) {
                     let all = [&flags(&defs)[..], form].concat();

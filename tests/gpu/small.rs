@@ -1,4 +1,4 @@
-//! A scene small enough for a hundred apps: cubes before a wall of sky.
+//! A scene that renders quickly: three cubes on a ground, with sky behind.
 
 use bevy::{
     camera::RenderTarget,
@@ -47,7 +47,7 @@ pub fn camera(target: RenderTarget, msaa: Msaa) -> impl Bundle {
         },
         Transform::from_xyz(1.5, 2.4, 6.0).looking_at(Vec3::new(0.0, 0.4, 0.0), Vec3::Y),
         Tonemapping::None,
-        // The engine's own noise would be in every comparison.
+        // Dither would differ in every comparison.
         DebandDither::Disabled,
         target,
         msaa,
@@ -74,6 +74,18 @@ impl Small {
         Self { headless, camera }
     }
 
+    /// Starts over in the same app: the small scene, and a new camera without
+    /// history. A new app would compile every pipeline again, about a second.
+    pub fn restart(&mut self, msaa: Msaa) {
+        self.clear();
+        let old = self.camera;
+        let target = self.headless.render_target();
+        let world = self.world();
+        world.despawn(old);
+        spawn_objects(world);
+        self.camera = world.spawn(camera(target, msaa)).id();
+    }
+
     pub fn world(&mut self) -> &mut World {
         self.headless.app.world_mut()
     }
@@ -84,7 +96,7 @@ impl Small {
         self
     }
 
-    /// Takes every object out of the scene.
+    /// Removes every object of the scene.
     pub fn clear(&mut self) {
         let world = self.world();
         let mut query = world.query_filtered::<Entity, With<Object>>();
@@ -101,7 +113,7 @@ impl Small {
         world.flush();
     }
 
-    /// Renders until a change has arrived everywhere, the ledger included.
+    /// Renders until a change has reached the picture and the diagnostics.
     pub fn settle(&mut self) -> &mut Self {
         self.headless.step(5);
         self
@@ -152,7 +164,7 @@ impl Small {
         read_back::object_ids(self.render_world(), self.view())
     }
 
-    /// What the fused pass read and wrote.
+    /// The pictures that the fused pass read and wrote.
     pub fn pass(&self) -> (FloatImage, FloatImage) {
         read_back::last_pass(
             self.render_world(),
@@ -163,7 +175,7 @@ impl Small {
     }
 }
 
-/// The style with an effect, or as it is for `None`.
+/// Adds an effect to a style; `None` adds nothing.
 pub fn with_option<E: Effect>(style: ComicStyle, effect: Option<E>) -> ComicStyle {
     match effect {
         Some(effect) => style.with(effect),
@@ -171,7 +183,7 @@ pub fn with_option<E: Effect>(style: ComicStyle, effect: Option<E>) -> ComicStyl
     }
 }
 
-/// Marks what the small scene shows.
+/// Marks the objects of the small scene.
 #[derive(Component)]
 pub struct Object;
 

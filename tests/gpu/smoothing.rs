@@ -14,7 +14,7 @@ const SNAP: u32 = 2;
 const HOLD: u32 = 4;
 const DESPIKE: u32 = 8;
 
-/// One frame: what is found (near, far), how long it lasts, how it is followed.
+/// One frame: the range found (near, far), its duration, the settings.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     found: Option<[f32; 2]>,
@@ -72,7 +72,7 @@ fn way(seconds: f64, constant: f64) -> f32 {
     }
 }
 
-/// Bits of (near, far) that are drawn in each frame.
+/// Bits of the (near, far) used in each frame.
 fn run(
     s: &Smoothing,
     frames: &[Frame],
@@ -100,7 +100,7 @@ fn run(
             | if s.offset.is_none() { ORTHOGRAPHIC } else { 0 };
         let floats = [
             s.offset.unwrap_or(0.0) as f32,
-            outliers.map_or(0.0, |(share, _, _)| share),
+            outliers.map_or(0.0, |(fraction, _, _)| fraction),
             s.hysteresis as f32,
             way(frame.seconds, s.expand),
             way(frame.seconds, s.shrink),
@@ -147,7 +147,7 @@ fn run(
         .collect()
 }
 
-/// The depths that are drawn in each frame.
+/// The (near, far) used in each frame.
 fn depths(s: &Smoothing, frames: &[Frame]) -> Vec<[f32; 2]> {
     run(s, frames, None)
         .into_iter()
@@ -163,7 +163,7 @@ const DEFAULT: Smoothing = Smoothing {
     shrink: 1.0,
 };
 
-/// Only the exponential.
+/// Only the exponential, without hysteresis.
 const SMOOTH: Smoothing = Smoothing {
     despike: false,
     hysteresis: 0.0,
@@ -222,9 +222,9 @@ fn random_views_are_followed_as_the_twin_does() {
                         continue;
                     };
                     for (got, want) in got.map(f32::from_bits).into_iter().zip(want) {
-                        // Levels near -10 have ulps of 1e-6; a bound that is
-                        // there in one and almost there in the other differs by
-                        // what counts as there.
+                        // Levels near -10 have ulps of 1e-6. A bound that has
+                        // arrived in one and not quite in the other differs by
+                        // the tolerance of arrival.
                         let scale = want + s.offset.unwrap_or(0.0);
                         let apart = (f64::from(got) - want).abs() / scale;
                         assert!(apart < 4e-4, "{s:?}, frame {i}: {got} for {want}");
@@ -261,7 +261,7 @@ fn logarithm_and_power_are_exact_to_a_few_units() {
             (f64::from(log) - want).abs() <= slack,
             "log2({x}) = {log}, not {want}"
         );
-        // An error of the level is an error of the power.
+        // The depth is 2 to the level, so errors of the level are relative.
         let apart = (f64::from(back) / f64::from(*x) - 1.0).abs();
         assert!(
             apart <= slack + 4.0 * f64::from(f32::EPSILON),
@@ -302,7 +302,7 @@ fn jitter_changes_nothing() {
         assert_eq!(first, [0.25f32.to_bits(), 0.001f32.to_bits()]);
         assert!(drawn.iter().all(|d| *d == Some(first)), "{jitter} ulp");
     }
-    // Without hysteresis it is followed, so the test can fail.
+    // Without hysteresis the range follows, so the test can fail.
     let loose = run(
         &SMOOTH,
         &[frame(0.25, 0.001, 0.0), frame(0.2, 0.001, 0.016)],
@@ -318,7 +318,7 @@ fn an_intruder_of_one_frame_changes_nothing() {
     frames[19] = frame(0.1, 1e-6, 0.016);
     let drawn = run(&DEFAULT, &frames, None);
     assert!(drawn.iter().all(|d| *d == drawn[0]), "{drawn:?}");
-    // Two frames are something.
+    // Two frames in a row are not an outlier.
     frames[20] = frames[19];
     let drawn = run(&DEFAULT, &frames, None);
     assert!(drawn.iter().any(|d| *d != drawn[0]));
@@ -344,7 +344,7 @@ fn a_step_settles_in_the_stated_time() {
         };
         assert!((after(1.0) - 0.632_12).abs() < 1e-3, "{}", after(1.0));
         assert!((after(3.0) - 0.950_21).abs() < 1e-3, "{}", after(3.0));
-        // And it arrives, to the bit.
+        // It arrives at the bit.
         assert_eq!(after(12.0), 1.0);
         assert_eq!(drawn.last(), Some(&to));
     }
@@ -352,7 +352,7 @@ fn a_step_settles_in_the_stated_time() {
 
 #[test]
 fn a_slow_drift_is_followed_within_the_hysteresis() {
-    // The range grows by an octave in four seconds, then stands.
+    // The range grows by an octave in four seconds, then stays.
     let frames: Vec<Frame> = (0..900)
         .map(|i| {
             frame(
@@ -366,7 +366,7 @@ fn a_slow_drift_is_followed_within_the_hysteresis() {
     for (d, f) in drawn.iter().zip(&frames).skip(60) {
         let found = f.found.expect("geometry");
         let behind = octaves(d[1], found[1]).abs();
-        // The hysteresis, and what the lag of 0.1 s lets it get ahead.
+        // The hysteresis, plus the change during the lag of 0.1 s.
         assert!(behind < 0.07 + 0.25 * 0.1 + 0.01, "{behind} octaves behind");
     }
 }
@@ -410,8 +410,7 @@ fn ends_that_would_pass_each_other_meet() {
         shrink: 0.01,
         ..SMOOTH
     };
-    // From [0.5, 0.4] to [0.002, 0.001]: the near end hurries, the far one
-    // crawls.
+    // From [0.5, 0.4] to [0.002, 0.001]: the near end is fast, the far end slow.
     let mut frames = vec![frame(0.5, 0.4, 0.01)];
     frames.extend(vec![frame(0.002, 0.001, 0.05); 5]);
     for [near, far] in depths(&s, &frames) {
@@ -422,7 +421,7 @@ fn ends_that_would_pass_each_other_meet() {
 #[test]
 fn percentiles_are_the_twins_and_grow_with_the_area() {
     let mut random = Random::new(3);
-    for share in [0.001f32, 0.005, 0.05, 0.2] {
+    for fraction in [0.001f32, 0.005, 0.05, 0.2] {
         for cluster in [0.0f32, 0.5] {
             let mut table: Vec<f32> = (0..20_000)
                 .map(|_| {
@@ -444,27 +443,30 @@ fn percentiles_are_the_twins_and_grow_with_the_area() {
                     table.iter().copied().fold(1.0, f32::min),
                 ];
                 let found = [frame(ends[0], ends[1], 0.0)];
-                let got = run(&SMOOTH, &found, Some((share, &bins, total)))[0]
+                let got = run(&SMOOTH, &found, Some((fraction, &bins, total)))[0]
                     .expect("geometry")
                     .map(f32::from_bits);
                 let want =
-                    smoothing::percentiles(&bins, total, f64::from(share), ends.map(f64::from));
+                    smoothing::percentiles(&bins, total, f64::from(fraction), ends.map(f64::from));
                 for (got, want) in got.iter().zip(want) {
                     let apart = (f64::from(*got) / want - 1.0).abs();
-                    assert!(apart < 1e-5, "{share}, {intruders}: {got} for {want}");
+                    assert!(apart < 1e-5, "{fraction}, {intruders}: {got} for {want}");
                 }
                 if let Some(before) = before
                     && intruders == 1
                 {
-                    // One pixel of twenty thousand is a twentieth of a thousandth:
-                    // far below the hysteresis of 0.07 octaves.
+                    // One pixel of 20,000 is 0.005 %: far below the hysteresis of
+                    // 0.07 octaves.
                     assert!(
                         octaves(got[0], before[0]).abs() < 0.02,
                         "{before:?} {got:?}"
                     );
                 }
-                if intruders as f32 > 1.5 * share * 20_000.0 {
-                    assert!(got[0] > 0.75, "a share of {intruders} counts: {got:?}");
+                if intruders as f32 > 1.5 * fraction * 20_000.0 {
+                    assert!(
+                        got[0] > 0.75,
+                        "{intruders} pixels of 20,000 are no outliers: {got:?}"
+                    );
                 }
                 before = Some(got);
             }

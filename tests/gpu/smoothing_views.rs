@@ -1,4 +1,4 @@
-//! The smoothed range in an app: what starts it anew, and what does not.
+//! The smoothed range in an app: what resets it and what does not.
 
 use bevy::{camera::PerspectiveProjection, prelude::*, render::view::Msaa};
 use bevy_comics::{
@@ -13,7 +13,7 @@ use bevy_comics_testkit::{
 
 use crate::small::{Small, options, size};
 
-/// Slow enough to be seen, and exact once it is there.
+/// Slow enough to see, exact once it has arrived.
 const SLOW: RangeSmoothing = RangeSmoothing {
     outliers: 0.0,
     despike: false,
@@ -37,7 +37,7 @@ fn small() -> Small {
     small
 }
 
-/// A wall right before the camera, in the corner of the view.
+/// A wall close to the camera, in a corner of the view.
 fn intrude(small: &mut Small) -> Entity {
     let world = small.world();
     let mesh = world
@@ -55,7 +55,7 @@ fn intrude(small: &mut Small) -> Entity {
         .id()
 }
 
-/// The picture as it is once the range has nothing to remember.
+/// The picture after the range was reset.
 fn unsmoothed(small: &mut Small) -> image::RgbaImage {
     small.style(&look(None));
     small.settle();
@@ -142,7 +142,7 @@ fn a_lock_holds_the_range_until_it_is_taken_away() {
         });
         style.clone()
     };
-    // Locked before anything was seen: it takes the first thing.
+    // Locked before the first range: it takes the first one.
     small.style(&locked(&mut style, true));
     small.settle();
     let first = small.picture();
@@ -171,8 +171,8 @@ fn a_locked_range_is_no_older_than_the_planes_and_follows_a_cut_once_free() {
     };
     let mut small = small();
     small.insert(map(true)).settle();
-    // Raw depth of another near plane is another distance: what was locked in
-    // the old one's would be wrong everywhere.
+    // With another near plane the same raw depth is another distance, so the
+    // locked range would be wrong.
     small.insert(Projection::Perspective(PerspectiveProjection {
         near: 0.4,
         ..default()
@@ -259,7 +259,7 @@ fn percentiles_leave_a_speck_out_of_the_picture() {
     small.settle();
     let before = small.picture();
     let speck = intrude(&mut small);
-    // A tenth of a per cent of the picture.
+    // 0.1 % of the picture.
     let at = Transform::from_xyz(1.0, 2.3, 4.9).with_scale(Vec3::splat(0.1));
     small.world().entity_mut(speck).insert(at);
     small.settle();
@@ -296,7 +296,7 @@ fn cameras_have_ranges_of_their_own() {
         .id();
     style.apply(&mut small.world().commands().entity(other));
     small.world().flush();
-    // The second camera is far away: another range.
+    // The second camera is far away and has another range.
     let back = Transform::from_xyz(3.0, 6.0, 20.0).looking_at(Vec3::ZERO, Vec3::Y);
     small.world().entity_mut(other).insert(back);
     small.settle();
@@ -327,8 +327,8 @@ fn wild_settings_are_clamped() {
         small.settle();
         let plain = small.picture();
         assert_eq!(small.errors(), 0);
-        // What is not a number becomes the default and what is too small or too
-        // large the limit: 20 % of outliers at most.
+        // NaN becomes the default; values out of range become the limit, which
+        // is 20 % for outliers.
         let mean = |p: &image::RgbaImage| {
             p.pixels().map(|p| f64::from(p.0[0])).sum::<f64>() / f64::from(p.width() * p.height())
         };

@@ -1,4 +1,4 @@
-//! Style files: read, written, loaded, changed on disk, broken, taken away.
+//! Style files: read, written, loaded, changed on disk, broken, removed.
 
 use std::{fs, time::Duration};
 
@@ -207,7 +207,7 @@ fn a_style_saved_and_loaded_is_equal() {
     .run(&styles(), |style| {
         let text = style.to_ron().expect("every style has a text");
         let back = ComicStyle::from_ron(&text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        // Bit for bit, so that -0 stays what it is.
+        // Compares bits, so that -0 is kept.
         assert_eq!(format!("{style:?}"), format!("{back:?}"), "{text}");
         Ok(())
     })
@@ -239,7 +239,7 @@ fn errors_name_the_line_and_what_is_wrong() {
     ));
 }
 
-/// A folder that is gone when the test is.
+/// A temporary folder, removed when dropped.
 struct Folder(std::path::PathBuf);
 
 impl Folder {
@@ -252,8 +252,7 @@ impl Folder {
 
 impl Drop for Folder {
     fn drop(&mut self) {
-        // Left behind if the system will not let go of it: it is a temporary
-        // folder.
+        // An error is ignored: the system empties its temporary folder.
         let _ = fs::remove_dir_all(&self.0);
     }
 }

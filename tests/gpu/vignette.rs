@@ -9,7 +9,7 @@ use crate::small::{Small, size};
 
 const INK: Color = Color::srgb(0.8, 0.1, 0.3);
 
-/// Every pixel of the fused pass is the twin's, in the viewport of its camera.
+/// Every pixel of the fused pass equals its twin, in the camera's viewport.
 #[test]
 fn every_pixel_is_its_twins() {
     for settings in [
@@ -46,7 +46,7 @@ fn every_pixel_is_its_twins() {
                 let apart = (0..3)
                     .map(|c| (codes(f64::from(shown.pixels[i][c])) - codes(want[c])).abs())
                     .fold(0.0, f64::max);
-                // On a hard edge rounding decides for a pixel that it runs through.
+                // Pixels on a hard edge are decided by rounding.
                 far += usize::from(apart > 1.0);
             }
         }

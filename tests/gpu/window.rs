@@ -15,7 +15,7 @@ use bevy_comics::ComicStyle;
 use image::RgbImage;
 use serde_json::Value;
 
-use crate::command_line::example_with;
+use crate::command_line::example;
 
 /// Time after which an expected state is given up, also on a slow machine.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -58,7 +58,7 @@ impl Window {
     /// Starts the example in a window of a size in physical pixels, with `scale`
     /// physical pixels per logical pixel.
     pub fn open(size: [u32; 2], scale: f64, arguments: &[&str]) -> Self {
-        let program = example_with("inspector", &["--features", "inspector"]);
+        let program = example("inspector");
         // Every window of a test run has its own server.
         static OPENED: AtomicU32 = AtomicU32::new(0);
         let opened = OPENED.fetch_add(1, Ordering::Relaxed);
@@ -246,7 +246,7 @@ impl Window {
         ComicStyle::from_ron(text).expect("it reads")
     }
 
-    /// Waits until a camera's style is as wanted.
+    /// Waits until a camera's style satisfies `is_so`.
     pub fn until_style(&self, what: &str, camera: usize, is_so: impl Fn(&ComicStyle) -> bool) {
         self.until(what, |state| {
             let text = state["cameras"][camera]["style"]

@@ -1,18 +1,15 @@
-//! Which lines are there, and which should be: our outlines and those of
-//! bevy_edge_detection_outline 0.4.1, each at its defaults, on the same frames.
+//! Compares the outlines of this crate and of bevy_edge_detection_outline 0.4.1, both with
+//! default settings, with the true lines of the same frames.
 //!
 //! ```text
 //! cargo run --manifest-path benches/peers/Cargo.toml
 //! cargo run --manifest-path benches/peers/Cargo.toml -- times FILE ROUNDS FRAMES
 //! ```
 //!
-//! The second form times passes instead, for the report: see `times.rs`.
+//! The second form times passes for the report: see `times.rs`.
 //!
-//! The truth is the same scene at four times the resolution, read from its raw
-//! depth, normals and object ids: a pixel has a silhouette where the depth of two
-//! neighbours differs by more than 2 % beyond the slopes on both sides, a crease
-//! where their normals differ by more than 30 degrees on one surface, an object
-//! edge where their ids differ.
+//! The true lines come from raw depth, normals and object ids of the same scene at four times
+//! the resolution: see `truth.rs` of the examples' shared code.
 
 mod times;
 
@@ -71,7 +68,7 @@ fn shoot(build: Build, size: UVec2, lines: &Lines) -> Shot {
         ))
         .id();
     match lines {
-        // Ids are drawn for edges that nobody sees.
+        // Invisible object edges, so that ids are drawn.
         Lines::None => {
             world.entity_mut(camera).insert(Outlines {
                 silhouettes: None,
@@ -113,7 +110,8 @@ fn truth(build: Build) -> Truth {
     Truth::new(width, height, &shot.depth, &shot.normals, &shot.ids)
 }
 
-fn share((yes, total): (usize, usize)) -> String {
+/// A fraction in percent; "-" of nothing.
+fn percent((yes, total): (usize, usize)) -> String {
     if total == 0 {
         return "-".into();
     }
@@ -130,9 +128,9 @@ fn report(name: &str, build: Build) {
         let folder = std::path::Path::new("target/peers");
         let _ = std::fs::create_dir_all(folder);
         let _ = lined.save(folder.join(format!("{name}-{who}.png")));
-        let recall = |kind: usize| share(truth.recall(&truth.kinds[kind], &mask));
+        let recall = |kind: usize| percent(truth.recall(&truth.kinds[kind], &mask));
         let (right, drawn) = truth.precision(&any, &mask);
-        let precision = share((right, drawn));
+        let precision = percent((right, drawn));
         let wrong = drawn - right;
         println!(
             "| {name} | {who} | {} | {} | {} | {precision} | {:.3} % |",
@@ -160,7 +158,7 @@ fn village(headless: &mut Headless) -> Transform {
     vantage.expect("the stage is there").transform()
 }
 
-/// Lines alone should change the picture.
+/// Makes every material unlit, so that only lines change the picture.
 fn unlit(world: &mut World) {
     for (_, material) in world.resource_mut::<Assets<StandardMaterial>>().iter_mut() {
         material.unlit = true;

@@ -1,4 +1,4 @@
-//! What each crate's passes take, in one app and one run, in turn.
+//! Times the passes of each crate, in one app and one run, in turn.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -25,14 +25,14 @@ use bevy_comics_testkit::{
 
 const SIZE: UVec2 = UVec2::new(960, 540);
 
-/// A mesh that only some variants show.
+/// Marks the meshes that a variant adds.
 #[derive(Component)]
 struct Shell;
 
 struct Bench {
     headless: Headless,
     camera: Entity,
-    /// The scene's own materials, to go back to.
+    /// The parts of the scene with their meshes and original materials.
     plain: Vec<(Entity, Handle<Mesh>, Handle<StandardMaterial>)>,
     toon: Handle<MtoonMaterial>,
 }
@@ -58,7 +58,7 @@ impl Bench {
         let vantage = world
             .run_system_once(|mut stage: Stage| stage.spawn(BuiltIn::Teapot))
             .expect("the stage is there");
-        // Crates that draw shells of meshes read them.
+        // Crates that draw shells read the meshes in the main world.
         for (_, mesh) in world.resource_mut::<Assets<Mesh>>().iter_mut() {
             mesh.asset_usage = RenderAssetUsages::default();
         }
@@ -68,7 +68,7 @@ impl Bench {
             Msaa::Off,
             Tonemapping::None,
             DebandDither::Disabled,
-            // Everybody has them, so nobody pays for them.
+            // All variants have them, so that their time is in no difference.
             DepthPrepass,
             NormalPrepass,
         ));
@@ -100,7 +100,7 @@ impl Bench {
         self.headless.app.world_mut().entity_mut(self.camera)
     }
 
-    /// Takes away whatever a variant has put.
+    /// Removes what a variant has added.
     fn clear(&mut self) {
         let world = self.headless.app.world_mut();
         ComicStyle::default().apply(&mut world.commands().entity(self.camera));
@@ -219,13 +219,13 @@ const VARIANTS: &[(&str, Put)] = &[
     }),
 ];
 
-/// Rows of the report's table of times.
+/// Measures the report's table of times, as CSV. `frames`: timed frames per round.
 pub fn measure(rounds: usize, frames: usize) -> String {
     let mut bench = Bench::new();
     let mut rows = vec![
         "section,scene,variant,width,height,round,prepass,range,lines,main,post".to_owned(),
     ];
-    // One round for pipelines and textures.
+    // Round 0 creates pipelines and textures, and is not counted.
     for round in 0..=rounds {
         for (name, put) in VARIANTS {
             bench.clear();

@@ -1,5 +1,5 @@
-//! The text of the report, from its tables alone: whoever has the CSV files can
-//! make it again.
+//! The text of the report. It is made from the CSV files alone, so that it can be made
+//! again without measuring.
 
 mod others;
 mod precision;
@@ -53,7 +53,7 @@ fn targets(out: &mut String, folder: &Path) -> Result<(), String> {
             .map(|c| c.milliseconds)
     };
     row(
-        "bevy_edge_detection_outline (Sobel, depth + normals) over silhouettes + creases",
+        "time of bevy_edge_detection_outline (Sobel, depth + normals) / silhouettes + creases",
         "at least 2".into(),
         of("Sobel")
             .zip(of("silhouettes + creases"))
@@ -61,11 +61,11 @@ fn targets(out: &mut String, folder: &Path) -> Result<(), String> {
         &|x| x >= 2.0,
     );
     out.push_str(
-        "\nWhere a target is missed on a CPU adapter: a blit there is little more than a copy of \
-         memory, while every style computes in software for every pixel, both sides of every \
-         branch. The outlines look at 5x5 depths and 5x5 normals (Eq. 2 wants the extremes of \
-         nine gradients), the crate that they are measured against at 3x3. What was tried and \
-         what it brought is in ARCHITECTURE.md, under \"Presence and modes are compiled\".\n\n",
+        "\nWhy targets are missed on a CPU adapter: a blit is little more than a copy of memory \
+         there, while every effect is computed in software for every pixel, with both sides of \
+         every branch. The outlines read 5x5 depths and 5x5 normals (Eq. 2 needs the extremes \
+         of nine gradients); the crate that they are compared with reads 3x3. ARCHITECTURE.md \
+         says what was tried and what it gained, under \"Presence and modes are compiled\".\n\n",
     );
     Ok(())
 }
@@ -74,20 +74,21 @@ fn targets(out: &mut String, folder: &Path) -> Result<(), String> {
 pub fn render(folder: &Path) -> Result<String, String> {
     let machine = load(folder, "machine")?;
     let mut out = String::from(
-        "# Error against run time\n\nMade by `cargo run --release --example report`; every \
-         number is computed from the CSV files beside this text, and a test does it again.\n\n\
+        "# Error against run time\n\nWritten by `cargo run --release --example report`. Every \
+         number is computed from the CSV files in this folder, and a test computes it again.\n\n\
          | | |\n|---|---|\n",
     );
     for row in &machine.rows {
         let _ = writeln!(out, "| {} | {} |", row[0], row[1]);
     }
     out.push_str(
-        "\nVariants are timed in turn (A B C A B C). A time is the median over all rounds of \
-         what a variant takes over the same frame without it; a ratio is to a copying pass of \
-         the same size in the same round (\"blits\"), with the share of rounds between 10 % and \
-         90 % beside it. \"blit again\" is the same pass a second time: what it differs from 1 \
-         is noise. Times on another kind of adapter will have other ratios: nothing here was \
-         measured on a GPU unless the table above says so.\n\n",
+        "\nVariants are timed in turn (A B C A B C). The time of a variant is that of the frame \
+         with it, less that of the frame without it; the tables give the median of all rounds. \
+         Ratios are to a copying pass of the same size in the same round (\"blits\"): the median, \
+         and in some tables the 10th and 90th percentile of the rounds. \"blit again\" is the \
+         same copying pass a second time: its difference from 1 is noise. Ratios are different \
+         on other kinds of adapter; nothing here was measured on a GPU unless the table above \
+         says so.\n\n",
     );
     targets(&mut out, folder)?;
     out.push_str("## 1. Error against run time\n\n");

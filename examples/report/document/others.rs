@@ -1,4 +1,4 @@
-//! Other crates, and the range over time.
+//! The report's text: other crates, and the range over time.
 
 use std::{fmt::Write, path::Path};
 
@@ -17,13 +17,14 @@ pub fn peers(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let _ = writeln!(
         out,
-        "The teapot at {}, every crate at its defaults, in one process and in turn. The \
-         camera always has the depth and normal prepass, so nobody pays for them. All times are \
-         over the frame without any of them. Full-screen effects are the passes after the main \
-         pass and this crate's before it; the whole camera, with the noise of its main pass, is \
-         what those take that draw lines or light with the meshes. What a crate draws differs: \
-         extruded and scaled shells are lines around objects alone, and a material is no line \
-         at all.\n\n\
+        "The teapot at {}, in one process and in turn. Settings are the crates' defaults, but \
+         for what a row names; the lines of bevy_mod_outline are 2 pixels wide. The camera \
+         always has the depth and normal prepass, so that their time is in no row. All times \
+         are those over the frame without any of the crates. \"Full-screen passes\" are all \
+         passes after the main pass, and this crate's passes before it. \"Whole camera\" is the \
+         whole frame, with the noise of the main pass: the time of crates that draw lines or \
+         light with the meshes. The crates do not draw the same: extruded and scaled shells \
+         are lines around objects only, and a material draws no lines.\n\n\
          | | full-screen passes, ms | blits | 10 % to 90 % | whole camera, ms |\n\
          |---|---|---|---|---|",
         size(&times)
@@ -66,15 +67,16 @@ pub fn peers(out: &mut String, folder: &Path) -> Result<(), String> {
 pub fn flicker(out: &mut String, folder: &Path) -> Result<(), String> {
     let table = load(folder, "flicker")?;
     out.push_str(
-        "## 6. A range that does not flicker\n\nSeventy-two frames at 60 a second. Flicker of a \
-         frame is the difference, in display codes, between the frame and the same frame drawn \
-         with the range of the frame before: what the scene's own change does not explain. \
-         Given are the mean over all pixels and frames, the worst frame's mean, and the worst \
-         frame's 99th percentile; the lag is the mean distance of the drawn range from the \
-         exact one, in octaves of distance (outliers that percentiles leave out count as lag). \
-         A cut is announced, and starts every variant anew. \
-         The ranges are those of the shader's twin, which the tests hold to the shader.\n\n\
-         | sequence | stage | flicker, mean | worst frame | its 99 % | lag, octaves |\n\
+        "## 6. A range that does not flicker\n\nSequences of 72 frames, at 60 frames per second. \
+         The flicker of a frame is the difference, in display codes, between the frame and the \
+         same frame drawn with the range of the frame before: the change that the scene itself \
+         does not cause. The columns are the mean over all pixels and frames, the largest mean \
+         of a frame, and the largest 99th percentile of a frame. The lag is the distance \
+         between the drawn and the exact range in octaves of distance, for the end that \
+         differs more, as the mean over all frames (outliers that percentiles leave out count \
+         as lag). The camera cut is announced, and starts every variant anew. The ranges are \
+         computed by the twin of the shader, which the tests compare with the shader.\n\n\
+         | sequence | smoothing | flicker, mean | worst frame | worst 99 % | lag, octaves |\n\
          |---|---|---|---|---|---|\n",
     );
     let all: Vec<&Vec<String>> = table.rows.iter().collect();
@@ -95,9 +97,9 @@ pub fn flicker(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     if folder.join("flicker.png").exists() {
         out.push_str(
-            "\nAn intruder crosses near the camera for half a second: without smoothing (above) \
-             and with the default (below). Frames 18, 20, 24, 35, 51 and 66; it comes at 20 and \
-             is gone at 50.\n\n![Six frames without and with smoothing](flicker.png)\n",
+            "\nAn intruder crosses near the camera for half a second, from frame 20 to frame 49: \
+             without smoothing (above) and with the default (below). Frames 18, 20, 24, 35, 51 \
+             and 66.\n\n![Six frames without and with smoothing](flicker.png)\n",
         );
     }
     out.push_str("\n![Flicker against lag](flicker.svg)\n\n");

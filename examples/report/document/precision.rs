@@ -1,4 +1,4 @@
-//! Error against run time: the range, its encoding, lines.
+//! The report's text: error against run time of the range, of stored depth and of lines.
 
 use std::{fmt::Write, path::Path};
 
@@ -13,14 +13,16 @@ pub fn ranges(out: &mut String, folder: &Path) -> Result<(), String> {
     let times = load(folder, "range_times")?;
     let bare = load(folder, "range_bare_times")?;
     out.push_str(
-        "### The range\n\nThe largest error over all frames of a moving camera, and the mean \
-         share of the pixels in a wrong one of eight bands. `near` and `far` are relative \
-         errors of a distance, `map` the largest error of the depth map over all pixels, FLIP \
-         the largest mean difference of the picture (desaturation and colorization at full \
-         strength). `wires` are a fraction of a pixel wide, `specks` a few pixels each. \"Rotating 4\" looks at a \
-         sixteenth of the pixels in every frame and takes the extremes of sixteen frames. \
-         Percentiles are not an approximation: they leave outliers out, and the error is what \
-         that changes.\n\n| scene | method | near | far | map | wrong band | FLIP |\n|---|---|---|---|---|---|---|\n",
+        "### The range\n\nErrors of the range in some frames of a moving camera. All but `wrong \
+         band` are the largest of these frames. `near` and `far` are relative errors of a \
+         distance, `map` is the error of the depth map at the worst pixel, and FLIP the mean \
+         difference of the picture (desaturation and colorization at full strength). `wrong \
+         band` is the mean fraction of the pixels that are in a wrong one of eight equal bands \
+         of the map. Most of the `wires` are narrower than a pixel, most of the `specks` a few \
+         pixels wide. `rotating 4` reads a sixteenth of the pixels in every frame and takes the \
+         extremes of sixteen frames. Percentiles are not an approximation: they leave outliers \
+         out, and the error is the effect of that.\n\n\
+         | scene | method | near | far | map | wrong band | FLIP |\n|---|---|---|---|---|---|---|\n",
     );
     let all: Vec<&Vec<String>> = errors.rows.iter().collect();
     for scene in errors.distinct(&all, "scene") {
@@ -41,15 +43,15 @@ pub fn ranges(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let _ = writeln!(
         out,
-        "\nTime of the shipped reductions at {}, in the app, over the unstyled frame (the \
-         range's passes alone; every exact method gives the same bits):\n",
+        "\nTime of the crate's reductions at {}, in the app (the passes of the range alone; \
+         every exact method gives the same bits):\n",
         size(&times)
     );
     cost_table(out, &costs(&times, "ranges", "teapot", &["range"]));
     let _ = writeln!(
         out,
-        "Time of the strided ones at {}, on a bare device (stride 1 is their own full scan, \
-         without the shipped one's gathers):\n\n| | ms | blits |\n|---|---|---|",
+        "Time of the strided scans at {}, on a device without the engine (stride 1 is a full \
+         scan, without the texture gathers of the crate's own):\n\n| | ms | blits |\n|---|---|---|",
         size(&bare)
     );
     for (name, ms, ratio) in bare_costs(&bare, "method") {
@@ -60,9 +62,10 @@ pub fn ranges(out: &mut String, folder: &Path) -> Result<(), String> {
     if let Some(exact) = exact {
         let _ = writeln!(
             out,
-            "\nThe exact range is {:.2} of a blit (barrier-free). That is all a cheaper one \
-             could save, and each of them is wrong without bound for what is thinner than its \
-             stride: none is offered. Percentiles are, as part of `DepthMap::smoothing`.\n\n\
+            "\nThe exact range takes {:.2} blits (barrier-free). A cheaper method cannot save \
+             more than that, and the error of each is unbounded for objects that are thinner \
+             than its stride: the crate offers none of them. It does offer percentiles, in \
+             `DepthMap::smoothing`.\n\n\
              ![Error of the map against time](range.svg)\n",
             exact.ratio[1]
         );
@@ -75,9 +78,10 @@ pub fn encodings(out: &mut String, folder: &Path) -> Result<(), String> {
     let times = load(folder, "encoding_times")?;
     let _ = writeln!(
         out,
-        "### What depth is kept in\n\nLargest error of the depth map over the first frame of \
-         every scene, against the exact map of the stored depths, and the time of writing the \
-         copy and mapping it at {}. The crate keeps no copy: it reads the depth texture.\n\n\
+        "### Stored depth\n\nA depth map that is computed from a stored copy of the depth, in \
+         several formats: the worst of the first frames of all scenes, compared with the exact \
+         map of the rendered depths. The time is that of storing the copy and computing the map \
+         at {}. The crate stores no copy: it reads the depth texture, as in the first row.\n\n\
          | | map, worst scene | wrong band, worst | FLIP, worst | ms | blits |\n\
          |---|---|---|---|---|---|",
         size(&times)
@@ -86,7 +90,7 @@ pub fn encodings(out: &mut String, folder: &Path) -> Result<(), String> {
         if name.starts_with("blit") {
             continue;
         }
-        // The depth texture holds the same single floats as a copy of them.
+        // A copy in f32 has the same values as the depth texture.
         let stored = if name.starts_with("none") {
             "f32 depth"
         } else {
@@ -112,10 +116,10 @@ pub fn lines(out: &mut String, folder: &Path) -> Result<(), String> {
     let costs_of = costs(&times, "lines", "teapot", &OWN);
     let _ = writeln!(
         out,
-        "### Lines\n\nTruth is the scene at four times the resolution. Scores are over the \
-         pixels of all scenes; time is at {}. The contours' thresholds are shares of the \
-         visible range, so in deep scenes they leave out what the outlines, which measure \
-         steps by their distance, keep. Every contour operator reads 3x3 texels, outlines 5x5.\n\n\
+        "### Lines\n\nThe true lines come from the scene at four times the resolution. Scores are \
+         over the pixels of all scenes; times are at {}. Contours measure a jump as a fraction \
+         of the visible range, outlines as a fraction of the distance: in deep scenes, contours \
+         find fewer lines. All contour operators read 3x3 texels, outlines 5x5.\n\n\
          | | silhouettes found | F1, silhouettes | every line found | precision | F1, every line | ms | blits |\n\
          |---|---|---|---|---|---|---|---|",
         size(&times)
@@ -136,10 +140,11 @@ pub fn lines(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     out.push_str("\n![F1 against time](lines.svg)\n\n");
     out.push_str(
-        "### Anti-aliasing of bands and lines\n\nAgainst the same look at eight times the \
-         resolution. \"2x2\" draws four times the pixels and takes their mean; its time is that \
-         of this crate's passes at twice the width and height, without the rest of the frame, \
-         which would be drawn four times as well.\n\n\
+        "### Anti-aliasing of bands and lines\n\nErrors against the same style at eight times the \
+         resolution. `hard` has no softness, `derivative` is the crate's own softness. `2x2 \
+         samples` draws four times the pixels and takes their mean; its time is that of this \
+         crate's passes at twice the width and height, without the rest of the frame, which \
+         would have four times the pixels too.\n\n\
          | | | FLIP | RMS, codes | ms | blits |\n|---|---|---|---|---|---|\n",
     );
     let fine = costs(&times, "2x2", "teapot", &OWN);

@@ -1,4 +1,4 @@
-//! Stability, what is left out, growth.
+//! The report's text: stability, what is left out, growth.
 
 use std::{fmt::Write, path::Path};
 
@@ -11,13 +11,14 @@ use crate::{
 pub fn stability(out: &mut String, folder: &Path) -> Result<(), String> {
     let table = load(folder, "stability")?;
     out.push_str(
-        "## 2. Stability on stiff and extreme cases\n\nThe depth map (Eq. 4) on the adapter \
-         against the exact quotient of the stored depths. The textbook's form turns depth into \
-         distance first and then takes `(z - min) / (max - min)`; ours is the quotient of \
-         differences of raw depth. The condition is the factor by which a relative error of a \
-         depth grows in the map. `wild` counts results that are not finite. The floor that \
-         hides noise (`DepthMap::floor`) is off here. One depth alone has no quotient: it is 0 \
-         by definition. Subnormal depths count as sky.\n\n\
+        "## 2. Stability on stiff and extreme cases\n\nThe depth map (Eq. 4) on the adapter, \
+         compared with the exact quotient of the raw depths. The textbook's form computes \
+         distances first, then `(z - min) / (max - min)`; this crate's form (`ours`) is a \
+         quotient of differences of raw depth. The condition is the factor by which the map \
+         multiplies a relative error of a depth. `ulp` and `codes` are the largest errors, in \
+         units in the last place and in 8-bit codes; `wild` is the number of results that are \
+         not finite. The floor that hides noise (`DepthMap::floor`) is off. A single depth has \
+         no quotient: its map is 0 by definition. Subnormal depths count as sky.\n\n\
          | case | condition | textbook, ulp | codes | wild | ours, ulp | codes | wild |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
@@ -45,8 +46,9 @@ pub fn stability(out: &mut String, folder: &Path) -> Result<(), String> {
         );
     }
     out.push_str(
-        "\nPictures with every style at once, then sketched, on an HDR camera: how many pixels \
-         were not finite before this crate's pass, and after it.\n\n\
+        "\nPictures on an HDR camera, with the preset `graphic-novel`, the default comic, outlines \
+         and tone bands together, and once more with a sketch: the number of pixels of both that \
+         are not finite before and after this crate's pass.\n\n\
          | case | before | after |\n|---|---|---|\n",
     );
     for row in table.matching(&[("kind", "picture")]) {
@@ -60,9 +62,9 @@ pub fn stability(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let moved = load(folder, "moved")?;
     out.push_str(
-        "\nThe same scene, scaled with its near plane or moved with its camera, against the \
-         scene as it is (FLIP; the engine's own positions are single floats, which at 1e6 have \
-         steps of 6 cm):\n\n| | FLIP |\n|---|---|\n",
+        "\nThe FLIP difference between a scene and the same scene scaled together with its near \
+         plane, or moved together with its camera. The engine's positions are single floats, \
+         which have steps of 0.06 at 1e6:\n\n| | FLIP |\n|---|---|\n",
     );
     for row in &moved.rows {
         let _ = writeln!(
@@ -82,10 +84,11 @@ pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
     let costs = costs(&times, "ladder", "teapot", &OWN);
     let _ = writeln!(
         out,
-        "## 3. What is left out\n\nFrom no style to everything: the passes that ran (the \
-         engine's prepasses among them), of eight; the bindings of the fused pass; the texels \
-         and bytes that it fetches for a pixel, counted by the shader itself on the teapot at \
-         160x90; the time of this crate's passes at {}.\n\n\
+        "## 3. What is left out\n\nStyles from none to everything, and for each: the number of \
+         passes that ran, of eight, the engine's prepasses included; the bindings of the fused \
+         pass; the texels and bytes that it fetches per pixel, counted in the shader on the \
+         teapot at 160x90; the time of this crate's passes at {}, also in percent of \
+         `everything`.\n\n\
          | style | passes | bindings | texels, mean (most) | bytes | ms | blits | of everything |\n\
          |---|---|---|---|---|---|---|---|",
         size(&times)
@@ -112,7 +115,7 @@ pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
             unsigned_zero(100.0 * ms / whole, 0),
         );
     }
-    out.push_str("\nWhich passes those are:\n\n");
+    out.push_str("\nThe passes that ran:\n\n");
     for row in &work.rows {
         let ran = work.cell(row, "ran");
         let _ = writeln!(
@@ -125,7 +128,8 @@ pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
     let idle = load(folder, "idle_times")?;
     out.push_str(
         "\n### An idle plugin\n\nWhole frames of three apps, in turn: one without the plugin, \
-         one with it and no style on any camera, and the first once more as the noise bar.\n\n\
+         one with the plugin and no style, and another one without the plugin, which shows the \
+         noise.\n\n\
          | | ms, median | 10 % to 90 % |\n|---|---|---|\n",
     );
     let all: Vec<&Vec<String>> = idle.rows.iter().collect();
@@ -141,9 +145,9 @@ pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let prepass = load(folder, "prepass_times")?;
     out.push_str(
-        "\n### Depth from a prepass, or from the main pass?\n\nThe engine's prepass and main \
-         pass together, with a depth prepass and without. A style that reads depth alone could \
-         read the main pass's instead.\n\n\
+        "\n### Depth from a prepass, or from the main pass?\n\nThe time of the engine's prepass \
+         and main pass together, with and without a depth prepass. An effect that reads no more \
+         than depth could read the depth of the main pass instead.\n\n\
          | scene | without, ms | with, ms | with / without |\n|---|---|---|---|\n",
     );
     let all: Vec<&Vec<String>> = prepass.rows.iter().collect();
@@ -170,8 +174,8 @@ pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let _ = writeln!(
         out,
-        "\nThe prepass pays for itself in {won} of {} scenes here, because the main pass then \
-         shades no pixel that is hidden later.\n",
+        "\nThe prepass saves more time than it takes in {won} of {} scenes, because the main pass \
+         then shades no pixel that is hidden.\n",
         won + lost
     );
     Ok(())
@@ -180,8 +184,8 @@ pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
 pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
     let times = load(folder, "growth_times")?;
     out.push_str(
-        "## 4. Cost and its growth\n\nThe default comic (desaturation, colorization, \
-         contours), this crate's passes alone: range, lines and fused pass.\n\n",
+        "## 4. Cost and its growth\n\nThe time of this crate's passes (range, lines, fused pass) \
+         for the default comic (desaturation, colorization, contours).\n\n",
     );
     for (section, title) in [("pixels", "pixels"), ("vertices", "vertices, at 512x512")] {
         let (p, points) = growth_exponent(&times, section, &OWN);
@@ -208,8 +212,8 @@ pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
         }
     }
     out.push_str(
-        "The engine's prepass, which the style asks for, grows with the vertices as the main \
-         pass does:\n\n| vertices | prepass, ms | main pass with it, ms | main pass without a style, ms |\n|---|---|---|---|\n",
+        "The engine's prepass, which the style needs, grows with the vertices, as the main pass \
+         does:\n\n| vertices | prepass, ms | main pass with it, ms | main pass without a style, ms |\n|---|---|---|---|\n",
     );
     let rows = times.matching(&[("section", "vertices")]);
     for scene in times.distinct(&rows, "scene") {
@@ -230,8 +234,8 @@ pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
         );
     }
     out.push_str(
-        "\nWith several cameras that wear the style, 256x256 each:\n\n| cameras | own passes of \
-         all, ms | whole frame of all, ms |\n|---|---|---|\n",
+        "\nSeveral cameras with the style, 256x256 each:\n\n| cameras | this crate's passes of \
+         all, ms | all passes of all, ms |\n|---|---|---|\n",
     );
     let rows = times.matching(&[("section", "cameras")]);
     for scene in times.distinct(&rows, "scene") {
@@ -258,8 +262,8 @@ pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
     let (without, with) = (fps("without the model"), fps("with the model"));
     let _ = writeln!(
         out,
-        "\n### The paper's experiment\n\nOne million vertices, 512x512, whole frames, without \
-         the model and with it (the default comic), prepass included.\n\n\
+        "\n### The paper's experiment\n\nWhole frames of one million vertices at 512x512, without \
+         and with the paper's model (here the default comic), prepass included.\n\n\
          | | without, frames/s | with, frames/s | with / without |\n|---|---|---|---|\n\
          | [CS], GPU unnamed, 2010 | 512 | 260 | {:.2} |\n\
          | here | {without:.2} | {with:.2} | {:.2} |\n",

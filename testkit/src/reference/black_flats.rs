@@ -11,6 +11,8 @@ fn softness(s: &BlackFlats) -> f64 {
     f64::from(s.softness).max(1e-3)
 }
 
+/// Coverage of a dark area, 0 to 1. `linear`: the unstyled colour; `l`: complement
+/// of the depth map.
 pub fn dark_area(s: &BlackFlats, linear: Rgb, l: f64) -> f64 {
     let threshold = f64::from(s.value.unwrap_or(0.0)) * mix(1.0, l, f64::from(s.depth_weight));
     if threshold <= 0.0 {
@@ -24,7 +26,9 @@ pub fn dark_area(s: &BlackFlats, linear: Rgb, l: f64) -> f64 {
     )
 }
 
-/// `prewitt` is the response per pixel of a view of `rows` rows.
+/// Coverage of a steep area, 0 to 1. `prewitt`: response of the depth map at the
+/// resolution of the viewport; `rows`: height of the viewport in pixels. The
+/// threshold is defined for a map of 512 rows.
 pub fn steep_area(s: &BlackFlats, prewitt: f64, rows: u32) -> f64 {
     let Some(slope) = s.slope.map(f64::from) else {
         return 0.0;

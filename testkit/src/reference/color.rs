@@ -2,6 +2,7 @@
 
 use super::Rgb;
 
+/// Infinity becomes 65504, the largest `f16`; NaN and minus infinity become 0.
 pub fn finite(x: f32) -> f64 {
     if x.is_finite() {
         f64::from(x)
@@ -44,7 +45,8 @@ pub fn luminance([r, g, b]: Rgb) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
-/// Hunter's lightness.
+/// Lightness of a linear colour by Hunter's formula (1948): the square root of
+/// the luminance.
 pub fn lightness(linear: Rgb) -> f64 {
     luminance(linear).clamp(0.0, 1.0).sqrt()
 }
@@ -57,7 +59,7 @@ pub fn smallest(c: Rgb) -> f64 {
     c.into_iter().fold(f64::MAX, f64::min)
 }
 
-/// HSV hue, hue 0 for greys, in turns.
+/// HSV hue in turns, [0, 1); 0 for greys.
 pub fn hue_of([r, g, b]: Rgb) -> f64 {
     let (v, c) = (largest([r, g, b]), largest([r, g, b]) - smallest([r, g, b]));
     if c <= 0.0 {
@@ -73,7 +75,8 @@ pub fn hue_of([r, g, b]: Rgb) -> f64 {
     (sextant / 6.0).rem_euclid(1.0)
 }
 
-/// The fully saturated colour of a hue, corner by corner of the hexagon.
+/// The colour with HSV saturation and value 1 at a hue in turns, by the six
+/// sectors of the HSV hexagon.
 pub fn hue_color(hue: f64) -> Rgb {
     let h = hue.rem_euclid(1.0) * 6.0;
     let x = 1.0 - (h % 2.0 - 1.0).abs();
@@ -87,7 +90,8 @@ pub fn hue_color(hue: f64) -> Rgb {
     }
 }
 
-/// Ottosson's published matrices.
+/// `OKLab` (lightness, a, b) of a linear colour, with the matrices that Ottosson
+/// published (2020).
 pub fn linear_to_oklab(c: Rgb) -> Rgb {
     const M1: [Rgb; 3] = [
         [0.412_221_470_8, 0.536_332_536_3, 0.051_445_992_9],

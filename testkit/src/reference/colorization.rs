@@ -16,8 +16,10 @@ fn linear_of(color: Color) -> Rgb {
     [c.red, c.green, c.blue].map(f64::from)
 }
 
-/// Lightness and chroma of the most saturated displayable colour of a hue: a
-/// scan of the gamut's surface, fine enough for single precision.
+/// (lightness, chroma) in `OKLab` of the displayable colour with the most chroma
+/// in the direction (`a`, `b`), a unit vector. Bisection finds the largest ratio of
+/// chroma to lightness at which no linear component is negative; the lightness
+/// then makes the largest component 1.
 fn cusp(a: f64, b: f64) -> (f64, f64) {
     let at = |s: f64| oklab_to_linear([1.0, s * a, s * b]);
     let (mut low, mut high) = (0.0f64, 2.0f64);
@@ -33,12 +35,14 @@ fn cusp(a: f64, b: f64) -> (f64, f64) {
     (lightness, lightness * low)
 }
 
+/// The most chroma that is displayable at the lightness `l`. The gamut is
+/// approximated by the triangle black, cusp, white.
 fn room(l: f64, cusp: (f64, f64)) -> f64 {
     cusp.1 * (l / cusp.0).min((1.0 - l) / (1.0 - cusp.0)).clamp(0.0, 1.0)
 }
 
-/// Direction of the atmosphere's chroma, lightness of its hue's cusp, and the
-/// chroma that it asks for there.
+/// (unit direction of the atmosphere's chroma, lightness of the cusp of its hue,
+/// the atmosphere's chroma scaled to the cusp).
 pub fn atmosphere(color: Color) -> ([f64; 2], f64, f64) {
     let [l, a, b] = linear_to_oklab(linear_of(color));
     let chroma = a.hypot(b);
@@ -47,14 +51,16 @@ pub fn atmosphere(color: Color) -> ([f64; 2], f64, f64) {
     }
     let direction = [a / chroma, b / chroma];
     let cusp = cusp(direction[0], direction[1]);
-    let share = if room(l, cusp) > 1e-6 {
+    let fraction = if room(l, cusp) > 1e-6 {
         (chroma / room(l, cusp)).min(1.0)
     } else {
         0.0
     };
-    (direction, cusp.0, cusp.1 * share)
+    (direction, cusp.0, cusp.1 * fraction)
 }
 
+/// `d`, `l`: depth map and its complement; `saturation`: fraction of the saturation
+/// that desaturation left.
 pub fn colorize(s: &Colorization, linear: Rgb, d: f64, l: f64, saturation: f64) -> Rgb {
     if s.mode == ColorizationMode::Hue {
         return linear;

@@ -11,8 +11,9 @@ use bevy_comics::{ContourOperator, Contours, Form};
 
 const SOBEL: [[f64; 3]; 3] = [[-1.0, 0.0, 1.0], [-2.0, 0.0, 2.0], [-1.0, 0.0, 1.0]];
 
-/// The plane's continuation past the centre: the smaller of two slopes that
-/// agree, none where they do not; where one side is sky, the other's.
+/// Change of raw depth per tap of the plane through the centre `c`: the smaller
+/// absolute slope of both sides if their signs agree, else 0. If one side is sky,
+/// the slope of the other side.
 fn slope(before: f64, c: f64, after: f64) -> f64 {
     let (back, ahead) = (c - before, after - c);
     match (is_background(before), is_background(after)) {
@@ -84,12 +85,14 @@ pub fn response(s: &Contours, frame: &Frame, win: &Window) -> f64 {
     }
 }
 
+/// Coverage by a line, 0 to 1, for a response.
 pub fn line(s: &Contours, response: f64) -> f64 {
     let t = f64::from(s.threshold);
     let ramp = t * f64::from(s.softness).max(1e-3);
     smoothstep(t - ramp, t + ramp, response)
 }
 
+/// `depth`: D of the nearer side of the line.
 pub fn draw(s: &Contours, linear: Rgb, coverage: f64, depth: f64) -> Rgb {
     let ink = s.color.to_linear();
     let ink = [ink.red, ink.green, ink.blue].map(f64::from);
@@ -98,6 +101,8 @@ pub fn draw(s: &Contours, linear: Rgb, coverage: f64, depth: f64) -> Rgb {
     std::array::from_fn(|i| mix(linear[i], ink[i], t))
 }
 
+/// (coverage, nearest raw depth) of one sample: taps `reach` pixels around the
+/// pixel `at`, and on every second ring inside.
 fn ring_line(s: &Contours, view: &View, at: [u32; 2], reach: u32, sample: u32) -> [f64; 2] {
     let mut found = [0.0f64; 2];
     let mut r = reach;
@@ -111,7 +116,8 @@ fn ring_line(s: &Contours, view: &View, at: [u32; 2], reach: u32, sample: u32) -
     found
 }
 
-/// (coverage, D of the nearer side). `scale`: physical pixels a logical one.
+/// (coverage, D of the nearer side) of the contours at a pixel. `scale`: physical
+/// pixels per logical pixel.
 pub fn contour(s: &Contours, view: &View, x: u32, y: u32, scale: f64) -> [f64; 2] {
     let radius = (0.5 * f64::from(s.width) * scale).clamp(0.125, 64.0);
     let (whole, part) = (radius.floor() as u32, radius.fract());

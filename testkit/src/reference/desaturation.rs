@@ -6,6 +6,7 @@ use super::{
 };
 use bevy_comics::{Desaturation, Form};
 
+/// Fraction of the saturation that is left; `l`: complement of the depth map.
 pub fn saturation_left(s: &Desaturation, l: f64) -> f64 {
     let k = l.max(0.0).powf(f64::from(s.exponent));
     1.0 - f64::from(s.amount) * (1.0 - k)
@@ -14,8 +15,8 @@ pub fn saturation_left(s: &Desaturation, l: f64) -> f64 {
 pub fn desaturate(s: &Desaturation, linear: Rgb, k: f64) -> Rgb {
     match s.form {
         Form::Faithful => {
-            // f_v = t_v, f_s = t_s k, through the definition of HSV: with V and
-            // hue kept, every component keeps its place between V and V - C.
+            // Eq. 5 scales the saturation by k and keeps hue and value V. In HSV,
+            // this scales the distance of every component from V by k.
             let c = srgb_encode(linear);
             let v = largest(c);
             srgb_decode(c.map(|x| v - (v - x) * k))

@@ -1,4 +1,4 @@
-//! Twin of `lines/detect.wgsl`: the edges of a whole view.
+//! Twin of `lines/detect.wgsl`: the lines that each pixel owns.
 
 use super::{
     edge::{
@@ -10,28 +10,32 @@ use super::{
 };
 use bevy_comics::{Form, Outlines};
 
-/// The edges that belong to a pixel.
+/// The lines that a pixel owns.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Edge {
-    /// By kind (silhouette, crease, object) and side (west, east, north, south).
+    /// Whether a line runs along a side of the pixel, by kind (silhouette, crease,
+    /// object edge) and side (west, east, north, south).
     pub runs: [[bool; 4]; 3],
-    /// The pixel itself is the line, by kind.
+    /// Whether the whole pixel is line, by kind: the faithful forms.
     pub whole: [bool; 3],
+    /// Ink by kind, 0 to 1.
     pub ink: [f64; 3],
-    /// Pixels.
+    /// Half the width of the lines, physical pixels.
     pub half_width: f64,
 }
 
 const SIDES: [[i64; 2]; 4] = [[-1, 0], [1, 0], [0, -1], [0, 1]];
 
-/// Half of the softness on both sides of the limit, as documented.
+/// Ink for a response `p`. Softness 1 makes the ramp around `limit` as wide as
+/// fits into [0, 1] symmetrically.
 fn ink(limit: f32, softness: f32, p: f64) -> f64 {
     let limit = f64::from(limit);
     let half = f64::from(softness).max(1e-3) * limit.min(1.0 - limit);
     smoothstep(limit - half, limit + half, p)
 }
 
-/// Depth that goes on beyond the border as a plane would.
+/// Raw depth at a pixel. Outside the viewport it continues the plane at the
+/// border: the point reflection of the inside.
 fn depth(view: &View, x: i64, y: i64) -> f64 {
     let [x0, y0, w, h] = view.viewport.map(i64::from);
     let (bx, by) = (x.clamp(x0, x0 + w - 1), y.clamp(y0, y0 + h - 1));
@@ -46,6 +50,8 @@ fn depth(view: &View, x: i64, y: i64) -> f64 {
     (2.0 * at(bx, by) - at(mx, my)).max(0.0)
 }
 
+/// World normal of a pixel, or of the nearest one in the viewport; `None` for the
+/// sky and for a texel without a unit normal.
 fn normal(view: &View, x: i64, y: i64) -> Normal {
     let [x0, y0, w, h] = view.viewport.map(i64::from);
     let (x, y) = (
@@ -57,8 +63,8 @@ fn normal(view: &View, x: i64, y: i64) -> Normal {
     found.filter(|_| !is_background(view.depth(x, y, 0)))
 }
 
-/// `reference`: what jumps are measured against, for the largest raw depth
-/// nearby. `fade` gets D of the pixel.
+/// The lines that the pixel (`x`, `y`) owns. `scale`: physical pixels per logical
+/// pixel. `OutlineStyle` and `NoOutlines` of objects are not part of the twin.
 pub fn edge(s: &Outlines, view: &View, x: u32, y: u32, scale: f64) -> Edge {
     let [x0, y0, w, h] = view.viewport.map(i64::from);
     let (x, y) = (i64::from(x), i64::from(y));
@@ -74,6 +80,7 @@ pub fn edge(s: &Outlines, view: &View, x: u32, y: u32, scale: f64) -> Edge {
     let here = depths[2][2];
     let reference = view.jump_reference(nearest);
     let g = gradient_extremes(&depths, |a: f64, b: f64| (a - b).abs());
+    // Sides with a neighbour inside the viewport.
     let open =
         |v: [i64; 2]| (x0..x0 + w).contains(&(x + v[0])) && (y0..y0 + h).contains(&(y + v[1]));
     let jump = f64::from(s.silhouettes.unwrap_or_default().threshold) * reference;
@@ -86,7 +93,7 @@ pub fn edge(s: &Outlines, view: &View, x: u32, y: u32, scale: f64) -> Edge {
         } else {
             for (side, v) in SIDES.into_iter().enumerate() {
                 let excess = step_excess(along(v, -1), here, along(v, 1), along(v, 2));
-                // Half the jump is what a straight edge answers with.
+                // The response of a straight step is half its height.
                 let p = edge_response([0.0, 0.5 * excess], 0.5 * threshold * reference);
                 let amount = ink(k.edge_limit, k.softness, p);
                 if open(v) && amount > 0.0 && excess > 0.0 && excess >= 0.5 * (g[1] - g[0]) {
@@ -108,11 +115,11 @@ pub fn edge(s: &Outlines, view: &View, x: u32, y: u32, scale: f64) -> Edge {
         } else {
             let gn = gradient_extremes(&normals, normal_step);
             for (side, v) in SIDES.into_iter().enumerate() {
-                let fold = normal_step(n(v, 0), n(v, 1));
+                let crease = normal_step(n(v, 0), n(v, 1));
                 let amount = ink(
                     k.edge_limit,
                     k.softness,
-                    edge_response([0.0, 0.5 * fold], kn),
+                    edge_response([0.0, 0.5 * crease], kn),
                 );
                 let around = normal_step(n(v, -1), n(v, 0)).max(normal_step(n(v, 1), n(v, 2)));
                 let complete = n(v, -1).is_some() && n(v, 2).is_some();
@@ -125,8 +132,8 @@ pub fn edge(s: &Outlines, view: &View, x: u32, y: u32, scale: f64) -> Edge {
                     && joined
                     && mine
                     && complete
-                    && fold >= around
-                    && fold >= gn[1] - gn[0]
+                    && crease >= around
+                    && crease >= gn[1] - gn[0]
                 {
                     edge.runs[1][side] = true;
                     edge.ink[1] = edge.ink[1].max(amount);

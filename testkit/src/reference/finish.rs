@@ -2,12 +2,14 @@
 
 use super::{Rgb, mix, noise};
 
+/// `x`, `split`: pixels from the left edge of the viewport.
 pub fn compare(weight: f64, split: f64, original: Rgb, styled: Rgb, x: f64) -> Rgb {
     let seen = if x < split { 0.0 } else { weight };
     std::array::from_fn(|i| mix(original[i], styled[i], seen))
 }
 
-/// `None` is a view without geometry.
+/// Position of a raw depth in the range: 1 at the near end, 0 at the far end and
+/// for the sky. `ends`: raw depth of (near, far); `None` without geometry.
 pub fn range_share(ends: Option<[f64; 2]>, raw: f64) -> f64 {
     match ends {
         _ if raw == 0.0 => 0.0,
@@ -17,6 +19,7 @@ pub fn range_share(ends: Option<[f64; 2]>, raw: f64) -> f64 {
     }
 }
 
+/// Display code of the colour that stands for an object; black for id 0.
 pub fn object_color(id: u32) -> Rgb {
     if id == 0 {
         return [0.0; 3];
@@ -25,6 +28,7 @@ pub fn object_color(id: u32) -> Rgb {
     std::array::from_fn(|i| 0.2 + 0.8 * f64::from(bytes[i]) / 255.0)
 }
 
+/// Four times the difference of two colours in display codes, at most 1.
 pub fn difference(original: Rgb, styled: Rgb) -> Rgb {
     std::array::from_fn(|i| (4.0 * (styled[i] - original[i]).abs()).min(1.0))
 }

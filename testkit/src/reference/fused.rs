@@ -1,5 +1,5 @@
-//! Twin of `effect/fused.wgsl` with the effects of this crate: the whole fused pass
-//! for one pixel.
+//! Twin of `effect/fused.wgsl` with the effects of this crate: the fused pass for
+//! one pixel, without the finish and the debug views.
 
 use super::{
     Rgb, black_flats, color, colorization, contours, desaturation,
@@ -13,13 +13,14 @@ use bevy_comics::{
     Vignette,
 };
 
-/// What the pass reads: the picture, in light, and the lines.
+/// What the pass reads besides the view.
 pub struct Input<'a> {
+    /// The unstyled picture, linear RGBA by (column, row).
     pub picture: &'a dyn Fn(u32, u32) -> [f32; 4],
-    /// Size of the picture.
+    /// Size of the picture in pixels.
     pub size: [u32; 2],
     pub lines: Option<(&'a Outlines, &'a Edges)>,
-    /// Which drawing of a sketch is shown.
+    /// Number of the sketch's drawing that is shown.
     pub drawing: u32,
 }
 
@@ -29,15 +30,19 @@ impl Input<'_> {
         [r, g, b].map(color::finite)
     }
 
-    /// How much the lightness changes over a pixel, within its block of 2 x 2.
+    /// Change of the lightness over a pixel: the sum of the differences to its two
+    /// neighbours in the same quad of 2 x 2 pixels, as `fwidthFine`.
     fn change(&self, x: u32, y: u32) -> f64 {
         let at = |x, y| color::lightness(self.light(x, y));
         (at(x, y) - at(x ^ 1, y)).abs() + (at(x, y) - at(x, y ^ 1)).abs()
     }
 }
 
-/// The pixel in linear light, and how far thresholds could move it: the same
-/// pixel with every contour and flat a little more and a little less covered.
+/// The stylized pixel in linear light, at a scale factor of 1 and a sketch amount
+/// of 1.
+///
+/// `nudge` moves every threshold slightly. Two calls with opposite nudges show how
+/// far rounding at a threshold can move the colour.
 pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, nudge: f64) -> Rgb {
     let source = input.light(x, y);
     let mut linear = source;
@@ -78,8 +83,8 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
         let [coverage, near] = contours::contour(&Contours { threshold, ..*s }, view, x, y, 1.0);
         linear = contours::draw(s, linear, coverage, near);
     }
-    // Lines wider than the fused pass looks around come from a flood, and those
-    // of a sketch.
+    // Lines wider than 4 pixels come from a flood (`GATHER_REACH` in
+    // `lines/pipelines.rs`), and so do the lines of a sketch.
     let sketch = style.get::<Sketch>();
     let lookup = match (sketch, input.lines) {
         (Some(_), _) => Lookup::FourFlooded,

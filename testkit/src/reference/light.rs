@@ -3,30 +3,35 @@
 use super::smoothstep;
 use bevy_comics::CartoonLight;
 
+/// A smooth step from 0 to 1, `width` wide, with its middle at `edge`.
 pub fn edge_at(edge: f64, x: f64, width: f64) -> f64 {
     let half = (0.5 * width).max(1e-5);
     smoothstep(edge - half, edge + half, x)
 }
 
-/// The distribution of Trowbridge and Reitz over its value at the peak.
+/// The microfacet distribution of Trowbridge and Reitz (GGX) as a fraction of its
+/// peak. `roughness`: the square of the perceptual roughness.
 pub fn highlight_share(roughness: f64, n_dot_h: f64) -> f64 {
     let a2 = roughness * roughness;
     let d = |c: f64| a2 / (std::f64::consts::PI * ((1.0 - c * c) + a2 * c * c).powi(2));
     d(n_dot_h) / d(1.0)
 }
 
+/// Strength of the highlight. `width`: change of `n_dot_h` over a pixel.
 pub fn highlight(s: &CartoonLight, perceptual_roughness: f64, n_dot_h: f64, width: f64) -> f64 {
     let roughness = (perceptual_roughness * perceptual_roughness).max(0.002);
-    let share = |c: f64| highlight_share(roughness, c.clamp(0.0, 1.0));
-    let change = share(n_dot_h + 0.5 * width) - share(n_dot_h - 0.5 * width);
+    let fraction = |c: f64| highlight_share(roughness, c.clamp(0.0, 1.0));
+    let change = fraction(n_dot_h + 0.5 * width) - fraction(n_dot_h - 0.5 * width);
     let polish = (1.0 - 1.4 * perceptual_roughness).max(0.0);
     f64::from(s.highlight)
         * polish
         * polish
-        * edge_at(f64::from(s.highlight_edge), share(n_dot_h), change)
+        * edge_at(f64::from(s.highlight_edge), fraction(n_dot_h), change)
 }
 
-/// Light left at a distance squared, in rings.
+/// Attenuation of a point light at a squared distance, in rings of constant light.
+/// `brightest`: exposed light at distance 1; `pixel`: size of a pixel at the lit
+/// place, world units.
 pub fn flat_falloff(
     s: &CartoonLight,
     distance_squared: f64,

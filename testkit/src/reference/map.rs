@@ -1,33 +1,37 @@
-//! Twin of `depth/map.wgsl`: [CS] Eq. 2 to 4 from distances, in double
-//! precision.
+//! Twin of `depth/map.wgsl`: [CS] Eq. 2 to 4. The logarithmic map is computed from
+//! distances, the linear map as the exact quotient of raw depths.
 
-/// A projection, as far as depth goes.
+/// How a projection turns the view depth z into the raw depth d.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Projection {
-    /// d + offset = scale / z.
+    /// d + offset is proportional to 1 / z.
     Perspective { offset: f64 },
-    /// z = `plane_far` - d * extent.
+    /// z = `plane_far` - d * extent, world units.
     Orthographic { plane_far: f64, extent: f64 },
 }
 
-/// The depth map of a frame.
+/// What defines the depth map of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     pub projection: Projection,
-    /// Raw depths of the ends of the range; `None` for an empty view.
+    /// Raw depth of the near and the far end of the range; `None` for a view
+    /// without geometry.
     pub ends: Option<[f64; 2]>,
     pub logarithmic: bool,
-    /// As the shader has it: relative, or in raw depth.
+    /// The smallest range that is spread over [0, 1]: in perspective a fraction of
+    /// near + offset, under an orthographic projection in raw depth.
     pub floor: f64,
+    /// Distance of the sky behind D = 1, in units of the depth map.
     pub sky_gap: f64,
 }
 
+/// Whether a raw depth is sky or not a depth: 0, subnormal, negative, above 1, NaN.
 pub fn is_background(d: f64) -> bool {
     !(d >= f64::from(f32::MIN_POSITIVE) && d <= 1.0)
 }
 
 impl Frame {
-    /// A length proportional to the distance of a raw depth.
+    /// A length that is proportional to the view depth of a raw depth.
     fn z(&self, d: f64) -> f64 {
         match self.projection {
             Projection::Perspective { offset } => 1.0 / (d + offset),
@@ -42,7 +46,7 @@ impl Frame {
         }
     }
 
-    /// Whether the range is below the floor.
+    /// The floor in raw depth if the range does not exceed it, else `None`.
     fn floored(&self, near: f64, far: f64) -> Option<f64> {
         let least = match self.projection {
             Projection::Perspective { offset } => self.floor * (near + offset),
@@ -70,8 +74,8 @@ impl Frame {
                 0.0
             };
         }
-        // (z - min) / (max - min) as the exact quotient of the stored depths:
-        // differences of reciprocals would cancel, in double precision too.
+        // (z - min) / (max - min) as a quotient of raw depths: differences of
+        // reciprocals lose digits by cancellation, in double precision too.
         match self.projection {
             Projection::Perspective { offset } => {
                 (near - d) * (far + offset) / ((near - far) * (d + offset))
@@ -80,7 +84,7 @@ impl Frame {
         }
     }
 
-    /// (D, L).
+    /// (D, L): the depth map and its complement.
     pub fn depth_map(&self, d: f64) -> [f64; 2] {
         let Some([near, far]) = self.ends else {
             return [1.0, 0.0];
@@ -101,7 +105,7 @@ impl Frame {
         [map, l.clamp(0.0, 1.0)]
     }
 
-    /// The map with the sky a gap behind everything.
+    /// D as contours see it: the sky is `sky_gap` behind D = 1.
     pub fn with_sky(&self, d: f64) -> f64 {
         let Some([near, far]) = self.ends else {
             return 1.0;

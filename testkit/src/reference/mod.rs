@@ -1,6 +1,6 @@
-//! The shaders' twins in double precision, named as the WGSL files they mirror
-//! (`read.rs`: `lines/read.wgsl` and `lines/flood.wgsl`). Each is written from the
-//! definition, not from the shader.
+//! Twins of the shaders in double precision. A twin has the name of the WGSL file
+//! that it mirrors (`read.rs` mirrors `lines/read.wgsl` and `lines/flood.wgsl`). It
+//! is written from the definition, not from the shader.
 
 pub mod black_flats;
 pub mod color;

@@ -9,11 +9,13 @@ pub fn hash(x: u32) -> u32 {
     (word >> 22) ^ word
 }
 
+/// A random number in [-1, 1) for a corner of the lattice.
 fn lattice(x: i32, y: i32, seed: u32) -> f64 {
     let h = hash(x as u32 ^ hash(y as u32 ^ hash(seed)));
     f64::from(h >> 8) / f64::from(1 << 23) - 1.0
 }
 
+/// Smooth noise in [-1, 1), with one random number per unit cell.
 pub fn wave(at: [f64; 2], seed: u32) -> f64 {
     let cell = at.map(|v| v.floor() as i32);
     let t = at.map(|v| {

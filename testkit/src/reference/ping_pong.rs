@@ -1,8 +1,9 @@
-//! Twin of `depth/ping_pong.wgsl`: the paper's index arithmetic, step by step.
+//! Twin of `depth/ping_pong.wgsl`, with the index arithmetic of [CS] 3.1.
 
 use super::raw;
 
-/// [CS] 3.1 on a `width` x `height` buffer; the number of passes and the result.
+/// Reduces a buffer of `width` x `height` raw depths: (number of passes, bits of the
+/// nearest and the farthest depth if there is geometry).
 pub fn reduce(depths: &[f32], width: usize, height: usize) -> (usize, Option<[u32; 2]>) {
     let key = |x: usize, y: usize, far: bool| {
         let key = raw::key(depths[y.min(height - 1) * width + x.min(width - 1)]);
@@ -30,7 +31,8 @@ pub fn reduce(depths: &[f32], width: usize, height: usize) -> (usize, Option<[u3
             .flat_map(|y| (0..nw).map(move |x| (x, y)))
             .map(|(x, y)| {
                 // t'(2(x + i), 2y + j) in even columns, t'(2(x + i) - 1, 2y + j)
-                // in odd ones; beyond the border the last pair and row again.
+                // in odd ones. Beyond the border, the last column pair and the
+                // last row are read again.
                 let base = if x & 1 == 0 { 2 * x } else { 2 * x - 1 };
                 (0..4)
                     .map(|i| {

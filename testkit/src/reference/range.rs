@@ -2,7 +2,7 @@
 
 use super::raw;
 
-/// Bits of the nearest and the farthest depth, if there is geometry.
+/// Bits of the nearest and the farthest depth; `None` without geometry.
 pub fn scan(depths: impl IntoIterator<Item = f32>) -> Option<[u32; 2]> {
     depths
         .into_iter()

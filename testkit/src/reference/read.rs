@@ -1,5 +1,5 @@
-//! Twin of `lines/read.wgsl` and, for its result, of `lines/flood.wgsl`: the
-//! lines at a place, looked for everywhere.
+//! Twin of `lines/read.wgsl`: the lines at a place. It searches all lines, so it is
+//! also the twin of the result of `lines/flood.wgsl`.
 
 use super::{
     Rgb,
@@ -10,15 +10,19 @@ use super::{
 };
 use bevy_comics::Outlines;
 
-/// Every pixel's edge, row by row.
+/// The lines that the pixels of a target own.
 pub struct Edges {
     width: u32,
     height: u32,
+    /// Row by row.
     edges: Vec<Edge>,
+    /// Distance in pixels within which lines are searched.
     reach: i64,
 }
 
 impl Edges {
+    /// `height`: rows of the target in pixels; `scale`: physical pixels per logical
+    /// pixel.
     pub fn new(s: &Outlines, view: &View, height: u32, scale: f64) -> Self {
         let edges = (0..height)
             .flat_map(|y| (0..view.width).map(move |x| (x, y)))
@@ -44,7 +48,7 @@ impl Edges {
         inside.then(|| &self.edges[(y * i64::from(self.width) + x) as usize])
     }
 
-    /// Every line around a pixel: its owner, kinds, place and half width.
+    /// All lines within reach of a pixel.
     fn lines(&self, px: i64, py: i64) -> Vec<Line<'_>> {
         let mut lines = Vec::new();
         for y in py - self.reach..=py + self.reach {
@@ -74,9 +78,10 @@ impl Edges {
         lines
     }
 
-    /// The pixel whose line's border is nearest to the centre of this one, as a
-    /// flood knows it. Where two are as near, `nudge` takes the more or the less
-    /// inked at a place.
+    /// The result of the flood at a pixel: the owner of the line whose border is
+    /// nearest to the pixel's centre. Among owners at the same distance, a positive
+    /// `nudge` selects the one with the most ink at `at`, another one that with the
+    /// least.
     fn flooded(&self, px: i64, py: i64, at: [f64; 2], nudge: f64) -> Option<[i64; 2]> {
         let lines = self.lines(px, py);
         let centre = [px as f64 + 0.5, py as f64 + 0.5];
@@ -100,8 +105,7 @@ impl Edges {
         }
     }
 
-    /// Ink by kind at a place in pixels. Gathered lines are all lines around;
-    /// flooded ones those that the pixel knows, or between pixels the four.
+    /// Ink by kind (silhouette, crease, object edge), 0 to 1, at a place in pixels.
     pub fn ink(&self, at: [f64; 2], lookup: Lookup, nudge: f64) -> [f64; 3] {
         let (px, py) = (at[0].floor() as i64, at[1].floor() as i64);
         let mut ink = [0.0f64; 3];
@@ -136,6 +140,7 @@ impl Edges {
         ink
     }
 
+    /// The pixel of the target nearest to this one.
     fn inside(&self, x: i64, y: i64) -> [i64; 2] {
         [
             x.clamp(0, i64::from(self.width) - 1),
@@ -144,26 +149,33 @@ impl Edges {
     }
 }
 
-/// How lines are looked up.
+/// Which lines are read at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lookup {
+    /// All lines within reach.
     Gather,
+    /// The lines of one owner: the flood's result at the pixel.
     Flood,
+    /// The lines of up to four owners: the flood's results at the four pixels around
+    /// the place.
     FourFlooded,
 }
 
-/// Ink is stored in eight bits; where it hangs between two codes, `nudge` takes
-/// the one or the other.
+/// Ink after storage in eight bits. Within 0.02 codes of a tie, the sign of `nudge`
+/// selects the code.
 fn stored_ink(ink: f64, nudge: f64) -> f64 {
     let code = 255.0 * ink.clamp(0.0, 1.0);
     let undecided = 0.02 * nudge.signum() * if nudge == 0.0 { 0.0 } else { 1.0 };
     (code + undecided).round().min(255.0) / 255.0
 }
 
+/// A line along one side of its owner.
 struct Line<'a> {
     edge: &'a Edge,
     kinds: [bool; 3],
+    /// Its middle, pixels.
     at: [f64; 2],
+    /// The pixel that owns it.
     owner: [i64; 2],
 }
 
@@ -184,6 +196,7 @@ impl Line<'_> {
     }
 }
 
+/// (opacity, colour) of silhouettes, object edges and creases, in this order.
 fn strength(s: &Outlines, ink: [f64; 3]) -> [(f64, Rgb); 3] {
     let rgb = |color: bevy::color::Color| {
         let c = color.to_linear();
@@ -201,7 +214,8 @@ fn strength(s: &Outlines, ink: [f64; 3]) -> [(f64, Rgb); 3] {
     ]
 }
 
-/// The strongest line over the picture.
+/// The colour with the strongest line drawn over it. Of lines whose opacity differs
+/// by at most 0.01, the silhouette is drawn, else the object edge.
 pub fn draw(s: &Outlines, linear: Rgb, ink: [f64; 3]) -> Rgb {
     let kinds = strength(s, ink);
     let mut best = kinds[0];
@@ -213,6 +227,7 @@ pub fn draw(s: &Outlines, linear: Rgb, ink: [f64; 3]) -> Rgb {
     std::array::from_fn(|i| mix(linear[i], best.1[i], best.0))
 }
 
+/// The opacity of the strongest line.
 pub fn total(s: &Outlines, ink: [f64; 3]) -> f64 {
     strength(s, ink)
         .map(|k| k.0)

@@ -3,12 +3,15 @@
 use super::{Rgb, mix, noise::wave};
 use bevy_comics::Sketch;
 
+/// Displacement of a stroke in physical pixels. `at`: pixels from the corner of the
+/// viewport; `scale`: physical pixels per logical pixel.
 pub fn stray(s: &Sketch, at: [f64; 2], stroke: u32, drawing: u32, scale: f64) -> [f64; 2] {
     let seed = drawing * 16 + stroke * 4;
     let p = at.map(|v| v / (f64::from(s.wavelength) * scale));
     [seed, seed + 1].map(|seed| f64::from(s.jitter) * scale * wave(p, seed))
 }
 
+/// Pressure of the pen, 0 to 1, at the same place.
 pub fn pen_pressure(s: &Sketch, at: [f64; 2], stroke: u32, drawing: u32, scale: f64) -> f64 {
     let p = at.map(|v| v / (f64::from(s.wavelength) * scale) * 1.7);
     let n = wave(p, drawing * 16 + stroke * 4 + 2);

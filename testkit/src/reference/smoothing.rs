@@ -1,27 +1,26 @@
-//! Twin of `depth/smoothing.wgsl` and of the histogram of `depth/range.wgsl`,
-//! in double precision.
+//! Twin of `depth/smoothing.wgsl` and of the histogram of `depth/range.wgsl`.
 
-/// 256 bins, eight an octave of depth up to 1; the lowest and the highest take
-/// what lies beyond them.
+/// Number of bins: eight per octave of raw depth. The last one counts depth 1
+/// alone, the first one also all smaller depths.
 pub const BINS: usize = 256;
 
-/// The bin of a depth: its octave, and the eighth of the octave.
+/// The bin of a raw depth: its octave, and the eighth of the octave.
 pub fn bin_of(d: f32) -> usize {
     let d = f64::from(d);
     let octave = d.log2().floor();
     let eighth = ((d / octave.exp2() - 1.0) * 8.0).floor();
-    // Depth 1 is the first of bin 255.
+    // Bin 255 begins at depth 1.
     (255.0 + octave * 8.0 + eighth).clamp(0.0, 255.0) as usize
 }
 
-/// The depth at the far end of a bin.
+/// Raw depth at the far end of a bin.
 pub fn bin_start(bin: usize) -> f64 {
     let eighths = bin as f64 - 255.0;
     let octave = (eighths / 8.0).floor();
     octave.exp2() * (1.0 + (eighths - 8.0 * octave) / 8.0)
 }
 
-/// (bins, total) of the depths that are any.
+/// (count of each bin, total count) of the raw depths that are geometry.
 pub fn histogram(depths: impl IntoIterator<Item = f32>) -> (Vec<u32>, u32) {
     let mut bins = vec![0; BINS];
     let mut total = 0;
@@ -34,9 +33,11 @@ pub fn histogram(depths: impl IntoIterator<Item = f32>) -> (Vec<u32>, u32) {
     (bins, total)
 }
 
-/// The depths that a share of all pixels lies nearer, and farther than.
-pub fn percentiles(bins: &[u32], total: u32, share: f64, ends: [f64; 2]) -> [f64; 2] {
-    let rank = share * f64::from(total);
+/// (near, far) raw depth such that `fraction` of the counted pixels is nearer than
+/// the one and `fraction` is farther than the other. `ends`: the range without
+/// percentiles, to which the result is clamped.
+pub fn percentiles(bins: &[u32], total: u32, fraction: f64, ends: [f64; 2]) -> [f64; 2] {
+    let rank = fraction * f64::from(total);
     let find = |order: &mut dyn Iterator<Item = usize>, nearer: bool| {
         let mut passed = 0.0;
         for bin in order {
@@ -52,7 +53,7 @@ pub fn percentiles(bins: &[u32], total: u32, share: f64, ends: [f64; 2]) -> [f64
             }
             passed += count;
         }
-        panic!("a share of all is not all");
+        panic!("no pixel is left beyond the fraction {fraction}");
     };
     let [near, far] = ends;
     [
@@ -61,17 +62,23 @@ pub fn percentiles(bins: &[u32], total: u32, share: f64, ends: [f64; 2]) -> [f64
     ]
 }
 
+/// Settings, as in `RangeSmoothing`.
 #[derive(Clone, Copy, Debug)]
 pub struct Smoothing {
-    /// `None`: orthographic.
+    /// The constant that makes raw depth + offset proportional to 1 / z; `None` for
+    /// an orthographic projection.
     pub offset: Option<f64>,
     pub despike: bool,
+    /// Octaves of distance; under an orthographic projection, lengths of the range.
     pub hysteresis: f64,
+    /// Time constants in seconds.
     pub expand: f64,
     pub shrink: f64,
 }
 
 impl Smoothing {
+    /// The quantity that is smoothed: log2(raw depth + offset), or raw depth under an
+    /// orthographic projection.
     pub fn level(&self, d: f64) -> f64 {
         match self.offset {
             Some(offset) => (d + offset).log2(),
@@ -79,6 +86,7 @@ impl Smoothing {
         }
     }
 
+    /// Raw depth of a level.
     pub fn depth(&self, level: f64) -> f64 {
         let d = match self.offset {
             Some(offset) => level.exp2() - offset,
@@ -88,12 +96,14 @@ impl Smoothing {
     }
 }
 
-/// One end of the range.
+/// One end of the range, in levels.
 #[derive(Clone, Debug)]
 struct Bound {
     level: f64,
     goal: f64,
+    /// Whether the goal follows what is found.
     moving: bool,
+    /// What was found one and two frames ago.
     seen: [f64; 2],
 }
 
@@ -107,7 +117,15 @@ impl Bound {
         }
     }
 
-    fn follow(&mut self, found: f64, hysteresis: f64, way: impl Fn(f64) -> f64, s: &Smoothing) {
+    /// Advances by one frame. `fraction`: the part of the remaining difference (its
+    /// argument, signed) that is made up in this frame.
+    fn follow(
+        &mut self,
+        found: f64,
+        hysteresis: f64,
+        fraction: impl Fn(f64) -> f64,
+        s: &Smoothing,
+    ) {
         let [before, earlier] = self.seen;
         let mut three = [found, before, earlier];
         three.sort_by(f64::total_cmp);
@@ -118,7 +136,7 @@ impl Bound {
             self.goal = at;
         }
         let left = self.goal - self.level;
-        self.level += way(left) * left;
+        self.level += fraction(left) * left;
         let left = (self.goal - self.level).abs();
         if left <= hysteresis / 4.0 {
             self.moving = false;
@@ -130,14 +148,16 @@ impl Bound {
     }
 }
 
-/// A range as it is drawn, frame after frame.
+/// The range that is drawn, frame after frame.
 #[derive(Clone, Debug, Default)]
 pub struct Range {
     ends: Option<[Bound; 2]>,
 }
 
 impl Range {
-    /// Takes in what a frame shows (near and far depth) and gives what is drawn.
+    /// Advances by one frame: `found` is the range of the frame, the result the range
+    /// that is drawn, both as raw depth of (near, far). `seconds`: since the last
+    /// frame; `snap`: start anew from `found`. Without geometry nothing changes.
     pub fn step(
         &mut self,
         found: Option<[f64; 2]>,
@@ -152,7 +172,7 @@ impl Range {
                     Some(_) => s.hysteresis,
                     None => s.hysteresis * (n.goal - f.goal).abs(),
                 };
-                let way = |grows: bool| {
+                let fraction = |grows: bool| {
                     let constant = if grows { s.expand } else { s.shrink };
                     if constant > 0.0 {
                         1.0 - (-seconds / constant).exp()
@@ -160,8 +180,8 @@ impl Range {
                         1.0
                     }
                 };
-                n.follow(near, hysteresis, |left| way(left > 0.0), s);
-                f.follow(far, hysteresis, |left| way(left < 0.0), s);
+                n.follow(near, hysteresis, |left| fraction(left > 0.0), s);
+                f.follow(far, hysteresis, |left| fraction(left < 0.0), s);
             }
             ends => *ends = Some([Bound::new(near), Bound::new(far)]),
         }

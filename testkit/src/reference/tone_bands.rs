@@ -7,7 +7,8 @@ use super::{
 };
 use bevy_comics::{Form, ToneBands};
 
-/// [CL] Eq. 6, closed.
+/// [CL] Eq. 6 for one channel of the display code, with its three ranges joined at
+/// 0.33 and 0.66.
 pub fn equation_6(c: f64) -> f64 {
     match c {
         c if c < 0.33 => c / 1.5,
@@ -16,10 +17,12 @@ pub fn equation_6(c: f64) -> f64 {
     }
 }
 
-/// `softness` in physical pixels; `change` of the lightness over a pixel.
+/// The middle of the band of the lightness `y`, with a smooth step between two
+/// bands. `softness`: width of the step in physical pixels; `change`: change of the
+/// lightness over a pixel.
 pub fn band_tone(levels: f64, softness: f64, y: f64, change: f64) -> f64 {
     let half = 0.5 * (softness * change * levels).clamp(levels / 128.0, 1.0);
-    // Every border that is passed is one band more.
+    // A step is at most one band wide, so only the nearest border counts.
     let t = y * levels;
     let border = t.round().clamp(1.0, levels - 1.0);
     let below = border - 1.0;
@@ -27,6 +30,8 @@ pub fn band_tone(levels: f64, softness: f64, y: f64, change: f64) -> f64 {
     (below + 0.5 + passed) / levels
 }
 
+/// The colour at the luminance `target`, mixed with grey as far as the display needs
+/// it.
 pub fn with_luminance(linear: Rgb, target: f64) -> Rgb {
     let y = luminance(linear);
     if y < 1e-6 {
@@ -41,6 +46,7 @@ pub fn with_luminance(linear: Rgb, target: f64) -> Rgb {
     scaled.map(|c| mix(target, c, room))
 }
 
+/// `scale`: physical pixels per logical pixel.
 pub fn banded_color(s: &ToneBands, linear: Rgb, change: f64, scale: f64) -> Rgb {
     let banded = match s.form {
         Form::Faithful => srgb_decode(srgb_encode(linear).map(equation_6)),

@@ -1,5 +1,4 @@
-//! Twin of `depth/view.wgsl`: what a view gives the passes, and its depth around a
-//! pixel.
+//! Twin of `depth/view.wgsl`: the view that is drawn, and its depth around a pixel.
 
 use super::{
     map::{Frame, Projection},
@@ -7,20 +6,23 @@ use super::{
 };
 use crate::read_back::{FloatImage, IdImage};
 
-/// A view: its viewport, its depth and its depth map.
+/// The view that is drawn.
 pub struct View<'a> {
-    /// Origin and size of the viewport in pixels.
+    /// x, y, width and height of the viewport in physical pixels.
     pub viewport: [u32; 4],
+    /// Depth samples per pixel.
     pub samples: u32,
-    /// Size of the target's rows in pixels.
+    /// Width of the target in physical pixels.
     pub width: u32,
+    /// Bits of the raw depth: `samples` values per pixel, row by row.
     pub depth_bits: &'a [u32],
     pub frame: Frame,
+    /// As `DepthMap::flip`.
     pub flip: bool,
-    /// World normals, decoded.
+    /// World normals, components -1 to 1.
     pub normals: Option<&'a FloatImage>,
     pub ids: Option<&'a IdImage>,
-    /// Height of an orthographic view, world units.
+    /// Height of an orthographic view in world units.
     pub height: f64,
 }
 
@@ -30,9 +32,10 @@ impl View<'_> {
         (x0..x0 + w).contains(&x) && (y0..y0 + h).contains(&y)
     }
 
-    /// What a jump is a share of: the reciprocal of the distance of the nearest
-    /// depth around, in the buffer's units; in an orthographic view the depth
-    /// that lies between the camera and where 45 degrees show as much.
+    /// The length that jumps are measured in, as raw depth. `nearest` is the largest
+    /// raw depth nearby. Perspective: proportional to the reciprocal of its
+    /// distance. Orthographic: the distance from which a perspective view of 45
+    /// degrees has the same height.
     pub fn jump_reference(&self, nearest: f64) -> f64 {
         match self.frame.projection {
             Projection::Perspective { offset } => nearest + offset,
@@ -43,13 +46,14 @@ impl View<'_> {
         }
     }
 
+    /// Raw depth of a sample.
     pub fn depth(&self, x: u32, y: u32, sample: u32) -> f64 {
         let index = (y * self.width + x) * self.samples + sample;
         f64::from(f32::from_bits(self.depth_bits[index as usize]))
     }
 }
 
-/// (D, L), the mean of the samples.
+/// (D, L) of a pixel: the mean of its samples.
 pub fn pixel_depth(view: &View, x: u32, y: u32) -> [f64; 2] {
     let n = f64::from(view.samples);
     let maps = (0..view.samples).map(|s| view.frame.depth_map(view.depth(x, y, s)));
@@ -57,8 +61,8 @@ pub fn pixel_depth(view: &View, x: u32, y: u32) -> [f64; 2] {
     sum.map(|v| v / n)
 }
 
-/// The depths at `reach` pixels around one, and which of them lie outside the
-/// viewport.
+/// The raw depths of 3 x 3 taps `reach` pixels apart. Taps outside the viewport are
+/// read at its border and marked as missing.
 pub fn load_window(view: &View, x: u32, y: u32, reach: u32, sample: u32) -> Window {
     let [x0, y0, w, h] = view.viewport.map(i64::from);
     let (x, y, reach) = (i64::from(x), i64::from(y), i64::from(reach));
@@ -75,7 +79,7 @@ pub fn load_window(view: &View, x: u32, y: u32, reach: u32, sample: u32) -> Wind
     }
 }
 
-/// The Prewitt response of the plain depth map, the sky at its far end.
+/// Prewitt response of the depth map, slopes included. The sky is at D = 1.
 pub fn map_slope(view: &View, x: u32, y: u32) -> f64 {
     let mut frame = view.frame;
     frame.sky_gap = 0.0;

@@ -3,18 +3,19 @@
 
 use super::map::Frame;
 
-/// Depths of 3 x 3 taps, row by row, and which sides lie outside the viewport.
+/// Raw depths of 3 x 3 taps.
 #[derive(Clone, Copy, Debug)]
 pub struct Window {
+    /// Row by row.
     pub depths: [[f64; 3]; 3],
-    /// West, east, north, south.
+    /// Whether the taps to the west, east, north and south lie outside the viewport.
     pub missing: [bool; 4],
 }
 
-/// What every neighbour has over its reference, row by row, the middle zero.
+/// Difference of D between each tap and its reference, row by row; 0 in the middle.
 pub type Steps = [[f64; 3]; 3];
 
-/// The raw kernels, as matrices.
+/// Sum of the steps, weighted by a kernel.
 fn convolve(steps: &Steps, kernel: [[f64; 3]; 3]) -> f64 {
     (0..3)
         .flat_map(|r| (0..3).map(move |c| (r, c)))
@@ -28,12 +29,12 @@ fn transposed(k: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
     std::array::from_fn(|r| std::array::from_fn(|c| k[c][r]))
 }
 
-/// Both directions of a kernel.
+/// Length of the gradient: the kernel across and down.
 pub fn gradient(steps: &Steps, kernel: [[f64; 3]; 3]) -> f64 {
     convolve(steps, kernel).hypot(convolve(steps, transposed(kernel)))
 }
 
-/// The plain differences of the depth map, slopes included.
+/// Differences of D to the centre, slopes included.
 pub fn map_steps(frame: &Frame, win: &Window) -> Steps {
     let c = frame.with_sky(win.depths[1][1]);
     win.depths.map(|row| row.map(|d| frame.with_sky(d) - c))

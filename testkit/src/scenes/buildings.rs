@@ -1,4 +1,4 @@
-//! What a village is built of: houses, a church, and what stands around.
+//! Buildings and props of the village. Lengths are in metres.
 
 use bevy::prelude::*;
 
@@ -8,13 +8,15 @@ use super::{
 };
 
 pub struct House {
+    /// Width, height of the walls, and depth.
     pub size: Vec3,
+    /// Height of the roof above the walls.
     pub roof: f32,
     pub wall: [f32; 4],
     pub tiles: [f32; 4],
 }
 
-/// A house whose gable faces z, standing on the origin.
+/// A house that stands at the origin, with its gables towards +z and -z.
 pub fn house(h: &House, random: &mut Random) -> Shape {
     let mut s = Shape::default();
     let (x, y, z) = (h.size.x / 2.0, h.size.y, h.size.z / 2.0);
@@ -33,7 +35,7 @@ pub fn house(h: &House, random: &mut Random) -> Shape {
         ];
         s.polygon(&gable, h.wall);
     }
-    // The roof slabs stand out on every side.
+    // The roof overhangs the walls on every side.
     let (ex, ez, thick) = (x + 0.4, z + 0.45, 0.2);
     let drop = h.roof / x * 0.4;
     for side in [1.0f32, -1.0] {
@@ -92,7 +94,7 @@ pub fn house(h: &House, random: &mut Random) -> Shape {
         Vec3::new(cx + 0.3, ridge + 0.7, -z * 0.4 + 0.3),
         rgb(0xa0563f),
     );
-    // Door, windows and shutters, each a few centimetres proud of the wall.
+    // Door, windows and shutters, each a few centimetres in front of the wall.
     let frame = rgb(0xf3ead6);
     let glass = rgb(0x35506b);
     let shutter = random.pick(&[rgb(0x2f6f73), rgb(0x9c3d33), rgb(0x3c5c9a), rgb(0x5c7f3a)]);

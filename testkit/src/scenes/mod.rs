@@ -1,5 +1,5 @@
-//! The scenes, all made by code: each with its lights, its sky and a camera
-//! that shows it well.
+//! The built-in scenes, made by code. Each has lights, a sky and a vantage for the
+//! camera.
 
 pub mod buildings;
 pub mod mountains;
@@ -41,7 +41,7 @@ impl BuiltIn {
     }
 }
 
-/// Where a scene is best seen from.
+/// The camera of a scene.
 #[derive(Clone, Debug)]
 pub struct Vantage {
     pub eye: Vec3,
@@ -50,15 +50,15 @@ pub struct Vantage {
     pub fov: f32,
     pub near: f32,
     pub far: f32,
-    /// Where an orthographic view stands, and what it looks at.
+    /// Position and target of the orthographic view.
     pub ortho: (Vec3, Vec3),
-    /// Height of that view, world units.
+    /// Height of the orthographic view, world units.
     pub ortho_height: f32,
     pub sky: Handle<Image>,
     pub sky_brightness: f32,
 }
 
-/// What a scene is built with.
+/// What builds a scene.
 #[derive(SystemParam)]
 pub struct Stage<'w, 's> {
     pub commands: Commands<'w, 's>,
@@ -67,7 +67,7 @@ pub struct Stage<'w, 's> {
     pub images: ResMut<'w, Assets<Image>>,
 }
 
-/// Everything that belongs to the current scene; despawn these to leave it.
+/// Marks all entities of the current scene: despawn them to remove it.
 #[derive(Component, Clone, Copy, Default)]
 pub struct ScenePart;
 
@@ -81,12 +81,13 @@ impl Stage<'_, '_> {
         }
     }
 
-    /// A mesh with vertex colours in a matt material.
+    /// Spawns a mesh as a part of the scene.
     pub fn solid(&mut self, mesh: Handle<Mesh>, material: Handle<StandardMaterial>, at: Transform) {
         self.commands
             .spawn((ScenePart, Mesh3d(mesh), MeshMaterial3d(material), at));
     }
 
+    /// A rough material that leaves the colour to the vertices.
     pub fn matt(&mut self) -> Handle<StandardMaterial> {
         self.materials.add(StandardMaterial {
             perceptual_roughness: 0.95,
@@ -121,7 +122,7 @@ impl Vantage {
         })
     }
 
-    /// The same scene as an orthographic view frames it.
+    /// The same scene from the place of the orthographic view.
     pub fn orthographic_vantage(&self) -> Self {
         Self {
             eye: self.ortho.0,

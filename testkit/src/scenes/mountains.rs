@@ -1,5 +1,5 @@
-//! A large landscape: a meadow full of flowers, trees, hills and, far behind,
-//! mountains; one million vertices of ground ([CS] Figure 4).
+//! A large landscape: a meadow with flowers, trees, hills and distant mountains ([CS]
+//! Figure 4). The ground has one million vertices.
 
 use bevy::{
     light::{CascadeShadowConfigBuilder, light_consts::lux},
@@ -14,9 +14,9 @@ use super::{
     sky::Sky,
 };
 
-/// Vertices along each side of the ground: a million in all.
+/// Vertices along each side of the ground.
 const SIDE: u32 = 1000;
-/// The ground is cut into tiles, so that what is not in view is not drawn.
+/// Tiles along each side of the ground. Tiles outside the view are not drawn.
 const TILES: u32 = 10;
 /// Half the width of the world, metres.
 const REACH: f32 = 6000.0;
@@ -26,14 +26,15 @@ pub fn height(p: Vec2) -> f32 {
     let r = p.length();
     let meadow = 1.1 * noise2(p / 31.0) + 0.22 * noise2(p / 7.0);
     let hills = 34.0 * (fractal(p / 340.0 + 3.7, 4) + 0.25) * smoothstep(60.0, 420.0, r);
-    // A valley opens to the north, and the range closes it.
+    // A valley along the z axis: the mountains begin farther away there.
     let valley = smoothstep(0.05, 0.6, (p.x / r.max(1.0)).abs());
     let rise = smoothstep(700.0 + 500.0 * (1.0 - valley), 4200.0, r);
     let peaks = ridges(p / 1500.0 + Vec2::new(11.3, 5.1), 7);
     meadow + hills + rise * (120.0 + 1500.0 * peaks)
 }
 
-/// The grid is dense around the meadow and wide at the horizon.
+/// Coordinate in metres of a grid line, `t` in [0, 1]: dense around the meadow, wide at
+/// the horizon.
 fn warp(t: f32) -> f32 {
     let u = 2.0 * t - 1.0;
     REACH * u * (0.012 + 0.988 * u.abs().powf(2.1))
@@ -75,8 +76,8 @@ fn ground_color(p: Vec3, normal: Vec3) -> [f32; 4] {
     )
 }
 
-/// The tiles of the ground; together they have `SIDE` x `SIDE` vertices, plus
-/// the seams that neighbouring tiles share.
+/// The tiles of the ground. Together they have `SIDE` x `SIDE` vertices; those at the
+/// seams are in both tiles.
 pub fn ground() -> Vec<Shape> {
     let position = |i: u32, j: u32| {
         let p = Vec2::new(
@@ -162,7 +163,7 @@ pub fn broadleaf(random: &mut Random, leaf: [f32; 4]) -> Shape {
     tree
 }
 
-/// One flower: a stem with leaves, petals around an eye.
+/// One flower: a stem with leaves, and petals around a centre.
 fn flower(random: &mut Random, petal: [f32; 4]) -> Shape {
     let mut shape = Shape::default();
     let tall = random.range(0.28, 0.62);
@@ -219,7 +220,7 @@ fn meadow(random: &mut Random) -> Shape {
         .map(|i| flower(random, rgb(PETALS[i % PETALS.len()])))
         .collect();
     let grounded = |p: Vec2| Vec3::new(p.x, height(p), p.y);
-    // More and more of them towards the camera, which looks north from here.
+    // Denser towards the camera, which is at `EYE` and looks along -z.
     let scatter = |random: &mut Random, far: f32| {
         let distance = 1.1 + far * random.unit().powf(1.7);
         let across = random.range(-1.0, 1.0) * (0.9 + 0.85 * distance);
@@ -227,7 +228,7 @@ fn meadow(random: &mut Random) -> Shape {
     };
     for _ in 0..2600 {
         let p = scatter(random, 34.0);
-        // Colours grow in drifts.
+        // Flowers near each other have similar colours.
         let drift = (noise2(p / 3.1) * 0.5 + 0.5) * kinds.len() as f32;
         let kind = (drift as usize + (random.unit() * 5.0) as usize) % kinds.len();
         let size = random.range(0.7, 1.15);
@@ -303,7 +304,7 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
         let distance = 38.0 + 620.0 * random.unit().powf(1.6);
         let angle = random.range(-1.05, 1.05);
         let p = EYE.xz() + distance * Vec2::new(angle.sin(), -angle.cos());
-        // Woods with clearings, and a view through the middle.
+        // Leaves clearings, and a free view along the middle.
         if fractal(p / 120.0 + 1.7, 3) < -0.04 || (p.x - EYE.x).abs() < 0.13 * distance {
             continue;
         }

@@ -1,4 +1,4 @@
-//! Repeatable randomness and smooth noise for the scenes.
+//! Repeatable random numbers and smooth noise for the scenes.
 
 use bevy::math::{Vec2, Vec3};
 
@@ -51,11 +51,13 @@ pub fn noise3(p: Vec3) -> f32 {
     lerp(plane(z), plane(z + 1), s.z)
 }
 
+/// A plane of [`noise3`].
 pub fn noise2(p: Vec2) -> f32 {
     noise3(p.extend(0.5))
 }
 
-/// A sum of octaves, each turned so that no grid shows.
+/// Sum of octaves of noise in (-1, 1). Each octave is rotated against the one before,
+/// which hides the grid of the noise.
 pub fn fractal(p: Vec2, octaves: u32) -> f32 {
     let (mut sum, mut gain, mut q) = (0.0, 0.5, p);
     for _ in 0..octaves {
@@ -66,13 +68,13 @@ pub fn fractal(p: Vec2, octaves: u32) -> f32 {
     sum
 }
 
-/// Sharp crests in [0, 1]: octaves of folded noise, each weighted by the one
-/// before, so that detail gathers on the ridges.
+/// Sharp ridges in [0, 1.1]: a sum of octaves of `1 - |noise|`. Each octave is weighted
+/// by the one before, so that the detail is on the ridges.
 pub fn ridges(p: Vec2, octaves: u32) -> f32 {
     let (mut sum, mut gain, mut weight, mut q) = (0.0, 0.55, 1.0, p);
     for _ in 0..octaves {
-        let fold = 1.0 - noise2(q).abs() * 1.6;
-        let crest = fold.max(0.0).powi(2) * weight;
+        let ridge = 1.0 - noise2(q).abs() * 1.6;
+        let crest = ridge.max(0.0).powi(2) * weight;
         weight = (crest * 1.8).clamp(0.0, 1.0);
         sum += gain * crest;
         gain *= 0.5;

@@ -1,4 +1,4 @@
-//! Builds meshes from coloured primitives.
+//! Meshes from coloured primitives.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -22,7 +22,7 @@ pub fn rgb(hex: u32) -> [f32; 4] {
     Color::srgb_u8(r, g, b).to_linear().to_f32_array()
 }
 
-/// A colour, lighter or darker.
+/// A colour times a factor; alpha stays.
 pub fn shade(color: [f32; 4], factor: f32) -> [f32; 4] {
     [
         color[0] * factor,
@@ -55,7 +55,7 @@ impl Shape {
         self.positions.len() as u32 - 1
     }
 
-    /// A flat polygon, counter-clockwise as seen from outside.
+    /// A flat convex polygon, counter-clockwise as seen from outside.
     pub fn polygon(&mut self, corners: &[Vec3], color: [f32; 4]) {
         let normal = (corners[1] - corners[0])
             .cross(corners[corners.len() - 1] - corners[0])
@@ -91,7 +91,8 @@ impl Shape {
         }
     }
 
-    /// A cone, a cylinder, or anything between, standing on `base`.
+    /// A cone, a cylinder or a frustum that stands on `base`; `radii` at the bottom and
+    /// at the top.
     pub fn frustum(
         &mut self,
         base: Vec3,
@@ -123,7 +124,7 @@ impl Shape {
         }
     }
 
-    /// A ball whose radius is bent by `bump(direction)`.
+    /// An ellipsoid whose radius is scaled by `1 + bump(direction)`.
     pub fn blob(
         &mut self,
         centre: Vec3,
@@ -161,7 +162,7 @@ impl Shape {
         }
     }
 
-    /// Adds a copy of another shape, moved.
+    /// Adds a transformed copy of another shape.
     pub fn add(&mut self, other: &Shape, transform: Transform) {
         let affine: Affine3A = transform.compute_affine();
         let normals: Mat3A = affine.matrix3.inverse().transpose();

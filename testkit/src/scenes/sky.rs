@@ -1,5 +1,4 @@
-//! A painted sky as a cube map: a gradient, a sun and a few clouds. It has no
-//! depth, as a sky should.
+//! A painted sky as a cube map: a gradient, a sun and a few clouds.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -16,13 +15,14 @@ use super::{
     shape::{blend, rgb},
 };
 
+/// Colours are sRGB codes such as `0xc8413a`.
 pub struct Sky {
     pub zenith: u32,
     pub middle: u32,
     pub horizon: u32,
     pub ground: u32,
     pub cloud: u32,
-    /// Share of the sky under clouds, 0 to 1.
+    /// Cloudiness, 0 (no clouds) to 1.
     pub cover: f32,
     /// Direction to the sun.
     pub sun: Vec3,
@@ -46,7 +46,7 @@ impl Sky {
             smoothstep(0.0, 0.22, up),
         );
         let mut color = blend(low, rgb(self.zenith), smoothstep(0.18, 0.9, up));
-        // Clouds on a plane overhead, thinning out towards the horizon.
+        // Clouds on a plane overhead that fade out towards the horizon.
         let plane = Vec2::new(direction.x, direction.z) / (up + 0.12);
         let density = fractal(plane * 1.1 + 7.3, 5) * 0.5 + 0.5;
         let edge = 1.0 - self.cover;
@@ -61,43 +61,59 @@ impl Sky {
     }
 
     pub fn image(&self) -> Image {
-        let mut data = Vec::with_capacity((SIDE * SIDE * 6 * 8) as usize);
-        for face in 0..6 {
-            for y in 0..SIDE {
-                for x in 0..SIDE {
-                    let u = (x as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0;
-                    let v = (y as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0;
-                    let direction = match face {
-                        0 => Vec3::new(1.0, -v, -u),
-                        1 => Vec3::new(-1.0, -v, u),
-                        2 => Vec3::new(u, 1.0, v),
-                        3 => Vec3::new(u, -1.0, -v),
-                        4 => Vec3::new(u, -v, 1.0),
-                        _ => Vec3::new(-u, -v, -1.0),
-                    };
-                    // The engine looks cube maps up left-handed: z is mirrored.
-                    let direction = (direction * Vec3::new(1.0, 1.0, -1.0)).normalize();
-                    for c in self.color(direction) {
+        cube_map(SIDE, 1, |direction, _| self.color(direction))
+    }
+}
+
+/// A cube map of `side` texels with `levels` mip levels, whose linear colours
+/// depend on the direction in world space and on the level.
+pub fn cube_map(side: u32, levels: u32, color: impl Fn(Vec3, u32) -> [f32; 4]) -> Image {
+    let mut data = Vec::new();
+    for face in 0..6 {
+        for level in 0..levels {
+            let side = side >> level;
+            for y in 0..side {
+                for x in 0..side {
+                    let direction = direction_of_texel(face, x, y, side);
+                    for c in color(direction, level) {
                         data.extend(f16::from_f32(c).to_le_bytes());
                     }
                 }
             }
         }
-        let mut image = Image::new(
-            Extent3d {
-                width: SIDE,
-                height: SIDE,
-                depth_or_array_layers: 6,
-            },
-            TextureDimension::D2,
-            data,
-            TextureFormat::Rgba16Float,
-            RenderAssetUsages::RENDER_WORLD,
-        );
-        image.texture_view_descriptor = Some(TextureViewDescriptor {
-            dimension: Some(TextureViewDimension::Cube),
-            ..default()
-        });
-        image
     }
+    let size = Extent3d {
+        width: side,
+        height: side,
+        depth_or_array_layers: 6,
+    };
+    let mut image = Image::new_uninit(
+        size,
+        TextureDimension::D2,
+        TextureFormat::Rgba16Float,
+        RenderAssetUsages::RENDER_WORLD,
+    );
+    image.data = Some(data);
+    image.texture_descriptor.mip_level_count = levels;
+    image.texture_view_descriptor = Some(TextureViewDescriptor {
+        dimension: Some(TextureViewDimension::Cube),
+        ..default()
+    });
+    image
+}
+
+/// World direction to the centre of a texel of a cube map.
+pub fn direction_of_texel(face: u32, x: u32, y: u32, side: u32) -> Vec3 {
+    let u = (x as f32 + 0.5) / side as f32 * 2.0 - 1.0;
+    let v = (y as f32 + 0.5) / side as f32 * 2.0 - 1.0;
+    let direction = match face {
+        0 => Vec3::new(1.0, -v, -u),
+        1 => Vec3::new(-1.0, -v, u),
+        2 => Vec3::new(u, 1.0, v),
+        3 => Vec3::new(u, -1.0, -v),
+        4 => Vec3::new(u, -v, 1.0),
+        _ => Vec3::new(-u, -v, -1.0),
+    };
+    // The engine looks cube maps up left-handed: z is mirrored.
+    (direction * Vec3::new(1.0, 1.0, -1.0)).normalize()
 }

@@ -11,8 +11,8 @@ use super::{
     sky::Sky,
 };
 
-/// Martin Newell's profile curves (University of Utah, 1975): radius and
-/// height of the control points of the patches that stand around the axis.
+/// Martin Newell's profile curves (University of Utah, 1975): radius and height of the
+/// control points of the patches around the axis.
 const PROFILES: [[[f32; 2]; 4]; 6] = [
     // Rim, the two halves of the body, and the bottom.
     [[1.4, 2.4], [1.3375, 2.53125], [1.4375, 2.53125], [1.5, 2.4]],
@@ -24,10 +24,11 @@ const PROFILES: [[[f32; 2]; 4]; 6] = [
     [[0.2, 2.7], [0.4, 2.55], [1.3, 2.55], [1.3, 2.4]],
 ];
 
-/// A quarter circle as a cubic: the middle points lie this far along.
+/// Length of the tangents of the cubic that stands for a quarter of the unit circle.
 const QUARTER: f32 = 0.56;
 
-/// Handle and spout, one side of the plane of symmetry: rows of control points.
+/// Rows of control points of the handle and the spout, on one side of the plane of
+/// symmetry.
 const HANDLE: [[[[f32; 3]; 4]; 4]; 2] = [
     [
         [
@@ -155,7 +156,7 @@ pub fn patches() -> Vec<Patch> {
     for half in [HANDLE, SPOUT].into_iter().flatten() {
         let patch = half.map(|row| row.map(Vec3::from));
         patches.push(patch);
-        // The mirror image, its columns in the other order to face outwards.
+        // The mirror image has its columns in reverse order, to face outwards.
         let mirrored = patch.map(|row| {
             let [a, b, c, d] = row.map(|p| p * Vec3::new(1.0, -1.0, 1.0));
             [d, c, b, a]
@@ -180,7 +181,8 @@ fn surface(patch: &Patch, u: f32, v: f32) -> (Vec3, Vec3) {
     (position, along_u.cross(along_v))
 }
 
-/// The teapot, y up, standing on the origin; its body is four units across.
+/// The teapot, y up, with its bottom at the origin. Its body is four units wide.
+/// `steps`: quads along each side of a patch.
 pub fn mesh(steps: u32, color: [f32; 4]) -> Shape {
     let mut shape = Shape::default();
     let y_up = |p: Vec3| Vec3::new(p.x, p.z, -p.y);
@@ -191,8 +193,8 @@ pub fn mesh(steps: u32, color: [f32; 4]) -> Shape {
                 let (u, v) = (j as f32 / steps as f32, i as f32 / steps as f32);
                 let (position, mut normal) = surface(&patch, u, v);
                 if normal.length_squared() < 1e-10 {
-                    // A patch that shrinks to a point: the pole of the lid or
-                    // the bottom. Its neighbour knows the direction.
+                    // The patch shrinks to a point at the top of the lid and at the
+                    // bottom: a point nearby has the normal.
                     normal = surface(&patch, u.clamp(0.02, 0.98), v.clamp(0.02, 0.98)).1;
                 }
                 shape.vertex(y_up(position), y_up(normal).normalize_or(Vec3::Y), color);
@@ -247,7 +249,8 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
         Transform::from_rotation(Quat::from_rotation_y(0.5)),
     );
 
-    // A round table top: an endless floor would leave the teapot no depth.
+    // A round table top: with an endless floor, the teapot would have only a small part
+    // of the depth range.
     let mut floor = Shape::default();
     floor.frustum(
         Vec3::new(0.0, -0.6, 0.0),

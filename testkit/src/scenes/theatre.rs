@@ -1,6 +1,6 @@
-//! A toy theatre: a robot, a chick and their props under a sun, a lamp and a
-//! spot. Texture, highlight, both kinds of shadow and every kind of line are in
-//! plain sight.
+//! A toy theatre: a robot, a chick and props under a directional light, a point light
+//! and a spot light. It shows textures, highlights, both kinds of shadow and every kind
+//! of line.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -15,9 +15,9 @@ use super::{
     sky::Sky,
 };
 
-/// A texture of `width` x 1 or `width` x `height` flat texels.
+/// A texture of flat squares, `width` per row, in sRGB codes.
 fn texels(stage: &mut Stage, width: u32, colors: &[u32]) -> Handle<Image> {
-    // Texels are repeated so that filtering does not blur their borders.
+    // Texels per side of a square: filtering then blurs only a narrow border.
     const SCALE: u32 = 64;
     let height = colors.len() as u32 / width;
     let mut bytes = Vec::new();
@@ -183,7 +183,7 @@ fn chick(shop: &mut Workshop, place: Transform) {
 }
 
 fn props(shop: &mut Workshop) {
-    // Two crates, one on the other, flush in front: only their ids part them.
+    // Two stacked crates with flush sides: only their ids tell them apart.
     let plank = texels(
         shop.stage,
         4,
@@ -213,7 +213,7 @@ fn props(shop: &mut Workshop) {
         &rubber,
         at(1.35, 0.62, 1.75).with_rotation(Quat::from_euler(EulerRot::XYZ, 0.5, 0.3, 0.6)),
     );
-    // A lamp that lights what stands around it.
+    // A table lamp; its light is spawned in `spawn`.
     let brass = shop.paint(0xb98d3a, 0.35);
     let shade_material = shop.stage.materials.add(StandardMaterial {
         base_color: Color::srgb_u8(0x3f, 0x8f, 0x6b),
@@ -285,7 +285,7 @@ fn room(shop: &mut Workshop) {
     let floor = shop.textured(boards, 0.9);
     shop.put(Cuboid::new(12.0, 0.5, 8.0), &floor, at(0.0, -0.25, 0.5));
     let mut wall = Shape::default();
-    // A folding screen: creases between its leaves.
+    // A folding screen, with creases between its panels.
     let color = rgb(0xf1e3c6);
     for i in 0..6 {
         let x = -5.1 + 1.7 * i as f32;

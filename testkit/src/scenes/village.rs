@@ -1,5 +1,5 @@
-//! A village: many things at many distances, from a barrel at arm's length to a
-//! windmill on its hill.
+//! A village: many objects at many distances, from a barrel near the camera to a
+//! windmill on a hill.
 
 use bevy::{
     light::{CascadeShadowConfigBuilder, light_consts::lux},
@@ -63,7 +63,7 @@ fn ground() -> Shape {
     shape
 }
 
-/// Puts a shape on the ground.
+/// Puts a shape on the ground at (`x`, `z`), turned by `turn` radians around y.
 fn place(
     stage: &mut Stage,
     material: &Handle<StandardMaterial>,
@@ -84,7 +84,7 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     let matt = stage.matt();
 
     place(stage, &matt, ground(), 0.0, 0.0, 0.0);
-    // The road, and the square around the well: flat, a hand above the grass.
+    // The road and the square around the well are flat, 5 and 8 cm above the grass.
     let mut road = Shape::default();
     road.cuboid(
         Vec3::new(-3.4, -0.3, -120.0),

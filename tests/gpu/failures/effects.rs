@@ -1,4 +1,4 @@
-//! Effects that are not this crate's: broken ones, and what they may read.
+//! Effects of a game: broken ones, and what effects may read.
 
 use bevy::render::render_resource::ShaderType;
 use bevy_comics::{
@@ -107,8 +107,8 @@ fn small_with<E: Effect>(msaa: Msaa) -> Small {
     Small { headless, camera }
 }
 
-/// The picture passes through, the diagnostics name the effect, and other effects
-/// are drawn once it is gone.
+/// The original picture is shown, the diagnostics name the effect, and other
+/// effects are drawn once it is removed.
 fn passes_through<E: Effect>() {
     let mut small = small_with::<E>(Msaa::Off);
     small.settle();
@@ -146,13 +146,13 @@ fn an_effect_reads_normals_and_depth() {
         let mut small = small_with::<Reader>(msaa);
         small.insert(Reader::default()).settle();
         assert!(small.ran(ComicsStage::of::<Reader>()), "{msaa:?}");
-        // The range is of no use to it.
+        // It does not read the range.
         assert!(!small.ran(ComicsStage::DepthRange));
         let normals = small.normals().expect("a normal prepass");
         let (_, shown) = small.pass();
         let mut seen = 0;
         for (pixel, normal) in shown.pixels.iter().zip(&normals.pixels) {
-            // Decoded: from -1 to 1, and (-1, -1, -1) where there is none.
+            // Decoded: from -1 to 1; (-1, -1, -1) where there is no surface.
             let squared: f32 = normal[..3].iter().map(|n| n * n).sum();
             let want = if (0.5..=1.5).contains(&squared) {
                 seen += 1;
@@ -161,8 +161,8 @@ fn an_effect_reads_normals_and_depth() {
                 [0.0; 3]
             };
             for (shown, want) in pixel[..3].iter().zip(want) {
-                // The target has eight bits of the sRGB code: a step of it in light
-                // is at most 1/255 of its slope there, below 0.01.
+                // The target stores 8-bit sRGB: one step is at most 1/255 of the
+                // slope of the transfer function, below 0.01 in linear light.
                 assert!(
                     (shown - want).abs() < 0.01,
                     "{msaa:?}: {pixel:?}, {normal:?}"
@@ -173,8 +173,8 @@ fn an_effect_reads_normals_and_depth() {
     }
 }
 
-/// An effect that reads lines draws those that another asks for, and is left out
-/// where none does.
+/// An effect that reads lines gets those that another effect requests, and is
+/// left out where no effect requests any.
 #[test]
 fn an_effect_reads_lines_where_there_are_any() {
     let mut small = small_with::<Tracer>(Msaa::Off);
@@ -217,7 +217,7 @@ fn names_that_cannot_work_are_refused() {
     );
 }
 
-/// An effect is packed at a multiple of 16 bytes, whatever stands before it.
+/// Every effect is packed at a multiple of 16 bytes, whatever precedes it.
 #[test]
 fn effects_of_odd_sizes_stand_side_by_side() {
     #[derive(ShaderType, Clone, Copy)]
@@ -293,7 +293,7 @@ fn effects_of_odd_sizes_stand_side_by_side() {
     small.settle();
     let (_, shown) = small.pass();
     let [r, g, b, _] = shown.pixels[0];
-    // Half a code of an 8-bit target, in light.
+    // Half a code of an 8-bit target, in linear light.
     for (shown, want) in [(r, 0.25), (g, 0.5), (b, 0.75)] {
         assert!((shown - want).abs() < 0.01, "{:?}", shown);
     }

@@ -1,10 +1,10 @@
-//! Settings, colours and depth as they should not be.
+//! Invalid settings, invalid colours, missing depth.
 
 use super::*;
 use bevy_comics::{ComicsSystems, Creases, Outlines, Silhouettes, Sketch, ToneBands};
 use bevy_comics_testkit::studio::with_map;
 
-/// Takes the depth prepass away as soon as anyone asks for it.
+/// Removes the depth prepass as soon as it is requested.
 fn forbid_prepass(mut commands: Commands, cameras: Query<Entity, With<DepthPrepass>>) {
     for camera in &cameras {
         commands.entity(camera).remove::<DepthPrepass>();
@@ -12,7 +12,7 @@ fn forbid_prepass(mut commands: Commands, cameras: Query<Entity, With<DepthPrepa
 }
 
 #[test]
-fn failure_06_without_a_prepass_the_colour_styles_remain() {
+fn without_a_prepass_effects_without_depth_still_run() {
     let mut small = Small::new(size(), Msaa::Off);
     small.settle();
     let original = small.picture();
@@ -42,7 +42,7 @@ fn failure_06_without_a_prepass_the_colour_styles_remain() {
 }
 
 #[test]
-fn failure_08_absurd_settings_equal_their_sanitized_selves() {
+fn absurd_settings_equal_their_sanitized_selves() {
     let wild = [
         f32::NAN,
         f32::INFINITY,
@@ -119,7 +119,7 @@ fn failure_08_absurd_settings_equal_their_sanitized_selves() {
                 opacity_fade: value,
                 ..default()
             });
-        // The strokes change with time, which the comparison must not see.
+        // Strokes change with time: the comparison needs one drawing.
         let sketch = Sketch {
             wash: other,
             gamma: value,
@@ -146,7 +146,7 @@ fn failure_08_absurd_settings_equal_their_sanitized_selves() {
 }
 
 #[test]
-fn failure_09_wild_colours_stay_finite_and_where_they_are() {
+fn non_finite_colours_stay_finite_and_spread_to_no_other_pixel() {
     let mut small = Small::new(size(), Msaa::Off);
     small.insert(Hdr);
     small.style(&full_style());
@@ -176,7 +176,7 @@ fn failure_09_wild_colours_stay_finite_and_where_they_are() {
             "{name} reached the screen"
         );
         for ((read, wrote), was) in input.pixels.iter().zip(&output.pixels).zip(&calm.pixels) {
-            // Pixels that do not show the object do not change.
+            // Only pixels that show the object change.
             let ordinary = read.iter().all(|c| (0.0..=1.0).contains(c));
             if ordinary && !(name == "NaN" && read[0] == 0.0) {
                 let moved = (0..3)
@@ -189,7 +189,7 @@ fn failure_09_wild_colours_stay_finite_and_where_they_are() {
     assert_eq!(small.errors(), 0);
 }
 
-/// The faithful mode is there for comparison: it draws slopes, the default not.
+/// The faithful form draws slopes as the paper does; the default does not.
 #[test]
 fn the_default_draws_no_slopes_and_the_faithful_form_does() {
     let mut small = Small::new(size(), Msaa::Off);

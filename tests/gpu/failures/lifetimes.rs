@@ -1,10 +1,10 @@
-//! What comes, goes, and is not ready.
+//! Pipelines that are not ready, styles and cameras that come and go.
 
 use super::*;
 
-/// 5 and 18: until the pipeline is there the picture passes through unchanged.
+/// While a pipeline compiles, or has failed to, the original picture is shown.
 #[test]
-fn failure_05_18_a_picture_is_never_lost_while_a_pipeline_is_missing() {
+fn a_picture_is_never_lost_while_a_pipeline_is_missing() {
     let mut small = Small::new(size(), Msaa::Off);
     small.settle();
     let original = small.picture();
@@ -17,7 +17,7 @@ fn failure_05_18_a_picture_is_never_lost_while_a_pipeline_is_missing() {
     }
     assert_ne!(small.picture(), original);
 
-    // A broken shader: the picture passes through, and comes back when mended.
+    // A broken shader shows the original picture; a repaired one, the style.
     let styled = small.picture();
     let (id, source) = shader(&mut small, "effect/fused.wgsl");
     replace(
@@ -29,7 +29,7 @@ fn failure_05_18_a_picture_is_never_lost_while_a_pipeline_is_missing() {
     assert_eq!(
         small.picture(),
         original,
-        "a broken shader must pass the picture through"
+        "a broken shader must leave the picture as it is"
     );
     let camera = small.camera;
     assert_eq!(
@@ -62,7 +62,7 @@ fn replace(small: &mut Small, id: AssetId<Shader>, text: String) {
 }
 
 #[test]
-fn failure_14_without_a_renderer_the_plugin_does_nothing() {
+fn without_a_renderer_the_plugin_does_nothing() {
     let mut app = App::new();
     app.add_plugins((MinimalPlugins, ComicsPlugin));
     let mut with_assets = App::new();
@@ -85,7 +85,7 @@ fn failure_14_without_a_renderer_the_plugin_does_nothing() {
 }
 
 #[test]
-fn failure_15_nothing_stale_runs() {
+fn a_removed_style_and_an_inactive_camera_run_nothing() {
     let mut small = Small::new(size(), Msaa::Off);
     small.settle();
     let original = small.picture();
@@ -117,8 +117,8 @@ fn failure_15_nothing_stale_runs() {
 
     small.style(&full_style());
     small.settle();
-    // The component is edited: one that is replaced on a live camera has no
-    // target until its projection changes, styled or not (Bevy 0.19.1).
+    // Edits the component. In Bevy 0.19.1 a `Camera` that is replaced has no
+    // target until its projection changes, with or without a style.
     let activate = |small: &mut Small, is_active| {
         small
             .world()
@@ -162,7 +162,7 @@ fn failure_15_nothing_stale_runs() {
 }
 
 #[test]
-fn failure_15_views_that_come_and_go_leave_no_buffers() {
+fn views_that_come_and_go_leave_no_buffers() {
     let mut small = styled(Msaa::Off);
     let buffers = |small: &Small| {
         let world = small.headless.app.sub_app(RenderApp).world();

@@ -1,5 +1,4 @@
-//! How such plugins fail: every case that must hold from the first version, by
-//! its number in the list.
+//! Failures that post-processing plugins are known for, one test for each.
 
 mod effects;
 mod inputs;
@@ -40,7 +39,7 @@ fn styled(msaa: Msaa) -> Small {
     small
 }
 
-/// Share of pixels that differ by more than a code.
+/// Fraction of the pixels that differ by more than one display code.
 fn changed(a: &image::RgbaImage, b: &image::RgbaImage) -> f64 {
     assert_eq!(a.dimensions(), b.dimensions());
     let differs = |(p, q): (&image::Rgba<u8>, &image::Rgba<u8>)| {

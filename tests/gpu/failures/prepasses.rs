@@ -1,4 +1,4 @@
-//! Prepasses that this crate asks for, and when it takes them back.
+//! Prepasses: when this crate inserts and removes them.
 
 use std::time::Duration;
 
@@ -17,7 +17,7 @@ fn remove<B: Bundle>(small: &mut Small) {
     small.world().entity_mut(camera).remove::<B>();
 }
 
-/// An app whose pipelines compile while frames are drawn, as a game's do.
+/// An app whose pipelines compile in the background, as in a game.
 fn in_background() -> Small {
     Small::with(
         HeadlessOptions {
@@ -39,7 +39,7 @@ fn is_compiling(small: &Small) -> bool {
     diagnostics.is_compiling(small.camera)
 }
 
-/// Steps until the look is complete and the picture has stood still.
+/// Renders until the style is complete and the picture no longer changes.
 fn still(small: &mut Small) -> image::RgbaImage {
     small.headless.step(2);
     let mut last = small.picture();
@@ -57,9 +57,9 @@ fn still(small: &mut Small) -> image::RgbaImage {
     panic!("the picture does not come to rest");
 }
 
-/// From a look that reads depth to one that does not: the first look stays until
-/// the pipeline of the second is there. Its prepass used to go at once, which
-/// showed the bare picture.
+/// A change from a style that reads depth to one that does not: the first is drawn
+/// until the pipeline of the second is ready. Regression: the prepass was removed
+/// at once, and the original picture was shown.
 #[test]
 fn a_look_keeps_its_prepass_until_the_next_one_is_compiled() {
     let mut small = in_background();
@@ -89,7 +89,7 @@ fn a_look_keeps_its_prepass_until_the_next_one_is_compiled() {
     assert_eq!(small.errors(), 0);
 }
 
-/// The normals of creases stay as long as a look that draws them.
+/// The normal prepass stays as long as creases are drawn.
 #[test]
 fn creases_keep_their_normals_until_the_next_look_is_compiled() {
     let mut small = in_background();
@@ -105,8 +105,8 @@ fn creases_keep_their_normals_until_the_next_look_is_compiled() {
         width: 3.0,
         ..default()
     });
-    // Without the prepass the engine compiles its own pipelines anew, and leaves
-    // the meshes out until they are there: that is not of this crate.
+    // Without the prepass the engine compiles its mesh pipelines again and draws
+    // no mesh until they are ready. This crate has no influence on that.
     let mut frames = vec![];
     for _ in 0..4000 {
         step(&mut small);
@@ -127,8 +127,8 @@ fn creases_keep_their_normals_until_the_next_look_is_compiled() {
     assert!(!has::<NormalPrepass>(&small) && has::<DepthPrepass>(&small));
 }
 
-/// A prepass that something of the game's requires stays when the style goes. It
-/// used to be taken away, and the engine panicked.
+/// A prepass that a component of the game requires stays when the style is
+/// removed. Regression: it was removed, and the engine panicked.
 #[test]
 fn a_prepass_that_ambient_occlusion_requires_stays() {
     let mut small = Small::new(size(), Msaa::Off);
@@ -142,14 +142,15 @@ fn a_prepass_that_ambient_occlusion_requires_stays() {
     small.settle();
     assert!(has::<DepthPrepass>(&small) && has::<NormalPrepass>(&small));
     assert_eq!(small.errors(), 0);
-    // Without it, nobody needs what this crate has put there.
+    // Without that component nothing needs the prepass that this crate inserted.
     remove::<ScreenSpaceAmbientOcclusion>(&mut small);
     small.settle();
     assert!(!has::<DepthPrepass>(&small) && !has::<NormalPrepass>(&small));
     assert_eq!(small.errors(), 0);
 }
 
-/// What the game inserts itself is the game's, also where this crate was first.
+/// A prepass that the game inserts is never removed, even if this crate had
+/// inserted it before.
 #[test]
 fn a_prepass_that_the_game_inserts_later_stays() {
     let mut small = Small::new(size(), Msaa::Off);
@@ -161,18 +162,18 @@ fn a_prepass_that_the_game_inserts_later_stays() {
     assert!(has::<DepthPrepass>(&small));
 }
 
-/// Mean difference of two pictures, display codes.
+/// Mean difference of two pictures in display codes.
 fn mean_apart(a: &image::RgbaImage, b: &image::RgbaImage) -> f64 {
     let codes = a.as_raw().iter().zip(b.as_raw());
     codes.map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / a.as_raw().len() as f64
 }
 
-/// A switch of style keeps the state of the smoothed range, and while the new
-/// pipeline compiles nothing is allocated.
+/// A change of style keeps the state of the smoothed range and allocates nothing
+/// while the new pipeline compiles.
 #[test]
 fn a_switch_keeps_the_range_and_allocates_nothing_while_it_compiles() {
     let mut small = in_background();
-    // A range that takes minutes to follow.
+    // The smoothed range needs minutes to follow.
     let slow = DepthMap {
         smoothing: Some(RangeSmoothing {
             expand: 60.0,
@@ -183,7 +184,7 @@ fn a_switch_keeps_the_range_and_allocates_nothing_while_it_compiles() {
     };
     small.insert((slow, Desaturation::default()));
     let before_move = still(&mut small);
-    // The camera backs away: the range lags, and everything is far.
+    // The camera moves back: the range lags, so everything is far.
     let camera = small.camera;
     let move_back = |small: &mut Small| {
         let mut transform = small.world().get_mut::<Transform>(camera).expect("placed");
@@ -217,8 +218,8 @@ fn a_switch_keeps_the_range_and_allocates_nothing_while_it_compiles() {
         if is_compiling(&small) {
             waited += 1;
             let now = counts(&small);
-            // The picture's own way to the test, and the engine's, may hold a
-            // few more for a frame or two.
+            // Reading the picture back, and the engine, may hold a few more
+            // buffers for a frame or two.
             assert!(
                 now.0 <= allocated.0 + 4 && now.1 <= allocated.1 + 1,
                 "{allocated:?} grew to {now:?} after {waited} frames"
@@ -229,7 +230,7 @@ fn a_switch_keeps_the_range_and_allocates_nothing_while_it_compiles() {
     remove::<ToneBands>(&mut small);
     small.headless.step(6);
     let after = small.picture();
-    // The look of a range found anew, for comparison.
+    // For comparison: the picture with a range that was just found.
     small.insert(DepthMap {
         smoothing: None,
         ..slow
@@ -244,8 +245,8 @@ fn a_switch_keeps_the_range_and_allocates_nothing_while_it_compiles() {
     );
 }
 
-/// A style that goes before its first pipeline is there leaves nothing behind. Its
-/// requests used to stay, and were drawn once the pipeline came.
+/// A style that is removed before its first pipeline is ready leaves nothing
+/// behind. Regression: its requests stayed and were drawn when the pipeline came.
 #[test]
 fn a_style_that_goes_before_its_pipeline_comes_leaves_nothing() {
     let mut small = in_background();
@@ -266,7 +267,7 @@ fn a_style_that_goes_before_its_pipeline_comes_leaves_nothing() {
     assert!(!diagnostics.cameras.contains_key(&small.camera));
 }
 
-/// A prepass that the game takes away comes back while a style reads it.
+/// A prepass that the game removes is inserted again while a style reads it.
 #[test]
 fn a_prepass_that_is_taken_away_comes_back() {
     let mut small = Small::new(size(), Msaa::Off);
@@ -276,14 +277,14 @@ fn a_prepass_that_is_taken_away_comes_back() {
     small.settle();
     assert!(has::<DepthPrepass>(&small));
     assert_eq!(small.picture(), inked);
-    // And it is still this crate's to take back.
+    // This crate still removes it when no style reads it.
     remove::<Contours>(&mut small);
     small.settle();
     assert!(!has::<DepthPrepass>(&small));
 }
 
-/// Ids are drawn in the first frame that reads them: with compiled pipelines the
-/// first picture is the last one.
+/// Ids are drawn in the first frame that reads them: once pipelines are compiled,
+/// the first picture equals the last one.
 #[test]
 fn the_first_frame_with_ids_has_them() {
     let mut small = Small::new(size(), Msaa::Off);

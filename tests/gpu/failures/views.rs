@@ -1,9 +1,9 @@
-//! Samples, formats, sizes, cameras, and the company of other passes.
+//! Cameras: multisampling, formats, sizes, several on one target, other passes.
 
 use super::*;
 
 #[test]
-fn failure_01_msaa_is_on() {
+fn a_multisampled_camera_is_styled() {
     let mut small = styled(Msaa::Sample4);
     assert!(small.ran(ComicsStage::Stylize) && small.ran(ComicsStage::DepthRange));
     let with = small.picture();
@@ -14,7 +14,7 @@ fn failure_01_msaa_is_on() {
 }
 
 #[test]
-fn failure_02_hdr_is_toggled_and_targets_differ() {
+fn hdr_can_be_toggled_and_a_target_may_store_linear_colour() {
     let mut small = styled(Msaa::Off);
     let ldr = small.picture();
     small.insert(Hdr).settle();
@@ -38,7 +38,7 @@ fn failure_02_hdr_is_toggled_and_targets_differ() {
 }
 
 #[test]
-fn failure_04_cameras_on_one_target_have_ranges_of_their_own() {
+fn each_camera_on_a_shared_target_has_its_own_range() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
         two_cameras_on_one_target(msaa);
     }
@@ -90,7 +90,7 @@ fn two_cameras_on_one_target(msaa: Msaa) {
     assert!(diagnostics.ran(second, ComicsStage::of::<Desaturation>()));
     assert!(!diagnostics.ran(small.camera, ComicsStage::of::<Desaturation>()));
     assert_eq!(small.errors(), 0);
-    // The first camera's half is what it is alone.
+    // The first camera draws its half as it does alone.
     let both = small.picture();
     small.world().despawn(second);
     small.settle();
@@ -101,7 +101,7 @@ fn two_cameras_on_one_target(msaa: Msaa) {
 }
 
 #[test]
-fn failure_12_every_size_every_frame() {
+fn a_target_may_have_another_size_in_every_frame() {
     let mut small = styled(Msaa::Off);
     for size in [
         UVec2::new(1, 1),
@@ -126,7 +126,7 @@ fn failure_12_every_size_every_frame() {
 }
 
 #[test]
-fn failure_13_a_zero_viewport_adds_no_error_of_ours() {
+fn an_empty_viewport_adds_no_render_error() {
     let run = |style: bool| {
         let mut small = Small::new(size(), Msaa::Off);
         if style {
@@ -146,7 +146,7 @@ fn failure_13_a_zero_viewport_adds_no_error_of_ours() {
 }
 
 #[test]
-fn failure_20_deferred_rendering_is_styled() {
+fn a_deferred_camera_looks_like_a_forward_one() {
     let mut small = Small::new(size(), Msaa::Off);
     small.style(&full_style());
     small.settle();
@@ -167,10 +167,11 @@ fn failure_20_deferred_rendering_is_styled() {
 }
 
 #[test]
-fn failure_22_it_works_beside_every_post_process() {
+fn styles_work_beside_the_engines_post_processes() {
+    let mut small = Small::new(size(), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         for hdr in [false, true] {
-            let mut small = Small::new(size(), msaa);
+            small.restart(msaa);
             small.style(&full_style());
             if hdr {
                 small.insert((Hdr, bevy::post_process::bloom::Bloom::NATURAL));
@@ -206,8 +207,8 @@ fn failure_22_it_works_beside_every_post_process() {
 }
 
 #[test]
-fn failure_22_the_passes_have_an_order() {
-    // Every ambiguity of the render schedule that names a system of ours.
+fn no_pass_of_this_crate_has_an_ambiguous_order() {
+    // No ambiguity of the schedule names a system of this crate.
     let mut small = Small::new(size(), Msaa::Off);
     small.style(&full_style());
     small.settle();
@@ -245,7 +246,7 @@ fn failure_22_the_passes_have_an_order() {
 }
 
 #[test]
-fn failure_23_cameras_that_cannot_be_styled_are_left_alone() {
+fn cameras_that_cannot_be_styled_are_left_alone() {
     let mut small = Small::new(size(), Msaa::Off);
     let target: RenderTarget = small.headless.render_target();
     let flat = small

@@ -1,4 +1,4 @@
-//! Outlines, tone bands, sketch and the cartoon's light against their twins.
+//! Lines, tone bands, sketch and cartoon light against their twins.
 
 use super::*;
 use bevy_comics::{CartoonLight, Form, Sketch, ToneBands};
@@ -6,7 +6,8 @@ use bevy_comics_testkit::reference::{edge, light, sketch, tone_bands};
 
 const EDGE: &str = "#import bevy_comics::lines::edge::{gradient, gradient_extremes, edge_response, normal_extremes, component_response, step_excess, line_coverage, line_offset, pack_edge, unpack_edge, Edge}";
 
-/// 25 depths: steps, ramps, and anything.
+/// A window of 5 x 5 depths, row by row (random, a step or a ramp), then `k` of Eq. 2
+/// and an unused element.
 fn window() -> impl Strategy<Value = [f32; 27]> {
     let value = prop_oneof![4 => 0.0f32..=1.0, 1 => select(vec![0.0f32, 1.0, 0.5])];
     (vec(value, 25), 0u8..3, 1e-4f32..0.5, 1e-3f32..1.0).prop_map(|(values, kind, k, height)| {
@@ -39,8 +40,8 @@ fn gradient_and_response_are_equations_1_and_2() {
             let w: [[f64; 5]; 5] =
                 std::array::from_fn(|r| std::array::from_fn(|c| f64::from(row[5 * r + c])));
             let g = edge::gradient_extremes(&w, |a: f64, b: f64| (a - b).abs());
-            // Eight weighted differences of numbers up to one: 12 roundings of
-            // half an ulp each, over eight.
+            // A sum of at most 12, divided by eight: 12 roundings, each half an ulp of
+            // a number below 16, which is 2^-24 after the division.
             let step = 12.0 * 2f64.powi(-24);
             assert!(
                 (f64::from(result[0]) - g[0]).abs() <= step,
@@ -52,7 +53,8 @@ fn gradient_and_response_are_equations_1_and_2() {
             );
             let k = f64::from(row[25]);
             let p = edge::edge_response(g, k);
-            // p = r^2, so dp = 2 r dr with r up to 1 where it counts.
+            // p = r^2, so dp = 2 r dr, with r at most 1 and dr the error of both
+            // extremes over k.
             let slack = (2.0 * 2.0 * step / k).max(4.0 * 2f64.powi(-23));
             assert!(
                 (f64::from(result[2]) - p).abs() <= slack,
@@ -67,7 +69,8 @@ fn gradient_and_response_are_equations_1_and_2() {
     });
 }
 
-/// An axis ramp answers with its slope, a plane with no edge: the weights.
+/// Property of the weights of Eq. 1: the gradient of a ramp along an axis is its slope
+/// everywhere, so that a plane has no edge response.
 #[test]
 fn a_ramp_answers_with_its_slope_and_a_plane_with_no_edge() {
     for slope in [1e-5, 0.01, 0.2] {
@@ -78,7 +81,7 @@ fn a_ramp_answers_with_its_slope_and_a_plane_with_no_edge() {
             (g[0] - slope).abs() < 1e-15 && (g[1] - slope).abs() < 1e-15,
             "{g:?}"
         );
-        // A step of height h answers with h / 2 on the columns beside it.
+        // The response of a step of height h is h / 2.
         let step: [[f64; 5]; 5] =
             std::array::from_fn(|_| std::array::from_fn(|c| if c > 2 { slope } else { 0.0 }));
         let g = edge::gradient_extremes(&step, |a: f64, b: f64| (a - b).abs());
@@ -86,7 +89,7 @@ fn a_ramp_answers_with_its_slope_and_a_plane_with_no_edge() {
     }
 }
 
-/// Nine by nine degrees of freedom: unit normals, some missing.
+/// Windows of 5 x 5 random unit normals, one in twelve of them missing.
 #[test]
 fn creases_are_their_twin_in_both_forms() {
     let row = (
@@ -144,7 +147,8 @@ fn creases_are_their_twin_in_both_forms() {
 
 #[test]
 fn a_turned_scene_has_the_same_measured_creases() {
-    // Faithful creases are per component and depend on the axes: the design.
+    // Faithful creases are computed for each component, so they depend on the axes by
+    // design.
     let turn = |n: [f64; 3], a: f64| {
         [
             n[0] * a.cos() - n[1] * a.sin(),
@@ -152,7 +156,7 @@ fn a_turned_scene_has_the_same_measured_creases() {
             n[2],
         ]
     };
-    let fold = |a: f64| -> [[edge::Normal; 5]; 5] {
+    let crease = |a: f64| -> [[edge::Normal; 5]; 5] {
         std::array::from_fn(|_| {
             std::array::from_fn(|c| {
                 let n = if c > 2 {
@@ -164,20 +168,21 @@ fn a_turned_scene_has_the_same_measured_creases() {
             })
         })
     };
-    let g0 = edge::gradient_extremes(&fold(0.0), edge::normal_step);
-    let p0 = edge::component_response(&fold(0.0), 1.0);
+    let g0 = edge::gradient_extremes(&crease(0.0), edge::normal_step);
+    let p0 = edge::component_response(&crease(0.0), 1.0);
     let mut moved = 0.0f64;
     for k in 1..12 {
         let a = f64::from(k) * 0.13;
-        let g = edge::gradient_extremes(&fold(a), edge::normal_step);
+        let g = edge::gradient_extremes(&crease(a), edge::normal_step);
         assert!((g[1] - g0[1]).abs() < 1e-12, "{a}: {g:?}");
-        moved = moved.max((edge::component_response(&fold(a), 1.0) - p0).abs());
+        moved = moved.max((edge::component_response(&crease(a), 1.0) - p0).abs());
     }
     assert!(
         moved > 0.05,
-        "the faithful form is not supposed to be invariant: {moved}"
+        "the faithful form should depend on the axes: {moved}"
     );
-    // A fold of 60 degrees: sin(30 degrees) is the full response.
+    // A crease of 60 degrees: the response is sin(30 degrees), which is `k` of the
+    // angle 60 degrees.
     assert!((g0[1] - g0[0] - 0.5).abs() < 1e-12, "{g0:?}");
 }
 
@@ -216,7 +221,7 @@ fn a_line_covers_what_it_should_and_packs_without_loss() {
     });
 }
 
-/// The width of a line is the sum of what it covers: exact at every width.
+/// Property: the coverage of all pixels across a line adds up to its width.
 #[test]
 fn coverage_adds_up_to_the_width() {
     for k in 1..=64 {
@@ -277,7 +282,7 @@ fn tone_bands_are_their_twin() {
             if codes_apart(result, at(0.0)) <= 1.0 {
                 continue;
             }
-            // A step between bands, within the rounding of the lightness.
+            // The lightness lies at a step between two bands, within its rounding.
             let apart = codes_apart([0, 1, 2, 0].map(|i: usize| at(1e-5)[i] as f32), at(-1e-5));
             assert!(apart > 1.0, "{row:?}: {result:?}, {:?}", at(0.0));
             undecided.set(undecided.get() + 1);
@@ -295,8 +300,8 @@ fn equation_6_is_closed_monotone_and_makes_white_0_83() {
     let codes: Vec<f64> = (0..=255)
         .map(|c| tone_bands::equation_6(f64::from(c) / 255.0))
         .collect();
-    // The printed ranges leave out codes 85, 86, 169 and 170: here every code
-    // has a tone.
+    // The printed ranges omit the codes 85, 86, 169 and 170. Here every code has a
+    // tone, and tones increase strictly.
     assert!(codes.windows(2).all(|w| w[1] > w[0]), "{codes:?}");
     assert!((codes[255] - 0.83).abs() < 1e-12);
     assert!((tone_bands::equation_6(0.5) - 0.415).abs() < 1e-12);
@@ -310,7 +315,7 @@ fn the_levels_are_as_many_as_asked_and_keep_the_chroma() {
             softness: 0.0,
             ..ToneBands::default()
         };
-        // Away from the steps, which span a code on both sides.
+        // Leaves out lightnesses within a code of a step.
         let off_step = |v: &f64| {
             let t = v * f64::from(levels);
             (t - t.round()).abs() > f64::from(levels) / 255.0
@@ -396,8 +401,8 @@ fn the_sketch_is_its_twin() {
             let at = [row[0], row[1]].map(f64::from);
             let (stroke, drawing) = (row[2] as u32, row[3] as u32);
             let want = sketch::stray(&s, at, stroke, drawing, 1.0);
-            // The place in waves has 24 bits: an ulp of up to 1000 waves, on a
-            // curve no steeper than 3 a wave.
+            // The position is at most 1700 wavelengths and is rounded to 24 bits; the
+            // noise changes by at most 3 per wavelength.
             let slack = 3.0 * 1700.0 * 2f64.powi(-23) * (1.0 + f64::from(row[4]));
             for i in 0..2 {
                 assert!(
@@ -444,12 +449,13 @@ fn the_cartoons_light_is_its_twin() {
                 falloff: row[7],
                 ..CartoonLight::default()
             };
-            // 1 - cos^2 loses what cos^2 rounds away: 2^-23 over a^2, twice.
-            let share = light::highlight_share(r[0], r[1]);
+            // The rounding of cos^2, at most 2^-23, is relative to a denominator of at
+            // least roughness^2, and the quotient is squared: twice that, times four.
+            let fraction = light::highlight_share(r[0], r[1]);
             let slack = (8.0 * 2f64.powi(-23) / (r[0] * r[0])).min(1.0);
             assert!(
-                (f64::from(result[0]) - share).abs() <= slack.max(1e-6),
-                "{row:?} {result:?} {share}"
+                (f64::from(result[0]) - fraction).abs() <= slack.max(1e-6),
+                "{row:?} {result:?} {fraction}"
             );
             let close = |got: f32, want: [f64; 3], what: &str| {
                 let [want, low, high] = want;

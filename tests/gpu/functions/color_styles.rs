@@ -1,4 +1,4 @@
-//! Colour conversions and the styles that change colour.
+//! Colour conversions and the effects that change colour.
 
 use super::*;
 
@@ -25,9 +25,9 @@ fn the_transfer_function_and_oklab_are_their_definitions() {
             for (k, row) in rows.iter().enumerate() {
                 let c = rgb(row);
                 for i in 0..3 {
-                    // pow() is exp2(y log2 x): its relative error is that of the
-                    // logarithm times the exponent of the result, 2^-16 is far
-                    // below a quarter of a code.
+                    // pow(x, y) is exp2(y * log2(x)): its relative error is ln 2 times
+                    // the error of the exponent, about 2^-16. A quarter of a code is
+                    // 2^-10.
                     let close = |got: f32, want: f64| {
                         (f64::from(got) - want).abs() <= 2e-5 * want.abs().max(0.05)
                     };
@@ -93,8 +93,8 @@ fn hue_and_its_color_are_inverse() {
             for (row, result) in rows.iter().zip(gpu().evaluate(COLOR, body, rows)) {
                 let twin = color::hue_color(color::hue_of(rgb(row)));
                 for i in 0..3 {
-                    // The hue has the error of its quotient, six times that in
-                    // the colour; 1e-5 is 1/400 of a code.
+                    // The error of the hue is that of a quotient, and the colour
+                    // changes six times as fast as the hue. 1e-5 is 1/400 of a code.
                     assert!(
                         (f64::from(result[i]) - twin[i]).abs() < 1e-5,
                         "{row:?}: {result:?}, {twin:?}"
@@ -208,7 +208,7 @@ fn colorization_is_its_twin_and_faithful_greys_stay_grey() {
             },
         );
     for_batches(row, |rows| {
-        // The shader's settings, from the colour, as the twin derives them.
+        // `packed` holds what the shader takes; the twin derives it from the colour.
         let settings: Vec<Colorization> = rows
             .iter()
             .map(|row| Colorization {
@@ -303,8 +303,8 @@ fn dark_areas_are_their_twin() {
                 slope: None,
             };
             let dark = black_flats::dark_area(&s, rgb(row), f64::from(row[6]));
-            // The value is encoded to 2e-5; a ramp of width 2 f t turns that
-            // into at most 1.5 * 2e-5 / (2 f t).
+            // The encoded value has an error of 2e-5. `threshold` is half the width of
+            // the ramp, whose steepest slope is 0.75 / threshold.
             let threshold =
                 f64::from(row[3] * row[4]) * (1.0 - f64::from(row[5]) * (1.0 - f64::from(row[6])));
             if threshold > 1e-3 {

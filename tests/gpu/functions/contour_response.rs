@@ -1,4 +1,4 @@
-//! The contour operators.
+//! The contour operators against their twins.
 
 use super::*;
 
@@ -17,7 +17,7 @@ fn every_operator_answers_as_its_twin() {
         .prop_map(
             |((near, ratio), operator, faithful, missing, (a, b, c, d, e), (g, h, k, l), plane)| {
                 let far = near * ratio;
-                // Fractions of the range; below zero is sky.
+                // `t` is a fraction of the range, or negative for the sky.
                 let mut at = |t: f32| {
                     if t < 0.0 {
                         0.0
@@ -87,9 +87,9 @@ fn every_operator_answers_as_its_twin() {
                 missing: [bits & 1 != 0, bits & 2 != 0, bits & 4 != 0, bits & 8 != 0],
             };
             let want = contours::response(&s, &frame, &win);
-            // Rounding the plane's continuation moves D by ulp(d) dD/dd, at most
-            // 2^-23 near / (near - far) * near / far at the far end; twelve
-            // weighted taps.
+            // Rounding the depth of the continued plane by an ulp of `near` moves D by
+            // at most 2^-23 near / (near - far) * near / far. Twice that, for a sum of
+            // weights of at most twelve.
             let [near, far] = ends;
             let tolerance = 12.0 * 2f64.powi(-22) * near / (near - far) * (near / far).max(1.0)
                 + 12.0 * 2f64.powi(-22);
@@ -104,8 +104,8 @@ fn every_operator_answers_as_its_twin() {
 
 #[test]
 fn no_plane_has_a_contour_at_any_angle() {
-    // Raw depth affine in the pixel, from face-on to grazing, over a range of
-    // 1 : 1000: the plane-aware operators answer rounding, not slope.
+    // Raw depth of planes, affine in the pixel, from face-on to grazing, in a range of
+    // 1 : 1000. The response of the corrected form is rounding alone.
     let rows: Vec<[f32; 10]> = (0..2000)
         .map(|k| {
             let (sx, sy) = (

@@ -1,11 +1,12 @@
-//! The depth map and its differences.
+//! The depth map and its differences against their twins.
 
 use super::*;
 
 const MAP: &str = "#import bevy_comics::depth::map::{DepthFrame, depth_map, depth_step}";
 const FRAME: &str = "let f = DepthFrame(i(0u), i(1u), i(2u), i(3u), i(4u), i(5u), i(6u), u(7u));";
 
-/// near, far, offset, floor, `plane_far`, extent, gap, flags, and two depths.
+/// The fields of `DepthFrame` (near, far, offset, floor, `plane_far`, extent,
+/// `sky_gap`, flags), then two raw depths.
 type MapRow = [f32; 10];
 
 fn frame_of(row: &MapRow) -> Frame {
@@ -28,7 +29,7 @@ fn frame_of(row: &MapRow) -> Frame {
     }
 }
 
-/// Ranges from the table of extreme cases, by near plane and distances.
+/// Extreme ranges: near plane, nearest and farthest distance.
 fn perspective_rows(logarithmic: bool) -> impl Strategy<Value = MapRow> {
     let ranges = select(vec![
         (0.1, 0.1, 1e6),
@@ -50,8 +51,8 @@ fn perspective_rows(logarithmic: bool) -> impl Strategy<Value = MapRow> {
             f64,
             bool,
         )| {
-            // With an offset a the far plane is at plane (1 + a) / a: ranges
-            // beyond it are seen by an infinite projection.
+            // A projection with the offset a has its far plane at plane * (1 + a) / a.
+            // Ranges beyond that use an infinite projection, with the offset 0.
             let offset = if offset * far < plane * (1.0 + offset) {
                 offset
             } else {
@@ -131,8 +132,9 @@ fn the_linear_map_is_within_5_ulp_of_the_exact_quotient() {
 
 #[test]
 fn the_logarithmic_map_keeps_its_relative_precision() {
-    // log() may be 3 ulp off, twice, and two divisions 2.5 ulp each; the inputs
-    // of an orthographic logarithm are distances that were rounded before.
+    // WGSL allows an error of 3 ulp for log() and of 2.5 ulp for a division; the map
+    // uses two of each. An orthographic map takes logarithms of distances that are
+    // rounded already, which needs an absolute tolerance.
     for (rows_of, orthographic) in [
         (perspective_rows(true).boxed(), false),
         (orthographic_rows(true).boxed(), true),
@@ -186,7 +188,7 @@ fn what_is_no_depth_lies_at_the_far_end() {
     )) {
         assert_eq!([result[0], result[1]], [1.0, 0.0], "{}", row[8]);
     }
-    // A flat wall is all near; an empty view is all far.
+    // D is 0 on a flat wall, and 1 in a view without geometry.
     let flat = [
         0.25,
         0.25,
@@ -226,7 +228,7 @@ fn steps_of_the_map_do_not_cancel() {
                 if row[0] <= row[1] {
                     continue;
                 }
-                // D(d) - D(p) in closed form, from the stored depths.
+                // D(d) - D(p) in closed form, from the raw depths.
                 let [near, far, a, d, p] = [0, 1, 2, 8, 9].map(|k| f64::from(row[k]));
                 let step = if row[7] == 0.0 {
                     (p - d) / (near - far) * ((near + a) / (d + a)) * ((far + a) / (p + a))
@@ -245,7 +247,8 @@ fn steps_of_the_map_do_not_cancel() {
 
 #[test]
 fn one_depth_without_a_floor_is_a_flat_wall_and_no_number_is_lost() {
-    // Linear, orthographic, logarithmic, both; before the sky and without it.
+    // Flags 0 to 3: neither, orthographic, logarithmic, both. Each with the upper row
+    // of the window in the sky, and without.
     let mut rows = Vec::new();
     for flags in 0..4u8 {
         for sky in [0.0, 0.25] {
@@ -278,7 +281,7 @@ fn one_depth_without_a_floor_is_a_flat_wall_and_no_number_is_lost() {
     for (row, [d, l, step, response]) in rows.iter().zip(results) {
         assert_eq!([d, l, step], [0.0, 1.0, 0.0], "{row:?}");
         if row[9] == 0.0 {
-            // The sky lies a gap behind D = 1, the wall at D = 0.
+            // The wall is at D = 0, the sky at D = 1.05.
             assert!((response - 1.05).abs() < 0.02, "{row:?}: {response}");
         } else {
             assert_eq!(response, 0.0, "{row:?}");

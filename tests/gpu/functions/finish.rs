@@ -1,4 +1,4 @@
-//! The end of the fused pass against its twin.
+//! The finish of the fused pass (weight, split view, debug views) against its twin.
 
 use super::*;
 use bevy_comics_testkit::reference::finish;
@@ -24,7 +24,7 @@ fn mixes_shares_and_differences_are_their_twins() {
                 f32::from(split),
                 f32::from(x),
                 near.max(far),
-                // A flat view now and then.
+                // One row in ten has a range of a single depth.
                 if raw > 0.9 {
                     near.max(far)
                 } else {
@@ -60,7 +60,7 @@ fn mixes_shares_and_differences_are_their_twins() {
             let ends = (wide[12] == 0.0).then_some([wide[9], wide[10]]);
             let difference = finish::difference(a, b);
             for i in 0..3 {
-                // Two products and a sum of numbers up to one.
+                // Two products and a sum of numbers up to one: 2^-24 each, and a margin.
                 let slack = 4.0 * 2f64.powi(-24);
                 assert!(
                     (f64::from(mixed[i]) - want[i]).abs() <= slack,
@@ -71,12 +71,12 @@ fn mixes_shares_and_differences_are_their_twins() {
                     "{row:?}"
                 );
             }
-            let share = finish::range_share(ends, wide[11]);
-            // Differences of floats, rounded once each, and a quotient.
+            let position = finish::range_share(ends, wide[11]);
+            // Two differences, rounded to 2^-24 each, and their quotient.
             let slack = 4.0 * 2f64.powi(-24) / (wide[9] - wide[10]).max(1e-9) + 1e-6;
             assert!(
-                (f64::from(apart[3]) - share).abs() <= slack,
-                "{row:?}: {apart:?} {share}"
+                (f64::from(apart[3]) - position).abs() <= slack,
+                "{row:?}: {apart:?} {position}"
             );
         }
     });

@@ -1,5 +1,5 @@
-//! The shipped functions on the GPU against their twins, on random and
-//! adversarial inputs.
+//! Compares the crate's WGSL functions with their twins, on random inputs and on
+//! edge cases.
 
 mod cartoon_styles;
 mod color_styles;
@@ -30,10 +30,11 @@ use bevy_comics_testkit::{
 
 const COLOR: &str = "#import bevy_comics::effect::color::{srgb_encode, srgb_decode, linear_to_oklab, oklab_to_linear, finite, hue_of, hue_color}";
 
-/// One code of an 8-bit display.
+/// One code of an 8-bit display, where white is 1.
 const ONE_CODE: f64 = 1.0 / 255.0;
 
-/// Runs `check` on batches of rows, so that a dispatch pays off.
+/// Runs `check` on 12 batches of 2048 rows. One dispatch per batch: a dispatch per
+/// row would be slow.
 fn for_batches<const N: usize>(row: impl Strategy<Value = [f32; N]>, check: impl Fn(&[[f32; N]])) {
     let config = ProptestConfig {
         cases: 12,
@@ -48,7 +49,8 @@ fn for_batches<const N: usize>(row: impl Strategy<Value = [f32; N]>, check: impl
         .unwrap_or_else(|error| panic!("{error}"));
 }
 
-/// A displayed component: random, or one where formulas change their mind.
+/// A colour component in [0, 1]: random, or at a border between two branches of a
+/// formula.
 fn component() -> impl Strategy<Value = f32> {
     prop_oneof![
         6 => 0.0f32..=1.0,
@@ -56,13 +58,13 @@ fn component() -> impl Strategy<Value = f32> {
     ]
 }
 
-/// The same, beyond what a display shows.
+/// A colour component that may lie outside [0, 1].
 fn wide_component() -> impl Strategy<Value = f32> {
     prop_oneof![4 => component(), 1 => -2.0f32..8.0, 1 => select(vec![65504.0, -65504.0, -0.0, 1e-30])]
 }
 
+/// D and its complement L, down to 2^-30 at both ends.
 fn depth_pair() -> impl Strategy<Value = (f32, f32)> {
-    // D and its exact complement, to both ends.
     prop_oneof![
         3 => (0.0f32..=1.0).prop_map(|d| (d, 1.0 - d)),
         1 => (-30i32..0).prop_map(|e| (2f32.powi(e), 1.0)),
@@ -75,7 +77,8 @@ fn rgb(row: &[f32]) -> Rgb {
     [row[0], row[1], row[2]].map(f64::from)
 }
 
-/// How many codes apart two linear colours are once encoded.
+/// Largest difference of two linear colours in display codes; above 1 it is relative
+/// to the twin's value.
 fn codes_apart(gpu: [f32; 4], twin: Rgb) -> f64 {
     let gpu = color::srgb_encode([gpu[0], gpu[1], gpu[2]].map(f64::from));
     let twin = color::srgb_encode(twin);
@@ -92,7 +95,7 @@ fn assert_same_color<const N: usize>(row: &[f32; N], gpu: [f32; 4], twin: Rgb) {
     );
 }
 
-/// Distance in units in the last place of the expected single.
+/// Error in units in the last place of the expected value as `f32`.
 fn ulps(gpu: f32, twin: f64) -> f64 {
     let unit = f64::from((twin as f32).abs().max(f32::MIN_POSITIVE));
     let ulp = 2f64.powi(unit.log2().floor() as i32 - 23);

@@ -1,11 +1,11 @@
-//! Decoding the normal prepass, against its twin and against the encoding.
+//! Decoding of the normal prepass, against its twin and against the encoding.
 
 use super::*;
 use bevy_comics_testkit::reference::normal;
 
 const NORMAL: &str = "#import bevy_comics::depth::normal::decode_normal";
 
-/// Texels of ten bits a component: of unit normals, and any.
+/// Texels with ten bits per component, of unit normals and of arbitrary vectors.
 #[test]
 fn a_texel_is_its_normal_or_none() {
     let ten_bits = |c: f32| ((c * 0.5 + 0.5) * 1023.0).round() / 1023.0;
@@ -24,7 +24,7 @@ fn a_texel_is_its_normal_or_none() {
             let wide = row.map(f64::from);
             let want = normal::decode(wide);
             let squared: f64 = wide.iter().map(|c| (2.0 * c - 1.0).powi(2)).sum();
-            // Within rounding of a limit either answer is right.
+            // At a limit, either answer is right within rounding.
             let close = [0.5, 1.5]
                 .iter()
                 .any(|limit| (squared - limit).abs() < 1e-5);
@@ -42,8 +42,8 @@ fn a_texel_is_its_normal_or_none() {
     });
 }
 
-/// The rule: ten bits keep a unit normal to a step of the code, and what the
-/// prepass clears to is none.
+/// Property: ten bits per component keep a unit normal to half a code step (1/1023),
+/// and a cleared texel decodes to no normal.
 #[test]
 fn unit_normals_survive_ten_bits_and_the_sky_has_none() {
     for k in 0..2000 {

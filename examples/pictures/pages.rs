@@ -1,0 +1,239 @@
+//! The pictures of the pages about single tasks.
+
+use std::path::Path;
+
+use bevy::{
+    camera::{Camera3dDepthLoadOp, ClearColorConfig, Viewport, visibility::RenderLayers},
+    core_pipeline::tonemapping::Tonemapping,
+    light::NotShadowCaster,
+    prelude::*,
+    render::view::Msaa,
+};
+use bevy_comics::{
+    CartoonScene, ComicStyle, ComicsPlugin, Contours, Desaturation, NoOutlines, OutlineStyle,
+    Outlines, presets,
+};
+use bevy_comics_testkit::{
+    headless::{Headless, HeadlessOptions},
+    scenes::BuiltIn,
+    studio::{Studio, wear},
+};
+use image::RgbaImage;
+
+use crate::{save, sheet::grid};
+
+/// The first program of the README.
+mod first {
+    #![allow(dead_code, reason = "its `main` opens a window")]
+    include!("../simple.rs");
+
+    pub fn add_to(app: &mut App) {
+        app.add_systems(Startup, setup);
+    }
+}
+
+const SIZE: UVec2 = UVec2::new(480, 270);
+const GAP: u32 = 6;
+/// Frames until everything that was spawned is on the picture.
+const SETTLE: usize = 6;
+
+pub fn write(folder: &Path) -> Result<(), String> {
+    save(&simple()?, &folder.join("simple.png"))?;
+    save(&objects(), &folder.join("objects.png"))?;
+    save(&split_screen(), &folder.join("split-screen.png"))?;
+    save(&transparency(), &folder.join("transparency.png"))?;
+    save(&glass(), &folder.join("glass.png"))
+}
+
+fn pair(left: &RgbaImage, right: &RgbaImage) -> RgbaImage {
+    grid(&[vec![left, right]], SIZE, GAP)
+}
+
+fn simple() -> Result<RgbaImage, String> {
+    let size = UVec2::new(800, 450);
+    let mut headless = Headless::new(HeadlessOptions { size, ..default() }, ComicsPlugin);
+    first::add_to(&mut headless.app);
+    headless.step(1);
+    let target = headless.render_target();
+    let world = headless.app.world_mut();
+    let mut cameras = world.query_filtered::<Entity, With<Camera3d>>();
+    let camera = cameras.single(world).map_err(|error| error.to_string())?;
+    world.entity_mut(camera).insert(target);
+    headless.step(SETTLE);
+    Ok(headless.picture())
+}
+
+/// Three toys: the camera's lines, lines of its own, no lines.
+fn objects() -> RgbaImage {
+    let size = UVec2::new(720, 300);
+    let mut headless = Headless::new(HeadlessOptions { size, ..default() }, ComicsPlugin);
+    let target = headless.render_target();
+    let world = headless.app.world_mut();
+    world.insert_resource(ClearColor(Color::srgb(0.96, 0.9, 0.78)));
+    let from = |x, y, z| Transform::from_xyz(x, y, z).looking_at(Vec3::new(0.0, 0.6, 0.0), Vec3::Y);
+    let outlines = Outlines {
+        width: 3.0,
+        ..default()
+    };
+    world.spawn((Camera3d::default(), from(0.0, 2.6, 6.0), target, outlines));
+    let sun = DirectionalLight {
+        shadow_maps_enabled: true,
+        ..default()
+    };
+    world.spawn((sun, from(4.0, 7.0, 5.0)));
+    let mut spawn = |mesh: Mesh, color: Color, at: Vec3| {
+        let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+        let material = StandardMaterial {
+            perceptual_roughness: 0.9,
+            ..color.into()
+        };
+        let material = world
+            .resource_mut::<Assets<StandardMaterial>>()
+            .add(material);
+        let place = Transform::from_translation(at);
+        world
+            .spawn((
+                Mesh3d(mesh),
+                MeshMaterial3d(material),
+                place,
+                CartoonScene::default(),
+            ))
+            .id()
+    };
+    let ground = Plane3d::default().mesh().size(40.0, 40.0).build();
+    let ground = spawn(ground, Color::srgb(0.93, 0.84, 0.66), Vec3::ZERO);
+    let [mut cubes, mut balls] = [[Entity::PLACEHOLDER; 3]; 2];
+    for (i, hue) in [20.0, 150.0, 250.0].into_iter().enumerate() {
+        let x = 2.6 * (i as f32 - 1.0);
+        let color = Color::oklch(0.72, 0.15, hue);
+        cubes[i] = spawn(
+            Cuboid::from_length(1.5).into(),
+            color,
+            Vec3::new(x, 0.75, 0.0),
+        );
+        balls[i] = spawn(
+            Sphere::new(0.55).mesh().uv(48, 24),
+            color.lighter(0.12),
+            Vec3::new(x, 2.0, 0.0),
+        );
+    }
+    let own = OutlineStyle {
+        color: Some(Color::srgb(0.85, 0.1, 0.15)),
+        width: Some(8.0),
+        ..default()
+    };
+    for (middle, right) in [(cubes[1], cubes[2]), (balls[1], balls[2])] {
+        world.entity_mut(middle).insert(own);
+        world.entity_mut(right).insert(NoOutlines::default());
+    }
+    // Where a toy stands, the line is the toy's.
+    world.entity_mut(ground).insert(NoOutlines::default());
+    headless.step(SETTLE);
+    headless.picture()
+}
+
+/// Two players with two styles on one target.
+fn split_screen() -> RgbaImage {
+    let size = UVec2::new(960, 300);
+    let options = HeadlessOptions { size, ..default() };
+    let mut studio = Studio::with_options(BuiltIn::Village, options, Msaa::Sample4);
+    let target = studio.headless.render_target();
+    let half = size / UVec2::new(2, 1);
+    let viewport = |player: u32| Camera {
+        order: player as isize,
+        viewport: Some(Viewport {
+            physical_position: UVec2::new(player * half.x, 0),
+            physical_size: half,
+            ..default()
+        }),
+        ..default()
+    };
+    let world = studio.headless.app.world_mut();
+    world.entity_mut(studio.camera).insert(viewport(0));
+    let second = world
+        .spawn((studio.vantage.camera(), target, Msaa::Sample4, viewport(1)))
+        .id();
+    let mut eye = studio.vantage.transform();
+    eye.rotate_around(studio.vantage.target, Quat::from_rotation_y(0.5));
+    world.entity_mut(second).insert(eye);
+    wear(
+        &mut world.commands().entity(studio.camera),
+        &presets::GRAPHIC_NOVEL.style(),
+    );
+    wear(
+        &mut world.commands().entity(second),
+        &presets::TWILIGHT_TOON.style(),
+    );
+    world.flush();
+    studio.headless.step(SETTLE);
+    studio.headless.picture()
+}
+
+/// A pane of red glass: its distance from the camera, how far it is to the right of the camera's
+/// axis, and its height, world units.
+fn pane(studio: &mut Studio, [distance, right, height]: [f32; 3]) -> Entity {
+    let eye = studio.vantage.transform();
+    let at = eye.translation + eye.forward() * distance + eye.right() * right;
+    let world = studio.headless.app.world_mut();
+    let mesh = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Rectangle::new(1.2 * height, height));
+    let material = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: Color::srgba(0.85, 0.1, 0.1, 0.55),
+            alpha_mode: AlphaMode::Blend,
+            unlit: true,
+            ..default()
+        });
+    world
+        .spawn((
+            Mesh3d(mesh),
+            MeshMaterial3d(material),
+            eye.with_translation(at),
+            NotShadowCaster,
+        ))
+        .id()
+}
+
+/// Glass before half of the view takes the depth, and so the grey, of what is behind it.
+fn transparency() -> RgbaImage {
+    let mut studio = Studio::new(BuiltIn::Teapot, SIZE, Msaa::Sample4);
+    pane(&mut studio, [6.0, 2.0, 3.4]);
+    let style = ComicStyle::new()
+        .with(Desaturation::default())
+        .with(Contours::default());
+    pair(&studio.shoot(None), &studio.shoot(Some(&style)))
+}
+
+/// Glass through the middle of the scene: on the styled camera, and on a camera after it.
+fn glass() -> RgbaImage {
+    const AFTER: RenderLayers = RenderLayers::layer(1);
+    let mut studio = Studio::new(BuiltIn::Teapot, SIZE, Msaa::Sample4);
+    let distance = studio.vantage.eye.distance(studio.vantage.target);
+    let pane = pane(&mut studio, [distance, 3.4, 6.0]);
+    let style = ComicStyle::new().with(Outlines::default());
+    let under = studio.shoot(Some(&style));
+    let target = studio.headless.render_target();
+    let world = studio.headless.app.world_mut();
+    world.entity_mut(pane).insert(AFTER);
+    world.spawn((
+        Camera3d {
+            depth_load_op: Camera3dDepthLoadOp::Load,
+            ..default()
+        },
+        Camera {
+            order: 1,
+            clear_color: ClearColorConfig::None,
+            ..default()
+        },
+        studio.vantage.transform(),
+        studio.vantage.perspective(),
+        Tonemapping::AcesFitted,
+        Msaa::Sample4,
+        target,
+        AFTER,
+    ));
+    studio.headless.step(SETTLE);
+    pair(&under, &studio.headless.picture())
+}

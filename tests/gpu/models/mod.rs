@@ -1,0 +1,288 @@
+//! The `render` example with models that it has not seen: how they are framed
+//! and lit, and what is said about textures that cannot be shown.
+
+mod gltf;
+mod textures;
+mod turntable;
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use image::RgbImage;
+use serde_json::json;
+
+use crate::command_line::{folder, run};
+use gltf::{Gltf, Part, Shape};
+
+const SKIN: [f32; 3] = [0.78, 0.59, 0.43];
+
+/// A ball of one material.
+fn ball(color: [f32; 3], metallic: f32, roughness: f32) -> Gltf {
+    let part = Part {
+        metallic,
+        roughness,
+        ..Part::new(Shape::Ball, [0.0; 3], [1.0; 3], color)
+    };
+    Gltf::new(&[part], 1.0, [0.0; 3])
+}
+
+/// A figure of balls and boxes, 1.8 units tall.
+fn figure() -> Vec<Part> {
+    let blue = [0.2, 0.28, 0.5];
+    vec![
+        Part::new(Shape::Ball, [0.0, 1.62, 0.0], [0.14, 0.17, 0.15], SKIN),
+        Part::new(
+            Shape::Box,
+            [0.0, 1.1, 0.0],
+            [0.2, 0.32, 0.12],
+            [0.75, 0.2, 0.18],
+        ),
+        Part::new(Shape::Box, [0.28, 1.1, 0.1], [0.05, 0.3, 0.05], SKIN),
+        Part::new(Shape::Box, [-0.28, 1.1, 0.0], [0.05, 0.3, 0.05], SKIN),
+        Part::new(Shape::Box, [0.1, 0.4, 0.0], [0.08, 0.4, 0.08], blue),
+        Part::new(Shape::Box, [-0.1, 0.4, 0.0], [0.08, 0.4, 0.08], blue),
+    ]
+}
+
+/// A foot, a stem and a shade of polished metal.
+fn lamp() -> Vec<Part> {
+    let metal = |shape, at, half| Part {
+        metallic: 1.0,
+        roughness: 0.2,
+        ..Part::new(shape, at, half, [0.9, 0.8, 0.6])
+    };
+    vec![
+        metal(Shape::Ball, [0.0, 0.05, 0.0], [0.3, 0.06, 0.3]),
+        metal(Shape::Box, [0.0, 0.5, 0.0], [0.04, 0.45, 0.04]),
+        metal(Shape::Ball, [0.0, 1.0, 0.0], [0.35, 0.3, 0.35]),
+    ]
+}
+
+/// Runs the example and gives what it wrote to stderr.
+fn render(folder: &Path, arguments: &[&str]) -> String {
+    let output = run(folder, arguments);
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{arguments:?}: {errors}");
+    assert!(!errors.contains("panicked"), "{arguments:?}: {errors}");
+    errors
+}
+
+/// A picture, and which of its pixels show the model: those with depth.
+struct Shot {
+    picture: RgbImage,
+    mask: Vec<bool>,
+}
+
+impl Shot {
+    fn take(folder: &Path, model: &str, size: (u32, u32), more: &[&str]) -> Self {
+        let size = format!("{}x{}", size.0, size.1);
+        let mut arguments = vec![model, "--size", &size, "--msaa", "1", "--frames", "4"];
+        arguments.extend(["--out", "p.png", "--dump", "d"]);
+        arguments.extend(more);
+        render(folder, &arguments);
+        let picture = image::open(folder.join("p.png"))
+            .expect("a picture")
+            .to_rgb8();
+        let depth = exr::prelude::read_first_flat_layer_from_file(folder.join("d/depth.exr"))
+            .expect("depth.exr");
+        let values = depth.layer_data.channel_data.list[0]
+            .sample_data
+            .values_as_f32();
+        Self {
+            picture,
+            // Depth is reversed: zero is infinitely far away.
+            mask: values.map(|depth| depth > 0.0).collect(),
+        }
+    }
+
+    fn pixels(&self) -> Vec<[u8; 3]> {
+        let pixels = self.picture.pixels().zip(&self.mask);
+        let pixels: Vec<_> = pixels
+            .filter(|(_, shown)| **shown)
+            .map(|(p, _)| p.0)
+            .collect();
+        assert!(pixels.len() > 50, "{} pixels show the model", pixels.len());
+        pixels
+    }
+
+    /// Fraction of the model's pixels with a channel at the end of its range.
+    fn clipped(&self) -> f64 {
+        let pixels = self.pixels();
+        let clipped = pixels
+            .iter()
+            .filter(|p| p.iter().any(|c| *c >= 254))
+            .count();
+        clipped as f64 / pixels.len() as f64
+    }
+
+    /// Mean colour of the brighter half of the model's pixels, 0 to 1, sRGB.
+    fn lit_color(&self) -> [f64; 3] {
+        let mut pixels = self.pixels();
+        pixels.sort_by_key(|p| std::cmp::Reverse(p.iter().map(|c| u32::from(*c)).sum::<u32>()));
+        pixels.truncate(pixels.len() / 2);
+        [0, 1, 2].map(|c| {
+            let sum: f64 = pixels.iter().map(|p| f64::from(p[c]) / 255.0).sum();
+            sum / pixels.len() as f64
+        })
+    }
+}
+
+/// First and last column and row of the pixels that are set.
+fn bounds(mask: &[bool], width: u32) -> [u32; 4] {
+    let mut bounds = [u32::MAX, 0, u32::MAX, 0];
+    for (index, _) in mask.iter().enumerate().filter(|(_, set)| **set) {
+        let (x, y) = (index as u32 % width, index as u32 / width);
+        bounds = [
+            bounds[0].min(x),
+            bounds[1].max(x),
+            bounds[2].min(y),
+            bounds[3].max(y),
+        ];
+    }
+    bounds
+}
+
+/// The model spans 85 % of the side that it meets first, and is in the middle.
+fn assert_framed(folder: &Path, model: &str, size: (u32, u32), more: &[&str]) {
+    let shot = Shot::take(folder, model, size, more);
+    let [left, right, top, bottom] = bounds(&shot.mask, size.0);
+    let what = format!("{model} {size:?} {more:?}: x {left}..={right}, y {top}..={bottom}");
+    assert!(left <= right, "{what}: nothing is seen");
+    let spans = [
+        f64::from(right + 1 - left) / f64::from(size.0),
+        f64::from(bottom + 1 - top) / f64::from(size.1),
+    ];
+    let largest = spans[0].max(spans[1]);
+    assert!(
+        (0.83..=0.87).contains(&largest),
+        "{what}: it spans {spans:?}"
+    );
+    // Rounding to pixels moves each edge by up to one pixel.
+    for (low, high, side) in [(left, right, size.0), (top, bottom, size.1)] {
+        assert!(
+            (low + high).abs_diff(side - 1) <= 2,
+            "{what}: it is not in the middle"
+        );
+    }
+}
+
+#[test]
+fn models_fill_the_frame_whatever_their_size_place_and_shape() {
+    let folder = folder("framing");
+    let far_off = [1200.0, -300.0, 4000.0];
+    let bar = [Part::new(Shape::Box, [0.0; 3], [0.02, 1.0, 0.02], SKIN)];
+    let slab = [Part::new(Shape::Box, [0.0; 3], [1.0, 0.05, 2.0], SKIN)];
+    let cases: [(&str, &[Part], f32, [f32; 3]); 6] = [
+        ("figure", &figure(), 1.0, [0.0; 3]),
+        ("tiny", &lamp(), 1e-3, [0.0; 3]),
+        ("huge", &figure(), 1e4, [0.0; 3]),
+        ("off-centre", &lamp(), 1.0, far_off),
+        ("thin", &bar, 1.0, [0.0; 3]),
+        ("slab", &slab, 1.0, [0.0; 3]),
+    ];
+    for (name, parts, scale, offset) in cases {
+        let file = format!("{name}.glb");
+        Gltf::new(parts, scale, offset).write_glb(&folder.join(&file));
+        assert_framed(&folder, &file, (200, 120), &["--style", "none"]);
+    }
+    assert_framed(&folder, "slab.glb", (120, 200), &["--style", "none"]);
+    assert_framed(&folder, "figure.glb", (120, 200), &["--ortho", "fit"]);
+    assert_framed(&folder, "slab.glb", (200, 120), &["--ortho", "fit"]);
+    fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+#[test]
+fn a_skinned_model_is_framed_in_its_pose() {
+    let folder = folder("skinned");
+    let bar = Part::new(Shape::Box, [0.0; 3], [0.1, 2.0, 0.1], SKIN);
+    let mut gltf = Gltf::new(&[bar], 1.0, [0.0; 3]);
+    // All vertices follow one joint, which lies down and is five times as large.
+    let vertices = 24;
+    let joints = gltf.view(&vec![0u8; 4 * vertices]);
+    let weights: Vec<u8> = std::iter::repeat_n([1.0f32, 0.0, 0.0, 0.0], vertices)
+        .flatten()
+        .flat_map(f32::to_le_bytes)
+        .collect();
+    let weights = gltf.view(&weights);
+    let accessor = |view, component, kind: &str| json!({"bufferView": view, "componentType": component, "count": vertices, "type": kind});
+    let joints = gltf.push("accessors", accessor(joints, 5121, "VEC4"));
+    let weights = gltf.push("accessors", accessor(weights, 5126, "VEC4"));
+    let attributes = &mut gltf.json["meshes"][0]["primitives"][0]["attributes"];
+    attributes["JOINTS_0"] = json!(joints);
+    attributes["WEIGHTS_0"] = json!(weights);
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let joint = json!({"rotation": [0.0, 0.0, half, half], "scale": [5.0, 5.0, 5.0]});
+    let joint = gltf.push("nodes", joint);
+    gltf.push("skins", json!({"joints": [joint]}));
+    gltf.json["nodes"][1]["skin"] = json!(0);
+    gltf.json["scenes"][0]["nodes"] = json!([0, joint]);
+    gltf.write_glb(&folder.join("skinned.glb"));
+    assert_framed(&folder, "skinned.glb", (160, 120), &["--style", "none"]);
+    fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+#[test]
+fn lit_colors_are_those_of_the_material_and_nothing_clips() {
+    let folder = folder("lighting");
+    let shoot = |name: &str, gltf: Gltf, more: &[&str]| {
+        gltf.write_glb(&folder.join(name));
+        let mut arguments = vec!["--style", "none"];
+        arguments.extend(more);
+        Shot::take(&folder, name, (96, 96), &arguments)
+    };
+    for more in [&[][..], &["--hdr"]] {
+        let skin = shoot("skin.glb", ball(SKIN, 0.0, 0.8), more);
+        let lit = skin.lit_color();
+        for (seen, own) in lit.iter().zip(SKIN) {
+            assert!((seen - f64::from(own)).abs() <= 0.1, "{lit:?} for {SKIN:?}");
+        }
+    }
+    let white = shoot("white.glb", ball([1.0; 3], 0.0, 0.5), &[]);
+    let metal = shoot("lamp.glb", Gltf::new(&lamp(), 1.0, [0.0; 3]), &[]);
+    let chrome = shoot("chrome.glb", ball([0.95; 3], 1.0, 0.05), &[]);
+    for (name, shot) in [("white", &white), ("lamp", &metal), ("chrome", &chrome)] {
+        assert!(shot.clipped() < 0.01, "{name}: {} clipped", shot.clipped());
+        // The environment lights metals, which the lamps alone leave black.
+        let lit = shot.lit_color();
+        assert!(lit[1] > 0.35, "{name}: {lit:?}");
+    }
+    fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+#[test]
+fn lights_of_the_model_are_kept_at_a_level_that_suits() {
+    let folder = folder("own-lights");
+    for (name, intensity, distance) in [("bright", 1e7, 3.0), ("dim", 1e-3, 500.0)] {
+        let mut gltf = ball(SKIN, 0.0, 0.8);
+        gltf.json["extensionsUsed"] = json!(["KHR_lights_punctual"]);
+        gltf.json["extensions"]["KHR_lights_punctual"]["lights"] =
+            json!([{"type": "point", "intensity": intensity, "color": [1.0, 1.0, 1.0]}]);
+        let lamp = json!({"extensions": {"KHR_lights_punctual": {"light": 0}},
+            "translation": [0.0, distance * 0.5, distance]});
+        let node = gltf.push("nodes", lamp);
+        gltf.json["scenes"][0]["nodes"] = json!([0, node]);
+        let file = format!("{name}.glb");
+        gltf.write_glb(&folder.join(&file));
+        let shot = Shot::take(&folder, &file, (96, 96), &["--style", "none"]);
+        assert!(shot.clipped() < 0.01, "{name}: {} clipped", shot.clipped());
+        let lit = shot.lit_color();
+        assert!((0.5..0.9).contains(&lit[0]), "{name}: {lit:?}");
+        let frame = fs::read(folder.join("d/frame.json")).expect("frame.json");
+        let frame: serde_json::Value = serde_json::from_slice(&frame).expect("JSON");
+        assert_eq!(
+            frame["lights"],
+            json!({"directional": 0, "point": 1, "spot": 0})
+        );
+    }
+    fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+/// The folder's files of this extension, by name.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).expect("the folder");
+    let mut files: Vec<_> = entries.map(|entry| entry.expect("entry").path()).collect();
+    files.sort();
+    files
+}
