@@ -1,8 +1,10 @@
 //! One scene, one camera, any number of styles.
 
+use std::time::Duration;
+
 use bevy::{
     camera::RenderTarget, core_pipeline::tonemapping::DebandDither, ecs::system::RunSystemOnce,
-    prelude::*, render::view::Msaa,
+    prelude::*, render::view::Msaa, time::TimeUpdateStrategy,
 };
 use bevy_comics::{CartoonScene, ComicStyle, ComicsPlugin, DepthMap, ToneBands, presets};
 
@@ -11,9 +13,13 @@ use super::{
     scenes::{BuiltIn, ScenePart, Stage, Vantage},
 };
 
-/// Frames to render after a change of style: enough for a new prepass, which takes one
-/// frame, and for new pipelines, which take another. The depth range has no delay.
-const SETTLE: usize = 4;
+/// Frames to render after a change of style: the first inserts prepasses and compiles
+/// pipelines, the second draws with them. The depth range has no delay.
+const SETTLE: u32 = 2;
+
+/// What a picture advances the clock by. Sketches change with time, so that the
+/// reference pictures depend on it.
+const SHOT: Duration = Duration::from_micros(4 * 16_667);
 
 pub struct Studio {
     pub headless: Headless,
@@ -58,7 +64,9 @@ impl Studio {
             style.unwrap_or(&none),
         );
         world.flush();
-        self.headless.step(SETTLE);
+        let frame = TimeUpdateStrategy::ManualDuration(SHOT / SETTLE);
+        self.headless.app.insert_resource(frame);
+        self.headless.step(SETTLE as usize);
         self.headless.picture()
     }
 }
