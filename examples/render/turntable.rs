@@ -3,9 +3,9 @@
 use std::f32::consts::TAU;
 
 use bevy::{light::EnvironmentMapLight, prelude::*};
+use bevy_comics_testkit::headless::Headless;
 
 use crate::{
-    bevy_comics_testkit::headless::Headless,
     model,
     output::{FrameWriter, Frames},
 };
