@@ -90,9 +90,21 @@ pub fn banner(out: &Path) -> Result<(), String> {
     save(&picture, out)
 }
 
+/// Size of a small picture in a grid.
+const SMALL: UVec2 = UVec2::new(288, 162);
+
+/// As [`shoot`], small: drawn at twice the size and reduced, since lines are as wide in a small
+/// picture as in a large one.
+fn shoot_small(scene: BuiltIn, looks: &[Look]) -> Result<Vec<RgbaImage>, String> {
+    let pictures = shoot(scene, 2 * SMALL, looks)?;
+    let reduced = |picture: &RgbaImage| {
+        imageops::resize(picture, SMALL.x, SMALL.y, imageops::FilterType::Triangle)
+    };
+    Ok(pictures.iter().map(reduced).collect())
+}
+
 /// The README's row of looks.
 pub fn looks(out: &Path) -> Result<(), String> {
-    let size = UVec2::new(288, 162);
     let looks = [
         "saturday-morning",
         "graphic-novel",
@@ -100,13 +112,12 @@ pub fn looks(out: &Path) -> Result<(), String> {
         "watercolor",
     ]
     .map(Some);
-    let pictures = shoot(BuiltIn::Theatre, size, &looks)?;
-    save(&grid(&[pictures.iter().collect()], size, GAP), out)
+    let pictures = shoot_small(BuiltIn::Theatre, &looks)?;
+    save(&grid(&[pictures.iter().collect()], SMALL, GAP), out)
 }
 
 /// The page of the presets: one scene in twelve of them.
 pub fn presets(out: &Path) -> Result<(), String> {
-    let size = UVec2::new(288, 162);
     let names = [
         "saturday-morning",
         "graphic-novel",
@@ -121,9 +132,9 @@ pub fn presets(out: &Path) -> Result<(), String> {
         "cobalt-night",
         "blueprint",
     ];
-    let pictures = shoot(BuiltIn::Village, size, &names.map(Some))?;
+    let pictures = shoot_small(BuiltIn::Village, &names.map(Some))?;
     let rows: Vec<Vec<&RgbaImage>> = pictures.chunks(3).map(|row| row.iter().collect()).collect();
-    save(&grid(&rows, size, GAP), out)
+    save(&grid(&rows, SMALL, GAP), out)
 }
 
 /// Pictures side by side and one below the other, on paper.

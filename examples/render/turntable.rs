@@ -3,6 +3,7 @@
 use std::f32::consts::TAU;
 
 use bevy::{light::EnvironmentMapLight, prelude::*};
+use bevy_comics_testkit::headless::Headless;
 
 use bevy_comics_testkit::headless::Headless;
 
