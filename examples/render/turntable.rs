@@ -5,8 +5,6 @@ use std::f32::consts::TAU;
 use bevy::{light::EnvironmentMapLight, prelude::*};
 use bevy_comics_testkit::headless::Headless;
 
-use bevy_comics_testkit::headless::Headless;
-
 use crate::{
     model,
     output::{FrameWriter, Frames},
