@@ -358,7 +358,11 @@ fn the_readme_and_the_guide_work_as_printed_from_an_empty_folder() {
         .lines()
         .filter(|line| line.starts_with("open: "))
         .collect();
-    assert_eq!(panel, ["open: true", "open: false"], "F10 toggles the panel");
+    assert_eq!(
+        panel,
+        ["open: true", "open: false"],
+        "F10 toggles the panel"
+    );
 }
 
 /// `ComicStyle::to_rust` writes code that builds the style.
