@@ -49,7 +49,7 @@ mod guide {
 }
 
 fn options() -> HeadlessOptions {
-    HeadlessOptions { size: UVec2::new(320, 180), assets: "assets".into(), log: true, ..default() }
+    HeadlessOptions { size: UVec2::new(480, 270), assets: "assets".into(), log: true, ..default() }
 }
 
 pub struct Windowless;
@@ -238,7 +238,7 @@ fn assert_it_draws_a_comic(name: &str) -> String {
     };
     let [fraction, areas] = ink.fractions();
     assert!(
-        (0.05..0.4).contains(&fraction) && areas < 0.02,
+        (0.05..0.5).contains(&fraction) && areas < 0.02,
         "{name}: {fraction} of the picture is ink, {areas} of that is no line"
     );
     let (borders, inked) = ink.borders();
@@ -354,9 +354,14 @@ fn the_readme_and_the_guide_work_as_printed_from_an_empty_folder() {
     assert_dependencies(blocks(&guide, "toml")[0], ", features = [\"inspector\"]");
     assert_it_draws_a_comic("readme");
     let printed = assert_it_draws_a_comic("guide");
-    assert!(
-        printed.contains("open: true\nopen: false"),
-        "F10 does not open and close the panel: {printed}"
+    let panel: Vec<&str> = printed
+        .lines()
+        .filter(|line| line.starts_with("open: "))
+        .collect();
+    assert_eq!(
+        panel,
+        ["open: true", "open: false"],
+        "F10 toggles the panel"
     );
 }
 
