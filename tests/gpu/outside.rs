@@ -102,6 +102,8 @@ fn cargo(folder: &Path, arguments: &[&str]) -> Result<String, String> {
         .args(&arguments[1..])
         .current_dir(folder)
         .env("CARGO_TARGET_DIR", target)
+        // The panel must not read the settings of whoever runs the tests.
+        .env("XDG_CONFIG_HOME", folder.join("config"))
         // `scripts/test` sets it for the test binary; build scripts would see it and run again.
         .env_remove("RUSTC_BOOTSTRAP")
         .output()
