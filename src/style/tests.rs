@@ -247,8 +247,8 @@ fn every_preset_is_an_asset_that_a_template_can_name() {
     let template = super::ComicStyleHandleTemplate(presets::NOIR.path().into());
     let mut entity = app.world_mut().entity_mut(camera);
     let handle = entity.build_template(&template).expect("a handle");
-    entity.insert(handle);
-    app.update();
+    entity.insert(handle.clone());
+    load(&mut app, &handle.0);
     app.update();
     let noir = presets::NOIR.style();
     assert!(noir.effects().count() > 0);
