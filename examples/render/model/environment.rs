@@ -35,7 +35,7 @@ fn studio(direction: Vec3) -> Vec3 {
     // A dark band behind the camera gives metals something to contrast with.
     let dark = smooth(0.55, 0.95, direction.z) * (1.0 - smooth(0.25, 0.6, up.abs()));
     base * (1.0 - 0.55 * dark)
-        + Vec3::new(1.8, 1.75, 1.65) * panel(direction, Vec3::new(-0.75, 0.55, 0.35), 0.34, 0.42)
+        + Vec3::new(1.8, 1.75, 1.66) * panel(direction, Vec3::new(-0.65, 0.6, 0.5), 0.46, 0.56)
         + Vec3::new(0.9, 1.0, 1.15) * panel(direction, Vec3::new(0.95, 0.2, 0.25), 0.16, 0.6)
         + Vec3::new(1.0, 1.0, 1.0) * panel(direction, Vec3::new(0.3, 0.45, -0.85), 0.4, 0.25)
 }

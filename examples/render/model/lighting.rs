@@ -23,25 +23,30 @@ struct Lamp {
     shadows: bool,
 }
 
+/// Level of a model's own lights together.
+const OWN_LEVEL: f32 = 0.5;
+
+/// The lamps are weak, because the highlight of a lamp without size clips on
+/// metal. The panels of the environment map give most of the light.
 const LAMPS: [Lamp; 3] = [
     // Key.
     Lamp {
         towards: Vec3::new(-0.55, 0.62, 0.62),
-        level: 0.62,
+        level: 0.28,
         color: Color::srgb(1.0, 0.985, 0.96),
         shadows: true,
     },
     // Fill.
     Lamp {
         towards: Vec3::new(0.85, 0.1, 0.55),
-        level: 0.12,
+        level: 0.08,
         color: Color::srgb(0.92, 0.96, 1.0),
         shadows: false,
     },
     // Rim.
     Lamp {
         towards: Vec3::new(0.55, 0.5, -0.75),
-        level: 0.55,
+        level: 0.14,
         color: Color::WHITE,
         shadows: false,
     },
@@ -109,8 +114,8 @@ impl OwnLights<'_, '_> {
     }
 
     /// Scales all lights by one factor, so that together they light the model,
-    /// where it is nearest to them, as the key light of the studio does. Exporters
-    /// differ by orders of magnitude in the intensities that they write.
+    /// where it is nearest to them, at [`OWN_LEVEL`]. Exporters differ by orders of
+    /// magnitude in the intensities that they write.
     pub fn level(&mut self, centre: Vec3, radius: f32) {
         // Lux at the nearest point of the model's sphere. Of a light within the
         // sphere, lux at the distance of its radius.
@@ -123,7 +128,7 @@ impl OwnLights<'_, '_> {
         let total = self.suns.iter().map(|l| l.illuminance).sum::<f32>()
             + points.map(|(l, at)| received(l.intensity, at)).sum::<f32>()
             + spots.map(|(l, at)| received(l.intensity, at)).sum::<f32>();
-        let factor = illuminance(LAMPS[0].level) / total;
+        let factor = illuminance(OWN_LEVEL) / total;
         if !(factor.is_finite() && factor > 0.0) {
             return;
         }

@@ -242,7 +242,13 @@ fn lit_colors_are_those_of_the_material_and_nothing_clips() {
     let white = shoot("white.glb", ball([1.0; 3], 0.0, 0.5), &[]);
     let metal = shoot("lamp.glb", Gltf::new(&lamp(), 1.0, [0.0; 3]), &[]);
     let chrome = shoot("chrome.glb", ball([0.95; 3], 1.0, 0.05), &[]);
-    for (name, shot) in [("white", &white), ("lamp", &metal), ("chrome", &chrome)] {
+    let rough = shoot("rough.glb", ball([0.95; 3], 1.0, 0.3), &[]);
+    for (name, shot) in [
+        ("white", &white),
+        ("lamp", &metal),
+        ("chrome", &chrome),
+        ("rough", &rough),
+    ] {
         assert!(shot.clipped() < 0.01, "{name}: {} clipped", shot.clipped());
         // The environment lights metals, which the lamps alone leave black.
         let lit = shot.lit_color();
