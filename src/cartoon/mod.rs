@@ -8,7 +8,8 @@ use bevy::{
     app::{App, Plugin, PostUpdate, Update},
     asset::{AssetApp, embedded_asset},
     ecs::schedule::IntoScheduleConfigs,
-    pbr::{MaterialPlugin, PbrPlugin},
+    pbr::{MaterialPlugin, MeshMaterial3d, PbrPlugin},
+    render::erased_render_asset::ErasedRenderAssetPlugin,
     shader::load_shader_library,
 };
 
@@ -27,7 +28,11 @@ impl Plugin for CartoonPlugin {
 
     /// Adds the material if [`PbrPlugin`] was added after this plugin.
     fn finish(&self, app: &mut App) {
-        add_material(app);
+        if add_material(app) {
+            // The engine finishes only the plugins that were added before the
+            // first `finish`. This is the material's only plugin that has one.
+            ErasedRenderAssetPlugin::<MeshMaterial3d<CartoonMaterial>>::default().finish(app);
+        }
     }
 }
 
@@ -39,11 +44,13 @@ impl CartoonPlugin {
     }
 }
 
-fn add_material(app: &mut App) {
+/// Adds the material, if the app can draw it and does not have it yet. Returns
+/// whether it did.
+fn add_material(app: &mut App) -> bool {
     if !app.is_plugin_added::<PbrPlugin>()
         || app.is_plugin_added::<MaterialPlugin<CartoonMaterial>>()
     {
-        return;
+        return false;
     }
     app.add_plugins(MaterialPlugin::<CartoonMaterial>::default())
         .register_asset_reflect::<CartoonMaterial>()
@@ -52,4 +59,5 @@ fn add_material(app: &mut App) {
             PostUpdate,
             (scene::follow_materials, scene::restore, scene::convert).chain(),
         );
+    true
 }
