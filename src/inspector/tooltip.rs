@@ -85,7 +85,7 @@ fn is_link_definition(line: &str) -> bool {
 }
 
 /// Text without the markup of links, code and escapes. Citations keep their
-/// brackets: `\[CS\]` becomes `[CS]`. `starts_sentence` if the text is the start of
+/// brackets: `\[CS\]` becomes `\[CS\]`. `starts_sentence` if the text is the start of
 /// one.
 fn without_markup(text: &str, starts_sentence: bool) -> String {
     let mut plain = String::new();
@@ -230,7 +230,7 @@ fn without_parenthesised_citations(text: &str) -> (String, Vec<String>) {
 }
 
 /// The citation before the colon or comma with which a sentence begins, and the
-/// rest: `[CS] Eq. 4: the nearest distance becomes 0.`
+/// rest: `\[CS\] Eq. 4: the nearest distance becomes 0.`
 fn leading_citation(sentence: &str) -> Option<(String, String)> {
     let (cited, rest) = sentence
         .split_once(": ")

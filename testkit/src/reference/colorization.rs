@@ -1,4 +1,4 @@
-//! Twin of `effects/colorization/colorization.wgsl` ([CS] Eq. 8 to 11).
+//! Twin of `effects/colorization/colorization.wgsl` (\[CS\] Eq. 8 to 11).
 
 use super::{
     Rgb,

@@ -1,4 +1,4 @@
-//! Twin of `effects/desaturation/desaturation.wgsl` ([CS] Eq. 5 to 7).
+//! Twin of `effects/desaturation/desaturation.wgsl` (\[CS\] Eq. 5 to 7).
 
 use super::{
     Rgb,

@@ -2,7 +2,7 @@
 
 use super::Rgb;
 
-/// Weights of [CL] Eq. 1, row by row.
+/// Weights of \[CL\] Eq. 1, row by row.
 pub const WEIGHTS: [[f64; 3]; 3] = [[1.0, 2.0, 1.0], [2.0, 0.0, 2.0], [1.0, 2.0, 1.0]];
 
 /// Eq. 1 at the centre of a 3 x 3 window, for any measure of difference.

@@ -7,7 +7,7 @@ use super::{
 };
 use bevy_comics::{Form, ToneBands};
 
-/// [CL] Eq. 6 for one channel of the display code, with its three ranges joined at
+/// \[CL\] Eq. 6 for one channel of the display code, with its three ranges joined at
 /// 0.33 and 0.66.
 pub fn equation_6(c: f64) -> f64 {
     match c {

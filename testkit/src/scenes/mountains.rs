@@ -1,4 +1,4 @@
-//! A large landscape: a meadow with flowers, trees, hills and distant mountains ([CS]
+//! A large landscape: a meadow with flowers, trees, hills and distant mountains (\[CS\]
 //! Figure 4). The ground has one million vertices.
 
 use bevy::{

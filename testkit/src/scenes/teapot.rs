@@ -1,4 +1,4 @@
-//! The Utah teapot on a cube on a plane ([CL] Figure 6).
+//! The Utah teapot on a cube on a plane (\[CL\] Figure 6).
 
 use bevy::{
     light::{CascadeShadowConfigBuilder, light_consts::lux},
