@@ -30,8 +30,9 @@ pub struct Contours {
     /// [`Form::Faithful`] finds every change of the depth map, slopes included.
     /// Default: [`Form::Corrected`]. Source of the faithful form: \[CS\] 3.2.
     pub form: Form,
-    /// The depth jump at which a line has half its opacity, in units of the depth
-    /// map: 0.02 is 2 % of the map's range. Range 1e-6 to 100, default 0.02.
+    /// Sets how large a depth jump must be to draw a line: at this jump, in units of
+    /// the depth map, a line has half its opacity (0.02 is 2 % of the map's range).
+    /// Range 1e-6 to 100, default 0.02.
     /// [`Form::Faithful`] compares this threshold with the raw response of the
     /// operator, which for a straight jump is 3 times (Prewitt, Laplace), 4 times
     /// (Sobel) or 1.4 times (Roberts) the jump.
