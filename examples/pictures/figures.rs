@@ -25,7 +25,7 @@ use crate::{save, sheet::grid};
 
 const SIZE: UVec2 = UVec2::new(480, 270);
 /// Size of a picture among nine.
-const SMALL: UVec2 = UVec2::new(320, 180);
+const SMALL: UVec2 = UVec2::new(256, 144);
 const GAP: u32 = 8;
 const NEAR: f32 = 0.1;
 const FAR: f32 = 1000.0;

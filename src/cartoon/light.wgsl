@@ -45,7 +45,7 @@ fn sharpen(shadow: f32, width: f32) -> f32 {
 // A highlight at an angle, as a fraction of its peak: the microfacet distribution of
 // Trowbridge and Reitz, divided by its maximum. `n_dot_h` is the cosine between the
 // normal and the half vector.
-fn highlight_share(roughness: f32, n_dot_h: f32) -> f32 {
+fn highlight_fraction(roughness: f32, n_dot_h: f32) -> f32 {
     let a2 = roughness * roughness;
     let f = (1.0 - n_dot_h * n_dot_h) + a2 * n_dot_h * n_dot_h;
     let r = a2 / max(f, 1e-12);
@@ -56,12 +56,12 @@ fn highlight_share(roughness: f32, n_dot_h: f32) -> f32 {
 // is the change of `n_dot_h` over a pixel.
 fn highlight(s: CartoonLight, perceptual_roughness: f32, n_dot_h: f32, width: f32) -> f32 {
     let roughness = max(perceptual_roughness * perceptual_roughness, 0.002);
-    let inner = highlight_share(roughness, min(n_dot_h + 0.5 * width, 1.0));
-    let outer = highlight_share(roughness, max(n_dot_h - 0.5 * width, 0.0));
-    let share = highlight_share(roughness, n_dot_h);
+    let inner = highlight_fraction(roughness, min(n_dot_h + 0.5 * width, 1.0));
+    let outer = highlight_fraction(roughness, max(n_dot_h - 0.5 * width, 0.0));
+    let fraction = highlight_fraction(roughness, n_dot_h);
     // A matt surface has no highlight: it would have no visible edge.
     let polish = max(1.0 - 1.4 * perceptual_roughness, 0.0);
-    return s.highlight * polish * polish * edge_at(s.highlight_edge, share, inner - outer);
+    return s.highlight * polish * polish * edge_at(s.highlight_edge, fraction, inner - outer);
 }
 
 // Light at a distance, as a multiple of the light at distance 1: the inverse square

@@ -1,6 +1,5 @@
-//! Smooths the visible range over time, so that the picture does not flicker: the
-//! settings, the event that resets it, and the compute pass. \[CS\] leaves this as
-//! future work.
+//! Smooths the visible range over time, so that the picture does not flicker:
+//! settings, event, compute pass. \[CS\] leaves this as future work.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -8,7 +8,7 @@
     finite_color, lightness, linear_to_oklab, oklab_to_linear, srgb_decode, srgb_encode,
 }
 #import bevy_comics::effect::pixel::Pixel
-#import bevy_comics::finish::{Finish, compare, difference, object_color, range_share}
+#import bevy_comics::finish::{Finish, compare, difference, object_color, range_fraction}
 #import bevy_comics::lines::edge::Lines
 #import bevy_comics::lines::read::{lines_at, set_lines}
 #import bevy_comics::objects::load_object
@@ -87,7 +87,7 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 #ifdef VIEW_DEPTH_MAP
     p.color = srgb_decode(vec3(clamp(p.depth.x, 0.0, 1.0)));
 #else ifdef VIEW_RAW_RANGE
-    p.color = srgb_decode(vec3(range_share(frame, load_depth(pixel, 0))));
+    p.color = srgb_decode(vec3(range_fraction(frame, load_depth(pixel, 0))));
 #else ifdef VIEW_SILHOUETTES
     p.color = srgb_decode(vec3(1.0 - clamp(lines_at(position.xy).ink.x, 0.0, 1.0)));
 #else ifdef VIEW_CREASES

@@ -24,7 +24,7 @@ fn compare(s: Finish, original: vec3<f32>, styled: vec3<f32>, x: f32) -> vec3<f3
 
 // Position of a raw depth between the ends of the range: 1 at the near end, 0 at the
 // far end and where there is no geometry.
-fn range_share(frame: DepthFrame, raw: f32) -> f32 {
+fn range_fraction(frame: DepthFrame, raw: f32) -> f32 {
     if raw == 0.0 || (frame.flags & EMPTY) != 0u {
         return 0.0;
     }

@@ -39,12 +39,6 @@ const SILHOUETTE: u32 = 0u;
 const CREASE: u32 = 1u;
 const OBJECT: u32 = 2u;
 
-// Numbers of a pixel's four sides.
-const WEST: u32 = 0u;
-const EAST: u32 = 1u;
-const NORTH: u32 = 2u;
-const SOUTH: u32 = 3u;
-
 // The gradient at x from its eight neighbours a to h, row by row ([CL] Eq. 1).
 fn gradient(a: f32, b: f32, c: f32, d: f32, x: f32, e: f32, f: f32, g: f32, h: f32) -> f32 {
     return (abs(a - x) + 2.0 * abs(b - x) + abs(c - x) + 2.0 * abs(d - x) + 2.0 * abs(e - x)

@@ -96,7 +96,7 @@ macro_rules! presets {
 presets! {
     /// A red atmosphere that grows with distance. \[CS\] Figure 4, row 1.
     CRIMSON_DUSK: "crimson-dusk";
-    /// One warm atmosphere for the whole picture, and colours that fade with
+    /// One blue atmosphere for the whole picture, and colours that fade with
     /// distance. \[CS\] Figure 4, row 2.
     MUSEUM_PRINT: "museum-print";
     /// A green atmosphere with solid ink on steep and dark areas. \[CS\] Figure 4,

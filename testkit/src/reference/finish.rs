@@ -10,7 +10,7 @@ pub fn compare(weight: f64, split: f64, original: Rgb, styled: Rgb, x: f64) -> R
 
 /// Position of a raw depth in the range: 1 at the near end, 0 at the far end and
 /// for the sky. `ends`: raw depth of (near, far); `None` without geometry.
-pub fn range_share(ends: Option<[f64; 2]>, raw: f64) -> f64 {
+pub fn range_fraction(ends: Option<[f64; 2]>, raw: f64) -> f64 {
     match ends {
         _ if raw == 0.0 => 0.0,
         None => 0.0,

@@ -11,7 +11,7 @@ pub fn edge_at(edge: f64, x: f64, width: f64) -> f64 {
 
 /// The microfacet distribution of Trowbridge and Reitz (GGX) as a fraction of its
 /// peak. `roughness`: the square of the perceptual roughness.
-pub fn highlight_share(roughness: f64, n_dot_h: f64) -> f64 {
+pub fn highlight_fraction(roughness: f64, n_dot_h: f64) -> f64 {
     let a2 = roughness * roughness;
     let d = |c: f64| a2 / (std::f64::consts::PI * ((1.0 - c * c) + a2 * c * c).powi(2));
     d(n_dot_h) / d(1.0)
@@ -20,7 +20,7 @@ pub fn highlight_share(roughness: f64, n_dot_h: f64) -> f64 {
 /// Strength of the highlight. `width`: change of `n_dot_h` over a pixel.
 pub fn highlight(s: &CartoonLight, perceptual_roughness: f64, n_dot_h: f64, width: f64) -> f64 {
     let roughness = (perceptual_roughness * perceptual_roughness).max(0.002);
-    let fraction = |c: f64| highlight_share(roughness, c.clamp(0.0, 1.0));
+    let fraction = |c: f64| highlight_fraction(roughness, c.clamp(0.0, 1.0));
     let change = fraction(n_dot_h + 0.5 * width) - fraction(n_dot_h - 0.5 * width);
     let polish = (1.0 - 1.4 * perceptual_roughness).max(0.0);
     f64::from(s.highlight)

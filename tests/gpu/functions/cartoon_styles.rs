@@ -433,13 +433,13 @@ fn the_cartoons_light_is_its_twin() {
                 [rough, n_dot_h, width, d2, inverse, bright, pixel, falloff]
             },
         );
-    let import = "#import bevy_comics::cartoon::light::{CartoonLight, highlight, highlight_share, flat_falloff}";
+    let import = "#import bevy_comics::cartoon::light::{CartoonLight, highlight, highlight_fraction, flat_falloff}";
     let undecided = std::cell::Cell::new(0usize);
     for_batches(row, |rows| {
         let results = gpu().evaluate(
             import,
             "let s = CartoonLight(0.08, 1.0, 1.0, 1.0, 0.5, i(7u));
-             return vec4(highlight_share(i(0u), i(1u)), highlight(s, i(0u), i(1u), i(2u)),
+             return vec4(highlight_fraction(i(0u), i(1u)), highlight(s, i(0u), i(1u), i(2u)),
                  flat_falloff(s, i(3u), i(4u), i(5u), i(6u)), 0.0);",
             rows,
         );
@@ -451,7 +451,7 @@ fn the_cartoons_light_is_its_twin() {
             };
             // The rounding of cos^2, at most 2^-23, is relative to a denominator of at
             // least roughness^2, and the quotient is squared: twice that, times four.
-            let fraction = light::highlight_share(r[0], r[1]);
+            let fraction = light::highlight_fraction(r[0], r[1]);
             let slack = (8.0 * 2f64.powi(-23) / (r[0] * r[0])).min(1.0);
             assert!(
                 (f64::from(result[0]) - fraction).abs() <= slack.max(1e-6),

@@ -4,7 +4,7 @@ use super::*;
 use bevy_comics_testkit::reference::finish;
 
 const FINISH: &str =
-    "#import bevy_comics::finish::{Finish, compare, range_share, object_color, difference}
+    "#import bevy_comics::finish::{Finish, compare, range_fraction, object_color, difference}
 #import bevy_comics::depth::map::{DepthFrame, EMPTY}";
 
 #[test]
@@ -49,7 +49,7 @@ fn mixes_shares_and_differences_are_their_twins() {
             &format!(
                 "{colors} var f: DepthFrame; f.near = i(9u); f.far = i(10u);
                  if i(12u) > 0.0 {{ f.flags = EMPTY; }}
-                 return vec4(difference(a, b), range_share(f, i(11u)));"
+                 return vec4(difference(a, b), range_fraction(f, i(11u)));"
             ),
             rows,
         );
@@ -71,7 +71,7 @@ fn mixes_shares_and_differences_are_their_twins() {
                     "{row:?}"
                 );
             }
-            let position = finish::range_share(ends, wide[11]);
+            let position = finish::range_fraction(ends, wide[11]);
             // Two differences, rounded to 2^-24 each, and their quotient.
             let slack = 4.0 * 2f64.powi(-24) / (wide[9] - wide[10]).max(1e-9) + 1e-6;
             assert!(
