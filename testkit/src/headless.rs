@@ -1,7 +1,7 @@
 //! An app that renders one camera into an image, frame by frame, without a
 //! window.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use bevy::{
     app::{PluginGroupBuilder, PluginsState},
@@ -12,7 +12,8 @@ use bevy::{
     render::{
         RenderApp, RenderPlugin,
         render_asset::RenderAssets,
-        render_resource::{TextureFormat, TextureUsages},
+        render_resource::{PipelineCache, PollType, TextureFormat, TextureUsages},
+        renderer::RenderDevice,
         settings::WgpuSettings,
         texture::GpuImage,
     },
@@ -25,6 +26,10 @@ use crate::{ROOT, read_back};
 
 /// The command that installs an adapter that runs on the CPU, on Debian.
 pub const INSTALL_ADAPTER: &str = "apt-get install mesa-vulkan-drivers libvulkan1";
+
+/// The longest that a frame waits for shaders to load. A shader whose file is missing
+/// never does.
+const LOADING: Duration = Duration::from_secs(2);
 
 /// Options of a headless app.
 #[derive(Clone, Debug)]
@@ -208,11 +213,50 @@ impl Headless {
         self.target = new_target(self.app.world_mut(), size, self.options.format);
     }
 
-    /// Renders frames.
+    /// Renders frames, each to its end. Shaders of the engine load in the background:
+    /// a frame that misses one (without it, a scene has no lamps, for example) is drawn
+    /// again, while time stands still. With `background_pipelines` it is not, as in a
+    /// game.
     pub fn step(&mut self, frames: usize) {
         for _ in 0..frames {
             self.app.update();
+            if !self.options.background_pipelines && self.is_compiling() {
+                self.draw_until_compiled();
+            }
+            self.wait_for_the_gpu();
         }
+    }
+
+    /// Whether any pipeline is missing, the engine's included.
+    pub fn is_compiling(&self) -> bool {
+        let pipelines = self.in_render_world::<PipelineCache>();
+        pipelines.is_some_and(|pipelines| pipelines.waiting_pipelines().next().is_some())
+    }
+
+    fn draw_until_compiled(&mut self) {
+        let stopped = TimeUpdateStrategy::ManualDuration(Duration::ZERO);
+        let mut strategy = self.app.world_mut().resource_mut::<TimeUpdateStrategy>();
+        let time = std::mem::replace(&mut *strategy, stopped);
+        let until = Instant::now() + LOADING;
+        while self.is_compiling() && Instant::now() < until {
+            std::thread::sleep(Duration::from_millis(2));
+            self.app.update();
+        }
+        self.app.insert_resource(time);
+    }
+
+    /// The engine reads back how many lights its clusters hold, and how far they reach:
+    /// the next frame uses both.
+    fn wait_for_the_gpu(&self) {
+        if let Some(device) = self.in_render_world::<RenderDevice>() {
+            device
+                .poll(PollType::wait_indefinitely())
+                .expect("the device answers");
+        }
+    }
+
+    fn in_render_world<R: Resource>(&self) -> Option<&R> {
+        self.app.get_sub_app(RenderApp)?.world().get_resource()
     }
 
     /// The last picture, read back.

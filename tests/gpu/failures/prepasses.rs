@@ -2,11 +2,7 @@
 
 use std::time::Duration;
 
-use bevy::{
-    core_pipeline::prepass::NormalPrepass,
-    pbr::ScreenSpaceAmbientOcclusion,
-    render::{RenderApp, render_resource::PipelineCache},
-};
+use bevy::{core_pipeline::prepass::NormalPrepass, pbr::ScreenSpaceAmbientOcclusion};
 use bevy_comics::{Creases, Outlines, RangeSmoothing, ToneBands};
 
 use super::*;
@@ -43,13 +39,6 @@ fn is_compiling(small: &Small) -> bool {
     diagnostics.is_compiling(small.camera)
 }
 
-/// Whether any pipeline is missing, the engine's included.
-fn pipelines_wait(small: &Small) -> bool {
-    let render_world = small.headless.app.sub_app(RenderApp).world();
-    let cache = render_world.resource::<PipelineCache>();
-    cache.waiting_pipelines().next().is_some()
-}
-
 /// Renders until all pipelines are compiled, the style is complete, and the picture
 /// no longer changes.
 fn still(small: &mut Small) -> image::RgbaImage {
@@ -59,7 +48,7 @@ fn still(small: &mut Small) -> image::RgbaImage {
     for _ in 0..4000 {
         step(small);
         let now = small.picture();
-        let same = now == last && !is_compiling(small) && !pipelines_wait(small);
+        let same = now == last && !is_compiling(small) && !small.headless.is_compiling();
         unchanged = if same { unchanged + 1 } else { 0 };
         last = now;
         if unchanged == 60 {
