@@ -25,7 +25,7 @@ const HELP: &str = "\
 The inspector on a built-in scene. F10 opens and closes the panel.
 
     --scene NAME       mountains, teapot, theatre or village (village)
-    --style NAME       the first style, a preset (ligne-claire)
+    --style NAME       the first style, a preset (graphic-novel)
     --cameras N        1, or 2 side by side (1)
     --size WxH         size of the window in physical pixels (1280x720)
     --scale FACTOR     scale factor of the window (the system's)
@@ -57,7 +57,7 @@ fn options() -> Result<Options, lexopt::Error> {
     use lexopt::prelude::*;
     let mut options = Options {
         scene: BuiltIn::Village,
-        style: "ligne-claire".into(),
+        style: "graphic-novel".into(),
         cameras: 1,
         size: UVec2::new(1280, 720),
         scale: None,

@@ -226,10 +226,9 @@ impl Arguments {
 /// The preset that suits a scene.
 fn own_style(scene: &SceneChoice) -> &'static str {
     match scene {
-        SceneChoice::BuiltIn(BuiltIn::Mountains) => "crimson-dusk",
-        SceneChoice::BuiltIn(BuiltIn::Teapot) => "museum-print",
-        SceneChoice::BuiltIn(BuiltIn::Theatre) => "saturday-morning",
-        SceneChoice::BuiltIn(BuiltIn::Village) => "ligne-claire",
+        SceneChoice::BuiltIn(BuiltIn::Mountains) => "twilight-toon",
+        SceneChoice::BuiltIn(BuiltIn::Teapot | BuiltIn::Theatre) => "saturday-morning",
+        SceneChoice::BuiltIn(BuiltIn::Village) => "graphic-novel",
         SceneChoice::Model(_) => "saturday-morning",
     }
 }

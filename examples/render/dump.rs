@@ -207,7 +207,7 @@ fn describe(
         "projection": match ProjectionKind::of(&clip) {
             ProjectionKind::Perspective => "perspective",
             ProjectionKind::Orthographic => "orthographic",
-            ProjectionKind::Oblique => "oblique",
+            _ => "oblique",
         },
         "near": plane(|p| match p {
             Projection::Perspective(p) => p.near,

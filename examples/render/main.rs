@@ -2,7 +2,7 @@
 //! `docs/render.md`.
 //!
 //! ```text
-//! cargo run --example render -- model.glb --style ligne-claire --out picture.png
+//! cargo run --example render -- model.glb --style graphic-novel --out picture.png
 //! cargo run --example render -- --help
 //! ```
 
@@ -62,7 +62,8 @@ fn run() -> Result<(), String> {
     }
     let camera = spawn_camera(&mut headless, &arguments, &vantage);
     if let Some(model) = &model {
-        model.light(headless.app.world_mut(), camera, &vantage);
+        let world = headless.app.world_mut();
+        model.light(world, camera, &vantage, arguments.cartoon);
     }
     turntable::set_place(headless.app.world_mut(), camera, vantage.transform());
     for frame in 0..arguments.frames {

@@ -11,6 +11,7 @@ use super::{DepthMap, DepthMapping};
 
 /// How raw depth depends on distance under a camera's projection.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum ProjectionKind {
     /// Raw depth plus a constant is proportional to the reciprocal of the view depth.
     Perspective,

@@ -8,7 +8,7 @@ use super::EffectType;
 const RECIPE: &str = include_str!("fused.wgsl");
 
 /// The keys of a style file that do not name an effect.
-const FILE_KEYS: [&str; 3] = ["version", "name", "depth_map"];
+pub(crate) const FILE_KEYS: [&str; 4] = ["version", "name", "partial", "depth_map"];
 
 /// The modules of this crate that an effect may import.
 const MODULES: [&str; 11] = [

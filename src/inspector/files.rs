@@ -8,9 +8,12 @@ use std::{
     time::{Duration, Instant},
 };
 
-use bevy::ecs::entity::{Entity, EntityHashMap};
+use bevy::{
+    ecs::entity::{Entity, EntityHashMap},
+    log::warn,
+};
 
-use crate::{ComicStyle, ComicStyleError, EffectRegistry};
+use crate::{ComicStyle, ComicStyleError, EffectRegistry, style::format};
 
 const SUFFIX: &str = ".comic.ron";
 /// How often the open file is read again.
@@ -63,15 +66,18 @@ pub struct Files {
     message: Option<String>,
 }
 
-/// The text of a file and its style, or the text (empty if it cannot be read) and
-/// the error.
-fn read(path: &Path, registry: &EffectRegistry) -> Result<(String, ComicStyle), (String, String)> {
-    let text = fs::read_to_string(path)
-        .map_err(|error| (String::new(), ComicStyleError::from(error).to_string()))?;
-    match registry.style_from_ron(&text) {
-        Ok(style) => Ok((text, style)),
-        Err(error) => Err((text, error.to_string())),
+/// The text of a file.
+fn text_of(path: &Path) -> Result<String, String> {
+    fs::read_to_string(path).map_err(|error| ComicStyleError::from(error).to_string())
+}
+
+/// The style in the text of a file. Logs what to change in a file of an older version.
+fn style_of(path: &Path, text: &str, registry: &EffectRegistry) -> Result<ComicStyle, String> {
+    let read = format::read(text, &registry.types()).map_err(|error| error.to_string())?;
+    if let Some(advice) = read.advice {
+        warn!("{}: {advice}", path.display());
     }
+    Ok(read.style)
 }
 
 impl Files {
@@ -114,7 +120,11 @@ impl Files {
     }
 
     fn load(&mut self, camera: Entity, path: &Path) -> Option<ComicStyle> {
-        match read(path, &self.registry) {
+        let read = text_of(path).and_then(|text| {
+            let style = style_of(path, &text, &self.registry)?;
+            Ok((text, style))
+        });
+        match read {
             Ok((seen, saved)) => {
                 self.message = None;
                 self.name = self.shown(path);
@@ -129,7 +139,7 @@ impl Files {
                 self.open.insert(camera, open);
                 Some(saved)
             }
-            Err((_, error)) => {
+            Err(error) => {
                 self.message = Some(format!("{}: {error}", path.display()));
                 None
             }
@@ -203,10 +213,19 @@ impl Files {
             return None;
         }
         open.looked = Instant::now();
-        match read(&open.path, &self.registry) {
-            Ok((text, _)) if text == open.seen => None,
-            Ok((text, read)) => {
-                open.seen = text;
+        let text = match text_of(&open.path) {
+            Ok(text) if text == open.seen => return None,
+            Ok(text) => text,
+            Err(error) => {
+                open.seen.clear();
+                open.error = Some(error);
+                return None;
+            }
+        };
+        let style_read = style_of(&open.path, &text, &self.registry);
+        open.seen = text;
+        match style_read {
+            Ok(read) => {
                 open.error = None;
                 open.saved = read.clone();
                 self.title.clone_from(&read.name);
@@ -216,8 +235,7 @@ impl Files {
                 };
                 (named != *style).then_some(named)
             }
-            Err((text, error)) => {
-                open.seen = text;
+            Err(error) => {
                 open.error = Some(error);
                 None
             }

@@ -333,6 +333,6 @@ fn put(world: &mut World, camera: Entity, style: &ComicStyle) {
     let mut commands = world.commands();
     let mut camera = commands.entity(camera);
     camera.remove::<StyleTransition>();
-    style.set_as_own(&mut camera);
+    style.edit(&mut camera);
     world.flush();
 }

@@ -25,7 +25,9 @@ use super::{
     files::style_files,
     note,
 };
-use crate::{ComicStyle, ComicsDiagnostics, ComicsStage, EffectRegistry, presets};
+use crate::{
+    ComicStyle, ComicsDiagnostics, ComicsStage, EffectRegistry, presets, style::format,
+};
 
 /// Size of a thumbnail in pixels.
 const WIDTH: u32 = 240;
@@ -82,8 +84,9 @@ fn entries(folder: &Path, registry: &EffectRegistry) -> Vec<Entry> {
         let style = std::fs::read_to_string(&path)
             .map_err(|error| error.to_string())
             .and_then(|text| {
-                registry
-                    .style_from_ron(&text)
+                // Without a warning for an older version: the list is read often.
+                format::read(&text, &registry.types())
+                    .map(|read| read.style)
                     .map_err(|error| error.to_string())
             });
         Some(Entry::new(name, style))

@@ -28,8 +28,8 @@ pub struct Silhouettes {
     /// Default: [`Form::Corrected`]. Faithful: \[CL\] Eq. 1 and 2 on the depth
     /// buffer.
     pub form: Form,
-    /// Jump in depth at which the response is 1; the lower, the more lines.
-    /// Range 1e-6 to 1, default 0.02.
+    /// Sets how large a jump in depth must be to draw a line; the lower, the more
+    /// lines. Range 1e-6 to 1, default 0.02. At this jump the response is 1.
     ///
     /// Corrected: a fraction of the distance to the surface behind, or of 1.2 times
     /// the height of the view under an orthographic projection; useful values are
@@ -37,8 +37,9 @@ pub struct Silhouettes {
     /// depth buffer of 0 to 1.
     #[reflect(@FieldRange::logarithmic(1e-6, 1.0))]
     pub threshold: f32,
-    /// Response, 0 to 1, at which a line has half of its ink.
-    /// Range 0.01 to 0.99, default 0.5. The edge-limit-value of \[CL\].
+    /// Sets how strong an edge must be to be inked; the higher, the fewer faint
+    /// lines. It is the response at which a line has half of its ink. Range 0.01 to
+    /// 0.99, default 0.5. The edge-limit-value of \[CL\].
     #[reflect(@FieldRange::linear(0.01, 0.99))]
     pub edge_limit: f32,
     /// Softness of the transition at `edge_limit`, as a fraction of the widest
@@ -108,13 +109,15 @@ pub struct Creases {
     /// Default: [`Form::Corrected`]. Faithful: \[CL\] Eq. 1 and 2 on each component
     /// of the normal.
     pub form: Form,
-    /// Angle between the normals of the two sides of a crease at which the response
-    /// is 1, in degrees; the lower, the more lines. Range 3 to 180, default 40.
-    /// Faithful: `k_p` of \[CL\] Eq. 2 is the sine of half of the angle.
+    /// Sets how sharply a surface must bend to draw a line; the lower, the more
+    /// lines. It is the angle between the normals of the two sides, in degrees, at
+    /// which the response is 1. Range 3 to 180, default 40. Faithful: `k_p` of
+    /// \[CL\] Eq. 2 is the sine of half of the angle.
     #[reflect(@FieldRange::linear(3.0, 180.0).unit("°"))]
     pub angle: f32,
-    /// Response, 0 to 1, at which a line has half of its ink.
-    /// Range 0.01 to 0.99, default 0.5. The edge-limit-value of \[CL\].
+    /// Sets how strong an edge must be to be inked; the higher, the fewer faint
+    /// lines. It is the response at which a line has half of its ink. Range 0.01 to
+    /// 0.99, default 0.5. The edge-limit-value of \[CL\].
     #[reflect(@FieldRange::linear(0.01, 0.99))]
     pub edge_limit: f32,
     /// Softness of the transition at `edge_limit`, as in [`Silhouettes::softness`].

@@ -117,6 +117,7 @@ fn the_range_on_a_field_is_the_range_that_is_used() {
     check(Creases::sanitized);
     check(ObjectEdges::sanitized);
     check(Sketch::sanitized);
+    check(Vignette::sanitized);
     check(DepthMap::sanitized);
     check(RangeSmoothing::sanitized);
 }
@@ -163,6 +164,23 @@ fn a_million_floats_in_every_field_of_the_colour_effects() {
         );
         used.red
     });
+}
+
+#[test]
+fn a_million_floats_in_every_field_of_the_vignette() {
+    let vignette = |edit: fn(&mut Vignette, f32)| {
+        move |x| {
+            let mut v = Vignette::default();
+            edit(&mut v, x);
+            v.sanitized()
+        }
+    };
+    let amount = vignette(|v, x| v.amount = x);
+    fuzz("Vignette::amount", 0.0, 1.0, |x| amount(x).amount);
+    let radius = vignette(|v, x| v.radius = x);
+    fuzz("Vignette::radius", 0.0, 1.0, |x| radius(x).radius);
+    let softness = vignette(|v, x| v.softness = x);
+    fuzz("Vignette::softness", 0.0, 1.0, |x| softness(x).softness);
 }
 
 #[test]

@@ -14,7 +14,7 @@ use super::{
     ComicStyle,
     version_1::{self, Upgraded},
 };
-use crate::effect::{AnyEffect, EffectRegistry, EffectType};
+use crate::effect::{AnyEffect, EffectRegistry, EffectType, FILE_KEYS};
 
 /// Why a style was not read or written.
 #[derive(Debug, Error)]
@@ -54,7 +54,7 @@ pub enum ComicStyleError {
 const VERSION: u32 = 2;
 
 /// A style that was read.
-pub(super) struct Read {
+pub(crate) struct Read {
     pub style: ComicStyle,
     /// What to change in a file of an older version.
     pub advice: Option<String>,
@@ -110,7 +110,7 @@ impl EffectRegistry {
 }
 
 /// Reads the text of a style file.
-pub(super) fn read(text: &str, types: &[&'static EffectType]) -> Result<Read, ComicStyleError> {
+pub(crate) fn read(text: &str, types: &[&'static EffectType]) -> Result<Read, ComicStyleError> {
     let current = match version_1::version(text) {
         Some(1) => version_1::upgraded(text),
         None | Some(VERSION) => Upgraded::unchanged(text),
@@ -239,10 +239,7 @@ impl<'de> Visitor<'de> for StyleSeed<'_> {
         match version {
             None => return Err(M::Error::missing_field("version")),
             Some(VERSION) => {}
-            Some(found) => {
-                let error = ComicStyleError::Version { found };
-                return Err(M::Error::custom(error));
-            }
+            Some(found) => return Err(M::Error::custom(other_version(found))),
         }
         if !style.partial {
             // Whatever a complete style does not have is off.
@@ -254,7 +251,7 @@ impl<'de> Visitor<'de> for StyleSeed<'_> {
 
 impl StyleSeed<'_> {
     fn unknown(&self, name: &str) -> String {
-        let keys: Vec<String> = ["version", "name", "partial", "depth_map"]
+        let keys: Vec<String> = FILE_KEYS
             .into_iter()
             .chain(self.0.iter().map(|effect| effect.name))
             .map(|key| format!("`{key}`"))
@@ -263,6 +260,16 @@ impl StyleSeed<'_> {
             "no effect is called `{name}`; the entries of a style are {}",
             keys.join(", ")
         )
+    }
+}
+
+/// Version 1 is upgraded as text, which a deserializer does not have.
+fn other_version(found: u32) -> String {
+    match found {
+        1 => String::from(
+            "style format version 1 is read from RON text only; save the style again as version 2",
+        ),
+        _ => ComicStyleError::Version { found }.to_string(),
     }
 }
 

@@ -119,6 +119,22 @@ impl ComicStyle {
         });
     }
 
+    /// Makes a camera look like this complete style, which was made by editing
+    /// what it looked like before. Over a camera's own look it takes the place of
+    /// the applied style, so that the camera has its own look again when that is
+    /// removed.
+    #[cfg(feature = "inspector")]
+    pub(crate) fn edit(&self, camera: &mut EntityCommands) {
+        let style = self.clone();
+        camera.queue(move |mut camera: EntityWorldMut| {
+            if camera.contains::<StyleLayer>() {
+                style.lay_over(&mut camera);
+            } else {
+                style.write(&mut camera);
+            }
+        });
+    }
+
     fn lay_over(self, camera: &mut EntityWorldMut) {
         let own = own_look(camera);
         let written = self.over(&own);

@@ -2,7 +2,7 @@
 
 mod apply;
 mod blend;
-mod format;
+pub(crate) mod format;
 mod layer;
 pub mod presets;
 pub(crate) mod rust_code;

@@ -88,12 +88,40 @@ macro_rules! presets {
             };
         )*
 
-        /// Every preset, in the order of the gallery.
+        /// Every preset, in the order of the gallery: outlines first, then contours,
+        /// then the figures of the second paper.
         pub const ALL: &[Preset] = &[$($CONSTANT),*];
     };
 }
 
 presets! {
+    /// A television cartoon: strong dark outlines. Flat with
+    /// [`CartoonScene`](crate::CartoonScene).
+    SATURDAY_MORNING: "saturday-morning";
+    /// Four tones and heavy outlines under one blue-grey atmosphere.
+    GRAPHIC_NOVEL: "graphic-novel";
+    /// Graphite strokes on paper, drawn anew eight times a second.
+    PENCIL_SKETCH: "pencil-sketch";
+    /// Evening: violet distance, warm lines that thin out with it.
+    TWILIGHT_TOON: "twilight-toon";
+    /// Loose ink over a wash of the scene's own colours.
+    WATERCOLOR: "watercolor";
+    /// Three flat tones with an outline.
+    CLEAR_BANDS: "clear-bands";
+    /// Brown-grey bands, outlines and dark corners.
+    SILENT_FILM: "silent-film";
+    /// Even lines on clean colours that pale a little with distance.
+    LIGNE_CLAIRE: "ligne-claire";
+    /// Black and white, with shadows as solid ink.
+    NOIR: "noir";
+    /// Near things keep their colours by day; the distance is a deep blue night.
+    COBALT_NIGHT: "cobalt-night";
+    /// Colours drain into pale mist; white lines.
+    MISTY_MORNING: "misty-morning";
+    /// Warm light on what is far away, brown ink.
+    GOLDEN_HOUR: "golden-hour";
+    /// White lines on blue.
+    BLUEPRINT: "blueprint";
     /// A red atmosphere that grows with distance. \[CS\] Figure 4, row 1.
     CRIMSON_DUSK: "crimson-dusk";
     /// One blue atmosphere for the whole picture, and colours that fade with
@@ -104,24 +132,6 @@ presets! {
     EMERALD_INK: "emerald-ink";
     /// A brown old photograph. \[CS\] Figure 3.
     SEPIA: "sepia";
-    /// Even lines on clean colours that pale a little with distance.
-    LIGNE_CLAIRE: "ligne-claire";
-    /// Black and white, with shadows as solid ink.
-    NOIR: "noir";
-    /// Day for night: deep blue with solid shadows.
-    COBALT_NIGHT: "cobalt-night";
-    /// Colours drain into pale mist; white lines.
-    MISTY_MORNING: "misty-morning";
-    /// Warm light on what is far away, brown ink.
-    GOLDEN_HOUR: "golden-hour";
-    /// White lines on blue.
-    BLUEPRINT: "blueprint";
-    /// A television cartoon: strong outlines on flat colours.
-    SATURDAY_MORNING: "saturday-morning";
-    /// Four tones, heavy outlines, and a distance that turns blue.
-    GRAPHIC_NOVEL: "graphic-novel";
-    /// Graphite strokes on paper, drawn anew eight times a second.
-    PENCIL_SKETCH: "pencil-sketch";
     /// Figure 7 (a) of \[CL\].
     FIGURE_7A: "figure-7a";
     /// Figure 7 (b) of \[CL\].
@@ -132,14 +142,6 @@ presets! {
     FIGURE_8B: "figure-8b";
     /// Figure 8 (c) of \[CL\].
     FIGURE_8C: "figure-8c";
-    /// Evening: violet distance, warm lines that thin out with it.
-    TWILIGHT_TOON: "twilight-toon";
-    /// Loose ink over a wash of the scene's own colours.
-    WATERCOLOR: "watercolor";
-    /// Three flat tones with an outline.
-    CLEAR_BANDS: "clear-bands";
-    /// Grey bands, outlines and dark corners.
-    SILENT_FILM: "silent-film";
 }
 
 /// Makes the presets loadable.

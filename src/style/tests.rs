@@ -1,12 +1,17 @@
 //! Styles over a camera's own look.
 
+use std::any::TypeId;
+
 use bevy::{
     app::App,
     asset::AssetPlugin,
     camera::Camera3d,
     ecs::{entity::Entity, template::FromTemplate},
     prelude::{AppTypeRegistry, TaskPoolPlugin},
-    reflect::serde::{ReflectDeserializer, ReflectSerializer},
+    reflect::{
+        TypeRegistry,
+        serde::{ReflectDeserializer, ReflectSerializer},
+    },
     tasks::tick_global_task_pools_on_main_thread,
 };
 use serde::de::DeserializeSeed;
@@ -152,6 +157,28 @@ fn a_style_can_become_the_cameras_own() {
     assert_eq!(look(&app, camera), own);
 }
 
+#[cfg(feature = "inspector")]
+#[test]
+fn an_edit_of_an_applied_style_leaves_the_own_look_alone() {
+    let (mut app, camera) = app();
+    let own = look(&app, camera);
+    let partial = ComicStyle::new().partial().with(contours(3.0));
+    apply(&mut app, camera, &partial);
+    let edited = look(&app, camera).with(contours(9.0));
+    let edit = |app: &mut App, style: &ComicStyle| {
+        style.edit(&mut app.world_mut().commands().entity(camera));
+        app.world_mut().flush();
+    };
+    edit(&mut app, &edited);
+    assert_eq!(look(&app, camera), edited);
+    take_off(&mut app, camera);
+    assert_eq!(look(&app, camera), own);
+    // Without an applied style, the camera's own look is edited.
+    edit(&mut app, &edited);
+    take_off(&mut app, camera);
+    assert_eq!(look(&app, camera), edited);
+}
+
 #[test]
 fn over_is_what_apply_does() {
     let base = ComicStyle::new()
@@ -274,7 +301,14 @@ fn every_effect_and_style_serializes_by_reflection() {
     assert_eq!(read.to_ron().expect("text"), style.to_ron().expect("text"));
     for effect in app.world().resource::<EffectRegistry>().types() {
         let id = (effect.type_info)().type_id();
-        let data = registry.get_type_data::<bevy::reflect::ReflectSerialize>(id);
-        assert!(data.is_some(), "{} does not reflect Serialize", effect.name);
+        assert_serializes(&registry, id, effect.name);
     }
+    assert_serializes(&registry, TypeId::of::<DepthMap>(), "DepthMap");
+}
+
+fn assert_serializes(registry: &TypeRegistry, id: TypeId, name: &str) {
+    let write = registry.get_type_data::<bevy::reflect::ReflectSerialize>(id);
+    assert!(write.is_some(), "{name} does not reflect Serialize");
+    let read = registry.get_type_data::<bevy::reflect::ReflectDeserialize>(id);
+    assert!(read.is_some(), "{name} does not reflect Deserialize");
 }

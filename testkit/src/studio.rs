@@ -6,7 +6,7 @@ use bevy::{
     camera::RenderTarget, core_pipeline::tonemapping::DebandDither, ecs::system::RunSystemOnce,
     prelude::*, render::view::Msaa, time::TimeUpdateStrategy,
 };
-use bevy_comics::{CartoonScene, ComicStyle, ComicsPlugin, DepthMap, ToneBands, presets};
+use bevy_comics::{CartoonScene, ComicStyle, ComicsPlugin, DepthMap, Preset, ToneBands, presets};
 
 use super::{
     headless::{Headless, HeadlessOptions},
@@ -87,22 +87,51 @@ pub fn with_map(mut style: ComicStyle, map: DepthMap) -> ComicStyle {
     style
 }
 
-/// The presets that have a golden picture in a scene. The first ten presets are those of
-/// the first paper. The mountains show them, the theatre shows the others, the teapot
-/// shows all, and the village shows the first ten and `graphic-novel`.
+/// The presets after the first paper, \[CS\]. Golden pictures are taken in the order of
+/// this list and the next: sketches change with the clock.
+const COLOR_PRESETS: [Preset; 10] = [
+    presets::CRIMSON_DUSK,
+    presets::MUSEUM_PRINT,
+    presets::EMERALD_INK,
+    presets::SEPIA,
+    presets::LIGNE_CLAIRE,
+    presets::NOIR,
+    presets::COBALT_NIGHT,
+    presets::MISTY_MORNING,
+    presets::GOLDEN_HOUR,
+    presets::BLUEPRINT,
+];
+
+/// The presets after the second paper, \[CL\].
+const LINE_PRESETS: [Preset; 12] = [
+    presets::SATURDAY_MORNING,
+    presets::GRAPHIC_NOVEL,
+    presets::PENCIL_SKETCH,
+    presets::FIGURE_7A,
+    presets::FIGURE_7B,
+    presets::FIGURE_8A,
+    presets::FIGURE_8B,
+    presets::FIGURE_8C,
+    presets::TWILIGHT_TOON,
+    presets::WATERCOLOR,
+    presets::CLEAR_BANDS,
+    presets::SILENT_FILM,
+];
+
+/// The presets that have a golden picture in a scene: the mountains show those after the
+/// first paper, the theatre those after the second, the teapot all of them, and the
+/// village those after the first and `graphic-novel`.
 pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
-    let is_cartoon = |name: &str| presets::ALL.iter().position(|p| p.name() == name) >= Some(10);
-    let wanted = |name: &&str| match scene {
-        BuiltIn::Teapot => true,
-        BuiltIn::Theatre => is_cartoon(name),
-        BuiltIn::Mountains => !is_cartoon(name),
-        BuiltIn::Village => !is_cartoon(name) || *name == "graphic-novel",
+    let mut shown = match scene {
+        BuiltIn::Theatre => Vec::new(),
+        _ => COLOR_PRESETS.to_vec(),
     };
-    presets::ALL
-        .iter()
-        .map(|preset| preset.name())
-        .filter(wanted)
-        .collect()
+    match scene {
+        BuiltIn::Teapot | BuiltIn::Theatre => shown.extend(LINE_PRESETS),
+        BuiltIn::Village => shown.push(presets::GRAPHIC_NOVEL),
+        BuiltIn::Mountains => {}
+    }
+    shown.into_iter().map(Preset::name).collect()
 }
 
 /// Draws the whole scene with the cartoon material, or with its own materials.

@@ -64,7 +64,7 @@ fn what_cannot_be_done_is_one_line_that_says_what_can() {
     fs::write(folder.join("broken.gltf"), "{ not json").expect("written");
     for (arguments, says) in [
         (&["moonscape"][..], "mountains, teapot, theatre, village"),
-        (&["--style", "nope"], "crimson-dusk, museum-print"),
+        (&["--style", "nope"], "saturday-morning, graphic-novel"),
         (&["--material", "wood"], "possible are standard, cartoon"),
         (
             &["--style", "missing.comic.ron"],

@@ -202,12 +202,26 @@ partial style: as the camera has it), a field that is left out has its default. 
 This page is made from the types by a test, which fails where the two differ.
 ";
 
-    /// Documentation as Markdown, without its examples, and with names in place of links to items.
+    /// Documentation as Markdown, without examples in Rust, and with names in place of
+    /// links to items.
     fn prose(docs: Option<&str>) -> String {
-        // Examples have their own page.
-        let docs: String = docs.unwrap_or_default().split("```").step_by(2).collect();
         let mut text = String::new();
-        for line in docs.lines().map(str::trim) {
+        for (index, part) in docs.unwrap_or_default().split("```").enumerate() {
+            if index % 2 == 0 {
+                text += &prose_between_examples(part);
+            } else if part.starts_with("ron") {
+                let _ = write!(text, "```{}```\n", part.replace("\n ", "\n"));
+            }
+        }
+        while text.contains("\n\n\n") {
+            text = text.replace("\n\n\n", "\n\n");
+        }
+        text.trim().to_owned()
+    }
+
+    fn prose_between_examples(part: &str) -> String {
+        let mut text = String::new();
+        for line in part.lines().map(str::trim) {
             if line.starts_with('[') && line.contains("]: ") {
                 continue;
             }
@@ -217,10 +231,7 @@ This page is made from the types by a test, which fails where the two differ.
             text += &without_links(&line);
             text.push('\n');
         }
-        while text.contains("\n\n\n") {
-            text = text.replace("\n\n\n", "\n\n");
-        }
-        text.trim().to_owned()
+        text
     }
 
     fn without_links(line: &str) -> String {
@@ -246,6 +257,15 @@ This page is made from the types by a test, which fails where the two differ.
         prose(docs).replace('\n', " ").replace('|', "\\|")
     }
 
+    /// Short for very small and very large numbers too.
+    fn number(value: f64) -> String {
+        if value != 0.0 && !(1e-4..1e6).contains(&value.abs()) {
+            format!("{value:e}")
+        } else {
+            value.to_string()
+        }
+    }
+
     fn kind(field: &NamedField) -> String {
         let name = field.type_path_table().short_path().to_owned();
         match FieldRange::of(field) {
@@ -254,7 +274,8 @@ This page is made from the types by a test, which fails where the two differ.
                     "" => String::new(),
                     unit => format!(" {unit}"),
                 };
-                format!("{name}, {} to {}{unit}", range.min, range.max)
+                let [min, max] = [range.min, range.max].map(number);
+                format!("{name}, {min} to {max}{unit}")
             }
             None => name,
         }

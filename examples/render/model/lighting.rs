@@ -19,6 +19,8 @@ struct Lamp {
     towards: Vec3,
     /// Value to which a white surface that faces the lamp is exposed by it alone.
     level: f32,
+    /// The same for the cartoon material.
+    flat_level: f32,
     color: Color,
     shadows: bool,
 }
@@ -26,13 +28,15 @@ struct Lamp {
 /// Level of a model's own lights together.
 const OWN_LEVEL: f32 = 0.5;
 
-/// The lamps are weak, because the highlight of a lamp without size clips on
-/// metal. The panels of the environment map give most of the light.
+/// Beside the environment map, the lamps are weak: its panels give most of the
+/// light, and the highlight of a lamp without size clips on metal. The cartoon
+/// material ignores environment maps, so the lamps are stronger there.
 const LAMPS: [Lamp; 3] = [
     // Key.
     Lamp {
         towards: Vec3::new(-0.55, 0.62, 0.62),
         level: 0.28,
+        flat_level: 0.66,
         color: Color::srgb(1.0, 0.985, 0.96),
         shadows: true,
     },
@@ -40,6 +44,7 @@ const LAMPS: [Lamp; 3] = [
     Lamp {
         towards: Vec3::new(0.85, 0.1, 0.55),
         level: 0.08,
+        flat_level: 0.08,
         color: Color::srgb(0.92, 0.96, 1.0),
         shadows: false,
     },
@@ -47,6 +52,7 @@ const LAMPS: [Lamp; 3] = [
     Lamp {
         towards: Vec3::new(0.55, 0.5, -0.75),
         level: 0.14,
+        flat_level: 0.1,
         color: Color::WHITE,
         shadows: false,
     },
@@ -57,15 +63,29 @@ fn illuminance(level: f32) -> f32 {
     level * PI / Exposure::default().exposure()
 }
 
+/// Level of the ambient light in the shadows of the cartoon material.
+const FLAT_AMBIENT: f32 = 0.16;
+
 /// Gives the camera the tone mapping, surroundings and, if the model has no
-/// lights, the lamps of the studio.
-pub fn light_camera(world: &mut World, camera: Entity, framing: &Framing, lamps: bool) {
+/// lights, the lamps of the studio. `flat`: for the cartoon material.
+pub fn light_camera(
+    world: &mut World,
+    camera: Entity,
+    framing: &Framing,
+    (lamps, flat): (bool, bool),
+) {
     let white = 1.0 / Exposure::default().exposure();
     let environment = environment::light(&mut world.resource_mut::<Assets<Image>>(), white);
     // Made for this: base colours come out as they are, highlights never clip.
     world
         .entity_mut(camera)
         .insert((Tonemapping::KhronosPbrNeutral, environment));
+    if flat {
+        world.entity_mut(camera).insert(AmbientLight {
+            brightness: FLAT_AMBIENT / Exposure::default().exposure(),
+            ..default()
+        });
+    }
     if !lamps {
         return;
     }
@@ -79,7 +99,7 @@ pub fn light_camera(world: &mut World, camera: Entity, framing: &Framing, lamps:
     for lamp in &LAMPS {
         let light = DirectionalLight {
             color: lamp.color,
-            illuminance: illuminance(lamp.level),
+            illuminance: illuminance(if flat { lamp.flat_level } else { lamp.level }),
             shadow_maps_enabled: lamp.shadows,
             // The default suits models of a few units; it is a distance.
             shadow_depth_bias: 1e-3 * (framing.far - framing.near),

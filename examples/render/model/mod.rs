@@ -94,10 +94,10 @@ impl Model {
         (vantage.near, vantage.far) = (framing.near, framing.far);
     }
 
-    /// Gives the camera the light for models.
-    pub fn light(&self, world: &mut World, camera: Entity, vantage: &Vantage) {
+    /// Gives the camera the light for models. `cartoon`: for the cartoon material.
+    pub fn light(&self, world: &mut World, camera: Entity, vantage: &Vantage, cartoon: bool) {
         let framing = self.extent.with_planes(vantage.eye, vantage.target);
-        lighting::light_camera(world, camera, &framing, !self.has_lights);
+        lighting::light_camera(world, camera, &framing, (!self.has_lights, cartoon));
     }
 }
 

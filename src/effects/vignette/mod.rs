@@ -25,15 +25,15 @@ use crate::{
 pub struct Vignette {
     /// How much of the colour is mixed in outside the ellipse. Range 0 (the effect is
     /// left out) to 1 (the colour alone), default 0.6.
-    #[reflect(@FieldRange::linear(0.0, 1.0))]
+    #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
     /// Distance from the centre at which half of the amount is mixed in, as a
     /// fraction of the distance to the corners. Range 0 to 1, default 0.8.
-    #[reflect(@FieldRange::linear(0.0, 1.0))]
+    #[reflect(@FieldRange::FRACTION)]
     pub radius: f32,
     /// Width of the transition, in the unit of `radius`. Range 0 (a hard edge) to 1,
     /// default 0.5.
-    #[reflect(@FieldRange::linear(0.0, 1.0))]
+    #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
     /// Colour that is mixed in. Default: black. Components are clamped to what a
     /// display shows; alpha is ignored.

@@ -197,6 +197,7 @@ fn names_that_cannot_work_are_refused() {
     test_effect!(Digit, "wave2", Needs::empty(), "");
     test_effect!(Depth, "depth", Needs::empty(), "");
     test_effect!(Taken, "contours", Needs::empty(), "");
+    test_effect!(Key, "partial", Needs::empty(), "");
     let mut app = App::new();
     app.add_plugins((
         ComicsPlugin,
@@ -204,6 +205,7 @@ fn names_that_cannot_work_are_refused() {
         EffectPlugin::<Digit>::default(),
         EffectPlugin::<Depth>::default(),
         EffectPlugin::<Taken>::default(),
+        EffectPlugin::<Key>::default(),
     ));
     let registry = app.world().resource::<EffectRegistry>();
     let names = |registry: &EffectRegistry| -> Vec<&str> {

@@ -232,7 +232,7 @@ fn lit_colors_are_those_of_the_material_and_nothing_clips() {
         arguments.extend(more);
         Shot::take(&folder, name, (96, 96), &arguments)
     };
-    for more in [&[][..], &["--hdr"]] {
+    for more in [&[][..], &["--hdr"], &["--material", "cartoon"]] {
         let skin = shoot("skin.glb", ball(SKIN, 0.0, 0.8), more);
         let lit = skin.lit_color();
         for (seen, own) in lit.iter().zip(SKIN) {
