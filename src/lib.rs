@@ -45,7 +45,7 @@
 //!    outlines or a [`Sketch`] of them, and [`Vignette`], in this order, and those
 //!    of the game ([`Effect`]) at the end of their [`EffectStage`].
 //!
-//! Whole looks are assets: [`ComicStyle`], with [`presets`]. On meshes, the
+//! Whole styles are assets: [`ComicStyle`], with [`presets`]. On meshes, the
 //! feature `objects` adds `NoOutlines` and `OutlineStyle`, and the feature
 //! `cartoon` adds `CartoonMaterial` and `CartoonScene`; both are on by default.
 //!

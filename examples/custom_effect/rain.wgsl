@@ -50,8 +50,8 @@ fn streak(s: Rain, at: vec2<f32>, layer: i32, far: f32) -> f32 {
     let across = clamp(half_width + 0.5 - distance, 0.0, min(2.0 * half_width, 1.0));
 
     // Along: from a faint tail (0) to the head (1).
-    let share = s.length / CELL.y;
-    let t = (fract(row) - random(cell, seed + 2) * (1.0 - share)) / share;
+    let fraction = s.length / CELL.y;
+    let t = (fract(row) - random(cell, seed + 2) * (1.0 - fraction)) / fraction;
     let along = clamp(t, 0.0, 1.0) * (1.0 - smoothstep(0.9, 1.0, t));
 
     // The more it rains, the more cells have their drop.

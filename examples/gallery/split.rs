@@ -24,7 +24,7 @@ impl Plugin for SplitPlugin {
 #[derive(Resource)]
 pub struct Split {
     pub on: bool,
-    /// Share of the window that shows the original.
+    /// Fraction of the window's width that shows the original.
     pub at: f32,
 }
 

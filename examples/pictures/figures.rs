@@ -52,7 +52,7 @@ fn depth_style(mapping: DepthMapping) -> ComicStyle {
     )
 }
 
-/// The depth map of the last frame, from its raw depth: pixels and the share of
+/// The depth map of the last frame, from its raw depth: pixels and the fraction of
 /// [0, 1] that the geometry covers (the widest gap-free measure: its extent,
 /// and how many of 256 levels are in use).
 struct Measured {
@@ -145,7 +145,7 @@ fn group(headless: &mut Headless, distance: f32) -> Result<Entity, String> {
 
 fn figure_2(folder: &Path) -> Result<(), String> {
     let mut rows = vec![Vec::new(), Vec::new()];
-    println!("figure 2: share of [0, 1] that the geometry uses, and levels of 256");
+    println!("figure 2: fraction of [0, 1] that the geometry uses, and levels of 256");
     println!(
         "  {:12} {:>22} {:>22}",
         "mapping", "near the near plane", "near the far plane"
@@ -169,7 +169,7 @@ fn figure_2(folder: &Path) -> Result<(), String> {
             line += &format!(" {:>14.4} {:>4} lv", measured.extent, measured.levels);
             numbers.push(serde_json::json!({
                 "mapping": name, "distance": distance,
-                "share": measured.extent, "levels": measured.levels,
+                "fraction": measured.extent, "levels": measured.levels,
             }));
             rows[row].push(measured.picture);
         }

@@ -69,7 +69,7 @@ pub struct DepthMap {
     /// in `docs/report`.
     pub smoothing: Option<RangeSmoothing>,
     /// Holds the visible range, whatever enters or leaves the view, until this is
-    /// `false` again: for a scene whose look must not change, or a photograph.
+    /// `false` again: for a scene whose colours must not change, or a photograph.
     /// Default: `false`.
     ///
     /// If the camera has not seen any geometry yet, it holds the range of the first

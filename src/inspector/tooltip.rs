@@ -85,7 +85,7 @@ fn is_link_definition(line: &str) -> bool {
 }
 
 /// Text without the markup of links, code and escapes. Citations keep their
-/// brackets: `\[CS\]` becomes `\[CS\]`. `starts_sentence` if the text is the start of
+/// brackets: `\[CS\]` becomes `[CS]`. `starts_sentence` if the text is the start of
 /// one.
 fn without_markup(text: &str, starts_sentence: bool) -> String {
     let mut plain = String::new();

@@ -40,7 +40,7 @@ impl NoOutlines {
     pub const INHERITED: Self = Self { inherit: true };
 }
 
-/// Gives the lines of this object another look than the camera's
+/// Draws the lines of this object in another style than the camera's
 /// [`Outlines`](crate::Outlines).
 ///
 /// Where one surface hides another, the line between them belongs to the nearer one.
@@ -48,8 +48,8 @@ impl NoOutlines {
 /// draws this kind of line; if both do, to the nearer one. An object that also has
 /// [`NoOutlines`] has no lines.
 ///
-/// There can be 255 different styles. Objects with a further one are drawn in the last
-/// of them, and a warning is logged.
+/// At most 255 different styles are told apart; objects with any further style get
+/// the 255th, and the log warns.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct OutlineStyle {

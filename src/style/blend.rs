@@ -16,7 +16,7 @@ impl ComicStyle {
     ///
     /// * Numbers are interpolated, colours in `OKLab`; an effect that only one
     ///   of the two has fades in or out.
-    /// * An effect whose mode changes (an operator, a method, the number of
+    /// * An effect whose mode changes (an operator, a form, the number of
     ///   tone bands) fades out until `t = 0.5`, changes there, and fades in.
     /// * When the mapping of the depth map changes, every effect that reads
     ///   the map does so.
@@ -24,7 +24,7 @@ impl ComicStyle {
     ///   a sketch and how often they are drawn anew, `despike`, `locked`.
     ///
     /// Both count as complete styles. For a partial one, lay it
-    /// [`over`](Self::over) the camera's own look first.
+    /// [`over`](Self::over) the camera's own style first.
     #[must_use]
     pub fn blend(&self, other: &Self, t: f32) -> Self {
         if t.is_nan() || t <= 0.0 {

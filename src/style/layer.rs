@@ -52,7 +52,7 @@ impl ComicStyle {
         !self.partial || self.by_name(name).is_some() || self.off.contains(name)
     }
 
-    /// The look of a camera whose own look is `base` when this style lies over
+    /// The style of a camera whose own style is `base` when this one lies over
     /// it. The result is partial only if both are.
     #[must_use]
     pub fn over(&self, base: &Self) -> Self {
@@ -75,8 +75,8 @@ impl ComicStyle {
         look
     }
 
-    /// The look that a camera's components are, as a complete style without a
-    /// name: of the effects that `registry` knows.
+    /// The components of a camera, as a complete style without a name: its depth
+    /// map and those of its effects that `registry` knows.
     pub fn of(camera: EntityRef, registry: &EffectRegistry) -> Self {
         let mut style = Self {
             depth_map: camera.get().copied(),
@@ -90,7 +90,7 @@ impl ComicStyle {
         style
     }
 
-    /// Applies the style to a camera, over the camera's own look and in place
+    /// Applies the style to a camera, over the camera's own style and in place
     /// of the style that was applied before: inserts and removes the components
     /// of the effects that the app knows. Between calls the components belong to
     /// the game and may be edited.
@@ -99,7 +99,7 @@ impl ComicStyle {
         camera.queue(move |mut camera: EntityWorldMut| style.lay_over(&mut camera));
     }
 
-    /// Takes the applied style off a camera, which then has its own look again.
+    /// Takes the applied style off a camera, which then has its own style again.
     /// A camera without a style does not change.
     pub fn remove_from(camera: &mut EntityCommands) {
         camera.queue(|mut camera: EntityWorldMut| {
@@ -110,7 +110,7 @@ impl ComicStyle {
         });
     }
 
-    /// Makes this style the camera's own look, complete, with no style over it.
+    /// Makes this style the camera's own, as a complete one, with no style over it.
     pub fn set_as_own(&self, camera: &mut EntityCommands) {
         let style = self.clone();
         camera.queue(move |mut camera: EntityWorldMut| {
@@ -127,10 +127,15 @@ impl ComicStyle {
     pub(crate) fn edit(&self, camera: &mut EntityCommands) {
         let style = self.clone();
         camera.queue(move |mut camera: EntityWorldMut| {
+            let own = own_look(&camera);
+            style.write(&mut camera);
             if camera.contains::<StyleLayer>() {
-                style.lay_over(&mut camera);
-            } else {
-                style.write(&mut camera);
+                let written = style.clone();
+                camera.insert(StyleLayer {
+                    own,
+                    style,
+                    written,
+                });
             }
         });
     }

@@ -1,4 +1,4 @@
-//! Whole looks as assets (`*.comic.ron`), and how they are put on cameras.
+//! Styles as assets (`*.comic.ron`), and how they are put on cameras.
 
 mod apply;
 mod blend;
@@ -30,7 +30,7 @@ use crate::{
     effect::{AnyEffect, Effect, EffectSet},
 };
 
-/// A look: the effects of a camera and its depth map, in one asset.
+/// The effects of a camera and its depth map, in one asset.
 ///
 /// ```
 /// use bevy_comics::{ComicStyle, Desaturation, Outlines};
@@ -56,8 +56,8 @@ use crate::{
 ///
 /// # Complete and partial styles
 ///
-/// A style lies over the camera's own look: the effects and the [`DepthMap`]
-/// that the camera has without a style.
+/// A style lies over the camera's own style: the effects and the [`DepthMap`]
+/// that the camera has without a `ComicStyle`.
 ///
 /// * A **complete** style (the default) decides about every effect: those that
 ///   it does not mention are off.

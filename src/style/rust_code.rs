@@ -25,7 +25,7 @@ const PRELUDE: &[&str] = &[
 ];
 
 impl ComicStyle {
-    /// A Rust expression that builds this style, to compile a tuned look into a
+    /// A Rust expression that builds this style, to compile a tuned style into a
     /// game. Fields that have their default value are left out.
     ///
     /// The expression compiles where `bevy::prelude::*` and

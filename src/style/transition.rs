@@ -23,9 +23,9 @@ use bevy::{
 use super::{ComicStyle, ComicStyleHandle, layer::own_look};
 use crate::{diagnostics::ComicsDiagnostics, effect::EffectRegistry};
 
-/// Carries a camera from the look that it has to another one, over time.
+/// Carries a camera from the style that it has to another one, over time.
 ///
-/// The look it starts from is what the camera's components are when this one
+/// The style it starts from is what the camera's components are when this one
 /// is put there, in the midst of another transition too. What lies between the
 /// two is [`ComicStyle::blend`]: continuous, with modes that change where
 /// their effect has no strength. When it is over the camera has exactly the
@@ -93,8 +93,8 @@ pub struct StyleTransitionFinished {
 
 impl StyleTransition {
     /// To a style, in so many seconds; 0, or what is not a positive number, is
-    /// at once. The camera's [`ComicStyleHandle`], if it has one, is emptied: no
-    /// file has a say in its look any more.
+    /// at once. The camera's [`ComicStyleHandle`], if it has one, is emptied, so
+    /// later changes of that file have no effect.
     pub fn to(style: ComicStyle, seconds: f32) -> Self {
         Self::new(StyleTarget::Style(style), seconds)
     }
@@ -173,7 +173,7 @@ pub(super) fn run_transitions(
         if transition.start.is_none() {
             camera.queue(remember_start);
             if matches!(transition.target, StyleTarget::Style(_)) {
-                // Taking it away would take the look along.
+                // Removing the handle would also remove the style.
                 camera.insert_if(ComicStyleHandle::default(), || has_handle);
             }
         } else if !diagnostics.is_compiling(entity) {
