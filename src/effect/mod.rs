@@ -27,9 +27,9 @@ use bitflags::bitflags;
 use serde::{Serialize, de::DeserializeOwned};
 
 pub use any::AnyEffect;
+pub(crate) use compose::FILE_KEYS;
 pub use facts::ViewFacts;
 pub use key::Variants;
-pub(crate) use compose::FILE_KEYS;
 pub(crate) use plugin::FusedPlugin;
 pub use registry::{EffectPlugin, EffectRegistry, EffectType};
 pub use set::EffectSet;

@@ -4,7 +4,7 @@ use bevy::color::Color;
 
 use crate::{
     BlackFlats, Colorization, Contours, Creases, DepthMap, DepthMapping, Desaturation, Effect,
-    ObjectEdges, Outlines, RangeSmoothing, Silhouettes, Sketch, ToneBands,
+    ObjectEdges, Outlines, RangeSmoothing, Silhouettes, Sketch, ToneBands, Vignette,
 };
 
 /// A million floats: hand-picked edge cases, then random bit patterns, which
