@@ -10,11 +10,13 @@ use serde_json::Value;
 
 use crate::window::{Window, changed};
 
-/// Size of the window in pixels; small, because a CPU may draw it.
-const WIDTH: u32 = 820;
-const HEIGHT: u32 = 600;
+/// Size of the window in pixels: 820 x 600 logical pixels. Small, because a CPU may
+/// draw it.
+const WIDTH: u32 = 574;
+const HEIGHT: u32 = 420;
+const SCALE: f64 = 0.7;
 /// Width of the picture left of the panel in pixels.
-const PICTURE: u32 = 330;
+const PICTURE: u32 = 231;
 
 fn picture(window: &Window) -> RgbImage {
     image::imageops::crop_imm(&window.picture(), 0, 0, PICTURE, HEIGHT).to_image()
@@ -39,7 +41,7 @@ fn until_width(window: &Window, wanted: f32) {
 /// program, break it, repair it, compare, take a screenshot, close.
 #[test]
 fn a_style_is_tuned_in_a_window() {
-    let window = Window::open([WIDTH, HEIGHT], 1.0, &[]);
+    let window = Window::open([WIDTH, HEIGHT], SCALE, &[]);
     let state = window.state();
     assert_eq!(state["open"], false);
     assert_eq!(state["panel_cameras"], 0, "a closed panel has no camera");
@@ -59,7 +61,7 @@ fn a_style_is_tuned_in_a_window() {
     assert!(wide > 6.0 && wide <= 16.0, "the slider moved: {wide}");
     let after = picture(&window);
     let ink = changed(&before, &after);
-    assert!(ink > 400, "the lines are wider: {ink} pixels");
+    assert!(ink > 200, "the lines are wider: {ink} pixels");
 
     // Undo and redo by key: a drag is one step.
     window.chord(&["ctrl"], "z");
@@ -139,7 +141,7 @@ fn a_style_is_tuned_in_a_window() {
     until_width(&window, 1.25);
     let thin = picture(&window);
     assert!(
-        changed(&after, &thin) > 400,
+        changed(&after, &thin) > 200,
         "a file that is edited is seen at once"
     );
 
@@ -172,7 +174,7 @@ fn a_style_is_tuned_in_a_window() {
     window.xdotool(&["mousedown", "1"]);
     window.held.set(true);
     window.until("the original", |state| state["cameras"][0]["weight"] == 0.0);
-    assert!(changed(&inked, &picture(&window)) > 400);
+    assert!(changed(&inked, &picture(&window)) > 200);
     window.xdotool(&["mouseup", "1"]);
     window.held.set(false);
     window.until("the style", |state| state["cameras"][0]["weight"].is_null());
@@ -270,7 +272,7 @@ fn tab_to(window: &Window, widget: &str) {
 
 #[test]
 fn the_keyboard_alone_tunes_a_style() {
-    let window = Window::open([WIDTH, HEIGHT], 1.0, &[]);
+    let window = Window::open([WIDTH, HEIGHT], SCALE, &[]);
     window.key("F10");
     window.until("the panel", |state| {
         state["widgets"]["tab.Style"].is_array()
@@ -313,10 +315,10 @@ fn the_keyboard_alone_tunes_a_style() {
     window.until("the end", |state| state["panel_cameras"] == 0);
 }
 
-/// Two cameras in a window with scale factor 1.5.
+/// Two cameras in a window with scale factor 1.2.
 #[test]
 fn two_cameras_have_styles_of_their_own() {
-    let window = Window::open([1230, 840], 1.5, &["--cameras", "2"]);
+    let window = Window::open([984, 672], 1.2, &["--cameras", "2"]);
     window.key("F10");
     window.until("the panel", |state| {
         state["widgets"]["tab.Style"].is_array()
@@ -398,9 +400,9 @@ fn two_cameras_have_styles_of_their_own() {
         .next()
         .expect("a picture");
     let photo = image::open(photo.path()).expect("a picture").to_rgb8();
-    assert_eq!(photo.dimensions(), (2 * 1230, 2 * 840));
-    for half in [0, 1230] {
-        let half = image::imageops::crop_imm(&photo, half, 0, 1230, 1680).to_image();
+    assert_eq!(photo.dimensions(), (2 * 984, 2 * 672));
+    for half in [0, 984] {
+        let half = image::imageops::crop_imm(&photo, half, 0, 984, 1344).to_image();
         let shades: std::collections::HashSet<_> = half.pixels().collect();
         assert!(shades.len() > 100, "a half has {} shades", shades.len());
     }

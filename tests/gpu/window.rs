@@ -84,7 +84,8 @@ impl Window {
             sleep(Duration::from_millis(20));
         }
         let app = Command::new(program)
-            .args(["--scene", "teapot", "--memory", "none"])
+            .args(["--scene", "teapot", "--style", "ligne-claire"])
+            .args(["--memory", "none"])
             .args(["--size", &format!("{}x{}", size[0], size[1])])
             .args(["--scale", &scale.to_string()])
             .arg("--state")
