@@ -210,7 +210,7 @@ This page is made from the types by a test, which fails where the two differ.
             if index % 2 == 0 {
                 text += &prose_between_examples(part);
             } else if part.starts_with("ron") {
-                let _ = write!(text, "```{}```\n", part.replace("\n ", "\n"));
+                let _ = writeln!(text, "```{}```", part.replace("\n ", "\n"));
             }
         }
         while text.contains("\n\n\n") {
