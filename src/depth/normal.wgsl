@@ -21,6 +21,11 @@ fn decode_normal(texel: vec3<f32>) -> vec4<f32> {
 
 // (normal, 1) of a pixel's first sample, in world space; w is 0 where there is none.
 fn load_normal(pixel: vec2<i32>) -> vec4<f32> {
-    return decode_normal(textureLoad(normal_texture, depth_pixel(pixel), 0).xyz);
+    return texel_normal(depth_pixel(pixel), 0);
+}
+
+// The same at a pixel and sample of the prepass texture.
+fn texel_normal(at: vec2<i32>, sample: i32) -> vec4<f32> {
+    return decode_normal(textureLoad(normal_texture, at, sample).xyz);
 }
 #endif

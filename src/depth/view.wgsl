@@ -66,7 +66,11 @@ fn sample_count() -> i32 {
 
 // Raw depth at a pixel, which must be inside the viewport.
 fn load_depth(pixel: vec2<i32>, sample: i32) -> f32 {
-    let at = depth_pixel(pixel);
+    return texel_depth(depth_pixel(pixel), sample);
+}
+
+// Raw depth at a pixel of the depth texture.
+fn texel_depth(at: vec2<i32>, sample: i32) -> f32 {
 #ifdef MULTISAMPLED
     let d = textureLoad(depth_texture, at, sample).r;
 #else

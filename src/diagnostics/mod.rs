@@ -35,10 +35,10 @@ pub enum ComicsStage {
     /// ([`VisibleDepthRange`](crate::VisibleDepthRange),
     /// [`DepthHistogram`](crate::DepthHistogram)).
     RangeReadback,
-    /// The pass that finds the edges of the outlines.
-    OutlineEdges,
-    /// The jump flood that carries wide lines.
-    LineFlood,
+    /// The pass that finds the cracks between pixels that lines run along.
+    FindLines,
+    /// The pass that draws the ink of the lines.
+    DrawLines,
     /// An effect in the fused pass, by its name
     /// ([`Effect::NAME`](crate::Effect::NAME)); see also [`ComicsStage::of`].
     Effect(&'static str),
@@ -55,8 +55,8 @@ impl ComicsStage {
         Self::DepthRange,
         Self::RangeSmoothing,
         Self::RangeReadback,
-        Self::OutlineEdges,
-        Self::LineFlood,
+        Self::FindLines,
+        Self::DrawLines,
     ];
 
     /// The stage's name in reports and files: lower case, with spaces.
@@ -68,8 +68,8 @@ impl ComicsStage {
             Self::DepthRange => "depth range",
             Self::RangeSmoothing => "range smoothing",
             Self::RangeReadback => "range readback",
-            Self::OutlineEdges => "outline edges",
-            Self::LineFlood => "line flood",
+            Self::FindLines => "find lines",
+            Self::DrawLines => "draw lines",
             Self::Effect(name) => return Cow::Owned(name.replace('_', " ")),
             Self::Stylize => "stylize",
         })
@@ -106,9 +106,6 @@ pub enum LeftOut {
     /// The lines of the camera do not need it, or it needs lines and no effect
     /// requests any.
     NoSuchLines,
-    /// The lines are narrow (up to 4 physical pixels), so the fused pass finds them
-    /// without a flood.
-    NarrowLines,
     /// The depth map spans fixed distances, not the visible range.
     FixedRange,
     /// The view has no depth prepass.
@@ -140,7 +137,6 @@ impl fmt::Display for LeftOut {
             Self::NoDepthStyle => "no effect reads depth",
             Self::NoMapStyle => "no effect reads the depth map",
             Self::NoSuchLines => "no such lines are requested",
-            Self::NarrowLines => "the lines are narrow",
             Self::FixedRange => "the range is fixed",
             Self::NoDepthPrepass => "the view has no depth prepass",
             Self::NoNormalPrepass => "the view has no normal prepass",

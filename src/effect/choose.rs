@@ -5,6 +5,7 @@
 use std::sync::Arc;
 
 use bevy::{
+    camera::MainPassResolutionOverride,
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::{
         component::Component,
@@ -12,9 +13,9 @@ use bevy::{
         query::{Or, With, Without},
         system::{Commands, Query, Res, ResMut},
     },
-    math::{Mat4, UVec2},
+    math::Mat4,
     render::{
-        camera::ExtractedCamera,
+        camera::{ExtractedCamera, TemporalJitter},
         render_resource::PipelineCache,
         view::{ExtractedView, ViewTarget},
     },
@@ -47,8 +48,6 @@ pub(crate) struct ViewPlan {
     pub clip_from_view: Mat4,
     /// Physical pixels per logical pixel.
     pub scale_factor: f32,
-    /// Size of the main pass in physical pixels, if it differs from the viewport.
-    pub main_pass_size: Option<UVec2>,
     /// The largest line width that an object overrides, in logical pixels.
     pub widest_object: f32,
     /// Seconds of the app's default clock.
@@ -85,6 +84,7 @@ pub(crate) fn choose_plans(
         &ExtractedView,
         Option<&ViewPrepassTextures>,
         (Option<&ViewTarget>, Option<&ReadyPlan>),
+        (Option<&MainPassResolutionOverride>, Option<&TemporalJitter>),
     )>,
     stale: Query<Entity, (With<ReadyPlan>, NotDrawn)>,
     (ledger, registry): (Res<StageLedger>, Res<EffectRegistry>),
@@ -94,12 +94,12 @@ pub(crate) fn choose_plans(
     for entity in &stale {
         commands.entity(entity).remove::<Chosen>();
     }
-    for (entity, view, camera, extracted, prepass, (target, ready)) in &views {
+    for (entity, view, camera, extracted, prepass, (target, ready), raster) in &views {
         if target.is_none() || extracted.viewport.z == 0 || extracted.viewport.w == 0 {
             commands.entity(entity).remove::<Chosen>();
             continue;
         }
-        let scene = Scene::new(extracted, prepass);
+        let scene = Scene::new(extracted, prepass, raster);
         let wanted = scene.reduce(&view.plan);
         report(&ledger, &registry, (view, &wanted), &scene);
 

@@ -26,7 +26,7 @@ const MODULES: [&str; 11] = [
 ];
 
 /// Shader definitions of the fused pass that do not name an effect, in lower case.
-const DEFINITIONS: [&str; 18] = [
+const DEFINITIONS: [&str; 16] = [
     "depth",
     "map",
     "map_flags",
@@ -39,8 +39,6 @@ const DEFINITIONS: [&str; 18] = [
     "object_styles",
     "lines",
     "lines_anywhere",
-    "line_reach",
-    "flood",
     "lightness_change",
     "finish",
     "stored_srgb",

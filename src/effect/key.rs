@@ -15,7 +15,7 @@ use super::{Needs, Plan, ViewFacts, compose::definition};
 use crate::{
     depth::view::ViewUniform,
     finish::DebugView,
-    lines::{GATHER_REACH, edges_entry, range_entry},
+    lines::{ink_entry, range_entry},
     objects::{ids_entry, object_styles_entry},
 };
 
@@ -61,11 +61,6 @@ pub(crate) struct KeyInputs {
     pub samples: Option<u32>,
     pub oblique: bool,
     pub view: ViewUniform,
-    /// Distance, in physical pixels, within which lines are searched around a
-    /// pixel.
-    pub reach: i32,
-    /// Whether a jump flood carries the lines.
-    pub flood: bool,
 }
 
 /// Everything that is compiled into the fused pass: the effects, their modes and
@@ -83,11 +78,9 @@ pub(crate) struct StylizeKey {
     pub depth: bool,
     pub visible_range: bool,
     pub lines: bool,
-    flood: bool,
     pub object_styles: bool,
     view: Option<DebugView>,
     map_flags: u32,
-    reach: u32,
     finish: bool,
     same_size: bool,
 }
@@ -117,16 +110,10 @@ impl StylizeKey {
             depth,
             visible_range: plan.draws_with_range(),
             lines,
-            flood: lines && inputs.flood,
             object_styles: lines && plan.object_styles,
             view: plan.view,
             map_flags: if needs.contains(Needs::MAP) {
                 inputs.view.depth.flags
-            } else {
-                0
-            },
-            reach: if lines {
-                inputs.reach.clamp(0, GATHER_REACH) as u32
             } else {
                 0
             },
@@ -141,11 +128,6 @@ impl StylizeKey {
 
     pub fn ids(&self) -> bool {
         self.needs.contains(Needs::IDS)
-    }
-
-    /// Whether a jump flood carries the lines.
-    pub fn flooded(&self) -> bool {
-        self.flood
     }
 
     pub fn shader_defs(&self) -> Vec<ShaderDefVal> {
@@ -166,7 +148,6 @@ impl StylizeKey {
             (self.ids(), "OBJECT_IDS"),
             (self.lines, "LINES"),
             (needs.contains(Needs::LINES_ANYWHERE), "LINES_ANYWHERE"),
-            (self.flood, "FLOOD"),
             (self.object_styles, "OBJECT_STYLES"),
             (needs.contains(Needs::LIGHTNESS_CHANGE), "LIGHTNESS_CHANGE"),
             (self.same_size, "SAME_SIZE"),
@@ -178,10 +159,7 @@ impl StylizeKey {
         .map(ShaderDefVal::from)
         .chain(self.view.into_iter().flat_map(view_definitions))
         .chain(self.effects.iter().map(|name| definition(name).into()))
-        .chain([
-            number("MAP_FLAGS", self.map_flags),
-            number("LINE_REACH", self.reach),
-        ])
+        .chain([number("MAP_FLAGS", self.map_flags)])
         .chain(self.variants.shader_defs())
         .collect()
     }
@@ -204,8 +182,7 @@ impl StylizeKey {
         let optional = [
             (self.depth, prepass(2)),
             (self.visible_range, range_entry()),
-            (self.lines, edges_entry(4)),
-            (self.flood, edges_entry(5)),
+            (self.lines, ink_entry()),
             (self.object_styles, object_styles_entry()),
             (self.normals(), prepass(7)),
             (self.ids(), ids_entry(self.samples > 1)),

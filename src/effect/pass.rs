@@ -179,12 +179,8 @@ fn inputs<'a>(
     }
     if key.lines {
         let lines = lines.ok_or(not_ready)?;
-        let edges = lines.found().ok_or(not_ready)?;
-        entries.push(entry(4, (&edges.default_view).into_binding()));
-        if key.flooded() {
-            let flood = lines.flood.as_ref().ok_or(not_ready)?;
-            entries.push(entry(5, (&flood.result().default_view).into_binding()));
-        }
+        let ink = lines.found().ok_or(not_ready)?;
+        entries.push(entry(4, (&ink.default_view).into_binding()));
     }
     if key.object_styles {
         let styles = object_styles.buffer().ok_or(not_ready)?;

@@ -374,11 +374,10 @@ impl Plan {
         match stage {
             ComicsStage::Effect(_) | ComicsStage::RangeReadback => LeftOut::NotRequested,
             ComicsStage::DepthPrepass => LeftOut::NoDepthStyle,
-            ComicsStage::NormalPrepass | ComicsStage::ObjectIds | ComicsStage::OutlineEdges => {
-                LeftOut::NoSuchLines
-            }
-            ComicsStage::LineFlood if lines => LeftOut::NarrowLines,
-            ComicsStage::LineFlood => LeftOut::NoSuchLines,
+            ComicsStage::NormalPrepass
+            | ComicsStage::ObjectIds
+            | ComicsStage::FindLines
+            | ComicsStage::DrawLines => LeftOut::NoSuchLines,
             ComicsStage::RangeSmoothing
                 if self.depth_map.smoothing.is_none() && !self.depth_map.locked =>
             {

@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use bevy::{
+    camera::MainPassResolutionOverride,
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::{
         entity::Entity,
         system::{Commands, Res, ResMut, SystemParam},
     },
-    math::{UVec2, UVec4},
+    math::{UVec2, UVec4, Vec2, Vec4Swizzles},
     render::{
-        camera::ExtractedCamera,
+        camera::{ExtractedCamera, TemporalJitter},
         render_resource::{
             CachedPipelineState, CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines,
         },
@@ -20,7 +21,7 @@ use bevy::{
 };
 
 use super::{
-    Needs, Plan, ViewFacts, ViewPlan,
+    Plan, ViewFacts, ViewPlan,
     key::{KeyInputs, StylizeKey},
     pass::StylizePipeline,
     plan::Prepasses,
@@ -28,11 +29,11 @@ use super::{
 };
 use crate::{
     depth::{
-        ProjectionKind,
+        ProjectionKind, RawDepth,
         request::{RangePasses, RangePipelines, RangeRequest, Reduction},
         view::{ViewUniform, depth_rect},
     },
-    lines::request::{LinePasses, LinePipelines, LineRequest},
+    lines::request::{Find, LinePasses, LinePipelines, LineRequest},
     objects::IdRequest,
 };
 
@@ -40,16 +41,28 @@ use crate::{
 #[derive(Clone, Copy)]
 pub(super) struct Scene {
     viewport: UVec4,
+    /// Size of the main pass in pixels, if it differs from the viewport.
+    main_pass_size: Option<UVec2>,
+    /// By how much the engine has moved the main pass in this frame, in its pixels,
+    /// under temporal anti-aliasing.
+    jitter: Option<Vec2>,
     /// Size in pixels and samples per pixel of the depth prepass, if there is one.
     pub depth: Option<(UVec2, u32)>,
     pub normals: bool,
 }
 
 impl Scene {
-    pub fn new(extracted: &ExtractedView, prepass: Option<&ViewPrepassTextures>) -> Self {
+    pub fn new(
+        extracted: &ExtractedView,
+        prepass: Option<&ViewPrepassTextures>,
+        // The engine sets both in the render world.
+        (resolution, jitter): (Option<&MainPassResolutionOverride>, Option<&TemporalJitter>),
+    ) -> Self {
         let depth = prepass.and_then(|textures| textures.depth.as_ref());
         Self {
             viewport: extracted.viewport,
+            main_pass_size: resolution.map(|resolution| resolution.0),
+            jitter: jitter.map(|jitter| jitter.offset),
             depth: depth.map(|depth| {
                 let texture = &depth.texture.texture;
                 let size = UVec2::new(texture.width(), texture.height());
@@ -57,6 +70,11 @@ impl Scene {
             }),
             normals: prepass.is_some_and(|textures| textures.normal.is_some()),
         }
+    }
+
+    /// The part of the depth texture that the main pass draws: x, y, width, height.
+    fn drawn(&self) -> UVec4 {
+        depth_rect(self.viewport, self.main_pass_size)
     }
 
     /// The plan without the effects whose inputs this view does not provide.
@@ -106,8 +124,6 @@ impl Services<'_> {
                 samples: scene.depth.map(|(_, samples)| samples),
                 oblique: view.projection.kind() == ProjectionKind::Oblique,
                 view: uniform,
-                reach: lines.as_ref().map_or(0, |request| request.lines.reach),
-                flood: lines.as_ref().is_some_and(LineRequest::floods),
             };
             self.fused(cache, (plan, view), scene, (&inputs, lines.as_ref()))
         });
@@ -166,11 +182,16 @@ impl Services<'_> {
 fn view_uniform(view: &ViewPlan, plan: &Plan, scene: &Scene) -> ViewUniform {
     ViewUniform::new(
         scene.viewport,
-        view.main_pass_size,
+        scene.main_pass_size,
         plan.depth_map.flip,
-        view.projection.raw(&view.clip_from_view, scene.viewport),
+        raw_depth(view, scene),
         view.projection.frame(&plan.depth_map),
     )
+}
+
+/// How the texels of the depth texture become raw depth.
+fn raw_depth(view: &ViewPlan, scene: &Scene) -> RawDepth {
+    view.projection.raw(&view.clip_from_view, scene.drawn())
 }
 
 fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeRequest> {
@@ -179,8 +200,8 @@ fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeReq
         camera: view.camera,
         map: plan.depth_map,
         projection: view.projection,
-        raw: view.projection.raw(&view.clip_from_view, scene.viewport),
-        rect: depth_rect(scene.viewport, view.main_pass_size),
+        raw: raw_depth(view, scene),
+        rect: scene.drawn(),
         samples,
         smooths: plan.smooths(),
         readback: plan.readback,
@@ -197,7 +218,7 @@ fn line_request(
     uniform: ViewUniform,
 ) -> Option<LineRequest> {
     let settings = plan.lines.filter(|_| plan.draws())?;
-    let (size, samples) = scene.depth?;
+    let (_, samples) = scene.depth?;
     let widest_object = if plan.object_styles {
         view.widest_object
     } else {
@@ -209,14 +230,16 @@ fn line_request(
         camera: view.camera,
         settings,
         view: uniform,
-        lines: settings.uniform(view.scale_factor, reference, reach),
-        size,
+        lines: settings.uniform(view.scale_factor, reference),
         samples,
+        size: scene.viewport.zw(),
+        rect: scene.drawn(),
+        jitter: scene.jitter,
+        reach,
         oblique: view.projection.kind() == ProjectionKind::Oblique,
         visible_range: plan.depth_map.mapping.follows_visible_range(),
         ids: plan.draws_ids(),
         object_styles: plan.object_styles,
-        anywhere: plan.needs().contains(Needs::LINES_ANYWHERE),
     })
 }
 
@@ -234,7 +257,14 @@ impl Requests {
             reduction || passes.smoothing.is_some_and(compute)
         });
         let lines = self.lines.as_ref().is_some_and(|(_, passes)| {
-            render(passes.detect) || passes.flood.is_some_and(|ids| ids.into_iter().any(render))
+            let cracks = passes.cracks.is_some_and(|(find, draw)| {
+                let find = match find {
+                    Find::Compute(id) => compute(id),
+                    Find::Fragments(id) => render(id),
+                };
+                find || render(draw)
+            });
+            cracks || passes.faithful.is_some_and(render)
         });
         let fused = self.fused.as_ref().is_some_and(|f| render(f.pipeline));
         range || lines || fused

@@ -1,15 +1,18 @@
-//! Records the passes that find a view's lines.
+//! Records the passes that find a view's lines and draw their ink.
 
 use std::sync::atomic::Ordering;
 
 use bevy::{
+    color::LinearRgba,
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::system::Res,
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
-            BindGroup, BindGroupEntry, BindingResource, CommandEncoder, IntoBinding, PipelineCache,
-            RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
+            BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, BindingResource,
+            CachedRenderPipelineId, CommandEncoder, ComputePassDescriptor, ComputePipeline,
+            IntoBinding, LoadOp, Operations, PipelineCache, RenderPassColorAttachment,
+            RenderPassDescriptor, RenderPipeline, StoreOp,
         },
         renderer::{RenderContext, RenderDevice, ViewQuery},
         texture::CachedTexture,
@@ -18,9 +21,9 @@ use bevy::{
 
 use super::{
     ViewLines,
-    pipelines::FloodPipeline,
-    prepare::Flood,
-    request::{LinePasses, LineRequest},
+    pipelines::{TILE, WORKGROUP},
+    prepare::{Cracks, blocks},
+    request::{Find, LinePasses, LineRequest},
 };
 use crate::{
     depth::prepare::ViewDepthRange,
@@ -36,7 +39,7 @@ type ViewParts<'a> = (
     Option<&'a ViewObjectIds>,
 );
 
-/// Records the passes that find the lines of the view.
+/// Records the passes that find the lines of the view and draw their ink.
 pub(crate) fn find_lines(
     view: ViewQuery<(
         (&LineRequest, &LinePasses, &ViewLines),
@@ -51,142 +54,232 @@ pub(crate) fn find_lines(
 ) {
     let parts = view.into_inner();
     let (request, _, lines) = parts.0;
-    let outcome = match record(parts, &object_styles, &cache, &mut ctx) {
+    let inputs = Inputs {
+        parts,
+        object_styles: &object_styles,
+        cache: &cache,
+        device: ctx.render_device().clone(),
+    };
+    let outcome = match inputs.record(&mut ctx) {
         Ok(()) => {
             lines.found.store(true, Ordering::Relaxed);
-            if lines.flood.is_some() {
-                ledger.set(request.camera, ComicsStage::LineFlood, StageOutcome::Ran);
-            }
             StageOutcome::Ran
         }
         Err(reason) => StageOutcome::LeftOut(reason),
     };
-    ledger.set(request.camera, ComicsStage::OutlineEdges, outcome);
-}
-
-fn record(
-    parts: ViewParts,
-    object_styles: &ObjectStyleBuffer,
-    cache: &PipelineCache,
-    ctx: &mut RenderContext,
-) -> Result<(), LeftOut> {
-    let ((_, passes, lines), ..) = parts;
-    let not_ready = LeftOut::PipelineNotReady;
-    let pipeline = |id| cache.get_render_pipeline(id).ok_or(not_ready);
-    let detect = pipeline(passes.detect)?;
-    let edges = lines.edges.as_ref().ok_or(not_ready)?;
-    let uniform = lines.uniform.binding().ok_or(not_ready)?;
-    let flood = match (passes.flood, &lines.flood) {
-        (Some([first, next]), Some(flood)) => Some((flood, [pipeline(first)?, pipeline(next)?])),
-        _ => None,
-    };
-    let entries = entries(parts, object_styles, uniform.clone())?;
-    let device = ctx.render_device().clone();
-    let layout = cache.get_bind_group_layout(&passes.key.layout());
-    let group = device.create_bind_group("comics_outlines", &layout, &entries);
-
-    let diagnostics = ctx.diagnostic_recorder();
-    let diagnostics = diagnostics.as_deref();
-    let encoder = ctx.command_encoder();
-    let span = diagnostics.time_span(encoder, "comics_outlines");
-    draw(encoder, "comics_outlines", edges, (detect, &group), 0);
-    if let Some((flood, pipelines)) = flood {
-        let inputs = (edges, uniform);
-        record_flood(encoder, (&device, cache), flood, pipelines, inputs);
-    }
-    span.end(encoder);
-    Ok(())
+    ledger.set(request.camera, ComicsStage::FindLines, outcome);
+    ledger.set(request.camera, ComicsStage::DrawLines, outcome);
 }
 
 fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
     BindGroupEntry { binding, resource }
 }
 
-/// The bindings of the pass that finds edges.
-fn entries<'a>(
-    ((request, passes, _), prepass, range, ids): ViewParts<'a>,
+/// What the passes read.
+struct Inputs<'a> {
+    parts: ViewParts<'a>,
     object_styles: &'a ObjectStyleBuffer,
-    uniform: BindingResource<'a>,
-) -> Result<Vec<BindGroupEntry<'a>>, LeftOut> {
-    let key = &passes.key;
-    let not_ready = LeftOut::PipelineNotReady;
-    let prepass = prepass.ok_or(LeftOut::NoDepthPrepass)?;
-    let depth = prepass.depth.as_ref().ok_or(LeftOut::NoDepthPrepass)?;
-    if depth.texture.texture.sample_count() != request.samples {
-        return Err(LeftOut::SampleCountMismatch);
-    }
-    let mut entries = vec![
-        entry(1, uniform),
-        entry(2, (&depth.texture.default_view).into_binding()),
-    ];
-    if key.visible_range {
-        let keys = range.and_then(ViewDepthRange::drawn).ok_or(not_ready)?;
-        entries.push(entry(3, keys.as_entire_binding()));
-    }
-    if key.object_styles {
-        let styles = object_styles.buffer().ok_or(not_ready)?;
-        entries.push(entry(6, styles.as_entire_binding()));
-    }
-    if key.creases {
-        let normal = prepass.normal.as_ref().ok_or(not_ready)?;
-        entries.push(entry(7, (&normal.texture.default_view).into_binding()));
-    }
-    if key.ids {
-        let ids = ids.ok_or(not_ready)?;
-        entries.push(entry(8, (&ids.view).into_binding()));
-    }
-    Ok(entries)
+    cache: &'a PipelineCache,
+    device: RenderDevice,
 }
 
-/// Records one full-screen pass. `instance` is the flood's stride.
-fn draw(
-    encoder: &mut CommandEncoder,
-    label: &str,
-    target: &CachedTexture,
-    (pipeline, bind_group): (&RenderPipeline, &BindGroup),
-    instance: u32,
-) {
-    let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
-        label: Some(label),
-        color_attachments: &[Some(RenderPassColorAttachment {
-            view: &target.default_view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: Default::default(),
-        })],
-        ..Default::default()
-    });
-    pass.set_pipeline(pipeline);
-    pass.set_bind_group(0, bind_group, &[]);
-    pass.draw(0..3, instance..instance + 1);
+const NOT_READY: LeftOut = LeftOut::PipelineNotReady;
+
+/// A pass that is ready to be recorded: its pipeline and bindings.
+type Ready<'a, P> = (&'a P, BindGroup);
+
+impl Inputs<'_> {
+    fn record(&self, ctx: &mut RenderContext) -> Result<(), LeftOut> {
+        let (request, passes, lines) = self.parts.0;
+        let ink = lines.ink.as_ref().ok_or(NOT_READY)?;
+        let faithful = match passes.faithful {
+            Some(id) => {
+                let layout = passes.key.faithful_layout();
+                let entries = self.entries(passes.key.faithful[1])?;
+                Some((self.pipeline(id)?, self.group(&layout, &entries)))
+            }
+            None => None,
+        };
+        let cracks = match (&passes.cracks, &lines.cracks) {
+            (Some((find, draw)), Some(cracks)) => Some((
+                self.find_pass(find, cracks)?,
+                (self.pipeline(*draw)?, self.draw_group(cracks)?),
+                cracks,
+            )),
+            _ => None,
+        };
+
+        let diagnostics = ctx.diagnostic_recorder();
+        let diagnostics = diagnostics.as_deref();
+        let encoder = ctx.command_encoder();
+        if let Some((find, _, cracks)) = &cracks {
+            let span = diagnostics.time_span(encoder, "comics_find_lines");
+            find.record(encoder, request, &cracks.texture);
+            span.end(encoder);
+        }
+        let span = diagnostics.time_span(encoder, "comics_draw_lines");
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("comics_draw_lines"),
+            color_attachments: &[Some(cleared(ink))],
+            ..Default::default()
+        });
+        if let Some((pipeline, group)) = &faithful {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, group, &[]);
+            pass.draw(0..3, 0..1);
+        }
+        if let Some((_, (pipeline, group), _)) = &cracks {
+            let tiles = request.size.x.div_ceil(TILE) * request.size.y.div_ceil(TILE);
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, group, &[]);
+            pass.draw(0..4, 0..tiles);
+        }
+        drop(pass);
+        span.end(encoder);
+        Ok(())
+    }
+
+    fn pipeline(&self, id: CachedRenderPipelineId) -> Result<&RenderPipeline, LeftOut> {
+        self.cache.get_render_pipeline(id).ok_or(NOT_READY)
+    }
+
+    fn group(&self, layout: &BindGroupLayoutDescriptor, entries: &[BindGroupEntry]) -> BindGroup {
+        let layout = self.cache.get_bind_group_layout(layout);
+        self.device
+            .create_bind_group("comics_lines", &layout, entries)
+    }
+
+    fn uniform(&self) -> Result<BindingResource<'_>, LeftOut> {
+        let (_, _, lines) = self.parts.0;
+        lines.uniform.binding().ok_or(NOT_READY)
+    }
+
+    /// The bindings of the passes that read the prepasses. `normals`: the normals too.
+    fn entries(&self, normals: bool) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
+        let ((request, passes, _), prepass, range, ids) = self.parts;
+        let key = &passes.key;
+        let prepass = prepass.ok_or(LeftOut::NoDepthPrepass)?;
+        let depth = prepass.depth.as_ref().ok_or(LeftOut::NoDepthPrepass)?;
+        if depth.texture.texture.sample_count() != request.samples {
+            return Err(LeftOut::SampleCountMismatch);
+        }
+        let mut entries = vec![
+            entry(1, self.uniform()?),
+            entry(2, (&depth.texture.default_view).into_binding()),
+        ];
+        if key.visible_range {
+            let keys = range.and_then(ViewDepthRange::drawn).ok_or(NOT_READY)?;
+            entries.push(entry(3, keys.as_entire_binding()));
+        }
+        if key.object_styles {
+            let styles = self.object_styles.buffer().ok_or(NOT_READY)?;
+            entries.push(entry(6, styles.as_entire_binding()));
+        }
+        if normals {
+            let normal = prepass.normal.as_ref().ok_or(NOT_READY)?;
+            entries.push(entry(7, (&normal.texture.default_view).into_binding()));
+        }
+        if key.ids {
+            let ids = ids.ok_or(NOT_READY)?;
+            entries.push(entry(8, (&ids.view).into_binding()));
+        }
+        Ok(entries)
+    }
+
+    fn find_pass(&self, find: &Find, cracks: &Cracks) -> Result<FindPass<'_>, LeftOut> {
+        let (request, passes, _) = self.parts.0;
+        let layout = passes.key.find_layout();
+        let mut entries = self.entries(passes.key.creases)?;
+        match find {
+            Find::Fragments(id) => {
+                let pipeline = self.pipeline(*id)?;
+                Ok(FindPass::Fragments((
+                    pipeline,
+                    self.group(&layout, &entries),
+                )))
+            }
+            Find::Compute(id) => {
+                let pipeline = self.cache.get_compute_pipeline(*id).ok_or(NOT_READY)?;
+                let rows = cracks.blocks.as_ref().ok_or(NOT_READY)?;
+                entries.push(entry(9, (&cracks.texture.default_view).into_binding()));
+                entries.push(entry(10, (&rows.default_view).into_binding()));
+                let blocks = blocks(request.rect);
+                Ok(FindPass::Compute {
+                    pass: (pipeline, self.group(&layout, &entries)),
+                    workgroups: [blocks.x.div_ceil(WORKGROUP), blocks.y],
+                })
+            }
+        }
+    }
+
+    fn draw_group(&self, cracks: &Cracks) -> Result<BindGroup, LeftOut> {
+        let ((_, passes, _), _, _, ids) = self.parts;
+        let mut entries = vec![
+            entry(1, self.uniform()?),
+            entry(11, (&cracks.texture.default_view).into_binding()),
+        ];
+        if passes.key.object_styles {
+            let ids = ids.ok_or(NOT_READY)?;
+            entries.push(entry(8, (&ids.view).into_binding()));
+        }
+        if let Some(blocks) = &cracks.blocks {
+            entries.push(entry(12, (&blocks.default_view).into_binding()));
+        }
+        Ok(self.group(&passes.key.draw_layout(), &entries))
+    }
 }
 
-fn record_flood(
-    encoder: &mut CommandEncoder,
-    (device, cache): (&RenderDevice, &PipelineCache),
-    flood: &Flood,
-    [first, next]: [&RenderPipeline; 2],
-    (edges, uniform): (&CachedTexture, BindingResource),
-) {
-    let group = |source: &CachedTexture, is_first: bool| {
-        device.create_bind_group(
-            "comics_line_flood",
-            &cache.get_bind_group_layout(&FloodPipeline::layout(is_first)),
-            &[
-                entry(1, uniform.clone()),
-                entry(
-                    if is_first { 4 } else { 5 },
-                    (&source.default_view).into_binding(),
-                ),
-            ],
-        )
-    };
-    let label = "comics_line_flood";
-    let start = group(edges, true);
-    draw(encoder, label, &flood.textures[0], (first, &start), 0);
-    for (i, stride) in flood.strides.iter().enumerate() {
-        let group = group(&flood.textures[i % 2], false);
-        let target = &flood.textures[(i + 1) % 2];
-        draw(encoder, label, target, (next, &group), *stride);
+/// The pass that finds cracks.
+enum FindPass<'a> {
+    Compute {
+        pass: Ready<'a, ComputePipeline>,
+        workgroups: [u32; 2],
+    },
+    Fragments(Ready<'a, RenderPipeline>),
+}
+
+impl FindPass<'_> {
+    fn record(&self, encoder: &mut CommandEncoder, request: &LineRequest, cracks: &CachedTexture) {
+        let label = Some("comics_find_lines");
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label,
+            color_attachments: &[Some(cleared(cracks))],
+            ..Default::default()
+        });
+        match self {
+            Self::Fragments((pipeline, group)) => {
+                let [_, _, width, height] = request.rect.to_array().map(|v| v as f32);
+                pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, group, &[]);
+                pass.draw(0..3, 0..1);
+            }
+            Self::Compute {
+                pass: (pipeline, group),
+                workgroups: [x, y],
+            } => {
+                drop(pass);
+                let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+                    label,
+                    timestamp_writes: None,
+                });
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, group, &[]);
+                pass.dispatch_workgroups(*x, *y, 1);
+            }
+        }
+    }
+}
+
+/// A texture that is cleared to 0 before it is drawn to.
+fn cleared(texture: &CachedTexture) -> RenderPassColorAttachment<'_> {
+    RenderPassColorAttachment {
+        view: &texture.default_view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: Operations {
+            load: LoadOp::Clear(LinearRgba::NONE.into()),
+            store: StoreOp::Store,
+        },
     }
 }

@@ -30,14 +30,22 @@ struct Lines {
     // A jump is measured against factor * (largest raw depth nearby) + constant.
     reference_factor: f32,
     reference_constant: f32,
-    // Distance in physical pixels within which lines are searched around a pixel.
-    reach: i32,
+    // A step above this multiple of the reference separates two surfaces that do not
+    // meet: no crease runs there.
+    jump: f32,
     unused: u32,
 }
 
-const SILHOUETTE: u32 = 0u;
-const CREASE: u32 = 1u;
-const OBJECT: u32 = 2u;
+// The grid that lines are found on: the pixels of the depth texture.
+struct Grid {
+    // Origin and size in the depth texture: x, y, width, height.
+    rect: vec4<i32>,
+    // Position in the grid of a position in the viewport, both in pixels from their top
+    // left corners: xy * position + zw.
+    from_viewport: vec4<f32>,
+    // Pixels within which cracks are searched around a pixel.
+    reach: i32,
+}
 
 // The gradient at x from its eight neighbours a to h, row by row ([CL] Eq. 1).
 fn gradient(a: f32, b: f32, c: f32, d: f32, x: f32, e: f32, f: f32, g: f32, h: f32) -> f32 {
@@ -77,35 +85,6 @@ fn gradient_extremes(v: ptr<function, array<f32, 25>>) -> vec2<f32> {
     return gradient_at(v, 18u, found);
 }
 
-// The distance between two normals: 2 sin(angle / 2). 0 if one of them is missing
-// (w = 0 instead of 1).
-fn normal_step(a: vec4<f32>, b: vec4<f32>) -> f32 {
-    return length(a.xyz - b.xyz) * a.w * b.w;
-}
-
-// As gradient_at, with the distance between normals as difference: it does not depend
-// on the axes in which normals are given.
-fn normal_gradient_at(v: ptr<function, array<vec4<f32>, 25>>, i: u32, found: vec2<f32>) -> vec2<f32> {
-    let x = (*v)[i];
-    let g = (normal_step((*v)[i - 6u], x) + 2.0 * normal_step((*v)[i - 5u], x) + normal_step((*v)[i - 4u], x)
-        + 2.0 * normal_step((*v)[i - 1u], x) + 2.0 * normal_step((*v)[i + 1u], x)
-        + normal_step((*v)[i + 4u], x) + 2.0 * normal_step((*v)[i + 5u], x) + normal_step((*v)[i + 6u], x)) / 8.0;
-    return vec2(min(found.x, g), max(found.y, g));
-}
-
-fn normal_extremes(v: ptr<function, array<vec4<f32>, 25>>) -> vec2<f32> {
-    var found = vec2(1e38, 0.0);
-    found = normal_gradient_at(v, 6u, found);
-    found = normal_gradient_at(v, 7u, found);
-    found = normal_gradient_at(v, 8u, found);
-    found = normal_gradient_at(v, 11u, found);
-    found = normal_gradient_at(v, 12u, found);
-    found = normal_gradient_at(v, 13u, found);
-    found = normal_gradient_at(v, 16u, found);
-    found = normal_gradient_at(v, 17u, found);
-    return normal_gradient_at(v, 18u, found);
-}
-
 // The largest of the responses of the three components of the normal (Decaudin's
 // crease, [CL] Eq. 1 and 2).
 fn component_response(v: ptr<function, array<vec4<f32>, 25>>, k: f32) -> f32 {
@@ -130,74 +109,130 @@ fn component_response(v: ptr<function, array<vec4<f32>, 25>>, k: f32) -> f32 {
     return max(p.x, max(p.y, p.z));
 }
 
-// The step in raw depth down from a pixel (here) to its neighbour (there), minus the
-// steeper of the slopes on its two sides, if that goes down too. It is positive at an
-// edge, and 0 or less on a plane. `before` and `beyond` are the next pixels outwards.
-fn step_excess(before: f32, here: f32, there: f32, beyond: f32) -> f32 {
-    return (here - there) - max(0.0, max(before - here, there - beyond));
+// The functions below compute four places at once: a vector holds the values of four
+// neighbouring columns, or of four unrelated places.
+
+// The step between the raw depths of two neighbours (here, there), minus the steeper of
+// the slopes that lead up to it and away from it. It is positive at an edge, and 0 or
+// less on a plane. A slope counts only if it persists over two pixels: a single step
+// next to this one is another edge, not a slope. `before_2`, `before` and `beyond`,
+// `beyond_2` are the next pixels on both sides.
+fn step_excess(
+    before_2: vec4<f32>, before: vec4<f32>, here: vec4<f32>,
+    there: vec4<f32>, beyond: vec4<f32>, beyond_2: vec4<f32>,
+) -> vec4<f32> {
+    let step = here - there;
+    let down = select(vec4(-1.0), vec4(1.0), step >= vec4(0.0));
+    let near_slope = min(down * (before - here), down * (before_2 - before));
+    let far_slope = min(down * (there - beyond), down * (beyond - beyond_2));
+    return abs(step) - max(vec4(0.0), max(near_slope, far_slope));
 }
 
-// Whether an edge runs between two pixels: the excess of their step must be at least
-// half of g_max - g_min. At a straight edge it is twice that difference, at a single
-// pixel that stands out 0.73 times.
-fn on_edge(excess: f32, g: vec2<f32>) -> bool {
-    return excess > 0.0 && excess >= 0.5 * (g.y - g.x);
+// Response to the excess of a step ([CL] Eq. 2, with half of the excess in place of
+// g_max - g_min: both are the same along a straight edge).
+fn step_response(excess: vec4<f32>, k: vec4<f32>) -> vec4<f32> {
+    let r = 0.5 * max(excess, vec4(0.0)) / max(k, vec4(1e-30));
+    return min(r * r, vec4(1.0));
 }
 
-// Whether a crease runs between two pixels, with `step` between their normals. It must
-// be the largest step nearby (`around`) and at least g_max - g_min (at a straight crease
-// it is twice that). `complete` is 0 where a neighbour has no normal: next to the rim of
-// a surface, the curvature of the rim is not a crease.
-fn on_crease(step: f32, around: f32, complete: f32, g: vec2<f32>) -> bool {
-    return complete > 0.0 && step >= around && step >= g.y - g.x;
+// The squared distance of two normals; -1 if one of them is missing (w = 0 instead of
+// 1). Half of the distance is the sine of half of the angle.
+fn fold(a: vec4<f32>, b: vec4<f32>) -> f32 {
+    let d = a.xyz - b.xyz;
+    return select(-1.0, dot(d, d), a.w * b.w > 0.0);
 }
 
-// The lines that belong to one pixel: written by detect.wgsl, read by read.wgsl.
-struct Edge {
-    // Bit 4 * kind + side: a line of this kind runs along this side. Bits 12, 13: the
-    // pixel itself is the line (faithful silhouettes, faithful creases).
-    sides: u32,
-    // Ink of each kind, 0 to 1, before its opacity.
-    ink: vec3<f32>,
+// Response to folds.
+fn fold_response(folds: vec4<f32>, k: f32) -> vec4<f32> {
+    return clamp(folds * (0.25 / (k * k)), vec4(0.0), vec4(1.0));
+}
+
+// Whether a fold is the sharpest of three in a row. With a missing normal nearby it is
+// none: next to the rim of a surface, the curvature of the rim is not a crease.
+fn is_ridge(before: vec4<f32>, folds: vec4<f32>, beyond: vec4<f32>) -> vec4<bool> {
+    let complete = (before >= vec4(0.0)) & (folds > vec4(0.0)) & (beyond >= vec4(0.0));
+    return complete & (folds >= before) & (folds >= beyond);
+}
+
+// A crack is the border between two neighbouring pixels: `here`, and `there` to the east
+// or south of it. It is packed into 32 bits:
+//   bits 0 to 2: a silhouette, a crease, an object edge runs along it;
+//   bit 3: the line belongs to `here`, otherwise to `there`;
+//   bits 4 to 11: ink of the silhouette or crease; 12 to 19: opacity after fading;
+//   bits 20 to 31: half width, see pack_width.
+struct Crack {
+    // Bits as in ObjectStyle::kinds. A crack has no silhouette and crease at once.
+    kinds: u32,
+    owner_here: bool,
+    // Ink of the silhouette or crease, 0 to 1.
+    ink: f32,
+    // Fraction of the opacity that is left after fading.
+    opacity: f32,
     // Half of the width in physical pixels.
     half_width: f32,
-    // Slot of the OutlineStyle of the object that the lines belong to; 0: it has none.
-    slot: u32,
 }
 
-const WHOLE_SILHOUETTE: u32 = 4096u;
-const WHOLE_CREASE: u32 = 8192u;
+const SILHOUETTE: u32 = 1u;
+const CREASE: u32 = 2u;
+const OBJECT: u32 = 4u;
 
-// An edge in four words of 16 bits.
-fn pack_edge(e: Edge) -> vec4<u32> {
-    let ink = vec3<u32>(clamp(e.ink, vec3(0.0), vec3(1.0)) * 255.0 + 0.5);
-    let width = u32(clamp(e.half_width, 0.0, 127.0) * 512.0 + 0.5);
-    return vec4(e.sides, ink.x | (ink.y << 8u), width, ink.z | (e.slot << 8u));
+// 0 to 1 as a byte.
+fn byte(x: vec4<f32>) -> vec4<u32> {
+    return vec4<u32>(clamp(x, vec4(0.0), vec4(1.0)) * 255.0 + 0.5);
 }
 
-fn unpack_edge(t: vec4<u32>) -> Edge {
-    var e: Edge;
-    e.sides = t.x;
-    e.ink = vec3(f32(t.y & 255u), f32(t.y >> 8u), f32(t.w & 255u)) / 255.0;
-    e.half_width = f32(t.z) / 512.0;
-    e.slot = t.w >> 8u;
-    return e;
+// A half width of up to 31 physical pixels in 12 bits: a float of 3 bits of exponent and
+// 9 of mantissa. 1/8 is added, so that the smallest of these floats stands for 0. Eighths
+// of a pixel are exact; the largest error is 1/1024 of the width.
+fn pack_width(half_width: vec4<f32>) -> vec4<u32> {
+    let bits = bitcast<vec4<u32>>(clamp(half_width, vec4(0.0), vec4(31.0)) + 0.125);
+    return ((bits + vec4(0x2000u)) >> vec4(14u)) - vec4(124u << 9u);
 }
 
-// Unit vector from the centre of a pixel towards a side; y points down.
-fn side_direction(side: u32) -> vec2<f32> {
-    let sign = select(-1.0, 1.0, (side & 1u) == 1u);
-    return select(vec2(0.0, sign), vec2(sign, 0.0), side < 2u);
+fn unpack_width(packed: u32) -> f32 {
+    return bitcast<f32>((packed + (124u << 9u)) << 14u) - 0.125;
 }
 
-// Offset of the middle of a line from the centre of the pixel that it belongs to, in
-// pixels. The middle of a line of even width is the edge between the two pixels. With
-// an odd width it is half a pixel further in, at the centre, so that the line covers
-// whole pixels in both cases. In between, the offset is interpolated.
-fn line_offset(side: u32, half_width: f32) -> vec2<f32> {
+// The bits above `kinds` and `owner_here` of four cracks.
+fn pack_ink(ink: vec4<f32>, opacity: vec4<f32>, half_width: vec4<f32>) -> vec4<u32> {
+    return (byte(ink) << vec4(4u)) | (byte(opacity) << vec4(12u)) | (pack_width(half_width) << vec4(20u));
+}
+
+fn unpack_crack(packed: u32) -> Crack {
+    return Crack(
+        packed & 7u,
+        (packed & 8u) != 0u,
+        f32((packed >> 4u) & 255u) / 255.0,
+        f32((packed >> 12u) & 255u) / 255.0,
+        unpack_width(packed >> 20u),
+    );
+}
+
+// Distance from the middle of a line to the crack that it runs along, towards its
+// owner, in pixels. The middle of a line of even width is the crack. With an odd width
+// it is half a pixel further in, at the centre of the owner, so that the line covers
+// whole pixels in both cases. In between, the distance is interpolated.
+fn line_offset(half_width: f32) -> f32 {
     let width = 2.0 * half_width;
     let odd = select(abs(width - 2.0 * round(0.5 * width)), 1.0, width < 1.0);
-    return side_direction(side) * (0.5 - 0.5 * odd);
+    return 0.5 * odd;
+}
+
+// Distance from a position to a segment.
+fn segment_distance(at: vec2<f32>, a: vec2<f32>, b: vec2<f32>) -> f32 {
+    let along = b - a;
+    let t = clamp(dot(at - a, along) / max(dot(along, along), 1e-12), 0.0, 1.0);
+    return distance(at, a + t * along);
+}
+
+// Ink as it is stored: steps are finest where little light is left. Larger ink is
+// stored as a larger value.
+fn encode_ink(ink: vec3<f32>) -> vec3<f32> {
+    return 1.0 - sqrt(1.0 - clamp(ink, vec3(0.0), vec3(1.0)));
+}
+
+fn decode_ink(stored: vec3<f32>) -> vec3<f32> {
+    return 1.0 - (1.0 - stored) * (1.0 - stored);
 }
 
 // The fraction of a pixel that is covered by a line whose middle is at `distance` from

@@ -1,6 +1,6 @@
-//! The service of lines: one pass finds edges in depth, normals and object ids. For
-//! wide lines, a jump flood then finds the nearest line of every pixel. The fused pass
-//! reads both with `read.wgsl`.
+//! The service of lines. `find.wgsl` finds the cracks between pixels that lines run
+//! along, in depth, normals and object ids. `draw.wgsl` draws their ink into a texture,
+//! where there are any. Effects read the ink with `read.wgsl`.
 
 mod draw;
 mod kinds;
@@ -12,10 +12,7 @@ mod settings;
 use bevy::{
     app::App,
     asset::{AssetServer, embedded_asset},
-    core_pipeline::{
-        FullscreenShader,
-        schedule::{Core3d, Core3dSystems},
-    },
+    core_pipeline::schedule::{Core3d, Core3dSystems},
     ecs::{
         entity::Entity,
         query::With,
@@ -24,32 +21,33 @@ use bevy::{
     },
     render::{
         GpuResourceAppExt, Render, RenderApp, RenderStartup,
-        render_resource::SpecializedRenderPipelines,
+        render_resource::{SpecializedComputePipelines, SpecializedRenderPipelines},
     },
     shader::load_shader_library,
 };
 
 pub use kinds::{Creases, ObjectEdges, Silhouettes};
-pub(crate) use pipelines::{GATHER_REACH, edges_entry, range_entry, reach};
+pub(crate) use pipelines::{ink_entry, range_entry, reach};
 pub(crate) use prepare::ViewLines;
 pub use settings::LineSettings;
 pub(crate) use settings::LinesUniform;
 
 use crate::schedule::{ComicsSystems, PrepareComics};
-use pipelines::{FloodPipeline, OutlinePipeline};
+use pipelines::LineShaders;
 
 /// Finds the lines of the views that request them.
 pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "edge.wgsl");
     load_shader_library!(app, "read.wgsl");
-    embedded_asset!(app, "detect.wgsl");
-    embedded_asset!(app, "flood.wgsl");
+    embedded_asset!(app, "find.wgsl");
+    embedded_asset!(app, "faithful.wgsl");
+    embedded_asset!(app, "draw.wgsl");
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
         return;
     };
     render_app
-        .init_gpu_resource::<SpecializedRenderPipelines<OutlinePipeline>>()
-        .init_gpu_resource::<SpecializedRenderPipelines<FloodPipeline>>()
+        .init_gpu_resource::<SpecializedComputePipelines<LineShaders>>()
+        .init_gpu_resource::<SpecializedRenderPipelines<LineShaders>>()
         .add_systems(RenderStartup, init_pipelines)
         .add_systems(
             Render,
@@ -67,7 +65,6 @@ pub(crate) fn build_render(app: &mut App) {
 
 fn init_pipelines(
     mut commands: Commands,
-    fullscreen: Res<FullscreenShader>,
     assets: Res<AssetServer>,
     lines: Query<Entity, With<ViewLines>>,
 ) {
@@ -75,6 +72,5 @@ fn init_pipelines(
     for view in &lines {
         commands.entity(view).remove::<ViewLines>();
     }
-    commands.insert_resource(OutlinePipeline::new(&fullscreen, &assets));
-    commands.insert_resource(FloodPipeline::new(&assets));
+    commands.insert_resource(LineShaders::new(&assets));
 }

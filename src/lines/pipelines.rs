@@ -1,16 +1,18 @@
-//! The pipelines that find edges and flood wide lines.
+//! The pipelines that find lines and draw their ink.
 
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
-    core_pipeline::FullscreenShader,
     ecs::resource::Resource,
     math::{UVec4, Vec2},
     render::render_resource::{
-        BindGroupLayoutDescriptor, BindGroupLayoutEntry, ColorTargetState, ColorWrites,
-        FragmentState, RenderPipelineDescriptor, ShaderStages, ShaderType,
-        SpecializedRenderPipeline, TextureFormat, TextureSampleType, VertexState,
+        BindGroupLayoutDescriptor, BindGroupLayoutEntry, BlendComponent, BlendFactor,
+        BlendOperation, BlendState, ColorTargetState, ColorWrites, ComputePipelineDescriptor,
+        FragmentState, PrimitiveState, PrimitiveTopology, RenderPipelineDescriptor, ShaderStages,
+        ShaderType, SpecializedComputePipeline, SpecializedRenderPipeline, StorageTextureAccess,
+        TextureFormat, TextureSampleType, VertexState,
         binding_types::{
-            texture_2d, texture_2d_multisampled, uniform_buffer, uniform_buffer_sized,
+            texture_2d, texture_2d_multisampled, texture_storage_2d, uniform_buffer,
+            uniform_buffer_sized,
         },
     },
     shader::{Shader, ShaderDefVal},
@@ -22,11 +24,19 @@ use crate::{
     settings::Form,
 };
 
-/// Up to this reach, in physical pixels, the fused pass finds lines by reading every
-/// pixel around; beyond it a flood is faster, as measured in `ARCHITECTURE.md`.
-pub(crate) const GATHER_REACH: i32 = 2;
+/// The two cracks of a pixel, see `Crack` in `edge.wgsl`.
+pub(crate) const CRACK_FORMAT: TextureFormat = TextureFormat::Rg32Uint;
+/// The rows with cracks in a block of pixels.
+pub(crate) const BLOCK_FORMAT: TextureFormat = TextureFormat::R32Uint;
+/// The ink of a pixel, see `draw.wgsl`.
+pub(crate) const INK_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
-pub(crate) const EDGE_FORMAT: TextureFormat = TextureFormat::Rgba16Uint;
+/// Columns and rows of a block: an invocation of `find.wgsl` walks through one.
+pub(crate) const BLOCK: [u32; 2] = [4, 32];
+/// Blocks in a workgroup, side by side.
+pub(crate) const WORKGROUP: u32 = 32;
+/// Width and height in pixels of the tiles that `draw.wgsl` draws.
+pub(crate) const TILE: u32 = 16;
 
 /// Distance within which lines of this half width are searched around a pixel, both in
 /// physical pixels.
@@ -34,11 +44,12 @@ pub(crate) fn reach(half_width: f32) -> i32 {
     (half_width + 1.0).ceil() as i32 - 1
 }
 
-/// What selects a shader variant of the pass that finds edges.
+/// What selects the shader variants of the passes that find and draw lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) struct OutlineKey {
+pub(crate) struct LineKey {
     pub samples: u32,
     pub oblique: bool,
+    /// Measured silhouettes and creases: those of the corrected form.
     pub silhouettes: bool,
     pub creases: bool,
     pub object_edges: bool,
@@ -46,90 +57,204 @@ pub(crate) struct OutlineKey {
     pub object_styles: bool,
     pub fading: bool,
     pub visible_range: bool,
-    /// Whether silhouettes and creases have the faithful form.
+    /// Whether there are silhouettes and creases of the faithful form.
     pub faithful: [bool; 2],
     /// The depth texture has one pixel per pixel of the viewport.
     pub same_size: bool,
+    /// Cracks are searched one pixel around a pixel, not further.
+    pub narrow: bool,
+    /// The device has no compute shaders.
+    pub by_fragments: bool,
 }
 
-impl OutlineKey {
-    pub fn new(request: &LineRequest) -> Self {
+impl LineKey {
+    pub fn new(request: &LineRequest, by_fragments: bool) -> Self {
         let lines = &request.settings;
+        let forms = [
+            lines.silhouettes.map(|s| s.form),
+            lines.creases.map(|c| c.form),
+        ];
+        let [silhouettes, creases] = forms.map(|form| form == Some(Form::Corrected));
         Self {
             samples: request.samples,
             oblique: request.oblique,
-            silhouettes: lines.silhouettes.is_some(),
-            creases: lines.creases.is_some(),
-            object_edges: lines.objects.is_some(),
+            silhouettes,
+            creases,
+            object_edges: lines.objects.is_some() && request.ids,
             ids: request.ids,
             object_styles: request.object_styles,
             fading: lines.fades(),
             visible_range: lines.fades() && request.visible_range,
-            faithful: [
-                lines.silhouettes.map(|s| s.form),
-                lines.creases.map(|c| c.form),
-            ]
-            .map(|form| form == Some(Form::Faithful)),
+            faithful: forms.map(|form| form == Some(Form::Faithful)),
             same_size: request.view.depth_scale == Vec2::ONE,
+            narrow: request.grid_reach() == 1,
+            by_fragments,
         }
     }
 
-    fn shader_defs(&self) -> Vec<ShaderDefVal> {
-        let number = |name: &str, on| ShaderDefVal::UInt(name.into(), u32::from(on));
-        let forms = [
-            number("SILHOUETTE_FAITHFUL", self.faithful[0]),
-            number("CREASE_FAITHFUL", self.faithful[1]),
-        ];
+    /// Whether there are lines along cracks, besides those of the faithful forms.
+    pub fn has_cracks(&self) -> bool {
+        self.silhouettes || self.creases || self.object_edges
+    }
+
+    pub fn has_faithful(&self) -> bool {
+        self.faithful.contains(&true)
+    }
+
+    /// The part that finding depends on.
+    pub fn for_find(self) -> Self {
+        Self {
+            faithful: [false; 2],
+            narrow: false,
+            ..self
+        }
+    }
+
+    /// The part that the faithful forms depend on.
+    pub fn for_faithful(self) -> Self {
+        Self {
+            silhouettes: false,
+            creases: false,
+            object_edges: false,
+            narrow: false,
+            by_fragments: false,
+            ..self
+        }
+    }
+
+    /// The part that drawing depends on.
+    pub fn for_draw(self) -> Self {
+        Self {
+            samples: self.samples,
+            ids: self.object_styles,
+            object_styles: self.object_styles,
+            narrow: self.narrow,
+            by_fragments: self.by_fragments,
+            ..Self::default()
+        }
+    }
+
+    fn common(&self) -> impl Iterator<Item = ShaderDefVal> + use<> {
         [
-            (true, "DEPTH"),
-            (true, "FORMS"),
             (self.same_size, "SAME_SIZE"),
             (self.samples > 1, "MULTISAMPLED"),
             (self.oblique, "OBLIQUE"),
-            (self.silhouettes, "SILHOUETTES"),
-            (self.creases, "CREASES"),
-            (self.creases, "NORMALS"),
-            (self.object_edges, "OBJECT_EDGES"),
             (self.ids, "OBJECT_IDS"),
             (self.object_styles, "OBJECT_STYLES"),
-            (self.fading, "FADING"),
-            (self.visible_range, "VISIBLE_RANGE"),
+            (self.by_fragments, "BY_FRAGMENTS"),
         ]
         .into_iter()
         .filter(|(on, _)| *on)
         .map(|(_, name)| name.into())
-        .chain(forms)
-        .collect()
     }
 
-    pub fn layout(&self) -> BindGroupLayoutDescriptor {
-        let stages = ShaderStages::FRAGMENT;
-        let texture = |sample_type| {
-            if self.samples > 1 {
-                texture_2d_multisampled(sample_type)
-            } else {
-                texture_2d(sample_type)
-            }
-        };
+    fn find_defs(&self) -> Vec<ShaderDefVal> {
+        self.common()
+            .chain(names([
+                (true, "DEPTH"),
+                (self.silhouettes, "SILHOUETTES"),
+                (self.creases, "CREASES"),
+                (self.creases, "NORMALS"),
+                (self.object_edges, "OBJECT_EDGES"),
+                (self.fading, "FADING"),
+                (self.visible_range, "VISIBLE_RANGE"),
+            ]))
+            .collect()
+    }
+
+    fn faithful_defs(&self) -> Vec<ShaderDefVal> {
+        self.common()
+            .chain(names([
+                (true, "DEPTH"),
+                (self.faithful[0], "FAITHFUL_SILHOUETTES"),
+                (self.faithful[1], "FAITHFUL_CREASES"),
+                (self.faithful[1], "NORMALS"),
+                (self.fading, "FADING"),
+                (self.visible_range, "VISIBLE_RANGE"),
+            ]))
+            .collect()
+    }
+
+    fn draw_defs(&self) -> Vec<ShaderDefVal> {
+        self.common()
+            .chain(names([(self.narrow, "NARROW")]))
+            .collect()
+    }
+
+    /// The layout entry of a prepass texture.
+    fn prepass(&self, binding: u32, stages: ShaderStages) -> BindGroupLayoutEntry {
         let float = TextureSampleType::Float { filterable: false };
+        if self.samples > 1 {
+            texture_2d_multisampled(float).build(binding, stages)
+        } else {
+            texture_2d(float).build(binding, stages)
+        }
+    }
+
+    /// The layout entries of what finding reads. `normals`: the normals are read.
+    fn inputs(&self, normals: bool, stages: ShaderStages) -> Vec<BindGroupLayoutEntry> {
         let mut entries = vec![
             uniform_buffer::<LinePassUniform>(false).build(1, stages),
-            texture(float).build(2, stages),
+            self.prepass(2, stages),
         ];
+        let seen = |mut entry: BindGroupLayoutEntry| {
+            entry.visibility = stages;
+            entry
+        };
         if self.visible_range {
-            entries.push(range_entry());
+            entries.push(seen(range_entry()));
         }
         if self.object_styles {
-            entries.push(object_styles_entry());
+            entries.push(seen(object_styles_entry()));
         }
-        if self.creases {
-            entries.push(texture(float).build(7, stages));
+        if normals {
+            entries.push(self.prepass(7, stages));
         }
         if self.ids {
+            entries.push(seen(ids_entry(self.samples > 1)));
+        }
+        entries
+    }
+
+    pub fn find_layout(&self) -> BindGroupLayoutDescriptor {
+        if self.by_fragments {
+            let entries = self.inputs(self.creases, ShaderStages::FRAGMENT);
+            return BindGroupLayoutDescriptor::new("comics_find_lines", &entries);
+        }
+        let mut entries = self.inputs(self.creases, ShaderStages::COMPUTE);
+        for (binding, format) in [(9, CRACK_FORMAT), (10, BLOCK_FORMAT)] {
+            let texture = texture_storage_2d(format, StorageTextureAccess::WriteOnly);
+            entries.push(texture.build(binding, ShaderStages::COMPUTE));
+        }
+        BindGroupLayoutDescriptor::new("comics_find_lines", &entries)
+    }
+
+    pub fn faithful_layout(&self) -> BindGroupLayoutDescriptor {
+        let entries = self.inputs(self.faithful[1], ShaderStages::FRAGMENT);
+        BindGroupLayoutDescriptor::new("comics_faithful_lines", &entries)
+    }
+
+    pub fn draw_layout(&self) -> BindGroupLayoutDescriptor {
+        let both = ShaderStages::VERTEX_FRAGMENT;
+        let mut entries = vec![
+            uniform_buffer::<LinePassUniform>(false).build(1, both),
+            texture_2d(TextureSampleType::Uint).build(11, both),
+        ];
+        if self.object_styles {
             entries.push(ids_entry(self.samples > 1));
         }
-        BindGroupLayoutDescriptor::new("comics_outlines", &entries)
+        if !self.by_fragments {
+            entries.push(texture_2d(TextureSampleType::Uint).build(12, both));
+        }
+        BindGroupLayoutDescriptor::new("comics_draw_lines", &entries)
     }
+}
+
+fn names<const N: usize>(flags: [(bool, &'static str); N]) -> impl Iterator<Item = ShaderDefVal> {
+    flags
+        .into_iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| name.into())
 }
 
 /// The layout entry of the visible range, the same in all passes.
@@ -137,102 +262,127 @@ pub(crate) fn range_entry() -> BindGroupLayoutEntry {
     uniform_buffer_sized(false, Some(UVec4::min_size())).build(3, ShaderStages::FRAGMENT)
 }
 
-/// The layout entry of the texture of edges or of the flood.
-pub(crate) fn edges_entry(binding: u32) -> BindGroupLayoutEntry {
-    texture_2d(TextureSampleType::Uint).build(binding, ShaderStages::FRAGMENT)
+/// The layout entry of the ink in the fused pass.
+pub(crate) fn ink_entry() -> BindGroupLayoutEntry {
+    texture_2d(TextureSampleType::Float { filterable: false }).build(4, ShaderStages::FRAGMENT)
 }
 
+/// The shaders of the passes.
 #[derive(Resource)]
-pub(crate) struct OutlinePipeline {
-    fullscreen: FullscreenShader,
-    detect: Handle<Shader>,
+pub(crate) struct LineShaders {
+    find: Handle<Shader>,
+    faithful: Handle<Shader>,
+    draw: Handle<Shader>,
 }
 
-impl OutlinePipeline {
-    pub fn new(fullscreen: &FullscreenShader, assets: &AssetServer) -> Self {
-        Self {
-            fullscreen: fullscreen.clone(),
-            detect: load_embedded_asset!(assets, "detect.wgsl"),
-        }
-    }
-}
-
-fn edge_target() -> Vec<Option<ColorTargetState>> {
-    vec![Some(ColorTargetState {
-        format: EDGE_FORMAT,
-        blend: None,
-        write_mask: ColorWrites::ALL,
-    })]
-}
-
-impl SpecializedRenderPipeline for OutlinePipeline {
-    type Key = OutlineKey;
-
-    fn specialize(&self, key: OutlineKey) -> RenderPipelineDescriptor {
-        RenderPipelineDescriptor {
-            label: Some("comics_outlines".into()),
-            layout: vec![key.layout()],
-            vertex: self.fullscreen.to_vertex_state(),
-            fragment: Some(FragmentState {
-                shader: self.detect.clone(),
-                shader_defs: key.shader_defs(),
-                entry_point: Some("detect".into()),
-                targets: edge_target(),
-            }),
-            ..Default::default()
-        }
-    }
-}
-
-#[derive(Resource)]
-pub(crate) struct FloodPipeline {
-    shader: Handle<Shader>,
-}
-
-impl FloodPipeline {
+impl LineShaders {
     pub fn new(assets: &AssetServer) -> Self {
         Self {
-            shader: load_embedded_asset!(assets, "flood.wgsl"),
+            find: load_embedded_asset!(assets, "find.wgsl"),
+            faithful: load_embedded_asset!(assets, "faithful.wgsl"),
+            draw: load_embedded_asset!(assets, "draw.wgsl"),
         }
-    }
-
-    pub fn layout(first: bool) -> BindGroupLayoutDescriptor {
-        BindGroupLayoutDescriptor::new(
-            "comics_line_flood",
-            &[
-                uniform_buffer::<LinePassUniform>(false).build(1, ShaderStages::FRAGMENT),
-                edges_entry(if first { 4 } else { 5 }),
-            ],
-        )
     }
 }
 
-impl SpecializedRenderPipeline for FloodPipeline {
-    /// Whether it is the first step, which reads edges instead of flooded lines.
-    type Key = bool;
+/// Finding by a compute shader.
+impl SpecializedComputePipeline for LineShaders {
+    type Key = LineKey;
 
-    fn specialize(&self, first: bool) -> RenderPipelineDescriptor {
-        let shader_defs: Vec<ShaderDefVal> = if first {
-            vec!["FIRST".into()]
-        } else {
-            Vec::new()
+    fn specialize(&self, key: LineKey) -> ComputePipelineDescriptor {
+        ComputePipelineDescriptor {
+            label: Some("comics_find_lines".into()),
+            layout: vec![key.find_layout()],
+            shader: self.find.clone(),
+            shader_defs: key.find_defs(),
+            entry_point: Some("find".into()),
+            ..Default::default()
+        }
+    }
+}
+
+/// The passes that are render passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum LinePass {
+    /// Finding without compute shaders.
+    Find,
+    Faithful,
+    Draw,
+}
+
+impl SpecializedRenderPipeline for LineShaders {
+    type Key = (LinePass, LineKey);
+
+    fn specialize(&self, (pass, key): (LinePass, LineKey)) -> RenderPipelineDescriptor {
+        let (label, layout, shader, defs) = match pass {
+            LinePass::Find => (
+                "comics_find_lines",
+                key.find_layout(),
+                &self.find,
+                key.find_defs(),
+            ),
+            LinePass::Faithful => (
+                "comics_faithful_lines",
+                key.faithful_layout(),
+                &self.faithful,
+                key.faithful_defs(),
+            ),
+            LinePass::Draw => (
+                "comics_draw_lines",
+                key.draw_layout(),
+                &self.draw,
+                key.draw_defs(),
+            ),
+        };
+        let (vertex, fragment, topology) = match pass {
+            LinePass::Find => ("whole", "find", PrimitiveTopology::TriangleList),
+            LinePass::Faithful => ("whole", "faithful", PrimitiveTopology::TriangleList),
+            LinePass::Draw => ("tile", "draw", PrimitiveTopology::TriangleStrip),
         };
         RenderPipelineDescriptor {
-            label: Some("comics_line_flood".into()),
-            layout: vec![Self::layout(first)],
+            label: Some(label.into()),
+            layout: vec![layout],
             vertex: VertexState {
-                shader: self.shader.clone(),
-                shader_defs: shader_defs.clone(),
-                entry_point: Some("flood_vertex".into()),
+                shader: shader.clone(),
+                shader_defs: defs.clone(),
+                entry_point: Some(vertex.into()),
                 buffers: vec![],
             },
+            primitive: PrimitiveState {
+                topology,
+                ..Default::default()
+            },
             fragment: Some(FragmentState {
-                shader: self.shader.clone(),
-                shader_defs,
-                entry_point: Some("flood".into()),
-                targets: edge_target(),
+                shader: shader.clone(),
+                shader_defs: defs,
+                entry_point: Some(fragment.into()),
+                targets: vec![Some(match pass {
+                    LinePass::Find => target(CRACK_FORMAT, None),
+                    LinePass::Faithful | LinePass::Draw => target(INK_FORMAT, Some(MAXIMUM)),
+                })],
             }),
             ..Default::default()
         }
+    }
+}
+
+/// Of the ink of two passes, the larger is kept.
+const MAXIMUM: BlendState = {
+    let larger = BlendComponent {
+        src_factor: BlendFactor::One,
+        dst_factor: BlendFactor::One,
+        operation: BlendOperation::Max,
+    };
+    BlendState {
+        color: larger,
+        alpha: larger,
+    }
+};
+
+fn target(format: TextureFormat, blend: Option<BlendState>) -> ColorTargetState {
+    ColorTargetState {
+        format,
+        blend,
+        write_mask: ColorWrites::ALL,
     }
 }

@@ -9,10 +9,11 @@ use bevy::{
         query::{With, Without},
         system::{Commands, Query, Res, ResMut},
     },
-    math::UVec2,
+    math::{UVec2, UVec4, Vec4Swizzles},
     render::{
         render_resource::{
-            Extent3d, TextureDescriptor, TextureDimension, TextureUsages, UniformBuffer,
+            Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
+            UniformBuffer,
         },
         renderer::{RenderDevice, RenderQueue},
         texture::{CachedTexture, TextureCache},
@@ -20,20 +21,27 @@ use bevy::{
 };
 
 use super::{
-    pipelines::{EDGE_FORMAT, GATHER_REACH},
-    request::{LinePassUniform, LinePasses, LineRequest},
+    pipelines::{BLOCK, BLOCK_FORMAT, CRACK_FORMAT, INK_FORMAT},
+    request::{Find, LinePassUniform, LinePasses, LineRequest},
 };
 
 /// On a view in the render world: the lines of this frame.
 #[derive(Component)]
 pub(crate) struct ViewLines {
     pub uniform: UniformBuffer<LinePassUniform>,
-    /// The edge of every pixel, see `edge.wgsl`.
-    pub edges: Option<CachedTexture>,
-    /// The flood's textures and strides, if there is a flood.
-    pub flood: Option<Flood>,
+    /// The cracks, if lines are found along cracks.
+    pub cracks: Option<Cracks>,
+    /// The ink of every pixel of the viewport, see `draw.wgsl`.
+    pub ink: Option<CachedTexture>,
     /// Whether the passes of this frame were recorded.
     pub found: AtomicBool,
+}
+
+/// The cracks of a view.
+pub(crate) struct Cracks {
+    pub texture: CachedTexture,
+    /// The blocks that have cracks; `None` without compute shaders.
+    pub blocks: Option<CachedTexture>,
 }
 
 impl Default for ViewLines {
@@ -42,68 +50,69 @@ impl Default for ViewLines {
         uniform.set_label(Some("comics_lines"));
         Self {
             uniform,
-            edges: None,
-            flood: None,
+            cracks: None,
+            ink: None,
             found: AtomicBool::new(false),
         }
     }
 }
 
 impl ViewLines {
-    /// The edges; `None` unless the passes of this frame were recorded.
+    /// The ink; `None` unless the passes of this frame were recorded.
     pub fn found(&self) -> Option<&CachedTexture> {
         let found = self.found.load(Ordering::Relaxed);
-        self.edges.as_ref().filter(|_| found)
+        self.ink.as_ref().filter(|_| found)
     }
 }
 
-/// A jump flood: a first step, then one for each stride. The steps alternate between
-/// two textures.
-pub(crate) struct Flood {
-    pub strides: Vec<u32>,
-    pub textures: [CachedTexture; 2],
-}
-
-impl Flood {
-    /// The strides, in pixels, of a flood over a distance of `reach` pixels. Beyond
-    /// [`GATHER_REACH`] the last two are repeated, which corrects nearly all errors of
-    /// the flood.
-    pub fn strides(reach: i32) -> Vec<u32> {
-        let longest = (reach.max(1) as u32).next_power_of_two();
-        let halving = (0..=longest.ilog2()).rev().map(|k| 1 << k);
-        let again = [2, 1].into_iter().filter(|_| reach > GATHER_REACH);
-        halving.chain(again).collect()
-    }
-
-    /// The texture that the last step writes.
-    pub fn result(&self) -> &CachedTexture {
-        &self.textures[self.strides.len() % 2]
-    }
+/// Number of blocks across and down a part of the depth texture.
+pub(crate) fn blocks(rect: UVec4) -> UVec2 {
+    UVec2::new(
+        rect.z.div_ceil(BLOCK[0]).max(1),
+        rect.w.div_ceil(BLOCK[1]).max(1),
+    )
 }
 
 fn texture(
-    textures: &mut TextureCache,
-    device: &RenderDevice,
+    (textures, device): (&mut TextureCache, &RenderDevice),
     label: &'static str,
     size: UVec2,
+    (format, usage): (TextureFormat, TextureUsages),
 ) -> CachedTexture {
     let descriptor = TextureDescriptor {
         label: Some(label),
         size: Extent3d {
-            width: size.x,
-            height: size.y,
+            width: size.x.max(1),
+            height: size.y.max(1),
             depth_or_array_layers: 1,
         },
         mip_level_count: 1,
         sample_count: 1,
         dimension: TextureDimension::D2,
-        format: EDGE_FORMAT,
-        usage: TextureUsages::RENDER_ATTACHMENT
-            | TextureUsages::TEXTURE_BINDING
-            | TextureUsages::COPY_SRC,
+        format,
+        usage: usage | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
         view_formats: &[],
     };
     textures.get(device, descriptor)
+}
+
+fn cracks(
+    (textures, device): (&mut TextureCache, &RenderDevice),
+    find: &Find,
+    rect: UVec4,
+) -> Cracks {
+    let (drawn, stored) = (
+        TextureUsages::RENDER_ATTACHMENT,
+        TextureUsages::STORAGE_BINDING,
+    );
+    let computed = matches!(find, Find::Compute(_));
+    // The compute shader stores cracks alone; a render pass clears the rest.
+    let usage = if computed { drawn | stored } else { drawn };
+    let mut new = |label, size, format| texture((textures, device), label, size, format);
+    Cracks {
+        texture: new("comics_cracks", rect.zw(), (CRACK_FORMAT, usage)),
+        blocks: computed.then(|| new("comics_crack_blocks", blocks(rect), (BLOCK_FORMAT, stored))),
+    }
 }
 
 pub(crate) fn prepare_view_lines(
@@ -115,17 +124,16 @@ pub(crate) fn prepare_view_lines(
 ) {
     for (entity, request, passes, lines) in &mut views {
         let mut fill = |lines: &mut ViewLines| {
-            let mut new = |label| texture(&mut textures, &device, label, request.size);
-            lines.edges = Some(new("comics_edges"));
-            lines.flood = passes.flood.map(|_| Flood {
-                strides: Flood::strides(request.lines.reach),
-                textures: [new("comics_lines"), new("comics_lines")],
-            });
+            let find = passes.cracks.as_ref().map(|(find, _)| find);
+            lines.cracks = find.map(|find| cracks((&mut textures, &device), find, request.rect));
+            lines.ink = Some(texture(
+                (&mut textures, &device),
+                "comics_line_ink",
+                request.size,
+                (INK_FORMAT, TextureUsages::RENDER_ATTACHMENT),
+            ));
             lines.found = AtomicBool::new(false);
-            lines.uniform.set(LinePassUniform {
-                view: request.view,
-                lines: request.lines,
-            });
+            lines.uniform.set(request.uniform());
             lines.uniform.write_buffer(&device, &queue);
         };
         match lines {

@@ -6,14 +6,18 @@ use bevy::{
         entity::Entity,
         system::{Res, ResMut, SystemParam},
     },
-    math::UVec2,
-    render::render_resource::{
-        CachedRenderPipelineId, PipelineCache, ShaderType, SpecializedRenderPipelines,
+    math::{IVec4, UVec2, UVec4, Vec2, Vec4},
+    render::{
+        render_resource::{
+            CachedComputePipelineId, CachedRenderPipelineId, PipelineCache, ShaderType,
+            SpecializedComputePipelines, SpecializedRenderPipelines,
+        },
+        renderer::RenderDevice,
     },
 };
 
 use super::{
-    pipelines::{FloodPipeline, GATHER_REACH, OutlineKey, OutlinePipeline},
+    pipelines::{LineKey, LinePass, LineShaders},
     settings::{LineSettings, LinesUniform},
 };
 use crate::depth::view::ViewUniform;
@@ -26,9 +30,17 @@ pub(crate) struct LineRequest {
     pub settings: LineSettings,
     pub view: ViewUniform,
     pub lines: LinesUniform,
-    /// Size in pixels of the depth texture, and its samples per pixel.
-    pub size: UVec2,
+    /// Samples per pixel of the depth texture.
     pub samples: u32,
+    /// Size of the viewport in physical pixels.
+    pub size: UVec2,
+    /// The part of the depth texture that the main pass draws: x, y, width, height.
+    pub rect: UVec4,
+    /// By how much the engine has moved the main pass in this frame, in its pixels,
+    /// under temporal anti-aliasing.
+    pub jitter: Option<Vec2>,
+    /// Distance in physical pixels within which lines are searched around a pixel.
+    pub reach: i32,
     pub oblique: bool,
     /// The depth map spans the visible range.
     pub visible_range: bool,
@@ -36,52 +48,109 @@ pub(crate) struct LineRequest {
     pub ids: bool,
     /// Some object has an `OutlineStyle` or `NoOutlines`.
     pub object_styles: bool,
-    /// An effect reads lines at positions between pixels, several times per pixel.
-    pub anywhere: bool,
 }
 
 impl LineRequest {
-    /// Whether a flood finds the nearest lines. Reading a position between pixels then
-    /// takes four lookups, whatever the width of the lines.
-    pub fn floods(&self) -> bool {
-        self.lines.reach > GATHER_REACH || (self.anywhere && self.lines.reach > 0)
+    /// Pixels within which cracks are searched around a pixel.
+    pub fn grid_reach(&self) -> i32 {
+        let aligned = self.view.depth_scale == Vec2::ONE && self.jitter.is_none();
+        // Between the pixels of the grid, cracks half a pixel further away count.
+        self.reach.max(1) + i32::from(!aligned)
+    }
+
+    fn grid(&self) -> Grid {
+        let scale = self.view.depth_scale;
+        let jitter = self.jitter.unwrap_or(Vec2::ZERO);
+        Grid {
+            rect: self.rect.as_ivec4(),
+            // The picture is not moved: temporal anti-aliasing has undone it.
+            from_viewport: Vec4::new(scale.x, scale.y, -jitter.x, -jitter.y),
+            reach: self.grid_reach(),
+        }
+    }
+
+    pub fn uniform(&self) -> LinePassUniform {
+        LinePassUniform {
+            view: self.view,
+            lines: self.lines,
+            grid: self.grid(),
+        }
     }
 }
 
-/// The uniform of the passes that find lines.
+/// `Grid` of `edge.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default)]
+pub(crate) struct Grid {
+    rect: IVec4,
+    from_viewport: Vec4,
+    reach: i32,
+}
+
+/// The uniform of the passes that find and draw lines.
 #[derive(ShaderType, Clone, Copy, Debug, Default)]
 pub(crate) struct LinePassUniform {
     pub view: ViewUniform,
     pub lines: LinesUniform,
+    pub grid: Grid,
 }
 
 /// The pipelines of one view's lines.
 #[derive(Component, Clone, Copy, Debug)]
 pub(crate) struct LinePasses {
-    pub key: OutlineKey,
-    pub detect: CachedRenderPipelineId,
-    /// The first and all further steps of the flood, if there is one.
-    pub flood: Option<[CachedRenderPipelineId; 2]>,
+    pub key: LineKey,
+    /// Finds and draws the lines along cracks, if there are any.
+    pub cracks: Option<(Find, CachedRenderPipelineId)>,
+    /// Draws the lines of the faithful forms, if there are any.
+    pub faithful: Option<CachedRenderPipelineId>,
+}
+
+/// The pipeline that finds cracks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Find {
+    Compute(CachedComputePipelineId),
+    Fragments(CachedRenderPipelineId),
 }
 
 /// Specializes the pipelines for requests.
 #[derive(SystemParam)]
 pub(crate) struct LinePipelines<'w> {
-    edges: ResMut<'w, SpecializedRenderPipelines<OutlinePipeline>>,
-    floods: ResMut<'w, SpecializedRenderPipelines<FloodPipeline>>,
-    edge: Res<'w, OutlinePipeline>,
-    flood: Res<'w, FloodPipeline>,
+    computes: ResMut<'w, SpecializedComputePipelines<LineShaders>>,
+    renders: ResMut<'w, SpecializedRenderPipelines<LineShaders>>,
+    shaders: Res<'w, LineShaders>,
+    device: Res<'w, RenderDevice>,
 }
 
 impl LinePipelines<'_> {
     /// The pipelines for a request; new ones are queued for compilation.
     pub fn get(&mut self, cache: &PipelineCache, request: &LineRequest) -> LinePasses {
-        let key = OutlineKey::new(request);
-        let mut flood = |first| self.floods.specialize(cache, &self.flood, first);
+        let limits = self.device.limits();
+        let has_compute = limits.max_compute_workgroup_size_x > 0
+            && limits.max_storage_textures_per_shader_stage >= 2;
+        let key = LineKey::new(request, !has_compute);
+        let mut render = |pass| {
+            let part = match pass {
+                LinePass::Find => key.for_find(),
+                LinePass::Faithful => key.for_faithful(),
+                LinePass::Draw => key.for_draw(),
+            };
+            let renders = &mut self.renders;
+            renders.specialize(cache, &self.shaders, (pass, part))
+        };
+        let faithful = key.has_faithful().then(|| render(LinePass::Faithful));
+        let cracks = key.has_cracks().then(|| {
+            let draw = render(LinePass::Draw);
+            let find = if has_compute {
+                let computes = &mut self.computes;
+                Find::Compute(computes.specialize(cache, &self.shaders, key.for_find()))
+            } else {
+                Find::Fragments(render(LinePass::Find))
+            };
+            (find, draw)
+        });
         LinePasses {
             key,
-            detect: self.edges.specialize(cache, &self.edge, key),
-            flood: request.floods().then(|| [flood(true), flood(false)]),
+            cracks,
+            faithful,
         }
     }
 }

@@ -81,10 +81,17 @@ impl LineSettings {
         super::reach(0.5 * widest * scale)
     }
 
+    /// The jump in depth from which one surface hides another, instead of meeting it:
+    /// the threshold of measured silhouettes. That of the faithful form has another
+    /// meaning.
+    fn jump(&self) -> f32 {
+        let measured = self.silhouettes.filter(|s| s.form == Form::Corrected);
+        measured.unwrap_or_default().threshold
+    }
+
     /// The settings as shaders take them. `scale` is physical pixels per logical
-    /// pixel, `reference` that of `DepthProjection::jump_reference`, `reach` in
-    /// physical pixels.
-    pub(crate) fn uniform(&self, scale: f32, reference: [f32; 2], reach: i32) -> LinesUniform {
+    /// pixel, `reference` that of `DepthProjection::jump_reference`.
+    pub(crate) fn uniform(&self, scale: f32, reference: [f32; 2]) -> LinesUniform {
         let s = self.silhouettes.unwrap_or_default();
         let c = self.creases.unwrap_or_default();
         let o = self.objects.unwrap_or_default();
@@ -111,7 +118,7 @@ impl LineSettings {
             opacity_fade: self.opacity_fade,
             reference_factor: reference[0],
             reference_constant: reference[1],
-            reach,
+            jump: self.jump(),
             unused: 0,
         }
     }
@@ -140,6 +147,6 @@ pub(crate) struct LinesUniform {
     opacity_fade: f32,
     reference_factor: f32,
     reference_constant: f32,
-    pub reach: i32,
+    jump: f32,
     unused: u32,
 }

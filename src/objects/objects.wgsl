@@ -31,7 +31,12 @@ struct ObjectStyle {
 #ifdef OBJECT_IDS
 // (id, style slot) of the object at a pixel's first sample; the id is 0 if there is none.
 fn load_object(pixel: vec2<i32>) -> vec2<u32> {
-    return textureLoad(object_texture, depth_pixel(pixel), 0).xy;
+    return texel_object(depth_pixel(pixel), 0);
+}
+
+// The same at a pixel and sample of the prepass textures.
+fn texel_object(at: vec2<i32>, sample: i32) -> vec2<u32> {
+    return textureLoad(object_texture, at, sample).xy;
 }
 #endif
 

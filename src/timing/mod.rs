@@ -36,7 +36,7 @@ pub enum Pass {
     Prepass,
     /// The depth range: reduction and smoothing.
     DepthRange,
-    /// Ids, edges and floods of the outlines.
+    /// The ids of objects, and finding and drawing lines.
     Outlines,
     /// The engine's main pass.
     Main,

@@ -1,7 +1,7 @@
 //! Copies the plans of active cameras to the render world.
 
 use bevy::{
-    camera::{Camera, Camera3d, MainPassResolutionOverride, Projection},
+    camera::{Camera, Camera3d, Projection},
     ecs::{
         entity::{Entity, EntityHashSet},
         query::With,
@@ -28,7 +28,6 @@ pub(super) fn extract_views(
                 &Camera,
                 &CameraPlan,
                 Option<&Projection>,
-                Option<&MainPassResolutionOverride>,
                 Option<&CameraCuts>,
             ),
             With<Camera3d>,
@@ -40,7 +39,7 @@ pub(super) fn extract_views(
     mut seen: Local<EntityHashSet>,
 ) {
     seen.clear();
-    for (entity, render_entity, camera, asked, projection, resolution, cuts) in &cameras {
+    for (entity, render_entity, camera, asked, projection, cuts) in &cameras {
         if !camera.is_active {
             continue;
         }
@@ -61,7 +60,6 @@ pub(super) fn extract_views(
             projection: DepthProjection::new(&clip_from_view, projection),
             clip_from_view,
             scale_factor: camera.target_scaling_factor().unwrap_or(1.0),
-            main_pass_size: resolution.map(|size| size.0),
             widest_object: objects.max_width(),
             time: time.as_ref().map_or(0.0, |time| time.elapsed_secs_f64()),
             seconds: real_time.as_ref().map_or(0.0, |time| time.delta_secs()),

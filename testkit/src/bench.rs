@@ -36,7 +36,7 @@ pub enum Lap {
     Prepass,
     /// The depth range.
     Range,
-    /// Ids, edges and floods of the outlines.
+    /// The ids of objects, and finding and drawing lines.
     Lines,
     /// The engine's main pass.
     Main,

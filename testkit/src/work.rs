@@ -48,8 +48,8 @@ const PASSES: [ComicsStage; 8] = [
     ComicsStage::ObjectIds,
     ComicsStage::DepthRange,
     ComicsStage::RangeSmoothing,
-    ComicsStage::OutlineEdges,
-    ComicsStage::LineFlood,
+    ComicsStage::FindLines,
+    ComicsStage::DrawLines,
     ComicsStage::Stylize,
 ];
 
@@ -131,11 +131,7 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
 
 /// Bytes of the texel that a line of WGSL loads, by the name of its binding.
 fn texel_size(line: &str) -> Option<u32> {
-    let name = line.split("textureLoad(").nth(1)?.split(',').next()?;
-    Some(match name {
-        "edge_texture" | "flood_texture" => 8,
-        _ => 4,
-    })
+    line.contains("textureLoad(").then_some(4)
 }
 
 /// The file of the fused pass.

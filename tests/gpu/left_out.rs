@@ -176,7 +176,7 @@ fn what_changes_nothing_is_left_out() {
 }
 
 /// Outlines request only what they draw: no range without a fade, no normals
-/// without creases, no ids without object edges, no flood for narrow lines.
+/// without creases, no ids without object edges.
 #[test]
 fn outlines_run_what_they_need_and_no_more() {
     let mut small = small();
@@ -186,13 +186,13 @@ fn outlines_run_what_they_need_and_no_more() {
         ran,
         [
             ComicsStage::DepthPrepass,
-            ComicsStage::OutlineEdges,
+            ComicsStage::FindLines,
+            ComicsStage::DrawLines,
             ComicsStage::of::<Outlines>(),
             ComicsStage::Stylize,
         ]
     );
     assert!(left.contains(&(ComicsStage::DepthRange, LeftOut::NoMapStyle)));
-    assert!(left.contains(&(ComicsStage::LineFlood, LeftOut::NarrowLines)));
     assert!(left.contains(&(ComicsStage::NormalPrepass, LeftOut::NoSuchLines)));
     assert!(left.contains(&(ComicsStage::ObjectIds, LeftOut::NoSuchLines)));
     small
@@ -206,7 +206,6 @@ fn outlines_run_what_they_need_and_no_more() {
         ComicsStage::NormalPrepass,
         ComicsStage::ObjectIds,
         ComicsStage::DepthRange,
-        ComicsStage::LineFlood,
     ] {
         assert!(small.ran(stage), "{stage:?}");
     }
@@ -250,7 +249,7 @@ fn a_sketch_draws_in_place_of_the_outlines() {
             small.insert(Outlines::default()).settle();
         }
         let (ran, left) = stages(&small);
-        for stage in [ComicsStage::OutlineEdges, ComicsStage::of::<Sketch>()] {
+        for stage in [ComicsStage::DrawLines, ComicsStage::of::<Sketch>()] {
             assert!(ran.contains(&stage), "{stage:?}, {own}");
         }
         assert!(

@@ -36,7 +36,7 @@ fn unlit(world: &mut World, color: Color) -> Handle<StandardMaterial> {
         })
 }
 
-fn put(small: &mut Small, mesh: impl Into<Mesh>, color: Color, at: Transform) -> Entity {
+pub fn put(small: &mut Small, mesh: impl Into<Mesh>, color: Color, at: Transform) -> Entity {
     let world = small.world();
     let material = unlit(world, color);
     let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
@@ -45,7 +45,7 @@ fn put(small: &mut Small, mesh: impl Into<Mesh>, color: Color, at: Transform) ->
         .id()
 }
 
-fn look(small: &mut Small, eye: Vec3, target: Vec3, near: f32) {
+pub fn look(small: &mut Small, eye: Vec3, target: Vec3, near: f32) {
     small.insert((
         Transform::from_translation(eye).looking_at(target, Vec3::Y),
         Projection::Perspective(PerspectiveProjection {

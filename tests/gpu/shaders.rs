@@ -124,24 +124,18 @@ fn picture_effects() -> [Modes; 5] {
 /// The effects that draw lines. Only one is compiled at a time, because the
 /// sketch replaces the outlines.
 fn line_effects() -> [Modes; 2] {
-    let flood = |reach| vec![("FLOOD", None), ("LINE_REACH", Some(reach))];
-    let gather = |reach| vec![("LINE_REACH", Some(reach))];
     [
         (
             "outlines",
             product(&[
                 vec![flags(&["OUTLINES", "LINES"])],
-                vec![gather(0), gather(1), gather(2), flood(2)],
                 optional(&["OBJECT_STYLES"]),
             ]),
         ),
         (
             "sketch",
-            // Lines that are read anywhere come from a flood, unless the pixels
-            // are the lines.
             product(&[
                 vec![flags(&["SKETCH", "LINES", "LINES_ANYWHERE"])],
-                vec![gather(0), flood(1), flood(2)],
                 optional(&["OBJECT_STYLES", "SKETCH_FADES"]),
             ]),
         ),
@@ -150,7 +144,7 @@ fn line_effects() -> [Modes; 2] {
 
 /// Every debug view with its needs.
 fn debug_views() -> Vec<Definitions> {
-    let lines = |view| vec![(view, None), ("LINES", None), ("LINE_REACH", Some(1))];
+    let lines = |view| vec![(view, None), ("LINES", None)];
     vec![
         flags(&["VIEW_DEPTH_MAP", "MAP", "DEPTH"]),
         flags(&["VIEW_RAW_RANGE", "MAP", "DEPTH"]),
@@ -170,7 +164,7 @@ fn debug_views() -> Vec<Definitions> {
 }
 
 /// Composes the fused pass with the definitions that the plugin sets. Definitions
-/// about depth are left out where nothing reads it; two numbers are always set.
+/// about depth are left out where nothing reads it; one number is always set.
 fn compose(source: &str, parts: &[&[Definition<'static>]]) {
     let mut all = parts.concat();
     let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
@@ -181,10 +175,8 @@ fn compose(source: &str, parts: &[&[Definition<'static>]]) {
         "MULTISAMPLED" => depth || names.contains(&"NORMALS") || names.contains(&"OBJECT_IDS"),
         _ => true,
     });
-    for number in ["MAP_FLAGS", "LINE_REACH"] {
-        if !names.contains(&number) {
-            all.push((number, Some(0)));
-        }
+    if !names.contains(&"MAP_FLAGS") {
+        all.push(("MAP_FLAGS", Some(0)));
     }
     if let Err(error) = module_with(source, &all) {
         panic!("{all:?}: {error}");
@@ -384,37 +376,47 @@ fn every_shape_of_the_reduction_composes_and_validates() {
 
 #[test]
 fn every_kind_of_outline_composes_and_validates() {
-    let source = shader("lines/detect.wgsl");
-    let forms = product(&[
-        numbers("SILHOUETTE_FAITHFUL", 0..2),
-        numbers("CREASE_FAITHFUL", 0..2),
-    ]);
-    for kinds in subsets(&["SILHOUETTES", "CREASES", "OBJECT_EDGES", "OBJECT_STYLES"]) {
-        for view in subsets(&["MULTISAMPLED", "OBLIQUE", "SAME_SIZE", "FADING"]) {
-            let mut defs = vec!["DEPTH", "FORMS"];
-            defs.extend(kinds.iter().chain(&view));
+    let (find, faithful) = (shader("lines/find.wgsl"), shader("lines/faithful.wgsl"));
+    let check = |source: &str, defs: &[&str]| {
+        module(source, defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
+    };
+    for view in subsets(&["MULTISAMPLED", "OBLIQUE", "SAME_SIZE", "FADING"]) {
+        let mut view = [&["DEPTH"], &view[..]].concat();
+        if view.contains(&"FADING") {
+            view.push("VISIBLE_RANGE");
+        }
+        for kinds in subsets(&[
+            "SILHOUETTES",
+            "CREASES",
+            "OBJECT_EDGES",
+            "OBJECT_STYLES",
+            "BY_FRAGMENTS",
+        ]) {
+            let mut defs = [&view[..], &kinds].concat();
             if kinds.contains(&"CREASES") {
                 defs.push("NORMALS");
             }
             if kinds.contains(&"OBJECT_EDGES") || kinds.contains(&"OBJECT_STYLES") {
                 defs.push("OBJECT_IDS");
             }
-            if view.contains(&"FADING") {
-                defs.push("VISIBLE_RANGE");
+            check(&find, &defs);
+        }
+        for forms in subsets(&["FAITHFUL_SILHOUETTES", "FAITHFUL_CREASES", "OBJECT_STYLES"]) {
+            let mut defs = [&view[..], &forms].concat();
+            if forms.contains(&"FAITHFUL_CREASES") {
+                defs.push("NORMALS");
             }
-            for form in &forms {
-                // The form of a kind that is not drawn does not matter.
-                let drawn = |kind, at: usize| form[at].1 == Some(0) || kinds.contains(&kind);
-                if drawn("SILHOUETTES", 0) && drawn("CREASES", 1) {
-                    let all = [&flags(&defs)[..], form].concat();
-                    module_with(&source, &all).unwrap_or_else(|error| panic!("{all:?}: {error}"));
-                }
+            if forms.contains(&"OBJECT_STYLES") {
+                defs.push("OBJECT_IDS");
             }
+            check(&faithful, &defs);
         }
     }
-    let source = shader("lines/flood.wgsl");
-    for defs in subsets(&["FIRST"]) {
-        module(&source, &defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
+    let draw = shader("lines/draw.wgsl");
+    for styles in [&[][..], &["OBJECT_IDS", "OBJECT_STYLES"]] {
+        for view in subsets(&["MULTISAMPLED", "BY_FRAGMENTS", "NARROW"]) {
+            check(&draw, &[styles, &view].concat());
+        }
     }
     module(&shader("objects/ids.wgsl"), &[]).expect("the ids");
 }

@@ -40,14 +40,6 @@ pub fn edge_response(g: [f64; 2], k: f64) -> f64 {
 /// A unit normal; `None` where a pixel has none.
 pub type Normal = Option<Rgb>;
 
-/// Distance between two unit normals, 2 sin(angle / 2); 0 if either is missing.
-pub fn normal_step(a: Normal, b: Normal) -> f64 {
-    match (a, b) {
-        (Some(a), Some(b)) => (0..3).map(|i| (a[i] - b[i]).powi(2)).sum::<f64>().sqrt(),
-        _ => 0.0,
-    }
-}
-
 /// Eq. 1 and 2 on each component of the normals: the largest response.
 pub fn component_response(window: &[[Normal; 5]; 5], k: f64) -> f64 {
     (0..3)
@@ -61,11 +53,50 @@ pub fn component_response(window: &[[Normal; 5]; 5], k: f64) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// How much the step down from `here` to `there` exceeds the slopes on both sides
-/// of it, in raw depth: positive at an edge, 0 or less on a plane. `before` lies
-/// behind `here`, `beyond` behind `there`.
-pub fn step_excess(before: f64, here: f64, there: f64, beyond: f64) -> f64 {
-    (here - there) - (before - here).max(there - beyond).max(0.0)
+/// How much the step between the third and the fourth of six raw depths in a row
+/// exceeds the slopes on both sides of it. Positive at an edge, 0 or less on a plane.
+/// A slope counts only if it persists over two pixels.
+pub fn step_excess(d: [f64; 6]) -> f64 {
+    let step = d[2] - d[3];
+    let down = if step >= 0.0 { 1.0 } else { -1.0 };
+    let slope = |a: f64, b: f64, c: f64| (down * (a - b)).min(down * (b - c));
+    step.abs()
+        - slope(d[0], d[1], d[2])
+            .max(slope(d[3], d[4], d[5]))
+            .max(0.0)
+}
+
+/// Response to an excess, 0 to 1: half of it is the `g_max - g_min` of Eq. 2.
+pub fn step_response(excess: f64, k: f64) -> f64 {
+    (0.5 * excess.max(0.0) / k.max(1e-30)).powi(2).min(1.0)
+}
+
+/// Squared distance of two unit normals; `None` if one is missing.
+pub fn fold(a: Normal, b: Normal) -> Option<f64> {
+    let (a, b) = (a?, b?);
+    Some((0..3).map(|i| (a[i] - b[i]).powi(2)).sum())
+}
+
+/// Response to a fold, 0 to 1: half of the distance is the sine of half of the angle.
+pub fn fold_response(fold: Option<f64>, k: f64) -> f64 {
+    (0.25 * fold.unwrap_or(0.0) / (k * k)).min(1.0)
+}
+
+/// Whether the second of three folds in a row is the sharpest, and none is missing.
+pub fn is_ridge(folds: [Option<f64>; 3]) -> bool {
+    let [Some(before), Some(fold), Some(beyond)] = folds else {
+        return false;
+    };
+    fold > 0.0 && fold >= before && fold >= beyond
+}
+
+/// Distance from a place to a segment.
+pub fn segment_distance(at: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let squared = along[0] * along[0] + along[1] * along[1];
+    let dot = (at[0] - a[0]) * along[0] + (at[1] - a[1]) * along[1];
+    let t = (dot / squared.max(1e-12)).clamp(0.0, 1.0);
+    (at[0] - a[0] - t * along[0]).hypot(at[1] - a[1] - t * along[1])
 }
 
 /// Fraction of a pixel that a line covers, across the line: the overlap of the
@@ -78,13 +109,12 @@ pub fn line_coverage(distance: f64, half_width: f64) -> f64 {
     (high - low).max(0.0)
 }
 
-/// Distance in pixels from the centre of the pixel that owns a line to the middle
-/// of the line: 1/2 for even widths, 0 for odd ones and below 1, linear in between.
+/// Distance in pixels from the middle of a line to the crack that it runs along: 0 for
+/// even widths, 1/2 for odd ones and below 1, linear in between.
 pub fn line_offset(half_width: f64) -> f64 {
     let width = 2.0 * half_width;
     if width < 1.0 {
-        return 0.0;
+        return 0.5;
     }
-    let to_even = (width.rem_euclid(2.0)).min(2.0 - width.rem_euclid(2.0));
-    0.5 - 0.5 * to_even
+    0.5 * (width.rem_euclid(2.0)).min(2.0 - width.rem_euclid(2.0))
 }

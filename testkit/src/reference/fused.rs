@@ -3,8 +3,8 @@
 
 use super::{
     Rgb, black_flats, color, colorization, contours, desaturation,
-    read::{self, Edges, Lookup},
-    sketch, tone_bands,
+    draw::Ink,
+    read, sketch, tone_bands,
     view::{View, map_slope, pixel_depth},
     vignette,
 };
@@ -19,7 +19,7 @@ pub struct Input<'a> {
     pub picture: &'a dyn Fn(u32, u32) -> [f32; 4],
     /// Size of the picture in pixels.
     pub size: [u32; 2],
-    pub lines: Option<(&'a Outlines, &'a Edges)>,
+    pub lines: Option<(&'a Outlines, &'a Ink)>,
     /// Number of the sketch's drawing that is shown.
     pub drawing: u32,
 }
@@ -83,17 +83,11 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
         let [coverage, near] = contours::contour(&Contours { threshold, ..*s }, view, x, y, 1.0);
         linear = contours::draw(s, linear, coverage, near);
     }
-    // Lines wider than 4 pixels come from a flood (`GATHER_REACH` in
-    // `lines/pipelines.rs`), and so do the lines of a sketch.
     let sketch = style.get::<Sketch>();
-    let lookup = match (sketch, input.lines) {
-        (Some(_), _) => Lookup::FourFlooded,
-        (None, Some((outlines, _))) if outlines.width > 4.0 => Lookup::Flood,
-        _ => Lookup::Gather,
-    };
-    let place = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+    let [left, top, width, height] = view.viewport.map(f64::from);
+    let place = [f64::from(x) + 0.5 - left, f64::from(y) + 0.5 - top];
     match (sketch, input.lines) {
-        (Some(s), Some((outlines, edges))) => {
+        (Some(s), Some((outlines, ink))) => {
             let inside = [x - view.viewport[0], y - view.viewport[1]].map(f64::from);
             let blank = (0..s.strokes).fold(1.0, |blank, stroke| {
                 let by = sketch::stray(s, inside, stroke, input.drawing, 1.0);
@@ -101,20 +95,18 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
                 let pressure = sketch::pen_pressure(s, inside, stroke, input.drawing, 1.0);
                 blank
                     * (1.0
-                        - (read::total(outlines, edges.ink(at, lookup, nudge)) * pressure)
+                        - (read::total(outlines, read::lines_at(ink, at, true, nudge)) * pressure)
                             .clamp(0.0, 1.0))
             });
             linear = sketch::draw_sketch(s, linear, 1.0 - blank);
         }
-        (None, Some((outlines, edges))) => {
-            linear = read::draw(outlines, linear, edges.ink(place, lookup, nudge));
+        (None, Some((outlines, ink))) => {
+            linear = read::draw(outlines, linear, read::lines_at(ink, place, false, nudge));
         }
         _ => {}
     }
     if let Some(s) = style.get::<Vignette>() {
-        let [left, top, width, height] = view.viewport.map(f64::from);
-        let at = [place[0] - left, place[1] - top];
-        linear = vignette::vignette(s, linear, at, [width, height]);
+        linear = vignette::vignette(s, linear, place, [width, height]);
     }
     linear
 }

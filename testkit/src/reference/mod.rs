@@ -1,14 +1,15 @@
 //! Twins of the shaders in double precision. A twin has the name of the WGSL file
-//! that it mirrors (`read.rs` mirrors `lines/read.wgsl` and `lines/flood.wgsl`). It
-//! is written from the definition, not from the shader.
+//! that it mirrors. It is written from the definition, not from the shader.
 
 pub mod black_flats;
 pub mod color;
 pub mod colorization;
 pub mod contours;
 pub mod desaturation;
-pub mod detect;
+pub mod draw;
 pub mod edge;
+pub mod faithful;
+pub mod find;
 pub mod finish;
 pub mod fused;
 pub mod light;

@@ -4,7 +4,7 @@ use super::*;
 use bevy_comics::{CartoonLight, Form, Sketch, ToneBands};
 use bevy_comics_testkit::reference::{edge, light, sketch, tone_bands};
 
-const EDGE: &str = "#import bevy_comics::lines::edge::{gradient, gradient_extremes, edge_response, normal_extremes, component_response, step_excess, line_coverage, line_offset, pack_edge, unpack_edge, Edge}";
+const EDGE: &str = "#import bevy_comics::lines::edge::{gradient, gradient_extremes, edge_response, component_response, step_excess, step_response, fold, fold_response, is_ridge, line_coverage, line_offset, segment_distance, pack_ink, unpack_crack, encode_ink, decode_ink}";
 
 /// A window of 5 x 5 depths, row by row (random, a step or a ramp), then `k` of Eq. 2
 /// and an unused element.
@@ -33,7 +33,8 @@ fn gradient_and_response_are_equations_1_and_2() {
             "var v: array<f32, 25>;
              for (var n = 0u; n < 25u; n++) { v[n] = i(n); }
              let g = gradient_extremes(&v);
-             return vec4(g, edge_response(g, i(25u)), step_excess(v[11], v[12], v[13], v[14]));",
+             let excess = step_excess(vec4(v[10]), vec4(v[11]), vec4(v[12]), vec4(v[13]), vec4(v[14]), vec4(v[15]));
+             return vec4(g, edge_response(g, i(25u)), excess.x);",
             rows,
         );
         for (row, result) in rows.iter().zip(results) {
@@ -60,7 +61,7 @@ fn gradient_and_response_are_equations_1_and_2() {
                 (f64::from(result[2]) - p).abs() <= slack,
                 "{row:?}: {result:?}, {p}"
             );
-            let excess = edge::step_excess(w[2][1], w[2][2], w[2][3], w[2][4]);
+            let excess = edge::step_excess([w[2][0], w[2][1], w[2][2], w[2][3], w[2][4], w[3][0]]);
             assert!(
                 (f64::from(result[3]) - excess).abs() <= 2f64.powi(-22),
                 "{row:?}"
@@ -115,7 +116,9 @@ fn creases_are_their_twin_in_both_forms() {
             EDGE,
             "var v: array<vec4<f32>, 25>;
              for (var n = 0u; n < 25u; n++) { v[n] = vec4(i(4u*n), i(4u*n+1u), i(4u*n+2u), i(4u*n+3u)); }
-             return vec4(normal_extremes(&v), component_response(&v, i(100u)), 0.0);",
+             let folds = vec3(fold(v[0], v[1]), fold(v[1], v[2]), fold(v[2], v[3]));
+             let ridge = is_ridge(vec4(folds.x), vec4(folds.y), vec4(folds.z)).x;
+             return vec4(folds.y, fold_response(vec4(folds.y), i(100u)).x, component_response(&v, i(100u)), select(0.0, 1.0, ridge));",
             rows,
         );
         for (row, result) in rows.iter().zip(results) {
@@ -125,17 +128,23 @@ fn creases_are_their_twin_in_both_forms() {
                     (n[3] > 0.0).then(|| [n[0], n[1], n[2]].map(f64::from))
                 })
             });
-            let g = edge::gradient_extremes(&w, edge::normal_step);
+            let folds = [0, 1, 2].map(|i: usize| edge::fold(w[0][i], w[0][i + 1]));
             let step = 40.0 * 2f64.powi(-24);
+            let fold = folds[1].unwrap_or(-1.0);
             assert!(
-                (f64::from(result[0]) - g[0]).abs() <= step,
-                "{result:?} {g:?}"
-            );
-            assert!(
-                (f64::from(result[1]) - g[1]).abs() <= step,
-                "{result:?} {g:?}"
+                (f64::from(result[0]) - fold).abs() <= step,
+                "{result:?} {fold}"
             );
             let k = f64::from(row[100]);
+            let response = edge::fold_response(folds[1], k);
+            assert!(
+                (f64::from(result[1]) - response).abs() <= step / (k * k),
+                "{result:?} {response}"
+            );
+            let ridge = f32::from(u8::from(edge::is_ridge(folds)));
+            let known = folds.map(|f| f.unwrap_or(9.0));
+            let tie = (known[1] - known[0]).abs().min((known[1] - known[2]).abs()) <= step;
+            assert!(tie || result[3] == ridge, "{result:?} {folds:?}");
             let p = edge::component_response(&w, k);
             assert!(
                 (f64::from(result[2]) - p).abs() <= 4.0 * step / k,
@@ -168,22 +177,24 @@ fn a_turned_scene_has_the_same_measured_creases() {
             })
         })
     };
-    let g0 = edge::gradient_extremes(&crease(0.0), edge::normal_step);
+    let step = |a: f64| {
+        let w = crease(a);
+        edge::fold(w[2][2], w[2][3]).expect("normals").sqrt()
+    };
     let p0 = edge::component_response(&crease(0.0), 1.0);
     let mut moved = 0.0f64;
     for k in 1..12 {
         let a = f64::from(k) * 0.13;
-        let g = edge::gradient_extremes(&crease(a), edge::normal_step);
-        assert!((g[1] - g0[1]).abs() < 1e-12, "{a}: {g:?}");
+        assert!((step(a) - step(0.0)).abs() < 1e-12, "{a}: {}", step(a));
         moved = moved.max((edge::component_response(&crease(a), 1.0) - p0).abs());
     }
     assert!(
         moved > 0.05,
         "the faithful form should depend on the axes: {moved}"
     );
-    // A crease of 60 degrees: the response is sin(30 degrees), which is `k` of the
-    // angle 60 degrees.
-    assert!((g0[1] - g0[0] - 0.5).abs() < 1e-12, "{g0:?}");
+    // A crease of 60 degrees has the response 1 if `k` is that of 60 degrees.
+    let response = edge::fold_response(Some(step(0.0).powi(2)), 30f64.to_radians().sin());
+    assert!((response - 1.0).abs() < 1e-12, "{response}");
 }
 
 #[test]
@@ -193,11 +204,14 @@ fn a_line_covers_what_it_should_and_packs_without_loss() {
     for_batches(row, |rows| {
         let results = gpu().evaluate(
             EDGE,
-            "var e: Edge; e.sides = 0xabcu; e.ink = vec3(i(2u), i(3u), i(4u)); e.half_width = i(1u); e.slot = 77u;
-             let back = unpack_edge(pack_edge(e));
-             let kept = select(0.0, 1.0, back.sides == 0xabcu && back.slot == 77u
-                 && all(abs(back.ink - e.ink) <= vec3(0.502 / 255.0)));
-             return vec4(line_coverage(i(0u), i(1u)), length(line_offset(u(5u), i(1u))), back.half_width, kept);",
+            "let packed = pack_ink(vec4(i(2u)), vec4(i(3u)), vec4(i(1u))).x | 13u;
+             let back = unpack_crack(packed);
+             let ink = vec3(i(2u), i(3u), i(4u));
+             let stored = round(encode_ink(ink) * 255.0) / 255.0;
+             let kept = select(0.0, 1.0, back.kinds == 5u && back.owner_here
+                 && abs(back.ink - i(2u)) <= 0.502 / 255.0 && abs(back.opacity - i(3u)) <= 0.502 / 255.0
+                 && all(abs(decode_ink(stored) - ink) <= vec3(1.01 / 255.0)));
+             return vec4(line_coverage(i(0u), i(1u)), line_offset(i(1u)), back.half_width, kept);",
             rows,
         );
         for (row, result) in rows.iter().zip(results) {
@@ -213,7 +227,8 @@ fn a_line_covers_what_it_should_and_packs_without_loss() {
                 "{row:?} {result:?} {offset}"
             );
             assert!(
-                (f64::from(result[2]) - h).abs() <= 0.501 / 512.0,
+                // Half of the last of ten bits.
+                (f64::from(result[2]) - h).abs() <= (h + 0.125) / 1000.0,
                 "{row:?} {result:?}"
             );
             assert_eq!(result[3], 1.0, "{row:?}");
@@ -227,7 +242,7 @@ fn coverage_adds_up_to_the_width() {
     for k in 1..=64 {
         let h = 0.125 * f64::from(k);
         let sum: f64 = (-40..40)
-            .map(|n| edge::line_coverage((f64::from(n) + 0.5 - edge::line_offset(h)).abs(), h))
+            .map(|n| edge::line_coverage((f64::from(n) + 0.5 + edge::line_offset(h)).abs(), h))
             .sum();
         assert!((sum - 2.0 * h).abs() < 1e-12, "{h}: {sum}");
     }

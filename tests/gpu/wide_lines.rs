@@ -1,4 +1,4 @@
-//! `lines/flood.wgsl`: wide lines against an exhaustive search.
+//! Wide lines against an exhaustive search.
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::Outlines;
@@ -8,8 +8,6 @@ use crate::{
     small::Small,
 };
 
-/// A flood stores one line per pixel; where lines of two objects cross, a jump can
-/// find the other one. Lines of one colour look the same either way.
 #[test]
 fn wide_lines_are_their_twin() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);

@@ -1,0 +1,88 @@
+// Finds the lines of the faithful forms and writes their ink, in the format of draw.wgsl:
+// the pixels that respond are the line ([CL] Eq. 1 and 2 over 5 x 5 pixels).
+
+#import bevy_comics::depth::map::{depth_map, is_background}
+#import bevy_comics::depth::view::{View, depth_frame, load_depth, set_view, view}
+#import bevy_comics::lines::edge::{
+    Grid, Lines, component_response, edge_response, encode_ink, gradient_extremes,
+}
+#import bevy_comics::objects::kinds_of
+#ifdef NORMALS
+#import bevy_comics::depth::normal::load_normal
+#endif
+#ifdef OBJECT_STYLES
+#import bevy_comics::objects::load_object
+#endif
+
+struct FaithfulUniform {
+    seen: View,
+    settings: Lines,
+    grid: Grid,
+}
+
+@group(0) @binding(1) var<uniform> faithful_uniform: FaithfulUniform;
+
+// Raw depth at a pixel. Outside of the viewport it is extrapolated by point reflection
+// at the border. This continues a plane, so that the border is not an edge.
+fn depth_at(pixel: vec2<i32>) -> f32 {
+    let first = view.viewport.xy;
+    let last = first + view.viewport.zw - 1;
+    let border = clamp(pixel, first, last);
+    let d = load_depth(border, 0);
+    if all(border == pixel) {
+        return d;
+    }
+    let mirror = clamp(2 * border - pixel, first, last);
+    return max(2.0 * d - load_depth(mirror, 0), 0.0);
+}
+
+#ifdef FAITHFUL_CREASES
+// (normal, 1) at index i of the 5 x 5 window around a pixel; w is 0 where there is no
+// normal. Positions outside of the viewport are clamped to its border.
+fn normal_at(pixel: vec2<i32>, i: i32, depths: ptr<function, array<f32, 25>>) -> vec4<f32> {
+    let first = view.viewport.xy;
+    let at = clamp(pixel + vec2(i % 5, i / 5) - 2, first, first + view.viewport.zw - 1);
+    let inside = at - pixel + 2;
+    let sky = is_background((*depths)[5 * inside.y + inside.x]);
+    return load_normal(at) * vec4(1.0, 1.0, 1.0, select(1.0, 0.0, sky));
+}
+#endif
+
+@vertex
+fn whole(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
+    let uv = vec2<f32>(f32(vertex >> 1u), f32(vertex & 1u)) * 2.0;
+    return vec4(uv * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 0.0, 1.0);
+}
+
+@fragment
+fn faithful(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    set_view(faithful_uniform.seen);
+    let s = faithful_uniform.settings;
+    let pixel = vec2<i32>(position.xy) + view.viewport.xy;
+    var depths: array<f32, 25>;
+    for (var i = 0; i < 25; i++) {
+        depths[i] = depth_at(pixel + vec2(i % 5, i / 5) - 2);
+    }
+    var slot = 0u;
+#ifdef OBJECT_STYLES
+    slot = load_object(pixel).y;
+#endif
+    let kinds = kinds_of(slot);
+    var ink = vec2(0.0);
+#ifdef FAITHFUL_SILHOUETTES
+    let p = edge_response(gradient_extremes(&depths), s.silhouette_k);
+    ink.x = smoothstep(s.silhouette_low, s.silhouette_high, p) * f32(kinds & 1u);
+#endif
+#ifdef FAITHFUL_CREASES
+    var normals: array<vec4<f32>, 25>;
+    for (var i = 0; i < 25; i++) {
+        normals[i] = normal_at(pixel, i, &depths);
+    }
+    let q = component_response(&normals, s.crease_k);
+    ink.y = smoothstep(s.crease_low, s.crease_high, q) * f32((kinds >> 1u) & 1u);
+#endif
+#ifdef FADING
+    ink *= 1.0 - s.opacity_fade * depth_map(depth_frame(), depths[12]).x;
+#endif
+    return vec4(encode_ink(vec3(ink, 0.0)), f32(slot) / 255.0);
+}

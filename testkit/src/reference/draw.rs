@@ -1,0 +1,212 @@
+//! Twin of `lines/draw.wgsl`: the ink of the lines at every pixel, by an exhaustive
+//! search.
+
+use super::{
+    edge::{line_coverage, line_offset, segment_distance},
+    faithful::faithful,
+    find::{Crack, SIDES, crack},
+    view::View,
+};
+use bevy_comics::Outlines;
+
+/// The cracks of a viewport.
+pub struct Cracks {
+    width: i64,
+    height: i64,
+    /// To the east and south of each pixel, row by row.
+    pub cracks: Vec<[Option<Crack>; 2]>,
+    /// Pixels around a pixel whose cracks draw lines there.
+    reach: i64,
+}
+
+impl Cracks {
+    /// `scale`: physical pixels per logical pixel.
+    pub fn new(s: &Outlines, view: &View, scale: f64) -> Self {
+        let [x0, y0, w, h] = view.viewport.map(i64::from);
+        let cracks = (0..h)
+            .flat_map(|y| (0..w).map(move |x| [x0 + x, y0 + y]))
+            .map(|pixel| [0, 1].map(|side| crack(s, view, pixel, side, scale)))
+            .collect();
+        Self {
+            width: w,
+            height: h,
+            cracks,
+            reach: ((0.5 * f64::from(s.width) * scale + 1.0).ceil() as i64 - 1).max(1),
+        }
+    }
+
+    fn at(&self, x: i64, y: i64) -> [Option<Crack>; 2] {
+        let inside = (0..self.width).contains(&x) && (0..self.height).contains(&y);
+        if inside {
+            self.cracks[(y * self.width + x) as usize]
+        } else {
+            [None; 2]
+        }
+    }
+
+    /// Ink by kind (silhouette, crease, object edge) at a place in pixels of the
+    /// viewport, before it is stored. The sign of `nudge` decides how ink rounds that
+    /// lies between two codes.
+    pub fn ink(&self, at: [f64; 2], nudge: f64) -> [f64; 3] {
+        let (px, py) = (at[0].floor() as i64, at[1].floor() as i64);
+        let mut found = [0.0f64; 3];
+        let mut lines = Vec::new();
+        for y in py - self.reach..=py + self.reach {
+            for x in px - self.reach..=px + self.reach {
+                for (crack, v) in self.at(x, y).into_iter().zip(SIDES) {
+                    let Some(crack) = crack else { continue };
+                    let middle = middle(&crack, [x, y], v);
+                    let away = distance(middle, at);
+                    found = larger(found, ink_of(&crack, nudge, away));
+                    lines.push((away - crack.half_width, middle, crack));
+                }
+            }
+        }
+        let straight = straight(&mut lines, at, nudge);
+        // Which of two lines at the same distance is the nearest is a matter of rounding.
+        let sums = straight.iter().map(|ink| ink.iter().sum::<f64>());
+        let chosen = if nudge > 0.0 {
+            sums.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
+        } else if nudge < 0.0 {
+            sums.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))
+        } else {
+            sums.enumerate().next()
+        };
+        chosen.map_or(found, |(i, _)| larger(found, straight[i]))
+    }
+}
+
+/// The line of a crack: the distance from its border, its middle, the crack.
+type Line = (f64, [f64; 2], Crack);
+
+fn larger(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|k| a[k].max(b[k]))
+}
+
+/// The ink of the straight line between the middles of the two lines whose borders are
+/// nearest, for every choice of these two.
+fn straight(lines: &mut [Line], at: [f64; 2], nudge: f64) -> Vec<[f64; 3]> {
+    const TIE: f64 = 2e-3;
+    lines.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut found = Vec::new();
+    for (border, a, crack) in lines.iter() {
+        if *border > lines[0].0 + TIE {
+            break;
+        }
+        // Both cracks at a corner of a line of odd width have their middle in one pixel.
+        let others: Vec<&Line> = lines
+            .iter()
+            .filter(|other| distance(other.1, *a) > 0.25)
+            .collect();
+        for (border, b, _) in &others {
+            if *border > others[0].0 + TIE {
+                break;
+            }
+            found.push(if distance(*a, *b) < 1.5 {
+                ink_of(crack, nudge, segment_distance(at, *a, *b))
+            } else {
+                [0.0; 3]
+            });
+        }
+    }
+    found
+}
+
+fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The middle of the line along a crack.
+fn middle(crack: &Crack, [x, y]: [i64; 2], v: [i64; 2]) -> [f64; 2] {
+    let shift = line_offset(crack.half_width);
+    let along = if crack.mine { 0.5 - shift } else { 0.5 + shift };
+    [
+        x as f64 + 0.5 + v[0] as f64 * along,
+        y as f64 + 0.5 + v[1] as f64 * along,
+    ]
+}
+
+/// Ink by kind at a distance from the middle of a line.
+fn ink_of(crack: &Crack, nudge: f64, away: f64) -> [f64; 3] {
+    let covered = line_coverage(away, crack.half_width);
+    let opacity = stored(crack.opacity, nudge);
+    let soft = stored(crack.ink, nudge);
+    let whole = [soft, soft, 1.0];
+    std::array::from_fn(|kind| {
+        if crack.kinds[kind] {
+            whole[kind] * opacity * covered
+        } else {
+            0.0
+        }
+    })
+}
+
+/// A value in eight bits. Within 0.02 codes of a tie, the sign of `nudge` selects the
+/// code.
+fn stored(value: f64, nudge: f64) -> f64 {
+    let code = 255.0 * value.clamp(0.0, 1.0);
+    let undecided = if nudge == 0.0 {
+        0.0
+    } else {
+        0.02 * nudge.signum()
+    };
+    (code + undecided).round().clamp(0.0, 255.0) / 255.0
+}
+
+/// The ink of every pixel of a viewport, as it is stored.
+pub struct Ink {
+    width: i64,
+    height: i64,
+    /// By kind, row by row: rounded down where undecided, as it is, and rounded up.
+    pixels: Vec<[[f64; 3]; 3]>,
+}
+
+impl Ink {
+    /// `scale`: physical pixels per logical pixel.
+    pub fn new(s: &Outlines, view: &View, scale: f64) -> Self {
+        let cracks = Cracks::new(s, view, scale);
+        let [x0, y0, w, h] = view.viewport.map(i64::from);
+        let pixel = |x: i64, y: i64| {
+            let whole = faithful(s, view, [x0 + x, y0 + y]);
+            [-1.0, 0.0, 1.0].map(|nudge| {
+                let mut ink = cracks.ink([x as f64 + 0.5, y as f64 + 0.5], nudge);
+                ink[0] = ink[0].max(whole[0]);
+                ink[1] = ink[1].max(whole[1]);
+                ink.map(|ink| decoded(stored(encoded(ink), nudge)))
+            })
+        };
+        let pixels = (0..h)
+            .flat_map(|y| (0..w).map(move |x| (x, y)))
+            .map(|(x, y)| pixel(x, y))
+            .collect();
+        Self {
+            width: w,
+            height: h,
+            pixels,
+        }
+    }
+
+    /// Ink at a pixel of the viewport, which is clamped to it.
+    pub fn texel(&self, x: i64, y: i64, nudge: f64) -> [f64; 3] {
+        let x = x.clamp(0, self.width - 1);
+        let y = y.clamp(0, self.height - 1);
+        let which = if nudge == 0.0 {
+            1
+        } else if nudge < 0.0 {
+            0
+        } else {
+            2
+        };
+        self.pixels[(y * self.width + x) as usize][which]
+    }
+}
+
+/// Ink as it is stored: steps are finest where little light is left.
+pub fn encoded(ink: f64) -> f64 {
+    1.0 - (1.0 - ink.clamp(0.0, 1.0)).sqrt()
+}
+
+/// The inverse of [`encoded`].
+pub fn decoded(stored: f64) -> f64 {
+    1.0 - (1.0 - stored) * (1.0 - stored)
+}

@@ -1,0 +1,123 @@
+//! Twin of `lines/find.wgsl`: the cracks that lines run along.
+
+use super::{
+    edge::{Normal, fold, fold_response, is_ridge, step_excess, step_response},
+    map::is_background,
+    smoothstep,
+    view::View,
+};
+use bevy_comics::{Form, Outlines};
+
+/// The border between a pixel and its neighbour to the east or south.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crack {
+    /// Whether a silhouette, a crease, an object edge runs along it.
+    pub kinds: [bool; 3],
+    /// Whether the line belongs to the pixel, not to the neighbour.
+    pub mine: bool,
+    /// Ink of the silhouette or crease, 0 to 1.
+    pub ink: f64,
+    /// Fraction of the opacity that is left after fading.
+    pub opacity: f64,
+    /// Half the width in physical pixels.
+    pub half_width: f64,
+}
+
+/// The neighbours of a pixel.
+pub const SIDES: [[i64; 2]; 2] = [[1, 0], [0, 1]];
+
+/// Ink for a response `p`. Softness 1 makes the ramp around `limit` as wide as
+/// fits into [0, 1] symmetrically.
+pub fn ink(limit: f32, softness: f32, p: f64) -> f64 {
+    let limit = f64::from(limit);
+    let half = f64::from(softness).max(1e-3) * limit.min(1.0 - limit);
+    smoothstep(limit - half, limit + half, p)
+}
+
+/// Six values in a row: the pixel is the third, its neighbour the fourth. Places
+/// outside the viewport are clamped to its border.
+fn along<T>(view: &View, [x, y]: [i64; 2], v: [i64; 2], at: impl Fn(u32, u32) -> T) -> [T; 6] {
+    let [x0, y0, w, h] = view.viewport.map(i64::from);
+    std::array::from_fn(|i| {
+        let n = i as i64 - 2;
+        at(
+            (x + n * v[0]).clamp(x0, x0 + w - 1) as u32,
+            (y + n * v[1]).clamp(y0, y0 + h - 1) as u32,
+        )
+    })
+}
+
+/// World normal of a pixel; `None` for the sky and for a texel without a unit normal.
+pub fn normal(view: &View, x: u32, y: u32) -> Normal {
+    let n = view.normals.as_ref()?.pixels[(y * view.width + x) as usize].map(f64::from);
+    let found = super::normal::there([n[0], n[1], n[2]]);
+    found.filter(|_| !is_background(view.depth(x, y, 0)))
+}
+
+/// The jump in depth that separates two surfaces, as a fraction of the reference.
+fn jump(s: &Outlines) -> f64 {
+    let measured = s.silhouettes.filter(|s| s.form == Form::Corrected);
+    f64::from(measured.unwrap_or_default().threshold)
+}
+
+/// Whether ink is visible after it is stored in eight bits.
+fn is_stored(ink: f64) -> bool {
+    (255.0 * ink.clamp(0.0, 1.0)).round() >= 1.0
+}
+
+/// A half width in twelve bits: three of exponent, nine of mantissa, of the half width
+/// plus 1/8.
+pub fn stored_width(half_width: f64) -> f64 {
+    let moved = half_width.clamp(0.0, 31.0) + 0.125;
+    let step = 2f64.powi(moved.log2().floor() as i32 - 9);
+    (moved / step).round() * step - 0.125
+}
+
+/// The crack between a pixel and its neighbour at a side, an entry of [`SIDES`].
+/// `scale`: physical pixels per logical pixel. `OutlineStyle` and `NoOutlines` of
+/// objects are not part of the twin.
+pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64) -> Option<Crack> {
+    let v = SIDES[side];
+    let depths = along(view, pixel, v, |x, y| view.depth(x, y, 0));
+    let [here, there] = [depths[2], depths[3]];
+    let near = here.max(there);
+    let reference = view.jump_reference(near);
+    let excess = step_excess(depths);
+    let jump = jump(s) * reference;
+    let mut crack = Crack {
+        kinds: [false; 3],
+        mine: here >= there,
+        ink: 0.0,
+        opacity: 1.0,
+        half_width: 0.0,
+    };
+    if let Some(k) = s.silhouettes.filter(|k| k.form == Form::Corrected) {
+        let p = step_response(excess, 0.5 * f64::from(k.threshold) * reference);
+        let amount = ink(k.edge_limit, k.softness, p);
+        if near > 0.0 && is_stored(amount) {
+            crack.kinds[0] = true;
+            crack.ink = amount;
+        }
+    }
+    if let Some(k) = s.creases.filter(|k| k.form == Form::Corrected) {
+        let normals = along(view, pixel, v, |x, y| normal(view, x, y));
+        let folds = [1, 2, 3].map(|i: usize| fold(normals[i], normals[i + 1]));
+        let kn = (0.5 * f64::from(k.angle)).to_radians().sin().max(0.02);
+        let amount = ink(k.edge_limit, k.softness, fold_response(folds[1], kn));
+        if is_ridge(folds) && excess < jump && is_stored(amount) && !crack.kinds[0] {
+            crack.kinds[1] = true;
+            crack.ink = amount;
+        }
+    }
+    if let (Some(_), Some(ids)) = (s.objects, view.ids) {
+        let object = |x, y| ids.pixels[(y * view.width + x) as usize][0];
+        let objects = along(view, pixel, v, object);
+        crack.kinds[2] = objects[2] != objects[3];
+    }
+    let owner = if crack.mine { here } else { there };
+    let d = view.frame.depth_map(owner)[0];
+    crack.opacity = 1.0 - f64::from(s.opacity_fade) * d;
+    let half_width = 0.5 * f64::from(s.width) * scale;
+    crack.half_width = stored_width(half_width * (1.0 - f64::from(s.width_fade) * d));
+    (crack.kinds != [false; 3]).then_some(crack)
+}

@@ -1,0 +1,182 @@
+//! Whether lines are where the geometry says, and as wide as asked.
+
+use bevy::{camera::ScalingMode, prelude::*, render::view::Msaa};
+use bevy_comics::Outlines;
+use bevy_comics_testkit::reference::edge::line_coverage;
+
+use crate::{
+    outlines::{ink, look, put},
+    small::Small,
+};
+
+const SIZE: UVec2 = UVec2::new(120, 120);
+
+/// A perspective view down -z, of which the pixel at (x, y) shows the world at the
+/// distance `d` at ((x - 60) / 60 * d, (60 - y) / 60 * d).
+fn towards_the_sky() -> Small {
+    let mut small = Small::new(SIZE, Msaa::Off);
+    empty(&mut small);
+    small
+}
+
+fn empty(small: &mut Small) {
+    small.restart(Msaa::Off);
+    small.clear();
+    look(small, Vec3::ZERO, Vec3::NEG_Z, 0.1);
+    small.insert(Projection::Perspective(PerspectiveProjection {
+        fov: std::f32::consts::FRAC_PI_2,
+        near: 0.1,
+        ..default()
+    }));
+}
+
+/// A wall at a distance, from column `from` to column `to`.
+fn wall(small: &mut Small, from: f32, to: f32, distance: f32) {
+    let [left, right] = [from, to].map(|x| (x - 60.0) / 60.0 * distance);
+    put(
+        small,
+        Rectangle::new(right - left, 8.0 * distance),
+        Color::WHITE,
+        Transform::from_xyz(0.5 * (left + right), 0.0, -distance),
+    );
+}
+
+/// Ink of the middle row.
+fn row(small: &mut Small, outlines: Outlines) -> Vec<f32> {
+    let all = ink(small, outlines);
+    let start = (SIZE.y / 2 * SIZE.x) as usize;
+    all[start..start + SIZE.x as usize].to_vec()
+}
+
+fn thin() -> Outlines {
+    Outlines {
+        width: 1.0,
+        ..Outlines::SILHOUETTES
+    }
+}
+
+/// Layers that lie close together on the screen keep all of their lines: a step of 5 %
+/// stays a line, 1 to 4 pixels from a step that is twenty times as high.
+#[test]
+fn a_strong_edge_nearby_hides_no_edge() {
+    let mut small = towards_the_sky();
+    for gap in 1..=4 {
+        empty(&mut small);
+        let step = 60.0 + gap as f32;
+        wall(&mut small, -60.0, 60.0, 10.0);
+        wall(&mut small, 20.0, step, 10.5);
+        wall(&mut small, 20.0, 180.0, 21.0);
+        let row = row(&mut small, thin());
+        let lines: Vec<usize> = (0..120).filter(|x| row[*x] > 0.9).collect();
+        assert_eq!(lines, [59, 59 + gap], "{gap} pixels apart: {row:?}");
+    }
+}
+
+/// A jump too small to be seen leaves a wide line whole. 1.1 % is just above the first
+/// ink of the default settings.
+#[test]
+fn a_faint_edge_cuts_nothing_out_of_a_wide_line() {
+    let mut small = towards_the_sky();
+    for width in [3.0, 8.0, 16.0] {
+        for gap in [2.0, 3.0, 5.0] {
+            empty(&mut small);
+            wall(&mut small, -60.0, 60.0, 10.0);
+            wall(&mut small, 20.0, 60.0 + gap, 10.11);
+            let outlines = Outlines {
+                width,
+                ..Outlines::SILHOUETTES
+            };
+            let row = row(&mut small, outlines);
+            let end = 60 + gap as usize;
+            // Whole pixels within the line's half width of the edge.
+            let half = (0.5 * width).floor() as usize;
+            for x in end - half..end + half {
+                assert!(row[x] > 0.98, "{width} px, {gap} px: {x}: {row:?}");
+            }
+        }
+    }
+}
+
+/// Area of a strip through the middle of a disc.
+fn strip(radius: f64, width: f64) -> f64 {
+    let h = 0.5 * width;
+    2.0 * (h * (radius * radius - h * h).sqrt() + radius * radius * (h / radius).asin())
+}
+
+/// Width of a straight line whose coverage is sampled at the centres of pixels. At 45
+/// degrees these lie 1 / sqrt(2) apart across the line; the middle of a line of even width
+/// runs through the middles of cracks, that of odd width through centres of pixels.
+fn sampled_width(width: f64, degrees: f32) -> f64 {
+    if degrees == 0.0 {
+        return width;
+    }
+    let phase = if width % 2.0 == 0.0 { 0.5 } else { 0.0 };
+    let spacing = 0.5f64.sqrt();
+    let samples = (-40..40).map(|k| (f64::from(k) + phase).abs() * spacing);
+    samples
+        .map(|d| line_coverage(d, 0.5 * width) * spacing)
+        .sum()
+}
+
+/// The ink of a line through the middle of a disc of 50 pixels, over the area of a strip
+/// of its width. The mean of four positions between the pixels. At angles between 0 and
+/// 45 degrees a line follows a staircase and is wider.
+#[test]
+fn a_line_is_as_wide_as_asked_in_every_direction() {
+    const RADIUS: f64 = 50.0;
+    let mut small = towards_the_sky();
+    let mut worst = 0.0f64;
+    for width in [1.0, 2.0, 3.0, 5.0, 8.0] {
+        for degrees in [0.0f32, 9.0, 18.0, 27.0, 36.0, 45.0] {
+            let mut area = 0.0;
+            for shift in [0.05f32, 0.3, 0.55, 0.8] {
+                half_plane(&mut small, degrees.to_radians(), shift);
+                let lines = Outlines {
+                    width,
+                    ..Outlines::SILHOUETTES
+                };
+                let all = ink(&mut small, lines);
+                area += (0..all.len())
+                    .filter(|i| {
+                        let [x, y] = [i % 120, i / 120].map(|v| v as f64 - 59.5);
+                        x.hypot(y) < RADIUS
+                    })
+                    .map(|i| f64::from(all[i]))
+                    .sum::<f64>();
+            }
+            let wanted = 4.0 * strip(RADIUS, f64::from(width));
+            let ratio = area / wanted;
+            println!(
+                "{width} px at {degrees} degrees: {:.3}",
+                ratio * f64::from(width)
+            );
+            if degrees % 45.0 == 0.0 {
+                let ideal = sampled_width(width.into(), degrees);
+                worst = worst.max((ratio * f64::from(width) / ideal - 1.0).abs());
+            }
+        }
+    }
+    println!("largest difference from a straight line at 0 and 45 degrees: {worst:.4}");
+    assert!(worst <= 0.01, "{worst}");
+}
+
+/// An orthographic view, one unit per pixel, of a wall with one straight side, `shift`
+/// pixels above the middle.
+fn half_plane(small: &mut Small, angle: f32, shift: f32) {
+    empty(small);
+    small.insert(Projection::Orthographic(OrthographicProjection {
+        scaling_mode: ScalingMode::Fixed {
+            width: 120.0,
+            height: 120.0,
+        },
+        ..OrthographicProjection::default_3d()
+    }));
+    let turn = Quat::from_rotation_z(angle);
+    let middle = Vec3::new(0.0, shift, -10.0) + turn * Vec3::new(0.0, -400.0, 0.0);
+    put(
+        small,
+        Rectangle::new(800.0, 800.0),
+        Color::WHITE,
+        Transform::from_translation(middle).with_rotation(turn),
+    );
+}
