@@ -74,13 +74,14 @@ struct Ink {
     strongest: f32,
     // The pixel that owns the strongest line.
     owner: vec2<i32>,
-    // Two lines in different places whose borders are nearest: their middles, and the distances from
-    // their borders, negative inside.
+    // Two lines in different places whose borders are nearest: their middles, and the
+    // distances from their borders, negative inside.
     first: vec2<f32>,
     second: vec2<f32>,
     distances: vec2<f32>,
-    // The packed crack of the first.
+    // The packed crack of the first, and the pixel that owns it.
     packed: u32,
+    first_owner: vec2<i32>,
 }
 
 // The part of the ink that belongs to each kind, per unit of coverage.
@@ -112,7 +113,8 @@ fn add(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i32>, a
     (*ink).kinds = max((*ink).kinds, kinds);
 #ifdef OBJECT_STYLES
     let alpha = alphas(kinds);
-    (*ink).owner = select((*ink).owner, select(p + towards, p, mine), alpha > (*ink).strongest);
+    let owner = select(p + towards, p, mine);
+    (*ink).owner = select((*ink).owner, owner, alpha > (*ink).strongest);
     (*ink).strongest = max((*ink).strongest, alpha);
 #endif
     let border = select(1e6, away - half_width, exists);
@@ -125,6 +127,9 @@ fn add(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i32>, a
     (*ink).distances.y = select(select((*ink).distances.y, border, behind), (*ink).distances.x, pushed);
     (*ink).first = select((*ink).first, middle, nearest);
     (*ink).packed = select((*ink).packed, packed, nearest);
+#ifdef OBJECT_STYLES
+    (*ink).first_owner = select((*ink).first_owner, owner, nearest);
+#endif
     (*ink).distances.x = min((*ink).distances.x, border);
 }
 
@@ -168,7 +173,11 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     if ink.distances.y < 1e5 && distance(ink.first, ink.second) < 1.5 {
         let away = segment_distance(at, ink.first, ink.second) / g.from_viewport.x;
         let half_width = unpack_width(ink.packed >> 20u);
-        ink.kinds = max(ink.kinds, line_coverage(away, half_width) * ink_of(ink.packed));
+        let straight = line_coverage(away, half_width) * ink_of(ink.packed);
+        ink.kinds = max(ink.kinds, straight);
+#ifdef OBJECT_STYLES
+        ink.owner = select(ink.owner, ink.first_owner, alphas(straight) > ink.strongest);
+#endif
     }
     var slot = 0.0;
 #ifdef OBJECT_STYLES

@@ -48,12 +48,6 @@ fn normal_at(pixel: vec2<i32>, i: i32, depths: ptr<function, array<f32, 25>>) ->
 }
 #endif
 
-@vertex
-fn whole(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
-    let uv = vec2<f32>(f32(vertex >> 1u), f32(vertex & 1u)) * 2.0;
-    return vec4(uv * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 0.0, 1.0);
-}
-
 @fragment
 fn faithful(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     set_view(faithful_uniform.seen);

@@ -145,12 +145,6 @@ fn depth_at(origin: vec2<i32>, x: i32, y: i32) -> f32 {
 }
 
 #ifdef BY_FRAGMENTS
-@vertex
-fn whole(@builtin(vertex_index) vertex: u32) -> @builtin(position) vec4<f32> {
-    let uv = vec2<f32>(f32(vertex >> 1u), f32(vertex & 1u)) * 2.0;
-    return vec4(uv * vec2(2.0, -2.0) + vec2(-1.0, 1.0), 0.0, 1.0);
-}
-
 // Lane x is the crack to the east, lane y the one to the south.
 @fragment
 fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {

@@ -12,7 +12,10 @@ mod settings;
 use bevy::{
     app::App,
     asset::{AssetServer, embedded_asset},
-    core_pipeline::schedule::{Core3d, Core3dSystems},
+    core_pipeline::{
+        FullscreenShader,
+        schedule::{Core3d, Core3dSystems},
+    },
     ecs::{
         entity::Entity,
         query::With,
@@ -65,6 +68,7 @@ pub(crate) fn build_render(app: &mut App) {
 
 fn init_pipelines(
     mut commands: Commands,
+    fullscreen: Res<FullscreenShader>,
     assets: Res<AssetServer>,
     lines: Query<Entity, With<ViewLines>>,
 ) {
@@ -72,5 +76,5 @@ fn init_pipelines(
     for view in &lines {
         commands.entity(view).remove::<ViewLines>();
     }
-    commands.insert_resource(LineShaders::new(&assets));
+    commands.insert_resource(LineShaders::new(&fullscreen, &assets));
 }

@@ -2,6 +2,7 @@
 
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
+    core_pipeline::FullscreenShader,
     ecs::resource::Resource,
     math::{UVec4, Vec2},
     render::render_resource::{
@@ -270,14 +271,16 @@ pub(crate) fn ink_entry() -> BindGroupLayoutEntry {
 /// The shaders of the passes.
 #[derive(Resource)]
 pub(crate) struct LineShaders {
+    fullscreen: FullscreenShader,
     find: Handle<Shader>,
     faithful: Handle<Shader>,
     draw: Handle<Shader>,
 }
 
 impl LineShaders {
-    pub fn new(assets: &AssetServer) -> Self {
+    pub fn new(fullscreen: &FullscreenShader, assets: &AssetServer) -> Self {
         Self {
+            fullscreen: fullscreen.clone(),
             find: load_embedded_asset!(assets, "find.wgsl"),
             faithful: load_embedded_asset!(assets, "faithful.wgsl"),
             draw: load_embedded_asset!(assets, "draw.wgsl"),
@@ -334,20 +337,30 @@ impl SpecializedRenderPipeline for LineShaders {
                 key.draw_defs(),
             ),
         };
-        let (vertex, fragment, topology) = match pass {
-            LinePass::Find => ("whole", "find", PrimitiveTopology::TriangleList),
-            LinePass::Faithful => ("whole", "faithful", PrimitiveTopology::TriangleList),
-            LinePass::Draw => ("tile", "draw", PrimitiveTopology::TriangleStrip),
+        let (vertex, topology) = match pass {
+            LinePass::Find | LinePass::Faithful => (
+                self.fullscreen.to_vertex_state(),
+                PrimitiveTopology::TriangleList,
+            ),
+            LinePass::Draw => (
+                VertexState {
+                    shader: shader.clone(),
+                    shader_defs: defs.clone(),
+                    entry_point: Some("tile".into()),
+                    buffers: vec![],
+                },
+                PrimitiveTopology::TriangleStrip,
+            ),
+        };
+        let fragment = match pass {
+            LinePass::Find => "find",
+            LinePass::Faithful => "faithful",
+            LinePass::Draw => "draw",
         };
         RenderPipelineDescriptor {
             label: Some(label.into()),
             layout: vec![layout],
-            vertex: VertexState {
-                shader: shader.clone(),
-                shader_defs: defs.clone(),
-                entry_point: Some(vertex.into()),
-                buffers: vec![],
-            },
+            vertex,
             primitive: PrimitiveState {
                 topology,
                 ..Default::default()

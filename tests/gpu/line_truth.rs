@@ -1,7 +1,7 @@
 //! Whether lines are where the geometry says, and as wide as asked.
 
 use bevy::{camera::ScalingMode, prelude::*, render::view::Msaa};
-use bevy_comics::Outlines;
+use bevy_comics::{ComicStyle, OutlineStyle, Outlines, Silhouettes};
 use bevy_comics_testkit::reference::edge::line_coverage;
 
 use crate::{
@@ -162,7 +162,7 @@ fn a_line_is_as_wide_as_asked_in_every_direction() {
 
 /// An orthographic view, one unit per pixel, of a wall with one straight side, `shift`
 /// pixels above the middle.
-fn half_plane(small: &mut Small, angle: f32, shift: f32) {
+fn half_plane(small: &mut Small, angle: f32, shift: f32) -> Entity {
     empty(small);
     small.insert(Projection::Orthographic(OrthographicProjection {
         scaling_mode: ScalingMode::Fixed {
@@ -178,5 +178,40 @@ fn half_plane(small: &mut Small, angle: f32, shift: f32) {
         Rectangle::new(800.0, 800.0),
         Color::WHITE,
         Transform::from_translation(middle).with_rotation(turn),
-    );
+    )
+}
+
+/// Where only the straight part between two cracks reaches, a line has its object's
+/// colour too.
+#[test]
+fn a_diagonal_line_has_its_objects_colour_up_to_the_rim() {
+    let mut small = towards_the_sky();
+    for width in [1.0, 2.0, 5.0] {
+        let wall = half_plane(&mut small, 0.7, 0.3);
+        small.settle();
+        let plain = small.picture();
+        small.world().entity_mut(wall).insert(OutlineStyle {
+            color: Some(Color::srgb(1.0, 0.0, 0.0)),
+            ..default()
+        });
+        let blue = Silhouettes {
+            color: Color::srgb(0.0, 0.0, 1.0),
+            ..default()
+        };
+        small.style(&ComicStyle::new().with(Outlines {
+            silhouettes: Some(blue),
+            width,
+            ..Outlines::SILHOUETTES
+        }));
+        small.settle();
+        let lined = small.picture();
+        let mut inked = 0;
+        for (a, b) in plain.pixels().zip(lined.pixels()) {
+            if a.0[..3] == [255; 3] && b.0 != a.0 {
+                assert!(b.0[2] <= b.0[0], "{width} px: {b:?}");
+                inked += 1;
+            }
+        }
+        assert!(inked > 50, "{width} px: {inked} pixels of ink on the wall");
+    }
 }
