@@ -33,7 +33,7 @@ use crate::{
         request::{RangePasses, RangePipelines, RangeRequest, Reduction},
         view::{ViewUniform, depth_rect},
     },
-    lines::request::{Find, LinePasses, LinePipelines, LineRequest},
+    lines::request::{LinePasses, LinePipelines, LineRequest},
     objects::IdRequest,
 };
 
@@ -257,12 +257,10 @@ impl Requests {
             reduction || passes.smoothing.is_some_and(compute)
         });
         let lines = self.lines.as_ref().is_some_and(|(_, passes)| {
-            let cracks = passes.cracks.is_some_and(|(find, draw)| {
-                let find = match find {
-                    Find::Compute(id) => compute(id),
-                    Find::Fragments(id) => render(id),
-                };
-                find || render(draw)
+            let cracks = passes.cracks.is_some_and(|cracks| {
+                let walk = cracks.walk.is_some_and(compute);
+                let columns = cracks.columns.is_some_and(render);
+                walk || columns || render(cracks.find) || render(cracks.draw)
             });
             cracks || passes.faithful.is_some_and(render)
         });

@@ -6,6 +6,7 @@ use bevy::{
     color::LinearRgba,
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::system::Res,
+    math::{UVec2, Vec4Swizzles},
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
@@ -21,9 +22,9 @@ use bevy::{
 
 use super::{
     ViewLines,
-    pipelines::{TILE, WORKGROUP},
+    pipelines::{LineKey, TILE, WORKGROUP},
     prepare::{Cracks, blocks},
-    request::{Find, LinePasses, LineRequest},
+    request::{CrackPasses, LinePasses, LineRequest},
 };
 use crate::{
     depth::prepare::ViewDepthRange,
@@ -101,23 +102,22 @@ impl Inputs<'_> {
             None => None,
         };
         let cracks = match (&passes.cracks, &lines.cracks) {
-            (Some((find, draw)), Some(cracks)) => Some((
-                self.find_pass(find, cracks)?,
-                (self.pipeline(*draw)?, self.draw_group(cracks)?),
-                cracks,
-            )),
+            (Some(passes), Some(cracks)) => Some(self.crack_passes(passes, cracks)?),
             _ => None,
         };
 
         let diagnostics = ctx.diagnostic_recorder();
         let diagnostics = diagnostics.as_deref();
         let encoder = ctx.command_encoder();
-        if let Some((find, _, cracks)) = &cracks {
+        if let Some(cracks) = &cracks {
             let span = diagnostics.time_span(encoder, "comics_find_lines");
-            find.record(encoder, request, &cracks.texture);
+            cracks.find(encoder, request);
             span.end(encoder);
         }
         let span = diagnostics.time_span(encoder, "comics_draw_lines");
+        if let Some(cracks) = &cracks {
+            cracks.search_columns(encoder, request);
+        }
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("comics_draw_lines"),
             color_attachments: &[Some(cleared(ink))],
@@ -128,11 +128,8 @@ impl Inputs<'_> {
             pass.set_bind_group(0, group, &[]);
             pass.draw(0..3, 0..1);
         }
-        if let Some((_, (pipeline, group), _)) = &cracks {
-            let tiles = request.size.x.div_ceil(TILE) * request.size.y.div_ceil(TILE);
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, group, &[]);
-            pass.draw(0..4, 0..tiles);
+        if let Some(cracks) = &cracks {
+            draw_tiles(&mut pass, &cracks.draw, request.size);
         }
         drop(pass);
         span.end(encoder);
@@ -154,10 +151,13 @@ impl Inputs<'_> {
         lines.uniform.binding().ok_or(NOT_READY)
     }
 
-    /// The bindings of the passes that read the prepasses. `normals`: the normals too.
     fn entries(&self, normals: bool) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
-        let ((request, passes, _), prepass, range, ids) = self.parts;
-        let key = &passes.key;
+        self.inputs(&self.parts.0.1.key, normals)
+    }
+
+    /// The bindings of the passes that read the prepasses. `normals`: the normals too.
+    fn inputs(&self, key: &LineKey, normals: bool) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
+        let ((request, ..), prepass, range, ids) = self.parts;
         let prepass = prepass.ok_or(LeftOut::NoDepthPrepass)?;
         let depth = prepass.depth.as_ref().ok_or(LeftOut::NoDepthPrepass)?;
         if depth.texture.texture.sample_count() != request.samples {
@@ -186,89 +186,126 @@ impl Inputs<'_> {
         Ok(entries)
     }
 
-    fn find_pass(&self, find: &Find, cracks: &Cracks) -> Result<FindPass<'_>, LeftOut> {
-        let (request, passes, _) = self.parts.0;
-        let layout = passes.key.find_layout();
-        let mut entries = self.entries(passes.key.creases)?;
-        match find {
-            Find::Fragments(id) => {
-                let pipeline = self.pipeline(*id)?;
-                Ok(FindPass::Fragments((
-                    pipeline,
-                    self.group(&layout, &entries),
-                )))
-            }
-            Find::Compute(id) => {
-                let pipeline = self.cache.get_compute_pipeline(*id).ok_or(NOT_READY)?;
-                let rows = cracks.blocks.as_ref().ok_or(NOT_READY)?;
-                entries.push(entry(9, (&cracks.texture.default_view).into_binding()));
-                entries.push(entry(10, (&rows.default_view).into_binding()));
-                let blocks = blocks(request.rect);
-                Ok(FindPass::Compute {
-                    pass: (pipeline, self.group(&layout, &entries)),
-                    workgroups: [blocks.x.div_ceil(WORKGROUP), blocks.y],
-                })
-            }
+    /// The passes of the lines along cracks.
+    fn crack_passes<'a>(
+        &'a self,
+        passes: &CrackPasses,
+        cracks: &'a Cracks,
+    ) -> Result<ReadyCracks<'a>, LeftOut> {
+        let key = &self.parts.0.1.key;
+        let mut entries = self.entries(key.creases)?;
+        if let Some(blocks) = &cracks.blocks {
+            entries.push(entry(12, (&blocks.default_view).into_binding()));
         }
+        let find = self.group(&key.find_layout(), &entries);
+        let walk = match (passes.walk, &cracks.blocks) {
+            (Some(id), Some(blocks)) => {
+                let pipeline = self.cache.get_compute_pipeline(id).ok_or(NOT_READY)?;
+                let key = key.for_walk();
+                let mut entries = self.inputs(&key, key.creases)?;
+                entries.push(entry(10, (&blocks.default_view).into_binding()));
+                Some((pipeline, self.group(&key.walk_layout(), &entries)))
+            }
+            _ => None,
+        };
+        let columns = match (passes.columns, &cracks.columns) {
+            (Some(id), Some(columns)) => {
+                let entries = self.searched(cracks, (11, &cracks.texture))?;
+                let group = self.group(&key.for_columns().columns_layout(), &entries);
+                Some(((self.pipeline(id)?, group), columns))
+            }
+            _ => None,
+        };
+        Ok(ReadyCracks {
+            walk,
+            columns,
+            find: (self.pipeline(passes.find)?, find),
+            draw: (self.pipeline(passes.draw)?, self.draw_group(cracks)?),
+            texture: &cracks.texture,
+        })
+    }
+
+    /// The bindings of a pass that searches cracks in the texture at this binding.
+    fn searched<'a>(
+        &'a self,
+        cracks: &'a Cracks,
+        (binding, texture): (u32, &'a CachedTexture),
+    ) -> Result<Vec<BindGroupEntry<'a>>, LeftOut> {
+        let mut entries = vec![
+            entry(1, self.uniform()?),
+            entry(binding, (&texture.default_view).into_binding()),
+        ];
+        if let Some(blocks) = &cracks.blocks {
+            entries.push(entry(12, (&blocks.default_view).into_binding()));
+        }
+        Ok(entries)
     }
 
     fn draw_group(&self, cracks: &Cracks) -> Result<BindGroup, LeftOut> {
         let ((_, passes, _), _, _, ids) = self.parts;
-        let mut entries = vec![
-            entry(1, self.uniform()?),
-            entry(11, (&cracks.texture.default_view).into_binding()),
-        ];
+        let searched = match &cracks.columns {
+            Some(columns) => (13, columns),
+            None => (11, &cracks.texture),
+        };
+        let mut entries = self.searched(cracks, searched)?;
         if passes.key.object_styles {
             let ids = ids.ok_or(NOT_READY)?;
             entries.push(entry(8, (&ids.view).into_binding()));
-        }
-        if let Some(blocks) = &cracks.blocks {
-            entries.push(entry(12, (&blocks.default_view).into_binding()));
         }
         Ok(self.group(&passes.key.draw_layout(), &entries))
     }
 }
 
-/// The pass that finds cracks.
-enum FindPass<'a> {
-    Compute {
-        pass: Ready<'a, ComputePipeline>,
-        workgroups: [u32; 2],
-    },
-    Fragments(Ready<'a, RenderPipeline>),
+/// The passes of the lines along cracks, ready to be recorded.
+struct ReadyCracks<'a> {
+    walk: Option<Ready<'a, ComputePipeline>>,
+    find: Ready<'a, RenderPipeline>,
+    columns: Option<(Ready<'a, RenderPipeline>, &'a CachedTexture)>,
+    draw: Ready<'a, RenderPipeline>,
+    texture: &'a CachedTexture,
 }
 
-impl FindPass<'_> {
-    fn record(&self, encoder: &mut CommandEncoder, request: &LineRequest, cracks: &CachedTexture) {
-        let label = Some("comics_find_lines");
+impl ReadyCracks<'_> {
+    /// Looks for blocks with cracks, and finds the cracks in them.
+    fn find(&self, encoder: &mut CommandEncoder, request: &LineRequest) {
+        if let Some((pipeline, group)) = &self.walk {
+            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+                label: Some("comics_walk"),
+                timestamp_writes: None,
+            });
+            let blocks = blocks(request.rect);
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, group, &[]);
+            pass.dispatch_workgroups(blocks.x.div_ceil(WORKGROUP), blocks.y, 1);
+        }
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
-            label,
-            color_attachments: &[Some(cleared(cracks))],
+            label: Some("comics_find_lines"),
+            color_attachments: &[Some(cleared(self.texture))],
             ..Default::default()
         });
-        match self {
-            Self::Fragments((pipeline, group)) => {
-                let [_, _, width, height] = request.rect.to_array().map(|v| v as f32);
-                pass.set_viewport(0.0, 0.0, width, height, 0.0, 1.0);
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, group, &[]);
-                pass.draw(0..3, 0..1);
-            }
-            Self::Compute {
-                pass: (pipeline, group),
-                workgroups: [x, y],
-            } => {
-                drop(pass);
-                let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-                    label,
-                    timestamp_writes: None,
-                });
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, group, &[]);
-                pass.dispatch_workgroups(*x, *y, 1);
-            }
-        }
+        draw_tiles(&mut pass, &self.find, request.rect.zw());
     }
+
+    /// Finds the best crack of each pixel's column.
+    fn search_columns(&self, encoder: &mut CommandEncoder, request: &LineRequest) {
+        let Some((columns, texture)) = &self.columns else {
+            return;
+        };
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("comics_line_columns"),
+            color_attachments: &[Some(cleared(texture))],
+            ..Default::default()
+        });
+        draw_tiles(&mut pass, columns, request.rect.zw());
+    }
+}
+
+/// Draws the tiles of a picture of this size.
+fn draw_tiles(pass: &mut wgpu::RenderPass, (pipeline, group): &Ready<RenderPipeline>, size: UVec2) {
+    let tiles = size.x.div_ceil(TILE) * size.y.div_ceil(TILE);
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, group, &[]);
+    pass.draw(0..4, 0..tiles);
 }
 
 /// A texture that is cleared to 0 before it is drawn to.

@@ -6,9 +6,10 @@
 
 #import bevy_comics::depth::view::{View, set_view}
 #import bevy_comics::lines::edge::{
-    CREASE, Grid, Lines, OBJECT, SILHOUETTE, encode_ink, line_coverage, line_offset, segment_distance, unpack_crack,
-    unpack_width,
+    Grid, Lines, encode_ink, ink_of, largest_opacity, line_coverage, line_offset, place_direction, place_middle,
+    segment_distance, unpack_place, unpack_width,
 }
+#import bevy_comics::lines::tiles::{TILE, has_cracks, tile_corner, tile_origin}
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::texel_object
 #endif
@@ -20,52 +21,25 @@ struct DrawUniform {
 }
 
 @group(0) @binding(1) var<uniform> draw_uniform: DrawUniform;
+#ifdef NARROW
 @group(0) @binding(11) var crack_texture: texture_2d<u32>;
-#ifndef BY_FRAGMENTS
-@group(0) @binding(12) var block_texture: texture_2d<u32>;
+#else
+// The best crack of each pixel's column, see columns.wgsl.
+@group(0) @binding(13) var column_texture: texture_2d<u32>;
 #endif
 
-const TILE: i32 = 16;
-
-// Tiles are instances, row by row. Those without lines collapse into a point.
+// Tiles without cracks within reach collapse into a point.
 @vertex
 fn tile(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> @builtin(position) vec4<f32> {
-    let size = draw_uniform.seen.viewport.zw;
-    let across = (size.x + TILE - 1) / TILE;
-    let first = vec2(i32(instance) % across, i32(instance) / across) * TILE;
-    if !has_cracks(first) {
-        return vec4(-2.0, -2.0, 0.0, 1.0);
-    }
-    let corner = first + vec2(i32(vertex & 1u), i32(vertex >> 1u)) * TILE;
-    let ndc = vec2<f32>(corner) / vec2<f32>(size) * 2.0 - 1.0;
-    return vec4(ndc.x, -ndc.y, 0.0, 1.0);
-}
-
-#ifdef BY_FRAGMENTS
-fn has_cracks(first: vec2<i32>) -> bool {
-    return true;
-}
-#else
-// Whether a tile has cracks within reach, by the blocks of 4 x 32 pixels of find.wgsl.
-fn has_cracks(first: vec2<i32>) -> bool {
     let g = draw_uniform.grid;
-    let low = vec2<f32>(first) * g.from_viewport.xy + g.from_viewport.zw;
-    let high = vec2<f32>(first + TILE) * g.from_viewport.xy + g.from_viewport.zw;
+    let size = draw_uniform.seen.viewport.zw;
+    let first = tile_origin(instance, size);
+    let low = floor(vec2<f32>(first) * g.from_viewport.xy + g.from_viewport.zw);
+    let high = ceil(vec2<f32>(first + TILE) * g.from_viewport.xy + g.from_viewport.zw);
     // One more pixel: the cracks of a pixel lie on its eastern and southern sides.
-    let from_pixel = clamp(vec2<i32>(floor(low)) - g.reach - 1, vec2(0), g.rect.zw - 1);
-    let to_pixel = clamp(vec2<i32>(ceil(high)) + g.reach, vec2(0), g.rect.zw - 1);
-    var rows = 0u;
-    for (var y = from_pixel.y >> 5u; y <= to_pixel.y >> 5u; y++) {
-        let above = u32(clamp(from_pixel.y - y * 32, 0, 31));
-        let below = u32(31 - clamp(to_pixel.y - y * 32, 0, 31));
-        let mask = (0xffffffffu << above) & (0xffffffffu >> below);
-        for (var x = from_pixel.x >> 2u; x <= to_pixel.x >> 2u; x++) {
-            rows |= textureLoad(block_texture, vec2(x, y), 0).r & mask;
-        }
-    }
-    return rows != 0u;
+    let near = has_cracks(vec2<i32>(low) - g.reach - 1, vec2<i32>(high) + g.reach, g.rect.zw);
+    return tile_corner(first, vertex, size, near);
 }
-#endif
 
 // What is known of the lines at a position.
 struct Ink {
@@ -84,24 +58,13 @@ struct Ink {
     first_owner: vec2<i32>,
 }
 
-// The part of the ink that belongs to each kind, per unit of coverage.
-fn ink_of(packed: u32) -> vec3<f32> {
-    let crack = unpack_crack(packed);
-    return crack.opacity * vec3(
-        select(0.0, crack.ink, (crack.kinds & SILHOUETTE) != 0u),
-        select(0.0, crack.ink, (crack.kinds & CREASE) != 0u),
-        select(0.0, 1.0, (crack.kinds & OBJECT) != 0u),
-    );
-}
-
 fn alphas(kinds: vec3<f32>) -> f32 {
-    let s = draw_uniform.settings;
-    let alpha = kinds * vec3(s.silhouette_opacity, s.crease_opacity, s.object_opacity);
-    return max(alpha.x, max(alpha.y, alpha.z));
+    return largest_opacity(draw_uniform.settings, kinds);
 }
 
-// Adds the line along one crack of the pixel `p`: towards the east or the south.
-fn add(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i32>, at: vec2<f32>) {
+// Adds the line along one crack of the pixel `p`: towards the east or the south. Returns
+// the distance from the border of the line, negative inside.
+fn add(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i32>, at: vec2<f32>) -> f32 {
     let half_width = unpack_width(packed >> 20u);
     let mine = (packed & 8u) != 0u;
     let direction = vec2<f32>(towards);
@@ -119,6 +82,17 @@ fn add(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i32>, a
 #endif
     let border = select(1e6, away - half_width, exists);
     let nearest = border < (*ink).distances.x;
+    follow(ink, middle, border);
+    (*ink).packed = select((*ink).packed, packed, nearest);
+#ifdef OBJECT_STYLES
+    (*ink).first_owner = select((*ink).first_owner, owner, nearest);
+#endif
+    return border;
+}
+
+// Keeps the two lines whose borders are nearest.
+fn follow(ink: ptr<function, Ink>, middle: vec2<f32>, border: f32) {
+    let nearest = border < (*ink).distances.x;
     // Both cracks at a corner of a line of odd width have their middle in one pixel.
     let other = distance(middle, (*ink).first) > 0.25;
     let behind = other && border < (*ink).distances.y;
@@ -126,22 +100,20 @@ fn add(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i32>, a
     (*ink).second = select(select((*ink).second, middle, behind), (*ink).first, pushed);
     (*ink).distances.y = select(select((*ink).distances.y, border, behind), (*ink).distances.x, pushed);
     (*ink).first = select((*ink).first, middle, nearest);
-    (*ink).packed = select((*ink).packed, packed, nearest);
-#ifdef OBJECT_STYLES
-    (*ink).first_owner = select((*ink).first_owner, owner, nearest);
-#endif
     (*ink).distances.x = min((*ink).distances.x, border);
 }
 
+#ifdef NARROW
 // Adds both cracks of a pixel, which may lie outside of the grid.
 fn add_pixel(ink: ptr<function, Ink>, p: vec2<i32>, at: vec2<f32>) {
     let last = draw_uniform.grid.rect.zw - 1;
     let inside = all(p >= vec2(0)) && all(p <= last);
     let texel = textureLoad(crack_texture, clamp(p, vec2(0), last), 0).xy;
     let packed = select(vec2(0u), texel, inside);
-    add(ink, packed.x, p, vec2(1, 0), at);
-    add(ink, packed.y, p, vec2(0, 1), at);
+    let east = add(ink, packed.x, p, vec2(1, 0), at);
+    let south = add(ink, packed.y, p, vec2(0, 1), at);
 }
+#endif
 
 @fragment
 fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
@@ -162,10 +134,19 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     add_pixel(&ink, centre + vec2(-1, 1), at);
     add_pixel(&ink, centre + vec2(0, 1), at);
 #else
-    for (var y = -g.reach; y <= g.reach; y++) {
-        for (var x = -g.reach; x <= g.reach; x++) {
-            add_pixel(&ink, centre + vec2(x, y), at);
-        }
+    let last = g.rect.zw - 1;
+    for (var x = -g.reach - 1; x <= g.reach; x++) {
+        let p = vec2(centre.x + x, clamp(centre.y, 0, last.y));
+        let inside = p.x >= 0 && p.x <= last.x;
+        let texel = textureLoad(column_texture, vec2(clamp(p.x, 0, last.x), p.y), 0).xy;
+        let stored = select(vec2(0u), texel, inside);
+        let place = unpack_place(stored.y);
+        let border = add(&ink, stored.x, p + vec2(0, place.row), place_direction(place), at);
+        // The next crack has no ink of its own here: it only says where the line goes on.
+        let next = vec2<f32>(p) + 0.5 + place_middle(unpack_place(stored.y >> 16u));
+        let away = length((next - at) / g.from_viewport.xy);
+        let next_border = max(away - unpack_width(stored.x >> 20u), border + 1e-4);
+        follow(&ink, next, select(1e6, next_border, stored.y > 0xffffu));
     }
 #endif
     // Between the middles of two neighbouring cracks, a line runs straight. Discs around
@@ -181,8 +162,8 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     }
     var slot = 0.0;
 #ifdef OBJECT_STYLES
-    let last = g.rect.zw - 1;
-    slot = f32(texel_object(g.rect.xy + clamp(ink.owner, vec2(0), last), 0).y) / 255.0;
+    let corner = g.rect.zw - 1;
+    slot = f32(texel_object(g.rect.xy + clamp(ink.owner, vec2(0), corner), 0).y) / 255.0;
 #endif
     return vec4(encode_ink(ink.kinds), slot);
 }

@@ -154,6 +154,19 @@ fn is_ridge(before: vec4<f32>, folds: vec4<f32>, beyond: vec4<f32>) -> vec4<bool
     return complete & (folds >= before) & (folds >= beyond);
 }
 
+// Whether the excess of a step may have ink. It is true for every step whose ink is not 0
+// after rounding, and for few others: the response at which ink begins, without the
+// division of step_response. `near` is the larger of both raw depths.
+fn may_be_silhouette(s: Lines, excess: vec4<f32>, near: vec4<f32>) -> vec4<bool> {
+    let least = 2.0 * s.silhouette_k * sqrt(s.silhouette_low);
+    return (excess > least * (s.reference_factor * near + s.reference_constant)) & (near > vec4(0.0));
+}
+
+// The same for folds of creases.
+fn may_be_crease(s: Lines, folds: vec4<f32>) -> vec4<bool> {
+    return folds > vec4(4.0 * s.crease_k * s.crease_k * s.crease_low);
+}
+
 // A crack is the border between two neighbouring pixels: `here`, and `there` to the east
 // or south of it. It is packed into 32 bits:
 //   bits 0 to 2: a silhouette, a crease, an object edge runs along it;
@@ -206,6 +219,58 @@ fn unpack_crack(packed: u32) -> Crack {
         f32((packed >> 12u) & 255u) / 255.0,
         unpack_width(packed >> 20u),
     );
+}
+
+// Ink of a packed crack by kind, after fading: silhouettes, creases, object edges.
+fn ink_of(packed: u32) -> vec3<f32> {
+    let crack = unpack_crack(packed);
+    return crack.opacity * vec3(
+        select(0.0, crack.ink, (crack.kinds & SILHOUETTE) != 0u),
+        select(0.0, crack.ink, (crack.kinds & CREASE) != 0u),
+        select(0.0, 1.0, (crack.kinds & OBJECT) != 0u),
+    );
+}
+
+// The largest opacity of the kinds with this ink.
+fn largest_opacity(s: Lines, kinds: vec3<f32>) -> f32 {
+    let alpha = kinds * vec3(s.silhouette_opacity, s.crease_opacity, s.object_opacity);
+    return max(alpha.x, max(alpha.y, alpha.z));
+}
+
+// The opacity of the line along a packed crack.
+fn crack_opacity(s: Lines, packed: u32) -> f32 {
+    return largest_opacity(s, ink_of(packed));
+}
+
+// Where a crack and its line are, seen from a pixel: what columns.wgsl stores of the
+// cracks in the pixel's column.
+struct Place {
+    // The row of the pixel that has the crack, below this pixel: -64 to 63.
+    row: i32,
+    // Whether the crack is to the south of its pixel, otherwise to the east.
+    south: bool,
+    // From the pixel's centre to the middle of the line, towards the crack: 0 to 1.
+    along: f32,
+}
+
+// Packs a place into 16 bits. 0 stands for none.
+fn pack_place(place: Place) -> u32 {
+    let along = u32(round(place.along * 64.0));
+    return 1u | select(0u, 2u, place.south) | (u32(place.row + 64) << 2u) | (along << 9u);
+}
+
+fn unpack_place(packed: u32) -> Place {
+    return Place(i32((packed >> 2u) & 127u) - 64, (packed & 2u) != 0u, f32((packed >> 9u) & 127u) / 64.0);
+}
+
+// The unit vector from a pixel towards its crack.
+fn place_direction(place: Place) -> vec2<i32> {
+    return select(vec2(1, 0), vec2(0, 1), place.south);
+}
+
+// The middle of the line, in pixels from the centre of the pixel that sees it.
+fn place_middle(place: Place) -> vec2<f32> {
+    return vec2(0.0, f32(place.row)) + vec2<f32>(place_direction(place)) * place.along;
 }
 
 // Distance from the middle of a line to the crack that it runs along, towards its

@@ -1,10 +1,9 @@
 // Finds the cracks that lines run along: the borders between two neighbouring pixels at
-// which a surface ends, bends, or meets another object.
+// which a surface ends, bends, or meets another object. A fragment stores the cracks to
+// the east (x) and south (y) of its pixel, see Crack in edge.wgsl.
 //
-// On CPU adapters a texel costs far more to load than to compare, so an invocation walks
-// down four columns of 32 rows and keeps the last rows in registers: every texel is
-// loaded about 1.5 times, not 25 times. Without compute shaders, a fragment finds the
-// two cracks of its pixel with the same functions.
+// Only tiles in which walk.wgsl has seen a crack are drawn; the rest of the texture is
+// cleared. Without compute shaders, all tiles are drawn.
 
 #import bevy_comics::depth::map::depth_map
 #import bevy_comics::depth::view::{View, depth_frame, set_view, texel_depth}
@@ -12,6 +11,7 @@
     CREASE, Grid, Lines, OBJECT, SILHOUETTE,
     byte, fold, fold_response, is_ridge, pack_ink, step_excess, step_response,
 }
+#import bevy_comics::lines::tiles::{TILE, has_cracks, tile_corner, tile_origin}
 #import bevy_comics::objects::kinds_of
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
@@ -30,16 +30,14 @@ struct FindUniform {
 }
 
 @group(0) @binding(1) var<uniform> find_uniform: FindUniform;
-#ifndef BY_FRAGMENTS
-// At every pixel the cracks to its east (x) and south (y), see Crack in edge.wgsl. The
-// texture is cleared before.
-@group(0) @binding(9) var crack_texture: texture_storage_2d<rg32uint, write>;
-// For each block of 4 x 32 pixels, one bit for each row with a crack.
-@group(0) @binding(10) var block_texture: texture_storage_2d<r32uint, write>;
-#endif
 
-const COLUMNS: i32 = 4;
-const ROWS: i32 = 32;
+// Tiles are instances, row by row. Those without cracks collapse into a point.
+@vertex
+fn tile(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> @builtin(position) vec4<f32> {
+    let size = find_uniform.grid.rect.zw;
+    let first = tile_origin(instance, size);
+    return tile_corner(first, vertex, size, has_cracks(first, first + TILE - 1, size));
+}
 
 // What lies on both sides of four cracks.
 struct Sides {
@@ -144,7 +142,6 @@ fn depth_at(origin: vec2<i32>, x: i32, y: i32) -> f32 {
     return texel_depth(origin + vec2(x, y), 0);
 }
 
-#ifdef BY_FRAGMENTS
 // Lane x is the crack to the east, lane y the one to the south.
 @fragment
 fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
@@ -194,169 +191,3 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
 #endif
     return cracks(find_uniform.settings, at, excess, folds, ridge).xy;
 }
-#else
-@compute @workgroup_size(32)
-fn find(@builtin(global_invocation_id) id: vec3<u32>) {
-    set_view(find_uniform.seen);
-    let s = find_uniform.settings;
-    let origin = find_uniform.grid.rect.xy;
-    let size = find_uniform.grid.rect.zw;
-    let last = size - 1;
-    let x = i32(id.x) * COLUMNS;
-    let top = i32(id.y) * ROWS;
-    if x > last.x {
-        return;
-    }
-    // Columns x - 2 to x + 6, clamped.
-    let w2 = max(x - 2, 0);
-    let w1 = max(x - 1, 0);
-    let e1 = min(x + 1, last.x);
-    let e2 = min(x + 2, last.x);
-    let e3 = min(x + 3, last.x);
-    let e4 = min(x + 4, last.x);
-    let e5 = min(x + 5, last.x);
-    let e6 = min(x + 6, last.x);
-
-    // What the four columns had in the rows above: 1 is the row above the newest one.
-    var depth_1 = vec4(0.0);
-    var depth_2 = vec4(0.0);
-    var depth_3 = vec4(0.0);
-    var depth_4 = vec4(0.0);
-    var depth_5 = vec4(0.0);
-    var east_1 = vec4(0u);
-    var east_2 = vec4(0u);
-    var east_3 = vec4(0u);
-#ifdef NORMALS
-    var normal_a = vec4(0.0);
-    var normal_b = vec4(0.0);
-    var normal_c = vec4(0.0);
-    var normal_d = vec4(0.0);
-    // Folds between a row and the one below it.
-    var folds_2 = vec4(0.0);
-    var folds_3 = vec4(0.0);
-    var folds_4 = vec4(0.0);
-#endif
-#ifdef OBJECT_IDS
-    var object_1 = vec4(0u);
-    var object_2 = vec4(0u);
-    var object_3 = vec4(0u);
-    var slot_1 = vec4(0u);
-    var slot_2 = vec4(0u);
-    var slot_3 = vec4(0u);
-#endif
-    var rows = 0u;
-    // The cracks below a row are known three rows later.
-    for (var i = -2; i < ROWS + 3; i++) {
-        let y = clamp(top + i, 0, last.y);
-        let a = depth_at(origin, x, y);
-        let b = depth_at(origin, e1, y);
-        let c = depth_at(origin, e2, y);
-        let d = depth_at(origin, e3, y);
-        let e = depth_at(origin, e4, y);
-        let f = depth_at(origin, e5, y);
-        let before = depth_at(origin, w1, y);
-        let depth_0 = vec4(a, b, c, d);
-        var at: Sides;
-        at.here = depth_0;
-        at.there = vec4(b, c, d, e);
-        let excess = step_excess(
-            vec4(depth_at(origin, w2, y), before, a, b), vec4(before, a, b, c), at.here,
-            at.there, vec4(c, d, e, f), vec4(d, e, f, depth_at(origin, e6, y)),
-        );
-        var folds = vec4(0.0);
-        var ridge = vec4(false);
-#ifdef NORMALS
-        let n_w = texel_normal(origin + vec2(w1, y), 0);
-        let n_a = texel_normal(origin + vec2(x, y), 0);
-        let n_b = texel_normal(origin + vec2(e1, y), 0);
-        let n_c = texel_normal(origin + vec2(e2, y), 0);
-        let n_d = texel_normal(origin + vec2(e3, y), 0);
-        let n_e = texel_normal(origin + vec2(e4, y), 0);
-        let n_f = texel_normal(origin + vec2(e5, y), 0);
-        let folds_w = vec4(fold(n_w, n_a), fold(n_a, n_b), fold(n_b, n_c), fold(n_c, n_d));
-        folds = vec4(folds_w.yzw, fold(n_d, n_e));
-        ridge = is_ridge(folds_w, folds, vec4(folds.yzw, fold(n_e, n_f)));
-#endif
-#ifdef OBJECT_IDS
-        let o_a = texel_object(origin + vec2(x, y), 0);
-        let o_b = texel_object(origin + vec2(e1, y), 0);
-        let o_c = texel_object(origin + vec2(e2, y), 0);
-        let o_d = texel_object(origin + vec2(e3, y), 0);
-        let o_e = texel_object(origin + vec2(e4, y), 0);
-        at.object_here = vec4(o_a.x, o_b.x, o_c.x, o_d.x);
-        at.object_there = vec4(o_b.x, o_c.x, o_d.x, o_e.x);
-        at.slot_here = vec4(o_a.y, o_b.y, o_c.y, o_d.y);
-        at.slot_there = vec4(o_b.y, o_c.y, o_d.y, o_e.y);
-#endif
-        let east_0 = cracks(s, at, excess, folds, ridge);
-
-        // Between the third and the second row above the newest one.
-        var below: Sides;
-        below.here = depth_3;
-        below.there = depth_2;
-        let excess_below = step_excess(depth_5, depth_4, depth_3, depth_2, depth_1, depth_0);
-        var folds_below = vec4(0.0);
-        var ridge_below = vec4(false);
-#ifdef NORMALS
-        folds_below = folds_3;
-        ridge_below = is_ridge(folds_4, folds_3, folds_2);
-#endif
-#ifdef OBJECT_IDS
-        below.object_here = object_3;
-        below.object_there = object_2;
-        below.slot_here = slot_3;
-        below.slot_there = slot_2;
-#endif
-        let south = cracks(s, below, excess_below, folds_below, ridge_below);
-        let row = i - 3;
-        if row >= 0 && top + row <= last.y {
-            store(vec2(x, top + row), last.x, east_3, south);
-            let any = (east_3 | south) != vec4(0u);
-            rows |= select(0u, 1u << u32(row), any.x | any.y | any.z | any.w);
-        }
-
-        depth_5 = depth_4;
-        depth_4 = depth_3;
-        depth_3 = depth_2;
-        depth_2 = depth_1;
-        depth_1 = depth_0;
-        east_3 = east_2;
-        east_2 = east_1;
-        east_1 = east_0;
-#ifdef NORMALS
-        folds_4 = folds_3;
-        folds_3 = folds_2;
-        folds_2 = vec4(fold(normal_a, n_a), fold(normal_b, n_b), fold(normal_c, n_c), fold(normal_d, n_d));
-        normal_a = n_a;
-        normal_b = n_b;
-        normal_c = n_c;
-        normal_d = n_d;
-#endif
-#ifdef OBJECT_IDS
-        object_3 = object_2;
-        object_2 = object_1;
-        object_1 = at.object_here;
-        slot_3 = slot_2;
-        slot_2 = slot_1;
-        slot_1 = at.slot_here;
-#endif
-    }
-    textureStore(block_texture, vec2(x / COLUMNS, i32(id.y)), vec4(rows));
-}
-
-// Stores the cracks of four pixels in a row.
-fn store(at: vec2<i32>, last: i32, east: vec4<u32>, south: vec4<u32>) {
-    if (east.x | south.x) != 0u {
-        textureStore(crack_texture, at, vec4(east.x, south.x, 0u, 0u));
-    }
-    if (east.y | south.y) != 0u && at.x + 1 <= last {
-        textureStore(crack_texture, at + vec2(1, 0), vec4(east.y, south.y, 0u, 0u));
-    }
-    if (east.z | south.z) != 0u && at.x + 2 <= last {
-        textureStore(crack_texture, at + vec2(2, 0), vec4(east.z, south.z, 0u, 0u));
-    }
-    if (east.w | south.w) != 0u && at.x + 3 <= last {
-        textureStore(crack_texture, at + vec2(3, 0), vec4(east.w, south.w, 0u, 0u));
-    }
-}
-#endif

@@ -42,7 +42,10 @@ use pipelines::LineShaders;
 pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "edge.wgsl");
     load_shader_library!(app, "read.wgsl");
+    load_shader_library!(app, "tiles.wgsl");
+    embedded_asset!(app, "walk.wgsl");
     embedded_asset!(app, "find.wgsl");
+    embedded_asset!(app, "columns.wgsl");
     embedded_asset!(app, "faithful.wgsl");
     embedded_asset!(app, "draw.wgsl");
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else {

@@ -32,11 +32,11 @@ pub(crate) const BLOCK_FORMAT: TextureFormat = TextureFormat::R32Uint;
 /// The ink of a pixel, see `draw.wgsl`.
 pub(crate) const INK_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
-/// Columns and rows of a block: an invocation of `find.wgsl` walks through one.
+/// Columns and rows of a block: an invocation of `walk.wgsl` walks through one.
 pub(crate) const BLOCK: [u32; 2] = [4, 32];
 /// Blocks in a workgroup, side by side.
 pub(crate) const WORKGROUP: u32 = 32;
-/// Width and height in pixels of the tiles that `draw.wgsl` draws.
+/// Width and height in pixels of the tiles of `tiles.wgsl`.
 pub(crate) const TILE: u32 = 16;
 
 /// Distance within which lines of this half width are searched around a pixel, both in
@@ -102,6 +102,17 @@ impl LineKey {
         self.faithful.contains(&true)
     }
 
+    /// The part that the search for blocks with cracks depends on.
+    pub fn for_walk(self) -> Self {
+        Self {
+            ids: self.object_edges,
+            object_styles: false,
+            fading: false,
+            visible_range: false,
+            ..self.for_find()
+        }
+    }
+
     /// The part that finding depends on.
     pub fn for_find(self) -> Self {
         Self {
@@ -120,6 +131,14 @@ impl LineKey {
             narrow: false,
             by_fragments: false,
             ..self
+        }
+    }
+
+    /// The part that the search in columns depends on.
+    pub fn for_columns(self) -> Self {
+        Self {
+            by_fragments: self.by_fragments,
+            ..Self::default()
         }
     }
 
@@ -217,17 +236,24 @@ impl LineKey {
         entries
     }
 
-    pub fn find_layout(&self) -> BindGroupLayoutDescriptor {
-        if self.by_fragments {
-            let entries = self.inputs(self.creases, ShaderStages::FRAGMENT);
-            return BindGroupLayoutDescriptor::new("comics_find_lines", &entries);
-        }
+    pub fn walk_layout(&self) -> BindGroupLayoutDescriptor {
         let mut entries = self.inputs(self.creases, ShaderStages::COMPUTE);
-        for (binding, format) in [(9, CRACK_FORMAT), (10, BLOCK_FORMAT)] {
-            let texture = texture_storage_2d(format, StorageTextureAccess::WriteOnly);
-            entries.push(texture.build(binding, ShaderStages::COMPUTE));
-        }
+        let blocks = texture_storage_2d(BLOCK_FORMAT, StorageTextureAccess::WriteOnly);
+        entries.push(blocks.build(10, ShaderStages::COMPUTE));
+        BindGroupLayoutDescriptor::new("comics_walk", &entries)
+    }
+
+    pub fn find_layout(&self) -> BindGroupLayoutDescriptor {
+        let mut entries = self.inputs(self.creases, ShaderStages::FRAGMENT);
+        entries[0].visibility = ShaderStages::VERTEX_FRAGMENT;
+        entries.extend(self.blocks());
         BindGroupLayoutDescriptor::new("comics_find_lines", &entries)
+    }
+
+    /// The layout entry of the blocks that select the tiles that are drawn.
+    fn blocks(&self) -> Option<BindGroupLayoutEntry> {
+        let blocks = texture_2d(TextureSampleType::Uint);
+        (!self.by_fragments).then(|| blocks.build(12, ShaderStages::VERTEX))
     }
 
     pub fn faithful_layout(&self) -> BindGroupLayoutDescriptor {
@@ -235,17 +261,25 @@ impl LineKey {
         BindGroupLayoutDescriptor::new("comics_faithful_lines", &entries)
     }
 
-    pub fn draw_layout(&self) -> BindGroupLayoutDescriptor {
-        let both = ShaderStages::VERTEX_FRAGMENT;
+    pub fn columns_layout(&self) -> BindGroupLayoutDescriptor {
+        BindGroupLayoutDescriptor::new("comics_line_columns", &self.searched(11))
+    }
+
+    /// The layout entries of a pass that searches cracks in the texture at this binding.
+    fn searched(&self, binding: u32) -> Vec<BindGroupLayoutEntry> {
+        let cracks = texture_2d(TextureSampleType::Uint);
         let mut entries = vec![
-            uniform_buffer::<LinePassUniform>(false).build(1, both),
-            texture_2d(TextureSampleType::Uint).build(11, both),
+            uniform_buffer::<LinePassUniform>(false).build(1, ShaderStages::VERTEX_FRAGMENT),
+            cracks.build(binding, ShaderStages::FRAGMENT),
         ];
+        entries.extend(self.blocks());
+        entries
+    }
+
+    pub fn draw_layout(&self) -> BindGroupLayoutDescriptor {
+        let mut entries = self.searched(if self.narrow { 11 } else { 13 });
         if self.object_styles {
             entries.push(ids_entry(self.samples > 1));
-        }
-        if !self.by_fragments {
-            entries.push(texture_2d(TextureSampleType::Uint).build(12, both));
         }
         BindGroupLayoutDescriptor::new("comics_draw_lines", &entries)
     }
@@ -272,7 +306,9 @@ pub(crate) fn ink_entry() -> BindGroupLayoutEntry {
 #[derive(Resource)]
 pub(crate) struct LineShaders {
     fullscreen: FullscreenShader,
+    walk: Handle<Shader>,
     find: Handle<Shader>,
+    columns: Handle<Shader>,
     faithful: Handle<Shader>,
     draw: Handle<Shader>,
 }
@@ -281,24 +317,26 @@ impl LineShaders {
     pub fn new(fullscreen: &FullscreenShader, assets: &AssetServer) -> Self {
         Self {
             fullscreen: fullscreen.clone(),
+            walk: load_embedded_asset!(assets, "walk.wgsl"),
             find: load_embedded_asset!(assets, "find.wgsl"),
+            columns: load_embedded_asset!(assets, "columns.wgsl"),
             faithful: load_embedded_asset!(assets, "faithful.wgsl"),
             draw: load_embedded_asset!(assets, "draw.wgsl"),
         }
     }
 }
 
-/// Finding by a compute shader.
+/// The search for blocks with cracks.
 impl SpecializedComputePipeline for LineShaders {
     type Key = LineKey;
 
     fn specialize(&self, key: LineKey) -> ComputePipelineDescriptor {
         ComputePipelineDescriptor {
-            label: Some("comics_find_lines".into()),
-            layout: vec![key.find_layout()],
-            shader: self.find.clone(),
+            label: Some("comics_walk".into()),
+            layout: vec![key.walk_layout()],
+            shader: self.walk.clone(),
             shader_defs: key.find_defs(),
-            entry_point: Some("find".into()),
+            entry_point: Some("walk".into()),
             ..Default::default()
         }
     }
@@ -307,8 +345,8 @@ impl SpecializedComputePipeline for LineShaders {
 /// The passes that are render passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum LinePass {
-    /// Finding without compute shaders.
     Find,
+    Columns,
     Faithful,
     Draw,
 }
@@ -324,6 +362,12 @@ impl SpecializedRenderPipeline for LineShaders {
                 &self.find,
                 key.find_defs(),
             ),
+            LinePass::Columns => (
+                "comics_line_columns",
+                key.columns_layout(),
+                &self.columns,
+                key.draw_defs(),
+            ),
             LinePass::Faithful => (
                 "comics_faithful_lines",
                 key.faithful_layout(),
@@ -338,11 +382,11 @@ impl SpecializedRenderPipeline for LineShaders {
             ),
         };
         let (vertex, topology) = match pass {
-            LinePass::Find | LinePass::Faithful => (
+            LinePass::Faithful => (
                 self.fullscreen.to_vertex_state(),
                 PrimitiveTopology::TriangleList,
             ),
-            LinePass::Draw => (
+            LinePass::Find | LinePass::Columns | LinePass::Draw => (
                 VertexState {
                     shader: shader.clone(),
                     shader_defs: defs.clone(),
@@ -354,6 +398,7 @@ impl SpecializedRenderPipeline for LineShaders {
         };
         let fragment = match pass {
             LinePass::Find => "find",
+            LinePass::Columns => "columns",
             LinePass::Faithful => "faithful",
             LinePass::Draw => "draw",
         };
@@ -370,7 +415,7 @@ impl SpecializedRenderPipeline for LineShaders {
                 shader_defs: defs,
                 entry_point: Some(fragment.into()),
                 targets: vec![Some(match pass {
-                    LinePass::Find => target(CRACK_FORMAT, None),
+                    LinePass::Find | LinePass::Columns => target(CRACK_FORMAT, None),
                     LinePass::Faithful | LinePass::Draw => target(INK_FORMAT, Some(MAXIMUM)),
                 })],
             }),

@@ -22,7 +22,7 @@ use bevy::{
 
 use super::{
     pipelines::{BLOCK, BLOCK_FORMAT, CRACK_FORMAT, INK_FORMAT},
-    request::{Find, LinePassUniform, LinePasses, LineRequest},
+    request::{CrackPasses, LinePassUniform, LinePasses, LineRequest},
 };
 
 /// On a view in the render world: the lines of this frame.
@@ -40,6 +40,8 @@ pub(crate) struct ViewLines {
 /// The cracks of a view.
 pub(crate) struct Cracks {
     pub texture: CachedTexture,
+    /// The best crack of each pixel's column, unless only neighbours are searched.
+    pub columns: Option<CachedTexture>,
     /// The blocks that have cracks; `None` without compute shaders.
     pub blocks: Option<CachedTexture>,
 }
@@ -98,20 +100,20 @@ fn texture(
 
 fn cracks(
     (textures, device): (&mut TextureCache, &RenderDevice),
-    find: &Find,
+    passes: &CrackPasses,
     rect: UVec4,
 ) -> Cracks {
-    let (drawn, stored) = (
-        TextureUsages::RENDER_ATTACHMENT,
-        TextureUsages::STORAGE_BINDING,
-    );
-    let computed = matches!(find, Find::Compute(_));
-    // The compute shader stores cracks alone; a render pass clears the rest.
-    let usage = if computed { drawn | stored } else { drawn };
     let mut new = |label, size, format| texture((textures, device), label, size, format);
+    let stored = (BLOCK_FORMAT, TextureUsages::STORAGE_BINDING);
+    let drawn = (CRACK_FORMAT, TextureUsages::RENDER_ATTACHMENT);
     Cracks {
-        texture: new("comics_cracks", rect.zw(), (CRACK_FORMAT, usage)),
-        blocks: computed.then(|| new("comics_crack_blocks", blocks(rect), (BLOCK_FORMAT, stored))),
+        texture: new("comics_cracks", rect.zw(), drawn),
+        columns: passes
+            .columns
+            .map(|_| new("comics_line_columns", rect.zw(), drawn)),
+        blocks: passes
+            .walk
+            .map(|_| new("comics_crack_blocks", blocks(rect), stored)),
     }
 }
 
@@ -124,8 +126,8 @@ pub(crate) fn prepare_view_lines(
 ) {
     for (entity, request, passes, lines) in &mut views {
         let mut fill = |lines: &mut ViewLines| {
-            let find = passes.cracks.as_ref().map(|(find, _)| find);
-            lines.cracks = find.map(|find| cracks((&mut textures, &device), find, request.rect));
+            let cracks = |passes| cracks((&mut textures, &device), passes, request.rect);
+            lines.cracks = passes.cracks.as_ref().map(cracks);
             lines.ink = Some(texture(
                 (&mut textures, &device),
                 "comics_line_ink",

@@ -99,16 +99,20 @@ pub(crate) struct LinePassUniform {
 pub(crate) struct LinePasses {
     pub key: LineKey,
     /// Finds and draws the lines along cracks, if there are any.
-    pub cracks: Option<(Find, CachedRenderPipelineId)>,
+    pub cracks: Option<CrackPasses>,
     /// Draws the lines of the faithful forms, if there are any.
     pub faithful: Option<CachedRenderPipelineId>,
 }
 
-/// The pipeline that finds cracks.
+/// The pipelines of the lines along cracks.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Find {
-    Compute(CachedComputePipelineId),
-    Fragments(CachedRenderPipelineId),
+pub(crate) struct CrackPasses {
+    /// `None` without compute shaders.
+    pub walk: Option<CachedComputePipelineId>,
+    pub find: CachedRenderPipelineId,
+    /// `None` if only neighbouring pixels are searched.
+    pub columns: Option<CachedRenderPipelineId>,
+    pub draw: CachedRenderPipelineId,
 }
 
 /// Specializes the pipelines for requests.
@@ -125,11 +129,12 @@ impl LinePipelines<'_> {
     pub fn get(&mut self, cache: &PipelineCache, request: &LineRequest) -> LinePasses {
         let limits = self.device.limits();
         let has_compute = limits.max_compute_workgroup_size_x > 0
-            && limits.max_storage_textures_per_shader_stage >= 2;
+            && limits.max_storage_textures_per_shader_stage > 0;
         let key = LineKey::new(request, !has_compute);
         let mut render = |pass| {
             let part = match pass {
                 LinePass::Find => key.for_find(),
+                LinePass::Columns => key.for_columns(),
                 LinePass::Faithful => key.for_faithful(),
                 LinePass::Draw => key.for_draw(),
             };
@@ -137,15 +142,14 @@ impl LinePipelines<'_> {
             renders.specialize(cache, &self.shaders, (pass, part))
         };
         let faithful = key.has_faithful().then(|| render(LinePass::Faithful));
-        let cracks = key.has_cracks().then(|| {
-            let draw = render(LinePass::Draw);
-            let find = if has_compute {
+        let cracks = key.has_cracks().then(|| CrackPasses {
+            walk: has_compute.then(|| {
                 let computes = &mut self.computes;
-                Find::Compute(computes.specialize(cache, &self.shaders, key.for_find()))
-            } else {
-                Find::Fragments(render(LinePass::Find))
-            };
-            (find, draw)
+                computes.specialize(cache, &self.shaders, key.for_walk())
+            }),
+            find: render(LinePass::Find),
+            columns: (!key.narrow).then(|| render(LinePass::Columns)),
+            draw: render(LinePass::Draw),
         });
         LinePasses {
             key,

@@ -28,7 +28,7 @@ use crate::small::{Small, with_option};
 const ONE_CODE: f64 = 1.0 / 255.0;
 
 /// The depth frame of the small scene's infinite perspective.
-fn frame(small: &Small, map: &DepthMap) -> Frame {
+pub fn frame(small: &Small, map: &DepthMap) -> Frame {
     const NEAR: f64 = 0.1;
     const FAR: f64 = 1000.0;
     let ends = match map.mapping {

@@ -376,7 +376,10 @@ fn every_shape_of_the_reduction_composes_and_validates() {
 
 #[test]
 fn every_kind_of_outline_composes_and_validates() {
-    let (find, faithful) = (shader("lines/find.wgsl"), shader("lines/faithful.wgsl"));
+    let [walk, find, faithful] = ["walk", "find", "faithful"].map(|name| {
+        let path = format!("lines/{name}.wgsl");
+        shader(&path)
+    });
     let check = |source: &str, defs: &[&str]| {
         module(source, defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
     };
@@ -400,6 +403,9 @@ fn every_kind_of_outline_composes_and_validates() {
                 defs.push("OBJECT_IDS");
             }
             check(&find, &defs);
+            if !kinds.contains(&"BY_FRAGMENTS") {
+                check(&walk, &defs);
+            }
         }
         for forms in subsets(&["FAITHFUL_SILHOUETTES", "FAITHFUL_CREASES", "OBJECT_STYLES"]) {
             let mut defs = [&view[..], &forms].concat();
@@ -412,7 +418,9 @@ fn every_kind_of_outline_composes_and_validates() {
             check(&faithful, &defs);
         }
     }
-    let draw = shader("lines/draw.wgsl");
+    let (columns, draw) = (shader("lines/columns.wgsl"), shader("lines/draw.wgsl"));
+    check(&columns, &[]);
+    check(&columns, &["BY_FRAGMENTS"]);
     for styles in [&[][..], &["OBJECT_IDS", "OBJECT_STYLES"]] {
         for view in subsets(&["MULTISAMPLED", "BY_FRAGMENTS", "NARROW"]) {
             check(&draw, &[styles, &view].concat());

@@ -1,5 +1,5 @@
-//! Twin of `lines/draw.wgsl`: the ink of the lines at every pixel, by an exhaustive
-//! search.
+//! Twin of `lines/columns.wgsl` and `lines/draw.wgsl`: the ink of the lines at every
+//! pixel.
 
 use super::{
     edge::{line_coverage, line_offset, segment_distance},
@@ -17,6 +17,8 @@ pub struct Cracks {
     pub cracks: Vec<[Option<Crack>; 2]>,
     /// Pixels around a pixel whose cracks draw lines there.
     reach: i64,
+    /// Opacity of silhouettes, creases, object edges.
+    opacity: [f64; 3],
 }
 
 impl Cracks {
@@ -31,6 +33,12 @@ impl Cracks {
             width: w,
             height: h,
             cracks,
+            opacity: [
+                s.silhouettes.unwrap_or_default().opacity,
+                s.creases.unwrap_or_default().opacity,
+                s.objects.unwrap_or_default().opacity,
+            ]
+            .map(f64::from),
             reach: ((0.5 * f64::from(s.width) * scale + 1.0).ceil() as i64 - 1).max(1),
         }
     }
@@ -48,20 +56,35 @@ impl Cracks {
     /// viewport, before it is stored. The sign of `nudge` decides how ink rounds that
     /// lies between two codes.
     pub fn ink(&self, at: [f64; 2], nudge: f64) -> [f64; 3] {
+        if self.reach > 1 {
+            return self.ink_of_lines(self.lines_by_columns(at, nudge), at, nudge);
+        }
+        self.exhaustive_ink(at, nudge)
+    }
+
+    /// The same by an exhaustive search.
+    pub fn exhaustive_ink(&self, at: [f64; 2], nudge: f64) -> [f64; 3] {
         let (px, py) = (at[0].floor() as i64, at[1].floor() as i64);
-        let mut found = [0.0f64; 3];
         let mut lines = Vec::new();
         for y in py - self.reach..=py + self.reach {
             for x in px - self.reach..=px + self.reach {
                 for (crack, v) in self.at(x, y).into_iter().zip(SIDES) {
                     let Some(crack) = crack else { continue };
                     let middle = middle(&crack, [x, y], v);
-                    let away = distance(middle, at);
-                    found = larger(found, ink_of(&crack, nudge, away));
-                    lines.push((away - crack.half_width, middle, crack));
+                    let border = distance(middle, at) - crack.half_width;
+                    lines.push((border, middle, Some(crack)));
                 }
             }
         }
+        self.ink_of_lines(lines, at, nudge)
+    }
+
+    fn ink_of_lines(&self, mut lines: Vec<Line>, at: [f64; 2], nudge: f64) -> [f64; 3] {
+        let found = lines.iter().fold([0.0; 3], |found, (border, _, crack)| {
+            crack.map_or(found, |crack| {
+                larger(found, ink_of(&crack, nudge, border + crack.half_width))
+            })
+        });
         let straight = straight(&mut lines, at, nudge);
         // Which of two lines at the same distance is the nearest is a matter of rounding.
         let sums = straight.iter().map(|ink| ink.iter().sum::<f64>());
@@ -74,10 +97,71 @@ impl Cracks {
         };
         chosen.map_or(found, |(i, _)| larger(found, straight[i]))
     }
+
+    /// The lines that are found from the best cracks of each column.
+    fn lines_by_columns(&self, at: [f64; 2], nudge: f64) -> Vec<Line> {
+        let (px, py) = (at[0].floor() as i64, at[1].floor() as i64);
+        let mut lines = Vec::new();
+        for x in px - self.reach - 1..=px + self.reach {
+            let Some((crack, first, next)) = self.column(x, py, nudge) else {
+                continue;
+            };
+            let border = distance(first, at) - crack.half_width;
+            lines.push((border, first, Some(crack)));
+            if let Some(next) = next {
+                let own = distance(next, at) - crack.half_width;
+                lines.push((own.max(border + 1e-4), next, None));
+            }
+        }
+        lines
+    }
+
+    /// The crack in a pixel's column whose line covers the pixel most, the middle of its
+    /// line, and the middle of the next line.
+    fn column(&self, x: i64, y: i64, nudge: f64) -> Option<(Crack, [f64; 2], Option<[f64; 2]>)> {
+        let mut best: Option<(f64, Crack, [f64; 2])> = None;
+        let mut next: Option<(f64, [f64; 2])> = None;
+        for row in y - self.reach - 1..=y + self.reach {
+            for (crack, v) in self.at(x, row).into_iter().zip(SIDES) {
+                let Some(crack) = crack else { continue };
+                let middle = middle(&crack, [x, row], v);
+                let away = (middle[1] - (y as f64 + 0.5)).abs();
+                let ink = ink_of(&crack, nudge, away);
+                let value = [0, 1, 2]
+                    .map(|kind| ink[kind] * self.opacity[kind])
+                    .into_iter()
+                    .fold(0.0, f64::max);
+                let score = value + 1e-4 * (crack.half_width - away);
+                if score <= -1.0 {
+                    continue;
+                }
+                let other = best.is_none_or(|best| distance(middle, best.2) > 0.25);
+                match best {
+                    Some(first) if score <= first.0 => {
+                        if other && next.is_none_or(|next| score > next.0) {
+                            next = Some((score, middle));
+                        }
+                    }
+                    _ => {
+                        if let Some(first) = best
+                            && other
+                        {
+                            next = Some((first.0, first.2));
+                        }
+                        best = Some((score, crack, middle));
+                    }
+                }
+            }
+        }
+        // The place of the next line is stored in 64ths of a pixel.
+        let stored = |v: f64| (v * 64.0).round_ties_even() / 64.0;
+        best.map(|(_, crack, middle)| (crack, middle, next.map(|next| next.1.map(stored))))
+    }
 }
 
-/// The line of a crack: the distance from its border, its middle, the crack.
-type Line = (f64, [f64; 2], Crack);
+/// A line: the distance from its border, its middle, and its crack, unless the crack is
+/// only the next one in its column.
+type Line = (f64, [f64; 2], Option<Crack>);
 
 fn larger(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| a[k].max(b[k]))
@@ -102,6 +186,7 @@ fn straight(lines: &mut [Line], at: [f64; 2], nudge: f64) -> Vec<[f64; 3]> {
             if *border > others[0].0 + TIE {
                 break;
             }
+            let Some(crack) = crack else { continue };
             found.push(if distance(*a, *b) < 1.5 {
                 ink_of(crack, nudge, segment_distance(at, *a, *b))
             } else {

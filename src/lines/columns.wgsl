@@ -1,0 +1,81 @@
+// The first half of the search for lines wider than the neighbouring pixels: for every
+// pixel, the crack in its column whose line covers it most, and the place of the next
+// one. The second half, in draw.wgsl, compares the results of the columns nearby.
+// Together they load 2 r pixels around a pixel instead of r^2.
+//
+// x: the packed crack; y: its place in the lower half, that of the next crack in the upper.
+
+#import bevy_comics::depth::view::View
+#import bevy_comics::lines::edge::{
+    Grid, Lines, Place, crack_opacity, line_coverage, line_offset, pack_place, place_middle, unpack_width,
+}
+#import bevy_comics::lines::tiles::{TILE, has_cracks, tile_corner, tile_origin}
+
+struct ColumnUniform {
+    seen: View,
+    settings: Lines,
+    grid: Grid,
+}
+
+@group(0) @binding(1) var<uniform> column_uniform: ColumnUniform;
+@group(0) @binding(11) var crack_texture: texture_2d<u32>;
+
+// Tiles without cracks within reach collapse into a point.
+@vertex
+fn tile(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> @builtin(position) vec4<f32> {
+    let g = column_uniform.grid;
+    let first = tile_origin(instance, g.rect.zw);
+    let above = vec2(0, g.reach + 1);
+    let below = vec2(TILE - 1, TILE - 1 + g.reach);
+    return tile_corner(first, vertex, g.rect.zw, has_cracks(first - above, first + below, g.rect.zw));
+}
+
+// The best two cracks in the column so far.
+struct Best {
+    packed: u32,
+    places: vec2<u32>,
+    // Middles of the lines, seen from the pixel.
+    first: vec2<f32>,
+    scores: vec2<f32>,
+}
+
+// Compares a crack with the best two.
+fn compare(best: ptr<function, Best>, packed: u32, row: i32, south: bool) {
+    let half_width = unpack_width(packed >> 20u);
+    let shift = select(1.0, -1.0, (packed & 8u) != 0u) * line_offset(half_width);
+    let place = Place(row, south, 0.5 + shift);
+    let middle = place_middle(place);
+    let away = abs(middle.y);
+    let value = line_coverage(away, half_width) * crack_opacity(column_uniform.settings, packed);
+    // Of equal ink, the line is taken whose border is farther out: it reaches farther.
+    let exists = (packed & 7u) != 0u;
+    let score = select(-1.0, value + 1e-4 * (half_width - away), exists);
+    let better = score > (*best).scores.x;
+    // Both cracks at a corner of a line of odd width have their middle in one pixel.
+    let other = distance(middle, (*best).first) > 0.25;
+    let pushed = better && other;
+    let next = other && score > (*best).scores.y;
+    let packed_place = pack_place(place);
+    (*best).places.y = select(select((*best).places.y, packed_place, next), (*best).places.x, pushed);
+    (*best).scores.y = select(select((*best).scores.y, score, next), (*best).scores.x, pushed);
+    (*best).packed = select((*best).packed, packed, better);
+    (*best).places.x = select((*best).places.x, packed_place, better);
+    (*best).first = select((*best).first, middle, better);
+    (*best).scores.x = max((*best).scores.x, score);
+}
+
+@fragment
+fn columns(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
+    let g = column_uniform.grid;
+    let p = vec2<i32>(position.xy);
+    var best = Best(0u, vec2(0u), vec2(1e6), vec2(-1.0));
+    for (var row = -g.reach - 1; row <= g.reach; row++) {
+        let y = p.y + row;
+        let inside = y >= 0 && y < g.rect.w;
+        let texel = textureLoad(crack_texture, vec2(p.x, clamp(y, 0, g.rect.w - 1)), 0).xy;
+        let packed = select(vec2(0u), texel, inside);
+        compare(&best, packed.x, row, false);
+        compare(&best, packed.y, row, true);
+    }
+    return vec2(best.packed, best.places.x | (best.places.y << 16u));
+}
