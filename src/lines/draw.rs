@@ -12,7 +12,7 @@ use bevy::{
             BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, BindingResource,
             CachedRenderPipelineId, CommandEncoder, ComputePassDescriptor, ComputePipeline,
             IntoBinding, LoadOp, Operations, PipelineCache, RenderPassColorAttachment,
-            RenderPassDescriptor, RenderPipeline, StoreOp,
+            RenderPassDescriptor, RenderPipeline, StoreOp, TextureView,
         },
         renderer::{RenderContext, RenderDevice, ViewQuery},
         texture::CachedTexture,
@@ -24,6 +24,7 @@ use super::{
     pipelines::{TILE, WORKGROUP},
     prepare::{Cracks, blocks},
     request::{Find, LinePasses, LineRequest},
+    resolve::Resolved,
 };
 use crate::{
     depth::prepare::ViewDepthRange,
@@ -67,6 +68,12 @@ pub(crate) fn find_lines(
         }
         Err(reason) => StageOutcome::LeftOut(reason),
     };
+    let resolved = if request.samples > 1 {
+        outcome
+    } else {
+        StageOutcome::LeftOut(LeftOut::SingleSampled)
+    };
+    ledger.set(request.camera, ComicsStage::ResolveSamples, resolved);
     ledger.set(request.camera, ComicsStage::FindLines, outcome);
     ledger.set(request.camera, ComicsStage::DrawLines, outcome);
 }
@@ -85,6 +92,36 @@ struct Inputs<'a> {
 
 const NOT_READY: LeftOut = LeftOut::PipelineNotReady;
 
+/// Textures with the depth, normal and object of every pixel.
+pub(super) struct Texels<'a> {
+    pub depth: &'a TextureView,
+    pub normal: Option<&'a TextureView>,
+    pub ids: Option<&'a TextureView>,
+}
+
+impl<'a> Texels<'a> {
+    /// Adds the bindings: the depth, and the normals and ids if they are read.
+    fn push(
+        self,
+        (normals, ids): (bool, bool),
+        entries: &mut Vec<BindGroupEntry<'a>>,
+    ) -> Result<(), LeftOut> {
+        entries.push(entry(2, self.depth.into_binding()));
+        if normals {
+            let normal = self.normal.ok_or(NOT_READY)?;
+            entries.push(entry(7, normal.into_binding()));
+        }
+        if ids {
+            let ids = self.ids.ok_or(NOT_READY)?;
+            entries.push(entry(8, ids.into_binding()));
+        }
+        Ok(())
+    }
+}
+
+/// The pass that picks samples, ready to be recorded.
+type ResolvePass<'a> = (&'a Resolved, Ready<'a, RenderPipeline>);
+
 /// A pass that is ready to be recorded: its pipeline and bindings.
 type Ready<'a, P> = (&'a P, BindGroup);
 
@@ -92,6 +129,7 @@ impl Inputs<'_> {
     fn record(&self, ctx: &mut RenderContext) -> Result<(), LeftOut> {
         let (request, passes, lines) = self.parts.0;
         let ink = lines.ink.as_ref().ok_or(NOT_READY)?;
+        let resolve = self.resolve_pass()?;
         let faithful = match passes.faithful {
             Some(id) => {
                 let layout = passes.key.faithful_layout();
@@ -112,6 +150,11 @@ impl Inputs<'_> {
         let diagnostics = ctx.diagnostic_recorder();
         let diagnostics = diagnostics.as_deref();
         let encoder = ctx.command_encoder();
+        if let Some((resolved, (pipeline, group))) = &resolve {
+            let span = diagnostics.time_span(encoder, "comics_resolve_samples");
+            resolved.record(encoder, request, (pipeline, group));
+            span.end(encoder);
+        }
         if let Some((find, _, cracks)) = &cracks {
             let span = diagnostics.time_span(encoder, "comics_find_lines");
             find.record(encoder, request, &cracks.texture);
@@ -154,19 +197,49 @@ impl Inputs<'_> {
         lines.uniform.binding().ok_or(NOT_READY)
     }
 
-    /// The bindings of the passes that read the prepasses. `normals`: the normals too.
-    fn entries(&self, normals: bool) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
-        let ((request, passes, _), prepass, range, ids) = self.parts;
-        let key = &passes.key;
+    /// The prepass textures of the view.
+    fn prepass(&self) -> Result<Texels<'_>, LeftOut> {
+        let ((request, ..), prepass, _, ids) = self.parts;
         let prepass = prepass.ok_or(LeftOut::NoDepthPrepass)?;
         let depth = prepass.depth.as_ref().ok_or(LeftOut::NoDepthPrepass)?;
         if depth.texture.texture.sample_count() != request.samples {
             return Err(LeftOut::SampleCountMismatch);
         }
-        let mut entries = vec![
-            entry(1, self.uniform()?),
-            entry(2, (&depth.texture.default_view).into_binding()),
-        ];
+        let normal = prepass.normal.as_ref();
+        Ok(Texels {
+            depth: &depth.texture.default_view,
+            normal: normal.map(|normal| &normal.texture.default_view),
+            ids: ids.map(|ids| &ids.view),
+        })
+    }
+
+    /// The textures that lines are found in.
+    fn texels(&self) -> Result<Texels<'_>, LeftOut> {
+        let (_, _, lines) = self.parts.0;
+        match &lines.resolved {
+            Some(resolved) => Ok(resolved.texels()),
+            None => self.prepass(),
+        }
+    }
+
+    /// The pass that picks one sample of every pixel, if the view is multisampled.
+    fn resolve_pass(&self) -> Result<Option<ResolvePass<'_>>, LeftOut> {
+        let (_, passes, lines) = self.parts.0;
+        let (Some((key, id)), Some(resolved)) = (&passes.resolve, &lines.resolved) else {
+            return Ok(None);
+        };
+        let mut entries = vec![entry(1, self.uniform()?)];
+        self.prepass()?.push((key.normals, key.ids), &mut entries)?;
+        let group = self.group(&key.layout(), &entries);
+        Ok(Some((resolved, (self.pipeline(*id)?, group))))
+    }
+
+    /// The bindings of the passes that find lines. `normals`: the normals too.
+    fn entries(&self, normals: bool) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
+        let ((_, passes, _), _, range, _) = self.parts;
+        let key = &passes.key;
+        let mut entries = vec![entry(1, self.uniform()?)];
+        self.texels()?.push((normals, key.ids), &mut entries)?;
         if key.visible_range {
             let keys = range.and_then(ViewDepthRange::drawn).ok_or(NOT_READY)?;
             entries.push(entry(3, keys.as_entire_binding()));
@@ -174,14 +247,6 @@ impl Inputs<'_> {
         if key.object_styles {
             let styles = self.object_styles.buffer().ok_or(NOT_READY)?;
             entries.push(entry(6, styles.as_entire_binding()));
-        }
-        if normals {
-            let normal = prepass.normal.as_ref().ok_or(NOT_READY)?;
-            entries.push(entry(7, (&normal.texture.default_view).into_binding()));
-        }
-        if key.ids {
-            let ids = ids.ok_or(NOT_READY)?;
-            entries.push(entry(8, (&ids.view).into_binding()));
         }
         Ok(entries)
     }
@@ -213,14 +278,14 @@ impl Inputs<'_> {
     }
 
     fn draw_group(&self, cracks: &Cracks) -> Result<BindGroup, LeftOut> {
-        let ((_, passes, _), _, _, ids) = self.parts;
+        let (_, passes, _) = self.parts.0;
         let mut entries = vec![
             entry(1, self.uniform()?),
             entry(11, (&cracks.texture.default_view).into_binding()),
         ];
         if passes.key.object_styles {
-            let ids = ids.ok_or(NOT_READY)?;
-            entries.push(entry(8, (&ids.view).into_binding()));
+            let ids = self.texels()?.ids.ok_or(NOT_READY)?;
+            entries.push(entry(8, ids.into_binding()));
         }
         if let Some(blocks) = &cracks.blocks {
             entries.push(entry(12, (&blocks.default_view).into_binding()));
@@ -272,7 +337,7 @@ impl FindPass<'_> {
 }
 
 /// A texture that is cleared to 0 before it is drawn to.
-fn cleared(texture: &CachedTexture) -> RenderPassColorAttachment<'_> {
+pub(super) fn cleared(texture: &CachedTexture) -> RenderPassColorAttachment<'_> {
     RenderPassColorAttachment {
         view: &texture.default_view,
         depth_slice: None,

@@ -1,4 +1,5 @@
-//! The service of lines. `find.wgsl` finds the cracks between pixels that lines run
+//! The service of lines. `resolve.wgsl` picks a sample of every pixel of a multisampled
+//! view. `find.wgsl` finds the cracks between pixels that lines run
 //! along, in depth, normals and object ids. `draw.wgsl` draws their ink into a texture,
 //! where there are any. Effects read the ink with `read.wgsl`.
 
@@ -7,6 +8,7 @@ mod kinds;
 mod pipelines;
 mod prepare;
 pub(crate) mod request;
+mod resolve;
 mod settings;
 
 use bevy::{
@@ -37,11 +39,13 @@ pub(crate) use settings::LinesUniform;
 
 use crate::schedule::{ComicsSystems, PrepareComics};
 use pipelines::LineShaders;
+use resolve::ResolvePipeline;
 
 /// Finds the lines of the views that request them.
 pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "edge.wgsl");
     load_shader_library!(app, "read.wgsl");
+    embedded_asset!(app, "resolve.wgsl");
     embedded_asset!(app, "find.wgsl");
     embedded_asset!(app, "faithful.wgsl");
     embedded_asset!(app, "draw.wgsl");
@@ -51,6 +55,7 @@ pub(crate) fn build_render(app: &mut App) {
     render_app
         .init_gpu_resource::<SpecializedComputePipelines<LineShaders>>()
         .init_gpu_resource::<SpecializedRenderPipelines<LineShaders>>()
+        .init_gpu_resource::<SpecializedRenderPipelines<ResolvePipeline>>()
         .add_systems(RenderStartup, init_pipelines)
         .add_systems(
             Render,
@@ -77,4 +82,5 @@ fn init_pipelines(
         commands.entity(view).remove::<ViewLines>();
     }
     commands.insert_resource(LineShaders::new(&fullscreen, &assets));
+    commands.insert_resource(ResolvePipeline::new(&fullscreen, &assets));
 }

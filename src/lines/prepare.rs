@@ -23,12 +23,15 @@ use bevy::{
 use super::{
     pipelines::{BLOCK, BLOCK_FORMAT, CRACK_FORMAT, INK_FORMAT},
     request::{Find, LinePassUniform, LinePasses, LineRequest},
+    resolve::Resolved,
 };
 
 /// On a view in the render world: the lines of this frame.
 #[derive(Component)]
 pub(crate) struct ViewLines {
     pub uniform: UniformBuffer<LinePassUniform>,
+    /// One sample of every pixel, if the view is multisampled.
+    pub resolved: Option<Resolved>,
     /// The cracks, if lines are found along cracks.
     pub cracks: Option<Cracks>,
     /// The ink of every pixel of the viewport, see `draw.wgsl`.
@@ -50,6 +53,7 @@ impl Default for ViewLines {
         uniform.set_label(Some("comics_lines"));
         Self {
             uniform,
+            resolved: None,
             cracks: None,
             ink: None,
             found: AtomicBool::new(false),
@@ -73,7 +77,7 @@ pub(crate) fn blocks(rect: UVec4) -> UVec2 {
     )
 }
 
-fn texture(
+pub(super) fn texture(
     (textures, device): (&mut TextureCache, &RenderDevice),
     label: &'static str,
     size: UVec2,
@@ -124,6 +128,8 @@ pub(crate) fn prepare_view_lines(
 ) {
     for (entity, request, passes, lines) in &mut views {
         let mut fill = |lines: &mut ViewLines| {
+            lines.resolved = (passes.resolve.as_ref())
+                .map(|(key, _)| Resolved::new((&mut textures, &device), *key, request.depth_size));
             let find = passes.cracks.as_ref().map(|(find, _)| find);
             lines.cracks = find.map(|find| cracks((&mut textures, &device), find, request.rect));
             lines.ink = Some(texture(

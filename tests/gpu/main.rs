@@ -13,6 +13,7 @@ mod guide;
 mod house;
 mod ids;
 mod left_out;
+mod line_samples;
 mod line_truth;
 mod lines;
 mod models;

@@ -18,6 +18,7 @@ use bevy_comics_testkit::{
         draw::Ink,
         fused::{Input, stylize},
         map::{Frame, Projection},
+        resolve::{Resolved, nearest_sample},
         view::View,
     },
     studio::with_map,
@@ -66,8 +67,10 @@ pub fn assert_pass_is_its_twin(
     small.settle();
     let (input, output) = small.pass();
     let map = style.depth_map.unwrap_or_default();
-    let depth = small.depth().unwrap_or_else(|| panic!("{what}: no depth"));
-    let (normals, ids) = (small.normals(), small.object_ids());
+    let prepass = small.prepass();
+    let prepass = prepass.unwrap_or_else(|| panic!("{what}: no depth"));
+    let depth = &prepass.depth;
+    let resolved = Resolved::new(&prepass, nearest_sample);
     let view = View {
         viewport: viewport.unwrap_or([0, 0, input.width, input.height]),
         samples: depth.samples,
@@ -75,8 +78,8 @@ pub fn assert_pass_is_its_twin(
         depth_bits: &depth.bits,
         frame: frame(small, &map),
         flip: map.flip,
-        normals: normals.as_ref(),
-        ids: ids.as_ref(),
+        normals: prepass.normals.first(),
+        ids: prepass.ids.first(),
         height: 0.0,
     };
     let sketch = style.get::<Sketch>();
@@ -86,7 +89,8 @@ pub fn assert_pass_is_its_twin(
         ..default()
     });
     let outlines = style.get::<Outlines>().copied().or(implied);
-    let edges = outlines.map(|outlines| (outlines, Ink::new(&outlines, &view, 1.0)));
+    let seen = resolved.view(&view);
+    let edges = outlines.map(|outlines| (outlines, Ink::new(&outlines, &seen, 1.0)));
     let mut undecided = 0;
     // This camera stores display codes instead of linear colour.
     let encoded = small

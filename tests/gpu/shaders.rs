@@ -380,7 +380,7 @@ fn every_kind_of_outline_composes_and_validates() {
     let check = |source: &str, defs: &[&str]| {
         module(source, defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
     };
-    for view in subsets(&["MULTISAMPLED", "OBLIQUE", "SAME_SIZE", "FADING"]) {
+    for view in subsets(&["OBLIQUE", "SAME_SIZE", "FADING"]) {
         let mut view = [&["DEPTH"], &view[..]].concat();
         if view.contains(&"FADING") {
             view.push("VISIBLE_RANGE");
@@ -414,9 +414,13 @@ fn every_kind_of_outline_composes_and_validates() {
     }
     let draw = shader("lines/draw.wgsl");
     for styles in [&[][..], &["OBJECT_IDS", "OBJECT_STYLES"]] {
-        for view in subsets(&["MULTISAMPLED", "BY_FRAGMENTS", "NARROW"]) {
+        for view in subsets(&["BY_FRAGMENTS", "NARROW"]) {
             check(&draw, &[styles, &view].concat());
         }
+    }
+    let resolve = shader("lines/resolve.wgsl");
+    for view in subsets(&["OBLIQUE", "NORMALS", "OBJECT_IDS"]) {
+        check(&resolve, &[&["DEPTH", "MULTISAMPLED"], &view[..]].concat());
     }
     module(&shader("objects/ids.wgsl"), &[]).expect("the ids");
 }

@@ -20,6 +20,7 @@ pub mod ping_pong;
 pub mod range;
 pub mod raw;
 pub mod read;
+pub mod resolve;
 pub mod sketch;
 pub mod smoothing;
 pub mod tone_bands;
