@@ -33,6 +33,7 @@ mod small;
 mod smoothing;
 mod smoothing_views;
 mod styles;
+mod transparent;
 mod vignette;
 mod wide_lines;
 mod window;

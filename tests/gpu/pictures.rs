@@ -14,7 +14,7 @@ use bevy_comics::{
 
 use bevy_comics_testkit::{
     reference::{
-        color,
+        Rgba, color,
         draw::Ink,
         fused::{Input, stylize},
         map::{Frame, Projection},
@@ -128,13 +128,15 @@ pub fn assert_pass_is_its_twin(
                 assert_eq!(read, wrote, "{what}: ({x}, {y}) lies outside the viewport");
                 continue;
             }
-            assert_eq!(read[3], wrote[3], "{what}: alpha at ({x}, {y})");
-            let encode = |c: [f64; 3]| color::srgb_encode(c.map(|v| v.max(0.0)));
-            let got = encode([wrote[0], wrote[1], wrote[2]].map(f64::from));
+            let encode = |[r, g, b, alpha]: Rgba| {
+                let [r, g, b] = color::srgb_encode([r, g, b].map(|v| v.max(0.0)));
+                [r, g, b, alpha]
+            };
+            let got = encode(wrote.map(f64::from));
             let [want, more, less] = [0.0, 1e-5, -1e-5]
                 .map(|nudge| encode(stylize(style, &view, &read_by_pass, x, y, nudge)));
-            let apart = |a: [f64; 3], b: [f64; 3]| {
-                (0..3)
+            let apart = |a: Rgba, b: Rgba| {
+                (0..4)
                     .map(|i| (a[i].min(1.0) - b[i].min(1.0)).abs())
                     .fold(0.0, f64::max)
             };
@@ -143,7 +145,7 @@ pub fn assert_pass_is_its_twin(
                 continue;
             }
             // Ink that is stored between two codes can be either.
-            let close = (0..3).all(|i| {
+            let close = (0..4).all(|i| {
                 let low = want[i].min(more[i]).min(less[i]);
                 let high = want[i].max(more[i]).max(less[i]);
                 got[i] >= low - ONE_CODE && got[i] <= high + ONE_CODE

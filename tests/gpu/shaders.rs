@@ -345,6 +345,7 @@ fn every_debug_view_composes_and_validates() {
     for view in debug_views() {
         for form in optional(&["MULTISAMPLED", "OBLIQUE", "FINISH"]) {
             // On a camera without effects, with a sketch, and with outlines.
+            let view = [&view[..], &flags(&["DEBUG_VIEW"])].concat();
             compose(&source, &[&view, &form]);
             for (_, modes) in &lines {
                 let mut parts = everything.clone();
