@@ -26,6 +26,11 @@ fn load_normal(pixel: vec2<i32>) -> vec4<f32> {
 
 // The same at a pixel and sample of the prepass texture.
 fn texel_normal(at: vec2<i32>, sample: i32) -> vec4<f32> {
-    return decode_normal(textureLoad(normal_texture, at, sample).xyz);
+    return decode_normal(normal_texel(at, sample).xyz);
+}
+
+// The texel of the prepass texture at a pixel and sample of it.
+fn normal_texel(at: vec2<i32>, sample: i32) -> vec4<f32> {
+    return textureLoad(normal_texture, at, sample);
 }
 #endif

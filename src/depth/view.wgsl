@@ -69,14 +69,18 @@ fn load_depth(pixel: vec2<i32>, sample: i32) -> f32 {
     return texel_depth(depth_pixel(pixel), sample);
 }
 
+// The texel of the depth texture at a pixel of it.
+fn depth_texel(at: vec2<i32>, sample: i32) -> f32 {
+#ifdef MULTISAMPLED
+    return textureLoad(depth_texture, at, sample).r;
+#else
+    return textureLoad(depth_texture, at, 0).r;
+#endif
+}
+
 // Raw depth at a pixel of the depth texture.
 fn texel_depth(at: vec2<i32>, sample: i32) -> f32 {
-#ifdef MULTISAMPLED
-    let d = textureLoad(depth_texture, at, sample).r;
-#else
-    let d = textureLoad(depth_texture, at, 0).r;
-#endif
-    return raw_depth(view.raw, vec2<u32>(at), d);
+    return raw_depth(view.raw, vec2<u32>(at), depth_texel(at, sample));
 }
 
 // The depth map of this frame: with the visible range, if that is what it spans.

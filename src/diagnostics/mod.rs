@@ -35,6 +35,9 @@ pub enum ComicsStage {
     /// ([`VisibleDepthRange`](crate::VisibleDepthRange),
     /// [`DepthHistogram`](crate::DepthHistogram)).
     RangeReadback,
+    /// The pass that picks one sample of every pixel of a multisampled view, for the
+    /// lines.
+    ResolveSamples,
     /// The pass that finds the cracks between pixels that lines run along.
     FindLines,
     /// The pass that draws the ink of the lines.
@@ -55,6 +58,7 @@ impl ComicsStage {
         Self::DepthRange,
         Self::RangeSmoothing,
         Self::RangeReadback,
+        Self::ResolveSamples,
         Self::FindLines,
         Self::DrawLines,
     ];
@@ -68,6 +72,7 @@ impl ComicsStage {
             Self::DepthRange => "depth range",
             Self::RangeSmoothing => "range smoothing",
             Self::RangeReadback => "range readback",
+            Self::ResolveSamples => "resolve samples",
             Self::FindLines => "find lines",
             Self::DrawLines => "draw lines",
             Self::Effect(name) => return Cow::Owned(name.replace('_', " ")),
@@ -108,6 +113,8 @@ pub enum LeftOut {
     NoSuchLines,
     /// The depth map spans fixed distances, not the visible range.
     FixedRange,
+    /// The view has one sample per pixel.
+    SingleSampled,
     /// The view has no depth prepass.
     NoDepthPrepass,
     /// The view has no normal prepass.
@@ -138,6 +145,7 @@ impl fmt::Display for LeftOut {
             Self::NoMapStyle => "no effect reads the depth map",
             Self::NoSuchLines => "no such lines are requested",
             Self::FixedRange => "the range is fixed",
+            Self::SingleSampled => "the view has one sample per pixel",
             Self::NoDepthPrepass => "the view has no depth prepass",
             Self::NoNormalPrepass => "the view has no normal prepass",
             Self::Replaced => "another effect replaces it",

@@ -5,7 +5,7 @@
 #import bevy_comics::depth::normal::load_normal
 #import bevy_comics::depth::view::{View, depth_frame, load_depth, pixel_depth, set_view}
 #import bevy_comics::effect::color::{
-    finite_color, lightness, linear_to_oklab, oklab_to_linear, srgb_decode, srgb_encode,
+    finite, finite_color, lightness, linear_to_oklab, oklab_to_linear, srgb_decode, srgb_encode,
 }
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::finish::{Finish, compare, difference, object_color, range_fraction}
@@ -60,6 +60,8 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     var p: Pixel;
     p.original = to_linear(stored.rgb);
     p.color = p.original;
+    let opacity = clamp(finite(stored.a), 0.0, 1.0);
+    p.alpha = opacity;
 #ifdef LIGHTNESS_CHANGE
     // Must run before the early return: derivatives need all four pixels of a quad.
     p.change = fwidthFine(lightness(p.original));
@@ -101,8 +103,12 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 #else ifdef VIEW_EFFECT
     p.color = srgb_decode(shown);
 #endif
-#ifdef FINISH
-    p.color = compare(comics.finish, p.original, p.color, p.inside.x);
+#ifdef DEBUG_VIEW
+    p.alpha = 1.0;
 #endif
-    return vec4(to_stored(p.color), stored.a);
+    var result = vec4(p.color, p.alpha);
+#ifdef FINISH
+    result = compare(comics.finish, vec4(p.original, opacity), result, p.inside.x);
+#endif
+    return vec4(to_stored(result.rgb), result.a);
 }

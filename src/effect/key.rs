@@ -157,6 +157,7 @@ impl StylizeKey {
         .filter_map(|(on, name)| on.then_some(name))
         .chain(space)
         .map(ShaderDefVal::from)
+        .chain(self.view.map(|_| "DEBUG_VIEW".into()))
         .chain(self.view.into_iter().flat_map(view_definitions))
         .chain(self.effects.iter().map(|name| definition(name).into()))
         .chain([number("MAP_FLAGS", self.map_flags)])

@@ -3,9 +3,13 @@
 // The state of a pixel that each effect receives and returns.
 
 struct Pixel {
-    // The picture after the effects so far, and the unstyled picture; linear light.
+    // The picture after the effects so far, and the unstyled picture: linear light,
+    // multiplied by the opacity.
     color: vec3<f32>,
     original: vec3<f32>,
+    // Opacity of the picture after the effects so far, 0 to 1: below 1 where the
+    // background shows through. Opaque ink of coverage a makes it a + (1 - a) * alpha.
+    alpha: f32,
     // Centre of the pixel in the render target: physical pixels from its top left
     // corner.
     position: vec2<f32>,

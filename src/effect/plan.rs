@@ -376,6 +376,7 @@ impl Plan {
             ComicsStage::DepthPrepass => LeftOut::NoDepthStyle,
             ComicsStage::NormalPrepass
             | ComicsStage::ObjectIds
+            | ComicsStage::ResolveSamples
             | ComicsStage::FindLines
             | ComicsStage::DrawLines => LeftOut::NoSuchLines,
             ComicsStage::RangeSmoothing

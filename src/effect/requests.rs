@@ -218,7 +218,7 @@ fn line_request(
     uniform: ViewUniform,
 ) -> Option<LineRequest> {
     let settings = plan.lines.filter(|_| plan.draws())?;
-    let (_, samples) = scene.depth?;
+    let (depth_size, samples) = scene.depth?;
     let widest_object = if plan.object_styles {
         view.widest_object
     } else {
@@ -231,6 +231,7 @@ fn line_request(
         settings,
         view: uniform,
         lines: settings.uniform(view.scale_factor, reference),
+        depth_size,
         samples,
         size: scene.viewport.zw(),
         rect: scene.drawn(),
@@ -262,7 +263,8 @@ impl Requests {
                 let columns = cracks.columns.is_some_and(render);
                 walk || columns || render(cracks.find) || render(cracks.draw)
             });
-            cracks || passes.faithful.is_some_and(render)
+            let resolve = passes.resolve.is_some_and(|(_, id)| render(id));
+            resolve || cracks || passes.faithful.is_some_and(render)
         });
         let fused = self.fused.as_ref().is_some_and(|f| render(f.pipeline));
         range || lines || fused

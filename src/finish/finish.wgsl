@@ -15,9 +15,10 @@ struct Finish {
     unused: vec2<f32>,
 }
 
-// Mixes the two pictures, or shows the original left of the split. `x` is in physical
-// pixels from the left edge of the viewport.
-fn compare(s: Finish, original: vec3<f32>, styled: vec3<f32>, x: f32) -> vec3<f32> {
+// Mixes the two pictures, or shows the original left of the split. Both are colours
+// multiplied by their opacity, and the opacity. `x` is in physical pixels from the left
+// edge of the viewport.
+fn compare(s: Finish, original: vec4<f32>, styled: vec4<f32>, x: f32) -> vec4<f32> {
     let weight = select(s.weight, 0.0, x < s.split);
     return mix(original, styled, weight);
 }

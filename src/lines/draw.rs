@@ -6,14 +6,12 @@ use bevy::{
     color::LinearRgba,
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::system::Res,
-    math::{UVec2, Vec4Swizzles},
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
             BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, BindingResource,
-            CachedRenderPipelineId, CommandEncoder, ComputePassDescriptor, ComputePipeline,
-            IntoBinding, LoadOp, Operations, PipelineCache, RenderPassColorAttachment,
-            RenderPassDescriptor, RenderPipeline, StoreOp,
+            CachedRenderPipelineId, IntoBinding, LoadOp, Operations, PipelineCache,
+            RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline, StoreOp, TextureView,
         },
         renderer::{RenderContext, RenderDevice, ViewQuery},
         texture::CachedTexture,
@@ -22,9 +20,11 @@ use bevy::{
 
 use super::{
     ViewLines,
-    pipelines::{LineKey, TILE, WORKGROUP},
-    prepare::{Cracks, blocks},
+    pipelines::LineKey,
+    prepare::Cracks,
     request::{CrackPasses, LinePasses, LineRequest},
+    resolve::Resolved,
+    tiles::{Ready, ReadyCracks, draw_tiles},
 };
 use crate::{
     depth::prepare::ViewDepthRange,
@@ -68,6 +68,12 @@ pub(crate) fn find_lines(
         }
         Err(reason) => StageOutcome::LeftOut(reason),
     };
+    let resolved = if request.samples > 1 {
+        outcome
+    } else {
+        StageOutcome::LeftOut(LeftOut::SingleSampled)
+    };
+    ledger.set(request.camera, ComicsStage::ResolveSamples, resolved);
     ledger.set(request.camera, ComicsStage::FindLines, outcome);
     ledger.set(request.camera, ComicsStage::DrawLines, outcome);
 }
@@ -86,17 +92,45 @@ struct Inputs<'a> {
 
 const NOT_READY: LeftOut = LeftOut::PipelineNotReady;
 
-/// A pass that is ready to be recorded: its pipeline and bindings.
-type Ready<'a, P> = (&'a P, BindGroup);
+/// Textures with the depth, normal and object of every pixel.
+pub(super) struct Texels<'a> {
+    pub depth: &'a TextureView,
+    pub normal: Option<&'a TextureView>,
+    pub ids: Option<&'a TextureView>,
+}
+
+impl<'a> Texels<'a> {
+    /// Adds the bindings: the depth, and the normals and ids if they are read.
+    fn push(
+        self,
+        (normals, ids): (bool, bool),
+        entries: &mut Vec<BindGroupEntry<'a>>,
+    ) -> Result<(), LeftOut> {
+        entries.push(entry(2, self.depth.into_binding()));
+        if normals {
+            let normal = self.normal.ok_or(NOT_READY)?;
+            entries.push(entry(7, normal.into_binding()));
+        }
+        if ids {
+            let ids = self.ids.ok_or(NOT_READY)?;
+            entries.push(entry(8, ids.into_binding()));
+        }
+        Ok(())
+    }
+}
+
+/// The pass that picks samples, ready to be recorded.
+type ResolvePass<'a> = (&'a Resolved, Ready<'a, RenderPipeline>);
 
 impl Inputs<'_> {
     fn record(&self, ctx: &mut RenderContext) -> Result<(), LeftOut> {
         let (request, passes, lines) = self.parts.0;
         let ink = lines.ink.as_ref().ok_or(NOT_READY)?;
+        let resolve = self.resolve_pass()?;
         let faithful = match passes.faithful {
             Some(id) => {
                 let layout = passes.key.faithful_layout();
-                let entries = self.entries(passes.key.faithful[1])?;
+                let entries = self.entries(&passes.key, passes.key.faithful[1])?;
                 Some((self.pipeline(id)?, self.group(&layout, &entries)))
             }
             None => None,
@@ -109,6 +143,11 @@ impl Inputs<'_> {
         let diagnostics = ctx.diagnostic_recorder();
         let diagnostics = diagnostics.as_deref();
         let encoder = ctx.command_encoder();
+        if let Some((resolved, (pipeline, group))) = &resolve {
+            let span = diagnostics.time_span(encoder, "comics_resolve_samples");
+            resolved.record(encoder, request, (pipeline, group));
+            span.end(encoder);
+        }
         if let Some(cracks) = &cracks {
             let span = diagnostics.time_span(encoder, "comics_find_lines");
             cracks.find(encoder, request);
@@ -151,22 +190,48 @@ impl Inputs<'_> {
         lines.uniform.binding().ok_or(NOT_READY)
     }
 
-    fn entries(&self, normals: bool) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
-        self.inputs(&self.parts.0.1.key, normals)
-    }
-
-    /// The bindings of the passes that read the prepasses. `normals`: the normals too.
-    fn inputs(&self, key: &LineKey, normals: bool) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
-        let ((request, ..), prepass, range, ids) = self.parts;
+    /// The prepass textures of the view.
+    fn prepass(&self) -> Result<Texels<'_>, LeftOut> {
+        let ((request, ..), prepass, _, ids) = self.parts;
         let prepass = prepass.ok_or(LeftOut::NoDepthPrepass)?;
         let depth = prepass.depth.as_ref().ok_or(LeftOut::NoDepthPrepass)?;
         if depth.texture.texture.sample_count() != request.samples {
             return Err(LeftOut::SampleCountMismatch);
         }
-        let mut entries = vec![
-            entry(1, self.uniform()?),
-            entry(2, (&depth.texture.default_view).into_binding()),
-        ];
+        let normal = prepass.normal.as_ref();
+        Ok(Texels {
+            depth: &depth.texture.default_view,
+            normal: normal.map(|normal| &normal.texture.default_view),
+            ids: ids.map(|ids| &ids.view),
+        })
+    }
+
+    /// The textures that lines are found in.
+    fn texels(&self) -> Result<Texels<'_>, LeftOut> {
+        let (_, _, lines) = self.parts.0;
+        match &lines.resolved {
+            Some(resolved) => Ok(resolved.texels()),
+            None => self.prepass(),
+        }
+    }
+
+    /// The pass that picks one sample of every pixel, if the view is multisampled.
+    fn resolve_pass(&self) -> Result<Option<ResolvePass<'_>>, LeftOut> {
+        let (_, passes, lines) = self.parts.0;
+        let (Some((key, id)), Some(resolved)) = (&passes.resolve, &lines.resolved) else {
+            return Ok(None);
+        };
+        let mut entries = vec![entry(1, self.uniform()?)];
+        self.prepass()?.push((key.normals, key.ids), &mut entries)?;
+        let group = self.group(&key.layout(), &entries);
+        Ok(Some((resolved, (self.pipeline(*id)?, group))))
+    }
+
+    /// The bindings of the passes that find lines. `normals`: the normals too.
+    fn entries(&self, key: &LineKey, normals: bool) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
+        let (_, _, range, _) = self.parts;
+        let mut entries = vec![entry(1, self.uniform()?)];
+        self.texels()?.push((normals, key.ids), &mut entries)?;
         if key.visible_range {
             let keys = range.and_then(ViewDepthRange::drawn).ok_or(NOT_READY)?;
             entries.push(entry(3, keys.as_entire_binding()));
@@ -174,14 +239,6 @@ impl Inputs<'_> {
         if key.object_styles {
             let styles = self.object_styles.buffer().ok_or(NOT_READY)?;
             entries.push(entry(6, styles.as_entire_binding()));
-        }
-        if normals {
-            let normal = prepass.normal.as_ref().ok_or(NOT_READY)?;
-            entries.push(entry(7, (&normal.texture.default_view).into_binding()));
-        }
-        if key.ids {
-            let ids = ids.ok_or(NOT_READY)?;
-            entries.push(entry(8, (&ids.view).into_binding()));
         }
         Ok(entries)
     }
@@ -193,7 +250,7 @@ impl Inputs<'_> {
         cracks: &'a Cracks,
     ) -> Result<ReadyCracks<'a>, LeftOut> {
         let key = &self.parts.0.1.key;
-        let mut entries = self.entries(key.creases)?;
+        let mut entries = self.entries(key, key.creases)?;
         if let Some(blocks) = &cracks.blocks {
             entries.push(entry(12, (&blocks.default_view).into_binding()));
         }
@@ -202,7 +259,7 @@ impl Inputs<'_> {
             (Some(id), Some(blocks)) => {
                 let pipeline = self.cache.get_compute_pipeline(id).ok_or(NOT_READY)?;
                 let key = key.for_walk();
-                let mut entries = self.inputs(&key, key.creases)?;
+                let mut entries = self.entries(&key, key.creases)?;
                 entries.push(entry(10, (&blocks.default_view).into_binding()));
                 Some((pipeline, self.group(&key.walk_layout(), &entries)))
             }
@@ -242,74 +299,22 @@ impl Inputs<'_> {
     }
 
     fn draw_group(&self, cracks: &Cracks) -> Result<BindGroup, LeftOut> {
-        let ((_, passes, _), _, _, ids) = self.parts;
+        let (_, passes, _) = self.parts.0;
         let searched = match &cracks.columns {
             Some(columns) => (13, columns),
             None => (11, &cracks.texture),
         };
         let mut entries = self.searched(cracks, searched)?;
         if passes.key.object_styles {
-            let ids = ids.ok_or(NOT_READY)?;
-            entries.push(entry(8, (&ids.view).into_binding()));
+            let ids = self.texels()?.ids.ok_or(NOT_READY)?;
+            entries.push(entry(8, ids.into_binding()));
         }
         Ok(self.group(&passes.key.draw_layout(), &entries))
     }
 }
 
-/// The passes of the lines along cracks, ready to be recorded.
-struct ReadyCracks<'a> {
-    walk: Option<Ready<'a, ComputePipeline>>,
-    find: Ready<'a, RenderPipeline>,
-    columns: Option<(Ready<'a, RenderPipeline>, &'a CachedTexture)>,
-    draw: Ready<'a, RenderPipeline>,
-    texture: &'a CachedTexture,
-}
-
-impl ReadyCracks<'_> {
-    /// Looks for blocks with cracks, and finds the cracks in them.
-    fn find(&self, encoder: &mut CommandEncoder, request: &LineRequest) {
-        if let Some((pipeline, group)) = &self.walk {
-            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-                label: Some("comics_walk"),
-                timestamp_writes: None,
-            });
-            let blocks = blocks(request.rect);
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, group, &[]);
-            pass.dispatch_workgroups(blocks.x.div_ceil(WORKGROUP), blocks.y, 1);
-        }
-        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
-            label: Some("comics_find_lines"),
-            color_attachments: &[Some(cleared(self.texture))],
-            ..Default::default()
-        });
-        draw_tiles(&mut pass, &self.find, request.rect.zw());
-    }
-
-    /// Finds the best crack of each pixel's column.
-    fn search_columns(&self, encoder: &mut CommandEncoder, request: &LineRequest) {
-        let Some((columns, texture)) = &self.columns else {
-            return;
-        };
-        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
-            label: Some("comics_line_columns"),
-            color_attachments: &[Some(cleared(texture))],
-            ..Default::default()
-        });
-        draw_tiles(&mut pass, columns, request.rect.zw());
-    }
-}
-
-/// Draws the tiles of a picture of this size.
-fn draw_tiles(pass: &mut wgpu::RenderPass, (pipeline, group): &Ready<RenderPipeline>, size: UVec2) {
-    let tiles = size.x.div_ceil(TILE) * size.y.div_ceil(TILE);
-    pass.set_pipeline(pipeline);
-    pass.set_bind_group(0, group, &[]);
-    pass.draw(0..4, 0..tiles);
-}
-
 /// A texture that is cleared to 0 before it is drawn to.
-fn cleared(texture: &CachedTexture) -> RenderPassColorAttachment<'_> {
+pub(super) fn cleared(texture: &CachedTexture) -> RenderPassColorAttachment<'_> {
     RenderPassColorAttachment {
         view: &texture.default_view,
         depth_slice: None,

@@ -1,4 +1,5 @@
-//! The service of lines. `find.wgsl` finds the cracks between pixels that lines run
+//! The service of lines. `resolve.wgsl` picks a sample of every pixel of a multisampled
+//! view. `find.wgsl` finds the cracks between pixels that lines run
 //! along, in depth, normals and object ids. `draw.wgsl` draws their ink into a texture,
 //! where there are any. Effects read the ink with `read.wgsl`.
 
@@ -7,7 +8,9 @@ mod kinds;
 mod pipelines;
 mod prepare;
 pub(crate) mod request;
+mod resolve;
 mod settings;
+mod tiles;
 
 use bevy::{
     app::App,
@@ -37,6 +40,7 @@ pub(crate) use settings::LinesUniform;
 
 use crate::schedule::{ComicsSystems, PrepareComics};
 use pipelines::LineShaders;
+use resolve::ResolvePipeline;
 
 /// Finds the lines of the views that request them.
 pub(crate) fn build_render(app: &mut App) {
@@ -44,6 +48,7 @@ pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "read.wgsl");
     load_shader_library!(app, "tiles.wgsl");
     embedded_asset!(app, "walk.wgsl");
+    embedded_asset!(app, "resolve.wgsl");
     embedded_asset!(app, "find.wgsl");
     embedded_asset!(app, "columns.wgsl");
     embedded_asset!(app, "faithful.wgsl");
@@ -54,6 +59,7 @@ pub(crate) fn build_render(app: &mut App) {
     render_app
         .init_gpu_resource::<SpecializedComputePipelines<LineShaders>>()
         .init_gpu_resource::<SpecializedRenderPipelines<LineShaders>>()
+        .init_gpu_resource::<SpecializedRenderPipelines<ResolvePipeline>>()
         .add_systems(RenderStartup, init_pipelines)
         .add_systems(
             Render,
@@ -80,4 +86,5 @@ fn init_pipelines(
         commands.entity(view).remove::<ViewLines>();
     }
     commands.insert_resource(LineShaders::new(&fullscreen, &assets));
+    commands.insert_resource(ResolvePipeline::new(&fullscreen, &assets));
 }

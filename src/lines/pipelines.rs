@@ -11,10 +11,7 @@ use bevy::{
         FragmentState, PrimitiveState, PrimitiveTopology, RenderPipelineDescriptor, ShaderStages,
         ShaderType, SpecializedComputePipeline, SpecializedRenderPipeline, StorageTextureAccess,
         TextureFormat, TextureSampleType, VertexState,
-        binding_types::{
-            texture_2d, texture_2d_multisampled, texture_storage_2d, uniform_buffer,
-            uniform_buffer_sized,
-        },
+        binding_types::{texture_2d, texture_storage_2d, uniform_buffer, uniform_buffer_sized},
     },
     shader::{Shader, ShaderDefVal},
 };
@@ -48,7 +45,6 @@ pub(crate) fn reach(half_width: f32) -> i32 {
 /// What selects the shader variants of the passes that find and draw lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct LineKey {
-    pub samples: u32,
     pub oblique: bool,
     /// Measured silhouettes and creases: those of the corrected form.
     pub silhouettes: bool,
@@ -77,7 +73,6 @@ impl LineKey {
         ];
         let [silhouettes, creases] = forms.map(|form| form == Some(Form::Corrected));
         Self {
-            samples: request.samples,
             oblique: request.oblique,
             silhouettes,
             creases,
@@ -145,7 +140,6 @@ impl LineKey {
     /// The part that drawing depends on.
     pub fn for_draw(self) -> Self {
         Self {
-            samples: self.samples,
             ids: self.object_styles,
             object_styles: self.object_styles,
             narrow: self.narrow,
@@ -157,7 +151,6 @@ impl LineKey {
     fn common(&self) -> impl Iterator<Item = ShaderDefVal> + use<> {
         [
             (self.same_size, "SAME_SIZE"),
-            (self.samples > 1, "MULTISAMPLED"),
             (self.oblique, "OBLIQUE"),
             (self.ids, "OBJECT_IDS"),
             (self.object_styles, "OBJECT_STYLES"),
@@ -201,21 +194,12 @@ impl LineKey {
             .collect()
     }
 
-    /// The layout entry of a prepass texture.
-    fn prepass(&self, binding: u32, stages: ShaderStages) -> BindGroupLayoutEntry {
-        let float = TextureSampleType::Float { filterable: false };
-        if self.samples > 1 {
-            texture_2d_multisampled(float).build(binding, stages)
-        } else {
-            texture_2d(float).build(binding, stages)
-        }
-    }
-
     /// The layout entries of what finding reads. `normals`: the normals are read.
     fn inputs(&self, normals: bool, stages: ShaderStages) -> Vec<BindGroupLayoutEntry> {
+        let float = || texture_2d(TextureSampleType::Float { filterable: false });
         let mut entries = vec![
             uniform_buffer::<LinePassUniform>(false).build(1, stages),
-            self.prepass(2, stages),
+            float().build(2, stages),
         ];
         let seen = |mut entry: BindGroupLayoutEntry| {
             entry.visibility = stages;
@@ -228,10 +212,10 @@ impl LineKey {
             entries.push(seen(object_styles_entry()));
         }
         if normals {
-            entries.push(self.prepass(7, stages));
+            entries.push(float().build(7, stages));
         }
         if self.ids {
-            entries.push(seen(ids_entry(self.samples > 1)));
+            entries.push(seen(ids_entry(false)));
         }
         entries
     }
@@ -279,7 +263,7 @@ impl LineKey {
     pub fn draw_layout(&self) -> BindGroupLayoutDescriptor {
         let mut entries = self.searched(if self.narrow { 11 } else { 13 });
         if self.object_styles {
-            entries.push(ids_entry(self.samples > 1));
+            entries.push(ids_entry(false));
         }
         BindGroupLayoutDescriptor::new("comics_draw_lines", &entries)
     }

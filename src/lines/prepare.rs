@@ -23,12 +23,15 @@ use bevy::{
 use super::{
     pipelines::{BLOCK, BLOCK_FORMAT, CRACK_FORMAT, INK_FORMAT},
     request::{CrackPasses, LinePassUniform, LinePasses, LineRequest},
+    resolve::Resolved,
 };
 
 /// On a view in the render world: the lines of this frame.
 #[derive(Component)]
 pub(crate) struct ViewLines {
     pub uniform: UniformBuffer<LinePassUniform>,
+    /// One sample of every pixel, if the view is multisampled.
+    pub resolved: Option<Resolved>,
     /// The cracks, if lines are found along cracks.
     pub cracks: Option<Cracks>,
     /// The ink of every pixel of the viewport, see `draw.wgsl`.
@@ -52,6 +55,7 @@ impl Default for ViewLines {
         uniform.set_label(Some("comics_lines"));
         Self {
             uniform,
+            resolved: None,
             cracks: None,
             ink: None,
             found: AtomicBool::new(false),
@@ -75,7 +79,7 @@ pub(crate) fn blocks(rect: UVec4) -> UVec2 {
     )
 }
 
-fn texture(
+pub(super) fn texture(
     (textures, device): (&mut TextureCache, &RenderDevice),
     label: &'static str,
     size: UVec2,
@@ -126,6 +130,8 @@ pub(crate) fn prepare_view_lines(
 ) {
     for (entity, request, passes, lines) in &mut views {
         let mut fill = |lines: &mut ViewLines| {
+            lines.resolved = (passes.resolve.as_ref())
+                .map(|(key, _)| Resolved::new((&mut textures, &device), *key, request.depth_size));
             let cracks = |passes| cracks((&mut textures, &device), passes, request.rect);
             lines.cracks = passes.cracks.as_ref().map(cracks);
             lines.ink = Some(texture(

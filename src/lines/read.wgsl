@@ -59,10 +59,10 @@ fn own_color(slot: u32, color: vec3<f32>) -> vec3<f32> {
     return color;
 }
 
-// Draws the line of largest opacity over the picture, in linear light ([CL] Eq. 5 takes
-// the maximum). If opacities differ by at most 0.01, a silhouette goes before an object
+// Draws the line of largest opacity over the picture ([CL] Eq. 5 takes the maximum), a
+// colour in linear light that is multiplied by its opacity, and the opacity. If opacities differ by at most 0.01, a silhouette goes before an object
 // edge, and an object edge before a crease.
-fn draw_lines(linear: vec3<f32>, lines: Found) -> vec3<f32> {
+fn draw_lines(picture: vec4<f32>, lines: Found) -> vec4<f32> {
     let s = lines_drawn;
     let alpha = lines.ink * vec3(s.silhouette_opacity, s.crease_opacity, s.object_opacity);
     var color = s.silhouette_color;
@@ -75,7 +75,7 @@ fn draw_lines(linear: vec3<f32>, lines: Found) -> vec3<f32> {
         color = s.crease_color;
         strongest = alpha.y;
     }
-    return mix(linear, own_color(lines.slot, color), strongest);
+    return mix(picture, vec4(own_color(lines.slot, color), 1.0), strongest);
 }
 
 // Ink of all kinds together, 0 to 1: the maximum ([CL] Eq. 5).

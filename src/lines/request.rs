@@ -18,6 +18,7 @@ use bevy::{
 
 use super::{
     pipelines::{LineKey, LinePass, LineShaders},
+    resolve::{ResolveKey, ResolvePipeline},
     settings::{LineSettings, LinesUniform},
 };
 use crate::depth::view::ViewUniform;
@@ -30,7 +31,8 @@ pub(crate) struct LineRequest {
     pub settings: LineSettings,
     pub view: ViewUniform,
     pub lines: LinesUniform,
-    /// Samples per pixel of the depth texture.
+    /// Size in pixels of the depth texture, and its samples per pixel.
+    pub depth_size: UVec2,
     pub samples: u32,
     /// Size of the viewport in physical pixels.
     pub size: UVec2,
@@ -98,6 +100,8 @@ pub(crate) struct LinePassUniform {
 #[derive(Component, Clone, Copy, Debug)]
 pub(crate) struct LinePasses {
     pub key: LineKey,
+    /// Picks one sample of every pixel, if the view is multisampled.
+    pub resolve: Option<(ResolveKey, CachedRenderPipelineId)>,
     /// Finds and draws the lines along cracks, if there are any.
     pub cracks: Option<CrackPasses>,
     /// Draws the lines of the faithful forms, if there are any.
@@ -121,6 +125,8 @@ pub(crate) struct LinePipelines<'w> {
     computes: ResMut<'w, SpecializedComputePipelines<LineShaders>>,
     renders: ResMut<'w, SpecializedRenderPipelines<LineShaders>>,
     shaders: Res<'w, LineShaders>,
+    resolves: ResMut<'w, SpecializedRenderPipelines<ResolvePipeline>>,
+    resolve: Res<'w, ResolvePipeline>,
     device: Res<'w, RenderDevice>,
 }
 
@@ -141,6 +147,10 @@ impl LinePipelines<'_> {
             let renders = &mut self.renders;
             renders.specialize(cache, &self.shaders, (pass, part))
         };
+        let resolve = (request.samples > 1).then(|| {
+            let key = ResolveKey::new(&key);
+            (key, self.resolves.specialize(cache, &self.resolve, key))
+        });
         let faithful = key.has_faithful().then(|| render(LinePass::Faithful));
         let cracks = key.has_cracks().then(|| CrackPasses {
             walk: has_compute.then(|| {
@@ -153,6 +163,7 @@ impl LinePipelines<'_> {
         });
         LinePasses {
             key,
+            resolve,
             cracks,
             faithful,
         }

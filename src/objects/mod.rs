@@ -42,7 +42,6 @@ use bevy::{
 use crate::schedule::PrepareComics;
 
 /// Format of the texture of object ids: (id, style slot).
-#[cfg(feature = "objects")]
 pub(crate) const ID_FORMAT: bevy::render::render_resource::TextureFormat =
     bevy::render::render_resource::TextureFormat::Rg16Uint;
 

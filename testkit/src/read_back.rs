@@ -290,6 +290,11 @@ pub fn depth(render_world: &World, view: Entity) -> Option<DepthImage> {
 /// World normals of the first sample, components -1 to 1; `None` without a normal
 /// prepass.
 pub fn normals(render_world: &World, view: Entity) -> Option<FloatImage> {
+    normals_of(render_world, view, 0)
+}
+
+/// The same of one sample, which must exist.
+pub fn normals_of(render_world: &World, view: Entity, sample: u32) -> Option<FloatImage> {
     let prepass = render_world.get::<ViewPrepassTextures>(view)?;
     let texture: &wgpu::Texture = &prepass.normal.as_ref()?.texture.texture;
     let kind = if texture.sample_count() > 1 {
@@ -303,7 +308,7 @@ pub fn normals(render_world: &World, view: Entity) -> Option<FloatImage> {
          @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {{
              let size = textureDimensions(source);
              if id.x >= size.x {{ return; }}
-             let n = textureLoad(source, vec2<i32>(id.xy), 0);
+             let n = textureLoad(source, vec2<i32>(id.xy), {sample});
              result[id.y * size.x + id.x] = vec4(n.xyz * 2.0 - 1.0, n.w);
          }}"
     );
@@ -321,6 +326,11 @@ pub fn normals(render_world: &World, view: Entity) -> Option<FloatImage> {
 
 /// The object at each pixel's first sample; `None` if no ids were drawn.
 pub fn object_ids(render_world: &World, view: Entity) -> Option<IdImage> {
+    object_ids_of(render_world, view, 0)
+}
+
+/// The same of one sample, which must exist.
+pub fn object_ids_of(render_world: &World, view: Entity, sample: u32) -> Option<IdImage> {
     let texture: &wgpu::Texture = &render_world.get::<ViewObjectIds>(view)?.texture;
     let kind = if texture.sample_count() > 1 {
         "texture_multisampled_2d<u32>"
@@ -333,7 +343,7 @@ pub fn object_ids(render_world: &World, view: Entity) -> Option<IdImage> {
          @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {{
              let size = textureDimensions(source);
              if id.x >= size.x {{ return; }}
-             result[id.y * size.x + id.x] = textureLoad(source, vec2<i32>(id.xy), 0).xy;
+             result[id.y * size.x + id.x] = textureLoad(source, vec2<i32>(id.xy), {sample}).xy;
          }}"
     );
     let words = read_texels(render_world, texture, &shader, 2);

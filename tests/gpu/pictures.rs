@@ -14,10 +14,11 @@ use bevy_comics::{
 
 use bevy_comics_testkit::{
     reference::{
-        color,
+        Rgba, color,
         draw::Ink,
         fused::{Input, stylize},
         map::{Frame, Projection},
+        resolve::{Resolved, nearest_sample},
         view::View,
     },
     studio::with_map,
@@ -66,8 +67,10 @@ pub fn assert_pass_is_its_twin(
     small.settle();
     let (input, output) = small.pass();
     let map = style.depth_map.unwrap_or_default();
-    let depth = small.depth().unwrap_or_else(|| panic!("{what}: no depth"));
-    let (normals, ids) = (small.normals(), small.object_ids());
+    let prepass = small.prepass();
+    let prepass = prepass.unwrap_or_else(|| panic!("{what}: no depth"));
+    let depth = &prepass.depth;
+    let resolved = Resolved::new(&prepass, nearest_sample);
     let view = View {
         viewport: viewport.unwrap_or([0, 0, input.width, input.height]),
         samples: depth.samples,
@@ -75,8 +78,8 @@ pub fn assert_pass_is_its_twin(
         depth_bits: &depth.bits,
         frame: frame(small, &map),
         flip: map.flip,
-        normals: normals.as_ref(),
-        ids: ids.as_ref(),
+        normals: prepass.normals.first(),
+        ids: prepass.ids.first(),
         height: 0.0,
     };
     let sketch = style.get::<Sketch>();
@@ -86,7 +89,8 @@ pub fn assert_pass_is_its_twin(
         ..default()
     });
     let outlines = style.get::<Outlines>().copied().or(implied);
-    let edges = outlines.map(|outlines| (outlines, Ink::new(&outlines, &view, 1.0)));
+    let seen = resolved.view(&view);
+    let edges = outlines.map(|outlines| (outlines, Ink::new(&outlines, &seen, 1.0)));
     let mut undecided = 0;
     // This camera stores display codes instead of linear colour.
     let encoded = small
@@ -124,13 +128,15 @@ pub fn assert_pass_is_its_twin(
                 assert_eq!(read, wrote, "{what}: ({x}, {y}) lies outside the viewport");
                 continue;
             }
-            assert_eq!(read[3], wrote[3], "{what}: alpha at ({x}, {y})");
-            let encode = |c: [f64; 3]| color::srgb_encode(c.map(|v| v.max(0.0)));
-            let got = encode([wrote[0], wrote[1], wrote[2]].map(f64::from));
+            let encode = |[r, g, b, alpha]: Rgba| {
+                let [r, g, b] = color::srgb_encode([r, g, b].map(|v| v.max(0.0)));
+                [r, g, b, alpha]
+            };
+            let got = encode(wrote.map(f64::from));
             let [want, more, less] = [0.0, 1e-5, -1e-5]
                 .map(|nudge| encode(stylize(style, &view, &read_by_pass, x, y, nudge)));
-            let apart = |a: [f64; 3], b: [f64; 3]| {
-                (0..3)
+            let apart = |a: Rgba, b: Rgba| {
+                (0..4)
                     .map(|i| (a[i].min(1.0) - b[i].min(1.0)).abs())
                     .fold(0.0, f64::max)
             };
@@ -139,7 +145,7 @@ pub fn assert_pass_is_its_twin(
                 continue;
             }
             // Ink that is stored between two codes can be either.
-            let close = (0..3).all(|i| {
+            let close = (0..4).all(|i| {
                 let low = want[i].min(more[i]).min(less[i]);
                 let high = want[i].max(more[i]).max(less[i]);
                 got[i] >= low - ONE_CODE && got[i] <= high + ONE_CODE

@@ -345,6 +345,7 @@ fn every_debug_view_composes_and_validates() {
     for view in debug_views() {
         for form in optional(&["MULTISAMPLED", "OBLIQUE", "FINISH"]) {
             // On a camera without effects, with a sketch, and with outlines.
+            let view = [&view[..], &flags(&["DEBUG_VIEW"])].concat();
             compose(&source, &[&view, &form]);
             for (_, modes) in &lines {
                 let mut parts = everything.clone();
@@ -383,7 +384,7 @@ fn every_kind_of_outline_composes_and_validates() {
     let check = |source: &str, defs: &[&str]| {
         module(source, defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
     };
-    for view in subsets(&["MULTISAMPLED", "OBLIQUE", "SAME_SIZE", "FADING"]) {
+    for view in subsets(&["OBLIQUE", "SAME_SIZE", "FADING"]) {
         let mut view = [&["DEPTH"], &view[..]].concat();
         if view.contains(&"FADING") {
             view.push("VISIBLE_RANGE");
@@ -422,9 +423,13 @@ fn every_kind_of_outline_composes_and_validates() {
     check(&columns, &[]);
     check(&columns, &["BY_FRAGMENTS"]);
     for styles in [&[][..], &["OBJECT_IDS", "OBJECT_STYLES"]] {
-        for view in subsets(&["MULTISAMPLED", "BY_FRAGMENTS", "NARROW"]) {
+        for view in subsets(&["BY_FRAGMENTS", "NARROW"]) {
             check(&draw, &[styles, &view].concat());
         }
+    }
+    let resolve = shader("lines/resolve.wgsl");
+    for view in subsets(&["OBLIQUE", "NORMALS", "OBJECT_IDS"]) {
+        check(&resolve, &[&["DEPTH", "MULTISAMPLED"], &view[..]].concat());
     }
     module(&shader("objects/ids.wgsl"), &[]).expect("the ids");
 }

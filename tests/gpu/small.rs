@@ -18,6 +18,7 @@ use bevy_comics::{
 use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
     read_back::{self, DepthImage, FloatImage, IdImage},
+    reference::resolve::Prepass,
 };
 
 /// Errors that the renderer reported.
@@ -158,6 +159,22 @@ impl Small {
 
     pub fn normals(&self) -> Option<FloatImage> {
         read_back::normals(self.render_world(), self.view())
+    }
+
+    /// All samples of the prepass textures; `None` without a depth prepass.
+    pub fn prepass(&self) -> Option<Prepass> {
+        let (world, view) = (self.render_world(), self.view());
+        let depth = self.depth()?;
+        let samples = 0..depth.samples;
+        Some(Prepass {
+            normals: (samples.clone())
+                .filter_map(|s| read_back::normals_of(world, view, s))
+                .collect(),
+            ids: samples
+                .filter_map(|s| read_back::object_ids_of(world, view, s))
+                .collect(),
+            depth,
+        })
     }
 
     pub fn object_ids(&self) -> Option<IdImage> {

@@ -37,7 +37,7 @@ fn every_pixel_is_its_twins() {
             for x in 0..size().x {
                 let at = [f64::from(x) + 0.5, f64::from(y) + 0.5];
                 let i = (y * size().x + x) as usize;
-                let source = [0, 1, 2].map(|c| f64::from(picture.pixels[i][c]));
+                let source = picture.pixels[i].map(f64::from);
                 let want = vignette::vignette(&settings, source, at, extent);
                 // One code of the display: the target has eight bits.
                 let codes = |light: f64| {

@@ -43,8 +43,10 @@ fn steep_area(s: BlackFlats, prewitt: f32) -> f32 {
     return smoothstep(s.slope_low, s.slope_high, prewitt * s.slope_scale);
 }
 
-fn fill(s: BlackFlats, linear: vec3<f32>, coverage: f32) -> vec3<f32> {
-    return mix(linear, s.color, clamp(coverage * s.opacity, 0.0, 1.0));
+// Fills what is there: a background that shows through stays as it is. `picture` is a
+// colour multiplied by its opacity, and the opacity.
+fn fill(s: BlackFlats, picture: vec4<f32>, coverage: f32) -> vec3<f32> {
+    return mix(picture.rgb, s.color * picture.a, clamp(coverage * s.opacity, 0.0, 1.0));
 }
 
 fn black_flats(s: BlackFlats, p: Pixel) -> Pixel {
@@ -53,6 +55,6 @@ fn black_flats(s: BlackFlats, p: Pixel) -> Pixel {
 #ifdef BLACK_FLATS_STEEP
     flats = max(flats, steep_area(s, map_slope(depth_frame(), vec2<i32>(p.position))));
 #endif
-    out.color = fill(s, p.color, flats);
+    out.color = fill(s, vec4(p.color, p.alpha), flats);
     return out;
 }

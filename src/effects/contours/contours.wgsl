@@ -165,10 +165,11 @@ fn line(s: Contours, response: f32) -> f32 {
     return smoothstep(s.low, s.high, response);
 }
 
-// Draws ink over the picture, in linear light. `depth` is D of the nearer side,
-// which the line belongs to: the line fades with it.
-fn draw_contour(s: Contours, linear: vec3<f32>, coverage: f32, depth: f32) -> vec3<f32> {
-    return mix(linear, s.color, clamp(coverage * s.opacity * (1.0 - s.opacity_fade * depth), 0.0, 1.0));
+// Draws ink over the picture, a colour in linear light that is multiplied by its
+// opacity, and the opacity. `depth` is D of the nearer side, which the line belongs to:
+// the line fades with it.
+fn draw_contour(s: Contours, picture: vec4<f32>, coverage: f32, depth: f32) -> vec4<f32> {
+    return mix(picture, vec4(s.color, 1.0), clamp(coverage * s.opacity * (1.0 - s.opacity_fade * depth), 0.0, 1.0));
 }
 
 // (line, nearest raw depth) of one sample, with the taps `reach` pixels away, which
@@ -220,6 +221,8 @@ fn contour(s: Contours, frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
 fn contours(s: Contours, p: Pixel) -> Pixel {
     var out = p;
     let found = contour(s, depth_frame(), vec2<i32>(p.position));
-    out.color = draw_contour(s, p.color, found.x, found.y);
+    let drawn = draw_contour(s, vec4(p.color, p.alpha), found.x, found.y);
+    out.color = drawn.rgb;
+    out.alpha = drawn.a;
     return out;
 }

@@ -8,6 +8,8 @@
 
 fn outlines(p: Pixel) -> Pixel {
     var out = p;
-    out.color = draw_lines(p.color, lines_at(p.position));
+    let drawn = draw_lines(vec4(p.color, p.alpha), lines_at(p.position));
+    out.color = drawn.rgb;
+    out.alpha = drawn.a;
     return out;
 }

@@ -46,9 +46,11 @@ fn add_stroke(inked: f32, stroke: f32) -> f32 {
     return 1.0 - (1.0 - inked) * (1.0 - clamp(stroke, 0.0, 1.0));
 }
 
-// Draws ink on paper, in linear light. `inked` is the coverage of the ink, 0 to 1.
-fn draw_sketch(s: Sketch, picture: vec3<f32>, inked: f32) -> vec3<f32> {
-    let ground = mix(s.paper, s.paper * picture, s.wash);
+// Draws ink on paper, in linear light. The paper is opaque; where there is no picture,
+// it is blank. `picture` is a colour multiplied by its opacity, and the opacity; `inked`
+// is the coverage of the ink, 0 to 1.
+fn draw_sketch(s: Sketch, picture: vec4<f32>, inked: f32) -> vec3<f32> {
+    let ground = mix(s.paper, s.paper * (picture.rgb + (1.0 - picture.a)), s.wash);
     let ink = select(pow(max(inked, 1e-30), s.gamma), 0.0, inked <= 0.0);
     return mix(ground, s.ink, clamp(ink, 0.0, 1.0));
 }
@@ -61,13 +63,14 @@ fn sketch(s: Sketch, p: Pixel) -> Pixel {
         let at = p.position + stray(s, p.inside, stroke);
         inked = add_stroke(inked, total_ink(lines_at(at)) * pen_pressure(s, p.inside, stroke));
     }
-    let drawing = draw_sketch(s, p.color, inked);
+    let picture = vec4(p.color, p.alpha);
+    var drawing = vec4(draw_sketch(s, picture, inked), 1.0);
 #ifdef SKETCH_FADES
-    let below = draw_lines(p.color, lines_at(p.position));
-    out.color = mix(mix(p.color, below, s.lines_below), drawing, s.amount);
-#else
-    out.color = drawing;
+    let below = draw_lines(picture, lines_at(p.position));
+    drawing = mix(mix(picture, below, s.lines_below), drawing, s.amount);
 #endif
+    out.color = drawing.rgb;
+    out.alpha = drawing.a;
     return out;
 }
 #endif

@@ -79,7 +79,8 @@ fn banded_color(s: ToneBands, linear: vec3<f32>, change: f32) -> vec3<f32> {
 
 fn tone_bands(s: ToneBands, p: Pixel) -> Pixel {
     var out = p;
-    out.color = banded_color(s, p.color, p.change);
+    // The lowest band is not black: nothing is added where the background shows through.
+    out.color = mix(p.color, banded_color(s, p.color, p.change), p.alpha);
     return out;
 }
 

@@ -25,6 +25,7 @@ fn vignette_cover(s: Vignette, at: vec2<f32>) -> f32 {
 
 fn vignette(s: Vignette, p: Pixel) -> Pixel {
     var out = p;
-    out.color = mix(p.color, s.color, vignette_cover(s, p.inside + 0.5));
+    // Nothing is added where the background shows through.
+    out.color = mix(p.color, s.color * p.alpha, vignette_cover(s, p.inside + 0.5));
     return out;
 }

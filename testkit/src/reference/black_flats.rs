@@ -1,7 +1,7 @@
 //! Twin of `effects/black_flats/black_flats.wgsl`.
 
 use super::{
-    Rgb,
+    Rgb, Rgba,
     color::{largest, srgb_encode_one},
     mix, smoothstep,
 };
@@ -41,9 +41,10 @@ pub fn steep_area(s: &BlackFlats, prewitt: f64, rows: u32) -> f64 {
     )
 }
 
-pub fn fill(s: &BlackFlats, linear: Rgb, coverage: f64) -> Rgb {
+/// Fills what is there of a picture.
+pub fn fill(s: &BlackFlats, picture: Rgba, coverage: f64) -> Rgb {
     let ink = s.color.to_linear();
     let ink = [ink.red, ink.green, ink.blue].map(f64::from);
     let t = (coverage * f64::from(s.opacity)).clamp(0.0, 1.0);
-    std::array::from_fn(|i| mix(linear[i], ink[i], t))
+    std::array::from_fn(|i| mix(picture[i], ink[i] * picture[3], t))
 }

@@ -1,9 +1,9 @@
 //! Twin of `effects/contours/contours.wgsl`.
 
 use super::{
-    Rgb,
+    Rgba,
     map::{Frame, is_background},
-    mix, smoothstep,
+    mix, over, smoothstep,
     view::{View, load_window},
     window::{Steps, Window, gradient, map_steps, prewitt},
 };
@@ -93,12 +93,12 @@ pub fn line(s: &Contours, response: f64) -> f64 {
 }
 
 /// `depth`: D of the nearer side of the line.
-pub fn draw(s: &Contours, linear: Rgb, coverage: f64, depth: f64) -> Rgb {
+pub fn draw(s: &Contours, picture: Rgba, coverage: f64, depth: f64) -> Rgba {
     let ink = s.color.to_linear();
     let ink = [ink.red, ink.green, ink.blue].map(f64::from);
     let t = (coverage * f64::from(s.opacity) * (1.0 - f64::from(s.opacity_fade) * depth))
         .clamp(0.0, 1.0);
-    std::array::from_fn(|i| mix(linear[i], ink[i], t))
+    over(picture, ink, t)
 }
 
 /// (coverage, nearest raw depth) of one sample: taps `reach` pixels around the

@@ -1,9 +1,9 @@
 //! Twin of `finish/finish.wgsl`.
 
-use super::{Rgb, mix, noise};
+use super::{Rgb, Rgba, mix, noise};
 
 /// `x`, `split`: pixels from the left edge of the viewport.
-pub fn compare(weight: f64, split: f64, original: Rgb, styled: Rgb, x: f64) -> Rgb {
+pub fn compare(weight: f64, split: f64, original: Rgba, styled: Rgba, x: f64) -> Rgba {
     let seen = if x < split { 0.0 } else { weight };
     std::array::from_fn(|i| mix(original[i], styled[i], seen))
 }

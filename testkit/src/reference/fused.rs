@@ -2,9 +2,9 @@
 //! one pixel, without the finish and the debug views.
 
 use super::{
-    Rgb, black_flats, color, colorization, contours, desaturation,
+    Rgb, Rgba, black_flats, color, colorization, contours, desaturation,
     draw::Ink,
-    read, sketch, tone_bands,
+    mix, read, sketch, tone_bands,
     view::{View, map_slope, pixel_depth},
     vignette,
 };
@@ -30,6 +30,11 @@ impl Input<'_> {
         [r, g, b].map(color::finite)
     }
 
+    /// Opacity of the unstyled picture, 0 to 1.
+    fn opacity(&self, x: u32, y: u32) -> f64 {
+        color::finite((self.picture)(x, y)[3]).clamp(0.0, 1.0)
+    }
+
     /// Change of the lightness over a pixel: the sum of the differences to its two
     /// neighbours in the same quad of 2 x 2 pixels, as `fwidthFine`.
     fn change(&self, x: u32, y: u32) -> f64 {
@@ -38,18 +43,20 @@ impl Input<'_> {
     }
 }
 
-/// The stylized pixel in linear light, at a scale factor of 1 and a sketch amount
-/// of 1.
+/// The stylized pixel in linear light and its opacity, at a scale factor of 1 and a
+/// sketch amount of 1.
 ///
 /// `nudge` moves every threshold slightly. Two calls with opposite nudges show how
 /// far rounding at a threshold can move the colour.
-pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, nudge: f64) -> Rgb {
+pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, nudge: f64) -> Rgba {
     let source = input.light(x, y);
+    let mut alpha = input.opacity(x, y);
     let mut linear = source;
     if let Some(s) = style.get::<ToneBands>() {
         let nudged = linear.map(|c| c * (1.0 + nudge));
         let change = (input.change(x, y) + nudge).max(0.0);
-        linear = tone_bands::banded_color(s, nudged, change, 1.0);
+        let banded = tone_bands::banded_color(s, nudged, change, 1.0);
+        linear = std::array::from_fn(|i| mix(linear[i], banded[i], alpha));
     }
     let reads_map = style.get::<Desaturation>().is_some()
         || style.get::<Colorization>().is_some()
@@ -76,12 +83,13 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
         let slope = map_slope(view, x, y) + nudge;
         let dark = black_flats::dark_area(s, source.map(|c| c - nudge), l);
         let steep = black_flats::steep_area(s, slope, view.viewport[3]);
-        linear = black_flats::fill(s, linear, dark.max(steep));
+        linear = black_flats::fill(s, with(linear, alpha), dark.max(steep));
     }
     if let Some(s) = style.get::<Contours>() {
         let threshold = s.threshold - nudge as f32;
         let [coverage, near] = contours::contour(&Contours { threshold, ..*s }, view, x, y, 1.0);
-        linear = contours::draw(s, linear, coverage, near);
+        let drawn = contours::draw(s, with(linear, alpha), coverage, near);
+        (linear, alpha) = parts(drawn);
     }
     let sketch = style.get::<Sketch>();
     let [left, top, width, height] = view.viewport.map(f64::from);
@@ -98,15 +106,25 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
                         - (read::total(outlines, read::lines_at(ink, at, true, nudge)) * pressure)
                             .clamp(0.0, 1.0))
             });
-            linear = sketch::draw_sketch(s, linear, 1.0 - blank);
+            linear = sketch::draw_sketch(s, with(linear, alpha), 1.0 - blank);
+            alpha = 1.0;
         }
         (None, Some((outlines, ink))) => {
-            linear = read::draw(outlines, linear, read::lines_at(ink, place, false, nudge));
+            let found = read::lines_at(ink, place, false, nudge);
+            (linear, alpha) = parts(read::draw(outlines, with(linear, alpha), found));
         }
         _ => {}
     }
     if let Some(s) = style.get::<Vignette>() {
-        linear = vignette::vignette(s, linear, place, [width, height]);
+        linear = vignette::vignette(s, with(linear, alpha), place, [width, height]);
     }
-    linear
+    with(linear, alpha)
+}
+
+fn with([r, g, b]: Rgb, alpha: f64) -> Rgba {
+    [r, g, b, alpha]
+}
+
+fn parts([r, g, b, alpha]: Rgba) -> (Rgb, f64) {
+    ([r, g, b], alpha)
 }

@@ -20,6 +20,7 @@ pub mod ping_pong;
 pub mod range;
 pub mod raw;
 pub mod read;
+pub mod resolve;
 pub mod sketch;
 pub mod smoothing;
 pub mod tone_bands;
@@ -28,6 +29,15 @@ pub mod vignette;
 pub mod window;
 
 pub type Rgb = [f64; 3];
+
+/// A colour multiplied by its opacity, and the opacity.
+pub type Rgba = [f64; 4];
+
+/// Opaque ink over a picture.
+pub fn over(picture: Rgba, [r, g, b]: Rgb, coverage: f64) -> Rgba {
+    let ink = [r, g, b, 1.0];
+    std::array::from_fn(|i| mix(picture[i], ink[i], coverage))
+}
 
 pub fn mix(a: f64, b: f64, t: f64) -> f64 {
     a * (1.0 - t) + b * t

@@ -1,6 +1,6 @@
 //! Twin of `lines/read.wgsl`: the drawn lines at a place.
 
-use super::{Rgb, draw::Ink, mix};
+use super::{Rgb, Rgba, draw::Ink, mix, over};
 use bevy_comics::Outlines;
 
 /// The ink at the centre of a pixel, or between the centres of four, by kind. `at` is in
@@ -38,9 +38,9 @@ fn strength(s: &Outlines, ink: [f64; 3]) -> [(f64, Rgb); 3] {
     ]
 }
 
-/// The colour with the strongest line drawn over it. Of lines whose opacity differs
+/// The picture with the strongest line drawn over it. Of lines whose opacity differs
 /// by at most 0.01, the silhouette is drawn, else the object edge.
-pub fn draw(s: &Outlines, linear: Rgb, ink: [f64; 3]) -> Rgb {
+pub fn draw(s: &Outlines, picture: Rgba, ink: [f64; 3]) -> Rgba {
     let kinds = strength(s, ink);
     let mut best = kinds[0];
     for kind in kinds {
@@ -48,7 +48,7 @@ pub fn draw(s: &Outlines, linear: Rgb, ink: [f64; 3]) -> Rgb {
             best = kind;
         }
     }
-    std::array::from_fn(|i| mix(linear[i], best.1[i], best.0))
+    over(picture, best.1, best.0)
 }
 
 /// The opacity of the strongest line.

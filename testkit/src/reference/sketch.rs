@@ -1,6 +1,6 @@
 //! Twin of `effects/sketch/sketch.wgsl`.
 
-use super::{Rgb, mix, noise::wave};
+use super::{Rgb, Rgba, mix, noise::wave};
 use bevy_comics::Sketch;
 
 /// Displacement of a stroke in physical pixels. `at`: pixels from the corner of the
@@ -18,7 +18,8 @@ pub fn pen_pressure(s: &Sketch, at: [f64; 2], stroke: u32, drawing: u32, scale: 
     1.0 - f64::from(s.pressure) * (0.5 + 0.5 * n)
 }
 
-pub fn draw_sketch(s: &Sketch, picture: Rgb, inked: f64) -> Rgb {
+/// Ink on opaque paper, which is blank where there is no picture.
+pub fn draw_sketch(s: &Sketch, picture: Rgba, inked: f64) -> Rgb {
     let rgb = |color: bevy::color::Color| {
         let c = color.to_linear();
         [c.red, c.green, c.blue].map(f64::from)
@@ -26,7 +27,10 @@ pub fn draw_sketch(s: &Sketch, picture: Rgb, inked: f64) -> Rgb {
     let (paper, ink) = (rgb(s.paper), rgb(s.ink));
     let amount = inked.max(0.0).powf(f64::from(s.gamma)).min(1.0);
     std::array::from_fn(|i| {
-        let ground = mix(paper[i], paper[i] * picture[i], f64::from(s.wash));
+        let ground = {
+            let washed = paper[i] * (picture[i] + 1.0 - picture[3]);
+            mix(paper[i], washed, f64::from(s.wash))
+        };
         mix(ground, ink[i], amount)
     })
 }

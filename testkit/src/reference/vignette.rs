@@ -1,6 +1,6 @@
 //! Twin of `effects/vignette/vignette.wgsl`.
 
-use super::{Rgb, mix, smoothstep};
+use super::{Rgb, Rgba, mix, smoothstep};
 use bevy_comics::{Vignette, linear_rgb};
 
 /// Fraction of the colour that is mixed in. `at`: pixels from the top left corner of
@@ -14,8 +14,9 @@ pub fn cover(s: &Vignette, at: [f64; 2], size: [f64; 2]) -> f64 {
     f64::from(s.amount) * smoothstep(radius - half, radius + half, distance)
 }
 
-pub fn vignette(s: &Vignette, linear: Rgb, at: [f64; 2], size: [f64; 2]) -> Rgb {
+/// Mixed into what is there of a picture.
+pub fn vignette(s: &Vignette, picture: Rgba, at: [f64; 2], size: [f64; 2]) -> Rgb {
     let ink = linear_rgb(s.color).to_array().map(f64::from);
     let cover = cover(s, at, size);
-    std::array::from_fn(|i| mix(linear[i], ink[i], cover))
+    std::array::from_fn(|i| mix(picture[i], ink[i] * picture[3], cover))
 }

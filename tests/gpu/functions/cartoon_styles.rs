@@ -399,7 +399,7 @@ fn the_sketch_is_its_twin() {
         );
         let drawn = gpu().evaluate(
             import,
-            &format!("{setup} return vec4(draw_sketch(s, vec3(0.3, 0.5, 0.7), i(7u)), 0.0);"),
+            &format!("{setup} return vec4(draw_sketch(s, vec4(0.3, 0.5, 0.7, 0.8), i(7u)), 0.0);"),
             rows,
         );
         for (row, (strayed, drawn)) in rows.iter().zip(strays.into_iter().zip(drawn)) {
@@ -430,7 +430,7 @@ fn the_sketch_is_its_twin() {
             assert_same_color(
                 row,
                 drawn,
-                sketch::draw_sketch(&s, [0.3, 0.5, 0.7], f64::from(row[7])),
+                sketch::draw_sketch(&s, [0.3, 0.5, 0.7, 0.8], f64::from(row[7])),
             );
         }
     });

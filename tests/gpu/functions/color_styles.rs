@@ -290,7 +290,7 @@ fn dark_areas_are_their_twin() {
             "let s = BlackFlats(vec3(0.02, 0.0, 0.05), 0.9, 1.0, 2.0, i(3u), i(4u), i(5u), 1.0);
              let c = vec3(i(0u), i(1u), i(2u));
              let dark = dark_area(s, c, i(6u));
-             return vec4(fill(s, c, dark), dark);",
+             return vec4(fill(s, vec4(c, i(6u)), dark), dark);",
             rows,
         );
         for (row, result) in rows.iter().zip(results) {
@@ -312,10 +312,12 @@ fn dark_areas_are_their_twin() {
                     (f64::from(result[3]) - dark).abs() < 4e-5 / threshold + 1e-5,
                     "{row:?}: {result:?}, {dark}"
                 );
+                let [r, g, b] = rgb(row);
+                let picture = [r, g, b, f64::from(row[6])];
                 assert_same_color(
                     row,
                     result,
-                    black_flats::fill(&s, rgb(row), f64::from(result[3])),
+                    black_flats::fill(&s, picture, f64::from(result[3])),
                 );
             }
         }

@@ -40,7 +40,8 @@ fn mixes_shares_and_differences_are_their_twins() {
         let mixed = gpu().evaluate(
             FINISH,
             &format!(
-                "{colors} return vec4(compare(Finish(i(6u), i(7u), vec2(0.0)), a, b, i(8u)), 0.0);"
+                "{colors} return compare(
+                     Finish(i(6u), i(7u), vec2(0.0)), vec4(a, i(9u)), vec4(b, i(10u)), i(8u));"
             ),
             rows,
         );
@@ -56,16 +57,20 @@ fn mixes_shares_and_differences_are_their_twins() {
         for (row, (mixed, apart)) in rows.iter().zip(mixed.into_iter().zip(apart)) {
             let wide = row.map(f64::from);
             let (a, b) = (rgb(&row[..3]), rgb(&row[3..6]));
-            let want = finish::compare(wide[6], wide[7], a, b, wide[8]);
+            let with = |[r, g, b]: Rgb, alpha: f64| [r, g, b, alpha];
+            let (original, styled) = (with(a, wide[9]), with(b, wide[10]));
+            let want = finish::compare(wide[6], wide[7], original, styled, wide[8]);
             let ends = (wide[12] == 0.0).then_some([wide[9], wide[10]]);
             let difference = finish::difference(a, b);
-            for i in 0..3 {
-                // Two products and a sum of numbers up to one: 2^-24 each, and a margin.
-                let slack = 4.0 * 2f64.powi(-24);
+            // Two products and a sum of numbers up to one: 2^-24 each, and a margin.
+            let slack = 4.0 * 2f64.powi(-24);
+            for i in 0..4 {
                 assert!(
                     (f64::from(mixed[i]) - want[i]).abs() <= slack,
                     "{row:?}: {mixed:?} {want:?}"
                 );
+            }
+            for i in 0..3 {
                 assert!(
                     (f64::from(apart[i]) - difference[i]).abs() <= 4.0 * slack,
                     "{row:?}"

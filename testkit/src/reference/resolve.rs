@@ -1,0 +1,109 @@
+//! Twin of `lines/resolve.wgsl`: the sample of a pixel that lines read.
+
+use super::view::View;
+use crate::read_back::{DepthImage, FloatImage, IdImage};
+
+/// Positions of the samples of a pixel in the standard pattern for four, in sixteenths
+/// of a pixel from its centre: x to the right, y down.
+pub const STANDARD_4: [[i32; 2]; 4] = [[-2, -6], [6, -2], [-6, 2], [2, 6]];
+
+/// The sample of largest raw depth; of equal ones the first.
+pub fn nearest_sample(depths: &[f32]) -> usize {
+    let mut chosen = 0;
+    for (sample, depth) in depths.iter().enumerate() {
+        if *depth > depths[chosen] {
+            chosen = sample;
+        }
+    }
+    chosen
+}
+
+/// The prepass textures of a view with all samples: normals and ids one image a sample,
+/// none without them.
+pub struct Prepass {
+    pub depth: DepthImage,
+    pub normals: Vec<FloatImage>,
+    pub ids: Vec<IdImage>,
+}
+
+/// One sample of every pixel.
+pub struct Resolved {
+    depth_bits: Vec<u32>,
+    normals: Option<FloatImage>,
+    ids: Option<IdImage>,
+}
+
+impl Resolved {
+    /// `choose`: the sample, from the raw depths of a pixel.
+    pub fn new(prepass: &Prepass, choose: impl Fn(&[f32]) -> usize) -> Self {
+        let depth = &prepass.depth;
+        let samples = depth.samples as usize;
+        let chosen: Vec<usize> = depth
+            .bits
+            .chunks_exact(samples)
+            .map(|bits| choose(&bits.iter().map(|b| f32::from_bits(*b)).collect::<Vec<_>>()))
+            .collect();
+        let texels = || chosen.iter().copied().enumerate();
+        let normals = prepass.normals.first().map(|first| FloatImage {
+            pixels: texels()
+                .map(|(i, s)| prepass.normals[s].pixels[i])
+                .collect(),
+            ..first.clone()
+        });
+        let ids = prepass.ids.first().map(|first| IdImage {
+            pixels: texels().map(|(i, s)| prepass.ids[s].pixels[i]).collect(),
+            ..first.clone()
+        });
+        Self {
+            depth_bits: texels().map(|(i, s)| depth.bits[i * samples + s]).collect(),
+            normals,
+            ids,
+        }
+    }
+
+    /// The view as the passes of lines see it.
+    pub fn view<'a>(&'a self, view: &View<'a>) -> View<'a> {
+        View {
+            samples: 1,
+            depth_bits: &self.depth_bits,
+            normals: self.normals.as_ref(),
+            ids: self.ids.as_ref(),
+            ..*view
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_sample_is_that_of_largest_raw_depth() {
+        assert_eq!(nearest_sample(&[0.0; 4]), 0);
+        assert_eq!(nearest_sample(&[0.0, 0.5, 0.25, 0.5]), 1);
+        assert_eq!(nearest_sample(&[0.1, 0.2, 0.3, 0.4]), 3);
+        assert_eq!(nearest_sample(&[0.7]), 0);
+    }
+
+    /// Over a plane, the same sample is the nearest in every pixel: the plane keeps its
+    /// slope, so it gets no lines.
+    #[test]
+    fn a_plane_stays_a_plane() {
+        for slope in [[0.0, 1e-3], [2e-3, -1e-3], [-3e-3, -4e-3], [1e-4, 0.0]] {
+            let chosen: Vec<usize> = (0..64)
+                .map(|i| {
+                    let pixel = [i % 8, i / 8].map(f64::from);
+                    let depths = STANDARD_4.map(|at| {
+                        let place = [0, 1].map(|k| pixel[k] + f64::from(at[k]) / 16.0);
+                        (0.5 + slope[0] * place[0] + slope[1] * place[1]) as f32
+                    });
+                    nearest_sample(&depths)
+                })
+                .collect();
+            assert!(
+                chosen.iter().all(|s| *s == chosen[0]),
+                "{slope:?}: {chosen:?}"
+            );
+        }
+    }
+}

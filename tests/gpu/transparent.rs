@@ -1,0 +1,163 @@
+//! The opacity of the picture, over a background that shows through.
+
+use bevy::{prelude::*, render::view::Msaa};
+use bevy_comics::{
+    BlackFlats, Colorization, ComicStyle, Contours, Desaturation, Outlines, Silhouettes, Sketch,
+    SplitView, StyleWeight, ToneBands, Vignette, presets,
+};
+
+use crate::{
+    pictures::{assert_pass_is_its_twin, outlined},
+    small::{Small, size},
+};
+
+/// Half a code of the target for what it stores, and half for what it read.
+const CODE: f32 = 1.0 / 255.0;
+
+/// The small scene, without a background.
+fn small(msaa: Msaa) -> Small {
+    let mut small = Small::new(size(), msaa);
+    clear(&mut small);
+    small
+}
+
+fn clear(small: &mut Small) {
+    small.insert(Camera {
+        clear_color: ClearColorConfig::Custom(Color::NONE),
+        ..default()
+    });
+}
+
+/// What the pass read and wrote, pixel by pixel.
+fn pass(small: &mut Small, style: &ComicStyle) -> Vec<([f32; 4], [f32; 4])> {
+    small.style(style);
+    small.settle();
+    let (read, wrote) = small.pass();
+    read.pixels.into_iter().zip(wrote.pixels).collect()
+}
+
+/// Ink is opaque: of a line over the empty background the colour is the ink's, times its
+/// coverage, and the opacity is the coverage.
+#[test]
+fn ink_over_an_empty_background_is_as_opaque_as_its_coverage() {
+    let color = Color::linear_rgb(0.9, 0.3, 0.0);
+    let lines = Silhouettes { color, ..default() };
+    let outlines = Outlines {
+        silhouettes: Some(lines),
+        width: 4.0,
+        ..Outlines::SILHOUETTES
+    };
+    let contours = Contours {
+        color,
+        width: 4.0,
+        ..default()
+    };
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        for style in [outlined(outlines), ComicStyle::default().with(contours)] {
+            let mut small = small(msaa);
+            let (mut whole, mut empty) = (0, 0);
+            for (read, wrote) in pass(&mut small, &style) {
+                if read != [0.0; 4] {
+                    assert!(wrote[3] >= read[3] - CODE, "{read:?} {wrote:?}");
+                    continue;
+                }
+                for (ink, got) in [0.9, 0.3, 0.0].into_iter().zip(wrote) {
+                    // A code of the target near 0.9 in linear light is 2.3 / 255.
+                    let apart = (got - ink * wrote[3]).abs();
+                    assert!(apart <= 2.3 * CODE, "{msaa:?}: {wrote:?}");
+                }
+                whole += usize::from(wrote[3] == 1.0);
+                empty += usize::from(wrote == [0.0; 4]);
+            }
+            assert!(whole > 50, "{msaa:?}: {whole} pixels of whole ink");
+            assert!(empty > 500, "{msaa:?}: {empty} pixels of background");
+        }
+    }
+}
+
+/// Paper is opaque, and blank where there is no picture, at every `wash`.
+#[test]
+fn paper_is_opaque_and_blank_where_nothing_is() {
+    let paper = Color::linear_rgb(0.8, 0.7, 0.5);
+    for wash in [0.0, 0.6] {
+        let sketch = Sketch {
+            paper,
+            wash,
+            ..default()
+        };
+        let mut small = small(Msaa::Sample4);
+        let mut blank = 0;
+        for (read, wrote) in pass(&mut small, &ComicStyle::default().with(sketch)) {
+            assert_eq!(wrote[3], 1.0, "{read:?}");
+            let want = [0.8, 0.7, 0.5];
+            let same = (0..3).all(|i| (wrote[i] - want[i]).abs() <= 2.3 * CODE);
+            blank += usize::from(read == [0.0; 4] && same);
+        }
+        assert!(blank > 500, "{blank} pixels of blank paper");
+    }
+}
+
+/// Effects that add colour add none where nothing is.
+#[test]
+fn an_empty_background_stays_empty() {
+    let color = Color::linear_rgb(0.2, 0.1, 0.6);
+    let style = ComicStyle::default()
+        .with(ToneBands::default())
+        .with(Colorization::default())
+        .with(Desaturation::default())
+        .with(BlackFlats {
+            color,
+            value: Some(0.4),
+            ..default()
+        })
+        .with(Vignette { color, ..default() });
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let mut small = small(msaa);
+        let (mut empty, mut changed) = (0, 0);
+        for (read, wrote) in pass(&mut small, &style) {
+            assert_eq!(read[3], wrote[3]);
+            if read == [0.0; 4] {
+                assert_eq!(wrote, [0.0; 4]);
+                empty += 1;
+            }
+            changed += usize::from(read != wrote);
+        }
+        assert!(empty > 500 && changed > 500, "{empty}, {changed}");
+    }
+}
+
+/// The opacity takes part in the mix with the original, and in the split.
+#[test]
+fn weight_and_split_mix_the_opacity_too() {
+    let mut small = small(Msaa::Off);
+    let style = ComicStyle::default().with(Sketch::default());
+    small.insert(StyleWeight(0.5));
+    let half = pass(&mut small, &style);
+    assert!(half.iter().any(|(read, _)| read[3] == 0.0));
+    for (read, wrote) in half {
+        assert!(
+            (wrote[3] - 0.5 * (read[3] + 1.0)).abs() <= CODE,
+            "{read:?} {wrote:?}"
+        );
+    }
+    small.insert((StyleWeight(1.0), SplitView { at: 0.5 }));
+    for (i, (read, wrote)) in pass(&mut small, &style).into_iter().enumerate() {
+        let original = i as u32 % size().x < size().x / 2;
+        assert_eq!(wrote[3], if original { read[3] } else { 1.0 }, "pixel {i}");
+    }
+}
+
+#[test]
+fn every_preset_is_its_twin_without_a_background() {
+    let mut small = Small::new(UVec2::new(80, 56), Msaa::Off);
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        small.restart(msaa);
+        clear(&mut small);
+        for preset in presets::ALL {
+            let style = preset.style().sanitized();
+            let what = format!("{preset} without a background, {msaa:?}");
+            assert_pass_is_its_twin(&mut small, &style, None, &what);
+        }
+        assert_eq!(small.errors(), 0);
+    }
+}
