@@ -11,7 +11,10 @@ use bevy::{
 use bevy_comics::RangeSmoothing;
 
 use bevy_comics_testkit::{
-    reference::smoothing::{self, Range, Smoothing},
+    reference::{
+        histogram::Bins,
+        smoothing::{Range, Smoothing},
+    },
     scenes::BuiltIn,
 };
 
@@ -82,9 +85,9 @@ fn ranges(sequence: &Sequence, settings: Option<RangeSmoothing>) -> Vec<Option<[
                 return ends;
             };
             if s.outliers > 0.0 {
-                let (bins, total) = smoothing::histogram(shot.depth.iter().copied());
+                let (bins, total) = Bins::Octaves.count(shot.depth.iter().copied());
                 let fraction = f64::from(s.outliers);
-                ends = ends.map(|e| smoothing::percentiles(&bins, total, fraction, e));
+                ends = ends.map(|e| Bins::Octaves.percentiles(&bins, total, fraction, e));
             }
             let twin = Smoothing {
                 offset: Some(0.0),

@@ -3,7 +3,9 @@
 use bevy::math::UVec2;
 use bevy_comics::{Colorization, ComicStyle, DepthMap, RangeSmoothing, ReductionMethod};
 
-use bevy_comics_testkit::{device::gpu, reference::smoothing, scenes::BuiltIn, studio::with_map};
+use bevy_comics_testkit::{
+    device::gpu, reference::histogram::Bins, scenes::BuiltIn, studio::with_map,
+};
 
 use crate::{
     Run,
@@ -137,8 +139,8 @@ pub const OUTLIERS: f64 = 0.005;
 
 fn percentiles(shot: &Shot) -> Option<[f32; 2]> {
     let ends = shot.ends()?;
-    let (bins, total) = smoothing::histogram(shot.depth.iter().copied());
-    let found = smoothing::percentiles(&bins, total, OUTLIERS, ends.map(f64::from));
+    let (bins, total) = Bins::Octaves.count(shot.depth.iter().copied());
+    let found = Bins::Octaves.percentiles(&bins, total, OUTLIERS, ends.map(f64::from));
     Some(found.map(|d| d as f32))
 }
 

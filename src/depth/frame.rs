@@ -61,8 +61,14 @@ pub(crate) struct RawDepth {
     pub view_z: Vec4,
     pub view_w: Vec4,
     pub ndc: Vec4,
-    pub near: f32,
+    pub nearest: f32,
 }
+
+/// The view depth in world units at which an oblique view has a raw depth of 1: smaller
+/// ones count as this. It does not depend on the projection, whose near plane moves with
+/// the camera, so that equal raw depths are equal distances in all frames. A power of
+/// two loses no digits. The bins of a histogram reach 2^32 times as far, to 2^18 units.
+const OBLIQUE_UNIT: f64 = 1.0 / 16384.0;
 
 /// A view's projection in double precision: converts raw depth to distance and back.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -109,22 +115,22 @@ impl DepthProjection {
         }
     }
 
-    /// Near distance in world units that scales the reciprocal distance of oblique views.
-    fn oblique_near(&self) -> f64 {
-        if self.near.is_finite() && self.near > 1e-6 {
-            self.near
-        } else {
-            1e-3
-        }
+    /// Whether raw depth (after `raw.wgsl`) has the same relation to distance under both
+    /// projections. Under an oblique one the matrix is accounted for, wherever its near
+    /// plane is.
+    pub fn same_raw_depth(&self, other: &Self) -> bool {
+        self.kind == other.kind
+            && (self.kind == ProjectionKind::Oblique
+                || (self.scale, self.shift) == (other.scale, other.shift))
     }
 
-    /// Raw depth at a distance in world units. For an oblique view: near / distance,
-    /// which stands for raw depth (see `raw.wgsl`).
+    /// Raw depth at a distance in world units. For an oblique view: a constant divided
+    /// by the distance, which stands for raw depth (see `raw.wgsl`).
     pub fn raw_depth(&self, distance: f64) -> f64 {
         match self.kind {
             ProjectionKind::Perspective => self.shift / distance - self.scale,
             ProjectionKind::Orthographic => self.shift - self.scale * distance,
-            ProjectionKind::Oblique => self.oblique_near() / distance,
+            ProjectionKind::Oblique => OBLIQUE_UNIT / distance,
         }
     }
 
@@ -135,7 +141,7 @@ impl DepthProjection {
         match self.kind {
             ProjectionKind::Perspective => self.shift / (raw + self.scale),
             ProjectionKind::Orthographic => (self.shift - raw) / self.scale,
-            ProjectionKind::Oblique => self.oblique_near() / raw,
+            ProjectionKind::Oblique => OBLIQUE_UNIT / raw,
         }
     }
 
@@ -172,7 +178,7 @@ impl DepthProjection {
             view_z: rows.z_axis,
             view_w: rows.w_axis,
             ndc: Vec4::new(sx, sy, -1.0 - x * sx, 1.0 - y * sy),
-            near: self.oblique_near() as f32,
+            nearest: OBLIQUE_UNIT as f32,
         }
     }
 
@@ -195,7 +201,10 @@ impl DepthProjection {
         let (raw_near, raw_far) = if map.mapping.follows_visible_range() {
             (0.0, 0.0)
         } else {
-            (self.raw_depth(near), self.raw_depth(far))
+            (
+                self.finite_end(self.raw_depth(near)),
+                self.finite_end(self.raw_depth(far)),
+            )
         };
         let mut flags = 0;
         if orthographic {
@@ -205,8 +214,8 @@ impl DepthProjection {
             flags |= LOGARITHMIC;
         }
         DepthFrame {
-            near: raw_near as f32,
-            far: raw_far as f32,
+            near: raw_near,
+            far: raw_far,
             offset: self.offset(),
             floor: if orthographic {
                 (f64::from(map.orthographic_floor) * self.scale) as f32
@@ -217,6 +226,19 @@ impl DepthProjection {
             extent: extent as f32,
             sky_gap: map.sky_gap,
             flags,
+        }
+    }
+
+    /// Raw depth of an end of the depth map, at a finite distance in single precision:
+    /// the shader divides by the sum of raw depth and offset.
+    fn finite_end(&self, raw: f64) -> f32 {
+        let raw = raw as f32;
+        match self.kind {
+            ProjectionKind::Orthographic => raw,
+            ProjectionKind::Perspective if self.offset() > 0.0 => {
+                raw.max((-self.offset()).next_up())
+            }
+            _ => raw.max(f32::MIN_POSITIVE),
         }
     }
 
@@ -246,5 +268,92 @@ fn custom_near(clip_from_view: &Mat4) -> f32 {
         near
     } else {
         0.1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::camera::{OrthographicProjection, PerspectiveProjection};
+
+    fn finite(near: f32, far: f32) -> DepthProjection {
+        let projection = Projection::Perspective(PerspectiveProjection {
+            near,
+            far,
+            ..Default::default()
+        });
+        let matrix = Mat4::perspective_rh(1.0, 1.0, far, near);
+        DepthProjection::new(&matrix, Some(&projection))
+    }
+
+    /// A matrix whose near plane is `plane` (normal into the view, distance), for an
+    /// infinite reversed depth.
+    fn mirror(plane: Vec4) -> Mat4 {
+        let mut rows = Mat4::perspective_infinite_reverse_rh(1.0, 1.5, 0.1).transpose();
+        rows.z_axis = rows.w_axis - plane / 1.6;
+        rows.transpose()
+    }
+
+    #[test]
+    fn only_another_meaning_of_raw_depth_is_another_projection() {
+        let oblique = |plane| DepthProjection::new(&mirror(plane), None);
+        let a = oblique(Vec4::new(0.1, 0.0, -1.0, -2.0));
+        let b = oblique(Vec4::new(0.0, 0.3, -0.9, -3.0));
+        assert_eq!(a.kind(), ProjectionKind::Oblique);
+        assert!(a.same_raw_depth(&b), "the plane moved");
+        for distance in [1e-3, 0.1, 7.0, 1e5] {
+            assert_eq!(a.raw_depth(distance), b.raw_depth(distance));
+            let back = a.distance(a.raw_depth(distance) as f32);
+            assert!((back / distance - 1.0).abs() < 1e-7, "{distance}: {back}");
+        }
+        assert!(!a.same_raw_depth(&finite(0.1, 50.0)));
+        assert!(finite(0.1, 50.0).same_raw_depth(&finite(0.1, 50.0)));
+        assert!(!finite(0.1, 50.0).same_raw_depth(&finite(0.1, 60.0)));
+        assert!(!finite(0.1, 50.0).same_raw_depth(&finite(0.2, 50.0)));
+        let orthographic = |far| {
+            let matrix = Mat4::orthographic_rh(-1.0, 1.0, -1.0, 1.0, far, 0.0);
+            DepthProjection::new(&matrix, None)
+        };
+        assert!(!orthographic(10.0).same_raw_depth(&orthographic(20.0)));
+        // The engine's perspective has no far plane.
+        let culled = |far| {
+            let projection = PerspectiveProjection {
+                far,
+                ..Default::default()
+            };
+            let matrix = Mat4::perspective_infinite_reverse_rh(1.0, 1.5, 0.1);
+            DepthProjection::new(&matrix, Some(&Projection::Perspective(projection)))
+        };
+        assert!(culled(10.0).same_raw_depth(&culled(20.0)));
+    }
+
+    #[test]
+    fn the_ends_of_a_fixed_range_are_at_finite_distances() {
+        let infinite = DepthProjection::new(
+            &Mat4::perspective_infinite_reverse_rh(1.0, 1.5, 1e-4),
+            Some(&Projection::Orthographic(
+                OrthographicProjection::default_3d(),
+            )),
+        );
+        for (projection, what) in [
+            (finite(0.1, 50.0), "finite"),
+            (infinite, "infinite"),
+            (
+                DepthProjection::new(&mirror(Vec4::new(0.1, 0.0, -1.0, -2.0)), None),
+                "oblique",
+            ),
+        ] {
+            for far in [10.0, 50.0, 1e6, 1e36] {
+                let map = DepthMap {
+                    mapping: DepthMapping::Fixed { near: 1.0, far },
+                    ..Default::default()
+                };
+                let frame = projection.frame(&map);
+                // The shader divides by this; a subnormal number may be flushed to 0.
+                let divisor = frame.far + frame.offset;
+                assert!(divisor >= f32::MIN_POSITIVE, "{what}, {far}: {divisor}");
+                assert!(frame.near > frame.far, "{what}, {far}");
+            }
+        }
     }
 }

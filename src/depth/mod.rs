@@ -1,6 +1,7 @@
 //! The service of the depth map: the range of visible depths, and the map that
 //! effects read distance from.
 
+pub(crate) mod follow;
 pub(crate) mod frame;
 mod ping_pong;
 pub(crate) mod plugin;
@@ -63,8 +64,8 @@ pub struct DepthMap {
     /// bit for bit. Default: [`ReductionMethod::Auto`].
     pub reduction: ReductionMethod,
     /// Smooths the visible range over time so that it does not flicker; `None`
-    /// uses the range of each single frame, as the paper does. In a view that never
-    /// changes, both are the same unless `outliers` is above 0.
+    /// uses the range of each single frame, as the paper does. In a view that does not
+    /// change for some seconds, both are the same unless `outliers` is above 0.
     /// Default: [`RangeSmoothing::default`]. Its benefit and its cost are measured
     /// in `docs/report`.
     pub smoothing: Option<RangeSmoothing>,
@@ -73,7 +74,8 @@ pub struct DepthMap {
     /// Default: `false`.
     ///
     /// If the camera has not seen any geometry yet, it holds the range of the first
-    /// frame that shows some. A change of its near or far plane takes a new range.
+    /// frame that shows some. A change of its near plane, or of the far plane of an
+    /// orthographic projection, takes a new range.
     /// The reduction still runs; [`DepthMapping::Fixed`] avoids it. Needs compute
     /// shaders.
     pub locked: bool,

@@ -23,12 +23,13 @@ use bevy::{
 
 use super::{
     CameraCut, DepthHistogram, DepthMap, VisibleDepthRange,
+    follow::SmoothingPipeline,
     ping_pong::PingPongPipeline,
     prepare::{RangeUniforms, ViewDepthRange, map_readbacks, prepare_view_ranges},
     range::RangePipeline,
     readback::{RangeReadings, receive_ranges},
     reduce::reduce_depth_range,
-    smoothing::{SmoothingPipeline, count_cut},
+    smoothing::count_cut,
 };
 use crate::schedule::{ComicsSystems, PrepareComics};
 
@@ -54,8 +55,8 @@ impl DepthPlugin {
         load_shader_library!(app, "view.wgsl");
         load_shader_library!(app, "window.wgsl");
         load_shader_library!(app, "normal.wgsl");
-        // Both an entry point and a library: `range.wgsl` imports its bins.
-        load_shader_library!(app, "smoothing.wgsl");
+        load_shader_library!(app, "histogram.wgsl");
+        embedded_asset!(app, "smoothing.wgsl");
         embedded_asset!(app, "range.wgsl");
         embedded_asset!(app, "ping_pong.wgsl");
 

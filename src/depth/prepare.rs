@@ -22,11 +22,11 @@ use bevy::{
 };
 
 use super::{
+    follow::{SmoothingUniform, ViewSmoothing},
     ping_pong::chain_textures,
     range::RangeView,
     readback::{RangeReadback, RangeReadings},
     request::{RangePasses, RangeRequest, Reduction},
-    smoothing::{SmoothingUniform, ViewSmoothing},
 };
 
 /// On a view in the render world: its visible range. It stays on the view, with the

@@ -131,6 +131,8 @@ pub(crate) struct RangeKey {
     pub multisampled: bool,
     pub oblique: bool,
     pub histogram: bool,
+    /// The histogram has the bins of an orthographic projection.
+    pub orthographic: bool,
 }
 
 impl SpecializedComputePipeline for RangePipeline {
@@ -151,6 +153,9 @@ impl SpecializedComputePipeline for RangePipeline {
         }
         if key.histogram {
             shader_defs.push("HISTOGRAM".into());
+        }
+        if key.orthographic {
+            shader_defs.push("ORTHOGRAPHIC".into());
         }
         ComputePipelineDescriptor {
             label: Some("comics_depth_range".into()),

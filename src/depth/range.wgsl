@@ -8,7 +8,7 @@
 
 #import bevy_comics::depth::raw::{RawDepth, raw_depth_key}
 #ifdef HISTOGRAM
-#import bevy_comics::depth::smoothing::bin_of
+#import bevy_comics::depth::histogram::{DepthWindow, depth_window, octave_bin, window_bin}
 #endif
 
 struct RangeView {
@@ -38,6 +38,8 @@ struct RangeKeys {
 struct Counts {
     bins: array<atomic<u32>, 256>,
     total: atomic<u32>,
+    window_near: u32,
+    window_far: u32,
 }
 
 @group(0) @binding(4) var<storage, read_write> counts: Counts;
@@ -47,6 +49,16 @@ struct Counts {
 var<private> run_bin: u32;
 var<private> run: u32;
 var<private> counted: u32;
+#ifdef ORTHOGRAPHIC
+var<private> window: DepthWindow;
+#endif
+
+// Must run before anything is counted.
+fn begin_count() {
+#ifdef ORTHOGRAPHIC
+    window = depth_window(vec2(counts.window_near, counts.window_far));
+#endif
+}
 
 // Adds the current run to its bin.
 fn end_run() {
@@ -66,7 +78,11 @@ fn count(bits: u32) {
     if bits == 0u {
         return;
     }
-    let bin = bin_of(bits);
+#ifdef ORTHOGRAPHIC
+    let bin = window_bin(window, bitcast<f32>(bits));
+#else
+    let bin = octave_bin(bits);
+#endif
     if bin != run_bin {
         end_run();
         run_bin = bin;
@@ -135,6 +151,9 @@ fn reduce(@builtin(global_invocation_id) id: vec3<u32>) {
     if y >= view.rect.w || start >= view.rect.z {
         return;
     }
+#ifdef HISTOGRAM
+    begin_count();
+#endif
     var found = vec2(0u);
     let end = min(start + STRIP, view.rect.z);
     for (var x = start; x < end; x += 2u) {
@@ -171,6 +190,7 @@ fn reduce(
 #endif
 ) {
 #ifdef HISTOGRAM
+    begin_count();
     atomicStore(&tile_bins[local], 0u);
     workgroupBarrier();
 #endif

@@ -9,21 +9,21 @@ struct RawDepth {
     view_w: vec4<f32>,
     // Normalised device coordinates of a position in pixels: xy * position + zw.
     ndc: vec4<f32>,
-    // Near distance in world units: near / z is in (0, 1].
-    near: f32,
+    // View depth in world units that becomes 1; smaller ones count as this.
+    nearest: f32,
 }
 
 #ifdef OBLIQUE
 // With an oblique near plane, raw depth does not order pixels by distance. The
 // reciprocal of the view depth z does, and like raw depth it is affine over a plane
-// on the screen: near / z takes the place of raw depth.
+// on the screen: nearest / z takes the place of raw depth.
 fn raw_depth(r: RawDepth, pixel: vec2<u32>, d: f32) -> f32 {
     if !(d > 0.0) {
         return 0.0;
     }
     let clip = vec4((vec2<f32>(pixel) + 0.5) * r.ndc.xy + r.ndc.zw, d, 1.0);
     let z = -dot(r.view_z, clip) / dot(r.view_w, clip);
-    return clamp(r.near / max(z, r.near), 0.0, 1.0);
+    return clamp(r.nearest / max(z, r.nearest), 0.0, 1.0);
 }
 #else
 fn raw_depth(r: RawDepth, pixel: vec2<u32>, d: f32) -> f32 {

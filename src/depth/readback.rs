@@ -22,7 +22,7 @@ use bevy::{
     },
 };
 
-use super::frame::DepthProjection;
+use super::{ProjectionKind, frame::DepthProjection};
 
 /// The view depths of the nearest and farthest visible geometry of a camera. Put it
 /// on the camera; its value is updated.
@@ -46,7 +46,7 @@ pub enum VisibleDepthRange {
         /// View depth of the farthest visible geometry in world units.
         far: f32,
         /// Raw reversed depth of the nearest geometry, as in the depth texture. Under
-        /// an oblique projection: distance of the near plane over view depth.
+        /// an oblique projection: 2^-14 world units over view depth.
         raw_near: f32,
         /// Raw reversed depth of the farthest geometry, as `raw_near`.
         raw_far: f32,
@@ -81,14 +81,20 @@ impl VisibleDepthRange {
 /// Put it on the camera; its value is updated.
 ///
 /// As with [`VisibleDepthRange`], the value is one or a few frames old, and the depth
-/// prepass and the reduction run for it. The counts are exact. Without compute
+/// prepass and the reduction run for it. The counts are exact up to rounding at the
+/// edges of the bins. Without compute
 /// shaders, or with
 /// [`ReductionMethod::PingPong`](crate::ReductionMethod::PingPong), it stays empty.
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct DepthHistogram {
-    /// Bins from near to far, without gaps; raw depth doubles over eight bins. Empty
-    /// if no geometry is visible or no value has arrived yet.
+    /// Bins from near to far, without gaps. Empty if no geometry is visible or no value
+    /// has arrived yet.
+    ///
+    /// In perspective, raw depth doubles over eight bins. Under an orthographic
+    /// projection, up to 256 bins divide the visible range of the frame before. They are
+    /// narrow at both ends and 0.8 % of that range in its middle; the outermost ones
+    /// reach to the nearest and the farthest depth.
     pub bins: Vec<DepthBin>,
     /// Near and far view depth in world units of the visible range after
     /// [`RangeSmoothing`](crate::RangeSmoothing).
@@ -100,8 +106,8 @@ pub struct DepthHistogram {
 pub struct DepthBin {
     /// View depth at the near end of the bin, in world units.
     pub near: f32,
-    /// View depth at the far end of the bin, in world units. The bin of the smallest
-    /// raw depths (about 2^-32) also counts what is farther away.
+    /// View depth at the far end of the bin, in world units. In perspective, the bin of
+    /// the smallest raw depths (about 2^-32) also counts what is farther away.
     pub far: f32,
     /// Number of visible depth samples in the bin: one per pixel, or one per sample
     /// with MSAA.
@@ -109,27 +115,55 @@ pub struct DepthBin {
 }
 
 impl DepthHistogram {
-    fn of_words(words: &[u32], projection: &DepthProjection) -> Self {
-        let (drawn, counts) = words.split_at(DRAWN_WORDS);
+    /// `keys` are those of the reduction; `words` the keys that are drawn, then
+    /// `Histogram` of `smoothing.wgsl`.
+    fn of_words(keys: [u32; 2], words: &[u32], projection: &DepthProjection) -> Self {
+        let (drawn, words) = words.split_at(DRAWN_WORDS);
         let drawn = VisibleDepthRange::of_keys([drawn[0], drawn[1]], projection).distances();
-        let counts = &counts[..BINS];
+        let (counts, rest) = words.split_at(BINS);
+        let window = [rest[1], rest[2]].map(f32::from_bits);
         let used = |count: &u32| *count > 0;
-        let bins = match (counts.iter().position(used), counts.iter().rposition(used)) {
-            (Some(first), Some(last)) => (first..=last)
-                .rev()
-                .map(|bin| {
-                    let edge = |bin: usize| f32::from_bits((bin as u32 + FIRST_BIN) << 20);
-                    DepthBin {
-                        near: projection.distance(edge(bin + 1)) as f32,
-                        far: projection.distance(edge(bin)) as f32,
-                        count: counts[bin],
-                    }
-                })
-                .collect(),
-            _ => Vec::new(),
+        let (Some(first), Some(last)) =
+            (counts.iter().position(used), counts.iter().rposition(used))
+        else {
+            return Self {
+                bins: Vec::new(),
+                drawn,
+            };
         };
+        let (near, far) = (
+            f32::from_bits(keys[0]),
+            f32::from_bits(keys[1].wrapping_neg()),
+        );
+        let edge = |bin: usize| match projection.kind() {
+            ProjectionKind::Orthographic if bin == first => far,
+            ProjectionKind::Orthographic if bin == last + 1 => near,
+            ProjectionKind::Orthographic => window_edge(window, bin).max(far).min(near),
+            _ => f32::from_bits((bin as u32 + FIRST_BIN) << 20),
+        };
+        let distance = |bin: usize| projection.distance(edge(bin)) as f32;
+        let bins = (first..=last)
+            .rev()
+            .map(|bin| DepthBin {
+                near: distance(bin + 1),
+                far: distance(bin),
+                count: counts[bin],
+            })
+            .collect();
         Self { bins, drawn }
     }
+}
+
+/// `window_edge` of `histogram.wgsl`: raw depth between `bin - 1` and `bin`.
+fn window_edge([near, far]: [f32; 2], bin: usize) -> f32 {
+    let far_half = bin <= BINS / 2;
+    let i = if far_half { bin } else { BINS - bin } as f64 * 2.0 / BINS as f64;
+    let from_end = 0.5 * i * i * (f64::from(near) - f64::from(far));
+    (if far_half {
+        f64::from(far) + from_end
+    } else {
+        f64::from(near) - from_end
+    }) as f32
 }
 
 /// The values of one copy.
@@ -166,7 +200,7 @@ const SLOTS: usize = 4;
 const KEYS_SIZE: u64 = 16;
 const DRAWN_SIZE: u64 = 16;
 const DRAWN_WORDS: usize = 4;
-/// `BINS` and `FIRST_BIN` of `smoothing.wgsl`.
+/// `BINS` and `FIRST_OCTAVE_BIN` of `histogram.wgsl`.
 const BINS: usize = 256;
 const FIRST_BIN: u32 = 761;
 
@@ -248,7 +282,7 @@ impl RangeReadback {
                         let reading = RangeReading {
                             range: VisibleDepthRange::of_keys(keys, &projection),
                             histogram: (!rest.is_empty())
-                                .then(|| DepthHistogram::of_words(rest, &projection)),
+                                .then(|| DepthHistogram::of_words(keys, rest, &projection)),
                         };
                         readings
                             .lock()
@@ -274,6 +308,73 @@ pub(crate) fn receive_ranges(
         if let (Ok(mut histogram), Some(reading)) = (histograms.get_mut(camera), reading.histogram)
         {
             histogram.set_if_neq(reading);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::{camera::OrthographicProjection, camera::Projection, math::Mat4};
+
+    use super::*;
+
+    /// The words that the GPU copies: drawn keys, counts, total, window.
+    fn words(counts: &[(usize, u32)], window: [f32; 2]) -> Vec<u32> {
+        let mut words = vec![0; DRAWN_WORDS + BINS];
+        for (bin, count) in counts {
+            words[DRAWN_WORDS + bin] = *count;
+        }
+        words.push(counts.iter().map(|(_, count)| count).sum());
+        words.extend(window.map(f32::to_bits));
+        words
+    }
+
+    fn keys(near: f32, far: f32) -> [u32; 2] {
+        [near.to_bits(), far.to_bits().wrapping_neg()]
+    }
+
+    #[test]
+    fn orthographic_bins_cover_what_is_visible_without_gaps() {
+        let orthographic = OrthographicProjection {
+            near: -10.0,
+            far: 1e5,
+            ..OrthographicProjection::default_3d()
+        };
+        let matrix = Mat4::orthographic_rh(-1.0, 1.0, -1.0, 1.0, 1e5, -10.0);
+        let projection =
+            DepthProjection::new(&matrix, Some(&Projection::Orthographic(orthographic)));
+        let raw = |distance: f64| projection.raw_depth(distance) as f32;
+        // The window is the range of the frame before; this one reaches beyond it.
+        let window = [raw(500.0), raw(600.0)];
+        let visible = [raw(490.0), raw(610.0)];
+        let read = |counts| {
+            DepthHistogram::of_words(
+                keys(visible[0], visible[1]),
+                &words(counts, window),
+                &projection,
+            )
+        };
+        for counts in [
+            &[(0, 3), (100, 7), (255, 1)][..],
+            &[(255, 11)],
+            &[(0, 11)],
+            &[(127, 4), (128, 5)],
+        ] {
+            let bins = read(counts).bins;
+            let ends = [bins[0].near, bins[bins.len() - 1].far];
+            // Raw depth has steps of 2^-24 of 1e5 units: 0.006.
+            assert!((ends[0] - 490.0).abs() < 0.01 && (ends[1] - 610.0).abs() < 0.01);
+            assert!(bins.windows(2).all(|b| b[0].far == b[1].near), "{bins:?}");
+            assert!(bins.iter().all(|b| b.near <= b.far), "{bins:?}");
+            let counted: u32 = bins.iter().map(|b| b.count).sum();
+            assert_eq!(counted, counts.iter().map(|(_, count)| count).sum::<u32>());
+        }
+        // Bin 100 lies 100^2 to 101^2 / 128^2 of half of the window from its far end.
+        let bins = read(&[(0, 3), (100, 7), (255, 1)]).bins;
+        let bin = bins.iter().find(|bin| bin.count == 7).expect("counted");
+        let at = |i: f64| 600.0 - 50.0 * i * i / 16384.0;
+        for (got, want) in [(bin.near, at(101.0)), (bin.far, at(100.0))] {
+            assert!((f64::from(got) - want).abs() < 0.01, "{got} for {want}");
         }
     }
 }

@@ -124,8 +124,8 @@ impl Frame<'_> {
         let histogram = range.histogram();
         let key = RangeKey {
             multisampled: range.request.samples > 1,
-            oblique: false,
             histogram: histogram.is_some(),
+            ..RangeKey::default()
         };
         let entry = |binding, resource| BindGroupEntry { binding, resource };
         let mut entries = vec![
@@ -149,8 +149,8 @@ impl Frame<'_> {
         let encoder = ctx.command_encoder();
         let span = diagnostics.time_span(encoder, "comics_depth_range");
         encoder.clear_buffer(&range.keys, 0, None);
-        if let Some(histogram) = histogram {
-            encoder.clear_buffer(histogram, 0, None);
+        if let Some(smoothing) = &range.smoothing {
+            smoothing.clear_histogram(encoder);
         }
         let (x, y) = shape.workgroups(range.request.rect);
         {

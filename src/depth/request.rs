@@ -18,10 +18,10 @@ use bevy::{
 
 use super::{
     DepthMap, ProjectionKind, RawDepth,
+    follow::SmoothingPipeline,
     frame::DepthProjection,
     ping_pong::PingPongPipeline,
     range::{RangeKey, RangePipeline, RangeShape},
-    smoothing::SmoothingPipeline,
 };
 
 /// On a view in the render world: a request for its visible range, written in every
@@ -99,10 +99,12 @@ impl RangePipelines<'_> {
         let has_compute = self.device.limits().max_compute_workgroup_size_x > 0;
         let follows = (request.smooths || request.histogram) && has_compute;
         let counts = follows && shape.is_some() && (request.histogram || request.has_outliers());
+        let kind = request.projection.kind();
         let key = RangeKey {
             multisampled: request.samples > 1,
-            oblique: request.projection.kind() == ProjectionKind::Oblique,
+            oblique: kind == ProjectionKind::Oblique,
             histogram: counts,
+            orthographic: counts && kind == ProjectionKind::Orthographic,
         };
         let reduction = match shape {
             Some(shape) => Reduction::Compute {

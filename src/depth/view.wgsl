@@ -6,7 +6,7 @@
 
 #import bevy_comics::depth::map::{DepthFrame, EMPTY, depth_map}
 #import bevy_comics::depth::raw::{RawDepth, raw_depth}
-#import bevy_comics::depth::window::{MISSING_E, MISSING_N, MISSING_S, MISSING_W, Window, gap_behind, map_steps, prewitt}
+#import bevy_comics::depth::window::{MISSING_E, MISSING_N, MISSING_S, MISSING_W, Window, window_slope}
 
 // Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
 struct View {
@@ -87,8 +87,10 @@ fn texel_depth(at: vec2<i32>, sample: i32) -> f32 {
 fn depth_frame() -> DepthFrame {
     var frame = view.depth;
 #ifdef VISIBLE_RANGE
-    frame.near = bitcast<f32>(range_keys.x);
-    frame.far = bitcast<f32>(0u - range_keys.y);
+    // The ends may be subnormal, which arithmetic flushes to 0: then the map would divide
+    // 0 by 0.
+    frame.near = max(bitcast<f32>(range_keys.x), 1.1754944e-38);
+    frame.far = max(bitcast<f32>(0u - range_keys.y), 1.1754944e-38);
     if range_keys.x == 0u {
         frame.flags |= EMPTY;
     }
@@ -134,9 +136,8 @@ fn load_window(pixel: vec2<i32>, reach: i32, sample: i32) -> Window {
     return win;
 }
 
-// Prewitt response of the depth map per pixel. It includes slopes. The sky counts as
-// the far end of the range.
+// Prewitt response of the depth map per pixel, see window_slope().
 fn map_slope(frame: DepthFrame, pixel: vec2<i32>) -> f32 {
-    return prewitt(map_steps(frame, gap_behind(frame, 0.0), load_window(pixel, 1, 0)));
+    return window_slope(frame, load_window(pixel, 1, 0));
 }
 #endif

@@ -2,7 +2,7 @@
 
 // Differences of the depth map in a window of 3 x 3 depths. Pure functions.
 
-#import bevy_comics::depth::map::{DepthFrame, depth_step, is_background, spread_divisor}
+#import bevy_comics::depth::map::{DepthFrame, EMPTY, depth_step, has, is_background, spread_divisor}
 
 // Raw depths around a pixel, row by row. Where a side is outside of the viewport, its
 // bit of `missing` is set and its depths are those of the viewport's border.
@@ -59,6 +59,15 @@ fn map_steps(f: DepthFrame, gap: f32, win: Window) -> Steps {
 // Length of the Prewitt gradient.
 fn prewitt(s: Steps) -> f32 {
     return length(vec2((s.ne + s.e + s.se) - (s.nw + s.w + s.sw), (s.sw + s.s + s.se) - (s.nw + s.n + s.ne)));
+}
+
+// Prewitt response of the depth map in a window. It includes slopes. The sky counts as
+// the far end of the range. A view without geometry has no range, and no slope.
+fn window_slope(f: DepthFrame, win: Window) -> f32 {
+    if has(f, EMPTY) {
+        return 0.0;
+    }
+    return prewitt(map_steps(f, gap_behind(f, 0.0), win));
 }
 
 // The largest raw depth of a window, which is that of the nearest geometry.

@@ -135,6 +135,41 @@ fn is_logarithmic(bins: &[DepthBin]) -> bool {
     bins.iter().all(|bin| bin.near > 0.0 && bin.far.is_finite())
 }
 
+/// Columns of a chart.
+const COLUMNS: usize = 64;
+
+/// Equally wide columns of the chart: left and right end on the axis, percentage of the
+/// samples. Bins differ in width, and a bin's height would say nothing of how many
+/// samples lie at a distance. `place` is the position of a distance on the axis.
+fn columns(bins: &[DepthBin], place: impl Fn(f32) -> f64) -> Vec<[f64; 3]> {
+    let (Some(first), Some(last)) = (bins.first(), bins.last()) else {
+        return Vec::new();
+    };
+    let (start, end) = (place(first.near), place(last.far));
+    let width = ((end - start) / COLUMNS as f64).max(1e-9);
+    let total: f64 = bins.iter().map(|bin| f64::from(bin.count)).sum();
+    let mut columns: Vec<[f64; 3]> = (0..COLUMNS)
+        .map(|i| [i, i + 1].map(|i| start + width * i as f64))
+        .map(|[left, right]| [left, right, 0.0])
+        .collect();
+    for bin in bins {
+        let percent = 100.0 * f64::from(bin.count) / total.max(1.0);
+        let (near, far) = (place(bin.near), place(bin.far));
+        let column = |at: f64| (((at - start) / width) as usize).min(COLUMNS - 1);
+        let (from, to) = (column(near), column(far));
+        for column in &mut columns[from..=to] {
+            let inside = far.min(column[1]) - near.max(column[0]);
+            let part = inside / (far - near);
+            column[2] += if from == to {
+                percent
+            } else {
+                percent * part.clamp(0.0, 1.0)
+            };
+        }
+    }
+    columns
+}
+
 /// The chart of the histogram.
 fn plot(ui: &mut Ui, histogram: &DepthHistogram, widgets: &mut Widgets) {
     if histogram.bins.is_empty() {
@@ -150,17 +185,10 @@ fn plot(ui: &mut Ui, histogram: &DepthHistogram, widgets: &mut Widgets) {
             distance.clamp(-1e9, 1e9)
         }
     };
-    let total: f64 = histogram.bins.iter().map(|bin| f64::from(bin.count)).sum();
-    let bars = histogram
-        .bins
-        .iter()
-        .map(|bin| {
-            let (near, far) = (place(bin.near), place(bin.far));
-            Bar::new(
-                0.5 * (near + far),
-                100.0 * f64::from(bin.count) / total.max(1.0),
-            )
-            .width((far - near).abs().max(1e-9))
+    let bars = columns(&histogram.bins, place)
+        .into_iter()
+        .map(|[left, right, percent]| {
+            Bar::new(0.5 * (left + right), percent).width((right - left).max(1e-9))
         })
         .collect();
     let distance = move |x: f64| if logarithmic { 10f64.powf(x) } else { x };
@@ -174,7 +202,8 @@ fn plot(ui: &mut Ui, histogram: &DepthHistogram, widgets: &mut Widgets) {
         .y_axis_formatter(|mark, _| format!("{:.0} %", mark.value))
         .show(ui, |plot| {
             plot.bar_chart(
-                BarChart::new("fraction of the pixels", bars).color(Color32::LIGHT_BLUE),
+                BarChart::new("fraction of the pixels, in 64 columns", bars)
+                    .color(Color32::LIGHT_BLUE),
             );
             if let Some((near, far)) = histogram.drawn {
                 for (name, at) in [("nearest", near), ("farthest", far)] {
@@ -238,5 +267,33 @@ pub fn leave(world: &mut World) {
         .collect();
     for camera in cameras {
         unprobe(world, camera);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_equally_wide_and_lose_no_sample() {
+        // A narrow bin with half of the samples, then wide ones.
+        let bins = [(0.0, 0.001, 50), (0.001, 30.0, 30), (30.0, 64.0, 20)]
+            .map(|(near, far, count)| DepthBin { near, far, count });
+        let columns = columns(&bins, f64::from);
+        let percent = |range: std::ops::Range<usize>| {
+            columns[range].iter().map(|column| column[2]).sum::<f64>()
+        };
+        assert!((percent(0..64) - 100.0).abs() < 1e-3, "{}", percent(0..64));
+        assert!((percent(0..1) - 51.0).abs() < 0.01, "{:?}", columns[0]);
+        assert!((percent(1..30) - 29.0).abs() < 0.01, "{}", percent(1..30));
+        assert!(columns.iter().all(|[a, b, _]| (b - a - 1.0).abs() < 1e-9));
+        // All geometry at one distance.
+        let wall = [DepthBin {
+            near: 7.0,
+            far: 7.0,
+            count: 3,
+        }];
+        let columns = super::columns(&wall, f64::from);
+        assert!((columns.iter().map(|c| c[2]).sum::<f64>() - 100.0).abs() < 1e-9);
     }
 }

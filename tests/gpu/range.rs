@@ -9,23 +9,24 @@ use proptest::{
 
 use bevy_comics_testkit::{
     device::gpu,
-    reference::{ping_pong, range, smoothing},
+    reference::{histogram::Bins, ping_pong, range},
     wgsl,
 };
 
-const SHAPES: [&[&str]; 3] = [&["BARRIER_FREE"], &["SUBGROUP"], &[]];
+pub const SHAPES: [&[&str]; 3] = [&["BARRIER_FREE"], &["SUBGROUP"], &[]];
 
 /// Runs a shape of `range.wgsl` over a table of depths.
 fn reduce(shape: &[&str], depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Option<[u32; 2]> {
-    reduce_and_count(shape, depths, size, rect).0
+    reduce_and_count(shape, depths, (size, rect), [0.0; 2]).0
 }
 
-/// The same; with `HISTOGRAM`, bins and total as well.
-fn reduce_and_count(
+/// The same; with `HISTOGRAM`, bins and total as well. `window`: raw depths (near, far)
+/// that the bins of an orthographic view divide.
+pub fn reduce_and_count(
     shape: &[&str],
     depths: &[f32],
-    size: [u32; 2],
-    rect: [u32; 4],
+    (size, rect): ([u32; 2], [u32; 4]),
+    window: [f32; 2],
 ) -> (Option<[u32; 2]>, Vec<u32>) {
     let gpu = gpu();
     let counts = shape.contains(&"HISTOGRAM");
@@ -125,8 +126,12 @@ fn reduce_and_count(
         &[0; 16],
         wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
     );
+    let mut counts_before = [0u8; 1040];
+    for (i, end) in window.iter().enumerate() {
+        counts_before[1028 + 4 * i..][..4].copy_from_slice(&end.to_le_bytes());
+    }
     let histogram = gpu.buffer(
-        &[0; 1040],
+        &counts_before,
         wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
     );
     let sampler = gpu
@@ -289,10 +294,10 @@ fn every_shape_counts_every_depth_once() {
             let inside = (rect[1]..rect[1] + rect[3])
                 .flat_map(|y| (rect[0]..rect[0] + rect[2]).map(move |x| (x, y)))
                 .map(|(x, y)| depths[(y * size[0] + x) as usize]);
-            let (bins, total) = smoothing::histogram(inside);
+            let (bins, total) = Bins::Octaves.count(inside);
             for shape in SHAPES {
                 let defs: Vec<&str> = shape.iter().copied().chain(["HISTOGRAM"]).collect();
-                let (range, counted) = reduce_and_count(&defs, &depths, size, rect);
+                let (range, counted) = reduce_and_count(&defs, &depths, (size, rect), [0.0; 2]);
                 let what = format!("{shape:?} on {size:?}, {rect:?}");
                 assert_eq!(range, expected(&depths, size, rect), "{what}");
                 assert_eq!(counted[..256], bins, "{what}");

@@ -5,7 +5,7 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{ComicsStage, DepthMap, ReductionMethod, VisibleDepthRange};
+use bevy_comics::{ComicsStage, DepthMap, DepthMapping, ReductionMethod, VisibleDepthRange};
 
 use bevy_comics_testkit::{headless, reference::range};
 
@@ -236,5 +236,43 @@ fn an_empty_and_a_transparent_view_have_an_empty_range_and_a_defined_picture() {
     assert!(small.ran(ComicsStage::Stylize));
     let (_, output) = small.pass();
     assert!(output.pixels.iter().flatten().all(|c| c.is_finite()));
+    assert_eq!(small.errors(), 0);
+}
+
+/// The slope of the depth map where there is nothing: no ink, and no NaN.
+#[test]
+fn the_sky_has_no_slope() {
+    let flats = bevy_comics::BlackFlats {
+        slope: Some(0.02),
+        value: None,
+        ..default()
+    };
+    let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
+    small.clear();
+    for mapping in [
+        DepthMapping::MinMax,
+        DepthMapping::MinMaxLogarithmic,
+        DepthMapping::Fixed {
+            near: 1.0,
+            far: 1e36,
+        },
+    ] {
+        for (name, projection) in [
+            ("infinite", Projection::default()),
+            (
+                "finite",
+                Projection::custom(Finite(PerspectiveProjection::default())),
+            ),
+        ] {
+            let map = DepthMap {
+                mapping,
+                ..default()
+            };
+            small.insert((flats, map, projection)).settle();
+            assert!(small.ran(ComicsStage::Stylize), "{mapping:?}, {name}");
+            let (input, output) = small.pass();
+            assert_eq!(input, output, "{mapping:?}, {name}");
+        }
+    }
     assert_eq!(small.errors(), 0);
 }

@@ -360,7 +360,7 @@ fn every_debug_view_composes_and_validates() {
 fn every_shape_of_the_reduction_composes_and_validates() {
     let source = shader("depth/range.wgsl");
     for shape in [&[][..], &["BARRIER_FREE"], &["SUBGROUP"]] {
-        for view in subsets(&["MULTISAMPLED", "OBLIQUE", "HISTOGRAM"]) {
+        for view in subsets(&["MULTISAMPLED", "OBLIQUE", "HISTOGRAM", "ORTHOGRAPHIC"]) {
             let defs: Vec<_> = shape.iter().chain(&view).copied().collect();
             module(&source, &defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
         }

@@ -4,25 +4,28 @@ use std::sync::OnceLock;
 
 use bevy_comics_testkit::{
     device::gpu,
-    reference::smoothing::{self, Range, Smoothing},
+    reference::{
+        histogram::Bins,
+        smoothing::{LONGEST_WATCHED, Range, SETTLE, Smoothing},
+    },
     scenes::noise::Random,
     wgsl,
 };
 
 const ORTHOGRAPHIC: u32 = 1;
-const SNAP: u32 = 2;
-const HOLD: u32 = 4;
+pub const SNAP: u32 = 2;
+pub const HOLD: u32 = 4;
 const DESPIKE: u32 = 8;
 
 /// One frame: the range found (near, far), its duration, the settings.
-#[derive(Clone, Copy, Debug)]
-struct Frame {
-    found: Option<[f32; 2]>,
-    seconds: f64,
-    flags: u32,
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    pub found: Option<[f32; 2]>,
+    pub seconds: f64,
+    pub flags: u32,
 }
 
-fn frame(near: f32, far: f32, seconds: f64) -> Frame {
+pub fn frame(near: f32, far: f32, seconds: f64) -> Frame {
     Frame {
         found: Some([near, far]),
         seconds,
@@ -72,15 +75,42 @@ fn way(seconds: f64, constant: f64) -> f32 {
     }
 }
 
+/// The words of the uniform `Smoothing`.
+fn uniform(s: &Smoothing, frame: &Frame, outliers: f32) -> [u32; 8] {
+    let flags = frame.flags
+        | if s.despike { DESPIKE } else { 0 }
+        | if s.offset.is_none() { ORTHOGRAPHIC } else { 0 };
+    let floats = [
+        s.offset.unwrap_or(0.0) as f32,
+        outliers,
+        s.hysteresis as f32,
+        way(frame.seconds, s.expand),
+        way(frame.seconds, s.shrink),
+        way(frame.seconds, SETTLE),
+        frame.seconds.min(LONGEST_WATCHED) as f32,
+    ];
+    let mut words = [flags; 8];
+    for (word, float) in words.iter_mut().zip(floats) {
+        *word = float.to_bits();
+    }
+    words
+}
+
+/// What the percentiles of every frame are taken from: the fraction, the counts, their
+/// total, and the window of an orthographic view.
+#[derive(Clone, Copy)]
+pub struct Outliers<'a> {
+    pub fraction: f32,
+    pub bins: &'a [u32],
+    pub total: u32,
+    pub window: [f32; 2],
+}
+
 /// Bits of the (near, far) used in each frame.
-fn run(
-    s: &Smoothing,
-    frames: &[Frame],
-    outliers: Option<(f32, &[u32], u32)>,
-) -> Vec<Option<[u32; 2]>> {
+pub fn run(s: &Smoothing, frames: &[Frame], outliers: Option<Outliers>) -> Vec<Option<[u32; 2]>> {
     let gpu = gpu();
     let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
-    let state = gpu.buffer(&[0; 64], usage);
+    let state = gpu.buffer(&[0; 96], usage);
     let drawn = gpu.buffer(&[0; 16], usage);
     let all = gpu.buffer(&vec![0; frames.len() * 16], usage);
     let pipeline = match outliers {
@@ -88,50 +118,44 @@ fn run(
         None => &follow().pipeline,
     };
     let layout = pipeline.get_bind_group_layout(0);
-    let histogram = outliers.map(|(_, bins, total)| {
-        let mut table = bins.to_vec();
-        table.push(total);
+    let histogram = outliers.map(|outliers| {
+        let mut table = outliers.bins.to_vec();
+        table.push(outliers.total);
+        table.extend(outliers.window.map(f32::to_bits));
         gpu.buffer(&words(&table), wgpu::BufferUsages::STORAGE)
     });
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    let mut group: Option<(Frame, wgpu::BindGroup)> = None;
     for (i, frame) in frames.iter().enumerate() {
-        let flags = frame.flags
-            | if s.despike { DESPIKE } else { 0 }
-            | if s.offset.is_none() { ORTHOGRAPHIC } else { 0 };
-        let floats = [
-            s.offset.unwrap_or(0.0) as f32,
-            outliers.map_or(0.0, |(fraction, _, _)| fraction),
-            s.hysteresis as f32,
-            way(frame.seconds, s.expand),
-            way(frame.seconds, s.shrink),
-        ];
-        let mut uniform: Vec<u32> = floats.iter().map(|f| f.to_bits()).collect();
-        uniform.extend([flags, 0, 0]);
-        let uniform = gpu.buffer(&words(&uniform), wgpu::BufferUsages::UNIFORM);
-        let keys = frame.found.map_or([0; 4], |[near, far]| {
-            [near.to_bits(), far.to_bits().wrapping_neg(), 0, 0]
-        });
-        let found = gpu.buffer(&words(&keys), wgpu::BufferUsages::STORAGE);
-        let buffers = [&uniform, &found, &state, &drawn];
-        let mut entries: Vec<_> = buffers
-            .into_iter()
-            .chain(&histogram)
-            .enumerate()
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding: binding as u32,
-                resource: buffer.as_entire_binding(),
-            })
-            .collect();
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: None,
-            layout: &layout,
-            entries: &entries,
-        });
-        entries.clear();
+        // Equal frames share their buffers.
+        let shared = group.take().filter(|(before, _)| before == frame);
+        let (_, bind_group) = group.insert(shared.unwrap_or_else(|| {
+            let floats = uniform(s, frame, outliers.map_or(0.0, |outliers| outliers.fraction));
+            let keys = frame.found.map_or([0; 4], |[near, far]| {
+                [near.to_bits(), far.to_bits().wrapping_neg(), 0, 0]
+            });
+            let uniform = gpu.buffer(&words(&floats), wgpu::BufferUsages::UNIFORM);
+            let found = gpu.buffer(&words(&keys), wgpu::BufferUsages::STORAGE);
+            let entries: Vec<_> = [&uniform, &found, &state, &drawn]
+                .into_iter()
+                .chain(&histogram)
+                .enumerate()
+                .map(|(binding, buffer)| wgpu::BindGroupEntry {
+                    binding: binding as u32,
+                    resource: buffer.as_entire_binding(),
+                })
+                .collect();
+            let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: None,
+                layout: &layout,
+                entries: &entries,
+            });
+            (*frame, group)
+        }));
         {
             let mut pass = encoder.begin_compute_pass(&Default::default());
             pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &group, &[]);
+            pass.set_bind_group(0, bind_group, &[]);
             pass.dispatch_workgroups(1, 1, 1);
         }
         encoder.copy_buffer_to_buffer(&drawn, 0, &all, i as u64 * 16, 16);
@@ -148,14 +172,14 @@ fn run(
 }
 
 /// The (near, far) used in each frame.
-fn depths(s: &Smoothing, frames: &[Frame]) -> Vec<[f32; 2]> {
+pub fn depths(s: &Smoothing, frames: &[Frame]) -> Vec<[f32; 2]> {
     run(s, frames, None)
         .into_iter()
         .map(|bits| bits.expect("geometry").map(f32::from_bits))
         .collect()
 }
 
-const DEFAULT: Smoothing = Smoothing {
+pub const DEFAULT: Smoothing = Smoothing {
     offset: Some(0.0),
     despike: true,
     hysteresis: 0.07,
@@ -164,13 +188,13 @@ const DEFAULT: Smoothing = Smoothing {
 };
 
 /// Only the exponential, without hysteresis.
-const SMOOTH: Smoothing = Smoothing {
+pub const SMOOTH: Smoothing = Smoothing {
     despike: false,
     hysteresis: 0.0,
     ..DEFAULT
 };
 
-fn octaves(a: f32, b: f32) -> f64 {
+pub fn octaves(a: f32, b: f32) -> f64 {
     (f64::from(a) / f64::from(b)).log2()
 }
 
@@ -188,10 +212,14 @@ fn random_views_are_followed_as_the_twin_does() {
                     shrink: 0.7,
                 };
                 let mut ends = [0.5f32, 1e-3];
-                let frames: Vec<Frame> = (0..120)
+                // Two bursts of changes, then quiet long enough to settle.
+                let frames: Vec<Frame> = (0..700)
                     .map(|i| {
+                        let quiet = i % 350 > 80;
                         for end in &mut ends {
                             *end = match random.unit() {
+                                x if quiet && x < 0.1 => *end * (1.0 - 1e-5 * random.unit()),
+                                _ if quiet => *end,
                                 x if x < 0.1 => {
                                     (*end * (random.unit() * 6.0 - 3.0).exp2()).min(1.0)
                                 }
@@ -204,8 +232,9 @@ fn random_views_are_followed_as_the_twin_does() {
                         let (near, far) = (ends[0].max(ends[1]), ends[0].min(ends[1]));
                         Frame {
                             found: (random.unit() > 0.05).then_some([near, far]),
-                            seconds: f64::from(random.unit()) * 0.05,
-                            flags: if i % 50 == 49 { SNAP } else { 0 },
+                            // Sums of these are exact in single precision.
+                            seconds: f64::from((random.unit() * 50.0).round()) / 1024.0,
+                            flags: if i == 49 || i == 99 { SNAP } else { 0 },
                         }
                     })
                     .collect();
@@ -437,17 +466,27 @@ fn percentiles_are_the_twins_and_grow_with_the_area() {
                 for d in table.iter_mut().take(intruders) {
                     *d = 0.97;
                 }
-                let (bins, total) = smoothing::histogram(table.iter().copied());
+                let (bins, total) = Bins::Octaves.count(table.iter().copied());
                 let ends = [
                     table.iter().copied().fold(0.0, f32::max),
                     table.iter().copied().fold(1.0, f32::min),
                 ];
                 let found = [frame(ends[0], ends[1], 0.0)];
-                let got = run(&SMOOTH, &found, Some((fraction, &bins, total)))[0]
+                let outliers = Outliers {
+                    fraction,
+                    bins: &bins,
+                    total,
+                    window: [0.0; 2],
+                };
+                let got = run(&SMOOTH, &found, Some(outliers))[0]
                     .expect("geometry")
                     .map(f32::from_bits);
-                let want =
-                    smoothing::percentiles(&bins, total, f64::from(fraction), ends.map(f64::from));
+                let want = Bins::Octaves.percentiles(
+                    &bins,
+                    total,
+                    f64::from(fraction),
+                    ends.map(f64::from),
+                );
                 for (got, want) in got.iter().zip(want) {
                     let apart = (f64::from(*got) / want - 1.0).abs();
                     assert!(apart < 1e-5, "{fraction}, {intruders}: {got} for {want}");
@@ -476,11 +515,16 @@ fn percentiles_are_the_twins_and_grow_with_the_area() {
 
 #[test]
 fn a_flat_wall_keeps_its_exact_depth_under_percentiles() {
-    let (bins, total) = smoothing::histogram(vec![0.123f32; 500]);
+    let (bins, total) = Bins::Octaves.count(vec![0.123f32; 500]);
     let drawn = run(
         &DEFAULT,
         &[frame(0.123, 0.123, 0.0)],
-        Some((0.005, &bins, total)),
+        Some(Outliers {
+            fraction: 0.005,
+            bins: &bins,
+            total,
+            window: [0.0; 2],
+        }),
     );
     assert_eq!(drawn[0], Some([0.123f32.to_bits(); 2]));
 }

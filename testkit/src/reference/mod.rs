@@ -12,6 +12,7 @@ pub mod faithful;
 pub mod find;
 pub mod finish;
 pub mod fused;
+pub mod histogram;
 pub mod light;
 pub mod map;
 pub mod noise;

@@ -1,66 +1,12 @@
-//! Twin of `depth/smoothing.wgsl` and of the histogram of `depth/range.wgsl`.
+//! Twin of `depth/smoothing.wgsl`.
 
-/// Number of bins: eight per octave of raw depth. The last one counts depth 1
-/// alone, the first one also all smaller depths.
-pub const BINS: usize = 256;
-
-/// The bin of a raw depth: its octave, and the eighth of the octave.
-pub fn bin_of(d: f32) -> usize {
-    let d = f64::from(d);
-    let octave = d.log2().floor();
-    let eighth = ((d / octave.exp2() - 1.0) * 8.0).floor();
-    // Bin 255 begins at depth 1.
-    (255.0 + octave * 8.0 + eighth).clamp(0.0, 255.0) as usize
-}
-
-/// Raw depth at the far end of a bin.
-pub fn bin_start(bin: usize) -> f64 {
-    let eighths = bin as f64 - 255.0;
-    let octave = (eighths / 8.0).floor();
-    octave.exp2() * (1.0 + (eighths - 8.0 * octave) / 8.0)
-}
-
-/// (count of each bin, total count) of the raw depths that are geometry.
-pub fn histogram(depths: impl IntoIterator<Item = f32>) -> (Vec<u32>, u32) {
-    let mut bins = vec![0; BINS];
-    let mut total = 0;
-    for d in depths {
-        if super::raw::key(d) != 0 {
-            bins[bin_of(d)] += 1;
-            total += 1;
-        }
-    }
-    (bins, total)
-}
-
-/// (near, far) raw depth such that `fraction` of the counted pixels is nearer than
-/// the one and `fraction` is farther than the other. `ends`: the range without
-/// percentiles, to which the result is clamped.
-pub fn percentiles(bins: &[u32], total: u32, fraction: f64, ends: [f64; 2]) -> [f64; 2] {
-    let rank = fraction * f64::from(total);
-    let find = |order: &mut dyn Iterator<Item = usize>, nearer: bool| {
-        let mut passed = 0.0;
-        for bin in order {
-            let count = f64::from(bins[bin]);
-            if passed + count > rank {
-                let part = (rank - passed) / count;
-                let (low, high) = (bin_start(bin), bin_start(bin + 1));
-                return if nearer {
-                    high - part * (high - low)
-                } else {
-                    low + part * (high - low)
-                };
-            }
-            passed += count;
-        }
-        panic!("no pixel is left beyond the fraction {fraction}");
-    };
-    let [near, far] = ends;
-    [
-        find(&mut (0..BINS).rev(), true).clamp(far, near),
-        find(&mut (0..BINS), false).clamp(far, near),
-    ]
-}
+/// An end that rests beside everything that was found for this time, in seconds, begins
+/// to settle.
+pub const WATCH: f64 = 4.0;
+/// Time constant in seconds with which it settles.
+pub const SETTLE: f64 = 2.0;
+/// A longer frame, in seconds, counts as one of this length for [`WATCH`].
+pub const LONGEST_WATCHED: f64 = 0.1;
 
 /// Settings, as in `RangeSmoothing`.
 #[derive(Clone, Copy, Debug)]
@@ -96,54 +42,117 @@ impl Smoothing {
     }
 }
 
+/// What the goal of a bound does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Mode {
+    /// It stays within the hysteresis.
+    Rests,
+    /// It is what is found.
+    Follows,
+    /// It stays, and the bound moves to it slowly.
+    Settles,
+}
+
 /// One end of the range, in levels.
 #[derive(Clone, Debug)]
 struct Bound {
     level: f64,
-    goal: f64,
-    /// Whether the goal follows what is found.
-    moving: bool,
-    /// What was found one and two frames ago.
-    seen: [f64; 2],
+    /// Raw depth of the goal.
+    goal: f32,
+    mode: Mode,
+    /// Raw depths that were found one and two frames ago.
+    seen: [f32; 2],
+    /// Raw depths that were found since the bound is watched, smallest and largest, and
+    /// the seconds since then.
+    watched: ([f32; 2], f64),
+}
+
+/// The depth halfway between two, among all single-precision numbers.
+fn middle(low: f32, high: f32) -> f32 {
+    f32::from_bits(low.to_bits() + (high.to_bits() - low.to_bits()) / 2)
+}
+
+/// What a frame does to a bound.
+struct Frame {
+    found: f32,
+    /// In levels.
+    hysteresis: f64,
+    seconds: f64,
+    /// Whether a larger level widens the range.
+    nearest: bool,
 }
 
 impl Bound {
-    fn new(level: f64) -> Self {
+    fn new(d: f32, s: &Smoothing) -> Self {
         Self {
-            level,
-            goal: level,
-            moving: false,
-            seen: [level; 2],
+            level: s.level(f64::from(d)),
+            goal: d,
+            mode: Mode::Rests,
+            seen: [d; 2],
+            watched: ([d; 2], 0.0),
         }
     }
 
-    /// Advances by one frame. `fraction`: the part of the remaining difference (its
-    /// argument, signed) that is made up in this frame.
-    fn follow(
-        &mut self,
-        found: f64,
-        hysteresis: f64,
-        fraction: impl Fn(f64) -> f64,
-        s: &Smoothing,
-    ) {
-        let [before, earlier] = self.seen;
-        let mut three = [found, before, earlier];
-        three.sort_by(f64::total_cmp);
-        let at = if s.despike { three[1] } else { found };
-        self.seen = [found, before];
-        self.moving |= (at - self.goal).abs() > hysteresis;
-        if self.moving {
+    /// Chooses the goal.
+    fn aim(&mut self, at: f32, frame: &Frame, s: &Smoothing) {
+        let level = |d: f32| s.level(f64::from(d));
+        if (level(at) - level(self.goal)).abs() > frame.hysteresis {
+            self.mode = Mode::Follows;
+        }
+        if self.mode == Mode::Follows {
             self.goal = at;
+            self.watched = ([at; 2], 0.0);
+            return;
         }
-        let left = self.goal - self.level;
-        self.level += fraction(left) * left;
-        let left = (self.goal - self.level).abs();
-        if left <= hysteresis / 4.0 {
-            self.moving = false;
+        let ([low, high], seconds) = self.watched;
+        let (low, high) = (low.min(at), high.max(at));
+        let seconds = seconds + frame.seconds.min(LONGEST_WATCHED);
+        if seconds < WATCH {
+            self.watched = ([low, high], seconds);
+            return;
         }
-        let settled = if s.offset.is_some() { 1.0 } else { hysteresis };
-        if left <= 0.00025 * settled {
-            self.level = self.goal;
+        if self.goal < low || self.goal > high {
+            self.goal = middle(low, high);
+            self.mode = Mode::Settles;
+        }
+        self.watched = ([at; 2], 0.0);
+    }
+
+    /// Advances by one frame.
+    fn follow(&mut self, frame: &Frame, s: &Smoothing) {
+        let [before, earlier] = self.seen;
+        let mut three = [frame.found, before, earlier];
+        three.sort_by(f32::total_cmp);
+        let at = if s.despike { three[1] } else { frame.found };
+        self.seen = [frame.found, before];
+        self.aim(at, frame, s);
+
+        let goal = s.level(f64::from(self.goal));
+        let grows = (goal > self.level) == frame.nearest;
+        let mut constant = if grows { s.expand } else { s.shrink };
+        if self.mode == Mode::Settles {
+            constant = constant.max(SETTLE);
+        }
+        let kept = if constant > 0.0 {
+            (-frame.seconds / constant).exp()
+        } else {
+            0.0
+        };
+        let left = kept * (goal - self.level);
+        self.level = goal - left;
+        if self.mode == Mode::Follows && left.abs() <= frame.hysteresis / 4.0 {
+            self.mode = Mode::Rests;
+        }
+        let settled = if s.offset.is_some() {
+            1.0
+        } else {
+            frame.hysteresis
+        };
+        if left.abs() <= 0.00025 * settled {
+            self.level = goal;
+            if self.mode == Mode::Settles {
+                self.mode = Mode::Rests;
+            }
         }
     }
 }
@@ -165,25 +174,25 @@ impl Range {
         seconds: f64,
         snap: bool,
     ) -> Option<[f64; 2]> {
-        let [near, far] = found?.map(|d| s.level(d));
+        let [near, far] = found?.map(|d| d as f32);
         match &mut self.ends {
             Some([n, f]) if !snap => {
+                let goals = [n.goal, f.goal].map(|d| s.level(f64::from(d)));
                 let hysteresis = match s.offset {
                     Some(_) => s.hysteresis,
-                    None => s.hysteresis * (n.goal - f.goal).abs(),
+                    None => s.hysteresis * (goals[0] - goals[1]).abs(),
                 };
-                let fraction = |grows: bool| {
-                    let constant = if grows { s.expand } else { s.shrink };
-                    if constant > 0.0 {
-                        1.0 - (-seconds / constant).exp()
-                    } else {
-                        1.0
-                    }
-                };
-                n.follow(near, hysteresis, |left| fraction(left > 0.0), s);
-                f.follow(far, hysteresis, |left| fraction(left < 0.0), s);
+                for (bound, found, nearest) in [(n, near, true), (f, far, false)] {
+                    let frame = Frame {
+                        found,
+                        hysteresis,
+                        seconds,
+                        nearest,
+                    };
+                    bound.follow(&frame, s);
+                }
             }
-            ends => *ends = Some([Bound::new(near), Bound::new(far)]),
+            ends => *ends = Some([Bound::new(near, s), Bound::new(far, s)]),
         }
         let [n, f] = self.ends.as_ref()?;
         let near = s.depth(n.level);

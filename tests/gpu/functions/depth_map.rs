@@ -288,3 +288,33 @@ fn one_depth_without_a_floor_is_a_flat_wall_and_no_number_is_lost() {
         }
     }
 }
+
+/// In a view without geometry there is no range, and the slope of the map is 0. The
+/// window of the sky is 0 there, and so are the keys of the range.
+#[test]
+fn a_view_without_geometry_has_no_slope() {
+    let rows: Vec<MapRow> = [0.0f32, 1e-3]
+        .into_iter()
+        .flat_map(|offset| {
+            [4.0, 5.0, 6.0, 7.0].map(|flags| {
+                let floor = 1.0 / 16384.0;
+                [0.0, 0.0, offset, floor, 10.0, 10.0, 0.05, flags, 0.0, 0.0]
+            })
+        })
+        .collect();
+    let results = gpu().evaluate(
+        "#import bevy_comics::depth::map::DepthFrame
+         #import bevy_comics::depth::window::{Window, window_slope}
+         #import bevy_comics::effects::black_flats::{BlackFlats, steep_area}",
+        &format!(
+            "{FRAME} let d = i(8u); let w = Window(d, d, d, d, d, d, d, d, d, 0u);
+             var s: BlackFlats; s.slope_low = 0.018; s.slope_high = 0.022; s.slope_scale = 1.0;
+             let slope = window_slope(f, w);
+             return vec4(slope, steep_area(s, slope), 0.0, 0.0);"
+        ),
+        &rows,
+    );
+    for (row, [slope, area, ..]) in rows.iter().zip(results) {
+        assert_eq!([slope, area], [0.0, 0.0], "{row:?}");
+    }
+}

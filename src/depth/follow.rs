@@ -1,0 +1,300 @@
+//! The compute pass that smooths the visible range: its uniform, its state, its pipeline.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use bevy::{
+    asset::{AssetServer, Handle, load_embedded_asset},
+    ecs::resource::Resource,
+    math::UVec2,
+    render::{
+        render_resource::{
+            BindGroupEntry, BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource,
+            Buffer, BufferDescriptor, BufferUsages, CommandEncoder, ComputePassDescriptor,
+            ComputePipeline, ComputePipelineDescriptor, PipelineCache, ShaderStages, ShaderType,
+            SpecializedComputePipeline,
+            binding_types::{storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer},
+        },
+        renderer::RenderDevice,
+    },
+    shader::Shader,
+};
+
+use super::{
+    DepthMap, ProjectionKind, RangeSmoothing, frame::DepthProjection, request::RangeRequest,
+};
+
+/// Bits of [`SmoothingUniform::flags`], as in `smoothing.wgsl`.
+const ORTHOGRAPHIC: u32 = 1;
+const SNAP: u32 = 2;
+const HOLD: u32 = 4;
+const DESPIKE: u32 = 8;
+const RESET: u32 = 16;
+
+/// `Smoothing` of `smoothing.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct SmoothingUniform {
+    pub offset: f32,
+    pub outliers: f32,
+    pub hysteresis: f32,
+    pub expand: f32,
+    pub shrink: f32,
+    pub settle: f32,
+    pub seconds: f32,
+    pub flags: u32,
+}
+
+/// Time constant in seconds with which an end settles that rests beside what is visible
+/// (`WATCH` in `smoothing.wgsl` is the time before that).
+const SETTLE: f32 = 2.0;
+
+/// A longer frame, in seconds, counts as one of this length when an end is watched:
+/// a game that was stopped did not show a view that stood still.
+const LONGEST_WATCHED: f32 = 0.1;
+
+/// Fraction of the difference to a goal that is made up in `seconds`, for a time
+/// constant in seconds.
+fn approach(seconds: f32, constant: f32) -> f32 {
+    if constant > 0.0 {
+        -(-f64::from(seconds) / f64::from(constant)).exp_m1() as f32
+    } else {
+        1.0
+    }
+}
+
+impl SmoothingUniform {
+    pub fn new(
+        map: &DepthMap,
+        projection: &DepthProjection,
+        seconds: f32,
+        [snap, reset]: [bool; 2],
+    ) -> Self {
+        let smoothing = map.smoothing.unwrap_or(RangeSmoothing::OFF);
+        let orthographic = projection.kind() == ProjectionKind::Orthographic;
+        let flag = |on: bool, flag: u32| if on { flag } else { 0 };
+        Self {
+            offset: projection.offset(),
+            outliers: smoothing.outliers,
+            hysteresis: smoothing.hysteresis,
+            expand: approach(seconds, smoothing.expand),
+            shrink: approach(seconds, smoothing.shrink),
+            settle: approach(seconds, SETTLE),
+            seconds: seconds.min(LONGEST_WATCHED),
+            flags: flag(orthographic, ORTHOGRAPHIC)
+                | flag(snap, SNAP)
+                | flag(reset, RESET)
+                | flag(map.locked, HOLD)
+                | flag(smoothing.despike, DESPIKE),
+        }
+    }
+}
+
+/// Bytes of the buffer of `RangeState`, which needs 88.
+const STATE_SIZE: u64 = 96;
+/// Offset in bytes of `RangeState::window`.
+const WINDOW_OFFSET: u64 = 80;
+const WINDOW_SIZE: u64 = 8;
+/// Bytes of the buffer of `Histogram`, which needs 1036.
+const HISTOGRAM_SIZE: u64 = 1040;
+/// Offset in bytes of `Histogram::window_near`.
+const HISTOGRAM_WINDOW: u64 = 1028;
+
+/// A view's smoothed range: its buffers, and what they were last computed for.
+pub(crate) struct ViewSmoothing {
+    state: Buffer,
+    /// Keys of the range that the depth map spans.
+    pub drawn: Buffer,
+    /// Counts of the reduction, if it counts.
+    pub histogram: Option<Buffer>,
+    /// Number of cuts and size of the view in depth pixels. If one changes, smoothing
+    /// starts anew, or waits for that while the range is locked.
+    origin: (u32, UVec2),
+    /// If raw depth gets another meaning, smoothing starts anew even if the range is
+    /// locked.
+    projection: DepthProjection,
+    /// Whether smoothing is to start anew, for a change of `origin` (snap) or of
+    /// `projection` (reset). Cleared when a frame that does so was recorded.
+    snap: AtomicBool,
+    reset: AtomicBool,
+    locked: bool,
+    pub uniform_offset: u32,
+}
+
+impl ViewSmoothing {
+    pub fn new(device: &RenderDevice, request: &RangeRequest, size: UVec2) -> Self {
+        let buffer = |label, size, usage| {
+            device.create_buffer(&BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: BufferUsages::STORAGE | usage,
+                mapped_at_creation: false,
+            })
+        };
+        Self {
+            state: buffer("comics_range_state", STATE_SIZE, BufferUsages::COPY_SRC),
+            drawn: buffer(
+                "comics_smoothed_range",
+                16,
+                BufferUsages::UNIFORM | BufferUsages::COPY_SRC,
+            ),
+            histogram: None,
+            origin: (request.cuts, size),
+            projection: request.projection,
+            snap: AtomicBool::new(false),
+            reset: AtomicBool::new(false),
+            locked: false,
+            uniform_offset: 0,
+        }
+    }
+
+    /// The uniform of this frame. Compares the request with that of the last frame.
+    pub fn uniform(&mut self, request: &RangeRequest, size: UVec2) -> SmoothingUniform {
+        if self.origin != (request.cuts, size) {
+            self.origin = (request.cuts, size);
+            self.snap = AtomicBool::new(true);
+        }
+        if !self.projection.same_raw_depth(&request.projection) {
+            self.reset = AtomicBool::new(true);
+        }
+        self.projection = request.projection;
+        self.locked = request.map.locked;
+        let starts = [&self.snap, &self.reset].map(|flag| flag.load(Ordering::Relaxed));
+        SmoothingUniform::new(&request.map, &request.projection, request.seconds, starts)
+    }
+
+    /// Creates or drops the buffer of the histogram.
+    pub fn keep_histogram(&mut self, device: &RenderDevice, wanted: bool) {
+        if !wanted {
+            self.histogram = None;
+        } else if self.histogram.is_none() {
+            self.histogram = Some(device.create_buffer(&BufferDescriptor {
+                label: Some("comics_depth_histogram"),
+                size: HISTOGRAM_SIZE,
+                usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            }));
+        }
+    }
+
+    /// Records that the histogram is cleared, and that it counts in bins of the visible
+    /// range of the last frame.
+    pub fn clear_histogram(&self, encoder: &mut CommandEncoder) {
+        let Some(histogram) = &self.histogram else {
+            return;
+        };
+        encoder.clear_buffer(histogram, 0, None);
+        encoder.copy_buffer_to_buffer(
+            &self.state,
+            WINDOW_OFFSET,
+            histogram,
+            HISTOGRAM_WINDOW,
+            WINDOW_SIZE,
+        );
+    }
+
+    /// Records the smoothing of this frame. `found` holds the keys of the reduction.
+    pub fn record(
+        &self,
+        device: &RenderDevice,
+        encoder: &mut CommandEncoder,
+        cache: &PipelineCache,
+        pipeline: &ComputePipeline,
+        (uniforms, found): (BindingResource, &Buffer),
+    ) {
+        let entry = |binding, resource| BindGroupEntry { binding, resource };
+        let mut entries = vec![
+            entry(0, uniforms),
+            entry(1, found.as_entire_binding()),
+            entry(2, self.state.as_entire_binding()),
+            entry(3, self.drawn.as_entire_binding()),
+        ];
+        if let Some(histogram) = &self.histogram {
+            entries.push(entry(4, histogram.as_entire_binding()));
+        }
+        let layout = SmoothingPipeline::layout(self.histogram.is_some());
+        let bind_group = device.create_bind_group(
+            "comics_range_smoothing",
+            &cache.get_bind_group_layout(&layout),
+            &entries,
+        );
+        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+            label: Some("comics_range_smoothing"),
+            timestamp_writes: None,
+        });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &bind_group, &[self.uniform_offset]);
+        pass.dispatch_workgroups(1, 1, 1);
+        drop(pass);
+        // A locked range ignores a cut; smoothing starts anew when it is unlocked.
+        if !self.locked {
+            self.snap.store(false, Ordering::Relaxed);
+        }
+        self.reset.store(false, Ordering::Relaxed);
+    }
+}
+
+#[derive(Resource)]
+pub(crate) struct SmoothingPipeline {
+    shader: Handle<Shader>,
+}
+
+impl SmoothingPipeline {
+    pub fn new(assets: &AssetServer) -> Self {
+        Self {
+            shader: load_embedded_asset!(assets, "smoothing.wgsl"),
+        }
+    }
+
+    fn layout(histogram: bool) -> BindGroupLayoutDescriptor {
+        let mut entries = BindGroupLayoutEntries::sequential(
+            ShaderStages::COMPUTE,
+            (
+                uniform_buffer::<SmoothingUniform>(true),
+                storage_buffer_read_only_sized(false, None),
+                storage_buffer_sized(false, None),
+                storage_buffer_sized(false, None),
+            ),
+        )
+        .to_vec();
+        if histogram {
+            entries
+                .push(storage_buffer_read_only_sized(false, None).build(4, ShaderStages::COMPUTE));
+        }
+        BindGroupLayoutDescriptor::new("comics_range_smoothing", &entries)
+    }
+}
+
+impl SpecializedComputePipeline for SmoothingPipeline {
+    /// Whether the reduction counts a histogram.
+    type Key = bool;
+
+    fn specialize(&self, histogram: Self::Key) -> ComputePipelineDescriptor {
+        ComputePipelineDescriptor {
+            label: Some("comics_range_smoothing".into()),
+            layout: vec![Self::layout(histogram)],
+            shader: self.shader.clone(),
+            shader_defs: if histogram {
+                vec!["HISTOGRAM".into()]
+            } else {
+                Vec::new()
+            },
+            entry_point: Some("follow".into()),
+            ..Default::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ten_short_steps_are_one_long_step() {
+        for constant in [0.05, 0.1, 1.0, 30.0] {
+            let once = f64::from(approach(0.1, constant));
+            let left = 1.0 - f64::from(approach(0.01, constant));
+            assert!((1.0 - left.powi(10) - once).abs() < 1e-6, "{constant}");
+        }
+        assert_eq!(approach(0.016, 0.0), 1.0);
+        assert_eq!(approach(0.0, 1.0), 0.0);
+    }
+}
