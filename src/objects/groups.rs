@@ -286,3 +286,6 @@ pub(crate) fn extract_object_groups(
         groups.clone_from(&main);
     }
 }
+
+#[cfg(test)]
+mod tests;
