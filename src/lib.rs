@@ -46,7 +46,7 @@
 //!    of the game ([`Effect`]) at the end of their [`EffectStage`].
 //!
 //! Whole styles are assets: [`ComicStyle`], with [`presets`]. On meshes, the
-//! feature `objects` adds `NoOutlines` and `OutlineStyle`, and the feature
+//! feature `objects` adds `NoOutlines`, `OutlineStyle` and `OutlineGroup`, and the feature
 //! `cartoon` adds `CartoonMaterial` and `CartoonScene`; both are on by default.
 //!
 //! Equations are those of *Comics stylizations of 3D scenes using GPU*
@@ -89,7 +89,7 @@ pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
 pub use lines::{Creases, LineSettings, ObjectEdges, Silhouettes};
 #[cfg(feature = "objects")]
-pub use objects::{NoOutlines, OutlineKinds, OutlineStyle, ViewObjectIds, object_id};
+pub use objects::{NoOutlines, OutlineGroup, OutlineKinds, OutlineStyle, ViewObjectIds, object_id};
 pub use plugin::ComicsPlugin;
 pub use schedule::ComicsSystems;
 pub use settings::{
@@ -138,5 +138,5 @@ pub mod prelude {
     #[cfg(feature = "cartoon")]
     pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};
     #[cfg(feature = "objects")]
-    pub use crate::{NoOutlines, OutlineKinds, OutlineStyle};
+    pub use crate::{NoOutlines, OutlineGroup, OutlineKinds, OutlineStyle};
 }

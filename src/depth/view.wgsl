@@ -136,8 +136,56 @@ fn load_window(pixel: vec2<i32>, reach: i32, sample: i32) -> Window {
     return win;
 }
 
+#ifndef SAME_SIZE
+// The last pixel of the depth texture that the main pass draws.
+fn last_texel() -> vec2<i32> {
+    let size = vec2<i32>(round(vec2<f32>(view.viewport.zw) * view.depth_scale));
+    return view.viewport.xy + max(size, vec2(1)) - 1;
+}
+
+// The window of load_window on the pixels of the depth texture: `reach` of them around
+// the one that belongs to a pixel of the viewport.
+fn load_texel_window(pixel: vec2<i32>, reach: i32, sample: i32) -> Window {
+    let first = view.viewport.xy;
+    let last = last_texel();
+    let centre = depth_pixel(pixel);
+    let low = centre - reach;
+    let high = centre + reach;
+    let a = max(low, first);
+    let b = min(high, last);
+    var win: Window;
+    win.centre = texel_depth(centre, sample);
+    win.nw = texel_depth(a, sample);
+    win.n = texel_depth(vec2(centre.x, a.y), sample);
+    win.ne = texel_depth(vec2(b.x, a.y), sample);
+    win.w = texel_depth(vec2(a.x, centre.y), sample);
+    win.e = texel_depth(vec2(b.x, centre.y), sample);
+    win.sw = texel_depth(vec2(a.x, b.y), sample);
+    win.s = texel_depth(vec2(centre.x, b.y), sample);
+    win.se = texel_depth(b, sample);
+    win.missing = select(0u, MISSING_W, low.x < first.x) | select(0u, MISSING_E, high.x > last.x)
+        | select(0u, MISSING_N, low.y < first.y) | select(0u, MISSING_S, high.y > last.y);
+    return win;
+}
+
+// Distances from the centre of load_window to its taps, in pixels of the depth texture:
+// x, y to the west and north, z, w to the east and south. 0 where a tap reads the same
+// pixel of the depth texture as the centre.
+fn tap_distances(pixel: vec2<i32>, reach: i32) -> vec4<i32> {
+    let centre = depth_pixel(pixel);
+    let low = depth_pixel(inside_viewport(pixel - reach));
+    let high = depth_pixel(inside_viewport(pixel + reach));
+    return vec4(centre - low, high - centre);
+}
+#endif
+
 // Prewitt response of the depth map per pixel, see window_slope().
 fn map_slope(frame: DepthFrame, pixel: vec2<i32>) -> f32 {
+#ifdef SAME_SIZE
     return window_slope(frame, load_window(pixel, 1, 0));
+#else
+    // Neighbouring pixels of the picture can read one pixel of the depth texture.
+    return window_slope(frame, load_texel_window(pixel, 1, 0)) * view.depth_scale.y;
+#endif
 }
 #endif

@@ -169,7 +169,8 @@ impl Default for Creases {
 }
 
 /// Outlines where two objects meet, even if depth and normal are the same there. An
-/// object is a mesh entity. Its id is drawn in an additional pass.
+/// object is a mesh entity, the primitives of one glTF node, or an `OutlineGroup`. Its id
+/// is drawn in an additional pass.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

@@ -65,7 +65,10 @@ impl LineRequest {
         let jitter = self.jitter.unwrap_or(Vec2::ZERO);
         Grid {
             rect: self.rect.as_ivec4(),
-            // The picture is not moved: temporal anti-aliasing has undone it.
+            // The engine draws at p - jitter what belongs at p, and temporal anti-aliasing
+            // undoes that in the picture. In orthographic views the engine moves by an
+            // amount that grows with distance: this offset is right at a distance of the
+            // view's width.
             from_viewport: Vec4::new(scale.x, scale.y, -jitter.x, -jitter.y),
             reach: self.grid_reach(),
         }

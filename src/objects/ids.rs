@@ -42,6 +42,7 @@ use bevy::{
 
 use super::{
     ID_FORMAT, IdRequest, IdsWanted, ObjectStyles, ViewObjectIds,
+    groups::{ObjectGroups, extract_object_groups},
     items::{
         DrawId, DrawIdWithMaterial, IdItems, ObjectIdPipeline, ObjectIdSpecializer, ObjectTable,
         init_object_id_pipeline,
@@ -53,7 +54,17 @@ use crate::{
     schedule::{ComicsSystems, PrepareComics},
 };
 
-/// The id of an entity in [`ViewObjectIds`](super::ViewObjectIds), 1 to 65535.
+/// The id of an object in [`ViewObjectIds`](super::ViewObjectIds), 1 to 65535.
+///
+/// | mesh | entity whose id it has |
+/// |---|---|
+/// | below an [`OutlineGroup`](crate::OutlineGroup), or with one | the entity with the nearest group |
+/// | one of several primitives of a glTF node, in no group | the first of these primitives, in the order of the node's children |
+/// | any other | the entity with the mesh |
+///
+/// Primitives of a glTF node are meshes of one parent whose asset paths end in
+/// `#MeshM/PrimitiveP` with the same file and the same `M`, as the engine's glTF loader
+/// spawns them. A second mesh with the same `P` begins a second object.
 ///
 /// Entities whose indices differ by a multiple of 65535 have the same id, and no
 /// [object edge](crate::ObjectEdges) between them.
@@ -129,7 +140,7 @@ fn queue_object_ids(
 
 fn prepare_object_table(
     phases: Res<ViewSortedRenderPhases<ObjectIdItem>>,
-    styles: Res<ObjectStyles>,
+    (styles, groups): (Res<ObjectStyles>, Res<ObjectGroups>),
     (shared, cache): (Res<ObjectIdPipeline>, Res<PipelineCache>),
     mut table: ResMut<ObjectTable>,
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
@@ -142,8 +153,9 @@ fn prepare_object_table(
         if objects.len() <= at {
             objects.resize(at + 1, UVec2::ZERO);
         }
-        let slot = styles.slots.get(&item.main_entity().id()).copied();
-        let id = object_id(item.main_entity().id());
+        let mesh = item.main_entity().id();
+        let slot = styles.slots.get(&mesh).copied();
+        let id = object_id(groups.object(mesh));
         objects[at] = UVec2::new(u32::from(id), u32::from(slot.unwrap_or(0)));
     }
     table.bind_group = None;
@@ -226,6 +238,7 @@ pub(crate) fn build(app: &mut App) {
     render_app
         .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer>>()
         .init_gpu_resource::<ObjectTable>()
+        .init_resource::<ObjectGroups>()
         .init_resource::<DrawFunctions<ObjectIdItem>>()
         .add_render_command::<ObjectIdItem, DrawId>()
         .add_render_command::<ObjectIdItem, DrawIdWithMaterial>()
@@ -233,7 +246,10 @@ pub(crate) fn build(app: &mut App) {
             RenderStartup,
             init_object_id_pipeline.after(bevy::pbr::init_prepass_pipeline),
         )
-        .add_systems(ExtractSchedule, super::table::extract_object_styles)
+        .add_systems(
+            ExtractSchedule,
+            (super::table::extract_object_styles, extract_object_groups),
+        )
         .add_systems(
             Render,
             (

@@ -2,6 +2,8 @@
 //! objects, and a texture of object ids, in which lines find where objects meet.
 
 #[cfg(feature = "objects")]
+mod groups;
+#[cfg(feature = "objects")]
 mod ids;
 #[cfg(feature = "objects")]
 mod items;
@@ -13,6 +15,8 @@ mod table;
 mod components;
 #[cfg(feature = "objects")]
 pub use components::{NoOutlines, OutlineKinds, OutlineStyle};
+#[cfg(feature = "objects")]
+pub use groups::OutlineGroup;
 #[cfg(feature = "objects")]
 pub use ids::object_id;
 
@@ -74,7 +78,7 @@ pub(crate) struct IdRequest {
 )]
 pub struct ViewObjectIds {
     /// `Rg16Uint`: red is the [`object_id`](crate::object_id) (0: no object), green is
-    /// the slot of the object's outline style (0: it has none).
+    /// the slot of the mesh's outline style (0: it has none).
     pub texture: Texture,
     pub(crate) view: TextureView,
 }
@@ -112,9 +116,12 @@ impl Plugin for ObjectsPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<ObjectStyles>();
         #[cfg(feature = "objects")]
-        app.register_type::<OutlineStyle>()
-            .register_type::<NoOutlines>()
-            .add_systems(bevy::app::PostUpdate, components::assign_object_styles);
+        {
+            app.register_type::<OutlineStyle>()
+                .register_type::<NoOutlines>()
+                .add_systems(bevy::app::PostUpdate, components::assign_object_styles);
+            groups::build(app);
+        }
     }
 
     fn finish(&self, app: &mut App) {

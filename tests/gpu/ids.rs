@@ -17,7 +17,7 @@ use crate::{
     small::{Object, Small},
 };
 
-fn material(
+pub fn material(
     small: &mut Small,
     change: impl FnOnce(&mut StandardMaterial),
 ) -> Handle<StandardMaterial> {
@@ -33,7 +33,7 @@ fn material(
         .add(material)
 }
 
-fn cube(small: &mut Small, material: Handle<StandardMaterial>, at: Transform) -> Entity {
+pub fn cube(small: &mut Small, material: Handle<StandardMaterial>, at: Transform) -> Entity {
     let mesh = small
         .world()
         .resource_mut::<Assets<Mesh>>()
@@ -45,7 +45,7 @@ fn cube(small: &mut Small, material: Handle<StandardMaterial>, at: Transform) ->
 }
 
 /// Two cubes side by side, flush in front, before the sky.
-fn two_cubes(msaa: Msaa) -> (Small, [Entity; 2]) {
+pub fn two_cubes(msaa: Msaa) -> (Small, [Entity; 2]) {
     let mut small = Small::new(UVec2::new(120, 60), msaa);
     small.clear();
     let plain = material(&mut small, |_| {});
@@ -71,13 +71,13 @@ fn at(ink: &[f32], x: usize, y: usize) -> f32 {
 }
 
 /// The pixel column where the cubes meet, and rows within them.
-fn seam(ink: &[f32]) -> f32 {
+pub fn seam(ink: &[f32]) -> f32 {
     (25..35)
         .map(|y| (57..63).map(|x| at(ink, x, y)).fold(0.0, f32::max))
         .fold(1.0, f32::min)
 }
 
-fn total(ink: &[f32], columns: std::ops::Range<usize>) -> f32 {
+pub fn total(ink: &[f32], columns: std::ops::Range<usize>) -> f32 {
     (0..60)
         .flat_map(|y| columns.clone().map(move |x| (x, y)))
         .map(|(x, y)| at(ink, x, y))
@@ -310,9 +310,8 @@ fn transparent_alpha_masked_and_unlit_meshes() {
     assert_eq!(small.errors(), 0);
 }
 
-/// Skinned and morphed meshes have the ids of where they are drawn.
-#[test]
-fn skinned_and_morphed_meshes_have_ids_where_they_are_seen() {
+/// A cube that its joint moves to the left, and one that its morph target moves down.
+pub fn skinned_and_morphed() -> (Small, [Entity; 2]) {
     let mut small = Small::new(UVec2::new(120, 60), Msaa::Off);
     small.clear();
     small.insert(Transform::from_xyz(0.0, 0.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y));
@@ -367,6 +366,13 @@ fn skinned_and_morphed_meshes_have_ids_where_they_are_seen() {
             MeshMorphWeights::Value { weights: vec![1.0] },
         ))
         .id();
+    (small, [skinned, morphed])
+}
+
+/// Skinned and morphed meshes have the ids of where they are drawn.
+#[test]
+fn skinned_and_morphed_meshes_have_ids_where_they_are_seen() {
+    let (mut small, [skinned, morphed]) = skinned_and_morphed();
     ink(
         &mut small,
         Outlines {

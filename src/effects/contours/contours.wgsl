@@ -4,6 +4,9 @@
 
 #import bevy_comics::depth::map::{DepthFrame, EMPTY, depth_map, has, is_background}
 #import bevy_comics::depth::view::{depth_frame, load_window, sample_count}
+#ifndef SAME_SIZE
+#import bevy_comics::depth::view::{load_texel_window, tap_distances, view}
+#endif
 #import bevy_comics::depth::window::{
     MISSING_E, MISSING_N, MISSING_S, MISSING_W, Steps, Window, gap_behind, map_steps, nearest_depth, prewitt, step_from,
 }
@@ -36,26 +39,32 @@ fn minmod(a: f32, b: f32) -> f32 {
     return select(b, a, abs(a) < abs(b));
 }
 
+// The slope of the plane through the centre, from two opposite neighbours at the same
+// distance: raw depth per this distance. Raw depth is affine over a plane, in perspective
+// too. The plane is continued by the smaller of the two slopes, so the steps on a flat
+// surface are 0 at any angle.
+fn plane_slope(before: f32, c: f32, after: f32) -> f32 {
+    if is_background(c) {
+        return 0.0;
+    }
+    let no_before = is_background(before);
+    let no_after = is_background(after);
+    let back = c - before;
+    let ahead = after - c;
+    if !no_before && !no_after {
+        return minmod(back, ahead);
+    }
+    if no_before && no_after {
+        return 0.0;
+    }
+    return select(back, ahead, no_before);
+}
+
 // The steps of two opposite neighbours over the plane through the centre: (before,
-// after), in units of the depth map. Raw depth is affine over a plane, in
-// perspective too. The plane is continued by the smaller of the two slopes, so the
-// steps on a flat surface are 0 at any angle.
+// after), in units of the depth map.
 fn plane_pair(f: DepthFrame, gap: f32, before: f32, c: f32, after: f32) -> vec2<f32> {
     let sky = is_background(c);
-    var slope = 0.0;
-    if !sky {
-        let no_before = is_background(before);
-        let no_after = is_background(after);
-        let back = c - before;
-        let ahead = after - c;
-        if !no_before && !no_after {
-            slope = minmod(back, ahead);
-        } else if no_before && !no_after {
-            slope = ahead;
-        } else if no_after && !no_before {
-            slope = back;
-        }
-    }
+    let slope = plane_slope(before, c, after);
     return vec2(
         step_from(f, gap, before, c - slope, sky),
         step_from(f, gap, after, c + slope, sky),
@@ -89,6 +98,34 @@ fn plane_steps(f: DepthFrame, gap: f32, win: Window) -> Steps {
     return steps;
 }
 
+// The same where the taps of opposite neighbours are at different distances from the
+// centre, some of them 0: (west, north, east, south). `slope` is that of the plane per
+// unit of distance, across and down.
+fn uneven_plane_steps(f: DepthFrame, gap: f32, win: Window, distances: vec4<f32>, slope: vec2<f32>) -> Steps {
+    var steps: Steps;
+    let across = (win.missing & (MISSING_W | MISSING_E)) == 0u;
+    let along = (win.missing & (MISSING_N | MISSING_S)) == 0u;
+    let c = win.centre;
+    let sky = is_background(c);
+    let low = -distances.xy * slope;
+    let high = distances.zw * slope;
+    if across {
+        steps.w = step_from(f, gap, win.w, c + low.x, sky);
+        steps.e = step_from(f, gap, win.e, c + high.x, sky);
+    }
+    if along {
+        steps.n = step_from(f, gap, win.n, c + low.y, sky);
+        steps.s = step_from(f, gap, win.s, c + high.y, sky);
+    }
+    if across && along {
+        steps.nw = step_from(f, gap, win.nw, c + low.x + low.y, sky);
+        steps.se = step_from(f, gap, win.se, c + high.x + high.y, sky);
+        steps.ne = step_from(f, gap, win.ne, c + high.x + low.y, sky);
+        steps.sw = step_from(f, gap, win.sw, c + low.x + high.y, sky);
+    }
+    return steps;
+}
+
 fn sobel(s: Steps) -> f32 {
     return length(vec2(
         (s.ne + 2.0 * s.e + s.se) - (s.nw + 2.0 * s.w + s.sw),
@@ -118,8 +155,7 @@ fn faithful_response(f: DepthFrame, gap: f32, operator_kind: u32, win: Window) -
 
 // The same kernels applied to departures from the local plane, scaled so that the
 // response to a straight step of height h is h for every operator.
-fn plane_response(f: DepthFrame, gap: f32, operator_kind: u32, win: Window) -> f32 {
-    let s = plane_steps(f, gap, win);
+fn scaled_response(operator_kind: u32, s: Steps) -> f32 {
     if operator_kind == SOBEL {
         return sobel(s) / 4.0;
     }
@@ -157,7 +193,7 @@ fn contour_response(s: Contours, f: DepthFrame, win: Window) -> f32 {
     if is_faithful(s) {
         return faithful_response(f, gap_behind(f, f.sky_gap), operator_of(s), win);
     }
-    return plane_response(f, gap_behind(f, f.sky_gap), operator_of(s), win);
+    return scaled_response(operator_of(s), plane_steps(f, gap_behind(f, f.sky_gap), win));
 }
 
 // Strength of the line at this response, 0 to 1.
@@ -172,18 +208,61 @@ fn draw_contour(s: Contours, picture: vec4<f32>, coverage: f32, depth: f32) -> v
     return mix(picture, vec4(s.color, 1.0), clamp(coverage * s.opacity * (1.0 - s.opacity_fade * depth), 0.0, 1.0));
 }
 
+#ifdef SAME_SIZE
+// (line, nearest raw depth) of one sample, with the taps `reach` pixels away.
+fn tap_line(s: Contours, frame: DepthFrame, pixel: vec2<i32>, reach: i32, sample: i32) -> vec2<f32> {
+    let win = load_window(pixel, reach, sample);
+    return vec2(line(s, contour_response(s, frame, win)), nearest_depth(win));
+}
+#else
+// The same where several pixels of the picture read one pixel of the depth texture. The
+// taps stay where they are, so that lines keep their width, but slopes are those between
+// pixels of the depth texture: between the taps, a slope would be a staircase.
+fn tap_line(s: Contours, frame: DepthFrame, pixel: vec2<i32>, reach: i32, sample: i32) -> vec2<f32> {
+    if is_faithful(s) {
+        // Slopes have lines, so the whole window lies on the depth texture.
+        let texels = max(i32(round(f32(reach) * view.depth_scale.y)), 1);
+        let win = load_texel_window(pixel, texels, sample);
+        return vec2(line(s, contour_response(s, frame, win)), nearest_depth(win));
+    }
+    let win = load_window(pixel, reach, sample);
+    if has(frame, EMPTY) {
+        return vec2(0.0, nearest_depth(win));
+    }
+    let distances = tap_distances(pixel, reach);
+    let farther = max(distances.xy, distances.zw);
+    let slope = vec2(
+        texel_slope(load_texel_window(pixel, farther.x, sample), farther).x,
+        texel_slope(load_texel_window(pixel, farther.y, sample), farther).y,
+    );
+    let gap = gap_behind(frame, frame.sky_gap);
+    let steps = uneven_plane_steps(frame, gap, win, vec4<f32>(distances), slope);
+    return vec2(line(s, scaled_response(operator_of(s), steps)), nearest_depth(win));
+}
+
+// The slope of the plane per pixel of the depth texture, across and down, from a window
+// whose taps are at this distance. Where one side is outside of the viewport, the plane
+// continues with the slope of the other side.
+fn texel_slope(win: Window, distance: vec2<i32>) -> vec2<f32> {
+    let w = select(win.w, 0.0, (win.missing & MISSING_W) != 0u);
+    let e = select(win.e, 0.0, (win.missing & MISSING_E) != 0u);
+    let n = select(win.n, 0.0, (win.missing & MISSING_N) != 0u);
+    let s = select(win.s, 0.0, (win.missing & MISSING_S) != 0u);
+    let slope = vec2(plane_slope(w, win.centre, e), plane_slope(n, win.centre, s));
+    return slope / vec2<f32>(max(distance, vec2(1)));
+}
+#endif
+
 // (line, nearest raw depth) of one sample, with the taps `reach` pixels away, which
 // makes a line of 2 * reach pixels. Wide lines also use the rings in between, every
 // two pixels; without them, thin objects would be missed.
 fn ring_line(s: Contours, frame: DepthFrame, pixel: vec2<i32>, reach: i32, sample: i32) -> vec2<f32> {
     var found = vec2(0.0);
 #ifdef CONTOURS_SINGLE_RING
-    let win = load_window(pixel, reach, sample);
-    return vec2(line(s, contour_response(s, frame, win)), nearest_depth(win));
+    return tap_line(s, frame, pixel, reach, sample);
 #endif
     for (var r = reach; r > 0; r -= 2) {
-        let win = load_window(pixel, r, sample);
-        found = max(found, vec2(line(s, contour_response(s, frame, win)), nearest_depth(win)));
+        found = max(found, tap_line(s, frame, pixel, r, sample));
     }
     return found;
 }

@@ -62,27 +62,71 @@ fn plane_steps(frame: &Frame, win: &Window) -> Steps {
     steps
 }
 
+/// As `plane_steps`, with taps at these distances (west, north, east, south) from the
+/// centre. `slope`: change of raw depth of the plane per unit of distance, across and down.
+fn uneven_plane_steps(frame: &Frame, win: &Window, at: [f64; 4], slope: [f64; 2]) -> Steps {
+    let [near, far] = frame.ends.expect("geometry");
+    let c = win.depths[1][1];
+    let xs = [-at[0], 0.0, at[2]];
+    let ys = [-at[1], 0.0, at[3]];
+    let across = !win.missing[0] && !win.missing[1];
+    let along = !win.missing[2] && !win.missing[3];
+    std::array::from_fn(|row| {
+        std::array::from_fn(|column| {
+            let centre = row == 1 && column == 1;
+            if centre || column != 1 && !across || row != 1 && !along {
+                return 0.0;
+            }
+            let plane = c + xs[column] * slope[0] + ys[row] * slope[1];
+            let plane = if is_background(c) {
+                0.0
+            } else {
+                plane.clamp(far, near)
+            };
+            frame.with_sky(win.depths[row][column]) - frame.with_sky(plane)
+        })
+    })
+}
+
 pub fn response(s: &Contours, frame: &Frame, win: &Window) -> f64 {
     if frame.ends.is_none() {
         return 0.0;
     }
-    let faithful = s.form == Form::Faithful;
-    let steps = if faithful {
-        map_steps(frame, win)
-    } else {
-        plane_steps(frame, win)
-    };
-    let unit = |gain: f64| if faithful { 1.0 } else { gain };
+    if s.form == Form::Corrected {
+        return scaled_response(s, &plane_steps(frame, win));
+    }
+    let steps = map_steps(frame, win);
     match s.operator {
-        ContourOperator::Prewitt => prewitt(&steps) / unit(3.0),
-        ContourOperator::Sobel => gradient(&steps, SOBEL) / unit(4.0),
-        ContourOperator::Laplace => steps.iter().flatten().sum::<f64>().abs() / unit(3.0),
-        ContourOperator::Roberts if faithful => steps[2][2].hypot(steps[1][2] - steps[2][1]),
+        ContourOperator::Prewitt => prewitt(&steps),
+        ContourOperator::Sobel => gradient(&steps, SOBEL),
+        ContourOperator::Laplace => steps.iter().flatten().sum::<f64>().abs(),
+        ContourOperator::Roberts => steps[2][2].hypot(steps[1][2] - steps[2][1]),
+        other => panic!("no twin of {other:?}"),
+    }
+}
+
+/// The response of the corrected form to steps over a plane.
+fn scaled_response(s: &Contours, steps: &Steps) -> f64 {
+    match s.operator {
+        ContourOperator::Prewitt => prewitt(steps) / 3.0,
+        ContourOperator::Sobel => gradient(steps, SOBEL) / 4.0,
+        ContourOperator::Laplace => steps.iter().flatten().sum::<f64>().abs() / 3.0,
         ContourOperator::Roberts => {
             (steps[2][2] - steps[0][0]).hypot(steps[2][0] - steps[0][2]) / 2f64.sqrt()
         }
         other => panic!("no twin of {other:?}"),
     }
+}
+
+/// The response of the corrected form where the depth texture is smaller than the
+/// viewport, see `uneven_plane_steps`.
+pub fn uneven_response(
+    s: &Contours,
+    (frame, win): (&Frame, &Window),
+    at: [f64; 4],
+    slope: [f64; 2],
+) -> f64 {
+    scaled_response(s, &uneven_plane_steps(frame, win, at, slope))
 }
 
 /// Coverage by a line, 0 to 1, for a response.

@@ -133,3 +133,75 @@ fn no_plane_has_a_contour_at_any_angle() {
     let worst = results.iter().map(|r| r[0]).fold(0.0, f32::max);
     assert!(worst < 1e-4, "a plane answers {worst}");
 }
+
+/// Taps at uneven distances: what a smaller depth texture gives.
+#[test]
+fn uneven_taps_answer_as_their_twin_and_find_no_contour_in_a_plane() {
+    let row = (
+        (0.2f32..0.8, -0.02f32..0.02, -0.02f32..0.02),
+        (0u8..4, 0u8..4, 0u8..4, 0u8..4),
+        0u8..4,
+        (0.0f32..0.3, 0usize..9, any::<bool>()),
+    )
+        .prop_map(|((c, sx, sy), (w, n, e, s), operator, (step, tap, flat))| {
+            let at = [w, n, e, s].map(f32::from);
+            let (xs, ys) = ([-at[0], 0.0, at[2]], [-at[1], 0.0, at[3]]);
+            let mut row = [0.0f32; 17];
+            row[..7].copy_from_slice(&[at[0], at[1], at[2], at[3], sx, sy, f32::from(operator)]);
+            for k in 0..9 {
+                row[7 + k] = c + sx * xs[k % 3] + sy * ys[k / 3];
+            }
+            // Another surface at one tap, unless it is the centre.
+            if tap != 4 && !flat {
+                row[7 + tap] = (row[7 + tap] - step).max(0.1);
+            }
+            row[16] = f32::from(u8::from(flat || tap == 4));
+            row
+        });
+    for_batches(row, |rows| {
+        let results = gpu().evaluate(
+            "#import bevy_comics::depth::map::{DepthFrame}
+             #import bevy_comics::depth::window::{Window}
+             #import bevy_comics::effects::contours::{scaled_response, uneven_plane_steps}",
+            "let f = DepthFrame(0.9, 0.1, 0.0, 0.00006103515625, 0.0, 0.0, 0.05, 0u);
+             let w = Window(i(7u), i(8u), i(9u), i(10u), i(11u), i(12u), i(13u), i(14u), i(15u), 0u);
+             let at = vec4(i(0u), i(1u), i(2u), i(3u));
+             let steps = uneven_plane_steps(f, 0.05, w, at, vec2(i(4u), i(5u)));
+             return vec4(scaled_response(u(6u), steps));",
+            rows,
+        );
+        for (row, result) in rows.iter().zip(results) {
+            let s = Contours {
+                operator: [
+                    ContourOperator::Prewitt,
+                    ContourOperator::Sobel,
+                    ContourOperator::Laplace,
+                    ContourOperator::Roberts,
+                ][row[6] as usize],
+                ..Contours::default()
+            };
+            let frame = Frame {
+                projection: Projection::Perspective { offset: 0.0 },
+                ends: Some([0.9f32, 0.1].map(f64::from)),
+                logarithmic: false,
+                floor: 1.0 / 16384.0,
+                sky_gap: 0.05,
+            };
+            let row = row.map(f64::from);
+            let win = window::Window {
+                depths: std::array::from_fn(|r| std::array::from_fn(|c| row[7 + 3 * r + c])),
+                missing: [false; 4],
+            };
+            let (at, slope) = ([row[0], row[1], row[2], row[3]], [row[4], row[5]]);
+            let want = contours::uneven_response(&s, (&frame, &win), at, slope);
+            // D changes by 0.9 * 0.1 / (0.8 d^2) = 11 per unit of depth at most, at 0.1; a
+            // plane at 0.8 is rounded by 2^-23 in each of three operations; eight taps.
+            let tolerance = 12.0 * 8.0 * 3.0 * 2f64.powi(-23);
+            let got = f64::from(result[0]);
+            assert!((got - want).abs() <= tolerance, "{row:?}: {got} for {want}");
+            if row[16] == 1.0 {
+                assert!(got <= tolerance, "a plane: {got}");
+            }
+        }
+    });
+}

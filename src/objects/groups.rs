@@ -1,0 +1,291 @@
+//! Meshes that are parts of one object: those below an [`OutlineGroup`], and the
+//! primitives of a glTF node.
+//!
+//! Observers note which entities changed. Without changes, a frame costs nothing.
+
+use bevy::{
+    asset::AssetPath,
+    ecs::{
+        component::Component,
+        entity::{Entity, EntityHashMap, EntityHashSet},
+        hierarchy::{ChildOf, Children},
+        lifecycle::{Discard, Insert, Remove},
+        observer::On,
+        query::Has,
+        reflect::ReflectComponent,
+        resource::Resource,
+        system::{Query, Res, ResMut},
+    },
+    mesh::Mesh3d,
+    platform::collections::HashMap,
+    prelude::{App, DetectChanges, DetectChangesMut},
+    reflect::{Reflect, std_traits::ReflectDefault},
+    render::Extract,
+};
+
+/// All meshes of this entity and of its descendants are one object: between them, there
+/// are no [object edges](crate::ObjectEdges).
+///
+/// For what is seen as one thing but has several meshes: the chunks of a terrain, the
+/// parts of a building. Between the group and other objects, edges remain. Silhouettes
+/// and creases remain inside the group too, because they follow from depth and normals.
+/// [`OutlineStyle`](crate::OutlineStyle) and [`NoOutlines`](crate::NoOutlines) still
+/// apply to single meshes.
+///
+/// If groups are nested, a mesh belongs to the nearest one on the way up, itself included.
+/// So a mesh with an `OutlineGroup` of its own is an object of its own.
+///
+/// The primitives of one glTF node are one object without a group, see
+/// [`object_id`](crate::object_id). An `OutlineGroup` on a primitive separates it from
+/// the others.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Component, Default, Clone, PartialEq)]
+pub struct OutlineGroup;
+
+/// The longest way up to a group. It ends walks in hierarchies that are circles.
+const DEEPEST: usize = 65_536;
+
+/// The objects that meshes are parts of. Both worlds have a copy.
+#[derive(Resource, Clone, Debug, Default)]
+pub(crate) struct ObjectGroups {
+    /// The entity with the nearest `OutlineGroup`, of every mesh in a group.
+    roots: EntityHashMap<Entity>,
+    /// The first primitive of the same glTF node, of every primitive that shares its node
+    /// with others and is in no group.
+    primitives: EntityHashMap<Entity>,
+}
+
+impl ObjectGroups {
+    /// The entity whose id the mesh has.
+    pub fn object(&self, mesh: Entity) -> Entity {
+        let other = self.roots.get(&mesh).or(self.primitives.get(&mesh));
+        other.copied().unwrap_or(mesh)
+    }
+}
+
+/// Sets or removes an entry; `true` if that changed the map.
+fn put(map: &mut EntityHashMap<Entity>, mesh: Entity, object: Option<Entity>) -> bool {
+    match object {
+        Some(object) => map.insert(mesh, object) != Some(object),
+        None => map.remove(&mesh).is_some(),
+    }
+}
+
+/// What changed since the groups were last updated.
+#[derive(Resource, Default)]
+pub(crate) struct GroupChanges {
+    /// Entities that may belong to another group now, with all of their descendants.
+    subtrees: EntityHashSet,
+    /// Children and the parents that they left.
+    left: Vec<(Entity, Entity)>,
+}
+
+/// Registers the component and keeps [`ObjectGroups`] up to date.
+pub(crate) fn build(app: &mut App) {
+    app.register_type::<OutlineGroup>()
+        .init_resource::<ObjectGroups>()
+        .init_resource::<GroupChanges>()
+        .add_observer(
+            |on: On<Insert, OutlineGroup>, mut changes: ResMut<GroupChanges>| {
+                changes.subtrees.insert(on.entity);
+            },
+        )
+        .add_observer(
+            |on: On<Remove, OutlineGroup>, mut changes: ResMut<GroupChanges>| {
+                changes.subtrees.insert(on.entity);
+            },
+        )
+        .add_observer(
+            |on: On<Insert, Mesh3d>, mut changes: ResMut<GroupChanges>| {
+                changes.subtrees.insert(on.entity);
+            },
+        )
+        .add_observer(
+            |on: On<Remove, Mesh3d>, mut changes: ResMut<GroupChanges>| {
+                changes.subtrees.insert(on.entity);
+            },
+        )
+        .add_observer(
+            |on: On<Insert, ChildOf>, mut changes: ResMut<GroupChanges>| {
+                changes.subtrees.insert(on.entity);
+            },
+        )
+        .add_observer(parent_left)
+        .add_systems(bevy::app::PostUpdate, update_object_groups);
+}
+
+fn parent_left(
+    on: On<Discard, ChildOf>,
+    parents: Query<&ChildOf>,
+    mut changes: ResMut<GroupChanges>,
+) {
+    changes.subtrees.insert(on.entity);
+    if let Ok(child_of) = parents.get(on.entity) {
+        changes.left.push((on.entity, child_of.parent()));
+    }
+}
+
+/// What the groups depend on.
+type Tree<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Option<&'static ChildOf>,
+        Option<&'static Children>,
+        Option<&'static Mesh3d>,
+        Has<OutlineGroup>,
+    ),
+>;
+
+pub(crate) fn update_object_groups(
+    mut changes: ResMut<GroupChanges>,
+    mut groups: ResMut<ObjectGroups>,
+    tree: Tree,
+) {
+    if changes.subtrees.is_empty() && changes.left.is_empty() {
+        return;
+    }
+    let changes = std::mem::take(&mut *changes);
+    let mut update = Update {
+        tree,
+        groups: groups.bypass_change_detection(),
+        visited: EntityHashSet::default(),
+        parents: EntityHashSet::default(),
+        changed: false,
+    };
+    for (child, parent) in changes.left {
+        if update.groups.primitives.contains_key(&child) {
+            update.parents.insert(parent);
+        }
+    }
+    for entity in changes.subtrees {
+        update.subtree(entity);
+    }
+    for parent in std::mem::take(&mut update.parents) {
+        update.primitives(parent);
+    }
+    if update.changed {
+        groups.set_changed();
+    }
+}
+
+struct Update<'a, 'w, 's> {
+    tree: Tree<'w, 's>,
+    groups: &'a mut ObjectGroups,
+    visited: EntityHashSet,
+    /// Parents whose children may share other primitives.
+    parents: EntityHashSet,
+    changed: bool,
+}
+
+impl Update<'_, '_, '_> {
+    fn is_root(&self, entity: Entity) -> bool {
+        self.tree.get(entity).is_ok_and(|(.., root)| root)
+    }
+
+    /// The nearest entity with an `OutlineGroup`, from `entity` upwards.
+    fn nearest_root(&self, entity: Entity) -> Option<Entity> {
+        let mut at = entity;
+        for _ in 0..DEEPEST {
+            let (child_of, _, _, root) = self.tree.get(at).ok()?;
+            if root {
+                return Some(at);
+            }
+            at = child_of?.parent();
+        }
+        None
+    }
+
+    /// Updates the group of an entity and of its descendants, up to nested groups.
+    fn subtree(&mut self, top: Entity) {
+        let root = self.nearest_root(top);
+        let mut below = vec![top];
+        while let Some(entity) = below.pop() {
+            if !self.visited.insert(entity) {
+                continue;
+            }
+            let (child_of, children, mesh, _) =
+                self.tree.get(entity).unwrap_or((None, None, None, false));
+            let is_primitive = mesh.is_some_and(|m| m.path().and_then(primitive).is_some())
+                || self.groups.primitives.contains_key(&entity);
+            let parent = child_of.filter(|_| mesh.is_some()).map(ChildOf::parent);
+            self.changed |= put(
+                &mut self.groups.roots,
+                entity,
+                root.filter(|_| mesh.is_some()),
+            );
+            match parent.filter(|_| is_primitive) {
+                Some(parent) => {
+                    self.parents.insert(parent);
+                }
+                None => self.changed |= put(&mut self.groups.primitives, entity, None),
+            }
+            let children = children.into_iter().flat_map(|c| c.iter().copied());
+            below.extend(children.filter(|child| !self.is_root(*child)));
+        }
+    }
+
+    /// Updates which children of a parent are primitives of one glTF node.
+    ///
+    /// The glTF loader spawns each primitive as a child of its node, with a mesh from the
+    /// path `FILE#MeshM/PrimitiveP`. Games may spawn such meshes below a parent of their
+    /// own, many times. So the first child with each primitive of a mesh makes an object,
+    /// the second child with each primitive makes another one, and so on.
+    fn primitives(&mut self, parent: Entity) {
+        let Ok((_, Some(children), ..)) = self.tree.get(parent) else {
+            return;
+        };
+        let mut copies: HashMap<&AssetPath, usize> = HashMap::default();
+        let mut objects: HashMap<(AssetPath, &str, usize), Vec<Entity>> = HashMap::default();
+        let mut others = Vec::new();
+        for child in children.iter().copied() {
+            let mesh = self.tree.get(child).ok().and_then(|(_, _, mesh, _)| mesh);
+            let path = mesh.and_then(|mesh| mesh.path());
+            let found = path.and_then(|path| Some((path, primitive(path)?)));
+            let grouped = self.groups.roots.contains_key(&child);
+            let Some((path, mesh)) = found.filter(|_| !grouped) else {
+                others.push(child);
+                continue;
+            };
+            let copy = copies.entry(path).or_default();
+            let object = (path.without_label(), mesh, *copy);
+            *copy += 1;
+            objects.entry(object).or_default().push(child);
+        }
+        let mut changed = false;
+        let primitives = &mut self.groups.primitives;
+        for members in objects.values() {
+            let first = Some(members[0]).filter(|_| members.len() > 1);
+            for member in members {
+                changed |= put(primitives, *member, first);
+            }
+        }
+        for other in others {
+            changed |= put(primitives, other, None);
+        }
+        self.changed |= changed;
+    }
+}
+
+/// The label of the mesh of a primitive: `Mesh3` of `model.glb#Mesh3/Primitive0`. `None`
+/// for other assets.
+fn primitive<'a>(path: &'a AssetPath) -> Option<&'a str> {
+    let (mesh, primitive) = path.label()?.split_once('/')?;
+    let numbered = |part: &str, name| {
+        let number = part.strip_prefix(name);
+        number.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit()))
+    };
+    (numbered(mesh, "Mesh") && numbered(primitive, "Primitive")).then_some(mesh)
+}
+
+pub(crate) fn extract_object_groups(
+    main: Extract<Res<ObjectGroups>>,
+    mut groups: ResMut<ObjectGroups>,
+) {
+    if main.is_changed() {
+        groups.clone_from(&main);
+    }
+}
+
+#[cfg(test)]
+mod tests;

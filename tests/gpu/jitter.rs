@@ -1,0 +1,200 @@
+//! Lines under temporal anti-aliasing: the engine moves depth by a part of a pixel in
+//! every frame, and the lines stay at the edges that they belong to.
+
+use bevy::{
+    anti_alias::taa::TemporalAntiAliasing,
+    prelude::*,
+    render::{camera::TemporalJitter, view::Msaa},
+};
+use bevy_comics::Outlines;
+
+use crate::{
+    outlines::{ink, put},
+    small::Small,
+    upscaled::override_main_pass,
+};
+
+/// Width and height of the picture in pixels.
+const SIZE: usize = 120;
+
+/// The offsets of the engine's temporal anti-aliasing, frame by frame.
+const HALTON: [Vec2; 8] = [
+    Vec2::new(0.0, 0.0),
+    Vec2::new(0.0, -0.16666666),
+    Vec2::new(-0.25, 0.16666669),
+    Vec2::new(0.25, -0.3888889),
+    Vec2::new(-0.375, -0.055555552),
+    Vec2::new(0.125, 0.2777778),
+    Vec2::new(-0.125, -0.2777778),
+    Vec2::new(0.375, 0.055555582),
+];
+
+/// How far the measured middle of a line may be from its place. The ink of two pixels,
+/// each at most 1.5 pixels from the middle of a line of 2 pixels, is rounded: by 0.004 in
+/// the texture of ink, and by 0.0045 in the picture of 8 bits.
+const MEASURED: f32 = 2.0 * 1.5 * (0.004 + 0.0045) / 2.0;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Axis {
+    X,
+    Y,
+}
+
+impl Axis {
+    fn of(self, v: Vec2) -> f32 {
+        match self {
+            Self::X => v.x,
+            Self::Y => v.y,
+        }
+    }
+}
+
+/// A perspective view of a wall with one straight side, `at` pixels from the left or the
+/// top of the picture.
+fn wall(axis: Axis, at: f32) -> Small {
+    let mut small = Small::new(UVec2::splat(SIZE as u32), Msaa::Off);
+    move_wall(&mut small, axis, at);
+    small
+}
+
+fn move_wall(small: &mut Small, axis: Axis, at: f32) {
+    small.clear();
+    // 90 degrees, at a distance of half of the picture's height: a unit is a pixel.
+    let half = 0.5 * SIZE as f32;
+    small.insert((
+        Transform::IDENTITY,
+        Projection::Perspective(PerspectiveProjection {
+            fov: std::f32::consts::FRAC_PI_2,
+            ..default()
+        }),
+    ));
+    let middle = match axis {
+        Axis::X => Vec3::new(at - half - 400.0, 0.0, -half),
+        Axis::Y => Vec3::new(0.0, half - at - 400.0, -half),
+    };
+    put(
+        small,
+        Rectangle::new(800.0, 800.0),
+        Color::WHITE,
+        Transform::from_translation(middle),
+    );
+}
+
+/// The middle of the line in pixels from the left or the top.
+fn middle(ink: &[f32], axis: Axis) -> f32 {
+    let across = |i: usize| match axis {
+        Axis::X => ink[SIZE / 2 * SIZE + i],
+        Axis::Y => ink[i * SIZE + SIZE / 2],
+    };
+    let sum: f32 = (0..SIZE).map(across).sum();
+    let moment: f32 = (0..SIZE).map(|i| across(i) * (i as f32 + 0.5)).sum();
+    assert!(sum > 1.0, "no line");
+    moment / sum
+}
+
+fn lines() -> Outlines {
+    Outlines {
+        width: 2.0,
+        ..Outlines::SILHOUETTES
+    }
+}
+
+/// The engine draws an edge at `at - offset`. The nearest border of pixels has the line,
+/// which is moved back by the offset. So it is at most half a pixel of the depth texture
+/// from the edge.
+fn expected(at: f32, offset: f32, texel: f32) -> f32 {
+    let drawn = at / texel - offset;
+    let border = (drawn + 0.5).floor();
+    let tie = 0.5 - (drawn - border).abs();
+    assert!(
+        tie > 0.015,
+        "the edge runs through centres of pixels: {tie}"
+    );
+    (border + offset) * texel
+}
+
+#[test]
+fn lines_stay_at_their_edge_under_jitter() {
+    let mut small = wall(Axis::X, 60.0);
+    for axis in [Axis::X, Axis::Y] {
+        for at in [60.03, 60.3, 60.42, 60.7] {
+            move_wall(&mut small, axis, at);
+            let mut found = Vec::new();
+            for offset in HALTON {
+                small.insert(TemporalJitter { offset });
+                let x = middle(&ink(&mut small, lines()), axis);
+                let right = expected(at, axis.of(offset), 1.0);
+                println!("{axis:?} {at} {:.3}: {x:.3}, {right:.3}", axis.of(offset));
+                assert!((right - at).abs() <= 0.5);
+                assert!(
+                    (x - right).abs() <= MEASURED,
+                    "{axis:?} {at}, offset {offset}: {x}, not {right}"
+                );
+                found.push(x);
+            }
+            let mean = found.iter().sum::<f32>() / 8.0;
+            println!("{axis:?} {at}: mean {mean:.3}");
+            // The mean of the rounding errors of the eight offsets: the largest over
+            // all positions of an edge is 0.125 px across and 0.174 px down.
+            let most = if axis == Axis::X { 0.125 } else { 0.174 };
+            assert!(
+                (mean - at).abs() <= most + MEASURED,
+                "{axis:?} {at}: {mean}"
+            );
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// The same where the main pass has a lower resolution: offsets are in its pixels.
+#[test]
+fn lines_stay_at_their_edge_under_jitter_of_a_smaller_main_pass() {
+    let mut small = wall(Axis::X, 60.0);
+    override_main_pass(&mut small, Some(UVec2::splat(SIZE as u32 / 2)));
+    for axis in [Axis::X, Axis::Y] {
+        for at in [60.3, 61.16] {
+            move_wall(&mut small, axis, at);
+            for offset in HALTON {
+                small.insert(TemporalJitter { offset });
+                let x = middle(&ink(&mut small, lines()), axis);
+                let right = expected(at, axis.of(offset), 2.0);
+                assert!(
+                    (x - right).abs() <= MEASURED,
+                    "{axis:?} {at}, offset {offset}: {x}, not {right}"
+                );
+            }
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+#[test]
+fn lines_stay_at_their_edge_under_temporal_anti_aliasing() {
+    let mut small = wall(Axis::X, 60.0);
+    small.insert(TemporalAntiAliasing::default());
+    for axis in [Axis::X, Axis::Y] {
+        for at in [60.03, 60.3] {
+            move_wall(&mut small, axis, at);
+            let _ = ink(&mut small, lines());
+            // The history of the wall in its old place fades.
+            small.headless.step(30);
+            let mut errors = Vec::new();
+            for _ in 0..8 {
+                small.headless.step(1);
+                let (input, output) = small.pass();
+                let light = |p: &[f32; 4]| p[0] + p[1] + p[2];
+                let pixels = input.pixels.iter().zip(&output.pixels);
+                let ink: Vec<f32> = pixels
+                    .map(|(a, b)| 1.0 - light(b) / light(a).max(1e-6))
+                    .collect();
+                errors.push(middle(&ink, axis) - at);
+            }
+            println!("{axis:?} {at}: {errors:.3?}");
+            assert!(
+                errors.iter().all(|e| e.abs() <= 0.5 + MEASURED),
+                "{errors:?}"
+            );
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}

@@ -1,0 +1,446 @@
+//! Views whose main pass has a lower resolution than the picture, as with upscalers: depth
+//! and ids fill a corner of their textures.
+//!
+//! No upscaler runs here, so the picture shows the scene in its corner. The fraction of
+//! light that the pass removes is where it belongs all the same.
+
+use bevy::{
+    camera::{MainPassResolutionOverride, ScalingMode, Viewport},
+    prelude::*,
+    render::{Render, RenderApp, RenderSystems, camera::ExtractedCamera, view::Msaa},
+};
+use bevy_comics::{
+    BlackFlats, ComicStyle, ContourOperator, Contours, Effect, Form, Outlines, VisibleDepthRange,
+};
+
+use crate::{
+    outlines::{look, put},
+    small::Small,
+};
+
+/// In the render world: the size of all main passes.
+#[derive(Resource, Default)]
+struct MainPass(Option<UVec2>);
+
+fn override_views(
+    mut commands: Commands,
+    main_pass: Res<MainPass>,
+    views: Query<Entity, With<ExtractedCamera>>,
+) {
+    for view in &views {
+        match main_pass.0 {
+            Some(size) => commands
+                .entity(view)
+                .insert(MainPassResolutionOverride(size)),
+            None => commands.entity(view).remove::<MainPassResolutionOverride>(),
+        };
+    }
+}
+
+/// Sets the size of the main pass, as upscalers do.
+pub fn override_main_pass(small: &mut Small, size: Option<UVec2>) {
+    let render = small.headless.app.sub_app_mut(RenderApp);
+    if !render.world().contains_resource::<MainPass>() {
+        render
+            .init_resource::<MainPass>()
+            .add_systems(Render, override_views.in_set(RenderSystems::PrepareViews));
+    }
+    render.world_mut().resource_mut::<MainPass>().0 = size;
+}
+
+const WIDTH: u32 = 240;
+const HEIGHT: u32 = 180;
+
+/// Pixels of the picture per pixel of the main pass.
+const SCALES: [f32; 3] = [1.0, 1.5, 2.0];
+
+fn main_pass(scale: f32) -> Option<UVec2> {
+    let size = UVec2::new(WIDTH, HEIGHT).as_vec2() / scale;
+    (scale > 1.0).then_some(size.as_uvec2())
+}
+
+fn new() -> Small {
+    Small::new(UVec2::new(WIDTH, HEIGHT), Msaa::Off)
+}
+
+/// Ink of every pixel under a style: the fraction of its light that the pass removed.
+fn ink(small: &mut Small, style: &ComicStyle) -> Vec<f32> {
+    small.style(style);
+    small.settle();
+    let (input, output) = small.pass();
+    let light = |p: &[f32; 4]| p[0] + p[1] + p[2];
+    let pixels = input.pixels.iter().zip(&output.pixels);
+    pixels
+        .map(|(a, b)| 1.0 - light(b) / light(a).max(1e-6))
+        .collect()
+}
+
+fn of<E: Effect>(effect: E) -> ComicStyle {
+    ComicStyle::new().with(effect)
+}
+
+/// A rectangle in pixels from the top left corner: left, top, right, bottom.
+type Rectangle4 = [f32; 4];
+
+/// A small box in front of a large one, before the sky.
+const BOXES: [(Rectangle4, f32); 2] = [
+    ([50.3, 40.8, 190.7, 139.4], -60.0),
+    ([90.6, 60.2, 140.9, 110.55], -5.0),
+];
+
+/// An orthographic view, one unit per pixel, of the boxes.
+fn boxes() -> Small {
+    let mut small = new();
+    small.clear();
+    small.insert((
+        Transform::IDENTITY,
+        Projection::Orthographic(OrthographicProjection {
+            scaling_mode: ScalingMode::Fixed {
+                width: WIDTH as f32,
+                height: HEIGHT as f32,
+            },
+            far: 100.0,
+            ..OrthographicProjection::default_3d()
+        }),
+    ));
+    for ([left, top, right, bottom], z) in BOXES {
+        let middle = Vec3::new(
+            0.5 * (left + right) - 0.5 * WIDTH as f32,
+            0.5 * HEIGHT as f32 - 0.5 * (top + bottom),
+            z,
+        );
+        put(
+            &mut small,
+            Rectangle::new(right - left, bottom - top),
+            Color::WHITE,
+            Transform::from_translation(middle),
+        );
+    }
+    small
+}
+
+/// Distance in pixels from a position to the sides of a rectangle; the larger of the
+/// distances across and down if `square`.
+fn side_distance([left, top, right, bottom]: Rectangle4, at: Vec2, square: bool) -> f32 {
+    let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
+    let corners = corners.map(Vec2::from);
+    (0..4)
+        .map(|i| {
+            let (a, b) = (corners[i], corners[(i + 1) % 4]);
+            let (low, high) = (a.min(b), a.max(b));
+            let away = (at - at.clamp(low, high)).abs();
+            if square {
+                away.max_element()
+            } else {
+                away.length()
+            }
+        })
+        .fold(f32::MAX, f32::min)
+}
+
+fn distance(at: Vec2, square: bool) -> f32 {
+    let sides = BOXES.map(|(sides, _)| side_distance(sides, at, square));
+    sides[0].min(sides[1])
+}
+
+fn centres() -> impl Iterator<Item = (usize, Vec2)> {
+    (0..WIDTH * HEIGHT).map(|i| {
+        let at = UVec2::new(i % WIDTH, i / WIDTH).as_vec2() + 0.5;
+        (i as usize, at)
+    })
+}
+
+/// Ink lies along the sides of the boxes: `most` pixels away at most. Every place on a side
+/// has ink at most `least` pixels away. A line of 1 px between two pixels has half of its
+/// ink in each.
+fn assert_along_sides(ink: &[f32], (most, least): (f32, f32), square: bool, what: &str) {
+    for (i, at) in centres() {
+        let away = distance(at, square);
+        assert!(
+            ink[i] < 0.02 || away <= most,
+            "{what}: ink of {} at {at}, {away} px from a side",
+            ink[i]
+        );
+    }
+    for ([left, top, right, bottom], _) in BOXES {
+        for k in 0..400 {
+            let t = k as f32 / 400.0;
+            let (x, y) = (left + t * (right - left), top + t * (bottom - top));
+            for side in [[x, top], [x, bottom], [left, y], [right, y]] {
+                let side = Vec2::from(side);
+                let near = |(i, at): (usize, Vec2)| ink[i] > 0.4 && at.distance(side) <= least;
+                let (low, high) = ((side - least).floor(), (side + least).ceil());
+                let rows = low.y as u32..high.y as u32;
+                let found = rows
+                    .flat_map(|y| (low.x as u32..high.x as u32).map(move |x| (x, y)))
+                    .any(|(x, y)| {
+                        let at = Vec2::new(x as f32, y as f32) + 0.5;
+                        near(((y * WIDTH + x) as usize, at))
+                    });
+                assert!(found, "{what}: no ink within {least} px of {side}");
+            }
+        }
+    }
+}
+
+/// The length of all sides in pixels.
+fn perimeter() -> f32 {
+    let around = BOXES.map(|([l, t, r, b], _)| 2.0 * (r - l + b - t));
+    around[0] + around[1]
+}
+
+/// The mean width of a line along all sides. Sides are drawn up to half a texel longer or
+/// shorter at both ends, and lines overlap at eight corners.
+fn assert_width(ink: &[f32], width: f32, scale: f32, what: &str) {
+    let area: f32 = ink.iter().sum();
+    let wanted = perimeter() * width;
+    let most = 8.0 * (scale * width + width * width);
+    println!("{what}: {:.3} px", area / perimeter());
+    assert!(
+        (area - wanted).abs() <= most,
+        "{what}: {area}, not {wanted}"
+    );
+}
+
+#[test]
+fn outlines_are_where_the_geometry_is() {
+    let mut small = boxes();
+    for scale in SCALES {
+        override_main_pass(&mut small, main_pass(scale));
+        for width in [1.0, 2.0, 5.0] {
+            let what = format!("outlines of {width} px, scale {scale}");
+            let lines = Outlines {
+                width,
+                ..Outlines::SILHOUETTES
+            };
+            let ink = ink(&mut small, &of(lines));
+            // The crack is half a texel from the side at most, a line of odd width is half
+            // a texel further in, and half a pixel is covered partly.
+            // At corners, both of these count twice, across and down.
+            let odd = if width == 2.0 { 0.0 } else { 0.5 * scale };
+            let middle = (0.5 * scale + odd) * 2f32.sqrt();
+            let most = middle + 0.5 * width + 0.5;
+            let least = middle + 0.5 * 2f32.sqrt();
+            assert_along_sides(&ink, (most, least), false, &what);
+            assert_width(&ink, width, scale, &what);
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+#[test]
+fn contours_are_where_the_geometry_is() {
+    let mut small = boxes();
+    for scale in SCALES {
+        override_main_pass(&mut small, main_pass(scale));
+        for operator in [
+            ContourOperator::Prewitt,
+            ContourOperator::Sobel,
+            ContourOperator::Laplace,
+        ] {
+            for width in [1.0, 2.0, 4.0] {
+                let what = format!("{operator:?} contours of {width} px, scale {scale}");
+                let contours = Contours {
+                    operator,
+                    width,
+                    ..default()
+                };
+                let ink = ink(&mut small, &of(contours));
+                // A width of 1 px is that of 2 px at half of the opacity.
+                let reach = (0.5 * width).ceil();
+                let most = 0.5 * scale + reach;
+                let least = 0.5 * scale * 2f32.sqrt() + 0.5 * 2f32.sqrt();
+                if width > 1.0 {
+                    assert_along_sides(&ink, (most, least), true, &what);
+                    assert_width(&ink, width, scale, &what);
+                }
+            }
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// Lines in a viewport that does not begin in the corner of the picture are those of a
+/// picture of its size.
+#[test]
+fn lines_do_not_depend_on_the_place_of_the_viewport() {
+    let size = UVec2::new(160, 120);
+    let first = UVec2::new(60, 40);
+    let style = of(Outlines::default()).with(Contours::default());
+    let mut small = new();
+    small.insert(Camera {
+        viewport: Some(Viewport {
+            physical_position: first,
+            physical_size: size,
+            ..default()
+        }),
+        ..default()
+    });
+    let mut alone = Small::new(size, Msaa::Off);
+    alone.insert(Camera::default());
+    for main_pass in [None, Some(UVec2::new(80, 60))] {
+        override_main_pass(&mut small, main_pass);
+        override_main_pass(&mut alone, main_pass);
+        let (part, whole) = (ink(&mut small, &style), ink(&mut alone, &style));
+        assert!(whole.iter().sum::<f32>() > 500.0);
+        for (i, at) in centres() {
+            let inside = at.as_ivec2() - first.as_ivec2();
+            let wanted = if inside.cmpge(IVec2::ZERO).all() && inside.cmplt(size.as_ivec2()).all() {
+                whole[(inside.y * size.x as i32 + inside.x) as usize]
+            } else {
+                0.0
+            };
+            let got = part[i];
+            assert!((got - wanted).abs() < 0.01, "{at}: {got}, not {wanted}");
+        }
+    }
+    assert_eq!(small.errors() + alone.errors(), 0);
+}
+
+/// The row of the horizon of `grazing`, in pixels from the top, at a column.
+fn horizon(camera: &Transform, x: f32) -> f32 {
+    let tan = (std::f32::consts::PI / 8.0).tan();
+    let half = Vec2::new(WIDTH as f32, HEIGHT as f32) * 0.5;
+    let across = (x - half.x) / half.y * tan;
+    // The ray of a pixel is level where forward.y + across * right.y + up.y * v = 0.
+    let v = -(camera.forward().y + across * camera.right().y) / camera.up().y;
+    half.y - v / tan * half.y
+}
+
+#[test]
+fn a_grazing_plane_has_lines_at_its_horizon_alone() {
+    for height in [1.7, 0.05] {
+        let mut small = new();
+        small.clear();
+        put(
+            &mut small,
+            Plane3d::default().mesh().size(40_000.0, 40_000.0),
+            Color::srgb(0.8, 0.7, 0.5),
+            Transform::IDENTITY,
+        );
+        let eye = Vec3::new(0.0, height, 0.0);
+        let target = eye - Vec3::new(0.3, 0.02, 1.0);
+        look(&mut small, eye, target, 0.1);
+        let camera = Transform::from_translation(eye).looking_at(target, Vec3::Y);
+        for scale in SCALES {
+            override_main_pass(&mut small, main_pass(scale));
+            let mut styles = vec![("outlines".into(), 2.0, of(Outlines::default()))];
+            for width in [1.0, 2.0, 5.0] {
+                let contours = Contours { width, ..default() };
+                styles.push((format!("contours of {width} px"), width, of(contours)));
+            }
+            for (name, width, style) in styles {
+                let what = format!("{name}, {height} m, scale {scale}");
+                let ink = ink(&mut small, &style);
+                // Half a texel, the line, and a pixel for the odd part of its width; the
+                // plane ends before the horizon, by 0.02 pixels.
+                let most = scale + 0.5 * width + 1.0;
+                let mut wrong = 0;
+                for (i, at) in centres() {
+                    let away = (at.y - horizon(&camera, at.x)).abs();
+                    wrong += usize::from(ink[i] > 0.02 && away > most);
+                }
+                println!("{what}: {wrong} pixels of false ink");
+                assert_eq!(wrong, 0, "{what}");
+                assert!(ink.iter().any(|i| *i > 0.4), "{what}: no horizon");
+            }
+        }
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+/// The paper's contours include slopes. They are those of a view of the main pass's size.
+#[test]
+fn faithful_contours_are_those_of_a_view_of_the_main_passs_size() {
+    let contours = |width| {
+        of(Contours {
+            form: Form::Faithful,
+            width,
+            ..default()
+        })
+    };
+    let size = UVec2::new(WIDTH, HEIGHT) / 2;
+    let low = ink(&mut Small::new(size, Msaa::Off), &contours(2.0));
+    let mut small = new();
+    override_main_pass(&mut small, Some(size));
+    // A pixel of the main pass on either side is the least.
+    for width in [2.0, 4.0] {
+        let high = ink(&mut small, &contours(width));
+        let mut inked = 0;
+        for (i, at) in centres() {
+            let texel = (0.5 * at).as_uvec2();
+            let wanted = low[(texel.y * size.x + texel.x) as usize];
+            let got = high[i];
+            // Eight bits, over two colours of the picture.
+            let same = (got - wanted).abs() <= 0.03;
+            assert!(same, "{width} px, {at}: {got}, {wanted}");
+            inked += usize::from(wanted > 0.5);
+        }
+        assert!(inked > 500, "{inked}");
+    }
+}
+
+/// A tilted plane fills the view, so that the depth map spans 0 to 1 from its top to its
+/// bottom: its slope is 1/512 per 1/512 of the height, everywhere.
+#[test]
+fn an_even_slope_is_as_steep_at_every_resolution() {
+    let mut small = boxes();
+    small.clear();
+    put(
+        &mut small,
+        Rectangle::new(2000.0, 2000.0),
+        Color::WHITE,
+        Transform::from_xyz(0.0, 0.0, -400.0)
+            .with_rotation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_3)),
+    );
+    small.insert(Projection::Orthographic(OrthographicProjection {
+        scaling_mode: ScalingMode::Fixed {
+            width: WIDTH as f32,
+            height: HEIGHT as f32,
+        },
+        far: 1000.0,
+        ..OrthographicProjection::default_3d()
+    }));
+    for scale in SCALES {
+        override_main_pass(&mut small, main_pass(scale));
+        // The range ends at centres of texels: half a texel of the border is missing at
+        // both ends, so the slope is steeper by 1 % at most.
+        for (threshold, filled) in [(0.85, true), (1.15, false)] {
+            let flats = BlackFlats {
+                slope: Some(threshold * 6.0 / 512.0),
+                value: None,
+                softness: 0.0,
+                ..default()
+            };
+            let ink = ink(&mut small, &of(flats));
+            // The window ends at the border of the picture, where the slope is halved.
+            let inside = |at: Vec2| {
+                let size = Vec2::new(WIDTH as f32, HEIGHT as f32);
+                at.cmpgt(Vec2::splat(4.0)).all() && at.cmplt(size - 4.0).all()
+            };
+            let wrong = centres().filter(|(i, at)| inside(*at) && (ink[*i] > 0.5) != filled);
+            assert_eq!(wrong.count(), 0, "scale {scale}, threshold {threshold}");
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+#[test]
+fn the_range_is_that_of_a_view_of_the_main_passs_size() {
+    for scale in [1.5, 2.0] {
+        let size = main_pass(scale).expect("smaller");
+        let range = |small: &mut Small| {
+            small.insert(VisibleDepthRange::default());
+            small.style(&of(Contours::default()));
+            small.headless.step(8);
+            small.range().expect("read back")
+        };
+        let mut native = Small::new(size, Msaa::Off);
+        let mut upscaled = new();
+        override_main_pass(&mut upscaled, Some(size));
+        let (native, upscaled) = (range(&mut native), range(&mut upscaled));
+        println!("{native:?}");
+        assert!(matches!(native, VisibleDepthRange::Visible { .. }));
+        assert_eq!(native, upscaled, "scale {scale}");
+    }
+}
