@@ -16,6 +16,7 @@ mod flicker;
 mod growth;
 mod ladder;
 mod lines;
+mod models;
 mod peers;
 mod plots;
 mod ranges;
@@ -80,16 +81,17 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
 
   --quick          small pictures, few repetitions, no other crates
   --out FOLDER     folder of the report; default docs/report
-  --only SECTION   measure one section only: ranges, encodings, lines, stability,
-                   ladder, growth, peers or flicker
+  --only SECTION   measure one section only: ranges, encodings, lines, models,
+                   stability, ladder, growth, peers or flicker
   --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
-const SECTIONS: [(&str, Section); 8] = [
+const SECTIONS: [(&str, Section); 9] = [
     ("ranges", ranges::measure),
     ("encodings", encodings::measure),
     ("lines", lines::measure),
+    ("models", models::measure),
     ("stability", stability::measure),
     ("ladder", ladder::measure),
     ("growth", growth::measure),

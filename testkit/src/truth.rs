@@ -131,3 +131,47 @@ fn near(mask: &[bool], width: usize, height: usize, at: usize, reach: i64) -> bo
         })
     })
 }
+
+/// Number of connected parts of a mask, over sides and corners, of at most `most` pixels.
+pub fn fragments(mask: &[bool], width: usize, most: usize) -> usize {
+    let mut seen = vec![false; mask.len()];
+    let mut small = 0;
+    for start in 0..mask.len() {
+        if !mask[start] || seen[start] {
+            continue;
+        }
+        seen[start] = true;
+        let mut open = vec![start];
+        let mut size = 0;
+        while let Some(at) = open.pop() {
+            size += 1;
+            let (x, y) = (at % width, at / width);
+            for v in y.saturating_sub(1)..=(y + 1).min(mask.len() / width - 1) {
+                for u in x.saturating_sub(1)..=(x + 1).min(width - 1) {
+                    let next = v * width + u;
+                    if mask[next] && !seen[next] {
+                        seen[next] = true;
+                        open.push(next);
+                    }
+                }
+            }
+        }
+        small += usize::from(size <= most);
+    }
+    small
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn fragments_are_parts_of_few_pixels() {
+        let rows = ["##....#", "..#....", "......#", "#####.#"];
+        let mask: Vec<bool> = rows.concat().chars().map(|c| c == '#').collect();
+        // Three pixels joined over a corner, one alone, five in a row, two in a column.
+        assert_eq!(super::fragments(&mask, 7, 0), 0);
+        assert_eq!(super::fragments(&mask, 7, 1), 1);
+        assert_eq!(super::fragments(&mask, 7, 2), 2);
+        assert_eq!(super::fragments(&mask, 7, 3), 3);
+        assert_eq!(super::fragments(&mask, 7, 5), 4);
+    }
+}

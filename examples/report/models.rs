@@ -1,0 +1,171 @@
+//! How well outlines follow the edges of models that resemble real assets, while these
+//! turn: recall and precision against the geometry at a finer resolution, and fragments.
+
+use std::f32::consts::TAU;
+
+use bevy::{
+    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
+    prelude::*,
+    render::RenderApp,
+};
+use bevy_comics::{ComicStyle, ObjectEdges, Outlines};
+use bevy_comics_testkit::{
+    read_back,
+    specimens::Specimen,
+    truth::{FINE, Truth, fragments},
+};
+
+use crate::{
+    Run,
+    rig::{Rig, Wear},
+    table::Table,
+};
+
+/// Distances of the camera in radii of the model: it fills the picture, or is a
+/// sixth as high.
+const DISTANCES: [(&str, f32); 2] = [("close", 2.6), ("distant", 16.0)];
+
+/// A camera in front of a white model on white: every darker pixel is ink.
+struct Studio {
+    rig: Rig,
+    parts: Vec<Entity>,
+}
+
+impl Studio {
+    fn new(size: UVec2, outlines: Outlines) -> Self {
+        let mut rig = Rig::new(None, size);
+        rig.wear(&Wear::style(ComicStyle::new().with(outlines)));
+        let world = rig.headless.app.world_mut();
+        world.insert_resource(ClearColor(Color::WHITE));
+        world
+            .entity_mut(rig.camera)
+            .insert((DepthPrepass, NormalPrepass));
+        Self { rig, parts: vec![] }
+    }
+
+    fn show(&mut self, specimen: Specimen) {
+        let world = self.rig.headless.app.world_mut();
+        for part in self.parts.drain(..) {
+            world.despawn(part);
+        }
+        let material = world
+            .resource_mut::<Assets<StandardMaterial>>()
+            .add(StandardMaterial {
+                unlit: true,
+                double_sided: true,
+                cull_mode: None,
+                ..default()
+            });
+        for (mesh, _) in specimen.parts() {
+            let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+            let part = world.spawn((Mesh3d(mesh), MeshMaterial3d(material.clone())));
+            self.parts.push(part.id());
+        }
+    }
+
+    /// Draws the model turned by a fraction of a full turn.
+    fn turn(&mut self, distance: f32, turned: f32) {
+        let eye = Quat::from_rotation_y(turned * TAU) * Vec3::new(0.0, 0.34, 0.94) * distance;
+        let at = Transform::from_translation(eye).looking_at(Vec3::ZERO, Vec3::Y);
+        let world = self.rig.headless.app.world_mut();
+        world.entity_mut(self.rig.camera).insert(at);
+        self.rig.headless.step(2);
+    }
+
+    /// The pixels with ink: at least a quarter of the light is missing.
+    fn mask(&mut self) -> Vec<bool> {
+        let picture = self.rig.headless.picture();
+        picture.pixels().map(|p| p.0[1] < 191).collect()
+    }
+
+    fn truth(&self, size: UVec2) -> Truth {
+        let view = self.rig.view();
+        let world = self.rig.headless.app.sub_app(RenderApp).world();
+        let depth = read_back::depth(world, view).expect("a prepass");
+        let depth: Vec<f32> = depth.bits.iter().map(|b| f32::from_bits(*b)).collect();
+        let normals = read_back::normals(world, view).expect("a prepass").pixels;
+        let ids = read_back::object_ids(world, view).expect("ids");
+        let ids: Vec<u32> = ids.pixels.iter().map(|p| p[0]).collect();
+        let [width, height] = size.to_array().map(|v| v as usize);
+        Truth::new(width, height, &depth, &normals, &ids)
+    }
+}
+
+pub fn measure(run: &Run) -> Result<(), String> {
+    let mut table = Table::new(&[
+        "model",
+        "distance",
+        "frame",
+        "found",
+        "true",
+        "right",
+        "drawn",
+        "false",
+        "pixels",
+        "fragments",
+        "line",
+    ]);
+    let (frames, size) = if run.quick {
+        (2, UVec2::new(120, 68))
+    } else {
+        (90, UVec2::new(240, 136))
+    };
+    // Invisible object edges, so that ids are drawn.
+    let mut fine = Studio::new(
+        size * FINE,
+        Outlines {
+            silhouettes: None,
+            creases: None,
+            objects: Some(ObjectEdges {
+                opacity: 1e-6,
+                ..default()
+            }),
+            ..default()
+        },
+    );
+    let mut lined = Studio::new(size, Outlines::default());
+    let thin = Outlines {
+        width: 1.0,
+        ..default()
+    };
+    let large = size * FINE;
+    let mut thin = Studio::new(large, thin);
+    let models = &Specimen::ALL[..if run.quick { 1 } else { Specimen::ALL.len() }];
+    for &model in models {
+        for studio in [&mut fine, &mut lined, &mut thin] {
+            studio.show(model);
+            studio.rig.headless.step(4);
+        }
+        for (name, distance) in DISTANCES {
+            for frame in 0..frames {
+                let turned = frame as f32 / frames as f32;
+                for studio in [&mut fine, &mut lined, &mut thin] {
+                    studio.turn(distance, turned);
+                }
+                let truth = fine.truth(size);
+                let wanted = truth.any(&[0, 1, 2]);
+                let lines = lined.mask();
+                let (found, all) = truth.recall(&wanted, &lines);
+                let (right, drawn) = truth.precision(&wanted, &lines);
+                let mask = thin.mask();
+                let small = fragments(&mask, large.x as usize, 6);
+                let line = mask.iter().filter(|ink| **ink).count();
+                table.push(&[
+                    &model.name(),
+                    &name,
+                    &frame,
+                    &found,
+                    &all,
+                    &right,
+                    &drawn,
+                    &(drawn - right),
+                    &truth.inside().count(),
+                    &small,
+                    &line,
+                ]);
+            }
+        }
+        run.say(&format!("{}: lines scored", model.name()));
+    }
+    run.save("model_scores", &table)
+}
