@@ -45,7 +45,8 @@ fn compare(best: ptr<function, Best>, packed: u32, row: i32, south: bool) {
     let shift = select(1.0, -1.0, (packed & 8u) != 0u) * line_offset(half_width);
     let place = Place(row, south, 0.5 + shift);
     let middle = place_middle(place);
-    let away = abs(middle.y);
+    // In pixels of the viewport, as widths are.
+    let away = abs(middle.y) / column_uniform.grid.from_viewport.y;
     let value = line_coverage(away, half_width) * crack_opacity(column_uniform.settings, packed);
     // Of equal ink, the line is taken whose border is farther out: it reaches farther.
     let exists = (packed & 7u) != 0u;

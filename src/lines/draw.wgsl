@@ -21,7 +21,7 @@ struct DrawUniform {
 }
 
 @group(0) @binding(1) var<uniform> draw_uniform: DrawUniform;
-#ifdef NARROW
+#ifndef COLUMNS
 @group(0) @binding(11) var crack_texture: texture_2d<u32>;
 #else
 // The best crack of each pixel's column, see columns.wgsl.
@@ -103,7 +103,7 @@ fn follow(ink: ptr<function, Ink>, middle: vec2<f32>, border: f32) {
     (*ink).distances.x = min((*ink).distances.x, border);
 }
 
-#ifdef NARROW
+#ifndef COLUMNS
 // Adds both cracks of a pixel, which may lie outside of the grid.
 fn add_pixel(ink: ptr<function, Ink>, p: vec2<i32>, at: vec2<f32>) {
     let last = draw_uniform.grid.rect.zw - 1;
@@ -123,7 +123,7 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let centre = vec2<i32>(floor(at));
     var ink: Ink;
     ink.distances = vec2(1e6);
-#ifdef NARROW
+#ifdef NEIGHBOURS
     // CPU adapters execute the body of a loop once more than it iterates.
     add_pixel(&ink, centre + vec2(-1, -1), at);
     add_pixel(&ink, centre + vec2(0, -1), at);
@@ -133,7 +133,7 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     add_pixel(&ink, centre + vec2(1, 0), at);
     add_pixel(&ink, centre + vec2(-1, 1), at);
     add_pixel(&ink, centre + vec2(0, 1), at);
-#else
+#else ifdef COLUMNS
     let last = g.rect.zw - 1;
     for (var x = -g.reach - 1; x <= g.reach; x++) {
         let p = vec2(centre.x + x, clamp(centre.y, 0, last.y));
@@ -147,6 +147,12 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         let away = length((next - at) / g.from_viewport.xy);
         let next_border = max(away - unpack_width(stored.x >> 20u), border + 1e-4);
         follow(&ink, next, select(1e6, next_border, stored.y > 0xffffu));
+    }
+#else
+    for (var y = -g.reach; y <= g.reach; y++) {
+        for (var x = -g.reach; x <= g.reach; x++) {
+            add_pixel(&ink, centre + vec2(x, y), at);
+        }
     }
 #endif
     // Between the middles of two neighbouring cracks, a line runs straight. Discs around

@@ -42,6 +42,18 @@ pub(crate) fn reach(half_width: f32) -> i32 {
     (half_width + 1.0).ceil() as i32 - 1
 }
 
+/// How cracks near a pixel are searched.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) enum Search {
+    /// One pixel around it, without a loop.
+    #[default]
+    Neighbours,
+    /// All pixels within reach.
+    Around,
+    /// The best crack of each column within reach, see `columns.wgsl`.
+    Columns,
+}
+
 /// What selects the shader variants of the passes that find and draw lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct LineKey {
@@ -58,8 +70,7 @@ pub(crate) struct LineKey {
     pub faithful: [bool; 2],
     /// The depth texture has one pixel per pixel of the viewport.
     pub same_size: bool,
-    /// Cracks are searched one pixel around a pixel, not further.
-    pub narrow: bool,
+    pub search: Search,
     /// The device has no compute shaders.
     pub by_fragments: bool,
 }
@@ -83,7 +94,7 @@ impl LineKey {
             visible_range: lines.fades() && request.visible_range,
             faithful: forms.map(|form| form == Some(Form::Faithful)),
             same_size: request.view.depth_scale == Vec2::ONE,
-            narrow: request.grid_reach() == 1,
+            search: request.search(),
             by_fragments,
         }
     }
@@ -112,7 +123,7 @@ impl LineKey {
     pub fn for_find(self) -> Self {
         Self {
             faithful: [false; 2],
-            narrow: false,
+            search: Search::default(),
             ..self
         }
     }
@@ -123,7 +134,7 @@ impl LineKey {
             silhouettes: false,
             creases: false,
             object_edges: false,
-            narrow: false,
+            search: Search::default(),
             by_fragments: false,
             ..self
         }
@@ -142,7 +153,7 @@ impl LineKey {
         Self {
             ids: self.object_styles,
             object_styles: self.object_styles,
-            narrow: self.narrow,
+            search: self.search,
             by_fragments: self.by_fragments,
             ..Self::default()
         }
@@ -190,7 +201,10 @@ impl LineKey {
 
     fn draw_defs(&self) -> Vec<ShaderDefVal> {
         self.common()
-            .chain(names([(self.narrow, "NARROW")]))
+            .chain(names([
+                (self.search == Search::Neighbours, "NEIGHBOURS"),
+                (self.search == Search::Columns, "COLUMNS"),
+            ]))
             .collect()
     }
 
@@ -261,7 +275,11 @@ impl LineKey {
     }
 
     pub fn draw_layout(&self) -> BindGroupLayoutDescriptor {
-        let mut entries = self.searched(if self.narrow { 11 } else { 13 });
+        let mut entries = self.searched(if self.search == Search::Columns {
+            13
+        } else {
+            11
+        });
         if self.object_styles {
             entries.push(ids_entry(false));
         }

@@ -17,7 +17,7 @@ use bevy::{
 };
 
 use super::{
-    pipelines::{LineKey, LinePass, LineShaders},
+    pipelines::{LineKey, LinePass, LineShaders, Search},
     resolve::{ResolveKey, ResolvePipeline},
     settings::{LineSettings, LinesUniform},
 };
@@ -58,6 +58,18 @@ impl LineRequest {
         let aligned = self.view.depth_scale == Vec2::ONE && self.jitter.is_none();
         // Between the pixels of the grid, cracks half a pixel further away count.
         self.reach.max(1) + i32::from(!aligned)
+    }
+
+    /// Columns leave out too much where lines are hardly wider than a pixel of the grid.
+    pub fn search(&self) -> Search {
+        let reach = self.reach as f32 * self.view.depth_scale.min_element();
+        if self.grid_reach() == 1 {
+            Search::Neighbours
+        } else if reach < 2.0 {
+            Search::Around
+        } else {
+            Search::Columns
+        }
     }
 
     fn grid(&self) -> Grid {
@@ -161,7 +173,7 @@ impl LinePipelines<'_> {
                 computes.specialize(cache, &self.shaders, key.for_walk())
             }),
             find: render(LinePass::Find),
-            columns: (!key.narrow).then(|| render(LinePass::Columns)),
+            columns: (key.search == Search::Columns).then(|| render(LinePass::Columns)),
             draw: render(LinePass::Draw),
         });
         LinePasses {

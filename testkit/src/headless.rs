@@ -49,9 +49,6 @@ pub struct HeadlessOptions {
     /// Whether pipelines compile while frames are drawn, as in a game; else every
     /// pipeline is compiled before its first use.
     pub background_pipelines: bool,
-    /// Whether the device has the limits of WebGL2: no compute shaders and no storage
-    /// buffers and textures.
-    pub webgl2_limits: bool,
 }
 
 impl Default for HeadlessOptions {
@@ -64,7 +61,6 @@ impl Default for HeadlessOptions {
             assets: format!("{ROOT}/assets"),
             watch: false,
             background_pipelines: false,
-            webgl2_limits: false,
         }
     }
 }
@@ -80,8 +76,6 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
         .set(RenderPlugin {
             render_creation: WgpuSettings {
                 backends: Some(backends()),
-                constrained_limits: (options.webgl2_limits)
-                    .then(wgpu::Limits::downlevel_webgl2_defaults),
                 ..default()
             }
             .into(),

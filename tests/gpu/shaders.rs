@@ -423,7 +423,7 @@ fn every_kind_of_outline_composes_and_validates() {
     check(&columns, &[]);
     check(&columns, &["BY_FRAGMENTS"]);
     for styles in [&[][..], &["OBJECT_IDS", "OBJECT_STYLES"]] {
-        for view in subsets(&["BY_FRAGMENTS", "NARROW"]) {
+        for view in subsets(&["BY_FRAGMENTS", "NEIGHBOURS", "COLUMNS"]) {
             check(&draw, &[styles, &view].concat());
         }
     }

@@ -2,14 +2,11 @@
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{ComicStyle, DepthMap, Outlines, VisibleDepthRange};
-use bevy_comics_testkit::{
-    headless::HeadlessOptions,
-    reference::{draw::Cracks, view::View},
-};
+use bevy_comics_testkit::reference::{draw::Cracks, view::View};
 
 use crate::{
     pictures::{assert_pass_is_its_twin, frame, outlined},
-    small::{Small, options},
+    small::Small,
 };
 
 #[test]
@@ -77,33 +74,5 @@ fn a_search_by_columns_draws_what_an_exhaustive_search_draws() {
                 "{width} px, {width_fade}: {apart} of the pixels"
             );
         }
-    }
-}
-
-/// Without compute shaders every tile is searched, which must find the same lines.
-#[test]
-fn without_compute_shaders_the_lines_are_the_same() {
-    let pictures = [false, true].map(|webgl2_limits| {
-        let options = HeadlessOptions {
-            webgl2_limits,
-            ..options(UVec2::new(96, 64))
-        };
-        let mut small = Small::with(options, Msaa::Off);
-        [1.0, 2.0, 5.0, 16.0].map(|width| {
-            small.style(&ComicStyle::new().with(Outlines {
-                objects: None,
-                width,
-                ..default()
-            }));
-            small.settle();
-            let picture = small.picture();
-            assert_eq!(small.errors(), 0, "{width} px");
-            picture
-        })
-    });
-    let [with, without] = pictures;
-    assert_ne!(with[0], with[1], "the width changes the lines");
-    for (i, (a, b)) in with.iter().zip(&without).enumerate() {
-        assert_eq!(a, b, "picture {i}");
     }
 }
