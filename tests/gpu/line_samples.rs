@@ -47,9 +47,9 @@ fn strip(small: &mut Small, angle: f32, through: Vec2, [length, width]: [f32; 2]
     );
 }
 
-/// A wire of 0.4 pixels has a line without gaps at every angle: the samples of the pixels
-/// that a line crosses are at most 0.36 pixels apart across it, in every direction. At a
-/// fixed sample, such a wire is cut into five dashes on average.
+/// A wire of 0.4 pixels has a line without gaps at every angle. The widest strip between
+/// samples is 1 / sqrt(8) = 0.354 pixels, at 45 degrees: thinner wires can be missed. At a
+/// fixed sample, a wire of 0.4 pixels is cut into five dashes on average.
 #[test]
 fn a_line_along_a_wire_is_whole() {
     let mut small = Small::new(UVec2::splat(SIZE), Msaa::Sample4);
