@@ -47,7 +47,7 @@ fn every_range_arrives_in_the_stated_time() {
             // Two units in the last place of a level: of a depth, or of its logarithm
             // (below 16).
             let unit = 2f64.powi(if offset.is_some() { -20 } else { -24 });
-            for times in [0.5, 1.0, 2.0, 3.0] {
+            for times in [0.5f64, 1.0, 2.0, 3.0] {
                 let at = drawn[(times * 240.0) as usize][end];
                 let left = (level(to[end]) - level(at)) / whole;
                 let want = (-times).exp();

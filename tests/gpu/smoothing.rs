@@ -155,7 +155,7 @@ pub fn run(s: &Smoothing, frames: &[Frame], outliers: Option<Outliers>) -> Vec<O
         {
             let mut pass = encoder.begin_compute_pass(&Default::default());
             pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, bind_group, &[]);
+            pass.set_bind_group(0, &*bind_group, &[]);
             pass.dispatch_workgroups(1, 1, 1);
         }
         encoder.copy_buffer_to_buffer(&drawn, 0, &all, i as u64 * 16, 16);
