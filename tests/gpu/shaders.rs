@@ -423,8 +423,10 @@ fn every_kind_of_outline_composes_and_validates() {
     check(&columns, &[]);
     check(&columns, &["BY_FRAGMENTS"]);
     for styles in [&[][..], &["OBJECT_IDS", "OBJECT_STYLES"]] {
-        for view in subsets(&["BY_FRAGMENTS", "NEIGHBOURS", "COLUMNS"]) {
-            check(&draw, &[styles, &view].concat());
+        for device in subsets(&["BY_FRAGMENTS"]) {
+            for search in [&[][..], &["NEIGHBOURS"], &["COLUMNS"]] {
+                check(&draw, &[styles, &device, search].concat());
+            }
         }
     }
     let resolve = shader("lines/resolve.wgsl");
