@@ -181,6 +181,10 @@ pub fn lines(out: &mut String, folder: &Path) -> Result<(), String> {
 
 /// Scores of the outlines on models that turn, by model and distance.
 fn models(out: &mut String, folder: &Path) -> Result<(), String> {
+    if !folder.join("model_scores.csv").exists() {
+        out.push_str("### Lines of models\n\nNot measured yet: `report --only models`.\n\n");
+        return Ok(());
+    }
     let scores = load(folder, "model_scores")?;
     let all: Vec<&Vec<String>> = scores.rows.iter().collect();
     let frames = scores.distinct(&all, "frame").len();
