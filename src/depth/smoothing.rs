@@ -17,8 +17,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::settings::{FieldRange, bounded};
 
-/// Smooths the visible range of a [`DepthMap`] over time, so that it does not flicker
-/// when something small or short-lived enters or leaves the view.
+/// Smooths the visible range of a [`DepthMap`](crate::DepthMap) over time, so that it
+/// does not flicker when something small or short-lived enters or leaves the view.
 ///
 /// There are four stages, in this order: percentiles, the median of three frames,
 /// hysteresis, and an exponential approach. A setting of 0 (or `false`) leaves its

@@ -183,11 +183,11 @@ fn counting(path: &str, text: &str) -> String {
     if path != FUSED {
         return text;
     }
-    let result = "return vec4(to_stored(p.color), stored.a);";
+    let result = "return vec4(to_stored(result.rgb), result.a);";
     assert!(text.contains(result), "the end of the fused pass has moved");
     text.replace(
         result,
-        "return vec4(fetched_so_far(), to_stored(p.color).r, 1.0);",
+        "return vec4(fetched_so_far(), to_stored(result.rgb).r, 1.0);",
     )
 }
 
