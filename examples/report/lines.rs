@@ -57,11 +57,9 @@ fn detectors() -> Vec<(String, ComicStyle)> {
     all
 }
 
-fn truth(scene: BuiltIn, size: UVec2) -> Truth {
-    let mut rig = Rig::new(Some(scene), size * FINE);
-    rig.unlight();
-    // Invisible object edges, so that ids are drawn.
-    rig.wear(&Wear::style(outlines(Outlines {
+/// Invisible object edges: ids are drawn, and no line.
+pub fn ids_alone() -> Outlines {
+    Outlines {
         silhouettes: None,
         creases: None,
         objects: Some(ObjectEdges {
@@ -69,12 +67,12 @@ fn truth(scene: BuiltIn, size: UVec2) -> Truth {
             ..default()
         }),
         ..default()
-    })));
-    let world = rig.headless.app.world_mut();
-    world
-        .entity_mut(rig.camera)
-        .insert((DepthPrepass, NormalPrepass));
-    rig.headless.step(4);
+    }
+}
+
+/// The true lines of a picture of `size`, from the prepasses of a camera that is
+/// [`FINE`] times as large and draws [`ids_alone`].
+pub fn read_truth(rig: &Rig, size: UVec2) -> Truth {
     let view = rig.view();
     let world = rig.headless.app.sub_app(RenderApp).world();
     let depth = read_back::depth(world, view).expect("a prepass");
@@ -84,6 +82,18 @@ fn truth(scene: BuiltIn, size: UVec2) -> Truth {
     let ids: Vec<u32> = ids.pixels.iter().map(|p| p[0]).collect();
     let [width, height] = size.to_array().map(|v| v as usize);
     Truth::new(width, height, &depth, &normals, &ids)
+}
+
+fn truth(scene: BuiltIn, size: UVec2) -> Truth {
+    let mut rig = Rig::new(Some(scene), size * FINE);
+    rig.unlight();
+    rig.wear(&Wear::style(outlines(ids_alone())));
+    let world = rig.headless.app.world_mut();
+    world
+        .entity_mut(rig.camera)
+        .insert((DepthPrepass, NormalPrepass));
+    rig.headless.step(4);
+    read_truth(&rig, size)
 }
 
 fn score(run: &Run) -> Result<(), String> {

@@ -6,17 +6,16 @@ use std::f32::consts::TAU;
 use bevy::{
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     prelude::*,
-    render::RenderApp,
 };
-use bevy_comics::{ComicStyle, ObjectEdges, Outlines};
+use bevy_comics::{ComicStyle, Outlines};
 use bevy_comics_testkit::{
-    read_back,
     specimens::Specimen,
-    truth::{FINE, Truth, fragments},
+    truth::{FINE, fragments},
 };
 
 use crate::{
     Run,
+    lines::{ids_alone, read_truth},
     rig::{Rig, Wear},
     table::Table,
 };
@@ -77,18 +76,6 @@ impl Studio {
         let picture = self.rig.headless.picture();
         picture.pixels().map(|p| p.0[1] < 191).collect()
     }
-
-    fn truth(&self, size: UVec2) -> Truth {
-        let view = self.rig.view();
-        let world = self.rig.headless.app.sub_app(RenderApp).world();
-        let depth = read_back::depth(world, view).expect("a prepass");
-        let depth: Vec<f32> = depth.bits.iter().map(|b| f32::from_bits(*b)).collect();
-        let normals = read_back::normals(world, view).expect("a prepass").pixels;
-        let ids = read_back::object_ids(world, view).expect("ids");
-        let ids: Vec<u32> = ids.pixels.iter().map(|p| p[0]).collect();
-        let [width, height] = size.to_array().map(|v| v as usize);
-        Truth::new(width, height, &depth, &normals, &ids)
-    }
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
@@ -110,19 +97,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     } else {
         (90, UVec2::new(240, 136))
     };
-    // Invisible object edges, so that ids are drawn.
-    let mut fine = Studio::new(
-        size * FINE,
-        Outlines {
-            silhouettes: None,
-            creases: None,
-            objects: Some(ObjectEdges {
-                opacity: 1e-6,
-                ..default()
-            }),
-            ..default()
-        },
-    );
+    let mut fine = Studio::new(size * FINE, ids_alone());
     let mut lined = Studio::new(size, Outlines::default());
     let thin = Outlines {
         width: 1.0,
@@ -142,7 +117,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
                 for studio in [&mut fine, &mut lined, &mut thin] {
                     studio.turn(distance, turned);
                 }
-                let truth = fine.truth(size);
+                let truth = read_truth(&fine.rig, size);
                 let wanted = truth.any(&[0, 1, 2]);
                 let lines = lined.mask();
                 let (found, all) = truth.recall(&wanted, &lines);

@@ -112,6 +112,27 @@ fn pixel_depth(frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
 #endif
 }
 
+// The window whose corners are the pixels `low` and `high` of the depth texture.
+fn read_window(low: vec2<i32>, centre: vec2<i32>, high: vec2<i32>, sample: i32) -> Window {
+    var win: Window;
+    win.centre = texel_depth(centre, sample);
+    win.nw = texel_depth(low, sample);
+    win.n = texel_depth(vec2(centre.x, low.y), sample);
+    win.ne = texel_depth(vec2(high.x, low.y), sample);
+    win.w = texel_depth(vec2(low.x, centre.y), sample);
+    win.e = texel_depth(vec2(high.x, centre.y), sample);
+    win.sw = texel_depth(vec2(low.x, high.y), sample);
+    win.s = texel_depth(vec2(centre.x, high.y), sample);
+    win.se = texel_depth(high, sample);
+    return win;
+}
+
+// The sides of a window with these corners that lie outside of a rectangle.
+fn missing_sides(low: vec2<i32>, high: vec2<i32>, first: vec2<i32>, last: vec2<i32>) -> u32 {
+    return select(0u, MISSING_W, low.x < first.x) | select(0u, MISSING_E, high.x > last.x)
+        | select(0u, MISSING_N, low.y < first.y) | select(0u, MISSING_S, high.y > last.y);
+}
+
 // The depths of a pixel and of its eight neighbours `reach` pixels away. Positions
 // outside of the viewport are clamped to its border and marked in `missing`.
 fn load_window(pixel: vec2<i32>, reach: i32, sample: i32) -> Window {
@@ -119,20 +140,8 @@ fn load_window(pixel: vec2<i32>, reach: i32, sample: i32) -> Window {
     let last = first + view.viewport.zw - 1;
     let low = pixel - reach;
     let high = pixel + reach;
-    let a = max(low, first);
-    let b = min(high, last);
-    var win: Window;
-    win.centre = load_depth(pixel, sample);
-    win.nw = load_depth(a, sample);
-    win.n = load_depth(vec2(pixel.x, a.y), sample);
-    win.ne = load_depth(vec2(b.x, a.y), sample);
-    win.w = load_depth(vec2(a.x, pixel.y), sample);
-    win.e = load_depth(vec2(b.x, pixel.y), sample);
-    win.sw = load_depth(vec2(a.x, b.y), sample);
-    win.s = load_depth(vec2(pixel.x, b.y), sample);
-    win.se = load_depth(b, sample);
-    win.missing = select(0u, MISSING_W, low.x < first.x) | select(0u, MISSING_E, high.x > last.x)
-        | select(0u, MISSING_N, low.y < first.y) | select(0u, MISSING_S, high.y > last.y);
+    var win = read_window(depth_pixel(max(low, first)), depth_pixel(pixel), depth_pixel(min(high, last)), sample);
+    win.missing = missing_sides(low, high, first, last);
     return win;
 }
 
@@ -151,20 +160,8 @@ fn load_texel_window(pixel: vec2<i32>, reach: i32, sample: i32) -> Window {
     let centre = depth_pixel(pixel);
     let low = centre - reach;
     let high = centre + reach;
-    let a = max(low, first);
-    let b = min(high, last);
-    var win: Window;
-    win.centre = texel_depth(centre, sample);
-    win.nw = texel_depth(a, sample);
-    win.n = texel_depth(vec2(centre.x, a.y), sample);
-    win.ne = texel_depth(vec2(b.x, a.y), sample);
-    win.w = texel_depth(vec2(a.x, centre.y), sample);
-    win.e = texel_depth(vec2(b.x, centre.y), sample);
-    win.sw = texel_depth(vec2(a.x, b.y), sample);
-    win.s = texel_depth(vec2(centre.x, b.y), sample);
-    win.se = texel_depth(b, sample);
-    win.missing = select(0u, MISSING_W, low.x < first.x) | select(0u, MISSING_E, high.x > last.x)
-        | select(0u, MISSING_N, low.y < first.y) | select(0u, MISSING_S, high.y > last.y);
+    var win = read_window(max(low, first), centre, min(high, last), sample);
+    win.missing = missing_sides(low, high, first, last);
     return win;
 }
 

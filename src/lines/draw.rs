@@ -20,7 +20,7 @@ use bevy::{
 
 use super::{
     ViewLines,
-    pipelines::LineKey,
+    key::LineKey,
     prepare::Cracks,
     request::{CrackPasses, LinePasses, LineRequest},
     resolve::Resolved,

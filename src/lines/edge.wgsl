@@ -154,17 +154,21 @@ fn is_ridge(before: vec4<f32>, folds: vec4<f32>, beyond: vec4<f32>) -> vec4<bool
     return complete & (folds >= before) & (folds >= beyond);
 }
 
+// Bounds are this much lower than the response at which ink begins, so that rounding
+// leaves out no ink.
+const BELOW: f32 = 0.999;
+
 // Whether the excess of a step may have ink. It is true for every step whose ink is not 0
 // after rounding, and for few others: the response at which ink begins, without the
 // division of step_response. `near` is the larger of both raw depths.
 fn may_be_silhouette(s: Lines, excess: vec4<f32>, near: vec4<f32>) -> vec4<bool> {
-    let least = 2.0 * s.silhouette_k * sqrt(s.silhouette_low);
+    let least = BELOW * 2.0 * s.silhouette_k * sqrt(s.silhouette_low);
     return (excess > least * (s.reference_factor * near + s.reference_constant)) & (near > vec4(0.0));
 }
 
 // The same for folds of creases.
 fn may_be_crease(s: Lines, folds: vec4<f32>) -> vec4<bool> {
-    return folds > vec4(4.0 * s.crease_k * s.crease_k * s.crease_low);
+    return folds > vec4(BELOW * 4.0 * s.crease_k * s.crease_k * s.crease_low);
 }
 
 // A crack is the border between two neighbouring pixels: `here`, and `there` to the east

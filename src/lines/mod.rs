@@ -1,9 +1,11 @@
 //! The service of lines. `resolve.wgsl` picks a sample of every pixel of a multisampled
-//! view. `find.wgsl` finds the cracks between pixels that lines run
-//! along, in depth, normals and object ids. `draw.wgsl` draws their ink into a texture,
-//! where there are any. Effects read the ink with `read.wgsl`.
+//! view. `walk.wgsl` looks for tiles with cracks, the borders between pixels that lines
+//! run along, in depth, normals and object ids; `find.wgsl` measures the cracks there.
+//! `columns.wgsl`, for wide lines, and `draw.wgsl` draw their ink into a texture. Effects
+//! read the ink with `read.wgsl`.
 
 mod draw;
+mod key;
 mod kinds;
 mod pipelines;
 mod prepare;
@@ -32,8 +34,8 @@ use bevy::{
     shader::load_shader_library,
 };
 
+pub(crate) use key::{ink_entry, range_entry, reach};
 pub use kinds::{Creases, ObjectEdges, Silhouettes};
-pub(crate) use pipelines::{ink_entry, range_entry, reach};
 pub(crate) use prepare::ViewLines;
 pub use settings::LineSettings;
 pub(crate) use settings::LinesUniform;

@@ -21,7 +21,7 @@ use bevy::{
 };
 
 use super::{
-    pipelines::{BLOCK, BLOCK_FORMAT, CRACK_FORMAT, INK_FORMAT},
+    key::{BLOCK, BLOCK_FORMAT, CRACK_FORMAT, INK_FORMAT},
     request::{CrackPasses, LinePassUniform, LinePasses, LineRequest},
     resolve::Resolved,
 };

@@ -17,7 +17,8 @@ use bevy::{
 };
 
 use super::{
-    pipelines::{LineKey, LinePass, LineShaders, Search},
+    key::{LineKey, Search},
+    pipelines::{LinePass, LineShaders},
     resolve::{ResolveKey, ResolvePipeline},
     settings::{LineSettings, LinesUniform},
 };

@@ -22,7 +22,7 @@ use bevy::{
 
 use super::{
     draw::{Texels, cleared},
-    pipelines::LineKey,
+    key::LineKey,
     prepare::texture,
     request::{LinePassUniform, LineRequest},
 };

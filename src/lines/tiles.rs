@@ -13,7 +13,7 @@ use bevy::{
 
 use super::{
     draw::cleared,
-    pipelines::{TILE, WORKGROUP},
+    key::{TILE, WORKGROUP},
     prepare::blocks,
     request::LineRequest,
 };

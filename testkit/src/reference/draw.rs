@@ -1,5 +1,4 @@
-//! Twin of `lines/columns.wgsl` and `lines/draw.wgsl`: the ink of the lines at every
-//! pixel.
+//! Twin of `lines/draw.wgsl`: the ink of the lines at every pixel.
 
 use super::{
     edge::{line_coverage, line_offset, segment_distance},
@@ -16,9 +15,9 @@ pub struct Cracks {
     /// To the east and south of each pixel, row by row.
     pub cracks: Vec<[Option<Crack>; 2]>,
     /// Pixels around a pixel whose cracks draw lines there.
-    reach: i64,
+    pub(super) reach: i64,
     /// Opacity of silhouettes, creases, object edges.
-    opacity: [f64; 3],
+    pub(super) opacity: [f64; 3],
 }
 
 impl Cracks {
@@ -43,7 +42,7 @@ impl Cracks {
         }
     }
 
-    fn at(&self, x: i64, y: i64) -> [Option<Crack>; 2] {
+    pub(super) fn at(&self, x: i64, y: i64) -> [Option<Crack>; 2] {
         let inside = (0..self.width).contains(&x) && (0..self.height).contains(&y);
         if inside {
             self.cracks[(y * self.width + x) as usize]
@@ -97,71 +96,11 @@ impl Cracks {
         };
         chosen.map_or(found, |(i, _)| larger(found, straight[i]))
     }
-
-    /// The lines that are found from the best cracks of each column.
-    fn lines_by_columns(&self, at: [f64; 2], nudge: f64) -> Vec<Line> {
-        let (px, py) = (at[0].floor() as i64, at[1].floor() as i64);
-        let mut lines = Vec::new();
-        for x in px - self.reach - 1..=px + self.reach {
-            let Some((crack, first, next)) = self.column(x, py, nudge) else {
-                continue;
-            };
-            let border = distance(first, at) - crack.half_width;
-            lines.push((border, first, Some(crack)));
-            if let Some(next) = next {
-                let own = distance(next, at) - crack.half_width;
-                lines.push((own.max(border + 1e-4), next, None));
-            }
-        }
-        lines
-    }
-
-    /// The crack in a pixel's column whose line covers the pixel most, the middle of its
-    /// line, and the middle of the next line.
-    fn column(&self, x: i64, y: i64, nudge: f64) -> Option<(Crack, [f64; 2], Option<[f64; 2]>)> {
-        let mut best: Option<(f64, Crack, [f64; 2])> = None;
-        let mut next: Option<(f64, [f64; 2])> = None;
-        for row in y - self.reach - 1..=y + self.reach {
-            for (crack, v) in self.at(x, row).into_iter().zip(SIDES) {
-                let Some(crack) = crack else { continue };
-                let middle = middle(&crack, [x, row], v);
-                let away = (middle[1] - (y as f64 + 0.5)).abs();
-                let ink = ink_of(&crack, nudge, away);
-                let value = [0, 1, 2]
-                    .map(|kind| ink[kind] * self.opacity[kind])
-                    .into_iter()
-                    .fold(0.0, f64::max);
-                let score = value + 1e-4 * (crack.half_width - away);
-                if score <= -1.0 {
-                    continue;
-                }
-                let other = best.is_none_or(|best| distance(middle, best.2) > 0.25);
-                match best {
-                    Some(first) if score <= first.0 => {
-                        if other && next.is_none_or(|next| score > next.0) {
-                            next = Some((score, middle));
-                        }
-                    }
-                    _ => {
-                        if let Some(first) = best
-                            && other
-                        {
-                            next = Some((first.0, first.2));
-                        }
-                        best = Some((score, crack, middle));
-                    }
-                }
-            }
-        }
-        // The place of the next line is stored in 64ths of a pixel.
-        let stored = |v: f64| (v * 64.0).round_ties_even() / 64.0;
-        best.map(|(_, crack, middle)| (crack, middle, next.map(|next| next.1.map(stored))))
-    }
 }
 
 /// A line: the distance from its border, its middle, and its crack, unless the crack is
 /// only the next one in its column.
-type Line = (f64, [f64; 2], Option<Crack>);
+pub(super) type Line = (f64, [f64; 2], Option<Crack>);
 
 fn larger(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| a[k].max(b[k]))
@@ -197,12 +136,12 @@ fn straight(lines: &mut [Line], at: [f64; 2], nudge: f64) -> Vec<[f64; 3]> {
     found
 }
 
-fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// The middle of the line along a crack.
-fn middle(crack: &Crack, [x, y]: [i64; 2], v: [i64; 2]) -> [f64; 2] {
+pub(super) fn middle(crack: &Crack, [x, y]: [i64; 2], v: [i64; 2]) -> [f64; 2] {
     let shift = line_offset(crack.half_width);
     let along = if crack.mine { 0.5 - shift } else { 0.5 + shift };
     [
@@ -212,7 +151,7 @@ fn middle(crack: &Crack, [x, y]: [i64; 2], v: [i64; 2]) -> [f64; 2] {
 }
 
 /// Ink by kind at a distance from the middle of a line.
-fn ink_of(crack: &Crack, nudge: f64, away: f64) -> [f64; 3] {
+pub(super) fn ink_of(crack: &Crack, nudge: f64, away: f64) -> [f64; 3] {
     let covered = line_coverage(away, crack.half_width);
     let opacity = stored(crack.opacity, nudge);
     let soft = stored(crack.ink, nudge);

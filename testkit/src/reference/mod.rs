@@ -4,6 +4,7 @@
 pub mod black_flats;
 pub mod color;
 pub mod colorization;
+pub mod columns;
 pub mod contours;
 pub mod desaturation;
 pub mod draw;
@@ -27,6 +28,7 @@ pub mod smoothing;
 pub mod tone_bands;
 pub mod view;
 pub mod vignette;
+pub mod walk;
 pub mod window;
 
 pub type Rgb = [f64; 3];

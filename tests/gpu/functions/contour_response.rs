@@ -2,6 +2,14 @@
 
 use super::*;
 
+/// The operators by their number in the shader.
+const OPERATORS: [ContourOperator; 4] = [
+    ContourOperator::Prewitt,
+    ContourOperator::Sobel,
+    ContourOperator::Laplace,
+    ContourOperator::Roberts,
+];
+
 #[test]
 fn every_operator_answers_as_its_twin() {
     let depth = || prop_oneof![5 => 0.0f32..=1.0, 1 => select(vec![-1.0f32, 0.0, 1.0, 0.5])];
@@ -58,12 +66,7 @@ fn every_operator_answers_as_its_twin() {
         );
         for (row, result) in rows.iter().zip(results) {
             let s = Contours {
-                operator: [
-                    ContourOperator::Prewitt,
-                    ContourOperator::Sobel,
-                    ContourOperator::Laplace,
-                    ContourOperator::Roberts,
-                ][row[2] as usize],
+                operator: OPERATORS[row[2] as usize],
                 form: if row[3] == 1.0 {
                     Form::Faithful
                 } else {
@@ -172,12 +175,7 @@ fn uneven_taps_answer_as_their_twin_and_find_no_contour_in_a_plane() {
         );
         for (row, result) in rows.iter().zip(results) {
             let s = Contours {
-                operator: [
-                    ContourOperator::Prewitt,
-                    ContourOperator::Sobel,
-                    ContourOperator::Laplace,
-                    ContourOperator::Roberts,
-                ][row[6] as usize],
+                operator: OPERATORS[row[6] as usize],
                 ..Contours::default()
             };
             let frame = Frame {

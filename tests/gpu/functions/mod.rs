@@ -7,6 +7,7 @@ mod contour_response;
 mod depth_map;
 mod finish;
 mod normal;
+mod walk;
 
 use bevy::color::{Color, Hsva};
 use bevy_comics::{

@@ -1,0 +1,300 @@
+//! The keys that select the variants of the line passes, and what their shaders bind.
+
+use bevy::{
+    math::{UVec4, Vec2},
+    render::render_resource::{
+        BindGroupLayoutDescriptor, BindGroupLayoutEntry, ShaderStages, ShaderType,
+        StorageTextureAccess, TextureFormat, TextureSampleType,
+        binding_types::{texture_2d, texture_storage_2d, uniform_buffer, uniform_buffer_sized},
+    },
+    shader::ShaderDefVal,
+};
+
+use super::request::{LinePassUniform, LineRequest};
+use crate::{
+    objects::{ids_entry, object_styles_entry},
+    settings::Form,
+};
+
+/// The two cracks of a pixel, see `Crack` in `edge.wgsl`.
+pub(crate) const CRACK_FORMAT: TextureFormat = TextureFormat::Rg32Uint;
+/// The rows with cracks in a block of pixels.
+pub(crate) const BLOCK_FORMAT: TextureFormat = TextureFormat::R32Uint;
+/// The ink of a pixel, see `draw.wgsl`.
+pub(crate) const INK_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+
+/// Columns and rows of a block: an invocation of `walk.wgsl` walks through one.
+pub(crate) const BLOCK: [u32; 2] = [4, 32];
+/// Blocks in a workgroup, side by side.
+pub(crate) const WORKGROUP: u32 = 32;
+/// Width and height in pixels of the tiles of `tiles.wgsl`.
+pub(crate) const TILE: u32 = 16;
+
+/// The largest half width of a line in physical pixels: that of `pack_width` in
+/// `edge.wgsl`.
+const LARGEST_HALF_WIDTH: f32 = 31.0;
+
+/// Distance within which lines of this half width are searched around a pixel, both in
+/// physical pixels.
+pub(crate) fn reach(half_width: f32) -> i32 {
+    (half_width.min(LARGEST_HALF_WIDTH) + 1.0).ceil() as i32 - 1
+}
+
+/// How cracks near a pixel are searched.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) enum Search {
+    /// One pixel around it, without a loop.
+    #[default]
+    Neighbours,
+    /// All pixels within reach.
+    Around,
+    /// The best crack of each column within reach, see `columns.wgsl`.
+    Columns,
+}
+
+/// What selects the shader variants of the passes that find and draw lines.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct LineKey {
+    pub oblique: bool,
+    /// Measured silhouettes and creases: those of the corrected form.
+    pub silhouettes: bool,
+    pub creases: bool,
+    pub object_edges: bool,
+    pub ids: bool,
+    pub object_styles: bool,
+    pub fading: bool,
+    pub visible_range: bool,
+    /// Whether there are silhouettes and creases of the faithful form.
+    pub faithful: [bool; 2],
+    /// The depth texture has one pixel per pixel of the viewport.
+    pub same_size: bool,
+    pub search: Search,
+    /// The device has no compute shaders.
+    pub by_fragments: bool,
+}
+
+impl LineKey {
+    pub fn new(request: &LineRequest, by_fragments: bool) -> Self {
+        let lines = &request.settings;
+        let forms = [
+            lines.silhouettes.map(|s| s.form),
+            lines.creases.map(|c| c.form),
+        ];
+        let [silhouettes, creases] = forms.map(|form| form == Some(Form::Corrected));
+        Self {
+            oblique: request.oblique,
+            silhouettes,
+            creases,
+            object_edges: lines.objects.is_some() && request.ids,
+            ids: request.ids,
+            object_styles: request.object_styles,
+            fading: lines.fades(),
+            visible_range: lines.fades() && request.visible_range,
+            faithful: forms.map(|form| form == Some(Form::Faithful)),
+            same_size: request.view.depth_scale == Vec2::ONE,
+            search: request.search(),
+            by_fragments,
+        }
+    }
+
+    /// Whether there are lines along cracks, besides those of the faithful forms.
+    pub fn has_cracks(&self) -> bool {
+        self.silhouettes || self.creases || self.object_edges
+    }
+
+    pub fn has_faithful(&self) -> bool {
+        self.faithful.contains(&true)
+    }
+
+    /// The part that the search for blocks with cracks depends on.
+    pub fn for_walk(self) -> Self {
+        Self {
+            ids: self.object_edges,
+            object_styles: false,
+            fading: false,
+            visible_range: false,
+            ..self.for_find()
+        }
+    }
+
+    /// The part that finding depends on.
+    pub fn for_find(self) -> Self {
+        Self {
+            faithful: [false; 2],
+            search: Search::default(),
+            ..self
+        }
+    }
+
+    /// The part that the faithful forms depend on.
+    pub fn for_faithful(self) -> Self {
+        Self {
+            silhouettes: false,
+            creases: false,
+            object_edges: false,
+            search: Search::default(),
+            by_fragments: false,
+            ..self
+        }
+    }
+
+    /// The part that the search in columns depends on.
+    pub fn for_columns(self) -> Self {
+        Self {
+            by_fragments: self.by_fragments,
+            ..Self::default()
+        }
+    }
+
+    /// The part that drawing depends on.
+    pub fn for_draw(self) -> Self {
+        Self {
+            ids: self.object_styles,
+            object_styles: self.object_styles,
+            search: self.search,
+            by_fragments: self.by_fragments,
+            ..Self::default()
+        }
+    }
+
+    fn common(&self) -> impl Iterator<Item = ShaderDefVal> + use<> {
+        [
+            (self.same_size, "SAME_SIZE"),
+            (self.oblique, "OBLIQUE"),
+            (self.ids, "OBJECT_IDS"),
+            (self.object_styles, "OBJECT_STYLES"),
+            (self.by_fragments, "BY_FRAGMENTS"),
+        ]
+        .into_iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| name.into())
+    }
+
+    pub fn find_defs(&self) -> Vec<ShaderDefVal> {
+        self.common()
+            .chain(names([
+                (true, "DEPTH"),
+                (self.silhouettes, "SILHOUETTES"),
+                (self.creases, "CREASES"),
+                (self.creases, "NORMALS"),
+                (self.object_edges, "OBJECT_EDGES"),
+                (self.fading, "FADING"),
+                (self.visible_range, "VISIBLE_RANGE"),
+            ]))
+            .collect()
+    }
+
+    pub fn faithful_defs(&self) -> Vec<ShaderDefVal> {
+        self.common()
+            .chain(names([
+                (true, "DEPTH"),
+                (self.faithful[0], "FAITHFUL_SILHOUETTES"),
+                (self.faithful[1], "FAITHFUL_CREASES"),
+                (self.faithful[1], "NORMALS"),
+                (self.fading, "FADING"),
+                (self.visible_range, "VISIBLE_RANGE"),
+            ]))
+            .collect()
+    }
+
+    pub fn draw_defs(&self) -> Vec<ShaderDefVal> {
+        self.common()
+            .chain(names([
+                (self.search == Search::Neighbours, "NEIGHBOURS"),
+                (self.search == Search::Columns, "COLUMNS"),
+            ]))
+            .collect()
+    }
+
+    /// The layout entries of what finding reads. `normals`: the normals are read.
+    fn inputs(&self, normals: bool, stages: ShaderStages) -> Vec<BindGroupLayoutEntry> {
+        let float = || texture_2d(TextureSampleType::Float { filterable: false });
+        let mut entries = vec![
+            uniform_buffer::<LinePassUniform>(false).build(1, stages),
+            float().build(2, stages),
+        ];
+        let seen = |mut entry: BindGroupLayoutEntry| {
+            entry.visibility = stages;
+            entry
+        };
+        if self.visible_range {
+            entries.push(seen(range_entry()));
+        }
+        if self.object_styles {
+            entries.push(seen(object_styles_entry()));
+        }
+        if normals {
+            entries.push(float().build(7, stages));
+        }
+        if self.ids {
+            entries.push(seen(ids_entry(false)));
+        }
+        entries
+    }
+
+    pub fn walk_layout(&self) -> BindGroupLayoutDescriptor {
+        let mut entries = self.inputs(self.creases, ShaderStages::COMPUTE);
+        let blocks = texture_storage_2d(BLOCK_FORMAT, StorageTextureAccess::WriteOnly);
+        entries.push(blocks.build(10, ShaderStages::COMPUTE));
+        BindGroupLayoutDescriptor::new("comics_walk", &entries)
+    }
+
+    pub fn find_layout(&self) -> BindGroupLayoutDescriptor {
+        let mut entries = self.inputs(self.creases, ShaderStages::FRAGMENT);
+        entries[0].visibility = ShaderStages::VERTEX_FRAGMENT;
+        entries.extend(self.blocks());
+        BindGroupLayoutDescriptor::new("comics_find_lines", &entries)
+    }
+
+    /// The layout entry of the blocks that select the tiles that are drawn.
+    fn blocks(&self) -> Option<BindGroupLayoutEntry> {
+        let blocks = texture_2d(TextureSampleType::Uint);
+        (!self.by_fragments).then(|| blocks.build(12, ShaderStages::VERTEX))
+    }
+
+    pub fn faithful_layout(&self) -> BindGroupLayoutDescriptor {
+        let entries = self.inputs(self.faithful[1], ShaderStages::FRAGMENT);
+        BindGroupLayoutDescriptor::new("comics_faithful_lines", &entries)
+    }
+
+    pub fn columns_layout(&self) -> BindGroupLayoutDescriptor {
+        BindGroupLayoutDescriptor::new("comics_line_columns", &self.searched(11))
+    }
+
+    /// The layout entries of a pass that searches cracks in the texture at this binding.
+    fn searched(&self, binding: u32) -> Vec<BindGroupLayoutEntry> {
+        let cracks = texture_2d(TextureSampleType::Uint);
+        let mut entries = vec![
+            uniform_buffer::<LinePassUniform>(false).build(1, ShaderStages::VERTEX_FRAGMENT),
+            cracks.build(binding, ShaderStages::FRAGMENT),
+        ];
+        entries.extend(self.blocks());
+        entries
+    }
+
+    pub fn draw_layout(&self) -> BindGroupLayoutDescriptor {
+        let columns = self.search == Search::Columns;
+        let mut entries = self.searched(if columns { 13 } else { 11 });
+        if self.object_styles {
+            entries.push(ids_entry(false));
+        }
+        BindGroupLayoutDescriptor::new("comics_draw_lines", &entries)
+    }
+}
+
+fn names<const N: usize>(flags: [(bool, &'static str); N]) -> impl Iterator<Item = ShaderDefVal> {
+    flags
+        .into_iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| name.into())
+}
+
+/// The layout entry of the visible range, the same in all passes.
+pub(crate) fn range_entry() -> BindGroupLayoutEntry {
+    uniform_buffer_sized(false, Some(UVec4::min_size())).build(3, ShaderStages::FRAGMENT)
+}
+
+/// The layout entry of the ink in the fused pass.
+pub(crate) fn ink_entry() -> BindGroupLayoutEntry {
+    texture_2d(TextureSampleType::Float { filterable: false }).build(4, ShaderStages::FRAGMENT)
+}
