@@ -83,11 +83,11 @@ pub use depth::{
 pub use diagnostics::{CameraStages, ComicsDiagnostics, ComicsStage, LeftOut, StageOutcome};
 pub use effect::{
     AnyEffect, Effect, EffectPlugin, EffectRegistry, EffectSet, EffectShader, EffectStage,
-    EffectType, EffectView, Needs, NoUniform, Variants, ViewFacts,
+    EffectType, EffectView, Extent, Needs, NoUniform, Variants, ViewFacts,
 };
 pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
-pub use lines::{Creases, LineSettings, ObjectEdges, Silhouettes};
+pub use lines::{Creases, LineSettings, MapJumps, ObjectEdges, Silhouettes};
 #[cfg(feature = "objects")]
 pub use objects::{NoOutlines, OutlineGroup, OutlineKinds, OutlineStyle, ViewObjectIds, object_id};
 pub use plugin::ComicsPlugin;

@@ -38,10 +38,9 @@ pub fn write(
         .map(|e| e.id());
     let render_world = headless.app.sub_app(RenderApp).world();
     let view = view.ok_or("the camera was not rendered")?;
-    let stylized = arguments.style.is_some();
     let (input, output) =
-        read_back::last_pass(render_world, view, stylized).ok_or("the camera has no picture")?;
-    write_rgba(&folder.join("input.exr"), &input)?;
+        read_back::pictures(render_world, view).ok_or("the camera has no picture")?;
+    write_rgba(&folder.join("input.exr"), input.as_ref().unwrap_or(&output))?;
     write_rgba(&folder.join("output.exr"), &output)?;
     if let Some(depth) = read_back::depth(render_world, view) {
         write_depth(&folder.join("depth.exr"), &depth)?;

@@ -19,6 +19,7 @@ use arguments::{Arguments, Ortho, Output, SceneChoice};
 use bevy::{camera::Hdr, ecs::system::RunSystemOnce, prelude::*, render::view::Msaa};
 use bevy_comics::ComicsPlugin;
 use bevy_comics_testkit::{
+    before::BeforeStylize,
     headless::{self, Headless, HeadlessOptions},
     scenes::{BuiltIn, Stage, Vantage},
     studio::{set_cartoon, wear},
@@ -55,7 +56,7 @@ fn run() -> Result<(), String> {
         log: true,
         ..default()
     };
-    let mut headless = Headless::new(options, ComicsPlugin);
+    let mut headless = Headless::new(options, (ComicsPlugin, BeforeStylize::Copy));
     let (vantage, model) = open_scene(&mut headless, &arguments)?;
     if arguments.cartoon {
         set_cartoon(headless.app.world_mut(), true);

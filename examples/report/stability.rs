@@ -327,18 +327,18 @@ fn rendered(table: &mut Table, run: &Run) {
         let world = rig.headless.app.world_mut();
         world.entity_mut(rig.camera).insert(Hdr);
         let (mut wild_in, mut wild_out) = (0, 0);
-        for style in [&style, &sketch] {
+        let mut wild = |style: &ComicStyle| {
             rig.wear(&Wear::style(style.clone()));
             rig.headless.step(4);
             let view = rig.view();
             let world = rig.headless.app.sub_app(RenderApp).world();
-            let (read, wrote) = read_back::last_pass(world, view, true).expect("a picture");
-            let wild = |image: &read_back::FloatImage| {
-                let bad = |p: &&[f32; 4]| p[..3].iter().any(|c| !c.is_finite());
-                image.pixels.iter().filter(bad).count()
-            };
-            wild_in += wild(&read);
-            wild_out += wild(&wrote);
+            let (_, picture) = read_back::pictures(world, view).expect("a picture");
+            let bad = |p: &&[f32; 4]| p[..3].iter().any(|c| !c.is_finite());
+            picture.pixels.iter().filter(bad).count()
+        };
+        for style in [&style, &sketch] {
+            wild_in += wild(&ComicStyle::new());
+            wild_out += wild(style);
         }
         table.push(&[
             &"picture", &name, &"", &"", &"", &wild_in, &"", &"", &wild_out,

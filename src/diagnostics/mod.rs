@@ -38,6 +38,8 @@ pub enum ComicsStage {
     /// The pass that picks one sample of every pixel of a multisampled view, for the
     /// lines.
     ResolveSamples,
+    /// The passes that list the tiles of the picture that may have ink.
+    SearchTiles,
     /// The pass that finds the cracks between pixels that lines run along.
     FindLines,
     /// The pass that draws the ink of the lines.
@@ -59,6 +61,7 @@ impl ComicsStage {
         Self::RangeSmoothing,
         Self::RangeReadback,
         Self::ResolveSamples,
+        Self::SearchTiles,
         Self::FindLines,
         Self::DrawLines,
     ];
@@ -73,6 +76,7 @@ impl ComicsStage {
             Self::RangeSmoothing => "range smoothing",
             Self::RangeReadback => "range readback",
             Self::ResolveSamples => "resolve samples",
+            Self::SearchTiles => "search tiles",
             Self::FindLines => "find lines",
             Self::DrawLines => "draw lines",
             Self::Effect(name) => return Cow::Owned(name.replace('_', " ")),
@@ -115,6 +119,8 @@ pub enum LeftOut {
     FixedRange,
     /// The view has one sample per pixel.
     SingleSampled,
+    /// The device has no compute shaders; all pixels are drawn.
+    NoComputeShaders,
     /// The view has no depth prepass.
     NoDepthPrepass,
     /// The view has no normal prepass.
@@ -146,6 +152,7 @@ impl fmt::Display for LeftOut {
             Self::NoSuchLines => "no such lines are requested",
             Self::FixedRange => "the range is fixed",
             Self::SingleSampled => "the view has one sample per pixel",
+            Self::NoComputeShaders => "the device has no compute shaders",
             Self::NoDepthPrepass => "the view has no depth prepass",
             Self::NoNormalPrepass => "the view has no normal prepass",
             Self::Replaced => "another effect replaces it",

@@ -7,7 +7,7 @@ use bevy::{
     render::render_resource::encase::UniformBuffer,
 };
 
-use super::{Effect, EffectType, Needs, Variants, ViewFacts};
+use super::{Effect, EffectType, Extent, Needs, Variants, ViewFacts};
 use crate::lines::LineSettings;
 
 /// An [`Effect`] whose type is known only at run time. Every effect implements it;
@@ -45,6 +45,10 @@ pub trait AnyEffect: Any + Send + Sync + std::fmt::Debug {
     fn any_implied(&self) -> Option<Box<dyn AnyEffect>>;
     /// As [`Effect::variants`].
     fn any_variants(&self, view: &ViewFacts, variants: &mut Variants);
+    /// As [`Effect::extent`].
+    fn any_extent(&self, view: &ViewFacts) -> Extent;
+    /// As [`Effect::line_reach`].
+    fn any_line_reach(&self, view: &ViewFacts) -> Option<f32>;
     /// As [`Effect::report_name`].
     fn any_report_name(&self) -> Option<String>;
     /// The bytes of [`Effect::uniform`] in WGSL's uniform layout.
@@ -117,6 +121,14 @@ impl<E: Effect> AnyEffect for E {
 
     fn any_variants(&self, view: &ViewFacts, variants: &mut Variants) {
         self.variants(view, variants);
+    }
+
+    fn any_extent(&self, view: &ViewFacts) -> Extent {
+        self.extent(view)
+    }
+
+    fn any_line_reach(&self, view: &ViewFacts) -> Option<f32> {
+        self.line_reach(view)
     }
 
     fn any_report_name(&self) -> Option<String> {

@@ -26,7 +26,7 @@ const MODULES: [&str; 11] = [
 ];
 
 /// Shader definitions of the fused pass that do not name an effect, in lower case.
-const DEFINITIONS: [&str; 16] = [
+const DEFINITIONS: [&str; 17] = [
     "depth",
     "map",
     "map_flags",
@@ -41,6 +41,7 @@ const DEFINITIONS: [&str; 16] = [
     "lines_anywhere",
     "lightness_change",
     "finish",
+    "overlay",
     "stored_srgb",
     "stored_oklab",
 ];
@@ -60,7 +61,11 @@ pub(super) fn refuses(effect: &EffectType, known: &[&EffectType]) -> Option<&'st
         || !name.chars().all(plain)
     {
         Some("its name is not in snake_case, or ends with a digit or an underscore")
-    } else if DEFINITIONS.contains(&name) || FILE_KEYS.contains(&name) || name.starts_with("view_")
+    } else if DEFINITIONS.contains(&name)
+        || FILE_KEYS.contains(&name)
+        || ["view_", "without_"]
+            .iter()
+            .any(|prefix| name.starts_with(prefix))
     {
         Some("its name is reserved")
     } else if !defines(effect.shader.source, effect.shader.path) {
@@ -131,6 +136,11 @@ fn members(effect: &EffectType) -> String {
     format!("#ifdef {definition}\n    @align(16) {name}_settings: {path}::{settings},\n#endif\n")
 }
 
+/// The shader definition that leaves out an effect, with the settings kept in the uniform.
+pub(super) fn left_out(name: &str) -> String {
+    format!("WITHOUT_{}", definition(name))
+}
+
 /// The call of an effect's function, and of its debug view if it has one.
 fn calls(effect: &EffectType) -> String {
     let (name, definition) = (effect.name, definition(effect.name));
@@ -139,7 +149,10 @@ fn calls(effect: &EffectType) -> String {
         Some(_) => format!("comics.{name}_settings, p"),
         None => "p".to_owned(),
     };
-    let mut call = format!("#ifdef {definition}\n    p = {path}::{name}({arguments});\n");
+    let without = left_out(name);
+    let mut call = format!(
+        "#ifdef {definition}\n#ifndef {without}\n    p = {path}::{name}({arguments});\n#endif\n"
+    );
     if effect.view.is_some() {
         call.push_str(&format!(
             "#ifdef VIEW_{definition}\n    let shown = {path}::{name}_view({arguments});\n#endif\n"

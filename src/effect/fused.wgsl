@@ -1,6 +1,10 @@
 // The fused pass: reads the picture once, applies every effect, and writes the
 // picture once. compose.rs replaces the lines that begin with "//@" by one entry
 // for each registered effect.
+//
+// OVERLAY: all effects draw over the picture, see Extent. Then the pass starts from a
+// transparent picture and returns ink that is multiplied by its opacity, and its opacity,
+// which are blended over the picture.
 
 #import bevy_comics::depth::normal::load_normal
 #import bevy_comics::depth::view::{View, depth_frame, load_depth, pixel_depth, set_view}
@@ -24,7 +28,9 @@ struct Comics {
     //@members
 }
 
+#ifndef OVERLAY
 @group(0) @binding(0) var source: texture_2d<f32>;
+#endif
 @group(0) @binding(1) var<uniform> comics: Comics;
 
 // The picture, after tonemapping, in the compositing space of the camera, as linear
@@ -54,9 +60,13 @@ fn to_stored(linear: vec3<f32>) -> vec3<f32> {
 @fragment
 fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(position.xy);
+#ifdef OVERLAY
+    let stored = vec4(0.0);
+#else
     // Helper invocations at the border of a target of odd size lie outside it.
     let last = vec2<i32>(textureDimensions(source)) - 1;
     let stored = textureLoad(source, min(pixel, last), 0);
+#endif
     var p: Pixel;
     p.original = to_linear(stored.rgb);
     p.color = p.original;

@@ -4,14 +4,16 @@ use bevy::{
     camera::CompositingSpace,
     math::Vec2,
     render::render_resource::{
-        BindGroupLayoutDescriptor, BindGroupLayoutEntries, ShaderStages, TextureFormat,
-        TextureSampleType,
+        BindGroupLayoutDescriptor, ShaderStages, TextureFormat, TextureSampleType,
         binding_types::{texture_2d, texture_2d_multisampled, uniform_buffer_sized},
     },
     shader::ShaderDefVal,
 };
 
-use super::{Needs, Plan, ViewFacts, compose::definition};
+use super::{
+    AnyEffect, Extent, Needs, Plan, ViewFacts,
+    compose::{definition, left_out},
+};
 use crate::{
     depth::view::ViewUniform,
     finish::DebugView,
@@ -83,6 +85,38 @@ pub(crate) struct StylizeKey {
     map_flags: u32,
     finish: bool,
     same_size: bool,
+    pub part: Part,
+    /// Effects that are left out of [`Part::Base`], and whether lines are too.
+    left_out: Vec<&'static str>,
+    without_lines: bool,
+}
+
+/// What a draw call of the fused pass draws.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) enum Part {
+    /// All effects at all pixels.
+    #[default]
+    Whole,
+    /// All pixels, without the effects that change only some of them.
+    Base,
+    /// All effects in the tiles that those effects may change.
+    Tiles,
+    /// All effects at all pixels, blended over the picture.
+    Overlay,
+    /// All effects in these tiles, blended over the picture.
+    OverlaidTiles,
+}
+
+impl Part {
+    /// Whether the pass is blended over the picture.
+    pub fn is_overlay(self) -> bool {
+        matches!(self, Self::Overlay | Self::OverlaidTiles)
+    }
+
+    /// Whether only tiles are drawn.
+    pub fn is_tiled(self) -> bool {
+        matches!(self, Self::Tiles | Self::OverlaidTiles)
+    }
 }
 
 impl StylizeKey {
@@ -119,7 +153,44 @@ impl StylizeKey {
             },
             finish: plan.finish.weight < 1.0 || plan.finish.split > 0.0,
             same_size: reads_pixels && inputs.view.depth_scale == Vec2::ONE,
+            part: Part::Whole,
+            left_out: vec![],
+            without_lines: false,
         }
+    }
+
+    /// Whether all effects draw over the picture, and their sum can be blended over it.
+    pub fn can_overlay(&self, plan: &Plan, facts: &ViewFacts) -> bool {
+        let plain = self.view.is_none() && !self.finish;
+        let local = |effect: &dyn AnyEffect| effect.any_extent(facts) != Extent::Everywhere;
+        plain && self.space == CompositingSpace::Linear && plan.drawn().all(local)
+    }
+
+    /// The key of another part of the pass.
+    pub fn with_part(&self, part: Part) -> Self {
+        Self {
+            part,
+            ..self.clone()
+        }
+    }
+
+    /// The key of [`Part::Base`], without these effects and perhaps without lines.
+    pub fn base(&self, left_out: Vec<&'static str>, without_lines: bool) -> Self {
+        Self {
+            left_out,
+            without_lines,
+            ..self.with_part(Part::Base)
+        }
+    }
+
+    /// Whether lines are read at any place.
+    pub fn reads_lines_anywhere(&self) -> bool {
+        self.needs.contains(Needs::LINES_ANYWHERE)
+    }
+
+    /// Whether a debug view replaces the picture.
+    pub fn is_view(&self) -> bool {
+        self.view.is_some()
     }
 
     pub fn normals(&self) -> bool {
@@ -152,6 +223,8 @@ impl StylizeKey {
             (needs.contains(Needs::LIGHTNESS_CHANGE), "LIGHTNESS_CHANGE"),
             (self.same_size, "SAME_SIZE"),
             (self.finish, "FINISH"),
+            (self.part.is_overlay(), "OVERLAY"),
+            (self.without_lines, "WITHOUT_LINES"),
         ]
         .into_iter()
         .filter_map(|(on, name)| on.then_some(name))
@@ -160,6 +233,7 @@ impl StylizeKey {
         .chain(self.view.map(|_| "DEBUG_VIEW".into()))
         .chain(self.view.into_iter().flat_map(view_definitions))
         .chain(self.effects.iter().map(|name| definition(name).into()))
+        .chain(self.left_out.iter().map(|name| left_out(name).into()))
         .chain([number("MAP_FLAGS", self.map_flags)])
         .chain(self.variants.shader_defs())
         .collect()
@@ -175,11 +249,11 @@ impl StylizeKey {
             };
             texture.build(binding, ShaderStages::FRAGMENT)
         };
-        let mut entries = BindGroupLayoutEntries::sequential(
-            ShaderStages::FRAGMENT,
-            (texture_2d(unfilterable), uniform_buffer_sized(false, None)),
-        )
-        .to_vec();
+        let fragment = ShaderStages::FRAGMENT;
+        let mut entries = vec![uniform_buffer_sized(false, None).build(1, fragment)];
+        if !self.part.is_overlay() {
+            entries.push(texture_2d(unfilterable).build(0, fragment));
+        }
         let optional = [
             (self.depth, prepass(2)),
             (self.visible_range, range_entry()),

@@ -35,7 +35,10 @@ pub use registry::{EffectPlugin, EffectRegistry, EffectType};
 pub use set::EffectSet;
 pub(crate) use {choose::ViewPlan, plan::Plan};
 
-use crate::{diagnostics::ComicsStage, lines::LineSettings};
+use crate::{
+    diagnostics::ComicsStage,
+    lines::{LineSettings, MapJumps},
+};
 
 /// A camera component that changes the picture: one WGSL function of a pixel, and
 /// its settings.
@@ -135,6 +138,22 @@ pub trait Effect:
         let _ = (view, variants);
     }
 
+    /// Where the effect can change the picture. The fused pass leaves it out of the rest.
+    /// Default: [`Extent::Everywhere`].
+    fn extent(&self, view: &ViewFacts) -> Extent {
+        let _ = view;
+        Extent::Everywhere
+    }
+
+    /// The largest distance in physical pixels, across or down, from its pixel at which
+    /// the effect's WGSL reads lines; `None` if it is not known. If all effects that read
+    /// lines know it, the fused pass defines `WITHOUT_LINES` where no line is that near:
+    /// `lines_at` finds no ink there. Default: `None`.
+    fn line_reach(&self, view: &ViewFacts) -> Option<f32> {
+        let _ = view;
+        None
+    }
+
     /// Packs the settings for the shader.
     fn uniform(&self, view: &ViewFacts) -> Self::Uniform;
 
@@ -175,6 +194,24 @@ pub trait Effect:
     fn report_name(&self) -> Option<String> {
         None
     }
+}
+
+/// Where an effect can change the picture.
+///
+/// An effect that is not [`Everywhere`](Self::Everywhere) only draws over the picture:
+/// the colour and alpha that it returns are
+/// `mix(vec4(p.color, p.alpha), vec4(ink, 1.0), opacity)`, and neither `ink` nor
+/// `opacity` depends on the picture. If all effects of a camera are of this kind, the
+/// fused pass is blended over the picture instead of copying it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Extent {
+    /// At any pixel.
+    Everywhere,
+    /// Where the lines of the camera have ink.
+    AtLines,
+    /// Where the depth map departs from planes.
+    AtJumps(MapJumps),
 }
 
 /// When an effect applies. The stages run in this order.

@@ -2,15 +2,17 @@
 //! effect, and writes the picture once.
 
 use bevy::{
-    asset::Handle,
+    asset::{AssetServer, Handle},
     core_pipeline::{FullscreenShader, prepass::ViewPrepassTextures},
     ecs::{resource::Resource, system::Res},
+    math::UVec4,
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
-            BindGroupEntry, BindingResource, ColorTargetState, ColorWrites, FragmentState,
-            IntoBinding, Operations, PipelineCache, RenderPassColorAttachment,
-            RenderPassDescriptor, RenderPipelineDescriptor, SpecializedRenderPipeline, TextureView,
+            BindGroup, BindGroupEntry, BindingResource, BlendState, ColorTargetState, ColorWrites,
+            FragmentState, IntoBinding, LoadOp, Operations, PipelineCache, PrimitiveState,
+            PrimitiveTopology, RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
+            RenderPipelineDescriptor, SpecializedRenderPipeline, StoreOp, TextureView,
         },
         renderer::{RenderContext, ViewQuery},
         view::ViewTarget,
@@ -26,7 +28,7 @@ use super::{
 use crate::{
     depth::prepare::ViewDepthRange,
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
-    lines::ViewLines,
+    lines::{TileList, TileLists, ViewLines, tile_shader, tile_vertices},
     objects::{ObjectStyleBuffer, ViewObjectIds},
 };
 
@@ -34,13 +36,19 @@ use crate::{
 pub(crate) struct StylizePipeline {
     fullscreen: FullscreenShader,
     shader: Handle<Shader>,
+    tile: Handle<Shader>,
 }
 
 impl StylizePipeline {
-    pub fn new(fullscreen: &FullscreenShader, shader: Handle<Shader>) -> Self {
+    pub fn new(
+        fullscreen: &FullscreenShader,
+        shader: Handle<Shader>,
+        assets: &AssetServer,
+    ) -> Self {
         Self {
             fullscreen: fullscreen.clone(),
             shader,
+            tile: tile_shader(assets),
         }
     }
 }
@@ -49,17 +57,29 @@ impl SpecializedRenderPipeline for StylizePipeline {
     type Key = StylizeKey;
 
     fn specialize(&self, key: Self::Key) -> RenderPipelineDescriptor {
+        let (vertex, topology) = if key.part.is_tiled() {
+            let tiles = tile_vertices(self.tile.clone());
+            (tiles, PrimitiveTopology::TriangleStrip)
+        } else {
+            let fullscreen = self.fullscreen.to_vertex_state();
+            (fullscreen, PrimitiveTopology::TriangleList)
+        };
+        let overlay = key.part.is_overlay();
         RenderPipelineDescriptor {
             label: Some("comics_stylize".into()),
             layout: vec![key.layout()],
-            vertex: self.fullscreen.to_vertex_state(),
+            vertex,
+            primitive: PrimitiveState {
+                topology,
+                ..Default::default()
+            },
             fragment: Some(FragmentState {
                 shader: self.shader.clone(),
                 shader_defs: key.shader_defs(),
                 entry_point: Some("stylize".into()),
                 targets: vec![Some(ColorTargetState {
                     format: key.format,
-                    blend: None,
+                    blend: overlay.then_some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                     write_mask: ColorWrites::ALL,
                 })],
             }),
@@ -96,7 +116,7 @@ pub(super) fn stylize(
     mut ctx: RenderContext,
 ) {
     let ((target, request, fused), found) = view.into_inner();
-    let Some(pipeline) = cache.get_render_pipeline(request.pipeline) else {
+    let Some(draws) = Draws::new(&cache, request, found.2) else {
         errors.report(&cache, request, &ledger);
         return pass_through(request, &ledger, LeftOut::PipelineNotReady);
     };
@@ -110,8 +130,13 @@ pub(super) fn stylize(
         Err(reason) => return pass_through(request, &ledger, reason),
     };
     let layout = cache.get_bind_group_layout(&request.key.layout());
-    let post = target.post_process_write();
-    entries.push(entry(0, post.source.into_binding()));
+    let destination = if request.key.part.is_overlay() {
+        target.main_texture_view()
+    } else {
+        let post = target.post_process_write();
+        entries.push(entry(0, post.source.into_binding()));
+        post.destination
+    };
     entries.push(entry(1, fused.uniform.as_entire_binding()));
     let device = ctx.render_device();
     let bind_group = device.create_bind_group("comics_stylize", &layout, &entries);
@@ -124,20 +149,71 @@ pub(super) fn stylize(
         let mut render_pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("comics_stylize"),
             color_attachments: &[Some(RenderPassColorAttachment {
-                view: post.destination,
+                view: destination,
                 depth_slice: None,
                 resolve_target: None,
-                ops: Operations::default(),
+                ops: Operations {
+                    load: LoadOp::Load,
+                    store: StoreOp::Store,
+                },
             })],
             ..Default::default()
         });
-        render_pass.set_pipeline(pipeline);
-        render_pass.set_bind_group(0, &bind_group, &[]);
-        render_pass.draw(0..3, 0..1);
+        draws.record(&mut render_pass, &bind_group, request.facts.viewport);
     }
     span.end(encoder);
 
     ran(request, &ledger);
+}
+
+/// The draw calls of the pass.
+struct Draws<'a> {
+    base: Option<&'a RenderPipeline>,
+    pipeline: &'a RenderPipeline,
+    /// The tiles that `pipeline` draws, if it does not draw all pixels.
+    tiles: Option<&'a TileLists>,
+}
+
+impl<'a> Draws<'a> {
+    /// `None` if a pipeline or the tiles are not ready in this frame.
+    fn new(
+        cache: &'a PipelineCache,
+        request: &FusedRequest,
+        lines: Option<&'a ViewLines>,
+    ) -> Option<Self> {
+        let pipeline = cache.get_render_pipeline(request.pipeline)?;
+        let base = match request.base {
+            Some(base) => Some(cache.get_render_pipeline(base)?),
+            None => None,
+        };
+        let tiles = if request.key.part.is_tiled() {
+            Some(lines?.tiles()?)
+        } else {
+            None
+        };
+        Some(Self {
+            base,
+            pipeline,
+            tiles,
+        })
+    }
+
+    fn record(&self, pass: &mut wgpu::RenderPass, bind_group: &BindGroup, viewport: UVec4) {
+        pass.set_bind_group(0, bind_group, &[]);
+        if let Some(base) = self.base {
+            pass.set_pipeline(base);
+            pass.draw(0..3, 0..1);
+        }
+        pass.set_pipeline(self.pipeline);
+        match self.tiles {
+            Some(tiles) => {
+                let [x, y, width, height] = viewport.as_vec4().to_array();
+                pass.set_viewport(x, y, width, height, 0.0, 1.0);
+                tiles.draw(pass, TileList::Inked);
+            }
+            None => pass.draw(0..3, 0..1),
+        }
+    }
 }
 
 /// Reports that the pass and its effects ran.

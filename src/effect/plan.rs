@@ -5,7 +5,7 @@ use std::fmt::Debug;
 
 use bevy::ecs::world::EntityRef;
 
-use super::{AnyEffect, EffectType, Needs};
+use super::{AnyEffect, EffectType, Needs, ViewFacts};
 use crate::{
     depth::{DepthHistogram, DepthMap, VisibleDepthRange},
     diagnostics::{ComicsStage, LeftOut},
@@ -267,6 +267,16 @@ impl Plan {
             .map(|planned| planned.effect.as_ref())
     }
 
+    /// The largest [`Effect::line_reach`](super::Effect::line_reach); `None` if an effect
+    /// that reads lines does not know it.
+    pub fn line_reach(&self, view: &ViewFacts) -> Option<f32> {
+        self.drawn()
+            .filter(|effect| effect.any_needs().contains(Needs::LINES))
+            .try_fold(0.0_f32, |reach, effect| {
+                Some(reach.max(effect.any_line_reach(view)?))
+            })
+    }
+
     /// Whether the effect that requests the lines is implied, not on the camera.
     /// Also true if no effect requests lines.
     pub fn lines_implied(&self) -> bool {
@@ -377,6 +387,7 @@ impl Plan {
             ComicsStage::NormalPrepass
             | ComicsStage::ObjectIds
             | ComicsStage::ResolveSamples
+            | ComicsStage::SearchTiles
             | ComicsStage::FindLines
             | ComicsStage::DrawLines => LeftOut::NoSuchLines,
             ComicsStage::RangeSmoothing

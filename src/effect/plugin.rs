@@ -3,7 +3,7 @@
 use bevy::{
     anti_alias::{fxaa::fxaa, smaa::smaa},
     app::{App, Plugin},
-    asset::{Assets, Handle},
+    asset::{AssetServer, Assets, Handle},
     core_pipeline::{
         FullscreenShader,
         schedule::{Core3d, Core3dSystems},
@@ -117,12 +117,12 @@ impl FusedPlugin {
 fn init_pipeline(
     mut commands: Commands,
     fullscreen: Res<FullscreenShader>,
-    shader: Res<FusedShader>,
+    (shader, assets): (Res<FusedShader>, Res<AssetServer>),
     fused: Query<Entity, With<ViewFused>>,
 ) {
     // Runs again after the device was lost: the old device's buffers are invalid.
     for view in &fused {
         commands.entity(view).remove::<ViewFused>();
     }
-    commands.insert_resource(StylizePipeline::new(&fullscreen, shader.0.clone()));
+    commands.insert_resource(StylizePipeline::new(&fullscreen, shader.0.clone(), &assets));
 }

@@ -25,6 +25,10 @@ pub(crate) struct FusedRequest {
     pub plan: Arc<Plan>,
     pub key: StylizeKey,
     pub pipeline: CachedRenderPipelineId,
+    /// Draws all pixels before the tiles of `pipeline`, see [`Part::Base`].
+    ///
+    /// [`Part::Base`]: super::key::Part::Base
+    pub base: Option<CachedRenderPipelineId>,
     pub facts: ViewFacts,
     pub view: ViewUniform,
     pub lines: Option<LinesUniform>,

@@ -21,8 +21,8 @@ use bevy::{
 };
 
 use super::{
-    Plan, ViewFacts, ViewPlan,
-    key::{KeyInputs, StylizeKey},
+    AnyEffect, Extent, Plan, ViewFacts, ViewPlan,
+    key::{KeyInputs, Part, StylizeKey},
     pass::StylizePipeline,
     plan::Prepasses,
     prepare::FusedRequest,
@@ -33,7 +33,10 @@ use crate::{
         request::{RangePasses, RangePipelines, RangeRequest, Reduction},
         view::{ViewUniform, depth_rect},
     },
-    lines::request::{LinePasses, LinePipelines, LineRequest},
+    lines::{
+        LineSettings, MapJumps,
+        request::{LinePasses, LinePipelines, LineRequest},
+    },
     objects::IdRequest,
 };
 
@@ -116,7 +119,17 @@ impl Services<'_> {
         (extracted, camera): (&ExtractedView, &ExtractedCamera),
     ) -> Requests {
         let uniform = view_uniform(view, plan, scene);
-        let lines = line_request(view, plan, scene, uniform);
+        let facts = ViewFacts {
+            viewport: scene.viewport,
+            scale_factor: view.scale_factor,
+            seconds: view.time,
+            lines_implied: plan.lines_implied(),
+        };
+        let jumps = map_jumps(plan, scene, &facts);
+        let lines = line_request(view, (plan, &facts), scene, (uniform, jumps)).map(|request| {
+            let passes = self.lines.get(cache, &request);
+            (request, passes)
+        });
         let fused = plan.draws().then(|| {
             let inputs = KeyInputs {
                 format: extracted.target_format,
@@ -125,14 +138,10 @@ impl Services<'_> {
                 oblique: view.projection.kind() == ProjectionKind::Oblique,
                 view: uniform,
             };
-            self.fused(cache, (plan, view), scene, (&inputs, lines.as_ref()))
+            self.fused(cache, (plan, view.camera, facts), &inputs, lines.as_ref())
         });
         let range = range_request(view, plan, scene).map(|request| {
             let passes = self.ranges.get(cache, &request);
-            (request, passes)
-        });
-        let lines = lines.map(|request| {
-            let passes = self.lines.get(cache, &request);
             (request, passes)
         });
         let ids = scene
@@ -154,29 +163,67 @@ impl Services<'_> {
     fn fused(
         &mut self,
         cache: &PipelineCache,
-        (plan, view): (&Arc<Plan>, &ViewPlan),
-        scene: &Scene,
-        (inputs, lines): (&KeyInputs, Option<&LineRequest>),
+        (plan, camera, facts): (&Arc<Plan>, Entity, ViewFacts),
+        inputs: &KeyInputs,
+        lines: Option<&(LineRequest, LinePasses)>,
     ) -> FusedRequest {
-        let facts = ViewFacts {
-            viewport: scene.viewport,
-            scale_factor: view.scale_factor,
-            seconds: view.time,
-            lines_implied: plan.lines_implied(),
+        let whole = StylizeKey::new(plan, inputs, &facts);
+        let jumps =
+            |effect: &dyn AnyEffect| matches!(effect.any_extent(&facts), Extent::AtJumps(_));
+        let searches_jumps = plan.drawn().any(jumps);
+        let tiled = lines.filter(|(request, passes)| {
+            passes.are_tiles_complete() && (request.jumps.is_some() || !searches_jumps)
+        });
+        let without_lines = plan.line_reach(&facts).is_some();
+        let saves = |request: &LineRequest| {
+            request.jumps.is_some() || (without_lines && whole.reads_lines_anywhere())
         };
-        let key = StylizeKey::new(plan, inputs, &facts);
+        let part = match (whole.can_overlay(plan, &facts), tiled) {
+            (true, Some(_)) => Part::OverlaidTiles,
+            (true, None) => Part::Overlay,
+            (false, Some((request, _))) if saves(request) && !whole.is_view() => Part::Tiles,
+            (false, _) => Part::Whole,
+        };
+        let mut specialize = |key: &StylizeKey| {
+            let pipeline = &self.stylize_pipeline;
+            self.stylize.specialize(cache, pipeline, key.clone())
+        };
+        let base = (part == Part::Tiles).then(|| {
+            let local = |effect: &&dyn AnyEffect| effect.any_extent(&facts) != Extent::Everywhere;
+            let name = |effect: &dyn AnyEffect| effect.effect_type().name;
+            let left_out = plan.drawn().filter(local).map(name).collect();
+            specialize(&whole.base(left_out, without_lines))
+        });
+        let key = whole.with_part(part);
         FusedRequest {
-            camera: view.camera,
+            camera,
             plan: plan.clone(),
             facts,
             view: inputs.view,
-            lines: lines.map(|request| request.lines),
-            pipeline: self
-                .stylize
-                .specialize(cache, &self.stylize_pipeline, key.clone()),
+            lines: lines.map(|(request, _)| request.lines),
+            pipeline: specialize(&key),
+            base,
             key,
         }
     }
+}
+
+/// The places where effects of the plan search for jumps of the depth map, unless one of
+/// them has to search everywhere.
+fn map_jumps(plan: &Plan, scene: &Scene, facts: &ViewFacts) -> Option<MapJumps> {
+    let (_, samples) = scene.depth?;
+    let is_faithful = plan.lines.is_some_and(|lines| lines.has_faithful());
+    let has_window = samples == 1 && scene.main_pass_size.is_none();
+    if !has_window || is_faithful || plan.view.is_some() {
+        return None;
+    }
+    let jumps = plan
+        .drawn()
+        .filter_map(|effect| match effect.any_extent(facts) {
+            Extent::AtJumps(jumps) => Some(jumps),
+            _ => None,
+        });
+    jumps.reduce(MapJumps::or)
 }
 
 fn view_uniform(view: &ViewPlan, plan: &Plan, scene: &Scene) -> ViewUniform {
@@ -213,11 +260,12 @@ fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeReq
 
 fn line_request(
     view: &ViewPlan,
-    plan: &Plan,
+    (plan, facts): (&Plan, &ViewFacts),
     scene: &Scene,
-    uniform: ViewUniform,
+    (uniform, jumps): (ViewUniform, Option<MapJumps>),
 ) -> Option<LineRequest> {
-    let settings = plan.lines.filter(|_| plan.draws())?;
+    let lines = plan.lines.filter(|_| plan.draws());
+    let settings = lines.or(jumps.map(|_| LineSettings::NONE))?;
     let (depth_size, samples) = scene.depth?;
     let widest_object = if plan.object_styles {
         view.widest_object
@@ -241,6 +289,9 @@ fn line_request(
         visible_range: plan.depth_map.mapping.follows_visible_range(),
         ids: plan.draws_ids(),
         object_styles: plan.object_styles,
+        line_reach: plan.line_reach(facts).unwrap_or(0.0),
+        jumps,
+        map_flags: uniform.depth.flags,
     })
 }
 
@@ -259,14 +310,17 @@ impl Requests {
         });
         let lines = self.lines.as_ref().is_some_and(|(_, passes)| {
             let cracks = passes.cracks.is_some_and(|cracks| {
-                let walk = cracks.walk.is_some_and(compute);
                 let columns = cracks.columns.is_some_and(render);
-                walk || columns || render(cracks.find) || render(cracks.draw)
+                columns || render(cracks.find) || render(cracks.draw)
             });
             let resolve = passes.resolve.is_some_and(|(_, id)| render(id));
-            resolve || cracks || passes.faithful.is_some_and(render)
+            let search = passes
+                .search
+                .is_some_and(|ids| ids.into_iter().any(compute));
+            resolve || search || cracks || passes.faithful.is_some_and(render)
         });
-        let fused = self.fused.as_ref().is_some_and(|f| render(f.pipeline));
+        let fused =
+            (self.fused.as_ref()).is_some_and(|f| render(f.pipeline) || f.base.is_some_and(render));
         range || lines || fused
     }
 

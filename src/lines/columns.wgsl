@@ -9,7 +9,6 @@
 #import bevy_comics::lines::edge::{
     Grid, Lines, Place, crack_opacity, line_coverage, line_offset, pack_place, place_middle, unpack_width,
 }
-#import bevy_comics::lines::tiles::{TILE, has_cracks, tile_corner, tile_origin}
 
 struct ColumnUniform {
     seen: View,
@@ -19,16 +18,6 @@ struct ColumnUniform {
 
 @group(0) @binding(1) var<uniform> column_uniform: ColumnUniform;
 @group(0) @binding(11) var crack_texture: texture_2d<u32>;
-
-// Tiles without cracks within reach collapse into a point.
-@vertex
-fn tile(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> @builtin(position) vec4<f32> {
-    let g = column_uniform.grid;
-    let first = tile_origin(instance, g.rect.zw);
-    let above = vec2(0, g.reach + 1);
-    let below = vec2(TILE - 1, TILE - 1 + g.reach);
-    return tile_corner(first, vertex, g.rect.zw, has_cracks(first - above, first + below, g.rect.zw));
-}
 
 // The best two cracks in the column so far.
 struct Best {

@@ -10,8 +10,9 @@ use bevy::{
         diagnostic::RecordDiagnostics,
         render_resource::{
             BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, BindingResource,
-            CachedRenderPipelineId, IntoBinding, LoadOp, Operations, PipelineCache,
-            RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline, StoreOp, TextureView,
+            CachedRenderPipelineId, ComputePipeline, IntoBinding, LoadOp, Operations,
+            PipelineCache, RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
+            StoreOp, TextureView,
         },
         renderer::{RenderContext, RenderDevice, ViewQuery},
         texture::CachedTexture,
@@ -20,11 +21,11 @@ use bevy::{
 
 use super::{
     ViewLines,
+    cracks::{Ready, ReadyCracks, search_tiles},
     key::LineKey,
     prepare::Cracks,
     request::{CrackPasses, LinePasses, LineRequest},
     resolve::Resolved,
-    tiles::{Ready, ReadyCracks, draw_tiles},
 };
 use crate::{
     depth::prepare::ViewDepthRange,
@@ -54,7 +55,7 @@ pub(crate) fn find_lines(
     mut ctx: RenderContext,
 ) {
     let parts = view.into_inner();
-    let (request, _, lines) = parts.0;
+    let (request, passes, lines) = parts.0;
     let inputs = Inputs {
         parts,
         object_styles: &object_styles,
@@ -73,9 +74,26 @@ pub(crate) fn find_lines(
     } else {
         StageOutcome::LeftOut(LeftOut::SingleSampled)
     };
-    ledger.set(request.camera, ComicsStage::ResolveSamples, resolved);
-    ledger.set(request.camera, ComicsStage::FindLines, outcome);
-    ledger.set(request.camera, ComicsStage::DrawLines, outcome);
+    let searched = if passes.search.is_some() {
+        outcome
+    } else if passes.key.has_cracks() {
+        StageOutcome::LeftOut(LeftOut::NoComputeShaders)
+    } else {
+        StageOutcome::LeftOut(LeftOut::NoSuchLines)
+    };
+    let inked = if passes.has_ink() {
+        outcome
+    } else {
+        StageOutcome::LeftOut(LeftOut::NoSuchLines)
+    };
+    for (stage, outcome) in [
+        (ComicsStage::ResolveSamples, resolved),
+        (ComicsStage::SearchTiles, searched),
+        (ComicsStage::FindLines, inked),
+        (ComicsStage::DrawLines, inked),
+    ] {
+        ledger.set(request.camera, stage, outcome);
+    }
 }
 
 fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
@@ -125,12 +143,12 @@ type ResolvePass<'a> = (&'a Resolved, Ready<'a, RenderPipeline>);
 impl Inputs<'_> {
     fn record(&self, ctx: &mut RenderContext) -> Result<(), LeftOut> {
         let (request, passes, lines) = self.parts.0;
-        let ink = lines.ink.as_ref().ok_or(NOT_READY)?;
         let resolve = self.resolve_pass()?;
+        let search = self.search_passes()?;
         let faithful = match passes.faithful {
             Some(id) => {
-                let layout = passes.key.faithful_layout();
-                let entries = self.entries(&passes.key, passes.key.faithful[1])?;
+                let layout = passes.key.for_faithful().faithful_layout();
+                let entries = self.entries(&passes.key.for_faithful(), passes.key.faithful[1])?;
                 Some((self.pipeline(id)?, self.group(&layout, &entries)))
             }
             None => None,
@@ -148,14 +166,22 @@ impl Inputs<'_> {
             resolved.record(encoder, request, (pipeline, group));
             span.end(encoder);
         }
-        if let Some(cracks) = &cracks {
-            let span = diagnostics.time_span(encoder, "comics_find_lines");
-            cracks.find(encoder, request);
+        if let Some(search) = &search {
+            let span = diagnostics.time_span(encoder, "comics_search_tiles");
+            search_tiles(encoder, search, request);
             span.end(encoder);
         }
+        if let Some(cracks) = &cracks {
+            let span = diagnostics.time_span(encoder, "comics_find_lines");
+            cracks.find(encoder);
+            span.end(encoder);
+        }
+        let Some(ink) = &lines.ink else {
+            return Ok(());
+        };
         let span = diagnostics.time_span(encoder, "comics_draw_lines");
         if let Some(cracks) = &cracks {
-            cracks.search_columns(encoder, request);
+            cracks.search_columns(encoder);
         }
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("comics_draw_lines"),
@@ -168,7 +194,7 @@ impl Inputs<'_> {
             pass.draw(0..3, 0..1);
         }
         if let Some(cracks) = &cracks {
-            draw_tiles(&mut pass, &cracks.draw, request.size);
+            cracks.draw_ink(&mut pass);
         }
         drop(pass);
         span.end(encoder);
@@ -249,53 +275,54 @@ impl Inputs<'_> {
         passes: &CrackPasses,
         cracks: &'a Cracks,
     ) -> Result<ReadyCracks<'a>, LeftOut> {
-        let key = &self.parts.0.1.key;
-        let mut entries = self.entries(key, key.creases)?;
-        if let Some(blocks) = &cracks.blocks {
-            entries.push(entry(12, (&blocks.default_view).into_binding()));
-        }
+        let key = self.parts.0.1.key.for_find();
+        let entries = self.entries(&key, key.creases)?;
         let find = self.group(&key.find_layout(), &entries);
-        let walk = match (passes.walk, &cracks.blocks) {
-            (Some(id), Some(blocks)) => {
-                let pipeline = self.cache.get_compute_pipeline(id).ok_or(NOT_READY)?;
-                let key = key.for_walk();
-                let mut entries = self.entries(&key, key.creases)?;
-                entries.push(entry(10, (&blocks.default_view).into_binding()));
-                Some((pipeline, self.group(&key.walk_layout(), &entries)))
-            }
-            _ => None,
-        };
+        let (_, _, lines) = self.parts.0;
         let columns = match (passes.columns, &cracks.columns) {
             (Some(id), Some(columns)) => {
-                let entries = self.searched(cracks, (11, &cracks.texture))?;
+                let entries = self.searched((11, &cracks.texture))?;
                 let group = self.group(&key.for_columns().columns_layout(), &entries);
                 Some(((self.pipeline(id)?, group), columns))
             }
             _ => None,
         };
         Ok(ReadyCracks {
-            walk,
+            tiles: lines.tiles.as_ref().map(|tiles| &tiles.lists),
             columns,
             find: (self.pipeline(passes.find)?, find),
-            draw: (self.pipeline(passes.draw)?, self.draw_group(cracks)?),
+            ink: (self.pipeline(passes.draw)?, self.draw_group(cracks)?),
             texture: &cracks.texture,
         })
     }
 
-    /// The bindings of a pass that searches cracks in the texture at this binding.
+    /// The passes that look for blocks with cracks and list the tiles near them, if there
+    /// are any.
+    fn search_passes(&self) -> Result<Option<[Ready<'_, ComputePipeline>; 2]>, LeftOut> {
+        let (_, passes, lines) = self.parts.0;
+        let (Some([walk, list]), Some(tiles)) = (passes.search, &lines.tiles) else {
+            return Ok(None);
+        };
+        let pipeline = |id| self.cache.get_compute_pipeline(id).ok_or(NOT_READY);
+        let key = passes.key.for_walk();
+        let mut walked = self.entries(&key, key.creases)?;
+        walked.push(entry(10, (&tiles.blocks.default_view).into_binding()));
+        let walked = self.group(&key.walk_layout(), &walked);
+        let mut listed = self.searched((12, &tiles.blocks))?;
+        listed.extend(tiles.lists.entries());
+        let listed = self.group(&LineKey::tiles_layout(), &listed);
+        Ok(Some([(pipeline(walk)?, walked), (pipeline(list)?, listed)]))
+    }
+
+    /// The bindings of a pass that searches the texture at this binding.
     fn searched<'a>(
         &'a self,
-        cracks: &'a Cracks,
         (binding, texture): (u32, &'a CachedTexture),
     ) -> Result<Vec<BindGroupEntry<'a>>, LeftOut> {
-        let mut entries = vec![
+        Ok(vec![
             entry(1, self.uniform()?),
             entry(binding, (&texture.default_view).into_binding()),
-        ];
-        if let Some(blocks) = &cracks.blocks {
-            entries.push(entry(12, (&blocks.default_view).into_binding()));
-        }
-        Ok(entries)
+        ])
     }
 
     fn draw_group(&self, cracks: &Cracks) -> Result<BindGroup, LeftOut> {
@@ -304,7 +331,7 @@ impl Inputs<'_> {
             Some(columns) => (13, columns),
             None => (11, &cracks.texture),
         };
-        let mut entries = self.searched(cracks, searched)?;
+        let mut entries = self.searched(searched)?;
         if passes.key.object_styles {
             let ids = self.texels()?.ids.ok_or(NOT_READY)?;
             entries.push(entry(8, ids.into_binding()));

@@ -9,7 +9,6 @@
     Grid, Lines, encode_ink, ink_of, largest_opacity, line_coverage, line_offset, place_direction, place_middle,
     segment_distance, unpack_place, unpack_width,
 }
-#import bevy_comics::lines::tiles::{TILE, has_cracks, tile_corner, tile_origin}
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::texel_object
 #endif
@@ -27,19 +26,6 @@ struct DrawUniform {
 // The best crack of each pixel's column, see columns.wgsl.
 @group(0) @binding(13) var column_texture: texture_2d<u32>;
 #endif
-
-// Tiles without cracks within reach collapse into a point.
-@vertex
-fn tile(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> @builtin(position) vec4<f32> {
-    let g = draw_uniform.grid;
-    let size = draw_uniform.seen.viewport.zw;
-    let first = tile_origin(instance, size);
-    let low = floor(vec2<f32>(first) * g.from_viewport.xy + g.from_viewport.zw);
-    let high = ceil(vec2<f32>(first + TILE) * g.from_viewport.xy + g.from_viewport.zw);
-    // One more pixel: the cracks of a pixel lie on its eastern and southern sides.
-    let near = has_cracks(vec2<i32>(low) - g.reach - 1, vec2<i32>(high) + g.reach, g.rect.zw);
-    return tile_corner(first, vertex, size, near);
-}
 
 // What is known of the lines at a position.
 struct Ink {

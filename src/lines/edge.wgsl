@@ -45,6 +45,11 @@ struct Grid {
     from_viewport: vec4<f32>,
     // Pixels within which cracks are searched around a pixel.
     reach: i32,
+    // Pixels around a crack or jump that may have ink.
+    inked: i32,
+    // MapJumps: the least departure of the depth map, and the distance in whole pixels.
+    jump_least: f32,
+    jump_radius: f32,
 }
 
 // The gradient at x from its eight neighbours a to h, row by row ([CL] Eq. 1).

@@ -3,7 +3,7 @@
 // the east (x) and south (y) of its pixel, see Crack in edge.wgsl.
 //
 // Only tiles in which walk.wgsl has seen a crack are drawn; the rest of the texture is
-// cleared. Without compute shaders, all tiles are drawn.
+// cleared. Without compute shaders, all pixels are drawn.
 
 #import bevy_comics::depth::map::depth_map
 #import bevy_comics::depth::view::{View, depth_frame, set_view, texel_depth}
@@ -11,7 +11,6 @@
     CREASE, Grid, Lines, OBJECT, SILHOUETTE,
     byte, fold, fold_response, is_ridge, pack_ink, step_excess, step_response,
 }
-#import bevy_comics::lines::tiles::{TILE, has_cracks, tile_corner, tile_origin}
 #import bevy_comics::objects::kinds_of
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
@@ -30,14 +29,6 @@ struct FindUniform {
 }
 
 @group(0) @binding(1) var<uniform> find_uniform: FindUniform;
-
-// Tiles are instances, row by row. Those without cracks collapse into a point.
-@vertex
-fn tile(@builtin(vertex_index) vertex: u32, @builtin(instance_index) instance: u32) -> @builtin(position) vec4<f32> {
-    let size = find_uniform.grid.rect.zw;
-    let first = tile_origin(instance, size);
-    return tile_corner(first, vertex, size, has_cracks(first, first + TILE - 1, size));
-}
 
 // What lies on both sides of four cracks.
 struct Sides {

@@ -5,7 +5,10 @@ use bevy::{
     render::render_resource::{
         BindGroupLayoutDescriptor, BindGroupLayoutEntry, ShaderStages, ShaderType,
         StorageTextureAccess, TextureFormat, TextureSampleType,
-        binding_types::{texture_2d, texture_storage_2d, uniform_buffer, uniform_buffer_sized},
+        binding_types::{
+            storage_buffer_sized, texture_2d, texture_storage_2d, uniform_buffer,
+            uniform_buffer_sized,
+        },
     },
     shader::ShaderDefVal,
 };
@@ -27,8 +30,6 @@ pub(crate) const INK_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 pub(crate) const BLOCK: [u32; 2] = [4, 32];
 /// Blocks in a workgroup, side by side.
 pub(crate) const WORKGROUP: u32 = 32;
-/// Width and height in pixels of the tiles of `tiles.wgsl`.
-pub(crate) const TILE: u32 = 16;
 
 /// The largest half width of a line in physical pixels: that of `pack_width` in
 /// `edge.wgsl`.
@@ -69,7 +70,10 @@ pub(crate) struct LineKey {
     /// The depth texture has one pixel per pixel of the viewport.
     pub same_size: bool,
     pub search: Search,
-    /// The device has no compute shaders.
+    /// Jumps of the depth map are searched too, with these flags of the map.
+    pub jumps: bool,
+    map_flags: u32,
+    /// The device has no compute shaders: the passes draw all pixels, not tiles.
     pub by_fragments: bool,
 }
 
@@ -89,10 +93,12 @@ impl LineKey {
             ids: request.ids,
             object_styles: request.object_styles,
             fading: lines.fades(),
-            visible_range: lines.fades() && request.visible_range,
+            visible_range: request.visible_range,
             faithful: forms.map(|form| form == Some(Form::Faithful)),
             same_size: request.view.depth_scale == Vec2::ONE,
             search: request.search(),
+            jumps: request.jumps.is_some(),
+            map_flags: request.map_flags,
             by_fragments,
         }
     }
@@ -112,7 +118,9 @@ impl LineKey {
             ids: self.object_edges,
             object_styles: false,
             fading: false,
-            visible_range: false,
+            visible_range: self.jumps && self.visible_range,
+            jumps: self.jumps,
+            map_flags: if self.jumps { self.map_flags } else { 0 },
             ..self.for_find()
         }
     }
@@ -122,6 +130,9 @@ impl LineKey {
         Self {
             faithful: [false; 2],
             search: Search::default(),
+            visible_range: self.fading && self.visible_range,
+            jumps: false,
+            map_flags: 0,
             ..self
         }
     }
@@ -133,6 +144,9 @@ impl LineKey {
             creases: false,
             object_edges: false,
             search: Search::default(),
+            visible_range: self.fading && self.visible_range,
+            jumps: false,
+            map_flags: 0,
             by_fragments: false,
             ..self
         }
@@ -163,7 +177,6 @@ impl LineKey {
             (self.oblique, "OBLIQUE"),
             (self.ids, "OBJECT_IDS"),
             (self.object_styles, "OBJECT_STYLES"),
-            (self.by_fragments, "BY_FRAGMENTS"),
         ]
         .into_iter()
         .filter(|(on, _)| *on)
@@ -181,6 +194,20 @@ impl LineKey {
                 (self.fading, "FADING"),
                 (self.visible_range, "VISIBLE_RANGE"),
             ]))
+            .collect()
+    }
+
+    pub fn walk_defs(&self) -> Vec<ShaderDefVal> {
+        let jumps = [
+            "JUMPS".into(),
+            ShaderDefVal::UInt("MAP_FLAGS".into(), self.map_flags),
+        ];
+        let jumps = self.jumps.then_some(jumps);
+        let cracks = self.has_cracks().then(|| "CRACKS".into());
+        self.find_defs()
+            .into_iter()
+            .chain(cracks)
+            .chain(jumps.into_iter().flatten())
             .collect()
     }
 
@@ -240,16 +267,8 @@ impl LineKey {
     }
 
     pub fn find_layout(&self) -> BindGroupLayoutDescriptor {
-        let mut entries = self.inputs(self.creases, ShaderStages::FRAGMENT);
-        entries[0].visibility = ShaderStages::VERTEX_FRAGMENT;
-        entries.extend(self.blocks());
+        let entries = self.inputs(self.creases, ShaderStages::FRAGMENT);
         BindGroupLayoutDescriptor::new("comics_find_lines", &entries)
-    }
-
-    /// The layout entry of the blocks that select the tiles that are drawn.
-    fn blocks(&self) -> Option<BindGroupLayoutEntry> {
-        let blocks = texture_2d(TextureSampleType::Uint);
-        (!self.by_fragments).then(|| blocks.build(12, ShaderStages::VERTEX))
     }
 
     pub fn faithful_layout(&self) -> BindGroupLayoutDescriptor {
@@ -264,12 +283,21 @@ impl LineKey {
     /// The layout entries of a pass that searches cracks in the texture at this binding.
     fn searched(&self, binding: u32) -> Vec<BindGroupLayoutEntry> {
         let cracks = texture_2d(TextureSampleType::Uint);
-        let mut entries = vec![
-            uniform_buffer::<LinePassUniform>(false).build(1, ShaderStages::VERTEX_FRAGMENT),
+        vec![
+            uniform_buffer::<LinePassUniform>(false).build(1, ShaderStages::FRAGMENT),
             cracks.build(binding, ShaderStages::FRAGMENT),
+        ]
+    }
+
+    pub fn tiles_layout() -> BindGroupLayoutDescriptor {
+        let compute = ShaderStages::COMPUTE;
+        let entries = [
+            uniform_buffer::<LinePassUniform>(false).build(1, compute),
+            texture_2d(TextureSampleType::Uint).build(12, compute),
+            storage_buffer_sized(false, None).build(14, compute),
+            storage_buffer_sized(false, None).build(15, compute),
         ];
-        entries.extend(self.blocks());
-        entries
+        BindGroupLayoutDescriptor::new("comics_list_tiles", &entries)
     }
 
     pub fn draw_layout(&self) -> BindGroupLayoutDescriptor {

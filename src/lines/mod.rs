@@ -1,9 +1,10 @@
 //! The service of lines. `resolve.wgsl` picks a sample of every pixel of a multisampled
-//! view. `walk.wgsl` looks for tiles with cracks, the borders between pixels that lines
-//! run along, in depth, normals and object ids; `find.wgsl` measures the cracks there.
-//! `columns.wgsl`, for wide lines, and `draw.wgsl` draw their ink into a texture. Effects
-//! read the ink with `read.wgsl`.
+//! view. `walk.wgsl` looks for cracks, the borders between pixels that lines run along, in
+//! depth, normals and object ids, and `tiles.wgsl` lists the tiles near them. In these
+//! tiles, `find.wgsl` measures the cracks; `columns.wgsl`, for wide lines, and `draw.wgsl`
+//! draw their ink into a texture. Effects read the ink with `read.wgsl`.
 
+mod cracks;
 mod draw;
 mod key;
 mod kinds;
@@ -37,8 +38,9 @@ use bevy::{
 pub(crate) use key::{ink_entry, range_entry, reach};
 pub use kinds::{Creases, ObjectEdges, Silhouettes};
 pub(crate) use prepare::ViewLines;
-pub use settings::LineSettings;
 pub(crate) use settings::LinesUniform;
+pub use settings::{LineSettings, MapJumps};
+pub(crate) use tiles::{TileList, TileLists, tile_shader, tile_vertices};
 
 use crate::schedule::{ComicsSystems, PrepareComics};
 use pipelines::LineShaders;
@@ -47,9 +49,11 @@ use resolve::ResolvePipeline;
 /// Finds the lines of the views that request them.
 pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "edge.wgsl");
+    load_shader_library!(app, "jumps.wgsl");
     load_shader_library!(app, "read.wgsl");
-    load_shader_library!(app, "tiles.wgsl");
     embedded_asset!(app, "walk.wgsl");
+    embedded_asset!(app, "tiles.wgsl");
+    embedded_asset!(app, "tile.wgsl");
     embedded_asset!(app, "resolve.wgsl");
     embedded_asset!(app, "find.wgsl");
     embedded_asset!(app, "columns.wgsl");

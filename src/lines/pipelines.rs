@@ -9,18 +9,23 @@ use bevy::{
         ComputePipelineDescriptor, FragmentState, PrimitiveState,
         PrimitiveTopology::{TriangleList, TriangleStrip},
         RenderPipelineDescriptor, SpecializedComputePipeline, SpecializedRenderPipeline,
-        TextureFormat, VertexState,
+        TextureFormat,
     },
     shader::Shader,
 };
 
-use super::key::{CRACK_FORMAT, INK_FORMAT, LineKey};
+use super::{
+    key::{CRACK_FORMAT, INK_FORMAT, LineKey},
+    tiles::{tile_shader, tile_vertices},
+};
 
 /// The shaders of the passes.
 #[derive(Resource)]
 pub(crate) struct LineShaders {
     fullscreen: FullscreenShader,
     walk: Handle<Shader>,
+    tiles: Handle<Shader>,
+    tile: Handle<Shader>,
     find: Handle<Shader>,
     columns: Handle<Shader>,
     faithful: Handle<Shader>,
@@ -32,6 +37,8 @@ impl LineShaders {
         Self {
             fullscreen: fullscreen.clone(),
             walk: load_embedded_asset!(assets, "walk.wgsl"),
+            tiles: load_embedded_asset!(assets, "tiles.wgsl"),
+            tile: tile_shader(assets),
             find: load_embedded_asset!(assets, "find.wgsl"),
             columns: load_embedded_asset!(assets, "columns.wgsl"),
             faithful: load_embedded_asset!(assets, "faithful.wgsl"),
@@ -40,17 +47,33 @@ impl LineShaders {
     }
 }
 
-/// The search for blocks with cracks.
-impl SpecializedComputePipeline for LineShaders {
-    type Key = LineKey;
+/// The passes that are compute passes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum SearchPass {
+    /// Looks for blocks with cracks or jumps.
+    Walk(LineKey),
+    /// Lists the tiles near these blocks.
+    Tiles,
+}
 
-    fn specialize(&self, key: LineKey) -> ComputePipelineDescriptor {
+impl SpecializedComputePipeline for LineShaders {
+    type Key = SearchPass;
+
+    fn specialize(&self, pass: SearchPass) -> ComputePipelineDescriptor {
+        let (label, entry, shader) = match pass {
+            SearchPass::Walk(_) => ("comics_walk", "walk", &self.walk),
+            SearchPass::Tiles => ("comics_list_tiles", "list_tiles", &self.tiles),
+        };
+        let (layout, shader_defs) = match pass {
+            SearchPass::Walk(key) => (key.walk_layout(), key.walk_defs()),
+            SearchPass::Tiles => (LineKey::tiles_layout(), vec![]),
+        };
         ComputePipelineDescriptor {
-            label: Some("comics_walk".into()),
-            layout: vec![key.walk_layout()],
-            shader: self.walk.clone(),
-            shader_defs: key.find_defs(),
-            entry_point: Some("walk".into()),
+            label: Some(label.into()),
+            layout: vec![layout],
+            shader: shader.clone(),
+            shader_defs,
+            entry_point: Some(entry.into()),
             ..Default::default()
         }
     }
@@ -81,15 +104,10 @@ impl SpecializedRenderPipeline for LineShaders {
             LinePass::Faithful => ("comics_faithful_lines", "faithful", INK),
             LinePass::Draw => ("comics_draw_lines", "draw", INK),
         };
-        let tiles = VertexState {
-            shader: shader.clone(),
-            shader_defs: defs.clone(),
-            entry_point: Some("tile".into()),
-            buffers: vec![],
-        };
-        let (vertex, topology) = match pass {
-            LinePass::Faithful => (self.fullscreen.to_vertex_state(), TriangleList),
-            LinePass::Find | LinePass::Columns | LinePass::Draw => (tiles, TriangleStrip),
+        let (vertex, topology) = if key.by_fragments || pass == LinePass::Faithful {
+            (self.fullscreen.to_vertex_state(), TriangleList)
+        } else {
+            (tile_vertices(self.tile.clone()), TriangleStrip)
         };
         RenderPipelineDescriptor {
             label: Some(label.into()),

@@ -24,6 +24,7 @@ use super::{
     key::{BLOCK, BLOCK_FORMAT, CRACK_FORMAT, INK_FORMAT},
     request::{CrackPasses, LinePassUniform, LinePasses, LineRequest},
     resolve::Resolved,
+    tiles::TileLists,
 };
 
 /// On a view in the render world: the lines of this frame.
@@ -34,6 +35,9 @@ pub(crate) struct ViewLines {
     pub resolved: Option<Resolved>,
     /// The cracks, if lines are found along cracks.
     pub cracks: Option<Cracks>,
+    /// The blocks that have cracks, and the tiles that are drawn; `None` if all pixels
+    /// are.
+    pub tiles: Option<Tiles>,
     /// The ink of every pixel of the viewport, see `draw.wgsl`.
     pub ink: Option<CachedTexture>,
     /// Whether the passes of this frame were recorded.
@@ -45,8 +49,12 @@ pub(crate) struct Cracks {
     pub texture: CachedTexture,
     /// The best crack of each pixel's column, unless only neighbours are searched.
     pub columns: Option<CachedTexture>,
-    /// The blocks that have cracks; `None` without compute shaders.
-    pub blocks: Option<CachedTexture>,
+}
+
+/// Where a view may have ink.
+pub(crate) struct Tiles {
+    pub blocks: CachedTexture,
+    pub lists: TileLists,
 }
 
 impl Default for ViewLines {
@@ -57,6 +65,7 @@ impl Default for ViewLines {
             uniform,
             resolved: None,
             cracks: None,
+            tiles: None,
             ink: None,
             found: AtomicBool::new(false),
         }
@@ -64,6 +73,15 @@ impl Default for ViewLines {
 }
 
 impl ViewLines {
+    /// The tiles that may have ink; `None` unless the passes of this frame were recorded.
+    pub fn tiles(&self) -> Option<&TileLists> {
+        let found = self.found.load(Ordering::Relaxed);
+        self.tiles
+            .as_ref()
+            .filter(|_| found)
+            .map(|tiles| &tiles.lists)
+    }
+
     /// The ink; `None` unless the passes of this frame were recorded.
     pub fn found(&self) -> Option<&CachedTexture> {
         let found = self.found.load(Ordering::Relaxed);
@@ -108,16 +126,12 @@ fn cracks(
     rect: UVec4,
 ) -> Cracks {
     let mut new = |label, size, format| texture((textures, device), label, size, format);
-    let stored = (BLOCK_FORMAT, TextureUsages::STORAGE_BINDING);
     let drawn = (CRACK_FORMAT, TextureUsages::RENDER_ATTACHMENT);
     Cracks {
         texture: new("comics_cracks", rect.zw(), drawn),
         columns: passes
             .columns
             .map(|_| new("comics_line_columns", rect.zw(), drawn)),
-        blocks: passes
-            .walk
-            .map(|_| new("comics_crack_blocks", blocks(rect), stored)),
     }
 }
 
@@ -134,12 +148,24 @@ pub(crate) fn prepare_view_lines(
                 .map(|(key, _)| Resolved::new((&mut textures, &device), *key, request.depth_size));
             let cracks = |passes| cracks((&mut textures, &device), passes, request.rect);
             lines.cracks = passes.cracks.as_ref().map(cracks);
-            lines.ink = Some(texture(
-                (&mut textures, &device),
-                "comics_line_ink",
-                request.size,
-                (INK_FORMAT, TextureUsages::RENDER_ATTACHMENT),
-            ));
+            let before = lines.tiles.take().map(|tiles| tiles.lists);
+            lines.tiles = passes.search.map(|_| Tiles {
+                blocks: texture(
+                    (&mut textures, &device),
+                    "comics_line_blocks",
+                    blocks(request.rect),
+                    (BLOCK_FORMAT, TextureUsages::STORAGE_BINDING),
+                ),
+                lists: TileLists::new(before, (&device, &queue), request),
+            });
+            lines.ink = passes.has_ink().then(|| {
+                texture(
+                    (&mut textures, &device),
+                    "comics_line_ink",
+                    request.size,
+                    (INK_FORMAT, TextureUsages::RENDER_ATTACHMENT),
+                )
+            });
             lines.found = AtomicBool::new(false);
             lines.uniform.set(request.uniform());
             lines.uniform.write_buffer(&device, &queue);

@@ -33,7 +33,11 @@ fn line_texel(pixel: vec2<i32>) -> vec4<f32> {
 }
 
 // The lines at a position in physical pixels from the target's top left corner.
+// WITHOUT_LINES: there are none nearby, see Effect::line_reach.
 fn lines_at(at: vec2<f32>) -> Found {
+#ifdef WITHOUT_LINES
+    return Found(vec3(0.0), 0u);
+#else
     let own = line_texel(vec2<i32>(floor(at)));
     var found = Found(own.xyz, u32(own.w * 255.0 + 0.5));
 #ifdef LINES_ANYWHERE
@@ -46,6 +50,7 @@ fn lines_at(at: vec2<f32>) -> Found {
     found.ink = mix(above, below, f.y);
 #endif
     return found;
+#endif
 }
 
 // The colour of a line: that of the OutlineStyle in `slot`, if it has one, else `color`.

@@ -18,9 +18,9 @@ use bevy::{
 
 use super::{
     key::{LineKey, Search},
-    pipelines::{LinePass, LineShaders},
+    pipelines::{LinePass, LineShaders, SearchPass},
     resolve::{ResolveKey, ResolvePipeline},
-    settings::{LineSettings, LinesUniform},
+    settings::{LineSettings, LinesUniform, MapJumps},
 };
 use crate::depth::view::ViewUniform;
 
@@ -51,6 +51,14 @@ pub(crate) struct LineRequest {
     pub ids: bool,
     /// Some object has an `OutlineStyle` or `NoOutlines`.
     pub object_styles: bool,
+    /// Physical pixels from a pixel within which the fused pass reads lines.
+    pub line_reach: f32,
+    /// Places that count as inked, besides lines: those of [`Extent::AtJumps`].
+    ///
+    /// [`Extent::AtJumps`]: crate::Extent::AtJumps
+    pub jumps: Option<MapJumps>,
+    /// Flags of the depth map.
+    pub map_flags: u32,
 }
 
 impl LineRequest {
@@ -76,6 +84,12 @@ impl LineRequest {
     fn grid(&self) -> Grid {
         let scale = self.view.depth_scale;
         let jitter = self.jitter.unwrap_or(Vec2::ZERO);
+        let reach = self.grid_reach();
+        let read = (self.line_reach * scale.max_element()).ceil() as i32;
+        let jumps = self.jumps.unwrap_or(MapJumps {
+            least: f32::MAX,
+            radius: 1.0,
+        });
         Grid {
             rect: self.rect.as_ivec4(),
             // The engine draws at p - jitter what belongs at p, and temporal anti-aliasing
@@ -83,7 +97,10 @@ impl LineRequest {
             // amount that grows with distance: this offset is right at a distance of the
             // view's width.
             from_viewport: Vec4::new(scale.x, scale.y, -jitter.x, -jitter.y),
-            reach: self.grid_reach(),
+            reach,
+            inked: (reach + 1 + read).max(jumps.radius.ceil() as i32),
+            jump_least: jumps.least,
+            jump_radius: jumps.radius.ceil(),
         }
     }
 
@@ -102,6 +119,9 @@ pub(crate) struct Grid {
     rect: IVec4,
     from_viewport: Vec4,
     reach: i32,
+    inked: i32,
+    jump_least: f32,
+    jump_radius: f32,
 }
 
 /// The uniform of the passes that find and draw lines.
@@ -118,17 +138,30 @@ pub(crate) struct LinePasses {
     pub key: LineKey,
     /// Picks one sample of every pixel, if the view is multisampled.
     pub resolve: Option<(ResolveKey, CachedRenderPipelineId)>,
+    /// Looks for blocks with cracks or jumps, and lists the tiles near them; `None`
+    /// without compute shaders.
+    pub search: Option<[CachedComputePipelineId; 2]>,
     /// Finds and draws the lines along cracks, if there are any.
     pub cracks: Option<CrackPasses>,
     /// Draws the lines of the faithful forms, if there are any.
     pub faithful: Option<CachedRenderPipelineId>,
 }
 
+impl LinePasses {
+    /// Whether any line is drawn; if not, only tiles are listed.
+    pub fn has_ink(&self) -> bool {
+        self.cracks.is_some() || self.faithful.is_some()
+    }
+
+    /// Whether there is a list of all tiles that may have ink.
+    pub fn are_tiles_complete(&self) -> bool {
+        self.search.is_some() && self.faithful.is_none()
+    }
+}
+
 /// The pipelines of the lines along cracks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CrackPasses {
-    /// `None` without compute shaders.
-    pub walk: Option<CachedComputePipelineId>,
     pub find: CachedRenderPipelineId,
     /// `None` if only neighbouring pixels are searched.
     pub columns: Option<CachedRenderPipelineId>,
@@ -151,7 +184,8 @@ impl LinePipelines<'_> {
     pub fn get(&mut self, cache: &PipelineCache, request: &LineRequest) -> LinePasses {
         let limits = self.device.limits();
         let has_compute = limits.max_compute_workgroup_size_x > 0
-            && limits.max_storage_textures_per_shader_stage > 0;
+            && limits.max_storage_textures_per_shader_stage > 0
+            && limits.max_storage_buffers_per_shader_stage > 1;
         let key = LineKey::new(request, !has_compute);
         let mut render = |pass| {
             let part = match pass {
@@ -169,17 +203,20 @@ impl LinePipelines<'_> {
         });
         let faithful = key.has_faithful().then(|| render(LinePass::Faithful));
         let cracks = key.has_cracks().then(|| CrackPasses {
-            walk: has_compute.then(|| {
-                let computes = &mut self.computes;
-                computes.specialize(cache, &self.shaders, key.for_walk())
-            }),
             find: render(LinePass::Find),
             columns: (key.search == Search::Columns).then(|| render(LinePass::Columns)),
             draw: render(LinePass::Draw),
         });
+        let searches = has_compute && (key.has_cracks() || key.jumps);
+        let search = searches.then(|| {
+            let computes = &mut self.computes;
+            let passes = [SearchPass::Walk(key.for_walk()), SearchPass::Tiles];
+            passes.map(|pass| computes.specialize(cache, &self.shaders, pass))
+        });
         LinePasses {
             key,
             resolve,
+            search,
             cracks,
             faithful,
         }

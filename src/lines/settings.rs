@@ -58,6 +58,12 @@ impl LineSettings {
         self.width_fade > 0.0 || self.opacity_fade > 0.0
     }
 
+    /// Whether any kind has the faithful form, whose ink is not found along cracks.
+    pub(crate) fn has_faithful(&self) -> bool {
+        self.silhouettes.is_some_and(|s| s.form == Form::Faithful)
+            || self.creases.is_some_and(|c| c.form == Form::Faithful)
+    }
+
     /// Whether any kind uses `width`. The faithful forms have their own width.
     fn has_wide_lines(&self) -> bool {
         self.objects.is_some()
@@ -120,6 +126,27 @@ impl LineSettings {
             reference_constant: reference[1],
             jump: self.jump(),
             unused: 0,
+        }
+    }
+}
+
+/// Places where the depth map D departs from planes. At other places, every two opposite
+/// neighbours at the same distance, at most `radius`, have D less than `least` away from
+/// a plane through the pixel between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapJumps {
+    /// Smallest departure of D that counts.
+    pub least: f32,
+    /// Largest distance in physical pixels.
+    pub radius: f32,
+}
+
+impl MapJumps {
+    /// Places that satisfy either of two conditions.
+    pub(crate) fn or(self, other: Self) -> Self {
+        Self {
+            least: self.least.min(other.least),
+            radius: self.radius.max(other.radius),
         }
     }
 }

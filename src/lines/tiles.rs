@@ -1,78 +1,141 @@
-//! Records the passes that find cracks, which draw tiles of the picture.
+//! The tiles that the passes after `walk.wgsl` draw: those with cracks nearby, which
+//! `tiles.wgsl` lists.
 
 use bevy::{
+    asset::{AssetServer, Handle, load_embedded_asset},
     math::{UVec2, Vec4Swizzles},
+    mesh::VertexBufferLayout,
     render::{
         render_resource::{
-            BindGroup, CommandEncoder, ComputePassDescriptor, ComputePipeline,
-            RenderPassDescriptor, RenderPipeline,
+            BindGroupEntry, Buffer, BufferDescriptor, BufferUsages, VertexFormat, VertexState,
+            VertexStepMode,
         },
-        texture::CachedTexture,
+        renderer::{RenderDevice, RenderQueue},
     },
+    shader::Shader,
 };
 
-use super::{
-    draw::cleared,
-    key::{TILE, WORKGROUP},
-    prepare::blocks,
-    request::LineRequest,
-};
+use super::request::LineRequest;
 
-/// A pass that is ready to be recorded: its pipeline and bindings.
-pub(super) type Ready<'a, P> = (&'a P, BindGroup);
+/// Width and height of a tile in pixels.
+const TILE: u32 = 16;
+/// Width and height of a workgroup of `tiles.wgsl` in tiles.
+const WORKGROUP: u32 = 8;
+/// Bytes of the arguments of an indirect draw.
+const ARGUMENTS: u64 = 16;
+/// Bytes of a tile.
+const RECTANGLE: u64 = 16;
 
-/// The passes of the lines along cracks, ready to be recorded.
-pub(super) struct ReadyCracks<'a> {
-    pub walk: Option<Ready<'a, ComputePipeline>>,
-    pub find: Ready<'a, RenderPipeline>,
-    pub columns: Option<(Ready<'a, RenderPipeline>, &'a CachedTexture)>,
-    pub draw: Ready<'a, RenderPipeline>,
-    pub texture: &'a CachedTexture,
+/// A list of tiles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum TileList {
+    /// Tiles of the grid with cracks.
+    Found,
+    /// Tiles of the grid that `columns.wgsl` draws.
+    Columns,
+    /// Tiles of the viewport that may have ink of lines, or of an effect at jumps of the
+    /// depth map.
+    Inked,
 }
 
-impl ReadyCracks<'_> {
-    /// Looks for blocks with cracks, and finds the cracks in them.
-    pub fn find(&self, encoder: &mut CommandEncoder, request: &LineRequest) {
-        if let Some((pipeline, group)) = &self.walk {
-            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-                label: Some("comics_walk"),
-                timestamp_writes: None,
+/// Number of lists.
+const LISTS: u32 = 3;
+
+/// The lists of a view.
+pub(crate) struct TileLists {
+    /// For each list the arguments of an indirect draw.
+    arguments: Buffer,
+    /// The lists, one after the other, each with room for all tiles.
+    tiles: Buffer,
+    /// Number of tiles that a list has room for.
+    room: u32,
+}
+
+/// Number of tiles across and down the larger of the grid and the viewport.
+fn most_tiles(request: &LineRequest) -> UVec2 {
+    let size = request.size.max(request.rect.zw());
+    UVec2::new(size.x.div_ceil(TILE), size.y.div_ceil(TILE)).max(UVec2::ONE)
+}
+
+impl TileLists {
+    /// Empty lists for this request; the buffers of `before` are used again if they are
+    /// large enough.
+    pub fn new(
+        before: Option<Self>,
+        (device, queue): (&RenderDevice, &RenderQueue),
+        request: &LineRequest,
+    ) -> Self {
+        let tiles = most_tiles(request);
+        let room = tiles.x * tiles.y;
+        let lists = before
+            .filter(|lists| lists.room >= room)
+            .unwrap_or_else(|| {
+                let buffer = |label, size, usage| {
+                    device.create_buffer(&BufferDescriptor {
+                        label: Some(label),
+                        size,
+                        usage: usage | BufferUsages::STORAGE,
+                        mapped_at_creation: false,
+                    })
+                };
+                let size = RECTANGLE * u64::from(LISTS * room);
+                let drawn = BufferUsages::INDIRECT | BufferUsages::COPY_DST;
+                Self {
+                    arguments: buffer("comics_tile_counts", ARGUMENTS * u64::from(LISTS), drawn),
+                    tiles: buffer("comics_tiles", size, BufferUsages::VERTEX),
+                    room,
+                }
             });
-            let blocks = blocks(request.rect);
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, group, &[]);
-            pass.dispatch_workgroups(blocks.x.div_ceil(WORKGROUP), blocks.y, 1);
-        }
-        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
-            label: Some("comics_find_lines"),
-            color_attachments: &[Some(cleared(self.texture))],
-            ..Default::default()
-        });
-        draw_tiles(&mut pass, &self.find, request.rect.zw());
+        let empty: [[u32; 4]; LISTS as usize] = [[4, 0, 0, 0]; LISTS as usize];
+        let bytes: Vec<u8> = empty
+            .as_flattened()
+            .iter()
+            .flat_map(|n| n.to_le_bytes())
+            .collect();
+        queue.write_buffer(&lists.arguments, 0, &bytes);
+        lists
     }
 
-    /// Finds the best crack of each pixel's column.
-    pub fn search_columns(&self, encoder: &mut CommandEncoder, request: &LineRequest) {
-        let Some((columns, texture)) = &self.columns else {
-            return;
-        };
-        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
-            label: Some("comics_line_columns"),
-            color_attachments: &[Some(cleared(texture))],
-            ..Default::default()
-        });
-        draw_tiles(&mut pass, columns, request.rect.zw());
+    /// Workgroups of `tiles.wgsl`.
+    pub fn workgroups(request: &LineRequest) -> [u32; 3] {
+        let tiles = most_tiles(request);
+        let across = |tiles: u32| tiles.div_ceil(WORKGROUP);
+        [across(tiles.x), across(tiles.y), LISTS]
+    }
+
+    /// The bindings of `tiles.wgsl`.
+    pub fn entries(&self) -> [BindGroupEntry<'_>; 2] {
+        [(14, &self.arguments), (15, &self.tiles)].map(|(binding, buffer)| BindGroupEntry {
+            binding,
+            resource: buffer.as_entire_binding(),
+        })
+    }
+
+    /// Draws the tiles of a list with a pipeline of [`tile_vertices`].
+    pub fn draw(&self, pass: &mut wgpu::RenderPass, list: TileList) {
+        let list = list as u64;
+        let first = RECTANGLE * u64::from(self.room) * list;
+        pass.set_vertex_buffer(0, *self.tiles.slice(first..));
+        pass.draw_indirect(&self.arguments, ARGUMENTS * list);
     }
 }
 
-/// Draws the tiles of a picture of this size.
-pub(super) fn draw_tiles(
-    pass: &mut wgpu::RenderPass,
-    (pipeline, group): &Ready<RenderPipeline>,
-    size: UVec2,
-) {
-    let tiles = size.x.div_ceil(TILE) * size.y.div_ceil(TILE);
-    pass.set_pipeline(pipeline);
-    pass.set_bind_group(0, group, &[]);
-    pass.draw(0..4, 0..tiles);
+/// The vertex shader of tiles.
+pub(crate) fn tile_shader(assets: &AssetServer) -> Handle<Shader> {
+    load_embedded_asset!(assets, "tile.wgsl")
+}
+
+/// The vertices of the passes that draw tiles, as strips of triangles. `shader`:
+/// `tile.wgsl`.
+pub(crate) fn tile_vertices(shader: Handle<Shader>) -> VertexState {
+    let rectangle = [VertexFormat::Float32x4];
+    VertexState {
+        shader,
+        shader_defs: vec![],
+        entry_point: Some("tile".into()),
+        buffers: vec![VertexBufferLayout::from_vertex_formats(
+            VertexStepMode::Instance,
+            rectangle,
+        )],
+    }
 }

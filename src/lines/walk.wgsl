@@ -1,5 +1,6 @@
 // Looks for cracks, see find.wgsl, and notes where they are: one bit for each row of a
-// block of 4 x 32 pixels.
+// block of 4 x 32 pixels. JUMPS: also notes where the depth map departs from planes, see
+// MapJumps.
 //
 // On CPU adapters a texel costs far more to load than to compare, so an invocation walks
 // down four columns of 32 rows and keeps the last rows in registers: every texel is
@@ -8,6 +9,10 @@
 
 #import bevy_comics::depth::view::{View, set_view, texel_depth}
 #import bevy_comics::lines::edge::{Grid, Lines, fold, is_ridge, may_be_crease, may_be_silhouette, step_excess}
+#ifdef JUMPS
+#import bevy_comics::depth::view::depth_frame
+#import bevy_comics::lines::jumps::{Jumps, Row, may_jump}
+#endif
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
 #endif
@@ -26,6 +31,15 @@ struct WalkUniform {
 
 const COLUMNS: i32 = 4;
 const ROWS: i32 = 32;
+
+// Rows above and below a block that are read.
+#ifdef CRACKS
+const FIRST_ROW: i32 = -2;
+const LAST_ROW: i32 = ROWS + 2;
+#else
+const FIRST_ROW: i32 = -1;
+const LAST_ROW: i32 = ROWS;
+#endif
 
 // Whether there may be a silhouette or a crease between `here` and `there`: `excess` is
 // that of step_excess, `folds` and `ridge` those of fold and is_ridge.
@@ -86,10 +100,18 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
     var object_2 = vec4(0u);
     var object_3 = vec4(0u);
 #endif
+#ifdef JUMPS
+    let least = Jumps(depth_frame(), walk_uniform.grid.jump_least, walk_uniform.grid.jump_radius);
+    let columns = vec4(x, e1, e2, e3);
+    let across = select(vec4(0.0), vec4(1.0), (columns > vec4(0)) & (columns < vec4(last.x)));
+    var row_1 = Row(vec4(0.0), vec4(0.0), vec4(0.0));
+    var row_2 = row_1;
+    var jump_rows = 0u;
+#endif
     // One bit a row: it leaves the word after 32 more rows.
     var east_rows = 0u;
     var south_rows = 0u;
-    for (var i = -2; i < ROWS + 3; i++) {
+    for (var i = FIRST_ROW; i <= LAST_ROW; i++) {
         let y = clamp(top + i, 0, last.y);
         let a = depth_at(origin, x, y);
         let b = depth_at(origin, e1, y);
@@ -99,6 +121,17 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
         let before = depth_at(origin, w1, y);
         let depth_0 = vec4(a, b, c, d);
         let there = vec4(b, c, d, e);
+#ifdef JUMPS
+        let row_0 = Row(vec4(before, a, b, c), depth_0, there);
+        let y_1 = top + i - 1;
+        let along = select(0.0, 1.0, y_1 > 0 && y_1 < last.y);
+        let jumps = may_jump(least, row_2, row_1, row_0, across, along);
+        let is_row = i >= 1 && i <= ROWS;
+        jump_rows = select(jump_rows, (jump_rows >> 1u) | select(0u, 0x80000000u, jumps), is_row);
+        row_2 = row_1;
+        row_1 = row_0;
+#endif
+#ifdef CRACKS
         // Between the third and the second row above the newest one.
         var east = vec4(false);
         var south = vec4(false);
@@ -166,6 +199,11 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
         object_2 = object_1;
         object_1 = object_0;
 #endif
+#endif
     }
-    textureStore(block_texture, vec2(x / COLUMNS, i32(id.y)), vec4(east_rows | south_rows));
+    var rows = east_rows | south_rows;
+#ifdef JUMPS
+    rows |= jump_rows;
+#endif
+    textureStore(block_texture, vec2(x / COLUMNS, i32(id.y)), vec4(rows));
 }

@@ -11,6 +11,8 @@ use bevy::{
 use bevy_comics::ViewObjectIds;
 use half::f16;
 
+use crate::before::Pictures;
+
 /// Pixels of four floats, row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FloatImage {
@@ -127,21 +129,16 @@ pub fn float_image(render_world: &World, texture: &wgpu::Texture) -> FloatImage 
     }
 }
 
-/// What the last post-process pass of the view read and wrote. `ran`: whether there was
-/// one; if not, both are the same picture.
-pub fn last_pass(
-    render_world: &World,
-    view: Entity,
-    ran: bool,
-) -> Option<(FloatImage, FloatImage)> {
+/// The pictures of the view before the fused pass, if
+/// [`BeforeStylize::Copy`](crate::before::BeforeStylize::Copy) is in the app, and after the
+/// last post-process pass.
+pub fn pictures(render_world: &World, view: Entity) -> Option<(Option<FloatImage>, FloatImage)> {
     let target = render_world.get::<ViewTarget>(view)?;
-    let output = float_image(render_world, target.main_texture());
-    let input = if ran {
-        float_image(render_world, target.main_texture_other())
-    } else {
-        output.clone()
-    };
-    Some((input, output))
+    let before = render_world
+        .get_resource::<Pictures>()
+        .and_then(|pictures| pictures.get(view));
+    let before = before.map(|picture| float_image(render_world, &picture));
+    Some((before, float_image(render_world, target.main_texture())))
 }
 
 /// (id, style slot) of the object at each pixel, row by row; id 0 for no object.

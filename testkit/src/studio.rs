@@ -34,7 +34,17 @@ impl Studio {
     }
 
     pub fn with_options(scene: BuiltIn, options: HeadlessOptions, msaa: Msaa) -> Self {
-        let mut headless = Headless::new(options, ComicsPlugin);
+        Self::with_plugins(scene, options, msaa, ComicsPlugin)
+    }
+
+    /// The plugins must include `ComicsPlugin`.
+    pub fn with_plugins<M>(
+        scene: BuiltIn,
+        options: HeadlessOptions,
+        msaa: Msaa,
+        plugins: impl bevy::app::Plugins<M>,
+    ) -> Self {
+        let mut headless = Headless::new(options, plugins);
         let vantage = headless
             .app
             .world_mut()

@@ -15,11 +15,13 @@ use bevy::{
     shader::Source,
 };
 use bevy_comics::{
-    Colorization, ComicStyle, ComicsDiagnostics, ComicsStage, Contours, DepthMap, DepthMapping,
-    Desaturation, Outlines, RangeSmoothing, Sketch, ToneBands,
+    Colorization, ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Contours, DepthMap,
+    DepthMapping, Desaturation, Outlines, RangeSmoothing, Sketch, ToneBands,
 };
 
 use super::{
+    before::BeforeStylize,
+    headless::HeadlessOptions,
     read_back,
     scenes::BuiltIn,
     studio::{Studio, with_map},
@@ -42,12 +44,13 @@ pub struct Work {
 }
 
 /// The stages that are separate passes.
-const PASSES: [ComicsStage; 8] = [
+const PASSES: [ComicsStage; 9] = [
     ComicsStage::DepthPrepass,
     ComicsStage::NormalPrepass,
     ComicsStage::ObjectIds,
     ComicsStage::DepthRange,
     ComicsStage::RangeSmoothing,
+    ComicsStage::SearchTiles,
     ComicsStage::FindLines,
     ComicsStage::DrawLines,
     ComicsStage::Stylize,
@@ -218,7 +221,11 @@ fn instrument(world: &mut World) -> Vec<&'static str> {
 
 /// Counts the work of a style on the teapot at 160 x 90 pixels.
 pub fn count(name: &'static str, style: &ComicStyle) -> Work {
-    let mut studio = Studio::new(BuiltIn::Teapot, UVec2::new(160, 90), Msaa::Off);
+    let size = UVec2::new(160, 90);
+    let options = HeadlessOptions { size, ..default() };
+    // Where no tile is drawn over the picture, nothing is fetched.
+    let plugins = (ComicsPlugin, BeforeStylize::Clear);
+    let mut studio = Studio::with_plugins(BuiltIn::Teapot, options, Msaa::Off, plugins);
     let camera = studio.camera;
     studio
         .headless
@@ -257,7 +264,7 @@ pub fn count(name: &'static str, style: &ComicStyle) -> Work {
         .unwrap_or(0);
     let (mut fetches, mut bytes) = ([0.0f64; 2], 0.0);
     if stages.ran(ComicsStage::Stylize) {
-        let (_, counted) = read_back::last_pass(render_world, view, true).expect("a picture");
+        let (_, counted) = read_back::pictures(render_world, view).expect("a picture");
         let pixels = counted.pixels.len() as f64;
         for p in &counted.pixels {
             fetches[0] += f64::from(p[0]) / pixels;

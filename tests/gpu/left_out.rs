@@ -122,6 +122,7 @@ fn a_fixed_range_has_no_reduction() {
             ran,
             [
                 ComicsStage::DepthPrepass,
+                ComicsStage::SearchTiles,
                 ComicsStage::of::<Contours>(),
                 ComicsStage::Stylize
             ]
@@ -186,6 +187,7 @@ fn outlines_run_what_they_need_and_no_more() {
         ran,
         [
             ComicsStage::DepthPrepass,
+            ComicsStage::SearchTiles,
             ComicsStage::FindLines,
             ComicsStage::DrawLines,
             ComicsStage::of::<Outlines>(),

@@ -16,6 +16,7 @@ use bevy_comics::{
 };
 
 use bevy_comics_testkit::{
+    before::BeforeStylize,
     headless::{Headless, HeadlessOptions},
     read_back::{self, DepthImage, FloatImage, IdImage},
     reference::resolve::Prepass,
@@ -61,7 +62,7 @@ impl Small {
     }
 
     pub fn with(options: HeadlessOptions, msaa: Msaa) -> Self {
-        let mut headless = Headless::new(options, ComicsPlugin);
+        let mut headless = Headless::new(options, (ComicsPlugin, BeforeStylize::Copy));
         headless
             .app
             .init_resource::<RenderErrors>()
@@ -183,12 +184,9 @@ impl Small {
 
     /// The pictures that the fused pass read and wrote.
     pub fn pass(&self) -> (FloatImage, FloatImage) {
-        read_back::last_pass(
-            self.render_world(),
-            self.view(),
-            self.ran(ComicsStage::Stylize),
-        )
-        .expect("a picture")
+        let (before, after) =
+            read_back::pictures(self.render_world(), self.view()).expect("a picture");
+        (before.expect("a copy"), after)
     }
 }
 

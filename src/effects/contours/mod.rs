@@ -1,5 +1,7 @@
 //! Draws lines where the depth map jumps (\[CS\] 3.2).
 
+use std::f32::consts::FRAC_1_SQRT_2;
+
 use bevy::{
     color::Color,
     ecs::{component::Component, reflect::ReflectComponent},
@@ -10,7 +12,8 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
+    lines::MapJumps,
+    effect::{Effect, EffectShader, EffectStage, Extent, Needs, Variants, ViewFacts},
     settings::{FieldRange, Form, bounded, displayable, file_color, linear_rgb},
 };
 
@@ -140,10 +143,20 @@ impl Effect for Contours {
         variants.flag("STEADY", self.opacity_fade == 0.0);
     }
 
+    /// The response is at most the square root of 2 times the largest departure: each
+    /// component of a gradient is a mean of departures.
+    fn extent(&self, view: &ViewFacts) -> Extent {
+        if self.is_faithful() {
+            return Extent::Everywhere;
+        }
+        Extent::AtJumps(MapJumps {
+            least: (self.threshold - self.half_ramp()) * FRAC_1_SQRT_2,
+            radius: self.radius(view),
+        })
+    }
+
     fn uniform(&self, view: &ViewFacts) -> ContoursUniform {
-        // smoothstep needs two different ends: a hard line rises within 0.1 % of the
-        // threshold on either side.
-        let half_ramp = self.threshold * self.softness.max(1e-3);
+        let half_ramp = self.half_ramp();
         ContoursUniform {
             color: linear_rgb(self.color),
             opacity: self.opacity,
@@ -168,6 +181,12 @@ impl Contours {
     /// Half the line's width in physical pixels.
     fn radius(&self, view: &ViewFacts) -> f32 {
         (0.5 * self.width * view.scale_factor).clamp(0.125, 64.0)
+    }
+
+    /// Half of the responses over which a line becomes complete. `smoothstep` needs two
+    /// different ends: a hard line rises within 0.1 % of the threshold on either side.
+    fn half_ramp(&self) -> f32 {
+        self.threshold * self.softness.max(1e-3)
     }
 
     fn is_faithful(&self) -> bool {

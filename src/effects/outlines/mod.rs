@@ -9,7 +9,7 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, NoUniform, ViewFacts},
+    effect::{Effect, EffectShader, EffectStage, Extent, Needs, NoUniform, ViewFacts},
     lines::{Creases, LineSettings, ObjectEdges, Silhouettes},
     settings::{Blend, FieldRange, bounded},
 };
@@ -137,6 +137,14 @@ impl Effect for Outlines {
 
     fn lines(&self) -> Option<LineSettings> {
         Some(self.settings())
+    }
+
+    fn extent(&self, _: &ViewFacts) -> Extent {
+        Extent::AtLines
+    }
+
+    fn line_reach(&self, _: &ViewFacts) -> Option<f32> {
+        Some(0.0)
     }
 
     fn uniform(&self, _: &ViewFacts) -> NoUniform {

@@ -137,6 +137,11 @@ impl Effect for Sketch {
         variants.flag("FADES", self.amount < 1.0);
     }
 
+    /// One pixel more than strokes are displaced: lines are interpolated between pixels.
+    fn line_reach(&self, view: &ViewFacts) -> Option<f32> {
+        Some(self.jitter * view.scale_factor + 1.0)
+    }
+
     fn uniform(&self, view: &ViewFacts) -> SketchUniform {
         SketchUniform {
             paper: linear_rgb(self.paper),

@@ -59,10 +59,12 @@ fn draw_sketch(s: Sketch, picture: vec4<f32>, inked: f32) -> vec3<f32> {
 fn sketch(s: Sketch, p: Pixel) -> Pixel {
     var out = p;
     var inked = 0.0;
+#ifndef WITHOUT_LINES
     for (var stroke = 0u; stroke < s.strokes; stroke++) {
         let at = p.position + stray(s, p.inside, stroke);
         inked = add_stroke(inked, total_ink(lines_at(at)) * pen_pressure(s, p.inside, stroke));
     }
+#endif
     let picture = vec4(p.color, p.alpha);
     var drawing = vec4(draw_sketch(s, picture, inked), 1.0);
 #ifdef SKETCH_FADES

@@ -14,6 +14,7 @@ pub mod find;
 pub mod finish;
 pub mod fused;
 pub mod histogram;
+pub mod jumps;
 pub mod light;
 pub mod map;
 pub mod noise;

@@ -8,7 +8,7 @@ use bevy_comics::{
 use serde::{Deserialize, Serialize};
 
 use super::*;
-use bevy_comics_testkit::headless::Headless;
+use bevy_comics_testkit::{before::BeforeStylize, headless::Headless};
 
 /// An effect that takes no settings: `$name`, its need, and its WGSL.
 macro_rules! test_effect {
@@ -99,7 +99,11 @@ test_effect!(
 );
 
 fn small_with<E: Effect>(msaa: Msaa) -> Small {
-    let plugins = (ComicsPlugin, EffectPlugin::<E>::default());
+    let plugins = (
+        ComicsPlugin,
+        EffectPlugin::<E>::default(),
+        BeforeStylize::Copy,
+    );
     let mut headless = Headless::new(options(size()), plugins);
     crate::small::spawn_objects(headless.app.world_mut());
     let target = headless.render_target();
@@ -282,6 +286,7 @@ fn effects_of_odd_sizes_stand_side_by_side() {
         EffectPlugin::<Red>::default(),
         EffectPlugin::<Green>::default(),
         EffectPlugin::<Blue>::default(),
+        BeforeStylize::Copy,
     );
     let mut headless = Headless::new(options(size()), plugins);
     let target = headless.render_target();

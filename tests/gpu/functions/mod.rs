@@ -6,6 +6,7 @@ mod color_styles;
 mod contour_response;
 mod depth_map;
 mod finish;
+mod jumps;
 mod normal;
 mod walk;
 
