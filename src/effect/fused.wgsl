@@ -57,16 +57,21 @@ fn to_stored(linear: vec3<f32>) -> vec3<f32> {
 #endif
 }
 
-@fragment
-fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let pixel = vec2<i32>(position.xy);
+// The picture at a pixel, as it is stored.
+fn load_picture(pixel: vec2<i32>) -> vec4<f32> {
 #ifdef OVERLAY
-    let stored = vec4(0.0);
+    return vec4(0.0);
 #else
     // Helper invocations at the border of a target of odd size lie outside it.
     let last = vec2<i32>(textureDimensions(source)) - 1;
-    let stored = textureLoad(source, min(pixel, last), 0);
+    return textureLoad(source, min(pixel, last), 0);
 #endif
+}
+
+@fragment
+fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+    let pixel = vec2<i32>(position.xy);
+    let stored = load_picture(pixel);
     var p: Pixel;
     p.original = to_linear(stored.rgb);
     p.color = p.original;

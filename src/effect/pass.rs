@@ -141,28 +141,7 @@ pub(super) fn stylize(
     let device = ctx.render_device();
     let bind_group = device.create_bind_group("comics_stylize", &layout, &entries);
 
-    let diagnostics = ctx.diagnostic_recorder();
-    let diagnostics = diagnostics.as_deref();
-    let encoder = ctx.command_encoder();
-    let span = diagnostics.time_span(encoder, "comics_stylize");
-    {
-        let mut render_pass = encoder.begin_render_pass(&RenderPassDescriptor {
-            label: Some("comics_stylize"),
-            color_attachments: &[Some(RenderPassColorAttachment {
-                view: destination,
-                depth_slice: None,
-                resolve_target: None,
-                ops: Operations {
-                    load: LoadOp::Load,
-                    store: StoreOp::Store,
-                },
-            })],
-            ..Default::default()
-        });
-        draws.record(&mut render_pass, &bind_group, request.facts.viewport);
-    }
-    span.end(encoder);
-
+    draws.record(&mut ctx, destination, &bind_group, request.facts.viewport);
     ran(request, &ledger);
 }
 
@@ -198,7 +177,30 @@ impl<'a> Draws<'a> {
         })
     }
 
-    fn record(&self, pass: &mut wgpu::RenderPass, bind_group: &BindGroup, viewport: UVec4) {
+    fn record(
+        &self,
+        ctx: &mut RenderContext,
+        destination: &TextureView,
+        bind_group: &BindGroup,
+        viewport: UVec4,
+    ) {
+        let diagnostics = ctx.diagnostic_recorder();
+        let diagnostics = diagnostics.as_deref();
+        let encoder = ctx.command_encoder();
+        let span = diagnostics.time_span(encoder, "comics_stylize");
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("comics_stylize"),
+            color_attachments: &[Some(RenderPassColorAttachment {
+                view: destination,
+                depth_slice: None,
+                resolve_target: None,
+                ops: Operations {
+                    load: LoadOp::Load,
+                    store: StoreOp::Store,
+                },
+            })],
+            ..Default::default()
+        });
         pass.set_bind_group(0, bind_group, &[]);
         if let Some(base) = self.base {
             pass.set_pipeline(base);
@@ -209,10 +211,12 @@ impl<'a> Draws<'a> {
             Some(tiles) => {
                 let [x, y, width, height] = viewport.as_vec4().to_array();
                 pass.set_viewport(x, y, width, height, 0.0, 1.0);
-                tiles.draw(pass, TileList::Inked);
+                tiles.draw(&mut pass, TileList::Inked);
             }
             None => pass.draw(0..3, 0..1),
         }
+        drop(pass);
+        span.end(encoder);
     }
 }
 

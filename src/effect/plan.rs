@@ -5,7 +5,7 @@ use std::fmt::Debug;
 
 use bevy::ecs::world::EntityRef;
 
-use super::{AnyEffect, EffectType, Needs, ViewFacts};
+use super::{AnyEffect, EffectType, Needs};
 use crate::{
     depth::{DepthHistogram, DepthMap, VisibleDepthRange},
     diagnostics::{ComicsStage, LeftOut},
@@ -169,11 +169,10 @@ impl Plan {
         let asked = self.effects.iter().find_map(|p| p.effect.any_lines());
         self.lines = asked.map(LineSettings::visible).filter(|l| !l.is_empty());
         self.show_lines();
-        let found = self.lines.is_some();
+        let lost = self.lines.is_none();
         let needs_lines = Needs::LINES | Needs::LINES_ANYWHERE;
         self.leave_out(|effect| {
-            let lost = !found && effect.any_needs().intersects(needs_lines);
-            lost.then_some(LeftOut::NoSuchLines)
+            (lost && effect.any_needs().intersects(needs_lines)).then_some(LeftOut::NoSuchLines)
         });
         let replaced: Vec<&str> = self
             .effects
@@ -265,16 +264,6 @@ impl Plan {
             .iter()
             .filter(|planned| !planned.replaced)
             .map(|planned| planned.effect.as_ref())
-    }
-
-    /// The largest [`Effect::line_reach`](super::Effect::line_reach); `None` if an effect
-    /// that reads lines does not know it.
-    pub fn line_reach(&self, view: &ViewFacts) -> Option<f32> {
-        self.drawn()
-            .filter(|effect| effect.any_needs().contains(Needs::LINES))
-            .try_fold(0.0_f32, |reach, effect| {
-                Some(reach.max(effect.any_line_reach(view)?))
-            })
     }
 
     /// Whether the effect that requests the lines is implied, not on the camera.

@@ -21,7 +21,7 @@ use bevy::{
 };
 
 use super::{
-    AnyEffect, Extent, Plan, ViewFacts, ViewPlan,
+    AnyEffect, Extent, Needs, Plan, ViewFacts, ViewPlan,
     key::{KeyInputs, Part, StylizeKey},
     pass::StylizePipeline,
     plan::Prepasses,
@@ -174,7 +174,7 @@ impl Services<'_> {
         let tiled = lines.filter(|(request, passes)| {
             passes.are_tiles_complete() && (request.jumps.is_some() || !searches_jumps)
         });
-        let without_lines = plan.line_reach(&facts).is_some();
+        let without_lines = line_reach(plan, &facts).is_some();
         let saves = |request: &LineRequest| {
             request.jumps.is_some() || (without_lines && whole.reads_lines_anywhere())
         };
@@ -206,6 +206,16 @@ impl Services<'_> {
             key,
         }
     }
+}
+
+/// The largest [`Effect::line_reach`](super::Effect::line_reach); `None` if an effect that
+/// reads lines does not know it.
+fn line_reach(plan: &Plan, view: &ViewFacts) -> Option<f32> {
+    plan.drawn()
+        .filter(|effect| effect.any_needs().contains(Needs::LINES))
+        .try_fold(0.0_f32, |reach, effect| {
+            Some(reach.max(effect.any_line_reach(view)?))
+        })
 }
 
 /// The places where effects of the plan search for jumps of the depth map, unless one of
@@ -289,7 +299,7 @@ fn line_request(
         visible_range: plan.depth_map.mapping.follows_visible_range(),
         ids: plan.draws_ids(),
         object_styles: plan.object_styles,
-        line_reach: plan.line_reach(facts).unwrap_or(0.0),
+        line_reach: line_reach(plan, facts).unwrap_or(0.0),
         jumps,
         map_flags: uniform.depth.flags,
     })
