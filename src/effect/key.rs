@@ -160,8 +160,14 @@ impl StylizeKey {
     }
 
     /// Whether all effects draw over the picture, and their sum can be blended over it.
+    /// Not if the picture may have values that are no numbers: only a pass that reads the
+    /// picture replaces them.
     pub fn can_overlay(&self, plan: &Plan, facts: &ViewFacts) -> bool {
-        let plain = self.view.is_none() && !self.finish;
+        let bytes = matches!(self.format.block_copy_size(None), Some(..=4));
+        let plain = bytes
+            && self.format != TextureFormat::Rg11b10Ufloat
+            && self.view.is_none()
+            && !self.finish;
         let local = |effect: &dyn AnyEffect| effect.any_extent(facts) != Extent::Everywhere;
         plain && self.space == CompositingSpace::Linear && plan.drawn().all(local)
     }

@@ -202,7 +202,7 @@ pub trait Effect:
 /// the colour and alpha that it returns are
 /// `mix(vec4(p.color, p.alpha), vec4(ink, 1.0), opacity)`, and neither `ink` nor
 /// `opacity` depends on the picture. If all effects of a camera are of this kind, the
-/// fused pass is blended over the picture instead of copying it.
+/// fused pass is blended over the picture instead of copying it, unless the camera is HDR.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Extent {

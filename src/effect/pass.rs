@@ -5,7 +5,6 @@ use bevy::{
     asset::{AssetServer, Handle},
     core_pipeline::{FullscreenShader, prepass::ViewPrepassTextures},
     ecs::{resource::Resource, system::Res},
-    math::UVec4,
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
@@ -116,7 +115,8 @@ pub(super) fn stylize(
     mut ctx: RenderContext,
 ) {
     let ((target, request, fused), found) = view.into_inner();
-    let Some(draws) = Draws::new(&cache, request, found.2) else {
+    let (_, _, lines, _) = found;
+    let Some(draws) = Draws::new(&cache, request, lines) else {
         errors.report(&cache, request, &ledger);
         return pass_through(request, &ledger, LeftOut::PipelineNotReady);
     };
@@ -141,7 +141,7 @@ pub(super) fn stylize(
     let device = ctx.render_device();
     let bind_group = device.create_bind_group("comics_stylize", &layout, &entries);
 
-    draws.record(&mut ctx, destination, &bind_group, request.facts.viewport);
+    draws.record(&mut ctx, destination, &bind_group, request);
     ran(request, &ledger);
 }
 
@@ -182,8 +182,14 @@ impl<'a> Draws<'a> {
         ctx: &mut RenderContext,
         destination: &TextureView,
         bind_group: &BindGroup,
-        viewport: UVec4,
+        request: &FusedRequest,
     ) {
+        // All pixels are drawn, except in an overlay.
+        let load = if request.key.part.is_overlay() {
+            LoadOp::Load
+        } else {
+            LoadOp::default()
+        };
         let diagnostics = ctx.diagnostic_recorder();
         let diagnostics = diagnostics.as_deref();
         let encoder = ctx.command_encoder();
@@ -195,7 +201,7 @@ impl<'a> Draws<'a> {
                 depth_slice: None,
                 resolve_target: None,
                 ops: Operations {
-                    load: LoadOp::Load,
+                    load,
                     store: StoreOp::Store,
                 },
             })],
@@ -209,7 +215,7 @@ impl<'a> Draws<'a> {
         pass.set_pipeline(self.pipeline);
         match self.tiles {
             Some(tiles) => {
-                let [x, y, width, height] = viewport.as_vec4().to_array();
+                let [x, y, width, height] = request.facts.viewport.as_vec4().to_array();
                 pass.set_viewport(x, y, width, height, 0.0, 1.0);
                 tiles.draw(&mut pass, TileList::Inked);
             }

@@ -218,8 +218,9 @@ fn line_reach(plan: &Plan, view: &ViewFacts) -> Option<f32> {
         })
 }
 
-/// The places where effects of the plan search for jumps of the depth map, unless one of
-/// them has to search everywhere.
+/// The jumps of the depth map that effects of the plan are limited to. `None` also if
+/// they are not looked for: in multisampled views, in views whose main pass has a
+/// resolution of its own, beside lines of the faithful forms, and under a debug view.
 fn map_jumps(plan: &Plan, scene: &Scene, facts: &ViewFacts) -> Option<MapJumps> {
     let (_, samples) = scene.depth?;
     let is_faithful = plan.lines.is_some_and(|lines| lines.has_faithful());

@@ -73,11 +73,12 @@ impl ReadyCracks<'_> {
     }
 }
 
-/// Looks for blocks with cracks, and lists the tiles near them.
+/// Looks for blocks with cracks or jumps, and writes the lists of tiles up to `last`.
 pub(super) fn search_tiles(
     encoder: &mut CommandEncoder,
     [walk, list]: &[Ready<ComputePipeline>; 2],
     request: &LineRequest,
+    last: TileList,
 ) {
     let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
         label: Some("comics_search_tiles"),
@@ -86,7 +87,7 @@ pub(super) fn search_tiles(
     let blocks = blocks(request.rect);
     let workgroups = [
         [blocks.x.div_ceil(WORKGROUP), blocks.y, 1],
-        TileLists::workgroups(request),
+        TileLists::workgroups(request, last),
     ];
     for ((pipeline, group), [x, y, z]) in [walk, list].into_iter().zip(workgroups) {
         pass.set_pipeline(pipeline);

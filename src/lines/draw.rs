@@ -76,7 +76,7 @@ pub(crate) fn find_lines(
     };
     let searched = if passes.search.is_some() {
         outcome
-    } else if passes.key.has_cracks() {
+    } else if passes.key.has_cracks() || passes.key.jumps {
         StageOutcome::LeftOut(LeftOut::NoComputeShaders)
     } else {
         StageOutcome::LeftOut(LeftOut::NoSuchLines)
@@ -168,7 +168,7 @@ impl Inputs<'_> {
         }
         if let Some(search) = &search {
             let span = diagnostics.time_span(encoder, "comics_search_tiles");
-            search_tiles(encoder, search, request);
+            search_tiles(encoder, search, request, passes.last_list());
             span.end(encoder);
         }
         if let Some(cracks) = &cracks {

@@ -21,6 +21,7 @@ use super::{
     pipelines::{LinePass, LineShaders, SearchPass},
     resolve::{ResolveKey, ResolvePipeline},
     settings::{LineSettings, LinesUniform, MapJumps},
+    tiles::TileList,
 };
 use crate::depth::view::ViewUniform;
 
@@ -151,6 +152,15 @@ impl LinePasses {
     /// Whether any line is drawn; if not, only tiles are listed.
     pub fn has_ink(&self) -> bool {
         self.cracks.is_some() || self.faithful.is_some()
+    }
+
+    /// The last list of tiles that a pass draws.
+    pub fn last_list(&self) -> TileList {
+        match self.cracks {
+            None => TileList::Inked,
+            Some(CrackPasses { columns: None, .. }) => TileList::Found,
+            Some(_) => TileList::Columns,
+        }
     }
 
     /// Whether there is a list of all tiles that may have ink.

@@ -29,13 +29,13 @@ const RECTANGLE: u64 = 16;
 /// A list of tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TileList {
+    /// Tiles of the viewport that may have ink of lines, or of an effect at jumps of the
+    /// depth map.
+    Inked,
     /// Tiles of the grid with cracks.
     Found,
     /// Tiles of the grid that `columns.wgsl` draws.
     Columns,
-    /// Tiles of the viewport that may have ink of lines, or of an effect at jumps of the
-    /// depth map.
-    Inked,
 }
 
 /// Number of lists.
@@ -96,11 +96,11 @@ impl TileLists {
         lists
     }
 
-    /// Workgroups of `tiles.wgsl`.
-    pub fn workgroups(request: &LineRequest) -> [u32; 3] {
+    /// Workgroups of `tiles.wgsl` for the lists up to `last`.
+    pub fn workgroups(request: &LineRequest, last: TileList) -> [u32; 3] {
         let tiles = most_tiles(request);
         let across = |tiles: u32| tiles.div_ceil(WORKGROUP);
-        [across(tiles.x), across(tiles.y), LISTS]
+        [across(tiles.x), across(tiles.y), last as u32 + 1]
     }
 
     /// The bindings of `tiles.wgsl`.

@@ -20,9 +20,9 @@ struct TilesUniform {
 
 const TILE: i32 = 16;
 // TileList of tiles.rs.
-const FOUND: u32 = 0u;
-const COLUMNS: u32 = 1u;
-const INKED: u32 = 2u;
+const INKED: u32 = 0u;
+const FOUND: u32 = 1u;
+const COLUMNS: u32 = 2u;
 const LISTS: u32 = 3u;
 
 // Whether there are cracks in a part of the grid, which has `size` pixels.

@@ -9,7 +9,7 @@ use bevy_comics::{ComicsStage, DepthMap, DepthMapping, ReductionMethod, VisibleD
 
 use bevy_comics_testkit::{headless, reference::range};
 
-use crate::small::Small;
+use crate::small::{Reshaped, Small};
 
 fn msaa_of(samples: u32) -> Msaa {
     Msaa::from_samples(samples)
@@ -101,26 +101,12 @@ impl bevy::camera::CameraProjection for Tilted {
 }
 
 /// A perspective projection with a far plane; the engine's has none.
-#[derive(Clone, Debug)]
-struct Finite(PerspectiveProjection);
-
-impl bevy::camera::CameraProjection for Finite {
-    fn get_clip_from_view(&self) -> Mat4 {
-        let p = &self.0;
-        Mat4::perspective_rh(p.fov, p.aspect_ratio, p.far, p.near)
-    }
-    fn get_clip_from_view_for_sub(&self, _view: &bevy::camera::SubCameraView) -> Mat4 {
-        self.get_clip_from_view()
-    }
-    fn update(&mut self, width: f32, height: f32) {
-        self.0.update(width, height);
-    }
-    fn far(&self) -> f32 {
-        self.0.far
-    }
-    fn get_frustum_corners(&self, near: f32, far: f32) -> [Vec3A; 8] {
-        self.0.get_frustum_corners(near, far)
-    }
+fn finite(projection: PerspectiveProjection) -> Projection {
+    Projection::custom(Reshaped {
+        projection,
+        plane: Vec4::ZERO,
+        matrix: |p, _| Mat4::perspective_rh(p.fov, p.aspect_ratio, p.far, p.near),
+    })
 }
 
 /// Distances are those of the geometry, under every projection.
@@ -142,7 +128,7 @@ fn distances_are_right_under_every_projection() {
     for (name, projection) in [
         ("perspective", Projection::Perspective(perspective.clone())),
         ("orthographic", Projection::Orthographic(ortho)),
-        ("finite", Projection::custom(Finite(perspective.clone()))),
+        ("finite", finite(perspective.clone())),
         ("oblique", Projection::custom(Tilted(perspective))),
     ] {
         let mut small = Small::new(UVec2::new(64, 64), Msaa::Off);
@@ -259,10 +245,7 @@ fn the_sky_has_no_slope() {
     ] {
         for (name, projection) in [
             ("infinite", Projection::default()),
-            (
-                "finite",
-                Projection::custom(Finite(PerspectiveProjection::default())),
-            ),
+            ("finite", finite(PerspectiveProjection::default())),
         ] {
             let map = DepthMap {
                 mapping,

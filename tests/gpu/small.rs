@@ -1,8 +1,9 @@
 //! A scene that renders quickly: three cubes on a ground, with sky behind.
 
 use bevy::{
-    camera::RenderTarget,
+    camera::{CameraProjection, PerspectiveProjection, RenderTarget, SubCameraView},
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
+    math::Vec3A,
     prelude::*,
     render::{
         RenderApp,
@@ -195,6 +196,32 @@ pub fn with_option<E: Effect>(style: ComicStyle, effect: Option<E>) -> ComicStyl
     match effect {
         Some(effect) => style.with(effect),
         None => style,
+    }
+}
+
+/// A perspective projection with another matrix, made from the projection and a plane.
+#[derive(Clone, Debug)]
+pub struct Reshaped {
+    pub projection: PerspectiveProjection,
+    pub plane: Vec4,
+    pub matrix: fn(&PerspectiveProjection, Vec4) -> Mat4,
+}
+
+impl CameraProjection for Reshaped {
+    fn get_clip_from_view(&self) -> Mat4 {
+        (self.matrix)(&self.projection, self.plane)
+    }
+    fn get_clip_from_view_for_sub(&self, _: &SubCameraView) -> Mat4 {
+        self.get_clip_from_view()
+    }
+    fn update(&mut self, width: f32, height: f32) {
+        self.projection.update(width, height);
+    }
+    fn far(&self) -> f32 {
+        self.projection.far
+    }
+    fn get_frustum_corners(&self, near: f32, far: f32) -> [Vec3A; 8] {
+        self.projection.get_frustum_corners(near, far)
     }
 }
 

@@ -1,6 +1,10 @@
 //! The smoothed range in an app: what resets it and what does not.
 
-use bevy::{camera::PerspectiveProjection, prelude::*, render::view::Msaa};
+use bevy::{
+    camera::{CameraProjection, PerspectiveProjection},
+    prelude::*,
+    render::view::Msaa,
+};
 use bevy_comics::{
     CameraCut, Colorization, ComicStyle, ComicsStage, Contours, DepthMap, RangeSmoothing,
     ReductionMethod, VisibleDepthRange,
@@ -11,7 +15,7 @@ use bevy_comics_testkit::{
     studio::with_map,
 };
 
-use crate::small::{Small, options, size};
+use crate::small::{Reshaped, Small, options, size};
 
 /// Slow enough to see, exact once it has arrived.
 const SLOW: RangeSmoothing = RangeSmoothing {
@@ -132,38 +136,22 @@ fn turning_the_camera_and_zooming_do_not_start_anew() {
 
 /// A perspective projection whose near plane is a plane in view space, as mirrors and
 /// portals use: normal into the view, and distance.
-#[derive(Clone, Debug)]
-struct Mirror(PerspectiveProjection, Vec4);
-
-impl bevy::camera::CameraProjection for Mirror {
-    fn get_clip_from_view(&self) -> Mat4 {
-        let mut rows = self.0.get_clip_from_view().transpose();
-        // 1 on the plane, and 0 or more at infinity inside of the view.
-        rows.z_axis = rows.w_axis - self.1 / 1.6;
-        rows.transpose()
-    }
-    fn get_clip_from_view_for_sub(&self, _: &bevy::camera::SubCameraView) -> Mat4 {
-        self.get_clip_from_view()
-    }
-    fn update(&mut self, width: f32, height: f32) {
-        self.0.update(width, height);
-    }
-    fn far(&self) -> f32 {
-        self.0.far
-    }
-    fn get_frustum_corners(&self, near: f32, far: f32) -> [Vec3A; 8] {
-        self.0.get_frustum_corners(near, far)
-    }
+fn mirror(plane: Vec4) -> Projection {
+    Projection::custom(Reshaped {
+        projection: PerspectiveProjection::default(),
+        plane,
+        matrix: |p, plane| {
+            let mut rows = p.get_clip_from_view().transpose();
+            // 1 on the plane, and 0 or more at infinity inside of the view.
+            rows.z_axis = rows.w_axis - plane / 1.6;
+            rows.transpose()
+        },
+    })
 }
 
 #[test]
 fn an_oblique_near_plane_that_moves_does_not_start_anew() {
-    let mirror = |tilt: f32, distance: f32| {
-        Projection::custom(Mirror(
-            PerspectiveProjection::default(),
-            Vec4::new(tilt, 0.0, -1.0, -distance),
-        ))
-    };
+    let mirror = |tilt: f32, distance: f32| mirror(Vec4::new(tilt, 0.0, -1.0, -distance));
     let mut small = Small::new(size(), Msaa::Off);
     small.insert(mirror(0.1, 0.2));
     small.style(&look(Some(SLOW)));

@@ -185,6 +185,21 @@ fn non_finite_colours_stay_finite_and_spread_to_no_other_pixel() {
                 assert!(moved < 0.02, "{name} spread: {was:?} became {wrote:?}");
             }
         }
+        // Lines alone are blended over a picture that cannot hold such values.
+        for lines in [
+            ComicStyle::new().with(Outlines::default()),
+            ComicStyle::new().with(Contours::default()),
+        ] {
+            small.style(&lines);
+            small.settle();
+            let (_, output) = small.pass();
+            assert!(
+                output.pixels.iter().flatten().all(|c| c.is_finite()),
+                "{name} reached the screen under lines alone"
+            );
+        }
+        small.style(&full_style());
+        small.settle();
     }
     assert_eq!(small.errors(), 0);
 }
