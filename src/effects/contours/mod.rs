@@ -12,8 +12,8 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    lines::MapJumps,
     effect::{Effect, EffectShader, EffectStage, Extent, Needs, Variants, ViewFacts},
+    lines::MapJumps,
     settings::{FieldRange, Form, bounded, displayable, file_color, linear_rgb},
 };
 
