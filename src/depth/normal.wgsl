@@ -4,12 +4,15 @@
 
 #import bevy_comics::depth::view::depth_pixel
 
-// (normal, 1) of a texel; w is 0 where there is no normal. The squared length of a
-// normal is close to 1 (10 bits per component), that of a cleared texel (the sky) is 3.
+// (unit normal, 1) of a texel; w is 0 where there is no normal. Stored normals are
+// interpolated between vertices, so they are shorter than 1: the squared length is 0.5
+// halfway between two vertices at 90 degrees. Below 0.05, ten bits per component say
+// little about the direction. That of a cleared texel (the sky) is 3.
 fn decode_normal(texel: vec3<f32>) -> vec4<f32> {
     let n = texel * 2.0 - 1.0;
     let squared = dot(n, n);
-    return vec4(n, select(0.0, 1.0, squared >= 0.5 && squared <= 1.5));
+    let found = squared >= 0.05 && squared <= 1.5;
+    return vec4(n * inverseSqrt(max(squared, 0.05)), select(0.0, 1.0, found));
 }
 
 #ifdef NORMALS

@@ -7,7 +7,7 @@
 
 #import bevy_comics::depth::view::View
 #import bevy_comics::lines::edge::{
-    Grid, Lines, Place, crack_opacity, line_coverage, line_offset, pack_place, place_middle, unpack_width,
+    Grid, Lines, Place, crack_opacity, is_apart, line_coverage, line_offset, pack_place, place_middle, unpack_width,
 }
 
 struct ColumnUniform {
@@ -18,6 +18,10 @@ struct ColumnUniform {
 
 @group(0) @binding(1) var<uniform> column_uniform: ColumnUniform;
 @group(0) @binding(11) var crack_texture: texture_2d<u32>;
+#ifdef BLOCKS
+// For each block of 4 x 32 pixels, one bit for each row with a crack: see walk.wgsl.
+@group(0) @binding(12) var block_texture: texture_2d<u32>;
+#endif
 
 // The best two cracks in the column so far.
 struct Best {
@@ -42,7 +46,7 @@ fn compare(best: ptr<function, Best>, packed: u32, row: i32, south: bool) {
     let score = select(-1.0, value + 1e-4 * (half_width - away), exists);
     let better = score > (*best).scores.x;
     // Both cracks at a corner of a line of odd width have their middle in one pixel.
-    let other = distance(middle, (*best).first) > 0.25;
+    let other = is_apart(middle, (*best).first);
     let pushed = better && other;
     let next = other && score > (*best).scores.y;
     let packed_place = pack_place(place);
@@ -54,18 +58,36 @@ fn compare(best: ptr<function, Best>, packed: u32, row: i32, south: bool) {
     (*best).scores.x = max((*best).scores.x, score);
 }
 
+// Compares both cracks of the pixel in row `y` of the column of `p`.
+fn compare_row(best: ptr<function, Best>, p: vec2<i32>, y: i32) {
+    let packed = textureLoad(crack_texture, vec2(p.x, y), 0).xy;
+    compare(best, packed.x, y - p.y, false);
+    compare(best, packed.y, y - p.y, true);
+}
+
 @fragment
 fn columns(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     let g = column_uniform.grid;
     let p = vec2<i32>(position.xy);
     var best = Best(0u, vec2(0u), vec2(1e6), vec2(-1.0));
-    for (var row = -g.reach - 1; row <= g.reach; row++) {
-        let y = p.y + row;
-        let inside = y >= 0 && y < g.rect.w;
-        let texel = textureLoad(crack_texture, vec2(p.x, clamp(y, 0, g.rect.w - 1)), 0).xy;
-        let packed = select(vec2(0u), texel, inside);
-        compare(&best, packed.x, row, false);
-        compare(&best, packed.y, row, true);
+    let first = max(p.y - g.reach - 1, 0);
+    let last = min(p.y + g.reach, g.rect.w - 1);
+#ifdef BLOCKS
+    for (var block = first >> 5u; block <= last >> 5u; block++) {
+        let top = block * 32;
+        let above = u32(clamp(first - top, 0, 31));
+        let below = u32(clamp(top + 31 - last, 0, 31));
+        let all_rows = textureLoad(block_texture, vec2(p.x >> 2u, block), 0).r;
+        var rows = all_rows & (0xffffffffu << above) & (0xffffffffu >> below);
+        while rows != 0u {
+            compare_row(&best, p, top + i32(firstTrailingBit(rows)));
+            rows &= rows - 1u;
+        }
     }
+#else
+    for (var y = first; y <= last; y++) {
+        compare_row(&best, p, y);
+    }
+#endif
     return vec2(best.packed, best.places.x | (best.places.y << 16u));
 }

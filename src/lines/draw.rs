@@ -281,7 +281,9 @@ impl Inputs<'_> {
         let (_, _, lines) = self.parts.0;
         let columns = match (passes.columns, &cracks.columns) {
             (Some(id), Some(columns)) => {
-                let entries = self.searched((11, &cracks.texture))?;
+                let mut entries = self.searched((11, &cracks.texture))?;
+                let blocks = lines.tiles.as_ref().map(|tiles| &tiles.blocks);
+                entries.extend(blocks.map(|b| entry(12, (&b.default_view).into_binding())));
                 let group = self.group(&key.for_columns().columns_layout(), &entries);
                 Some(((self.pipeline(id)?, group), columns))
             }

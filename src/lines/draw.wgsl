@@ -6,7 +6,7 @@
 
 #import bevy_comics::depth::view::{View, set_view}
 #import bevy_comics::lines::edge::{
-    Grid, Lines, encode_ink, ink_of, largest_opacity, line_coverage, line_offset, place_direction, place_middle,
+    Grid, Lines, encode_ink, ink_of, is_apart, largest_opacity, line_coverage, line_offset, place_direction, place_middle,
     segment_distance, unpack_place, unpack_width,
 }
 #ifdef OBJECT_STYLES
@@ -44,6 +44,9 @@ struct Ink {
     first_owner: vec2<i32>,
 }
 
+// Pixels of the viewport per pixel of the grid.
+var<private> viewport_scale: vec2<f32>;
+
 fn alphas(kinds: vec3<f32>) -> f32 {
     return largest_opacity(draw_uniform.settings, kinds);
 }
@@ -56,7 +59,7 @@ fn add(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i32>, a
     let direction = vec2<f32>(towards);
     let shift = select(1.0, -1.0, mine) * line_offset(half_width);
     let middle = vec2<f32>(p) + 0.5 + direction * (0.5 + shift);
-    let away = length((middle - at) / draw_uniform.grid.from_viewport.xy);
+    let away = length((middle - at) * viewport_scale);
     let exists = (packed & 7u) != 0u;
     let kinds = select(0.0, line_coverage(away, half_width), exists) * ink_of(packed);
     (*ink).kinds = max((*ink).kinds, kinds);
@@ -80,7 +83,7 @@ fn add(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i32>, a
 fn follow(ink: ptr<function, Ink>, middle: vec2<f32>, border: f32) {
     let nearest = border < (*ink).distances.x;
     // Both cracks at a corner of a line of odd width have their middle in one pixel.
-    let other = distance(middle, (*ink).first) > 0.25;
+    let other = is_apart(middle, (*ink).first);
     let behind = other && border < (*ink).distances.y;
     let pushed = other && nearest;
     (*ink).second = select(select((*ink).second, middle, behind), (*ink).first, pushed);
@@ -105,6 +108,7 @@ fn add_pixel(ink: ptr<function, Ink>, p: vec2<i32>, at: vec2<f32>) {
 fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     set_view(draw_uniform.seen);
     let g = draw_uniform.grid;
+    viewport_scale = 1.0 / g.from_viewport.xy;
     let at = position.xy * g.from_viewport.xy + g.from_viewport.zw;
     let centre = vec2<i32>(floor(at));
     var ink: Ink;
@@ -130,7 +134,7 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         let border = add(&ink, stored.x, p + vec2(0, place.row), place_direction(place), at);
         // The next crack has no ink of its own here: it only says where the line goes on.
         let next = vec2<f32>(p) + 0.5 + place_middle(unpack_place(stored.y >> 16u));
-        let away = length((next - at) / g.from_viewport.xy);
+        let away = length((next - at) * viewport_scale);
         let next_border = max(away - unpack_width(stored.x >> 20u), border + 1e-4);
         follow(&ink, next, select(1e6, next_border, stored.y > 0xffffu));
     }
@@ -144,7 +148,7 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     // Between the middles of two neighbouring cracks, a line runs straight. Discs around
     // the middles alone would leave diagonal lines too thin.
     if ink.distances.y < 1e5 && distance(ink.first, ink.second) < 1.5 {
-        let away = segment_distance(at, ink.first, ink.second) / g.from_viewport.x;
+        let away = segment_distance(at, ink.first, ink.second) * viewport_scale.x;
         let half_width = unpack_width(ink.packed >> 20u);
         let straight = line_coverage(away, half_width) * ink_of(ink.packed);
         ink.kinds = max(ink.kinds, straight);

@@ -224,8 +224,8 @@ fn unpack_crack(packed: u32) -> Crack {
     return Crack(
         packed & 7u,
         (packed & 8u) != 0u,
-        f32((packed >> 4u) & 255u) / 255.0,
-        f32((packed >> 12u) & 255u) / 255.0,
+        f32((packed >> 4u) & 255u) * (1.0 / 255.0),
+        f32((packed >> 12u) & 255u) * (1.0 / 255.0),
         unpack_width(packed >> 20u),
     );
 }
@@ -290,6 +290,12 @@ fn line_offset(half_width: f32) -> f32 {
     let width = 2.0 * half_width;
     let odd = select(abs(width - 2.0 * round(0.5 * width)), 1.0, width < 1.0);
     return 0.5 * odd;
+}
+
+// Whether two middles of lines are in different places: more than 1/4 apart.
+fn is_apart(a: vec2<f32>, b: vec2<f32>) -> bool {
+    let apart = a - b;
+    return dot(apart, apart) > 0.0625;
 }
 
 // Distance from a position to a segment.

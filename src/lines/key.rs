@@ -229,6 +229,7 @@ impl LineKey {
             .chain(names([
                 (self.search == Search::Neighbours, "NEIGHBOURS"),
                 (self.search == Search::Columns, "COLUMNS"),
+                (!self.by_fragments, "BLOCKS"),
             ]))
             .collect()
     }
@@ -277,7 +278,12 @@ impl LineKey {
     }
 
     pub fn columns_layout(&self) -> BindGroupLayoutDescriptor {
-        BindGroupLayoutDescriptor::new("comics_line_columns", &self.searched(11))
+        let mut entries = self.searched(11);
+        if !self.by_fragments {
+            let blocks = texture_2d(TextureSampleType::Uint);
+            entries.push(blocks.build(12, ShaderStages::FRAGMENT));
+        }
+        BindGroupLayoutDescriptor::new("comics_line_columns", &entries)
     }
 
     /// The layout entries of a pass that searches cracks in the texture at this binding.

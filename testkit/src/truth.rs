@@ -6,6 +6,11 @@
 //!   2 % of the nearer depth;
 //! * crease: no silhouette, and their normals differ by more than 30 degrees;
 //! * object edge: their ids differ.
+//!
+//! A line is faint where ink of the default outlines begins: at a step of 1 % or a fold of
+//! 20 degrees. Outlines may or may not draw it.
+
+use bevy::math::Vec3;
 
 /// Finer pixels along each side of a pixel.
 pub const FINE: u32 = 4;
@@ -15,6 +20,8 @@ pub struct Truth {
     pub width: usize,
     pub height: usize,
     pub kinds: [Vec<bool>; 3],
+    /// Pixels with a line of any kind, or a faint one.
+    pub faint: Vec<bool>,
 }
 
 impl Truth {
@@ -29,6 +36,7 @@ impl Truth {
         let fine = FINE as usize;
         let (w, h) = (width * fine, height * fine);
         let mut kinds = [0; 3].map(|_| vec![false; width * height]);
+        let mut faint = vec![false; width * height];
         for y in 1..h - 2 {
             for x in 1..w - 2 {
                 let i = y * w + x;
@@ -50,10 +58,13 @@ impl Truth {
                     let silhouette = excess > 0.02 * near;
                     kinds[0][at] |= silhouette;
                     let (m, n) = (normals[i], normals[j]);
-                    let dot = m[0] * n[0] + m[1] * n[1] + m[2] * n[2];
+                    let cosine = cosine(m, n);
                     let both = a > 0.0 && b > 0.0;
-                    kinds[1][at] |= both && !silhouette && dot < 30f32.to_radians().cos();
+                    kinds[1][at] |= both && !silhouette && cosine < 30f32.to_radians().cos();
                     kinds[2][at] |= ids[i] != ids[j];
+                    faint[at] |= excess > 0.01 * near
+                        || both && cosine < 20f32.to_radians().cos()
+                        || ids[i] != ids[j];
                 }
             }
         }
@@ -61,6 +72,7 @@ impl Truth {
             width,
             height,
             kinds,
+            faint,
         }
     }
 
@@ -97,6 +109,13 @@ impl Truth {
                 .map(|i| near(truth, self.width, self.height, i, 2)),
         )
     }
+}
+
+/// The cosine of the angle between two normals, which may be shorter than 1: they are
+/// interpolated.
+fn cosine(a: [f32; 4], b: [f32; 4]) -> f32 {
+    let [a, b] = [a, b].map(|n| Vec3::from_slice(&n).normalize_or_zero());
+    a.dot(b)
 }
 
 fn count(all: impl Iterator<Item = bool>) -> (usize, usize) {
