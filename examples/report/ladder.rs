@@ -17,8 +17,20 @@ use crate::{
 };
 
 /// The header of the table of counted work.
-pub const WORK: [&str; 8] = [
-    "style", "passes", "ran", "left_out", "bindings", "fetches", "most", "bytes",
+pub const WORK: [&str; 13] = [
+    "style",
+    "passes",
+    "ran",
+    "left_out",
+    "bindings",
+    "fetches",
+    "most",
+    "bytes",
+    "walk",
+    "find",
+    "columns",
+    "draw",
+    "line_bytes",
 ];
 
 /// The row of a counted style.
@@ -32,6 +44,11 @@ pub fn work_row(work: &work::Work) -> Vec<String> {
         format!("{:.2}", work.fetches[0]),
         format!("{:.0}", work.fetches[1]),
         format!("{:.2}", work.bytes),
+        format!("{:.2}", work.lines.walk),
+        format!("{:.2}", work.lines.find),
+        format!("{:.2}", work.lines.columns),
+        format!("{:.2}", work.lines.draw),
+        format!("{:.2}", work.lines.bytes),
     ]
 }
 

@@ -1,133 +1,16 @@
-//! Which lines the operators find and what they cost; error and cost of the anti-aliasing
-//! of bands and lines.
+//! What lines cost; error and cost of the anti-aliasing of bands and lines.
 
-use bevy::{
-    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
-    prelude::*,
-    render::RenderApp,
-};
-use bevy_comics::{ComicStyle, ContourOperator, Contours, ObjectEdges, Outlines, ToneBands};
+use bevy::prelude::*;
+use bevy_comics::{ComicStyle, Contours, Outlines, ToneBands};
 
-use bevy_comics_testkit::{
-    read_back,
-    scenes::BuiltIn,
-    truth::{FINE, Truth, mask},
-    work::default_comic,
-};
+use bevy_comics_testkit::{scenes::BuiltIn, work::default_comic};
 
 use crate::{
     Run, capture,
     rig::{self, Rig, Wear},
+    scores::{detectors, score},
     table::Table,
 };
-
-const SCENES: [BuiltIn; 4] = [
-    BuiltIn::Teapot,
-    BuiltIn::Theatre,
-    BuiltIn::Village,
-    BuiltIn::Mountains,
-];
-
-fn contours(operator: ContourOperator) -> ComicStyle {
-    ComicStyle::new().with(Contours {
-        operator,
-        ..default()
-    })
-}
-
-fn outlines(outlines: Outlines) -> ComicStyle {
-    ComicStyle::new().with(outlines)
-}
-
-fn detectors() -> Vec<(String, ComicStyle)> {
-    use ContourOperator::{Laplace, Prewitt, Roberts, Sobel};
-    let mut all: Vec<_> = [Roberts, Prewitt, Sobel, Laplace]
-        .into_iter()
-        .map(|operator| (format!("{operator:?}"), contours(operator)))
-        .collect();
-    all.push(("silhouettes".into(), outlines(Outlines::SILHOUETTES)));
-    all.push((
-        "silhouettes + creases".into(),
-        outlines(Outlines {
-            objects: None,
-            ..default()
-        }),
-    ));
-    all.push(("all outlines".into(), outlines(Outlines::default())));
-    all
-}
-
-/// Invisible object edges: ids are drawn, and no line.
-pub fn ids_alone() -> Outlines {
-    Outlines {
-        silhouettes: None,
-        creases: None,
-        objects: Some(ObjectEdges {
-            opacity: 1e-6,
-            ..default()
-        }),
-        ..default()
-    }
-}
-
-/// The true lines of a picture of `size`, from the prepasses of a camera that is
-/// [`FINE`] times as large and draws [`ids_alone`].
-pub fn read_truth(rig: &Rig, size: UVec2) -> Truth {
-    let view = rig.view();
-    let world = rig.headless.app.sub_app(RenderApp).world();
-    let depth = read_back::depth(world, view).expect("a prepass");
-    let depth: Vec<f32> = depth.bits.iter().map(|b| f32::from_bits(*b)).collect();
-    let normals = read_back::normals(world, view).expect("a prepass").pixels;
-    let ids = read_back::object_ids(world, view).expect("ids");
-    let ids: Vec<u32> = ids.pixels.iter().map(|p| p[0]).collect();
-    let [width, height] = size.to_array().map(|v| v as usize);
-    Truth::new(width, height, &depth, &normals, &ids)
-}
-
-fn truth(scene: BuiltIn, size: UVec2) -> Truth {
-    let mut rig = Rig::new(Some(scene), size * FINE);
-    rig.unlight();
-    rig.wear(&Wear::style(outlines(ids_alone())));
-    let world = rig.headless.app.world_mut();
-    world
-        .entity_mut(rig.camera)
-        .insert((DepthPrepass, NormalPrepass));
-    rig.headless.step(4);
-    read_truth(&rig, size)
-}
-
-fn score(run: &Run) -> Result<(), String> {
-    let mut table = Table::new(&[
-        "scene", "detector", "truth", "found", "true", "right", "drawn",
-    ]);
-    let size = if run.quick {
-        UVec2::new(160, 90)
-    } else {
-        UVec2::new(480, 270)
-    };
-    let scenes = if run.quick { &SCENES[..1] } else { &SCENES };
-    for &scene in scenes {
-        let truth = truth(scene, size);
-        let mut rig = Rig::new(Some(scene), size);
-        rig.unlight();
-        rig.wear(&Wear::Nothing);
-        rig.headless.step(4);
-        let plain = rig.headless.picture();
-        for (name, style) in detectors() {
-            rig.wear(&Wear::style(style));
-            rig.headless.step(4);
-            let lines = mask(&plain, &rig.headless.picture());
-            for (what, kinds) in [("silhouettes", &[0][..]), ("every line", &[0, 1, 2])] {
-                let wanted = truth.any(kinds);
-                let (found, all) = truth.recall(&wanted, &lines);
-                let (right, drawn) = truth.precision(&wanted, &lines);
-                table.push(&[&scene.name(), &name, &what, &found, &all, &right, &drawn]);
-            }
-        }
-        run.say(&format!("{}: lines scored", scene.name()));
-    }
-    run.save("line_scores", &table)
-}
 
 /// A smaller picture: each pixel is the mean, in linear light, of `by` x `by` pixels.
 fn shrunk(picture: &image::RgbaImage, by: u32) -> Vec<[u8; 3]> {
@@ -158,7 +41,7 @@ fn bands(softness: f32) -> ComicStyle {
 }
 
 fn soft_outlines(scale: f32) -> ComicStyle {
-    outlines(Outlines {
+    ComicStyle::new().with(Outlines {
         creases: None,
         objects: None,
         width: 2.0 * scale,

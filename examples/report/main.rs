@@ -21,6 +21,7 @@ mod peers;
 mod plots;
 mod ranges;
 mod rig;
+mod scores;
 mod stability;
 mod table;
 

@@ -10,12 +10,11 @@ use bevy::{
 use bevy_comics::{ComicStyle, Outlines};
 use bevy_comics_testkit::{
     specimens::Specimen,
-    truth::{FINE, fragments},
+    truth::{FINE, fragments, ids_alone},
 };
 
 use crate::{
     Run,
-    lines::{ids_alone, read_truth},
     rig::{Rig, Wear},
     table::Table,
 };
@@ -88,6 +87,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         "right",
         "drawn",
         "false",
+        "wrong",
         "pixels",
         "fragments",
         "line",
@@ -117,11 +117,12 @@ pub fn measure(run: &Run) -> Result<(), String> {
                 for studio in [&mut fine, &mut lined, &mut thin] {
                     studio.turn(distance, turned);
                 }
-                let truth = read_truth(&fine.rig, size);
+                let truth = fine.rig.truth(size, FINE);
                 let wanted = truth.any(&[0, 1, 2]);
                 let lines = lined.mask();
                 let (found, all) = truth.recall(&wanted, &lines);
                 let (right, drawn) = truth.precision(&wanted, &lines);
+                let (faint, _) = truth.precision(&truth.faint, &lines);
                 let mask = thin.mask();
                 let small = fragments(&mask, large.x as usize, 6);
                 let line = mask.iter().filter(|ink| **ink).count();
@@ -134,6 +135,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
                     &right,
                     &drawn,
                     &(drawn - right),
+                    &(drawn - faint),
                     &truth.inside().count(),
                     &small,
                     &line,

@@ -6,7 +6,7 @@ use bevy::{
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
     ecs::system::RunSystemOnce,
     prelude::*,
-    render::{sync_world::RenderEntity, view::Msaa},
+    render::{RenderApp, sync_world::RenderEntity, view::Msaa},
 };
 use bevy_comics::{ComicStyle, ComicsPlugin};
 
@@ -14,6 +14,7 @@ use bevy_comics_testkit::{
     bench::{self, BenchPlugin, Blit, Lap, Laps},
     headless::{Headless, HeadlessOptions},
     scenes::{BuiltIn, Stage, Vantage},
+    truth::Truth,
 };
 
 use crate::{Run, table::Table};
@@ -81,6 +82,13 @@ impl Rig {
             .get::<RenderEntity>(self.camera)
             .expect("extracted")
             .id()
+    }
+
+    /// The lines of a picture of `size`, if this camera is `fine` times as large and draws
+    /// [`ids_alone`](bevy_comics_testkit::truth::ids_alone).
+    pub fn truth(&self, size: UVec2, fine: u32) -> Truth {
+        let world = self.headless.app.sub_app(RenderApp).world();
+        Truth::read(world, self.view(), size, fine)
     }
 
     /// Makes every material unlit: only lines change the picture, and the main pass takes

@@ -49,6 +49,8 @@ pub struct HeadlessOptions {
     /// Whether pipelines compile while frames are drawn, as in a game; else every
     /// pipeline is compiled before its first use.
     pub background_pipelines: bool,
+    /// Limits of the device below those of the adapter.
+    pub limits: Option<wgpu::Limits>,
 }
 
 impl Default for HeadlessOptions {
@@ -61,6 +63,7 @@ impl Default for HeadlessOptions {
             assets: format!("{ROOT}/assets"),
             watch: false,
             background_pipelines: false,
+            limits: None,
         }
     }
 }
@@ -76,6 +79,7 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
         .set(RenderPlugin {
             render_creation: WgpuSettings {
                 backends: Some(backends()),
+                constrained_limits: options.limits.clone(),
                 ..default()
             }
             .into(),

@@ -10,10 +10,33 @@
 //! A line is faint where ink of the default outlines begins: at a step of 1 % or a fold of
 //! 20 degrees. Outlines may or may not draw it.
 
-use bevy::math::Vec3;
+use bevy::prelude::*;
+use bevy_comics::{ObjectEdges, Outlines};
+
+use crate::read_back;
 
 /// Finer pixels along each side of a pixel.
 pub const FINE: u32 = 4;
+
+/// Invisible object edges: ids are drawn, and no line.
+pub fn ids_alone() -> Outlines {
+    Outlines {
+        silhouettes: None,
+        creases: None,
+        objects: Some(ObjectEdges {
+            opacity: 1e-6,
+            ..default()
+        }),
+        ..default()
+    }
+}
+
+/// What the prepasses of a camera show: raw depth, normals and object ids, row by row.
+pub struct Seen<'a> {
+    pub depth: &'a [f32],
+    pub normals: &'a [[f32; 4]],
+    pub ids: &'a [u32],
+}
 
 /// The three kinds, one mask each: silhouettes, creases, object edges.
 pub struct Truth {
@@ -25,15 +48,14 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// From raw depth, normals and object ids at [`FINE`] times the width and height.
-    pub fn new(
-        width: usize,
-        height: usize,
-        depth: &[f32],
-        normals: &[[f32; 4]],
-        ids: &[u32],
-    ) -> Self {
-        let fine = FINE as usize;
+    /// The lines of a picture of this width and height, from what is seen at `fine` times
+    /// both: [`FINE`] for the truth, 1 for what the same rule finds in the picture.
+    pub fn new([width, height]: [usize; 2], fine: usize, seen: &Seen) -> Self {
+        let Seen {
+            depth,
+            normals,
+            ids,
+        } = *seen;
         let (w, h) = (width * fine, height * fine);
         let mut kinds = [0; 3].map(|_| vec![false; width * height]);
         let mut faint = vec![false; width * height];
@@ -74,6 +96,22 @@ impl Truth {
             kinds,
             faint,
         }
+    }
+
+    /// The lines of a picture of `size`, from the prepasses of a view that is `fine` times
+    /// as large and draws [`ids_alone`], with prepasses of depth and normals.
+    pub fn read(render_world: &World, view: Entity, size: UVec2, fine: u32) -> Self {
+        let depth = read_back::depth(render_world, view).expect("a prepass");
+        let depth: Vec<f32> = depth.bits.iter().map(|b| f32::from_bits(*b)).collect();
+        let normals = read_back::normals(render_world, view).expect("a prepass");
+        let ids = read_back::object_ids(render_world, view).expect("ids");
+        let ids: Vec<u32> = ids.pixels.iter().map(|p| p[0]).collect();
+        let seen = Seen {
+            depth: &depth,
+            normals: &normals.pixels,
+            ids: &ids,
+        };
+        Self::new(size.to_array().map(|v| v as usize), fine as usize, &seen)
     }
 
     /// The pixels that have a line of any of these kinds.
@@ -182,6 +220,8 @@ pub fn fragments(mask: &[bool], width: usize, most: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use super::{Seen, Truth};
+
     #[test]
     fn fragments_are_parts_of_few_pixels() {
         let rows = ["##....#", "..#....", "......#", "#####.#"];
@@ -192,5 +232,31 @@ mod tests {
         assert_eq!(super::fragments(&mask, 7, 2), 2);
         assert_eq!(super::fragments(&mask, 7, 3), 3);
         assert_eq!(super::fragments(&mask, 7, 5), 4);
+    }
+
+    /// Interpolated normals are shorter than 1: the angle between them decides.
+    #[test]
+    fn short_normals_are_no_creases() {
+        let folded = |degrees: f32, length: f32| {
+            let normals: Vec<[f32; 4]> = (0..64)
+                .map(|i| {
+                    let turned = if i % 8 < 4 { 0.0 } else { degrees.to_radians() };
+                    [turned.sin() * length, 0.0, turned.cos() * length, 1.0]
+                })
+                .collect();
+            let seen = Seen {
+                depth: &[0.1; 64],
+                normals: &normals,
+                ids: &[1; 64],
+            };
+            let truth = Truth::new([8, 8], 1, &seen);
+            let any = |mask: &[bool]| mask.contains(&true);
+            (any(&truth.kinds[1]), any(&truth.faint))
+        };
+        for length in [0.6, 0.8, 1.0] {
+            assert_eq!(folded(10.0, length), (false, false), "{length}");
+            assert_eq!(folded(25.0, length), (false, true), "{length}");
+            assert_eq!(folded(35.0, length), (true, true), "{length}");
+        }
     }
 }

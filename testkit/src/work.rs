@@ -1,5 +1,5 @@
 //! Counts the work of a style, which is the same on every machine: passes, bindings, and
-//! the texels that the fused pass fetches, counted in the shader.
+//! the texels that the fused pass and the passes of the lines fetch, counted in the shaders.
 
 use std::borrow::Cow;
 
@@ -22,6 +22,7 @@ use bevy_comics::{
 use super::{
     before::BeforeStylize,
     headless::HeadlessOptions,
+    line_work::{self, LineWork},
     read_back,
     scenes::BuiltIn,
     studio::{Studio, with_map},
@@ -41,6 +42,8 @@ pub struct Work {
     pub fetches: [f64; 2],
     /// Bytes that it fetches per pixel on an 8-bit target, mean.
     pub bytes: f64,
+    /// The work of the passes that find and draw lines.
+    pub lines: LineWork,
 }
 
 /// The stages that are separate passes.
@@ -134,11 +137,17 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
 
 /// Bytes of the texel that a line of WGSL loads, by the name of its binding.
 fn texel_size(line: &str) -> Option<u32> {
-    line.contains("textureLoad(").then_some(4)
+    let wide = ["crack_texture", "column_texture"];
+    let size = if wide.iter().any(|name| line.contains(name)) {
+        8
+    } else {
+        4
+    };
+    line.contains("textureLoad(").then_some(size)
 }
 
 /// The file of the fused pass.
-const FUSED: &str = "bevy_comics/effect/fused.wgsl";
+pub(crate) const FUSED: &str = "bevy_comics/effect/fused.wgsl";
 /// The files whose functions read textures for the fused pass, sorted.
 const READERS: [&str; 5] = [
     "bevy_comics/depth/normal.wgsl",
@@ -154,8 +163,12 @@ const COUNTER: &str = "#define_import_path bevy_comics_count::tally
 var<private> fetched: vec2<f32>;
 fn tally(bytes: f32) { fetched += vec2(1.0, bytes); }
 fn fetched_so_far() -> vec2<f32> { return fetched; }
+fn packed_count() -> u32 { return u32(fetched.x) | (u32(fetched.y) << 16u); }
 ";
-const IMPORT: &str = "#import bevy_comics_count::tally::{tally, fetched_so_far}";
+const IMPORT: &str = "#import bevy_comics_count::tally::{tally, fetched_so_far, packed_count}";
+
+/// The end of the fused pass.
+pub(crate) const RESULT: &str = "return vec4(to_stored(result.rgb), result.a);";
 
 /// Keeps the counter's module loaded.
 #[derive(Resource)]
@@ -165,37 +178,38 @@ struct Counter {
 
 /// Adds a call of the counter before every fetch. The fused pass then returns the counts
 /// instead of the colour.
-fn counting(path: &str, text: &str) -> String {
+pub(crate) fn counting(path: &str, text: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
-    if path == FUSED {
+    if !text.contains("#define_import_path") {
         lines.push(IMPORT.to_owned());
     }
-    let mut fetches = 0;
     for line in text.lines() {
         if let Some(bytes) = texel_size(line) {
             lines.push(format!("tally({bytes}.0);"));
-            fetches += 1;
         }
         lines.push(line.to_owned());
         if line.starts_with("#define_import_path") {
             lines.push(IMPORT.to_owned());
         }
     }
-    assert!(fetches > 0, "{path} fetches nothing");
     let text = lines.join("\n");
     if path != FUSED {
         return text;
     }
-    let result = "return vec4(to_stored(result.rgb), result.a);";
-    assert!(text.contains(result), "the end of the fused pass has moved");
+    assert!(text.contains(RESULT), "the end of the fused pass has moved");
     text.replace(
-        result,
+        RESULT,
         "return vec4(fetched_so_far(), to_stored(result.rgb).r, 1.0);",
     )
 }
 
-/// Adds the counter to the shaders that fetch texels, and returns the names of their files.
-fn instrument(world: &mut World) -> Vec<&'static str> {
+/// Replaces the text of these files by `edit(file, text)`, and adds the counter's module.
+/// Returns the names of the files that were found, sorted.
+pub(crate) fn edit_shaders(
+    world: &mut World,
+    files: &[&'static str],
+    edit: impl Fn(&str, &str) -> String,
+) -> Vec<&'static str> {
     let mut shaders = world.resource_mut::<Assets<Shader>>();
     let ids: Vec<_> = shaders.ids().collect();
     let module = shaders.add(Shader::from_wgsl(COUNTER, "bevy_comics_count/tally.wgsl"));
@@ -207,10 +221,10 @@ fn instrument(world: &mut World) -> Vec<&'static str> {
         let Source::Wgsl(text) = &shader.source else {
             continue;
         };
-        let Some(file) = READERS.iter().find(|file| shader.path.ends_with(**file)) else {
+        let Some(file) = files.iter().find(|file| shader.path.ends_with(**file)) else {
             continue;
         };
-        let shader = Shader::from_wgsl(counting(file, text), shader.path.clone());
+        let shader = Shader::from_wgsl(edit(file, text), shader.path.clone());
         let _ = shaders.insert(id, shader);
         changed.push(*file);
     }
@@ -219,10 +233,15 @@ fn instrument(world: &mut World) -> Vec<&'static str> {
     changed
 }
 
-/// Counts the work of a style on the teapot at 160 x 90 pixels.
-pub fn count(name: &'static str, style: &ComicStyle) -> Work {
-    let size = UVec2::new(160, 90);
-    let options = HeadlessOptions { size, ..default() };
+/// Size of the picture whose work is counted.
+const SIZE: UVec2 = UVec2::new(160, 90);
+
+/// The scene whose work is counted, in an HDR view.
+pub(crate) fn teapot() -> Studio {
+    let options = HeadlessOptions {
+        size: SIZE,
+        ..default()
+    };
     // Where no tile is drawn over the picture, nothing is fetched.
     let plugins = (ComicsPlugin, BeforeStylize::Clear);
     let mut studio = Studio::with_plugins(BuiltIn::Teapot, options, Msaa::Off, plugins);
@@ -234,7 +253,14 @@ pub fn count(name: &'static str, style: &ComicStyle) -> Work {
         .entity_mut(camera)
         .insert(Hdr);
     studio.headless.step(2);
-    let changed = instrument(studio.headless.app.world_mut());
+    studio
+}
+
+/// Counts the work of a style on the teapot at 160 x 90 pixels.
+pub fn count(name: &'static str, style: &ComicStyle) -> Work {
+    let mut studio = teapot();
+    let camera = studio.camera;
+    let changed = edit_shaders(studio.headless.app.world_mut(), &READERS, counting);
     assert_eq!(changed, READERS, "the files that read textures");
     studio.shoot(Some(style));
     studio.headless.step(4);
@@ -279,5 +305,6 @@ pub fn count(name: &'static str, style: &ComicStyle) -> Work {
         bindings,
         fetches,
         bytes,
+        lines: line_work::count(style, render_world.resource::<PipelineCache>(), SIZE),
     }
 }

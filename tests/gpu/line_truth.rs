@@ -1,8 +1,19 @@
 //! Whether lines are where the geometry says, and as wide as asked.
 
-use bevy::{camera::ScalingMode, prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, OutlineStyle, Outlines, Silhouettes};
-use bevy_comics_testkit::reference::edge::line_coverage;
+use bevy::{
+    camera::ScalingMode,
+    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
+    prelude::*,
+    render::{RenderApp, sync_world::RenderEntity, view::Msaa},
+};
+use bevy_comics::{ComicStyle, ComicsPlugin, OutlineStyle, Outlines, Silhouettes};
+use bevy_comics_testkit::{
+    headless::HeadlessOptions,
+    reference::edge::line_coverage,
+    scenes::BuiltIn,
+    studio::Studio,
+    truth::{FINE, Truth, ids_alone, mask},
+};
 
 use crate::{
     outlines::{ink, look, put},
@@ -214,4 +225,41 @@ fn a_diagonal_line_has_its_objects_colour_up_to_the_rim() {
         }
         assert!(inked > 50, "{width} px: {inked} pixels of ink on the wall");
     }
+}
+
+/// Every line of the teapot that the geometry has at four times the resolution is drawn,
+/// with lines of 1 pixel, at most one pixel away. Its lid has layers that lie close.
+#[test]
+fn every_line_of_the_teapot_is_drawn() {
+    let size = UVec2::new(320, 180);
+    let studio = |fine: u32| {
+        let size = size * fine;
+        let options = HeadlessOptions { size, ..default() };
+        Studio::with_plugins(BuiltIn::Teapot, options, Msaa::Off, ComicsPlugin)
+    };
+    let mut fine = studio(FINE);
+    let world = fine.headless.app.world_mut();
+    world
+        .entity_mut(fine.camera)
+        .insert((DepthPrepass, NormalPrepass));
+    fine.shoot(Some(&ComicStyle::new().with(ids_alone())));
+    let world = fine.headless.app.world();
+    let view = world.get::<RenderEntity>(fine.camera).expect("drawn").id();
+    let world = fine.headless.app.sub_app(RenderApp).world();
+    let truth = Truth::read(world, view, size, FINE);
+
+    let mut studio = studio(1);
+    let plain = studio.shoot(None);
+    let outlines = Outlines {
+        width: 1.0,
+        ..default()
+    };
+    let lined = studio.shoot(Some(&ComicStyle::new().with(outlines)));
+    let lines = mask(&plain, &lined);
+    let (found, all) = truth.recall(&truth.any(&[0, 1, 2]), &lines);
+    assert!(all > 1000, "{all}");
+    assert_eq!(found, all);
+    // Beside them there are no lines, except where steps and folds are faint.
+    let (right, drawn) = truth.precision(&truth.faint, &lines);
+    assert!(right as f64 > 0.99 * drawn as f64, "{right} of {drawn}");
 }

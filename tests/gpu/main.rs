@@ -1,6 +1,7 @@
 //! Everything that needs a GPU adapter (a CPU driver will do), in one binary.
 
 mod blending;
+mod by_fragments;
 mod cartoon;
 mod command_line;
 mod extremes;

@@ -220,8 +220,22 @@ fn no_style_does_more_work_than_the_report_says() {
             now.bytes <= 1.02 * number(row, "bytes") + 0.01,
             "{name}: {now:?}"
         );
+        let lines = now.lines;
+        for (now, column) in [
+            (lines.walk, "walk"),
+            (lines.find, "find"),
+            (lines.columns, "columns"),
+            (lines.draw, "draw"),
+            (lines.bytes, "line_bytes"),
+        ] {
+            let most = 1.02 * number(row, column) + 0.01;
+            assert!(now <= most, "{name}: {column} {now}");
+        }
     }
     // The counter works: a pixel of the largest style fetches texels, no style none.
     let last = rows.last().expect("a style");
     assert!(number(last, "most") > 10.0 && number(&rows[0], "fetches") == 0.0);
+    for column in ["walk", "find", "draw"] {
+        assert!(number(last, column) > 0.5 && number(&rows[0], column) == 0.0);
+    }
 }

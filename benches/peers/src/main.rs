@@ -25,7 +25,7 @@ use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
     read_back,
     scenes::{BuiltIn, Stage},
-    truth::{FINE, Truth, mask},
+    truth::{FINE, Seen, Truth, mask},
 };
 
 const SIZE: UVec2 = UVec2::new(480, 270);
@@ -107,7 +107,8 @@ fn shoot(build: Build, size: UVec2, lines: &Lines) -> Shot {
 fn truth(build: Build) -> Truth {
     let shot = shoot(build, SIZE * FINE, &Lines::None);
     let [width, height] = SIZE.to_array().map(|v| v as usize);
-    Truth::new(width, height, &shot.depth, &shot.normals, &shot.ids)
+    let seen = Seen { depth: &shot.depth, normals: &shot.normals, ids: &shot.ids };
+    Truth::new([width, height], FINE as usize, &seen)
 }
 
 /// A fraction in percent; "-" of nothing.

@@ -5,7 +5,8 @@ use std::{fmt::Write, path::Path};
 use crate::{
     costs::{OWN, bare_costs, cost_table, costs, line_score, size},
     load,
-    table::largest,
+    scores::SAME_RULE,
+    table::{Table, largest},
 };
 
 pub fn ranges(out: &mut String, folder: &Path) -> Result<(), String> {
@@ -120,24 +121,35 @@ pub fn lines(out: &mut String, folder: &Path) -> Result<(), String> {
          over the pixels of all scenes; times are at {}. Contours measure a jump as a fraction \
          of the visible range, outlines as a fraction of the distance: in deep scenes, contours \
          find fewer lines. Contours read 3x3 texels, outlines six in a row.\n\n\
-         | | silhouettes found | F1, silhouettes | every line found | precision | F1, every line | ms | blits |\n\
-         |---|---|---|---|---|---|---|---|",
+         A pixel is wrong if it has ink more than two pixels away from any depth step above 1 % \
+         or fold above 20 degrees, at which the ink of outlines begins. `{SAME_RULE}` is the rule \
+         of the true lines, applied to the picture's own depth, normals and ids: what it misses \
+         is too small for these pixels.\n\n\
+         | | silhouettes found | F1, silhouettes | every line found | precision | wrong | F1, every line | ms | blits |\n\
+         |---|---|---|---|---|---|---|---|---|",
         size(&times)
     );
     let all: Vec<&Vec<String>> = scores.rows.iter().collect();
     for detector in scores.distinct(&all, "detector") {
         let [found, _, f1] = line_score(&scores, &detector, "silhouettes");
         let [all, precision, every] = line_score(&scores, &detector, "every line");
+        let rows = scores.matching(&[("detector", &detector), ("truth", "every line")]);
+        let sum = |name| scores.numbers(&rows, name).iter().sum::<f64>();
+        let wrong = sum("wrong") / sum("drawn").max(1.0);
         let cost = costs_of.iter().find(|c| c.name == detector);
-        let (ms, ratio) = cost.map_or((f64::NAN, f64::NAN), |c| (c.milliseconds, c.ratio[1]));
+        let cost = cost.map_or("- | -".into(), |c| {
+            format!("{:.2} | {:.2}", c.milliseconds, c.ratio[1])
+        });
         let _ = writeln!(
             out,
-            "| {detector} | {:.1} % | {f1:.3} | {:.1} % | {:.1} % | {every:.3} | {ms:.2} | {ratio:.2} |",
+            "| {detector} | {:.1} % | {f1:.3} | {:.1} % | {:.1} % | {:.2} % | {every:.3} | {cost} |",
             100.0 * found,
             100.0 * all,
             100.0 * precision,
+            100.0 * wrong,
         );
     }
+    by_scene(out, folder, &scores)?;
     out.push_str("\n![F1 against time](lines.svg)\n\n");
     models(out, folder)?;
     out.push_str(
@@ -179,6 +191,47 @@ pub fn lines(out: &mut String, folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
+/// Scores of all outlines, and fragments, by scene.
+fn by_scene(out: &mut String, folder: &Path, scores: &Table) -> Result<(), String> {
+    let whole = load(folder, "line_fragments")?;
+    out.push_str(
+        "\nAll outlines by scene. False pixels lie more than two pixels from a true line, wrong \
+         ones also from any faint one; both are fractions of the picture. Fragments are parts of \
+         at most six pixels, for each 100 pixels of lines that are 1 pixel wide, in a picture of \
+         twice the width and height.\n\n\
+         | | lines found | same rule, 1x | precision | F1 | false pixels | wrong pixels | fragments |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    for row in &whole.rows {
+        let scene = whole.cell(row, "scene");
+        let of = |detector| {
+            let wanted = [
+                ("scene", scene),
+                ("detector", detector),
+                ("truth", "every line"),
+            ];
+            let rows = scores.matching(&wanted);
+            move |name| scores.numbers(&rows, name).iter().sum::<f64>()
+        };
+        let (ours, same) = (of("all outlines"), of(SAME_RULE));
+        let recall = ours("found") / ours("true").max(1.0);
+        let precision = ours("right") / ours("drawn").max(1.0);
+        let of_picture = |count: f64| 100.0 * count / ours("pixels").max(1.0);
+        let _ = writeln!(
+            out,
+            "| {scene} | {:.1} % | {:.1} % | {:.1} % | {:.3} | {:.3} % | {:.3} % | {:.2} |",
+            100.0 * recall,
+            100.0 * same("found") / same("true").max(1.0),
+            100.0 * precision,
+            2.0 * recall * precision / (recall + precision).max(1e-9),
+            of_picture(ours("drawn") - ours("right")),
+            of_picture(ours("wrong")),
+            100.0 * whole.number(row, "fragments") / whole.number(row, "line").max(1.0),
+        );
+    }
+    Ok(())
+}
+
 /// Scores of the outlines on models that turn, by model and distance.
 fn models(out: &mut String, folder: &Path) -> Result<(), String> {
     if !folder.join("model_scores.csv").exists() {
@@ -192,10 +245,12 @@ fn models(out: &mut String, folder: &Path) -> Result<(), String> {
         out,
         "### Lines of models\n\nAll outlines of six generated models, each turned through \
          {frames} frames, from close and from afar. False pixels are those with a line that lie \
-         more than two pixels from a true one, as a fraction of the picture. Fragments are parts \
+         more than two pixels from a true one, wrong pixels those that also lie that far from \
+         any faint line; both are fractions of the picture. Fragments are parts \
          of at most six pixels, for each 100 pixels of lines that are 1 pixel wide, in a picture \
          four times as wide and high.\n\n\
-         | | lines found | precision | F1 | false pixels | fragments |\n|---|---|---|---|---|---|"
+         | | lines found | precision | F1 | false pixels | wrong pixels | fragments |\n\
+         |---|---|---|---|---|---|---|"
     );
     for model in scores.distinct(&all, "model") {
         for distance in scores.distinct(&all, "distance") {
@@ -205,11 +260,12 @@ fn models(out: &mut String, folder: &Path) -> Result<(), String> {
             let precision = sum("right") / sum("drawn").max(1.0);
             let _ = writeln!(
                 out,
-                "| {model}, {distance} | {:.1} % | {:.1} % | {:.3} | {:.3} % | {:.2} |",
+                "| {model}, {distance} | {:.1} % | {:.1} % | {:.3} | {:.3} % | {:.3} % | {:.2} |",
                 100.0 * recall,
                 100.0 * precision,
                 2.0 * recall * precision / (recall + precision).max(1e-9),
                 100.0 * sum("false") / sum("pixels").max(1.0),
+                100.0 * sum("wrong") / sum("pixels").max(1.0),
                 100.0 * sum("fragments") / sum("line").max(1.0),
             );
         }

@@ -85,12 +85,14 @@ pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
     let _ = writeln!(
         out,
         "## 3. What is left out\n\nStyles from none to everything, and for each: the number of \
-         passes that ran, of eight, the engine's prepasses included; the bindings of the fused \
+         passes that ran, of nine, the engine's prepasses included; the bindings of the fused \
          pass; the texels and bytes that it fetches per pixel, counted in the shader on the \
-         teapot at 160x90; the time of this crate's passes at {}, also in percent of \
-         `everything`.\n\n\
-         | style | passes | bindings | texels, mean (most) | bytes | ms | blits | of everything |\n\
-         |---|---|---|---|---|---|---|---|",
+         teapot at 160x90; the texels that the passes of the lines fetch per pixel of the \
+         picture, to search blocks, find cracks, search columns and draw ink, and their bytes; \
+         the time of this crate's passes at {}, also in percent of `everything`. In a larger \
+         picture lines cover less of it: finding and drawing fetch less.\n\n\
+         | style | passes | bindings | texels, mean (most) | bytes | texels of lines | bytes | ms | blits | of everything |\n\
+         |---|---|---|---|---|---|---|---|---|---|",
         size(&times)
     );
     let whole = costs
@@ -103,13 +105,15 @@ pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
         let (ms, ratio) = cost.map_or((f64::NAN, f64::NAN), |c| (c.milliseconds, c.ratio[1]));
         let _ = writeln!(
             out,
-            "| {} | {} | {} | {} ({}) | {} | {:.2} | {:.2} | {:.0} % |",
+            "| {} | {} | {} | {} ({}) | {} | {} | {} | {:.2} | {:.2} | {:.0} % |",
             cell("style"),
             cell("passes"),
             cell("bindings"),
             cell("fetches"),
             cell("most"),
             cell("bytes"),
+            ["walk", "find", "columns", "draw"].map(cell).join(" + "),
+            cell("line_bytes"),
             unsigned_zero(ms, 2),
             unsigned_zero(ratio, 2),
             unsigned_zero(100.0 * ms / whole, 0),

@@ -1,0 +1,235 @@
+//! Counts the texels that the passes of the lines fetch: see [`work`](crate::work).
+//!
+//! In the pass that searches blocks, every invocation fetches the same number: it is
+//! counted in the composed shader. The other passes are counted while they run. A pass
+//! returns its count instead of its result, and the passes after it hand the count on to
+//! the picture.
+
+use bevy::{
+    prelude::*,
+    render::{
+        RenderApp,
+        render_resource::{PipelineCache, PipelineDescriptor},
+        sync_world::RenderEntity,
+    },
+    shader::ShaderDefVal,
+};
+use bevy_comics::ComicStyle;
+use wgpu::naga::{Block, Expression, Function, Module, Statement};
+
+use crate::{
+    ROOT, read_back, wgsl,
+    work::{FUSED, RESULT, counting, edit_shaders, teapot},
+};
+
+/// Texels that the passes of the lines fetch per pixel of the picture, mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LineWork {
+    /// By the search for blocks with cracks.
+    pub walk: f64,
+    pub find: f64,
+    pub columns: f64,
+    pub draw: f64,
+    /// Bytes that they fetch together.
+    pub bytes: f64,
+}
+
+const FIND: &str = "bevy_comics/lines/find.wgsl";
+const COLUMNS: &str = "bevy_comics/lines/columns.wgsl";
+const DRAW: &str = "bevy_comics/lines/draw.wgsl";
+const READ: &str = "bevy_comics/lines/read.wgsl";
+/// The files of the counted passes, and of the functions that they read textures with.
+const FILES: [&str; 8] = [
+    "bevy_comics/depth/normal.wgsl",
+    "bevy_comics/depth/view.wgsl",
+    FUSED,
+    COLUMNS,
+    DRAW,
+    FIND,
+    READ,
+    "bevy_comics/objects/objects.wgsl",
+];
+
+/// The end of each pass: how its result is returned, how a count is returned instead,
+/// and how the count of an earlier pass is handed on.
+struct End {
+    file: &'static str,
+    result: &'static str,
+    counted: &'static str,
+    handed: &'static str,
+}
+
+const ENDS: [End; 4] = [
+    End {
+        file: FIND,
+        result: "return cracks(find_uniform.settings, at, excess, folds, ridge).xy;",
+        counted: "return vec2(packed_count(), 0u);",
+        handed: "",
+    },
+    End {
+        file: COLUMNS,
+        result: "return vec2(best.packed, best.places.x | (best.places.y << 16u));",
+        counted: "return vec2(packed_count(), 0u);",
+        handed: "return vec2(textureLoad(crack_texture, p, 0).x, 0u);",
+    },
+    End {
+        file: DRAW,
+        result: "return vec4(encode_ink(ink.kinds), slot);",
+        counted: "return unpack4x8unorm(packed_count());",
+        handed: "
+#ifdef COLUMNS
+    return unpack4x8unorm(textureLoad(column_texture, centre, 0).x);
+#else
+    return unpack4x8unorm(textureLoad(crack_texture, centre, 0).x);
+#endif
+",
+    },
+    End {
+        file: FUSED,
+        result: RESULT,
+        counted: "",
+        handed: "
+#ifdef LINES
+    return line_count(pixel);
+#else
+    return vec4(0.0);
+#endif
+",
+    },
+];
+
+/// The text of a file while the pass in `counted` is counted.
+fn edited(counted: &str, path: &str, text: &str) -> String {
+    if path == READ {
+        return text.replace(
+            "// Ink at a position",
+            "fn line_count(pixel: vec2<i32>) -> vec4<f32> {
+                return textureLoad(line_texture, inside_viewport(pixel) - view.viewport.xy, 0);
+            }\n\n// Ink at a position",
+        );
+    }
+    let Some(end) = ENDS.iter().find(|end| end.file == path) else {
+        return counting(path, text);
+    };
+    assert!(text.contains(end.result), "the end of {path} has moved");
+    if path == FUSED {
+        let import = "#ifdef LINES\n#import bevy_comics::lines::read::line_count\n#endif\n";
+        return import.to_owned() + &text.replace(end.result, end.handed);
+    }
+    let place = |file: &str| ENDS.iter().position(|end| end.file == file);
+    if path == counted {
+        counting(path, text).replace(end.result, end.counted)
+    } else if place(path) > place(counted) {
+        text.replace(end.result, end.handed)
+    } else {
+        // An earlier pass: its result is needed.
+        text.to_owned()
+    }
+}
+
+/// (texels, bytes) per pixel that one pass fetches.
+fn count_pass(style: &ComicStyle, file: &str) -> [f64; 2] {
+    let mut studio = teapot();
+    let files = edit_shaders(studio.headless.app.world_mut(), &FILES, |path, text| {
+        edited(file, path, text)
+    });
+    assert_eq!(files, FILES, "the files of the passes");
+    studio.shoot(Some(style));
+    studio.headless.step(4);
+    let world = studio.headless.app.world();
+    let view = world.get::<RenderEntity>(studio.camera);
+    let view = view.expect("extracted").id();
+    let render_world = studio.headless.app.sub_app(RenderApp).world();
+    let (_, counted) = read_back::pictures(render_world, view).expect("a picture");
+    let mut sums = [0.0; 2];
+    for p in &counted.pixels {
+        let byte = |i: usize| f64::from((p[i] * 255.0).round());
+        sums[0] += byte(0) + 256.0 * byte(1);
+        sums[1] += byte(2) + 256.0 * byte(3);
+    }
+    sums.map(|sum| sum / counted.pixels.len() as f64)
+}
+
+/// Texels that an execution of these statements loads. Loops run `rounds` times.
+fn loads(module: &Module, function: &Function, block: &Block, rounds: usize) -> usize {
+    let within = |block: &Block| loads(module, function, block, rounds);
+    block
+        .iter()
+        .map(|statement| match statement {
+            Statement::Emit(range) => range
+                .clone()
+                .filter(|e| matches!(function.expressions[*e], Expression::ImageLoad { .. }))
+                .count(),
+            Statement::Call { function, .. } => {
+                let called = &module.functions[*function];
+                loads(module, called, &called.body, rounds)
+            }
+            Statement::Block(block) => within(block),
+            Statement::If { accept, reject, .. } => within(accept).max(within(reject)),
+            Statement::Loop {
+                body, continuing, ..
+            } => rounds * (within(body) + within(continuing)),
+            _ => 0,
+        })
+        .sum()
+}
+
+/// Texels per pixel that the search for blocks fetches, with these definitions.
+fn count_walk(definitions: &[ShaderDefVal], size: UVec2) -> f64 {
+    let definitions: Vec<wgsl::Definition> = definitions
+        .iter()
+        .filter_map(|definition| match definition {
+            ShaderDefVal::Bool(name, on) => on.then_some((name.as_str(), None)),
+            ShaderDefVal::UInt(name, value) => Some((name.as_str(), Some(*value))),
+            ShaderDefVal::Int(..) => None,
+        })
+        .collect();
+    let text = std::fs::read_to_string(format!("{ROOT}/src/lines/walk.wgsl"));
+    let module = wgsl::module_with(&text.expect("the shader"), &definitions).expect("it compiles");
+    let cracks = definitions.iter().any(|(name, _)| *name == "CRACKS");
+    // Rows of a block, and those above and below that are read.
+    let rows = if cracks { 32 + 5 } else { 32 + 2 };
+    let walk = &module.entry_points[0].function;
+    let blocks = size.x.div_ceil(4) * size.y.div_ceil(32);
+    let texels = loads(&module, walk, &walk.body, rows) * blocks as usize;
+    texels as f64 / f64::from(size.x * size.y)
+}
+
+/// Counts the work of the lines of a style. `cache`: the pipelines of an app that draws
+/// it in a picture of `size`.
+pub fn count(style: &ComicStyle, cache: &PipelineCache, size: UVec2) -> LineWork {
+    let mut walk = 0.0;
+    let mut passes = [false; 3];
+    for pipeline in cache.pipelines() {
+        match &pipeline.descriptor {
+            PipelineDescriptor::ComputePipelineDescriptor(d) => {
+                if d.label.as_deref() == Some("comics_walk") {
+                    walk = count_walk(&d.shader_defs, size);
+                }
+            }
+            PipelineDescriptor::RenderPipelineDescriptor(d) => {
+                let labels = [
+                    "comics_find_lines",
+                    "comics_line_columns",
+                    "comics_draw_lines",
+                ];
+                for (there, label) in passes.iter_mut().zip(labels) {
+                    *there |= d.label.as_deref() == Some(label);
+                }
+            }
+        }
+    }
+    let mut fetched = [[0.0; 2]; 3];
+    for ((fetched, there), file) in fetched.iter_mut().zip(passes).zip([FIND, COLUMNS, DRAW]) {
+        if there {
+            *fetched = count_pass(style, file);
+        }
+    }
+    LineWork {
+        walk,
+        find: fetched[0][0],
+        columns: fetched[1][0],
+        draw: fetched[2][0],
+        bytes: 4.0 * walk + fetched.iter().map(|f| f[1]).sum::<f64>(),
+    }
+}

@@ -1,0 +1,57 @@
+//! On a device without storage textures, lines are drawn without compute passes: slower,
+//! and the same.
+
+use bevy::{prelude::*, render::view::Msaa};
+use bevy_comics::{
+    ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Contours, LeftOut, Outlines, Sketch,
+    StageOutcome,
+};
+use bevy_comics_testkit::{
+    device::gpu, headless::HeadlessOptions, scenes::BuiltIn, studio::Studio,
+};
+
+fn studio(by_fragments: bool) -> Studio {
+    let limits = by_fragments.then(|| wgpu::Limits {
+        max_storage_textures_per_shader_stage: 0,
+        ..gpu().device.limits()
+    });
+    let options = HeadlessOptions {
+        size: UVec2::new(160, 90),
+        limits,
+        ..default()
+    };
+    Studio::with_plugins(BuiltIn::Teapot, options, Msaa::Off, ComicsPlugin)
+}
+
+#[test]
+fn lines_without_compute_passes_are_the_same() {
+    let outlines = |width: f32| ComicStyle::new().with(Outlines { width, ..default() });
+    let styles = [
+        ("outlines", outlines(2.0)),
+        ("wide outlines", outlines(3.0)),
+        ("wider outlines", outlines(16.0)),
+        ("sketch", ComicStyle::new().with(Sketch::default())),
+        ("contours", ComicStyle::new().with(Contours::default())),
+    ];
+    let [mut with, mut without] = [false, true].map(studio);
+    let plain = with.shoot(None);
+    for (name, style) in &styles {
+        let wanted = with.shoot(Some(style));
+        let picture = without.shoot(Some(style));
+        let world = without.headless.app.world();
+        let diagnostics = world.resource::<ComicsDiagnostics>();
+        assert_eq!(
+            diagnostics.cameras[&without.camera].outcome(ComicsStage::SearchTiles),
+            Some(StageOutcome::LeftOut(LeftOut::NoComputeShaders)),
+            "{name}"
+        );
+        let far: Vec<u8> = (wanted.as_raw().iter().zip(picture.as_raw()))
+            .map(|(a, b)| a.abs_diff(*b))
+            .filter(|d| *d > 1)
+            .collect();
+        let inked = (plain.as_raw().iter().zip(wanted.as_raw())).filter(|(a, b)| a != b);
+        assert!(inked.count() > 500, "{name} draws nothing");
+        // Lines blended over the picture may round differently.
+        assert!(far.is_empty(), "{name}: {} values differ", far.len());
+    }
+}
