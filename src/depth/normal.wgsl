@@ -7,7 +7,7 @@
 // (unit normal, 1) of a texel; w is 0 where there is no normal. Stored normals are
 // interpolated between vertices, so they are shorter than 1: the squared length is 0.5
 // halfway between two vertices at 90 degrees. Below 0.05, ten bits per component say
-// little about the direction. That of a cleared texel (the sky) is 3.
+// little about the direction. The squared length of a cleared texel (the sky) is 3.
 fn decode_normal(texel: vec3<f32>) -> vec4<f32> {
     let n = texel * 2.0 - 1.0;
     let squared = dot(n, n);

@@ -119,7 +119,8 @@ pub enum LeftOut {
     FixedRange,
     /// The view has one sample per pixel.
     SingleSampled,
-    /// The device has no compute shaders; all pixels are drawn.
+    /// The device has no compute shaders, or too few storage textures or buffers for
+    /// them; all pixels are drawn.
     NoComputeShaders,
     /// The view has no depth prepass.
     NoDepthPrepass,
@@ -152,7 +153,9 @@ impl fmt::Display for LeftOut {
             Self::NoSuchLines => "no such lines are requested",
             Self::FixedRange => "the range is fixed",
             Self::SingleSampled => "the view has one sample per pixel",
-            Self::NoComputeShaders => "the device has no compute shaders",
+            Self::NoComputeShaders => {
+                "the device lacks compute shaders or storage textures and buffers"
+            }
             Self::NoDepthPrepass => "the view has no depth prepass",
             Self::NoNormalPrepass => "the view has no normal prepass",
             Self::Replaced => "another effect replaces it",

@@ -35,7 +35,7 @@ use crate::{
     },
     lines::{
         LineSettings, MapJumps,
-        request::{LinePasses, LinePipelines, LineRequest},
+        request::{FindPass, LinePasses, LinePipelines, LineRequest},
     },
     objects::IdRequest,
 };
@@ -322,7 +322,11 @@ impl Requests {
         let lines = self.lines.as_ref().is_some_and(|(_, passes)| {
             let cracks = passes.cracks.is_some_and(|cracks| {
                 let columns = cracks.columns.is_some_and(render);
-                columns || render(cracks.find) || render(cracks.draw)
+                let find = match cracks.find {
+                    FindPass::Cells(id) => compute(id),
+                    FindPass::Pixels(id) => render(id),
+                };
+                columns || find || render(cracks.draw)
             });
             let resolve = passes.resolve.is_some_and(|(_, id)| render(id));
             let search = passes

@@ -19,7 +19,8 @@ struct ColumnUniform {
 @group(0) @binding(1) var<uniform> column_uniform: ColumnUniform;
 @group(0) @binding(11) var crack_texture: texture_2d<u32>;
 #ifdef BLOCKS
-// For each block of 4 x 32 pixels, one bit for each row with a crack: see walk.wgsl.
+// For each block of 4 x 32 pixels, one bit for each row that may have a
+// crack or jump: see walk.wgsl.
 @group(0) @binding(12) var block_texture: texture_2d<u32>;
 #endif
 

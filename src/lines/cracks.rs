@@ -19,10 +19,16 @@ use super::{
 /// A pass that is ready to be recorded: its pipeline and bindings.
 pub(super) type Ready<'a, P> = (&'a P, BindGroup);
 
+/// The pass that finds cracks, ready to be recorded.
+pub(super) enum ReadyFind<'a> {
+    Cells(&'a TileLists, Ready<'a, ComputePipeline>),
+    Pixels(Ready<'a, RenderPipeline>),
+}
+
 /// The passes of the lines along cracks, ready to be recorded.
 pub(super) struct ReadyCracks<'a> {
     pub tiles: Option<&'a TileLists>,
-    pub find: Ready<'a, RenderPipeline>,
+    pub find: ReadyFind<'a>,
     pub columns: Option<(Ready<'a, RenderPipeline>, &'a CachedTexture)>,
     pub ink: Ready<'a, RenderPipeline>,
     pub texture: &'a CachedTexture,
@@ -36,7 +42,24 @@ impl ReadyCracks<'_> {
             color_attachments: &[Some(cleared(self.texture))],
             ..Default::default()
         });
-        self.draw(&mut pass, &self.find, TileList::Found);
+        match &self.find {
+            ReadyFind::Pixels((pipeline, group)) => {
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, group, &[]);
+                pass.draw(0..3, 0..1);
+            }
+            // The pass above clears the texture.
+            ReadyFind::Cells(lists, (pipeline, group)) => {
+                drop(pass);
+                let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+                    label: Some("comics_find_in_cells"),
+                    timestamp_writes: None,
+                });
+                pass.set_pipeline(pipeline);
+                pass.set_bind_group(0, group, &[]);
+                lists.dispatch_cells(&mut pass);
+            }
+        }
     }
 
     /// Finds the best crack of each pixel's column.

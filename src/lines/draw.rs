@@ -21,10 +21,10 @@ use bevy::{
 
 use super::{
     ViewLines,
-    cracks::{Ready, ReadyCracks, search_tiles},
+    cracks::{Ready, ReadyCracks, ReadyFind, search_tiles},
     key::LineKey,
     prepare::Cracks,
-    request::{CrackPasses, LinePasses, LineRequest},
+    request::{CrackPasses, FindPass, LinePasses, LineRequest},
     resolve::Resolved,
 };
 use crate::{
@@ -276,9 +276,8 @@ impl Inputs<'_> {
         cracks: &'a Cracks,
     ) -> Result<ReadyCracks<'a>, LeftOut> {
         let key = self.parts.0.1.key.for_find();
-        let entries = self.entries(&key, key.creases)?;
-        let find = self.group(&key.find_layout(), &entries);
         let (_, _, lines) = self.parts.0;
+        let find = self.find_pass(passes.find, &key, cracks)?;
         let columns = match (passes.columns, &cracks.columns) {
             (Some(id), Some(columns)) => {
                 let mut entries = self.searched((11, &cracks.texture))?;
@@ -292,10 +291,36 @@ impl Inputs<'_> {
         Ok(ReadyCracks {
             tiles: lines.tiles.as_ref().map(|tiles| &tiles.lists),
             columns,
-            find: (self.pipeline(passes.find)?, find),
+            find,
             ink: (self.pipeline(passes.draw)?, self.draw_group(cracks)?),
             texture: &cracks.texture,
         })
+    }
+
+    /// The pass that finds cracks.
+    fn find_pass(
+        &self,
+        pass: FindPass,
+        key: &LineKey,
+        cracks: &Cracks,
+    ) -> Result<ReadyFind<'_>, LeftOut> {
+        let mut entries = self.entries(key, key.creases)?;
+        match pass {
+            FindPass::Pixels(id) => {
+                let group = self.group(&key.find_layout(), &entries);
+                Ok(ReadyFind::Pixels((self.pipeline(id)?, group)))
+            }
+            FindPass::Cells(id) => {
+                let (_, _, lines) = self.parts.0;
+                let lists = &lines.tiles.as_ref().ok_or(NOT_READY)?.lists;
+                let texture = &cracks.texture.default_view;
+                entries.extend(lists.cell_entries());
+                entries.push(entry(18, texture.into_binding()));
+                let group = self.group(&key.cells_layout(), &entries);
+                let pipeline = self.cache.get_compute_pipeline(id).ok_or(NOT_READY)?;
+                Ok(ReadyFind::Cells(lists, (pipeline, group)))
+            }
+        }
     }
 
     /// The passes that look for blocks with cracks and list the tiles near them, if there
@@ -309,6 +334,9 @@ impl Inputs<'_> {
         let key = passes.key.for_walk();
         let mut walked = self.entries(&key, key.creases)?;
         walked.push(entry(10, (&tiles.blocks.default_view).into_binding()));
+        if key.has_cracks() {
+            walked.extend(tiles.lists.cell_entries());
+        }
         let walked = self.group(&key.walk_layout(), &walked);
         let mut listed = self.searched((12, &tiles.blocks))?;
         listed.extend(tiles.lists.entries());

@@ -6,8 +6,8 @@ use bevy::{
         BindGroupLayoutDescriptor, BindGroupLayoutEntry, ShaderStages, ShaderType,
         StorageTextureAccess, TextureFormat, TextureSampleType,
         binding_types::{
-            storage_buffer_sized, texture_2d, texture_storage_2d, uniform_buffer,
-            uniform_buffer_sized,
+            storage_buffer_read_only_sized, storage_buffer_sized, texture_2d, texture_storage_2d,
+            uniform_buffer, uniform_buffer_sized,
         },
     },
     shader::ShaderDefVal,
@@ -184,9 +184,15 @@ impl LineKey {
     }
 
     pub fn find_defs(&self) -> Vec<ShaderDefVal> {
+        self.crack_defs(self.silhouettes || self.creases)
+    }
+
+    /// `excess`: the excess of steps in depth is computed. It excludes creases too.
+    fn crack_defs(&self, excess: bool) -> Vec<ShaderDefVal> {
         self.common()
             .chain(names([
                 (true, "DEPTH"),
+                (excess, "EXCESS"),
                 (self.silhouettes, "SILHOUETTES"),
                 (self.creases, "CREASES"),
                 (self.creases, "NORMALS"),
@@ -204,7 +210,7 @@ impl LineKey {
         ];
         let jumps = self.jumps.then_some(jumps);
         let cracks = self.has_cracks().then(|| "CRACKS".into());
-        self.find_defs()
+        self.crack_defs(self.silhouettes)
             .into_iter()
             .chain(cracks)
             .chain(jumps.into_iter().flatten())
@@ -264,7 +270,24 @@ impl LineKey {
         let mut entries = self.inputs(self.creases, ShaderStages::COMPUTE);
         let blocks = texture_storage_2d(BLOCK_FORMAT, StorageTextureAccess::WriteOnly);
         entries.push(blocks.build(10, ShaderStages::COMPUTE));
+        if self.has_cracks() {
+            for binding in [16, 17] {
+                let cells = storage_buffer_sized(false, None);
+                entries.push(cells.build(binding, ShaderStages::COMPUTE));
+            }
+        }
         BindGroupLayoutDescriptor::new("comics_walk", &entries)
+    }
+
+    pub fn cells_layout(&self) -> BindGroupLayoutDescriptor {
+        let mut entries = self.inputs(self.creases, ShaderStages::COMPUTE);
+        for binding in [16, 17] {
+            let cells = storage_buffer_read_only_sized(false, None);
+            entries.push(cells.build(binding, ShaderStages::COMPUTE));
+        }
+        let cracks = texture_storage_2d(CRACK_FORMAT, StorageTextureAccess::WriteOnly);
+        entries.push(cracks.build(18, ShaderStages::COMPUTE));
+        BindGroupLayoutDescriptor::new("comics_find_in_cells", &entries)
     }
 
     pub fn find_layout(&self) -> BindGroupLayoutDescriptor {

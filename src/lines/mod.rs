@@ -49,9 +49,12 @@ use resolve::ResolvePipeline;
 /// Finds the lines of the views that request them.
 pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "edge.wgsl");
+    load_shader_library!(app, "rows.wgsl");
+    load_shader_library!(app, "crack.wgsl");
     load_shader_library!(app, "jumps.wgsl");
     load_shader_library!(app, "read.wgsl");
     embedded_asset!(app, "walk.wgsl");
+    embedded_asset!(app, "cells.wgsl");
     embedded_asset!(app, "tiles.wgsl");
     embedded_asset!(app, "tile.wgsl");
     embedded_asset!(app, "resolve.wgsl");

@@ -24,6 +24,7 @@ use super::{
 pub(crate) struct LineShaders {
     fullscreen: FullscreenShader,
     walk: Handle<Shader>,
+    cells: Handle<Shader>,
     tiles: Handle<Shader>,
     tile: Handle<Shader>,
     find: Handle<Shader>,
@@ -37,6 +38,7 @@ impl LineShaders {
         Self {
             fullscreen: fullscreen.clone(),
             walk: load_embedded_asset!(assets, "walk.wgsl"),
+            cells: load_embedded_asset!(assets, "cells.wgsl"),
             tiles: load_embedded_asset!(assets, "tiles.wgsl"),
             tile: tile_shader(assets),
             find: load_embedded_asset!(assets, "find.wgsl"),
@@ -50,10 +52,12 @@ impl LineShaders {
 /// The passes that are compute passes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum SearchPass {
-    /// Looks for blocks with cracks or jumps.
+    /// Looks for blocks with cracks or jumps, and lists the cells with cracks.
     Walk(LineKey),
     /// Lists the tiles near these blocks.
     Tiles,
+    /// Finds the cracks in the cells.
+    Cells(LineKey),
 }
 
 impl SpecializedComputePipeline for LineShaders {
@@ -63,10 +67,12 @@ impl SpecializedComputePipeline for LineShaders {
         let (label, entry, shader) = match pass {
             SearchPass::Walk(_) => ("comics_walk", "walk", &self.walk),
             SearchPass::Tiles => ("comics_list_tiles", "list_tiles", &self.tiles),
+            SearchPass::Cells(_) => ("comics_find_in_cells", "find_in_cells", &self.cells),
         };
         let (layout, shader_defs) = match pass {
             SearchPass::Walk(key) => (key.walk_layout(), key.walk_defs()),
             SearchPass::Tiles => (LineKey::tiles_layout(), vec![]),
+            SearchPass::Cells(key) => (key.cells_layout(), key.find_defs()),
         };
         ComputePipelineDescriptor {
             label: Some(label.into()),

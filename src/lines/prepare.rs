@@ -22,7 +22,7 @@ use bevy::{
 
 use super::{
     key::{BLOCK, BLOCK_FORMAT, CRACK_FORMAT, INK_FORMAT},
-    request::{CrackPasses, LinePassUniform, LinePasses, LineRequest},
+    request::{CrackPasses, FindPass, LinePassUniform, LinePasses, LineRequest},
     resolve::Resolved,
     tiles::TileLists,
 };
@@ -127,8 +127,12 @@ fn cracks(
 ) -> Cracks {
     let mut new = |label, size, format| texture((textures, device), label, size, format);
     let drawn = (CRACK_FORMAT, TextureUsages::RENDER_ATTACHMENT);
+    let found = match passes.find {
+        FindPass::Cells(_) => (CRACK_FORMAT, drawn.1 | TextureUsages::STORAGE_BINDING),
+        FindPass::Pixels(_) => drawn,
+    };
     Cracks {
-        texture: new("comics_cracks", rect.zw(), drawn),
+        texture: new("comics_cracks", rect.zw(), found),
         columns: passes
             .columns
             .map(|_| new("comics_line_columns", rect.zw(), drawn)),

@@ -10,14 +10,14 @@ use bevy::{
     render::{
         render_resource::{
             CachedComputePipelineId, CachedRenderPipelineId, PipelineCache, ShaderType,
-            SpecializedComputePipelines, SpecializedRenderPipelines,
+            SpecializedComputePipelines, SpecializedRenderPipelines, TextureUsages,
         },
-        renderer::RenderDevice,
+        renderer::{RenderAdapter, RenderDevice},
     },
 };
 
 use super::{
-    key::{LineKey, Search},
+    key::{CRACK_FORMAT, LineKey, Search},
     pipelines::{LinePass, LineShaders, SearchPass},
     resolve::{ResolveKey, ResolvePipeline},
     settings::{LineSettings, LinesUniform, MapJumps},
@@ -139,8 +139,8 @@ pub(crate) struct LinePasses {
     pub key: LineKey,
     /// Picks one sample of every pixel, if the view is multisampled.
     pub resolve: Option<(ResolveKey, CachedRenderPipelineId)>,
-    /// Looks for blocks with cracks or jumps, and lists the tiles near them; `None`
-    /// without compute shaders.
+    /// Looks for blocks with cracks or jumps, and lists their cells and the tiles near
+    /// them. `None`: all pixels are drawn.
     pub search: Option<[CachedComputePipelineId; 2]>,
     /// Finds and draws the lines along cracks, if there are any.
     pub cracks: Option<CrackPasses>,
@@ -157,9 +157,10 @@ impl LinePasses {
     /// The last list of tiles that a pass draws.
     pub fn last_list(&self) -> TileList {
         match self.cracks {
-            None => TileList::Inked,
-            Some(CrackPasses { columns: None, .. }) => TileList::Found,
-            Some(_) => TileList::Columns,
+            Some(CrackPasses {
+                columns: Some(_), ..
+            }) => TileList::Columns,
+            _ => TileList::Inked,
         }
     }
 
@@ -169,10 +170,19 @@ impl LinePasses {
     }
 }
 
+/// The pipeline that finds cracks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum FindPass {
+    /// In the cells that the search for blocks has listed.
+    Cells(CachedComputePipelineId),
+    /// In all pixels: without compute shaders.
+    Pixels(CachedRenderPipelineId),
+}
+
 /// The pipelines of the lines along cracks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CrackPasses {
-    pub find: CachedRenderPipelineId,
+    pub find: FindPass,
     /// `None` if only neighbouring pixels are searched.
     pub columns: Option<CachedRenderPipelineId>,
     pub draw: CachedRenderPipelineId,
@@ -187,16 +197,29 @@ pub(crate) struct LinePipelines<'w> {
     resolves: ResMut<'w, SpecializedRenderPipelines<ResolvePipeline>>,
     resolve: Res<'w, ResolvePipeline>,
     device: Res<'w, RenderDevice>,
+    adapter: Res<'w, RenderAdapter>,
 }
 
 impl LinePipelines<'_> {
+    /// Whether the device has what `walk.wgsl`, `tiles.wgsl` and `cells.wgsl` bind.
+    fn has_compute(&self, request: &LineRequest) -> bool {
+        let limits = self.device.limits();
+        // The cells and their number, or the tiles and theirs, and the styles of objects.
+        let buffers = 2 + u32::from(request.object_styles);
+        let cracks = self.adapter.get_texture_format_features(CRACK_FORMAT);
+        limits.max_compute_workgroup_size_x > 0
+            && limits.max_storage_textures_per_shader_stage > 0
+            && limits.max_storage_buffers_per_shader_stage >= buffers
+            && cracks
+                .allowed_usages
+                .contains(TextureUsages::STORAGE_BINDING)
+    }
+
     /// The pipelines for a request; new ones are queued for compilation.
     pub fn get(&mut self, cache: &PipelineCache, request: &LineRequest) -> LinePasses {
-        let limits = self.device.limits();
-        let has_compute = limits.max_compute_workgroup_size_x > 0
-            && limits.max_storage_textures_per_shader_stage > 0
-            && limits.max_storage_buffers_per_shader_stage > 1;
+        let has_compute = self.has_compute(request);
         let key = LineKey::new(request, !has_compute);
+        let computes = &mut self.computes;
         let mut render = |pass| {
             let part = match pass {
                 LinePass::Find => key.for_find(),
@@ -213,13 +236,17 @@ impl LinePipelines<'_> {
         });
         let faithful = key.has_faithful().then(|| render(LinePass::Faithful));
         let cracks = key.has_cracks().then(|| CrackPasses {
-            find: render(LinePass::Find),
+            find: if has_compute {
+                let cells = SearchPass::Cells(key.for_find());
+                FindPass::Cells(computes.specialize(cache, &self.shaders, cells))
+            } else {
+                FindPass::Pixels(render(LinePass::Find))
+            },
             columns: (key.search == Search::Columns).then(|| render(LinePass::Columns)),
             draw: render(LinePass::Draw),
         });
         let searches = has_compute && (key.has_cracks() || key.jumps);
         let search = searches.then(|| {
-            let computes = &mut self.computes;
             let passes = [SearchPass::Walk(key.for_walk()), SearchPass::Tiles];
             passes.map(|pass| computes.specialize(cache, &self.shaders, pass))
         });

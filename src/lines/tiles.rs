@@ -1,5 +1,5 @@
-//! The tiles that the passes after `walk.wgsl` draw: those with cracks nearby, which
-//! `tiles.wgsl` lists.
+//! Where the passes after `walk.wgsl` run: the cells that it has listed, and the tiles with
+//! cracks nearby, which `tiles.wgsl` lists.
 
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
@@ -25,6 +25,9 @@ const WORKGROUP: u32 = 8;
 const ARGUMENTS: u64 = 16;
 /// Bytes of a tile.
 const RECTANGLE: u64 = 16;
+/// Bytes of the cells of a tile: 4 across and 2 down, 4 bytes each. The walk lists none
+/// below the grid.
+const CELLS: u64 = 4 * 2 * 4;
 
 /// A list of tiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,14 +35,12 @@ pub(crate) enum TileList {
     /// Tiles of the viewport that may have ink of lines, or of an effect at jumps of the
     /// depth map.
     Inked,
-    /// Tiles of the grid with cracks.
-    Found,
     /// Tiles of the grid that `columns.wgsl` draws.
     Columns,
 }
 
 /// Number of lists.
-const LISTS: u32 = 3;
+const LISTS: u32 = 2;
 
 /// The lists of a view.
 pub(crate) struct TileLists {
@@ -49,6 +50,9 @@ pub(crate) struct TileLists {
     tiles: Buffer,
     /// Number of tiles that a list has room for.
     room: u32,
+    /// The arguments of an indirect dispatch for the cells, and their number.
+    cell_counts: Buffer,
+    cells: Buffer,
 }
 
 /// Number of tiles across and down the larger of the grid and the viewport.
@@ -84,8 +88,16 @@ impl TileLists {
                     arguments: buffer("comics_tile_counts", ARGUMENTS * u64::from(LISTS), drawn),
                     tiles: buffer("comics_tiles", size, BufferUsages::VERTEX),
                     room,
+                    cell_counts: buffer("comics_cell_counts", ARGUMENTS, drawn),
+                    cells: buffer(
+                        "comics_cells",
+                        CELLS * u64::from(room),
+                        BufferUsages::empty(),
+                    ),
                 }
             });
+        let none: Vec<u8> = [0u32, 1, 1, 0].map(u32::to_le_bytes).concat();
+        queue.write_buffer(&lists.cell_counts, 0, &none);
         let empty: [[u32; 4]; LISTS as usize] = [[4, 0, 0, 0]; LISTS as usize];
         let bytes: Vec<u8> = empty
             .as_flattened()
@@ -109,6 +121,19 @@ impl TileLists {
             binding,
             resource: buffer.as_entire_binding(),
         })
+    }
+
+    /// The bindings of the cells.
+    pub fn cell_entries(&self) -> [BindGroupEntry<'_>; 2] {
+        [(16, &self.cell_counts), (17, &self.cells)].map(|(binding, buffer)| BindGroupEntry {
+            binding,
+            resource: buffer.as_entire_binding(),
+        })
+    }
+
+    /// Dispatches a compute pipeline for the cells.
+    pub fn dispatch_cells(&self, pass: &mut wgpu::ComputePass) {
+        pass.dispatch_workgroups_indirect(&self.cell_counts, 0);
     }
 
     /// Draws the tiles of a list with a pipeline of [`tile_vertices`].

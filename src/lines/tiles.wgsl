@@ -11,7 +11,8 @@ struct TilesUniform {
 }
 
 @group(0) @binding(1) var<uniform> tiles_uniform: TilesUniform;
-// For each block of 4 x 32 pixels, one bit for each row with a crack: see walk.wgsl.
+// For each block of 4 x 32 pixels, one bit for each row that may have a
+// crack or jump: see walk.wgsl.
 @group(0) @binding(12) var block_texture: texture_2d<u32>;
 // For each list the arguments of an indirect draw: vertices, instances, and two zeros.
 @group(0) @binding(14) var<storage, read_write> arguments: array<atomic<u32>>;
@@ -21,9 +22,8 @@ struct TilesUniform {
 const TILE: i32 = 16;
 // TileList of tiles.rs.
 const INKED: u32 = 0u;
-const FOUND: u32 = 1u;
-const COLUMNS: u32 = 2u;
-const LISTS: u32 = 3u;
+const COLUMNS: u32 = 1u;
+const LISTS: u32 = 2u;
 
 // Whether there are cracks in a part of the grid, which has `size` pixels.
 fn has_cracks(low: vec2<i32>, high: vec2<i32>, size: vec2<i32>) -> bool {
@@ -45,9 +45,6 @@ fn has_cracks(low: vec2<i32>, high: vec2<i32>, size: vec2<i32>) -> bool {
 fn nearby(list: u32, first: vec2<i32>) -> vec4<i32> {
     let g = tiles_uniform.grid;
     let last = first + TILE - 1;
-    if list == FOUND {
-        return vec4(first, last);
-    }
     if list == COLUMNS {
         return vec4(first - vec2(0, g.reach + 1), last + vec2(0, g.reach));
     }

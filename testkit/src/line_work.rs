@@ -3,7 +3,7 @@
 //! In the pass that searches blocks, every invocation fetches the same number: it is
 //! counted in the composed shader. The other passes are counted while they run. A pass
 //! returns its count instead of its result, and the passes after it hand the count on to
-//! the picture.
+//! the picture. Lists of tiles, the choice of samples and the faithful forms are not counted.
 
 use bevy::{
     prelude::*,
@@ -34,7 +34,7 @@ pub struct LineWork {
     pub bytes: f64,
 }
 
-const FIND: &str = "bevy_comics/lines/find.wgsl";
+const CELLS: &str = "bevy_comics/lines/cells.wgsl";
 const COLUMNS: &str = "bevy_comics/lines/columns.wgsl";
 const DRAW: &str = "bevy_comics/lines/draw.wgsl";
 const READ: &str = "bevy_comics/lines/read.wgsl";
@@ -43,9 +43,9 @@ const FILES: [&str; 8] = [
     "bevy_comics/depth/normal.wgsl",
     "bevy_comics/depth/view.wgsl",
     FUSED,
+    CELLS,
     COLUMNS,
     DRAW,
-    FIND,
     READ,
     "bevy_comics/objects/objects.wgsl",
 ];
@@ -59,11 +59,21 @@ struct End {
     handed: &'static str,
 }
 
+/// The end of the pass that finds cracks in cells.
+const CELLS_END: &str = "        east_1 = east;
+    }
+}
+";
+
 const ENDS: [End; 4] = [
     End {
-        file: FIND,
-        result: "return cracks(find_uniform.settings, at, excess, folds, ridge).xy;",
-        counted: "return vec2(packed_count(), 0u);",
+        file: CELLS,
+        result: CELLS_END,
+        counted: "        east_1 = east;
+    }
+    textureStore(crack_texture, vec2(x, top), vec4(packed_count(), 0u, 0u, 0u));
+}
+",
         handed: "",
     },
     End {
@@ -117,7 +127,11 @@ fn edited(counted: &str, path: &str, text: &str) -> String {
         return import.to_owned() + &text.replace(end.result, end.handed);
     }
     let place = |file: &str| ENDS.iter().position(|end| end.file == file);
-    if path == counted {
+    if path == CELLS && path == counted {
+        // The cell's first texel gets the count of all its pixels, the others none.
+        let none = text.replace("vec4(east_3.", "0u * vec4(east_3.");
+        counting(path, &none).replace(end.result, end.counted)
+    } else if path == counted {
         counting(path, text).replace(end.result, end.counted)
     } else if place(path) > place(counted) {
         text.replace(end.result, end.handed)
@@ -206,21 +220,17 @@ pub fn count(style: &ComicStyle, cache: &PipelineCache, size: UVec2) -> LineWork
                 if d.label.as_deref() == Some("comics_walk") {
                     walk = count_walk(&d.shader_defs, size);
                 }
+                passes[0] |= d.label.as_deref() == Some("comics_find_in_cells");
             }
             PipelineDescriptor::RenderPipelineDescriptor(d) => {
-                let labels = [
-                    "comics_find_lines",
-                    "comics_line_columns",
-                    "comics_draw_lines",
-                ];
-                for (there, label) in passes.iter_mut().zip(labels) {
-                    *there |= d.label.as_deref() == Some(label);
+                for (i, label) in [(1, "comics_line_columns"), (2, "comics_draw_lines")] {
+                    passes[i] |= d.label.as_deref() == Some(label);
                 }
             }
         }
     }
     let mut fetched = [[0.0; 2]; 3];
-    for ((fetched, there), file) in fetched.iter_mut().zip(passes).zip([FIND, COLUMNS, DRAW]) {
+    for ((fetched, there), file) in fetched.iter_mut().zip(passes).zip([CELLS, COLUMNS, DRAW]) {
         if there {
             *fetched = count_pass(style, file);
         }

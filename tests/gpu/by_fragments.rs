@@ -16,7 +16,8 @@ fn studio(by_fragments: bool) -> Studio {
         ..gpu().device.limits()
     });
     let options = HeadlessOptions {
-        size: UVec2::new(160, 90),
+        // No multiple of the widths and heights of blocks, cells and tiles.
+        size: UVec2::new(157, 91),
         limits,
         ..default()
     };
@@ -30,6 +31,23 @@ fn lines_without_compute_passes_are_the_same() {
         ("outlines", outlines(2.0)),
         ("wide outlines", outlines(3.0)),
         ("wider outlines", outlines(16.0)),
+        (
+            "creases alone",
+            ComicStyle::new().with(Outlines {
+                silhouettes: None,
+                objects: None,
+                width_fade: 0.5,
+                ..default()
+            }),
+        ),
+        (
+            "object edges alone",
+            ComicStyle::new().with(Outlines {
+                silhouettes: None,
+                creases: None,
+                ..default()
+            }),
+        ),
         ("sketch", ComicStyle::new().with(Sketch::default())),
         ("contours", ComicStyle::new().with(Contours::default())),
     ];

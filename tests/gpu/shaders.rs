@@ -377,7 +377,7 @@ fn every_shape_of_the_reduction_composes_and_validates() {
 
 #[test]
 fn every_kind_of_outline_composes_and_validates() {
-    let [walk, find, faithful] = ["walk", "find", "faithful"].map(|name| {
+    let [walk, cells, find, faithful] = ["walk", "cells", "find", "faithful"].map(|name| {
         let path = format!("lines/{name}.wgsl");
         shader(&path)
     });
@@ -389,13 +389,7 @@ fn every_kind_of_outline_composes_and_validates() {
         if view.contains(&"FADING") {
             view.push("VISIBLE_RANGE");
         }
-        for kinds in subsets(&[
-            "SILHOUETTES",
-            "CREASES",
-            "OBJECT_EDGES",
-            "OBJECT_STYLES",
-            "BY_FRAGMENTS",
-        ]) {
+        for kinds in subsets(&["SILHOUETTES", "CREASES", "OBJECT_EDGES", "OBJECT_STYLES"]) {
             let mut defs = [&view[..], &kinds].concat();
             if kinds.contains(&"CREASES") {
                 defs.push("NORMALS");
@@ -403,10 +397,13 @@ fn every_kind_of_outline_composes_and_validates() {
             if kinds.contains(&"OBJECT_EDGES") || kinds.contains(&"OBJECT_STYLES") {
                 defs.push("OBJECT_IDS");
             }
-            check(&find, &defs);
-            if !kinds.contains(&"BY_FRAGMENTS") {
-                check(&walk, &defs);
+            check(&walk, &[&defs[..], &["CRACKS"]].concat());
+            if kinds.contains(&"SILHOUETTES") || kinds.contains(&"CREASES") {
+                defs.push("EXCESS");
             }
+            check(&find, &defs);
+            check(&cells, &defs);
+            check(&walk, &[&defs[..], &["CRACKS", "JUMPS"]].concat());
         }
         for forms in subsets(&["FAITHFUL_SILHOUETTES", "FAITHFUL_CREASES", "OBJECT_STYLES"]) {
             let mut defs = [&view[..], &forms].concat();
@@ -421,12 +418,11 @@ fn every_kind_of_outline_composes_and_validates() {
     }
     let (columns, draw) = (shader("lines/columns.wgsl"), shader("lines/draw.wgsl"));
     check(&columns, &[]);
-    check(&columns, &["BY_FRAGMENTS"]);
+    check(&columns, &["BLOCKS"]);
+    check(&shader("lines/tiles.wgsl"), &[]);
     for styles in [&[][..], &["OBJECT_IDS", "OBJECT_STYLES"]] {
-        for device in subsets(&["BY_FRAGMENTS"]) {
-            for search in [&[][..], &["NEIGHBOURS"], &["COLUMNS"]] {
-                check(&draw, &[styles, &device, search].concat());
-            }
+        for search in [&[][..], &["NEIGHBOURS"], &["COLUMNS"]] {
+            check(&draw, &[styles, search].concat());
         }
     }
     let resolve = shader("lines/resolve.wgsl");

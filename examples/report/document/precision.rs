@@ -122,10 +122,11 @@ pub fn lines(out: &mut String, folder: &Path) -> Result<(), String> {
          of the visible range, outlines as a fraction of the distance: in deep scenes, contours \
          find fewer lines. Contours read 3x3 texels, outlines six in a row.\n\n\
          A pixel is wrong if it has ink more than two pixels away from any depth step above 1 % \
-         or fold above 20 degrees, at which the ink of outlines begins. `{SAME_RULE}` is the rule \
+         or fold above 20 degrees, at which the ink of outlines begins, and from any border of \
+         two objects. `{SAME_RULE}` is the rule \
          of the true lines, applied to the picture's own depth, normals and ids: what it misses \
          is too small for these pixels.\n\n\
-         | | silhouettes found | F1, silhouettes | every line found | precision | wrong | F1, every line | ms | blits |\n\
+         | | silhouettes found | F1, silhouettes | every line found | precision | wrong, of drawn | F1, every line | ms | blits |\n\
          |---|---|---|---|---|---|---|---|---|",
         size(&times)
     );

@@ -1,4 +1,4 @@
-//! Twin of `lines/find.wgsl`: the cracks that lines run along.
+//! Twin of `lines/crack.wgsl`: the cracks that lines run along.
 
 use super::{
     edge::{Normal, fold, fold_response, is_ridge, step_excess, step_response},
