@@ -25,7 +25,7 @@ const SCENES: [BuiltIn; 4] = [
 ];
 
 /// The name of the rule of the truth itself, at the resolution of the picture.
-pub const SAME_RULE: &str = "same rule, 1x";
+pub const SAME_RULE: &str = "same rule at 1x";
 
 /// The effects that are scored.
 pub fn detectors() -> Vec<(String, ComicStyle)> {

@@ -200,7 +200,7 @@ fn by_scene(out: &mut String, folder: &Path, scores: &Table) -> Result<(), Strin
          ones also from any faint one; both are fractions of the picture. Fragments are parts of \
          at most six pixels, for each 100 pixels of lines that are 1 pixel wide, in a picture of \
          twice the width and height.\n\n\
-         | | lines found | same rule, 1x | precision | F1 | false pixels | wrong pixels | fragments |\n\
+         | | lines found | same rule at 1x | precision | F1 | false pixels | wrong pixels | fragments |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
     for row in &whole.rows {
