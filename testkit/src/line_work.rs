@@ -62,8 +62,7 @@ struct End {
 /// The end of the pass that finds cracks in cells.
 const CELLS_END: &str = "        east_1 = east;
     }
-}
-";
+}";
 
 const ENDS: [End; 4] = [
     End {
@@ -72,8 +71,7 @@ const ENDS: [End; 4] = [
         counted: "        east_1 = east;
     }
     textureStore(crack_texture, vec2(x, top), vec4(packed_count(), 0u, 0u, 0u));
-}
-",
+}",
         handed: "",
     },
     End {
