@@ -196,10 +196,10 @@ mod tests {
             let percent = |fraction: f64| format!("{:.1} %", 100.0 * fraction);
             assert_eq!(cells[4], percent(1.0 - lines.missed), "{row}");
             assert_eq!(cells[5], percent(1.0 - lines.stray), "{row}");
-            assert_eq!(cells[6], format!("{:.3}", 1.0 - lines.error()), "{row}");
+            assert_eq!(cells[7], format!("{:.3}", 1.0 - lines.error()), "{row}");
             // The report takes the median of a few rounds and subtracts the time
             // of an empty frame.
-            let time: f64 = cells[7].parse().expect("a time");
+            let time: f64 = cells[8].parse().expect("a time");
             assert!((lines.time / time - 1.0).abs() < 0.05, "{row}: {lines:?}");
         }
     }
