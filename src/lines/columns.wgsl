@@ -7,7 +7,7 @@
 
 #import bevy_comics::depth::view::View
 #import bevy_comics::lines::edge::{
-    Grid, Lines, Place, crack_opacity, is_apart, line_coverage, line_offset, pack_place, place_middle, unpack_width,
+    Grid, Lines, Place, block_rows, crack_opacity, is_apart, line_coverage, line_offset, pack_place, place_middle, unpack_width,
 }
 
 struct ColumnUniform {
@@ -76,10 +76,7 @@ fn columns(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
 #ifdef BLOCKS
     for (var block = first >> 5u; block <= last >> 5u; block++) {
         let top = block * 32;
-        let above = u32(clamp(first - top, 0, 31));
-        let below = u32(clamp(top + 31 - last, 0, 31));
-        let all_rows = textureLoad(block_texture, vec2(p.x >> 2u, block), 0).r;
-        var rows = all_rows & (0xffffffffu << above) & (0xffffffffu >> below);
+        var rows = textureLoad(block_texture, vec2(p.x >> 2u, block), 0).r & block_rows(top, first, last);
         while rows != 0u {
             compare_row(&best, p, top + i32(firstTrailingBit(rows)));
             rows &= rows - 1u;

@@ -2,7 +2,7 @@
 // in clip space. Pixels of other tiles cost nothing. Layers of the dispatch are lists.
 
 #import bevy_comics::depth::view::View
-#import bevy_comics::lines::edge::{Grid, Lines}
+#import bevy_comics::lines::edge::{Grid, Lines, block_rows}
 
 struct TilesUniform {
     seen: View,
@@ -31,9 +31,7 @@ fn has_cracks(low: vec2<i32>, high: vec2<i32>, size: vec2<i32>) -> bool {
     let to_pixel = clamp(high, vec2(0), size - 1);
     var rows = 0u;
     for (var y = from_pixel.y >> 5u; y <= to_pixel.y >> 5u; y++) {
-        let above = u32(clamp(from_pixel.y - y * 32, 0, 31));
-        let below = u32(31 - clamp(to_pixel.y - y * 32, 0, 31));
-        let mask = (0xffffffffu << above) & (0xffffffffu >> below);
+        let mask = block_rows(y * 32, from_pixel.y, to_pixel.y);
         for (var x = from_pixel.x >> 2u; x <= to_pixel.x >> 2u; x++) {
             rows |= textureLoad(block_texture, vec2(x, y), 0).r & mask;
         }

@@ -19,24 +19,23 @@ use bevy::{
     prelude::*,
     render::{RenderApp, sync_world::RenderEntity, view::Msaa},
 };
-use bevy_comics::{ComicStyle, ComicsPlugin, ObjectEdges, Outlines};
+use bevy_comics::{ComicStyle, ComicsPlugin, Outlines};
 use bevy_edge_detection_outline::{EdgeDetection, EdgeDetectionPlugin};
 use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
-    read_back,
     scenes::{BuiltIn, Stage},
-    truth::{FINE, Seen, Truth, mask},
+    truth::{FINE, Truth, ids_alone, mask},
 };
 
 const SIZE: UVec2 = UVec2::new(480, 270);
 
 type Build = fn(&mut Headless) -> Transform;
 
+/// An app that has drawn a picture, and its camera in the render world.
 struct Shot {
     picture: image::RgbaImage,
-    depth: Vec<f32>,
-    normals: Vec<[f32; 4]>,
-    ids: Vec<u32>,
+    headless: Headless,
+    view: Entity,
 }
 
 enum Lines {
@@ -68,17 +67,8 @@ fn shoot(build: Build, size: UVec2, lines: &Lines) -> Shot {
         ))
         .id();
     match lines {
-        // Invisible object edges, so that ids are drawn.
         Lines::None => {
-            world.entity_mut(camera).insert(Outlines {
-                silhouettes: None,
-                creases: None,
-                objects: Some(ObjectEdges {
-                    opacity: 1e-6,
-                    ..default()
-                }),
-                ..default()
-            });
+            world.entity_mut(camera).insert(ids_alone());
         }
         Lines::Ours => {
             let style = ComicStyle::new().with(Outlines::default());
@@ -92,23 +82,13 @@ fn shoot(build: Build, size: UVec2, lines: &Lines) -> Shot {
     headless.step(8);
     let picture = headless.picture();
     let view = headless.app.world().get::<RenderEntity>(camera).expect("drawn").id();
-    let render_world = headless.app.sub_app(RenderApp).world();
-    let depth = read_back::depth(render_world, view).expect("a prepass");
-    Shot {
-        picture,
-        depth: depth.bits.iter().map(|bits| f32::from_bits(*bits)).collect(),
-        normals: read_back::normals(render_world, view).expect("a prepass").pixels,
-        ids: read_back::object_ids(render_world, view)
-            .map(|ids| ids.pixels.iter().map(|p| p[0]).collect())
-            .unwrap_or_default(),
-    }
+    Shot { picture, headless, view }
 }
 
 fn truth(build: Build) -> Truth {
     let shot = shoot(build, SIZE * FINE, &Lines::None);
-    let [width, height] = SIZE.to_array().map(|v| v as usize);
-    let seen = Seen { depth: &shot.depth, normals: &shot.normals, ids: &shot.ids };
-    Truth::new([width, height], FINE as usize, &seen)
+    let render_world = shot.headless.app.sub_app(RenderApp).world();
+    Truth::read(render_world, shot.view, SIZE, FINE)
 }
 
 /// A fraction in percent; "-" of nothing.

@@ -1,8 +1,8 @@
 //! Twin of `lines/columns.wgsl`: the best crack of each pixel's column.
 
 use super::{
+    crack::{Crack, SIDES},
     draw::{Cracks, Line, distance, ink_of, middle},
-    find::{Crack, SIDES},
 };
 
 impl Cracks {

@@ -1,9 +1,9 @@
 //! Twin of `lines/draw.wgsl`: the ink of the lines at every pixel.
 
 use super::{
+    crack::{Crack, SIDES, crack},
     edge::{line_coverage, line_offset, segment_distance},
     faithful::faithful,
-    find::{Crack, SIDES, crack},
     view::View,
 };
 use bevy_comics::Outlines;

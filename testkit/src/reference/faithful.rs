@@ -1,8 +1,8 @@
 //! Twin of `lines/faithful.wgsl`: the ink of the faithful forms.
 
 use super::{
+    crack::{ink, normal},
     edge::{Normal, component_response, edge_response, gradient_extremes},
-    find::{ink, normal},
     view::View,
 };
 use bevy_comics::{Form, Outlines};
