@@ -6,8 +6,11 @@
 // x: the packed crack; y: its place in the lower half, that of the next crack in the upper.
 
 #import bevy_comics::depth::view::View
+#ifdef BLOCKS
+#import bevy_comics::lines::blocks::{BLOCK_HEIGHT, BLOCK_WIDTH, marked_rows}
+#endif
 #import bevy_comics::lines::edge::{
-    Grid, Lines, Place, block_rows, crack_opacity, is_apart, line_coverage, line_offset, pack_place, place_middle, unpack_width,
+    Grid, Lines, Place, crack_opacity, is_apart, line_coverage, line_offset, pack_place, place_middle, unpack_width,
 }
 
 struct ColumnUniform {
@@ -18,11 +21,6 @@ struct ColumnUniform {
 
 @group(0) @binding(1) var<uniform> column_uniform: ColumnUniform;
 @group(0) @binding(11) var crack_texture: texture_2d<u32>;
-#ifdef BLOCKS
-// For each block of 4 x 32 pixels, one bit for each row that may have a
-// crack or jump: see walk.wgsl.
-@group(0) @binding(12) var block_texture: texture_2d<u32>;
-#endif
 
 // The best two cracks in the column so far.
 struct Best {
@@ -74,11 +72,10 @@ fn columns(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     let first = max(p.y - g.reach - 1, 0);
     let last = min(p.y + g.reach, g.rect.w - 1);
 #ifdef BLOCKS
-    for (var block = first >> 5u; block <= last >> 5u; block++) {
-        let top = block * 32;
-        var rows = textureLoad(block_texture, vec2(p.x >> 2u, block), 0).r & block_rows(top, first, last);
+    for (var block = first / BLOCK_HEIGHT; block <= last / BLOCK_HEIGHT; block++) {
+        var rows = marked_rows(vec2(p.x / BLOCK_WIDTH, block), first, last);
         while rows != 0u {
-            compare_row(&best, p, top + i32(firstTrailingBit(rows)));
+            compare_row(&best, p, block * BLOCK_HEIGHT + i32(firstTrailingBit(rows)));
             rows &= rows - 1u;
         }
     }

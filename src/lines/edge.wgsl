@@ -176,14 +176,6 @@ fn may_be_crease(s: Lines, folds: vec4<f32>) -> vec4<bool> {
     return folds > vec4(BELOW * 4.0 * s.crease_k * s.crease_k * s.crease_low);
 }
 
-// Of the rows of a block, see walk.wgsl, that begins at the row `top`: bits of those from
-// `first` to `last`.
-fn block_rows(top: i32, first: i32, last: i32) -> u32 {
-    let above = u32(clamp(first - top, 0, 31));
-    let below = u32(clamp(top + 31 - last, 0, 31));
-    return (0xffffffffu << above) & (0xffffffffu >> below);
-}
-
 // A crack is the border between two neighbouring pixels: `here`, and `there` to the east
 // or south of it. It is packed into 32 bits:
 //   bits 0 to 2: a silhouette, a crease, an object edge runs along it;

@@ -49,6 +49,7 @@ use resolve::ResolvePipeline;
 /// Finds the lines of the views that request them.
 pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "edge.wgsl");
+    load_shader_library!(app, "blocks.wgsl");
     load_shader_library!(app, "rows.wgsl");
     load_shader_library!(app, "crack.wgsl");
     load_shader_library!(app, "jumps.wgsl");

@@ -2,6 +2,7 @@
 //! that it mirrors. It is written from the definition, not from the shader.
 
 pub mod black_flats;
+pub mod blocks;
 pub mod color;
 pub mod colorization;
 pub mod columns;
