@@ -39,7 +39,7 @@
 //! 3. depth becomes the map `D`, 0 at the near end and 1 at the far end of the
 //!    range ([`DepthMap`]);
 //! 4. where [`Outlines`] are asked for, silhouettes, creases and edges between
-//!    objects are found, and wide lines carried by a jump flood;
+//!    objects are found along the borders of pixels, and drawn at their width;
 //! 5. one full-screen pass after tonemapping applies the effects: [`ToneBands`],
 //!    [`Desaturation`], [`Colorization`], [`BlackFlats`], [`Contours`], the
 //!    outlines or a [`Sketch`] of them, and [`Vignette`], in this order, and those

@@ -1,16 +1,17 @@
 // The first half of the search for lines wider than the neighbouring pixels: for every
-// pixel, the crack in its column whose line covers it most, and the place of the next
-// one. The second half, in draw.wgsl, compares the results of the columns nearby.
-// Together they load 2 r pixels around a pixel instead of r^2.
+// pixel, the crack in its column whose line covers it most, and of the others the one
+// whose line reaches farthest over it. The second half, in draw.wgsl, compares the results
+// of the columns nearby. Together they load 2 r pixels around a pixel instead of r^2.
 //
-// x: the packed crack; y: its place in the lower half, that of the next crack in the upper.
+// x, y: the packed crack, and the middle of its line, see pack_middle; z, w: those of the
+// other. 0 stands for none.
 
 #import bevy_comics::depth::view::View
 #ifdef BLOCKS
 #import bevy_comics::lines::blocks::{BLOCK_HEIGHT, BLOCK_WIDTH, marked_rows}
 #endif
 #import bevy_comics::lines::edge::{
-    Grid, Lines, Place, crack_opacity, is_apart, line_coverage, line_offset, pack_place, place_middle, unpack_width,
+    Grid, Lines, crack_opacity, is_apart, line_coverage, line_middle, pack_middle, unpack_width,
 }
 
 struct ColumnUniform {
@@ -22,53 +23,61 @@ struct ColumnUniform {
 @group(0) @binding(1) var<uniform> column_uniform: ColumnUniform;
 @group(0) @binding(11) var crack_texture: texture_2d<u32>;
 
-// The best two cracks in the column so far.
+// The best crack in the column so far, and the one whose line reaches farthest among those
+// with another middle.
 struct Best {
-    packed: u32,
-    places: vec2<u32>,
-    // Middles of the lines, seen from the pixel.
+    packed: vec2<u32>,
+    // Middles of the lines, in pixels from the centre of the pixel.
     first: vec2<f32>,
-    scores: vec2<f32>,
+    second: vec2<f32>,
+    // Whether they are to the south of their pixels.
+    south: vec2<bool>,
+    // The score of the first, and how far its line and that of the second reach over the
+    // pixel's row, squared.
+    score: f32,
+    reach: vec2<f32>,
 }
 
 // Compares a crack with the best two.
-fn compare(best: ptr<function, Best>, packed: u32, row: i32, south: bool) {
+fn compare(best: ptr<function, Best>, packed: u32, middle: vec2<f32>, south: bool) {
     let half_width = unpack_width(packed >> 20u);
-    let shift = select(1.0, -1.0, (packed & 8u) != 0u) * line_offset(half_width);
-    let place = Place(row, south, 0.5 + shift);
-    let middle = place_middle(place);
     // In pixels of the viewport, as widths are.
     let away = abs(middle.y) / column_uniform.grid.from_viewport.y;
     let value = line_coverage(away, half_width) * crack_opacity(column_uniform.settings, packed);
-    // Of equal ink, the line is taken whose border is farther out: it reaches farther.
+    // Of equal ink, the line is taken whose border is farther out.
     let exists = (packed & 7u) != 0u;
-    let score = select(-1.0, value + 1e-4 * (half_width - away), exists);
-    let better = score > (*best).scores.x;
+    let score = select(-1e6, value + 1e-4 * (half_width - away), exists);
+    // Squared: how far the line reaches over the pixel's row.
+    let reach = select(-1e6, (half_width + 0.5) * (half_width + 0.5) - away * away, exists);
+    let better = score > (*best).score;
     // Both cracks at a corner of a line of odd width have their middle in one pixel.
     let other = is_apart(middle, (*best).first);
-    let pushed = better && other;
-    let next = other && score > (*best).scores.y;
-    let packed_place = pack_place(place);
-    (*best).places.y = select(select((*best).places.y, packed_place, next), (*best).places.x, pushed);
-    (*best).scores.y = select(select((*best).scores.y, score, next), (*best).scores.x, pushed);
-    (*best).packed = select((*best).packed, packed, better);
-    (*best).places.x = select((*best).places.x, packed_place, better);
+    let pushed = better && other && (*best).reach.x > (*best).reach.y;
+    let next = !better && other && reach > (*best).reach.y;
+    (*best).packed.y = select(select((*best).packed.y, packed, next), (*best).packed.x, pushed);
+    (*best).second = select(select((*best).second, middle, next), (*best).first, pushed);
+    (*best).reach.y = select(select((*best).reach.y, reach, next), (*best).reach.x, pushed);
+    (*best).south.y = select(select((*best).south.y, south, next), (*best).south.x, pushed);
+    (*best).south.x = select((*best).south.x, south, better);
+    (*best).packed.x = select((*best).packed.x, packed, better);
     (*best).first = select((*best).first, middle, better);
-    (*best).scores.x = max((*best).scores.x, score);
+    (*best).reach.x = select((*best).reach.x, reach, better);
+    (*best).score = max((*best).score, score);
 }
 
 // Compares both cracks of the pixel in row `y` of the column of `p`.
 fn compare_row(best: ptr<function, Best>, p: vec2<i32>, y: i32) {
     let packed = textureLoad(crack_texture, vec2(p.x, y), 0).xy;
-    compare(best, packed.x, y - p.y, false);
-    compare(best, packed.y, y - p.y, true);
+    let row = vec2(0.0, f32(y - p.y));
+    compare(best, packed.x, row + line_middle(packed.x, vec2(1.0, 0.0)), false);
+    compare(best, packed.y, row + line_middle(packed.y, vec2(0.0, 1.0)), true);
 }
 
 @fragment
-fn columns(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
+fn columns(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     let g = column_uniform.grid;
     let p = vec2<i32>(position.xy);
-    var best = Best(0u, vec2(0u), vec2(1e6), vec2(-1.0));
+    var best = Best(vec2(0u), vec2(1e6), vec2(1e6), vec2(false), -1e6, vec2(-1e6));
     let first = max(p.y - g.reach - 1, 0);
     let last = min(p.y + g.reach, g.rect.w - 1);
 #ifdef BLOCKS
@@ -84,5 +93,8 @@ fn columns(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
         compare_row(&best, p, y);
     }
 #endif
-    return vec2(best.packed, best.places.x | (best.places.y << 16u));
+    return vec4(
+        best.packed.x, pack_middle(best.first, best.south.x),
+        best.packed.y, pack_middle(best.second, best.south.y),
+    );
 }

@@ -6,8 +6,8 @@
 
 #import bevy_comics::depth::view::{View, set_view}
 #import bevy_comics::lines::edge::{
-    Grid, Lines, encode_ink, ink_of, is_apart, largest_opacity, line_coverage, line_offset, place_direction, place_middle,
-    segment_distance, unpack_place, unpack_width,
+    Grid, Lines, encode_ink, ink_of, is_apart, largest_opacity, line_coverage, line_middle, owner_at,
+    segment_distance, unpack_middle, unpack_width,
 }
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::texel_object
@@ -23,7 +23,7 @@ struct DrawUniform {
 #ifndef COLUMNS
 @group(0) @binding(11) var crack_texture: texture_2d<u32>;
 #else
-// The best crack of each pixel's column, see columns.wgsl.
+// The best two cracks of each pixel's column, see columns.wgsl.
 @group(0) @binding(13) var column_texture: texture_2d<u32>;
 #endif
 
@@ -51,21 +51,15 @@ fn alphas(kinds: vec3<f32>) -> f32 {
     return largest_opacity(draw_uniform.settings, kinds);
 }
 
-// Adds the line along one crack of the pixel `p`: towards the east or the south. Returns
-// the distance from the border of the line, negative inside.
-fn add(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i32>, at: vec2<f32>) -> f32 {
+// Adds the line along a crack that belongs to the pixel `owner`.
+fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: vec2<i32>, at: vec2<f32>) {
     let half_width = unpack_width(packed >> 20u);
-    let mine = (packed & 8u) != 0u;
-    let direction = vec2<f32>(towards);
-    let shift = select(1.0, -1.0, mine) * line_offset(half_width);
-    let middle = vec2<f32>(p) + 0.5 + direction * (0.5 + shift);
     let away = length((middle - at) * viewport_scale);
     let exists = (packed & 7u) != 0u;
     let kinds = select(0.0, line_coverage(away, half_width), exists) * ink_of(packed);
     (*ink).kinds = max((*ink).kinds, kinds);
 #ifdef OBJECT_STYLES
     let alpha = alphas(kinds);
-    let owner = select(p + towards, p, mine);
     (*ink).owner = select((*ink).owner, owner, alpha > (*ink).strongest);
     (*ink).strongest = max((*ink).strongest, alpha);
 #endif
@@ -76,7 +70,6 @@ fn add(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i32>, a
 #ifdef OBJECT_STYLES
     (*ink).first_owner = select((*ink).first_owner, owner, nearest);
 #endif
-    return border;
 }
 
 // Keeps the two lines whose borders are nearest.
@@ -99,8 +92,14 @@ fn add_pixel(ink: ptr<function, Ink>, p: vec2<i32>, at: vec2<f32>) {
     let inside = all(p >= vec2(0)) && all(p <= last);
     let texel = textureLoad(crack_texture, clamp(p, vec2(0), last), 0).xy;
     let packed = select(vec2(0u), texel, inside);
-    let east = add(ink, packed.x, p, vec2(1, 0), at);
-    let south = add(ink, packed.y, p, vec2(0, 1), at);
+    add_crack(ink, packed.x, p, vec2(1, 0), at);
+    add_crack(ink, packed.y, p, vec2(0, 1), at);
+}
+
+// Adds the crack of the pixel `p` that is `towards` the east or the south.
+fn add_crack(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i32>, at: vec2<f32>) {
+    let middle = vec2<f32>(p) + 0.5 + line_middle(packed, vec2<f32>(towards));
+    add(ink, packed, middle, select(p + towards, p, (packed & 8u) != 0u), at);
 }
 #endif
 
@@ -128,15 +127,12 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     for (var x = -g.reach - 1; x <= g.reach; x++) {
         let p = vec2(centre.x + x, clamp(centre.y, 0, last.y));
         let inside = p.x >= 0 && p.x <= last.x;
-        let texel = textureLoad(column_texture, vec2(clamp(p.x, 0, last.x), p.y), 0).xy;
-        let stored = select(vec2(0u), texel, inside);
-        let place = unpack_place(stored.y);
-        let border = add(&ink, stored.x, p + vec2(0, place.row), place_direction(place), at);
-        // The next crack has no ink of its own here: it only says where the line goes on.
-        let next = vec2<f32>(p) + 0.5 + place_middle(unpack_place(stored.y >> 16u));
-        let away = length((next - at) * viewport_scale);
-        let next_border = max(away - unpack_width(stored.x >> 20u), border + 1e-4);
-        follow(&ink, next, select(1e6, next_border, stored.y > 0xffffu));
+        let texel = textureLoad(column_texture, vec2(clamp(p.x, 0, last.x), p.y), 0);
+        let stored = select(vec4(0u), texel, inside);
+        let first = vec2<f32>(p) + 0.5 + unpack_middle(stored.y);
+        let second = vec2<f32>(p) + 0.5 + unpack_middle(stored.w);
+        add(&ink, stored.x, first, owner_at(stored.x, first, stored.y), at);
+        add(&ink, stored.z, second, owner_at(stored.z, second, stored.w), at);
     }
 #else
     for (var y = -g.reach; y <= g.reach; y++) {
@@ -148,7 +144,8 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     // Between the middles of two neighbouring cracks, a line runs straight. Discs around
     // the middles alone would leave diagonal lines too thin.
     if ink.distances.y < 1e5 && distance(ink.first, ink.second) < 1.5 {
-        let away = segment_distance(at, ink.first, ink.second) * viewport_scale.x;
+        let s = viewport_scale;
+        let away = segment_distance(at * s, ink.first * s, ink.second * s);
         let half_width = unpack_width(ink.packed >> 20u);
         let straight = line_coverage(away, half_width) * ink_of(ink.packed);
         ink.kinds = max(ink.kinds, straight);

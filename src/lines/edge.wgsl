@@ -159,21 +159,25 @@ fn is_ridge(before: vec4<f32>, folds: vec4<f32>, beyond: vec4<f32>) -> vec4<bool
     return complete & (folds >= before) & (folds >= beyond);
 }
 
-// Bounds are this much lower than the response at which ink begins, so that rounding
+// Of the ramp of the ink from low to high, the part whose ink is 0 after rounding to eight
+// bits: smoothstep of it is less than 0.5 / 255.
+const INVISIBLE: f32 = 0.0257;
+// Bounds are this much lower than the response at which ink is visible, so that rounding
 // leaves out no ink.
 const BELOW: f32 = 0.999;
 
 // Whether the excess of a step may have ink. It is true for every step whose ink is not 0
-// after rounding, and for few others: the response at which ink begins, without the
+// after rounding, and for few others: the response at which ink is visible, without the
 // division of step_response. `near` is the larger of both raw depths.
 fn may_be_silhouette(s: Lines, excess: vec4<f32>, near: vec4<f32>) -> vec4<bool> {
-    let least = BELOW * 2.0 * s.silhouette_k * sqrt(s.silhouette_low);
+    let least = BELOW * 2.0 * s.silhouette_k * sqrt(mix(s.silhouette_low, s.silhouette_high, INVISIBLE));
     return (excess > least * (s.reference_factor * near + s.reference_constant)) & (near > vec4(0.0));
 }
 
 // The same for folds of creases.
 fn may_be_crease(s: Lines, folds: vec4<f32>) -> vec4<bool> {
-    return folds > vec4(BELOW * 4.0 * s.crease_k * s.crease_k * s.crease_low);
+    let least = mix(s.crease_low, s.crease_high, INVISIBLE);
+    return folds > vec4(BELOW * 4.0 * s.crease_k * s.crease_k * least);
 }
 
 // A crack is the border between two neighbouring pixels: `here`, and `there` to the east
@@ -251,35 +255,28 @@ fn crack_opacity(s: Lines, packed: u32) -> f32 {
     return largest_opacity(s, ink_of(packed));
 }
 
-// Where a crack and its line are, seen from a pixel: what columns.wgsl stores of the
-// cracks in the pixel's column.
-struct Place {
-    // The row of the pixel that has the crack, below this pixel: -64 to 63.
-    row: i32,
-    // Whether the crack is to the south of its pixel, otherwise to the east.
-    south: bool,
-    // From the pixel's centre to the middle of the line, towards the crack: 0 to 1.
-    along: f32,
+// The middle of the line along a crack, in pixels from the centre of the crack's pixel.
+// `across`: the unit vector from the pixel to the crack.
+fn line_middle(packed: u32, across: vec2<f32>) -> vec2<f32> {
+    let to_owner = select(1.0, -1.0, (packed & 8u) != 0u);
+    return (0.5 + to_owner * line_offset(unpack_width(packed >> 20u))) * across;
 }
 
-// Packs a place into 16 bits. 0 stands for none.
-fn pack_place(place: Place) -> u32 {
-    let along = u32(round(place.along * 64.0));
-    return 1u | select(0u, 2u, place.south) | (u32(place.row + 64) << 2u) | (along << 9u);
+// Packs the middle of a line into 32 bits: less than 32 pixels across and 64 down, in 512ths
+// of a pixel; and whether its crack is to the south of the crack's pixel (bit 15).
+fn pack_middle(middle: vec2<f32>, south: bool) -> u32 {
+    let place = vec2<u32>(round(clamp(middle + vec2(32.0, 64.0), vec2(0.0), vec2(63.0, 127.0)) * 512.0));
+    return place.x | select(0u, 0x8000u, south) | (place.y << 16u);
 }
 
-fn unpack_place(packed: u32) -> Place {
-    return Place(i32((packed >> 2u) & 127u) - 64, (packed & 2u) != 0u, f32((packed >> 9u) & 127u) / 64.0);
+fn unpack_middle(packed: u32) -> vec2<f32> {
+    return vec2(f32(packed & 0x7fffu), f32(packed >> 16u)) / 512.0 - vec2(32.0, 64.0);
 }
 
-// The unit vector from a pixel towards its crack.
-fn place_direction(place: Place) -> vec2<i32> {
-    return select(vec2(1, 0), vec2(0, 1), place.south);
-}
-
-// The middle of the line, in pixels from the centre of the pixel that sees it.
-fn place_middle(place: Place) -> vec2<f32> {
-    return vec2(0.0, f32(place.row)) + vec2<f32>(place_direction(place)) * place.along;
+// The pixel that owns a crack, from the middle of its line and what pack_middle packed.
+fn owner_at(crack: u32, middle: vec2<f32>, packed: u32) -> vec2<i32> {
+    let across = select(vec2(1.0, 0.0), vec2(0.0, 1.0), (packed & 0x8000u) != 0u);
+    return vec2<i32>(floor(middle + select(0.25, -0.25, (crack & 8u) != 0u) * across));
 }
 
 // Distance from the middle of a line to the crack that it runs along, towards its

@@ -2,16 +2,16 @@
 // the pixels that respond are the line ([CL] Eq. 1 and 2 over 5 x 5 pixels).
 
 #import bevy_comics::depth::map::{depth_map, is_background}
-#import bevy_comics::depth::view::{View, depth_frame, load_depth, set_view, view}
+#import bevy_comics::depth::view::{View, depth_frame, set_view, texel_depth}
 #import bevy_comics::lines::edge::{
     Grid, Lines, component_response, edge_response, encode_ink, gradient_extremes,
 }
 #import bevy_comics::objects::kinds_of
 #ifdef NORMALS
-#import bevy_comics::depth::normal::load_normal
+#import bevy_comics::depth::normal::texel_normal
 #endif
 #ifdef OBJECT_STYLES
-#import bevy_comics::objects::load_object
+#import bevy_comics::objects::texel_object
 #endif
 
 struct FaithfulUniform {
@@ -22,29 +22,29 @@ struct FaithfulUniform {
 
 @group(0) @binding(1) var<uniform> faithful_uniform: FaithfulUniform;
 
-// Raw depth at a pixel. Outside of the viewport it is extrapolated by point reflection
+// Raw depth at a pixel of the grid. Outside of it, depth is extrapolated by point reflection
 // at the border. This continues a plane, so that the border is not an edge.
 fn depth_at(pixel: vec2<i32>) -> f32 {
-    let first = view.viewport.xy;
-    let last = first + view.viewport.zw - 1;
-    let border = clamp(pixel, first, last);
-    let d = load_depth(border, 0);
+    let rect = faithful_uniform.grid.rect;
+    let last = rect.zw - 1;
+    let border = clamp(pixel, vec2(0), last);
+    let d = texel_depth(rect.xy + border, 0);
     if all(border == pixel) {
         return d;
     }
-    let mirror = clamp(2 * border - pixel, first, last);
-    return max(2.0 * d - load_depth(mirror, 0), 0.0);
+    let mirror = clamp(2 * border - pixel, vec2(0), last);
+    return max(2.0 * d - texel_depth(rect.xy + mirror, 0), 0.0);
 }
 
 #ifdef FAITHFUL_CREASES
 // (normal, 1) at index i of the 5 x 5 window around a pixel; w is 0 where there is no
-// normal. Positions outside of the viewport are clamped to its border.
+// normal. Positions outside of the grid are clamped to its border.
 fn normal_at(pixel: vec2<i32>, i: i32, depths: ptr<function, array<f32, 25>>) -> vec4<f32> {
-    let first = view.viewport.xy;
-    let at = clamp(pixel + vec2(i % 5, i / 5) - 2, first, first + view.viewport.zw - 1);
+    let rect = faithful_uniform.grid.rect;
+    let at = clamp(pixel + vec2(i % 5, i / 5) - 2, vec2(0), rect.zw - 1);
     let inside = at - pixel + 2;
     let sky = is_background((*depths)[5 * inside.y + inside.x]);
-    return load_normal(at) * vec4(1.0, 1.0, 1.0, select(1.0, 0.0, sky));
+    return texel_normal(rect.xy + at, 0) * vec4(1.0, 1.0, 1.0, select(1.0, 0.0, sky));
 }
 #endif
 
@@ -52,14 +52,16 @@ fn normal_at(pixel: vec2<i32>, i: i32, depths: ptr<function, array<f32, 25>>) ->
 fn faithful(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     set_view(faithful_uniform.seen);
     let s = faithful_uniform.settings;
-    let pixel = vec2<i32>(position.xy) + view.viewport.xy;
+    let g = faithful_uniform.grid;
+    let at = floor(position.xy * g.from_viewport.xy + g.from_viewport.zw);
+    let pixel = clamp(vec2<i32>(at), vec2(0), g.rect.zw - 1);
     var depths: array<f32, 25>;
     for (var i = 0; i < 25; i++) {
         depths[i] = depth_at(pixel + vec2(i % 5, i / 5) - 2);
     }
     var slot = 0u;
 #ifdef OBJECT_STYLES
-    slot = load_object(pixel).y;
+    slot = texel_object(g.rect.xy + pixel, 0).y;
 #endif
     let kinds = kinds_of(slot);
     var ink = vec2(0.0);
@@ -78,5 +80,7 @@ fn faithful(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 #ifdef FADING
     ink *= 1.0 - s.opacity_fade * depth_map(depth_frame(), depths[12]).x;
 #endif
-    return vec4(encode_ink(vec3(ink, 0.0)), f32(slot) / 255.0);
+    // Where there is no ink, the slot is that of a measured line, if there is one.
+    let own = select(0.0, f32(slot) / 255.0, any(ink > vec2(0.0)));
+    return vec4(encode_ink(vec3(ink, 0.0)), own);
 }

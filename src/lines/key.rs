@@ -21,6 +21,8 @@ use crate::{
 
 /// The two cracks of a pixel, see `Crack` in `edge.wgsl`.
 pub(crate) const CRACK_FORMAT: TextureFormat = TextureFormat::Rg32Uint;
+/// The two best cracks of a pixel's column, see `columns.wgsl`.
+pub(crate) const COLUMN_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
 /// The rows with cracks in a block of pixels.
 pub(crate) const BLOCK_FORMAT: TextureFormat = TextureFormat::R32Uint;
 /// The ink of a pixel, see `draw.wgsl`.

@@ -15,7 +15,7 @@ use bevy::{
 };
 
 use super::{
-    key::{CRACK_FORMAT, INK_FORMAT, LineKey},
+    key::{COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT, LineKey},
     tiles::{tile_shader, tile_vertices},
 };
 
@@ -106,7 +106,7 @@ impl SpecializedRenderPipeline for LineShaders {
         };
         let (label, entry, targets) = match pass {
             LinePass::Find => ("comics_find_lines", "find", CRACKS),
-            LinePass::Columns => ("comics_line_columns", "columns", CRACKS),
+            LinePass::Columns => ("comics_line_columns", "columns", COLUMNS),
             LinePass::Faithful => ("comics_faithful_lines", "faithful", INK),
             LinePass::Draw => ("comics_draw_lines", "draw", INK),
         };
@@ -155,7 +155,9 @@ const fn target(format: TextureFormat, blend: Option<BlendState>) -> ColorTarget
     }
 }
 
-/// The target of the passes that write cracks.
+/// The target of the pass that writes cracks.
 const CRACKS: ColorTargetState = target(CRACK_FORMAT, None);
+/// The target of the pass that searches columns.
+const COLUMNS: ColorTargetState = target(COLUMN_FORMAT, None);
 /// The target of the passes that draw ink.
 const INK: ColorTargetState = target(INK_FORMAT, Some(MAXIMUM));

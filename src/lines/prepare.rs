@@ -21,7 +21,7 @@ use bevy::{
 };
 
 use super::{
-    key::{BLOCK, BLOCK_FORMAT, CRACK_FORMAT, INK_FORMAT},
+    key::{BLOCK, BLOCK_FORMAT, COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT},
     request::{CrackPasses, FindPass, LinePassUniform, LinePasses, LineRequest},
     resolve::Resolved,
     tiles::TileLists,
@@ -135,7 +135,7 @@ fn cracks(
         texture: new("comics_cracks", rect.zw(), found),
         columns: passes
             .columns
-            .map(|_| new("comics_line_columns", rect.zw(), drawn)),
+            .map(|_| new("comics_line_columns", rect.zw(), (COLUMN_FORMAT, drawn.1))),
     }
 }
 

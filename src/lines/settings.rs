@@ -177,3 +177,32 @@ pub(crate) struct LinesUniform {
     jump: f32,
     unused: u32,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether two surfaces meet at a crease does not depend on the form of silhouettes,
+    /// nor on the threshold of the faithful form.
+    #[test]
+    fn creases_are_the_same_beside_faithful_silhouettes() {
+        let jump = |silhouettes| {
+            let settings = LineSettings {
+                silhouettes,
+                creases: Some(Creases::default()),
+                ..LineSettings::NONE
+            };
+            settings.uniform(1.0, [1.0, 0.0]).jump
+        };
+        let faithful = |threshold| Silhouettes {
+            form: Form::Faithful,
+            threshold,
+            ..Silhouettes::default()
+        };
+        let want = jump(Some(Silhouettes::default()));
+        assert_eq!(jump(None), want);
+        for threshold in [1e-6, 1e-4, 0.5, 1.0] {
+            assert_eq!(jump(Some(faithful(threshold))), want);
+        }
+    }
+}

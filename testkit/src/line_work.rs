@@ -64,6 +64,12 @@ const CELLS_END: &str = "        east_1 = east;
     }
 }";
 
+/// The end of the pass that searches columns.
+const COLUMNS_END: &str = "return vec4(
+        best.packed.x, pack_middle(best.first, best.south.x),
+        best.packed.y, pack_middle(best.second, best.south.y),
+    );";
+
 const ENDS: [End; 4] = [
     End {
         file: CELLS,
@@ -76,9 +82,9 @@ const ENDS: [End; 4] = [
     },
     End {
         file: COLUMNS,
-        result: "return vec2(best.packed, best.places.x | (best.places.y << 16u));",
-        counted: "return vec2(packed_count(), 0u);",
-        handed: "return vec2(textureLoad(crack_texture, p, 0).x, 0u);",
+        result: COLUMNS_END,
+        counted: "return vec4(packed_count(), vec3(0u));",
+        handed: "return vec4(textureLoad(crack_texture, p, 0).x, vec3(0u));",
     },
     End {
         file: DRAW,

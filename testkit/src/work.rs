@@ -127,6 +127,13 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
                 ..default()
             }),
         ),
+        (
+            "outlines, 16 pixels wide",
+            outlined(Outlines {
+                width: 16.0,
+                ..default()
+            }),
+        ),
         ("sketch", none.with(Sketch::default())),
         (
             "everything",
@@ -137,8 +144,9 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
 
 /// Bytes of the texel that a line of WGSL loads, by the name of its binding.
 fn texel_size(line: &str) -> Option<u32> {
-    let wide = ["crack_texture", "column_texture"];
-    let size = if wide.iter().any(|name| line.contains(name)) {
+    let size = if line.contains("column_texture") {
+        16
+    } else if line.contains("crack_texture") {
         8
     } else {
         4

@@ -1,5 +1,5 @@
-//! On a device without storage textures, lines are drawn without compute passes: slower,
-//! and the same.
+//! On a device without storage textures, lines are found and drawn by fragment shaders:
+//! slower, and the same. The range is still found by compute shaders.
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{

@@ -16,6 +16,7 @@ mod house;
 mod ids;
 mod jitter;
 mod left_out;
+mod line_quality;
 mod line_samples;
 mod line_truth;
 mod lines;

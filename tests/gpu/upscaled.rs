@@ -10,7 +10,8 @@ use bevy::{
     render::{Render, RenderApp, RenderSystems, camera::ExtractedCamera, view::Msaa},
 };
 use bevy_comics::{
-    BlackFlats, ComicStyle, ContourOperator, Contours, Effect, Form, Outlines, VisibleDepthRange,
+    BlackFlats, ComicStyle, ContourOperator, Contours, Creases, Effect, Form, Outlines,
+    Silhouettes, VisibleDepthRange,
 };
 
 use crate::{
@@ -378,6 +379,39 @@ fn faithful_contours_are_those_of_a_view_of_the_main_passs_size() {
         }
         assert!(inked > 500, "{inked}");
     }
+}
+
+/// Nor do the faithful forms of outlines know pixels of the picture: they compare 5 x 5
+/// neighbours, and between these a slope would be a staircase.
+#[test]
+fn faithful_outlines_are_those_of_a_view_of_the_main_passs_size() {
+    let style = of(Outlines {
+        silhouettes: Some(Silhouettes {
+            form: Form::Faithful,
+            threshold: 0.002,
+            ..default()
+        }),
+        creases: Some(Creases {
+            form: Form::Faithful,
+            ..default()
+        }),
+        objects: None,
+        ..default()
+    });
+    let size = UVec2::new(WIDTH, HEIGHT) / 2;
+    let low = ink(&mut Small::new(size, Msaa::Off), &style);
+    let mut small = new();
+    override_main_pass(&mut small, Some(size));
+    let high = ink(&mut small, &style);
+    let mut inked = 0;
+    for (i, at) in centres() {
+        let texel = (0.5 * at).as_uvec2();
+        let wanted = low[(texel.y * size.x + texel.x) as usize];
+        let same = (high[i] - wanted).abs() <= 0.03;
+        assert!(same, "{at}: {}, {wanted}", high[i]);
+        inked += usize::from(wanted > 0.5);
+    }
+    assert!(inked > 500, "{inked}");
 }
 
 /// A tilted plane fills the view, so that the depth map spans 0 to 1 from its top to its

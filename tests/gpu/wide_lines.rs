@@ -1,8 +1,8 @@
 //! Wide lines against an exhaustive search.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, DepthMap, Outlines, VisibleDepthRange};
-use bevy_comics_testkit::reference::{draw::Cracks, view::View};
+use bevy_comics::{ComicStyle, Creases, DepthMap, Outlines, Silhouettes, VisibleDepthRange};
+use bevy_comics_testkit::reference::{crack::Crack, draw::Cracks, view::View};
 
 use crate::{
     pictures::{assert_pass_is_its_twin, frame, outlined},
@@ -53,6 +53,39 @@ fn columns_against_exhaustive(small: &mut Small, outlines: Outlines) -> [f64; 2]
     [sum, apart]
 }
 
+/// A vertical silhouette whose ink and width change at a row: neither part hides the
+/// other, though columns rank cracks by their ink at one height.
+#[test]
+fn a_faint_part_of_a_wide_line_is_as_wide_as_a_strong_one() {
+    const SIZE: i64 = 64;
+    for (ink, half_width) in [(0.6, 8.0), (0.3, 8.0), (0.1, 8.0), (1.0, 2.0), (1.0, 4.0)] {
+        let crack = |x: i64, y: i64| {
+            let below = y >= SIZE / 2;
+            let crack = Crack {
+                kinds: [true, false, false],
+                mine: true,
+                ink: if below { ink } else { 1.0 },
+                opacity: 1.0,
+                half_width: if below { half_width } else { 8.0 },
+            };
+            [(x == SIZE / 2).then_some(crack), None]
+        };
+        let cracks = (0..SIZE * SIZE)
+            .map(|i| crack(i % SIZE, i / SIZE))
+            .collect();
+        let cracks = Cracks::from_cracks(cracks, SIZE, 8.0);
+        for i in 0..SIZE * SIZE {
+            let at = [(i % SIZE) as f64 + 0.5, (i / SIZE) as f64 + 0.5];
+            let found = cracks.ink(at, 0.0)[0];
+            let want = cracks.exhaustive_ink(at, 0.0)[0];
+            assert!(
+                (found - want).abs() < 2.0 / 255.0,
+                "ink {ink}, half width {half_width}, at {at:?}: {found}, not {want}"
+            );
+        }
+    }
+}
+
 /// Columns leave out cracks that others in the same column surpass at its own height. That
 /// must not be seen: on average less than a tenth of a code, and more than two codes in at
 /// most 1 pixel of 200.
@@ -60,14 +93,24 @@ fn columns_against_exhaustive(small: &mut Small, outlines: Outlines) -> [f64; 2]
 fn a_search_by_columns_draws_what_an_exhaustive_search_draws() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
     for width in [3.0, 4.0, 5.0, 8.0, 16.0] {
-        for width_fade in [0.0, 0.6] {
+        for (width_fade, softness) in [(0.0, 0.5), (0.6, 0.5), (0.0, 1.0)] {
             let outlines = Outlines {
                 width,
                 width_fade,
+                silhouettes: Some(Silhouettes {
+                    softness,
+                    ..default()
+                }),
+                creases: Some(Creases {
+                    softness,
+                    ..default()
+                }),
                 ..default()
             };
             let [mean, apart] = columns_against_exhaustive(&mut small, outlines);
-            println!("{width} px, width_fade {width_fade}: mean {mean:.6}, apart {apart:.5}");
+            println!(
+                "{width} px, width_fade {width_fade}, softness {softness}: mean {mean:.6}, apart {apart:.5}"
+            );
             assert!(mean < 0.1 / 255.0, "{width} px, {width_fade}: mean {mean}");
             assert!(
                 apart < 0.005,

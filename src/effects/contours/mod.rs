@@ -150,7 +150,7 @@ impl Effect for Contours {
             return Extent::Everywhere;
         }
         Extent::AtJumps(MapJumps {
-            least: (self.threshold - self.half_ramp()) * FRAC_1_SQRT_2,
+            least: self.least_visible() * FRAC_1_SQRT_2,
             radius: self.radius(view),
         })
     }
@@ -178,6 +178,13 @@ impl Effect for Contours {
 }
 
 impl Contours {
+    /// The response below which no line is visible: less than half a code of eight bits of
+    /// the ramp from its low to its high end.
+    fn least_visible(&self) -> f32 {
+        const INVISIBLE: f32 = 0.0257;
+        self.threshold - (1.0 - 2.0 * INVISIBLE) * self.half_ramp()
+    }
+
     /// Half the line's width in physical pixels.
     fn radius(&self, view: &ViewFacts) -> f32 {
         (0.5 * self.width * view.scale_factor).clamp(0.125, 64.0)

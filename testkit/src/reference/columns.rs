@@ -1,34 +1,34 @@
-//! Twin of `lines/columns.wgsl`: the best crack of each pixel's column.
+//! Twin of `lines/columns.wgsl`: the best two cracks of each pixel's column.
 
 use super::{
     crack::{Crack, SIDES},
     draw::{Cracks, Line, distance, ink_of, middle},
 };
 
+/// A crack and the middle of its line.
+type Found = (Crack, [f64; 2]);
+
 impl Cracks {
     /// The lines that are found from the best cracks of each column.
     pub(super) fn lines_by_columns(&self, at: [f64; 2], nudge: f64) -> Vec<Line> {
         let (px, py) = (at[0].floor() as i64, at[1].floor() as i64);
-        let mut lines = Vec::new();
-        for x in px - self.reach - 1..=px + self.reach {
-            let Some((crack, first, next)) = self.column(x, py, nudge) else {
-                continue;
-            };
-            let border = distance(first, at) - crack.half_width;
-            lines.push((border, first, Some(crack)));
-            if let Some(next) = next {
-                let own = distance(next, at) - crack.half_width;
-                lines.push((own.max(border + 1e-4), next, None));
-            }
-        }
-        lines
+        let columns = px - self.reach - 1..=px + self.reach;
+        columns
+            .flat_map(|x| self.column(x, py, nudge))
+            .flatten()
+            .map(|(crack, middle)| {
+                let border = distance(middle, at) - crack.half_width;
+                (border, middle, crack)
+            })
+            .collect()
     }
 
-    /// The crack in a pixel's column whose line covers the pixel most, the middle of its
-    /// line, and the middle of the next line.
-    fn column(&self, x: i64, y: i64, nudge: f64) -> Option<(Crack, [f64; 2], Option<[f64; 2]>)> {
-        let mut best: Option<(f64, Crack, [f64; 2])> = None;
-        let mut next: Option<(f64, [f64; 2])> = None;
+    /// The crack in a pixel's column whose line covers the pixel most, and of the others
+    /// the one whose line reaches farthest over the pixel's row.
+    fn column(&self, x: i64, y: i64, nudge: f64) -> [Option<Found>; 2] {
+        // (score, reach, crack)
+        let mut first: Option<(f64, f64, Found)> = None;
+        let mut second: Option<(f64, Found)> = None;
         for row in y - self.reach - 1..=y + self.reach {
             for (crack, v) in self.at(x, row).into_iter().zip(SIDES) {
                 let Some(crack) = crack else { continue };
@@ -40,29 +40,23 @@ impl Cracks {
                     .into_iter()
                     .fold(0.0, f64::max);
                 let score = value + 1e-4 * (crack.half_width - away);
-                if score <= -1.0 {
+                let reach = (crack.half_width + 0.5).powi(2) - away.powi(2);
+                let Some(best) = first else {
+                    first = Some((score, reach, (crack, middle)));
                     continue;
-                }
-                let other = best.is_none_or(|best| distance(middle, best.2) > 0.25);
-                match best {
-                    Some(first) if score <= first.0 => {
-                        if other && next.is_none_or(|next| score > next.0) {
-                            next = Some((score, middle));
-                        }
+                };
+                let other = distance(middle, best.2.1) > 0.25;
+                let farther = |reach: f64| second.is_none_or(|second| reach > second.0);
+                if score > best.0 {
+                    if other && farther(best.1) {
+                        second = Some((best.1, best.2));
                     }
-                    _ => {
-                        if let Some(first) = best
-                            && other
-                        {
-                            next = Some((first.0, first.2));
-                        }
-                        best = Some((score, crack, middle));
-                    }
+                    first = Some((score, reach, (crack, middle)));
+                } else if other && farther(reach) {
+                    second = Some((reach, (crack, middle)));
                 }
             }
         }
-        // The place of the next line is stored in 64ths of a pixel.
-        let stored = |v: f64| (v * 64.0).round_ties_even() / 64.0;
-        best.map(|(_, crack, middle)| (crack, middle, next.map(|next| next.1.map(stored))))
+        [first.map(|first| first.2), second.map(|second| second.1)]
     }
 }

@@ -42,6 +42,17 @@ impl Cracks {
         }
     }
 
+    /// Silhouettes with these cracks, row by row. `widest`: the largest half width.
+    pub fn from_cracks(cracks: Vec<[Option<Crack>; 2]>, width: i64, widest: f64) -> Self {
+        Self {
+            width,
+            height: cracks.len() as i64 / width,
+            cracks,
+            reach: ((widest + 1.0).ceil() as i64 - 1).max(1),
+            opacity: [1.0; 3],
+        }
+    }
+
     pub(super) fn at(&self, x: i64, y: i64) -> [Option<Crack>; 2] {
         let inside = (0..self.width).contains(&x) && (0..self.height).contains(&y);
         if inside {
@@ -71,7 +82,7 @@ impl Cracks {
                     let Some(crack) = crack else { continue };
                     let middle = middle(&crack, [x, y], v);
                     let border = distance(middle, at) - crack.half_width;
-                    lines.push((border, middle, Some(crack)));
+                    lines.push((border, middle, crack));
                 }
             }
         }
@@ -80,9 +91,7 @@ impl Cracks {
 
     fn ink_of_lines(&self, mut lines: Vec<Line>, at: [f64; 2], nudge: f64) -> [f64; 3] {
         let found = lines.iter().fold([0.0; 3], |found, (border, _, crack)| {
-            crack.map_or(found, |crack| {
-                larger(found, ink_of(&crack, nudge, border + crack.half_width))
-            })
+            larger(found, ink_of(crack, nudge, border + crack.half_width))
         });
         let straight = straight(&mut lines, at, nudge);
         // Which of two lines at the same distance is the nearest is a matter of rounding.
@@ -98,9 +107,8 @@ impl Cracks {
     }
 }
 
-/// A line: the distance from its border, its middle, and its crack, unless the crack is
-/// only the next one in its column.
-pub(super) type Line = (f64, [f64; 2], Option<Crack>);
+/// A line: the distance from its border, its middle, and its crack.
+pub(super) type Line = (f64, [f64; 2], Crack);
 
 fn larger(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| a[k].max(b[k]))
@@ -125,7 +133,6 @@ fn straight(lines: &mut [Line], at: [f64; 2], nudge: f64) -> Vec<[f64; 3]> {
             if *border > others[0].0 + TIE {
                 break;
             }
-            let Some(crack) = crack else { continue };
             found.push(if distance(*a, *b) < 1.5 {
                 ink_of(crack, nudge, segment_distance(at, *a, *b))
             } else {

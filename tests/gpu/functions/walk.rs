@@ -1,6 +1,8 @@
 //! The walk looks for tiles with cracks by bounds: no crack may be below them.
 
-use bevy_comics_testkit::reference::walk::{BELOW, may_be_crease, may_be_silhouette};
+use bevy_comics_testkit::reference::walk::{
+    BELOW, INVISIBLE, may_be_crease, may_be_silhouette, visible,
+};
 
 use super::*;
 
@@ -36,9 +38,10 @@ fn the_walk_leaves_out_no_ink() {
              s.silhouette_low = i(0u); s.silhouette_high = i(1u); s.silhouette_k = i(2u);
              s.crease_low = i(0u); s.crease_high = i(1u); s.crease_k = max(i(2u), 0.02);
              s.reference_constant = i(3u);
-             let excess = i(4u) * 2.0 * i(2u) * sqrt(i(0u)) * i(3u);
+             let least = mix(i(0u), i(1u), 0.0257);
+             let excess = i(4u) * 2.0 * i(2u) * sqrt(least) * i(3u);
              let step = smoothstep(i(0u), i(1u), step_response(vec4(excess), vec4(i(2u) * i(3u))).x);
-             let folds = i(4u) * 4.0 * s.crease_k * s.crease_k * i(0u);
+             let folds = i(4u) * 4.0 * s.crease_k * s.crease_k * least;
              let bend = smoothstep(i(0u), i(1u), fold_response(vec4(folds), s.crease_k).x);
              let ink = byte(vec4(step, bend, 0.0, 0.0));
              return vec4(
@@ -50,17 +53,51 @@ fn the_walk_leaves_out_no_ink() {
         for (row, [step, silhouette, bend, crease]) in rows.iter().zip(results) {
             assert!(step == 0.0 || silhouette == 1.0, "a step: {row:?}");
             assert!(bend == 0.0 || crease == 1.0, "a fold: {row:?}");
-            let [low, _, k, reference, ratio] = row.map(f64::from);
+            let [low, high, k, reference, ratio] = row.map(f64::from);
+            let least = visible([low, high]);
             // A few units in the last place around the bound are undecided.
             if (ratio - BELOW).abs() < 1e-5 {
                 continue;
             }
-            let excess = ratio * 2.0 * k * low.sqrt() * reference;
-            let want = may_be_silhouette([low, k], excess, reference, 0.5);
+            let excess = ratio * 2.0 * k * least.sqrt() * reference;
+            let want = may_be_silhouette([least, k], excess, reference, 0.5);
             assert_eq!(silhouette == 1.0, want, "a step: {row:?}");
             let k = k.max(f64::from(0.02f32));
-            let want = may_be_crease([low, k], ratio * 4.0 * k * k * low);
+            let want = may_be_crease([least, k], ratio * 4.0 * k * k * least);
             assert_eq!(crease == 1.0, want, "a fold: {row:?}");
+        }
+    });
+}
+
+/// The part of the ramp that counts as invisible is: half a code of eight bits is not
+/// reached there, and is reached at once above it.
+#[test]
+fn what_the_walk_takes_for_invisible_is() {
+    let ink = |t: f64| t * t * (3.0 - 2.0 * t);
+    assert!(ink(INVISIBLE) < 0.5 / 255.0);
+    assert!(ink(1.01 * INVISIBLE) > 0.5 / 255.0);
+}
+
+/// Flat surfaces at any angle, with softness 1, where ink begins at a response of 0:
+/// rounding of depths is no possible line.
+#[test]
+fn a_plane_is_no_possible_line_of_soft_ink() {
+    let slope = || prop_oneof![Just(0.0f32), -1e-3f32..1e-3, -1e-5f32..1e-5];
+    let row = (1e-4f32..1.0, slope()).prop_map(|(start, slope)| [start, slope * start, 0.0]);
+    for_batches(row, |rows| {
+        let results = gpu().evaluate(
+            "#import bevy_comics::lines::edge::{Lines, may_be_silhouette, step_excess}",
+            "var s: Lines;
+             s.silhouette_low = 0.0; s.silhouette_high = 1.0; s.silhouette_k = 0.01;
+             s.reference_factor = 1.0;
+             let a = vec4(i(0u)); let b = vec4(i(1u));
+             let d = vec4(a + 2.0 * b);
+             let excess = step_excess(a, a + b, d, a + 3.0 * b, a + 4.0 * b, a + 5.0 * b);
+             return vec4(f32(may_be_silhouette(s, excess, d).x), excess.x, 0.0, 0.0);",
+            rows,
+        );
+        for (row, result) in rows.iter().zip(results) {
+            assert_eq!(result[0], 0.0, "{row:?}: an excess of {}", result[1]);
         }
     });
 }

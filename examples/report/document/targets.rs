@@ -1,0 +1,160 @@
+//! What the crate aims at, and whether it is reached: computed from the CSV files.
+
+use std::{fmt::Write, path::Path};
+
+use crate::{
+    costs::{OWN, costs, growth_exponent, line_score},
+    load,
+    table::Table,
+};
+
+/// A target: what is measured, its limits, and the value, if it was measured.
+struct Target {
+    what: String,
+    limits: [f64; 2],
+    value: Option<f64>,
+    digits: usize,
+}
+
+impl Target {
+    fn at_most(what: impl Into<String>, limit: f64, value: Option<f64>) -> Self {
+        Self {
+            what: what.into(),
+            limits: [f64::NEG_INFINITY, limit],
+            value,
+            digits: 2,
+        }
+    }
+
+    fn at_least(what: impl Into<String>, limit: f64, value: Option<f64>) -> Self {
+        Self {
+            limits: [limit, f64::INFINITY],
+            ..Self::at_most(what, limit, value)
+        }
+    }
+
+    fn with_digits(self, digits: usize) -> Self {
+        Self { digits, ..self }
+    }
+
+    fn write(&self, out: &mut String) {
+        let [low, high] = self.limits;
+        let limits = if low == f64::NEG_INFINITY {
+            format!("at most {high}")
+        } else if high == f64::INFINITY {
+            format!("at least {low}")
+        } else {
+            format!("{low} to {high}")
+        };
+        let (value, verdict) = match self.value.filter(|value| value.is_finite()) {
+            Some(value) if (low..=high).contains(&value) => {
+                (format!("{value:.*}", self.digits), "met")
+            }
+            Some(value) => (format!("{value:.*}", self.digits), "**missed**"),
+            None => ("not measured".to_owned(), ""),
+        };
+        let _ = writeln!(out, "| {} | {limits} | {value} | {verdict} |", self.what);
+    }
+}
+
+/// The times of lines, in blits.
+fn times(folder: &Path) -> Result<Vec<Target>, String> {
+    let ladder = costs(&load(folder, "ladder_times")?, "ladder", "teapot", &OWN);
+    let blits = |name: &str| {
+        let cost = ladder.iter().find(|c| c.name == name);
+        cost.map(|c| c.ratio[1])
+    };
+    let peers = costs(&load(folder, "peer_times")?, "peers", "teapot", &OWN);
+    let milliseconds = |name: &str| {
+        let cost = peers.iter().find(|c| c.name.contains(name));
+        cost.map(|c| c.milliseconds)
+    };
+    let ratio = milliseconds("Sobel")
+        .zip(milliseconds("silhouettes + creases"))
+        .map(|(other, own)| other / own);
+    let (exponent, _) = growth_exponent(&load(folder, "growth_times")?, "pixels", &OWN);
+    let rival =
+        "time of bevy_edge_detection_outline (Sobel, depth + normals) / silhouettes + creases";
+    Ok(vec![
+        Target::at_most("contours, blits", 3.0, blits("contours")),
+        Target::at_most("default comic, blits", 4.0, blits("default comic")),
+        Target::at_most("all outlines, 2 px, blits", 6.0, blits("outlines")),
+        Target::at_most(
+            "all outlines, 16 px, blits",
+            7.5,
+            blits("outlines; 16 pixels wide"),
+        ),
+        Target::at_most("sketch, blits", 12.0, blits("sketch")),
+        Target::at_least(rival, 4.0, ratio),
+        Target {
+            limits: [0.95, 1.05],
+            ..Target::at_most("growth with pixels, exponent", 0.0, Some(exponent))
+        },
+    ])
+}
+
+/// Fragments per 100 pixels of line, in rows of a table of scores.
+fn fragments(table: &Table, rows: &[&Vec<String>]) -> f64 {
+    let sum = |name| table.numbers(rows, name).iter().sum::<f64>();
+    100.0 * sum("fragments") / sum("line").max(1.0)
+}
+
+/// The quality of lines.
+fn quality(folder: &Path) -> Result<Vec<Target>, String> {
+    let scores = load(folder, "line_scores")?;
+    let [_, _, f1] = line_score(&scores, "all outlines", "every line");
+    let village = scores.matching(&[
+        ("scene", "village"),
+        ("detector", "all outlines"),
+        ("truth", "every line"),
+    ]);
+    let wrong = village.first().map(|row| {
+        let drawn = scores.number(row, "drawn") - scores.number(row, "right");
+        100.0 * drawn / scores.number(row, "pixels").max(1.0)
+    });
+    let mut all = vec![
+        Target::at_least("F1 of all outlines, all scenes", 0.99, Some(f1)).with_digits(3),
+        Target::at_most("village: false pixels, %", 0.03, wrong).with_digits(3),
+    ];
+    let whole = load(folder, "line_fragments")?;
+    for row in &whole.rows {
+        let name = whole.cell(row, "scene");
+        let what = format!("{name}: fragments per 100 px of line");
+        all.push(Target::at_most(what, 0.3, Some(fragments(&whole, &[row]))));
+    }
+    let models = load(folder, "model_scores")?;
+    let rows: Vec<&Vec<String>> = models.rows.iter().collect();
+    for model in models.distinct(&rows, "model") {
+        for distance in ["close", "distant"] {
+            let rows = models.matching(&[("model", &model), ("distance", distance)]);
+            if !rows.is_empty() {
+                let what = format!("{model}, {distance}: fragments per 100 px of line");
+                let value = Some(fragments(&models, &rows));
+                all.push(Target::at_most(what, 0.3, value));
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// The table of targets.
+pub fn targets(out: &mut String, folder: &Path) -> Result<(), String> {
+    out.push_str(
+        "## Targets\n\nTimes are those of the crate's own passes on the teapot, without the \
+         engine's prepasses. The limits of times are meant for a CPU adapter.\n\n\
+         | | target | here | |\n|---|---|---|---|\n",
+    );
+    for target in times(folder)?.into_iter().chain(quality(folder)?) {
+        target.write(out);
+    }
+    out.push_str(
+        "\nWhy targets are missed: on a CPU adapter a blit is little more than a copy of memory, \
+         while every effect is computed in software for every pixel, with both sides of every \
+         branch. The largest part of the time of outlines is the look at the depth, normal and id \
+         of every pixel (`walk.wgsl`). False pixels of outlines are mostly faint steps and folds, \
+         which the truth does not count: see \"wrong pixels\" below. Fragments are left where a \
+         fold is about as sharp as the threshold, and where a wire is narrower than a pixel. \
+         ARCHITECTURE.md says what was tried and what it gained, under \"Decisions: lines\".\n\n",
+    );
+    Ok(())
+}
