@@ -87,7 +87,7 @@ pub use effect::{
 };
 pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
-pub use lines::{Creases, LineSettings, MapJumps, ObjectEdges, Silhouettes};
+pub use lines::{Creases, LineResponse, LineSettings, MapJumps, ObjectEdges, Silhouettes};
 #[cfg(feature = "objects")]
 pub use objects::{NoOutlines, OutlineGroup, OutlineKinds, OutlineStyle, ViewObjectIds, object_id};
 pub use plugin::ComicsPlugin;

@@ -296,6 +296,7 @@ fn line_request(
         rect: scene.drawn(),
         jitter: scene.jitter,
         reach,
+        steps: settings.steps(view.scale_factor * uniform.depth_scale.max_element()),
         oblique: view.projection.kind() == ProjectionKind::Oblique,
         visible_range: plan.depth_map.mapping.follows_visible_range(),
         ids: plan.draws_ids(),
@@ -323,7 +324,7 @@ impl Requests {
             let cracks = passes.cracks.is_some_and(|cracks| {
                 let columns = cracks.columns.is_some_and(render);
                 let find = match cracks.find {
-                    FindPass::Cells(id) => compute(id),
+                    FindPass::Cells(cells) => cells.ids().any(compute),
                     FindPass::Pixels(id) => render(id),
                 };
                 columns || find || render(cracks.draw)

@@ -1,13 +1,15 @@
 // Finds the cracks that lines run along, in the cells that walk.wgsl has listed; the rest
-// of the texture is cleared. A texel has the cracks to the east (x) and south (y) of its
-// pixel.
+// of the buffer is cleared. A pixel has a crack to the east (x) and one to the south (y).
+// PLANES: also writes the planes of bits, see planes.wgsl.
 
 #import bevy_comics::depth::view::{View, set_view}
 #import bevy_comics::lines::crack::cracks
 #import bevy_comics::lines::edge::{Grid, Lines}
-#import bevy_comics::lines::rows::{
-    Above, CELL_ROWS, COLUMNS, GROUP, GROUPS, four_columns, step_down,
+#import bevy_comics::lines::listed::listed_cell
+#import bevy_comics::lines::planes::{
+    CELL_ROWS, FOUND_EAST, FOUND_SOUTH, LINKED_EAST, LINKED_SOUTH, column_word, row_word,
 }
+#import bevy_comics::lines::rows::{Above, four_columns, step_down}
 
 struct CellUniform {
     seen: View,
@@ -16,50 +18,107 @@ struct CellUniform {
 }
 
 @group(0) @binding(1) var<uniform> cell_uniform: CellUniform;
-// See walk.wgsl.
-@group(0) @binding(16) var<storage> cell_counts: array<u32, 4>;
-@group(0) @binding(17) var<storage> cells: array<u32>;
-@group(0) @binding(18) var crack_texture: texture_storage_2d<rg32uint, write>;
+@group(0) @binding(18) var<storage, read_write> crack_words: array<vec2<u32>>;
+#ifdef PLANES
+@group(0) @binding(21) var<storage, read_write> planes_found: array<atomic<u32>>;
+#endif
+
+#ifdef PLANES
+// Adds the bits of a cell's column to a plane.
+fn add_column(plane: i32, x: i32, top: i32, rows: u32) {
+    let g = cell_uniform.grid;
+    if rows != 0u && x < g.rect.z {
+        atomicOr(&planes_found[column_word(g, plane, x, top >> 5u)], rows << u32(top & 31));
+    }
+}
+
+// Adds the bits of a cell's four columns to a plane.
+fn add_columns(plane: i32, cell: vec2<i32>, rows: vec4<u32>) {
+    add_column(plane, cell.x, cell.y, rows.x);
+    add_column(plane, cell.x + 1, cell.y, rows.y);
+    add_column(plane, cell.x + 2, cell.y, rows.z);
+    add_column(plane, cell.x + 3, cell.y, rows.w);
+}
+
+// Adds cracks to the south to the plane of rows: one bit for each row of four columns.
+fn add_rows(cell: vec2<i32>, south: vec4<u32>) {
+    for (var row = 0; row < CELL_ROWS; row++) {
+        let four = (south >> vec4(u32(row))) & vec4(1u);
+        let bits = four.x | (four.y << 1u) | (four.z << 2u) | (four.w << 3u);
+        if bits != 0u {
+            atomicOr(&planes_found[row_word(cell_uniform.grid, cell.x >> 5u, cell.y + row)], bits << u32(cell.x & 31));
+        }
+    }
+}
+#endif
+
+// Stores the cracks of four pixels of a row, of which those in the grid.
+fn store_row(first: vec2<i32>, east: vec4<u32>, south: vec4<u32>) {
+    let rect = cell_uniform.grid.rect;
+    let at = first.y * rect.z + first.x;
+    crack_words[at] = vec2(east.x, south.x);
+    if first.x + 1 < rect.z {
+        crack_words[at + 1] = vec2(east.y, south.y);
+    }
+    if first.x + 2 < rect.z {
+        crack_words[at + 2] = vec2(east.z, south.z);
+    }
+    if first.x + 3 < rect.z {
+        crack_words[at + 3] = vec2(east.w, south.w);
+    }
+}
+
+// One bit for each crack.
+fn bits(are: vec4<bool>, bit: u32) -> vec4<u32> {
+    return select(vec4(0u), vec4(1u << bit), are);
+}
 
 @compute @workgroup_size(32)
 fn find_in_cells(
     @builtin(workgroup_id) group: vec3<u32>,
     @builtin(local_invocation_index) place: u32,
 ) {
-    let index = (group.y * GROUPS + group.x) * GROUP + place;
-    if index >= cell_counts[3] {
+    let cell = listed_cell(group, place);
+    if cell.x < 0 {
         return;
     }
     set_view(cell_uniform.seen);
     let s = cell_uniform.settings;
     let last = cell_uniform.grid.rect.zw - 1;
-    let x = i32(cells[index] & 0xffffu) * COLUMNS;
-    let top = i32(cells[index] >> 16u) * CELL_ROWS;
-    let columns = four_columns(cell_uniform.grid.rect, x);
+    let columns = four_columns(cell_uniform.grid.rect, cell.x);
     var above: Above;
     // Cracks to the east in the rows above: 1 is the row above the newest one.
     var east_1 = vec4(0u);
     var east_2 = vec4(0u);
     var east_3 = vec4(0u);
+    // One bit for each row of the cell.
+    var found_east = vec4(0u);
+    var found_south = vec4(0u);
+    var certain_east = vec4(0u);
+    var certain_south = vec4(0u);
     for (var i = -2; i <= CELL_ROWS + 2; i++) {
-        let found = step_down(&above, columns, top + i);
-        let east = cracks(s, found.east);
-        let south = cracks(s, found.south);
-        let y = top + i - 3;
+        let borders = step_down(&above, columns, cell.y + i);
+        let east = cracks(s, borders.east);
+        let south = cracks(s, borders.south);
+        if i >= 0 && i < CELL_ROWS && cell.y + i <= last.y {
+            found_east |= bits(east.packed != vec4(0u), u32(i));
+            certain_east |= bits(east.certain, u32(i));
+        }
+        let y = cell.y + i - 3;
         if i >= 3 && y <= last.y {
-            textureStore(crack_texture, vec2(x, y), vec4(east_3.x, south.x, 0u, 0u));
-            if x < last.x {
-                textureStore(crack_texture, vec2(x + 1, y), vec4(east_3.y, south.y, 0u, 0u));
-            }
-            if x + 1 < last.x {
-                textureStore(crack_texture, vec2(x + 2, y), vec4(east_3.z, south.z, 0u, 0u));
-            }
-            if x + 2 < last.x {
-                textureStore(crack_texture, vec2(x + 3, y), vec4(east_3.w, south.w, 0u, 0u));
-            }
+            found_south |= bits(south.packed != vec4(0u), u32(i - 3));
+            certain_south |= bits(south.certain, u32(i - 3));
+            store_row(vec2(cell.x, y), east_3, south.packed);
         }
         east_3 = east_2;
         east_2 = east_1;
-        east_1 = east;
+        east_1 = east.packed;
     }
+#ifdef PLANES
+    add_columns(FOUND_EAST, cell, found_east);
+    add_columns(FOUND_SOUTH, cell, found_south);
+    add_columns(LINKED_EAST, cell, certain_east);
+    add_columns(LINKED_SOUTH, cell, certain_south);
+    add_rows(cell, select(vec4(0u), certain_south, columns.own >= vec4(0, 1, 2, 3) + cell.x));
+#endif
 }

@@ -11,8 +11,9 @@
 #import bevy_comics::lines::blocks::{BLOCK_HEIGHT, BLOCK_WIDTH, marked_rows}
 #endif
 #import bevy_comics::lines::edge::{
-    Grid, Lines, crack_opacity, is_apart, line_coverage, line_middle, pack_middle, unpack_width,
+    Grid, Lines, crack_opacity, is_apart, line_coverage, pack_middle, unpack_width,
 }
+#import bevy_comics::lines::stored::{load_bends, load_cracks, stored_middle}
 
 struct ColumnUniform {
     seen: View,
@@ -21,7 +22,6 @@ struct ColumnUniform {
 }
 
 @group(0) @binding(1) var<uniform> column_uniform: ColumnUniform;
-@group(0) @binding(11) var crack_texture: texture_2d<u32>;
 
 // The best crack in the column so far, and the one whose line reaches farthest among those
 // with another middle.
@@ -49,11 +49,12 @@ fn compare(best: ptr<function, Best>, packed: u32, middle: vec2<f32>, south: boo
     let score = select(-1e6, value + 1e-4 * (half_width - away), exists);
     // Squared: how far the line reaches over the pixel's row.
     let reach = select(-1e6, (half_width + 0.5) * (half_width + 0.5) - away * away, exists);
-    let better = score > (*best).score;
+    // Of equal cracks the first is taken: differences by rounding do not count.
+    let better = score > (*best).score + 1e-6;
     // Both cracks at a corner of a line of odd width have their middle in one pixel.
     let other = is_apart(middle, (*best).first);
-    let pushed = better && other && (*best).reach.x > (*best).reach.y;
-    let next = !better && other && reach > (*best).reach.y;
+    let pushed = better && other && (*best).reach.x > (*best).reach.y + 1e-3;
+    let next = !better && other && reach > (*best).reach.y + 1e-3;
     (*best).packed.y = select(select((*best).packed.y, packed, next), (*best).packed.x, pushed);
     (*best).second = select(select((*best).second, middle, next), (*best).first, pushed);
     (*best).reach.y = select(select((*best).reach.y, reach, next), (*best).reach.x, pushed);
@@ -62,15 +63,16 @@ fn compare(best: ptr<function, Best>, packed: u32, middle: vec2<f32>, south: boo
     (*best).packed.x = select((*best).packed.x, packed, better);
     (*best).first = select((*best).first, middle, better);
     (*best).reach.x = select((*best).reach.x, reach, better);
-    (*best).score = max((*best).score, score);
+    (*best).score = select((*best).score, score, better);
 }
 
 // Compares both cracks of the pixel in row `y` of the column of `p`.
 fn compare_row(best: ptr<function, Best>, p: vec2<i32>, y: i32) {
-    let packed = textureLoad(crack_texture, vec2(p.x, y), 0).xy;
+    let packed = load_cracks(column_uniform.grid, vec2(p.x, y));
+    let bends = load_bends(column_uniform.grid, vec2(p.x, y));
     let row = vec2(0.0, f32(y - p.y));
-    compare(best, packed.x, row + line_middle(packed.x, vec2(1.0, 0.0)), false);
-    compare(best, packed.y, row + line_middle(packed.y, vec2(0.0, 1.0)), true);
+    compare(best, packed.x, row + stored_middle(packed.x, vec2(1.0, 0.0), bends), false);
+    compare(best, packed.y, row + stored_middle(packed.y, vec2(0.0, 1.0), bends >> 16u), true);
 }
 
 @fragment

@@ -45,8 +45,28 @@ fn half_width_of(slots: vec4<u32>, s: Lines) -> vec4<f32> {
     return width;
 }
 
-// Four packed cracks, see Crack in edge.wgsl; 0 where there is none.
-fn cracks(s: Lines, at: Borders) -> vec4<u32> {
+// Four cracks.
+struct Cracks {
+    // Packed, see Crack in edge.wgsl; 0 where there is none.
+    packed: vec4<u32>,
+    // Whether they are lines by themselves. The others only continue lines.
+    certain: vec4<bool>,
+}
+
+// Half of the smallest width of a line in physical pixels: a thinner one is fainter.
+const THINNEST: f32 = 0.3;
+
+// Packs ink and half width as they respond to the `amount` of the full response, 0 to 1.
+// Along object edges, which have no response, lines have their full width.
+fn pack_response(s: Lines, amount: vec4<f32>, object: vec4<bool>, opacity: vec4<f32>, half_width: vec4<f32>) -> vec4<u32> {
+    let thinnest = min(half_width, vec4(THINNEST));
+    let thinner = half_width * select(mix(vec4(1.0), amount, s.width_part), vec4(1.0), object);
+    let fainter = min(thinner / max(thinnest, vec4(1e-3)), vec4(1.0));
+    let ink = mix(fainter, amount * fainter, max(vec4(s.ink_part), vec4<f32>(object)));
+    return pack_ink(ink, opacity, max(thinner, thinnest));
+}
+
+fn cracks(s: Lines, at: Borders) -> Cracks {
     let near = max(at.here, at.there);
     let reference = s.reference_factor * near + s.reference_constant;
     let here_nearer = at.here >= at.there;
@@ -55,6 +75,7 @@ fn cracks(s: Lines, at: Borders) -> vec4<u32> {
     var found = vec4(0u);
     var ink = vec4(0.0);
     var mine = here_nearer;
+    var certain = vec4(false);
 #ifdef SILHOUETTES
     let depth_response = step_response(at.excess, s.silhouette_k * reference);
     let depth_ink = smoothstep(vec4(s.silhouette_low), vec4(s.silhouette_high), depth_response);
@@ -62,9 +83,11 @@ fn cracks(s: Lines, at: Borders) -> vec4<u32> {
     let silhouette = draws & (near > vec4(0.0)) & (byte(depth_ink) > vec4(0u));
     found |= select(vec4(0u), vec4(SILHOUETTE), silhouette);
     ink = select(ink, depth_ink, silhouette);
+    certain = silhouette & (depth_response >= vec4(s.silhouette_limit));
 #endif
 #ifdef CREASES
-    let bend_ink = smoothstep(vec4(s.crease_low), vec4(s.crease_high), fold_response(at.folds, s.crease_k));
+    let bend_response = fold_response(at.folds, s.crease_k);
+    let bend_ink = smoothstep(vec4(s.crease_low), vec4(s.crease_high), bend_response);
     let creased_here = has(kinds_here, CREASE);
     let creased_there = has(kinds_there, CREASE);
     // Both sides of a crease meet: there is no jump in depth between them.
@@ -72,6 +95,7 @@ fn cracks(s: Lines, at: Borders) -> vec4<u32> {
     let crease = at.ridge & joined & (creased_here | creased_there) & (byte(bend_ink) > vec4(0u)) & (found == vec4(0u));
     found |= select(vec4(0u), vec4(CREASE), crease);
     ink = select(ink, bend_ink, crease);
+    certain |= crease & (bend_response >= vec4(s.crease_limit));
     mine = select(mine, owned(here_nearer, creased_here, creased_there), crease);
 #endif
 #ifdef OBJECT_EDGES
@@ -85,6 +109,7 @@ fn cracks(s: Lines, at: Borders) -> vec4<u32> {
     let object = (at.object_here != at.object_there) & drawn;
     found |= select(vec4(0u), vec4(OBJECT), object);
     mine = select(mine, object_mine, object);
+    certain |= object;
 #endif
     var opacity = vec4(1.0);
     var half_width = half_width_of(select(at.slot_there, at.slot_here, mine), s);
@@ -98,6 +123,6 @@ fn cracks(s: Lines, at: Borders) -> vec4<u32> {
     opacity -= s.opacity_fade * map;
     half_width *= 1.0 - s.width_fade * map;
 #endif
-    let packed = found | select(vec4(0u), vec4(8u), mine) | pack_ink(ink, opacity, half_width);
-    return select(vec4(0u), packed, found != vec4(0u));
+    let packed = found | select(vec4(0u), vec4(8u), mine) | pack_response(s, ink, has(found, OBJECT), opacity, half_width);
+    return Cracks(select(vec4(0u), packed, found != vec4(0u)), certain);
 }

@@ -13,16 +13,56 @@ use super::{
     key::WORKGROUP,
     prepare::blocks,
     request::LineRequest,
+    store::CrackBuffers,
     tiles::{TileList, TileLists},
 };
 
 /// A pass that is ready to be recorded: its pipeline and bindings.
 pub(super) type Ready<'a, P> = (&'a P, BindGroup);
 
-/// The pass that finds cracks, ready to be recorded.
+/// The passes that find cracks in cells, ready to be recorded.
+pub(super) struct ReadyCells<'a> {
+    pub lists: &'a TileLists,
+    pub buffers: &'a CrackBuffers,
+    pub find: Ready<'a, ComputePipeline>,
+    pub link: Vec<Ready<'a, ComputePipeline>>,
+    pub settle: Option<Ready<'a, ComputePipeline>>,
+}
+
+impl ReadyCells<'_> {
+    fn record(&self, encoder: &mut CommandEncoder) {
+        self.buffers.clear(encoder);
+        self.dispatch(encoder, "comics_find_in_cells", &self.find);
+        for (i, link) in self.link.iter().enumerate() {
+            self.buffers.copy_planes(encoder, i % 2);
+            self.dispatch(encoder, "comics_link_lines", link);
+        }
+        if let Some(settle) = &self.settle {
+            self.dispatch(encoder, "comics_settle_lines", settle);
+        }
+    }
+
+    fn dispatch(
+        &self,
+        encoder: &mut CommandEncoder,
+        label: &str,
+        (pipeline, group): &Ready<ComputePipeline>,
+    ) {
+        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+            label: Some(label),
+            timestamp_writes: None,
+        });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, group, &[]);
+        self.lists.dispatch_cells(&mut pass);
+    }
+}
+
+/// The passes that find cracks, ready to be recorded.
 pub(super) enum ReadyFind<'a> {
-    Cells(&'a TileLists, Ready<'a, ComputePipeline>),
-    Pixels(Ready<'a, RenderPipeline>),
+    Cells(ReadyCells<'a>),
+    /// Draws them into a texture.
+    Pixels(Ready<'a, RenderPipeline>, &'a CachedTexture),
 }
 
 /// The passes of the lines along cracks, ready to be recorded.
@@ -31,38 +71,27 @@ pub(super) struct ReadyCracks<'a> {
     pub find: ReadyFind<'a>,
     pub columns: Option<(Ready<'a, RenderPipeline>, &'a CachedTexture)>,
     pub ink: Ready<'a, RenderPipeline>,
-    pub texture: &'a CachedTexture,
 }
 
 impl ReadyCracks<'_> {
     /// Finds the cracks.
     pub fn find(&self, encoder: &mut CommandEncoder) {
-        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
-            label: Some("comics_find_lines"),
-            color_attachments: &[Some(cleared(self.texture))],
-            ..Default::default()
-        });
         match &self.find {
-            ReadyFind::Pixels((pipeline, group)) => {
+            ReadyFind::Pixels((pipeline, group), texture) => {
+                let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+                    label: Some("comics_find_lines"),
+                    color_attachments: &[Some(cleared(texture))],
+                    ..Default::default()
+                });
                 pass.set_pipeline(pipeline);
                 pass.set_bind_group(0, group, &[]);
                 pass.draw(0..3, 0..1);
             }
-            // The pass above clears the texture.
-            ReadyFind::Cells(lists, (pipeline, group)) => {
-                drop(pass);
-                let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-                    label: Some("comics_find_in_cells"),
-                    timestamp_writes: None,
-                });
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(0, group, &[]);
-                lists.dispatch_cells(&mut pass);
-            }
+            ReadyFind::Cells(cells) => cells.record(encoder),
         }
     }
 
-    /// Finds the best crack of each pixel's column.
+    /// Finds the best cracks of each pixel's column.
     pub fn search_columns(&self, encoder: &mut CommandEncoder) {
         let Some((columns, texture)) = &self.columns else {
             return;

@@ -6,11 +6,14 @@
 
 #import bevy_comics::depth::view::{View, set_view}
 #import bevy_comics::lines::edge::{
-    Grid, Lines, encode_ink, ink_of, is_apart, largest_opacity, line_coverage, line_middle, owner_at,
+    Grid, Lines, encode_ink, ink_of, is_apart, largest_opacity, line_coverage, owner_at,
     segment_distance, unpack_middle, unpack_width,
 }
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::texel_object
+#endif
+#ifndef COLUMNS
+#import bevy_comics::lines::stored::{load_bends, load_cracks, stored_middle}
 #endif
 
 struct DrawUniform {
@@ -20,9 +23,7 @@ struct DrawUniform {
 }
 
 @group(0) @binding(1) var<uniform> draw_uniform: DrawUniform;
-#ifndef COLUMNS
-@group(0) @binding(11) var crack_texture: texture_2d<u32>;
-#else
+#ifdef COLUMNS
 // The best two cracks of each pixel's column, see columns.wgsl.
 @group(0) @binding(13) var column_texture: texture_2d<u32>;
 #endif
@@ -90,18 +91,63 @@ fn follow(ink: ptr<function, Ink>, middle: vec2<f32>, border: f32) {
 fn add_pixel(ink: ptr<function, Ink>, p: vec2<i32>, at: vec2<f32>) {
     let last = draw_uniform.grid.rect.zw - 1;
     let inside = all(p >= vec2(0)) && all(p <= last);
-    let texel = textureLoad(crack_texture, clamp(p, vec2(0), last), 0).xy;
-    let packed = select(vec2(0u), texel, inside);
-    add_crack(ink, packed.x, p, vec2(1, 0), at);
-    add_crack(ink, packed.y, p, vec2(0, 1), at);
+    let stored = clamp(p, vec2(0), last);
+    let packed = select(vec2(0u), load_cracks(draw_uniform.grid, stored), inside);
+    let bends = load_bends(draw_uniform.grid, stored);
+    add_crack(ink, packed.x, p, vec2(1, 0), bends, at);
+    add_crack(ink, packed.y, p, vec2(0, 1), bends >> 16u, at);
 }
 
 // Adds the crack of the pixel `p` that is `towards` the east or the south.
-fn add_crack(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i32>, at: vec2<f32>) {
-    let middle = vec2<f32>(p) + 0.5 + line_middle(packed, vec2<f32>(towards));
+fn add_crack(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i32>, bend: u32, at: vec2<f32>) {
+    let middle = vec2<f32>(p) + 0.5 + stored_middle(packed, vec2<f32>(towards), bend);
     add(ink, packed, middle, select(p + towards, p, (packed & 8u) != 0u), at);
 }
 #endif
+
+// Adds the lines near a position of the grid.
+fn search(ink: ptr<function, Ink>, centre: vec2<i32>, at: vec2<f32>) {
+    let g = draw_uniform.grid;
+#ifdef NEIGHBOURS
+    // CPU adapters execute the body of a loop once more than it iterates.
+    add_pixel(ink, centre + vec2(-1, -1), at);
+    add_pixel(ink, centre + vec2(0, -1), at);
+    add_pixel(ink, centre + vec2(1, -1), at);
+    add_pixel(ink, centre + vec2(-1, 0), at);
+    add_pixel(ink, centre, at);
+    add_pixel(ink, centre + vec2(1, 0), at);
+    add_pixel(ink, centre + vec2(-1, 1), at);
+    add_pixel(ink, centre + vec2(0, 1), at);
+#ifdef SMOOTH
+    // Lines leave their cracks by up to half a pixel.
+    add_pixel(ink, centre + vec2(1, 1), at);
+    add_pixel(ink, centre + vec2(-1, -2), at);
+    add_pixel(ink, centre + vec2(0, -2), at);
+    add_pixel(ink, centre + vec2(1, -2), at);
+    add_pixel(ink, centre + vec2(-2, -1), at);
+    add_pixel(ink, centre + vec2(-2, 0), at);
+    add_pixel(ink, centre + vec2(-2, 1), at);
+#endif
+#else ifdef COLUMNS
+    let last = g.rect.zw - 1;
+    for (var x = -g.reach - 1; x <= g.reach; x++) {
+        let p = vec2(centre.x + x, clamp(centre.y, 0, last.y));
+        let inside = p.x >= 0 && p.x <= last.x;
+        let texel = textureLoad(column_texture, vec2(clamp(p.x, 0, last.x), p.y), 0);
+        let stored = select(vec4(0u), texel, inside);
+        let first = vec2<f32>(p) + 0.5 + unpack_middle(stored.y);
+        let second = vec2<f32>(p) + 0.5 + unpack_middle(stored.w);
+        add(ink, stored.x, first, owner_at(stored.x, first, stored.y), at);
+        add(ink, stored.z, second, owner_at(stored.z, second, stored.w), at);
+    }
+#else
+    for (var y = -g.reach; y <= g.reach; y++) {
+        for (var x = -g.reach; x <= g.reach; x++) {
+            add_pixel(ink, centre + vec2(x, y), at);
+        }
+    }
+#endif
+}
 
 @fragment
 fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
@@ -112,35 +158,7 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let centre = vec2<i32>(floor(at));
     var ink: Ink;
     ink.distances = vec2(1e6);
-#ifdef NEIGHBOURS
-    // CPU adapters execute the body of a loop once more than it iterates.
-    add_pixel(&ink, centre + vec2(-1, -1), at);
-    add_pixel(&ink, centre + vec2(0, -1), at);
-    add_pixel(&ink, centre + vec2(1, -1), at);
-    add_pixel(&ink, centre + vec2(-1, 0), at);
-    add_pixel(&ink, centre, at);
-    add_pixel(&ink, centre + vec2(1, 0), at);
-    add_pixel(&ink, centre + vec2(-1, 1), at);
-    add_pixel(&ink, centre + vec2(0, 1), at);
-#else ifdef COLUMNS
-    let last = g.rect.zw - 1;
-    for (var x = -g.reach - 1; x <= g.reach; x++) {
-        let p = vec2(centre.x + x, clamp(centre.y, 0, last.y));
-        let inside = p.x >= 0 && p.x <= last.x;
-        let texel = textureLoad(column_texture, vec2(clamp(p.x, 0, last.x), p.y), 0);
-        let stored = select(vec4(0u), texel, inside);
-        let first = vec2<f32>(p) + 0.5 + unpack_middle(stored.y);
-        let second = vec2<f32>(p) + 0.5 + unpack_middle(stored.w);
-        add(&ink, stored.x, first, owner_at(stored.x, first, stored.y), at);
-        add(&ink, stored.z, second, owner_at(stored.z, second, stored.w), at);
-    }
-#else
-    for (var y = -g.reach; y <= g.reach; y++) {
-        for (var x = -g.reach; x <= g.reach; x++) {
-            add_pixel(&ink, centre + vec2(x, y), at);
-        }
-    }
-#endif
+    search(&ink, centre, at);
     // Between the middles of two neighbouring cracks, a line runs straight. Discs around
     // the middles alone would leave diagonal lines too thin.
     if ink.distances.y < 1e5 && distance(ink.first, ink.second) < 1.5 {

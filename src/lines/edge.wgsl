@@ -33,6 +33,12 @@ struct Lines {
     // A step above this multiple of the reference separates two surfaces that do not
     // meet: no crease runs there.
     jump: f32,
+    // 1 where weak edges have less ink, and less width; otherwise 0.
+    ink_part: f32,
+    width_part: f32,
+    // Responses from which cracks are certain: weaker ones only continue lines.
+    silhouette_limit: f32,
+    crease_limit: f32,
     unused: u32,
 }
 
@@ -50,6 +56,12 @@ struct Grid {
     // MapJumps: the least departure of the depth map, and the distance in whole pixels.
     jump_least: f32,
     jump_radius: f32,
+    // Words of 32 pixels across the grid and down it, see planes.wgsl.
+    words: vec2<i32>,
+    // Cracks that a line continues along weak edges.
+    steps: i32,
+    // Pieces of line of fewer cracks are left out.
+    specks: i32,
 }
 
 // The gradient at x from its eight neighbours a to h, row by row ([CL] Eq. 1).
@@ -255,11 +267,13 @@ fn crack_opacity(s: Lines, packed: u32) -> f32 {
     return largest_opacity(s, ink_of(packed));
 }
 
-// The middle of the line along a crack, in pixels from the centre of the crack's pixel.
-// `across`: the unit vector from the pixel to the crack.
-fn line_middle(packed: u32, across: vec2<f32>) -> vec2<f32> {
-    let to_owner = select(1.0, -1.0, (packed & 8u) != 0u);
-    return (0.5 + to_owner * line_offset(unpack_width(packed >> 20u))) * across;
+// The middle of the line near a crack, in pixels from the centre of the crack's pixel.
+// `across`: the unit vector from the pixel to the crack; `bend`: see line_bend in bend.wgsl;
+// `shifts`: see line_offset.
+fn line_middle(packed: u32, across: vec2<f32>, bend: vec2<f32>, shifts: bool) -> vec2<f32> {
+    let to_owner = select(0.0, select(1.0, -1.0, (packed & 8u) != 0u), shifts);
+    let normal = (across - bend.y * across.yx) * inverseSqrt(1.0 + bend.y * bend.y);
+    return (0.5 + bend.x) * across + to_owner * line_offset(unpack_width(packed >> 20u)) * normal;
 }
 
 // Packs the middle of a line into 32 bits: less than 32 pixels across and 64 down, in 512ths

@@ -70,5 +70,5 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     at.object_there = vec2(east.x, south.x).xyxy;
     at.slot_there = vec2(east.y, south.y).xyxy;
 #endif
-    return cracks(find_uniform.settings, at).xy;
+    return cracks(find_uniform.settings, at).packed.xy;
 }

@@ -1,23 +1,9 @@
-//! The keys that select the variants of the line passes, and what their shaders bind.
+//! The keys that select the variants of the line passes.
 
-use bevy::{
-    math::{UVec4, Vec2},
-    render::render_resource::{
-        BindGroupLayoutDescriptor, BindGroupLayoutEntry, ShaderStages, ShaderType,
-        StorageTextureAccess, TextureFormat, TextureSampleType,
-        binding_types::{
-            storage_buffer_read_only_sized, storage_buffer_sized, texture_2d, texture_storage_2d,
-            uniform_buffer, uniform_buffer_sized,
-        },
-    },
-    shader::ShaderDefVal,
-};
+use bevy::{math::Vec2, render::render_resource::TextureFormat, shader::ShaderDefVal};
 
-use super::request::{LinePassUniform, LineRequest};
-use crate::{
-    objects::{ids_entry, object_styles_entry},
-    settings::Form,
-};
+use super::request::LineRequest;
+use crate::settings::Form;
 
 /// The two cracks of a pixel, see `Crack` in `edge.wgsl`.
 pub(crate) const CRACK_FORMAT: TextureFormat = TextureFormat::Rg32Uint;
@@ -30,6 +16,9 @@ pub(crate) const INK_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
 
 /// Columns and rows of a block: an invocation of `walk.wgsl` walks through one.
 pub(crate) const BLOCK: [u32; 2] = [4, 32];
+/// Cracks that a pass of `link.wgsl` continues lines by.
+pub(super) const LINK_STEPS: usize = 8;
+
 /// Blocks in a workgroup, side by side.
 pub(crate) const WORKGROUP: u32 = 32;
 
@@ -69,6 +58,9 @@ pub(crate) struct LineKey {
     pub visible_range: bool,
     /// Whether there are silhouettes and creases of the faithful form.
     pub faithful: [bool; 2],
+    /// Cracks are linked to lines, and lines run straight through the steps of pixels.
+    pub links: bool,
+    pub smooth: bool,
     /// The depth texture has one pixel per pixel of the viewport.
     pub same_size: bool,
     pub search: Search,
@@ -97,6 +89,8 @@ impl LineKey {
             fading: lines.fades(),
             visible_range: request.visible_range,
             faithful: forms.map(|form| form == Some(Form::Faithful)),
+            links: lines.links() && !by_fragments,
+            smooth: lines.smooth && !by_fragments,
             same_size: request.view.depth_scale == Vec2::ONE,
             search: request.search(),
             jumps: request.jumps.is_some(),
@@ -110,6 +104,11 @@ impl LineKey {
         self.silhouettes || self.creases || self.object_edges
     }
 
+    /// Whether the cracks are also stored as planes of bits.
+    pub fn has_planes(&self) -> bool {
+        self.links || self.smooth
+    }
+
     pub fn has_faithful(&self) -> bool {
         self.faithful.contains(&true)
     }
@@ -121,6 +120,8 @@ impl LineKey {
             object_styles: false,
             fading: false,
             visible_range: self.jumps && self.visible_range,
+            links: false,
+            smooth: false,
             jumps: self.jumps,
             map_flags: if self.jumps { self.map_flags } else { 0 },
             ..self.for_find()
@@ -154,9 +155,18 @@ impl LineKey {
         }
     }
 
+    /// The part that completing cracks depends on.
+    pub fn for_settle(self) -> Self {
+        Self {
+            smooth: self.smooth,
+            ..Self::default()
+        }
+    }
+
     /// The part that the search in columns depends on.
     pub fn for_columns(self) -> Self {
         Self {
+            smooth: self.smooth,
             by_fragments: self.by_fragments,
             ..Self::default()
         }
@@ -168,6 +178,7 @@ impl LineKey {
             ids: self.object_styles,
             object_styles: self.object_styles,
             search: self.search,
+            smooth: self.smooth && self.search != Search::Columns,
             by_fragments: self.by_fragments,
             ..Self::default()
         }
@@ -186,7 +197,14 @@ impl LineKey {
     }
 
     pub fn find_defs(&self) -> Vec<ShaderDefVal> {
-        self.crack_defs(self.silhouettes || self.creases)
+        let planes = self.has_planes().then(|| "PLANES".into());
+        let mut defs = self.crack_defs(self.silhouettes || self.creases);
+        defs.extend(planes);
+        defs
+    }
+
+    pub fn settle_defs(&self) -> Vec<ShaderDefVal> {
+        names([(self.smooth, "SMOOTH")]).collect()
     }
 
     /// `excess`: the excess of steps in depth is computed. It excludes creases too.
@@ -238,106 +256,9 @@ impl LineKey {
                 (self.search == Search::Neighbours, "NEIGHBOURS"),
                 (self.search == Search::Columns, "COLUMNS"),
                 (!self.by_fragments, "BLOCKS"),
+                (self.smooth, "SMOOTH"),
             ]))
             .collect()
-    }
-
-    /// The layout entries of what finding reads. `normals`: the normals are read.
-    fn inputs(&self, normals: bool, stages: ShaderStages) -> Vec<BindGroupLayoutEntry> {
-        let float = || texture_2d(TextureSampleType::Float { filterable: false });
-        let mut entries = vec![
-            uniform_buffer::<LinePassUniform>(false).build(1, stages),
-            float().build(2, stages),
-        ];
-        let seen = |mut entry: BindGroupLayoutEntry| {
-            entry.visibility = stages;
-            entry
-        };
-        if self.visible_range {
-            entries.push(seen(range_entry()));
-        }
-        if self.object_styles {
-            entries.push(seen(object_styles_entry()));
-        }
-        if normals {
-            entries.push(float().build(7, stages));
-        }
-        if self.ids {
-            entries.push(seen(ids_entry(false)));
-        }
-        entries
-    }
-
-    pub fn walk_layout(&self) -> BindGroupLayoutDescriptor {
-        let mut entries = self.inputs(self.creases, ShaderStages::COMPUTE);
-        let blocks = texture_storage_2d(BLOCK_FORMAT, StorageTextureAccess::WriteOnly);
-        entries.push(blocks.build(10, ShaderStages::COMPUTE));
-        if self.has_cracks() {
-            for binding in [16, 17] {
-                let cells = storage_buffer_sized(false, None);
-                entries.push(cells.build(binding, ShaderStages::COMPUTE));
-            }
-        }
-        BindGroupLayoutDescriptor::new("comics_walk", &entries)
-    }
-
-    pub fn cells_layout(&self) -> BindGroupLayoutDescriptor {
-        let mut entries = self.inputs(self.creases, ShaderStages::COMPUTE);
-        for binding in [16, 17] {
-            let cells = storage_buffer_read_only_sized(false, None);
-            entries.push(cells.build(binding, ShaderStages::COMPUTE));
-        }
-        let cracks = texture_storage_2d(CRACK_FORMAT, StorageTextureAccess::WriteOnly);
-        entries.push(cracks.build(18, ShaderStages::COMPUTE));
-        BindGroupLayoutDescriptor::new("comics_find_in_cells", &entries)
-    }
-
-    pub fn find_layout(&self) -> BindGroupLayoutDescriptor {
-        let entries = self.inputs(self.creases, ShaderStages::FRAGMENT);
-        BindGroupLayoutDescriptor::new("comics_find_lines", &entries)
-    }
-
-    pub fn faithful_layout(&self) -> BindGroupLayoutDescriptor {
-        let entries = self.inputs(self.faithful[1], ShaderStages::FRAGMENT);
-        BindGroupLayoutDescriptor::new("comics_faithful_lines", &entries)
-    }
-
-    pub fn columns_layout(&self) -> BindGroupLayoutDescriptor {
-        let mut entries = self.searched(11);
-        if !self.by_fragments {
-            let blocks = texture_2d(TextureSampleType::Uint);
-            entries.push(blocks.build(12, ShaderStages::FRAGMENT));
-        }
-        BindGroupLayoutDescriptor::new("comics_line_columns", &entries)
-    }
-
-    /// The layout entries of a pass that searches cracks in the texture at this binding.
-    fn searched(&self, binding: u32) -> Vec<BindGroupLayoutEntry> {
-        let cracks = texture_2d(TextureSampleType::Uint);
-        vec![
-            uniform_buffer::<LinePassUniform>(false).build(1, ShaderStages::FRAGMENT),
-            cracks.build(binding, ShaderStages::FRAGMENT),
-        ]
-    }
-
-    pub fn tiles_layout() -> BindGroupLayoutDescriptor {
-        let compute = ShaderStages::COMPUTE;
-        let entries = [
-            uniform_buffer::<LinePassUniform>(false).build(1, compute),
-            texture_2d(TextureSampleType::Uint).build(12, compute),
-            storage_buffer_sized(false, None).build(14, compute),
-            storage_buffer_sized(false, None).build(15, compute),
-        ];
-        BindGroupLayoutDescriptor::new("comics_list_tiles", &entries)
-    }
-
-    pub fn draw_layout(&self) -> BindGroupLayoutDescriptor {
-        let columns = self.search == Search::Columns;
-        let mut entries = self.searched(if columns { 13 } else { 11 });
-        if self.object_styles {
-            entries.push(ids_entry(false));
-        }
-        BindGroupLayoutDescriptor::new("comics_draw_lines", &entries)
     }
 }
 
@@ -346,14 +267,4 @@ fn names<const N: usize>(flags: [(bool, &'static str); N]) -> impl Iterator<Item
         .into_iter()
         .filter(|(on, _)| *on)
         .map(|(_, name)| name.into())
-}
-
-/// The layout entry of the visible range, the same in all passes.
-pub(crate) fn range_entry() -> BindGroupLayoutEntry {
-    uniform_buffer_sized(false, Some(UVec4::min_size())).build(3, ShaderStages::FRAGMENT)
-}
-
-/// The layout entry of the ink in the fused pass.
-pub(crate) fn ink_entry() -> BindGroupLayoutEntry {
-    texture_2d(TextureSampleType::Float { filterable: false }).build(4, ShaderStages::FRAGMENT)
 }

@@ -205,11 +205,38 @@ impl Default for ObjectEdges {
     }
 }
 
-/// The responses at which ink begins and at which it is full.
-pub(crate) fn ramp(limit: f32, softness: f32) -> [f32; 2] {
+/// What a line loses where an edge is weak.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+pub enum LineResponse {
+    /// Ink: weak edges have faint lines of full width.
+    Ink,
+    /// Width: weak edges have thin lines of full ink, like those of a pen that is
+    /// lifted. Lines thinner than 0.6 physical pixels are fainter instead.
+    #[default]
+    Width,
+    /// Ink and width.
+    Both,
+}
+
+impl LineResponse {
+    /// Whether ink and width are lost, as 0 or 1.
+    pub(crate) fn parts(self) -> [f32; 2] {
+        match self {
+            Self::Ink => [1.0, 0.0],
+            Self::Width => [0.0, 1.0],
+            Self::Both => [1.0, 1.0],
+        }
+    }
+}
+
+/// The responses at which ink begins and at which it is full. `weakest`: the response from
+/// which lines continue, if they do.
+pub(crate) fn ramp(limit: f32, softness: f32, weakest: Option<f32>) -> [f32; 2] {
     // smoothstep needs different ends: a hard step uses a softness of 0.001.
     let half = softness.max(1e-3) * limit.min(1.0 - limit);
-    [limit - half, limit + half]
+    let low = limit - half;
+    [low.min(weakest.unwrap_or(low)), limit + half]
 }
 
 impl Blend for Silhouettes {

@@ -1,18 +1,23 @@
 //! The service of lines. `resolve.wgsl` picks a sample of every pixel of a multisampled
 //! view. `walk.wgsl` looks for cracks, the borders between pixels that lines run along, in
-//! depth, normals and object ids, and `tiles.wgsl` lists the tiles near them. In these
-//! tiles, `find.wgsl` measures the cracks; `columns.wgsl`, for wide lines, and `draw.wgsl`
-//! draw their ink into a texture. Effects read the ink with `read.wgsl`.
+//! depth, normals and object ids; it lists the cells that have them, and `tiles.wgsl` the
+//! tiles nearby. In the cells, `cells.wgsl` measures the cracks, `link.wgsl` continues lines
+//! along weak ones, and `settle.wgsl` completes them. In the tiles, `columns.wgsl`, for wide
+//! lines, and `draw.wgsl` draw their ink into a texture. Effects read the ink with
+//! `read.wgsl`.
 
 mod cracks;
 mod draw;
+mod inputs;
 mod key;
 mod kinds;
+mod layouts;
 mod pipelines;
 mod prepare;
 pub(crate) mod request;
 mod resolve;
 mod settings;
+mod store;
 mod tiles;
 
 use bevy::{
@@ -35,8 +40,9 @@ use bevy::{
     shader::load_shader_library,
 };
 
-pub(crate) use key::{ink_entry, range_entry, reach};
-pub use kinds::{Creases, ObjectEdges, Silhouettes};
+pub(crate) use key::reach;
+pub use kinds::{Creases, LineResponse, ObjectEdges, Silhouettes};
+pub(crate) use layouts::{ink_entry, range_entry};
 pub(crate) use prepare::ViewLines;
 pub(crate) use settings::LinesUniform;
 pub use settings::{LineSettings, MapJumps};
@@ -54,8 +60,15 @@ pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "crack.wgsl");
     load_shader_library!(app, "jumps.wgsl");
     load_shader_library!(app, "read.wgsl");
+    load_shader_library!(app, "bend.wgsl");
+    load_shader_library!(app, "listed.wgsl");
+    load_shader_library!(app, "planes.wgsl");
+    load_shader_library!(app, "read_planes.wgsl");
+    load_shader_library!(app, "stored.wgsl");
     embedded_asset!(app, "walk.wgsl");
     embedded_asset!(app, "cells.wgsl");
+    embedded_asset!(app, "link.wgsl");
+    embedded_asset!(app, "settle.wgsl");
     embedded_asset!(app, "tiles.wgsl");
     embedded_asset!(app, "tile.wgsl");
     embedded_asset!(app, "resolve.wgsl");

@@ -25,6 +25,8 @@ pub(crate) struct LineShaders {
     fullscreen: FullscreenShader,
     walk: Handle<Shader>,
     cells: Handle<Shader>,
+    link: Handle<Shader>,
+    settle: Handle<Shader>,
     tiles: Handle<Shader>,
     tile: Handle<Shader>,
     find: Handle<Shader>,
@@ -39,6 +41,8 @@ impl LineShaders {
             fullscreen: fullscreen.clone(),
             walk: load_embedded_asset!(assets, "walk.wgsl"),
             cells: load_embedded_asset!(assets, "cells.wgsl"),
+            link: load_embedded_asset!(assets, "link.wgsl"),
+            settle: load_embedded_asset!(assets, "settle.wgsl"),
             tiles: load_embedded_asset!(assets, "tiles.wgsl"),
             tile: tile_shader(assets),
             find: load_embedded_asset!(assets, "find.wgsl"),
@@ -58,6 +62,10 @@ pub(crate) enum SearchPass {
     Tiles,
     /// Finds the cracks in the cells.
     Cells(LineKey),
+    /// Continues lines along weak cracks; the last pass by the steps that are left.
+    Link { last: bool },
+    /// Completes the cracks in the cells.
+    Settle(LineKey),
 }
 
 impl SpecializedComputePipeline for LineShaders {
@@ -68,11 +76,18 @@ impl SpecializedComputePipeline for LineShaders {
             SearchPass::Walk(_) => ("comics_walk", "walk", &self.walk),
             SearchPass::Tiles => ("comics_list_tiles", "list_tiles", &self.tiles),
             SearchPass::Cells(_) => ("comics_find_in_cells", "find_in_cells", &self.cells),
+            SearchPass::Link { .. } => ("comics_link_lines", "link", &self.link),
+            SearchPass::Settle(_) => ("comics_settle_lines", "settle", &self.settle),
         };
         let (layout, shader_defs) = match pass {
             SearchPass::Walk(key) => (key.walk_layout(), key.walk_defs()),
             SearchPass::Tiles => (LineKey::tiles_layout(), vec![]),
             SearchPass::Cells(key) => (key.cells_layout(), key.find_defs()),
+            SearchPass::Link { last } => {
+                let defs = last.then(|| "LAST".into());
+                (LineKey::link_layout(), defs.into_iter().collect())
+            }
+            SearchPass::Settle(key) => (key.settle_layout(), key.settle_defs()),
         };
         ComputePipelineDescriptor {
             label: Some(label.into()),

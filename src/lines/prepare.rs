@@ -22,8 +22,9 @@ use bevy::{
 
 use super::{
     key::{BLOCK, BLOCK_FORMAT, COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT},
-    request::{CrackPasses, FindPass, LinePassUniform, LinePasses, LineRequest},
+    request::{FindPass, LinePassUniform, LinePasses, LineRequest},
     resolve::Resolved,
+    store::{CrackBuffers, CrackStore},
     tiles::TileLists,
 };
 
@@ -46,8 +47,8 @@ pub(crate) struct ViewLines {
 
 /// The cracks of a view.
 pub(crate) struct Cracks {
-    pub texture: CachedTexture,
-    /// The best crack of each pixel's column, unless only neighbours are searched.
+    pub store: CrackStore,
+    /// The best cracks of each pixel's column, unless only neighbours are searched.
     pub columns: Option<CachedTexture>,
 }
 
@@ -121,22 +122,31 @@ pub(super) fn texture(
 }
 
 fn cracks(
+    before: Option<Cracks>,
     (textures, device): (&mut TextureCache, &RenderDevice),
-    passes: &CrackPasses,
+    passes: &LinePasses,
     rect: UVec4,
-) -> Cracks {
-    let mut new = |label, size, format| texture((textures, device), label, size, format);
-    let drawn = (CRACK_FORMAT, TextureUsages::RENDER_ATTACHMENT);
-    let found = match passes.find {
-        FindPass::Cells(_) => (CRACK_FORMAT, drawn.1 | TextureUsages::STORAGE_BINDING),
-        FindPass::Pixels(_) => drawn,
+) -> Option<Cracks> {
+    let cracks = passes.cracks.as_ref()?;
+    let mut drawn = |label, format| {
+        let usage = TextureUsages::RENDER_ATTACHMENT;
+        texture((textures, device), label, rect.zw(), (format, usage))
     };
-    Cracks {
-        texture: new("comics_cracks", rect.zw(), found),
-        columns: passes
-            .columns
-            .map(|_| new("comics_line_columns", rect.zw(), (COLUMN_FORMAT, drawn.1))),
-    }
+    let columns = cracks
+        .columns
+        .map(|_| drawn("comics_line_columns", COLUMN_FORMAT));
+    let store = match cracks.find {
+        FindPass::Cells(_) => {
+            let before = before.and_then(|before| match before.store {
+                CrackStore::Buffers(buffers) => Some(buffers),
+                CrackStore::Texture(_) => None,
+            });
+            let wanted = (passes.key.has_planes(), passes.key.smooth);
+            CrackStore::Buffers(CrackBuffers::new(before, device, rect, wanted))
+        }
+        FindPass::Pixels(_) => CrackStore::Texture(drawn("comics_cracks", CRACK_FORMAT)),
+    };
+    Some(Cracks { store, columns })
 }
 
 pub(crate) fn prepare_view_lines(
@@ -150,8 +160,8 @@ pub(crate) fn prepare_view_lines(
         let mut fill = |lines: &mut ViewLines| {
             lines.resolved = (passes.resolve.as_ref())
                 .map(|(key, _)| Resolved::new((&mut textures, &device), *key, request.depth_size));
-            let cracks = |passes| cracks((&mut textures, &device), passes, request.rect);
-            lines.cracks = passes.cracks.as_ref().map(cracks);
+            let before = lines.cracks.take();
+            lines.cracks = cracks(before, (&mut textures, &device), passes, request.rect);
             let before = lines.tiles.take().map(|tiles| tiles.lists);
             lines.tiles = passes.search.map(|_| Tiles {
                 blocks: texture(

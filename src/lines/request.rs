@@ -6,21 +6,22 @@ use bevy::{
         entity::Entity,
         system::{Res, ResMut, SystemParam},
     },
-    math::{IVec4, UVec2, UVec4, Vec2, Vec4},
+    math::{IVec2, IVec4, UVec2, UVec4, Vec2, Vec4},
     render::{
         render_resource::{
             CachedComputePipelineId, CachedRenderPipelineId, PipelineCache, ShaderType,
-            SpecializedComputePipelines, SpecializedRenderPipelines, TextureUsages,
+            SpecializedComputePipelines, SpecializedRenderPipelines,
         },
-        renderer::{RenderAdapter, RenderDevice},
+        renderer::RenderDevice,
     },
 };
 
 use super::{
-    key::{CRACK_FORMAT, LineKey, Search},
+    key::{LineKey, Search},
     pipelines::{LinePass, LineShaders, SearchPass},
     resolve::{ResolveKey, ResolvePipeline},
     settings::{LineSettings, LinesUniform, MapJumps},
+    store::{largest_buffer, words},
     tiles::TileList,
 };
 use crate::depth::view::ViewUniform;
@@ -45,6 +46,8 @@ pub(crate) struct LineRequest {
     pub jitter: Option<Vec2>,
     /// Distance in physical pixels within which lines are searched around a pixel.
     pub reach: i32,
+    /// Cracks that a line continues along weak edges.
+    pub steps: i32,
     pub oblique: bool,
     /// The depth map spans the visible range.
     pub visible_range: bool,
@@ -85,7 +88,9 @@ impl LineRequest {
     fn grid(&self) -> Grid {
         let scale = self.view.depth_scale;
         let jitter = self.jitter.unwrap_or(Vec2::ZERO);
-        let reach = self.grid_reach();
+        // In columns, and where lines leave their cracks, cracks half a pixel further away count.
+        let beyond = self.settings.smooth && self.search() != Search::Neighbours;
+        let reach = self.grid_reach() + i32::from(beyond);
         let read = (self.line_reach * scale.max_element()).ceil() as i32;
         let jumps = self.jumps.unwrap_or(MapJumps {
             least: f32::MAX,
@@ -99,9 +104,14 @@ impl LineRequest {
             // view's width.
             from_viewport: Vec4::new(scale.x, scale.y, -jitter.x, -jitter.y),
             reach,
-            inked: (reach + 1 + read).max(jumps.radius.ceil() as i32),
+            // Smooth lines leave their cracks by half a pixel.
+            inked: (reach + 1 + i32::from(self.settings.smooth) + read)
+                .max(jumps.radius.ceil() as i32),
             jump_least: jumps.least,
             jump_radius: jumps.radius.ceil(),
+            words: words(self.rect).as_ivec2(),
+            steps: self.steps,
+            specks: self.settings.specks as i32,
         }
     }
 
@@ -123,6 +133,9 @@ pub(crate) struct Grid {
     inked: i32,
     jump_least: f32,
     jump_radius: f32,
+    words: IVec2,
+    steps: i32,
+    specks: i32,
 }
 
 /// The uniform of the passes that find and draw lines.
@@ -170,11 +183,28 @@ impl LinePasses {
     }
 }
 
-/// The pipeline that finds cracks.
+/// The pipelines that find cracks in cells.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CellPasses {
+    pub find: CachedComputePipelineId,
+    /// Continues lines by as many steps as a pass goes, and by the steps that are left.
+    pub link: Option<[CachedComputePipelineId; 2]>,
+    /// Leaves out what is not part of a line, and makes lines smooth.
+    pub settle: Option<CachedComputePipelineId>,
+}
+
+impl CellPasses {
+    pub fn ids(&self) -> impl Iterator<Item = CachedComputePipelineId> {
+        let link = self.link.into_iter().flatten();
+        [self.find].into_iter().chain(link).chain(self.settle)
+    }
+}
+
+/// The pipelines that find cracks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum FindPass {
     /// In the cells that the search for blocks has listed.
-    Cells(CachedComputePipelineId),
+    Cells(CellPasses),
     /// In all pixels: without compute shaders.
     Pixels(CachedRenderPipelineId),
 }
@@ -197,22 +227,18 @@ pub(crate) struct LinePipelines<'w> {
     resolves: ResMut<'w, SpecializedRenderPipelines<ResolvePipeline>>,
     resolve: Res<'w, ResolvePipeline>,
     device: Res<'w, RenderDevice>,
-    adapter: Res<'w, RenderAdapter>,
 }
 
 impl LinePipelines<'_> {
     /// Whether the device has what `walk.wgsl`, `tiles.wgsl` and `cells.wgsl` bind.
     fn has_compute(&self, request: &LineRequest) -> bool {
         let limits = self.device.limits();
-        // The cells and their number, or the tiles and theirs, and the styles of objects.
-        let buffers = 2 + u32::from(request.object_styles);
-        let cracks = self.adapter.get_texture_format_features(CRACK_FORMAT);
+        // Those of `settle.wgsl`, or of `cells.wgsl` with the styles of objects.
+        const BUFFERS: u32 = 5;
         limits.max_compute_workgroup_size_x > 0
             && limits.max_storage_textures_per_shader_stage > 0
-            && limits.max_storage_buffers_per_shader_stage >= buffers
-            && cracks
-                .allowed_usages
-                .contains(TextureUsages::STORAGE_BINDING)
+            && limits.max_storage_buffers_per_shader_stage >= BUFFERS
+            && limits.max_storage_buffer_binding_size >= largest_buffer(request.rect)
     }
 
     /// The pipelines for a request; new ones are queued for compilation.
@@ -237,8 +263,15 @@ impl LinePipelines<'_> {
         let faithful = key.has_faithful().then(|| render(LinePass::Faithful));
         let cracks = key.has_cracks().then(|| CrackPasses {
             find: if has_compute {
-                let cells = SearchPass::Cells(key.for_find());
-                FindPass::Cells(computes.specialize(cache, &self.shaders, cells))
+                let mut compute = |pass| computes.specialize(cache, &self.shaders, pass);
+                FindPass::Cells(CellPasses {
+                    find: compute(SearchPass::Cells(key.for_find())),
+                    link: (request.steps > 0)
+                        .then(|| [false, true].map(|last| compute(SearchPass::Link { last }))),
+                    settle: key
+                        .has_planes()
+                        .then(|| compute(SearchPass::Settle(key.for_settle()))),
+                })
             } else {
                 FindPass::Pixels(render(LinePass::Find))
             },

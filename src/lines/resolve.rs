@@ -21,7 +21,8 @@ use bevy::{
 };
 
 use super::{
-    draw::{Texels, cleared},
+    draw::cleared,
+    inputs::Texels,
     key::LineKey,
     prepare::texture,
     request::{LinePassUniform, LineRequest},

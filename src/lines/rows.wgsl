@@ -13,15 +13,6 @@
 #import bevy_comics::objects::texel_object
 #endif
 
-// Columns and rows of a block, which an invocation of walk.wgsl walks through, and rows
-// of a cell, which an invocation of cells.wgsl walks through.
-const COLUMNS: i32 = 4;
-const ROWS: i32 = 32;
-const CELL_ROWS: i32 = 8;
-// Cells in a workgroup of cells.wgsl, and workgroups in a row of its dispatch.
-const GROUP: u32 = 32u;
-const GROUPS: u32 = 1024u;
-
 // Four columns and their neighbours, clamped to the grid.
 struct Columns {
     // Of the grid in the depth texture.

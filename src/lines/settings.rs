@@ -2,7 +2,7 @@
 
 use bevy::{math::Vec3, render::render_resource::ShaderType};
 
-use super::kinds::{Creases, ObjectEdges, Silhouettes, ramp};
+use super::kinds::{Creases, LineResponse, ObjectEdges, Silhouettes, ramp};
 use crate::settings::{Form, linear_rgb};
 
 /// Lines that an effect requests ([`Effect::lines`](crate::Effect::lines)). Every
@@ -21,7 +21,21 @@ pub struct LineSettings {
     pub width_fade: f32,
     /// Fraction of the opacity that is lost at the far end of the depth map.
     pub opacity_fade: f32,
+    /// How far lines continue along weak edges, in logical pixels; 0: not at all.
+    pub continuity: f32,
+    /// Response from which an edge is weak but continues a line, as a fraction of the
+    /// kind's edge limit.
+    pub continuity_level: f32,
+    /// Pieces of line of fewer borders of pixels than this are left out.
+    pub specks: u32,
+    /// What a line loses where an edge is weak.
+    pub response: LineResponse,
+    /// Whether lines run straight through the steps of pixels.
+    pub smooth: bool,
 }
+
+/// Most borders of pixels that a line continues along weak edges.
+const LONGEST: i32 = 64;
 
 impl LineSettings {
     /// No kind of line; the numbers are the defaults.
@@ -32,6 +46,11 @@ impl LineSettings {
         width: 2.0,
         width_fade: 0.0,
         opacity_fade: 0.0,
+        continuity: 8.0,
+        continuity_level: 0.5,
+        specks: 3,
+        response: LineResponse::Width,
+        smooth: true,
     };
 
     /// The settings without the kinds that are invisible: those of opacity 0, and
@@ -51,6 +70,17 @@ impl LineSettings {
     /// Whether all kinds of line are `None`.
     pub fn is_empty(&self) -> bool {
         self.silhouettes.is_none() && self.creases.is_none() && self.objects.is_none()
+    }
+
+    /// Whether cracks are linked to lines, or left out if they are not part of one.
+    pub(crate) fn links(&self) -> bool {
+        self.continuity > 0.0 || self.specks > 1
+    }
+
+    /// Borders of pixels that a line continues along weak edges. `scale`: pixels of the
+    /// grid per logical pixel.
+    pub(crate) fn steps(&self, scale: f32) -> i32 {
+        ((self.continuity * scale).ceil() as i32).min(LONGEST)
     }
 
     /// Whether width or opacity decreases along the depth map, which is then read.
@@ -101,8 +131,20 @@ impl LineSettings {
         let s = self.silhouettes.unwrap_or_default();
         let c = self.creases.unwrap_or_default();
         let o = self.objects.unwrap_or_default();
-        let [silhouette_low, silhouette_high] = ramp(s.edge_limit, s.softness);
-        let [crease_low, crease_high] = ramp(c.edge_limit, c.softness);
+        let continues = self.continuity > 0.0;
+        // The faithful forms do not know weak edges.
+        let ends = |form, limit, softness| {
+            let weak = continues && form == Form::Corrected;
+            ramp(
+                limit,
+                softness,
+                weak.then_some(self.continuity_level * limit),
+            )
+        };
+        let [silhouette_low, silhouette_high] = ends(s.form, s.edge_limit, s.softness);
+        let [crease_low, crease_high] = ends(c.form, c.edge_limit, c.softness);
+        let [ink_part, width_part] = self.response.parts();
+        let limit = |limit| if continues { limit } else { 0.0 };
         LinesUniform {
             silhouette_color: linear_rgb(s.color),
             silhouette_opacity: s.opacity,
@@ -125,6 +167,10 @@ impl LineSettings {
             reference_factor: reference[0],
             reference_constant: reference[1],
             jump: self.jump(),
+            ink_part,
+            width_part,
+            silhouette_limit: limit(s.edge_limit),
+            crease_limit: limit(c.edge_limit),
             unused: 0,
         }
     }
@@ -175,6 +221,10 @@ pub(crate) struct LinesUniform {
     reference_factor: f32,
     reference_constant: f32,
     jump: f32,
+    ink_part: f32,
+    width_part: f32,
+    silhouette_limit: f32,
+    crease_limit: f32,
     unused: u32,
 }
 

@@ -8,9 +8,8 @@
 
 #import bevy_comics::depth::view::{View, set_view}
 #import bevy_comics::lines::edge::{Grid, Lines, may_be_crease, may_be_silhouette}
-#import bevy_comics::lines::rows::{
-    Above, Borders, CELL_ROWS, COLUMNS, GROUP, GROUPS, ROWS, four_columns, step_down,
-}
+#import bevy_comics::lines::planes::{CELL_ROWS, COLUMNS, GROUP, GROUPS, ROWS}
+#import bevy_comics::lines::rows::{Above, Borders, four_columns, step_down}
 #ifdef JUMPS
 #import bevy_comics::depth::view::depth_frame
 #import bevy_comics::lines::jumps::{Jumps, Row, may_jump}

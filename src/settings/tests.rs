@@ -237,6 +237,21 @@ fn a_million_floats_in_every_field_of_the_lines() {
     fuzz("Outlines::width_fade", 0.0, 1.0, |x| fade(x).width_fade);
     let fade = outlines(|o, x| o.opacity_fade = x);
     fuzz("Outlines::opacity_fade", 0.0, 1.0, |x| fade(x).opacity_fade);
+    let continuity = outlines(|o, x| o.continuity = x);
+    fuzz("Outlines::continuity", 0.0, 32.0, |x| {
+        continuity(x).continuity
+    });
+    let level = outlines(|o, x| o.continuity_level = x);
+    fuzz("Outlines::continuity_level", 0.1, 1.0, |x| {
+        level(x).continuity_level
+    });
+    for specks in [0, 1, 2, 3, 4, u32::MAX] {
+        let outlines = Outlines {
+            specks,
+            ..Outlines::default()
+        };
+        assert_eq!(outlines.sanitized().specks, specks.clamp(1, 3));
+    }
     let silhouettes = |edit: fn(&mut Silhouettes, f32)| {
         move |x| {
             let mut s = Silhouettes::default();

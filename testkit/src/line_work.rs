@@ -3,7 +3,8 @@
 //! In the pass that searches blocks, every invocation fetches the same number: it is
 //! counted in the composed shader. The other passes are counted while they run. A pass
 //! returns its count instead of its result, and the passes after it hand the count on to
-//! the picture. Lists of tiles, the choice of samples and the faithful forms are not counted.
+//! the picture. Lists of tiles, the choice of samples, the planes of
+//! bits and the faithful forms are not counted.
 
 use bevy::{
     prelude::*,
@@ -38,8 +39,9 @@ const CELLS: &str = "bevy_comics/lines/cells.wgsl";
 const COLUMNS: &str = "bevy_comics/lines/columns.wgsl";
 const DRAW: &str = "bevy_comics/lines/draw.wgsl";
 const READ: &str = "bevy_comics/lines/read.wgsl";
+const SETTLE: &str = "bevy_comics/lines/settle.wgsl";
 /// The files of the counted passes, and of the functions that they read textures with.
-const FILES: [&str; 8] = [
+const FILES: [&str; 10] = [
     "bevy_comics/depth/normal.wgsl",
     "bevy_comics/depth/view.wgsl",
     FUSED,
@@ -47,6 +49,8 @@ const FILES: [&str; 8] = [
     COLUMNS,
     DRAW,
     READ,
+    SETTLE,
+    "bevy_comics/lines/stored.wgsl",
     "bevy_comics/objects/objects.wgsl",
 ];
 
@@ -60,7 +64,7 @@ struct End {
 }
 
 /// The end of the pass that finds cracks in cells.
-const CELLS_END: &str = "        east_1 = east;
+const CELLS_END: &str = "        east_1 = east.packed;
     }
 }";
 
@@ -74,9 +78,9 @@ const ENDS: [End; 4] = [
     End {
         file: CELLS,
         result: CELLS_END,
-        counted: "        east_1 = east;
+        counted: "        east_1 = east.packed;
     }
-    textureStore(crack_texture, vec2(x, top), vec4(packed_count(), 0u, 0u, 0u));
+    crack_words[cell.y * cell_uniform.grid.rect.z + cell.x] = vec2(packed_count(), 0u);
 }",
         handed: "",
     },
@@ -84,7 +88,7 @@ const ENDS: [End; 4] = [
         file: COLUMNS,
         result: COLUMNS_END,
         counted: "return vec4(packed_count(), vec3(0u));",
-        handed: "return vec4(textureLoad(crack_texture, p, 0).x, vec3(0u));",
+        handed: "return vec4(load_cracks(column_uniform.grid, p).x, vec3(0u));",
     },
     End {
         file: DRAW,
@@ -94,7 +98,7 @@ const ENDS: [End; 4] = [
 #ifdef COLUMNS
     return unpack4x8unorm(textureLoad(column_texture, centre, 0).x);
 #else
-    return unpack4x8unorm(textureLoad(crack_texture, centre, 0).x);
+    return unpack4x8unorm(load_cracks(draw_uniform.grid, centre).x);
 #endif
 ",
     },
@@ -122,6 +126,16 @@ fn edited(counted: &str, path: &str, text: &str) -> String {
             }\n\n// Ink at a position",
         );
     }
+    if path == SETTLE {
+        // It would take the counts of cells for cracks.
+        let column = "    let band = first.y >> 5u;";
+        assert!(text.contains(column), "a function of {path} has moved");
+        return if counted == CELLS {
+            text.replace(column, &format!("    if true {{ return; }}\n{column}"))
+        } else {
+            text.to_owned()
+        };
+    }
     let Some(end) = ENDS.iter().find(|end| end.file == path) else {
         return counting(path, text);
     };
@@ -133,7 +147,7 @@ fn edited(counted: &str, path: &str, text: &str) -> String {
     let place = |file: &str| ENDS.iter().position(|end| end.file == file);
     if path == CELLS && path == counted {
         // The cell's first texel gets the count of all its pixels, the others none.
-        let none = text.replace("vec4(east_3.", "0u * vec4(east_3.");
+        let none = text.replace("] = vec2(east.", "] = 0u * vec2(east.");
         counting(path, &none).replace(end.result, end.counted)
     } else if path == counted {
         counting(path, text).replace(end.result, end.counted)

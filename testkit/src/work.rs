@@ -16,7 +16,7 @@ use bevy::{
 };
 use bevy_comics::{
     Colorization, ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Contours, DepthMap,
-    DepthMapping, Desaturation, Outlines, RangeSmoothing, Sketch, ToneBands,
+    DepthMapping, Desaturation, LineResponse, Outlines, RangeSmoothing, Sketch, ToneBands,
 };
 
 use super::{
@@ -66,6 +66,17 @@ pub fn default_comic() -> ComicStyle {
         .with(Desaturation::default())
         .with(Colorization::default())
         .with(Contours::default())
+}
+
+/// Outlines that are neither linked to lines nor smooth.
+pub fn along_cracks() -> Outlines {
+    Outlines {
+        continuity: 0.0,
+        specks: 1,
+        response: LineResponse::Ink,
+        smooth: false,
+        ..default()
+    }
 }
 
 /// The styles whose work is counted, from none to everything.
@@ -120,17 +131,18 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
         ),
         ("silhouettes", outlined(Outlines::SILHOUETTES)),
         ("outlines", outlined(Outlines::default())),
+        ("outlines, along cracks", outlined(along_cracks())),
+        (
+            "outlines, along cracks, 16 pixels wide",
+            outlined(Outlines {
+                width: 16.0,
+                ..along_cracks()
+            }),
+        ),
         (
             "outlines, 8 pixels wide",
             outlined(Outlines {
                 width: 8.0,
-                ..default()
-            }),
-        ),
-        (
-            "outlines, 16 pixels wide",
-            outlined(Outlines {
-                width: 16.0,
                 ..default()
             }),
         ),
@@ -146,12 +158,13 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
 fn texel_size(line: &str) -> Option<u32> {
     let size = if line.contains("column_texture") {
         16
-    } else if line.contains("crack_texture") {
+    } else if line.contains("crack_texture") || line.contains("crack_words[") {
         8
     } else {
         4
     };
-    line.contains("textureLoad(").then_some(size)
+    let loads = ["textureLoad(", "return crack_words[", "return bend_words["];
+    loads.iter().any(|load| line.contains(load)).then_some(size)
 }
 
 /// The file of the fused pass.

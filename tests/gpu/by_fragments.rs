@@ -1,5 +1,5 @@
 //! On a device without storage textures, lines are found and drawn by fragment shaders:
-//! slower, and the same. The range is still found by compute shaders.
+//! slower, and neither linked nor smooth, but otherwise the same. The range is still found by compute shaders.
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
@@ -7,7 +7,7 @@ use bevy_comics::{
     StageOutcome,
 };
 use bevy_comics_testkit::{
-    device::gpu, headless::HeadlessOptions, scenes::BuiltIn, studio::Studio,
+    device::gpu, headless::HeadlessOptions, scenes::BuiltIn, studio::Studio, work::along_cracks,
 };
 
 fn studio(by_fragments: bool) -> Studio {
@@ -26,7 +26,12 @@ fn studio(by_fragments: bool) -> Studio {
 
 #[test]
 fn lines_without_compute_passes_are_the_same() {
-    let outlines = |width: f32| ComicStyle::new().with(Outlines { width, ..default() });
+    let outlines = |width: f32| {
+        ComicStyle::new().with(Outlines {
+            width,
+            ..along_cracks()
+        })
+    };
     let styles = [
         ("outlines", outlines(2.0)),
         ("wide outlines", outlines(3.0)),
@@ -37,7 +42,7 @@ fn lines_without_compute_passes_are_the_same() {
                 silhouettes: None,
                 objects: None,
                 width_fade: 0.5,
-                ..default()
+                ..along_cracks()
             }),
         ),
         (
@@ -45,10 +50,10 @@ fn lines_without_compute_passes_are_the_same() {
             ComicStyle::new().with(Outlines {
                 silhouettes: None,
                 creases: None,
-                ..default()
+                ..along_cracks()
             }),
         ),
-        ("sketch", ComicStyle::new().with(Sketch::default())),
+        ("sketch", outlines(1.5).with(Sketch::default())),
         ("contours", ComicStyle::new().with(Contours::default())),
     ];
     let [mut with, mut without] = [false, true].map(studio);

@@ -20,6 +20,7 @@ mod line_quality;
 mod line_samples;
 mod line_truth;
 mod lines;
+mod links;
 mod models;
 mod outlines;
 mod outside;

@@ -8,8 +8,8 @@ use bevy::{
 };
 use bevy_comics::{
     BlackFlats, Colorization, ColorizationMode, ComicStyle, ContourOperator, Contours, Creases,
-    DepthMap, DepthMapping, Desaturation, Form, Outlines, Silhouettes, Sketch, ToneBands,
-    VisibleDepthRange, presets,
+    DepthMap, DepthMapping, Desaturation, Form, LineResponse, Outlines, Silhouettes, Sketch,
+    ToneBands, VisibleDepthRange, presets,
 };
 
 use bevy_comics_testkit::{
@@ -86,6 +86,7 @@ pub fn assert_pass_is_its_twin(
     let implied = sketch.map(|_| Outlines {
         objects: None,
         width: 1.5,
+        response: LineResponse::Ink,
         ..default()
     });
     let outlines = style.get::<Outlines>().copied().or(implied);

@@ -81,12 +81,12 @@ fn tempfolder(name: &str) -> PathBuf {
 fn ratios_and_exponents_come_out_again() {
     let text = fs::read_to_string(folder().join("report.md")).expect("the report");
     // The cost of the default comic in blits, paired in every round.
-    let (_, rows) = csv("line_times");
+    let (_, rows) = csv("ladder_times");
     let laps = |variant: &str, round: usize, laps: &[&str]| -> f64 {
         let row = rows
             .iter()
             .find(|r| {
-                r["section"] == "lines"
+                r["section"] == "ladder"
                     && r["variant"] == variant
                     && r["round"] == round.to_string()
             })
@@ -97,7 +97,7 @@ fn ratios_and_exponents_come_out_again() {
     let post = |variant, round| laps(variant, round, &["post"]);
     let rounds = rows
         .iter()
-        .filter(|r| r["section"] == "lines" && r["variant"] == "blit")
+        .filter(|r| r["section"] == "ladder" && r["variant"] == "blit")
         .count();
     let ratio = middle(
         (0..rounds)
@@ -109,7 +109,7 @@ fn ratios_and_exponents_come_out_again() {
     );
     let line = text
         .lines()
-        .find(|l| l.starts_with("| default comic, in blits"))
+        .find(|l| l.starts_with("| default comic, blits"))
         .expect("the target");
     assert!(line.contains(&format!("| {ratio:.2} |")), "{ratio}: {line}");
 

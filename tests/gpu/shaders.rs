@@ -403,6 +403,7 @@ fn every_kind_of_outline_composes_and_validates() {
             }
             check(&find, &defs);
             check(&cells, &defs);
+            check(&cells, &[&defs[..], &["PLANES"]].concat());
             check(&walk, &[&defs[..], &["CRACKS", "JUMPS"]].concat());
         }
         for forms in subsets(&["FAITHFUL_SILHOUETTES", "FAITHFUL_CREASES", "OBJECT_STYLES"]) {
@@ -419,10 +420,19 @@ fn every_kind_of_outline_composes_and_validates() {
     let (columns, draw) = (shader("lines/columns.wgsl"), shader("lines/draw.wgsl"));
     check(&columns, &[]);
     check(&columns, &["BLOCKS"]);
+    check(&columns, &["BLOCKS", "SMOOTH"]);
+    for last in [&[][..], &["LAST"]] {
+        check(&shader("lines/link.wgsl"), last);
+    }
+    for smooth in [&[][..], &["SMOOTH"]] {
+        check(&shader("lines/settle.wgsl"), smooth);
+    }
     check(&shader("lines/tiles.wgsl"), &[]);
     for styles in [&[][..], &["OBJECT_IDS", "OBJECT_STYLES"]] {
         for search in [&[][..], &["NEIGHBOURS"], &["COLUMNS"]] {
-            check(&draw, &[styles, search].concat());
+            for store in [&[][..], &["BLOCKS"], &["BLOCKS", "SMOOTH"]] {
+                check(&draw, &[styles, search, store].concat());
+            }
         }
     }
     let resolve = shader("lines/resolve.wgsl");

@@ -186,6 +186,7 @@ fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines
             width,
             width_fade: fade,
             opacity_fade: fade,
+            ..default()
         });
     let sketch =
         (colors(), colors(), number(), 0u32..9).prop_map(|(paper, ink, jitter, strokes)| Sketch {

@@ -67,6 +67,9 @@ fn a_faint_part_of_a_wide_line_is_as_wide_as_a_strong_one() {
                 ink: if below { ink } else { 1.0 },
                 opacity: 1.0,
                 half_width: if below { half_width } else { 8.0 },
+                certain: true,
+                bend: [0.0; 2],
+                shifts: true,
             };
             [(x == SIZE / 2).then_some(crack), None]
         };

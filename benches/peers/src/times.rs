@@ -20,7 +20,7 @@ use bevy_comics_testkit::{
     bench::{self, BenchPlugin, Blit, Laps},
     headless::{Headless, HeadlessOptions},
     scenes::{BuiltIn, ScenePart, Stage},
-    work::default_comic,
+    work::{along_cracks, default_comic},
 };
 
 const SIZE: UVec2 = UVec2::new(960, 540);
@@ -163,6 +163,12 @@ const VARIANTS: &[(&str, Put)] = &[
         b.style(&outlines(Outlines {
             objects: None,
             ..default()
+        }));
+    }),
+    ("bevy_comics: silhouettes + creases; along cracks", |b| {
+        b.style(&outlines(Outlines {
+            objects: None,
+            ..along_cracks()
         }));
     }),
     ("bevy_comics: faithful silhouettes", |b| {

@@ -70,19 +70,27 @@ fn times(folder: &Path) -> Result<Vec<Target>, String> {
         cost.map(|c| c.milliseconds)
     };
     let ratio = milliseconds("Sobel")
-        .zip(milliseconds("silhouettes + creases"))
+        .zip(milliseconds("silhouettes + creases; along cracks"))
         .map(|(other, own)| other / own);
     let (exponent, _) = growth_exponent(&load(folder, "growth_times")?, "pixels", &OWN);
-    let rival =
-        "time of bevy_edge_detection_outline (Sobel, depth + normals) / silhouettes + creases";
+    let rival = "time of bevy_edge_detection_outline (Sobel, depth + normals) / silhouettes + creases along cracks";
     Ok(vec![
         Target::at_most("contours, blits", 3.0, blits("contours")),
         Target::at_most("default comic, blits", 4.0, blits("default comic")),
-        Target::at_most("all outlines, 2 px, blits", 6.0, blits("outlines")),
         Target::at_most(
-            "all outlines, 16 px, blits",
+            "all outlines along cracks, 2 px, blits",
+            6.0,
+            blits("outlines; along cracks"),
+        ),
+        Target::at_most(
+            "all outlines along cracks, 16 px, blits",
             7.5,
-            blits("outlines; 16 pixels wide"),
+            blits("outlines; along cracks; 16 pixels wide"),
+        ),
+        Target::at_most(
+            "all outlines, linked and smooth, 2 px, blits",
+            9.0,
+            blits("outlines"),
         ),
         Target::at_most("sketch, blits", 12.0, blits("sketch")),
         Target::at_least(rival, 4.0, ratio),

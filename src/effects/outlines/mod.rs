@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     effect::{Effect, EffectShader, EffectStage, Extent, Needs, NoUniform, ViewFacts},
-    lines::{Creases, LineSettings, ObjectEdges, Silhouettes},
+    lines::{Creases, LineResponse, LineSettings, ObjectEdges, Silhouettes},
     settings::{Blend, FieldRange, bounded},
 };
 
@@ -51,6 +51,25 @@ pub struct Outlines {
     /// to 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub opacity_fade: f32,
+    /// How far lines continue along weak edges, in logical pixels: an edge that responds
+    /// below `edge_limit`, but not below `continuity_level`, has a line if it continues
+    /// one (hysteresis, Canny 1986). At most 64 physical pixels. Range 0 (not at all) to
+    /// 32, default 8.
+    #[reflect(@FieldRange::linear(0.0, 32.0).unit("px"))]
+    pub continuity: f32,
+    /// Response from which an edge continues a line, as a fraction of the kind's
+    /// `edge_limit`. Range 0.1 to 1 (only what responds above the limit), default 0.5.
+    #[reflect(@FieldRange::linear(0.1, 1.0))]
+    pub continuity_level: f32,
+    /// Leaves out pieces of line of fewer borders of pixels than this: noise. Objects of a
+    /// single pixel have four. Range 1 (leaves out nothing) to 3, default 3.
+    #[reflect(@FieldRange::linear(1.0, 3.0))]
+    pub specks: u32,
+    /// What a line loses where an edge is weak. Default: [`LineResponse::Width`].
+    pub response: LineResponse,
+    /// Whether lines run straight through the steps of pixels; otherwise they follow the
+    /// borders of pixels. Needs compute shaders. Default: `true`.
+    pub smooth: bool,
 }
 
 impl Default for Outlines {
@@ -62,6 +81,11 @@ impl Default for Outlines {
             width: 2.0,
             width_fade: 0.0,
             opacity_fade: 0.0,
+            continuity: 8.0,
+            continuity_level: 0.5,
+            specks: 3,
+            response: LineResponse::Width,
+            smooth: true,
         }
     }
 }
@@ -76,6 +100,11 @@ impl Outlines {
         width: 2.0,
         width_fade: 0.0,
         opacity_fade: 0.0,
+        continuity: 8.0,
+        continuity_level: 0.5,
+        specks: 3,
+        response: LineResponse::Width,
+        smooth: true,
     };
 }
 
@@ -98,6 +127,11 @@ impl Effect for Outlines {
             width: bounded(self.width, default.width, 0.5, 16.0),
             width_fade: bounded(self.width_fade, default.width_fade, 0.0, 1.0),
             opacity_fade: bounded(self.opacity_fade, default.opacity_fade, 0.0, 1.0),
+            continuity: bounded(self.continuity, default.continuity, 0.0, 32.0),
+            continuity_level: bounded(self.continuity_level, default.continuity_level, 0.1, 1.0),
+            specks: self.specks.clamp(1, 3),
+            response: self.response,
+            smooth: self.smooth,
         }
     }
 
@@ -152,6 +186,7 @@ impl Effect for Outlines {
     }
 
     fn mixed(&self, other: &Self, t: f32) -> Self {
+        let later = if t < 0.5 { self } else { other };
         Self {
             silhouettes: Silhouettes::blend(self.silhouettes, other.silhouettes, t),
             creases: Creases::blend(self.creases, other.creases, t),
@@ -159,6 +194,11 @@ impl Effect for Outlines {
             width: self.width.lerp(other.width, t),
             width_fade: self.width_fade.lerp(other.width_fade, t),
             opacity_fade: self.opacity_fade.lerp(other.opacity_fade, t),
+            continuity: self.continuity.lerp(other.continuity, t),
+            continuity_level: self.continuity_level.lerp(other.continuity_level, t),
+            specks: later.specks,
+            response: later.response,
+            smooth: later.smooth,
         }
     }
 
@@ -197,6 +237,11 @@ impl Outlines {
             width: self.width,
             width_fade: self.width_fade,
             opacity_fade: self.opacity_fade,
+            continuity: self.continuity,
+            continuity_level: self.continuity_level,
+            specks: self.specks,
+            response: self.response,
+            smooth: self.smooth,
         }
         .visible()
     }

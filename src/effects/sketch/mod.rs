@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::Outlines;
 use crate::{
     effect::{AnyEffect, Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
+    lines::LineResponse,
     settings::{BlendField, FieldRange, bounded, displayable, file_color, linear_rgb},
 };
 
@@ -129,6 +130,7 @@ impl Effect for Sketch {
         Some(Box::new(Outlines {
             objects: None,
             width: 1.5,
+            response: LineResponse::Ink,
             ..Outlines::default()
         }))
     }

@@ -46,8 +46,8 @@ impl Cracks {
                     continue;
                 };
                 let other = distance(middle, best.2.1) > 0.25;
-                let farther = |reach: f64| second.is_none_or(|second| reach > second.0);
-                if score > best.0 {
+                let farther = |reach: f64| second.is_none_or(|second| reach > second.0 + 1e-3);
+                if score > best.0 + 1e-6 {
                     if other && farther(best.1) {
                         second = Some((best.1, best.2));
                     }

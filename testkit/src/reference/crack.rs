@@ -6,7 +6,7 @@ use super::{
     smoothstep,
     view::View,
 };
-use bevy_comics::{Form, Outlines};
+use bevy_comics::{Form, LineResponse, Outlines};
 
 /// The border between a pixel and its neighbour to the east or south.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,17 +21,50 @@ pub struct Crack {
     pub opacity: f64,
     /// Half the width in physical pixels.
     pub half_width: f64,
+    /// Whether it is a line by itself; otherwise it only continues lines.
+    pub certain: bool,
+    /// Offset and slope of its line, see [`bend`](super::bend).
+    pub bend: [f64; 2],
+    /// Whether the middle of a line of odd width is moved towards its owner.
+    pub shifts: bool,
 }
 
 /// The neighbours of a pixel.
 pub const SIDES: [[i64; 2]; 2] = [[1, 0], [0, 1]];
 
 /// Ink for a response `p`. Softness 1 makes the ramp around `limit` as wide as
-/// fits into [0, 1] symmetrically.
-pub fn ink(limit: f32, softness: f32, p: f64) -> f64 {
+/// fits into [0, 1] symmetrically. It begins at `weakest` at the latest.
+pub fn ink(limit: f32, softness: f32, weakest: f64, p: f64) -> f64 {
     let limit = f64::from(limit);
     let half = f64::from(softness).max(1e-3) * limit.min(1.0 - limit);
-    smoothstep(limit - half, limit + half, p)
+    smoothstep((limit - half).min(weakest * limit), limit + half, p)
+}
+
+/// The fraction of the edge limit from which edges continue lines; 1 if none does.
+fn weakest(s: &Outlines) -> f64 {
+    if s.continuity > 0.0 {
+        f64::from(s.continuity_level)
+    } else {
+        1.0
+    }
+}
+
+/// Half of the smallest width of a line in physical pixels.
+const THINNEST: f64 = 0.3;
+
+/// Ink and half width of a line whose edge has the fraction `amount` of the full response.
+fn respond(response: LineResponse, amount: f64, half_width: f64, object: bool) -> [f64; 2] {
+    if response == LineResponse::Ink || object {
+        return [amount, half_width];
+    }
+    let thinnest = half_width.min(THINNEST);
+    let thinner = half_width * amount;
+    let fainter = (thinner / thinnest.max(1e-3)).min(1.0);
+    let ink = match response {
+        LineResponse::Both => amount * fainter,
+        _ => fainter,
+    };
+    [ink, thinner.max(thinnest)]
 }
 
 /// Six values in a row: the pixel is the third, its neighbour the fourth. Places
@@ -90,34 +123,57 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         ink: 0.0,
         opacity: 1.0,
         half_width: 0.0,
+        certain: false,
+        bend: [0.0; 2],
+        shifts: true,
+    };
+    let limit = |limit: f32| {
+        if s.continuity > 0.0 {
+            f64::from(limit)
+        } else {
+            0.0
+        }
     };
     if let Some(k) = s.silhouettes.filter(|k| k.form == Form::Corrected) {
         let p = step_response(excess, 0.5 * f64::from(k.threshold) * reference);
-        let amount = ink(k.edge_limit, k.softness, p);
+        let amount = ink(k.edge_limit, k.softness, weakest(s), p);
         if near > 0.0 && is_stored(amount) {
             crack.kinds[0] = true;
             crack.ink = amount;
+            crack.certain = p >= limit(k.edge_limit);
         }
     }
     if let Some(k) = s.creases.filter(|k| k.form == Form::Corrected) {
         let normals = along(view, pixel, v, |x, y| normal(view, x, y));
         let folds = [1, 2, 3].map(|i: usize| fold(normals[i], normals[i + 1]));
         let kn = (0.5 * f64::from(k.angle)).to_radians().sin().max(0.02);
-        let amount = ink(k.edge_limit, k.softness, fold_response(folds[1], kn));
+        let p = fold_response(folds[1], kn);
+        let amount = ink(k.edge_limit, k.softness, weakest(s), p);
         if is_ridge(folds) && excess < jump && is_stored(amount) && !crack.kinds[0] {
             crack.kinds[1] = true;
             crack.ink = amount;
+            crack.certain = p >= limit(k.edge_limit);
         }
     }
     if let (Some(_), Some(ids)) = (s.objects, view.ids) {
         let object = |x, y| ids.pixels[(y * view.width + x) as usize][0];
         let objects = along(view, pixel, v, object);
         crack.kinds[2] = objects[2] != objects[3];
+        crack.certain |= crack.kinds[2];
     }
     let owner = if crack.mine { here } else { there };
     let d = view.frame.depth_map(owner)[0];
     crack.opacity = 1.0 - f64::from(s.opacity_fade) * d;
     let half_width = 0.5 * f64::from(s.width) * scale;
-    crack.half_width = stored_width(half_width * (1.0 - f64::from(s.width_fade) * d));
+    let half_width = half_width * (1.0 - f64::from(s.width_fade) * d);
+    let amount = if crack.kinds[0] || crack.kinds[1] {
+        crack.ink
+    } else {
+        1.0
+    };
+    let [ink, half_width] = respond(s.response, amount, half_width, crack.kinds[2]);
+    crack.ink = ink;
+    crack.half_width = stored_width(half_width);
+    crack.shifts = crack.kinds[0] || !s.smooth;
     (crack.kinds != [false; 3]).then_some(crack)
 }

@@ -1,9 +1,12 @@
 //! Twin of `lines/draw.wgsl`: the ink of the lines at every pixel.
 
+use std::collections::HashMap;
+
 use super::{
     crack::{Crack, SIDES, crack},
     edge::{line_coverage, line_offset, segment_distance},
     faithful::faithful,
+    link::{bend, linked, without_specks},
     view::View,
 };
 use bevy_comics::Outlines;
@@ -18,6 +21,8 @@ pub struct Cracks {
     pub(super) reach: i64,
     /// Opacity of silhouettes, creases, object edges.
     pub(super) opacity: [f64; 3],
+    /// Whether lines leave their cracks.
+    smooth: bool,
 }
 
 impl Cracks {
@@ -28,17 +33,44 @@ impl Cracks {
             .flat_map(|y| (0..w).map(move |x| [x0 + x, y0 + y]))
             .map(|pixel| [0, 1].map(|side| crack(s, view, pixel, side, scale)))
             .collect();
-        Self {
+        let reach = ((0.5 * f64::from(s.width) * scale + 1.0).ceil() as i64 - 1).max(1);
+        let mut found = Self {
             width: w,
             height: h,
             cracks,
+            smooth: s.smooth,
             opacity: [
                 s.silhouettes.unwrap_or_default().opacity,
                 s.creases.unwrap_or_default().opacity,
                 s.objects.unwrap_or_default().opacity,
             ]
             .map(f64::from),
-            reach: ((0.5 * f64::from(s.width) * scale + 1.0).ceil() as i64 - 1).max(1),
+            reach: reach + i64::from(s.smooth && reach > 1),
+        };
+        let steps = ((f64::from(s.continuity) * scale).ceil() as i32).min(64);
+        found.complete(steps, s.specks);
+        found
+    }
+
+    /// Leaves out the cracks that are not parts of lines, and bends the lines of the others.
+    fn complete(&mut self, steps: i32, specks: u32) {
+        let width = self.width;
+        let place = |i: usize, side| ([i as i64 % width, i as i64 / width], side);
+        let mut all = HashMap::new();
+        for (i, cracks) in self.cracks.iter().enumerate() {
+            for (side, crack) in cracks.iter().enumerate() {
+                all.extend(crack.map(|crack| (place(i, side), crack)));
+            }
+        }
+        let linked = linked(&all, steps);
+        let kept = without_specks(&linked, specks);
+        for (i, cracks) in self.cracks.iter_mut().enumerate() {
+            for (side, crack) in cracks.iter_mut().enumerate() {
+                *crack = crack.filter(|_| kept.contains(&place(i, side)));
+                if let Some(crack) = crack.as_mut().filter(|_| self.smooth) {
+                    crack.bend = bend(&linked, place(i, side));
+                }
+            }
         }
     }
 
@@ -50,6 +82,7 @@ impl Cracks {
             cracks,
             reach: ((widest + 1.0).ceil() as i64 - 1).max(1),
             opacity: [1.0; 3],
+            smooth: false,
         }
     }
 
@@ -76,17 +109,27 @@ impl Cracks {
     pub fn exhaustive_ink(&self, at: [f64; 2], nudge: f64) -> [f64; 3] {
         let (px, py) = (at[0].floor() as i64, at[1].floor() as i64);
         let mut lines = Vec::new();
-        for y in py - self.reach..=py + self.reach {
-            for x in px - self.reach..=px + self.reach {
-                for (crack, v) in self.at(x, y).into_iter().zip(SIDES) {
-                    let Some(crack) = crack else { continue };
-                    let middle = middle(&crack, [x, y], v);
-                    let border = distance(middle, at) - crack.half_width;
-                    lines.push((border, middle, crack));
-                }
+        for [x, y] in self.around() {
+            let [x, y] = [px + x, py + y];
+            for (crack, v) in self.at(x, y).into_iter().zip(SIDES) {
+                let Some(crack) = crack else { continue };
+                let middle = middle(&crack, [x, y], v);
+                let border = distance(middle, at) - crack.half_width;
+                lines.push((border, middle, crack));
             }
         }
         self.ink_of_lines(lines, at, nudge)
+    }
+
+    /// The pixels whose cracks are searched.
+    fn around(&self) -> Vec<[i64; 2]> {
+        let square = |n: i64| (-n..=n).flat_map(move |y| (-n..=n).map(move |x| [x, y]));
+        let mut pixels: Vec<[i64; 2]> = square(self.reach).collect();
+        if self.smooth && self.reach == 1 {
+            pixels.extend([-1, 0, 1].map(|n| [-2, n]));
+            pixels.extend([-1, 0, 1].map(|n| [n, -2]));
+        }
+        pixels
     }
 
     fn ink_of_lines(&self, mut lines: Vec<Line>, at: [f64; 2], nudge: f64) -> [f64; 3] {
@@ -149,12 +192,18 @@ pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 /// The middle of the line along a crack.
 pub(super) fn middle(crack: &Crack, [x, y]: [i64; 2], v: [i64; 2]) -> [f64; 2] {
-    let shift = line_offset(crack.half_width);
-    let along = if crack.mine { 0.5 - shift } else { 0.5 + shift };
-    [
-        x as f64 + 0.5 + v[0] as f64 * along,
-        y as f64 + 0.5 + v[1] as f64 * along,
-    ]
+    let shift = match (crack.shifts, crack.mine) {
+        (false, _) => 0.0,
+        (true, false) => line_offset(crack.half_width),
+        (true, true) => -line_offset(crack.half_width),
+    };
+    let [offset, slope] = crack.bend;
+    let length = 1f64.hypot(slope);
+    let across = v.map(|v| v as f64);
+    [0, 1].map(|i| {
+        let normal = (across[i] - slope * across[1 - i]) / length;
+        [x, y][i] as f64 + 0.5 + (0.5 + offset) * across[i] + shift * normal
+    })
 }
 
 /// Ink by kind at a distance from the middle of a line.

@@ -33,7 +33,7 @@ pub fn faithful(s: &Outlines, view: &View, [x, y]: [i64; 2]) -> [f64; 2] {
         });
         let g = gradient_extremes(&depths, |a: f64, b: f64| (a - b).abs());
         let p = edge_response(g, f64::from(k.threshold));
-        found[0] = ink(k.edge_limit, k.softness, p);
+        found[0] = ink(k.edge_limit, k.softness, 1.0, p);
     }
     if let Some(k) = s.creases.filter(|k| k.form == Form::Faithful) {
         let normals: [[Normal; 5]; 5] = std::array::from_fn(|r| {
@@ -44,7 +44,12 @@ pub fn faithful(s: &Outlines, view: &View, [x, y]: [i64; 2]) -> [f64; 2] {
             })
         });
         let kn = (0.5 * f64::from(k.angle)).to_radians().sin().max(0.02);
-        found[1] = ink(k.edge_limit, k.softness, component_response(&normals, kn));
+        found[1] = ink(
+            k.edge_limit,
+            k.softness,
+            1.0,
+            component_response(&normals, kn),
+        );
     }
     let d = view.frame.depth_map(depth(view, x, y))[0];
     found.map(|ink| ink * (1.0 - f64::from(s.opacity_fade) * d))

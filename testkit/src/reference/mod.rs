@@ -1,6 +1,7 @@
 //! Twins of the shaders in double precision. A twin has the name of the WGSL file
 //! that it mirrors. It is written from the definition, not from the shader.
 
+pub mod bend;
 pub mod black_flats;
 pub mod blocks;
 pub mod color;
@@ -17,6 +18,7 @@ pub mod fused;
 pub mod histogram;
 pub mod jumps;
 pub mod light;
+pub mod link;
 pub mod map;
 pub mod noise;
 pub mod normal;

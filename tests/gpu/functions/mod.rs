@@ -1,6 +1,7 @@
 //! Compares the crate's WGSL functions with their twins, on random inputs and on
 //! edge cases.
 
+mod bend;
 mod blocks;
 mod cartoon_styles;
 mod color_styles;

@@ -1,0 +1,329 @@
+//! The passes of a view's lines, ready to be recorded: pipelines and what they bind.
+
+use bevy::{
+    core_pipeline::prepass::ViewPrepassTextures,
+    render::{
+        render_resource::{
+            BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, BindingResource,
+            CachedComputePipelineId, CachedRenderPipelineId, ComputePipeline, IntoBinding,
+            PipelineCache, RenderPipeline, TextureView,
+        },
+        renderer::RenderDevice,
+        texture::CachedTexture,
+    },
+};
+
+use super::{
+    ViewLines,
+    cracks::{Ready, ReadyCells, ReadyCracks, ReadyFind},
+    key::{LINK_STEPS, LineKey},
+    prepare::{Cracks, Tiles},
+    request::{CellPasses, CrackPasses, FindPass, LinePasses, LineRequest},
+    resolve::Resolved,
+    store::{CrackBuffers, CrackStore},
+};
+use crate::{
+    depth::prepare::ViewDepthRange,
+    diagnostics::LeftOut,
+    objects::{ObjectStyleBuffer, ViewObjectIds},
+};
+
+/// The components of a view that its line passes read.
+pub(super) type ViewParts<'a> = (
+    (&'a LineRequest, &'a LinePasses, &'a ViewLines),
+    Option<&'a ViewPrepassTextures>,
+    Option<&'a ViewDepthRange>,
+    Option<&'a ViewObjectIds>,
+);
+
+fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
+    BindGroupEntry { binding, resource }
+}
+
+/// What the passes read.
+pub(super) struct Inputs<'a> {
+    pub parts: ViewParts<'a>,
+    pub object_styles: &'a ObjectStyleBuffer,
+    pub cache: &'a PipelineCache,
+    pub device: RenderDevice,
+}
+
+const NOT_READY: LeftOut = LeftOut::PipelineNotReady;
+
+/// Textures with the depth, normal and object of every pixel.
+pub(super) struct Texels<'a> {
+    pub depth: &'a TextureView,
+    pub normal: Option<&'a TextureView>,
+    pub ids: Option<&'a TextureView>,
+}
+
+impl<'a> Texels<'a> {
+    /// Adds the bindings: the depth, and the normals and ids if they are read.
+    fn push(
+        self,
+        (normals, ids): (bool, bool),
+        entries: &mut Vec<BindGroupEntry<'a>>,
+    ) -> Result<(), LeftOut> {
+        entries.push(entry(2, self.depth.into_binding()));
+        if normals {
+            let normal = self.normal.ok_or(NOT_READY)?;
+            entries.push(entry(7, normal.into_binding()));
+        }
+        if ids {
+            let ids = self.ids.ok_or(NOT_READY)?;
+            entries.push(entry(8, ids.into_binding()));
+        }
+        Ok(())
+    }
+}
+
+/// The pass that picks samples, ready to be recorded.
+type ResolvePass<'a> = (&'a Resolved, Ready<'a, RenderPipeline>);
+
+impl Inputs<'_> {
+    /// The pass that draws the faithful forms, if there are any.
+    pub fn faithful_pass(&self) -> Result<Option<Ready<'_, RenderPipeline>>, LeftOut> {
+        let (_, passes, _) = self.parts.0;
+        let Some(id) = passes.faithful else {
+            return Ok(None);
+        };
+        let key = passes.key.for_faithful();
+        let entries = self.entries(&key, key.faithful[1])?;
+        let group = self.group(&key.faithful_layout(), &entries);
+        Ok(Some((self.pipeline(id)?, group)))
+    }
+
+    fn pipeline(&self, id: CachedRenderPipelineId) -> Result<&RenderPipeline, LeftOut> {
+        self.cache.get_render_pipeline(id).ok_or(NOT_READY)
+    }
+
+    fn group(&self, layout: &BindGroupLayoutDescriptor, entries: &[BindGroupEntry]) -> BindGroup {
+        let layout = self.cache.get_bind_group_layout(layout);
+        self.device
+            .create_bind_group("comics_lines", &layout, entries)
+    }
+
+    fn uniform(&self) -> Result<BindingResource<'_>, LeftOut> {
+        let (_, _, lines) = self.parts.0;
+        lines.uniform.binding().ok_or(NOT_READY)
+    }
+
+    /// The prepass textures of the view.
+    fn prepass(&self) -> Result<Texels<'_>, LeftOut> {
+        let ((request, ..), prepass, _, ids) = self.parts;
+        let prepass = prepass.ok_or(LeftOut::NoDepthPrepass)?;
+        let depth = prepass.depth.as_ref().ok_or(LeftOut::NoDepthPrepass)?;
+        if depth.texture.texture.sample_count() != request.samples {
+            return Err(LeftOut::SampleCountMismatch);
+        }
+        let normal = prepass.normal.as_ref();
+        Ok(Texels {
+            depth: &depth.texture.default_view,
+            normal: normal.map(|normal| &normal.texture.default_view),
+            ids: ids.map(|ids| &ids.view),
+        })
+    }
+
+    /// The textures that lines are found in.
+    fn texels(&self) -> Result<Texels<'_>, LeftOut> {
+        let (_, _, lines) = self.parts.0;
+        match &lines.resolved {
+            Some(resolved) => Ok(resolved.texels()),
+            None => self.prepass(),
+        }
+    }
+
+    /// The pass that picks one sample of every pixel, if the view is multisampled.
+    pub fn resolve_pass(&self) -> Result<Option<ResolvePass<'_>>, LeftOut> {
+        let (_, passes, lines) = self.parts.0;
+        let (Some((key, id)), Some(resolved)) = (&passes.resolve, &lines.resolved) else {
+            return Ok(None);
+        };
+        let mut entries = vec![entry(1, self.uniform()?)];
+        self.prepass()?.push((key.normals, key.ids), &mut entries)?;
+        let group = self.group(&key.layout(), &entries);
+        Ok(Some((resolved, (self.pipeline(*id)?, group))))
+    }
+
+    /// The bindings of the passes that find lines. `normals`: the normals too.
+    fn entries(&self, key: &LineKey, normals: bool) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
+        let (_, _, range, _) = self.parts;
+        let mut entries = vec![entry(1, self.uniform()?)];
+        self.texels()?.push((normals, key.ids), &mut entries)?;
+        if key.visible_range {
+            let keys = range.and_then(ViewDepthRange::drawn).ok_or(NOT_READY)?;
+            entries.push(entry(3, keys.as_entire_binding()));
+        }
+        if key.object_styles {
+            let styles = self.object_styles.buffer().ok_or(NOT_READY)?;
+            entries.push(entry(6, styles.as_entire_binding()));
+        }
+        Ok(entries)
+    }
+
+    /// The passes of the lines along cracks.
+    pub fn crack_passes<'a>(
+        &'a self,
+        passes: &CrackPasses,
+        cracks: &'a Cracks,
+    ) -> Result<ReadyCracks<'a>, LeftOut> {
+        let key = self.parts.0.1.key.for_find();
+        let (_, _, lines) = self.parts.0;
+        let find = self.find_pass(passes.find, &key, cracks)?;
+        let columns = match (passes.columns, &cracks.columns) {
+            (Some(id), Some(columns)) => {
+                let mut entries = self.stored(cracks)?;
+                let blocks = lines.tiles.as_ref().map(|tiles| &tiles.blocks);
+                entries.extend(blocks.map(|b| entry(12, (&b.default_view).into_binding())));
+                let group = self.group(&key.for_columns().columns_layout(), &entries);
+                Some(((self.pipeline(id)?, group), columns))
+            }
+            _ => None,
+        };
+        Ok(ReadyCracks {
+            tiles: lines.tiles.as_ref().map(|tiles| &tiles.lists),
+            columns,
+            find,
+            ink: (self.pipeline(passes.draw)?, self.draw_group(cracks)?),
+        })
+    }
+
+    /// The pass that finds cracks.
+    fn find_pass<'a>(
+        &'a self,
+        pass: FindPass,
+        key: &LineKey,
+        cracks: &'a Cracks,
+    ) -> Result<ReadyFind<'a>, LeftOut> {
+        let mut entries = self.entries(key, key.creases)?;
+        match (pass, &cracks.store) {
+            (FindPass::Pixels(id), CrackStore::Texture(texture)) => {
+                let group = self.group(&key.find_layout(), &entries);
+                Ok(ReadyFind::Pixels((self.pipeline(id)?, group), texture))
+            }
+            (FindPass::Cells(passes), CrackStore::Buffers(buffers)) => {
+                let lists = &self.tiles()?.lists;
+                entries.extend(lists.cell_entries());
+                entries.extend(buffers.cell_entries());
+                let group = self.group(&key.cells_layout(), &entries);
+                Ok(ReadyFind::Cells(ReadyCells {
+                    lists,
+                    buffers,
+                    find: (self.compute(passes.find)?, group),
+                    link: self.link_passes(&passes, buffers)?,
+                    settle: self.settle_pass(&passes, key, buffers)?,
+                }))
+            }
+            _ => Err(NOT_READY),
+        }
+    }
+
+    fn tiles(&self) -> Result<&Tiles, LeftOut> {
+        let (_, _, lines) = self.parts.0;
+        lines.tiles.as_ref().ok_or(NOT_READY)
+    }
+
+    /// The bindings of a pass in cells: these, and those that all such passes have.
+    fn in_cells<'a>(
+        &'a self,
+        more: Vec<BindGroupEntry<'a>>,
+    ) -> Result<Vec<BindGroupEntry<'a>>, LeftOut> {
+        let uniform = [entry(1, self.uniform()?)].into_iter();
+        let lists = self.tiles()?.lists.cell_entries();
+        Ok(uniform.chain(lists).chain(more).collect())
+    }
+
+    /// The passes that continue lines.
+    fn link_passes<'a>(
+        &'a self,
+        passes: &CellPasses,
+        buffers: &CrackBuffers,
+    ) -> Result<Vec<Ready<'a, ComputePipeline>>, LeftOut> {
+        let Some([full, last]) = passes.link else {
+            return Ok(vec![]);
+        };
+        let (request, ..) = self.parts.0;
+        let count = (request.steps as usize).div_ceil(LINK_STEPS);
+        let pass = |i: usize| {
+            let id = if i + 1 == count { last } else { full };
+            let entries = self.in_cells(buffers.link_entries(i % 2))?;
+            let group = self.group(&LineKey::link_layout(), &entries);
+            Ok((self.compute(id)?, group))
+        };
+        (0..count).map(pass).collect()
+    }
+
+    /// The pass that completes cracks, if there is one.
+    fn settle_pass<'a>(
+        &'a self,
+        passes: &CellPasses,
+        key: &LineKey,
+        buffers: &CrackBuffers,
+    ) -> Result<Option<Ready<'a, ComputePipeline>>, LeftOut> {
+        let Some(id) = passes.settle else {
+            return Ok(None);
+        };
+        let (request, ..) = self.parts.0;
+        let links = (request.steps as usize).div_ceil(LINK_STEPS);
+        let entries = self.in_cells(buffers.settle_entries(links % 2))?;
+        let group = self.group(&key.for_settle().settle_layout(), &entries);
+        Ok(Some((self.compute(id)?, group)))
+    }
+
+    fn compute(&self, id: CachedComputePipelineId) -> Result<&ComputePipeline, LeftOut> {
+        self.cache.get_compute_pipeline(id).ok_or(NOT_READY)
+    }
+
+    /// The bindings of a pass that searches stored cracks.
+    fn stored<'a>(&'a self, cracks: &'a Cracks) -> Result<Vec<BindGroupEntry<'a>>, LeftOut> {
+        let uniform = [entry(1, self.uniform()?)];
+        Ok(uniform.into_iter().chain(cracks.store.entries()).collect())
+    }
+
+    /// The passes that look for blocks with cracks and list the tiles near them, if there
+    /// are any.
+    pub fn search_passes(&self) -> Result<Option<[Ready<'_, ComputePipeline>; 2]>, LeftOut> {
+        let (_, passes, lines) = self.parts.0;
+        let (Some([walk, list]), Some(tiles)) = (passes.search, &lines.tiles) else {
+            return Ok(None);
+        };
+        let key = passes.key.for_walk();
+        let mut walked = self.entries(&key, key.creases)?;
+        walked.push(entry(10, (&tiles.blocks.default_view).into_binding()));
+        if key.has_cracks() {
+            walked.extend(tiles.lists.cell_entries());
+        }
+        let walked = self.group(&key.walk_layout(), &walked);
+        let mut listed = self.searched((12, &tiles.blocks))?;
+        listed.extend(tiles.lists.entries());
+        let listed = self.group(&LineKey::tiles_layout(), &listed);
+        Ok(Some([
+            (self.compute(walk)?, walked),
+            (self.compute(list)?, listed),
+        ]))
+    }
+
+    /// The bindings of a pass that searches the texture at this binding.
+    fn searched<'a>(
+        &'a self,
+        (binding, texture): (u32, &'a CachedTexture),
+    ) -> Result<Vec<BindGroupEntry<'a>>, LeftOut> {
+        Ok(vec![
+            entry(1, self.uniform()?),
+            entry(binding, (&texture.default_view).into_binding()),
+        ])
+    }
+
+    fn draw_group(&self, cracks: &Cracks) -> Result<BindGroup, LeftOut> {
+        let (_, passes, _) = self.parts.0;
+        let mut entries = match &cracks.columns {
+            Some(columns) => self.searched((13, columns))?,
+            None => self.stored(cracks)?,
+        };
+        if passes.key.object_styles {
+            let ids = self.texels()?.ids.ok_or(NOT_READY)?;
+            entries.push(entry(8, ids.into_binding()));
+        }
+        Ok(self.group(&passes.key.draw_layout(), &entries))
+    }
+}

@@ -1,0 +1,169 @@
+//! What the shaders of the line passes bind.
+
+use bevy::{
+    math::UVec4,
+    render::render_resource::{
+        BindGroupLayoutDescriptor, BindGroupLayoutEntry, ShaderStages, ShaderType,
+        StorageTextureAccess, TextureSampleType,
+        binding_types::{
+            storage_buffer_read_only_sized, storage_buffer_sized, texture_2d, texture_storage_2d,
+            uniform_buffer, uniform_buffer_sized,
+        },
+    },
+};
+
+use super::{
+    key::{BLOCK_FORMAT, LineKey, Search},
+    request::LinePassUniform,
+};
+use crate::objects::{ids_entry, object_styles_entry};
+
+impl LineKey {
+    /// The layout entries of what finding reads. `normals`: the normals are read.
+    fn inputs(&self, normals: bool, stages: ShaderStages) -> Vec<BindGroupLayoutEntry> {
+        let float = || texture_2d(TextureSampleType::Float { filterable: false });
+        let mut entries = vec![
+            uniform_buffer::<LinePassUniform>(false).build(1, stages),
+            float().build(2, stages),
+        ];
+        let seen = |mut entry: BindGroupLayoutEntry| {
+            entry.visibility = stages;
+            entry
+        };
+        if self.visible_range {
+            entries.push(seen(range_entry()));
+        }
+        if self.object_styles {
+            entries.push(seen(object_styles_entry()));
+        }
+        if normals {
+            entries.push(float().build(7, stages));
+        }
+        if self.ids {
+            entries.push(seen(ids_entry(false)));
+        }
+        entries
+    }
+
+    pub fn walk_layout(&self) -> BindGroupLayoutDescriptor {
+        let mut entries = self.inputs(self.creases, ShaderStages::COMPUTE);
+        let blocks = texture_storage_2d(BLOCK_FORMAT, StorageTextureAccess::WriteOnly);
+        entries.push(blocks.build(10, ShaderStages::COMPUTE));
+        if self.has_cracks() {
+            entries.extend(written_buffers([16, 17]));
+        }
+        BindGroupLayoutDescriptor::new("comics_walk", &entries)
+    }
+
+    pub fn cells_layout(&self) -> BindGroupLayoutDescriptor {
+        let mut entries = self.inputs(self.creases, ShaderStages::COMPUTE);
+        entries.extend(read_buffers([16, 17]));
+        entries.extend(written_buffers([18]));
+        if self.has_planes() {
+            entries.extend(written_buffers([21]));
+        }
+        BindGroupLayoutDescriptor::new("comics_find_in_cells", &entries)
+    }
+
+    pub fn link_layout() -> BindGroupLayoutDescriptor {
+        let uniform = uniform_buffer::<LinePassUniform>(false).build(1, ShaderStages::COMPUTE);
+        let mut entries = vec![uniform];
+        entries.extend(read_buffers([16, 17, 20]));
+        entries.extend(written_buffers([21]));
+        BindGroupLayoutDescriptor::new("comics_link_lines", &entries)
+    }
+
+    pub fn settle_layout(&self) -> BindGroupLayoutDescriptor {
+        let uniform = uniform_buffer::<LinePassUniform>(false).build(1, ShaderStages::COMPUTE);
+        let mut entries = vec![uniform];
+        entries.extend(read_buffers([16, 17, 20]));
+        entries.extend(written_buffers([18]));
+        if self.smooth {
+            entries.extend(written_buffers([22]));
+        }
+        BindGroupLayoutDescriptor::new("comics_settle_lines", &entries)
+    }
+
+    pub fn find_layout(&self) -> BindGroupLayoutDescriptor {
+        let entries = self.inputs(self.creases, ShaderStages::FRAGMENT);
+        BindGroupLayoutDescriptor::new("comics_find_lines", &entries)
+    }
+
+    pub fn faithful_layout(&self) -> BindGroupLayoutDescriptor {
+        let entries = self.inputs(self.faithful[1], ShaderStages::FRAGMENT);
+        BindGroupLayoutDescriptor::new("comics_faithful_lines", &entries)
+    }
+
+    pub fn columns_layout(&self) -> BindGroupLayoutDescriptor {
+        let mut entries = self.stored();
+        if !self.by_fragments {
+            let blocks = texture_2d(TextureSampleType::Uint);
+            entries.push(blocks.build(12, ShaderStages::FRAGMENT));
+        }
+        BindGroupLayoutDescriptor::new("comics_line_columns", &entries)
+    }
+
+    /// The layout entries of a pass that searches stored cracks, see `stored.wgsl`.
+    fn stored(&self) -> Vec<BindGroupLayoutEntry> {
+        let fragment = ShaderStages::FRAGMENT;
+        let mut entries = vec![uniform_buffer::<LinePassUniform>(false).build(1, fragment)];
+        if self.by_fragments {
+            entries.push(texture_2d(TextureSampleType::Uint).build(11, fragment));
+        } else {
+            entries.push(storage_buffer_read_only_sized(false, None).build(11, fragment));
+        }
+        if self.smooth {
+            entries.push(storage_buffer_read_only_sized(false, None).build(19, fragment));
+        }
+        entries
+    }
+
+    pub fn tiles_layout() -> BindGroupLayoutDescriptor {
+        let compute = ShaderStages::COMPUTE;
+        let entries = [
+            uniform_buffer::<LinePassUniform>(false).build(1, compute),
+            texture_2d(TextureSampleType::Uint).build(12, compute),
+            storage_buffer_sized(false, None).build(14, compute),
+            storage_buffer_sized(false, None).build(15, compute),
+        ];
+        BindGroupLayoutDescriptor::new("comics_list_tiles", &entries)
+    }
+
+    pub fn draw_layout(&self) -> BindGroupLayoutDescriptor {
+        let mut entries = if self.search == Search::Columns {
+            let fragment = ShaderStages::FRAGMENT;
+            vec![
+                uniform_buffer::<LinePassUniform>(false).build(1, fragment),
+                texture_2d(TextureSampleType::Uint).build(13, fragment),
+            ]
+        } else {
+            self.stored()
+        };
+        if self.object_styles {
+            entries.push(ids_entry(false));
+        }
+        BindGroupLayoutDescriptor::new("comics_draw_lines", &entries)
+    }
+}
+
+/// The layout entries of buffers that compute passes read.
+fn read_buffers<const N: usize>(bindings: [u32; N]) -> [BindGroupLayoutEntry; N] {
+    bindings.map(|binding| {
+        storage_buffer_read_only_sized(false, None).build(binding, ShaderStages::COMPUTE)
+    })
+}
+
+/// The layout entries of buffers that compute passes write.
+fn written_buffers<const N: usize>(bindings: [u32; N]) -> [BindGroupLayoutEntry; N] {
+    bindings.map(|binding| storage_buffer_sized(false, None).build(binding, ShaderStages::COMPUTE))
+}
+
+/// The layout entry of the visible range, the same in all passes.
+pub(crate) fn range_entry() -> BindGroupLayoutEntry {
+    uniform_buffer_sized(false, Some(UVec4::min_size())).build(3, ShaderStages::FRAGMENT)
+}
+
+/// The layout entry of the ink in the fused pass.
+pub(crate) fn ink_entry() -> BindGroupLayoutEntry {
+    texture_2d(TextureSampleType::Float { filterable: false }).build(4, ShaderStages::FRAGMENT)
+}

@@ -1,0 +1,38 @@
+#define_import_path bevy_comics::lines::planes
+
+// Blocks, cells, and where cracks are, as planes of bits: one for each pixel that has a crack to the east,
+// and to the south. Words hold 32 pixels of a column, those of ROWS 32 pixels of a row.
+
+#import bevy_comics::lines::edge::Grid
+
+// Columns and rows of a block, which an invocation of walk.wgsl walks through, and rows
+// of a cell, which an invocation of cells.wgsl walks through.
+const COLUMNS: i32 = 4;
+const ROWS: i32 = 32;
+const CELL_ROWS: i32 = 8;
+// Cells in a workgroup of cells.wgsl, and workgroups in a row of its dispatch.
+const GROUP: u32 = 32u;
+const GROUPS: u32 = 1024u;
+
+// Planes, one after the other: cracks that are part of lines, and all cracks.
+const LINKED_EAST: i32 = 0;
+const LINKED_SOUTH: i32 = 1;
+const FOUND_EAST: i32 = 2;
+const FOUND_SOUTH: i32 = 3;
+// Behind them: LINKED_SOUTH by rows.
+const ROWS_SOUTH: i32 = 4;
+
+// The word of a plane with the pixel (x, 32 * band).
+fn column_word(g: Grid, plane: i32, x: i32, band: i32) -> i32 {
+    return (plane * g.words.y + band) * g.rect.z + x;
+}
+
+// The word of LINKED_SOUTH by rows with the pixel (32 * word, y).
+fn row_word(g: Grid, word: i32, y: i32) -> i32 {
+    return ROWS_SOUTH * g.words.y * g.rect.z + y * g.words.x + word;
+}
+
+// 32 bits of two words in a row, from bit `first` of the one on.
+fn across_words(word: u32, next: u32, first: u32) -> u32 {
+    return select((word >> first) | (next << (32u - first)), word, first == 0u);
+}

@@ -1,0 +1,143 @@
+// Completes the cracks of the cells: leaves out those that are not part of a line, and
+// finds how the lines of the others run straight through the steps of pixels.
+
+#import bevy_comics::depth::view::View
+#import bevy_comics::lines::bend::{end_sign, line_bend, pack_bend}
+#import bevy_comics::lines::edge::{Grid, Lines}
+#import bevy_comics::lines::listed::listed_cell
+#import bevy_comics::lines::planes::{COLUMNS, FOUND_EAST, FOUND_SOUTH, LINKED_EAST, LINKED_SOUTH}
+#import bevy_comics::lines::read_planes::{column_window, load_column, row_window}
+
+struct SettleUniform {
+    seen: View,
+    settings: Lines,
+    grid: Grid,
+}
+
+@group(0) @binding(1) var<uniform> settle_uniform: SettleUniform;
+@group(0) @binding(18) var<storage, read_write> crack_words: array<vec2<u32>>;
+#ifdef SMOOTH
+@group(0) @binding(22) var<storage, read_write> bend_words: array<u32>;
+#endif
+
+// Rows of a window above a cell, and its columns: those of a cell, and two on both sides.
+const ROWS_ABOVE: i32 = 12;
+const SIDE: i32 = 2;
+const WIDTH: i32 = 8;
+
+#ifdef SMOOTH
+// How the line along the crack to the south of a pixel leaves it.
+fn bend_south(g: Grid, p: vec2<i32>) -> u32 {
+    let before = countLeadingZeros(~row_window(g, p.x - 31, p.y));
+    let after = countTrailingZeros(~row_window(g, p.x, p.y));
+    let first = p.x - i32(before);
+    let last = p.x + i32(after) - 1;
+    let single = before + after == 2u;
+    let sign_before = end_sign(column_window(g, LINKED_EAST, first, p.y - 1), single);
+    let sign_after = end_sign(column_window(g, LINKED_EAST, last, p.y - 1), single);
+    return pack_bend(line_bend(vec2(before, after), vec2(sign_before, sign_after)));
+}
+
+// The same of the crack to the east.
+fn bend_east(g: Grid, p: vec2<i32>) -> u32 {
+    let before = countLeadingZeros(~column_window(g, LINKED_EAST, p.x, p.y - 31));
+    let after = countTrailingZeros(~column_window(g, LINKED_EAST, p.x, p.y));
+    let first = p.y - i32(before);
+    let last = p.y + i32(after) - 1;
+    let single = before + after == 2u;
+    let sign_before = end_sign(row_window(g, p.x - 1, first), single);
+    let sign_after = end_sign(row_window(g, p.x - 1, last), single);
+    return pack_bend(line_bend(vec2(before, after), vec2(sign_before, sign_after)));
+}
+#endif
+
+// Of six sets of cracks: which cracks are in one of them or more, and in two or more.
+fn one_or_two(a: u32, b: u32, c: u32, d: u32, e: u32, f: u32) -> vec2<u32> {
+    let ab = a ^ b;
+    let cd = c ^ d;
+    let ef = e ^ f;
+    let any_two = (a & b) | (c & d) | (e & f) | (ab & cd) | (ab & ef) | (cd & ef);
+    return vec2(a | b | c | d | e | f, any_two);
+}
+
+// Leaves out the cracks of a column of a cell that are not kept, and bends the lines of
+// the others. Bits are rows.
+fn settle_column(g: Grid, first: vec2<i32>, keep: vec2<u32>) {
+    let band = first.y >> 5u;
+    let from_top = u32(first.y & 31);
+    let east = (load_column(g, FOUND_EAST, first.x, band) >> from_top) & 0xffu;
+    let south = (load_column(g, FOUND_SOUTH, first.x, band) >> from_top) & 0xffu;
+    var rows = east | south;
+    while rows != 0u {
+        let row = firstTrailingBit(rows);
+        rows &= rows - 1u;
+        let p = first + vec2(0, i32(row));
+        let kept = vec2((keep.x >> row) & 1u, (keep.y >> row) & 1u);
+        let lost = vec2((east >> row) & 1u, (south >> row) & 1u) > kept;
+        let at = p.y * g.rect.z + p.x;
+        if any(lost) {
+            crack_words[at] = select(crack_words[at], vec2(0u), lost);
+        }
+#ifdef SMOOTH
+        var bends = 0x80808080u;
+        if kept.x != 0u {
+            bends = (bends & 0xffff0000u) | bend_east(g, p);
+        }
+        if kept.y != 0u {
+            bends = (bends & 0xffffu) | (bend_south(g, p) << 16u);
+        }
+        bend_words[at] = bends;
+#endif
+    }
+}
+
+@compute @workgroup_size(32)
+fn settle(
+    @builtin(workgroup_id) group: vec3<u32>,
+    @builtin(local_invocation_index) place: u32,
+) {
+    let cell = listed_cell(group, place);
+    if cell.x < 0 {
+        return;
+    }
+    let g = settle_uniform.grid;
+    // The cracks of lines, and which of them touch two other cracks or more.
+    var east: array<u32, WIDTH>;
+    var south: array<u32, WIDTH>;
+    for (var i = 0; i < WIDTH; i++) {
+        east[i] = column_window(g, LINKED_EAST, cell.x - SIDE + i, cell.y - ROWS_ABOVE);
+        south[i] = column_window(g, LINKED_SOUTH, cell.x - SIDE + i, cell.y - ROWS_ABOVE);
+    }
+    var east_touch: array<vec2<u32>, WIDTH>;
+    var south_touch: array<vec2<u32>, WIDTH>;
+    for (var i = 1; i < WIDTH - 1; i++) {
+        let e = east[i];
+        let s = south[i];
+        let beside = south[i + 1];
+        let before = east[i - 1];
+        east_touch[i] = one_or_two(e << 1u, e >> 1u, s, s << 1u, beside, beside << 1u) & vec2(e);
+        south_touch[i] = one_or_two(south[i - 1], beside, e, e >> 1u, before, before >> 1u) & vec2(s);
+    }
+    for (var column = 0; column < COLUMNS; column++) {
+        if cell.x + column >= g.rect.z {
+            break;
+        }
+        let i = column + SIDE;
+        var keep = vec2(east[i], south[i]);
+        if g.specks > 1 {
+            keep = vec2(east_touch[i].x, south_touch[i].x);
+        }
+        if g.specks > 2 {
+            let e = east_touch[i].y;
+            let s = south_touch[i].y;
+            let ends = s | south_touch[i + 1].y;
+            let sides = e | east_touch[i - 1].y;
+            keep &= vec2(
+                e | (e << 1u) | (e >> 1u) | ends | (ends << 1u),
+                s | south_touch[i - 1].y | south_touch[i + 1].y | sides | (sides >> 1u),
+            );
+        }
+        let first = cell + vec2(column, 0);
+        settle_column(g, first, (keep >> vec2(u32(ROWS_ABOVE))) & vec2(0xffu));
+    }
+}

@@ -1,0 +1,148 @@
+//! Where the cracks of a view are stored.
+
+use bevy::{
+    math::{UVec2, UVec4},
+    render::{
+        render_resource::{
+            BindGroupEntry, Buffer, BufferDescriptor, BufferUsages, CommandEncoder, IntoBinding,
+        },
+        renderer::RenderDevice,
+        texture::CachedTexture,
+    },
+};
+
+/// The cracks of a view.
+pub(crate) enum CrackStore {
+    /// Those of every pixel, drawn by `find.wgsl`.
+    Texture(CachedTexture),
+    /// Those of every pixel, written by `cells.wgsl` and completed by `settle.wgsl`.
+    Buffers(CrackBuffers),
+}
+
+impl CrackStore {
+    /// The bindings of `stored.wgsl`.
+    pub fn entries(&self) -> Vec<BindGroupEntry<'_>> {
+        match self {
+            Self::Texture(texture) => vec![BindGroupEntry {
+                binding: 11,
+                resource: (&texture.default_view).into_binding(),
+            }],
+            Self::Buffers(buffers) => {
+                let mut entries = vec![entry(11, &buffers.words)];
+                entries.extend(buffers.bends.as_ref().map(|bends| entry(19, bends)));
+                entries
+            }
+        }
+    }
+}
+
+fn entry(binding: u32, buffer: &Buffer) -> BindGroupEntry<'_> {
+    BindGroupEntry {
+        binding,
+        resource: buffer.as_entire_binding(),
+    }
+}
+
+/// Bytes of the cracks of a pixel, and of how their lines leave them.
+const CRACKS: u64 = 8;
+const BENDS: u64 = 4;
+/// Bytes of a word of a plane.
+const WORD: u64 = 4;
+
+/// Words of 32 pixels across and down the part of the depth texture with this rectangle.
+pub(super) fn words(rect: UVec4) -> UVec2 {
+    UVec2::new(rect.z.div_ceil(32), rect.w.div_ceil(32))
+}
+
+/// Bytes of the largest buffer of a view's cracks.
+pub(super) fn largest_buffer(rect: UVec4) -> u64 {
+    CRACKS * u64::from(rect.z) * u64::from(rect.w)
+}
+
+/// The buffers of a view's cracks.
+pub(crate) struct CrackBuffers {
+    words: Buffer,
+    /// Planes of bits, see `planes.wgsl`: a pass that links reads one and adds to the
+    /// other.
+    planes: Option<[Buffer; 2]>,
+    bends: Option<Buffer>,
+    /// Bytes that are used of the cracks and of the planes.
+    used: [u64; 2],
+}
+
+impl CrackBuffers {
+    /// Buffers for a rectangle; those of `before` are used again if they are large enough.
+    pub fn new(
+        before: Option<Self>,
+        device: &RenderDevice,
+        rect: UVec4,
+        (planes, bends): (bool, bool),
+    ) -> Self {
+        let words = words(rect);
+        let pixels = u64::from(rect.z) * u64::from(rect.w);
+        let columns = u64::from(words.y) * u64::from(rect.z);
+        let rows = u64::from(words.x) * u64::from(rect.w);
+        let used = [CRACKS * pixels, WORD * (4 * columns + rows)];
+        let before = before.map(|b| (Some(b.words), b.planes, b.bends));
+        let enough = |buffer: &Buffer, size| buffer.size() >= size;
+        let take = |size: u64, label, old: Option<Buffer>| {
+            old.filter(|old| enough(old, size)).unwrap_or_else(|| {
+                device.create_buffer(&BufferDescriptor {
+                    label: Some(label),
+                    size: size.max(16),
+                    usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
+                    mapped_at_creation: false,
+                })
+            })
+        };
+        let (old_words, old_planes, old_bends) = before.unwrap_or_default();
+        let [one, other] = old_planes.map_or([None, None], |planes| planes.map(Some));
+        Self {
+            words: take(used[0], "comics_cracks", old_words),
+            planes: planes
+                .then(|| [one, other].map(|old| take(used[1], "comics_crack_planes", old))),
+            bends: bends.then(|| take(BENDS * pixels, "comics_crack_bends", old_bends)),
+            used,
+        }
+    }
+
+    /// Removes all cracks.
+    pub fn clear(&self, encoder: &mut CommandEncoder) {
+        encoder.clear_buffer(&self.words, 0, Some(self.used[0]));
+        if let Some([planes, _]) = &self.planes {
+            encoder.clear_buffer(planes, 0, Some(self.used[1]));
+        }
+    }
+
+    /// Copies the planes of a buffer to the other.
+    pub fn copy_planes(&self, encoder: &mut CommandEncoder, from: usize) {
+        if let Some(planes) = &self.planes {
+            encoder.copy_buffer_to_buffer(&planes[from], 0, &planes[1 - from], 0, self.used[1]);
+        }
+    }
+
+    /// The bindings of `cells.wgsl`.
+    pub fn cell_entries(&self) -> Vec<BindGroupEntry<'_>> {
+        let planes = self.planes.as_ref().map(|[planes, _]| entry(21, planes));
+        [entry(18, &self.words)].into_iter().chain(planes).collect()
+    }
+
+    /// The bindings of `link.wgsl`, which reads the planes `from` a buffer.
+    pub fn link_entries(&self, from: usize) -> Vec<BindGroupEntry<'_>> {
+        let planes = self.planes.as_ref();
+        planes.map_or(vec![], |planes| {
+            vec![entry(20, &planes[from]), entry(21, &planes[1 - from])]
+        })
+    }
+
+    /// The bindings of `settle.wgsl`, which reads the planes `from` a buffer.
+    pub fn settle_entries(&self, from: usize) -> Vec<BindGroupEntry<'_>> {
+        let planes = self.planes.as_ref().map(|planes| entry(20, &planes[from]));
+        let bends = self.bends.as_ref().map(|bends| entry(22, bends));
+        [entry(18, &self.words)]
+            .into_iter()
+            .chain(planes)
+            .chain(bends)
+            .collect()
+    }
+}

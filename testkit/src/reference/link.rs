@@ -1,0 +1,100 @@
+//! Twin of `lines/link.wgsl` and `lines/settle.wgsl`: the cracks that are parts of lines,
+//! and how these run. A graph of cracks and of the corners of pixels that they end at.
+
+use std::collections::{HashMap, HashSet};
+
+use super::{
+    bend::{LONGEST, end_sign, line_bend, stored},
+    crack::Crack,
+};
+
+/// A crack: the pixel that has it, and the side, an entry of
+/// [`SIDES`](super::crack::SIDES).
+pub type Place = ([i64; 2], usize);
+
+/// The corners of pixels that a crack ends at: the corner (x, y) is that at the top left of
+/// the pixel (x, y).
+fn corners(([x, y], side): Place) -> [[i64; 2]; 2] {
+    let end = [x + 1, y + 1];
+    match side {
+        0 => [[x + 1, y], end],
+        _ => [[x, y + 1], end],
+    }
+}
+
+/// The cracks that end at a corner.
+fn at_corner([x, y]: [i64; 2]) -> [Place; 4] {
+    [
+        ([x - 1, y - 1], 0),
+        ([x - 1, y], 0),
+        ([x - 1, y - 1], 1),
+        ([x, y - 1], 1),
+    ]
+}
+
+/// The cracks that share a corner with one.
+fn neighbours(place: Place) -> impl Iterator<Item = Place> {
+    corners(place)
+        .into_iter()
+        .flat_map(at_corner)
+        .filter(move |other| *other != place)
+}
+
+/// The cracks that are parts of lines: those that are certain, and those that a path of at
+/// most `steps` cracks connects with one.
+pub fn linked(cracks: &HashMap<Place, Crack>, steps: i32) -> HashSet<Place> {
+    let certain = cracks.iter().filter(|(_, crack)| crack.certain);
+    let mut all: HashSet<Place> = certain.map(|(place, _)| *place).collect();
+    let mut border = all.clone();
+    for _ in 0..steps {
+        border = border
+            .into_iter()
+            .flat_map(neighbours)
+            .filter(|place| cracks.contains_key(place) && !all.contains(place))
+            .collect();
+        all.extend(&border);
+    }
+    all
+}
+
+/// The cracks that are in pieces of at least `specks` cracks; at most 3 are counted.
+pub fn without_specks(linked: &HashSet<Place>, specks: u32) -> HashSet<Place> {
+    let size = |place: Place| {
+        let mut piece = HashSet::from([place]);
+        for _ in 0..2 {
+            let more: Vec<Place> = piece.iter().copied().flat_map(neighbours).collect();
+            piece.extend(more.into_iter().filter(|other| linked.contains(other)));
+        }
+        piece.len()
+    };
+    let kept = linked
+        .iter()
+        .filter(|place| size(**place) >= specks as usize);
+    kept.copied().collect()
+}
+
+/// Offset and slope of the line along a crack, as they are stored.
+pub fn bend(linked: &HashSet<Place>, ([x, y], side): Place) -> [f64; 2] {
+    // Along and across the run.
+    let along = [[0, 1], [1, 0]][side];
+    let at = |n: i64| ([x + n * along[0], y + n * along[1]], side);
+    let seen = |step: i64| {
+        let run = (0..LONGEST as i64).take_while(|n| linked.contains(&at(n * step)));
+        run.count()
+    };
+    let seen = [seen(-1), seen(1)];
+    let single = seen == [1, 1];
+    // The cracks across the run at the corner behind the n-th crack from this one.
+    let sides = |n: i64| {
+        let ([px, py], _) = at(n);
+        [-1, 0, 1, 2].map(|across| {
+            let place = match side {
+                0 => [px + across, py],
+                _ => [px, py + across],
+            };
+            linked.contains(&(place, 1 - side))
+        })
+    };
+    let ends = [-(seen[0] as i64), seen[1] as i64 - 1];
+    stored(line_bend(seen, ends.map(|n| end_sign(sides(n), single))))
+}

@@ -1,0 +1,119 @@
+//! Whether lines are whole: dashes of responses around the threshold, and specks.
+
+use std::collections::HashMap;
+
+use bevy_comics_testkit::reference::{
+    crack::Crack,
+    link::{Place, linked, without_specks},
+};
+
+/// A crack with a response: certain from 1 on, and there at all from `level` on.
+fn crack(response: f64, level: f64) -> Option<Crack> {
+    (response >= level).then_some(Crack {
+        kinds: [true, false, false],
+        mine: true,
+        ink: 1.0,
+        opacity: 1.0,
+        half_width: 1.0,
+        certain: response >= 1.0,
+        bend: [0.0; 2],
+        shifts: true,
+    })
+}
+
+/// Responses along an edge: a first-order autoregression with this mean, a deviation of
+/// 12 % of it and a correlation of 0.6 from pixel to pixel.
+fn responses(mean: f64, count: usize) -> Vec<f64> {
+    let mut state = 0x9e37_79b9_7f4a_7c15u64;
+    let mut uniform = move || {
+        state ^= state >> 12;
+        state ^= state << 25;
+        state ^= state >> 27;
+        (state.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 11) as f64 / (1u64 << 53) as f64
+    };
+    // The sum of twelve numbers in [0, 1) is nearly normal, with variance 1.
+    let mut normal = move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0;
+    let mut value = 0.0;
+    let found = (0..count).map(|_| {
+        value = 0.6 * value + 0.8 * normal();
+        mean * (1.0 + 0.12 * value)
+    });
+    found.collect()
+}
+
+/// Pieces of line for each 100 cracks of a straight edge.
+fn dashes(mean: f64, level: f64, steps: i32) -> f64 {
+    const LENGTH: i64 = 20_000;
+    let cracks: HashMap<Place, Crack> = responses(mean, LENGTH as usize)
+        .into_iter()
+        .zip(0..)
+        .filter_map(|(response, x)| Some((([x, 0], 1), crack(response, level)?)))
+        .collect();
+    let lines = linked(&cracks, steps);
+    let starts =
+        (0..LENGTH).filter(|x| lines.contains(&([*x, 0], 1)) && !lines.contains(&([x - 1, 0], 1)));
+    100.0 * starts.count() as f64 / LENGTH as f64
+}
+
+/// Around the threshold, continuing along weak cracks leaves less than a tenth of the
+/// dashes; well above it there are hardly any.
+#[test]
+fn lines_of_responses_around_the_threshold_are_whole() {
+    for (mean, most) in [(1.05, 0.3), (1.0, 0.6), (0.95, 1.4)] {
+        let alone = dashes(mean, 0.5, 0);
+        let continued = dashes(mean, 0.5, 8);
+        println!("mean {mean}: {alone:.2} dashes per 100 px, continued {continued:.2}");
+        assert!(alone > 8.0, "mean {mean}: {alone}");
+        assert!(continued < most, "mean {mean}: {continued}");
+        assert!(
+            continued < 0.15 * alone,
+            "mean {mean}: {continued}, {alone}"
+        );
+    }
+}
+
+/// A line never has more cracks than were found, nor fewer than are certain, and grows by
+/// one crack at either end in each step.
+#[test]
+fn lines_grow_by_a_crack_in_each_step() {
+    let row = |x: i64| ([x, 0], 1);
+    let cracks: HashMap<Place, Crack> = (0..100)
+        .filter_map(|x| Some((row(x), crack(if x == 50 { 1.0 } else { 0.6 }, 0.5)?)))
+        .collect();
+    for steps in [0, 1, 5, 49, 200] {
+        let count = linked(&cracks, steps).len() as i32;
+        assert_eq!(
+            count,
+            (2 * steps + 1).min(50 + 1 + steps.min(49)).min(100),
+            "{steps}"
+        );
+    }
+}
+
+/// Pieces of one and of two cracks are specks, around corners too; of three they are not.
+#[test]
+fn specks_are_pieces_of_fewer_cracks_than_asked() {
+    // Three in a row, an L of two, a single one, and a U of three.
+    let pieces: [&[Place]; 4] = [
+        &[([0, 0], 1), ([1, 0], 1), ([2, 0], 1)],
+        &[([10, 10], 0), ([10, 10], 1)],
+        &[([20, 20], 0)],
+        &[([30, 30], 0), ([30, 30], 1), ([29, 30], 0)],
+    ];
+    let all = pieces
+        .iter()
+        .flat_map(|piece| piece.iter().copied())
+        .collect();
+    for specks in 1..=3 {
+        let kept = without_specks(&all, specks);
+        for piece in pieces {
+            let there = piece.iter().filter(|place| kept.contains(*place)).count();
+            let want = if piece.len() >= specks as usize {
+                piece.len()
+            } else {
+                0
+            };
+            assert_eq!(there, want, "{piece:?}, {specks}");
+        }
+    }
+}
