@@ -161,7 +161,7 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     search(&ink, centre, at);
     // Between the middles of two neighbouring cracks, a line runs straight. Discs around
     // the middles alone would leave diagonal lines too thin.
-    if ink.distances.y < 1e5 && distance(ink.first, ink.second) < 1.5 {
+    if ink.distances.y < 1e5 && distance(ink.first, ink.second) < 1.45 {
         let s = viewport_scale;
         let away = segment_distance(at * s, ink.first * s, ink.second * s);
         let half_width = unpack_width(ink.packed >> 20u);

@@ -2,9 +2,16 @@
 
 use std::collections::HashMap;
 
+use bevy::{prelude::*, render::view::Msaa};
+use bevy_comics::{Creases, Outlines, Silhouettes};
 use bevy_comics_testkit::reference::{
     crack::Crack,
     link::{Place, linked, without_specks},
+};
+
+use crate::{
+    pictures::{assert_pass_is_its_twin, outlined},
+    small::Small,
 };
 
 /// A crack with a response: certain from 1 on, and there at all from `level` on.
@@ -114,6 +121,54 @@ fn specks_are_pieces_of_fewer_cracks_than_asked() {
                 0
             };
             assert_eq!(there, want, "{piece:?}, {specks}");
+        }
+    }
+}
+
+/// Outlines with many weak edges.
+fn weak(continuity: f32) -> Outlines {
+    Outlines {
+        continuity,
+        continuity_level: 0.1,
+        silhouettes: Some(Silhouettes {
+            threshold: 0.3,
+            edge_limit: 0.9,
+            ..default()
+        }),
+        creases: Some(Creases {
+            angle: 120.0,
+            edge_limit: 0.9,
+            ..default()
+        }),
+        objects: None,
+        ..default()
+    }
+}
+
+/// Views of sizes that no word, block, cell or tile divides.
+#[test]
+fn lines_are_their_twin_in_views_of_odd_sizes() {
+    for size in [[61, 37], [97, 65], [131, 33]] {
+        let mut small = Small::new(size.into(), Msaa::Off);
+        for outlines in [Outlines::default(), weak(8.0)] {
+            let what = format!("{size:?}, {} px", outlines.continuity);
+            assert_pass_is_its_twin(&mut small, &outlined(outlines), None, &what);
+        }
+    }
+}
+
+/// Distances of more than one pass, and of parts of passes.
+#[test]
+fn lines_continue_as_far_as_asked() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    for continuity in [0.0, 1.0, 7.0, 8.0, 9.0, 16.0, 23.5, 32.0] {
+        for specks in [1, 2, 3] {
+            let outlines = Outlines {
+                specks,
+                ..weak(continuity)
+            };
+            let what = format!("{continuity} px, specks {specks}");
+            assert_pass_is_its_twin(&mut small, &outlined(outlines), None, &what);
         }
     }
 }

@@ -70,10 +70,11 @@ fn times(folder: &Path) -> Result<Vec<Target>, String> {
         cost.map(|c| c.milliseconds)
     };
     let ratio = milliseconds("Sobel")
-        .zip(milliseconds("silhouettes + creases; along cracks"))
+        .zip(milliseconds("silhouettes + creases"))
         .map(|(other, own)| other / own);
     let (exponent, _) = growth_exponent(&load(folder, "growth_times")?, "pixels", &OWN);
-    let rival = "time of bevy_edge_detection_outline (Sobel, depth + normals) / silhouettes + creases along cracks";
+    let rival =
+        "time of bevy_edge_detection_outline (Sobel, depth + normals) / silhouettes + creases";
     Ok(vec![
         Target::at_most("contours, blits", 3.0, blits("contours")),
         Target::at_most("default comic, blits", 4.0, blits("default comic")),

@@ -2,7 +2,7 @@
 
 use super::{
     crack::{Crack, SIDES},
-    draw::{Cracks, Line, distance, ink_of, middle},
+    draw::{Cracks, Line, distance, ink_of, is_apart, middle},
 };
 
 /// A crack and the middle of its line.
@@ -17,6 +17,8 @@ impl Cracks {
             .flat_map(|x| self.column(x, py, nudge))
             .flatten()
             .map(|(crack, middle)| {
+                // As it is stored, in 512ths of a pixel.
+                let middle = middle.map(|m| (512.0 * m).round() / 512.0);
                 let border = distance(middle, at) - crack.half_width;
                 (border, middle, crack)
             })
@@ -45,7 +47,7 @@ impl Cracks {
                     first = Some((score, reach, (crack, middle)));
                     continue;
                 };
-                let other = distance(middle, best.2.1) > 0.25;
+                let other = is_apart(middle, best.2.1);
                 let farther = |reach: f64| second.is_none_or(|second| reach > second.0 + 1e-3);
                 if score > best.0 + 1e-6 {
                     if other && farther(best.1) {

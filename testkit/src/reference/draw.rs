@@ -126,8 +126,8 @@ impl Cracks {
         let square = |n: i64| (-n..=n).flat_map(move |y| (-n..=n).map(move |x| [x, y]));
         let mut pixels: Vec<[i64; 2]> = square(self.reach).collect();
         if self.smooth && self.reach == 1 {
-            pixels.extend([-1, 0, 1].map(|n| [-2, n]));
             pixels.extend([-1, 0, 1].map(|n| [n, -2]));
+            pixels.extend([-1, 0, 1].map(|n| [-2, n]));
         }
         pixels
     }
@@ -157,33 +157,66 @@ fn larger(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| a[k].max(b[k]))
 }
 
+/// The two nearest lines in different places, as the shader keeps them while it goes
+/// through all lines: of lines in nearly the same place, it only keeps the nearest.
+fn followed(lines: &[Line]) -> Option<[Line; 2]> {
+    let mut first: Option<Line> = None;
+    let mut second: Option<Line> = None;
+    for line in lines {
+        let Some(nearest) = first else {
+            first = Some(*line);
+            continue;
+        };
+        let other = is_apart(line.1, nearest.1);
+        if line.0 < nearest.0 {
+            second = if other { first } else { second };
+            first = Some(*line);
+        } else if other && second.is_none_or(|second| line.0 < second.0) {
+            second = Some(*line);
+        }
+    }
+    Some([first?, second?])
+}
+
+/// The ink of the straight line from the middle of a line to another middle.
+fn between((_, from, crack): &Line, to: [f64; 2], at: [f64; 2], nudge: f64) -> [f64; 3] {
+    if distance(*from, to) < 1.45 {
+        ink_of(crack, nudge, segment_distance(at, *from, to))
+    } else {
+        [0.0; 3]
+    }
+}
+
 /// The ink of the straight line between the middles of the two lines whose borders are
 /// nearest, for every choice of these two.
 fn straight(lines: &mut [Line], at: [f64; 2], nudge: f64) -> Vec<[f64; 3]> {
-    const TIE: f64 = 2e-3;
+    // Middles are stored in 512ths of a pixel: each of two distances is off by up to
+    // sqrt(2) / 1024.
+    const TIE: f64 = 3e-3;
+    let mut found: Vec<[f64; 3]> = followed(lines)
+        .map(|[first, second]| between(&first, second.1, at, nudge))
+        .into_iter()
+        .collect();
     lines.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut found = Vec::new();
     for (border, a, crack) in lines.iter() {
         if *border > lines[0].0 + TIE {
             break;
         }
         // Both cracks at a corner of a line of odd width have their middle in one pixel.
-        let others: Vec<&Line> = lines
-            .iter()
-            .filter(|other| distance(other.1, *a) > 0.25)
-            .collect();
+        let others: Vec<&Line> = lines.iter().filter(|other| is_apart(other.1, *a)).collect();
         for (border, b, _) in &others {
             if *border > others[0].0 + TIE {
                 break;
             }
-            found.push(if distance(*a, *b) < 1.5 {
-                ink_of(crack, nudge, segment_distance(at, *a, *b))
-            } else {
-                [0.0; 3]
-            });
+            found.push(between(&(*border, *a, *crack), *b, at, nudge));
         }
     }
     found
+}
+
+/// Whether two middles are in different places.
+pub(super) fn is_apart(a: [f64; 2], b: [f64; 2]) -> bool {
+    distance(a, b).powi(2) > 0.07
 }
 
 pub(super) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {

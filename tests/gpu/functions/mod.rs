@@ -82,12 +82,16 @@ fn rgb(row: &[f32]) -> Rgb {
 }
 
 /// Largest difference of two linear colours in display codes; above 1 it is relative
-/// to the twin's value.
+/// to the largest component of the twin's: components are mixed, and so are their rounding
+/// errors.
 fn codes_apart(gpu: [f32; 4], twin: Rgb) -> f64 {
     let gpu = color::srgb_encode([gpu[0], gpu[1], gpu[2]].map(f64::from));
     let twin = color::srgb_encode(twin);
+    let largest = twin
+        .iter()
+        .fold(1.0, |largest, x| f64::max(largest, x.abs()));
     (0..3)
-        .map(|i| (gpu[i] - twin[i]).abs() / twin[i].abs().max(1.0) / ONE_CODE)
+        .map(|i| (gpu[i] - twin[i]).abs() / largest / ONE_CODE)
         .fold(0.0, f64::max)
 }
 
