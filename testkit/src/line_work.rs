@@ -66,7 +66,7 @@ struct End {
 /// The end of the pass that finds cracks in cells.
 const CELLS_END: &str = "        east_1 = east.packed;
     }
-}";
+";
 
 /// The end of the pass that searches columns.
 const COLUMNS_END: &str = "return vec4(
@@ -81,7 +81,7 @@ const ENDS: [End; 4] = [
         counted: "        east_1 = east.packed;
     }
     crack_words[cell.y * cell_uniform.grid.rect.z + cell.x] = vec2(packed_count(), 0u);
-}",
+",
         handed: "",
     },
     End {
