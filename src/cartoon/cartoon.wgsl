@@ -67,8 +67,98 @@ fn spot_shadow(id: u32, in: PbrInput, at: vec3<f32>) -> f32 {
     return shadows::fetch_spot_shadow(id, vec4(at, 1.0), in.world_normal, near, in.frag_coord.xy);
 }
 
-fn cartoon_light(in: PbrInput, foot: Footprint) -> vec3<f32> {
+// The shadow of a directional light, with a hard edge.
+fn hard_directional_shadow(id: u32, in: PbrInput, foot: Footprint, view_z: f32) -> f32 {
     let at = in.world_position.xyz;
+    let shadow = directional_shadow(id, in, at, view_z);
+    if shadow <= 0.0 || shadow >= 1.0 {
+        return shadow;
+    }
+    return sharpen(shadow, slope_over_pixel(
+        shadow,
+        directional_shadow(id, in, at + foot.position_x, view_z),
+        directional_shadow(id, in, at + foot.position_y, view_z),
+    ));
+}
+
+// The same of a point light.
+fn hard_point_shadow(id: u32, in: PbrInput, foot: Footprint) -> f32 {
+    let at = in.world_position.xyz;
+    let shadow = point_shadow(id, in, at);
+    if shadow <= 0.0 || shadow >= 1.0 {
+        return shadow;
+    }
+    return sharpen(shadow, slope_over_pixel(
+        shadow,
+        point_shadow(id, in, at + foot.position_x),
+        point_shadow(id, in, at + foot.position_y),
+    ));
+}
+
+// The same of a spot light.
+fn hard_spot_shadow(id: u32, in: PbrInput, foot: Footprint) -> f32 {
+    let at = in.world_position.xyz;
+    let shadow = spot_shadow(id, in, at);
+    if shadow <= 0.0 || shadow >= 1.0 {
+        return shadow;
+    }
+    return sharpen(shadow, slope_over_pixel(
+        shadow,
+        spot_shadow(id, in, at + foot.position_x),
+        spot_shadow(id, in, at + foot.position_y),
+    ));
+}
+
+// Fraction of a spot light that its cone lets through. `pixel`: the size of a pixel over
+// the distance from the light.
+fn spot_cone(id: u32, to_light: vec3<f32>, pixel: f32) -> f32 {
+    let light = &view_bindings::clustered_lights.data[id];
+    var axis = vec3((*light).light_custom_data.x, 0.0, (*light).light_custom_data.y);
+    axis.y = sqrt(max(0.0, 1.0 - axis.x * axis.x - axis.z * axis.z));
+    if ((*light).flags & mesh_view_types::POINT_LIGHT_FLAGS_SPOT_LIGHT_Y_NEGATIVE) != 0u {
+        axis.y = -axis.y;
+    }
+    let inside = dot(-axis, to_light) * (*light).light_custom_data.z + (*light).light_custom_data.w;
+    return cone(inside, pixel * (*light).light_custom_data.z);
+}
+
+// Light of a directional light that a surface reflects.
+fn directional_light(id: u32, in: PbrInput, foot: Footprint, view_z: f32, receives: bool) -> vec3<f32> {
+    let light = &view_bindings::lights.directional_lights[id];
+    let to_light = (*light).direction_to_light.xyz;
+    var shadow = 1.0;
+    if receives && ((*light).flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_SHADOWS_ENABLED_BIT) != 0u {
+        shadow = hard_directional_shadow(id, in, foot, view_z);
+    }
+    return (*light).color.rgb * unshadowed(in, foot, to_light, shadow) * reflected(in, foot, to_light);
+}
+
+// Light of a point light or spot light that a surface reflects.
+fn clustered_light(id: u32, is_spot: bool, in: PbrInput, foot: Footprint, receives: bool) -> vec3<f32> {
+    let light = &view_bindings::clustered_lights.data[id];
+    let offset = (*light).position_radius.xyz - in.world_position.xyz;
+    let to_light = normalize(offset);
+    // Luminous intensity. Times the falloff, it is the illuminance of a surface
+    // that faces the light.
+    var color = (*light).color_inverse_square_range.rgb;
+    let brightest = max(color.r, max(color.g, color.b)) * view_bindings::view.exposure;
+    let pixel = length(foot.position_x) + length(foot.position_y);
+    color *= flat_falloff(cartoon, dot(offset, offset), (*light).color_inverse_square_range.w, brightest, pixel);
+    if is_spot {
+        color *= spot_cone(id, to_light, pixel * inverseSqrt(dot(offset, offset)));
+    }
+    var shadow = 1.0;
+    if receives && ((*light).flags & mesh_view_types::POINT_LIGHT_FLAGS_SHADOWS_ENABLED_BIT) != 0u {
+        if is_spot {
+            shadow = hard_spot_shadow(id, in, foot);
+        } else {
+            shadow = hard_point_shadow(id, in, foot);
+        }
+    }
+    return color * unshadowed(in, foot, to_light, shadow) * reflected(in, foot, to_light);
+}
+
+fn cartoon_light(in: PbrInput, foot: Footprint) -> vec3<f32> {
     let receives = (in.flags & MESH_FLAGS_SHADOW_RECEIVER_BIT) != 0u && cartoon.projected > 0.0;
     let view_z = dot(vec4(
         view_bindings::view.view_from_world[0].z,
@@ -76,71 +166,15 @@ fn cartoon_light(in: PbrInput, foot: Footprint) -> vec3<f32> {
         view_bindings::view.view_from_world[2].z,
         view_bindings::view.view_from_world[3].z,
     ), in.world_position);
-    let exposure = view_bindings::view.exposure;
     var light_sum = vec3(0.0);
-
     for (var i = 0u; i < view_bindings::lights.n_directional_lights; i++) {
-        let light = &view_bindings::lights.directional_lights[i];
-        let to_light = (*light).direction_to_light.xyz;
-        var shadow = 1.0;
-        if receives && ((*light).flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_SHADOWS_ENABLED_BIT) != 0u {
-            shadow = directional_shadow(i, in, at, view_z);
-            if shadow > 0.0 && shadow < 1.0 {
-                shadow = sharpen(shadow, slope_over_pixel(
-                    shadow,
-                    directional_shadow(i, in, at + foot.position_x, view_z),
-                    directional_shadow(i, in, at + foot.position_y, view_z),
-                ));
-            }
-        }
-        light_sum += (*light).color.rgb * unshadowed(in, foot, to_light, shadow) * reflected(in, foot, to_light);
+        light_sum += directional_light(i, in, foot, view_z, receives);
     }
-
     let cluster = clustering::view_fragment_cluster_index(in.frag_coord.xy, view_z, in.is_orthographic);
     let ranges = clustering::unpack_clusterable_object_index_ranges(cluster);
     for (var i = ranges.first_point_light_index_offset; i < ranges.first_reflection_probe_index_offset; i++) {
         let id = clustering::get_clusterable_object_id(i);
-        let light = &view_bindings::clustered_lights.data[id];
-        let is_spot = i >= ranges.first_spot_light_index_offset;
-        let offset = (*light).position_radius.xyz - at;
-        let to_light = normalize(offset);
-        // Luminous intensity. Times the falloff, it is the illuminance of a surface
-        // that faces the light.
-        var color = (*light).color_inverse_square_range.rgb;
-        let brightest = max(color.r, max(color.g, color.b)) * exposure;
-        let pixel = length(foot.position_x) + length(foot.position_y);
-        color *= flat_falloff(cartoon, dot(offset, offset), (*light).color_inverse_square_range.w, brightest, pixel);
-        var shadow = 1.0;
-        let casts = receives && ((*light).flags & mesh_view_types::POINT_LIGHT_FLAGS_SHADOWS_ENABLED_BIT) != 0u;
-        if is_spot {
-            var axis = vec3((*light).light_custom_data.x, 0.0, (*light).light_custom_data.y);
-            axis.y = sqrt(max(0.0, 1.0 - axis.x * axis.x - axis.z * axis.z));
-            if ((*light).flags & mesh_view_types::POINT_LIGHT_FLAGS_SPOT_LIGHT_Y_NEGATIVE) != 0u {
-                axis.y = -axis.y;
-            }
-            let inside = dot(-axis, to_light) * (*light).light_custom_data.z + (*light).light_custom_data.w;
-            color *= cone(inside, pixel * inverseSqrt(dot(offset, offset)) * (*light).light_custom_data.z);
-            if casts {
-                shadow = spot_shadow(id, in, at);
-                if shadow > 0.0 && shadow < 1.0 {
-                    shadow = sharpen(shadow, slope_over_pixel(
-                        shadow,
-                        spot_shadow(id, in, at + foot.position_x),
-                        spot_shadow(id, in, at + foot.position_y),
-                    ));
-                }
-            }
-        } else if casts {
-            shadow = point_shadow(id, in, at);
-            if shadow > 0.0 && shadow < 1.0 {
-                shadow = sharpen(shadow, slope_over_pixel(
-                    shadow,
-                    point_shadow(id, in, at + foot.position_x),
-                    point_shadow(id, in, at + foot.position_y),
-                ));
-            }
-        }
-        light_sum += color * unshadowed(in, foot, to_light, shadow) * reflected(in, foot, to_light);
+        light_sum += clustered_light(id, i >= ranges.first_spot_light_index_offset, in, foot, receives);
     }
 
     // As the standard material, whose diffuse reflection is k_d / pi.
@@ -150,6 +184,7 @@ fn cartoon_light(in: PbrInput, foot: Footprint) -> vec3<f32> {
 #ifdef LIGHTMAP
     indirect += in.lightmap_light * base;
 #endif
+    let exposure = view_bindings::view.exposure;
     let emissive = in.material.emissive;
     return exposure * (direct + indirect) + emissive.rgb * mix(1.0, exposure, emissive.a);
 }

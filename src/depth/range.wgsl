@@ -181,6 +181,19 @@ var<workgroup> tree: array<vec2<u32>, 256>;
 var<workgroup> tile_bins: array<atomic<u32>, 256>;
 #endif
 
+// The keys of the pixels that an invocation reads.
+fn strip_keys(group: vec2<u32>, local: u32) -> vec2<u32> {
+    var found = vec2(0u);
+    let y = group.y * 32u + (local / 16u) * 2u;
+    for (var i = 0u; i < 4u; i++) {
+        let x = group.x * 128u + (local % 16u) * 8u + i * 2u;
+        if x < view.rect.z && y < view.rect.w {
+            found = max(found, block_keys(vec2(x, y)));
+        }
+    }
+    return found;
+}
+
 @compute @workgroup_size(256)
 fn reduce(
     @builtin(workgroup_id) group: vec3<u32>,
@@ -194,14 +207,7 @@ fn reduce(
     atomicStore(&tile_bins[local], 0u);
     workgroupBarrier();
 #endif
-    var found = vec2(0u);
-    let y = group.y * 32u + (local / 16u) * 2u;
-    for (var i = 0u; i < 4u; i++) {
-        let x = group.x * 128u + (local % 16u) * 8u + i * 2u;
-        if x < view.rect.z && y < view.rect.w {
-            found = max(found, block_keys(vec2(x, y)));
-        }
-    }
+    let found = strip_keys(group.xy, local);
 #ifdef HISTOGRAM
     end_run();
     workgroupBarrier();

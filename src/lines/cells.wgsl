@@ -2,22 +2,15 @@
 // of the buffer is cleared. A pixel has a crack to the east (x) and one to the south (y).
 // PLANES: also writes the planes of bits, see planes.wgsl.
 
-#import bevy_comics::depth::view::{View, set_view}
+#import bevy_comics::depth::view::set_view
 #import bevy_comics::lines::crack::cracks
-#import bevy_comics::lines::edge::{Grid, Lines}
 #import bevy_comics::lines::listed::listed_cell
+#import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::planes::{
     CELL_ROWS, FOUND_EAST, FOUND_SOUTH, LINKED_EAST, LINKED_SOUTH, column_word, row_word,
 }
 #import bevy_comics::lines::rows::{Above, four_columns, step_down}
 
-struct CellUniform {
-    seen: View,
-    settings: Lines,
-    grid: Grid,
-}
-
-@group(0) @binding(1) var<uniform> cell_uniform: CellUniform;
 @group(0) @binding(18) var<storage, read_write> crack_words: array<vec2<u32>>;
 #ifdef PLANES
 @group(0) @binding(21) var<storage, read_write> planes_found: array<atomic<u32>>;
@@ -26,7 +19,7 @@ struct CellUniform {
 #ifdef PLANES
 // Adds the bits of a cell's column to a plane.
 fn add_column(plane: i32, x: i32, top: i32, rows: u32) {
-    let g = cell_uniform.grid;
+    let g = line_pass.grid;
     if rows != 0u && x < g.rect.z {
         atomicOr(&planes_found[column_word(g, plane, x, top >> 5u)], rows << u32(top & 31));
     }
@@ -46,7 +39,7 @@ fn add_rows(cell: vec2<i32>, south: vec4<u32>) {
         let four = (south >> vec4(u32(row))) & vec4(1u);
         let bits = four.x | (four.y << 1u) | (four.z << 2u) | (four.w << 3u);
         if bits != 0u {
-            atomicOr(&planes_found[row_word(cell_uniform.grid, cell.x >> 5u, cell.y + row)], bits << u32(cell.x & 31));
+            atomicOr(&planes_found[row_word(line_pass.grid, cell.x >> 5u, cell.y + row)], bits << u32(cell.x & 31));
         }
     }
 }
@@ -54,7 +47,7 @@ fn add_rows(cell: vec2<i32>, south: vec4<u32>) {
 
 // Stores the cracks of four pixels of a row, of which those in the grid.
 fn store_row(first: vec2<i32>, east: vec4<u32>, south: vec4<u32>) {
-    let rect = cell_uniform.grid.rect;
+    let rect = line_pass.grid.rect;
     let at = first.y * rect.z + first.x;
     crack_words[at] = vec2(east.x, south.x);
     if first.x + 1 < rect.z {
@@ -82,10 +75,10 @@ fn find_in_cells(
     if cell.x < 0 {
         return;
     }
-    set_view(cell_uniform.seen);
-    let s = cell_uniform.settings;
-    let last = cell_uniform.grid.rect.zw - 1;
-    let columns = four_columns(cell_uniform.grid.rect, cell.x);
+    set_view(line_pass.seen);
+    let s = line_pass.settings;
+    let last = line_pass.grid.rect.zw - 1;
+    let columns = four_columns(line_pass.grid.rect, cell.x);
     var above: Above;
     // Cracks to the east in the rows above: 1 is the row above the newest one.
     var east_1 = vec4(0u);

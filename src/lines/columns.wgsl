@@ -6,22 +6,14 @@
 // x, y: the packed crack, and the middle of its line, see pack_middle; z, w: those of the
 // other. 0 stands for none.
 
-#import bevy_comics::depth::view::View
 #ifdef BLOCKS
 #import bevy_comics::lines::blocks::{BLOCK_HEIGHT, BLOCK_WIDTH, marked_rows}
 #endif
 #import bevy_comics::lines::edge::{
-    Grid, Lines, crack_opacity, is_apart, line_coverage, pack_middle, unpack_width,
+    crack_opacity, is_apart, line_coverage, pack_middle, unpack_width,
 }
+#import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::stored::{load_bends, load_cracks, stored_middle}
-
-struct ColumnUniform {
-    seen: View,
-    settings: Lines,
-    grid: Grid,
-}
-
-@group(0) @binding(1) var<uniform> column_uniform: ColumnUniform;
 
 // The best crack in the column so far, and the one whose line reaches farthest among those
 // with another middle.
@@ -42,8 +34,8 @@ struct Best {
 fn compare(best: ptr<function, Best>, packed: u32, middle: vec2<f32>, south: bool) {
     let half_width = unpack_width(packed >> 20u);
     // In pixels of the viewport, as widths are.
-    let away = abs(middle.y) / column_uniform.grid.from_viewport.y;
-    let value = line_coverage(away, half_width) * crack_opacity(column_uniform.settings, packed);
+    let away = abs(middle.y) / line_pass.grid.from_viewport.y;
+    let value = line_coverage(away, half_width) * crack_opacity(line_pass.settings, packed);
     // Of equal ink, the line is taken whose border is farther out.
     let exists = (packed & 7u) != 0u;
     let score = select(-1e6, value + 1e-4 * (half_width - away), exists);
@@ -68,8 +60,8 @@ fn compare(best: ptr<function, Best>, packed: u32, middle: vec2<f32>, south: boo
 
 // Compares both cracks of the pixel in row `y` of the column of `p`.
 fn compare_row(best: ptr<function, Best>, p: vec2<i32>, y: i32) {
-    let packed = load_cracks(column_uniform.grid, vec2(p.x, y));
-    let bends = load_bends(column_uniform.grid, vec2(p.x, y));
+    let packed = load_cracks(line_pass.grid, vec2(p.x, y));
+    let bends = load_bends(line_pass.grid, vec2(p.x, y));
     let row = vec2(0.0, f32(y - p.y));
     compare(best, packed.x, row + stored_middle(packed.x, vec2(1.0, 0.0), bends), false);
     compare(best, packed.y, row + stored_middle(packed.y, vec2(0.0, 1.0), bends >> 16u), true);
@@ -77,7 +69,7 @@ fn compare_row(best: ptr<function, Best>, p: vec2<i32>, y: i32) {
 
 @fragment
 fn columns(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
-    let g = column_uniform.grid;
+    let g = line_pass.grid;
     let p = vec2<i32>(position.xy);
     var best = Best(vec2(0u), vec2(1e6), vec2(1e6), vec2(false), -1e6, vec2(-1e6));
     let first = max(p.y - g.reach - 1, 0);

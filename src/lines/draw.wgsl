@@ -4,11 +4,12 @@
 // x, y, z: ink of silhouettes, creases and object edges, encoded; w: slot of the OutlineStyle of
 // the strongest line, / 255.
 
-#import bevy_comics::depth::view::{View, set_view}
+#import bevy_comics::depth::view::set_view
 #import bevy_comics::lines::edge::{
-    Grid, Lines, encode_ink, ink_of, is_apart, largest_opacity, line_coverage, owner_at,
-    segment_distance, unpack_middle, unpack_width,
+    encode_ink, ink_of, is_apart, largest_opacity, line_coverage, owner_at, segment_distance,
+    unpack_middle, unpack_width,
 }
+#import bevy_comics::lines::pass::line_pass
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::texel_object
 #endif
@@ -16,13 +17,6 @@
 #import bevy_comics::lines::stored::{load_bends, load_cracks, stored_middle}
 #endif
 
-struct DrawUniform {
-    seen: View,
-    settings: Lines,
-    grid: Grid,
-}
-
-@group(0) @binding(1) var<uniform> draw_uniform: DrawUniform;
 #ifdef COLUMNS
 // The best two cracks of each pixel's column, see columns.wgsl.
 @group(0) @binding(13) var column_texture: texture_2d<u32>;
@@ -49,7 +43,7 @@ struct Ink {
 var<private> viewport_scale: vec2<f32>;
 
 fn alphas(kinds: vec3<f32>) -> f32 {
-    return largest_opacity(draw_uniform.settings, kinds);
+    return largest_opacity(line_pass.settings, kinds);
 }
 
 // Adds the line along a crack that belongs to the pixel `owner`.
@@ -89,11 +83,11 @@ fn follow(ink: ptr<function, Ink>, middle: vec2<f32>, border: f32) {
 #ifndef COLUMNS
 // Adds both cracks of a pixel, which may lie outside of the grid.
 fn add_pixel(ink: ptr<function, Ink>, p: vec2<i32>, at: vec2<f32>) {
-    let last = draw_uniform.grid.rect.zw - 1;
+    let last = line_pass.grid.rect.zw - 1;
     let inside = all(p >= vec2(0)) && all(p <= last);
     let stored = clamp(p, vec2(0), last);
-    let packed = select(vec2(0u), load_cracks(draw_uniform.grid, stored), inside);
-    let bends = load_bends(draw_uniform.grid, stored);
+    let packed = select(vec2(0u), load_cracks(line_pass.grid, stored), inside);
+    let bends = load_bends(line_pass.grid, stored);
     add_crack(ink, packed.x, p, vec2(1, 0), bends, at);
     add_crack(ink, packed.y, p, vec2(0, 1), bends >> 16u, at);
 }
@@ -107,7 +101,7 @@ fn add_crack(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i
 
 // Adds the lines near a position of the grid.
 fn search(ink: ptr<function, Ink>, centre: vec2<i32>, at: vec2<f32>) {
-    let g = draw_uniform.grid;
+    let g = line_pass.grid;
 #ifdef NEIGHBOURS
     // CPU adapters execute the body of a loop once more than it iterates.
     add_pixel(ink, centre + vec2(-1, -1), at);
@@ -151,8 +145,8 @@ fn search(ink: ptr<function, Ink>, centre: vec2<i32>, at: vec2<f32>) {
 
 @fragment
 fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    set_view(draw_uniform.seen);
-    let g = draw_uniform.grid;
+    set_view(line_pass.seen);
+    let g = line_pass.grid;
     viewport_scale = 1.0 / g.from_viewport.xy;
     let at = position.xy * g.from_viewport.xy + g.from_viewport.zw;
     let centre = vec2<i32>(floor(at));

@@ -64,27 +64,20 @@ struct Grid {
     specks: i32,
 }
 
-// The gradient at x from its eight neighbours a to h, row by row ([CL] Eq. 1).
-fn gradient(a: f32, b: f32, c: f32, d: f32, x: f32, e: f32, f: f32, g: f32, h: f32) -> f32 {
-    return (abs(a - x) + 2.0 * abs(b - x) + abs(c - x) + 2.0 * abs(d - x) + 2.0 * abs(e - x)
-        + abs(f - x) + 2.0 * abs(g - x) + abs(h - x)) / 8.0;
-}
-
 // The edge response, 0 to 1, of g = (g_min, g_max) over 3 x 3 pixels ([CL] Eq. 2).
 fn edge_response(g: vec2<f32>, k: f32) -> f32 {
     let r = (g.y - g.x) / k;
     return min(r * r, 1.0);
 }
 
-// Extends (g_min, g_max) by the gradient at index i of 5 x 5 values. The nine calls
-// below are written out: CPU adapters execute the body of a loop once more than it
-// iterates.
+// Extends (g_min, g_max) by the gradient at index i of 5 x 5 values, from the eight values
+// around it ([CL] Eq. 1). The nine calls below are written out: CPU adapters execute the
+// body of a loop once more than it iterates.
 fn gradient_at(v: ptr<function, array<f32, 25>>, i: u32, found: vec2<f32>) -> vec2<f32> {
-    let g = gradient(
-        (*v)[i - 6u], (*v)[i - 5u], (*v)[i - 4u],
-        (*v)[i - 1u], (*v)[i], (*v)[i + 1u],
-        (*v)[i + 4u], (*v)[i + 5u], (*v)[i + 6u],
-    );
+    let x = (*v)[i];
+    let g = (abs((*v)[i - 6u] - x) + 2.0 * abs((*v)[i - 5u] - x) + abs((*v)[i - 4u] - x)
+        + 2.0 * abs((*v)[i - 1u] - x) + 2.0 * abs((*v)[i + 1u] - x)
+        + abs((*v)[i + 4u] - x) + 2.0 * abs((*v)[i + 5u] - x) + abs((*v)[i + 6u] - x)) / 8.0;
     return vec2(min(found.x, g), max(found.y, g));
 }
 

@@ -2,10 +2,9 @@
 // the pixels that respond are the line ([CL] Eq. 1 and 2 over 5 x 5 pixels).
 
 #import bevy_comics::depth::map::{depth_map, is_background}
-#import bevy_comics::depth::view::{View, depth_frame, set_view, texel_depth}
-#import bevy_comics::lines::edge::{
-    Grid, Lines, component_response, edge_response, encode_ink, gradient_extremes,
-}
+#import bevy_comics::depth::view::{depth_frame, set_view, texel_depth}
+#import bevy_comics::lines::edge::{component_response, edge_response, encode_ink, gradient_extremes}
+#import bevy_comics::lines::pass::line_pass
 #import bevy_comics::objects::kinds_of
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
@@ -14,18 +13,10 @@
 #import bevy_comics::objects::texel_object
 #endif
 
-struct FaithfulUniform {
-    seen: View,
-    settings: Lines,
-    grid: Grid,
-}
-
-@group(0) @binding(1) var<uniform> faithful_uniform: FaithfulUniform;
-
 // Raw depth at a pixel of the grid. Outside of it, depth is extrapolated by point reflection
 // at the border. This continues a plane, so that the border is not an edge.
 fn depth_at(pixel: vec2<i32>) -> f32 {
-    let rect = faithful_uniform.grid.rect;
+    let rect = line_pass.grid.rect;
     let last = rect.zw - 1;
     let border = clamp(pixel, vec2(0), last);
     let d = texel_depth(rect.xy + border, 0);
@@ -40,7 +31,7 @@ fn depth_at(pixel: vec2<i32>) -> f32 {
 // (normal, 1) at index i of the 5 x 5 window around a pixel; w is 0 where there is no
 // normal. Positions outside of the grid are clamped to its border.
 fn normal_at(pixel: vec2<i32>, i: i32, depths: ptr<function, array<f32, 25>>) -> vec4<f32> {
-    let rect = faithful_uniform.grid.rect;
+    let rect = line_pass.grid.rect;
     let at = clamp(pixel + vec2(i % 5, i / 5) - 2, vec2(0), rect.zw - 1);
     let inside = at - pixel + 2;
     let sky = is_background((*depths)[5 * inside.y + inside.x]);
@@ -50,9 +41,9 @@ fn normal_at(pixel: vec2<i32>, i: i32, depths: ptr<function, array<f32, 25>>) ->
 
 @fragment
 fn faithful(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    set_view(faithful_uniform.seen);
-    let s = faithful_uniform.settings;
-    let g = faithful_uniform.grid;
+    set_view(line_pass.seen);
+    let s = line_pass.settings;
+    let g = line_pass.grid;
     let at = floor(position.xy * g.from_viewport.xy + g.from_viewport.zw);
     let pixel = clamp(vec2<i32>(at), vec2(0), g.rect.zw - 1);
     var depths: array<f32, 25>;

@@ -2,9 +2,10 @@
 // cells.wgsl finds. A fragment stores the cracks to the east (x) and south (y) of its
 // pixel.
 
-#import bevy_comics::depth::view::{View, set_view, texel_depth}
+#import bevy_comics::depth::view::{set_view, texel_depth}
 #import bevy_comics::lines::crack::cracks
-#import bevy_comics::lines::edge::{Grid, Lines, fold, is_ridge, step_excess}
+#import bevy_comics::lines::edge::{fold, is_ridge, step_excess}
+#import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::rows::Borders
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
@@ -13,14 +14,6 @@
 #import bevy_comics::objects::texel_object
 #endif
 
-struct FindUniform {
-    seen: View,
-    settings: Lines,
-    grid: Grid,
-}
-
-@group(0) @binding(1) var<uniform> find_uniform: FindUniform;
-
 fn depth_at(origin: vec2<i32>, x: i32, y: i32) -> f32 {
     return texel_depth(origin + vec2(x, y), 0);
 }
@@ -28,9 +21,9 @@ fn depth_at(origin: vec2<i32>, x: i32, y: i32) -> f32 {
 // Lane x is the crack to the east, lane y the one to the south.
 @fragment
 fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
-    set_view(find_uniform.seen);
-    let origin = find_uniform.grid.rect.xy;
-    let last = find_uniform.grid.rect.zw - 1;
+    set_view(line_pass.seen);
+    let origin = line_pass.grid.rect.xy;
+    let last = line_pass.grid.rect.zw - 1;
     let p = vec2<i32>(position.xy);
     let low = max(p - 1, vec2(0));
     let low_2 = max(p - 2, vec2(0));
@@ -70,5 +63,5 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     at.object_there = vec2(east.x, south.x).xyxy;
     at.slot_there = vec2(east.y, south.y).xyxy;
 #endif
-    return cracks(find_uniform.settings, at).packed.xy;
+    return cracks(line_pass.settings, at).packed.xy;
 }

@@ -3,21 +3,14 @@
 // Canny 1986). A pass goes up to eight steps; it reads the planes of one buffer and
 // adds to those of the other, which begin as a copy.
 
-#import bevy_comics::depth::view::View
-#import bevy_comics::lines::edge::{Grid, Lines}
+#import bevy_comics::lines::edge::Grid
 #import bevy_comics::lines::listed::listed_cell
+#import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::planes::{
     CELL_ROWS, COLUMNS, FOUND_EAST, FOUND_SOUTH, LINKED_EAST, LINKED_SOUTH, column_word, row_word,
 }
 #import bevy_comics::lines::read_planes::{column_window, load_column}
 
-struct LinkUniform {
-    seen: View,
-    settings: Lines,
-    grid: Grid,
-}
-
-@group(0) @binding(1) var<uniform> link_uniform: LinkUniform;
 @group(0) @binding(21) var<storage, read_write> linked: array<atomic<u32>>;
 
 // Steps of a pass, and columns that are read: those of a cell, and as many as steps on
@@ -103,7 +96,7 @@ fn link(
     @builtin(local_invocation_index) place: u32,
 ) {
     let cell = listed_cell(group, place);
-    let g = link_uniform.grid;
+    let g = line_pass.grid;
     if cell.x < 0 || !has_loose(g, cell.x, cell.y >> 5u, 0xffu << u32(cell.y & 31)) {
         return;
     }

@@ -62,8 +62,10 @@ pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "read.wgsl");
     load_shader_library!(app, "bend.wgsl");
     load_shader_library!(app, "listed.wgsl");
+    load_shader_library!(app, "pass.wgsl");
     load_shader_library!(app, "planes.wgsl");
     load_shader_library!(app, "read_planes.wgsl");
+    load_shader_library!(app, "chain.wgsl");
     load_shader_library!(app, "stored.wgsl");
     embedded_asset!(app, "walk.wgsl");
     embedded_asset!(app, "cells.wgsl");

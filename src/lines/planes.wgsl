@@ -1,7 +1,8 @@
 #define_import_path bevy_comics::lines::planes
 
-// Blocks, cells, and where cracks are, as planes of bits: one for each pixel that has a crack to the east,
-// and to the south. Words hold 32 pixels of a column, those of ROWS 32 pixels of a row.
+// Sizes of blocks and cells; and where cracks are, as planes of bits: one for each pixel
+// that has a crack to the east, and one for each that has a crack to the south. A word holds
+// 32 pixels of a column, or, in the plane ROWS_SOUTH, of a row.
 
 #import bevy_comics::lines::edge::Grid
 

@@ -64,9 +64,10 @@ fn own_color(slot: u32, color: vec3<f32>) -> vec3<f32> {
     return color;
 }
 
-// Draws the line of largest opacity over the picture ([CL] Eq. 5 takes the maximum), a
-// colour in linear light that is multiplied by its opacity, and the opacity. If opacities differ by at most 0.01, a silhouette goes before an object
-// edge, and an object edge before a crease.
+// Draws the line of largest opacity over the picture ([CL] Eq. 5 takes the maximum): a
+// colour in linear light that is multiplied by its opacity, and the opacity. If opacities
+// differ by at most 0.01, a silhouette goes before an object edge, and an object edge
+// before a crease.
 fn draw_lines(picture: vec4<f32>, lines: Found) -> vec4<f32> {
     let s = lines_drawn;
     let alpha = lines.ink * vec3(s.silhouette_opacity, s.crease_opacity, s.object_opacity);

@@ -1,20 +1,14 @@
 // Completes the cracks of the cells: leaves out those that are not part of a line, and
 // finds how the lines of the others run straight through the steps of pixels.
 
-#import bevy_comics::depth::view::View
 #import bevy_comics::lines::bend::{end_sign, line_bend, pack_bend}
-#import bevy_comics::lines::edge::{Grid, Lines}
+#import bevy_comics::lines::chain::mean_bend
+#import bevy_comics::lines::edge::Grid
 #import bevy_comics::lines::listed::listed_cell
+#import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::planes::{COLUMNS, FOUND_EAST, FOUND_SOUTH, LINKED_EAST, LINKED_SOUTH}
 #import bevy_comics::lines::read_planes::{column_window, load_column, row_window}
 
-struct SettleUniform {
-    seen: View,
-    settings: Lines,
-    grid: Grid,
-}
-
-@group(0) @binding(1) var<uniform> settle_uniform: SettleUniform;
 @group(0) @binding(18) var<storage, read_write> crack_words: array<vec2<u32>>;
 #ifdef SMOOTH
 @group(0) @binding(22) var<storage, read_write> bend_words: array<u32>;
@@ -26,6 +20,16 @@ const SIDE: i32 = 2;
 const WIDTH: i32 = 8;
 
 #ifdef SMOOTH
+// How the line along a crack leaves it: by its run. A run of one or two cracks says little:
+// then by the cracks around it.
+fn bend_of(crack: vec3<i32>, seen: vec2<u32>, signs: vec2<f32>) -> vec2<f32> {
+    let bend = line_bend(seen, signs);
+    if seen.x + seen.y > 3u {
+        return bend;
+    }
+    return mean_bend(line_pass.grid, crack, bend);
+}
+
 // How the line along the crack to the south of a pixel leaves it.
 fn bend_south(g: Grid, p: vec2<i32>) -> u32 {
     let before = countLeadingZeros(~row_window(g, p.x - 31, p.y));
@@ -35,7 +39,7 @@ fn bend_south(g: Grid, p: vec2<i32>) -> u32 {
     let single = before + after == 2u;
     let sign_before = end_sign(column_window(g, LINKED_EAST, first, p.y - 1), single);
     let sign_after = end_sign(column_window(g, LINKED_EAST, last, p.y - 1), single);
-    return pack_bend(line_bend(vec2(before, after), vec2(sign_before, sign_after)));
+    return pack_bend(bend_of(vec3(p, 1), vec2(before, after), vec2(sign_before, sign_after)));
 }
 
 // The same of the crack to the east.
@@ -47,7 +51,7 @@ fn bend_east(g: Grid, p: vec2<i32>) -> u32 {
     let single = before + after == 2u;
     let sign_before = end_sign(row_window(g, p.x - 1, first), single);
     let sign_after = end_sign(row_window(g, p.x - 1, last), single);
-    return pack_bend(line_bend(vec2(before, after), vec2(sign_before, sign_after)));
+    return pack_bend(bend_of(vec3(p, 0), vec2(before, after), vec2(sign_before, sign_after)));
 }
 #endif
 
@@ -100,7 +104,7 @@ fn settle(
     if cell.x < 0 {
         return;
     }
-    let g = settle_uniform.grid;
+    let g = line_pass.grid;
     // The cracks of lines, and which of them touch two other cracks or more.
     var east: array<u32, WIDTH>;
     var south: array<u32, WIDTH>;

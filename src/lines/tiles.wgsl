@@ -1,19 +1,11 @@
 // Lists the tiles, see blocks.wgsl, that the passes after walk.wgsl draw, as rectangles
 // in clip space. Pixels of other tiles cost nothing. Layers of the dispatch are lists.
 
-#import bevy_comics::depth::view::View
 #import bevy_comics::lines::blocks::{
     BLOCK_HEIGHT, BLOCK_WIDTH, TILE, inked_by, marked_rows, searched_by, tile_rectangle,
 }
-#import bevy_comics::lines::edge::{Grid, Lines}
+#import bevy_comics::lines::pass::line_pass
 
-struct TilesUniform {
-    seen: View,
-    settings: Lines,
-    grid: Grid,
-}
-
-@group(0) @binding(1) var<uniform> tiles_uniform: TilesUniform;
 // For each list the arguments of an indirect draw: vertices, instances, and two zeros.
 @group(0) @binding(14) var<storage, read_write> arguments: array<atomic<u32>>;
 // The lists, one after the other: left, top, right, bottom in clip space.
@@ -39,8 +31,8 @@ fn has_cracks(low: vec2<i32>, high: vec2<i32>, size: vec2<i32>) -> bool {
 @compute @workgroup_size(8, 8)
 fn list_tiles(@builtin(global_invocation_id) id: vec3<u32>) {
     let list = id.z;
-    let g = tiles_uniform.grid;
-    let size = select(g.rect.zw, tiles_uniform.seen.viewport.zw, list == INKED);
+    let g = line_pass.grid;
+    let size = select(g.rect.zw, line_pass.seen.viewport.zw, list == INKED);
     let first = vec2<i32>(id.xy) * TILE;
     if any(first >= size) {
         return;

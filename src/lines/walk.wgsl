@@ -6,8 +6,9 @@
 // The rules are those of crack.wgsl, without what only excludes cracks or sets their ink.
 // A few blocks without cracks are noted too.
 
-#import bevy_comics::depth::view::{View, set_view}
-#import bevy_comics::lines::edge::{Grid, Lines, may_be_crease, may_be_silhouette}
+#import bevy_comics::depth::view::set_view
+#import bevy_comics::lines::edge::{Lines, may_be_crease, may_be_silhouette}
+#import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::planes::{CELL_ROWS, COLUMNS, GROUP, GROUPS, ROWS}
 #import bevy_comics::lines::rows::{Above, Borders, four_columns, step_down}
 #ifdef JUMPS
@@ -15,13 +16,6 @@
 #import bevy_comics::lines::jumps::{Jumps, Row, may_jump}
 #endif
 
-struct WalkUniform {
-    seen: View,
-    settings: Lines,
-    grid: Grid,
-}
-
-@group(0) @binding(1) var<uniform> walk_uniform: WalkUniform;
 @group(0) @binding(10) var block_texture: texture_storage_2d<r32uint, write>;
 #ifdef CRACKS
 // Workgroups of cells.wgsl across and down, 1, and the number of cells.
@@ -69,18 +63,18 @@ fn list_cell(cell: vec2<u32>) {
 
 @compute @workgroup_size(32)
 fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
-    set_view(walk_uniform.seen);
-    let s = walk_uniform.settings;
-    let last = walk_uniform.grid.rect.zw - 1;
+    set_view(line_pass.seen);
+    let s = line_pass.settings;
+    let last = line_pass.grid.rect.zw - 1;
     let x = i32(id.x) * COLUMNS;
     let top = i32(id.y) * ROWS;
     if x > last.x {
         return;
     }
-    let columns = four_columns(walk_uniform.grid.rect, x);
+    let columns = four_columns(line_pass.grid.rect, x);
     var above: Above;
 #ifdef JUMPS
-    let least = Jumps(depth_frame(), walk_uniform.grid.jump_least, walk_uniform.grid.jump_radius);
+    let least = Jumps(depth_frame(), line_pass.grid.jump_least, line_pass.grid.jump_radius);
     let across = select(vec4(0.0), vec4(1.0), (columns.own > vec4(0)) & (columns.own < last.xxxx));
     var row_1 = Row(vec4(0.0), vec4(0.0), vec4(0.0));
     var row_2 = row_1;

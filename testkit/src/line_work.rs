@@ -80,7 +80,7 @@ const ENDS: [End; 4] = [
         result: CELLS_END,
         counted: "        east_1 = east.packed;
     }
-    crack_words[cell.y * cell_uniform.grid.rect.z + cell.x] = vec2(packed_count(), 0u);
+    crack_words[cell.y * line_pass.grid.rect.z + cell.x] = vec2(packed_count(), 0u);
 ",
         handed: "",
     },
@@ -88,7 +88,7 @@ const ENDS: [End; 4] = [
         file: COLUMNS,
         result: COLUMNS_END,
         counted: "return vec4(packed_count(), vec3(0u));",
-        handed: "return vec4(load_cracks(column_uniform.grid, p).x, vec3(0u));",
+        handed: "return vec4(load_cracks(line_pass.grid, p).x, vec3(0u));",
     },
     End {
         file: DRAW,
@@ -98,7 +98,7 @@ const ENDS: [End; 4] = [
 #ifdef COLUMNS
     return unpack4x8unorm(textureLoad(column_texture, centre, 0).x);
 #else
-    return unpack4x8unorm(load_cracks(draw_uniform.grid, centre).x);
+    return unpack4x8unorm(load_cracks(line_pass.grid, centre).x);
 #endif
 ",
     },

@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::{
     bend::{LONGEST, end_sign, line_bend, stored},
+    chain,
     crack::Crack,
 };
 
@@ -14,7 +15,7 @@ pub type Place = ([i64; 2], usize);
 
 /// The corners of pixels that a crack ends at: the corner (x, y) is that at the top left of
 /// the pixel (x, y).
-fn corners(([x, y], side): Place) -> [[i64; 2]; 2] {
+pub(super) fn corners(([x, y], side): Place) -> [[i64; 2]; 2] {
     let end = [x + 1, y + 1];
     match side {
         0 => [[x + 1, y], end],
@@ -23,7 +24,7 @@ fn corners(([x, y], side): Place) -> [[i64; 2]; 2] {
 }
 
 /// The cracks that end at a corner.
-fn at_corner([x, y]: [i64; 2]) -> [Place; 4] {
+pub(super) fn at_corner([x, y]: [i64; 2]) -> [Place; 4] {
     [
         ([x - 1, y - 1], 0),
         ([x - 1, y], 0),
@@ -96,5 +97,8 @@ pub fn bend(linked: &HashSet<Place>, ([x, y], side): Place) -> [f64; 2] {
         })
     };
     let ends = [-(seen[0] as i64), seen[1] as i64 - 1];
-    stored(line_bend(seen, ends.map(|n| end_sign(sides(n), single))))
+    let run = line_bend(seen, ends.map(|n| end_sign(sides(n), single)));
+    let short = seen[0] + seen[1] <= 3;
+    let mean = short.then(|| chain::mean_bend(linked, at(0))).flatten();
+    stored(mean.unwrap_or(run))
 }

@@ -4,6 +4,7 @@
 pub mod bend;
 pub mod black_flats;
 pub mod blocks;
+pub mod chain;
 pub mod color;
 pub mod colorization;
 pub mod columns;
@@ -23,6 +24,7 @@ pub mod map;
 pub mod noise;
 pub mod normal;
 pub mod ping_pong;
+pub mod planes;
 pub mod range;
 pub mod raw;
 pub mod read;

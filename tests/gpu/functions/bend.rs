@@ -67,13 +67,13 @@ fn middles_of_lines_are_near_straight_edges() {
 
     // Slope, and the largest root mean square of the distance in pixels that is allowed.
     let limits = [
-        (0.04, 0.04),
-        (0.1, 0.035),
+        (0.04, 0.015),
+        (0.1, 0.032),
         (0.2, 0.06),
         (0.3, 0.07),
         (0.5, 0.14),
-        (0.7, 0.14),
-        (0.9, 0.19),
+        (0.7, 0.075),
+        (0.9, 0.14),
     ];
     for (slope, most) in limits {
         let (mut sum, mut cracks_sum, mut count) = (0.0, 0.0, 0);

@@ -10,6 +10,7 @@ mod depth_map;
 mod finish;
 mod jumps;
 mod normal;
+mod planes;
 mod walk;
 
 use bevy::color::{Color, Hsva};

@@ -1,0 +1,79 @@
+//! Twin of `lines/chain.wgsl`: lines are followed from crack to crack.
+
+use std::collections::HashSet;
+
+use super::link::{Place, at_corner, corners};
+
+/// How a line goes on at a corner of one of its cracks.
+enum Next {
+    Crack(Place),
+    End,
+    Junction,
+}
+
+fn next(lines: &HashSet<Place>, place: Place, corner: [i64; 2]) -> Next {
+    let others: Vec<Place> = at_corner(corner)
+        .into_iter()
+        .filter(|other| *other != place && lines.contains(other))
+        .collect();
+    match others[..] {
+        [] => Next::End,
+        [other] => Next::Crack(other),
+        _ => Next::Junction,
+    }
+}
+
+/// The corner of a crack that is not this one.
+fn other_corner(place: Place, corner: [i64; 2]) -> [i64; 2] {
+    let [first, last] = corners(place);
+    if corner == first { last } else { first }
+}
+
+/// Up to `most` cracks that a line goes on in behind a corner of a crack, and whether it
+/// ends behind them without meeting another line.
+pub fn follow(
+    lines: &HashSet<Place>,
+    (mut place, mut corner): (Place, [i64; 2]),
+    most: usize,
+) -> (Vec<Place>, Option<[i64; 2]>) {
+    let mut followed = vec![];
+    while followed.len() < most {
+        match next(lines, place, corner) {
+            Next::Crack(other) => {
+                followed.push(other);
+                place = other;
+                corner = other_corner(other, corner);
+            }
+            Next::End => return (followed, Some(corner)),
+            Next::Junction => break,
+        }
+    }
+    (followed, None)
+}
+
+/// The centre of a crack; whole numbers are corners of pixels.
+fn centre(place: Place) -> [f64; 2] {
+    let [first, last] = corners(place);
+    [0, 1].map(|i| (first[i] + last[i]) as f64 / 2.0)
+}
+
+/// Offset and slope from the mean of seven centres in a row and the direction from the first
+/// to the last; `None` if there are no seven, or if they run across the crack.
+pub fn mean_bend(lines: &HashSet<Place>, place: Place) -> Option<[f64; 2]> {
+    let [back, on] = corners(place).map(|corner| follow(lines, (place, corner), 3).0);
+    if back.len() < 3 || on.len() < 3 {
+        return None;
+    }
+    let own = centre(place);
+    let [b, c] = [centre(back[2]), centre(on[2])];
+    let (along, across) = if place.1 == 0 { (1, 0) } else { (0, 1) };
+    let around = || back.iter().chain(&on).map(|place| centre(*place));
+    let away = |i: usize| around().map(|centre| centre[i] - own[i]).sum::<f64>() / 7.0;
+    let [rise, run] = [across, along].map(|i| c[i] - b[i]);
+    if rise.abs() > 1.9 * run.abs() {
+        return None;
+    }
+    let slope = rise / run;
+    let offset = away(across) - slope * away(along);
+    (offset.abs() <= 0.49).then_some([offset, slope])
+}
