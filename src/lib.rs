@@ -87,7 +87,9 @@ pub use effect::{
 };
 pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
-pub use lines::{Creases, LineResponse, LineSettings, MapJumps, ObjectEdges, Silhouettes};
+pub use lines::{
+    Creases, LineResponse, LineSettings, LineWeight, MapJumps, ObjectEdges, Silhouettes,
+};
 #[cfg(feature = "objects")]
 pub use objects::{NoOutlines, OutlineGroup, OutlineKinds, OutlineStyle, ViewObjectIds, object_id};
 pub use plugin::ComicsPlugin;
@@ -100,6 +102,7 @@ pub use style::{
     ComicStyle, ComicStyleError, ComicStyleHandle, ComicStyleHandleTemplate, Preset,
     StyleTransition, StyleTransitionFinished, TransitionEasing, presets,
 };
+pub use view::KeyLight;
 
 /// The code of the README and of the pages, compiled as doctests. That of
 /// `your-own-effect.md` has several files and is compiled by `tests/gpu`.
@@ -132,8 +135,9 @@ mod pages {
 pub mod prelude {
     pub use crate::{
         CameraCut, ComicStyle, ComicStyleHandle, ComicsPlugin, Creases, DepthMap, DepthMapping,
-        Effect, EffectPlugin, Form, ObjectEdges, RangeSmoothing, Silhouettes, SplitView,
-        StyleTransition, StyleTransitionFinished, StyleWeight, VisibleDepthRange, effects::*,
+        Effect, EffectPlugin, Form, KeyLight, LineResponse, LineWeight, ObjectEdges,
+        RangeSmoothing, Silhouettes, SplitView, StyleTransition, StyleTransitionFinished,
+        StyleWeight, VisibleDepthRange, effects::*,
     };
     #[cfg(feature = "cartoon")]
     pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};

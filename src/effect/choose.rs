@@ -13,7 +13,7 @@ use bevy::{
         query::{Or, With, Without},
         system::{Commands, Query, Res, ResMut},
     },
-    math::Mat4,
+    math::{Mat4, Vec3},
     render::{
         camera::{ExtractedCamera, TemporalJitter},
         render_resource::PipelineCache,
@@ -50,6 +50,8 @@ pub(crate) struct ViewPlan {
     pub scale_factor: f32,
     /// The largest line width that an object overrides, in logical pixels.
     pub widest_object: f32,
+    /// Unit vector towards the light that lines follow, in world space.
+    pub to_light: Vec3,
     /// Seconds of the app's default clock.
     pub time: f64,
     /// Real time since the last frame, in seconds. Not the game's time: the camera

@@ -301,19 +301,20 @@ impl Plan {
         self.reads_map() && self.depth_map.mapping.follows_visible_range()
     }
 
-    fn lines_fade(&self) -> bool {
-        self.lines.is_some_and(|lines| lines.fades())
+    fn lines_read_map(&self) -> bool {
+        self.lines
+            .is_some_and(|lines| lines.fades() || lines.weight.perspective > 0.0)
     }
 
     /// Whether the range depends on earlier frames: it is smoothed or locked.
     pub fn smooths(&self) -> bool {
-        (self.reads_map() || self.lines_fade())
+        (self.reads_map() || self.lines_read_map())
             && self.depth_map.mapping.follows_visible_range()
             && (self.depth_map.smoothing.is_some() || self.depth_map.locked)
     }
 
     pub fn needs_range(&self) -> bool {
-        let map = self.reads_map() || self.lines_fade();
+        let map = self.reads_map() || self.lines_read_map();
         self.readback || self.histogram || (map && self.depth_map.mapping.follows_visible_range())
     }
 
@@ -328,15 +329,17 @@ impl Plan {
     }
 
     pub fn needs_normals(&self) -> bool {
-        self.lines.is_some_and(|lines| lines.creases.is_some())
+        let lines = self.lines;
+        lines.is_some_and(|lines| lines.creases.is_some() || lines.weight.reads_normals())
             || self.needs().contains(Needs::NORMALS)
     }
 
     /// Whether the ids of objects are drawn for this camera.
     pub fn draws_ids(&self) -> bool {
-        let lines = self
-            .lines
-            .is_some_and(|lines| lines.objects.is_some() || self.object_styles);
+        let lines = self.lines.is_some_and(|lines| {
+            let weighs = lines.silhouettes.is_some() && lines.weight.reads_ids();
+            lines.objects.is_some() || self.object_styles || weighs
+        });
         cfg!(feature = "objects") && (lines || self.needs().contains(Needs::IDS))
     }
 
@@ -369,7 +372,7 @@ impl Plan {
     /// The reason that is reported if a stage does not run for this plan.
     pub fn reason(&self, stage: ComicsStage) -> LeftOut {
         let lines = self.lines.is_some();
-        let maps = self.reads_map() || self.lines_fade();
+        let maps = self.reads_map() || self.lines_read_map();
         match stage {
             ComicsStage::Effect(_) | ComicsStage::RangeReadback => LeftOut::NotRequested,
             ComicsStage::DepthPrepass => LeftOut::NoDepthStyle,

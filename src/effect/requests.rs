@@ -285,18 +285,20 @@ fn line_request(
     };
     let reach = settings.reach(view.scale_factor, widest_object);
     let reference = view.projection.jump_reference(&view.clip_from_view);
+    let grid_scale = view.scale_factor * uniform.depth_scale.max_element();
     Some(LineRequest {
         camera: view.camera,
         settings,
         view: uniform,
         lines: settings.uniform(view.scale_factor, reference),
+        weight: settings.weight.uniform(grid_scale, view.to_light),
         depth_size,
         samples,
         size: scene.viewport.zw(),
         rect: scene.drawn(),
         jitter: scene.jitter,
         reach,
-        steps: settings.steps(view.scale_factor * uniform.depth_scale.max_element()),
+        steps: settings.steps(grid_scale),
         oblique: view.projection.kind() == ProjectionKind::Oblique,
         visible_range: plan.depth_map.mapping.follows_visible_range(),
         ids: plan.draws_ids(),

@@ -6,7 +6,7 @@
 #import bevy_comics::depth::map::depth_map
 #import bevy_comics::depth::view::depth_frame
 #import bevy_comics::lines::edge::{
-    CREASE, Lines, OBJECT, SILHOUETTE, byte, fold_response, pack_ink, step_response,
+    CREASE, Lines, OBJECT, SILHOUETTE, THINNEST, byte, fold_response, pack_ink, step_response,
 }
 #import bevy_comics::lines::rows::Borders
 #import bevy_comics::objects::kinds_of
@@ -52,9 +52,6 @@ struct Cracks {
     // Whether they are lines by themselves. The others only continue lines.
     certain: vec4<bool>,
 }
-
-// Half of the smallest width of a line in physical pixels: a thinner one is fainter.
-const THINNEST: f32 = 0.3;
 
 // Packs ink and half width as they respond to the `amount` of the full response, 0 to 1.
 // Along object edges, which have no response, lines have their full width.

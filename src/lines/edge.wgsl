@@ -203,6 +203,9 @@ struct Crack {
     half_width: f32,
 }
 
+// Half of the smallest width of a line in physical pixels: a thinner one is fainter.
+const THINNEST: f32 = 0.3;
+
 const SILHOUETTE: u32 = 1u;
 const CREASE: u32 = 2u;
 const OBJECT: u32 = 4u;

@@ -175,7 +175,8 @@ impl Inputs<'_> {
                 let mut entries = self.stored(cracks)?;
                 let blocks = lines.tiles.as_ref().map(|tiles| &tiles.blocks);
                 entries.extend(blocks.map(|b| entry(12, (&b.default_view).into_binding())));
-                let group = self.group(&key.for_columns().columns_layout(), &entries);
+                let layout = self.parts.0.1.key.for_columns().columns_layout();
+                let group = self.group(&layout, &entries);
                 Some(((self.pipeline(id)?, group), columns))
             }
             _ => None,
@@ -211,7 +212,7 @@ impl Inputs<'_> {
                     buffers,
                     find: (self.compute(passes.find)?, group),
                     link: self.link_passes(&passes, buffers)?,
-                    settle: self.settle_pass(&passes, key, buffers)?,
+                    settle: self.settle_pass(&passes, buffers)?,
                 }))
             }
             _ => Err(NOT_READY),
@@ -221,16 +222,6 @@ impl Inputs<'_> {
     fn tiles(&self) -> Result<&Tiles, LeftOut> {
         let (_, _, lines) = self.parts.0;
         lines.tiles.as_ref().ok_or(NOT_READY)
-    }
-
-    /// The bindings of a pass in cells: these, and those that all such passes have.
-    fn in_cells<'a>(
-        &'a self,
-        more: Vec<BindGroupEntry<'a>>,
-    ) -> Result<Vec<BindGroupEntry<'a>>, LeftOut> {
-        let uniform = [entry(1, self.uniform()?)].into_iter();
-        let lists = self.tiles()?.lists.cell_entries();
-        Ok(uniform.chain(lists).chain(more).collect())
     }
 
     /// The passes that continue lines.
@@ -246,7 +237,9 @@ impl Inputs<'_> {
         let count = (request.steps as usize).div_ceil(LINK_STEPS);
         let pass = |i: usize| {
             let id = if i + 1 == count { last } else { full };
-            let entries = self.in_cells(buffers.link_entries(i % 2))?;
+            let mut entries = vec![entry(1, self.uniform()?)];
+            entries.extend(self.tiles()?.lists.cell_entries());
+            entries.extend(buffers.link_entries(i % 2));
             let group = self.group(&LineKey::link_layout(), &entries);
             Ok((self.compute(id)?, group))
         };
@@ -257,16 +250,21 @@ impl Inputs<'_> {
     fn settle_pass<'a>(
         &'a self,
         passes: &CellPasses,
-        key: &LineKey,
         buffers: &CrackBuffers,
     ) -> Result<Option<Ready<'a, ComputePipeline>>, LeftOut> {
         let Some(id) = passes.settle else {
             return Ok(None);
         };
-        let (request, ..) = self.parts.0;
-        let links = (request.steps as usize).div_ceil(LINK_STEPS);
-        let entries = self.in_cells(buffers.settle_entries(links % 2))?;
-        let group = self.group(&key.for_settle().settle_layout(), &entries);
+        let links = (self.parts.0.0.steps as usize).div_ceil(LINK_STEPS);
+        let key = self.parts.0.1.key.for_settle();
+        let mut entries = if key.weight.any() {
+            self.entries(&key, key.weight.light)?
+        } else {
+            vec![entry(1, self.uniform()?)]
+        };
+        entries.extend(self.tiles()?.lists.cell_entries());
+        entries.extend(buffers.settle_entries(links % 2));
+        let group = self.group(&key.settle_layout(), &entries);
         Ok(Some((self.compute(id)?, group)))
     }
 

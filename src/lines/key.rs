@@ -2,7 +2,7 @@
 
 use bevy::{math::Vec2, render::render_resource::TextureFormat, shader::ShaderDefVal};
 
-use super::request::LineRequest;
+use super::{request::LineRequest, weight::WeightKey};
 use crate::settings::Form;
 
 /// The two cracks of a pixel, see `Crack` in `edge.wgsl`.
@@ -58,9 +58,14 @@ pub(crate) struct LineKey {
     pub visible_range: bool,
     /// Whether there are silhouettes and creases of the faithful form.
     pub faithful: [bool; 2],
-    /// Cracks are linked to lines, and lines run straight through the steps of pixels.
+    /// Cracks are linked to lines, or only stored as planes of bits.
     pub links: bool,
+    /// Lines run straight through the steps of pixels.
     pub smooth: bool,
+    /// Which factors of the width are not 1.
+    pub weight: WeightKey,
+    /// The width changes along a line.
+    pub varied: bool,
     /// The depth texture has one pixel per pixel of the viewport.
     pub same_size: bool,
     pub search: Search,
@@ -79,6 +84,11 @@ impl LineKey {
             lines.creases.map(|c| c.form),
         ];
         let [silhouettes, creases] = forms.map(|form| form == Some(Form::Corrected));
+        let weight = if by_fragments {
+            WeightKey::default()
+        } else {
+            WeightKey::new(lines)
+        };
         Self {
             oblique: request.oblique,
             silhouettes,
@@ -91,6 +101,8 @@ impl LineKey {
             faithful: forms.map(|form| form == Some(Form::Faithful)),
             links: lines.links() && !by_fragments,
             smooth: lines.smooth && !by_fragments,
+            weight,
+            varied: weight.varies(),
             same_size: request.view.depth_scale == Vec2::ONE,
             search: request.search(),
             jumps: request.jumps.is_some(),
@@ -104,9 +116,9 @@ impl LineKey {
         self.silhouettes || self.creases || self.object_edges
     }
 
-    /// Whether the cracks are also stored as planes of bits.
-    pub fn has_planes(&self) -> bool {
-        self.links || self.smooth
+    /// Whether the cracks are also stored as planes of bits, and completed after that.
+    pub fn settles(&self) -> bool {
+        self.links || self.smooth || self.weight.any()
     }
 
     pub fn has_faithful(&self) -> bool {
@@ -122,6 +134,7 @@ impl LineKey {
             visible_range: self.jumps && self.visible_range,
             links: false,
             smooth: false,
+            weight: WeightKey::default(),
             jumps: self.jumps,
             map_flags: if self.jumps { self.map_flags } else { 0 },
             ..self.for_find()
@@ -131,9 +144,14 @@ impl LineKey {
     /// The part that finding depends on.
     pub fn for_find(self) -> Self {
         Self {
+            ids: self.object_edges || self.object_styles,
+            links: self.settles(),
+            smooth: false,
+            weight: WeightKey::default(),
             faithful: [false; 2],
             search: Search::default(),
             visible_range: self.fading && self.visible_range,
+            varied: false,
             jumps: false,
             map_flags: 0,
             ..self
@@ -151,14 +169,22 @@ impl LineKey {
             jumps: false,
             map_flags: 0,
             by_fragments: false,
+            weight: WeightKey::default(),
+            varied: false,
             ..self
         }
     }
 
     /// The part that completing cracks depends on.
     pub fn for_settle(self) -> Self {
+        let weight = self.weight;
+        let reads_map = weight.perspective;
         Self {
             smooth: self.smooth,
+            weight,
+            ids: weight.outer && self.ids,
+            oblique: weight.any() && self.oblique,
+            visible_range: reads_map && self.visible_range,
             ..Self::default()
         }
     }
@@ -167,6 +193,7 @@ impl LineKey {
     pub fn for_columns(self) -> Self {
         Self {
             smooth: self.smooth,
+            varied: self.varied,
             by_fragments: self.by_fragments,
             ..Self::default()
         }
@@ -179,6 +206,7 @@ impl LineKey {
             object_styles: self.object_styles,
             search: self.search,
             smooth: self.smooth && self.search != Search::Columns,
+            varied: self.varied && self.search != Search::Columns,
             by_fragments: self.by_fragments,
             ..Self::default()
         }
@@ -197,14 +225,28 @@ impl LineKey {
     }
 
     pub fn find_defs(&self) -> Vec<ShaderDefVal> {
-        let planes = self.has_planes().then(|| "PLANES".into());
+        let planes = self.settles().then(|| "PLANES".into());
         let mut defs = self.crack_defs(self.silhouettes || self.creases);
         defs.extend(planes);
         defs
     }
 
     pub fn settle_defs(&self) -> Vec<ShaderDefVal> {
-        names([(self.smooth, "SMOOTH")]).collect()
+        let weight = &self.weight;
+        self.common()
+            .chain(names([
+                (self.smooth, "SMOOTH"),
+                (weight.any(), "WEIGHT"),
+                (weight.any(), "DEPTH"),
+                (weight.kinds, "KIND_WEIGHT"),
+                (weight.light, "LIGHT_WEIGHT"),
+                (weight.light, "NORMALS"),
+                (weight.perspective, "PERSPECTIVE_WEIGHT"),
+                (self.visible_range, "VISIBLE_RANGE"),
+                (weight.nib, "NIB_WEIGHT"),
+                (weight.taper, "TAPER_WEIGHT"),
+            ]))
+            .collect()
     }
 
     /// `excess`: the excess of steps in depth is computed. It excludes creases too.
@@ -257,6 +299,7 @@ impl LineKey {
                 (self.search == Search::Columns, "COLUMNS"),
                 (!self.by_fragments, "BLOCKS"),
                 (self.smooth, "SMOOTH"),
+                (self.varied, "VARIED"),
             ]))
             .collect()
     }

@@ -59,7 +59,7 @@ impl LineKey {
         let mut entries = self.inputs(self.creases, ShaderStages::COMPUTE);
         entries.extend(read_buffers([16, 17]));
         entries.extend(written_buffers([18]));
-        if self.has_planes() {
+        if self.settles() {
             entries.extend(written_buffers([21]));
         }
         BindGroupLayoutDescriptor::new("comics_find_in_cells", &entries)
@@ -74,8 +74,12 @@ impl LineKey {
     }
 
     pub fn settle_layout(&self) -> BindGroupLayoutDescriptor {
-        let uniform = uniform_buffer::<LinePassUniform>(false).build(1, ShaderStages::COMPUTE);
-        let mut entries = vec![uniform];
+        let mut entries = if self.weight.any() {
+            self.inputs(self.weight.light, ShaderStages::COMPUTE)
+        } else {
+            let uniform = uniform_buffer::<LinePassUniform>(false);
+            vec![uniform.build(1, ShaderStages::COMPUTE)]
+        };
         entries.extend(read_buffers([16, 17, 20]));
         entries.extend(written_buffers([18]));
         if self.smooth {

@@ -19,6 +19,7 @@ mod resolve;
 mod settings;
 mod store;
 mod tiles;
+mod weight;
 
 use bevy::{
     app::App,
@@ -47,6 +48,7 @@ pub(crate) use prepare::ViewLines;
 pub(crate) use settings::LinesUniform;
 pub use settings::{LineSettings, MapJumps};
 pub(crate) use tiles::{TileList, TileLists, tile_shader, tile_vertices};
+pub use weight::LineWeight;
 
 use crate::schedule::{ComicsSystems, PrepareComics};
 use pipelines::LineShaders;
@@ -62,6 +64,7 @@ pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "read.wgsl");
     load_shader_library!(app, "bend.wgsl");
     load_shader_library!(app, "listed.wgsl");
+    load_shader_library!(app, "weight.wgsl");
     load_shader_library!(app, "pass.wgsl");
     load_shader_library!(app, "planes.wgsl");
     load_shader_library!(app, "read_planes.wgsl");

@@ -5,11 +5,13 @@
 
 #import bevy_comics::depth::view::View
 #import bevy_comics::lines::edge::{Grid, Lines}
+#import bevy_comics::lines::weight::Weight
 
 struct LinePass {
     seen: View,
     settings: Lines,
     grid: Grid,
+    weight: Weight,
 }
 
 @group(0) @binding(1) var<uniform> line_pass: LinePass;

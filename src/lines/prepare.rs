@@ -141,7 +141,7 @@ fn cracks(
                 CrackStore::Buffers(buffers) => Some(buffers),
                 CrackStore::Texture(_) => None,
             });
-            let wanted = (passes.key.has_planes(), passes.key.smooth);
+            let wanted = (passes.key.settles(), passes.key.smooth);
             CrackStore::Buffers(CrackBuffers::new(before, device, rect, wanted))
         }
         FindPass::Pixels(_) => CrackStore::Texture(drawn("comics_cracks", CRACK_FORMAT)),

@@ -23,6 +23,7 @@ use super::{
     settings::{LineSettings, LinesUniform, MapJumps},
     store::{largest_buffer, words},
     tiles::TileList,
+    weight::WeightUniform,
 };
 use crate::depth::view::ViewUniform;
 
@@ -34,6 +35,7 @@ pub(crate) struct LineRequest {
     pub settings: LineSettings,
     pub view: ViewUniform,
     pub lines: LinesUniform,
+    pub weight: WeightUniform,
     /// Size in pixels of the depth texture, and its samples per pixel.
     pub depth_size: UVec2,
     pub samples: u32,
@@ -120,6 +122,7 @@ impl LineRequest {
             view: self.view,
             lines: self.lines,
             grid: self.grid(),
+            weight: self.weight,
         }
     }
 }
@@ -144,6 +147,7 @@ pub(crate) struct LinePassUniform {
     pub view: ViewUniform,
     pub lines: LinesUniform,
     pub grid: Grid,
+    pub weight: WeightUniform,
 }
 
 /// The pipelines of one view's lines.
@@ -269,7 +273,7 @@ impl LinePipelines<'_> {
                     link: (request.steps > 0)
                         .then(|| [false, true].map(|last| compute(SearchPass::Link { last }))),
                     settle: key
-                        .has_planes()
+                        .settles()
                         .then(|| compute(SearchPass::Settle(key.for_settle()))),
                 })
             } else {

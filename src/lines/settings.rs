@@ -2,7 +2,10 @@
 
 use bevy::{math::Vec3, render::render_resource::ShaderType};
 
-use super::kinds::{Creases, LineResponse, ObjectEdges, Silhouettes, ramp};
+use super::{
+    kinds::{Creases, LineResponse, ObjectEdges, Silhouettes, ramp},
+    weight::LineWeight,
+};
 use crate::settings::{Form, linear_rgb};
 
 /// Lines that an effect requests ([`Effect::lines`](crate::Effect::lines)). Every
@@ -32,6 +35,8 @@ pub struct LineSettings {
     pub response: LineResponse,
     /// Whether lines run straight through the steps of pixels.
     pub smooth: bool,
+    /// How wide lines are in different places.
+    pub weight: LineWeight,
 }
 
 /// Most borders of pixels that a line continues along weak edges.
@@ -51,6 +56,7 @@ impl LineSettings {
         specks: 3,
         response: LineResponse::Width,
         smooth: true,
+        weight: LineWeight::EVEN,
     };
 
     /// The settings without the kinds that are invisible: those of opacity 0, and
@@ -111,10 +117,10 @@ impl LineSettings {
             0.0
         };
         let widest = own.max(widest_object);
-        if widest == 0.0 {
+        if widest * self.weight.largest() == 0.0 {
             return 0;
         }
-        super::reach(0.5 * widest * scale)
+        super::reach(0.5 * widest * self.weight.largest() * scale)
     }
 
     /// The jump in depth from which one surface hides another, instead of meeting it:

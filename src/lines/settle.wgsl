@@ -1,13 +1,28 @@
-// Completes the cracks of the cells: leaves out those that are not part of a line, and
-// finds how the lines of the others run straight through the steps of pixels.
+// Completes the cracks of the cells: leaves out those that are not part of a line, finds how
+// the lines of the others run straight through the steps of pixels, and how wide they are.
 
-#import bevy_comics::lines::bend::{end_sign, line_bend, pack_bend}
-#import bevy_comics::lines::chain::mean_bend
+#import bevy_comics::lines::bend::{end_sign, line_bend, pack_bend, unpack_bend}
+#import bevy_comics::lines::chain::{
+    along_crack, cracks_to_end, first_corner, last_corner, mean_bend,
+}
 #import bevy_comics::lines::edge::Grid
 #import bevy_comics::lines::listed::listed_cell
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::planes::{COLUMNS, FOUND_EAST, FOUND_SOUTH, LINKED_EAST, LINKED_SOUTH}
 #import bevy_comics::lines::read_planes::{column_window, load_column, row_window}
+#ifdef WEIGHT
+#import bevy_comics::depth::map::is_background
+#import bevy_comics::depth::view::{depth_frame, set_view, texel_depth}
+#import bevy_comics::lines::weight::{
+    kind_weight, light_weight, nib_weight, perspective_weight, taper_weight, weighted_crack,
+}
+#ifdef LIGHT_WEIGHT
+#import bevy_comics::depth::normal::texel_normal
+#endif
+#ifdef OBJECT_IDS
+#import bevy_comics::objects::texel_object
+#endif
+#endif
 
 @group(0) @binding(18) var<storage, read_write> crack_words: array<vec2<u32>>;
 #ifdef SMOOTH
@@ -55,6 +70,49 @@ fn bend_east(g: Grid, p: vec2<i32>) -> u32 {
 }
 #endif
 
+#ifdef WEIGHT
+// Whether the sky or another object lies behind the owner of a crack.
+fn is_outer(owner: vec2<i32>, beyond: vec2<i32>) -> bool {
+    let sky = is_background(texel_depth(beyond, 0));
+#ifdef OBJECT_IDS
+    return sky || texel_object(owner, 0).x != texel_object(beyond, 0).x;
+#else
+    return sky;
+#endif
+}
+
+// A packed crack as wide as it is to be. `bend`: how its line leaves it.
+fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
+    let g = line_pass.grid;
+    let w = line_pass.weight;
+    let here = g.rect.xy + crack.xy;
+    let there = here + select(vec2(1, 0), vec2(0, 1), crack.z == 1);
+    let owner = select(there, here, (packed & 8u) != 0u);
+    var factor = 1.0;
+#ifdef KIND_WEIGHT
+    factor *= kind_weight(w, packed, is_outer(owner, here + there - owner));
+#endif
+#ifdef LIGHT_WEIGHT
+    let n = texel_normal(owner, 0);
+    factor *= select(1.0, light_weight(w, dot(n.xyz, w.to_light)), n.w > 0.0);
+#endif
+#ifdef PERSPECTIVE_WEIGHT
+    factor *= perspective_weight(w, depth_frame(), texel_depth(owner, 0));
+#endif
+#ifdef NIB_WEIGHT
+    let along = along_crack(crack);
+    factor *= nib_weight(w, normalize(along + unpack_bend(bend).y * along.yx));
+#endif
+#ifdef TAPER_WEIGHT
+    let most = i32(ceil(w.taper));
+    let back = cracks_to_end(g, crack, first_corner(crack), most);
+    let on = cracks_to_end(g, crack, last_corner(crack), most);
+    factor *= taper_weight(w, min(back, on));
+#endif
+    return select(weighted_crack(packed, factor), 0u, packed == 0u);
+}
+#endif
+
 // Of six sets of cracks: which cracks are in one of them or more, and in two or more.
 fn one_or_two(a: u32, b: u32, c: u32, d: u32, e: u32, f: u32) -> vec2<u32> {
     let ab = a ^ b;
@@ -79,11 +137,8 @@ fn settle_column(g: Grid, first: vec2<i32>, keep: vec2<u32>) {
         let kept = vec2((keep.x >> row) & 1u, (keep.y >> row) & 1u);
         let lost = vec2((east >> row) & 1u, (south >> row) & 1u) > kept;
         let at = p.y * g.rect.z + p.x;
-        if any(lost) {
-            crack_words[at] = select(crack_words[at], vec2(0u), lost);
-        }
-#ifdef SMOOTH
         var bends = 0x80808080u;
+#ifdef SMOOTH
         if kept.x != 0u {
             bends = (bends & 0xffff0000u) | bend_east(g, p);
         }
@@ -91,6 +146,17 @@ fn settle_column(g: Grid, first: vec2<i32>, keep: vec2<u32>) {
             bends = (bends & 0xffffu) | (bend_south(g, p) << 16u);
         }
         bend_words[at] = bends;
+#endif
+#ifdef WEIGHT
+        let packed = select(crack_words[at], vec2(0u), lost);
+        crack_words[at] = vec2(
+            weighed(vec3(p, 0), packed.x, bends & 0xffffu),
+            weighed(vec3(p, 1), packed.y, bends >> 16u),
+        );
+#else
+        if any(lost) {
+            crack_words[at] = select(crack_words[at], vec2(0u), lost);
+        }
 #endif
     }
 }
@@ -104,6 +170,9 @@ fn settle(
     if cell.x < 0 {
         return;
     }
+#ifdef WEIGHT
+    set_view(line_pass.seen);
+#endif
     let g = line_pass.grid;
     // The cracks of lines, and which of them touch two other cracks or more.
     var east: array<u32, WIDTH>;

@@ -36,7 +36,11 @@ fn load_bends(g: Grid, p: vec2<i32>) -> u32 {
 // The middle of the line near a crack, in pixels from the centre of the crack's pixel.
 // `across`: the unit vector to the crack; `bend`: half of a word of load_bends.
 fn stored_middle(packed: u32, across: vec2<f32>, bend: u32) -> vec2<f32> {
-#ifdef SMOOTH
+#ifdef VARIED
+    // The middle of a line whose width changes is always the crack: the offset depends on the
+    // width.
+    let shifts = false;
+#else ifdef SMOOTH
     // Along a fold, the pixel that owns the line changes at every step.
     let shifts = (packed & SILHOUETTE) != 0u;
 #else

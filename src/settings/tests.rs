@@ -6,7 +6,7 @@ use bevy::color::Color;
 
 use crate::{
     BlackFlats, Colorization, Contours, Creases, DepthMap, DepthMapping, Desaturation, Effect,
-    ObjectEdges, Outlines, RangeSmoothing, Silhouettes, Sketch, ToneBands, Vignette,
+    LineWeight, ObjectEdges, Outlines, RangeSmoothing, Silhouettes, Sketch, ToneBands, Vignette,
 };
 
 /// A million floats: hand-picked edge cases, then random bit patterns, which
@@ -251,6 +251,26 @@ fn a_million_floats_in_every_field_of_the_lines() {
             ..Outlines::default()
         };
         assert_eq!(outlines.sanitized().specks, specks.clamp(1, 3));
+    }
+    type Field = fn(&mut LineWeight) -> &mut f32;
+    let weights: [(&str, f32, f32, Field); 10] = [
+        ("outer", 0.0, 4.0, |w| &mut w.outer),
+        ("inner", 0.0, 4.0, |w| &mut w.inner),
+        ("crease", 0.0, 4.0, |w| &mut w.crease),
+        ("object", 0.0, 4.0, |w| &mut w.object),
+        ("shade", 0.0, 2.0, |w| &mut w.shade),
+        ("lit", 0.0, 1.0, |w| &mut w.lit),
+        ("perspective", 0.0, 1.0, |w| &mut w.perspective),
+        ("nib", 0.1, 1.0, |w| &mut w.nib),
+        ("nib_angle", 0.0, 180.0, |w| &mut w.nib_angle),
+        ("taper", 0.0, 48.0, |w| &mut w.taper),
+    ];
+    for (name, low, high, field) in weights {
+        fuzz(&format!("LineWeight::{name}"), low, high, |x| {
+            let mut weight = LineWeight::EVEN;
+            *field(&mut weight) = x;
+            *field(&mut weight.sanitized())
+        });
     }
     let silhouettes = |edit: fn(&mut Silhouettes, f32)| {
         move |x| {

@@ -19,6 +19,8 @@ const PRELUDE: &[&str] = &[
     "DepthMap",
     "DepthMapping",
     "Form",
+    "LineResponse",
+    "LineWeight",
     "ObjectEdges",
     "RangeSmoothing",
     "Silhouettes",

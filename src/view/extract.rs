@@ -11,7 +11,7 @@ use bevy::{
     time::{Real, Time},
 };
 
-use super::CameraPlan;
+use super::{CameraPlan, light::Lights};
 use crate::{
     depth::{frame::DepthProjection, smoothing::CameraCuts},
     effect::ViewPlan,
@@ -34,11 +34,12 @@ pub(super) fn extract_views(
         >,
     >,
     (time, real_time): (Extract<Option<Res<Time>>>, Extract<Option<Res<Time<Real>>>>),
-    objects: Extract<Res<ObjectStyles>>,
+    (objects, lights): (Extract<Res<ObjectStyles>>, Extract<Lights>),
     stale: Query<Entity, With<ViewPlan>>,
     mut seen: Local<EntityHashSet>,
 ) {
     seen.clear();
+    let to_light = lights.to_light();
     for (entity, render_entity, camera, asked, projection, cuts) in &cameras {
         if !camera.is_active {
             continue;
@@ -61,6 +62,7 @@ pub(super) fn extract_views(
             clip_from_view,
             scale_factor: camera.target_scaling_factor().unwrap_or(1.0),
             widest_object: objects.max_width(),
+            to_light,
             time: time.as_ref().map_or(0.0, |time| time.elapsed_secs_f64()),
             seconds: real_time.as_ref().map_or(0.0, |time| time.delta_secs()),
             cuts: cuts.map_or(0, |cuts| cuts.0),

@@ -2,6 +2,7 @@
 //! extraction to the render world.
 
 mod extract;
+mod light;
 mod prepasses;
 
 use std::sync::Arc;
@@ -26,6 +27,7 @@ use crate::{
     objects::ObjectStyles,
     schedule::ComicsSystems,
 };
+pub use light::KeyLight;
 use prepasses::{give_up_claims, request_prepasses};
 
 /// On a camera in the main world: what it draws, planned from its components.
@@ -41,7 +43,8 @@ pub(crate) struct ViewPlugin;
 
 impl Plugin for ViewPlugin {
     fn build(&self, app: &mut App) {
-        app.add_observer(give_up_claims::<DepthPrepass>)
+        app.register_type::<KeyLight>()
+            .add_observer(give_up_claims::<DepthPrepass>)
             .add_observer(give_up_claims::<NormalPrepass>)
             .add_systems(
                 // After the systems that change a camera's components.

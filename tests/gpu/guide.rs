@@ -186,7 +186,8 @@ mod reference {
     use bevy_comics::{
         BlackFlats, Colorization, ColorizationMode, ComicStyle, ContourOperator, Contours, Creases,
         DepthMap, DepthMapping, Desaturation, EffectRegistry, EffectType, FieldRange, Form,
-        ObjectEdges, Outlines, RangeSmoothing, ReductionMethod, Silhouettes, Sketch, ToneBands,
+        LineResponse, LineWeight, ObjectEdges, Outlines, RangeSmoothing, ReductionMethod,
+        Silhouettes, Sketch, ToneBands,
     };
 
     const HEAD: &str = "\
@@ -369,6 +370,8 @@ This page is made from the types by a test, which fails where the two differ.
         section::<Silhouettes>(&mut page);
         section::<Creases>(&mut page);
         section::<ObjectEdges>(&mut page);
+        section::<LineResponse>(&mut page);
+        section::<LineWeight>(&mut page);
         section::<Sketch>(&mut page);
         for effect in effects {
             let info = (effect.type_info)();

@@ -43,5 +43,6 @@ mod styles;
 mod transparent;
 mod upscaled;
 mod vignette;
+mod weights;
 mod wide_lines;
 mod window;

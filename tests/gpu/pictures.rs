@@ -8,8 +8,8 @@ use bevy::{
 };
 use bevy_comics::{
     BlackFlats, Colorization, ColorizationMode, ComicStyle, ContourOperator, Contours, Creases,
-    DepthMap, DepthMapping, Desaturation, Form, LineResponse, Outlines, Silhouettes, Sketch,
-    ToneBands, VisibleDepthRange, presets,
+    DepthMap, DepthMapping, Desaturation, Form, KeyLight, LineResponse, Outlines, Silhouettes,
+    Sketch, ToneBands, VisibleDepthRange, presets,
 };
 
 use bevy_comics_testkit::{
@@ -54,6 +54,14 @@ pub fn frame(small: &Small, map: &DepthMap) -> Frame {
     }
 }
 
+/// Unit vector towards the light that lines follow.
+fn to_light(small: &mut Small) -> [f64; 3] {
+    let world = small.world();
+    let mut lights = world.query_filtered::<&GlobalTransform, With<KeyLight>>();
+    let found = lights.iter(world).next().map(|light| *light.back());
+    found.unwrap_or(Vec3::Y).to_array().map(f64::from)
+}
+
 /// Compares every pixel. Pixels so close to a threshold that the error of the
 /// response decides are counted instead; at most 1 in 200 may be.
 pub fn assert_pass_is_its_twin(
@@ -81,6 +89,7 @@ pub fn assert_pass_is_its_twin(
         normals: prepass.normals.first(),
         ids: prepass.ids.first(),
         height: 0.0,
+        to_light: to_light(small),
     };
     let sketch = style.get::<Sketch>();
     let implied = sketch.map(|_| Outlines {

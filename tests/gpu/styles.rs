@@ -5,8 +5,8 @@ use std::{fs, time::Duration};
 use bevy::{color::Color, prelude::*, render::view::Msaa};
 use bevy_comics::{
     BlackFlats, Colorization, ColorizationMode, ComicStyle, ComicStyleError, ComicStyleHandle,
-    ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, ObjectEdges,
-    Outlines, RangeSmoothing, ReductionMethod, Silhouettes, Sketch, ToneBands,
+    ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, LineWeight,
+    ObjectEdges, Outlines, RangeSmoothing, ReductionMethod, Silhouettes, Sketch, ToneBands,
 };
 use proptest::{
     option,
@@ -136,6 +136,19 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
         )
 }
 
+fn weights() -> impl Strategy<Value = LineWeight> {
+    (number(), number(), number(), number(), number()).prop_map(
+        |(outer, shade, perspective, nib, taper)| LineWeight {
+            outer,
+            shade,
+            perspective,
+            nib,
+            taper,
+            ..default()
+        },
+    )
+}
+
 fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines>, Option<Sketch>)>
 {
     let forms = || select(vec![Form::Corrected, Form::Faithful]);
@@ -178,16 +191,20 @@ fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines
         option::of(objects),
         number(),
         number(),
+        weights(),
     )
-        .prop_map(|(silhouettes, creases, objects, width, fade)| Outlines {
-            silhouettes,
-            creases,
-            objects,
-            width,
-            width_fade: fade,
-            opacity_fade: fade,
-            ..default()
-        });
+        .prop_map(
+            |(silhouettes, creases, objects, width, fade, weight)| Outlines {
+                silhouettes,
+                creases,
+                objects,
+                width,
+                width_fade: fade,
+                opacity_fade: fade,
+                weight,
+                ..default()
+            },
+        );
     let sketch =
         (colors(), colors(), number(), 0u32..9).prop_map(|(paper, ink, jitter, strokes)| Sketch {
             paper,

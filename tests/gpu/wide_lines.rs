@@ -37,6 +37,7 @@ fn columns_against_exhaustive(small: &mut Small, outlines: Outlines) -> [f64; 2]
         normals: normals.as_ref(),
         ids: ids.as_ref(),
         height: 0.0,
+        to_light: [0.0, 1.0, 0.0],
     };
     let cracks = Cracks::new(&outlines, &view, 1.0);
     let (mut sum, mut apart) = (0.0, 0.0);

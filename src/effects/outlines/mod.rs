@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     effect::{Effect, EffectShader, EffectStage, Extent, Needs, NoUniform, ViewFacts},
-    lines::{Creases, LineResponse, LineSettings, ObjectEdges, Silhouettes},
+    lines::{Creases, LineResponse, LineSettings, LineWeight, ObjectEdges, Silhouettes},
     settings::{Blend, FieldRange, bounded},
 };
 
@@ -70,6 +70,8 @@ pub struct Outlines {
     /// Whether lines run straight through the steps of pixels; otherwise they follow the
     /// borders of pixels. Needs compute shaders. Default: `true`.
     pub smooth: bool,
+    /// How wide lines are in different places. Default: [`LineWeight::EVEN`].
+    pub weight: LineWeight,
 }
 
 impl Default for Outlines {
@@ -86,6 +88,7 @@ impl Default for Outlines {
             specks: 3,
             response: LineResponse::Width,
             smooth: true,
+            weight: LineWeight::EVEN,
         }
     }
 }
@@ -105,6 +108,7 @@ impl Outlines {
         specks: 3,
         response: LineResponse::Width,
         smooth: true,
+        weight: LineWeight::EVEN,
     };
 }
 
@@ -132,6 +136,7 @@ impl Effect for Outlines {
             specks: self.specks.clamp(1, 3),
             response: self.response,
             smooth: self.smooth,
+            weight: self.weight.sanitized(),
         }
     }
 
@@ -165,8 +170,19 @@ impl Effect for Outlines {
         if missing.contains(Needs::DEPTH) {
             return None;
         }
-        let creases = self.creases.filter(|_| !missing.contains(Needs::NORMALS));
-        Some(Self { creases, ..self })
+        if !missing.contains(Needs::NORMALS) {
+            return Some(self);
+        }
+        let weight = LineWeight {
+            shade: 0.0,
+            lit: 0.0,
+            ..self.weight
+        };
+        Some(Self {
+            creases: None,
+            weight,
+            ..self
+        })
     }
 
     fn lines(&self) -> Option<LineSettings> {
@@ -199,6 +215,7 @@ impl Effect for Outlines {
             specks: later.specks,
             response: later.response,
             smooth: later.smooth,
+            weight: self.weight.mixed(other.weight, t),
         }
     }
 
@@ -212,6 +229,10 @@ impl Effect for Outlines {
         Self {
             width_fade: self.width_fade * fraction,
             opacity_fade: self.opacity_fade * fraction,
+            weight: LineWeight {
+                perspective: self.weight.perspective * fraction,
+                ..self.weight
+            },
             ..self
         }
     }
@@ -242,6 +263,7 @@ impl Outlines {
             specks: self.specks,
             response: self.response,
             smooth: self.smooth,
+            weight: self.weight,
         }
         .visible()
     }

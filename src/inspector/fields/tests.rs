@@ -4,8 +4,8 @@ use bevy::reflect::Typed;
 
 use super::{super::tooltip::plain, *};
 use crate::{
-    BlackFlats, ComicStyle, Contours, Creases, DepthMapping, EffectRegistry, ObjectEdges, Outlines,
-    RangeSmoothing, Silhouettes,
+    BlackFlats, ComicStyle, Contours, Creases, DepthMapping, EffectRegistry, LineWeight,
+    ObjectEdges, Outlines, RangeSmoothing, Silhouettes,
 };
 
 /// Every type with settings, by its name in paths.
@@ -17,6 +17,7 @@ fn all_types() -> Vec<(&'static str, &'static TypeInfo)> {
         ("outlines.silhouettes", Silhouettes::type_info()),
         ("outlines.creases", Creases::type_info()),
         ("outlines.objects", ObjectEdges::type_info()),
+        ("outlines.weight", LineWeight::type_info()),
     ];
     for effect in EffectRegistry::built_in().types() {
         all.push((effect.name, (effect.type_info)()));

@@ -51,6 +51,18 @@ pub fn follow(
     (followed, None)
 }
 
+/// Cracks from a crack to the nearest loose end of its line, at most `most`, rounded up. A
+/// line does not end at the border of a grid of this size.
+pub fn cracks_to_end(lines: &HashSet<Place>, place: Place, size: [i64; 2], most: f64) -> usize {
+    let most = most.ceil() as usize;
+    let ends = corners(place).map(|corner| {
+        let (followed, end) = follow(lines, (place, corner), most);
+        let loose = end.is_some_and(|end| (0..2).all(|i| end[i] > 0 && end[i] < size[i]));
+        if loose { followed.len() } else { most }
+    });
+    ends[0].min(ends[1])
+}
+
 /// The centre of a crack; whole numbers are corners of pixels.
 fn centre(place: Place) -> [f64; 2] {
     let [first, last] = corners(place);

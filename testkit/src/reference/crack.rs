@@ -50,7 +50,7 @@ fn weakest(s: &Outlines) -> f64 {
 }
 
 /// Half of the smallest width of a line in physical pixels.
-const THINNEST: f64 = 0.3;
+pub(super) const THINNEST: f64 = 0.3;
 
 /// Ink and half width of a line whose edge has the fraction `amount` of the full response.
 fn respond(response: LineResponse, amount: f64, half_width: f64, object: bool) -> [f64; 2] {

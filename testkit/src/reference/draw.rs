@@ -1,13 +1,15 @@
 //! Twin of `lines/draw.wgsl`: the ink of the lines at every pixel.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::{
+    chain::cracks_to_end,
     crack::{Crack, SIDES, crack},
     edge::{line_coverage, line_offset, segment_distance},
     faithful::faithful,
-    link::{bend, linked, without_specks},
+    link::{Place, bend, linked, without_specks},
     view::View,
+    weight::{largest_weight, local_weight, taper_weight, weighted},
 };
 use bevy_comics::Outlines;
 
@@ -33,7 +35,8 @@ impl Cracks {
             .flat_map(|y| (0..w).map(move |x| [x0 + x, y0 + y]))
             .map(|pixel| [0, 1].map(|side| crack(s, view, pixel, side, scale)))
             .collect();
-        let reach = ((0.5 * f64::from(s.width) * scale + 1.0).ceil() as i64 - 1).max(1);
+        let widest = f64::from(s.width) * largest_weight(&s.weight);
+        let reach = ((0.5 * widest * scale + 1.0).ceil() as i64 - 1).max(1);
         let mut found = Self {
             width: w,
             height: h,
@@ -49,19 +52,51 @@ impl Cracks {
         };
         let steps = ((f64::from(s.continuity) * scale).ceil() as i32).min(64);
         found.complete(steps, s.specks);
+        let taper = (f64::from(s.weight.taper) * scale).min(64.0);
+        found.weigh((s, view), [x0, y0], taper);
         found
+    }
+
+    /// Multiplies the width of every crack by its weight. `taper`: in cracks.
+    fn weigh(&mut self, (s, view): (&Outlines, &View), [x0, y0]: [i64; 2], taper: f64) {
+        let (width, height) = (self.width, self.height);
+        let lines: HashSet<Place> = self.places().map(|(place, _)| place).collect();
+        let w = &s.weight;
+        let varies = w.shade > 0.0
+            || w.lit > 0.0
+            || w.perspective > 0.0
+            || (w.nib < 1.0 && s.smooth)
+            || w.taper > 0.0;
+        for (i, cracks) in self.cracks.iter_mut().enumerate() {
+            for (side, slot) in cracks.iter_mut().enumerate() {
+                let Some(mut crack) = *slot else { continue };
+                let pixel = [i as i64 % width, i as i64 / width];
+                crack.shifts &= !varies;
+                let at = [x0 + pixel[0], y0 + pixel[1]];
+                let mut factor = local_weight(s, view, &crack, at, side);
+                if taper > 0.0 {
+                    let end = cracks_to_end(&lines, (pixel, side), [width, height], taper);
+                    factor *= taper_weight(taper, end);
+                }
+                *slot = weighted(crack, factor);
+            }
+        }
+    }
+
+    /// The cracks and where they are.
+    fn places(&self) -> impl Iterator<Item = (Place, Crack)> {
+        self.cracks.iter().enumerate().flat_map(|(i, cracks)| {
+            let pixel = [i as i64 % self.width, i as i64 / self.width];
+            let sides = [0, 1].map(|side| cracks[side].map(|crack| ((pixel, side), crack)));
+            sides.into_iter().flatten()
+        })
     }
 
     /// Leaves out the cracks that are not parts of lines, and bends the lines of the others.
     fn complete(&mut self, steps: i32, specks: u32) {
         let width = self.width;
         let place = |i: usize, side| ([i as i64 % width, i as i64 / width], side);
-        let mut all = HashMap::new();
-        for (i, cracks) in self.cracks.iter().enumerate() {
-            for (side, crack) in cracks.iter().enumerate() {
-                all.extend(crack.map(|crack| (place(i, side), crack)));
-            }
-        }
+        let all: HashMap<Place, Crack> = self.places().collect();
         let linked = linked(&all, steps);
         let kept = without_specks(&linked, specks);
         for (i, cracks) in self.cracks.iter_mut().enumerate() {

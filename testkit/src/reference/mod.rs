@@ -35,6 +35,7 @@ pub mod tone_bands;
 pub mod view;
 pub mod vignette;
 pub mod walk;
+pub mod weight;
 pub mod window;
 
 pub type Rgb = [f64; 3];

@@ -24,6 +24,8 @@ pub struct View<'a> {
     pub ids: Option<&'a IdImage>,
     /// Height of an orthographic view in world units.
     pub height: f64,
+    /// Unit vector towards the light that lines follow.
+    pub to_light: [f64; 3],
 }
 
 impl View<'_> {

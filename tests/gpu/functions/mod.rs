@@ -12,6 +12,7 @@ mod jumps;
 mod normal;
 mod planes;
 mod walk;
+mod weight;
 
 use bevy::color::{Color, Hsva};
 use bevy_comics::{

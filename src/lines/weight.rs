@@ -1,0 +1,224 @@
+//! How wide lines are in different places: the settings, and what the shaders read of them.
+
+use bevy::{
+    math::{FloatExt, Vec2, Vec3},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use super::settings::LineSettings;
+use crate::settings::{FieldRange, bounded};
+
+/// How wide lines are in different places. Every number is a factor of the line's width, or
+/// says how a factor is found; the factors are multiplied. With the defaults, all are 1.
+///
+/// They apply to lines of the corrected forms, on devices with compute shaders. The ideas
+/// are those of ink drawing: thick outside and thin inside, heavy in the shade, tapered
+/// where a line ends.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LineWeight {
+    /// Width of silhouettes in front of the sky or of another object, as a multiple of the
+    /// lines' width. Meshes of one `OutlineGroup` are one object. Without the crate's
+    /// feature `objects`, only in front of the sky. Range 0 to 4, default 1.
+    #[reflect(@FieldRange::linear(0.0, 4.0))]
+    pub outer: f32,
+    /// Width of silhouettes in front of another part of the same object. Range 0 to 4,
+    /// default 1.
+    #[reflect(@FieldRange::linear(0.0, 4.0))]
+    pub inner: f32,
+    /// Width of creases. Range 0 to 4, default 1.
+    #[reflect(@FieldRange::linear(0.0, 4.0))]
+    pub crease: f32,
+    /// Width of edges between objects, where there is no silhouette. Range 0 to 4, default
+    /// 1.
+    #[reflect(@FieldRange::linear(0.0, 4.0))]
+    pub object: f32,
+    /// By what fraction lines are wider on surfaces that face away from the light. The
+    /// light is the [`KeyLight`](crate::KeyLight), else the brightest directional light,
+    /// else one from above. The normal prepass is added to the camera. Range 0 to 2,
+    /// default 0.
+    #[reflect(@FieldRange::linear(0.0, 2.0))]
+    pub shade: f32,
+    /// By what fraction lines are narrower on surfaces that face the light; at 1, the
+    /// light side has no lines. The normal prepass is added to the camera. Range 0 to 1,
+    /// default 0.
+    #[reflect(@FieldRange::FRACTION)]
+    pub lit: f32,
+    /// How much the width follows distance in a perspective view: 0: lines are equally wide
+    /// at all distances; 1: as if drawn on the surfaces. The width is unchanged halfway
+    /// between the ends of the depth map's range, and at most doubles. Range 0 to 1,
+    /// default 0.
+    #[reflect(@FieldRange::FRACTION)]
+    pub perspective: f32,
+    /// Width of lines along the edge of the pen's nib, as a fraction of that across it: 1 is
+    /// a round pen. Needs `smooth` lines. Range 0.1 to 1, default 1.
+    #[reflect(@FieldRange::linear(0.1, 1.0))]
+    pub nib: f32,
+    /// Direction of the edge of the nib, anticlockwise from a horizontal line in the
+    /// picture, in degrees. Range 0 to 180, default 40.
+    #[reflect(@FieldRange::linear(0.0, 180.0).unit("°"))]
+    pub nib_angle: f32,
+    /// Length over which a line becomes thinner towards a loose end, in logical pixels,
+    /// counted along the borders of pixels. Lines that meet others have no loose end.
+    /// At most 64 physical pixels. Range 0 (blunt ends) to 48, default 0.
+    #[reflect(@FieldRange::linear(0.0, 48.0).unit("px"))]
+    pub taper: f32,
+}
+
+/// The most by which [`LineWeight::perspective`] multiplies a width: that of `weight.wgsl`.
+const NEAREST: f32 = 2.0;
+/// Most cracks that the end of a line is looked for in.
+const LONGEST_TAPER: f32 = 64.0;
+
+impl LineWeight {
+    /// Lines of even width.
+    pub const EVEN: Self = Self {
+        outer: 1.0,
+        inner: 1.0,
+        crease: 1.0,
+        object: 1.0,
+        shade: 0.0,
+        lit: 0.0,
+        perspective: 0.0,
+        nib: 1.0,
+        nib_angle: 40.0,
+        taper: 0.0,
+    };
+
+    /// The settings that are used.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        let factor = |value| bounded(value, 1.0, 0.0, 4.0);
+        Self {
+            outer: factor(self.outer),
+            inner: factor(self.inner),
+            crease: factor(self.crease),
+            object: factor(self.object),
+            shade: bounded(self.shade, 0.0, 0.0, 2.0),
+            lit: bounded(self.lit, 0.0, 0.0, 1.0),
+            perspective: bounded(self.perspective, 0.0, 0.0, 1.0),
+            nib: bounded(self.nib, 1.0, 0.1, 1.0),
+            nib_angle: bounded(self.nib_angle, 40.0, 0.0, 180.0),
+            taper: bounded(self.taper, 0.0, 0.0, 48.0),
+        }
+    }
+
+    /// The settings between two, at `t` from 0 to 1.
+    #[must_use]
+    pub fn mixed(self, other: Self, t: f32) -> Self {
+        Self {
+            outer: self.outer.lerp(other.outer, t),
+            inner: self.inner.lerp(other.inner, t),
+            crease: self.crease.lerp(other.crease, t),
+            object: self.object.lerp(other.object, t),
+            shade: self.shade.lerp(other.shade, t),
+            lit: self.lit.lerp(other.lit, t),
+            perspective: self.perspective.lerp(other.perspective, t),
+            nib: self.nib.lerp(other.nib, t),
+            nib_angle: self.nib_angle.lerp(other.nib_angle, t),
+            taper: self.taper.lerp(other.taper, t),
+        }
+    }
+
+    /// Whether widths depend on the normals of surfaces.
+    pub(crate) fn reads_normals(&self) -> bool {
+        self.shade > 0.0 || self.lit > 0.0
+    }
+
+    /// Whether widths depend on the objects on both sides of a silhouette.
+    pub(crate) fn reads_ids(&self) -> bool {
+        self.outer != self.inner
+    }
+
+    /// The largest factor of any line.
+    pub(crate) fn largest(&self) -> f32 {
+        let kinds = [self.outer, self.inner, self.crease, self.object];
+        let kind = kinds.into_iter().fold(0.0, f32::max);
+        let nearest = if self.perspective > 0.0 { NEAREST } else { 1.0 };
+        kind * (1.0 + self.shade) * nearest
+    }
+
+    /// The settings as shaders take them. `scale`: pixels of the grid per logical pixel;
+    /// `to_light`: unit vector.
+    pub(crate) fn uniform(&self, scale: f32, to_light: Vec3) -> WeightUniform {
+        let angle = self.nib_angle.to_radians();
+        WeightUniform {
+            outer: self.outer,
+            inner: self.inner,
+            crease: self.crease,
+            object: self.object,
+            to_light,
+            shade: self.shade,
+            // The picture's y goes down.
+            nib_edge: Vec2::new(angle.cos(), -angle.sin()),
+            nib: self.nib,
+            lit: self.lit,
+            perspective: self.perspective,
+            taper: (self.taper * scale).min(LONGEST_TAPER),
+            unused: Vec2::ZERO,
+        }
+    }
+}
+
+impl Default for LineWeight {
+    fn default() -> Self {
+        Self::EVEN
+    }
+}
+
+/// `Weight` of `weight.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct WeightUniform {
+    outer: f32,
+    inner: f32,
+    crease: f32,
+    object: f32,
+    to_light: Vec3,
+    shade: f32,
+    nib_edge: Vec2,
+    nib: f32,
+    lit: f32,
+    perspective: f32,
+    taper: f32,
+    unused: Vec2,
+}
+
+/// Which factors of the width are not 1: what selects the variants of the passes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) struct WeightKey {
+    pub kinds: bool,
+    /// Silhouettes in front of other objects differ from those in front of the same.
+    pub outer: bool,
+    pub light: bool,
+    pub perspective: bool,
+    pub nib: bool,
+    pub taper: bool,
+}
+
+impl WeightKey {
+    pub fn new(lines: &LineSettings) -> Self {
+        let weight = &lines.weight;
+        let kinds = [weight.outer, weight.inner, weight.crease, weight.object];
+        Self {
+            kinds: kinds != [1.0; 4],
+            outer: weight.reads_ids(),
+            light: weight.reads_normals(),
+            perspective: weight.perspective > 0.0,
+            nib: weight.nib < 1.0 && lines.smooth,
+            taper: weight.taper > 0.0,
+        }
+    }
+
+    /// Whether any factor is not 1.
+    pub fn any(self) -> bool {
+        self.kinds || self.varies()
+    }
+
+    /// Whether the width changes along a line.
+    pub fn varies(self) -> bool {
+        self.light || self.perspective || self.nib || self.taper
+    }
+}

@@ -1,0 +1,113 @@
+//! Twin of `lines/weight.wgsl`: how wide a line is at a crack.
+
+use bevy_comics::{LineWeight, Outlines};
+
+use super::{
+    crack::{Crack, SIDES, THINNEST, normal, stored_width},
+    map::{Frame, Projection, is_background},
+    smoothstep,
+    view::View,
+};
+
+/// The factor of a crack with these kinds. `outer`: there is sky or another object behind
+/// it.
+pub fn kind_weight(w: &LineWeight, kinds: [bool; 3], outer: bool) -> f64 {
+    f64::from(match kinds {
+        [true, ..] if outer => w.outer,
+        [true, ..] => w.inner,
+        [.., true] => w.object,
+        _ => w.crease,
+    })
+}
+
+/// `facing`: the cosine of the angle between the owner's normal and the light.
+pub fn light_weight(w: &LineWeight, facing: f64) -> f64 {
+    1.0 + f64::from(w.shade) * smoothstep(-0.3, 0.3, -facing)
+        - f64::from(w.lit) * smoothstep(-0.1, 0.6, facing)
+}
+
+/// `d`: the raw depth of the owner.
+pub fn perspective_weight(w: &LineWeight, frame: &Frame, d: f64) -> f64 {
+    let (Projection::Perspective { offset }, Some([near, far])) = (frame.projection, frame.ends)
+    else {
+        return 1.0;
+    };
+    if is_background(d) {
+        return 1.0;
+    }
+    let distance = |d: f64| 1.0 / (d + offset);
+    let middle = 0.5 * (distance(near) + distance(far));
+    (middle / distance(d))
+        .clamp(0.125, 2.0)
+        .powf(f64::from(w.perspective))
+}
+
+/// `along`: the direction of the line in the picture, y down.
+pub fn nib_weight(w: &LineWeight, [x, y]: [f64; 2]) -> f64 {
+    let line = (-y).atan2(x);
+    let apart = line - f64::from(w.nib_angle).to_radians();
+    apart.sin().hypot(f64::from(w.nib) * apart.cos())
+}
+
+/// `cracks`: those between the crack and the loose end of its line.
+pub fn taper_weight(taper: f64, cracks: usize) -> f64 {
+    smoothstep(0.0, taper, cracks as f64 + 0.5)
+}
+
+/// A crack whose width is multiplied by a factor; `None` if nothing is left of it.
+pub fn weighted(crack: Crack, factor: f64) -> Option<Crack> {
+    let byte = |value: f64| (255.0 * value.clamp(0.0, 1.0)).round() / 255.0;
+    let thinnest = crack.half_width.min(THINNEST);
+    let half_width = crack.half_width * factor;
+    let opacity = byte(byte(crack.opacity) * (half_width / thinnest).min(1.0));
+    let weighted = Crack {
+        opacity,
+        half_width: stored_width(half_width.max(thinnest)),
+        ..crack
+    };
+    (opacity > 0.0).then_some(weighted)
+}
+
+/// The largest factor of any line.
+pub fn largest_weight(w: &LineWeight) -> f64 {
+    let kind = w.outer.max(w.inner).max(w.crease).max(w.object);
+    let nearest = if w.perspective > 0.0 { 2.0 } else { 1.0 };
+    f64::from(kind) * (1.0 + f64::from(w.shade)) * nearest
+}
+
+/// The factors that do not depend on the rest of the line: by kind, light, distance and
+/// nib. `pixel`: that of the crack, in the target.
+pub fn local_weight(s: &Outlines, view: &View, crack: &Crack, pixel: [i64; 2], side: usize) -> f64 {
+    let w = &s.weight;
+    let [dx, dy] = SIDES[side];
+    let here = pixel.map(|v| v as u32);
+    let there = [pixel[0] + dx, pixel[1] + dy].map(|v| v as u32);
+    let [owner, beyond] = if crack.mine {
+        [here, there]
+    } else {
+        [there, here]
+    };
+    let depth = |[x, y]: [u32; 2]| view.depth(x, y, 0);
+    let sky = is_background(depth(beyond));
+    let object = |[x, y]: [u32; 2]| {
+        view.ids
+            .map(|ids| ids.pixels[(y * view.width + x) as usize][0])
+    };
+    let mut factor = kind_weight(w, crack.kinds, sky || object(owner) != object(beyond));
+    let lights = w.shade > 0.0 || w.lit > 0.0;
+    if let Some(n) = normal(view, owner[0], owner[1]).filter(|_| lights) {
+        let facing = (0..3).map(|i| n[i] * view.to_light[i]).sum();
+        factor *= light_weight(w, facing);
+    }
+    factor *= perspective_weight(w, &view.frame, depth(owner));
+    if w.nib < 1.0 && s.smooth {
+        let slope = crack.bend[1];
+        let along = if side == 0 {
+            [slope, 1.0]
+        } else {
+            [1.0, slope]
+        };
+        factor *= nib_weight(w, along);
+    }
+    factor
+}

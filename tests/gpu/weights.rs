@@ -1,0 +1,363 @@
+//! How wide lines are in different places.
+
+use bevy::{camera::ScalingMode, prelude::*, render::view::Msaa};
+use bevy_comics::{
+    ComicStyle, KeyLight, LineWeight, ObjectEdges, OutlineGroup, Outlines, Silhouettes,
+};
+
+use crate::{
+    pictures::{assert_pass_is_its_twin, outlined},
+    small::{Object, Small},
+};
+
+fn weighted(weight: LineWeight) -> Outlines {
+    Outlines {
+        weight,
+        ..default()
+    }
+}
+
+/// Each factor alone, and all together, at two widths: every pixel of the small scene.
+#[test]
+fn every_factor_is_its_twin() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let light = Transform::from_xyz(2.0, 3.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y);
+    small.world().spawn((KeyLight, light, Object));
+    let even = LineWeight::EVEN;
+    let factors = [
+        LineWeight {
+            outer: 2.0,
+            inner: 0.5,
+            crease: 0.7,
+            object: 1.3,
+            ..even
+        },
+        LineWeight {
+            shade: 0.6,
+            lit: 1.0,
+            ..even
+        },
+        LineWeight {
+            perspective: 1.0,
+            ..even
+        },
+        LineWeight {
+            nib: 0.2,
+            nib_angle: 30.0,
+            ..even
+        },
+        LineWeight {
+            taper: 12.0,
+            ..even
+        },
+        LineWeight {
+            outer: 1.5,
+            inner: 0.75,
+            crease: 0.6,
+            object: 0.75,
+            shade: 0.6,
+            lit: 0.4,
+            perspective: 0.5,
+            nib: 0.4,
+            nib_angle: 40.0,
+            taper: 20.0,
+        },
+    ];
+    for weight in factors {
+        for width in [1.5, 4.0] {
+            let outlines = Outlines {
+                width,
+                ..weighted(weight)
+            };
+            assert_pass_is_its_twin(
+                &mut small,
+                &outlined(outlines),
+                None,
+                &format!("{width} px, {weight:?}"),
+            );
+        }
+    }
+}
+
+/// An orthographic view of 96 x 64 units, a unit per pixel, towards the sky.
+fn towards_the_sky() -> Small {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    small.clear();
+    small.insert((
+        Transform::IDENTITY,
+        Projection::Orthographic(OrthographicProjection {
+            scaling_mode: ScalingMode::Fixed {
+                width: 96.0,
+                height: 64.0,
+            },
+            ..OrthographicProjection::default_3d()
+        }),
+    ));
+    small
+}
+
+/// A wall at a distance, from its left and lower to its right and upper end.
+fn wall(
+    small: &mut Small,
+    [left, bottom]: [f32; 2],
+    [right, top]: [f32; 2],
+    distance: f32,
+) -> Entity {
+    let world = small.world();
+    let size = Vec2::new(right - left, top - bottom);
+    let mesh = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Rectangle::from_size(size));
+    let material = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: Color::WHITE,
+            unlit: true,
+            ..default()
+        });
+    let middle = Vec3::new(0.5 * (left + right), 0.5 * (bottom + top), -distance);
+    world
+        .spawn((
+            Mesh3d(mesh),
+            MeshMaterial3d(material),
+            Transform::from_translation(middle),
+            Object,
+        ))
+        .id()
+}
+
+/// The widths of a line across every row that is given: the sum of its ink.
+fn width_across(
+    small: &mut Small,
+    outlines: Outlines,
+    columns: std::ops::Range<u32>,
+    row: u32,
+) -> f64 {
+    small.style(&ComicStyle::new().with(outlines));
+    small.settle();
+    let picture = small.picture();
+    // Black lines on white: stored as display codes.
+    columns
+        .map(|x| {
+            let code = f64::from(picture.get_pixel(x, row).0[0]) / 255.0;
+            1.0 - bevy_comics_testkit::reference::color::srgb_decode_one(code)
+        })
+        .sum()
+}
+
+fn silhouettes(width: f32, weight: LineWeight) -> Outlines {
+    Outlines {
+        width,
+        weight,
+        ..Outlines::SILHOUETTES
+    }
+}
+
+/// The rim of a thing in front of another has the outer weight, in front of itself the inner:
+/// two walls are two things, or one if they are a group. Ink across the line is its width.
+#[test]
+fn rims_before_other_objects_are_wider_than_rims_before_the_same() {
+    let weight = LineWeight {
+        outer: 1.5,
+        inner: 0.5,
+        ..LineWeight::EVEN
+    };
+    let mut small = towards_the_sky();
+    let back = wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 100.0);
+    let front = wall(&mut small, [-60.0, -40.0], [0.0, 40.0], 20.0);
+    for width in [2.0, 4.0] {
+        let apart = width_across(&mut small, silhouettes(width, weight), 30..66, 32);
+        assert!(
+            (apart - 1.5 * f64::from(width)).abs() < 0.02,
+            "{width}: {apart}"
+        );
+        let group = small
+            .world()
+            .spawn((
+                OutlineGroup,
+                Transform::default(),
+                Visibility::default(),
+                Object,
+            ))
+            .id();
+        small.world().entity_mut(group).add_children(&[back, front]);
+        let together = width_across(&mut small, silhouettes(width, weight), 30..66, 32);
+        assert!(
+            (together - 0.5 * f64::from(width)).abs() < 0.02,
+            "{width}: {together}"
+        );
+        small.world().entity_mut(group).remove::<OutlineGroup>();
+    }
+}
+
+/// Creases and edges of objects have widths of their own.
+#[test]
+fn edges_between_objects_have_their_own_width() {
+    let mut small = towards_the_sky();
+    wall(&mut small, [-60.0, -40.0], [0.0, 40.0], 50.0);
+    wall(&mut small, [0.0, -40.0], [60.0, 40.0], 50.0);
+    for factor in [0.5, 1.0, 2.0] {
+        let outlines = Outlines {
+            silhouettes: None,
+            creases: None,
+            objects: Some(ObjectEdges::default()),
+            width: 2.0,
+            weight: LineWeight {
+                object: factor,
+                ..LineWeight::EVEN
+            },
+            ..default()
+        };
+        let found = width_across(&mut small, outlines, 30..66, 32);
+        let want = 2.0 * f64::from(factor);
+        assert!((found - want).abs() < 0.02, "{factor}: {found}");
+    }
+}
+
+/// A sphere in the light from one side: the lit side loses its line, the side in the shade
+/// gains, and mirroring the light mirrors the lines.
+#[test]
+fn lines_follow_the_light() {
+    let weight = LineWeight {
+        shade: 0.5,
+        lit: 1.0,
+        ..LineWeight::EVEN
+    };
+    let mut small = towards_the_sky();
+    let world = small.world();
+    let mesh = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Sphere::new(20.0).mesh().uv(128, 64));
+    let material = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: Color::WHITE,
+            unlit: true,
+            ..default()
+        });
+    world.spawn((
+        Mesh3d(mesh),
+        MeshMaterial3d(material),
+        Transform::from_xyz(0.0, 0.0, -100.0),
+        Object,
+    ));
+    wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 200.0);
+    let light = small
+        .world()
+        .spawn((KeyLight, Transform::default(), Object))
+        .id();
+    for sign in [1.0, -1.0] {
+        let shine = Transform::default().looking_to(Vec3::NEG_X * sign, Vec3::Y);
+        small.world().entity_mut(light).insert(shine);
+        // The steps beside the rim are no lines.
+        let rim = Silhouettes {
+            threshold: 0.1,
+            ..default()
+        };
+        let outlines = Outlines {
+            silhouettes: Some(rim),
+            ..silhouettes(4.0, weight)
+        };
+        let left = width_across(&mut small, outlines, 18..38, 32);
+        let right = width_across(&mut small, outlines, 58..78, 32);
+        let [lit, dark] = if sign > 0.0 {
+            [right, left]
+        } else {
+            [left, right]
+        };
+        assert!(lit < 0.02, "{sign}: {left}, {right}");
+        assert!((dark - 6.0).abs() < 0.05, "{sign}: {left}, {right}");
+    }
+}
+
+/// A line along the nib's edge is thin, one across it full.
+#[test]
+fn a_nib_draws_thick_and_thin() {
+    let weight = |nib_angle| LineWeight {
+        nib: 0.25,
+        nib_angle,
+        ..LineWeight::EVEN
+    };
+    let mut small = towards_the_sky();
+    wall(&mut small, [-60.0, -40.0], [0.0, 40.0], 20.0);
+    wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 100.0);
+    let upright = width_across(&mut small, silhouettes(4.0, weight(90.0)), 30..66, 32);
+    assert!((upright - 1.0).abs() < 0.02, "{upright}");
+    let across = width_across(&mut small, silhouettes(4.0, weight(0.0)), 30..66, 32);
+    assert!((across - 4.0).abs() < 0.02, "{across}");
+    let oblique = width_across(&mut small, silhouettes(4.0, weight(45.0)), 30..66, 32);
+    let want = 4.0 * 0.5f64.mul_add(1.0, 0.5 * 0.0625).sqrt();
+    assert!((oblique - want).abs() < 0.02, "{oblique}, {want}");
+}
+
+/// Near things have wider lines than far things, in proportion to their distance.
+#[test]
+fn lines_follow_perspective() {
+    let weight = LineWeight {
+        perspective: 1.0,
+        ..LineWeight::EVEN
+    };
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    small.clear();
+    small.insert(Transform::IDENTITY);
+    // Upper half: a rim at 12 units, lower half: one at 24, before a wall at 30.
+    wall(&mut small, [-100.0, 0.0], [0.0, 100.0], 12.0);
+    wall(&mut small, [-100.0, -100.0], [0.0, 0.0], 24.0);
+    wall(&mut small, [-100.0, -100.0], [100.0, 100.0], 30.0);
+    let outlines = silhouettes(4.0, weight);
+    let near = width_across(&mut small, outlines, 30..66, 16);
+    let far = width_across(&mut small, outlines, 30..66, 48);
+    // The middle between 12 and 30 is 21.
+    assert!((near - 4.0 * 21.0 / 12.0).abs() < 0.05, "{near}");
+    assert!((far - 4.0 * 21.0 / 24.0).abs() < 0.05, "{far}");
+}
+
+/// A line that ends in the middle of the picture is thin at its end, whole behind the
+/// taper, and grows in between.
+#[test]
+fn a_line_tapers_towards_its_loose_end() {
+    let weight = |taper| LineWeight {
+        taper,
+        ..LineWeight::EVEN
+    };
+    let mut small = towards_the_sky();
+    // A slot that closes: the wall behind it comes nearer from left to right, until there is
+    // no step any more.
+    let behind = wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 0.0);
+    small.world().entity_mut(behind).insert(
+        Transform::from_xyz(0.0, 0.0, -65.0)
+            .with_rotation(Quat::from_rotation_y(-30f32.to_radians())),
+    );
+    wall(&mut small, [-60.0, 0.0], [60.0, 40.0], 50.0);
+    let profile = |small: &mut Small, taper| {
+        small.style(&ComicStyle::new().with(silhouettes(4.0, weight(taper))));
+        small.settle();
+        let picture = small.picture();
+        let column = |x: u32| -> f64 {
+            (20..44)
+                .map(|y| {
+                    let code = f64::from(picture.get_pixel(x, y).0[0]) / 255.0;
+                    1.0 - bevy_comics_testkit::reference::color::srgb_decode_one(code)
+                })
+                .sum()
+        };
+        (0..96).map(column).collect::<Vec<f64>>()
+    };
+    let blunt = profile(&mut small, 0.0);
+    let tapered = profile(&mut small, 24.0);
+    // The end is round: half of the width beyond the last crack.
+    let end = blunt.iter().position(|width| *width < 0.01);
+    let end = end.expect("an end") - 2;
+    assert!((60..90).contains(&end), "{blunt:?}");
+    assert_eq!(
+        blunt[..end - 30],
+        tapered[..end - 30],
+        "whole behind the taper"
+    );
+    for x in end - 24..end {
+        assert!(tapered[x] <= tapered[x - 1] + 1e-3, "{x}: {tapered:.2?}");
+    }
+    // Half of the taper's length from the end, the width is half.
+    let half = tapered[end - 12] / blunt[end - 12];
+    assert!((half - 0.5).abs() < 0.1, "{half}: {tapered:.2?}");
+}
