@@ -88,7 +88,7 @@ pub use effect::{
 pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
 pub use lines::{
-    Creases, LineResponse, LineSettings, LineWeight, MapJumps, ObjectEdges, Silhouettes,
+    Creases, LineFog, LineResponse, LineSettings, LineWeight, MapJumps, ObjectEdges, Silhouettes,
 };
 #[cfg(feature = "objects")]
 pub use objects::{NoOutlines, OutlineGroup, OutlineKinds, OutlineStyle, ViewObjectIds, object_id};
@@ -135,7 +135,7 @@ mod pages {
 pub mod prelude {
     pub use crate::{
         CameraCut, ComicStyle, ComicStyleHandle, ComicsPlugin, Creases, DepthMap, DepthMapping,
-        Effect, EffectPlugin, Form, KeyLight, LineResponse, LineWeight, ObjectEdges,
+        Effect, EffectPlugin, Form, KeyLight, LineFog, LineResponse, LineWeight, ObjectEdges,
         RangeSmoothing, Silhouettes, SplitView, StyleTransition, StyleTransitionFinished,
         StyleWeight, VisibleDepthRange, effects::*,
     };

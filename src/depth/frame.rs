@@ -2,7 +2,7 @@
 
 use bevy::{
     camera::Projection,
-    math::{Mat4, UVec4, Vec4},
+    math::{Mat4, UVec4, Vec2, Vec4},
     reflect::Reflect,
     render::render_resource::ShaderType,
 };
@@ -143,6 +143,17 @@ impl DepthProjection {
             ProjectionKind::Orthographic => (self.shift - raw) / self.scale,
             ProjectionKind::Oblique => OBLIQUE_UNIT / raw,
         }
+    }
+
+    /// Two numbers that give the distance along the view's axis at a raw depth d: x / (d + y),
+    /// under an orthographic projection x + y * d. See [`distance`](Self::distance).
+    pub fn axis(&self) -> Vec2 {
+        let numbers = match self.kind {
+            ProjectionKind::Perspective => [self.shift, self.scale],
+            ProjectionKind::Orthographic => [self.shift / self.scale, -1.0 / self.scale],
+            ProjectionKind::Oblique => [OBLIQUE_UNIT, 0.0],
+        };
+        Vec2::from(numbers.map(|n| n as f32))
     }
 
     /// The reference that a jump in raw depth is measured against, as (factor,

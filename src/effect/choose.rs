@@ -32,7 +32,10 @@ use crate::{
         request::{RangePasses, RangeRequest},
     },
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
-    lines::request::{LinePasses, LineRequest},
+    lines::{
+        ViewFog,
+        request::{LinePasses, LineRequest},
+    },
     objects::{IdRequest, IdsWanted},
 };
 
@@ -52,6 +55,8 @@ pub(crate) struct ViewPlan {
     pub widest_object: f32,
     /// Unit vector towards the light that lines follow, in world space.
     pub to_light: Vec3,
+    /// The engine's distance fog of the camera.
+    pub fog: Option<ViewFog>,
     /// Seconds of the app's default clock.
     pub time: f64,
     /// Real time since the last frame, in seconds. Not the game's time: the camera

@@ -62,7 +62,7 @@ pub(crate) struct LineKey {
     pub links: bool,
     /// Lines run straight through the steps of pixels.
     pub smooth: bool,
-    /// Which factors of the width are not 1.
+    /// Which factors of width and opacity are not 1.
     pub weight: WeightKey,
     /// The width changes along a line.
     pub varied: bool,
@@ -87,7 +87,10 @@ impl LineKey {
         let weight = if by_fragments {
             WeightKey::default()
         } else {
-            WeightKey::new(lines)
+            WeightKey {
+                fog: request.fog.is_some(),
+                ..WeightKey::new(lines)
+            }
         };
         Self {
             oblique: request.oblique,
@@ -245,6 +248,7 @@ impl LineKey {
                 (self.visible_range, "VISIBLE_RANGE"),
                 (weight.nib, "NIB_WEIGHT"),
                 (weight.taper, "TAPER_WEIGHT"),
+                (weight.fog, "FOG"),
             ]))
             .collect()
     }

@@ -8,6 +8,7 @@
 
 mod cracks;
 mod draw;
+mod fog;
 mod inputs;
 mod key;
 mod kinds;
@@ -41,6 +42,8 @@ use bevy::{
     shader::load_shader_library,
 };
 
+pub use fog::LineFog;
+pub(crate) use fog::ViewFog;
 pub(crate) use key::reach;
 pub use kinds::{Creases, LineResponse, ObjectEdges, Silhouettes};
 pub(crate) use layouts::{ink_entry, range_entry};
@@ -65,6 +68,7 @@ pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "bend.wgsl");
     load_shader_library!(app, "listed.wgsl");
     load_shader_library!(app, "weight.wgsl");
+    load_shader_library!(app, "fog.wgsl");
     load_shader_library!(app, "pass.wgsl");
     load_shader_library!(app, "planes.wgsl");
     load_shader_library!(app, "read_planes.wgsl");

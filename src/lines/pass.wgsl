@@ -5,6 +5,7 @@
 
 #import bevy_comics::depth::view::View
 #import bevy_comics::lines::edge::{Grid, Lines}
+#import bevy_comics::lines::fog::Fog
 #import bevy_comics::lines::weight::Weight
 
 struct LinePass {
@@ -12,6 +13,7 @@ struct LinePass {
     settings: Lines,
     grid: Grid,
     weight: Weight,
+    fog: Fog,
 }
 
 @group(0) @binding(1) var<uniform> line_pass: LinePass;

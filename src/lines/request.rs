@@ -17,6 +17,7 @@ use bevy::{
 };
 
 use super::{
+    fog::FogUniform,
     key::{LineKey, Search},
     pipelines::{LinePass, LineShaders, SearchPass},
     resolve::{ResolveKey, ResolvePipeline},
@@ -36,6 +37,8 @@ pub(crate) struct LineRequest {
     pub view: ViewUniform,
     pub lines: LinesUniform,
     pub weight: WeightUniform,
+    /// The fog that lines fade into.
+    pub fog: Option<FogUniform>,
     /// Size in pixels of the depth texture, and its samples per pixel.
     pub depth_size: UVec2,
     pub samples: u32,
@@ -123,6 +126,7 @@ impl LineRequest {
             lines: self.lines,
             grid: self.grid(),
             weight: self.weight,
+            fog: self.fog.unwrap_or_default(),
         }
     }
 }
@@ -148,6 +152,7 @@ pub(crate) struct LinePassUniform {
     pub lines: LinesUniform,
     pub grid: Grid,
     pub weight: WeightUniform,
+    pub fog: FogUniform,
 }
 
 /// The pipelines of one view's lines.

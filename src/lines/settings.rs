@@ -3,6 +3,7 @@
 use bevy::{math::Vec3, render::render_resource::ShaderType};
 
 use super::{
+    fog::LineFog,
     kinds::{Creases, LineResponse, ObjectEdges, Silhouettes, ramp},
     weight::LineWeight,
 };
@@ -37,6 +38,8 @@ pub struct LineSettings {
     pub smooth: bool,
     /// How wide lines are in different places.
     pub weight: LineWeight,
+    /// What happens to lines in the engine's distance fog.
+    pub fog: LineFog,
 }
 
 /// Most borders of pixels that a line continues along weak edges.
@@ -57,6 +60,7 @@ impl LineSettings {
         response: LineResponse::Width,
         smooth: true,
         weight: LineWeight::EVEN,
+        fog: LineFog::Fade,
     };
 
     /// The settings without the kinds that are invisible: those of opacity 0, and

@@ -16,6 +16,9 @@
 #import bevy_comics::lines::weight::{
     kind_weight, light_weight, nib_weight, perspective_weight, taper_weight, weighted_crack,
 }
+#ifdef FOG
+#import bevy_comics::lines::fog::{fog_distance, fog_fraction}
+#endif
 #ifdef LIGHT_WEIGHT
 #import bevy_comics::depth::normal::texel_normal
 #endif
@@ -81,7 +84,7 @@ fn is_outer(owner: vec2<i32>, beyond: vec2<i32>) -> bool {
 #endif
 }
 
-// A packed crack as wide as it is to be. `bend`: how its line leaves it.
+// A packed crack as wide and as strong as it is to be. `bend`: how its line leaves it.
 fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let g = line_pass.grid;
     let w = line_pass.weight;
@@ -109,7 +112,13 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let on = cracks_to_end(g, crack, last_corner(crack), most);
     factor *= taper_weight(w, min(back, on));
 #endif
-    return select(weighted_crack(packed, factor), 0u, packed == 0u);
+    var fog = 0.0;
+#ifdef FOG
+    let at = (vec2<f32>(owner - g.rect.xy) + 0.5) / vec2<f32>(g.rect.zw);
+    let position = (at * 2.0 - 1.0) * vec2(1.0, -1.0);
+    fog = fog_fraction(line_pass.fog, fog_distance(line_pass.fog, position, texel_depth(owner, 0)));
+#endif
+    return select(weighted_crack(packed, factor, 1.0 - fog), 0u, packed == 0u);
 }
 #endif
 

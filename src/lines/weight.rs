@@ -186,7 +186,7 @@ pub(crate) struct WeightUniform {
     unused: Vec2,
 }
 
-/// Which factors of the width are not 1: what selects the variants of the passes.
+/// Which factors of width and opacity are not 1: what selects the variants of the passes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct WeightKey {
     pub kinds: bool,
@@ -196,6 +196,8 @@ pub(crate) struct WeightKey {
     pub perspective: bool,
     pub nib: bool,
     pub taper: bool,
+    /// Lines fade into fog.
+    pub fog: bool,
 }
 
 impl WeightKey {
@@ -209,12 +211,13 @@ impl WeightKey {
             perspective: weight.perspective > 0.0,
             nib: weight.nib < 1.0 && lines.smooth,
             taper: weight.taper > 0.0,
+            fog: false,
         }
     }
 
-    /// Whether any factor is not 1.
+    /// Whether any factor is not 1, that of the fog included.
     pub fn any(self) -> bool {
-        self.kinds || self.varies()
+        self.kinds || self.fog || self.varies()
     }
 
     /// Whether the width changes along a line.

@@ -67,13 +67,13 @@ fn taper_weight(w: Weight, cracks: i32) -> f32 {
     return smoothstep(0.0, max(w.taper, 1e-3), f32(cracks) + 0.5);
 }
 
-// A packed crack whose width is multiplied by a factor. A line that would be thinner than
-// any line is fainter instead. 0 if nothing is left of it.
-fn weighted_crack(packed: u32, factor: f32) -> u32 {
+// A packed crack whose width is multiplied by a factor, and its opacity by another. A line
+// that would be thinner than any line is fainter instead. 0 if nothing is left of it.
+fn weighted_crack(packed: u32, factor: f32, opacity_factor: f32) -> u32 {
     let crack = unpack_crack(packed);
     let thinnest = min(crack.half_width, THINNEST);
     let half_width = crack.half_width * factor;
-    let opacity = crack.opacity * min(half_width / max(thinnest, 1e-3), 1.0);
+    let opacity = crack.opacity * opacity_factor * min(half_width / max(thinnest, 1e-3), 1.0);
     let stored = byte(vec4(opacity)).x;
     let bits = (packed & 0xfffu) | (stored << 12u) | (pack_width(vec4(max(half_width, thinnest))).x << 20u);
     return select(bits, 0u, stored == 0u);

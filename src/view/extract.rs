@@ -11,7 +11,7 @@ use bevy::{
     time::{Real, Time},
 };
 
-use super::{CameraPlan, light::Lights};
+use super::{CameraPlan, fog::Fogs, light::Lights};
 use crate::{
     depth::{frame::DepthProjection, smoothing::CameraCuts},
     effect::ViewPlan,
@@ -34,7 +34,7 @@ pub(super) fn extract_views(
         >,
     >,
     (time, real_time): (Extract<Option<Res<Time>>>, Extract<Option<Res<Time<Real>>>>),
-    (objects, lights): (Extract<Res<ObjectStyles>>, Extract<Lights>),
+    (objects, lights, fogs): (Extract<Res<ObjectStyles>>, Extract<Lights>, Extract<Fogs>),
     stale: Query<Entity, With<ViewPlan>>,
     mut seen: Local<EntityHashSet>,
 ) {
@@ -63,6 +63,7 @@ pub(super) fn extract_views(
             scale_factor: camera.target_scaling_factor().unwrap_or(1.0),
             widest_object: objects.max_width(),
             to_light,
+            fog: fogs.of(entity),
             time: time.as_ref().map_or(0.0, |time| time.elapsed_secs_f64()),
             seconds: real_time.as_ref().map_or(0.0, |time| time.delta_secs()),
             cuts: cuts.map_or(0, |cuts| cuts.0),

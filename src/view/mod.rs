@@ -2,6 +2,7 @@
 //! extraction to the render world.
 
 mod extract;
+mod fog;
 mod light;
 mod prepasses;
 

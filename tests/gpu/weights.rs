@@ -1,8 +1,13 @@
 //! How wide lines are in different places.
 
-use bevy::{camera::ScalingMode, prelude::*, render::view::Msaa};
+use bevy::{
+    camera::ScalingMode,
+    pbr::{DistanceFog, FogFalloff},
+    prelude::*,
+    render::view::Msaa,
+};
 use bevy_comics::{
-    ComicStyle, KeyLight, LineWeight, ObjectEdges, OutlineGroup, Outlines, Silhouettes,
+    ComicStyle, KeyLight, LineFog, LineWeight, ObjectEdges, OutlineGroup, Outlines, Silhouettes,
 };
 
 use crate::{
@@ -360,4 +365,78 @@ fn a_line_tapers_towards_its_loose_end() {
     // Half of the taper's length from the end, the width is half.
     let half = tapered[end - 12] / blunt[end - 12];
     assert!((half - 0.5).abs() < 0.1, "{half}: {tapered:.2?}");
+}
+
+/// Lines fade as the engine's fog covers a black surface at the same place, at the middle of
+/// the view and at its border, for every falloff.
+#[test]
+fn lines_fade_as_black_surfaces_do() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    small.clear();
+    small.insert(Transform::IDENTITY);
+    // A rim at 20 units along the middle of the view, before a wall at 40.
+    let front = wall(&mut small, [-100.0, -100.0], [0.0, 100.0], 20.0);
+    wall(&mut small, [-100.0, -100.0], [100.0, 100.0], 40.0);
+    let falloffs = [
+        FogFalloff::Linear {
+            start: 5.0,
+            end: 30.0,
+        },
+        FogFalloff::Exponential { density: 0.04 },
+        FogFalloff::ExponentialSquared { density: 0.03 },
+        FogFalloff::Atmospheric {
+            extinction: Vec3::splat(0.03),
+            inscattering: Vec3::splat(0.03),
+        },
+    ];
+    for falloff in falloffs {
+        let fog = DistanceFog {
+            color: Color::srgba(1.0, 1.0, 1.0, 0.9),
+            falloff: falloff.clone(),
+            ..default()
+        };
+        small.insert(fog.clone());
+        for fades in [true, false] {
+            for row in [32, 2] {
+                let outlines = Outlines {
+                    fog: if fades {
+                        LineFog::Fade
+                    } else {
+                        LineFog::Ignore
+                    },
+                    ..silhouettes(4.0, LineWeight::EVEN)
+                };
+                let found = width_across(&mut small, outlines, 40..56, row) / 4.0;
+                // The engine's fog over the same wall in black.
+                let white = small.picture().get_pixel(20, row).0[0];
+                assert_eq!(white, 255);
+                let black = fogged_black(&mut small, front, row);
+                let want = if fades { 1.0 - black } else { 1.0 };
+                println!("{falloff:?}, row {row}: {found:.3}, {want:.3}");
+                assert!(
+                    (found - want).abs() < 0.012,
+                    "{falloff:?}, row {row}: {found}, {want}"
+                );
+            }
+        }
+    }
+}
+
+/// Brightness of a wall next to the middle of the view, painted black, in linear light.
+fn fogged_black(small: &mut Small, wall: Entity, row: u32) -> f64 {
+    small.style(&ComicStyle::new());
+    let material = small
+        .world()
+        .get::<MeshMaterial3d<StandardMaterial>>(wall)
+        .expect("a material")
+        .clone();
+    let paint = |small: &mut Small, color| {
+        let mut materials = small.world().resource_mut::<Assets<StandardMaterial>>();
+        materials.get_mut(&material).expect("loaded").base_color = color;
+    };
+    paint(small, Color::BLACK);
+    small.settle();
+    let code = f64::from(small.picture().get_pixel(46, row).0[0]) / 255.0;
+    paint(small, Color::WHITE);
+    bevy_comics_testkit::reference::color::srgb_decode_one(code)
 }

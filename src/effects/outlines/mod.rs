@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     effect::{Effect, EffectShader, EffectStage, Extent, Needs, NoUniform, ViewFacts},
-    lines::{Creases, LineResponse, LineSettings, LineWeight, ObjectEdges, Silhouettes},
+    lines::{Creases, LineFog, LineResponse, LineSettings, LineWeight, ObjectEdges, Silhouettes},
     settings::{Blend, FieldRange, bounded},
 };
 
@@ -72,6 +72,9 @@ pub struct Outlines {
     pub smooth: bool,
     /// How wide lines are in different places. Default: [`LineWeight::EVEN`].
     pub weight: LineWeight,
+    /// What happens to lines in the engine's `DistanceFog`, if the camera has it. Default:
+    /// [`LineFog::Fade`].
+    pub fog: LineFog,
 }
 
 impl Default for Outlines {
@@ -89,6 +92,7 @@ impl Default for Outlines {
             response: LineResponse::Width,
             smooth: true,
             weight: LineWeight::EVEN,
+            fog: LineFog::Fade,
         }
     }
 }
@@ -109,6 +113,7 @@ impl Outlines {
         response: LineResponse::Width,
         smooth: true,
         weight: LineWeight::EVEN,
+        fog: LineFog::Fade,
     };
 }
 
@@ -137,6 +142,7 @@ impl Effect for Outlines {
             response: self.response,
             smooth: self.smooth,
             weight: self.weight.sanitized(),
+            fog: self.fog,
         }
     }
 
@@ -216,6 +222,7 @@ impl Effect for Outlines {
             response: later.response,
             smooth: later.smooth,
             weight: self.weight.mixed(other.weight, t),
+            fog: later.fog,
         }
     }
 
@@ -264,6 +271,7 @@ impl Outlines {
             response: self.response,
             smooth: self.smooth,
             weight: self.weight,
+            fog: self.fog,
         }
         .visible()
     }

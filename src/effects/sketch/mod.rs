@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::Outlines;
 use crate::{
     effect::{AnyEffect, Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
-    lines::LineResponse,
+    lines::{LineFog, LineResponse},
     settings::{BlendField, FieldRange, bounded, displayable, file_color, linear_rgb},
 };
 
@@ -131,6 +131,7 @@ impl Effect for Sketch {
             objects: None,
             width: 1.5,
             response: LineResponse::Ink,
+            fog: LineFog::Ignore,
             ..Outlines::default()
         }))
     }

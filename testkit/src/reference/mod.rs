@@ -15,6 +15,7 @@ pub mod draw;
 pub mod edge;
 pub mod faithful;
 pub mod finish;
+pub mod fog;
 pub mod fused;
 pub mod histogram;
 pub mod jumps;

@@ -8,6 +8,7 @@ mod color_styles;
 mod contour_response;
 mod depth_map;
 mod finish;
+mod fog;
 mod jumps;
 mod normal;
 mod planes;
