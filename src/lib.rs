@@ -91,7 +91,9 @@ pub use lines::{
     Creases, LineFog, LineResponse, LineSettings, LineWeight, MapJumps, ObjectEdges, Silhouettes,
 };
 #[cfg(feature = "objects")]
-pub use objects::{NoOutlines, OutlineGroup, OutlineKinds, OutlineStyle, ViewObjectIds, object_id};
+pub use objects::{
+    NoOutlines, NoStyle, OutlineGroup, OutlineKinds, OutlineStyle, ViewObjectIds, object_id,
+};
 pub use plugin::ComicsPlugin;
 pub use schedule::ComicsSystems;
 pub use settings::{
@@ -142,5 +144,5 @@ pub mod prelude {
     #[cfg(feature = "cartoon")]
     pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};
     #[cfg(feature = "objects")]
-    pub use crate::{NoOutlines, OutlineGroup, OutlineKinds, OutlineStyle};
+    pub use crate::{NoOutlines, NoStyle, OutlineGroup, OutlineKinds, OutlineStyle};
 }

@@ -2,7 +2,7 @@
 
 use naga_oil::compose::get_preprocessor_data;
 
-use super::EffectType;
+use super::{EffectStage, EffectType};
 
 /// The template of the pass; lines that begin with `//@` are replaced.
 const RECIPE: &str = include_str!("fused.wgsl");
@@ -26,7 +26,7 @@ const MODULES: [&str; 11] = [
 ];
 
 /// Shader definitions of the fused pass that do not name an effect, in lower case.
-const DEFINITIONS: [&str; 17] = [
+const DEFINITIONS: [&str; 18] = [
     "depth",
     "map",
     "map_flags",
@@ -44,6 +44,7 @@ const DEFINITIONS: [&str; 17] = [
     "overlay",
     "stored_srgb",
     "stored_oklab",
+    "unstyled",
 ];
 
 /// The shader definition of the effect with this name.
@@ -103,21 +104,29 @@ fn imports_unknown(effect: &EffectType, known: &[&EffectType]) -> bool {
     })
 }
 
+/// Behind the effects that change colours: gives the objects with `NoStyle` theirs back.
+const RESTORE: &str = "#ifdef UNSTYLED
+    p.color = mix(p.color, p.original, unstyled_fraction(pixel));
+#endif
+";
+
 /// The WGSL of the fused pass with these effects, in this order.
 pub(super) fn fused_pass(types: &[&EffectType]) -> String {
     let mut text = String::from("// Composed by bevy_comics.\n");
     for line in RECIPE.lines() {
-        let entries: fn(&EffectType) -> String = match line.trim() {
-            "//@members" => members,
-            "//@calls" => calls,
+        match line.trim() {
+            "//@members" => text.extend(types.iter().map(|effect| members(effect))),
+            "//@calls" => {
+                let colors = |effect: &&&EffectType| effect.stage <= EffectStage::Color;
+                text.extend(types.iter().filter(colors).map(|effect| calls(effect)));
+                text.push_str(RESTORE);
+                let later = types.iter().filter(|effect| !colors(effect));
+                text.extend(later.map(|effect| calls(effect)));
+            }
             _ => {
                 text.push_str(line);
                 text.push('\n');
-                continue;
             }
-        };
-        for effect in types {
-            text.push_str(&entries(effect));
         }
     }
     text

@@ -15,7 +15,7 @@
 #import bevy_comics::finish::{Finish, compare, difference, object_color, range_fraction}
 #import bevy_comics::lines::edge::Lines
 #import bevy_comics::lines::read::{lines_at, set_lines}
-#import bevy_comics::objects::load_object
+#import bevy_comics::objects::{load_object, unstyled_fraction}
 
 // Holds only the settings of the effects that are drawn, in the order of the
 // chain. Uniform structs inside a struct start at multiples of 16 bytes.

@@ -81,6 +81,8 @@ pub(crate) struct StylizeKey {
     pub visible_range: bool,
     pub lines: bool,
     pub object_styles: bool,
+    /// The colour effects leave some objects alone.
+    unstyled: bool,
     view: Option<DebugView>,
     map_flags: u32,
     finish: bool,
@@ -144,7 +146,8 @@ impl StylizeKey {
             depth,
             visible_range: plan.draws_with_range(),
             lines,
-            object_styles: lines && plan.object_styles,
+            object_styles: (lines && plan.object_styles) || plan.unstyled,
+            unstyled: plan.unstyled,
             view: plan.view,
             map_flags: if needs.contains(Needs::MAP) {
                 inputs.view.depth.flags
@@ -226,6 +229,7 @@ impl StylizeKey {
             (self.lines, "LINES"),
             (needs.contains(Needs::LINES_ANYWHERE), "LINES_ANYWHERE"),
             (self.object_styles, "OBJECT_STYLES"),
+            (self.unstyled, "UNSTYLED"),
             (needs.contains(Needs::LIGHTNESS_CHANGE), "LIGHTNESS_CHANGE"),
             (self.same_size, "SAME_SIZE"),
             (self.finish, "FINISH"),

@@ -5,12 +5,13 @@ use std::fmt::Debug;
 
 use bevy::ecs::world::EntityRef;
 
-use super::{AnyEffect, EffectType, Needs};
+use super::{AnyEffect, EffectStage, EffectType, Needs};
 use crate::{
     depth::{DepthHistogram, DepthMap, VisibleDepthRange},
     diagnostics::{ComicsStage, LeftOut},
     finish::{DebugView, Finish, SplitView, StyleWeight},
-    lines::{Creases, LineSettings, Silhouettes},
+    lines::{Creases, LineFog, LineSettings, Silhouettes, has_fog},
+    objects::ObjectChanges,
 };
 
 /// An effect in a camera's plan.
@@ -43,6 +44,10 @@ pub(crate) struct Plan {
     pub lines: Option<LineSettings>,
     /// Some object has its own line style, or no lines.
     pub object_styles: bool,
+    /// The colour effects leave some object alone.
+    pub unstyled: bool,
+    /// Lines fade into the camera's distance fog.
+    pub fog: bool,
     /// The game reads the visible range.
     pub readback: bool,
     /// The game reads the histogram of depths.
@@ -54,11 +59,10 @@ pub(crate) struct Plan {
 
 impl Plan {
     /// The plan of a camera; `None` if none of its components requests anything.
-    /// `object_styles`: some object has its own line style, or no lines.
     pub fn new(
         camera: EntityRef,
         types: &[&'static EffectType],
-        object_styles: bool,
+        objects: ObjectChanges,
     ) -> Option<Self> {
         let mut plan = Self {
             depth_map: camera
@@ -66,7 +70,9 @@ impl Plan {
                 .copied()
                 .unwrap_or_default()
                 .sanitized(),
-            object_styles,
+            object_styles: objects.any,
+            unstyled: objects.unstyled,
+            fog: has_fog(camera),
             readback: camera.contains::<VisibleDepthRange>(),
             histogram: camera.contains::<DepthHistogram>(),
             finish: Finish::new(camera.get::<StyleWeight>(), camera.get::<SplitView>()),
@@ -184,6 +190,10 @@ impl Plan {
             planned.replaced = replaced.contains(&planned.effect.effect_type().name);
         }
         self.object_styles &= self.lines.is_some();
+        let color = |effect: &dyn AnyEffect| effect.effect_type().stage <= EffectStage::Color;
+        let colors = self.drawn().any(color);
+        self.unstyled &= colors;
+        self.fog &= self.lines.is_some_and(|lines| lines.fog == LineFog::Fade);
         // The debug view of an effect that is not drawn shows nothing.
         if let Some(DebugView::Effect(name)) = self.view
             && !self.drawn().any(|effect| effect.effect_type().name == name)
@@ -249,6 +259,7 @@ impl Plan {
                 plan.view = plan.view.filter(|v| !v.needs_depth());
                 plan.histogram = false;
                 plan.readback = false;
+                plan.unstyled = false;
             }
             Prepasses::Normals => {
                 plan.view = plan.view.filter(|v| *v != DebugView::Creases);
@@ -281,6 +292,11 @@ impl Plan {
         let needs = effects.fold(Needs::empty(), |all, one| all | one);
         let needs = if needs.contains(Needs::LINES_ANYWHERE) {
             needs | Needs::LINES
+        } else {
+            needs
+        };
+        let needs = if self.unstyled {
+            needs | Needs::IDS
         } else {
             needs
         };

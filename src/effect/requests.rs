@@ -34,7 +34,7 @@ use crate::{
         view::{ViewUniform, depth_rect},
     },
     lines::{
-        LineFog, LineSettings, MapJumps,
+        LineSettings, MapJumps,
         request::{FindPass, LinePasses, LinePipelines, LineRequest},
     },
     objects::IdRequest,
@@ -292,8 +292,10 @@ fn line_request(
         view: uniform,
         lines: settings.uniform(view.scale_factor, reference),
         weight: settings.weight.uniform(grid_scale, view.to_light),
-        fog: (view.fog.filter(|_| settings.fog == LineFog::Fade))
-            .map(|fog| fog.uniform(&view.projection, &view.clip_from_view)),
+        fog: plan.fog.then(|| {
+            let fog = view.fog.unwrap_or_default();
+            fog.uniform(&view.projection, &view.clip_from_view)
+        }),
         depth_size,
         samples,
         size: scene.viewport.zw(),

@@ -116,7 +116,7 @@ fn mean_bend(g: Grid, crack: vec3<i32>, otherwise: vec2<f32>) -> vec2<f32> {
     let across = along.yx;
     let run = dot(on.last - back.last, along);
     let rise = dot(on.last - back.last, across);
-    if !back.complete || !on.complete || abs(rise) > 1.9 * abs(run) {
+    if !back.complete || !on.complete || abs(rise) >= 1.9 * abs(run) {
         return otherwise;
     }
     let away = (back.sum + on.sum - 6.0 * crack_centre(crack)) / 7.0;

@@ -45,6 +45,18 @@ fn half_width_of(slots: vec4<u32>, s: Lines) -> vec4<f32> {
     return width;
 }
 
+// The factor of the opacity of lines that belong to these objects.
+fn opacity_of(slots: vec4<u32>) -> vec4<f32> {
+#ifdef OBJECT_STYLES
+    return vec4(
+        style_of(slots.x).opacity, style_of(slots.y).opacity,
+        style_of(slots.z).opacity, style_of(slots.w).opacity,
+    );
+#else
+    return vec4(1.0);
+#endif
+}
+
 // Four cracks.
 struct Cracks {
     // Packed, see Crack in edge.wgsl; 0 where there is none.
@@ -108,8 +120,9 @@ fn cracks(s: Lines, at: Borders) -> Cracks {
     mine = select(mine, object_mine, object);
     certain |= object;
 #endif
+    let owner_slot = select(at.slot_there, at.slot_here, mine);
     var opacity = vec4(1.0);
-    var half_width = half_width_of(select(at.slot_there, at.slot_here, mine), s);
+    var half_width = half_width_of(owner_slot, s);
 #ifdef FADING
     let frame = depth_frame();
     let owner = select(at.there, at.here, mine);
@@ -120,6 +133,7 @@ fn cracks(s: Lines, at: Borders) -> Cracks {
     opacity -= s.opacity_fade * map;
     half_width *= 1.0 - s.width_fade * map;
 #endif
+    opacity *= opacity_of(owner_slot);
     let packed = found | select(vec4(0u), vec4(8u), mine) | pack_response(s, ink, has(found, OBJECT), opacity, half_width);
     return Cracks(select(vec4(0u), packed, found != vec4(0u)), certain);
 }

@@ -10,7 +10,7 @@
 #import bevy_comics::depth::normal::texel_normal
 #endif
 #ifdef OBJECT_STYLES
-#import bevy_comics::objects::texel_object
+#import bevy_comics::objects::{style_of, texel_object}
 #endif
 
 // Raw depth at a pixel of the grid. Outside of it, depth is extrapolated by point reflection
@@ -70,6 +70,9 @@ fn faithful(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 #endif
 #ifdef FADING
     ink *= 1.0 - s.opacity_fade * depth_map(depth_frame(), depths[12]).x;
+#endif
+#ifdef OBJECT_STYLES
+    ink *= style_of(slot).opacity;
 #endif
     // Where there is no ink, the slot is that of a measured line, if there is one.
     let own = select(0.0, f32(slot) / 255.0, any(ink > vec2(0.0)));

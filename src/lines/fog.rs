@@ -1,6 +1,7 @@
 //! How lines fade into the engine's distance fog.
 
 use bevy::{
+    ecs::world::EntityRef,
     math::{Mat4, Vec2, Vec3, Vec4},
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
@@ -15,14 +16,27 @@ use crate::depth::{ProjectionKind, frame::DepthProjection};
 pub enum LineFog {
     /// Nothing: lines are as strong in the fog as elsewhere.
     Ignore,
-    /// They fade by the fog in front of the surface that they belong to. Needs compute
-    /// shaders; other fog (volumetric, or drawn by materials of the game) is not known.
+    /// They fade by the fog in front of the surface that they belong to. Lines of the faithful
+    /// forms do not. Needs compute shaders, and the crate's feature `objects` or `cartoon`.
+    /// Other fog (volumetric, or drawn by materials of the game) is not known, nor are
+    /// materials without fog (`fog_enabled: false`).
     #[default]
     Fade,
 }
 
-/// The distance fog of a camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Whether a camera has the engine's distance fog.
+pub(crate) fn has_fog(camera: EntityRef) -> bool {
+    #[cfg(any(feature = "objects", feature = "cartoon"))]
+    return camera.contains::<bevy::pbr::DistanceFog>();
+    #[cfg(not(any(feature = "objects", feature = "cartoon")))]
+    {
+        let _ = camera;
+        false
+    }
+}
+
+/// The distance fog of a camera; by default one that hides nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct ViewFog {
     /// 0: linear, 1: exponential, 2: exponential squared, 3: atmospheric.
     pub falloff: u32,
@@ -65,4 +79,54 @@ pub(crate) struct FogUniform {
     falloff: u32,
     numbers: Vec3,
     most: f32,
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::math::Vec3Swizzles;
+
+    use super::*;
+
+    /// Positions on both sides of the middle, near and far, under projections of every kind:
+    /// from the position in the picture and the raw depth follows the distance.
+    #[test]
+    fn the_uniform_gives_the_distance_of_points() {
+        let infinite = Mat4::perspective_infinite_reverse_rh(1.0, 1.5, 0.1);
+        // Shifted, with a far plane.
+        let shifted = Mat4::from_cols_array_2d(&[
+            [1.2, 0.0, 0.0, 0.0],
+            [0.0, 1.7, 0.0, 0.0],
+            [0.3, -0.2, 0.1 / 99.9, -1.0],
+            [0.0, 0.0, 10.0 / 99.9, 0.0],
+        ]);
+        let parallel = Mat4::orthographic_rh(-30.0, 50.0, -20.0, 40.0, 100.0, 0.1);
+        // The third row is that of a plane across the view: only `raw.wgsl` knows the depth.
+        let mut oblique = infinite;
+        oblique.x_axis.z = 0.2;
+        oblique.y_axis.z = -0.1;
+        for clip_from_view in [infinite, shifted, parallel, oblique] {
+            let projection = DepthProjection::new(&clip_from_view, None);
+            let fog = ViewFog::default().uniform(&projection, &clip_from_view);
+            for point in [
+                Vec3::new(0.3, 0.2, 1.0),
+                Vec3::new(-7.0, 4.0, 20.0),
+                Vec3::new(20.0, -13.0, 60.0),
+            ] {
+                let clip = clip_from_view * (point * Vec3::new(1.0, 1.0, -1.0)).extend(1.0);
+                let seen = clip.truncate().xy() / clip.w;
+                let d = projection.raw_depth(f64::from(point.z)) as f32;
+                let across = seen * fog.ray.truncate().xy() + Vec2::new(fog.ray.z, fog.ray.w);
+                let found = if fog.orthographic != 0 {
+                    across.extend(fog.axis.x + fog.axis.y * d).length()
+                } else {
+                    fog.axis.x / (d + fog.axis.y) * across.extend(1.0).length()
+                };
+                let want = point.length();
+                assert!(
+                    (found / want - 1.0).abs() < 1e-3,
+                    "{clip_from_view}, {point}: {found}, {want}"
+                );
+            }
+        }
+    }
 }

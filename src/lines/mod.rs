@@ -43,7 +43,7 @@ use bevy::{
 };
 
 pub use fog::LineFog;
-pub(crate) use fog::ViewFog;
+pub(crate) use fog::{ViewFog, has_fog};
 pub(crate) use key::reach;
 pub use kinds::{Creases, LineResponse, ObjectEdges, Silhouettes};
 pub(crate) use layouts::{ink_entry, range_entry};

@@ -45,7 +45,7 @@ impl ResolveKey {
     pub fn new(key: &LineKey) -> Self {
         Self {
             oblique: key.oblique,
-            normals: key.creases || key.faithful[1],
+            normals: key.creases || key.faithful[1] || key.weight.light,
             ids: key.ids,
         }
     }

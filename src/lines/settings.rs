@@ -121,10 +121,12 @@ impl LineSettings {
             0.0
         };
         let widest = own.max(widest_object);
-        if widest * self.weight.largest() == 0.0 {
+        if widest == 0.0 {
             return 0;
         }
-        super::reach(0.5 * widest * self.weight.largest() * scale)
+        // Without compute shaders, all weights are 1.
+        let largest = self.weight.largest().max(1.0);
+        super::reach(0.5 * widest * largest * scale)
     }
 
     /// The jump in depth from which one surface hides another, instead of meeting it:

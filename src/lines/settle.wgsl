@@ -5,7 +5,7 @@
 #import bevy_comics::lines::chain::{
     along_crack, cracks_to_end, first_corner, last_corner, mean_bend,
 }
-#import bevy_comics::lines::edge::Grid
+#import bevy_comics::lines::edge::{Grid, SILHOUETTE}
 #import bevy_comics::lines::listed::listed_cell
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::planes::{COLUMNS, FOUND_EAST, FOUND_SOUTH, LINKED_EAST, LINKED_SOUTH}
@@ -84,6 +84,22 @@ fn is_outer(owner: vec2<i32>, beyond: vec2<i32>) -> bool {
 #endif
 }
 
+#ifdef LIGHT_WEIGHT
+// The factor of the light. A silhouette belongs to its owner; another line belongs to the
+// surfaces on both its sides, because the nearer one changes at every step.
+fn lit_weight(owner: vec2<i32>, beyond: vec2<i32>, silhouette: bool) -> f32 {
+    let w = line_pass.weight;
+    let n = texel_normal(owner, 0);
+    var m = vec4(0.0);
+    if !silhouette {
+        m = texel_normal(beyond, 0);
+    }
+    let sum = n.w * light_weight(w, dot(n.xyz, w.to_light)) + m.w * light_weight(w, dot(m.xyz, w.to_light));
+    let count = n.w + m.w;
+    return select(1.0, sum / max(count, 1.0), count > 0.0);
+}
+#endif
+
 // A packed crack as wide and as strong as it is to be. `bend`: how its line leaves it.
 fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let g = line_pass.grid;
@@ -96,8 +112,7 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     factor *= kind_weight(w, packed, is_outer(owner, here + there - owner));
 #endif
 #ifdef LIGHT_WEIGHT
-    let n = texel_normal(owner, 0);
-    factor *= select(1.0, light_weight(w, dot(n.xyz, w.to_light)), n.w > 0.0);
+    factor *= lit_weight(owner, here + there - owner, (packed & SILHOUETTE) != 0u);
 #endif
 #ifdef PERSPECTIVE_WEIGHT
     factor *= perspective_weight(w, depth_frame(), texel_depth(owner, 0));

@@ -15,7 +15,9 @@ use crate::settings::{FieldRange, bounded};
 ///
 /// They apply to lines of the corrected forms, on devices with compute shaders. The ideas
 /// are those of ink drawing: thick outside and thin inside, heavy in the shade, tapered
-/// where a line ends.
+/// where a line ends. The light of a crease or an object edge is the mean over both its
+/// sides. The middle of a line whose width changes is exactly the edge; that of an even
+/// line of odd width is half a pixel further in.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -49,8 +51,8 @@ pub struct LineWeight {
     pub lit: f32,
     /// How much the width follows distance in a perspective view: 0: lines are equally wide
     /// at all distances; 1: as if drawn on the surfaces. The width is unchanged halfway
-    /// between the ends of the depth map's range, and at most doubles. Range 0 to 1,
-    /// default 0.
+    /// between the ends of the depth map's range; it at most doubles, and at least an eighth
+    /// of it is left. Range 0 to 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub perspective: f32,
     /// Width of lines along the edge of the pen's nib, as a fraction of that across it: 1 is

@@ -5,7 +5,7 @@ use bevy::{
     ecs::{
         change_detection::DetectChangesMut,
         component::Component,
-        entity::Entity,
+        entity::{Entity, EntityHashMap},
         hierarchy::Children,
         query::{Or, With},
         reflect::ReflectComponent,
@@ -14,7 +14,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::table::{ObjectStyleUniform, ObjectStyles};
+use super::table::{ObjectStyleUniform, ObjectStyles, UNSTYLED};
 use crate::settings::{bounded_option, displayable, linear_rgb};
 
 /// Removes the [`Outlines`](crate::Outlines) of this object.
@@ -40,6 +40,25 @@ impl NoOutlines {
     pub const INHERITED: Self = Self { inherit: true };
 }
 
+/// Takes this object out of the colour effects: its colours stay as they were rendered.
+///
+/// The effects of the stages [`Tone` and `Color`](crate::EffectStage) leave it alone: tone
+/// bands, desaturation, colorization, and those of a game. Lines and the effects of the whole
+/// page still apply; [`NoOutlines`] removes its lines. At its rim, multisampled pixels mix
+/// both colours. For what has to keep its colour: a cursor, a team's flag, a light.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Component, Default, Clone, PartialEq)]
+pub struct NoStyle {
+    /// Applies to all descendants as well, except for those with a `NoStyle` of their own.
+    /// Default: `false`.
+    pub inherit: bool,
+}
+
+impl NoStyle {
+    /// For an object and its descendants: [`inherit`](Self::inherit) is `true`.
+    pub const INHERITED: Self = Self { inherit: true };
+}
+
 /// Draws the lines of this object in another style than the camera's
 /// [`Outlines`](crate::Outlines).
 ///
@@ -59,6 +78,10 @@ pub struct OutlineStyle {
     /// Width of all lines in logical pixels; `None` keeps the camera's.
     /// Range 0.5 to 16, default `None`.
     pub width: Option<f32>,
+    /// Factor of the opacity of all lines. Of lines of the faithful form, which lie on both
+    /// sides of an edge, it changes the side of the object. Range 0 to 1; `None` is 1.
+    /// Default: `None`.
+    pub opacity: Option<f32>,
     /// Kinds of line that are drawn, if the camera draws them too. Default: all.
     pub kinds: OutlineKinds,
     /// Applies to all descendants as well, as [`NoOutlines::inherit`]. Default: `false`.
@@ -89,12 +112,13 @@ impl Default for OutlineKinds {
 }
 
 impl OutlineStyle {
-    /// The settings that are used: width and colour in their documented ranges.
+    /// The settings that are used: width, colour and opacity in their documented ranges.
     #[must_use]
     pub fn sanitized(self) -> Self {
         Self {
             color: self.color.map(|c| displayable(c, Color::BLACK)),
             width: bounded_option(self.width, 2.0, 0.5, 16.0),
+            opacity: bounded_option(self.opacity, 1.0, 0.0, 1.0),
             ..self
         }
     }
@@ -111,26 +135,49 @@ impl OutlineStyle {
             has_color: if style.color.is_some() { 1.0 } else { 0.0 },
             half_width: style.width.map_or(-1.0, |w| 0.5 * w),
             kinds: u32::from(silhouettes) | u32::from(creases) << 1 | u32::from(objects) << 2,
+            opacity: style.opacity.unwrap_or(1.0),
         }
     }
 }
 
+/// Adds an entity with what a component of it says; if that is `inherited`, its descendants
+/// too, up to those that have the component themselves.
+fn inherit<T: Copy>(
+    into: &mut EntityHashMap<T>,
+    (entity, said): (Entity, T),
+    inherited: bool,
+    children: &Query<&Children>,
+    has_own: impl Fn(Entity) -> bool,
+) {
+    into.insert(entity, said);
+    let mut below = vec![entity];
+    while inherited && let Some(parent) = below.pop() {
+        let children = children.get(parent).into_iter();
+        for child in children.flat_map(|c| c.iter().copied()) {
+            if !has_own(child) {
+                into.insert(child, said);
+                below.push(child);
+            }
+        }
+    }
+}
+
+/// The components of objects that change how they are drawn.
+type Drawn = Or<(With<OutlineStyle>, With<NoOutlines>)>;
+
 /// Builds the table of outline styles, and gives each object that has one its slot.
 pub(crate) fn assign_object_styles(
-    styled: Query<
-        (Entity, Option<&OutlineStyle>, Option<&NoOutlines>),
-        Or<(With<OutlineStyle>, With<NoOutlines>)>,
-    >,
+    outlined: Query<(Entity, Option<&OutlineStyle>, Option<&NoOutlines>), Drawn>,
+    unstyled: Query<(Entity, &NoStyle)>,
     children: Query<&Children>,
-    own: Query<(), Or<(With<OutlineStyle>, With<NoOutlines>)>>,
     mut styles: ResMut<ObjectStyles>,
 ) {
-    if styled.is_empty() && !styles.any() {
+    if outlined.is_empty() && unstyled.is_empty() && !styles.any() {
         return;
     }
-    let mut table = ObjectStyles::default();
-    for (entity, style, none) in &styled {
-        let (uniform, inherit) = match (style, none) {
+    let mut outlines: EntityHashMap<ObjectStyleUniform> = EntityHashMap::default();
+    for (entity, style, none) in &outlined {
+        let (uniform, inherited) = match (style, none) {
             (_, Some(none)) => (
                 ObjectStyleUniform {
                     kinds: 0,
@@ -141,21 +188,31 @@ pub(crate) fn assign_object_styles(
             (Some(style), None) => (style.uniform(), style.inherit),
             (None, None) => continue,
         };
-        let slot = table.slot(uniform);
-        table.slots.insert(entity, slot);
-        let mut below = vec![entity];
-        while inherit && let Some(parent) = below.pop() {
-            for child in children
-                .get(parent)
-                .into_iter()
-                .flat_map(|c| c.iter().copied())
-            {
-                if !own.contains(child) {
-                    table.slots.insert(child, slot);
-                    below.push(child);
-                }
-            }
-        }
+        let own = |child| outlined.contains(child);
+        inherit(&mut outlines, (entity, uniform), inherited, &children, own);
+    }
+    let mut bare: EntityHashMap<()> = EntityHashMap::default();
+    for (entity, none) in &unstyled {
+        let own = |child| unstyled.contains(child);
+        inherit(&mut bare, (entity, ()), none.inherit, &children, own);
+    }
+    let mut table = ObjectStyles::default();
+    for (entity, uniform) in &outlines {
+        let kinds = uniform.kinds
+            | if bare.contains_key(entity) {
+                UNSTYLED
+            } else {
+                0
+            };
+        let slot = table.slot(ObjectStyleUniform { kinds, ..*uniform });
+        table.slots.insert(*entity, slot);
+    }
+    for entity in bare.keys().filter(|entity| !outlines.contains_key(*entity)) {
+        let slot = table.slot(ObjectStyleUniform {
+            kinds: ObjectStyleUniform::default().kinds | UNSTYLED,
+            ..Default::default()
+        });
+        table.slots.insert(*entity, slot);
     }
     styles.set_if_neq(table);
 }

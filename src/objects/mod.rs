@@ -14,13 +14,13 @@ mod table;
 #[cfg(feature = "objects")]
 mod components;
 #[cfg(feature = "objects")]
-pub use components::{NoOutlines, OutlineKinds, OutlineStyle};
+pub use components::{NoOutlines, NoStyle, OutlineKinds, OutlineStyle};
 #[cfg(feature = "objects")]
 pub use groups::OutlineGroup;
 #[cfg(feature = "objects")]
 pub use ids::object_id;
 
-pub(crate) use table::{ObjectStyleBuffer, ObjectStyles};
+pub(crate) use table::{ObjectChanges, ObjectStyleBuffer, ObjectStyles};
 
 use bevy::{
     app::{App, Plugin},
@@ -119,6 +119,7 @@ impl Plugin for ObjectsPlugin {
         {
             app.register_type::<OutlineStyle>()
                 .register_type::<NoOutlines>()
+                .register_type::<NoStyle>()
                 .add_systems(bevy::app::PostUpdate, components::assign_object_styles);
             groups::build(app);
         }

@@ -13,8 +13,11 @@ struct ObjectStyle {
     has_color: f32,
     // Half width in logical pixels; negative if the style does not override it.
     half_width: f32,
-    // Kinds that are drawn: bit 0 silhouettes, bit 1 creases, bit 2 object edges.
+    // Kinds that are drawn: bit 0 silhouettes, bit 1 creases, bit 2 object edges; bit 3: the
+    // colour effects leave the object alone.
     kinds: u32,
+    // Factor of the opacity of all lines.
+    opacity: f32,
 }
 
 #ifdef OBJECT_STYLES
@@ -44,6 +47,23 @@ fn texel_object(at: vec2<i32>, sample: i32) -> vec2<u32> {
 // The style in a slot, which is clamped to the table.
 fn style_of(slot: u32) -> ObjectStyle {
     return object_styles[min(slot, arrayLength(&object_styles) - 1u)];
+}
+#endif
+
+#ifdef UNSTYLED
+// The fraction of a pixel's samples that show objects which the colour effects leave alone.
+fn unstyled_fraction(pixel: vec2<i32>) -> f32 {
+    let at = depth_pixel(pixel);
+#ifdef MULTISAMPLED
+    let samples = i32(textureNumSamples(object_texture));
+    var found = 0u;
+    for (var s = 0; s < samples; s++) {
+        found += (style_of(texel_object(at, s).y).kinds >> 3u) & 1u;
+    }
+    return f32(found) / f32(samples);
+#else
+    return f32((style_of(texel_object(at, 0).y).kinds >> 3u) & 1u);
+#endif
 }
 #endif
 

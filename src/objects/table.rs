@@ -16,6 +16,7 @@ pub(crate) struct ObjectStyleUniform {
     pub has_color: f32,
     pub half_width: f32,
     pub kinds: u32,
+    pub opacity: f32,
 }
 
 impl Default for ObjectStyleUniform {
@@ -25,6 +26,7 @@ impl Default for ObjectStyleUniform {
             has_color: 0.0,
             half_width: -1.0,
             kinds: 7,
+            opacity: 1.0,
         }
     }
 }
@@ -43,9 +45,33 @@ pub(crate) struct ObjectStyles {
     pub slots: EntityHashMap<u8>,
 }
 
+/// The bit of `ObjectStyleUniform::kinds` of objects that the colour effects leave alone.
+#[cfg(feature = "objects")]
+pub(crate) const UNSTYLED: u32 = 8;
+
+/// Which components of objects there are in a world.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct ObjectChanges {
+    /// Some object has its own line style, or no lines, or [`UNSTYLED`].
+    pub any: bool,
+    /// The colour effects leave some object alone.
+    pub unstyled: bool,
+}
+
 impl ObjectStyles {
     pub fn any(&self) -> bool {
         !self.slots.is_empty()
+    }
+
+    pub fn changes(&self) -> ObjectChanges {
+        #[cfg(feature = "objects")]
+        let unstyled = self.entries.iter().any(|e| e.kinds & UNSTYLED != 0);
+        #[cfg(not(feature = "objects"))]
+        let unstyled = false;
+        ObjectChanges {
+            any: self.any(),
+            unstyled,
+        }
     }
 
     /// Width of the widest line of any style, in logical pixels; 0 if no style sets it.

@@ -1,7 +1,7 @@
 //! The light that lines follow.
 
 #[cfg(any(feature = "objects", feature = "cartoon"))]
-use bevy::light::DirectionalLight;
+use bevy::{camera::visibility::InheritedVisibility, light::DirectionalLight};
 use bevy::{
     ecs::{
         component::Component,
@@ -9,17 +9,19 @@ use bevy::{
         reflect::ReflectComponent,
         system::{Query, SystemParam},
     },
-    math::Vec3,
-    prelude::GlobalTransform,
+    math::{Vec3, Vec3A},
+    prelude::{GlobalTransform, Transform},
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
 /// Lines follow the light of this entity: it shines forward (along the entity's -Z), as a
 /// directional light does. See [`LineWeight::shade`](crate::LineWeight::shade).
 ///
-/// Without a key light, lines follow the brightest `DirectionalLight` of the scene; without
-/// any, a light from straight above. Of several key lights, one is taken.
+/// Without a key light, lines follow the brightest visible `DirectionalLight` of the scene, if
+/// the crate has the feature `objects` or `cartoon`; without any, a light from straight above.
+/// Of several key lights, one is taken.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[require(Transform)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct KeyLight;
 
@@ -28,24 +30,29 @@ pub struct KeyLight;
 pub(super) struct Lights<'w, 's> {
     key: Query<'w, 's, &'static GlobalTransform, With<KeyLight>>,
     #[cfg(any(feature = "objects", feature = "cartoon"))]
-    directional: Query<'w, 's, (&'static GlobalTransform, &'static DirectionalLight)>,
+    directional: Query<
+        'w,
+        's,
+        (
+            &'static GlobalTransform,
+            &'static DirectionalLight,
+            &'static InheritedVisibility,
+        ),
+    >,
 }
 
 impl Lights<'_, '_> {
     /// Unit vector towards the light that lines follow, in world space.
     pub fn to_light(&self) -> Vec3 {
-        let towards = |light: &GlobalTransform| light.back().as_vec3();
-        let found = self.key.iter().next().map(towards);
+        // A light of scale 0 has no direction.
+        let towards = |light: &GlobalTransform| (light.affine().matrix3 * Vec3A::Z).try_normalize();
+        let found = self.key.iter().find_map(towards);
         #[cfg(any(feature = "objects", feature = "cartoon"))]
         let found = found.or_else(|| {
-            let brightest = self
-                .directional
-                .iter()
-                .max_by(|a, b| a.1.illuminance.total_cmp(&b.1.illuminance));
-            brightest.map(|(light, _)| towards(light))
+            let visible = self.directional.iter().filter(|light| light.2.get());
+            let brightest = visible.max_by(|a, b| a.1.illuminance.total_cmp(&b.1.illuminance));
+            brightest.and_then(|(light, ..)| towards(light))
         });
-        found
-            .filter(|to_light| to_light.is_finite())
-            .unwrap_or(Vec3::Y)
+        found.map_or(Vec3::Y, Vec3::from)
     }
 }

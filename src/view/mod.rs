@@ -25,7 +25,7 @@ use bevy::{
 
 use crate::{
     effect::{EffectRegistry, Plan},
-    objects::ObjectStyles,
+    objects::{ObjectChanges, ObjectStyles},
     schedule::ComicsSystems,
 };
 pub use light::KeyLight;
@@ -79,7 +79,7 @@ fn plan_cameras(
     for camera in &cameras {
         let known = camera.get::<CameraPlan>();
         let mut entity = commands.entity(camera.id());
-        match (Plan::new(camera, &types, objects.any()), known) {
+        match (Plan::new(camera, &types, objects.changes()), known) {
             (Some(plan), Some(known)) if *known.plan == plan => {}
             (Some(plan), known) => {
                 entity.insert(CameraPlan {
@@ -103,7 +103,7 @@ fn warn_unsupported(
 ) {
     let types = registry.types();
     for camera in &flat {
-        if Plan::new(camera, &types, false).is_some() {
+        if Plan::new(camera, &types, ObjectChanges::default()).is_some() {
             warn_once!(
                 "{} is a Camera2d: its effects are not drawn, they need a Camera3d",
                 camera.id()

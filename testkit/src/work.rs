@@ -16,7 +16,8 @@ use bevy::{
 };
 use bevy_comics::{
     Colorization, ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Contours, DepthMap,
-    DepthMapping, Desaturation, LineResponse, Outlines, RangeSmoothing, Sketch, ToneBands,
+    DepthMapping, Desaturation, LineResponse, LineWeight, Outlines, RangeSmoothing, Sketch,
+    ToneBands,
 };
 
 use super::{
@@ -79,6 +80,68 @@ pub fn along_cracks() -> Outlines {
     }
 }
 
+/// Outlines of which one thing differs from the default: what each costs.
+fn factors() -> [(&'static str, Outlines); 7] {
+    let weighted = |weight: LineWeight| Outlines {
+        weight,
+        ..default()
+    };
+    let even = LineWeight::EVEN;
+    [
+        (
+            "outlines, not linked",
+            Outlines {
+                continuity: 0.0,
+                specks: 1,
+                ..default()
+            },
+        ),
+        (
+            "outlines, not smooth",
+            Outlines {
+                smooth: false,
+                ..default()
+            },
+        ),
+        (
+            "outlines, weighted by kind",
+            weighted(LineWeight {
+                outer: 1.5,
+                inner: 0.75,
+                crease: 0.6,
+                object: 0.75,
+                ..even
+            }),
+        ),
+        (
+            "outlines, weighted by light",
+            weighted(LineWeight {
+                shade: 0.6,
+                lit: 0.4,
+                ..even
+            }),
+        ),
+        (
+            "outlines, weighted by distance",
+            weighted(LineWeight {
+                perspective: 0.5,
+                ..even
+            }),
+        ),
+        (
+            "outlines, drawn with a nib",
+            weighted(LineWeight { nib: 0.4, ..even }),
+        ),
+        (
+            "outlines, tapered",
+            weighted(LineWeight {
+                taper: 12.0,
+                ..even
+            }),
+        ),
+    ]
+}
+
 /// The styles whose work is counted, from none to everything.
 pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
     let none = ComicStyle::new();
@@ -89,7 +152,7 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
         near: 1.0,
         far: 20.0,
     };
-    vec![
+    let mut rungs = vec![
         ("no style", none.clone()),
         ("one tint (sepia)", none.clone().with(Colorization::SEPIA)),
         ("tone bands", none.clone().with(ToneBands::default())),
@@ -151,7 +214,9 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
             "everything",
             comic.with(ToneBands::default()).with(Outlines::default()),
         ),
-    ]
+    ];
+    rungs.extend(factors().map(|(name, outlines)| (name, outlined(outlines))));
+    rungs
 }
 
 /// Bytes of the texel that a line of WGSL loads, by the name of its binding.

@@ -229,6 +229,28 @@ fn an_object_has_its_own_colour_width_and_kinds() {
     assert!(total(&some, 0..57) < 0.05);
 }
 
+/// An object's lines have the part of the ink that its opacity says; its neighbour's lines
+/// keep theirs.
+#[test]
+fn an_object_has_its_own_opacity() {
+    let (mut small, [left, _]) = two_cubes(Msaa::Off);
+    let plain = ink(&mut small, Outlines::SILHOUETTES);
+    let [own, others] = [total(&plain, 0..57), total(&plain, 62..96)];
+    assert!(own > 5.0 && others > 5.0, "{own}, {others}");
+    for opacity in [0.0, 0.25, 1.0, 7.0] {
+        small.world().entity_mut(left).insert(OutlineStyle {
+            opacity: Some(opacity),
+            ..default()
+        });
+        let faded = ink(&mut small, Outlines::SILHOUETTES);
+        let ratio = total(&faded, 0..57) / own;
+        let want = opacity.min(1.0);
+        assert!((ratio - want).abs() < 0.02, "{opacity}: {ratio}");
+        let kept = total(&faded, 62..96) / others;
+        assert!((kept - 1.0).abs() < 0.02, "{opacity}: {kept}");
+    }
+}
+
 #[test]
 fn styles_are_inherited_where_asked() {
     let (mut small, [left, right]) = two_cubes(Msaa::Off);

@@ -41,6 +41,7 @@ mod smoothing;
 mod smoothing_views;
 mod styles;
 mod transparent;
+mod unstyled;
 mod upscaled;
 mod vignette;
 mod weights;

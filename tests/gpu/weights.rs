@@ -195,7 +195,7 @@ fn rims_before_other_objects_are_wider_than_rims_before_the_same() {
     }
 }
 
-/// Creases and edges of objects have widths of their own.
+/// Edges between objects have a width of their own.
 #[test]
 fn edges_between_objects_have_their_own_width() {
     let mut small = towards_the_sky();
@@ -439,4 +439,90 @@ fn fogged_black(small: &mut Small, wall: Entity, row: u32) -> f64 {
     let code = f64::from(small.picture().get_pixel(46, row).0[0]) / 255.0;
     paint(small, Color::WHITE);
     bevy_comics_testkit::reference::color::srgb_decode_one(code)
+}
+
+/// Silhouettes alone, in a multisampled view: the light is that of the chosen samples.
+#[test]
+fn lines_follow_the_light_in_multisampled_views() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Sample4);
+    let light = Transform::from_xyz(2.0, 3.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y);
+    small.world().spawn((KeyLight, light, Object));
+    let lit = LineWeight {
+        shade: 0.6,
+        lit: 0.5,
+        outer: 1.5,
+        taper: 8.0,
+        perspective: 0.5,
+        ..LineWeight::EVEN
+    };
+    let outlines = silhouettes(3.0, lit);
+    assert_pass_is_its_twin(&mut small, &outlined(outlines), None, "4 samples");
+}
+
+/// Ink of every row of the picture between two columns.
+fn rows_of_ink(small: &mut Small, outlines: Outlines, columns: std::ops::Range<u32>) -> Vec<f64> {
+    small.style(&ComicStyle::new().with(outlines));
+    small.settle();
+    let picture = small.picture();
+    let ink = |row: u32| -> f64 {
+        let pixels = columns.clone().map(|x| picture.get_pixel(x, row).0[0]);
+        pixels
+            .map(|code| {
+                let code = f64::from(code) / 255.0;
+                1.0 - bevy_comics_testkit::reference::color::srgb_decode_one(code)
+            })
+            .sum()
+    };
+    (10..54).map(ink).collect()
+}
+
+/// A leaning edge between a lit and a dark face: which face is nearer changes at every step
+/// of pixels, but the width does not.
+#[test]
+fn a_crease_between_light_and_shade_is_even() {
+    let mut small = towards_the_sky();
+    let world = small.world();
+    let mesh = world
+        .resource_mut::<Assets<Mesh>>()
+        .add(Cuboid::from_length(200.0));
+    let material = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: Color::WHITE,
+            unlit: true,
+            ..default()
+        });
+    let turned = Quat::from_rotation_z(0.1) * Quat::from_rotation_y(45f32.to_radians());
+    world.spawn((
+        Mesh3d(mesh),
+        MeshMaterial3d(material),
+        Transform::from_xyz(0.0, 0.0, -300.0).with_rotation(turned),
+        Object,
+    ));
+    let light = Transform::default().looking_to(Vec3::NEG_X, Vec3::Y);
+    small.world().spawn((KeyLight, light, Object));
+    let creases = |weight| Outlines {
+        silhouettes: None,
+        objects: None,
+        width: 4.0,
+        weight,
+        ..default()
+    };
+    let weight = LineWeight {
+        shade: 0.6,
+        lit: 0.6,
+        ..LineWeight::EVEN
+    };
+    let even = rows_of_ink(&mut small, creases(LineWeight::EVEN), 20..76);
+    let weighted = rows_of_ink(&mut small, creases(weight), 20..76);
+    // One face has 1.6 of the width, the other 0.4: the mean is 1.
+    let mean = |ink: &[f64]| ink.iter().sum::<f64>() / ink.len() as f64;
+    assert!((mean(&even) - 4.0).abs() < 0.2, "{even:.2?}");
+    assert!(
+        (mean(&weighted) / mean(&even) - 1.0).abs() < 0.02,
+        "{weighted:.2?}"
+    );
+    for (a, b) in even.iter().zip(&weighted) {
+        assert!((a - b).abs() < 0.1, "{even:.2?}, {weighted:.2?}");
+    }
 }

@@ -82,7 +82,7 @@ pub fn mean_bend(lines: &HashSet<Place>, place: Place) -> Option<[f64; 2]> {
     let around = || back.iter().chain(&on).map(|place| centre(*place));
     let away = |i: usize| around().map(|centre| centre[i] - own[i]).sum::<f64>() / 7.0;
     let [rise, run] = [across, along].map(|i| c[i] - b[i]);
-    if rise.abs() > 1.9 * run.abs() {
+    if rise.abs() >= 1.9 * run.abs() {
         return None;
     }
     let slope = rise / run;

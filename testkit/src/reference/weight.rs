@@ -72,7 +72,7 @@ pub fn weighted(crack: Crack, factor: f64) -> Option<Crack> {
 pub fn largest_weight(w: &LineWeight) -> f64 {
     let kind = w.outer.max(w.inner).max(w.crease).max(w.object);
     let nearest = if w.perspective > 0.0 { 2.0 } else { 1.0 };
-    f64::from(kind) * (1.0 + f64::from(w.shade)) * nearest
+    (f64::from(kind) * (1.0 + f64::from(w.shade)) * nearest).max(1.0)
 }
 
 /// The factors that do not depend on the rest of the line: by kind, light, distance and
@@ -95,9 +95,18 @@ pub fn local_weight(s: &Outlines, view: &View, crack: &Crack, pixel: [i64; 2], s
     };
     let mut factor = kind_weight(w, crack.kinds, sky || object(owner) != object(beyond));
     let lights = w.shade > 0.0 || w.lit > 0.0;
-    if let Some(n) = normal(view, owner[0], owner[1]).filter(|_| lights) {
-        let facing = (0..3).map(|i| n[i] * view.to_light[i]).sum();
-        factor *= light_weight(w, facing);
+    // A silhouette belongs to its owner, another line to the surfaces on both its sides.
+    let sides: &[[u32; 2]] = if crack.kinds[0] {
+        &[owner]
+    } else {
+        &[owner, beyond]
+    };
+    let weights: Vec<f64> = (sides.iter().filter(|_| lights))
+        .filter_map(|[x, y]| normal(view, *x, *y))
+        .map(|n| light_weight(w, (0..3).map(|i| n[i] * view.to_light[i]).sum()))
+        .collect();
+    if !weights.is_empty() {
+        factor *= weights.iter().sum::<f64>() / weights.len() as f64;
     }
     factor *= perspective_weight(w, &view.frame, depth(owner));
     if w.nib < 1.0 && s.smooth {

@@ -51,8 +51,7 @@ fn the_kind_of_a_line_has_its_factor() {
     }
 }
 
-/// Lines in the shade gain, lines in the light lose, and at grazing light the sum of both
-/// sides is the same when the light is mirrored.
+/// Lines in the shade gain, lines in the light lose, each up to what was asked.
 #[test]
 fn lines_are_wider_in_the_shade() {
     let row =
