@@ -3,8 +3,8 @@
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Contours, LeftOut, Outlines, Sketch,
-    StageOutcome,
+    ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Contours, LeftOut, LineWeight,
+    Outlines, Sketch, StageOutcome,
 };
 use bevy_comics_testkit::{
     device::gpu, headless::HeadlessOptions, scenes::BuiltIn, studio::Studio, work::along_cracks,
@@ -76,5 +76,32 @@ fn lines_without_compute_passes_are_the_same() {
         assert!(inked.count() > 500, "{name} draws nothing");
         // Lines blended over the picture may round differently.
         assert!(far.is_empty(), "{name}: {} values differ", far.len());
+    }
+}
+
+/// Without compute passes, lines are as if they had no weight, however small it is.
+#[test]
+fn lines_without_compute_passes_have_no_weight() {
+    let mut without = studio(true);
+    let even = Outlines {
+        width: 8.0,
+        ..along_cracks()
+    };
+    let weighted = |factor| Outlines {
+        weight: LineWeight {
+            outer: factor,
+            inner: factor,
+            crease: factor,
+            object: factor,
+            taper: 12.0,
+            ..LineWeight::EVEN
+        },
+        ..even
+    };
+    let wanted = without.shoot(Some(&ComicStyle::new().with(even)));
+    for factor in [0.0, 0.25, 2.0] {
+        let style = ComicStyle::new().with(weighted(factor));
+        let picture = without.shoot(Some(&style));
+        assert!(picture == wanted, "{factor}");
     }
 }
