@@ -15,8 +15,8 @@ use crate::settings::{FieldRange, bounded};
 ///
 /// They apply to lines of the corrected forms, on devices with compute shaders. The ideas
 /// are those of ink drawing: thick outside and thin inside, heavy in the shade, tapered
-/// where a line ends. The light of a crease or an object edge is the mean over both its
-/// sides. The middle of a line whose width changes is exactly the edge; that of an even
+/// where a line ends. The light is that of the surface in front; of creases and object
+/// edges, the mean over both sides. The middle of a line whose width changes is exactly the edge; that of an even
 /// line of odd width is half a pixel further in.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]

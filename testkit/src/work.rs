@@ -210,12 +210,12 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
             }),
         ),
         ("sketch", none.with(Sketch::default())),
-        (
-            "everything",
-            comic.with(ToneBands::default()).with(Outlines::default()),
-        ),
     ];
     rungs.extend(factors().map(|(name, outlines)| (name, outlined(outlines))));
+    rungs.push((
+        "everything",
+        comic.with(ToneBands::default()).with(Outlines::default()),
+    ));
     rungs
 }
 

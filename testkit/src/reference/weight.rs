@@ -3,7 +3,7 @@
 use bevy_comics::{LineWeight, Outlines};
 
 use super::{
-    crack::{Crack, SIDES, THINNEST, normal, stored_width},
+    crack::{Crack, SIDES, THINNEST, jump, normal, stored_width},
     map::{Frame, Projection, is_background},
     smoothstep,
     view::View,
@@ -94,19 +94,8 @@ pub fn local_weight(s: &Outlines, view: &View, crack: &Crack, pixel: [i64; 2], s
             .map(|ids| ids.pixels[(y * view.width + x) as usize][0])
     };
     let mut factor = kind_weight(w, crack.kinds, sky || object(owner) != object(beyond));
-    let lights = w.shade > 0.0 || w.lit > 0.0;
-    // A silhouette belongs to its owner, another line to the surfaces on both its sides.
-    let sides: &[[u32; 2]] = if crack.kinds[0] {
-        &[owner]
-    } else {
-        &[owner, beyond]
-    };
-    let weights: Vec<f64> = (sides.iter().filter(|_| lights))
-        .filter_map(|[x, y]| normal(view, *x, *y))
-        .map(|n| light_weight(w, (0..3).map(|i| n[i] * view.to_light[i]).sum()))
-        .collect();
-    if !weights.is_empty() {
-        factor *= weights.iter().sum::<f64>() / weights.len() as f64;
+    if w.shade > 0.0 || w.lit > 0.0 {
+        factor *= lit_weight(s, view, (pixel, side), crack.kinds[0]);
     }
     factor *= perspective_weight(w, &view.frame, depth(owner));
     if w.nib < 1.0 && s.smooth {
@@ -119,4 +108,40 @@ pub fn local_weight(s: &Outlines, view: &View, crack: &Crack, pixel: [i64; 2], s
         factor *= nib_weight(w, along);
     }
     factor
+}
+
+/// The factor of the light. Of a silhouette: the mean over the pixels around the crack, three
+/// along it and two on both sides, except for those behind a jump in depth. Of other lines:
+/// the mean over both sides.
+fn lit_weight(
+    s: &Outlines,
+    view: &View,
+    ([x, y], side): ([i64; 2], usize),
+    silhouette: bool,
+) -> f64 {
+    let [x0, y0, width, height] = view.viewport.map(i64::from);
+    let [ax, ay] = SIDES[side];
+    let depth = |[x, y]: [i64; 2]| view.depth(x as u32, y as u32, 0);
+    let near = depth([x, y]).max(depth([x + ax, y + ay]));
+    let least = near - jump(s) * view.jump_reference(near);
+    let places = (-1..=2).flat_map(|across| {
+        (-1..=1).map(move |along| [x + across * ax + along * ay, y + across * ay + along * ax])
+    });
+    let beside = [[x, y], [x + ax, y + ay]];
+    let counted = places.filter(|place| silhouette || beside.contains(place));
+    let seen = counted.filter(|[x, y]| {
+        (x0..x0 + width).contains(x) && (y0..y0 + height).contains(y) && depth([*x, *y]) >= least
+    });
+    let weights: Vec<f64> = seen
+        .filter_map(|[x, y]| normal(view, x as u32, y as u32))
+        .map(|n| {
+            let facing = (0..3).map(|i| n[i] * view.to_light[i]).sum();
+            light_weight(&s.weight, facing)
+        })
+        .collect();
+    if weights.is_empty() {
+        1.0
+    } else {
+        weights.iter().sum::<f64>() / weights.len() as f64
+    }
 }
