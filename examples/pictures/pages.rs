@@ -58,7 +58,10 @@ fn simple() -> Result<RgbaImage, String> {
     let world = headless.app.world_mut();
     let mut cameras = world.query_filtered::<Entity, With<Camera3d>>();
     let camera = cameras.single(world).map_err(|error| error.to_string())?;
-    world.entity_mut(camera).insert(target);
+    // The engine looks at a camera's target again when its projection changes.
+    world
+        .entity_mut(camera)
+        .insert((target, Projection::default()));
     headless.step(SETTLE);
     Ok(headless.picture())
 }
