@@ -92,7 +92,8 @@ pub use lines::{
 };
 #[cfg(feature = "objects")]
 pub use objects::{
-    NoOutlines, NoStyle, OutlineGroup, OutlineKinds, OutlineStyle, ViewObjectIds, object_id,
+    ATTRIBUTE_MESH_SECTION, MeshSections, NoOutlines, NoStyle, OutlineGroup, OutlineKinds,
+    OutlineStyle, ViewObjectIds, object_id,
 };
 pub use plugin::ComicsPlugin;
 pub use schedule::ComicsSystems;

@@ -18,6 +18,7 @@ usage: render [SCENE] [options]
 Look
   --style NAME|FILE        a preset, a .comic.ron file, or none (default: the scene's own)
   --material standard|cartoon  how the scene is shaded (default: cartoon for theatre)
+  --sections ANGLE         creases where meshes bend by this angle, 10 to 120 degrees
 View (default: a model fills 85 % of the frame)
   --size WxH               pixels (default 960x540; with --presets 480x270 a picture)
   --camera EX,EY,EZ,TX,TY,TZ   eye and target, world units
@@ -36,9 +37,10 @@ Output
                            object ids and frame.json";
 
 /// Options that take a value.
-const VALUED: [&str; 12] = [
+const VALUED: [&str; 13] = [
     "style",
     "material",
+    "sections",
     "size",
     "camera",
     "near",
@@ -79,6 +81,8 @@ pub struct Arguments {
     pub style: Option<ComicStyle>,
     /// Whether the scene is drawn with the cartoon material.
     pub cartoon: bool,
+    /// The angle of `MeshSections`.
+    pub sections: Option<f32>,
     pub size: UVec2,
     pub camera: Option<(Vec3, Vec3)>,
     pub near: Option<f32>,
@@ -164,6 +168,7 @@ impl Arguments {
         let arguments = Self {
             style,
             cartoon: given.get("material", material)?.unwrap_or(is_theatre),
+            sections: given.get("sections", |text| positive("--sections", text))?,
             size: given.get("size", size)?.unwrap_or(usual_size),
             camera: given.get("camera", camera)?,
             near: given.get("near", |text| positive("--near", text))?,

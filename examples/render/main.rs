@@ -17,12 +17,12 @@ use std::process::ExitCode;
 
 use arguments::{Arguments, Ortho, Output, SceneChoice};
 use bevy::{camera::Hdr, ecs::system::RunSystemOnce, prelude::*, render::view::Msaa};
-use bevy_comics::ComicsPlugin;
+use bevy_comics::{ComicsPlugin, MeshSections};
 use bevy_comics_testkit::{
     before::BeforeStylize,
     headless::{self, Headless, HeadlessOptions},
     scenes::{BuiltIn, Stage, Vantage},
-    studio::{set_cartoon, wear},
+    studio::{set_cartoon, set_sections, wear},
 };
 use model::Model;
 
@@ -60,6 +60,9 @@ fn run() -> Result<(), String> {
     let (vantage, model) = open_scene(&mut headless, &arguments)?;
     if arguments.cartoon {
         set_cartoon(headless.app.world_mut(), true);
+    }
+    if let Some(angle) = arguments.sections {
+        set_sections(headless.app.world_mut(), MeshSections { angle });
     }
     let camera = spawn_camera(&mut headless, &arguments, &vantage);
     if let Some(model) = &model {

@@ -54,58 +54,35 @@ fn unshadowed(in: PbrInput, foot: Footprint, to_light: vec3<f32>, projected: f32
     return 1.0 - max(backface_shadow, projected_shadow);
 }
 
-fn directional_shadow(id: u32, in: PbrInput, at: vec3<f32>, view_z: f32) -> f32 {
-    return shadows::fetch_directional_shadow(id, vec4(at, 1.0), in.world_normal, view_z, in.frag_coord.xy);
-}
+const DIRECTIONAL: u32 = 0u;
+const POINT: u32 = 1u;
+const SPOT: u32 = 2u;
 
-fn point_shadow(id: u32, in: PbrInput, at: vec3<f32>) -> f32 {
-    return shadows::fetch_point_shadow(id, vec4(at, 1.0), in.world_normal, in.frag_coord.xy);
-}
-
-fn spot_shadow(id: u32, in: PbrInput, at: vec3<f32>) -> f32 {
+// The shadow map of a light of this `kind` at a place, 1 where the light arrives.
+fn shadow_at(kind: u32, id: u32, in: PbrInput, at: vec3<f32>, view_z: f32) -> f32 {
+    let place = vec4(at, 1.0);
+    let pixel = in.frag_coord.xy;
+    if kind == DIRECTIONAL {
+        return shadows::fetch_directional_shadow(id, place, in.world_normal, view_z, pixel);
+    }
+    if kind == POINT {
+        return shadows::fetch_point_shadow(id, place, in.world_normal, pixel);
+    }
     let near = view_bindings::clustered_lights.data[id].shadow_map_near_z;
-    return shadows::fetch_spot_shadow(id, vec4(at, 1.0), in.world_normal, near, in.frag_coord.xy);
+    return shadows::fetch_spot_shadow(id, place, in.world_normal, near, pixel);
 }
 
-// The shadow of a directional light, with a hard edge.
-fn hard_directional_shadow(id: u32, in: PbrInput, foot: Footprint, view_z: f32) -> f32 {
+// The same with a hard edge.
+fn hard_shadow(kind: u32, id: u32, in: PbrInput, foot: Footprint, view_z: f32) -> f32 {
     let at = in.world_position.xyz;
-    let shadow = directional_shadow(id, in, at, view_z);
+    let shadow = shadow_at(kind, id, in, at, view_z);
     if shadow <= 0.0 || shadow >= 1.0 {
         return shadow;
     }
     return sharpen(shadow, slope_over_pixel(
         shadow,
-        directional_shadow(id, in, at + foot.position_x, view_z),
-        directional_shadow(id, in, at + foot.position_y, view_z),
-    ));
-}
-
-// The same of a point light.
-fn hard_point_shadow(id: u32, in: PbrInput, foot: Footprint) -> f32 {
-    let at = in.world_position.xyz;
-    let shadow = point_shadow(id, in, at);
-    if shadow <= 0.0 || shadow >= 1.0 {
-        return shadow;
-    }
-    return sharpen(shadow, slope_over_pixel(
-        shadow,
-        point_shadow(id, in, at + foot.position_x),
-        point_shadow(id, in, at + foot.position_y),
-    ));
-}
-
-// The same of a spot light.
-fn hard_spot_shadow(id: u32, in: PbrInput, foot: Footprint) -> f32 {
-    let at = in.world_position.xyz;
-    let shadow = spot_shadow(id, in, at);
-    if shadow <= 0.0 || shadow >= 1.0 {
-        return shadow;
-    }
-    return sharpen(shadow, slope_over_pixel(
-        shadow,
-        spot_shadow(id, in, at + foot.position_x),
-        spot_shadow(id, in, at + foot.position_y),
+        shadow_at(kind, id, in, at + foot.position_x, view_z),
+        shadow_at(kind, id, in, at + foot.position_y, view_z),
     ));
 }
 
@@ -128,13 +105,13 @@ fn directional_light(id: u32, in: PbrInput, foot: Footprint, view_z: f32, receiv
     let to_light = (*light).direction_to_light.xyz;
     var shadow = 1.0;
     if receives && ((*light).flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_SHADOWS_ENABLED_BIT) != 0u {
-        shadow = hard_directional_shadow(id, in, foot, view_z);
+        shadow = hard_shadow(DIRECTIONAL, id, in, foot, view_z);
     }
     return (*light).color.rgb * unshadowed(in, foot, to_light, shadow) * reflected(in, foot, to_light);
 }
 
 // Light of a point light or spot light that a surface reflects.
-fn clustered_light(id: u32, is_spot: bool, in: PbrInput, foot: Footprint, receives: bool) -> vec3<f32> {
+fn clustered_light(id: u32, is_spot: bool, in: PbrInput, foot: Footprint, view_z: f32, receives: bool) -> vec3<f32> {
     let light = &view_bindings::clustered_lights.data[id];
     let offset = (*light).position_radius.xyz - in.world_position.xyz;
     let to_light = normalize(offset);
@@ -149,11 +126,7 @@ fn clustered_light(id: u32, is_spot: bool, in: PbrInput, foot: Footprint, receiv
     }
     var shadow = 1.0;
     if receives && ((*light).flags & mesh_view_types::POINT_LIGHT_FLAGS_SHADOWS_ENABLED_BIT) != 0u {
-        if is_spot {
-            shadow = hard_spot_shadow(id, in, foot);
-        } else {
-            shadow = hard_point_shadow(id, in, foot);
-        }
+        shadow = hard_shadow(select(POINT, SPOT, is_spot), id, in, foot, view_z);
     }
     return color * unshadowed(in, foot, to_light, shadow) * reflected(in, foot, to_light);
 }
@@ -174,7 +147,7 @@ fn cartoon_light(in: PbrInput, foot: Footprint) -> vec3<f32> {
     let ranges = clustering::unpack_clusterable_object_index_ranges(cluster);
     for (var i = ranges.first_point_light_index_offset; i < ranges.first_reflection_probe_index_offset; i++) {
         let id = clustering::get_clusterable_object_id(i);
-        light_sum += clustered_light(id, i >= ranges.first_spot_light_index_offset, in, foot, receives);
+        light_sum += clustered_light(id, i >= ranges.first_spot_light_index_offset, in, foot, view_z, receives);
     }
 
     // As the standard material, whose diffuse reflection is k_d / pi.

@@ -12,6 +12,7 @@ mod pass;
 pub(crate) mod plan;
 mod plugin;
 mod prepare;
+mod reasons;
 mod registry;
 mod requests;
 mod set;

@@ -8,7 +8,7 @@ use bevy::ecs::world::EntityRef;
 use super::{AnyEffect, EffectStage, EffectType, Needs};
 use crate::{
     depth::{DepthHistogram, DepthMap, VisibleDepthRange},
-    diagnostics::{ComicsStage, LeftOut},
+    diagnostics::LeftOut,
     finish::{DebugView, Finish, SplitView, StyleWeight},
     lines::{Creases, LineFog, LineSettings, Silhouettes, has_fog},
     objects::ObjectChanges,
@@ -16,13 +16,13 @@ use crate::{
 
 /// An effect in a camera's plan.
 #[derive(Clone, Debug)]
-struct Planned {
+pub(super) struct Planned {
     /// Sanitised; its strength is above 0.
-    effect: Box<dyn AnyEffect>,
+    pub effect: Box<dyn AnyEffect>,
     /// Not a component of the camera: another effect or the debug view implies it.
-    implied: bool,
+    pub implied: bool,
     /// Another effect of the plan replaces it.
-    replaced: bool,
+    pub replaced: bool,
 }
 
 impl PartialEq for Planned {
@@ -37,13 +37,15 @@ impl PartialEq for Planned {
 pub(crate) struct Plan {
     pub depth_map: DepthMap,
     /// In the order of the chain.
-    effects: Vec<Planned>,
+    pub(super) effects: Vec<Planned>,
     /// The other registered effects, and why they are not drawn.
-    left_out: Vec<(&'static str, LeftOut)>,
+    pub(super) left_out: Vec<(&'static str, LeftOut)>,
     /// The lines to find.
     pub lines: Option<LineSettings>,
     /// Some object has its own line style, or no lines.
     pub object_styles: bool,
+    /// Some mesh is divided into sections, and their borders are creases.
+    pub sections: bool,
     /// The colour effects leave some object alone.
     pub unstyled: bool,
     /// Lines fade into the camera's distance fog.
@@ -71,6 +73,7 @@ impl Plan {
                 .unwrap_or_default()
                 .sanitized(),
             object_styles: objects.any,
+            sections: objects.sections,
             unstyled: objects.unstyled,
             fog: has_fog(camera),
             readback: camera.contains::<VisibleDepthRange>(),
@@ -190,6 +193,7 @@ impl Plan {
             planned.replaced = replaced.contains(&planned.effect.effect_type().name);
         }
         self.object_styles &= self.lines.is_some();
+        self.sections &= self.lines.is_some_and(|lines| lines.has_measured_creases());
         let color = |effect: &dyn AnyEffect| effect.effect_type().stage <= EffectStage::Color;
         let colors = self.drawn().any(color);
         self.unstyled &= colors;
@@ -308,7 +312,7 @@ impl Plan {
         self.drawn().next().is_some() || self.view.is_some()
     }
 
-    fn reads_map(&self) -> bool {
+    pub(super) fn reads_map(&self) -> bool {
         self.needs().contains(Needs::MAP)
     }
 
@@ -317,7 +321,7 @@ impl Plan {
         self.reads_map() && self.depth_map.mapping.follows_visible_range()
     }
 
-    fn lines_read_map(&self) -> bool {
+    pub(super) fn lines_read_map(&self) -> bool {
         self.lines
             .is_some_and(|lines| lines.fades() || lines.weight.perspective > 0.0)
     }
@@ -354,60 +358,9 @@ impl Plan {
     pub fn draws_ids(&self) -> bool {
         let lines = self.lines.is_some_and(|lines| {
             let weighs = lines.silhouettes.is_some() && lines.weight.reads_ids();
-            lines.objects.is_some() || self.object_styles || weighs
+            lines.objects.is_some() || self.object_styles || self.sections || weighs
         });
         cfg!(feature = "objects") && (lines || self.needs().contains(Needs::IDS))
-    }
-
-    /// The stage of every effect, in the order of the chain, and why it does not
-    /// run; `None` if it is drawn.
-    pub fn effect_stages(
-        &self,
-        types: &[&'static EffectType],
-    ) -> Vec<(ComicsStage, Option<LeftOut>)> {
-        let reason = |name: &str| {
-            let left = self.left_out.iter().rev().find(|(known, _)| *known == name);
-            let planned = self
-                .effects
-                .iter()
-                .find(|p| p.effect.effect_type().name == name);
-            match (left, planned) {
-                (_, Some(p)) if p.replaced && p.implied => Some(LeftOut::NotRequested),
-                (_, Some(p)) if p.replaced => Some(LeftOut::Replaced),
-                (_, Some(_)) => None,
-                (Some((_, reason)), None) => Some(*reason),
-                (None, None) => Some(LeftOut::NotRequested),
-            }
-        };
-        types
-            .iter()
-            .map(|t| (ComicsStage::Effect(t.name), reason(t.name)))
-            .collect()
-    }
-
-    /// The reason that is reported if a stage does not run for this plan.
-    pub fn reason(&self, stage: ComicsStage) -> LeftOut {
-        let lines = self.lines.is_some();
-        let maps = self.reads_map() || self.lines_read_map();
-        match stage {
-            ComicsStage::Effect(_) | ComicsStage::RangeReadback => LeftOut::NotRequested,
-            ComicsStage::DepthPrepass => LeftOut::NoDepthStyle,
-            ComicsStage::NormalPrepass
-            | ComicsStage::ObjectIds
-            | ComicsStage::ResolveSamples
-            | ComicsStage::SearchTiles
-            | ComicsStage::FindLines
-            | ComicsStage::DrawLines => LeftOut::NoSuchLines,
-            ComicsStage::RangeSmoothing
-                if self.depth_map.smoothing.is_none() && !self.depth_map.locked =>
-            {
-                LeftOut::NotRequested
-            }
-            ComicsStage::DepthRange | ComicsStage::RangeSmoothing if maps => LeftOut::FixedRange,
-            ComicsStage::DepthRange | ComicsStage::RangeSmoothing if lines => LeftOut::NoMapStyle,
-            ComicsStage::DepthRange | ComicsStage::RangeSmoothing => LeftOut::NoDepthStyle,
-            ComicsStage::Stylize => LeftOut::NothingToDraw,
-        }
     }
 }
 

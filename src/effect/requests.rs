@@ -291,7 +291,9 @@ fn line_request(
         settings,
         view: uniform,
         lines: settings.uniform(view.scale_factor, reference),
-        weight: settings.weight.uniform(grid_scale, view.to_light),
+        weight: settings
+            .weight
+            .uniform(grid_scale, view.to_light, settings.budget),
         fog: plan.fog.then(|| {
             let fog = view.fog.unwrap_or_default();
             fog.uniform(&view.projection, &view.clip_from_view)
@@ -306,6 +308,7 @@ fn line_request(
         oblique: view.projection.kind() == ProjectionKind::Oblique,
         visible_range: plan.depth_map.mapping.follows_visible_range(),
         ids: plan.draws_ids(),
+        sections: plan.sections,
         object_styles: plan.object_styles,
         line_reach: line_reach(plan, facts).unwrap_or(0.0),
         jumps,

@@ -14,6 +14,10 @@
 #import bevy_comics::objects::style_of
 #endif
 
+// The bits of an object's marks that are its slot; above them is its section.
+const SLOT: u32 = 255u;
+const ABOVE_SLOT: u32 = 8u;
+
 // The kinds of line that four objects draw.
 fn kinds_of_four(slots: vec4<u32>) -> vec4<u32> {
 #ifdef OBJECT_STYLES
@@ -75,57 +79,109 @@ fn pack_response(s: Lines, amount: vec4<f32>, object: vec4<bool>, opacity: vec4<
     return pack_ink(ink, opacity, max(thinner, thinnest));
 }
 
-fn cracks(s: Lines, at: Borders) -> Cracks {
-    let near = max(at.here, at.there);
-    let reference = s.reference_factor * near + s.reference_constant;
-    let here_nearer = at.here >= at.there;
-    let kinds_here = kinds_of_four(at.slot_here);
-    let kinds_there = kinds_of_four(at.slot_there);
-    var found = vec4(0u);
-    var ink = vec4(0.0);
-    var mine = here_nearer;
-    var certain = vec4(false);
+// What four cracks are, as far as it is known.
+struct Found {
+    // Bits of the kinds of line.
+    kinds: vec4<u32>,
+    // Ink of the silhouette or crease.
+    ink: vec4<f32>,
+    // Whether the line belongs to `here`.
+    mine: vec4<bool>,
+    certain: vec4<bool>,
+}
+
 #ifdef SILHOUETTES
-    let depth_response = step_response(at.excess, s.silhouette_k * reference);
-    let depth_ink = smoothstep(vec4(s.silhouette_low), vec4(s.silhouette_high), depth_response);
-    let draws = has(select(kinds_there, kinds_here, here_nearer), SILHOUETTE);
-    let silhouette = draws & (near > vec4(0.0)) & (byte(depth_ink) > vec4(0u));
-    found |= select(vec4(0u), vec4(SILHOUETTE), silhouette);
-    ink = select(ink, depth_ink, silhouette);
-    certain = silhouette & (depth_response >= vec4(s.silhouette_limit));
+fn add_silhouettes(before: Found, s: Lines, at: Borders, reference: vec4<f32>, kinds: vec4<u32>) -> Found {
+    var found = before;
+    let response = step_response(at.excess, s.silhouette_k * reference);
+    let ink = smoothstep(vec4(s.silhouette_low), vec4(s.silhouette_high), response);
+    let exists = max(at.here, at.there) > vec4(0.0);
+    let silhouette = has(kinds, SILHOUETTE) & exists & (byte(ink) > vec4(0u));
+    found.kinds |= select(vec4(0u), vec4(SILHOUETTE), silhouette);
+    found.ink = select(found.ink, ink, silhouette);
+    found.certain |= silhouette & (response >= vec4(s.silhouette_limit));
+    return found;
+}
 #endif
+
+#ifdef SECTIONS
+// Sections above this one are those of meshes in groups; the last one has no creases.
+const LAST_ALONE: u32 = 127u;
+const SILENT: u32 = 255u;
+// The fold of 10 degrees.
+const BENT: f32 = 0.0304;
+
+fn sections_of(marks: vec4<u32>) -> vec4<u32> {
+    return marks >> vec4(ABOVE_SLOT);
+}
+
+// Whether two sections of an object meet. The meshes of a group are not told apart: between
+// them, the surface must also bend.
+fn section_borders(at: Borders) -> vec4<bool> {
+    let here = sections_of(at.marks_here);
+    let there = sections_of(at.marks_there);
+    let differ = (here != there) & (here != vec4(0u)) & (there != vec4(0u));
+    let ends = (here <= vec4(LAST_ALONE)) | (at.folds > vec4(BENT));
+    return differ & ends & (at.object_here == at.object_there);
+}
+
+fn are_silent(at: Borders) -> vec4<bool> {
+    return max(sections_of(at.marks_here), sections_of(at.marks_there)) == vec4(SILENT);
+}
+#endif
+
 #ifdef CREASES
-    let bend_response = fold_response(at.folds, s.crease_k);
-    let bend_ink = smoothstep(vec4(s.crease_low), vec4(s.crease_high), bend_response);
-    let creased_here = has(kinds_here, CREASE);
-    let creased_there = has(kinds_there, CREASE);
-    // Both sides of a crease meet: there is no jump in depth between them.
+// A crease is no silhouette, and both sides meet there: no jump in depth separates them.
+fn add_creases(before: Found, s: Lines, at: Borders, reference: vec4<f32>, here: vec4<u32>, there: vec4<u32>) -> Found {
+    var found = before;
+    var response = fold_response(at.folds, s.crease_k);
+    var ridge = at.ridge;
+#ifdef SECTIONS
+    let border = section_borders(at);
+    response = select(response, vec4(1.0), border);
+    ridge = (ridge | border) & !are_silent(at);
+#endif
+    let ink = smoothstep(vec4(s.crease_low), vec4(s.crease_high), response);
+    let drawn_here = has(here, CREASE);
+    let drawn_there = has(there, CREASE);
     let joined = at.excess < s.jump * reference;
-    let crease = at.ridge & joined & (creased_here | creased_there) & (byte(bend_ink) > vec4(0u)) & (found == vec4(0u));
-    found |= select(vec4(0u), vec4(CREASE), crease);
-    ink = select(ink, bend_ink, crease);
-    certain |= crease & (bend_response >= vec4(s.crease_limit));
-    mine = select(mine, owned(here_nearer, creased_here, creased_there), crease);
+    let drawn = (drawn_here | drawn_there) & (byte(ink) > vec4(0u)) & (found.kinds == vec4(0u));
+    let crease = ridge & joined & drawn;
+    found.kinds |= select(vec4(0u), vec4(CREASE), crease);
+    found.ink = select(found.ink, ink, crease);
+    found.certain |= crease & (response >= vec4(s.crease_limit));
+    found.mine = select(found.mine, owned(found.mine, drawn_here, drawn_there), crease);
+    return found;
+}
 #endif
+
 #ifdef OBJECT_EDGES
-    let edged_here = has(kinds_here, OBJECT);
-    let edged_there = has(kinds_there, OBJECT);
-    // If one object hides the other, the line belongs to the nearer one, even if that
-    // has no object edges: then there is none.
+// If one object hides the other, the line belongs to the nearer one, even if that has no
+// object edges: then there is none.
+fn add_object_edges(before: Found, s: Lines, at: Borders, reference: vec4<f32>, here: vec4<u32>, there: vec4<u32>) -> Found {
+    var found = before;
+    let drawn_here = has(here, OBJECT);
+    let drawn_there = has(there, OBJECT);
+    let here_nearer = at.here >= at.there;
     let hides = abs(at.here - at.there) > s.jump * reference;
-    let object_mine = select(owned(here_nearer, edged_here, edged_there), here_nearer, hides);
-    let drawn = select(edged_there, edged_here, object_mine);
+    let mine = select(owned(here_nearer, drawn_here, drawn_there), here_nearer, hides);
+    let drawn = select(drawn_there, drawn_here, mine);
     let object = (at.object_here != at.object_there) & drawn;
-    found |= select(vec4(0u), vec4(OBJECT), object);
-    mine = select(mine, object_mine, object);
-    certain |= object;
+    found.kinds |= select(vec4(0u), vec4(OBJECT), object);
+    found.mine = select(found.mine, mine, object);
+    found.certain |= object;
+    return found;
+}
 #endif
-    let owner_slot = select(at.slot_there, at.slot_here, mine);
+
+// The packed cracks, with the width and opacity of the lines of their owners.
+fn packed_of(found: Found, s: Lines, at: Borders) -> vec4<u32> {
+    let owner_slot = select(at.marks_there, at.marks_here, found.mine) & vec4(SLOT);
     var opacity = vec4(1.0);
     var half_width = half_width_of(owner_slot, s);
 #ifdef FADING
     let frame = depth_frame();
-    let owner = select(at.there, at.here, mine);
+    let owner = select(at.there, at.here, found.mine);
     let map = vec4(
         depth_map(frame, owner.x).x, depth_map(frame, owner.y).x,
         depth_map(frame, owner.z).x, depth_map(frame, owner.w).x,
@@ -134,6 +190,26 @@ fn cracks(s: Lines, at: Borders) -> Cracks {
     half_width *= 1.0 - s.width_fade * map;
 #endif
     opacity *= opacity_of(owner_slot);
-    let packed = found | select(vec4(0u), vec4(8u), mine) | pack_response(s, ink, has(found, OBJECT), opacity, half_width);
-    return Cracks(select(vec4(0u), packed, found != vec4(0u)), certain);
+    let owner_bit = select(vec4(0u), vec4(8u), found.mine);
+    let object = has(found.kinds, OBJECT);
+    let packed = found.kinds | owner_bit | pack_response(s, found.ink, object, opacity, half_width);
+    return select(vec4(0u), packed, found.kinds != vec4(0u));
+}
+
+fn cracks(s: Lines, at: Borders) -> Cracks {
+    let reference = s.reference_factor * max(at.here, at.there) + s.reference_constant;
+    let here_nearer = at.here >= at.there;
+    let here = kinds_of_four(at.marks_here & vec4(SLOT));
+    let there = kinds_of_four(at.marks_there & vec4(SLOT));
+    var found = Found(vec4(0u), vec4(0.0), here_nearer, vec4(false));
+#ifdef SILHOUETTES
+    found = add_silhouettes(found, s, at, reference, select(there, here, here_nearer));
+#endif
+#ifdef CREASES
+    found = add_creases(found, s, at, reference, here, there);
+#endif
+#ifdef OBJECT_EDGES
+    found = add_object_edges(found, s, at, reference, here, there);
+#endif
+    return Cracks(packed_of(found, s, at), found.certain);
 }

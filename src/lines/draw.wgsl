@@ -11,7 +11,7 @@
 }
 #import bevy_comics::lines::pass::line_pass
 #ifdef OBJECT_STYLES
-#import bevy_comics::objects::texel_object
+#import bevy_comics::objects::texel_slot
 #endif
 #ifndef COLUMNS
 #import bevy_comics::lines::stored::{load_bends, load_cracks, stored_middle}
@@ -168,7 +168,7 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     var slot = 0.0;
 #ifdef OBJECT_STYLES
     let corner = g.rect.zw - 1;
-    slot = f32(texel_object(g.rect.xy + clamp(ink.owner, vec2(0), corner), 0).y) / 255.0;
+    slot = f32(texel_slot(g.rect.xy + clamp(ink.owner, vec2(0), corner), 0)) / 255.0;
 #endif
     return vec4(encode_ink(ink.kinds), slot);
 }

@@ -10,7 +10,7 @@
 #import bevy_comics::depth::normal::texel_normal
 #endif
 #ifdef OBJECT_STYLES
-#import bevy_comics::objects::{style_of, texel_object}
+#import bevy_comics::objects::{style_of, texel_slot}
 #endif
 
 // Raw depth at a pixel of the grid. Outside of it, depth is extrapolated by point reflection
@@ -52,7 +52,7 @@ fn faithful(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     }
     var slot = 0u;
 #ifdef OBJECT_STYLES
-    slot = texel_object(g.rect.xy + pixel, 0).y;
+    slot = texel_slot(g.rect.xy + pixel, 0);
 #endif
     let kinds = kinds_of(slot);
     var ink = vec2(0.0);

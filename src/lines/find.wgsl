@@ -59,9 +59,9 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     let east = texel_object(origin + vec2(high.x, p.y), 0);
     let south = texel_object(origin + vec2(p.x, high.y), 0);
     at.object_here = vec4(here.x);
-    at.slot_here = vec4(here.y);
+    at.marks_here = vec4(here.y);
     at.object_there = vec2(east.x, south.x).xyxy;
-    at.slot_there = vec2(east.y, south.y).xyxy;
+    at.marks_there = vec2(east.y, south.y).xyxy;
 #endif
     return cracks(line_pass.settings, at).packed.xy;
 }

@@ -52,6 +52,8 @@ pub(crate) struct LineKey {
     pub silhouettes: bool,
     pub creases: bool,
     pub object_edges: bool,
+    /// Borders of sections are creases.
+    pub sections: bool,
     pub ids: bool,
     pub object_styles: bool,
     pub fading: bool,
@@ -97,6 +99,7 @@ impl LineKey {
             silhouettes,
             creases,
             object_edges: lines.objects.is_some() && request.ids,
+            sections: creases && request.sections && request.ids,
             ids: request.ids,
             object_styles: request.object_styles,
             fading: lines.fades(),
@@ -131,7 +134,7 @@ impl LineKey {
     /// The part that the search for blocks with cracks depends on.
     pub fn for_walk(self) -> Self {
         Self {
-            ids: self.object_edges,
+            ids: self.object_edges || self.sections,
             object_styles: false,
             fading: false,
             visible_range: self.jumps && self.visible_range,
@@ -147,7 +150,7 @@ impl LineKey {
     /// The part that finding depends on.
     pub fn for_find(self) -> Self {
         Self {
-            ids: self.object_edges || self.object_styles,
+            ids: self.object_edges || self.object_styles || self.sections,
             links: self.settles(),
             smooth: false,
             weight: WeightKey::default(),
@@ -167,6 +170,7 @@ impl LineKey {
             silhouettes: false,
             creases: false,
             object_edges: false,
+            sections: false,
             search: Search::default(),
             visible_range: self.fading && self.visible_range,
             jumps: false,
@@ -248,6 +252,7 @@ impl LineKey {
                 (self.visible_range, "VISIBLE_RANGE"),
                 (weight.nib, "NIB_WEIGHT"),
                 (weight.taper, "TAPER_WEIGHT"),
+                (weight.budget, "BUDGET"),
                 (weight.fog, "FOG"),
             ]))
             .collect()
@@ -263,6 +268,7 @@ impl LineKey {
                 (self.creases, "CREASES"),
                 (self.creases, "NORMALS"),
                 (self.object_edges, "OBJECT_EDGES"),
+                (self.sections, "SECTIONS"),
                 (self.fading, "FADING"),
                 (self.visible_range, "VISIBLE_RANGE"),
             ]))

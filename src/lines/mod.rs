@@ -68,6 +68,7 @@ pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "bend.wgsl");
     load_shader_library!(app, "listed.wgsl");
     load_shader_library!(app, "weight.wgsl");
+    load_shader_library!(app, "budget.wgsl");
     load_shader_library!(app, "fog.wgsl");
     load_shader_library!(app, "pass.wgsl");
     load_shader_library!(app, "planes.wgsl");

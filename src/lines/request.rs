@@ -58,6 +58,8 @@ pub(crate) struct LineRequest {
     pub visible_range: bool,
     /// Object ids are drawn and can be read.
     pub ids: bool,
+    /// Some mesh is divided into sections.
+    pub sections: bool,
     /// Some object has an `OutlineStyle` or `NoOutlines`.
     pub object_styles: bool,
     /// Physical pixels from a pixel within which the fused pass reads lines.

@@ -43,11 +43,12 @@ struct Above {
     normals: array<vec4<f32>, 4>,
     folds: array<vec4<f32>, 3>,
     objects: array<vec4<u32>, 3>,
-    slots: array<vec4<u32>, 3>,
+    marks: array<vec4<u32>, 3>,
 }
 
 // The borders between four pixels (here) and their neighbours (there). Without EXCESS
-// excesses are 0, without NORMALS folds are, without OBJECT_IDS objects and slots are.
+// excesses are 0, without NORMALS folds are, without OBJECT_IDS objects and
+// marks are (see texel_object).
 struct Borders {
     here: vec4<f32>,
     there: vec4<f32>,
@@ -56,8 +57,8 @@ struct Borders {
     ridge: vec4<bool>,
     object_here: vec4<u32>,
     object_there: vec4<u32>,
-    slot_here: vec4<u32>,
-    slot_there: vec4<u32>,
+    marks_here: vec4<u32>,
+    marks_there: vec4<u32>,
 }
 
 // What a new row shows.
@@ -135,7 +136,7 @@ fn step_normals(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<func
 #endif
 
 #ifdef OBJECT_IDS
-// Reads the objects of a row and the slots of their styles.
+// Reads the objects of a row and their marks.
 fn step_objects(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<function, Found>) {
     let o_a = texel_object(c.origin + vec2(c.own.x, y), 0);
     let o_b = texel_object(c.origin + vec2(c.own.y, y), 0);
@@ -144,18 +145,18 @@ fn step_objects(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<func
     let o_e = texel_object(c.origin + vec2(c.east.x, y), 0);
     (*found).east.object_here = vec4(o_a.x, o_b.x, o_c.x, o_d.x);
     (*found).east.object_there = vec4(o_b.x, o_c.x, o_d.x, o_e.x);
-    (*found).east.slot_here = vec4(o_a.y, o_b.y, o_c.y, o_d.y);
-    (*found).east.slot_there = vec4(o_b.y, o_c.y, o_d.y, o_e.y);
+    (*found).east.marks_here = vec4(o_a.y, o_b.y, o_c.y, o_d.y);
+    (*found).east.marks_there = vec4(o_b.y, o_c.y, o_d.y, o_e.y);
     (*found).south.object_here = (*above).objects[2];
     (*found).south.object_there = (*above).objects[1];
-    (*found).south.slot_here = (*above).slots[2];
-    (*found).south.slot_there = (*above).slots[1];
+    (*found).south.marks_here = (*above).marks[2];
+    (*found).south.marks_there = (*above).marks[1];
     (*above).objects[2] = (*above).objects[1];
     (*above).objects[1] = (*above).objects[0];
     (*above).objects[0] = (*found).east.object_here;
-    (*above).slots[2] = (*above).slots[1];
-    (*above).slots[1] = (*above).slots[0];
-    (*above).slots[0] = (*found).east.slot_here;
+    (*above).marks[2] = (*above).marks[1];
+    (*above).marks[1] = (*above).marks[0];
+    (*above).marks[0] = (*found).east.marks_here;
 }
 #endif
 

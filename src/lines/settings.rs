@@ -38,6 +38,8 @@ pub struct LineSettings {
     pub smooth: bool,
     /// How wide lines are in different places.
     pub weight: LineWeight,
+    /// Fraction of an area that lines may cover where they crowd; 1: no limit.
+    pub budget: f32,
     /// What happens to lines in the engine's distance fog.
     pub fog: LineFog,
 }
@@ -60,6 +62,7 @@ impl LineSettings {
         response: LineResponse::Width,
         smooth: true,
         weight: LineWeight::EVEN,
+        budget: 1.0,
         fog: LineFog::Fade,
     };
 
@@ -96,6 +99,11 @@ impl LineSettings {
     /// Whether width or opacity decreases along the depth map, which is then read.
     pub fn fades(&self) -> bool {
         self.width_fade > 0.0 || self.opacity_fade > 0.0
+    }
+
+    /// Whether there are creases of the corrected form.
+    pub(crate) fn has_measured_creases(&self) -> bool {
+        self.creases.is_some_and(|c| c.form == Form::Corrected)
     }
 
     /// Whether any kind has the faithful form, whose ink is not found along cracks.

@@ -16,6 +16,12 @@
 #import bevy_comics::lines::weight::{
     kind_weight, light_weight, nib_weight, perspective_weight, taper_weight, weighted_crack,
 }
+#ifdef BUDGET
+#import bevy_comics::lines::budget::{
+    NEAR_COLUMNS, budget_weight, column_weight, counted, line_density,
+}
+#import bevy_comics::lines::edge::unpack_width
+#endif
 #ifdef FOG
 #import bevy_comics::lines::fog::{fog_distance, fog_fraction}
 #endif
@@ -114,6 +120,22 @@ fn lit_weight(here: vec2<i32>, there: vec2<i32>, crack: vec3<i32>, silhouette: b
 }
 #endif
 
+#ifdef BUDGET
+// Length of lines per area around the cell, in 1 / pixels of the viewport.
+var<private> density: f32;
+
+fn density_around(g: Grid, cell: vec2<i32>) -> f32 {
+    let first = cell - vec2((NEAR_COLUMNS - COLUMNS) / 2, ROWS_ABOVE);
+    var sum = 0.0;
+    for (var i = 0; i < NEAR_COLUMNS; i++) {
+        let east = column_window(g, LINKED_EAST, first.x + i, first.y);
+        let south = column_window(g, LINKED_SOUTH, first.x + i, first.y);
+        sum += column_weight(i) * (counted(east) + counted(south));
+    }
+    return line_density(sum) * g.from_viewport.x;
+}
+#endif
+
 // A packed crack as wide and as strong as it is to be. `bend`: how its line leaves it.
 fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let g = line_pass.grid;
@@ -140,6 +162,10 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let back = cracks_to_end(g, crack, first_corner(crack), most);
     let on = cracks_to_end(g, crack, last_corner(crack), most);
     factor *= taper_weight(w, min(back, on));
+#endif
+#ifdef BUDGET
+    let width = 2.0 * unpack_width(packed >> 20u) * factor;
+    factor *= budget_weight(w.budget, density, width);
 #endif
     var fog = 0.0;
 #ifdef FOG
@@ -212,6 +238,9 @@ fn settle(
     set_view(line_pass.seen);
 #endif
     let g = line_pass.grid;
+#ifdef BUDGET
+    density = density_around(g, cell);
+#endif
     // The cracks of lines, and which of them touch two other cracks or more.
     var east: array<u32, WIDTH>;
     var south: array<u32, WIDTH>;

@@ -45,6 +45,9 @@ fn may_be_cracks(s: Lines, at: Borders) -> bool {
 #ifdef OBJECT_EDGES
     found |= at.object_here != at.object_there;
 #endif
+#ifdef SECTIONS
+    found |= at.marks_here != at.marks_there;
+#endif
     return any(found);
 }
 

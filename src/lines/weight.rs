@@ -145,7 +145,7 @@ impl LineWeight {
 
     /// The settings as shaders take them. `scale`: pixels of the grid per logical pixel;
     /// `to_light`: unit vector.
-    pub(crate) fn uniform(&self, scale: f32, to_light: Vec3) -> WeightUniform {
+    pub(crate) fn uniform(&self, scale: f32, to_light: Vec3, budget: f32) -> WeightUniform {
         let angle = self.nib_angle.to_radians();
         WeightUniform {
             outer: self.outer,
@@ -160,7 +160,8 @@ impl LineWeight {
             lit: self.lit,
             perspective: self.perspective,
             taper: (self.taper * scale).min(LONGEST_TAPER),
-            unused: Vec2::ZERO,
+            budget,
+            unused: 0.0,
         }
     }
 }
@@ -185,7 +186,8 @@ pub(crate) struct WeightUniform {
     lit: f32,
     perspective: f32,
     taper: f32,
-    unused: Vec2,
+    budget: f32,
+    unused: f32,
 }
 
 /// Which factors of width and opacity are not 1: what selects the variants of the passes.
@@ -198,6 +200,8 @@ pub(crate) struct WeightKey {
     pub perspective: bool,
     pub nib: bool,
     pub taper: bool,
+    /// Lines are thinner where they crowd.
+    pub budget: bool,
     /// Lines fade into fog.
     pub fog: bool,
 }
@@ -213,16 +217,18 @@ impl WeightKey {
             perspective: weight.perspective > 0.0,
             nib: weight.nib < 1.0 && lines.smooth,
             taper: weight.taper > 0.0,
+            budget: lines.budget < 1.0,
             fog: false,
         }
     }
 
-    /// Whether any factor is not 1, that of the fog included.
+    /// Whether any factor is not 1, those of the budget and of the fog included.
     pub fn any(self) -> bool {
-        self.kinds || self.fog || self.varies()
+        self.kinds || self.budget || self.fog || self.varies()
     }
 
-    /// Whether the width changes along a line.
+    /// Whether the width changes along a line. Where lines crowd, a shift of half a pixel
+    /// cannot be seen.
     pub fn varies(self) -> bool {
         self.light || self.perspective || self.nib || self.taper
     }

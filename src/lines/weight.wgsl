@@ -23,7 +23,9 @@ struct Weight {
     perspective: f32,
     // Cracks over which a line becomes thinner towards a loose end.
     taper: f32,
-    unused: vec2<f32>,
+    // Fraction of an area that lines may cover.
+    budget: f32,
+    unused: f32,
 }
 
 // The factor of a crack with these kinds. `outer`: there is sky or another object behind it.

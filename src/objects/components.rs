@@ -142,7 +142,7 @@ impl OutlineStyle {
 
 /// Adds an entity with what a component of it says; if that is `inherited`, its descendants
 /// too, up to those that have the component themselves.
-fn inherit<T: Copy>(
+pub(super) fn inherit<T: Copy>(
     into: &mut EntityHashMap<T>,
     (entity, said): (Entity, T),
     inherited: bool,
@@ -196,7 +196,10 @@ pub(crate) fn assign_object_styles(
         let own = |child| unstyled.contains(child);
         inherit(&mut bare, (entity, ()), none.inherit, &children, own);
     }
-    let mut table = ObjectStyles::default();
+    let mut table = ObjectStyles {
+        sections: styles.sections,
+        ..Default::default()
+    };
     for (entity, uniform) in &outlines {
         let kinds = uniform.kinds
             | if bare.contains_key(entity) {

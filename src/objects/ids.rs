@@ -17,7 +17,7 @@ use bevy::{
         world::World,
     },
     log::error_once,
-    math::UVec2,
+    math::UVec4,
     mesh::Mesh3d,
     pbr::MeshPipeline,
     platform::collections::HashSet,
@@ -48,6 +48,7 @@ use super::{
         init_object_id_pipeline,
     },
     phase::ObjectIdItem,
+    sections::{SectionBuffer, SectionTables, extract_sections, prepare_sections},
 };
 use crate::{
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
@@ -141,6 +142,7 @@ fn queue_object_ids(
 fn prepare_object_table(
     phases: Res<ViewSortedRenderPhases<ObjectIdItem>>,
     (styles, groups): (Res<ObjectStyles>, Res<ObjectGroups>),
+    (sections, section_tables): (Res<SectionBuffer>, Res<SectionTables>),
     (shared, cache): (Res<ObjectIdPipeline>, Res<PipelineCache>),
     mut table: ResMut<ObjectTable>,
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
@@ -151,23 +153,24 @@ fn prepare_object_table(
     for item in phases.values().flat_map(|phase| phase.items.values()) {
         let at = item.batch_range.start as usize;
         if objects.len() <= at {
-            objects.resize(at + 1, UVec2::ZERO);
+            objects.resize(at + 1, UVec4::ZERO);
         }
         let mesh = item.main_entity().id();
         let slot = styles.slots.get(&mesh).copied();
         let id = object_id(groups.object(mesh));
-        objects[at] = UVec2::new(u32::from(id), u32::from(slot.unwrap_or(0)));
+        let start = sections.start(&section_tables, mesh).unwrap_or(0);
+        objects[at] = UVec4::new(u32::from(id), u32::from(slot.unwrap_or(0)), start, 0);
     }
     table.bind_group = None;
     if objects.is_empty() {
         return;
     }
     table.objects.write_buffer(&device, &queue);
-    if let Some(binding) = table.objects.binding() {
+    if let (Some(objects), Some(sections)) = (table.objects.binding(), sections.buffer()) {
         table.bind_group = Some(device.create_bind_group(
             "comics_objects",
             &cache.get_bind_group_layout(&shared.layout),
-            &BindGroupEntries::single(binding),
+            &BindGroupEntries::sequential((objects, sections.as_entire_binding())),
         ));
     }
 }
@@ -236,7 +239,10 @@ pub(crate) fn build(app: &mut App) {
         return;
     };
     render_app
-        .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer>>()
+        .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer<false>>>()
+        .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer<true>>>()
+        .init_gpu_resource::<SectionBuffer>()
+        .init_resource::<SectionTables>()
         .init_gpu_resource::<ObjectTable>()
         .init_resource::<ObjectGroups>()
         .init_resource::<DrawFunctions<ObjectIdItem>>()
@@ -248,11 +254,16 @@ pub(crate) fn build(app: &mut App) {
         )
         .add_systems(
             ExtractSchedule,
-            (super::table::extract_object_styles, extract_object_groups),
+            (
+                super::table::extract_object_styles,
+                extract_object_groups,
+                extract_sections,
+            ),
         )
         .add_systems(
             Render,
             (
+                prepare_sections.in_set(RenderSystems::PrepareAssets),
                 queue_object_ids.in_set(RenderSystems::QueueMeshes),
                 sort_phase_system::<ObjectIdItem>.in_set(RenderSystems::PhaseSort),
                 prepare_object_table.in_set(RenderSystems::PrepareBindGroups),

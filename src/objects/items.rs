@@ -12,7 +12,7 @@ use bevy::{
         AlphaMode, MaterialProperties,
         key::{ErasedMaterialPipelineKey, ErasedMeshPipelineKey},
     },
-    math::UVec2,
+    math::UVec4,
     mesh::MeshVertexBufferLayoutRef,
     pbr::{
         DrawMesh, MeshPipelineKey, PreparedMaterial, PrepassFragmentShader, PrepassPipeline,
@@ -20,6 +20,7 @@ use bevy::{
         RenderMeshInstances, SetMaterialBindGroup, SetMeshBindGroup,
         SetPrepassEmptyMaterialBindGroup, SetPrepassViewBindGroup,
     },
+    platform::sync::Arc,
     render::{
         erased_render_asset::ErasedRenderAssets,
         mesh::RenderMesh,
@@ -40,14 +41,19 @@ use bevy::{
     shader::Shader,
 };
 
-use super::{ID_FORMAT, phase::ObjectIdItem};
+use super::{
+    ID_FORMAT,
+    phase::ObjectIdItem,
+    sections::{SectionBuffer, SectionTables},
+};
 
 /// The parts that all pipelines of this pass have in common.
 #[derive(Resource)]
 pub(super) struct ObjectIdPipeline {
     pub prepass: PrepassPipeline,
     pub layout: BindGroupLayoutDescriptor,
-    shader: Handle<Shader>,
+    /// Without and with sections.
+    shaders: [Handle<Shader>; 2],
 }
 
 pub(super) fn init_object_id_pipeline(
@@ -59,22 +65,45 @@ pub(super) fn init_object_id_pipeline(
         prepass: prepass.clone(),
         layout: BindGroupLayoutDescriptor::new(
             "comics_objects",
-            &BindGroupLayoutEntries::single(
+            &BindGroupLayoutEntries::sequential(
                 ShaderStages::FRAGMENT,
-                storage_buffer_read_only::<Vec<UVec2>>(false),
+                (
+                    storage_buffer_read_only::<Vec<UVec4>>(false),
+                    storage_buffer_read_only::<Vec<u32>>(false),
+                ),
             ),
         ),
-        shader: load_embedded_asset!(assets.as_ref(), "ids.wgsl"),
+        shaders: [
+            load_embedded_asset!(assets.as_ref(), "ids.wgsl"),
+            load_embedded_asset!(assets.as_ref(), "sections.wgsl"),
+        ],
     });
 }
 
-pub(super) struct ObjectIdSpecializer {
+impl ObjectIdPipeline {
+    fn specializer<const SECTIONS: bool>(
+        &self,
+        properties: &Arc<MaterialProperties>,
+    ) -> ObjectIdSpecializer<SECTIONS> {
+        ObjectIdSpecializer {
+            prepass: PrepassPipelineSpecializer {
+                pipeline: self.prepass.clone(),
+                properties: properties.clone(),
+            },
+            layout: self.layout.clone(),
+            shader: self.shaders[usize::from(SECTIONS)].clone(),
+        }
+    }
+}
+
+/// `SECTIONS`: for meshes that are divided into sections.
+pub(super) struct ObjectIdSpecializer<const SECTIONS: bool> {
     prepass: PrepassPipelineSpecializer,
     layout: BindGroupLayoutDescriptor,
     shader: Handle<Shader>,
 }
 
-impl SpecializedMeshPipeline for ObjectIdSpecializer {
+impl<const SECTIONS: bool> SpecializedMeshPipeline for ObjectIdSpecializer<SECTIONS> {
     type Key = ErasedMaterialPipelineKey;
 
     fn specialize(
@@ -103,10 +132,11 @@ impl SpecializedMeshPipeline for ObjectIdSpecializer {
     }
 }
 
-/// (id, style slot) of each object, indexed by the instance index of its phase item.
+/// Id, style slot and first word of the sections of each object, indexed by the instance
+/// index of its phase item.
 #[derive(Resource, Default)]
 pub(super) struct ObjectTable {
-    pub objects: StorageBuffer<Vec<UVec2>>,
+    pub objects: StorageBuffer<Vec<UVec4>>,
     pub bind_group: Option<BindGroup>,
 }
 
@@ -173,7 +203,9 @@ fn in_prepass(properties: &MaterialProperties) -> bool {
 pub(super) struct IdItems<'w> {
     draw_functions: Res<'w, DrawFunctions<ObjectIdItem>>,
     shared: Res<'w, ObjectIdPipeline>,
-    pipelines: ResMut<'w, SpecializedMeshPipelines<ObjectIdSpecializer>>,
+    pipelines: ResMut<'w, SpecializedMeshPipelines<ObjectIdSpecializer<false>>>,
+    with_sections: ResMut<'w, SpecializedMeshPipelines<ObjectIdSpecializer<true>>>,
+    sections: (Res<'w, SectionBuffer>, Res<'w, SectionTables>),
     cache: Res<'w, PipelineCache>,
     meshes: Res<'w, RenderAssets<RenderMesh>>,
     instances: Res<'w, RenderMeshInstances>,
@@ -201,22 +233,23 @@ impl IdItems<'_> {
         if uses_material {
             mesh_key |= MeshPipelineKey::PREPASS_READS_MATERIAL;
         }
-        let specializer = ObjectIdSpecializer {
-            prepass: PrepassPipelineSpecializer {
-                pipeline: self.shared.prepass.clone(),
-                properties: material.properties.clone(),
-            },
-            layout: self.shared.layout.clone(),
-            shader: self.shared.shader.clone(),
-        };
         let key = ErasedMaterialPipelineKey {
             type_id: material_instance.asset_id.type_id(),
             mesh_key: ErasedMeshPipelineKey::new(mesh_key),
             material_key: material.properties.material_key.clone(),
         };
-        let pipeline = self
-            .pipelines
-            .specialize(&self.cache, &specializer, key, &mesh.layout)
+        let (buffer, tables) = &self.sections;
+        let cache = &self.cache;
+        let pipeline = if buffer.start(tables, object.1.id()).is_some() {
+            let specializer = self.shared.specializer(&material.properties);
+            let pipelines = &mut self.with_sections;
+            pipelines.specialize(cache, &specializer, key, &mesh.layout)
+        } else {
+            let specializer = self.shared.specializer(&material.properties);
+            let pipelines = &mut self.pipelines;
+            pipelines.specialize(cache, &specializer, key, &mesh.layout)
+        };
+        let pipeline = pipeline
             .inspect_err(|error| error_once!("no object id for {:?}: {error}", object.1))
             .ok()?;
         let functions = self.draw_functions.read();

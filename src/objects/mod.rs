@@ -9,6 +9,8 @@ mod ids;
 mod items;
 #[cfg(feature = "objects")]
 mod phase;
+#[cfg(feature = "objects")]
+mod sections;
 mod table;
 
 #[cfg(feature = "objects")]
@@ -19,6 +21,8 @@ pub use components::{NoOutlines, NoStyle, OutlineKinds, OutlineStyle};
 pub use groups::OutlineGroup;
 #[cfg(feature = "objects")]
 pub use ids::object_id;
+#[cfg(feature = "objects")]
+pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
 
 pub(crate) use table::{ObjectChanges, ObjectStyleBuffer, ObjectStyles};
 
@@ -45,7 +49,7 @@ use bevy::{
 
 use crate::schedule::PrepareComics;
 
-/// Format of the texture of object ids: (id, style slot).
+/// Format of the texture of object ids: id; style slot and section.
 pub(crate) const ID_FORMAT: bevy::render::render_resource::TextureFormat =
     bevy::render::render_resource::TextureFormat::Rg16Uint;
 
@@ -77,8 +81,9 @@ pub(crate) struct IdRequest {
     allow(dead_code, reason = "only the feature `objects` draws ids")
 )]
 pub struct ViewObjectIds {
-    /// `Rg16Uint`: red is the [`object_id`](crate::object_id) (0: no object), green is
-    /// the slot of the mesh's outline style (0: it has none).
+    /// `Rg16Uint`: red is the [`object_id`](crate::object_id) (0: no object). The low byte of
+    /// green is the slot of the mesh's outline style (0: it has none), the high byte the
+    /// section of the mesh (0: it has none; see [`MeshSections`](crate::MeshSections)).
     pub texture: Texture,
     pub(crate) view: TextureView,
 }
@@ -122,6 +127,7 @@ impl Plugin for ObjectsPlugin {
                 .register_type::<NoStyle>()
                 .add_systems(bevy::app::PostUpdate, components::assign_object_styles);
             groups::build(app);
+            sections::build(app);
         }
     }
 
@@ -141,7 +147,10 @@ impl ObjectsPlugin {
     pub(crate) fn build_render(app: &mut App) {
         load_shader_library!(app, "objects.wgsl");
         #[cfg(feature = "objects")]
-        bevy::asset::embedded_asset!(app, "ids.wgsl");
+        {
+            bevy::asset::embedded_asset!(app, "ids.wgsl");
+            bevy::asset::embedded_asset!(app, "sections.wgsl");
+        }
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;
         };

@@ -32,14 +32,20 @@ struct ObjectStyle {
 #endif
 
 #ifdef OBJECT_IDS
-// (id, style slot) of the object at a pixel's first sample; the id is 0 if there is none.
-fn load_object(pixel: vec2<i32>) -> vec2<u32> {
-    return texel_object(depth_pixel(pixel), 0);
-}
-
-// The same at a pixel and sample of the prepass textures.
+// The object at a pixel and sample of the prepass textures: its id, 0 if there is none, and
+// its marks: bits 0 to 7 are the slot of its style, bits 8 to 15 its section.
 fn texel_object(at: vec2<i32>, sample: i32) -> vec2<u32> {
     return textureLoad(object_texture, at, sample).xy;
+}
+
+// (id, style slot) of the object at a pixel's first sample.
+fn load_object(pixel: vec2<i32>) -> vec2<u32> {
+    return texel_object(depth_pixel(pixel), 0) & vec2(65535u, 255u);
+}
+
+// The slot of the style of the object at a pixel and sample of the prepass textures.
+fn texel_slot(at: vec2<i32>, sample: i32) -> u32 {
+    return texel_object(at, sample).y & 255u;
 }
 #endif
 
@@ -58,11 +64,11 @@ fn unstyled_fraction(pixel: vec2<i32>) -> f32 {
     let samples = i32(textureNumSamples(object_texture));
     var found = 0u;
     for (var s = 0; s < samples; s++) {
-        found += (style_of(texel_object(at, s).y).kinds >> 3u) & 1u;
+        found += (style_of(texel_slot(at, s)).kinds >> 3u) & 1u;
     }
     return f32(found) / f32(samples);
 #else
-    return f32((style_of(texel_object(at, 0).y).kinds >> 3u) & 1u);
+    return f32((style_of(texel_slot(at, 0)).kinds >> 3u) & 1u);
 #endif
 }
 #endif

@@ -36,13 +36,15 @@ impl Default for ObjectStyleUniform {
 #[cfg(feature = "objects")]
 pub(crate) const MOST_STYLES: usize = 255;
 
-/// The objects that have an `OutlineStyle` or `NoOutlines`. Both worlds have a copy.
+/// The objects that are drawn in another way than the others. Both worlds have a copy.
 #[derive(Resource, Clone, Debug, Default, PartialEq)]
 pub(crate) struct ObjectStyles {
     /// The table, by slot. Slot 0 is for objects without a style.
     pub entries: Vec<ObjectStyleUniform>,
     /// The slot of each object, by main-world entity.
     pub slots: EntityHashMap<u8>,
+    /// Some mesh is divided into sections.
+    pub sections: bool,
 }
 
 /// The bit of `ObjectStyleUniform::kinds` of objects that the colour effects leave alone.
@@ -54,6 +56,8 @@ pub(crate) const UNSTYLED: u32 = 8;
 pub(crate) struct ObjectChanges {
     /// Some object has its own line style, or no lines, or [`UNSTYLED`].
     pub any: bool,
+    /// Some mesh is divided into sections.
+    pub sections: bool,
     /// The colour effects leave some object alone.
     pub unstyled: bool,
 }
@@ -70,6 +74,7 @@ impl ObjectStyles {
         let unstyled = false;
         ObjectChanges {
             any: self.any(),
+            sections: self.sections,
             unstyled,
         }
     }

@@ -6,7 +6,9 @@ use bevy::{
     camera::RenderTarget, core_pipeline::tonemapping::DebandDither, ecs::system::RunSystemOnce,
     prelude::*, render::view::Msaa, time::TimeUpdateStrategy,
 };
-use bevy_comics::{CartoonScene, ComicStyle, ComicsPlugin, DepthMap, Preset, ToneBands, presets};
+use bevy_comics::{
+    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, MeshSections, Preset, ToneBands, presets,
+};
 
 use super::{
     headless::{Headless, HeadlessOptions},
@@ -144,15 +146,26 @@ pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
     shown.into_iter().map(Preset::name).collect()
 }
 
+/// The roots of the scene's parts.
+fn roots(world: &mut World) -> Vec<Entity> {
+    let mut parts = world.query_filtered::<Entity, (With<ScenePart>, Without<ChildOf>)>();
+    parts.iter(world).collect()
+}
+
 /// Draws the whole scene with the cartoon material, or with its own materials.
 pub fn set_cartoon(world: &mut World, on: bool) {
-    let mut parts = world.query_filtered::<Entity, (With<ScenePart>, Without<ChildOf>)>();
-    let parts: Vec<Entity> = parts.iter(world).collect();
-    for part in parts {
+    for part in roots(world) {
         if on {
             world.entity_mut(part).insert(CartoonScene::default());
         } else {
             world.entity_mut(part).remove::<CartoonScene>();
         }
+    }
+}
+
+/// Divides all meshes of the scene into sections.
+pub fn set_sections(world: &mut World, sections: MeshSections) {
+    for part in roots(world) {
+        world.entity_mut(part).insert(sections);
     }
 }

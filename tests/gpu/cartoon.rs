@@ -61,18 +61,11 @@ fn stage(light: &Kind, msaa: Msaa) -> Stage {
             ..default()
         },
     );
-    let world = small.world();
-    let ground = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Plane3d::default().mesh().size(12.0, 12.0));
-    let caster = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Cuboid::from_size(HIGH - LOW));
-    let ground = world
-        .spawn((Object, Mesh3d(ground), white.clone(), Transform::IDENTITY))
-        .id();
+    let ground = Plane3d::default().mesh().size(12.0, 12.0);
+    let ground = small.put_shared(ground, white.clone(), Transform::IDENTITY);
     let middle = Transform::from_translation((LOW + HIGH) / 2.0);
-    world.spawn((Object, Mesh3d(caster), white, middle));
+    small.put_shared(Cuboid::from_size(HIGH - LOW), white, middle);
+    let world = small.world();
     world.insert_resource(GlobalAmbientLight {
         brightness: 100.0,
         ..default()
@@ -267,13 +260,8 @@ fn a_sphere_is_lit_on_one_side_and_dark_on_the_other() {
                 ..default()
             },
         );
-        let world = stage.small.world();
-        let ball = world
-            .resource_mut::<Assets<Mesh>>()
-            .add(Sphere::new(1.0).mesh().uv(96, 48));
-        let ball = world
-            .spawn((Object, Mesh3d(ball), white, Transform::IDENTITY))
-            .id();
+        let ball = Sphere::new(1.0).mesh().uv(96, 48);
+        let ball = stage.small.put_shared(ball, white, Transform::IDENTITY);
         stage.small.headless.step(6);
         let normals = {
             stage

@@ -9,7 +9,7 @@ use bevy_comics::{
     Form, Outlines, ToneBands, VisibleDepthRange,
 };
 
-use crate::small::{Object, Small};
+use crate::small::{Small, unlit};
 
 /// An empty scene, seen from the origin.
 fn bare(size: UVec2) -> Small {
@@ -26,24 +26,11 @@ fn empty(small: &mut Small) {
 }
 
 fn wall(small: &mut Small, size: f32, distance: f32, color: Color) {
-    let mesh = small
-        .world()
-        .resource_mut::<Assets<Mesh>>()
-        .add(Rectangle::new(size, size));
-    let material = small
-        .world()
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: color,
-            unlit: true,
-            ..default()
-        });
-    small.world().spawn((
-        Object,
-        Mesh3d(mesh),
-        MeshMaterial3d(material),
+    small.put(
+        Rectangle::new(size, size),
+        unlit(color),
         Transform::from_xyz(0.0, 0.0, -distance),
-    ));
+    );
 }
 
 fn full() -> ComicStyle {

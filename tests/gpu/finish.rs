@@ -9,7 +9,7 @@ use image::RgbaImage;
 
 use bevy_comics_testkit::reference::color;
 
-use crate::small::{Small, size, with_option};
+use crate::small::{Small, linear, size, with_option};
 
 fn styled() -> Small {
     let mut small = Small::new(size(), Msaa::Off);
@@ -20,11 +20,6 @@ fn styled() -> Small {
 fn shoot(small: &mut Small) -> RgbaImage {
     small.settle();
     small.picture()
-}
-
-fn linear(picture: &RgbaImage, x: u32, y: u32) -> [f64; 3] {
-    let [r, g, b, _] = picture.get_pixel(x, y).0;
-    color::srgb_decode([r, g, b].map(|c| f64::from(c) / 255.0))
 }
 
 #[test]

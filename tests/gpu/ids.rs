@@ -14,18 +14,14 @@ use bevy_comics::{NoOutlines, ObjectEdges, OutlineKinds, OutlineStyle, Outlines,
 
 use crate::{
     outlines::ink,
-    small::{Object, Small},
+    small::{Object, Small, unlit},
 };
 
 pub fn material(
     small: &mut Small,
     change: impl FnOnce(&mut StandardMaterial),
 ) -> Handle<StandardMaterial> {
-    let mut material = StandardMaterial {
-        base_color: Color::srgb(0.8, 0.75, 0.7),
-        unlit: true,
-        ..default()
-    };
+    let mut material = unlit(Color::srgb(0.8, 0.75, 0.7));
     change(&mut material);
     small
         .world()
@@ -34,14 +30,7 @@ pub fn material(
 }
 
 pub fn cube(small: &mut Small, material: Handle<StandardMaterial>, at: Transform) -> Entity {
-    let mesh = small
-        .world()
-        .resource_mut::<Assets<Mesh>>()
-        .add(Cuboid::default());
-    small
-        .world()
-        .spawn((Object, Mesh3d(mesh), MeshMaterial3d(material), at))
-        .id()
+    small.put_shared(Cuboid::default(), MeshMaterial3d(material), at)
 }
 
 /// Two cubes side by side, flush in front, before the sky.

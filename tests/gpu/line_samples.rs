@@ -1,10 +1,6 @@
 //! Lines of multisampled views: the sample of a pixel that they read.
 
-use bevy::{
-    camera::{ScalingMode, Viewport},
-    prelude::*,
-    render::view::Msaa,
-};
+use bevy::{camera::Viewport, prelude::*, render::view::Msaa};
 use bevy_comics::{
     ComicStyle, ComicsDiagnostics, ComicsStage, Form, LeftOut, Outlines, Silhouettes, StageOutcome,
 };
@@ -15,6 +11,7 @@ use crate::{
     outlines::{ink, look, put},
     pictures::{assert_pass_is_its_twin, outlined},
     small::{Small, size},
+    walls::unit_per_pixel,
 };
 
 const SIZE: u32 = 120;
@@ -24,13 +21,8 @@ fn empty(small: &mut Small) {
     small.restart(Msaa::Sample4);
     small.clear();
     look(small, Vec3::ZERO, Vec3::NEG_Z, 0.1);
-    small.insert(Projection::Orthographic(OrthographicProjection {
-        scaling_mode: ScalingMode::Fixed {
-            width: SIZE as f32,
-            height: SIZE as f32,
-        },
-        ..OrthographicProjection::default_3d()
-    }));
+    let projection = unit_per_pixel(UVec2::splat(SIZE));
+    small.insert(Projection::Orthographic(projection));
 }
 
 /// A white rectangle below the line of this angle through a point in pixels from the

@@ -1,7 +1,6 @@
 //! Whether lines are where the geometry says, and as wide as asked.
 
 use bevy::{
-    camera::ScalingMode,
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     prelude::*,
     render::{RenderApp, sync_world::RenderEntity, view::Msaa},
@@ -18,6 +17,7 @@ use bevy_comics_testkit::{
 use crate::{
     outlines::{ink, look, put},
     small::Small,
+    walls::{self, unit_per_pixel},
 };
 
 const SIZE: UVec2 = UVec2::new(120, 120);
@@ -44,12 +44,8 @@ fn empty(small: &mut Small) {
 /// A wall at a distance, from column `from` to column `to`.
 fn wall(small: &mut Small, from: f32, to: f32, distance: f32) {
     let [left, right] = [from, to].map(|x| (x - 60.0) / 60.0 * distance);
-    put(
-        small,
-        Rectangle::new(right - left, 8.0 * distance),
-        Color::WHITE,
-        Transform::from_xyz(0.5 * (left + right), 0.0, -distance),
-    );
+    let top = 4.0 * distance;
+    walls::wall(small, [left, -top], [right, top], distance);
 }
 
 /// Ink of the middle row.
@@ -187,13 +183,7 @@ fn worst_width(smooth: bool) -> f64 {
 /// pixels above the middle.
 fn half_plane(small: &mut Small, angle: f32, shift: f32) -> Entity {
     empty(small);
-    small.insert(Projection::Orthographic(OrthographicProjection {
-        scaling_mode: ScalingMode::Fixed {
-            width: 120.0,
-            height: 120.0,
-        },
-        ..OrthographicProjection::default_3d()
-    }));
+    small.insert(Projection::Orthographic(unit_per_pixel(SIZE)));
     let turn = Quat::from_rotation_z(angle);
     let middle = Vec3::new(0.0, shift, -10.0) + turn * Vec3::new(0.0, -400.0, 0.0);
     put(

@@ -5,7 +5,7 @@ use bevy_comics::{ContourOperator, Contours, DepthMap, DepthMapping};
 
 use bevy_comics_testkit::read_back::DepthImage;
 
-use crate::small::{Object, Small};
+use crate::small::{Small, black_ink, unlit};
 
 const OPERATORS: [ContourOperator; 4] = [
     ContourOperator::Prewitt,
@@ -32,19 +32,11 @@ fn empty(small: &mut Small, msaa: Msaa) {
 }
 
 fn add(small: &mut Small, mesh: impl Into<Mesh>, at: Transform) {
-    let mesh = small.world().resource_mut::<Assets<Mesh>>().add(mesh);
-    let material = small
-        .world()
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: Color::WHITE,
-            unlit: true,
-            cull_mode: None,
-            ..default()
-        });
-    small
-        .world()
-        .spawn((Object, Mesh3d(mesh), MeshMaterial3d(material), at));
+    let material = StandardMaterial {
+        cull_mode: None,
+        ..unlit(Color::WHITE)
+    };
+    small.put(mesh, material, at);
 }
 
 /// Coordinates of the inked pixels.
@@ -257,13 +249,7 @@ fn a_line_is_as_wide_as_asked_at_every_scale() {
         let picture = small.picture();
         // Coverage across the vertical edge in the middle row: black ink over
         // white, in linear light.
-        let covered: f64 = (0..120)
-            .map(|x| {
-                1.0 - bevy_comics_testkit::reference::color::srgb_decode_one(
-                    f64::from(picture.get_pixel(x, 30).0[0]) / 255.0,
-                )
-            })
-            .sum();
+        let covered = black_ink(&picture, (0..120).map(|x| (x, 30)));
         let asked = f64::from(width * scale);
         assert!(
             (covered - asked).abs() <= 0.5,

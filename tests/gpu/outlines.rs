@@ -6,12 +6,10 @@ use bevy_comics::{ComicStyle, Form, Outlines, Silhouettes};
 
 use bevy_comics_testkit::{read_back::IdImage, work::along_cracks};
 
-use crate::small::{Object, Small};
+use crate::small::{Object, Small, unlit};
 
 /// Ink of every pixel: the fraction of its light that the pass removed.
-pub fn ink(small: &mut Small, outlines: Outlines) -> Vec<f32> {
-    small.style(&ComicStyle::default().with(outlines));
-    small.settle();
+pub fn removed(small: &Small) -> Vec<f32> {
     let (input, output) = small.pass();
     input
         .pixels
@@ -24,25 +22,21 @@ pub fn ink(small: &mut Small, outlines: Outlines) -> Vec<f32> {
         .collect()
 }
 
-fn unlit(world: &mut World, color: Color) -> Handle<StandardMaterial> {
-    world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: color,
-            unlit: true,
-            double_sided: true,
-            cull_mode: None,
-            ..default()
-        })
+/// The ink of every pixel under outlines.
+pub fn ink(small: &mut Small, outlines: Outlines) -> Vec<f32> {
+    small.style(&ComicStyle::default().with(outlines));
+    small.settle();
+    removed(small)
 }
 
+/// Adds an unlit object that is seen from both sides.
 pub fn put(small: &mut Small, mesh: impl Into<Mesh>, color: Color, at: Transform) -> Entity {
-    let world = small.world();
-    let material = unlit(world, color);
-    let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
-    world
-        .spawn((Object, Mesh3d(mesh), MeshMaterial3d(material), at))
-        .id()
+    let material = StandardMaterial {
+        double_sided: true,
+        cull_mode: None,
+        ..unlit(color)
+    };
+    small.put(mesh, material, at)
 }
 
 pub fn look(small: &mut Small, eye: Vec3, target: Vec3, near: f32) {

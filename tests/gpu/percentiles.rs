@@ -14,7 +14,7 @@ use bevy_comics_testkit::{reference::histogram::Bins, scenes::noise::Random, stu
 
 use crate::{
     range::{SHAPES, reduce_and_count},
-    small::{Small, options},
+    small::{Small, options, unlit},
     smoothing::{Outliers, SMOOTH, frame, run},
 };
 
@@ -192,19 +192,12 @@ fn walls() -> Small {
     let mut small = Small::with(options(size), Msaa::Off);
     small.clear();
     for (x, width, distance) in [(-4.0, 8.0, 20.0), (4.0, 8.0, 24.0), (0.0, 0.8, 2.0)] {
-        let world = small.world();
         let height = if width < 1.0 { 0.8 } else { 20.0 };
-        let mesh = world
-            .resource_mut::<Assets<Mesh>>()
-            .add(Rectangle::new(width, height));
-        let material = world
-            .resource_mut::<Assets<StandardMaterial>>()
-            .add(StandardMaterial {
-                unlit: true,
-                ..default()
-            });
-        let at = Transform::from_xyz(x, 0.0, -distance);
-        world.spawn((Mesh3d(mesh), MeshMaterial3d(material), at));
+        small.put(
+            Rectangle::new(width, height),
+            unlit(Color::WHITE),
+            Transform::from_xyz(x, 0.0, -distance),
+        );
     }
     small.insert((
         Projection::Orthographic(OrthographicProjection {

@@ -134,19 +134,11 @@ fn distances_are_right_under_every_projection() {
         let mut small = Small::new(UVec2::new(64, 64), Msaa::Off);
         // Only a wall across the view, at distance 7.
         small.clear();
-        let mesh = small
-            .world()
-            .resource_mut::<Assets<Mesh>>()
-            .add(Rectangle::new(200.0, 200.0));
-        let material = small
-            .world()
-            .resource_mut::<Assets<StandardMaterial>>()
-            .add(Color::WHITE);
-        small.world().spawn((
-            Mesh3d(mesh),
-            MeshMaterial3d(material),
+        small.put(
+            Rectangle::new(200.0, 200.0),
+            Color::WHITE.into(),
             Transform::from_xyz(0.0, 0.0, -7.0),
-        ));
+        );
         small
             .insert((
                 projection,

@@ -20,7 +20,7 @@ use bevy_comics_testkit::{
     before::BeforeStylize,
     headless::{Headless, HeadlessOptions},
     read_back::{self, DepthImage, FloatImage, IdImage},
-    reference::resolve::Prepass,
+    reference::{color, resolve::Prepass},
 };
 
 /// Errors that the renderer reported.
@@ -109,6 +109,32 @@ impl Small {
         }
     }
 
+    /// Adds an object with a material of its own.
+    pub fn put(
+        &mut self,
+        mesh: impl Into<Mesh>,
+        material: StandardMaterial,
+        at: Transform,
+    ) -> Entity {
+        let material = self
+            .world()
+            .resource_mut::<Assets<StandardMaterial>>()
+            .add(material);
+        self.put_shared(mesh, MeshMaterial3d(material), at)
+    }
+
+    /// Adds an object with a material that others may have too.
+    pub fn put_shared(
+        &mut self,
+        mesh: impl Into<Mesh>,
+        material: impl Bundle,
+        at: Transform,
+    ) -> Entity {
+        let world = self.world();
+        let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+        world.spawn((Object, Mesh3d(mesh), material, at)).id()
+    }
+
     pub fn style(&mut self, style: &ComicStyle) {
         let camera = self.camera;
         let world = self.world();
@@ -191,6 +217,26 @@ impl Small {
     }
 }
 
+/// A material that has its colour whatever the light.
+pub fn unlit(color: Color) -> StandardMaterial {
+    StandardMaterial {
+        base_color: color,
+        unlit: true,
+        ..default()
+    }
+}
+
+/// A pixel of a picture in linear light.
+pub fn linear(picture: &image::RgbaImage, x: u32, y: u32) -> [f64; 3] {
+    let [r, g, b, _] = picture.get_pixel(x, y).0;
+    color::srgb_decode([r, g, b].map(|c| f64::from(c) / 255.0))
+}
+
+/// The sum of black ink on white over pixels of a picture: 1 for a pixel that is all ink.
+pub fn black_ink(picture: &image::RgbaImage, pixels: impl Iterator<Item = (u32, u32)>) -> f64 {
+    pixels.map(|(x, y)| 1.0 - linear(picture, x, y)[0]).sum()
+}
+
 /// Adds an effect to a style; `None` adds nothing.
 pub fn with_option<E: Effect>(style: ComicStyle, effect: Option<E>) -> ComicStyle {
     match effect {
@@ -237,11 +283,7 @@ pub fn spawn_objects(world: &mut World) {
     let mut material = |color: Color| {
         world
             .resource_mut::<Assets<StandardMaterial>>()
-            .add(StandardMaterial {
-                base_color: color,
-                unlit: true,
-                ..default()
-            })
+            .add(unlit(color))
     };
     let [red, green, grey, sand] = [
         Color::srgb(0.85, 0.2, 0.15),

@@ -15,7 +15,7 @@ use bevy_comics_testkit::{
     studio::with_map,
 };
 
-use crate::small::{Reshaped, Small, options, size};
+use crate::small::{Reshaped, Small, options, size, unlit};
 
 /// Slow enough to see, exact once it has arrived.
 const SLOW: RangeSmoothing = RangeSmoothing {
@@ -43,20 +43,8 @@ fn small() -> Small {
 
 /// A wall close to the camera, in a corner of the view.
 fn intrude(small: &mut Small) -> Entity {
-    let world = small.world();
-    let mesh = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Cuboid::from_length(0.3));
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            unlit: true,
-            ..default()
-        });
     let at = Transform::from_xyz(1.0, 2.3, 4.9);
-    world
-        .spawn((Mesh3d(mesh), MeshMaterial3d(material), at))
-        .id()
+    small.put(Cuboid::from_length(0.3), unlit(Color::WHITE), at)
 }
 
 /// The picture after the range was reset.

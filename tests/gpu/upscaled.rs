@@ -5,7 +5,7 @@
 //! light that the pass removes is where it belongs all the same.
 
 use bevy::{
-    camera::{MainPassResolutionOverride, ScalingMode, Viewport},
+    camera::{MainPassResolutionOverride, Viewport},
     prelude::*,
     render::{Render, RenderApp, RenderSystems, camera::ExtractedCamera, view::Msaa},
 };
@@ -15,8 +15,9 @@ use bevy_comics::{
 };
 
 use crate::{
-    outlines::{look, put},
+    outlines::{look, put, removed},
     small::Small,
+    walls::{towards_the_sky, unit_per_pixel},
 };
 
 /// In the render world: the size of all main passes.
@@ -64,16 +65,11 @@ fn new() -> Small {
     Small::new(UVec2::new(WIDTH, HEIGHT), Msaa::Off)
 }
 
-/// Ink of every pixel under a style: the fraction of its light that the pass removed.
+/// The ink of every pixel under a style.
 fn ink(small: &mut Small, style: &ComicStyle) -> Vec<f32> {
     small.style(style);
     small.settle();
-    let (input, output) = small.pass();
-    let light = |p: &[f32; 4]| p[0] + p[1] + p[2];
-    let pixels = input.pixels.iter().zip(&output.pixels);
-    pixels
-        .map(|(a, b)| 1.0 - light(b) / light(a).max(1e-6))
-        .collect()
+    removed(small)
 }
 
 fn of<E: Effect>(effect: E) -> ComicStyle {
@@ -91,19 +87,12 @@ const BOXES: [(Rectangle4, f32); 2] = [
 
 /// An orthographic view, one unit per pixel, of the boxes.
 fn boxes() -> Small {
-    let mut small = new();
-    small.clear();
-    small.insert((
-        Transform::IDENTITY,
-        Projection::Orthographic(OrthographicProjection {
-            scaling_mode: ScalingMode::Fixed {
-                width: WIDTH as f32,
-                height: HEIGHT as f32,
-            },
-            far: 100.0,
-            ..OrthographicProjection::default_3d()
-        }),
-    ));
+    let size = UVec2::new(WIDTH, HEIGHT);
+    let mut small = towards_the_sky(size);
+    small.insert(Projection::Orthographic(OrthographicProjection {
+        far: 100.0,
+        ..unit_per_pixel(size)
+    }));
     for ([left, top, right, bottom], z) in BOXES {
         let middle = Vec3::new(
             0.5 * (left + right) - 0.5 * WIDTH as f32,
@@ -428,12 +417,8 @@ fn an_even_slope_is_as_steep_at_every_resolution() {
             .with_rotation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_3)),
     );
     small.insert(Projection::Orthographic(OrthographicProjection {
-        scaling_mode: ScalingMode::Fixed {
-            width: WIDTH as f32,
-            height: HEIGHT as f32,
-        },
         far: 1000.0,
-        ..OrthographicProjection::default_3d()
+        ..unit_per_pixel(UVec2::new(WIDTH, HEIGHT))
     }));
     for scale in SCALES {
         override_main_pass(&mut small, main_pass(scale));

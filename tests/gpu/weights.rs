@@ -1,7 +1,6 @@
 //! How wide lines are in different places.
 
 use bevy::{
-    camera::ScalingMode,
     pbr::{DistanceFog, FogFalloff},
     prelude::*,
     render::view::Msaa,
@@ -12,8 +11,11 @@ use bevy_comics::{
 
 use crate::{
     pictures::{assert_pass_is_its_twin, outlined},
-    small::{Object, Small},
+    small::{Object, Small, black_ink, linear, unlit},
+    walls::{towards_the_sky, wall},
 };
+
+const SIZE: UVec2 = UVec2::new(96, 64);
 
 fn weighted(weight: LineWeight) -> Outlines {
     Outlines {
@@ -25,7 +27,7 @@ fn weighted(weight: LineWeight) -> Outlines {
 /// Each factor alone, and all together, at two widths: every pixel of the small scene.
 #[test]
 fn every_factor_is_its_twin() {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let mut small = Small::new(SIZE, Msaa::Off);
     let light = Transform::from_xyz(2.0, 3.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y);
     small.world().spawn((KeyLight, light, Object));
     let even = LineWeight::EVEN;
@@ -84,51 +86,11 @@ fn every_factor_is_its_twin() {
     }
 }
 
-/// An orthographic view of 96 x 64 units, a unit per pixel, towards the sky.
-fn towards_the_sky() -> Small {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
-    small.clear();
-    small.insert((
-        Transform::IDENTITY,
-        Projection::Orthographic(OrthographicProjection {
-            scaling_mode: ScalingMode::Fixed {
-                width: 96.0,
-                height: 64.0,
-            },
-            ..OrthographicProjection::default_3d()
-        }),
-    ));
-    small
-}
-
-/// A wall at a distance, from its left and lower to its right and upper end.
-fn wall(
-    small: &mut Small,
-    [left, bottom]: [f32; 2],
-    [right, top]: [f32; 2],
-    distance: f32,
-) -> Entity {
-    let world = small.world();
-    let size = Vec2::new(right - left, top - bottom);
-    let mesh = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Rectangle::from_size(size));
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: Color::WHITE,
-            unlit: true,
-            ..default()
-        });
-    let middle = Vec3::new(0.5 * (left + right), 0.5 * (bottom + top), -distance);
-    world
-        .spawn((
-            Mesh3d(mesh),
-            MeshMaterial3d(material),
-            Transform::from_translation(middle),
-            Object,
-        ))
-        .id()
+/// The picture with outlines.
+fn drawn(small: &mut Small, outlines: Outlines) -> image::RgbaImage {
+    small.style(&ComicStyle::new().with(outlines));
+    small.settle();
+    small.picture()
 }
 
 /// The widths of a line across every row that is given: the sum of its ink.
@@ -138,16 +100,8 @@ fn width_across(
     columns: std::ops::Range<u32>,
     row: u32,
 ) -> f64 {
-    small.style(&ComicStyle::new().with(outlines));
-    small.settle();
-    let picture = small.picture();
-    // Black lines on white: stored as display codes.
-    columns
-        .map(|x| {
-            let code = f64::from(picture.get_pixel(x, row).0[0]) / 255.0;
-            1.0 - bevy_comics_testkit::reference::color::srgb_decode_one(code)
-        })
-        .sum()
+    let picture = drawn(small, outlines);
+    black_ink(&picture, columns.map(|x| (x, row)))
 }
 
 fn silhouettes(width: f32, weight: LineWeight) -> Outlines {
@@ -167,7 +121,7 @@ fn rims_before_other_objects_are_wider_than_rims_before_the_same() {
         inner: 0.5,
         ..LineWeight::EVEN
     };
-    let mut small = towards_the_sky();
+    let mut small = towards_the_sky(SIZE);
     let back = wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 100.0);
     let front = wall(&mut small, [-60.0, -40.0], [0.0, 40.0], 20.0);
     for width in [2.0, 4.0] {
@@ -198,7 +152,7 @@ fn rims_before_other_objects_are_wider_than_rims_before_the_same() {
 /// Edges between objects have a width of their own.
 #[test]
 fn edges_between_objects_have_their_own_width() {
-    let mut small = towards_the_sky();
+    let mut small = towards_the_sky(SIZE);
     wall(&mut small, [-60.0, -40.0], [0.0, 40.0], 50.0);
     wall(&mut small, [0.0, -40.0], [60.0, 40.0], 50.0);
     for factor in [0.5, 1.0, 2.0] {
@@ -228,24 +182,12 @@ fn lines_follow_the_light() {
         lit: 1.0,
         ..LineWeight::EVEN
     };
-    let mut small = towards_the_sky();
-    let world = small.world();
-    let mesh = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Sphere::new(20.0).mesh().uv(128, 64));
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: Color::WHITE,
-            unlit: true,
-            ..default()
-        });
-    world.spawn((
-        Mesh3d(mesh),
-        MeshMaterial3d(material),
+    let mut small = towards_the_sky(SIZE);
+    small.put(
+        Sphere::new(20.0).mesh().uv(128, 64),
+        unlit(Color::WHITE),
         Transform::from_xyz(0.0, 0.0, -100.0),
-        Object,
-    ));
+    );
     wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 200.0);
     let light = small
         .world()
@@ -283,7 +225,7 @@ fn a_nib_draws_thick_and_thin() {
         nib_angle,
         ..LineWeight::EVEN
     };
-    let mut small = towards_the_sky();
+    let mut small = towards_the_sky(SIZE);
     wall(&mut small, [-60.0, -40.0], [0.0, 40.0], 20.0);
     wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 100.0);
     let upright = width_across(&mut small, silhouettes(4.0, weight(90.0)), 30..66, 32);
@@ -302,7 +244,7 @@ fn lines_follow_perspective() {
         perspective: 1.0,
         ..LineWeight::EVEN
     };
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let mut small = Small::new(SIZE, Msaa::Off);
     small.clear();
     small.insert(Transform::IDENTITY);
     // Upper half: a rim at 12 units, lower half: one at 24, before a wall at 30.
@@ -325,7 +267,7 @@ fn a_line_tapers_towards_its_loose_end() {
         taper,
         ..LineWeight::EVEN
     };
-    let mut small = towards_the_sky();
+    let mut small = towards_the_sky(SIZE);
     // A slot that closes: the wall behind it comes nearer from left to right, until there is
     // no step any more.
     let behind = wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 0.0);
@@ -335,17 +277,8 @@ fn a_line_tapers_towards_its_loose_end() {
     );
     wall(&mut small, [-60.0, 0.0], [60.0, 40.0], 50.0);
     let profile = |small: &mut Small, taper| {
-        small.style(&ComicStyle::new().with(silhouettes(4.0, weight(taper))));
-        small.settle();
-        let picture = small.picture();
-        let column = |x: u32| -> f64 {
-            (20..44)
-                .map(|y| {
-                    let code = f64::from(picture.get_pixel(x, y).0[0]) / 255.0;
-                    1.0 - bevy_comics_testkit::reference::color::srgb_decode_one(code)
-                })
-                .sum()
-        };
+        let picture = drawn(small, silhouettes(4.0, weight(taper)));
+        let column = |x: u32| black_ink(&picture, (20..44).map(|y| (x, y)));
         (0..96).map(column).collect::<Vec<f64>>()
     };
     let blunt = profile(&mut small, 0.0);
@@ -371,7 +304,7 @@ fn a_line_tapers_towards_its_loose_end() {
 /// the view and at its border, for every falloff.
 #[test]
 fn lines_fade_as_black_surfaces_do() {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let mut small = Small::new(SIZE, Msaa::Off);
     small.clear();
     small.insert(Transform::IDENTITY);
     // A rim at 20 units along the middle of the view, before a wall at 40.
@@ -436,15 +369,15 @@ fn fogged_black(small: &mut Small, wall: Entity, row: u32) -> f64 {
     };
     paint(small, Color::BLACK);
     small.settle();
-    let code = f64::from(small.picture().get_pixel(46, row).0[0]) / 255.0;
+    let [black, ..] = linear(&small.picture(), 46, row);
     paint(small, Color::WHITE);
-    bevy_comics_testkit::reference::color::srgb_decode_one(code)
+    black
 }
 
 /// Silhouettes alone, in a multisampled view: the light is that of the chosen samples.
 #[test]
 fn lines_follow_the_light_in_multisampled_views() {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Sample4);
+    let mut small = Small::new(SIZE, Msaa::Sample4);
     let light = Transform::from_xyz(2.0, 3.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y);
     small.world().spawn((KeyLight, light, Object));
     let lit = LineWeight {
@@ -461,18 +394,8 @@ fn lines_follow_the_light_in_multisampled_views() {
 
 /// Ink of every row of the picture between two columns.
 fn rows_of_ink(small: &mut Small, outlines: Outlines, columns: std::ops::Range<u32>) -> Vec<f64> {
-    small.style(&ComicStyle::new().with(outlines));
-    small.settle();
-    let picture = small.picture();
-    let ink = |row: u32| -> f64 {
-        let pixels = columns.clone().map(|x| picture.get_pixel(x, row).0[0]);
-        pixels
-            .map(|code| {
-                let code = f64::from(code) / 255.0;
-                1.0 - bevy_comics_testkit::reference::color::srgb_decode_one(code)
-            })
-            .sum()
-    };
+    let picture = drawn(small, outlines);
+    let ink = |row: u32| black_ink(&picture, columns.clone().map(|x| (x, row)));
     (10..54).map(ink).collect()
 }
 
@@ -480,25 +403,13 @@ fn rows_of_ink(small: &mut Small, outlines: Outlines, columns: std::ops::Range<u
 /// of pixels, but the width does not.
 #[test]
 fn a_crease_between_light_and_shade_is_even() {
-    let mut small = towards_the_sky();
-    let world = small.world();
-    let mesh = world
-        .resource_mut::<Assets<Mesh>>()
-        .add(Cuboid::from_length(200.0));
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(StandardMaterial {
-            base_color: Color::WHITE,
-            unlit: true,
-            ..default()
-        });
+    let mut small = towards_the_sky(SIZE);
     let turned = Quat::from_rotation_z(0.1) * Quat::from_rotation_y(45f32.to_radians());
-    world.spawn((
-        Mesh3d(mesh),
-        MeshMaterial3d(material),
+    small.put(
+        Cuboid::from_length(200.0),
+        unlit(Color::WHITE),
         Transform::from_xyz(0.0, 0.0, -300.0).with_rotation(turned),
-        Object,
-    ));
+    );
     let light = Transform::default().looking_to(Vec3::NEG_X, Vec3::Y);
     small.world().spawn((KeyLight, light, Object));
     let creases = |weight| Outlines {

@@ -72,6 +72,12 @@ pub struct Outlines {
     pub smooth: bool,
     /// How wide lines are in different places. Default: [`LineWeight::EVEN`].
     pub weight: LineWeight,
+    /// Fraction of an area that lines may cover where they crowd, as on foliage or in the
+    /// distance: there they are thinner, and below 0.6 physical pixels fainter. Areas have
+    /// 24x32 physical pixels, and their middle counts most; a line that is alone in its area
+    /// keeps its width. Needs compute shaders. Range 0.05 to 1 (no limit), default 0.35.
+    #[reflect(@FieldRange::linear(0.05, 1.0))]
+    pub budget: f32,
     /// What happens to lines in the engine's `DistanceFog`, if the camera has it. Default:
     /// [`LineFog::Fade`].
     pub fog: LineFog,
@@ -92,6 +98,7 @@ impl Default for Outlines {
             response: LineResponse::Width,
             smooth: true,
             weight: LineWeight::EVEN,
+            budget: 0.35,
             fog: LineFog::Fade,
         }
     }
@@ -113,6 +120,7 @@ impl Outlines {
         response: LineResponse::Width,
         smooth: true,
         weight: LineWeight::EVEN,
+        budget: 0.35,
         fog: LineFog::Fade,
     };
 }
@@ -142,6 +150,7 @@ impl Effect for Outlines {
             response: self.response,
             smooth: self.smooth,
             weight: self.weight.sanitized(),
+            budget: bounded(self.budget, default.budget, 0.05, 1.0),
             fog: self.fog,
         }
     }
@@ -222,6 +231,7 @@ impl Effect for Outlines {
             response: later.response,
             smooth: later.smooth,
             weight: self.weight.mixed(other.weight, t),
+            budget: self.budget.lerp(other.budget, t),
             fog: later.fog,
         }
     }
@@ -271,6 +281,7 @@ impl Outlines {
             response: self.response,
             smooth: self.smooth,
             weight: self.weight,
+            budget: self.budget,
             fog: self.fog,
         }
         .visible()

@@ -106,6 +106,22 @@ pub fn stored_width(half_width: f64) -> f64 {
     (moved / step).round() * step - 0.125
 }
 
+/// Whether two sections of an object meet there, and whether one of them has no creases.
+/// Sections above 127 are those of meshes in groups, which must also bend by 10 degrees.
+fn sections(view: &View, pixel: [i64; 2], v: [i64; 2], fold: Option<f64>) -> (bool, bool) {
+    let Some(ids) = view.ids else {
+        return (false, false);
+    };
+    let at = along(view, pixel, v, |x, y| {
+        let [id, marks] = ids.pixels[(y * view.width + x) as usize];
+        (id, marks >> 8)
+    });
+    let [(id, here), (other, there)] = [at[2], at[3]];
+    let bent = fold.unwrap_or(0.0) > (2.0 * 5f64.to_radians().sin()).powi(2);
+    let border = here != there && here != 0 && there != 0 && id == other && (here <= 127 || bent);
+    (border, here == 255 || there == 255)
+}
+
 /// The crack between a pixel and its neighbour at a side, an entry of [`SIDES`].
 /// `scale`: physical pixels per logical pixel. `OutlineStyle` and `NoOutlines` of
 /// objects are not part of the twin.
@@ -147,9 +163,15 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         let normals = along(view, pixel, v, |x, y| normal(view, x, y));
         let folds = [1, 2, 3].map(|i: usize| fold(normals[i], normals[i + 1]));
         let kn = (0.5 * f64::from(k.angle)).to_radians().sin().max(0.02);
-        let p = fold_response(folds[1], kn);
+        let (border, silent) = sections(view, pixel, v, folds[1]);
+        let p = if border {
+            1.0
+        } else {
+            fold_response(folds[1], kn)
+        };
         let amount = ink(k.edge_limit, k.softness, weakest(s), p);
-        if is_ridge(folds) && excess < jump && is_stored(amount) && !crack.kinds[0] {
+        let ridge = (is_ridge(folds) || border) && !silent;
+        if ridge && excess < jump && is_stored(amount) && !crack.kinds[0] {
             crack.kinds[1] = true;
             crack.ink = amount;
             crack.certain = p >= limit(k.edge_limit);

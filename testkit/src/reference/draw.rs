@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::{
+    budget::{budget_weight, line_density},
     chain::cracks_to_end,
     crack::{Crack, SIDES, crack},
     edge::{line_coverage, line_offset, segment_distance},
@@ -51,14 +52,21 @@ impl Cracks {
             reach: reach + i64::from(s.smooth && reach > 1),
         };
         let steps = ((f64::from(s.continuity) * scale).ceil() as i32).min(64);
-        found.complete(steps, s.specks);
+        let linked = found.complete(steps, s.specks);
         let taper = (f64::from(s.weight.taper) * scale).min(64.0);
-        found.weigh((s, view), [x0, y0], taper);
+        found.weigh((s, view), [x0, y0], taper, &linked);
         found
     }
 
-    /// Multiplies the width of every crack by its weight. `taper`: in cracks.
-    fn weigh(&mut self, (s, view): (&Outlines, &View), [x0, y0]: [i64; 2], taper: f64) {
+    /// Multiplies the width of every crack by its weight. `taper`: in cracks; `linked`: the
+    /// cracks of all lines, specks included.
+    fn weigh(
+        &mut self,
+        (s, view): (&Outlines, &View),
+        [x0, y0]: [i64; 2],
+        taper: f64,
+        linked: &HashSet<Place>,
+    ) {
         let (width, height) = (self.width, self.height);
         let lines: HashSet<Place> = self.places().map(|(place, _)| place).collect();
         let w = &s.weight;
@@ -78,6 +86,11 @@ impl Cracks {
                     let end = cracks_to_end(&lines, (pixel, side), [width, height], taper);
                     factor *= taper_weight(taper, end);
                 }
+                if s.budget < 1.0 {
+                    let density = line_density(linked, pixel);
+                    let width = 2.0 * crack.half_width * factor;
+                    factor *= budget_weight(f64::from(s.budget), density, width);
+                }
                 *slot = weighted(crack, factor);
             }
         }
@@ -93,7 +106,8 @@ impl Cracks {
     }
 
     /// Leaves out the cracks that are not parts of lines, and bends the lines of the others.
-    fn complete(&mut self, steps: i32, specks: u32) {
+    /// Returns the cracks of all lines, specks included.
+    fn complete(&mut self, steps: i32, specks: u32) -> HashSet<Place> {
         let width = self.width;
         let place = |i: usize, side| ([i as i64 % width, i as i64 / width], side);
         let all: HashMap<Place, Crack> = self.places().collect();
@@ -107,6 +121,7 @@ impl Cracks {
                 }
             }
         }
+        linked
     }
 
     /// Silhouettes with these cracks, row by row. `widest`: the largest half width.

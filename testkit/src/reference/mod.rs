@@ -4,6 +4,7 @@
 pub mod bend;
 pub mod black_flats;
 pub mod blocks;
+pub mod budget;
 pub mod chain;
 pub mod color;
 pub mod colorization;

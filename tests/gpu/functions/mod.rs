@@ -3,6 +3,7 @@
 
 mod bend;
 mod blocks;
+mod budget;
 mod cartoon_styles;
 mod color_styles;
 mod contour_response;

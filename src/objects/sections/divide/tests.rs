@@ -1,0 +1,137 @@
+use bevy::{
+    asset::RenderAssetUsages,
+    math::primitives::{Cuboid, Cylinder, Sphere, Torus},
+    mesh::{Mesh, MeshBuilder, Meshable},
+    prelude::Vec3,
+};
+
+use super::*;
+
+fn divided(mesh: &Mesh, angle: f32) -> Vec<u8> {
+    let surface = Surface::new(mesh).expect("readable").expect("triangles");
+    surface.divide(angle)
+}
+
+fn kinds(numbers: &[u8]) -> usize {
+    numbers.iter().collect::<HashSet<_>>().len()
+}
+
+/// Six faces of two triangles; a bend of 90 degrees divides them at 89, not at 91.
+#[test]
+fn a_cube_has_six_sections() {
+    let cube = Mesh::from(Cuboid::from_length(2.0));
+    let numbers = divided(&cube, 89.0);
+    assert_eq!((numbers.len(), kinds(&numbers)), (12, 6));
+    for face in numbers.chunks(2) {
+        assert_eq!(face[0], face[1]);
+    }
+    assert_eq!(kinds(&divided(&cube, 91.0)), 1);
+}
+
+/// Smooth surfaces are one section; a cylinder has its side and two caps.
+#[test]
+fn round_things_are_not_divided() {
+    assert_eq!(kinds(&divided(&Mesh::from(Sphere::new(1.0)), 30.0)), 1);
+    assert_eq!(kinds(&divided(&Mesh::from(Torus::new(0.2, 1.0)), 30.0)), 1);
+    let drum = Cylinder::new(1.0, 2.0).mesh().resolution(24).build();
+    // 15 degrees between two facets of the side.
+    assert_eq!(kinds(&divided(&drum, 50.0)), 3);
+    assert_eq!(kinds(&divided(&drum, 14.0)), 26);
+}
+
+/// Every edge has the same angle on both scales, and at any place.
+#[test]
+fn sections_do_not_depend_on_scale_or_place() {
+    let cube = Mesh::from(Cuboid::new(1.0, 2.0, 3.0));
+    let want = divided(&cube, 50.0);
+    for scale in [1e-6, 1e-3, 1e3, 1e6] {
+        let scaled = cube.clone().scaled_by(Vec3::splat(scale));
+        assert_eq!(divided(&scaled, 50.0), want, "{scale}");
+    }
+    let far = cube.translated_by(Vec3::new(1000.0, -2000.0, 500.0));
+    assert_eq!(divided(&far, 50.0), want);
+}
+
+fn bare(corners: &[[f32; 3]], indices: Option<Indices>) -> Mesh {
+    let mut mesh = Mesh::new(
+        PrimitiveTopology::TriangleList,
+        RenderAssetUsages::default(),
+    );
+    mesh.insert_attribute(Mesh::ATTRIBUTE_POSITION, corners.to_vec());
+    if let Some(indices) = indices {
+        mesh.insert_indices(indices);
+    }
+    mesh
+}
+
+/// Two triangles in a plane are one section, whatever their windings are, and whether they
+/// share vertices or only places.
+#[test]
+fn windings_and_shared_vertices_do_not_matter() {
+    let [a, b, c, d] = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 0.0],
+    ];
+    for corners in [[a, b, c, a, c, d], [a, b, c, a, d, c]] {
+        assert_eq!(kinds(&divided(&bare(&corners, None), 20.0)), 1);
+    }
+    let shared = Indices::U16(vec![0, 1, 2, 0, 2, 3]);
+    assert_eq!(kinds(&divided(&bare(&[a, b, c, d], Some(shared)), 20.0)), 1);
+    // Folded by 90 degrees.
+    let up = [0.0, 0.5, 1.0];
+    assert_eq!(kinds(&divided(&bare(&[a, b, c, a, c, up], None), 20.0)), 2);
+}
+
+/// Meshes that cannot be drawn have sections all the same, or none, but nothing panics.
+#[test]
+fn broken_meshes_do_no_harm() {
+    let nan = [f32::NAN; 3];
+    let all = |corners: &[[f32; 3]], indices| divided(&bare(corners, indices), 50.0);
+    assert_eq!(all(&[nan, nan, nan], None).len(), 1);
+    assert_eq!(all(&[[0.0; 3]; 6], None).len(), 2);
+    assert_eq!(all(&[[1.0; 3]], Some(Indices::U32(vec![0, 7, 9]))).len(), 1);
+    assert!(all(&[], None).is_empty());
+    assert!(all(&[[f32::INFINITY; 3], [0.0; 3], [1.0, 0.0, 0.0]], None).len() == 1);
+    let points = Mesh::new(PrimitiveTopology::PointList, RenderAssetUsages::default());
+    assert!(Surface::new(&points).expect("readable").is_none());
+}
+
+/// The author's numbers: 0 is silent, 1 to 127 are kept, others wrap around.
+#[test]
+fn the_author_decides() {
+    let mut cube = Mesh::from(Cuboid::from_length(2.0));
+    let own: Vec<u32> = (0..24)
+        .map(|vertex| [0, 1, 127, 128, 5, 5][vertex / 4])
+        .collect();
+    cube.insert_attribute(ATTRIBUTE_MESH_SECTION, own);
+    let numbers = divided(&cube, 50.0);
+    let faces: Vec<u8> = numbers.chunks(2).map(|face| face[0]).collect();
+    assert_eq!(faces, [SILENT, 1, 127, 1, 5, 5]);
+}
+
+/// With more parts than numbers, neighbours still differ.
+#[test]
+fn neighbours_have_different_numbers() {
+    let stairs: Vec<[f32; 3]> = (0..400)
+        .flat_map(|i| {
+            let [x, y] = [((i + 1) / 2) as f32, (i / 2) as f32];
+            let [x1, y1] = if i % 2 == 0 {
+                [x + 1.0, y]
+            } else {
+                [x, y + 1.0]
+            };
+            let [a, b] = [[x, y, 0.0], [x1, y1, 0.0]];
+            let [c, d] = [[x1, y1, 1.0], [x, y, 1.0]];
+            [a, b, c, a, c, d]
+        })
+        .collect();
+    let numbers = divided(&bare(&stairs, None), 50.0);
+    assert_eq!(numbers.len(), 800);
+    assert_eq!(kinds(&numbers), usize::from(NUMBERS));
+    for pair in numbers.chunks(2).collect::<Vec<_>>().windows(2) {
+        assert_eq!(pair[0][0], pair[0][1]);
+        assert_ne!(pair[0][0], pair[1][0]);
+    }
+}

@@ -1,0 +1,260 @@
+//! Meshes that are divided into sections, whose borders are creases.
+
+mod divide;
+mod table;
+
+use bevy::{
+    app::{App, PostUpdate},
+    asset::{AssetEvent, AssetId, Assets},
+    ecs::{
+        component::Component,
+        entity::{Entity, EntityHashMap},
+        hierarchy::{ChildOf, Children},
+        lifecycle::RemovedComponents,
+        message::MessageReader,
+        query::{Changed, Or, With},
+        reflect::ReflectComponent,
+        resource::Resource,
+        schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
+        system::{Query, Res, ResMut, SystemParam},
+    },
+    log::warn,
+    mesh::{Mesh, Mesh3d, MeshVertexAttribute, VertexFormat},
+    platform::{
+        collections::{HashMap, HashSet},
+        sync::Arc,
+    },
+    reflect::{Reflect, std_traits::ReflectDefault},
+    tasks::{AsyncComputeTaskPool, Task, block_on, futures_lite::future},
+};
+
+use self::divide::Surface;
+use super::{OutlineGroup, components::inherit, table::ObjectStyles};
+use crate::settings::{FieldRange, bounded};
+
+pub(crate) use table::{SectionBuffer, SectionTables, extract_sections, prepare_sections};
+
+/// Divides the meshes of this entity and of its descendants into sections: parts that bend
+/// nowhere as sharply as `angle`. Where two sections of an object meet, there is a crease.
+///
+/// Creases are otherwise found in the normals of pixels, with a threshold: at the horizon, or
+/// where a bend is close to the threshold, they break into dashes. Borders of sections are
+/// exact: they depend neither on the view, nor on the distance, nor on normal maps. Bends
+/// inside of a section, which end in the middle of a surface, are still found in normals.
+/// The creases themselves are those of the camera's [`Outlines`](crate::Outlines).
+///
+/// A section is found once for each mesh, in a background task, from its positions: normals
+/// do not count. Until then, and for meshes that the main world does not keep
+/// ([`RenderAssetUsages`](bevy::asset::RenderAssetUsages)), only normals are used; the latter
+/// is logged. Skinned and morphed meshes have the sections of their rest pose. In an
+/// [`OutlineGroup`], borders of sections that do not bend are left out, because meshes of a
+/// group continue each other. If several entities above a mesh have the component, the
+/// nearest one counts.
+///
+/// A mesh with [`ATTRIBUTE_MESH_SECTION`] has the sections of its author.
+///
+/// The device must support [`WgpuFeatures::PRIMITIVE_INDEX`], which desktop devices do and
+/// browsers do not; otherwise the component does nothing, and the log says so.
+///
+/// [`WgpuFeatures::PRIMITIVE_INDEX`]: bevy::render::settings::WgpuFeatures::PRIMITIVE_INDEX
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq)]
+pub struct MeshSections {
+    /// Angle between the normals of two triangles from which they belong to two sections, in
+    /// degrees. Range 10 to 120, default 50.
+    #[reflect(@FieldRange::linear(10.0, 120.0).unit("°"))]
+    pub angle: f32,
+}
+
+impl MeshSections {
+    /// The settings that are used.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        Self {
+            angle: bounded(self.angle, 50.0, 10.0, 120.0),
+        }
+    }
+}
+
+impl Default for MeshSections {
+    fn default() -> Self {
+        Self { angle: 50.0 }
+    }
+}
+
+/// The section of a vertex, which replaces those that [`MeshSections`] finds. The first
+/// vertex of a triangle decides. Two numbers that differ by a multiple of 127 are the same
+/// section; at a triangle of section 0 there are no creases at all.
+pub const ATTRIBUTE_MESH_SECTION: MeshVertexAttribute =
+    MeshVertexAttribute::new("MeshSection", 0x636f_6d69_6373, VertexFormat::Uint32);
+
+/// A mesh, and the angle at which it is divided, in thousandths of a degree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct SectionKey {
+    mesh: AssetId<Mesh>,
+    angle: u32,
+}
+
+impl SectionKey {
+    fn new(mesh: &Mesh3d, sections: MeshSections) -> Self {
+        Self {
+            mesh: mesh.0.id(),
+            angle: (sections.angle * 1000.0).round() as u32,
+        }
+    }
+
+    fn angle(self) -> f32 {
+        self.angle as f32 / 1000.0
+    }
+}
+
+/// The sections of a mesh, one byte a triangle.
+type Numbers = Arc<[u8]>;
+
+/// Meshes whose sections are not known yet.
+#[derive(Resource, Default)]
+pub(super) struct SectionTasks {
+    waiting: HashSet<SectionKey>,
+    running: HashMap<SectionKey, Task<Numbers>>,
+}
+
+/// What says which mesh has which sections.
+#[derive(SystemParam)]
+pub(super) struct Divided<'w, 's> {
+    roots: Query<'w, 's, (Entity, &'static MeshSections)>,
+    children: Query<'w, 's, &'static Children>,
+    parents: Query<'w, 's, &'static ChildOf>,
+    meshes: Query<'w, 's, &'static Mesh3d>,
+    groups: Query<'w, 's, (), With<OutlineGroup>>,
+    changed: Query<'w, 's, (), Changes>,
+    removed: RemovedComponents<'w, 's, MeshSections>,
+    regrouped: RemovedComponents<'w, 's, OutlineGroup>,
+}
+
+type Changes = Or<(
+    Changed<MeshSections>,
+    Changed<Children>,
+    Changed<Mesh3d>,
+    Changed<OutlineGroup>,
+)>;
+
+impl Divided<'_, '_> {
+    fn is_changed(&mut self) -> bool {
+        let gone = self.removed.read().count() + self.regrouped.read().count();
+        gone > 0 || !self.changed.is_empty()
+    }
+
+    fn is_grouped(&self, entity: Entity) -> bool {
+        let above = self.parents.iter_ancestors(entity);
+        std::iter::once(entity)
+            .chain(above)
+            .any(|e| self.groups.contains(e))
+    }
+
+    /// The key of every mesh, and whether it is in a group.
+    fn keys(&self) -> EntityHashMap<(SectionKey, bool)> {
+        let mut sections: EntityHashMap<MeshSections> = EntityHashMap::default();
+        for (entity, own) in &self.roots {
+            let has_own = |child| self.roots.contains(child);
+            let said = (entity, own.sanitized());
+            inherit(&mut sections, said, true, &self.children, has_own);
+        }
+        let key = |(entity, sections): (&Entity, &MeshSections)| {
+            let mesh = self.meshes.get(*entity).ok()?;
+            let key = SectionKey::new(mesh, *sections);
+            Some((*entity, (key, self.is_grouped(*entity))))
+        };
+        sections.iter().filter_map(key).collect()
+    }
+}
+
+/// Keeps [`SectionTables`] up to date: starts tasks, and takes their results.
+pub(super) fn divide_meshes(
+    mut divided: Divided,
+    meshes: Res<Assets<Mesh>>,
+    mut events: MessageReader<AssetEvent<Mesh>>,
+    mut tasks: ResMut<SectionTasks>,
+    mut tables: ResMut<SectionTables>,
+    mut styles: ResMut<ObjectStyles>,
+) {
+    if divided.roots.is_empty() && tables.is_unused() {
+        events.clear();
+        return;
+    }
+    for event in events.read() {
+        if let AssetEvent::Added { id } | AssetEvent::Modified { id } = event {
+            for key in tables.keys_of(*id) {
+                tables.numbers.remove(&key);
+                tasks.running.remove(&key);
+                tasks.waiting.insert(key);
+            }
+        }
+    }
+    if divided.is_changed() {
+        tables.assign(divided.keys());
+        let used = tables.used();
+        tables.numbers.retain(|key, _| used.contains(key));
+        tasks.running.retain(|key, _| used.contains(key));
+        let is_new = |key: &SectionKey| {
+            !tables.numbers.contains_key(key) && !tasks.running.contains_key(key)
+        };
+        tasks.waiting = used.into_iter().filter(is_new).collect();
+    }
+    tasks.start(&meshes);
+    for (key, numbers) in tasks.finished() {
+        tables.numbers.insert(key, numbers);
+    }
+    if styles.sections != tables.any() {
+        styles.sections = tables.any();
+    }
+}
+
+impl SectionTasks {
+    /// Begins to divide the meshes that are loaded.
+    fn start(&mut self, meshes: &Assets<Mesh>) {
+        let running = &mut self.running;
+        let mut unread = Vec::new();
+        self.waiting.retain(|key| {
+            let Some(mesh) = meshes.get(key.mesh) else {
+                return true;
+            };
+            match Surface::new(mesh) {
+                Ok(Some(surface)) => {
+                    let angle = key.angle();
+                    let divide = async move { Numbers::from(surface.divide(angle)) };
+                    running.insert(*key, AsyncComputeTaskPool::get().spawn(divide));
+                }
+                // No triangles: no sections.
+                Ok(None) => {}
+                Err(error) => unread.push((key.mesh, error)),
+            }
+            false
+        });
+        if let Some((mesh, error)) = unread.first() {
+            let count = unread.len();
+            warn!("no `MeshSections` for {count} meshes; the first is {mesh}: {error}");
+        }
+    }
+
+    /// Takes the results of the tasks that are done.
+    fn finished(&mut self) -> Vec<(SectionKey, Numbers)> {
+        let mut done = Vec::new();
+        self.running.retain(|key, task| {
+            let result = block_on(future::poll_once(task));
+            let is_running = result.is_none();
+            done.extend(result.map(|numbers| (*key, numbers)));
+            is_running
+        });
+        done
+    }
+}
+
+pub(super) fn build(app: &mut App) {
+    app.register_type::<MeshSections>()
+        .init_resource::<SectionTasks>()
+        .init_resource::<SectionTables>()
+        .add_systems(
+            PostUpdate,
+            divide_meshes.run_if(resource_exists::<Assets<Mesh>>),
+        );
+}

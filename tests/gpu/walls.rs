@@ -1,0 +1,42 @@
+//! Scenes of white walls before the sky.
+
+use bevy::{camera::ScalingMode, prelude::*, render::view::Msaa};
+
+use crate::small::{Small, unlit};
+
+/// An orthographic projection with one unit per pixel.
+pub fn unit_per_pixel(size: UVec2) -> OrthographicProjection {
+    OrthographicProjection {
+        scaling_mode: ScalingMode::Fixed {
+            width: size.x as f32,
+            height: size.y as f32,
+        },
+        ..OrthographicProjection::default_3d()
+    }
+}
+
+/// An orthographic view towards the sky, one unit per pixel, its origin in the middle.
+pub fn towards_the_sky(size: UVec2) -> Small {
+    let mut small = Small::new(size, Msaa::Off);
+    small.clear();
+    small.insert((
+        Transform::IDENTITY,
+        Projection::Orthographic(unit_per_pixel(size)),
+    ));
+    small
+}
+
+/// A wall at a distance, from its left and lower to its right and upper end.
+pub fn wall(
+    small: &mut Small,
+    [left, bottom]: [f32; 2],
+    [right, top]: [f32; 2],
+    distance: f32,
+) -> Entity {
+    let middle = Vec3::new(0.5 * (left + right), 0.5 * (bottom + top), -distance);
+    small.put(
+        Rectangle::new(right - left, top - bottom),
+        unlit(Color::WHITE),
+        Transform::from_translation(middle),
+    )
+}
