@@ -69,19 +69,20 @@ pub fn default_comic() -> ComicStyle {
         .with(Contours::default())
 }
 
-/// Outlines that are neither linked to lines nor smooth.
+/// Outlines that are neither linked to lines nor smooth, and have no budget.
 pub fn along_cracks() -> Outlines {
     Outlines {
         continuity: 0.0,
         specks: 1,
         response: LineResponse::Ink,
         smooth: false,
+        budget: 1.0,
         ..default()
     }
 }
 
 /// Outlines of which one thing differs from the default: what each costs.
-fn factors() -> [(&'static str, Outlines); 7] {
+fn factors() -> [(&'static str, Outlines); 8] {
     let weighted = |weight: LineWeight| Outlines {
         weight,
         ..default()
@@ -100,6 +101,13 @@ fn factors() -> [(&'static str, Outlines); 7] {
             "outlines, not smooth",
             Outlines {
                 smooth: false,
+                ..default()
+            },
+        ),
+        (
+            "outlines, without a budget",
+            Outlines {
+                budget: 1.0,
                 ..default()
             },
         ),
