@@ -257,7 +257,7 @@ impl Inputs<'_> {
         };
         let links = (self.parts.0.0.steps as usize).div_ceil(LINK_STEPS);
         let key = self.parts.0.1.key.for_settle();
-        let mut entries = if key.weight.any() {
+        let mut entries = if key.creases || key.weight.any() {
             self.entries(&key, key.weight.light)?
         } else {
             vec![entry(1, self.uniform()?)]

@@ -188,9 +188,10 @@ impl LineKey {
         let reads_map = weight.perspective;
         Self {
             smooth: self.smooth,
+            creases: self.creases && self.smooth,
             weight,
             ids: weight.outer && self.ids,
-            oblique: weight.any() && self.oblique,
+            oblique: (weight.any() || self.creases && self.smooth) && self.oblique,
             visible_range: reads_map && self.visible_range,
             ..Self::default()
         }
@@ -243,8 +244,9 @@ impl LineKey {
         self.common()
             .chain(names([
                 (self.smooth, "SMOOTH"),
+                (self.creases, "FOLDS"),
                 (weight.any(), "WEIGHT"),
-                (weight.any(), "DEPTH"),
+                (self.creases || weight.any(), "DEPTH"),
                 (weight.kinds, "KIND_WEIGHT"),
                 (weight.light, "LIGHT_WEIGHT"),
                 (weight.light, "NORMALS"),

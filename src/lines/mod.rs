@@ -70,6 +70,7 @@ pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "weight.wgsl");
     load_shader_library!(app, "budget.wgsl");
     load_shader_library!(app, "fog.wgsl");
+    load_shader_library!(app, "fold.wgsl");
     load_shader_library!(app, "pass.wgsl");
     load_shader_library!(app, "planes.wgsl");
     load_shader_library!(app, "read_planes.wgsl");

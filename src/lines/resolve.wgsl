@@ -1,27 +1,26 @@
-// Picks one sample of every pixel of a multisampled view. The passes that find and draw
-// lines read the depth, normal and object of that sample.
+// Picks one sample of every pixel of a multisampled view for its depth, and one for its
+// normal and object. The passes that find and draw lines read these.
 //
-// It is the nearest one: an object that covers any sample of a pixel has the pixel, so
+// The depth is that of the nearest one: an object that covers any sample of a pixel has the pixel, so
 // wires down to 0.4 pixels (at 4 samples) have lines without gaps. At a fixed sample,
 // wires below one pixel have gaps. Over a plane, the nearest sample is the same one in
 // every pixel, so depth stays affine there.
 //
 // In exchange, a silhouette lies further out by the distance to the outermost sample:
 // 0.35 to 0.4 pixels at 4 samples, alike in all directions.
+//
+// Where no jump in depth separates the first sample from the nearest, normal and object are
+// those of the first. Along a crease, the nearest sample lies on either side in turn, and
+// the crease would be jagged.
 
-#import bevy_comics::depth::view::{View, depth_texel, sample_count, set_view, texel_depth}
+#import bevy_comics::depth::view::{depth_texel, sample_count, set_view, texel_depth}
+#import bevy_comics::lines::pass::line_pass
 #ifdef NORMALS
 #import bevy_comics::depth::normal::normal_texel
 #endif
 #ifdef OBJECT_IDS
 #import bevy_comics::objects::texel_object
 #endif
-
-struct ResolveUniform {
-    seen: View,
-}
-
-@group(0) @binding(1) var<uniform> resolve_uniform: ResolveUniform;
 
 // Texels as the prepasses store them.
 struct Resolved {
@@ -47,18 +46,27 @@ fn nearest_sample(at: vec2<i32>) -> i32 {
     return chosen;
 }
 
+// The sample whose normal and object are read, if `nearest` is the nearest one.
+fn surface_sample(at: vec2<i32>, nearest: i32) -> i32 {
+    let s = line_pass.settings;
+    let near = texel_depth(at, nearest);
+    let jump = s.jump * (s.reference_factor * near + s.reference_constant);
+    return select(nearest, 0, texel_depth(at, 0) >= near - jump);
+}
+
 @fragment
 fn resolve(@builtin(position) position: vec4<f32>) -> Resolved {
-    set_view(resolve_uniform.seen);
+    set_view(line_pass.seen);
     let at = vec2<i32>(position.xy);
     let chosen = nearest_sample(at);
+    let surface = surface_sample(at, chosen);
     var out: Resolved;
     out.depth = depth_texel(at, chosen);
 #ifdef NORMALS
-    out.normal = normal_texel(at, chosen);
+    out.normal = normal_texel(at, surface);
 #endif
 #ifdef OBJECT_IDS
-    out.object = texel_object(at, chosen);
+    out.object = texel_object(at, surface);
 #endif
     return out;
 }

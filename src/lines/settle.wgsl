@@ -5,14 +5,20 @@
 #import bevy_comics::lines::chain::{
     along_crack, cracks_to_end, first_corner, last_corner, mean_bend,
 }
-#import bevy_comics::lines::edge::{Grid, SILHOUETTE}
+#import bevy_comics::lines::edge::{CREASE, Grid, SILHOUETTE}
 #import bevy_comics::lines::listed::listed_cell
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::planes::{COLUMNS, FOUND_EAST, FOUND_SOUTH, LINKED_EAST, LINKED_SOUTH}
 #import bevy_comics::lines::read_planes::{column_window, load_column, row_window}
+#ifdef DEPTH
+#import bevy_comics::depth::view::{set_view, texel_depth}
+#endif
+#ifdef FOLDS
+#import bevy_comics::lines::fold::{Fold, fold_bend}
+#endif
 #ifdef WEIGHT
 #import bevy_comics::depth::map::is_background
-#import bevy_comics::depth::view::{depth_frame, set_view, texel_depth}
+#import bevy_comics::depth::view::depth_frame
 #import bevy_comics::lines::weight::{
     kind_weight, light_weight, nib_weight, perspective_weight, taper_weight, weighted_crack,
 }
@@ -76,6 +82,51 @@ fn bend_east(g: Grid, p: vec2<i32>) -> u32 {
     let sign_before = end_sign(row_window(g, p.x - 1, first), single);
     let sign_after = end_sign(row_window(g, p.x - 1, last), single);
     return pack_bend(bend_of(vec3(p, 0), vec2(before, after), vec2(sign_before, sign_after)));
+}
+#endif
+
+#ifdef FOLDS
+// Whether another line runs through the pixels that fold_around reads. The line of the
+// crack itself goes on at most one pixel further in the next row.
+fn is_fold_crossed(g: Grid, crack: vec3<i32>) -> bool {
+    let p = crack.xy;
+    if crack.z == 0 {
+        let beside = column_window(g, LINKED_EAST, p.x - 1, p.y) | column_window(g, LINKED_EAST, p.x + 1, p.y);
+        let across = column_window(g, LINKED_SOUTH, p.x - 1, p.y - 1) | column_window(g, LINKED_SOUTH, p.x + 2, p.y - 1);
+        return (beside & 1u) != 0u || (across & 3u) != 0u;
+    }
+    let beside = row_window(g, p.x, p.y - 1) | row_window(g, p.x, p.y + 1);
+    let across = column_window(g, LINKED_EAST, p.x - 1, p.y - 1) | column_window(g, LINKED_EAST, p.x, p.y - 1);
+    // Rows y - 1 and y + 2.
+    return (beside & 1u) != 0u || (across & 9u) != 0u;
+}
+
+// The depths around a crack, which must be two pixels away from the border of the grid.
+fn fold_around(crack: vec3<i32>) -> Fold {
+    let across = select(vec2(1, 0), vec2(0, 1), crack.z == 1);
+    let along = across.yx;
+    let here = line_pass.grid.rect.xy + crack.xy;
+    let first = here - across;
+    let last = here + 2 * across;
+    return Fold(
+        vec4(texel_depth(first, 0), texel_depth(here, 0), texel_depth(here + across, 0), texel_depth(last, 0)),
+        texel_depth(first - along, 0),
+        texel_depth(first + along, 0),
+        texel_depth(last - along, 0),
+        texel_depth(last + along, 0),
+    );
+}
+
+// A packed bend of the line along a crease: where its two sides meet. `otherwise` where
+// they do not say.
+fn crease_bend(g: Grid, crack: vec3<i32>, otherwise: u32) -> u32 {
+    let across = select(vec2(1, 0), vec2(0, 1), crack.z == 1);
+    let low = crack.xy - 1;
+    let high = crack.xy + 1 + across;
+    if any(low < vec2(0)) || any(high >= g.rect.zw) || is_fold_crossed(g, crack) {
+        return otherwise;
+    }
+    return pack_bend(fold_bend(fold_around(crack), unpack_bend(otherwise)));
 }
 #endif
 
@@ -209,6 +260,15 @@ fn settle_column(g: Grid, first: vec2<i32>, keep: vec2<u32>) {
         if kept.y != 0u {
             bends = (bends & 0xffffu) | (bend_south(g, p) << 16u);
         }
+#ifdef FOLDS
+        let kinds = crack_words[at];
+        if kept.x != 0u && (kinds.x & CREASE) != 0u {
+            bends = (bends & 0xffff0000u) | crease_bend(g, vec3(p, 0), bends & 0xffffu);
+        }
+        if kept.y != 0u && (kinds.y & CREASE) != 0u {
+            bends = (bends & 0xffffu) | (crease_bend(g, vec3(p, 1), bends >> 16u) << 16u);
+        }
+#endif
         bend_words[at] = bends;
 #endif
 #ifdef WEIGHT
@@ -234,7 +294,7 @@ fn settle(
     if cell.x < 0 {
         return;
     }
-#ifdef WEIGHT
+#ifdef DEPTH
     set_view(line_pass.seen);
 #endif
     let g = line_pass.grid;

@@ -7,6 +7,7 @@ pub mod bench;
 pub mod device;
 pub mod headless;
 pub mod line_work;
+pub mod link_work;
 pub mod orbit;
 pub mod read_back;
 pub mod reference;

@@ -3,8 +3,8 @@
 //! In the pass that searches blocks, every invocation fetches the same number: it is
 //! counted in the composed shader. The other passes are counted while they run. A pass
 //! returns its count instead of its result, and the passes after it hand the count on to
-//! the picture. Lists of tiles, the choice of samples, the planes of
-//! bits and the faithful forms are not counted.
+//! the picture. Lists of tiles, the choice of samples and the faithful forms are not counted,
+//! nor are writes. Those that complete cracks are counted in [`link_work`](crate::link_work).
 
 use bevy::{
     prelude::*,
@@ -19,7 +19,9 @@ use bevy_comics::ComicStyle;
 use wgpu::naga::{Block, Expression, Function, Module, Statement};
 
 use crate::{
-    ROOT, read_back, wgsl,
+    ROOT, read_back,
+    studio::Studio,
+    wgsl,
     work::{FUSED, RESULT, counting, edit_shaders, teapot},
 };
 
@@ -35,20 +37,24 @@ pub struct LineWork {
     pub bytes: f64,
 }
 
-const CELLS: &str = "bevy_comics/lines/cells.wgsl";
+pub(crate) const CELLS: &str = "bevy_comics/lines/cells.wgsl";
 const COLUMNS: &str = "bevy_comics/lines/columns.wgsl";
 const DRAW: &str = "bevy_comics/lines/draw.wgsl";
+pub(crate) const LINK: &str = "bevy_comics/lines/link.wgsl";
 const READ: &str = "bevy_comics/lines/read.wgsl";
-const SETTLE: &str = "bevy_comics/lines/settle.wgsl";
+pub(crate) const READ_PLANES: &str = "bevy_comics/lines/read_planes.wgsl";
+pub(crate) const SETTLE: &str = "bevy_comics/lines/settle.wgsl";
 /// The files of the counted passes, and of the functions that they read textures with.
-const FILES: [&str; 10] = [
+const FILES: [&str; 12] = [
     "bevy_comics/depth/normal.wgsl",
     "bevy_comics/depth/view.wgsl",
     FUSED,
     CELLS,
     COLUMNS,
     DRAW,
+    LINK,
     READ,
+    READ_PLANES,
     SETTLE,
     "bevy_comics/lines/stored.wgsl",
     "bevy_comics/objects/objects.wgsl",
@@ -117,7 +123,7 @@ const ENDS: [End; 4] = [
 ];
 
 /// The text of a file while the pass in `counted` is counted.
-fn edited(counted: &str, path: &str, text: &str) -> String {
+pub(crate) fn edited(counted: &str, path: &str, text: &str) -> String {
     if path == READ {
         return text.replace(
             "// Ink at a position",
@@ -159,27 +165,36 @@ fn edited(counted: &str, path: &str, text: &str) -> String {
     }
 }
 
-/// (texels, bytes) per pixel that one pass fetches.
-fn count_pass(style: &ComicStyle, file: &str) -> [f64; 2] {
+/// Draws the teapot in a style, with these edits of the shaders.
+pub(crate) fn drawn(style: &ComicStyle, edit: impl Fn(&str, &str) -> String) -> Studio {
     let mut studio = teapot();
-    let files = edit_shaders(studio.headless.app.world_mut(), &FILES, |path, text| {
-        edited(file, path, text)
-    });
+    let files = edit_shaders(studio.headless.app.world_mut(), &FILES, edit);
     assert_eq!(files, FILES, "the files of the passes");
     studio.shoot(Some(style));
     studio.headless.step(4);
+    studio
+}
+
+/// The number that the passes have handed on for every pixel.
+pub(crate) fn numbers(studio: &Studio) -> Vec<u32> {
     let world = studio.headless.app.world();
     let view = world.get::<RenderEntity>(studio.camera);
     let view = view.expect("extracted").id();
     let render_world = studio.headless.app.sub_app(RenderApp).world();
     let (_, counted) = read_back::pictures(render_world, view).expect("a picture");
-    let mut sums = [0.0; 2];
-    for p in &counted.pixels {
-        let byte = |i: usize| f64::from((p[i] * 255.0).round());
-        sums[0] += byte(0) + 256.0 * byte(1);
-        sums[1] += byte(2) + 256.0 * byte(3);
-    }
-    sums.map(|sum| sum / counted.pixels.len() as f64)
+    let bytes = |p: &[f32; 4]| p.map(|c| (c * 255.0).round() as u8);
+    let pixels = counted.pixels.iter();
+    pixels.map(|p| u32::from_le_bytes(bytes(p))).collect()
+}
+
+/// (texels, bytes) per pixel that one pass fetches.
+fn count_pass(style: &ComicStyle, file: &str) -> [f64; 2] {
+    let counted = numbers(&drawn(style, |path, text| edited(file, path, text)));
+    let mean = |part: fn(u32) -> u32| {
+        let sum: f64 = counted.iter().map(|number| f64::from(part(*number))).sum();
+        sum / counted.len() as f64
+    };
+    [mean(|number| number & 0xffff), mean(|number| number >> 16)]
 }
 
 /// Texels that an execution of these statements loads. Loops run `rounds` times.

@@ -2,6 +2,8 @@
 //! that loses lines, draws false ones or breaks them into dashes fails here. The report
 //! measures the same with more frames.
 
+use std::f32::consts::TAU;
+
 use bevy::{
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     prelude::*,
@@ -9,8 +11,10 @@ use bevy::{
 };
 use bevy_comics::{ComicStyle, Outlines};
 use bevy_comics_testkit::{
+    read_back::FloatImage,
+    reference::color::srgb_encode,
     specimens::Specimen,
-    truth::{FINE, Truth, fragments, ids_alone},
+    truth::{FINE, Truth, fragments, ids_alone, mask},
 };
 
 use crate::{
@@ -27,9 +31,10 @@ fn show(small: &mut Small, specimen: Specimen) {
     }
 }
 
-/// The camera of the report: turned around the model by an angle.
-fn turn(small: &mut Small, angle: f32) {
-    let eye = Quat::from_rotation_y(angle) * Vec3::new(0.0, 0.34, 0.94) * 2.6;
+/// The camera of the report: turned around the model by an angle, at a distance in radii of
+/// the model.
+fn turn(small: &mut Small, distance: f32, angle: f32) {
+    let eye = Quat::from_rotation_y(angle) * Vec3::new(0.0, 0.34, 0.94) * distance;
     look(small, eye, Vec3::ZERO, 0.1);
 }
 
@@ -40,6 +45,86 @@ fn lines(small: &mut Small, width: f32) -> Vec<bool> {
         .into_iter()
         .map(|ink| ink > 0.25)
         .collect()
+}
+
+/// The true lines in a picture of `size`, if the last picture is `fine` times as large and
+/// shows depth, normals and ids.
+pub fn truth(small: &mut Small, size: UVec2, fine: u32) -> Truth {
+    let camera = small.camera;
+    let view = small.world().get::<RenderEntity>(camera).expect("drawn");
+    let view = view.id();
+    Truth::read(small.render_world(), view, size, fine)
+}
+
+/// Outlines of which the report's tables were made. Without a budget: where lines crowd, the
+/// budget would make some too thin for a mask, and more so in smaller pictures.
+pub fn scored(width: f32) -> Outlines {
+    Outlines {
+        width,
+        budget: 1.0,
+        ..default()
+    }
+}
+
+/// The pixels that lines have changed in the last picture, as the report counts them.
+pub fn inked(small: &Small) -> Vec<bool> {
+    let codes = |picture: &FloatImage| {
+        let code = |light: f64| (255.0 * light).round() as u8;
+        image::RgbaImage::from_fn(picture.width, picture.height, |x, y| {
+            let [r, g, b, _] = picture.pixels[(y * picture.width + x) as usize].map(f64::from);
+            let [r, g, b] = srgb_encode([r, g, b]).map(code);
+            image::Rgba([r, g, b, 255])
+        })
+    };
+    let (plain, lined) = small.pass();
+    mask(&codes(&plain), &codes(&lined))
+}
+
+/// What lines score, in one picture or in several.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Scores {
+    /// The true pixels, and those that have a line at most one pixel away.
+    pub wanted: usize,
+    found: usize,
+    /// The drawn pixels, and those that have a true one at most two pixels away.
+    drawn: usize,
+    right: usize,
+    /// Pixels of thin lines in a finer picture, and their parts of at most six pixels.
+    thin: usize,
+    parts: usize,
+}
+
+impl Scores {
+    pub fn add(&mut self, truth: &Truth, lines: &[bool]) {
+        let wanted = truth.any(&[0, 1, 2]);
+        let (found, all) = truth.recall(&wanted, lines);
+        let (right, drawn) = truth.precision(&wanted, lines);
+        self.found += found;
+        self.wanted += all;
+        self.right += right;
+        self.drawn += drawn;
+    }
+
+    /// `width`: of the finer picture, in pixels.
+    pub fn add_thin(&mut self, lines: &[bool], width: u32) {
+        self.thin += lines.iter().filter(|ink| **ink).count();
+        self.parts += fragments(lines, width as usize, 6);
+    }
+
+    /// The true pixels without a line, as a fraction.
+    pub fn missed(&self) -> f64 {
+        1.0 - self.found as f64 / self.wanted as f64
+    }
+
+    /// The drawn pixels away from true ones, as a fraction.
+    pub fn wrong(&self) -> f64 {
+        1.0 - self.right as f64 / self.drawn as f64
+    }
+
+    /// Small parts for each 100 pixels of thin lines.
+    pub fn fragments(&self) -> f64 {
+        100.0 * self.parts as f64 / self.thin as f64
+    }
 }
 
 /// For each specimen: the least recall, the most false pixels as a fraction of the picture,
@@ -76,16 +161,10 @@ fn lines_of_models_follow_their_edges() {
         }
         for angle in [0.0, 1.3, 2.9] {
             for small in [&mut fine, &mut lined, &mut thin] {
-                turn(small, angle);
+                turn(small, 2.6, angle);
             }
             fine.settle();
-            let camera = fine.camera;
-            let view = fine
-                .world()
-                .get::<RenderEntity>(camera)
-                .expect("drawn")
-                .id();
-            let truth = Truth::read(fine.render_world(), view, SIZE, FINE);
+            let truth = truth(&mut fine, SIZE, FINE);
             let mask = lines(&mut lined, 2.0);
             let (hit, wanted) = truth.recall(&truth.any(&[0, 1, 2]), &mask);
             let (right, drawn) = truth.precision(&truth.faint, &mask);
@@ -106,5 +185,52 @@ fn lines_of_models_follow_their_edges() {
         assert!(recall >= least_recall, "{name}: recall {recall}");
         assert!(wrong <= most_wrong, "{name}: wrong pixels {wrong}");
         assert!(parts <= most_fragments, "{name}: fragments {parts}");
+    }
+}
+
+/// The most fragments for each 100 pixels of thin lines: the target of the report.
+pub const MOST_FRAGMENTS: f64 = 0.3;
+
+/// Models seen from afar, and the true pixels that are missed in the report's frames 15 and
+/// 60, as a fraction: 3 of 407, and none of 244. No drawn pixel is wrong there, and thin lines
+/// have 0.18 and 0.08 fragments for each 100 pixels.
+const DISTANT: [(Specimen, f64); 2] = [(Specimen::Foliage, 3.0 / 407.0), (Specimen::Stairs, 0.0)];
+
+/// Lines may move by a pixel between adapters: 2 % more, as in the report's counts of work.
+const ADAPTER: f64 = 0.02;
+
+/// Pictures of the report's size, so that its scores hold as they are. The large picture
+/// shows thin lines, for which depth, normals and ids are drawn: it has the truth too.
+#[test]
+fn lines_of_distant_models_follow_their_edges() {
+    let size = UVec2::new(240, 136);
+    let mut fine = Small::new(size * FINE, Msaa::Off);
+    let mut lined = Small::new(size, Msaa::Off);
+    for (small, width) in [(&mut fine, 1.0), (&mut lined, 2.0)] {
+        small.style(&ComicStyle::new().with(scored(width)));
+        small.settle();
+    }
+    for (specimen, reported) in DISTANT {
+        let mut scores = Scores::default();
+        for small in [&mut fine, &mut lined] {
+            show(small, specimen);
+        }
+        for frame in [15.0, 60.0] {
+            for small in [&mut fine, &mut lined] {
+                turn(small, 16.0, frame / 90.0 * TAU);
+                small.headless.step(3);
+            }
+            let truth = truth(&mut fine, size, FINE);
+            scores.add(&truth, &inked(&lined));
+            scores.add_thin(&inked(&fine), size.x * FINE);
+        }
+        let name = specimen.name();
+        let (missed, wrong) = (scores.missed(), scores.wrong());
+        let fragments = scores.fragments();
+        println!("{name}: missed {missed:.4}, wrong {wrong:.4}, fragments {fragments:.2}");
+        assert!(scores.wanted > 200, "{name}: {scores:?}");
+        assert!(missed <= reported + ADAPTER, "{name}: {scores:?}");
+        assert!(wrong <= ADAPTER, "{name}: {scores:?}");
+        assert!(fragments <= MOST_FRAGMENTS, "{name}: {scores:?}");
     }
 }

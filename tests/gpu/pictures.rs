@@ -15,10 +15,11 @@ use bevy_comics::{
 use bevy_comics_testkit::{
     reference::{
         Rgba, color,
+        crack::jump,
         draw::Ink,
         fused::{Input, stylize},
         map::{Frame, Projection},
-        resolve::{Resolved, nearest_sample},
+        resolve::Resolved,
         view::View,
     },
     studio::with_map,
@@ -78,7 +79,6 @@ pub fn assert_pass_is_its_twin(
     let prepass = small.prepass();
     let prepass = prepass.unwrap_or_else(|| panic!("{what}: no depth"));
     let depth = &prepass.depth;
-    let resolved = Resolved::new(&prepass, nearest_sample);
     let view = View {
         viewport: viewport.unwrap_or([0, 0, input.width, input.height]),
         samples: depth.samples,
@@ -99,6 +99,8 @@ pub fn assert_pass_is_its_twin(
         ..default()
     });
     let outlines = style.get::<Outlines>().copied().or(implied);
+    let drawn = outlines.unwrap_or_default();
+    let resolved = Resolved::new(&prepass, |near| jump(&drawn) * view.jump_reference(near));
     let seen = resolved.view(&view);
     let edges = outlines.map(|outlines| (outlines, Ink::new(&outlines, &seen, 1.0)));
     let mut undecided = 0;

@@ -424,8 +424,10 @@ fn every_kind_of_outline_composes_and_validates() {
     for last in [&[][..], &["LAST"]] {
         check(&shader("lines/link.wgsl"), last);
     }
-    for smooth in [&[][..], &["SMOOTH"]] {
-        check(&shader("lines/settle.wgsl"), smooth);
+    for smooth in [&[][..], &["SMOOTH"], &["SMOOTH", "FOLDS", "DEPTH"]] {
+        for weight in [&[][..], &["WEIGHT", "DEPTH", "BUDGET"]] {
+            check(&shader("lines/settle.wgsl"), &[smooth, weight].concat());
+        }
     }
     check(&shader("lines/tiles.wgsl"), &[]);
     for styles in [&[][..], &["OBJECT_IDS", "OBJECT_STYLES"]] {

@@ -88,7 +88,7 @@ pub fn normal(view: &View, x: u32, y: u32) -> Normal {
 }
 
 /// The jump in depth that separates two surfaces, as a fraction of the reference.
-pub(super) fn jump(s: &Outlines) -> f64 {
+pub fn jump(s: &Outlines) -> f64 {
     let measured = s.silhouettes.filter(|s| s.form == Form::Corrected);
     f64::from(measured.unwrap_or_default().threshold)
 }

@@ -3,11 +3,13 @@
 use std::collections::{HashMap, HashSet};
 
 use super::{
+    bend::stored as stored_bend,
     budget::{budget_weight, line_density},
     chain::cracks_to_end,
     crack::{Crack, SIDES, crack},
     edge::{line_coverage, line_offset, segment_distance},
     faithful::faithful,
+    fold::placed,
     link::{Place, bend, linked, without_specks},
     view::View,
     weight::{largest_weight, local_weight, taper_weight, weighted},
@@ -52,7 +54,7 @@ impl Cracks {
             reach: reach + i64::from(s.smooth && reach > 1),
         };
         let steps = ((f64::from(s.continuity) * scale).ceil() as i32).min(64);
-        let linked = found.complete(steps, s.specks);
+        let linked = found.complete(steps, s.specks, view);
         let taper = (f64::from(s.weight.taper) * scale).min(64.0);
         found.weigh((s, view), [x0, y0], taper, &linked);
         found
@@ -107,7 +109,7 @@ impl Cracks {
 
     /// Leaves out the cracks that are not parts of lines, and bends the lines of the others.
     /// Returns the cracks of all lines, specks included.
-    fn complete(&mut self, steps: i32, specks: u32) -> HashSet<Place> {
+    fn complete(&mut self, steps: i32, specks: u32, view: &View) -> HashSet<Place> {
         let width = self.width;
         let place = |i: usize, side| ([i as i64 % width, i as i64 / width], side);
         let all: HashMap<Place, Crack> = self.places().collect();
@@ -117,7 +119,11 @@ impl Cracks {
             for (side, crack) in cracks.iter_mut().enumerate() {
                 *crack = crack.filter(|_| kept.contains(&place(i, side)));
                 if let Some(crack) = crack.as_mut().filter(|_| self.smooth) {
-                    crack.bend = bend(&linked, place(i, side));
+                    let place = place(i, side);
+                    let fold = crack.kinds[1]
+                        .then(|| placed(view, &linked, place))
+                        .flatten();
+                    crack.bend = fold.map_or_else(|| bend(&linked, place), stored_bend);
                 }
             }
         }

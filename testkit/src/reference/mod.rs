@@ -17,6 +17,7 @@ pub mod edge;
 pub mod faithful;
 pub mod finish;
 pub mod fog;
+pub mod fold;
 pub mod fused;
 pub mod histogram;
 pub mod jumps;

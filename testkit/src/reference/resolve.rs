@@ -18,6 +18,18 @@ pub fn nearest_sample(depths: &[f32]) -> usize {
     chosen
 }
 
+/// The sample whose normal and object are read: the first, unless a jump in depth separates
+/// it from the nearest. `jump`: from the raw depth of the nearest.
+pub fn surface_sample(depths: &[f32], jump: impl Fn(f64) -> f64) -> usize {
+    let nearest = nearest_sample(depths);
+    let near = f64::from(depths[nearest]);
+    if f64::from(depths[0]) >= near - jump(near) {
+        0
+    } else {
+        nearest
+    }
+}
+
 /// The prepass textures of a view with all samples: normals and ids one image a sample,
 /// none without them.
 pub struct Prepass {
@@ -34,16 +46,18 @@ pub struct Resolved {
 }
 
 impl Resolved {
-    /// `choose`: the sample, from the raw depths of a pixel.
-    pub fn new(prepass: &Prepass, choose: impl Fn(&[f32]) -> usize) -> Self {
+    /// `jump`: the jump in raw depth that separates two surfaces, from that of the nearer.
+    pub fn new(prepass: &Prepass, jump: impl Fn(f64) -> f64) -> Self {
         let depth = &prepass.depth;
         let samples = depth.samples as usize;
-        let chosen: Vec<usize> = depth
-            .bits
-            .chunks_exact(samples)
-            .map(|bits| choose(&bits.iter().map(|b| f32::from_bits(*b)).collect::<Vec<_>>()))
+        let depths =
+            |bits: &[u32]| -> Vec<f32> { bits.iter().map(|b| f32::from_bits(*b)).collect() };
+        let pixels = || depth.bits.chunks_exact(samples).map(depths);
+        let nearest = pixels().map(|depths| nearest_sample(&depths));
+        let surfaces: Vec<usize> = pixels()
+            .map(|depths| surface_sample(&depths, &jump))
             .collect();
-        let texels = || chosen.iter().copied().enumerate();
+        let texels = || surfaces.iter().copied().enumerate();
         let normals = prepass.normals.first().map(|first| FloatImage {
             pixels: texels()
                 .map(|(i, s)| prepass.normals[s].pixels[i])
@@ -55,7 +69,10 @@ impl Resolved {
             ..first.clone()
         });
         Self {
-            depth_bits: texels().map(|(i, s)| depth.bits[i * samples + s]).collect(),
+            depth_bits: nearest
+                .enumerate()
+                .map(|(i, s)| depth.bits[i * samples + s])
+                .collect(),
             normals,
             ids,
         }

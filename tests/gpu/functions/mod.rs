@@ -10,6 +10,7 @@ mod contour_response;
 mod depth_map;
 mod finish;
 mod fog;
+mod fold;
 mod jumps;
 mod normal;
 mod planes;

@@ -1,0 +1,79 @@
+//! What the passes that complete cracks load, counted in their shaders, and how often they
+//! run. A cell has 4 x 8 = 32 pixels, and a word of a plane 32 rows of a column.
+
+use bevy::prelude::*;
+use bevy_comics::{ComicStyle, Outlines};
+use bevy_comics_testkit::{
+    link_work::{self, LinkWork},
+    work::along_cracks,
+};
+
+const CELL: f64 = 32.0;
+/// Words that tell a pass of `link.wgsl` whether a cell has anything to continue: found
+/// cracks and lines, to the east and south, of its four columns.
+const LOOSE: f64 = 4.0 * 4.0;
+/// Words around a cell that has: the same four planes in 20 columns, and in two bands each,
+/// because the 32 rows of the window begin anywhere.
+const WINDOW: f64 = 20.0 * 4.0 * 2.0;
+/// Words of `settle.wgsl` for a cell: lines to the east and south in a window of eight
+/// columns, in two bands, and the found cracks of its four columns.
+const SETTLE: f64 = 8.0 * 2.0 * 2.0 + 4.0 * 2.0;
+/// More words with a budget of ink: lines to the east and south in 24 columns, in two bands.
+const NEAR: f64 = 24.0 * 2.0 * 2.0;
+
+/// Edges between objects: each of their cracks is certain, so that none is left to continue a
+/// line, and none is left out.
+fn objects(continuity: f32, budget: f32) -> ComicStyle {
+    ComicStyle::new().with(Outlines {
+        silhouettes: None,
+        creases: None,
+        continuity,
+        specks: 1,
+        smooth: false,
+        budget,
+        ..default()
+    })
+}
+
+/// A pass continues lines by eight cracks. Where there is nothing to continue, it loads no
+/// window.
+#[test]
+fn cells_without_weak_cracks_load_no_window() {
+    let work = link_work::count(&objects(20.0, 1.0));
+    println!("edges between objects: {work:?}");
+    assert!(work.cells > 20, "{work:?}");
+    let passes = 3.0;
+    assert_eq!(work.dispatches, 3 + 1, "{work:?}");
+    assert_eq!(work.link, passes * LOOSE / CELL, "{work:?}");
+    assert_eq!(work.settle, SETTLE / CELL, "{work:?}");
+}
+
+/// Without continuity there are no passes that link. With a budget, the cracks of every pixel
+/// that has any are loaded, to be weighed: of one pixel at least, and of all at most.
+#[test]
+fn a_budget_loads_its_neighbourhood_and_each_crack_once() {
+    let work = link_work::count(&objects(0.0, 0.35));
+    println!("edges between objects, with a budget: {work:?}");
+    assert_eq!(work.dispatches, 1, "{work:?}");
+    assert_eq!(work.link, 0.0, "{work:?}");
+    let cracks = work.settle - (SETTLE + NEAR) / CELL;
+    assert!(cracks > 0.0 && cracks <= 1.0, "{work:?}");
+}
+
+/// Default lines: one pass links, and loads windows in some cells, but not in all.
+#[test]
+fn default_lines_load_some_windows() {
+    let work = link_work::count(&ComicStyle::new().with(Outlines::default()));
+    println!("default lines: {work:?}");
+    assert_eq!(work.dispatches, 1 + 1, "{work:?}");
+    let [least, most] = [LOOSE, LOOSE + WINDOW].map(|words| words / CELL);
+    assert!(work.link > least && work.link < most, "{work:?}");
+    assert!(work.settle > (SETTLE + NEAR) / CELL, "{work:?}");
+}
+
+/// Lines along cracks that are neither linked nor weighed need neither pass.
+#[test]
+fn cracks_that_are_complete_are_not_completed() {
+    let work = link_work::count(&ComicStyle::new().with(along_cracks()));
+    assert_eq!(work, LinkWork::default());
+}

@@ -1,0 +1,118 @@
+//! Holds how well outlines follow the edges of the built-in scenes: the scores of the report,
+//! in pictures of half its width and height.
+
+use bevy::{
+    core_pipeline::tonemapping::Tonemapping,
+    ecs::system::RunSystemOnce,
+    light::{PointLight, SpotLight},
+    prelude::*,
+    render::view::Msaa,
+};
+use bevy_comics::ComicStyle;
+use bevy_comics_testkit::{
+    scenes::{BuiltIn, ScenePart, Stage, Vantage},
+    truth::FINE,
+};
+
+use crate::{
+    line_quality::{MOST_FRAGMENTS, Scores, inked, scored, truth},
+    small::Small,
+};
+
+/// The report scores pictures of 480x270.
+const SIZE: UVec2 = UVec2::new(240, 135);
+
+/// Of the report, all outlines and every true line: the true pixels that are missed, as a
+/// fraction, and the drawn pixels away from true ones, as a fraction.
+const REPORTED: [(BuiltIn, [f64; 2]); 4] = [
+    (BuiltIn::Teapot, [0.0, 101.0 / 3155.0]),
+    (BuiltIn::Theatre, [1.0 / 5322.0, 1.0 / 9327.0]),
+    (BuiltIn::Village, [450.0 / 8976.0, 66.0 / 13125.0]),
+    (BuiltIn::Mountains, [49.0 / 47618.0, 191.0 / 55734.0]),
+];
+
+/// Errors are about a pixel wide: a gap too narrow for the grid, a bend too tight for it. In
+/// half the width and height a pixel is twice as wide, so an edge of the same length on
+/// the screen has twice the errors for each pixel of line.
+const SIZE_EFFECT: f64 = 2.0;
+/// Parts of the scene that are near the size of a pixel in one of the pictures only, as a
+/// fraction of the pixels of lines.
+const MARGIN: f64 = 0.01;
+
+/// The lights of a scene.
+type Lit = Or<(With<DirectionalLight>, With<PointLight>, With<SpotLight>)>;
+
+/// Replaces the scene by another. As in the report its materials are unlit, so that only lines
+/// change the picture; lights, which would cost shadows, are removed.
+fn show(small: &mut Small, scene: BuiltIn) -> Vantage {
+    let world = small.world();
+    let mut parts = world.query_filtered::<Entity, (With<ScenePart>, Without<ChildOf>)>();
+    let parts: Vec<Entity> = parts.iter(world).collect();
+    for part in parts {
+        world.despawn(part);
+    }
+    let vantage = world
+        .run_system_once(move |mut stage: Stage| stage.spawn(scene))
+        .expect("the stage is there");
+    let mut lights = world.query_filtered::<Entity, Lit>();
+    let lights: Vec<Entity> = lights.iter(world).collect();
+    for light in lights {
+        world.despawn(light);
+    }
+    let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+    for (_, material) in materials.iter_mut() {
+        material.unlit = true;
+    }
+    vantage
+}
+
+/// Draws the scene with lines of this width, in a picture of another size. Returns the pixels
+/// that lines have changed.
+fn draw(small: &mut Small, vantage: &Vantage, size: UVec2, width: f32) -> Vec<bool> {
+    small.headless.resize(size, 1.0);
+    small.restart(Msaa::Off);
+    small.clear();
+    small.insert(vantage.camera());
+    small.insert(Tonemapping::None);
+    small.style(&ComicStyle::new().with(scored(width)));
+    small.headless.step(3);
+    inked(small)
+}
+
+/// Besides the report's scores: lines miss no more than the rule of the truth itself does
+/// where it sees the small picture, whatever its size. Fragments are counted in pictures of
+/// the same size as in the report.
+#[test]
+fn lines_of_scenes_follow_their_edges() {
+    let large = SIZE * FINE;
+    let mut small = Small::new(large, Msaa::Off);
+    for (scene, reported) in REPORTED {
+        let vantage = show(&mut small, scene);
+        let mut scores = Scores::default();
+        scores.add_thin(&draw(&mut small, &vantage, large, 1.0), large.x);
+        let wanted = truth(&mut small, SIZE, FINE);
+        scores.add(&wanted, &draw(&mut small, &vantage, SIZE, 2.0));
+        let mut rule = Scores::default();
+        rule.add(&wanted, &truth(&mut small, SIZE, 1).any(&[0, 1, 2]));
+
+        let name = scene.name();
+        let found = [scores.missed(), scores.wrong()];
+        let fragments = scores.fragments();
+        let [recall, precision] = found.map(|errors| 1.0 - errors);
+        println!(
+            "{name}: recall {recall:.4}, same rule {:.4}, precision {precision:.4}, F1 {:.4}, \
+             fragments {fragments:.2}",
+            1.0 - rule.missed(),
+            2.0 / (1.0 / recall + 1.0 / precision)
+        );
+        assert!(scores.wanted > 300, "{name}: {scores:?}");
+        for (found, reported) in found.into_iter().zip(reported) {
+            let most = SIZE_EFFECT * reported + MARGIN;
+            assert!(found <= most, "{name}: {found} > {most}: {scores:?}");
+        }
+        let most = rule.missed() + MARGIN;
+        assert!(scores.missed() <= most, "{name}: {scores:?}, {rule:?}");
+        assert!(fragments <= MOST_FRAGMENTS, "{name}: {scores:?}");
+    }
+    assert_eq!(small.errors(), 0);
+}
