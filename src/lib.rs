@@ -88,7 +88,8 @@ pub use effect::{
 pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
 pub use lines::{
-    Creases, LineFog, LineResponse, LineSettings, LineWeight, MapJumps, ObjectEdges, Silhouettes,
+    Creases, LineBoil, LineFog, LineResponse, LineSettings, LineWeight, MapJumps, ObjectEdges,
+    Silhouettes,
 };
 #[cfg(feature = "objects")]
 pub use objects::{
@@ -138,12 +139,12 @@ mod pages {
 pub mod prelude {
     pub use crate::{
         CameraCut, ComicStyle, ComicStyleHandle, ComicsPlugin, Creases, DepthMap, DepthMapping,
-        Effect, EffectPlugin, Form, KeyLight, LineFog, LineResponse, LineWeight, ObjectEdges,
-        RangeSmoothing, Silhouettes, SplitView, StyleTransition, StyleTransitionFinished,
-        StyleWeight, VisibleDepthRange, effects::*,
+        Effect, EffectPlugin, Form, KeyLight, LineBoil, LineFog, LineResponse, LineWeight,
+        ObjectEdges, RangeSmoothing, Silhouettes, SplitView, StyleTransition,
+        StyleTransitionFinished, StyleWeight, VisibleDepthRange, effects::*,
     };
     #[cfg(feature = "cartoon")]
     pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};
     #[cfg(feature = "objects")]
-    pub use crate::{NoOutlines, NoStyle, OutlineGroup, OutlineKinds, OutlineStyle};
+    pub use crate::{MeshSections, NoOutlines, NoStyle, OutlineGroup, OutlineKinds, OutlineStyle};
 }

@@ -1,6 +1,6 @@
 //! The facts about a view that an effect can use.
 
-use bevy::math::UVec4;
+use bevy::math::{Mat4, UVec4};
 
 /// Facts about a view that an effect can use when it selects its shader variants
 /// and packs its settings.
@@ -12,6 +12,8 @@ pub struct ViewFacts {
     pub viewport: UVec4,
     /// Physical pixels per logical pixel.
     pub scale_factor: f32,
+    /// World position from normalized device coordinates and the texel of the depth texture.
+    pub world_from_clip: Mat4,
     /// Seconds of the app's default clock ([`Time`](bevy::time::Time)).
     pub seconds: f64,
     /// The effect that requests the lines is not on the camera but implied by
@@ -21,11 +23,13 @@ pub struct ViewFacts {
 }
 
 impl Default for ViewFacts {
-    /// A view of 1280 by 720 physical pixels, at scale factor 1 and time 0.
+    /// A view of 1280 by 720 physical pixels, at scale factor 1 and time 0, whose world
+    /// positions are its normalized device coordinates.
     fn default() -> Self {
         Self {
             viewport: UVec4::new(0, 0, 1280, 720),
             scale_factor: 1.0,
+            world_from_clip: Mat4::IDENTITY,
             seconds: 0.0,
             lines_implied: false,
         }

@@ -9,7 +9,7 @@ use bevy::{
         entity::Entity,
         system::{Commands, Res, ResMut, SystemParam},
     },
-    math::{UVec2, UVec4, Vec2, Vec4Swizzles},
+    math::{Mat4, UVec2, UVec4, Vec2, Vec4Swizzles},
     render::{
         camera::{ExtractedCamera, TemporalJitter},
         render_resource::{
@@ -122,6 +122,7 @@ impl Services<'_> {
         let facts = ViewFacts {
             viewport: scene.viewport,
             scale_factor: view.scale_factor,
+            world_from_clip: world_from_clip(view, extracted),
             seconds: view.time,
             lines_implied: plan.lines_implied(),
         };
@@ -269,6 +270,17 @@ fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeReq
     })
 }
 
+/// World position from normalized device coordinates; the identity for a projection that
+/// has no inverse.
+fn world_from_clip(view: &ViewPlan, extracted: &ExtractedView) -> Mat4 {
+    let matrix = extracted.world_from_view.to_matrix() * view.clip_from_view.inverse();
+    if matrix.is_finite() {
+        matrix
+    } else {
+        Mat4::IDENTITY
+    }
+}
+
 fn line_request(
     view: &ViewPlan,
     (plan, facts): (&Plan, &ViewFacts),
@@ -294,6 +306,7 @@ fn line_request(
         weight: settings
             .weight
             .uniform(grid_scale, view.to_light, settings.budget),
+        boil: settings.boil.uniform(view.scale_factor, view.time),
         fog: plan.fog.then(|| {
             let fog = view.fog.unwrap_or_default();
             fog.uniform(&view.projection, &view.clip_from_view)

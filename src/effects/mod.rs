@@ -32,6 +32,7 @@ effects! {
     contours: Contours, ContourOperator;
     outlines: Outlines;
     sketch: Sketch;
+    iso_lines: IsoLines, IsoField;
     vignette: Vignette;
 }
 

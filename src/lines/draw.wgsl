@@ -5,6 +5,9 @@
 // the strongest line, / 255.
 
 #import bevy_comics::depth::view::set_view
+#ifdef BOIL
+#import bevy_comics::lines::boil::boiled
+#endif
 #import bevy_comics::lines::edge::{
     encode_ink, ink_of, is_apart, largest_opacity, line_coverage, owner_at, segment_distance,
     unpack_middle, unpack_width,
@@ -148,7 +151,11 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     set_view(line_pass.seen);
     let g = line_pass.grid;
     viewport_scale = 1.0 / g.from_viewport.xy;
-    let at = position.xy * g.from_viewport.xy + g.from_viewport.zw;
+    var place = position.xy;
+#ifdef BOIL
+    place = boiled(line_pass.boil, place);
+#endif
+    let at = place * g.from_viewport.xy + g.from_viewport.zw;
     let centre = vec2<i32>(floor(at));
     var ink: Ink;
     ink.distances = vec2(1e6);

@@ -66,6 +66,8 @@ pub(crate) struct LineKey {
     pub smooth: bool,
     /// Which factors of width and opacity are not 1.
     pub weight: WeightKey,
+    /// Lines are displaced.
+    pub boils: bool,
     /// The width changes along a line.
     pub varied: bool,
     /// The depth texture has one pixel per pixel of the viewport.
@@ -108,6 +110,7 @@ impl LineKey {
             links: lines.links() && !by_fragments,
             smooth: lines.smooth && !by_fragments,
             weight,
+            boils: lines.boil.moves(),
             varied: weight.varies(),
             same_size: request.view.depth_scale == Vec2::ONE,
             search: request.search(),
@@ -157,6 +160,7 @@ impl LineKey {
             faithful: [false; 2],
             search: Search::default(),
             visible_range: self.fading && self.visible_range,
+            boils: false,
             varied: false,
             jumps: false,
             map_flags: 0,
@@ -177,6 +181,7 @@ impl LineKey {
             map_flags: 0,
             by_fragments: false,
             weight: WeightKey::default(),
+            boils: false,
             varied: false,
             ..self
         }
@@ -213,6 +218,7 @@ impl LineKey {
             ids: self.object_styles,
             object_styles: self.object_styles,
             search: self.search,
+            boils: self.boils,
             smooth: self.smooth && self.search != Search::Columns,
             varied: self.varied && self.search != Search::Columns,
             by_fragments: self.by_fragments,
@@ -312,6 +318,7 @@ impl LineKey {
                 (!self.by_fragments, "BLOCKS"),
                 (self.smooth, "SMOOTH"),
                 (self.varied, "VARIED"),
+                (self.boils, "BOIL"),
             ]))
             .collect()
     }

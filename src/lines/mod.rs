@@ -6,6 +6,7 @@
 //! lines, and `draw.wgsl` draw their ink into a texture. Effects read the ink with
 //! `read.wgsl`.
 
+mod boil;
 mod cracks;
 mod draw;
 mod fog;
@@ -42,6 +43,7 @@ use bevy::{
     shader::load_shader_library,
 };
 
+pub use boil::LineBoil;
 pub use fog::LineFog;
 pub(crate) use fog::{ViewFog, has_fog};
 pub(crate) use key::reach;
@@ -68,6 +70,7 @@ pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "bend.wgsl");
     load_shader_library!(app, "listed.wgsl");
     load_shader_library!(app, "weight.wgsl");
+    load_shader_library!(app, "boil.wgsl");
     load_shader_library!(app, "budget.wgsl");
     load_shader_library!(app, "fog.wgsl");
     load_shader_library!(app, "fold.wgsl");

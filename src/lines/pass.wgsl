@@ -4,6 +4,7 @@
 // binding 1 of their group.
 
 #import bevy_comics::depth::view::View
+#import bevy_comics::lines::boil::Boil
 #import bevy_comics::lines::edge::{Grid, Lines}
 #import bevy_comics::lines::fog::Fog
 #import bevy_comics::lines::weight::Weight
@@ -14,6 +15,7 @@ struct LinePass {
     grid: Grid,
     weight: Weight,
     fog: Fog,
+    boil: Boil,
 }
 
 @group(0) @binding(1) var<uniform> line_pass: LinePass;

@@ -17,6 +17,7 @@ use bevy::{
 };
 
 use super::{
+    boil::BoilUniform,
     fog::FogUniform,
     key::{LineKey, Search},
     pipelines::{LinePass, LineShaders, SearchPass},
@@ -37,6 +38,7 @@ pub(crate) struct LineRequest {
     pub view: ViewUniform,
     pub lines: LinesUniform,
     pub weight: WeightUniform,
+    pub boil: BoilUniform,
     /// The fog that lines fade into.
     pub fog: Option<FogUniform>,
     /// Size in pixels of the depth texture, and its samples per pixel.
@@ -75,7 +77,9 @@ pub(crate) struct LineRequest {
 impl LineRequest {
     /// Pixels within which cracks are searched around a pixel.
     pub fn grid_reach(&self) -> i32 {
-        let aligned = self.view.depth_scale == Vec2::ONE && self.jitter.is_none();
+        let aligned = self.view.depth_scale == Vec2::ONE
+            && self.jitter.is_none()
+            && !self.settings.boil.moves();
         // Between the pixels of the grid, cracks half a pixel further away count.
         self.reach.max(1) + i32::from(!aligned)
     }
@@ -98,7 +102,8 @@ impl LineRequest {
         // In columns, and where lines leave their cracks, cracks half a pixel further away count.
         let beyond = self.settings.smooth && self.search() != Search::Neighbours;
         let reach = self.grid_reach() + i32::from(beyond);
-        let read = (self.line_reach * scale.max_element()).ceil() as i32;
+        let read = self.line_reach + self.boil.amplitude;
+        let read = (read * scale.max_element()).ceil() as i32;
         let jumps = self.jumps.unwrap_or(MapJumps {
             least: f32::MAX,
             radius: 1.0,
@@ -129,6 +134,7 @@ impl LineRequest {
             grid: self.grid(),
             weight: self.weight,
             fog: self.fog.unwrap_or_default(),
+            boil: self.boil,
         }
     }
 }
@@ -155,6 +161,7 @@ pub(crate) struct LinePassUniform {
     pub grid: Grid,
     pub weight: WeightUniform,
     pub fog: FogUniform,
+    pub boil: BoilUniform,
 }
 
 /// The pipelines of one view's lines.

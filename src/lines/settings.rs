@@ -3,6 +3,7 @@
 use bevy::{math::Vec3, render::render_resource::ShaderType};
 
 use super::{
+    boil::LineBoil,
     fog::LineFog,
     kinds::{Creases, LineResponse, ObjectEdges, Silhouettes, ramp},
     weight::LineWeight,
@@ -40,6 +41,8 @@ pub struct LineSettings {
     pub weight: LineWeight,
     /// Fraction of an area that lines may cover where they crowd; 1: no limit.
     pub budget: f32,
+    /// How lines move.
+    pub boil: LineBoil,
     /// What happens to lines in the engine's distance fog.
     pub fog: LineFog,
 }
@@ -63,6 +66,7 @@ impl LineSettings {
         smooth: true,
         weight: LineWeight::EVEN,
         budget: 1.0,
+        boil: LineBoil::STILL,
         fog: LineFog::Fade,
     };
 

@@ -126,7 +126,11 @@ fn crease_bend(g: Grid, crack: vec3<i32>, otherwise: u32) -> u32 {
     if any(low < vec2(0)) || any(high >= g.rect.zw) || is_fold_crossed(g, crack) {
         return otherwise;
     }
-    return pack_bend(fold_bend(fold_around(crack), unpack_bend(otherwise)));
+    let s = line_pass.settings;
+    let fold = fold_around(crack);
+    let near = max(fold.across.y, fold.across.z);
+    let jump = s.jump * (s.reference_factor * near + s.reference_constant);
+    return pack_bend(fold_bend(fold, jump, unpack_bend(otherwise)));
 }
 #endif
 

@@ -245,6 +245,16 @@ fn a_million_floats_in_every_field_of_the_lines() {
     fuzz("Outlines::continuity_level", 0.1, 1.0, |x| {
         level(x).continuity_level
     });
+    let budget = outlines(|o, x| o.budget = x);
+    fuzz("Outlines::budget", 0.05, 1.0, |x| budget(x).budget);
+    let boil = outlines(|o, x| o.boil.amplitude = x);
+    fuzz("LineBoil::amplitude", 0.0, 3.0, |x| boil(x).boil.amplitude);
+    let boil = outlines(|o, x| o.boil.wavelength = x);
+    fuzz("LineBoil::wavelength", 20.0, 120.0, |x| {
+        boil(x).boil.wavelength
+    });
+    let boil = outlines(|o, x| o.boil.rate = x);
+    fuzz("LineBoil::rate", 0.0, 60.0, |x| boil(x).boil.rate);
     for specks in [0, 1, 2, 3, 4, u32::MAX] {
         let outlines = Outlines {
             specks,

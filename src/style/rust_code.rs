@@ -19,6 +19,7 @@ const PRELUDE: &[&str] = &[
     "DepthMap",
     "DepthMapping",
     "Form",
+    "LineBoil",
     "LineFog",
     "LineResponse",
     "LineWeight",

@@ -1,6 +1,7 @@
 //! Everything that needs a GPU adapter (a CPU driver will do), in one binary.
 
 mod blending;
+mod boil;
 mod by_fragments;
 mod cartoon;
 mod command_line;
@@ -16,6 +17,7 @@ mod groups;
 mod guide;
 mod house;
 mod ids;
+mod iso_lines;
 mod jitter;
 mod left_out;
 mod line_quality;

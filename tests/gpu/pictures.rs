@@ -99,10 +99,16 @@ pub fn assert_pass_is_its_twin(
         ..default()
     });
     let outlines = style.get::<Outlines>().copied().or(implied);
+    let seconds = small
+        .headless
+        .app
+        .world()
+        .resource::<Time>()
+        .elapsed_secs_f64();
     let drawn = outlines.unwrap_or_default();
     let resolved = Resolved::new(&prepass, |near| jump(&drawn) * view.jump_reference(near));
     let seen = resolved.view(&view);
-    let edges = outlines.map(|outlines| (outlines, Ink::new(&outlines, &seen, 1.0)));
+    let edges = outlines.map(|outlines| (outlines, Ink::new(&outlines, &seen, 1.0, seconds)));
     let mut undecided = 0;
     // This camera stores display codes instead of linear colour.
     let encoded = small
@@ -119,12 +125,6 @@ pub fn assert_pass_is_its_twin(
         let [r, g, b] = [r, g, b].map(|c| color::srgb_decode_one(f64::from(c)) as f32);
         [r, g, b, a]
     };
-    let seconds = small
-        .headless
-        .app
-        .world()
-        .resource::<Time>()
-        .elapsed_secs_f64();
     let light_of = |x: u32, y: u32| light(input.pixels[(y * input.width + x) as usize]);
     let read_by_pass = Input {
         picture: &light_of,

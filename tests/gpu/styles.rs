@@ -5,8 +5,9 @@ use std::{fs, time::Duration};
 use bevy::{color::Color, prelude::*, render::view::Msaa};
 use bevy_comics::{
     BlackFlats, Colorization, ColorizationMode, ComicStyle, ComicStyleError, ComicStyleHandle,
-    ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, LineWeight,
-    ObjectEdges, Outlines, RangeSmoothing, ReductionMethod, Silhouettes, Sketch, ToneBands,
+    ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, LineBoil,
+    LineWeight, ObjectEdges, Outlines, RangeSmoothing, ReductionMethod, Silhouettes, Sketch,
+    ToneBands,
 };
 use proptest::{
     option,
@@ -202,6 +203,12 @@ fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines
                 width_fade: fade,
                 opacity_fade: fade,
                 weight,
+                budget: fade,
+                boil: LineBoil {
+                    amplitude: width,
+                    wavelength: fade,
+                    rate: width,
+                },
                 ..default()
             },
         );

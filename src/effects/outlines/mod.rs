@@ -10,7 +10,10 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     effect::{Effect, EffectShader, EffectStage, Extent, Needs, NoUniform, ViewFacts},
-    lines::{Creases, LineFog, LineResponse, LineSettings, LineWeight, ObjectEdges, Silhouettes},
+    lines::{
+        Creases, LineBoil, LineFog, LineResponse, LineSettings, LineWeight, ObjectEdges,
+        Silhouettes,
+    },
     settings::{Blend, FieldRange, bounded},
 };
 
@@ -78,6 +81,9 @@ pub struct Outlines {
     /// keeps its width. Needs compute shaders. Range 0.05 to 1 (no limit), default 0.35.
     #[reflect(@FieldRange::linear(0.05, 1.0))]
     pub budget: f32,
+    /// How lines move: as if each drawing of a film had been inked anew. Default:
+    /// [`LineBoil::STILL`].
+    pub boil: LineBoil,
     /// What happens to lines in the engine's `DistanceFog`, if the camera has it. Default:
     /// [`LineFog::Fade`].
     pub fog: LineFog,
@@ -99,6 +105,7 @@ impl Default for Outlines {
             smooth: true,
             weight: LineWeight::EVEN,
             budget: 0.35,
+            boil: LineBoil::STILL,
             fog: LineFog::Fade,
         }
     }
@@ -121,6 +128,7 @@ impl Outlines {
         smooth: true,
         weight: LineWeight::EVEN,
         budget: 0.35,
+        boil: LineBoil::STILL,
         fog: LineFog::Fade,
     };
 }
@@ -151,6 +159,7 @@ impl Effect for Outlines {
             smooth: self.smooth,
             weight: self.weight.sanitized(),
             budget: bounded(self.budget, default.budget, 0.05, 1.0),
+            boil: self.boil.sanitized(),
             fog: self.fog,
         }
     }
@@ -232,6 +241,7 @@ impl Effect for Outlines {
             smooth: later.smooth,
             weight: self.weight.mixed(other.weight, t),
             budget: self.budget.lerp(other.budget, t),
+            boil: self.boil.mixed(other.boil, t),
             fog: later.fog,
         }
     }
@@ -282,6 +292,7 @@ impl Outlines {
             smooth: self.smooth,
             weight: self.weight,
             budget: self.budget,
+            boil: self.boil,
             fog: self.fog,
         }
         .visible()

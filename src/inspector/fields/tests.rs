@@ -4,7 +4,7 @@ use bevy::reflect::Typed;
 
 use super::{super::tooltip::plain, *};
 use crate::{
-    BlackFlats, ComicStyle, Contours, Creases, DepthMapping, EffectRegistry, LineWeight,
+    BlackFlats, ComicStyle, Contours, Creases, DepthMapping, EffectRegistry, LineBoil, LineWeight,
     ObjectEdges, Outlines, RangeSmoothing, Silhouettes,
 };
 
@@ -18,6 +18,7 @@ fn all_types() -> Vec<(&'static str, &'static TypeInfo)> {
         ("outlines.creases", Creases::type_info()),
         ("outlines.objects", ObjectEdges::type_info()),
         ("outlines.weight", LineWeight::type_info()),
+        ("outlines.boil", LineBoil::type_info()),
     ];
     for effect in EffectRegistry::built_in().types() {
         all.push((effect.name, (effect.type_info)()));

@@ -4,9 +4,10 @@ use std::collections::{HashMap, HashSet};
 
 use super::{
     bend::stored as stored_bend,
+    boil::boiled,
     budget::{budget_weight, line_density},
     chain::cracks_to_end,
-    crack::{Crack, SIDES, crack},
+    crack::{Crack, SIDES, crack, jump},
     edge::{line_coverage, line_offset, segment_distance},
     faithful::faithful,
     fold::placed,
@@ -28,6 +29,8 @@ pub struct Cracks {
     pub(super) opacity: [f64; 3],
     /// Whether lines leave their cracks.
     smooth: bool,
+    /// Whether only the best cracks of each column are searched.
+    by_columns: bool,
 }
 
 impl Cracks {
@@ -40,6 +43,8 @@ impl Cracks {
             .collect();
         let widest = f64::from(s.width) * largest_weight(&s.weight);
         let reach = ((0.5 * widest * scale + 1.0).ceil() as i64 - 1).max(1);
+        // Between the centres of pixels, cracks half a pixel further away count.
+        let grid_reach = reach + i64::from(s.boil.amplitude > 0.0);
         let mut found = Self {
             width: w,
             height: h,
@@ -51,10 +56,11 @@ impl Cracks {
                 s.objects.unwrap_or_default().opacity,
             ]
             .map(f64::from),
-            reach: reach + i64::from(s.smooth && reach > 1),
+            reach: grid_reach + i64::from(s.smooth && grid_reach > 1),
+            by_columns: grid_reach > 1 && reach > 1,
         };
         let steps = ((f64::from(s.continuity) * scale).ceil() as i32).min(64);
-        let linked = found.complete(steps, s.specks, view);
+        let linked = found.complete(steps, s.specks, (view, jump(s)));
         let taper = (f64::from(s.weight.taper) * scale).min(64.0);
         found.weigh((s, view), [x0, y0], taper, &linked);
         found
@@ -109,7 +115,7 @@ impl Cracks {
 
     /// Leaves out the cracks that are not parts of lines, and bends the lines of the others.
     /// Returns the cracks of all lines, specks included.
-    fn complete(&mut self, steps: i32, specks: u32, view: &View) -> HashSet<Place> {
+    fn complete(&mut self, steps: i32, specks: u32, (view, jump): (&View, f64)) -> HashSet<Place> {
         let width = self.width;
         let place = |i: usize, side| ([i as i64 % width, i as i64 / width], side);
         let all: HashMap<Place, Crack> = self.places().collect();
@@ -120,10 +126,10 @@ impl Cracks {
                 *crack = crack.filter(|_| kept.contains(&place(i, side)));
                 if let Some(crack) = crack.as_mut().filter(|_| self.smooth) {
                     let place = place(i, side);
-                    let fold = crack.kinds[1]
-                        .then(|| placed(view, &linked, place))
-                        .flatten();
-                    crack.bend = fold.map_or_else(|| bend(&linked, place), stored_bend);
+                    let run = bend(&linked, place);
+                    let fold = || placed((view, jump), &linked, place, run);
+                    let fold = crack.kinds[1].then(fold).flatten();
+                    crack.bend = fold.map_or(run, stored_bend);
                 }
             }
         }
@@ -139,6 +145,7 @@ impl Cracks {
             reach: ((widest + 1.0).ceil() as i64 - 1).max(1),
             opacity: [1.0; 3],
             smooth: false,
+            by_columns: widest > 1.0,
         }
     }
 
@@ -155,7 +162,7 @@ impl Cracks {
     /// viewport, before it is stored. The sign of `nudge` decides how ink rounds that
     /// lies between two codes.
     pub fn ink(&self, at: [f64; 2], nudge: f64) -> [f64; 3] {
-        if self.reach > 1 {
+        if self.by_columns {
             return self.ink_of_lines(self.lines_by_columns(at, nudge), at, nudge);
         }
         self.exhaustive_ink(at, nudge)
@@ -331,14 +338,15 @@ pub struct Ink {
 }
 
 impl Ink {
-    /// `scale`: physical pixels per logical pixel.
-    pub fn new(s: &Outlines, view: &View, scale: f64) -> Self {
+    /// `scale`: physical pixels per logical pixel; `seconds`: of the app's clock.
+    pub fn new(s: &Outlines, view: &View, scale: f64, seconds: f64) -> Self {
         let cracks = Cracks::new(s, view, scale);
         let [x0, y0, w, h] = view.viewport.map(i64::from);
         let pixel = |x: i64, y: i64| {
             let whole = faithful(s, view, [x0 + x, y0 + y]);
             [-1.0, 0.0, 1.0].map(|nudge| {
-                let mut ink = cracks.ink([x as f64 + 0.5, y as f64 + 0.5], nudge);
+                let at = [x as f64 + 0.5, y as f64 + 0.5];
+                let mut ink = cracks.ink(boiled(&s.boil, at, scale, seconds), nudge);
                 ink[0] = ink[0].max(whole[0]);
                 ink[1] = ink[1].max(whole[1]);
                 ink.map(|ink| decoded(stored(encoded(ink), nudge)))

@@ -4,6 +4,7 @@
 pub mod bend;
 pub mod black_flats;
 pub mod blocks;
+pub mod boil;
 pub mod budget;
 pub mod chain;
 pub mod color;
@@ -20,6 +21,7 @@ pub mod fog;
 pub mod fold;
 pub mod fused;
 pub mod histogram;
+pub mod iso_lines;
 pub mod jumps;
 pub mod light;
 pub mod link;

@@ -29,22 +29,27 @@ fn planes_meet_where_they_meet() {
             let beside = [-1.5, 1.5].map(|x| [depth(x, -1.0), depth(x, 1.0)]);
             (across, beside)
         };
-        let inputs: Vec<[f32; 8]> = rows
+        // The run of cracks says nearly the same.
+        let run = |row: &[f32]| [0.6 * row[0], 0.7 * row[1]];
+        let inputs: Vec<[f32; 10]> = rows
             .iter()
             .map(|row| {
                 let ([a, b, c, d], [[e, f], [g, h]]) = depths(row);
-                [a, b, c, d, e, f, g, h]
+                let [offset, slope] = run(row);
+                [a, b, c, d, e, f, g, h, offset, slope]
             })
             .collect();
         let results = gpu().evaluate(
             FOLD,
             "let f = Fold(vec4(i(0u), i(1u), i(2u), i(3u)), i(4u), i(5u), i(6u), i(7u));
-             return vec4(fold_bend(f, vec2(9.0)), 0.0, 0.0);",
+             return vec4(fold_bend(f, 0.1, vec2(i(8u), i(9u))), 0.0, 0.0);",
             &inputs,
         );
         for (row, found) in rows.iter().zip(results) {
             let (across, beside) = depths(row);
-            let twin = fold_bend(across.map(f64::from), beside.map(|b| b.map(f64::from)));
+            let across = across.map(f64::from);
+            let beside = beside.map(|b| b.map(f64::from));
+            let twin = fold_bend(across, beside, 0.1, run(row).map(f64::from));
             let [offset, slope] = [0, 1].map(|i| f64::from(row[i]));
             // Depths near 1/2 are stored in steps of 6e-8, eight of them in each result.
             let rounding = 8.0 * 6e-8 / f64::from(row[2]);
@@ -69,17 +74,25 @@ fn planes_that_do_not_meet_say_nothing() {
     let flat = [0.5f32, 0.51, 0.52, 0.53, 0.5, 0.5, 0.53, 0.53];
     let far = [0.5f32, 0.51, 0.54, 0.54, 0.5, 0.5, 0.54, 0.54];
     let steep = [0.5f32, 0.51, 0.51, 0.5, 0.4, 0.6, 0.6, 0.4];
+    // They meet in the middle, which is not where the run of cracks is.
+    let unlike = [0.5f32, 0.51, 0.51, 0.5, 0.51, 0.5, 0.5, 0.51];
     let sky = [0.0f32; 8];
+    let jump = [0.3f32, 0.5, 0.51, 0.51, 0.3, 0.3, 0.51, 0.51];
     let results = gpu().evaluate(
         FOLD,
         "let f = Fold(vec4(i(0u), i(1u), i(2u), i(3u)), i(4u), i(5u), i(6u), i(7u));
-         return vec4(fold_bend(f, vec2(9.0)), 0.0, 0.0);",
-        &[flat, far, steep, sky],
+         return vec4(fold_bend(f, 0.1, vec2(0.3, 0.1)), 0.0, 0.0);",
+        &[flat, far, steep, unlike, sky, jump],
     );
-    for (found, row) in results.iter().zip([flat, far, steep, sky]) {
+    for (found, row) in results.iter().zip([flat, far, steep, unlike, sky, jump]) {
         let d = row.map(f64::from);
-        let twin = fold_bend([d[0], d[1], d[2], d[3]], [[d[4], d[5]], [d[6], d[7]]]);
+        let twin = fold_bend(
+            [d[0], d[1], d[2], d[3]],
+            [[d[4], d[5]], [d[6], d[7]]],
+            0.1,
+            [0.3, 0.1],
+        );
         assert_eq!(twin, None, "{row:?}");
-        assert_eq!([found[0], found[1]], [9.0; 2], "{row:?}");
+        assert_eq!([found[0], found[1]], [0.3, 0.1], "{row:?}");
     }
 }

@@ -11,6 +11,7 @@ mod depth_map;
 mod finish;
 mod fog;
 mod fold;
+mod iso_lines;
 mod jumps;
 mod normal;
 mod planes;

@@ -1,0 +1,165 @@
+//! Draws lines of equal depth, height or distance (Saito and Takahashi 1990).
+
+use bevy::{
+    color::Color,
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::{Mat4, Vec3},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
+    settings::{BlendField, FieldRange, bounded, displayable, file_color, linear_rgb},
+};
+
+/// Draws lines of equal depth, height or distance over all surfaces: the contour lines of a
+/// map, the rings of a sonar (Saito and Takahashi 1990).
+///
+/// Lines fade out where they are closer than 4 physical pixels, and where they would be more
+/// than 500 pixels apart: a floor at the height of a line is not filled. They lie on the
+/// geometry of the depth prepass; in multisampled views, on that of the first sample.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct IsoLines {
+    /// What is equal along a line. Default: [`IsoField::Height`].
+    pub field: IsoField,
+    /// Difference of two neighbouring lines: world units, or a fraction of the depth map's
+    /// range. Range 0.001 to 1000, default 0.5.
+    #[reflect(@FieldRange::logarithmic(1e-3, 1e3))]
+    pub step: f32,
+    /// The point that [`IsoField::Distance`] is measured from, in world units. Components
+    /// are clamped to -1e6 to 1e6. Default: the origin.
+    pub centre: Vec3,
+    /// Width of a line in logical pixels. Range 0.5 to 16, default 1.
+    #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
+    pub width: f32,
+    /// Every how many lines one is heavier, from that of value 0 on. Range 0 (none) to 20,
+    /// default 5.
+    #[reflect(@FieldRange::linear(0.0, 20.0), @BlendField::Switch)]
+    pub major: u32,
+    /// Width of the heavier lines in logical pixels. Range 0.5 to 16, default 2.
+    #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
+    pub major_width: f32,
+    /// Colour of the lines. Default: black. Components are clamped to what a display shows;
+    /// alpha is ignored.
+    #[serde(with = "file_color")]
+    pub color: Color,
+    /// Opacity of the lines. Range 0 (the effect is left out) to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub opacity: f32,
+}
+
+/// What is equal along an [iso-line](IsoLines).
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum IsoField {
+    /// The depth map.
+    Depth,
+    /// The height above the world's origin: y.
+    #[default]
+    Height,
+    /// The distance from [`IsoLines::centre`].
+    Distance,
+}
+
+impl Default for IsoLines {
+    fn default() -> Self {
+        Self {
+            field: IsoField::Height,
+            step: 0.5,
+            centre: Vec3::ZERO,
+            width: 1.0,
+            major: 5,
+            major_width: 2.0,
+            color: Color::BLACK,
+            opacity: 1.0,
+        }
+    }
+}
+
+impl Effect for IsoLines {
+    const NAME: &'static str = "iso_lines";
+    const STAGE: EffectStage = EffectStage::Ink;
+    const SHADER: EffectShader = EffectShader {
+        path: "bevy_comics::effects::iso_lines",
+        source: include_str!("iso_lines.wgsl"),
+        settings: Some("IsoLines"),
+    };
+    type Uniform = IsoLinesUniform;
+
+    fn sanitized(self) -> Self {
+        let default = Self::default();
+        let component = |value| bounded(value, 0.0, -1e6, 1e6);
+        Self {
+            field: self.field,
+            step: bounded(self.step, default.step, 1e-3, 1e3),
+            centre: Vec3::from(self.centre.to_array().map(component)),
+            width: bounded(self.width, default.width, 0.5, 16.0),
+            major: self.major.min(20),
+            major_width: bounded(self.major_width, default.major_width, 0.5, 16.0),
+            color: displayable(self.color, default.color),
+            opacity: bounded(self.opacity, default.opacity, 0.0, 1.0),
+        }
+    }
+
+    fn strength(&self) -> f32 {
+        self.opacity
+    }
+
+    fn faded(self, fraction: f32) -> Self {
+        let opacity = self.opacity * fraction;
+        Self { opacity, ..self }
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::MAP | Needs::DEPTH
+    }
+
+    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+        variants.number("FIELD", self.field_number());
+    }
+
+    fn uniform(&self, view: &ViewFacts) -> IsoLinesUniform {
+        let half = |width: f32| 0.5 * width * view.scale_factor;
+        IsoLinesUniform {
+            world_from_clip: view.world_from_clip,
+            color: linear_rgb(self.color),
+            opacity: self.opacity,
+            centre: self.centre,
+            step: self.step,
+            half_width: half(self.width),
+            major_half_width: half(self.major_width),
+            major: self.major as i32,
+            field: self.field_number(),
+        }
+    }
+}
+
+impl IsoLines {
+    /// The number of the field in `iso_lines.wgsl`.
+    fn field_number(&self) -> u32 {
+        match self.field {
+            IsoField::Depth => 0,
+            IsoField::Height => 1,
+            IsoField::Distance => 2,
+        }
+    }
+}
+
+/// The uniform: `IsoLines` in `iso_lines.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct IsoLinesUniform {
+    world_from_clip: Mat4,
+    color: Vec3,
+    opacity: f32,
+    centre: Vec3,
+    step: f32,
+    half_width: f32,
+    major_half_width: f32,
+    major: i32,
+    field: u32,
+}

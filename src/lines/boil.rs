@@ -1,0 +1,93 @@
+//! Lines that are drawn again several times a second.
+
+use bevy::{
+    math::FloatExt,
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::settings::{FieldRange, bounded};
+
+/// Displaces lines by noise that changes several times a second, as if each drawing of an
+/// animated film had been inked anew ("boiling" lines).
+///
+/// The noise is a function of the picture. Between two drawings it stands still. Lines of
+/// the faithful forms do not boil.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LineBoil {
+    /// Largest displacement per axis in logical pixels. Range 0 (off) to 3, default 0. Above
+    /// 2, wide dark lines flicker.
+    #[reflect(@FieldRange::linear(0.0, 3.0).unit("px"))]
+    pub amplitude: f32,
+    /// Length of the waves of a line in logical pixels. Range 20 to 120, default 60.
+    #[reflect(@FieldRange::linear(20.0, 120.0).unit("px"))]
+    pub wavelength: f32,
+    /// Drawings per second. Films that are animated "on twos" have 12. Range 0 (one drawing
+    /// for all time) to 60, default 12.
+    #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"))]
+    pub rate: f32,
+}
+
+impl LineBoil {
+    /// Lines that stand still.
+    pub const STILL: Self = Self {
+        amplitude: 0.0,
+        wavelength: 60.0,
+        rate: 12.0,
+    };
+
+    /// The settings that are used.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        Self {
+            amplitude: bounded(self.amplitude, 0.0, 0.0, 3.0),
+            wavelength: bounded(self.wavelength, 60.0, 20.0, 120.0),
+            rate: bounded(self.rate, 12.0, 0.0, 60.0),
+        }
+    }
+
+    /// The settings between two, at `t` from 0 to 1. Waves and drawings change at once,
+    /// halfway: in between, every frame would be another drawing.
+    #[must_use]
+    pub fn mixed(self, other: Self, t: f32) -> Self {
+        let later = if t < 0.5 { self } else { other };
+        Self {
+            amplitude: self.amplitude.lerp(other.amplitude, t),
+            ..later
+        }
+    }
+
+    /// Whether lines are displaced.
+    pub(crate) fn moves(&self) -> bool {
+        self.amplitude > 0.0
+    }
+
+    /// The settings as shaders take them. `scale`: physical pixels per logical pixel.
+    pub(crate) fn uniform(&self, scale: f32, seconds: f64) -> BoilUniform {
+        let drawing = (seconds * f64::from(self.rate)).floor();
+        BoilUniform {
+            amplitude: self.amplitude * scale,
+            wavelength: self.wavelength * scale,
+            drawing: drawing.rem_euclid(65536.0) as u32,
+            unused: 0,
+        }
+    }
+}
+
+impl Default for LineBoil {
+    fn default() -> Self {
+        Self::STILL
+    }
+}
+
+/// `Boil` of `boil.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct BoilUniform {
+    pub amplitude: f32,
+    wavelength: f32,
+    drawing: u32,
+    unused: u32,
+}

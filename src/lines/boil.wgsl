@@ -1,0 +1,24 @@
+#define_import_path bevy_comics::lines::boil
+
+// How far lines are displaced, as if they were drawn again several times a second. Pure
+// functions.
+
+#import bevy_comics::effect::noise::wave
+
+// Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
+struct Boil {
+    // Largest displacement per axis, and the length of its waves, in physical pixels.
+    amplitude: f32,
+    wavelength: f32,
+    // Number of the drawing: seeds the noise.
+    drawing: u32,
+    unused: u32,
+}
+
+// Where the lines are found that are drawn at a place of the viewport; both in physical
+// pixels from its corner.
+fn boiled(b: Boil, at: vec2<f32>) -> vec2<f32> {
+    let p = at / b.wavelength;
+    let seed = 0x6c696e65u + b.drawing * 2u;
+    return at + b.amplitude * vec2(wave(p, seed), wave(p, seed + 1u));
+}

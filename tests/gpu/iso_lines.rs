@@ -1,0 +1,166 @@
+//! Where lines of equal depth, height and distance lie.
+
+use bevy::{prelude::*, render::view::Msaa};
+use bevy_comics::{ComicStyle, IsoField, IsoLines};
+
+use crate::{
+    small::{Small, black_ink, linear, unlit},
+    walls::{towards_the_sky, wall},
+};
+
+const SIZE: UVec2 = UVec2::new(96, 64);
+
+fn every_8(field: IsoField) -> IsoLines {
+    IsoLines {
+        field,
+        step: 8.0,
+        width: 2.0,
+        major: 0,
+        ..default()
+    }
+}
+
+fn draw(small: &mut Small, lines: IsoLines) -> image::RgbaImage {
+    small.style(&ComicStyle::new().with(lines));
+    small.settle();
+    small.picture()
+}
+
+/// The middle of the ink near a place along a row of pixels, and how much there is.
+fn middle(ink: impl Fn(u32) -> f64, near: f64) -> [f64; 2] {
+    let from = (near - 3.9).floor().max(0.0) as u32;
+    let [mut sum, mut moment] = [0.0; 2];
+    for x in from..=(near + 3.0) as u32 {
+        sum += ink(x);
+        moment += ink(x) * (f64::from(x) + 0.5);
+    }
+    [moment / sum, sum]
+}
+
+/// A wall that leans by 60 degrees, seen from the front: heights are rows of pixels.
+#[test]
+fn heights_are_where_they_are() {
+    let mut small = towards_the_sky(SIZE);
+    let leaning = wall(&mut small, [-60.0, -80.0], [60.0, 80.0], 300.0);
+    let at = Transform::from_xyz(0.0, 0.0, -300.0)
+        .with_rotation(Quat::from_rotation_x(60f32.to_radians()));
+    small.world().entity_mut(leaning).insert(at);
+    let picture = draw(&mut small, every_8(IsoField::Height));
+    for line in -3..=3 {
+        let row = 32.0 - 8.0 * f64::from(line);
+        let [found, width] = middle(|y| 1.0 - linear(&picture, 40, y)[0], row);
+        assert!((found - row).abs() < 0.02, "{line}: {found}, {row}");
+        assert!((width - 2.0).abs() < 0.02, "{line}: {width}");
+    }
+    // Every fifth line is heavier.
+    let heavier = IsoLines {
+        major: 3,
+        major_width: 4.0,
+        ..every_8(IsoField::Height)
+    };
+    let picture = draw(&mut small, heavier);
+    for line in -3..=3 {
+        let row = 32.0 - 8.0 * f64::from(line);
+        let [_, width] = middle(|y| 1.0 - linear(&picture, 40, y)[0], row);
+        let want = if line % 3 == 0 { 4.0 } else { 2.0 };
+        assert!((width - want).abs() < 0.02, "{line}: {width}");
+    }
+}
+
+/// Rings around a point on a wall that faces the camera.
+#[test]
+fn distances_are_rings() {
+    let mut small = towards_the_sky(SIZE);
+    wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 100.0);
+    let lines = IsoLines {
+        centre: Vec3::new(0.0, 0.0, -100.0),
+        ..every_8(IsoField::Distance)
+    };
+    let picture = draw(&mut small, lines);
+    for ring in 1..=5 {
+        for side in [-1.0, 1.0] {
+            let near = 48.0 + side * 8.0 * f64::from(ring);
+            let [found, width] = middle(|x| 1.0 - linear(&picture, x, 32)[0], near);
+            // The row of pixels is half a pixel away from the middle of the rings.
+            let want = 48.0 + side * ((8.0 * f64::from(ring)).powi(2) - 0.25).sqrt();
+            assert!((found - want).abs() < 0.05, "{ring}: {found}, {want}");
+            assert!((width - 2.0).abs() < 0.1, "{ring}: {width}");
+        }
+    }
+}
+
+/// The depth map over a wall that turns away from the camera rises evenly: from 0 in the
+/// first column to 1 in the last.
+#[test]
+fn depths_divide_the_range() {
+    let mut small = towards_the_sky(SIZE);
+    let turned = wall(&mut small, [-200.0, -80.0], [200.0, 80.0], 300.0);
+    let at = Transform::from_xyz(0.0, 0.0, -300.0)
+        .with_rotation(Quat::from_rotation_y(60f32.to_radians()));
+    small.world().entity_mut(turned).insert(at);
+    let lines = IsoLines {
+        step: 0.1,
+        ..every_8(IsoField::Depth)
+    };
+    let picture = draw(&mut small, lines);
+    for line in 1..=9 {
+        let near = 0.5 + 95.0 * f64::from(line) / 10.0;
+        let [found, width] = middle(|x| 1.0 - linear(&picture, x, 20)[0], near);
+        assert!((found - near).abs() < 0.02, "{line}: {found}, {near}");
+        assert!((width - 2.0).abs() < 0.02, "{line}: {width}");
+    }
+}
+
+/// In perspective: the rows in which a ramp has a height, from the geometry of the view.
+#[test]
+fn heights_are_right_in_perspective() {
+    let mut small = Small::new(SIZE, Msaa::Off);
+    small.clear();
+    small.insert(Transform::from_xyz(0.0, 20.0, 0.0));
+    // A ramp that rises by half a unit a unit, away from the camera: y = -z / 2 - 30.
+    let slope = 0.5f32.atan();
+    let at = Transform::from_xyz(0.0, 20.0, -100.0)
+        .with_rotation(Quat::from_rotation_x(slope - std::f32::consts::FRAC_PI_2));
+    small.put(Rectangle::new(400.0, 300.0), unlit(Color::WHITE), at);
+    let lines = IsoLines {
+        step: 20.0,
+        ..every_8(IsoField::Height)
+    };
+    let picture = draw(&mut small, lines);
+    let tangent = f64::from(std::f32::consts::FRAC_PI_8).tan();
+    for y in [0.0, 20.0, 40.0] {
+        let z = 2.0 * (y + 30.0);
+        let row = 32.0 - 32.0 * (y - 20.0) / (z * tangent);
+        let [found, width] = middle(|y| 1.0 - linear(&picture, 48, y)[0], row);
+        assert!((found - row).abs() < 0.05, "{y}: {found}, {row}");
+        assert!((width - 2.0).abs() < 0.1, "{y}: {width}");
+    }
+}
+
+/// A floor at the height of a line is not ink, nor is the sky.
+#[test]
+fn what_does_not_change_has_no_lines() {
+    let mut small = Small::new(SIZE, Msaa::Off);
+    small.clear();
+    small
+        .insert(Transform::from_xyz(0.0, 5.0, 0.0).looking_to(Vec3::new(0.0, -0.4, -1.0), Vec3::Y));
+    let floor = Plane3d::default().mesh().size(800.0, 800.0).build();
+    small.put(floor, unlit(Color::WHITE), Transform::IDENTITY);
+    let plain = {
+        small.style(&ComicStyle::new());
+        small.settle();
+        small.picture()
+    };
+    for field in [IsoField::Height, IsoField::Depth] {
+        // No line but that of height 0 is in the picture.
+        let lines = IsoLines {
+            step: 1000.0,
+            ..every_8(field)
+        };
+        let picture = draw(&mut small, lines);
+        assert_eq!(picture, plain, "{field:?}");
+    }
+    let below = (0..SIZE.x).map(|x| (x, 60));
+    assert!(black_ink(&plain, below) < 0.01, "the floor is white");
+    assert_eq!(small.errors(), 0);
+}
