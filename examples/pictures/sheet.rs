@@ -8,7 +8,7 @@ use image::{RgbaImage, imageops};
 
 use bevy_comics_testkit::{
     scenes::BuiltIn,
-    studio::{Studio, golden_presets},
+    studio::{Studio, golden_styles},
 };
 
 use crate::save;
@@ -156,8 +156,8 @@ pub fn grid(rows: &[Vec<&RgbaImage>], size: UVec2, gap: u32) -> RgbaImage {
 pub fn golden(folder: &Path) -> Result<(), String> {
     for scene in BuiltIn::ALL {
         let mut studio = Studio::new(scene, UVec2::new(320, 180), Msaa::Off);
-        for name in golden_presets(scene) {
-            let picture = studio.shoot(Some(&style(name)?));
+        for (name, style) in golden_styles(scene) {
+            let picture = studio.shoot(Some(&style));
             let path = folder.join(format!("{}-{name}.png", scene.name()));
             save(&picture, &path)?;
         }

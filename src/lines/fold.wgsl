@@ -21,7 +21,7 @@ const LEAST_FOLD: f32 = 3.8e-6;
 const FARTHEST_FOLD: f32 = 0.6;
 // How much offset and slope may differ from those of the run of cracks. On curved surfaces,
 // the depths of few pixels may say anything.
-const UNLIKE: f32 = 0.5;
+const UNLIKE: f32 = 0.35;
 
 // How the line along a crease leaves its crack: x offset, y slope, see line_bend in
 // bend.wgsl. `otherwise` where the two sides do not say. `jump`: the difference of depths

@@ -7,7 +7,7 @@ use bevy::{
     prelude::*, render::view::Msaa, time::TimeUpdateStrategy,
 };
 use bevy_comics::{
-    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, MeshSections, Preset, ToneBands, presets,
+    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, IsoLines, MeshSections, Preset, ToneBands, presets,
 };
 
 use super::{
@@ -144,6 +144,22 @@ pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
         BuiltIn::Mountains => {}
     }
     shown.into_iter().map(Preset::name).collect()
+}
+
+/// The styles that have a golden picture in a scene, with their names: presets, and in the
+/// mountains the effects that no preset has.
+pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
+    let names = golden_presets(scene);
+    let preset = |name| presets::find(name).expect("listed").style();
+    let mut styles: Vec<_> = names.into_iter().map(|name| (name, preset(name))).collect();
+    if let BuiltIn::Mountains = scene {
+        let lines = IsoLines {
+            step: 100.0,
+            ..IsoLines::default()
+        };
+        styles.push(("iso-lines", ComicStyle::new().with(lines)));
+    }
+    styles
 }
 
 /// The roots of the scene's parts.

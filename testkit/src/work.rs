@@ -16,8 +16,8 @@ use bevy::{
 };
 use bevy_comics::{
     Colorization, ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Contours, DepthMap,
-    DepthMapping, Desaturation, LineResponse, LineWeight, Outlines, RangeSmoothing, Sketch,
-    ToneBands,
+    DepthMapping, Desaturation, IsoLines, LineBoil, LineResponse, LineWeight, Outlines,
+    RangeSmoothing, Sketch, ToneBands,
 };
 
 use super::{
@@ -82,7 +82,7 @@ pub fn along_cracks() -> Outlines {
 }
 
 /// Outlines of which one thing differs from the default: what each costs.
-fn factors() -> [(&'static str, Outlines); 8] {
+fn factors() -> [(&'static str, Outlines); 9] {
     let weighted = |weight: LineWeight| Outlines {
         weight,
         ..default()
@@ -108,6 +108,16 @@ fn factors() -> [(&'static str, Outlines); 8] {
             "outlines, without a budget",
             Outlines {
                 budget: 1.0,
+                ..default()
+            },
+        ),
+        (
+            "outlines, boiling",
+            Outlines {
+                boil: LineBoil {
+                    amplitude: 1.0,
+                    ..default()
+                },
                 ..default()
             },
         ),
@@ -176,6 +186,7 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
         ),
         ("desaturation", saturation),
         ("contours", none.clone().with(Contours::default())),
+        ("iso-lines", none.clone().with(IsoLines::default())),
         ("default comic", comic.clone()),
         (
             "default comic, range of every frame",

@@ -1,4 +1,4 @@
-//! Reference pictures of every preset, 320x180. To update them, run
+//! Reference pictures of every preset, and of effects that no preset has, 320x180. To update them, run
 //! `cargo run --example pictures -- golden` and look at the result. Those in
 //! `rounding` are copied by hand from the pictures that a failing test leaves in
 //! the target folder.
@@ -11,7 +11,7 @@ use nv_flip::{FlipImageRgb8, FlipPool};
 
 use bevy_comics_testkit::{
     scenes::BuiltIn,
-    studio::{Studio, golden_presets},
+    studio::{Studio, golden_styles},
 };
 
 fn flip_mean(reference: &image::RgbaImage, picture: &image::RgbaImage) -> f32 {
@@ -67,8 +67,8 @@ fn preset(name: &str) -> ComicStyle {
 fn check(scene: BuiltIn) {
     let mut studio = Studio::new(scene, UVec2::new(320, 180), Msaa::Off);
     let mut failed = Vec::new();
-    for name in golden_presets(scene) {
-        let picture = studio.shoot(Some(&preset(name)));
+    for (name, style) in golden_styles(scene) {
+        let picture = studio.shoot(Some(&style));
         let references = references(scene, name);
         let all: Vec<_> = references
             .iter()
@@ -87,7 +87,7 @@ fn check(scene: BuiltIn) {
     );
     // The comparison can fail: the original matches no preset.
     let original = studio.shoot(None);
-    for name in golden_presets(scene) {
+    for (name, _) in golden_styles(scene) {
         for path in references(scene, name) {
             let (flip, _) = apart(&path, &original);
             assert!(flip > 0.01, "the measure sees no {name}: {flip}");

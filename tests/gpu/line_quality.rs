@@ -40,7 +40,11 @@ fn turn(small: &mut Small, distance: f32, angle: f32) {
 
 /// The pixels with ink under outlines of this width.
 fn lines(small: &mut Small, width: f32) -> Vec<bool> {
-    let outlines = Outlines { width, ..default() };
+    let outlines = Outlines {
+        width,
+        budget: 1.0,
+        ..default()
+    };
     ink(small, outlines)
         .into_iter()
         .map(|ink| ink > 0.25)

@@ -27,7 +27,7 @@ pub fn fold_bend(
     let offset = (d2 - (d3 - d2) - d1) / bend - 0.5;
     let slope = (there - here) / bend;
     let unlike = (offset - otherwise[0]).hypot(slope - otherwise[1]);
-    let near = offset.abs() <= 0.6 && unlike <= 0.5;
+    let near = offset.abs() <= 0.6 && unlike <= 0.35;
     near.then(|| [offset.clamp(-0.49, 0.49), slope.clamp(-1.0, 1.0)])
 }
 
@@ -44,7 +44,9 @@ pub fn placed(
     let at = |i: i64, j: i64| [0, 1].map(|k| pixel[k] + i * across[k] + j * along[k]);
     let [x0, y0, width, height] = view.viewport.map(i64::from);
     let inside = |[x, y]: [i64; 2]| (0..width).contains(&x) && (0..height).contains(&y);
-    let parallel = [-1, 1].iter().any(|i| lines.contains(&(at(*i, 0), side)));
+    let parallel = [-2, -1, 1, 2]
+        .iter()
+        .any(|i| lines.contains(&(at(*i, 0), side)));
     let crossing = [-1, 2]
         .iter()
         .any(|i| (-1..=0).any(|j| lines.contains(&(at(*i, j), 1 - side))));

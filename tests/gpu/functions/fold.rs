@@ -30,7 +30,7 @@ fn planes_meet_where_they_meet() {
             (across, beside)
         };
         // The run of cracks says nearly the same.
-        let run = |row: &[f32]| [0.6 * row[0], 0.7 * row[1]];
+        let run = |row: &[f32]| [0.7 * row[0], 0.75 * row[1]];
         let inputs: Vec<[f32; 10]> = rows
             .iter()
             .map(|row| {
@@ -75,7 +75,7 @@ fn planes_that_do_not_meet_say_nothing() {
     let far = [0.5f32, 0.51, 0.54, 0.54, 0.5, 0.5, 0.54, 0.54];
     let steep = [0.5f32, 0.51, 0.51, 0.5, 0.4, 0.6, 0.6, 0.4];
     // They meet in the middle, which is not where the run of cracks is.
-    let unlike = [0.5f32, 0.51, 0.51, 0.5, 0.51, 0.5, 0.5, 0.51];
+    let unlike = [0.5f32, 0.51, 0.51, 0.5, 0.49, 0.51, 0.51, 0.49];
     let sky = [0.0f32; 8];
     let jump = [0.3f32, 0.5, 0.51, 0.51, 0.3, 0.3, 0.51, 0.51];
     let results = gpu().evaluate(
