@@ -56,6 +56,11 @@ pub(crate) struct ObjectGroups {
 }
 
 impl ObjectGroups {
+    /// Whether a mesh has the id of a group, or shares it with other primitives.
+    pub fn is_shared(&self, mesh: Entity) -> bool {
+        self.roots.contains_key(&mesh) || self.primitives.contains_key(&mesh)
+    }
+
     /// The entity whose id the mesh has.
     pub fn object(&self, mesh: Entity) -> Entity {
         let other = self.roots.get(&mesh).or(self.primitives.get(&mesh));

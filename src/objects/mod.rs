@@ -136,6 +136,7 @@ impl Plugin for ObjectsPlugin {
         #[cfg(feature = "objects")]
         if app.is_plugin_added::<bevy::pbr::PbrPlugin>() {
             ids::build(app);
+            sections::finish(app);
         }
         #[cfg(not(feature = "objects"))]
         let _ = app;

@@ -7,7 +7,8 @@ use bevy::{
     prelude::*, render::view::Msaa, time::TimeUpdateStrategy,
 };
 use bevy_comics::{
-    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, IsoLines, MeshSections, Preset, ToneBands, presets,
+    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, IsoLines, MeshSections, Preset, ToneBands,
+    presets,
 };
 
 use super::{

@@ -1,6 +1,6 @@
 //! Where lines of equal depth, height and distance lie.
 
-use bevy::{prelude::*, render::view::Msaa};
+use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
 use bevy_comics::{ComicStyle, IsoField, IsoLines};
 
 use crate::{
@@ -164,5 +164,40 @@ fn what_does_not_change_has_no_lines() {
     }
     let below = (0..SIZE.x).map(|x| (x, 60));
     assert!(black_ink(&plain, below) < 0.01, "the floor is white");
+    assert_eq!(small.errors(), 0);
+}
+
+/// A floor to the horizon, in floating-point numbers: nothing on the screen is no number.
+/// A level floor has no lines as far as its heights are exact to a ten-thousandth.
+#[test]
+fn floors_to_the_horizon_are_finite_and_clear() {
+    let mut small = Small::new(SIZE, Msaa::Off);
+    small.insert((
+        Transform::from_xyz(0.0, 5.0, 0.0).looking_to(Vec3::NEG_Z, Vec3::Y),
+        Hdr,
+    ));
+    for size in [1e6, 2e3] {
+        small.clear();
+        let floor = Plane3d::default().mesh().size(size, size).build();
+        small.put(floor, unlit(Color::WHITE), Transform::IDENTITY);
+        for field in [IsoField::Height, IsoField::Distance, IsoField::Depth] {
+            for step in [0.01, 0.5, 100.0] {
+                let lines = IsoLines {
+                    step,
+                    ..every_8(field)
+                };
+                small.style(&ComicStyle::new().with(lines));
+                small.settle();
+                let (before, after) = small.pass();
+                assert!(
+                    after.pixels.iter().flatten().all(|v| v.is_finite()),
+                    "{size}, {field:?}, {step}"
+                );
+                if field == IsoField::Height && step >= 0.5 && size < 1e4 {
+                    assert!(before.pixels == after.pixels, "{step}: lines on a floor");
+                }
+            }
+        }
+    }
     assert_eq!(small.errors(), 0);
 }

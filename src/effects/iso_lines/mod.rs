@@ -18,8 +18,10 @@ use crate::{
 /// map, the rings of a sonar (Saito and Takahashi 1990).
 ///
 /// Lines fade out where they are closer than 4 physical pixels, and where they would be more
-/// than 500 pixels apart: a floor at the height of a line is not filled. They lie on the
-/// geometry of the depth prepass; in multisampled views, on that of the first sample.
+/// than 500 pixels apart: a floor at the height of a line is not filled, as far as its depth
+/// is exact: places are known to a few ten-millionths of their distance. They lie on the
+/// geometry of the depth prepass; in multisampled views, on that of the first sample. Under
+/// temporal anti-aliasing they shake by up to half a pixel.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -116,7 +118,10 @@ impl Effect for IsoLines {
     }
 
     fn needs(&self) -> Needs {
-        Needs::MAP | Needs::DEPTH
+        match self.field {
+            IsoField::Depth => Needs::MAP | Needs::DEPTH,
+            _ => Needs::DEPTH,
+        }
     }
 
     fn variants(&self, _: &ViewFacts, variants: &mut Variants) {

@@ -56,6 +56,11 @@ impl Surface {
                 .collect(),
             _ => return Ok(None),
         };
+        // A strip that starts anew somewhere: which triangle is which, is not known.
+        let restarts = indices.iter().any(|i| matches!(i, 0xffff | 0xffff_ffff));
+        if mesh.primitive_topology() == PrimitiveTopology::TriangleStrip && restarts {
+            return Ok(None);
+        }
         let count = positions.len() as u32;
         let is_whole = |t: &[u32; 3]| t.iter().all(|i| *i < count);
         // A triangle with an index that does not exist is not drawn, but counts.
@@ -118,6 +123,10 @@ impl Surface {
         let mut known: HashMap<IVec3, Vec<u32>> = HashMap::default();
         let mut one_of = Vec::with_capacity(self.positions.len());
         for (i, p) in self.positions.iter().enumerate() {
+            if !p.is_finite() {
+                one_of.push(i as u32);
+                continue;
+            }
             let [from, to] = [cell(*p - near), cell(*p + near)];
             let mut found = None;
             for corner in 0..8 {

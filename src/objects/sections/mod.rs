@@ -5,31 +5,37 @@ mod table;
 
 use bevy::{
     app::{App, PostUpdate},
-    asset::{AssetEvent, AssetId, Assets},
+    asset::{AssetEvent, AssetEventSystems, AssetId, Assets},
     ecs::{
+        change_detection::DetectChanges,
         component::Component,
         entity::{Entity, EntityHashMap},
-        hierarchy::{ChildOf, Children},
+        hierarchy::Children,
         lifecycle::RemovedComponents,
         message::MessageReader,
-        query::{Changed, Or, With},
+        query::{Changed, Or},
         reflect::ReflectComponent,
         resource::Resource,
         schedule::{IntoScheduleConfigs, common_conditions::resource_exists},
         system::{Query, Res, ResMut, SystemParam},
     },
-    log::warn,
+    log::{warn, warn_once},
     mesh::{Mesh, Mesh3d, MeshVertexAttribute, VertexFormat},
     platform::{
         collections::{HashMap, HashSet},
         sync::Arc,
     },
     reflect::{Reflect, std_traits::ReflectDefault},
+    render::{RenderApp, renderer::RenderDevice, settings::WgpuFeatures},
     tasks::{AsyncComputeTaskPool, Task, block_on, futures_lite::future},
 };
 
 use self::divide::Surface;
-use super::{OutlineGroup, components::inherit, table::ObjectStyles};
+use super::{
+    components::{assign_object_styles, inherit},
+    groups::{ObjectGroups, update_object_groups},
+    table::ObjectStyles,
+};
 use crate::settings::{FieldRange, bounded};
 
 pub(crate) use table::{SectionBuffer, SectionTables, extract_sections, prepare_sections};
@@ -43,13 +49,17 @@ pub(crate) use table::{SectionBuffer, SectionTables, extract_sections, prepare_s
 /// inside of a section, which end in the middle of a surface, are still found in normals.
 /// The creases themselves are those of the camera's [`Outlines`](crate::Outlines).
 ///
-/// A section is found once for each mesh, in a background task, from its positions: normals
-/// do not count. Until then, and for meshes that the main world does not keep
+/// A mesh is divided once, in a background task, from its positions: normals do not count.
+/// Until then, and for meshes that the main world does not keep
 /// ([`RenderAssetUsages`](bevy::asset::RenderAssetUsages)), only normals are used; the latter
-/// is logged. Skinned and morphed meshes have the sections of their rest pose. In an
-/// [`OutlineGroup`], borders of sections that do not bend are left out, because meshes of a
-/// group continue each other. If several entities above a mesh have the component, the
-/// nearest one counts.
+/// is logged. A mesh that changes in every frame never has sections. Skinned and morphed
+/// meshes have the sections of their rest pose. Parts of a mesh that only touch or pass
+/// through each other are sections too.
+///
+/// Meshes of an [`OutlineGroup`](crate::OutlineGroup) and primitives of a glTF node continue
+/// each other: there, borders of sections that do not bend by 10 degrees are left out. If
+/// several entities above a mesh have the component, the nearest one counts. Creases of the
+/// faithful form know no sections.
 ///
 /// A mesh with [`ATTRIBUTE_MESH_SECTION`] has the sections of its author.
 ///
@@ -84,7 +94,8 @@ impl Default for MeshSections {
 
 /// The section of a vertex, which replaces those that [`MeshSections`] finds. The first
 /// vertex of a triangle decides. Two numbers that differ by a multiple of 127 are the same
-/// section; at a triangle of section 0 there are no creases at all.
+/// section; at a triangle of section 0 there are no creases at all. The loader of a glTF file
+/// must be told about attributes of its own (`GltfPlugin::add_custom_vertex_attribute`).
 pub const ATTRIBUTE_MESH_SECTION: MeshVertexAttribute =
     MeshVertexAttribute::new("MeshSection", 0x636f_6d69_6373, VertexFormat::Uint32);
 
@@ -116,43 +127,37 @@ type Numbers = Arc<[u8]>;
 pub(super) struct SectionTasks {
     waiting: HashSet<SectionKey>,
     running: HashMap<SectionKey, Task<Numbers>>,
+    /// Those that have no triangles, or cannot be read.
+    failed: HashSet<SectionKey>,
+    /// Whether the device can tell which triangle a pixel shows.
+    supported: bool,
 }
+
+/// The sections that a mesh entity has: their key, and if it shares its id with other
+/// meshes, by how much its numbers are shifted.
+pub(crate) type EntitySections = (SectionKey, Option<u8>);
 
 /// What says which mesh has which sections.
 #[derive(SystemParam)]
 pub(super) struct Divided<'w, 's> {
     roots: Query<'w, 's, (Entity, &'static MeshSections)>,
     children: Query<'w, 's, &'static Children>,
-    parents: Query<'w, 's, &'static ChildOf>,
     meshes: Query<'w, 's, &'static Mesh3d>,
-    groups: Query<'w, 's, (), With<OutlineGroup>>,
+    groups: Res<'w, ObjectGroups>,
     changed: Query<'w, 's, (), Changes>,
     removed: RemovedComponents<'w, 's, MeshSections>,
-    regrouped: RemovedComponents<'w, 's, OutlineGroup>,
+    left: RemovedComponents<'w, 's, Children>,
 }
 
-type Changes = Or<(
-    Changed<MeshSections>,
-    Changed<Children>,
-    Changed<Mesh3d>,
-    Changed<OutlineGroup>,
-)>;
+type Changes = Or<(Changed<MeshSections>, Changed<Children>, Changed<Mesh3d>)>;
 
 impl Divided<'_, '_> {
     fn is_changed(&mut self) -> bool {
-        let gone = self.removed.read().count() + self.regrouped.read().count();
-        gone > 0 || !self.changed.is_empty()
+        let gone = self.removed.read().count() + self.left.read().count();
+        gone > 0 || self.groups.is_changed() || !self.changed.is_empty()
     }
 
-    fn is_grouped(&self, entity: Entity) -> bool {
-        let above = self.parents.iter_ancestors(entity);
-        std::iter::once(entity)
-            .chain(above)
-            .any(|e| self.groups.contains(e))
-    }
-
-    /// The key of every mesh, and whether it is in a group.
-    fn keys(&self) -> EntityHashMap<(SectionKey, bool)> {
+    fn keys(&self) -> EntityHashMap<EntitySections> {
         let mut sections: EntityHashMap<MeshSections> = EntityHashMap::default();
         for (entity, own) in &self.roots {
             let has_own = |child| self.roots.contains(child);
@@ -161,8 +166,10 @@ impl Divided<'_, '_> {
         }
         let key = |(entity, sections): (&Entity, &MeshSections)| {
             let mesh = self.meshes.get(*entity).ok()?;
-            let key = SectionKey::new(mesh, *sections);
-            Some((*entity, (key, self.is_grouped(*entity))))
+            let shared = self.groups.is_shared(*entity);
+            // Two meshes of a group rarely have the same numbers.
+            let shift = shared.then(|| (entity.index_u32() % u32::from(divide::NUMBERS)) as u8);
+            Some((*entity, (SectionKey::new(mesh, *sections), shift)))
         };
         sections.iter().filter_map(key).collect()
     }
@@ -181,24 +188,28 @@ pub(super) fn divide_meshes(
         events.clear();
         return;
     }
+    if !tasks.supported {
+        warn_once!(
+            "`MeshSections` does nothing: the device does not support the feature PRIMITIVE_INDEX"
+        );
+        return;
+    }
     for event in events.read() {
         if let AssetEvent::Added { id } | AssetEvent::Modified { id } = event {
             for key in tables.keys_of(*id) {
                 tables.numbers.remove(&key);
                 tasks.running.remove(&key);
+                tasks.failed.remove(&key);
                 tasks.waiting.insert(key);
             }
         }
     }
     if divided.is_changed() {
-        tables.assign(divided.keys());
-        let used = tables.used();
-        tables.numbers.retain(|key, _| used.contains(key));
-        tasks.running.retain(|key, _| used.contains(key));
-        let is_new = |key: &SectionKey| {
-            !tables.numbers.contains_key(key) && !tasks.running.contains_key(key)
-        };
-        tasks.waiting = used.into_iter().filter(is_new).collect();
+        let keys = divided.keys();
+        if !tables.has(&keys) {
+            tables.assign(keys);
+            tasks.keep(&tables);
+        }
     }
     tasks.start(&meshes);
     for (key, numbers) in tasks.finished() {
@@ -210,9 +221,22 @@ pub(super) fn divide_meshes(
 }
 
 impl SectionTasks {
+    /// Forgets meshes that no entity has any more, and notes the new ones.
+    fn keep(&mut self, tables: &SectionTables) {
+        let used = tables.used();
+        self.running.retain(|key, _| used.contains(key));
+        self.failed.retain(|key| used.contains(key));
+        let is_new = |key: &SectionKey| {
+            !tables.numbers.contains_key(key)
+                && !self.running.contains_key(key)
+                && !self.failed.contains(key)
+        };
+        self.waiting = used.into_iter().filter(is_new).collect();
+    }
+
     /// Begins to divide the meshes that are loaded.
     fn start(&mut self, meshes: &Assets<Mesh>) {
-        let running = &mut self.running;
+        let (running, failed) = (&mut self.running, &mut self.failed);
         let mut unread = Vec::new();
         self.waiting.retain(|key| {
             let Some(mesh) = meshes.get(key.mesh) else {
@@ -225,8 +249,13 @@ impl SectionTasks {
                     running.insert(*key, AsyncComputeTaskPool::get().spawn(divide));
                 }
                 // No triangles: no sections.
-                Ok(None) => {}
-                Err(error) => unread.push((key.mesh, error)),
+                Ok(None) => {
+                    failed.insert(*key);
+                }
+                Err(error) => {
+                    failed.insert(*key);
+                    unread.push((key.mesh, error));
+                }
             }
             false
         });
@@ -255,6 +284,20 @@ pub(super) fn build(app: &mut App) {
         .init_resource::<SectionTables>()
         .add_systems(
             PostUpdate,
-            divide_meshes.run_if(resource_exists::<Assets<Mesh>>),
+            divide_meshes
+                .after(AssetEventSystems)
+                .after(assign_object_styles)
+                .after(update_object_groups)
+                .run_if(resource_exists::<Assets<Mesh>>),
         );
+}
+
+/// Notes what the device supports.
+pub(super) fn finish(app: &mut App) {
+    let features = app
+        .get_sub_app(RenderApp)
+        .and_then(|app| app.world().get_resource::<RenderDevice>())
+        .map(RenderDevice::features);
+    let mut tasks = app.world_mut().resource_mut::<SectionTasks>();
+    tasks.supported = features.is_some_and(|f| f.contains(WgpuFeatures::PRIMITIVE_INDEX));
 }

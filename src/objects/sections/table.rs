@@ -8,19 +8,17 @@ use bevy::{
         resource::Resource,
         system::{Res, ResMut},
     },
-    log::warn_once,
     mesh::Mesh,
     platform::collections::{HashMap, HashSet},
     render::{
         Extract,
         render_resource::{Buffer, StorageBuffer},
         renderer::{RenderDevice, RenderQueue},
-        settings::WgpuFeatures,
     },
 };
 
 use super::{
-    Numbers, SectionKey,
+    EntitySections, Numbers, SectionKey,
     divide::{NUMBERS, SILENT},
 };
 
@@ -28,8 +26,7 @@ use super::{
 #[derive(Resource, Clone, Default)]
 pub(crate) struct SectionTables {
     pub(super) numbers: HashMap<SectionKey, Numbers>,
-    /// The key of each mesh, and whether it is in a group.
-    entities: EntityHashMap<(SectionKey, bool)>,
+    entities: EntityHashMap<EntitySections>,
 }
 
 impl SectionTables {
@@ -42,8 +39,15 @@ impl SectionTables {
         self.entities.is_empty()
     }
 
-    pub(super) fn assign(&mut self, entities: EntityHashMap<(SectionKey, bool)>) {
+    pub(super) fn has(&self, entities: &EntityHashMap<EntitySections>) -> bool {
+        self.entities == *entities
+    }
+
+    /// Also forgets the sections that no entity has any more.
+    pub(super) fn assign(&mut self, entities: EntityHashMap<EntitySections>) {
         self.entities = entities;
+        let used = self.used();
+        self.numbers.retain(|key, _| used.contains(key));
     }
 
     pub(super) fn used(&self) -> HashSet<SectionKey> {
@@ -71,16 +75,14 @@ pub(crate) fn extract_sections(
 #[derive(Resource, Default)]
 pub(crate) struct SectionBuffer {
     words: StorageBuffer<Vec<u32>>,
-    /// The first word of the sections of a mesh that is in a group or not.
-    starts: HashMap<(SectionKey, bool), u32>,
-    /// Whether the device can tell which triangle a pixel shows.
-    supported: bool,
+    /// The first word of the sections.
+    starts: HashMap<EntitySections, u32>,
 }
 
 impl SectionBuffer {
     /// The first word of a mesh's sections; `None` if it has none.
     pub fn start(&self, tables: &SectionTables, mesh: Entity) -> Option<u32> {
-        let key = tables.entities.get(&mesh).filter(|_| self.supported)?;
+        let key = tables.entities.get(&mesh)?;
         self.starts.get(key).copied()
     }
 
@@ -101,8 +103,8 @@ impl SectionBuffer {
             };
             self.starts.entry(*key).or_insert_with(|| {
                 let start = words.len() as u32;
-                let (_, grouped) = *key;
-                let numbers = numbers.iter().map(|n| number(*n, grouped));
+                let (_, shift) = *key;
+                let numbers = numbers.iter().map(|n| number(*n, shift));
                 words.extend(packed(numbers));
                 start
             });
@@ -110,12 +112,15 @@ impl SectionBuffer {
     }
 }
 
-/// The number of a section as shaders read it: those of meshes in groups have another range.
-fn number(section: u8, grouped: bool) -> u8 {
-    if grouped && section != SILENT {
-        section + NUMBERS
-    } else {
-        section
+/// The number of a section as shaders read it: those of meshes that share their id have
+/// another range, 128 to 254, in which they are shifted.
+fn number(section: u8, shift: Option<u8>) -> u8 {
+    match shift {
+        Some(shift) if section != SILENT => {
+            let shifted = (u16::from(section - 1) + u16::from(shift)) % u16::from(NUMBERS);
+            NUMBERS + 1 + shifted as u8
+        }
+        _ => section,
     }
 }
 
@@ -136,12 +141,6 @@ pub(crate) fn prepare_sections(
 ) {
     if !tables.is_changed() && buffer.buffer().is_some() {
         return;
-    }
-    buffer.supported = device.features().contains(WgpuFeatures::PRIMITIVE_INDEX);
-    if tables.any() && !buffer.supported {
-        warn_once!(
-            "`MeshSections` does nothing: the device does not support the feature PRIMITIVE_INDEX"
-        );
     }
     buffer.fill(&tables);
     buffer.words.write_buffer(&device, &queue);

@@ -5,11 +5,15 @@ use bevy_comics::{IsoField, IsoLines};
 
 use super::{edge::line_coverage, smoothstep};
 
-/// The value at a place in normalized device coordinates, where the depth texture has `d`
-/// and the depth map is `map`.
-pub fn iso_value(s: &IsoLines, world_from_clip: DMat4, place: [f64; 2], d: f64, map: f64) -> f64 {
+/// The world position at a place in normalized device coordinates, where the depth texture
+/// has `d`.
+pub fn iso_place(world_from_clip: DMat4, place: [f64; 2], d: f64) -> DVec3 {
     let h = world_from_clip * DVec4::new(place[0], place[1], d, 1.0);
-    let p: DVec3 = h.truncate() / h.w;
+    h.truncate() / h.w
+}
+
+/// The value at a world position. `map`: the depth map there.
+pub fn iso_value(s: &IsoLines, p: DVec3, map: f64) -> f64 {
     match s.field {
         IsoField::Depth => map,
         IsoField::Height => p.y,
@@ -17,17 +21,30 @@ pub fn iso_value(s: &IsoLines, world_from_clip: DMat4, place: [f64; 2], d: f64, 
     }
 }
 
-/// Coverage of the line nearest to a pixel with this value, and its change over a pixel.
+/// How exact the value is.
+pub fn iso_error(s: &IsoLines, p: DVec3) -> f64 {
+    match s.field {
+        IsoField::Depth => 1e-6,
+        _ => 1e-6 * p.abs().max_element(),
+    }
+}
+
+/// Coverage of the line nearest to a pixel with this value, its change over a pixel, and its
+/// error.
 /// `scale`: physical pixels per logical pixel.
-pub fn iso_coverage(s: &IsoLines, value: f64, change: [f64; 2], scale: f64) -> f64 {
+pub fn iso_coverage(s: &IsoLines, value: f64, change: [f64; 2], error: f64, scale: f64) -> f64 {
     let step = f64::from(s.step);
     let line = (value / step).round();
     let density = change[0].hypot(change[1]) / step;
+    if density >= 0.5 {
+        return 0.0;
+    }
+    let least = (error / step).max(5e-4);
     let is_major = s.major > 0 && line as i64 % i64::from(s.major) == 0;
     let width = if is_major { s.major_width } else { s.width };
     let away = (value / step - line).abs() / density.max(1e-6);
     let coverage = line_coverage(away, 0.5 * f64::from(width) * scale);
-    coverage * (1.0 - smoothstep(0.25, 0.5, density)) * smoothstep(5e-4, 2e-3, density)
+    coverage * (1.0 - smoothstep(0.25, 0.5, density)) * smoothstep(least, 4.0 * least, density)
 }
 
 /// The smaller of two slopes of the same sign, otherwise 0.

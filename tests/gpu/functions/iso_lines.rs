@@ -2,12 +2,14 @@
 
 use bevy::math::{DMat4, Mat4, Vec3};
 use bevy_comics::{IsoField, IsoLines};
-use bevy_comics_testkit::reference::iso_lines::{flatter, iso_coverage, iso_value};
+use bevy_comics_testkit::reference::iso_lines::{
+    flatter, iso_coverage, iso_error, iso_place, iso_value,
+};
 
 use super::*;
 
 const ISO: &str = "#import bevy_comics::effects::iso_lines::{
-        IsoLines, flatter, iso_coverage, iso_value,
+        IsoLines, flatter, iso_coverage, iso_error, iso_place, iso_value,
     }";
 
 /// Away from the middle between two lines, where rounding decides which one is nearest.
@@ -28,7 +30,7 @@ fn the_coverage_of_lines_is_that_of_the_twin() {
             ISO,
             "var s: IsoLines;
              s.step = i(3u); s.major = i32(u(4u)); s.half_width = 0.5; s.major_half_width = 1.25;
-             return vec4(iso_coverage(s, i(0u), vec2(i(1u), i(2u))), flatter(i(1u), i(2u)), 0.0, 0.0);",
+             return vec4(iso_coverage(s, i(0u), vec2(i(1u), i(2u)), 0.003), flatter(i(1u), i(2u)), 0.0, 0.0);",
             rows,
         );
         for (row, found) in rows.iter().zip(results) {
@@ -40,7 +42,7 @@ fn the_coverage_of_lines_is_that_of_the_twin() {
             };
             let [value, x, y] = [0, 1, 2].map(|i| f64::from(row[i]));
             let from_middle = ((value / f64::from(s.step)).fract().abs() - 0.5).abs();
-            let want = iso_coverage(&s, value, [x, y], 1.0);
+            let want = iso_coverage(&s, value, [x, y], 0.003, 1.0);
             if from_middle > 1e-3 {
                 assert!(
                     (f64::from(found[0]) - want).abs() < 2e-3,
@@ -75,14 +77,21 @@ fn values_are_those_of_the_world() {
                      s.field = {number}u;
                      s.centre = vec3(1.0, -2.0, 0.5);
                      s.world_from_clip = mat4x4<f32>({columns});
-                     return vec4(iso_value(s, vec2(i(0u), i(1u)), i(2u), 0.25));"
+                     let p = iso_place(s, vec2(i(0u), i(1u)), i(2u));
+                     return vec4(iso_value(s, p, 0.25), 1e6 * iso_error(s, p), 0.0, 0.0);"
                 ),
                 rows,
             );
             for (row, found) in rows.iter().zip(results) {
                 let [x, y, d] = row.map(f64::from);
                 let inverse = DMat4::from_cols_array(&inverse.to_cols_array().map(f64::from));
-                let want = iso_value(&s, inverse, [x, y], d, 0.25);
+                let p = iso_place(inverse, [x, y], d);
+                let want = iso_value(&s, p, 0.25);
+                let error = 1e6 * iso_error(&s, p);
+                assert!(
+                    (f64::from(found[1]) - error).abs() < 1e-3 * error,
+                    "{row:?}"
+                );
                 let apart = (f64::from(found[0]) - want).abs();
                 assert!(
                     apart < 1e-4 * want.abs().max(1.0),
