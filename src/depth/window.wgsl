@@ -26,6 +26,14 @@ struct Steps {
     sw: f32, s: f32, se: f32,
 }
 
+// Slope limiter: the smaller of two slopes of the same sign, otherwise 0.
+fn minmod(a: f32, b: f32) -> f32 {
+    if (a > 0.0) != (b > 0.0) {
+        return 0.0;
+    }
+    return select(b, a, abs(a) < abs(b));
+}
+
 // Difference of D between the farthest geometry and the sky, which is at D = 1 + gap.
 // The farthest geometry is at D = 1, or below that if the range is below its floor.
 fn gap_behind(f: DepthFrame, gap: f32) -> f32 {

@@ -8,7 +8,7 @@
 #import bevy_comics::depth::view::{load_texel_window, tap_distances, view}
 #endif
 #import bevy_comics::depth::window::{
-    MISSING_E, MISSING_N, MISSING_S, MISSING_W, Steps, Window, gap_behind, map_steps, nearest_depth, prewitt, step_from,
+    MISSING_E, MISSING_N, MISSING_S, MISSING_W, Steps, Window, gap_behind, map_steps, minmod, nearest_depth, prewitt, step_from,
 }
 #import bevy_comics::effect::pixel::Pixel
 
@@ -29,14 +29,6 @@ struct Contours {
     opacity_fade: f32,
     operator_kind: u32,
     faithful: u32,
-}
-
-// Slope limiter: the smaller of two slopes of the same sign, otherwise 0.
-fn minmod(a: f32, b: f32) -> f32 {
-    if (a > 0.0) != (b > 0.0) {
-        return 0.0;
-    }
-    return select(b, a, abs(a) < abs(b));
 }
 
 // The slope of the plane through the centre, from two opposite neighbours at the same

@@ -12,6 +12,7 @@
 #import bevy_comics::depth::map::depth_map
 #import bevy_comics::depth::view::depth_frame
 #endif
+#import bevy_comics::depth::window::minmod
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::lines::edge::line_coverage
 
@@ -83,14 +84,6 @@ fn iso_coverage(s: IsoLines, value: f32, change: vec2<f32>, error: f32) -> f32 {
     return coverage * (1.0 - smoothstep(0.25, 0.5, density)) * smoothstep(least, 4.0 * least, density);
 }
 
-// The smaller of two slopes of the same sign, otherwise 0: that of the plane through a pixel.
-fn flatter(before: f32, after: f32) -> f32 {
-    if (before > 0.0) != (after > 0.0) {
-        return 0.0;
-    }
-    return select(after, before, abs(before) < abs(after));
-}
-
 #ifdef DEPTH
 // The value on the plane through a pixel of the depth texture, `by` pixels from it, and its
 // error. `slope`: that of the plane.
@@ -119,7 +112,7 @@ fn slope_along(at: vec2<i32>, d: f32, step: vec2<i32>, first: vec2<i32>, last: v
     if no_before || no_after {
         return select(select(d - before, after - d, no_before), 0.0, no_before && no_after);
     }
-    return flatter(d - before, after - d);
+    return minmod(d - before, after - d);
 }
 
 fn iso_lines(s: IsoLines, p: Pixel) -> Pixel {

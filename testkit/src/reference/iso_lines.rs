@@ -46,14 +46,3 @@ pub fn iso_coverage(s: &IsoLines, value: f64, change: [f64; 2], error: f64, scal
     let coverage = line_coverage(away, 0.5 * f64::from(width) * scale);
     coverage * (1.0 - smoothstep(0.25, 0.5, density)) * smoothstep(least, 4.0 * least, density)
 }
-
-/// The smaller of two slopes of the same sign, otherwise 0.
-pub fn flatter(before: f64, after: f64) -> f64 {
-    if before * after <= 0.0 {
-        0.0
-    } else if before.abs() < after.abs() {
-        before
-    } else {
-        after
-    }
-}

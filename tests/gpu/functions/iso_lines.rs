@@ -2,15 +2,14 @@
 
 use bevy::math::{DMat4, Mat4, Vec3};
 use bevy_comics::{IsoField, IsoLines};
-use bevy_comics_testkit::reference::iso_lines::{
-    flatter, iso_coverage, iso_error, iso_place, iso_value,
-};
+use bevy_comics_testkit::reference::iso_lines::{iso_coverage, iso_error, iso_place, iso_value};
 
 use super::*;
 
 const ISO: &str = "#import bevy_comics::effects::iso_lines::{
-        IsoLines, flatter, iso_coverage, iso_error, iso_place, iso_value,
-    }";
+        IsoLines, iso_coverage, iso_error, iso_place, iso_value,
+    }
+    #import bevy_comics::depth::window::minmod";
 
 /// Away from the middle between two lines, where rounding decides which one is nearest.
 #[test]
@@ -30,7 +29,7 @@ fn the_coverage_of_lines_is_that_of_the_twin() {
             ISO,
             "var s: IsoLines;
              s.step = i(3u); s.major = i32(u(4u)); s.half_width = 0.5; s.major_half_width = 1.25;
-             return vec4(iso_coverage(s, i(0u), vec2(i(1u), i(2u)), 0.003), flatter(i(1u), i(2u)), 0.0, 0.0);",
+             return vec4(iso_coverage(s, i(0u), vec2(i(1u), i(2u)), 0.003), minmod(i(1u), i(2u)), 0.0, 0.0);",
             rows,
         );
         for (row, found) in rows.iter().zip(results) {
@@ -49,7 +48,7 @@ fn the_coverage_of_lines_is_that_of_the_twin() {
                     "{row:?}: {found:?}, {want}"
                 );
             }
-            assert_eq!(f64::from(found[1]), flatter(x, y), "{row:?}");
+            assert_eq!(f64::from(found[1]), window::minmod(x, y), "{row:?}");
         }
     });
 }
