@@ -89,7 +89,7 @@ pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
 pub use lines::{
     Creases, LineBoil, LineFog, LineResponse, LineSettings, LineWeight, MapJumps, ObjectEdges,
-    Silhouettes,
+    Silhouettes, ViewCracks,
 };
 #[cfg(feature = "objects")]
 pub use objects::{

@@ -16,7 +16,7 @@ use bevy::{
 use super::{
     ViewLines,
     cracks::{Ready, ReadyCells, ReadyCracks, ReadyFind},
-    key::{LINK_STEPS, LineKey},
+    key::LineKey,
     prepare::{Cracks, Tiles},
     request::{CellPasses, CrackPasses, FindPass, LinePasses, LineRequest},
     resolve::Resolved,
@@ -234,7 +234,7 @@ impl Inputs<'_> {
             return Ok(vec![]);
         };
         let (request, ..) = self.parts.0;
-        let count = (request.steps as usize).div_ceil(LINK_STEPS);
+        let count = request.links();
         let pass = |i: usize| {
             let id = if i + 1 == count { last } else { full };
             let mut entries = vec![entry(1, self.uniform()?)];
@@ -255,7 +255,6 @@ impl Inputs<'_> {
         let Some(id) = passes.settle else {
             return Ok(None);
         };
-        let links = (self.parts.0.0.steps as usize).div_ceil(LINK_STEPS);
         let key = self.parts.0.1.key.for_settle();
         let mut entries = if key.creases || key.weight.any() {
             self.entries(&key, key.weight.light)?
@@ -263,6 +262,7 @@ impl Inputs<'_> {
             vec![entry(1, self.uniform()?)]
         };
         entries.extend(self.tiles()?.lists.cell_entries());
+        let links = self.parts.0.0.links();
         entries.extend(buffers.settle_entries(links % 2));
         let group = self.group(&key.settle_layout(), &entries);
         Ok(Some((self.compute(id)?, group)))

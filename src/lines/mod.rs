@@ -52,6 +52,7 @@ pub(crate) use layouts::{ink_entry, range_entry};
 pub(crate) use prepare::ViewLines;
 pub(crate) use settings::LinesUniform;
 pub use settings::{LineSettings, MapJumps};
+pub use store::ViewCracks;
 pub(crate) use tiles::{TileList, TileLists, tile_shader, tile_vertices};
 pub use weight::LineWeight;
 
@@ -120,7 +121,7 @@ fn init_pipelines(
 ) {
     // This runs again after a lost device, whose buffers are no longer valid.
     for view in &lines {
-        commands.entity(view).remove::<ViewLines>();
+        commands.entity(view).remove::<(ViewLines, ViewCracks)>();
     }
     commands.insert_resource(LineShaders::new(&fullscreen, &assets));
     commands.insert_resource(ResolvePipeline::new(&fullscreen, &assets));

@@ -24,7 +24,7 @@ use super::{
     key::{BLOCK, BLOCK_FORMAT, COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT},
     request::{FindPass, LinePassUniform, LinePasses, LineRequest},
     resolve::Resolved,
-    store::{CrackBuffers, CrackStore},
+    store::{CrackBuffers, CrackStore, ViewCracks},
     tiles::TileLists,
 };
 
@@ -157,11 +157,21 @@ pub(crate) fn prepare_view_lines(
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
 ) {
     for (entity, request, passes, lines) in &mut views {
+        let mut shown = None;
         let mut fill = |lines: &mut ViewLines| {
             lines.resolved = (passes.resolve.as_ref())
                 .map(|(key, _)| Resolved::new((&mut textures, &device), *key, request.depth_size));
             let before = lines.cracks.take();
             lines.cracks = cracks(before, (&mut textures, &device), passes, request.rect);
+            shown = lines
+                .cracks
+                .as_ref()
+                .and_then(|cracks| match &cracks.store {
+                    CrackStore::Buffers(buffers) => {
+                        Some(buffers.shown(request.rect, request.links()))
+                    }
+                    CrackStore::Texture(_) => None,
+                });
             let before = lines.tiles.take().map(|tiles| tiles.lists);
             lines.tiles = passes.search.map(|_| Tiles {
                 blocks: texture(
@@ -192,8 +202,12 @@ pub(crate) fn prepare_view_lines(
                 commands.entity(entity).insert(lines);
             }
         }
+        match shown {
+            Some(cracks) => commands.entity(entity).insert(cracks),
+            None => commands.entity(entity).remove::<ViewCracks>(),
+        };
     }
     for entity in &stale {
-        commands.entity(entity).remove::<ViewLines>();
+        commands.entity(entity).remove::<(ViewLines, ViewCracks)>();
     }
 }

@@ -19,7 +19,7 @@ use bevy::{
 use super::{
     boil::BoilUniform,
     fog::FogUniform,
-    key::{LineKey, Search},
+    key::{LINK_STEPS, LineKey, Search},
     pipelines::{LinePass, LineShaders, SearchPass},
     resolve::{ResolveKey, ResolvePipeline},
     settings::{LineSettings, LinesUniform, MapJumps},
@@ -82,6 +82,11 @@ impl LineRequest {
             && !self.settings.boil.moves();
         // Between the pixels of the grid, cracks half a pixel further away count.
         self.reach.max(1) + i32::from(!aligned)
+    }
+
+    /// Number of passes that link cracks.
+    pub fn links(&self) -> usize {
+        (self.steps as usize).div_ceil(LINK_STEPS)
     }
 
     /// Columns leave out too much where lines are hardly wider than a pixel of the grid.

@@ -86,18 +86,21 @@ fn bend_east(g: Grid, p: vec2<i32>) -> u32 {
 #endif
 
 #ifdef FOLDS
-// Whether another line runs through the pixels that fold_around reads, or along them. The line of the
-// crack itself goes on at most one pixel further in the next row.
+// Whether another line runs through the pixels that fold_around reads, or along the crack, at
+// most three pixels away. The line of the crack itself goes on at most one pixel further in the
+// next row.
 fn is_fold_crossed(g: Grid, crack: vec3<i32>) -> bool {
     let p = crack.xy;
     if crack.z == 0 {
         let beside = column_window(g, LINKED_EAST, p.x - 1, p.y) | column_window(g, LINKED_EAST, p.x + 1, p.y)
-            | column_window(g, LINKED_EAST, p.x - 2, p.y) | column_window(g, LINKED_EAST, p.x + 2, p.y);
+            | column_window(g, LINKED_EAST, p.x - 2, p.y) | column_window(g, LINKED_EAST, p.x + 2, p.y)
+            | column_window(g, LINKED_EAST, p.x - 3, p.y) | column_window(g, LINKED_EAST, p.x + 3, p.y);
         let across = column_window(g, LINKED_SOUTH, p.x - 1, p.y - 1) | column_window(g, LINKED_SOUTH, p.x + 2, p.y - 1);
         return (beside & 1u) != 0u || (across & 3u) != 0u;
     }
     let beside = row_window(g, p.x, p.y - 1) | row_window(g, p.x, p.y + 1)
-        | row_window(g, p.x, p.y - 2) | row_window(g, p.x, p.y + 2);
+        | row_window(g, p.x, p.y - 2) | row_window(g, p.x, p.y + 2)
+        | row_window(g, p.x, p.y - 3) | row_window(g, p.x, p.y + 3);
     let across = column_window(g, LINKED_EAST, p.x - 1, p.y - 1) | column_window(g, LINKED_EAST, p.x, p.y - 1);
     // Rows y - 1 and y + 2.
     return (beside & 1u) != 0u || (across & 9u) != 0u;

@@ -1,6 +1,7 @@
 //! Where the cracks of a view are stored.
 
 use bevy::{
+    ecs::component::Component,
     math::{UVec2, UVec4},
     render::{
         render_resource::{
@@ -59,6 +60,33 @@ pub(super) fn largest_buffer(rect: UVec4) -> u64 {
     CRACKS * u64::from(rect.z) * u64::from(rect.w)
 }
 
+/// On a view in the render world: the cracks of its last frame, the borders between pixels
+/// that lines run along. Only with compute shaders.
+///
+/// The buffers can be others in every frame, and longer than what they hold. They can be
+/// copied from. A pixel of the part of the depth texture that the main pass draws has a crack
+/// to the east and one to the south, of four bytes each; pixels follow row by row.
+#[derive(Component, Clone, Debug)]
+pub struct ViewCracks {
+    /// The part of the depth texture: x, y, width, height in pixels.
+    pub rect: UVec4,
+    /// For each pixel the crack to the east, then that to the south; 0 for none. Bits 0 to
+    /// 2: kinds (silhouette, crease, object edge); bit 3: the line belongs to the pixel
+    /// itself, not to its neighbour; bits 4 to 11: ink; 12 to 19: opacity, both from 0 to
+    /// 255; 20 to 31: half the width.
+    pub words: Buffer,
+    /// Where cracks are: words of 32 pixels of a column, bit 0 at the top. Four planes, each
+    /// from left to right and then down: cracks to the east and to the south that are parts of
+    /// lines, and all that were found to the east and to the south. `None` if lines are neither
+    /// linked nor smooth nor weighted.
+    pub planes: Option<Buffer>,
+    /// For each pixel how the lines of its cracks leave them: the lower half of a word is
+    /// that of the crack to the east. Bits 0 to 7: the offset across the crack in 256ths of a
+    /// pixel, plus 128; bits 8 to 15: the slope in 64ths, plus 128. `None` if lines are not
+    /// smooth.
+    pub bends: Option<Buffer>,
+}
+
 /// The buffers of a view's cracks.
 pub(crate) struct CrackBuffers {
     words: Buffer,
@@ -103,6 +131,16 @@ impl CrackBuffers {
                 .then(|| [one, other].map(|old| take(used[1], "comics_crack_planes", old))),
             bends: bends.then(|| take(BENDS * pixels, "comics_crack_bends", old_bends)),
             used,
+        }
+    }
+
+    /// The buffers after this number of passes that link.
+    pub fn shown(&self, rect: UVec4, links: usize) -> ViewCracks {
+        ViewCracks {
+            rect,
+            words: self.words.clone(),
+            planes: self.planes.as_ref().map(|planes| planes[links % 2].clone()),
+            bends: self.bends.clone(),
         }
     }
 

@@ -8,7 +8,7 @@ use bevy::{
         view::ViewTarget,
     },
 };
-use bevy_comics::ViewObjectIds;
+use bevy_comics::{ViewCracks, ViewObjectIds};
 use half::f16;
 
 use crate::before::Pictures;
@@ -139,6 +139,49 @@ pub fn pictures(render_world: &World, view: Entity) -> Option<(Option<FloatImage
         .and_then(|pictures| pictures.get(view));
     let before = before.map(|picture| float_image(render_world, &picture));
     Some((before, float_image(render_world, target.main_texture())))
+}
+
+/// The words of a buffer.
+fn words_of(render_world: &World, buffer: &wgpu::Buffer) -> Vec<u32> {
+    let device = render_world.resource::<RenderDevice>().wgpu_device();
+    let staging = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: buffer.size(),
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
+    render_world
+        .resource::<RenderQueue>()
+        .submit([encoder.finish()]);
+    map_buffer(device, &staging)
+        .chunks_exact(4)
+        .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+        .collect()
+}
+
+/// The words of the buffers of [`ViewCracks`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct CrackWords {
+    /// x, y, width, height.
+    pub rect: [u32; 4],
+    pub words: Vec<[u32; 2]>,
+    pub planes: Vec<u32>,
+    pub bends: Vec<u32>,
+}
+
+/// The cracks of the view's last frame; `None` if no lines were found along cracks.
+pub fn cracks(render_world: &World, view: Entity) -> Option<CrackWords> {
+    let cracks = render_world.get::<ViewCracks>(view)?;
+    let words = |buffer: &wgpu::Buffer| words_of(render_world, buffer);
+    let all = words(&cracks.words);
+    Some(CrackWords {
+        rect: cracks.rect.to_array(),
+        words: all.as_chunks::<2>().0.to_vec(),
+        planes: cracks.planes.as_ref().map_or(vec![], |b| words(b)),
+        bends: cracks.bends.as_ref().map_or(vec![], |b| words(b)),
+    })
 }
 
 /// (id, style slot) of the object at each pixel, row by row; id 0 for no object.

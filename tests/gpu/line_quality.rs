@@ -24,7 +24,7 @@ use crate::{
 
 const SIZE: UVec2 = UVec2::new(120, 68);
 
-fn show(small: &mut Small, specimen: Specimen) {
+pub fn show(small: &mut Small, specimen: Specimen) {
     small.clear();
     for (mesh, _) in specimen.parts() {
         put(small, mesh, Color::WHITE, Transform::IDENTITY);
@@ -33,7 +33,7 @@ fn show(small: &mut Small, specimen: Specimen) {
 
 /// The camera of the report: turned around the model by an angle, at a distance in radii of
 /// the model.
-fn turn(small: &mut Small, distance: f32, angle: f32) {
+pub fn turn(small: &mut Small, distance: f32, angle: f32) {
     let eye = Quat::from_rotation_y(angle) * Vec3::new(0.0, 0.34, 0.94) * distance;
     look(small, eye, Vec3::ZERO, 0.1);
 }

@@ -5,6 +5,7 @@ mod boil;
 mod by_fragments;
 mod cartoon;
 mod command_line;
+mod cracks;
 mod creases;
 mod crowds;
 mod extremes;

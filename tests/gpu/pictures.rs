@@ -19,7 +19,7 @@ use bevy_comics_testkit::{
         draw::Ink,
         fused::{Input, stylize},
         map::{Frame, Projection},
-        resolve::Resolved,
+        resolve::{Prepass, Resolved},
         view::View,
     },
     studio::with_map,
@@ -63,6 +63,28 @@ fn to_light(small: &mut Small) -> [f64; 3] {
     found.unwrap_or(Vec3::Y).to_array().map(f64::from)
 }
 
+/// What the passes of the small scene read.
+pub fn view_of<'a>(
+    small: &mut Small,
+    prepass: &'a Prepass,
+    map: &DepthMap,
+    viewport: [u32; 4],
+) -> View<'a> {
+    let depth = &prepass.depth;
+    View {
+        viewport,
+        samples: depth.samples,
+        width: depth.width,
+        depth_bits: &depth.bits,
+        frame: frame(small, map),
+        flip: map.flip,
+        normals: prepass.normals.first(),
+        ids: prepass.ids.first(),
+        height: 0.0,
+        to_light: to_light(small),
+    }
+}
+
 /// Compares every pixel. Pixels so close to a threshold that the error of the
 /// response decides are counted instead; at most 1 in 200 may be.
 pub fn assert_pass_is_its_twin(
@@ -78,19 +100,8 @@ pub fn assert_pass_is_its_twin(
     let map = style.depth_map.unwrap_or_default();
     let prepass = small.prepass();
     let prepass = prepass.unwrap_or_else(|| panic!("{what}: no depth"));
-    let depth = &prepass.depth;
-    let view = View {
-        viewport: viewport.unwrap_or([0, 0, input.width, input.height]),
-        samples: depth.samples,
-        width: depth.width,
-        depth_bits: &depth.bits,
-        frame: frame(small, &map),
-        flip: map.flip,
-        normals: prepass.normals.first(),
-        ids: prepass.ids.first(),
-        height: 0.0,
-        to_light: to_light(small),
-    };
+    let viewport = viewport.unwrap_or([0, 0, input.width, input.height]);
+    let view = view_of(small, &prepass, &map, viewport);
     let sketch = style.get::<Sketch>();
     let implied = sketch.map(|_| Outlines {
         objects: None,

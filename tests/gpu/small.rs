@@ -19,7 +19,7 @@ use bevy_comics::{
 use bevy_comics_testkit::{
     before::BeforeStylize,
     headless::{Headless, HeadlessOptions},
-    read_back::{self, DepthImage, FloatImage, IdImage},
+    read_back::{self, CrackWords, DepthImage, FloatImage, IdImage},
     reference::{color, resolve::Prepass},
 };
 
@@ -207,6 +207,11 @@ impl Small {
 
     pub fn object_ids(&self) -> Option<IdImage> {
         read_back::object_ids(self.render_world(), self.view())
+    }
+
+    /// The cracks of the last frame.
+    pub fn cracks(&self) -> Option<CrackWords> {
+        read_back::cracks(self.render_world(), self.view())
     }
 
     /// The pictures that the fused pass read and wrote.

@@ -31,8 +31,9 @@ pub fn fold_bend(
     near.then(|| [offset.clamp(-0.49, 0.49), slope.clamp(-1.0, 1.0)])
 }
 
-/// The same for a crack of a view. `jump`: the fraction of a jump's reference. `None` also if another line runs through the pixels that
-/// are read, or if they are not all in the viewport.
+/// The same for a crack of a view. `jump`: the fraction of a jump's reference. `None` also if
+/// another line runs through the pixels that are read, if one runs along the crack at most
+/// three pixels away, or if the pixels are not all in the viewport.
 pub fn placed(
     (view, jump): (&View, f64),
     lines: &HashSet<Place>,
@@ -44,7 +45,7 @@ pub fn placed(
     let at = |i: i64, j: i64| [0, 1].map(|k| pixel[k] + i * across[k] + j * along[k]);
     let [x0, y0, width, height] = view.viewport.map(i64::from);
     let inside = |[x, y]: [i64; 2]| (0..width).contains(&x) && (0..height).contains(&y);
-    let parallel = [-2, -1, 1, 2]
+    let parallel = [-3, -2, -1, 1, 2, 3]
         .iter()
         .any(|i| lines.contains(&(at(*i, 0), side)));
     let crossing = [-1, 2]

@@ -1,0 +1,193 @@
+//! The cracks of a view against their twin, bit by bit: where they are, which of them are
+//! parts of lines, and what is stored of each.
+
+use std::collections::{HashMap, HashSet};
+
+use bevy::{prelude::*, render::view::Msaa};
+use bevy_comics::{LineResponse, LineWeight, Outlines, VisibleDepthRange};
+use bevy_comics_testkit::{
+    read_back::CrackWords,
+    reference::{
+        crack::{Crack, crack, jump},
+        draw::Cracks,
+        link::{Place, linked},
+        planes::column_word,
+        resolve::Resolved,
+    },
+    specimens::Specimen,
+};
+
+use crate::{
+    line_quality::{show, turn},
+    pictures::{outlined, view_of},
+    small::Small,
+};
+
+/// Neither side is a multiple of the 32 pixels of a word, nor of the 4 of a block.
+const SIZE: UVec2 = UVec2::new(101, 70);
+
+fn pixels() -> impl Iterator<Item = [i64; 2]> {
+    let [width, height] = SIZE.to_array().map(i64::from);
+    (0..height).flat_map(move |y| (0..width).map(move |x| [x, y]))
+}
+
+/// The cracks of two planes, to the east and to the south.
+fn in_planes(cracks: &CrackWords, planes: [i64; 2]) -> HashSet<Place> {
+    let size = SIZE.to_array().map(i64::from);
+    let is_set = |plane: i64, [x, y]: [i64; 2]| {
+        let word = cracks.planes[column_word(size, plane, x, y / 32) as usize];
+        (word >> (y % 32)) & 1 != 0
+    };
+    pixels()
+        .flat_map(|pixel| [0, 1].map(|side| (pixel, side)))
+        .filter(|(pixel, side)| is_set(planes[*side], *pixel))
+        .collect()
+}
+
+/// Kinds and owner; ink, opacity; half the width.
+fn unpacked(word: u32) -> ([bool; 4], [f64; 2], f64) {
+    let kinds = [0, 1, 2, 3].map(|bit| (word >> bit) & 1 != 0);
+    let bytes = [4, 12].map(|bit| f64::from((word >> bit) & 255) / 255.0);
+    let [exponent, mantissa] = [word >> 29, (word >> 20) & 511];
+    let half_width = 2f64.powi(exponent as i32 - 3) * (1.0 + f64::from(mantissa) / 512.0) - 0.125;
+    (kinds, bytes, half_width)
+}
+
+/// Compares what is stored of a crack. The bits that say what it is are exact; of the others,
+/// each may be one step away, where rounding decides. Returns whether one is.
+fn is_rounded(word: u32, bend: u32, want: &Crack, what: &str) -> bool {
+    let (kinds, [ink, opacity], half_width) = unpacked(word);
+    let [silhouette, crease, object] = want.kinds;
+    assert_eq!(kinds, [silhouette, crease, object, want.mine], "{what}");
+    let inked = silhouette || crease;
+    let shift = |byte: u32| f64::from(byte) - 128.0;
+    let stored = [shift(bend & 255) / 256.0, shift((bend >> 8) & 255) / 64.0];
+    // Of each value: what was found, what is wanted, and the size of a step.
+    let step = 2f64.powi((half_width + 0.125).log2().floor() as i32 - 9);
+    let values = [
+        (ink, if inked { want.ink } else { ink }, 1.0 / 255.0),
+        (opacity, want.opacity, 1.0 / 255.0),
+        (half_width, want.half_width, step),
+        (stored[0], want.bend[0], 1.0 / 256.0),
+        (stored[1], want.bend[1], 1.0 / 64.0),
+    ];
+    let off = values.map(|(found, want, step)| (found - want).abs() / step);
+    assert!(off.iter().all(|off| *off < 1.51), "{what}: {values:?}");
+    off.iter().any(|off| *off > 0.51)
+}
+
+#[test]
+fn cracks_are_their_twin_bit_by_bit() {
+    let mut small = Small::new(SIZE, Msaa::Off);
+    let weighted = LineWeight {
+        inner: 0.5,
+        crease: 0.6,
+        taper: 9.0,
+        ..LineWeight::EVEN
+    };
+    let settings = [
+        Outlines::default(),
+        Outlines {
+            continuity: 0.0,
+            specks: 1,
+            width: 1.3,
+            response: LineResponse::Both,
+            width_fade: 0.4,
+            ..default()
+        },
+        Outlines {
+            continuity: 21.0,
+            continuity_level: 0.2,
+            specks: 2,
+            width: 7.0,
+            opacity_fade: 0.7,
+            weight: weighted,
+            budget: 0.2,
+            ..default()
+        },
+    ];
+    // Not the hard surface: where the two bends of a bevel are equal, rounding decides which of
+    // them is the sharper one.
+    let scenes = [Specimen::Organic, Specimen::Foliage, Specimen::Figure];
+    for (msaa, scene) in [Msaa::Off, Msaa::Sample4]
+        .into_iter()
+        .flat_map(|m| scenes.map(|s| (m, s)))
+    {
+        small.restart(msaa);
+        show(&mut small, scene);
+        turn(&mut small, 2.6, 0.4);
+        for outlines in settings {
+            let style = outlined(outlines);
+            small.insert(VisibleDepthRange::default());
+            small.style(&style);
+            small.settle();
+            let what = format!("{msaa:?}, {outlines:?}");
+            let found = small.cracks().expect("lines");
+            assert_eq!(found.rect, [0, 0, SIZE.x, SIZE.y]);
+            let prepass = small.prepass().expect("depth");
+            let map = style.depth_map.unwrap_or_default();
+            let view = view_of(&mut small, &prepass, &map, found.rect);
+            let resolved =
+                Resolved::new(&prepass, |near| jump(&outlines) * view.jump_reference(near));
+            let seen = resolved.view(&view);
+
+            let all: HashMap<Place, Crack> = pixels()
+                .flat_map(|pixel| [0, 1].map(|side| (pixel, side)))
+                .filter_map(|(pixel, side)| {
+                    let crack = crack(&outlines, &seen, pixel, side, 1.0)?;
+                    Some(((pixel, side), crack))
+                })
+                .collect();
+            let lines = linked(&all, outlines.continuity as i32);
+            let places: HashSet<Place> = all.keys().copied().collect();
+            for (planes, want) in [([2, 3], &places), ([0, 1], &lines)] {
+                let found = in_planes(&found, planes);
+                let differ: Vec<&Place> = found.symmetric_difference(want).collect();
+                assert!(differ.is_empty(), "{what}: planes {planes:?} at {differ:?}");
+            }
+
+            let want = Cracks::new(&outlines, &seen, 1.0);
+            let [mut rounded, mut count] = [0; 2];
+            for (i, want) in want.cracks.iter().enumerate() {
+                for side in [0, 1] {
+                    let word = found.words[i][side];
+                    let bend = found.bends[i] >> (16 * side);
+                    let what = format!("{what}: {i}, {side}");
+                    let Some(want) = &want[side] else {
+                        assert_eq!(word, 0, "{what}");
+                        continue;
+                    };
+                    count += 1;
+                    rounded += usize::from(is_rounded(word, bend, want, &what));
+                }
+            }
+            println!(
+                "{msaa:?}, {}: {} cracks, {} of lines, {count} drawn, {rounded} rounded elsewhere",
+                scene.name(),
+                all.len(),
+                lines.len()
+            );
+            assert!(count > 300, "{what}: {count}");
+            assert!(rounded * 50 < count, "{what}: {rounded} of {count}");
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// Without lines along cracks there is nothing to read.
+#[test]
+fn a_view_without_lines_has_no_cracks() {
+    let mut small = Small::new(SIZE, Msaa::Off);
+    small.style(&outlined(Outlines::default()));
+    small.settle();
+    assert!(small.cracks().is_some());
+    let none = Outlines {
+        silhouettes: None,
+        creases: None,
+        objects: None,
+        ..default()
+    };
+    small.style(&outlined(none));
+    small.settle();
+    assert!(small.cracks().is_none());
+}
