@@ -88,8 +88,8 @@ pub use effect::{
 pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
 pub use lines::{
-    Creases, LineBoil, LineFog, LineResponse, LineSettings, LineWeight, MapJumps, ObjectEdges,
-    Silhouettes, ViewCracks,
+    Creases, LineBoil, LineColor, LineFog, LineResponse, LineSettings, LineWeight, MapJumps,
+    ObjectEdges, Silhouettes, ViewCracks,
 };
 #[cfg(feature = "objects")]
 pub use objects::{
@@ -139,8 +139,8 @@ mod pages {
 pub mod prelude {
     pub use crate::{
         CameraCut, ComicStyle, ComicStyleHandle, ComicsPlugin, Creases, DepthMap, DepthMapping,
-        Effect, EffectPlugin, Form, KeyLight, LineBoil, LineFog, LineResponse, LineWeight,
-        ObjectEdges, RangeSmoothing, Silhouettes, SplitView, StyleTransition,
+        Effect, EffectPlugin, Form, KeyLight, LineBoil, LineColor, LineFog, LineResponse,
+        LineWeight, ObjectEdges, RangeSmoothing, Silhouettes, SplitView, StyleTransition,
         StyleTransitionFinished, StyleWeight, VisibleDepthRange, effects::*,
     };
     #[cfg(feature = "cartoon")]

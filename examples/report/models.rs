@@ -98,10 +98,15 @@ pub fn measure(run: &Run) -> Result<(), String> {
         (90, UVec2::new(240, 136))
     };
     let mut fine = Studio::new(size * FINE, ids_alone());
-    let mut lined = Studio::new(size, Outlines::default());
+    // Without the ink budget, which makes crowded lines too thin for the mask.
+    let found = Outlines {
+        budget: 1.0,
+        ..default()
+    };
+    let mut lined = Studio::new(size, found);
     let thin = Outlines {
         width: 1.0,
-        ..default()
+        ..found
     };
     let large = size * FINE;
     let mut thin = Studio::new(large, thin);

@@ -11,7 +11,7 @@ const RECIPE: &str = include_str!("fused.wgsl");
 pub(crate) const FILE_KEYS: [&str; 4] = ["version", "name", "partial", "depth_map"];
 
 /// The modules of this crate that an effect may import.
-const MODULES: [&str; 11] = [
+const MODULES: [&str; 12] = [
     "bevy_comics::depth::map",
     "bevy_comics::depth::normal",
     "bevy_comics::depth::raw",
@@ -22,11 +22,12 @@ const MODULES: [&str; 11] = [
     "bevy_comics::effect::pixel",
     "bevy_comics::lines::edge",
     "bevy_comics::lines::read",
+    "bevy_comics::lines::surface",
     "bevy_comics::objects",
 ];
 
 /// Shader definitions of the fused pass that do not name an effect, in lower case.
-const DEFINITIONS: [&str; 18] = [
+const DEFINITIONS: [&str; 19] = [
     "depth",
     "map",
     "map_flags",
@@ -39,6 +40,7 @@ const DEFINITIONS: [&str; 18] = [
     "object_styles",
     "lines",
     "lines_anywhere",
+    "surface_lines",
     "lightness_change",
     "finish",
     "overlay",
@@ -112,14 +114,16 @@ const RESTORE: &str = "#ifdef UNSTYLED
 
 /// The WGSL of the fused pass with these effects, in this order.
 pub(super) fn fused_pass(types: &[&EffectType]) -> String {
+    let colors = |effect: &&&EffectType| effect.stage <= EffectStage::Color;
     let mut text = String::from("// Composed by bevy_comics.\n");
     for line in RECIPE.lines() {
         match line.trim() {
             "//@members" => text.extend(types.iter().map(|effect| members(effect))),
-            "//@calls" => {
-                let colors = |effect: &&&EffectType| effect.stage <= EffectStage::Color;
+            "//@colors" => {
                 text.extend(types.iter().filter(colors).map(|effect| calls(effect)));
                 text.push_str(RESTORE);
+            }
+            "//@calls" => {
                 let later = types.iter().filter(|effect| !colors(effect));
                 text.extend(later.map(|effect| calls(effect)));
             }
@@ -164,7 +168,7 @@ fn calls(effect: &EffectType) -> String {
     );
     if effect.view.is_some() {
         call.push_str(&format!(
-            "#ifdef VIEW_{definition}\n    let shown = {path}::{name}_view({arguments});\n#endif\n"
+            "#ifdef VIEW_{definition}\n    shown = {path}::{name}_view({arguments});\n#endif\n"
         ));
     }
     call.push_str("#endif\n");

@@ -14,7 +14,7 @@
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::finish::{Finish, compare, difference, object_color, range_fraction}
 #import bevy_comics::lines::edge::Lines
-#import bevy_comics::lines::read::{lines_at, set_lines}
+#import bevy_comics::lines::read::{line_owner, lines_at, set_line_surface, set_lines}
 #import bevy_comics::objects::{load_object, unstyled_fraction}
 
 // Holds only the settings of the effects that are drawn, in the order of the
@@ -68,6 +68,29 @@ fn load_picture(pixel: vec2<i32>) -> vec4<f32> {
 #endif
 }
 
+// The debug view of an effect.
+var<private> shown: vec3<f32>;
+
+// A pixel of the viewport with its place and depth.
+fn placed(before: Pixel, pixel: vec2<i32>) -> Pixel {
+    var p = before;
+    p.inside = vec2<f32>(pixel - comics.view.viewport.xy);
+    p.saturation = 1.0;
+    p.depth = vec2(1.0, 0.0);
+#ifdef MAP
+    let true_depth = pixel_depth(depth_frame(), pixel);
+    p.depth = select(true_depth, true_depth.yx, comics.view.flip != 0u);
+#endif
+    return p;
+}
+
+// A pixel after the effects that change colours.
+fn colored(before: Pixel, pixel: vec2<i32>) -> Pixel {
+    var p = before;
+    //@colors
+    return p;
+}
+
 @fragment
 fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(position.xy);
@@ -90,14 +113,23 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     set_lines(comics.lines);
 #endif
     p.position = position.xy;
-    p.inside = vec2<f32>(inside);
-    p.saturation = 1.0;
-    p.depth = vec2(1.0, 0.0);
+    p = placed(p, pixel);
 #ifdef MAP
     let frame = depth_frame();
-    let true_depth = pixel_depth(frame, pixel);
-    p.depth = select(true_depth, true_depth.yx, comics.view.flip != 0u);
 #endif
+#ifdef SURFACE_LINES
+    let owner = line_owner(pixel);
+    let surface = load_picture(owner);
+    var q: Pixel;
+    q.original = to_linear(surface.rgb);
+    q.color = q.original;
+    q.alpha = clamp(finite(surface.a), 0.0, 1.0);
+    q.change = p.change;
+    q.position = vec2<f32>(owner) + 0.5;
+    q = colored(placed(q, owner), owner);
+    set_line_surface(q.color / max(q.alpha, 1e-3));
+#endif
+    p = colored(p, pixel);
 
     //@calls
 

@@ -17,7 +17,7 @@ use super::{
 use crate::{
     depth::view::ViewUniform,
     finish::DebugView,
-    lines::{ink_entry, range_entry},
+    lines::{ink_entry, owners_entry, range_entry},
     objects::{ids_entry, object_styles_entry},
 };
 
@@ -80,6 +80,8 @@ pub(crate) struct StylizeKey {
     pub depth: bool,
     pub visible_range: bool,
     pub lines: bool,
+    /// Lines have the colour of surfaces.
+    pub surface: bool,
     pub object_styles: bool,
     /// The colour effects leave some objects alone.
     unstyled: bool,
@@ -146,6 +148,7 @@ impl StylizeKey {
             depth,
             visible_range: plan.draws_with_range(),
             lines,
+            surface: lines && plan.lines.is_some_and(|lines| lines.color.is_surface()),
             object_styles: (lines && plan.object_styles) || plan.unstyled,
             unstyled: plan.unstyled,
             view: plan.view,
@@ -170,7 +173,8 @@ impl StylizeKey {
         let plain = bytes
             && self.format != TextureFormat::Rg11b10Ufloat
             && self.view.is_none()
-            && !self.finish;
+            && !self.finish
+            && !self.surface;
         let local = |effect: &dyn AnyEffect| effect.any_extent(facts) != Extent::Everywhere;
         plain && self.space == CompositingSpace::Linear && plan.drawn().all(local)
     }
@@ -228,6 +232,7 @@ impl StylizeKey {
             (self.ids(), "OBJECT_IDS"),
             (self.lines, "LINES"),
             (needs.contains(Needs::LINES_ANYWHERE), "LINES_ANYWHERE"),
+            (self.surface && self.part != Part::Base, "SURFACE_LINES"),
             (self.object_styles, "OBJECT_STYLES"),
             (self.unstyled, "UNSTYLED"),
             (needs.contains(Needs::LIGHTNESS_CHANGE), "LIGHTNESS_CHANGE"),
@@ -268,6 +273,7 @@ impl StylizeKey {
             (self.depth, prepass(2)),
             (self.visible_range, range_entry()),
             (self.lines, ink_entry()),
+            (self.surface, owners_entry()),
             (self.object_styles, object_styles_entry()),
             (self.normals(), prepass(7)),
             (self.ids(), ids_entry(self.samples > 1)),

@@ -268,6 +268,11 @@ fn inputs<'a>(
         let ink = lines.found().ok_or(not_ready)?;
         entries.push(entry(4, (&ink.default_view).into_binding()));
     }
+    if key.surface {
+        let owners = lines.and_then(|lines| lines.owners.as_ref());
+        let owners = owners.ok_or(not_ready)?;
+        entries.push(entry(5, (&owners.default_view).into_binding()));
+    }
     if key.object_styles {
         let styles = object_styles.buffer().ok_or(not_ready)?;
         entries.push(entry(6, styles.as_entire_binding()));

@@ -34,7 +34,7 @@ use crate::{
         view::{ViewUniform, depth_rect},
     },
     lines::{
-        LineSettings, MapJumps,
+        LineSettings, MapJumps, MemoryRequest,
         request::{FindPass, LinePasses, LinePipelines, LineRequest},
     },
     objects::IdRequest,
@@ -52,6 +52,7 @@ pub(super) struct Scene {
     /// Size in pixels and samples per pixel of the depth prepass, if there is one.
     pub depth: Option<(UVec2, u32)>,
     pub normals: bool,
+    motion: bool,
 }
 
 impl Scene {
@@ -72,6 +73,7 @@ impl Scene {
                 (size, texture.sample_count())
             }),
             normals: prepass.is_some_and(|textures| textures.normal.is_some()),
+            motion: prepass.is_some_and(|textures| textures.motion_vectors.is_some()),
         }
     }
 
@@ -307,6 +309,7 @@ fn line_request(
             .weight
             .uniform(grid_scale, view.to_light, settings.budget),
         boil: settings.boil.uniform(view.scale_factor, view.time),
+        memory: memory_request(view, &settings, scene),
         fog: plan.fog.then(|| {
             let fog = view.fog.unwrap_or_default();
             fog.uniform(&view.projection, &view.clip_from_view)
@@ -326,6 +329,21 @@ fn line_request(
         line_reach: line_reach(plan, facts).unwrap_or(0.0),
         jumps,
         map_flags: uniform.depth.flags,
+    })
+}
+
+/// What lines remember, if they do: under temporal anti-aliasing.
+fn memory_request(
+    view: &ViewPlan,
+    settings: &LineSettings,
+    scene: &Scene,
+) -> Option<MemoryRequest> {
+    let single = scene.depth.is_some_and(|(_, samples)| samples == 1);
+    let trembles = scene.jitter.is_some() && scene.motion && single;
+    let remembers = settings.memory < 1.0 && !settings.boil.moves();
+    (trembles && remembers).then_some(MemoryRequest {
+        share: settings.memory,
+        cuts: view.cuts,
     })
 }
 
@@ -355,7 +373,8 @@ impl Requests {
             let search = passes
                 .search
                 .is_some_and(|ids| ids.into_iter().any(compute));
-            resolve || search || cracks || passes.faithful.is_some_and(render)
+            let drawn = [passes.faithful, passes.memory];
+            resolve || search || cracks || drawn.into_iter().flatten().any(render)
         });
         let fused =
             (self.fused.as_ref()).is_some_and(|f| render(f.pipeline) || f.base.is_some_and(render));

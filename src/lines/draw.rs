@@ -91,6 +91,7 @@ impl Inputs<'_> {
         let resolve = self.resolve_pass()?;
         let search = self.search_passes()?;
         let faithful = self.faithful_pass()?;
+        let remember = self.memory_pass()?;
         let cracks = match (&passes.cracks, &lines.cracks) {
             (Some(passes), Some(cracks)) => Some(self.crack_passes(passes, cracks)?),
             _ => None,
@@ -121,9 +122,14 @@ impl Inputs<'_> {
         if let Some(cracks) = &cracks {
             cracks.search_columns(encoder);
         }
+        let targets: Vec<_> = [Some(ink), lines.owners.as_ref()]
+            .into_iter()
+            .flatten()
+            .map(|texture| Some(cleared(texture)))
+            .collect();
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("comics_draw_lines"),
-            color_attachments: &[Some(cleared(ink))],
+            color_attachments: &targets,
             ..Default::default()
         });
         if let Some((pipeline, group)) = &faithful {
@@ -135,6 +141,11 @@ impl Inputs<'_> {
             cracks.draw_ink(&mut pass);
         }
         drop(pass);
+        if let Some((memory, (pipeline, group))) = &remember {
+            let tiles = lines.tiles.as_ref().map(|tiles| &tiles.lists);
+            let tiles = tiles.filter(|_| passes.are_tiles_complete());
+            memory.record(encoder, (pipeline, group), tiles);
+        }
         span.end(encoder);
         Ok(())
     }

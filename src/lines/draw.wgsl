@@ -25,13 +25,22 @@
 @group(0) @binding(13) var column_texture: texture_2d<u32>;
 #endif
 
+struct Drawn {
+    @location(0) ink: vec4<f32>,
+#ifdef SURFACE
+    // From the pixel to the one that owns the strongest line, in pixels of the viewport.
+    @location(1) owner: vec2<i32>,
+#endif
+}
+
 // What is known of the lines at a position.
 struct Ink {
     // By kind: silhouettes, creases, object edges.
     kinds: vec3<f32>,
     strongest: f32,
-    // The pixel that owns the strongest line.
+    // The pixel that owns the strongest line, and from there to the next one inside.
     owner: vec2<i32>,
+    inward: vec2<i32>,
     // Two lines in different places whose borders are nearest: their middles, and the
     // distances from their borders, negative inside.
     first: vec2<f32>,
@@ -49,6 +58,15 @@ fn alphas(kinds: vec3<f32>) -> f32 {
     return largest_opacity(line_pass.settings, kinds);
 }
 
+#ifdef INWARD
+// The step from the middle of a line into the surface of its owner.
+fn inward_of(owner: vec2<i32>, middle: vec2<f32>) -> vec2<i32> {
+    let inside = vec2<f32>(owner) + 0.5 - middle;
+    let steps = vec2<i32>(sign(inside));
+    return select(vec2(0, steps.y), vec2(steps.x, 0), abs(inside.x) > abs(inside.y));
+}
+#endif
+
 // Adds the line along a crack that belongs to the pixel `owner`.
 fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: vec2<i32>, at: vec2<f32>) {
     let half_width = unpack_width(packed >> 20u);
@@ -56,16 +74,19 @@ fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: vec2<i32>
     let exists = (packed & 7u) != 0u;
     let kinds = select(0.0, line_coverage(away, half_width), exists) * ink_of(packed);
     (*ink).kinds = max((*ink).kinds, kinds);
-#ifdef OBJECT_STYLES
+#ifdef OWNERS
     let alpha = alphas(kinds);
     (*ink).owner = select((*ink).owner, owner, alpha > (*ink).strongest);
+#ifdef INWARD
+    (*ink).inward = select((*ink).inward, inward_of(owner, middle), alpha > (*ink).strongest);
+#endif
     (*ink).strongest = max((*ink).strongest, alpha);
 #endif
     let border = select(1e6, away - half_width, exists);
     let nearest = border < (*ink).distances.x;
     follow(ink, middle, border);
     (*ink).packed = select((*ink).packed, packed, nearest);
-#ifdef OBJECT_STYLES
+#ifdef OWNERS
     (*ink).first_owner = select((*ink).first_owner, owner, nearest);
 #endif
 }
@@ -147,7 +168,7 @@ fn search(ink: ptr<function, Ink>, centre: vec2<i32>, at: vec2<f32>) {
 }
 
 @fragment
-fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
+fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
     set_view(line_pass.seen);
     let g = line_pass.grid;
     viewport_scale = 1.0 / g.from_viewport.xy;
@@ -168,8 +189,9 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
         let half_width = unpack_width(ink.packed >> 20u);
         let straight = line_coverage(away, half_width) * ink_of(ink.packed);
         ink.kinds = max(ink.kinds, straight);
-#ifdef OBJECT_STYLES
+#ifdef OWNERS
         ink.owner = select(ink.owner, ink.first_owner, alphas(straight) > ink.strongest);
+        ink.strongest = max(ink.strongest, alphas(straight));
 #endif
     }
     var slot = 0.0;
@@ -177,5 +199,13 @@ fn draw(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let corner = g.rect.zw - 1;
     slot = f32(texel_slot(g.rect.xy + clamp(ink.owner, vec2(0), corner), 0)) / 255.0;
 #endif
-    return vec4(encode_ink(ink.kinds), slot);
+    var drawn: Drawn;
+    drawn.ink = vec4(encode_ink(ink.kinds), slot);
+#ifdef SURFACE
+    // From the middle of the pixel that owns the line.
+    let owner = (vec2<f32>(ink.owner + ink.inward) + 0.5 - g.from_viewport.zw) * viewport_scale;
+    let away = vec2<i32>(floor(owner)) - vec2<i32>(position.xy);
+    drawn.owner = select(vec2(0), clamp(away, vec2(-127), vec2(127)), ink.strongest > 0.0);
+#endif
+    return drawn;
 }

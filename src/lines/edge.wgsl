@@ -39,7 +39,12 @@ struct Lines {
     // Responses from which cracks are certain: weaker ones only continue lines.
     silhouette_limit: f32,
     crease_limit: f32,
-    unused: u32,
+    // Of lines in the colour of surfaces: factors of luminance and of the distance from grey.
+    surface_darken: f32,
+    surface_saturate: f32,
+    unused_x: f32,
+    unused_y: f32,
+    unused_z: f32,
 }
 
 // The grid that lines are found on: the pixels of the depth texture.

@@ -17,6 +17,7 @@ use super::{
     ViewLines,
     cracks::{Ready, ReadyCells, ReadyCracks, ReadyFind},
     key::LineKey,
+    memory::{LineMemory, MemoryKey},
     prepare::{Cracks, Tiles},
     request::{CellPasses, CrackPasses, FindPass, LinePasses, LineRequest},
     resolve::Resolved,
@@ -76,6 +77,9 @@ impl<'a> Texels<'a> {
         Ok(())
     }
 }
+
+/// The pass that remembers, ready to be recorded.
+type MemoryPass<'a> = (&'a LineMemory, Ready<'a, RenderPipeline>);
 
 /// The pass that picks samples, ready to be recorded.
 type ResolvePass<'a> = (&'a Resolved, Ready<'a, RenderPipeline>);
@@ -143,6 +147,23 @@ impl Inputs<'_> {
         self.prepass()?.push((key.normals, key.ids), &mut entries)?;
         let group = self.group(&key.layout(), &entries);
         Ok(Some((resolved, (self.pipeline(*id)?, group))))
+    }
+
+    /// The pass that mixes the ink with that of the frames before, if lines remember.
+    pub fn memory_pass(&self) -> Result<Option<MemoryPass<'_>>, LeftOut> {
+        let ((_, passes, lines), prepass, ..) = self.parts;
+        let (Some(id), Some(memory), Some(ink)) = (passes.memory, &lines.memory, &lines.ink) else {
+            return Ok(None);
+        };
+        let motion = prepass.and_then(|prepass| prepass.motion_vectors.as_ref());
+        let motion = motion.ok_or(NOT_READY)?;
+        let mut entries = vec![entry(1, self.uniform()?)];
+        self.prepass()?.push((false, false), &mut entries)?;
+        entries.push(entry(23, (&ink.default_view).into_binding()));
+        entries.push(entry(24, (&motion.texture.default_view).into_binding()));
+        entries.extend(memory.entries());
+        let group = self.group(&MemoryKey::layout(), &entries);
+        Ok(Some((memory, (self.pipeline(id)?, group))))
     }
 
     /// The bindings of the passes that find lines. `normals`: the normals too.

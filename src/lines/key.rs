@@ -13,6 +13,8 @@ pub(crate) const COLUMN_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
 pub(crate) const BLOCK_FORMAT: TextureFormat = TextureFormat::R32Uint;
 /// The ink of a pixel, see `draw.wgsl`.
 pub(crate) const INK_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
+/// How far away the pixel is that owns a pixel's line, see `draw.wgsl`.
+pub(crate) const OWNER_FORMAT: TextureFormat = TextureFormat::Rg8Sint;
 
 /// Columns and rows of a block: an invocation of `walk.wgsl` walks through one.
 pub(crate) const BLOCK: [u32; 2] = [4, 32];
@@ -66,6 +68,10 @@ pub(crate) struct LineKey {
     pub smooth: bool,
     /// Which factors of width and opacity are not 1.
     pub weight: WeightKey,
+    /// Lines have the colour of surfaces.
+    pub surface: bool,
+    /// They take the colour a pixel inside of it, because its rim is mixed with others.
+    pub inward: bool,
     /// Lines are displaced.
     pub boils: bool,
     /// The width changes along a line.
@@ -110,6 +116,8 @@ impl LineKey {
             links: lines.links() && !by_fragments,
             smooth: lines.smooth && !by_fragments,
             weight,
+            surface: lines.color.is_surface(),
+            inward: lines.color.is_surface() && request.samples > 1,
             boils: lines.boil.moves(),
             varied: weight.varies(),
             same_size: request.view.depth_scale == Vec2::ONE,
@@ -161,6 +169,8 @@ impl LineKey {
             search: Search::default(),
             visible_range: self.fading && self.visible_range,
             boils: false,
+            surface: false,
+            inward: false,
             varied: false,
             jumps: false,
             map_flags: 0,
@@ -219,6 +229,8 @@ impl LineKey {
             object_styles: self.object_styles,
             search: self.search,
             boils: self.boils,
+            surface: self.surface,
+            inward: self.inward,
             smooth: self.smooth && self.search != Search::Columns,
             varied: self.varied && self.search != Search::Columns,
             by_fragments: self.by_fragments,
@@ -319,6 +331,9 @@ impl LineKey {
                 (self.smooth, "SMOOTH"),
                 (self.varied, "VARIED"),
                 (self.boils, "BOIL"),
+                (self.surface, "SURFACE"),
+                (self.inward, "INWARD"),
+                (self.object_styles || self.surface, "OWNERS"),
             ]))
             .collect()
     }

@@ -167,6 +167,11 @@ pub(crate) fn range_entry() -> BindGroupLayoutEntry {
     uniform_buffer_sized(false, Some(UVec4::min_size())).build(3, ShaderStages::FRAGMENT)
 }
 
+/// The layout entry of the pixels that own lines, in the fused pass.
+pub(crate) fn owners_entry() -> BindGroupLayoutEntry {
+    texture_2d(TextureSampleType::Sint).build(5, ShaderStages::FRAGMENT)
+}
+
 /// The layout entry of the ink in the fused pass.
 pub(crate) fn ink_entry() -> BindGroupLayoutEntry {
     texture_2d(TextureSampleType::Float { filterable: false }).build(4, ShaderStages::FRAGMENT)

@@ -7,6 +7,7 @@
 //! `read.wgsl`.
 
 mod boil;
+mod color;
 mod cracks;
 mod draw;
 mod fog;
@@ -14,6 +15,7 @@ mod inputs;
 mod key;
 mod kinds;
 mod layouts;
+mod memory;
 mod pipelines;
 mod prepare;
 pub(crate) mod request;
@@ -44,11 +46,13 @@ use bevy::{
 };
 
 pub use boil::LineBoil;
+pub use color::LineColor;
 pub use fog::LineFog;
 pub(crate) use fog::{ViewFog, has_fog};
 pub(crate) use key::reach;
 pub use kinds::{Creases, LineResponse, ObjectEdges, Silhouettes};
-pub(crate) use layouts::{ink_entry, range_entry};
+pub(crate) use layouts::{ink_entry, owners_entry, range_entry};
+pub(crate) use memory::MemoryRequest;
 pub(crate) use prepare::ViewLines;
 pub(crate) use settings::LinesUniform;
 pub use settings::{LineSettings, MapJumps};
@@ -57,6 +61,7 @@ pub(crate) use tiles::{TileList, TileLists, tile_shader, tile_vertices};
 pub use weight::LineWeight;
 
 use crate::schedule::{ComicsSystems, PrepareComics};
+use memory::MemoryPipeline;
 use pipelines::LineShaders;
 use resolve::ResolvePipeline;
 
@@ -72,6 +77,8 @@ pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "listed.wgsl");
     load_shader_library!(app, "weight.wgsl");
     load_shader_library!(app, "boil.wgsl");
+    load_shader_library!(app, "memory.wgsl");
+    load_shader_library!(app, "surface.wgsl");
     load_shader_library!(app, "budget.wgsl");
     load_shader_library!(app, "fog.wgsl");
     load_shader_library!(app, "fold.wgsl");
@@ -91,6 +98,7 @@ pub(crate) fn build_render(app: &mut App) {
     embedded_asset!(app, "columns.wgsl");
     embedded_asset!(app, "faithful.wgsl");
     embedded_asset!(app, "draw.wgsl");
+    embedded_asset!(app, "remember.wgsl");
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
         return;
     };
@@ -98,6 +106,7 @@ pub(crate) fn build_render(app: &mut App) {
         .init_gpu_resource::<SpecializedComputePipelines<LineShaders>>()
         .init_gpu_resource::<SpecializedRenderPipelines<LineShaders>>()
         .init_gpu_resource::<SpecializedRenderPipelines<ResolvePipeline>>()
+        .init_gpu_resource::<SpecializedRenderPipelines<MemoryPipeline>>()
         .add_systems(RenderStartup, init_pipelines)
         .add_systems(
             Render,
@@ -125,4 +134,5 @@ fn init_pipelines(
     }
     commands.insert_resource(LineShaders::new(&fullscreen, &assets));
     commands.insert_resource(ResolvePipeline::new(&fullscreen, &assets));
+    commands.insert_resource(MemoryPipeline::new(&fullscreen, &assets));
 }

@@ -7,6 +7,7 @@
 #import bevy_comics::lines::boil::Boil
 #import bevy_comics::lines::edge::{Grid, Lines}
 #import bevy_comics::lines::fog::Fog
+#import bevy_comics::lines::memory::Memory
 #import bevy_comics::lines::weight::Weight
 
 struct LinePass {
@@ -16,6 +17,7 @@ struct LinePass {
     weight: Weight,
     fog: Fog,
     boil: Boil,
+    memory: Memory,
 }
 
 @group(0) @binding(1) var<uniform> line_pass: LinePass;

@@ -15,7 +15,7 @@ use bevy::{
 };
 
 use super::{
-    key::{COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT, LineKey},
+    key::{COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT, LineKey, OWNER_FORMAT},
     tiles::{tile_shader, tile_vertices},
 };
 
@@ -125,6 +125,16 @@ impl SpecializedRenderPipeline for LineShaders {
             LinePass::Faithful => ("comics_faithful_lines", "faithful", INK),
             LinePass::Draw => ("comics_draw_lines", "draw", INK),
         };
+        // The pass that draws ink has this target too; the faithful forms do not write it.
+        let owners = Some(ColorTargetState {
+            write_mask: match pass {
+                LinePass::Draw => ColorWrites::ALL,
+                _ => ColorWrites::empty(),
+            },
+            ..target(OWNER_FORMAT, None)
+        });
+        let inks = matches!(pass, LinePass::Draw | LinePass::Faithful);
+        let count = if inks && key.surface { 2 } else { 1 };
         let (vertex, topology) = if key.by_fragments || pass == LinePass::Faithful {
             (self.fullscreen.to_vertex_state(), TriangleList)
         } else {
@@ -142,7 +152,7 @@ impl SpecializedRenderPipeline for LineShaders {
                 shader: shader.clone(),
                 shader_defs: defs,
                 entry_point: Some(entry.into()),
-                targets: vec![Some(targets)],
+                targets: [Some(targets), owners].into_iter().take(count).collect(),
             }),
             ..Default::default()
         }

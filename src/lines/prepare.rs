@@ -21,7 +21,8 @@ use bevy::{
 };
 
 use super::{
-    key::{BLOCK, BLOCK_FORMAT, COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT},
+    key::{BLOCK, BLOCK_FORMAT, COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT, OWNER_FORMAT},
+    memory::LineMemory,
     request::{FindPass, LinePassUniform, LinePasses, LineRequest},
     resolve::Resolved,
     store::{CrackBuffers, CrackStore, ViewCracks},
@@ -41,6 +42,10 @@ pub(crate) struct ViewLines {
     pub tiles: Option<Tiles>,
     /// The ink of every pixel of the viewport, see `draw.wgsl`.
     pub ink: Option<CachedTexture>,
+    /// The pixels that own its lines, if they have the colour of surfaces.
+    pub owners: Option<CachedTexture>,
+    /// The ink of this frame and of those before, if lines remember.
+    pub memory: Option<LineMemory>,
     /// Whether the passes of this frame were recorded.
     pub found: AtomicBool,
 }
@@ -68,6 +73,8 @@ impl Default for ViewLines {
             cracks: None,
             tiles: None,
             ink: None,
+            owners: None,
+            memory: None,
             found: AtomicBool::new(false),
         }
     }
@@ -86,7 +93,8 @@ impl ViewLines {
     /// The ink; `None` unless the passes of this frame were recorded.
     pub fn found(&self) -> Option<&CachedTexture> {
         let found = self.found.load(Ordering::Relaxed);
-        self.ink.as_ref().filter(|_| found)
+        let remembered = self.memory.as_ref().map(LineMemory::ink);
+        remembered.or(self.ink.as_ref()).filter(|_| found)
     }
 }
 
@@ -190,8 +198,26 @@ pub(crate) fn prepare_view_lines(
                     (INK_FORMAT, TextureUsages::RENDER_ATTACHMENT),
                 )
             });
+            lines.owners = (passes.has_ink() && passes.key.surface).then(|| {
+                texture(
+                    (&mut textures, &device),
+                    "comics_line_owners",
+                    request.size,
+                    (OWNER_FORMAT, TextureUsages::RENDER_ATTACHMENT),
+                )
+            });
+            let before = lines.memory.take();
+            let kept = lines.found.load(Ordering::Relaxed);
+            lines.memory = request
+                .memory
+                .filter(|_| passes.memory.is_some())
+                .map(|memory| {
+                    let request = (&memory, request.size, &request.settings);
+                    LineMemory::next(before, kept, &device, request)
+                });
             lines.found = AtomicBool::new(false);
-            lines.uniform.set(request.uniform());
+            let is_new = lines.memory.as_ref().is_none_or(|memory| memory.is_new);
+            lines.uniform.set(request.uniform(is_new));
             lines.uniform.write_buffer(&device, &queue);
         };
         match lines {

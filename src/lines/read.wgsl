@@ -8,6 +8,9 @@
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::style_of
 #endif
+#ifdef SURFACE_LINES
+#import bevy_comics::lines::surface::surface_ink
+#endif
 
 var<private> lines_drawn: Lines;
 
@@ -18,6 +21,24 @@ fn set_lines(lines: Lines) {
 #ifdef LINES
 // The ink of the viewport, see draw.wgsl.
 @group(0) @binding(4) var line_texture: texture_2d<f32>;
+
+#ifdef SURFACE_LINES
+// From each pixel of the viewport to the one that owns its line, see draw.wgsl.
+@group(0) @binding(5) var owner_texture: texture_2d<i32>;
+
+var<private> line_surface: vec3<f32>;
+
+// The pixel that owns the line at a pixel of the target.
+fn line_owner(pixel: vec2<i32>) -> vec2<i32> {
+    let offset = textureLoad(owner_texture, inside_viewport(pixel) - view.viewport.xy, 0).xy;
+    return inside_viewport(pixel + offset);
+}
+
+// Sets the colour of the surface that the line at the pixel belongs to.
+fn set_line_surface(color: vec3<f32>) {
+    line_surface = color;
+}
+#endif
 
 // Ink at a position, 0 to 1: x silhouettes, y creases, z object edges. `slot` is that of
 // the OutlineStyle of the object that the strongest line belongs to; 0: it has none.
@@ -53,8 +74,13 @@ fn lines_at(at: vec2<f32>) -> Found {
 #endif
 }
 
-// The colour of a line: that of the OutlineStyle in `slot`, if it has one, else `color`.
-fn own_color(slot: u32, color: vec3<f32>) -> vec3<f32> {
+// The colour of a line: that of the OutlineStyle in `slot`, if it has one, else that of the
+// surface, or `color`.
+fn own_color(slot: u32, kind_color: vec3<f32>) -> vec3<f32> {
+    var color = kind_color;
+#ifdef SURFACE_LINES
+    color = surface_ink(line_surface, lines_drawn.surface_darken, lines_drawn.surface_saturate);
+#endif
 #ifdef OBJECT_STYLES
     if slot != 0u {
         let own = style_of(slot);

@@ -20,6 +20,7 @@ use super::{
     boil::BoilUniform,
     fog::FogUniform,
     key::{LINK_STEPS, LineKey, Search},
+    memory::{MemoryKey, MemoryPipeline, MemoryRequest, MemoryUniform},
     pipelines::{LinePass, LineShaders, SearchPass},
     resolve::{ResolveKey, ResolvePipeline},
     settings::{LineSettings, LinesUniform, MapJumps},
@@ -39,6 +40,8 @@ pub(crate) struct LineRequest {
     pub lines: LinesUniform,
     pub weight: WeightUniform,
     pub boil: BoilUniform,
+    /// What lines remember.
+    pub memory: Option<MemoryRequest>,
     /// The fog that lines fade into.
     pub fog: Option<FogUniform>,
     /// Size in pixels of the depth texture, and its samples per pixel.
@@ -132,7 +135,8 @@ impl LineRequest {
         }
     }
 
-    pub fn uniform(&self) -> LinePassUniform {
+    /// `is_new`: the memory has nothing in it yet.
+    pub fn uniform(&self, is_new: bool) -> LinePassUniform {
         LinePassUniform {
             view: self.view,
             lines: self.lines,
@@ -140,6 +144,9 @@ impl LineRequest {
             weight: self.weight,
             fog: self.fog.unwrap_or_default(),
             boil: self.boil,
+            memory: (self.memory)
+                .map(|memory| memory.uniform(self.grid_reach(), is_new))
+                .unwrap_or_default(),
         }
     }
 }
@@ -167,6 +174,7 @@ pub(crate) struct LinePassUniform {
     pub weight: WeightUniform,
     pub fog: FogUniform,
     pub boil: BoilUniform,
+    pub memory: MemoryUniform,
 }
 
 /// The pipelines of one view's lines.
@@ -182,6 +190,8 @@ pub(crate) struct LinePasses {
     pub cracks: Option<CrackPasses>,
     /// Draws the lines of the faithful forms, if there are any.
     pub faithful: Option<CachedRenderPipelineId>,
+    /// Mixes the ink with that of the frames before.
+    pub memory: Option<CachedRenderPipelineId>,
 }
 
 impl LinePasses {
@@ -249,6 +259,8 @@ pub(crate) struct LinePipelines<'w> {
     shaders: Res<'w, LineShaders>,
     resolves: ResMut<'w, SpecializedRenderPipelines<ResolvePipeline>>,
     resolve: Res<'w, ResolvePipeline>,
+    memories: ResMut<'w, SpecializedRenderPipelines<MemoryPipeline>>,
+    memory: Res<'w, MemoryPipeline>,
     device: Res<'w, RenderDevice>,
 }
 
@@ -306,12 +318,22 @@ impl LinePipelines<'_> {
             let passes = [SearchPass::Walk(key.for_walk()), SearchPass::Tiles];
             passes.map(|pass| computes.specialize(cache, &self.shaders, pass))
         });
-        LinePasses {
+        let mut passes = LinePasses {
             key,
             resolve,
             search,
             cracks,
             faithful,
+            memory: None,
+        };
+        if request.memory.is_some() && passes.has_ink() {
+            let key = MemoryKey {
+                oblique: key.oblique,
+                tiled: passes.are_tiles_complete(),
+            };
+            let memory = self.memories.specialize(cache, &self.memory, key);
+            passes.memory = Some(memory);
         }
+        passes
     }
 }

@@ -4,6 +4,7 @@ use bevy::{math::Vec3, render::render_resource::ShaderType};
 
 use super::{
     boil::LineBoil,
+    color::LineColor,
     fog::LineFog,
     kinds::{Creases, LineResponse, ObjectEdges, Silhouettes, ramp},
     weight::LineWeight,
@@ -43,6 +44,10 @@ pub struct LineSettings {
     pub budget: f32,
     /// How lines move.
     pub boil: LineBoil,
+    /// Where the colour of lines comes from.
+    pub color: LineColor,
+    /// Fraction of each frame in lines that remember the frames before; 1: they do not.
+    pub memory: f32,
     /// What happens to lines in the engine's distance fog.
     pub fog: LineFog,
 }
@@ -67,6 +72,8 @@ impl LineSettings {
         weight: LineWeight::EVEN,
         budget: 1.0,
         boil: LineBoil::STILL,
+        color: LineColor::Ink,
+        memory: 0.125,
         fog: LineFog::Fade,
     };
 
@@ -168,6 +175,7 @@ impl LineSettings {
         let [silhouette_low, silhouette_high] = ends(s.form, s.edge_limit, s.softness);
         let [crease_low, crease_high] = ends(c.form, c.edge_limit, c.softness);
         let [ink_part, width_part] = self.response.parts();
+        let [surface_darken, surface_saturate] = self.color.factors();
         let limit = |limit| if continues { limit } else { 0.0 };
         LinesUniform {
             silhouette_color: linear_rgb(s.color),
@@ -195,7 +203,11 @@ impl LineSettings {
             width_part,
             silhouette_limit: limit(s.edge_limit),
             crease_limit: limit(c.edge_limit),
-            unused: 0,
+            surface_darken,
+            surface_saturate,
+            unused_x: 0.0,
+            unused_y: 0.0,
+            unused_z: 0.0,
         }
     }
 }
@@ -249,7 +261,11 @@ pub(crate) struct LinesUniform {
     width_part: f32,
     silhouette_limit: f32,
     crease_limit: f32,
-    unused: u32,
+    surface_darken: f32,
+    surface_saturate: f32,
+    unused_x: f32,
+    unused_y: f32,
+    unused_z: f32,
 }
 
 #[cfg(test)]

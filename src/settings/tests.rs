@@ -6,7 +6,8 @@ use bevy::color::Color;
 
 use crate::{
     BlackFlats, Colorization, Contours, Creases, DepthMap, DepthMapping, Desaturation, Effect,
-    LineWeight, ObjectEdges, Outlines, RangeSmoothing, Silhouettes, Sketch, ToneBands, Vignette,
+    LineColor, LineWeight, ObjectEdges, Outlines, RangeSmoothing, Silhouettes, Sketch, ToneBands,
+    Vignette,
 };
 
 /// A million floats: hand-picked edge cases, then random bit patterns, which
@@ -247,6 +248,15 @@ fn a_million_floats_in_every_field_of_the_lines() {
     });
     let budget = outlines(|o, x| o.budget = x);
     fuzz("Outlines::budget", 0.05, 1.0, |x| budget(x).budget);
+    let memory = outlines(|o, x| o.memory = x);
+    fuzz("Outlines::memory", 0.03125, 1.0, |x| memory(x).memory);
+    let color = |darken, saturate| {
+        LineColor::Surface { darken, saturate }
+            .sanitized()
+            .factors()
+    };
+    fuzz("LineColor::Surface::darken", 0.0, 1.0, |x| color(x, x)[0]);
+    fuzz("LineColor::Surface::saturate", 0.0, 2.0, |x| color(x, x)[1]);
     let boil = outlines(|o, x| o.boil.amplitude = x);
     fuzz("LineBoil::amplitude", 0.0, 3.0, |x| boil(x).boil.amplitude);
     let boil = outlines(|o, x| o.boil.wavelength = x);

@@ -20,6 +20,7 @@ const PRELUDE: &[&str] = &[
     "DepthMapping",
     "Form",
     "LineBoil",
+    "LineColor",
     "LineFog",
     "LineResponse",
     "LineWeight",

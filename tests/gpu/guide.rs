@@ -186,8 +186,8 @@ mod reference {
     use bevy_comics::{
         BlackFlats, Colorization, ColorizationMode, ComicStyle, ContourOperator, Contours, Creases,
         DepthMap, DepthMapping, Desaturation, EffectRegistry, EffectType, FieldRange, Form,
-        LineBoil, LineFog, LineResponse, LineWeight, ObjectEdges, Outlines, RangeSmoothing,
-        ReductionMethod, Silhouettes, Sketch, ToneBands,
+        LineBoil, LineColor, LineFog, LineResponse, LineWeight, ObjectEdges, Outlines,
+        RangeSmoothing, ReductionMethod, Silhouettes, Sketch, ToneBands,
     };
 
     const HEAD: &str = "\
@@ -373,6 +373,7 @@ This page is made from the types by a test, which fails where the two differ.
         section::<LineResponse>(&mut page);
         section::<LineWeight>(&mut page);
         section::<LineBoil>(&mut page);
+        section::<LineColor>(&mut page);
         section::<LineFog>(&mut page);
         section::<Sketch>(&mut page);
         for effect in effects {

@@ -6,8 +6,8 @@ use bevy::{color::Color, prelude::*, render::view::Msaa};
 use bevy_comics::{
     BlackFlats, Colorization, ColorizationMode, ComicStyle, ComicStyleError, ComicStyleHandle,
     ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, LineBoil,
-    LineWeight, ObjectEdges, Outlines, RangeSmoothing, ReductionMethod, Silhouettes, Sketch,
-    ToneBands,
+    LineColor, LineWeight, ObjectEdges, Outlines, RangeSmoothing, ReductionMethod, Silhouettes,
+    Sketch, ToneBands,
 };
 use proptest::{
     option,
@@ -209,6 +209,11 @@ fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines
                     wavelength: fade,
                     rate: width,
                 },
+                color: LineColor::Surface {
+                    darken: fade,
+                    saturate: width,
+                },
+                memory: fade,
                 ..default()
             },
         );

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use crate::{
     effect::{Effect, EffectShader, EffectStage, Extent, Needs, NoUniform, ViewFacts},
     lines::{
-        Creases, LineBoil, LineFog, LineResponse, LineSettings, LineWeight, ObjectEdges,
+        Creases, LineBoil, LineColor, LineFog, LineResponse, LineSettings, LineWeight, ObjectEdges,
         Silhouettes,
     },
     settings::{Blend, FieldRange, bounded},
@@ -84,6 +84,14 @@ pub struct Outlines {
     /// How lines move: as if each drawing of a film had been inked anew. Default:
     /// [`LineBoil::STILL`].
     pub boil: LineBoil,
+    /// Where the colour of lines comes from. Default: [`LineColor::Ink`].
+    pub color: LineColor,
+    /// Under temporal anti-aliasing, lines remember the frames before, so that they do not
+    /// tremble: the fraction of each frame. They forget where lines move fast, where
+    /// something else comes into view, and at a `CameraCut`. Lines that boil have no memory,
+    /// nor have views without the engine's motion vectors. Range 1/32 to 1 (no memory), default 1/8.
+    #[reflect(@FieldRange::linear(0.03125, 1.0))]
+    pub memory: f32,
     /// What happens to lines in the engine's `DistanceFog`, if the camera has it. Default:
     /// [`LineFog::Fade`].
     pub fog: LineFog,
@@ -106,6 +114,8 @@ impl Default for Outlines {
             weight: LineWeight::EVEN,
             budget: 0.35,
             boil: LineBoil::STILL,
+            color: LineColor::Ink,
+            memory: 0.125,
             fog: LineFog::Fade,
         }
     }
@@ -129,6 +139,8 @@ impl Outlines {
         weight: LineWeight::EVEN,
         budget: 0.35,
         boil: LineBoil::STILL,
+        color: LineColor::Ink,
+        memory: 0.125,
         fog: LineFog::Fade,
     };
 }
@@ -160,6 +172,8 @@ impl Effect for Outlines {
             weight: self.weight.sanitized(),
             budget: bounded(self.budget, default.budget, 0.05, 1.0),
             boil: self.boil.sanitized(),
+            color: self.color.sanitized(),
+            memory: bounded(self.memory, default.memory, 0.03125, 1.0),
             fog: self.fog,
         }
     }
@@ -242,6 +256,8 @@ impl Effect for Outlines {
             weight: self.weight.mixed(other.weight, t),
             budget: self.budget.lerp(other.budget, t),
             boil: self.boil.mixed(other.boil, t),
+            color: self.color.mixed(other.color, t),
+            memory: self.memory.lerp(other.memory, t),
             fog: later.fog,
         }
     }
@@ -293,6 +309,8 @@ impl Outlines {
             weight: self.weight,
             budget: self.budget,
             boil: self.boil,
+            color: self.color,
+            memory: self.memory,
             fog: self.fog,
         }
         .visible()

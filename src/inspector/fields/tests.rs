@@ -4,8 +4,8 @@ use bevy::reflect::Typed;
 
 use super::{super::tooltip::plain, *};
 use crate::{
-    BlackFlats, ComicStyle, Contours, Creases, DepthMapping, EffectRegistry, LineBoil, LineWeight,
-    ObjectEdges, Outlines, RangeSmoothing, Silhouettes,
+    BlackFlats, ComicStyle, Contours, Creases, DepthMapping, EffectRegistry, LineBoil, LineColor,
+    LineWeight, ObjectEdges, Outlines, RangeSmoothing, Silhouettes,
 };
 
 /// Every type with settings, by its name in paths.
@@ -19,6 +19,7 @@ fn all_types() -> Vec<(&'static str, &'static TypeInfo)> {
         ("outlines.objects", ObjectEdges::type_info()),
         ("outlines.weight", LineWeight::type_info()),
         ("outlines.boil", LineBoil::type_info()),
+        ("outlines.color", LineColor::type_info()),
     ];
     for effect in EffectRegistry::built_in().types() {
         all.push((effect.name, (effect.type_info)()));

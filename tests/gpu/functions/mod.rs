@@ -13,6 +13,7 @@ mod fog;
 mod fold;
 mod iso_lines;
 mod jumps;
+mod memory;
 mod normal;
 mod planes;
 mod walk;

@@ -1,0 +1,261 @@
+//! The memory of lines under temporal anti-aliasing: see `remember.wgsl`.
+
+use bevy::{
+    asset::{AssetServer, Handle, load_embedded_asset},
+    core_pipeline::FullscreenShader,
+    ecs::resource::Resource,
+    math::{UVec2, Vec2},
+    render::{
+        render_resource::{
+            BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, ColorTargetState, ColorWrites,
+            CommandEncoder, Extent3d, FragmentState, IntoBinding, PrimitiveState,
+            PrimitiveTopology, RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor,
+            ShaderStages, ShaderType, SpecializedRenderPipeline, TextureDescriptor,
+            TextureDimension, TextureFormat, TextureSampleType, TextureUsages,
+            TextureViewDescriptor,
+            binding_types::{texture_2d, uniform_buffer},
+        },
+        renderer::RenderDevice,
+        texture::CachedTexture,
+    },
+    shader::{Shader, ShaderDefVal},
+};
+
+use super::{
+    draw::cleared,
+    request::LinePassUniform,
+    settings::LineSettings,
+    tiles::{TileList, TileLists, tile_shader, tile_vertices},
+};
+
+/// Ink, finer than that of a frame: small steps towards it are not lost.
+const INK_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+/// A raw depth, and a number of frames.
+const DEPTH_FORMAT: TextureFormat = TextureFormat::Rg32Float;
+
+/// `Memory` of `memory.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct MemoryUniform {
+    share: f32,
+    spacing: i32,
+    unused: Vec2,
+}
+
+/// What a view's lines remember.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MemoryRequest {
+    /// Fraction of each frame where lines move.
+    pub share: f32,
+    /// Number of camera cuts so far.
+    pub cuts: u32,
+}
+
+impl MemoryRequest {
+    /// The settings as shaders take them. `reach`: pixels of the grid within which lines are
+    /// drawn around their owners.
+    pub fn uniform(&self, reach: i32, is_new: bool) -> MemoryUniform {
+        MemoryUniform {
+            share: if is_new { 1.0 } else { self.share },
+            spacing: (reach / 2).max(1),
+            unused: Vec2::ZERO,
+        }
+    }
+}
+
+/// Selects the variant of the pass.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct MemoryKey {
+    pub oblique: bool,
+    /// Only the tiles with ink are drawn.
+    pub tiled: bool,
+}
+
+impl MemoryKey {
+    pub fn layout() -> BindGroupLayoutDescriptor {
+        let stages = ShaderStages::FRAGMENT;
+        let float = |binding| {
+            texture_2d(TextureSampleType::Float { filterable: false }).build(binding, stages)
+        };
+        let entries = [
+            uniform_buffer::<LinePassUniform>(false).build(1, stages),
+            float(2),
+            float(23),
+            float(24),
+            float(25),
+            float(26),
+        ];
+        BindGroupLayoutDescriptor::new("comics_remember_lines", &entries)
+    }
+
+    fn defs(self) -> Vec<ShaderDefVal> {
+        let oblique = self.oblique.then(|| "OBLIQUE".into());
+        ["DEPTH".into()].into_iter().chain(oblique).collect()
+    }
+}
+
+#[derive(Resource)]
+pub(crate) struct MemoryPipeline {
+    fullscreen: FullscreenShader,
+    tile: Handle<Shader>,
+    shader: Handle<Shader>,
+}
+
+impl MemoryPipeline {
+    pub fn new(fullscreen: &FullscreenShader, assets: &AssetServer) -> Self {
+        Self {
+            fullscreen: fullscreen.clone(),
+            tile: tile_shader(assets),
+            shader: load_embedded_asset!(assets, "remember.wgsl"),
+        }
+    }
+}
+
+impl SpecializedRenderPipeline for MemoryPipeline {
+    type Key = MemoryKey;
+
+    fn specialize(&self, key: MemoryKey) -> RenderPipelineDescriptor {
+        let (vertex, topology) = if key.tiled {
+            let tiles = tile_vertices(self.tile.clone());
+            (tiles, PrimitiveTopology::TriangleStrip)
+        } else {
+            let fullscreen = self.fullscreen.to_vertex_state();
+            (fullscreen, PrimitiveTopology::TriangleList)
+        };
+        let target = |format| {
+            Some(ColorTargetState {
+                format,
+                blend: None,
+                write_mask: ColorWrites::ALL,
+            })
+        };
+        RenderPipelineDescriptor {
+            label: Some("comics_remember_lines".into()),
+            layout: vec![MemoryKey::layout()],
+            vertex,
+            primitive: PrimitiveState {
+                topology,
+                ..Default::default()
+            },
+            fragment: Some(FragmentState {
+                shader: self.shader.clone(),
+                shader_defs: key.defs(),
+                entry_point: Some("remember".into()),
+                targets: [INK_FORMAT, DEPTH_FORMAT].map(target).to_vec(),
+            }),
+            ..Default::default()
+        }
+    }
+}
+
+/// The ink of a frame, and the nearest depth around each of its pixels.
+struct Frame {
+    ink: CachedTexture,
+    depth: CachedTexture,
+}
+
+/// The memory of a view.
+pub(crate) struct LineMemory {
+    size: UVec2,
+    /// This frame and the one before.
+    frames: [Frame; 2],
+    cuts: u32,
+    settings: LineSettings,
+    /// Whether there is nothing in it yet.
+    pub is_new: bool,
+}
+
+impl LineMemory {
+    /// The memory for the next frame. `kept`: whether that of the last frame was drawn.
+    pub fn next(
+        before: Option<Self>,
+        kept: bool,
+        device: &RenderDevice,
+        (request, size, settings): (&MemoryRequest, UVec2, &LineSettings),
+    ) -> Self {
+        if let Some(mut before) = before.filter(|before| before.size == size) {
+            before.frames.swap(0, 1);
+            // Other settings are seen at once.
+            let same = before.cuts == request.cuts && before.settings == *settings;
+            before.is_new = !kept || !same;
+            before.cuts = request.cuts;
+            before.settings = *settings;
+            return before;
+        }
+        let frame = || Frame {
+            ink: texture(device, "comics_remembered_ink", size, INK_FORMAT),
+            depth: texture(device, "comics_remembered_depth", size, DEPTH_FORMAT),
+        };
+        Self {
+            size,
+            frames: [frame(), frame()],
+            cuts: request.cuts,
+            settings: *settings,
+            is_new: true,
+        }
+    }
+
+    /// The ink of this frame.
+    pub fn ink(&self) -> &CachedTexture {
+        &self.frames[0].ink
+    }
+
+    /// The bindings of the last frame.
+    pub fn entries(&self) -> [BindGroupEntry<'_>; 2] {
+        let past = &self.frames[1];
+        [(25, &past.ink), (26, &past.depth)].map(|(binding, texture)| BindGroupEntry {
+            binding,
+            resource: (&texture.default_view).into_binding(),
+        })
+    }
+
+    /// Records the pass. `tiles`: those with ink; `None`: all pixels are drawn.
+    pub fn record(
+        &self,
+        encoder: &mut CommandEncoder,
+        (pipeline, group): (&RenderPipeline, &BindGroup),
+        tiles: Option<&TileLists>,
+    ) {
+        let [now, _] = &self.frames;
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("comics_remember_lines"),
+            color_attachments: &[Some(cleared(&now.ink)), Some(cleared(&now.depth))],
+            ..Default::default()
+        });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, group, &[]);
+        match tiles {
+            Some(tiles) => tiles.draw(&mut pass, TileList::Inked),
+            None => pass.draw(0..3, 0..1),
+        }
+    }
+}
+
+/// A texture that is not given back to the engine's cache after the frame.
+fn texture(
+    device: &RenderDevice,
+    label: &'static str,
+    size: UVec2,
+    format: TextureFormat,
+) -> CachedTexture {
+    let texture = device.create_texture(&TextureDescriptor {
+        label: Some(label),
+        size: Extent3d {
+            width: size.x.max(1),
+            height: size.y.max(1),
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: TextureDimension::D2,
+        format,
+        usage: TextureUsages::RENDER_ATTACHMENT
+            | TextureUsages::TEXTURE_BINDING
+            | TextureUsages::COPY_SRC,
+        view_formats: &[],
+    });
+    let default_view = texture.create_view(&TextureViewDescriptor::default());
+    CachedTexture {
+        texture,
+        default_view,
+    }
+}

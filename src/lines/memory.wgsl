@@ -1,0 +1,43 @@
+#define_import_path bevy_comics::lines::memory
+
+// How lines remember the frames before, under temporal anti-aliasing. Pure functions.
+
+// Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
+struct Memory {
+    // Fraction of this frame where lines move; 1: there is no memory.
+    share: f32,
+    // Pixels of the grid between the depths that are compared.
+    spacing: i32,
+    unused: vec2<f32>,
+}
+
+// Faster lines are as sharp as without a memory, in pixels per frame.
+const FASTEST: f32 = 8.0;
+// Slower lines stand still.
+const STILL: f32 = 0.05;
+// Frames that the memory of lines that stand still is the mean of: some rounds of the engine's
+// offsets.
+const LONGEST: f32 = 128.0;
+
+// The number of frames in the memory, this one included, from that of the last frame. Where
+// lines move, there are fewer.
+fn frames_at(before: f32, share: f32, speed: f32) -> f32 {
+    return min(before + 1.0, select(LONGEST, 1.0 / share, speed > STILL));
+}
+
+// The fraction of this frame where lines move by `speed` pixels per frame.
+fn share_at(frames: f32, speed: f32) -> f32 {
+    return min(1.0 / max(frames, 1.0) + speed / FASTEST, 1.0);
+}
+
+// Whether what stood at a place has gone. `before`: the nearest raw depth there in the last
+// frame; `now`: around it in this one; `jump`: the difference that separates two surfaces.
+fn is_uncovered(before: f32, now: f32, jump: f32) -> bool {
+    return before > now + jump;
+}
+
+// Ink of three kinds from that in the memory and that of this frame. The memory is limited to
+// the least and the largest ink nearby in this frame.
+fn remembered(past: vec3<f32>, now: vec3<f32>, least: vec3<f32>, most: vec3<f32>, share: f32) -> vec3<f32> {
+    return mix(clamp(past, least, most), now, share);
+}

@@ -1,0 +1,98 @@
+// Mixes the ink of this frame with that of the frames before, under temporal anti-aliasing:
+// the engine moves depth by a part of a pixel in every frame, so lines, which follow the
+// borders of pixels, tremble. Only the tiles with ink are drawn; elsewhere, nothing is
+// remembered.
+
+#import bevy_comics::depth::view::{set_view, texel_depth}
+#import bevy_comics::lines::edge::{decode_ink, encode_ink}
+#import bevy_comics::lines::memory::{frames_at, is_uncovered, remembered, share_at}
+#import bevy_comics::lines::pass::line_pass
+
+// Ink of this frame, see draw.wgsl.
+@group(0) @binding(23) var ink_texture: texture_2d<f32>;
+// The engine's motion vectors: by how much each pixel of the grid has moved, in parts of the
+// viewport.
+@group(0) @binding(24) var motion_texture: texture_2d<f32>;
+// Ink of the last frame, and of each of its pixels the nearest raw depth around it and the
+// number of frames in its memory.
+@group(0) @binding(25) var past_ink: texture_2d<f32>;
+@group(0) @binding(26) var past_depth: texture_2d<f32>;
+
+struct Remembered {
+    @location(0) ink: vec4<f32>,
+    @location(1) nearest: vec2<f32>,
+}
+
+// The depths around a pixel.
+struct Around {
+    // The nearest of 3 x 3.
+    nearest: f32,
+    // The nearest of 5 x 5, and its pixel.
+    wide: f32,
+    pixel: vec2<i32>,
+}
+
+// The depths around a pixel of the grid, some pixels apart.
+fn depths_around(centre: vec2<i32>) -> Around {
+    let rect = line_pass.grid.rect;
+    var around = Around(0.0, -1.0, vec2(0));
+    for (var i = 0; i < 25; i++) {
+        let offset = vec2(i % 5 - 2, i / 5 - 2);
+        let at = rect.xy + clamp(centre + line_pass.memory.spacing * offset, vec2(0), rect.zw - 1);
+        let d = texel_depth(at, 0);
+        let beside = max(abs(offset.x), abs(offset.y)) < 2;
+        around.nearest = max(around.nearest, select(0.0, d, beside));
+        around.pixel = select(around.pixel, at, d > around.wide);
+        around.wide = max(around.wide, d);
+    }
+    return around;
+}
+
+fn past_texel(p: vec2<i32>) -> vec3<f32> {
+    let last = line_pass.seen.viewport.zw - 1;
+    return decode_ink(textureLoad(past_ink, clamp(p, vec2(0), last), 0).xyz);
+}
+
+// The ink of the last frame at a place: bilinear.
+fn past_at(place: vec2<f32>) -> vec3<f32> {
+    let corner = floor(place - 0.5);
+    let f = place - 0.5 - corner;
+    let p = vec2<i32>(corner);
+    let above = mix(past_texel(p), past_texel(p + vec2(1, 0)), f.x);
+    let below = mix(past_texel(p + vec2(0, 1)), past_texel(p + vec2(1, 1)), f.x);
+    return mix(above, below, f.y);
+}
+
+@fragment
+fn remember(@builtin(position) position: vec4<f32>) -> Remembered {
+    set_view(line_pass.seen);
+    let g = line_pass.grid;
+    let s = line_pass.settings;
+    let size = line_pass.seen.viewport.zw;
+    let pixel = vec2<i32>(position.xy);
+    let texel = textureLoad(ink_texture, pixel, 0);
+    let now = decode_ink(texel.xyz);
+    var least = now;
+    var most = now;
+    for (var i = 0; i < 9; i++) {
+        let p = clamp(pixel + vec2(i % 3 - 1, i / 3 - 1), vec2(0), size - 1);
+        let beside = decode_ink(textureLoad(ink_texture, p, 0).xyz);
+        least = min(least, beside);
+        most = max(most, beside);
+    }
+    let centre = vec2<i32>(floor(position.xy * g.from_viewport.xy + g.from_viewport.zw));
+    let around = depths_around(centre);
+    let moved = textureLoad(motion_texture, around.pixel, 0).xy * vec2<f32>(size);
+    let place = position.xy - moved;
+    let seen = all(place >= vec2(0.0)) && all(place < vec2<f32>(size));
+    let from_pixel = clamp(vec2<i32>(floor(place)), vec2(0), size - 1);
+    let before = textureLoad(past_depth, from_pixel, 0).xy;
+    let jump = s.jump * (s.reference_factor * before.x + s.reference_constant);
+    let known = seen && !is_uncovered(before.x, around.wide, jump) && line_pass.memory.share < 1.0;
+    let speed = length(moved);
+    let frames = frames_at(select(0.0, before.y, known), line_pass.memory.share, speed);
+    let ink = remembered(past_at(place), now, least, most, share_at(frames, speed));
+    // The slot of the strongest line of this frame; where it has none, that of the last one.
+    let slot = select(textureLoad(past_ink, from_pixel, 0).w, texel.w, any(now > vec3(0.0)));
+    return Remembered(vec4(encode_ink(ink), slot), vec2(around.nearest, frames));
+}

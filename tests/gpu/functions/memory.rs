@@ -1,0 +1,71 @@
+//! What lines remember of the frames before, and lines in the colour of surfaces.
+
+use bevy_comics_testkit::reference::{
+    memory::{frames_at, is_uncovered, remembered, share_at},
+    surface::surface_ink,
+};
+
+use super::*;
+
+#[test]
+fn the_memory_of_lines_is_that_of_the_twin() {
+    let ink = || 0.0f32..=1.0;
+    let row = (
+        (ink(), ink(), ink(), ink()),
+        (0.03125f32..=1.0, 0.0f32..=12.0, 0u32..300),
+    )
+        .prop_map(|((past, now, a, b), (share, speed, frames))| {
+            let [least, most] = [a.min(b).min(now), a.max(b).max(now)];
+            // Half of the lines stand still.
+            let speed = (speed - 6.0).max(0.0);
+            [past, now, least, most, share, speed, frames as f32]
+        });
+    for_batches(row, |rows| {
+        let results = gpu().evaluate(
+            "#import bevy_comics::lines::memory::{frames_at, is_uncovered, remembered, share_at}",
+            "let frames = frames_at(i(6u), i(4u), i(5u));
+             let share = share_at(frames, i(5u));
+             let ink = remembered(vec3(i(0u)), vec3(i(1u)), vec3(i(2u)), vec3(i(3u)), share);
+             return vec4(share, ink.y, frames, f32(is_uncovered(i(0u), i(1u), i(2u))));",
+            rows,
+        );
+        for (row, found) in rows.iter().zip(results) {
+            let [past, now, least, most, share, speed, before] = row.map(f64::from);
+            let frames = frames_at(before, share, speed);
+            let part = share_at(frames, speed);
+            let ink = remembered(past, now, [least, most], part);
+            for (found, want) in found.into_iter().zip([part, ink, frames]) {
+                let away = (f64::from(found) - want).abs();
+                assert!(away < 1e-5 * want.max(1.0), "{row:?}: {found}, {want}");
+            }
+            if (past - now - least).abs() > 1e-6 {
+                let uncovered = is_uncovered(past, now, least);
+                assert_eq!(found[3] == 1.0, uncovered, "{row:?}");
+            }
+        }
+    });
+}
+
+#[test]
+fn surface_ink_is_that_of_the_twin() {
+    let part = || 0.0f32..=1.0;
+    let row = (part(), part(), part(), part(), 0.0f32..=2.0)
+        .prop_map(|(r, g, b, darken, saturate)| [r, g, b, darken, saturate]);
+    for_batches(row, |rows| {
+        let results = gpu().evaluate(
+            "#import bevy_comics::lines::surface::surface_ink",
+            "return vec4(surface_ink(vec3(i(0u), i(1u), i(2u)), i(3u), i(4u)), 0.0);",
+            rows,
+        );
+        for (row, found) in rows.iter().zip(results) {
+            let [r, g, b, darken, saturate] = row.map(f64::from);
+            let want = surface_ink([r, g, b], darken, saturate);
+            for (found, want) in found.into_iter().zip(want) {
+                assert!(
+                    (f64::from(found) - want).abs() < 1e-5,
+                    "{row:?}: {found}, {want}"
+                );
+            }
+        }
+    });
+}

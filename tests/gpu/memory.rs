@@ -1,0 +1,216 @@
+//! What lines remember under temporal anti-aliasing: they stand still, and leave no ghosts.
+
+use bevy::{anti_alias::taa::TemporalAntiAliasing, prelude::*, render::view::Msaa};
+use bevy_comics::{CameraCut, ComicStyle, Outlines};
+
+use crate::{
+    outlines::{put, removed},
+    small::Small,
+};
+
+/// Width and height of the picture in pixels; a unit of the scene is a pixel.
+const SIZE: usize = 120;
+
+/// A white wall in front of a white background: only lines change the picture.
+fn scene() -> (Small, Entity) {
+    let mut small = Small::new(UVec2::splat(SIZE as u32), Msaa::Off);
+    small.clear();
+    let half = 0.5 * SIZE as f32;
+    small.insert((
+        Transform::IDENTITY,
+        Projection::Perspective(PerspectiveProjection {
+            fov: std::f32::consts::FRAC_PI_2,
+            ..default()
+        }),
+        TemporalAntiAliasing::default(),
+    ));
+    let camera = small.camera;
+    let mut camera = small.world().get_mut::<Camera>(camera).expect("a camera");
+    camera.clear_color = Color::WHITE.into();
+    let wall = put(
+        &mut small,
+        Rectangle::new(61.3, 47.7),
+        Color::WHITE,
+        Transform::from_xyz(-3.0, 2.0, -half).with_rotation(Quat::from_rotation_z(0.2)),
+    );
+    (small, wall)
+}
+
+fn outline(small: &mut Small, memory: f32) {
+    let outlines = Outlines {
+        memory,
+        ..Outlines::SILHOUETTES
+    };
+    small.style(&ComicStyle::default().with(outlines));
+    small.headless.step(40);
+}
+
+/// The fraction of pixels that change by more than two codes from frame to frame.
+fn changes(small: &mut Small) -> f64 {
+    let mut before = small.picture();
+    let mut count = 0;
+    for _ in 0..64 {
+        small.headless.step(1);
+        let now = small.picture();
+        let differ = |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| {
+            a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 2)
+        };
+        count += before.pixels().zip(now.pixels()).filter(differ).count();
+        before = now;
+    }
+    count as f64 / (64 * SIZE * SIZE) as f64
+}
+
+/// The distance of the wall's rim from a place, in pixels; positive inside.
+fn inside(x: f64, y: f64) -> f64 {
+    let half = 0.5 * SIZE as f64;
+    let [x, y] = [x - half + 3.0, half - y - 2.0];
+    let (sin, cos) = 0.2f32.sin_cos();
+    let (sin, cos) = (f64::from(sin), f64::from(cos));
+    let [u, v] = [x * cos + y * sin, -x * sin + y * cos];
+    (30.65 - u.abs()).min(23.85 - v.abs())
+}
+
+/// Along the middle of each side: how far the middle of the line is from the rim, as a root
+/// mean square in pixels.
+fn error(small: &Small) -> f64 {
+    let ink = removed(small);
+    let mut sum = 0.0;
+    let mut count = 0.0;
+    for column in 40..75 {
+        for rows in [15..60, 60..110] {
+            let ink = |y: usize| f64::from(ink[y * SIZE + column]);
+            let all: f64 = rows.clone().map(ink).sum();
+            let moment: f64 = rows.map(|y| (y as f64 + 0.5) * ink(y)).sum();
+            let away = inside(column as f64 + 0.5, moment / all);
+            sum += away * away;
+            count += 1.0;
+        }
+    }
+    (sum / count as f64).sqrt()
+}
+
+#[test]
+fn lines_of_a_still_view_stand_still() {
+    let (mut small, _) = scene();
+    let mut found = Vec::new();
+    for memory in [1.0, 0.125] {
+        outline(&mut small, memory);
+        let away = error(&small);
+        let changed = changes(&mut small);
+        println!(
+            "memory {memory}: {away:.3} px away, {:.4} % change",
+            100.0 * changed
+        );
+        found.push((away, changed));
+    }
+    let [(trembling, many), (still, few)] = found[..] else {
+        unreachable!()
+    };
+    assert!(many > 0.001, "{many}: nothing trembles without a memory");
+    assert!(few < 1e-4, "{few}");
+    assert!(
+        still < 0.1 && still < 0.8 * trembling,
+        "{still}, {trembling}"
+    );
+    assert_eq!(small.errors(), 0);
+}
+
+/// The sum of ink in the picture.
+fn total(small: &Small) -> f32 {
+    removed(small).iter().sum()
+}
+
+/// A wall that is gone has no lines in the next frame, also where another line is drawn: on
+/// a wall behind it.
+#[test]
+fn lines_of_objects_that_vanish_leave_no_ghosts() {
+    let (mut small, wall) = scene();
+    let half = 0.5 * SIZE as f32;
+    for depth in [1.2, 1.5] {
+        put(
+            &mut small,
+            Rectangle::new(55.0 * depth, 50.0 * depth),
+            Color::WHITE,
+            Transform::from_xyz(0.0, 0.0, -half * depth),
+        );
+    }
+    outline(&mut small, 0.125);
+    let before = removed(&small);
+    small.world().despawn(wall);
+    // The second frame is the first that is drawn without it.
+    small.headless.step(2);
+    let after = removed(&small);
+    small.headless.step(60);
+    let alone = removed(&small);
+    // Away from the lines that are left.
+    let free = |i: usize| {
+        let near = |d: i64| {
+            alone
+                .get((i as i64 + d) as usize)
+                .is_none_or(|ink| *ink > 0.0)
+        };
+        !(-2..=2).any(|y| (-2..=2).any(|x| near(y * SIZE as i64 + x)))
+    };
+    let of = |ink: &[f32]| -> f32 { (0..ink.len()).filter(|i| free(*i)).map(|i| ink[i]).sum() };
+    let [there, ghost] = [of(&before), of(&after)];
+    println!("ghost: {ghost} of {there}");
+    assert!(there > 20.0, "{there}");
+    assert!(ghost < 0.01 * there, "{ghost} of {there}");
+    assert_eq!(small.errors(), 0);
+}
+
+/// After a camera cut, nothing of the frame before is left.
+#[test]
+fn a_cut_forgets_lines() {
+    let (mut small, _) = scene();
+    outline(&mut small, 0.03125);
+    let camera = small.camera;
+    small.world().trigger(CameraCut { entity: camera });
+    small.insert(Transform::from_xyz(3.0, 1.0, 0.0));
+    small.headless.step(1);
+    let once = removed(&small);
+    small.headless.step(100);
+    let later = removed(&small);
+    // A frame without a memory: each line may be half a pixel away.
+    let apart = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum::<f32>();
+    let found = apart(&once, &later);
+    println!("{found} of {}", total(&small));
+    assert!(found < 0.5 * total(&small), "{found}");
+    assert_eq!(small.errors(), 0);
+}
+
+/// Lines of an object that moves are where it is.
+#[test]
+fn lines_follow_what_moves() {
+    let (mut small, wall) = scene();
+    outline(&mut small, 0.125);
+    let middle = |small: &Small| {
+        let ink = removed(small);
+        let row = (0..SIZE).map(|x| (x, ink[58 * SIZE + x]));
+        let left = row.filter(|(x, _)| *x < 60);
+        let (sum, moment) = left.fold((0.0, 0.0), |(sum, moment), (x, ink)| {
+            (sum + ink, moment + ink * (x as f32 + 0.5))
+        });
+        (moment / sum, sum)
+    };
+    let (start, _) = middle(&small);
+    for speed in [0.3f32, 1.7] {
+        for step in 1..=10 {
+            let mut world = small.world().get_mut::<Transform>(wall).expect("a wall");
+            world.translation.x += if step <= 5 { speed } else { -speed };
+            small.headless.step(1);
+            let mut transforms = small.world().query::<&GlobalTransform>();
+            let at = transforms.get(small.world(), wall).expect("drawn");
+            let want = start + at.translation().x + 3.0;
+            let (found, ink) = middle(&small);
+            println!("speed {speed}, step {step}: {found:.2}, {want:.2}, ink {ink:.2}");
+            assert!(
+                (found - want).abs() < 0.2,
+                "{speed}, {step}: {found}, {want}"
+            );
+            assert!((1.8..2.2).contains(&ink), "{speed}, {step}: {ink}");
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}

@@ -1,0 +1,114 @@
+//! Lines in the colour of the surfaces that they belong to.
+
+use bevy::{prelude::*, render::view::Msaa};
+use bevy_comics::{ComicStyle, Desaturation, LineColor, NoStyle, Outlines};
+
+use crate::{
+    outlines::put,
+    small::{Small, linear},
+};
+
+const SIZE: u32 = 80;
+
+/// A red square of 40 pixels in front of a blue sky.
+fn scene(msaa: Msaa) -> (Small, Entity) {
+    let mut small = Small::new(UVec2::splat(SIZE), msaa);
+    small.clear();
+    let half = 0.5 * SIZE as f32;
+    small.insert((
+        Transform::IDENTITY,
+        Projection::Perspective(PerspectiveProjection {
+            fov: std::f32::consts::FRAC_PI_2,
+            ..default()
+        }),
+    ));
+    let camera = small.camera;
+    let mut camera = small.world().get_mut::<Camera>(camera).expect("a camera");
+    camera.clear_color = Color::linear_rgb(0.0, 0.0, 1.0).into();
+    let square = put(
+        &mut small,
+        Rectangle::new(40.4, 40.4),
+        Color::linear_rgb(0.8, 0.2, 0.2),
+        Transform::from_xyz(0.0, 0.0, -half),
+    );
+    (small, square)
+}
+
+fn lines(width: f32, darken: f32) -> Outlines {
+    Outlines {
+        width,
+        color: LineColor::Surface {
+            darken,
+            saturate: 1.0,
+        },
+        ..Outlines::SILHOUETTES
+    }
+}
+
+/// Whether two colours are equal within a code of the picture.
+fn alike(a: [f64; 3], b: [f64; 3]) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() < 0.006)
+}
+
+/// All pixels of a line have the darker colour of the square, also those in front of the
+/// sky, and also where the rim of the square is mixed with the sky.
+#[test]
+fn lines_have_the_colour_of_their_surface() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let (mut small, _) = scene(msaa);
+        for width in [2.0, 4.0, 12.0] {
+            small.style(&ComicStyle::default().with(lines(width, 0.5)));
+            small.settle();
+            let picture = small.picture();
+            let half = width as u32 / 2;
+            // With four samples per pixel, the square begins and ends a pixel further out, and the
+            // corners bend its sides: the outermost pixels of lines are not all ink.
+            let out = u32::from(msaa != Msaa::Off);
+            for middle in [20 - out, 60 + out] {
+                for x in middle - half + out..middle + half - out {
+                    let color = linear(&picture, x, 37);
+                    assert!(
+                        alike(color, [0.4, 0.1, 0.1]),
+                        "{msaa:?}, {width}, {x}: {color:?}"
+                    );
+                }
+            }
+            let sky = linear(&picture, 5, 5);
+            assert!(alike(sky, [0.0, 0.0, 1.0]), "{sky:?}");
+            let square = linear(&picture, 40, 40);
+            assert!(alike(square, [0.8, 0.2, 0.2]), "{square:?}");
+        }
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+/// The colour is that after the effects that change colours, and of objects that these leave
+/// alone, that before them.
+#[test]
+fn the_colour_is_that_of_the_styled_surface() {
+    let (mut small, square) = scene(Msaa::Off);
+    let grey = Desaturation {
+        amount: 1.0,
+        ..default()
+    };
+    let style = ComicStyle::default().with(lines(6.0, 0.5)).with(grey);
+    small.style(&style);
+    small.settle();
+    let picture = small.picture();
+    let inside = linear(&picture, 40, 40);
+    for x in 18..22 {
+        let color = linear(&picture, x, 37);
+        assert!(
+            alike(color, inside.map(|c| 0.5 * c)),
+            "{x}: {color:?}, {inside:?}"
+        );
+    }
+    small.world().entity_mut(square).insert(NoStyle::default());
+    small.settle();
+    let picture = small.picture();
+    for x in 18..22 {
+        let color = linear(&picture, x, 37);
+        assert!(alike(color, [0.4, 0.1, 0.1]), "{x}: {color:?}");
+    }
+    assert_eq!(small.errors(), 0);
+}
