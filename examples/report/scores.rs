@@ -62,7 +62,7 @@ pub fn detectors() -> Vec<(String, ComicStyle)> {
         }),
     ));
     all.push(("all outlines".into(), outlines(found)));
-    let name = "all outlines, budget 0.35";
+    let name = "all outlines with the ink budget";
     all.push((name.into(), outlines(Outlines::default())));
     all
 }

@@ -44,6 +44,9 @@ pub enum ComicsStage {
     FindLines,
     /// The pass that draws the ink of the lines.
     DrawLines,
+    /// The passes that draw the outlines of marked objects
+    /// ([`SelectionOutline`](crate::SelectionOutline), [`XRayOutline`](crate::XRayOutline)).
+    MarkedObjects,
     /// An effect in the fused pass, by its name
     /// ([`Effect::NAME`](crate::Effect::NAME)); see also [`ComicsStage::of`].
     Effect(&'static str),
@@ -64,6 +67,7 @@ impl ComicsStage {
         Self::SearchTiles,
         Self::FindLines,
         Self::DrawLines,
+        Self::MarkedObjects,
     ];
 
     /// The stage's name in reports and files: lower case, with spaces.
@@ -79,6 +83,7 @@ impl ComicsStage {
             Self::SearchTiles => "search tiles",
             Self::FindLines => "find lines",
             Self::DrawLines => "draw lines",
+            Self::MarkedObjects => "marked objects",
             Self::Effect(name) => return Cow::Owned(name.replace('_', " ")),
             Self::Stylize => "stylize",
         })

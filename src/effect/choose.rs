@@ -33,7 +33,7 @@ use crate::{
     },
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     lines::{
-        ViewFog,
+        ViewFog, ViewMarks,
         request::{LinePasses, LineRequest},
     },
     objects::{IdRequest, IdsWanted},
@@ -92,18 +92,19 @@ pub(crate) fn choose_plans(
         Option<&ViewPrepassTextures>,
         (Option<&ViewTarget>, Option<&ReadyPlan>),
         (Option<&MainPassResolutionOverride>, Option<&TemporalJitter>),
+        Option<&ViewMarks>,
     )>,
-    stale: Query<Entity, (With<ReadyPlan>, NotDrawn)>,
+    stale: Query<(Entity, Option<&ViewMarks>), (With<ReadyPlan>, NotDrawn)>,
     (ledger, registry): (Res<StageLedger>, Res<EffectRegistry>),
     mut services: Services,
     mut cache: ResMut<PipelineCache>,
 ) {
-    for entity in &stale {
-        commands.entity(entity).remove::<Chosen>();
+    for (entity, marks) in &stale {
+        remove(entity, marks, &mut commands);
     }
-    for (entity, view, camera, extracted, prepass, (target, ready), raster) in &views {
+    for (entity, view, camera, extracted, prepass, (target, ready), raster, marks) in &views {
         if target.is_none() || extracted.viewport.z == 0 || extracted.viewport.w == 0 {
-            commands.entity(entity).remove::<Chosen>();
+            remove(entity, marks, &mut commands);
             continue;
         }
         let scene = Scene::new(extracted, prepass, raster);
@@ -138,8 +139,17 @@ pub(crate) fn choose_plans(
                     .insert(ReadyPlan(Some(wanted.clone())));
             }
         }
-        requests.put(entity, &mut commands);
+        requests.put(entity, marks.map(|marks| marks.layer), &mut commands);
     }
+}
+
+/// Removes what a choice has put on a view.
+fn remove(view: Entity, marks: Option<&ViewMarks>, commands: &mut Commands) {
+    commands.entity(view).remove::<Chosen>();
+    #[cfg(feature = "objects")]
+    super::requests::remove_marks(view, marks.map(|marks| marks.layer), commands);
+    #[cfg(not(feature = "objects"))]
+    let _ = marks;
 }
 
 /// Reports for every stage why it does not run. Stages that run overwrite this

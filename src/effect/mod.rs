@@ -8,6 +8,9 @@ mod compose;
 mod errors;
 mod facts;
 mod key;
+mod lines;
+#[cfg(feature = "objects")]
+mod marks;
 mod pass;
 pub(crate) mod plan;
 mod plugin;

@@ -48,6 +48,8 @@ pub(crate) struct Plan {
     pub sections: bool,
     /// The colour effects leave some object alone.
     pub unstyled: bool,
+    /// Some object is outlined by itself.
+    pub marks: bool,
     /// Lines fade into the camera's distance fog.
     pub fog: bool,
     /// The game reads the visible range.
@@ -75,6 +77,7 @@ impl Plan {
             object_styles: objects.any,
             sections: objects.sections,
             unstyled: objects.unstyled,
+            marks: objects.marks,
             fog: has_fog(camera),
             readback: camera.contains::<VisibleDepthRange>(),
             histogram: camera.contains::<DepthHistogram>(),
@@ -89,7 +92,7 @@ impl Plan {
             ..Self::default()
         };
         let asked = plan.collect(camera, types);
-        if !(asked || plan.readback || plan.histogram || plan.view.is_some()) {
+        if !(asked || plan.marks || plan.readback || plan.histogram || plan.view.is_some()) {
             return None;
         }
         plan.show(types);
@@ -342,6 +345,7 @@ impl Plan {
         let read = Needs::MAP | Needs::DEPTH | Needs::NORMALS | Needs::IDS;
         let view = self.view.is_some_and(DebugView::needs_depth);
         self.readback
+            || self.marks
             || self.histogram
             || self.lines.is_some()
             || self.needs().intersects(read)

@@ -30,7 +30,10 @@ use super::{
     pass::{StylizePipeline, stylize},
     prepare::{ViewFused, prepare_fused_pass},
 };
-use crate::schedule::{ComicsSystems, PrepareComics};
+use crate::{
+    lines::draw_marks,
+    schedule::{ComicsSystems, PrepareComics},
+};
 
 /// Chooses the plan of every view, and draws its effects in one pass.
 pub(crate) struct FusedPlugin;
@@ -104,7 +107,8 @@ impl FusedPlugin {
             )
             .add_systems(
                 Core3d,
-                stylize
+                (stylize, draw_marks)
+                    .chain()
                     .in_set(ComicsSystems::Stylize)
                     .in_set(Core3dSystems::PostProcess)
                     .after(tonemapping)

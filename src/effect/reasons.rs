@@ -35,7 +35,9 @@ impl Plan {
         let lines = self.lines.is_some();
         let maps = self.reads_map() || self.lines_read_map();
         match stage {
-            ComicsStage::Effect(_) | ComicsStage::RangeReadback => LeftOut::NotRequested,
+            ComicsStage::Effect(_) | ComicsStage::RangeReadback | ComicsStage::MarkedObjects => {
+                LeftOut::NotRequested
+            }
             ComicsStage::DepthPrepass => LeftOut::NoDepthStyle,
             ComicsStage::NormalPrepass
             | ComicsStage::ObjectIds

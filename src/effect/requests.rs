@@ -9,7 +9,7 @@ use bevy::{
         entity::Entity,
         system::{Commands, Res, ResMut, SystemParam},
     },
-    math::{Mat4, UVec2, UVec4, Vec2, Vec4Swizzles},
+    math::{Mat4, UVec2, UVec4, Vec2},
     render::{
         camera::{ExtractedCamera, TemporalJitter},
         render_resource::{
@@ -20,9 +20,12 @@ use bevy::{
     shader::ShaderCacheError,
 };
 
+#[cfg(feature = "objects")]
+use super::marks::{MarkPipelines, MarkRequests};
 use super::{
-    AnyEffect, Extent, Needs, Plan, ViewFacts, ViewPlan,
+    AnyEffect, Extent, Plan, ViewFacts, ViewPlan,
     key::{KeyInputs, Part, StylizeKey},
+    lines::{line_reach, line_request, map_jumps},
     pass::StylizePipeline,
     plan::Prepasses,
     prepare::FusedRequest,
@@ -33,26 +36,26 @@ use crate::{
         request::{RangePasses, RangePipelines, RangeRequest, Reduction},
         view::{ViewUniform, depth_rect},
     },
-    lines::{
-        LineSettings, MapJumps, MemoryRequest,
-        request::{FindPass, LinePasses, LinePipelines, LineRequest},
-    },
+    lines::request::{FindPass, LinePasses, LinePipelines, LineRequest},
     objects::IdRequest,
 };
+#[cfg(feature = "objects")]
+use crate::{lines::ViewMarks, objects::LayerRequest};
 
 /// The inputs that a view provides.
 #[derive(Clone, Copy)]
 pub(super) struct Scene {
-    viewport: UVec4,
+    pub viewport: UVec4,
     /// Size of the main pass in pixels, if it differs from the viewport.
-    main_pass_size: Option<UVec2>,
+    pub main_pass_size: Option<UVec2>,
     /// By how much the engine has moved the main pass in this frame, in its pixels,
     /// under temporal anti-aliasing.
-    jitter: Option<Vec2>,
+    pub jitter: Option<Vec2>,
     /// Size in pixels and samples per pixel of the depth prepass, if there is one.
     pub depth: Option<(UVec2, u32)>,
     pub normals: bool,
-    motion: bool,
+    /// The engine draws motion vectors.
+    pub motion: bool,
 }
 
 impl Scene {
@@ -78,7 +81,7 @@ impl Scene {
     }
 
     /// The part of the depth texture that the main pass draws: x, y, width, height.
-    fn drawn(&self) -> UVec4 {
+    pub fn drawn(&self) -> UVec4 {
         depth_rect(self.viewport, self.main_pass_size)
     }
 
@@ -100,6 +103,8 @@ pub(super) struct Requests {
     range: Option<(RangeRequest, RangePasses)>,
     lines: Option<(LineRequest, LinePasses)>,
     ids: Option<IdRequest>,
+    #[cfg(feature = "objects")]
+    marks: Option<MarkRequests>,
     fused: Option<FusedRequest>,
 }
 
@@ -107,9 +112,11 @@ pub(super) struct Requests {
 #[derive(SystemParam)]
 pub(crate) struct Services<'w> {
     ranges: RangePipelines<'w>,
-    lines: LinePipelines<'w>,
+    pub(super) lines: LinePipelines<'w>,
     stylize: ResMut<'w, SpecializedRenderPipelines<StylizePipeline>>,
     stylize_pipeline: Res<'w, StylizePipeline>,
+    #[cfg(feature = "objects")]
+    pub(super) marks: MarkPipelines<'w>,
 }
 
 impl Services<'_> {
@@ -155,10 +162,17 @@ impl Services<'_> {
                 size,
                 samples,
             });
+        #[cfg(feature = "objects")]
+        let marks = {
+            let scene = (scene, uniform);
+            self.mark_requests(cache, (plan, view), scene, (extracted, camera))
+        };
         Requests {
             range,
             lines,
             ids,
+            #[cfg(feature = "objects")]
+            marks,
             fused,
         }
     }
@@ -211,35 +225,6 @@ impl Services<'_> {
     }
 }
 
-/// The largest [`Effect::line_reach`](super::Effect::line_reach); `None` if an effect that
-/// reads lines does not know it.
-fn line_reach(plan: &Plan, view: &ViewFacts) -> Option<f32> {
-    plan.drawn()
-        .filter(|effect| effect.any_needs().contains(Needs::LINES))
-        .try_fold(0.0_f32, |reach, effect| {
-            Some(reach.max(effect.any_line_reach(view)?))
-        })
-}
-
-/// The jumps of the depth map that effects of the plan are limited to. `None` also if
-/// they are not looked for: in multisampled views, in views whose main pass has a
-/// resolution of its own, beside lines of the faithful forms, and under a debug view.
-fn map_jumps(plan: &Plan, scene: &Scene, facts: &ViewFacts) -> Option<MapJumps> {
-    let (_, samples) = scene.depth?;
-    let is_faithful = plan.lines.is_some_and(|lines| lines.has_faithful());
-    let has_window = samples == 1 && scene.main_pass_size.is_none();
-    if !has_window || is_faithful || plan.view.is_some() {
-        return None;
-    }
-    let jumps = plan
-        .drawn()
-        .filter_map(|effect| match effect.any_extent(facts) {
-            Extent::AtJumps(jumps) => Some(jumps),
-            _ => None,
-        });
-    jumps.reduce(MapJumps::or)
-}
-
 fn view_uniform(view: &ViewPlan, plan: &Plan, scene: &Scene) -> ViewUniform {
     ViewUniform::new(
         scene.viewport,
@@ -283,70 +268,6 @@ fn world_from_clip(view: &ViewPlan, extracted: &ExtractedView) -> Mat4 {
     }
 }
 
-fn line_request(
-    view: &ViewPlan,
-    (plan, facts): (&Plan, &ViewFacts),
-    scene: &Scene,
-    (uniform, jumps): (ViewUniform, Option<MapJumps>),
-) -> Option<LineRequest> {
-    let lines = plan.lines.filter(|_| plan.draws());
-    let settings = lines.or(jumps.map(|_| LineSettings::NONE))?;
-    let (depth_size, samples) = scene.depth?;
-    let widest_object = if plan.object_styles {
-        view.widest_object
-    } else {
-        0.0
-    };
-    let reach = settings.reach(view.scale_factor, widest_object);
-    let reference = view.projection.jump_reference(&view.clip_from_view);
-    let grid_scale = view.scale_factor * uniform.depth_scale.max_element();
-    Some(LineRequest {
-        camera: view.camera,
-        settings,
-        view: uniform,
-        lines: settings.uniform(view.scale_factor, reference),
-        weight: settings
-            .weight
-            .uniform(grid_scale, view.to_light, settings.budget),
-        boil: settings.boil.uniform(view.scale_factor, view.time),
-        memory: memory_request(view, &settings, scene),
-        fog: plan.fog.then(|| {
-            let fog = view.fog.unwrap_or_default();
-            fog.uniform(&view.projection, &view.clip_from_view)
-        }),
-        depth_size,
-        samples,
-        size: scene.viewport.zw(),
-        rect: scene.drawn(),
-        jitter: scene.jitter,
-        reach,
-        steps: settings.steps(grid_scale),
-        oblique: view.projection.kind() == ProjectionKind::Oblique,
-        visible_range: plan.depth_map.mapping.follows_visible_range(),
-        ids: plan.draws_ids(),
-        sections: plan.sections,
-        object_styles: plan.object_styles,
-        line_reach: line_reach(plan, facts).unwrap_or(0.0),
-        jumps,
-        map_flags: uniform.depth.flags,
-    })
-}
-
-/// What lines remember, if they do: under temporal anti-aliasing.
-fn memory_request(
-    view: &ViewPlan,
-    settings: &LineSettings,
-    scene: &Scene,
-) -> Option<MemoryRequest> {
-    let single = scene.depth.is_some_and(|(_, samples)| samples == 1);
-    let trembles = scene.jitter.is_some() && scene.motion && single;
-    let remembers = settings.memory < 1.0 && !settings.boil.moves();
-    (trembles && remembers).then_some(MemoryRequest {
-        share: settings.memory,
-        cuts: view.cuts,
-    })
-}
-
 impl Requests {
     /// Whether a pipeline is still compiling. A pipeline that failed is not: its
     /// pass does not run, and the log says why.
@@ -360,29 +281,20 @@ impl Requests {
             };
             reduction || passes.smoothing.is_some_and(compute)
         });
-        let lines = self.lines.as_ref().is_some_and(|(_, passes)| {
-            let cracks = passes.cracks.is_some_and(|cracks| {
-                let columns = cracks.columns.is_some_and(render);
-                let find = match cracks.find {
-                    FindPass::Cells(cells) => cells.ids().any(compute),
-                    FindPass::Pixels(id) => render(id),
-                };
-                columns || find || render(cracks.draw)
-            });
-            let resolve = passes.resolve.is_some_and(|(_, id)| render(id));
-            let search = passes
-                .search
-                .is_some_and(|ids| ids.into_iter().any(compute));
-            let drawn = [passes.faithful, passes.memory];
-            resolve || search || cracks || drawn.into_iter().flatten().any(render)
-        });
+        let lines = self.lines.as_ref();
+        let lines = lines.is_some_and(|(_, passes)| are_compiling(passes, cache));
+        #[cfg(feature = "objects")]
+        let lines = lines
+            || (self.marks.as_ref())
+                .is_some_and(|m| are_compiling(m.passes(), cache) || render(m.pipeline()));
         let fused =
             (self.fused.as_ref()).is_some_and(|f| render(f.pipeline) || f.base.is_some_and(render));
         range || lines || fused
     }
 
     /// Puts the requests on the view, and removes those of the last frame.
-    pub fn put(self, entity: Entity, commands: &mut Commands) {
+    /// `layer`: the entity with the requests for the lines of marked objects.
+    pub fn put(self, entity: Entity, layer: Option<Entity>, commands: &mut Commands) {
         let mut view = commands.entity(entity);
         match self.range {
             Some(range) => view.insert(range),
@@ -400,7 +312,42 @@ impl Requests {
             Some(fused) => view.insert(fused),
             None => view.remove::<FusedRequest>(),
         };
+        #[cfg(feature = "objects")]
+        match self.marks {
+            Some(marks) => marks.put(entity, layer, commands),
+            None => remove_marks(entity, layer, commands),
+        }
+        #[cfg(not(feature = "objects"))]
+        let _ = layer;
     }
+}
+
+/// Removes the requests for the lines of marked objects.
+#[cfg(feature = "objects")]
+pub(super) fn remove_marks(view: Entity, layer: Option<Entity>, commands: &mut Commands) {
+    if let Some(layer) = layer {
+        commands.entity(layer).despawn();
+    }
+    commands.entity(view).remove::<(LayerRequest, ViewMarks)>();
+}
+
+/// Whether a pipeline of lines is still compiling.
+fn are_compiling(passes: &LinePasses, cache: &PipelineCache) -> bool {
+    let compute = |id| is_compiling(cache.get_compute_pipeline_state(id));
+    let render = |id: CachedRenderPipelineId| is_compiling(cache.get_render_pipeline_state(id));
+    let cracks = passes.cracks.is_some_and(|cracks| {
+        let columns = cracks.columns.is_some_and(render);
+        let find = match cracks.find {
+            FindPass::Cells(cells) => cells.ids().any(compute),
+            FindPass::Pixels(id) => render(id),
+        };
+        columns || find || render(cracks.draw)
+    });
+    let resolve = passes.resolve.is_some_and(|(_, id)| render(id));
+    let search = passes.search;
+    let search = search.is_some_and(|ids| ids.into_iter().any(compute));
+    let drawn = [passes.faithful, passes.memory];
+    resolve || search || cracks || drawn.into_iter().flatten().any(render)
 }
 
 fn is_compiling(state: &CachedPipelineState) -> bool {

@@ -13,15 +13,29 @@
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::style_of
 #endif
+#ifdef MARKS
+#import bevy_comics::lines::hidden::HIDDEN
+#endif
 
 // The bits of an object's marks that are its slot; above them is its section.
 const SLOT: u32 = 255u;
 const ABOVE_SLOT: u32 = 8u;
 
-// The kinds of line that four objects draw.
-fn kinds_of_four(slots: vec4<u32>) -> vec4<u32> {
+#ifdef MARKS
+// The bit of ObjectStyle::kinds of objects of which only hidden parts have lines.
+const HIDDEN_ONLY: u32 = 16u;
+#endif
+
+// The kinds of line that four objects draw, by their marks.
+fn kinds_of_four(marks: vec4<u32>) -> vec4<u32> {
 #ifdef OBJECT_STYLES
-    return vec4(kinds_of(slots.x), kinds_of(slots.y), kinds_of(slots.z), kinds_of(slots.w));
+    let slots = marks & vec4(SLOT);
+    let kinds = vec4(kinds_of(slots.x), kinds_of(slots.y), kinds_of(slots.z), kinds_of(slots.w));
+#ifdef MARKS
+    return select(kinds, vec4(0u), has(kinds, HIDDEN_ONLY) & !has(marks, HIDDEN));
+#else
+    return kinds;
+#endif
 #else
     return vec4(7u);
 #endif
@@ -199,8 +213,8 @@ fn packed_of(found: Found, s: Lines, at: Borders) -> vec4<u32> {
 fn cracks(s: Lines, at: Borders) -> Cracks {
     let reference = s.reference_factor * max(at.here, at.there) + s.reference_constant;
     let here_nearer = at.here >= at.there;
-    let here = kinds_of_four(at.marks_here & vec4(SLOT));
-    let there = kinds_of_four(at.marks_there & vec4(SLOT));
+    let here = kinds_of_four(at.marks_here);
+    let there = kinds_of_four(at.marks_there);
     var found = Found(vec4(0u), vec4(0.0), here_nearer, vec4(false));
 #ifdef SILHOUETTES
     found = add_silhouettes(found, s, at, reference, select(there, here, here_nearer));

@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 use bevy::{
     color::LinearRgba,
     core_pipeline::prepass::ViewPrepassTextures,
-    ecs::system::Res,
+    ecs::system::{Query, Res},
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
@@ -17,17 +17,52 @@ use bevy::{
     },
 };
 
+#[cfg(feature = "objects")]
+use super::marks::ViewMarks;
 use super::{
     ViewLines,
     cracks::search_tiles,
-    inputs::Inputs,
+    inputs::{Inputs, Sources},
     request::{LinePasses, LineRequest},
 };
+#[cfg(feature = "objects")]
+use crate::objects::{MarkStyleBuffer, ViewLayer};
 use crate::{
     depth::prepare::ViewDepthRange,
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     objects::{ObjectStyleBuffer, ViewObjectIds},
 };
+
+/// Records the passes that find the lines of the marked objects of the view, and draw their
+/// ink.
+#[cfg(feature = "objects")]
+pub(crate) fn find_marks(
+    view: ViewQuery<(&ViewMarks, &ViewPrepassTextures, &ViewLayer)>,
+    layers: Query<(&LineRequest, &LinePasses, &ViewLines)>,
+    styles: Res<MarkStyleBuffer>,
+    ledger: Res<StageLedger>,
+    cache: Res<PipelineCache>,
+    mut ctx: RenderContext,
+) {
+    let (marks, prepass, layer) = view.into_inner();
+    let Ok(parts) = layers.get(marks.layer) else {
+        return;
+    };
+    let (request, _, lines) = parts;
+    let inputs = Inputs {
+        parts: (parts, Sources::new(Some(prepass), None).layer(layer), None),
+        styles: &styles.0,
+        cache: &cache,
+        device: ctx.render_device().clone(),
+    };
+    match inputs.record(&mut ctx) {
+        Ok(()) => lines.found.store(true, Ordering::Relaxed),
+        Err(reason) => {
+            let outcome = StageOutcome::LeftOut(reason);
+            ledger.set(request.camera, ComicsStage::MarkedObjects, outcome);
+        }
+    }
+}
 
 /// Records the passes that find the lines of the view and draw their ink.
 pub(crate) fn find_lines(
@@ -42,11 +77,11 @@ pub(crate) fn find_lines(
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
-    let parts = view.into_inner();
-    let (request, passes, lines) = parts.0;
+    let (parts, prepass, range, ids) = view.into_inner();
+    let (request, passes, lines) = parts;
     let inputs = Inputs {
-        parts,
-        object_styles: &object_styles,
+        parts: (parts, Sources::new(prepass, ids), range),
+        styles: &object_styles,
         cache: &cache,
         device: ctx.render_device().clone(),
     };

@@ -10,13 +10,26 @@
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
 #endif
-#ifdef OBJECT_IDS
+#ifdef MARKS
+#import bevy_comics::lines::hidden::marked_object
+#else ifdef OBJECT_IDS
 #import bevy_comics::objects::texel_object
 #endif
 
 fn depth_at(origin: vec2<i32>, x: i32, y: i32) -> f32 {
     return texel_depth(origin + vec2(x, y), 0);
 }
+
+#ifdef OBJECT_IDS
+// The object at a pixel and its marks.
+fn object_at(at: vec2<i32>) -> vec2<u32> {
+#ifdef MARKS
+    return marked_object(at, texel_depth(at, 0));
+#else
+    return texel_object(at, 0);
+#endif
+}
+#endif
 
 // Lane x is the crack to the east, lane y the one to the south.
 @fragment
@@ -55,9 +68,9 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     at.ridge = is_ridge(folds_before, at.folds, folds_beyond);
 #endif
 #ifdef OBJECT_IDS
-    let here = texel_object(origin + p, 0);
-    let east = texel_object(origin + vec2(high.x, p.y), 0);
-    let south = texel_object(origin + vec2(p.x, high.y), 0);
+    let here = object_at(origin + p);
+    let east = object_at(origin + vec2(high.x, p.y));
+    let south = object_at(origin + vec2(p.x, high.y));
     at.object_here = vec4(here.x);
     at.marks_here = vec4(here.y);
     at.object_there = vec2(east.x, south.x).xyxy;

@@ -23,18 +23,60 @@ use super::{
     resolve::Resolved,
     store::{CrackBuffers, CrackStore},
 };
+#[cfg(feature = "objects")]
+use crate::objects::ViewLayer;
 use crate::{
     depth::prepare::ViewDepthRange,
     diagnostics::LeftOut,
     objects::{ObjectStyleBuffer, ViewObjectIds},
 };
 
-/// The components of a view that its line passes read.
+/// The textures of the scene that lines are found in.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Sources<'a> {
+    depth: Option<&'a CachedTexture>,
+    normal: Option<&'a TextureView>,
+    ids: Option<&'a TextureView>,
+    motion: Option<&'a TextureView>,
+    /// Depth of the picture, which hides marked objects.
+    picture: Option<&'a TextureView>,
+}
+
+impl<'a> Sources<'a> {
+    /// Those of the engine's prepasses, and the object ids.
+    pub fn new(prepass: Option<&'a ViewPrepassTextures>, ids: Option<&'a ViewObjectIds>) -> Self {
+        let Some(prepass) = prepass else {
+            return Self::default();
+        };
+        let normal = prepass.normal.as_ref();
+        let motion = prepass.motion_vectors.as_ref();
+        Self {
+            depth: prepass.depth.as_ref().map(|depth| &depth.texture),
+            normal: normal.map(|normal| &normal.texture.default_view),
+            ids: ids.map(|ids| &ids.view),
+            motion: motion.map(|motion| &motion.texture.default_view),
+            picture: None,
+        }
+    }
+
+    /// Those of marked objects.
+    #[cfg(feature = "objects")]
+    pub fn layer(self, layer: &'a ViewLayer) -> Self {
+        Self {
+            depth: Some(&layer.depth),
+            normal: None,
+            ids: Some(&layer.ids.default_view),
+            motion: self.motion,
+            picture: self.depth.map(|depth| &depth.default_view),
+        }
+    }
+}
+
+/// What the passes of a view read: of the lines, of the scene, the visible range.
 pub(super) type ViewParts<'a> = (
     (&'a LineRequest, &'a LinePasses, &'a ViewLines),
-    Option<&'a ViewPrepassTextures>,
+    Sources<'a>,
     Option<&'a ViewDepthRange>,
-    Option<&'a ViewObjectIds>,
 );
 
 fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
@@ -44,7 +86,8 @@ fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
 /// What the passes read.
 pub(super) struct Inputs<'a> {
     pub parts: ViewParts<'a>,
-    pub object_styles: &'a ObjectStyleBuffer,
+    /// The table of the styles of objects.
+    pub styles: &'a ObjectStyleBuffer,
     pub cache: &'a PipelineCache,
     pub device: RenderDevice,
 }
@@ -114,17 +157,15 @@ impl Inputs<'_> {
 
     /// The prepass textures of the view.
     fn prepass(&self) -> Result<Texels<'_>, LeftOut> {
-        let ((request, ..), prepass, _, ids) = self.parts;
-        let prepass = prepass.ok_or(LeftOut::NoDepthPrepass)?;
-        let depth = prepass.depth.as_ref().ok_or(LeftOut::NoDepthPrepass)?;
-        if depth.texture.texture.sample_count() != request.samples {
+        let ((request, ..), sources, _) = self.parts;
+        let depth = sources.depth.ok_or(LeftOut::NoDepthPrepass)?;
+        if depth.texture.sample_count() != request.samples {
             return Err(LeftOut::SampleCountMismatch);
         }
-        let normal = prepass.normal.as_ref();
         Ok(Texels {
-            depth: &depth.texture.default_view,
-            normal: normal.map(|normal| &normal.texture.default_view),
-            ids: ids.map(|ids| &ids.view),
+            depth: &depth.default_view,
+            normal: sources.normal,
+            ids: sources.ids,
         })
     }
 
@@ -151,16 +192,15 @@ impl Inputs<'_> {
 
     /// The pass that mixes the ink with that of the frames before, if lines remember.
     pub fn memory_pass(&self) -> Result<Option<MemoryPass<'_>>, LeftOut> {
-        let ((_, passes, lines), prepass, ..) = self.parts;
+        let ((_, passes, lines), sources, _) = self.parts;
         let (Some(id), Some(memory), Some(ink)) = (passes.memory, &lines.memory, &lines.ink) else {
             return Ok(None);
         };
-        let motion = prepass.and_then(|prepass| prepass.motion_vectors.as_ref());
-        let motion = motion.ok_or(NOT_READY)?;
+        let motion = sources.motion.ok_or(NOT_READY)?;
         let mut entries = vec![entry(1, self.uniform()?)];
         self.prepass()?.push((false, false), &mut entries)?;
         entries.push(entry(23, (&ink.default_view).into_binding()));
-        entries.push(entry(24, (&motion.texture.default_view).into_binding()));
+        entries.push(entry(24, motion.into_binding()));
         entries.extend(memory.entries());
         let group = self.group(&MemoryKey::layout(), &entries);
         Ok(Some((memory, (self.pipeline(id)?, group))))
@@ -168,7 +208,7 @@ impl Inputs<'_> {
 
     /// The bindings of the passes that find lines. `normals`: the normals too.
     fn entries(&self, key: &LineKey, normals: bool) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
-        let (_, _, range, _) = self.parts;
+        let (_, sources, range) = self.parts;
         let mut entries = vec![entry(1, self.uniform()?)];
         self.texels()?.push((normals, key.ids), &mut entries)?;
         if key.visible_range {
@@ -176,8 +216,12 @@ impl Inputs<'_> {
             entries.push(entry(3, keys.as_entire_binding()));
         }
         if key.object_styles {
-            let styles = self.object_styles.buffer().ok_or(NOT_READY)?;
+            let styles = self.styles.buffer().ok_or(NOT_READY)?;
             entries.push(entry(6, styles.as_entire_binding()));
+        }
+        if key.marks {
+            let picture = sources.picture.ok_or(NOT_READY)?;
+            entries.push(entry(27, picture.into_binding()));
         }
         Ok(entries)
     }

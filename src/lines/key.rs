@@ -56,6 +56,10 @@ pub(crate) struct LineKey {
     pub object_edges: bool,
     /// Borders of sections are creases.
     pub sections: bool,
+    /// The lines are those of marked objects; and whether the depth that hides them is
+    /// multisampled.
+    pub marks: bool,
+    pub multisampled_picture: bool,
     pub ids: bool,
     pub object_styles: bool,
     pub fading: bool,
@@ -108,6 +112,8 @@ impl LineKey {
             creases,
             object_edges: lines.objects.is_some() && request.ids,
             sections: creases && request.sections && request.ids,
+            marks: request.marks,
+            multisampled_picture: request.marks && request.samples > 1,
             ids: request.ids,
             object_styles: request.object_styles,
             fading: lines.fades(),
@@ -185,6 +191,8 @@ impl LineKey {
             creases: false,
             object_edges: false,
             sections: false,
+            marks: false,
+            multisampled_picture: false,
             search: Search::default(),
             visible_range: self.fading && self.visible_range,
             jumps: false,
@@ -289,6 +297,8 @@ impl LineKey {
                 (self.creases, "NORMALS"),
                 (self.object_edges, "OBJECT_EDGES"),
                 (self.sections, "SECTIONS"),
+                (self.marks, "MARKS"),
+                (self.multisampled_picture, "MULTISAMPLED_PICTURE"),
                 (self.fading, "FADING"),
                 (self.visible_range, "VISIBLE_RANGE"),
             ]))

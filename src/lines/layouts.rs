@@ -6,8 +6,8 @@ use bevy::{
         BindGroupLayoutDescriptor, BindGroupLayoutEntry, ShaderStages, ShaderType,
         StorageTextureAccess, TextureSampleType,
         binding_types::{
-            storage_buffer_read_only_sized, storage_buffer_sized, texture_2d, texture_storage_2d,
-            uniform_buffer, uniform_buffer_sized,
+            storage_buffer_read_only_sized, storage_buffer_sized, texture_2d,
+            texture_2d_multisampled, texture_storage_2d, uniform_buffer, uniform_buffer_sized,
         },
     },
 };
@@ -41,6 +41,9 @@ impl LineKey {
         }
         if self.ids {
             entries.push(seen(ids_entry(false)));
+        }
+        if self.marks {
+            entries.push(picture_entry(self.multisampled_picture, stages));
         }
         entries
     }
@@ -148,6 +151,17 @@ impl LineKey {
         }
         BindGroupLayoutDescriptor::new("comics_draw_lines", &entries)
     }
+}
+
+/// The layout entry of the depth that hides marked objects.
+fn picture_entry(multisampled: bool, stages: ShaderStages) -> BindGroupLayoutEntry {
+    let unfilterable = TextureSampleType::Float { filterable: false };
+    let texture = if multisampled {
+        texture_2d_multisampled(unfilterable)
+    } else {
+        texture_2d(unfilterable)
+    };
+    texture.build(27, stages)
 }
 
 /// The layout entries of buffers that compute passes read.

@@ -15,6 +15,7 @@ mod inputs;
 mod key;
 mod kinds;
 mod layouts;
+mod marks;
 mod memory;
 mod pipelines;
 mod prepare;
@@ -52,6 +53,7 @@ pub(crate) use fog::{ViewFog, has_fog};
 pub(crate) use key::reach;
 pub use kinds::{Creases, LineResponse, ObjectEdges, Silhouettes};
 pub(crate) use layouts::{ink_entry, owners_entry, range_entry};
+pub(crate) use marks::{MarkKey, MarkPipeline, ViewMarks, draw_marks};
 pub(crate) use memory::MemoryRequest;
 pub(crate) use prepare::ViewLines;
 pub(crate) use settings::LinesUniform;
@@ -79,6 +81,7 @@ pub(crate) fn build_render(app: &mut App) {
     load_shader_library!(app, "boil.wgsl");
     load_shader_library!(app, "memory.wgsl");
     load_shader_library!(app, "surface.wgsl");
+    load_shader_library!(app, "hidden.wgsl");
     load_shader_library!(app, "budget.wgsl");
     load_shader_library!(app, "fog.wgsl");
     load_shader_library!(app, "fold.wgsl");
@@ -99,6 +102,7 @@ pub(crate) fn build_render(app: &mut App) {
     embedded_asset!(app, "faithful.wgsl");
     embedded_asset!(app, "draw.wgsl");
     embedded_asset!(app, "remember.wgsl");
+    embedded_asset!(app, "marks.wgsl");
     let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
         return;
     };
@@ -107,6 +111,7 @@ pub(crate) fn build_render(app: &mut App) {
         .init_gpu_resource::<SpecializedRenderPipelines<LineShaders>>()
         .init_gpu_resource::<SpecializedRenderPipelines<ResolvePipeline>>()
         .init_gpu_resource::<SpecializedRenderPipelines<MemoryPipeline>>()
+        .init_gpu_resource::<SpecializedRenderPipelines<MarkPipeline>>()
         .add_systems(RenderStartup, init_pipelines)
         .add_systems(
             Render,
@@ -120,6 +125,13 @@ pub(crate) fn build_render(app: &mut App) {
                 .after(Core3dSystems::Prepass)
                 .before(Core3dSystems::MainPass),
         );
+    #[cfg(feature = "objects")]
+    render_app.add_systems(
+        Core3d,
+        draw::find_marks
+            .after(ComicsSystems::Outlines)
+            .before(Core3dSystems::MainPass),
+    );
 }
 
 fn init_pipelines(
@@ -135,4 +147,5 @@ fn init_pipelines(
     commands.insert_resource(LineShaders::new(&fullscreen, &assets));
     commands.insert_resource(ResolvePipeline::new(&fullscreen, &assets));
     commands.insert_resource(MemoryPipeline::new(&fullscreen, &assets));
+    commands.insert_resource(MarkPipeline::new(&fullscreen, &assets));
 }

@@ -65,6 +65,8 @@ pub(crate) struct LineRequest {
     pub ids: bool,
     /// Some mesh is divided into sections.
     pub sections: bool,
+    /// The lines are those of marked objects.
+    pub marks: bool,
     /// Some object has an `OutlineStyle` or `NoOutlines`.
     pub object_styles: bool,
     /// Physical pixels from a pixel within which the fused pass reads lines.

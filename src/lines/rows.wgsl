@@ -9,7 +9,9 @@
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
 #endif
-#ifdef OBJECT_IDS
+#ifdef MARKS
+#import bevy_comics::lines::hidden::marked_object
+#else ifdef OBJECT_IDS
 #import bevy_comics::objects::texel_object
 #endif
 
@@ -136,13 +138,23 @@ fn step_normals(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<func
 #endif
 
 #ifdef OBJECT_IDS
+// The object at a pixel and its marks.
+fn object_at(c: Columns, x: i32, y: i32) -> vec2<u32> {
+    let at = c.origin + vec2(x, y);
+#ifdef MARKS
+    return marked_object(at, texel_depth(at, 0));
+#else
+    return texel_object(at, 0);
+#endif
+}
+
 // Reads the objects of a row and their marks.
 fn step_objects(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<function, Found>) {
-    let o_a = texel_object(c.origin + vec2(c.own.x, y), 0);
-    let o_b = texel_object(c.origin + vec2(c.own.y, y), 0);
-    let o_c = texel_object(c.origin + vec2(c.own.z, y), 0);
-    let o_d = texel_object(c.origin + vec2(c.own.w, y), 0);
-    let o_e = texel_object(c.origin + vec2(c.east.x, y), 0);
+    let o_a = object_at(c, c.own.x, y);
+    let o_b = object_at(c, c.own.y, y);
+    let o_c = object_at(c, c.own.z, y);
+    let o_d = object_at(c, c.own.w, y);
+    let o_e = object_at(c, c.east.x, y);
     (*found).east.object_here = vec4(o_a.x, o_b.x, o_c.x, o_d.x);
     (*found).east.object_there = vec4(o_b.x, o_c.x, o_d.x, o_e.x);
     (*found).east.marks_here = vec4(o_a.y, o_b.y, o_c.y, o_d.y);

@@ -1,6 +1,6 @@
 //! The settings of the service of lines: which lines it finds, and their ink.
 
-use bevy::{math::Vec3, render::render_resource::ShaderType};
+use bevy::{color::Color, math::Vec3, render::render_resource::ShaderType};
 
 use super::{
     boil::LineBoil,
@@ -75,6 +75,18 @@ impl LineSettings {
         color: LineColor::Ink,
         memory: 0.125,
         fog: LineFog::Fade,
+    };
+
+    /// The lines of marked objects: their styles say which kinds, and how wide they are.
+    pub(crate) const MARKS: Self = Self {
+        silhouettes: Some(Silhouettes::DEFAULT),
+        objects: Some(ObjectEdges {
+            color: Color::BLACK,
+            opacity: 1.0,
+        }),
+        width: 0.5,
+        fog: LineFog::Ignore,
+        ..Self::NONE
     };
 
     /// The settings without the kinds that are invisible: those of opacity 0, and

@@ -198,6 +198,7 @@ pub(crate) fn assign_object_styles(
     }
     let mut table = ObjectStyles {
         sections: styles.sections,
+        marks: styles.marks,
         ..Default::default()
     };
     for (entity, uniform) in &outlines {

@@ -11,7 +11,7 @@ use bevy::{
     core_pipeline::schedule::{Core3d, Core3dSystems},
     ecs::{
         entity::Entity,
-        query::{Or, With, Without},
+        query::{Has, Or, With, Without},
         schedule::IntoScheduleConfigs,
         system::{Commands, Query, Res, ResMut},
         world::World,
@@ -32,7 +32,7 @@ use bevy::{
         render_resource::{
             BindGroupEntries, Extent3d, LoadOp, Operations, PipelineCache,
             RenderPassColorAttachment, RenderPassDescriptor, SpecializedMeshPipelines, StoreOp,
-            TextureDescriptor, TextureDimension, TextureUsages,
+            TextureDescriptor, TextureDimension, TextureUsages, TextureView,
         },
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
         texture::TextureCache,
@@ -47,6 +47,8 @@ use super::{
         DrawId, DrawIdWithMaterial, IdItems, ObjectIdPipeline, ObjectIdSpecializer, ObjectTable,
         init_object_id_pipeline,
     },
+    layer::{LayerRequest, MarkSpecializer, ViewLayer, prepare_layers},
+    marks::{Marks, extract_marks},
     phase::ObjectIdItem,
     sections::{SectionBuffer, SectionTables, extract_sections, prepare_sections},
 };
@@ -113,15 +115,28 @@ fn prepare_object_ids(
 
 /// Views whose plan reads ids, or whose ids were drawn in the last frame: while a pipeline
 /// compiles, the older plan that is still drawn may read ids that the new one does not.
-type WithIds = Or<(With<IdsWanted>, With<IdRequest>)>;
+type WithIds = Or<(With<IdsWanted>, With<IdRequest>, With<LayerRequest>)>;
 
 fn queue_object_ids(
-    views: Query<(&ExtractedView, &RenderVisibleEntities, &Msaa), WithIds>,
+    views: Query<
+        (
+            &ExtractedView,
+            &RenderVisibleEntities,
+            &Msaa,
+            Option<&IdsWanted>,
+            (Has<IdRequest>, Has<LayerRequest>),
+        ),
+        WithIds,
+    >,
+    marks: Res<Marks>,
     mut items: IdItems,
     mut phases: ResMut<ViewSortedRenderPhases<ObjectIdItem>>,
 ) {
     let mut live: HashSet<RetainedViewEntity> = HashSet::default();
-    for (view, visible, msaa) in &views {
+    for (view, visible, msaa, wanted, (drawn_ids, drawn_layer)) in &views {
+        let wanted = wanted.copied().unwrap_or_default();
+        let ids = wanted.ids || drawn_ids;
+        let layer = wanted.layer || drawn_layer;
         live.insert(view.retained_view_entity);
         phases.prepare_for_new_frame(view.retained_view_entity);
         let Some(phase) = phases.get_mut(&view.retained_view_entity) else {
@@ -131,8 +146,16 @@ fn queue_object_ids(
             continue;
         };
         for (render_entity, main_entity) in class.iter_visible() {
-            if let Some(item) = items.item((*render_entity, *main_entity), *msaa) {
+            let object = (*render_entity, *main_entity);
+            if ids && let Some(item) = items.item(object, *msaa, false) {
                 phase.add_transient(item);
+            }
+            let marked = layer && marks.of(main_entity.id()).is_some();
+            if marked && let Some(item) = items.item(object, *msaa, true) {
+                // Under a key of its own, because the object has an item already.
+                let key = (Entity::PLACEHOLDER, *main_entity);
+                phase.items.insert(key, item);
+                phase.transient_items.push(key);
             }
         }
     }
@@ -141,7 +164,7 @@ fn queue_object_ids(
 
 fn prepare_object_table(
     phases: Res<ViewSortedRenderPhases<ObjectIdItem>>,
-    (styles, groups): (Res<ObjectStyles>, Res<ObjectGroups>),
+    (styles, groups, marks): (Res<ObjectStyles>, Res<ObjectGroups>, Res<Marks>),
     (sections, section_tables): (Res<SectionBuffer>, Res<SectionTables>),
     (shared, cache): (Res<ObjectIdPipeline>, Res<PipelineCache>),
     mut table: ResMut<ObjectTable>,
@@ -156,6 +179,10 @@ fn prepare_object_table(
             objects.resize(at + 1, UVec4::ZERO);
         }
         let mesh = item.main_entity().id();
+        if let Some((root, slot)) = marks.of(mesh).filter(|_| item.marked) {
+            objects[at] = UVec4::new(u32::from(object_id(root)), u32::from(slot), 0, 0);
+            continue;
+        }
         let slot = styles.slots.get(&mesh).copied();
         let id = object_id(groups.object(mesh));
         let start = sections.start(&section_tables, mesh).unwrap_or(0);
@@ -183,51 +210,72 @@ fn draw_object_ids(
         &ExtractedView,
         &ViewDepthTexture,
         Option<&MainPassResolutionOverride>,
-        (&IdRequest, &ViewObjectIds),
+        Option<(&IdRequest, &ViewObjectIds)>,
+        Option<(&LayerRequest, &ViewLayer)>,
     )>,
     phases: Option<Res<ViewSortedRenderPhases<ObjectIdItem>>>,
     ledger: Res<StageLedger>,
     mut ctx: RenderContext,
 ) {
     let entity = view.entity();
-    let (camera, extracted, depth, resolution, (request, target)) = view.into_inner();
-    let Some(phase) = phases
-        .as_ref()
-        .and_then(|phases| phases.get(&extracted.retained_view_entity))
-    else {
-        let outcome = StageOutcome::LeftOut(LeftOut::PipelineNotReady);
-        return ledger.set(request.camera, ComicsStage::ObjectIds, outcome);
+    let (camera, extracted, depth, resolution, ids, layer) = view.into_inner();
+    let phase = (phases.as_ref()).and_then(|phases| phases.get(&extracted.retained_view_entity));
+    let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
+    let mut draw = |descriptor: RenderPassDescriptor, samples: u32, marked: bool| {
+        let phase = phase.ok_or(LeftOut::PipelineNotReady)?;
+        if depth.texture.sample_count() != samples {
+            return Err(LeftOut::SampleCountMismatch);
+        }
+        let mut render_pass = ctx.begin_tracked_render_pass(descriptor);
+        if let Some(viewport) = &viewport {
+            render_pass.set_camera_viewport(viewport);
+        }
+        // Those of the layer come last.
+        let count = phase.items.len();
+        let first = phase.items.partition_point(|_, item| !item.marked);
+        let range = if marked { first..count } else { 0..first };
+        if range.is_empty() {
+            return Ok(StageOutcome::Ran);
+        }
+        let drawn = phase.render_range(&mut render_pass, world, entity, range);
+        drawn.map(|()| StageOutcome::Ran).map_err(|error| {
+            error_once!("the object ids were not drawn: {error:?}");
+            LeftOut::PipelineNotReady
+        })
     };
-    if depth.texture.sample_count() != request.samples {
-        let outcome = StageOutcome::LeftOut(LeftOut::SampleCountMismatch);
-        return ledger.set(request.camera, ComicsStage::ObjectIds, outcome);
-    }
-    let mut render_pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
-        label: Some("comics_object_ids"),
-        color_attachments: &[Some(RenderPassColorAttachment {
-            view: &target.view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: Operations {
-                load: LoadOp::Clear(Default::default()),
-                store: StoreOp::Store,
+    if let Some((request, target)) = ids {
+        let outcome = draw(
+            RenderPassDescriptor {
+                label: Some("comics_object_ids"),
+                color_attachments: &[Some(cleared(&target.view))],
+                depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
+                ..Default::default()
             },
-        })],
-        depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
-        timestamp_writes: None,
-        occlusion_query_set: None,
-        multiview_mask: None,
-    });
-    if let Some(viewport) =
-        Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution)
-    {
-        render_pass.set_camera_viewport(&viewport);
+            request.samples,
+            false,
+        );
+        let outcome = outcome.unwrap_or_else(StageOutcome::LeftOut);
+        ledger.set(request.camera, ComicsStage::ObjectIds, outcome);
     }
-    if let Err(error) = phase.render(&mut render_pass, world, entity) {
-        error_once!("the object ids were not drawn: {error:?}");
-        return;
+    if let Some((request, layer)) = layer {
+        let targets = [Some(cleared(&layer.ids.default_view))];
+        let outcome = draw(layer.pass(&targets), request.samples, true);
+        let outcome = outcome.unwrap_or_else(StageOutcome::LeftOut);
+        ledger.set(request.camera, ComicsStage::MarkedObjects, outcome);
     }
-    ledger.set(request.camera, ComicsStage::ObjectIds, StageOutcome::Ran);
+}
+
+/// A texture of ids that is cleared before it is drawn to.
+fn cleared(view: &TextureView) -> RenderPassColorAttachment<'_> {
+    RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: Operations {
+            load: LoadOp::Clear(Default::default()),
+            store: StoreOp::Store,
+        },
+    }
 }
 
 /// Adds the pass that draws ids. Needs the engine's `PbrPlugin`.
@@ -241,6 +289,8 @@ pub(crate) fn build(app: &mut App) {
     render_app
         .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer<false>>>()
         .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer<true>>>()
+        .init_gpu_resource::<SpecializedMeshPipelines<MarkSpecializer>>()
+        .init_resource::<Marks>()
         .init_gpu_resource::<SectionBuffer>()
         .init_resource::<SectionTables>()
         .init_gpu_resource::<ObjectTable>()
@@ -258,6 +308,7 @@ pub(crate) fn build(app: &mut App) {
                 super::table::extract_object_styles,
                 extract_object_groups,
                 extract_sections,
+                extract_marks,
             ),
         )
         .add_systems(
@@ -267,7 +318,12 @@ pub(crate) fn build(app: &mut App) {
                 queue_object_ids.in_set(RenderSystems::QueueMeshes),
                 sort_phase_system::<ObjectIdItem>.in_set(RenderSystems::PhaseSort),
                 prepare_object_table.in_set(RenderSystems::PrepareBindGroups),
-                prepare_object_ids.in_set(PrepareComics::Services),
+                (
+                    prepare_object_ids,
+                    prepare_layers,
+                    super::update_mark_styles,
+                )
+                    .in_set(PrepareComics::Services),
             ),
         )
         .add_systems(

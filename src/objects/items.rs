@@ -43,6 +43,7 @@ use bevy::{
 
 use super::{
     ID_FORMAT,
+    layer::MarkSpecializer,
     phase::ObjectIdItem,
     sections::{SectionBuffer, SectionTables},
 };
@@ -204,6 +205,7 @@ pub(super) struct IdItems<'w> {
     draw_functions: Res<'w, DrawFunctions<ObjectIdItem>>,
     shared: Res<'w, ObjectIdPipeline>,
     pipelines: ResMut<'w, SpecializedMeshPipelines<ObjectIdSpecializer<false>>>,
+    marked: ResMut<'w, SpecializedMeshPipelines<MarkSpecializer>>,
     with_sections: ResMut<'w, SpecializedMeshPipelines<ObjectIdSpecializer<true>>>,
     sections: (Res<'w, SectionBuffer>, Res<'w, SectionTables>),
     cache: Res<'w, PipelineCache>,
@@ -214,8 +216,14 @@ pub(super) struct IdItems<'w> {
 }
 
 impl IdItems<'_> {
-    /// The phase item of an object; `None` if the depth prepass does not draw it.
-    pub fn item(&mut self, object: (Entity, MainEntity), msaa: Msaa) -> Option<ObjectIdItem> {
+    /// The phase item of an object; `None` if the depth prepass does not draw it. `marked`: in
+    /// the layer of marked objects.
+    pub fn item(
+        &mut self,
+        object: (Entity, MainEntity),
+        msaa: Msaa,
+        marked: bool,
+    ) -> Option<ObjectIdItem> {
         let instance = self.instances.render_mesh_queue_data(object.1)?;
         let mesh = self.meshes.get(instance.mesh_asset_id())?;
         let material_instance = self.material_instances.instances.get(&object.1)?;
@@ -240,7 +248,11 @@ impl IdItems<'_> {
         };
         let (buffer, tables) = &self.sections;
         let cache = &self.cache;
-        let pipeline = if buffer.start(tables, object.1.id()).is_some() {
+        let pipeline = if marked {
+            let specializer = MarkSpecializer(self.shared.specializer(&material.properties));
+            let pipelines = &mut self.marked;
+            pipelines.specialize(cache, &specializer, key, &mesh.layout)
+        } else if buffer.start(tables, object.1.id()).is_some() {
             let specializer = self.shared.specializer(&material.properties);
             let pipelines = &mut self.with_sections;
             pipelines.specialize(cache, &specializer, key, &mesh.layout)
@@ -264,6 +276,7 @@ impl IdItems<'_> {
             batch_range: 0..1,
             extra_index: PhaseItemExtraIndex::None,
             indexed: mesh.indexed(),
+            marked,
         })
     }
 }

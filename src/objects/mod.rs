@@ -8,6 +8,10 @@ mod ids;
 #[cfg(feature = "objects")]
 mod items;
 #[cfg(feature = "objects")]
+mod layer;
+#[cfg(feature = "objects")]
+mod marks;
+#[cfg(feature = "objects")]
 mod phase;
 #[cfg(feature = "objects")]
 mod sections;
@@ -21,6 +25,12 @@ pub use components::{NoOutlines, NoStyle, OutlineKinds, OutlineStyle};
 pub use groups::OutlineGroup;
 #[cfg(feature = "objects")]
 pub use ids::object_id;
+#[cfg(feature = "objects")]
+pub(crate) use layer::{LayerRequest, ViewLayer};
+#[cfg(feature = "objects")]
+pub(crate) use marks::Marks;
+#[cfg(feature = "objects")]
+pub use marks::{SelectionOutline, XRayOutline};
 #[cfg(feature = "objects")]
 pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
 
@@ -53,9 +63,18 @@ use crate::schedule::PrepareComics;
 pub(crate) const ID_FORMAT: bevy::render::render_resource::TextureFormat =
     bevy::render::render_resource::TextureFormat::Rg16Uint;
 
-/// On a view in the render world: the plan of its camera reads object ids.
-#[derive(Component)]
-pub(crate) struct IdsWanted;
+/// On a view in the render world: what the plan of its camera reads.
+#[derive(Component, Clone, Copy, Default)]
+#[cfg_attr(
+    not(feature = "objects"),
+    allow(dead_code, reason = "only the feature `objects` draws ids")
+)]
+pub(crate) struct IdsWanted {
+    /// Object ids.
+    pub ids: bool,
+    /// The layer of marked objects.
+    pub layer: bool,
+}
 
 /// On a view in the render world: a request for object ids, written in every frame by
 /// [`PrepareComics::Choose`].
@@ -113,6 +132,19 @@ fn update_object_styles(
     buffer.update(&styles, &device, &queue);
 }
 
+/// The table of the lines of marked objects on the GPU.
+#[derive(bevy::ecs::resource::Resource, Default)]
+pub(crate) struct MarkStyleBuffer(pub ObjectStyleBuffer);
+
+#[cfg(feature = "objects")]
+fn update_mark_styles(
+    mut buffer: ResMut<MarkStyleBuffer>,
+    marks: Res<Marks>,
+    (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
+) {
+    buffer.0.update(&marks.styles, &device, &queue);
+}
+
 /// Draws object ids for the views that request them, and uploads the outline styles of
 /// objects.
 pub(crate) struct ObjectsPlugin;
@@ -126,6 +158,7 @@ impl Plugin for ObjectsPlugin {
                 .register_type::<NoOutlines>()
                 .register_type::<NoStyle>()
                 .add_systems(bevy::app::PostUpdate, components::assign_object_styles);
+            marks::build(app);
             groups::build(app);
             sections::build(app);
         }
@@ -157,6 +190,7 @@ impl ObjectsPlugin {
         };
         render_app
             .init_gpu_resource::<ObjectStyleBuffer>()
+            .init_gpu_resource::<MarkStyleBuffer>()
             .init_resource::<ObjectStyles>()
             .add_systems(Render, update_object_styles.in_set(PrepareComics::Services));
     }

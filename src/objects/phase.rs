@@ -24,6 +24,8 @@ pub(crate) struct ObjectIdItem {
     pub batch_range: Range<u32>,
     pub extra_index: PhaseItemExtraIndex,
     pub indexed: bool,
+    /// It is drawn into the layer of marked objects.
+    pub marked: bool,
 }
 
 impl PhaseItem for ObjectIdItem {
@@ -61,7 +63,8 @@ impl PhaseItem for ObjectIdItem {
 }
 
 impl SortedPhaseItem for ObjectIdItem {
-    // Depth is already complete, so any order is right: sort by pipeline.
+    // Depth is already complete, so any order is right: sort by pipeline. Those of the layer
+    // come last.
     type SortKey = (FloatOrd, usize);
 
     fn sort_key(&self) -> Self::SortKey {
@@ -69,7 +72,7 @@ impl SortedPhaseItem for ObjectIdItem {
     }
 
     fn sort(items: &mut IndexMap<(Entity, MainEntity), Self, EntityHash>) {
-        items.sort_by_key(|_, item| item.pipeline.id());
+        items.sort_by_key(|_, item| (item.marked, item.pipeline.id()));
     }
 
     fn recalculate_sort_keys(

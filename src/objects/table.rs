@@ -45,7 +45,13 @@ pub(crate) struct ObjectStyles {
     pub slots: EntityHashMap<u8>,
     /// Some mesh is divided into sections.
     pub sections: bool,
+    /// Some object has a `SelectionOutline` or `XRayOutline`.
+    pub marks: bool,
 }
+
+/// The bit of `ObjectStyleUniform::kinds` of objects of which only hidden parts have lines.
+#[cfg(feature = "objects")]
+pub(crate) const HIDDEN_ONLY: u32 = 16;
 
 /// The bit of `ObjectStyleUniform::kinds` of objects that the colour effects leave alone.
 #[cfg(feature = "objects")]
@@ -60,6 +66,8 @@ pub(crate) struct ObjectChanges {
     pub sections: bool,
     /// The colour effects leave some object alone.
     pub unstyled: bool,
+    /// Some object has a `SelectionOutline` or `XRayOutline`.
+    pub marks: bool,
 }
 
 impl ObjectStyles {
@@ -76,6 +84,7 @@ impl ObjectStyles {
             any: self.any(),
             sections: self.sections,
             unstyled,
+            marks: self.marks,
         }
     }
 

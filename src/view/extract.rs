@@ -49,8 +49,12 @@ pub(super) fn extract_views(
         let mut view = commands.entity(render_entity);
         // Set during extraction, so that meshes are queued in the first frame that reads
         // ids: plans are chosen only after queueing.
-        if asked.plan.draws_ids() {
-            view.insert(IdsWanted);
+        let wanted = IdsWanted {
+            ids: asked.plan.draws_ids(),
+            layer: asked.plan.marks,
+        };
+        if wanted.ids || wanted.layer {
+            view.insert(wanted);
         } else {
             view.remove::<IdsWanted>();
         }

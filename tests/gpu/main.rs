@@ -27,6 +27,7 @@ mod line_truth;
 mod lines;
 mod link_work;
 mod links;
+mod marks;
 mod memory;
 mod models;
 mod outlines;

@@ -1,0 +1,103 @@
+//! Turns the plan of a view into a request for its lines.
+
+use bevy::math::Vec4Swizzles;
+
+use super::{Extent, Needs, Plan, ViewFacts, ViewPlan, requests::Scene};
+use crate::{
+    depth::{ProjectionKind, view::ViewUniform},
+    lines::{LineSettings, MapJumps, MemoryRequest, request::LineRequest},
+};
+
+/// The largest [`Effect::line_reach`](super::Effect::line_reach); `None` if an effect that
+/// reads lines does not know it.
+pub(super) fn line_reach(plan: &Plan, view: &ViewFacts) -> Option<f32> {
+    plan.drawn()
+        .filter(|effect| effect.any_needs().contains(Needs::LINES))
+        .try_fold(0.0_f32, |reach, effect| {
+            Some(reach.max(effect.any_line_reach(view)?))
+        })
+}
+
+/// The jumps of the depth map that effects of the plan are limited to. `None` also if
+/// they are not looked for: in multisampled views, in views whose main pass has a
+/// resolution of its own, beside lines of the faithful forms, and under a debug view.
+pub(super) fn map_jumps(plan: &Plan, scene: &Scene, facts: &ViewFacts) -> Option<MapJumps> {
+    let (_, samples) = scene.depth?;
+    let is_faithful = plan.lines.is_some_and(|lines| lines.has_faithful());
+    let has_window = samples == 1 && scene.main_pass_size.is_none();
+    if !has_window || is_faithful || plan.view.is_some() {
+        return None;
+    }
+    let jumps = plan
+        .drawn()
+        .filter_map(|effect| match effect.any_extent(facts) {
+            Extent::AtJumps(jumps) => Some(jumps),
+            _ => None,
+        });
+    jumps.reduce(MapJumps::or)
+}
+
+pub(super) fn line_request(
+    view: &ViewPlan,
+    (plan, facts): (&Plan, &ViewFacts),
+    scene: &Scene,
+    (uniform, jumps): (ViewUniform, Option<MapJumps>),
+) -> Option<LineRequest> {
+    let lines = plan.lines.filter(|_| plan.draws());
+    let settings = lines.or(jumps.map(|_| LineSettings::NONE))?;
+    let (depth_size, samples) = scene.depth?;
+    let widest_object = if plan.object_styles {
+        view.widest_object
+    } else {
+        0.0
+    };
+    let reach = settings.reach(view.scale_factor, widest_object);
+    let reference = view.projection.jump_reference(&view.clip_from_view);
+    let grid_scale = view.scale_factor * uniform.depth_scale.max_element();
+    Some(LineRequest {
+        camera: view.camera,
+        settings,
+        view: uniform,
+        lines: settings.uniform(view.scale_factor, reference),
+        weight: settings
+            .weight
+            .uniform(grid_scale, view.to_light, settings.budget),
+        boil: settings.boil.uniform(view.scale_factor, view.time),
+        memory: memory_request(view, &settings, scene),
+        fog: plan.fog.then(|| {
+            let fog = view.fog.unwrap_or_default();
+            fog.uniform(&view.projection, &view.clip_from_view)
+        }),
+        depth_size,
+        samples,
+        size: scene.viewport.zw(),
+        rect: scene.drawn(),
+        jitter: scene.jitter,
+        reach,
+        steps: settings.steps(grid_scale),
+        oblique: view.projection.kind() == ProjectionKind::Oblique,
+        visible_range: plan.depth_map.mapping.follows_visible_range(),
+        ids: plan.draws_ids(),
+        sections: plan.sections,
+        marks: false,
+        object_styles: plan.object_styles,
+        line_reach: line_reach(plan, facts).unwrap_or(0.0),
+        jumps,
+        map_flags: uniform.depth.flags,
+    })
+}
+
+/// What lines remember, if they do: under temporal anti-aliasing.
+pub(super) fn memory_request(
+    view: &ViewPlan,
+    settings: &LineSettings,
+    scene: &Scene,
+) -> Option<MemoryRequest> {
+    let single = scene.depth.is_some_and(|(_, samples)| samples == 1);
+    let trembles = scene.jitter.is_some() && scene.motion && single;
+    let remembers = settings.memory < 1.0 && !settings.boil.moves();
+    (trembles && remembers).then_some(MemoryRequest {
+        share: settings.memory,
+        cuts: view.cuts,
+    })
+}

@@ -1,0 +1,34 @@
+#define_import_path bevy_comics::lines::hidden
+
+// Which pixels of marked objects are hidden in the picture: the only module that declares
+// binding 27.
+
+#import bevy_comics::depth::raw::raw_depth
+#import bevy_comics::depth::view::view
+#import bevy_comics::lines::pass::line_pass
+#import bevy_comics::objects::texel_object
+
+// Depth of the picture; that of the view is that of the marked objects.
+#ifdef MULTISAMPLED_PICTURE
+@group(0) @binding(27) var picture_depth: texture_multisampled_2d<f32>;
+#else
+@group(0) @binding(27) var picture_depth: texture_2d<f32>;
+#endif
+
+// The bit of an object's marks, above its section, where it is hidden.
+const HIDDEN: u32 = 0x10000u;
+
+// Whether a surface hides another one: raw depths. `jump`: the difference that separates two
+// surfaces; surfaces that are much closer do not hide each other.
+fn hides(front: f32, behind: f32, jump: f32) -> bool {
+    return front > behind + 0.1 * jump;
+}
+
+// The object at a pixel of the depth texture, see texel_object, with its bit. `own`: its raw
+// depth.
+fn marked_object(at: vec2<i32>, own: f32) -> vec2<u32> {
+    let s = line_pass.settings;
+    let jump = s.jump * (s.reference_factor * own + s.reference_constant);
+    let d = raw_depth(view.raw, vec2<u32>(at), textureLoad(picture_depth, at, 0).r);
+    return texel_object(at, 0) | vec2(0u, select(0u, HIDDEN, hides(d, own, jump)));
+}

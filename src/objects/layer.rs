@@ -1,0 +1,122 @@
+//! The layer of marked objects: their depth and ids, drawn as if nothing else was there.
+
+use bevy::{
+    core_pipeline::core_3d::CORE_3D_DEPTH_FORMAT,
+    ecs::{
+        component::Component,
+        entity::Entity,
+        query::{With, Without},
+        system::{Commands, Query, Res, ResMut},
+    },
+    material::key::ErasedMaterialPipelineKey,
+    math::UVec2,
+    mesh::MeshVertexBufferLayoutRef,
+    render::{
+        render_resource::{
+            CompareFunction, Extent3d, LoadOp, Operations, RenderPassColorAttachment,
+            RenderPassDepthStencilAttachment, RenderPassDescriptor, RenderPipelineDescriptor,
+            SpecializedMeshPipeline, SpecializedMeshPipelineError, StoreOp, TextureDescriptor,
+            TextureDimension, TextureFormat, TextureUsages,
+        },
+        renderer::RenderDevice,
+        texture::{CachedTexture, TextureCache},
+    },
+};
+
+use super::{ID_FORMAT, items::ObjectIdSpecializer};
+
+/// On a view in the render world: a request for the layer of marked objects.
+#[derive(Component)]
+pub(crate) struct LayerRequest {
+    pub camera: Entity,
+    /// Size in pixels of the depth texture, and its samples per pixel.
+    pub size: UVec2,
+    pub samples: u32,
+}
+
+/// On a view in the render world: depth and ids of the marked objects.
+#[derive(Component, Clone)]
+pub(crate) struct ViewLayer {
+    pub depth: CachedTexture,
+    pub ids: CachedTexture,
+}
+
+impl ViewLayer {
+    /// The pass that draws the layer. `targets`: that of the ids.
+    pub fn pass<'a>(
+        &'a self,
+        targets: &'a [Option<RenderPassColorAttachment<'a>>],
+    ) -> RenderPassDescriptor<'a> {
+        RenderPassDescriptor {
+            label: Some("comics_marked_objects"),
+            color_attachments: targets,
+            depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
+                view: &self.depth.default_view,
+                depth_ops: Some(Operations {
+                    load: LoadOp::Clear(0.0),
+                    store: StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
+            ..Default::default()
+        }
+    }
+}
+
+/// Gets the textures of this frame from the engine's texture cache.
+pub(super) fn prepare_layers(
+    mut commands: Commands,
+    views: Query<(Entity, &LayerRequest)>,
+    stale: Query<Entity, (With<ViewLayer>, Without<LayerRequest>)>,
+    mut textures: ResMut<TextureCache>,
+    device: Res<RenderDevice>,
+) {
+    for (view, request) in &views {
+        let mut texture = |label, format: TextureFormat| {
+            let descriptor = TextureDescriptor {
+                label: Some(label),
+                size: Extent3d {
+                    width: request.size.x,
+                    height: request.size.y,
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: request.samples,
+                dimension: TextureDimension::D2,
+                format,
+                usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            };
+            textures.get(&device, descriptor)
+        };
+        let layer = ViewLayer {
+            depth: texture("comics_marked_depth", CORE_3D_DEPTH_FORMAT),
+            ids: texture("comics_marked_ids", ID_FORMAT),
+        };
+        commands.entity(view).insert(layer);
+    }
+    for view in &stale {
+        commands.entity(view).remove::<ViewLayer>();
+    }
+}
+
+/// The pipeline of a marked object: that of its id, with a depth test of its own.
+pub(super) struct MarkSpecializer(pub ObjectIdSpecializer<false>);
+
+impl SpecializedMeshPipeline for MarkSpecializer {
+    type Key = ErasedMaterialPipelineKey;
+
+    fn specialize(
+        &self,
+        key: Self::Key,
+        layout: &MeshVertexBufferLayoutRef,
+    ) -> Result<RenderPipelineDescriptor, SpecializedMeshPipelineError> {
+        let mut descriptor = self.0.specialize(key, layout)?;
+        descriptor.label = Some("comics_marked_objects".into());
+        if let Some(depth) = &mut descriptor.depth_stencil {
+            depth.depth_write_enabled = Some(true);
+            depth.depth_compare = Some(CompareFunction::GreaterEqual);
+        }
+        Ok(descriptor)
+    }
+}
