@@ -14,6 +14,7 @@ mod document;
 mod encodings;
 mod flicker;
 mod growth;
+mod ink;
 mod ladder;
 mod lines;
 mod models;
@@ -83,16 +84,17 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
   --quick          small pictures, few repetitions, no other crates
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure one section only: ranges, encodings, lines, models,
-                   stability, ladder, growth, peers or flicker
+                   ink, stability, ladder, growth, peers or flicker
   --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
-const SECTIONS: [(&str, Section); 9] = [
+const SECTIONS: [(&str, Section); 10] = [
     ("ranges", ranges::measure),
     ("encodings", encodings::measure),
     ("lines", lines::measure),
     ("models", models::measure),
+    ("ink", ink::measure),
     ("stability", stability::measure),
     ("ladder", ladder::measure),
     ("growth", growth::measure),

@@ -24,13 +24,13 @@ use crate::{
 const DISTANCES: [(&str, f32); 2] = [("close", 2.6), ("distant", 16.0)];
 
 /// A camera in front of a white model on white: every darker pixel is ink.
-struct Studio {
-    rig: Rig,
+pub struct Studio {
+    pub rig: Rig,
     parts: Vec<Entity>,
 }
 
 impl Studio {
-    fn new(size: UVec2, outlines: Outlines) -> Self {
+    pub fn new(size: UVec2, outlines: Outlines) -> Self {
         let mut rig = Rig::new(None, size);
         rig.wear(&Wear::style(ComicStyle::new().with(outlines)));
         let world = rig.headless.app.world_mut();
@@ -41,7 +41,12 @@ impl Studio {
         Self { rig, parts: vec![] }
     }
 
-    fn show(&mut self, specimen: Specimen) {
+    pub fn show(&mut self, specimen: Specimen) {
+        let meshes = specimen.parts().into_iter().map(|(mesh, _)| mesh);
+        self.show_meshes(meshes.collect());
+    }
+
+    pub fn show_meshes(&mut self, meshes: Vec<Mesh>) {
         let world = self.rig.headless.app.world_mut();
         for part in self.parts.drain(..) {
             world.despawn(part);
@@ -54,7 +59,7 @@ impl Studio {
                 cull_mode: None,
                 ..default()
             });
-        for (mesh, _) in specimen.parts() {
+        for mesh in meshes {
             let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
             let part = world.spawn((Mesh3d(mesh), MeshMaterial3d(material.clone())));
             self.parts.push(part.id());
@@ -62,7 +67,7 @@ impl Studio {
     }
 
     /// Draws the model turned by a fraction of a full turn.
-    fn turn(&mut self, distance: f32, turned: f32) {
+    pub fn turn(&mut self, distance: f32, turned: f32) {
         let eye = Quat::from_rotation_y(turned * TAU) * Vec3::new(0.0, 0.34, 0.94) * distance;
         let at = Transform::from_translation(eye).looking_at(Vec3::ZERO, Vec3::Y);
         let world = self.rig.headless.app.world_mut();

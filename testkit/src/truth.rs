@@ -13,7 +13,10 @@
 use bevy::prelude::*;
 use bevy_comics::{ObjectEdges, Outlines};
 
-use crate::read_back;
+use crate::{
+    read_back::{self, CrackWords},
+    reference::planes::column_word,
+};
 
 /// Finer pixels along each side of a pixel.
 pub const FINE: u32 = 4;
@@ -176,6 +179,33 @@ pub fn mask(plain: &image::RgbaImage, lined: &image::RgbaImage) -> Vec<bool> {
         .collect()
 }
 
+/// Ends of lines: cracks that are parts of lines, and that no other one touches at one of their
+/// corners. Not at the border of the picture.
+pub fn line_ends(cracks: &CrackWords) -> usize {
+    let [_, _, width, height] = cracks.rect.map(i64::from);
+    let is_line = |side: i64, x: i64, y: i64| {
+        let inside = (0..width).contains(&x) && (0..height).contains(&y);
+        inside && {
+            let word = column_word([width, height], side, x, y / 32) as usize;
+            (cracks.planes[word] >> (y % 32)) & 1 != 0
+        }
+    };
+    // The cracks that end at the top left corner of a pixel: above, below, left, right.
+    let at_corner = |x: i64, y: i64| {
+        [
+            (0, x - 1, y - 1),
+            (0, x - 1, y),
+            (1, x - 1, y - 1),
+            (1, x, y - 1),
+        ]
+        .into_iter()
+        .filter(|(side, x, y)| is_line(*side, *x, *y))
+        .count()
+    };
+    let corners = (1..height).flat_map(|y| (1..width).map(move |x| (x, y)));
+    corners.filter(|(x, y)| at_corner(*x, *y) == 1).count()
+}
+
 /// Whether the mask is set within `reach` pixels along both axes.
 fn near(mask: &[bool], width: usize, height: usize, at: usize, reach: i64) -> bool {
     let (x, y) = ((at % width) as i64, (at / width) as i64);
@@ -220,7 +250,31 @@ pub fn fragments(mask: &[bool], width: usize, most: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{Seen, Truth};
+    use super::{CrackWords, Seen, Truth, column_word, line_ends};
+
+    /// A line across the picture has no ends, a loose one two, and a branch one more.
+    #[test]
+    fn ends_of_lines_are_counted() {
+        let ends = |places: &[(i64, i64, i64)]| {
+            let mut cracks = CrackWords {
+                rect: [0, 0, 40, 36],
+                words: vec![],
+                planes: vec![0; 4 * 2 * 40 + 2 * 36],
+                bends: vec![],
+            };
+            for (side, x, y) in places {
+                let word = column_word([40, 36], *side, *x, y / 32) as usize;
+                cracks.planes[word] |= 1 << (y % 32);
+            }
+            line_ends(&cracks)
+        };
+        let across: Vec<_> = (0..40).map(|x| (1, x, 20)).collect();
+        assert_eq!(ends(&across), 0);
+        let down: Vec<_> = (10..34).map(|y| (0, 7, y)).collect();
+        assert_eq!(ends(&down), 2);
+        let branch: Vec<_> = (21..30).map(|y| (0, 7, y)).collect();
+        assert_eq!(ends(&[across, branch].concat()), 1);
+    }
 
     #[test]
     fn fragments_are_parts_of_few_pixels() {

@@ -1,6 +1,7 @@
 //! The text of the report. It is made from the CSV files alone, so that it can be made
 //! again without measuring.
 
+mod ink;
 mod others;
 mod precision;
 mod scenes;

@@ -153,6 +153,7 @@ pub fn lines(out: &mut String, folder: &Path) -> Result<(), String> {
     by_scene(out, folder, &scores)?;
     out.push_str("\n![F1 against time](lines.svg)\n\n");
     models(out, folder)?;
+    super::ink::ink(out, folder)?;
     out.push_str(
         "### Anti-aliasing of bands and lines\n\nErrors against the same style at eight times the \
          resolution. `hard` has no softness, `derivative` is the crate's own softness. `2x2 \

@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// A target: what is measured, its limits, and the value, if it was measured.
-struct Target {
+pub struct Target {
     what: String,
     limits: [f64; 2],
     value: Option<f64>,
@@ -17,7 +17,7 @@ struct Target {
 }
 
 impl Target {
-    fn at_most(what: impl Into<String>, limit: f64, value: Option<f64>) -> Self {
+    pub fn at_most(what: impl Into<String>, limit: f64, value: Option<f64>) -> Self {
         Self {
             what: what.into(),
             limits: [f64::NEG_INFINITY, limit],
@@ -33,7 +33,7 @@ impl Target {
         }
     }
 
-    fn with_digits(self, digits: usize) -> Self {
+    pub fn with_digits(self, digits: usize) -> Self {
         Self { digits, ..self }
     }
 
@@ -153,7 +153,11 @@ pub fn targets(out: &mut String, folder: &Path) -> Result<(), String> {
          engine's prepasses. The limits of times are meant for a CPU adapter.\n\n\
          | | target | here | |\n|---|---|---|---|\n",
     );
-    for target in times(folder)?.into_iter().chain(quality(folder)?) {
+    for target in times(folder)?
+        .into_iter()
+        .chain(quality(folder)?)
+        .chain(super::ink::targets(folder)?)
+    {
         target.write(out);
     }
     out.push_str(

@@ -1,0 +1,158 @@
+//! How whole and how steady lines are: dashes on models that turn, and pixels that change in
+//! a still view under temporal anti-aliasing.
+
+use std::time::Instant;
+
+use bevy::{
+    anti_alias::taa::TemporalAntiAliasing,
+    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
+    prelude::*,
+    render::RenderApp,
+};
+use bevy_comics::{ComicStyle, Outlines};
+use bevy_comics_testkit::{
+    read_back,
+    scenes::BuiltIn,
+    specimens::Specimen,
+    truth::{FINE, ids_alone, line_ends},
+};
+
+use crate::{
+    Run,
+    models::Studio,
+    rig::{Rig, Wear},
+    table::Table,
+};
+
+pub fn measure(run: &Run) -> Result<(), String> {
+    dashes(run)?;
+    memory(run)
+}
+
+/// Ends of lines on models that turn, with and without continuing along weak edges.
+fn dashes(run: &Run) -> Result<(), String> {
+    let (frames, size) = if run.quick {
+        (2, UVec2::new(120, 68))
+    } else {
+        (90, UVec2::new(240, 136))
+    };
+    let mut table = Table::new(&["model", "method", "ends", "true"]);
+    let mut fine = Studio::new(size * FINE, ids_alone());
+    let whole = Outlines {
+        budget: 1.0,
+        ..default()
+    };
+    let cut = Outlines {
+        continuity: 0.0,
+        specks: 1,
+        ..whole
+    };
+    let methods = [("cut", cut), ("continued", whole)];
+    let mut lined = methods.map(|(_, outlines)| Studio::new(size, outlines));
+    let models = Specimen::ALL.map(|model| {
+        let parts: Vec<Mesh> = model.parts().into_iter().map(|(mesh, _)| mesh).collect();
+        (model.name(), parts)
+    });
+    let shapes: [(&str, Mesh); 2] = [
+        ("cylinder", Cylinder::new(0.6, 1.2).into()),
+        // Its faces bend by 42 degrees, where creases begin at 40.
+        (
+            "icosahedron",
+            flat(Sphere::new(1.0).mesh().ico(0).expect("few triangles")),
+        ),
+    ];
+    let shapes = shapes.map(|(name, mesh)| (name, vec![mesh]));
+    let all: Vec<(&str, Vec<Mesh>)> = shapes.into_iter().chain(models).collect();
+    for (model, parts) in &all[..if run.quick { 1 } else { all.len() }] {
+        for studio in lined.iter_mut().chain([&mut fine]) {
+            studio.show_meshes(parts.clone());
+            studio.rig.headless.step(4);
+        }
+        let mut ends = [0; 2];
+        let mut length = 0;
+        for frame in 0..frames {
+            let turned = frame as f32 / frames as f32;
+            fine.turn(2.6, turned);
+            let truth = fine.rig.truth(size, FINE);
+            length += truth.any(&[0, 1, 2]).iter().filter(|line| **line).count();
+            for (studio, ends) in lined.iter_mut().zip(&mut ends) {
+                studio.turn(2.6, turned);
+                let world = studio.rig.headless.app.sub_app(RenderApp).world();
+                let cracks = read_back::cracks(world, studio.rig.view());
+                *ends += cracks.as_ref().map_or(0, line_ends);
+            }
+        }
+        for ((method, _), ends) in methods.iter().zip(ends) {
+            table.push(&[model, method, &ends, &length]);
+        }
+        run.say(&format!("{model}: ends counted"));
+    }
+    run.save("ink_dashes", &table)
+}
+
+/// A mesh without shared vertices, and so with flat faces.
+fn flat(mesh: Mesh) -> Mesh {
+    let mut mesh = mesh;
+    mesh.duplicate_vertices();
+    mesh.compute_flat_normals();
+    mesh
+}
+
+/// Pixels that change by more than two codes from frame to frame, and the time of a frame.
+fn memory(run: &Run) -> Result<(), String> {
+    let (frames, size) = if run.quick {
+        (4, UVec2::new(160, 90))
+    } else {
+        (64, UVec2::new(640, 360))
+    };
+    let mut table = Table::new(&["scene", "method", "changed", "pixels", "ms"]);
+    let lines = |memory: f32| {
+        Wear::style(ComicStyle::new().with(Outlines {
+            memory,
+            ..default()
+        }))
+    };
+    let methods = [
+        ("no lines", Wear::Nothing),
+        ("no memory", lines(1.0)),
+        ("memory", lines(0.125)),
+    ];
+    for scene in [BuiltIn::Teapot, BuiltIn::Village] {
+        let mut rig = Rig::new(Some(scene), size);
+        rig.unlight();
+        let world = rig.headless.app.world_mut();
+        world.entity_mut(rig.camera).insert((
+            TemporalAntiAliasing::default(),
+            DepthPrepass,
+            NormalPrepass,
+        ));
+        for (method, wear) in &methods {
+            rig.wear(wear);
+            rig.headless.step(150);
+            let mut before = rig.headless.picture();
+            let mut changed = 0;
+            for _ in 0..frames {
+                rig.headless.step(1);
+                let now = rig.headless.picture();
+                let differ = |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| {
+                    a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 2)
+                };
+                changed += before.pixels().zip(now.pixels()).filter(differ).count();
+                before = now;
+            }
+            let mut times: Vec<f64> = (0..21)
+                .map(|_| {
+                    let start = Instant::now();
+                    rig.headless.step(1);
+                    1e3 * start.elapsed().as_secs_f64()
+                })
+                .collect();
+            times.sort_by(f64::total_cmp);
+            let pixels = frames * (size.x * size.y) as usize;
+            let ms = format!("{:.4}", times[times.len() / 2]);
+            table.push(&[&scene.name(), method, &changed, &pixels, &ms]);
+        }
+        run.say(&format!("{}: changes counted", scene.name()));
+    }
+    run.save("ink_memory", &table)
+}
