@@ -37,6 +37,8 @@ impl Plan {
         match stage {
             ComicsStage::Effect(_) | ComicsStage::RangeReadback => LeftOut::NotRequested,
             ComicsStage::DepthPrepass => LeftOut::NoDepthStyle,
+            ComicsStage::TransparentDepth if self.needs_depth() => LeftOut::NoSuchMeshes,
+            ComicsStage::TransparentDepth => LeftOut::NoDepthStyle,
             ComicsStage::NormalPrepass
             | ComicsStage::ObjectIds
             | ComicsStage::ResolveSamples

@@ -37,7 +37,7 @@ use crate::{
         LineSettings, MapJumps, MemoryRequest,
         request::{FindPass, LinePasses, LinePipelines, LineRequest},
     },
-    objects::IdRequest,
+    objects::{IdRequest, QueuedDepth},
 };
 
 /// The inputs that a view provides.
@@ -53,12 +53,14 @@ pub(super) struct Scene {
     pub depth: Option<(UVec2, u32)>,
     pub normals: bool,
     motion: bool,
+    /// Transparent meshes are drawn with their ids.
+    ids_queued: bool,
 }
 
 impl Scene {
     pub fn new(
         extracted: &ExtractedView,
-        prepass: Option<&ViewPrepassTextures>,
+        (prepass, queued): (Option<&ViewPrepassTextures>, Option<&QueuedDepth>),
         // The engine sets both in the render world.
         (resolution, jitter): (Option<&MainPassResolutionOverride>, Option<&TemporalJitter>),
     ) -> Self {
@@ -74,6 +76,7 @@ impl Scene {
             }),
             normals: prepass.is_some_and(|textures| textures.normal.is_some()),
             motion: prepass.is_some_and(|textures| textures.motion_vectors.is_some()),
+            ids_queued: queued.is_some_and(|queued| queued.ids),
         }
     }
 
@@ -149,7 +152,7 @@ impl Services<'_> {
         });
         let ids = scene
             .depth
-            .filter(|_| plan.draws() && plan.draws_ids())
+            .filter(|_| plan.draws() && plan.draws_ids() || scene.ids_queued)
             .map(|(size, samples)| IdRequest {
                 camera: view.camera,
                 size,

@@ -24,7 +24,7 @@ use super::{
     request::{LinePasses, LineRequest},
 };
 use crate::{
-    depth::prepare::ViewDepthRange,
+    depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     objects::{ObjectStyleBuffer, ViewObjectIds},
 };
@@ -33,7 +33,7 @@ use crate::{
 pub(crate) fn find_lines(
     view: ViewQuery<(
         (&LineRequest, &LinePasses, &ViewLines),
-        Option<&ViewPrepassTextures>,
+        (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),
         Option<&ViewDepthRange>,
         Option<&ViewObjectIds>,
     )>,

@@ -1,16 +1,13 @@
 //! The passes of a view's lines, ready to be recorded: pipelines and what they bind.
 
-use bevy::{
-    core_pipeline::prepass::ViewPrepassTextures,
-    render::{
-        render_resource::{
-            BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, BindingResource,
-            CachedComputePipelineId, CachedRenderPipelineId, ComputePipeline, IntoBinding,
-            PipelineCache, RenderPipeline, TextureView,
-        },
-        renderer::RenderDevice,
-        texture::CachedTexture,
+use bevy::render::{
+    render_resource::{
+        BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, BindingResource,
+        CachedComputePipelineId, CachedRenderPipelineId, ComputePipeline, IntoBinding,
+        PipelineCache, RenderPipeline, TextureView,
     },
+    renderer::RenderDevice,
+    texture::CachedTexture,
 };
 
 use super::{
@@ -24,7 +21,10 @@ use super::{
     store::{CrackBuffers, CrackStore},
 };
 use crate::{
-    depth::prepare::ViewDepthRange,
+    depth::{
+        prepare::ViewDepthRange,
+        surfaces::{SurfaceParts, Surfaces},
+    },
     diagnostics::LeftOut,
     objects::{ObjectStyleBuffer, ViewObjectIds},
 };
@@ -32,7 +32,7 @@ use crate::{
 /// The components of a view that its line passes read.
 pub(super) type ViewParts<'a> = (
     (&'a LineRequest, &'a LinePasses, &'a ViewLines),
-    Option<&'a ViewPrepassTextures>,
+    SurfaceParts<'a>,
     Option<&'a ViewDepthRange>,
     Option<&'a ViewObjectIds>,
 );
@@ -112,18 +112,17 @@ impl Inputs<'_> {
         lines.uniform.binding().ok_or(NOT_READY)
     }
 
-    /// The prepass textures of the view.
+    /// The surfaces of the view.
     fn prepass(&self) -> Result<Texels<'_>, LeftOut> {
-        let ((request, ..), prepass, _, ids) = self.parts;
-        let prepass = prepass.ok_or(LeftOut::NoDepthPrepass)?;
-        let depth = prepass.depth.as_ref().ok_or(LeftOut::NoDepthPrepass)?;
-        if depth.texture.texture.sample_count() != request.samples {
+        let ((request, ..), surfaces, _, ids) = self.parts;
+        let surfaces = Surfaces::from(surfaces);
+        let depth = surfaces.depth().ok_or(LeftOut::NoDepthPrepass)?;
+        if depth.texture.sample_count() != request.samples {
             return Err(LeftOut::SampleCountMismatch);
         }
-        let normal = prepass.normal.as_ref();
         Ok(Texels {
-            depth: &depth.texture.default_view,
-            normal: normal.map(|normal| &normal.texture.default_view),
+            depth: &depth.default_view,
+            normal: surfaces.normal().map(|normal| &normal.default_view),
             ids: ids.map(|ids| &ids.view),
         })
     }
@@ -151,16 +150,15 @@ impl Inputs<'_> {
 
     /// The pass that mixes the ink with that of the frames before, if lines remember.
     pub fn memory_pass(&self) -> Result<Option<MemoryPass<'_>>, LeftOut> {
-        let ((_, passes, lines), prepass, ..) = self.parts;
+        let ((_, passes, lines), surfaces, ..) = self.parts;
         let (Some(id), Some(memory), Some(ink)) = (passes.memory, &lines.memory, &lines.ink) else {
             return Ok(None);
         };
-        let motion = prepass.and_then(|prepass| prepass.motion_vectors.as_ref());
-        let motion = motion.ok_or(NOT_READY)?;
+        let motion = Surfaces::from(surfaces).motion().ok_or(NOT_READY)?;
         let mut entries = vec![entry(1, self.uniform()?)];
         self.prepass()?.push((false, false), &mut entries)?;
         entries.push(entry(23, (&ink.default_view).into_binding()));
-        entries.push(entry(24, (&motion.texture.default_view).into_binding()));
+        entries.push(entry(24, (&motion.default_view).into_binding()));
         entries.extend(memory.entries());
         let group = self.group(&MemoryKey::layout(), &entries);
         Ok(Some((memory, (self.pipeline(id)?, group))))

@@ -8,10 +8,13 @@
 use bevy::{
     app::App,
     camera::{MainPassResolutionOverride, Viewport},
-    core_pipeline::schedule::{Core3d, Core3dSystems},
+    core_pipeline::{
+        prepass::NormalPrepass,
+        schedule::{Core3d, Core3dSystems},
+    },
     ecs::{
         entity::Entity,
-        query::{Or, With, Without},
+        query::{Has, Or, With, Without},
         schedule::IntoScheduleConfigs,
         system::{Commands, Query, Res, ResMut},
         world::World,
@@ -19,7 +22,7 @@ use bevy::{
     log::error_once,
     math::UVec4,
     mesh::Mesh3d,
-    pbr::MeshPipeline,
+    pbr::{MeshPipeline, MeshPipelineKey},
     platform::collections::HashSet,
     render::{
         ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderDebugFlags, RenderStartup,
@@ -41,7 +44,8 @@ use bevy::{
 };
 
 use super::{
-    ID_FORMAT, IdRequest, IdsWanted, ObjectStyles, ViewObjectIds,
+    DepthWanted, DepthWrites, ID_FORMAT, IdRequest, IdsWanted, ObjectStyles, QueuedDepth,
+    ViewObjectIds,
     groups::{ObjectGroups, extract_object_groups},
     items::{
         DrawId, DrawIdWithMaterial, IdItems, ObjectIdPipeline, ObjectIdSpecializer, ObjectTable,
@@ -49,6 +53,7 @@ use super::{
     },
     phase::ObjectIdItem,
     sections::{SectionBuffer, SectionTables, extract_sections, prepare_sections},
+    transparent::TransparentItems,
 };
 use crate::{
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
@@ -112,16 +117,29 @@ fn prepare_object_ids(
 }
 
 /// Views whose plan reads ids, or whose ids were drawn in the last frame: while a pipeline
-/// compiles, the older plan that is still drawn may read ids that the new one does not.
-type WithIds = Or<(With<IdsWanted>, With<IdRequest>)>;
+/// compiles, the older plan that is still drawn may read ids that the new one does not. And
+/// views into whose depth transparent meshes are drawn.
+type WithIds = Or<(With<IdsWanted>, With<IdRequest>, With<DepthWanted>)>;
+
+/// What is drawn for a view, and how its prepass is drawn.
+type Queued<'w> = (
+    (Has<IdsWanted>, Has<IdRequest>),
+    (Option<&'w DepthWanted>, Option<&'w QueuedDepth>),
+    (&'w Msaa, Has<NormalPrepass>),
+);
 
 fn queue_object_ids(
-    views: Query<(&ExtractedView, &RenderVisibleEntities, &Msaa), WithIds>,
-    mut items: IdItems,
+    mut commands: Commands,
+    views: Query<(Entity, &ExtractedView, &RenderVisibleEntities, Queued), WithIds>,
+    stale: Query<Entity, (With<QueuedDepth>, Without<DepthWanted>)>,
+    (mut items, mut transparent): (IdItems, TransparentItems),
     mut phases: ResMut<ViewSortedRenderPhases<ObjectIdItem>>,
 ) {
     let mut live: HashSet<RetainedViewEntity> = HashSet::default();
-    for (view, visible, msaa) in &views {
+    for view in &stale {
+        commands.entity(view).remove::<QueuedDepth>();
+    }
+    for (entity, view, visible, (ids, (wanted, queued), (msaa, has_normals))) in &views {
         live.insert(view.retained_view_entity);
         phases.prepare_for_new_frame(view.retained_view_entity);
         let Some(phase) = phases.get_mut(&view.retained_view_entity) else {
@@ -130,10 +148,34 @@ fn queue_object_ids(
         let Some(class) = visible.get::<Mesh3d>() else {
             continue;
         };
+        let key =
+            MeshPipelineKey::from_msaa_samples(msaa.samples()) | MeshPipelineKey::DEPTH_PREPASS;
+        let targets = wanted.map(|wanted| QueuedDepth {
+            ids: ids.0,
+            normals: wanted.normals && has_normals,
+        });
+        let mut writes = None;
         for (render_entity, main_entity) in class.iter_visible() {
-            if let Some(item) = items.item((*render_entity, *main_entity), *msaa) {
+            let object = (*render_entity, *main_entity);
+            if (ids.0 || ids.1)
+                && let Some(item) = items.item(object, key)
+            {
                 phase.add_transient(item);
+            } else if let Some(targets) = targets
+                && let Some(item) = transparent.item(object, key, targets)
+            {
+                phase.add_transient(item);
+                writes = Some(targets);
             }
+        }
+        match writes {
+            Some(targets) if queued != Some(&targets) => {
+                commands.entity(entity).insert(targets);
+            }
+            None if queued.is_some() => {
+                commands.entity(entity).remove::<QueuedDepth>();
+            }
+            _ => {}
         }
     }
     phases.retain(|view, _| live.contains(view));
@@ -143,6 +185,7 @@ fn prepare_object_table(
     phases: Res<ViewSortedRenderPhases<ObjectIdItem>>,
     (styles, groups): (Res<ObjectStyles>, Res<ObjectGroups>),
     (sections, section_tables): (Res<SectionBuffer>, Res<SectionTables>),
+    writes: Res<DepthWrites>,
     (shared, cache): (Res<ObjectIdPipeline>, Res<PipelineCache>),
     mut table: ResMut<ObjectTable>,
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
@@ -159,7 +202,11 @@ fn prepare_object_table(
         let slot = styles.slots.get(&mesh).copied();
         let id = object_id(groups.object(mesh));
         let start = sections.start(&section_tables, mesh).unwrap_or(0);
-        objects[at] = UVec4::new(u32::from(id), u32::from(slot.unwrap_or(0)), start, 0);
+        let cutoff = writes
+            .cutoffs
+            .get(&mesh)
+            .map_or(0, |cutoff| cutoff.to_bits());
+        objects[at] = UVec4::new(u32::from(id), u32::from(slot.unwrap_or(0)), start, cutoff);
     }
     table.bind_group = None;
     if objects.is_empty() {
@@ -176,7 +223,7 @@ fn prepare_object_table(
 }
 
 /// Draws the object ids of a view.
-fn draw_object_ids(
+pub(super) fn draw_object_ids(
     world: &World,
     view: ViewQuery<(
         &ExtractedCamera,
@@ -223,7 +270,8 @@ fn draw_object_ids(
     {
         render_pass.set_camera_viewport(&viewport);
     }
-    if let Err(error) = phase.render(&mut render_pass, world, entity) {
+    let opaque = ..ObjectIdItem::first_transparent(phase);
+    if let Err(error) = phase.render_range(&mut render_pass, world, entity, opaque) {
         error_once!("the object ids were not drawn: {error:?}");
         return;
     }
@@ -274,7 +322,7 @@ pub(crate) fn build(app: &mut App) {
             Core3d,
             draw_object_ids
                 .after(Core3dSystems::Prepass)
-                .after(ComicsSystems::DepthRange)
+                .before(ComicsSystems::DepthRange)
                 .before(ComicsSystems::Outlines)
                 .before(Core3dSystems::MainPass),
         );

@@ -8,7 +8,7 @@ use bevy::{
     render::{
         render_phase::{
             CachedRenderPipelinePhaseItem, DrawFunctionId, PhaseItem, PhaseItemExtraIndex,
-            SortedPhaseItem,
+            SortedPhaseItem, SortedRenderPhase,
         },
         render_resource::CachedRenderPipelineId,
         sync_world::MainEntity,
@@ -24,6 +24,16 @@ pub(crate) struct ObjectIdItem {
     pub batch_range: Range<u32>,
     pub extra_index: PhaseItemExtraIndex,
     pub indexed: bool,
+    /// It is a transparent mesh, which writes depth. Otherwise the depth prepass has it.
+    pub writes_depth: bool,
+}
+
+impl ObjectIdItem {
+    /// The index of the first transparent mesh in a sorted phase; its length if there is none.
+    pub fn first_transparent(phase: &SortedRenderPhase<Self>) -> usize {
+        let items = phase.items.values();
+        items.take_while(|item| !item.writes_depth).count()
+    }
 }
 
 impl PhaseItem for ObjectIdItem {
@@ -61,15 +71,18 @@ impl PhaseItem for ObjectIdItem {
 }
 
 impl SortedPhaseItem for ObjectIdItem {
-    // Depth is already complete, so any order is right: sort by pipeline.
+    // Opaque meshes come first. Within both groups any order is right: sort by pipeline.
     type SortKey = (FloatOrd, usize);
 
     fn sort_key(&self) -> Self::SortKey {
-        (FloatOrd(0.0), self.pipeline.id())
+        (
+            FloatOrd(f32::from(u8::from(self.writes_depth))),
+            self.pipeline.id(),
+        )
     }
 
     fn sort(items: &mut IndexMap<(Entity, MainEntity), Self, EntityHash>) {
-        items.sort_by_key(|_, item| item.pipeline.id());
+        items.sort_by_key(|_, item| (item.writes_depth, item.pipeline.id()));
     }
 
     fn recalculate_sort_keys(

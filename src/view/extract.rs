@@ -15,7 +15,7 @@ use super::{CameraPlan, fog::Fogs, light::Lights};
 use crate::{
     depth::{frame::DepthProjection, smoothing::CameraCuts},
     effect::ViewPlan,
-    objects::{IdsWanted, ObjectStyles},
+    objects::{DepthWanted, DepthWrites, IdsWanted, ObjectStyles},
 };
 
 pub(super) fn extract_views(
@@ -34,7 +34,8 @@ pub(super) fn extract_views(
         >,
     >,
     (time, real_time): (Extract<Option<Res<Time>>>, Extract<Option<Res<Time<Real>>>>),
-    (objects, lights, fogs): (Extract<Res<ObjectStyles>>, Extract<Lights>, Extract<Fogs>),
+    (objects, writes): (Extract<Res<ObjectStyles>>, Extract<Res<DepthWrites>>),
+    (lights, fogs): (Extract<Lights>, Extract<Fogs>),
     stale: Query<Entity, With<ViewPlan>>,
     mut seen: Local<EntityHashSet>,
 ) {
@@ -54,6 +55,14 @@ pub(super) fn extract_views(
         } else {
             view.remove::<IdsWanted>();
         }
+        if !writes.cutoffs.is_empty() && asked.plan.needs_depth() {
+            view.insert(DepthWanted {
+                camera: entity,
+                normals: asked.plan.needs_normals(),
+            });
+        } else {
+            view.remove::<DepthWanted>();
+        }
         view.insert(ViewPlan {
             camera: entity,
             plan: asked.plan.clone(),
@@ -71,7 +80,9 @@ pub(super) fn extract_views(
     }
     for entity in &stale {
         if !seen.contains(&entity) {
-            commands.entity(entity).remove::<(ViewPlan, IdsWanted)>();
+            commands
+                .entity(entity)
+                .remove::<(ViewPlan, IdsWanted, DepthWanted)>();
         }
     }
 }
