@@ -9,7 +9,7 @@ use bevy::{
     app::App,
     camera::{MainPassResolutionOverride, Viewport},
     core_pipeline::{
-        prepass::NormalPrepass,
+        prepass::{MotionVectorPrepass, NormalPrepass},
         schedule::{Core3d, Core3dSystems},
     },
     ecs::{
@@ -125,7 +125,7 @@ type WithIds = Or<(With<IdsWanted>, With<IdRequest>, With<DepthWanted>)>;
 type Queued<'w> = (
     (Has<IdsWanted>, Has<IdRequest>),
     (Option<&'w DepthWanted>, Option<&'w QueuedDepth>),
-    (&'w Msaa, Has<NormalPrepass>),
+    (&'w Msaa, Has<NormalPrepass>, Has<MotionVectorPrepass>),
 );
 
 fn queue_object_ids(
@@ -139,7 +139,8 @@ fn queue_object_ids(
     for view in &stale {
         commands.entity(view).remove::<QueuedDepth>();
     }
-    for (entity, view, visible, (ids, (wanted, queued), (msaa, has_normals))) in &views {
+    for (entity, view, visible, (ids, (wanted, queued), (msaa, has_normals, has_motion))) in &views
+    {
         live.insert(view.retained_view_entity);
         phases.prepare_for_new_frame(view.retained_view_entity);
         let Some(phase) = phases.get_mut(&view.retained_view_entity) else {
@@ -148,8 +149,10 @@ fn queue_object_ids(
         let Some(class) = visible.get::<Mesh3d>() else {
             continue;
         };
-        let key =
+        let mut key =
             MeshPipelineKey::from_msaa_samples(msaa.samples()) | MeshPipelineKey::DEPTH_PREPASS;
+        // The engine then binds the view with the uniform of the last frame.
+        key.set(MeshPipelineKey::MOTION_VECTOR_PREPASS, has_motion);
         let targets = wanted.map(|wanted| QueuedDepth {
             ids: ids.0,
             normals: wanted.normals && has_normals,
