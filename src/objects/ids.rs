@@ -186,9 +186,8 @@ fn queue_object_ids(
 
 fn prepare_object_table(
     phases: Res<ViewSortedRenderPhases<ObjectIdItem>>,
-    (styles, groups): (Res<ObjectStyles>, Res<ObjectGroups>),
+    (styles, groups, writes): (Res<ObjectStyles>, Res<ObjectGroups>, Res<DepthWrites>),
     (sections, section_tables): (Res<SectionBuffer>, Res<SectionTables>),
-    writes: Res<DepthWrites>,
     (shared, cache): (Res<ObjectIdPipeline>, Res<PipelineCache>),
     mut table: ResMut<ObjectTable>,
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),

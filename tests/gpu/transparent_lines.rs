@@ -12,8 +12,8 @@ use bevy::{
 };
 use bevy_comics::{
     Colorization, ComicStyle, ComicsDiagnostics, ComicsStage, Contours, Creases, DebugView,
-    DepthWrite, Desaturation, Form, LeftOut, LineWeight, NoOutlines, NoStyle, OutlineStyle,
-    Outlines, Silhouettes, Sketch, StageOutcome, VisibleDepthRange, object_id,
+    DepthMap, DepthWrite, Desaturation, Form, LeftOut, LineWeight, NoOutlines, NoStyle,
+    OutlineStyle, Outlines, Silhouettes, Sketch, StageOutcome, VisibleDepthRange, object_id,
 };
 
 use crate::{
@@ -92,7 +92,11 @@ fn it_is_drawn_as_an_opaque_mesh_would_be() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
         let mut small = Small::new(size(), msaa);
         let pane = pane(&mut small, unlit(Color::srgb(0.3, 0.8, 0.9)));
-        small.insert(VisibleDepthRange::default());
+        let map = DepthMap {
+            smoothing: None,
+            ..default()
+        };
+        small.insert((VisibleDepthRange::default(), map));
         for (i, style) in styles().iter().enumerate() {
             let draw = |small: &mut Small, alpha_mode, writes: bool| {
                 change(small, pane, |m| m.alpha_mode = alpha_mode);
@@ -110,7 +114,8 @@ fn it_is_drawn_as_an_opaque_mesh_would_be() {
             assert_eq!(opaque.0.0.pixels, with.0.0.pixels, "{msaa:?}: inputs");
             assert_eq!(without.0.0.pixels, with.0.0.pixels, "{msaa:?}: inputs");
             assert_ne!(without.0.1.pixels, with.0.1.pixels, "{msaa:?}, {i}");
-            assert_eq!(opaque.0.1.pixels, with.0.1.pixels, "{msaa:?}, {i}");
+            let same = opaque.0.1.pixels == with.0.1.pixels;
+            assert!(same, "{msaa:?}, {i}");
             assert_eq!(opaque.1, with.1, "{msaa:?}, {i}: the visible range");
         }
         assert_eq!(small.errors(), 0);
@@ -252,7 +257,7 @@ fn it_has_a_line_and_hides_those_behind_it() {
         let mut small = white(msaa);
         let turned = Quat::from_euler(EulerRot::XYZ, 0.5, 0.7, 0.1);
         let behind = Transform::from_xyz(0.0, 0.0, -60.0).with_rotation(turned);
-        small.put(Cuboid::from_length(44.0), unlit(Color::WHITE), behind);
+        small.put(Cuboid::from_length(34.0), unlit(Color::WHITE), behind);
         let glass = small.put(
             Rectangle::new(61.0, 41.0),
             white_glass(0.6, AlphaMode::Blend),
@@ -448,12 +453,12 @@ fn it_is_an_object_like_others() {
     change(&mut small, glass, |m| {
         m.base_color = Color::srgba(0.9, 0.1, 0.1, 0.7)
     });
-    let grey = Desaturation {
+    let sepia = Colorization {
         amount: 1.0,
-        ..default()
+        ..Colorization::SEPIA
     };
     let red = |small: &mut Small| {
-        small.style(&ComicStyle::default().with(grey));
+        small.style(&ComicStyle::default().with(sepia));
         small.settle();
         removed(small)[middle]
     };

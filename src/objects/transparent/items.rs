@@ -18,15 +18,16 @@ use bevy::{
         Material, MeshPipelineKey, PreparedMaterial, PrepassFragmentShader,
         PrepassPipelineSpecializer, RenderMaterialInstances, RenderMeshInstances, StandardMaterial,
     },
+    platform::sync::Arc,
     render::{
         erased_render_asset::ErasedRenderAssets,
         mesh::RenderMesh,
         render_asset::RenderAssets,
         render_phase::{DrawFunctions, PhaseItemExtraIndex},
         render_resource::{
-            ColorTargetState, ColorWrites, CompareFunction, FragmentState, PipelineCache,
-            RenderPipelineDescriptor, SpecializedMeshPipeline, SpecializedMeshPipelineError,
-            SpecializedMeshPipelines, TextureFormat,
+            BindGroupLayoutDescriptor, ColorTargetState, ColorWrites, CompareFunction,
+            FragmentState, PipelineCache, RenderPipelineDescriptor, SpecializedMeshPipeline,
+            SpecializedMeshPipelineError, SpecializedMeshPipelines, TextureFormat,
         },
         sync_world::MainEntity,
     },
@@ -72,7 +73,7 @@ pub(in crate::objects) struct TransparentKey {
 pub(in crate::objects) struct TransparentSpecializer {
     prepass: PrepassPipelineSpecializer,
     /// The pipeline of object ids, for its layout.
-    layout: bevy::render::render_resource::BindGroupLayoutDescriptor,
+    layout: BindGroupLayoutDescriptor,
     shader: Handle<Shader>,
 }
 
@@ -156,20 +157,7 @@ impl TransparentItems<'_> {
         if in_prepass(properties) {
             return None;
         }
-        if !properties.prepass_enabled {
-            warn_once!(
-                "{:?}: its material has no prepass: no depth is written",
-                object.1
-            );
-            return None;
-        }
-        let cutoff = self.own.has_standard_bindings(properties);
-        if !cutoff {
-            warn_once!(
-                "{:?}: unknown material, so all of the mesh writes depth",
-                object.1
-            );
-        }
+        let cutoff = self.own.has_cutoff(object.1, properties)?;
         let mut mesh_key = view_key | MeshPipelineKey::from_bits_retain(mesh.key_bits.bits());
         mesh_key.set(MeshPipelineKey::NORMAL_PREPASS, targets.normals);
         let uses_material = cutoff || reads_material(properties);
@@ -184,14 +172,7 @@ impl TransparentItems<'_> {
             targets,
             cutoff,
         };
-        let specializer = TransparentSpecializer {
-            prepass: PrepassPipelineSpecializer {
-                pipeline: self.shared.prepass.clone(),
-                properties: properties.clone(),
-            },
-            layout: self.shared.layout.clone(),
-            shader: self.own.shader.clone(),
-        };
+        let specializer = self.own.specializer(&self.shared, properties);
         let pipeline = (self.pipelines)
             .specialize(&self.cache, &specializer, key, &mesh.layout)
             .inspect_err(|error| error_once!("no depth of {:?}: {error}", object.1))
@@ -214,9 +195,33 @@ impl TransparentItems<'_> {
 }
 
 impl TransparentPipeline {
-    /// Whether the bindings of a material begin with those of the standard material.
-    fn has_standard_bindings(&self, properties: &MaterialProperties) -> bool {
+    /// Whether the alpha of a material is known, because its bindings begin with those of the
+    /// standard material; `None` if the material has no prepass.
+    fn has_cutoff(&self, mesh: MainEntity, properties: &MaterialProperties) -> Option<bool> {
+        if !properties.prepass_enabled {
+            warn_once!("{mesh:?} writes no depth: its material has no prepass");
+            return None;
+        }
         let shader = properties.get_shader(PrepassFragmentShader);
-        shader.is_some() && shader == self.standard
+        let known = shader.is_some() && shader == self.standard;
+        if !known {
+            warn_once!("all of {mesh:?} writes depth: the alpha of its material is unknown");
+        }
+        Some(known)
+    }
+
+    fn specializer(
+        &self,
+        ids: &ObjectIdPipeline,
+        properties: &Arc<MaterialProperties>,
+    ) -> TransparentSpecializer {
+        TransparentSpecializer {
+            prepass: PrepassPipelineSpecializer {
+                pipeline: ids.prepass.clone(),
+                properties: properties.clone(),
+            },
+            layout: ids.layout.clone(),
+            shader: self.shader.clone(),
+        }
     }
 }
