@@ -81,7 +81,11 @@ fn styles() -> Vec<ComicStyle> {
             .with(Desaturation::default())
             .with(Colorization::default())
             .with(Contours::default()),
-        ComicStyle::default().with(Sketch::default()),
+        ComicStyle::default().with(Sketch {
+            // Its strokes move with time.
+            rate: 0.0,
+            ..default()
+        }),
     ]
 }
 
