@@ -93,8 +93,8 @@ pub use lines::{
 };
 #[cfg(feature = "objects")]
 pub use objects::{
-    ATTRIBUTE_MESH_SECTION, MeshSections, NoOutlines, NoStyle, OutlineGroup, OutlineKinds,
-    OutlineStyle, SelectionOutline, ViewObjectIds, XRayOutline, object_id,
+    ATTRIBUTE_MESH_SECTION, DepthWrite, MeshSections, NoOutlines, NoStyle, OutlineGroup,
+    OutlineKinds, OutlineStyle, SelectionOutline, ViewObjectIds, XRayOutline, object_id,
 };
 pub use plugin::ComicsPlugin;
 pub use schedule::ComicsSystems;
@@ -147,7 +147,7 @@ pub mod prelude {
     pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};
     #[cfg(feature = "objects")]
     pub use crate::{
-        MeshSections, NoOutlines, NoStyle, OutlineGroup, OutlineKinds, OutlineStyle,
+        DepthWrite, MeshSections, NoOutlines, NoStyle, OutlineGroup, OutlineKinds, OutlineStyle,
         SelectionOutline, XRayOutline,
     };
 }

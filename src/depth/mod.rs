@@ -11,6 +11,7 @@ pub(crate) mod readback;
 mod reduce;
 pub(crate) mod request;
 pub(crate) mod smoothing;
+pub(crate) mod surfaces;
 pub(crate) mod view;
 
 use bevy::{

@@ -21,26 +21,28 @@ use super::{
     prepare::{RangeUniforms, ViewDepthRange},
     range::{RangeKey, RangePipeline, RangeShape},
     request::Reduction,
+    surfaces::{OwnSurfaces, Surfaces},
 };
 use crate::diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome};
 
 /// Records the reduction, the smoothing and the readback of a view's visible range.
 pub(crate) fn reduce_depth_range(
-    view: ViewQuery<(&ViewPrepassTextures, &ViewDepthRange)>,
+    view: ViewQuery<(&ViewPrepassTextures, Option<&OwnSurfaces>, &ViewDepthRange)>,
     uniforms: Res<RangeUniforms>,
     ledger: Res<StageLedger>,
     pipeline: Res<RangePipeline>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
-    let (prepass, range) = view.into_inner();
+    let (prepass, own, range) = view.into_inner();
+    let surfaces = Surfaces::from((Some(prepass), own));
     let camera = range.request.camera;
     let frame = Frame {
         range,
         uniforms: &uniforms,
         cache: &cache,
     };
-    match frame.record(prepass, &pipeline, &mut ctx) {
+    match frame.record(surfaces, &pipeline, &mut ctx) {
         Ok(method) => {
             let outcome = StageOutcome::RanAs(method.name());
             ledger.set(camera, ComicsStage::DepthRange, outcome);
@@ -67,13 +69,13 @@ impl Frame<'_> {
     /// a range were drawn without its smoothing.
     fn record(
         &self,
-        prepass: &ViewPrepassTextures,
+        surfaces: Surfaces,
         pipeline: &RangePipeline,
         ctx: &mut RenderContext,
     ) -> Result<ReductionMethod, LeftOut> {
         let not_ready = LeftOut::PipelineNotReady;
-        let depth = prepass.depth.as_ref().ok_or(LeftOut::NoDepthPrepass)?;
-        if depth.texture.texture.sample_count() != self.range.request.samples {
+        let depth = surfaces.depth().ok_or(LeftOut::NoDepthPrepass)?;
+        if depth.texture.sample_count() != self.range.request.samples {
             return Err(LeftOut::SampleCountMismatch);
         }
         let view = self.uniforms.views.binding().ok_or(not_ready)?;
@@ -85,7 +87,7 @@ impl Frame<'_> {
             )),
             _ => None,
         };
-        let depth = &depth.texture.default_view;
+        let depth = &depth.default_view;
         let method = match self.range.passes.reduction {
             Reduction::Compute {
                 shape,

@@ -25,6 +25,9 @@ pub enum ComicsStage {
     NormalPrepass,
     /// The pass that draws the ids of objects.
     ObjectIds,
+    /// The pass that draws transparent meshes into the depth that effects read
+    /// (`DepthWrite`).
+    TransparentDepth,
     /// The reduction that finds the nearest and farthest visible depth.
     DepthRange,
     /// The smoothing or locking of that range over time
@@ -60,6 +63,7 @@ impl ComicsStage {
         Self::DepthPrepass,
         Self::NormalPrepass,
         Self::ObjectIds,
+        Self::TransparentDepth,
         Self::DepthRange,
         Self::RangeSmoothing,
         Self::RangeReadback,
@@ -76,6 +80,7 @@ impl ComicsStage {
             Self::DepthPrepass => "depth prepass",
             Self::NormalPrepass => "normal prepass",
             Self::ObjectIds => "object ids",
+            Self::TransparentDepth => "transparent depth",
             Self::DepthRange => "depth range",
             Self::RangeSmoothing => "range smoothing",
             Self::RangeReadback => "range readback",
@@ -120,6 +125,8 @@ pub enum LeftOut {
     /// The lines of the camera do not need it, or it needs lines and no effect
     /// requests any.
     NoSuchLines,
+    /// The view shows no transparent mesh that asks for it (`DepthWrite`).
+    NoSuchMeshes,
     /// The depth map spans fixed distances, not the visible range.
     FixedRange,
     /// The view has one sample per pixel.
@@ -156,6 +163,7 @@ impl fmt::Display for LeftOut {
             Self::NoDepthStyle => "no effect reads depth",
             Self::NoMapStyle => "no effect reads the depth map",
             Self::NoSuchLines => "no such lines are requested",
+            Self::NoSuchMeshes => "no transparent mesh in view asks for it",
             Self::FixedRange => "the range is fixed",
             Self::SingleSampled => "the view has one sample per pixel",
             Self::NoComputeShaders => {

@@ -36,7 +36,7 @@ use crate::{
         ViewFog, ViewMarks,
         request::{LinePasses, LineRequest},
     },
-    objects::{IdRequest, IdsWanted},
+    objects::{DepthWanted, IdRequest, IdsWanted, QueuedDepth},
 };
 
 /// On a view in the render world: the plan of its camera, and facts about the
@@ -75,7 +75,7 @@ pub(crate) struct ReadyPlan(Option<Arc<Plan>>);
 type Chosen = (
     (RangeRequest, RangePasses),
     (LineRequest, LinePasses),
-    (IdRequest, IdsWanted),
+    (IdRequest, IdsWanted, DepthWanted),
     (FusedRequest, ReadyPlan),
 );
 
@@ -89,7 +89,7 @@ pub(crate) fn choose_plans(
         &ViewPlan,
         &ExtractedCamera,
         &ExtractedView,
-        Option<&ViewPrepassTextures>,
+        (Option<&ViewPrepassTextures>, Option<&QueuedDepth>),
         (Option<&ViewTarget>, Option<&ReadyPlan>),
         (Option<&MainPassResolutionOverride>, Option<&TemporalJitter>),
         Option<&ViewMarks>,

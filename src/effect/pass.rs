@@ -25,7 +25,10 @@ use super::{
     prepare::{FusedRequest, ViewFused},
 };
 use crate::{
-    depth::prepare::ViewDepthRange,
+    depth::{
+        prepare::ViewDepthRange,
+        surfaces::{OwnSurfaces, SurfaceParts, Surfaces},
+    },
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     lines::{TileList, TileLists, ViewLines, tile_shader, tile_vertices},
     objects::{ObjectStyleBuffer, ViewObjectIds},
@@ -90,7 +93,7 @@ impl SpecializedRenderPipeline for StylizePipeline {
 /// The textures and buffers that the services have prepared for the view in this
 /// frame.
 type Found<'a> = (
-    Option<&'a ViewPrepassTextures>,
+    SurfaceParts<'a>,
     Option<&'a ViewDepthRange>,
     Option<&'a ViewLines>,
     Option<&'a ViewObjectIds>,
@@ -103,7 +106,7 @@ pub(super) fn stylize(
     view: ViewQuery<(
         (&ViewTarget, &FusedRequest, &ViewFused),
         (
-            Option<&ViewPrepassTextures>,
+            (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),
             Option<&ViewDepthRange>,
             Option<&ViewLines>,
             Option<&ViewObjectIds>,
@@ -249,15 +252,15 @@ fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
 /// them is missing in this frame.
 fn inputs<'a>(
     key: &StylizeKey,
-    (prepass, range, lines, ids): Found<'a>,
+    (surfaces, range, lines, ids): Found<'a>,
     object_styles: &'a ObjectStyleBuffer,
 ) -> Result<Vec<BindGroupEntry<'a>>, LeftOut> {
     let not_ready = LeftOut::PipelineNotReady;
+    let surfaces = Surfaces::from(surfaces);
     let mut entries = Vec::new();
     if key.depth {
-        let depth = prepass.and_then(|textures| textures.depth.as_ref());
-        let depth = depth.ok_or(LeftOut::SampleCountMismatch)?;
-        entries.push(entry(2, sampled(&depth.texture, key.samples)?));
+        let depth = surfaces.depth().ok_or(LeftOut::SampleCountMismatch)?;
+        entries.push(entry(2, sampled(depth, key.samples)?));
     }
     if key.visible_range {
         let keys = range.and_then(ViewDepthRange::drawn).ok_or(not_ready)?;
@@ -278,9 +281,8 @@ fn inputs<'a>(
         entries.push(entry(6, styles.as_entire_binding()));
     }
     if key.normals() {
-        let normal = prepass.and_then(|textures| textures.normal.as_ref());
-        let normal = normal.ok_or(not_ready)?;
-        entries.push(entry(7, sampled(&normal.texture, key.samples)?));
+        let normal = surfaces.normal().ok_or(not_ready)?;
+        entries.push(entry(7, sampled(normal, key.samples)?));
     }
     if key.ids() {
         let ids = ids.ok_or(not_ready)?;

@@ -39,6 +39,8 @@ impl Plan {
                 LeftOut::NotRequested
             }
             ComicsStage::DepthPrepass => LeftOut::NoDepthStyle,
+            ComicsStage::TransparentDepth if self.needs_depth() => LeftOut::NoSuchMeshes,
+            ComicsStage::TransparentDepth => LeftOut::NoDepthStyle,
             ComicsStage::NormalPrepass
             | ComicsStage::ObjectIds
             | ComicsStage::ResolveSamples

@@ -37,7 +37,7 @@ use crate::{
         view::{ViewUniform, depth_rect},
     },
     lines::request::{FindPass, LinePasses, LinePipelines, LineRequest},
-    objects::IdRequest,
+    objects::{IdRequest, QueuedDepth},
 };
 #[cfg(feature = "objects")]
 use crate::{lines::ViewMarks, objects::LayerRequest};
@@ -56,12 +56,14 @@ pub(super) struct Scene {
     pub normals: bool,
     /// The engine draws motion vectors.
     pub motion: bool,
+    /// Transparent meshes are drawn with their ids.
+    ids_queued: bool,
 }
 
 impl Scene {
     pub fn new(
         extracted: &ExtractedView,
-        prepass: Option<&ViewPrepassTextures>,
+        (prepass, queued): (Option<&ViewPrepassTextures>, Option<&QueuedDepth>),
         // The engine sets both in the render world.
         (resolution, jitter): (Option<&MainPassResolutionOverride>, Option<&TemporalJitter>),
     ) -> Self {
@@ -77,6 +79,7 @@ impl Scene {
             }),
             normals: prepass.is_some_and(|textures| textures.normal.is_some()),
             motion: prepass.is_some_and(|textures| textures.motion_vectors.is_some()),
+            ids_queued: queued.is_some_and(|queued| queued.ids),
         }
     }
 
@@ -156,7 +159,7 @@ impl Services<'_> {
         });
         let ids = scene
             .depth
-            .filter(|_| plan.draws() && plan.draws_ids())
+            .filter(|_| plan.draws() && plan.draws_ids() || scene.ids_queued)
             .map(|(size, samples)| IdRequest {
                 camera: view.camera,
                 size,

@@ -28,7 +28,7 @@ use super::{
 #[cfg(feature = "objects")]
 use crate::objects::{MarkStyleBuffer, ViewLayer};
 use crate::{
-    depth::prepare::ViewDepthRange,
+    depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     objects::{ObjectStyleBuffer, ViewObjectIds},
 };
@@ -50,7 +50,11 @@ pub(crate) fn find_marks(
     };
     let (request, _, lines) = parts;
     let inputs = Inputs {
-        parts: (parts, Sources::new(Some(prepass), None).layer(layer), None),
+        parts: (
+            parts,
+            Sources::new((Some(prepass), None), None).layer(layer),
+            None,
+        ),
         styles: &styles.0,
         cache: &cache,
         device: ctx.render_device().clone(),
@@ -68,7 +72,7 @@ pub(crate) fn find_marks(
 pub(crate) fn find_lines(
     view: ViewQuery<(
         (&LineRequest, &LinePasses, &ViewLines),
-        Option<&ViewPrepassTextures>,
+        (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),
         Option<&ViewDepthRange>,
         Option<&ViewObjectIds>,
     )>,

@@ -1,16 +1,13 @@
 //! The passes of a view's lines, ready to be recorded: pipelines and what they bind.
 
-use bevy::{
-    core_pipeline::prepass::ViewPrepassTextures,
-    render::{
-        render_resource::{
-            BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, BindingResource,
-            CachedComputePipelineId, CachedRenderPipelineId, ComputePipeline, IntoBinding,
-            PipelineCache, RenderPipeline, TextureView,
-        },
-        renderer::RenderDevice,
-        texture::CachedTexture,
+use bevy::render::{
+    render_resource::{
+        BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, BindingResource,
+        CachedComputePipelineId, CachedRenderPipelineId, ComputePipeline, IntoBinding,
+        PipelineCache, RenderPipeline, TextureView,
     },
+    renderer::RenderDevice,
+    texture::CachedTexture,
 };
 
 use super::{
@@ -26,7 +23,10 @@ use super::{
 #[cfg(feature = "objects")]
 use crate::objects::ViewLayer;
 use crate::{
-    depth::prepare::ViewDepthRange,
+    depth::{
+        prepare::ViewDepthRange,
+        surfaces::{SurfaceParts, Surfaces},
+    },
     diagnostics::LeftOut,
     objects::{ObjectStyleBuffer, ViewObjectIds},
 };
@@ -43,18 +43,14 @@ pub(super) struct Sources<'a> {
 }
 
 impl<'a> Sources<'a> {
-    /// Those of the engine's prepasses, and the object ids.
-    pub fn new(prepass: Option<&'a ViewPrepassTextures>, ids: Option<&'a ViewObjectIds>) -> Self {
-        let Some(prepass) = prepass else {
-            return Self::default();
-        };
-        let normal = prepass.normal.as_ref();
-        let motion = prepass.motion_vectors.as_ref();
+    /// The surfaces of the view, and the object ids.
+    pub fn new(surfaces: SurfaceParts<'a>, ids: Option<&'a ViewObjectIds>) -> Self {
+        let surfaces = Surfaces::from(surfaces);
         Self {
-            depth: prepass.depth.as_ref().map(|depth| &depth.texture),
-            normal: normal.map(|normal| &normal.texture.default_view),
+            depth: surfaces.depth(),
+            normal: surfaces.normal().map(|normal| &normal.default_view),
             ids: ids.map(|ids| &ids.view),
-            motion: motion.map(|motion| &motion.texture.default_view),
+            motion: surfaces.motion().map(|motion| &motion.default_view),
             picture: None,
         }
     }
@@ -155,7 +151,7 @@ impl Inputs<'_> {
         lines.uniform.binding().ok_or(NOT_READY)
     }
 
-    /// The prepass textures of the view.
+    /// The surfaces of the view.
     fn prepass(&self) -> Result<Texels<'_>, LeftOut> {
         let ((request, ..), sources, _) = self.parts;
         let depth = sources.depth.ok_or(LeftOut::NoDepthPrepass)?;

@@ -21,8 +21,8 @@ use crate::settings::{bounded_option, displayable, linear_rgb};
 ///
 /// Other objects keep theirs: an object in front of this one still has its outline,
 /// also where the two meet. It works on every mesh in the depth prepass (opaque and
-/// alpha-masked, lit or unlit, skinned, morphed, instanced by the engine). Transparent
-/// meshes have no outlines anyway.
+/// alpha-masked, lit or unlit, skinned, morphed, instanced by the engine), and on transparent
+/// ones with [`DepthWrite`](crate::DepthWrite); others have no outlines anyway.
 ///
 /// [`Contours`](crate::Contours) do not change: they are found in the depth map, which
 /// does not distinguish objects.

@@ -8,7 +8,10 @@
 use bevy::{
     app::App,
     camera::{MainPassResolutionOverride, Viewport},
-    core_pipeline::schedule::{Core3d, Core3dSystems},
+    core_pipeline::{
+        prepass::{MotionVectorPrepass, NormalPrepass},
+        schedule::{Core3d, Core3dSystems},
+    },
     ecs::{
         entity::Entity,
         query::{Has, Or, With, Without},
@@ -19,7 +22,7 @@ use bevy::{
     log::error_once,
     math::UVec4,
     mesh::Mesh3d,
-    pbr::MeshPipeline,
+    pbr::{MeshPipeline, MeshPipelineKey},
     platform::collections::HashSet,
     render::{
         ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderDebugFlags, RenderStartup,
@@ -41,7 +44,8 @@ use bevy::{
 };
 
 use super::{
-    ID_FORMAT, IdRequest, IdsWanted, ObjectStyles, ViewObjectIds,
+    DepthWanted, DepthWrites, ID_FORMAT, IdRequest, IdsWanted, ObjectStyles, QueuedDepth,
+    ViewObjectIds,
     groups::{ObjectGroups, extract_object_groups},
     items::{
         DrawId, DrawIdWithMaterial, IdItems, ObjectIdPipeline, ObjectIdSpecializer, ObjectTable,
@@ -49,8 +53,9 @@ use super::{
     },
     layer::{LayerRequest, MarkSpecializer, ViewLayer, prepare_layers},
     marks::{Marks, extract_marks},
-    phase::ObjectIdItem,
+    phase::{Layer, ObjectIdItem},
     sections::{SectionBuffer, SectionTables, extract_sections, prepare_sections},
+    transparent::TransparentItems,
 };
 use crate::{
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
@@ -114,29 +119,41 @@ fn prepare_object_ids(
 }
 
 /// Views whose plan reads ids, or whose ids were drawn in the last frame: while a pipeline
-/// compiles, the older plan that is still drawn may read ids that the new one does not.
-type WithIds = Or<(With<IdsWanted>, With<IdRequest>, With<LayerRequest>)>;
+/// compiles, the older plan that is still drawn may read ids that the new one does not. And
+/// views into whose depth transparent meshes are drawn, or with marked objects.
+type WithIds = Or<(
+    With<IdsWanted>,
+    With<IdRequest>,
+    With<LayerRequest>,
+    With<DepthWanted>,
+)>;
+
+/// What is drawn for a view, and how its prepass is drawn.
+type Queued<'w> = (
+    (Option<&'w IdsWanted>, Has<IdRequest>, Has<LayerRequest>),
+    (Option<&'w DepthWanted>, Option<&'w QueuedDepth>),
+    (&'w Msaa, Has<NormalPrepass>, Has<MotionVectorPrepass>),
+);
+
+/// The items of an object are made by these.
+type Items<'w> = (IdItems<'w>, TransparentItems<'w>, Res<'w, Marks>);
 
 fn queue_object_ids(
-    views: Query<
-        (
-            &ExtractedView,
-            &RenderVisibleEntities,
-            &Msaa,
-            Option<&IdsWanted>,
-            (Has<IdRequest>, Has<LayerRequest>),
-        ),
-        WithIds,
-    >,
-    marks: Res<Marks>,
-    mut items: IdItems,
+    mut commands: Commands,
+    views: Query<(Entity, &ExtractedView, &RenderVisibleEntities, Queued), WithIds>,
+    stale: Query<Entity, (With<QueuedDepth>, Without<DepthWanted>)>,
+    (mut items, mut transparent, marks): Items,
     mut phases: ResMut<ViewSortedRenderPhases<ObjectIdItem>>,
 ) {
     let mut live: HashSet<RetainedViewEntity> = HashSet::default();
-    for (view, visible, msaa, wanted, (drawn_ids, drawn_layer)) in &views {
-        let wanted = wanted.copied().unwrap_or_default();
-        let ids = wanted.ids || drawn_ids;
-        let layer = wanted.layer || drawn_layer;
+    for view in &stale {
+        commands.entity(view).remove::<QueuedDepth>();
+    }
+    for (entity, view, visible, (ids, (wanted, queued), (msaa, has_normals, has_motion))) in &views
+    {
+        let asked = ids.0.copied().unwrap_or_default();
+        let layer = asked.layer || ids.2;
+        let ids = (asked.ids, ids.1);
         live.insert(view.retained_view_entity);
         phases.prepare_for_new_frame(view.retained_view_entity);
         let Some(phase) = phases.get_mut(&view.retained_view_entity) else {
@@ -145,18 +162,43 @@ fn queue_object_ids(
         let Some(class) = visible.get::<Mesh3d>() else {
             continue;
         };
+        let mut key =
+            MeshPipelineKey::from_msaa_samples(msaa.samples()) | MeshPipelineKey::DEPTH_PREPASS;
+        // The engine then binds the view with the uniform of the last frame.
+        key.set(MeshPipelineKey::MOTION_VECTOR_PREPASS, has_motion);
+        let targets = wanted.map(|wanted| QueuedDepth {
+            ids: ids.0,
+            normals: wanted.normals && has_normals,
+        });
+        let mut writes = None;
         for (render_entity, main_entity) in class.iter_visible() {
             let object = (*render_entity, *main_entity);
-            if ids && let Some(item) = items.item(object, *msaa, false) {
+            if (ids.0 || ids.1)
+                && let Some(item) = items.item(object, key, false)
+            {
                 phase.add_transient(item);
+            } else if let Some(targets) = targets
+                && let Some(item) = transparent.item(object, key, targets)
+            {
+                phase.add_transient(item);
+                writes = Some(targets);
             }
             let marked = layer && marks.of(main_entity.id()).is_some();
-            if marked && let Some(item) = items.item(object, *msaa, true) {
+            if marked && let Some(item) = items.item(object, key, true) {
                 // Under a key of its own, because the object has an item already.
-                let key = (Entity::PLACEHOLDER, *main_entity);
-                phase.items.insert(key, item);
-                phase.transient_items.push(key);
+                let own = (Entity::PLACEHOLDER, *main_entity);
+                phase.items.insert(own, item);
+                phase.transient_items.push(own);
             }
+        }
+        match writes {
+            Some(targets) if queued != Some(&targets) => {
+                commands.entity(entity).insert(targets);
+            }
+            None if queued.is_some() => {
+                commands.entity(entity).remove::<QueuedDepth>();
+            }
+            _ => {}
         }
     }
     phases.retain(|view, _| live.contains(view));
@@ -165,6 +207,7 @@ fn queue_object_ids(
 fn prepare_object_table(
     phases: Res<ViewSortedRenderPhases<ObjectIdItem>>,
     (styles, groups, marks): (Res<ObjectStyles>, Res<ObjectGroups>, Res<Marks>),
+    writes: Res<DepthWrites>,
     (sections, section_tables): (Res<SectionBuffer>, Res<SectionTables>),
     (shared, cache): (Res<ObjectIdPipeline>, Res<PipelineCache>),
     mut table: ResMut<ObjectTable>,
@@ -179,14 +222,18 @@ fn prepare_object_table(
             objects.resize(at + 1, UVec4::ZERO);
         }
         let mesh = item.main_entity().id();
-        if let Some((root, slot)) = marks.of(mesh).filter(|_| item.marked) {
+        if let Some((root, slot)) = marks.of(mesh).filter(|_| item.layer == Layer::Marked) {
             objects[at] = UVec4::new(u32::from(object_id(root)), u32::from(slot), 0, 0);
             continue;
         }
         let slot = styles.slots.get(&mesh).copied();
         let id = object_id(groups.object(mesh));
         let start = sections.start(&section_tables, mesh).unwrap_or(0);
-        objects[at] = UVec4::new(u32::from(id), u32::from(slot.unwrap_or(0)), start, 0);
+        let cutoff = writes
+            .cutoffs
+            .get(&mesh)
+            .map_or(0, |cutoff| cutoff.to_bits());
+        objects[at] = UVec4::new(u32::from(id), u32::from(slot.unwrap_or(0)), start, cutoff);
     }
     table.bind_group = None;
     if objects.is_empty() {
@@ -203,7 +250,7 @@ fn prepare_object_table(
 }
 
 /// Draws the object ids of a view.
-fn draw_object_ids(
+pub(super) fn draw_object_ids(
     world: &World,
     view: ViewQuery<(
         &ExtractedCamera,
@@ -221,7 +268,7 @@ fn draw_object_ids(
     let (camera, extracted, depth, resolution, ids, layer) = view.into_inner();
     let phase = (phases.as_ref()).and_then(|phases| phases.get(&extracted.retained_view_entity));
     let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
-    let mut draw = |descriptor: RenderPassDescriptor, samples: u32, marked: bool| {
+    let mut draw = |descriptor: RenderPassDescriptor, samples: u32, layer: Layer| {
         let phase = phase.ok_or(LeftOut::PipelineNotReady)?;
         if depth.texture.sample_count() != samples {
             return Err(LeftOut::SampleCountMismatch);
@@ -230,10 +277,7 @@ fn draw_object_ids(
         if let Some(viewport) = &viewport {
             render_pass.set_camera_viewport(viewport);
         }
-        // Those of the layer come last.
-        let count = phase.items.len();
-        let first = phase.items.partition_point(|_, item| !item.marked);
-        let range = if marked { first..count } else { 0..first };
+        let range = ObjectIdItem::of(phase, layer);
         if range.is_empty() {
             return Ok(StageOutcome::Ran);
         }
@@ -252,14 +296,14 @@ fn draw_object_ids(
                 ..Default::default()
             },
             request.samples,
-            false,
+            Layer::Prepass,
         );
         let outcome = outcome.unwrap_or_else(StageOutcome::LeftOut);
         ledger.set(request.camera, ComicsStage::ObjectIds, outcome);
     }
     if let Some((request, layer)) = layer {
         let targets = [Some(cleared(&layer.ids.default_view))];
-        let outcome = draw(layer.pass(&targets), request.samples, true);
+        let outcome = draw(layer.pass(&targets), request.samples, Layer::Marked);
         let outcome = outcome.unwrap_or_else(StageOutcome::LeftOut);
         ledger.set(request.camera, ComicsStage::MarkedObjects, outcome);
     }
@@ -330,7 +374,7 @@ pub(crate) fn build(app: &mut App) {
             Core3d,
             draw_object_ids
                 .after(Core3dSystems::Prepass)
-                .after(ComicsSystems::DepthRange)
+                .before(ComicsSystems::DepthRange)
                 .before(ComicsSystems::Outlines)
                 .before(Core3dSystems::MainPass),
         );

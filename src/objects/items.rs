@@ -36,7 +36,6 @@ use bevy::{
             SpecializedMeshPipelines, StorageBuffer, binding_types::storage_buffer_read_only,
         },
         sync_world::MainEntity,
-        view::Msaa,
     },
     shader::Shader,
 };
@@ -44,7 +43,7 @@ use bevy::{
 use super::{
     ID_FORMAT,
     layer::MarkSpecializer,
-    phase::ObjectIdItem,
+    phase::{Layer, ObjectIdItem},
     sections::{SectionBuffer, SectionTables},
 };
 
@@ -133,8 +132,8 @@ impl<const SECTIONS: bool> SpecializedMeshPipeline for ObjectIdSpecializer<SECTI
     }
 }
 
-/// Id, style slot and first word of the sections of each object, indexed by the instance
-/// index of its phase item.
+/// Id, style slot, first word of the sections and bits of the least alpha of each object,
+/// indexed by the instance index of its phase item.
 #[derive(Resource, Default)]
 pub(super) struct ObjectTable {
     pub objects: StorageBuffer<Vec<UVec4>>,
@@ -184,13 +183,13 @@ pub(super) type DrawIdWithMaterial = (
     DrawMesh,
 );
 
-fn reads_material(properties: &MaterialProperties) -> bool {
+pub(super) fn reads_material(properties: &MaterialProperties) -> bool {
     properties.get_shader(PrepassVertexShader).is_some()
         || properties.get_shader(PrepassFragmentShader).is_some()
 }
 
 /// Whether the depth prepass draws meshes of this material.
-fn in_prepass(properties: &MaterialProperties) -> bool {
+pub(super) fn in_prepass(properties: &MaterialProperties) -> bool {
     properties.prepass_enabled
         && !properties.reads_view_transmission_texture
         && matches!(
@@ -221,7 +220,7 @@ impl IdItems<'_> {
     pub fn item(
         &mut self,
         object: (Entity, MainEntity),
-        msaa: Msaa,
+        view_key: MeshPipelineKey,
         marked: bool,
     ) -> Option<ObjectIdItem> {
         let instance = self.instances.render_mesh_queue_data(object.1)?;
@@ -231,9 +230,7 @@ impl IdItems<'_> {
         if !in_prepass(&material.properties) {
             return None;
         }
-        let mut mesh_key = MeshPipelineKey::from_msaa_samples(msaa.samples())
-            | MeshPipelineKey::DEPTH_PREPASS
-            | MeshPipelineKey::from_bits_retain(mesh.key_bits.bits());
+        let mut mesh_key = view_key | MeshPipelineKey::from_bits_retain(mesh.key_bits.bits());
         if instance.lightmap_slab_index().is_some() {
             mesh_key |= MeshPipelineKey::LIGHTMAPPED;
         }
@@ -276,7 +273,11 @@ impl IdItems<'_> {
             batch_range: 0..1,
             extra_index: PhaseItemExtraIndex::None,
             indexed: mesh.indexed(),
-            marked,
+            layer: if marked {
+                Layer::Marked
+            } else {
+                Layer::Prepass
+            },
         })
     }
 }

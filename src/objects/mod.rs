@@ -1,5 +1,6 @@
 //! The service of objects: components that change or remove the lines of single
-//! objects, and a texture of object ids, in which lines find where objects meet.
+//! objects, a texture of object ids, in which lines find where objects meet, and transparent
+//! meshes that take part in lines and effects.
 
 #[cfg(feature = "objects")]
 mod groups;
@@ -16,6 +17,8 @@ mod phase;
 #[cfg(feature = "objects")]
 mod sections;
 mod table;
+#[cfg(feature = "objects")]
+mod transparent;
 
 #[cfg(feature = "objects")]
 mod components;
@@ -34,7 +37,10 @@ pub use marks::{SelectionOutline, XRayOutline};
 #[cfg(feature = "objects")]
 pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
 
-pub(crate) use table::{ObjectChanges, ObjectStyleBuffer, ObjectStyles};
+#[cfg(feature = "objects")]
+pub use transparent::DepthWrite;
+
+pub(crate) use table::{DepthWrites, ObjectChanges, ObjectStyleBuffer, ObjectStyles};
 
 use bevy::{
     app::{App, Plugin},
@@ -74,6 +80,31 @@ pub(crate) struct IdsWanted {
     pub ids: bool,
     /// The layer of marked objects.
     pub layer: bool,
+}
+
+/// On a view in the render world: the plan of its camera reads depth, and there are meshes with
+/// [`DepthWrite`](crate::DepthWrite).
+#[derive(Component)]
+#[cfg_attr(
+    not(feature = "objects"),
+    allow(dead_code, reason = "only the feature `objects` draws them")
+)]
+pub(crate) struct DepthWanted {
+    pub camera: Entity,
+    /// The plan reads normals too.
+    pub normals: bool,
+}
+
+/// On a view in the render world that shows meshes with [`DepthWrite`](crate::DepthWrite):
+/// what they are drawn into, besides its depth.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    not(feature = "objects"),
+    allow(dead_code, reason = "only the feature `objects` draws them")
+)]
+pub(crate) struct QueuedDepth {
+    pub ids: bool,
+    pub normals: bool,
 }
 
 /// On a view in the render world: a request for object ids, written in every frame by
@@ -151,7 +182,8 @@ pub(crate) struct ObjectsPlugin;
 
 impl Plugin for ObjectsPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<ObjectStyles>();
+        app.init_resource::<ObjectStyles>()
+            .init_resource::<DepthWrites>();
         #[cfg(feature = "objects")]
         {
             app.register_type::<OutlineStyle>()
@@ -161,6 +193,7 @@ impl Plugin for ObjectsPlugin {
             marks::build(app);
             groups::build(app);
             sections::build(app);
+            transparent::build(app);
         }
     }
 
@@ -170,6 +203,7 @@ impl Plugin for ObjectsPlugin {
         if app.is_plugin_added::<bevy::pbr::PbrPlugin>() {
             ids::build(app);
             sections::finish(app);
+            transparent::finish(app);
         }
         #[cfg(not(feature = "objects"))]
         let _ = app;
@@ -184,6 +218,7 @@ impl ObjectsPlugin {
         {
             bevy::asset::embedded_asset!(app, "ids.wgsl");
             bevy::asset::embedded_asset!(app, "sections.wgsl");
+            transparent::build_shaders(app);
         }
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;

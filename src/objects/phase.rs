@@ -8,7 +8,7 @@ use bevy::{
     render::{
         render_phase::{
             CachedRenderPipelinePhaseItem, DrawFunctionId, PhaseItem, PhaseItemExtraIndex,
-            SortedPhaseItem,
+            SortedPhaseItem, SortedRenderPhase,
         },
         render_resource::CachedRenderPipelineId,
         sync_world::MainEntity,
@@ -24,8 +24,30 @@ pub(crate) struct ObjectIdItem {
     pub batch_range: Range<u32>,
     pub extra_index: PhaseItemExtraIndex,
     pub indexed: bool,
-    /// It is drawn into the layer of marked objects.
-    pub marked: bool,
+    pub layer: Layer,
+}
+
+/// What an item is drawn into. In a sorted phase, items follow in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Layer {
+    /// The object ids: the depth prepass has the mesh.
+    Prepass,
+    /// The view's own depth: a transparent mesh.
+    OwnDepth,
+    /// The layer of marked objects.
+    Marked,
+}
+
+impl ObjectIdItem {
+    /// The items of a layer in a sorted phase.
+    pub fn of(phase: &SortedRenderPhase<Self>, layer: Layer) -> Range<usize> {
+        let before = |layers: fn(Layer, Layer) -> bool| {
+            phase
+                .items
+                .partition_point(|_, item| layers(item.layer, layer))
+        };
+        before(|a, b| a < b)..before(|a, b| a <= b)
+    }
 }
 
 impl PhaseItem for ObjectIdItem {
@@ -63,16 +85,15 @@ impl PhaseItem for ObjectIdItem {
 }
 
 impl SortedPhaseItem for ObjectIdItem {
-    // Depth is already complete, so any order is right: sort by pipeline. Those of the layer
-    // come last.
+    // Layers follow each other. Within each, any order is right: sort by pipeline.
     type SortKey = (FloatOrd, usize);
 
     fn sort_key(&self) -> Self::SortKey {
-        (FloatOrd(0.0), self.pipeline.id())
+        (FloatOrd(f32::from(self.layer as u8)), self.pipeline.id())
     }
 
     fn sort(items: &mut IndexMap<(Entity, MainEntity), Self, EntityHash>) {
-        items.sort_by_key(|_, item| (item.marked, item.pipeline.id()));
+        items.sort_by_key(|_, item| (item.layer, item.pipeline.id()));
     }
 
     fn recalculate_sort_keys(

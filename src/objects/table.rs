@@ -57,6 +57,13 @@ pub(crate) const HIDDEN_ONLY: u32 = 16;
 #[cfg(feature = "objects")]
 pub(crate) const UNSTYLED: u32 = 8;
 
+/// The transparent meshes that draw into the depth of effects. Both worlds have a copy.
+#[derive(Resource, Clone, Debug, Default, PartialEq)]
+pub(crate) struct DepthWrites {
+    /// The least alpha that is drawn, by main-world entity.
+    pub cutoffs: EntityHashMap<f32>,
+}
+
 /// Which components of objects there are in a world.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct ObjectChanges {

@@ -5,7 +5,7 @@ use bevy::{
     ecs::{
         entity::{Entity, EntityHashSet},
         query::With,
-        system::{Commands, Local, Query, Res},
+        system::{Commands, EntityCommands, Local, Query, Res},
     },
     render::{Extract, sync_world::RenderEntity},
     time::{Real, Time},
@@ -14,8 +14,8 @@ use bevy::{
 use super::{CameraPlan, fog::Fogs, light::Lights};
 use crate::{
     depth::{frame::DepthProjection, smoothing::CameraCuts},
-    effect::ViewPlan,
-    objects::{IdsWanted, ObjectStyles},
+    effect::{Plan, ViewPlan},
+    objects::{DepthWanted, DepthWrites, IdsWanted, ObjectStyles},
 };
 
 pub(super) fn extract_views(
@@ -34,7 +34,12 @@ pub(super) fn extract_views(
         >,
     >,
     (time, real_time): (Extract<Option<Res<Time>>>, Extract<Option<Res<Time<Real>>>>),
-    (objects, lights, fogs): (Extract<Res<ObjectStyles>>, Extract<Lights>, Extract<Fogs>),
+    (objects, writes, lights, fogs): (
+        Extract<Res<ObjectStyles>>,
+        Extract<Res<DepthWrites>>,
+        Extract<Lights>,
+        Extract<Fogs>,
+    ),
     stale: Query<Entity, With<ViewPlan>>,
     mut seen: Local<EntityHashSet>,
 ) {
@@ -47,17 +52,7 @@ pub(super) fn extract_views(
         let clip_from_view = camera.clip_from_view();
         seen.insert(render_entity);
         let mut view = commands.entity(render_entity);
-        // Set during extraction, so that meshes are queued in the first frame that reads
-        // ids: plans are chosen only after queueing.
-        let wanted = IdsWanted {
-            ids: asked.plan.draws_ids(),
-            layer: asked.plan.marks,
-        };
-        if wanted.ids || wanted.layer {
-            view.insert(wanted);
-        } else {
-            view.remove::<IdsWanted>();
-        }
+        want_objects(&mut view, (entity, &asked.plan), !writes.cutoffs.is_empty());
         view.insert(ViewPlan {
             camera: entity,
             plan: asked.plan.clone(),
@@ -75,7 +70,31 @@ pub(super) fn extract_views(
     }
     for entity in &stale {
         if !seen.contains(&entity) {
-            commands.entity(entity).remove::<(ViewPlan, IdsWanted)>();
+            commands
+                .entity(entity)
+                .remove::<(ViewPlan, IdsWanted, DepthWanted)>();
         }
+    }
+}
+
+/// Says what the pass of objects draws. During extraction, so that meshes are queued in the
+/// first frame that reads it: plans are chosen only after queueing.
+fn want_objects(view: &mut EntityCommands, (camera, plan): (Entity, &Plan), writes: bool) {
+    let wanted = IdsWanted {
+        ids: plan.draws_ids(),
+        layer: plan.marks,
+    };
+    if wanted.ids || wanted.layer {
+        view.insert(wanted);
+    } else {
+        view.remove::<IdsWanted>();
+    }
+    if writes && plan.needs_depth() {
+        view.insert(DepthWanted {
+            camera,
+            normals: plan.needs_normals(),
+        });
+    } else {
+        view.remove::<DepthWanted>();
     }
 }

@@ -52,6 +52,7 @@ mod smoothing_views;
 mod styles;
 mod surface_lines;
 mod transparent;
+mod transparent_lines;
 mod unstyled;
 mod upscaled;
 mod vignette;

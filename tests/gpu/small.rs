@@ -1,6 +1,7 @@
 //! A scene that renders quickly: three cubes on a ground, with sky behind.
 
 use bevy::{
+    app::Plugins,
     camera::{CameraProjection, PerspectiveProjection, RenderTarget, SubCameraView},
     core_pipeline::tonemapping::{DebandDither, Tonemapping},
     math::Vec3A,
@@ -63,7 +64,12 @@ impl Small {
     }
 
     pub fn with(options: HeadlessOptions, msaa: Msaa) -> Self {
-        let mut headless = Headless::new(options, (ComicsPlugin, BeforeStylize::Copy));
+        Self::with_plugins(options, msaa, ())
+    }
+
+    /// The same with more plugins.
+    pub fn with_plugins<M>(options: HeadlessOptions, msaa: Msaa, more: impl Plugins<M>) -> Self {
+        let mut headless = Headless::new(options, ((ComicsPlugin, BeforeStylize::Copy), more));
         headless
             .app
             .init_resource::<RenderErrors>()

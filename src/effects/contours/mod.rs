@@ -21,7 +21,8 @@ use crate::{
 /// ones (\[CS\] 3.2).
 ///
 /// Contours are found in the depth prepass, which contains opaque and alpha-masked
-/// geometry. The lines on a transparent surface are those of the geometry behind it.
+/// geometry. The lines on a transparent surface are those of the geometry behind it, unless it
+/// has the component `DepthWrite`.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

@@ -26,8 +26,9 @@ use crate::{
 /// computes the paper's equations instead.
 ///
 /// Geometry that is not in the depth prepass has no outlines: over a transparent
-/// surface, the lines of the geometry behind it are drawn. The components
-/// `OutlineStyle` and `NoOutlines` change the lines of single objects.
+/// surface, the lines of the geometry behind it are drawn, unless it has the component
+/// `DepthWrite`. The components `OutlineStyle` and `NoOutlines` change the lines of single
+/// objects.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

@@ -1,0 +1,164 @@
+//! Transparent meshes that take part in lines and effects: the component, and the meshes that
+//! have it.
+
+mod items;
+mod pass;
+
+use bevy::{
+    app::{App, PostUpdate},
+    asset::embedded_asset,
+    core_pipeline::schedule::{Core3d, Core3dSystems},
+    ecs::{
+        change_detection::DetectChangesMut,
+        component::Component,
+        entity::{Entity, EntityHashMap},
+        hierarchy::Children,
+        reflect::ReflectComponent,
+        schedule::IntoScheduleConfigs,
+        system::{Query, Res, ResMut},
+    },
+    reflect::{Reflect, std_traits::ReflectDefault},
+    render::{
+        Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderStartup,
+        render_resource::{SpecializedMeshPipelines, SpecializedRenderPipelines},
+    },
+};
+
+use self::{
+    items::{TransparentSpecializer, init_transparent_pipeline},
+    pass::{NormalCopyPipeline, draw_transparent_depth, init_normal_copy, prepare_own_surfaces},
+};
+use super::{components::inherit, ids::draw_object_ids, table::DepthWrites};
+use crate::{
+    schedule::{ComicsSystems, PrepareComics},
+    settings::{FieldRange, bounded},
+};
+
+pub(super) use items::TransparentItems;
+
+/// Lets a transparent mesh take part in lines and effects: it writes its depth, its normal and
+/// its [`object_id`](crate::object_id) for the effects of this crate.
+///
+/// Then it has outlines of its own, hides the lines of what is behind it, and the colour
+/// effects use its own distance. The engine's depth and its picture do not change: what is
+/// behind glass stays visible through it.
+///
+/// For meshes whose material has the alpha mode `Blend`, `Premultiplied`, `Add` or `Multiply`,
+/// or transmission. On other meshes it does nothing, because the engine's depth prepass has
+/// them already. Among several transparent meshes, the nearest one counts.
+///
+/// | material | pixels that are written |
+/// |---|---|
+/// | [`StandardMaterial`](bevy::pbr::StandardMaterial), `CartoonMaterial`, and extended materials with the prepass shader of the standard material | those with an alpha of at least [`alpha_cutoff`](Self::alpha_cutoff) |
+/// | any other | the whole mesh; the log says so once |
+/// | any whose `Material::enable_prepass` is `false` | none; the log says so once |
+///
+/// Creases follow the normals of the mesh without its normal map. `MeshSections` on it does
+/// nothing. The motion vectors of its pixels are those of what is behind it.
+///
+/// While such a mesh is visible, a view with effects that read depth copies its depth, and its
+/// normals if it reads them, and draws these meshes once more.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq)]
+pub struct DepthWrite {
+    /// The least alpha of a pixel that is written: the alpha of the base colour, times that of
+    /// its texture, times that of the vertex colours. Range 0.01 to 1, default 0.5. A number
+    /// that is not finite becomes the default.
+    #[reflect(@FieldRange::linear(0.01, 1.0))]
+    pub alpha_cutoff: f32,
+    /// Applies to all descendants as well, except for those with a `DepthWrite` of their own
+    /// and everything below them. Default: `false`.
+    pub inherit: bool,
+}
+
+impl Default for DepthWrite {
+    fn default() -> Self {
+        Self {
+            alpha_cutoff: 0.5,
+            inherit: false,
+        }
+    }
+}
+
+impl DepthWrite {
+    /// For an object and its descendants: [`inherit`](Self::inherit) is `true`.
+    pub const INHERITED: Self = Self {
+        alpha_cutoff: 0.5,
+        inherit: true,
+    };
+
+    /// The settings that are used: [`alpha_cutoff`](Self::alpha_cutoff) in its documented
+    /// range.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        Self {
+            alpha_cutoff: bounded(self.alpha_cutoff, 0.5, 0.01, 1.0),
+            ..self
+        }
+    }
+}
+
+/// Notes the meshes with the component, and those that inherit it.
+fn assign_depth_writes(
+    asking: Query<(Entity, &DepthWrite)>,
+    children: Query<&Children>,
+    mut writes: ResMut<DepthWrites>,
+) {
+    if asking.is_empty() && writes.cutoffs.is_empty() {
+        return;
+    }
+    let mut cutoffs = EntityHashMap::default();
+    for (entity, write) in &asking {
+        let write = write.sanitized();
+        let own = |child| asking.contains(child);
+        let said = (entity, write.alpha_cutoff);
+        inherit(&mut cutoffs, said, write.inherit, &children, own);
+    }
+    writes.set_if_neq(DepthWrites { cutoffs });
+}
+
+fn extract_depth_writes(main: Extract<Res<DepthWrites>>, mut writes: ResMut<DepthWrites>) {
+    if *writes != **main {
+        writes.clone_from(&main);
+    }
+}
+
+/// The part in the main world.
+pub(super) fn build(app: &mut App) {
+    app.register_type::<DepthWrite>()
+        .add_systems(PostUpdate, assign_depth_writes);
+}
+
+/// The shaders. Needs the engine's assets.
+pub(super) fn build_shaders(app: &mut App) {
+    embedded_asset!(app, "transparent.wgsl");
+    embedded_asset!(app, "copy_normals.wgsl");
+}
+
+/// Adds the pass. Needs the engine's `PbrPlugin`.
+pub(super) fn finish(app: &mut App) {
+    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+        return;
+    };
+    render_app
+        .init_gpu_resource::<SpecializedMeshPipelines<TransparentSpecializer>>()
+        .init_gpu_resource::<SpecializedRenderPipelines<NormalCopyPipeline>>()
+        .init_resource::<DepthWrites>()
+        .add_systems(
+            RenderStartup,
+            (
+                init_transparent_pipeline.after(bevy::pbr::init_prepass_pipeline),
+                init_normal_copy,
+            ),
+        )
+        .add_systems(ExtractSchedule, extract_depth_writes)
+        .add_systems(Render, prepare_own_surfaces.in_set(PrepareComics::Services))
+        .add_systems(
+            Core3d,
+            draw_transparent_depth
+                .after(draw_object_ids)
+                .after(Core3dSystems::Prepass)
+                .before(ComicsSystems::DepthRange)
+                .before(Core3dSystems::MainPass),
+        );
+}

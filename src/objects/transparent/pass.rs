@@ -1,0 +1,332 @@
+//! Copies the prepass textures of a view and draws its transparent meshes into the copies.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use bevy::{
+    asset::{AssetServer, Handle, load_embedded_asset},
+    camera::{MainPassResolutionOverride, Viewport},
+    core_pipeline::{
+        FullscreenShader,
+        core_3d::CORE_3D_DEPTH_FORMAT,
+        prepass::{NORMAL_PREPASS_FORMAT, ViewPrepassTextures},
+    },
+    ecs::{
+        entity::Entity,
+        query::{With, Without},
+        resource::Resource,
+        system::{Commands, Query, Res, ResMut},
+        world::World,
+    },
+    log::error_once,
+    render::{
+        camera::ExtractedCamera,
+        diagnostic::RecordDiagnostics,
+        render_phase::{SortedRenderPhase, ViewSortedRenderPhases},
+        render_resource::{
+            BindGroup, BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries,
+            ColorTargetState, ColorWrites, FragmentState, LoadOp, MultisampleState, Operations,
+            PipelineCache, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
+            RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor, ShaderStages,
+            SpecializedRenderPipeline, SpecializedRenderPipelines, StoreOp, TextureDescriptor,
+            TextureDimension, TextureFormat, TextureSampleType, TextureUsages, TextureView,
+            binding_types::{texture_2d, texture_2d_multisampled},
+        },
+        renderer::{RenderContext, RenderDevice, ViewQuery},
+        texture::{CachedTexture, TextureCache},
+        view::{ExtractedView, ViewDepthTexture},
+    },
+    shader::Shader,
+};
+
+use crate::{
+    depth::surfaces::{OwnNormals, OwnSurfaces},
+    diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
+    objects::{
+        DepthWanted, QueuedDepth, ViewObjectIds,
+        phase::{Layer, ObjectIdItem},
+    },
+};
+
+/// Copies the normal prepass. Its key is the number of samples per pixel.
+#[derive(Resource)]
+pub(super) struct NormalCopyPipeline {
+    fullscreen: FullscreenShader,
+    shader: Handle<Shader>,
+}
+
+pub(super) fn init_normal_copy(
+    mut commands: Commands,
+    fullscreen: Res<FullscreenShader>,
+    assets: Res<AssetServer>,
+) {
+    commands.insert_resource(NormalCopyPipeline {
+        fullscreen: fullscreen.clone(),
+        shader: load_embedded_asset!(assets.as_ref(), "copy_normals.wgsl"),
+    });
+}
+
+fn copy_layout(samples: u32) -> BindGroupLayoutDescriptor {
+    let float = TextureSampleType::Float { filterable: false };
+    let texture = if samples > 1 {
+        texture_2d_multisampled(float)
+    } else {
+        texture_2d(float)
+    };
+    let entries = BindGroupLayoutEntries::single(ShaderStages::FRAGMENT, texture);
+    BindGroupLayoutDescriptor::new("comics_copy_normals", &entries)
+}
+
+impl SpecializedRenderPipeline for NormalCopyPipeline {
+    type Key = u32;
+
+    fn specialize(&self, samples: u32) -> RenderPipelineDescriptor {
+        let multisampled = (samples > 1).then(|| "MULTISAMPLED".into());
+        RenderPipelineDescriptor {
+            label: Some("comics_copy_normals".into()),
+            layout: vec![copy_layout(samples)],
+            vertex: self.fullscreen.to_vertex_state(),
+            multisample: MultisampleState {
+                count: samples,
+                ..Default::default()
+            },
+            fragment: Some(FragmentState {
+                shader: self.shader.clone(),
+                shader_defs: multisampled.into_iter().collect(),
+                entry_point: Some("copy_normal".into()),
+                targets: vec![Some(ColorTargetState {
+                    format: NORMAL_PREPASS_FORMAT,
+                    blend: None,
+                    write_mask: ColorWrites::ALL,
+                })],
+            }),
+            ..Default::default()
+        }
+    }
+}
+
+/// Gets the textures of this frame from the engine's texture cache.
+pub(super) fn prepare_own_surfaces(
+    mut commands: Commands,
+    views: Query<(Entity, &QueuedDepth, Option<&ViewPrepassTextures>)>,
+    stale: Query<Entity, (With<OwnSurfaces>, Without<QueuedDepth>)>,
+    (mut textures, device): (ResMut<TextureCache>, Res<RenderDevice>),
+    (copy, cache): (Res<NormalCopyPipeline>, Res<PipelineCache>),
+    mut copies: ResMut<SpecializedRenderPipelines<NormalCopyPipeline>>,
+) {
+    for (view, queued, prepass) in &views {
+        let Some(depth) = prepass.and_then(|prepass| prepass.depth.as_ref()) else {
+            commands.entity(view).remove::<OwnSurfaces>();
+            continue;
+        };
+        let like = &depth.texture.texture;
+        let mut texture = |label, format: TextureFormat, usage: TextureUsages| {
+            let descriptor = TextureDescriptor {
+                label: Some(label),
+                size: like.size(),
+                mip_level_count: 1,
+                sample_count: like.sample_count(),
+                dimension: TextureDimension::D2,
+                format,
+                usage: usage | TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
+                view_formats: &[],
+            };
+            textures.get(&device, descriptor)
+        };
+        let copied = TextureUsages::COPY_DST;
+        let depth = texture("comics_own_depth", CORE_3D_DEPTH_FORMAT, copied);
+        let drawn = TextureUsages::empty();
+        let normal = queued.normals.then(|| OwnNormals {
+            texture: texture("comics_own_normals", NORMAL_PREPASS_FORMAT, drawn),
+            copy: copies.specialize(&cache, &copy, like.sample_count()),
+        });
+        commands.entity(view).insert(OwnSurfaces {
+            depth,
+            normal,
+            drawn: AtomicBool::new(false),
+        });
+    }
+    for view in &stale {
+        commands.entity(view).remove::<OwnSurfaces>();
+    }
+}
+
+/// The components of a view that the pass reads.
+type Parts<'a> = (
+    (&'a ViewDepthTexture, &'a ViewPrepassTextures),
+    (&'a QueuedDepth, &'a OwnSurfaces, Option<&'a ViewObjectIds>),
+);
+
+/// Draws the transparent meshes of a view into its own depth, normals and object ids.
+pub(in crate::objects) fn draw_transparent_depth(
+    world: &World,
+    view: ViewQuery<(
+        (
+            &ExtractedCamera,
+            &ExtractedView,
+            Option<&MainPassResolutionOverride>,
+            &DepthWanted,
+        ),
+        (&ViewDepthTexture, &ViewPrepassTextures),
+        (&QueuedDepth, &OwnSurfaces, Option<&ViewObjectIds>),
+    )>,
+    phases: Option<Res<ViewSortedRenderPhases<ObjectIdItem>>>,
+    (ledger, cache): (Res<StageLedger>, Res<PipelineCache>),
+    mut ctx: RenderContext,
+) {
+    let entity = view.entity();
+    let ((camera, extracted, resolution, wanted), textures, own) = view.into_inner();
+    let phase = phases
+        .as_ref()
+        .and_then(|phases| phases.get(&extracted.retained_view_entity));
+    let recorded = Targets::new((textures, own), &cache, &ctx).and_then(|targets| {
+        let phase = phase.ok_or(LeftOut::PipelineNotReady)?;
+        let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
+        targets.record(&mut ctx, (world, entity, phase), viewport)
+    });
+    let outcome = match recorded {
+        Ok(()) => {
+            own.1.drawn.store(true, Ordering::Relaxed);
+            StageOutcome::Ran
+        }
+        Err(reason) => StageOutcome::LeftOut(reason),
+    };
+    ledger.set(wanted.camera, ComicsStage::TransparentDepth, outcome);
+}
+
+/// The textures of the pass.
+struct Targets<'a> {
+    /// The engine's depth, and the copy.
+    depth: (&'a ViewDepthTexture, &'a CachedTexture),
+    ids: Option<&'a TextureView>,
+    normal: Option<(&'a TextureView, &'a RenderPipeline, BindGroup)>,
+}
+
+impl<'a> Targets<'a> {
+    /// An error if one of them is missing in this frame, or has another number of samples.
+    fn new(
+        ((depth, prepass), (queued, own, ids)): Parts<'a>,
+        cache: &'a PipelineCache,
+        ctx: &RenderContext,
+    ) -> Result<Self, LeftOut> {
+        let not_ready = LeftOut::PipelineNotReady;
+        let samples = own.depth.texture.sample_count();
+        let same = depth.texture.sample_count() == samples
+            && depth.texture.size() == own.depth.texture.size();
+        if !same {
+            return Err(LeftOut::SampleCountMismatch);
+        }
+        let ids = match (queued.ids, ids) {
+            (true, Some(ids)) if ids.texture.sample_count() == samples => Some(&ids.view),
+            (true, Some(_)) => return Err(LeftOut::SampleCountMismatch),
+            (true, None) => return Err(not_ready),
+            (false, _) => None,
+        };
+        let normal = match (&own.normal, &prepass.normal) {
+            (Some(own), Some(prepass)) => {
+                let layout = cache.get_bind_group_layout(&copy_layout(samples));
+                let source = BindGroupEntries::single(&prepass.texture.default_view);
+                let device = ctx.render_device();
+                let group = device.create_bind_group("comics_copy_normals", &layout, &source);
+                let pipeline = cache.get_render_pipeline(own.copy).ok_or(not_ready)?;
+                Some((&own.texture.default_view, pipeline, group))
+            }
+            (Some(_), None) => return Err(LeftOut::NoNormalPrepass),
+            (None, _) => None,
+        };
+        Ok(Self {
+            depth: (depth, &own.depth),
+            ids,
+            normal,
+        })
+    }
+
+    fn record<'w>(
+        &self,
+        ctx: &mut RenderContext,
+        (world, view, phase): (&'w World, Entity, &SortedRenderPhase<ObjectIdItem>),
+        viewport: Option<Viewport>,
+    ) -> Result<(), LeftOut> {
+        let diagnostics = ctx.diagnostic_recorder();
+        let diagnostics = diagnostics.as_deref();
+        let span = diagnostics.time_span(ctx.command_encoder(), "comics_transparent_depth");
+        self.copy(ctx);
+        let drawn = self.draw(ctx, (world, view, phase), viewport);
+        span.end(ctx.command_encoder());
+        drawn
+    }
+
+    /// Copies the depth and the normals of the prepass.
+    fn copy(&self, ctx: &mut RenderContext) {
+        let encoder = ctx.command_encoder();
+        let (engine, own) = self.depth;
+        encoder.copy_texture_to_texture(
+            engine.texture.as_image_copy(),
+            own.texture.as_image_copy(),
+            own.texture.size(),
+        );
+        let Some((target, pipeline, group)) = &self.normal else {
+            return;
+        };
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("comics_copy_normals"),
+            color_attachments: &[Some(attachment(target, false))],
+            ..Default::default()
+        });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+
+    fn draw<'w>(
+        &self,
+        ctx: &mut RenderContext,
+        (world, view, phase): (&'w World, Entity, &SortedRenderPhase<ObjectIdItem>),
+        viewport: Option<Viewport>,
+    ) -> Result<(), LeftOut> {
+        let range = ObjectIdItem::of(phase, Layer::OwnDepth);
+        let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
+            label: Some("comics_transparent_depth"),
+            color_attachments: &[
+                self.ids.map(|ids| attachment(ids, true)),
+                (self.normal.as_ref()).map(|(normal, ..)| attachment(normal, true)),
+            ],
+            depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
+                view: &self.depth.1.default_view,
+                depth_ops: Some(Operations {
+                    load: LoadOp::Load,
+                    store: StoreOp::Store,
+                }),
+                stencil_ops: None,
+            }),
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        if let Some(viewport) = viewport {
+            pass.set_camera_viewport(&viewport);
+        }
+        phase
+            .render_range(&mut pass, world, view, range)
+            .map_err(|error| {
+                error_once!("transparent meshes wrote no depth: {error:?}");
+                LeftOut::PipelineNotReady
+            })
+    }
+}
+
+/// `keep`: the texture keeps what it has.
+fn attachment(view: &TextureView, keep: bool) -> RenderPassColorAttachment<'_> {
+    RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: Operations {
+            load: if keep {
+                LoadOp::Load
+            } else {
+                LoadOp::Clear(Default::default())
+            },
+            store: StoreOp::Store,
+        },
+    }
+}
