@@ -214,3 +214,21 @@ fn lines_follow_what_moves() {
     }
     assert_eq!(small.errors(), 0);
 }
+
+/// All kinds of lines under the engine's anti-aliasing: the pass of object ids binds what the
+/// prepass with motion vectors binds.
+#[test]
+fn object_edges_are_drawn_under_temporal_anti_aliasing() {
+    let (mut small, _) = scene();
+    put(
+        &mut small,
+        Rectangle::new(20.0, 20.0),
+        Color::WHITE,
+        Transform::from_xyz(0.0, 0.0, -0.5 * SIZE as f32 + 0.01),
+    );
+    small.style(&ComicStyle::default().with(Outlines::default()));
+    small.headless.step(30);
+    assert!(total(&small) > 400.0, "{}", total(&small));
+    assert!(small.ran(bevy_comics::ComicsStage::ObjectIds));
+    assert_eq!(small.errors(), 0);
+}
