@@ -93,8 +93,8 @@ pub use lines::{
 };
 #[cfg(feature = "objects")]
 pub use objects::{
-    ATTRIBUTE_MESH_SECTION, MeshSections, NoOutlines, NoStyle, OutlineGroup, OutlineKinds,
-    OutlineStyle, ViewObjectIds, object_id,
+    ATTRIBUTE_MESH_SECTION, LineWidths, MeshSections, NoOutlines, NoStyle, OutlineGroup,
+    OutlineKinds, OutlineStyle, ViewLineWidths, ViewObjectIds, object_id,
 };
 pub use plugin::ComicsPlugin;
 pub use schedule::ComicsSystems;
@@ -146,5 +146,7 @@ pub mod prelude {
     #[cfg(feature = "cartoon")]
     pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};
     #[cfg(feature = "objects")]
-    pub use crate::{MeshSections, NoOutlines, NoStyle, OutlineGroup, OutlineKinds, OutlineStyle};
+    pub use crate::{
+        LineWidths, MeshSections, NoOutlines, NoStyle, OutlineGroup, OutlineKinds, OutlineStyle,
+    };
 }

@@ -154,6 +154,7 @@ impl Services<'_> {
                 camera: view.camera,
                 size,
                 samples,
+                pressure: plan.pressure(view.scale_factor),
             });
         Requests {
             range,
@@ -297,7 +298,7 @@ fn line_request(
     } else {
         0.0
     };
-    let reach = settings.reach(view.scale_factor, widest_object);
+    let reach = settings.reach(view.scale_factor, widest_object, plan.vertex_widths);
     let reference = view.projection.jump_reference(&view.clip_from_view);
     let grid_scale = view.scale_factor * uniform.depth_scale.max_element();
     Some(LineRequest {
@@ -326,6 +327,7 @@ fn line_request(
         ids: plan.draws_ids(),
         sections: plan.sections,
         object_styles: plan.object_styles,
+        widths: plan.draws_widths(),
         line_reach: line_reach(plan, facts).unwrap_or(0.0),
         jumps,
         map_flags: uniform.depth.flags,

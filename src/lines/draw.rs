@@ -26,7 +26,7 @@ use super::{
 use crate::{
     depth::prepare::ViewDepthRange,
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
-    objects::{ObjectStyleBuffer, ViewObjectIds},
+    objects::{ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
 };
 
 /// Records the passes that find the lines of the view and draw their ink.
@@ -35,7 +35,7 @@ pub(crate) fn find_lines(
         (&LineRequest, &LinePasses, &ViewLines),
         Option<&ViewPrepassTextures>,
         Option<&ViewDepthRange>,
-        Option<&ViewObjectIds>,
+        (Option<&ViewObjectIds>, Option<&ViewLineWidths>),
     )>,
     object_styles: Res<ObjectStyleBuffer>,
     ledger: Res<StageLedger>,

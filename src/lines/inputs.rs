@@ -26,7 +26,7 @@ use super::{
 use crate::{
     depth::prepare::ViewDepthRange,
     diagnostics::LeftOut,
-    objects::{ObjectStyleBuffer, ViewObjectIds},
+    objects::{ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
 };
 
 /// The components of a view that its line passes read.
@@ -34,7 +34,7 @@ pub(super) type ViewParts<'a> = (
     (&'a LineRequest, &'a LinePasses, &'a ViewLines),
     Option<&'a ViewPrepassTextures>,
     Option<&'a ViewDepthRange>,
-    Option<&'a ViewObjectIds>,
+    (Option<&'a ViewObjectIds>, Option<&'a ViewLineWidths>),
 );
 
 fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
@@ -51,28 +51,37 @@ pub(super) struct Inputs<'a> {
 
 const NOT_READY: LeftOut = LeftOut::PipelineNotReady;
 
-/// Textures with the depth, normal and object of every pixel.
+/// Textures with the depth, normal, object and width of lines of every pixel.
 pub(super) struct Texels<'a> {
     pub depth: &'a TextureView,
     pub normal: Option<&'a TextureView>,
     pub ids: Option<&'a TextureView>,
+    pub widths: Option<&'a TextureView>,
+}
+
+/// Which textures a pass reads besides the depth.
+#[derive(Clone, Copy, Default)]
+struct Reads {
+    normals: bool,
+    ids: bool,
+    widths: bool,
 }
 
 impl<'a> Texels<'a> {
-    /// Adds the bindings: the depth, and the normals and ids if they are read.
-    fn push(
-        self,
-        (normals, ids): (bool, bool),
-        entries: &mut Vec<BindGroupEntry<'a>>,
-    ) -> Result<(), LeftOut> {
+    /// Adds the bindings: the depth, and what else is read.
+    fn push(self, reads: Reads, entries: &mut Vec<BindGroupEntry<'a>>) -> Result<(), LeftOut> {
         entries.push(entry(2, self.depth.into_binding()));
-        if normals {
+        if reads.normals {
             let normal = self.normal.ok_or(NOT_READY)?;
             entries.push(entry(7, normal.into_binding()));
         }
-        if ids {
+        if reads.ids {
             let ids = self.ids.ok_or(NOT_READY)?;
             entries.push(entry(8, ids.into_binding()));
+        }
+        if reads.widths {
+            let widths = self.widths.ok_or(NOT_READY)?;
+            entries.push(entry(9, widths.into_binding()));
         }
         Ok(())
     }
@@ -114,7 +123,7 @@ impl Inputs<'_> {
 
     /// The prepass textures of the view.
     fn prepass(&self) -> Result<Texels<'_>, LeftOut> {
-        let ((request, ..), prepass, _, ids) = self.parts;
+        let ((request, ..), prepass, _, (ids, widths)) = self.parts;
         let prepass = prepass.ok_or(LeftOut::NoDepthPrepass)?;
         let depth = prepass.depth.as_ref().ok_or(LeftOut::NoDepthPrepass)?;
         if depth.texture.texture.sample_count() != request.samples {
@@ -125,6 +134,7 @@ impl Inputs<'_> {
             depth: &depth.texture.default_view,
             normal: normal.map(|normal| &normal.texture.default_view),
             ids: ids.map(|ids| &ids.view),
+            widths: widths.map(|widths| &widths.view),
         })
     }
 
@@ -144,7 +154,12 @@ impl Inputs<'_> {
             return Ok(None);
         };
         let mut entries = vec![entry(1, self.uniform()?)];
-        self.prepass()?.push((key.normals, key.ids), &mut entries)?;
+        let reads = Reads {
+            normals: key.normals,
+            ids: key.ids,
+            widths: key.widths,
+        };
+        self.prepass()?.push(reads, &mut entries)?;
         let group = self.group(&key.layout(), &entries);
         Ok(Some((resolved, (self.pipeline(*id)?, group))))
     }
@@ -158,7 +173,7 @@ impl Inputs<'_> {
         let motion = prepass.and_then(|prepass| prepass.motion_vectors.as_ref());
         let motion = motion.ok_or(NOT_READY)?;
         let mut entries = vec![entry(1, self.uniform()?)];
-        self.prepass()?.push((false, false), &mut entries)?;
+        self.prepass()?.push(Reads::default(), &mut entries)?;
         entries.push(entry(23, (&ink.default_view).into_binding()));
         entries.push(entry(24, (&motion.texture.default_view).into_binding()));
         entries.extend(memory.entries());
@@ -170,7 +185,12 @@ impl Inputs<'_> {
     fn entries(&self, key: &LineKey, normals: bool) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
         let (_, _, range, _) = self.parts;
         let mut entries = vec![entry(1, self.uniform()?)];
-        self.texels()?.push((normals, key.ids), &mut entries)?;
+        let reads = Reads {
+            normals,
+            ids: key.ids,
+            widths: key.weight.map,
+        };
+        self.texels()?.push(reads, &mut entries)?;
         if key.visible_range {
             let keys = range.and_then(ViewDepthRange::drawn).ok_or(NOT_READY)?;
             entries.push(entry(3, keys.as_entire_binding()));

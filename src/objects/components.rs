@@ -198,6 +198,7 @@ pub(crate) fn assign_object_styles(
     }
     let mut table = ObjectStyles {
         sections: styles.sections,
+        widths: styles.widths,
         ..Default::default()
     };
     for (entity, uniform) in &outlines {

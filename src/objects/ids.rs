@@ -41,12 +41,13 @@ use bevy::{
 };
 
 use super::{
-    ID_FORMAT, IdRequest, IdsWanted, ObjectStyles, ViewObjectIds,
+    ID_FORMAT, IdRequest, IdsWanted, ObjectStyles, ViewLineWidths, ViewObjectIds,
     groups::{ObjectGroups, extract_object_groups},
     items::{
         DrawId, DrawIdWithMaterial, IdItems, ObjectIdPipeline, ObjectIdSpecializer, ObjectTable,
         init_object_id_pipeline,
     },
+    line_widths::{WideMeshes, WidthViews, attachment, extract_wide_meshes, prepare_line_widths},
     phase::ObjectIdItem,
     sections::{SectionBuffer, SectionTables, extract_sections, prepare_sections},
 };
@@ -116,12 +117,20 @@ fn prepare_object_ids(
 type WithIds = Or<(With<IdsWanted>, With<IdRequest>)>;
 
 fn queue_object_ids(
-    views: Query<(&ExtractedView, &RenderVisibleEntities, &Msaa), WithIds>,
-    mut items: IdItems,
+    views: Query<
+        (
+            (&ExtractedView, &RenderVisibleEntities, &Msaa),
+            (Option<&IdsWanted>, Option<&IdRequest>),
+        ),
+        WithIds,
+    >,
+    (mut items, mut with_widths): (IdItems, ResMut<WidthViews>),
     mut phases: ResMut<ViewSortedRenderPhases<ObjectIdItem>>,
 ) {
     let mut live: HashSet<RetainedViewEntity> = HashSet::default();
-    for (view, visible, msaa) in &views {
+    with_widths.clear();
+    for ((view, visible, msaa), (wanted, before)) in &views {
+        let widths = with_widths.decide(view.retained_view_entity, wanted, before);
         live.insert(view.retained_view_entity);
         phases.prepare_for_new_frame(view.retained_view_entity);
         let Some(phase) = phases.get_mut(&view.retained_view_entity) else {
@@ -131,7 +140,7 @@ fn queue_object_ids(
             continue;
         };
         for (render_entity, main_entity) in class.iter_visible() {
-            if let Some(item) = items.item((*render_entity, *main_entity), *msaa) {
+            if let Some(item) = items.item((*render_entity, *main_entity), *msaa, widths) {
                 phase.add_transient(item);
             }
         }
@@ -183,14 +192,14 @@ fn draw_object_ids(
         &ExtractedView,
         &ViewDepthTexture,
         Option<&MainPassResolutionOverride>,
-        (&IdRequest, &ViewObjectIds),
+        (&IdRequest, &ViewObjectIds, Option<&ViewLineWidths>),
     )>,
     phases: Option<Res<ViewSortedRenderPhases<ObjectIdItem>>>,
     ledger: Res<StageLedger>,
     mut ctx: RenderContext,
 ) {
     let entity = view.entity();
-    let (camera, extracted, depth, resolution, (request, target)) = view.into_inner();
+    let (camera, extracted, depth, resolution, (request, target, widths)) = view.into_inner();
     let Some(phase) = phases
         .as_ref()
         .and_then(|phases| phases.get(&extracted.retained_view_entity))
@@ -202,17 +211,19 @@ fn draw_object_ids(
         let outcome = StageOutcome::LeftOut(LeftOut::SampleCountMismatch);
         return ledger.set(request.camera, ComicsStage::ObjectIds, outcome);
     }
+    let ids = RenderPassColorAttachment {
+        view: &target.view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: Operations {
+            load: LoadOp::Clear(Default::default()),
+            store: StoreOp::Store,
+        },
+    };
+    let count = if widths.is_some() { 2 } else { 1 };
     let mut render_pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
         label: Some("comics_object_ids"),
-        color_attachments: &[Some(RenderPassColorAttachment {
-            view: &target.view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: Operations {
-                load: LoadOp::Clear(Default::default()),
-                store: StoreOp::Store,
-            },
-        })],
+        color_attachments: &[Some(ids), widths.map(attachment)][..count],
         depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
         timestamp_writes: None,
         occlusion_query_set: None,
@@ -239,12 +250,13 @@ pub(crate) fn build(app: &mut App) {
         return;
     };
     render_app
-        .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer<false>>>()
-        .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer<true>>>()
+        .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer>>()
         .init_gpu_resource::<SectionBuffer>()
         .init_resource::<SectionTables>()
         .init_gpu_resource::<ObjectTable>()
         .init_resource::<ObjectGroups>()
+        .init_resource::<WideMeshes>()
+        .init_resource::<WidthViews>()
         .init_resource::<DrawFunctions<ObjectIdItem>>()
         .add_render_command::<ObjectIdItem, DrawId>()
         .add_render_command::<ObjectIdItem, DrawIdWithMaterial>()
@@ -258,6 +270,7 @@ pub(crate) fn build(app: &mut App) {
                 super::table::extract_object_styles,
                 extract_object_groups,
                 extract_sections,
+                extract_wide_meshes,
             ),
         )
         .add_systems(
@@ -266,7 +279,9 @@ pub(crate) fn build(app: &mut App) {
                 prepare_sections.in_set(RenderSystems::PrepareAssets),
                 queue_object_ids.in_set(RenderSystems::QueueMeshes),
                 sort_phase_system::<ObjectIdItem>.in_set(RenderSystems::PhaseSort),
-                prepare_object_table.in_set(RenderSystems::PrepareBindGroups),
+                (prepare_object_table, prepare_line_widths)
+                    .chain()
+                    .in_set(RenderSystems::PrepareBindGroups),
                 prepare_object_ids.in_set(PrepareComics::Services),
             ),
         )

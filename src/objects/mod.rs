@@ -8,10 +8,13 @@ mod ids;
 #[cfg(feature = "objects")]
 mod items;
 #[cfg(feature = "objects")]
+mod line_widths;
+#[cfg(feature = "objects")]
 mod phase;
 #[cfg(feature = "objects")]
 mod sections;
 mod table;
+mod widths;
 
 #[cfg(feature = "objects")]
 mod components;
@@ -22,9 +25,13 @@ pub use groups::OutlineGroup;
 #[cfg(feature = "objects")]
 pub use ids::object_id;
 #[cfg(feature = "objects")]
+pub use line_widths::LineWidths;
+#[cfg(feature = "objects")]
 pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
 
 pub(crate) use table::{ObjectChanges, ObjectStyleBuffer, ObjectStyles};
+pub use widths::ViewLineWidths;
+pub(crate) use widths::{LARGEST_FACTOR, Pressure, WIDTH_FORMAT, widths_entry};
 
 use bevy::{
     app::{App, Plugin},
@@ -55,7 +62,14 @@ pub(crate) const ID_FORMAT: bevy::render::render_resource::TextureFormat =
 
 /// On a view in the render world: the plan of its camera reads object ids.
 #[derive(Component)]
-pub(crate) struct IdsWanted;
+#[cfg_attr(
+    not(feature = "objects"),
+    allow(dead_code, reason = "only the feature `objects` draws ids")
+)]
+pub(crate) struct IdsWanted {
+    /// It reads the widths of lines too, see [`ViewLineWidths`].
+    pub widths: bool,
+}
 
 /// On a view in the render world: a request for object ids, written in every frame by
 /// [`PrepareComics::Choose`].
@@ -69,6 +83,8 @@ pub(crate) struct IdRequest {
     /// Size in pixels of the depth texture, and its samples per pixel.
     pub size: UVec2,
     pub samples: u32,
+    /// The pressure of lines, if the widths of lines are requested too.
+    pub pressure: Option<Pressure>,
 }
 
 /// On a view in the render world whose object ids are drawn: the object at each pixel.
@@ -125,7 +141,16 @@ impl Plugin for ObjectsPlugin {
             app.register_type::<OutlineStyle>()
                 .register_type::<NoOutlines>()
                 .register_type::<NoStyle>()
-                .add_systems(bevy::app::PostUpdate, components::assign_object_styles);
+                .register_type::<LineWidths>()
+                .init_resource::<line_widths::WideMeshes>()
+                .add_systems(
+                    bevy::app::PostUpdate,
+                    (
+                        components::assign_object_styles,
+                        line_widths::find_wide_meshes,
+                    )
+                        .chain(),
+                );
             groups::build(app);
             sections::build(app);
         }
@@ -147,8 +172,10 @@ impl ObjectsPlugin {
     /// The part that needs the engine's renderer.
     pub(crate) fn build_render(app: &mut App) {
         load_shader_library!(app, "objects.wgsl");
+        load_shader_library!(app, "pressure.wgsl");
         #[cfg(feature = "objects")]
         {
+            load_shader_library!(app, "widths.wgsl");
             bevy::asset::embedded_asset!(app, "ids.wgsl");
             bevy::asset::embedded_asset!(app, "sections.wgsl");
         }

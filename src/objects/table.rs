@@ -45,6 +45,8 @@ pub(crate) struct ObjectStyles {
     pub slots: EntityHashMap<u8>,
     /// Some mesh is divided into sections.
     pub sections: bool,
+    /// The vertices of some mesh say how wide its lines are.
+    pub widths: bool,
 }
 
 /// The bit of `ObjectStyleUniform::kinds` of objects that the colour effects leave alone.
@@ -58,6 +60,8 @@ pub(crate) struct ObjectChanges {
     pub any: bool,
     /// Some mesh is divided into sections.
     pub sections: bool,
+    /// The vertices of some mesh say how wide its lines are.
+    pub widths: bool,
     /// The colour effects leave some object alone.
     pub unstyled: bool,
 }
@@ -75,6 +79,7 @@ impl ObjectStyles {
         ObjectChanges {
             any: self.any(),
             sections: self.sections,
+            widths: self.widths,
             unstyled,
         }
     }

@@ -273,7 +273,7 @@ fn a_million_floats_in_every_field_of_the_lines() {
         assert_eq!(outlines.sanitized().specks, specks.clamp(1, 3));
     }
     type Field = fn(&mut LineWeight) -> &mut f32;
-    let weights: [(&str, f32, f32, Field); 10] = [
+    let weights: [(&str, f32, f32, Field); 12] = [
         ("outer", 0.0, 4.0, |w| &mut w.outer),
         ("inner", 0.0, 4.0, |w| &mut w.inner),
         ("crease", 0.0, 4.0, |w| &mut w.crease),
@@ -284,6 +284,8 @@ fn a_million_floats_in_every_field_of_the_lines() {
         ("nib", 0.1, 1.0, |w| &mut w.nib),
         ("nib_angle", 0.0, 180.0, |w| &mut w.nib_angle),
         ("taper", 0.0, 48.0, |w| &mut w.taper),
+        ("pressure", 0.0, 1.0, |w| &mut w.pressure),
+        ("pressure_length", 10.0, 500.0, |w| &mut w.pressure_length),
     ];
     for (name, low, high, field) in weights {
         fuzz(&format!("LineWeight::{name}"), low, high, |x| {

@@ -50,7 +50,9 @@ pub(super) fn extract_views(
         // Set during extraction, so that meshes are queued in the first frame that reads
         // ids: plans are chosen only after queueing.
         if asked.plan.draws_ids() {
-            view.insert(IdsWanted);
+            view.insert(IdsWanted {
+                widths: asked.plan.draws_widths(),
+            });
         } else {
             view.remove::<IdsWanted>();
         }
