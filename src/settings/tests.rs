@@ -260,9 +260,8 @@ fn a_million_floats_in_every_field_of_the_lines() {
     let boil = outlines(|o, x| o.boil.amplitude = x);
     fuzz("LineBoil::amplitude", 0.0, 3.0, |x| boil(x).boil.amplitude);
     let boil = outlines(|o, x| o.boil.wavelength = x);
-    fuzz("LineBoil::wavelength", 20.0, 120.0, |x| {
-        boil(x).boil.wavelength
-    });
+    let wavelength = |x| boil(x).boil.wavelength;
+    fuzz("LineBoil::wavelength", 20.0, 120.0, wavelength);
     let boil = outlines(|o, x| o.boil.rate = x);
     fuzz("LineBoil::rate", 0.0, 60.0, |x| boil(x).boil.rate);
     for specks in [0, 1, 2, 3, 4, u32::MAX] {
@@ -301,10 +300,9 @@ fn a_million_floats_in_every_field_of_the_lines() {
             s.sanitized()
         }
     };
-    let threshold = silhouettes(|s, x| s.threshold = x);
-    fuzz("Silhouettes::threshold", 1e-6, 1.0, |x| {
-        threshold(x).threshold
-    });
+    let silhouette = silhouettes(|s, x| s.threshold = x);
+    let threshold = |x| silhouette(x).threshold;
+    fuzz("Silhouettes::threshold", 1e-6, 1.0, threshold);
     let limit = silhouettes(|s, x| s.edge_limit = x);
     fuzz("Silhouettes::edge_limit", 0.01, 0.99, |x| {
         limit(x).edge_limit

@@ -452,5 +452,8 @@ fn every_kind_of_outline_composes_and_validates() {
     for view in subsets(&["OBLIQUE", "NORMALS", "OBJECT_IDS", "WIDTH_MAP"]) {
         check(&resolve, &[&["DEPTH", "MULTISAMPLED"], &view[..]].concat());
     }
-    module(&shader("objects/ids.wgsl"), &[]).expect("the ids");
+    for widths in [&[][..], &["LINE_WIDTHS"], &["LINE_WIDTHS", "VERTEX_WIDTHS"]] {
+        let ids = module(&shader("objects/ids.wgsl"), widths);
+        ids.unwrap_or_else(|error| panic!("{widths:?}: {error}"));
+    }
 }
