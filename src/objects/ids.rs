@@ -279,10 +279,11 @@ pub(crate) fn build(app: &mut App) {
                 prepare_sections.in_set(RenderSystems::PrepareAssets),
                 queue_object_ids.in_set(RenderSystems::QueueMeshes),
                 sort_phase_system::<ObjectIdItem>.in_set(RenderSystems::PhaseSort),
-                (prepare_object_table, prepare_line_widths)
-                    .chain()
-                    .in_set(RenderSystems::PrepareBindGroups),
+                prepare_object_table.in_set(RenderSystems::PrepareBindGroups),
                 prepare_object_ids.in_set(PrepareComics::Services),
+                prepare_line_widths
+                    .in_set(PrepareComics::Services)
+                    .after(prepare_object_table),
             ),
         )
         .add_systems(

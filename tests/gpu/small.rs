@@ -67,7 +67,8 @@ impl Small {
         headless
             .app
             .init_resource::<RenderErrors>()
-            .insert_resource(RenderErrorHandler(|_, main, _| {
+            .insert_resource(RenderErrorHandler(|error, main, _| {
+                println!("{}", error.description);
                 main.resource_mut::<RenderErrors>().0 += 1;
                 RenderErrorPolicy::Ignore
             }));
