@@ -93,8 +93,9 @@ pub use lines::{
 };
 #[cfg(feature = "objects")]
 pub use objects::{
-    ATTRIBUTE_MESH_SECTION, DepthWrite, MeshSections, NoOutlines, NoStyle, OutlineGroup,
-    OutlineKinds, OutlineStyle, SelectionOutline, ViewObjectIds, XRayOutline, object_id,
+    ATTRIBUTE_MESH_SECTION, DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle,
+    OutlineGroup, OutlineKinds, OutlineStyle, SelectionOutline, ViewLineWidths, ViewObjectIds,
+    XRayOutline, object_id,
 };
 pub use plugin::ComicsPlugin;
 pub use schedule::ComicsSystems;
@@ -147,7 +148,7 @@ pub mod prelude {
     pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};
     #[cfg(feature = "objects")]
     pub use crate::{
-        DepthWrite, MeshSections, NoOutlines, NoStyle, OutlineGroup, OutlineKinds, OutlineStyle,
-        SelectionOutline, XRayOutline,
+        DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle, OutlineGroup, OutlineKinds,
+        OutlineStyle, SelectionOutline, XRayOutline,
     };
 }

@@ -51,7 +51,7 @@ pub(super) fn line_request(
     } else {
         0.0
     };
-    let reach = settings.reach(view.scale_factor, widest_object);
+    let reach = settings.reach(view.scale_factor, widest_object, plan.vertex_widths);
     let reference = view.projection.jump_reference(&view.clip_from_view);
     let grid_scale = view.scale_factor * uniform.depth_scale.max_element();
     Some(LineRequest {
@@ -81,6 +81,7 @@ pub(super) fn line_request(
         sections: plan.sections,
         marks: false,
         object_styles: plan.object_styles,
+        widths: plan.draws_widths(),
         line_reach: line_reach(plan, facts).unwrap_or(0.0),
         jumps,
         map_flags: uniform.depth.flags,

@@ -10,8 +10,8 @@ use crate::{
     depth::{DepthHistogram, DepthMap, VisibleDepthRange},
     diagnostics::LeftOut,
     finish::{DebugView, Finish, SplitView, StyleWeight},
-    lines::{Creases, LineFog, LineSettings, Silhouettes, has_fog},
-    objects::ObjectChanges,
+    lines::{Creases, LineFog, LineSettings, LineWeight, Silhouettes, has_fog},
+    objects::{ObjectChanges, Pressure},
 };
 
 /// An effect in a camera's plan.
@@ -46,6 +46,8 @@ pub(crate) struct Plan {
     pub object_styles: bool,
     /// Some mesh is divided into sections, and their borders are creases.
     pub sections: bool,
+    /// The vertices of some mesh say how wide its lines are.
+    pub vertex_widths: bool,
     /// The colour effects leave some object alone.
     pub unstyled: bool,
     /// Some object is outlined by itself.
@@ -76,6 +78,7 @@ impl Plan {
                 .sanitized(),
             object_styles: objects.any,
             sections: objects.sections,
+            vertex_widths: objects.widths,
             unstyled: objects.unstyled,
             marks: objects.marks,
             fog: has_fog(camera),
@@ -197,6 +200,7 @@ impl Plan {
         }
         self.object_styles &= self.lines.is_some();
         self.sections &= self.lines.is_some_and(|lines| lines.has_measured_creases());
+        self.vertex_widths &= self.lines.is_some_and(|lines| lines.has_wide_lines());
         let color = |effect: &dyn AnyEffect| effect.effect_type().stage <= EffectStage::Color;
         let colors = self.drawn().any(color);
         self.unstyled &= colors;
@@ -364,7 +368,28 @@ impl Plan {
             let weighs = lines.silhouettes.is_some() && lines.weight.reads_ids();
             lines.objects.is_some() || self.object_styles || self.sections || weighs
         });
-        cfg!(feature = "objects") && (lines || self.needs().contains(Needs::IDS))
+        let ids = lines || self.draws_widths() || self.needs().contains(Needs::IDS);
+        cfg!(feature = "objects") && ids
+    }
+
+    /// Whether the widths of lines are drawn with the ids of objects.
+    pub fn draws_widths(&self) -> bool {
+        let presses = self
+            .lines
+            .is_some_and(|lines| lines.has_wide_lines() && lines.weight.pressure > 0.0);
+        cfg!(feature = "objects") && (presses || self.vertex_widths)
+    }
+
+    /// The pressure of the lines whose widths are drawn. `scale`: physical pixels per logical
+    /// pixel.
+    pub fn pressure(&self, scale: f32) -> Option<Pressure> {
+        let lines = self.lines.filter(|_| self.draws_widths())?;
+        let LineWeight {
+            pressure,
+            pressure_length,
+            ..
+        } = lines.weight;
+        Some(Pressure::new(pressure, pressure_length * scale))
     }
 }
 

@@ -164,6 +164,7 @@ impl Services<'_> {
                 camera: view.camera,
                 size,
                 samples,
+                pressure: plan.pressure(view.scale_factor),
             });
         #[cfg(feature = "objects")]
         let marks = {

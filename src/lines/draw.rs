@@ -30,7 +30,7 @@ use crate::objects::{MarkStyleBuffer, ViewLayer};
 use crate::{
     depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
-    objects::{ObjectStyleBuffer, ViewObjectIds},
+    objects::{ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
 };
 
 /// Records the passes that find the lines of the marked objects of the view, and draw their
@@ -52,7 +52,7 @@ pub(crate) fn find_marks(
     let inputs = Inputs {
         parts: (
             parts,
-            Sources::new((Some(prepass), None), None).layer(layer),
+            Sources::new((Some(prepass), None), None, None).layer(layer),
             None,
         ),
         styles: &styles.0,
@@ -74,17 +74,17 @@ pub(crate) fn find_lines(
         (&LineRequest, &LinePasses, &ViewLines),
         (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),
         Option<&ViewDepthRange>,
-        Option<&ViewObjectIds>,
+        (Option<&ViewObjectIds>, Option<&ViewLineWidths>),
     )>,
     object_styles: Res<ObjectStyleBuffer>,
     ledger: Res<StageLedger>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
-    let (parts, prepass, range, ids) = view.into_inner();
+    let (parts, prepass, range, (ids, widths)) = view.into_inner();
     let (request, passes, lines) = parts;
     let inputs = Inputs {
-        parts: (parts, Sources::new(prepass, ids), range),
+        parts: (parts, Sources::new(prepass, ids, widths), range),
         styles: &object_styles,
         cache: &cache,
         device: ctx.render_device().clone(),

@@ -28,7 +28,7 @@ use crate::{
         surfaces::{SurfaceParts, Surfaces},
     },
     diagnostics::LeftOut,
-    objects::{ObjectStyleBuffer, ViewObjectIds},
+    objects::{ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
 };
 
 /// The textures of the scene that lines are found in.
@@ -37,19 +37,25 @@ pub(super) struct Sources<'a> {
     depth: Option<&'a CachedTexture>,
     normal: Option<&'a TextureView>,
     ids: Option<&'a TextureView>,
+    widths: Option<&'a TextureView>,
     motion: Option<&'a TextureView>,
     /// Depth of the picture, which hides marked objects.
     picture: Option<&'a TextureView>,
 }
 
 impl<'a> Sources<'a> {
-    /// The surfaces of the view, and the object ids.
-    pub fn new(surfaces: SurfaceParts<'a>, ids: Option<&'a ViewObjectIds>) -> Self {
+    /// The surfaces of the view, the object ids and the widths of lines.
+    pub fn new(
+        surfaces: SurfaceParts<'a>,
+        ids: Option<&'a ViewObjectIds>,
+        widths: Option<&'a ViewLineWidths>,
+    ) -> Self {
         let surfaces = Surfaces::from(surfaces);
         Self {
             depth: surfaces.depth(),
             normal: surfaces.normal().map(|normal| &normal.default_view),
             ids: ids.map(|ids| &ids.view),
+            widths: widths.map(|widths| &widths.view),
             motion: surfaces.motion().map(|motion| &motion.default_view),
             picture: None,
         }
@@ -62,6 +68,7 @@ impl<'a> Sources<'a> {
             depth: Some(&layer.depth),
             normal: None,
             ids: Some(&layer.ids.default_view),
+            widths: None,
             motion: self.motion,
             picture: self.depth.map(|depth| &depth.default_view),
         }
@@ -90,28 +97,37 @@ pub(super) struct Inputs<'a> {
 
 const NOT_READY: LeftOut = LeftOut::PipelineNotReady;
 
-/// Textures with the depth, normal and object of every pixel.
+/// Textures with the depth, normal, object and width of lines of every pixel.
 pub(super) struct Texels<'a> {
     pub depth: &'a TextureView,
     pub normal: Option<&'a TextureView>,
     pub ids: Option<&'a TextureView>,
+    pub widths: Option<&'a TextureView>,
+}
+
+/// Which textures a pass reads besides the depth.
+#[derive(Clone, Copy, Default)]
+struct Reads {
+    normals: bool,
+    ids: bool,
+    widths: bool,
 }
 
 impl<'a> Texels<'a> {
-    /// Adds the bindings: the depth, and the normals and ids if they are read.
-    fn push(
-        self,
-        (normals, ids): (bool, bool),
-        entries: &mut Vec<BindGroupEntry<'a>>,
-    ) -> Result<(), LeftOut> {
+    /// Adds the bindings: the depth, and what else is read.
+    fn push(self, reads: Reads, entries: &mut Vec<BindGroupEntry<'a>>) -> Result<(), LeftOut> {
         entries.push(entry(2, self.depth.into_binding()));
-        if normals {
+        if reads.normals {
             let normal = self.normal.ok_or(NOT_READY)?;
             entries.push(entry(7, normal.into_binding()));
         }
-        if ids {
+        if reads.ids {
             let ids = self.ids.ok_or(NOT_READY)?;
             entries.push(entry(8, ids.into_binding()));
+        }
+        if reads.widths {
+            let widths = self.widths.ok_or(NOT_READY)?;
+            entries.push(entry(9, widths.into_binding()));
         }
         Ok(())
     }
@@ -162,6 +178,7 @@ impl Inputs<'_> {
             depth: &depth.default_view,
             normal: sources.normal,
             ids: sources.ids,
+            widths: sources.widths,
         })
     }
 
@@ -181,7 +198,12 @@ impl Inputs<'_> {
             return Ok(None);
         };
         let mut entries = vec![entry(1, self.uniform()?)];
-        self.prepass()?.push((key.normals, key.ids), &mut entries)?;
+        let reads = Reads {
+            normals: key.normals,
+            ids: key.ids,
+            widths: key.widths,
+        };
+        self.prepass()?.push(reads, &mut entries)?;
         let group = self.group(&key.layout(), &entries);
         Ok(Some((resolved, (self.pipeline(*id)?, group))))
     }
@@ -194,7 +216,7 @@ impl Inputs<'_> {
         };
         let motion = sources.motion.ok_or(NOT_READY)?;
         let mut entries = vec![entry(1, self.uniform()?)];
-        self.prepass()?.push((false, false), &mut entries)?;
+        self.prepass()?.push(Reads::default(), &mut entries)?;
         entries.push(entry(23, (&ink.default_view).into_binding()));
         entries.push(entry(24, motion.into_binding()));
         entries.extend(memory.entries());
@@ -206,7 +228,12 @@ impl Inputs<'_> {
     fn entries(&self, key: &LineKey, normals: bool) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
         let (_, sources, range) = self.parts;
         let mut entries = vec![entry(1, self.uniform()?)];
-        self.texels()?.push((normals, key.ids), &mut entries)?;
+        let reads = Reads {
+            normals,
+            ids: key.ids,
+            widths: key.weight.map,
+        };
+        self.texels()?.push(reads, &mut entries)?;
         if key.visible_range {
             let keys = range.and_then(ViewDepthRange::drawn).ok_or(NOT_READY)?;
             entries.push(entry(3, keys.as_entire_binding()));

@@ -103,6 +103,7 @@ impl LineKey {
         } else {
             WeightKey {
                 fog: request.fog.is_some(),
+                map: request.widths,
                 ..WeightKey::new(lines)
             }
         };
@@ -276,6 +277,8 @@ impl LineKey {
                 (weight.kinds, "KIND_WEIGHT"),
                 (weight.light, "LIGHT_WEIGHT"),
                 (weight.light, "NORMALS"),
+                (weight.map, "WIDTH_MAP"),
+                (weight.light || weight.map, "SURFACE_WEIGHT"),
                 (weight.perspective, "PERSPECTIVE_WEIGHT"),
                 (self.visible_range, "VISIBLE_RANGE"),
                 (weight.nib, "NIB_WEIGHT"),

@@ -16,7 +16,7 @@ use super::{
     key::{BLOCK_FORMAT, LineKey, Search},
     request::LinePassUniform,
 };
-use crate::objects::{ids_entry, object_styles_entry};
+use crate::objects::{ids_entry, object_styles_entry, widths_entry};
 
 impl LineKey {
     /// The layout entries of what finding reads. `normals`: the normals are read.
@@ -44,6 +44,9 @@ impl LineKey {
         }
         if self.marks {
             entries.push(picture_entry(self.multisampled_picture, stages));
+        }
+        if self.weight.map {
+            entries.push(widths_entry(false, stages));
         }
         entries
     }

@@ -69,6 +69,8 @@ pub(crate) struct LineRequest {
     pub marks: bool,
     /// Some object has an `OutlineStyle` or `NoOutlines`.
     pub object_styles: bool,
+    /// The widths of lines are drawn and can be read.
+    pub widths: bool,
     /// Physical pixels from a pixel within which the fused pass reads lines.
     pub line_reach: f32,
     /// Places that count as inked, besides lines: those of [`Extent::AtJumps`].

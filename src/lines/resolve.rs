@@ -27,7 +27,7 @@ use super::{
     prepare::texture,
     request::{LinePassUniform, LineRequest},
 };
-use crate::objects::{ID_FORMAT, ids_entry};
+use crate::objects::{ID_FORMAT, WIDTH_FORMAT, ids_entry, widths_entry};
 
 /// A texel of the engine's depth prepass, which is a `Depth32Float`.
 const DEPTH_FORMAT: TextureFormat = TextureFormat::R32Float;
@@ -36,9 +36,10 @@ const DEPTH_FORMAT: TextureFormat = TextureFormat::R32Float;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ResolveKey {
     oblique: bool,
-    /// Whether the normals and the object ids are read.
+    /// Whether the normals, the object ids and the widths of lines are read.
     pub normals: bool,
     pub ids: bool,
+    pub widths: bool,
 }
 
 impl ResolveKey {
@@ -47,15 +48,17 @@ impl ResolveKey {
             oblique: key.oblique,
             normals: key.creases || key.faithful[1] || key.weight.light,
             ids: key.ids,
+            widths: key.weight.map,
         }
     }
 
     /// Formats by `@location`; `None`: it is not written.
-    fn formats(self) -> [Option<TextureFormat>; 3] {
+    fn formats(self) -> [Option<TextureFormat>; 4] {
         [
             Some(DEPTH_FORMAT),
             self.normals.then_some(NORMAL_PREPASS_FORMAT),
             self.ids.then_some(ID_FORMAT),
+            self.widths.then_some(WIDTH_FORMAT),
         ]
     }
 
@@ -72,6 +75,9 @@ impl ResolveKey {
         if self.ids {
             entries.push(ids_entry(true));
         }
+        if self.widths {
+            entries.push(widths_entry(true, stages));
+        }
         BindGroupLayoutDescriptor::new("comics_resolve_samples", &entries)
     }
 
@@ -82,6 +88,7 @@ impl ResolveKey {
             (self.oblique, "OBLIQUE"),
             (self.normals, "NORMALS"),
             (self.ids, "OBJECT_IDS"),
+            (self.widths, "WIDTH_MAP"),
         ]
         .into_iter()
         .filter(|(on, _)| *on)
@@ -134,6 +141,7 @@ pub(crate) struct Resolved {
     pub depth: CachedTexture,
     pub normal: Option<CachedTexture>,
     pub ids: Option<CachedTexture>,
+    pub widths: Option<CachedTexture>,
 }
 
 impl Resolved {
@@ -143,13 +151,14 @@ impl Resolved {
         key: ResolveKey,
         size: UVec2,
     ) -> Self {
-        let [_, normal, ids] = key.formats();
+        let [_, normal, ids, widths] = key.formats();
         let drawn = TextureUsages::RENDER_ATTACHMENT;
         let mut new = |label, format| texture((textures, device), label, size, (format, drawn));
         Self {
             depth: new("comics_resolved_depth", DEPTH_FORMAT),
             normal: normal.map(|format| new("comics_resolved_normals", format)),
             ids: ids.map(|format| new("comics_resolved_ids", format)),
+            widths: widths.map(|format| new("comics_resolved_widths", format)),
         }
     }
 
@@ -158,6 +167,7 @@ impl Resolved {
             depth: &self.depth.default_view,
             normal: self.normal.as_ref().map(|normal| &normal.default_view),
             ids: self.ids.as_ref().map(|ids| &ids.default_view),
+            widths: self.widths.as_ref().map(|widths| &widths.default_view),
         }
     }
 
@@ -174,6 +184,7 @@ impl Resolved {
                 Some(cleared(&self.depth)),
                 self.normal.as_ref().map(cleared),
                 self.ids.as_ref().map(cleared),
+                self.widths.as_ref().map(cleared),
             ],
             ..Default::default()
         });

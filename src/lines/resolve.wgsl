@@ -1,5 +1,5 @@
 // Picks one sample of every pixel of a multisampled view for its depth, and one for its
-// normal and object. The passes that find and draw lines read these.
+// normal, object and width of lines. The passes that find and draw lines read these.
 //
 // The depth is that of the nearest one: an object that covers any sample of a pixel has the pixel, so
 // wires down to 0.4 pixels (at 4 samples) have lines without gaps. At a fixed sample,
@@ -21,6 +21,9 @@
 #ifdef OBJECT_IDS
 #import bevy_comics::objects::texel_object
 #endif
+#ifdef WIDTH_MAP
+#import bevy_comics::objects::width_texel
+#endif
 
 // Texels as the prepasses store them.
 struct Resolved {
@@ -30,6 +33,9 @@ struct Resolved {
 #endif
 #ifdef OBJECT_IDS
     @location(2) object: vec2<u32>,
+#endif
+#ifdef WIDTH_MAP
+    @location(3) width: f32,
 #endif
 }
 
@@ -67,6 +73,9 @@ fn resolve(@builtin(position) position: vec4<f32>) -> Resolved {
 #endif
 #ifdef OBJECT_IDS
     out.object = texel_object(at, surface);
+#endif
+#ifdef WIDTH_MAP
+    out.width = width_texel(at, surface);
 #endif
     return out;
 }

@@ -136,7 +136,7 @@ impl LineSettings {
     }
 
     /// Whether any kind uses `width`. The faithful forms have their own width.
-    fn has_wide_lines(&self) -> bool {
+    pub(crate) fn has_wide_lines(&self) -> bool {
         self.objects.is_some()
             || self.silhouettes.is_some_and(|s| s.form != Form::Faithful)
             || self.creases.is_some_and(|c| c.form != Form::Faithful)
@@ -144,8 +144,9 @@ impl LineSettings {
 
     /// Distance in physical pixels within which lines are searched around a pixel.
     /// `scale` is physical pixels per logical pixel. `widest_object` is the width of
-    /// the widest line of any `OutlineStyle`, in logical pixels.
-    pub(crate) fn reach(&self, scale: f32, widest_object: f32) -> i32 {
+    /// the widest line of any `OutlineStyle`, in logical pixels. `vertex_widths`: the
+    /// vertices of some mesh say how wide its lines are.
+    pub(crate) fn reach(&self, scale: f32, widest_object: f32, vertex_widths: bool) -> i32 {
         let own = if self.has_wide_lines() {
             self.width
         } else {
@@ -156,7 +157,7 @@ impl LineSettings {
             return 0;
         }
         // Without compute shaders, all weights are 1.
-        let largest = self.weight.largest().max(1.0);
+        let largest = self.weight.largest(vertex_widths).max(1.0);
         super::reach(0.5 * widest * largest * scale)
     }
 

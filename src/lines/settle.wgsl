@@ -37,6 +37,9 @@
 #ifdef OBJECT_IDS
 #import bevy_comics::objects::texel_object
 #endif
+#ifdef WIDTH_MAP
+#import bevy_comics::objects::texel_width
+#endif
 #endif
 
 @group(0) @binding(18) var<storage, read_write> crack_words: array<vec2<u32>>;
@@ -150,33 +153,41 @@ fn is_outer(owner: vec2<i32>, beyond: vec2<i32>) -> bool {
 #endif
 }
 
-#ifdef LIGHT_WEIGHT
-// The factor of the light. Of a silhouette: the mean over the pixels around the crack, three
-// along it and two on both sides, so that it changes gradually along the line; what lies
-// behind a jump in depth does not count, because the line belongs to the surface in front.
-// Of other lines: the mean over both sides. `here` and `there`: the pixels of the crack in
-// the depth texture.
-fn lit_weight(here: vec2<i32>, there: vec2<i32>, crack: vec3<i32>, silhouette: bool) -> f32 {
-    let w = line_pass.weight;
+#ifdef SURFACE_WEIGHT
+// The factor of the light, times that of the width that was drawn beside the object ids. Of a
+// silhouette: the mean over the pixels around the crack, three along it and two on both sides,
+// so that it changes gradually along the line; what lies behind a jump in depth does not
+// count, because the line belongs to the surface in front. Of other lines: the mean over both
+// sides. `here` and `there`: the pixels of the crack in the depth texture.
+fn surface_weight(here: vec2<i32>, there: vec2<i32>, crack: vec3<i32>, silhouette: bool) -> f32 {
     let s = line_pass.settings;
     let rect = line_pass.grid.rect;
     let along = vec2<i32>(along_crack(crack));
     let near = max(texel_depth(here, 0), texel_depth(there, 0));
     let least = near - s.jump * (s.reference_factor * near + s.reference_constant);
-    var sum = 0.0;
-    var count = 0.0;
+    // Sums of the factors of the light and of the width, and what they are sums of.
+    var sums = vec2(0.0);
+    var counts = vec2(0.0);
     for (var i = 0; i < 12; i++) {
         let at = here + (i % 3 - 1) * along + (i / 3 - 1) * (there - here);
         let inside = all(at >= rect.xy) && all(at < rect.xy + rect.zw);
         let pixel = clamp(at, rect.xy, rect.xy + rect.zw - 1);
-        let n = texel_normal(pixel, 0);
         let beside = all(pixel == here) || all(pixel == there);
-        let seen = inside && n.w > 0.0 && (silhouette || beside);
-        let counts = seen && texel_depth(pixel, 0) >= least;
-        sum += select(0.0, light_weight(w, dot(n.xyz, w.to_light)), counts);
-        count += select(0.0, 1.0, counts);
+        let seen = inside && (silhouette || beside) && texel_depth(pixel, 0) >= least;
+#ifdef LIGHT_WEIGHT
+        let w = line_pass.weight;
+        let n = texel_normal(pixel, 0);
+        let lit = seen && n.w > 0.0;
+        sums.x += select(0.0, light_weight(w, dot(n.xyz, w.to_light)), lit);
+        counts.x += select(0.0, 1.0, lit);
+#endif
+#ifdef WIDTH_MAP
+        sums.y += select(0.0, texel_width(pixel, 0), seen);
+        counts.y += select(0.0, 1.0, seen);
+#endif
     }
-    return select(1.0, sum / max(count, 1.0), count > 0.0);
+    let factors = select(vec2(1.0), sums / max(counts, vec2(1.0)), counts > vec2(0.0));
+    return factors.x * factors.y;
 }
 #endif
 
@@ -207,8 +218,8 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
 #ifdef KIND_WEIGHT
     factor *= kind_weight(w, packed, is_outer(owner, here + there - owner));
 #endif
-#ifdef LIGHT_WEIGHT
-    factor *= lit_weight(here, there, crack, (packed & SILHOUETTE) != 0u);
+#ifdef SURFACE_WEIGHT
+    factor *= surface_weight(here, there, crack, (packed & SILHOUETTE) != 0u);
 #endif
 #ifdef PERSPECTIVE_WEIGHT
     factor *= perspective_weight(w, depth_frame(), texel_depth(owner, 0));

@@ -8,7 +8,10 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use super::settings::LineSettings;
-use crate::settings::{FieldRange, bounded};
+use crate::{
+    objects::LARGEST_FACTOR,
+    settings::{FieldRange, blend_ratio, bounded},
+};
 
 /// How wide lines are in different places. Every number is a factor of the line's width, or
 /// says how a factor is found; the factors are multiplied. With the defaults, all are 1.
@@ -68,6 +71,16 @@ pub struct LineWeight {
     /// At most 64 physical pixels. Range 0 (blunt ends) to 48, default 0.
     #[reflect(@FieldRange::linear(0.0, 48.0).unit("px"))]
     pub taper: f32,
+    /// By what fraction lines become wider and narrower, as if the pen was pressed harder
+    /// here and there; the mean width stays. The places are fixed to the object: they move,
+    /// turn and grow with it, but do not follow skins and morph targets. Needs the crate's
+    /// feature `objects`; object ids are drawn. Range 0 (even) to 1, default 0.
+    #[reflect(@FieldRange::FRACTION)]
+    pub pressure: f32,
+    /// Length over which the pressure changes, in logical pixels, whatever the distance of
+    /// the object. Range 10 to 500, default 60.
+    #[reflect(@FieldRange::logarithmic(10.0, 500.0).unit("px"))]
+    pub pressure_length: f32,
 }
 
 /// The most by which [`LineWeight::perspective`] multiplies a width: that of `weight.wgsl`.
@@ -88,6 +101,8 @@ impl LineWeight {
         nib: 1.0,
         nib_angle: 40.0,
         taper: 0.0,
+        pressure: 0.0,
+        pressure_length: 60.0,
     };
 
     /// The settings that are used.
@@ -105,6 +120,8 @@ impl LineWeight {
             nib: bounded(self.nib, 1.0, 0.1, 1.0),
             nib_angle: bounded(self.nib_angle, 40.0, 0.0, 180.0),
             taper: bounded(self.taper, 0.0, 0.0, 48.0),
+            pressure: bounded(self.pressure, 0.0, 0.0, 1.0),
+            pressure_length: bounded(self.pressure_length, 60.0, 10.0, 500.0),
         }
     }
 
@@ -122,6 +139,8 @@ impl LineWeight {
             nib: self.nib.lerp(other.nib, t),
             nib_angle: self.nib_angle.lerp(other.nib_angle, t),
             taper: self.taper.lerp(other.taper, t),
+            pressure: self.pressure.lerp(other.pressure, t),
+            pressure_length: blend_ratio(self.pressure_length, other.pressure_length, t),
         }
     }
 
@@ -135,12 +154,18 @@ impl LineWeight {
         self.outer != self.inner
     }
 
-    /// The largest factor of any line.
-    pub(crate) fn largest(&self) -> f32 {
+    /// The largest factor of any line. `vertex_widths`: the vertices of some mesh say how
+    /// wide its lines are.
+    pub(crate) fn largest(&self, vertex_widths: bool) -> f32 {
         let kinds = [self.outer, self.inner, self.crease, self.object];
         let kind = kinds.into_iter().fold(0.0, f32::max);
         let nearest = if self.perspective > 0.0 { NEAREST } else { 1.0 };
-        kind * (1.0 + self.shade) * nearest
+        let drawn = if vertex_widths {
+            LARGEST_FACTOR
+        } else {
+            1.0 + self.pressure
+        };
+        kind * (1.0 + self.shade) * nearest * drawn
     }
 
     /// The settings as shaders take them. `scale`: pixels of the grid per logical pixel;
@@ -200,6 +225,8 @@ pub(crate) struct WeightKey {
     pub perspective: bool,
     pub nib: bool,
     pub taper: bool,
+    /// The widths that are drawn with object ids: pressure, and those of vertices.
+    pub map: bool,
     /// Lines are thinner where they crowd.
     pub budget: bool,
     /// Lines fade into fog.
@@ -217,6 +244,7 @@ impl WeightKey {
             perspective: weight.perspective > 0.0,
             nib: weight.nib < 1.0 && lines.smooth,
             taper: weight.taper > 0.0,
+            map: false,
             budget: lines.budget < 1.0,
             fog: false,
         }
@@ -230,6 +258,6 @@ impl WeightKey {
     /// Whether the width changes along a line. Where lines crowd, a shift of half a pixel
     /// cannot be seen.
     pub fn varies(self) -> bool {
-        self.light || self.perspective || self.nib || self.taper
+        self.light || self.perspective || self.nib || self.taper || self.map
     }
 }

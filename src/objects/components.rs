@@ -199,6 +199,7 @@ pub(crate) fn assign_object_styles(
     let mut table = ObjectStyles {
         sections: styles.sections,
         marks: styles.marks,
+        widths: styles.widths,
         ..Default::default()
     };
     for (entity, uniform) in &outlines {

@@ -45,13 +45,14 @@ use bevy::{
 
 use super::{
     DepthWanted, DepthWrites, ID_FORMAT, IdRequest, IdsWanted, ObjectStyles, QueuedDepth,
-    ViewObjectIds,
+    ViewLineWidths, ViewObjectIds,
     groups::{ObjectGroups, extract_object_groups},
     items::{
-        DrawId, DrawIdWithMaterial, IdItems, ObjectIdPipeline, ObjectIdSpecializer, ObjectTable,
-        init_object_id_pipeline,
+        DrawId, DrawIdWithMaterial, Drawn, IdItems, ObjectIdPipeline, ObjectIdSpecializer,
+        ObjectTable, init_object_id_pipeline,
     },
     layer::{LayerRequest, MarkSpecializer, ViewLayer, prepare_layers},
+    line_widths::{WideMeshes, WidthViews, attachment, extract_wide_meshes, prepare_line_widths},
     marks::{Marks, extract_marks},
     phase::{Layer, ObjectIdItem},
     sections::{SectionBuffer, SectionTables, extract_sections, prepare_sections},
@@ -130,30 +131,41 @@ type WithIds = Or<(
 
 /// What is drawn for a view, and how its prepass is drawn.
 type Queued<'w> = (
-    (Option<&'w IdsWanted>, Has<IdRequest>, Has<LayerRequest>),
+    (
+        Option<&'w IdsWanted>,
+        Option<&'w IdRequest>,
+        Has<LayerRequest>,
+    ),
     (Option<&'w DepthWanted>, Option<&'w QueuedDepth>),
     (&'w Msaa, Has<NormalPrepass>, Has<MotionVectorPrepass>),
 );
 
 /// The items of an object are made by these.
-type Items<'w> = (IdItems<'w>, TransparentItems<'w>, Res<'w, Marks>);
+type Items<'w> = (
+    IdItems<'w>,
+    TransparentItems<'w>,
+    Res<'w, Marks>,
+    ResMut<'w, WidthViews>,
+);
 
 fn queue_object_ids(
     mut commands: Commands,
     views: Query<(Entity, &ExtractedView, &RenderVisibleEntities, Queued), WithIds>,
     stale: Query<Entity, (With<QueuedDepth>, Without<DepthWanted>)>,
-    (mut items, mut transparent, marks): Items,
+    (mut items, mut transparent, marks, mut with_widths): Items,
     mut phases: ResMut<ViewSortedRenderPhases<ObjectIdItem>>,
 ) {
     let mut live: HashSet<RetainedViewEntity> = HashSet::default();
+    with_widths.clear();
     for view in &stale {
         commands.entity(view).remove::<QueuedDepth>();
     }
     for (entity, view, visible, (ids, (wanted, queued), (msaa, has_normals, has_motion))) in &views
     {
+        let widths = with_widths.decide(view.retained_view_entity, ids.0, ids.1);
         let asked = ids.0.copied().unwrap_or_default();
         let layer = asked.layer || ids.2;
-        let ids = (asked.ids, ids.1);
+        let ids = (asked.ids, ids.1.is_some());
         live.insert(view.retained_view_entity);
         phases.prepare_for_new_frame(view.retained_view_entity);
         let Some(phase) = phases.get_mut(&view.retained_view_entity) else {
@@ -173,8 +185,9 @@ fn queue_object_ids(
         let mut writes = None;
         for (render_entity, main_entity) in class.iter_visible() {
             let object = (*render_entity, *main_entity);
+            let drawn = Drawn::Ids { widths };
             if (ids.0 || ids.1)
-                && let Some(item) = items.item(object, key, false)
+                && let Some(item) = items.item(object, key, drawn)
             {
                 phase.add_transient(item);
             } else if let Some(targets) = targets
@@ -184,7 +197,7 @@ fn queue_object_ids(
                 writes = Some(targets);
             }
             let marked = layer && marks.of(main_entity.id()).is_some();
-            if marked && let Some(item) = items.item(object, key, true) {
+            if marked && let Some(item) = items.item(object, key, Drawn::Marked) {
                 // Under a key of its own, because the object has an item already.
                 let own = (Entity::PLACEHOLDER, *main_entity);
                 phase.items.insert(own, item);
@@ -257,7 +270,7 @@ pub(super) fn draw_object_ids(
         &ExtractedView,
         &ViewDepthTexture,
         Option<&MainPassResolutionOverride>,
-        Option<(&IdRequest, &ViewObjectIds)>,
+        Option<(&IdRequest, &ViewObjectIds, Option<&ViewLineWidths>)>,
         Option<(&LayerRequest, &ViewLayer)>,
     )>,
     phases: Option<Res<ViewSortedRenderPhases<ObjectIdItem>>>,
@@ -287,11 +300,13 @@ pub(super) fn draw_object_ids(
             LeftOut::PipelineNotReady
         })
     };
-    if let Some((request, target)) = ids {
+    if let Some((request, target, widths)) = ids {
+        let targets = [Some(cleared(&target.view)), widths.map(attachment)];
+        let count = if widths.is_some() { 2 } else { 1 };
         let outcome = draw(
             RenderPassDescriptor {
                 label: Some("comics_object_ids"),
-                color_attachments: &[Some(cleared(&target.view))],
+                color_attachments: &targets[..count],
                 depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
                 ..Default::default()
             },
@@ -331,14 +346,15 @@ pub(crate) fn build(app: &mut App) {
         return;
     };
     render_app
-        .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer<false>>>()
-        .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer<true>>>()
+        .init_gpu_resource::<SpecializedMeshPipelines<ObjectIdSpecializer>>()
         .init_gpu_resource::<SpecializedMeshPipelines<MarkSpecializer>>()
         .init_resource::<Marks>()
         .init_gpu_resource::<SectionBuffer>()
         .init_resource::<SectionTables>()
         .init_gpu_resource::<ObjectTable>()
         .init_resource::<ObjectGroups>()
+        .init_resource::<WideMeshes>()
+        .init_resource::<WidthViews>()
         .init_resource::<DrawFunctions<ObjectIdItem>>()
         .add_render_command::<ObjectIdItem, DrawId>()
         .add_render_command::<ObjectIdItem, DrawIdWithMaterial>()
@@ -353,6 +369,7 @@ pub(crate) fn build(app: &mut App) {
                 extract_object_groups,
                 extract_sections,
                 extract_marks,
+                extract_wide_meshes,
             ),
         )
         .add_systems(
@@ -368,6 +385,9 @@ pub(crate) fn build(app: &mut App) {
                     super::update_mark_styles,
                 )
                     .in_set(PrepareComics::Services),
+                prepare_line_widths
+                    .in_set(PrepareComics::Services)
+                    .after(prepare_object_table),
             ),
         )
         .add_systems(

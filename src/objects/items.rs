@@ -5,15 +5,18 @@ use bevy::{
     ecs::{
         entity::Entity,
         resource::Resource,
-        system::{Commands, Res, ResMut, SystemParam, SystemParamItem, lifetimeless::SRes},
+        system::{
+            Commands, Res, ResMut, SystemParam, SystemParamItem,
+            lifetimeless::{Read, SRes},
+        },
     },
-    log::error_once,
+    log::{error_once, warn_once},
     material::{
         AlphaMode, MaterialProperties,
         key::{ErasedMaterialPipelineKey, ErasedMeshPipelineKey},
     },
     math::UVec4,
-    mesh::MeshVertexBufferLayoutRef,
+    mesh::{Mesh, MeshVertexBufferLayoutRef},
     pbr::{
         DrawMesh, MeshPipelineKey, PreparedMaterial, PrepassFragmentShader, PrepassPipeline,
         PrepassPipelineSpecializer, PrepassVertexShader, RenderMaterialInstances,
@@ -26,23 +29,25 @@ use bevy::{
         mesh::RenderMesh,
         render_asset::RenderAssets,
         render_phase::{
-            DrawFunctions, PhaseItem, PhaseItemExtraIndex, RenderCommand, RenderCommandResult,
+            DrawFunctions, PhaseItemExtraIndex, RenderCommand, RenderCommandResult,
             SetItemPipeline, TrackedRenderPass,
         },
         render_resource::{
             BindGroup, BindGroupLayoutDescriptor, BindGroupLayoutEntries, ColorTargetState,
             ColorWrites, CompareFunction, FragmentState, PipelineCache, RenderPipelineDescriptor,
             ShaderStages, SpecializedMeshPipeline, SpecializedMeshPipelineError,
-            SpecializedMeshPipelines, StorageBuffer, binding_types::storage_buffer_read_only,
+            SpecializedMeshPipelines, StorageBuffer, TextureFormat,
+            binding_types::{storage_buffer_read_only, uniform_buffer},
         },
         sync_world::MainEntity,
     },
-    shader::Shader,
+    shader::{Shader, ShaderDefVal},
 };
 
 use super::{
-    ID_FORMAT,
+    ID_FORMAT, Pressure, WIDTH_FORMAT,
     layer::MarkSpecializer,
+    line_widths::{WideMeshes, WidthBindings},
     phase::{Layer, ObjectIdItem},
     sections::{SectionBuffer, SectionTables},
 };
@@ -52,6 +57,8 @@ use super::{
 pub(super) struct ObjectIdPipeline {
     pub prepass: PrepassPipeline,
     pub layout: BindGroupLayoutDescriptor,
+    /// The layout if the widths of lines are drawn too.
+    pub with_widths: BindGroupLayoutDescriptor,
     /// Without and with sections.
     shaders: [Handle<Shader>; 2],
 }
@@ -73,6 +80,17 @@ pub(super) fn init_object_id_pipeline(
                 ),
             ),
         ),
+        with_widths: BindGroupLayoutDescriptor::new(
+            "comics_objects_with_widths",
+            &BindGroupLayoutEntries::sequential(
+                ShaderStages::FRAGMENT,
+                (
+                    storage_buffer_read_only::<Vec<UVec4>>(false),
+                    storage_buffer_read_only::<Vec<u32>>(false),
+                    uniform_buffer::<Pressure>(false),
+                ),
+            ),
+        ),
         shaders: [
             load_embedded_asset!(assets.as_ref(), "ids.wgsl"),
             load_embedded_asset!(assets.as_ref(), "sections.wgsl"),
@@ -80,49 +98,89 @@ pub(super) fn init_object_id_pipeline(
     });
 }
 
+/// What is drawn of a mesh besides its id.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(super) struct IdVariant {
+    /// The mesh is divided into sections.
+    sections: bool,
+    /// The widths of lines are drawn too.
+    widths: bool,
+    /// They are those of the mesh's vertices.
+    vertex_widths: bool,
+}
+
+impl IdVariant {
+    fn defs(self) -> impl Iterator<Item = ShaderDefVal> {
+        [
+            (self.widths, "LINE_WIDTHS"),
+            (self.vertex_widths, "VERTEX_WIDTHS"),
+        ]
+        .into_iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| name.into())
+    }
+}
+
 impl ObjectIdPipeline {
-    fn specializer<const SECTIONS: bool>(
+    fn specializer(
         &self,
         properties: &Arc<MaterialProperties>,
-    ) -> ObjectIdSpecializer<SECTIONS> {
+        variant: IdVariant,
+    ) -> ObjectIdSpecializer {
+        let layout = if variant.widths {
+            &self.with_widths
+        } else {
+            &self.layout
+        };
         ObjectIdSpecializer {
             prepass: PrepassPipelineSpecializer {
                 pipeline: self.prepass.clone(),
                 properties: properties.clone(),
             },
-            layout: self.layout.clone(),
-            shader: self.shaders[usize::from(SECTIONS)].clone(),
+            layout: layout.clone(),
+            shader: self.shaders[usize::from(variant.sections)].clone(),
         }
     }
 }
 
-/// `SECTIONS`: for meshes that are divided into sections.
-pub(super) struct ObjectIdSpecializer<const SECTIONS: bool> {
+pub(super) struct ObjectIdSpecializer {
     prepass: PrepassPipelineSpecializer,
     layout: BindGroupLayoutDescriptor,
     shader: Handle<Shader>,
 }
 
-impl<const SECTIONS: bool> SpecializedMeshPipeline for ObjectIdSpecializer<SECTIONS> {
-    type Key = ErasedMaterialPipelineKey;
+impl SpecializedMeshPipeline for ObjectIdSpecializer {
+    type Key = (ErasedMaterialPipelineKey, IdVariant);
 
     fn specialize(
         &self,
-        key: Self::Key,
+        (key, variant): Self::Key,
         layout: &MeshVertexBufferLayoutRef,
     ) -> Result<RenderPipelineDescriptor, SpecializedMeshPipelineError> {
         let mut descriptor = self.prepass.specialize(key, layout)?;
         descriptor.label = Some("comics_object_ids".into());
         descriptor.layout[1] = self.layout.clone();
-        descriptor.fragment = Some(FragmentState {
-            shader: self.shader.clone(),
-            entry_point: Some("object_id".into()),
-            targets: vec![Some(ColorTargetState {
-                format: ID_FORMAT,
+        let target = |format| {
+            Some(ColorTargetState {
+                format,
                 blend: None,
                 write_mask: ColorWrites::ALL,
-            })],
-            ..Default::default()
+            })
+        };
+        let formats: &[TextureFormat] = if variant.widths {
+            &[ID_FORMAT, WIDTH_FORMAT]
+        } else {
+            &[ID_FORMAT]
+        };
+        // The engine's modules of meshes and views depend on the definitions.
+        let engine = variant
+            .widths
+            .then(|| descriptor.vertex.shader_defs.clone());
+        descriptor.fragment = Some(FragmentState {
+            shader: self.shader.clone(),
+            shader_defs: engine.into_iter().flatten().chain(variant.defs()).collect(),
+            entry_point: Some("object_id".into()),
+            targets: formats.iter().copied().map(target).collect(),
         });
         if let Some(depth) = &mut descriptor.depth_stencil {
             depth.depth_write_enabled = Some(false);
@@ -142,19 +200,24 @@ pub(super) struct ObjectTable {
 
 pub(super) struct SetObjectTable<const I: usize>;
 
-impl<P: PhaseItem, const I: usize> RenderCommand<P> for SetObjectTable<I> {
+impl<const I: usize> RenderCommand<ObjectIdItem> for SetObjectTable<I> {
     type Param = SRes<ObjectTable>;
-    type ViewQuery = ();
+    type ViewQuery = Option<Read<WidthBindings>>;
     type ItemQuery = ();
 
     fn render<'w>(
-        _item: &P,
-        _view: (),
+        item: &ObjectIdItem,
+        widths: Option<&'w WidthBindings>,
         _entity: Option<()>,
         table: SystemParamItem<'w, '_, Self::Param>,
         pass: &mut TrackedRenderPass<'w>,
     ) -> RenderCommandResult {
-        let Some(bind_group) = &table.into_inner().bind_group else {
+        // Only the pipelines of ids draw widths.
+        let bind_group = match widths.filter(|_| item.layer == Layer::Prepass) {
+            Some(widths) => &widths.0,
+            None => &table.into_inner().bind_group,
+        };
+        let Some(bind_group) = bind_group else {
             return RenderCommandResult::Skip;
         };
         pass.set_bind_group(I, bind_group, &[]);
@@ -198,14 +261,23 @@ pub(super) fn in_prepass(properties: &MaterialProperties) -> bool {
         )
 }
 
+/// What is drawn of an object.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Drawn {
+    /// Its id, and perhaps the widths of its lines.
+    Ids { widths: bool },
+    /// Its depth and id in the layer of marked objects.
+    Marked,
+}
+
 /// Makes the phase items of objects.
 #[derive(SystemParam)]
 pub(super) struct IdItems<'w> {
     draw_functions: Res<'w, DrawFunctions<ObjectIdItem>>,
     shared: Res<'w, ObjectIdPipeline>,
-    pipelines: ResMut<'w, SpecializedMeshPipelines<ObjectIdSpecializer<false>>>,
+    pipelines: ResMut<'w, SpecializedMeshPipelines<ObjectIdSpecializer>>,
     marked: ResMut<'w, SpecializedMeshPipelines<MarkSpecializer>>,
-    with_sections: ResMut<'w, SpecializedMeshPipelines<ObjectIdSpecializer<true>>>,
+    wide: Res<'w, WideMeshes>,
     sections: (Res<'w, SectionBuffer>, Res<'w, SectionTables>),
     cache: Res<'w, PipelineCache>,
     meshes: Res<'w, RenderAssets<RenderMesh>>,
@@ -215,13 +287,26 @@ pub(super) struct IdItems<'w> {
 }
 
 impl IdItems<'_> {
-    /// The phase item of an object; `None` if the depth prepass does not draw it. `marked`: in
-    /// the layer of marked objects.
+    fn variant(&self, entity: Entity, mesh: &RenderMesh, widths: bool) -> IdVariant {
+        let (buffer, tables) = &self.sections;
+        let wanted = widths && self.wide.contains(entity);
+        let has_colors = mesh.layout.0.contains(Mesh::ATTRIBUTE_COLOR);
+        if wanted && !has_colors {
+            warn_once!("`LineWidths` does nothing on {entity}: its mesh has no vertex colours");
+        }
+        IdVariant {
+            sections: buffer.start(tables, entity).is_some(),
+            widths,
+            vertex_widths: wanted && has_colors,
+        }
+    }
+
+    /// The phase item of an object; `None` if the depth prepass does not draw it.
     pub fn item(
         &mut self,
         object: (Entity, MainEntity),
         view_key: MeshPipelineKey,
-        marked: bool,
+        drawn: Drawn,
     ) -> Option<ObjectIdItem> {
         let instance = self.instances.render_mesh_queue_data(object.1)?;
         let mesh = self.meshes.get(instance.mesh_asset_id())?;
@@ -243,20 +328,24 @@ impl IdItems<'_> {
             mesh_key: ErasedMeshPipelineKey::new(mesh_key),
             material_key: material.properties.material_key.clone(),
         };
-        let (buffer, tables) = &self.sections;
-        let cache = &self.cache;
-        let pipeline = if marked {
-            let specializer = MarkSpecializer(self.shared.specializer(&material.properties));
-            let pipelines = &mut self.marked;
-            pipelines.specialize(cache, &specializer, key, &mesh.layout)
-        } else if buffer.start(tables, object.1.id()).is_some() {
-            let specializer = self.shared.specializer(&material.properties);
-            let pipelines = &mut self.with_sections;
-            pipelines.specialize(cache, &specializer, key, &mesh.layout)
-        } else {
-            let specializer = self.shared.specializer(&material.properties);
-            let pipelines = &mut self.pipelines;
-            pipelines.specialize(cache, &specializer, key, &mesh.layout)
+        let (pipeline, layer) = match drawn {
+            Drawn::Marked => {
+                let variant = IdVariant::default();
+                let specializer = self.shared.specializer(&material.properties, variant);
+                let specializer = MarkSpecializer(specializer);
+                let pipelines = &mut self.marked;
+                let key = (key, variant);
+                let pipeline = pipelines.specialize(&self.cache, &specializer, key, &mesh.layout);
+                (pipeline, Layer::Marked)
+            }
+            Drawn::Ids { widths } => {
+                let variant = self.variant(object.1.id(), mesh, widths);
+                let specializer = self.shared.specializer(&material.properties, variant);
+                let pipelines = &mut self.pipelines;
+                let key = (key, variant);
+                let pipeline = pipelines.specialize(&self.cache, &specializer, key, &mesh.layout);
+                (pipeline, Layer::Prepass)
+            }
         };
         let pipeline = pipeline
             .inspect_err(|error| error_once!("no object id for {:?}: {error}", object.1))
@@ -273,11 +362,7 @@ impl IdItems<'_> {
             batch_range: 0..1,
             extra_index: PhaseItemExtraIndex::None,
             indexed: mesh.indexed(),
-            layer: if marked {
-                Layer::Marked
-            } else {
-                Layer::Prepass
-            },
+            layer,
         })
     }
 }

@@ -23,7 +23,10 @@ use bevy::{
     },
 };
 
-use super::{ID_FORMAT, items::ObjectIdSpecializer};
+use super::{
+    ID_FORMAT,
+    items::{IdVariant, ObjectIdSpecializer},
+};
 
 /// On a view in the render world: a request for the layer of marked objects.
 #[derive(Component)]
@@ -101,10 +104,10 @@ pub(super) fn prepare_layers(
 }
 
 /// The pipeline of a marked object: that of its id, with a depth test of its own.
-pub(super) struct MarkSpecializer(pub ObjectIdSpecializer<false>);
+pub(super) struct MarkSpecializer(pub ObjectIdSpecializer);
 
 impl SpecializedMeshPipeline for MarkSpecializer {
-    type Key = ErasedMaterialPipelineKey;
+    type Key = (ErasedMaterialPipelineKey, IdVariant);
 
     fn specialize(
         &self,

@@ -11,6 +11,8 @@ mod items;
 #[cfg(feature = "objects")]
 mod layer;
 #[cfg(feature = "objects")]
+mod line_widths;
+#[cfg(feature = "objects")]
 mod marks;
 #[cfg(feature = "objects")]
 mod phase;
@@ -19,6 +21,7 @@ mod sections;
 mod table;
 #[cfg(feature = "objects")]
 mod transparent;
+mod widths;
 
 #[cfg(feature = "objects")]
 mod components;
@@ -31,16 +34,19 @@ pub use ids::object_id;
 #[cfg(feature = "objects")]
 pub(crate) use layer::{LayerRequest, ViewLayer};
 #[cfg(feature = "objects")]
+pub use line_widths::LineWidths;
+#[cfg(feature = "objects")]
 pub(crate) use marks::Marks;
 #[cfg(feature = "objects")]
 pub use marks::{SelectionOutline, XRayOutline};
 #[cfg(feature = "objects")]
 pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
-
 #[cfg(feature = "objects")]
 pub use transparent::DepthWrite;
 
 pub(crate) use table::{DepthWrites, ObjectChanges, ObjectStyleBuffer, ObjectStyles};
+pub use widths::ViewLineWidths;
+pub(crate) use widths::{LARGEST_FACTOR, Pressure, WIDTH_FORMAT, widths_entry};
 
 use bevy::{
     app::{App, Plugin},
@@ -80,6 +86,8 @@ pub(crate) struct IdsWanted {
     pub ids: bool,
     /// The layer of marked objects.
     pub layer: bool,
+    /// The widths of lines, see [`ViewLineWidths`].
+    pub widths: bool,
 }
 
 /// On a view in the render world: the plan of its camera reads depth, and there are meshes with
@@ -119,6 +127,8 @@ pub(crate) struct IdRequest {
     /// Size in pixels of the depth texture, and its samples per pixel.
     pub size: UVec2,
     pub samples: u32,
+    /// The pressure of lines, if the widths of lines are requested too.
+    pub pressure: Option<Pressure>,
 }
 
 /// On a view in the render world whose object ids are drawn: the object at each pixel.
@@ -189,7 +199,16 @@ impl Plugin for ObjectsPlugin {
             app.register_type::<OutlineStyle>()
                 .register_type::<NoOutlines>()
                 .register_type::<NoStyle>()
-                .add_systems(bevy::app::PostUpdate, components::assign_object_styles);
+                .register_type::<LineWidths>()
+                .init_resource::<line_widths::WideMeshes>()
+                .add_systems(
+                    bevy::app::PostUpdate,
+                    (
+                        components::assign_object_styles,
+                        line_widths::find_wide_meshes,
+                    )
+                        .chain(),
+                );
             marks::build(app);
             groups::build(app);
             sections::build(app);
@@ -214,8 +233,10 @@ impl ObjectsPlugin {
     /// The part that needs the engine's renderer.
     pub(crate) fn build_render(app: &mut App) {
         load_shader_library!(app, "objects.wgsl");
+        load_shader_library!(app, "pressure.wgsl");
         #[cfg(feature = "objects")]
         {
+            load_shader_library!(app, "widths.wgsl");
             bevy::asset::embedded_asset!(app, "ids.wgsl");
             bevy::asset::embedded_asset!(app, "sections.wgsl");
             transparent::build_shaders(app);

@@ -1,9 +1,12 @@
 #define_import_path bevy_comics::objects
 
 // Object ids and outline styles of objects: the only module that declares bindings 6
-// (styles) and 8 (ids).
+// (styles), 8 (ids) and 9 (factors of the width of lines).
 
 #import bevy_comics::depth::view::depth_pixel
+#ifdef WIDTH_MAP
+#import bevy_comics::objects::pressure::loaded_factor
+#endif
 
 // An outline style: ObjectStyleUniform of objects/table.rs. Slot 0 of the table is for
 // objects without a style.
@@ -29,6 +32,24 @@ struct ObjectStyle {
 #else
 @group(0) @binding(8) var object_texture: texture_2d<u32>;
 #endif
+#endif
+
+#ifdef WIDTH_MAP
+#ifdef MULTISAMPLED
+@group(0) @binding(9) var width_texture: texture_multisampled_2d<f32>;
+#else
+@group(0) @binding(9) var width_texture: texture_2d<f32>;
+#endif
+
+// How the factor of the width of lines at a pixel and sample of the prepass textures is stored.
+fn width_texel(at: vec2<i32>, sample: i32) -> f32 {
+    return textureLoad(width_texture, at, sample).x;
+}
+
+// The factor itself, 0 to 2.
+fn texel_width(at: vec2<i32>, sample: i32) -> f32 {
+    return loaded_factor(width_texel(at, sample));
+}
 #endif
 
 #ifdef OBJECT_IDS

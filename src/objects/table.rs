@@ -47,6 +47,8 @@ pub(crate) struct ObjectStyles {
     pub sections: bool,
     /// Some object has a `SelectionOutline` or `XRayOutline`.
     pub marks: bool,
+    /// The vertices of some mesh say how wide its lines are.
+    pub widths: bool,
 }
 
 /// The bit of `ObjectStyleUniform::kinds` of objects of which only hidden parts have lines.
@@ -71,6 +73,8 @@ pub(crate) struct ObjectChanges {
     pub any: bool,
     /// Some mesh is divided into sections.
     pub sections: bool,
+    /// The vertices of some mesh say how wide its lines are.
+    pub widths: bool,
     /// The colour effects leave some object alone.
     pub unstyled: bool,
     /// Some object has a `SelectionOutline` or `XRayOutline`.
@@ -90,6 +94,7 @@ impl ObjectStyles {
         ObjectChanges {
             any: self.any(),
             sections: self.sections,
+            widths: self.widths,
             unstyled,
             marks: self.marks,
         }

@@ -260,9 +260,8 @@ fn a_million_floats_in_every_field_of_the_lines() {
     let boil = outlines(|o, x| o.boil.amplitude = x);
     fuzz("LineBoil::amplitude", 0.0, 3.0, |x| boil(x).boil.amplitude);
     let boil = outlines(|o, x| o.boil.wavelength = x);
-    fuzz("LineBoil::wavelength", 20.0, 120.0, |x| {
-        boil(x).boil.wavelength
-    });
+    let wavelength = |x| boil(x).boil.wavelength;
+    fuzz("LineBoil::wavelength", 20.0, 120.0, wavelength);
     let boil = outlines(|o, x| o.boil.rate = x);
     fuzz("LineBoil::rate", 0.0, 60.0, |x| boil(x).boil.rate);
     for specks in [0, 1, 2, 3, 4, u32::MAX] {
@@ -273,7 +272,7 @@ fn a_million_floats_in_every_field_of_the_lines() {
         assert_eq!(outlines.sanitized().specks, specks.clamp(1, 3));
     }
     type Field = fn(&mut LineWeight) -> &mut f32;
-    let weights: [(&str, f32, f32, Field); 10] = [
+    let weights: [(&str, f32, f32, Field); 12] = [
         ("outer", 0.0, 4.0, |w| &mut w.outer),
         ("inner", 0.0, 4.0, |w| &mut w.inner),
         ("crease", 0.0, 4.0, |w| &mut w.crease),
@@ -284,6 +283,8 @@ fn a_million_floats_in_every_field_of_the_lines() {
         ("nib", 0.1, 1.0, |w| &mut w.nib),
         ("nib_angle", 0.0, 180.0, |w| &mut w.nib_angle),
         ("taper", 0.0, 48.0, |w| &mut w.taper),
+        ("pressure", 0.0, 1.0, |w| &mut w.pressure),
+        ("pressure_length", 10.0, 500.0, |w| &mut w.pressure_length),
     ];
     for (name, low, high, field) in weights {
         fuzz(&format!("LineWeight::{name}"), low, high, |x| {
@@ -299,10 +300,9 @@ fn a_million_floats_in_every_field_of_the_lines() {
             s.sanitized()
         }
     };
-    let threshold = silhouettes(|s, x| s.threshold = x);
-    fuzz("Silhouettes::threshold", 1e-6, 1.0, |x| {
-        threshold(x).threshold
-    });
+    let silhouette = silhouettes(|s, x| s.threshold = x);
+    let threshold = |x| silhouette(x).threshold;
+    fuzz("Silhouettes::threshold", 1e-6, 1.0, threshold);
     let limit = silhouettes(|s, x| s.edge_limit = x);
     fuzz("Silhouettes::edge_limit", 0.01, 0.99, |x| {
         limit(x).edge_limit

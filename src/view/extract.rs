@@ -83,6 +83,7 @@ fn want_objects(view: &mut EntityCommands, (camera, plan): (Entity, &Plan), writ
     let wanted = IdsWanted {
         ids: plan.draws_ids(),
         layer: plan.marks,
+        widths: plan.draws_widths(),
     };
     if wanted.ids || wanted.layer {
         view.insert(wanted);

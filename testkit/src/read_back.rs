@@ -8,7 +8,7 @@ use bevy::{
         view::ViewTarget,
     },
 };
-use bevy_comics::{ViewCracks, ViewObjectIds};
+use bevy_comics::{ViewCracks, ViewLineWidths, ViewObjectIds};
 use half::f16;
 
 use crate::before::Pictures;
@@ -190,6 +190,15 @@ pub struct IdImage {
     pub width: u32,
     pub height: u32,
     pub pixels: Vec<[u32; 2]>,
+}
+
+/// The factor of the width of lines at each pixel.
+#[derive(Clone, Debug)]
+pub struct WidthImage {
+    pub width: u32,
+    pub height: u32,
+    /// 0 to 2.
+    pub factors: Vec<f64>,
 }
 
 /// Runs a compute shader whose entry point `read` stores `words` words of 32 bits for
@@ -391,5 +400,34 @@ pub fn object_ids_of(render_world: &World, view: Entity, sample: u32) -> Option<
         width: texture.width(),
         height: texture.height(),
         pixels: words.chunks_exact(2).map(|w| [w[0], w[1]]).collect(),
+    })
+}
+
+/// The factors of the width of lines at one sample of each pixel; `None` if they were not
+/// drawn.
+pub fn line_widths_of(render_world: &World, view: Entity, sample: u32) -> Option<WidthImage> {
+    let texture: &wgpu::Texture = &render_world.get::<ViewLineWidths>(view)?.texture;
+    let kind = if texture.sample_count() > 1 {
+        "texture_multisampled_2d<f32>"
+    } else {
+        "texture_2d<f32>"
+    };
+    let shader = format!(
+        "@group(0) @binding(0) var source: {kind};
+         @group(0) @binding(1) var<storage, read_write> result: array<u32>;
+         @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {{
+             let size = textureDimensions(source);
+             if id.x >= size.x {{ return; }}
+             let texel = textureLoad(source, vec2<i32>(id.xy), {sample}).x;
+             result[id.y * size.x + id.x] = u32(round(texel * 255.0));
+         }}"
+    );
+    let words = read_texels(render_world, texture, &shader, 1);
+    Some(WidthImage {
+        width: texture.width(),
+        height: texture.height(),
+        factors: (words.iter())
+            .map(|code| (f64::from(*code) / 127.0).min(2.0))
+            .collect(),
     })
 }

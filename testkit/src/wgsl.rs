@@ -94,12 +94,40 @@ fn add(composer: &mut Composer, modules: &Modules, name: &str) -> Result<(), Str
     if composer.contains_module(name) {
         return Ok(());
     }
+    let engine = ENGINE.iter().find(|(engine, _)| *engine == name);
+    if let Some((_, text)) = engine {
+        return add_module(composer, name, text);
+    }
     let (text, imports) = modules
         .get(name)
         .ok_or_else(|| format!("no module {name:?} in the crate"))?;
     for import in imports {
         add(composer, modules, &import.import)?;
     }
+    add_module(composer, name, text)
+}
+
+/// What the crate imports of the engine, as far as it uses it.
+const ENGINE: [(&str, &str); 2] = [
+    (
+        "bevy_pbr::mesh_bindings",
+        "#define_import_path bevy_pbr::mesh_bindings
+         struct Mesh { world_from_local: mat3x4<f32> }
+         @group(2) @binding(0) var<storage> mesh: array<Mesh>;",
+    ),
+    (
+        "bevy_pbr::mesh_view_bindings",
+        "#define_import_path bevy_pbr::mesh_view_bindings
+         struct View {
+             clip_from_world: mat4x4<f32>,
+             clip_from_view: mat4x4<f32>,
+             viewport: vec4<f32>,
+         }
+         @group(0) @binding(0) var<uniform> view: View;",
+    ),
+];
+
+fn add_module(composer: &mut Composer, name: &str, text: &str) -> Result<(), String> {
     composer
         .add_composable_module(ComposableModuleDescriptor {
             source: text,

@@ -38,6 +38,7 @@ mod percentiles;
 mod pictures;
 mod pipelines;
 mod plugin_order;
+mod pressure;
 mod range;
 mod range_views;
 mod report;

@@ -80,6 +80,7 @@ pub fn view_of<'a>(
         flip: map.flip,
         normals: prepass.normals.first(),
         ids: prepass.ids.first(),
+        widths: prepass.widths.first(),
         height: 0.0,
         to_light: to_light(small),
     }

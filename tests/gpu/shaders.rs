@@ -428,6 +428,17 @@ fn every_kind_of_outline_composes_and_validates() {
         for weight in [&[][..], &["WEIGHT", "DEPTH", "BUDGET"]] {
             check(&shader("lines/settle.wgsl"), &[smooth, weight].concat());
         }
+        for surface in [
+            &["WIDTH_MAP"][..],
+            &["LIGHT_WEIGHT", "NORMALS"],
+            &["WIDTH_MAP", "LIGHT_WEIGHT", "NORMALS"],
+        ] {
+            let weight = &["WEIGHT", "DEPTH", "SURFACE_WEIGHT"];
+            check(
+                &shader("lines/settle.wgsl"),
+                &[smooth, weight, surface].concat(),
+            );
+        }
     }
     check(&shader("lines/tiles.wgsl"), &[]);
     for styles in [&[][..], &["OBJECT_IDS", "OBJECT_STYLES"]] {
@@ -438,8 +449,11 @@ fn every_kind_of_outline_composes_and_validates() {
         }
     }
     let resolve = shader("lines/resolve.wgsl");
-    for view in subsets(&["OBLIQUE", "NORMALS", "OBJECT_IDS"]) {
+    for view in subsets(&["OBLIQUE", "NORMALS", "OBJECT_IDS", "WIDTH_MAP"]) {
         check(&resolve, &[&["DEPTH", "MULTISAMPLED"], &view[..]].concat());
     }
-    module(&shader("objects/ids.wgsl"), &[]).expect("the ids");
+    for widths in [&[][..], &["LINE_WIDTHS"], &["LINE_WIDTHS", "VERTEX_WIDTHS"]] {
+        let ids = module(&shader("objects/ids.wgsl"), widths);
+        ids.unwrap_or_else(|error| panic!("{widths:?}: {error}"));
+    }
 }

@@ -20,7 +20,7 @@ use bevy_comics::{
 use bevy_comics_testkit::{
     before::BeforeStylize,
     headless::{Headless, HeadlessOptions},
-    read_back::{self, CrackWords, DepthImage, FloatImage, IdImage},
+    read_back::{self, CrackWords, DepthImage, FloatImage, IdImage, WidthImage},
     reference::{color, resolve::Prepass},
 };
 
@@ -73,7 +73,8 @@ impl Small {
         headless
             .app
             .init_resource::<RenderErrors>()
-            .insert_resource(RenderErrorHandler(|_, main, _| {
+            .insert_resource(RenderErrorHandler(|error, main, _| {
+                println!("{}", error.description);
                 main.resource_mut::<RenderErrors>().0 += 1;
                 RenderErrorPolicy::Ignore
             }));
@@ -204,11 +205,19 @@ impl Small {
             normals: (samples.clone())
                 .filter_map(|s| read_back::normals_of(world, view, s))
                 .collect(),
-            ids: samples
+            ids: (samples.clone())
                 .filter_map(|s| read_back::object_ids_of(world, view, s))
+                .collect(),
+            widths: samples
+                .filter_map(|s| read_back::line_widths_of(world, view, s))
                 .collect(),
             depth,
         })
+    }
+
+    /// The factors of the width of lines, at the first sample of each pixel.
+    pub fn line_widths(&self) -> Option<WidthImage> {
+        read_back::line_widths_of(self.render_world(), self.view(), 0)
     }
 
     pub fn object_ids(&self) -> Option<IdImage> {

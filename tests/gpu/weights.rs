@@ -58,6 +58,11 @@ fn every_factor_is_its_twin() {
             ..even
         },
         LineWeight {
+            pressure: 0.8,
+            pressure_length: 20.0,
+            ..even
+        },
+        LineWeight {
             outer: 1.5,
             inner: 0.75,
             crease: 0.6,
@@ -68,6 +73,8 @@ fn every_factor_is_its_twin() {
             nib: 0.4,
             nib_angle: 40.0,
             taper: 20.0,
+            pressure: 0.5,
+            pressure_length: 30.0,
         },
     ];
     for weight in factors {
@@ -386,6 +393,8 @@ fn lines_follow_the_light_in_multisampled_views() {
         outer: 1.5,
         taper: 8.0,
         perspective: 0.5,
+        pressure: 0.6,
+        pressure_length: 16.0,
         ..LineWeight::EVEN
     };
     let outlines = silhouettes(3.0, lit);

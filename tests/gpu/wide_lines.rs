@@ -36,6 +36,7 @@ fn columns_against_exhaustive(small: &mut Small, outlines: Outlines) -> [f64; 2]
         flip: false,
         normals: normals.as_ref(),
         ids: ids.as_ref(),
+        widths: None,
         height: 0.0,
         to_light: [0.0, 1.0, 0.0],
     };

@@ -82,7 +82,8 @@ impl Cracks {
             || w.lit > 0.0
             || w.perspective > 0.0
             || (w.nib < 1.0 && s.smooth)
-            || w.taper > 0.0;
+            || w.taper > 0.0
+            || view.widths.is_some();
         for (i, cracks) in self.cracks.iter_mut().enumerate() {
             for (side, slot) in cracks.iter_mut().enumerate() {
                 let Some(mut crack) = *slot else { continue };

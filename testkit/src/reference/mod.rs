@@ -31,6 +31,7 @@ pub mod noise;
 pub mod normal;
 pub mod ping_pong;
 pub mod planes;
+pub mod pressure;
 pub mod range;
 pub mod raw;
 pub mod read;

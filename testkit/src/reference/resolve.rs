@@ -1,7 +1,7 @@
 //! Twin of `lines/resolve.wgsl`: the sample of a pixel that lines read.
 
 use super::view::View;
-use crate::read_back::{DepthImage, FloatImage, IdImage};
+use crate::read_back::{DepthImage, FloatImage, IdImage, WidthImage};
 
 /// Positions of the samples of a pixel in the standard pattern for four, in sixteenths
 /// of a pixel from its centre: x to the right, y down.
@@ -30,12 +30,13 @@ pub fn surface_sample(depths: &[f32], jump: impl Fn(f64) -> f64) -> usize {
     }
 }
 
-/// The prepass textures of a view with all samples: normals and ids one image a sample,
-/// none without them.
+/// The prepass textures of a view with all samples: normals, ids and widths one image a
+/// sample, none without them.
 pub struct Prepass {
     pub depth: DepthImage,
     pub normals: Vec<FloatImage>,
     pub ids: Vec<IdImage>,
+    pub widths: Vec<WidthImage>,
 }
 
 /// One sample of every pixel.
@@ -43,6 +44,7 @@ pub struct Resolved {
     depth_bits: Vec<u32>,
     normals: Option<FloatImage>,
     ids: Option<IdImage>,
+    widths: Option<WidthImage>,
 }
 
 impl Resolved {
@@ -68,6 +70,12 @@ impl Resolved {
             pixels: texels().map(|(i, s)| prepass.ids[s].pixels[i]).collect(),
             ..first.clone()
         });
+        let widths = prepass.widths.first().map(|first| WidthImage {
+            factors: texels()
+                .map(|(i, s)| prepass.widths[s].factors[i])
+                .collect(),
+            ..first.clone()
+        });
         Self {
             depth_bits: nearest
                 .enumerate()
@@ -75,6 +83,7 @@ impl Resolved {
                 .collect(),
             normals,
             ids,
+            widths,
         }
     }
 
@@ -85,6 +94,7 @@ impl Resolved {
             depth_bits: &self.depth_bits,
             normals: self.normals.as_ref(),
             ids: self.ids.as_ref(),
+            widths: self.widths.as_ref(),
             ..*view
         }
     }

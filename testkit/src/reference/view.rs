@@ -4,7 +4,7 @@ use super::{
     map::{Frame, Projection},
     window::{self, Window},
 };
-use crate::read_back::{FloatImage, IdImage};
+use crate::read_back::{FloatImage, IdImage, WidthImage};
 
 /// The view that is drawn.
 pub struct View<'a> {
@@ -22,6 +22,8 @@ pub struct View<'a> {
     /// World normals, components -1 to 1.
     pub normals: Option<&'a FloatImage>,
     pub ids: Option<&'a IdImage>,
+    /// Factors of the width of lines, if they are drawn.
+    pub widths: Option<&'a WidthImage>,
     /// Height of an orthographic view in world units.
     pub height: f64,
     /// Unit vector towards the light that lines follow.

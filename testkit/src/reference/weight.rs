@@ -68,15 +68,16 @@ pub fn weighted(crack: Crack, factor: f64) -> Option<Crack> {
     (opacity > 0.0).then_some(weighted)
 }
 
-/// The largest factor of any line.
+/// The largest factor of any line, if no mesh says how wide its lines are.
 pub fn largest_weight(w: &LineWeight) -> f64 {
     let kind = w.outer.max(w.inner).max(w.crease).max(w.object);
     let nearest = if w.perspective > 0.0 { 2.0 } else { 1.0 };
-    (f64::from(kind) * (1.0 + f64::from(w.shade)) * nearest).max(1.0)
+    let pressed = 1.0 + f64::from(w.pressure);
+    (f64::from(kind) * (1.0 + f64::from(w.shade)) * nearest * pressed).max(1.0)
 }
 
-/// The factors that do not depend on the rest of the line: by kind, light, distance and
-/// nib. `pixel`: that of the crack, in the target.
+/// The factors that do not depend on the rest of the line: by kind, light, drawn width,
+/// distance and nib. `pixel`: that of the crack, in the target.
 pub fn local_weight(s: &Outlines, view: &View, crack: &Crack, pixel: [i64; 2], side: usize) -> f64 {
     let w = &s.weight;
     let [dx, dy] = SIDES[side];
@@ -94,8 +95,8 @@ pub fn local_weight(s: &Outlines, view: &View, crack: &Crack, pixel: [i64; 2], s
             .map(|ids| ids.pixels[(y * view.width + x) as usize][0])
     };
     let mut factor = kind_weight(w, crack.kinds, sky || object(owner) != object(beyond));
-    if w.shade > 0.0 || w.lit > 0.0 {
-        factor *= lit_weight(s, view, (pixel, side), crack.kinds[0]);
+    if w.shade > 0.0 || w.lit > 0.0 || view.widths.is_some() {
+        factor *= surface_weight(s, view, (pixel, side), crack.kinds[0]);
     }
     factor *= perspective_weight(w, &view.frame, depth(owner));
     if w.nib < 1.0 && s.smooth {
@@ -110,10 +111,10 @@ pub fn local_weight(s: &Outlines, view: &View, crack: &Crack, pixel: [i64; 2], s
     factor
 }
 
-/// The factor of the light. Of a silhouette: the mean over the pixels around the crack, three
-/// along it and two on both sides, except for those behind a jump in depth. Of other lines:
-/// the mean over both sides.
-fn lit_weight(
+/// The factor of the light, times that of the drawn widths. Of a silhouette: the mean over
+/// the pixels around the crack, three along it and two on both sides, except for those behind
+/// a jump in depth. Of other lines: the mean over both sides.
+fn surface_weight(
     s: &Outlines,
     view: &View,
     ([x, y], side): ([i64; 2], usize),
@@ -129,19 +130,32 @@ fn lit_weight(
     });
     let beside = [[x, y], [x + ax, y + ay]];
     let counted = places.filter(|place| silhouette || beside.contains(place));
-    let seen = counted.filter(|[x, y]| {
-        (x0..x0 + width).contains(x) && (y0..y0 + height).contains(y) && depth([*x, *y]) >= least
-    });
-    let weights: Vec<f64> = seen
-        .filter_map(|[x, y]| normal(view, x as u32, y as u32))
-        .map(|n| {
-            let facing = (0..3).map(|i| n[i] * view.to_light[i]).sum();
-            light_weight(&s.weight, facing)
+    let seen: Vec<[u32; 2]> = counted
+        .filter(|[x, y]| {
+            let inside = (x0..x0 + width).contains(x) && (y0..y0 + height).contains(y);
+            inside && depth([*x, *y]) >= least
         })
+        .map(|place| place.map(|v| v as u32))
         .collect();
-    if weights.is_empty() {
+    let lit = seen.iter().filter_map(|[x, y]| {
+        let n = normal(view, *x, *y)?;
+        let facing = (0..3).map(|i| n[i] * view.to_light[i]).sum();
+        Some(light_weight(&s.weight, facing))
+    });
+    let lights = s.weight.shade > 0.0 || s.weight.lit > 0.0;
+    let light = if lights { mean(lit.collect()) } else { 1.0 };
+    let widths = view.widths.map(|widths| {
+        let factor = |[x, y]: &[u32; 2]| widths.factors[(y * widths.width + x) as usize];
+        mean(seen.iter().map(factor).collect())
+    });
+    light * widths.unwrap_or(1.0)
+}
+
+/// The mean of factors; 1 if there are none.
+fn mean(factors: Vec<f64>) -> f64 {
+    if factors.is_empty() {
         1.0
     } else {
-        weights.iter().sum::<f64>() / weights.len() as f64
+        factors.iter().sum::<f64>() / factors.len() as f64
     }
 }

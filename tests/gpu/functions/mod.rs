@@ -16,6 +16,7 @@ mod jumps;
 mod memory;
 mod normal;
 mod planes;
+mod pressure;
 mod walk;
 mod weight;
 

@@ -1,0 +1,238 @@
+//! Meshes whose vertices say how wide lines are, and the preparation of the texture that the
+//! pass of object ids draws their widths and the pressure into.
+
+use bevy::{
+    color::LinearRgba,
+    ecs::{
+        change_detection::DetectChangesMut,
+        component::Component,
+        entity::{Entity, EntityHashMap, EntityHashSet},
+        hierarchy::Children,
+        query::{Or, With, Without},
+        reflect::ReflectComponent,
+        resource::Resource,
+        system::{Commands, Query, Res, ResMut, SystemParam},
+    },
+    platform::collections::HashSet,
+    prelude::DetectChanges,
+    reflect::{Reflect, std_traits::ReflectDefault},
+    render::{
+        Extract,
+        render_resource::{
+            BindGroup, BindGroupEntries, Extent3d, LoadOp, Operations, PipelineCache,
+            RenderPassColorAttachment, StoreOp, TextureDescriptor, TextureDimension, TextureUsages,
+            UniformBuffer,
+        },
+        renderer::{RenderDevice, RenderQueue},
+        texture::TextureCache,
+        view::{ExtractedView, RetainedViewEntity},
+    },
+};
+
+use super::{
+    IdRequest, IdsWanted, ObjectStyles, ViewLineWidths,
+    components::inherit,
+    items::{ObjectIdPipeline, ObjectTable},
+    sections::SectionBuffer,
+    widths::WIDTH_FORMAT,
+};
+
+/// The alpha of this mesh's vertex colours
+/// ([`Mesh::ATTRIBUTE_COLOR`](bevy::mesh::Mesh::ATTRIBUTE_COLOR)) is the width of its lines:
+/// 0 is no line, 0.5 the width that lines have otherwise, 1 twice that width.
+///
+/// In between, the width changes gradually, over the surface as colours do. It is a factor
+/// beside those of the camera's [`LineWeight`](crate::LineWeight), of which it multiplies
+/// [`pressure`](crate::LineWeight::pressure) to 2 at most. It applies to lines of the
+/// corrected forms, on devices with compute shaders. A line belongs to the surface in front;
+/// the width of creases and object edges is the mean over both sides.
+///
+/// A mesh without vertex colours has the factor 1, and the log warns once. The engine
+/// multiplies the material's colour by vertex colours: with [`AlphaMode::Opaque`] the alpha
+/// changes no picture, with [`AlphaMode::Mask`] it is compared with the cutoff. A material with
+/// a prepass vertex shader of its own must write the fields of the engine's prepass
+/// `VertexOutput`.
+///
+/// While some mesh has it, object ids and a texture of one byte per pixel (and sample) are
+/// drawn for every camera with outlines.
+///
+/// [`AlphaMode::Opaque`]: bevy::prelude::AlphaMode::Opaque
+/// [`AlphaMode::Mask`]: bevy::prelude::AlphaMode::Mask
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Component, Default, Clone, PartialEq)]
+pub struct LineWidths {
+    /// Applies to all descendants as well, for example on the root of a glTF scene. Default:
+    /// `false`.
+    pub inherit: bool,
+}
+
+impl LineWidths {
+    /// For an object and its descendants: [`inherit`](Self::inherit) is `true`.
+    pub const INHERITED: Self = Self { inherit: true };
+}
+
+/// The meshes with [`LineWidths`]. Both worlds have a copy.
+#[derive(Resource, Clone, Debug, Default, PartialEq)]
+pub(crate) struct WideMeshes(EntityHashSet);
+
+impl WideMeshes {
+    pub fn contains(&self, mesh: Entity) -> bool {
+        self.0.contains(&mesh)
+    }
+}
+
+/// Keeps [`WideMeshes`] up to date.
+pub(super) fn find_wide_meshes(
+    marked: Query<(Entity, &LineWidths)>,
+    children: Query<&Children>,
+    mut meshes: ResMut<WideMeshes>,
+    mut styles: ResMut<ObjectStyles>,
+) {
+    if marked.is_empty() && meshes.0.is_empty() {
+        return;
+    }
+    let mut found: EntityHashMap<()> = EntityHashMap::default();
+    for (entity, widths) in &marked {
+        let own = |child| marked.contains(child);
+        inherit(&mut found, (entity, ()), widths.inherit, &children, own);
+    }
+    meshes.set_if_neq(WideMeshes(found.into_keys().collect()));
+    let any = !meshes.0.is_empty();
+    if styles.widths != any {
+        styles.widths = any;
+    }
+}
+
+pub(super) fn extract_wide_meshes(main: Extract<Res<WideMeshes>>, mut meshes: ResMut<WideMeshes>) {
+    if main.is_changed() {
+        meshes.clone_from(&main);
+    }
+}
+
+/// The views whose meshes were queued with pipelines that draw widths too.
+#[derive(Resource, Default)]
+pub(super) struct WidthViews(HashSet<RetainedViewEntity>);
+
+impl WidthViews {
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Decides for a view. `wanted`: by the plan of its camera; `before`: the request of the
+    /// last frame, whose plan may still be drawn.
+    pub fn decide(
+        &mut self,
+        view: RetainedViewEntity,
+        wanted: Option<&IdsWanted>,
+        before: Option<&IdRequest>,
+    ) -> bool {
+        let draws = wanted.is_some_and(|wanted| wanted.widths)
+            || before.is_some_and(|before| before.pressure.is_some());
+        if draws {
+            self.0.insert(view);
+        }
+        draws
+    }
+}
+
+/// On a view whose widths are drawn: what the pass binds instead of
+/// [`ObjectTable::bind_group`]; `None` if there is no object.
+#[derive(Component)]
+pub(super) struct WidthBindings(pub Option<BindGroup>);
+
+/// What the preparation of widths reads.
+#[derive(SystemParam)]
+pub(super) struct Drawing<'w> {
+    queued: Res<'w, WidthViews>,
+    table: Res<'w, ObjectTable>,
+    sections: Res<'w, SectionBuffer>,
+    shared: Res<'w, ObjectIdPipeline>,
+    cache: Res<'w, PipelineCache>,
+    device: Res<'w, RenderDevice>,
+    queue: Res<'w, RenderQueue>,
+}
+
+impl Drawing<'_> {
+    fn bindings(&self, request: &IdRequest) -> WidthBindings {
+        let mut uniform = UniformBuffer::from(request.pressure.unwrap_or_default());
+        uniform.write_buffer(&self.device, &self.queue);
+        let parts = (
+            self.table.objects.binding(),
+            self.sections.buffer(),
+            uniform.binding(),
+        );
+        // Without an object there is no group either.
+        let (true, (Some(objects), Some(sections), Some(uniform))) =
+            (self.table.bind_group.is_some(), parts)
+        else {
+            return WidthBindings(None);
+        };
+        let layout = self.cache.get_bind_group_layout(&self.shared.with_widths);
+        WidthBindings(Some(self.device.create_bind_group(
+            "comics_objects_with_widths",
+            &layout,
+            &BindGroupEntries::sequential((objects, sections.as_entire_binding(), uniform)),
+        )))
+    }
+}
+
+/// Views with widths that may no longer have them.
+type Stale = (
+    Or<(With<ViewLineWidths>, With<WidthBindings>)>,
+    Without<IdRequest>,
+);
+
+/// Gets the textures of this frame, and binds what is drawn into them.
+pub(super) fn prepare_line_widths(
+    mut commands: Commands,
+    views: Query<(Entity, &ExtractedView, &IdRequest)>,
+    stale: Query<Entity, Stale>,
+    drawing: Drawing,
+    mut textures: ResMut<TextureCache>,
+) {
+    for (entity, view, request) in &views {
+        let mut target = commands.entity(entity);
+        if !drawing.queued.0.contains(&view.retained_view_entity) {
+            target.remove::<(ViewLineWidths, WidthBindings)>();
+            continue;
+        }
+        let descriptor = TextureDescriptor {
+            label: Some("comics_line_widths"),
+            size: Extent3d {
+                width: request.size.x,
+                height: request.size.y,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: request.samples,
+            dimension: TextureDimension::D2,
+            format: WIDTH_FORMAT,
+            usage: TextureUsages::RENDER_ATTACHMENT
+                | TextureUsages::TEXTURE_BINDING
+                | TextureUsages::COPY_SRC,
+            view_formats: &[],
+        };
+        let texture = ViewLineWidths::from(textures.get(&drawing.device, descriptor));
+        target.insert((texture, drawing.bindings(request)));
+    }
+    for entity in &stale {
+        let mut target = commands.entity(entity);
+        target.remove::<(ViewLineWidths, WidthBindings)>();
+    }
+}
+
+/// A texel of the texture that is the factor 1.
+const ONE: f32 = 127.0 / 255.0;
+
+/// The attachment of the pass that draws widths, cleared to the factor 1.
+pub(super) fn attachment(widths: &ViewLineWidths) -> RenderPassColorAttachment<'_> {
+    RenderPassColorAttachment {
+        view: &widths.view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: Operations {
+            load: LoadOp::Clear(LinearRgba::rgb(ONE, ONE, ONE).into()),
+            store: StoreOp::Store,
+        },
+    }
+}
