@@ -91,6 +91,21 @@ fn colored(before: Pixel, pixel: vec2<i32>) -> Pixel {
     return p;
 }
 
+#ifdef SURFACE_LINES
+// The colour of a pixel of the viewport after these effects.
+fn surface_color(pixel: vec2<i32>, change: f32) -> vec3<f32> {
+    let stored = load_picture(pixel);
+    var p: Pixel;
+    p.original = to_linear(stored.rgb);
+    p.color = p.original;
+    p.alpha = clamp(finite(stored.a), 0.0, 1.0);
+    p.change = change;
+    p.position = vec2<f32>(pixel) + 0.5;
+    p = colored(placed(p, pixel), pixel);
+    return p.color / max(p.alpha, 1e-3);
+}
+#endif
+
 @fragment
 fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let pixel = vec2<i32>(position.xy);
@@ -118,16 +133,7 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     let frame = depth_frame();
 #endif
 #ifdef SURFACE_LINES
-    let owner = line_owner(pixel);
-    let surface = load_picture(owner);
-    var q: Pixel;
-    q.original = to_linear(surface.rgb);
-    q.color = q.original;
-    q.alpha = clamp(finite(surface.a), 0.0, 1.0);
-    q.change = p.change;
-    q.position = vec2<f32>(owner) + 0.5;
-    q = colored(placed(q, owner), owner);
-    set_line_surface(q.color / max(q.alpha, 1e-3));
+    set_line_surface(surface_color(line_owner(pixel), p.change));
 #endif
     p = colored(p, pixel);
 

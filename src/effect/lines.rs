@@ -5,7 +5,8 @@ use bevy::math::Vec4Swizzles;
 use super::{Extent, Needs, Plan, ViewFacts, ViewPlan, requests::Scene};
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
-    lines::{LineSettings, MapJumps, MemoryRequest, request::LineRequest},
+    lines::{LineSettings, LineWeight, MapJumps, MemoryRequest, request::LineRequest},
+    objects::Pressure,
 };
 
 /// The largest [`Effect::line_reach`](super::Effect::line_reach); `None` if an effect that
@@ -101,4 +102,26 @@ pub(super) fn memory_request(
         share: settings.memory,
         cuts: view.cuts,
     })
+}
+
+impl Plan {
+    /// Whether the widths of lines are drawn with the ids of objects.
+    pub fn draws_widths(&self) -> bool {
+        let presses = self
+            .lines
+            .is_some_and(|lines| lines.has_wide_lines() && lines.weight.pressure > 0.0);
+        cfg!(feature = "objects") && (presses || self.vertex_widths)
+    }
+
+    /// The pressure of the lines whose widths are drawn. `scale`: physical pixels per logical
+    /// pixel.
+    pub fn pressure(&self, scale: f32) -> Option<Pressure> {
+        let lines = self.lines.filter(|_| self.draws_widths())?;
+        let LineWeight {
+            pressure,
+            pressure_length,
+            ..
+        } = lines.weight;
+        Some(Pressure::new(pressure, pressure_length * scale))
+    }
 }

@@ -10,8 +10,8 @@ use crate::{
     depth::{DepthHistogram, DepthMap, VisibleDepthRange},
     diagnostics::LeftOut,
     finish::{DebugView, Finish, SplitView, StyleWeight},
-    lines::{Creases, LineFog, LineSettings, LineWeight, Silhouettes, has_fog},
-    objects::{ObjectChanges, Pressure},
+    lines::{Creases, LineFog, LineSettings, Silhouettes, has_fog},
+    objects::ObjectChanges,
 };
 
 /// An effect in a camera's plan.
@@ -370,26 +370,6 @@ impl Plan {
         });
         let ids = lines || self.draws_widths() || self.needs().contains(Needs::IDS);
         cfg!(feature = "objects") && ids
-    }
-
-    /// Whether the widths of lines are drawn with the ids of objects.
-    pub fn draws_widths(&self) -> bool {
-        let presses = self
-            .lines
-            .is_some_and(|lines| lines.has_wide_lines() && lines.weight.pressure > 0.0);
-        cfg!(feature = "objects") && (presses || self.vertex_widths)
-    }
-
-    /// The pressure of the lines whose widths are drawn. `scale`: physical pixels per logical
-    /// pixel.
-    pub fn pressure(&self, scale: f32) -> Option<Pressure> {
-        let lines = self.lines.filter(|_| self.draws_widths())?;
-        let LineWeight {
-            pressure,
-            pressure_length,
-            ..
-        } = lines.weight;
-        Some(Pressure::new(pressure, pressure_length * scale))
     }
 }
 

@@ -9,8 +9,8 @@ use bevy::{
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
-            LoadOp, Operations, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
-            StoreOp,
+            CommandEncoder, LoadOp, Operations, PipelineCache, RenderPassColorAttachment,
+            RenderPassDescriptor, RenderPipeline, StoreOp,
         },
         renderer::{RenderContext, ViewQuery},
         texture::CachedTexture,
@@ -21,9 +21,10 @@ use bevy::{
 use super::marks::ViewMarks;
 use super::{
     ViewLines,
-    cracks::search_tiles,
-    inputs::{Inputs, Sources},
+    cracks::{Ready, ReadyCracks, search_tiles},
+    inputs::Inputs,
     request::{LinePasses, LineRequest},
+    sources::Sources,
 };
 #[cfg(feature = "objects")]
 use crate::objects::{MarkStyleBuffer, ViewLayer};
@@ -158,7 +159,25 @@ impl Inputs<'_> {
             return Ok(());
         };
         let span = diagnostics.time_span(encoder, "comics_draw_lines");
-        if let Some(cracks) = &cracks {
+        self.draw_ink(encoder, ink, (faithful.as_ref(), cracks.as_ref()));
+        if let Some((memory, (pipeline, group))) = &remember {
+            let tiles = lines.tiles.as_ref().map(|tiles| &tiles.lists);
+            let tiles = tiles.filter(|_| passes.are_tiles_complete());
+            memory.record(encoder, (pipeline, group), tiles);
+        }
+        span.end(encoder);
+        Ok(())
+    }
+
+    /// Records the passes that draw the ink of all lines.
+    fn draw_ink(
+        &self,
+        encoder: &mut CommandEncoder,
+        ink: &CachedTexture,
+        (faithful, cracks): (Option<&Ready<RenderPipeline>>, Option<&ReadyCracks>),
+    ) {
+        let (_, _, lines) = self.parts.0;
+        if let Some(cracks) = cracks {
             cracks.search_columns(encoder);
         }
         let targets: Vec<_> = [Some(ink), lines.owners.as_ref()]
@@ -171,22 +190,14 @@ impl Inputs<'_> {
             color_attachments: &targets,
             ..Default::default()
         });
-        if let Some((pipeline, group)) = &faithful {
+        if let Some((pipeline, group)) = faithful {
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, group, &[]);
             pass.draw(0..3, 0..1);
         }
-        if let Some(cracks) = &cracks {
+        if let Some(cracks) = cracks {
             cracks.draw_ink(&mut pass);
         }
-        drop(pass);
-        if let Some((memory, (pipeline, group))) = &remember {
-            let tiles = lines.tiles.as_ref().map(|tiles| &tiles.lists);
-            let tiles = tiles.filter(|_| passes.are_tiles_complete());
-            memory.record(encoder, (pipeline, group), tiles);
-        }
-        span.end(encoder);
-        Ok(())
     }
 }
 

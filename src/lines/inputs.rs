@@ -4,7 +4,7 @@ use bevy::render::{
     render_resource::{
         BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, BindingResource,
         CachedComputePipelineId, CachedRenderPipelineId, ComputePipeline, IntoBinding,
-        PipelineCache, RenderPipeline, TextureView,
+        PipelineCache, RenderPipeline,
     },
     renderer::RenderDevice,
     texture::CachedTexture,
@@ -18,62 +18,10 @@ use super::{
     prepare::{Cracks, Tiles},
     request::{CellPasses, CrackPasses, FindPass, LinePasses, LineRequest},
     resolve::Resolved,
+    sources::{NOT_READY, Reads, Sources, Texels, entry},
     store::{CrackBuffers, CrackStore},
 };
-#[cfg(feature = "objects")]
-use crate::objects::ViewLayer;
-use crate::{
-    depth::{
-        prepare::ViewDepthRange,
-        surfaces::{SurfaceParts, Surfaces},
-    },
-    diagnostics::LeftOut,
-    objects::{ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
-};
-
-/// The textures of the scene that lines are found in.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Sources<'a> {
-    depth: Option<&'a CachedTexture>,
-    normal: Option<&'a TextureView>,
-    ids: Option<&'a TextureView>,
-    widths: Option<&'a TextureView>,
-    motion: Option<&'a TextureView>,
-    /// Depth of the picture, which hides marked objects.
-    picture: Option<&'a TextureView>,
-}
-
-impl<'a> Sources<'a> {
-    /// The surfaces of the view, the object ids and the widths of lines.
-    pub fn new(
-        surfaces: SurfaceParts<'a>,
-        ids: Option<&'a ViewObjectIds>,
-        widths: Option<&'a ViewLineWidths>,
-    ) -> Self {
-        let surfaces = Surfaces::from(surfaces);
-        Self {
-            depth: surfaces.depth(),
-            normal: surfaces.normal().map(|normal| &normal.default_view),
-            ids: ids.map(|ids| &ids.view),
-            widths: widths.map(|widths| &widths.view),
-            motion: surfaces.motion().map(|motion| &motion.default_view),
-            picture: None,
-        }
-    }
-
-    /// Those of marked objects.
-    #[cfg(feature = "objects")]
-    pub fn layer(self, layer: &'a ViewLayer) -> Self {
-        Self {
-            depth: Some(&layer.depth),
-            normal: None,
-            ids: Some(&layer.ids.default_view),
-            widths: None,
-            motion: self.motion,
-            picture: self.depth.map(|depth| &depth.default_view),
-        }
-    }
-}
+use crate::{depth::prepare::ViewDepthRange, diagnostics::LeftOut, objects::ObjectStyleBuffer};
 
 /// What the passes of a view read: of the lines, of the scene, the visible range.
 pub(super) type ViewParts<'a> = (
@@ -82,10 +30,6 @@ pub(super) type ViewParts<'a> = (
     Option<&'a ViewDepthRange>,
 );
 
-fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
-    BindGroupEntry { binding, resource }
-}
-
 /// What the passes read.
 pub(super) struct Inputs<'a> {
     pub parts: ViewParts<'a>,
@@ -93,44 +37,6 @@ pub(super) struct Inputs<'a> {
     pub styles: &'a ObjectStyleBuffer,
     pub cache: &'a PipelineCache,
     pub device: RenderDevice,
-}
-
-const NOT_READY: LeftOut = LeftOut::PipelineNotReady;
-
-/// Textures with the depth, normal, object and width of lines of every pixel.
-pub(super) struct Texels<'a> {
-    pub depth: &'a TextureView,
-    pub normal: Option<&'a TextureView>,
-    pub ids: Option<&'a TextureView>,
-    pub widths: Option<&'a TextureView>,
-}
-
-/// Which textures a pass reads besides the depth.
-#[derive(Clone, Copy, Default)]
-struct Reads {
-    normals: bool,
-    ids: bool,
-    widths: bool,
-}
-
-impl<'a> Texels<'a> {
-    /// Adds the bindings: the depth, and what else is read.
-    fn push(self, reads: Reads, entries: &mut Vec<BindGroupEntry<'a>>) -> Result<(), LeftOut> {
-        entries.push(entry(2, self.depth.into_binding()));
-        if reads.normals {
-            let normal = self.normal.ok_or(NOT_READY)?;
-            entries.push(entry(7, normal.into_binding()));
-        }
-        if reads.ids {
-            let ids = self.ids.ok_or(NOT_READY)?;
-            entries.push(entry(8, ids.into_binding()));
-        }
-        if reads.widths {
-            let widths = self.widths.ok_or(NOT_READY)?;
-            entries.push(entry(9, widths.into_binding()));
-        }
-        Ok(())
-    }
 }
 
 /// The pass that remembers, ready to be recorded.

@@ -124,6 +124,19 @@ impl SpecializedRenderPipeline for MarkPipeline {
     }
 }
 
+/// What the pass binds; `None` if something is not ready in this frame.
+fn bindings<'a>(
+    lines: &'a ViewLines,
+    styles: &'a MarkStyleBuffer,
+) -> Option<[BindGroupEntry<'a>; 3]> {
+    let resources = [
+        (1, lines.uniform.binding()?),
+        (4, (&lines.found()?.default_view).into_binding()),
+        (6, styles.0.buffer()?.as_entire_binding()),
+    ];
+    Some(resources.map(|(binding, resource)| BindGroupEntry { binding, resource }))
+}
+
 /// Draws the lines of the marked objects of the view over its picture.
 pub(crate) fn draw_marks(
     view: ViewQuery<(&ViewTarget, &ViewMarks)>,
@@ -137,31 +150,13 @@ pub(crate) fn draw_marks(
         return;
     };
     let pipeline = cache.get_render_pipeline(marks.pipeline);
-    let (Some(pipeline), Some(ink), Some(styles), Some(uniform)) = (
-        pipeline,
-        lines.found(),
-        styles.0.buffer(),
-        lines.uniform.binding(),
-    ) else {
+    let entries = bindings(lines, &styles);
+    let (Some(pipeline), Some(entries)) = (pipeline, entries) else {
         return;
     };
     if target.main_texture_format() != marks.key.format {
         return;
     }
-    let entries = [
-        BindGroupEntry {
-            binding: 1,
-            resource: uniform,
-        },
-        BindGroupEntry {
-            binding: 4,
-            resource: (&ink.default_view).into_binding(),
-        },
-        BindGroupEntry {
-            binding: 6,
-            resource: styles.as_entire_binding(),
-        },
-    ];
     let layout = cache.get_bind_group_layout(&MarkKey::layout());
     let device = ctx.render_device();
     let group = device.create_bind_group("comics_draw_marks", &layout, &entries);

@@ -22,6 +22,7 @@ mod prepare;
 pub(crate) mod request;
 mod resolve;
 mod settings;
+mod sources;
 mod store;
 mod tiles;
 mod weight;
@@ -69,6 +70,39 @@ use resolve::ResolvePipeline;
 
 /// Finds the lines of the views that request them.
 pub(crate) fn build_render(app: &mut App) {
+    load_shaders(app);
+    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
+        return;
+    };
+    render_app
+        .init_gpu_resource::<SpecializedComputePipelines<LineShaders>>()
+        .init_gpu_resource::<SpecializedRenderPipelines<LineShaders>>()
+        .init_gpu_resource::<SpecializedRenderPipelines<ResolvePipeline>>()
+        .init_gpu_resource::<SpecializedRenderPipelines<MemoryPipeline>>()
+        .init_gpu_resource::<SpecializedRenderPipelines<MarkPipeline>>()
+        .add_systems(RenderStartup, init_pipelines)
+        .add_systems(
+            Render,
+            prepare::prepare_view_lines.in_set(PrepareComics::Services),
+        )
+        .add_systems(
+            Core3d,
+            draw::find_lines
+                .in_set(ComicsSystems::Outlines)
+                .after(ComicsSystems::DepthRange)
+                .after(Core3dSystems::Prepass)
+                .before(Core3dSystems::MainPass),
+        );
+    #[cfg(feature = "objects")]
+    render_app.add_systems(
+        Core3d,
+        draw::find_marks
+            .after(ComicsSystems::Outlines)
+            .before(Core3dSystems::MainPass),
+    );
+}
+
+fn load_shaders(app: &mut App) {
     load_shader_library!(app, "edge.wgsl");
     load_shader_library!(app, "blocks.wgsl");
     load_shader_library!(app, "rows.wgsl");
@@ -103,35 +137,6 @@ pub(crate) fn build_render(app: &mut App) {
     embedded_asset!(app, "draw.wgsl");
     embedded_asset!(app, "remember.wgsl");
     embedded_asset!(app, "marks.wgsl");
-    let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
-        return;
-    };
-    render_app
-        .init_gpu_resource::<SpecializedComputePipelines<LineShaders>>()
-        .init_gpu_resource::<SpecializedRenderPipelines<LineShaders>>()
-        .init_gpu_resource::<SpecializedRenderPipelines<ResolvePipeline>>()
-        .init_gpu_resource::<SpecializedRenderPipelines<MemoryPipeline>>()
-        .init_gpu_resource::<SpecializedRenderPipelines<MarkPipeline>>()
-        .add_systems(RenderStartup, init_pipelines)
-        .add_systems(
-            Render,
-            prepare::prepare_view_lines.in_set(PrepareComics::Services),
-        )
-        .add_systems(
-            Core3d,
-            draw::find_lines
-                .in_set(ComicsSystems::Outlines)
-                .after(ComicsSystems::DepthRange)
-                .after(Core3dSystems::Prepass)
-                .before(Core3dSystems::MainPass),
-        );
-    #[cfg(feature = "objects")]
-    render_app.add_systems(
-        Core3d,
-        draw::find_marks
-            .after(ComicsSystems::Outlines)
-            .before(Core3dSystems::MainPass),
-    );
 }
 
 fn init_pipelines(

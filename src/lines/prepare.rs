@@ -157,6 +157,54 @@ fn cracks(
     Some(Cracks { store, columns })
 }
 
+impl ViewLines {
+    /// Prepares them for a frame. Returns the cracks that other systems may read.
+    fn fill(
+        &mut self,
+        (request, passes): (&LineRequest, &LinePasses),
+        textures: &mut TextureCache,
+        (device, queue): (&RenderDevice, &RenderQueue),
+    ) -> Option<ViewCracks> {
+        self.resolved = (passes.resolve.as_ref())
+            .map(|(key, _)| Resolved::new((textures, device), *key, request.depth_size));
+        let before = self.cracks.take();
+        self.cracks = cracks(before, (textures, device), passes, request.rect);
+        let before = self.tiles.take().map(|tiles| tiles.lists);
+        self.tiles = passes.search.map(|_| Tiles {
+            blocks: texture(
+                (textures, device),
+                "comics_line_blocks",
+                blocks(request.rect),
+                (BLOCK_FORMAT, TextureUsages::STORAGE_BINDING),
+            ),
+            lists: TileLists::new(before, (device, queue), request),
+        });
+        let mut drawn = |label, format| {
+            let usage = TextureUsages::RENDER_ATTACHMENT;
+            texture((textures, device), label, request.size, (format, usage))
+        };
+        let ink = passes.has_ink();
+        self.ink = ink.then(|| drawn("comics_line_ink", INK_FORMAT));
+        self.owners =
+            (ink && passes.key.surface).then(|| drawn("comics_line_owners", OWNER_FORMAT));
+        let before = self.memory.take();
+        let kept = self.found.load(Ordering::Relaxed);
+        let memory = request.memory.filter(|_| passes.memory.is_some());
+        self.memory = memory.map(|memory| {
+            let request = (&memory, request.size, &request.settings);
+            LineMemory::next(before, kept, device, request)
+        });
+        self.found = AtomicBool::new(false);
+        let is_new = self.memory.as_ref().is_none_or(|memory| memory.is_new);
+        self.uniform.set(request.uniform(is_new));
+        self.uniform.write_buffer(device, queue);
+        match &self.cracks.as_ref()?.store {
+            CrackStore::Buffers(buffers) => Some(buffers.shown(request.rect, request.links())),
+            CrackStore::Texture(_) => None,
+        }
+    }
+}
+
 pub(crate) fn prepare_view_lines(
     mut commands: Commands,
     mut views: Query<(Entity, &LineRequest, &LinePasses, Option<&mut ViewLines>)>,
@@ -165,73 +213,19 @@ pub(crate) fn prepare_view_lines(
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
 ) {
     for (entity, request, passes, lines) in &mut views {
-        let mut shown = None;
-        let mut fill = |lines: &mut ViewLines| {
-            lines.resolved = (passes.resolve.as_ref())
-                .map(|(key, _)| Resolved::new((&mut textures, &device), *key, request.depth_size));
-            let before = lines.cracks.take();
-            lines.cracks = cracks(before, (&mut textures, &device), passes, request.rect);
-            shown = lines
-                .cracks
-                .as_ref()
-                .and_then(|cracks| match &cracks.store {
-                    CrackStore::Buffers(buffers) => {
-                        Some(buffers.shown(request.rect, request.links()))
-                    }
-                    CrackStore::Texture(_) => None,
-                });
-            let before = lines.tiles.take().map(|tiles| tiles.lists);
-            lines.tiles = passes.search.map(|_| Tiles {
-                blocks: texture(
-                    (&mut textures, &device),
-                    "comics_line_blocks",
-                    blocks(request.rect),
-                    (BLOCK_FORMAT, TextureUsages::STORAGE_BINDING),
-                ),
-                lists: TileLists::new(before, (&device, &queue), request),
-            });
-            lines.ink = passes.has_ink().then(|| {
-                texture(
-                    (&mut textures, &device),
-                    "comics_line_ink",
-                    request.size,
-                    (INK_FORMAT, TextureUsages::RENDER_ATTACHMENT),
-                )
-            });
-            lines.owners = (passes.has_ink() && passes.key.surface).then(|| {
-                texture(
-                    (&mut textures, &device),
-                    "comics_line_owners",
-                    request.size,
-                    (OWNER_FORMAT, TextureUsages::RENDER_ATTACHMENT),
-                )
-            });
-            let before = lines.memory.take();
-            let kept = lines.found.load(Ordering::Relaxed);
-            lines.memory = request
-                .memory
-                .filter(|_| passes.memory.is_some())
-                .map(|memory| {
-                    let request = (&memory, request.size, &request.settings);
-                    LineMemory::next(before, kept, &device, request)
-                });
-            lines.found = AtomicBool::new(false);
-            let is_new = lines.memory.as_ref().is_none_or(|memory| memory.is_new);
-            lines.uniform.set(request.uniform(is_new));
-            lines.uniform.write_buffer(&device, &queue);
-        };
-        match lines {
-            Some(mut lines) => fill(&mut lines),
-            None => {
-                let mut lines = ViewLines::default();
-                fill(&mut lines);
-                commands.entity(entity).insert(lines);
-            }
-        }
+        let mut new = ViewLines::default();
+        let known = lines.map(|lines| lines.into_inner());
+        let is_new = known.is_none();
+        let lines = known.unwrap_or(&mut new);
+        let shown = lines.fill((request, passes), &mut textures, (&device, &queue));
+        let mut view = commands.entity(entity);
         match shown {
-            Some(cracks) => commands.entity(entity).insert(cracks),
-            None => commands.entity(entity).remove::<ViewCracks>(),
+            Some(cracks) => view.insert(cracks),
+            None => view.remove::<ViewCracks>(),
         };
+        if is_new {
+            view.insert(new);
+        }
     }
     for entity in &stale {
         commands.entity(entity).remove::<(ViewLines, ViewCracks)>();

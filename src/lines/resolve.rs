@@ -22,10 +22,10 @@ use bevy::{
 
 use super::{
     draw::cleared,
-    inputs::Texels,
     key::LineKey,
     prepare::texture,
     request::{LinePassUniform, LineRequest},
+    sources::Texels,
 };
 use crate::objects::{ID_FORMAT, WIDTH_FORMAT, ids_entry, widths_entry};
 

@@ -6,8 +6,7 @@
 //! prepass discarded fails the depth test.
 
 use bevy::{
-    app::App,
-    camera::{MainPassResolutionOverride, Viewport},
+    app::{App, SubApp},
     core_pipeline::{
         prepass::{MotionVectorPrepass, NormalPrepass},
         schedule::{Core3d, Core3dSystems},
@@ -17,9 +16,7 @@ use bevy::{
         query::{Has, Or, With, Without},
         schedule::IntoScheduleConfigs,
         system::{Commands, Query, Res, ResMut},
-        world::World,
     },
-    log::error_once,
     math::UVec4,
     mesh::Mesh3d,
     pbr::{MeshPipeline, MeshPipelineKey},
@@ -27,41 +24,38 @@ use bevy::{
     render::{
         ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderDebugFlags, RenderStartup,
         RenderSystems,
-        camera::ExtractedCamera,
         render_phase::{
-            AddRenderCommand, DrawFunctions, PhaseItem, SortedRenderPhasePlugin,
+            AddRenderCommand, DrawFunctions, PhaseItem, SortedRenderPhase, SortedRenderPhasePlugin,
             ViewSortedRenderPhases, sort_phase_system,
         },
         render_resource::{
-            BindGroupEntries, Extent3d, LoadOp, Operations, PipelineCache,
-            RenderPassColorAttachment, RenderPassDescriptor, SpecializedMeshPipelines, StoreOp,
-            TextureDescriptor, TextureDimension, TextureUsages, TextureView,
+            BindGroupEntries, Extent3d, PipelineCache, SpecializedMeshPipelines, TextureDescriptor,
+            TextureDimension, TextureUsages,
         },
-        renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
+        renderer::{RenderDevice, RenderQueue},
+        sync_world::MainEntity,
         texture::TextureCache,
-        view::{ExtractedView, Msaa, RenderVisibleEntities, RetainedViewEntity, ViewDepthTexture},
+        view::{ExtractedView, Msaa, RenderVisibleEntities, RetainedViewEntity},
     },
 };
 
 use super::{
     DepthWanted, DepthWrites, ID_FORMAT, IdRequest, IdsWanted, ObjectStyles, QueuedDepth,
-    ViewLineWidths, ViewObjectIds,
+    ViewObjectIds,
+    draw::draw_object_ids,
     groups::{ObjectGroups, extract_object_groups},
     items::{
         DrawId, DrawIdWithMaterial, Drawn, IdItems, ObjectIdPipeline, ObjectIdSpecializer,
         ObjectTable, init_object_id_pipeline,
     },
-    layer::{LayerRequest, MarkSpecializer, ViewLayer, prepare_layers},
-    line_widths::{WideMeshes, WidthViews, attachment, extract_wide_meshes, prepare_line_widths},
+    layer::{LayerRequest, MarkSpecializer, prepare_layers},
+    line_widths::{WideMeshes, WidthViews, extract_wide_meshes, prepare_line_widths},
     marks::{Marks, extract_marks},
     phase::{Layer, ObjectIdItem},
     sections::{SectionBuffer, SectionTables, extract_sections, prepare_sections},
     transparent::TransparentItems,
 };
-use crate::{
-    diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
-    schedule::{ComicsSystems, PrepareComics},
-};
+use crate::schedule::{ComicsSystems, PrepareComics};
 
 /// The id of an object in [`ViewObjectIds`](super::ViewObjectIds), 1 to 65535.
 ///
@@ -182,28 +176,18 @@ fn queue_object_ids(
             ids: ids.0,
             normals: wanted.normals && has_normals,
         });
-        let mut writes = None;
-        for (render_entity, main_entity) in class.iter_visible() {
-            let object = (*render_entity, *main_entity);
-            let drawn = Drawn::Ids { widths };
-            if (ids.0 || ids.1)
-                && let Some(item) = items.item(object, key, drawn)
-            {
-                phase.add_transient(item);
-            } else if let Some(targets) = targets
-                && let Some(item) = transparent.item(object, key, targets)
-            {
-                phase.add_transient(item);
-                writes = Some(targets);
-            }
-            let marked = layer && marks.of(main_entity.id()).is_some();
-            if marked && let Some(item) = items.item(object, key, Drawn::Marked) {
-                // Under a key of its own, because the object has an item already.
-                let own = (Entity::PLACEHOLDER, *main_entity);
-                phase.items.insert(own, item);
-                phase.transient_items.push(own);
-            }
-        }
+        let writes = queue_objects(
+            phase,
+            (&mut items, &mut transparent, &marks),
+            class.iter_visible().map(|(own, main)| (*own, *main)),
+            &Queue {
+                key,
+                ids: ids.0 || ids.1,
+                widths,
+                layer,
+                targets,
+            },
+        );
         match writes {
             Some(targets) if queued != Some(&targets) => {
                 commands.entity(entity).insert(targets);
@@ -217,10 +201,63 @@ fn queue_object_ids(
     phases.retain(|view, _| live.contains(view));
 }
 
+/// What is queued for a view.
+struct Queue {
+    key: MeshPipelineKey,
+    ids: bool,
+    /// The widths of lines are drawn with the ids.
+    widths: bool,
+    /// The layer of marked objects.
+    layer: bool,
+    /// What transparent meshes are drawn into.
+    targets: Option<QueuedDepth>,
+}
+
+/// Queues the visible objects of a view. Returns what transparent meshes are drawn into, if
+/// there are any.
+fn queue_objects(
+    phase: &mut SortedRenderPhase<ObjectIdItem>,
+    (items, transparent, marks): (&mut IdItems, &mut TransparentItems, &Marks),
+    visible: impl Iterator<Item = (Entity, MainEntity)>,
+    queue: &Queue,
+) -> Option<QueuedDepth> {
+    let mut writes = None;
+    let drawn = Drawn::Ids {
+        widths: queue.widths,
+    };
+    for object in visible {
+        if queue.ids
+            && let Some(item) = items.item(object, queue.key, drawn)
+        {
+            phase.add_transient(item);
+        } else if let Some(targets) = queue.targets
+            && let Some(item) = transparent.item(object, queue.key, targets)
+        {
+            phase.add_transient(item);
+            writes = Some(targets);
+        }
+        let marked = queue.layer && marks.of(object.1.id()).is_some();
+        if marked && let Some(item) = items.item(object, queue.key, Drawn::Marked) {
+            // Under a key of its own, because the object has an item already.
+            let own = (Entity::PLACEHOLDER, object.1);
+            phase.items.insert(own, item);
+            phase.transient_items.push(own);
+        }
+    }
+    writes
+}
+
+/// What is known of objects by their entities.
+type Tables<'w> = (
+    Res<'w, ObjectStyles>,
+    Res<'w, ObjectGroups>,
+    Res<'w, Marks>,
+    Res<'w, DepthWrites>,
+);
+
 fn prepare_object_table(
     phases: Res<ViewSortedRenderPhases<ObjectIdItem>>,
-    (styles, groups, marks): (Res<ObjectStyles>, Res<ObjectGroups>, Res<Marks>),
-    writes: Res<DepthWrites>,
+    (styles, groups, marks, writes): Tables,
     (sections, section_tables): (Res<SectionBuffer>, Res<SectionTables>),
     (shared, cache): (Res<ObjectIdPipeline>, Res<PipelineCache>),
     mut table: ResMut<ObjectTable>,
@@ -262,81 +299,6 @@ fn prepare_object_table(
     }
 }
 
-/// Draws the object ids of a view.
-pub(super) fn draw_object_ids(
-    world: &World,
-    view: ViewQuery<(
-        &ExtractedCamera,
-        &ExtractedView,
-        &ViewDepthTexture,
-        Option<&MainPassResolutionOverride>,
-        Option<(&IdRequest, &ViewObjectIds, Option<&ViewLineWidths>)>,
-        Option<(&LayerRequest, &ViewLayer)>,
-    )>,
-    phases: Option<Res<ViewSortedRenderPhases<ObjectIdItem>>>,
-    ledger: Res<StageLedger>,
-    mut ctx: RenderContext,
-) {
-    let entity = view.entity();
-    let (camera, extracted, depth, resolution, ids, layer) = view.into_inner();
-    let phase = (phases.as_ref()).and_then(|phases| phases.get(&extracted.retained_view_entity));
-    let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
-    let mut draw = |descriptor: RenderPassDescriptor, samples: u32, layer: Layer| {
-        let phase = phase.ok_or(LeftOut::PipelineNotReady)?;
-        if depth.texture.sample_count() != samples {
-            return Err(LeftOut::SampleCountMismatch);
-        }
-        let mut render_pass = ctx.begin_tracked_render_pass(descriptor);
-        if let Some(viewport) = &viewport {
-            render_pass.set_camera_viewport(viewport);
-        }
-        let range = ObjectIdItem::of(phase, layer);
-        if range.is_empty() {
-            return Ok(StageOutcome::Ran);
-        }
-        let drawn = phase.render_range(&mut render_pass, world, entity, range);
-        drawn.map(|()| StageOutcome::Ran).map_err(|error| {
-            error_once!("the object ids were not drawn: {error:?}");
-            LeftOut::PipelineNotReady
-        })
-    };
-    if let Some((request, target, widths)) = ids {
-        let targets = [Some(cleared(&target.view)), widths.map(attachment)];
-        let count = if widths.is_some() { 2 } else { 1 };
-        let outcome = draw(
-            RenderPassDescriptor {
-                label: Some("comics_object_ids"),
-                color_attachments: &targets[..count],
-                depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
-                ..Default::default()
-            },
-            request.samples,
-            Layer::Prepass,
-        );
-        let outcome = outcome.unwrap_or_else(StageOutcome::LeftOut);
-        ledger.set(request.camera, ComicsStage::ObjectIds, outcome);
-    }
-    if let Some((request, layer)) = layer {
-        let targets = [Some(cleared(&layer.ids.default_view))];
-        let outcome = draw(layer.pass(&targets), request.samples, Layer::Marked);
-        let outcome = outcome.unwrap_or_else(StageOutcome::LeftOut);
-        ledger.set(request.camera, ComicsStage::MarkedObjects, outcome);
-    }
-}
-
-/// A texture of ids that is cleared before it is drawn to.
-fn cleared(view: &TextureView) -> RenderPassColorAttachment<'_> {
-    RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: Operations {
-            load: LoadOp::Clear(Default::default()),
-            store: StoreOp::Store,
-        },
-    }
-}
-
 /// Adds the pass that draws ids. Needs the engine's `PbrPlugin`.
 pub(crate) fn build(app: &mut App) {
     app.add_plugins(SortedRenderPhasePlugin::<ObjectIdItem, MeshPipeline>::new(
@@ -357,7 +319,12 @@ pub(crate) fn build(app: &mut App) {
         .init_resource::<WidthViews>()
         .init_resource::<DrawFunctions<ObjectIdItem>>()
         .add_render_command::<ObjectIdItem, DrawId>()
-        .add_render_command::<ObjectIdItem, DrawIdWithMaterial>()
+        .add_render_command::<ObjectIdItem, DrawIdWithMaterial>();
+    add_systems(render_app);
+}
+
+fn add_systems(render_app: &mut SubApp) {
+    render_app
         .add_systems(
             RenderStartup,
             init_object_id_pipeline.after(bevy::pbr::init_prepass_pipeline),

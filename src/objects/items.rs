@@ -316,36 +316,31 @@ impl IdItems<'_> {
             return None;
         }
         let mut mesh_key = view_key | MeshPipelineKey::from_bits_retain(mesh.key_bits.bits());
-        if instance.lightmap_slab_index().is_some() {
-            mesh_key |= MeshPipelineKey::LIGHTMAPPED;
-        }
+        let lightmapped = instance.lightmap_slab_index().is_some();
+        mesh_key.set(MeshPipelineKey::LIGHTMAPPED, lightmapped);
         let uses_material = reads_material(&material.properties);
-        if uses_material {
-            mesh_key |= MeshPipelineKey::PREPASS_READS_MATERIAL;
-        }
+        mesh_key.set(MeshPipelineKey::PREPASS_READS_MATERIAL, uses_material);
         let key = ErasedMaterialPipelineKey {
             type_id: material_instance.asset_id.type_id(),
             mesh_key: ErasedMeshPipelineKey::new(mesh_key),
             material_key: material.properties.material_key.clone(),
         };
-        let (pipeline, layer) = match drawn {
-            Drawn::Marked => {
-                let variant = IdVariant::default();
-                let specializer = self.shared.specializer(&material.properties, variant);
-                let specializer = MarkSpecializer(specializer);
-                let pipelines = &mut self.marked;
-                let key = (key, variant);
-                let pipeline = pipelines.specialize(&self.cache, &specializer, key, &mesh.layout);
-                (pipeline, Layer::Marked)
-            }
+        let (variant, layer) = match drawn {
+            Drawn::Marked => (IdVariant::default(), Layer::Marked),
             Drawn::Ids { widths } => {
                 let variant = self.variant(object.1.id(), mesh, widths);
-                let specializer = self.shared.specializer(&material.properties, variant);
-                let pipelines = &mut self.pipelines;
-                let key = (key, variant);
-                let pipeline = pipelines.specialize(&self.cache, &specializer, key, &mesh.layout);
-                (pipeline, Layer::Prepass)
+                (variant, Layer::Prepass)
             }
+        };
+        let specializer = self.shared.specializer(&material.properties, variant);
+        let key = (key, variant);
+        let (cache, layout) = (&self.cache, &mesh.layout);
+        let pipeline = match layer {
+            Layer::Marked => {
+                let specializer = MarkSpecializer(specializer);
+                self.marked.specialize(cache, &specializer, key, layout)
+            }
+            _ => self.pipelines.specialize(cache, &specializer, key, layout),
         };
         let pipeline = pipeline
             .inspect_err(|error| error_once!("no object id for {:?}: {error}", object.1))

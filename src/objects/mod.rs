@@ -3,6 +3,8 @@
 //! meshes that take part in lines and effects.
 
 #[cfg(feature = "objects")]
+mod draw;
+#[cfg(feature = "objects")]
 mod groups;
 #[cfg(feature = "objects")]
 mod ids;

@@ -28,7 +28,7 @@ use self::{
     items::{TransparentSpecializer, init_transparent_pipeline},
     pass::{NormalCopyPipeline, draw_transparent_depth, init_normal_copy, prepare_own_surfaces},
 };
-use super::{components::inherit, ids::draw_object_ids, table::DepthWrites};
+use super::{components::inherit, draw::draw_object_ids, table::DepthWrites};
 use crate::{
     schedule::{ComicsSystems, PrepareComics},
     settings::{FieldRange, bounded},

@@ -1,0 +1,100 @@
+//! Records the passes that draw the ids of objects, and the layer of marked objects.
+
+use bevy::{
+    camera::{MainPassResolutionOverride, Viewport},
+    ecs::{system::Res, world::World},
+    log::error_once,
+    render::{
+        camera::ExtractedCamera,
+        render_phase::ViewSortedRenderPhases,
+        render_resource::{
+            LoadOp, Operations, RenderPassColorAttachment, RenderPassDescriptor, StoreOp,
+            TextureView,
+        },
+        renderer::{RenderContext, ViewQuery},
+        view::{ExtractedView, ViewDepthTexture},
+    },
+};
+
+use super::{
+    IdRequest, ViewLineWidths, ViewObjectIds,
+    layer::{LayerRequest, ViewLayer},
+    line_widths::attachment,
+    phase::{Layer, ObjectIdItem},
+};
+use crate::diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome};
+
+/// Draws the object ids of a view.
+pub(super) fn draw_object_ids(
+    world: &World,
+    view: ViewQuery<(
+        &ExtractedCamera,
+        &ExtractedView,
+        &ViewDepthTexture,
+        Option<&MainPassResolutionOverride>,
+        Option<(&IdRequest, &ViewObjectIds, Option<&ViewLineWidths>)>,
+        Option<(&LayerRequest, &ViewLayer)>,
+    )>,
+    phases: Option<Res<ViewSortedRenderPhases<ObjectIdItem>>>,
+    ledger: Res<StageLedger>,
+    mut ctx: RenderContext,
+) {
+    let entity = view.entity();
+    let (camera, extracted, depth, resolution, ids, layer) = view.into_inner();
+    let phase = (phases.as_ref()).and_then(|phases| phases.get(&extracted.retained_view_entity));
+    let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
+    let mut draw = |descriptor: RenderPassDescriptor, samples: u32, layer: Layer| {
+        let phase = phase.ok_or(LeftOut::PipelineNotReady)?;
+        if depth.texture.sample_count() != samples {
+            return Err(LeftOut::SampleCountMismatch);
+        }
+        let mut render_pass = ctx.begin_tracked_render_pass(descriptor);
+        if let Some(viewport) = &viewport {
+            render_pass.set_camera_viewport(viewport);
+        }
+        let range = ObjectIdItem::of(phase, layer);
+        if range.is_empty() {
+            return Ok(StageOutcome::Ran);
+        }
+        let drawn = phase.render_range(&mut render_pass, world, entity, range);
+        drawn.map(|()| StageOutcome::Ran).map_err(|error| {
+            error_once!("the object ids were not drawn: {error:?}");
+            LeftOut::PipelineNotReady
+        })
+    };
+    if let Some((request, target, widths)) = ids {
+        let targets = [Some(cleared(&target.view)), widths.map(attachment)];
+        let count = if widths.is_some() { 2 } else { 1 };
+        let outcome = draw(
+            RenderPassDescriptor {
+                label: Some("comics_object_ids"),
+                color_attachments: &targets[..count],
+                depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
+                ..Default::default()
+            },
+            request.samples,
+            Layer::Prepass,
+        );
+        let outcome = outcome.unwrap_or_else(StageOutcome::LeftOut);
+        ledger.set(request.camera, ComicsStage::ObjectIds, outcome);
+    }
+    if let Some((request, layer)) = layer {
+        let targets = [Some(cleared(&layer.ids.default_view))];
+        let outcome = draw(layer.pass(&targets), request.samples, Layer::Marked);
+        let outcome = outcome.unwrap_or_else(StageOutcome::LeftOut);
+        ledger.set(request.camera, ComicsStage::MarkedObjects, outcome);
+    }
+}
+
+/// A texture of ids that is cleared before it is drawn to.
+fn cleared(view: &TextureView) -> RenderPassColorAttachment<'_> {
+    RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: Operations {
+            load: LoadOp::Clear(Default::default()),
+            store: StoreOp::Store,
+        },
+    }
+}
