@@ -10,7 +10,7 @@
 #import bevy_comics::lines::blocks::{BLOCK_HEIGHT, BLOCK_WIDTH, marked_rows}
 #endif
 #import bevy_comics::lines::edge::{
-    crack_opacity, is_apart, line_coverage, pack_middle, unpack_width,
+    crack_opacity, is_apart, line_coverage, owner_step, pack_middle, unpack_width,
 }
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::stored::{load_bends, load_cracks, stored_middle}
@@ -22,7 +22,9 @@ struct Best {
     // Middles of the lines, in pixels from the centre of the pixel.
     first: vec2<f32>,
     second: vec2<f32>,
-    // Whether they are to the south of their pixels.
+    // From the pixel to those that own them: across x and y, down z and w; and whether they are
+    // to the south of their pixels.
+    owners: vec4<i32>,
     south: vec2<bool>,
     // The score of the first, and how far its line and that of the second reach over the
     // pixel's row, squared.
@@ -31,7 +33,7 @@ struct Best {
 }
 
 // Compares a crack with the best two.
-fn compare(best: ptr<function, Best>, packed: u32, middle: vec2<f32>, south: bool) {
+fn compare(best: ptr<function, Best>, packed: u32, middle: vec2<f32>, row: i32, south: bool) {
     let half_width = unpack_width(packed >> 20u);
     // In pixels of the viewport, as widths are.
     let away = abs(middle.y) / line_pass.grid.from_viewport.y;
@@ -50,6 +52,11 @@ fn compare(best: ptr<function, Best>, packed: u32, middle: vec2<f32>, south: boo
     (*best).packed.y = select(select((*best).packed.y, packed, next), (*best).packed.x, pushed);
     (*best).second = select(select((*best).second, middle, next), (*best).first, pushed);
     (*best).reach.y = select(select((*best).reach.y, reach, next), (*best).reach.x, pushed);
+    let owner = vec2(0, row) + owner_step(packed, south);
+    let first = (*best).owners.xz;
+    let second = select(select((*best).owners.yw, owner, next), first, pushed);
+    let kept = select(first, owner, better);
+    (*best).owners = vec4(kept.x, second.x, kept.y, second.y);
     (*best).south.y = select(select((*best).south.y, south, next), (*best).south.x, pushed);
     (*best).south.x = select((*best).south.x, south, better);
     (*best).packed.x = select((*best).packed.x, packed, better);
@@ -62,16 +69,17 @@ fn compare(best: ptr<function, Best>, packed: u32, middle: vec2<f32>, south: boo
 fn compare_row(best: ptr<function, Best>, p: vec2<i32>, y: i32) {
     let packed = load_cracks(line_pass.grid, vec2(p.x, y));
     let bends = load_bends(line_pass.grid, vec2(p.x, y));
-    let row = vec2(0.0, f32(y - p.y));
-    compare(best, packed.x, row + stored_middle(packed.x, vec2(1.0, 0.0), bends), false);
-    compare(best, packed.y, row + stored_middle(packed.y, vec2(0.0, 1.0), bends >> 16u), true);
+    let row = y - p.y;
+    let down = vec2(0.0, f32(row));
+    compare(best, packed.x, down + stored_middle(packed.x, vec2(1.0, 0.0), bends), row, false);
+    compare(best, packed.y, down + stored_middle(packed.y, vec2(0.0, 1.0), bends >> 16u), row, true);
 }
 
 @fragment
 fn columns(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     let g = line_pass.grid;
     let p = vec2<i32>(position.xy);
-    var best = Best(vec2(0u), vec2(1e6), vec2(1e6), vec2(false), -1e6, vec2(-1e6));
+    var best = Best(vec2(0u), vec2(1e6), vec2(1e6), vec4(0), vec2(false), -1e6, vec2(-1e6));
     let first = max(p.y - g.reach - 1, 0);
     let last = min(p.y + g.reach, g.rect.w - 1);
 #ifdef BLOCKS
@@ -88,7 +96,7 @@ fn columns(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     }
 #endif
     return vec4(
-        best.packed.x, pack_middle(best.first, best.south.x),
-        best.packed.y, pack_middle(best.second, best.south.y),
+        best.packed.x, pack_middle(best.first, best.owners.xz, best.south.x),
+        best.packed.y, pack_middle(best.second, best.owners.yw, best.south.y),
     );
 }

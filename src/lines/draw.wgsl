@@ -9,8 +9,8 @@
 #import bevy_comics::lines::boil::boiled
 #endif
 #import bevy_comics::lines::edge::{
-    encode_ink, ink_of, is_apart, largest_opacity, line_coverage, owner_at, segment_distance,
-    unpack_middle, unpack_width,
+    encode_ink, ink_of, inward_step, is_apart, largest_opacity, line_coverage, owner_step,
+    segment_distance, unpack_middle, unpack_owner, unpack_width,
 }
 #import bevy_comics::lines::pass::line_pass
 #ifdef OBJECT_STYLES
@@ -49,6 +49,7 @@ struct Ink {
     // The packed crack of the first, and the pixel that owns it.
     packed: u32,
     first_owner: vec2<i32>,
+    first_inward: vec2<i32>,
 }
 
 // Pixels of the viewport per pixel of the grid.
@@ -58,17 +59,14 @@ fn alphas(kinds: vec3<f32>) -> f32 {
     return largest_opacity(line_pass.settings, kinds);
 }
 
-#ifdef INWARD
-// The step from the middle of a line into the surface of its owner.
-fn inward_of(owner: vec2<i32>, middle: vec2<f32>) -> vec2<i32> {
-    let inside = vec2<f32>(owner) + 0.5 - middle;
-    let steps = vec2<i32>(sign(inside));
-    return select(vec2(0, steps.y), vec2(steps.x, 0), abs(inside.x) > abs(inside.y));
+// The pixel that owns a line, and whether its crack is to the south of its pixel.
+struct Owner {
+    pixel: vec2<i32>,
+    south: bool,
 }
-#endif
 
-// Adds the line along a crack that belongs to the pixel `owner`.
-fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: vec2<i32>, at: vec2<f32>) {
+// Adds the line along a crack.
+fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: Owner, at: vec2<f32>) {
     let half_width = unpack_width(packed >> 20u);
     let away = length((middle - at) * viewport_scale);
     let exists = (packed & 7u) != 0u;
@@ -76,9 +74,10 @@ fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: vec2<i32>
     (*ink).kinds = max((*ink).kinds, kinds);
 #ifdef OWNERS
     let alpha = alphas(kinds);
-    (*ink).owner = select((*ink).owner, owner, alpha > (*ink).strongest);
+    (*ink).owner = select((*ink).owner, owner.pixel, alpha > (*ink).strongest);
 #ifdef INWARD
-    (*ink).inward = select((*ink).inward, inward_of(owner, middle), alpha > (*ink).strongest);
+    let inward = inward_step(packed, owner.south);
+    (*ink).inward = select((*ink).inward, inward, alpha > (*ink).strongest);
 #endif
     (*ink).strongest = max((*ink).strongest, alpha);
 #endif
@@ -87,7 +86,10 @@ fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: vec2<i32>
     follow(ink, middle, border);
     (*ink).packed = select((*ink).packed, packed, nearest);
 #ifdef OWNERS
-    (*ink).first_owner = select((*ink).first_owner, owner, nearest);
+    (*ink).first_owner = select((*ink).first_owner, owner.pixel, nearest);
+#ifdef INWARD
+    (*ink).first_inward = select((*ink).first_inward, inward, nearest);
+#endif
 #endif
 }
 
@@ -119,7 +121,8 @@ fn add_pixel(ink: ptr<function, Ink>, p: vec2<i32>, at: vec2<f32>) {
 // Adds the crack of the pixel `p` that is `towards` the east or the south.
 fn add_crack(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i32>, bend: u32, at: vec2<f32>) {
     let middle = vec2<f32>(p) + 0.5 + stored_middle(packed, vec2<f32>(towards), bend);
-    add(ink, packed, middle, select(p + towards, p, (packed & 8u) != 0u), at);
+    let south = towards.y == 1;
+    add(ink, packed, middle, Owner(p + owner_step(packed, south), south), at);
 }
 #endif
 
@@ -155,8 +158,8 @@ fn search(ink: ptr<function, Ink>, centre: vec2<i32>, at: vec2<f32>) {
         let stored = select(vec4(0u), texel, inside);
         let first = vec2<f32>(p) + 0.5 + unpack_middle(stored.y);
         let second = vec2<f32>(p) + 0.5 + unpack_middle(stored.w);
-        add(ink, stored.x, first, owner_at(stored.x, first, stored.y), at);
-        add(ink, stored.z, second, owner_at(stored.z, second, stored.w), at);
+        add(ink, stored.x, first, Owner(p + unpack_owner(stored.y), (stored.y & 0x8000u) != 0u), at);
+        add(ink, stored.z, second, Owner(p + unpack_owner(stored.w), (stored.w & 0x8000u) != 0u), at);
     }
 #else
     for (var y = -g.reach; y <= g.reach; y++) {
@@ -191,6 +194,9 @@ fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
         ink.kinds = max(ink.kinds, straight);
 #ifdef OWNERS
         ink.owner = select(ink.owner, ink.first_owner, alphas(straight) > ink.strongest);
+#ifdef INWARD
+        ink.inward = select(ink.inward, ink.first_inward, alphas(straight) > ink.strongest);
+#endif
         ink.strongest = max(ink.strongest, alphas(straight));
 #endif
     }

@@ -277,21 +277,41 @@ fn line_middle(packed: u32, across: vec2<f32>, bend: vec2<f32>, shifts: bool) ->
     return (0.5 + bend.x) * across + to_owner * line_offset(unpack_width(packed >> 20u)) * normal;
 }
 
-// Packs the middle of a line into 32 bits: less than 32 pixels across and 64 down, in 512ths
-// of a pixel; and whether its crack is to the south of the crack's pixel (bit 15).
-fn pack_middle(middle: vec2<f32>, south: bool) -> u32 {
-    let place = vec2<u32>(round(clamp(middle + vec2(32.0, 64.0), vec2(0.0), vec2(63.0, 127.0)) * 512.0));
-    return place.x | select(0u, 0x8000u, south) | (place.y << 16u);
+// The pixel that owns a crack, from the crack's own pixel: `south`: the crack is to its south,
+// else to its east.
+fn owner_step(packed: u32, south: bool) -> vec2<i32> {
+    return select(select(vec2(1, 0), vec2(0, 1), south), vec2(0), (packed & 8u) != 0u);
+}
+
+// From the pixel that owns a crack to the next one inside.
+fn inward_step(packed: u32, south: bool) -> vec2<i32> {
+    return select(vec2(1, 0), vec2(0, 1), south) * select(1, -1, (packed & 8u) != 0u);
+}
+
+// The row of a packed middle, in 512ths of a pixel.
+fn middle_row(packed: u32) -> f32 {
+    return f32(packed >> 16u) / 512.0 - 64.0;
+}
+
+// Packs the middle of a line into 32 bits: from the centre of a pixel, -2 to 2 pixels across
+// and -64 to 64 down, in 512ths of a pixel (bits 0 to 10, and 16 to 31). `owner`: from that
+// pixel to the one that owns the line; across it is 0 or 1 (bit 11), and down it is stored from
+// the row of the middle (bits 12 to 14). `south`: the crack is to the south of its pixel (bit 15).
+fn pack_middle(middle: vec2<f32>, owner: vec2<i32>, south: bool) -> u32 {
+    let place = vec2<u32>(round(clamp(middle + vec2(2.0, 64.0), vec2(0.0), vec2(3.99, 127.0)) * 512.0));
+    let packed = place.x | (u32(owner.x & 1) << 11u) | select(0u, 0x8000u, south) | (place.y << 16u);
+    let down = owner.y - i32(floor(middle_row(packed) + 0.5));
+    return packed | (u32(clamp(down + 3, 0, 7)) << 12u);
 }
 
 fn unpack_middle(packed: u32) -> vec2<f32> {
-    return vec2(f32(packed & 0x7fffu), f32(packed >> 16u)) / 512.0 - vec2(32.0, 64.0);
+    return vec2(f32(packed & 0x7ffu) / 512.0 - 2.0, middle_row(packed));
 }
 
-// The pixel that owns a crack, from the middle of its line and what pack_middle packed.
-fn owner_at(crack: u32, middle: vec2<f32>, packed: u32) -> vec2<i32> {
-    let across = select(vec2(1.0, 0.0), vec2(0.0, 1.0), (packed & 0x8000u) != 0u);
-    return vec2<i32>(floor(middle + select(0.25, -0.25, (crack & 8u) != 0u) * across));
+// From the pixel that pack_middle was given to the one that owns the line.
+fn unpack_owner(packed: u32) -> vec2<i32> {
+    let down = i32((packed >> 12u) & 7u) - 3;
+    return vec2(i32((packed >> 11u) & 1u), i32(floor(middle_row(packed) + 0.5)) + down);
 }
 
 // Distance from the middle of a line to the crack that it runs along, towards its

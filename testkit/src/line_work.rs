@@ -76,8 +76,8 @@ const CELLS_END: &str = "        east_1 = east.packed;
 
 /// The end of the pass that searches columns.
 const COLUMNS_END: &str = "return vec4(
-        best.packed.x, pack_middle(best.first, best.south.x),
-        best.packed.y, pack_middle(best.second, best.south.y),
+        best.packed.x, pack_middle(best.first, best.owners.xz, best.south.x),
+        best.packed.y, pack_middle(best.second, best.owners.yw, best.south.y),
     );";
 
 const ENDS: [End; 4] = [
@@ -98,14 +98,15 @@ const ENDS: [End; 4] = [
     },
     End {
         file: DRAW,
-        result: "return vec4(encode_ink(ink.kinds), slot);",
-        counted: "return unpack4x8unorm(packed_count());",
+        result: "return drawn;",
+        counted: "drawn.ink = unpack4x8unorm(packed_count());\n    return drawn;",
         handed: "
 #ifdef COLUMNS
-    return unpack4x8unorm(textureLoad(column_texture, centre, 0).x);
+    drawn.ink = unpack4x8unorm(textureLoad(column_texture, centre, 0).x);
 #else
-    return unpack4x8unorm(load_cracks(line_pass.grid, centre).x);
+    drawn.ink = unpack4x8unorm(load_cracks(line_pass.grid, centre).x);
 #endif
+    return drawn;
 ",
     },
     End {

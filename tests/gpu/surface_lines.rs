@@ -112,3 +112,41 @@ fn the_colour_is_that_of_the_styled_surface() {
     }
     assert_eq!(small.errors(), 0);
 }
+
+/// Of a slanted square, no line has the colour of the sky, at any width: lines that run straight
+/// through the steps of pixels lie away from the pixels that own them.
+#[test]
+fn slanted_lines_have_the_colour_of_their_surface() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let (mut small, square) = scene(msaa);
+        for turned in [0.1, 0.35, 0.6, 0.785] {
+            let mut at = small
+                .world()
+                .get_mut::<Transform>(square)
+                .expect("a square");
+            at.rotation = Quat::from_rotation_z(turned);
+            for width in [1.0, 2.0, 3.0, 7.5] {
+                small.style(&ComicStyle::default().with(lines(width, 0.5)));
+                small.settle();
+                let picture = small.picture();
+                let mut inked = 0;
+                for (x, y, _) in picture.enumerate_pixels() {
+                    let [r, _, b] = linear(&picture, x, y);
+                    // Between the sky and the line, red grows with what blue loses. The rim of
+                    // the square itself mixes in more red. In multisampled views, the pixel
+                    // behind the rim may be mixed with the sky too, where the rim has a step.
+                    let surface = if msaa == Msaa::Off { 0.4 } else { 0.2 };
+                    let least = surface * (1.0 - b) / 0.9 - 0.02;
+                    let what = format!("{msaa:?}, {turned}, {width}, {x}, {y}");
+                    assert!(r >= least, "{what}: red {r}, blue {b}");
+                    inked += usize::from(r < 0.7 && b < 0.9);
+                }
+                assert!(
+                    inked > (100.0 * width) as usize,
+                    "{msaa:?}, {turned}, {width}: {inked}"
+                );
+            }
+        }
+        assert_eq!(small.errors(), 0);
+    }
+}
