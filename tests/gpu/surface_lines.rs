@@ -129,18 +129,22 @@ fn slanted_lines_have_the_colour_of_their_surface() {
                 small.style(&ComicStyle::default().with(lines(width, 0.5)));
                 small.settle();
                 let picture = small.picture();
-                let mut inked = 0;
+                let [mut inked, mut wrong] = [0; 2];
                 for (x, y, _) in picture.enumerate_pixels() {
                     let [r, _, b] = linear(&picture, x, y);
                     // Between the sky and the line, red grows with what blue loses. The rim of
-                    // the square itself mixes in more red. In multisampled views, the pixel
-                    // behind the rim may be mixed with the sky too, where the rim has a step.
-                    let surface = if msaa == Msaa::Off { 0.4 } else { 0.2 };
-                    let least = surface * (1.0 - b) / 0.9 - 0.02;
-                    let what = format!("{msaa:?}, {turned}, {width}, {x}, {y}");
-                    assert!(r >= least, "{what}: red {r}, blue {b}");
+                    // the square itself mixes in more red.
+                    let least = 0.4 * (1.0 - b) / 0.9 - 0.02;
+                    wrong += usize::from(r < least);
                     inked += usize::from(r < 0.7 && b < 0.9);
                 }
+                // In multisampled views, the pixel behind the rim may be mixed with the sky
+                // too, where the rim has a step.
+                let most = if msaa == Msaa::Off { 0 } else { inked / 10 };
+                assert!(
+                    wrong <= most,
+                    "{msaa:?}, {turned}, {width}: {wrong} of {inked}"
+                );
                 assert!(
                     inked > (100.0 * width) as usize,
                     "{msaa:?}, {turned}, {width}: {inked}"
