@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 use bevy::{
     color::LinearRgba,
     core_pipeline::prepass::ViewPrepassTextures,
-    ecs::system::{Query, Res},
+    ecs::system::Res,
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
@@ -33,6 +33,8 @@ use crate::{
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     objects::{ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
 };
+#[cfg(feature = "objects")]
+use bevy::ecs::system::Query;
 
 /// Records the passes that find the lines of the marked objects of the view, and draw their
 /// ink.

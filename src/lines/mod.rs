@@ -54,7 +54,9 @@ pub(crate) use fog::{ViewFog, has_fog};
 pub(crate) use key::reach;
 pub use kinds::{Creases, LineResponse, ObjectEdges, Silhouettes};
 pub(crate) use layouts::{ink_entry, owners_entry, range_entry};
-pub(crate) use marks::{MarkKey, MarkPipeline, ViewMarks, draw_marks};
+#[cfg(feature = "objects")]
+pub(crate) use marks::MarkKey;
+pub(crate) use marks::{MarkPipeline, ViewMarks, draw_marks};
 pub(crate) use memory::MemoryRequest;
 pub(crate) use prepare::ViewLines;
 pub(crate) use settings::LinesUniform;

@@ -1,6 +1,6 @@
 //! The settings of the service of lines: which lines it finds, and their ink.
 
-use bevy::{color::Color, math::Vec3, render::render_resource::ShaderType};
+use bevy::{math::Vec3, render::render_resource::ShaderType};
 
 use super::{
     boil::LineBoil,
@@ -78,10 +78,11 @@ impl LineSettings {
     };
 
     /// The lines of marked objects: their styles say which kinds, and how wide they are.
+    #[cfg(feature = "objects")]
     pub(crate) const MARKS: Self = Self {
         silhouettes: Some(Silhouettes::DEFAULT),
         objects: Some(ObjectEdges {
-            color: Color::BLACK,
+            color: bevy::color::Color::BLACK,
             opacity: 1.0,
         }),
         width: 0.5,

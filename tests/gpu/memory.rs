@@ -87,7 +87,7 @@ fn error(small: &Small) -> f64 {
             count += 1.0;
         }
     }
-    (sum / count as f64).sqrt()
+    (sum / count).sqrt()
 }
 
 #[test]

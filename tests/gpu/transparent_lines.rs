@@ -455,7 +455,7 @@ fn it_is_an_object_like_others() {
     // Colour effects leave it alone.
     small.world().entity_mut(glass).remove::<NoOutlines>();
     change(&mut small, glass, |m| {
-        m.base_color = Color::srgba(0.9, 0.1, 0.1, 0.7)
+        m.base_color = Color::srgba(0.9, 0.1, 0.1, 0.7);
     });
     let sepia = Colorization {
         amount: 1.0,

@@ -13,7 +13,7 @@ fn dashes(table: &Table, method: &str, model: &str) -> f64 {
 }
 
 /// The percentage of pixels that change.
-fn changed(table: &Table, row: &Vec<String>) -> f64 {
+fn changed(table: &Table, row: &[String]) -> f64 {
     100.0 * table.number(row, "changed") / table.number(row, "pixels").max(1.0)
 }
 
