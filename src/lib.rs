@@ -41,9 +41,12 @@
 //! 4. where [`Outlines`] are asked for, silhouettes, creases and edges between
 //!    objects are found along the borders of pixels, and drawn at their width;
 //! 5. one full-screen pass after tonemapping applies the effects: [`ToneBands`],
-//!    [`Desaturation`], [`Colorization`], [`BlackFlats`], [`Contours`], the
-//!    outlines or a [`Sketch`] of them, and [`Vignette`], in this order, and those
-//!    of the game ([`Effect`]) at the end of their [`EffectStage`].
+//!    [`Desaturation`], [`Colorization`], [`PrintOffset`], [`Halftone`], [`BlackFlats`],
+//!    [`Contours`], the outlines or a [`Sketch`] of them, [`IsoLines`], [`TwoTone`],
+//!    [`SpeedLines`], [`Paper`] and [`Vignette`], in this order, and those of the game
+//!    ([`Effect`]) at the end of their [`EffectStage`].
+//!
+//! [`Impact`] shows two tones for a few drawings, [`HeldPose`] draws characters "on twos".
 //!
 //! Whole styles are assets: [`ComicStyle`], with [`presets`]. On meshes, the
 //! feature `objects` adds `NoOutlines`, `OutlineStyle` and `OutlineGroup`, and the feature
@@ -57,6 +60,7 @@
 
 #[cfg(feature = "cartoon")]
 mod cartoon;
+mod clock;
 mod depth;
 mod diagnostics;
 mod effect;
@@ -80,10 +84,12 @@ pub use depth::{
     CameraCut, DepthBin, DepthHistogram, DepthMap, DepthMapping, ProjectionKind, RangeSmoothing,
     ReductionMethod, VisibleDepthRange,
 };
-pub use diagnostics::{CameraStages, ComicsDiagnostics, ComicsStage, LeftOut, StageOutcome};
+pub use diagnostics::{
+    CameraStages, ComicsDiagnostics, ComicsStage, ImpactCounts, LeftOut, StageOutcome,
+};
 pub use effect::{
     AnyEffect, Effect, EffectPlugin, EffectRegistry, EffectSet, EffectShader, EffectStage,
-    EffectType, EffectView, Extent, Needs, NoUniform, Variants, ViewFacts,
+    EffectTarget, EffectType, EffectView, Extent, Needs, NoUniform, Variants, ViewFacts,
 };
 pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
@@ -107,7 +113,9 @@ pub use style::{
     ComicStyle, ComicStyleError, ComicStyleHandle, ComicStyleHandleTemplate, Preset,
     StyleTransition, StyleTransitionFinished, TransitionEasing, presets,
 };
-pub use view::KeyLight;
+#[cfg(any(feature = "objects", feature = "cartoon"))]
+pub use view::HeldPose;
+pub use view::{Impact, KeyLight, ReduceFlashing};
 
 /// The code of the README and of the pages, compiled as doctests. That of
 /// `your-own-effect.md` has several files and is compiled by `tests/gpu`.
@@ -126,10 +134,13 @@ mod pages {
         OneObjectsLines: "docs/one-objects-lines.md";
         ExcludeAnObject: "docs/exclude-an-object.md";
         CartoonMaterial: "docs/cartoon-material.md";
+        Motion: "docs/motion.md";
+        Paper: "docs/paper.md";
         FixedRange: "docs/fixed-range.md";
         SplitScreen: "docs/split-screen.md";
         TransparentThings: "docs/transparent-things.md";
         Inspector: "docs/inspector.md";
+        Print: "docs/print.md";
         Performance: "docs/performance.md";
         Benchmarks: "docs/benchmarks.md";
         Troubleshooting: "docs/troubleshooting.md";
@@ -138,11 +149,14 @@ mod pages {
 
 /// What most games need: `use bevy_comics::prelude::*;`.
 pub mod prelude {
+    #[cfg(any(feature = "objects", feature = "cartoon"))]
+    pub use crate::HeldPose;
     pub use crate::{
         CameraCut, ComicStyle, ComicStyleHandle, ComicsPlugin, Creases, DepthMap, DepthMapping,
-        Effect, EffectPlugin, Form, KeyLight, LineBoil, LineColor, LineFog, LineResponse,
-        LineWeight, ObjectEdges, RangeSmoothing, Silhouettes, SplitView, StyleTransition,
-        StyleTransitionFinished, StyleWeight, VisibleDepthRange, effects::*,
+        Effect, EffectPlugin, EffectTarget, Form, Impact, KeyLight, LineBoil, LineColor, LineFog,
+        LineResponse, LineWeight, ObjectEdges, RangeSmoothing, ReduceFlashing, Silhouettes,
+        SplitView, StyleTransition, StyleTransitionFinished, StyleWeight, VisibleDepthRange,
+        effects::*,
     };
     #[cfg(feature = "cartoon")]
     pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};

@@ -21,6 +21,9 @@ pub enum ComicsSystems {
     /// Applies the effects to the picture: in `Core3dSystems::PostProcess`, after
     /// tonemapping and before FXAA and SMAA, which then smooth the ink.
     Stylize,
+    /// The same for cameras with an effect of [`EffectStage::Print`](crate::EffectStage):
+    /// after FXAA, SMAA and contrast-adaptive sharpening, which would change the dots.
+    Print,
 }
 
 /// The steps that prepare a frame, in this order, in

@@ -6,11 +6,13 @@
 //! cargo run --example pictures -- looks [--out FILE.png]
 //! cargo run --example pictures -- presets [--out FILE.png]
 //! cargo run --example pictures -- pages [--out DIR]
+//! cargo run --example pictures -- motion [--out DIR]
 //! cargo run --example pictures -- figures [--out DIR]
 //! cargo run --example pictures -- golden [--out DIR]
 //! ```
 
 mod figures;
+mod motion;
 mod pages;
 mod sheet;
 
@@ -24,6 +26,7 @@ usage: pictures contact-sheet [--size WxH] [--out FILE.png]   every scene in eve
        pictures looks [--out FILE.png]                        the README's row of looks
        pictures presets [--out FILE.png]                      the page of the presets
        pictures pages [--out DIR]                             the pages about single tasks
+       pictures motion [--out DIR]                            the pages about speed lines and paper
        pictures figures [--out DIR]                           the figures of the first paper
        pictures golden [--out DIR]                            the tests' reference pictures";
 
@@ -69,6 +72,7 @@ fn run() -> Result<(), String> {
         Some("looks") => sheet::looks(&or("target/looks.png")),
         Some("presets") => sheet::presets(&or("target/presets.png")),
         Some("pages") => pages::write(&or("target/pages")),
+        Some("motion") => motion::write(&or("target/motion")),
         Some("figures") => figures::write(&or("target/figures")),
         Some("golden") => sheet::golden(&or("tests/golden")),
         Some(other) => Err(format!("no pictures called {other:?}\n{USAGE}")),

@@ -227,6 +227,17 @@ impl CameraStages {
 pub struct ComicsDiagnostics {
     /// The stages by camera entity.
     pub cameras: EntityHashMap<CameraStages>,
+    /// The impacts ([`Impact`](crate::Impact)) by camera entity, of cameras that had any.
+    pub impacts: EntityHashMap<ImpactCounts>,
+}
+
+/// How many impacts a camera had since the app began.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ImpactCounts {
+    /// Impacts that were shown.
+    pub shown: u32,
+    /// Impacts that were refused, because they would have been the fourth flash in a second.
+    pub refused: u32,
 }
 
 impl ComicsDiagnostics {

@@ -57,6 +57,8 @@ pub(crate) struct ViewPlan {
     pub to_light: Vec3,
     /// The engine's distance fog of the camera.
     pub fog: Option<ViewFog>,
+    /// World position of the object that effects point at.
+    pub target: Option<Vec3>,
     /// Seconds of the app's default clock.
     pub time: f64,
     /// Real time since the last frame, in seconds. Not the game's time: the camera

@@ -122,3 +122,12 @@ fn oklab_to_linear(lab: vec3<f32>) -> vec3<f32> {
         -0.0041960863 * l3 - 0.7034186147 * m3 + 1.7076147010 * s3,
     );
 }
+
+// The tones of four inks for a colour of 0 to 1 in linear light: cyan, magenta, yellow,
+// black. Printed with ideal inks, they have the colour as their mean. `black`: fraction of
+// the darkness that all three share which is printed in black.
+fn separated(c: vec3<f32>, black: f32) -> vec4<f32> {
+    let light = 1.0 - black * (1.0 - largest(c));
+    let inks = 1.0 - min(c / max(light, 1e-6), vec3(1.0));
+    return vec4(select(inks, vec3(0.0), light <= 1e-6), 1.0 - light);
+}

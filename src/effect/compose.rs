@@ -11,7 +11,7 @@ const RECIPE: &str = include_str!("fused.wgsl");
 pub(crate) const FILE_KEYS: [&str; 4] = ["version", "name", "partial", "depth_map"];
 
 /// The modules of this crate that an effect may import.
-const MODULES: [&str; 12] = [
+const MODULES: [&str; 14] = [
     "bevy_comics::depth::map",
     "bevy_comics::depth::normal",
     "bevy_comics::depth::raw",
@@ -19,7 +19,9 @@ const MODULES: [&str; 12] = [
     "bevy_comics::depth::window",
     "bevy_comics::effect::color",
     "bevy_comics::effect::noise",
+    "bevy_comics::effect::picture",
     "bevy_comics::effect::pixel",
+    "bevy_comics::effect::screen",
     "bevy_comics::lines::edge",
     "bevy_comics::lines::read",
     "bevy_comics::lines::surface",
@@ -27,7 +29,7 @@ const MODULES: [&str; 12] = [
 ];
 
 /// Shader definitions of the fused pass that do not name an effect, in lower case.
-const DEFINITIONS: [&str; 19] = [
+const DEFINITIONS: [&str; 23] = [
     "depth",
     "map",
     "map_flags",
@@ -47,6 +49,10 @@ const DEFINITIONS: [&str; 19] = [
     "stored_srgb",
     "stored_oklab",
     "unstyled",
+    "unstyled_colors",
+    "unstyled_print",
+    "continued",
+    "layer",
 ];
 
 /// The shader definition of the effect with this name.
@@ -107,7 +113,7 @@ fn imports_unknown(effect: &EffectType, known: &[&EffectType]) -> bool {
 }
 
 /// Behind the effects that change colours: gives the objects with `NoStyle` theirs back.
-const RESTORE: &str = "#ifdef UNSTYLED
+const RESTORE: &str = "#ifdef UNSTYLED_COLORS
     p.color = mix(p.color, p.original, unstyled_fraction(pixel));
 #endif
 ";
@@ -123,8 +129,12 @@ pub(super) fn fused_pass(types: &[&EffectType]) -> String {
                 text.extend(types.iter().filter(colors).map(|effect| calls(effect)));
                 text.push_str(RESTORE);
             }
+            "//@prints" => {
+                let prints = types.iter().filter(|e| e.stage == EffectStage::Print);
+                text.extend(prints.map(|effect| calls(effect)));
+            }
             "//@calls" => {
-                let later = types.iter().filter(|effect| !colors(effect));
+                let later = types.iter().filter(|e| e.stage > EffectStage::Print);
                 text.extend(later.map(|effect| calls(effect)));
             }
             _ => {

@@ -23,8 +23,14 @@ impl ShaderErrors {
     /// If a pipeline is missing because the shader of an effect has an error,
     /// reports the effect in the diagnostics, and once in the log.
     pub fn report(&self, cache: &PipelineCache, request: &FusedRequest, ledger: &StageLedger) {
-        let state = cache.get_render_pipeline_state(request.pipeline);
-        let CachedPipelineState::Err(failure) = state else {
+        let states = request
+            .pipelines()
+            .map(|id| cache.get_render_pipeline_state(id));
+        let failures = states.filter_map(|state| match state {
+            CachedPipelineState::Err(failure) => Some(failure),
+            _ => None,
+        });
+        let Some(failure) = failures.into_iter().next() else {
             return;
         };
         let effects = request.plan.drawn().map(AnyEffect::effect_type);

@@ -2,6 +2,8 @@
 // picture once. compose.rs replaces the lines that begin with "//@" by one entry
 // for each registered effect.
 //
+// LAYER: the pass draws a texture of the viewport's size, in linear light, for a later pass.
+// CONTINUED: the pass starts from such a texture. See passes.rs.
 // OVERLAY: all effects draw over the picture, see Extent. Then the pass starts from a
 // transparent picture and returns ink that is multiplied by its opacity, and its opacity,
 // which are blended over the picture.
@@ -11,6 +13,7 @@
 #import bevy_comics::effect::color::{
     finite, finite_color, lightness, linear_to_oklab, oklab_to_linear, srgb_decode, srgb_encode,
 }
+#import bevy_comics::effect::picture::load_picture
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::finish::{Finish, compare, difference, object_color, range_fraction}
 #import bevy_comics::lines::edge::Lines
@@ -57,8 +60,8 @@ fn to_stored(linear: vec3<f32>) -> vec3<f32> {
 #endif
 }
 
-// The picture at a pixel, as it is stored.
-fn load_picture(pixel: vec2<i32>) -> vec4<f32> {
+// The unstyled picture at a pixel, as it is stored.
+fn load_source(pixel: vec2<i32>) -> vec4<f32> {
 #ifdef OVERLAY
     return vec4(0.0);
 #else
@@ -70,6 +73,20 @@ fn load_picture(pixel: vec2<i32>) -> vec4<f32> {
 
 // The debug view of an effect.
 var<private> shown: vec3<f32>;
+
+// A pixel as the pass finds it, without its place and depth.
+fn found(pixel: vec2<i32>, stored: vec4<f32>) -> Pixel {
+    var p: Pixel;
+    p.original = to_linear(stored.rgb);
+    p.color = p.original;
+    p.alpha = clamp(finite(stored.a), 0.0, 1.0);
+#ifdef CONTINUED
+    let before = load_picture(pixel);
+    p.color = before.rgb;
+    p.alpha = before.a;
+#endif
+    return p;
+}
 
 // A pixel of the viewport with its place and depth.
 fn placed(before: Pixel, pixel: vec2<i32>) -> Pixel {
@@ -94,11 +111,7 @@ fn colored(before: Pixel, pixel: vec2<i32>) -> Pixel {
 #ifdef SURFACE_LINES
 // The colour of a pixel of the viewport after these effects.
 fn surface_color(pixel: vec2<i32>, change: f32) -> vec3<f32> {
-    let stored = load_picture(pixel);
-    var p: Pixel;
-    p.original = to_linear(stored.rgb);
-    p.color = p.original;
-    p.alpha = clamp(finite(stored.a), 0.0, 1.0);
+    var p = found(pixel, load_source(pixel));
     p.change = change;
     p.position = vec2<f32>(pixel) + 0.5;
     p = colored(placed(p, pixel), pixel);
@@ -106,20 +119,63 @@ fn surface_color(pixel: vec2<i32>, change: f32) -> vec3<f32> {
 }
 #endif
 
+// A pixel after the effects that print its colours.
+fn printed(before: Pixel, pixel: vec2<i32>) -> Pixel {
+    var p = before;
+    //@prints
+#ifdef UNSTYLED_PRINT
+    p.color = mix(p.color, p.original, unstyled_fraction(pixel));
+#endif
+    return p;
+}
+
+// A pixel after all later effects.
+fn inked(before: Pixel) -> Pixel {
+    var p = before;
+    p.colored = before.color;
+    //@calls
+    return p;
+}
+
+#ifdef DEBUG_VIEW
+// The debug view of a pixel, in display codes.
+fn view_color(p: Pixel, pixel: vec2<i32>) -> vec3<f32> {
+#ifdef VIEW_DEPTH_MAP
+    return vec3(clamp(p.depth.x, 0.0, 1.0));
+#else ifdef VIEW_RAW_RANGE
+    return vec3(range_fraction(depth_frame(), load_depth(pixel, 0)));
+#else ifdef VIEW_SILHOUETTES
+    return vec3(1.0 - clamp(lines_at(p.position).ink.x, 0.0, 1.0));
+#else ifdef VIEW_CREASES
+    return vec3(1.0 - clamp(lines_at(p.position).ink.y, 0.0, 1.0));
+#else ifdef VIEW_OBJECT_IDS
+    return object_color(load_object(pixel).x);
+#else ifdef VIEW_SATURATION
+    return vec3(p.saturation);
+#else ifdef VIEW_DIFFERENCE
+    return difference(srgb_encode(p.original), srgb_encode(p.color));
+#else
+    return shown;
+#endif
+}
+#endif
+
 @fragment
 fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
-    let pixel = vec2<i32>(position.xy);
-    let stored = load_picture(pixel);
-    var p: Pixel;
-    p.original = to_linear(stored.rgb);
-    p.color = p.original;
+#ifdef LAYER
+    let place = position.xy + vec2<f32>(comics.view.viewport.xy);
+#else
+    let place = position.xy;
+#endif
+    let pixel = vec2<i32>(place);
+    let stored = load_source(pixel);
     let opacity = clamp(finite(stored.a), 0.0, 1.0);
-    p.alpha = opacity;
+    set_view(comics.view);
+    var p = found(pixel, stored);
 #ifdef LIGHTNESS_CHANGE
     // Must run before the early return: derivatives need all four pixels of a quad.
     p.change = fwidthFine(lightness(p.original));
 #endif
-    set_view(comics.view);
     let inside = pixel - comics.view.viewport.xy;
     if any(inside < vec2(0)) || any(inside >= comics.view.viewport.zw) {
         return stored;
@@ -127,36 +183,18 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 #ifdef LINES
     set_lines(comics.lines);
 #endif
-    p.position = position.xy;
+    p.position = place;
     p = placed(p, pixel);
-#ifdef MAP
-    let frame = depth_frame();
-#endif
 #ifdef SURFACE_LINES
     set_line_surface(surface_color(line_owner(pixel), p.change));
 #endif
-    p = colored(p, pixel);
-
-    //@calls
-
-#ifdef VIEW_DEPTH_MAP
-    p.color = srgb_decode(vec3(clamp(p.depth.x, 0.0, 1.0)));
-#else ifdef VIEW_RAW_RANGE
-    p.color = srgb_decode(vec3(range_fraction(frame, load_depth(pixel, 0))));
-#else ifdef VIEW_SILHOUETTES
-    p.color = srgb_decode(vec3(1.0 - clamp(lines_at(position.xy).ink.x, 0.0, 1.0)));
-#else ifdef VIEW_CREASES
-    p.color = srgb_decode(vec3(1.0 - clamp(lines_at(position.xy).ink.y, 0.0, 1.0)));
-#else ifdef VIEW_OBJECT_IDS
-    p.color = srgb_decode(object_color(load_object(pixel).x));
-#else ifdef VIEW_SATURATION
-    p.color = srgb_decode(vec3(p.saturation));
-#else ifdef VIEW_DIFFERENCE
-    p.color = srgb_decode(difference(srgb_encode(p.original), srgb_encode(p.color)));
-#else ifdef VIEW_EFFECT
-    p.color = srgb_decode(shown);
-#endif
+    p = inked(printed(colored(p, pixel), pixel));
+#ifdef LAYER
+    // Larger numbers would become infinite.
+    return vec4(clamp(p.color, vec3(-65504.0), vec3(65504.0)), p.alpha);
+#else
 #ifdef DEBUG_VIEW
+    p.color = srgb_decode(view_color(p, pixel));
     p.alpha = 1.0;
 #endif
     var result = vec4(p.color, p.alpha);
@@ -164,4 +202,5 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
     result = compare(comics.finish, vec4(p.original, opacity), result, p.inside.x);
 #endif
     return vec4(to_stored(result.rgb), result.a);
+#endif
 }

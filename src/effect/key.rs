@@ -4,15 +4,18 @@ use bevy::{
     camera::CompositingSpace,
     math::Vec2,
     render::render_resource::{
-        BindGroupLayoutDescriptor, ShaderStages, TextureFormat, TextureSampleType,
-        binding_types::{texture_2d, texture_2d_multisampled, uniform_buffer_sized},
+        BindGroupLayoutDescriptor, SamplerBindingType, ShaderStages, TextureFormat,
+        TextureSampleType,
+        binding_types::{sampler, texture_2d, texture_2d_multisampled, uniform_buffer_sized},
     },
     shader::ShaderDefVal,
 };
 
 use super::{
-    AnyEffect, Extent, Needs, Plan, ViewFacts,
+    AnyEffect, EffectStage, Extent, Needs, Plan, ViewFacts,
     compose::{definition, left_out},
+    layers::LAYER_FORMAT,
+    passes::Pass,
 };
 use crate::{
     depth::view::ViewUniform,
@@ -83,14 +86,19 @@ pub(crate) struct StylizeKey {
     /// Lines have the colour of surfaces.
     pub surface: bool,
     pub object_styles: bool,
-    /// The colour effects leave some objects alone.
-    unstyled: bool,
+    /// Some objects are left alone: by the colour effects of the pass, by its prints.
+    unstyled_colors: bool,
+    unstyled_print: bool,
     view: Option<DebugView>,
     map_flags: u32,
     finish: bool,
     same_size: bool,
     pub part: Part,
-    /// Effects that are left out of [`Part::Base`], and whether lines are too.
+    /// The pass starts from a layer, and draws one.
+    pub continued: bool,
+    pub layer: bool,
+    /// Effects that are left out of [`Part::Base`] or belong to other passes, and whether
+    /// lines are left out too.
     left_out: Vec<&'static str>,
     without_lines: bool,
 }
@@ -150,7 +158,8 @@ impl StylizeKey {
             lines,
             surface: lines && plan.lines.is_some_and(|lines| lines.color.is_surface()),
             object_styles: (lines && plan.object_styles) || plan.unstyled,
-            unstyled: plan.unstyled,
+            unstyled_colors: plan.unstyled,
+            unstyled_print: plan.unstyled,
             view: plan.view,
             map_flags: if needs.contains(Needs::MAP) {
                 inputs.view.depth.flags
@@ -160,6 +169,8 @@ impl StylizeKey {
             finish: plan.finish.weight < 1.0 || plan.finish.split > 0.0,
             same_size: reads_pixels && inputs.view.depth_scale == Vec2::ONE,
             part: Part::Whole,
+            continued: false,
+            layer: false,
             left_out: vec![],
             without_lines: false,
         }
@@ -174,9 +185,37 @@ impl StylizeKey {
             && self.format != TextureFormat::Rg11b10Ufloat
             && self.view.is_none()
             && !self.finish
+            && !self.continued
             && !self.surface;
         let local = |effect: &dyn AnyEffect| effect.any_extent(facts) != Extent::Everywhere;
         plain && self.space == CompositingSpace::Linear && plan.drawn().all(local)
+    }
+
+    /// The key of one of the passes of a plan.
+    pub fn of_pass(&self, plan: &Plan, pass: &Pass) -> Self {
+        let inside = |i: &usize| pass.effects.contains(i);
+        let drawn = || plan.drawn().enumerate();
+        let has = |stage: fn(EffectStage) -> bool| {
+            drawn().any(|(i, effect)| inside(&i) && stage(effect.effect_type().stage))
+        };
+        let others = drawn().filter(|(i, _)| !inside(i));
+        Self {
+            format: if pass.layer {
+                LAYER_FORMAT
+            } else {
+                self.format
+            },
+            unstyled_colors: self.unstyled_colors && has(|stage| stage <= EffectStage::Color),
+            unstyled_print: self.unstyled_print && has(|stage| stage == EffectStage::Print),
+            view: self.view.filter(|_| !pass.layer),
+            finish: self.finish && !pass.layer,
+            continued: pass.continued,
+            layer: pass.layer,
+            left_out: others
+                .map(|(_, effect)| effect.effect_type().name)
+                .collect(),
+            ..self.clone()
+        }
     }
 
     /// The key of another part of the pass.
@@ -188,12 +227,17 @@ impl StylizeKey {
     }
 
     /// The key of [`Part::Base`], without these effects and perhaps without lines.
-    pub fn base(&self, left_out: Vec<&'static str>, without_lines: bool) -> Self {
+    pub fn base(&self, left_out: &[&'static str], without_lines: bool) -> Self {
         Self {
-            left_out,
+            left_out: [&self.left_out, left_out].concat(),
             without_lines,
             ..self.with_part(Part::Base)
         }
+    }
+
+    /// Whether the pass applies an effect of the plan.
+    pub fn applies(&self, effect: &str) -> bool {
+        !self.left_out.contains(&effect)
     }
 
     /// Whether lines are read at any place.
@@ -234,7 +278,11 @@ impl StylizeKey {
             (needs.contains(Needs::LINES_ANYWHERE), "LINES_ANYWHERE"),
             (self.surface && self.part != Part::Base, "SURFACE_LINES"),
             (self.object_styles, "OBJECT_STYLES"),
-            (self.unstyled, "UNSTYLED"),
+            (self.unstyled_colors || self.unstyled_print, "UNSTYLED"),
+            (self.unstyled_colors, "UNSTYLED_COLORS"),
+            (self.unstyled_print, "UNSTYLED_PRINT"),
+            (self.continued, "CONTINUED"),
+            (self.layer, "LAYER"),
             (needs.contains(Needs::LIGHTNESS_CHANGE), "LIGHTNESS_CHANGE"),
             (self.same_size, "SAME_SIZE"),
             (self.finish, "FINISH"),
@@ -269,6 +317,8 @@ impl StylizeKey {
         if !self.part.is_overlay() {
             entries.push(texture_2d(unfilterable).build(0, fragment));
         }
+        let layer = texture_2d(TextureSampleType::Float { filterable: true });
+        let between = sampler(SamplerBindingType::Filtering);
         let optional = [
             (self.depth, prepass(2)),
             (self.visible_range, range_entry()),
@@ -277,6 +327,8 @@ impl StylizeKey {
             (self.object_styles, object_styles_entry()),
             (self.normals(), prepass(7)),
             (self.ids(), ids_entry(self.samples > 1)),
+            (self.continued, layer.build(9, fragment)),
+            (self.continued, between.build(10, fragment)),
         ];
         entries.extend(
             optional

@@ -63,8 +63,14 @@ pub(super) fn line_request(
         weight: settings
             .weight
             .uniform(grid_scale, view.to_light, settings.budget),
-        boil: settings.boil.uniform(view.scale_factor, view.time),
+        boil: settings.boil.uniform(
+            view.scale_factor,
+            view.time,
+            settings.widest(widest_object, plan.vertex_widths),
+        ),
         memory: memory_request(view, &settings, scene),
+        cuts: view.cuts,
+        motion: has_motion(scene),
         fog: plan.fog.then(|| {
             let fog = view.fog.unwrap_or_default();
             fog.uniform(&view.projection, &view.clip_from_view)
@@ -76,6 +82,8 @@ pub(super) fn line_request(
         jitter: scene.jitter,
         reach,
         steps: settings.steps(grid_scale),
+        specks: settings.specks(grid_scale),
+        extension: settings.extension(grid_scale),
         oblique: view.projection.kind() == ProjectionKind::Oblique,
         visible_range: plan.depth_map.mapping.follows_visible_range(),
         ids: plan.draws_ids(),
@@ -89,14 +97,18 @@ pub(super) fn line_request(
     })
 }
 
+/// Whether the engine's motion vectors can be read.
+pub(super) fn has_motion(scene: &Scene) -> bool {
+    scene.motion && scene.depth.is_some_and(|(_, samples)| samples == 1)
+}
+
 /// What lines remember, if they do: under temporal anti-aliasing.
 pub(super) fn memory_request(
     view: &ViewPlan,
     settings: &LineSettings,
     scene: &Scene,
 ) -> Option<MemoryRequest> {
-    let single = scene.depth.is_some_and(|(_, samples)| samples == 1);
-    let trembles = scene.jitter.is_some() && scene.motion && single;
+    let trembles = scene.jitter.is_some() && has_motion(scene);
     let remembers = settings.memory < 1.0 && !settings.boil.moves();
     (trembles && remembers).then_some(MemoryRequest {
         share: settings.memory,

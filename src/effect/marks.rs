@@ -43,6 +43,7 @@ pub(super) struct MarkRequests {
     lines: (LineRequest, LinePasses),
     pipeline: CachedRenderPipelineId,
     key: MarkKey,
+    late: bool,
 }
 
 impl Services<'_> {
@@ -77,6 +78,7 @@ impl Services<'_> {
             lines: (request, passes),
             pipeline: pipelines.specialize(cache, pipeline, key),
             key,
+            late: plan.prints(),
         })
     }
 }
@@ -98,8 +100,10 @@ fn request(
         view: uniform,
         lines: settings.uniform(view.scale_factor, reference),
         weight: (settings.weight).uniform(grid_scale, view.to_light, settings.budget),
-        boil: settings.boil.uniform(view.scale_factor, view.time),
+        boil: settings.boil.uniform(view.scale_factor, view.time, 0.0),
         memory: memory_request(view, &settings, scene),
+        cuts: view.cuts,
+        motion: false,
         fog: None,
         depth_size,
         samples,
@@ -108,6 +112,8 @@ fn request(
         jitter: scene.jitter,
         reach: settings.reach(view.scale_factor, widest, false),
         steps: settings.steps(grid_scale),
+        specks: settings.specks(grid_scale),
+        extension: 0.0,
         oblique: view.projection.kind() == ProjectionKind::Oblique,
         visible_range: false,
         ids: true,
@@ -138,6 +144,7 @@ impl MarkRequests {
             layer,
             pipeline: self.pipeline,
             key: self.key,
+            late: self.late,
         };
         commands.entity(view).insert((self.layer, marks));
     }

@@ -8,10 +8,12 @@ mod compose;
 mod errors;
 mod facts;
 mod key;
+mod layers;
 mod lines;
 #[cfg(feature = "objects")]
 mod marks;
 mod pass;
+mod passes;
 pub(crate) mod plan;
 mod plugin;
 mod prepare;
@@ -19,6 +21,7 @@ mod reasons;
 mod registry;
 mod requests;
 mod set;
+mod target;
 
 use std::fmt::Debug;
 
@@ -37,6 +40,7 @@ pub use key::Variants;
 pub(crate) use plugin::FusedPlugin;
 pub use registry::{EffectPlugin, EffectRegistry, EffectType};
 pub use set::EffectSet;
+pub use target::EffectTarget;
 pub(crate) use {choose::ViewPlan, plan::Plan};
 
 use crate::{
@@ -226,6 +230,9 @@ pub enum EffectStage {
     Tone,
     /// Changes the colours of the picture.
     Color,
+    /// Prints the colours: plates and screens. A view with such an effect is styled after
+    /// FXAA and SMAA instead of before: these would smear dots.
+    Print,
     /// Draws lines and areas of ink over the colours.
     Ink,
     /// Changes the whole picture, ink included, as paper and print do.
@@ -298,6 +305,12 @@ bitflags! {
         /// The change of the unstyled picture's lightness over a pixel, in
         /// `Pixel::change`.
         const LIGHTNESS_CHANGE = 1 << 6;
+        /// The picture after all effects before this one, at any place, by
+        /// `bevy_comics::effect::picture::load_picture` and `picture_at`. Divides the
+        /// fused pass in two at this effect: the first one draws a texture of the
+        /// viewport's size in 16-bit floating-point numbers. `Pixel::saturation` is 1 again
+        /// in the second one.
+        const PICTURE = 1 << 7;
     }
 }
 

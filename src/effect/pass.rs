@@ -9,8 +9,8 @@ use bevy::{
         diagnostic::RecordDiagnostics,
         render_resource::{
             BindGroup, BindGroupEntry, BindingResource, BlendState, ColorTargetState, ColorWrites,
-            FragmentState, IntoBinding, LoadOp, Operations, PipelineCache, PrimitiveState,
-            PrimitiveTopology, RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
+            FragmentState, IntoBinding, LoadOp, Operations, PipelineCache,
+            RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
             RenderPipelineDescriptor, SpecializedRenderPipeline, StoreOp, TextureView,
         },
         renderer::{RenderContext, ViewQuery},
@@ -22,6 +22,7 @@ use bevy::{
 use super::{
     errors::ShaderErrors,
     key::StylizeKey,
+    layers::{LayerSampler, ViewLayers},
     prepare::{FusedRequest, ViewFused},
 };
 use crate::{
@@ -30,7 +31,7 @@ use crate::{
         surfaces::{OwnSurfaces, SurfaceParts, Surfaces},
     },
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
-    lines::{TileList, TileLists, ViewLines, tile_shader, tile_vertices},
+    lines::{TileList, TileLists, ViewLines, tile_shader, vertices},
     objects::{ObjectStyleBuffer, ViewObjectIds},
 };
 
@@ -59,22 +60,13 @@ impl SpecializedRenderPipeline for StylizePipeline {
     type Key = StylizeKey;
 
     fn specialize(&self, key: Self::Key) -> RenderPipelineDescriptor {
-        let (vertex, topology) = if key.part.is_tiled() {
-            let tiles = tile_vertices(self.tile.clone());
-            (tiles, PrimitiveTopology::TriangleStrip)
-        } else {
-            let fullscreen = self.fullscreen.to_vertex_state();
-            (fullscreen, PrimitiveTopology::TriangleList)
-        };
+        let (vertex, primitive) = vertices(key.part.is_tiled(), &self.fullscreen, &self.tile);
         let overlay = key.part.is_overlay();
         RenderPipelineDescriptor {
             label: Some("comics_stylize".into()),
             layout: vec![key.layout()],
             vertex,
-            primitive: PrimitiveState {
-                topology,
-                ..Default::default()
-            },
+            primitive,
             fragment: Some(FragmentState {
                 shader: self.shader.clone(),
                 shader_defs: key.shader_defs(),
@@ -102,9 +94,11 @@ type Found<'a> = (
 /// Draws the effects of the view. Calls `post_process_write`, which swaps the
 /// view's textures, only when all inputs are there: a swap without a draw would
 /// lose the picture.
-pub(super) fn stylize(
+///
+/// `PRINTS`: draws the views whose colours are printed, the others otherwise.
+pub(super) fn stylize<const PRINTS: bool>(
     view: ViewQuery<(
-        (&ViewTarget, &FusedRequest, &ViewFused),
+        (&ViewTarget, &FusedRequest, &ViewFused, Option<&ViewLayers>),
         (
             (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),
             Option<&ViewDepthRange>,
@@ -112,14 +106,18 @@ pub(super) fn stylize(
             Option<&ViewObjectIds>,
         ),
     )>,
-    object_styles: Res<ObjectStyleBuffer>,
+    (object_styles, sampler): (Res<ObjectStyleBuffer>, Res<LayerSampler>),
     (ledger, errors): (Res<StageLedger>, Res<ShaderErrors>),
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
-    let ((target, request, fused), found) = view.into_inner();
+    let ((target, request, fused, layers), found) = view.into_inner();
+    if request.plan.prints() != PRINTS {
+        return;
+    }
     let (_, _, lines, _) = found;
-    let Some(draws) = Draws::new(&cache, request, lines) else {
+    let layers = Layers::new(&cache, request, layers);
+    let (Some(draws), Some(layers)) = (Draws::new(&cache, request, lines), layers) else {
         errors.report(&cache, request, &ledger);
         return pass_through(request, &ledger, LeftOut::PipelineNotReady);
     };
@@ -132,7 +130,7 @@ pub(super) fn stylize(
         Ok(entries) => entries,
         Err(reason) => return pass_through(request, &ledger, reason),
     };
-    let layout = cache.get_bind_group_layout(&request.key.layout());
+    entries.push(entry(1, fused.uniform.as_entire_binding()));
     let destination = if request.key.part.is_overlay() {
         target.main_texture_view()
     } else {
@@ -140,12 +138,88 @@ pub(super) fn stylize(
         entries.push(entry(0, post.source.into_binding()));
         post.destination
     };
-    entries.push(entry(1, fused.uniform.as_entire_binding()));
-    let device = ctx.render_device();
-    let bind_group = device.create_bind_group("comics_stylize", &layout, &entries);
-
-    draws.record(&mut ctx, destination, &bind_group, request);
+    let diagnostics = ctx.diagnostic_recorder();
+    let diagnostics = diagnostics.as_deref();
+    let span = diagnostics.time_span(ctx.command_encoder(), "comics_stylize");
+    let inputs = Inputs {
+        entries,
+        sampler: &sampler,
+        cache: &cache,
+    };
+    let before = layers.record(&mut ctx, &inputs);
+    let group = inputs.bind_group(&ctx, &request.key, before);
+    draws.record(&mut ctx, destination, &group, request);
+    span.end(ctx.command_encoder());
     ran(request, &ledger);
+}
+
+/// What all passes of a view bind.
+struct Inputs<'a> {
+    entries: Vec<BindGroupEntry<'a>>,
+    sampler: &'a LayerSampler,
+    cache: &'a PipelineCache,
+}
+
+impl Inputs<'_> {
+    /// `before`: what the pass before has drawn, if there is one.
+    fn bind_group(
+        &self,
+        ctx: &RenderContext,
+        key: &StylizeKey,
+        before: Option<&TextureView>,
+    ) -> BindGroup {
+        let mut entries = self.entries.clone();
+        if let Some(before) = before {
+            entries.push(entry(9, before.into_binding()));
+            entries.push(entry(10, (&self.sampler.0).into_binding()));
+        }
+        let layout = self.cache.get_bind_group_layout(&key.layout());
+        let device = ctx.render_device();
+        device.create_bind_group("comics_stylize", &layout, &entries)
+    }
+}
+
+/// The passes before the last one.
+struct Layers<'a>(Vec<LayerDraw<'a>>);
+
+struct LayerDraw<'a> {
+    key: &'a StylizeKey,
+    pipeline: &'a RenderPipeline,
+    texture: &'a TextureView,
+}
+
+impl<'a> Layers<'a> {
+    /// `None` if a pipeline or a texture is not ready in this frame.
+    fn new(
+        cache: &'a PipelineCache,
+        request: &'a FusedRequest,
+        textures: Option<&'a ViewLayers>,
+    ) -> Option<Self> {
+        let draws = request.layers.iter().enumerate().map(|(i, layer)| {
+            Some(LayerDraw {
+                key: &layer.key,
+                pipeline: cache.get_render_pipeline(layer.pipeline)?,
+                texture: &textures?.of(i)?.default_view,
+            })
+        });
+        draws.collect::<Option<_>>().map(Self)
+    }
+
+    /// Returns what the last of them has drawn.
+    fn record(&self, ctx: &mut RenderContext, inputs: &Inputs) -> Option<&'a TextureView> {
+        let mut before = None;
+        for layer in &self.0 {
+            let bind_group = inputs.bind_group(ctx, layer.key, before);
+            let attachments = [Some(attachment(layer.texture, false))];
+            let encoder = ctx.command_encoder();
+            let mut pass = encoder.begin_render_pass(&described(&attachments));
+            pass.set_bind_group(0, &bind_group, &[]);
+            pass.set_pipeline(layer.pipeline);
+            pass.draw(0..3, 0..1);
+            before = Some(layer.texture);
+        }
+        before
+    }
 }
 
 /// The draw calls of the pass.
@@ -188,28 +262,10 @@ impl<'a> Draws<'a> {
         request: &FusedRequest,
     ) {
         // All pixels are drawn, except in an overlay.
-        let load = if request.key.part.is_overlay() {
-            LoadOp::Load
-        } else {
-            LoadOp::default()
-        };
-        let diagnostics = ctx.diagnostic_recorder();
-        let diagnostics = diagnostics.as_deref();
+        let keeps = request.key.part.is_overlay();
         let encoder = ctx.command_encoder();
-        let span = diagnostics.time_span(encoder, "comics_stylize");
-        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
-            label: Some("comics_stylize"),
-            color_attachments: &[Some(RenderPassColorAttachment {
-                view: destination,
-                depth_slice: None,
-                resolve_target: None,
-                ops: Operations {
-                    load,
-                    store: StoreOp::Store,
-                },
-            })],
-            ..Default::default()
-        });
+        let attachments = [Some(attachment(destination, keeps))];
+        let mut pass = encoder.begin_render_pass(&described(&attachments));
         pass.set_bind_group(0, bind_group, &[]);
         if let Some(base) = self.base {
             pass.set_pipeline(base);
@@ -224,8 +280,33 @@ impl<'a> Draws<'a> {
             }
             None => pass.draw(0..3, 0..1),
         }
-        drop(pass);
-        span.end(encoder);
+    }
+}
+
+/// `keeps`: what is there already, instead of clearing it.
+fn attachment(view: &TextureView, keeps: bool) -> RenderPassColorAttachment<'_> {
+    RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: Operations {
+            load: if keeps {
+                LoadOp::Load
+            } else {
+                LoadOp::default()
+            },
+            store: StoreOp::Store,
+        },
+    }
+}
+
+fn described<'a>(
+    attachments: &'a [Option<RenderPassColorAttachment<'a>>],
+) -> RenderPassDescriptor<'a> {
+    RenderPassDescriptor {
+        label: Some("comics_stylize"),
+        color_attachments: attachments,
+        ..Default::default()
     }
 }
 

@@ -65,8 +65,10 @@ pub(crate) struct Plan {
 
 impl Plan {
     /// The plan of a camera; `None` if none of its components requests anything.
+    /// `shown`: effects that are drawn instead of the camera's own of the same type.
     pub fn new(
         camera: EntityRef,
+        shown: &[Box<dyn AnyEffect>],
         types: &[&'static EffectType],
         objects: ObjectChanges,
     ) -> Option<Self> {
@@ -94,7 +96,7 @@ impl Plan {
             }),
             ..Self::default()
         };
-        let asked = plan.collect(camera, types);
+        let asked = plan.collect(camera, shown, types);
         if !(asked || plan.marks || plan.readback || plan.histogram || plan.view.is_some()) {
             return None;
         }
@@ -112,11 +114,18 @@ impl Plan {
 
     /// Adds the effects of the camera and those that they imply. Returns whether
     /// the camera has any effect, negligible ones included.
-    fn collect(&mut self, camera: EntityRef, types: &[&'static EffectType]) -> bool {
-        let own: Vec<_> = types
-            .iter()
-            .map(|effect| (effect.get)(camera).map(AnyEffect::any_sanitized))
-            .collect();
+    fn collect(
+        &mut self,
+        camera: EntityRef,
+        shown: &[Box<dyn AnyEffect>],
+        types: &[&'static EffectType],
+    ) -> bool {
+        let of_camera = |effect: &&EffectType| {
+            let instead = shown.iter().find(|s| s.effect_type().name == effect.name);
+            let own = || (effect.get)(camera).map(AnyEffect::any_sanitized);
+            instead.cloned().or_else(own)
+        };
+        let own: Vec<_> = types.iter().map(of_camera).collect();
         let implied: Vec<_> = own
             .iter()
             .flatten()
@@ -201,7 +210,7 @@ impl Plan {
         self.object_styles &= self.lines.is_some();
         self.sections &= self.lines.is_some_and(|lines| lines.has_measured_creases());
         self.vertex_widths &= self.lines.is_some_and(|lines| lines.has_wide_lines());
-        let color = |effect: &dyn AnyEffect| effect.effect_type().stage <= EffectStage::Color;
+        let color = |effect: &dyn AnyEffect| effect.effect_type().stage <= EffectStage::Print;
         let colors = self.drawn().any(color);
         self.unstyled &= colors;
         self.fog &= self.lines.is_some_and(|lines| lines.fog == LineFog::Fade);
@@ -249,7 +258,7 @@ impl Plan {
         let mut plan = self.clone();
         let (needs, reason) = match missing {
             Prepasses::Depth => (
-                Needs::all().difference(Needs::LIGHTNESS_CHANGE),
+                Needs::all().difference(Needs::LIGHTNESS_CHANGE | Needs::PICTURE),
                 LeftOut::NoDepthPrepass,
             ),
             Prepasses::Normals => (Needs::NORMALS, LeftOut::NoNormalPrepass),

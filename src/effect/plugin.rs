@@ -1,7 +1,7 @@
 //! Adds the fused pass to an app.
 
 use bevy::{
-    anti_alias::{fxaa::fxaa, smaa::smaa},
+    anti_alias::{contrast_adaptive_sharpening::cas, fxaa::fxaa, smaa::smaa},
     app::{App, Plugin},
     asset::{AssetServer, Assets, Handle},
     core_pipeline::{
@@ -18,15 +18,16 @@ use bevy::{
     },
     render::{
         GpuResourceAppExt, Render, RenderApp, RenderStartup, RenderSystems,
-        render_resource::SpecializedRenderPipelines,
+        render_resource::SpecializedRenderPipelines, renderer::RenderDevice,
     },
     shader::{Shader, load_shader_library},
 };
 
 use super::{
-    EffectRegistry, EffectType,
+    EffectRegistry, EffectTarget, EffectType,
     choose::choose_plans,
     errors::{ShaderErrors, file_path},
+    layers::{LayerSampler, prepare_layers},
     pass::{StylizePipeline, stylize},
     prepare::{ViewFused, prepare_fused_pass},
 };
@@ -50,7 +51,8 @@ struct FusedShader(Handle<Shader>);
 
 impl Plugin for FusedPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<EffectRegistry>();
+        app.init_resource::<EffectRegistry>()
+            .register_type::<EffectTarget>();
     }
 
     /// Composes the shader here, when the plugins of all effects are built.
@@ -80,7 +82,9 @@ impl FusedPlugin {
     pub(crate) fn build_render(app: &mut App) {
         load_shader_library!(app, "color.wgsl");
         load_shader_library!(app, "noise.wgsl");
+        load_shader_library!(app, "picture.wgsl");
         load_shader_library!(app, "pixel.wgsl");
+        load_shader_library!(app, "screen.wgsl");
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;
         };
@@ -102,18 +106,27 @@ impl FusedPlugin {
                 Render,
                 (
                     choose_plans.in_set(PrepareComics::Choose),
-                    prepare_fused_pass.in_set(PrepareComics::Fused),
+                    (prepare_fused_pass, prepare_layers).in_set(PrepareComics::Fused),
                 ),
             )
             .add_systems(
                 Core3d,
-                (stylize, draw_marks)
-                    .chain()
-                    .in_set(ComicsSystems::Stylize)
-                    .in_set(Core3dSystems::PostProcess)
-                    .after(tonemapping)
-                    .before(fxaa)
-                    .before(smaa),
+                (
+                    (stylize::<false>, draw_marks::<false>)
+                        .chain()
+                        .in_set(ComicsSystems::Stylize)
+                        .after(tonemapping)
+                        .before(fxaa)
+                        .before(smaa),
+                    (stylize::<true>, draw_marks::<true>)
+                        .chain()
+                        .in_set(ComicsSystems::Print)
+                        .after(ComicsSystems::Stylize)
+                        .after(fxaa)
+                        .after(smaa)
+                        .after(cas),
+                )
+                    .in_set(Core3dSystems::PostProcess),
             );
     }
 }
@@ -122,11 +135,13 @@ fn init_pipeline(
     mut commands: Commands,
     fullscreen: Res<FullscreenShader>,
     (shader, assets): (Res<FusedShader>, Res<AssetServer>),
+    device: Res<RenderDevice>,
     fused: Query<Entity, With<ViewFused>>,
 ) {
     // Runs again after the device was lost: the old device's buffers are invalid.
     for view in &fused {
         commands.entity(view).remove::<ViewFused>();
     }
+    commands.insert_resource(LayerSampler::new(&device));
     commands.insert_resource(StylizePipeline::new(&fullscreen, shader.0.clone(), &assets));
 }

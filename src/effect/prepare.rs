@@ -23,6 +23,8 @@ use crate::{depth::view::ViewUniform, lines::LinesUniform};
 pub(crate) struct FusedRequest {
     pub camera: Entity,
     pub plan: Arc<Plan>,
+    /// The passes before the last one.
+    pub layers: Vec<Layer>,
     pub key: StylizeKey,
     pub pipeline: CachedRenderPipelineId,
     /// Draws all pixels before the tiles of `pipeline`, see [`Part::Base`].
@@ -34,12 +36,25 @@ pub(crate) struct FusedRequest {
     pub lines: Option<LinesUniform>,
 }
 
+/// A pass that draws a picture for the next one.
+#[derive(Clone, Debug)]
+pub(crate) struct Layer {
+    pub key: StylizeKey,
+    pub pipeline: CachedRenderPipelineId,
+}
+
 /// Bytes after the uniform. A shader whose WGSL struct is larger than
 /// [`Effect::Uniform`](super::Effect::Uniform) reads them. Without them the buffer
 /// would be too small for the shader: a validation error, which ends the app.
 const SLACK: u64 = 1024;
 
 impl FusedRequest {
+    /// The pipelines of all passes.
+    pub fn pipelines(&self) -> impl Iterator<Item = CachedRenderPipelineId> {
+        let layers = self.layers.iter().map(|layer| layer.pipeline);
+        layers.chain(self.base).chain([self.pipeline])
+    }
+
     /// The bytes of `Comics` in `fused.wgsl`: only the parts that the key compiles
     /// in, each at a multiple of 16 bytes.
     fn uniform_bytes(&self) -> Vec<u8> {

@@ -9,7 +9,7 @@ use bevy::{
         entity::Entity,
         system::{Commands, Res, ResMut, SystemParam},
     },
-    math::{Mat4, UVec2, UVec4, Vec2},
+    math::{Mat4, UVec2, UVec4, Vec2, Vec4Swizzles},
     render::{
         camera::{ExtractedCamera, TemporalJitter},
         render_resource::{
@@ -27,8 +27,10 @@ use super::{
     key::{KeyInputs, Part, StylizeKey},
     lines::{line_reach, line_request, map_jumps},
     pass::StylizePipeline,
+    passes::passes,
     plan::Prepasses,
-    prepare::FusedRequest,
+    prepare::{FusedRequest, Layer},
+    target::place_in,
 };
 use crate::{
     depth::{
@@ -133,9 +135,11 @@ impl Services<'_> {
         let uniform = view_uniform(view, plan, scene);
         let facts = ViewFacts {
             viewport: scene.viewport,
+            target_size: camera.physical_target_size.unwrap_or(scene.viewport.zw()),
             scale_factor: view.scale_factor,
             world_from_clip: world_from_clip(view, extracted),
             seconds: view.time,
+            target: target_place(view, extracted, scene.viewport),
             lines_implied: plan.lines_implied(),
         };
         let jumps = map_jumps(plan, scene, &facts);
@@ -188,7 +192,12 @@ impl Services<'_> {
         inputs: &KeyInputs,
         lines: Option<&(LineRequest, LinePasses)>,
     ) -> FusedRequest {
-        let whole = StylizeKey::new(plan, inputs, &facts);
+        let all = StylizeKey::new(plan, inputs, &facts);
+        let passes = passes(plan);
+        let keys = passes.iter().map(|pass| all.of_pass(plan, pass));
+        let (layers, last): (Vec<_>, Vec<_>) = keys.partition(|key| key.layer);
+        // There is always a last pass, which draws the view's picture.
+        let whole = last.into_iter().next().unwrap_or(all);
         let jumps =
             |effect: &dyn AnyEffect| matches!(effect.any_extent(&facts), Extent::AtJumps(_));
         let searches_jumps = plan.drawn().any(jumps);
@@ -196,8 +205,15 @@ impl Services<'_> {
             passes.are_tiles_complete() && (request.jumps.is_some() || !searches_jumps)
         });
         let without_lines = line_reach(plan, &facts).is_some();
+        let is_local = |effect: &dyn AnyEffect| effect.any_extent(&facts) != Extent::Everywhere;
+        let in_last = plan.drawn().filter(|e| whole.applies(e.effect_type().name));
+        let local: Vec<_> = in_last
+            .filter(|effect| is_local(*effect))
+            .map(|effect| effect.effect_type().name)
+            .collect();
         let saves = |request: &LineRequest| {
-            request.jumps.is_some() || (without_lines && whole.reads_lines_anywhere())
+            let jumps = request.jumps.is_some() && !local.is_empty();
+            jumps || (without_lines && whole.reads_lines_anywhere())
         };
         let part = match (whole.can_overlay(plan, &facts), tiled) {
             (true, Some(_)) => Part::OverlaidTiles,
@@ -209,12 +225,12 @@ impl Services<'_> {
             let pipeline = &self.stylize_pipeline;
             self.stylize.specialize(cache, pipeline, key.clone())
         };
-        let base = (part == Part::Tiles).then(|| {
-            let local = |effect: &&dyn AnyEffect| effect.any_extent(&facts) != Extent::Everywhere;
-            let name = |effect: &dyn AnyEffect| effect.effect_type().name;
-            let left_out = plan.drawn().filter(local).map(name).collect();
-            specialize(&whole.base(left_out, without_lines))
+        let base = (part == Part::Tiles).then(|| specialize(&whole.base(&local, without_lines)));
+        let layers = layers.into_iter().map(|key| Layer {
+            pipeline: specialize(&key),
+            key,
         });
+        let layers = layers.collect();
         let key = whole.with_part(part);
         FusedRequest {
             camera,
@@ -222,6 +238,7 @@ impl Services<'_> {
             facts,
             view: inputs.view,
             lines: lines.map(|(request, _)| request.lines),
+            layers,
             pipeline: specialize(&key),
             base,
             key,
@@ -272,6 +289,16 @@ fn world_from_clip(view: &ViewPlan, extracted: &ExtractedView) -> Mat4 {
     }
 }
 
+/// Where the object that effects point at is in the viewport.
+fn target_place(view: &ViewPlan, extracted: &ExtractedView, viewport: UVec4) -> Option<Vec2> {
+    let view_from_world = extracted.world_from_view.to_matrix().inverse();
+    place_in(
+        viewport,
+        view.clip_from_view * view_from_world,
+        view.target?,
+    )
+}
+
 impl Requests {
     /// Whether a pipeline is still compiling. A pipeline that failed is not: its
     /// pass does not run, and the log says why.
@@ -291,8 +318,7 @@ impl Requests {
         let lines = lines
             || (self.marks.as_ref())
                 .is_some_and(|m| are_compiling(m.passes(), cache) || render(m.pipeline()));
-        let fused =
-            (self.fused.as_ref()).is_some_and(|f| render(f.pipeline) || f.base.is_some_and(render));
+        let fused = (self.fused.as_ref()).is_some_and(|f| f.pipelines().any(render));
         range || lines || fused
     }
 

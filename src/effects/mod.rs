@@ -28,11 +28,16 @@ effects! {
     tone_bands: ToneBands;
     desaturation: Desaturation;
     colorization: Colorization, ColorizationMode;
+    print_offset: PrintOffset;
+    halftone: Halftone, HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape;
     black_flats: BlackFlats;
     contours: Contours, ContourOperator;
     outlines: Outlines;
     sketch: Sketch;
     iso_lines: IsoLines, IsoField;
+    two_tone: TwoTone;
+    speed_lines: SpeedLines, SpeedLineKind;
+    paper: Paper;
     vignette: Vignette;
 }
 

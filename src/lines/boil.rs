@@ -7,7 +7,10 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::settings::{FieldRange, bounded};
+use crate::{
+    clock::drawing_seed,
+    settings::{FieldRange, bounded},
+};
 
 /// Displaces lines by noise that changes several times a second, as if each drawing of an
 /// animated film had been inked anew ("boiling" lines).
@@ -19,8 +22,10 @@ use crate::settings::{FieldRange, bounded};
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LineBoil {
-    /// Largest displacement per axis in logical pixels. Range 0 (off) to 3, default 0. Above
-    /// 2, wide dark lines flicker.
+    /// Largest displacement per axis in logical pixels. Wide dark lines that jump far flicker,
+    /// which can harm viewers who are sensitive to it: times the width of the widest line it is
+    /// at most 8 square pixels, so that a line of 4 pixels moves by up to 2, and one of 16 by
+    /// up to 0.5. Range 0 (off) to 3, default 0.
     #[reflect(@FieldRange::linear(0.0, 3.0).unit("px"))]
     pub amplitude: f32,
     /// Length of the waves of a line in logical pixels. Range 20 to 120, default 60.
@@ -31,6 +36,9 @@ pub struct LineBoil {
     #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"))]
     pub rate: f32,
 }
+
+/// The largest product of displacement and width, in square logical pixels.
+const MOST_MOVED: f32 = 8.0;
 
 impl LineBoil {
     /// Lines that stand still.
@@ -66,13 +74,19 @@ impl LineBoil {
         self.amplitude > 0.0
     }
 
-    /// The settings as shaders take them. `scale`: physical pixels per logical pixel.
-    pub(crate) fn uniform(&self, scale: f32, seconds: f64) -> BoilUniform {
-        let drawing = (seconds * f64::from(self.rate)).floor();
+    /// The largest displacement of lines of which the widest has a width, both in logical
+    /// pixels.
+    fn limited(&self, widest: f32) -> f32 {
+        self.amplitude.min(MOST_MOVED / widest.max(1.0))
+    }
+
+    /// The settings as shaders take them. `scale`: physical pixels per logical pixel;
+    /// `widest`: width of the widest line in logical pixels.
+    pub(crate) fn uniform(&self, scale: f32, seconds: f64, widest: f32) -> BoilUniform {
         BoilUniform {
-            amplitude: self.amplitude * scale,
+            amplitude: self.limited(widest) * scale,
             wavelength: self.wavelength * scale,
-            drawing: drawing.rem_euclid(65536.0) as u32,
+            drawing: drawing_seed(seconds, self.rate),
             unused: 0,
         }
     }

@@ -19,7 +19,7 @@ pub enum LineColor {
     Ink,
     /// The surface that a line belongs to, after the effects that change colours (a "colour
     /// hold" of cel animation). Lines of the faithful forms take the colour below them. In
-    /// multisampled views, the colour of slanted lines is partly mixed with what lies behind.
+    /// multisampled views, a few pixels of slanted lines mix in what lies behind.
     Surface {
         /// Factor of the luminance. Range 0 (black) to 1, 0.35 if it is not finite.
         #[reflect(@FieldRange::FRACTION)]

@@ -110,7 +110,7 @@ fn add_silhouettes(before: Found, s: Lines, at: Borders, reference: vec4<f32>, k
     let response = step_response(at.excess, s.silhouette_k * reference);
     let ink = smoothstep(vec4(s.silhouette_low), vec4(s.silhouette_high), response);
     let exists = max(at.here, at.there) > vec4(0.0);
-    let silhouette = has(kinds, SILHOUETTE) & exists & (byte(ink) > vec4(0u));
+    let silhouette = has(kinds, SILHOUETTE) & exists & (byte(ink) > vec4(0u)) & !at.outdone;
     found.kinds |= select(vec4(0u), vec4(SILHOUETTE), silhouette);
     found.ink = select(found.ink, ink, silhouette);
     found.certain |= silhouette & (response >= vec4(s.silhouette_limit));
@@ -150,20 +150,23 @@ fn add_creases(before: Found, s: Lines, at: Borders, reference: vec4<f32>, here:
     var found = before;
     var response = fold_response(at.folds, s.crease_k);
     var ridge = at.ridge;
+    var rim = at.rim;
 #ifdef SECTIONS
     let border = section_borders(at);
     response = select(response, vec4(1.0), border);
     ridge = (ridge | border) & !are_silent(at);
+    rim &= !are_silent(at);
 #endif
     let ink = smoothstep(vec4(s.crease_low), vec4(s.crease_high), response);
     let drawn_here = has(here, CREASE);
     let drawn_there = has(there, CREASE);
     let joined = at.excess < s.jump * reference;
     let drawn = (drawn_here | drawn_there) & (byte(ink) > vec4(0u)) & (found.kinds == vec4(0u));
-    let crease = ridge & joined & drawn;
+    let crease = (ridge | rim) & joined & drawn;
     found.kinds |= select(vec4(0u), vec4(CREASE), crease);
     found.ink = select(found.ink, ink, crease);
-    found.certain |= crease & (response >= vec4(s.crease_limit));
+    // At a rim a crease only continues another.
+    found.certain |= crease & ridge & (response >= vec4(s.crease_limit));
     found.mine = select(found.mine, owned(found.mine, drawn_here, drawn_there), crease);
     return found;
 }

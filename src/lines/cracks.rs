@@ -11,6 +11,8 @@ use bevy::render::{
 use super::{
     draw::cleared,
     key::WORKGROUP,
+    overshoot::StrokeList,
+    persistence::LineLives,
     prepare::blocks,
     request::LineRequest,
     store::CrackBuffers,
@@ -20,13 +22,22 @@ use super::{
 /// A pass that is ready to be recorded: its pipeline and bindings.
 pub(super) type Ready<'a, P> = (&'a P, BindGroup);
 
+/// The pass that keeps the lines of the last frames, ready to be recorded.
+pub(super) type ReadyLives<'a> = (Ready<'a, ComputePipeline>, &'a LineLives);
+
+/// The pass that draws strokes beyond loose ends, ready to be recorded.
+pub(super) type ReadyStrokes<'a> = (Ready<'a, RenderPipeline>, &'a StrokeList);
+
 /// The passes that find cracks in cells, ready to be recorded.
 pub(super) struct ReadyCells<'a> {
     pub lists: &'a TileLists,
     pub buffers: &'a CrackBuffers,
     pub find: Ready<'a, ComputePipeline>,
     pub link: Vec<Ready<'a, ComputePipeline>>,
+    pub persist: Option<ReadyLives<'a>>,
+    pub bridge: Option<Ready<'a, ComputePipeline>>,
     pub settle: Option<Ready<'a, ComputePipeline>>,
+    pub ends: Option<Ready<'a, ComputePipeline>>,
 }
 
 impl ReadyCells<'_> {
@@ -37,8 +48,19 @@ impl ReadyCells<'_> {
             self.buffers.copy_planes(encoder, i % 2);
             self.dispatch(encoder, "comics_link_lines", link);
         }
+        if let Some((persist, lives)) = &self.persist {
+            lives.clear(encoder);
+            self.dispatch(encoder, "comics_persist_lines", persist);
+        }
+        if let Some(bridge) = &self.bridge {
+            self.buffers.copy_planes(encoder, self.link.len() % 2);
+            self.dispatch(encoder, "comics_bridge_lines", bridge);
+        }
         if let Some(settle) = &self.settle {
             self.dispatch(encoder, "comics_settle_lines", settle);
+        }
+        if let Some(ends) = &self.ends {
+            self.dispatch(encoder, "comics_line_ends", ends);
         }
     }
 
@@ -71,6 +93,7 @@ pub(super) struct ReadyCracks<'a> {
     pub find: ReadyFind<'a>,
     pub columns: Option<(Ready<'a, RenderPipeline>, &'a CachedTexture)>,
     pub ink: Ready<'a, RenderPipeline>,
+    pub strokes: Option<ReadyStrokes<'a>>,
 }
 
 impl ReadyCracks<'_> {
@@ -107,6 +130,11 @@ impl ReadyCracks<'_> {
     /// Draws the ink.
     pub fn draw_ink(&self, pass: &mut wgpu::RenderPass) {
         self.draw(pass, &self.ink, TileList::Inked);
+        if let Some(((pipeline, group), strokes)) = &self.strokes {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, group, &[]);
+            strokes.draw(pass);
+        }
     }
 
     /// Draws the tiles of a list; without lists, all pixels.

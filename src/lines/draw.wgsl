@@ -12,6 +12,9 @@
     encode_ink, ink_of, inward_step, is_apart, largest_opacity, line_coverage, owner_step,
     segment_distance, unpack_middle, unpack_owner, unpack_width,
 }
+#ifdef BRIDGED
+#import bevy_comics::lines::gaps::source_of
+#endif
 #import bevy_comics::lines::pass::line_pass
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::texel_slot
@@ -38,18 +41,20 @@ struct Ink {
     // By kind: silhouettes, creases, object edges.
     kinds: vec3<f32>,
     strongest: f32,
-    // The pixel that owns the strongest line, and from there to the next one inside.
+    // The pixel that owns the strongest line. BRIDGED: and its crack, as in chain.wgsl.
     owner: vec2<i32>,
-    inward: vec2<i32>,
+    crack: vec3<i32>,
     // Two lines in different places whose borders are nearest: their middles, and the
     // distances from their borders, negative inside.
     first: vec2<f32>,
     second: vec2<f32>,
     distances: vec2<f32>,
-    // The packed crack of the first, and the pixel that owns it.
+    // The packed crack of the first, the pixel that owns it, and from there to the next one
+    // behind the crack; and where the crack is.
     packed: u32,
     first_owner: vec2<i32>,
-    first_inward: vec2<i32>,
+    first_crack: vec3<i32>,
+    inward: vec2<i32>,
 }
 
 // Pixels of the viewport per pixel of the grid.
@@ -74,11 +79,8 @@ fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: Owner, at
     (*ink).kinds = max((*ink).kinds, kinds);
 #ifdef OWNERS
     let alpha = alphas(kinds);
-    (*ink).owner = select((*ink).owner, owner.pixel, alpha > (*ink).strongest);
-#ifdef INWARD
-    let inward = inward_step(packed, owner.south);
-    (*ink).inward = select((*ink).inward, inward, alpha > (*ink).strongest);
-#endif
+    let stronger = alpha > (*ink).strongest;
+    (*ink).owner = select((*ink).owner, owner.pixel, stronger);
     (*ink).strongest = max((*ink).strongest, alpha);
 #endif
     let border = select(1e6, away - half_width, exists);
@@ -87,8 +89,13 @@ fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: Owner, at
     (*ink).packed = select((*ink).packed, packed, nearest);
 #ifdef OWNERS
     (*ink).first_owner = select((*ink).first_owner, owner.pixel, nearest);
+#ifdef BRIDGED
+    let crack = vec3(owner.pixel - owner_step(packed, owner.south), select(0, 1, owner.south));
+    (*ink).crack = select((*ink).crack, crack, stronger);
+    (*ink).first_crack = select((*ink).first_crack, crack, nearest);
+#endif
 #ifdef INWARD
-    (*ink).first_inward = select((*ink).first_inward, inward, nearest);
+    (*ink).inward = select((*ink).inward, inward_step(packed, owner.south), nearest);
 #endif
 #endif
 }
@@ -170,6 +177,24 @@ fn search(ink: ptr<function, Ink>, centre: vec2<i32>, at: vec2<f32>) {
 #endif
 }
 
+#ifdef SURFACE
+// From the pixel that owns a line to one whose samples all belong to its surface: the next one
+// across the line. A crack alone says too little: at the steps of a line that is nearly
+// horizontal, cracks are vertical, and the next pixel lies along the line.
+fn inward_of(ink: Ink) -> vec2<i32> {
+#ifdef INWARD
+    let along = ink.second - ink.first;
+    let across = vec2(-along.y, along.x);
+    let size = max(abs(across.x), abs(across.y));
+    let side = dot(across, vec2<f32>(ink.inward));
+    let is_known = ink.distances.y < 1e5 && size < 1.45 && abs(side) > 0.1 * size;
+    return select(ink.inward, vec2<i32>(round(across / max(size, 1e-3) * sign(side))), is_known);
+#else
+    return vec2(0);
+#endif
+}
+#endif
+
 @fragment
 fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
     set_view(line_pass.seen);
@@ -193,13 +218,16 @@ fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
         let straight = line_coverage(away, half_width) * ink_of(ink.packed);
         ink.kinds = max(ink.kinds, straight);
 #ifdef OWNERS
-        ink.owner = select(ink.owner, ink.first_owner, alphas(straight) > ink.strongest);
-#ifdef INWARD
-        ink.inward = select(ink.inward, ink.first_inward, alphas(straight) > ink.strongest);
-#endif
+        let stronger = alphas(straight) > ink.strongest;
+        ink.owner = select(ink.owner, ink.first_owner, stronger);
+        ink.crack = select(ink.crack, ink.first_crack, stronger);
         ink.strongest = max(ink.strongest, alphas(straight));
 #endif
     }
+#ifdef BRIDGED
+    // The owner of a line in a gap is that of the crack that it continues.
+    ink.owner += source_of(g, ink.crack).xy - ink.crack.xy;
+#endif
     var slot = 0.0;
 #ifdef OBJECT_STYLES
     let corner = g.rect.zw - 1;
@@ -209,7 +237,7 @@ fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
     drawn.ink = vec4(encode_ink(ink.kinds), slot);
 #ifdef SURFACE
     // From the middle of the pixel that owns the line.
-    let owner = (vec2<f32>(ink.owner + ink.inward) + 0.5 - g.from_viewport.zw) * viewport_scale;
+    let owner = (vec2<f32>(ink.owner + inward_of(ink)) + 0.5 - g.from_viewport.zw) * viewport_scale;
     let away = vec2<i32>(floor(owner)) - vec2<i32>(position.xy);
     drawn.owner = select(vec2(0), clamp(away, vec2(-127), vec2(127)), ink.strongest > 0.0);
 #endif

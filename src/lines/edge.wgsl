@@ -67,6 +67,13 @@ struct Grid {
     steps: i32,
     // Pieces of line of fewer cracks are left out.
     specks: i32,
+    // Gaps of at most this many cracks are closed.
+    bridge: i32,
+    // Frames that lines stay where their edges have become weak.
+    persistence: i32,
+    // Pixels by which loose ends are extended.
+    overshoot: f32,
+    unused: i32,
 }
 
 // The edge response, 0 to 1, of g = (g_min, g_max) over 3 x 3 pixels ([CL] Eq. 2).
@@ -143,11 +150,33 @@ fn step_excess(
     return abs(step) - max(vec4(0.0), max(near_slope, far_slope));
 }
 
+// The step on the other side of one beside a larger step, as a fraction of it, from which
+// the surface is curved: 0.41 and more next to the rim of a cylinder, less next to that of a
+// mesh with flat sides, and about 0 between flat layers.
+const CURVED: f32 = 0.1;
+
+// Whether the step from `here` to `there` is part of a curve that ends in a larger step
+// directly beside it. Just inside the rim of a curved surface, depth falls so steeply that
+// one or two steps there would be silhouettes too.
+fn is_outdone(before: vec4<f32>, here: vec4<f32>, there: vec4<f32>, beyond: vec4<f32>) -> vec4<bool> {
+    let step = here - there;
+    let down = select(vec4(-1.0), vec4(1.0), step >= vec4(0.0));
+    let near_step = down * (before - here);
+    let far_step = down * (there - beyond);
+    return (max(near_step, far_step) > abs(step)) & (min(near_step, far_step) >= CURVED * abs(step));
+}
+
 // Response to the excess of a step ([CL] Eq. 2, with half of the excess in place of
 // g_max - g_min: both are the same along a straight edge).
 fn step_response(excess: vec4<f32>, k: vec4<f32>) -> vec4<f32> {
     let r = 0.5 * max(excess, vec4(0.0)) / max(k, vec4(1e-30));
     return min(r * r, vec4(1.0));
+}
+
+// Whether a raw depth is that of a surface in front of another one. `jump`: the difference that
+// separates two surfaces.
+fn is_in_front(d: f32, other: f32, jump: f32) -> bool {
+    return d > other + jump;
 }
 
 // The squared distance of two normals; -1 if one of them is missing (w = 0 instead of
@@ -167,6 +196,16 @@ fn fold_response(folds: vec4<f32>, k: f32) -> vec4<f32> {
 fn is_ridge(before: vec4<f32>, folds: vec4<f32>, beyond: vec4<f32>) -> vec4<bool> {
     let complete = (before >= vec4(0.0)) & (folds > vec4(0.0)) & (beyond >= vec4(0.0));
     return complete & (folds >= before) & (folds >= beyond);
+}
+
+// The fold of 60 degrees.
+const SHARP: f32 = 1.0;
+
+// The same at the rim of a surface, where one of the normals is missing: a crease may go on
+// to the rim. The rim's own curvature bends less, unless the surface is a few pixels wide.
+fn is_rim_ridge(before: vec4<f32>, folds: vec4<f32>, beyond: vec4<f32>) -> vec4<bool> {
+    let one_missing = (before >= vec4(0.0)) != (beyond >= vec4(0.0));
+    return one_missing & (folds >= vec4(SHARP)) & (folds >= max(before, beyond));
 }
 
 // Of the ramp of the ink from low to high, the part whose ink is 0 after rounding to eight

@@ -4,7 +4,7 @@
 
 #import bevy_comics::depth::view::{set_view, texel_depth}
 #import bevy_comics::lines::crack::cracks
-#import bevy_comics::lines::edge::{fold, is_ridge, step_excess}
+#import bevy_comics::lines::edge::{fold, is_outdone, is_ridge, is_rim_ridge, step_excess}
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::rows::Borders
 #ifdef NORMALS
@@ -52,6 +52,7 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
     let beyond = vec2(depth_at(origin, high_2.x, p.y), depth_at(origin, p.x, high_2.y)).xyxy;
     let beyond_2 = vec2(depth_at(origin, high_3.x, p.y), depth_at(origin, p.x, high_3.y)).xyxy;
     at.excess = step_excess(before_2, before, at.here, at.there, beyond, beyond_2);
+    at.outdone = is_outdone(before, at.here, at.there, beyond);
 #ifdef NORMALS
     let n = texel_normal(origin + p, 0);
     let e = texel_normal(origin + vec2(high.x, p.y), 0);
@@ -66,6 +67,7 @@ fn find(@builtin(position) position: vec4<f32>) -> @location(0) vec2<u32> {
         fold(s, texel_normal(origin + vec2(p.x, high_2.y), 0)),
     ).xyxy;
     at.ridge = is_ridge(folds_before, at.folds, folds_beyond);
+    at.rim = is_rim_ridge(folds_before, at.folds, folds_beyond);
 #endif
 #ifdef OBJECT_IDS
     let here = object_at(origin + p);

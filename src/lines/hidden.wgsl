@@ -5,6 +5,7 @@
 
 #import bevy_comics::depth::raw::raw_depth
 #import bevy_comics::depth::view::view
+#import bevy_comics::lines::edge::is_in_front
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::objects::texel_object
 
@@ -18,17 +19,14 @@
 // The bit of an object's marks, above its section, where it is hidden.
 const HIDDEN: u32 = 0x10000u;
 
-// Whether a surface hides another one: raw depths. `jump`: the difference that separates two
-// surfaces; surfaces that are much closer do not hide each other.
-fn hides(front: f32, behind: f32, jump: f32) -> bool {
-    return front > behind + 0.1 * jump;
-}
+// What hides an object is in front of it by this part of a jump at least.
+const LEAST: f32 = 0.1;
 
 // The object at a pixel of the depth texture, see texel_object, with its bit. `own`: its raw
 // depth.
 fn marked_object(at: vec2<i32>, own: f32) -> vec2<u32> {
     let s = line_pass.settings;
-    let jump = s.jump * (s.reference_factor * own + s.reference_constant);
+    let jump = LEAST * s.jump * (s.reference_factor * own + s.reference_constant);
     let d = raw_depth(view.raw, vec2<u32>(at), textureLoad(picture_depth, at, 0).r);
-    return texel_object(at, 0) | vec2(0u, select(0u, HIDDEN, hides(d, own, jump)));
+    return texel_object(at, 0) | vec2(0u, select(0u, HIDDEN, is_in_front(d, own, jump)));
 }

@@ -12,14 +12,14 @@ use bevy::render::{
 
 use super::{
     ViewLines,
-    cracks::{Ready, ReadyCells, ReadyCracks, ReadyFind},
+    cracks::{Ready, ReadyCells, ReadyCracks, ReadyFind, ReadyStrokes},
     key::LineKey,
     memory::{LineMemory, MemoryKey},
     prepare::{Cracks, Tiles},
-    request::{CellPasses, CrackPasses, FindPass, LinePasses, LineRequest},
+    request::{CrackPasses, FindPass, LinePasses, LineRequest},
     resolve::Resolved,
     sources::{NOT_READY, Reads, Sources, Texels, entry},
-    store::{CrackBuffers, CrackStore},
+    store::CrackStore,
 };
 use crate::{depth::prepare::ViewDepthRange, diagnostics::LeftOut, objects::ObjectStyleBuffer};
 
@@ -58,17 +58,21 @@ impl Inputs<'_> {
         Ok(Some((self.pipeline(id)?, group)))
     }
 
-    fn pipeline(&self, id: CachedRenderPipelineId) -> Result<&RenderPipeline, LeftOut> {
+    pub(super) fn pipeline(&self, id: CachedRenderPipelineId) -> Result<&RenderPipeline, LeftOut> {
         self.cache.get_render_pipeline(id).ok_or(NOT_READY)
     }
 
-    fn group(&self, layout: &BindGroupLayoutDescriptor, entries: &[BindGroupEntry]) -> BindGroup {
+    pub(super) fn group(
+        &self,
+        layout: &BindGroupLayoutDescriptor,
+        entries: &[BindGroupEntry],
+    ) -> BindGroup {
         let layout = self.cache.get_bind_group_layout(layout);
         self.device
             .create_bind_group("comics_lines", &layout, entries)
     }
 
-    fn uniform(&self) -> Result<BindingResource<'_>, LeftOut> {
+    pub(super) fn uniform(&self) -> Result<BindingResource<'_>, LeftOut> {
         let (_, _, lines) = self.parts.0;
         lines.uniform.binding().ok_or(NOT_READY)
     }
@@ -89,7 +93,7 @@ impl Inputs<'_> {
     }
 
     /// The textures that lines are found in.
-    fn texels(&self) -> Result<Texels<'_>, LeftOut> {
+    pub(super) fn texels(&self) -> Result<Texels<'_>, LeftOut> {
         let (_, _, lines) = self.parts.0;
         match &lines.resolved {
             Some(resolved) => Ok(resolved.texels()),
@@ -131,7 +135,11 @@ impl Inputs<'_> {
     }
 
     /// The bindings of the passes that find lines. `normals`: the normals too.
-    fn entries(&self, key: &LineKey, normals: bool) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
+    pub(super) fn entries(
+        &self,
+        key: &LineKey,
+        normals: bool,
+    ) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
         let (_, sources, range) = self.parts;
         let mut entries = vec![entry(1, self.uniform()?)];
         let reads = Reads {
@@ -180,6 +188,7 @@ impl Inputs<'_> {
             columns,
             find,
             ink: (self.pipeline(passes.draw)?, self.draw_group(cracks)?),
+            strokes: self.strokes_pass(passes, cracks)?,
         })
     }
 
@@ -206,63 +215,22 @@ impl Inputs<'_> {
                     buffers,
                     find: (self.compute(passes.find)?, group),
                     link: self.link_passes(&passes, buffers)?,
+                    persist: self.persist_pass(&passes, buffers)?,
+                    bridge: self.bridge_pass(&passes, buffers)?,
                     settle: self.settle_pass(&passes, buffers)?,
+                    ends: self.ends_pass(&passes, cracks)?,
                 }))
             }
             _ => Err(NOT_READY),
         }
     }
 
-    fn tiles(&self) -> Result<&Tiles, LeftOut> {
+    pub(super) fn tiles(&self) -> Result<&Tiles, LeftOut> {
         let (_, _, lines) = self.parts.0;
         lines.tiles.as_ref().ok_or(NOT_READY)
     }
 
-    /// The passes that continue lines.
-    fn link_passes<'a>(
-        &'a self,
-        passes: &CellPasses,
-        buffers: &CrackBuffers,
-    ) -> Result<Vec<Ready<'a, ComputePipeline>>, LeftOut> {
-        let Some([full, last]) = passes.link else {
-            return Ok(vec![]);
-        };
-        let (request, ..) = self.parts.0;
-        let count = request.links();
-        let pass = |i: usize| {
-            let id = if i + 1 == count { last } else { full };
-            let mut entries = vec![entry(1, self.uniform()?)];
-            entries.extend(self.tiles()?.lists.cell_entries());
-            entries.extend(buffers.link_entries(i % 2));
-            let group = self.group(&LineKey::link_layout(), &entries);
-            Ok((self.compute(id)?, group))
-        };
-        (0..count).map(pass).collect()
-    }
-
-    /// The pass that completes cracks, if there is one.
-    fn settle_pass<'a>(
-        &'a self,
-        passes: &CellPasses,
-        buffers: &CrackBuffers,
-    ) -> Result<Option<Ready<'a, ComputePipeline>>, LeftOut> {
-        let Some(id) = passes.settle else {
-            return Ok(None);
-        };
-        let key = self.parts.0.1.key.for_settle();
-        let mut entries = if key.creases || key.weight.any() {
-            self.entries(&key, key.weight.light)?
-        } else {
-            vec![entry(1, self.uniform()?)]
-        };
-        entries.extend(self.tiles()?.lists.cell_entries());
-        let links = self.parts.0.0.links();
-        entries.extend(buffers.settle_entries(links % 2));
-        let group = self.group(&key.settle_layout(), &entries);
-        Ok(Some((self.compute(id)?, group)))
-    }
-
-    fn compute(&self, id: CachedComputePipelineId) -> Result<&ComputePipeline, LeftOut> {
+    pub(super) fn compute(&self, id: CachedComputePipelineId) -> Result<&ComputePipeline, LeftOut> {
         self.cache.get_compute_pipeline(id).ok_or(NOT_READY)
     }
 
@@ -306,16 +274,41 @@ impl Inputs<'_> {
         ])
     }
 
+    /// The pass that draws strokes beyond loose ends, if there is one.
+    fn strokes_pass<'a>(
+        &'a self,
+        passes: &CrackPasses,
+        cracks: &'a Cracks,
+    ) -> Result<Option<ReadyStrokes<'a>>, LeftOut> {
+        let (Some(id), Some(strokes)) = (passes.strokes, &cracks.strokes) else {
+            return Ok(None);
+        };
+        let key = self.parts.0.1.key.for_strokes();
+        let mut entries = vec![entry(1, self.uniform()?)];
+        if key.object_styles {
+            let ids = self.texels()?.ids.ok_or(NOT_READY)?;
+            entries.push(entry(8, ids.into_binding()));
+        }
+        let group = self.group(&key.strokes_layout(), &entries);
+        Ok(Some(((self.pipeline(id)?, group), strokes)))
+    }
+
     fn draw_group(&self, cracks: &Cracks) -> Result<BindGroup, LeftOut> {
         let (_, passes, _) = self.parts.0;
         let mut entries = match &cracks.columns {
             Some(columns) => self.searched((13, columns))?,
             None => self.stored(cracks)?,
         };
+        if passes.key.for_draw().bridged
+            && let CrackStore::Buffers(buffers) = &cracks.store
+        {
+            let copies = self.parts.0.0.copies();
+            entries.extend(buffers.planes_entry(copies));
+        }
         if passes.key.object_styles {
             let ids = self.texels()?.ids.ok_or(NOT_READY)?;
             entries.push(entry(8, ids.into_binding()));
         }
-        Ok(self.group(&passes.key.draw_layout(), &entries))
+        Ok(self.group(&passes.key.for_draw().draw_layout(), &entries))
     }
 }

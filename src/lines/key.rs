@@ -1,6 +1,6 @@
 //! The keys that select the variants of the line passes.
 
-use bevy::{math::Vec2, render::render_resource::TextureFormat, shader::ShaderDefVal};
+use bevy::{math::Vec2, render::render_resource::TextureFormat};
 
 use super::{request::LineRequest, weight::WeightKey};
 use crate::settings::Form;
@@ -68,6 +68,14 @@ pub(crate) struct LineKey {
     pub faithful: [bool; 2],
     /// Cracks are linked to lines, or only stored as planes of bits.
     pub links: bool,
+    /// Lines stay where their edges have become weak; and whether the engine's motion
+    /// vectors say where they were.
+    pub persists: bool,
+    pub motion: bool,
+    /// Loose ends are extended.
+    pub overshoots: bool,
+    /// Gaps in lines are closed.
+    pub bridged: bool,
     /// Lines run straight through the steps of pixels.
     pub smooth: bool,
     /// Which factors of width and opacity are not 1.
@@ -85,7 +93,7 @@ pub(crate) struct LineKey {
     pub search: Search,
     /// Jumps of the depth map are searched too, with these flags of the map.
     pub jumps: bool,
-    map_flags: u32,
+    pub(super) map_flags: u32,
     /// The device has no compute shaders: the passes draw all pixels, not tiles.
     pub by_fragments: bool,
 }
@@ -121,6 +129,10 @@ impl LineKey {
             visible_range: request.visible_range,
             faithful: forms.map(|form| form == Some(Form::Faithful)),
             links: lines.links() && !by_fragments,
+            persists: lines.persists() && !by_fragments,
+            motion: lines.persists() && request.motion,
+            overshoots: lines.overshoots() && !by_fragments,
+            bridged: lines.bridge > 0 && !by_fragments,
             smooth: lines.smooth && !by_fragments,
             weight,
             surface: lines.color.is_surface(),
@@ -157,6 +169,8 @@ impl LineKey {
             fading: false,
             visible_range: self.jumps && self.visible_range,
             links: false,
+            bridged: self.bridged,
+            persists: false,
             smooth: false,
             weight: WeightKey::default(),
             jumps: self.jumps,
@@ -170,6 +184,10 @@ impl LineKey {
         Self {
             ids: self.object_edges || self.object_styles || self.sections,
             links: self.settles(),
+            bridged: false,
+            persists: false,
+            motion: false,
+            overshoots: false,
             smooth: false,
             weight: WeightKey::default(),
             faithful: [false; 2],
@@ -199,6 +217,10 @@ impl LineKey {
             jumps: false,
             map_flags: 0,
             by_fragments: false,
+            bridged: false,
+            persists: false,
+            motion: false,
+            overshoots: false,
             weight: WeightKey::default(),
             boils: false,
             varied: false,
@@ -211,12 +233,47 @@ impl LineKey {
         let weight = self.weight;
         let reads_map = weight.perspective;
         Self {
+            bridged: self.bridged,
             smooth: self.smooth,
             creases: self.creases && self.smooth,
             weight,
             ids: weight.outer && self.ids,
             oblique: (weight.any() || self.creases && self.smooth) && self.oblique,
             visible_range: reads_map && self.visible_range,
+            ..Self::default()
+        }
+    }
+
+    /// The part that keeping the lines of the last frames depends on.
+    pub fn for_persist(self) -> Self {
+        Self {
+            motion: self.motion,
+            oblique: self.motion && self.oblique,
+            ..Self::default()
+        }
+    }
+
+    /// The part that extending loose ends depends on.
+    pub fn for_ends(self) -> Self {
+        Self {
+            varied: self.varied,
+            bridged: self.bridged && self.has_owners(),
+            ..Self::default()
+        }
+    }
+
+    /// The part that drawing the strokes beyond loose ends depends on.
+    pub fn for_strokes(self) -> Self {
+        Self {
+            ids: self.object_styles,
+            object_styles: self.object_styles,
+            boils: self.boils,
+            surface: self.surface,
+            inward: self.inward,
+            weight: WeightKey {
+                taper: self.weight.taper,
+                ..WeightKey::default()
+            },
             ..Self::default()
         }
     }
@@ -231,6 +288,11 @@ impl LineKey {
         }
     }
 
+    /// Whether drawing must know the pixel that owns a line.
+    pub(super) fn has_owners(&self) -> bool {
+        self.object_styles || self.surface
+    }
+
     /// The part that drawing depends on.
     pub fn for_draw(self) -> Self {
         Self {
@@ -240,121 +302,11 @@ impl LineKey {
             boils: self.boils,
             surface: self.surface,
             inward: self.inward,
+            bridged: self.bridged && self.has_owners(),
             smooth: self.smooth && self.search != Search::Columns,
             varied: self.varied && self.search != Search::Columns,
             by_fragments: self.by_fragments,
             ..Self::default()
         }
     }
-
-    fn common(&self) -> impl Iterator<Item = ShaderDefVal> + use<> {
-        [
-            (self.same_size, "SAME_SIZE"),
-            (self.oblique, "OBLIQUE"),
-            (self.ids, "OBJECT_IDS"),
-            (self.object_styles, "OBJECT_STYLES"),
-        ]
-        .into_iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, name)| name.into())
-    }
-
-    pub fn find_defs(&self) -> Vec<ShaderDefVal> {
-        let planes = self.settles().then(|| "PLANES".into());
-        let mut defs = self.crack_defs(self.silhouettes || self.creases);
-        defs.extend(planes);
-        defs
-    }
-
-    pub fn settle_defs(&self) -> Vec<ShaderDefVal> {
-        let weight = &self.weight;
-        self.common()
-            .chain(names([
-                (self.smooth, "SMOOTH"),
-                (self.creases, "FOLDS"),
-                (weight.any(), "WEIGHT"),
-                (self.creases || weight.any(), "DEPTH"),
-                (weight.kinds, "KIND_WEIGHT"),
-                (weight.light, "LIGHT_WEIGHT"),
-                (weight.light, "NORMALS"),
-                (weight.map, "WIDTH_MAP"),
-                (weight.light || weight.map, "SURFACE_WEIGHT"),
-                (weight.perspective, "PERSPECTIVE_WEIGHT"),
-                (self.visible_range, "VISIBLE_RANGE"),
-                (weight.nib, "NIB_WEIGHT"),
-                (weight.taper, "TAPER_WEIGHT"),
-                (weight.budget, "BUDGET"),
-                (weight.fog, "FOG"),
-            ]))
-            .collect()
-    }
-
-    /// `excess`: the excess of steps in depth is computed. It excludes creases too.
-    fn crack_defs(&self, excess: bool) -> Vec<ShaderDefVal> {
-        self.common()
-            .chain(names([
-                (true, "DEPTH"),
-                (excess, "EXCESS"),
-                (self.silhouettes, "SILHOUETTES"),
-                (self.creases, "CREASES"),
-                (self.creases, "NORMALS"),
-                (self.object_edges, "OBJECT_EDGES"),
-                (self.sections, "SECTIONS"),
-                (self.marks, "MARKS"),
-                (self.multisampled_picture, "MULTISAMPLED_PICTURE"),
-                (self.fading, "FADING"),
-                (self.visible_range, "VISIBLE_RANGE"),
-            ]))
-            .collect()
-    }
-
-    pub fn walk_defs(&self) -> Vec<ShaderDefVal> {
-        let jumps = [
-            "JUMPS".into(),
-            ShaderDefVal::UInt("MAP_FLAGS".into(), self.map_flags),
-        ];
-        let jumps = self.jumps.then_some(jumps);
-        let cracks = self.has_cracks().then(|| "CRACKS".into());
-        self.crack_defs(self.silhouettes)
-            .into_iter()
-            .chain(cracks)
-            .chain(jumps.into_iter().flatten())
-            .collect()
-    }
-
-    pub fn faithful_defs(&self) -> Vec<ShaderDefVal> {
-        self.common()
-            .chain(names([
-                (true, "DEPTH"),
-                (self.faithful[0], "FAITHFUL_SILHOUETTES"),
-                (self.faithful[1], "FAITHFUL_CREASES"),
-                (self.faithful[1], "NORMALS"),
-                (self.fading, "FADING"),
-                (self.visible_range, "VISIBLE_RANGE"),
-            ]))
-            .collect()
-    }
-
-    pub fn draw_defs(&self) -> Vec<ShaderDefVal> {
-        self.common()
-            .chain(names([
-                (self.search == Search::Neighbours, "NEIGHBOURS"),
-                (self.search == Search::Columns, "COLUMNS"),
-                (!self.by_fragments, "BLOCKS"),
-                (self.smooth, "SMOOTH"),
-                (self.varied, "VARIED"),
-                (self.boils, "BOIL"),
-                (self.surface, "SURFACE"),
-                (self.inward, "INWARD"),
-                (self.object_styles || self.surface, "OWNERS"),
-            ]))
-            .collect()
-    }
-}
-
-fn names<const N: usize>(flags: [(bool, &'static str); N]) -> impl Iterator<Item = ShaderDefVal> {
-    flags
-        .into_iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, name)| name.into())
 }

@@ -79,6 +79,43 @@ impl LineKey {
         BindGroupLayoutDescriptor::new("comics_link_lines", &entries)
     }
 
+    pub fn bridge_layout() -> BindGroupLayoutDescriptor {
+        let uniform = uniform_buffer::<LinePassUniform>(false).build(1, ShaderStages::COMPUTE);
+        let mut entries = vec![uniform];
+        entries.extend(read_buffers([16, 17, 20]));
+        entries.extend(written_buffers([18, 21]));
+        BindGroupLayoutDescriptor::new("comics_bridge_lines", &entries)
+    }
+
+    pub fn persist_layout(&self) -> BindGroupLayoutDescriptor {
+        let compute = ShaderStages::COMPUTE;
+        let mut entries = vec![uniform_buffer::<LinePassUniform>(false).build(1, compute)];
+        if self.motion {
+            let float = || texture_2d(TextureSampleType::Float { filterable: false });
+            entries.extend([2, 24].map(|binding| float().build(binding, compute)));
+        }
+        entries.extend(read_buffers([16, 17, 28]));
+        entries.extend(written_buffers([21, 29]));
+        BindGroupLayoutDescriptor::new("comics_persist_lines", &entries)
+    }
+
+    pub fn ends_layout() -> BindGroupLayoutDescriptor {
+        let uniform = uniform_buffer::<LinePassUniform>(false).build(1, ShaderStages::COMPUTE);
+        let mut entries = vec![uniform];
+        entries.extend(read_buffers([11, 16, 17, 19, 20]));
+        entries.extend(written_buffers([30]));
+        BindGroupLayoutDescriptor::new("comics_line_ends", &entries)
+    }
+
+    pub fn strokes_layout(&self) -> BindGroupLayoutDescriptor {
+        let uniform = uniform_buffer::<LinePassUniform>(false);
+        let mut entries = vec![uniform.build(1, ShaderStages::VERTEX_FRAGMENT)];
+        if self.object_styles {
+            entries.push(ids_entry(false));
+        }
+        BindGroupLayoutDescriptor::new("comics_line_strokes", &entries)
+    }
+
     pub fn settle_layout(&self) -> BindGroupLayoutDescriptor {
         let mut entries = if self.creases || self.weight.any() {
             self.inputs(self.weight.light, ShaderStages::COMPUTE)
@@ -149,6 +186,9 @@ impl LineKey {
         } else {
             self.stored()
         };
+        if self.bridged {
+            entries.push(planes_entry(ShaderStages::FRAGMENT));
+        }
         if self.object_styles {
             entries.push(ids_entry(false));
         }
@@ -165,6 +205,11 @@ fn picture_entry(multisampled: bool, stages: ShaderStages) -> BindGroupLayoutEnt
         texture_2d(unfilterable)
     };
     texture.build(27, stages)
+}
+
+/// The layout entry of planes of bits.
+fn planes_entry(stages: ShaderStages) -> BindGroupLayoutEntry {
+    storage_buffer_read_only_sized(false, None).build(20, stages)
 }
 
 /// The layout entries of buffers that compute passes read.

@@ -14,9 +14,9 @@ use bevy::{
         render_resource::{
             BindGroupEntry, BindGroupLayoutDescriptor, BlendState, CachedRenderPipelineId,
             ColorTargetState, ColorWrites, FragmentState, IntoBinding, LoadOp, Operations,
-            PipelineCache, PrimitiveState, PrimitiveTopology, RenderPassColorAttachment,
-            RenderPassDescriptor, RenderPipelineDescriptor, ShaderStages,
-            SpecializedRenderPipeline, StoreOp, TextureFormat, TextureSampleType,
+            PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
+            RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline, StoreOp,
+            TextureFormat, TextureSampleType,
             binding_types::{texture_2d, uniform_buffer},
         },
         renderer::{RenderContext, ViewQuery},
@@ -28,7 +28,7 @@ use bevy::{
 use super::{
     ViewLines,
     request::{LinePassUniform, LinePasses, LineRequest},
-    tiles::{TileList, tile_shader, tile_vertices},
+    tiles::{TileList, tile_shader, vertices},
 };
 use crate::objects::{MarkStyleBuffer, object_styles_entry};
 
@@ -39,6 +39,8 @@ pub(crate) struct ViewMarks {
     pub layer: Entity,
     pub pipeline: CachedRenderPipelineId,
     pub key: MarkKey,
+    /// The view is styled after anti-aliasing.
+    pub late: bool,
 }
 
 /// Selects the variant of the pass.
@@ -94,21 +96,12 @@ impl SpecializedRenderPipeline for MarkPipeline {
     type Key = MarkKey;
 
     fn specialize(&self, key: MarkKey) -> RenderPipelineDescriptor {
-        let (vertex, topology) = if key.tiled {
-            let tiles = tile_vertices(self.tile.clone());
-            (tiles, PrimitiveTopology::TriangleStrip)
-        } else {
-            let fullscreen = self.fullscreen.to_vertex_state();
-            (fullscreen, PrimitiveTopology::TriangleList)
-        };
+        let (vertex, primitive) = vertices(key.tiled, &self.fullscreen, &self.tile);
         RenderPipelineDescriptor {
             label: Some("comics_draw_marks".into()),
             layout: vec![MarkKey::layout()],
             vertex,
-            primitive: PrimitiveState {
-                topology,
-                ..Default::default()
-            },
+            primitive,
             fragment: Some(FragmentState {
                 shader: self.shader.clone(),
                 shader_defs: key.defs(),
@@ -137,8 +130,9 @@ fn bindings<'a>(
     Some(resources.map(|(binding, resource)| BindGroupEntry { binding, resource }))
 }
 
-/// Draws the lines of the marked objects of the view over its picture.
-pub(crate) fn draw_marks(
+/// Draws the lines of the marked objects of the view over its picture. `LATE`: of the views
+/// that are styled after anti-aliasing, of the others otherwise.
+pub(crate) fn draw_marks<const LATE: bool>(
     view: ViewQuery<(&ViewTarget, &ViewMarks)>,
     layers: Query<(&LineRequest, &LinePasses, &ViewLines)>,
     styles: Res<MarkStyleBuffer>,
@@ -146,6 +140,9 @@ pub(crate) fn draw_marks(
     mut ctx: RenderContext,
 ) {
     let (target, marks) = view.into_inner();
+    if marks.late != LATE {
+        return;
+    }
     let Ok((request, passes, lines)) = layers.get(marks.layer) else {
         return;
     };

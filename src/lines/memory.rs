@@ -8,11 +8,9 @@ use bevy::{
     render::{
         render_resource::{
             BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, ColorTargetState, ColorWrites,
-            CommandEncoder, Extent3d, FragmentState, IntoBinding, PrimitiveState,
-            PrimitiveTopology, RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor,
-            ShaderStages, ShaderType, SpecializedRenderPipeline, TextureDescriptor,
-            TextureDimension, TextureFormat, TextureSampleType, TextureUsages,
-            TextureViewDescriptor,
+            CommandEncoder, FragmentState, IntoBinding, RenderPassDescriptor, RenderPipeline,
+            RenderPipelineDescriptor, ShaderStages, ShaderType, SpecializedRenderPipeline,
+            TextureFormat, TextureSampleType, TextureUsages, TextureViewDescriptor,
             binding_types::{texture_2d, uniform_buffer},
         },
         renderer::RenderDevice,
@@ -23,9 +21,10 @@ use bevy::{
 
 use super::{
     draw::cleared,
+    prepare::descriptor,
     request::LinePassUniform,
     settings::LineSettings,
-    tiles::{TileList, TileLists, tile_shader, tile_vertices},
+    tiles::{TileList, TileLists, tile_shader, vertices},
 };
 
 /// Ink, finer than that of a frame: small steps towards it are not lost.
@@ -114,13 +113,7 @@ impl SpecializedRenderPipeline for MemoryPipeline {
     type Key = MemoryKey;
 
     fn specialize(&self, key: MemoryKey) -> RenderPipelineDescriptor {
-        let (vertex, topology) = if key.tiled {
-            let tiles = tile_vertices(self.tile.clone());
-            (tiles, PrimitiveTopology::TriangleStrip)
-        } else {
-            let fullscreen = self.fullscreen.to_vertex_state();
-            (fullscreen, PrimitiveTopology::TriangleList)
-        };
+        let (vertex, primitive) = vertices(key.tiled, &self.fullscreen, &self.tile);
         let target = |format| {
             Some(ColorTargetState {
                 format,
@@ -132,10 +125,7 @@ impl SpecializedRenderPipeline for MemoryPipeline {
             label: Some("comics_remember_lines".into()),
             layout: vec![MemoryKey::layout()],
             vertex,
-            primitive: PrimitiveState {
-                topology,
-                ..Default::default()
-            },
+            primitive,
             fragment: Some(FragmentState {
                 shader: self.shader.clone(),
                 shader_defs: key.defs(),
@@ -237,22 +227,8 @@ fn texture(
     size: UVec2,
     format: TextureFormat,
 ) -> CachedTexture {
-    let texture = device.create_texture(&TextureDescriptor {
-        label: Some(label),
-        size: Extent3d {
-            width: size.x.max(1),
-            height: size.y.max(1),
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: TextureDimension::D2,
-        format,
-        usage: TextureUsages::RENDER_ATTACHMENT
-            | TextureUsages::TEXTURE_BINDING
-            | TextureUsages::COPY_SRC,
-        view_formats: &[],
-    });
+    let drawn = TextureUsages::RENDER_ATTACHMENT;
+    let texture = device.create_texture(&descriptor(label, size, (format, drawn)));
     let default_view = texture.create_view(&TextureViewDescriptor::default());
     CachedTexture {
         texture,

@@ -30,12 +30,6 @@ fn share_at(frames: f32, speed: f32) -> f32 {
     return min(1.0 / max(frames, 1.0) + speed / FASTEST, 1.0);
 }
 
-// Whether what stood at a place has gone. `before`: the nearest raw depth there in the last
-// frame; `now`: around it in this one; `jump`: the difference that separates two surfaces.
-fn is_uncovered(before: f32, now: f32, jump: f32) -> bool {
-    return before > now + jump;
-}
-
 // Ink of three kinds from that in the memory and that of this frame. The memory is limited to
 // the least and the largest ink nearby in this frame.
 fn remembered(past: vec3<f32>, now: vec3<f32>, least: vec3<f32>, most: vec3<f32>, share: f32) -> vec3<f32> {

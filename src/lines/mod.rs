@@ -2,13 +2,15 @@
 //! view. `walk.wgsl` looks for cracks, the borders between pixels that lines run along, in
 //! depth, normals and object ids; it lists the cells that have them, and `tiles.wgsl` the
 //! tiles nearby. In the cells, `cells.wgsl` measures the cracks, `link.wgsl` continues lines
-//! along weak ones, and `settle.wgsl` completes them. In the tiles, `columns.wgsl`, for wide
+//! along weak ones, `bridge.wgsl` closes gaps, and `settle.wgsl` completes them. In the tiles, `columns.wgsl`, for wide
 //! lines, and `draw.wgsl` draw their ink into a texture. Effects read the ink with
 //! `read.wgsl`.
 
 mod boil;
 mod color;
+mod completing;
 mod cracks;
+mod defs;
 mod draw;
 mod fog;
 mod inputs;
@@ -17,6 +19,8 @@ mod kinds;
 mod layouts;
 mod marks;
 mod memory;
+mod overshoot;
+mod persistence;
 mod pipelines;
 mod prepare;
 pub(crate) mod request;
@@ -62,7 +66,7 @@ pub(crate) use prepare::ViewLines;
 pub(crate) use settings::LinesUniform;
 pub use settings::{LineSettings, MapJumps};
 pub use store::ViewCracks;
-pub(crate) use tiles::{TileList, TileLists, tile_shader, tile_vertices};
+pub(crate) use tiles::{TileList, TileLists, tile_shader, vertices};
 pub use weight::LineWeight;
 
 use crate::schedule::{ComicsSystems, PrepareComics};
@@ -124,11 +128,18 @@ fn load_shaders(app: &mut App) {
     load_shader_library!(app, "pass.wgsl");
     load_shader_library!(app, "planes.wgsl");
     load_shader_library!(app, "read_planes.wgsl");
+    load_shader_library!(app, "gaps.wgsl");
+    load_shader_library!(app, "lives.wgsl");
+    load_shader_library!(app, "overshoot.wgsl");
     load_shader_library!(app, "chain.wgsl");
     load_shader_library!(app, "stored.wgsl");
     embedded_asset!(app, "walk.wgsl");
     embedded_asset!(app, "cells.wgsl");
     embedded_asset!(app, "link.wgsl");
+    embedded_asset!(app, "persist.wgsl");
+    embedded_asset!(app, "bridge.wgsl");
+    embedded_asset!(app, "ends.wgsl");
+    embedded_asset!(app, "strokes.wgsl");
     embedded_asset!(app, "settle.wgsl");
     embedded_asset!(app, "tiles.wgsl");
     embedded_asset!(app, "tile.wgsl");

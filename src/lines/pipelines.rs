@@ -6,17 +6,16 @@ use bevy::{
     ecs::resource::Resource,
     render::render_resource::{
         BlendComponent, BlendFactor, BlendOperation, BlendState, ColorTargetState, ColorWrites,
-        ComputePipelineDescriptor, FragmentState, PrimitiveState,
-        PrimitiveTopology::{TriangleList, TriangleStrip},
-        RenderPipelineDescriptor, SpecializedComputePipeline, SpecializedRenderPipeline,
-        TextureFormat,
+        ComputePipelineDescriptor, FragmentState, PrimitiveTopology, RenderPipelineDescriptor,
+        SpecializedComputePipeline, SpecializedRenderPipeline, TextureFormat, VertexState,
     },
     shader::Shader,
 };
 
 use super::{
     key::{COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT, LineKey, OWNER_FORMAT},
-    tiles::{tile_shader, tile_vertices},
+    overshoot::stroke_layout,
+    tiles::{tile_shader, vertices},
 };
 
 /// The shaders of the passes.
@@ -26,6 +25,10 @@ pub(crate) struct LineShaders {
     walk: Handle<Shader>,
     cells: Handle<Shader>,
     link: Handle<Shader>,
+    persist: Handle<Shader>,
+    bridge: Handle<Shader>,
+    ends: Handle<Shader>,
+    strokes: Handle<Shader>,
     settle: Handle<Shader>,
     tiles: Handle<Shader>,
     tile: Handle<Shader>,
@@ -42,6 +45,10 @@ impl LineShaders {
             walk: load_embedded_asset!(assets, "walk.wgsl"),
             cells: load_embedded_asset!(assets, "cells.wgsl"),
             link: load_embedded_asset!(assets, "link.wgsl"),
+            persist: load_embedded_asset!(assets, "persist.wgsl"),
+            bridge: load_embedded_asset!(assets, "bridge.wgsl"),
+            ends: load_embedded_asset!(assets, "ends.wgsl"),
+            strokes: load_embedded_asset!(assets, "strokes.wgsl"),
             settle: load_embedded_asset!(assets, "settle.wgsl"),
             tiles: load_embedded_asset!(assets, "tiles.wgsl"),
             tile: tile_shader(assets),
@@ -64,8 +71,14 @@ pub(crate) enum SearchPass {
     Cells(LineKey),
     /// Continues lines along weak cracks; the last pass by the steps that are left.
     Link { last: bool },
+    /// Keeps the lines of the last frames.
+    Persist(LineKey),
+    /// Closes gaps in lines.
+    Bridge,
     /// Completes the cracks in the cells.
     Settle(LineKey),
+    /// Finds the loose ends of lines.
+    Ends(LineKey),
 }
 
 impl SpecializedComputePipeline for LineShaders {
@@ -77,6 +90,9 @@ impl SpecializedComputePipeline for LineShaders {
             SearchPass::Tiles => ("comics_list_tiles", "list_tiles", &self.tiles),
             SearchPass::Cells(_) => ("comics_find_in_cells", "find_in_cells", &self.cells),
             SearchPass::Link { .. } => ("comics_link_lines", "link", &self.link),
+            SearchPass::Persist(_) => ("comics_persist_lines", "persist", &self.persist),
+            SearchPass::Ends(_) => ("comics_line_ends", "ends", &self.ends),
+            SearchPass::Bridge => ("comics_bridge_lines", "bridge", &self.bridge),
             SearchPass::Settle(_) => ("comics_settle_lines", "settle", &self.settle),
         };
         let (layout, shader_defs) = match pass {
@@ -87,6 +103,9 @@ impl SpecializedComputePipeline for LineShaders {
                 let defs = last.then(|| "LAST".into());
                 (LineKey::link_layout(), defs.into_iter().collect())
             }
+            SearchPass::Persist(key) => (key.persist_layout(), key.persist_defs()),
+            SearchPass::Ends(key) => (LineKey::ends_layout(), key.ends_defs()),
+            SearchPass::Bridge => (LineKey::bridge_layout(), vec![]),
             SearchPass::Settle(key) => (key.settle_layout(), key.settle_defs()),
         };
         ComputePipelineDescriptor {
@@ -107,6 +126,20 @@ pub(crate) enum LinePass {
     Columns,
     Faithful,
     Draw,
+    Strokes,
+}
+
+impl LinePass {
+    /// The part of a key that the pass depends on.
+    pub fn part(self, key: LineKey) -> LineKey {
+        match self {
+            Self::Find => key.for_find(),
+            Self::Columns => key.for_columns(),
+            Self::Faithful => key.for_faithful(),
+            Self::Draw => key.for_draw(),
+            Self::Strokes => key.for_strokes(),
+        }
+    }
 }
 
 impl SpecializedRenderPipeline for LineShaders {
@@ -118,36 +151,41 @@ impl SpecializedRenderPipeline for LineShaders {
             LinePass::Columns => (&self.columns, key.columns_layout(), key.draw_defs()),
             LinePass::Faithful => (&self.faithful, key.faithful_layout(), key.faithful_defs()),
             LinePass::Draw => (&self.draw, key.draw_layout(), key.draw_defs()),
+            LinePass::Strokes => (&self.strokes, key.strokes_layout(), key.strokes_defs()),
         };
         let (label, entry, targets) = match pass {
             LinePass::Find => ("comics_find_lines", "find", CRACKS),
             LinePass::Columns => ("comics_line_columns", "columns", COLUMNS),
             LinePass::Faithful => ("comics_faithful_lines", "faithful", INK),
             LinePass::Draw => ("comics_draw_lines", "draw", INK),
+            LinePass::Strokes => ("comics_line_strokes", "stroke", INK),
         };
         // The pass that draws ink has this target too; the faithful forms do not write it.
         let owners = Some(ColorTargetState {
             write_mask: match pass {
-                LinePass::Draw => ColorWrites::ALL,
+                LinePass::Draw | LinePass::Strokes => ColorWrites::ALL,
                 _ => ColorWrites::empty(),
             },
             ..target(OWNER_FORMAT, None)
         });
-        let inks = matches!(pass, LinePass::Draw | LinePass::Faithful);
+        let inks = !matches!(pass, LinePass::Find | LinePass::Columns);
         let count = if inks && key.surface { 2 } else { 1 };
-        let (vertex, topology) = if key.by_fragments || pass == LinePass::Faithful {
-            (self.fullscreen.to_vertex_state(), TriangleList)
-        } else {
-            (tile_vertices(self.tile.clone()), TriangleStrip)
-        };
+        let tiled = !key.by_fragments && pass != LinePass::Faithful;
+        let (mut vertex, mut primitive) = vertices(tiled, &self.fullscreen, &self.tile);
+        if pass == LinePass::Strokes {
+            vertex = VertexState {
+                shader: shader.clone(),
+                shader_defs: defs.clone(),
+                entry_point: Some("corner".into()),
+                buffers: vec![stroke_layout()],
+            };
+            primitive.topology = PrimitiveTopology::TriangleStrip;
+        }
         RenderPipelineDescriptor {
             label: Some(label.into()),
             layout: vec![layout],
             vertex,
-            primitive: PrimitiveState {
-                topology,
-                ..Default::default()
-            },
+            primitive,
             fragment: Some(FragmentState {
                 shader: shader.clone(),
                 shader_defs: defs,

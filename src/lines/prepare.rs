@@ -23,6 +23,8 @@ use bevy::{
 use super::{
     key::{BLOCK, BLOCK_FORMAT, COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT, OWNER_FORMAT},
     memory::LineMemory,
+    overshoot::StrokeList,
+    persistence::LineLives,
     request::{FindPass, LinePassUniform, LinePasses, LineRequest},
     resolve::Resolved,
     store::{CrackBuffers, CrackStore, ViewCracks},
@@ -46,6 +48,8 @@ pub(crate) struct ViewLines {
     pub owners: Option<CachedTexture>,
     /// The ink of this frame and of those before, if lines remember.
     pub memory: Option<LineMemory>,
+    /// How long lines stay where their edges have become weak, if they do.
+    pub lives: Option<LineLives>,
     /// Whether the passes of this frame were recorded.
     pub found: AtomicBool,
 }
@@ -55,6 +59,8 @@ pub(crate) struct Cracks {
     pub store: CrackStore,
     /// The best cracks of each pixel's column, unless only neighbours are searched.
     pub columns: Option<CachedTexture>,
+    /// The strokes beyond loose ends, if lines have such.
+    pub strokes: Option<StrokeList>,
 }
 
 /// Where a view may have ink.
@@ -75,6 +81,7 @@ impl Default for ViewLines {
             ink: None,
             owners: None,
             memory: None,
+            lives: None,
             found: AtomicBool::new(false),
         }
     }
@@ -112,7 +119,16 @@ pub(super) fn texture(
     size: UVec2,
     (format, usage): (TextureFormat, TextureUsages),
 ) -> CachedTexture {
-    let descriptor = TextureDescriptor {
+    textures.get(device, descriptor(label, size, (format, usage)))
+}
+
+/// A texture that passes of lines write and read.
+pub(super) fn descriptor(
+    label: &'static str,
+    size: UVec2,
+    (format, usage): (TextureFormat, TextureUsages),
+) -> TextureDescriptor<'static> {
+    TextureDescriptor {
         label: Some(label),
         size: Extent3d {
             width: size.x.max(1),
@@ -125,13 +141,12 @@ pub(super) fn texture(
         format,
         usage: usage | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
         view_formats: &[],
-    };
-    textures.get(device, descriptor)
+    }
 }
 
 fn cracks(
     before: Option<Cracks>,
-    (textures, device): (&mut TextureCache, &RenderDevice),
+    (textures, device, queue): (&mut TextureCache, &RenderDevice, &RenderQueue),
     passes: &LinePasses,
     rect: UVec4,
 ) -> Option<Cracks> {
@@ -143,9 +158,11 @@ fn cracks(
     let columns = cracks
         .columns
         .map(|_| drawn("comics_line_columns", COLUMN_FORMAT));
+    let (store, strokes) = before.map_or((None, None), |b| (Some(b.store), b.strokes));
+    let strokes = (cracks.strokes).map(|_| StrokeList::new(strokes, (device, queue), rect));
     let store = match cracks.find {
         FindPass::Cells(_) => {
-            let before = before.and_then(|before| match before.store {
+            let before = store.and_then(|store| match store {
                 CrackStore::Buffers(buffers) => Some(buffers),
                 CrackStore::Texture(_) => None,
             });
@@ -154,7 +171,11 @@ fn cracks(
         }
         FindPass::Pixels(_) => CrackStore::Texture(drawn("comics_cracks", CRACK_FORMAT)),
     };
-    Some(Cracks { store, columns })
+    Some(Cracks {
+        store,
+        columns,
+        strokes,
+    })
 }
 
 impl ViewLines {
@@ -168,7 +189,7 @@ impl ViewLines {
         self.resolved = (passes.resolve.as_ref())
             .map(|(key, _)| Resolved::new((textures, device), *key, request.depth_size));
         let before = self.cracks.take();
-        self.cracks = cracks(before, (textures, device), passes, request.rect);
+        self.cracks = cracks(before, (textures, device, queue), passes, request.rect);
         let before = self.tiles.take().map(|tiles| tiles.lists);
         self.tiles = passes.search.map(|_| Tiles {
             blocks: texture(
@@ -194,12 +215,14 @@ impl ViewLines {
             let request = (&memory, request.size, &request.settings);
             LineMemory::next(before, kept, device, request)
         });
+        let before = self.lives.take();
+        self.lives = (passes.key.persists).then(|| LineLives::next(before, kept, device, request));
         self.found = AtomicBool::new(false);
         let is_new = self.memory.as_ref().is_none_or(|memory| memory.is_new);
         self.uniform.set(request.uniform(is_new));
         self.uniform.write_buffer(device, queue);
         match &self.cracks.as_ref()?.store {
-            CrackStore::Buffers(buffers) => Some(buffers.shown(request.rect, request.links())),
+            CrackStore::Buffers(buffers) => Some(buffers.shown(request.rect, request.copies())),
             CrackStore::Texture(_) => None,
         }
     }

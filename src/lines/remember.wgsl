@@ -4,8 +4,8 @@
 // remembered.
 
 #import bevy_comics::depth::view::{set_view, texel_depth}
-#import bevy_comics::lines::edge::{decode_ink, encode_ink}
-#import bevy_comics::lines::memory::{frames_at, is_uncovered, remembered, share_at}
+#import bevy_comics::lines::edge::{decode_ink, encode_ink, is_in_front}
+#import bevy_comics::lines::memory::{frames_at, remembered, share_at}
 #import bevy_comics::lines::pass::line_pass
 
 // Ink of this frame, see draw.wgsl.
@@ -88,7 +88,9 @@ fn remember(@builtin(position) position: vec4<f32>) -> Remembered {
     let from_pixel = clamp(vec2<i32>(floor(place)), vec2(0), size - 1);
     let before = textureLoad(past_depth, from_pixel, 0).xy;
     let jump = s.jump * (s.reference_factor * before.x + s.reference_constant);
-    let known = seen && !is_uncovered(before.x, around.wide, jump) && line_pass.memory.share < 1.0;
+    // What stood there in the last frame has gone.
+    let uncovered = is_in_front(before.x, around.wide, jump);
+    let known = seen && !uncovered && line_pass.memory.share < 1.0;
     let speed = length(moved);
     let frames = frames_at(select(0.0, before.y, known), line_pass.memory.share, speed);
     let ink = remembered(past_at(place), now, least, most, share_at(frames, speed));

@@ -42,6 +42,10 @@ pub(crate) struct LineRequest {
     pub boil: BoilUniform,
     /// What lines remember.
     pub memory: Option<MemoryRequest>,
+    /// Number of camera cuts so far.
+    pub cuts: u32,
+    /// The engine's motion vectors can be read.
+    pub motion: bool,
     /// The fog that lines fade into.
     pub fog: Option<FogUniform>,
     /// Size in pixels of the depth texture, and its samples per pixel.
@@ -58,6 +62,10 @@ pub(crate) struct LineRequest {
     pub reach: i32,
     /// Cracks that a line continues along weak edges.
     pub steps: i32,
+    /// Borders of pixels that a piece of line must have.
+    pub specks: i32,
+    /// Pixels of the grid by which loose ends are extended.
+    pub extension: f32,
     pub oblique: bool,
     /// The depth map spans the visible range.
     pub visible_range: bool,
@@ -96,6 +104,11 @@ impl LineRequest {
         (self.steps as usize).div_ceil(LINK_STEPS)
     }
 
+    /// Number of passes that copy the planes of cracks and add to them.
+    pub fn copies(&self) -> usize {
+        self.links() + usize::from(self.settings.bridge > 0)
+    }
+
     /// Columns leave out too much where lines are hardly wider than a pixel of the grid.
     pub fn search(&self) -> Search {
         let reach = self.reach as f32 * self.view.depth_scale.min_element();
@@ -115,7 +128,7 @@ impl LineRequest {
         let beyond = self.settings.smooth && self.search() != Search::Neighbours;
         let reach = self.grid_reach() + i32::from(beyond);
         let read = self.line_reach + self.boil.amplitude;
-        let read = (read * scale.max_element()).ceil() as i32;
+        let read = (read * scale.max_element() + self.extension).ceil() as i32;
         let jumps = self.jumps.unwrap_or(MapJumps {
             least: f32::MAX,
             radius: 1.0,
@@ -135,7 +148,11 @@ impl LineRequest {
             jump_radius: jumps.radius.ceil(),
             words: words(self.rect).as_ivec2(),
             steps: self.steps,
-            specks: self.settings.specks as i32,
+            specks: self.specks,
+            bridge: self.settings.bridge as i32,
+            persistence: self.settings.persistence as i32,
+            overshoot: self.extension,
+            unused: 0,
         }
     }
 
@@ -167,6 +184,10 @@ pub(crate) struct Grid {
     words: IVec2,
     steps: i32,
     specks: i32,
+    bridge: i32,
+    persistence: i32,
+    overshoot: f32,
+    unused: i32,
 }
 
 /// The uniform of the passes that find and draw lines.
@@ -226,14 +247,42 @@ pub(crate) struct CellPasses {
     pub find: CachedComputePipelineId,
     /// Continues lines by as many steps as a pass goes, and by the steps that are left.
     pub link: Option<[CachedComputePipelineId; 2]>,
+    /// Keeps the lines of the last frames.
+    pub persist: Option<CachedComputePipelineId>,
+    /// Closes gaps.
+    pub bridge: Option<CachedComputePipelineId>,
     /// Leaves out what is not part of a line, and makes lines smooth.
     pub settle: Option<CachedComputePipelineId>,
+    /// Extends loose ends.
+    pub ends: Option<CachedComputePipelineId>,
 }
 
 impl CellPasses {
+    /// `continues`: lines continue along weak edges.
+    fn new(
+        key: &LineKey,
+        continues: bool,
+        compute: &mut impl FnMut(SearchPass) -> CachedComputePipelineId,
+    ) -> Self {
+        Self {
+            find: compute(SearchPass::Cells(key.for_find())),
+            link: continues.then(|| [false, true].map(|last| compute(SearchPass::Link { last }))),
+            persist: (key.persists).then(|| compute(SearchPass::Persist(key.for_persist()))),
+            bridge: key.bridged.then(|| compute(SearchPass::Bridge)),
+            settle: key
+                .settles()
+                .then(|| compute(SearchPass::Settle(key.for_settle()))),
+            ends: key
+                .overshoots
+                .then(|| compute(SearchPass::Ends(key.for_ends()))),
+        }
+    }
+
     pub fn ids(&self) -> impl Iterator<Item = CachedComputePipelineId> {
         let link = self.link.into_iter().flatten();
-        [self.find].into_iter().chain(link).chain(self.settle)
+        let rest = [self.persist, self.bridge, self.settle, self.ends];
+        let rest = rest.into_iter().flatten();
+        [self.find].into_iter().chain(link).chain(rest)
     }
 }
 
@@ -253,6 +302,8 @@ pub(crate) struct CrackPasses {
     /// `None` if only neighbouring pixels are searched.
     pub columns: Option<CachedRenderPipelineId>,
     pub draw: CachedRenderPipelineId,
+    /// Draws the strokes beyond loose ends.
+    pub strokes: Option<CachedRenderPipelineId>,
 }
 
 /// Specializes the pipelines for requests.
@@ -272,8 +323,8 @@ impl LinePipelines<'_> {
     /// Whether the device has what `walk.wgsl`, `tiles.wgsl` and `cells.wgsl` bind.
     fn has_compute(&self, request: &LineRequest) -> bool {
         let limits = self.device.limits();
-        // Those of `settle.wgsl`, or of `cells.wgsl` with the styles of objects.
-        const BUFFERS: u32 = 5;
+        // Those of `ends.wgsl`.
+        const BUFFERS: u32 = 6;
         limits.max_compute_workgroup_size_x > 0
             && limits.max_storage_textures_per_shader_stage > 0
             && limits.max_storage_buffers_per_shader_stage >= BUFFERS
@@ -286,14 +337,8 @@ impl LinePipelines<'_> {
         let key = LineKey::new(request, !has_compute);
         let computes = &mut self.computes;
         let mut render = |pass| {
-            let part = match pass {
-                LinePass::Find => key.for_find(),
-                LinePass::Columns => key.for_columns(),
-                LinePass::Faithful => key.for_faithful(),
-                LinePass::Draw => key.for_draw(),
-            };
             let renders = &mut self.renders;
-            renders.specialize(cache, &self.shaders, (pass, part))
+            renders.specialize(cache, &self.shaders, (pass, pass.part(key)))
         };
         let resolve = (request.samples > 1).then(|| {
             let key = ResolveKey::new(&key);
@@ -303,19 +348,13 @@ impl LinePipelines<'_> {
         let cracks = key.has_cracks().then(|| CrackPasses {
             find: if has_compute {
                 let mut compute = |pass| computes.specialize(cache, &self.shaders, pass);
-                FindPass::Cells(CellPasses {
-                    find: compute(SearchPass::Cells(key.for_find())),
-                    link: (request.steps > 0)
-                        .then(|| [false, true].map(|last| compute(SearchPass::Link { last }))),
-                    settle: key
-                        .settles()
-                        .then(|| compute(SearchPass::Settle(key.for_settle()))),
-                })
+                FindPass::Cells(CellPasses::new(&key, request.steps > 0, &mut compute))
             } else {
                 FindPass::Pixels(render(LinePass::Find))
             },
             columns: (key.search == Search::Columns).then(|| render(LinePass::Columns)),
             draw: render(LinePass::Draw),
+            strokes: key.overshoots.then(|| render(LinePass::Strokes)),
         });
         let searches = has_compute && (key.has_cracks() || key.jumps);
         let search = searches.then(|| {

@@ -5,7 +5,7 @@
 // ids, a walk down 32 rows loads 6 texels a pixel, and one down 8 rows 8.5, instead of 21.
 
 #import bevy_comics::depth::view::texel_depth
-#import bevy_comics::lines::edge::{fold, is_ridge, step_excess}
+#import bevy_comics::lines::edge::{fold, is_outdone, is_ridge, is_rim_ridge, step_excess}
 #ifdef NORMALS
 #import bevy_comics::depth::normal::texel_normal
 #endif
@@ -50,13 +50,16 @@ struct Above {
 
 // The borders between four pixels (here) and their neighbours (there). Without EXCESS
 // excesses are 0, without NORMALS folds are, without OBJECT_IDS objects and
-// marks are (see texel_object).
+// marks are (see texel_object). BOUNDS: for walk.wgsl, which does not ask what only excludes
+// cracks; `outdone`, `ridge` and `rim` are not set.
 struct Borders {
     here: vec4<f32>,
     there: vec4<f32>,
     excess: vec4<f32>,
+    outdone: vec4<bool>,
     folds: vec4<f32>,
     ridge: vec4<bool>,
+    rim: vec4<bool>,
     object_here: vec4<u32>,
     object_there: vec4<u32>,
     marks_here: vec4<u32>,
@@ -96,6 +99,10 @@ fn step_depths(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<funct
     (*found).south.excess = step_excess(
         (*above).depths[4], (*above).depths[3], (*above).depths[2], (*above).depths[1], (*above).depths[0], depth,
     );
+#ifndef BOUNDS
+    (*found).east.outdone = is_outdone((*found).before, depth, (*found).east.there, vec4(depth.zw, e, f));
+    (*found).south.outdone = is_outdone((*above).depths[3], (*above).depths[2], (*above).depths[1], (*above).depths[0]);
+#endif
 #endif
     (*above).depths[4] = (*above).depths[3];
     (*above).depths[3] = (*above).depths[2];
@@ -111,19 +118,22 @@ fn normal_at(c: Columns, x: i32, y: i32) -> vec4<f32> {
 
 // Reads the normals of a row.
 fn step_normals(above: ptr<function, Above>, c: Columns, y: i32, found: ptr<function, Found>) {
-    let n_w = normal_at(c, c.west.y, y);
     let n_a = normal_at(c, c.own.x, y);
     let n_b = normal_at(c, c.own.y, y);
     let n_c = normal_at(c, c.own.z, y);
     let n_d = normal_at(c, c.own.w, y);
     let n_e = normal_at(c, c.east.x, y);
-    let n_f = normal_at(c, c.east.y, y);
-    let before = vec4(fold(n_w, n_a), fold(n_a, n_b), fold(n_b, n_c), fold(n_c, n_d));
-    let folds = vec4(before.yzw, fold(n_d, n_e));
+    let folds = vec4(fold(n_a, n_b), fold(n_b, n_c), fold(n_c, n_d), fold(n_d, n_e));
     (*found).east.folds = folds;
-    (*found).east.ridge = is_ridge(before, folds, vec4(folds.yzw, fold(n_e, n_f)));
     (*found).south.folds = (*above).folds[1];
+#ifndef BOUNDS
+    let before = vec4(fold(normal_at(c, c.west.y, y), n_a), folds.xyz);
+    let beyond = vec4(folds.yzw, fold(n_e, normal_at(c, c.east.y, y)));
+    (*found).east.ridge = is_ridge(before, folds, beyond);
+    (*found).east.rim = is_rim_ridge(before, folds, beyond);
     (*found).south.ridge = is_ridge((*above).folds[2], (*above).folds[1], (*above).folds[0]);
+    (*found).south.rim = is_rim_ridge((*above).folds[2], (*above).folds[1], (*above).folds[0]);
+#endif
     (*above).folds[2] = (*above).folds[1];
     (*above).folds[1] = (*above).folds[0];
     (*above).folds[0] = vec4(

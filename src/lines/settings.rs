@@ -34,6 +34,12 @@ pub struct LineSettings {
     pub continuity_level: f32,
     /// Pieces of line of fewer borders of pixels than this are left out.
     pub specks: u32,
+    /// Gaps of at most this many borders of pixels are closed; at most 3.
+    pub bridge: u32,
+    /// For how many frames lines stay where their edges have become weak; at most 8.
+    pub persistence: u32,
+    /// By how much loose ends of lines are extended, in logical pixels.
+    pub overshoot: f32,
     /// What a line loses where an edge is weak.
     pub response: LineResponse,
     /// Whether lines run straight through the steps of pixels.
@@ -52,7 +58,8 @@ pub struct LineSettings {
     pub fog: LineFog,
 }
 
-/// Most borders of pixels that a line continues along weak edges.
+/// Most borders of pixels that a line continues along weak edges, and most pixels that it
+/// overshoots by.
 const LONGEST: i32 = 64;
 
 impl LineSettings {
@@ -67,6 +74,9 @@ impl LineSettings {
         continuity: 8.0,
         continuity_level: 0.5,
         specks: 3,
+        bridge: 0,
+        persistence: 0,
+        overshoot: 0.0,
         response: LineResponse::Width,
         smooth: true,
         weight: LineWeight::EVEN,
@@ -109,15 +119,44 @@ impl LineSettings {
         self.silhouettes.is_none() && self.creases.is_none() && self.objects.is_none()
     }
 
-    /// Whether cracks are linked to lines, or left out if they are not part of one.
+    /// Whether cracks are linked to lines, added, or left out if they are not part of one.
     pub(crate) fn links(&self) -> bool {
-        self.continuity > 0.0 || self.specks > 1
+        self.continuity > 0.0 || self.specks > 1 || self.bridge > 0
+    }
+
+    /// Whether lines stay where their edges have become weak. Without continuity there are
+    /// no weak edges.
+    pub(crate) fn persists(&self) -> bool {
+        self.persistence > 0 && self.continuity > 0.0
+    }
+
+    /// Whether loose ends of lines are extended.
+    pub(crate) fn overshoots(&self) -> bool {
+        self.overshoot > 0.0 && self.smooth
+    }
+
+    /// By how much loose ends are extended, in pixels of the grid, of which there are `scale`
+    /// per logical pixel.
+    pub(crate) fn extension(&self, scale: f32) -> f32 {
+        if self.overshoots() {
+            (self.overshoot * scale).min(LONGEST as f32)
+        } else {
+            0.0
+        }
     }
 
     /// Borders of pixels that a line continues along weak edges. `scale`: pixels of the
     /// grid per logical pixel.
     pub(crate) fn steps(&self, scale: f32) -> i32 {
         ((self.continuity * scale).ceil() as i32).min(LONGEST)
+    }
+
+    /// Borders of pixels that a piece of line must have. `scale`: see [`steps`](Self::steps).
+    pub(crate) fn specks(&self, scale: f32) -> i32 {
+        match self.specks {
+            0 | 1 => 1,
+            specks => ((specks as f32 * scale).ceil() as i32).clamp(1, LONGEST),
+        }
     }
 
     /// Whether width or opacity decreases along the depth map, which is then read.
@@ -148,18 +187,23 @@ impl LineSettings {
     /// the widest line of any `OutlineStyle`, in logical pixels. `vertex_widths`: the
     /// vertices of some mesh say how wide its lines are.
     pub(crate) fn reach(&self, scale: f32, widest_object: f32, vertex_widths: bool) -> i32 {
+        let widest = self.widest(widest_object, vertex_widths);
+        if widest == 0.0 {
+            return 0;
+        }
+        super::reach(0.5 * widest * scale)
+    }
+
+    /// Width in logical pixels of the widest line that there can be; the parameters are those
+    /// of [`reach`](Self::reach).
+    pub(crate) fn widest(&self, widest_object: f32, vertex_widths: bool) -> f32 {
         let own = if self.has_wide_lines() {
             self.width
         } else {
             0.0
         };
-        let widest = own.max(widest_object);
-        if widest == 0.0 {
-            return 0;
-        }
         // Without compute shaders, all weights are 1.
-        let largest = self.weight.largest(vertex_widths).max(1.0);
-        super::reach(0.5 * widest * largest * scale)
+        own.max(widest_object) * self.weight.largest(vertex_widths).max(1.0)
     }
 
     /// The jump in depth from which one surface hides another, instead of meeting it:

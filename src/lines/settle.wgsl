@@ -16,6 +16,9 @@
 #ifdef FOLDS
 #import bevy_comics::lines::fold::{Fold, fold_bend}
 #endif
+#ifdef BRIDGED
+#import bevy_comics::lines::gaps::source_of
+#endif
 #ifdef WEIGHT
 #import bevy_comics::depth::map::is_background
 #import bevy_comics::depth::view::depth_frame
@@ -47,10 +50,10 @@
 @group(0) @binding(22) var<storage, read_write> bend_words: array<u32>;
 #endif
 
-// Rows of a window above a cell, and its columns: those of a cell, and two on both sides.
+#ifdef BUDGET
+// Rows of a window above a cell.
 const ROWS_ABOVE: i32 = 12;
-const SIDE: i32 = 2;
-const WIDTH: i32 = 8;
+#endif
 
 #ifdef SMOOTH
 // How the line along a crack leaves it: by its run. A run of one or two cracks says little:
@@ -211,7 +214,11 @@ fn density_around(g: Grid, cell: vec2<i32>) -> f32 {
 fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let g = line_pass.grid;
     let w = line_pass.weight;
-    let here = g.rect.xy + crack.xy;
+    var source = crack;
+#ifdef BRIDGED
+    source = source_of(g, crack);
+#endif
+    let here = g.rect.xy + source.xy;
     let there = here + select(vec2(1, 0), vec2(0, 1), crack.z == 1);
     let owner = select(there, here, (packed & 8u) != 0u);
     var factor = 1.0;
@@ -219,7 +226,7 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     factor *= kind_weight(w, packed, is_outer(owner, here + there - owner));
 #endif
 #ifdef SURFACE_WEIGHT
-    factor *= surface_weight(here, there, crack, (packed & SILHOUETTE) != 0u);
+    factor *= surface_weight(here, there, source, (packed & SILHOUETTE) != 0u);
 #endif
 #ifdef PERSPECTIVE_WEIGHT
     factor *= perspective_weight(w, depth_frame(), texel_depth(owner, 0));
@@ -229,10 +236,12 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     factor *= nib_weight(w, normalize(along + unpack_bend(bend).y * along.yx));
 #endif
 #ifdef TAPER_WEIGHT
-    let most = i32(ceil(w.taper));
+    // A line that overshoots tapers to the end of its stroke.
+    let most = i32(ceil(max(w.taper, g.overshoot)));
     let back = cracks_to_end(g, crack, first_corner(crack), most);
     let on = cracks_to_end(g, crack, last_corner(crack), most);
-    factor *= taper_weight(w, min(back, on));
+    let stroke = min(g.overshoot, f32(back + on + 1));
+    factor *= taper_weight(w, f32(min(back, on)) + stroke);
 #endif
 #ifdef BUDGET
     let width = 2.0 * unpack_width(packed >> 20u) * factor;
@@ -248,28 +257,41 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
 }
 #endif
 
-// Of six sets of cracks: which cracks are in one of them or more, and in two or more.
-fn one_or_two(a: u32, b: u32, c: u32, d: u32, e: u32, f: u32) -> vec2<u32> {
-    let ab = a ^ b;
-    let cd = c ^ d;
-    let ef = e ^ f;
-    let any_two = (a & b) | (c & d) | (e & f) | (ab & cd) | (ab & ef) | (cd & ef);
-    return vec2(a | b | c | d | e | f, any_two);
+// Whether a crack is in a piece of line of fewer cracks than Grid::specks. Pieces that meet
+// others, or that go on outside of the grid, are none.
+fn is_speck(g: Grid, crack: vec3<i32>) -> bool {
+    let most = g.specks - 1;
+    let back = cracks_to_end(g, crack, first_corner(crack), most);
+    return back < most && back + cracks_to_end(g, crack, last_corner(crack), most - back) < most;
 }
 
-// Leaves out the cracks of a column of a cell that are not kept, and bends the lines of
-// the others. Bits are rows.
-fn settle_column(g: Grid, first: vec2<i32>, keep: vec2<u32>) {
+// Leaves out the cracks of a column of a cell that are not part of a line, and bends the
+// lines of the others. Bits are rows.
+fn settle_column(g: Grid, first: vec2<i32>) {
     let band = first.y >> 5u;
     let from_top = u32(first.y & 31);
-    let east = (load_column(g, FOUND_EAST, first.x, band) >> from_top) & 0xffu;
-    let south = (load_column(g, FOUND_SOUTH, first.x, band) >> from_top) & 0xffu;
+    var east = (load_column(g, FOUND_EAST, first.x, band) >> from_top) & 0xffu;
+    var south = (load_column(g, FOUND_SOUTH, first.x, band) >> from_top) & 0xffu;
+    let linked_east = load_column(g, LINKED_EAST, first.x, band) >> from_top;
+    let linked_south = load_column(g, LINKED_SOUTH, first.x, band) >> from_top;
+#ifdef BRIDGED
+    east |= linked_east & 0xffu;
+    south |= linked_south & 0xffu;
+#endif
     var rows = east | south;
     while rows != 0u {
         let row = firstTrailingBit(rows);
         rows &= rows - 1u;
         let p = first + vec2(0, i32(row));
-        let kept = vec2((keep.x >> row) & 1u, (keep.y >> row) & 1u);
+        var kept = vec2((linked_east >> row) & 1u, (linked_south >> row) & 1u);
+        if g.specks > 1 {
+            if kept.x != 0u && is_speck(g, vec3(p, 0)) {
+                kept.x = 0u;
+            }
+            if kept.y != 0u && is_speck(g, vec3(p, 1)) {
+                kept.y = 0u;
+            }
+        }
         let lost = vec2((east >> row) & 1u, (south >> row) & 1u) > kept;
         let at = p.y * g.rect.z + p.x;
         var bends = 0x80808080u;
@@ -321,43 +343,10 @@ fn settle(
 #ifdef BUDGET
     density = density_around(g, cell);
 #endif
-    // The cracks of lines, and which of them touch two other cracks or more.
-    var east: array<u32, WIDTH>;
-    var south: array<u32, WIDTH>;
-    for (var i = 0; i < WIDTH; i++) {
-        east[i] = column_window(g, LINKED_EAST, cell.x - SIDE + i, cell.y - ROWS_ABOVE);
-        south[i] = column_window(g, LINKED_SOUTH, cell.x - SIDE + i, cell.y - ROWS_ABOVE);
-    }
-    var east_touch: array<vec2<u32>, WIDTH>;
-    var south_touch: array<vec2<u32>, WIDTH>;
-    for (var i = 1; i < WIDTH - 1; i++) {
-        let e = east[i];
-        let s = south[i];
-        let beside = south[i + 1];
-        let before = east[i - 1];
-        east_touch[i] = one_or_two(e << 1u, e >> 1u, s, s << 1u, beside, beside << 1u) & vec2(e);
-        south_touch[i] = one_or_two(south[i - 1], beside, e, e >> 1u, before, before >> 1u) & vec2(s);
-    }
     for (var column = 0; column < COLUMNS; column++) {
         if cell.x + column >= g.rect.z {
             break;
         }
-        let i = column + SIDE;
-        var keep = vec2(east[i], south[i]);
-        if g.specks > 1 {
-            keep = vec2(east_touch[i].x, south_touch[i].x);
-        }
-        if g.specks > 2 {
-            let e = east_touch[i].y;
-            let s = south_touch[i].y;
-            let ends = s | south_touch[i + 1].y;
-            let sides = e | east_touch[i - 1].y;
-            keep &= vec2(
-                e | (e << 1u) | (e >> 1u) | ends | (ends << 1u),
-                s | south_touch[i - 1].y | south_touch[i + 1].y | sides | (sides >> 1u),
-            );
-        }
-        let first = cell + vec2(column, 0);
-        settle_column(g, first, (keep >> vec2(u32(ROWS_ABOVE))) & vec2(0xffu));
+        settle_column(g, cell + vec2(column, 0));
     }
 }

@@ -134,12 +134,15 @@ impl CrackBuffers {
         }
     }
 
-    /// The buffers after this number of passes that link.
-    pub fn shown(&self, rect: UVec4, links: usize) -> ViewCracks {
+    /// The buffers after this number of copies of the planes.
+    pub fn shown(&self, rect: UVec4, copies: usize) -> ViewCracks {
         ViewCracks {
             rect,
             words: self.words.clone(),
-            planes: self.planes.as_ref().map(|planes| planes[links % 2].clone()),
+            planes: self
+                .planes
+                .as_ref()
+                .map(|planes| planes[copies % 2].clone()),
             bends: self.bends.clone(),
         }
     }
@@ -173,9 +176,30 @@ impl CrackBuffers {
         })
     }
 
+    /// The bindings of `bridge.wgsl`, which reads the planes `from` a buffer.
+    pub fn bridge_entries(&self, from: usize) -> Vec<BindGroupEntry<'_>> {
+        let mut entries = self.link_entries(from);
+        entries.push(entry(18, &self.words));
+        entries
+    }
+
+    /// The planes, of which `from` is the number of copies so far.
+    pub fn planes_entry(&self, from: usize) -> Option<BindGroupEntry<'_>> {
+        self.planes
+            .as_ref()
+            .map(|planes| entry(20, &planes[from % 2]))
+    }
+
+    /// The planes for a pass that reads and adds to them.
+    pub fn written_planes(&self, copies: usize) -> Option<BindGroupEntry<'_>> {
+        self.planes
+            .as_ref()
+            .map(|planes| entry(21, &planes[copies % 2]))
+    }
+
     /// The bindings of `settle.wgsl`, which reads the planes `from` a buffer.
     pub fn settle_entries(&self, from: usize) -> Vec<BindGroupEntry<'_>> {
-        let planes = self.planes.as_ref().map(|planes| entry(20, &planes[from]));
+        let planes = self.planes_entry(from);
         let bends = self.bends.as_ref().map(|bends| entry(22, bends));
         [entry(18, &self.words)]
             .into_iter()

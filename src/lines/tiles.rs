@@ -3,12 +3,13 @@
 
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
+    core_pipeline::FullscreenShader,
     math::{UVec2, Vec4Swizzles},
     mesh::VertexBufferLayout,
     render::{
         render_resource::{
-            BindGroupEntry, Buffer, BufferDescriptor, BufferUsages, VertexFormat, VertexState,
-            VertexStepMode,
+            BindGroupEntry, Buffer, BufferDescriptor, BufferUsages, PrimitiveState,
+            PrimitiveTopology, VertexFormat, VertexState, VertexStepMode,
         },
         renderer::{RenderDevice, RenderQueue},
     },
@@ -152,7 +153,7 @@ pub(crate) fn tile_shader(assets: &AssetServer) -> Handle<Shader> {
 
 /// The vertices of the passes that draw tiles, as strips of triangles. `shader`:
 /// `tile.wgsl`.
-pub(crate) fn tile_vertices(shader: Handle<Shader>) -> VertexState {
+fn tile_vertices(shader: Handle<Shader>) -> VertexState {
     let rectangle = [VertexFormat::Float32x4];
     VertexState {
         shader,
@@ -163,4 +164,27 @@ pub(crate) fn tile_vertices(shader: Handle<Shader>) -> VertexState {
             rectangle,
         )],
     }
+}
+
+/// The vertices of a pass that draws tiles, or all pixels, and how they are connected. `tile`:
+/// `tile.wgsl`.
+pub(crate) fn vertices(
+    tiled: bool,
+    fullscreen: &FullscreenShader,
+    tile: &Handle<Shader>,
+) -> (VertexState, PrimitiveState) {
+    let (vertex, topology) = if tiled {
+        (
+            tile_vertices(tile.clone()),
+            PrimitiveTopology::TriangleStrip,
+        )
+    } else {
+        let vertex = fullscreen.to_vertex_state();
+        (vertex, PrimitiveTopology::TriangleList)
+    };
+    let primitive = PrimitiveState {
+        topology,
+        ..Default::default()
+    };
+    (vertex, primitive)
 }

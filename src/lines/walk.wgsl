@@ -40,7 +40,7 @@ fn may_be_cracks(s: Lines, at: Borders) -> bool {
     found = may_be_silhouette(s, at.excess, max(at.here, at.there));
 #endif
 #ifdef CREASES
-    found |= at.ridge & may_be_crease(s, at.folds);
+    found |= may_be_crease(s, at.folds);
 #endif
 #ifdef OBJECT_EDGES
     found |= at.object_here != at.object_there;
@@ -61,6 +61,17 @@ fn list_cell(cell: vec2<u32>) {
         atomicMax(&cell_counts[1], group / GROUPS + 1u);
     }
     cells[index] = cell.x | (cell.y << 16u);
+}
+#endif
+
+#ifdef BRIDGED
+// These rows of a block, and those in which bridge.wgsl may add cracks.
+fn with_gaps(rows: u32) -> u32 {
+    var all = rows;
+    for (var i = 1; i <= line_pass.grid.bridge; i++) {
+        all |= (all << 1u) | (all >> 1u);
+    }
+    return all;
 }
 #endif
 
@@ -114,6 +125,9 @@ fn walk(@builtin(global_invocation_id) id: vec3<u32>) {
             list_cell(vec2(id.x, u32(top / CELL_ROWS + cell)));
         }
     }
+#endif
+#ifdef BRIDGED
+    rows = with_gaps(rows);
 #endif
 #ifdef JUMPS
     rows |= jump_rows;

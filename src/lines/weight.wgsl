@@ -65,8 +65,8 @@ fn nib_weight(w: Weight, along: vec2<f32>) -> f32 {
 }
 
 // `cracks`: those between the crack and the loose end of its line.
-fn taper_weight(w: Weight, cracks: i32) -> f32 {
-    return smoothstep(0.0, max(w.taper, 1e-3), f32(cracks) + 0.5);
+fn taper_weight(w: Weight, cracks: f32) -> f32 {
+    return smoothstep(0.0, max(w.taper, 1e-3), cracks + 0.5);
 }
 
 // A packed crack whose width is multiplied by a factor, and its opacity by another. A line

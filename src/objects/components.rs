@@ -42,8 +42,8 @@ impl NoOutlines {
 
 /// Takes this object out of the colour effects: its colours stay as they were rendered.
 ///
-/// The effects of the stages [`Tone` and `Color`](crate::EffectStage) leave it alone: tone
-/// bands, desaturation, colorization, and those of a game. Lines and the effects of the whole
+/// The effects of the stages [`Tone`, `Color` and `Print`](crate::EffectStage) leave it alone:
+/// tone bands, desaturation, colorization, screens, and those of a game. Lines and the effects of the whole
 /// page still apply; [`NoOutlines`] removes its lines. At its rim, multisampled pixels mix
 /// both colours. For what has to keep its colour: a cursor, a team's flag, a light.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]

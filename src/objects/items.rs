@@ -29,8 +29,8 @@ use bevy::{
         mesh::RenderMesh,
         render_asset::RenderAssets,
         render_phase::{
-            DrawFunctions, PhaseItemExtraIndex, RenderCommand, RenderCommandResult,
-            SetItemPipeline, TrackedRenderPass,
+            DrawFunctionId, DrawFunctions, RenderCommand, RenderCommandResult, SetItemPipeline,
+            TrackedRenderPass,
         },
         render_resource::{
             BindGroup, BindGroupLayoutDescriptor, BindGroupLayoutEntries, ColorTargetState,
@@ -246,6 +246,19 @@ pub(super) type DrawIdWithMaterial = (
     DrawMesh,
 );
 
+/// The draw command of an object; `uses_material`: one that binds the material.
+pub(super) fn draw_function(
+    functions: &DrawFunctions<ObjectIdItem>,
+    uses_material: bool,
+) -> DrawFunctionId {
+    let functions = functions.read();
+    if uses_material {
+        functions.id::<DrawIdWithMaterial>()
+    } else {
+        functions.id::<DrawId>()
+    }
+}
+
 pub(super) fn reads_material(properties: &MaterialProperties) -> bool {
     properties.get_shader(PrepassVertexShader).is_some()
         || properties.get_shader(PrepassFragmentShader).is_some()
@@ -345,19 +358,8 @@ impl IdItems<'_> {
         let pipeline = pipeline
             .inspect_err(|error| error_once!("no object id for {:?}: {error}", object.1))
             .ok()?;
-        let functions = self.draw_functions.read();
-        Some(ObjectIdItem {
-            entity: object,
-            pipeline,
-            draw_function: if uses_material {
-                functions.id::<DrawIdWithMaterial>()
-            } else {
-                functions.id::<DrawId>()
-            },
-            batch_range: 0..1,
-            extra_index: PhaseItemExtraIndex::None,
-            indexed: mesh.indexed(),
-            layer,
-        })
+        let draw_function = draw_function(&self.draw_functions, uses_material);
+        let drawn = (mesh.indexed(), layer);
+        Some(ObjectIdItem::new(object, pipeline, draw_function, drawn))
     }
 }

@@ -25,6 +25,10 @@ use super::{
 };
 use crate::settings::{bounded, displayable, linear_rgb};
 
+/// Bits of `ObjectStyleUniform::kinds`.
+const SILHOUETTES: u32 = 1;
+const OBJECT_EDGES: u32 = 4;
+
 /// Outlines this object in the picture, also where others hide it: for what the player has
 /// selected or points at.
 ///
@@ -91,55 +95,73 @@ impl Default for XRayOutline {
     }
 }
 
+/// Colour, width and opacity of a line in their documented ranges.
+fn bounded_line(
+    (color, width, opacity): (Color, f32, f32),
+    (default_color, default_width, default_opacity): (Color, f32, f32),
+) -> (Color, f32, f32) {
+    (
+        displayable(color, default_color),
+        bounded(width, default_width, 0.5, 16.0),
+        bounded(opacity, default_opacity, 0.0, 1.0),
+    )
+}
+
+/// A line with this colour, width and opacity. `kinds`: those that are drawn.
+fn line_style((color, width, opacity): (Color, f32, f32), kinds: u32) -> ObjectStyleUniform {
+    ObjectStyleUniform {
+        color: linear_rgb(color),
+        has_color: 1.0,
+        half_width: 0.5 * width,
+        kinds,
+        opacity,
+    }
+}
+
 impl SelectionOutline {
+    fn line(self) -> (Color, f32, f32) {
+        (self.color, self.width, self.opacity)
+    }
+
     /// The settings that are used: numbers and colour in their documented ranges.
     #[must_use]
     pub fn sanitized(self) -> Self {
-        let default = Self::default();
+        let (color, width, opacity) = bounded_line(self.line(), Self::default().line());
         Self {
-            color: displayable(self.color, default.color),
-            width: bounded(self.width, default.width, 0.5, 16.0),
-            opacity: bounded(self.opacity, default.opacity, 0.0, 1.0),
+            color,
+            width,
+            opacity,
             ..self
         }
     }
 
     /// Only the border against other objects.
     fn uniform(self) -> ObjectStyleUniform {
-        let style = self.sanitized();
-        ObjectStyleUniform {
-            color: linear_rgb(style.color),
-            has_color: 1.0,
-            half_width: 0.5 * style.width,
-            kinds: 4,
-            opacity: style.opacity,
-        }
+        line_style(self.sanitized().line(), OBJECT_EDGES)
     }
 }
 
 impl XRayOutline {
+    fn line(self) -> (Color, f32, f32) {
+        (self.color, self.width, self.opacity)
+    }
+
     /// The settings that are used: numbers and colour in their documented ranges.
     #[must_use]
     pub fn sanitized(self) -> Self {
-        let default = Self::default();
+        let (color, width, opacity) = bounded_line(self.line(), Self::default().line());
         Self {
-            color: displayable(self.color, default.color),
-            width: bounded(self.width, default.width, 0.5, 16.0),
-            opacity: bounded(self.opacity, default.opacity, 0.0, 1.0),
+            color,
+            width,
+            opacity,
             ..self
         }
     }
 
     /// Silhouettes and the border against other objects.
     fn uniform(self) -> ObjectStyleUniform {
-        let style = self.sanitized();
-        ObjectStyleUniform {
-            color: linear_rgb(style.color),
-            has_color: 1.0,
-            half_width: 0.5 * style.width,
-            kinds: 5 | HIDDEN_ONLY,
-            opacity: style.opacity,
-        }
+        let kinds = SILHOUETTES | OBJECT_EDGES | HIDDEN_ONLY;
+        line_style(self.sanitized().line(), kinds)
     }
 }
 

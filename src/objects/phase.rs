@@ -39,6 +39,24 @@ pub(crate) enum Layer {
 }
 
 impl ObjectIdItem {
+    /// An item that is not in a batch yet.
+    pub fn new(
+        entity: (Entity, MainEntity),
+        pipeline: CachedRenderPipelineId,
+        draw_function: DrawFunctionId,
+        (indexed, layer): (bool, Layer),
+    ) -> Self {
+        Self {
+            entity,
+            pipeline,
+            draw_function,
+            batch_range: 0..1,
+            extra_index: PhaseItemExtraIndex::None,
+            indexed,
+            layer,
+        }
+    }
+
     /// The items of a layer in a sorted phase.
     pub fn of(phase: &SortedRenderPhase<Self>, layer: Layer) -> Range<usize> {
         let before = |layers: fn(Layer, Layer) -> bool| {

@@ -110,6 +110,12 @@ presets! {
     CLEAR_BANDS: "clear-bands";
     /// Brown-grey bands, outlines and dark corners.
     SILENT_FILM: "silent-film";
+    /// A manga's page: black line art, shadows in a few screentones, solid blacks.
+    MANGA_PAGE: "manga-page";
+    /// A newspaper's comic: four inks on grey paper, out of register.
+    NEWSPRINT: "newsprint";
+    /// Pop art: large dots of bright ink, thick black lines.
+    POP_POSTER: "pop-poster";
     /// Even lines on clean colours that pale a little with distance.
     LIGNE_CLAIRE: "ligne-claire";
     /// Black and white, with shadows as solid ink.

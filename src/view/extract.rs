@@ -7,14 +7,16 @@ use bevy::{
         query::With,
         system::{Commands, EntityCommands, Local, Query, Res},
     },
+    math::Vec3,
     render::{Extract, sync_world::RenderEntity},
     time::{Real, Time},
+    transform::components::GlobalTransform,
 };
 
 use super::{CameraPlan, fog::Fogs, light::Lights};
 use crate::{
     depth::{frame::DepthProjection, smoothing::CameraCuts},
-    effect::{Plan, ViewPlan},
+    effect::{EffectTarget, Plan, ViewPlan},
     objects::{DepthWanted, DepthWrites, IdsWanted, ObjectStyles},
 };
 
@@ -28,24 +30,25 @@ pub(super) fn extract_views(
                 &Camera,
                 &CameraPlan,
                 Option<&Projection>,
-                Option<&CameraCuts>,
+                (Option<&CameraCuts>, Option<&EffectTarget>),
             ),
             With<Camera3d>,
         >,
     >,
     (time, real_time): (Extract<Option<Res<Time>>>, Extract<Option<Res<Time<Real>>>>),
-    (objects, writes, lights, fogs): (
+    (objects, writes, lights, fogs, places): (
         Extract<Res<ObjectStyles>>,
         Extract<Res<DepthWrites>>,
         Extract<Lights>,
         Extract<Fogs>,
+        Extract<Query<&GlobalTransform>>,
     ),
     stale: Query<Entity, With<ViewPlan>>,
     mut seen: Local<EntityHashSet>,
 ) {
     seen.clear();
     let to_light = lights.to_light();
-    for (entity, render_entity, camera, asked, projection, cuts) in &cameras {
+    for (entity, render_entity, camera, asked, projection, (cuts, target)) in &cameras {
         if !camera.is_active {
             continue;
         }
@@ -63,6 +66,7 @@ pub(super) fn extract_views(
             widest_object: objects.max_width(),
             to_light,
             fog: fogs.of(entity),
+            target: target.and_then(|target| position_of(target, &places)),
             time: time.as_ref().map_or(0.0, |time| time.elapsed_secs_f64()),
             seconds: real_time.as_ref().map_or(0.0, |time| time.delta_secs()),
             cuts: cuts.map_or(0, |cuts| cuts.0),
@@ -75,6 +79,12 @@ pub(super) fn extract_views(
                 .remove::<(ViewPlan, IdsWanted, DepthWanted)>();
         }
     }
+}
+
+/// The world position that effects point at.
+fn position_of(target: &EffectTarget, places: &Query<&GlobalTransform>) -> Option<Vec3> {
+    let place = places.get(target.entity).ok()?;
+    Some(place.transform_point(target.offset))
 }
 
 /// Says what the pass of objects draws. During extraction, so that meshes are queued in the

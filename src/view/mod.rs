@@ -3,6 +3,9 @@
 
 mod extract;
 mod fog;
+#[cfg(any(feature = "objects", feature = "cartoon"))]
+mod held_pose;
+mod impact;
 mod light;
 mod prepasses;
 
@@ -28,6 +31,10 @@ use crate::{
     objects::{ObjectChanges, ObjectStyles},
     schedule::ComicsSystems,
 };
+#[cfg(any(feature = "objects", feature = "cartoon"))]
+pub use held_pose::HeldPose;
+pub use impact::{Impact, ReduceFlashing};
+use impact::{Impacts, run_impacts, start_impact};
 pub use light::KeyLight;
 use prepasses::{give_up_claims, request_prepasses};
 
@@ -44,14 +51,20 @@ pub(crate) struct ViewPlugin;
 
 impl Plugin for ViewPlugin {
     fn build(&self, app: &mut App) {
+        #[cfg(any(feature = "objects", feature = "cartoon"))]
+        app.register_type::<HeldPose>();
         app.register_type::<KeyLight>()
+            .register_type::<Impact>()
+            .register_type::<ReduceFlashing>()
+            .init_resource::<ReduceFlashing>()
+            .add_observer(start_impact)
             .add_observer(give_up_claims::<DepthPrepass>)
             .add_observer(give_up_claims::<NormalPrepass>)
             .add_systems(
                 // After the systems that change a camera's components.
                 Last,
                 (
-                    (plan_cameras, request_prepasses)
+                    (run_impacts, plan_cameras, request_prepasses)
                         .chain()
                         .in_set(ComicsSystems::Plan),
                     warn_unsupported,
@@ -65,6 +78,8 @@ impl ViewPlugin {
     pub(crate) fn build_render(app: &mut App) {
         if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
             render_app.add_systems(ExtractSchedule, extract::extract_views);
+            #[cfg(any(feature = "objects", feature = "cartoon"))]
+            held_pose::hold_while_extracting(render_app);
         }
     }
 }
@@ -79,7 +94,8 @@ fn plan_cameras(
     for camera in &cameras {
         let known = camera.get::<CameraPlan>();
         let mut entity = commands.entity(camera.id());
-        match (Plan::new(camera, &types, objects.changes()), known) {
+        let shown = camera.get::<Impacts>().map_or(&[][..], Impacts::effects);
+        match (Plan::new(camera, shown, &types, objects.changes()), known) {
             (Some(plan), Some(known)) if *known.plan == plan => {}
             (Some(plan), known) => {
                 entity.insert(CameraPlan {
@@ -103,7 +119,7 @@ fn warn_unsupported(
 ) {
     let types = registry.types();
     for camera in &flat {
-        if Plan::new(camera, &types, ObjectChanges::default()).is_some() {
+        if Plan::new(camera, &[], &types, ObjectChanges::default()).is_some() {
             warn_once!(
                 "{} is a Camera2d: its effects are not drawn, they need a Camera3d",
                 camera.id()

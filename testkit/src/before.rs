@@ -59,7 +59,9 @@ fn copy(
                 sample_count: 1,
                 dimension: wgpu::TextureDimension::D2,
                 format: picture.format(),
-                usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC,
+                usage: wgpu::TextureUsages::COPY_DST
+                    | wgpu::TextureUsages::COPY_SRC
+                    | wgpu::TextureUsages::TEXTURE_BINDING,
                 view_formats: &[],
             })
     });

@@ -141,6 +141,29 @@ pub fn pictures(render_world: &World, view: Entity) -> Option<(Option<FloatImage
     Some((before, float_image(render_world, target.main_texture())))
 }
 
+/// The picture of the view before the fused pass, as the pass loads it: some adapters decode
+/// display codes by a polynomial, up to 0.3 codes from the curve.
+pub fn loaded_picture(render_world: &World, view: Entity) -> Option<FloatImage> {
+    let texture = render_world.get_resource::<Pictures>()?.get(view)?;
+    let shader = "@group(0) @binding(0) var source: texture_2d<f32>;
+         @group(0) @binding(1) var<storage, read_write> result: array<vec4<f32>>;
+         @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {
+             let size = textureDimensions(source);
+             if id.x >= size.x { return; }
+             result[id.y * size.x + id.x] = textureLoad(source, vec2<i32>(id.xy), 0);
+         }";
+    let words = read_texels(render_world, &texture, shader, 4);
+    let pixels = words
+        .chunks_exact(4)
+        .map(|w| [0, 1, 2, 3].map(|i| f32::from_bits(w[i])))
+        .collect();
+    Some(FloatImage {
+        width: texture.width(),
+        height: texture.height(),
+        pixels,
+    })
+}
+
 /// The words of a buffer.
 fn words_of(render_world: &World, buffer: &wgpu::Buffer) -> Vec<u32> {
     let device = render_world.resource::<RenderDevice>().wgpu_device();
@@ -227,12 +250,6 @@ fn read_texels(
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     });
-    let staging = device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size,
-        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
-        mapped_at_creation: false,
-    });
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
         source: wgpu::ShaderSource::Wgsl(shader.into()),
@@ -297,12 +314,8 @@ fn read_texels(
         pass.set_bind_group(0, &bind_group, &[]);
         pass.dispatch_workgroups(texture.width().div_ceil(64), texture.height(), 1);
     }
-    encoder.copy_buffer_to_buffer(&storage, 0, &staging, 0, size);
     queue.submit([encoder.finish()]);
-    map_buffer(&device, &staging)
-        .chunks_exact(4)
-        .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-        .collect()
+    words_of(render_world, &storage)
 }
 
 /// All samples of the view's raw depth, bit by bit; `None` without a depth prepass.
@@ -370,6 +383,27 @@ pub fn normals_of(render_world: &World, view: Entity, sample: u32) -> Option<Flo
         width: texture.width(),
         height: texture.height(),
         pixels,
+    })
+}
+
+/// Motion vectors of a view of one sample per pixel, x and y, as fractions of the picture;
+/// `None` without a motion vector prepass.
+pub fn motion_vectors(render_world: &World, view: Entity) -> Option<FloatImage> {
+    let prepass = render_world.get::<ViewPrepassTextures>(view)?;
+    let texture: &wgpu::Texture = &prepass.motion_vectors.as_ref()?.texture.texture;
+    let shader = "@group(0) @binding(0) var source: texture_2d<f32>;
+         @group(0) @binding(1) var<storage, read_write> result: array<vec4<f32>>;
+         @compute @workgroup_size(64) fn read(@builtin(global_invocation_id) id: vec3<u32>) {
+             let size = textureDimensions(source);
+             if id.x >= size.x { return; }
+             result[id.y * size.x + id.x] = textureLoad(source, vec2<i32>(id.xy), 0);
+         }";
+    let words = read_texels(render_world, texture, shader, 4);
+    let pixels = words.as_chunks::<4>().0;
+    Some(FloatImage {
+        width: texture.width(),
+        height: texture.height(),
+        pixels: pixels.iter().map(|w| w.map(f32::from_bits)).collect(),
     })
 }
 

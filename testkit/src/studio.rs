@@ -7,8 +7,8 @@ use bevy::{
     prelude::*, render::view::Msaa, time::TimeUpdateStrategy,
 };
 use bevy_comics::{
-    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, IsoLines, MeshSections, Preset, ToneBands,
-    presets,
+    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, IsoLines, MeshSections, Outlines, Paper,
+    Preset, SpeedLineKind, SpeedLines, ToneBands, TwoTone, presets,
 };
 
 use super::{
@@ -84,12 +84,14 @@ impl Studio {
     }
 }
 
-/// Gives a camera a style. Tone bands switch off the engine's dither, which would
+/// Gives a camera a style. Tone bands and two tones switch off the engine's dither, which would
 /// speckle flat areas whose tone lies at a step between two bands.
 pub fn wear(camera: &mut EntityCommands, style: &ComicStyle) {
-    camera.insert(match style.get::<ToneBands>() {
-        Some(_) => DebandDither::Disabled,
-        None => DebandDither::Enabled,
+    let divides = style.get::<ToneBands>().is_some() || style.get::<TwoTone>().is_some();
+    camera.insert(if divides {
+        DebandDither::Disabled
+    } else {
+        DebandDither::Enabled
     });
     style.apply(camera);
 }
@@ -131,7 +133,10 @@ const LINE_PRESETS: [Preset; 12] = [
     presets::SILENT_FILM,
 ];
 
-/// The presets that have a golden picture in a scene: the mountains show those after the
+/// The presets that print.
+const PRINT_PRESETS: [Preset; 3] = [presets::MANGA_PAGE, presets::NEWSPRINT, presets::POP_POSTER];
+
+/// The presets that have a golden picture in a scene: all those that print. The mountains show those after the
 /// first paper, the theatre those after the second, the teapot all of them, and the
 /// village those after the first and `graphic-novel`.
 pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
@@ -144,23 +149,48 @@ pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
         BuiltIn::Village => shown.push(presets::GRAPHIC_NOVEL),
         BuiltIn::Mountains => {}
     }
+    // After the others: sketches change with the clock.
+    shown.extend(PRINT_PRESETS);
     shown.into_iter().map(Preset::name).collect()
 }
 
-/// The styles that have a golden picture in a scene, with their names: presets, and in the
-/// mountains the effects that no preset has.
+/// The styles that have a golden picture in a scene, with their names: presets, and one of
+/// effects that no preset has.
 pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
     let names = golden_presets(scene);
     let preset = |name| presets::find(name).expect("listed").style();
     let mut styles: Vec<_> = names.into_iter().map(|name| (name, preset(name))).collect();
-    if let BuiltIn::Mountains = scene {
-        let lines = IsoLines {
-            step: 100.0,
-            ..IsoLines::default()
-        };
-        styles.push(("iso-lines", ComicStyle::new().with(lines)));
-    }
+    styles.push(single_effect(scene));
     styles
+}
+
+/// A style of effects that no preset has, for one scene each.
+fn single_effect(scene: BuiltIn) -> (&'static str, ComicStyle) {
+    let lines = SpeedLines {
+        rate: 0.0,
+        width: 6.0,
+        ..SpeedLines::default()
+    };
+    let style = ComicStyle::new();
+    match scene {
+        BuiltIn::Mountains => {
+            let lines = IsoLines {
+                step: 100.0,
+                ..IsoLines::default()
+            };
+            ("iso-lines", style.with(lines))
+        }
+        BuiltIn::Teapot => {
+            let outlines = Outlines::default();
+            let style = style.with(outlines).with(TwoTone::default());
+            ("impact", style.with(lines))
+        }
+        BuiltIn::Theatre => {
+            let kind = SpeedLineKind::Parallel;
+            ("speed-lines", style.with(SpeedLines { kind, ..lines }))
+        }
+        BuiltIn::Village => ("paper", style.with(Paper::default())),
+    }
 }
 
 /// The roots of the scene's parts.

@@ -10,13 +10,12 @@
 //! A line is faint where ink of the default outlines begins: at a step of 1 % or a fold of
 //! 20 degrees. Outlines may or may not draw it.
 
+use std::collections::HashSet;
+
 use bevy::prelude::*;
 use bevy_comics::{ObjectEdges, Outlines};
 
-use crate::{
-    read_back::{self, CrackWords},
-    reference::planes::column_word,
-};
+use crate::read_back::{self, CrackWords};
 
 /// Finer pixels along each side of a pixel.
 pub const FINE: u32 = 4;
@@ -179,16 +178,14 @@ pub fn mask(plain: &image::RgbaImage, lined: &image::RgbaImage) -> Vec<bool> {
         .collect()
 }
 
-/// Ends of lines: cracks that are parts of lines, and that no other one touches at one of their
-/// corners. Not at the border of the picture.
+/// Ends of lines: corners of pixels at which a single crack that is part of a line ends. Not at
+/// the border of the picture, and not where another line runs at most a pixel away, under whose
+/// ink the end lies.
 pub fn line_ends(cracks: &CrackWords) -> usize {
     let [_, _, width, height] = cracks.rect.map(i64::from);
-    let is_line = |side: i64, x: i64, y: i64| {
+    let is_line = |side: usize, x: i64, y: i64| {
         let inside = (0..width).contains(&x) && (0..height).contains(&y);
-        inside && {
-            let word = column_word([width, height], side, x, y / 32) as usize;
-            (cracks.planes[word] >> (y % 32)) & 1 != 0
-        }
+        inside && { cracks.words[(y * width + x) as usize][side] & 7 != 0 }
     };
     // The cracks that end at the top left corner of a pixel: above, below, left, right.
     let at_corner = |x: i64, y: i64| {
@@ -200,10 +197,28 @@ pub fn line_ends(cracks: &CrackWords) -> usize {
         ]
         .into_iter()
         .filter(|(side, x, y)| is_line(*side, *x, *y))
-        .count()
+    };
+    let corners_of = |(side, x, y): (usize, i64, i64)| {
+        let first = if side == 0 { (x + 1, y) } else { (x, y + 1) };
+        [first, (x + 1, y + 1)]
+    };
+    let is_end = |x: i64, y: i64| at_corner(x, y).count() == 1;
+    let is_covered = |x: i64, y: i64| {
+        // The corners of the end's own line, up to three cracks away.
+        let mut own = HashSet::from([(x, y)]);
+        for _ in 0..3 {
+            let more = own.iter().flat_map(|(x, y)| at_corner(*x, *y));
+            let more: Vec<_> = more.flat_map(corners_of).collect();
+            own.extend(more);
+        }
+        let around = (-1..=1).flat_map(|j| (-1..=1).map(move |i| (x + i, y + j)));
+        let mut others = around.filter(|corner| !own.contains(corner));
+        others.any(|(x, y)| at_corner(x, y).next().is_some())
     };
     let corners = (1..height).flat_map(|y| (1..width).map(move |x| (x, y)));
-    corners.filter(|(x, y)| at_corner(*x, *y) == 1).count()
+    corners
+        .filter(|(x, y)| is_end(*x, *y) && !is_covered(*x, *y))
+        .count()
 }
 
 /// Whether the mask is set within `reach` pixels along both axes.
@@ -250,21 +265,20 @@ pub fn fragments(mask: &[bool], width: usize, most: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{CrackWords, Seen, Truth, column_word, line_ends};
+    use super::{CrackWords, Seen, Truth, line_ends};
 
     /// A line across the picture has no ends, a loose one two, and a branch one more.
     #[test]
     fn ends_of_lines_are_counted() {
-        let ends = |places: &[(i64, i64, i64)]| {
+        let ends = |places: &[(usize, i64, i64)]| {
             let mut cracks = CrackWords {
                 rect: [0, 0, 40, 36],
-                words: vec![],
-                planes: vec![0; 4 * 2 * 40 + 2 * 36],
+                words: vec![[0; 2]; 40 * 36],
+                planes: vec![],
                 bends: vec![],
             };
             for (side, x, y) in places {
-                let word = column_word([40, 36], *side, *x, y / 32) as usize;
-                cracks.planes[word] |= 1 << (y % 32);
+                cracks.words[(y * 40 + x) as usize][*side] = 1;
             }
             line_ends(&cracks)
         };
@@ -273,7 +287,12 @@ mod tests {
         let down: Vec<_> = (10..34).map(|y| (0, 7, y)).collect();
         assert_eq!(ends(&down), 2);
         let branch: Vec<_> = (21..30).map(|y| (0, 7, y)).collect();
-        assert_eq!(ends(&[across, branch].concat()), 1);
+        assert_eq!(ends(&[across.clone(), branch].concat()), 1);
+        // An end one pixel below the line is covered by it; two pixels below it is not.
+        let near: Vec<_> = (22..30).map(|y| (0, 7, y)).collect();
+        assert_eq!(ends(&[across.clone(), near].concat()), 1);
+        let apart: Vec<_> = (23..30).map(|y| (0, 7, y)).collect();
+        assert_eq!(ends(&[across, apart].concat()), 2);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Lines that are drawn again several times a second.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, LineBoil, Outlines};
+use bevy_comics::{ComicStyle, LineBoil, LineWeight, Outlines};
 
 use crate::{
     pictures::{assert_pass_is_its_twin, outlined},
@@ -96,6 +96,34 @@ fn lines_stray_by_their_amplitude() {
                 "{amplitude}, {y}: {ink}"
             );
         }
+    }
+}
+
+/// Wide lines stray less: by 8 square pixels over their width, counting their widest part.
+#[test]
+fn wide_lines_stray_less() {
+    let mut small = edge();
+    for (width, outer, most) in [
+        (2.0, 1.0, 3.0),
+        (4.0, 1.0, 2.0),
+        (4.0, 2.0, 1.0),
+        (12.0, 1.0, 0.67),
+    ] {
+        let outlines = Outlines {
+            width,
+            weight: LineWeight {
+                outer,
+                ..LineWeight::EVEN
+            },
+            ..boiling(3.0, 0.0)
+        };
+        small.style(&ComicStyle::new().with(outlines));
+        small.settle();
+        let strays = strays(&small.picture());
+        let found = (strays.iter()).fold(0.0f64, |most, stray| most.max(stray.abs()));
+        println!("{width} px, outer {outer}: strays by {found:.2}");
+        assert!(found <= most + 0.05, "{width}, {outer}: {found}");
+        assert!(found > 0.4 * most, "{width}, {outer}: {found}");
     }
 }
 

@@ -32,7 +32,7 @@ fn pixels() -> impl Iterator<Item = [i64; 2]> {
 }
 
 /// The cracks of two planes, to the east and to the south.
-fn in_planes(cracks: &CrackWords, planes: [i64; 2]) -> HashSet<Place> {
+pub fn in_planes(cracks: &CrackWords, planes: [i64; 2]) -> HashSet<Place> {
     let size = SIZE.to_array().map(i64::from);
     let is_set = |plane: i64, [x, y]: [i64; 2]| {
         let word = cracks.planes[column_word(size, plane, x, y / 32) as usize];

@@ -186,8 +186,9 @@ mod reference {
     use bevy_comics::{
         BlackFlats, Colorization, ColorizationMode, ComicStyle, ContourOperator, Contours, Creases,
         DepthMap, DepthMapping, Desaturation, EffectRegistry, EffectType, FieldRange, Form,
-        LineBoil, LineColor, LineFog, LineResponse, LineWeight, ObjectEdges, Outlines,
-        RangeSmoothing, ReductionMethod, Silhouettes, Sketch, ToneBands,
+        Halftone, HalftoneMode, LineBoil, LineColor, LineFog, LineResponse, LineWeight,
+        ObjectEdges, Outlines, PrintOffset, RangeSmoothing, ReductionMethod, ScreenAnchor,
+        ScreenSampling, ScreenShape, Silhouettes, Sketch, ToneBands,
     };
 
     const HEAD: &str = "\
@@ -363,6 +364,12 @@ This page is made from the types by a test, which fails where the two differ.
         section::<Desaturation>(&mut page);
         section::<Colorization>(&mut page);
         section::<ColorizationMode>(&mut page);
+        section::<PrintOffset>(&mut page);
+        section::<Halftone>(&mut page);
+        section::<HalftoneMode>(&mut page);
+        section::<ScreenShape>(&mut page);
+        section::<ScreenSampling>(&mut page);
+        section::<ScreenAnchor>(&mut page);
         section::<BlackFlats>(&mut page);
         section::<Contours>(&mut page);
         section::<ContourOperator>(&mut page);

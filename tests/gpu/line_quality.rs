@@ -238,3 +238,49 @@ fn lines_of_distant_models_follow_their_edges() {
         assert!(fragments <= MOST_FRAGMENTS, "{name}: {scores:?}");
     }
 }
+
+/// Distant wires, most of them thinner than a pixel, seen in pictures of the report's size: with
+/// their gaps closed, more of them have lines, these are in fewer pieces, and hardly more lines are
+/// wrong.
+#[test]
+fn closed_gaps_make_distant_wires_whole() {
+    let size = UVec2::new(240, 136);
+    let mut fine = Small::new(size * FINE, Msaa::Off);
+    let mut lined = Small::new(size, Msaa::Off);
+    fine.insert((DepthPrepass, NormalPrepass));
+    fine.style(&ComicStyle::new().with(ids_alone()));
+    for small in [&mut fine, &mut lined] {
+        show(small, Specimen::Wires);
+    }
+    let found = [0, 3].map(|bridge| {
+        let mut scores = Scores::default();
+        for frame in [15.0, 40.0, 60.0] {
+            for small in [&mut fine, &mut lined] {
+                turn(small, 16.0, frame / 90.0 * TAU);
+            }
+            fine.headless.step(4);
+            let truth = truth(&mut fine, size, FINE);
+            for width in [2.0, 1.0] {
+                lined.style(&ComicStyle::new().with(Outlines {
+                    bridge,
+                    ..scored(width)
+                }));
+                lined.settle();
+                if width > 1.0 {
+                    scores.add(&truth, &inked(&lined));
+                } else {
+                    scores.add_thin(&inked(&lined), size.x);
+                }
+            }
+        }
+        let (missed, wrong) = (scores.missed(), scores.wrong());
+        let fragments = scores.fragments();
+        println!("bridge {bridge}: missed {missed:.4}, wrong {wrong:.4}, fragments {fragments:.2}");
+        assert!(scores.wanted > 200, "{scores:?}");
+        (missed, wrong, fragments)
+    });
+    let [open, closed] = found;
+    assert!(closed.0 <= open.0, "{found:?}");
+    assert!(closed.1 <= open.1 + ADAPTER, "{found:?}");
+    assert!(closed.2 <= open.2, "{found:?}");
+}

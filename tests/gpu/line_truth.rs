@@ -11,7 +11,7 @@ use bevy_comics_testkit::{
     reference::edge::line_coverage,
     scenes::BuiltIn,
     studio::Studio,
-    truth::{FINE, Truth, ids_alone, mask},
+    truth::{FINE, Truth, ids_alone, line_ends, mask},
 };
 
 use crate::{
@@ -77,6 +77,36 @@ fn a_strong_edge_nearby_hides_no_edge() {
         let lines: Vec<usize> = (0..120).filter(|x| row[*x] > 0.9).collect();
         assert_eq!(lines, [59, 59 + gap], "{gap} pixels apart: {row:?}");
     }
+}
+
+/// The side of a cylinder has one silhouette at its left and one at its right, wherever its
+/// rim lies between the pixels, and its lines have fewer than one loose end in 200 pixels.
+#[test]
+fn a_curved_rim_has_one_line() {
+    let mut small = Small::new(UVec2::new(240, 136), Msaa::Off);
+    small.clear();
+    let cylinder = Cylinder::new(0.6, 1.2);
+    put(&mut small, cylinder, Color::WHITE, Transform::IDENTITY);
+    small.style(&ComicStyle::new().with(Outlines::default()));
+    let (mut ends, mut length) = (0, 0);
+    for frame in 0..12 {
+        let eye = Vec3::new(0.02 * frame as f32, 0.88, 2.44);
+        look(&mut small, eye, Vec3::ZERO, 0.1);
+        small.settle();
+        let cracks = small.cracks().expect("lines");
+        ends += line_ends(&cracks);
+        let lines = cracks.words.as_flattened();
+        length += lines.iter().filter(|crack| **crack & 7 != 0).count();
+        for y in 50..100 {
+            let row = &cracks.words[y * 240..(y + 1) * 240];
+            let silhouettes = row.iter().filter(|[east, _]| east & 1 != 0).count();
+            assert_eq!(silhouettes, 2, "frame {frame}, row {y}");
+        }
+    }
+    // Lines in all directions have 4 / pi cracks for each pixel of their length.
+    let dashes = 100.0 * ends as f64 / (length as f64 * std::f64::consts::FRAC_PI_4);
+    println!("{ends} loose ends, {dashes:.2} per 100 pixels of line");
+    assert!(dashes < 0.5, "{dashes}");
 }
 
 /// A jump too small to be seen leaves a wide line whole. 1.1 % is just above the first

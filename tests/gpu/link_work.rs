@@ -15,9 +15,9 @@ const LOOSE: f64 = 4.0 * 4.0;
 /// Words around a cell that has: the same four planes in 20 columns, and in two bands each,
 /// because the 32 rows of the window begin anywhere.
 const WINDOW: f64 = 20.0 * 4.0 * 2.0;
-/// Words of `settle.wgsl` for a cell: lines to the east and south in a window of eight
-/// columns, in two bands, and the found cracks of its four columns.
-const SETTLE: f64 = 8.0 * 2.0 * 2.0 + 4.0 * 2.0;
+/// Words of `settle.wgsl` for a cell: found cracks and lines, to the east and south, of its
+/// four columns.
+const SETTLE: f64 = 4.0 * 4.0;
 /// More words with a budget of ink: lines to the east and south in 24 columns, in two bands.
 const NEAR: f64 = 24.0 * 2.0 * 2.0;
 

@@ -97,22 +97,26 @@ fn lines_grow_by_a_crack_in_each_step() {
     }
 }
 
-/// Pieces of one and of two cracks are specks, around corners too; of three they are not.
+/// Pieces of fewer cracks than asked are specks, around corners too.
 #[test]
 fn specks_are_pieces_of_fewer_cracks_than_asked() {
-    // Three in a row, an L of two, a single one, and a U of three.
-    let pieces: [&[Place]; 4] = [
-        &[([0, 0], 1), ([1, 0], 1), ([2, 0], 1)],
+    // Three in a row, an L of two, a single one, a U of three, and a staircase of seven.
+    let stairs: Vec<Place> = (0..7)
+        .map(|i| ([40 + i / 2, 40 + i / 2 + i % 2], 1 - i as usize % 2))
+        .collect();
+    let pieces: [&[Place]; 5] = [
+        &[([1, 1], 1), ([2, 1], 1), ([3, 1], 1)],
         &[([10, 10], 0), ([10, 10], 1)],
         &[([20, 20], 0)],
         &[([30, 30], 0), ([30, 30], 1), ([29, 30], 0)],
+        &stairs,
     ];
     let all = pieces
         .iter()
         .flat_map(|piece| piece.iter().copied())
         .collect();
-    for specks in 1..=3 {
-        let kept = without_specks(&all, specks);
+    for specks in 1..=8 {
+        let kept = without_specks(&all, [64, 64], specks);
         for piece in pieces {
             let there = piece.iter().filter(|place| kept.contains(*place)).count();
             let want = if piece.len() >= specks as usize {
@@ -162,7 +166,7 @@ fn lines_are_their_twin_in_views_of_odd_sizes() {
 fn lines_continue_as_far_as_asked() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
     for continuity in [0.0, 1.0, 7.0, 8.0, 9.0, 16.0, 23.5, 32.0] {
-        for specks in [1, 2, 3] {
+        for specks in [1, 2, 3, 7] {
             let outlines = Outlines {
                 specks,
                 ..weak(continuity)

@@ -98,6 +98,7 @@ pub fn assert_pass_is_its_twin(
     small.style(style);
     small.settle();
     let (input, output) = small.pass();
+    let loaded = small.loaded();
     let map = style.depth_map.unwrap_or_default();
     let prepass = small.prepass();
     let prepass = prepass.unwrap_or_else(|| panic!("{what}: no depth"));
@@ -137,7 +138,7 @@ pub fn assert_pass_is_its_twin(
         let [r, g, b] = [r, g, b].map(|c| color::srgb_decode_one(f64::from(c)) as f32);
         [r, g, b, a]
     };
-    let light_of = |x: u32, y: u32| light(input.pixels[(y * input.width + x) as usize]);
+    let light_of = |x: u32, y: u32| light(loaded.pixels[(y * input.width + x) as usize]);
     let read_by_pass = Input {
         picture: &light_of,
         size: [input.width, input.height],

@@ -62,7 +62,7 @@ fn product(lists: &[Vec<Definitions>]) -> Vec<Definitions> {
 type Modes = (&'static str, Vec<Definitions>);
 
 /// The effects that read only colour and depth.
-fn picture_effects() -> [Modes; 5] {
+fn picture_effects() -> [Modes; 6] {
     let mapped = |more: Definition<'static>| [flags(&["MAP", "DEPTH"]), vec![more]].concat();
     [
         (
@@ -91,6 +91,16 @@ fn picture_effects() -> [Modes; 5] {
                     mapped(("COLORIZATION_MODE", Some(3))),
                 ],
                 numbers("COLORIZATION_FAITHFUL", 0..2),
+            ]),
+        ),
+        (
+            "halftone",
+            product(&[
+                vec![flags(&["HALFTONE"]), flags(&["HALFTONE", "MAP", "DEPTH"])],
+                numbers("HALFTONE_MODE", 0..4),
+                numbers("HALFTONE_SHAPE", 0..6),
+                // Cells are read in a pass of their own.
+                vec![Vec::new(), flags(&["HALFTONE_CELLS", "CONTINUED"])],
             ]),
         ),
         (
@@ -280,7 +290,7 @@ fn every_combination_of_effects_composes_and_validates() {
     let pictures = picture_effects();
     let lines = line_effects();
     let mut turn = 0;
-    for chosen in subsets(&[0, 1, 2, 3, 4]) {
+    for chosen in subsets(&[0, 1, 2, 3, 4, 5]) {
         for line in [None, Some(&lines[0]), Some(&lines[1])] {
             for view in &views {
                 // Another mode each time.
@@ -333,6 +343,32 @@ fn every_form_of_a_view_composes_and_validates() {
         "SAME_SIZE",
     ]) {
         compose(&source, &[&needs]);
+    }
+}
+
+/// The passes of a plan whose effects read the picture at other places.
+#[test]
+fn every_pass_of_a_divided_plan_composes_and_validates() {
+    let source = EffectRegistry::built_in().shader();
+    let forms = [
+        "CONTINUED",
+        "LAYER",
+        "FINISH",
+        "UNSTYLED_COLORS",
+        "UNSTYLED_PRINT",
+    ];
+    let effects = [
+        vec![],
+        flags(&["PRINT_OFFSET"]),
+        flags(&["PRINT_OFFSET", "WITHOUT_PRINT_OFFSET", "TONE_BANDS"]),
+        flags(&["HALFTONE", "HALFTONE_CELLS", "LINES", "OUTLINES"]),
+        flags(&["OUTLINES", "LINES", "SURFACE_LINES", "PRINT_OFFSET"]),
+    ];
+    for form in optional(&forms) {
+        for effects in &effects {
+            let ids = flags(&["OBJECT_STYLES", "OBJECT_IDS", "UNSTYLED"]);
+            compose(&source, &[&form, effects, &ids]);
+        }
     }
 }
 
@@ -424,9 +460,36 @@ fn every_kind_of_outline_composes_and_validates() {
     for last in [&[][..], &["LAST"]] {
         check(&shader("lines/link.wgsl"), last);
     }
+    check(&shader("lines/bridge.wgsl"), &[]);
+    for motion in [
+        &[][..],
+        &["MOTION", "DEPTH"],
+        &["MOTION", "DEPTH", "OBLIQUE"],
+    ] {
+        check(&shader("lines/persist.wgsl"), motion);
+    }
+    for varied in subsets(&["VARIED", "BRIDGED"]) {
+        check(
+            &shader("lines/ends.wgsl"),
+            &[&["BLOCKS", "SMOOTH"], &varied[..]].concat(),
+        );
+    }
+    for styles in [&[][..], &["OBJECT_IDS", "OBJECT_STYLES"]] {
+        for more in [&[][..], &["SURFACE"], &["SURFACE", "INWARD"]] {
+            for line in subsets(&["BOIL", "TAPER"]) {
+                check(
+                    &shader("lines/strokes.wgsl"),
+                    &[styles, more, &line[..]].concat(),
+                );
+            }
+        }
+    }
     for smooth in [&[][..], &["SMOOTH"], &["SMOOTH", "FOLDS", "DEPTH"]] {
         for weight in [&[][..], &["WEIGHT", "DEPTH", "BUDGET"]] {
-            check(&shader("lines/settle.wgsl"), &[smooth, weight].concat());
+            for bridged in [&[][..], &["BRIDGED"]] {
+                let flags = [smooth, weight, bridged].concat();
+                check(&shader("lines/settle.wgsl"), &flags);
+            }
         }
         for surface in [
             &["WIDTH_MAP"][..],
@@ -445,6 +508,10 @@ fn every_kind_of_outline_composes_and_validates() {
         for search in [&[][..], &["NEIGHBOURS"], &["COLUMNS"]] {
             for store in [&[][..], &["BLOCKS"], &["BLOCKS", "SMOOTH"]] {
                 check(&draw, &[styles, search, store].concat());
+                let bridged = &["OWNERS", "BRIDGED", "SURFACE", "INWARD"];
+                if !store.is_empty() {
+                    check(&draw, &[styles, search, store, bridged].concat());
+                }
             }
         }
     }

@@ -196,6 +196,10 @@ impl Small {
         read_back::normals(self.render_world(), self.view())
     }
 
+    pub fn motion_vectors(&self) -> Option<FloatImage> {
+        read_back::motion_vectors(self.render_world(), self.view())
+    }
+
     /// All samples of the prepass textures; `None` without a depth prepass.
     pub fn prepass(&self) -> Option<Prepass> {
         let (world, view) = (self.render_world(), self.view());
@@ -227,6 +231,11 @@ impl Small {
     /// The cracks of the last frame.
     pub fn cracks(&self) -> Option<CrackWords> {
         read_back::cracks(self.render_world(), self.view())
+    }
+
+    /// The picture that the fused pass read, as the adapter decodes it.
+    pub fn loaded(&self) -> FloatImage {
+        read_back::loaded_picture(self.render_world(), self.view()).expect("a copy")
     }
 
     /// The pictures that the fused pass read and wrote.

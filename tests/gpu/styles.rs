@@ -5,9 +5,10 @@ use std::{fs, time::Duration};
 use bevy::{color::Color, prelude::*, render::view::Msaa};
 use bevy_comics::{
     BlackFlats, Colorization, ColorizationMode, ComicStyle, ComicStyleError, ComicStyleHandle,
-    ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, LineBoil,
-    LineColor, LineWeight, ObjectEdges, Outlines, RangeSmoothing, ReductionMethod, Silhouettes,
-    Sketch, ToneBands,
+    ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, Halftone,
+    HalftoneMode, LineBoil, LineColor, LineWeight, ObjectEdges, Outlines, Paper, PrintOffset,
+    RangeSmoothing, ReductionMethod, ScreenAnchor, ScreenSampling, ScreenShape, Silhouettes,
+    Sketch, SpeedLineKind, SpeedLines, ToneBands, TwoTone,
 };
 use proptest::{
     option,
@@ -118,11 +119,12 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
         option::of(colorization),
         option::of(flats),
         option::of(contours),
-        cartoon_styles(),
+        (cartoon_styles(), prints(), page_styles()),
     )
         .prop_map(
-            |(name, depth_map, desaturation, colorization, black_flats, contours, cartoon)| {
-                let (tone_bands, outlines, sketch) = cartoon;
+            |(name, depth_map, desaturation, colorization, black_flats, contours, others)| {
+                let ((tone_bands, outlines, sketch), (halftone, offset), page) = others;
+                let (speed_lines, two_tone, paper) = page;
                 let mut style = ComicStyle::new();
                 style.name = name;
                 style.depth_map = depth_map;
@@ -132,7 +134,12 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
                 style = with_option(style, black_flats);
                 style = with_option(style, contours);
                 style = with_option(style, outlines);
-                with_option(style, sketch)
+                style = with_option(style, halftone);
+                style = with_option(style, offset);
+                style = with_option(style, sketch);
+                style = with_option(style, speed_lines);
+                style = with_option(style, two_tone);
+                with_option(style, paper)
             },
         )
 }
@@ -148,6 +155,71 @@ fn weights() -> impl Strategy<Value = LineWeight> {
             ..default()
         },
     )
+}
+
+fn page_styles() -> impl Strategy<Value = (Option<SpeedLines>, Option<TwoTone>, Option<Paper>)> {
+    let lines = (number(), number(), any::<u32>(), any::<bool>()).prop_map(
+        |(centre_x, width, count, parallel)| SpeedLines {
+            kind: if parallel {
+                SpeedLineKind::Parallel
+            } else {
+                SpeedLineKind::Radial
+            },
+            centre_x,
+            width,
+            count,
+            ..default()
+        },
+    );
+    let tones = (colors(), number(), any::<bool>()).prop_map(|(dark, threshold, invert)| TwoTone {
+        dark,
+        threshold,
+        invert,
+        ..default()
+    });
+    let paper = (colors(), number(), number()).prop_map(|(color, grain, size)| Paper {
+        color,
+        grain,
+        size,
+        ..default()
+    });
+    (option::of(lines), option::of(tones), option::of(paper))
+}
+
+/// Print effects of all modes.
+fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>)> {
+    let halftone = (number(), number(), colors(), 0u32..99, 0..4usize).prop_map(
+        |(period, fraction, ink, tints, kind)| Halftone {
+            mode: [
+                HalftoneMode::Cmyk,
+                HalftoneMode::Spot,
+                HalftoneMode::Duotone,
+                HalftoneMode::Rgb,
+            ][kind],
+            shape: [
+                ScreenShape::Round,
+                ScreenShape::Line,
+                ScreenShape::Cross,
+                ScreenShape::Stochastic,
+            ][kind],
+            sampling: [ScreenSampling::Pixel, ScreenSampling::Cell][kind % 2],
+            anchor: [ScreenAnchor::View, ScreenAnchor::Window][kind % 2],
+            period,
+            gain: fraction,
+            near: fraction,
+            tints,
+            cyan: ink,
+            paper: ink,
+            black_angle: period,
+            ..default()
+        },
+    );
+    let offset = (number(), number()).prop_map(|(cyan_x, amount)| PrintOffset {
+        cyan_x,
+        amount,
+        ..default()
+    });
+    (option::of(halftone), option::of(offset))
 }
 
 fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines>, Option<Sketch>)>
@@ -214,6 +286,9 @@ fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines
                     saturate: width,
                 },
                 memory: fade,
+                overshoot: width,
+                bridge: 2,
+                persistence: 5,
                 ..default()
             },
         );

@@ -139,8 +139,8 @@ fn slanted_lines_have_the_colour_of_their_surface() {
                     inked += usize::from(r < 0.7 && b < 0.9);
                 }
                 // In multisampled views, the pixel behind the rim may be mixed with the sky
-                // too, where the rim has a step.
-                let most = if msaa == Msaa::Off { 0 } else { inked / 2 };
+                // too, at corners.
+                let most = if msaa == Msaa::Off { 0 } else { inked / 20 };
                 assert!(
                     wrong <= most,
                     "{msaa:?}, {turned}, {width}: {wrong} of {inked}"

@@ -65,15 +65,37 @@ pub struct Outlines {
     /// `edge_limit`. Range 0.1 to 1 (only what responds above the limit), default 0.5.
     #[reflect(@FieldRange::linear(0.1, 1.0))]
     pub continuity_level: f32,
-    /// Leaves out pieces of line of fewer borders of pixels than this: noise. Objects of a
-    /// single pixel have four. Range 1 (leaves out nothing) to 3, default 3.
-    #[reflect(@FieldRange::linear(1.0, 3.0))]
+    /// Leaves out pieces of line of fewer borders of pixels than this, at scale factor 1:
+    /// noise. Closed lines and pieces that meet others stay, however short they are. Range 1
+    /// (leaves out nothing) to 8, default 7.
+    #[reflect(@FieldRange::linear(1.0, 8.0))]
     pub specks: u32,
+    /// Closes gaps in lines, where nothing responds between two parts of a row or column of
+    /// borders of pixels: up to this many physical pixels, as along wires that are thinner than a
+    /// pixel. Real gaps are closed too. Needs compute shaders. Range 0 (closes none) to 3,
+    /// default 0. Morphological closing along the line.
+    #[reflect(@FieldRange::linear(0.0, 3.0).unit("px"))]
+    pub bridge: u32,
+    /// For how many frames a line stays where its edge has become weak: one that responds below
+    /// `edge_limit`, but not below `continuity_level`, has a line if there was one at most a pixel
+    /// away in the last frame (hysteresis in time). So lines flicker less in motion. What moves
+    /// by more than a pixel per frame is followed where the engine draws motion vectors, in views
+    /// with one sample. Lines are forgotten at a `CameraCut`. Needs `continuity` and compute
+    /// shaders. Range 0 (off) to 8, default 0.
+    #[reflect(@FieldRange::linear(0.0, 8.0))]
+    pub persistence: u32,
     /// What a line loses where an edge is weak. Default: [`LineResponse::Width`].
     pub response: LineResponse,
     /// Whether lines run straight through the steps of pixels; otherwise they follow the
     /// borders of pixels. Needs compute shaders. Default: `true`.
     pub smooth: bool,
+    /// By how much lines go on beyond their loose ends, in their direction there, as strokes of a
+    /// draughtsman do; in logical pixels. A stroke is at most as long as its line. Closed lines
+    /// and lines that meet others have no loose ends. With `weight.taper`, lines become thinner
+    /// towards the end of the stroke. Needs `smooth` lines. At most 64 physical pixels. Range 0
+    /// (off) to 16, default 0.
+    #[reflect(@FieldRange::linear(0.0, 16.0).unit("px"))]
+    pub overshoot: f32,
     /// How wide lines are in different places. Default: [`LineWeight::EVEN`].
     pub weight: LineWeight,
     /// Fraction of an area that lines may cover where they crowd, as on foliage or in the
@@ -109,7 +131,10 @@ impl Default for Outlines {
             opacity_fade: 0.0,
             continuity: 8.0,
             continuity_level: 0.5,
-            specks: 3,
+            specks: 7,
+            bridge: 0,
+            persistence: 0,
+            overshoot: 0.0,
             response: LineResponse::Width,
             smooth: true,
             weight: LineWeight::EVEN,
@@ -134,7 +159,10 @@ impl Outlines {
         opacity_fade: 0.0,
         continuity: 8.0,
         continuity_level: 0.5,
-        specks: 3,
+        specks: 7,
+        bridge: 0,
+        persistence: 0,
+        overshoot: 0.0,
         response: LineResponse::Width,
         smooth: true,
         weight: LineWeight::EVEN,
@@ -167,7 +195,10 @@ impl Effect for Outlines {
             opacity_fade: bounded(self.opacity_fade, default.opacity_fade, 0.0, 1.0),
             continuity: bounded(self.continuity, default.continuity, 0.0, 32.0),
             continuity_level: bounded(self.continuity_level, default.continuity_level, 0.1, 1.0),
-            specks: self.specks.clamp(1, 3),
+            specks: self.specks.clamp(1, 8),
+            bridge: self.bridge.min(3),
+            persistence: self.persistence.min(8),
+            overshoot: bounded(self.overshoot, default.overshoot, 0.0, 16.0),
             response: self.response,
             smooth: self.smooth,
             weight: self.weight.sanitized(),
@@ -252,6 +283,9 @@ impl Effect for Outlines {
             continuity: self.continuity.lerp(other.continuity, t),
             continuity_level: self.continuity_level.lerp(other.continuity_level, t),
             specks: later.specks,
+            bridge: later.bridge,
+            persistence: later.persistence,
+            overshoot: self.overshoot.lerp(other.overshoot, t),
             response: later.response,
             smooth: later.smooth,
             weight: self.weight.mixed(other.weight, t),
@@ -305,6 +339,9 @@ impl Outlines {
             continuity: self.continuity,
             continuity_level: self.continuity_level,
             specks: self.specks,
+            bridge: self.bridge,
+            persistence: self.persistence,
+            overshoot: self.overshoot,
             response: self.response,
             smooth: self.smooth,
             weight: self.weight,
@@ -315,5 +352,27 @@ impl Outlines {
             fog: self.fog,
         }
         .visible()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whole numbers of any size are clamped to their documented ranges.
+    #[test]
+    fn counts_are_clamped() {
+        for n in [0, 1, 2, 3, 4, 8, 9, u32::MAX] {
+            let outlines = Outlines {
+                specks: n,
+                bridge: n,
+                persistence: n,
+                ..Outlines::default()
+            };
+            let found = outlines.sanitized();
+            assert_eq!(found.specks, n.clamp(1, 8));
+            assert_eq!(found.bridge, n.min(3));
+            assert_eq!(found.persistence, n.min(8));
+        }
     }
 }

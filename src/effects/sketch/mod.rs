@@ -155,17 +155,10 @@ impl Effect for Sketch {
             wavelength: self.wavelength * view.scale_factor,
             pressure: self.pressure,
             strokes: self.strokes,
-            drawing: self.drawing(view.seconds),
+            drawing: view.drawing(self.rate),
             amount: self.amount,
             lines_below: if view.lines_implied { 0.0 } else { 1.0 },
         }
-    }
-}
-
-impl Sketch {
-    /// Number of the drawing that is shown at a time in seconds.
-    fn drawing(&self, seconds: f64) -> u32 {
-        (seconds * f64::from(self.rate)).floor().rem_euclid(65536.0) as u32
     }
 }
 

@@ -23,7 +23,7 @@ use bevy::{
         erased_render_asset::ErasedRenderAssets,
         mesh::RenderMesh,
         render_asset::RenderAssets,
-        render_phase::{DrawFunctions, PhaseItemExtraIndex},
+        render_phase::DrawFunctions,
         render_resource::{
             BindGroupLayoutDescriptor, ColorTargetState, ColorWrites, CompareFunction,
             FragmentState, PipelineCache, RenderPipelineDescriptor, SpecializedMeshPipeline,
@@ -36,7 +36,7 @@ use bevy::{
 
 use crate::objects::{
     ID_FORMAT, QueuedDepth,
-    items::{DrawId, DrawIdWithMaterial, ObjectIdPipeline, in_prepass, reads_material},
+    items::{ObjectIdPipeline, draw_function, in_prepass, reads_material},
     phase::{Layer, ObjectIdItem},
     table::DepthWrites,
 };
@@ -177,20 +177,9 @@ impl TransparentItems<'_> {
             .specialize(&self.cache, &specializer, key, &mesh.layout)
             .inspect_err(|error| error_once!("no depth of {:?}: {error}", object.1))
             .ok()?;
-        let functions = self.draw_functions.read();
-        Some(ObjectIdItem {
-            entity: object,
-            pipeline,
-            draw_function: if uses_material {
-                functions.id::<DrawIdWithMaterial>()
-            } else {
-                functions.id::<DrawId>()
-            },
-            batch_range: 0..1,
-            extra_index: PhaseItemExtraIndex::None,
-            indexed: mesh.indexed(),
-            layer: Layer::OwnDepth,
-        })
+        let draw_function = draw_function(&self.draw_functions, uses_material);
+        let drawn = (mesh.indexed(), Layer::OwnDepth);
+        Some(ObjectIdItem::new(object, pipeline, draw_function, drawn))
     }
 }
 

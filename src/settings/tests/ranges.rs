@@ -61,6 +61,11 @@ fn the_range_on_a_field_is_the_range_that_is_used() {
     check(Creases::sanitized);
     check(ObjectEdges::sanitized);
     check(Sketch::sanitized);
+    check(TwoTone::sanitized);
+    check(SpeedLines::sanitized);
+    check(Paper::sanitized);
+    check(Halftone::sanitized);
+    check(PrintOffset::sanitized);
     check(Vignette::sanitized);
     check(DepthMap::sanitized);
     check(RangeSmoothing::sanitized);

@@ -51,16 +51,32 @@ pub fn follow(
     (followed, None)
 }
 
-/// Cracks from a crack to the nearest loose end of its line, at most `most`, rounded up. A
-/// line does not end at the border of a grid of this size.
-pub fn cracks_to_end(lines: &HashSet<Place>, place: Place, size: [i64; 2], most: f64) -> usize {
+/// Cracks from a crack to the loose ends of its line on both sides, at most `most`, rounded up.
+/// A line does not end at the border of a grid of this size.
+pub fn cracks_to_ends(
+    lines: &HashSet<Place>,
+    place: Place,
+    size: [i64; 2],
+    most: f64,
+) -> [usize; 2] {
     let most = most.ceil() as usize;
-    let ends = corners(place).map(|corner| {
+    corners(place).map(|corner| {
         let (followed, end) = follow(lines, (place, corner), most);
         let loose = end.is_some_and(|end| (0..2).all(|i| end[i] > 0 && end[i] < size[i]));
         if loose { followed.len() } else { most }
-    });
-    ends[0].min(ends[1])
+    })
+}
+
+/// Number of cracks in the piece of line that a crack is in; `None` if the piece branches,
+/// is closed or reaches the border of a grid of this size.
+pub fn piece(lines: &HashSet<Place>, place: Place, size: [i64; 2]) -> Option<usize> {
+    let mut cracks = 1;
+    for corner in corners(place) {
+        let (followed, end) = follow(lines, (place, corner), lines.len());
+        end.filter(|end| (0..2).all(|i| end[i] > 0 && end[i] < size[i]))?;
+        cracks += followed.len();
+    }
+    Some(cracks)
 }
 
 /// The centre of a crack; whole numbers are corners of pixels.

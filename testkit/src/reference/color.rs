@@ -120,6 +120,17 @@ pub fn oklab_to_linear(lab: Rgb) -> Rgb {
     apply(M1, apply(M2, lab).map(|x| x * x * x))
 }
 
+/// Tones of cyan, magenta, yellow and black ink for a colour of 0 to 1. `black`: fraction of
+/// the darkness that all channels share which black takes.
+pub fn separated(c: Rgb, black: f64) -> [f64; 4] {
+    let k = black * (1.0 - largest(c));
+    if k >= 1.0 {
+        return [0.0, 0.0, 0.0, 1.0];
+    }
+    let [cyan, magenta, yellow] = c.map(|light| 1.0 - light / (1.0 - k));
+    [cyan, magenta, yellow, k]
+}
+
 fn apply(m: [Rgb; 3], v: Rgb) -> Rgb {
     m.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
 }

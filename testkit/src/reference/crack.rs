@@ -1,7 +1,9 @@
 //! Twin of `lines/crack.wgsl`: the cracks that lines run along.
 
 use super::{
-    edge::{Normal, fold, fold_response, is_ridge, step_excess, step_response},
+    edge::{
+        Normal, fold, fold_response, is_outdone, is_ridge, is_rim_ridge, step_excess, step_response,
+    },
     map::is_background,
     smoothstep,
     view::View,
@@ -153,7 +155,7 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
     if let Some(k) = s.silhouettes.filter(|k| k.form == Form::Corrected) {
         let p = step_response(excess, 0.5 * f64::from(k.threshold) * reference);
         let amount = ink(k.edge_limit, k.softness, weakest(s), p);
-        if near > 0.0 && is_stored(amount) {
+        if near > 0.0 && is_stored(amount) && !is_outdone(depths) {
             crack.kinds[0] = true;
             crack.ink = amount;
             crack.certain = p >= limit(k.edge_limit);
@@ -170,11 +172,12 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
             fold_response(folds[1], kn)
         };
         let amount = ink(k.edge_limit, k.softness, weakest(s), p);
-        let ridge = (is_ridge(folds) || border) && !silent;
-        if ridge && excess < jump && is_stored(amount) && !crack.kinds[0] {
+        let ridge = is_ridge(folds) || border;
+        let drawn = (ridge || is_rim_ridge(folds)) && !silent;
+        if drawn && excess < jump && is_stored(amount) && !crack.kinds[0] {
             crack.kinds[1] = true;
             crack.ink = amount;
-            crack.certain = p >= limit(k.edge_limit);
+            crack.certain = ridge && p >= limit(k.edge_limit);
         }
     }
     if let (Some(_), Some(ids)) = (s.objects, view.ids) {

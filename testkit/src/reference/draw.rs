@@ -6,16 +6,19 @@ use super::{
     bend::stored as stored_bend,
     boil::boiled,
     budget::{budget_weight, line_density},
-    chain::cracks_to_end,
+    chain::cracks_to_ends,
     crack::{Crack, SIDES, crack, jump},
-    edge::{line_coverage, line_offset, segment_distance},
+    edge::{line_coverage, line_offset},
     faithful::faithful,
     fold::placed,
+    gaps::{gaps, source},
     link::{Place, bend, linked, without_specks},
+    overshoot::{Stroke, strokes},
+    straight::straight,
     view::View,
     weight::{largest_weight, local_weight, taper_weight, weighted},
 };
-use bevy_comics::Outlines;
+use bevy_comics::{LineBoil, Outlines};
 
 /// The cracks of a viewport.
 pub struct Cracks {
@@ -31,6 +34,9 @@ pub struct Cracks {
     smooth: bool,
     /// Whether only the best cracks of each column are searched.
     by_columns: bool,
+    /// Beyond loose ends, and over how many cracks they taper.
+    strokes: Vec<Stroke>,
+    taper: f64,
 }
 
 impl Cracks {
@@ -58,24 +64,41 @@ impl Cracks {
             .map(f64::from),
             reach: grid_reach + i64::from(s.smooth && grid_reach > 1),
             by_columns: grid_reach > 1 && reach > 1,
+            strokes: vec![],
+            taper: (f64::from(s.weight.taper) * scale).min(64.0),
         };
         let steps = ((f64::from(s.continuity) * scale).ceil() as i32).min(64);
-        let linked = found.complete(steps, s.specks, (view, jump(s)));
-        let taper = (f64::from(s.weight.taper) * scale).min(64.0);
-        found.weigh((s, view), [x0, y0], taper, &linked);
+        let all: HashMap<Place, Crack> = found.places().collect();
+        let specks = if s.specks < 2 {
+            1
+        } else {
+            (f64::from(s.specks) * scale).ceil().min(64.0) as u32
+        };
+        let linked = found.complete(&all, (steps, specks, s), (view, jump(s)));
+        let longest = if s.smooth {
+            (f64::from(s.overshoot) * scale).min(64.0)
+        } else {
+            0.0
+        };
+        found.weigh((s, view), [x0, y0], longest, (&linked, &all));
+        if longest > 0.0 {
+            let at = |(pixel, side): Place| found.at(pixel[0], pixel[1])[side];
+            found.strokes = strokes(&linked, &at, [w, h], longest);
+        }
         found
     }
 
-    /// Multiplies the width of every crack by its weight. `taper`: in cracks; `linked`: the
-    /// cracks of all lines, specks included.
+    /// Multiplies the width of every crack by its weight. `stroke`: pixels by which loose ends
+    /// are extended; `linked`: the cracks of all lines, specks included; `all`: those that were found.
     fn weigh(
         &mut self,
         (s, view): (&Outlines, &View),
         [x0, y0]: [i64; 2],
-        taper: f64,
-        linked: &HashSet<Place>,
+        stroke: f64,
+        (linked, all): (&HashSet<Place>, &HashMap<Place, Crack>),
     ) {
         let (width, height) = (self.width, self.height);
+        let taper = self.taper;
         let lines: HashSet<Place> = self.places().map(|(place, _)| place).collect();
         let w = &s.weight;
         let varies = w.shade > 0.0
@@ -89,11 +112,14 @@ impl Cracks {
                 let Some(mut crack) = *slot else { continue };
                 let pixel = [i as i64 % width, i as i64 / width];
                 crack.shifts &= !varies;
-                let at = [x0 + pixel[0], y0 + pixel[1]];
+                let ([x, y], _) = source(all, (pixel, side));
+                let at = [x0 + x, y0 + y];
                 let mut factor = local_weight(s, view, &crack, at, side);
                 if taper > 0.0 {
-                    let end = cracks_to_end(&lines, (pixel, side), [width, height], taper);
-                    factor *= taper_weight(taper, end);
+                    let size = [width, height];
+                    let ends = cracks_to_ends(&lines, (pixel, side), size, taper.max(stroke));
+                    let stroke = stroke.min((ends[0] + ends[1] + 1) as f64);
+                    factor *= taper_weight(taper, ends[0].min(ends[1]) as f64 + stroke);
                 }
                 if s.budget < 1.0 {
                     let density = line_density(linked, pixel);
@@ -114,16 +140,26 @@ impl Cracks {
         })
     }
 
-    /// Leaves out the cracks that are not parts of lines, and bends the lines of the others.
+    /// Closes gaps, leaves out the cracks that are not parts of lines, and bends the lines of the
+    /// others. `all`: those that were found.
     /// Returns the cracks of all lines, specks included.
-    fn complete(&mut self, steps: i32, specks: u32, (view, jump): (&View, f64)) -> HashSet<Place> {
+    fn complete(
+        &mut self,
+        all: &HashMap<Place, Crack>,
+        (steps, specks, s): (i32, u32, &Outlines),
+        (view, jump): (&View, f64),
+    ) -> HashSet<Place> {
         let width = self.width;
         let place = |i: usize, side| ([i as i64 % width, i as i64 / width], side);
-        let all: HashMap<Place, Crack> = self.places().collect();
-        let linked = linked(&all, steps);
-        let kept = without_specks(&linked, specks);
+        let mut linked = linked(all, steps);
+        let closed = gaps(&linked, s.bridge);
+        linked.extend(&closed);
+        let kept = without_specks(&linked, [self.width, self.height], specks);
         for (i, cracks) in self.cracks.iter_mut().enumerate() {
             for (side, crack) in cracks.iter_mut().enumerate() {
+                if closed.contains(&place(i, side)) {
+                    *crack = Some(all[&source(all, place(i, side))]);
+                }
                 *crack = crack.filter(|_| kept.contains(&place(i, side)));
                 if let Some(crack) = crack.as_mut().filter(|_| self.smooth) {
                     let place = place(i, side);
@@ -147,6 +183,8 @@ impl Cracks {
             opacity: [1.0; 3],
             smooth: false,
             by_columns: widest > 1.0,
+            strokes: vec![],
+            taper: 0.0,
         }
     }
 
@@ -221,63 +259,6 @@ fn larger(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|k| a[k].max(b[k]))
 }
 
-/// The two nearest lines in different places, as the shader keeps them while it goes
-/// through all lines: of lines in nearly the same place, it only keeps the nearest.
-fn followed(lines: &[Line]) -> Option<[Line; 2]> {
-    let mut first: Option<Line> = None;
-    let mut second: Option<Line> = None;
-    for line in lines {
-        let Some(nearest) = first else {
-            first = Some(*line);
-            continue;
-        };
-        let other = is_apart(line.1, nearest.1);
-        if line.0 < nearest.0 {
-            second = if other { first } else { second };
-            first = Some(*line);
-        } else if other && second.is_none_or(|second| line.0 < second.0) {
-            second = Some(*line);
-        }
-    }
-    Some([first?, second?])
-}
-
-/// The ink of the straight line from the middle of a line to another middle.
-fn between((_, from, crack): &Line, to: [f64; 2], at: [f64; 2], nudge: f64) -> [f64; 3] {
-    if distance(*from, to) < 1.45 {
-        ink_of(crack, nudge, segment_distance(at, *from, to))
-    } else {
-        [0.0; 3]
-    }
-}
-
-/// The ink of the straight line between the middles of the two lines whose borders are
-/// nearest, for every choice of these two.
-fn straight(lines: &mut [Line], at: [f64; 2], nudge: f64) -> Vec<[f64; 3]> {
-    // Middles are stored in 512ths of a pixel: each of two distances is off by up to
-    // sqrt(2) / 1024.
-    const TIE: f64 = 3e-3;
-    let mut found: Vec<[f64; 3]> = followed(lines)
-        .map(|[first, second]| between(&first, second.1, at, nudge))
-        .into_iter()
-        .collect();
-    lines.sort_by(|a, b| a.0.total_cmp(&b.0));
-    for (border, a, crack) in lines.iter() {
-        if *border > lines[0].0 + TIE {
-            break;
-        }
-        // Both cracks at a corner of a line of odd width have their middle in one pixel.
-        let others: Vec<&Line> = lines.iter().filter(|other| is_apart(other.1, *a)).collect();
-        for (border, b, _) in &others {
-            if *border > others[0].0 + TIE {
-                break;
-            }
-            found.push(between(&(*border, *a, *crack), *b, at, nudge));
-        }
-    }
-    found
-}
-
 /// Whether two middles are in different places.
 pub(super) fn is_apart(a: [f64; 2], b: [f64; 2]) -> bool {
     distance(a, b).powi(2) > 0.07
@@ -342,12 +323,21 @@ impl Ink {
     /// `scale`: physical pixels per logical pixel; `seconds`: of the app's clock.
     pub fn new(s: &Outlines, view: &View, scale: f64, seconds: f64) -> Self {
         let cracks = Cracks::new(s, view, scale);
+        let widest = f64::from(s.width) * largest_weight(&s.weight);
+        let boil = LineBoil {
+            amplitude: s.boil.amplitude.min((8.0 / widest) as f32),
+            ..s.boil
+        };
         let [x0, y0, w, h] = view.viewport.map(i64::from);
         let pixel = |x: i64, y: i64| {
             let whole = faithful(s, view, [x0 + x, y0 + y]);
             [-1.0, 0.0, 1.0].map(|nudge| {
                 let at = [x as f64 + 0.5, y as f64 + 0.5];
-                let mut ink = cracks.ink(boiled(&s.boil, at, scale, seconds), nudge);
+                let at = boiled(&boil, at, scale, seconds);
+                let mut ink = cracks.ink(at, nudge);
+                for stroke in &cracks.strokes {
+                    ink = larger(ink, stroke.ink(at, cracks.taper, nudge));
+                }
                 ink[0] = ink[0].max(whole[0]);
                 ink[1] = ink[1].max(whole[1]);
                 ink.map(|ink| decoded(stored(encoded(ink), nudge)))

@@ -66,6 +66,15 @@ pub fn step_excess(d: [f64; 6]) -> f64 {
             .max(0.0)
 }
 
+/// Whether the step between the third and the fourth of six raw depths is part of a curve
+/// that ends in a larger step beside it: the one on its other side is at least a tenth of it.
+pub fn is_outdone(d: [f64; 6]) -> bool {
+    let step = d[2] - d[3];
+    let down = if step >= 0.0 { 1.0 } else { -1.0 };
+    let [near, far] = [d[1] - d[2], d[3] - d[4]].map(|beside| down * beside);
+    near.max(far) > step.abs() && near.min(far) >= 0.1 * step.abs()
+}
+
 /// Response to an excess, 0 to 1: half of it is the `g_max - g_min` of Eq. 2.
 pub fn step_response(excess: f64, k: f64) -> f64 {
     (0.5 * excess.max(0.0) / k.max(1e-30)).powi(2).min(1.0)
@@ -88,6 +97,17 @@ pub fn is_ridge(folds: [Option<f64>; 3]) -> bool {
         return false;
     };
     fold > 0.0 && fold >= before && fold >= beyond
+}
+
+/// Whether the second of three folds in a row is sharper than 60 degrees and than its one
+/// neighbour, where the other is missing.
+pub fn is_rim_ridge(folds: [Option<f64>; 3]) -> bool {
+    match folds {
+        [Some(other), Some(fold), None] | [None, Some(fold), Some(other)] => {
+            fold >= 1.0 && fold >= other
+        }
+        _ => false,
+    }
 }
 
 /// Distance from a place to a segment.
@@ -117,4 +137,9 @@ pub fn line_offset(half_width: f64) -> f64 {
         return 0.5;
     }
     0.5 * (width.rem_euclid(2.0)).min(2.0 - width.rem_euclid(2.0))
+}
+
+/// Whether a raw depth is that of a surface in front of another one.
+pub fn is_in_front(d: f64, other: f64, jump: f64) -> bool {
+    d - other > jump
 }

@@ -1,16 +1,18 @@
 //! Twin of `effect/fused.wgsl` with the effects of this crate: the fused pass for
-//! one pixel, without the finish and the debug views.
+//! one pixel, without the finish, the debug views and screens of grains.
+
+use bevy::math::{UVec2, UVec4};
 
 use super::{
     Rgb, Rgba, black_flats, color, colorization, contours, desaturation,
     draw::Ink,
-    mix, read, sketch, tone_bands,
+    halftone, mix, print_offset, read, sketch, tone_bands,
     view::{View, map_slope, pixel_depth},
     vignette,
 };
 use bevy_comics::{
-    BlackFlats, Colorization, ComicStyle, Contours, Desaturation, Outlines, Sketch, ToneBands,
-    Vignette,
+    BlackFlats, Colorization, ComicStyle, Contours, Desaturation, Halftone, Outlines, PrintOffset,
+    Sketch, ToneBands, Vignette,
 };
 
 /// What the pass reads besides the view.
@@ -43,22 +45,29 @@ impl Input<'_> {
     }
 }
 
-/// The stylized pixel in linear light and its opacity, at a scale factor of 1 and a
-/// sketch amount of 1.
-///
-/// `nudge` moves every threshold slightly. Two calls with opposite nudges show how
-/// far rounding at a threshold can move the colour.
-pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, nudge: f64) -> Rgba {
-    let source = input.light(x, y);
-    let mut alpha = input.opacity(x, y);
-    let mut linear = source;
+/// A pixel after the effects that change colours, with its depth map and its complement.
+struct Colored {
+    picture: Rgba,
+    depth: [f64; 2],
+}
+
+fn colored(
+    style: &ComicStyle,
+    view: &View,
+    input: &Input,
+    [x, y]: [u32; 2],
+    nudge: f64,
+) -> Colored {
+    let alpha = input.opacity(x, y);
+    let mut linear = input.light(x, y);
     if let Some(s) = style.get::<ToneBands>() {
         let nudged = linear.map(|c| c * (1.0 + nudge));
         let change = (input.change(x, y) + nudge).max(0.0);
         let banded = tone_bands::banded_color(s, nudged, change, 1.0);
         linear = std::array::from_fn(|i| mix(linear[i], banded[i], alpha));
     }
-    let reads_map = style.get::<Desaturation>().is_some()
+    let reads_map = (style.get::<Halftone>()).is_some_and(|s| s.near != s.far)
+        || style.get::<Desaturation>().is_some()
         || style.get::<Colorization>().is_some()
         || style.get::<BlackFlats>().is_some()
         || style.get::<Contours>().is_some();
@@ -79,6 +88,81 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
     if let Some(s) = style.get::<Colorization>() {
         linear = colorization::colorize(s, linear, d, l, saturation);
     }
+    Colored {
+        picture: with(linear, alpha),
+        depth,
+    }
+}
+
+/// A picture of the viewport at a place between the centres of pixels. `load`: its pixels,
+/// by column and row of the target.
+fn between(viewport: [u32; 4], load: &dyn Fn([u32; 2]) -> Rgba, at: [f64; 2]) -> Rgba {
+    let corner = at.map(|v| (v - 0.5).floor());
+    let pixel = |dx: f64, dy: f64| {
+        let of = |axis: usize, by: f64| {
+            let first = f64::from(viewport[axis]);
+            let last = first + f64::from(viewport[axis + 2]) - 1.0;
+            (corner[axis] + by).clamp(first, last) as u32
+        };
+        load([of(0, dx), of(1, dy)])
+    };
+    let [fx, fy] = [at[0] - 0.5 - corner[0], at[1] - 0.5 - corner[1]];
+    let row = |dy| {
+        let (left, right) = (pixel(0.0, dy), pixel(1.0, dy));
+        std::array::from_fn::<f64, 4, _>(|i| mix(left[i], right[i], fx))
+    };
+    let (above, below) = (row(0.0), row(1.0));
+    std::array::from_fn(|i| mix(above[i], below[i], fy))
+}
+
+/// A pixel after the plates and screens.
+fn print(style: &ComicStyle, view: &View, input: &Input, at: [u32; 2], nudge: f64) -> Colored {
+    let mut pixel = colored(style, view, input, at, nudge);
+    // Between passes, the picture is stored in 11 bits.
+    let stored = if nudge == 0.0 {
+        1.0
+    } else {
+        1.0 + nudge.signum() / 2048.0
+    };
+    let load = |at| {
+        let [r, g, b, alpha] = colored(style, view, input, at, nudge).picture;
+        with([r, g, b].map(|c| c * stored), alpha)
+    };
+    let moved = |at: [u32; 2]| -> Rgba {
+        let Some(s) = style.get::<PrintOffset>() else {
+            return load(at);
+        };
+        let read = |at| between(view.viewport, &load, at);
+        let rgb = print_offset::print_offset(s, &read, at.map(|v| f64::from(v) + 0.5), 1.0);
+        with(rgb, load(at)[3])
+    };
+    if style.get::<PrintOffset>().is_some() {
+        pixel.picture = moved(at);
+    }
+    if let Some(s) = style.get::<Halftone>() {
+        let viewport = UVec4::from_array(view.viewport);
+        let read = |at| between(view.viewport, &moved, at);
+        let cells = halftone::Cells {
+            centre: halftone::centre(s, viewport, UVec2::from_array(input.size)),
+            picture: &read,
+        };
+        let at = at.map(|v| f64::from(v) + 0.5);
+        let rgb = halftone::halftone(s, pixel.picture, at, pixel.depth[0], &cells);
+        pixel.picture = with(rgb, pixel.picture[3]);
+    }
+    pixel
+}
+
+/// The stylized pixel in linear light and its opacity, at a scale factor of 1 and a
+/// sketch amount of 1.
+///
+/// `nudge` moves every threshold slightly. Two calls with opposite nudges show how
+/// far rounding at a threshold can move the colour.
+pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, nudge: f64) -> Rgba {
+    let source = input.light(x, y);
+    let printed = print(style, view, input, [x, y], nudge);
+    let (mut linear, mut alpha) = parts(printed.picture);
+    let [_, l] = printed.depth;
     if let Some(s) = style.get::<BlackFlats>() {
         let slope = map_slope(view, x, y) + nudge;
         let dark = black_flats::dark_area(s, source.map(|c| c - nudge), l);

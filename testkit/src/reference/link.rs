@@ -58,19 +58,13 @@ pub fn linked(cracks: &HashMap<Place, Crack>, steps: i32) -> HashSet<Place> {
     all
 }
 
-/// The cracks that are in pieces of at least `specks` cracks; at most 3 are counted.
-pub fn without_specks(linked: &HashSet<Place>, specks: u32) -> HashSet<Place> {
-    let size = |place: Place| {
-        let mut piece = HashSet::from([place]);
-        for _ in 0..2 {
-            let more: Vec<Place> = piece.iter().copied().flat_map(neighbours).collect();
-            piece.extend(more.into_iter().filter(|other| linked.contains(other)));
-        }
-        piece.len()
-    };
-    let kept = linked
-        .iter()
-        .filter(|place| size(**place) >= specks as usize);
+/// The cracks that are in pieces of at least `specks` cracks, in pieces that branch or are
+/// closed, or in pieces that reach the border of a grid of this size.
+pub fn without_specks(linked: &HashSet<Place>, size: [i64; 2], specks: u32) -> HashSet<Place> {
+    let kept = linked.iter().filter(|place| {
+        let piece = chain::piece(linked, **place, size);
+        piece.is_none_or(|cracks| cracks >= specks as usize)
+    });
     kept.copied().collect()
 }
 

@@ -11,11 +11,6 @@ pub fn share_at(frames: f64, speed: f64) -> f64 {
     (1.0 / frames.max(1.0) + speed / 8.0).min(1.0)
 }
 
-/// Whether what stood at a place has gone: raw depths of the last frame and of this one.
-pub fn is_uncovered(before: f64, now: f64, jump: f64) -> bool {
-    before - now > jump
-}
-
 /// Ink of one kind; `nearby`: the least and the largest ink nearby in this frame.
 pub fn remembered(past: f64, now: f64, nearby: [f64; 2], share: f64) -> f64 {
     let kept = past.max(nearby[0]).min(nearby[1]);

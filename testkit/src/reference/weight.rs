@@ -50,8 +50,8 @@ pub fn nib_weight(w: &LineWeight, [x, y]: [f64; 2]) -> f64 {
 }
 
 /// `cracks`: those between the crack and the loose end of its line.
-pub fn taper_weight(taper: f64, cracks: usize) -> f64 {
-    smoothstep(0.0, taper, cracks as f64 + 0.5)
+pub fn taper_weight(taper: f64, cracks: f64) -> f64 {
+    smoothstep(0.0, taper, cracks + 0.5)
 }
 
 /// A crack whose width is multiplied by a factor; `None` if nothing is left of it.

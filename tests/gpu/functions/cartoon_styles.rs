@@ -4,7 +4,7 @@ use super::*;
 use bevy_comics::{CartoonLight, Form, Sketch, ToneBands};
 use bevy_comics_testkit::reference::{edge, light, sketch, tone_bands};
 
-const EDGE: &str = "#import bevy_comics::lines::edge::{gradient, gradient_extremes, edge_response, component_response, step_excess, step_response, fold, fold_response, is_ridge, line_coverage, line_offset, segment_distance, pack_ink, unpack_crack, encode_ink, decode_ink}";
+const EDGE: &str = "#import bevy_comics::lines::edge::{gradient, gradient_extremes, edge_response, component_response, is_outdone, step_excess, step_response, fold, fold_response, is_ridge, is_rim_ridge, line_coverage, line_offset, segment_distance, pack_ink, unpack_crack, encode_ink, decode_ink}";
 
 /// A window of 5 x 5 depths, row by row (random, a step or a ramp), then `k` of Eq. 2
 /// and an unused element.
@@ -34,12 +34,21 @@ fn gradient_and_response_are_equations_1_and_2() {
              for (var n = 0u; n < 25u; n++) { v[n] = i(n); }
              let g = gradient_extremes(&v);
              let excess = step_excess(vec4(v[10]), vec4(v[11]), vec4(v[12]), vec4(v[13]), vec4(v[14]), vec4(v[15]));
-             return vec4(g, edge_response(g, i(25u)), excess.x);",
+             let outdone = is_outdone(vec4(v[11]), vec4(v[12]), vec4(v[13]), vec4(v[14])).x;
+             return vec4(g.x, select(g.y, -g.y - 1.0, outdone), edge_response(g, i(25u)), excess.x);",
             rows,
         );
         for (row, result) in rows.iter().zip(results) {
             let w: [[f64; 5]; 5] =
                 std::array::from_fn(|r| std::array::from_fn(|c| f64::from(row[5 * r + c])));
+            // The largest gradient is at least 0: a negative one says that a step is outdone.
+            let outdone = result[1] < 0.0;
+            let result = [
+                result[0],
+                if outdone { -result[1] - 1.0 } else { result[1] },
+                result[2],
+                result[3],
+            ];
             let g = edge::gradient_extremes(&w, |a: f64, b: f64| (a - b).abs());
             // A sum of at most 12, divided by eight: 12 roundings, each half an ulp of
             // a number below 16, which is 2^-24 after the division.
@@ -61,7 +70,16 @@ fn gradient_and_response_are_equations_1_and_2() {
                 (f64::from(result[2]) - p).abs() <= slack,
                 "{row:?}: {result:?}, {p}"
             );
-            let excess = edge::step_excess([w[2][0], w[2][1], w[2][2], w[2][3], w[2][4], w[3][0]]);
+            let six = [w[2][0], w[2][1], w[2][2], w[2][3], w[2][4], w[3][0]];
+            let excess = edge::step_excess(six);
+            // Differences of equal steps are rounding.
+            let steps = [1, 2, 3].map(|i: usize| (six[i] - six[i + 1]).abs());
+            let [low, high] = [steps[0].min(steps[2]), steps[0].max(steps[2])];
+            let tie = (steps[1] - high).abs().min((0.1 * steps[1] - low).abs()) < 1e-6;
+            assert!(
+                tie || outdone == edge::is_outdone(six),
+                "{row:?}: {result:?}"
+            );
             assert!(
                 (f64::from(result[3]) - excess).abs() <= 2f64.powi(-22),
                 "{row:?}"
@@ -118,7 +136,8 @@ fn creases_are_their_twin_in_both_forms() {
              for (var n = 0u; n < 25u; n++) { v[n] = vec4(i(4u*n), i(4u*n+1u), i(4u*n+2u), i(4u*n+3u)); }
              let folds = vec3(fold(v[0], v[1]), fold(v[1], v[2]), fold(v[2], v[3]));
              let ridge = is_ridge(vec4(folds.x), vec4(folds.y), vec4(folds.z)).x;
-             return vec4(folds.y, fold_response(vec4(folds.y), i(100u)).x, component_response(&v, i(100u)), select(0.0, 1.0, ridge));",
+             let rim = is_rim_ridge(vec4(folds.x), vec4(folds.y), vec4(folds.z)).x;
+             return vec4(folds.y, fold_response(vec4(folds.y), i(100u)).x, component_response(&v, i(100u)), select(select(0.0, 2.0, rim), 1.0, ridge));",
             rows,
         );
         for (row, result) in rows.iter().zip(results) {
@@ -141,9 +160,14 @@ fn creases_are_their_twin_in_both_forms() {
                 (f64::from(result[1]) - response).abs() <= step / (k * k),
                 "{result:?} {response}"
             );
-            let ridge = f32::from(u8::from(edge::is_ridge(folds)));
+            let rim = edge::is_rim_ridge(folds);
+            let ridge = match edge::is_ridge(folds) {
+                true => 1.0,
+                false => 2.0 * f32::from(u8::from(rim)),
+            };
             let known = folds.map(|f| f.unwrap_or(9.0));
-            let tie = (known[1] - known[0]).abs().min((known[1] - known[2]).abs()) <= step;
+            let tie = (known[1] - known[0]).abs().min((known[1] - known[2]).abs()) <= step
+                || (known[1] - 1.0).abs() <= step;
             assert!(tie || result[3] == ridge, "{result:?} {folds:?}");
             let p = edge::component_response(&w, k);
             assert!(

@@ -1,7 +1,8 @@
 //! What lines remember of the frames before, and lines in the colour of surfaces.
 
 use bevy_comics_testkit::reference::{
-    memory::{frames_at, is_uncovered, remembered, share_at},
+    edge::is_in_front,
+    memory::{frames_at, remembered, share_at},
     surface::surface_ink,
 };
 
@@ -22,11 +23,12 @@ fn the_memory_of_lines_is_that_of_the_twin() {
         });
     for_batches(row, |rows| {
         let results = gpu().evaluate(
-            "#import bevy_comics::lines::memory::{frames_at, is_uncovered, remembered, share_at}",
+            "#import bevy_comics::lines::edge::is_in_front
+             #import bevy_comics::lines::memory::{frames_at, remembered, share_at}",
             "let frames = frames_at(i(6u), i(4u), i(5u));
              let share = share_at(frames, i(5u));
              let ink = remembered(vec3(i(0u)), vec3(i(1u)), vec3(i(2u)), vec3(i(3u)), share);
-             return vec4(share, ink.y, frames, f32(is_uncovered(i(0u), i(1u), i(2u))));",
+             return vec4(share, ink.y, frames, f32(is_in_front(i(0u), i(1u), i(2u))));",
             rows,
         );
         for (row, found) in rows.iter().zip(results) {
@@ -39,7 +41,7 @@ fn the_memory_of_lines_is_that_of_the_twin() {
                 assert!(away < 1e-5 * want.max(1.0), "{row:?}: {found}, {want}");
             }
             if (past - now - least).abs() > 1e-6 {
-                let uncovered = is_uncovered(past, now, least);
+                let uncovered = is_in_front(past, now, least);
                 assert_eq!(found[3] == 1.0, uncovered, "{row:?}");
             }
         }

@@ -184,7 +184,7 @@ fn a_tapered_line_is_whole_behind_its_length() {
         WEIGHT,
         "var w: Weight;
          w.taper = i(0u);
-         return vec4(taper_weight(w, i32(i(1u))));",
+         return vec4(taper_weight(w, i(1u)));",
         &rows,
     );
     let mut before = 0.0;
@@ -192,7 +192,7 @@ fn a_tapered_line_is_whole_behind_its_length() {
         let [taper, cracks] = *row;
         assert_close(
             found[0],
-            taper_weight(f64::from(taper), cracks as usize),
+            taper_weight(f64::from(taper), f64::from(cracks)),
             row,
         );
         if cracks == 0.0 {

@@ -1,0 +1,124 @@
+//! Divides the effects of a plan into passes.
+
+use std::ops::Range;
+
+use super::{AnyEffect, EffectStage, Needs, Plan};
+use crate::finish::DebugView;
+
+/// Which of the drawn effects of a plan a pass applies.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Pass {
+    /// Positions in [`Plan::drawn`].
+    pub effects: Range<usize>,
+    /// The pass starts from the picture that the one before has drawn.
+    pub continued: bool,
+    /// Draws that picture for the next pass; else the view's picture.
+    pub layer: bool,
+}
+
+/// The passes of a plan, in order: one, and one more for each effect that reads the picture
+/// before it at other places. A debug view ends with the pass of its effect.
+pub(super) fn passes(plan: &Plan) -> Vec<Pass> {
+    let reads = |effect: &dyn AnyEffect| effect.any_needs().contains(Needs::PICTURE);
+    let count = plan.drawn().count();
+    let mut starts = vec![0];
+    starts.extend(
+        plan.drawn()
+            .enumerate()
+            .filter_map(|(i, effect)| reads(effect).then_some(i)),
+    );
+    let shown = plan.view.map(|view| last_shown(plan, view));
+    starts.retain(|start| *start == 0 || shown.is_none_or(|shown| *start <= shown));
+    let ends = starts.iter().copied().skip(1).chain([count]);
+    let last = starts.len() - 1;
+    starts
+        .iter()
+        .copied()
+        .zip(ends)
+        .enumerate()
+        .map(|(i, (start, end))| Pass {
+            effects: start..end,
+            continued: i > 0,
+            layer: i < last,
+        })
+        .collect()
+}
+
+/// The last effect that a debug view depends on, as a position in [`Plan::drawn`].
+fn last_shown(plan: &Plan, view: DebugView) -> usize {
+    let at = |name| plan.drawn().position(|e| e.effect_type().name == name);
+    match view {
+        DebugView::Effect(name) => at(name).unwrap_or(0),
+        DebugView::Difference => usize::MAX,
+        DebugView::Saturation => plan
+            .drawn()
+            .take_while(|effect| effect.effect_type().stage <= EffectStage::Color)
+            .count()
+            .saturating_sub(1),
+        _ => 0,
+    }
+}
+
+impl Plan {
+    /// Whether the colours are printed: the view is then styled after FXAA and SMAA.
+    pub(super) fn prints(&self) -> bool {
+        self.drawn()
+            .any(|effect| effect.effect_type().stage == EffectStage::Print)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::ecs::{bundle::Bundle, world::World};
+
+    use super::*;
+    use crate::{
+        Desaturation, EffectRegistry, Halftone, Outlines, PrintOffset, ScreenSampling,
+        objects::ObjectChanges,
+    };
+
+    fn divided(camera: impl Bundle) -> Vec<(Range<usize>, bool, bool)> {
+        let mut world = World::new();
+        let camera = world.spawn(camera).id();
+        let types = EffectRegistry::built_in().types();
+        let plan = Plan::new(world.entity(camera), &[], &types, ObjectChanges::default());
+        passes(&plan.expect("a plan"))
+            .into_iter()
+            .map(|pass| (pass.effects, pass.continued, pass.layer))
+            .collect()
+    }
+
+    const CELLS: ScreenSampling = ScreenSampling::Cell;
+
+    #[test]
+    fn only_effects_that_read_the_picture_elsewhere_divide_the_pass() {
+        let colors = (Desaturation::default(), Outlines::default());
+        assert_eq!(
+            divided((colors, Halftone::default())),
+            [(0..3, false, false)]
+        );
+        assert_eq!(
+            divided((colors, PrintOffset::default(), Halftone::default())),
+            [(0..1, false, true), (1..4, true, false)]
+        );
+        let cells = Halftone {
+            sampling: CELLS,
+            ..Default::default()
+        };
+        assert_eq!(
+            divided((colors, PrintOffset::default(), cells)),
+            [(0..1, false, true), (1..2, true, true), (2..4, true, false)]
+        );
+        // The first effect reads the picture: the first pass only copies it.
+        assert_eq!(divided(cells), [(0..0, false, true), (0..1, true, false)]);
+    }
+
+    #[test]
+    fn debug_views_end_with_what_they_show() {
+        let styled = (Desaturation::default(), PrintOffset::default());
+        for view in [DebugView::DepthMap, DebugView::Saturation] {
+            assert_eq!(divided((styled, view)), [(0..2, false, false)]);
+        }
+        assert_eq!(divided((styled, DebugView::Difference)).len(), 2);
+    }
+}

@@ -1,0 +1,149 @@
+#define_import_path bevy_comics::effect::screen
+
+// Screens: how much of a pixel a plate prints for a tone. Pure functions.
+//
+// `at` are the coordinates of a pixel in cells of the screen, whose dots are at whole
+// numbers. `tone` is the fraction of the area that is printed, 0 to 1: the mean of the
+// coverage over a screen. `period` is the size of a cell in physical pixels.
+
+#import bevy_comics::effect::color::cube_root
+
+const PI: f32 = 3.1415927;
+
+// Tone at which the discs of neighbouring cells touch.
+const TOUCH: f32 = 0.7853982;
+
+// Below this tone, and above 1 minus it, dots and holes do not become smaller but paler,
+// so that no pixel changes abruptly.
+const LEAST: f32 = 0.03125;
+
+// The cosine of an angle in turns, by a minimax polynomial (Hastings 1955): its own error
+// is below 1e-7.
+fn cos_turn(x: f32) -> f32 {
+    let q = 4.0 * abs(x - round(x)) - 1.0;
+    let t = q * q;
+    return -q * (1.5707963 + t * (-0.64596371 + t * (0.07968968 + t * (-0.00467377 + t * 0.00015148))));
+}
+
+fn sin_turn(x: f32) -> f32 {
+    return cos_turn(x - 0.25);
+}
+
+// Radius in pixels of the discs of a tone. An edge that is drawn as a ramp of one pixel
+// has pi / 12 square pixels more than the disc: its variance. Touching discs: fitted.
+fn disc_radius(tone: f32, period: f32) -> f32 {
+    if tone > TOUCH {
+        let root = sqrt((1.0 - tone) / (1.0 - TOUCH));
+        return period * (0.70710678 - root * (0.2471 - 0.04 * root));
+    }
+    let square = tone * period * period / PI;
+    return select(cube_root(3.0 * square) - 0.5, sqrt(max(square - 1.0 / 12.0, 0.0)), square >= 1.0 / 3.0);
+}
+
+// A disc and the three next to the pixel. Edges that face each other add up; where discs
+// overlap, some of it is covered twice: fitted.
+fn disc(at: vec2<f32>, tone: f32, period: f32) -> f32 {
+    let radius = disc_radius(tone, period) + 0.5;
+    let own = abs(at - round(at)) * period;
+    let other = period - own;
+    let near = clamp(radius - length(own), 0.0, 1.0);
+    let beside = clamp(radius - length(vec2(other.x, own.y)), 0.0, 1.0);
+    let below = clamp(radius - length(vec2(own.x, other.y)), 0.0, 1.0);
+    let across = clamp(radius - length(other), 0.0, 1.0);
+    let largest = max(max(near, beside), max(below, across));
+    let sum = min(near + beside + below + across, 1.0);
+    let overlap = smoothstep(0.77, 0.8, tone);
+    return mix(sum, largest, 0.31 * overlap);
+}
+
+// Dots that grow into a chequerboard and leave holes: a threshold of a sum of cosines.
+fn checker(at: vec2<f32>, tone: f32, period: f32) -> f32 {
+    let height = 0.5 * (cos_turn(at.x) + cos_turn(at.y));
+    // The ramp at the edge of a dot adds to it, that of a hole takes from the rest.
+    let curved = clamp((0.5 - tone) / 0.15, -1.0, 1.0);
+    let x = 1.0 - 2.0 * (tone - curved * PI / (12.0 * period * period));
+    let threshold = x * (0.40 + 0.65 * abs(x) - 0.05 * x * x);
+    let slope = PI / period * max(length(vec2(sin_turn(at.x), sin_turn(at.y))), 0.5);
+    return clamp(0.5 + (height - threshold) / slope, 0.0, 1.0);
+}
+
+// Discs in the lights, a chequerboard in the middle, round holes in the shadows
+// (Ostromoukhov and Hersch 1995 call it Euclidean).
+fn euclidean(at: vec2<f32>, tone: f32, period: f32) -> f32 {
+    let middle = checker(at, tone, period);
+    let dark = tone > 0.5;
+    let round_part = disc(select(at, at + 0.5, dark), select(tone, 1.0 - tone, dark), period);
+    let ends = select(round_part, 1.0 - round_part, dark);
+    return mix(ends, middle, clamp((0.35 - abs(tone - 0.5)) / 0.15, 0.0, 1.0));
+}
+
+// The integral of lines of a tone, which begin at whole numbers.
+fn line_area(x: f32, tone: f32) -> f32 {
+    let whole = floor(x);
+    return whole * tone + min(x - whole, tone);
+}
+
+// Lines across x, exact for a pixel that is `footprint` cells wide along it.
+fn line(x: f32, tone: f32, footprint: f32) -> f32 {
+    // Only the place in the cell matters; small numbers are exact.
+    let from_start = x - floor(x) + 0.5 * tone;
+    let half = 0.5 * footprint;
+    return (line_area(from_start + half, tone) - line_area(from_start - half, tone)) / footprint;
+}
+
+// Half the diagonal of the diamonds of a tone up to 1/2, in cells. `half_ramp`: half the
+// width of the edge's ramp along x or y, in cells. Squares gain the variance of the ramp;
+// those that nearly touch lose it again to their neighbours.
+fn diamond_radius(tone: f32, half_ramp: f32) -> f32 {
+    let h = half_ramp;
+    if tone < 4.0 / 3.0 * h * h {
+        return cube_root(3.0 * h * tone) - h;
+    }
+    let free = sqrt(max(0.5 * (tone - 2.0 / 3.0 * h * h), 0.0));
+    if free <= 0.5 - h {
+        return free;
+    }
+    // Newton's method for the cubic equation of the mean.
+    var d = (tone - 0.5) / (2.0 - 2.0 * h);
+    for (var i = 0; i < 2; i++) {
+        let off = 0.5 + 2.0 * d * (1.0 - h) - 2.0 / 3.0 * d * d * d / h - tone;
+        d -= off / (2.0 - 2.0 * h - 2.0 * d * d / h);
+    }
+    return 0.5 + d;
+}
+
+// Diamonds: `footprint` is the width of a pixel across their edges, in cells.
+fn diamond(at: vec2<f32>, tone: f32, footprint: f32) -> f32 {
+    let offset = abs(at - round(at));
+    // Wider ramps of opposite corners would meet.
+    let half_ramp = min(footprint * 0.70710678, 0.25);
+    let dark = tone > 0.5;
+    let part = diamond_radius(select(tone, 1.0 - tone, dark), half_ramp);
+    let radius = select(part, 1.0 - part, dark);
+    return clamp(0.5 + (radius - offset.x - offset.y) / (2.0 * half_ramp), 0.0, 1.0);
+}
+
+// Lines in two directions, independent of each other.
+fn cross_lines(at: vec2<f32>, tone: f32, footprint: f32) -> f32 {
+    let each = 1.0 - sqrt(max(1.0 - tone, 0.0));
+    return 1.0 - (1.0 - line(at.x, each, footprint)) * (1.0 - line(at.y, each, footprint));
+}
+
+// Whether a grain of a threshold is printed, with a short ramp.
+fn grain_cover(tone: f32, threshold: f32) -> f32 {
+    return clamp((tone - threshold) * 96.0 + 0.5, 0.0, 1.0);
+}
+
+// The tone with dot gain: dots grow most in the middle tones.
+fn gained(tone: f32, gain: f32) -> f32 {
+    return clamp(tone + 4.0 * gain * tone * (1.0 - tone), 0.0, 1.0);
+}
+
+// The tone in a number of equal steps; 0: as it is.
+fn tinted(tone: f32, tints: f32) -> f32 {
+    if tints < 0.5 {
+        return tone;
+    }
+    let x = tone * tints;
+    return (floor(x) + smoothstep(0.45, 0.55, x - floor(x))) / tints;
+}

@@ -1,0 +1,237 @@
+#define_import_path bevy_comics::effects::halftone
+
+// Prints the picture with screens of dots or lines.
+
+#import bevy_comics::effect::color::{lightness, luminance, separated}
+#import bevy_comics::effect::pixel::Pixel
+#import bevy_comics::effect::screen::{
+    LEAST, cross_lines, diamond, disc, euclidean, gained, grain_cover, line, tinted,
+}
+#ifdef HALFTONE_CELLS
+#import bevy_comics::effect::picture::picture_at
+#endif
+
+const MODE_CMYK: u32 = 0u;
+const MODE_SPOT: u32 = 1u;
+const MODE_DUOTONE: u32 = 2u;
+const MODE_RGB: u32 = 3u;
+
+const SHAPE_ROUND: u32 = 0u;
+const SHAPE_EUCLIDEAN: u32 = 1u;
+const SHAPE_LINE: u32 = 2u;
+const SHAPE_DIAMOND: u32 = 3u;
+const SHAPE_CROSS: u32 = 4u;
+const SHAPE_STOCHASTIC: u32 = 5u;
+
+struct Halftone {
+    // Cosines and sines of the angles of the plates (cyan, magenta, yellow, black),
+    // divided by the period.
+    cosines: vec4<f32>,
+    sines: vec4<f32>,
+    // Light that each ink takes away, in w: unused.
+    cyan: vec4<f32>,
+    magenta: vec4<f32>,
+    yellow: vec4<f32>,
+    black: vec4<f32>,
+    paper: vec3<f32>,
+    opacity: f32,
+    // Where the screens begin: physical pixels in the render target.
+    centre: vec2<f32>,
+    // Physical pixels: period of the screens, and size of a grain.
+    period: f32,
+    grain: f32,
+    // Fraction of the screens at the near and the far end of the depth map.
+    near: f32,
+    far: f32,
+    // Lightness from which the screens fade out.
+    below: f32,
+    black_generation: f32,
+    gain: f32,
+    tints: f32,
+    // Lightness that is printed solid, and 1 / the difference to that of bare paper.
+    shadows: f32,
+    contrast: f32,
+    // Duotone: darkness at which the first ink is solid.
+    pivot: f32,
+    mode: u32,
+    shape: u32,
+    unused: u32,
+    // Ranks of 64 x 64 grains, row by row, a byte each.
+    grains: array<vec4<u32>, 256>,
+}
+
+// The mode: compiled in by the fused pass, else that of the settings.
+fn mode_of(s: Halftone) -> u32 {
+#ifdef HALFTONE_MODE
+    return #{HALFTONE_MODE}u;
+#else
+    return s.mode;
+#endif
+}
+
+fn shape_of(s: Halftone) -> u32 {
+#ifdef HALFTONE_SHAPE
+    return #{HALFTONE_SHAPE}u;
+#else
+    return s.shape;
+#endif
+}
+
+// A colour in linear light with its lightness stretched from shadows to highlights.
+fn stretched(s: Halftone, color: vec3<f32>) -> vec3<f32> {
+    let c = clamp(color, vec3(0.0), vec3(1.0));
+    let level = clamp((sqrt(c) - s.shadows) * s.contrast, vec3(0.0), vec3(1.0));
+    return select(level * level, c, s.shadows == 0.0 && s.contrast == 1.0);
+}
+
+fn printed_tone(s: Halftone, tone: f32) -> f32 {
+    return gained(tinted(clamp(tone, 0.0, 1.0), s.tints), s.gain);
+}
+
+// Tones of the plates for a colour in linear light: cyan, magenta, yellow, black; in
+// MODE_RGB of the lights red, green, blue.
+fn plate_tones(s: Halftone, color: vec3<f32>) -> vec4<f32> {
+    let c = stretched(s, color);
+    let mode = mode_of(s);
+    let dark = 1.0 - luminance(c);
+    var tones = vec4(0.0, 0.0, 0.0, dark);
+    if mode == MODE_CMYK {
+        tones = separated(c, s.black_generation);
+    } else if mode == MODE_DUOTONE {
+        // The second ink begins where the first is solid.
+        tones.x = min(dark / s.pivot, 1.0);
+        tones.w = (dark - s.pivot) / (1.0 - s.pivot);
+    } else if mode == MODE_RGB {
+        tones = vec4(c, 0.0);
+    }
+    return vec4(
+        printed_tone(s, tones.x), printed_tone(s, tones.y),
+        printed_tone(s, tones.z), printed_tone(s, tones.w),
+    );
+}
+
+// Coordinates of a place in the cells of a plate. `turn`: cosine and sine / period.
+fn cell_at(place: vec2<f32>, turn: vec2<f32>, phase: f32) -> vec2<f32> {
+    return vec2(dot(place, turn), dot(place, vec2(-turn.y, turn.x))) + phase;
+}
+
+// Threshold of a grain, 0 to 1.
+fn threshold(s: Halftone, at: vec2<i32>) -> f32 {
+    let place = at & vec2(63);
+    let i = u32(place.y * 64 + place.x);
+    let word = s.grains[i >> 4u][(i >> 2u) & 3u];
+    return (f32((word >> ((i & 3u) * 8u)) & 255u) + 0.5) / 256.0;
+}
+
+// Square grains that are printed or not, averaged over the pixel. Each plate has its own
+// part of the tile.
+fn stochastic(s: Halftone, place: vec2<f32>, tone: f32, plate: i32) -> f32 {
+    let half = 0.5 / s.grain;
+    let low = place / s.grain - half;
+    let first = floor(low);
+    let f = clamp((low + 2.0 * half - first - 1.0) / (2.0 * half), vec2(0.0), vec2(1.0));
+    let at = vec2<i32>(first) + plate * vec2(19, 37);
+    let upper = mix(grain_cover(tone, threshold(s, at)), grain_cover(tone, threshold(s, at + vec2(1, 0))), f.x);
+    let lower = mix(
+        grain_cover(tone, threshold(s, at + vec2(0, 1))), grain_cover(tone, threshold(s, at + vec2(1, 1))), f.x,
+    );
+    return mix(upper, lower, f.y);
+}
+
+// Coverage of a pixel by a plate (0 cyan, 1 magenta, 2 yellow, 3 black). `place`: pixels
+// from where the screens begin.
+fn plate_cover(s: Halftone, place: vec2<f32>, plate: i32, tone: f32) -> f32 {
+    let t = clamp(tone, LEAST, 1.0 - LEAST);
+    let turn = vec2(s.cosines[plate], s.sines[plate]);
+    let at = cell_at(place, turn, plate_phase(plate));
+    let sides = abs(turn);
+    let shape = shape_of(s);
+    var k = 0.0;
+    if shape == SHAPE_ROUND {
+        k = disc(at, t, s.period);
+    } else if shape == SHAPE_EUCLIDEAN {
+        k = euclidean(at, t, s.period);
+    } else if shape == SHAPE_LINE {
+        k = line(at.x, t, sides.x + sides.y);
+    } else if shape == SHAPE_DIAMOND {
+        k = diamond(at, t, 1.4142135 * max(sides.x, sides.y));
+    } else if shape == SHAPE_CROSS {
+        k = cross_lines(at, t, sides.x + sides.y);
+    } else {
+        k = stochastic(s, place, t, plate);
+    }
+    // Paler instead of smaller.
+    if tone < LEAST {
+        return k * tone / LEAST;
+    }
+    return 1.0 - (1.0 - k) * min((1.0 - tone) / LEAST, 1.0);
+}
+
+// A quarter of a cell keeps black independent of the others: at 15, 75 and 45 degrees,
+// the sum of the frequencies of cyan and magenta is that of black.
+fn plate_phase(plate: i32) -> f32 {
+    return select(0.0, 0.25, plate == 3);
+}
+
+// Fraction of the screens at a pixel, 0 (plain tones) to 1.
+fn screen_amount(s: Halftone, color: vec3<f32>, depth: f32) -> f32 {
+    let shade = 1.0 - smoothstep(s.below, s.below + 0.1, lightness(color));
+    return mix(s.near, s.far, depth) * shade;
+}
+
+// The colour of inks on paper. `k`: coverage of each plate.
+fn inked(s: Halftone, k: vec4<f32>) -> vec3<f32> {
+    if mode_of(s) == MODE_RGB {
+        return k.xyz;
+    }
+    return s.paper * (1.0 - k.x * s.cyan.rgb) * (1.0 - k.y * s.magenta.rgb)
+        * (1.0 - k.z * s.yellow.rgb) * (1.0 - k.w * s.black.rgb);
+}
+
+#ifdef HALFTONE_CELLS
+// The mean colour of four places in the cell of a plate that a pixel lies in; `own` where
+// the background shows through.
+fn cell_color(s: Halftone, position: vec2<f32>, own: vec3<f32>, plate: i32) -> vec3<f32> {
+    let turn = vec2(s.cosines[plate], s.sines[plate]);
+    let at = cell_at(position - s.centre, turn, plate_phase(plate));
+    var sum = vec3(0.0);
+    for (var i = 0; i < 4; i++) {
+        let e = round(at) - at + 0.5 * vec2(f32(i & 1), f32(i >> 1u)) - 0.25;
+        let back = s.period * s.period * vec2(dot(e, vec2(turn.x, -turn.y)), dot(e, turn.yx));
+        let found = picture_at(position + back);
+        sum += found.rgb + (1.0 - found.a) * own;
+    }
+    return 0.25 * sum;
+}
+#endif
+
+// Coverage at a pixel by a plate whose tone is `tone` there.
+fn screened(s: Halftone, p: Pixel, color: vec3<f32>, amount: f32, plate: i32, tone: f32) -> f32 {
+    var read = tone;
+#ifdef HALFTONE_CELLS
+    read = plate_tones(s, cell_color(s, p.position, color, plate))[plate];
+#endif
+    return mix(read, plate_cover(s, p.position - s.centre, plate, read), amount);
+}
+
+fn halftone(s: Halftone, p: Pixel) -> Pixel {
+    var out = p;
+    let color = p.color / max(p.alpha, 1e-3);
+    let tones = plate_tones(s, color);
+    let amount = screen_amount(s, color, p.depth.x);
+    let mode = mode_of(s);
+    var k = vec4(0.0);
+    if mode != MODE_SPOT {
+        k.x = screened(s, p, color, amount, 0, tones.x);
+    }
+    if mode == MODE_CMYK || mode == MODE_RGB {
+        k.y = screened(s, p, color, amount, 1, tones.y);
+        k.z = screened(s, p, color, amount, 2, tones.z);
+    }
+    if mode != MODE_RGB {
+        k.w = screened(s, p, color, amount, 3, tones.w);
+    }
+    // Nothing is printed where the background shows through.
+    out.color = mix(p.color, inked(s, k) * p.alpha, s.opacity);
+    return out;
+}

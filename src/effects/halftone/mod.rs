@@ -1,0 +1,273 @@
+//! Prints the picture with screens of dots or lines.
+
+mod grains;
+mod kinds;
+mod settings;
+
+use bevy::{
+    color::Color,
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::{UVec2, UVec4, Vec2, Vec3, Vec4, Vec4Swizzles},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+pub use kinds::{HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape};
+
+use crate::{
+    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
+    settings::{BlendField, FieldRange, file_color, linear_rgb},
+};
+
+/// Prints the colours of the picture with screens of dots or lines: four-colour print,
+/// screentone, Ben-Day dots.
+///
+/// The picture is separated into plates, in linear light; each prints its tone as dots
+/// that cover that fraction of the area. With ideal inks on white paper, the mean of a
+/// flat area is its colour. Screens stand still on the page. Lines and areas of ink are
+/// drawn over the print, and stay sharp. What is brighter than white is printed as white.
+///
+/// Screens of less than 2.5 physical pixels fade into plain tones. The views of cameras
+/// with this effect are styled after FXAA and SMAA, which would smear the dots.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Halftone {
+    /// Which plates there are. Default: [`HalftoneMode::Cmyk`].
+    pub mode: HalftoneMode,
+    /// What a screen consists of. Default: [`ScreenShape::Euclidean`].
+    pub shape: ScreenShape,
+    /// Size of a cell of the screens in logical pixels. The grains of
+    /// [`ScreenShape::Stochastic`] have a third of it, at least a physical pixel. Range 2.5
+    /// to 40, default 6.
+    #[reflect(@FieldRange::logarithmic(2.5, 40.0).unit("px"))]
+    pub period: f32,
+    /// Fraction of the darkness that cyan, magenta and yellow share which is printed in
+    /// black instead, in [`HalftoneMode::Cmyk`]. Range 0 to 1, default 0.7.
+    #[reflect(@FieldRange::FRACTION)]
+    pub black_generation: f32,
+    /// Dot gain: how much darker the middle tones are printed, as ink spreads. 0.2 adds a
+    /// fifth of the area to a tone of a half. Range 0 to 0.3, default 0.
+    #[reflect(@FieldRange::linear(0.0, 0.3))]
+    pub gain: f32,
+    /// Number of tones of each plate besides bare paper, in equal steps: the few tints of
+    /// Ben-Day dots. Range 0 (all tones) to 12, default 0.
+    #[reflect(@FieldRange::linear(0.0, 12.0), @BlendField::Switch)]
+    pub tints: u32,
+    /// Lightness (0 black, 1 white) up to which ink is solid. Range 0 to 0.9, default 0.
+    #[reflect(@FieldRange::linear(0.0, 0.9))]
+    pub shadows: f32,
+    /// Lightness from which the paper stays bare, at least 0.05 more than `shadows`.
+    /// Range 0.1 to 1, default 1.
+    #[reflect(@FieldRange::linear(0.1, 1.0))]
+    pub highlights: f32,
+    /// Where the tone of a dot is read. Default: [`ScreenSampling::Pixel`].
+    pub sampling: ScreenSampling,
+    /// How much of the screens is seen at the near end of the depth map; the rest is
+    /// printed as plain tones. Range 0 to 1, default 1. The depth map is read if `near` and
+    /// `far` differ.
+    #[reflect(@FieldRange::FRACTION)]
+    pub near: f32,
+    /// The same at the far end. Range 0 to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub far: f32,
+    /// Lightness up to which screens are seen; within 0.1 above it they become plain
+    /// tones. Range 0 to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub below: f32,
+    /// Where the screens are fixed. Default: [`ScreenAnchor::View`].
+    pub anchor: ScreenAnchor,
+    /// The cyan ink, and the first ink of [`HalftoneMode::Duotone`]. Default: a process
+    /// cyan. Components of inks are clamped to what a display shows; alpha is ignored.
+    #[serde(with = "file_color")]
+    pub cyan: Color,
+    /// The magenta ink. Default: a process magenta.
+    #[serde(with = "file_color")]
+    pub magenta: Color,
+    /// The yellow ink. Default: a process yellow.
+    #[serde(with = "file_color")]
+    pub yellow: Color,
+    /// The black ink, the ink of [`HalftoneMode::Spot`], and the second ink of
+    /// [`HalftoneMode::Duotone`]. Default: a warm black.
+    #[serde(with = "file_color")]
+    pub black: Color,
+    /// The paper. Default: a warm white. [`HalftoneMode::Rgb`] has black ground instead.
+    #[serde(with = "file_color")]
+    pub paper: Color,
+    /// Angle of the cyan screen in degrees, clockwise; of the red one in
+    /// [`HalftoneMode::Rgb`]. Range -180 to 180, default 15.
+    #[reflect(@FieldRange::linear(-180.0, 180.0).unit("°"))]
+    pub cyan_angle: f32,
+    /// Angle of the magenta screen, or of the green one. Range -180 to 180, default 75.
+    #[reflect(@FieldRange::linear(-180.0, 180.0).unit("°"))]
+    pub magenta_angle: f32,
+    /// Angle of the yellow screen, or of the blue one. Range -180 to 180, default 0.
+    #[reflect(@FieldRange::linear(-180.0, 180.0).unit("°"))]
+    pub yellow_angle: f32,
+    /// Angle of the black screen. Range -180 to 180, default 45.
+    #[reflect(@FieldRange::linear(-180.0, 180.0).unit("°"))]
+    pub black_angle: f32,
+    /// How much of the print is seen over the picture. Range 0 (the effect is left out) to
+    /// 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub opacity: f32,
+}
+
+impl Effect for Halftone {
+    const NAME: &'static str = "halftone";
+    const STAGE: EffectStage = EffectStage::Print;
+    const SHADER: EffectShader = EffectShader {
+        path: "bevy_comics::effects::halftone",
+        source: include_str!("halftone.wgsl"),
+        settings: Some("Halftone"),
+    };
+    type Uniform = HalftoneUniform;
+
+    fn sanitized(self) -> Self {
+        self.clamped()
+    }
+
+    fn strength(&self) -> f32 {
+        self.opacity
+    }
+
+    fn faded(self, fraction: f32) -> Self {
+        let opacity = self.opacity * fraction;
+        Self { opacity, ..self }
+    }
+
+    fn needs(&self) -> Needs {
+        let mut needs = Needs::empty();
+        needs.set(Needs::MAP, self.near != self.far);
+        needs.set(Needs::PICTURE, self.reads_cells());
+        needs
+    }
+
+    fn without(self, missing: Needs) -> Option<Self> {
+        // Without the map, screens are as at its far end, as for the sky.
+        let near = if missing.contains(Needs::MAP) {
+            self.far
+        } else {
+            self.near
+        };
+        Some(Self { near, ..self })
+    }
+
+    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+        variants.number("MODE", self.mode as u32);
+        variants.number("SHAPE", self.shape as u32);
+        variants.flag("CELLS", self.reads_cells());
+    }
+
+    fn map_faded(self, fraction: f32) -> Self {
+        let near = self.far + (self.near - self.far) * fraction;
+        Self { near, ..self }
+    }
+
+    fn uniform(&self, view: &ViewFacts) -> HalftoneUniform {
+        let period = self.period * view.scale_factor;
+        let turns = self.angles().map(|degrees| degrees.to_radians());
+        let inks = [self.cyan, self.magenta, self.yellow, self.black];
+        let [cyan, magenta, yellow, black] =
+            inks.map(|ink| (Vec3::ONE - linear_rgb(ink)).extend(0.0));
+        // Finer screens than the picture can show would be noise.
+        let shown = smooth((period - 1.5) / (2.5 - 1.5));
+        let stochastic = self.shape == ScreenShape::Stochastic;
+        let shown = if stochastic { 1.0 } else { shown };
+        let luminance = linear_rgb(self.cyan).dot(Vec3::new(0.2126, 0.7152, 0.0722));
+        HalftoneUniform {
+            cosines: Vec4::from(turns.map(|angle| angle.cos() / period)),
+            sines: Vec4::from(turns.map(|angle| angle.sin() / period)),
+            cyan,
+            magenta,
+            yellow,
+            black,
+            paper: linear_rgb(self.paper),
+            opacity: self.opacity,
+            centre: self.centre(view),
+            period,
+            grain: (period / 3.0).max(1.0),
+            near: self.near * shown,
+            far: self.far * shown,
+            below: self.below,
+            black_generation: self.black_generation,
+            gain: self.gain,
+            tints: self.tints as f32,
+            shadows: self.shadows,
+            contrast: 1.0 / (self.highlights - self.shadows).max(0.05),
+            pivot: (1.0 - luminance).clamp(0.05, 0.95),
+            mode: self.mode as u32,
+            shape: self.shape as u32,
+            unused: 0,
+            grains: if stochastic {
+                grains::packed()
+            } else {
+                [UVec4::ZERO; 256]
+            },
+        }
+    }
+}
+
+impl Halftone {
+    /// Whether tones are read in the middle of cells. Grains are too small for that.
+    fn reads_cells(&self) -> bool {
+        self.sampling == ScreenSampling::Cell && self.shape != ScreenShape::Stochastic
+    }
+
+    /// Angles of cyan, magenta, yellow and black in degrees.
+    fn angles(&self) -> [f32; 4] {
+        [
+            self.cyan_angle,
+            self.magenta_angle,
+            self.yellow_angle,
+            self.black_angle,
+        ]
+    }
+
+    /// The place in the render target where the screens begin, in physical pixels: a
+    /// quarter of a pixel from the corner of a pixel near the middle. If whole cells are
+    /// whole pixels, every dot has the same pixels; there, their errors cancel.
+    fn centre(&self, view: &ViewFacts) -> Vec2 {
+        let (first, size) = match self.anchor {
+            ScreenAnchor::View => (view.viewport.xy(), view.viewport.zw()),
+            ScreenAnchor::Window => (UVec2::ZERO, view.target_size),
+        };
+        (first + size / 2).as_vec2() + 0.25
+    }
+}
+
+/// 0 to 1 with a smooth beginning and end.
+fn smooth(t: f32) -> f32 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// The uniform: `Halftone` in `halftone.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, PartialEq)]
+pub struct HalftoneUniform {
+    cosines: Vec4,
+    sines: Vec4,
+    cyan: Vec4,
+    magenta: Vec4,
+    yellow: Vec4,
+    black: Vec4,
+    paper: Vec3,
+    opacity: f32,
+    centre: Vec2,
+    period: f32,
+    grain: f32,
+    near: f32,
+    far: f32,
+    below: f32,
+    black_generation: f32,
+    gain: f32,
+    tints: f32,
+    shadows: f32,
+    contrast: f32,
+    pivot: f32,
+    mode: u32,
+    shape: u32,
+    unused: u32,
+    grains: [UVec4; 256],
+}

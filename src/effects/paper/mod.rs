@@ -1,0 +1,119 @@
+//! The sheet that the picture is printed on.
+
+use bevy::{
+    color::Color,
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::Vec3,
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    effect::{Effect, EffectShader, EffectStage, ViewFacts},
+    settings::{FieldRange, bounded, displayable, file_color, linear_rgb},
+};
+
+/// Prints the picture on paper: its grain shows in what is neither solid ink nor bare, its
+/// surface shades the page, and its colour tints it.
+///
+/// The sheet is fixed to the render target, so that the views of a split screen are printed
+/// on one sheet. Grain and shading keep the mean tone of a flat area within 1 %, in linear
+/// light. Light above 1 (HDR) and the background of a transparent camera have no grain. Reads
+/// no texture.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Paper {
+    /// How much of the effect is mixed in. Range 0 (the effect is left out) to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub amount: f32,
+    /// How unevenly the paper takes ink, which gathers in its valleys: tones between paper and
+    /// solid ink vary by up to this fraction of `k (1 - k)`, where k is the darkness. Range 0
+    /// to 1, default 0.3.
+    #[reflect(@FieldRange::FRACTION)]
+    pub grain: f32,
+    /// How much the light on the page varies with the height of the sheet: the difference
+    /// between its hills and its valleys. Range 0 to 0.3, default 0.08.
+    #[reflect(@FieldRange::linear(0.0, 0.3))]
+    pub shading: f32,
+    /// Size of the grain: the finest grains are 1.5 logical pixels times this. Range 0.5 to
+    /// 8, default 1.
+    #[reflect(@FieldRange::logarithmic(0.5, 8.0))]
+    pub size: f32,
+    /// Colour of the sheet; the page is multiplied by it. Default: warm white. Components are
+    /// clamped to what a display shows; alpha is ignored.
+    #[serde(with = "file_color")]
+    pub color: Color,
+    /// Sheets per second, as if each drawing of a film were on paper of its own. Range 0 (one
+    /// sheet for all time) to 60, default 0.
+    #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"))]
+    pub rate: f32,
+}
+
+impl Default for Paper {
+    fn default() -> Self {
+        Self {
+            amount: 1.0,
+            grain: 0.3,
+            shading: 0.08,
+            size: 1.0,
+            color: Color::srgb_u8(251, 247, 236),
+            rate: 0.0,
+        }
+    }
+}
+
+impl Effect for Paper {
+    const NAME: &'static str = "paper";
+    const STAGE: EffectStage = EffectStage::Page;
+    const SHADER: EffectShader = EffectShader {
+        path: "bevy_comics::effects::paper",
+        source: include_str!("paper.wgsl"),
+        settings: Some("Paper"),
+    };
+    type Uniform = PaperUniform;
+
+    fn sanitized(self) -> Self {
+        let default = Self::default();
+        Self {
+            amount: bounded(self.amount, default.amount, 0.0, 1.0),
+            grain: bounded(self.grain, default.grain, 0.0, 1.0),
+            shading: bounded(self.shading, default.shading, 0.0, 0.3),
+            size: bounded(self.size, default.size, 0.5, 8.0),
+            color: displayable(self.color, default.color),
+            rate: bounded(self.rate, default.rate, 0.0, 60.0),
+        }
+    }
+
+    fn strength(&self) -> f32 {
+        self.amount
+    }
+
+    fn faded(self, fraction: f32) -> Self {
+        let amount = self.amount * fraction;
+        Self { amount, ..self }
+    }
+
+    fn uniform(&self, view: &ViewFacts) -> PaperUniform {
+        PaperUniform {
+            color: linear_rgb(self.color),
+            amount: self.amount,
+            grain: self.grain,
+            shading: 0.5 * self.shading,
+            scale: 1.0 / (self.size * view.scale_factor),
+            seed: view.drawing(self.rate),
+        }
+    }
+}
+
+/// The uniform: `Paper` in `paper.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct PaperUniform {
+    color: Vec3,
+    amount: f32,
+    grain: f32,
+    shading: f32,
+    scale: f32,
+    seed: u32,
+}

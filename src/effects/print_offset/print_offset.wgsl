@@ -1,0 +1,44 @@
+#define_import_path bevy_comics::effects::print_offset
+
+// Prints the plates of cyan, magenta, yellow and black ink out of register.
+
+#import bevy_comics::effect::color::separated
+#import bevy_comics::effect::picture::picture_at
+#import bevy_comics::effect::pixel::Pixel
+
+struct PrintOffset {
+    // By how much each plate is moved, in physical pixels to the right and down.
+    cyan: vec2<f32>,
+    magenta: vec2<f32>,
+    yellow: vec2<f32>,
+    black: vec2<f32>,
+    black_generation: f32,
+    unused: f32,
+    unused_too: vec2<f32>,
+}
+
+// The light that plates of ideal inks leave.
+fn overprinted(tones: vec4<f32>) -> vec3<f32> {
+    return (1.0 - tones.xyz) * (1.0 - tones.w);
+}
+
+// Tones of the plates of the picture at a position; those of `own` where the background
+// shows through.
+fn tones_at(s: PrintOffset, position: vec2<f32>, own: vec3<f32>) -> vec4<f32> {
+    let found = picture_at(position);
+    let color = found.rgb + (1.0 - found.a) * own;
+    return separated(clamp(color, vec3(0.0), vec3(1.0)), s.black_generation);
+}
+
+fn print_offset(s: PrintOffset, p: Pixel) -> Pixel {
+    var out = p;
+    let own = p.color / max(p.alpha, 1e-3);
+    let tones = vec4(
+        tones_at(s, p.position - s.cyan, own).x,
+        tones_at(s, p.position - s.magenta, own).y,
+        tones_at(s, p.position - s.yellow, own).z,
+        tones_at(s, p.position - s.black, own).w,
+    );
+    out.color = overprinted(tones) * p.alpha;
+    return out;
+}

@@ -1,0 +1,134 @@
+//! Two tones, divided by lightness.
+
+use bevy::{
+    color::Color,
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::Vec3,
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    effect::{Effect, EffectShader, EffectStage, Needs, ViewFacts},
+    settings::{FieldRange, bounded, displayable, file_color, linear_rgb},
+};
+
+/// Paints the picture, lines included, with two colours: one where it is darker than a
+/// threshold, one where it is lighter. [`Impact`](crate::Impact) uses it for a few drawings.
+/// Flat areas at the threshold show the engine's dither as dots: add
+/// `DebandDither::Disabled` to the camera.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct TwoTone {
+    /// Lightness that divides the tones: the square root of the luminance (Hunter 1948).
+    /// Range 0 to 1, default 0.45: not half, which is the middle tone of three
+    /// [`ToneBands`](crate::ToneBands).
+    #[reflect(@FieldRange::FRACTION)]
+    pub threshold: f32,
+    /// Colour where the picture is darker. Default: black. Components are clamped to what a
+    /// display shows; alpha is ignored.
+    #[serde(with = "file_color")]
+    pub dark: Color,
+    /// Colour where the picture is lighter. Default: white. Components are clamped to what a
+    /// display shows; alpha is ignored.
+    #[serde(with = "file_color")]
+    pub light: Color,
+    /// Whether the two colours are exchanged. Default: `false`.
+    pub invert: bool,
+    /// Width of the edge between the tones in physical pixels. Range 0 to 16, default 1.5.
+    #[reflect(@FieldRange::linear(0.0, 16.0).unit("px"))]
+    pub softness: f32,
+    /// How much of the two tones is mixed into the picture. Range 0 (the effect is left out)
+    /// to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub amount: f32,
+}
+
+impl Default for TwoTone {
+    fn default() -> Self {
+        Self {
+            threshold: 0.45,
+            dark: Color::BLACK,
+            light: Color::WHITE,
+            invert: false,
+            softness: 1.5,
+            amount: 1.0,
+        }
+    }
+}
+
+impl TwoTone {
+    /// The colour of ink over the tones: one of the two tones is exchanged as they are.
+    pub(crate) fn shown(&self, ink: Color) -> Color {
+        if self.invert && ink == self.dark {
+            self.light
+        } else if self.invert && ink == self.light {
+            self.dark
+        } else {
+            ink
+        }
+    }
+}
+
+impl Effect for TwoTone {
+    const NAME: &'static str = "two_tone";
+    const STAGE: EffectStage = EffectStage::Ink;
+    const SHADER: EffectShader = EffectShader {
+        path: "bevy_comics::effects::two_tone",
+        source: include_str!("two_tone.wgsl"),
+        settings: Some("TwoTone"),
+    };
+    type Uniform = TwoToneUniform;
+
+    fn sanitized(self) -> Self {
+        let default = Self::default();
+        Self {
+            threshold: bounded(self.threshold, default.threshold, 0.0, 1.0),
+            dark: displayable(self.dark, default.dark),
+            light: displayable(self.light, default.light),
+            invert: self.invert,
+            softness: bounded(self.softness, default.softness, 0.0, 16.0),
+            amount: bounded(self.amount, default.amount, 0.0, 1.0),
+        }
+    }
+
+    fn strength(&self) -> f32 {
+        self.amount
+    }
+
+    fn faded(self, fraction: f32) -> Self {
+        let amount = self.amount * fraction;
+        Self { amount, ..self }
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::LIGHTNESS_CHANGE
+    }
+
+    fn uniform(&self, _: &ViewFacts) -> TwoToneUniform {
+        let (dark, light) = if self.invert {
+            (self.light, self.dark)
+        } else {
+            (self.dark, self.light)
+        };
+        TwoToneUniform {
+            dark: linear_rgb(dark),
+            threshold: self.threshold,
+            light: linear_rgb(light),
+            softness: self.softness,
+            amount: self.amount,
+        }
+    }
+}
+
+/// The uniform: `TwoTone` in `two_tone.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct TwoToneUniform {
+    dark: Vec3,
+    threshold: f32,
+    light: Vec3,
+    softness: f32,
+    amount: f32,
+}

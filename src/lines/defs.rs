@@ -1,0 +1,150 @@
+//! What a key defines in the shaders of each pass.
+
+use bevy::shader::ShaderDefVal;
+
+use super::key::{LineKey, Search};
+
+impl LineKey {
+    fn common(&self) -> impl Iterator<Item = ShaderDefVal> + use<> {
+        [
+            (self.same_size, "SAME_SIZE"),
+            (self.oblique, "OBLIQUE"),
+            (self.ids, "OBJECT_IDS"),
+            (self.object_styles, "OBJECT_STYLES"),
+        ]
+        .into_iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| name.into())
+    }
+
+    pub fn find_defs(&self) -> Vec<ShaderDefVal> {
+        let planes = self.settles().then(|| "PLANES".into());
+        let mut defs = self.crack_defs(self.silhouettes || self.creases);
+        defs.extend(planes);
+        defs
+    }
+
+    pub fn settle_defs(&self) -> Vec<ShaderDefVal> {
+        let weight = &self.weight;
+        self.common()
+            .chain(names([
+                (self.bridged, "BRIDGED"),
+                (self.smooth, "SMOOTH"),
+                (self.creases, "FOLDS"),
+                (weight.any(), "WEIGHT"),
+                (self.creases || weight.any(), "DEPTH"),
+                (weight.kinds, "KIND_WEIGHT"),
+                (weight.light, "LIGHT_WEIGHT"),
+                (weight.light, "NORMALS"),
+                (weight.map, "WIDTH_MAP"),
+                (weight.light || weight.map, "SURFACE_WEIGHT"),
+                (weight.perspective, "PERSPECTIVE_WEIGHT"),
+                (self.visible_range, "VISIBLE_RANGE"),
+                (weight.nib, "NIB_WEIGHT"),
+                (weight.taper, "TAPER_WEIGHT"),
+                (weight.budget, "BUDGET"),
+                (weight.fog, "FOG"),
+            ]))
+            .collect()
+    }
+
+    pub fn persist_defs(&self) -> Vec<ShaderDefVal> {
+        self.common()
+            .chain(names([(self.motion, "MOTION"), (self.motion, "DEPTH")]))
+            .collect()
+    }
+
+    pub fn ends_defs(&self) -> Vec<ShaderDefVal> {
+        names([
+            (true, "BLOCKS"),
+            (true, "SMOOTH"),
+            (self.varied, "VARIED"),
+            (self.bridged, "BRIDGED"),
+        ])
+        .collect()
+    }
+
+    pub fn strokes_defs(&self) -> Vec<ShaderDefVal> {
+        self.common()
+            .chain(names([
+                (self.boils, "BOIL"),
+                (self.surface, "SURFACE"),
+                (self.inward, "INWARD"),
+                (self.weight.taper, "TAPER"),
+            ]))
+            .collect()
+    }
+
+    /// `excess`: the excess of steps in depth is computed. It excludes creases too.
+    fn crack_defs(&self, excess: bool) -> Vec<ShaderDefVal> {
+        self.common()
+            .chain(names([
+                (true, "DEPTH"),
+                (excess, "EXCESS"),
+                (self.silhouettes, "SILHOUETTES"),
+                (self.creases, "CREASES"),
+                (self.creases, "NORMALS"),
+                (self.object_edges, "OBJECT_EDGES"),
+                (self.sections, "SECTIONS"),
+                (self.marks, "MARKS"),
+                (self.multisampled_picture, "MULTISAMPLED_PICTURE"),
+                (self.fading, "FADING"),
+                (self.visible_range, "VISIBLE_RANGE"),
+            ]))
+            .collect()
+    }
+
+    pub fn walk_defs(&self) -> Vec<ShaderDefVal> {
+        let jumps = [
+            "JUMPS".into(),
+            ShaderDefVal::UInt("MAP_FLAGS".into(), self.map_flags),
+        ];
+        let jumps = self.jumps.then_some(jumps);
+        let cracks = self.has_cracks().then(|| "CRACKS".into());
+        let bridged = self.bridged.then(|| "BRIDGED".into());
+        self.crack_defs(self.silhouettes)
+            .into_iter()
+            .chain(["BOUNDS".into()])
+            .chain(cracks)
+            .chain(bridged)
+            .chain(jumps.into_iter().flatten())
+            .collect()
+    }
+
+    pub fn faithful_defs(&self) -> Vec<ShaderDefVal> {
+        self.common()
+            .chain(names([
+                (true, "DEPTH"),
+                (self.faithful[0], "FAITHFUL_SILHOUETTES"),
+                (self.faithful[1], "FAITHFUL_CREASES"),
+                (self.faithful[1], "NORMALS"),
+                (self.fading, "FADING"),
+                (self.visible_range, "VISIBLE_RANGE"),
+            ]))
+            .collect()
+    }
+
+    pub fn draw_defs(&self) -> Vec<ShaderDefVal> {
+        self.common()
+            .chain(names([
+                (self.search == Search::Neighbours, "NEIGHBOURS"),
+                (self.search == Search::Columns, "COLUMNS"),
+                (!self.by_fragments, "BLOCKS"),
+                (self.smooth, "SMOOTH"),
+                (self.varied, "VARIED"),
+                (self.boils, "BOIL"),
+                (self.surface, "SURFACE"),
+                (self.inward, "INWARD"),
+                (self.has_owners(), "OWNERS"),
+                (self.bridged, "BRIDGED"),
+            ]))
+            .collect()
+    }
+}
+
+fn names<const N: usize>(flags: [(bool, &'static str); N]) -> impl Iterator<Item = ShaderDefVal> {
+    flags
+        .into_iter()
+        .filter(|(on, _)| *on)
+        .map(|(_, name)| name.into())
+}

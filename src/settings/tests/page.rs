@@ -1,0 +1,73 @@
+//! The numbers of speed lines, two tones, paper, the vignette and held poses.
+
+use super::*;
+
+#[test]
+fn a_million_floats_in_every_field_of_the_page() {
+    fn paper(edit: fn(&mut Paper, f32)) -> impl Fn(f32) -> Paper {
+        move |x| {
+            let mut value = Paper::default();
+            edit(&mut value, x);
+            value.sanitized()
+        }
+    }
+    fn lines(edit: fn(&mut SpeedLines, f32)) -> impl Fn(f32) -> SpeedLines {
+        move |x| {
+            let mut value = SpeedLines::default();
+            edit(&mut value, x);
+            value.sanitized()
+        }
+    }
+    let set = paper(|p, x| p.grain = x);
+    fuzz("Paper::grain", 0.0, 1.0, |x| set(x).grain);
+    let set = paper(|p, x| p.shading = x);
+    fuzz("Paper::shading", 0.0, 0.3, |x| set(x).shading);
+    let set = paper(|p, x| p.size = x);
+    fuzz("Paper::size", 0.5, 8.0, |x| set(x).size);
+    let set = paper(|p, x| p.rate = x);
+    fuzz("Paper::rate", 0.0, 60.0, |x| set(x).rate);
+    let set = lines(|s, x| s.centre_x = x);
+    fuzz("SpeedLines::centre_x", -1.0, 2.0, |x| set(x).centre_x);
+    let set = lines(|s, x| s.centre_y = x);
+    fuzz("SpeedLines::centre_y", -1.0, 2.0, |x| set(x).centre_y);
+    let set = lines(|s, x| s.angle = x);
+    fuzz("SpeedLines::angle", -180.0, 180.0, |x| set(x).angle);
+    let set = lines(|s, x| s.inner = x);
+    fuzz("SpeedLines::inner", 0.0, 1.5, |x| set(x).inner);
+    let set = lines(|s, x| s.width = x);
+    fuzz("SpeedLines::width", 1.0, 40.0, |x| set(x).width);
+    let set = lines(|s, x| s.dry = x);
+    fuzz("SpeedLines::dry", 0.0, 1.0, |x| set(x).dry);
+    let set = lines(|s, x| s.rate = x);
+    fuzz("SpeedLines::rate", 0.0, 60.0, |x| set(x).rate);
+    let two_tone = |x| TwoTone {
+        threshold: x,
+        softness: x,
+        amount: x,
+        ..TwoTone::default()
+    };
+    let set = |x| two_tone(x).sanitized();
+    fuzz("TwoTone::threshold", 0.0, 1.0, |x| set(x).threshold);
+    fuzz("TwoTone::softness", 0.0, 16.0, |x| set(x).softness);
+    fuzz("TwoTone::amount", 0.0, 1.0, |x| set(x).amount);
+    fuzz("HeldPose::rate", 1.0, 60.0, |rate| {
+        HeldPose { rate }.sanitized().rate
+    });
+}
+
+#[test]
+fn a_million_floats_in_every_field_of_the_vignette() {
+    let vignette = |edit: fn(&mut Vignette, f32)| {
+        move |x| {
+            let mut v = Vignette::default();
+            edit(&mut v, x);
+            v.sanitized()
+        }
+    };
+    let amount = vignette(|v, x| v.amount = x);
+    fuzz("Vignette::amount", 0.0, 1.0, |x| amount(x).amount);
+    let radius = vignette(|v, x| v.radius = x);
+    fuzz("Vignette::radius", 0.0, 1.0, |x| radius(x).radius);
+    let softness = vignette(|v, x| v.softness = x);
+    fuzz("Vignette::softness", 0.0, 1.0, |x| softness(x).softness);
+}

@@ -1,0 +1,39 @@
+//! The effects of the page.
+
+use super::*;
+
+/// Every number of an effect by its documented range.
+fn fuzz_fields<E: Effect>() {
+    use bevy::reflect::TypeInfo;
+    let TypeInfo::Struct(info) = E::type_info() else {
+        panic!("{} is no struct", E::NAME);
+    };
+    for field in info.iter() {
+        let Some(range) = crate::FieldRange::of(field) else {
+            continue;
+        };
+        if E::default()
+            .field(field.name())
+            .and_then(|value| value.try_downcast_ref::<f32>())
+            .is_none()
+        {
+            continue;
+        }
+        let (low, high) = (range.min as f32, range.max as f32);
+        fuzz(&format!("{}::{}", E::NAME, field.name()), low, high, |x| {
+            let mut effect = E::default();
+            let slot = effect.field_mut(field.name()).expect("its own field");
+            *slot.try_downcast_mut::<f32>().expect("a number") = x;
+            let used = effect.sanitized();
+            let slot = used.field(field.name()).expect("its own field");
+            *slot.try_downcast_ref::<f32>().expect("a number")
+        });
+    }
+}
+
+#[test]
+fn a_million_floats_in_every_field_of_the_page_effects() {
+    fuzz_fields::<Halftone>();
+    fuzz_fields::<PrintOffset>();
+    fuzz_fields::<Vignette>();
+}

@@ -1,0 +1,264 @@
+//! Impact frames: for a few drawings a camera shows two tones and focus lines.
+
+use std::collections::VecDeque;
+
+use bevy::{
+    camera::Camera,
+    color::Color,
+    ecs::{
+        component::Component,
+        entity::Entity,
+        event::EntityEvent,
+        observer::On,
+        query::With,
+        reflect::ReflectResource,
+        resource::Resource,
+        system::{Commands, Query, Res, ResMut},
+    },
+    log::{debug, warn_once},
+    reflect::{Reflect, std_traits::ReflectDefault},
+    time::{Real, Time},
+};
+
+use crate::{
+    clock,
+    diagnostics::ComicsDiagnostics,
+    effect::{AnyEffect, Effect},
+    effects::{SpeedLines, TwoTone},
+    settings::bounded,
+};
+
+/// Shows an impact frame on a camera: for one to three drawings two tones by lightness, with
+/// focus lines over them; then the picture is as before.
+///
+/// It replaces the [`TwoTone`] and [`SpeedLines`] of the camera meanwhile, works on cameras
+/// without any effect, and needs no prepass. A new impact ends the one before. It is hidden
+/// where [`StyleWeight`](crate::StyleWeight) or [`SplitView`](crate::SplitView) show the
+/// original. Drawings are counted from the first frame that shows the impact, on the app's
+/// default clock: while the game is paused, the impact stays. The first impact of a camera
+/// compiles a pipeline; it is shown, and its time begins, when that is done.
+///
+/// **Flashes.** Fast flashes can cause seizures (WCAG 2.3.1). At most
+/// [`Impact::MOST_FLASHES`] flashes are begun in any second of real time on a camera: what
+/// would exceed that is refused, and counted in
+/// [`ComicsDiagnostics::impacts`](crate::ComicsDiagnostics::impacts). The resource
+/// [`ReduceFlashing`] replaces the tones by a dim picture.
+///
+/// ```
+/// # use bevy::ecs::prelude::*;
+/// # use bevy_comics::Impact;
+/// fn hit(mut commands: Commands, camera: Entity) {
+///     commands.trigger(Impact::new(camera));
+/// }
+/// ```
+#[derive(EntityEvent, Reflect, Clone, Debug, PartialEq)]
+pub struct Impact {
+    /// The camera.
+    pub entity: Entity,
+    /// Number of drawings. Range 1 to 3, default 2.
+    pub drawings: u32,
+    /// Drawings per second. Range 4 to 30, default 12.
+    pub rate: f32,
+    /// Whether every second drawing exchanges the tones. With two or three drawings that
+    /// counts as two flashes. Default: `false`.
+    pub alternate: bool,
+    /// The tones. Default: black and white.
+    pub tones: TwoTone,
+    /// The lines over the tones; every drawing has others. Lines in the colour of one tone
+    /// have that of the other one where the tones are exchanged. `None`: no lines. Default:
+    /// focus lines in the colour of the dark tone.
+    pub lines: Option<SpeedLines>,
+}
+
+impl Impact {
+    /// The most flashes that begin in any second on a camera (WCAG 2.3.1).
+    pub const MOST_FLASHES: usize = 3;
+
+    /// An impact of two drawings in black and white, with focus lines.
+    pub fn new(camera: Entity) -> Self {
+        Self {
+            entity: camera,
+            drawings: 2,
+            rate: 12.0,
+            alternate: false,
+            tones: TwoTone::default(),
+            lines: Some(SpeedLines::default()),
+        }
+    }
+
+    /// The impact that is shown: every number is clamped to its range.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        Self {
+            drawings: self.drawings.clamp(1, 3),
+            rate: bounded(self.rate, 12.0, 4.0, 30.0),
+            tones: self.tones.sanitized(),
+            lines: self.lines.map(Effect::sanitized),
+            ..self
+        }
+    }
+
+    /// The flashes of the impact: pairs of opposite changes of the picture, rounded up.
+    pub fn flashes(&self) -> usize {
+        if self.alternate && self.drawings > 1 {
+            2
+        } else {
+            1
+        }
+    }
+
+    /// The effects of one drawing.
+    fn effects(&self, drawing: u32, reduced: bool) -> Vec<Box<dyn AnyEffect>> {
+        let exchanged = self.alternate && drawing % 2 == 1;
+        let tones = if reduced {
+            DIM
+        } else {
+            TwoTone {
+                invert: self.tones.invert != exchanged,
+                ..self.tones
+            }
+        };
+        let redrawn = if reduced { 0 } else { drawing };
+        let lines = self.lines.map(|lines| SpeedLines {
+            rate: 0.0,
+            seed: (lines.seed + redrawn) % 65536,
+            color: tones.shown(lines.color),
+            ..lines
+        });
+        let lines = lines.map(|lines| Box::new(lines) as Box<dyn AnyEffect>);
+        lines.into_iter().chain([Box::new(tones) as _]).collect()
+    }
+}
+
+/// 20 % less light: no place changes by more than a fifth of the brightest light.
+const DIM: TwoTone = TwoTone {
+    threshold: 0.5,
+    dark: Color::BLACK,
+    light: Color::BLACK,
+    invert: false,
+    softness: 0.0,
+    amount: 0.2,
+};
+
+/// Whether flashes are reduced, for people who are sensitive to them: an [`Impact`] then dims
+/// the picture by 20 % (in linear light) instead of showing two tones, and its lines stand
+/// still. Default: `false`.
+///
+/// Games should offer it as an accessibility setting.
+#[derive(Resource, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[reflect(Resource, Default)]
+pub struct ReduceFlashing(pub bool);
+
+/// On a camera that had impacts: the one that is shown, and the last flashes.
+#[derive(Component, Debug, Default)]
+pub(super) struct Impacts {
+    running: Option<Running>,
+    /// Real time of the flashes of the last second, the oldest first.
+    flashes: VecDeque<f64>,
+}
+
+#[derive(Debug)]
+struct Running {
+    impact: Impact,
+    /// Time at which it was first shown.
+    since: Option<f64>,
+    effects: Vec<Box<dyn AnyEffect>>,
+}
+
+impl Impacts {
+    /// The effects that replace those of the camera.
+    pub fn effects(&self) -> &[Box<dyn AnyEffect>] {
+        self.running
+            .as_ref()
+            .map_or(&[], |running| &running.effects)
+    }
+
+    /// Starts an impact, unless it would exceed the limit of flashes. `now`: real time.
+    fn start(&mut self, impact: Impact, now: f64) -> bool {
+        while self.flashes.front().is_some_and(|then| now - then >= 1.0) {
+            self.flashes.pop_front();
+        }
+        let flashes = impact.flashes();
+        if self.flashes.len() + flashes > Impact::MOST_FLASHES {
+            return false;
+        }
+        self.flashes.extend(std::iter::repeat_n(now, flashes));
+        self.running = Some(Running {
+            impact,
+            since: None,
+            effects: Vec::new(),
+        });
+        true
+    }
+
+    /// Draws the impact at a time, or ends it. `waits`: its pipeline is compiling.
+    fn run(&mut self, seconds: f64, waits: bool, reduced: bool) {
+        let Some(running) = &mut self.running else {
+            return;
+        };
+        let since = match running.since {
+            Some(since) if !waits => since,
+            _ => *running.since.insert(seconds),
+        };
+        let drawing = clock::drawing(seconds - since, running.impact.rate);
+        if drawing >= u64::from(running.impact.drawings) {
+            self.running = None;
+        } else {
+            running.effects = running.impact.effects(drawing as u32, reduced);
+        }
+    }
+}
+
+/// Starts an impact, or counts that it was refused.
+pub(super) fn start_impact(
+    impact: On<Impact>,
+    mut cameras: Query<Option<&mut Impacts>, With<Camera>>,
+    mut commands: Commands,
+    (time, real_time): (Option<Res<Time>>, Option<Res<Time<Real>>>),
+    mut diagnostics: ResMut<ComicsDiagnostics>,
+) {
+    let camera = impact.entity;
+    let now = real_time.map(|time| time.elapsed_secs_f64());
+    let now = now.or(time.map(|time| time.elapsed_secs_f64()));
+    let now = now.unwrap_or_default();
+    let impact = impact.event().clone().sanitized();
+    let shown = match cameras.get_mut(camera) {
+        Ok(Some(mut impacts)) => impacts.start(impact, now),
+        Ok(None) => {
+            let mut impacts = Impacts::default();
+            let shown = impacts.start(impact, now);
+            commands.entity(camera).insert(impacts);
+            shown
+        }
+        Err(_) => {
+            warn_once!("Impact: {camera} is not a camera");
+            return;
+        }
+    };
+    let count = diagnostics.impacts.entry(camera).or_default();
+    if shown {
+        count.shown += 1;
+    } else {
+        count.refused += 1;
+        debug!(
+            "Impact: {camera} had {} flashes in the last second",
+            Impact::MOST_FLASHES
+        );
+    }
+}
+
+/// Draws the impacts that are shown.
+pub(super) fn run_impacts(
+    mut cameras: Query<(Entity, &mut Impacts)>,
+    time: Option<Res<Time>>,
+    reduced: Res<ReduceFlashing>,
+    diagnostics: Res<ComicsDiagnostics>,
+) {
+    let seconds = time.map_or(0.0, |time| time.elapsed_secs_f64());
+    for (camera, mut impacts) in &mut cameras {
+        if impacts.running.is_some() {
+            let waits = diagnostics.is_compiling(camera);
+            impacts.run(seconds, waits, reduced.0);
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! Twin of `lines/ends.wgsl`, `lines/overshoot.wgsl` and `lines/strokes.wgsl`: strokes that
+//! extend lines beyond their loose ends.
+
+use std::collections::HashSet;
+
+use super::{
+    chain::follow,
+    crack::{Crack, SIDES, THINNEST},
+    draw::{ink_of, middle},
+    edge::segment_distance,
+    link::{Place, corners},
+    weight::taper_weight,
+};
+
+/// Cracks of a line that say in which direction it ends.
+const DIRECTING: usize = 16;
+
+/// A stroke: from the end of a line to its own end, and the crack at the end of the line.
+pub struct Stroke {
+    pub start: [f64; 2],
+    pub tip: [f64; 2],
+    pub crack: Crack,
+}
+
+/// The direction in which a line leaves the first of these middles, away from the others: that
+/// of the derivative of the parabola through them, by the normal equations.
+pub fn end_direction(middles: &[[f64; 2]]) -> [f64; 2] {
+    let n = middles.len();
+    if n < 3 {
+        return [0, 1].map(|axis| middles[0][axis] - middles[n - 1][axis]);
+    }
+    // Sums of powers of the index, and of these times the middles.
+    let power = |k: i32| (0..n).map(|i| (i as f64).powi(k)).sum::<f64>();
+    let s: [f64; 5] = std::array::from_fn(|k| power(k as i32));
+    [0, 1].map(|axis| {
+        let moment = |k: i32| {
+            let terms = middles.iter().enumerate();
+            terms
+                .map(|(i, m)| (i as f64).powi(k) * m[axis])
+                .sum::<f64>()
+        };
+        let t = [moment(0), moment(1), moment(2)];
+        // Cramer's rule for the linear coefficient.
+        let rows = |column: Option<[f64; 3]>| {
+            let m = |i: usize, j: usize| match column {
+                Some(column) if j == 1 => column[i],
+                _ => s[i + j],
+            };
+            m(0, 0) * (m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1))
+                - m(0, 1) * (m(1, 0) * m(2, 2) - m(1, 2) * m(2, 0))
+                + m(0, 2) * (m(1, 0) * m(2, 1) - m(1, 1) * m(2, 0))
+        };
+        -rows(Some(t)) / rows(None)
+    })
+}
+
+/// Whether the middle half way to the last one is at most 0.7 pixels from their chord.
+fn is_straight(middles: &[[f64; 2]]) -> bool {
+    let last = middles.len() - 1;
+    let from = |i: usize| [0, 1].map(|axis| middles[i][axis] - middles[0][axis]);
+    let ([cx, cy], [hx, hy]) = (from(last), from(last / 2));
+    (cx * hy - cy * hx).abs() <= 0.7 * cx.hypot(cy)
+}
+
+/// The strokes of a view. `lines`: all cracks of lines; `at`: what is left of a crack;
+/// `longest`: in pixels.
+pub fn strokes(
+    lines: &HashSet<Place>,
+    at: &dyn Fn(Place) -> Option<Crack>,
+    size: [i64; 2],
+    longest: f64,
+) -> Vec<Stroke> {
+    let place_of = |place: Place| {
+        let (pixel, side) = place;
+        at(place).map(|crack| middle(&crack, pixel, SIDES[side]))
+    };
+    let mut found = vec![];
+    for place in lines {
+        let Some(crack) = at(*place) else { continue };
+        let [first, last] = corners(*place);
+        for (corner, other) in [(first, last), (last, first)] {
+            let inside = (0..2).all(|i| corner[i] > 0 && corner[i] < size[i]);
+            let (none, end) = follow(lines, (*place, corner), 1);
+            if !inside || !none.is_empty() || end.is_none() {
+                continue;
+            }
+            let most = DIRECTING.max(longest.ceil() as usize);
+            let (behind, _) = follow(lines, (*place, other), most - 1);
+            let chain = std::iter::once(*place).chain(behind);
+            let chain: Vec<[f64; 2]> = chain.map_while(place_of).collect();
+            let mut directing = chain.len().min(3);
+            while directing < chain.len().min(DIRECTING) && is_straight(&chain[..=directing]) {
+                directing += 1;
+            }
+            let mut direction = end_direction(&chain[..directing]);
+            if direction[0].hypot(direction[1]) < 1e-3 {
+                direction = [0, 1].map(|i| (corner[i] - other[i]) as f64);
+            }
+            let length = longest.min(chain.len() as f64) / direction[0].hypot(direction[1]);
+            let start = chain[0];
+            found.push(Stroke {
+                start,
+                tip: [0, 1].map(|i| start[i] + length * direction[i]),
+                crack,
+            });
+        }
+    }
+    found
+}
+
+impl Stroke {
+    /// Ink by kind at a place. `taper`: in cracks.
+    pub fn ink(&self, at: [f64; 2], taper: f64, nudge: f64) -> [f64; 3] {
+        let along = [0, 1].map(|i| self.tip[i] - self.start[i]);
+        let length = along[0].hypot(along[1]);
+        let from = [0, 1].map(|i| at[i] - self.start[i]);
+        let away = (from[0] * along[0] + from[1] * along[1]) / length;
+        let part = if taper > 0.0 {
+            let left = length - away.clamp(0.0, length);
+            (taper_weight(taper, left) / taper_weight(taper, length)).min(1.0)
+        } else {
+            1.0
+        };
+        let half_width = self.crack.half_width * part;
+        let thinnest = self.crack.half_width.min(THINNEST);
+        let thinner = Crack {
+            half_width: half_width.max(thinnest),
+            ..self.crack
+        };
+        let fainter = (half_width / thinnest.max(1e-3)).min(1.0);
+        let distance = segment_distance(at, self.start, self.tip);
+        ink_of(&thinner, nudge, distance).map(|ink| ink * fainter)
+    }
+}

@@ -1,0 +1,137 @@
+//! Twin of `effect/screen.wgsl`: coverages of screens. `at`: cells; `period`: pixels.
+
+use std::f64::consts::{FRAC_PI_4, PI, TAU};
+
+use super::{mix, smoothstep};
+
+/// Dots below this tone become paler, not smaller.
+pub const LEAST: f64 = 1.0 / 32.0;
+
+fn to_nearest(x: f64) -> f64 {
+    x - x.round()
+}
+
+/// Discs, from the areas of circles: an edge with a ramp of one pixel has the area of the
+/// circle of radius sqrt(r^2 + 1/12), and a cone if the ramps from all sides meet.
+fn disc_radius(tone: f64, period: f64) -> f64 {
+    if tone <= FRAC_PI_4 {
+        let square = tone * period.powi(2) / PI;
+        return if square >= 1.0 / 3.0 {
+            (square - 1.0 / 12.0).sqrt()
+        } else {
+            (3.0 * square).cbrt() - 0.5
+        };
+    }
+    let root = ((1.0 - tone) / (1.0 - FRAC_PI_4)).sqrt();
+    period * (0.5f64.sqrt() - root * (0.2471 - 0.04 * root))
+}
+
+pub fn disc(at: [f64; 2], tone: f64, period: f64) -> f64 {
+    let radius = disc_radius(tone, period);
+    let [x, y] = at.map(|v| to_nearest(v).abs());
+    let covers = [(x, y), (1.0 - x, y), (x, 1.0 - y), (1.0 - x, 1.0 - y)]
+        .map(|(x, y)| (radius - period * x.hypot(y) + 0.5).clamp(0.0, 1.0));
+    let largest = covers.into_iter().fold(0.0, f64::max);
+    let sum = covers.into_iter().sum::<f64>().min(1.0);
+    mix(sum, largest, 0.31 * smoothstep(0.77, 0.8, tone))
+}
+
+fn checker([u, v]: [f64; 2], tone: f64, period: f64) -> f64 {
+    let height = 0.5 * ((TAU * u).cos() + (TAU * v).cos());
+    let curved = ((0.5 - tone) / 0.15).clamp(-1.0, 1.0);
+    let x = 1.0 - 2.0 * (tone - curved * PI / 12.0 / period.powi(2));
+    let threshold = x * (0.4 + 0.65 * x.abs() - 0.05 * x * x);
+    let gradient = PI / period * (TAU * u).sin().hypot((TAU * v).sin()).max(0.5);
+    ((height - threshold) / gradient + 0.5).clamp(0.0, 1.0)
+}
+
+pub fn euclidean(at: [f64; 2], tone: f64, period: f64) -> f64 {
+    let middle = checker(at, tone, period);
+    if tone <= 0.5 {
+        let weight = ((tone - 0.15) / 0.15).clamp(0.0, 1.0);
+        mix(disc(at, tone, period), middle, weight)
+    } else {
+        let weight = ((0.85 - tone) / 0.15).clamp(0.0, 1.0);
+        let hole = disc(at.map(|v| v + 0.5), 1.0 - tone, period);
+        mix(1.0 - hole, middle, weight)
+    }
+}
+
+/// The part of an interval that lines around whole numbers cover.
+pub fn line(x: f64, tone: f64, footprint: f64) -> f64 {
+    let (low, high) = (x - 0.5 * footprint, x + 0.5 * footprint);
+    let lines = (low - 1.0).floor() as i64..=(high + 1.0).ceil() as i64;
+    let covered: f64 = lines
+        .map(|line| {
+            let middle = line as f64;
+            let from = low.max(middle - 0.5 * tone);
+            (high.min(middle + 0.5 * tone) - from).max(0.0)
+        })
+        .sum();
+    covered / footprint
+}
+
+/// The integral from 0 to r of the area of the diamonds |x| + |y| < r in a cell of side 1:
+/// 2 r^2, without the corners beyond the cell if r > 1/2.
+fn diamond_volume(r: f64) -> f64 {
+    if r <= 0.0 {
+        0.0
+    } else if r <= 0.5 {
+        2.0 / 3.0 * r.powi(3)
+    } else if r <= 1.0 {
+        r - 0.5 + 2.0 / 3.0 * (1.0 - r).powi(3)
+    } else {
+        r - 0.5
+    }
+}
+
+/// Mean of the area over the ramp of the edge.
+fn ramped_area(r: f64, half_ramp: f64) -> f64 {
+    (diamond_volume(r + half_ramp) - diamond_volume(r - half_ramp)) / (2.0 * half_ramp)
+}
+
+/// The radius whose mean area is the tone, by bisection.
+fn diamond_radius(tone: f64, half_ramp: f64) -> f64 {
+    let (mut low, mut high) = (-half_ramp, 1.0 + half_ramp);
+    for _ in 0..40 {
+        let middle = 0.5 * (low + high);
+        if ramped_area(middle, half_ramp) < tone {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Diamonds of a tone; the closure gives the coverage at a place. The radius is the same for
+/// all places.
+pub fn diamond(tone: f64, footprint: f64) -> impl Fn([f64; 2]) -> f64 {
+    let half_ramp = (footprint / 2f64.sqrt()).min(0.25);
+    let radius = diamond_radius(tone, half_ramp);
+    move |at| {
+        let [x, y] = at.map(|v| to_nearest(v).abs());
+        ((radius - x - y) / (2.0 * half_ramp) + 0.5).clamp(0.0, 1.0)
+    }
+}
+
+pub fn cross_lines([u, v]: [f64; 2], tone: f64, footprint: f64) -> f64 {
+    let each = 1.0 - (1.0 - tone).sqrt();
+    1.0 - (1.0 - line(u, each, footprint)) * (1.0 - line(v, each, footprint))
+}
+
+pub fn grain(tone: f64, threshold: f64) -> f64 {
+    ((tone - threshold) * 96.0 + 0.5).clamp(0.0, 1.0)
+}
+
+pub fn gained(tone: f64, gain: f64) -> f64 {
+    (tone + 4.0 * gain * tone * (1.0 - tone)).clamp(0.0, 1.0)
+}
+
+pub fn tinted(tone: f64, tints: u32) -> f64 {
+    if tints == 0 {
+        return tone;
+    }
+    let x = tone * f64::from(tints);
+    (x.floor() + smoothstep(0.45, 0.55, x.fract())) / f64::from(tints)
+}

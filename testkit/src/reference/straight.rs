@@ -1,0 +1,64 @@
+//! Twin of a part of `lines/draw.wgsl`: lines run straight between the middles of neighbouring
+//! cracks.
+
+use super::{
+    draw::{Line, distance, ink_of, is_apart},
+    edge::segment_distance,
+};
+
+/// The two nearest lines in different places, as the shader keeps them while it goes
+/// through all lines: of lines in nearly the same place, it only keeps the nearest.
+fn followed(lines: &[Line]) -> Option<[Line; 2]> {
+    let mut first: Option<Line> = None;
+    let mut second: Option<Line> = None;
+    for line in lines {
+        let Some(nearest) = first else {
+            first = Some(*line);
+            continue;
+        };
+        let other = is_apart(line.1, nearest.1);
+        if line.0 < nearest.0 {
+            second = if other { first } else { second };
+            first = Some(*line);
+        } else if other && second.is_none_or(|second| line.0 < second.0) {
+            second = Some(*line);
+        }
+    }
+    Some([first?, second?])
+}
+
+/// The ink of the straight line from the middle of a line to another middle.
+fn between((_, from, crack): &Line, to: [f64; 2], at: [f64; 2], nudge: f64) -> [f64; 3] {
+    if distance(*from, to) < 1.45 {
+        ink_of(crack, nudge, segment_distance(at, *from, to))
+    } else {
+        [0.0; 3]
+    }
+}
+
+/// The ink of the straight line between the middles of the two lines whose borders are
+/// nearest, for every choice of these two.
+pub(super) fn straight(lines: &mut [Line], at: [f64; 2], nudge: f64) -> Vec<[f64; 3]> {
+    // Middles are stored in 512ths of a pixel: each of two distances is off by up to
+    // sqrt(2) / 1024.
+    const TIE: f64 = 3e-3;
+    let mut found: Vec<[f64; 3]> = followed(lines)
+        .map(|[first, second]| between(&first, second.1, at, nudge))
+        .into_iter()
+        .collect();
+    lines.sort_by(|a, b| a.0.total_cmp(&b.0));
+    for (border, a, crack) in lines.iter() {
+        if *border > lines[0].0 + TIE {
+            break;
+        }
+        // Both cracks at a corner of a line of odd width have their middle in one pixel.
+        let others: Vec<&Line> = lines.iter().filter(|other| is_apart(other.1, *a)).collect();
+        for (border, b, _) in &others {
+            if *border > others[0].0 + TIE {
+                break;
+            }
+            found.push(between(&(*border, *a, *crack), *b, at, nudge));
+        }
+    }
+    found
+}

@@ -1,0 +1,288 @@
+//! Impact frames: what they show, for how long, and how often.
+
+use bevy::{prelude::*, render::view::Msaa};
+use bevy_comics::{
+    ComicsDiagnostics, Impact, ImpactCounts, Outlines, ReduceFlashing, SpeedLines, StyleWeight,
+    TwoTone,
+};
+use image::RgbaImage;
+
+use crate::small::{Small, size};
+
+fn small() -> Small {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.settle();
+    small
+}
+
+fn trigger(small: &mut Small, edit: impl Fn(&mut Impact)) {
+    let mut impact = Impact::new(small.camera);
+    edit(&mut impact);
+    small.world().trigger(impact);
+    small.world().flush();
+}
+
+fn counts(small: &Small) -> ImpactCounts {
+    let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
+    diagnostics
+        .impacts
+        .get(&small.camera)
+        .copied()
+        .unwrap_or_default()
+}
+
+/// The pictures of the next frames.
+fn film(small: &mut Small, frames: usize) -> Vec<RgbaImage> {
+    let mut film = Vec::new();
+    for _ in 0..frames {
+        small.headless.step(1);
+        film.push(small.picture());
+    }
+    film
+}
+
+/// How often a picture is shown in a row, and the next one, and so on.
+fn runs(film: &[RgbaImage]) -> Vec<usize> {
+    film.chunk_by(|a, b| a == b)
+        .map(<[RgbaImage]>::len)
+        .collect()
+}
+
+/// Black and white, and no colours, unlike the scene.
+fn is_two_tone(picture: &RgbaImage) -> bool {
+    let grey = |p: &image::Rgba<u8>| p.0[0] == p.0[1] && p.0[1] == p.0[2];
+    let extreme = picture.pixels().filter(|p| matches!(p.0[0], 0 | 255));
+    picture.pixels().all(grey) && extreme.count() * 2 > picture.pixels().len()
+}
+
+/// From the next frame on, two drawings of five frames each; then the picture is as before,
+/// to the bit. The camera has no other effect.
+#[test]
+fn an_impact_is_two_drawings_and_then_nothing() {
+    let mut small = small();
+    let before = small.picture();
+    trigger(&mut small, |_| {});
+    let film = film(&mut small, 20);
+    assert_eq!(runs(&film), [5, 5, 10]);
+    assert!(is_two_tone(&film[0]) && is_two_tone(&film[9]));
+    assert_eq!(film[10], before);
+    assert_eq!(
+        counts(&small),
+        ImpactCounts {
+            shown: 1,
+            refused: 0
+        }
+    );
+    assert_eq!(small.errors(), 0);
+}
+
+/// The effects of the camera are replaced for the time of the impact, and come back.
+#[test]
+fn a_style_comes_back() {
+    let mut small = small();
+    let own = (
+        Outlines::default(),
+        SpeedLines {
+            rate: 0.0,
+            color: Color::srgb(1.0, 0.0, 0.0),
+            ..default()
+        },
+        TwoTone {
+            light: Color::srgb(0.2, 1.0, 0.2),
+            ..default()
+        },
+    );
+    small.insert(own).settle();
+    let before = small.picture();
+    trigger(&mut small, |impact| impact.drawings = 1);
+    let film = film(&mut small, 12);
+    assert_eq!(runs(&film), [5, 7]);
+    let red = |p: &image::Rgba<u8>| p.0[0] > 150 && p.0[1] < 50;
+    assert!(before.pixels().any(red) && !film[0].pixels().any(red));
+    assert_eq!(film[5], before);
+    let camera = small.camera;
+    let kept = small.world().get::<TwoTone>(camera).copied();
+    assert_eq!(kept.map(|t| t.light), Some(Color::srgb(0.2, 1.0, 0.2)));
+}
+
+/// Alternate drawings exchange the tones.
+#[test]
+fn tones_alternate() {
+    let mut small = small();
+    trigger(&mut small, |impact| {
+        impact.drawings = 3;
+        impact.alternate = true;
+        impact.lines = None;
+    });
+    let film = film(&mut small, 18);
+    assert_eq!(runs(&film), [5, 5, 5, 3]);
+    assert_eq!(film[0], film[10]);
+    for (a, b) in film[0].pixels().zip(film[5].pixels()) {
+        let sum = u32::from(a.0[0]) + u32::from(b.0[0]);
+        // Of soft pixels at the edge, light is exchanged, not codes.
+        assert!(sum == 255 || a.0[0].clamp(1, 254) == a.0[0], "{a:?}, {b:?}");
+    }
+}
+
+/// Lines in the colour of a tone are exchanged with it: they are as visible on the negative.
+#[test]
+fn lines_are_exchanged_with_the_tones() {
+    let mut small = small();
+    small.clear();
+    trigger(&mut small, |impact| impact.tones.threshold = 0.0);
+    small.headless.step(1);
+    let black = |p: &image::Rgba<u8>| p.0[..3] == [0; 3];
+    let white = |p: &image::Rgba<u8>| p.0[..3] == [255; 3];
+    let plain = small.picture();
+    let ink = plain.pixels().filter(|p| black(p)).count();
+    let page = plain.pixels().filter(|p| white(p)).count();
+    small.headless.step(60);
+    trigger(&mut small, |impact| {
+        impact.tones.threshold = 0.0;
+        impact.tones.invert = true;
+    });
+    small.headless.step(1);
+    let negative = small.picture();
+    assert!(ink > 100 && page > 100, "{ink}, {page}");
+    assert_eq!(negative.pixels().filter(|p| white(p)).count(), ink);
+    assert_eq!(negative.pixels().filter(|p| black(p)).count(), page);
+}
+
+/// Truth: of flashes every 100 ms for three seconds, no second of real time has more than
+/// three, wherever it begins. Refused ones change nothing.
+#[test]
+fn a_fourth_flash_in_a_second_is_refused() {
+    let mut small = small();
+    let before = small.picture();
+    let mut begins = Vec::new();
+    for frame in 0..180usize {
+        let shown = counts(&small).shown;
+        if frame % 6 == 0 {
+            trigger(&mut small, |impact| impact.drawings = 1);
+        }
+        small.headless.step(1);
+        if counts(&small).shown > shown {
+            begins.push(frame);
+            assert!(is_two_tone(&small.picture()), "frame {frame}");
+        } else if begins.last().is_none_or(|begin| frame - begin >= 5) {
+            assert_eq!(small.picture(), before, "frame {frame}");
+        }
+    }
+    for begin in 0..120 {
+        let within = begins
+            .iter()
+            .filter(|f| (begin..begin + 60).contains(*f))
+            .count();
+        assert!(
+            within <= Impact::MOST_FLASHES,
+            "from frame {begin}: {begins:?}"
+        );
+    }
+    assert_eq!(begins[..4], [0, 6, 12, 60], "{begins:?}");
+    assert_eq!(begins.len(), 9);
+    assert_eq!(
+        counts(&small),
+        ImpactCounts {
+            shown: 9,
+            refused: 21
+        }
+    );
+}
+
+/// An impact that alternates counts as two flashes.
+#[test]
+fn alternating_tones_are_two_flashes() {
+    let mut small = small();
+    for _ in 0..3 {
+        trigger(&mut small, |impact| impact.alternate = true);
+    }
+    assert_eq!(
+        counts(&small),
+        ImpactCounts {
+            shown: 1,
+            refused: 2
+        }
+    );
+    trigger(&mut small, |_| {});
+    assert_eq!(
+        counts(&small),
+        ImpactCounts {
+            shown: 2,
+            refused: 2
+        }
+    );
+}
+
+/// With reduced flashing the picture loses 20 % of its light, in one drawing, and comes
+/// back.
+#[test]
+fn reduced_flashing_dims() {
+    let mut small = small();
+    small.insert(StyleWeight(1.0)).settle();
+    small.world().insert_resource(ReduceFlashing(true));
+    trigger(&mut small, |impact| {
+        impact.alternate = true;
+        impact.lines = None;
+    });
+    small.headless.step(1);
+    let (before, after) = small.pass();
+    for (a, b) in before.pixels.iter().zip(&after.pixels) {
+        for c in 0..3 {
+            assert!((b[c] - 0.8 * a[c]).abs() < 0.009, "{a:?}, {b:?}");
+        }
+    }
+    let film = film(&mut small, 14);
+    assert_eq!(runs(&film), [9, 5]);
+    // Lines stand still.
+    small.headless.step(60);
+    trigger(&mut small, |_| {});
+    let film = self::film(&mut small, 15);
+    assert_eq!(runs(&film), [10, 5]);
+}
+
+/// While the game is paused the impact stays, and flashes are counted in real time.
+#[test]
+fn a_pause_holds_the_impact() {
+    let mut small = small();
+    trigger(&mut small, |_| {});
+    small.headless.step(2);
+    small.world().resource_mut::<Time<Virtual>>().pause();
+    let film = film(&mut small, 90);
+    assert!(
+        film.iter()
+            .all(|picture| *picture == film[0] && is_two_tone(picture))
+    );
+    for _ in 0..4 {
+        trigger(&mut small, |_| {});
+    }
+    assert_eq!(
+        counts(&small),
+        ImpactCounts {
+            shown: 4,
+            refused: 1
+        }
+    );
+}
+
+/// Numbers out of range count as the nearest end of their range; what is no camera is left
+/// alone.
+#[test]
+fn extreme_impacts_end() {
+    let mut small = small();
+    let before = small.picture();
+    for rate in [f32::NAN, 0.0, f32::INFINITY] {
+        trigger(&mut small, |impact| {
+            impact.drawings = u32::MAX;
+            impact.rate = rate;
+            impact.tones.threshold = f32::NAN;
+        });
+        small.headless.step(60);
+        assert_eq!(small.picture(), before, "{rate}");
+    }
+    let nobody = small.world().spawn_empty().id();
+    small.world().trigger(Impact::new(nobody));
+    small.headless.step(2);
+    assert_eq!(small.picture(), before);
+    let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
+    assert!(!diagnostics.impacts.contains_key(&nobody));
+}

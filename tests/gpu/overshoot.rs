@@ -1,0 +1,245 @@
+//! Lines that go on beyond their loose ends.
+
+use std::f32::consts::TAU;
+
+use bevy::{prelude::*, render::view::Msaa};
+use bevy_comics::{LineBoil, LineWeight, Outlines, Silhouettes};
+
+use crate::{
+    outlines::{ink, put},
+    pictures::{assert_pass_is_its_twin, outlined},
+    small::Small,
+    walls::{towards_the_sky, wall},
+};
+
+/// Width and height of the picture in pixels; a unit of the scene is a pixel.
+const SIZE: usize = 96;
+
+fn lines(width: f32, overshoot: f32, taper: f32) -> Outlines {
+    Outlines {
+        width,
+        overshoot,
+        // Lines of full width to their ends.
+        continuity: 0.0,
+        silhouettes: Some(Silhouettes {
+            softness: 0.0,
+            ..default()
+        }),
+        weight: LineWeight {
+            taper,
+            ..LineWeight::EVEN
+        },
+        budget: 1.0,
+        ..Outlines::SILHOUETTES
+    }
+}
+
+/// A step between two walls, along a line through the middle of the picture. It closes in the
+/// direction of the angle, and its line ends there.
+fn closing_step(angle: f32) -> Small {
+    let mut small = towards_the_sky(UVec2::splat(SIZE as u32));
+    let turned = Quat::from_rotation_z(angle);
+    put(
+        &mut small,
+        Rectangle::new(400.0, 200.0),
+        Color::WHITE,
+        Transform::from_translation(turned * Vec3::new(0.0, 100.0, -50.0)).with_rotation(turned),
+    );
+    put(
+        &mut small,
+        Rectangle::new(400.0, 400.0),
+        Color::WHITE,
+        Transform::from_xyz(0.0, 0.0, -65.0)
+            .with_rotation(turned * Quat::from_rotation_y(-30f32.to_radians())),
+    );
+    small
+}
+
+/// Sum of ink, and its centre, in pixels from the middle of the picture, y up.
+fn sum_and_centre(ink: &[f32]) -> (f32, Vec2) {
+    let half = 0.5 * SIZE as f32;
+    let mut sum = 0.0;
+    let mut moment = Vec2::ZERO;
+    for (i, ink) in ink.iter().enumerate() {
+        let place = Vec2::new(
+            (i % SIZE) as f32 + 0.5 - half,
+            half - (i / SIZE) as f32 - 0.5,
+        );
+        sum += ink;
+        moment += place * *ink;
+    }
+    (sum, moment / sum.max(1e-6))
+}
+
+/// Truth: in every direction, a line of constant width gains the area of its overshoot, along
+/// the edge that it goes on from.
+#[test]
+fn lines_go_on_by_their_overshoot_in_every_direction() {
+    for degrees in [0.0, 8.0, 23.0, 45.0, 63.0, 90.0, 140.0, 205.0, 290.0] {
+        let angle = degrees / 360.0 * TAU;
+        let mut small = closing_step(angle);
+        let along = Vec2::from_angle(angle);
+        for width in [2.0, 4.0] {
+            let short = ink(&mut small, lines(width, 0.0, 0.0));
+            for overshoot in [3.0, 10.0] {
+                let long = ink(&mut small, lines(width, overshoot, 0.0));
+                let gained: Vec<f32> = long.iter().zip(&short).map(|(a, b)| a - b).collect();
+                assert!(
+                    gained.iter().all(|ink| *ink > -0.02),
+                    "{degrees}: ink is lost"
+                );
+                let (sum, centre) = sum_and_centre(&gained);
+                let across = along.perp_dot(centre);
+                println!(
+                    "{degrees} degrees, {width} px: {overshoot} -> {:.2}, {across:.2} px aside",
+                    sum / width
+                );
+                assert!(
+                    (sum / width - overshoot).abs() < 0.5,
+                    "{degrees}: {}",
+                    sum / width
+                );
+                // The end of a line lies on a crack, at most half a diagonal of a pixel aside,
+                // and its direction is within 5 degrees.
+                let most = 0.5f32.sqrt() + 0.5 * overshoot * 5f32.to_radians().tan();
+                assert!(across.abs() < most, "{degrees}: {across}");
+                assert!(along.dot(centre) > 15.0, "{degrees}: {centre}");
+            }
+        }
+    }
+}
+
+/// Closed lines have no ends, nor have lines that meet others, nor at the border of the picture.
+#[test]
+fn only_loose_ends_go_on() {
+    let mut small = towards_the_sky(UVec2::splat(SIZE as u32));
+    wall(&mut small, [-60.0, -60.0], [60.0, 60.0], 90.0);
+    // The rim of a sphere, and two walls that partly hide it and each other.
+    put(
+        &mut small,
+        Sphere::new(20.0).mesh().uv(64, 32),
+        Color::WHITE,
+        Transform::from_xyz(-8.0, 6.0, -60.0),
+    );
+    for (i, turned) in [0.3f32, 1.1].into_iter().enumerate() {
+        put(
+            &mut small,
+            Rectangle::new(50.0, 14.0),
+            Color::WHITE,
+            Transform::from_xyz(10.0, -8.0 - 5.0 * i as f32, -30.0 + 10.0 * i as f32)
+                .with_rotation(Quat::from_rotation_z(turned)),
+        );
+    }
+    // The steps of pixels beside the rim of the sphere are no lines.
+    let rims = |width, overshoot| Outlines {
+        silhouettes: Some(Silhouettes {
+            threshold: 0.1,
+            softness: 0.0,
+            ..default()
+        }),
+        ..lines(width, overshoot, 0.0)
+    };
+    for width in [2.0, 5.0] {
+        let before = ink(&mut small, rims(width, 0.0));
+        let after = ink(&mut small, rims(width, 16.0));
+        assert!(before.iter().sum::<f32>() > 300.0);
+        assert!(before == after, "{width} px: a line went on");
+    }
+}
+
+/// A line that tapers is thin at the end of its stroke, and wider where it would end without.
+#[test]
+fn tapered_lines_taper_to_the_end_of_their_stroke() {
+    let mut small = closing_step(0.0);
+    let profile = |small: &mut Small, overshoot, taper| -> Vec<f32> {
+        let ink = ink(small, lines(6.0, overshoot, taper));
+        (0..SIZE)
+            .map(|x| (0..SIZE).map(|y| ink[y * SIZE + x]).sum())
+            .collect()
+    };
+    let blunt = profile(&mut small, 0.0, 0.0);
+    // The end is round: half of the width beyond the last crack.
+    let end = blunt
+        .iter()
+        .rposition(|width| *width > 0.01)
+        .expect("a line")
+        - 2;
+    let [overshoot, taper] = [12.0f32, 20.0];
+    let found = profile(&mut small, overshoot, taper);
+    for (x, width) in found.iter().enumerate().take(end + 12).skip(end - 20) {
+        // Cracks from the middle of this column to the end of the stroke.
+        let left = (end as f32 + overshoot - x as f32 - 0.5).max(0.0);
+        let t = (left / taper).min(1.0);
+        let want = 6.0 * t * t * (3.0 - 2.0 * t);
+        assert!(
+            (width - want).abs() < 0.5,
+            "{x}: {width}, {want}: {found:.2?}"
+        );
+    }
+    assert!(found[end + 13] < 0.05, "{found:.2?}");
+}
+
+/// Short lines have short strokes: none is longer than its line.
+#[test]
+fn strokes_are_not_longer_than_their_lines() {
+    let mut small = closing_step(0.0);
+    // Hides all but a few pixels of the line.
+    let x = 18.0 - 200.0;
+    put(
+        &mut small,
+        Rectangle::new(400.0, 400.0),
+        Color::WHITE,
+        Transform::from_xyz(x, 0.0, -51.0 + 3.0).with_rotation(Quat::IDENTITY),
+    );
+    let total = |small: &mut Small, overshoot| -> f32 {
+        ink(small, lines(2.0, overshoot, 0.0)).iter().sum()
+    };
+    let [short, long] = [0.0, 16.0].map(|overshoot| total(&mut small, overshoot));
+    let gained = (long - short) / 2.0;
+    println!("gained {gained} px");
+    assert!((2.0..8.5).contains(&gained), "{gained}");
+}
+
+#[test]
+fn strokes_are_their_twin() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let loose = |width, overshoot, taper| Outlines {
+        width,
+        overshoot,
+        weight: LineWeight {
+            taper,
+            ..LineWeight::EVEN
+        },
+        // Many edges that end.
+        creases: Some(bevy_comics::Creases {
+            angle: 100.0,
+            ..default()
+        }),
+        silhouettes: Some(Silhouettes {
+            threshold: 0.3,
+            ..default()
+        }),
+        objects: None,
+        ..default()
+    };
+    for (width, overshoot, taper) in [
+        (2.0, 5.0, 0.0),
+        (1.0, 16.0, 0.0),
+        (2.0, 7.5, 10.0),
+        (5.0, 9.0, 24.0),
+    ] {
+        let what = format!("{width} px, overshoot {overshoot}, taper {taper}");
+        let style = outlined(loose(width, overshoot, taper));
+        assert_pass_is_its_twin(&mut small, &style, None, &what);
+    }
+    let boiling = Outlines {
+        boil: LineBoil {
+            amplitude: 2.0,
+            rate: 0.0,
+            ..default()
+        },
+        ..loose(2.0, 8.0, 0.0)
+    };
+    assert_pass_is_its_twin(&mut small, &outlined(boiling), None, "boiling");
+    assert_eq!(small.errors(), 0);
+}

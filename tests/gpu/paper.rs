@@ -1,0 +1,189 @@
+//! Paper in the picture of a camera.
+
+use bevy::{
+    camera::{Hdr, Viewport},
+    prelude::*,
+    render::view::Msaa,
+};
+use bevy_comics::{ComicsStage, Paper};
+use bevy_comics_testkit::reference::paper;
+
+use crate::{
+    small::{Small, linear, size, unlit},
+    walls::{towards_the_sky, wall},
+};
+
+/// A wall of one colour that fills the picture.
+fn flat(size: UVec2, color: Color) -> Small {
+    let mut small = towards_the_sky(size);
+    let wall = wall(&mut small, [-600.0, -600.0], [600.0, 600.0], 100.0);
+    let material = small
+        .world()
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(unlit(color));
+    small
+        .world()
+        .entity_mut(wall)
+        .insert(MeshMaterial3d(material));
+    small
+}
+
+/// Every pixel of the fused pass equals its twin, at every scale factor, in HDR and with a
+/// background that shows through.
+#[test]
+fn every_pixel_is_its_twins() {
+    let strong = Paper {
+        grain: 1.0,
+        shading: 0.3,
+        size: 2.0,
+        ..default()
+    };
+    for (settings, scale, hdr) in [
+        (Paper::default(), 1.0, false),
+        (Paper::default(), 1.25, false),
+        (strong, 3.0, false),
+        (strong, 1.0, true),
+    ] {
+        let mut small = Small::new(size(), Msaa::Off);
+        small.headless.resize(size(), scale);
+        let target = small.headless.render_target();
+        small.insert((target, settings));
+        small.insert(Camera {
+            clear_color: Color::NONE.into(),
+            ..default()
+        });
+        if hdr {
+            small.insert(Hdr);
+        }
+        small.settle();
+        assert!(small.ran(ComicsStage::of::<Paper>()));
+        let (picture, shown) = small.pass();
+        for (i, (source, found)) in picture.pixels.iter().zip(&shown.pixels).enumerate() {
+            let at = [i as u32 % size().x, i as u32 / size().x].map(|v| f64::from(v) + 0.5);
+            let want = paper::paper(&settings, source.map(f64::from), at, f64::from(scale), 0);
+            for c in 0..3 {
+                let apart = (f64::from(found[c]) - want[c].clamp(0.0, 1.0)).abs();
+                assert!(apart < 0.009, "{settings:?}, {at:?}: {found:?}, {want:?}");
+            }
+            assert_eq!(source[3], found[3]);
+        }
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+/// Truth: the mean light of a flat area stays within 1 %, from black to the white of the
+/// paper, while its pixels vary.
+#[test]
+fn the_mean_tone_stays() {
+    let page = UVec2::new(256, 192);
+    for grain in [Paper::default().grain, 1.0] {
+        let settings = Paper {
+            grain,
+            color: Color::WHITE,
+            ..default()
+        };
+        for tone in 0..=10u8 {
+            let light = f32::from(tone) / 10.0;
+            let mut small = flat(page, Color::linear_rgb(light, light, light));
+            small.insert(Hdr).insert(settings).settle();
+            let (before, after) = small.pass();
+            let count = after.pixels.len() as f64;
+            let mean = |p: &[[f32; 4]]| p.iter().map(|p| f64::from(p[0])).sum::<f64>() / count;
+            let (was, is) = (mean(&before.pixels), mean(&after.pixels));
+            assert!((is - was).abs() < 0.01, "{grain}, {light}: {was}, {is}");
+            let spread = after
+                .pixels
+                .iter()
+                .map(|p| (f64::from(p[0]) - is).powi(2))
+                .sum::<f64>()
+                / count;
+            // Heights deviate by about 0.4; shading adds to it.
+            let least = f64::from(grain * light * (1.0 - light)) * 0.3;
+            assert!(spread.sqrt() >= least, "{grain}, {light}: {spread}");
+        }
+    }
+    // On the screen too, where light above 1 is lost.
+    let mut small = flat(page, Color::WHITE);
+    let white = Paper {
+        color: Color::WHITE,
+        ..default()
+    };
+    small.insert(white).settle();
+    let picture = small.picture();
+    let sum: f64 = picture
+        .enumerate_pixels()
+        .map(|(x, y, _)| linear(&picture, x, y)[1])
+        .sum();
+    let mean = sum / f64::from(page.x * page.y);
+    assert!((mean - 1.0).abs() < 0.01, "{mean}");
+}
+
+/// Both halves of a split screen are on one sheet, which is that of the whole screen.
+#[test]
+fn a_split_screen_is_one_sheet() {
+    let grey = Color::linear_rgb(0.4, 0.4, 0.4);
+    let mut small = flat(size(), grey);
+    small.insert(Paper::default()).settle();
+    let whole = small.picture();
+    let half = UVec2::new(size().x / 2, size().y);
+    let part = |left: u32, order: isize| Camera {
+        viewport: Some(Viewport {
+            physical_position: UVec2::new(left, 0),
+            physical_size: half,
+            ..default()
+        }),
+        order,
+        ..default()
+    };
+    small.insert(part(0, 0));
+    let target = small.headless.render_target();
+    let other = crate::small::camera(target, Msaa::Off);
+    let straight = (
+        Transform::IDENTITY,
+        Projection::Orthographic(crate::walls::unit_per_pixel(half)),
+    );
+    let second = small.world().spawn((other, Paper::default())).id();
+    small
+        .world()
+        .entity_mut(second)
+        .insert((straight, part(half.x, 1)));
+    small.settle();
+    assert_eq!(small.picture(), whole);
+}
+
+/// The sheet stays for all time, or for one drawing.
+#[test]
+fn sheets_change_at_their_rate() {
+    let mut small = flat(size(), Color::linear_rgb(0.4, 0.4, 0.4));
+    for (rate, sheets) in [(0.0, 1), (12.0, 13)] {
+        small.insert(Paper { rate, ..default() }).settle();
+        let mut film = vec![small.picture()];
+        for _ in 0..60 {
+            small.headless.step(1);
+            film.push(small.picture());
+        }
+        let found = film.chunk_by(|a, b| a == b).count();
+        assert_eq!(found, sheets, "{rate}");
+    }
+}
+
+/// Black, white, and values out of range: nothing that is no number, no ink on nothing.
+#[test]
+fn extreme_values_are_finite() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.insert(Hdr);
+    for x in [f32::NAN, f32::INFINITY, -1e30, 0.0, 1e30] {
+        small
+            .insert(Paper {
+                grain: x,
+                shading: x,
+                size: x,
+                rate: x,
+                ..default()
+            })
+            .settle();
+        let (_, after) = small.pass();
+        assert!(after.pixels.iter().flatten().all(|v| v.is_finite()), "{x}");
+    }
+    assert_eq!(small.errors(), 0);
+}

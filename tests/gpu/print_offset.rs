@@ -1,0 +1,210 @@
+//! Plates out of register.
+
+use bevy::{camera::Viewport, prelude::*, render::view::Msaa};
+use bevy_comics::{
+    ComicStyle, ComicsStage, DebugView, Desaturation, Halftone, Outlines, PrintOffset,
+    ScreenSampling, SplitView, ToneBands,
+};
+
+use crate::{
+    halftone::covered,
+    pictures::assert_pass_is_its_twin,
+    small::{Small, linear},
+};
+
+const STILL: PrintOffset = PrintOffset {
+    cyan_x: 0.0,
+    cyan_y: 0.0,
+    magenta_x: 0.0,
+    magenta_y: 0.0,
+    yellow_x: 0.0,
+    yellow_y: 0.0,
+    black_x: 0.0,
+    black_y: 0.0,
+    black_generation: 0.7,
+    amount: 1.0,
+};
+
+fn shot(small: &mut Small, style: &ComicStyle) -> image::RgbaImage {
+    small.style(style);
+    small.settle();
+    small.picture()
+}
+
+fn apart(a: &image::RgbaImage, b: &image::RgbaImage) -> u8 {
+    let pairs = a.as_raw().iter().zip(b.as_raw());
+    pairs.map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)
+}
+
+/// A code of rounding: the picture between the passes has 11 bits.
+#[test]
+fn plates_in_register_are_the_picture() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let plain = shot(&mut small, &ComicStyle::new());
+    for black_generation in [0.0, 0.5, 1.0] {
+        let s = PrintOffset {
+            black_generation,
+            ..STILL
+        };
+        let picture = shot(&mut small, &ComicStyle::new().with(s));
+        assert!(small.ran(ComicsStage::of::<PrintOffset>()));
+        assert!(apart(&picture, &plain) <= 1);
+    }
+}
+
+/// Without black, each plate is a channel of the picture, moved: by whole pixels exactly, by
+/// parts of one as bilinear.
+#[test]
+fn a_moved_plate_is_the_moved_picture() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let colors = shot(&mut small, &ComicStyle::new());
+    for (channel, s) in [
+        (
+            0,
+            PrintOffset {
+                cyan_x: 3.0,
+                cyan_y: -2.0,
+                ..STILL
+            },
+        ),
+        (
+            1,
+            PrintOffset {
+                magenta_x: 3.0,
+                magenta_y: -2.0,
+                ..STILL
+            },
+        ),
+        (
+            2,
+            PrintOffset {
+                yellow_x: 3.0,
+                yellow_y: -2.0,
+                ..STILL
+            },
+        ),
+    ] {
+        let s = PrintOffset {
+            black_generation: 0.0,
+            ..s
+        };
+        let moved = shot(&mut small, &ComicStyle::new().with(s));
+        let mut changed = 0;
+        for y in 2..60 {
+            for x in 4..90 {
+                for c in 0..3 {
+                    let from = if c == channel { (x - 3, y + 2) } else { (x, y) };
+                    let want = colors.get_pixel(from.0, from.1).0[c];
+                    let found = moved.get_pixel(x, y).0[c];
+                    assert!(found.abs_diff(want) <= 1, "{channel}: ({x}, {y})");
+                }
+                changed += usize::from(moved.get_pixel(x, y) != colors.get_pixel(x, y));
+            }
+        }
+        assert!(changed > 200, "{changed}");
+    }
+    // Half a pixel: the mean of two.
+    let s = PrintOffset {
+        cyan_x: 0.5,
+        black_generation: 0.0,
+        ..STILL
+    };
+    let moved = shot(&mut small, &ComicStyle::new().with(s));
+    for y in 1..63 {
+        for x in 1..95 {
+            let [a, b] = [x - 1, x].map(|x| linear(&colors, x, y)[0]);
+            let found = linear(&moved, x, y)[0];
+            assert!((found - 0.5 * (a + b)).abs() < 0.01, "({x}, {y})");
+        }
+    }
+}
+
+#[test]
+fn every_pixel_is_its_twins() {
+    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
+    let style = ComicStyle::new()
+        .with(ToneBands::default())
+        .with(PrintOffset {
+            cyan_x: 2.25,
+            black_y: -1.5,
+            ..default()
+        })
+        .with(Outlines::default());
+    assert_pass_is_its_twin(&mut small, &style, None, "whole");
+    let screened = style.clone().with(Halftone::default());
+    assert_pass_is_its_twin(&mut small, &screened, None, "screened");
+    let viewport = [11, 5, 43, 30];
+    let entity = small.camera;
+    let mut camera = small.world().get_mut::<Camera>(entity).expect("a camera");
+    camera.viewport = Some(Viewport {
+        physical_position: UVec2::new(viewport[0], viewport[1]),
+        physical_size: UVec2::new(viewport[2], viewport[3]),
+        ..default()
+    });
+    assert_pass_is_its_twin(&mut small, &style, Some(viewport), "viewport");
+    assert_eq!(small.errors(), 0);
+}
+
+/// Three passes: the plates are moved, then cells of the moved picture are read.
+#[test]
+fn cells_read_the_moved_picture() {
+    let mut small = Small::new(UVec2::new(40, 28), Msaa::Off);
+    let style = ComicStyle::new()
+        .with(PrintOffset::default())
+        .with(Halftone {
+            sampling: ScreenSampling::Cell,
+            ..default()
+        })
+        .with(Outlines::default());
+    assert_pass_is_its_twin(&mut small, &style, None, "three passes");
+    assert_eq!(small.errors(), 0);
+}
+
+/// Lines cover the pixels that they cover without the effect, though the colours beside them
+/// are moved.
+#[test]
+fn lines_stay_in_place() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let s = PrintOffset {
+        cyan_x: 6.0,
+        magenta_y: 6.0,
+        ..default()
+    };
+    let bare = covered(&mut small, &ComicStyle::new());
+    let moved = covered(&mut small, &ComicStyle::new().with(s));
+    assert!(bare.iter().filter(|covered| **covered).count() > 100);
+    assert_eq!(bare, moved);
+}
+
+/// The split view compares with the unstyled picture, and debug views are those of one
+/// pass.
+#[test]
+fn comparisons_and_debug_views_see_through_the_passes() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let plain = shot(&mut small, &ComicStyle::new());
+    let style = ComicStyle::new()
+        .with(Desaturation::default())
+        .with(PrintOffset::default());
+    let styled = shot(&mut small, &style);
+    small.insert(SplitView::default());
+    small.settle();
+    let split = small.picture();
+    for y in 0..64 {
+        assert_eq!(split.get_pixel(20, y), plain.get_pixel(20, y));
+        assert_eq!(split.get_pixel(80, y), styled.get_pixel(80, y));
+    }
+    let camera = small.camera;
+    small.world().entity_mut(camera).remove::<SplitView>();
+    for view in [
+        DebugView::DepthMap,
+        DebugView::Saturation,
+        DebugView::RawRange,
+    ] {
+        let alone = ComicStyle::new().with(Desaturation::default());
+        small.insert(view);
+        let one = shot(&mut small, &alone);
+        let two = shot(&mut small, &style);
+        assert_eq!(one, two, "{view:?}");
+    }
+    assert_eq!(small.errors(), 0);
+}

@@ -1,0 +1,117 @@
+//! Two tones in the picture of a camera.
+
+use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
+use bevy_comics::{Outlines, TwoTone};
+use bevy_comics_testkit::reference::two_tone;
+
+use crate::{
+    small::{Small, black_ink, size},
+    walls::{towards_the_sky, wall},
+};
+
+/// Every pixel of the fused pass equals its twin, away from edges of the picture.
+#[test]
+fn every_pixel_is_its_twins() {
+    for settings in [
+        TwoTone {
+            threshold: 0.5,
+            ..default()
+        },
+        TwoTone {
+            threshold: 0.7,
+            invert: true,
+            amount: 0.4,
+            dark: Color::srgb(0.1, 0.2, 0.6),
+            light: Color::srgb(0.9, 0.8, 0.7),
+            ..default()
+        },
+    ] {
+        for hdr in [false, true] {
+            let mut small = Small::new(size(), Msaa::Off);
+            if hdr {
+                small.insert(Hdr);
+            }
+            small.insert(settings).settle();
+            let (picture, shown) = small.pass();
+            let mut tones = [0; 2];
+            for y in 1..size().y - 1 {
+                for x in 1..size().x - 1 {
+                    let at = |x: u32, y: u32| picture.pixels[(y * size().x + x) as usize];
+                    let own = at(x, y);
+                    let flat = [at(x - 1, y), at(x + 1, y), at(x, y - 1), at(x, y + 1)];
+                    if flat.iter().any(|other| *other != own) {
+                        continue;
+                    }
+                    let want = two_tone::two_tone(&settings, own.map(f64::from), 0.0);
+                    let found = shown.pixels[(y * size().x + x) as usize];
+                    for c in 0..3 {
+                        let apart = (f64::from(found[c]) - want[c]).abs();
+                        assert!(apart < 0.009, "{settings:?}, {x}, {y}: {found:?}, {want:?}");
+                    }
+                    tones[usize::from(want[1] > 0.5)] += 1;
+                }
+            }
+            assert!(tones[0] > 500, "{tones:?}");
+        }
+    }
+}
+
+/// Truth: a white wall before a darker one, with an outline between them: the two tones and
+/// nothing else, away from the border; the border is a straight, smooth edge, and the
+/// picture is the same turned inside out.
+#[test]
+fn lines_stay_smooth() {
+    let mut small = towards_the_sky(UVec2::new(96, 64));
+    wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 200.0);
+    let slanted = wall(&mut small, [-60.0, -40.0], [0.0, 40.0], 100.0);
+    let turned = Transform::from_xyz(-90.0, 0.0, -100.0)
+        .with_rotation(Quat::from_rotation_z(0.3))
+        .with_scale(Vec3::splat(3.0));
+    small.world().entity_mut(slanted).insert(turned);
+    let outlines = Outlines {
+        width: 3.0,
+        ..Outlines::SILHOUETTES
+    };
+    small.insert(outlines).settle();
+    let plain = small.picture();
+    let all = || (0..64).flat_map(|y| (0..96).map(move |x| (x, y)));
+    let ink = black_ink(&plain, all());
+    assert!(ink > 100.0, "{ink}");
+    small.insert(TwoTone::default()).settle();
+    let toned = small.picture();
+    // The ink of the line is kept, but for what is nearly covered: 15 % of a pixel's edge
+    // on both sides of a line of 3 pixels.
+    let kept = black_ink(&toned, all()) / ink;
+    assert!((0.98..1.12).contains(&kept), "{kept}");
+    let soft = toned
+        .pixels()
+        .filter(|p| (40..215).contains(&p.0[0]))
+        .count();
+    assert!(soft > 60, "{soft} pixels of a soft edge");
+    small
+        .insert(TwoTone {
+            invert: true,
+            ..default()
+        })
+        .settle();
+    let inverted = 96.0 * 64.0 - black_ink(&small.picture(), all());
+    assert!((inverted / ink / kept - 1.0).abs() < 0.01, "{inverted}");
+}
+
+/// Nothing is painted where the background shows through.
+#[test]
+fn nothing_stays_nothing() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.clear();
+    small.insert(Camera {
+        clear_color: Color::NONE.into(),
+        ..default()
+    });
+    small
+        .insert(TwoTone {
+            threshold: 0.0,
+            ..default()
+        })
+        .settle();
+    assert!(small.picture().pixels().all(|p| p.0 == [0; 4]));
+}
