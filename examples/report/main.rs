@@ -18,6 +18,7 @@ mod ink;
 mod ladder;
 mod lines;
 mod models;
+mod parts;
 mod peers;
 mod plots;
 mod ranges;
@@ -84,12 +85,12 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
   --quick          small pictures, few repetitions, no other crates
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure one section only: ranges, encodings, lines, models,
-                   ink, stability, ladder, growth, peers or flicker
+                   ink, stability, ladder, parts, growth, peers or flicker
   --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
-const SECTIONS: [(&str, Section); 10] = [
+const SECTIONS: [(&str, Section); 11] = [
     ("ranges", ranges::measure),
     ("encodings", encodings::measure),
     ("lines", lines::measure),
@@ -97,6 +98,7 @@ const SECTIONS: [(&str, Section); 10] = [
     ("ink", ink::measure),
     ("stability", stability::measure),
     ("ladder", ladder::measure),
+    ("parts", parts::measure),
     ("growth", growth::measure),
     ("peers", peers::measure),
     ("flicker", flicker::measure),

@@ -17,7 +17,7 @@ use bevy_comics_testkit::{
     truth::Truth,
 };
 
-use crate::{Run, table::Table};
+use crate::{Run, parts::set_marks, table::Table};
 
 pub struct Rig {
     pub headless: Headless,
@@ -34,6 +34,10 @@ pub enum Wear {
     Nothing,
     Blit,
     Style(Box<ComicStyle>),
+    /// No style; all meshes are selected.
+    Selected,
+    /// No style; all meshes are seen through walls.
+    SeenThrough,
 }
 
 impl Wear {
@@ -102,6 +106,7 @@ impl Rig {
     }
 
     pub fn wear(&mut self, wear: &Wear) {
+        set_marks(self, wear);
         let world = self.headless.app.world_mut();
         let none = ComicStyle::default();
         let style = match wear {

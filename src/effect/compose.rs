@@ -11,12 +11,13 @@ const RECIPE: &str = include_str!("fused.wgsl");
 pub(crate) const FILE_KEYS: [&str; 4] = ["version", "name", "partial", "depth_map"];
 
 /// The modules of this crate that an effect may import.
-const MODULES: [&str; 14] = [
+const MODULES: [&str; 15] = [
     "bevy_comics::depth::map",
     "bevy_comics::depth::normal",
     "bevy_comics::depth::raw",
     "bevy_comics::depth::view",
     "bevy_comics::depth::window",
+    "bevy_comics::effect::blue_noise",
     "bevy_comics::effect::color",
     "bevy_comics::effect::noise",
     "bevy_comics::effect::picture",
@@ -29,7 +30,7 @@ const MODULES: [&str; 14] = [
 ];
 
 /// Shader definitions of the fused pass that do not name an effect, in lower case.
-const DEFINITIONS: [&str; 23] = [
+const DEFINITIONS: [&str; 24] = [
     "depth",
     "map",
     "map_flags",
@@ -44,6 +45,7 @@ const DEFINITIONS: [&str; 23] = [
     "lines_anywhere",
     "surface_lines",
     "lightness_change",
+    "blue_noise",
     "finish",
     "overlay",
     "stored_srgb",

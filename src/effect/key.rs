@@ -258,6 +258,10 @@ impl StylizeKey {
         self.needs.contains(Needs::IDS)
     }
 
+    pub fn blue_noise(&self) -> bool {
+        self.needs.contains(Needs::BLUE_NOISE)
+    }
+
     pub fn shader_defs(&self) -> Vec<ShaderDefVal> {
         let space = match self.space {
             CompositingSpace::Linear => None,
@@ -284,6 +288,7 @@ impl StylizeKey {
             (self.continued, "CONTINUED"),
             (self.layer, "LAYER"),
             (needs.contains(Needs::LIGHTNESS_CHANGE), "LIGHTNESS_CHANGE"),
+            (self.blue_noise(), "BLUE_NOISE"),
             (self.same_size, "SAME_SIZE"),
             (self.finish, "FINISH"),
             (self.part.is_overlay(), "OVERLAY"),
@@ -329,6 +334,10 @@ impl StylizeKey {
             (self.ids(), ids_entry(self.samples > 1)),
             (self.continued, layer.build(9, fragment)),
             (self.continued, between.build(10, fragment)),
+            (
+                self.blue_noise(),
+                texture_2d(unfilterable).build(11, fragment),
+            ),
         ];
         entries.extend(
             optional

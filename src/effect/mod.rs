@@ -3,6 +3,7 @@
 
 mod any;
 mod blend;
+mod blue_noise;
 mod choose;
 mod compose;
 mod errors;
@@ -311,7 +312,17 @@ bitflags! {
         /// viewport's size in 16-bit floating-point numbers. `Pixel::saturation` is 1 again
         /// in the second one.
         const PICTURE = 1 << 7;
+        /// A tile of thresholds in an even, irregular order, by
+        /// `bevy_comics::effect::blue_noise::blue_noise`.
+        const BLUE_NOISE = 1 << 8;
     }
+}
+
+impl Needs {
+    /// What every view can provide.
+    pub(crate) const WITHOUT_PREPASSES: Self = Self::LIGHTNESS_CHANGE
+        .union(Self::PICTURE)
+        .union(Self::BLUE_NOISE);
 }
 
 /// The uniform of an effect whose WGSL function takes no settings.

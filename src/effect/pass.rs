@@ -20,6 +20,7 @@ use bevy::{
 };
 
 use super::{
+    blue_noise::BlueNoise,
     errors::ShaderErrors,
     key::StylizeKey,
     layers::{LayerSampler, ViewLayers},
@@ -107,6 +108,7 @@ pub(super) fn stylize<const PRINTS: bool>(
         ),
     )>,
     (object_styles, sampler): (Res<ObjectStyleBuffer>, Res<LayerSampler>),
+    blue_noise: Res<BlueNoise>,
     (ledger, errors): (Res<StageLedger>, Res<ShaderErrors>),
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
@@ -122,7 +124,7 @@ pub(super) fn stylize<const PRINTS: bool>(
         return pass_through(request, &ledger, LeftOut::PipelineNotReady);
     };
     let inputs = if target.main_texture_format() == request.key.format {
-        inputs(&request.key, found, &object_styles)
+        inputs(&request.key, found, &object_styles, &blue_noise)
     } else {
         Err(LeftOut::PipelineNotReady)
     };
@@ -335,6 +337,7 @@ fn inputs<'a>(
     key: &StylizeKey,
     (surfaces, range, lines, ids): Found<'a>,
     object_styles: &'a ObjectStyleBuffer,
+    blue_noise: &'a BlueNoise,
 ) -> Result<Vec<BindGroupEntry<'a>>, LeftOut> {
     let not_ready = LeftOut::PipelineNotReady;
     let surfaces = Surfaces::from(surfaces);
@@ -368,6 +371,10 @@ fn inputs<'a>(
     if key.ids() {
         let ids = ids.ok_or(not_ready)?;
         entries.push(entry(8, (&ids.view).into_binding()));
+    }
+    if key.blue_noise() {
+        let tile = blue_noise.view().ok_or(not_ready)?;
+        entries.push(entry(11, tile.into_binding()));
     }
     Ok(entries)
 }

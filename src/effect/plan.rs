@@ -258,7 +258,7 @@ impl Plan {
         let mut plan = self.clone();
         let (needs, reason) = match missing {
             Prepasses::Depth => (
-                Needs::all().difference(Needs::LIGHTNESS_CHANGE | Needs::PICTURE),
+                Needs::all().difference(Needs::WITHOUT_PREPASSES),
                 LeftOut::NoDepthPrepass,
             ),
             Prepasses::Normals => (Needs::NORMALS, LeftOut::NoNormalPrepass),

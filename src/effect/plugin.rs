@@ -25,6 +25,7 @@ use bevy::{
 
 use super::{
     EffectRegistry, EffectTarget, EffectType,
+    blue_noise::BlueNoise,
     choose::choose_plans,
     errors::{ShaderErrors, file_path},
     layers::{LayerSampler, prepare_layers},
@@ -80,6 +81,7 @@ impl Plugin for FusedPlugin {
 impl FusedPlugin {
     /// The part that needs the engine's renderer.
     pub(crate) fn build_render(app: &mut App) {
+        load_shader_library!(app, "blue_noise.wgsl");
         load_shader_library!(app, "color.wgsl");
         load_shader_library!(app, "noise.wgsl");
         load_shader_library!(app, "picture.wgsl");
@@ -142,6 +144,7 @@ fn init_pipeline(
     for view in &fused {
         commands.entity(view).remove::<ViewFused>();
     }
+    commands.insert_resource(BlueNoise::default());
     commands.insert_resource(LayerSampler::new(&device));
     commands.insert_resource(StylizePipeline::new(&fullscreen, shader.0.clone(), &assets));
 }

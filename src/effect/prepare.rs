@@ -7,7 +7,7 @@ use bevy::{
         component::Component,
         entity::Entity,
         query::{With, Without},
-        system::{Commands, Query, Res},
+        system::{Commands, Query, Res, ResMut},
     },
     render::{
         render_resource::{Buffer, BufferDescriptor, BufferUsages, CachedRenderPipelineId},
@@ -15,7 +15,7 @@ use bevy::{
     },
 };
 
-use super::{Plan, ViewFacts, any::encode, key::StylizeKey};
+use super::{Plan, ViewFacts, any::encode, blue_noise::BlueNoise, key::StylizeKey};
 use crate::{depth::view::ViewUniform, lines::LinesUniform};
 
 /// On a view in the render world: draw its effects in this frame.
@@ -88,7 +88,11 @@ pub(super) fn prepare_fused_pass(
     views: Query<(Entity, &FusedRequest, Option<&ViewFused>)>,
     stale: Query<Entity, (With<ViewFused>, Without<FusedRequest>)>,
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
+    mut blue_noise: ResMut<BlueNoise>,
 ) {
+    if views.iter().any(|(_, request, _)| request.key.blue_noise()) {
+        blue_noise.prepare(&device, &queue);
+    }
     for (entity, request, fused) in &views {
         let bytes = request.uniform_bytes();
         let fits = fused.filter(|fused| fused.uniform.size() >= bytes.len() as u64 + SLACK);

@@ -98,7 +98,11 @@ fn picture_effects() -> [Modes; 6] {
             product(&[
                 vec![flags(&["HALFTONE"]), flags(&["HALFTONE", "MAP", "DEPTH"])],
                 numbers("HALFTONE_MODE", 0..4),
-                numbers("HALFTONE_SHAPE", 0..6),
+                [
+                    numbers("HALFTONE_SHAPE", 0..5),
+                    vec![vec![("HALFTONE_SHAPE", Some(5)), ("BLUE_NOISE", None)]],
+                ]
+                .concat(),
                 // Cells are read in a pass of their own.
                 vec![Vec::new(), flags(&["HALFTONE_CELLS", "CONTINUED"])],
             ]),
@@ -232,6 +236,7 @@ fn other_effects() -> Vec<Modes> {
                 (Needs::IDS, "OBJECT_IDS"),
                 (Needs::LINES, "LINES"),
                 (Needs::LIGHTNESS_CHANGE, "LIGHTNESS_CHANGE"),
+                (Needs::BLUE_NOISE, "BLUE_NOISE"),
             ] {
                 if needs.intersects(need) {
                     mode.push((definition, None));

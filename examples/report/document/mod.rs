@@ -3,6 +3,7 @@
 
 mod ink;
 mod others;
+mod parts;
 mod precision;
 mod scenes;
 mod targets;
@@ -38,6 +39,7 @@ pub fn render(folder: &Path) -> Result<String, String> {
     precision::lines(&mut out, folder)?;
     scenes::stability(&mut out, folder)?;
     scenes::ladder(&mut out, folder)?;
+    parts::parts(&mut out, folder)?;
     scenes::growth(&mut out, folder)?;
     others::peers(&mut out, folder)?;
     others::flicker(&mut out, folder)?;

@@ -121,7 +121,20 @@ fn quality(folder: &Path) -> Result<Vec<Target>, String> {
         let drawn = scores.number(row, "drawn") - scores.number(row, "right");
         100.0 * drawn / scores.number(row, "pixels").max(1.0)
     });
+    let teapot = scores.matching(&[
+        ("scene", "teapot"),
+        ("detector", "all outlines"),
+        ("truth", "every line"),
+    ]);
+    let found = teapot
+        .first()
+        .map(|row| 100.0 * scores.number(row, "found") / scores.number(row, "true").max(1.0));
     let mut all = vec![
+        Target::at_least(
+            "teapot, its lid with the 72 sides included: true pixels that have a line, %",
+            100.0,
+            found,
+        ),
         Target::at_least("F1 of all outlines, all scenes", 0.99, Some(f1)).with_digits(3),
         Target::at_most("village: false pixels, %", 0.03, wrong).with_digits(3),
     ];

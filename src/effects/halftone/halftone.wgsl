@@ -2,6 +2,7 @@
 
 // Prints the picture with screens of dots or lines.
 
+#import bevy_comics::effect::blue_noise::blue_noise
 #import bevy_comics::effect::color::{lightness, luminance, separated}
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::effect::screen::{
@@ -56,8 +57,6 @@ struct Halftone {
     mode: u32,
     shape: u32,
     unused: u32,
-    // Ranks of 64 x 64 grains, row by row, a byte each.
-    grains: array<vec4<u32>, 256>,
 }
 
 // The mode: compiled in by the fused pass, else that of the settings.
@@ -115,12 +114,9 @@ fn cell_at(place: vec2<f32>, turn: vec2<f32>, phase: f32) -> vec2<f32> {
     return vec2(dot(place, turn), dot(place, vec2(-turn.y, turn.x))) + phase;
 }
 
-// Threshold of a grain, 0 to 1.
-fn threshold(s: Halftone, at: vec2<i32>) -> f32 {
-    let place = at & vec2(63);
-    let i = u32(place.y * 64 + place.x);
-    let word = s.grains[i >> 4u][(i >> 2u) & 3u];
-    return (f32((word >> ((i & 3u) * 8u)) & 255u) + 0.5) / 256.0;
+// Whether a grain is printed.
+fn grain(tone: f32, at: vec2<i32>) -> f32 {
+    return grain_cover(tone, blue_noise(at));
 }
 
 // Square grains that are printed or not, averaged over the pixel. Each plate has its own
@@ -131,10 +127,8 @@ fn stochastic(s: Halftone, place: vec2<f32>, tone: f32, plate: i32) -> f32 {
     let first = floor(low);
     let f = clamp((low + 2.0 * half - first - 1.0) / (2.0 * half), vec2(0.0), vec2(1.0));
     let at = vec2<i32>(first) + plate * vec2(19, 37);
-    let upper = mix(grain_cover(tone, threshold(s, at)), grain_cover(tone, threshold(s, at + vec2(1, 0))), f.x);
-    let lower = mix(
-        grain_cover(tone, threshold(s, at + vec2(0, 1))), grain_cover(tone, threshold(s, at + vec2(1, 1))), f.x,
-    );
+    let upper = mix(grain(tone, at), grain(tone, at + vec2(1, 0)), f.x);
+    let lower = mix(grain(tone, at + vec2(0, 1)), grain(tone, at + vec2(1, 1)), f.x);
     return mix(upper, lower, f.y);
 }
 

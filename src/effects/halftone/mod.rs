@@ -1,13 +1,12 @@
 //! Prints the picture with screens of dots or lines.
 
-mod grains;
 mod kinds;
 mod settings;
 
 use bevy::{
     color::Color,
     ecs::{component::Component, reflect::ReflectComponent},
-    math::{UVec2, UVec4, Vec2, Vec3, Vec4, Vec4Swizzles},
+    math::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles},
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
@@ -141,6 +140,7 @@ impl Effect for Halftone {
         let mut needs = Needs::empty();
         needs.set(Needs::MAP, self.near != self.far);
         needs.set(Needs::PICTURE, self.reads_cells());
+        needs.set(Needs::BLUE_NOISE, self.shape == ScreenShape::Stochastic);
         needs
     }
 
@@ -200,11 +200,6 @@ impl Effect for Halftone {
             mode: self.mode as u32,
             shape: self.shape as u32,
             unused: 0,
-            grains: if stochastic {
-                grains::packed()
-            } else {
-                [UVec4::ZERO; 256]
-            },
         }
     }
 }
@@ -269,5 +264,4 @@ pub struct HalftoneUniform {
     mode: u32,
     shape: u32,
     unused: u32,
-    grains: [UVec4; 256],
 }
