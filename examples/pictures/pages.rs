@@ -11,7 +11,7 @@ use bevy::{
 };
 use bevy_comics::{
     CartoonScene, ComicStyle, ComicsPlugin, Contours, Desaturation, NoOutlines, OutlineStyle,
-    Outlines, presets,
+    Outlines, SelectionOutline, XRayOutline, presets,
 };
 use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
@@ -40,6 +40,7 @@ const SETTLE: usize = 6;
 pub fn write(folder: &Path) -> Result<(), String> {
     save(&simple()?, &folder.join("simple.png"))?;
     save(&objects(), &folder.join("objects.png"))?;
+    save(&marks(), &folder.join("marks.png"))?;
     save(&split_screen(), &folder.join("split-screen.png"))?;
     save(&transparency(), &folder.join("transparency.png"))?;
     save(&glass(), &folder.join("glass.png"))
@@ -66,8 +67,31 @@ fn simple() -> Result<RgbaImage, String> {
     Ok(headless.picture())
 }
 
-/// Three toys: the camera's lines, lines of its own, no lines.
-fn objects() -> RgbaImage {
+/// A scene of three toys, each a cube and a ball, from left to right.
+struct Toys {
+    headless: Headless,
+    ground: Entity,
+    toys: [[Entity; 2]; 3],
+}
+
+/// Adds a mesh with flat light.
+fn put(world: &mut World, mesh: Mesh, color: Color, at: Vec3) -> Entity {
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+    let material = StandardMaterial {
+        perceptual_roughness: 0.9,
+        ..color.into()
+    };
+    let material = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(material);
+    let place = Transform::from_translation(at);
+    let material = MeshMaterial3d(material);
+    world
+        .spawn((Mesh3d(mesh), material, place, CartoonScene::default()))
+        .id()
+}
+
+fn toys() -> Toys {
     let size = UVec2::new(720, 300);
     let mut headless = Headless::new(HeadlessOptions { size, ..default() }, ComicsPlugin);
     let target = headless.render_target();
@@ -84,55 +108,66 @@ fn objects() -> RgbaImage {
         ..default()
     };
     world.spawn((sun, from(4.0, 7.0, 5.0)));
-    let mut spawn = |mesh: Mesh, color: Color, at: Vec3| {
-        let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
-        let material = StandardMaterial {
-            perceptual_roughness: 0.9,
-            ..color.into()
-        };
-        let material = world
-            .resource_mut::<Assets<StandardMaterial>>()
-            .add(material);
-        let place = Transform::from_translation(at);
-        world
-            .spawn((
-                Mesh3d(mesh),
-                MeshMaterial3d(material),
-                place,
-                CartoonScene::default(),
-            ))
-            .id()
-    };
     let ground = Plane3d::default().mesh().size(40.0, 40.0).build();
-    let ground = spawn(ground, Color::srgb(0.93, 0.84, 0.66), Vec3::ZERO);
-    let [mut cubes, mut balls] = [[Entity::PLACEHOLDER; 3]; 2];
-    for (i, hue) in [20.0, 150.0, 250.0].into_iter().enumerate() {
-        let x = 2.6 * (i as f32 - 1.0);
+    let ground = put(world, ground, Color::srgb(0.93, 0.84, 0.66), Vec3::ZERO);
+    let toys = [(-2.6, 20.0), (0.0, 150.0), (2.6, 250.0)].map(|(x, hue)| {
         let color = Color::oklch(0.72, 0.15, hue);
-        cubes[i] = spawn(
-            Cuboid::from_length(1.5).into(),
-            color,
-            Vec3::new(x, 0.75, 0.0),
-        );
-        balls[i] = spawn(
-            Sphere::new(0.55).mesh().uv(48, 24),
-            color.lighter(0.12),
-            Vec3::new(x, 2.0, 0.0),
-        );
+        let cube = Cuboid::from_length(1.5).into();
+        let ball = Sphere::new(0.55).mesh().uv(48, 24);
+        [
+            put(world, cube, color, Vec3::new(x, 0.75, 0.0)),
+            put(world, ball, color.lighter(0.12), Vec3::new(x, 2.0, 0.0)),
+        ]
+    });
+    Toys {
+        headless,
+        ground,
+        toys,
     }
+}
+
+/// The camera's lines, lines of its own, no lines.
+fn objects() -> RgbaImage {
+    let mut scene = toys();
+    let world = scene.headless.app.world_mut();
     let own = OutlineStyle {
         color: Some(Color::srgb(0.85, 0.1, 0.15)),
         width: Some(8.0),
         ..default()
     };
-    for (middle, right) in [(cubes[1], cubes[2]), (balls[1], balls[2])] {
-        world.entity_mut(middle).insert(own);
-        world.entity_mut(right).insert(NoOutlines::default());
+    let [_, middle, right] = scene.toys;
+    for part in middle {
+        world.entity_mut(part).insert(own);
+    }
+    for part in right {
+        world.entity_mut(part).insert(NoOutlines::default());
     }
     // Where a toy stands, the line is the toy's.
-    world.entity_mut(ground).insert(NoOutlines::default());
-    headless.step(SETTLE);
-    headless.picture()
+    world.entity_mut(scene.ground).insert(NoOutlines::default());
+    scene.headless.step(SETTLE);
+    scene.headless.picture()
+}
+
+/// Behind a wall: a toy without marks, one with `XRayOutline`, one with `SelectionOutline`.
+fn marks() -> RgbaImage {
+    let mut scene = toys();
+    let world = scene.headless.app.world_mut();
+    let wall = Cuboid::new(7.6, 1.1, 0.3).into();
+    put(
+        world,
+        wall,
+        Color::srgb(0.75, 0.5, 0.38),
+        Vec3::new(0.0, 0.55, 1.6),
+    );
+    let [_, middle, right] = scene.toys;
+    for part in middle {
+        world.entity_mut(part).insert(XRayOutline::default());
+    }
+    for part in right {
+        world.entity_mut(part).insert(SelectionOutline::default());
+    }
+    scene.headless.step(SETTLE);
+    scene.headless.picture()
 }
 
 /// Two players with two styles on one target.

@@ -52,7 +52,7 @@ fn lines() -> Vec<(String, Wear)> {
         (
             "in the colour of surfaces",
             Outlines {
-                color: LineColor::Surface { darken: 0.35 },
+                color: LineColor::SURFACE,
                 ..default
             },
         ),

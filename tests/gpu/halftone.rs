@@ -22,7 +22,7 @@ use bevy_comics_testkit::{
 };
 
 use crate::{
-    functions::halftone::{SHAPES, tile},
+    functions::halftone::SHAPES,
     pictures::assert_pass_is_its_twin,
     small::{Small, linear, options},
 };
@@ -30,6 +30,12 @@ use crate::{
 /// The angles of the plates.
 const ANGLES: [f64; 4] = [15.0, 75.0, 0.0, 45.0];
 const PERIODS: [f64; 5] = [3.0, 4.0, 6.0, 8.0, 12.5];
+
+/// Thresholds of grains by column and row: each of 256 classes as often as the others.
+fn tile(x: i64, y: i64) -> f64 {
+    let i = (y.rem_euclid(64) * 64 + x.rem_euclid(64)) as u32;
+    (f64::from(i.wrapping_mul(37) & 255) + 0.5) / 256.0
+}
 
 fn plate(degrees: f64, period: f64) -> Plate {
     Plate {

@@ -8,8 +8,9 @@ use bevy::{
 };
 use bevy_comics::{
     BlackFlats, Colorization, ColorizationMode, ComicStyle, ContourOperator, Contours, Creases,
-    DepthMap, DepthMapping, Desaturation, Form, KeyLight, LineResponse, Outlines, Silhouettes,
-    Sketch, ToneBands, VisibleDepthRange, presets,
+    DepthMap, DepthMapping, Desaturation, Form, Halftone, KeyLight, LineResponse, Outlines,
+    PrintOffset, ScreenSampling, ScreenShape, Silhouettes, Sketch, ToneBands, VisibleDepthRange,
+    presets,
 };
 
 use bevy_comics_testkit::{
@@ -86,6 +87,13 @@ pub fn view_of<'a>(
     }
 }
 
+/// Whether an effect reads the picture at other places, so that there is more than one pass.
+fn is_divided(style: &ComicStyle) -> bool {
+    let cells =
+        |s: &Halftone| s.sampling == ScreenSampling::Cell && s.shape != ScreenShape::Stochastic;
+    style.get::<PrintOffset>().is_some() || style.get::<Halftone>().is_some_and(cells)
+}
+
 /// Compares every pixel. Pixels so close to a threshold that the error of the
 /// response decides are counted instead; at most 1 in 200 may be.
 pub fn assert_pass_is_its_twin(
@@ -144,6 +152,11 @@ pub fn assert_pass_is_its_twin(
         size: [input.width, input.height],
         lines: edges.as_ref().map(|(outlines, edges)| (outlines, edges)),
         drawing: sketch.map_or(0, |s| (seconds * f64::from(s.rate)).floor() as u32),
+        quads: if is_divided(style) {
+            [viewport[0], viewport[1]]
+        } else {
+            [0, 0]
+        },
     };
     for y in 0..input.height {
         for x in 0..input.width {

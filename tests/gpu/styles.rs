@@ -158,8 +158,9 @@ fn weights() -> impl Strategy<Value = LineWeight> {
 }
 
 fn page_styles() -> impl Strategy<Value = (Option<SpeedLines>, Option<TwoTone>, Option<Paper>)> {
-    let lines = (number(), number(), any::<u32>(), any::<bool>()).prop_map(
-        |(centre_x, width, count, parallel)| SpeedLines {
+    let lines = (number(), number(), any::<u32>(), (any::<bool>(), colors())).prop_map(
+        |(centre_x, width, count, (parallel, color))| SpeedLines {
+            color,
             kind: if parallel {
                 SpeedLineKind::Parallel
             } else {

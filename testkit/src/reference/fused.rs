@@ -24,6 +24,9 @@ pub struct Input<'a> {
     pub lines: Option<(&'a Outlines, &'a Ink)>,
     /// Number of the sketch's drawing that is shown.
     pub drawing: u32,
+    /// The pixel at which quads of 2 x 2 pixels begin: the corner of the viewport if the first
+    /// pass draws a texture of the viewport's size.
+    pub quads: [u32; 2],
 }
 
 impl Input<'_> {
@@ -41,7 +44,9 @@ impl Input<'_> {
     /// neighbours in the same quad of 2 x 2 pixels, as `fwidthFine`.
     fn change(&self, x: u32, y: u32) -> f64 {
         let at = |x, y| color::lightness(self.light(x, y));
-        (at(x, y) - at(x ^ 1, y)).abs() + (at(x, y) - at(x, y ^ 1)).abs()
+        let beside = |v: u32, first: u32| (v.wrapping_sub(first) ^ 1).wrapping_add(first);
+        let [left, top] = self.quads;
+        (at(x, y) - at(beside(x, left), y)).abs() + (at(x, y) - at(x, beside(y, top))).abs()
     }
 }
 

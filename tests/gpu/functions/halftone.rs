@@ -25,7 +25,7 @@ pub const SHAPES: [ScreenShape; 6] = [
 ];
 
 /// Thresholds of grains by column and row, where there is no tile of blue noise.
-pub fn tile(x: i64, y: i64) -> f64 {
+fn tile(x: i64, y: i64) -> f64 {
     let i = (y.rem_euclid(64) * 64 + x.rem_euclid(64)) as u32;
     (f64::from(noise::hash(i) & 255) + 0.5) / 256.0
 }
