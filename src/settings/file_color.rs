@@ -4,7 +4,7 @@
 //! A colour field of an effect uses it with
 //! `#[serde(with = "bevy_comics::file_color")]`.
 
-use bevy::color::{Color, Srgba};
+use bevy::color::{Color, LinearRgba, Srgba};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
 #[derive(Serialize, Deserialize)]
@@ -21,8 +21,13 @@ enum FileColor {
 pub fn serialize<S: Serializer>(color: &Color, serializer: S) -> Result<S::Ok, S::Error> {
     let srgba = color.to_srgba();
     let hex = srgba.to_hex();
+    // The way from linear light and back rounds.
+    let is_same = |same: &Srgba| match color {
+        Color::LinearRgba(linear) => LinearRgba::from(*same) == *linear,
+        _ => *same == srgba,
+    };
     let file_color = match Srgba::hex(&hex) {
-        Ok(same) if same == srgba => FileColor::Hex(hex),
+        Ok(same) if is_same(&same) => FileColor::Hex(hex),
         _ => FileColor::Components(srgba.red, srgba.green, srgba.blue, srgba.alpha),
     };
     file_color.serialize(serializer)

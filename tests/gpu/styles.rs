@@ -172,12 +172,15 @@ fn page_styles() -> impl Strategy<Value = (Option<SpeedLines>, Option<TwoTone>, 
             ..default()
         },
     );
-    let tones = (colors(), number(), any::<bool>()).prop_map(|(dark, threshold, invert)| TwoTone {
-        dark,
-        threshold,
-        invert,
-        ..default()
-    });
+    let two = (colors(), colors());
+    let tones =
+        (two, number(), any::<bool>()).prop_map(|((dark, light), threshold, invert)| TwoTone {
+            dark,
+            light,
+            threshold,
+            invert,
+            ..default()
+        });
     let paper = (colors(), number(), number()).prop_map(|(color, grain, size)| Paper {
         color,
         grain,
