@@ -181,6 +181,18 @@ fn strips() -> Vec<Strip> {
             ..Strip::new("memory", Village, Walk, plain)
         },
         Strip {
+            prepare: jitter,
+            ..Strip::new(
+                "without-memory",
+                Village,
+                Walk,
+                Outlines {
+                    memory: 1.0,
+                    ..plain
+                },
+            )
+        },
+        Strip {
             prepare: mark::<SelectionOutline>,
             ..Strip::new("selection", Theatre, Turntable, plain)
         },

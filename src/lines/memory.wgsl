@@ -12,7 +12,7 @@ struct Memory {
 }
 
 // Faster lines are as sharp as without a memory, in pixels per frame.
-const FASTEST: f32 = 8.0;
+const FASTEST: f32 = 4.0;
 // Slower lines stand still.
 const STILL: f32 = 0.05;
 // Frames that the memory of lines that stand still is the mean of: some rounds of the engine's
@@ -28,6 +28,18 @@ fn frames_at(before: f32, share: f32, speed: f32) -> f32 {
 // The fraction of this frame where lines move by `speed` pixels per frame.
 fn share_at(frames: f32, speed: f32) -> f32 {
     return min(1.0 / max(frames, 1.0) + speed / FASTEST, 1.0);
+}
+
+// Weights of four texels in a row at a place between the inner two, a fraction `f` from the
+// second one: Catmull-Rom. Lines that are read between texels in every frame stay sharp, where
+// bilinear weights would spread them.
+fn cubic_weights(f: f32) -> vec4<f32> {
+    return vec4(
+        f * (-0.5 + f * (1.0 - 0.5 * f)),
+        1.0 + f * f * (-2.5 + 1.5 * f),
+        f * (0.5 + f * (2.0 - 1.5 * f)),
+        f * f * (-0.5 + 0.5 * f),
+    );
 }
 
 // Ink of three kinds from that in the memory and that of this frame. The memory is limited to

@@ -5,7 +5,7 @@
 
 #import bevy_comics::depth::view::{set_view, texel_depth}
 #import bevy_comics::lines::edge::{decode_ink, encode_ink, is_in_front}
-#import bevy_comics::lines::memory::{frames_at, remembered, share_at}
+#import bevy_comics::lines::memory::{cubic_weights, frames_at, remembered, share_at}
 #import bevy_comics::lines::pass::line_pass
 
 // Ink of this frame, see draw.wgsl.
@@ -53,14 +53,19 @@ fn past_texel(p: vec2<i32>) -> vec3<f32> {
     return decode_ink(textureLoad(past_ink, clamp(p, vec2(0), last), 0).xyz);
 }
 
-// The ink of the last frame at a place: bilinear.
+// The ink of the last frame at a place: bicubic.
 fn past_at(place: vec2<f32>) -> vec3<f32> {
     let corner = floor(place - 0.5);
     let f = place - 0.5 - corner;
-    let p = vec2<i32>(corner);
-    let above = mix(past_texel(p), past_texel(p + vec2(1, 0)), f.x);
-    let below = mix(past_texel(p + vec2(0, 1)), past_texel(p + vec2(1, 1)), f.x);
-    return mix(above, below, f.y);
+    let across = cubic_weights(f.x);
+    let down = cubic_weights(f.y);
+    var sum = vec3(0.0);
+    for (var i = 0; i < 16; i++) {
+        let offset = vec2(i & 3, i >> 2u);
+        let weight = across[offset.x] * down[offset.y];
+        sum += weight * past_texel(vec2<i32>(corner) + offset - 1);
+    }
+    return sum;
 }
 
 @fragment

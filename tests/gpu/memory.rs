@@ -215,6 +215,46 @@ fn lines_follow_what_moves() {
     assert_eq!(small.errors(), 0);
 }
 
+/// How dark lines are: the mean ink of inked pixels, weighted by ink.
+fn darkness(small: &Small) -> f32 {
+    let ink = removed(small);
+    let squares: f32 = ink.iter().map(|ink| ink * ink).sum();
+    squares / ink.iter().sum::<f32>()
+}
+
+/// Lines are as dark while the camera moves, slowly or fast, sideways or forward: the memory
+/// reads the last frame between its pixels, and must not spread lines. As a mean of pictures
+/// without a memory, so that where lines lie between pixels does not count.
+#[test]
+fn lines_are_as_dark_while_the_camera_moves() {
+    let (mut small, _) = scene();
+    for step in [
+        Vec3::new(0.13, 0.0, 0.0),
+        Vec3::new(0.37, 0.21, 0.0),
+        Vec3::new(1.45, 0.0, 0.0),
+        Vec3::new(0.05, 0.02, -0.4),
+    ] {
+        let [without, with] = [1.0, 0.125].map(|memory| {
+            small.insert(Transform::IDENTITY);
+            outline(&mut small, memory);
+            let mut sum = 0.0;
+            for frame in 1..=24 {
+                small.insert(Transform::from_translation(step * frame as f32));
+                small.headless.step(1);
+                sum += if frame > 8 {
+                    darkness(&small) / 16.0
+                } else {
+                    0.0
+                };
+            }
+            sum
+        });
+        println!("{step}: {without:.3} without a memory, {with:.3} with one");
+        assert!(with > 0.85 * without, "{step}: {with}, {without}");
+    }
+    assert_eq!(small.errors(), 0);
+}
+
 /// All kinds of lines under the engine's anti-aliasing: the pass of object ids binds what the
 /// prepass with motion vectors binds.
 #[test]

@@ -15,21 +15,24 @@ pub fn parts(out: &mut String, folder: &Path) -> Result<(), String> {
          differs from the default:\n",
         size(&times)
     );
-    for (section, before) in [
-        ("lines", ""),
+    // The layer of marked objects is drawn after the engine's prepass.
+    let with_prepass = ["prepass", "range", "lines", "post"];
+    for (section, before, laps) in [
+        ("lines", "", &OWN[..]),
         (
             "page",
             "Effects of the page, each alone, and three together:\n\n",
+            &OWN,
         ),
         (
             "marks",
             "All meshes marked with `SelectionOutline` or `XRayOutline`, on a camera without a \
-             style. The layer of marked objects, which is drawn with the engine's meshes, is \
-             part of the time:\n\n",
+             style. The times include the prepass of the marked meshes:\n\n",
+            &with_prepass,
         ),
     ] {
         out.push_str(before);
-        cost_table(out, &costs(&times, section, "teapot", &OWN));
+        cost_table(out, &costs(&times, section, "teapot", laps));
     }
     Ok(())
 }

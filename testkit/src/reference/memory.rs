@@ -8,7 +8,23 @@ pub fn frames_at(before: f64, share: f64, speed: f64) -> f64 {
 
 /// The fraction of this frame where lines move by `speed` pixels per frame.
 pub fn share_at(frames: f64, speed: f64) -> f64 {
-    (1.0 / frames.max(1.0) + speed / 8.0).min(1.0)
+    (1.0 / frames.max(1.0) + speed / 4.0).min(1.0)
+}
+
+/// Weights of four texels at a fraction from the second one: the cubic polynomials whose values
+/// and slopes at the inner two are those of Catmull and Rom (1974).
+pub fn cubic_weights(f: f64) -> [f64; 4] {
+    // Hermite's basis.
+    let start = (1.0 - f).powi(2) * (1.0 + 2.0 * f);
+    let end = f * f * (3.0 - 2.0 * f);
+    let leaving = f * (1.0 - f).powi(2);
+    let arriving = f * f * (f - 1.0);
+    [
+        -0.5 * leaving,
+        start - 0.5 * arriving,
+        end + 0.5 * leaving,
+        0.5 * arriving,
+    ]
 }
 
 /// Ink of one kind; `nearby`: the least and the largest ink nearby in this frame.

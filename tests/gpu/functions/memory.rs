@@ -2,7 +2,7 @@
 
 use bevy_comics_testkit::reference::{
     edge::is_in_front,
-    memory::{frames_at, remembered, share_at},
+    memory::{cubic_weights, frames_at, remembered, share_at},
     surface::surface_ink,
 };
 
@@ -43,6 +43,26 @@ fn the_memory_of_lines_is_that_of_the_twin() {
             if (past - now - least).abs() > 1e-6 {
                 let uncovered = is_in_front(past, now, least);
                 assert_eq!(found[3] == 1.0, uncovered, "{row:?}");
+            }
+        }
+    });
+}
+
+#[test]
+fn cubic_weights_are_those_of_the_twin() {
+    for_batches((0.0f32..=1.0).prop_map(|f| [f]), |rows| {
+        let results = gpu().evaluate(
+            "#import bevy_comics::lines::memory::cubic_weights",
+            "return cubic_weights(i(0u));",
+            rows,
+        );
+        for (row, found) in rows.iter().zip(results) {
+            let want = cubic_weights(f64::from(row[0]));
+            for (found, want) in found.into_iter().zip(want) {
+                assert!(
+                    (f64::from(found) - want).abs() < 1e-6,
+                    "{row:?}: {found}, {want}"
+                );
             }
         }
     });
