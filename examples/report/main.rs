@@ -85,17 +85,19 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
   --quick          small pictures, few repetitions, no other crates
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure one section only: ranges, encodings, lines, models,
-                   ink, stability, ladder, parts, growth, peers or flicker
+                   dashes, memory, stability, ladder, parts, growth, peers
+                   or flicker
   --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
-const SECTIONS: [(&str, Section); 11] = [
+const SECTIONS: [(&str, Section); 12] = [
     ("ranges", ranges::measure),
     ("encodings", encodings::measure),
     ("lines", lines::measure),
     ("models", models::measure),
-    ("ink", ink::measure),
+    ("dashes", ink::dashes),
+    ("memory", ink::memory),
     ("stability", stability::measure),
     ("ladder", ladder::measure),
     ("parts", parts::measure),

@@ -114,6 +114,10 @@ presets! {
     MANGA_PAGE: "manga-page";
     /// A newspaper's comic: four inks on grey paper, out of register.
     NEWSPRINT: "newsprint";
+    /// A comic book of the sixties: dots of four inks and brush lines on cheap paper.
+    SILVER_AGE: "silver-age";
+    /// Two spot inks in fine dots on warm paper.
+    RISOGRAPH: "risograph";
     /// Pop art: large dots of bright ink, thick black lines.
     POP_POSTER: "pop-poster";
     /// Even lines on clean colours that pale a little with distance.

@@ -134,7 +134,13 @@ const LINE_PRESETS: [Preset; 12] = [
 ];
 
 /// The presets that print.
-const PRINT_PRESETS: [Preset; 3] = [presets::MANGA_PAGE, presets::NEWSPRINT, presets::POP_POSTER];
+const PRINT_PRESETS: [Preset; 5] = [
+    presets::MANGA_PAGE,
+    presets::NEWSPRINT,
+    presets::POP_POSTER,
+    presets::SILVER_AGE,
+    presets::RISOGRAPH,
+];
 
 /// The presets that have a golden picture in a scene: all those that print. The mountains show those after the
 /// first paper, the theatre those after the second, the teapot all of them, and the

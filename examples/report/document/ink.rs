@@ -19,7 +19,7 @@ fn changed(table: &Table, row: &[String]) -> f64 {
 
 pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
     if !folder.join("ink_dashes.csv").exists() || !folder.join("ink_memory.csv").exists() {
-        out.push_str("### Whole and steady lines\n\nNot measured yet: `report --only ink`.\n\n");
+        out.push_str("### Whole and steady lines\n\nNot measured yet: `report --only dashes` and `report --only memory`.\n\n");
         return Ok(());
     }
     let table = load(folder, "ink_dashes")?;
@@ -41,7 +41,7 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let table = load(folder, "ink_memory")?;
     out.push_str(
-        "\nA still view under the engine's temporal anti-aliasing: pixels that change by more than two codes \
+        "\nA still view under the engine's temporal anti-aliasing, of a scene that is white except for its lines: pixels that change by more than two codes \
          from frame to frame, and the time of a whole frame.\n\n\
          | | | changed pixels | ms |\n|---|---|---|---|\n",
     );
