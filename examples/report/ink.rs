@@ -100,6 +100,10 @@ fn whiten(rig: &mut Rig) {
     let world = rig.headless.app.world_mut();
     world.insert_resource(ClearColor(Color::WHITE));
     world.entity_mut(camera).remove::<Skybox>();
+    let mut meshes = world.resource_mut::<Assets<Mesh>>();
+    for (_, mesh) in meshes.iter_mut() {
+        mesh.remove_attribute(Mesh::ATTRIBUTE_COLOR);
+    }
     let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
     for (_, material) in materials.iter_mut() {
         *material = StandardMaterial {

@@ -63,7 +63,7 @@ pub struct LineSettings {
 const LONGEST: i32 = 64;
 
 impl LineSettings {
-    /// No kind of line; the numbers are the defaults.
+    /// No kind of line, and no factor that changes lines.
     pub const NONE: Self = Self {
         silhouettes: None,
         creases: None,

@@ -1,5 +1,6 @@
 //! On a device without storage textures, lines are found and drawn by fragment shaders:
-//! slower, and neither linked nor smooth, but otherwise the same. The range is still found by compute shaders.
+//! slower, neither linked nor smooth, without weight, boil, fog and budget, but otherwise the
+//! same. The range is still found by compute shaders.
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{

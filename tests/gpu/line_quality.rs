@@ -196,12 +196,12 @@ fn lines_of_models_follow_their_edges() {
 /// are missed and of the drawn ones that are wrong, and fragments of thin lines for each 100
 /// pixels. Measured on llvmpipe.
 const DISTANT: [(Specimen, [f64; 3]); 6] = [
-    (Specimen::Organic, [1.0, 1.0, 99.0]),
-    (Specimen::HardSurface, [1.0, 1.0, 99.0]),
-    (Specimen::Foliage, [1.0, 1.0, 99.0]),
-    (Specimen::Figure, [1.0, 1.0, 99.0]),
-    (Specimen::Stairs, [1.0, 1.0, 99.0]),
-    (Specimen::Wires, [1.0, 1.0, 99.0]),
+    (Specimen::Organic, [7.0 / 164.0, 0.0, 1.11]),
+    (Specimen::HardSurface, [0.0, 0.0, 0.81]),
+    (Specimen::Foliage, [3.0 / 407.0, 0.0, 0.18]),
+    (Specimen::Figure, [0.0, 0.0, 0.28]),
+    (Specimen::Stairs, [0.0, 0.0, 0.0]),
+    (Specimen::Wires, [0.0453, 0.0, 5.41]),
 ];
 
 /// The most fragments for each 100 pixels of thin lines in scenes: the target of the report.

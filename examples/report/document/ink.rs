@@ -26,7 +26,7 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
     out.push_str(
         "### Whole and steady lines\n\nDashes for each 100 pixels of true line, on the models \
          above and on two shapes while they turn: half of the ends of lines, where no other line begins. Those of \
-         models are partly true: folds that fade out, rims that end on a surface. `cut` lines do not continue along weak edges (`continuity` 0, `specks` 1).\n\n\
+         models are partly true: folds that fade out, rims that end on a surface. `cut` lines do not continue along weak edges (`continuity` 0, `specks` 1); where a line continues along a weak edge that ends inside a surface, it has one more end than without.\n\n\
          | | cut | continued |\n|---|---|---|\n",
     );
     let all: Vec<&Vec<String>> = table.rows.iter().collect();
@@ -64,11 +64,13 @@ pub fn targets(folder: &Path) -> Result<Vec<Target>, String> {
         return Ok(vec![]);
     }
     let table = load(folder, "ink_dashes")?;
-    let mut all: Vec<Target> = ["cylinder", "icosahedron"]
+    let rows: Vec<&Vec<String>> = table.rows.iter().collect();
+    let shapes = table.distinct(&rows, "model");
+    let mut all: Vec<Target> = shapes
         .into_iter()
         .map(|shape| {
             let what = format!("{shape}, turning: dashes per 100 px of line");
-            Target::at_most(what, 0.5, Some(dashes(&table, "continued", shape)))
+            Target::at_most(what, 0.5, Some(dashes(&table, "continued", &shape)))
         })
         .collect();
     let table = load(folder, "ink_memory")?;
