@@ -16,8 +16,10 @@ use crate::{
 /// Draws the reader's eye to a distance: what is nearer or farther is out of focus. Drawn after
 /// the effects of colour, before prints and lines.
 ///
-/// As in a comic, and unlike a lens, shapes keep their outline: a sharp figure does not flow into
-/// what is out of focus around it, and what is out of focus stays inside its outline.
+/// As in a comic, and unlike a lens, the outline between what is sharp and what is not stays
+/// sharp: a sharp figure does not flow into what is out of focus behind it, and what is out of
+/// focus in front does not flow over what is sharp behind it. Things that are both out of focus
+/// flow into each other.
 ///
 /// How far something is out of focus depends on the ratio of its distance to that of the
 /// focus, so it does not depend on the unit of the world. In an orthographic view it depends on

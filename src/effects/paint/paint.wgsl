@@ -11,7 +11,7 @@
 
 #import bevy_comics::depth::view::view
 #import bevy_comics::effect::color::{finite_color, luminance}
-#import bevy_comics::effect::means::{load_means, root, square, variance, Means}
+#import bevy_comics::effect::means::{load_means, part_of_box, root, square, variance, Means}
 #import bevy_comics::effect::picture::{load_picture, picture_at}
 #import bevy_comics::effect::pixel::Pixel
 #ifdef PAINT_FIGURES
@@ -89,10 +89,10 @@ fn figure_share(own: vec2<i32>, other: vec2<i32>) -> f32 {
 #endif
 }
 
-// The factor for a box of another size than asked: none for one that is too small to reach the
-// pixel. It would be even on the other side of an edge.
-fn reaching_share(m: Means, half: f32) -> f32 {
-    return clamp(1.0 + m.half - half, 0.0, 1.0);
+// The factor for a box that is smaller than asked: how much of the pixel it contains, of what it
+// should. One that does not reach the pixel would be even on the other side of an edge.
+fn reaching_share(found: f32, half: f32, at: i32) -> f32 {
+    return min(part_of_box(found, at) / max(part_of_box(half, at), 1e-6), 1.0);
 }
 
 // Adds the eight boxes at a distance. `half`: half the side that they should have.
@@ -102,7 +102,7 @@ fn ring(s: Paint, pixel: vec2<i32>, at: i32, half: f32, share: f32, before: Choi
         let other = pixel + at * (vec2(k % 3, k / 3) - 1);
         if k != 4 && is_inside(other) {
             let m = load_means(other);
-            let other_share = m.coverage * reaching_share(m, half) * figure_share(pixel, other);
+            let other_share = m.coverage * reaching_share(m.half, half, at) * figure_share(pixel, other);
             c = chosen(c, m, share * other_share, s.half_sharpness);
         }
     }

@@ -6,7 +6,7 @@ use bevy_comics::{Paint, PaintForm};
 
 use super::{
     Rgb, Rgba, color,
-    means::{Means, Sheet, means, root, square},
+    means::{Means, Sheet, means, part_of_box, root, square},
     mix,
 };
 
@@ -125,12 +125,18 @@ pub fn box_areas(
             let other = [at[0] as i64 + by[0], at[1] as i64 + by[1]];
             if sheet.contains(other) {
                 let m = boxes[other[1] as usize * sheet.size[0] + other[0] as usize];
-                let reaches = (1.0 + m.half - half).clamp(0.0, 1.0);
+                let reaches = reaching_share(m.half, half, distance as i64);
                 areas.push((m, part * m.coverage * reaches * share(other)));
             }
         }
     }
     areas
+}
+
+/// The factor for a box of half a side of `found` instead of `half`: how much of the pixel, at
+/// this distance, it contains, of what it should.
+pub fn reaching_share(found: f64, half: f64, distance: i64) -> f64 {
+    (part_of_box(found, distance) / part_of_box(half, distance).max(1e-6)).min(1.0)
 }
 
 /// Paint over a pixel.

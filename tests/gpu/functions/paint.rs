@@ -4,7 +4,7 @@ use bevy_comics::{Paint, PaintForm};
 use bevy_comics_testkit::reference::{
     means::{Means, Sheet, means, part_of_box, root, square},
     noise,
-    paint::{Scene, chosen, edge, sector_weight},
+    paint::{Scene, chosen, edge, reaching_share, sector_weight},
 };
 
 use super::{
@@ -13,7 +13,7 @@ use super::{
 };
 
 const PAINT: &str = "#import bevy_comics::effects::paint::{
-        Paint, chosen, direction_of, no_choice, paint_radius, sector_direction, sector_weight,
+        Paint, chosen, direction_of, no_choice, paint_radius, reaching_share, sector_direction, sector_weight,
     }
     #import bevy_comics::effect::means::{
         Means, added, divided, half_side, packed_means, part_of_box, root, square, unpacked_means,
@@ -113,6 +113,22 @@ fn sectors_and_radii_are_those_of_the_twin() {
             );
             let radius = 1.25 * (2.0 + 7.0 * f64::from(row[3]).clamp(0.0, 1.0));
             assert!((f64::from(found[3]) - radius).abs() < 1e-5);
+        }
+    });
+}
+
+#[test]
+fn boxes_that_are_too_small_count_as_the_twin_says() {
+    let row = (0.0f32..9.0, 0.0f32..9.0, 0u32..10);
+    let body = "return vec4(reaching_share(i(0u), i(1u), i32(i(2u))));";
+    for_batches(row.prop_map(|(a, b, at)| [a, b, at as f32]), |rows| {
+        for (row, found) in rows.iter().zip(gpu().evaluate(PAINT, body, rows)) {
+            let [a, b] = [row[0], row[1]].map(f64::from);
+            let want = reaching_share(a, b, row[2] as i64);
+            // Parts are exact to 1e-6, and are divided by at least as much.
+            let part = part_of_box(b, row[2] as i64).max(1e-6);
+            let apart = (f64::from(found[0]) - want).abs();
+            assert!(apart < 4e-6 / part, "{row:?}: {found:?}, {want}");
         }
     });
 }
@@ -300,7 +316,7 @@ fn noise_is_painted_over() {
 }
 
 /// Truth: edges of all directions, anti-aliased, stay within a tenth of a pixel on the mean of
-/// their rows.
+/// their rows, measured as they are seen: in square roots of light.
 #[test]
 fn edges_stay_in_place() {
     for slope in [0.0, 0.1, 0.37, 0.8] {
@@ -316,6 +332,7 @@ fn edges_stay_in_place() {
             let light = 0.1 + 0.7 * coverage(at);
             [light, light, light, 1.0]
         });
+        let contrast = 0.8f64.sqrt() - 0.1f64.sqrt();
         for form in FORMS {
             for radius in [2.0, 4.0, 6.5] {
                 let s = Paint {
@@ -329,9 +346,10 @@ fn edges_stay_in_place() {
                 let moved: f64 = rows
                     .clone()
                     .flat_map(|y| (0..40).map(move |x| [x, y]))
-                    .map(|at| (painted.at(at)[1] - sheet.at(at)[1]) / 0.7)
+                    .map(|at| (painted.at(at)[1].sqrt() - sheet.at(at)[1].sqrt()) / contrast)
                     .sum();
-                let moved = moved / rows.len() as f64;
+                // Across the edge, not along the row.
+                let moved = moved / rows.len() as f64 / slope.hypot(1.0);
                 assert!(moved.abs() < 0.1, "{form:?}, {radius}, {slope}: {moved}");
             }
         }
