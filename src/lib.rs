@@ -41,8 +41,8 @@
 //! 4. where [`Outlines`] are asked for, silhouettes, creases and edges between
 //!    objects are found along the borders of pixels, and drawn at their width;
 //! 5. one full-screen pass after tonemapping applies the effects: [`ToneBands`],
-//!    [`Desaturation`], [`Colorization`], [`PrintOffset`], [`Halftone`], [`BlackFlats`],
-//!    [`Contours`], the outlines or a [`Sketch`] of them, [`IsoLines`], [`TwoTone`],
+//!    [`Desaturation`], [`Colorization`], [`Paint`], [`Focus`], [`PrintOffset`], [`Halftone`],
+//!    [`BlackFlats`], [`Contours`], the outlines or a [`Sketch`] of them, [`IsoLines`], [`TwoTone`],
 //!    [`SpeedLines`], [`Paper`] and [`Vignette`], in this order, and those of the game
 //!    ([`Effect`]) at the end of their [`EffectStage`].
 //!
@@ -136,6 +136,8 @@ mod pages {
         CartoonMaterial: "docs/cartoon-material.md";
         Motion: "docs/motion.md";
         Paper: "docs/paper.md";
+        Paint: "docs/paint.md";
+        Focus: "docs/focus.md";
         FixedRange: "docs/fixed-range.md";
         SplitScreen: "docs/split-screen.md";
         TransparentThings: "docs/transparent-things.md";

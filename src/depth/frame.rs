@@ -169,11 +169,17 @@ impl DepthProjection {
             ProjectionKind::Perspective => [1.0, self.scale as f32],
             ProjectionKind::Oblique => [1.0, 0.0],
             ProjectionKind::Orthographic => {
-                let height = 2.0 / f64::from(clip_from_view.y_axis.y).abs().max(1e-30);
-                let distance = height / (2.0 * (std::f64::consts::FRAC_PI_8).tan());
+                let distance = reference_distance(clip_from_view);
                 [0.0, (self.scale * distance) as f32]
             }
         }
+    }
+
+    /// In an orthographic view: the distance from which a perspective view of 45 degrees shows
+    /// the same height.
+    pub fn reference(&self, clip_from_view: &Mat4) -> Option<f32> {
+        let orthographic = self.kind == ProjectionKind::Orthographic;
+        orthographic.then(|| reference_distance(clip_from_view) as f32)
     }
 
     /// What `raw_depth` of `raw.wgsl` reads: zeros unless the projection is oblique.
@@ -265,6 +271,13 @@ impl DepthProjection {
             default
         }
     }
+}
+
+/// The distance from which a perspective view of 45 degrees shows the height of an orthographic
+/// one.
+fn reference_distance(clip_from_view: &Mat4) -> f64 {
+    let height = 2.0 / f64::from(clip_from_view.y_axis.y).abs().max(1e-30);
+    height / (2.0 * (std::f64::consts::FRAC_PI_8).tan())
 }
 
 /// The near plane of a custom projection in world units: the distance at which its

@@ -11,7 +11,7 @@ const RECIPE: &str = include_str!("fused.wgsl");
 pub(crate) const FILE_KEYS: [&str; 4] = ["version", "name", "partial", "depth_map"];
 
 /// The modules of this crate that an effect may import.
-const MODULES: [&str; 15] = [
+const MODULES: [&str; 16] = [
     "bevy_comics::depth::map",
     "bevy_comics::depth::normal",
     "bevy_comics::depth::raw",
@@ -19,6 +19,7 @@ const MODULES: [&str; 15] = [
     "bevy_comics::depth::window",
     "bevy_comics::effect::blue_noise",
     "bevy_comics::effect::color",
+    "bevy_comics::effect::means",
     "bevy_comics::effect::noise",
     "bevy_comics::effect::picture",
     "bevy_comics::effect::pixel",
@@ -30,7 +31,7 @@ const MODULES: [&str; 15] = [
 ];
 
 /// Shader definitions of the fused pass that do not name an effect, in lower case.
-const DEFINITIONS: [&str; 24] = [
+const DEFINITIONS: [&str; 27] = [
     "depth",
     "map",
     "map_flags",
@@ -55,6 +56,9 @@ const DEFINITIONS: [&str; 24] = [
     "unstyled_print",
     "continued",
     "layer",
+    "means",
+    "draws_means",
+    "means_down",
 ];
 
 /// The shader definition of the effect with this name.
@@ -74,7 +78,7 @@ pub(super) fn refuses(effect: &EffectType, known: &[&EffectType]) -> Option<&'st
         Some("its name is not in snake_case, or ends with a digit or an underscore")
     } else if DEFINITIONS.contains(&name)
         || FILE_KEYS.contains(&name)
-        || ["view_", "without_"]
+        || ["view_", "without_", "boxes_"]
             .iter()
             .any(|prefix| name.starts_with(prefix))
     {
@@ -131,6 +135,7 @@ pub(super) fn fused_pass(types: &[&EffectType]) -> String {
                 text.extend(types.iter().filter(colors).map(|effect| calls(effect)));
                 text.push_str(RESTORE);
             }
+            "//@boxes" => text.extend(types.iter().filter(|e| e.half_box).map(|e| boxes(e))),
             "//@prints" => {
                 let prints = types.iter().filter(|e| e.stage == EffectStage::Print);
                 text.extend(prints.map(|effect| calls(effect)));
@@ -166,14 +171,32 @@ pub(super) fn left_out(name: &str) -> String {
     format!("WITHOUT_{}", definition(name))
 }
 
+/// The shader definition of the passes that draw means for an effect.
+pub(super) fn boxes_of(name: &str) -> String {
+    format!("BOXES_{}", definition(name))
+}
+
+/// The call of the function that says how large the boxes of an effect are.
+fn boxes(effect: &EffectType) -> String {
+    let (name, definition) = (effect.name, boxes_of(effect.name));
+    let path = effect.shader.path;
+    let arguments = arguments(effect);
+    format!("#ifdef {definition}\n    half = {path}::{name}_half_box({arguments});\n#endif\n")
+}
+
+/// The arguments of an effect's functions.
+fn arguments(effect: &EffectType) -> String {
+    match effect.shader.settings {
+        Some(_) => format!("comics.{}_settings, p", effect.name),
+        None => "p".to_owned(),
+    }
+}
+
 /// The call of an effect's function, and of its debug view if it has one.
 fn calls(effect: &EffectType) -> String {
     let (name, definition) = (effect.name, definition(effect.name));
     let path = effect.shader.path;
-    let arguments = match effect.shader.settings {
-        Some(_) => format!("comics.{name}_settings, p"),
-        None => "p".to_owned(),
-    };
+    let arguments = arguments(effect);
     let without = left_out(name);
     let mut call = format!(
         "#ifdef {definition}\n#ifndef {without}\n    p = {path}::{name}({arguments});\n#endif\n"

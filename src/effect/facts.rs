@@ -1,7 +1,11 @@
 //! The facts about a view that an effect can use.
 
-use bevy::math::{Mat4, UVec2, UVec4, Vec2};
+use bevy::{
+    math::{Mat4, UVec2, UVec4, Vec2, Vec4Swizzles},
+    render::{camera::ExtractedCamera, view::ExtractedView},
+};
 
+use super::{Plan, ViewPlan, target::place_in};
 use crate::clock::drawing_seed;
 
 /// Facts about a view that an effect can use when it selects its shader variants
@@ -24,6 +28,14 @@ pub struct ViewFacts {
     /// the viewport, in physical pixels from its top left corner; `None` if the camera has
     /// none, or it is behind the camera.
     pub target: Option<Vec2>,
+    /// The distance of that object along the view's axis, in world units.
+    pub target_depth: Option<f32>,
+    /// Two numbers that give the distance along the view's axis at a raw depth d: x / (d + y),
+    /// in an orthographic view x + y * d.
+    pub depth_axis: Vec2,
+    /// In an orthographic view: the distance in world units from which a perspective view of 45
+    /// degrees shows the same height.
+    pub depth_reference: Option<f32>,
     /// The effect that requests the lines is not on the camera but implied by
     /// another one ([`Effect::implied`](crate::Effect::implied)). Also true if no
     /// effect requests lines.
@@ -32,7 +44,8 @@ pub struct ViewFacts {
 
 impl Default for ViewFacts {
     /// A view of 1280 by 720 physical pixels, at scale factor 1 and time 0, whose world
-    /// positions are its normalized device coordinates.
+    /// positions are its normalized device coordinates, with the depth of an infinite perspective
+    /// from 0.1 on.
     fn default() -> Self {
         Self {
             viewport: UVec4::new(0, 0, 1280, 720),
@@ -41,12 +54,41 @@ impl Default for ViewFacts {
             world_from_clip: Mat4::IDENTITY,
             seconds: 0.0,
             target: None,
+            target_depth: None,
+            depth_axis: Vec2::new(0.1, 0.0),
+            depth_reference: None,
             lines_implied: false,
         }
     }
 }
 
 impl ViewFacts {
+    pub(super) fn new(
+        view: &ViewPlan,
+        plan: &Plan,
+        viewport: UVec4,
+        (extracted, camera): (&ExtractedView, &ExtractedCamera),
+    ) -> Self {
+        let view_from_world = extracted.world_from_view.to_matrix().inverse();
+        let clip_from_world = view.clip_from_view * view_from_world;
+        let target = view.target.and_then(|at| {
+            let depth = -view_from_world.transform_point3(at).z;
+            Some((place_in(viewport, clip_from_world, at)?, depth))
+        });
+        Self {
+            viewport,
+            target_size: camera.physical_target_size.unwrap_or(viewport.zw()),
+            scale_factor: view.scale_factor,
+            world_from_clip: world_from_clip(view, extracted),
+            seconds: view.time,
+            target: target.map(|(place, _)| place),
+            target_depth: target.map(|(_, depth)| depth).filter(|d| d.is_finite()),
+            depth_axis: view.projection.axis(),
+            depth_reference: view.projection.reference(&view.clip_from_view),
+            lines_implied: plan.lines_implied(),
+        }
+    }
+
     /// Number of the drawing that is shown, as a seed for random numbers: 0 to 65535, then
     /// from 0 again. `rate`: drawings per second; at 0 there is one drawing for all time.
     ///
@@ -54,5 +96,16 @@ impl ViewFacts {
     /// the game's clock does.
     pub fn drawing(&self, rate: f32) -> u32 {
         drawing_seed(self.seconds, rate)
+    }
+}
+
+/// World position from normalized device coordinates; the identity for a projection that
+/// has no inverse.
+fn world_from_clip(view: &ViewPlan, extracted: &ExtractedView) -> Mat4 {
+    let matrix = extracted.world_from_view.to_matrix() * view.clip_from_view.inverse();
+    if matrix.is_finite() {
+        matrix
+    } else {
+        Mat4::IDENTITY
     }
 }

@@ -4,6 +4,7 @@
 //
 // LAYER: the pass draws a texture of the viewport's size, in linear light, for a later pass.
 // CONTINUED: the pass starts from such a texture. See passes.rs.
+// DRAWS_MEANS: the pass draws means over boxes of such a texture, by its own entry point.
 // OVERLAY: all effects draw over the picture, see Extent. Then the pass starts from a
 // transparent picture and returns ink that is multiplied by its opacity, and its opacity,
 // which are blended over the picture.
@@ -13,6 +14,7 @@
 #import bevy_comics::effect::color::{
     finite, finite_color, lightness, linear_to_oklab, oklab_to_linear, srgb_decode, srgb_encode,
 }
+#import bevy_comics::effect::means::{half_side, mean_across, mean_down, packed_means}
 #import bevy_comics::effect::picture::load_picture
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::finish::{Finish, compare, difference, object_color, range_fraction}
@@ -156,6 +158,29 @@ fn view_color(p: Pixel, pixel: vec2<i32>) -> vec3<f32> {
     return difference(srgb_encode(p.original), srgb_encode(p.color));
 #else
     return shown;
+#endif
+}
+#endif
+
+#ifdef DRAWS_MEANS
+// Half the side of the box around a pixel.
+fn half_box(pixel: vec2<i32>) -> f32 {
+    var p = found(pixel, load_source(pixel));
+    p.position = vec2<f32>(pixel) + 0.5;
+    p = placed(p, pixel);
+    var half = 0.0;
+    //@boxes
+    return half_side(half);
+}
+
+@fragment
+fn means(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
+    set_view(comics.view);
+    let pixel = vec2<i32>(position.xy) + comics.view.viewport.xy;
+#ifdef MEANS_DOWN
+    return packed_means(mean_down(pixel, half_box(pixel)));
+#else
+    return packed_means(mean_across(pixel, half_box(pixel)));
 #endif
 }
 #endif

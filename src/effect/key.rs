@@ -13,8 +13,8 @@ use bevy::{
 
 use super::{
     AnyEffect, EffectStage, Extent, Needs, Plan, ViewFacts,
-    compose::{definition, left_out},
-    layers::LAYER_FORMAT,
+    compose::{boxes_of, definition, left_out},
+    layers::{LAYER_FORMAT, MEANS_FORMAT},
     passes::Pass,
 };
 use crate::{
@@ -97,10 +97,40 @@ pub(crate) struct StylizeKey {
     /// The pass starts from a layer, and draws one.
     pub continued: bool,
     pub layer: bool,
+    pub means: Means,
     /// Effects that are left out of [`Part::Base`] or belong to other passes, and whether
     /// lines are left out too.
     left_out: Vec<&'static str>,
     without_lines: bool,
+}
+
+/// What a pass does with means over boxes of the picture before it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) enum Means {
+    /// It neither draws nor reads them.
+    #[default]
+    None,
+    /// Draws the means of rows for this effect, and nothing else.
+    Across(&'static str),
+    /// Draws the means of boxes from those of rows.
+    Down(&'static str),
+    /// Its effects read them.
+    Read,
+}
+
+impl Means {
+    /// The effect that they are drawn for, in a pass that draws them.
+    fn effect(self) -> Option<&'static str> {
+        match self {
+            Self::Across(effect) | Self::Down(effect) => Some(effect),
+            Self::None | Self::Read => None,
+        }
+    }
+
+    /// Whether the pass reads means.
+    fn reads(self) -> bool {
+        matches!(self, Self::Down(_) | Self::Read)
+    }
 }
 
 /// What a draw call of the fused pass draws.
@@ -171,6 +201,7 @@ impl StylizeKey {
             part: Part::Whole,
             continued: false,
             layer: false,
+            means: Means::None,
             left_out: vec![],
             without_lines: false,
         }
@@ -211,10 +242,33 @@ impl StylizeKey {
             finish: self.finish && !pass.layer,
             continued: pass.continued,
             layer: pass.layer,
+            means: pass.means.map_or(Means::None, |_| Means::Read),
             left_out: others
                 .map(|(_, effect)| effect.effect_type().name)
                 .collect(),
             ..self.clone()
+        }
+    }
+
+    /// The keys of the passes that draw the means for this one, for an effect.
+    pub fn means_for(&self, effect: &'static str) -> [Self; 2] {
+        [Means::Across(effect), Means::Down(effect)].map(|means| Self {
+            format: MEANS_FORMAT,
+            view: None,
+            finish: false,
+            continued: true,
+            layer: true,
+            means,
+            ..self.clone()
+        })
+    }
+
+    /// The entry point of the shader.
+    pub fn entry_point(&self) -> &'static str {
+        if self.means.effect().is_some() {
+            "means"
+        } else {
+            "stylize"
         }
     }
 
@@ -287,6 +341,9 @@ impl StylizeKey {
             (self.unstyled_print, "UNSTYLED_PRINT"),
             (self.continued, "CONTINUED"),
             (self.layer, "LAYER"),
+            (self.means.reads(), "MEANS"),
+            (self.means.effect().is_some(), "DRAWS_MEANS"),
+            (matches!(self.means, Means::Down(_)), "MEANS_DOWN"),
             (needs.contains(Needs::LIGHTNESS_CHANGE), "LIGHTNESS_CHANGE"),
             (self.blue_noise(), "BLUE_NOISE"),
             (self.same_size, "SAME_SIZE"),
@@ -301,6 +358,7 @@ impl StylizeKey {
         .chain(self.view.map(|_| "DEBUG_VIEW".into()))
         .chain(self.view.into_iter().flat_map(view_definitions))
         .chain(self.effects.iter().map(|name| definition(name).into()))
+        .chain(self.means.effect().map(|name| boxes_of(name).into()))
         .chain(self.left_out.iter().map(|name| left_out(name).into()))
         .chain([number("MAP_FLAGS", self.map_flags)])
         .chain(self.variants.shader_defs())
@@ -334,6 +392,10 @@ impl StylizeKey {
             (self.ids(), ids_entry(self.samples > 1)),
             (self.continued, layer.build(9, fragment)),
             (self.continued, between.build(10, fragment)),
+            (
+                self.means.reads(),
+                texture_2d(TextureSampleType::Uint).build(12, fragment),
+            ),
             (
                 self.blue_noise(),
                 texture_2d(unfilterable).build(11, fragment),

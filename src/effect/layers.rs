@@ -1,5 +1,5 @@
-//! The textures between the passes of a view whose effects read the picture at other
-//! places.
+//! The passes of a view before the last one, and the textures that they draw: pictures for
+//! effects that read the picture at other places, and means over boxes of them.
 
 use bevy::{
     ecs::{
@@ -11,27 +11,45 @@ use bevy::{
     },
     render::{
         render_resource::{
-            AddressMode, Extent3d, FilterMode, Sampler, SamplerDescriptor, TextureDescriptor,
-            TextureDimension, TextureFormat, TextureUsages,
+            AddressMode, BindGroup, BindGroupEntry, Extent3d, FilterMode, IntoBinding,
+            PipelineCache, RenderPipeline, Sampler, SamplerDescriptor, TextureDescriptor,
+            TextureDimension, TextureFormat, TextureUsages, TextureView,
         },
-        renderer::RenderDevice,
+        renderer::{RenderContext, RenderDevice},
         texture::{CachedTexture, TextureCache},
     },
 };
 
-use super::prepare::FusedRequest;
+use super::{
+    key::StylizeKey,
+    pass::{attachment, described, entry},
+    prepare::{FusedRequest, LayerPass},
+};
 
 /// Linear light, multiplied by the opacity, and the opacity.
 pub(super) const LAYER_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
-/// On a view in the render world: what its passes but the last one draw to, in turns.
+/// As `means.wgsl` packs them.
+pub(super) const MEANS_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
+
+/// On a view in the render world: what its passes but the last one draw to.
 #[derive(Component)]
-pub(super) struct ViewLayers(Vec<CachedTexture>);
+pub(super) struct ViewLayers {
+    /// A pass cannot read what it draws to, so more than one pass draw to two in turns.
+    pictures: Vec<CachedTexture>,
+    /// Means of rows and of boxes, or nothing.
+    means: Vec<CachedTexture>,
+}
 
 impl ViewLayers {
     /// The texture that a pass draws to, and the next one reads.
-    pub fn of(&self, pass: usize) -> Option<&CachedTexture> {
-        self.0.get(pass % self.0.len().max(1))
+    fn picture(&self, pass: usize) -> Option<&TextureView> {
+        let at = pass % self.pictures.len().max(1);
+        Some(&self.pictures.get(at)?.default_view)
+    }
+
+    fn means(&self, step: usize) -> Option<&TextureView> {
+        Some(&self.means.get(step)?.default_view)
     }
 }
 
@@ -59,26 +77,17 @@ pub(super) fn prepare_layers(
     (mut textures, device): (ResMut<TextureCache>, Res<RenderDevice>),
 ) {
     for (view, request) in &views {
-        let [_, _, width, height] = request.facts.viewport.to_array();
-        let layer = || TextureDescriptor {
-            label: Some("comics_layer"),
-            size: Extent3d {
-                width,
-                height,
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: TextureDimension::D2,
-            format: LAYER_FORMAT,
-            usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
+        let mut get = |format, count| {
+            let layer = || descriptor(request, format);
+            (0..count)
+                .map(|_| textures.get(&device, layer()))
+                .collect::<Vec<_>>()
         };
-        // A pass cannot read what it draws to, so more than one need two.
-        let count = request.layers.len().min(2);
-        let found: Vec<_> = (0..count).map(|_| textures.get(&device, layer())).collect();
-        if !found.is_empty() {
-            commands.entity(view).insert(ViewLayers(found));
+        let pictures = get(LAYER_FORMAT, request.layers.len().min(2));
+        let has_means = request.layers.iter().any(|layer| layer.means.is_some());
+        let means = get(MEANS_FORMAT, if has_means { 2 } else { 0 });
+        if !pictures.is_empty() {
+            commands.entity(view).insert(ViewLayers { pictures, means });
         } else if layered.contains(view) {
             commands.entity(view).remove::<ViewLayers>();
         }
@@ -87,5 +96,134 @@ pub(super) fn prepare_layers(
         if !views.contains(view) {
             commands.entity(view).remove::<ViewLayers>();
         }
+    }
+}
+
+/// A texture of the viewport's size.
+fn descriptor(request: &FusedRequest, format: TextureFormat) -> TextureDescriptor<'static> {
+    let [_, _, width, height] = request.facts.viewport.to_array();
+    TextureDescriptor {
+        label: Some("comics_layer"),
+        size: Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: TextureDimension::D2,
+        format,
+        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    }
+}
+
+/// What all passes of a view bind.
+pub(super) struct Inputs<'a> {
+    pub entries: Vec<BindGroupEntry<'a>>,
+    pub sampler: &'a LayerSampler,
+    pub cache: &'a PipelineCache,
+}
+
+/// What the passes before a pass have drawn for it.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Before<'a> {
+    picture: Option<&'a TextureView>,
+    means: Option<&'a TextureView>,
+}
+
+impl Inputs<'_> {
+    pub fn bind_group(&self, ctx: &RenderContext, key: &StylizeKey, before: &Before) -> BindGroup {
+        let mut entries = self.entries.clone();
+        if let Some(picture) = before.picture {
+            entries.push(entry(9, picture.into_binding()));
+            entries.push(entry(10, (&self.sampler.0).into_binding()));
+        }
+        if let Some(means) = before.means {
+            entries.push(entry(12, means.into_binding()));
+        }
+        let layout = self.cache.get_bind_group_layout(&key.layout());
+        let device = ctx.render_device();
+        device.create_bind_group("comics_stylize", &layout, &entries)
+    }
+}
+
+/// The passes before the last one.
+pub(super) struct Layers<'a>(Vec<LayerDraw<'a>>);
+
+struct LayerDraw<'a> {
+    picture: Draw<'a>,
+    means: Option<[Draw<'a>; 2]>,
+}
+
+/// A full-screen pass that draws a texture for a later one.
+struct Draw<'a> {
+    key: &'a StylizeKey,
+    pipeline: &'a RenderPipeline,
+    texture: &'a TextureView,
+}
+
+impl<'a> Draw<'a> {
+    fn new(
+        cache: &'a PipelineCache,
+        pass: &'a LayerPass,
+        texture: Option<&'a TextureView>,
+    ) -> Option<Self> {
+        Some(Self {
+            key: &pass.key,
+            pipeline: cache.get_render_pipeline(pass.pipeline)?,
+            texture: texture?,
+        })
+    }
+
+    /// Returns what it has drawn.
+    fn record(&self, ctx: &mut RenderContext, inputs: &Inputs, before: &Before) -> &'a TextureView {
+        let bind_group = inputs.bind_group(ctx, self.key, before);
+        let attachments = [Some(attachment(self.texture, false))];
+        let encoder = ctx.command_encoder();
+        let mut pass = encoder.begin_render_pass(&described(&attachments));
+        pass.set_bind_group(0, &bind_group, &[]);
+        pass.set_pipeline(self.pipeline);
+        pass.draw(0..3, 0..1);
+        self.texture
+    }
+}
+
+impl<'a> Layers<'a> {
+    /// `None` if a pipeline or a texture is not ready in this frame.
+    pub fn new(
+        cache: &'a PipelineCache,
+        request: &'a FusedRequest,
+        textures: Option<&'a ViewLayers>,
+    ) -> Option<Self> {
+        let draws = request.layers.iter().enumerate().map(|(i, layer)| {
+            let textures = textures?;
+            let means = match &layer.means {
+                Some([across, down]) => Some([
+                    Draw::new(cache, across, textures.means(0))?,
+                    Draw::new(cache, down, textures.means(1))?,
+                ]),
+                None => None,
+            };
+            let picture = Draw::new(cache, &layer.picture, textures.picture(i))?;
+            Some(LayerDraw { picture, means })
+        });
+        draws.collect::<Option<_>>().map(Self)
+    }
+
+    /// Returns what they have drawn for the last pass.
+    pub fn record(&self, ctx: &mut RenderContext, inputs: &Inputs) -> Before<'a> {
+        let mut before = Before::default();
+        for layer in &self.0 {
+            let picture = Some(layer.picture.record(ctx, inputs, &before));
+            before = Before {
+                picture,
+                means: None,
+            };
+            for draw in layer.means.iter().flatten() {
+                before.means = Some(draw.record(ctx, inputs, &before));
+            }
+        }
+        before
     }
 }

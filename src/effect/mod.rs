@@ -97,6 +97,11 @@ pub trait Effect:
     /// effect returned, and returns a display-encoded (sRGB) colour. Default: none.
     const VIEW: Option<EffectView> = None;
 
+    /// Whether the module has a function `NAME_half_box` for [`Needs::MEANS`]: it takes the
+    /// settings and a pixel, of which only the places and the depth are set, and returns half
+    /// the side of the box around it in physical pixels. Default: false.
+    const HALF_BOX: bool = false;
+
     /// The settings in the layout of the WGSL struct; [`NoUniform`] if the function
     /// takes none. In the uniform buffer it starts at a multiple of 16 bytes.
     type Uniform: ShaderType + WriteInto;
@@ -315,6 +320,11 @@ bitflags! {
         /// A tile of thresholds in an even, irregular order, by
         /// `bevy_comics::effect::blue_noise::blue_noise`.
         const BLUE_NOISE = 1 << 8;
+        /// Means and variances of that picture over boxes of any size around every pixel, by
+        /// `bevy_comics::effect::means::load_means`. Includes [`Needs::PICTURE`]. Two passes
+        /// draw them, to two textures of the viewport's size with 16 bytes a pixel. The WGSL
+        /// says how large the boxes are, see [`Effect::HALF_BOX`].
+        const MEANS = 1 << 9;
     }
 }
 
@@ -322,7 +332,8 @@ impl Needs {
     /// What every view can provide.
     pub(crate) const WITHOUT_PREPASSES: Self = Self::LIGHTNESS_CHANGE
         .union(Self::PICTURE)
-        .union(Self::BLUE_NOISE);
+        .union(Self::BLUE_NOISE)
+        .union(Self::MEANS);
 }
 
 /// The uniform of an effect whose WGSL function takes no settings.

@@ -23,7 +23,7 @@ use super::{
     blue_noise::BlueNoise,
     errors::ShaderErrors,
     key::StylizeKey,
-    layers::{LayerSampler, ViewLayers},
+    layers::{Inputs, LayerSampler, Layers, ViewLayers},
     prepare::{FusedRequest, ViewFused},
 };
 use crate::{
@@ -71,7 +71,7 @@ impl SpecializedRenderPipeline for StylizePipeline {
             fragment: Some(FragmentState {
                 shader: self.shader.clone(),
                 shader_defs: key.shader_defs(),
-                entry_point: Some("stylize".into()),
+                entry_point: Some(key.entry_point().into()),
                 targets: vec![Some(ColorTargetState {
                     format: key.format,
                     blend: overlay.then_some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
@@ -149,79 +149,10 @@ pub(super) fn stylize<const PRINTS: bool>(
         cache: &cache,
     };
     let before = layers.record(&mut ctx, &inputs);
-    let group = inputs.bind_group(&ctx, &request.key, before);
+    let group = inputs.bind_group(&ctx, &request.key, &before);
     draws.record(&mut ctx, destination, &group, request);
     span.end(ctx.command_encoder());
     ran(request, &ledger);
-}
-
-/// What all passes of a view bind.
-struct Inputs<'a> {
-    entries: Vec<BindGroupEntry<'a>>,
-    sampler: &'a LayerSampler,
-    cache: &'a PipelineCache,
-}
-
-impl Inputs<'_> {
-    /// `before`: what the pass before has drawn, if there is one.
-    fn bind_group(
-        &self,
-        ctx: &RenderContext,
-        key: &StylizeKey,
-        before: Option<&TextureView>,
-    ) -> BindGroup {
-        let mut entries = self.entries.clone();
-        if let Some(before) = before {
-            entries.push(entry(9, before.into_binding()));
-            entries.push(entry(10, (&self.sampler.0).into_binding()));
-        }
-        let layout = self.cache.get_bind_group_layout(&key.layout());
-        let device = ctx.render_device();
-        device.create_bind_group("comics_stylize", &layout, &entries)
-    }
-}
-
-/// The passes before the last one.
-struct Layers<'a>(Vec<LayerDraw<'a>>);
-
-struct LayerDraw<'a> {
-    key: &'a StylizeKey,
-    pipeline: &'a RenderPipeline,
-    texture: &'a TextureView,
-}
-
-impl<'a> Layers<'a> {
-    /// `None` if a pipeline or a texture is not ready in this frame.
-    fn new(
-        cache: &'a PipelineCache,
-        request: &'a FusedRequest,
-        textures: Option<&'a ViewLayers>,
-    ) -> Option<Self> {
-        let draws = request.layers.iter().enumerate().map(|(i, layer)| {
-            Some(LayerDraw {
-                key: &layer.key,
-                pipeline: cache.get_render_pipeline(layer.pipeline)?,
-                texture: &textures?.of(i)?.default_view,
-            })
-        });
-        draws.collect::<Option<_>>().map(Self)
-    }
-
-    /// Returns what the last of them has drawn.
-    fn record(&self, ctx: &mut RenderContext, inputs: &Inputs) -> Option<&'a TextureView> {
-        let mut before = None;
-        for layer in &self.0 {
-            let bind_group = inputs.bind_group(ctx, layer.key, before);
-            let attachments = [Some(attachment(layer.texture, false))];
-            let encoder = ctx.command_encoder();
-            let mut pass = encoder.begin_render_pass(&described(&attachments));
-            pass.set_bind_group(0, &bind_group, &[]);
-            pass.set_pipeline(layer.pipeline);
-            pass.draw(0..3, 0..1);
-            before = Some(layer.texture);
-        }
-        before
-    }
 }
 
 /// The draw calls of the pass.
@@ -286,7 +217,7 @@ impl<'a> Draws<'a> {
 }
 
 /// `keeps`: what is there already, instead of clearing it.
-fn attachment(view: &TextureView, keeps: bool) -> RenderPassColorAttachment<'_> {
+pub(super) fn attachment(view: &TextureView, keeps: bool) -> RenderPassColorAttachment<'_> {
     RenderPassColorAttachment {
         view,
         depth_slice: None,
@@ -302,7 +233,7 @@ fn attachment(view: &TextureView, keeps: bool) -> RenderPassColorAttachment<'_> 
     }
 }
 
-fn described<'a>(
+pub(super) fn described<'a>(
     attachments: &'a [Option<RenderPassColorAttachment<'a>>],
 ) -> RenderPassDescriptor<'a> {
     RenderPassDescriptor {
@@ -327,7 +258,7 @@ fn pass_through(request: &FusedRequest, ledger: &StageLedger, reason: LeftOut) {
     ledger.set(request.camera, ComicsStage::Stylize, outcome);
 }
 
-fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
+pub(super) fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
     BindGroupEntry { binding, resource }
 }
 

@@ -14,18 +14,19 @@ pub(super) struct Pass {
     pub continued: bool,
     /// Draws that picture for the next pass; else the view's picture.
     pub layer: bool,
+    /// The effect that reads means over boxes of the picture before it.
+    pub means: Option<&'static str>,
 }
 
 /// The passes of a plan, in order: one, and one more for each effect that reads the picture
 /// before it at other places. A debug view ends with the pass of its effect.
 pub(super) fn passes(plan: &Plan) -> Vec<Pass> {
-    let reads = |effect: &dyn AnyEffect| effect.any_needs().contains(Needs::PICTURE);
     let count = plan.drawn().count();
     let mut starts = vec![0];
     starts.extend(
         plan.drawn()
             .enumerate()
-            .filter_map(|(i, effect)| reads(effect).then_some(i)),
+            .filter_map(|(i, effect)| reads_picture(effect).then_some(i)),
     );
     let shown = plan.view.map(|view| last_shown(plan, view));
     starts.retain(|start| *start == 0 || shown.is_none_or(|shown| *start <= shown));
@@ -40,8 +41,21 @@ pub(super) fn passes(plan: &Plan) -> Vec<Pass> {
             effects: start..end,
             continued: i > 0,
             layer: i < last,
+            means: reader_of_means(plan, start).filter(|_| i > 0),
         })
         .collect()
+}
+
+/// Whether an effect reads the picture before it at other places.
+fn reads_picture(effect: &dyn AnyEffect) -> bool {
+    effect.any_needs().intersects(Needs::PICTURE | Needs::MEANS)
+}
+
+/// The effect at this position of [`Plan::drawn`], if it reads means.
+fn reader_of_means(plan: &Plan, at: usize) -> Option<&'static str> {
+    let effect = plan.drawn().nth(at)?;
+    let means = effect.any_needs().contains(Needs::MEANS) && effect.effect_type().half_box;
+    means.then_some(effect.effect_type().name)
 }
 
 /// The last effect that a debug view depends on, as a position in [`Plan::drawn`].
@@ -50,11 +64,14 @@ fn last_shown(plan: &Plan, view: DebugView) -> usize {
     match view {
         DebugView::Effect(name) => at(name).unwrap_or(0),
         DebugView::Difference => usize::MAX,
+        // An effect that reads the picture keeps no saturation.
         DebugView::Saturation => plan
             .drawn()
-            .take_while(|effect| effect.effect_type().stage <= EffectStage::Color)
-            .count()
-            .saturating_sub(1),
+            .enumerate()
+            .filter(|(_, e)| e.effect_type().stage <= EffectStage::Color && !reads_picture(*e))
+            .map(|(i, _)| i)
+            .last()
+            .unwrap_or(0),
         _ => 0,
     }
 }
@@ -73,8 +90,8 @@ mod tests {
 
     use super::*;
     use crate::{
-        Desaturation, EffectRegistry, Halftone, Outlines, PrintOffset, ScreenSampling,
-        objects::ObjectChanges,
+        Desaturation, EffectRegistry, Halftone, Outlines, Paint, PaintForm, PrintOffset,
+        ScreenSampling, objects::ObjectChanges,
     };
 
     fn divided(camera: impl Bundle) -> Vec<(Range<usize>, bool, bool)> {
@@ -114,11 +131,32 @@ mod tests {
     }
 
     #[test]
+    fn means_are_drawn_for_the_pass_that_reads_them() {
+        let reads = |form| {
+            let mut world = World::new();
+            let paint = Paint {
+                form,
+                ..Default::default()
+            };
+            let camera = world.spawn((Desaturation::default(), paint, PrintOffset::default()));
+            let camera = camera.id();
+            let types = EffectRegistry::built_in().types();
+            let plan = Plan::new(world.entity(camera), &[], &types, ObjectChanges::default());
+            let passes = passes(&plan.expect("a plan"));
+            passes.iter().map(|pass| pass.means).collect::<Vec<_>>()
+        };
+        assert_eq!(reads(PaintForm::Box), [None, Some("paint"), None]);
+        assert_eq!(reads(PaintForm::Anisotropic), [None; 3]);
+    }
+
+    #[test]
     fn debug_views_end_with_what_they_show() {
         let styled = (Desaturation::default(), PrintOffset::default());
         for view in [DebugView::DepthMap, DebugView::Saturation] {
             assert_eq!(divided((styled, view)), [(0..2, false, false)]);
         }
         assert_eq!(divided((styled, DebugView::Difference)).len(), 2);
+        let painted = (Desaturation::default(), Paint::default());
+        assert_eq!(divided((painted, DebugView::Saturation)).len(), 1);
     }
 }

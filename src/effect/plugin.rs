@@ -83,6 +83,7 @@ impl FusedPlugin {
     pub(crate) fn build_render(app: &mut App) {
         load_shader_library!(app, "blue_noise.wgsl");
         load_shader_library!(app, "color.wgsl");
+        load_shader_library!(app, "means.wgsl");
         load_shader_library!(app, "noise.wgsl");
         load_shader_library!(app, "picture.wgsl");
         load_shader_library!(app, "pixel.wgsl");

@@ -36,9 +36,17 @@ pub(crate) struct FusedRequest {
     pub lines: Option<LinesUniform>,
 }
 
-/// A pass that draws a picture for the next one.
+/// A pass that draws a picture for the next one, and the passes that draw means over boxes of
+/// this picture: of rows, then of boxes.
 #[derive(Clone, Debug)]
 pub(crate) struct Layer {
+    pub picture: LayerPass,
+    pub means: Option<[LayerPass; 2]>,
+}
+
+/// A pass that draws a texture for a later one.
+#[derive(Clone, Debug)]
+pub(crate) struct LayerPass {
     pub key: StylizeKey,
     pub pipeline: CachedRenderPipelineId,
 }
@@ -51,7 +59,12 @@ const SLACK: u64 = 1024;
 impl FusedRequest {
     /// The pipelines of all passes.
     pub fn pipelines(&self) -> impl Iterator<Item = CachedRenderPipelineId> {
-        let layers = self.layers.iter().map(|layer| layer.pipeline);
+        let passes = |layer: &Layer| {
+            let means = layer.means.iter().flatten();
+            let passes = [&layer.picture].into_iter().chain(means);
+            passes.map(|pass| pass.pipeline).collect::<Vec<_>>()
+        };
+        let layers = self.layers.iter().flat_map(passes);
         layers.chain(self.base).chain([self.pipeline])
     }
 

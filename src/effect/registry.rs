@@ -27,6 +27,8 @@ pub struct EffectType {
     pub replaces: &'static [&'static str],
     /// [`Effect::VIEW`].
     pub view: Option<EffectView>,
+    /// [`Effect::HALF_BOX`].
+    pub half_box: bool,
     /// The reflection data of the type.
     pub type_info: fn() -> &'static TypeInfo,
     /// Creates an effect with default settings.
@@ -59,6 +61,7 @@ impl EffectType {
                 shader: E::SHADER,
                 replaces: E::REPLACES,
                 view: E::VIEW,
+                half_box: E::HALF_BOX,
                 type_info: E::type_info,
                 default: default::<E>,
                 get: get::<E>,

@@ -9,7 +9,7 @@ use bevy::{
         entity::Entity,
         system::{Commands, Res, ResMut, SystemParam},
     },
-    math::{Mat4, UVec2, UVec4, Vec2, Vec4Swizzles},
+    math::{UVec2, UVec4, Vec2},
     render::{
         camera::{ExtractedCamera, TemporalJitter},
         render_resource::{
@@ -29,8 +29,7 @@ use super::{
     pass::StylizePipeline,
     passes::passes,
     plan::Prepasses,
-    prepare::{FusedRequest, Layer},
-    target::place_in,
+    prepare::{FusedRequest, Layer, LayerPass},
 };
 use crate::{
     depth::{
@@ -133,15 +132,7 @@ impl Services<'_> {
         (extracted, camera): (&ExtractedView, &ExtractedCamera),
     ) -> Requests {
         let uniform = view_uniform(view, plan, scene);
-        let facts = ViewFacts {
-            viewport: scene.viewport,
-            target_size: camera.physical_target_size.unwrap_or(scene.viewport.zw()),
-            scale_factor: view.scale_factor,
-            world_from_clip: world_from_clip(view, extracted),
-            seconds: view.time,
-            target: target_place(view, extracted, scene.viewport),
-            lines_implied: plan.lines_implied(),
-        };
+        let facts = ViewFacts::new(view, plan, scene.viewport, (extracted, camera));
         let jumps = map_jumps(plan, scene, &facts);
         let lines = line_request(view, (plan, &facts), scene, (uniform, jumps)).map(|request| {
             let passes = self.lines.get(cache, &request);
@@ -194,10 +185,13 @@ impl Services<'_> {
     ) -> FusedRequest {
         let all = StylizeKey::new(plan, inputs, &facts);
         let passes = passes(plan);
-        let keys = passes.iter().map(|pass| all.of_pass(plan, pass));
-        let (layers, last): (Vec<_>, Vec<_>) = keys.partition(|key| key.layer);
+        let mut keys: Vec<_> = passes.iter().map(|p| all.of_pass(plan, p)).collect();
+        // The passes that draw means read what the layer before has drawn.
+        let means: Vec<_> = (passes.iter().zip(&keys).skip(1))
+            .map(|(pass, key)| Some(key.means_for(pass.means?)))
+            .collect();
         // There is always a last pass, which draws the view's picture.
-        let whole = last.into_iter().next().unwrap_or(all);
+        let whole = keys.pop().unwrap_or(all);
         let jumps =
             |effect: &dyn AnyEffect| matches!(effect.any_extent(&facts), Extent::AtJumps(_));
         let searches_jumps = plan.drawn().any(jumps);
@@ -226,9 +220,13 @@ impl Services<'_> {
             self.stylize.specialize(cache, pipeline, key.clone())
         };
         let base = (part == Part::Tiles).then(|| specialize(&whole.base(&local, without_lines)));
-        let layers = layers.into_iter().map(|key| Layer {
+        let mut pass = |key: StylizeKey| LayerPass {
             pipeline: specialize(&key),
             key,
+        };
+        let layers = keys.into_iter().zip(means).map(|(key, means)| Layer {
+            picture: pass(key),
+            means: means.map(|keys| keys.map(&mut pass)),
         });
         let layers = layers.collect();
         let key = whole.with_part(part);
@@ -276,27 +274,6 @@ fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeReq
         seconds: view.seconds,
         cuts: view.cuts,
     })
-}
-
-/// World position from normalized device coordinates; the identity for a projection that
-/// has no inverse.
-fn world_from_clip(view: &ViewPlan, extracted: &ExtractedView) -> Mat4 {
-    let matrix = extracted.world_from_view.to_matrix() * view.clip_from_view.inverse();
-    if matrix.is_finite() {
-        matrix
-    } else {
-        Mat4::IDENTITY
-    }
-}
-
-/// Where the object that effects point at is in the viewport.
-fn target_place(view: &ViewPlan, extracted: &ExtractedView, viewport: UVec4) -> Option<Vec2> {
-    let view_from_world = extracted.world_from_view.to_matrix().inverse();
-    place_in(
-        viewport,
-        view.clip_from_view * view_from_world,
-        view.target?,
-    )
 }
 
 impl Requests {

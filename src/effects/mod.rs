@@ -28,6 +28,8 @@ effects! {
     tone_bands: ToneBands;
     desaturation: Desaturation;
     colorization: Colorization, ColorizationMode;
+    paint: Paint, PaintForm;
+    focus: Focus, FocusAt, FocusStyle;
     print_offset: PrintOffset;
     halftone: Halftone, HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape;
     black_flats: BlackFlats;

@@ -7,8 +7,9 @@ use bevy::{
     prelude::*, render::view::Msaa, time::TimeUpdateStrategy,
 };
 use bevy_comics::{
-    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, IsoLines, MeshSections, Outlines, Paper,
-    Preset, SpeedLineKind, SpeedLines, ToneBands, TwoTone, presets,
+    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, Focus, FocusAt, IsoLines, MeshSections,
+    Outlines, Paint, PaintForm, Paper, Preset, SpeedLineKind, SpeedLines, ToneBands, TwoTone,
+    presets,
 };
 
 use super::{
@@ -166,12 +167,12 @@ pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
     let names = golden_presets(scene);
     let preset = |name| presets::find(name).expect("listed").style();
     let mut styles: Vec<_> = names.into_iter().map(|name| (name, preset(name))).collect();
-    styles.push(single_effect(scene));
+    styles.extend(single_effects(scene));
     styles
 }
 
-/// A style of effects that no preset has, for one scene each.
-fn single_effect(scene: BuiltIn) -> (&'static str, ComicStyle) {
+/// Styles of effects that no preset has, for one scene each.
+fn single_effects(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
     let lines = SpeedLines {
         rate: 0.0,
         width: 6.0,
@@ -184,18 +185,46 @@ fn single_effect(scene: BuiltIn) -> (&'static str, ComicStyle) {
                 step: 100.0,
                 ..IsoLines::default()
             };
-            ("iso-lines", style.with(lines))
+            vec![("iso-lines", style.with(lines))]
         }
         BuiltIn::Teapot => {
             let outlines = Outlines::default();
             let style = style.with(outlines).with(TwoTone::default());
-            ("impact", style.with(lines))
+            vec![("impact", style.with(lines))]
         }
         BuiltIn::Theatre => {
             let kind = SpeedLineKind::Parallel;
-            ("speed-lines", style.with(SpeedLines { kind, ..lines }))
+            let focus = Focus {
+                at: FocusAt::Centre,
+                ..Focus::default()
+            };
+            let focused = style.clone().with(focus).with(Outlines::default());
+            vec![
+                ("speed-lines", style.with(SpeedLines { kind, ..lines })),
+                ("focus", focused),
+            ]
         }
-        BuiltIn::Village => ("paper", style.with(Paper::default())),
+        BuiltIn::Village => {
+            let distance = Paint {
+                near: 2.0,
+                far: 9.0,
+                ..Paint::default()
+            };
+            let strokes = Paint {
+                form: PaintForm::Anisotropic,
+                near: 6.0,
+                far: 6.0,
+                ..Paint::default()
+            };
+            vec![
+                ("paper", style.clone().with(Paper::default())),
+                (
+                    "paint",
+                    style.clone().with(distance).with(Outlines::default()),
+                ),
+                ("strokes", style.with(strokes)),
+            ]
+        }
     }
 }
 

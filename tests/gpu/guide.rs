@@ -185,10 +185,11 @@ mod reference {
     use bevy::reflect::{NamedField, TypeInfo, Typed};
     use bevy_comics::{
         BlackFlats, Colorization, ColorizationMode, ComicStyle, ContourOperator, Contours, Creases,
-        DepthMap, DepthMapping, Desaturation, EffectRegistry, EffectType, FieldRange, Form,
-        Halftone, HalftoneMode, LineBoil, LineColor, LineFog, LineResponse, LineWeight,
-        ObjectEdges, Outlines, PrintOffset, RangeSmoothing, ReductionMethod, ScreenAnchor,
-        ScreenSampling, ScreenShape, Silhouettes, Sketch, ToneBands,
+        DepthMap, DepthMapping, Desaturation, EffectRegistry, EffectType, FieldRange, Focus,
+        FocusAt, FocusStyle, Form, Halftone, HalftoneMode, LineBoil, LineColor, LineFog,
+        LineResponse, LineWeight, ObjectEdges, Outlines, Paint, PaintForm, PrintOffset,
+        RangeSmoothing, ReductionMethod, ScreenAnchor, ScreenSampling, ScreenShape, Silhouettes,
+        Sketch, ToneBands,
     };
 
     const HEAD: &str = "\
@@ -364,6 +365,11 @@ This page is made from the types by a test, which fails where the two differ.
         section::<Desaturation>(&mut page);
         section::<Colorization>(&mut page);
         section::<ColorizationMode>(&mut page);
+        section::<Paint>(&mut page);
+        section::<PaintForm>(&mut page);
+        section::<Focus>(&mut page);
+        section::<FocusAt>(&mut page);
+        section::<FocusStyle>(&mut page);
         section::<PrintOffset>(&mut page);
         section::<Halftone>(&mut page);
         section::<HalftoneMode>(&mut page);

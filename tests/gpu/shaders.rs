@@ -362,12 +362,29 @@ fn every_pass_of_a_divided_plan_composes_and_validates() {
         "UNSTYLED_COLORS",
         "UNSTYLED_PRINT",
     ];
+    let focus = |style| {
+        let style = vec![("FOCUS_STYLE", Some(style))];
+        [flags(&["FOCUS", "DEPTH"]), style].concat()
+    };
     let effects = [
         vec![],
         flags(&["PRINT_OFFSET"]),
         flags(&["PRINT_OFFSET", "WITHOUT_PRINT_OFFSET", "TONE_BANDS"]),
         flags(&["HALFTONE", "HALFTONE_CELLS", "LINES", "OUTLINES"]),
         flags(&["OUTLINES", "LINES", "SURFACE_LINES", "PRINT_OFFSET"]),
+        flags(&["PAINT", "MEANS"]),
+        flags(&["PAINT", "MEANS", "PAINT_FIGURES", "MULTISAMPLED"]),
+        flags(&["PAINT", "PAINT_ANISOTROPIC", "PAINT_FIGURES"]),
+        focus(0),
+        focus(1),
+        [focus(2), flags(&["MEANS", "MULTISAMPLED"])].concat(),
+        [
+            focus(2),
+            flags(&["DRAWS_MEANS", "MEANS_DOWN", "MEANS", "BOXES_FOCUS"]),
+        ]
+        .concat(),
+        flags(&["PAINT", "DRAWS_MEANS", "BOXES_PAINT", "MAP", "DEPTH"]),
+        flags(&["PAINT", "MEANS", "DRAWS_MEANS", "MEANS_DOWN", "BOXES_PAINT"]),
     ];
     for form in optional(&forms) {
         for effects in &effects {

@@ -5,10 +5,11 @@ use std::{fs, time::Duration};
 use bevy::{color::Color, prelude::*, render::view::Msaa};
 use bevy_comics::{
     BlackFlats, Colorization, ColorizationMode, ComicStyle, ComicStyleError, ComicStyleHandle,
-    ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, Halftone,
-    HalftoneMode, LineBoil, LineColor, LineWeight, ObjectEdges, Outlines, Paper, PrintOffset,
-    RangeSmoothing, ReductionMethod, ScreenAnchor, ScreenSampling, ScreenShape, Silhouettes,
-    Sketch, SpeedLineKind, SpeedLines, ToneBands, TwoTone,
+    ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, Focus, FocusAt,
+    FocusStyle, Form, Halftone, HalftoneMode, LineBoil, LineColor, LineWeight, ObjectEdges,
+    Outlines, Paint, PaintForm, Paper, PrintOffset, RangeSmoothing, ReductionMethod, ScreenAnchor,
+    ScreenSampling, ScreenShape, Silhouettes, Sketch, SpeedLineKind, SpeedLines, ToneBands,
+    TwoTone,
 };
 use proptest::{
     option,
@@ -123,7 +124,8 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
     )
         .prop_map(
             |(name, depth_map, desaturation, colorization, black_flats, contours, others)| {
-                let ((tone_bands, outlines, sketch), (halftone, offset), page) = others;
+                let ((tone_bands, outlines, sketch), (halftone, offset, (paint, focus)), page) =
+                    others;
                 let (speed_lines, two_tone, paper) = page;
                 let mut style = ComicStyle::new();
                 style.name = name;
@@ -136,6 +138,8 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
                 style = with_option(style, outlines);
                 style = with_option(style, halftone);
                 style = with_option(style, offset);
+                style = with_option(style, paint);
+                style = with_option(style, focus);
                 style = with_option(style, sketch);
                 style = with_option(style, speed_lines);
                 style = with_option(style, two_tone);
@@ -190,8 +194,10 @@ fn page_styles() -> impl Strategy<Value = (Option<SpeedLines>, Option<TwoTone>, 
     (option::of(lines), option::of(tones), option::of(paper))
 }
 
+type Painted = (Option<Paint>, Option<Focus>);
+
 /// Print effects of all modes.
-fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>)> {
+fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Painted)> {
     let halftone = (number(), number(), colors(), 0u32..99, 0..4usize).prop_map(
         |(period, fraction, ink, tints, kind)| Halftone {
             mode: [
@@ -223,7 +229,34 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>)> {
         amount,
         ..default()
     });
-    (option::of(halftone), option::of(offset))
+    let paint = (number(), number(), any::<bool>()).prop_map(|(near, sharpness, fine)| Paint {
+        form: if fine {
+            PaintForm::Anisotropic
+        } else {
+            PaintForm::Box
+        },
+        near,
+        sharpness,
+        figures: fine,
+        ..default()
+    });
+    let focus = (number(), number(), any::<bool>()).prop_map(|(distance, radius, centre)| Focus {
+        at: if centre {
+            FocusAt::Centre
+        } else {
+            FocusAt::Distance
+        },
+        style: if centre {
+            FocusStyle::Offset
+        } else {
+            FocusStyle::Paint
+        },
+        distance,
+        radius,
+        ..default()
+    });
+    let painted = (option::of(paint), option::of(focus));
+    (option::of(halftone), option::of(offset), painted)
 }
 
 fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines>, Option<Sketch>)>

@@ -35,5 +35,7 @@ fn fuzz_fields<E: Effect>() {
 fn a_million_floats_in_every_field_of_the_page_effects() {
     fuzz_fields::<Halftone>();
     fuzz_fields::<PrintOffset>();
+    fuzz_fields::<Paint>();
+    fuzz_fields::<Focus>();
     fuzz_fields::<Vignette>();
 }

@@ -66,6 +66,8 @@ fn the_range_on_a_field_is_the_range_that_is_used() {
     check(Paper::sanitized);
     check(Halftone::sanitized);
     check(PrintOffset::sanitized);
+    check(Paint::sanitized);
+    check(Focus::sanitized);
     check(Vignette::sanitized);
     check(DepthMap::sanitized);
     check(RangeSmoothing::sanitized);

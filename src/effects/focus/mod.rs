@@ -1,0 +1,168 @@
+//! Leaves what is nearer or farther than a distance out of focus.
+
+use bevy::{
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::Vec2,
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
+    settings::{FieldRange, bounded},
+};
+
+/// Draws the reader's eye to a distance: what is nearer or farther is out of focus. Drawn after
+/// the effects of colour, before prints and lines.
+///
+/// As in a comic, and unlike a lens, the outline between what is sharp and what is not stays
+/// sharp: a sharp figure does not flow into what is out of focus behind it, and what is out of
+/// focus in front does not flow over what is sharp behind it. Things that are both out of focus
+/// flow into each other.
+///
+/// How far something is out of focus depends on the ratio of its distance to that of the
+/// focus, so it does not depend on the unit of the world. In an orthographic view it depends on
+/// the difference, as a fraction of the distance from which a perspective view of 45 degrees
+/// shows the same height. The sky is out of focus unless it is what is looked at.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Focus {
+    /// What is in focus. Default: [`FocusAt::Target`].
+    pub at: FocusAt,
+    /// How things out of focus look. Default: [`FocusStyle::Blur`].
+    pub style: FocusStyle,
+    /// Distance of the focus along the view's axis, in world units. Range 0.01 to 100000, default
+    /// 10.
+    #[reflect(@FieldRange::logarithmic(0.01, 100_000.0))]
+    pub distance: f32,
+    /// How far from the focus everything is sharp: natural logarithm of the ratio of distances.
+    /// 0.15 is from 14 % nearer to 16 % farther. Range 0 to 4, default 0.15.
+    #[reflect(@FieldRange::linear(0.0, 4.0))]
+    pub clear: f32,
+    /// How far behind that the largest radius is reached; as `clear`. 1 is a factor of 2.7 in
+    /// distance. Range 0.05 (at once) to 8, default 1.
+    #[reflect(@FieldRange::linear(0.05, 8.0))]
+    pub ramp: f32,
+    /// Largest radius in logical pixels. Range 0 (the effect is left out) to 24, default 6. At
+    /// most 128 physical pixels.
+    #[reflect(@FieldRange::linear(0.0, 24.0).unit("px"))]
+    pub radius: f32,
+}
+
+/// What is in focus.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum FocusAt {
+    /// The camera's [`EffectTarget`](crate::EffectTarget). While it has none, or it is behind
+    /// the camera: as [`FocusAt::Distance`].
+    #[default]
+    Target,
+    /// What is at [`Focus::distance`].
+    Distance,
+    /// What the pixel in the middle of the view shows.
+    Centre,
+}
+
+/// How things out of focus look.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum FocusStyle {
+    /// Blurred. Reads up to 64 pixels around each one.
+    #[default]
+    Blur,
+    /// Printed with red and blue apart along a diagonal, by up to twice the radius.
+    Offset,
+    /// Painted as by [`Paint`](crate::Paint), whose brush has the radius. Two more passes.
+    Paint,
+}
+
+impl Default for Focus {
+    fn default() -> Self {
+        Self {
+            at: FocusAt::Target,
+            style: FocusStyle::Blur,
+            distance: 10.0,
+            clear: 0.15,
+            ramp: 1.0,
+            radius: 6.0,
+        }
+    }
+}
+
+impl Effect for Focus {
+    const NAME: &'static str = "focus";
+    const STAGE: EffectStage = EffectStage::Color;
+    const SHADER: EffectShader = EffectShader {
+        path: "bevy_comics::effects::focus",
+        source: include_str!("focus.wgsl"),
+        settings: Some("Focus"),
+    };
+    const HALF_BOX: bool = true;
+    type Uniform = FocusUniform;
+
+    fn sanitized(self) -> Self {
+        let default = Self::default();
+        Self {
+            at: self.at,
+            style: self.style,
+            distance: bounded(self.distance, default.distance, 0.01, 100_000.0),
+            clear: bounded(self.clear, default.clear, 0.0, 4.0),
+            ramp: bounded(self.ramp, default.ramp, 0.05, 8.0),
+            radius: bounded(self.radius, default.radius, 0.0, 24.0),
+        }
+    }
+
+    fn strength(&self) -> f32 {
+        if self.radius > 0.0 { 1.0 } else { 0.0 }
+    }
+
+    fn faded(self, fraction: f32) -> Self {
+        let radius = self.radius * fraction;
+        Self { radius, ..self }
+    }
+
+    fn needs(&self) -> Needs {
+        let picture = match self.style {
+            FocusStyle::Paint => Needs::MEANS,
+            FocusStyle::Blur | FocusStyle::Offset => Needs::PICTURE,
+        };
+        picture | Needs::DEPTH
+    }
+
+    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+        variants.number("STYLE", self.style as u32);
+    }
+
+    fn uniform(&self, view: &ViewFacts) -> FocusUniform {
+        let distance = match self.at {
+            FocusAt::Target => view.target_depth.unwrap_or(self.distance),
+            FocusAt::Distance => self.distance,
+            FocusAt::Centre => 0.0,
+        };
+        FocusUniform {
+            axis: view.depth_axis,
+            distance,
+            reference: view.depth_reference.unwrap_or(0.0),
+            clear: self.clear,
+            steepness: 1.0 / self.ramp,
+            radius: (self.radius * view.scale_factor).min(128.0),
+            at_centre: u32::from(self.at == FocusAt::Centre),
+        }
+    }
+}
+
+/// The uniform: `Focus` in `focus.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct FocusUniform {
+    axis: Vec2,
+    distance: f32,
+    reference: f32,
+    clear: f32,
+    steepness: f32,
+    radius: f32,
+    at_centre: u32,
+}

@@ -1,0 +1,137 @@
+//! Twin of `effects/focus/focus.wgsl`.
+
+use std::f64::consts::PI;
+
+use bevy_comics::{Focus, FocusStyle};
+
+use super::{
+    Rgb,
+    means::{Sheet, means},
+    mix,
+    paint::{box_areas, chosen},
+    smoothstep,
+};
+
+/// Distance of the sky.
+pub const SKY: f64 = 1e30;
+
+/// What is out of focus, by column and row of the viewport.
+pub struct Scene<'a> {
+    pub sheet: &'a Sheet,
+    /// The nearest distance along the view's axis that a pixel shows.
+    pub distance: &'a dyn Fn([usize; 2]) -> f64,
+    /// Distance of the focus.
+    pub focus_at: f64,
+    /// In an orthographic view: the length that distances are measured in.
+    pub reference: Option<f64>,
+    /// Physical pixels per logical pixel.
+    pub scale: f64,
+    /// Factor of all radii, to see how far rounding can move the picture.
+    pub nudge: f64,
+}
+
+/// Radius in logical pixels by which something at a distance is out of focus.
+pub fn defocus(s: &Focus, distance: f64, focus_at: f64, reference: Option<f64>) -> f64 {
+    let apart = match reference {
+        Some(length) => (distance - focus_at).abs() / length,
+        None => (distance / focus_at).ln().abs(),
+    };
+    let t = (apart - f64::from(s.clear)) / f64::from(s.ramp);
+    f64::from(s.radius) * smoothstep(0.0, 1.0, t)
+}
+
+/// The part that may be taken from another pixel. Distances and radii.
+pub fn taken(own: [f64; 2], other: [f64; 2]) -> f64 {
+    if other[0] >= own[0] {
+        1.0
+    } else {
+        (other[1] / own[1].max(1e-6)).clamp(0.0, 1.0)
+    }
+}
+
+impl Scene<'_> {
+    fn focus_of(&self, s: &Focus, at: [usize; 2]) -> [f64; 2] {
+        let distance = (self.distance)(at);
+        let radius = defocus(s, distance, self.focus_at, self.reference);
+        [distance, radius * self.scale * self.nudge]
+    }
+
+    fn inside(&self, at: [i64; 2]) -> [usize; 2] {
+        [0, 1].map(|i| at[i].clamp(0, self.sheet.size[i] as i64 - 1) as usize)
+    }
+
+    /// The picture after the effect.
+    pub fn focused(&self, s: &Focus) -> Sheet {
+        let half = |at| 0.5 * self.focus_of(s, at)[1];
+        let boxes = match s.style {
+            FocusStyle::Paint => means(self.sheet, &half),
+            _ => Vec::new(),
+        };
+        Sheet::new(self.sheet.size, |at| {
+            let pixel = self.sheet.at(at);
+            let own = self.focus_of(s, at);
+            let alpha = pixel[3];
+            if own[1] <= 0.0 || alpha <= 0.0 {
+                return pixel;
+            }
+            let straight = [0, 1, 2].map(|c| pixel[c] / alpha);
+            let color = match s.style {
+                FocusStyle::Offset => Some(self.offset(s, at, own, straight)),
+                FocusStyle::Paint => {
+                    let areas = box_areas(self.sheet, &boxes, at, 0.5 * own[1], &|_| 1.0);
+                    chosen(&areas, 8.0)
+                }
+                _ => self.blurred(s, at, own),
+            };
+            let color = color.unwrap_or(straight);
+            [color[0] * alpha, color[1] * alpha, color[2] * alpha, alpha]
+        })
+    }
+
+    fn blurred(&self, s: &Focus, at: [usize; 2], own: [f64; 2]) -> Option<Rgb> {
+        let count = ((own[1] * own[1]).floor() as u32).clamp(12, 64);
+        let mut sum = [0.0; 4];
+        for i in 0..count {
+            let angle = f64::from(i) * PI * (3.0 - 5f64.sqrt());
+            let by = own[1] * ((f64::from(i) + 0.5) / f64::from(count)).sqrt();
+            let step = [angle.cos(), angle.sin()].map(|v| (by * v + 0.5).floor() as i64);
+            let other = self.inside([at[0] as i64 + step[0], at[1] as i64 + step[1]]);
+            let there = self.focus_of(s, other);
+            let weight = smoothstep(by - 1.0, by + 1.0, there[1]) * taken(own, there);
+            for (sum, found) in sum.iter_mut().zip(self.sheet.at(other)) {
+                *sum += weight * found;
+            }
+        }
+        (sum[3] > 0.0).then(|| [0, 1, 2].map(|c| sum[c] / sum[3]))
+    }
+
+    fn offset(&self, s: &Focus, at: [usize; 2], own: [f64; 2], instead: Rgb) -> Rgb {
+        let place = |side: f64| {
+            let by = [0.8, 0.6].map(|v| side * own[1] * v);
+            [0, 1].map(|i| at[i] as f64 + 0.5 + by[i])
+        };
+        let [_, green, _] = instead;
+        let red = self.taken_at(s, place(1.0), own, instead)[0];
+        let blue = self.taken_at(s, place(-1.0), own, instead)[2];
+        [red, green, blue]
+    }
+
+    fn taken_at(&self, s: &Focus, place: [f64; 2], own: [f64; 2], instead: Rgb) -> Rgb {
+        let low = place.map(|v| (v - 0.5).floor());
+        let mut sum = [0.0; 3];
+        for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let weight = |axis: usize, corner: i64| {
+                let part = place[axis] - 0.5 - low[axis];
+                if corner == 1 { part } else { 1.0 - part }
+            };
+            let other = self.inside([low[0] as i64 + i, low[1] as i64 + j]);
+            let found = self.sheet.at(other);
+            let share = taken(own, self.focus_of(s, other));
+            for c in 0..3 {
+                let color = found[c] + (1.0 - found[3]) * instead[c];
+                sum[c] += weight(0, i) * weight(1, j) * mix(instead[c], color, share);
+            }
+        }
+        sum
+    }
+}

@@ -1,0 +1,120 @@
+//! Focus: distances, radii, and what may be taken from where.
+
+use bevy_comics::{Effect, Focus, FocusAt, ViewFacts};
+use bevy_comics_testkit::reference::{
+    focus::{SKY, defocus, taken},
+    smoothstep,
+};
+
+use super::{settings::expression, *};
+
+const FOCUS: &str = "#import bevy_comics::effects::focus::{
+        Focus, defocus, distance_of, reaching, taken,
+    }";
+const FIELDS: [&str; 7] = ["vec2", "f32", "f32", "f32", "f32", "f32", "u32"];
+
+fn focus() -> Focus {
+    Focus {
+        at: FocusAt::Distance,
+        clear: 0.2,
+        ramp: 0.7,
+        radius: 9.0,
+        ..Focus::default()
+    }
+}
+
+/// Perspective, and orthographic: raw depth 1 is 2 units away and 0 is 52.
+fn views() -> [ViewFacts; 2] {
+    let perspective = ViewFacts::default();
+    let mut orthographic = perspective;
+    orthographic.depth_axis = bevy::math::Vec2::new(52.0, -50.0);
+    orthographic.depth_reference = Some(12.0);
+    [perspective, orthographic]
+}
+
+#[test]
+fn radii_are_those_of_the_twin() {
+    let distance = || prop_oneof![3 => 0.1f32..100.0, 1 => select(vec![9.9, 10.0, 10.1, 1e30])];
+    for view in views() {
+        let s = expression("Focus", &FIELDS, &focus(), &view);
+        let body = format!("return vec4(defocus({s}, i(0u), i(1u)));");
+        for_batches((distance(), distance()).prop_map(|(a, b)| [a, b]), |rows| {
+            for (row, found) in rows.iter().zip(gpu().evaluate(FOCUS, &body, rows)) {
+                let [a, b] = row.map(f64::from);
+                let want = defocus(&focus(), a, b, view.depth_reference.map(f64::from));
+                // A logarithm of up to 70 with an error of 2^-21 of it near the ramp, whose
+                // slope is up to 9 * 1.5 / 0.7.
+                let apart = (f64::from(found[0]) - want).abs();
+                assert!(apart < 1e-3, "{row:?}: {found:?}, {want}");
+            }
+        });
+    }
+}
+
+#[test]
+fn distances_are_those_of_the_projection() {
+    let [perspective, orthographic] = views();
+    for (view, of) in [
+        (perspective, (|d| 0.1 / d) as fn(f64) -> f64),
+        (orthographic, |d| 52.0 - 50.0 * d),
+    ] {
+        let s = expression("Focus", &FIELDS, &focus(), &view);
+        let body = format!("return vec4(distance_of({s}, i(0u)));");
+        for_batches((1e-6f32..=1.0).prop_map(|d| [d]), |rows| {
+            for (row, found) in rows.iter().zip(gpu().evaluate(FOCUS, &body, rows)) {
+                let want = of(f64::from(row[0]));
+                assert!((f64::from(found[0]) / want - 1.0).abs() < 3e-6, "{row:?}");
+            }
+        });
+        let none = [[0.0], [f32::NAN], [-1.0], [1e-40]];
+        for found in gpu().evaluate(FOCUS, &body, &none) {
+            assert_eq!(f64::from(found[0]), f64::from(SKY as f32));
+        }
+    }
+}
+
+/// Truth, too: nothing is taken from what is nearer and sharp.
+#[test]
+fn what_is_taken_is_that_of_the_twin() {
+    let number = || prop_oneof![3 => 0.0f32..12.0, 1 => select(vec![0.0, 1.0, 6.0])];
+    let row = (number(), number(), number(), number()).prop_map(|(a, b, c, d)| [a, b, c, d]);
+    let body = "return vec4(
+        taken(vec2(i(0u), i(1u)), vec2(i(2u), i(3u))), reaching(i(0u), i(1u)), 0.0, 0.0);";
+    for_batches(row, |rows| {
+        for (row, found) in rows.iter().zip(gpu().evaluate(FOCUS, body, rows)) {
+            let [a, b, c, d] = row.map(f64::from);
+            assert!(
+                (f64::from(found[0]) - taken([a, b], [c, d])).abs() < 1e-5,
+                "{row:?}"
+            );
+            let reaches = smoothstep(b - 1.0, b + 1.0, a);
+            assert!((f64::from(found[1]) - reaches).abs() < 1e-5, "{row:?}");
+            assert!(!(c < a && d == 0.0) || found[0] == 0.0, "{row:?}");
+        }
+    });
+}
+
+/// The target's distance is used where there is one; else the own.
+#[test]
+fn a_target_is_in_focus() {
+    let [mut view, _] = views();
+    let s = Focus {
+        distance: 7.0,
+        ..Focus::default()
+    };
+    let text = |view: &ViewFacts, at| {
+        let fields = &FIELDS;
+        expression("Focus", fields, &Focus { at, ..s }, view)
+    };
+    assert_eq!(text(&view, FocusAt::Target), text(&view, FocusAt::Distance));
+    view.target_depth = Some(31.0);
+    let own = Focus {
+        distance: 31.0,
+        ..s
+    };
+    assert_eq!(
+        text(&view, FocusAt::Target),
+        expression("Focus", &FIELDS, &own, &view)
+    );
+    assert_eq!(own.faded(0.0).strength(), 0.0);
+}
