@@ -55,6 +55,7 @@ fn assert_is_its_twin(small: &mut Small, s: Focus, focus_at: f64, viewport: Opti
         size: [read.width, read.height],
         lines: None,
         drawing: 0,
+        quads: [viewport[0], viewport[1]],
     };
     let [left, top, width, height] = viewport;
     let at = |[x, y]: [usize; 2]| [left + x as u32, top + y as u32];

@@ -66,6 +66,7 @@ fn assert_is_its_twin(
         size: [read.width, read.height],
         lines: None,
         drawing: 0,
+        quads: [viewport[0], viewport[1]],
     };
     let sheet = sheet(&view, &input, before);
     let [left, top] = [viewport[0], viewport[1]];
