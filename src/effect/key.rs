@@ -12,7 +12,7 @@ use bevy::{
 };
 
 use super::{
-    AnyEffect, EffectStage, Extent, Needs, Plan, ViewFacts,
+    AnyEffect, EffectStage, Extent, Needs, Plan, Variants, ViewFacts,
     compose::{boxes_of, definition, left_out},
     layers::{LAYER_FORMAT, MEANS_FORMAT},
     passes::Pass,
@@ -23,39 +23,6 @@ use crate::{
     lines::{ink_entry, owners_entry, range_entry},
     objects::{ids_entry, object_styles_entry},
 };
-
-/// Modes of an effect that select a shader variant. Each becomes a shader
-/// definition, whose name is the effect's name in capitals, an underscore, and the
-/// variant's name: `MODE` of the effect `rain` becomes `RAIN_MODE`.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Variants {
-    effect: &'static str,
-    entries: Vec<(&'static str, &'static str, Option<u32>)>,
-}
-
-impl Variants {
-    /// Adds a definition without a value if `on` is true.
-    pub fn flag(&mut self, name: &'static str, on: bool) {
-        if on {
-            self.entries.push((self.effect, name, None));
-        }
-    }
-
-    /// Adds a definition with a number as its value.
-    pub fn number(&mut self, name: &'static str, value: u32) {
-        self.entries.push((self.effect, name, Some(value)));
-    }
-
-    fn shader_defs(&self) -> impl Iterator<Item = ShaderDefVal> {
-        self.entries.iter().map(|(effect, name, value)| {
-            let name = format!("{}_{name}", definition(effect));
-            match value {
-                Some(value) => ShaderDefVal::UInt(name, *value),
-                None => name.into(),
-            }
-        })
-    }
-}
 
 /// The properties of a view that select a pipeline, besides its plan.
 #[derive(Clone, Copy, Debug)]
@@ -418,17 +385,5 @@ fn view_definitions(view: DebugView) -> Vec<ShaderDefVal> {
             format!("VIEW_{}", definition(name)).into(),
         ],
         other => vec![other.shader_def().into()],
-    }
-}
-
-impl DebugView {
-    /// The inputs that the view reads.
-    pub(super) fn needs(self) -> Needs {
-        match self {
-            Self::DepthMap | Self::RawRange => Needs::MAP,
-            Self::Silhouettes | Self::Creases => Needs::LINES,
-            Self::ObjectIds => Needs::IDS,
-            Self::Saturation | Self::Difference | Self::Effect(_) => Needs::empty(),
-        }
     }
 }

@@ -23,6 +23,7 @@ mod registry;
 mod requests;
 mod set;
 mod target;
+mod variants;
 
 use std::fmt::Debug;
 
@@ -37,11 +38,11 @@ use serde::{Serialize, de::DeserializeOwned};
 pub use any::AnyEffect;
 pub(crate) use compose::FILE_KEYS;
 pub use facts::ViewFacts;
-pub use key::Variants;
 pub(crate) use plugin::FusedPlugin;
 pub use registry::{EffectPlugin, EffectRegistry, EffectType};
 pub use set::EffectSet;
 pub use target::EffectTarget;
+pub use variants::Variants;
 pub(crate) use {choose::ViewPlan, plan::Plan};
 
 use crate::{

@@ -76,6 +76,18 @@ fn last_shown(plan: &Plan, view: DebugView) -> usize {
     }
 }
 
+impl DebugView {
+    /// The inputs that the view reads.
+    pub(super) fn needs(self) -> Needs {
+        match self {
+            Self::DepthMap | Self::RawRange => Needs::MAP,
+            Self::Silhouettes | Self::Creases => Needs::LINES,
+            Self::ObjectIds => Needs::IDS,
+            Self::Saturation | Self::Difference | Self::Effect(_) => Needs::empty(),
+        }
+    }
+}
+
 impl Plan {
     /// Whether the colours are printed: the view is then styled after FXAA and SMAA.
     pub(super) fn prints(&self) -> bool {

@@ -192,34 +192,13 @@ impl Services<'_> {
             .collect();
         // There is always a last pass, which draws the view's picture.
         let whole = keys.pop().unwrap_or(all);
-        let jumps =
-            |effect: &dyn AnyEffect| matches!(effect.any_extent(&facts), Extent::AtJumps(_));
-        let searches_jumps = plan.drawn().any(jumps);
-        let tiled = lines.filter(|(request, passes)| {
-            passes.are_tiles_complete() && (request.jumps.is_some() || !searches_jumps)
-        });
-        let without_lines = line_reach(plan, &facts).is_some();
-        let is_local = |effect: &dyn AnyEffect| effect.any_extent(&facts) != Extent::Everywhere;
-        let in_last = plan.drawn().filter(|e| whole.applies(e.effect_type().name));
-        let local: Vec<_> = in_last
-            .filter(|effect| is_local(*effect))
-            .map(|effect| effect.effect_type().name)
-            .collect();
-        let saves = |request: &LineRequest| {
-            let jumps = request.jumps.is_some() && !local.is_empty();
-            jumps || (without_lines && whole.reads_lines_anywhere())
-        };
-        let part = match (whole.can_overlay(plan, &facts), tiled) {
-            (true, Some(_)) => Part::OverlaidTiles,
-            (true, None) => Part::Overlay,
-            (false, Some((request, _))) if saves(request) && !whole.is_view() => Part::Tiles,
-            (false, _) => Part::Whole,
-        };
+        let chosen = ChosenPart::new((plan, &facts), &whole, lines);
         let mut specialize = |key: &StylizeKey| {
             let pipeline = &self.stylize_pipeline;
             self.stylize.specialize(cache, pipeline, key.clone())
         };
-        let base = (part == Part::Tiles).then(|| specialize(&whole.base(&local, without_lines)));
+        let base = (chosen.part == Part::Tiles)
+            .then(|| specialize(&whole.base(&chosen.local, chosen.without_lines)));
         let mut pass = |key: StylizeKey| LayerPass {
             pipeline: specialize(&key),
             key,
@@ -229,7 +208,7 @@ impl Services<'_> {
             means: means.map(|keys| keys.map(&mut pass)),
         });
         let layers = layers.collect();
-        let key = whole.with_part(part);
+        let key = whole.with_part(chosen.part);
         FusedRequest {
             camera,
             plan: plan.clone(),
@@ -240,6 +219,51 @@ impl Services<'_> {
             pipeline: specialize(&key),
             base,
             key,
+        }
+    }
+}
+
+/// What the last pass of a plan draws.
+struct ChosenPart {
+    part: Part,
+    /// Effects of the pass that change only some pixels.
+    local: Vec<&'static str>,
+    /// Lines are left out of the pixels that the tiles do not cover.
+    without_lines: bool,
+}
+
+impl ChosenPart {
+    fn new(
+        (plan, facts): (&Plan, &ViewFacts),
+        whole: &StylizeKey,
+        lines: Option<&(LineRequest, LinePasses)>,
+    ) -> Self {
+        let jumps = |effect: &dyn AnyEffect| matches!(effect.any_extent(facts), Extent::AtJumps(_));
+        let searches_jumps = plan.drawn().any(jumps);
+        let tiled = lines.filter(|(request, passes)| {
+            passes.are_tiles_complete() && (request.jumps.is_some() || !searches_jumps)
+        });
+        let without_lines = line_reach(plan, facts).is_some();
+        let is_local = |effect: &dyn AnyEffect| effect.any_extent(facts) != Extent::Everywhere;
+        let in_last = plan.drawn().filter(|e| whole.applies(e.effect_type().name));
+        let local: Vec<_> = in_last
+            .filter(|effect| is_local(*effect))
+            .map(|effect| effect.effect_type().name)
+            .collect();
+        let saves = |request: &LineRequest| {
+            let jumps = request.jumps.is_some() && !local.is_empty();
+            jumps || (without_lines && whole.reads_lines_anywhere())
+        };
+        let part = match (whole.can_overlay(plan, facts), tiled) {
+            (true, Some(_)) => Part::OverlaidTiles,
+            (true, None) => Part::Overlay,
+            (false, Some((request, _))) if saves(request) && !whole.is_view() => Part::Tiles,
+            (false, _) => Part::Whole,
+        };
+        Self {
+            part,
+            local,
+            without_lines,
         }
     }
 }
