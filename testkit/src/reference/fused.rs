@@ -6,13 +6,13 @@ use bevy::math::{UVec2, UVec4};
 use super::{
     Rgb, Rgba, black_flats, color, colorization, contours, desaturation,
     draw::Ink,
-    halftone, mix, print_offset, read, sketch, tone_bands,
+    halftone, mix, paper, print_offset, read, sketch, tone_bands,
     view::{View, map_slope, pixel_depth},
     vignette,
 };
 use bevy_comics::{
-    BlackFlats, Colorization, ComicStyle, Contours, Desaturation, Halftone, Outlines, PrintOffset,
-    Sketch, ToneBands, Vignette,
+    BlackFlats, Colorization, ComicStyle, Contours, Desaturation, Halftone, Outlines, Paper,
+    PrintOffset, Sketch, ToneBands, Vignette,
 };
 
 /// What the pass reads besides the view.
@@ -203,6 +203,10 @@ pub fn stylize(style: &ComicStyle, view: &View, input: &Input, x: u32, y: u32, n
             (linear, alpha) = parts(read::draw(outlines, with(linear, alpha), found));
         }
         _ => {}
+    }
+    if let Some(s) = style.get::<Paper>() {
+        let at = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+        linear = paper::paper(s, with(linear, alpha), at, 1.0, 0);
     }
     if let Some(s) = style.get::<Vignette>() {
         linear = vignette::vignette(s, with(linear, alpha), place, [width, height]);
