@@ -241,7 +241,12 @@ fn lines_of_distant_models_follow_their_edges() {
         let (missed, wrong) = (scores.missed(), scores.wrong());
         let fragments = scores.fragments();
         println!("{name}: missed {missed:.4}, wrong {wrong:.4}, fragments {fragments:.2}");
-        assert!(scores.wanted > 100, "{name}: {scores:?}");
+        // The smooth model and the figure have the fewest edges: 164 and 163 pixels.
+        let least = match specimen {
+            Specimen::Organic | Specimen::Figure => 160,
+            _ => 200,
+        };
+        assert!(scores.wanted > least, "{name}: {scores:?}");
         let [ratio, least] = ADAPTER_FRAGMENTS;
         let more = (ratio * measured[2]).max(least);
         assert!(missed <= measured[0] + ADAPTER, "{name}: {scores:?}");

@@ -4,6 +4,7 @@
 pub mod bend;
 pub mod black_flats;
 pub mod blocks;
+pub mod blue_noise;
 pub mod boil;
 pub mod budget;
 pub mod chain;

@@ -3,8 +3,9 @@
 use bevy::color::Color;
 use bevy_comics::{Halftone, HalftoneMode, ScreenShape};
 use bevy_comics_testkit::reference::{
+    blue_noise::blue_noise,
     halftone::{Plate, inked, plate_cover, plate_tones, screen_amount},
-    noise, screen,
+    screen,
 };
 
 use super::*;
@@ -23,12 +24,6 @@ pub const SHAPES: [ScreenShape; 6] = [
     ScreenShape::Cross,
     ScreenShape::Stochastic,
 ];
-
-/// Thresholds of grains by column and row, where there is no tile of blue noise.
-fn tile(x: i64, y: i64) -> f64 {
-    let i = (y.rem_euclid(64) * 64 + x.rem_euclid(64)) as u32;
-    (f64::from(noise::hash(i) & 255) + 0.5) / 256.0
-}
 
 /// Places up to 2000 pixels from the middle, tones with both ends, periods from 2 to 40.
 /// The slope of a coverage is up to one per pixel, and places are exact to an eighth of a
@@ -80,7 +75,7 @@ fn coverages_of_all_shapes_are_those_of_the_twin() {
                 };
                 let tone = f64::from(row[2]);
                 let place = [0, 1].map(|i| f64::from(row[i]));
-                let want = plate_cover(shape, plate, tone, &tile)(place);
+                let want = plate_cover(shape, plate, tone, &blue_noise)(place);
                 let apart = (f64::from(found[0]) - want).abs();
                 assert!(apart < 0.01, "{shape:?}, {row:?}: {found:?}, {want}");
             }
