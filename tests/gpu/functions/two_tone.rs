@@ -36,7 +36,8 @@ fn the_fraction_of_the_light_tone_is_that_of_the_twin() {
                 assert_eq!(want, 1.0, "{row:?}");
             }
             if threshold == 1.0 {
-                assert_eq!(want, 0.0, "{row:?}");
+                // `1 + half - half` may round to less than 1.
+                assert!(want < 1e-24, "{row:?}: {want}");
             }
         }
     });
