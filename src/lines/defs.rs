@@ -129,6 +129,7 @@ impl LineKey {
             .chain(names([
                 (self.search == Search::Neighbours, "NEIGHBOURS"),
                 (self.search == Search::Columns, "COLUMNS"),
+                (self.planes, "PLANES"),
                 (!self.by_fragments, "BLOCKS"),
                 (self.smooth, "SMOOTH"),
                 (self.varied, "VARIED"),

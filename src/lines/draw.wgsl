@@ -19,6 +19,11 @@
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::texel_slot
 #endif
+#ifdef PLANES
+#import bevy_comics::lines::edge::Grid
+#import bevy_comics::lines::planes::{LINKED_EAST, LINKED_SOUTH}
+#import bevy_comics::lines::read_planes::column_window
+#endif
 #ifndef COLUMNS
 #import bevy_comics::lines::stored::{load_bends, load_cracks, stored_middle}
 #endif
@@ -133,10 +138,60 @@ fn add_crack(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i
 }
 #endif
 
+#ifdef PLANES
+// The lower four bits of a word, in bits 0, 8, 16 and 24, the first one last.
+fn spread(word: u32) -> u32 {
+    let turned = ((word & 15u) >> 1u) | ((word & 1u) << 3u);
+    return (turned * 0x00204081u) & 0x01010101u;
+}
+
+// Which cracks near a position are parts of lines: bit 8 * row + 2 * column + side, where side is
+// 0 to the east and 1 to the south. Rows and columns 0 to 3 are those one before the position,
+// its own, the next one, and those two before it.
+fn near_cracks(g: Grid, centre: vec2<i32>) -> u32 {
+    var near = 0u;
+    for (var column = 0u; column < 4u; column++) {
+        let x = centre.x + near_step(column);
+        let east = spread(column_window(g, LINKED_EAST, x, centre.y - 2));
+        let south = spread(column_window(g, LINKED_SOUTH, x, centre.y - 2));
+        near |= (east | (south << 1u)) << (2u * column);
+    }
+#ifdef SMOOTH
+    // Lines leave their cracks by up to half a pixel. The pixel two before in both directions is
+    // too far away.
+    return near & 0x3fffffffu;
+#else
+    // The cracks of the next pixel in both directions are behind it.
+    return near & 0x000f3f3fu;
+#endif
+}
+
+// From the position to a row or column of near_cracks.
+fn near_step(place: u32) -> i32 {
+    return i32((place + 1u) & 3u) - 2;
+}
+
+// Adds the crack of a bit of near_cracks.
+fn add_near(ink: ptr<function, Ink>, centre: vec2<i32>, bit: u32, at: vec2<f32>) {
+    let south = (bit & 1u) != 0u;
+    let p = centre + vec2(near_step((bit >> 1u) & 3u), near_step(bit >> 3u));
+    let cracks = load_cracks(line_pass.grid, p);
+    let bends = load_bends(line_pass.grid, p);
+    let packed = select(cracks.x, cracks.y, south);
+    add_crack(ink, packed, p, select(vec2(1, 0), vec2(0, 1), south), select(bends, bends >> 16u, south), at);
+}
+#endif
+
 // Adds the lines near a position of the grid.
 fn search(ink: ptr<function, Ink>, centre: vec2<i32>, at: vec2<f32>) {
     let g = line_pass.grid;
-#ifdef NEIGHBOURS
+#ifdef PLANES
+    var near = near_cracks(g, centre);
+    while near != 0u {
+        add_near(ink, centre, firstTrailingBit(near), at);
+        near &= near - 1u;
+    }
+#else ifdef NEIGHBOURS
     // CPU adapters execute the body of a loop once more than it iterates.
     add_pixel(ink, centre + vec2(-1, -1), at);
     add_pixel(ink, centre + vec2(0, -1), at);

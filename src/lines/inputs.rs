@@ -299,7 +299,8 @@ impl Inputs<'_> {
             Some(columns) => self.searched((13, columns))?,
             None => self.stored(cracks)?,
         };
-        if passes.key.for_draw().bridged
+        let key = passes.key.for_draw();
+        if (key.bridged || key.planes)
             && let CrackStore::Buffers(buffers) = &cracks.store
         {
             let copies = self.parts.0.0.copies();
@@ -309,6 +310,6 @@ impl Inputs<'_> {
             let ids = self.texels()?.ids.ok_or(NOT_READY)?;
             entries.push(entry(8, ids.into_binding()));
         }
-        Ok(self.group(&passes.key.for_draw().draw_layout(), &entries))
+        Ok(self.group(&key.draw_layout(), &entries))
     }
 }

@@ -76,6 +76,8 @@ pub(crate) struct LineKey {
     pub overshoots: bool,
     /// Gaps in lines are closed.
     pub bridged: bool,
+    /// Drawing looks up in planes of bits where cracks are.
+    pub planes: bool,
     /// Lines run straight through the steps of pixels.
     pub smooth: bool,
     /// Which factors of width and opacity are not 1.
@@ -133,6 +135,7 @@ impl LineKey {
             motion: lines.persists() && request.motion,
             overshoots: lines.overshoots() && !by_fragments,
             bridged: lines.bridge > 0 && !by_fragments,
+            planes: false,
             smooth: lines.smooth && !by_fragments,
             weight,
             surface: lines.color.is_surface(),
@@ -299,6 +302,7 @@ impl LineKey {
             ids: self.object_styles,
             object_styles: self.object_styles,
             search: self.search,
+            planes: self.settles() && self.search == Search::Neighbours,
             boils: self.boils,
             surface: self.surface,
             inward: self.inward,

@@ -186,7 +186,7 @@ impl LineKey {
         } else {
             self.stored()
         };
-        if self.bridged {
+        if self.bridged || self.planes {
             entries.push(planes_entry(ShaderStages::FRAGMENT));
         }
         if self.object_styles {

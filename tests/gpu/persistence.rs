@@ -7,7 +7,7 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{CameraCut, ComicStyle, Outlines, VisibleDepthRange};
+use bevy_comics::{CameraCut, ComicStyle, Outlines, Silhouettes, VisibleDepthRange};
 use bevy_comics_testkit::{
     reference::{
         crack::{Crack, crack, jump},
@@ -125,6 +125,12 @@ struct Step {
     front: Entity,
 }
 
+/// The height of a step, in units of the threshold: a fraction of 1.2 times the height of the
+/// view.
+fn height(step: f32) -> f32 {
+    step * Silhouettes::default().threshold * 1.2 * 64.0
+}
+
 impl Step {
     fn new() -> Self {
         let mut small = towards_the_sky(UVec2::new(96, 64));
@@ -135,8 +141,7 @@ impl Step {
 
     /// Draws a frame with a step, the edge at a place. Returns the width of the line.
     fn frame(&mut self, step: f32, x: f32) -> f32 {
-        // 2 % of 1.2 times the height of the view.
-        let height = step * 0.02 * 1.2 * 64.0;
+        let height = height(step);
         let front = self.front;
         let at = Transform::from_xyz(x - 30.0, 0.0, -200.0 + height);
         self.small.world().entity_mut(front).insert(at);
@@ -247,7 +252,6 @@ fn passing_lines_leave_no_trails() {
     let mut step = Step::new();
     let front = step.front;
     step.small.world().despawn(front);
-    let height = |step: f32| step * 0.02 * 1.2 * 64.0;
     for i in 0..14 {
         let x = -40.0 + 6.0 * i as f32;
         let ends = [[x, -40.0], [x + 3.0, 40.0]];
