@@ -99,7 +99,7 @@ pub use lines::{
 };
 #[cfg(feature = "objects")]
 pub use objects::{
-    ATTRIBUTE_MESH_SECTION, DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle,
+    ATTRIBUTE_MESH_SECTION, DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle, ObjectScreen,
     OutlineGroup, OutlineKinds, OutlineStyle, SelectionOutline, ViewLineWidths, ViewObjectIds,
     XRayOutline, object_id,
 };
@@ -164,7 +164,7 @@ pub mod prelude {
     pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};
     #[cfg(feature = "objects")]
     pub use crate::{
-        DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle, OutlineGroup, OutlineKinds,
-        OutlineStyle, SelectionOutline, XRayOutline,
+        DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle, ObjectScreen, OutlineGroup,
+        OutlineKinds, OutlineStyle, SelectionOutline, XRayOutline,
     };
 }

@@ -326,6 +326,11 @@ bitflags! {
         /// draw them, to two textures of the viewport's size with 16 bytes a pixel. The WGSL
         /// says how large the boxes are, see [`Effect::HALF_BOX`].
         const MEANS = 1 << 9;
+        /// Where the object at a pixel is, by `load_object` and `style_of` of
+        /// `bevy_comics::objects`, if it has an [`ObjectScreen`](crate::ObjectScreen). Includes
+        /// [`Needs::IDS`] while some object has one; otherwise it asks for nothing, and
+        /// `OBJECT_ANCHORS` is not defined in WGSL.
+        const OBJECT_ANCHORS = 1 << 10;
     }
 }
 

@@ -36,6 +36,7 @@ mod marks;
 mod means;
 mod memory;
 mod models;
+mod object_screen;
 mod outlines;
 mod outside;
 mod overshoot;

@@ -11,6 +11,13 @@
 #ifdef HALFTONE_CELLS
 #import bevy_comics::effect::picture::picture_at
 #endif
+#ifdef HALFTONE_FOLLOWS
+#import bevy_comics::depth::view::view
+#import bevy_comics::effect::similarity::{Similarity, similarity_of}
+#endif
+#ifdef OBJECT_ANCHORS
+#import bevy_comics::objects::{load_object, style_of}
+#endif
 
 const MODE_CMYK: u32 = 0u;
 const MODE_SPOT: u32 = 1u;
@@ -57,6 +64,17 @@ struct Halftone {
     mode: u32,
     shape: u32,
     unused: u32,
+    // FOLLOWS: clip space from world space.
+    clip_from_world: mat4x4<f32>,
+}
+
+// Where the screens of a pixel lie.
+struct Screen {
+    // Where they begin: physical pixels in the render target.
+    centre: vec2<f32>,
+    // Cosine and sine of their turn, clockwise; and their size.
+    turn: vec2<f32>,
+    size: f32,
 }
 
 // The mode: compiled in by the fused pass, else that of the settings.
@@ -132,19 +150,36 @@ fn stochastic(s: Halftone, place: vec2<f32>, tone: f32, plate: i32) -> f32 {
     return mix(upper, lower, f.y);
 }
 
+// The screens on the page.
+fn page_screen(s: Halftone) -> Screen {
+    return Screen(s.centre, vec2(1.0, 0.0), 1.0);
+}
+
+// Cosine and sine of the angle of a plate, divided by its period.
+fn plate_turn(s: Halftone, on: Screen, plate: i32) -> vec2<f32> {
+    let own = vec2(s.cosines[plate], s.sines[plate]);
+#ifdef HALFTONE_FOLLOWS
+    let t = on.turn / on.size;
+    return vec2(own.x * t.x - own.y * t.y, own.x * t.y + own.y * t.x);
+#else
+    return own;
+#endif
+}
+
 // Coverage of a pixel by a plate (0 cyan, 1 magenta, 2 yellow, 3 black). `place`: pixels
 // from where the screens begin.
-fn plate_cover(s: Halftone, place: vec2<f32>, plate: i32, tone: f32) -> f32 {
+fn plate_cover(s: Halftone, on: Screen, place: vec2<f32>, plate: i32, tone: f32) -> f32 {
     let t = clamp(tone, LEAST, 1.0 - LEAST);
-    let turn = vec2(s.cosines[plate], s.sines[plate]);
+    let turn = plate_turn(s, on, plate);
+    let period = s.period * on.size;
     let at = cell_at(place, turn, plate_phase(plate));
     let sides = abs(turn);
     let shape = shape_of(s);
     var k = 0.0;
     if shape == SHAPE_ROUND {
-        k = disc(at, t, s.period);
+        k = disc(at, t, period);
     } else if shape == SHAPE_EUCLIDEAN {
-        k = euclidean(at, t, s.period);
+        k = euclidean(at, t, period);
     } else if shape == SHAPE_LINE {
         k = line(at.x, t, sides.x + sides.y);
     } else if shape == SHAPE_DIAMOND {
@@ -185,13 +220,14 @@ fn inked(s: Halftone, k: vec4<f32>) -> vec3<f32> {
 #ifdef HALFTONE_CELLS
 // The mean colour of four places in the cell of a plate that a pixel lies in; `own` where
 // the background shows through.
-fn cell_color(s: Halftone, position: vec2<f32>, own: vec3<f32>, plate: i32) -> vec3<f32> {
-    let turn = vec2(s.cosines[plate], s.sines[plate]);
-    let at = cell_at(position - s.centre, turn, plate_phase(plate));
+fn cell_color(s: Halftone, on: Screen, position: vec2<f32>, own: vec3<f32>, plate: i32) -> vec3<f32> {
+    let turn = plate_turn(s, on, plate);
+    let period = s.period * on.size;
+    let at = cell_at(position - on.centre, turn, plate_phase(plate));
     var sum = vec3(0.0);
     for (var i = 0; i < 4; i++) {
         let e = round(at) - at + 0.5 * vec2(f32(i & 1), f32(i >> 1u)) - 0.25;
-        let back = s.period * s.period * vec2(dot(e, vec2(turn.x, -turn.y)), dot(e, turn.yx));
+        let back = period * period * vec2(dot(e, vec2(turn.x, -turn.y)), dot(e, turn.yx));
         let found = picture_at(position + back);
         sum += found.rgb + (1.0 - found.a) * own;
     }
@@ -200,31 +236,83 @@ fn cell_color(s: Halftone, position: vec2<f32>, own: vec3<f32>, plate: i32) -> v
 #endif
 
 // Coverage at a pixel by a plate whose tone is `tone` there.
-fn screened(s: Halftone, p: Pixel, color: vec3<f32>, amount: f32, plate: i32, tone: f32) -> f32 {
+fn screened(s: Halftone, on: Screen, p: Pixel, color: vec3<f32>, amount: f32, plate: i32, tone: f32) -> f32 {
     var read = tone;
 #ifdef HALFTONE_CELLS
-    read = plate_tones(s, cell_color(s, p.position, color, plate))[plate];
+    read = plate_tones(s, cell_color(s, on, p.position, color, plate))[plate];
 #endif
-    return mix(read, plate_cover(s, p.position - s.centre, plate, read), amount);
+    return mix(read, plate_cover(s, on, p.position - on.centre, plate, read), amount);
 }
+
+// Coverages at a pixel by all plates.
+fn covers(s: Halftone, on: Screen, p: Pixel, color: vec3<f32>, amount: f32, tones: vec4<f32>) -> vec4<f32> {
+    let mode = mode_of(s);
+    var k = vec4(0.0);
+    if mode != MODE_SPOT {
+        k.x = screened(s, on, p, color, amount, 0, tones.x);
+    }
+    if mode == MODE_CMYK || mode == MODE_RGB {
+        k.y = screened(s, on, p, color, amount, 1, tones.y);
+        k.z = screened(s, on, p, color, amount, 2, tones.z);
+    }
+    if mode != MODE_RGB {
+        k.w = screened(s, on, p, color, amount, 3, tones.w);
+    }
+    return k;
+}
+
+#ifdef HALFTONE_FOLLOWS
+// Where the object at a pixel is on the page. Of size 0 if screens do not follow it.
+fn followed(s: Halftone, p: Pixel) -> Similarity {
+    var found: Similarity;
+#ifdef OBJECT_ANCHORS
+    let style = style_of(load_object(vec2<i32>(p.position)).y);
+    if style.anchor_size > 0.0 {
+        found = similarity_of(
+            s.clip_from_world, vec4<f32>(view.viewport),
+            style.anchor_centre, style.anchor_size, style.anchor_rotation,
+        );
+    }
+#endif
+    return found;
+}
+
+// How much of a screen of a size is seen: finer ones than the picture can show would be noise.
+fn shown_amount(s: Halftone, size: f32) -> f32 {
+    return select(smoothstep(1.5, 2.5, s.period * size), 1.0, shape_of(s) == SHAPE_STOCHASTIC);
+}
+
+// Coverages by the plates of an object that they follow. Both octaves have the tone, so that
+// their mixture has it too.
+fn followed_covers(s: Halftone, p: Pixel, color: vec3<f32>, amount: f32, tones: vec4<f32>) -> vec4<f32> {
+    let f = followed(s, p);
+    if f.size == 0.0 {
+        return covers(s, page_screen(s), p, color, amount, tones);
+    }
+    // Grains cannot turn.
+    let turns = shape_of(s) != SHAPE_STOCHASTIC;
+    let turn = select(vec2(1.0, 0.0), f.turn, turns);
+    let own = Screen(f.origin, turn, select(1.0, f.size, turns));
+    let k = covers(s, own, p, color, amount * shown_amount(s, own.size), tones);
+    if f.fade == 0.0 || !turns {
+        return k;
+    }
+    let other = Screen(f.origin, turn, f.other);
+    let fading = covers(s, other, p, color, amount * shown_amount(s, f.other), tones);
+    return mix(k, fading, f.fade);
+}
+#endif
 
 fn halftone(s: Halftone, p: Pixel) -> Pixel {
     var out = p;
     let color = p.color / max(p.alpha, 1e-3);
     let tones = plate_tones(s, color);
     let amount = screen_amount(s, color, p.depth.x);
-    let mode = mode_of(s);
-    var k = vec4(0.0);
-    if mode != MODE_SPOT {
-        k.x = screened(s, p, color, amount, 0, tones.x);
-    }
-    if mode == MODE_CMYK || mode == MODE_RGB {
-        k.y = screened(s, p, color, amount, 1, tones.y);
-        k.z = screened(s, p, color, amount, 2, tones.z);
-    }
-    if mode != MODE_RGB {
-        k.w = screened(s, p, color, amount, 3, tones.w);
-    }
+#ifdef HALFTONE_FOLLOWS
+    let k = followed_covers(s, p, color, amount, tones);
+#else
+    let k = covers(s, page_screen(s), p, color, amount, tones);
+#endif
     // Nothing is printed where the background shows through.
     out.color = mix(p.color, inked(s, k) * p.alpha, s.opacity);
     return out;
