@@ -24,6 +24,8 @@ pub struct ViewFacts {
     pub world_from_clip: Mat4,
     /// Clip space from world space.
     pub clip_from_world: Mat4,
+    /// Number of [`CameraCut`](crate::CameraCut)s of the camera so far.
+    pub cuts: u32,
     /// Seconds of the app's default clock ([`Time`](bevy::time::Time)).
     pub seconds: f64,
     /// Where the object that effects point at ([`EffectTarget`](crate::EffectTarget)) is in
@@ -55,6 +57,7 @@ impl Default for ViewFacts {
             scale_factor: 1.0,
             world_from_clip: Mat4::IDENTITY,
             clip_from_world: Mat4::IDENTITY,
+            cuts: 0,
             seconds: 0.0,
             target: None,
             target_depth: None,
@@ -84,6 +87,7 @@ impl ViewFacts {
             scale_factor: view.scale_factor,
             world_from_clip: world_from_clip(view, extracted),
             clip_from_world,
+            cuts: view.cuts,
             seconds: view.time,
             target: target.map(|(place, _)| place),
             target_depth: target.map(|(_, depth)| depth).filter(|d| d.is_finite()),
