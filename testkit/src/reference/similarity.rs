@@ -49,7 +49,11 @@ pub fn similarity_of(
     };
     let octave = octaves(clip_from_world, clip.w, size);
     let inside = octave - octave.round();
-    let next = if inside > 0.0 { inside - 1.0 } else { inside + 1.0 };
+    let next = if inside > 0.0 {
+        inside - 1.0
+    } else {
+        inside + 1.0
+    };
     let beyond = (inside.abs().exp2() - 1.3) / (2f64.sqrt() - 1.3);
     Some(Similarity {
         origin: origin.to_array(),

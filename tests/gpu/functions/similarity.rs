@@ -68,7 +68,10 @@ fn check_size(row: &[f32], found: [f32; 4], want: [f64; 3]) {
     let [size, other, fade] = want;
     let near = |want: [f64; 3]| {
         let pairs = found.into_iter().zip(want);
-        pairs.map(|(a, b)| (f64::from(a) - b).abs()).fold(0.0, f64::max) < 1e-5
+        pairs
+            .map(|(a, b)| (f64::from(a) - b).abs())
+            .fold(0.0, f64::max)
+            < 1e-5
     };
     let at_border = (fade - 0.5).abs() < 1e-5;
     assert!(
@@ -87,7 +90,10 @@ fn steepness(matrix: DMat4, rotation: DQuat) -> f64 {
 /// Behind the camera, and for what is not a number, there is nothing to follow.
 #[test]
 fn nothing_behind_the_camera_is_followed() {
-    let columns = views()[0].to_cols_array().map(|v| format!("{v:?}")).join(", ");
+    let columns = views()[0]
+        .to_cols_array()
+        .map(|v| format!("{v:?}"))
+        .join(", ");
     let found = gpu().evaluate(
         SIMILARITY,
         &format!(
