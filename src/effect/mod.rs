@@ -47,7 +47,7 @@ pub(crate) use {choose::ViewPlan, plan::Plan};
 
 use crate::{
     diagnostics::ComicsStage,
-    lines::{LineSettings, MapJumps},
+    lines::{LineFocus, LineSettings, MapJumps},
 };
 
 /// A camera component that changes the picture: one WGSL function of a pixel, and
@@ -167,6 +167,20 @@ pub trait Effect:
     fn line_reach(&self, view: &ViewFacts) -> Option<f32> {
         let _ = view;
         None
+    }
+
+    /// The distance at which lines are in focus; farther from it they fade. If several effects
+    /// of a camera have one, that of the first in the chain is used. Lines of the faithful forms do
+    /// not fade, and none without compute shaders. Default: none.
+    fn line_focus(&self, view: &ViewFacts) -> Option<LineFocus> {
+        let _ = view;
+        None
+    }
+
+    /// Whether the view is styled after FXAA and SMAA, because the effect draws dots that these
+    /// would smear. Default: for effects of the stage [`EffectStage::Print`].
+    fn prints(&self) -> bool {
+        Self::STAGE == EffectStage::Print
     }
 
     /// Packs the settings for the shader.

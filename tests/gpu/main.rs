@@ -13,6 +13,7 @@ mod extremes;
 mod failures;
 mod finish;
 mod focus;
+mod focus_styles;
 mod fresh_crate;
 mod functions;
 mod golden;

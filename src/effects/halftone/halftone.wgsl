@@ -6,7 +6,7 @@
 #import bevy_comics::effect::color::{lightness, luminance, separated}
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::effect::screen::{
-    LEAST, cross_lines, diamond, disc, euclidean, gained, grain_cover, line, tinted,
+    LEAST, cross_lines, diamond, disc, euclidean, gained, grain_cover, line, paler, tinted,
 }
 #ifdef HALFTONE_CELLS
 #import bevy_comics::effect::picture::picture_at
@@ -94,15 +94,33 @@ fn shape_of(s: Halftone) -> u32 {
 #endif
 }
 
+// Whether tones, levels or screens depend on more than the colour: compiled in, see `adjusts` in
+// mod.rs.
+fn adjusts(s: Halftone) -> bool {
+#ifdef HALFTONE_ADJUSTED
+    let adjusted = #{HALFTONE_ADJUSTED}u;
+    return adjusted == 1u;
+#else
+    return true;
+#endif
+}
+
 // A colour in linear light with its lightness stretched from shadows to highlights.
 fn stretched(s: Halftone, color: vec3<f32>) -> vec3<f32> {
     let c = clamp(color, vec3(0.0), vec3(1.0));
+    if !adjusts(s) {
+        return c;
+    }
     let level = clamp((sqrt(c) - s.shadows) * s.contrast, vec3(0.0), vec3(1.0));
     return select(level * level, c, s.shadows == 0.0 && s.contrast == 1.0);
 }
 
 fn printed_tone(s: Halftone, tone: f32) -> f32 {
-    return gained(tinted(clamp(tone, 0.0, 1.0), s.tints), s.gain);
+    let t = clamp(tone, 0.0, 1.0);
+    if !adjusts(s) {
+        return t;
+    }
+    return gained(tinted(t, s.tints), s.gain);
 }
 
 // Tones of the plates for a colour in linear light: cyan, magenta, yellow, black; in
@@ -189,11 +207,7 @@ fn plate_cover(s: Halftone, on: Screen, place: vec2<f32>, plate: i32, tone: f32)
     } else {
         k = stochastic(s, place, t, plate);
     }
-    // Paler instead of smaller.
-    if tone < LEAST {
-        return k * tone / LEAST;
-    }
-    return 1.0 - (1.0 - k) * min((1.0 - tone) / LEAST, 1.0);
+    return paler(k, tone);
 }
 
 // A quarter of a cell keeps black independent of the others: at 15, 75 and 45 degrees,
@@ -204,6 +218,9 @@ fn plate_phase(plate: i32) -> f32 {
 
 // Fraction of the screens at a pixel, 0 (plain tones) to 1.
 fn screen_amount(s: Halftone, color: vec3<f32>, depth: f32) -> f32 {
+    if !adjusts(s) {
+        return mix(s.near, s.far, depth);
+    }
     let shade = 1.0 - smoothstep(s.below, s.below + 0.1, lightness(color));
     return mix(s.near, s.far, depth) * shade;
 }
@@ -235,28 +252,34 @@ fn cell_color(s: Halftone, on: Screen, position: vec2<f32>, own: vec3<f32>, plat
 }
 #endif
 
-// Coverage at a pixel by a plate whose tone is `tone` there.
-fn screened(s: Halftone, on: Screen, p: Pixel, color: vec3<f32>, amount: f32, plate: i32, tone: f32) -> f32 {
-    var read = tone;
+// The tone that a plate prints at a pixel, whose own one is `tone`.
+fn tone_read(s: Halftone, on: Screen, p: Pixel, color: vec3<f32>, plate: i32, tone: f32) -> f32 {
 #ifdef HALFTONE_CELLS
-    read = plate_tones(s, cell_color(s, on, p.position, color, plate))[plate];
+    return plate_tones(s, cell_color(s, on, p.position, color, plate))[plate];
+#else
+    return tone;
 #endif
-    return mix(read, plate_cover(s, on, p.position - on.centre, plate, read), amount);
+}
+
+// Coverage at a place by a plate, of which `amount` is seen as dots and the rest as a plain tone.
+fn screened(s: Halftone, on: Screen, place: vec2<f32>, amount: f32, plate: i32, tone: f32) -> f32 {
+    return mix(tone, plate_cover(s, on, place, plate, tone), amount);
 }
 
 // Coverages at a pixel by all plates.
 fn covers(s: Halftone, on: Screen, p: Pixel, color: vec3<f32>, amount: f32, tones: vec4<f32>) -> vec4<f32> {
     let mode = mode_of(s);
+    let place = p.position - on.centre;
     var k = vec4(0.0);
     if mode != MODE_SPOT {
-        k.x = screened(s, on, p, color, amount, 0, tones.x);
+        k.x = screened(s, on, place, amount, 0, tone_read(s, on, p, color, 0, tones.x));
     }
     if mode == MODE_CMYK || mode == MODE_RGB {
-        k.y = screened(s, on, p, color, amount, 1, tones.y);
-        k.z = screened(s, on, p, color, amount, 2, tones.z);
+        k.y = screened(s, on, place, amount, 1, tone_read(s, on, p, color, 1, tones.y));
+        k.z = screened(s, on, place, amount, 2, tone_read(s, on, p, color, 2, tones.z));
     }
     if mode != MODE_RGB {
-        k.w = screened(s, on, p, color, amount, 3, tones.w);
+        k.w = screened(s, on, place, amount, 3, tone_read(s, on, p, color, 3, tones.w));
     }
     return k;
 }

@@ -141,10 +141,7 @@ impl Effect for Halftone {
         needs.set(Needs::MAP, self.near != self.far);
         needs.set(Needs::PICTURE, self.reads_cells());
         needs.set(Needs::BLUE_NOISE, self.shape == ScreenShape::Stochastic);
-        needs.set(
-            Needs::OBJECT_ANCHORS,
-            self.anchor == ScreenAnchor::Object,
-        );
+        needs.set(Needs::OBJECT_ANCHORS, self.anchor == ScreenAnchor::Object);
         needs
     }
 
@@ -170,6 +167,7 @@ impl Effect for Halftone {
         variants.number("MODE", self.mode as u32);
         variants.number("SHAPE", self.shape as u32);
         variants.flag("CELLS", self.reads_cells());
+        variants.number("ADJUSTED", u32::from(self.adjusts()));
         variants.flag("FOLLOWS", self.anchor == ScreenAnchor::Object);
     }
 
@@ -222,6 +220,12 @@ impl Halftone {
     /// Whether tones are read in the middle of cells. Grains are too small for that.
     fn reads_cells(&self) -> bool {
         self.sampling == ScreenSampling::Cell && self.shape != ScreenShape::Stochastic
+    }
+
+    /// Whether tones, levels or screens depend on more than the colour.
+    fn adjusts(&self) -> bool {
+        let levels = self.shadows > 0.0 || self.highlights < 1.0;
+        levels || self.tints > 0 || self.gain > 0.0 || self.below < 1.0
     }
 
     /// Angles of cyan, magenta, yellow and black in degrees.

@@ -182,7 +182,9 @@ pub fn screen_amount(s: &Halftone, linear: Rgb, d: f64) -> f64 {
 /// Where the screens begin, in pixels of the target.
 pub fn centre(s: &Halftone, viewport: UVec4, target: UVec2) -> [f64; 2] {
     let [first, size] = match s.anchor {
-        ScreenAnchor::View | ScreenAnchor::Object => [[viewport.x, viewport.y], [viewport.z, viewport.w]],
+        ScreenAnchor::View | ScreenAnchor::Object => {
+            [[viewport.x, viewport.y], [viewport.z, viewport.w]]
+        }
         ScreenAnchor::Window => [[0, 0], target.to_array()],
         other => panic!("no twin of {other:?}"),
     };
