@@ -94,14 +94,14 @@ pub use effect::{
 pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
 pub use lines::{
-    Creases, LineBoil, LineColor, LineFog, LineResponse, LineSettings, LineWeight, MapJumps,
-    ObjectEdges, Silhouettes, ViewCracks,
+    Creases, LineBoil, LineColor, LineFocus, LineFog, LineResponse, LineSettings, LineWeight,
+    MapJumps, ObjectEdges, Silhouettes, ViewCracks,
 };
 #[cfg(feature = "objects")]
 pub use objects::{
     ATTRIBUTE_MESH_SECTION, DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle,
-    OutlineGroup, OutlineKinds, OutlineStyle, SelectionOutline, ViewLineWidths, ViewObjectIds,
-    XRayOutline, object_id,
+    ObjectScreen, OutlineGroup, OutlineKinds, OutlineStyle, SelectionOutline, ViewLineWidths,
+    ViewObjectIds, XRayOutline, object_id,
 };
 pub use plugin::ComicsPlugin;
 pub use schedule::ComicsSystems;
@@ -164,7 +164,7 @@ pub mod prelude {
     pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};
     #[cfg(feature = "objects")]
     pub use crate::{
-        DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle, OutlineGroup, OutlineKinds,
-        OutlineStyle, SelectionOutline, XRayOutline,
+        DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle, ObjectScreen, OutlineGroup,
+        OutlineKinds, OutlineStyle, SelectionOutline, XRayOutline,
     };
 }

@@ -8,7 +8,7 @@ use bevy::{
 };
 
 use super::{Effect, EffectType, Extent, Needs, Variants, ViewFacts};
-use crate::lines::LineSettings;
+use crate::lines::{LineFocus, LineSettings};
 
 /// An [`Effect`] whose type is known only at run time. Every effect implements it;
 /// lists of effects and tools use it.
@@ -47,6 +47,12 @@ pub trait AnyEffect: Any + Send + Sync + std::fmt::Debug {
     fn any_variants(&self, view: &ViewFacts, variants: &mut Variants);
     /// As [`Effect::extent`].
     fn any_extent(&self, view: &ViewFacts) -> Extent;
+    /// As [`Effect::line_focus`].
+    fn any_line_focus(&self, view: &ViewFacts) -> Option<LineFocus>;
+
+    /// As [`Effect::prints`].
+    fn any_prints(&self) -> bool;
+
     /// As [`Effect::line_reach`].
     fn any_line_reach(&self, view: &ViewFacts) -> Option<f32>;
     /// As [`Effect::report_name`].
@@ -125,6 +131,14 @@ impl<E: Effect> AnyEffect for E {
 
     fn any_extent(&self, view: &ViewFacts) -> Extent {
         self.extent(view)
+    }
+
+    fn any_line_focus(&self, view: &ViewFacts) -> Option<LineFocus> {
+        self.line_focus(view)
+    }
+
+    fn any_prints(&self) -> bool {
+        self.prints()
     }
 
     fn any_line_reach(&self, view: &ViewFacts) -> Option<f32> {

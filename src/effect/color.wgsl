@@ -128,6 +128,7 @@ fn oklab_to_linear(lab: vec3<f32>) -> vec3<f32> {
 // the darkness that all three share which is printed in black.
 fn separated(c: vec3<f32>, black: f32) -> vec4<f32> {
     let light = 1.0 - black * (1.0 - largest(c));
-    let inks = 1.0 - min(c / max(light, 1e-6), vec3(1.0));
+    let per_light = 1.0 / max(light, 1e-6);
+    let inks = 1.0 - min(c * per_light, vec3(1.0));
     return vec4(select(inks, vec3(0.0), light <= 1e-6), 1.0 - light);
 }

@@ -11,7 +11,7 @@ const RECIPE: &str = include_str!("fused.wgsl");
 pub(crate) const FILE_KEYS: [&str; 4] = ["version", "name", "partial", "depth_map"];
 
 /// The modules of this crate that an effect may import.
-const MODULES: [&str; 16] = [
+const MODULES: [&str; 17] = [
     "bevy_comics::depth::map",
     "bevy_comics::depth::normal",
     "bevy_comics::depth::raw",
@@ -24,6 +24,7 @@ const MODULES: [&str; 16] = [
     "bevy_comics::effect::picture",
     "bevy_comics::effect::pixel",
     "bevy_comics::effect::screen",
+    "bevy_comics::effect::similarity",
     "bevy_comics::lines::edge",
     "bevy_comics::lines::read",
     "bevy_comics::lines::surface",
@@ -31,7 +32,7 @@ const MODULES: [&str; 16] = [
 ];
 
 /// Shader definitions of the fused pass that do not name an effect, in lower case.
-const DEFINITIONS: [&str; 27] = [
+const DEFINITIONS: [&str; 28] = [
     "depth",
     "map",
     "map_flags",
@@ -42,6 +43,7 @@ const DEFINITIONS: [&str; 27] = [
     "normals",
     "object_ids",
     "object_styles",
+    "object_anchors",
     "lines",
     "lines_anywhere",
     "surface_lines",

@@ -22,6 +22,10 @@ pub struct ViewFacts {
     pub scale_factor: f32,
     /// World position from normalized device coordinates and the texel of the depth texture.
     pub world_from_clip: Mat4,
+    /// Clip space from world space.
+    pub clip_from_world: Mat4,
+    /// Number of [`CameraCut`](crate::CameraCut)s of the camera so far.
+    pub cuts: u32,
     /// Seconds of the app's default clock ([`Time`](bevy::time::Time)).
     pub seconds: f64,
     /// Where the object that effects point at ([`EffectTarget`](crate::EffectTarget)) is in
@@ -52,6 +56,8 @@ impl Default for ViewFacts {
             target_size: UVec2::new(1280, 720),
             scale_factor: 1.0,
             world_from_clip: Mat4::IDENTITY,
+            clip_from_world: Mat4::IDENTITY,
+            cuts: 0,
             seconds: 0.0,
             target: None,
             target_depth: None,
@@ -80,6 +86,8 @@ impl ViewFacts {
             target_size: camera.physical_target_size.unwrap_or(viewport.zw()),
             scale_factor: view.scale_factor,
             world_from_clip: world_from_clip(view, extracted),
+            clip_from_world,
+            cuts: view.cuts,
             seconds: view.time,
             target: target.map(|(place, _)| place),
             target_depth: target.map(|(_, depth)| depth).filter(|d| d.is_finite()),

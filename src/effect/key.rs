@@ -154,7 +154,9 @@ impl StylizeKey {
             visible_range: plan.draws_with_range(),
             lines,
             surface: lines && plan.lines.is_some_and(|lines| lines.color.is_surface()),
-            object_styles: (lines && plan.object_styles) || plan.unstyled,
+            object_styles: (lines && plan.object_styles)
+                || plan.unstyled
+                || needs.contains(Needs::OBJECT_ANCHORS),
             unstyled_colors: plan.unstyled,
             unstyled_print: plan.unstyled,
             view: plan.view,
@@ -303,6 +305,7 @@ impl StylizeKey {
             (needs.contains(Needs::LINES_ANYWHERE), "LINES_ANYWHERE"),
             (self.surface && self.part != Part::Base, "SURFACE_LINES"),
             (self.object_styles, "OBJECT_STYLES"),
+            (needs.contains(Needs::OBJECT_ANCHORS), "OBJECT_ANCHORS"),
             (self.unstyled_colors || self.unstyled_print, "UNSTYLED"),
             (self.unstyled_colors, "UNSTYLED_COLORS"),
             (self.unstyled_print, "UNSTYLED_PRINT"),

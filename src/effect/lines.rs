@@ -5,7 +5,9 @@ use bevy::math::Vec4Swizzles;
 use super::{Extent, Needs, Plan, ViewFacts, ViewPlan, requests::Scene};
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
-    lines::{LineSettings, LineWeight, MapJumps, MemoryRequest, request::LineRequest},
+    lines::{
+        LineFocusUniform, LineSettings, LineWeight, MapJumps, MemoryRequest, request::LineRequest,
+    },
     objects::Pressure,
 };
 
@@ -75,6 +77,7 @@ pub(super) fn line_request(
             let fog = view.fog.unwrap_or_default();
             fog.uniform(&view.projection, &view.clip_from_view)
         }),
+        focus: line_focus(plan, facts),
         depth_size,
         samples,
         size: scene.viewport.zw(),
@@ -95,6 +98,12 @@ pub(super) fn line_request(
         jumps,
         map_flags: uniform.depth.flags,
     })
+}
+
+/// What lines are in focus, if an effect says so.
+fn line_focus(plan: &Plan, facts: &ViewFacts) -> Option<LineFocusUniform> {
+    let focus = plan.drawn().find_map(|e| e.any_line_focus(facts))?;
+    Some(focus.uniform(facts.depth_axis, facts.depth_reference))
 }
 
 /// Whether the engine's motion vectors can be read.

@@ -105,6 +105,7 @@ fn request(
         cuts: view.cuts,
         motion: false,
         fog: None,
+        focus: None,
         depth_size,
         samples,
         size: scene.viewport.zw(),

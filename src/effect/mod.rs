@@ -47,7 +47,7 @@ pub(crate) use {choose::ViewPlan, plan::Plan};
 
 use crate::{
     diagnostics::ComicsStage,
-    lines::{LineSettings, MapJumps},
+    lines::{LineFocus, LineSettings, MapJumps},
 };
 
 /// A camera component that changes the picture: one WGSL function of a pixel, and
@@ -167,6 +167,20 @@ pub trait Effect:
     fn line_reach(&self, view: &ViewFacts) -> Option<f32> {
         let _ = view;
         None
+    }
+
+    /// The distance at which lines are in focus; farther from it they fade. If several effects
+    /// of a camera have one, that of the first in the chain is used. Lines of the faithful forms do
+    /// not fade, and none without compute shaders. Default: none.
+    fn line_focus(&self, view: &ViewFacts) -> Option<LineFocus> {
+        let _ = view;
+        None
+    }
+
+    /// Whether the view is styled after FXAA and SMAA, because the effect draws dots that these
+    /// would smear. Default: for effects of the stage [`EffectStage::Print`].
+    fn prints(&self) -> bool {
+        Self::STAGE == EffectStage::Print
     }
 
     /// Packs the settings for the shader.
@@ -326,6 +340,11 @@ bitflags! {
         /// draw them, to two textures of the viewport's size with 16 bytes a pixel. The WGSL
         /// says how large the boxes are, see [`Effect::HALF_BOX`].
         const MEANS = 1 << 9;
+        /// Where the object at a pixel is, by `load_object` and `style_of` of
+        /// `bevy_comics::objects`, if it has an [`ObjectScreen`](crate::ObjectScreen). Includes
+        /// [`Needs::IDS`] while some object has one; otherwise it asks for nothing, and
+        /// `OBJECT_ANCHORS` is not defined in WGSL.
+        const OBJECT_ANCHORS = 1 << 10;
     }
 }
 

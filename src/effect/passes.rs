@@ -91,8 +91,7 @@ impl DebugView {
 impl Plan {
     /// Whether the colours are printed: the view is then styled after FXAA and SMAA.
     pub(super) fn prints(&self) -> bool {
-        self.drawn()
-            .any(|effect| effect.effect_type().stage == EffectStage::Print)
+        self.drawn().any(AnyEffect::any_prints)
     }
 }
 

@@ -50,6 +50,8 @@ pub(crate) struct Plan {
     pub vertex_widths: bool,
     /// The colour effects leave some object alone.
     pub unstyled: bool,
+    /// Screens follow some object.
+    pub anchored: bool,
     /// Some object is outlined by itself.
     pub marks: bool,
     /// Lines fade into the camera's distance fog.
@@ -82,6 +84,7 @@ impl Plan {
             sections: objects.sections,
             vertex_widths: objects.widths,
             unstyled: objects.unstyled,
+            anchored: objects.anchored,
             marks: objects.marks,
             fog: has_fog(camera),
             readback: camera.contains::<VisibleDepthRange>(),
@@ -315,7 +318,12 @@ impl Plan {
         } else {
             needs
         };
-        let needs = if self.unstyled {
+        let needs = if self.anchored {
+            needs
+        } else {
+            needs - Needs::OBJECT_ANCHORS
+        };
+        let needs = if self.unstyled || needs.contains(Needs::OBJECT_ANCHORS) {
             needs | Needs::IDS
         } else {
             needs

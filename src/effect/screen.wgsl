@@ -29,15 +29,22 @@ fn sin_turn(x: f32) -> f32 {
     return cos_turn(x - 0.25);
 }
 
-// Radius in pixels of the discs of a tone. An edge that is drawn as a ramp of one pixel
-// has pi / 12 square pixels more than the disc: its variance. Touching discs: fitted.
+// Radius in pixels of discs of a tone that do not touch. An edge that is drawn as a ramp of one
+// pixel has pi / 12 square pixels more than the disc: its variance. Where the ramps from all sides
+// meet, the radius is cbrt(3 x^2) - 1/2; the polynomial is within 0.0007 pixels of it.
+fn free_radius(tone: f32, period: f32) -> f32 {
+    let x = period * sqrt(tone * (1.0 / PI));
+    let cone = -0.38683931 + x * (2.19049104 + x * (-1.63882075 + x * 0.87661645));
+    return select(cone, sqrt(max(x * x - 1.0 / 12.0, 0.0)), x >= 0.57735027);
+}
+
+// Radius in pixels of the discs of a tone. Touching discs: fitted.
 fn disc_radius(tone: f32, period: f32) -> f32 {
     if tone > TOUCH {
         let root = sqrt((1.0 - tone) / (1.0 - TOUCH));
         return period * (0.70710678 - root * (0.2471 - 0.04 * root));
     }
-    let square = tone * period * period / PI;
-    return select(cube_root(3.0 * square) - 0.5, sqrt(max(square - 1.0 / 12.0, 0.0)), square >= 1.0 / 3.0);
+    return free_radius(tone, period);
 }
 
 // A disc and the three next to the pixel. Edges that face each other add up; where discs
@@ -56,25 +63,33 @@ fn disc(at: vec2<f32>, tone: f32, period: f32) -> f32 {
     return mix(sum, largest, 0.31 * overlap);
 }
 
-// Dots that grow into a chequerboard and leave holes: a threshold of a sum of cosines.
-fn checker(at: vec2<f32>, tone: f32, period: f32) -> f32 {
-    let height = 0.5 * (cos_turn(at.x) + cos_turn(at.y));
+// Dots that grow into a chequerboard and leave holes: a threshold of a sum of cosines. `offset`:
+// from the middle of the cell, in cells, 0 to 1/2.
+fn checker(offset: vec2<f32>, tone: f32, period: f32) -> f32 {
+    let waves = vec2(cos_turn(offset.x), cos_turn(offset.y));
+    let height = 0.5 * (waves.x + waves.y);
+    let per_pixel = PI / period;
     // The ramp at the edge of a dot adds to it, that of a hole takes from the rest.
-    let curved = clamp((0.5 - tone) / 0.15, -1.0, 1.0);
-    let x = 1.0 - 2.0 * (tone - curved * PI / (12.0 * period * period));
+    let curved = clamp((0.5 - tone) * (1.0 / 0.15), -1.0, 1.0);
+    let x = 1.0 - 2.0 * tone + curved * per_pixel * per_pixel * (1.0 / (6.0 * PI));
     let threshold = x * (0.40 + 0.65 * abs(x) - 0.05 * x * x);
-    let slope = PI / period * max(length(vec2(sin_turn(at.x), sin_turn(at.y))), 0.5);
+    // The length of the sines.
+    let slope = per_pixel * sqrt(max(2.0 - dot(waves, waves), 0.25));
     return clamp(0.5 + (height - threshold) / slope, 0.0, 1.0);
 }
 
 // Discs in the lights, a chequerboard in the middle, round holes in the shadows
-// (Ostromoukhov and Hersch 1995 call it Euclidean).
+// (Ostromoukhov and Hersch 1995 call it Euclidean). Discs and holes are those of tones up to 0.3:
+// only the nearest one reaches a pixel, from a period of 2.7 pixels on.
 fn euclidean(at: vec2<f32>, tone: f32, period: f32) -> f32 {
-    let middle = checker(at, tone, period);
+    let offset = abs(at - round(at));
+    let middle = checker(offset, tone, period);
     let dark = tone > 0.5;
-    let round_part = disc(select(at, at + 0.5, dark), select(tone, 1.0 - tone, dark), period);
+    let away = length(select(offset, 0.5 - offset, dark)) * period;
+    let radius = free_radius(select(tone, 1.0 - tone, dark), period);
+    let round_part = clamp(radius + 0.5 - away, 0.0, 1.0);
     let ends = select(round_part, 1.0 - round_part, dark);
-    return mix(ends, middle, clamp((0.35 - abs(tone - 0.5)) / 0.15, 0.0, 1.0));
+    return mix(ends, middle, clamp((0.35 - abs(tone - 0.5)) * (1.0 / 0.15), 0.0, 1.0));
 }
 
 // The integral of lines of a tone, which begin at whole numbers.
@@ -132,6 +147,13 @@ fn cross_lines(at: vec2<f32>, tone: f32, footprint: f32) -> f32 {
 // Whether a grain of a threshold is printed, with a short ramp.
 fn grain_cover(tone: f32, threshold: f32) -> f32 {
     return clamp((tone - threshold) * 96.0 + 0.5, 0.0, 1.0);
+}
+
+// The coverage of a tone beyond LEAST, whose dots or holes are paler instead of smaller. `k`:
+// that of the tone at LEAST.
+fn paler(k: f32, tone: f32) -> f32 {
+    let dots = k * min(tone * (1.0 / LEAST), 1.0);
+    return 1.0 - (1.0 - dots) * min((1.0 - tone) * (1.0 / LEAST), 1.0);
 }
 
 // The tone with dot gain: dots grow most in the middle tones.

@@ -44,6 +44,7 @@ impl LineKey {
                 (weight.taper, "TAPER_WEIGHT"),
                 (weight.budget, "BUDGET"),
                 (weight.fog, "FOG"),
+                (weight.focus, "IN_FOCUS"),
             ]))
             .collect()
     }

@@ -113,6 +113,7 @@ impl LineKey {
         } else {
             WeightKey {
                 fog: request.fog.is_some(),
+                focus: request.focus.is_some(),
                 map: request.widths,
                 ..WeightKey::new(lines)
             }

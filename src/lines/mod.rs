@@ -12,6 +12,7 @@ mod completing;
 mod cracks;
 mod defs;
 mod draw;
+mod focus;
 mod fog;
 mod inputs;
 mod key;
@@ -53,6 +54,8 @@ use bevy::{
 
 pub use boil::LineBoil;
 pub use color::LineColor;
+pub use focus::LineFocus;
+pub(crate) use focus::LineFocusUniform;
 pub use fog::LineFog;
 pub(crate) use fog::{ViewFog, has_fog};
 pub(crate) use key::reach;
@@ -123,6 +126,7 @@ fn load_shaders(app: &mut App) {
     load_shader_library!(app, "surface.wgsl");
     load_shader_library!(app, "hidden.wgsl");
     load_shader_library!(app, "budget.wgsl");
+    load_shader_library!(app, "focus.wgsl");
     load_shader_library!(app, "fog.wgsl");
     load_shader_library!(app, "fold.wgsl");
     load_shader_library!(app, "pass.wgsl");

@@ -6,6 +6,7 @@
 #import bevy_comics::depth::view::View
 #import bevy_comics::lines::boil::Boil
 #import bevy_comics::lines::edge::{Grid, Lines}
+#import bevy_comics::lines::focus::LineFocus
 #import bevy_comics::lines::fog::Fog
 #import bevy_comics::lines::memory::Memory
 #import bevy_comics::lines::weight::Weight
@@ -16,6 +17,7 @@ struct LinePass {
     grid: Grid,
     weight: Weight,
     fog: Fog,
+    focus: LineFocus,
     boil: Boil,
     memory: Memory,
 }

@@ -18,6 +18,7 @@ use bevy::{
 
 use super::{
     boil::BoilUniform,
+    focus::LineFocusUniform,
     fog::FogUniform,
     key::{LINK_STEPS, LineKey, Search},
     memory::{MemoryKey, MemoryPipeline, MemoryRequest, MemoryUniform},
@@ -48,6 +49,8 @@ pub(crate) struct LineRequest {
     pub motion: bool,
     /// The fog that lines fade into.
     pub fog: Option<FogUniform>,
+    /// What lines are in focus.
+    pub focus: Option<LineFocusUniform>,
     /// Size in pixels of the depth texture, and its samples per pixel.
     pub depth_size: UVec2,
     pub samples: u32,
@@ -164,6 +167,7 @@ impl LineRequest {
             grid: self.grid(),
             weight: self.weight,
             fog: self.fog.unwrap_or_default(),
+            focus: self.focus.unwrap_or_default(),
             boil: self.boil,
             memory: (self.memory)
                 .map(|memory| memory.uniform(self.grid_reach(), is_new))
@@ -198,6 +202,7 @@ pub(crate) struct LinePassUniform {
     pub grid: Grid,
     pub weight: WeightUniform,
     pub fog: FogUniform,
+    pub focus: LineFocusUniform,
     pub boil: BoilUniform,
     pub memory: MemoryUniform,
 }

@@ -34,6 +34,9 @@
 #ifdef FOG
 #import bevy_comics::lines::fog::{fog_distance, fog_fraction}
 #endif
+#ifdef IN_FOCUS
+#import bevy_comics::lines::focus::line_sharpness
+#endif
 #ifdef LIGHT_WEIGHT
 #import bevy_comics::depth::normal::texel_normal
 #endif
@@ -253,7 +256,12 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let position = (at * 2.0 - 1.0) * vec2(1.0, -1.0);
     fog = fog_fraction(line_pass.fog, fog_distance(line_pass.fog, position, texel_depth(owner, 0)));
 #endif
-    return select(weighted_crack(packed, factor, 1.0 - fog), 0u, packed == 0u);
+    var sharp = 1.0;
+#ifdef IN_FOCUS
+    let middle = texel_depth(g.rect.xy + g.rect.zw / 2, 0);
+    sharp = line_sharpness(line_pass.focus, texel_depth(owner, 0), middle);
+#endif
+    return select(weighted_crack(packed, factor * sharp, (1.0 - fog) * sharp), 0u, packed == 0u);
 }
 #endif
 

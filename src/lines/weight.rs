@@ -231,6 +231,8 @@ pub(crate) struct WeightKey {
     pub budget: bool,
     /// Lines fade into fog.
     pub fog: bool,
+    /// Lines fade out of focus.
+    pub focus: bool,
 }
 
 impl WeightKey {
@@ -247,12 +249,13 @@ impl WeightKey {
             map: false,
             budget: lines.budget < 1.0,
             fog: false,
+            focus: false,
         }
     }
 
-    /// Whether any factor is not 1, those of the budget and of the fog included.
+    /// Whether any factor is not 1, those of the budget, the fog and the focus included.
     pub fn any(self) -> bool {
-        self.kinds || self.budget || self.fog || self.varies()
+        self.kinds || self.budget || self.fog || self.focus || self.varies()
     }
 
     /// Whether the width changes along a line. Where lines crowd, a shift of half a pixel

@@ -12,9 +12,13 @@ use bevy::{
         system::{Query, ResMut},
     },
     reflect::{Reflect, std_traits::ReflectDefault},
+    transform::components::GlobalTransform,
 };
 
-use super::table::{ObjectStyleUniform, ObjectStyles, UNSTYLED};
+use super::{
+    anchors::{ObjectScreen, anchors},
+    table::{ObjectStyleUniform, ObjectStyles, UNSTYLED},
+};
 use crate::settings::{bounded_option, displayable, linear_rgb};
 
 /// Removes the [`Outlines`](crate::Outlines) of this object.
@@ -136,6 +140,7 @@ impl OutlineStyle {
             half_width: style.width.map_or(-1.0, |w| 0.5 * w),
             kinds: u32::from(silhouettes) | u32::from(creases) << 1 | u32::from(objects) << 2,
             opacity: style.opacity.unwrap_or(1.0),
+            ..Default::default()
         }
     }
 }
@@ -169,10 +174,12 @@ type Drawn = Or<(With<OutlineStyle>, With<NoOutlines>)>;
 pub(crate) fn assign_object_styles(
     outlined: Query<(Entity, Option<&OutlineStyle>, Option<&NoOutlines>), Drawn>,
     unstyled: Query<(Entity, &NoStyle)>,
+    anchored: Query<(Entity, &ObjectScreen, &GlobalTransform)>,
     children: Query<&Children>,
     mut styles: ResMut<ObjectStyles>,
 ) {
-    if outlined.is_empty() && unstyled.is_empty() && !styles.any() {
+    let unused = outlined.is_empty() && unstyled.is_empty() && anchored.is_empty();
+    if unused && !styles.any() {
         return;
     }
     let mut outlines: EntityHashMap<ObjectStyleUniform> = EntityHashMap::default();
@@ -202,21 +209,14 @@ pub(crate) fn assign_object_styles(
         widths: styles.widths,
         ..Default::default()
     };
-    for (entity, uniform) in &outlines {
-        let kinds = uniform.kinds
-            | if bare.contains_key(entity) {
-                UNSTYLED
-            } else {
-                0
-            };
-        let slot = table.slot(ObjectStyleUniform { kinds, ..*uniform });
-        table.slots.insert(*entity, slot);
+    for entity in bare.keys() {
+        outlines.entry(*entity).or_default().kinds |= UNSTYLED;
     }
-    for entity in bare.keys().filter(|entity| !outlines.contains_key(*entity)) {
-        let slot = table.slot(ObjectStyleUniform {
-            kinds: ObjectStyleUniform::default().kinds | UNSTYLED,
-            ..Default::default()
-        });
+    for (entity, anchor) in anchors(&anchored, &children) {
+        anchor.put(outlines.entry(entity).or_default());
+    }
+    for (entity, uniform) in &outlines {
+        let slot = table.slot(*uniform);
         table.slots.insert(*entity, slot);
     }
     styles.set_if_neq(table);

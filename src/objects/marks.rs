@@ -115,6 +115,7 @@ fn line_style((color, width, opacity): (Color, f32, f32), kinds: u32) -> ObjectS
         half_width: 0.5 * width,
         kinds,
         opacity,
+        ..Default::default()
     }
 }
 

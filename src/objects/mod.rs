@@ -3,6 +3,8 @@
 //! meshes that take part in lines and effects.
 
 #[cfg(feature = "objects")]
+mod anchors;
+#[cfg(feature = "objects")]
 mod draw;
 #[cfg(feature = "objects")]
 mod groups;
@@ -27,6 +29,8 @@ mod widths;
 
 #[cfg(feature = "objects")]
 mod components;
+#[cfg(feature = "objects")]
+pub use anchors::ObjectScreen;
 #[cfg(feature = "objects")]
 pub use components::{NoOutlines, NoStyle, OutlineKinds, OutlineStyle};
 #[cfg(feature = "objects")]
@@ -201,6 +205,7 @@ impl Plugin for ObjectsPlugin {
             app.register_type::<OutlineStyle>()
                 .register_type::<NoOutlines>()
                 .register_type::<NoStyle>()
+                .register_type::<ObjectScreen>()
                 .register_type::<LineWidths>()
                 .init_resource::<line_widths::WideMeshes>()
                 .add_systems(
@@ -209,7 +214,8 @@ impl Plugin for ObjectsPlugin {
                         components::assign_object_styles,
                         line_widths::find_wide_meshes,
                     )
-                        .chain(),
+                        .chain()
+                        .after(bevy::transform::TransformSystems::Propagate),
                 );
             marks::build(app);
             groups::build(app);

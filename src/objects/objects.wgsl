@@ -21,6 +21,12 @@ struct ObjectStyle {
     kinds: u32,
     // Factor of the opacity of all lines.
     opacity: f32,
+    // World units per unit of an object that screens follow, 0: they do not; its centre and
+    // rotation (a quaternion) in world space.
+    anchor_size: f32,
+    anchor_centre: vec3<f32>,
+    unused: f32,
+    anchor_rotation: vec4<f32>,
 }
 
 #ifdef OBJECT_STYLES

@@ -2,7 +2,7 @@
 
 use bevy::{
     ecs::{entity::EntityHashMap, resource::Resource},
-    math::Vec3,
+    math::{Vec3, Vec4},
     render::{
         render_resource::{Buffer, ShaderType, StorageBuffer},
         renderer::{RenderDevice, RenderQueue},
@@ -17,6 +17,13 @@ pub(crate) struct ObjectStyleUniform {
     pub half_width: f32,
     pub kinds: u32,
     pub opacity: f32,
+    /// World units per unit of an object that screens follow; 0: they do not.
+    pub anchor_size: f32,
+    /// Its centre in world space.
+    pub anchor_centre: Vec3,
+    pub unused: f32,
+    /// Its rotation, a unit quaternion.
+    pub anchor_rotation: Vec4,
 }
 
 impl Default for ObjectStyleUniform {
@@ -27,6 +34,10 @@ impl Default for ObjectStyleUniform {
             half_width: -1.0,
             kinds: 7,
             opacity: 1.0,
+            anchor_size: 0.0,
+            anchor_centre: Vec3::ZERO,
+            unused: 0.0,
+            anchor_rotation: Vec4::W,
         }
     }
 }
@@ -79,6 +90,8 @@ pub(crate) struct ObjectChanges {
     pub unstyled: bool,
     /// Some object has a `SelectionOutline` or `XRayOutline`.
     pub marks: bool,
+    /// Screens follow some object.
+    pub anchored: bool,
 }
 
 impl ObjectStyles {
@@ -97,6 +110,7 @@ impl ObjectStyles {
             widths: self.widths,
             unstyled,
             marks: self.marks,
+            anchored: self.entries.iter().any(|e| e.anchor_size > 0.0),
         }
     }
 

@@ -106,6 +106,8 @@ presets! {
     TWILIGHT_TOON: "twilight-toon";
     /// Loose ink over a wash of the scene's own colours.
     WATERCOLOR: "watercolor";
+    /// Flat patches of opaque colour on rough paper, soft lines in the colours that they surround.
+    GOUACHE: "gouache";
     /// Three flat tones with an outline.
     CLEAR_BANDS: "clear-bands";
     /// Brown-grey bands, outlines and dark corners.

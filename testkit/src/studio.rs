@@ -7,9 +7,9 @@ use bevy::{
     prelude::*, render::view::Msaa, time::TimeUpdateStrategy,
 };
 use bevy_comics::{
-    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, Focus, FocusAt, IsoLines, MeshSections,
-    Outlines, Paint, PaintForm, Paper, Preset, SpeedLineKind, SpeedLines, ToneBands, TwoTone,
-    presets,
+    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, Focus, FocusAt, FocusStyle, IsoLines,
+    MeshSections, Outlines, Paint, PaintForm, Paper, Preset, SpeedLineKind, SpeedLines, ToneBands,
+    TwoTone, presets,
 };
 
 use super::{
@@ -134,8 +134,9 @@ const LINE_PRESETS: [Preset; 12] = [
     presets::SILENT_FILM,
 ];
 
-/// The presets that print.
-const PRINT_PRESETS: [Preset; 5] = [
+/// The presets that print, and the one that paints.
+const PAGE_PRESETS: [Preset; 6] = [
+    presets::GOUACHE,
     presets::MANGA_PAGE,
     presets::NEWSPRINT,
     presets::POP_POSTER,
@@ -143,7 +144,8 @@ const PRINT_PRESETS: [Preset; 5] = [
     presets::RISOGRAPH,
 ];
 
-/// The presets that have a golden picture in a scene: all those that print. The mountains show those after the
+/// The presets that have a golden picture in a scene: all those that print
+/// or paint. The mountains show those after the
 /// first paper, the theatre those after the second, the teapot all of them, and the
 /// village those after the first and `graphic-novel`.
 pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
@@ -157,7 +159,7 @@ pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
         BuiltIn::Mountains => {}
     }
     // After the others: sketches change with the clock.
-    shown.extend(PRINT_PRESETS);
+    shown.extend(PAGE_PRESETS);
     shown.into_iter().map(Preset::name).collect()
 }
 
@@ -198,10 +200,21 @@ fn single_effects(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
                 at: FocusAt::Centre,
                 ..Focus::default()
             };
-            let focused = style.clone().with(focus).with(Outlines::default());
+            let focused = |look| {
+                let focus = Focus {
+                    style: look,
+                    ..focus
+                };
+                style.clone().with(focus).with(Outlines::default())
+            };
             vec![
-                ("speed-lines", style.with(SpeedLines { kind, ..lines })),
-                ("focus", focused),
+                (
+                    "speed-lines",
+                    style.clone().with(SpeedLines { kind, ..lines }),
+                ),
+                ("focus", focused(FocusStyle::Blur)),
+                ("focus-dots", focused(FocusStyle::Dots)),
+                ("focus-lines", focused(FocusStyle::Lines)),
             ]
         }
         BuiltIn::Village => {

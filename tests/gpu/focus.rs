@@ -24,10 +24,15 @@ use crate::{
     walls::{towards_the_sky, unit_per_pixel},
 };
 
-const STYLES: [FocusStyle; 3] = [FocusStyle::Blur, FocusStyle::Offset, FocusStyle::Paint];
+const STYLES: [FocusStyle; 4] = [
+    FocusStyle::Blur,
+    FocusStyle::Offset,
+    FocusStyle::Paint,
+    FocusStyle::Dots,
+];
 const CODE: f64 = 1.0 / 255.0;
 
-fn at(distance: f32, style: FocusStyle) -> Focus {
+pub fn at(distance: f32, style: FocusStyle) -> Focus {
     Focus {
         at: FocusAt::Distance,
         style,
@@ -161,14 +166,14 @@ fn a_transparent_background_stays() {
     }
 }
 
-fn shot(small: &mut Small, style: &ComicStyle) -> image::RgbaImage {
+pub fn shot(small: &mut Small, style: &ComicStyle) -> image::RgbaImage {
     small.style(style);
     small.settle();
     small.picture()
 }
 
 /// A red figure before stripes of blue and green.
-fn figure(small: &mut Small, near: f32, far: f32) {
+pub fn figure(small: &mut Small, near: f32, far: f32) {
     small.clear();
     small.insert((Transform::IDENTITY, Projection::default()));
     let scale = |distance: f32| distance * (std::f32::consts::PI / 8.0).tan();
@@ -380,6 +385,7 @@ fn extreme_values_are_finite() {
                 clear: if x.is_nan() { x } else { 0.0 },
                 ramp: x,
                 radius: x,
+                period: x,
             };
             for at in [FocusAt::Centre, FocusAt::Distance] {
                 small

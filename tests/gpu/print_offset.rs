@@ -2,9 +2,11 @@
 
 use bevy::{camera::Viewport, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    ComicStyle, ComicsStage, DebugView, Desaturation, Halftone, Outlines, PrintOffset,
+    CameraCut, ComicStyle, ComicsStage, DebugView, Desaturation, Halftone, Outlines, PrintOffset,
     ScreenSampling, SplitView, ToneBands,
 };
+
+use bevy_comics_testkit::reference::print_offset::strays;
 
 use crate::{
     halftone::covered,
@@ -22,6 +24,8 @@ const STILL: PrintOffset = PrintOffset {
     black_x: 0.0,
     black_y: 0.0,
     black_generation: 0.7,
+    drift: 0.0,
+    rate: 0.0,
     amount: 1.0,
 };
 
@@ -133,6 +137,11 @@ fn every_pixel_is_its_twins() {
     assert_pass_is_its_twin(&mut small, &style, None, "whole");
     let screened = style.clone().with(Halftone::default());
     assert_pass_is_its_twin(&mut small, &screened, None, "screened");
+    let strayed = style.clone().with(PrintOffset {
+        drift: 3.0,
+        ..default()
+    });
+    assert_pass_is_its_twin(&mut small, &strayed, None, "strayed");
     let viewport = [11, 5, 43, 30];
     let entity = small.camera;
     let mut camera = small.world().get_mut::<Camera>(entity).expect("a camera");
@@ -207,4 +216,62 @@ fn comparisons_and_debug_views_see_through_the_passes() {
         assert_eq!(one, two, "{view:?}");
     }
     assert_eq!(small.errors(), 0);
+}
+
+/// A page lasts until a cut, or for one drawing; the plates of each lie in places of their own.
+#[test]
+fn plates_drift_from_page_to_page() {
+    let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
+    let pages = |small: &mut Small, rate: f32| {
+        let s = PrintOffset {
+            drift: 4.0,
+            rate,
+            ..STILL
+        };
+        let mut film = vec![shot(small, &ComicStyle::new().with(s))];
+        for _ in 0..60 {
+            small.headless.step(1);
+            film.push(small.picture());
+        }
+        film.chunk_by(|a, b| a == b).count()
+    };
+    assert_eq!(pages(&mut small, 0.0), 1);
+    assert_eq!(pages(&mut small, 12.0), 13);
+    let strayed = ComicStyle::new().with(PrintOffset {
+        drift: 4.0,
+        ..STILL
+    });
+    let before = shot(&mut small, &strayed);
+    let camera = small.camera;
+    small.world().trigger(CameraCut { entity: camera });
+    small.settle();
+    assert_ne!(small.picture(), before);
+    assert_eq!(small.errors(), 0);
+}
+
+/// Every axis of every plate strays by up to the drift to either side, evenly, and on its own.
+#[test]
+fn plates_stray_evenly() {
+    let pages = 4000;
+    let mut sums = [[0.0; 6]; 6];
+    let mut most: f64 = 0.0;
+    for page in 0..pages {
+        let strays = strays(page / 50, page % 50);
+        let axes: Vec<f64> = strays.into_iter().flatten().collect();
+        for (i, a) in axes.iter().enumerate() {
+            most = most.max(a.abs());
+            for (j, b) in axes.iter().enumerate() {
+                sums[i][j] += a * b / f64::from(pages);
+            }
+        }
+    }
+    assert!((0.99..=1.0).contains(&most), "{most}");
+    for (i, row) in sums.iter().enumerate() {
+        for (j, found) in row.iter().enumerate() {
+            // The square of an even number from -1 to 1 is 1/3 in the mean. Means of 4000
+            // products deviate by 0.3 / 63.
+            let want = if i == j { 1.0 / 3.0 } else { 0.0 };
+            assert!((found - want).abs() < 0.025, "{i}, {j}: {found}");
+        }
+    }
 }

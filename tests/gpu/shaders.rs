@@ -105,6 +105,16 @@ fn picture_effects() -> [Modes; 6] {
                 .concat(),
                 // Cells are read in a pass of their own.
                 vec![Vec::new(), flags(&["HALFTONE_CELLS", "CONTINUED"])],
+                vec![
+                    Vec::new(),
+                    flags(&["HALFTONE_FOLLOWS"]),
+                    [
+                        flags(&["HALFTONE_FOLLOWS", "OBJECT_ANCHORS"]),
+                        flags(&["OBJECT_IDS", "OBJECT_STYLES"]),
+                        vec![("HALFTONE_ADJUSTED", Some(0))],
+                    ]
+                    .concat(),
+                ],
             ]),
         ),
         (
@@ -369,6 +379,7 @@ fn every_pass_of_a_divided_plan_composes_and_validates() {
     let effects = [
         vec![],
         flags(&["PRINT_OFFSET"]),
+        flags(&["PRINT_OFFSET", "PRINT_OFFSET_BLACK_STAYS"]),
         flags(&["PRINT_OFFSET", "WITHOUT_PRINT_OFFSET", "TONE_BANDS"]),
         flags(&["HALFTONE", "HALFTONE_CELLS", "LINES", "OUTLINES"]),
         flags(&["OUTLINES", "LINES", "SURFACE_LINES", "PRINT_OFFSET"]),
@@ -377,6 +388,8 @@ fn every_pass_of_a_divided_plan_composes_and_validates() {
         flags(&["PAINT", "PAINT_ANISOTROPIC", "PAINT_FIGURES"]),
         focus(0),
         focus(1),
+        focus(3),
+        focus(4),
         [focus(2), flags(&["MEANS", "MULTISAMPLED"])].concat(),
         [
             focus(2),

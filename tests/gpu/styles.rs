@@ -213,7 +213,11 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Pai
                 ScreenShape::Stochastic,
             ][kind],
             sampling: [ScreenSampling::Pixel, ScreenSampling::Cell][kind % 2],
-            anchor: [ScreenAnchor::View, ScreenAnchor::Window][kind % 2],
+            anchor: [
+                ScreenAnchor::View,
+                ScreenAnchor::Window,
+                ScreenAnchor::Object,
+            ][kind % 3],
             period,
             gain: fraction,
             near: fraction,
@@ -226,6 +230,8 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Pai
     );
     let offset = (number(), number()).prop_map(|(cyan_x, amount)| PrintOffset {
         cyan_x,
+        drift: cyan_x,
+        rate: amount,
         amount,
         ..default()
     });
@@ -240,19 +246,23 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Pai
         figures: fine,
         ..default()
     });
-    let focus = (number(), number(), any::<bool>()).prop_map(|(distance, radius, centre)| Focus {
-        at: if centre {
+    let looks = vec![
+        FocusStyle::Blur,
+        FocusStyle::Offset,
+        FocusStyle::Paint,
+        FocusStyle::Dots,
+        FocusStyle::Lines,
+    ];
+    let focus = (number(), number(), select(looks)).prop_map(|(distance, radius, style)| Focus {
+        at: if style == FocusStyle::Offset {
             FocusAt::Centre
         } else {
             FocusAt::Distance
         },
-        style: if centre {
-            FocusStyle::Offset
-        } else {
-            FocusStyle::Paint
-        },
+        style,
         distance,
         radius,
+        period: radius,
         ..default()
     });
     let painted = (option::of(paint), option::of(focus));

@@ -8,14 +8,17 @@
 #ifdef DEPTH
 #import bevy_comics::depth::view::{load_depth, sample_count}
 #endif
-#import bevy_comics::effect::color::finite_color
+#import bevy_comics::effect::color::{finite_color, separated}
 #import bevy_comics::effect::means::square
 #import bevy_comics::effect::picture::load_picture
 #import bevy_comics::effect::pixel::Pixel
+#import bevy_comics::effect::screen::{LEAST, euclidean, paler}
 #import bevy_comics::effects::paint::{Paint, box_paint}
 
 const OFFSET: u32 = 1u;
 const PAINTED: u32 = 2u;
+const DOTS: u32 = 3u;
+const LINES: u32 = 4u;
 // Distance of the sky.
 const SKY: f32 = 1e30;
 // Unit vector from the blue to the red plate.
@@ -34,6 +37,11 @@ struct Focus {
     radius: f32,
     // 1: the focus is at what the middle of the view shows.
     at_centre: u32,
+    // DOTS: where the screens begin in the render target, their period in physical pixels, and
+    // how much of them is seen where all is out of focus.
+    centre: vec2<f32>,
+    period: f32,
+    amount: f32,
 }
 
 // A constant where the pass defines it: see has() in map.wgsl.
@@ -155,10 +163,36 @@ fn focus_half_box(s: Focus, p: Pixel) -> f32 {
     return 0.5 * focus_of(s, vec2<i32>(p.position), focus_distance(s)).y;
 }
 
+// Coverage by a plate. `turn`: cosine and sine of its angle; `phase` in cells.
+fn dots(s: Focus, place: vec2<f32>, turn: vec2<f32>, phase: f32, tone: f32) -> f32 {
+    let at = vec2(dot(place, turn), dot(place, vec2(-turn.y, turn.x))) / s.period + phase;
+    return paler(euclidean(at, clamp(tone, LEAST, 1.0 - LEAST), s.period), tone);
+}
+
+// A colour in dots of four ideal inks, at the angles of Halftone. `amount`: how much of the dots
+// is seen; the rest is printed as plain tones, so that the mean stays.
+fn dotted(s: Focus, position: vec2<f32>, color: vec3<f32>, amount: f32) -> vec3<f32> {
+    let shown = clamp(color, vec3(0.0), vec3(1.0));
+    let tones = separated(shown, 0.7);
+    let place = position - s.centre;
+    let k = vec4(
+        dots(s, place, vec2(0.9659258, 0.2588190), 0.0, tones.x),
+        dots(s, place, vec2(0.2588190, 0.9659258), 0.0, tones.y),
+        dots(s, place, vec2(1.0, 0.0), 0.0, tones.z),
+        dots(s, place, vec2(0.70710678, 0.70710678), 0.25, tones.w),
+    );
+    let plates = 1.0 - mix(tones, k, amount);
+    // Light above 1 stays.
+    return color - shown + plates.xyz * plates.w;
+}
+
 // The colour out of focus, not multiplied by the opacity. `own`: distance and radius.
 fn out_of_focus(s: Focus, p: Pixel, own: vec2<f32>, focus_at: f32) -> vec3<f32> {
     let pixel = vec2<i32>(p.position);
     let color = p.color / max(p.alpha, 1e-3);
+    if style_of(s) == DOTS {
+        return dotted(s, p.position, color, s.amount * own.y / max(s.radius, 1e-6));
+    }
     if style_of(s) == OFFSET {
         let by = own.y * DIAGONAL;
         let red = taken_at(s, p.position + by, own, focus_at, color);
@@ -175,6 +209,9 @@ fn out_of_focus(s: Focus, p: Pixel, own: vec2<f32>, focus_at: f32) -> vec3<f32> 
 
 fn focus(s: Focus, p: Pixel) -> Pixel {
     var out = p;
+    if style_of(s) == LINES {
+        return out;
+    }
     let focus_at = focus_distance(s);
     let own = focus_of(s, vec2<i32>(p.position), focus_at);
     if own.y > 0.0 && p.alpha > 0.0 {

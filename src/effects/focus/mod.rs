@@ -2,14 +2,15 @@
 
 use bevy::{
     ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec2,
+    math::{Vec2, Vec4Swizzles},
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
+    effect::{Effect, EffectShader, EffectStage, Extent, Needs, Variants, ViewFacts},
+    lines::LineFocus,
     settings::{FieldRange, bounded},
 };
 
@@ -46,9 +47,13 @@ pub struct Focus {
     #[reflect(@FieldRange::linear(0.05, 8.0))]
     pub ramp: f32,
     /// Largest radius in logical pixels. Range 0 (the effect is left out) to 24, default 6. At
-    /// most 128 physical pixels.
+    /// most 128 physical pixels. [`FocusStyle::Dots`] and [`FocusStyle::Lines`] have their whole
+    /// effect from 6 on.
     #[reflect(@FieldRange::linear(0.0, 24.0).unit("px"))]
     pub radius: f32,
+    /// Size of the cells of [`FocusStyle::Dots`] in logical pixels. Range 2.5 to 40, default 6.
+    #[reflect(@FieldRange::logarithmic(2.5, 40.0).unit("px"))]
+    pub period: f32,
 }
 
 /// What is in focus.
@@ -78,6 +83,13 @@ pub enum FocusStyle {
     Offset,
     /// Painted as by [`Paint`](crate::Paint), whose brush has the radius. Two more passes.
     Paint,
+    /// Printed in dots of four ideal inks, which keep the mean colour; between sharp and out of
+    /// focus, plain tones become dots. Reads no other pixels. The view is styled after FXAA and
+    /// SMAA. A [`Halftone`](crate::Halftone) of the camera prints over it.
+    Dots,
+    /// Only lines fade: they become thinner and fainter, down to nothing. Lines of the faithful
+    /// forms do not. Needs compute shaders.
+    Lines,
 }
 
 impl Default for Focus {
@@ -89,6 +101,7 @@ impl Default for Focus {
             clear: 0.15,
             ramp: 1.0,
             radius: 6.0,
+            period: 6.0,
         }
     }
 }
@@ -113,6 +126,7 @@ impl Effect for Focus {
             clear: bounded(self.clear, default.clear, 0.0, 4.0),
             ramp: bounded(self.ramp, default.ramp, 0.05, 8.0),
             radius: bounded(self.radius, default.radius, 0.0, 24.0),
+            period: bounded(self.period, default.period, 2.5, 40.0),
         }
     }
 
@@ -129,6 +143,8 @@ impl Effect for Focus {
         let picture = match self.style {
             FocusStyle::Paint => Needs::MEANS,
             FocusStyle::Blur | FocusStyle::Offset => Needs::PICTURE,
+            FocusStyle::Dots => Needs::empty(),
+            FocusStyle::Lines => return Needs::empty(),
         };
         picture | Needs::DEPTH
     }
@@ -137,21 +153,59 @@ impl Effect for Focus {
         variants.number("STYLE", self.style as u32);
     }
 
+    fn extent(&self, _: &ViewFacts) -> Extent {
+        match self.style {
+            // The lines are drawn by other effects.
+            FocusStyle::Lines => Extent::AtLines,
+            _ => Extent::Everywhere,
+        }
+    }
+
+    fn line_focus(&self, view: &ViewFacts) -> Option<LineFocus> {
+        (self.style == FocusStyle::Lines).then(|| LineFocus {
+            distance: self.focus_distance(view),
+            clear: self.clear,
+            ramp: self.ramp,
+            amount: self.whole(),
+        })
+    }
+
+    fn prints(&self) -> bool {
+        self.style == FocusStyle::Dots
+    }
+
     fn uniform(&self, view: &ViewFacts) -> FocusUniform {
-        let distance = match self.at {
-            FocusAt::Target => view.target_depth.unwrap_or(self.distance),
-            FocusAt::Distance => self.distance,
-            FocusAt::Centre => 0.0,
-        };
+        let period = self.period * view.scale_factor;
+        let shown = ((period - 1.5) / (2.5 - 1.5)).clamp(0.0, 1.0);
+        let middle = view.viewport.xy() + view.viewport.zw() / 2;
         FocusUniform {
             axis: view.depth_axis,
-            distance,
+            distance: self.focus_distance(view).unwrap_or(0.0),
             reference: view.depth_reference.unwrap_or(0.0),
             clear: self.clear,
             steepness: 1.0 / self.ramp,
             radius: (self.radius * view.scale_factor).min(128.0),
             at_centre: u32::from(self.at == FocusAt::Centre),
+            centre: middle.as_vec2() + 0.25,
+            period,
+            amount: self.whole() * shown * shown * (3.0 - 2.0 * shown),
         }
+    }
+}
+
+impl Focus {
+    /// Distance of the focus; `None` if it is at what the middle of the view shows.
+    fn focus_distance(&self, view: &ViewFacts) -> Option<f32> {
+        match self.at {
+            FocusAt::Target => Some(view.target_depth.unwrap_or(self.distance)),
+            FocusAt::Distance => Some(self.distance),
+            FocusAt::Centre => None,
+        }
+    }
+
+    /// How much of the dots is seen, and of the lines lost, where all is out of focus.
+    fn whole(&self) -> f32 {
+        (self.radius / 6.0).min(1.0)
     }
 }
 
@@ -165,4 +219,7 @@ pub struct FocusUniform {
     steepness: f32,
     radius: f32,
     at_centre: u32,
+    centre: Vec2,
+    period: f32,
+    amount: f32,
 }

@@ -6,10 +6,17 @@
 #import bevy_comics::effect::color::{lightness, luminance, separated}
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::effect::screen::{
-    LEAST, cross_lines, diamond, disc, euclidean, gained, grain_cover, line, tinted,
+    LEAST, cross_lines, diamond, disc, euclidean, gained, grain_cover, line, paler, tinted,
 }
 #ifdef HALFTONE_CELLS
 #import bevy_comics::effect::picture::picture_at
+#endif
+#ifdef HALFTONE_FOLLOWS
+#import bevy_comics::depth::view::view
+#import bevy_comics::effect::similarity::{Similarity, similarity_of}
+#endif
+#ifdef OBJECT_ANCHORS
+#import bevy_comics::objects::{load_object, style_of}
 #endif
 
 const MODE_CMYK: u32 = 0u;
@@ -57,6 +64,17 @@ struct Halftone {
     mode: u32,
     shape: u32,
     unused: u32,
+    // FOLLOWS: clip space from world space.
+    clip_from_world: mat4x4<f32>,
+}
+
+// Where the screens of a pixel lie.
+struct Screen {
+    // Where they begin: physical pixels in the render target.
+    centre: vec2<f32>,
+    // Cosine and sine of their turn, clockwise; and their size.
+    turn: vec2<f32>,
+    size: f32,
 }
 
 // The mode: compiled in by the fused pass, else that of the settings.
@@ -76,15 +94,33 @@ fn shape_of(s: Halftone) -> u32 {
 #endif
 }
 
+// Whether tones, levels or screens depend on more than the colour: compiled in, see `adjusts` in
+// mod.rs.
+fn adjusts(s: Halftone) -> bool {
+#ifdef HALFTONE_ADJUSTED
+    let adjusted = #{HALFTONE_ADJUSTED}u;
+    return adjusted == 1u;
+#else
+    return true;
+#endif
+}
+
 // A colour in linear light with its lightness stretched from shadows to highlights.
 fn stretched(s: Halftone, color: vec3<f32>) -> vec3<f32> {
     let c = clamp(color, vec3(0.0), vec3(1.0));
+    if !adjusts(s) {
+        return c;
+    }
     let level = clamp((sqrt(c) - s.shadows) * s.contrast, vec3(0.0), vec3(1.0));
     return select(level * level, c, s.shadows == 0.0 && s.contrast == 1.0);
 }
 
 fn printed_tone(s: Halftone, tone: f32) -> f32 {
-    return gained(tinted(clamp(tone, 0.0, 1.0), s.tints), s.gain);
+    let t = clamp(tone, 0.0, 1.0);
+    if !adjusts(s) {
+        return t;
+    }
+    return gained(tinted(t, s.tints), s.gain);
 }
 
 // Tones of the plates for a colour in linear light: cyan, magenta, yellow, black; in
@@ -132,19 +168,36 @@ fn stochastic(s: Halftone, place: vec2<f32>, tone: f32, plate: i32) -> f32 {
     return mix(upper, lower, f.y);
 }
 
+// The screens on the page.
+fn page_screen(s: Halftone) -> Screen {
+    return Screen(s.centre, vec2(1.0, 0.0), 1.0);
+}
+
+// Cosine and sine of the angle of a plate, divided by its period.
+fn plate_turn(s: Halftone, on: Screen, plate: i32) -> vec2<f32> {
+    let own = vec2(s.cosines[plate], s.sines[plate]);
+#ifdef HALFTONE_FOLLOWS
+    let t = on.turn / on.size;
+    return vec2(own.x * t.x - own.y * t.y, own.x * t.y + own.y * t.x);
+#else
+    return own;
+#endif
+}
+
 // Coverage of a pixel by a plate (0 cyan, 1 magenta, 2 yellow, 3 black). `place`: pixels
 // from where the screens begin.
-fn plate_cover(s: Halftone, place: vec2<f32>, plate: i32, tone: f32) -> f32 {
+fn plate_cover(s: Halftone, on: Screen, place: vec2<f32>, plate: i32, tone: f32) -> f32 {
     let t = clamp(tone, LEAST, 1.0 - LEAST);
-    let turn = vec2(s.cosines[plate], s.sines[plate]);
+    let turn = plate_turn(s, on, plate);
+    let period = s.period * on.size;
     let at = cell_at(place, turn, plate_phase(plate));
     let sides = abs(turn);
     let shape = shape_of(s);
     var k = 0.0;
     if shape == SHAPE_ROUND {
-        k = disc(at, t, s.period);
+        k = disc(at, t, period);
     } else if shape == SHAPE_EUCLIDEAN {
-        k = euclidean(at, t, s.period);
+        k = euclidean(at, t, period);
     } else if shape == SHAPE_LINE {
         k = line(at.x, t, sides.x + sides.y);
     } else if shape == SHAPE_DIAMOND {
@@ -154,11 +207,7 @@ fn plate_cover(s: Halftone, place: vec2<f32>, plate: i32, tone: f32) -> f32 {
     } else {
         k = stochastic(s, place, t, plate);
     }
-    // Paler instead of smaller.
-    if tone < LEAST {
-        return k * tone / LEAST;
-    }
-    return 1.0 - (1.0 - k) * min((1.0 - tone) / LEAST, 1.0);
+    return paler(k, tone);
 }
 
 // A quarter of a cell keeps black independent of the others: at 15, 75 and 45 degrees,
@@ -169,6 +218,9 @@ fn plate_phase(plate: i32) -> f32 {
 
 // Fraction of the screens at a pixel, 0 (plain tones) to 1.
 fn screen_amount(s: Halftone, color: vec3<f32>, depth: f32) -> f32 {
+    if !adjusts(s) {
+        return mix(s.near, s.far, depth);
+    }
     let shade = 1.0 - smoothstep(s.below, s.below + 0.1, lightness(color));
     return mix(s.near, s.far, depth) * shade;
 }
@@ -185,13 +237,14 @@ fn inked(s: Halftone, k: vec4<f32>) -> vec3<f32> {
 #ifdef HALFTONE_CELLS
 // The mean colour of four places in the cell of a plate that a pixel lies in; `own` where
 // the background shows through.
-fn cell_color(s: Halftone, position: vec2<f32>, own: vec3<f32>, plate: i32) -> vec3<f32> {
-    let turn = vec2(s.cosines[plate], s.sines[plate]);
-    let at = cell_at(position - s.centre, turn, plate_phase(plate));
+fn cell_color(s: Halftone, on: Screen, position: vec2<f32>, own: vec3<f32>, plate: i32) -> vec3<f32> {
+    let turn = plate_turn(s, on, plate);
+    let period = s.period * on.size;
+    let at = cell_at(position - on.centre, turn, plate_phase(plate));
     var sum = vec3(0.0);
     for (var i = 0; i < 4; i++) {
         let e = round(at) - at + 0.5 * vec2(f32(i & 1), f32(i >> 1u)) - 0.25;
-        let back = s.period * s.period * vec2(dot(e, vec2(turn.x, -turn.y)), dot(e, turn.yx));
+        let back = period * period * vec2(dot(e, vec2(turn.x, -turn.y)), dot(e, turn.yx));
         let found = picture_at(position + back);
         sum += found.rgb + (1.0 - found.a) * own;
     }
@@ -199,32 +252,90 @@ fn cell_color(s: Halftone, position: vec2<f32>, own: vec3<f32>, plate: i32) -> v
 }
 #endif
 
-// Coverage at a pixel by a plate whose tone is `tone` there.
-fn screened(s: Halftone, p: Pixel, color: vec3<f32>, amount: f32, plate: i32, tone: f32) -> f32 {
-    var read = tone;
+// The tone that a plate prints at a pixel, whose own one is `tone`.
+fn tone_read(s: Halftone, on: Screen, p: Pixel, color: vec3<f32>, plate: i32, tone: f32) -> f32 {
 #ifdef HALFTONE_CELLS
-    read = plate_tones(s, cell_color(s, p.position, color, plate))[plate];
+    return plate_tones(s, cell_color(s, on, p.position, color, plate))[plate];
+#else
+    return tone;
 #endif
-    return mix(read, plate_cover(s, p.position - s.centre, plate, read), amount);
 }
+
+// Coverage at a place by a plate, of which `amount` is seen as dots and the rest as a plain tone.
+fn screened(s: Halftone, on: Screen, place: vec2<f32>, amount: f32, plate: i32, tone: f32) -> f32 {
+    return mix(tone, plate_cover(s, on, place, plate, tone), amount);
+}
+
+// Coverages at a pixel by all plates.
+fn covers(s: Halftone, on: Screen, p: Pixel, color: vec3<f32>, amount: f32, tones: vec4<f32>) -> vec4<f32> {
+    let mode = mode_of(s);
+    let place = p.position - on.centre;
+    var k = vec4(0.0);
+    if mode != MODE_SPOT {
+        k.x = screened(s, on, place, amount, 0, tone_read(s, on, p, color, 0, tones.x));
+    }
+    if mode == MODE_CMYK || mode == MODE_RGB {
+        k.y = screened(s, on, place, amount, 1, tone_read(s, on, p, color, 1, tones.y));
+        k.z = screened(s, on, place, amount, 2, tone_read(s, on, p, color, 2, tones.z));
+    }
+    if mode != MODE_RGB {
+        k.w = screened(s, on, place, amount, 3, tone_read(s, on, p, color, 3, tones.w));
+    }
+    return k;
+}
+
+#ifdef HALFTONE_FOLLOWS
+// Where the object at a pixel is on the page. Of size 0 if screens do not follow it.
+fn followed(s: Halftone, p: Pixel) -> Similarity {
+    var found: Similarity;
+#ifdef OBJECT_ANCHORS
+    let style = style_of(load_object(vec2<i32>(p.position)).y);
+    if style.anchor_size > 0.0 {
+        found = similarity_of(
+            s.clip_from_world, vec4<f32>(view.viewport),
+            style.anchor_centre, style.anchor_size, style.anchor_rotation,
+        );
+    }
+#endif
+    return found;
+}
+
+// How much of a screen of a size is seen: finer ones than the picture can show would be noise.
+fn shown_amount(s: Halftone, size: f32) -> f32 {
+    return select(smoothstep(1.5, 2.5, s.period * size), 1.0, shape_of(s) == SHAPE_STOCHASTIC);
+}
+
+// Coverages by the plates of an object that they follow. Both octaves have the tone, so that
+// their mixture has it too.
+fn followed_covers(s: Halftone, p: Pixel, color: vec3<f32>, amount: f32, tones: vec4<f32>) -> vec4<f32> {
+    let f = followed(s, p);
+    if f.size == 0.0 {
+        return covers(s, page_screen(s), p, color, amount, tones);
+    }
+    // Grains cannot turn.
+    let turns = shape_of(s) != SHAPE_STOCHASTIC;
+    let turn = select(vec2(1.0, 0.0), f.turn, turns);
+    let own = Screen(f.origin, turn, select(1.0, f.size, turns));
+    let k = covers(s, own, p, color, amount * shown_amount(s, own.size), tones);
+    if f.fade == 0.0 || !turns {
+        return k;
+    }
+    let other = Screen(f.origin, turn, f.other);
+    let fading = covers(s, other, p, color, amount * shown_amount(s, f.other), tones);
+    return mix(k, fading, f.fade);
+}
+#endif
 
 fn halftone(s: Halftone, p: Pixel) -> Pixel {
     var out = p;
     let color = p.color / max(p.alpha, 1e-3);
     let tones = plate_tones(s, color);
     let amount = screen_amount(s, color, p.depth.x);
-    let mode = mode_of(s);
-    var k = vec4(0.0);
-    if mode != MODE_SPOT {
-        k.x = screened(s, p, color, amount, 0, tones.x);
-    }
-    if mode == MODE_CMYK || mode == MODE_RGB {
-        k.y = screened(s, p, color, amount, 1, tones.y);
-        k.z = screened(s, p, color, amount, 2, tones.z);
-    }
-    if mode != MODE_RGB {
-        k.w = screened(s, p, color, amount, 3, tones.w);
-    }
+#ifdef HALFTONE_FOLLOWS
+    let k = followed_covers(s, p, color, amount, tones);
+#else
+    let k = covers(s, page_screen(s), p, color, amount, tones);
+#endif
     // Nothing is printed where the background shows through.
     out.color = mix(p.color, inked(s, k) * p.alpha, s.opacity);
     return out;

@@ -6,7 +6,7 @@ mod settings;
 use bevy::{
     color::Color,
     ecs::{component::Component, reflect::ReflectComponent},
-    math::{UVec2, Vec2, Vec3, Vec4, Vec4Swizzles},
+    math::{Mat4, UVec2, Vec2, Vec3, Vec4, Vec4Swizzles},
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
@@ -141,6 +141,7 @@ impl Effect for Halftone {
         needs.set(Needs::MAP, self.near != self.far);
         needs.set(Needs::PICTURE, self.reads_cells());
         needs.set(Needs::BLUE_NOISE, self.shape == ScreenShape::Stochastic);
+        needs.set(Needs::OBJECT_ANCHORS, self.anchor == ScreenAnchor::Object);
         needs
     }
 
@@ -151,13 +152,23 @@ impl Effect for Halftone {
         } else {
             self.near
         };
-        Some(Self { near, ..self })
+        let anchor = match self.anchor {
+            ScreenAnchor::Object if missing.contains(Needs::OBJECT_ANCHORS) => ScreenAnchor::View,
+            anchor => anchor,
+        };
+        Some(Self {
+            near,
+            anchor,
+            ..self
+        })
     }
 
     fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
         variants.number("MODE", self.mode as u32);
         variants.number("SHAPE", self.shape as u32);
         variants.flag("CELLS", self.reads_cells());
+        variants.number("ADJUSTED", u32::from(self.adjusts()));
+        variants.flag("FOLLOWS", self.anchor == ScreenAnchor::Object);
     }
 
     fn map_faded(self, fraction: f32) -> Self {
@@ -200,6 +211,7 @@ impl Effect for Halftone {
             mode: self.mode as u32,
             shape: self.shape as u32,
             unused: 0,
+            clip_from_world: view.clip_from_world,
         }
     }
 }
@@ -208,6 +220,12 @@ impl Halftone {
     /// Whether tones are read in the middle of cells. Grains are too small for that.
     fn reads_cells(&self) -> bool {
         self.sampling == ScreenSampling::Cell && self.shape != ScreenShape::Stochastic
+    }
+
+    /// Whether tones, levels or screens depend on more than the colour.
+    fn adjusts(&self) -> bool {
+        let levels = self.shadows > 0.0 || self.highlights < 1.0;
+        levels || self.tints > 0 || self.gain > 0.0 || self.below < 1.0
     }
 
     /// Angles of cyan, magenta, yellow and black in degrees.
@@ -225,7 +243,7 @@ impl Halftone {
     /// whole pixels, every dot has the same pixels; there, their errors cancel.
     fn centre(&self, view: &ViewFacts) -> Vec2 {
         let (first, size) = match self.anchor {
-            ScreenAnchor::View => (view.viewport.xy(), view.viewport.zw()),
+            ScreenAnchor::View | ScreenAnchor::Object => (view.viewport.xy(), view.viewport.zw()),
             ScreenAnchor::Window => (UVec2::ZERO, view.target_size),
         };
         (first + size / 2).as_vec2() + 0.25
@@ -264,4 +282,5 @@ pub struct HalftoneUniform {
     mode: u32,
     shape: u32,
     unused: u32,
+    clip_from_world: Mat4,
 }

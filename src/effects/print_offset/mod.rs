@@ -9,7 +9,7 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, ViewFacts},
+    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
     settings::{FieldRange, bounded},
 };
 
@@ -54,6 +54,15 @@ pub struct PrintOffset {
     /// plate. Range 0 (greys have coloured edges) to 1 (greys are moved as one), default 0.7.
     #[reflect(@FieldRange::FRACTION)]
     pub black_generation: f32,
+    /// How far the plates of cyan, magenta and yellow stray besides, to each side and up or down:
+    /// at random, anew for every page. Black is the plate that the others are laid to. Range 0 to
+    /// 8, default 0.
+    #[reflect(@FieldRange::linear(0.0, 8.0).unit("px"))]
+    pub drift: f32,
+    /// Pages per second. Range 0 (a new page at a [`CameraCut`](crate::CameraCut) alone) to 60,
+    /// default 0. Plates stand still on a page.
+    #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"))]
+    pub rate: f32,
     /// Factor of all offsets. Range 0 (the effect is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
@@ -71,6 +80,8 @@ impl Default for PrintOffset {
             black_x: 0.0,
             black_y: 0.0,
             black_generation: 0.7,
+            drift: 0.0,
+            rate: 0.0,
             amount: 1.0,
         }
     }
@@ -100,6 +111,8 @@ impl Effect for PrintOffset {
             black_x: offset(self.black_x, default.black_x),
             black_y: offset(self.black_y, default.black_y),
             black_generation: fraction(self.black_generation, default.black_generation),
+            drift: bounded(self.drift, default.drift, 0.0, 8.0),
+            rate: bounded(self.rate, default.rate, 0.0, 60.0),
             amount: fraction(self.amount, default.amount),
         }
     }
@@ -117,19 +130,39 @@ impl Effect for PrintOffset {
         Needs::PICTURE
     }
 
+    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+        variants.flag("BLACK_STAYS", self.black_x == 0.0 && self.black_y == 0.0);
+    }
+
     fn uniform(&self, view: &ViewFacts) -> PrintOffsetUniform {
         let scale = self.amount * view.scale_factor;
-        let offset = |x, y| scale * Vec2::new(x, y);
+        let page = hash(view.cuts) ^ view.drawing(self.rate);
+        let offset = |plate: u32, x, y| {
+            let strays = Vec2::new(stray(page, 2 * plate), stray(page, 2 * plate + 1));
+            scale * (Vec2::new(x, y) + self.drift * strays)
+        };
         PrintOffsetUniform {
-            cyan: offset(self.cyan_x, self.cyan_y),
-            magenta: offset(self.magenta_x, self.magenta_y),
-            yellow: offset(self.yellow_x, self.yellow_y),
-            black: offset(self.black_x, self.black_y),
+            cyan: offset(0, self.cyan_x, self.cyan_y),
+            magenta: offset(1, self.magenta_x, self.magenta_y),
+            yellow: offset(2, self.yellow_x, self.yellow_y),
+            black: scale * Vec2::new(self.black_x, self.black_y),
             black_generation: self.black_generation,
             unused: 0.0,
             unused_too: Vec2::ZERO,
         }
     }
+}
+
+/// The hash of `noise.wgsl`.
+fn hash(x: u32) -> u32 {
+    let state = x.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
+    let word = ((state >> ((state >> 28) + 4)) ^ state).wrapping_mul(277_803_737);
+    (word >> 22) ^ word
+}
+
+/// A random number from -1 to 1 for an axis of a plate on a page.
+fn stray(page: u32, axis: u32) -> f32 {
+    (hash(page ^ hash(axis)) >> 8) as f32 / (1 << 23) as f32 - 1.0
 }
 
 /// The uniform: `PrintOffset` in `print_offset.wgsl`.

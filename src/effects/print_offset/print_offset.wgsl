@@ -30,6 +30,15 @@ fn tones_at(s: PrintOffset, position: vec2<f32>, own: vec3<f32>) -> vec4<f32> {
     return separated(clamp(color, vec3(0.0), vec3(1.0)), s.black_generation);
 }
 
+// The tone of the black plate, which is read at the pixel itself where it is not moved.
+fn black_at(s: PrintOffset, position: vec2<f32>, own: vec3<f32>) -> f32 {
+#ifdef PRINT_OFFSET_BLACK_STAYS
+    return separated(clamp(own, vec3(0.0), vec3(1.0)), s.black_generation).w;
+#else
+    return tones_at(s, position, own).w;
+#endif
+}
+
 fn print_offset(s: PrintOffset, p: Pixel) -> Pixel {
     var out = p;
     let own = p.color / max(p.alpha, 1e-3);
@@ -37,7 +46,7 @@ fn print_offset(s: PrintOffset, p: Pixel) -> Pixel {
         tones_at(s, p.position - s.cyan, own).x,
         tones_at(s, p.position - s.magenta, own).y,
         tones_at(s, p.position - s.yellow, own).z,
-        tones_at(s, p.position - s.black, own).w,
+        black_at(s, p.position - s.black, own),
     );
     out.color = overprinted(tones) * p.alpha;
     return out;

@@ -2,10 +2,12 @@
 
 use std::f64::consts::PI;
 
-use bevy_comics::{Focus, FocusStyle};
+use bevy::color::Color;
+use bevy_comics::{Focus, FocusStyle, Halftone, ScreenShape};
 
 use super::{
     Rgb,
+    halftone::{Plate, inked, plate_cover, plate_tones},
     means::{Sheet, means},
     mix,
     paint::{box_areas, chosen},
@@ -76,6 +78,8 @@ impl Scene<'_> {
             }
             let straight = [0, 1, 2].map(|c| pixel[c] / alpha);
             let color = match s.style {
+                FocusStyle::Dots => Some(self.dotted(s, at, own[1], straight)),
+                FocusStyle::Lines => Some(straight),
                 FocusStyle::Offset => Some(self.offset(s, at, own, straight)),
                 FocusStyle::Paint => {
                     let areas = box_areas(self.sheet, &boxes, at, 0.5 * own[1], &|_| 1.0);
@@ -114,6 +118,29 @@ impl Scene<'_> {
         let red = self.taken_at(s, place(1.0), own, instead)[0];
         let blue = self.taken_at(s, place(-1.0), own, instead)[2];
         [red, green, blue]
+    }
+
+    /// In ideal inks on white paper.
+    fn dotted(&self, s: &Focus, at: [usize; 2], radius: f64, linear: Rgb) -> Rgb {
+        let whole = (f64::from(s.radius) / 6.0).min(1.0);
+        let amount = whole * radius / (f64::from(s.radius) * self.scale);
+        let halftone = Halftone {
+            period: s.period,
+            cyan: Color::srgb(0.0, 1.0, 1.0),
+            magenta: Color::srgb(1.0, 0.0, 1.0),
+            yellow: Color::srgb(1.0, 1.0, 0.0),
+            black: Color::BLACK,
+            paper: Color::WHITE,
+            ..Halftone::default()
+        };
+        let place = [0, 1].map(|i| at[i] as f64 + 0.25 - (self.sheet.size[i] / 2) as f64);
+        let tones = plate_tones(&halftone, linear);
+        let plates = Plate::all(&halftone, self.scale);
+        let covers = std::array::from_fn(|i| {
+            let cover = plate_cover(ScreenShape::Euclidean, plates[i], tones[i], &|_, _| 0.5);
+            mix(tones[i], cover(place), amount)
+        });
+        inked(&halftone, covers)
     }
 
     fn taken_at(&self, s: &Focus, place: [f64; 2], own: [f64; 2], instead: Rgb) -> Rgb {

@@ -3,7 +3,7 @@
 use bevy::math::{UVec2, UVec4};
 use bevy_comics::{Halftone, HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape, linear_rgb};
 
-use super::{Rgb, Rgba, color, mix, screen, smoothstep};
+use super::{Rgb, Rgba, color, mix, screen, similarity::Similarity, smoothstep};
 
 /// Where a screen is read: the plate's angle, the period in pixels, the phase in cells.
 #[derive(Clone, Copy, Debug)]
@@ -83,6 +83,40 @@ pub fn plate_cover<'a>(
     })
 }
 
+/// Coverages by a plate of one tone that follows an object: a function of the pixel in the
+/// render target.
+pub fn followed_cover<'a>(
+    shape: ScreenShape,
+    plate: Plate,
+    follows: &Similarity,
+    tone: f64,
+    tile: &'a dyn Fn(i64, i64) -> f64,
+) -> Box<dyn Fn([f64; 2]) -> f64 + 'a> {
+    let grains = shape == ScreenShape::Stochastic;
+    let octave = |size: f64| {
+        let plate = Plate {
+            degrees: plate.degrees + follows.turn,
+            period: plate.period * if grains { 1.0 } else { size },
+            ..plate
+        };
+        let shown = smoothstep(1.5, 2.5, plate.period);
+        let cover = plate_cover(shape, plate, tone, tile);
+        move |place| {
+            if grains {
+                cover(place)
+            } else {
+                mix(tone, cover(place), shown)
+            }
+        }
+    };
+    let (own, other) = (octave(follows.size), octave(follows.other));
+    let (origin, fade) = (follows.origin, follows.fade);
+    Box::new(move |at| {
+        let place = [0, 1].map(|i| at[i] - origin[i]);
+        mix(own(place), other(place), fade)
+    })
+}
+
 /// The mean over the pixel around a place of grains of a size.
 fn stochastic([x, y]: [f64; 2], size: f64, tone: f64, tile: impl Fn(i64, i64) -> f64) -> f64 {
     let spans = [x, y].map(|v| {
@@ -148,7 +182,9 @@ pub fn screen_amount(s: &Halftone, linear: Rgb, d: f64) -> f64 {
 /// Where the screens begin, in pixels of the target.
 pub fn centre(s: &Halftone, viewport: UVec4, target: UVec2) -> [f64; 2] {
     let [first, size] = match s.anchor {
-        ScreenAnchor::View => [[viewport.x, viewport.y], [viewport.z, viewport.w]],
+        ScreenAnchor::View | ScreenAnchor::Object => {
+            [[viewport.x, viewport.y], [viewport.z, viewport.w]]
+        }
         ScreenAnchor::Window => [[0, 0], target.to_array()],
         other => panic!("no twin of {other:?}"),
     };

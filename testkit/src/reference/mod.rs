@@ -47,6 +47,7 @@ pub mod raw;
 pub mod read;
 pub mod resolve;
 pub mod screen;
+pub mod similarity;
 pub mod sketch;
 pub mod smoothing;
 pub mod speed_lines;

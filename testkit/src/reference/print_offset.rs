@@ -2,17 +2,32 @@
 
 use bevy_comics::PrintOffset;
 
-use super::{Rgb, Rgba, color};
+use super::{Rgb, Rgba, color, noise::hash};
 
-/// The offsets of cyan, magenta, yellow and black in pixels.
+/// Where the page of a cut and a drawing has its plates, as fractions of the drift: cyan, magenta
+/// and yellow, to the right and down.
+pub fn strays(cuts: u32, drawing: u32) -> [[f64; 2]; 3] {
+    let page = hash(cuts) ^ drawing;
+    let number = |axis: u32| f64::from(hash(page ^ hash(axis)) >> 8) / f64::from(1 << 23) - 1.0;
+    [[0, 1], [2, 3], [4, 5]].map(|axes| axes.map(number))
+}
+
+/// The offsets of cyan, magenta, yellow and black in pixels, on the first page.
 pub fn offsets(s: &PrintOffset, scale: f64) -> [[f64; 2]; 4] {
-    [
+    let strays = strays(0, 0);
+    let fixed = [
         [s.cyan_x, s.cyan_y],
         [s.magenta_x, s.magenta_y],
         [s.yellow_x, s.yellow_y],
         [s.black_x, s.black_y],
-    ]
-    .map(|offset| offset.map(|v| f64::from(v) * f64::from(s.amount) * scale))
+    ];
+    let factor = f64::from(s.amount) * scale;
+    std::array::from_fn(|plate| {
+        [0, 1].map(|axis| {
+            let strayed = f64::from(s.drift) * strays.get(plate).map_or(0.0, |plate| plate[axis]);
+            factor * (f64::from(fixed[plate][axis]) + strayed)
+        })
+    })
 }
 
 /// The picture with its plates moved, at a place in pixels. `picture`: colour multiplied by

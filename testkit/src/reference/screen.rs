@@ -36,6 +36,12 @@ pub fn disc(at: [f64; 2], tone: f64, period: f64) -> f64 {
     mix(sum, largest, 0.31 * smoothstep(0.77, 0.8, tone))
 }
 
+/// The disc of the pixel's own cell.
+fn own_disc(at: [f64; 2], tone: f64, period: f64) -> f64 {
+    let [x, y] = at.map(to_nearest);
+    (disc_radius(tone, period) - period * x.hypot(y) + 0.5).clamp(0.0, 1.0)
+}
+
 fn checker([u, v]: [f64; 2], tone: f64, period: f64) -> f64 {
     let height = 0.5 * ((TAU * u).cos() + (TAU * v).cos());
     let curved = ((0.5 - tone) / 0.15).clamp(-1.0, 1.0);
@@ -49,10 +55,10 @@ pub fn euclidean(at: [f64; 2], tone: f64, period: f64) -> f64 {
     let middle = checker(at, tone, period);
     if tone <= 0.5 {
         let weight = ((tone - 0.15) / 0.15).clamp(0.0, 1.0);
-        mix(disc(at, tone, period), middle, weight)
+        mix(own_disc(at, tone, period), middle, weight)
     } else {
         let weight = ((0.85 - tone) / 0.15).clamp(0.0, 1.0);
-        let hole = disc(at.map(|v| v + 0.5), 1.0 - tone, period);
+        let hole = own_disc(at.map(|v| v + 0.5), 1.0 - tone, period);
         mix(1.0 - hole, middle, weight)
     }
 }

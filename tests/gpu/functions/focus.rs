@@ -11,7 +11,9 @@ use super::{settings::expression, *};
 const FOCUS: &str = "#import bevy_comics::effects::focus::{
         Focus, defocus, distance_of, reaching, taken,
     }";
-const FIELDS: [&str; 7] = ["vec2", "f32", "f32", "f32", "f32", "f32", "u32"];
+const FIELDS: [&str; 10] = [
+    "vec2", "f32", "f32", "f32", "f32", "f32", "u32", "vec2", "f32", "f32",
+];
 
 fn focus() -> Focus {
     Focus {
@@ -117,4 +119,38 @@ fn a_target_is_in_focus() {
         expression("Focus", &FIELDS, &own, &view)
     );
     assert_eq!(own.faded(0.0).strength(), 0.0);
+}
+
+/// What is left of a line is what the radius of a blur leaves.
+#[test]
+fn lines_are_as_sharp_as_by_the_twin() {
+    const LINES: &str = "#import bevy_comics::lines::focus::{LineFocus, line_sharpness}";
+    for (view, of) in [
+        (views()[0], (|d| 0.1 / d) as fn(f64) -> f64),
+        (views()[1], |d| 52.0 - 50.0 * d),
+    ] {
+        let (axis, reference) = (view.depth_axis, view.depth_reference.unwrap_or(0.0));
+        for at_centre in [0, 1] {
+            let body = format!(
+                "let f = LineFocus(vec2({:?}, {:?}), i(2u), {at_centre}u, {reference:?}, 0.2, {:?}, 0.8);
+                 return vec4(line_sharpness(f, i(0u), i(1u)));",
+                axis.x,
+                axis.y,
+                1.0f32 / 0.7,
+            );
+            let row = (1e-3f32..=1.0, 1e-3f32..=1.0, 0.1f32..60.0);
+            for_batches(row.prop_map(|(a, b, c)| [a, b, c]), |rows| {
+                for (row, found) in rows.iter().zip(gpu().evaluate(LINES, &body, rows)) {
+                    let [raw, middle, distance] = row.map(f64::from);
+                    let focus_at = if at_centre == 1 { of(middle) } else { distance };
+                    let reference = view.depth_reference.map(f64::from);
+                    let radius = defocus(&focus(), of(raw), focus_at, reference);
+                    let want = 1.0 - 0.8 * radius / 9.0;
+                    // The same errors as of radii, of a ramp of height 0.8.
+                    let apart = (f64::from(found[0]) - want).abs();
+                    assert!(apart < 1e-4, "{row:?}: {found:?}, {want}");
+                }
+            });
+        }
+    }
 }

@@ -11,7 +11,7 @@ use bevy_comics_testkit::reference::{
 use super::*;
 
 const HALFTONE: &str = "#import bevy_comics::effects::halftone::{
-        Halftone, inked, plate_cover, plate_tones, screen_amount,
+        Halftone, inked, page_screen, plate_cover, plate_tones, screen_amount,
     }
     #import bevy_comics::effect::color::separated
     #import bevy_comics::effect::screen::{cos_turn, gained, sin_turn, tinted}";
@@ -57,7 +57,7 @@ fn coverages_of_all_shapes_are_those_of_the_twin() {
                      s.period = i(3u);
                      s.grain = max(i(3u) / 3.0, 1.0);
                      s.shape = {number}u;
-                     let k = plate_cover(s, vec2(i(0u), i(1u)), i32(i(5u)), i(2u));
+                     let k = plate_cover(s, page_screen(s), vec2(i(0u), i(1u)), i32(i(5u)), i(2u));
                      return vec4(k, s.cosines.x, s.sines.x, 0.0);"
                 ),
                 rows,

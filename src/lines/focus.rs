@@ -1,0 +1,48 @@
+//! How lines fade out of focus.
+
+use bevy::{math::Vec2, render::render_resource::ShaderType};
+
+/// Lines become thinner and fainter the farther their surface is from a distance.
+///
+/// Distances are along the view's axis. In perspective, what counts is the ratio of two of them;
+/// in an orthographic view their difference, as a fraction of
+/// [`ViewFacts::depth_reference`](crate::ViewFacts::depth_reference).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineFocus {
+    /// Distance of the focus in world units; `None`: that of what the pixel in the middle of the
+    /// view shows.
+    pub distance: Option<f32>,
+    /// How far from the focus lines are whole: natural logarithm of the ratio, or the fraction.
+    pub clear: f32,
+    /// How far behind that the least is left of them; as `clear`, above 0.
+    pub ramp: f32,
+    /// The fraction of their width and opacity that they lose there, 0 to 1.
+    pub amount: f32,
+}
+
+impl LineFocus {
+    /// As shaders take it. `axis`: see [`ViewFacts::depth_axis`](crate::ViewFacts::depth_axis).
+    pub(crate) fn uniform(self, axis: Vec2, reference: Option<f32>) -> LineFocusUniform {
+        LineFocusUniform {
+            axis,
+            distance: self.distance.unwrap_or(1.0).max(1e-9),
+            at_centre: u32::from(self.distance.is_none()),
+            reference: reference.unwrap_or(0.0),
+            clear: self.clear,
+            steepness: 1.0 / self.ramp,
+            amount: self.amount,
+        }
+    }
+}
+
+/// `LineFocus` of `focus.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct LineFocusUniform {
+    axis: Vec2,
+    distance: f32,
+    at_centre: u32,
+    reference: f32,
+    clear: f32,
+    steepness: f32,
+    amount: f32,
+}

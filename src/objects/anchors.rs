@@ -1,0 +1,92 @@
+//! Objects that screens of a halftone follow.
+
+use bevy::{
+    ecs::{
+        component::Component,
+        entity::{Entity, EntityHashMap},
+        hierarchy::Children,
+        reflect::ReflectComponent,
+        system::Query,
+    },
+    math::{Vec3, Vec4},
+    reflect::{Reflect, std_traits::ReflectDefault},
+    transform::components::GlobalTransform,
+};
+
+use super::{components::inherit, table::ObjectStyleUniform};
+
+/// The screens of a [`Halftone`](crate::Halftone) with
+/// [`ScreenAnchor::Object`](crate::ScreenAnchor::Object) follow this object: the dots move, turn
+/// and grow with it, as if they were printed on the figure.
+///
+/// Dots turn with the object's roll about the view's axis: the direction in which its Y axis
+/// points on the page, or its -Z axis where Y points within 6 degrees of the camera. They grow with
+/// its apparent size, from 0.71 to 1.41 of [`Halftone::period`](crate::Halftone::period); then
+/// dots of half the size take over, faded in and out. While the centre is behind the camera, its
+/// dots lie on the page.
+///
+/// Each object takes a slot of the table of [`OutlineStyle`](crate::OutlineStyle)s, which has 255.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq)]
+pub struct ObjectScreen {
+    /// What the dots turn and grow about, in the object's own space; zero if a component is not
+    /// finite. Default: its origin.
+    pub centre: Vec3,
+    /// Applies to all descendants as well, which the screen treats as one figure with this object,
+    /// except for those with an `ObjectScreen` of their own. Default: `false`.
+    pub inherit: bool,
+}
+
+impl ObjectScreen {
+    /// For a figure of several meshes: [`inherit`](Self::inherit) is `true`.
+    pub const INHERITED: Self = Self {
+        centre: Vec3::ZERO,
+        inherit: true,
+    };
+}
+
+/// Where an object is.
+#[derive(Clone, Copy)]
+pub(super) struct Anchor {
+    centre: Vec3,
+    rotation: Vec4,
+    size: f32,
+}
+
+impl Anchor {
+    /// `None` for an object without an extent, or not at a finite place.
+    fn new(screen: &ObjectScreen, at: &GlobalTransform) -> Option<Self> {
+        let offset = Some(screen.centre).filter(|centre| centre.is_finite());
+        let centre = at.transform_point(offset.unwrap_or_default());
+        let (scale, rotation, _) = at.to_scale_rotation_translation();
+        let size = scale.abs().element_product().cbrt();
+        let rotation = Vec4::from(rotation.normalize());
+        let is_sound = centre.is_finite() && rotation.is_finite() && size.is_normal();
+        is_sound.then_some(Self {
+            centre,
+            rotation,
+            size,
+        })
+    }
+
+    pub fn put(self, style: &mut ObjectStyleUniform) {
+        style.anchor_centre = self.centre;
+        style.anchor_rotation = self.rotation;
+        style.anchor_size = self.size;
+    }
+}
+
+/// The objects that screens follow.
+pub(super) fn anchors(
+    anchored: &Query<(Entity, &ObjectScreen, &GlobalTransform)>,
+    children: &Query<&Children>,
+) -> EntityHashMap<Anchor> {
+    let mut found = EntityHashMap::default();
+    for (entity, screen, at) in anchored {
+        if let Some(anchor) = Anchor::new(screen, at) {
+            let own = |child| anchored.contains(child);
+            inherit(&mut found, (entity, anchor), screen.inherit, children, own);
+        }
+    }
+    found
+}

@@ -1,0 +1,254 @@
+//! Screens that follow objects.
+
+use bevy::{
+    camera::ScalingMode,
+    math::{DMat4, DQuat, DVec3},
+    prelude::*,
+    render::view::Msaa,
+};
+use bevy_comics::{
+    ComicStyle, ComicsStage, Halftone, HalftoneMode, ObjectScreen, ScreenAnchor, ScreenSampling,
+    ScreenShape,
+};
+use bevy_comics_testkit::reference::{
+    halftone::{Plate, followed_cover},
+    similarity::{Similarity, similarity_of},
+};
+
+use crate::{
+    functions::halftone::SHAPES,
+    halftone::ideal,
+    small::{Small, linear, options, unlit},
+};
+
+const SIZE: UVec2 = UVec2::new(120, 90);
+
+/// One ink, of which a dot of a tone has exactly its area.
+fn spot(anchor: ScreenAnchor) -> Halftone {
+    Halftone {
+        mode: HalftoneMode::Spot,
+        shape: ScreenShape::Round,
+        period: 7.0,
+        anchor,
+        ..ideal()
+    }
+}
+
+fn shot(small: &mut Small, s: Halftone) -> image::RgbaImage {
+    small.style(&ComicStyle::new().with(s));
+    small.settle();
+    small.picture()
+}
+
+/// A grey board of 80 by 60 pixels in front of a view in which a unit is a pixel.
+fn board() -> (Small, Entity) {
+    let mut small = Small::with(options(SIZE), Msaa::Off);
+    small.clear();
+    small.insert((
+        Projection::Orthographic(OrthographicProjection {
+            scaling_mode: ScalingMode::WindowSize,
+            ..OrthographicProjection::default_3d()
+        }),
+        Transform::from_xyz(0.0, 0.0, 50.0),
+    ));
+    let grey = unlit(Color::linear_rgb(0.6, 0.6, 0.6));
+    let board = small.put(Rectangle::new(80.0, 60.0), grey, Transform::IDENTITY);
+    (small, board)
+}
+
+fn place(small: &mut Small, entity: Entity, at: Transform) {
+    small.world().entity_mut(entity).insert(at);
+}
+
+/// The similarity of an object in the view of the board.
+fn followed(at: Transform) -> Similarity {
+    let (width, height) = (f64::from(SIZE.x), f64::from(SIZE.y));
+    let to_clip = DMat4::from_scale(DVec3::new(2.0 / width, 2.0 / height, 0.001));
+    let size = f64::from(at.scale.x);
+    let rotation = DQuat::from_array(at.rotation.to_array().map(f64::from));
+    let centre = at.translation.as_dvec3();
+    similarity_of(to_clip, [0.0, 0.0, width, height], centre, size, rotation).expect("in front")
+}
+
+/// Pixels that the board covers wherever it is in these tests.
+fn inner() -> impl Iterator<Item = (u32, u32)> {
+    (36..66).flat_map(|y| (44..76).map(move |x| (x, y)))
+}
+
+/// At every place, turn and size, by whole and fractional pixels: each dot is where it is on the
+/// object. A code of the display is up to 0.009 in light.
+#[test]
+fn dots_lie_on_their_object() {
+    let (mut small, board) = board();
+    let plain = shot(
+        &mut small,
+        Halftone {
+            opacity: 0.0,
+            ..spot(ScreenAnchor::View)
+        },
+    );
+    let tone = 1.0 - linear(&plain, 60, 45)[0];
+    small
+        .world()
+        .entity_mut(board)
+        .insert(ObjectScreen::default());
+    let turned = Quat::from_rotation_z(0.4);
+    for at in [
+        Transform::IDENTITY,
+        Transform::from_xyz(5.0, -3.0, 0.0),
+        Transform::from_xyz(0.25, 0.5, 0.0),
+        Transform::from_xyz(-3.5, 2.125, 4.0).with_rotation(turned),
+        Transform::from_xyz(1.0, 0.0, 0.0).with_scale(Vec3::splat(1.3)),
+        Transform::from_xyz(0.0, 2.75, 0.0).with_scale(Vec3::splat(0.97)),
+        // Between two octaves.
+        Transform::from_scale(Vec3::splat(1.41)),
+        Transform::from_rotation(Quat::from_rotation_y(0.6) * turned),
+    ] {
+        place(&mut small, board, at);
+        for sampling in [ScreenSampling::Pixel, ScreenSampling::Cell] {
+            let s = Halftone {
+                sampling,
+                ..spot(ScreenAnchor::Object)
+            };
+            let picture = shot(&mut small, s);
+            assert!(small.ran(ComicsStage::of::<Halftone>()));
+            let cover = followed_cover(
+                s.shape,
+                Plate::all(&s, 1.0)[3],
+                &followed(at),
+                tone,
+                &|_, _| 0.5,
+            );
+            let mut inked = 0;
+            for (x, y) in inner() {
+                let want = 1.0 - cover([f64::from(x) + 0.5, f64::from(y) + 0.5]);
+                let found = linear(&picture, x, y)[0];
+                let apart = (found - want).abs();
+                assert!(
+                    apart < 0.012,
+                    "{at:?}, {sampling:?}, ({x}, {y}): {found}, {want}"
+                );
+                inked += usize::from(want < 0.1);
+            }
+            assert!(inked > 50, "{inked} of 960 pixels are all ink");
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// A board that moves by whole pixels has the same picture there, to a code of rounding; with
+/// screens on the page it has not.
+#[test]
+fn a_moved_object_carries_its_dots() {
+    let (mut small, board) = board();
+    small
+        .world()
+        .entity_mut(board)
+        .insert(ObjectScreen::default());
+    let mut differences = |anchor| {
+        place(&mut small, board, Transform::from_xyz(0.375, 0.5, 0.0));
+        let before = shot(&mut small, spot(anchor));
+        place(&mut small, board, Transform::from_xyz(3.375, -1.5, 0.0));
+        let after = shot(&mut small, spot(anchor));
+        let apart = |(x, y)| {
+            let (from, to) = (before.get_pixel(x, y), after.get_pixel(x + 3, y + 2));
+            from.0[0].abs_diff(to.0[0]) > 1
+        };
+        inner().filter(|at| apart(*at)).count()
+    };
+    assert_eq!(differences(ScreenAnchor::Object), 0);
+    assert!(differences(ScreenAnchor::View) > 100);
+}
+
+/// Without an `ObjectScreen`, dots are those of the page. With one that is inherited, a figure of
+/// two meshes has one screen.
+#[test]
+fn only_marked_objects_carry_dots() {
+    let (mut small, board) = board();
+    let at = Transform::from_xyz(2.5, 1.25, 0.0);
+    place(&mut small, board, at);
+    let page = shot(&mut small, spot(ScreenAnchor::View));
+    assert_eq!(shot(&mut small, spot(ScreenAnchor::Object)), page);
+    let figure = small
+        .world()
+        .spawn((at, Visibility::default(), ObjectScreen::INHERITED))
+        .id();
+    small
+        .world()
+        .entity_mut(board)
+        .insert((ChildOf(figure), Transform::IDENTITY));
+    let whole = shot(&mut small, spot(ScreenAnchor::Object));
+    assert_ne!(whole, page);
+    // The figure stays, its mesh moves within it: the dots stay.
+    place(&mut small, board, Transform::from_xyz(2.0, -3.0, 0.0));
+    let moved = shot(&mut small, spot(ScreenAnchor::Object));
+    assert!(inner().all(|(x, y)| whole.get_pixel(x, y) == moved.get_pixel(x, y)));
+    assert_eq!(small.errors(), 0);
+}
+
+fn scaled(by: f64) -> Similarity {
+    let at = DMat4::IDENTITY;
+    similarity_of(at, [0.0, 0.0, 2.0, 2.0], DVec3::ZERO, by, DQuat::IDENTITY).expect("in front")
+}
+
+/// The mean of a flat tone stays at every size, also where two octaves are mixed: as exact as on
+/// the page (`halftone::flat_fields_have_their_tone`) for cells of 5.6 pixels and more. Weighted by
+/// a window, since cells end anywhere.
+#[test]
+fn every_size_has_the_tone() {
+    const SIDE: i32 = 160;
+    let window = |v: i32| 1.0 - (std::f64::consts::TAU * f64::from(v) / f64::from(SIDE)).cos();
+    for shape in SHAPES
+        .into_iter()
+        .filter(|shape| *shape != ScreenShape::Stochastic)
+    {
+        for size in [0.72, 0.9, 1.0, 1.31, 1.36, 1.41] {
+            for tone in [0.2, 0.5, 0.85] {
+                let s = Halftone {
+                    period: 8.0,
+                    ..default()
+                };
+                let plate = Plate::all(&s, 1.0)[0];
+                let cover = followed_cover(shape, plate, &scaled(size), tone, &|_, _| 0.5);
+                let (mut sum, mut weights) = (0.0, 0.0);
+                for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
+                    let weight = window(x) * window(y);
+                    sum += weight * cover([f64::from(x) + 0.3, f64::from(y) + 0.6]);
+                    weights += weight;
+                }
+                let mean = sum / weights;
+                assert!(
+                    (mean - tone).abs() < 0.01,
+                    "{shape:?}, {size}, {tone}: {mean}"
+                );
+            }
+        }
+    }
+}
+
+/// An object that comes nearer by 1/512 of an octave a frame, over two octaves: its dots grow, and
+/// nothing jumps. At 40 pixels from the centre, a dot moves by 0.054 pixels, and an edge is one
+/// pixel wide; what fades changes by 1/120 a frame.
+#[test]
+fn octaves_follow_each_other_without_a_jump() {
+    let s = Halftone {
+        period: 8.0,
+        ..default()
+    };
+    let plate = Plate::all(&s, 1.0)[0];
+    for shape in [ScreenShape::Round, ScreenShape::Line] {
+        let mut before: Option<Vec<f64>> = None;
+        for frame in 0..=1024 {
+            let follows = scaled((f64::from(frame) / 512.0 - 1.0).exp2());
+            let cover = followed_cover(shape, plate, &follows, 0.3, &|_, _| 0.5);
+            let places = (0..60).map(|i| (f64::from(i) * 2.4).sin_cos());
+            let found: Vec<f64> = places
+                .map(|(y, x)| cover([1.0 + 40.0 * x, 1.0 + 40.0 * y]))
+                .collect();
+            for (found, before) in found.iter().zip(before.iter().flatten()) {
+                assert!((found - before).abs() < 0.1, "{shape:?}, frame {frame}");
+            }
+            before = Some(found);
+        }
+    }
+}
