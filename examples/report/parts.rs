@@ -1,9 +1,13 @@
 //! What single parts cost: factors of lines, marked objects, and effects of the page.
 
-use bevy::prelude::*;
+use bevy::{
+    pbr::{DistanceFog, FogFalloff},
+    prelude::*,
+};
 use bevy_comics::{
-    ComicStyle, Halftone, HalftoneMode, LineColor, LineWeight, Outlines, Paper, PrintOffset,
-    ScreenSampling, ScreenShape, SelectionOutline, SpeedLines, TwoTone, XRayOutline,
+    ComicStyle, DepthWrite, Desaturation, Halftone, HalftoneMode, LineColor, LineWeight,
+    LineWidths, MeshSections, NoStyle, Outlines, Paper, PrintOffset, ScreenSampling, ScreenShape,
+    SelectionOutline, SpeedLines, TwoTone, XRayOutline,
 };
 
 use bevy_comics_testkit::scenes::BuiltIn;
@@ -11,6 +15,7 @@ use bevy_comics_testkit::scenes::BuiltIn;
 use crate::{
     Run,
     rig::{self, Rig, Wear},
+    table::Table,
 };
 
 /// Outlines of which one thing differs from the default.
@@ -137,7 +142,117 @@ pub fn measure(run: &Run) -> Result<(), String> {
     ]
     .map(|(name, wear)| (name.to_owned(), wear));
     rig::record(run, &mut times, "marks", "teapot", &mut rig, &variants);
+    scene_parts(run, &mut times, size);
     run.save("part_times", &times)
+}
+
+/// A change of the scene whose cost is measured.
+type Change = fn(&mut Rig);
+
+/// What a part of the scene asks for: its name, the change, and the style.
+fn changes() -> Vec<(&'static str, Change, ComicStyle)> {
+    let outlines = || ComicStyle::new().with(Outlines::default());
+    let colors = || ComicStyle::new().with(Desaturation::default());
+    vec![
+        ("outlines", |_| (), outlines()),
+        ("outlines; meshes in sections", sections, outlines()),
+        ("outlines; widths of vertices", widths, outlines()),
+        ("outlines; fog", fog, outlines()),
+        ("outlines; a mesh of glass", glass, outlines()),
+        ("outlines; it writes depth", glass_in_depth, outlines()),
+        ("desaturation", |_| (), colors()),
+        ("desaturation; a mesh without style", unstyled, colors()),
+    ]
+}
+
+/// Times each change on a scene of its own.
+fn scene_parts(run: &Run, times: &mut Table, size: UVec2) {
+    for (name, change, style) in changes() {
+        let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
+        rig.unlight();
+        change(&mut rig);
+        // Meshes are divided in the background.
+        rig.headless.step(30);
+        let section = format!("part: {name}");
+        let variant = [(name.to_owned(), Wear::style(style))];
+        rig::record(run, times, &section, "teapot", &mut rig, &variant);
+    }
+}
+
+fn meshes(rig: &mut Rig) -> Vec<Entity> {
+    let world = rig.headless.app.world_mut();
+    let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
+    meshes.iter(world).collect()
+}
+
+fn sections(rig: &mut Rig) {
+    mark(rig, MeshSections::default());
+}
+
+/// Widths of 0.5 to 1.5, alternating from vertex to vertex.
+fn widths(rig: &mut Rig) {
+    mark(rig, LineWidths::default());
+    let world = rig.headless.app.world_mut();
+    let mut meshes = world.resource_mut::<Assets<Mesh>>();
+    for (_, mesh) in meshes.iter_mut() {
+        let count = mesh.count_vertices();
+        let width = |i: usize| [1.0, 1.0, 1.0, 0.25 + 0.5 * (i % 2) as f32];
+        let colors: Vec<[f32; 4]> = (0..count).map(width).collect();
+        mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
+    }
+}
+
+fn fog(rig: &mut Rig) {
+    let falloff = FogFalloff::Linear {
+        start: 1.0,
+        end: 20.0,
+    };
+    let world = rig.headless.app.world_mut();
+    let fog = DistanceFog {
+        falloff,
+        ..default()
+    };
+    world.entity_mut(rig.camera).insert(fog);
+}
+
+/// Makes the mesh with most vertices transparent. Returns it.
+fn turn_to_glass(rig: &mut Rig) -> Option<Entity> {
+    let all = meshes(rig);
+    let world = rig.headless.app.world_mut();
+    let count = |entity: &Entity| {
+        let mesh = world.get::<Mesh3d>(*entity);
+        let mesh = mesh.and_then(|mesh| world.resource::<Assets<Mesh>>().get(&mesh.0));
+        mesh.map_or(0, Mesh::count_vertices)
+    };
+    let largest = all.into_iter().max_by_key(count)?;
+    let material = StandardMaterial {
+        base_color: Color::srgba(0.6, 0.8, 0.9, 0.7),
+        alpha_mode: AlphaMode::Blend,
+        unlit: true,
+        ..default()
+    };
+    let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+    let material = materials.add(material);
+    world.entity_mut(largest).insert(MeshMaterial3d(material));
+    Some(largest)
+}
+
+fn glass(rig: &mut Rig) {
+    turn_to_glass(rig);
+}
+
+fn glass_in_depth(rig: &mut Rig) {
+    if let Some(mesh) = turn_to_glass(rig) {
+        let world = rig.headless.app.world_mut();
+        world.entity_mut(mesh).insert(DepthWrite::default());
+    }
+}
+
+fn unstyled(rig: &mut Rig) {
+    if let Some(mesh) = meshes(rig).first() {
+        let world = rig.headless.app.world_mut();
+        world.entity_mut(*mesh).insert(NoStyle::default());
+    }
 }
 
 /// Marks the meshes of the scene as a variant asks.

@@ -3,11 +3,13 @@
 // PLANES: also writes the planes of bits, see planes.wgsl.
 
 #import bevy_comics::depth::view::set_view
-#import bevy_comics::lines::crack::cracks
+#import bevy_comics::lines::crack::{Cracks, cracks}
+#import bevy_comics::lines::edge::SILHOUETTE
 #import bevy_comics::lines::listed::listed_cell
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::planes::{
-    CELL_ROWS, FOUND_EAST, FOUND_SOUTH, LINKED_EAST, LINKED_SOUTH, column_word, row_word,
+    CELL_ROWS, FOUND_EAST, FOUND_SOUTH, LEDGE_EAST, LEDGE_SOUTH, LINKED_EAST, LINKED_SOUTH,
+    SILHOUETTE_EAST, SILHOUETTE_SOUTH, column_word, row_word,
 }
 #import bevy_comics::lines::rows::{Above, four_columns, step_down}
 
@@ -61,10 +63,44 @@ fn store_row(first: vec2<i32>, east: vec4<u32>, south: vec4<u32>) {
     }
 }
 
+// The cracks of four columns to one side: one bit for each row of a cell.
+struct Bits {
+    found: vec4<u32>,
+    certain: vec4<u32>,
+    ledge: vec4<u32>,
+    silhouette: vec4<u32>,
+}
+
 // One bit for each crack.
 fn bits(are: vec4<bool>, bit: u32) -> vec4<u32> {
     return select(vec4(0u), vec4(1u << bit), are);
 }
+
+fn add_bits(all: ptr<function, Bits>, row: Cracks, bit: u32) {
+    (*all).found |= bits((row.packed != vec4(0u)) & !row.ledge, bit);
+    (*all).certain |= bits(row.certain, bit);
+    (*all).ledge |= bits(row.ledge, bit);
+    (*all).silhouette |= bits((row.packed & vec4(SILHOUETTE)) != vec4(0u), bit);
+}
+
+#ifdef PLANES
+// Adds the cracks of a cell to the planes. `rows`: the certain cracks to the south, in the grid.
+fn store_bits(cell: vec2<i32>, east: Bits, south: Bits, rows: vec4<u32>) {
+    add_columns(FOUND_EAST, cell, east.found);
+    add_columns(FOUND_SOUTH, cell, south.found);
+    add_columns(LINKED_EAST, cell, east.certain);
+    add_columns(LINKED_SOUTH, cell, south.certain);
+#ifdef SILHOUETTES
+    add_columns(SILHOUETTE_EAST, cell, east.silhouette);
+    add_columns(SILHOUETTE_SOUTH, cell, south.silhouette);
+#endif
+#ifdef LEDGES
+    add_columns(LEDGE_EAST, cell, east.ledge);
+    add_columns(LEDGE_SOUTH, cell, south.ledge);
+#endif
+    add_rows(cell, rows);
+}
+#endif
 
 @compute @workgroup_size(32)
 fn find_in_cells(
@@ -84,23 +120,18 @@ fn find_in_cells(
     var east_1 = vec4(0u);
     var east_2 = vec4(0u);
     var east_3 = vec4(0u);
-    // One bit for each row of the cell.
-    var found_east = vec4(0u);
-    var found_south = vec4(0u);
-    var certain_east = vec4(0u);
-    var certain_south = vec4(0u);
+    var all_east: Bits;
+    var all_south: Bits;
     for (var i = -2; i <= CELL_ROWS + 2; i++) {
         let borders = step_down(&above, columns, cell.y + i);
         let east = cracks(s, borders.east);
         let south = cracks(s, borders.south);
         if i >= 0 && i < CELL_ROWS && cell.y + i <= last.y {
-            found_east |= bits(east.packed != vec4(0u), u32(i));
-            certain_east |= bits(east.certain, u32(i));
+            add_bits(&all_east, east, u32(i));
         }
         let y = cell.y + i - 3;
         if i >= 3 && y <= last.y {
-            found_south |= bits(south.packed != vec4(0u), u32(i - 3));
-            certain_south |= bits(south.certain, u32(i - 3));
+            add_bits(&all_south, south, u32(i - 3));
             store_row(vec2(cell.x, y), east_3, south.packed);
         }
         east_3 = east_2;
@@ -108,10 +139,7 @@ fn find_in_cells(
         east_1 = east.packed;
     }
 #ifdef PLANES
-    add_columns(FOUND_EAST, cell, found_east);
-    add_columns(FOUND_SOUTH, cell, found_south);
-    add_columns(LINKED_EAST, cell, certain_east);
-    add_columns(LINKED_SOUTH, cell, certain_south);
-    add_rows(cell, select(vec4(0u), certain_south, columns.own >= vec4(0, 1, 2, 3) + cell.x));
+    let own = columns.own < vec4(0, 1, 2, 3) + cell.x;
+    store_bits(cell, all_east, all_south, select(all_south.certain, vec4(0u), own));
 #endif
 }

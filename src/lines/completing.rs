@@ -36,6 +36,22 @@ impl Inputs<'_> {
         (0..count).map(pass).collect()
     }
 
+    /// The pass that joins lines over ledges, if there is one.
+    pub(super) fn join_pass<'a>(
+        &'a self,
+        passes: &CellPasses,
+        buffers: &CrackBuffers,
+    ) -> Result<Option<Ready<'a, ComputePipeline>>, LeftOut> {
+        let Some(id) = passes.join else {
+            return Ok(None);
+        };
+        let mut entries = vec![entry(1, self.uniform()?)];
+        entries.extend(self.tiles()?.lists.cell_entries());
+        entries.extend(buffers.link_entries(self.parts.0.0.links() % 2));
+        let group = self.group(&LineKey::link_layout(), &entries);
+        Ok(Some((self.compute(id)?, group)))
+    }
+
     /// The pass that closes gaps, if there is one.
     pub(super) fn bridge_pass<'a>(
         &'a self,
@@ -47,7 +63,7 @@ impl Inputs<'_> {
         };
         let mut entries = vec![entry(1, self.uniform()?)];
         entries.extend(self.tiles()?.lists.cell_entries());
-        entries.extend(buffers.bridge_entries(self.parts.0.0.links() % 2));
+        entries.extend(buffers.bridge_entries(self.parts.0.0.joined() % 2));
         let group = self.group(&LineKey::bridge_layout(), &entries);
         Ok(Some((self.compute(id)?, group)))
     }
@@ -62,7 +78,7 @@ impl Inputs<'_> {
             return Ok(None);
         };
         let key = self.parts.0.1.key.for_settle();
-        let mut entries = if key.creases || key.weight.any() {
+        let mut entries = if key.reads_depth() {
             self.entries(&key, key.weight.light)?
         } else {
             vec![entry(1, self.uniform()?)]
@@ -92,7 +108,7 @@ impl Inputs<'_> {
             entries.push(entry(24, motion.into_binding()));
         }
         entries.extend(self.tiles()?.lists.cell_entries());
-        entries.extend(buffers.written_planes(request.links()));
+        entries.extend(buffers.written_planes(request.joined()));
         entries.extend(lives.entries());
         let group = self.group(&key.persist_layout(), &entries);
         Ok(Some(((self.compute(id)?, group), lives)))

@@ -8,6 +8,9 @@
 #import bevy_comics::lines::edge::{
     CREASE, Lines, OBJECT, SILHOUETTE, THINNEST, byte, fold_response, pack_ink, step_response,
 }
+#ifdef LEDGES
+#import bevy_comics::lines::ledge::may_be_ledge
+#endif
 #import bevy_comics::lines::rows::Borders
 #import bevy_comics::objects::kinds_of
 #ifdef OBJECT_STYLES
@@ -81,6 +84,8 @@ struct Cracks {
     packed: vec4<u32>,
     // Whether they are lines by themselves. The others only continue lines.
     certain: vec4<bool>,
+    // LEDGES: whether they only join lines.
+    ledge: vec4<bool>,
 }
 
 // Packs ink and half width as they respond to the `amount` of the full response, 0 to 1.
@@ -191,6 +196,19 @@ fn add_object_edges(before: Found, s: Lines, at: Borders, reference: vec4<f32>, 
 }
 #endif
 
+#ifdef LEDGES
+// A face between two creases may be so thin that it is only seen in some of the pixels along it:
+// at the others, the surfaces on its two sides border on each other with a step. Such a step is
+// too low for a silhouette, and has no fold. It is a crease where it joins lines, see join.wgsl.
+fn are_ledges(found: Found, s: Lines, at: Borders, here: vec4<u32>, there: vec4<u32>) -> vec4<bool> {
+    let near = max(at.here, at.there);
+    let joined = at.excess < s.jump * (s.reference_factor * near + s.reference_constant);
+    let exists = min(at.here, at.there) > vec4(0.0);
+    let drawn = (has(here, CREASE) | has(there, CREASE)) & (found.kinds == vec4(0u));
+    return may_be_ledge(s, at.excess, near) & joined & exists & drawn & !at.outdone;
+}
+#endif
+
 // The packed cracks, with the width and opacity of the lines of their owners.
 fn packed_of(found: Found, s: Lines, at: Borders) -> vec4<u32> {
     let owner_slot = select(at.marks_there, at.marks_here, found.mine) & vec4(SLOT);
@@ -228,5 +246,12 @@ fn cracks(s: Lines, at: Borders) -> Cracks {
 #ifdef OBJECT_EDGES
     found = add_object_edges(found, s, at, reference, here, there);
 #endif
-    return Cracks(packed_of(found, s, at), found.certain);
+    var ledge = vec4(false);
+#ifdef LEDGES
+    ledge = are_ledges(found, s, at, here, there);
+    found.kinds |= select(vec4(0u), vec4(CREASE), ledge);
+    found.ink = select(found.ink, vec4(1.0), ledge);
+    found.mine = select(found.mine, owned(found.mine, has(here, CREASE), has(there, CREASE)), ledge);
+#endif
+    return Cracks(packed_of(found, s, at), found.certain, ledge);
 }

@@ -34,6 +34,7 @@ pub(super) struct ReadyCells<'a> {
     pub buffers: &'a CrackBuffers,
     pub find: Ready<'a, ComputePipeline>,
     pub link: Vec<Ready<'a, ComputePipeline>>,
+    pub join: Option<Ready<'a, ComputePipeline>>,
     pub persist: Option<ReadyLives<'a>>,
     pub bridge: Option<Ready<'a, ComputePipeline>>,
     pub settle: Option<Ready<'a, ComputePipeline>>,
@@ -48,12 +49,17 @@ impl ReadyCells<'_> {
             self.buffers.copy_planes(encoder, i % 2);
             self.dispatch(encoder, "comics_link_lines", link);
         }
+        if let Some(join) = &self.join {
+            self.buffers.copy_planes(encoder, self.link.len() % 2);
+            self.dispatch(encoder, "comics_join_lines", join);
+        }
         if let Some((persist, lives)) = &self.persist {
             lives.clear(encoder);
             self.dispatch(encoder, "comics_persist_lines", persist);
         }
         if let Some(bridge) = &self.bridge {
-            self.buffers.copy_planes(encoder, self.link.len() % 2);
+            let copies = self.link.len() + usize::from(self.join.is_some());
+            self.buffers.copy_planes(encoder, copies % 2);
             self.dispatch(encoder, "comics_bridge_lines", bridge);
         }
         if let Some(settle) = &self.settle {

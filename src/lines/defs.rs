@@ -28,11 +28,14 @@ impl LineKey {
         let weight = &self.weight;
         self.common()
             .chain(names([
+                (self.ledges, "LEDGES"),
                 (self.bridged, "BRIDGED"),
                 (self.smooth, "SMOOTH"),
                 (self.creases, "FOLDS"),
                 (weight.any(), "WEIGHT"),
-                (self.creases || weight.any(), "DEPTH"),
+                (self.reads_depth(), "DEPTH"),
+                (self.rims, "RIMS"),
+                (self.reads_depth(), "EDITS"),
                 (weight.kinds, "KIND_WEIGHT"),
                 (weight.light, "LIGHT_WEIGHT"),
                 (weight.light, "NORMALS"),
@@ -86,6 +89,7 @@ impl LineKey {
                 (self.creases, "CREASES"),
                 (self.creases, "NORMALS"),
                 (self.object_edges, "OBJECT_EDGES"),
+                (self.ledges, "LEDGES"),
                 (self.sections, "SECTIONS"),
                 (self.marks, "MARKS"),
                 (self.multisampled_picture, "MULTISAMPLED_PICTURE"),
@@ -103,7 +107,7 @@ impl LineKey {
         let jumps = self.jumps.then_some(jumps);
         let cracks = self.has_cracks().then(|| "CRACKS".into());
         let bridged = self.bridged.then(|| "BRIDGED".into());
-        self.crack_defs(self.silhouettes)
+        self.crack_defs(self.silhouettes || self.ledges)
             .into_iter()
             .chain(["BOUNDS".into()])
             .chain(cracks)

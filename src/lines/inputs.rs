@@ -215,6 +215,7 @@ impl Inputs<'_> {
                     buffers,
                     find: (self.compute(passes.find)?, group),
                     link: self.link_passes(&passes, buffers)?,
+                    join: self.join_pass(&passes, buffers)?,
                     persist: self.persist_pass(&passes, buffers)?,
                     bridge: self.bridge_pass(&passes, buffers)?,
                     settle: self.settle_pass(&passes, buffers)?,

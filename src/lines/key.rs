@@ -74,6 +74,10 @@ pub(crate) struct LineKey {
     pub motion: bool,
     /// Loose ends are extended.
     pub overshoots: bool,
+    /// Lines are joined over faces that are thinner than a pixel.
+    pub ledges: bool,
+    /// Creases and object edges may be parts of silhouettes.
+    pub rims: bool,
     /// Gaps in lines are closed.
     pub bridged: bool,
     /// Drawing looks up in planes of bits where cracks are.
@@ -135,6 +139,11 @@ impl LineKey {
             persists: lines.persists() && !by_fragments,
             motion: lines.persists() && request.motion,
             overshoots: lines.overshoots() && !by_fragments,
+            ledges: lines.joins() && !by_fragments,
+            rims: silhouettes
+                && (creases || lines.objects.is_some() && request.ids)
+                && lines.links()
+                && !by_fragments,
             bridged: lines.bridge > 0 && !by_fragments,
             planes: false,
             smooth: lines.smooth && !by_fragments,
@@ -173,6 +182,7 @@ impl LineKey {
             fading: false,
             visible_range: self.jumps && self.visible_range,
             links: false,
+            rims: false,
             bridged: self.bridged,
             persists: false,
             smooth: false,
@@ -188,6 +198,7 @@ impl LineKey {
         Self {
             ids: self.object_edges || self.object_styles || self.sections,
             links: self.settles(),
+            rims: false,
             bridged: false,
             persists: false,
             motion: false,
@@ -221,6 +232,8 @@ impl LineKey {
             jumps: false,
             map_flags: 0,
             by_fragments: false,
+            ledges: false,
+            rims: false,
             bridged: false,
             persists: false,
             motion: false,
@@ -237,15 +250,22 @@ impl LineKey {
         let weight = self.weight;
         let reads_map = weight.perspective;
         Self {
+            ledges: self.ledges,
+            rims: self.rims,
             bridged: self.bridged,
             smooth: self.smooth,
             creases: self.creases && self.smooth,
             weight,
             ids: weight.outer && self.ids,
-            oblique: (weight.any() || self.creases && self.smooth) && self.oblique,
+            oblique: (weight.any() || self.rims || self.creases && self.smooth) && self.oblique,
             visible_range: reads_map && self.visible_range,
             ..Self::default()
         }
+    }
+
+    /// Whether completing cracks reads depth, of a key for that pass.
+    pub fn reads_depth(&self) -> bool {
+        self.creases || self.rims || self.weight.any()
     }
 
     /// The part that keeping the lines of the last frames depends on.

@@ -117,7 +117,7 @@ impl LineKey {
     }
 
     pub fn settle_layout(&self) -> BindGroupLayoutDescriptor {
-        let mut entries = if self.creases || self.weight.any() {
+        let mut entries = if self.reads_depth() {
             self.inputs(self.weight.light, ShaderStages::COMPUTE)
         } else {
             let uniform = uniform_buffer::<LinePassUniform>(false);

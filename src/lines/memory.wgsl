@@ -19,6 +19,32 @@ const STILL: f32 = 0.05;
 // offsets.
 const LONGEST: f32 = 128.0;
 
+// Frames that a line of a still view may be missing in: two rounds of the engine's offsets. Some
+// edges are only found at some of the offsets.
+const MISSING: f32 = 16.0;
+
+// The number of frames in a row in which the memory was not between the least and the largest ink
+// nearby. `is_missing`: whether it is not in this frame.
+fn missing_at(before: f32, is_missing: bool) -> f32 {
+    return select(0.0, before + 1.0, is_missing);
+}
+
+// Whether the memory is limited to the ink nearby in this frame: where lines move, or have been
+// missing for long.
+fn is_limited(missing: f32, speed: f32) -> bool {
+    return missing > MISSING || speed > STILL;
+}
+
+// Two numbers of frames in one, and back: those in the memory, and those with missing lines.
+fn pack_frames(frames: f32, missing: f32) -> f32 {
+    return floor(frames) + 256.0 * missing;
+}
+
+fn unpack_frames(packed: f32) -> vec2<f32> {
+    let missing = floor(packed / 256.0);
+    return vec2(packed - 256.0 * missing, missing);
+}
+
 // The number of frames in the memory, this one included, from that of the last frame. Where
 // lines move, there are fewer.
 fn frames_at(before: f32, share: f32, speed: f32) -> f32 {
@@ -43,7 +69,7 @@ fn cubic_weights(f: f32) -> vec4<f32> {
 }
 
 // Ink of three kinds from that in the memory and that of this frame. The memory is limited to
-// the least and the largest ink nearby in this frame.
+// `least` and `most`.
 fn remembered(past: vec3<f32>, now: vec3<f32>, least: vec3<f32>, most: vec3<f32>, share: f32) -> vec3<f32> {
     return mix(clamp(past, least, most), now, share);
 }

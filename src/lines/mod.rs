@@ -2,9 +2,9 @@
 //! view. `walk.wgsl` looks for cracks, the borders between pixels that lines run along, in
 //! depth, normals and object ids; it lists the cells that have them, and `tiles.wgsl` the
 //! tiles nearby. In the cells, `cells.wgsl` measures the cracks, `link.wgsl` continues lines
-//! along weak ones, `bridge.wgsl` closes gaps, and `settle.wgsl` completes them. In the tiles, `columns.wgsl`, for wide
-//! lines, and `draw.wgsl` draw their ink into a texture. Effects read the ink with
-//! `read.wgsl`.
+//! along weak ones, `join.wgsl` joins them over faces that are thinner than a pixel, `bridge.wgsl`
+//! closes gaps, and `settle.wgsl` completes them. In the tiles, `columns.wgsl`, for wide lines, and
+//! `draw.wgsl` draw their ink into a texture. Effects read the ink with `read.wgsl`.
 
 mod boil;
 mod color;
@@ -116,6 +116,7 @@ fn load_shaders(app: &mut App) {
     load_shader_library!(app, "blocks.wgsl");
     load_shader_library!(app, "rows.wgsl");
     load_shader_library!(app, "crack.wgsl");
+    load_shader_library!(app, "ledge.wgsl");
     load_shader_library!(app, "jumps.wgsl");
     load_shader_library!(app, "read.wgsl");
     load_shader_library!(app, "bend.wgsl");
@@ -136,11 +137,13 @@ fn load_shaders(app: &mut App) {
     load_shader_library!(app, "lives.wgsl");
     load_shader_library!(app, "overshoot.wgsl");
     load_shader_library!(app, "chain.wgsl");
+    load_shader_library!(app, "rim.wgsl");
     load_shader_library!(app, "stored.wgsl");
     embedded_asset!(app, "walk.wgsl");
     embedded_asset!(app, "cells.wgsl");
     embedded_asset!(app, "link.wgsl");
     embedded_asset!(app, "persist.wgsl");
+    embedded_asset!(app, "join.wgsl");
     embedded_asset!(app, "bridge.wgsl");
     embedded_asset!(app, "ends.wgsl");
     embedded_asset!(app, "strokes.wgsl");

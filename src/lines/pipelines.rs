@@ -25,6 +25,7 @@ pub(crate) struct LineShaders {
     walk: Handle<Shader>,
     cells: Handle<Shader>,
     link: Handle<Shader>,
+    join: Handle<Shader>,
     persist: Handle<Shader>,
     bridge: Handle<Shader>,
     ends: Handle<Shader>,
@@ -45,6 +46,7 @@ impl LineShaders {
             walk: load_embedded_asset!(assets, "walk.wgsl"),
             cells: load_embedded_asset!(assets, "cells.wgsl"),
             link: load_embedded_asset!(assets, "link.wgsl"),
+            join: load_embedded_asset!(assets, "join.wgsl"),
             persist: load_embedded_asset!(assets, "persist.wgsl"),
             bridge: load_embedded_asset!(assets, "bridge.wgsl"),
             ends: load_embedded_asset!(assets, "ends.wgsl"),
@@ -71,6 +73,8 @@ pub(crate) enum SearchPass {
     Cells(LineKey),
     /// Continues lines along weak cracks; the last pass by the steps that are left.
     Link { last: bool },
+    /// Joins lines over faces that are thinner than a pixel.
+    Join,
     /// Keeps the lines of the last frames.
     Persist(LineKey),
     /// Closes gaps in lines.
@@ -90,6 +94,7 @@ impl SpecializedComputePipeline for LineShaders {
             SearchPass::Tiles => ("comics_list_tiles", "list_tiles", &self.tiles),
             SearchPass::Cells(_) => ("comics_find_in_cells", "find_in_cells", &self.cells),
             SearchPass::Link { .. } => ("comics_link_lines", "link", &self.link),
+            SearchPass::Join => ("comics_join_lines", "join", &self.join),
             SearchPass::Persist(_) => ("comics_persist_lines", "persist", &self.persist),
             SearchPass::Ends(_) => ("comics_line_ends", "ends", &self.ends),
             SearchPass::Bridge => ("comics_bridge_lines", "bridge", &self.bridge),
@@ -103,6 +108,7 @@ impl SpecializedComputePipeline for LineShaders {
                 let defs = last.then(|| "LAST".into());
                 (LineKey::link_layout(), defs.into_iter().collect())
             }
+            SearchPass::Join => (LineKey::link_layout(), vec![]),
             SearchPass::Persist(key) => (key.persist_layout(), key.persist_defs()),
             SearchPass::Ends(key) => (LineKey::ends_layout(), key.ends_defs()),
             SearchPass::Bridge => (LineKey::bridge_layout(), vec![]),

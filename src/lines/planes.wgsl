@@ -15,13 +15,18 @@ const CELL_ROWS: i32 = 8;
 const GROUP: u32 = 32u;
 const GROUPS: u32 = 1024u;
 
-// Planes, one after the other: cracks that are part of lines, and all cracks.
+// Planes, one after the other: cracks that are part of lines, those that may be, those that only
+// join lines, and silhouettes.
 const LINKED_EAST: i32 = 0;
 const LINKED_SOUTH: i32 = 1;
 const FOUND_EAST: i32 = 2;
 const FOUND_SOUTH: i32 = 3;
+const LEDGE_EAST: i32 = 4;
+const LEDGE_SOUTH: i32 = 5;
+const SILHOUETTE_EAST: i32 = 6;
+const SILHOUETTE_SOUTH: i32 = 7;
 // Behind them: LINKED_SOUTH by rows.
-const ROWS_SOUTH: i32 = 4;
+const ROWS_SOUTH: i32 = 8;
 
 // The word of a plane with the pixel (x, 32 * band).
 fn column_word(g: Grid, plane: i32, x: i32, band: i32) -> i32 {

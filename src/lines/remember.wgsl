@@ -5,7 +5,9 @@
 
 #import bevy_comics::depth::view::{set_view, texel_depth}
 #import bevy_comics::lines::edge::{decode_ink, encode_ink, is_in_front}
-#import bevy_comics::lines::memory::{cubic_weights, frames_at, remembered, share_at}
+#import bevy_comics::lines::memory::{
+    cubic_weights, frames_at, is_limited, missing_at, pack_frames, remembered, share_at, unpack_frames,
+}
 #import bevy_comics::lines::pass::line_pass
 
 // Ink of this frame, see draw.wgsl.
@@ -13,8 +15,8 @@
 // The engine's motion vectors: by how much each pixel of the grid has moved, in parts of the
 // viewport.
 @group(0) @binding(24) var motion_texture: texture_2d<f32>;
-// Ink of the last frame, and of each of its pixels the nearest raw depth around it and the
-// number of frames in its memory.
+// Ink of the last frame, and of each of its pixels the nearest raw depth around it and two numbers
+// of frames, see pack_frames.
 @group(0) @binding(25) var past_ink: texture_2d<f32>;
 @group(0) @binding(26) var past_depth: texture_2d<f32>;
 
@@ -68,11 +70,31 @@ fn past_at(place: vec2<f32>) -> vec3<f32> {
     return sum;
 }
 
+// The nearest raw depth around a pixel of the last frame, as wide as `wide` of depths_around.
+fn past_nearest(p: vec2<i32>) -> f32 {
+    let last = line_pass.seen.viewport.zw - 1;
+    let far = max(vec2<i32>(round(f32(line_pass.memory.spacing) / line_pass.grid.from_viewport.xy)), vec2(1));
+    var nearest = 0.0;
+    for (var i = 0; i < 4; i++) {
+        let corner = vec2(2 * (i & 1) - 1, 2 * (i >> 1u) - 1);
+        nearest = max(nearest, textureLoad(past_depth, clamp(p + far * corner, vec2(0), last), 0).x);
+    }
+    return nearest;
+}
+
+// The jump in raw depth that separates two surfaces.
+fn jump_at(d: f32) -> f32 {
+    let s = line_pass.settings;
+    return s.jump * (s.reference_factor * d + s.reference_constant);
+}
+
+// Ink that rounding may change.
+const ROUNDING: f32 = 0.01;
+
 @fragment
 fn remember(@builtin(position) position: vec4<f32>) -> Remembered {
     set_view(line_pass.seen);
     let g = line_pass.grid;
-    let s = line_pass.settings;
     let size = line_pass.seen.viewport.zw;
     let pixel = vec2<i32>(position.xy);
     let texel = textureLoad(ink_texture, pixel, 0);
@@ -92,14 +114,27 @@ fn remember(@builtin(position) position: vec4<f32>) -> Remembered {
     let seen = all(place >= vec2(0.0)) && all(place < vec2<f32>(size));
     let from_pixel = clamp(vec2<i32>(floor(place)), vec2(0), size - 1);
     let before = textureLoad(past_depth, from_pixel, 0).xy;
-    let jump = s.jump * (s.reference_factor * before.x + s.reference_constant);
     // What stood there in the last frame has gone.
-    let uncovered = is_in_front(before.x, around.wide, jump);
+    let uncovered = is_in_front(before.x, around.wide, jump_at(before.x));
     let known = seen && !uncovered && line_pass.memory.share < 1.0;
     let speed = length(moved);
-    let frames = frames_at(select(0.0, before.y, known), line_pass.memory.share, speed);
-    let ink = remembered(past_at(place), now, least, most, share_at(frames, speed));
+    let counted = select(vec2(0.0), unpack_frames(before.y), known);
+    let frames = frames_at(counted.x, line_pass.memory.share, speed);
+    let past = past_at(place);
+    let outside = any(past < least - ROUNDING) || any(past > most + ROUNDING);
+    let missing = missing_at(counted.y, outside);
+    // Something else has come before it, or what was around it has gone.
+    let past_wide = past_nearest(from_pixel);
+    let covered = is_in_front(around.nearest, past_wide, jump_at(around.nearest));
+    let vanished = is_in_front(past_wide, around.wide, jump_at(past_wide));
+    // The sky is still while the camera moves.
+    let sky = around.wide <= 0.0;
+    let limited = is_limited(missing, speed) || covered || vanished || sky;
+    let low = select(vec3(0.0), least, limited);
+    let high = select(vec3(1.0), most, limited);
+    let ink = remembered(past, now, low, high, share_at(frames, speed));
+    let count = pack_frames(frames, select(missing, 0.0, limited));
     // The slot of the strongest line of this frame; where it has none, that of the last one.
     let slot = select(textureLoad(past_ink, from_pixel, 0).w, texel.w, any(now > vec3(0.0)));
-    return Remembered(vec4(encode_ink(ink), slot), vec2(around.nearest, frames));
+    return Remembered(vec4(encode_ink(ink), slot), vec2(around.nearest, count));
 }

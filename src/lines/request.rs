@@ -107,9 +107,14 @@ impl LineRequest {
         (self.steps as usize).div_ceil(LINK_STEPS)
     }
 
+    /// Number of passes that link cracks, and that join lines.
+    pub fn joined(&self) -> usize {
+        self.links() + usize::from(self.settings.joins())
+    }
+
     /// Number of passes that copy the planes of cracks and add to them.
     pub fn copies(&self) -> usize {
-        self.links() + usize::from(self.settings.bridge > 0)
+        self.joined() + usize::from(self.settings.bridge > 0)
     }
 
     /// Columns leave out too much where lines are hardly wider than a pixel of the grid.
@@ -252,6 +257,8 @@ pub(crate) struct CellPasses {
     pub find: CachedComputePipelineId,
     /// Continues lines by as many steps as a pass goes, and by the steps that are left.
     pub link: Option<[CachedComputePipelineId; 2]>,
+    /// Joins lines over faces that are thinner than a pixel.
+    pub join: Option<CachedComputePipelineId>,
     /// Keeps the lines of the last frames.
     pub persist: Option<CachedComputePipelineId>,
     /// Closes gaps.
@@ -272,6 +279,7 @@ impl CellPasses {
         Self {
             find: compute(SearchPass::Cells(key.for_find())),
             link: continues.then(|| [false, true].map(|last| compute(SearchPass::Link { last }))),
+            join: key.ledges.then(|| compute(SearchPass::Join)),
             persist: (key.persists).then(|| compute(SearchPass::Persist(key.for_persist()))),
             bridge: key.bridged.then(|| compute(SearchPass::Bridge)),
             settle: key
@@ -285,7 +293,7 @@ impl CellPasses {
 
     pub fn ids(&self) -> impl Iterator<Item = CachedComputePipelineId> {
         let link = self.link.into_iter().flatten();
-        let rest = [self.persist, self.bridge, self.settle, self.ends];
+        let rest = [self.join, self.persist, self.bridge, self.settle, self.ends];
         let rest = rest.into_iter().flatten();
         [self.find].into_iter().chain(link).chain(rest)
     }

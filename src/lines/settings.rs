@@ -124,6 +124,11 @@ impl LineSettings {
         self.continuity > 0.0 || self.specks > 1 || self.bridge > 0
     }
 
+    /// Whether lines are joined where a face between two creases is thinner than a pixel.
+    pub(crate) fn joins(&self) -> bool {
+        self.continuity > 0.0 && self.has_measured_creases()
+    }
+
     /// Whether lines stay where their edges have become weak. Without continuity there are
     /// no weak edges.
     pub(crate) fn persists(&self) -> bool {

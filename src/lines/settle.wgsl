@@ -8,7 +8,9 @@
 #import bevy_comics::lines::edge::{CREASE, Grid, SILHOUETTE}
 #import bevy_comics::lines::listed::listed_cell
 #import bevy_comics::lines::pass::line_pass
-#import bevy_comics::lines::planes::{COLUMNS, FOUND_EAST, FOUND_SOUTH, LINKED_EAST, LINKED_SOUTH}
+#import bevy_comics::lines::planes::{
+    COLUMNS, FOUND_EAST, FOUND_SOUTH, LEDGE_EAST, LEDGE_SOUTH, LINKED_EAST, LINKED_SOUTH,
+}
 #import bevy_comics::lines::read_planes::{column_window, load_column, row_window}
 #ifdef DEPTH
 #import bevy_comics::depth::view::{set_view, texel_depth}
@@ -18,6 +20,9 @@
 #endif
 #ifdef BRIDGED
 #import bevy_comics::lines::gaps::source_of
+#endif
+#ifdef RIMS
+#import bevy_comics::lines::rim::with_rim
 #endif
 #ifdef WEIGHT
 #import bevy_comics::depth::map::is_background
@@ -273,6 +278,44 @@ fn is_speck(g: Grid, crack: vec3<i32>) -> bool {
     return back < most && back + cracks_to_end(g, crack, last_corner(crack), most - back) < most;
 }
 
+// Of the cracks of a pixel, 1 for each, those that are no specks.
+fn without_specks(g: Grid, p: vec2<i32>, cracks: vec2<u32>) -> vec2<u32> {
+    var kept = cracks;
+    if g.specks > 1 {
+        if kept.x != 0u && is_speck(g, vec3(p, 0)) {
+            kept.x = 0u;
+        }
+        if kept.y != 0u && is_speck(g, vec3(p, 1)) {
+            kept.y = 0u;
+        }
+    }
+    return kept;
+}
+
+#ifdef SMOOTH
+// How the lines along both cracks of a pixel leave them. `kept`: whether it has them; `packed`: the
+// packed cracks.
+fn bends_of(p: vec2<i32>, kept: vec2<u32>, packed: vec2<u32>) -> u32 {
+    let g = line_pass.grid;
+    var bends = 0x80808080u;
+    if kept.x != 0u {
+        bends = (bends & 0xffff0000u) | bend_east(g, p);
+    }
+    if kept.y != 0u {
+        bends = (bends & 0xffffu) | (bend_south(g, p) << 16u);
+    }
+#ifdef FOLDS
+    if (packed.x & CREASE) != 0u {
+        bends = (bends & 0xffff0000u) | crease_bend(g, vec3(p, 0), bends & 0xffffu);
+    }
+    if (packed.y & CREASE) != 0u {
+        bends = (bends & 0xffffu) | (crease_bend(g, vec3(p, 1), bends >> 16u) << 16u);
+    }
+#endif
+    return bends;
+}
+#endif
+
 // Leaves out the cracks of a column of a cell that are not part of a line, and bends the
 // lines of the others. Bits are rows.
 fn settle_column(g: Grid, first: vec2<i32>) {
@@ -282,6 +325,10 @@ fn settle_column(g: Grid, first: vec2<i32>) {
     var south = (load_column(g, FOUND_SOUTH, first.x, band) >> from_top) & 0xffu;
     let linked_east = load_column(g, LINKED_EAST, first.x, band) >> from_top;
     let linked_south = load_column(g, LINKED_SOUTH, first.x, band) >> from_top;
+#ifdef LEDGES
+    east |= (load_column(g, LEDGE_EAST, first.x, band) >> from_top) & 0xffu;
+    south |= (load_column(g, LEDGE_SOUTH, first.x, band) >> from_top) & 0xffu;
+#endif
 #ifdef BRIDGED
     east |= linked_east & 0xffu;
     south |= linked_south & 0xffu;
@@ -291,42 +338,33 @@ fn settle_column(g: Grid, first: vec2<i32>) {
         let row = firstTrailingBit(rows);
         rows &= rows - 1u;
         let p = first + vec2(0, i32(row));
-        var kept = vec2((linked_east >> row) & 1u, (linked_south >> row) & 1u);
-        if g.specks > 1 {
-            if kept.x != 0u && is_speck(g, vec3(p, 0)) {
-                kept.x = 0u;
-            }
-            if kept.y != 0u && is_speck(g, vec3(p, 1)) {
-                kept.y = 0u;
-            }
-        }
+        let kept = without_specks(g, p, vec2((linked_east >> row) & 1u, (linked_south >> row) & 1u));
         let lost = vec2((east >> row) & 1u, (south >> row) & 1u) > kept;
         let at = p.y * g.rect.z + p.x;
         var bends = 0x80808080u;
+#ifdef EDITS
+        let stored = crack_words[at];
+        var packed = select(stored, vec2(0u), lost);
+#ifdef RIMS
+        packed = vec2(with_rim(vec3(p, 0), packed.x), with_rim(vec3(p, 1), packed.y));
+#endif
+#endif
 #ifdef SMOOTH
-        if kept.x != 0u {
-            bends = (bends & 0xffff0000u) | bend_east(g, p);
-        }
-        if kept.y != 0u {
-            bends = (bends & 0xffffu) | (bend_south(g, p) << 16u);
-        }
 #ifdef FOLDS
-        let kinds = crack_words[at];
-        if kept.x != 0u && (kinds.x & CREASE) != 0u {
-            bends = (bends & 0xffff0000u) | crease_bend(g, vec3(p, 0), bends & 0xffffu);
-        }
-        if kept.y != 0u && (kinds.y & CREASE) != 0u {
-            bends = (bends & 0xffffu) | (crease_bend(g, vec3(p, 1), bends >> 16u) << 16u);
-        }
+        bends = bends_of(p, kept, packed);
+#else
+        bends = bends_of(p, kept, vec2(0u));
 #endif
         bend_words[at] = bends;
 #endif
 #ifdef WEIGHT
-        let packed = select(crack_words[at], vec2(0u), lost);
-        crack_words[at] = vec2(
+        packed = vec2(
             weighed(vec3(p, 0), packed.x, bends & 0xffffu),
             weighed(vec3(p, 1), packed.y, bends >> 16u),
         );
+#endif
+#ifdef EDITS
+        crack_words[at] = packed;
 #else
         if any(lost) {
             crack_words[at] = select(crack_words[at], vec2(0u), lost);

@@ -75,10 +75,11 @@ pub struct ViewCracks {
     /// itself, not to its neighbour; bits 4 to 11: ink; 12 to 19: opacity, both from 0 to
     /// 255; 20 to 31: half the width.
     pub words: Buffer,
-    /// Where cracks are: words of 32 pixels of a column, bit 0 at the top. Four planes, each
+    /// Where cracks are: words of 32 pixels of a column, bit 0 at the top. Eight planes, each
     /// from left to right and then down: cracks to the east and to the south that are parts of
-    /// lines, and all that were found to the east and to the south. `None` if lines are neither
-    /// linked nor smooth nor weighted.
+    /// lines, those that were found to the east and to the south, those to the east and to the
+    /// south that only join lines, and silhouettes to the east and to the south. `None` if lines
+    /// are neither linked nor smooth nor weighted.
     pub planes: Option<Buffer>,
     /// For each pixel how the lines of its cracks leave them: the lower half of a word is
     /// that of the crack to the east. Bits 0 to 7: the offset across the crack in 256ths of a
@@ -110,7 +111,7 @@ impl CrackBuffers {
         let pixels = u64::from(rect.z) * u64::from(rect.w);
         let columns = u64::from(words.y) * u64::from(rect.z);
         let rows = u64::from(words.x) * u64::from(rect.w);
-        let used = [CRACKS * pixels, WORD * (4 * columns + rows)];
+        let used = [CRACKS * pixels, WORD * (8 * columns + rows)];
         let before = before.map(|b| (Some(b.words), b.planes, b.bends));
         let enough = |buffer: &Buffer, size| buffer.size() >= size;
         let take = |size: u64, label, old: Option<Buffer>| {

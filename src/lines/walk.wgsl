@@ -8,6 +8,9 @@
 
 #import bevy_comics::depth::view::set_view
 #import bevy_comics::lines::edge::{Lines, may_be_crease, may_be_silhouette}
+#ifdef LEDGES
+#import bevy_comics::lines::ledge::may_be_ledge
+#endif
 #import bevy_comics::lines::pass::line_pass
 #import bevy_comics::lines::planes::{CELL_ROWS, COLUMNS, GROUP, GROUPS, ROWS}
 #import bevy_comics::lines::rows::{Above, Borders, four_columns, step_down}
@@ -41,6 +44,9 @@ fn may_be_cracks(s: Lines, at: Borders) -> bool {
 #endif
 #ifdef CREASES
     found |= may_be_crease(s, at.folds);
+#endif
+#ifdef LEDGES
+    found |= may_be_ledge(s, at.excess, max(at.here, at.there));
 #endif
 #ifdef OBJECT_EDGES
     found |= at.object_here != at.object_there;

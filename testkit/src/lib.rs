@@ -5,6 +5,7 @@
 pub mod before;
 pub mod bench;
 pub mod device;
+pub mod forest;
 pub mod headless;
 pub mod line_work;
 pub mod link_work;

@@ -144,10 +144,18 @@ const PAGE_PRESETS: [Preset; 6] = [
     presets::RISOGRAPH,
 ];
 
-/// The presets that have a golden picture in a scene: all those that print
-/// or paint. The mountains show those after the
-/// first paper, the theatre those after the second, the teapot all of them, and the
-/// village those after the first and `graphic-novel`.
+/// The presets after the second paper that outline, and that suit a landscape.
+const OUTLINE_PRESETS: [Preset; 4] = [
+    presets::SATURDAY_MORNING,
+    presets::GRAPHIC_NOVEL,
+    presets::TWILIGHT_TOON,
+    presets::SILENT_FILM,
+];
+
+/// The presets that have a golden picture in a scene: all those that print or paint. The mountains
+/// show those after the first paper and those that outline, the theatre those after the
+/// second, the teapot all of them, and the village those after the first and
+/// `graphic-novel`.
 pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
     let mut shown = match scene {
         BuiltIn::Theatre => Vec::new(),
@@ -160,6 +168,10 @@ pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
     }
     // After the others: sketches change with the clock.
     shown.extend(PAGE_PRESETS);
+    if scene == BuiltIn::Mountains {
+        // Those with outlines: the meadow must not become a crowd of lines.
+        shown.extend(OUTLINE_PRESETS);
+    }
     shown.into_iter().map(Preset::name).collect()
 }
 

@@ -10,7 +10,7 @@ use bevy_comics_testkit::{
     reference::{
         crack::{Crack, crack, jump},
         draw::Cracks,
-        link::{Place, linked},
+        link::{Place, joined, linked},
         planes::column_word,
         resolve::Resolved,
     },
@@ -108,6 +108,7 @@ fn cracks_are_their_twin_bit_by_bit() {
     ];
     // Not the hard surface: where the two bends of a bevel are equal, rounding decides which of
     // them is the sharper one.
+    let mut joins = 0;
     let scenes = [Specimen::Organic, Specimen::Foliage, Specimen::Figure];
     for (msaa, scene) in [Msaa::Off, Msaa::Sample4]
         .into_iter()
@@ -138,9 +139,14 @@ fn cracks_are_their_twin_bit_by_bit() {
                     Some(((pixel, side), crack))
                 })
                 .collect();
-            let lines = linked(&all, outlines.continuity as i32);
-            let places: HashSet<Place> = all.keys().copied().collect();
-            for (planes, want) in [([2, 3], &places), ([0, 1], &lines)] {
+            let lines = joined(&linked(&all, outlines.continuity as i32), &all);
+            let places = |ledge: bool| {
+                let which = all.iter().filter(move |(_, crack)| crack.ledge == ledge);
+                which.map(|(place, _)| *place).collect::<HashSet<Place>>()
+            };
+            let (ledges, weak) = (places(true), places(false));
+            joins += lines.intersection(&ledges).count();
+            for (planes, want) in [([4, 5], &ledges), ([2, 3], &weak), ([0, 1], &lines)] {
                 let found = in_planes(&found, planes);
                 let differ: Vec<&Place> = found.symmetric_difference(want).collect();
                 assert!(differ.is_empty(), "{what}: planes {planes:?} at {differ:?}");
@@ -171,6 +177,8 @@ fn cracks_are_their_twin_bit_by_bit() {
             assert!(rounded * 50 < count, "{what}: {rounded} of {count}");
         }
     }
+    println!("{joins} ledges join lines");
+    assert!(joins > 20, "{joins}");
     assert_eq!(small.errors(), 0);
 }
 

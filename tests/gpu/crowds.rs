@@ -1,7 +1,8 @@
 //! Lines that crowd: how much of the picture they cover.
 
-use bevy::prelude::*;
+use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{ComicStyle, Outlines};
+use bevy_comics_testkit::forest;
 
 use crate::{
     small::{Small, black_ink, unlit},
@@ -144,5 +145,71 @@ fn lone_lines_do_not_change() {
                 "{width}, {budget}: {found}"
             );
         }
+    }
+}
+
+/// The forest at 500 metres, white before a white sky, in a picture of 16:9.
+fn far_forest(size: UVec2) -> Small {
+    let mut small = Small::new(size, Msaa::Off);
+    small.clear();
+    let camera = small.camera;
+    let mut camera = small.world().get_mut::<Camera>(camera).expect("a camera");
+    camera.clear_color = Color::WHITE.into();
+    let (at, fov) = forest::view();
+    small.insert((
+        at,
+        Projection::Perspective(PerspectiveProjection { fov, ..default() }),
+    ));
+    let world = small.world();
+    let white = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(unlit(Color::WHITE));
+    for (mut mesh, places) in forest::forest() {
+        mesh.remove_attribute(Mesh::ATTRIBUTE_COLOR);
+        let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+        for at in places {
+            world.spawn((Mesh3d(mesh.clone()), MeshMaterial3d(white.clone()), at));
+        }
+    }
+    small
+}
+
+/// A forest at 500 metres, whose trees are 4 to 25 pixels high, is a tone and no black bar: of each
+/// area of 32 x 32 pixels lines cover at most their budget; without it, they cover more than the default.
+#[test]
+fn a_forest_in_the_distance_is_no_black_bar() {
+    for (size, width) in [((320, 180), 2.0), ((320, 180), 3.0), ((640, 360), 2.0)] {
+        let size = UVec2::from(size);
+        let mut small = far_forest(size);
+        let found = [1.0, 0.35, 0.2].map(|budget| {
+            let outlines = Outlines {
+                width,
+                budget,
+                ..default()
+            };
+            small.style(&ComicStyle::new().with(outlines));
+            small.settle();
+            let picture = small.picture();
+            let areas = (0..size.y / 32).flat_map(|j| (0..size.x / 32).map(move |i| (i, j)));
+            let covered = areas.map(|(i, j)| {
+                let area = (0..32 * 32).map(|k| (32 * i + k % 32, 32 * j + k / 32));
+                black_ink(&picture, area) / (32.0 * 32.0)
+            });
+            let mut covered: Vec<f64> = covered.filter(|ink| *ink > 0.05).collect();
+            covered.sort_by(f64::total_cmp);
+            let mean = covered.iter().sum::<f64>() / covered.len() as f64;
+            let most = covered.last().copied().unwrap_or(0.0);
+            println!(
+                "{size}, {width} px, budget {budget}: {} areas, mean {mean:.3}, most {most:.3}",
+                covered.len()
+            );
+            assert!(covered.len() > 8, "{covered:?}");
+            // The band of the test above.
+            let limit = 1.15 * f64::from(budget);
+            assert!(budget == 1.0 || most <= limit, "{budget}: {most}");
+            most
+        });
+        assert!(found[0] > 0.35, "{found:?}");
+        assert_eq!(small.errors(), 0);
     }
 }

@@ -23,6 +23,7 @@ fn crack(response: f64, level: f64) -> Option<Crack> {
         opacity: 1.0,
         half_width: 1.0,
         certain: response >= 1.0,
+        ledge: false,
         bend: [0.0; 2],
         shifts: true,
     })

@@ -116,6 +116,70 @@ fn lines_of_a_still_view_stand_still() {
     assert_eq!(small.errors(), 0);
 }
 
+/// A ledge of 0.4 pixels, whose creases are found at some of the engine's offsets only: its line
+/// stands still too.
+#[test]
+fn lines_that_are_found_now_and_then_stand_still() {
+    let (mut small, wall) = scene();
+    small.world().despawn(wall);
+    let half = 0.5 * SIZE as f32;
+    // Below the eye: a slab of the wall, whose top is seen.
+    for (size, at) in [
+        (
+            Vec3::new(200.0, 200.0, 1.0),
+            Vec3::new(0.0, 0.0, -half - 1.5),
+        ),
+        (
+            Vec3::new(200.0, 100.0, 1.4),
+            Vec3::new(0.0, -67.0, -half - 0.3),
+        ),
+    ] {
+        let lean = Quat::from_rotation_z(0.1);
+        let at = Transform::from_translation(at).with_rotation(lean);
+        put(&mut small, Cuboid::from_size(size), Color::WHITE, at);
+    }
+    let mut found = Vec::new();
+    for memory in [1.0, 0.125] {
+        let outlines = Outlines {
+            memory,
+            objects: None,
+            ..default()
+        };
+        small.style(&ComicStyle::default().with(outlines));
+        small.headless.step(150);
+        assert!(total(&small) > 50.0, "{}", total(&small));
+        found.push(changes(&mut small));
+        println!(
+            "memory {memory}: {:.4} % change",
+            100.0 * found[found.len() - 1]
+        );
+    }
+    assert!(found[0] > 0.001, "{found:?}");
+    assert!(found[1] < 1e-4, "{found:?}");
+    assert_eq!(small.errors(), 0);
+}
+
+/// A wall that comes before another hides its lines at once.
+#[test]
+fn lines_that_are_covered_leave_no_ghosts() {
+    let (mut small, _) = scene();
+    outline(&mut small, 0.125);
+    assert!(total(&small) > 100.0);
+    let half = 0.5 * SIZE as f32;
+    let cover = Transform::from_xyz(0.0, 0.0, -0.5 * half);
+    put(
+        &mut small,
+        Rectangle::new(500.0, 500.0),
+        Color::WHITE,
+        cover,
+    );
+    small.headless.step(4);
+    let ghost = total(&small);
+    println!("ghost: {ghost}");
+    assert!(ghost < 1.0, "{ghost}");
+    assert_eq!(small.errors(), 0);
+}
+
 /// The sum of ink in the picture.
 fn total(small: &Small) -> f32 {
     removed(small).iter().sum()

@@ -11,7 +11,7 @@ use bevy_comics::{CameraCut, ComicStyle, Outlines, Silhouettes, VisibleDepthRang
 use bevy_comics_testkit::{
     reference::{
         crack::{Crack, crack, jump},
-        link::{Place, linked},
+        link::{Place, joined, linked},
         lives::Lives,
         resolve::Resolved,
     },
@@ -72,8 +72,10 @@ fn persistent_lines_are_their_twin() {
                     Some(((pixel, side), crack(&outlines, &seen, pixel, side, 1.0)?))
                 })
                 .collect();
-            let grown = linked(&all, outlines.continuity as i32);
-            let want = lives.next(&all, &grown, persistence);
+            let grown = joined(&linked(&all, outlines.continuity as i32), &all);
+            let found_ones = all.iter().filter(|(_, crack)| !crack.ledge);
+            let weak = found_ones.map(|(place, crack)| (*place, *crack)).collect();
+            let want = lives.next(&weak, &grown, persistence);
             // Until the twin has seen as many frames as lines can stay.
             if frame < 8 {
                 continue;

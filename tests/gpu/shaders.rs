@@ -475,6 +475,10 @@ fn every_kind_of_outline_composes_and_validates() {
             check(&find, &defs);
             check(&cells, &defs);
             check(&cells, &[&defs[..], &["PLANES"]].concat());
+            if kinds.contains(&"CREASES") {
+                check(&cells, &[&defs[..], &["PLANES", "LEDGES"]].concat());
+                check(&walk, &[&defs[..], &["CRACKS", "LEDGES"]].concat());
+            }
             check(&walk, &[&defs[..], &["CRACKS", "JUMPS"]].concat());
         }
         for forms in subsets(&["FAITHFUL_SILHOUETTES", "FAITHFUL_CREASES", "OBJECT_STYLES"]) {
@@ -495,6 +499,7 @@ fn every_kind_of_outline_composes_and_validates() {
     for last in [&[][..], &["LAST"]] {
         check(&shader("lines/link.wgsl"), last);
     }
+    check(&shader("lines/join.wgsl"), &[]);
     check(&shader("lines/bridge.wgsl"), &[]);
     for motion in [
         &[][..],
@@ -521,8 +526,11 @@ fn every_kind_of_outline_composes_and_validates() {
     }
     for smooth in [&[][..], &["SMOOTH"], &["SMOOTH", "FOLDS", "DEPTH"]] {
         for weight in [&[][..], &["WEIGHT", "DEPTH", "BUDGET"]] {
-            for bridged in [&[][..], &["BRIDGED"]] {
-                let flags = [smooth, weight, bridged].concat();
+            for bridged in subsets(&["BRIDGED", "LEDGES", "RIMS"]) {
+                let mut flags = [smooth, weight, &bridged[..]].concat();
+                if !weight.is_empty() || flags.contains(&"FOLDS") || flags.contains(&"RIMS") {
+                    flags.extend(["DEPTH", "EDITS"]);
+                }
                 check(&shader("lines/settle.wgsl"), &flags);
             }
         }
@@ -531,7 +539,7 @@ fn every_kind_of_outline_composes_and_validates() {
             &["LIGHT_WEIGHT", "NORMALS"],
             &["WIDTH_MAP", "LIGHT_WEIGHT", "NORMALS"],
         ] {
-            let weight = &["WEIGHT", "DEPTH", "SURFACE_WEIGHT"];
+            let weight = &["WEIGHT", "EDITS", "DEPTH", "SURFACE_WEIGHT"];
             check(
                 &shader("lines/settle.wgsl"),
                 &[smooth, weight, surface].concat(),

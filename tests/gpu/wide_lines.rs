@@ -70,6 +70,7 @@ fn a_faint_part_of_a_wide_line_is_as_wide_as_a_strong_one() {
                 opacity: 1.0,
                 half_width: if below { half_width } else { 8.0 },
                 certain: true,
+                ledge: false,
                 bend: [0.0; 2],
                 shifts: true,
             };

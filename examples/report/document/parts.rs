@@ -3,8 +3,9 @@
 use std::{fmt::Write, path::Path};
 
 use crate::{
-    costs::{OWN, cost_table, costs, size},
+    costs::{Cost, OWN, cost_table, costs, size},
     load,
+    table::Table,
 };
 
 pub fn parts(out: &mut String, folder: &Path) -> Result<(), String> {
@@ -34,5 +35,26 @@ pub fn parts(out: &mut String, folder: &Path) -> Result<(), String> {
         out.push_str(before);
         cost_table(out, &costs(&times, section, "teapot", laps));
     }
+    scene_parts(out, &times);
     Ok(())
+}
+
+/// The costs of what parts of the scene ask for, each from a scene of its own. Tables of older
+/// runs do not have them.
+fn scene_parts(out: &mut String, times: &Table) {
+    let all: Vec<&Vec<String>> = times.rows.iter().collect();
+    let sections = times.distinct(&all, "section");
+    let parts = sections.iter().filter(|name| name.starts_with("part: "));
+    let laps = ["prepass", "range", "lines", "post"];
+    let found = parts.flat_map(|section| costs(times, section, "teapot", &laps));
+    let found: Vec<Cost> = found.collect();
+    if found.is_empty() {
+        return;
+    }
+    out.push_str(
+        "What parts of the scene ask for, each on a scene of its own. The times include the \
+         prepass, which a camera without a style does not have. The glass is the mesh with most \
+         vertices:\n\n",
+    );
+    cost_table(out, &found);
 }

@@ -2,7 +2,8 @@
 
 use super::{
     edge::{
-        Normal, fold, fold_response, is_outdone, is_ridge, is_rim_ridge, step_excess, step_response,
+        Normal, fold, fold_response, is_ledge, is_outdone, is_ridge, is_rim_ridge, step_excess,
+        step_response,
     },
     map::is_background,
     smoothstep,
@@ -25,6 +26,8 @@ pub struct Crack {
     pub half_width: f64,
     /// Whether it is a line by itself; otherwise it only continues lines.
     pub certain: bool,
+    /// Whether it only joins lines.
+    pub ledge: bool,
     /// Offset and slope of its line, see [`bend`](super::bend).
     pub bend: [f64; 2],
     /// Whether the middle of a line of odd width is moved towards its owner.
@@ -142,6 +145,7 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         opacity: 1.0,
         half_width: 0.0,
         certain: false,
+        ledge: false,
         bend: [0.0; 2],
         shifts: true,
     };
@@ -185,6 +189,13 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         let objects = along(view, pixel, v, object);
         crack.kinds[2] = objects[2] != objects[3];
         crack.certain |= crack.kinds[2];
+    }
+    let low = s.creases.is_some_and(|c| c.form == Form::Corrected) && s.continuity > 0.0;
+    let exists = here.min(there) > 0.0 && crack.kinds == [false; 3];
+    if low && exists && is_ledge(excess, jump) && !is_outdone(depths) {
+        crack.kinds[1] = true;
+        crack.ink = 1.0;
+        crack.ledge = true;
     }
     let owner = if crack.mine { here } else { there };
     let d = view.frame.depth_map(owner)[0];

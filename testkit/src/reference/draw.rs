@@ -12,8 +12,9 @@ use super::{
     faithful::faithful,
     fold::placed,
     gaps::{gaps, source},
-    link::{Place, bend, linked, without_specks},
+    link::{Place, bend, joined, linked, without_specks},
     overshoot::{Stroke, strokes},
+    rim::is_rim,
     straight::straight,
     view::View,
     weight::{largest_weight, local_weight, taper_weight, weighted},
@@ -69,18 +70,22 @@ impl Cracks {
         };
         let steps = ((f64::from(s.continuity) * scale).ceil() as i32).min(64);
         let all: HashMap<Place, Crack> = found.places().collect();
+        // Only where gaps are closed, cracks are like others.
+        let counts = |crack: &Crack| s.bridge == 0 || !crack.ledge;
+        let sources = all.iter().filter(|(_, crack)| counts(crack));
+        let sources = sources.map(|(place, crack)| (*place, *crack)).collect();
         let specks = if s.specks < 2 {
             1
         } else {
             (f64::from(s.specks) * scale).ceil().min(64.0) as u32
         };
-        let linked = found.complete(&all, (steps, specks, s), (view, jump(s)));
+        let linked = found.complete((&all, &sources), (steps, specks, s), (view, jump(s)));
         let longest = if s.smooth {
             (f64::from(s.overshoot) * scale).min(64.0)
         } else {
             0.0
         };
-        found.weigh((s, view), [x0, y0], longest, (&linked, &all));
+        found.weigh((s, view), [x0, y0], longest, (&linked, &sources));
         if longest > 0.0 {
             let at = |(pixel, side): Place| found.at(pixel[0], pixel[1])[side];
             found.strokes = strokes(&linked, &at, [w, h], longest);
@@ -141,26 +146,36 @@ impl Cracks {
     }
 
     /// Closes gaps, leaves out the cracks that are not parts of lines, and bends the lines of the
-    /// others. `all`: those that were found.
+    /// others. `all`: those that were found, and `sources` without ledges.
     /// Returns the cracks of all lines, specks included.
     fn complete(
         &mut self,
-        all: &HashMap<Place, Crack>,
+        (all, sources): (&HashMap<Place, Crack>, &HashMap<Place, Crack>),
         (steps, specks, s): (i32, u32, &Outlines),
         (view, jump): (&View, f64),
     ) -> HashSet<Place> {
         let width = self.width;
         let place = |i: usize, side| ([i as i64 % width, i as i64 / width], side);
-        let mut linked = linked(all, steps);
+        let mut linked = joined(&linked(all, steps), all);
         let closed = gaps(&linked, s.bridge);
         linked.extend(&closed);
         let kept = without_specks(&linked, [self.width, self.height], specks);
         for (i, cracks) in self.cracks.iter_mut().enumerate() {
             for (side, crack) in cracks.iter_mut().enumerate() {
                 if closed.contains(&place(i, side)) {
-                    *crack = Some(all[&source(all, place(i, side))]);
+                    let near = || sources[&source(sources, place(i, side))];
+                    *crack = Some(all.get(&place(i, side)).copied().unwrap_or_else(near));
                 }
                 *crack = crack.filter(|_| kept.contains(&place(i, side)));
+                if let Some(crack) = crack.as_mut() {
+                    let place = place(i, side);
+                    let at = source(sources, place);
+                    let links = s.continuity > 0.0 || s.specks > 1 || s.bridge > 0;
+                    if links && !crack.kinds[0] && is_rim((all, &linked), place, (view, jump), at) {
+                        crack.kinds = [true, false, crack.kinds[2]];
+                        crack.shifts = true;
+                    }
+                }
                 if let Some(crack) = crack.as_mut().filter(|_| self.smooth) {
                     let place = place(i, side);
                     let run = bend(&linked, place);

@@ -80,6 +80,12 @@ pub fn step_response(excess: f64, k: f64) -> f64 {
     (0.5 * excess.max(0.0) / k.max(1e-30)).powi(2).min(1.0)
 }
 
+/// Whether the excess of a step is that of a ledge: at least a twentieth of the jump that separates
+/// two surfaces, but less than it.
+pub fn is_ledge(excess: f64, jump: f64) -> bool {
+    excess > 0.05 * jump && excess < jump
+}
+
 /// Squared distance of two unit normals; `None` if one is missing.
 pub fn fold(a: Normal, b: Normal) -> Option<f64> {
     let (a, b) = (a?, b?);

@@ -1,4 +1,4 @@
-//! Twin of `lines/link.wgsl` and `lines/settle.wgsl`: the cracks that are parts of lines,
+//! Twin of `lines/link.wgsl`, `lines/join.wgsl` and `lines/settle.wgsl`: the cracks that are parts of lines,
 //! and how these run. A graph of cracks and of the corners of pixels that they end at.
 
 use std::collections::{HashMap, HashSet};
@@ -41,8 +41,38 @@ fn neighbours(place: Place) -> impl Iterator<Item = Place> {
         .filter(move |other| *other != place)
 }
 
-/// The cracks that are parts of lines: those that are certain, and those that a path of at
-/// most `steps` cracks connects with one.
+/// Steps along which lines grow from both sides to join.
+const JOINED: usize = 6;
+
+/// With the ledges on paths of at most `2 * JOINED` ledges from one line to another: lines grow
+/// along ledges, and what has a loose end is taken away again.
+pub fn joined(lines: &HashSet<Place>, cracks: &HashMap<Place, Crack>) -> HashSet<Place> {
+    let is_ledge = |place: &Place| cracks.get(place).is_some_and(|c| c.ledge);
+    let mut all = lines.clone();
+    let mut border = all.clone();
+    for _ in 0..JOINED {
+        border = border
+            .into_iter()
+            .flat_map(neighbours)
+            .filter(|place| is_ledge(place) && !all.contains(place))
+            .collect();
+        all.extend(&border);
+    }
+    for _ in 0..JOINED {
+        let before = all.clone();
+        let goes_on = |place: Place| {
+            corners(place).into_iter().all(|corner| {
+                let mut others = at_corner(corner).into_iter();
+                others.any(|other| other != place && before.contains(&other))
+            })
+        };
+        all.retain(|place| lines.contains(place) || goes_on(*place));
+    }
+    all
+}
+
+/// The cracks that are parts of lines, without ledges: those that are certain, and those that a
+/// path of at most `steps` cracks connects with one.
 pub fn linked(cracks: &HashMap<Place, Crack>, steps: i32) -> HashSet<Place> {
     let certain = cracks.iter().filter(|(_, crack)| crack.certain);
     let mut all: HashSet<Place> = certain.map(|(place, _)| *place).collect();
@@ -51,7 +81,10 @@ pub fn linked(cracks: &HashMap<Place, Crack>, steps: i32) -> HashSet<Place> {
         border = border
             .into_iter()
             .flat_map(neighbours)
-            .filter(|place| cracks.contains_key(place) && !all.contains(place))
+            .filter(|place| {
+                let weak = cracks.get(place).is_some_and(|c| !c.ledge);
+                weak && !all.contains(place)
+            })
             .collect();
         all.extend(&border);
     }

@@ -6,6 +6,16 @@ pub fn frames_at(before: f64, share: f64, speed: f64) -> f64 {
     most.min(before + 1.0)
 }
 
+/// The number of frames in a row in which the memory was not between the ink nearby.
+pub fn missing_at(before: f64, is_missing: bool) -> f64 {
+    if is_missing { before + 1.0 } else { 0.0 }
+}
+
+/// Whether the memory is limited to the ink nearby: in motion, or after two rounds of eight offsets.
+pub fn is_limited(missing: f64, speed: f64) -> bool {
+    missing > 16.0 || speed > 0.05
+}
+
 /// The fraction of this frame where lines move by `speed` pixels per frame.
 pub fn share_at(frames: f64, speed: f64) -> f64 {
     (1.0 / frames.max(1.0) + speed / 4.0).min(1.0)

@@ -46,6 +46,7 @@ pub mod range;
 pub mod raw;
 pub mod read;
 pub mod resolve;
+mod rim;
 pub mod screen;
 pub mod similarity;
 pub mod sketch;

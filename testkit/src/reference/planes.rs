@@ -4,7 +4,7 @@
 pub type Size = [i64; 2];
 
 /// Planes by columns; behind them is one by rows.
-pub const COLUMN_PLANES: i64 = 4;
+pub const COLUMN_PLANES: i64 = 8;
 
 /// Words of 32 pixels across a grid and down it.
 pub fn words([width, height]: Size) -> [i64; 2] {

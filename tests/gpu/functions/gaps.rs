@@ -75,6 +75,7 @@ fn a_crack_in_a_gap_is_like_the_nearest_one() {
         opacity: 1.0,
         half_width: 1.0,
         certain: true,
+        ledge: false,
         bend: [0.0; 2],
         shifts: true,
     };

@@ -2,7 +2,7 @@
 
 use bevy_comics_testkit::reference::{
     edge::is_in_front,
-    memory::{cubic_weights, frames_at, remembered, share_at},
+    memory::{cubic_weights, frames_at, is_limited, missing_at, remembered, share_at},
     surface::surface_ink,
 };
 
@@ -44,6 +44,33 @@ fn the_memory_of_lines_is_that_of_the_twin() {
                 let uncovered = is_in_front(past, now, least);
                 assert_eq!(found[3] == 1.0, uncovered, "{row:?}");
             }
+        }
+    });
+}
+
+#[test]
+fn missing_lines_are_counted_like_the_twin() {
+    let row = (1u32..=128, 0u32..=20, any::<bool>(), 0.0f32..=0.1).prop_map(
+        |(frames, missing, is_missing, speed)| {
+            [frames as f32, missing as f32, f32::from(is_missing), speed]
+        },
+    );
+    for_batches(row, |rows| {
+        let results = gpu().evaluate(
+            "#import bevy_comics::lines::memory::{
+                is_limited, missing_at, pack_frames, unpack_frames,
+            }",
+            "let both = unpack_frames(pack_frames(i(0u), i(1u)));
+             let missing = missing_at(both.y, i(2u) == 1.0);
+             return vec4(both, missing, f32(is_limited(missing, i(3u))));",
+            rows,
+        );
+        for (row, found) in rows.iter().zip(results) {
+            let [frames, before, is_missing, speed] = row.map(f64::from);
+            let missing = missing_at(before, is_missing == 1.0);
+            let limited = f64::from(is_limited(missing, speed));
+            let want = [frames, before, missing, limited];
+            assert_eq!(found.map(f64::from), want, "{row:?}");
         }
     });
 }

@@ -1,16 +1,13 @@
 //! Strips of frames: every capability of lines in motion. For looking at; not part of the
 //! documents.
 
+mod stages;
+
 use std::path::Path;
 
-use bevy::{
-    anti_alias::taa::TemporalAntiAliasing,
-    core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass},
-    prelude::*,
-    render::view::Msaa,
-};
+use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
-    ComicStyle, LineBoil, LineColor, LineWeight, Outlines, SelectionOutline, ToneBands, XRayOutline,
+    ComicStyle, Desaturation, IsoLines, LineBoil, LineColor, LineWeight, Outlines, ToneBands,
 };
 use bevy_comics_testkit::{scenes::BuiltIn, studio::Studio};
 use image::RgbaImage;
@@ -30,6 +27,8 @@ enum Motion {
     Turntable,
     /// Away from the target, to four times the distance.
     Dolly,
+    /// From side to side around the target, by a tenth of a degree a frame.
+    Sway,
     /// Along the view, at the height of the eye, and a little to the side.
     Walk,
 }
@@ -42,6 +41,10 @@ impl Motion {
         match self {
             Self::Turntable => {
                 let turned = Quat::from_rotation_y(t * std::f32::consts::TAU / 3.0) * away;
+                Transform::from_translation(target + turned).looking_at(target, Vec3::Y)
+            }
+            Self::Sway => {
+                let turned = Quat::from_rotation_y((3.6f32 * t).to_radians()) * away;
                 Transform::from_translation(target + turned).looking_at(target, Vec3::Y)
             }
             Self::Dolly => {
@@ -65,6 +68,7 @@ struct Strip {
     path: Motion,
     outlines: Outlines,
     prepare: fn(&mut Studio),
+    more: fn(ComicStyle) -> ComicStyle,
 }
 
 impl Strip {
@@ -75,7 +79,18 @@ impl Strip {
             path,
             outlines,
             prepare: |_| (),
+            more: |style| style,
         }
+    }
+
+    /// On a changed scene.
+    fn on(self, prepare: fn(&mut Studio)) -> Self {
+        Self { prepare, ..self }
+    }
+
+    /// With more effects.
+    fn with(self, more: fn(ComicStyle) -> ComicStyle) -> Self {
+        Self { more, ..self }
     }
 }
 
@@ -87,28 +102,10 @@ fn weighted(weight: LineWeight) -> Outlines {
     }
 }
 
-/// Marks a third of the meshes of the scene.
-fn mark<M: Component + Default>(studio: &mut Studio) {
-    let world = studio.headless.app.world_mut();
-    let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
-    let meshes: Vec<Entity> = meshes.iter(world).collect();
-    for mesh in meshes.into_iter().step_by(3) {
-        world.entity_mut(mesh).insert(M::default());
-    }
-}
-
-fn jitter(studio: &mut Studio) {
-    let world = studio.headless.app.world_mut();
-    world.entity_mut(studio.camera).insert((
-        TemporalAntiAliasing::default(),
-        DepthPrepass,
-        MotionVectorPrepass,
-    ));
-}
-
-fn strips() -> Vec<Strip> {
-    use BuiltIn::{Mountains, Teapot, Theatre, Village};
-    use Motion::{Dolly, Turntable, Walk};
+/// Weights and kinds of lines.
+fn weights() -> Vec<Strip> {
+    use BuiltIn::{Teapot, Theatre, Village};
+    use Motion::{Turntable, Walk};
     let even = LineWeight::EVEN;
     let plain = Outlines::default();
     let kinds = LineWeight {
@@ -136,17 +133,13 @@ fn strips() -> Vec<Strip> {
         },
         ..plain
     };
+    let wide = Outlines {
+        width: 3.0,
+        ..plain
+    };
     let hold = Outlines {
         width: 3.0,
         color: LineColor::SURFACE,
-        ..plain
-    };
-    let stroke = Outlines {
-        overshoot: 10.0,
-        weight: LineWeight {
-            taper: 12.0,
-            ..even
-        },
         ..plain
     };
     vec![
@@ -154,52 +147,85 @@ fn strips() -> Vec<Strip> {
         Strip::new("kinds", Teapot, Turntable, weighted(kinds)),
         Strip::new("light", Teapot, Turntable, weighted(light)),
         Strip::new("brush", Theatre, Turntable, weighted(brush)),
+        Strip::new("widths", Teapot, Turntable, wide).on(stages::widths),
         Strip::new("boil", Theatre, Turntable, boil),
         Strip::new("surface", Village, Walk, hold),
-        Strip::new("overshoot", Village, Walk, stroke),
+        Strip::new("sections", Village, Walk, plain).on(stages::sections),
+        Strip::new("no-sections", Village, Walk, plain),
+        Strip::new("fog", Village, Walk, plain).on(stages::fog),
+    ]
+}
+
+/// Lines that are made whole and steady, and how many they are; each with its opposite.
+fn wholeness() -> Vec<Strip> {
+    use BuiltIn::{Mountains, Teapot, Village};
+    use Motion::{Dolly, Sway, Turntable, Walk};
+    let plain = Outlines::default();
+    let free = Outlines {
+        budget: 1.0,
+        ..plain
+    };
+    let thin = Outlines {
+        width: 1.5,
+        ..plain
+    };
+    let stroke = Outlines {
+        overshoot: 16.0,
+        weight: LineWeight {
+            taper: 24.0,
+            ..LineWeight::EVEN
+        },
+        ..plain
+    };
+    let blunt = Outlines {
+        overshoot: 0.0,
+        ..stroke
+    };
+    let bridged = Outlines { bridge: 3, ..thin };
+    let kept = Outlines {
+        persistence: 8,
+        ..thin
+    };
+    let forgetful = Outlines {
+        memory: 1.0,
+        ..plain
+    };
+    vec![
+        Strip::new("overshoot", Teapot, Turntable, stroke).on(stages::folds),
+        Strip::new("no-overshoot", Teapot, Turntable, blunt).on(stages::folds),
+        Strip::new("bridge", Teapot, Turntable, bridged).on(stages::wires),
+        Strip::new("no-bridge", Teapot, Turntable, thin).on(stages::wires),
+        Strip::new("persistence", Teapot, Sway, kept).on(stages::distant_folds),
+        Strip::new("no-persistence", Teapot, Sway, thin).on(stages::distant_folds),
         Strip::new("budget", Mountains, Dolly, plain),
-        Strip::new(
-            "without-budget",
-            Mountains,
-            Dolly,
-            Outlines {
-                budget: 1.0,
-                ..plain
-            },
-        ),
-        Strip::new(
-            "persistence",
-            Village,
-            Walk,
-            Outlines {
-                persistence: 4,
-                ..plain
-            },
-        ),
-        Strip {
-            prepare: jitter,
-            ..Strip::new("memory", Village, Walk, plain)
-        },
-        Strip {
-            prepare: jitter,
-            ..Strip::new(
-                "without-memory",
-                Village,
-                Walk,
-                Outlines {
-                    memory: 1.0,
-                    ..plain
-                },
-            )
-        },
-        Strip {
-            prepare: mark::<SelectionOutline>,
-            ..Strip::new("selection", Theatre, Turntable, plain)
-        },
-        Strip {
-            prepare: mark::<XRayOutline>,
-            ..Strip::new("x-ray", Village, Walk, plain)
-        },
+        Strip::new("no-budget", Mountains, Dolly, free),
+        Strip::new("forest", Teapot, Sway, plain).on(stages::trees),
+        Strip::new("forest-no-budget", Teapot, Sway, free).on(stages::trees),
+        Strip::new("memory", Village, Walk, plain).on(stages::jitter),
+        Strip::new("no-memory", Village, Walk, forgetful).on(stages::jitter),
+    ]
+}
+
+/// What single objects have of their own, and lines that are not outlines.
+fn objects() -> Vec<Strip> {
+    use BuiltIn::{Mountains, Theatre, Village};
+    use Motion::{Sway, Turntable, Walk};
+    let plain = Outlines::default();
+    let grey = |style: ComicStyle| style.with(Desaturation::default());
+    let levels = |style: ComicStyle| {
+        style.with(IsoLines {
+            step: 50.0,
+            ..default()
+        })
+    };
+    vec![
+        Strip::new("selection", Theatre, Turntable, plain).on(stages::select_one),
+        Strip::new("x-ray", Village, Walk, plain).on(stages::hide_a_figure),
+        Strip::new("no-style", Theatre, Turntable, plain)
+            .on(stages::unstyle_one)
+            .with(grey),
+        Strip::new("transparent", Theatre, Sway, plain).on(stages::glass),
+        Strip::new("iso-lines", Mountains, Walk, plain).with(levels),
     ]
 }
 
@@ -210,7 +236,7 @@ fn frames(strip: &Strip) -> Vec<RgbaImage> {
         levels: 4,
         ..default()
     };
-    let style = ComicStyle::new().with(strip.outlines).with(bands);
+    let style = (strip.more)(ComicStyle::new().with(strip.outlines).with(bands));
     studio.shoot(Some(&style));
     let mut shown = Vec::new();
     for frame in 0..FRAMES {
@@ -228,7 +254,8 @@ fn frames(strip: &Strip) -> Vec<RgbaImage> {
 
 /// One picture for each capability: six frames of 36, in two rows.
 pub fn write(folder: &Path) -> Result<(), String> {
-    for strip in strips() {
+    let all = [weights(), wholeness(), objects()];
+    for strip in all.into_iter().flatten() {
         let frames = frames(&strip);
         let rows: Vec<Vec<&RgbaImage>> = frames.chunks(3).map(|row| row.iter().collect()).collect();
         let out = folder.join(format!("{}.png", strip.name));
