@@ -30,7 +30,8 @@ fn towards_the_sky() -> Small {
     small
 }
 
-fn empty(small: &mut Small) {
+/// A perspective view down -z of nothing.
+pub fn empty(small: &mut Small) {
     small.restart(Msaa::Off);
     small.clear();
     look(small, Vec3::ZERO, Vec3::NEG_Z, 0.1);

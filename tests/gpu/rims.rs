@@ -5,11 +5,7 @@ use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{ComicStyle, LineWeight, Outlines};
 use bevy_comics_testkit::scenes::shape::Shape;
 
-use crate::{
-    outlines::{look, put},
-    small::Small,
-    walls,
-};
+use crate::{line_truth::empty, outlines::put, small::Small, walls};
 
 const SIZE: UVec2 = UVec2::new(120, 120);
 
@@ -18,14 +14,7 @@ const SIZE: UVec2 = UVec2::new(120, 120);
 /// front of a wall, and which leans. The depth of the side changes by 10 % from pixel to pixel, and
 /// at its rim by 5 %.
 fn side(small: &mut Small, lean: f32, shift: f32) {
-    small.restart(Msaa::Off);
-    small.clear();
-    look(small, Vec3::ZERO, Vec3::NEG_Z, 0.1);
-    small.insert(Projection::Perspective(PerspectiveProjection {
-        fov: std::f32::consts::FRAC_PI_2,
-        near: 0.1,
-        ..default()
-    }));
+    empty(small);
     walls::wall(small, [-60.0, -60.0], [60.0, 60.0], 14.8);
     let at = |x: f32, up: f32, distance: f32| {
         Vec3::new(x + shift + lean * up, up, -60.0) * (distance / 60.0)
