@@ -208,7 +208,7 @@ fn wholeness() -> Vec<Strip> {
 
 /// What single objects have of their own, and lines that are not outlines.
 fn objects() -> Vec<Strip> {
-    use BuiltIn::{Mountains, Theatre, Village};
+    use BuiltIn::{Mountains, Teapot, Theatre, Village};
     use Motion::{Sway, Turntable, Walk};
     let plain = Outlines::default();
     let grey = |style: ComicStyle| style.with(Desaturation::default());
@@ -219,9 +219,9 @@ fn objects() -> Vec<Strip> {
         })
     };
     vec![
-        Strip::new("selection", Theatre, Turntable, plain).on(stages::select_one),
+        Strip::new("selection", Teapot, Turntable, plain).on(stages::select_one),
         Strip::new("x-ray", Village, Walk, plain).on(stages::hide_a_figure),
-        Strip::new("no-style", Theatre, Turntable, plain)
+        Strip::new("no-style", Teapot, Turntable, plain)
             .on(stages::unstyle_one)
             .with(grey),
         Strip::new("transparent", Theatre, Sway, plain).on(stages::glass),

@@ -54,7 +54,7 @@ pub fn hide_a_figure(studio: &mut Studio) {
     }
 }
 
-/// The teapot alone is selected.
+/// What the camera looks at is selected.
 pub fn select_one(studio: &mut Studio) {
     let target = studio.vantage.target;
     let world = studio.headless.app.world_mut();
@@ -63,7 +63,7 @@ pub fn select_one(studio: &mut Studio) {
     }
 }
 
-/// The mesh with most vertices keeps its colours.
+/// What the camera looks at keeps its colours.
 pub fn unstyle_one(studio: &mut Studio) {
     let target = studio.vantage.target;
     let world = studio.headless.app.world_mut();
