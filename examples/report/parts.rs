@@ -5,9 +5,9 @@ use bevy::{
     prelude::*,
 };
 use bevy_comics::{
-    ComicStyle, DepthWrite, Desaturation, Halftone, HalftoneMode, LineColor, LineWeight,
-    LineWidths, MeshSections, NoStyle, Outlines, Paper, PrintOffset, ScreenSampling, ScreenShape,
-    SelectionOutline, SpeedLines, TwoTone, XRayOutline,
+    ComicStyle, Creases, DepthWrite, Desaturation, Halftone, HalftoneMode, LineColor, LineResponse,
+    LineWeight, LineWidths, MeshSections, NoStyle, OutlineStyle, Outlines, Paper, PrintOffset,
+    ScreenSampling, ScreenShape, SelectionOutline, Silhouettes, SpeedLines, TwoTone, XRayOutline,
 };
 
 use bevy_comics_testkit::scenes::BuiltIn;
@@ -51,6 +51,21 @@ fn lines() -> Vec<(String, Wear)> {
                     pressure: 0.5,
                     ..LineWeight::EVEN
                 },
+                ..default
+            },
+        ),
+        (
+            "with soft ink",
+            Outlines {
+                silhouettes: Some(Silhouettes {
+                    softness: 1.0,
+                    ..Default::default()
+                }),
+                creases: Some(Creases {
+                    softness: 1.0,
+                    ..Default::default()
+                }),
+                response: LineResponse::Both,
                 ..default
             },
         ),
@@ -157,6 +172,8 @@ fn changes() -> Vec<(&'static str, Change, ComicStyle)> {
         ("outlines", |_| (), outlines()),
         ("outlines; meshes in sections", sections, outlines()),
         ("outlines; widths of vertices", widths, outlines()),
+        ("outlines; a width of each mesh", own_widths, outlines()),
+        ("outlines; 4 samples", samples, outlines()),
         ("outlines; fog", fog, outlines()),
         ("outlines; a mesh of glass", glass, outlines()),
         ("outlines; it writes depth", glass_in_depth, outlines()),
@@ -200,6 +217,24 @@ fn widths(rig: &mut Rig) {
         let colors: Vec<[f32; 4]> = (0..count).map(width).collect();
         mesh.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
     }
+}
+
+/// Lines of 1, 2 and 3 pixels, in turn from mesh to mesh.
+fn own_widths(rig: &mut Rig) {
+    let all = meshes(rig);
+    let world = rig.headless.app.world_mut();
+    for (i, mesh) in all.into_iter().enumerate() {
+        let style = OutlineStyle {
+            width: Some(1.0 + (i % 3) as f32),
+            ..default()
+        };
+        world.entity_mut(mesh).insert(style);
+    }
+}
+
+fn samples(rig: &mut Rig) {
+    let world = rig.headless.app.world_mut();
+    world.entity_mut(rig.camera).insert(Msaa::Sample4);
 }
 
 fn fog(rig: &mut Rig) {

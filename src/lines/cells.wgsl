@@ -1,6 +1,7 @@
-// Finds the cracks that lines run along, in the cells that walk.wgsl has listed; the rest
-// of the buffer is cleared. A pixel has a crack to the east (x) and one to the south (y).
-// PLANES: also writes the planes of bits, see planes.wgsl.
+// Finds the cracks that lines run along, in the cells that walk.wgsl has listed; the rest of
+// the buffer is not written. A pixel has a crack to the east (x) and one to the south (y).
+// Also writes the planes of bits, see planes.wgsl: where cracks were found, and, COMPLETED,
+// those by which other passes complete lines.
 
 #import bevy_comics::depth::view::set_view
 #import bevy_comics::lines::crack::{Cracks, cracks}
@@ -14,11 +15,8 @@
 #import bevy_comics::lines::rows::{Above, four_columns, step_down}
 
 @group(0) @binding(18) var<storage, read_write> crack_words: array<vec2<u32>>;
-#ifdef PLANES
 @group(0) @binding(21) var<storage, read_write> planes_found: array<atomic<u32>>;
-#endif
 
-#ifdef PLANES
 // Adds the bits of a cell's column to a plane.
 fn add_column(plane: i32, x: i32, top: i32, rows: u32) {
     let g = line_pass.grid;
@@ -35,6 +33,7 @@ fn add_columns(plane: i32, cell: vec2<i32>, rows: vec4<u32>) {
     add_column(plane, cell.x + 3, cell.y, rows.w);
 }
 
+#ifdef COMPLETED
 // Adds cracks to the south to the plane of rows: one bit for each row of four columns.
 fn add_rows(cell: vec2<i32>, south: vec4<u32>) {
     for (var row = 0; row < CELL_ROWS; row++) {
@@ -83,11 +82,11 @@ fn add_bits(all: ptr<function, Bits>, row: Cracks, bit: u32) {
     (*all).silhouette |= bits((row.packed & vec4(SILHOUETTE)) != vec4(0u), bit);
 }
 
-#ifdef PLANES
 // Adds the cracks of a cell to the planes. `rows`: the certain cracks to the south, in the grid.
 fn store_bits(cell: vec2<i32>, east: Bits, south: Bits, rows: vec4<u32>) {
     add_columns(FOUND_EAST, cell, east.found);
     add_columns(FOUND_SOUTH, cell, south.found);
+#ifdef COMPLETED
     add_columns(LINKED_EAST, cell, east.certain);
     add_columns(LINKED_SOUTH, cell, south.certain);
 #ifdef SILHOUETTES
@@ -99,8 +98,8 @@ fn store_bits(cell: vec2<i32>, east: Bits, south: Bits, rows: vec4<u32>) {
     add_columns(LEDGE_SOUTH, cell, south.ledge);
 #endif
     add_rows(cell, rows);
-}
 #endif
+}
 
 @compute @workgroup_size(32)
 fn find_in_cells(
@@ -138,8 +137,6 @@ fn find_in_cells(
         east_2 = east_1;
         east_1 = east.packed;
     }
-#ifdef PLANES
     let own = columns.own < vec4(0, 1, 2, 3) + cell.x;
     store_bits(cell, all_east, all_south, select(all_south.certain, vec4(0u), own));
-#endif
 }

@@ -6,13 +6,13 @@
 // x, y: the packed crack, and the middle of its line, see pack_middle; z, w: those of the
 // other. 0 stands for none.
 
-#ifdef BLOCKS
-#import bevy_comics::lines::blocks::{BLOCK_HEIGHT, BLOCK_WIDTH, marked_rows}
-#endif
 #import bevy_comics::lines::edge::{
     crack_opacity, is_apart, line_coverage, owner_step, pack_middle, unpack_width,
 }
 #import bevy_comics::lines::pass::line_pass
+#ifdef BLOCKS
+#import bevy_comics::lines::read_planes::inked_rows
+#endif
 #import bevy_comics::lines::stored::{load_bends, load_cracks, stored_middle}
 
 // The best crack in the column so far, and the one whose line reaches farthest among those
@@ -83,10 +83,11 @@ fn columns(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
     let first = max(p.y - g.reach - 1, 0);
     let last = min(p.y + g.reach, g.rect.w - 1);
 #ifdef BLOCKS
-    for (var block = first / BLOCK_HEIGHT; block <= last / BLOCK_HEIGHT; block++) {
-        var rows = marked_rows(vec2(p.x / BLOCK_WIDTH, block), first, last);
+    for (var top = first; top <= last; top += 32) {
+        let inked = inked_rows(g, p.x, top, min(top + 31, last));
+        var rows = inked.x | inked.y;
         while rows != 0u {
-            compare_row(&best, p, block * BLOCK_HEIGHT + i32(firstTrailingBit(rows)));
+            compare_row(&best, p, top + i32(firstTrailingBit(rows)));
             rows &= rows - 1u;
         }
     }

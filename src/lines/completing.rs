@@ -9,7 +9,7 @@ use super::{
     prepare::Cracks,
     request::CellPasses,
     sources::{NOT_READY, Reads, entry},
-    store::{CrackBuffers, CrackStore},
+    store::CrackBuffers,
 };
 use crate::diagnostics::LeftOut;
 
@@ -108,7 +108,7 @@ impl Inputs<'_> {
             entries.push(entry(24, motion.into_binding()));
         }
         entries.extend(self.tiles()?.lists.cell_entries());
-        entries.extend(buffers.written_planes(request.joined()));
+        entries.push(buffers.written_planes(request.joined()));
         entries.extend(lives.entries());
         let group = self.group(&key.persist_layout(), &entries);
         Ok(Some(((self.compute(id)?, group), lives)))
@@ -125,10 +125,8 @@ impl Inputs<'_> {
         };
         let mut entries = vec![entry(1, self.uniform()?)];
         entries.extend(self.tiles()?.lists.cell_entries());
-        entries.extend(cracks.store.entries());
-        if let CrackStore::Buffers(buffers) = &cracks.store {
-            entries.extend(buffers.planes_entry(self.parts.0.0.copies()));
-        }
+        let copies = self.parts.0.0.copies();
+        entries.extend(cracks.store.entries(copies));
         entries.push(strokes.entry());
         let group = self.group(&LineKey::ends_layout(), &entries);
         Ok(Some((self.compute(id)?, group)))

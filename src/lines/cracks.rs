@@ -2,8 +2,8 @@
 
 use bevy::render::{
     render_resource::{
-        BindGroup, CommandEncoder, ComputePassDescriptor, ComputePipeline, RenderPassDescriptor,
-        RenderPipeline,
+        BindGroup, CommandEncoder, ComputePassDescriptor, ComputePipeline, LoadOp, Operations,
+        RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline, StoreOp,
     },
     texture::CachedTexture,
 };
@@ -127,7 +127,14 @@ impl ReadyCracks<'_> {
         };
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("comics_line_columns"),
-            color_attachments: &[Some(cleared(texture))],
+            color_attachments: &[Some(RenderPassColorAttachment {
+                // What lies between the tiles is not read.
+                ops: Operations {
+                    load: LoadOp::Load,
+                    store: StoreOp::Store,
+                },
+                ..cleared(texture)
+            })],
             ..Default::default()
         });
         self.draw(&mut pass, columns, TileList::Columns);

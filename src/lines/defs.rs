@@ -18,9 +18,9 @@ impl LineKey {
     }
 
     pub fn find_defs(&self) -> Vec<ShaderDefVal> {
-        let planes = self.settles().then(|| "PLANES".into());
+        let completed = self.links.then(|| "COMPLETED".into());
         let mut defs = self.crack_defs(self.silhouettes || self.creases);
-        defs.extend(planes);
+        defs.extend(completed);
         defs
     }
 
@@ -134,8 +134,8 @@ impl LineKey {
             .chain(names([
                 (self.search == Search::Neighbours, "NEIGHBOURS"),
                 (self.search == Search::Columns, "COLUMNS"),
-                (self.planes, "PLANES"),
                 (!self.by_fragments, "BLOCKS"),
+                (self.links, "COMPLETED"),
                 (self.smooth, "SMOOTH"),
                 (self.varied, "VARIED"),
                 (self.boils, "BOIL"),

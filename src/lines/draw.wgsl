@@ -19,10 +19,13 @@
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::texel_slot
 #endif
-#ifdef PLANES
+#ifdef BLOCKS
 #import bevy_comics::lines::edge::Grid
-#import bevy_comics::lines::planes::{LINKED_EAST, LINKED_SOUTH}
-#import bevy_comics::lines::read_planes::column_window
+#ifdef COLUMNS
+#import bevy_comics::lines::blocks::{BLOCK_HEIGHT, BLOCK_WIDTH, marked_rows}
+#else
+#import bevy_comics::lines::read_planes::inked_rows
+#endif
 #endif
 #ifndef COLUMNS
 #import bevy_comics::lines::stored::{load_bends, load_cracks, stored_middle}
@@ -138,23 +141,71 @@ fn add_crack(ink: ptr<function, Ink>, packed: u32, p: vec2<i32>, towards: vec2<i
 }
 #endif
 
-#ifdef PLANES
+#ifdef COLUMNS
+// Adds the best two cracks of a column of pixels, `p`.
+fn add_column(ink: ptr<function, Ink>, p: vec2<i32>, at: vec2<f32>) {
+    let last = line_pass.grid.rect.zw - 1;
+    let inside = p.x >= 0 && p.x <= last.x;
+    let texel = textureLoad(column_texture, vec2(clamp(p.x, 0, last.x), p.y), 0);
+    let stored = select(vec4(0u), texel, inside);
+    let first = vec2<f32>(p) + 0.5 + unpack_middle(stored.y);
+    let second = vec2<f32>(p) + 0.5 + unpack_middle(stored.w);
+    add(ink, stored.x, first, Owner(p + unpack_owner(stored.y), (stored.y & 0x8000u) != 0u), at);
+    add(ink, stored.z, second, Owner(p + unpack_owner(stored.w), (stored.w & 0x8000u) != 0u), at);
+}
+
+#ifdef BLOCKS
+// Whether columns.wgsl may have found cracks for the row `y` of pixels in a column of blocks.
+fn has_columns(g: Grid, block: i32, y: i32) -> bool {
+    let first = max(y - g.reach - 1, 0);
+    let last = min(y + g.reach, g.rect.w - 1);
+    var rows = 0u;
+    for (var row = first / BLOCK_HEIGHT; row <= last / BLOCK_HEIGHT; row++) {
+        rows |= marked_rows(vec2(block, row), first, last);
+    }
+    return rows != 0u;
+}
+
+// Adds the columns of a row of pixels. Blocks without cracks nearby are left out.
+fn add_columns(ink: ptr<function, Ink>, centre: vec2<i32>, at: vec2<f32>) {
+    let g = line_pass.grid;
+    let y = clamp(centre.y, 0, g.rect.w - 1);
+    let first = max(centre.x - g.reach - 1, 0) / BLOCK_WIDTH;
+    let last = min(centre.x + g.reach, g.rect.z - 1) / BLOCK_WIDTH;
+    // One bit for each block; lines reach less than 32 blocks far.
+    var blocks = 0u;
+    for (var block = first; block <= last; block++) {
+        blocks |= select(0u, 1u << u32(block - first), has_columns(g, block, y));
+    }
+    while blocks != 0u {
+        let x = (first + i32(firstTrailingBit(blocks))) * BLOCK_WIDTH;
+        blocks &= blocks - 1u;
+        add_column(ink, vec2(x, y), at);
+        add_column(ink, vec2(x + 1, y), at);
+        add_column(ink, vec2(x + 2, y), at);
+        add_column(ink, vec2(x + 3, y), at);
+    }
+}
+#endif
+#endif
+
+#ifdef BLOCKS
+#ifdef NEIGHBOURS
 // The lower four bits of a word, in bits 0, 8, 16 and 24, the first one last.
 fn spread(word: u32) -> u32 {
     let turned = ((word & 15u) >> 1u) | ((word & 1u) << 3u);
     return (turned * 0x00204081u) & 0x01010101u;
 }
 
-// Which cracks near a position are parts of lines: bit 8 * row + 2 * column + side, where side is
+// Which cracks near a position have ink: bit 8 * row + 2 * column + side, where side is
 // 0 to the east and 1 to the south. Rows and columns 0 to 3 are those one before the position,
 // its own, the next one, and those two before it.
 fn near_cracks(g: Grid, centre: vec2<i32>) -> u32 {
     var near = 0u;
     for (var column = 0u; column < 4u; column++) {
         let x = centre.x + near_step(column);
-        let east = spread(column_window(g, LINKED_EAST, x, centre.y - 2));
-        let south = spread(column_window(g, LINKED_SOUTH, x, centre.y - 2));
-        near |= (east | (south << 1u)) << (2u * column);
+        let inked = inked_rows(g, x, centre.y - 2, centre.y + 1);
+        near |= (spread(inked.x) | (spread(inked.y) << 1u)) << (2u * column);
     }
 #ifdef SMOOTH
     // Lines leave their cracks by up to half a pixel. The pixel two before in both directions is
@@ -180,17 +231,40 @@ fn add_near(ink: ptr<function, Ink>, centre: vec2<i32>, bit: u32, at: vec2<f32>)
     let packed = select(cracks.x, cracks.y, south);
     add_crack(ink, packed, p, select(vec2(1, 0), vec2(0, 1), south), select(bends, bends >> 16u, south), at);
 }
+#else ifndef COLUMNS
+// Adds the pixels of a column within reach of a position that have cracks with ink.
+fn add_inked(ink: ptr<function, Ink>, x: i32, y: i32, at: vec2<f32>) {
+    let g = line_pass.grid;
+    let last = y + g.reach;
+    for (var first = y - g.reach; first <= last; first += 32) {
+        let inked = inked_rows(g, x, first, min(first + 31, last));
+        var rows = inked.x | inked.y;
+        while rows != 0u {
+            add_pixel(ink, vec2(x, first + i32(firstTrailingBit(rows))), at);
+            rows &= rows - 1u;
+        }
+    }
+}
+#endif
 #endif
 
 // Adds the lines near a position of the grid.
 fn search(ink: ptr<function, Ink>, centre: vec2<i32>, at: vec2<f32>) {
     let g = line_pass.grid;
-#ifdef PLANES
+#ifdef BLOCKS
+#ifdef NEIGHBOURS
     var near = near_cracks(g, centre);
     while near != 0u {
         add_near(ink, centre, firstTrailingBit(near), at);
         near &= near - 1u;
     }
+#else ifdef COLUMNS
+    add_columns(ink, centre, at);
+#else
+    for (var x = centre.x - g.reach; x <= centre.x + g.reach; x++) {
+        add_inked(ink, x, centre.y, at);
+    }
+#endif
 #else ifdef NEIGHBOURS
     // CPU adapters execute the body of a loop once more than it iterates.
     add_pixel(ink, centre + vec2(-1, -1), at);
@@ -212,16 +286,8 @@ fn search(ink: ptr<function, Ink>, centre: vec2<i32>, at: vec2<f32>) {
     add_pixel(ink, centre + vec2(-2, 1), at);
 #endif
 #else ifdef COLUMNS
-    let last = g.rect.zw - 1;
     for (var x = -g.reach - 1; x <= g.reach; x++) {
-        let p = vec2(centre.x + x, clamp(centre.y, 0, last.y));
-        let inside = p.x >= 0 && p.x <= last.x;
-        let texel = textureLoad(column_texture, vec2(clamp(p.x, 0, last.x), p.y), 0);
-        let stored = select(vec4(0u), texel, inside);
-        let first = vec2<f32>(p) + 0.5 + unpack_middle(stored.y);
-        let second = vec2<f32>(p) + 0.5 + unpack_middle(stored.w);
-        add(ink, stored.x, first, Owner(p + unpack_owner(stored.y), (stored.y & 0x8000u) != 0u), at);
-        add(ink, stored.z, second, Owner(p + unpack_owner(stored.w), (stored.w & 0x8000u) != 0u), at);
+        add_column(ink, vec2(centre.x + x, clamp(centre.y, 0, g.rect.w - 1)), at);
     }
 #else
     for (var y = -g.reach; y <= g.reach; y++) {

@@ -174,11 +174,8 @@ impl Inputs<'_> {
         let find = self.find_pass(passes.find, &key, cracks)?;
         let columns = match (passes.columns, &cracks.columns) {
             (Some(id), Some(columns)) => {
-                let mut entries = self.stored(cracks)?;
-                let blocks = lines.tiles.as_ref().map(|tiles| &tiles.blocks);
-                entries.extend(blocks.map(|b| entry(12, (&b.default_view).into_binding())));
                 let layout = self.parts.0.1.key.for_columns().columns_layout();
-                let group = self.group(&layout, &entries);
+                let group = self.group(&layout, &self.stored(cracks)?);
                 Some(((self.pipeline(id)?, group), columns))
             }
             _ => None,
@@ -238,7 +235,9 @@ impl Inputs<'_> {
     /// The bindings of a pass that searches stored cracks.
     fn stored<'a>(&'a self, cracks: &'a Cracks) -> Result<Vec<BindGroupEntry<'a>>, LeftOut> {
         let uniform = [entry(1, self.uniform()?)];
-        Ok(uniform.into_iter().chain(cracks.store.entries()).collect())
+        let copies = self.parts.0.0.copies();
+        let stored = cracks.store.entries(copies);
+        Ok(uniform.into_iter().chain(stored).collect())
     }
 
     /// The passes that look for blocks with cracks and list the tiles near them, if there
@@ -296,17 +295,19 @@ impl Inputs<'_> {
 
     fn draw_group(&self, cracks: &Cracks) -> Result<BindGroup, LeftOut> {
         let (_, passes, _) = self.parts.0;
-        let mut entries = match &cracks.columns {
-            Some(columns) => self.searched((13, columns))?,
-            None => self.stored(cracks)?,
-        };
         let key = passes.key.for_draw();
-        if (key.bridged || key.planes)
-            && let CrackStore::Buffers(buffers) = &cracks.store
-        {
-            let copies = self.parts.0.0.copies();
-            entries.extend(buffers.planes_entry(copies));
-        }
+        let mut entries = match (&cracks.columns, &cracks.store) {
+            (None, _) => self.stored(cracks)?,
+            (Some(columns), CrackStore::Texture(_)) => self.searched((13, columns))?,
+            (Some(columns), CrackStore::Buffers(buffers)) => {
+                let mut entries = self.searched((13, columns))?;
+                let blocks = &self.tiles()?.blocks.default_view;
+                entries.push(entry(12, blocks.into_binding()));
+                let planes = || buffers.planes_entry(self.parts.0.0.copies());
+                entries.extend(key.bridged.then(planes));
+                entries
+            }
+        };
         if passes.key.object_styles {
             let ids = self.texels()?.ids.ok_or(NOT_READY)?;
             entries.push(entry(8, ids.into_binding()));

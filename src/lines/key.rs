@@ -66,7 +66,8 @@ pub(crate) struct LineKey {
     pub visible_range: bool,
     /// Whether there are silhouettes and creases of the faithful form.
     pub faithful: [bool; 2],
-    /// Cracks are linked to lines, or only stored as planes of bits.
+    /// Cracks are linked to lines; of a part of a key: they are completed after they were
+    /// found.
     pub links: bool,
     /// Lines stay where their edges have become weak; and whether the engine's motion
     /// vectors say where they were.
@@ -80,8 +81,6 @@ pub(crate) struct LineKey {
     pub rims: bool,
     /// Gaps in lines are closed.
     pub bridged: bool,
-    /// Drawing looks up in planes of bits where cracks are.
-    pub planes: bool,
     /// Lines run straight through the steps of pixels.
     pub smooth: bool,
     /// Which factors of width and opacity are not 1.
@@ -145,7 +144,6 @@ impl LineKey {
                 && lines.links()
                 && !by_fragments,
             bridged: lines.bridge > 0 && !by_fragments,
-            planes: false,
             smooth: lines.smooth && !by_fragments,
             weight,
             surface: lines.color.is_surface(),
@@ -165,7 +163,7 @@ impl LineKey {
         self.silhouettes || self.creases || self.object_edges
     }
 
-    /// Whether the cracks are also stored as planes of bits, and completed after that.
+    /// Whether the cracks are completed after they were found.
     pub fn settles(&self) -> bool {
         self.links || self.smooth || self.weight.any()
     }
@@ -305,6 +303,7 @@ impl LineKey {
     /// The part that the search in columns depends on.
     pub fn for_columns(self) -> Self {
         Self {
+            links: self.settles(),
             smooth: self.smooth,
             varied: self.varied,
             by_fragments: self.by_fragments,
@@ -323,7 +322,7 @@ impl LineKey {
             ids: self.object_styles,
             object_styles: self.object_styles,
             search: self.search,
-            planes: self.settles() && self.search == Search::Neighbours,
+            links: self.settles() && self.search != Search::Columns,
             boils: self.boils,
             surface: self.surface,
             inward: self.inward,

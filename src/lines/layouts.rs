@@ -64,10 +64,7 @@ impl LineKey {
     pub fn cells_layout(&self) -> BindGroupLayoutDescriptor {
         let mut entries = self.inputs(self.creases, ShaderStages::COMPUTE);
         entries.extend(read_buffers([16, 17]));
-        entries.extend(written_buffers([18]));
-        if self.settles() {
-            entries.extend(written_buffers([21]));
-        }
+        entries.extend(written_buffers([18, 21]));
         BindGroupLayoutDescriptor::new("comics_find_in_cells", &entries)
     }
 
@@ -142,12 +139,7 @@ impl LineKey {
     }
 
     pub fn columns_layout(&self) -> BindGroupLayoutDescriptor {
-        let mut entries = self.stored();
-        if !self.by_fragments {
-            let blocks = texture_2d(TextureSampleType::Uint);
-            entries.push(blocks.build(12, ShaderStages::FRAGMENT));
-        }
-        BindGroupLayoutDescriptor::new("comics_line_columns", &entries)
+        BindGroupLayoutDescriptor::new("comics_line_columns", &self.stored())
     }
 
     /// The layout entries of a pass that searches stored cracks, see `stored.wgsl`.
@@ -158,6 +150,7 @@ impl LineKey {
             entries.push(texture_2d(TextureSampleType::Uint).build(11, fragment));
         } else {
             entries.push(storage_buffer_read_only_sized(false, None).build(11, fragment));
+            entries.push(planes_entry(fragment));
         }
         if self.smooth {
             entries.push(storage_buffer_read_only_sized(false, None).build(19, fragment));
@@ -179,16 +172,17 @@ impl LineKey {
     pub fn draw_layout(&self) -> BindGroupLayoutDescriptor {
         let mut entries = if self.search == Search::Columns {
             let fragment = ShaderStages::FRAGMENT;
-            vec![
+            let texture = |binding| texture_2d(TextureSampleType::Uint).build(binding, fragment);
+            let mut entries = vec![
                 uniform_buffer::<LinePassUniform>(false).build(1, fragment),
-                texture_2d(TextureSampleType::Uint).build(13, fragment),
-            ]
+                texture(13),
+            ];
+            entries.extend((!self.by_fragments).then(|| texture(12)));
+            entries.extend(self.bridged.then(|| planes_entry(fragment)));
+            entries
         } else {
             self.stored()
         };
-        if self.bridged || self.planes {
-            entries.push(planes_entry(ShaderStages::FRAGMENT));
-        }
         if self.object_styles {
             entries.push(ids_entry(false));
         }

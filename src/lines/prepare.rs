@@ -166,8 +166,8 @@ fn cracks(
                 CrackStore::Buffers(buffers) => Some(buffers),
                 CrackStore::Texture(_) => None,
             });
-            let wanted = (passes.key.settles(), passes.key.smooth);
-            CrackStore::Buffers(CrackBuffers::new(before, device, rect, wanted))
+            let bends = passes.key.smooth;
+            CrackStore::Buffers(CrackBuffers::new(before, device, rect, bends))
         }
         FindPass::Pixels(_) => CrackStore::Texture(drawn("comics_cracks", CRACK_FORMAT)),
     };

@@ -1,4 +1,5 @@
-//! Counts the texels that the passes of the lines fetch: see [`work`](crate::work).
+//! Counts the texels, and the words of buffers, that the passes of the lines fetch: see
+//! [`work`](crate::work).
 //!
 //! In the pass that searches blocks, every invocation fetches the same number: it is
 //! counted in the composed shader. The other passes are counted while they run. A pass
@@ -25,7 +26,7 @@ use crate::{
     work::{FUSED, RESULT, counting, edit_shaders, teapot},
 };
 
-/// Texels that the passes of the lines fetch per pixel of the picture, mean.
+/// Texels and words that the passes of the lines fetch per pixel of the picture, mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LineWork {
     /// By the search for blocks with cracks.

@@ -3,6 +3,7 @@
 use bevy::{
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::{entity::Entity, world::World},
+    math::Vec4Swizzles,
     render::{
         renderer::{RenderDevice, RenderQueue},
         view::ViewTarget,
@@ -11,7 +12,7 @@ use bevy::{
 use bevy_comics::{ViewCracks, ViewLineWidths, ViewObjectIds};
 use half::f16;
 
-use crate::before::Pictures;
+use crate::{before::Pictures, reference::planes::column_word};
 
 /// Pixels of four floats, row by row.
 #[derive(Clone, Debug, PartialEq)]
@@ -184,7 +185,8 @@ fn words_of(render_world: &World, buffer: &wgpu::Buffer) -> Vec<u32> {
         .collect()
 }
 
-/// The words of the buffers of [`ViewCracks`].
+/// The words of the buffers of [`ViewCracks`]. Of cracks that are in none of the planes, the
+/// word is 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CrackWords {
     /// x, y, width, height.
@@ -198,11 +200,26 @@ pub struct CrackWords {
 pub fn cracks(render_world: &World, view: Entity) -> Option<CrackWords> {
     let cracks = render_world.get::<ViewCracks>(view)?;
     let words = |buffer: &wgpu::Buffer| words_of(render_world, buffer);
-    let all = words(&cracks.words);
+    let planes = words(&cracks.planes);
+    let [width, height] = cracks.rect.zw().to_array().map(i64::from);
+    let is_set = |plane: i64, x: i64, y: i64| {
+        let word = planes[column_word([width, height], plane, x, y / 32) as usize];
+        (word >> (y % 32)) & 1 != 0
+    };
+    let mut all = words(&cracks.words).as_chunks::<2>().0.to_vec();
+    for (i, pair) in (0..width * height).zip(&mut all) {
+        for (side, word) in (0..2).zip(pair) {
+            // Of cracks that are in none of the planes, the word is of an earlier frame.
+            let place = |plane: i64| is_set(plane + side, i % width, i / width);
+            if ![0, 2, 4].into_iter().any(place) {
+                *word = 0;
+            }
+        }
+    }
     Some(CrackWords {
         rect: cracks.rect.to_array(),
-        words: all.as_chunks::<2>().0.to_vec(),
-        planes: cracks.planes.as_ref().map_or(vec![], |b| words(b)),
+        words: all,
+        planes,
         bends: cracks.bends.as_ref().map_or(vec![], |b| words(b)),
     })
 }

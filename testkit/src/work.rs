@@ -222,6 +222,13 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
             }),
         ),
         (
+            "outlines, 16 pixels wide",
+            outlined(Outlines {
+                width: 16.0,
+                ..default()
+            }),
+        ),
+        (
             "outlines, 8 pixels wide",
             outlined(Outlines {
                 width: 8.0,
@@ -238,7 +245,7 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
     rungs
 }
 
-/// Bytes of the texel that a line of WGSL loads, by the name of its binding.
+/// Bytes of the texel or word that a line of WGSL loads, by the name of its binding.
 fn texel_size(line: &str) -> Option<u32> {
     let size = if line.contains("column_texture") {
         16
@@ -247,7 +254,13 @@ fn texel_size(line: &str) -> Option<u32> {
     } else {
         4
     };
-    let loads = ["textureLoad(", "return crack_words[", "return bend_words["];
+    let loads = [
+        "textureLoad(",
+        "return crack_words[",
+        "return bend_words[",
+        "planes[column_word(",
+        "planes[row_word(",
+    ];
     loads.iter().any(|load| line.contains(load)).then_some(size)
 }
 

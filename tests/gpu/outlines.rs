@@ -2,7 +2,7 @@
 //! false lines, the width as set.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, Form, Outlines, Silhouettes};
+use bevy_comics::{ComicStyle, Creases, Form, Outlines, Silhouettes};
 
 use bevy_comics_testkit::{read_back::IdImage, work::along_cracks};
 
@@ -314,4 +314,44 @@ fn a_line_is_as_wide_as_asked_at_every_scale_and_resolution() {
         assert_eq!(small.errors(), 0);
     }
     println!("largest difference from the asked width: {worst} physical pixels");
+}
+
+/// A crease that the corrected form finds is whole beside silhouettes of the faithful form,
+/// whose threshold is one of raw depth and says nothing about a jump between surfaces.
+#[test]
+fn measured_creases_are_whole_beside_faithful_silhouettes() {
+    let mut small = Small::new(UVec2::new(160, 120), Msaa::Off);
+    let creases = |silhouettes| Outlines {
+        silhouettes,
+        creases: Some(Creases::default()),
+        objects: None,
+        ..default()
+    };
+    for scale in [1e-2, 1.0, 1e2] {
+        small.restart(Msaa::Off);
+        small.clear();
+        let turned = Transform::from_rotation(Quat::from_rotation_y(0.6));
+        let cube = Cuboid::from_length(scale);
+        put(&mut small, cube, Color::WHITE, turned);
+        look(
+            &mut small,
+            Vec3::new(0.4, 1.1, 1.4) * scale,
+            Vec3::ZERO,
+            0.1 * scale,
+        );
+        let alone = ink(&mut small, creases(None));
+        let pixels = alone.iter().filter(|ink| **ink > 0.5).count();
+        assert!(pixels > 150, "scale {scale}: {pixels}");
+        for threshold in [1e-6, 1e-4, 8e-4, 0.02, 0.5] {
+            let silhouettes = Silhouettes {
+                form: Form::Faithful,
+                threshold,
+                ..default()
+            };
+            let both = ink(&mut small, creases(Some(silhouettes)));
+            let lost = alone.iter().zip(&both).filter(|(a, b)| **b < **a - 0.02);
+            let what = format!("scale {scale}, threshold {threshold}");
+            assert_eq!(lost.count(), 0, "{what}");
+        }
+    }
 }

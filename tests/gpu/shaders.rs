@@ -474,9 +474,9 @@ fn every_kind_of_outline_composes_and_validates() {
             }
             check(&find, &defs);
             check(&cells, &defs);
-            check(&cells, &[&defs[..], &["PLANES"]].concat());
+            check(&cells, &[&defs[..], &["COMPLETED"]].concat());
             if kinds.contains(&"CREASES") {
-                check(&cells, &[&defs[..], &["PLANES", "LEDGES"]].concat());
+                check(&cells, &[&defs[..], &["COMPLETED", "LEDGES"]].concat());
                 check(&walk, &[&defs[..], &["CRACKS", "LEDGES"]].concat());
             }
             check(&walk, &[&defs[..], &["CRACKS", "JUMPS"]].concat());
@@ -495,7 +495,8 @@ fn every_kind_of_outline_composes_and_validates() {
     let (columns, draw) = (shader("lines/columns.wgsl"), shader("lines/draw.wgsl"));
     check(&columns, &[]);
     check(&columns, &["BLOCKS"]);
-    check(&columns, &["BLOCKS", "SMOOTH"]);
+    check(&columns, &["BLOCKS", "COMPLETED"]);
+    check(&columns, &["BLOCKS", "COMPLETED", "SMOOTH"]);
     for last in [&[][..], &["LAST"]] {
         check(&shader("lines/link.wgsl"), last);
     }
@@ -549,7 +550,12 @@ fn every_kind_of_outline_composes_and_validates() {
     check(&shader("lines/tiles.wgsl"), &[]);
     for styles in [&[][..], &["OBJECT_IDS", "OBJECT_STYLES"]] {
         for search in [&[][..], &["NEIGHBOURS"], &["COLUMNS"]] {
-            for store in [&[][..], &["BLOCKS"], &["BLOCKS", "SMOOTH"]] {
+            for store in [
+                &[][..],
+                &["BLOCKS"],
+                &["BLOCKS", "COMPLETED"],
+                &["BLOCKS", "COMPLETED", "SMOOTH"],
+            ] {
                 check(&draw, &[styles, search, store].concat());
                 let bridged = &["OWNERS", "BRIDGED", "SURFACE", "INWARD"];
                 if !store.is_empty() {
