@@ -107,9 +107,12 @@ pub fn line_score(scores: &Table, detector: &str, truth: &str) -> [f64; 3] {
     [recall, precision, f1]
 }
 
-/// How the cost of the default comic grows with the pixels, vertices or cameras of a
-/// section: (fitted exponent, points of (size, milliseconds)).
-pub fn growth_exponent(times: &Table, section: &str, laps: &[&str]) -> (f64, Vec<(f64, f64)>) {
+/// The style whose growth is measured.
+pub const GROWING: &str = "default comic";
+
+/// How the cost of a variant grows with the pixels, vertices or cameras of a section: (fitted
+/// exponent, points of (size, milliseconds)).
+pub fn growth_exponent(times: &Table, section: &str, variant: &str) -> (f64, Vec<(f64, f64)>) {
     let rows = times.matching(&[("section", section)]);
     let points: Vec<(f64, f64)> = times
         .distinct(&rows, "scene")
@@ -119,9 +122,9 @@ pub fn growth_exponent(times: &Table, section: &str, laps: &[&str]) -> (f64, Vec
                 Some((w, h)) => w.parse::<f64>().ok()? * h.parse::<f64>().ok()?,
                 None => scene.parse().ok()?,
             };
-            let cost = costs(times, section, &scene, laps)
+            let cost = costs(times, section, &scene, &OWN)
                 .into_iter()
-                .find(|c| c.name == "default comic")?;
+                .find(|c| c.name == variant)?;
             Some((x, cost.milliseconds))
         })
         .collect();

@@ -2,10 +2,12 @@
 
 use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*, render::view::Msaa};
 
+use bevy_comics::{Colorization, ComicStyle, DepthMap};
 use bevy_comics_testkit::{bench, headless::new_target, scenes::BuiltIn, work::default_comic};
 
 use crate::{
     Run,
+    costs::GROWING,
     ladder::ball,
     rig::{self, Rig, Wear},
     table::Table,
@@ -14,7 +16,26 @@ use crate::{
 pub fn measure(run: &Run) -> Result<(), String> {
     // Large pictures take long, and their times vary little.
     let few = run.with_rounds(run.rounds.min(3));
-    let comic = [("default comic".to_owned(), Wear::style(default_comic()))];
+    let comic = [(GROWING.to_owned(), Wear::style(default_comic()))];
+    // The same with a pass fewer, and a style of one pass.
+    let fewer = [
+        (
+            "default comic; range of every frame",
+            ComicStyle {
+                depth_map: Some(DepthMap {
+                    smoothing: None,
+                    ..default()
+                }),
+                ..default_comic()
+            },
+        ),
+        (
+            "one tint (sepia)",
+            ComicStyle::new().with(Colorization::SEPIA),
+        ),
+    ];
+    let fewer = fewer.map(|(name, style)| (name.to_owned(), Wear::style(style)));
+    let by_pixels = [&comic[..], &fewer].concat();
     let mut times = rig::times();
     let sizes: &[(u32, u32)] = if run.quick {
         &[(128, 128), (256, 256)]
@@ -37,7 +58,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         } else {
             run
         };
-        rig::record(run, &mut times, "pixels", &what, &mut rig, &comic);
+        rig::record(run, &mut times, "pixels", &what, &mut rig, &by_pixels);
     }
     let counts: &[u32] = if run.quick {
         &[1_000, 30_000]

@@ -5,7 +5,7 @@ use std::path::Path;
 use plotters::prelude::*;
 
 use crate::{
-    costs::{OWN, bare_costs, costs, growth_exponent, line_score},
+    costs::{GROWING, OWN, bare_costs, costs, growth_exponent, line_score},
     load,
     table::largest,
 };
@@ -224,7 +224,7 @@ pub fn draw(folder: &Path) -> Result<(), String> {
         &points,
     )?;
 
-    let (_, points) = growth_exponent(&load(folder, "growth_times")?, "pixels", &OWN);
+    let (_, points) = growth_exponent(&load(folder, "growth_times")?, "pixels", GROWING);
     let points: Vec<Point> = points
         .into_iter()
         .map(|(x, y)| (x, y, format!("{y:.1} ms")))

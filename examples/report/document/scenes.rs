@@ -3,9 +3,9 @@
 use std::{fmt::Write, path::Path};
 
 use crate::{
-    costs::{LAPS, OWN, costs, growth_exponent, size, unsigned_zero},
+    costs::{GROWING, LAPS, OWN, costs, growth_exponent, size, unsigned_zero},
     load,
-    table::{exponent, median, quantile},
+    table::{Table, exponent, median, quantile},
 };
 
 pub fn stability(out: &mut String, folder: &Path) -> Result<(), String> {
@@ -185,6 +185,20 @@ pub fn ladder(out: &mut String, folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
+/// The exponents of styles of fewer passes: what is left of growth below 1 is the cost of a pass
+/// that does not depend on its pixels.
+fn fewer_passes(out: &mut String, times: &Table) {
+    let all: Vec<&Vec<String>> = times.matching(&[("section", "pixels")]);
+    out.push_str("Of the styles and passes of the same run:\n\n| | fitted exponent |\n|---|---|\n");
+    for variant in times.distinct(&all, "variant") {
+        let (p, points) = growth_exponent(times, "pixels", &variant);
+        if points.len() > 2 && variant != "nothing" && variant != "blit again" {
+            let _ = writeln!(out, "| {variant} | {p:.3} |");
+        }
+    }
+    out.push('\n');
+}
+
 pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
     let times = load(folder, "growth_times")?;
     out.push_str(
@@ -192,13 +206,13 @@ pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
          for the default comic (desaturation, colorization, contours).\n\n",
     );
     for (section, title) in [("pixels", "pixels"), ("vertices", "vertices, at 512x512")] {
-        let (p, points) = growth_exponent(&times, section, &OWN);
+        let (p, points) = growth_exponent(&times, section, GROWING);
         let _ = writeln!(out, "| {title} | ms | blits |\n|---|---|---|");
         let rows = times.matching(&[("section", section)]);
         for (scene, (_, ms)) in times.distinct(&rows, "scene").iter().zip(&points) {
             let ratio = costs(&times, section, scene, &OWN)
                 .into_iter()
-                .find(|c| c.name == "default comic")
+                .find(|c| c.name == GROWING)
                 .map_or(f64::NAN, |c| c.ratio[1]);
             let _ = writeln!(out, "| {scene} | {ms:.2} | {ratio:.2} |");
         }
@@ -213,6 +227,7 @@ pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
             if large.len() > 2 && large.len() < pixels.len() {
                 let _ = writeln!(out, "From 512x512 on: {:.3}.\n", exponent(&large));
             }
+            fewer_passes(out, &times);
         }
     }
     out.push_str(
@@ -232,8 +247,8 @@ pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
         let _ = writeln!(
             out,
             "| {scene} | {:.2} | {:.2} | {:.2} |",
-            of("default comic", "prepass"),
-            of("default comic", "main"),
+            of(GROWING, "prepass"),
+            of(GROWING, "main"),
             of("nothing", "main"),
         );
     }
@@ -245,12 +260,12 @@ pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
     for scene in times.distinct(&rows, "scene") {
         let cost = costs(&times, "cameras", &scene, &OWN)
             .into_iter()
-            .find(|c| c.name == "default comic")
+            .find(|c| c.name == GROWING)
             .map_or(f64::NAN, |c| c.milliseconds);
         let rows = times.matching(&[
             ("section", "cameras"),
             ("scene", &scene),
-            ("variant", "default comic"),
+            ("variant", GROWING),
         ]);
         let whole: Vec<f64> = rows
             .iter()

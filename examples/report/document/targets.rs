@@ -3,7 +3,7 @@
 use std::{fmt::Write, path::Path};
 
 use crate::{
-    costs::{OWN, costs, growth_exponent, line_score},
+    costs::{GROWING, OWN, costs, growth_exponent, line_score},
     load,
     table::Table,
 };
@@ -88,7 +88,7 @@ fn times(folder: &Path) -> Result<Vec<Target>, String> {
     let ratio = milliseconds("Sobel")
         .zip(milliseconds("silhouettes + creases"))
         .map(|(other, own)| other / own);
-    let (exponent, _) = growth_exponent(&load(folder, "growth_times")?, "pixels", &OWN);
+    let (exponent, _) = growth_exponent(&load(folder, "growth_times")?, "pixels", GROWING);
     let rival =
         "time of bevy_edge_detection_outline (Sobel, depth + normals) / silhouettes + creases";
     Ok(vec![
