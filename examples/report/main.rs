@@ -18,6 +18,7 @@ mod ink;
 mod ladder;
 mod lines;
 mod models;
+mod page;
 mod parts;
 mod peers;
 mod plots;
@@ -85,19 +86,20 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
   --quick          small pictures, few repetitions, no other crates
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure one section only: ranges, encodings, lines, models,
-                   dashes, memory, stability, ladder, parts, growth, peers
-                   or flicker
+                   dashes, memory, page, stability, ladder, parts, growth,
+                   peers or flicker
   --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
-const SECTIONS: [(&str, Section); 12] = [
+const SECTIONS: [(&str, Section); 13] = [
     ("ranges", ranges::measure),
     ("encodings", encodings::measure),
     ("lines", lines::measure),
     ("models", models::measure),
     ("dashes", ink::dashes),
     ("memory", ink::memory),
+    ("page", page::measure),
     ("stability", stability::measure),
     ("ladder", ladder::measure),
     ("parts", parts::measure),

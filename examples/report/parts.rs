@@ -5,9 +5,10 @@ use bevy::{
     prelude::*,
 };
 use bevy_comics::{
-    ComicStyle, Creases, DepthWrite, Desaturation, Halftone, HalftoneMode, LineColor, LineResponse,
-    LineWeight, LineWidths, MeshSections, NoStyle, OutlineStyle, Outlines, Paper, PrintOffset,
-    ScreenSampling, ScreenShape, SelectionOutline, Silhouettes, SpeedLines, TwoTone, XRayOutline,
+    ComicStyle, Creases, DepthWrite, Desaturation, Focus, FocusAt, FocusStyle, Halftone,
+    HalftoneMode, LineColor, LineResponse, LineWeight, LineWidths, MeshSections, NoStyle,
+    OutlineStyle, Outlines, Paint, PaintForm, Paper, PrintOffset, ScreenSampling, ScreenShape,
+    SelectionOutline, Silhouettes, SpeedLines, TwoTone, XRayOutline,
 };
 
 use bevy_comics_testkit::scenes::BuiltIn;
@@ -90,6 +91,13 @@ fn page() -> Vec<(String, Wear)> {
     let none = ComicStyle::new();
     let screen = |halftone: Halftone| ComicStyle::new().with(halftone);
     let default = Halftone::default();
+    let focus = |style: FocusStyle| {
+        ComicStyle::new().with(Focus {
+            at: FocusAt::Centre,
+            style,
+            ..Focus::default()
+        })
+    };
     let printed = none
         .clone()
         .with(PrintOffset::default())
@@ -121,6 +129,18 @@ fn page() -> Vec<(String, Wear)> {
         ),
         ("print offset", none.clone().with(PrintOffset::default())),
         ("paper", none.clone().with(Paper::default())),
+        ("paint", none.clone().with(Paint::default())),
+        (
+            "paint; strokes along edges",
+            none.clone().with(Paint {
+                form: PaintForm::Anisotropic,
+                ..Paint::default()
+            }),
+        ),
+        ("focus; blur", focus(FocusStyle::Blur)),
+        ("focus; offset", focus(FocusStyle::Offset)),
+        ("focus; paint", focus(FocusStyle::Paint)),
+        ("focus; dots", focus(FocusStyle::Dots)),
         ("two tones", none.clone().with(TwoTone::default())),
         ("speed lines", none.with(SpeedLines::default())),
         ("halftone; print offset and paper", printed),

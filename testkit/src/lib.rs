@@ -13,6 +13,7 @@ pub mod orbit;
 pub mod read_back;
 pub mod reference;
 pub mod scenes;
+pub mod screens;
 pub mod specimens;
 // The crate's own stopwatch, included because it is private there.
 #[path = "../../src/timing/stopwatch.rs"]

@@ -10,13 +10,15 @@ use bevy_comics::{
     ComicStyle, ComicsStage, Halftone, HalftoneMode, ObjectScreen, ScreenAnchor, ScreenSampling,
     ScreenShape,
 };
-use bevy_comics_testkit::reference::{
-    halftone::{Plate, followed_cover},
-    similarity::{Similarity, similarity_of},
+use bevy_comics_testkit::{
+    reference::{
+        halftone::{Plate, followed_cover},
+        similarity::{Similarity, similarity_of},
+    },
+    screens::SHAPES,
 };
 
 use crate::{
-    functions::halftone::SHAPES,
     halftone::ideal,
     small::{Small, linear, options, unlit},
 };

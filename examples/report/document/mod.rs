@@ -3,6 +3,7 @@
 
 mod ink;
 mod others;
+mod page;
 mod parts;
 mod precision;
 mod scenes;
@@ -37,6 +38,7 @@ pub fn render(folder: &Path) -> Result<String, String> {
     precision::ranges(&mut out, folder)?;
     precision::encodings(&mut out, folder)?;
     precision::lines(&mut out, folder)?;
+    page::page(&mut out, folder)?;
     scenes::stability(&mut out, folder)?;
     scenes::ladder(&mut out, folder)?;
     parts::parts(&mut out, folder)?;

@@ -2,10 +2,13 @@
 
 use bevy::color::Color;
 use bevy_comics::{Halftone, HalftoneMode, ScreenShape};
-use bevy_comics_testkit::reference::{
-    blue_noise::blue_noise,
-    halftone::{Plate, inked, plate_cover, plate_tones, screen_amount},
-    screen,
+use bevy_comics_testkit::{
+    reference::{
+        blue_noise::blue_noise,
+        halftone::{Plate, inked, plate_cover, plate_tones, screen_amount},
+        screen,
+    },
+    screens::SHAPES,
 };
 
 use super::*;
@@ -15,15 +18,6 @@ const HALFTONE: &str = "#import bevy_comics::effects::halftone::{
     }
     #import bevy_comics::effect::color::separated
     #import bevy_comics::effect::screen::{cos_turn, gained, sin_turn, tinted}";
-
-pub const SHAPES: [ScreenShape; 6] = [
-    ScreenShape::Round,
-    ScreenShape::Euclidean,
-    ScreenShape::Line,
-    ScreenShape::Diamond,
-    ScreenShape::Cross,
-    ScreenShape::Stochastic,
-];
 
 /// Places up to 2000 pixels from the middle, tones with both ends, periods from 2 to 40.
 /// The slope of a coverage is up to one per pixel, and places are exact to an eighth of a

@@ -1,0 +1,72 @@
+//! How exactly the page is printed: tones of screens, jumps between tones, moire, and colours of
+//! four inks.
+
+use bevy::prelude::*;
+use bevy_comics::Halftone;
+use bevy_comics_testkit::{
+    reference::halftone::plate_tones,
+    screens::{PERIODS, SHAPES, largest_jump, moire, printed_mean, tone_error},
+};
+
+use crate::{Run, table::Table};
+
+/// Inks and paper that print exactly the light that the plates ask for.
+fn ideal() -> Halftone {
+    Halftone {
+        cyan: Color::srgb(0.0, 1.0, 1.0),
+        magenta: Color::srgb(1.0, 0.0, 1.0),
+        yellow: Color::srgb(1.0, 1.0, 0.0),
+        black: Color::BLACK,
+        paper: Color::WHITE,
+        ..default()
+    }
+}
+
+/// The largest difference of the mean light of a print from its colour, of 20 colours.
+fn color_error(black_generation: f32) -> f64 {
+    let s = Halftone {
+        black_generation,
+        ..ideal()
+    };
+    let colors = (0..20u32).map(|i| {
+        let part = |k: u32| f64::from((i * 7 + 3) * k % 19) / 18.0;
+        [part(5), part(11), part(13)]
+    });
+    let differences = colors.flat_map(|light| {
+        let printed = printed_mean(&s, plate_tones(&s, light), 0.25);
+        [0, 1, 2].map(|c| (printed[c] - light[c]).abs())
+    });
+    differences.fold(0.0, f64::max)
+}
+
+pub fn measure(run: &Run) -> Result<(), String> {
+    let mut table = Table::new(&["what", "period", "tone", "jump", "moire"]);
+    let periods = if run.quick { &PERIODS[2..3] } else { &PERIODS };
+    for shape in SHAPES {
+        for &period in periods {
+            let (tone, ..) = tone_error(shape, period);
+            let (jump, _) = largest_jump(shape, period);
+            let angles = [0.0, 15.0, 45.0];
+            let slow = angles.map(|degrees| {
+                let [gradient, rings] =
+                    [false, true].map(|zones| moire(shape, period, degrees, zones));
+                gradient.max(rings)
+            });
+            let slow = slow.into_iter().fold(0.0, f64::max);
+            table.push(&[
+                &format!("{shape:?}"),
+                &period,
+                &format!("{tone:.5}"),
+                &format!("{jump:.5}"),
+                &format!("{slow:.6}"),
+            ]);
+        }
+        run.say(&format!("{shape:?}: printed"));
+    }
+    run.save("page_screens", &table)?;
+    let mut colors = Table::new(&["black", "error"]);
+    for black in [0.0, 0.5, 1.0] {
+        colors.push(&[&black, &format!("{:.5}", color_error(black))]);
+    }
+    run.save("page_colors", &colors)
+}

@@ -1,0 +1,165 @@
+//! How well screens print flat tones, gradients and rings. Computed with the shader's twin, which
+//! every pixel of a picture equals.
+
+use std::f64::consts::TAU;
+
+use bevy_comics::{Halftone, ScreenShape};
+
+use crate::reference::halftone::{Plate, inked, plate_cover};
+
+/// All shapes.
+pub const SHAPES: [ScreenShape; 6] = [
+    ScreenShape::Round,
+    ScreenShape::Euclidean,
+    ScreenShape::Line,
+    ScreenShape::Diamond,
+    ScreenShape::Cross,
+    ScreenShape::Stochastic,
+];
+
+/// The angles of the plates in degrees.
+pub const ANGLES: [f64; 4] = [15.0, 75.0, 0.0, 45.0];
+
+/// Periods that are measured, in pixels.
+pub const PERIODS: [f64; 5] = [3.0, 4.0, 6.0, 8.0, 12.5];
+
+/// Thresholds of grains by column and row: each of 256 classes as often as the others.
+pub fn tile(x: i64, y: i64) -> f64 {
+    let i = (y.rem_euclid(64) * 64 + x.rem_euclid(64)) as u32;
+    (f64::from(i.wrapping_mul(37) & 255) + 0.5) / 256.0
+}
+
+/// Thresholds without slow parts: the golden ratio along a lattice (Roberts 2018). Those of
+/// [`tile`] have power at all frequencies.
+fn even(x: i64, y: i64) -> f64 {
+    (0.754_877_666 * x as f64 + 0.569_840_291 * y as f64).rem_euclid(1.0)
+}
+
+/// A plate of a screen that begins in the middle.
+pub fn plate(degrees: f64, period: f64) -> Plate {
+    Plate {
+        degrees,
+        period,
+        phase: 0.0,
+        number: 0,
+    }
+}
+
+/// Pixels of a square whose side is a multiple of the period, around where screens begin.
+pub fn square(period: f64) -> impl Iterator<Item = [f64; 2]> + Clone {
+    let side = (period * (250.0 / period).floor()).round() as i32;
+    (0..side)
+        .flat_map(move |y| (0..side).map(move |x| [x, y].map(|v| f64::from(v - side / 2) + 0.25)))
+}
+
+/// The mean of some values.
+pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0), |(sum, count), v| (sum + v, count + 1));
+    sum / f64::from(count)
+}
+
+/// Of 11 tones at four angles, the one whose print departs most from it: (mean of a flat area
+/// less its tone, tone, degrees).
+pub fn tone_error(shape: ScreenShape, period: f64) -> (f64, f64, f64) {
+    let mut most = (0.0, 0.0, 0.0);
+    for degrees in ANGLES {
+        for tone in (0..=10).map(|i| f64::from(i) / 10.0) {
+            let cover = plate_cover(shape, plate(degrees, period), tone, &tile);
+            let error = mean(square(period).map(cover)) - tone;
+            if error.abs() > f64::abs(most.0) {
+                most = (error, tone, degrees);
+            }
+        }
+    }
+    most
+}
+
+/// The largest change of a pixel when the tone changes by 1 / 1024, of 300 pixels and all tones:
+/// (change, tone).
+pub fn largest_jump(shape: ScreenShape, period: f64) -> (f64, f64) {
+    let places: Vec<_> = (0..300)
+        .map(|i| [f64::from(i) * 1.618 % 50.0, f64::from(i) * 2.414 % 50.0])
+        .collect();
+    let mut before = vec![0.0; places.len()];
+    let mut most = (0.0, 0.0);
+    for step in 0..=1024 {
+        let tone = f64::from(step) / 1024.0;
+        let cover = plate_cover(shape, plate(15.0, period), tone, &tile);
+        for (place, before) in places.iter().zip(&mut before) {
+            let k = cover(*place);
+            if (k - *before).abs() > most.0 {
+                most = ((k - *before).abs(), tone);
+            }
+            *before = k;
+        }
+    }
+    most
+}
+
+/// The part of the power of a print less its picture that is below half of the screen's frequency.
+/// The picture is a slow gradient, or rings that become finer towards the border (`zones`).
+pub fn moire(shape: ScreenShape, period: f64, degrees: f64, zones: bool) -> f64 {
+    const SIDE: usize = 240;
+    let tone = |x: f64, y: f64| {
+        if zones {
+            // At the border: a period of 12 cells.
+            let frequency = 1.0 / (12.0 * period);
+            let square = (x * x + y * y) / (SIDE as f64 / 2.0);
+            0.5 + 0.35 * (0.5 * TAU * frequency * square).cos()
+        } else {
+            0.5 + x / SIDE as f64
+        }
+    };
+    let mut rest = vec![0.0; SIDE * SIDE];
+    for (i, rest) in rest.iter_mut().enumerate() {
+        let [x, y] = [i % SIDE, i / SIDE].map(|v| v as f64 + 0.25 - SIDE as f64 / 2.0);
+        // As the picture stores it: 8 bits.
+        let tone = (tone(x, y).clamp(0.0, 1.0) * 255.0).round() / 255.0;
+        *rest = plate_cover(shape, plate(degrees, period), tone, &even)([x, y]) - tone;
+    }
+    let power = mean(rest.iter().map(|v| v * v));
+    let slow = blurred(&rest, SIDE, 1.2 * period);
+    let margin = (3.0 * period) as usize;
+    let inside =
+        (margin..SIDE - margin).flat_map(|y| (margin..SIDE - margin).map(move |x| y * SIDE + x));
+    mean(inside.map(|i| slow[i] * slow[i])) / power
+}
+
+/// The mean light of a print of a flat colour, with this phase of the black plate. `tones`: those
+/// of the four plates.
+pub fn printed_mean(s: &Halftone, tones: [f64; 4], phase: f64) -> [f64; 3] {
+    let plates = Plate::all(s, 1.0);
+    let covers: [_; 4] = std::array::from_fn(|i| {
+        let phase = if i == 3 { phase } else { 0.0 };
+        plate_cover(s.shape, Plate { phase, ..plates[i] }, tones[i], &tile)
+    });
+    let prints = square(6.0).map(|place| inked(s, std::array::from_fn(|i| covers[i](place))));
+    let (sum, count) = prints.fold(([0.0; 3], 0.0), |(sum, count), print| {
+        ([0, 1, 2].map(|c| sum[c] + print[c]), count + 1.0)
+    });
+    sum.map(|v| v / count)
+}
+
+/// A Gaussian blur of a square picture.
+pub fn blurred(picture: &[f64], side: usize, sigma: f64) -> Vec<f64> {
+    let reach = (3.0 * sigma) as i64;
+    let weights: Vec<f64> = (-reach..=reach)
+        .map(|d| (-0.5 * (d as f64 / sigma).powi(2)).exp())
+        .collect();
+    let total: f64 = weights.iter().sum();
+    let pass = |from: &[f64], dx: i64, dy: i64| -> Vec<f64> {
+        (0..side * side)
+            .map(|i| {
+                let (x, y) = ((i % side) as i64, (i / side) as i64);
+                let last = side as i64 - 1;
+                let at = |d: i64| {
+                    let (x, y) = (x + d * dx, y + d * dy);
+                    from[(y.clamp(0, last) * side as i64 + x.clamp(0, last)) as usize]
+                };
+                let sum = (-reach..=reach).zip(&weights).map(|(d, w)| w * at(d));
+                sum.sum::<f64>() / total
+            })
+            .collect()
+    };
+    pass(&pass(picture, 1, 0), 0, 1)
+}
