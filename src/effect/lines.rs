@@ -6,7 +6,8 @@ use super::{Extent, Needs, Plan, ViewFacts, ViewPlan, requests::Scene};
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
     lines::{
-        LineFocusUniform, LineSettings, LineWeight, MapJumps, MemoryRequest, request::LineRequest,
+        LineFocusUniform, LineSettings, LineWeight, MapJumps, MemoryRequest, SheetUniform,
+        request::LineRequest,
     },
     objects::Pressure,
 };
@@ -54,7 +55,8 @@ pub(super) fn line_request(
     } else {
         0.0
     };
-    let reach = settings.reach(view.scale_factor, widest_object, plan.vertex_widths);
+    let widest = (widest_object, plan.vertex_widths);
+    let reach = settings.reach(view.scale_factor, widest, facts.sheet);
     let reference = view.projection.jump_reference(&view.clip_from_view);
     let grid_scale = view.scale_factor * uniform.depth_scale.max_element();
     Some(LineRequest {
@@ -78,6 +80,9 @@ pub(super) fn line_request(
             fog.uniform(&view.projection, &view.clip_from_view)
         }),
         focus: line_focus(plan, facts),
+        sheet: facts.sheet.map_or_else(SheetUniform::default, |sheet| {
+            sheet.uniform(scene.viewport.xy().as_vec2())
+        }),
         depth_size,
         samples,
         size: scene.viewport.zw(),
