@@ -6,8 +6,8 @@ use super::{Extent, Needs, Plan, ViewFacts, ViewPlan, requests::Scene};
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
     lines::{
-        LineFocusUniform, LineSettings, LineWeight, MapJumps, MemoryRequest, SheetUniform,
-        request::LineRequest,
+        FogUniform, LineFocusUniform, LineSettings, LineWeight, MapJumps, MemoryRequest, Sheet,
+        SheetUniform, request::LineRequest,
     },
     objects::Pressure,
 };
@@ -75,14 +75,9 @@ pub(super) fn line_request(
         memory: memory_request(view, &settings, scene),
         cuts: view.cuts,
         motion: has_motion(scene),
-        fog: plan.fog.then(|| {
-            let fog = view.fog.unwrap_or_default();
-            fog.uniform(&view.projection, &view.clip_from_view)
-        }),
+        fog: plan.fog.then(|| fog(view)),
         focus: line_focus(plan, facts),
-        sheet: facts.sheet.map_or_else(SheetUniform::default, |sheet| {
-            sheet.uniform(scene.viewport.xy().as_vec2())
-        }),
+        sheet: sheet(facts),
         depth_size,
         samples,
         size: scene.viewport.zw(),
@@ -103,6 +98,19 @@ pub(super) fn line_request(
         jumps,
         map_flags: uniform.depth.flags,
     })
+}
+
+/// The fog that lines fade into.
+fn fog(view: &ViewPlan) -> FogUniform {
+    let fog = view.fog.unwrap_or_default();
+    fog.uniform(&view.projection, &view.clip_from_view)
+}
+
+/// What lines are drawn on.
+fn sheet(facts: &ViewFacts) -> SheetUniform {
+    let origin = facts.viewport.xy().as_vec2();
+    let uniform = |sheet: Sheet| sheet.uniform(origin);
+    facts.sheet.map(uniform).unwrap_or_default()
 }
 
 /// What lines are in focus, if an effect says so.

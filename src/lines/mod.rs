@@ -59,7 +59,7 @@ pub use color::LineColor;
 pub use focus::LineFocus;
 pub(crate) use focus::LineFocusUniform;
 pub use fog::LineFog;
-pub(crate) use fog::{ViewFog, has_fog};
+pub(crate) use fog::{FogUniform, ViewFog, has_fog};
 pub(crate) use key::reach;
 pub use kinds::{Creases, LineResponse, ObjectEdges, Silhouettes};
 pub(crate) use layouts::{ink_entry, owners_entry, range_entry};

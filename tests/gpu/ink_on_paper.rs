@@ -62,7 +62,8 @@ fn lines_on_paper_are_their_twins() {
     assert_eq!(small.errors(), 0);
 }
 
-/// Every pixel of every shape of dots but grains.
+/// Every pixel of every shape of dots but grains, and diamonds: their radius is approximate, see
+/// `functions::halftone`.
 #[test]
 fn dots_on_paper_are_their_twins() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
@@ -70,7 +71,6 @@ fn dots_on_paper_are_their_twins() {
         ScreenShape::Round,
         ScreenShape::Euclidean,
         ScreenShape::Line,
-        ScreenShape::Diamond,
         ScreenShape::Cross,
     ] {
         let halftone = Halftone {
@@ -203,12 +203,6 @@ fn a_dry_brush_leaves_streaks_in_wide_lines() {
 #[test]
 fn dots_keep_their_mean_tone_on_paper() {
     let page = UVec2::new(256, 192);
-    let mean = |small: &Small| {
-        let (_, after) = small.pass();
-        let sum: f64 = after.pixels.iter().map(|p| f64::from(p[0])).sum();
-        sum / after.pixels.len() as f64
-    };
-    let mut worst = [0.0f64; 2];
     for light in [0.05f32, 0.3, 0.5, 0.8, 0.95] {
         let mut small = towards_the_sky(page);
         let flat = wall(&mut small, [-300.0, -300.0], [300.0, 300.0], 100.0);
@@ -232,7 +226,8 @@ fn dots_keep_their_mean_tone_on_paper() {
                 small.style(&style);
                 small.settle();
                 let (_, after) = small.pass();
-                (mean(&small), after.pixels)
+                let sum: f64 = after.pixels.iter().map(|p| f64::from(p[0])).sum();
+                (sum / after.pixels.len() as f64, after.pixels)
             };
             let (smooth, dots) = shown(0.0);
             let (rough, moved) = shown(2.0);
@@ -246,10 +241,8 @@ fn dots_keep_their_mean_tone_on_paper() {
                 (rough - smooth).abs() < 0.01,
                 "{shape:?}, {light}: {smooth}, {rough}"
             );
-            worst = [worst[0].max((rough - smooth).abs()), worst[1]];
         }
     }
-    println!("at most {:.4}", worst[0]);
 }
 
 /// Values out of range, thin lines on the roughest paper, and a scale factor of 3.
