@@ -95,7 +95,7 @@ pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
 pub use lines::{
     Creases, LineBoil, LineColor, LineFocus, LineFog, LineResponse, LineSettings, LineWeight,
-    MapJumps, ObjectEdges, Silhouettes, ViewCracks,
+    MapJumps, ObjectEdges, Sheet, Silhouettes, ViewCracks,
 };
 #[cfg(feature = "objects")]
 pub use objects::{

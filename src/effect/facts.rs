@@ -6,7 +6,7 @@ use bevy::{
 };
 
 use super::{Plan, ViewPlan, target::place_in};
-use crate::clock::drawing_seed;
+use crate::{clock::drawing_seed, lines::Sheet};
 
 /// Facts about a view that an effect can use when it selects its shader variants
 /// and packs its settings.
@@ -44,6 +44,9 @@ pub struct ViewFacts {
     /// another one ([`Effect::implied`](crate::Effect::implied)). Also true if no
     /// effect requests lines.
     pub lines_implied: bool,
+    /// The sheet that the view is printed on: that of the first effect in the chain that has one
+    /// ([`Effect::sheet`](crate::Effect::sheet)).
+    pub sheet: Option<Sheet>,
 }
 
 impl Default for ViewFacts {
@@ -64,6 +67,7 @@ impl Default for ViewFacts {
             depth_axis: Vec2::new(0.1, 0.0),
             depth_reference: None,
             lines_implied: false,
+            sheet: None,
         }
     }
 }
@@ -81,7 +85,7 @@ impl ViewFacts {
             let depth = -view_from_world.transform_point3(at).z;
             Some((place_in(viewport, clip_from_world, at)?, depth))
         });
-        Self {
+        let facts = Self {
             viewport,
             target_size: camera.physical_target_size.unwrap_or(viewport.zw()),
             scale_factor: view.scale_factor,
@@ -94,7 +98,10 @@ impl ViewFacts {
             depth_axis: view.projection.axis(),
             depth_reference: view.projection.reference(&view.clip_from_view),
             lines_implied: plan.lines_implied(),
-        }
+            sheet: None,
+        };
+        let sheet = plan.drawn().find_map(|effect| effect.any_sheet(&facts));
+        Self { sheet, ..facts }
     }
 
     /// Number of the drawing that is shown, as a seed for random numbers: 0 to 65535, then

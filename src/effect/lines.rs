@@ -6,7 +6,8 @@ use super::{Extent, Needs, Plan, ViewFacts, ViewPlan, requests::Scene};
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
     lines::{
-        LineFocusUniform, LineSettings, LineWeight, MapJumps, MemoryRequest, request::LineRequest,
+        FogUniform, LineFocusUniform, LineSettings, LineWeight, MapJumps, MemoryRequest, Sheet,
+        SheetUniform, request::LineRequest,
     },
     objects::Pressure,
 };
@@ -54,7 +55,8 @@ pub(super) fn line_request(
     } else {
         0.0
     };
-    let reach = settings.reach(view.scale_factor, widest_object, plan.vertex_widths);
+    let widest = (widest_object, plan.vertex_widths);
+    let reach = settings.reach(view.scale_factor, widest, facts.sheet);
     let reference = view.projection.jump_reference(&view.clip_from_view);
     let grid_scale = view.scale_factor * uniform.depth_scale.max_element();
     Some(LineRequest {
@@ -73,11 +75,9 @@ pub(super) fn line_request(
         memory: memory_request(view, &settings, scene),
         cuts: view.cuts,
         motion: has_motion(scene),
-        fog: plan.fog.then(|| {
-            let fog = view.fog.unwrap_or_default();
-            fog.uniform(&view.projection, &view.clip_from_view)
-        }),
+        fog: plan.fog.then(|| fog(view)),
         focus: line_focus(plan, facts),
+        sheet: sheet(facts),
         depth_size,
         samples,
         size: scene.viewport.zw(),
@@ -98,6 +98,19 @@ pub(super) fn line_request(
         jumps,
         map_flags: uniform.depth.flags,
     })
+}
+
+/// The fog that lines fade into.
+fn fog(view: &ViewPlan) -> FogUniform {
+    let fog = view.fog.unwrap_or_default();
+    fog.uniform(&view.projection, &view.clip_from_view)
+}
+
+/// What lines are drawn on.
+fn sheet(facts: &ViewFacts) -> SheetUniform {
+    let origin = facts.viewport.xy().as_vec2();
+    let uniform = |sheet: Sheet| sheet.uniform(origin);
+    facts.sheet.map(uniform).unwrap_or_default()
 }
 
 /// What lines are in focus, if an effect says so.

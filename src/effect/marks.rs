@@ -23,7 +23,7 @@ use super::{
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
     lines::{
-        LineSettings, MarkKey, MarkPipeline, ViewMarks,
+        LineSettings, MarkKey, MarkPipeline, SheetUniform, ViewMarks,
         request::{LinePasses, LineRequest},
     },
     objects::{LayerRequest, Marks},
@@ -106,12 +106,13 @@ fn request(
         motion: false,
         fog: None,
         focus: None,
+        sheet: SheetUniform::default(),
         depth_size,
         samples,
         size: scene.viewport.zw(),
         rect: scene.drawn(),
         jitter: scene.jitter,
-        reach: settings.reach(view.scale_factor, widest, false),
+        reach: settings.reach(view.scale_factor, (widest, false), None),
         steps: settings.steps(grid_scale),
         specks: settings.specks(grid_scale),
         extension: 0.0,

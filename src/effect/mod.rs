@@ -47,7 +47,7 @@ pub(crate) use {choose::ViewPlan, plan::Plan};
 
 use crate::{
     diagnostics::ComicsStage,
-    lines::{LineFocus, LineSettings, MapJumps},
+    lines::{LineFocus, LineSettings, MapJumps, Sheet},
 };
 
 /// A camera component that changes the picture: one WGSL function of a pixel, and
@@ -173,6 +173,14 @@ pub trait Effect:
     /// of a camera have one, that of the first in the chain is used. Lines of the faithful forms do
     /// not fade, and none without compute shaders. Default: none.
     fn line_focus(&self, view: &ViewFacts) -> Option<LineFocus> {
+        let _ = view;
+        None
+    }
+
+    /// The sheet that the view is printed on: the edges of its lines and dots are rough, and wide
+    /// lines have streaks. If several effects of a camera have one, that of the first in the chain
+    /// is used. Lines of the faithful forms are not changed. Default: none.
+    fn sheet(&self, view: &ViewFacts) -> Option<Sheet> {
         let _ = view;
         None
     }

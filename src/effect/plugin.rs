@@ -88,6 +88,7 @@ impl FusedPlugin {
         load_shader_library!(app, "picture.wgsl");
         load_shader_library!(app, "pixel.wgsl");
         load_shader_library!(app, "screen.wgsl");
+        load_shader_library!(app, "sheet.wgsl");
         load_shader_library!(app, "similarity.wgsl");
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;

@@ -149,6 +149,31 @@ fn grain_cover(tone: f32, threshold: f32) -> f32 {
     return clamp((tone - threshold) * 96.0 + 0.5, 0.0, 1.0);
 }
 
+// Of a tone or of what is left of it, the part that edges may take or add.
+const MOST_SPREAD: f32 = 0.9;
+
+// The tone at a place where the sheet has a height, -1 to 1: ink runs into valleys. Its mean over
+// all heights is the tone. `length`: of the edges in a cell, in periods; they are displaced by up
+// to `edge` periods.
+fn spread_tone(tone: f32, length: f32, edge: f32, height: f32) -> f32 {
+    return tone - min(length * edge, MOST_SPREAD * min(tone, 1.0 - tone)) * height;
+}
+
+// Length of the edges of discs in periods. Beyond TOUCH: fitted.
+fn disc_edges(tone: f32) -> f32 {
+    return min(2.0 * sqrt(PI * tone), 5.5 * sqrt(1.0 - tone));
+}
+
+// The same of euclidean(): discs, then holes.
+fn euclidean_edges(tone: f32) -> f32 {
+    return 2.0 * sqrt(PI * min(tone, 1.0 - tone));
+}
+
+// The same of diamonds.
+fn diamond_edges(tone: f32) -> f32 {
+    return 4.0 * sqrt(min(tone, 1.0 - tone));
+}
+
 // The coverage of a tone beyond LEAST, whose dots or holes are paler instead of smaller. `k`:
 // that of the tone at LEAST.
 fn paler(k: f32, tone: f32) -> f32 {

@@ -72,6 +72,8 @@ impl LineKey {
         self.common()
             .chain(names([
                 (self.boils, "BOIL"),
+                (self.sheet.spreads, "SPREAD"),
+                (self.sheet.streaks, "STREAKS"),
                 (self.surface, "SURFACE"),
                 (self.inward, "INWARD"),
                 (self.weight.taper, "TAPER"),
@@ -139,6 +141,8 @@ impl LineKey {
                 (self.smooth, "SMOOTH"),
                 (self.varied, "VARIED"),
                 (self.boils, "BOIL"),
+                (self.sheet.spreads, "SPREAD"),
+                (self.sheet.streaks, "STREAKS"),
                 (self.surface, "SURFACE"),
                 (self.inward, "INWARD"),
                 (self.has_owners(), "OWNERS"),

@@ -16,6 +16,12 @@
 #import bevy_comics::lines::gaps::source_of
 #endif
 #import bevy_comics::lines::pass::line_pass
+#ifdef SPREAD
+#import bevy_comics::lines::sheet::{height_under, spread_width}
+#endif
+#ifdef STREAKS
+#import bevy_comics::lines::sheet::dry_ink
+#endif
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::texel_slot
 #endif
@@ -68,6 +74,20 @@ struct Ink {
 // Pixels of the viewport per pixel of the grid.
 var<private> viewport_scale: vec2<f32>;
 
+#ifdef SPREAD
+// Height of the sheet under the pixel.
+var<private> height: f32;
+#endif
+
+// The fraction of the pixel that a line covers whose middle is at a distance.
+fn covered(away: f32, half_width: f32) -> f32 {
+#ifdef SPREAD
+    return line_coverage(away, spread_width(line_pass.sheet, half_width, height));
+#else
+    return line_coverage(away, half_width);
+#endif
+}
+
 fn alphas(kinds: vec3<f32>) -> f32 {
     return largest_opacity(line_pass.settings, kinds);
 }
@@ -83,7 +103,7 @@ fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: Owner, at
     let half_width = unpack_width(packed >> 20u);
     let away = length((middle - at) * viewport_scale);
     let exists = (packed & 7u) != 0u;
-    let kinds = select(0.0, line_coverage(away, half_width), exists) * ink_of(packed);
+    let kinds = select(0.0, covered(away, half_width), exists) * ink_of(packed);
     (*ink).kinds = max((*ink).kinds, kinds);
 #ifdef OWNERS
     let alpha = alphas(kinds);
@@ -319,6 +339,9 @@ fn inward_of(ink: Ink) -> vec2<i32> {
 @fragment
 fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
     set_view(line_pass.seen);
+#ifdef SPREAD
+    height = height_under(line_pass.sheet, position.xy);
+#endif
     let g = line_pass.grid;
     viewport_scale = 1.0 / g.from_viewport.xy;
     var place = position.xy;
@@ -336,13 +359,16 @@ fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
         let s = viewport_scale;
         let away = segment_distance(at * s, ink.first * s, ink.second * s);
         let half_width = unpack_width(ink.packed >> 20u);
-        let straight = line_coverage(away, half_width) * ink_of(ink.packed);
+        let straight = covered(away, half_width) * ink_of(ink.packed);
         ink.kinds = max(ink.kinds, straight);
 #ifdef OWNERS
         let stronger = alphas(straight) > ink.strongest;
         ink.owner = select(ink.owner, ink.first_owner, stronger);
         ink.crack = select(ink.crack, ink.first_crack, stronger);
         ink.strongest = max(ink.strongest, alphas(straight));
+#endif
+#ifdef STREAKS
+        ink.kinds *= dry_ink(line_pass.sheet, position.xy, (ink.second - ink.first) * s, half_width);
 #endif
     }
 #ifdef BRIDGED

@@ -2,7 +2,7 @@
 
 use bevy::{math::Vec2, render::render_resource::TextureFormat};
 
-use super::{request::LineRequest, weight::WeightKey};
+use super::{request::LineRequest, sheet::SheetKey, weight::WeightKey};
 use crate::settings::Form;
 
 /// The two cracks of a pixel, see `Crack` in `edge.wgsl`.
@@ -91,6 +91,8 @@ pub(crate) struct LineKey {
     pub inward: bool,
     /// Lines are displaced.
     pub boils: bool,
+    /// What they have of the sheet that they are drawn on.
+    pub sheet: SheetKey,
     /// The width changes along a line.
     pub varied: bool,
     /// The depth texture has one pixel per pixel of the viewport.
@@ -149,6 +151,7 @@ impl LineKey {
             surface: lines.color.is_surface(),
             inward: lines.color.is_surface() && request.samples > 1,
             boils: lines.boil.moves(),
+            sheet: request.sheet.key(),
             varied: weight.varies(),
             same_size: request.view.depth_scale == Vec2::ONE,
             search: request.search(),
@@ -207,6 +210,7 @@ impl LineKey {
             search: Search::default(),
             visible_range: self.fading && self.visible_range,
             boils: false,
+            sheet: SheetKey::default(),
             surface: false,
             inward: false,
             varied: false,
@@ -238,6 +242,7 @@ impl LineKey {
             overshoots: false,
             weight: WeightKey::default(),
             boils: false,
+            sheet: SheetKey::default(),
             varied: false,
             ..self
         }
@@ -290,6 +295,7 @@ impl LineKey {
             ids: self.object_styles,
             object_styles: self.object_styles,
             boils: self.boils,
+            sheet: self.sheet,
             surface: self.surface,
             inward: self.inward,
             weight: WeightKey {
@@ -324,6 +330,7 @@ impl LineKey {
             search: self.search,
             links: self.settles() && self.search != Search::Columns,
             boils: self.boils,
+            sheet: self.sheet,
             surface: self.surface,
             inward: self.inward,
             bridged: self.bridged && self.has_owners(),

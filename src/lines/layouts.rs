@@ -14,7 +14,7 @@ use bevy::{
 
 use super::{
     key::{BLOCK_FORMAT, LineKey, Search},
-    request::LinePassUniform,
+    pass::LinePassUniform,
 };
 use crate::objects::{ids_entry, object_styles_entry, widths_entry};
 

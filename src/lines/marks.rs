@@ -27,7 +27,8 @@ use bevy::{
 
 use super::{
     ViewLines,
-    request::{LinePassUniform, LinePasses, LineRequest},
+    pass::LinePassUniform,
+    request::{LinePasses, LineRequest},
     tiles::{TileList, tile_shader, vertices},
 };
 use crate::objects::{MarkStyleBuffer, object_styles_entry};

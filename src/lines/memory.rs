@@ -21,8 +21,8 @@ use bevy::{
 
 use super::{
     draw::cleared,
+    pass::LinePassUniform,
     prepare::descriptor,
-    request::LinePassUniform,
     settings::LineSettings,
     tiles::{TileList, TileLists, tile_shader, vertices},
 };

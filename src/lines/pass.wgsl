@@ -9,6 +9,7 @@
 #import bevy_comics::lines::focus::LineFocus
 #import bevy_comics::lines::fog::Fog
 #import bevy_comics::lines::memory::Memory
+#import bevy_comics::lines::sheet::Sheet
 #import bevy_comics::lines::weight::Weight
 
 struct LinePass {
@@ -20,6 +21,7 @@ struct LinePass {
     focus: LineFocus,
     boil: Boil,
     memory: Memory,
+    sheet: Sheet,
 }
 
 @group(0) @binding(1) var<uniform> line_pass: LinePass;

@@ -6,10 +6,10 @@ use bevy::{
         entity::Entity,
         system::{Res, ResMut, SystemParam},
     },
-    math::{IVec2, IVec4, UVec2, UVec4, Vec2, Vec4},
+    math::{UVec2, UVec4, Vec2, Vec4},
     render::{
         render_resource::{
-            CachedComputePipelineId, CachedRenderPipelineId, PipelineCache, ShaderType,
+            CachedComputePipelineId, CachedRenderPipelineId, PipelineCache,
             SpecializedComputePipelines, SpecializedRenderPipelines,
         },
         renderer::RenderDevice,
@@ -21,10 +21,12 @@ use super::{
     focus::LineFocusUniform,
     fog::FogUniform,
     key::{LINK_STEPS, LineKey, Search},
-    memory::{MemoryKey, MemoryPipeline, MemoryRequest, MemoryUniform},
+    memory::{MemoryKey, MemoryPipeline, MemoryRequest},
+    pass::{Grid, LinePassUniform},
     pipelines::{LinePass, LineShaders, SearchPass},
     resolve::{ResolveKey, ResolvePipeline},
     settings::{LineSettings, LinesUniform, MapJumps},
+    sheet::SheetUniform,
     store::{largest_buffer, words},
     tiles::TileList,
     weight::WeightUniform,
@@ -51,6 +53,8 @@ pub(crate) struct LineRequest {
     pub fog: Option<FogUniform>,
     /// What lines are in focus.
     pub focus: Option<LineFocusUniform>,
+    /// The sheet that lines are drawn on.
+    pub sheet: SheetUniform,
     /// Size in pixels of the depth texture, and its samples per pixel.
     pub depth_size: UVec2,
     pub samples: u32,
@@ -177,39 +181,9 @@ impl LineRequest {
             memory: (self.memory)
                 .map(|memory| memory.uniform(self.grid_reach(), is_new))
                 .unwrap_or_default(),
+            sheet: self.sheet,
         }
     }
-}
-
-/// `Grid` of `edge.wgsl`.
-#[derive(ShaderType, Clone, Copy, Debug, Default)]
-pub(crate) struct Grid {
-    rect: IVec4,
-    from_viewport: Vec4,
-    reach: i32,
-    inked: i32,
-    jump_least: f32,
-    jump_radius: f32,
-    words: IVec2,
-    steps: i32,
-    specks: i32,
-    bridge: i32,
-    persistence: i32,
-    overshoot: f32,
-    unused: i32,
-}
-
-/// The uniform of the passes that find and draw lines.
-#[derive(ShaderType, Clone, Copy, Debug, Default)]
-pub(crate) struct LinePassUniform {
-    pub view: ViewUniform,
-    pub lines: LinesUniform,
-    pub grid: Grid,
-    pub weight: WeightUniform,
-    pub fog: FogUniform,
-    pub focus: LineFocusUniform,
-    pub boil: BoilUniform,
-    pub memory: MemoryUniform,
 }
 
 /// The pipelines of one view's lines.

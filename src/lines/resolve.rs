@@ -21,10 +21,7 @@ use bevy::{
 };
 
 use super::{
-    draw::cleared,
-    key::LineKey,
-    prepare::texture,
-    request::{LinePassUniform, LineRequest},
+    draw::cleared, key::LineKey, pass::LinePassUniform, prepare::texture, request::LineRequest,
     sources::Texels,
 };
 use crate::objects::{ID_FORMAT, WIDTH_FORMAT, ids_entry, widths_entry};

@@ -7,6 +7,7 @@ use super::{
     color::LineColor,
     fog::LineFog,
     kinds::{Creases, LineResponse, ObjectEdges, Silhouettes, ramp},
+    sheet::Sheet,
     weight::LineWeight,
 };
 use crate::settings::{Form, linear_rgb};
@@ -188,15 +189,21 @@ impl LineSettings {
     }
 
     /// Distance in physical pixels within which lines are searched around a pixel.
-    /// `scale` is physical pixels per logical pixel. `widest_object` is the width of
+    /// `scale` is physical pixels per logical pixel. `sheet`: what the lines are drawn on. `widest_object` is the width of
     /// the widest line of any `OutlineStyle`, in logical pixels. `vertex_widths`: the
     /// vertices of some mesh say how wide its lines are.
-    pub(crate) fn reach(&self, scale: f32, widest_object: f32, vertex_widths: bool) -> i32 {
+    pub(crate) fn reach(
+        &self,
+        scale: f32,
+        (widest_object, vertex_widths): (f32, bool),
+        sheet: Option<Sheet>,
+    ) -> i32 {
         let widest = self.widest(widest_object, vertex_widths);
         if widest == 0.0 {
             return 0;
         }
-        super::reach(0.5 * widest * scale)
+        let half_width = 0.5 * widest * scale;
+        super::reach(sheet.map_or(half_width, |sheet| sheet.largest(half_width)))
     }
 
     /// Width in logical pixels of the widest line that there can be; the parameters are those

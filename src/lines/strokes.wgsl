@@ -10,6 +10,12 @@
 #ifdef TAPER
 #import bevy_comics::lines::overshoot::stroke_width
 #endif
+#ifdef SPREAD
+#import bevy_comics::lines::sheet::{height_under, spread_width}
+#endif
+#ifdef STREAKS
+#import bevy_comics::lines::sheet::dry_ink
+#endif
 #ifdef OBJECT_STYLES
 #import bevy_comics::depth::view::set_view
 #import bevy_comics::objects::texel_slot
@@ -49,7 +55,8 @@ fn corner(
 ) -> Corner {
     let a = in_viewport(segment.xy);
     let b = in_viewport(segment.zw);
-    let margin = unpack_width(line.x >> 20u) + 1.0 + line_pass.boil.amplitude;
+    let margin = unpack_width(line.x >> 20u) + 1.0 + line_pass.boil.amplitude
+        + 0.5 * line_pass.sheet.spread;
     let far = vec2<f32>(vec2(index & 1u, index >> 1u));
     let place = mix(min(a, b) - margin, max(a, b) + margin, far);
     let size = vec2<f32>(line_pass.seen.viewport.zw);
@@ -75,6 +82,12 @@ fn stroke(at: Corner) -> Drawn {
     let width = stroke_width(line_pass.weight, half_width, length, away);
     half_width = width.x;
     kinds *= width.y;
+#endif
+#ifdef STREAKS
+    kinds *= dry_ink(line_pass.sheet, at.position.xy, b - a, half_width);
+#endif
+#ifdef SPREAD
+    half_width = spread_width(line_pass.sheet, half_width, height_under(line_pass.sheet, at.position.xy));
 #endif
     kinds *= line_coverage(segment_distance(place, a, b), half_width);
     if all(kinds <= vec3(0.0)) {

@@ -42,6 +42,8 @@ pub fn plate(degrees: f64, period: f64) -> Plate {
         period,
         phase: 0.0,
         number: 0,
+        spread: 0.0,
+        height: 0.0,
     }
 }
 

@@ -24,6 +24,7 @@ mod held_pose;
 mod house;
 mod ids;
 mod impact;
+mod ink_on_paper;
 mod iso_lines;
 mod jitter;
 mod ledges;

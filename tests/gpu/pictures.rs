@@ -9,8 +9,8 @@ use bevy::{
 use bevy_comics::{
     BlackFlats, Colorization, ColorizationMode, ComicStyle, ContourOperator, Contours, Creases,
     DepthMap, DepthMapping, Desaturation, Form, Halftone, KeyLight, LineColor, LineResponse,
-    Outlines, Paint, PrintOffset, ScreenSampling, ScreenShape, Silhouettes, Sketch, ToneBands,
-    VisibleDepthRange, presets,
+    Outlines, Paint, Paper, PrintOffset, ScreenSampling, ScreenShape, Silhouettes, Sketch,
+    ToneBands, VisibleDepthRange, presets,
 };
 
 use bevy_comics_testkit::{
@@ -21,6 +21,7 @@ use bevy_comics_testkit::{
         fused::{Input, stylize},
         map::{Frame, Projection},
         resolve::{Prepass, Resolved},
+        sheet::Sheet,
         view::View,
     },
     studio::with_map,
@@ -129,7 +130,10 @@ pub fn assert_pass_is_its_twin(
     let drawn = outlines.unwrap_or_default();
     let resolved = Resolved::new(&prepass, |near| jump(&drawn) * view.jump_reference(near));
     let seen = resolved.view(&view);
-    let edges = outlines.map(|outlines| (outlines, Ink::new(&outlines, &seen, 1.0, seconds)));
+    let paper = style.get::<Paper>();
+    let sheet = paper.map_or(Sheet::SMOOTH, |s| Sheet::new(s, 1.0, 0));
+    let ink = |outlines: &Outlines| Ink::new((outlines, sheet), &seen, 1.0, seconds);
+    let edges = outlines.map(|outlines| (outlines, ink(&outlines)));
     let mut undecided = 0;
     // This camera stores display codes instead of linear colour.
     let encoded = small

@@ -107,11 +107,15 @@ fn picture_effects() -> [Modes; 6] {
                 vec![Vec::new(), flags(&["HALFTONE_CELLS", "CONTINUED"])],
                 vec![
                     Vec::new(),
+                    vec![("HALFTONE_SPREADS", Some(1))],
                     flags(&["HALFTONE_FOLLOWS"]),
                     [
                         flags(&["HALFTONE_FOLLOWS", "OBJECT_ANCHORS"]),
                         flags(&["OBJECT_IDS", "OBJECT_STYLES"]),
-                        vec![("HALFTONE_ADJUSTED", Some(0))],
+                        vec![
+                            ("HALFTONE_ADJUSTED", Some(0)),
+                            ("HALFTONE_SPREADS", Some(0)),
+                        ],
                     ]
                     .concat(),
                 ],
@@ -517,7 +521,7 @@ fn every_kind_of_outline_composes_and_validates() {
     }
     for styles in [&[][..], &["OBJECT_IDS", "OBJECT_STYLES"]] {
         for more in [&[][..], &["SURFACE"], &["SURFACE", "INWARD"]] {
-            for line in subsets(&["BOIL", "TAPER"]) {
+            for line in subsets(&["BOIL", "TAPER", "SPREAD", "STREAKS"]) {
                 check(
                     &shader("lines/strokes.wgsl"),
                     &[styles, more, &line[..]].concat(),
@@ -556,7 +560,9 @@ fn every_kind_of_outline_composes_and_validates() {
                 &["BLOCKS", "COMPLETED"],
                 &["BLOCKS", "COMPLETED", "SMOOTH"],
             ] {
-                check(&draw, &[styles, search, store].concat());
+                for sheet in subsets(&["SPREAD", "STREAKS"]) {
+                    check(&draw, &[styles, search, store, &sheet[..]].concat());
+                }
                 let bridged = &["OWNERS", "BRIDGED", "SURFACE", "INWARD"];
                 if !store.is_empty() {
                     check(&draw, &[styles, search, store, bridged].concat());

@@ -185,12 +185,15 @@ fn page_styles() -> impl Strategy<Value = (Option<SpeedLines>, Option<TwoTone>, 
             invert,
             ..default()
         });
-    let paper = (colors(), number(), number()).prop_map(|(color, grain, size)| Paper {
-        color,
-        grain,
-        size,
-        ..default()
-    });
+    let paper =
+        (colors(), number(), number(), number()).prop_map(|(color, grain, size, spread)| Paper {
+            color,
+            grain,
+            size,
+            spread,
+            dry_brush: spread,
+            ..default()
+        });
     (option::of(lines), option::of(tones), option::of(paper))
 }
 

@@ -6,8 +6,10 @@
 #import bevy_comics::effect::color::{lightness, luminance, separated}
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::effect::screen::{
-    LEAST, cross_lines, diamond, disc, euclidean, gained, grain_cover, line, paler, tinted,
+    LEAST, cross_lines, diamond, diamond_edges, disc, disc_edges, euclidean, euclidean_edges,
+    gained, grain_cover, line, paler, spread_tone, tinted,
 }
+#import bevy_comics::effect::sheet::sheet_height
 #ifdef HALFTONE_CELLS
 #import bevy_comics::effect::picture::picture_at
 #endif
@@ -63,7 +65,11 @@ struct Halftone {
     pivot: f32,
     mode: u32,
     shape: u32,
-    unused: u32,
+    // The sheet: its number, by how many physical pixels edges are displaced at most, and places
+    // on it per physical pixel.
+    sheet: u32,
+    spread: f32,
+    sheet_scale: f32,
     // FOLLOWS: clip space from world space.
     clip_from_world: mat4x4<f32>,
 }
@@ -75,6 +81,8 @@ struct Screen {
     // Cosine and sine of their turn, clockwise; and their size.
     turn: vec2<f32>,
     size: f32,
+    // Height of the sheet under the pixel, -1 to 1.
+    height: f32,
 }
 
 // The mode: compiled in by the fused pass, else that of the settings.
@@ -102,6 +110,16 @@ fn adjusts(s: Halftone) -> bool {
     return adjusted == 1u;
 #else
     return true;
+#endif
+}
+
+// Whether ink runs into the valleys of a sheet.
+fn spreads(s: Halftone) -> bool {
+#ifdef HALFTONE_SPREADS
+    let compiled = #{HALFTONE_SPREADS}u;
+    return compiled == 1u;
+#else
+    return s.spread > 0.0;
 #endif
 }
 
@@ -169,8 +187,42 @@ fn stochastic(s: Halftone, place: vec2<f32>, tone: f32, plate: i32) -> f32 {
 }
 
 // The screens on the page.
-fn page_screen(s: Halftone) -> Screen {
-    return Screen(s.centre, vec2(1.0, 0.0), 1.0);
+fn page_screen(s: Halftone, height: f32) -> Screen {
+    return Screen(s.centre, vec2(1.0, 0.0), 1.0, height);
+}
+
+// Height of the sheet under a pixel, if ink runs into its valleys.
+fn height_under(s: Halftone, p: Pixel) -> f32 {
+    if !spreads(s) {
+        return 0.0;
+    }
+    return sheet_height(p.position * s.sheet_scale, s.sheet);
+}
+
+// Length of the edges of a shape in a cell, in periods. Of grains, it is that of squares that are
+// a third of a period wide and printed at random.
+fn edges(shape: u32, tone: f32) -> f32 {
+    if shape == SHAPE_ROUND {
+        return disc_edges(tone);
+    } else if shape == SHAPE_EUCLIDEAN {
+        return euclidean_edges(tone);
+    } else if shape == SHAPE_LINE {
+        return 2.0;
+    } else if shape == SHAPE_DIAMOND {
+        return diamond_edges(tone);
+    } else if shape == SHAPE_CROSS {
+        return 4.0 * sqrt(1.0 - tone);
+    }
+    return 12.0 * tone * (1.0 - tone);
+}
+
+// The tone that a screen shows at a pixel, within LEAST: edges of ink follow the sheet.
+fn tone_on_sheet(s: Halftone, on: Screen, tone: f32, period: f32) -> f32 {
+    let t = clamp(tone, LEAST, 1.0 - LEAST);
+    if !spreads(s) {
+        return t;
+    }
+    return spread_tone(t, edges(shape_of(s), t), s.spread / period, on.height);
 }
 
 // Cosine and sine of the angle of a plate, divided by its period.
@@ -187,9 +239,9 @@ fn plate_turn(s: Halftone, on: Screen, plate: i32) -> vec2<f32> {
 // Coverage of a pixel by a plate (0 cyan, 1 magenta, 2 yellow, 3 black). `place`: pixels
 // from where the screens begin.
 fn plate_cover(s: Halftone, on: Screen, place: vec2<f32>, plate: i32, tone: f32) -> f32 {
-    let t = clamp(tone, LEAST, 1.0 - LEAST);
-    let turn = plate_turn(s, on, plate);
     let period = s.period * on.size;
+    let t = tone_on_sheet(s, on, tone, period);
+    let turn = plate_turn(s, on, plate);
     let at = cell_at(place, turn, plate_phase(plate));
     let sides = abs(turn);
     let shape = shape_of(s);
@@ -309,18 +361,19 @@ fn shown_amount(s: Halftone, size: f32) -> f32 {
 // their mixture has it too.
 fn followed_covers(s: Halftone, p: Pixel, color: vec3<f32>, amount: f32, tones: vec4<f32>) -> vec4<f32> {
     let f = followed(s, p);
+    let height = height_under(s, p);
     if f.size == 0.0 {
-        return covers(s, page_screen(s), p, color, amount, tones);
+        return covers(s, page_screen(s, height), p, color, amount, tones);
     }
     // Grains cannot turn.
     let turns = shape_of(s) != SHAPE_STOCHASTIC;
     let turn = select(vec2(1.0, 0.0), f.turn, turns);
-    let own = Screen(f.origin, turn, select(1.0, f.size, turns));
+    let own = Screen(f.origin, turn, select(1.0, f.size, turns), height);
     let k = covers(s, own, p, color, amount * shown_amount(s, own.size), tones);
     if f.fade == 0.0 || !turns {
         return k;
     }
-    let other = Screen(f.origin, turn, f.other);
+    let other = Screen(f.origin, turn, f.other, height);
     let fading = covers(s, other, p, color, amount * shown_amount(s, f.other), tones);
     return mix(k, fading, f.fade);
 }
@@ -334,7 +387,7 @@ fn halftone(s: Halftone, p: Pixel) -> Pixel {
 #ifdef HALFTONE_FOLLOWS
     let k = followed_covers(s, p, color, amount, tones);
 #else
-    let k = covers(s, page_screen(s), p, color, amount, tones);
+    let k = covers(s, page_screen(s, height_under(s, p)), p, color, amount, tones);
 #endif
     // Nothing is printed where the background shows through.
     out.color = mix(p.color, inked(s, k) * p.alpha, s.opacity);

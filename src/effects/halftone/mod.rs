@@ -163,12 +163,14 @@ impl Effect for Halftone {
         })
     }
 
-    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, view: &ViewFacts, variants: &mut Variants) {
         variants.number("MODE", self.mode as u32);
         variants.number("SHAPE", self.shape as u32);
         variants.flag("CELLS", self.reads_cells());
         variants.number("ADJUSTED", u32::from(self.adjusts()));
         variants.flag("FOLLOWS", self.anchor == ScreenAnchor::Object);
+        let spreads = view.sheet.is_some_and(|sheet| sheet.spread > 0.0);
+        variants.number("SPREADS", u32::from(spreads));
     }
 
     fn map_faded(self, fraction: f32) -> Self {
@@ -210,7 +212,9 @@ impl Effect for Halftone {
             pivot: (1.0 - luminance).clamp(0.05, 0.95),
             mode: self.mode as u32,
             shape: self.shape as u32,
-            unused: 0,
+            sheet: view.sheet.map_or(0, |sheet| sheet.seed),
+            spread: view.sheet.map_or(0.0, |sheet| 0.5 * sheet.spread),
+            sheet_scale: view.sheet.map_or(0.0, |sheet| sheet.scale),
             clip_from_world: view.clip_from_world,
         }
     }
@@ -281,6 +285,8 @@ pub struct HalftoneUniform {
     pivot: f32,
     mode: u32,
     shape: u32,
-    unused: u32,
+    sheet: u32,
+    spread: f32,
+    sheet_scale: f32,
     clip_from_world: Mat4,
 }

@@ -2,8 +2,8 @@
 
 // Prints the picture on paper.
 
-#import bevy_comics::effect::noise::wave
 #import bevy_comics::effect::pixel::Pixel
+#import bevy_comics::effect::sheet::sheet_height
 
 struct Paper {
     color: vec3<f32>,
@@ -16,17 +16,6 @@ struct Paper {
     seed: u32,
 }
 
-// Height of the sheet, -1 to 1, as likely below 0 as above: three octaves of value noise,
-// with periods of 1.5, 4 and 12. Their grids are turned, against patterns with the grid of
-// pixels.
-fn paper_height(at: vec2<f32>, seed: u32) -> f32 {
-    let first = 0x70617065u + 3u * seed;
-    let fine = wave(vec2(0.8 * at.x - 0.6 * at.y, 0.6 * at.x + 0.8 * at.y) / 1.5, first);
-    let middle = wave(vec2(5.0 * at.x - 12.0 * at.y, 12.0 * at.x + 5.0 * at.y) / (13.0 * 4.0), first + 1u);
-    let coarse = wave(vec2(15.0 * at.x - 8.0 * at.y, 8.0 * at.x + 15.0 * at.y) / (17.0 * 12.0), first + 2u);
-    return clamp(fine + 0.6 * middle + 0.4 * coarse, -1.0, 1.0);
-}
-
 // Linear light of a page where the sheet has a height. `page`: without the paper.
 fn on_paper(s: Paper, page: vec3<f32>, height: f32) -> vec3<f32> {
     // Darkness: light above 1 has none. Ink gathers in valleys, which are shaded too. What is
@@ -37,7 +26,7 @@ fn on_paper(s: Paper, page: vec3<f32>, height: f32) -> vec3<f32> {
 }
 
 fn paper(s: Paper, p: Pixel) -> Pixel {
-    let height = paper_height(p.position * s.scale, s.seed);
+    let height = sheet_height(p.position * s.scale, s.seed);
     let printed = on_paper(s, p.color / max(p.alpha, 1e-3), height);
     var out = p;
     // Nothing is added where the background shows through.

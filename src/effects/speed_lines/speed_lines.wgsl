@@ -6,6 +6,7 @@
 
 #import bevy_comics::effect::noise::{hash, wave}
 #import bevy_comics::effect::pixel::Pixel
+#import bevy_comics::effect::sheet::bristles
 #import bevy_comics::lines::edge::line_coverage
 
 const PARALLEL: u32 = 1u;
@@ -96,14 +97,13 @@ fn place_in_cell(random: f32) -> f32 {
     return 0.5 + 0.4 * (2.0 * random - 1.0);
 }
 
-// Fraction of a line that the bristles of the brush leave: streaks along the line. `d`: place
-// along and across it.
-fn bristles(s: SpeedLines, seed: u32, d: vec2<f32>) -> f32 {
+// Fraction of a line that a dry brush leaves: streaks along the line. `d`: place along and
+// across it.
+fn dry_ink(s: SpeedLines, seed: u32, d: vec2<f32>) -> f32 {
     if !is_dry(s) {
         return 1.0;
     }
-    let limit = 1.6 * s.dry - 1.0;
-    return smoothstep(limit - 0.3, limit + 0.3, wave(d / (s.unit * vec2(60.0, 1.6)), seed));
+    return bristles(s.dry, wave(d / (s.unit * vec2(60.0, 1.6)), seed));
 }
 
 // Coverage of one radial line. `u`: direction of the pixel in cells; `rho`: its distance
@@ -122,7 +122,7 @@ fn radial_line(s: SpeedLines, line: i32, u: f32, rho: f32, hole: f32) -> f32 {
     let a = (u - f32(line) - place_in_cell(own.x)) * TURN / f32(s.count);
     let sine = a * (1.0 - a * a * (1.0 / 6.0 - a * a / 120.0));
     let across = rho * sine;
-    return line_coverage(abs(across), half_width) * bristles(s, own_hash, vec2(rho, across));
+    return line_coverage(abs(across), half_width) * dry_ink(s, own_hash, vec2(rho, across));
 }
 
 // Coverage of one parallel line. `d`: place of the pixel along and across the lines, from
@@ -143,7 +143,7 @@ fn parallel_line(s: SpeedLines, line: i32, d: vec2<f32>) -> f32 {
     let at = select(d.x, -d.x, other.x < 0.5);
     let half_width = speed_line_half_width(s, own.z, at, inner, s.spacing);
     let by = d.y - across;
-    return line_coverage(abs(by), half_width) * bristles(s, own_hash, vec2(d.x, by));
+    return line_coverage(abs(by), half_width) * dry_ink(s, own_hash, vec2(d.x, by));
 }
 
 // Coverage of the lines at a place.

@@ -15,6 +15,7 @@ use super::{
     link::{Place, bend, joined, linked, without_specks},
     overshoot::{Stroke, strokes},
     rim::is_rim,
+    sheet::{Sheet, Spot},
     straight::straight,
     view::View,
     weight::{largest_weight, local_weight, taper_weight, weighted},
@@ -43,13 +44,19 @@ pub struct Cracks {
 impl Cracks {
     /// `scale`: physical pixels per logical pixel.
     pub fn new(s: &Outlines, view: &View, scale: f64) -> Self {
+        Self::on_sheet(s, view, scale, Sheet::SMOOTH)
+    }
+
+    /// The same, drawn on a sheet.
+    pub fn on_sheet(s: &Outlines, view: &View, scale: f64, sheet: Sheet) -> Self {
         let [x0, y0, w, h] = view.viewport.map(i64::from);
         let cracks = (0..h)
             .flat_map(|y| (0..w).map(move |x| [x0 + x, y0 + y]))
             .map(|pixel| [0, 1].map(|side| crack(s, view, pixel, side, scale)))
             .collect();
         let widest = f64::from(s.width) * largest_weight(&s.weight);
-        let reach = ((0.5 * widest * scale + 1.0).ceil() as i64 - 1).max(1);
+        let reach = (sheet.largest(0.5 * widest * scale) + 1.0).ceil() as i64 - 1;
+        let reach = reach.max(1);
         // Between the centres of pixels, cracks half a pixel further away count.
         let grid_reach = reach + i64::from(s.boil.amplitude > 0.0);
         let mut found = Self {
@@ -216,14 +223,26 @@ impl Cracks {
     /// viewport, before it is stored. The sign of `nudge` decides how ink rounds that
     /// lies between two codes.
     pub fn ink(&self, at: [f64; 2], nudge: f64) -> [f64; 3] {
-        if self.by_columns {
-            return self.ink_of_lines(self.lines_by_columns(at, nudge), at, nudge);
-        }
-        self.exhaustive_ink(at, nudge)
+        self.ink_at(at, &Spot::SMOOTH, nudge)
+    }
+
+    /// The same at a place on the sheet.
+    fn ink_at(&self, at: [f64; 2], on: &Spot, nudge: f64) -> [f64; 3] {
+        let lines = if self.by_columns {
+            self.lines_by_columns(at, nudge)
+        } else {
+            self.lines_around(at)
+        };
+        ink_of_lines(lines, (at, on), nudge)
     }
 
     /// The same by an exhaustive search.
     pub fn exhaustive_ink(&self, at: [f64; 2], nudge: f64) -> [f64; 3] {
+        ink_of_lines(self.lines_around(at), (at, &Spot::SMOOTH), nudge)
+    }
+
+    /// All lines within reach of a place.
+    fn lines_around(&self, at: [f64; 2]) -> Vec<Line> {
         let (px, py) = (at[0].floor() as i64, at[1].floor() as i64);
         let mut lines = Vec::new();
         for [x, y] in self.around() {
@@ -235,7 +254,7 @@ impl Cracks {
                 lines.push((border, middle, crack));
             }
         }
-        self.ink_of_lines(lines, at, nudge)
+        lines
     }
 
     /// The pixels whose cracks are searched.
@@ -248,23 +267,27 @@ impl Cracks {
         }
         pixels
     }
+}
 
-    fn ink_of_lines(&self, mut lines: Vec<Line>, at: [f64; 2], nudge: f64) -> [f64; 3] {
-        let found = lines.iter().fold([0.0; 3], |found, (border, _, crack)| {
-            larger(found, ink_of(crack, nudge, border + crack.half_width))
-        });
-        let straight = straight(&mut lines, at, nudge);
-        // Which of two lines at the same distance is the nearest is a matter of rounding.
-        let sums = straight.iter().map(|ink| ink.iter().sum::<f64>());
-        let chosen = if nudge > 0.0 {
-            sums.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
-        } else if nudge < 0.0 {
-            sums.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))
-        } else {
-            sums.enumerate().next()
-        };
-        chosen.map_or(found, |(i, _)| larger(found, straight[i]))
-    }
+/// The ink of lines at a place, which has a place on the sheet.
+fn ink_of_lines(mut lines: Vec<Line>, (at, on): ([f64; 2], &Spot), nudge: f64) -> [f64; 3] {
+    let found = lines.iter().fold([0.0; 3], |found, (border, _, crack)| {
+        larger(found, ink_of(crack, nudge, border + crack.half_width, on))
+    });
+    let straight = straight(&mut lines, (at, on), nudge);
+    let straight: Vec<[f64; 3]> = (straight.into_iter())
+        .map(|(ink, left)| larger(found, ink).map(|ink| ink * left))
+        .collect();
+    // Which of two lines at the same distance is the nearest is a matter of rounding.
+    let sums = straight.iter().map(|ink| ink.iter().sum::<f64>());
+    let chosen = if nudge > 0.0 {
+        sums.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))
+    } else if nudge < 0.0 {
+        sums.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))
+    } else {
+        sums.enumerate().next()
+    };
+    chosen.map_or(found, |(i, _)| straight[i])
 }
 
 /// A line: the distance from its border, its middle, and its crack.
@@ -299,9 +322,9 @@ pub(super) fn middle(crack: &Crack, [x, y]: [i64; 2], v: [i64; 2]) -> [f64; 2] {
     })
 }
 
-/// Ink by kind at a distance from the middle of a line.
-pub(super) fn ink_of(crack: &Crack, nudge: f64, away: f64) -> [f64; 3] {
-    let covered = line_coverage(away, crack.half_width);
+/// Ink by kind at a distance from the middle of a line, at a place on the sheet.
+pub(super) fn ink_of(crack: &Crack, nudge: f64, away: f64, on: &Spot) -> [f64; 3] {
+    let covered = line_coverage(away, on.half_width(crack.half_width));
     let opacity = stored(crack.opacity, nudge);
     let soft = stored(crack.ink, nudge);
     let whole = [soft, soft, 1.0];
@@ -336,8 +359,8 @@ pub struct Ink {
 
 impl Ink {
     /// `scale`: physical pixels per logical pixel; `seconds`: of the app's clock.
-    pub fn new(s: &Outlines, view: &View, scale: f64, seconds: f64) -> Self {
-        let cracks = Cracks::new(s, view, scale);
+    pub fn new((s, sheet): (&Outlines, Sheet), view: &View, scale: f64, seconds: f64) -> Self {
+        let cracks = Cracks::on_sheet(s, view, scale, sheet);
         let widest = f64::from(s.width) * largest_weight(&s.weight);
         let boil = LineBoil {
             amplitude: s.boil.amplitude.min((8.0 / widest) as f32),
@@ -348,10 +371,11 @@ impl Ink {
             let whole = faithful(s, view, [x0 + x, y0 + y]);
             [-1.0, 0.0, 1.0].map(|nudge| {
                 let at = [x as f64 + 0.5, y as f64 + 0.5];
+                let on = sheet.under([x0 as f64 + at[0], y0 as f64 + at[1]]);
                 let at = boiled(&boil, at, scale, seconds);
-                let mut ink = cracks.ink(at, nudge);
+                let mut ink = cracks.ink_at(at, &on, nudge);
                 for stroke in &cracks.strokes {
-                    ink = larger(ink, stroke.ink(at, cracks.taper, nudge));
+                    ink = larger(ink, stroke.ink((at, &on), cracks.taper, nudge));
                 }
                 ink[0] = ink[0].max(whole[0]);
                 ink[1] = ink[1].max(whole[1]);

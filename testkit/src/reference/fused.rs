@@ -6,7 +6,9 @@ use bevy::math::{UVec2, UVec4};
 use super::{
     Rgb, Rgba, black_flats, color, colorization, contours, desaturation,
     draw::Ink,
-    halftone, mix, paper, print_offset, read, sketch, tone_bands,
+    halftone, mix, paper, print_offset, read,
+    sheet::Sheet,
+    sketch, tone_bands,
     view::{View, map_slope, pixel_depth},
     vignette,
 };
@@ -149,6 +151,7 @@ fn print(style: &ComicStyle, view: &View, input: &Input, at: [u32; 2], nudge: f6
         let read = |at| between(view.viewport, &moved, at);
         let cells = halftone::Cells {
             centre: halftone::centre(s, viewport, UVec2::from_array(input.size)),
+            sheet: (style.get::<Paper>()).map_or(Sheet::SMOOTH, |s| Sheet::new(s, 1.0, 0)),
             picture: &read,
         };
         let at = at.map(|v| f64::from(v) + 0.5);

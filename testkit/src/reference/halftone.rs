@@ -3,7 +3,7 @@
 use bevy::math::{UVec2, UVec4};
 use bevy_comics::{Halftone, HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape, linear_rgb};
 
-use super::{Rgb, Rgba, color, mix, screen, similarity::Similarity, smoothstep};
+use super::{Rgb, Rgba, color, mix, screen, sheet::Sheet, similarity::Similarity, smoothstep};
 
 /// Where a screen is read: the plate's angle, the period in pixels, the phase in cells.
 #[derive(Clone, Copy, Debug)]
@@ -13,6 +13,9 @@ pub struct Plate {
     pub phase: f64,
     /// Number of the plate: 0 cyan, 1 magenta, 2 yellow, 3 black.
     pub number: i32,
+    /// How far edges of ink are displaced at most, in pixels, and the height of the sheet.
+    pub spread: f64,
+    pub height: f64,
 }
 
 impl Plate {
@@ -24,6 +27,8 @@ impl Plate {
             period: f64::from(s.period) * scale,
             phase: if i == 3 { 0.25 } else { 0.0 },
             number: i as i32,
+            spread: 0.0,
+            height: 0.0,
         })
     }
 
@@ -42,7 +47,9 @@ pub fn plate_cover<'a>(
     tone: f64,
     tile: &'a dyn Fn(i64, i64) -> f64,
 ) -> Box<dyn Fn([f64; 2]) -> f64 + 'a> {
-    let printed = tone.clamp(screen::LEAST, 1.0 - screen::LEAST);
+    let t = tone.clamp(screen::LEAST, 1.0 - screen::LEAST);
+    let moved = screen::edges(shape, t) * plate.spread / plate.period;
+    let printed = t - moved.min(0.9 * t.min(1.0 - t)) * plate.height;
     let (sin, cos) = plate.degrees.to_radians().sin_cos();
     let period = plate.period;
     // The width of a pixel across lines along x or y of the cell.
@@ -195,6 +202,8 @@ pub fn centre(s: &Halftone, viewport: UVec4, target: UVec2) -> [f64; 2] {
 pub struct Cells<'a> {
     /// Where the screens begin, in pixels of the target.
     pub centre: [f64; 2],
+    /// The sheet that is printed on.
+    pub sheet: Sheet,
     /// The picture at a place: a colour multiplied by its opacity, and the opacity.
     pub picture: &'a dyn Fn([f64; 2]) -> Rgba,
 }
@@ -226,7 +235,11 @@ pub fn halftone(s: &Halftone, picture: Rgba, at: [f64; 2], d: f64, cells: &Cells
     let amount = screen_amount(s, linear, d);
     let place = [0, 1].map(|i| at[i] - cells.centre[i]);
     let k = std::array::from_fn(|i| {
-        let plate = Plate::all(s, 1.0)[i];
+        let plate = Plate {
+            spread: 0.5 * cells.sheet.spread,
+            height: cells.sheet.under(at).height,
+            ..Plate::all(s, 1.0)[i]
+        };
         let tone = match s.sampling {
             ScreenSampling::Cell => plate_tones(s, cell_color(plate, cells, at, linear))[i],
             _ => own[i],

@@ -48,6 +48,7 @@ pub mod read;
 pub mod resolve;
 mod rim;
 pub mod screen;
+pub mod sheet;
 pub mod similarity;
 pub mod sketch;
 pub mod smoothing;

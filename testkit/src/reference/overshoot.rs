@@ -9,6 +9,7 @@ use super::{
     draw::{ink_of, middle},
     edge::segment_distance,
     link::{Place, corners},
+    sheet::Spot,
     weight::taper_weight,
 };
 
@@ -109,8 +110,8 @@ pub fn strokes(
 }
 
 impl Stroke {
-    /// Ink by kind at a place. `taper`: in cracks.
-    pub fn ink(&self, at: [f64; 2], taper: f64, nudge: f64) -> [f64; 3] {
+    /// Ink by kind at a place, which has a place on the sheet. `taper`: in cracks.
+    pub fn ink(&self, (at, on): ([f64; 2], &Spot), taper: f64, nudge: f64) -> [f64; 3] {
         let along = [0, 1].map(|i| self.tip[i] - self.start[i]);
         let length = along[0].hypot(along[1]);
         let from = [0, 1].map(|i| at[i] - self.start[i]);
@@ -129,6 +130,7 @@ impl Stroke {
         };
         let fainter = (half_width / thinnest.max(1e-3)).min(1.0);
         let distance = segment_distance(at, self.start, self.tip);
-        ink_of(&thinner, nudge, distance).map(|ink| ink * fainter)
+        let left = fainter * on.dry_ink(along, thinner.half_width);
+        ink_of(&thinner, nudge, distance, on).map(|ink| ink * left)
     }
 }

@@ -1,24 +1,7 @@
 //! Twin of `effects/paper/paper.wgsl`.
 
-use super::{Rgb, Rgba, mix, noise::wave};
+use super::{Rgb, Rgba, mix, sheet::height};
 use bevy_comics::{Paper, linear_rgb};
-
-/// Height of the sheet, -1 to 1, at a place in units of the grain.
-pub fn height(at: [f64; 2], sheet: u32) -> f64 {
-    let first = 0x7061_7065 + 3 * sheet;
-    // Value noise whose grid is turned by an angle with this cosine and sine.
-    let octave = |[cos, sin]: [f64; 2], period: f64, seed: u32| {
-        let [x, y] = at;
-        wave(
-            [(cos * x - sin * y) / period, (sin * x + cos * y) / period],
-            seed,
-        )
-    };
-    let fine = octave([0.8, 0.6], 1.5, first);
-    let middle = octave([5.0 / 13.0, 12.0 / 13.0], 4.0, first + 1);
-    let coarse = octave([15.0 / 17.0, 8.0 / 17.0], 12.0, first + 2);
-    (fine + 0.6 * middle + 0.4 * coarse).clamp(-1.0, 1.0)
-}
 
 /// Linear light of a page where the sheet has a height.
 pub fn on_paper(s: &Paper, page: Rgb, height: f64) -> Rgb {

@@ -2,6 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
+use bevy_comics::ScreenShape;
+
 use super::{mix, smoothstep};
 
 /// Dots below this tone become paler, not smaller.
@@ -140,4 +142,21 @@ pub fn tinted(tone: f64, tints: u32) -> f64 {
     }
     let x = tone * f64::from(tints);
     (x.floor() + smoothstep(0.45, 0.55, x.fract())) / f64::from(tints)
+}
+
+/// Length of the edges of ink of a shape in a cell, in periods.
+pub fn edges(shape: ScreenShape, tone: f64) -> f64 {
+    let part = tone.min(1.0 - tone);
+    match shape {
+        // Circles; beyond the tone at which they touch, what is left of them.
+        ScreenShape::Round => (4.0 * PI * tone).sqrt().min(5.5 * (1.0 - tone).sqrt()),
+        ScreenShape::Euclidean => (4.0 * PI * part).sqrt(),
+        ScreenShape::Line => 2.0,
+        // Four sides of a square of this area.
+        ScreenShape::Diamond => 4.0 * part.sqrt(),
+        // Two lines, each with both edges where the other is not.
+        ScreenShape::Cross => 4.0 * (1.0 - tone).sqrt(),
+        // Two sides of each square, where it differs from the next one.
+        _ => 3.0 * 2.0 * 2.0 * tone * (1.0 - tone),
+    }
 }

@@ -8,7 +8,7 @@ use bevy_comics::{SpeedLineKind, SpeedLines};
 use super::{
     edge::line_coverage,
     noise::{hash, wave},
-    smoothstep,
+    sheet::bristles,
 };
 
 /// One drawing of the lines.
@@ -89,15 +89,14 @@ impl Drawing {
         x.hypot(y) / (x / hole[0]).hypot(y / hole[1]).max(1e-6)
     }
 
-    /// Fraction of a line that the bristles of the brush leave.
-    fn bristles(&self, seed: u32, along: f64, across: f64) -> f64 {
+    /// Fraction of a line that a dry brush leaves.
+    fn dry_ink(&self, seed: u32, along: f64, across: f64) -> f64 {
         let dry = f64::from(self.settings.dry);
         if dry == 0.0 {
             return 1.0;
         }
-        let limit = 1.6 * dry - 1.0;
         let at = [along / (60.0 * self.scale), across / (1.6 * self.scale)];
-        smoothstep(limit - 0.3, limit + 0.3, wave(at, seed))
+        bristles(dry, wave(at, seed))
     }
 
     fn radial_coverage(&self, [x, y]: [f64; 2]) -> f64 {
@@ -114,7 +113,7 @@ impl Drawing {
                 }
                 let across = rho * (apart * TAU).sin();
                 let seed = hash(line ^ hash(self.seed()));
-                line_coverage(across.abs(), half_width) * self.bristles(seed, rho, across)
+                line_coverage(across.abs(), half_width) * self.dry_ink(seed, rho, across)
             })
             .sum()
     }
@@ -140,7 +139,7 @@ impl Drawing {
                 let at = if other[0] < 0.5 { -along } else { along };
                 let half_width = self.half_width(own[2], at, inner, spacing);
                 let by = v - middle;
-                line_coverage(by.abs(), half_width) * self.bristles(h, along, by)
+                line_coverage(by.abs(), half_width) * self.dry_ink(h, along, by)
             })
             .sum()
     }

@@ -4,6 +4,7 @@
 use super::{
     draw::{Line, distance, ink_of, is_apart},
     edge::segment_distance,
+    sheet::Spot,
 };
 
 /// The two nearest lines in different places, as the shader keeps them while it goes
@@ -27,23 +28,35 @@ fn followed(lines: &[Line]) -> Option<[Line; 2]> {
     Some([first?, second?])
 }
 
-/// The ink of the straight line from the middle of a line to another middle.
-fn between((_, from, crack): &Line, to: [f64; 2], at: [f64; 2], nudge: f64) -> [f64; 3] {
+/// The ink of the straight line from the middle of a line to another middle, and what a dry brush
+/// leaves of all ink there.
+fn between(
+    (_, from, crack): &Line,
+    to: [f64; 2],
+    (at, on): ([f64; 2], &Spot),
+    nudge: f64,
+) -> ([f64; 3], f64) {
     if distance(*from, to) < 1.45 {
-        ink_of(crack, nudge, segment_distance(at, *from, to))
+        let ink = ink_of(crack, nudge, segment_distance(at, *from, to), on);
+        let along = [to[0] - from[0], to[1] - from[1]];
+        (ink, on.dry_ink(along, crack.half_width))
     } else {
-        [0.0; 3]
+        ([0.0; 3], 1.0)
     }
 }
 
 /// The ink of the straight line between the middles of the two lines whose borders are
-/// nearest, for every choice of these two.
-pub(super) fn straight(lines: &mut [Line], at: [f64; 2], nudge: f64) -> Vec<[f64; 3]> {
+/// nearest, and what a dry brush leaves, for every choice of these two.
+pub(super) fn straight(
+    lines: &mut [Line],
+    (at, on): ([f64; 2], &Spot),
+    nudge: f64,
+) -> Vec<([f64; 3], f64)> {
     // Middles are stored in 512ths of a pixel: each of two distances is off by up to
     // sqrt(2) / 1024.
     const TIE: f64 = 3e-3;
-    let mut found: Vec<[f64; 3]> = followed(lines)
-        .map(|[first, second]| between(&first, second.1, at, nudge))
+    let mut found: Vec<_> = followed(lines)
+        .map(|[first, second]| between(&first, second.1, (at, on), nudge))
         .into_iter()
         .collect();
     lines.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -57,7 +70,7 @@ pub(super) fn straight(lines: &mut [Line], at: [f64; 2], nudge: f64) -> Vec<[f64
             if *border > others[0].0 + TIE {
                 break;
             }
-            found.push(between(&(*border, *a, *crack), *b, at, nudge));
+            found.push(between(&(*border, *a, *crack), *b, (at, on), nudge));
         }
     }
     found

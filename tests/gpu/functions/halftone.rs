@@ -34,9 +34,10 @@ fn coverages_of_all_shapes_are_those_of_the_twin() {
         2.0f32..40.0,
         -180.0f32..180.0,
         0u32..4,
+        (0.0f32..3.0, -1.0f32..=1.0),
     )
-        .prop_map(|((x, y), tone, period, degrees, plate)| {
-            [x, y, tone, period, degrees, plate as f32]
+        .prop_map(|((x, y), tone, period, degrees, plate, (spread, height))| {
+            [x, y, tone, period, degrees, plate as f32, spread, height]
         });
     for shape in SHAPES {
         let number = shape as u32;
@@ -51,12 +52,15 @@ fn coverages_of_all_shapes_are_those_of_the_twin() {
                      s.period = i(3u);
                      s.grain = max(i(3u) / 3.0, 1.0);
                      s.shape = {number}u;
-                     let k = plate_cover(s, page_screen(s), vec2(i(0u), i(1u)), i32(i(5u)), i(2u));
+                     s.spread = i(6u);
+                     let on = page_screen(s, i(7u));
+                     let k = plate_cover(s, on, vec2(i(0u), i(1u)), i32(i(5u)), i(2u));
                      return vec4(k, s.cosines.x, s.sines.x, 0.0);"
                 ),
                 rows,
             );
             for (row, found) in rows.iter().zip(results) {
+                let spread = f64::from(row[6]);
                 // The angle as the adapter's cosine has it: its error would move places
                 // far away by pixels.
                 let degrees = f64::from(found[2]).atan2(f64::from(found[1])).to_degrees();
@@ -66,6 +70,8 @@ fn coverages_of_all_shapes_are_those_of_the_twin() {
                     period: 1.0 / scale,
                     phase: if row[5] == 3.0 { 0.25 } else { 0.0 },
                     number: row[5] as i32,
+                    spread,
+                    height: f64::from(row[7]),
                 };
                 let tone = f64::from(row[2]);
                 let place = [0, 1].map(|i| f64::from(row[i]));

@@ -25,6 +25,7 @@ mod paper;
 mod planes;
 mod pressure;
 mod settings;
+mod sheet;
 mod similarity;
 mod speed_lines;
 mod two_tone;

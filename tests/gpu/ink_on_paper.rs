@@ -1,0 +1,285 @@
+//! Lines and dots on rough paper.
+
+use bevy::{prelude::*, render::view::Msaa};
+use bevy_comics::{
+    ComicStyle, Halftone, HalftoneMode, Outlines, Paper, ScreenShape, Sketch, Vignette,
+};
+
+use crate::{
+    halftone::ideal,
+    pictures::{assert_pass_is_its_twin, outlined},
+    small::{Small, black_ink, linear},
+    walls::{towards_the_sky, wall},
+};
+
+/// Paper that changes nothing but the edges of ink.
+fn plain(spread: f32, dry_brush: f32) -> Paper {
+    Paper {
+        grain: 0.0,
+        shading: 0.0,
+        size: 0.5,
+        color: Color::WHITE,
+        spread,
+        dry_brush,
+        ..default()
+    }
+}
+
+/// Every pixel, at widths of every kind of search, with strokes beyond loose ends.
+#[test]
+fn lines_on_paper_are_their_twins() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    for (width, spread, size, overshoot) in [
+        (0.5, 2.0, 1.0, 0.0),
+        (1.0, 0.7, 1.0, 0.0),
+        (2.0, 2.0, 2.0, 6.0),
+        (5.0, 1.3, 1.0, 0.0),
+        (9.0, 2.0, 0.5, 0.0),
+    ] {
+        let outlines = Outlines {
+            width,
+            overshoot,
+            ..default()
+        };
+        let paper = Paper {
+            spread,
+            size,
+            amount: 0.9,
+            ..default()
+        };
+        let style = outlined(outlines).with(paper);
+        assert_pass_is_its_twin(
+            &mut small,
+            &style,
+            None,
+            &format!("{width} px, {spread} px"),
+        );
+    }
+    let sketch = ComicStyle::new()
+        .with(Sketch::default())
+        .with(plain(1.5, 0.0));
+    assert_pass_is_its_twin(&mut small, &sketch, None, "sketch");
+    assert_eq!(small.errors(), 0);
+}
+
+/// Every pixel of every shape of dots but grains, and diamonds: their radius is approximate, see
+/// `functions::halftone`.
+#[test]
+fn dots_on_paper_are_their_twins() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    for shape in [
+        ScreenShape::Round,
+        ScreenShape::Euclidean,
+        ScreenShape::Line,
+        ScreenShape::Cross,
+    ] {
+        let halftone = Halftone {
+            shape,
+            period: 5.0,
+            ..default()
+        };
+        let style = ComicStyle::new().with(halftone).with(plain(1.5, 0.0));
+        assert_pass_is_its_twin(&mut small, &style, None, &format!("{shape:?}"));
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+const SIZE: UVec2 = UVec2::new(160, 600);
+
+/// Two strips before a wall, with four upright edges that leave the picture at both ends.
+fn strips() -> Small {
+    let mut small = towards_the_sky(SIZE);
+    wall(&mut small, [-200.0, -700.0], [200.0, 700.0], 200.0);
+    for left in [-60.0, 20.0] {
+        wall(&mut small, [left, -700.0], [left + 40.0, 700.0], 100.0);
+    }
+    small
+}
+
+fn drawn(small: &mut Small, width: f32, paper: Paper) -> image::RgbaImage {
+    let outlines = Outlines {
+        width,
+        ..Outlines::SILHOUETTES
+    };
+    small.style(&ComicStyle::new().with(outlines).with(paper));
+    small.settle();
+    small.picture()
+}
+
+/// Ink of every row, for each of the edges.
+fn widths(picture: &image::RgbaImage) -> Vec<f64> {
+    let row = |y: u32| black_ink(picture, (0..SIZE.x).map(|x| (x, y))) / 4.0;
+    (0..SIZE.y).map(row).collect()
+}
+
+fn mean_and_deviation(values: &[f64]) -> [f64; 2] {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let square = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / count;
+    [mean, square.sqrt()]
+}
+
+/// Truth: lines keep their mean width within 0.05 pixels, and edges deviate as the height of the
+/// sheet does: by about 0.4 times half the spread. Four lines have eight edges, which are
+/// independent. Lines that are thin for the spread are nowhere without ink.
+#[test]
+fn lines_keep_their_mean_width_on_paper() {
+    let mut small = strips();
+    for (width, spread) in [
+        (0.5f32, 2.0f32),
+        (1.0, 0.6),
+        (1.0, 2.0),
+        (2.0, 1.0),
+        (3.5, 2.0),
+        (6.0, 1.0),
+        (6.0, 2.0),
+    ] {
+        let [smooth, even] =
+            mean_and_deviation(&widths(&drawn(&mut small, width, plain(0.0, 0.0))));
+        let rows = widths(&drawn(&mut small, width, plain(spread, 0.0)));
+        let [mean, deviation] = mean_and_deviation(&rows);
+        println!("{width} px, spread {spread}: {mean:.3}, {deviation:.3}; smooth {smooth:.3}");
+        assert!((smooth - f64::from(width)).abs() < 0.05 && even < 0.01);
+        assert!(
+            (mean - f64::from(width)).abs() < 0.05,
+            "{width}, {spread}: {mean}"
+        );
+        let edge = f64::from((0.5 * spread).min(0.375 * width)) * 0.4;
+        // The edges of a line of at most a pixel have the same height.
+        let together = if width < 1.5 { 1.0 } else { 2.0 };
+        let want = 2.0 * edge / f64::sqrt(4.0 * together);
+        assert!(
+            (0.5..1.6).contains(&(deviation / want)),
+            "{width}, {spread}: {deviation}, {want}"
+        );
+        let least = rows.iter().copied().fold(f64::MAX, f64::min);
+        assert!(least > 0.2 * f64::from(width), "{width}, {spread}: {least}");
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// The edges stay while the camera moves along them, and change when it moves across: the sheet
+/// is fixed to the picture.
+#[test]
+fn rough_edges_are_fixed_to_the_sheet() {
+    let mut small = strips();
+    for paper in [plain(2.0, 0.0), plain(0.0, 0.6)] {
+        let mut shown = |at: [f32; 2]| {
+            small.insert(Transform::from_xyz(at[0], at[1], 0.0));
+            drawn(&mut small, 8.0, paper)
+        };
+        let still = shown([0.0, 0.0]);
+        assert_eq!(shown([0.0, 7.0]), still, "{paper:?}");
+        let moved = shown([3.0, 0.0]);
+        let apart = (0..SIZE.y).filter(|y| {
+            (3..SIZE.x).any(|x| {
+                let (was, is) = (linear(&still, x, *y)[0], linear(&moved, x - 3, *y)[0]);
+                (was - is).abs() > 0.1
+            })
+        });
+        assert!(apart.count() > SIZE.y as usize / 2, "{paper:?}");
+    }
+}
+
+/// A dry brush leaves less of wide lines the drier it is, and all of narrow ones.
+#[test]
+fn a_dry_brush_leaves_streaks_in_wide_lines() {
+    let mut small = strips();
+    let mut left = |width: f32, dry: f32| {
+        let [mean, _] = mean_and_deviation(&widths(&drawn(&mut small, width, plain(0.0, dry))));
+        mean / f64::from(width)
+    };
+    assert!((left(2.5, 1.0) - 1.0).abs() < 0.02);
+    let wide = [0.0, 0.02, 0.3, 0.6, 1.0].map(|dry| left(8.0, dry));
+    println!("left of lines of 8 px: {wide:.3?}");
+    assert!((wide[0] - 1.0).abs() < 0.02);
+    // The first streaks appear without a jump.
+    assert!(wide[0] - wide[1] < 0.02);
+    assert!(wide.windows(2).all(|w| w[1] < w[0]));
+    assert!(wide[3] > 0.3 && wide[4] < 0.2);
+}
+
+/// Truth: the mean tone of a flat field of dots stays within 1 %, of every shape.
+#[test]
+fn dots_keep_their_mean_tone_on_paper() {
+    let page = UVec2::new(256, 192);
+    for light in [0.05f32, 0.3, 0.5, 0.8, 0.95] {
+        let mut small = towards_the_sky(page);
+        let flat = wall(&mut small, [-300.0, -300.0], [300.0, 300.0], 100.0);
+        let color = Color::linear_rgb(light, light, light);
+        let material = small
+            .world()
+            .resource_mut::<Assets<StandardMaterial>>()
+            .add(crate::small::unlit(color));
+        small
+            .world()
+            .entity_mut(flat)
+            .insert(MeshMaterial3d(material));
+        for shape in crate::functions::halftone::SHAPES {
+            let halftone = Halftone {
+                shape,
+                mode: HalftoneMode::Spot,
+                ..ideal()
+            };
+            let mut shown = |spread: f32| {
+                let style = ComicStyle::new().with(halftone).with(plain(spread, 0.0));
+                small.style(&style);
+                small.settle();
+                let (_, after) = small.pass();
+                let sum: f64 = after.pixels.iter().map(|p| f64::from(p[0])).sum();
+                (sum / after.pixels.len() as f64, after.pixels)
+            };
+            let (smooth, dots) = shown(0.0);
+            let (rough, moved) = shown(2.0);
+            let changed = dots
+                .iter()
+                .zip(&moved)
+                .filter(|(a, b)| (a[0] - b[0]).abs() > 0.05);
+            assert!(changed.count() > dots.len() / 50, "{shape:?}, {light}");
+            println!("{shape:?}, {light}: {smooth:.4}, {rough:.4}");
+            assert!(
+                (rough - smooth).abs() < 0.01,
+                "{shape:?}, {light}: {smooth}, {rough}"
+            );
+        }
+    }
+}
+
+/// Values out of range, thin lines on the roughest paper, and a scale factor of 3.
+#[test]
+fn extreme_inks_on_paper_are_finite() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    for scale in [1.0, 3.0] {
+        small.headless.resize(UVec2::new(96, 64), scale);
+        let target = small.headless.render_target();
+        small.insert(target);
+        for x in [f32::NAN, f32::INFINITY, -1e30, 0.0, 1e30] {
+            for width in [0.5, 16.0] {
+                let paper = Paper {
+                    spread: x,
+                    dry_brush: x,
+                    size: x,
+                    ..default()
+                };
+                let outlines = Outlines { width, ..default() };
+                let style = outlined(outlines)
+                    .with(paper)
+                    .with(Halftone::default())
+                    .with(Vignette::default());
+                small.style(&style);
+                small.settle();
+                let (_, after) = small.pass();
+                assert!(after.pixels.iter().flatten().all(|v| v.is_finite()), "{x}");
+            }
+        }
+    }
+    assert_eq!(small.errors(), 0);
+    for (paper, want) in [
+        (plain(f32::NAN, f32::NAN), [0.0, 0.0]),
+        (plain(9.0, 9.0), [2.0, 1.0]),
+        (plain(-1.0, -1.0), [0.0, 0.0]),
+    ] {
+        let used = bevy_comics::Effect::sanitized(paper);
+        assert_eq!([used.spread, used.dry_brush], want);
+    }
+}
