@@ -4,6 +4,7 @@ use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
     ComicStyle, Halftone, HalftoneMode, Outlines, Paper, ScreenShape, Sketch, Vignette,
 };
+use bevy_comics_testkit::screens::SHAPES;
 
 use crate::{
     halftone::ideal,
@@ -215,7 +216,7 @@ fn dots_keep_their_mean_tone_on_paper() {
             .world()
             .entity_mut(flat)
             .insert(MeshMaterial3d(material));
-        for shape in crate::functions::halftone::SHAPES {
+        for shape in SHAPES {
             let halftone = Halftone {
                 shape,
                 mode: HalftoneMode::Spot,

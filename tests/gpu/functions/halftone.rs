@@ -1,7 +1,7 @@
 //! Screens and plates.
 
 use bevy::color::Color;
-use bevy_comics::{Halftone, HalftoneMode, ScreenShape};
+use bevy_comics::{Halftone, HalftoneMode};
 use bevy_comics_testkit::{
     reference::{
         blue_noise::blue_noise,
