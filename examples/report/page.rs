@@ -1,26 +1,13 @@
 //! How exactly the page is printed: tones of screens, jumps between tones, moire, and colours of
 //! four inks.
 
-use bevy::prelude::*;
 use bevy_comics::Halftone;
 use bevy_comics_testkit::{
     reference::halftone::plate_tones,
-    screens::{PERIODS, SHAPES, largest_jump, moire, printed_mean, tone_error},
+    screens::{PERIODS, SHAPES, colors, ideal, largest_jump, moire, printed_mean, tone_error},
 };
 
 use crate::{Run, table::Table};
-
-/// Inks and paper that print exactly the light that the plates ask for.
-fn ideal() -> Halftone {
-    Halftone {
-        cyan: Color::srgb(0.0, 1.0, 1.0),
-        magenta: Color::srgb(1.0, 0.0, 1.0),
-        yellow: Color::srgb(1.0, 1.0, 0.0),
-        black: Color::BLACK,
-        paper: Color::WHITE,
-        ..default()
-    }
-}
 
 /// The largest difference of the mean light of a print from its colour, of 20 colours.
 fn color_error(black_generation: f32) -> f64 {
@@ -28,11 +15,7 @@ fn color_error(black_generation: f32) -> f64 {
         black_generation,
         ..ideal()
     };
-    let colors = (0..20u32).map(|i| {
-        let part = |k: u32| f64::from((i * 7 + 3) * k % 19) / 18.0;
-        [part(5), part(11), part(13)]
-    });
-    let differences = colors.flat_map(|light| {
+    let differences = colors().flat_map(|light| {
         let printed = printed_mean(&s, plate_tones(&s, light), 0.25);
         [0, 1, 2].map(|c| (printed[c] - light[c]).abs())
     });

@@ -3,6 +3,7 @@
 
 use std::f64::consts::TAU;
 
+use bevy::color::Color;
 use bevy_comics::{Halftone, ScreenShape};
 
 use crate::reference::halftone::{Plate, inked, plate_cover};
@@ -52,6 +53,26 @@ pub fn square(period: f64) -> impl Iterator<Item = [f64; 2]> + Clone {
     let side = (period * (250.0 / period).floor()).round() as i32;
     (0..side)
         .flat_map(move |y| (0..side).map(move |x| [x, y].map(|v| f64::from(v - side / 2) + 0.25)))
+}
+
+/// Inks and paper that print exactly the light that the plates ask for.
+pub fn ideal() -> Halftone {
+    Halftone {
+        cyan: Color::srgb(0.0, 1.0, 1.0),
+        magenta: Color::srgb(1.0, 0.0, 1.0),
+        yellow: Color::srgb(1.0, 1.0, 0.0),
+        black: Color::BLACK,
+        paper: Color::WHITE,
+        ..Halftone::default()
+    }
+}
+
+/// 20 colours in linear light, spread over all.
+pub fn colors() -> impl Iterator<Item = [f64; 3]> {
+    (0..20u32).map(|i| {
+        let part = |k: u32| f64::from((i * 7 + 3) * k % 19) / 18.0;
+        [part(5), part(11), part(13)]
+    })
 }
 
 /// The mean of some values.

@@ -16,7 +16,9 @@ use bevy_comics_testkit::{
         color,
         halftone::{inked, plate_tones},
     },
-    screens::{PERIODS, SHAPES, largest_jump, mean, moire, printed_mean, tone_error},
+    screens::{
+        PERIODS, SHAPES, colors, ideal, largest_jump, mean, moire, printed_mean, tone_error,
+    },
     studio::with_map,
 };
 
@@ -24,18 +26,6 @@ use crate::{
     pictures::assert_pass_is_its_twin,
     small::{Small, linear, options},
 };
-
-/// Inks and paper that print exactly the light that the plates ask for.
-pub fn ideal() -> Halftone {
-    Halftone {
-        cyan: Color::srgb(0.0, 1.0, 1.0),
-        magenta: Color::srgb(1.0, 0.0, 1.0),
-        yellow: Color::srgb(1.0, 1.0, 0.0),
-        black: Color::BLACK,
-        paper: Color::WHITE,
-        ..default()
-    }
-}
 
 fn ideal_spot(shape: ScreenShape, period: f32) -> Halftone {
     Halftone {
@@ -77,13 +67,9 @@ fn largest_difference(a: [f64; 3], b: [f64; 3]) -> f64 {
 /// would not be independent.
 #[test]
 fn flat_colours_have_their_light_and_need_the_phase_of_black() {
-    let colors = (0..20u32).map(|i| {
-        let part = |k: u32| f64::from((i * 7 + 3) * k % 19) / 18.0;
-        [part(5), part(11), part(13)]
-    });
     let mut without = 0.0;
     let greys = [0.25, 0.4, 0.6].map(|v| [v; 3]);
-    for light in colors.chain(greys) {
+    for light in colors().chain(greys) {
         for black_generation in [0.0, 0.5, 1.0] {
             let s = Halftone {
                 black_generation,

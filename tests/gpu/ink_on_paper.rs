@@ -1,13 +1,12 @@
 //! Lines and dots on rough paper.
 
-use bevy::{prelude::*, render::view::Msaa};
+use bevy::{camera::Viewport, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    ComicStyle, Halftone, HalftoneMode, Outlines, Paper, ScreenShape, Sketch, Vignette,
+    ComicStyle, Halftone, HalftoneMode, LineBoil, Outlines, Paper, ScreenShape, Sketch, Vignette,
 };
-use bevy_comics_testkit::screens::SHAPES;
+use bevy_comics_testkit::screens::{SHAPES, ideal};
 
 use crate::{
-    halftone::ideal,
     pictures::{assert_pass_is_its_twin, outlined},
     small::{Small, black_ink, linear},
     walls::{towards_the_sky, wall},
@@ -30,12 +29,15 @@ fn plain(spread: f32, dry_brush: f32) -> Paper {
 #[test]
 fn lines_on_paper_are_their_twins() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
-    for (width, spread, size, overshoot) in [
-        (0.5, 2.0, 1.0, 0.0),
-        (1.0, 0.7, 1.0, 0.0),
-        (2.0, 2.0, 2.0, 6.0),
-        (5.0, 1.3, 1.0, 0.0),
-        (9.0, 2.0, 0.5, 0.0),
+    for (width, spread, dry_brush, size, overshoot) in [
+        (0.5, 2.0, 0.0, 1.0, 0.0),
+        (1.0, 0.7, 0.0, 1.0, 0.0),
+        (2.0, 2.0, 0.0, 2.0, 6.0),
+        (5.0, 1.3, 0.0, 1.0, 0.0),
+        (9.0, 2.0, 0.0, 0.5, 0.0),
+        (4.0, 0.0, 1.0, 1.0, 0.0),
+        (6.0, 0.0, 0.6, 1.0, 6.0),
+        (9.0, 1.5, 0.3, 1.0, 0.0),
     ] {
         let outlines = Outlines {
             width,
@@ -44,6 +46,7 @@ fn lines_on_paper_are_their_twins() {
         };
         let paper = Paper {
             spread,
+            dry_brush,
             size,
             amount: 0.9,
             ..default()
@@ -53,13 +56,53 @@ fn lines_on_paper_are_their_twins() {
             &mut small,
             &style,
             None,
-            &format!("{width} px, {spread} px"),
+            &format!("{width} px, spread {spread} px, dry {dry_brush}"),
         );
     }
     let sketch = ComicStyle::new()
         .with(Sketch::default())
         .with(plain(1.5, 0.0));
     assert_pass_is_its_twin(&mut small, &sketch, None, "sketch");
+    assert_eq!(small.errors(), 0);
+}
+
+/// Every pixel of a viewport that does not begin at the corner of the target, and of lines that
+/// boil: the sheet stays with the target, while lines move over it.
+#[test]
+fn lines_on_paper_are_their_twins_in_a_viewport_and_while_they_boil() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    // Boiling lines are narrow, see `boil::boiling_lines_are_their_twins`.
+    let styles = [(6.0, 0.0), (2.0, 1.5)].map(|(width, amplitude)| {
+        let boil = LineBoil {
+            amplitude,
+            rate: 0.0,
+            ..default()
+        };
+        outlined(Outlines {
+            width,
+            boil,
+            ..default()
+        })
+        .with(plain(1.5, 0.4))
+    });
+    for style in &styles {
+        assert_pass_is_its_twin(&mut small, style, None, "the whole target");
+    }
+    let (_, whole) = small.pass();
+    small.insert(Camera {
+        viewport: Some(Viewport {
+            physical_position: UVec2::new(13, 7),
+            physical_size: UVec2::new(51, 41),
+            ..default()
+        }),
+        ..default()
+    });
+    let viewport = Some([13, 7, 51, 41]);
+    for style in &styles {
+        assert_pass_is_its_twin(&mut small, style, viewport, "a viewport");
+    }
+    let (_, part) = small.pass();
+    assert_ne!(whole.pixels, part.pixels);
     assert_eq!(small.errors(), 0);
 }
 

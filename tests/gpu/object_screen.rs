@@ -15,13 +15,10 @@ use bevy_comics_testkit::{
         halftone::{Plate, followed_cover},
         similarity::{Similarity, similarity_of},
     },
-    screens::SHAPES,
+    screens::{SHAPES, ideal},
 };
 
-use crate::{
-    halftone::ideal,
-    small::{Small, linear, options, unlit},
-};
+use crate::small::{Small, linear, options, unlit};
 
 const SIZE: UVec2 = UVec2::new(120, 90);
 
