@@ -35,14 +35,28 @@ fn is_limited(missing: f32, speed: f32) -> bool {
     return missing > MISSING || speed > STILL;
 }
 
-// Two numbers of frames in one, and back: those in the memory, and those with missing lines.
-fn pack_frames(frames: f32, missing: f32) -> f32 {
-    return floor(frames) + 256.0 * missing;
+// How unsteady the nearest surface is: more with every change, less with every frame without one.
+// Surfaces narrower than a pixel come and go with the engine's offsets.
+fn unsteady_at(before: f32, has_changed: bool, speed: f32) -> f32 {
+    let now = select(max(before - 1.0, 0.0), min(before + MISSING, 3.0 * MISSING), has_changed);
+    return select(now, 0.0, speed > STILL);
 }
 
-fn unpack_frames(packed: f32) -> vec2<f32> {
-    let missing = floor(packed / 256.0);
-    return vec2(packed - 256.0 * missing, missing);
+// Whether a change means that something has come or gone: not the third one in a short time.
+fn is_steady(unsteady: f32) -> bool {
+    return unsteady <= 2.0 * MISSING;
+}
+
+// Three whole numbers in one, and back: frames in the memory, frames with missing lines, and
+// how unsteady the nearest surface is.
+fn pack_counts(frames: f32, missing: f32, unsteady: f32) -> f32 {
+    return floor(frames) + 256.0 * (missing + 32.0 * unsteady);
+}
+
+fn unpack_counts(packed: f32) -> vec3<f32> {
+    let upper = floor(packed / 256.0);
+    let unsteady = floor(upper / 32.0);
+    return vec3(packed - 256.0 * upper, upper - 32.0 * unsteady, unsteady);
 }
 
 // The number of frames in the memory, this one included, from that of the last frame. Where

@@ -6,7 +6,8 @@
 #import bevy_comics::depth::view::{set_view, texel_depth}
 #import bevy_comics::lines::edge::{decode_ink, encode_ink, is_in_front}
 #import bevy_comics::lines::memory::{
-    cubic_weights, frames_at, is_limited, missing_at, pack_frames, remembered, share_at, unpack_frames,
+    cubic_weights, frames_at, is_limited, is_steady, missing_at, pack_counts, remembered, share_at,
+    unpack_counts, unsteady_at,
 }
 #import bevy_comics::lines::pass::line_pass
 
@@ -15,8 +16,8 @@
 // The engine's motion vectors: by how much each pixel of the grid has moved, in parts of the
 // viewport.
 @group(0) @binding(24) var motion_texture: texture_2d<f32>;
-// Ink of the last frame, and of each of its pixels the nearest raw depth around it and two numbers
-// of frames, see pack_frames.
+// Ink of the last frame, and of each of its pixels the nearest raw depth around it and three
+// numbers, see pack_counts.
 @group(0) @binding(25) var past_ink: texture_2d<f32>;
 @group(0) @binding(26) var past_depth: texture_2d<f32>;
 
@@ -114,26 +115,29 @@ fn remember(@builtin(position) position: vec4<f32>) -> Remembered {
     let seen = all(place >= vec2(0.0)) && all(place < vec2<f32>(size));
     let from_pixel = clamp(vec2<i32>(floor(place)), vec2(0), size - 1);
     let before = textureLoad(past_depth, from_pixel, 0).xy;
+    let speed = length(moved);
     // What stood there in the last frame has gone.
     let uncovered = is_in_front(before.x, around.wide, jump_at(before.x));
-    let known = seen && !uncovered && line_pass.memory.share < 1.0;
-    let speed = length(moved);
-    let counted = select(vec2(0.0), unpack_frames(before.y), known);
-    let frames = frames_at(counted.x, line_pass.memory.share, speed);
-    let past = past_at(place);
-    let outside = any(past < least - ROUNDING) || any(past > most + ROUNDING);
-    let missing = missing_at(counted.y, outside);
     // Something else has come before it, or what was around it has gone.
     let past_wide = past_nearest(from_pixel);
     let covered = is_in_front(around.nearest, past_wide, jump_at(around.nearest));
     let vanished = is_in_front(past_wide, around.wide, jump_at(past_wide));
+    let exists = seen && line_pass.memory.share < 1.0;
+    var counted = select(vec3(0.0), unpack_counts(before.y), exists);
+    let unsteady = unsteady_at(counted.z, covered || uncovered || vanished, speed);
+    let steady = is_steady(unsteady);
+    counted = select(counted, vec3(0.0), uncovered && steady);
+    let frames = frames_at(counted.x, line_pass.memory.share, speed);
+    let past = past_at(place);
+    let outside = any(past < least - ROUNDING) || any(past > most + ROUNDING);
+    let missing = missing_at(counted.y, outside);
     // The sky is still while the camera moves.
     let sky = around.wide <= 0.0;
-    let limited = is_limited(missing, speed) || covered || vanished || sky;
+    let limited = is_limited(missing, speed) || (steady && (covered || vanished || sky));
     let low = select(vec3(0.0), least, limited);
     let high = select(vec3(1.0), most, limited);
     let ink = remembered(past, now, low, high, share_at(frames, speed));
-    let count = pack_frames(frames, select(missing, 0.0, limited));
+    let count = pack_counts(frames, select(missing, 0.0, limited), unsteady);
     // The slot of the strongest line of this frame; where it has none, that of the last one.
     let slot = select(textureLoad(past_ink, from_pixel, 0).w, texel.w, any(now > vec3(0.0)));
     return Remembered(vec4(encode_ink(ink), slot), vec2(around.nearest, count));

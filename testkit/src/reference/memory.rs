@@ -11,6 +11,22 @@ pub fn missing_at(before: f64, is_missing: bool) -> f64 {
     if is_missing { before + 1.0 } else { 0.0 }
 }
 
+/// How unsteady the nearest surface is, by whether it has changed.
+pub fn unsteady_at(before: f64, has_changed: bool, speed: f64) -> f64 {
+    if speed > 0.05 {
+        0.0
+    } else if has_changed {
+        (before + 16.0).min(48.0)
+    } else {
+        (before - 1.0).max(0.0)
+    }
+}
+
+/// Whether a change of the nearest surface means that something has come or gone.
+pub fn is_steady(unsteady: f64) -> bool {
+    unsteady <= 32.0
+}
+
 /// Whether the memory is limited to the ink nearby: in motion, or after two rounds of eight offsets.
 pub fn is_limited(missing: f64, speed: f64) -> bool {
     missing > 16.0 || speed > 0.05

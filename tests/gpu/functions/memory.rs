@@ -2,7 +2,10 @@
 
 use bevy_comics_testkit::reference::{
     edge::is_in_front,
-    memory::{cubic_weights, frames_at, is_limited, missing_at, remembered, share_at},
+    memory::{
+        cubic_weights, frames_at, is_limited, is_steady, missing_at, remembered, share_at,
+        unsteady_at,
+    },
     surface::surface_ink,
 };
 
@@ -50,7 +53,7 @@ fn the_memory_of_lines_is_that_of_the_twin() {
 
 #[test]
 fn missing_lines_are_counted_like_the_twin() {
-    let row = (1u32..=128, 0u32..=20, any::<bool>(), 0.0f32..=0.1).prop_map(
+    let row = (1u32..=128, 0u32..=17, any::<bool>(), 0.0f32..=0.1).prop_map(
         |(frames, missing, is_missing, speed)| {
             [frames as f32, missing as f32, f32::from(is_missing), speed]
         },
@@ -58,11 +61,11 @@ fn missing_lines_are_counted_like_the_twin() {
     for_batches(row, |rows| {
         let results = gpu().evaluate(
             "#import bevy_comics::lines::memory::{
-                is_limited, missing_at, pack_frames, unpack_frames,
+                is_limited, missing_at, pack_counts, unpack_counts,
             }",
-            "let both = unpack_frames(pack_frames(i(0u), i(1u)));
-             let missing = missing_at(both.y, i(2u) == 1.0);
-             return vec4(both, missing, f32(is_limited(missing, i(3u))));",
+            "let counts = unpack_counts(pack_counts(i(0u), i(1u), 48.0));
+             let missing = missing_at(counts.y, i(2u) == 1.0);
+             return vec4(counts.xy, missing, f32(is_limited(missing, i(3u))));",
             rows,
         );
         for (row, found) in rows.iter().zip(results) {
@@ -70,6 +73,33 @@ fn missing_lines_are_counted_like_the_twin() {
             let missing = missing_at(before, is_missing == 1.0);
             let limited = f64::from(is_limited(missing, speed));
             let want = [frames, before, missing, limited];
+            assert_eq!(found.map(f64::from), want, "{row:?}");
+        }
+    });
+}
+
+#[test]
+fn unsteady_surfaces_are_those_of_the_twin() {
+    let row = (1u32..=128, 0u32..=48, any::<bool>(), 0.0f32..=0.1).prop_map(
+        |(frames, before, has_changed, speed)| {
+            [frames as f32, before as f32, f32::from(has_changed), speed]
+        },
+    );
+    for_batches(row, |rows| {
+        let results = gpu().evaluate(
+            "#import bevy_comics::lines::memory::{
+                is_steady, pack_counts, unpack_counts, unsteady_at,
+            }",
+            "let counts = unpack_counts(pack_counts(i(0u), 17.0, i(1u)));
+             let unsteady = unsteady_at(counts.z, i(2u) == 1.0, i(3u));
+             return vec4(counts.xz, unsteady, f32(is_steady(unsteady)));",
+            rows,
+        );
+        for (row, found) in rows.iter().zip(results) {
+            let [frames, before, has_changed, speed] = row.map(f64::from);
+            let unsteady = unsteady_at(before, has_changed == 1.0, speed);
+            let steady = f64::from(is_steady(unsteady));
+            let want = [frames, before, unsteady, steady];
             assert_eq!(found.map(f64::from), want, "{row:?}");
         }
     });
