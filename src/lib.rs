@@ -42,7 +42,7 @@
 //!    objects are found along the borders of pixels, and drawn at their width;
 //! 5. one full-screen pass after tonemapping applies the effects: [`ToneBands`],
 //!    [`Desaturation`], [`Colorization`], [`Paint`], [`Focus`], [`PrintOffset`], [`Halftone`],
-//!    [`BlackFlats`], [`Contours`], the outlines or a [`Sketch`] of them, [`IsoLines`], [`TwoTone`],
+//!    [`Hatching`], [`BlackFlats`], [`Contours`], the outlines or a [`Sketch`] of them, [`IsoLines`], [`TwoTone`],
 //!    [`SpeedLines`], [`Paper`] and [`Vignette`], in this order, and those of the game
 //!    ([`Effect`]) at the end of their [`EffectStage`].
 //!

@@ -6,7 +6,7 @@ use bevy::{
 };
 use bevy_comics::{
     ComicStyle, Creases, DepthWrite, Desaturation, Focus, FocusAt, FocusStyle, Halftone,
-    HalftoneMode, LineColor, LineResponse, LineWeight, LineWidths, MeshSections, NoStyle,
+    HalftoneMode, Hatching, LineColor, LineResponse, LineWeight, LineWidths, MeshSections, NoStyle,
     OutlineStyle, Outlines, Paint, PaintForm, Paper, PrintOffset, ScreenSampling, ScreenShape,
     SelectionOutline, Silhouettes, SpeedLines, TwoTone, XRayOutline,
 };
@@ -128,6 +128,7 @@ fn page() -> Vec<(String, Wear)> {
             }),
         ),
         ("print offset", none.clone().with(PrintOffset::default())),
+        ("hatching", none.clone().with(Hatching::default())),
         ("paper", none.clone().with(Paper::default())),
         ("paint", none.clone().with(Paint::default())),
         (

@@ -1,7 +1,7 @@
 //! The facts about a view that an effect can use.
 
 use bevy::{
-    math::{Mat4, UVec2, UVec4, Vec2, Vec4Swizzles},
+    math::{Mat4, UVec2, UVec4, Vec2, Vec3, Vec4, Vec4Swizzles},
     render::{camera::ExtractedCamera, view::ExtractedView},
 };
 
@@ -24,6 +24,14 @@ pub struct ViewFacts {
     pub world_from_clip: Mat4,
     /// Clip space from world space.
     pub clip_from_world: Mat4,
+    /// The same as `world_from_clip`, but relative to the eye: exact to a fraction of a pixel also
+    /// far from the world's origin.
+    pub relative_from_clip: Mat4,
+    /// World position of the eye.
+    pub eye: Vec3,
+    /// Unit vector towards the light that lines and strokes follow
+    /// ([`KeyLight`](crate::KeyLight)), in world space.
+    pub to_light: Vec3,
     /// Number of [`CameraCut`](crate::CameraCut)s of the camera so far.
     pub cuts: u32,
     /// Seconds of the app's default clock ([`Time`](bevy::time::Time)).
@@ -60,6 +68,9 @@ impl Default for ViewFacts {
             scale_factor: 1.0,
             world_from_clip: Mat4::IDENTITY,
             clip_from_world: Mat4::IDENTITY,
+            relative_from_clip: Mat4::IDENTITY,
+            eye: Vec3::ZERO,
+            to_light: Vec3::Y,
             cuts: 0,
             seconds: 0.0,
             target: None,
@@ -91,6 +102,9 @@ impl ViewFacts {
             scale_factor: view.scale_factor,
             world_from_clip: world_from_clip(view, extracted),
             clip_from_world,
+            relative_from_clip: relative_from_clip(view, extracted),
+            eye: extracted.world_from_view.translation(),
+            to_light: view.to_light,
             cuts: view.cuts,
             seconds: view.time,
             target: target.map(|(place, _)| place),
@@ -118,6 +132,19 @@ impl ViewFacts {
 /// has no inverse.
 fn world_from_clip(view: &ViewPlan, extracted: &ExtractedView) -> Mat4 {
     let matrix = extracted.world_from_view.to_matrix() * view.clip_from_view.inverse();
+    if matrix.is_finite() {
+        matrix
+    } else {
+        Mat4::IDENTITY
+    }
+}
+
+/// World axes relative to the eye from normalized device coordinates; the identity for a
+/// projection that has no inverse.
+fn relative_from_clip(view: &ViewPlan, extracted: &ExtractedView) -> Mat4 {
+    let mut world_from_view = extracted.world_from_view.to_matrix();
+    world_from_view.w_axis = Vec4::W;
+    let matrix = world_from_view * view.clip_from_view.inverse();
     if matrix.is_finite() {
         matrix
     } else {

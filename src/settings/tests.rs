@@ -8,8 +8,9 @@ use bevy::color::Color;
 
 use crate::{
     BlackFlats, Colorization, Contours, Creases, DepthMap, DepthMapping, Desaturation, Effect,
-    Focus, Halftone, HeldPose, LineColor, LineWeight, ObjectEdges, Outlines, Paint, Paper,
-    PrintOffset, RangeSmoothing, Silhouettes, Sketch, SpeedLines, ToneBands, TwoTone, Vignette,
+    Focus, Halftone, Hatching, HeldPose, LineColor, LineWeight, ObjectEdges, Outlines, Paint,
+    Paper, PrintOffset, RangeSmoothing, Silhouettes, Sketch, SpeedLines, ToneBands, TwoTone,
+    Vignette,
 };
 
 /// A million floats: hand-picked edge cases, then random bit patterns, which

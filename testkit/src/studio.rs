@@ -7,9 +7,9 @@ use bevy::{
     prelude::*, render::view::Msaa, time::TimeUpdateStrategy,
 };
 use bevy_comics::{
-    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, Focus, FocusAt, FocusStyle, IsoLines,
-    MeshSections, Outlines, Paint, PaintForm, Paper, Preset, SpeedLineKind, SpeedLines, ToneBands,
-    TwoTone, presets,
+    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, Focus, FocusAt, FocusStyle, Hatching,
+    HatchingGround, IsoLines, MeshSections, Outlines, Paint, PaintForm, Paper, Preset,
+    SpeedLineKind, SpeedLines, ToneBands, TwoTone, presets,
 };
 
 use super::{
@@ -204,7 +204,11 @@ fn single_effects(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
         BuiltIn::Teapot => {
             let outlines = Outlines::default();
             let style = style.with(outlines).with(TwoTone::default());
-            vec![("impact", style.with(lines))]
+            let impact = style.with(lines);
+            let hatched = ComicStyle::new()
+                .with(Hatching::default())
+                .with(Outlines::default());
+            vec![("impact", impact), ("hatching", hatched)]
         }
         BuiltIn::Theatre => {
             let kind = SpeedLineKind::Parallel;
@@ -235,6 +239,11 @@ fn single_effects(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
                 far: 9.0,
                 ..Paint::default()
             };
+            let hatched = Hatching {
+                spacing: 3.0,
+                ground: HatchingGround::Paper,
+                ..Hatching::default()
+            };
             let strokes = Paint {
                 form: PaintForm::Anisotropic,
                 near: 6.0,
@@ -247,7 +256,8 @@ fn single_effects(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
                     "paint",
                     style.clone().with(distance).with(Outlines::default()),
                 ),
-                ("strokes", style.with(strokes)),
+                ("strokes", style.clone().with(strokes)),
+                ("hatching", style.with(hatched).with(Outlines::default())),
             ]
         }
     }

@@ -20,6 +20,7 @@ mod golden;
 mod groups;
 mod guide;
 mod halftone;
+mod hatching;
 mod held_pose;
 mod house;
 mod ids;

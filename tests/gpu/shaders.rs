@@ -61,8 +61,8 @@ fn product(lists: &[Vec<Definitions>]) -> Vec<Definitions> {
 /// those of its needs.
 type Modes = (&'static str, Vec<Definitions>);
 
-/// The effects that read only colour and depth.
-fn picture_effects() -> [Modes; 6] {
+/// The effects that read the picture, depth and normals.
+fn picture_effects() -> [Modes; 7] {
     let mapped = |more: Definition<'static>| [flags(&["MAP", "DEPTH"]), vec![more]].concat();
     [
         (
@@ -120,6 +120,26 @@ fn picture_effects() -> [Modes; 6] {
                     .concat(),
                 ],
             ]),
+        ),
+        (
+            "hatching",
+            [
+                vec![flags(&["HATCHING"]), flags(&["HATCHING", "MAP", "DEPTH"])],
+                product(&[
+                    vec![flags(&[
+                        "HATCHING",
+                        "HATCHING_ON_THINGS",
+                        "DEPTH",
+                        "NORMALS",
+                    ])],
+                    optional(&["HATCHING_FACES"]),
+                    vec![
+                        Vec::new(),
+                        flags(&["OBJECT_ANCHORS", "OBJECT_IDS", "OBJECT_STYLES"]),
+                    ],
+                ]),
+            ]
+            .concat(),
         ),
         (
             "black_flats",
@@ -309,7 +329,7 @@ fn every_combination_of_effects_composes_and_validates() {
     let pictures = picture_effects();
     let lines = line_effects();
     let mut turn = 0;
-    for chosen in subsets(&[0, 1, 2, 3, 4, 5]) {
+    for chosen in subsets(&[0, 1, 2, 3, 4, 5, 6]) {
         for line in [None, Some(&lines[0]), Some(&lines[1])] {
             for view in &views {
                 // Another mode each time.

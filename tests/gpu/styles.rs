@@ -6,10 +6,10 @@ use bevy::{color::Color, prelude::*, render::view::Msaa};
 use bevy_comics::{
     BlackFlats, Colorization, ColorizationMode, ComicStyle, ComicStyleError, ComicStyleHandle,
     ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, Focus, FocusAt,
-    FocusStyle, Form, Halftone, HalftoneMode, LineBoil, LineColor, LineWeight, ObjectEdges,
-    Outlines, Paint, PaintForm, Paper, PrintOffset, RangeSmoothing, ReductionMethod, ScreenAnchor,
-    ScreenSampling, ScreenShape, Silhouettes, Sketch, SpeedLineKind, SpeedLines, ToneBands,
-    TwoTone,
+    FocusStyle, Form, Halftone, HalftoneMode, Hatching, HatchingAnchor, LineBoil, LineColor,
+    LineWeight, ObjectEdges, Outlines, Paint, PaintForm, Paper, PrintOffset, RangeSmoothing,
+    ReductionMethod, ScreenAnchor, ScreenSampling, ScreenShape, Silhouettes, Sketch, SpeedLineKind,
+    SpeedLines, ToneBands, TwoTone,
 };
 use proptest::{
     option,
@@ -124,8 +124,11 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
     )
         .prop_map(
             |(name, depth_map, desaturation, colorization, black_flats, contours, others)| {
-                let ((tone_bands, outlines, sketch), (halftone, offset, (paint, focus)), page) =
-                    others;
+                let (
+                    (tone_bands, outlines, sketch),
+                    (halftone, offset, (paint, focus, hatching)),
+                    page,
+                ) = others;
                 let (speed_lines, two_tone, paper) = page;
                 let mut style = ComicStyle::new();
                 style.name = name;
@@ -137,6 +140,7 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
                 style = with_option(style, contours);
                 style = with_option(style, outlines);
                 style = with_option(style, halftone);
+                style = with_option(style, hatching);
                 style = with_option(style, offset);
                 style = with_option(style, paint);
                 style = with_option(style, focus);
@@ -197,7 +201,7 @@ fn page_styles() -> impl Strategy<Value = (Option<SpeedLines>, Option<TwoTone>, 
     (option::of(lines), option::of(tones), option::of(paper))
 }
 
-type Painted = (Option<Paint>, Option<Focus>);
+type Painted = (Option<Paint>, Option<Focus>, Option<Hatching>);
 
 /// Print effects of all modes.
 fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Painted)> {
@@ -268,7 +272,19 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Pai
         period: radius,
         ..default()
     });
-    let painted = (option::of(paint), option::of(focus));
+    let hatching =
+        (number(), number(), any::<u32>(), colors()).prop_map(|(spacing, breaks, layers, ink)| {
+            Hatching {
+                anchor: [HatchingAnchor::Object, HatchingAnchor::Page][layers as usize % 2],
+                spacing,
+                breaks,
+                layers,
+                tones: layers,
+                ink,
+                ..default()
+            }
+        });
+    let painted = (option::of(paint), option::of(focus), option::of(hatching));
     (option::of(halftone), option::of(offset), painted)
 }
 

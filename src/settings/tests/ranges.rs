@@ -65,6 +65,7 @@ fn the_range_on_a_field_is_the_range_that_is_used() {
     check(SpeedLines::sanitized);
     check(Paper::sanitized);
     check(Halftone::sanitized);
+    check(Hatching::sanitized);
     check(PrintOffset::sanitized);
     check(Paint::sanitized);
     check(Focus::sanitized);

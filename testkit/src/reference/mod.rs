@@ -24,6 +24,7 @@ pub mod fold;
 pub mod fused;
 pub mod gaps;
 pub mod halftone;
+pub mod hatching;
 pub mod histogram;
 pub mod iso_lines;
 pub mod jumps;

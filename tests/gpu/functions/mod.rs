@@ -14,6 +14,7 @@ mod fog;
 mod fold;
 mod gaps;
 pub mod halftone;
+mod hatching;
 mod iso_lines;
 mod jumps;
 mod memory;

@@ -1,0 +1,46 @@
+//! The modes of [`Hatching`](super::Hatching).
+
+use bevy::reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault};
+use serde::{Deserialize, Serialize};
+
+/// What the strokes of a [`Hatching`](crate::Hatching) are fixed to.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum HatchingAnchor {
+    /// Things: strokes follow their form. They are fixed to the world, and to objects that have an
+    /// [`ObjectScreen`](crate::ObjectScreen). Needs depth and normals; without them, strokes are
+    /// fixed to the page.
+    #[default]
+    Object,
+    /// The page: strokes are parallel, and stand still while things move under them (Lake et al.
+    /// 2000). The sky is hatched too.
+    Page,
+}
+
+/// What is between the strokes of a [`Hatching`](crate::Hatching).
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum HatchingGround {
+    /// The colours of the picture, brighter under strokes, so that the mean of an area keeps its
+    /// colour as far as the display can show that.
+    #[default]
+    Color,
+    /// [`Hatching::paper`](crate::Hatching::paper).
+    Paper,
+}
+
+/// What a [`Hatching`](crate::Hatching) is dark by.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum HatchingSource {
+    /// The picture: shadows, and dark colours too.
+    #[default]
+    Picture,
+    /// The direction in which a surface faces: lightness 1 towards the
+    /// [`KeyLight`](crate::KeyLight), a half beside it, 0 away from it. Neither colours nor cast
+    /// shadows count. On a page, as [`HatchingSource::Picture`].
+    Facing,
+}

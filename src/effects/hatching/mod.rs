@@ -1,0 +1,296 @@
+//! Shades with strokes that lie on things.
+
+mod kinds;
+
+use std::f32::consts::FRAC_PI_4;
+
+use bevy::{
+    color::Color,
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::{Mat3, Mat4, Vec3},
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+pub use kinds::{HatchingAnchor, HatchingGround, HatchingSource};
+
+use crate::{
+    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
+    settings::{BlendField, FieldRange, bounded, displayable, file_color, linear_rgb},
+};
+
+/// Shades with strokes: hatching in the half tones, crossed in the shadows, bare where it is light.
+///
+/// Strokes lie where surfaces meet families of parallel planes, as in an engraving: they follow
+/// the form of things, without texture coordinates. They stay on things that stand still, and on
+/// moving objects that have an [`ObjectScreen`](crate::ObjectScreen). Their width on the screen
+/// stays the same: when a thing comes nearer, new strokes grow between the old ones. The mean
+/// of an area has the darkness that is asked for.
+///
+/// Strokes are drawn on the geometry of the prepasses, in multisampled views on that of the first
+/// sample; transparent things are hatched by what lies behind them. Skinned and morphed meshes move under
+/// their strokes. The views of cameras with this effect are styled after FXAA and SMAA.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Hatching {
+    /// What strokes are fixed to. Default: [`HatchingAnchor::Object`].
+    pub anchor: HatchingAnchor,
+    /// What hatching is dark by. Default: [`HatchingSource::Picture`].
+    pub source: HatchingSource,
+    /// Lightness (0 black, 1 white) up to which hatching is darkest. Range 0 to 0.9, default 0.15.
+    #[reflect(@FieldRange::linear(0.0, 0.9))]
+    pub shadows: f32,
+    /// Lightness from which there are no strokes, at least 0.05 more than `shadows`. Range 0.05 to
+    /// 1, default 0.7.
+    #[reflect(@FieldRange::linear(0.05, 1.0))]
+    pub highlights: f32,
+    /// Exponent of the darkness between the two: above 1, middle tones have fewer strokes. Range
+    /// 0.25 to 4, default 1.
+    #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
+    pub gamma: f32,
+    /// Number of tones of the hatching, in equal steps. Range 0 (all tones) to 12, default 0.
+    #[reflect(@FieldRange::linear(0.0, 12.0), @BlendField::Switch)]
+    pub tones: u32,
+    /// Distance of neighbouring strokes in logical pixels, from this to twice as much: then new
+    /// ones have grown between them. Range 2 to 24, default 4.
+    #[reflect(@FieldRange::logarithmic(2.0, 24.0).unit("px"))]
+    pub spacing: f32,
+    /// Number of directions of strokes: crossing ones begin where the first has
+    /// `layer_darkness`. Range 1 to 3, default 2.
+    #[reflect(@FieldRange::linear(1.0, 3.0), @BlendField::Switch)]
+    pub layers: u32,
+    /// Darkness of a direction at which the next one begins; the last one goes on to black. Range
+    /// 0.1 to 0.9, default 0.45.
+    #[reflect(@FieldRange::linear(0.1, 0.9))]
+    pub layer_darkness: f32,
+    /// Turn of all strokes in degrees: about the vertical axis of the world or the object, or on the
+    /// page. Range -90 to 90, default 0.
+    #[reflect(@FieldRange::linear(-90.0, 90.0).unit("°"))]
+    pub angle: f32,
+    /// Length of a stroke in logical pixels, on average. Range 10 to 400, default 80.
+    #[reflect(@FieldRange::logarithmic(10.0, 400.0).unit("px"))]
+    pub length: f32,
+    /// How thin strokes become at their ends: 0 (lines without ends) to 1 (gaps). Default 0.6.
+    #[reflect(@FieldRange::FRACTION)]
+    pub breaks: f32,
+    /// How far strokes stray from their lines, of what they can without crossing. Range 0 to
+    /// 1, default 0.3.
+    #[reflect(@FieldRange::FRACTION)]
+    pub wobble: f32,
+    /// How much the width of a stroke varies. Range 0 to 1, default 0.3.
+    #[reflect(@FieldRange::FRACTION)]
+    pub pressure: f32,
+    /// How often `wobble` and `pressure` change, in drawings per second. Strokes stay where they
+    /// are. Range 0 (never) to 60, default 0.
+    #[reflect(@FieldRange::linear(0.0, 60.0).unit("/s"))]
+    pub rate: f32,
+    /// Colour of the strokes. Default: black. Components are clamped to what a display shows;
+    /// alpha is ignored.
+    #[serde(with = "file_color")]
+    pub ink: Color,
+    /// What is between strokes. Default: [`HatchingGround::Color`].
+    pub ground: HatchingGround,
+    /// The paper of [`HatchingGround::Paper`]. Default: white.
+    #[serde(with = "file_color")]
+    pub paper: Color,
+    /// Factor of the darkness at the near end of the depth map. Range 0 to 1, default 1. The depth
+    /// map is read if `near` and `far` differ.
+    #[reflect(@FieldRange::FRACTION)]
+    pub near: f32,
+    /// The same at the far end. Range 0 to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub far: f32,
+    /// How much of the hatching and its ground is seen over the picture. Range 0 (the effect is
+    /// left out) to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub opacity: f32,
+}
+
+impl Default for Hatching {
+    fn default() -> Self {
+        Self {
+            anchor: HatchingAnchor::Object,
+            source: HatchingSource::Picture,
+            shadows: 0.15,
+            highlights: 0.7,
+            gamma: 1.0,
+            tones: 0,
+            spacing: 4.0,
+            layers: 2,
+            layer_darkness: 0.45,
+            angle: 0.0,
+            length: 80.0,
+            breaks: 0.6,
+            wobble: 0.3,
+            pressure: 0.3,
+            rate: 0.0,
+            ink: Color::BLACK,
+            ground: HatchingGround::Color,
+            paper: Color::WHITE,
+            near: 1.0,
+            far: 1.0,
+            opacity: 1.0,
+        }
+    }
+}
+
+impl Effect for Hatching {
+    const NAME: &'static str = "hatching";
+    const STAGE: EffectStage = EffectStage::Print;
+    const SHADER: EffectShader = EffectShader {
+        path: "bevy_comics::effects::hatching",
+        source: include_str!("hatching.wgsl"),
+        settings: Some("Hatching"),
+    };
+    type Uniform = HatchingUniform;
+
+    fn sanitized(self) -> Self {
+        let default = Self::default();
+        let fraction = |value, default| bounded(value, default, 0.0, 1.0);
+        Self {
+            shadows: bounded(self.shadows, default.shadows, 0.0, 0.9),
+            highlights: bounded(self.highlights, default.highlights, 0.05, 1.0),
+            gamma: bounded(self.gamma, default.gamma, 0.25, 4.0),
+            tones: self.tones.min(12),
+            spacing: bounded(self.spacing, default.spacing, 2.0, 24.0),
+            layers: self.layers.clamp(1, 3),
+            layer_darkness: bounded(self.layer_darkness, default.layer_darkness, 0.1, 0.9),
+            angle: bounded(self.angle, default.angle, -90.0, 90.0),
+            length: bounded(self.length, default.length, 10.0, 400.0),
+            breaks: fraction(self.breaks, default.breaks),
+            wobble: fraction(self.wobble, default.wobble),
+            pressure: fraction(self.pressure, default.pressure),
+            rate: bounded(self.rate, default.rate, 0.0, 60.0),
+            ink: displayable(self.ink, default.ink),
+            paper: displayable(self.paper, default.paper),
+            near: fraction(self.near, default.near),
+            far: fraction(self.far, default.far),
+            opacity: fraction(self.opacity, default.opacity),
+            ..self
+        }
+    }
+
+    fn strength(&self) -> f32 {
+        self.opacity
+    }
+
+    fn faded(self, fraction: f32) -> Self {
+        let opacity = self.opacity * fraction;
+        Self { opacity, ..self }
+    }
+
+    fn needs(&self) -> Needs {
+        let mut needs = Needs::empty();
+        needs.set(Needs::MAP, self.near != self.far);
+        if self.anchor == HatchingAnchor::Object {
+            needs |= Needs::DEPTH | Needs::NORMALS | Needs::OBJECT_ANCHORS;
+        }
+        needs
+    }
+
+    fn without(self, missing: Needs) -> Option<Self> {
+        let near = if missing.contains(Needs::MAP) {
+            self.far
+        } else {
+            self.near
+        };
+        let anchor = if missing.intersects(Needs::DEPTH | Needs::NORMALS) {
+            HatchingAnchor::Page
+        } else {
+            self.anchor
+        };
+        Some(Self {
+            near,
+            anchor,
+            ..self
+        })
+    }
+
+    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+        let on_things = self.anchor == HatchingAnchor::Object;
+        variants.flag("ON_THINGS", on_things);
+        variants.flag("FACES", on_things && self.source == HatchingSource::Facing);
+    }
+
+    fn map_faded(self, fraction: f32) -> Self {
+        let near = self.far + (self.near - self.far) * fraction;
+        Self { near, ..self }
+    }
+
+    fn uniform(&self, view: &ViewFacts) -> HatchingUniform {
+        let [x, y, z] = self.axes();
+        HatchingUniform {
+            relative_from_clip: view.relative_from_clip,
+            axes: Mat3::from_cols(x, y, z),
+            eye: view.eye,
+            opacity: self.opacity,
+            ink: linear_rgb(self.ink),
+            spacing: self.spacing * view.scale_factor,
+            paper: linear_rgb(self.paper),
+            length: self.length * view.scale_factor,
+            to_light: view.to_light,
+            layers: self.layers,
+            layer_darkness: self.layer_darkness,
+            shadows: self.shadows,
+            highlights: self.highlights.max(self.shadows + 0.05),
+            gamma: self.gamma,
+            levels: self.tones as f32,
+            breaks: self.breaks,
+            wobble: self.wobble,
+            pressure: self.pressure,
+            near: self.near,
+            far: self.far,
+            seed: view.drawing(self.rate),
+            ground: u32::from(self.ground == HatchingGround::Paper),
+        }
+    }
+}
+
+impl Hatching {
+    /// Unit normals of the families of planes, at right angles.
+    pub fn axes(&self) -> [Vec3; 3] {
+        let turn = self.angle.to_radians();
+        match self.anchor {
+            HatchingAnchor::Page => {
+                let turn = Mat3::from_rotation_z(turn + FRAC_PI_4);
+                [turn.x_axis, turn.y_axis, turn.z_axis]
+            }
+            // No side of a box sees one of them from its end.
+            HatchingAnchor::Object => [
+                Vec3::new(2.0, 2.0, -1.0),
+                Vec3::new(-1.0, 2.0, 2.0),
+                Vec3::new(2.0, -1.0, 2.0),
+            ]
+            .map(|axis| Mat3::from_rotation_y(turn) * axis / 3.0),
+        }
+    }
+}
+
+/// The uniform: `Hatching` in `hatching.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, PartialEq)]
+pub struct HatchingUniform {
+    relative_from_clip: Mat4,
+    axes: Mat3,
+    eye: Vec3,
+    opacity: f32,
+    ink: Vec3,
+    spacing: f32,
+    paper: Vec3,
+    length: f32,
+    to_light: Vec3,
+    layers: u32,
+    layer_darkness: f32,
+    shadows: f32,
+    highlights: f32,
+    gamma: f32,
+    levels: f32,
+    breaks: f32,
+    wobble: f32,
+    pressure: f32,
+    near: f32,
+    far: f32,
+    seed: u32,
+    ground: u32,
+}

@@ -1,0 +1,304 @@
+//! Strokes that lie on things.
+
+use bevy::{
+    core_pipeline::tonemapping::Tonemapping,
+    math::{DVec2, DVec3},
+    prelude::*,
+    render::view::Msaa,
+};
+use bevy_comics::{ComicStyle, Hatching, HatchingAnchor, HatchingGround, ObjectScreen};
+use bevy_comics_testkit::reference::{
+    color,
+    hatching::{Hatch, Surface},
+};
+
+use crate::small::{Small, options, unlit};
+
+const SIZE: UVec2 = UVec2::new(160, 120);
+
+/// Black strokes on white paper, without what is random.
+fn plain() -> Hatching {
+    Hatching {
+        breaks: 0.0,
+        wobble: 0.0,
+        pressure: 0.0,
+        ground: HatchingGround::Paper,
+        highlights: 1.0,
+        shadows: 0.0,
+        ..default()
+    }
+}
+
+fn perspective() -> Projection {
+    Projection::Perspective(PerspectiveProjection {
+        fov: std::f32::consts::FRAC_PI_2,
+        ..default()
+    })
+}
+
+/// A camera at the origin that looks at nothing.
+fn empty() -> Small {
+    let mut small = Small::with(options(SIZE), Msaa::Off);
+    small.clear();
+    small.insert((Transform::IDENTITY, perspective(), Tonemapping::None));
+    small
+}
+
+/// A wall of a light that fills the view.
+fn flat(small: &mut Small, light: f32, at: Transform) -> Entity {
+    let material = StandardMaterial {
+        double_sided: true,
+        cull_mode: None,
+        ..unlit(Color::linear_rgb(light, light, light))
+    };
+    small.put(Rectangle::new(4000.0, 4000.0), material, at)
+}
+
+/// Darkness of every pixel: 0 paper, 1 ink.
+fn covers(small: &mut Small, s: Hatching) -> Vec<f64> {
+    small.style(&ComicStyle::new().with(s));
+    small.settle();
+    let (_, after) = small.pass();
+    after.pixels.iter().map(|p| 1.0 - f64::from(p[0])).collect()
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// A wall at an angle about a slanted axis, through a point before the camera.
+fn tilted(degrees: f32, distance: f32) -> Transform {
+    let axis = Vec3::new(0.6, 0.8, 0.0);
+    Transform::from_xyz(0.0, 0.0, -distance)
+        .with_rotation(Quat::from_axis_angle(axis, degrees.to_radians()))
+}
+
+/// Truth: the mean of a flat field has the darkness that its lightness asks for, at every tone,
+/// angle and distance, with one layer and with three.
+#[test]
+fn flat_fields_keep_their_mean_tone() {
+    let mut small = empty();
+    let mut worst = [0.0f64; 2];
+    for light in [0.003f32, 0.03, 0.15, 0.4, 0.75] {
+        for (degrees, distance) in [(0.0, 7.0), (0.0, 9.3), (35.0, 20.0), (60.0, 31.0)] {
+            small.clear();
+            flat(&mut small, light, tilted(degrees, distance));
+            for layers in [1, 3] {
+                for (random, worst) in [0.0, 1.0].into_iter().zip(&mut worst) {
+                    let s = Hatching {
+                        layers,
+                        breaks: random,
+                        wobble: random,
+                        pressure: 0.5 * random,
+                        ..plain()
+                    };
+                    let hatch = Hatch {
+                        settings: &s,
+                        scale: 1.0,
+                        drawing: 0,
+                    };
+                    let stored = f64::from(Color::linear_rgb(light, light, light).to_linear().red);
+                    let want = hatch.tone(color::lightness([stored; 3]));
+                    let got = mean(&covers(&mut small, s));
+                    *worst = worst.max((got - want).abs());
+                    println!(
+                        "light {light}, {degrees} degrees, {layers} layers, random {random}: {got:.3}, {want:.3}"
+                    );
+                }
+            }
+        }
+    }
+    println!("mean tone off by up to {worst:.3?}");
+    assert!(worst[0] < 0.02 && worst[1] < 0.04, "{worst:?}");
+    assert_eq!(small.errors(), 0);
+}
+
+/// Every pixel of a slanted wall is that of its geometry: the plane, not its depth and normals.
+#[test]
+fn strokes_are_where_the_plane_is() {
+    let mut small = empty();
+    for (degrees, distance) in [(20.0, 9.0), (55.0, 30.0)] {
+        for (s, what) in [
+            (plain(), "plain"),
+            (
+                Hatching {
+                    ground: HatchingGround::Paper,
+                    ..default()
+                },
+                "default",
+            ),
+        ] {
+            small.clear();
+            let at = tilted(degrees, distance);
+            flat(&mut small, 0.2, at);
+            let found = covers(&mut small, s);
+            let hatch = Hatch {
+                settings: &s,
+                scale: 1.0,
+                drawing: 0,
+            };
+            let tone = hatch.tone(color::lightness([0.2; 3]));
+            let clip = PerspectiveProjection {
+                fov: std::f32::consts::FRAC_PI_2,
+                aspect_ratio: SIZE.x as f32 / SIZE.y as f32,
+                ..default()
+            };
+            let clip = bevy::camera::CameraProjection::get_clip_from_view(&clip);
+            let view = clip.as_dmat4().inverse();
+            let size = SIZE.as_dvec2();
+            let plane = (
+                at.translation.as_dvec3(),
+                (at.rotation * Vec3::Z).as_dvec3(),
+            );
+            let mut apart = 0;
+            for y in 0..SIZE.y {
+                for x in 0..SIZE.x {
+                    let place = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5) / size;
+                    let ndc = place * DVec2::new(2.0, -2.0) + DVec2::new(-1.0, 1.0);
+                    let on = Surface::of_plane(view, ndc, size, plane);
+                    let got = found[(y * SIZE.x + x) as usize];
+                    let near = [DVec3::ZERO, on.across, on.down, -on.across, -on.down].map(|by| {
+                        let moved = Surface {
+                            place: on.place + 0.1 * by,
+                            ..on
+                        };
+                        hatch.cover(&moved, tone)
+                    });
+                    let low = near.iter().copied().fold(f64::MAX, f64::min) - 0.03;
+                    let high = near.iter().copied().fold(f64::MIN, f64::max) + 0.03;
+                    apart += usize::from(!(low..=high).contains(&got));
+                }
+            }
+            println!("{degrees} degrees, {what}: {apart} pixels differ");
+            assert!(apart < (SIZE.x * SIZE.y / 100) as usize, "{apart}");
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// Truth: strokes do not pop. While the camera comes nearer by 0.5 % in each frame, no pixel
+/// changes by more than a line's motion explains, also where new strokes begin.
+#[test]
+fn strokes_grow_while_the_camera_comes_nearer() {
+    let mut small = empty();
+    flat(&mut small, 0.2, tilted(25.0, 20.0));
+    let s = Hatching {
+        ground: HatchingGround::Paper,
+        ..default()
+    };
+    let mut before: Option<Vec<f64>> = None;
+    let (mut largest, mut means) = (0.0f64, Vec::new());
+    for frame in 0..60 {
+        // Towards the middle of the wall.
+        let distance = 20.0 * (1.0 - 0.9925f32.powi(frame));
+        small.insert(Transform::from_xyz(0.0, 0.0, -distance));
+        let now = covers(&mut small, s);
+        if let Some(before) = &before {
+            // Near the middle of the picture, things move by less than 0.15 pixels.
+            let moved = (0..now.len())
+                .filter(|i| {
+                    let [x, y] = [i % SIZE.x as usize, i / SIZE.x as usize].map(|v| v as f64);
+                    (x - 80.0).hypot(y - 60.0) < 20.0
+                })
+                .map(|i| (now[i] - before[i]).abs());
+            largest = moved.fold(largest, f64::max);
+        }
+        means.push(mean(&now));
+        before = Some(now);
+    }
+    let [low, high] =
+        [f64::min, f64::max].map(|of| means.iter().copied().reduce(of).expect("some"));
+    println!("largest change {largest:.3}, mean tone {low:.3} to {high:.3}");
+    assert!(largest < 0.3, "{largest}");
+    assert!(high - low < 0.03, "{low} to {high}");
+}
+
+/// Truth: strokes travel with an object that has a screen, in every direction and turn: the
+/// camera that follows sees the same picture.
+#[test]
+fn strokes_travel_with_their_object() {
+    let mut small = empty();
+    let at = tilted(30.0, 12.0);
+    let object = flat(&mut small, 0.2, at);
+    small
+        .world()
+        .entity_mut(object)
+        .insert(ObjectScreen::default());
+    let s = Hatching {
+        ground: HatchingGround::Paper,
+        ..default()
+    };
+    let still = covers(&mut small, s);
+    let turn = Quat::from_euler(EulerRot::YXZ, 0.7, -0.3, 1.1);
+    for (by, limit) in [
+        (Vec3::new(31.7, -8.3, 102.9), 0.02),
+        (Vec3::new(9000.0, 500.0, -7000.0), 0.3),
+    ] {
+        let moved = Transform::from_translation(by).with_rotation(turn);
+        small.world().entity_mut(object).insert(moved * at);
+        small.insert(moved);
+        let now = covers(&mut small, s);
+        // Far from the origin, places are known to a thousandth of a unit.
+        let apart = (still.iter().zip(&now))
+            .filter(|(a, b)| (*a - *b).abs() > limit)
+            .count();
+        println!("moved by {by}: {apart} pixels differ");
+        assert!(apart < still.len() / 200, "{apart}");
+        // Fixed to the world, strokes swim.
+        small.world().entity_mut(object).remove::<ObjectScreen>();
+        let swims = covers(&mut small, s);
+        let apart = (still.iter().zip(&swims))
+            .filter(|(a, b)| (*a - *b).abs() > limit)
+            .count();
+        assert!(apart > still.len() / 10, "{apart}");
+        small
+            .world()
+            .entity_mut(object)
+            .insert(ObjectScreen::default());
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// The sky has no strokes on things, and has them on a page; light walls have none, black ones are
+/// solid; values out of range are clamped.
+#[test]
+fn extreme_hatching_is_finite() {
+    let mut small = empty();
+    let sky = covers(&mut small, plain());
+    assert!(sky.iter().all(|c| c.abs() < 0.01));
+    for (light, want) in [(0.0, 1.0), (1.0, 0.0)] {
+        small.clear();
+        flat(&mut small, light, tilted(40.0, 5.0));
+        for anchor in [HatchingAnchor::Object, HatchingAnchor::Page] {
+            let found = covers(&mut small, Hatching { anchor, ..plain() });
+            assert!(
+                found.iter().all(|c| (c - want).abs() < 0.01),
+                "{light}, {anchor:?}"
+            );
+        }
+    }
+    small.clear();
+    flat(&mut small, 0.2, tilted(89.5, 5.0));
+    for x in [f32::NAN, f32::INFINITY, -1e30, 0.0, 1e30] {
+        let s = Hatching {
+            shadows: x,
+            highlights: x,
+            gamma: x,
+            tones: u32::MAX,
+            spacing: x,
+            layers: 99,
+            layer_darkness: x,
+            angle: x,
+            length: x,
+            breaks: x,
+            wobble: x,
+            pressure: x,
+            rate: x,
+            near: x,
+            ..default()
+        };
+        let found = covers(&mut small, s);
+        assert!(found.iter().all(|c| c.is_finite()), "{x}");
+    }
+    assert_eq!(small.errors(), 0);
+}
