@@ -165,6 +165,7 @@ impl LineKey {
             texture_2d(TextureSampleType::Uint).build(12, compute),
             storage_buffer_sized(false, None).build(14, compute),
             storage_buffer_sized(false, None).build(15, compute),
+            storage_buffer_sized(false, None).build(31, compute),
         ];
         BindGroupLayoutDescriptor::new("comics_list_tiles", &entries)
     }

@@ -4,7 +4,7 @@ use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
     core_pipeline::FullscreenShader,
     ecs::resource::Resource,
-    math::{UVec2, Vec2},
+    math::UVec2,
     render::{
         render_resource::{
             BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, ColorTargetState, ColorWrites,
@@ -32,12 +32,16 @@ const INK_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 /// A raw depth, and a number of frames.
 const DEPTH_FORMAT: TextureFormat = TextureFormat::Rg32Float;
 
+/// Frames that a line may be missing in: the same in `memory.wgsl`.
+const MISSING: u32 = 16;
+
 /// `Memory` of `memory.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct MemoryUniform {
     share: f32,
     spacing: i32,
-    unused: Vec2,
+    tile_frames: u32,
+    unused: u32,
 }
 
 /// What a view's lines remember.
@@ -56,7 +60,8 @@ impl MemoryRequest {
         MemoryUniform {
             share: if is_new { 1.0 } else { self.share },
             spacing: (reach / 2).max(1),
-            unused: Vec2::ZERO,
+            tile_frames: MISSING + 1,
+            unused: 0,
         }
     }
 }

@@ -8,7 +8,9 @@ struct Memory {
     share: f32,
     // Pixels of the grid between the depths that are compared.
     spacing: i32,
-    unused: vec2<f32>,
+    // Frames for which tiles are drawn that have no cracks any more; 0: there is no memory.
+    tile_frames: u32,
+    unused: u32,
 }
 
 // Faster lines are as sharp as without a memory, in pixels per frame.

@@ -49,6 +49,8 @@ pub(crate) struct TileLists {
     arguments: Buffer,
     /// The lists, one after the other, each with room for all tiles.
     tiles: Buffer,
+    /// Of each tile, the number of frames since it had cracks nearby.
+    ages: Buffer,
     /// Number of tiles that a list has room for.
     room: u32,
     /// The arguments of an indirect dispatch for the cells, and their number.
@@ -88,6 +90,7 @@ impl TileLists {
                 Self {
                     arguments: buffer("comics_tile_counts", ARGUMENTS * u64::from(LISTS), drawn),
                     tiles: buffer("comics_tiles", size, BufferUsages::VERTEX),
+                    ages: buffer("comics_tile_ages", 4 * u64::from(room), BufferUsages::empty()),
                     room,
                     cell_counts: buffer("comics_cell_counts", ARGUMENTS, drawn),
                     cells: buffer(
@@ -117,8 +120,9 @@ impl TileLists {
     }
 
     /// The bindings of `tiles.wgsl`.
-    pub fn entries(&self) -> [BindGroupEntry<'_>; 2] {
-        [(14, &self.arguments), (15, &self.tiles)].map(|(binding, buffer)| BindGroupEntry {
+    pub fn entries(&self) -> [BindGroupEntry<'_>; 3] {
+        let buffers = [(14, &self.arguments), (15, &self.tiles), (31, &self.ages)];
+        buffers.map(|(binding, buffer)| BindGroupEntry {
             binding,
             resource: buffer.as_entire_binding(),
         })

@@ -11,6 +11,9 @@
 // The lists, one after the other: left, top, right, bottom in clip space.
 @group(0) @binding(15) var<storage, read_write> tiles: array<vec4<f32>>;
 
+// Of each tile, the number of frames since it had cracks nearby.
+@group(0) @binding(31) var<storage, read_write> ages: array<u32>;
+
 // TileList of tiles.rs.
 const INKED: u32 = 0u;
 const LISTS: u32 = 2u;
@@ -38,7 +41,17 @@ fn list_tiles(@builtin(global_invocation_id) id: vec3<u32>) {
         return;
     }
     let part = select(searched_by(g, first), inked_by(g, first), list == INKED);
-    if !has_cracks(part.xy, part.zw, g.rect.zw) {
+    var listed = has_cracks(part.xy, part.zw, g.rect.zw);
+    let remembered = line_pass.memory.tile_frames;
+    if list == INKED && remembered > 0u {
+        // Lines that are missing in this frame are still remembered.
+        let across = u32(size.x + TILE - 1) / u32(TILE);
+        let tile = id.y * across + id.x;
+        let age = select(min(ages[tile], 65535u) + 1u, 0u, listed);
+        ages[tile] = age;
+        listed = age <= remembered;
+    }
+    if !listed {
         return;
     }
     let index = atomicAdd(&arguments[4u * list + 1u], 1u);

@@ -160,9 +160,10 @@ fn family_cover(s: Hatching, on: Surface, a: vec3<f32>, b: vec3<f32>, c: vec3<f3
     let first = i32(at.x) + i32(old);
     let second = 2 * (i32(at.x) + i32(fresh)) + 1;
     let half_width = s.spacing * tone;
-    // Along the lines of a surface; of the two axes the one that changes more.
+    // Along the lines of a surface; of the two axes the one that changes clearly more: on the sides
+    // of a box, both may change equally.
     let direction = cross(on.normal, a);
-    let axis = select(b, c, abs(dot(c, direction)) > abs(dot(b, direction)));
+    let axis = select(b, c, abs(dot(c, direction)) > 1.1 * abs(dot(b, direction)));
     let change_along = vec2(dot(axis, on.across), dot(axis, on.down));
     let speed = abs(gradient.x * change_along.y - gradient.y * change_along.x) / change;
     let strokes = level_of(1.4 * s.length * max(speed, 1e-25));
@@ -171,8 +172,9 @@ fn family_cover(s: Hatching, on: Surface, a: vec3<f32>, b: vec3<f32>, c: vec3<f3
     let fresh_mark = mark_of(second, level.exponent - 1, number);
     let cover = stroke(s, (at.y - old) * distance, half_width, along, strokes, old_mark, tone)
         + stroke(s, (at.y - fresh - 0.5) * distance, level.grown * half_width, along, strokes, fresh_mark, tone);
-    // Lines that are closer than the picture can show are a plain tone.
-    return mix(tone, min(cover, 1.0), smoothstep(1.5, 2.5, 0.5 * distance));
+    // Lines that are closer than the picture can show, or almost touch, are a plain tone.
+    let shown = smoothstep(1.5, 2.5, 0.5 * distance) * (1.0 - smoothstep(0.9, 1.0, tone));
+    return mix(tone, min(cover, 1.0), shown);
 }
 
 // How much of a family is seen: it has no lines where its planes are parallel to the surface.

@@ -139,7 +139,7 @@ impl Hatch<'_> {
         let size = f64::from(exponent).exp2();
         let place = a.dot(on.place) / size;
         let line = on.normal.cross(a);
-        let axis = if c.dot(line).abs() > b.dot(line).abs() {
+        let axis = if c.dot(line).abs() > 1.1 * b.dot(line).abs() {
             c
         } else {
             b
@@ -165,7 +165,7 @@ impl Hatch<'_> {
         let half_width = spacing * tone;
         let cover = stroke(place - old, half_width, first)
             + stroke(place - fresh - 0.5, grown * half_width, second);
-        let seen = smoothstep(1.5, 2.5, 0.5 * size / change);
+        let seen = smoothstep(1.5, 2.5, 0.5 * size / change) * (1.0 - smoothstep(0.9, 1.0, tone));
         mix(tone, cover.min(1.0), seen)
     }
 
