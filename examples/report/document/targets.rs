@@ -191,8 +191,10 @@ fn quality(folder: &Path) -> Result<Vec<Target>, String> {
 pub fn targets(out: &mut String, folder: &Path) -> Result<(), String> {
     out.push_str(
         "## Targets\n\nTimes are those of the crate's own passes on the teapot, without the \
-         engine's prepasses. The limits of times are meant for a CPU adapter. Fragments have two \
-         limits: one for finding lines, and a lower one for lines that are also linked and smooth, \
+         engine's prepasses. The limits of times are meant for a CPU adapter. Outlines are \
+         timed with their default ink budget, and scored without it. Ratios of outlines scatter by \
+         half between rounds: a limit that is met or missed by less than 2 blits is within the \
+         noise. Fragments have two limits: one for finding lines, and a lower one for lines that are also linked and smooth, \
          which these are.\n\n\
          | | target | here | |\n|---|---|---|---|\n",
     );
