@@ -90,7 +90,11 @@ impl TileLists {
                 Self {
                     arguments: buffer("comics_tile_counts", ARGUMENTS * u64::from(LISTS), drawn),
                     tiles: buffer("comics_tiles", size, BufferUsages::VERTEX),
-                    ages: buffer("comics_tile_ages", 4 * u64::from(room), BufferUsages::empty()),
+                    ages: buffer(
+                        "comics_tile_ages",
+                        4 * u64::from(room),
+                        BufferUsages::empty(),
+                    ),
                     room,
                     cell_counts: buffer("comics_cell_counts", ARGUMENTS, drawn),
                     cells: buffer(
