@@ -134,21 +134,24 @@ fn stroke_factor(at: f32, grown: f32, breaks: f32) -> f32 {
     return old * fresh / (1.0 - TAPER * breaks);
 }
 
-// A line near a pixel: its distance in pixels, and half its width.
-fn stroke(s: Hatching, away: f32, half_width: f32, along: vec2<f32>, level: Level, mark: u32, tone: f32) -> f32 {
+// A line near a pixel. `line`: its distance in pixels, and half its width.
+fn stroke(s: Hatching, line: vec2<f32>, along: vec2<f32>, level: Level, mark: u32, tone: f32) -> f32 {
     // Dark areas have straight, whole lines: they would cross.
     let free = 1.0 - tone;
     let wobble = 0.5 * s.spacing * s.wobble * free;
-    let moved = away - wobble * noise_along(along, level.grown, 0.5, mark ^ s.seed);
+    let moved = line.x - wobble * noise_along(along, level.grown, 0.5, mark ^ s.seed);
     let start = stroke_start(mark, level.exponent);
     let breaks = stroke_factor(along.y + start, level.grown, s.breaks * free);
     let pressure = 1.0 + s.pressure * free * noise_along(along, level.grown, 4.0, ~mark ^ s.seed);
-    return line_coverage(abs(moved), half_width * breaks * pressure);
+    return line_coverage(abs(moved), line.y * breaks * pressure);
 }
 
-// Coverage of a pixel by the lines of a family of planes with a normal `a`. `b` and `c`: the other
-// two axes of the frame; `number`: of the family.
-fn family_cover(s: Hatching, on: Surface, a: vec3<f32>, b: vec3<f32>, c: vec3<f32>, number: u32, tone: f32) -> f32 {
+// Coverage of a pixel by the lines of a family of planes. `axes`: its normal, and the other two axes
+// of the frame; `number`: of the family.
+fn family_cover(s: Hatching, on: Surface, axes: mat3x3<f32>, number: u32, tone: f32) -> f32 {
+    let a = axes[0];
+    let b = axes[1];
+    let c = axes[2];
     let gradient = vec2(dot(a, on.across), dot(a, on.down));
     let change = max(length(gradient), 1e-25);
     let level = level_of(2.0 * s.spacing * change);
@@ -170,8 +173,8 @@ fn family_cover(s: Hatching, on: Surface, a: vec3<f32>, b: vec3<f32>, c: vec3<f3
     let along = place_of(dot(axis, on.place), dot(axis, on.eye), strokes.size);
     let old_mark = mark_of(first, level.exponent, number);
     let fresh_mark = mark_of(second, level.exponent - 1, number);
-    let cover = stroke(s, (at.y - old) * distance, half_width, along, strokes, old_mark, tone)
-        + stroke(s, (at.y - fresh - 0.5) * distance, level.grown * half_width, along, strokes, fresh_mark, tone);
+    let cover = stroke(s, vec2((at.y - old) * distance, half_width), along, strokes, old_mark, tone)
+        + stroke(s, vec2((at.y - fresh - 0.5) * distance, level.grown * half_width), along, strokes, fresh_mark, tone);
     // Lines that are closer than the picture can show, or almost touch, are a plain tone.
     let shown = smoothstep(1.5, 2.5, 0.5 * distance) * (1.0 - smoothstep(0.9, 1.0, tone));
     return mix(tone, min(cover, 1.0), shown);
@@ -223,11 +226,11 @@ fn layer_cover(s: Hatching, on: Surface, g: vec3<f32>, layer: u32, tone: f32) ->
     }
     var light = 1.0;
     if share > 0.0 {
-        light = 1.0 - family_cover(s, on, a, b, c, layer, shared_tone(tone, share));
+        light = 1.0 - family_cover(s, on, mat3x3(a, b, c), layer, shared_tone(tone, share));
     }
     if share < 1.0 {
         let rest = shared_tone(tone, 1.0 - share);
-        light *= 1.0 - family_cover(s, on, other, third, a, other_number, rest);
+        light *= 1.0 - family_cover(s, on, mat3x3(other, third, a), other_number, rest);
     }
     return 1.0 - light;
 }

@@ -27,7 +27,7 @@ pub enum HatchingGround {
     /// colour as far as the display can show that.
     #[default]
     Color,
-    /// [`Hatching::paper`](crate::Hatching::paper).
+    /// A sheet of one colour: [`Hatching::paper`](crate::Hatching::paper).
     Paper,
 }
 
