@@ -30,6 +30,7 @@ mod iso_lines;
 mod jitter;
 mod ledges;
 mod left_out;
+mod lid;
 mod line_quality;
 mod line_samples;
 mod line_truth;
