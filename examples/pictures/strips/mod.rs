@@ -1,6 +1,7 @@
-//! Strips of frames: every capability of lines in motion. For looking at; not part of the
-//! documents.
+//! Strips of frames: every capability of lines in motion. For looking at; the documents have a
+//! sheet of cuttings from them.
 
+mod cuttings;
 mod stages;
 
 use std::path::Path;
@@ -13,6 +14,7 @@ use bevy_comics_testkit::{scenes::BuiltIn, studio::Studio};
 use image::RgbaImage;
 
 use crate::{save, sheet::grid};
+use cuttings::Sheet;
 
 const SIZE: UVec2 = UVec2::new(400, 225);
 const GAP: u32 = 4;
@@ -252,14 +254,31 @@ fn frames(strip: &Strip) -> Vec<RgbaImage> {
     shown
 }
 
-/// One picture for each capability: six frames of 36, in two rows.
-pub fn write(folder: &Path) -> Result<(), String> {
-    let all = [weights(), wholeness(), objects()];
-    for strip in all.into_iter().flatten() {
+/// One picture for each capability: six frames of 36, in two rows. `names`: of the strips that are
+/// drawn; none: all, and the sheet of the documents.
+pub fn write(folder: &Path, names: &[String]) -> Result<(), String> {
+    let all: Vec<Strip> = [weights(), wholeness(), objects()]
+        .into_iter()
+        .flatten()
+        .collect();
+    let known = |name: &String| all.iter().any(|strip| strip.name == *name);
+    if let Some(unknown) = names.iter().find(|name| !known(name)) {
+        let known: Vec<_> = all.iter().map(|strip| strip.name).collect();
+        return Err(format!(
+            "no strip {unknown:?}: there are {}",
+            known.join(", ")
+        ));
+    }
+    let mut sheet = Sheet::default();
+    for strip in all {
+        if !names.is_empty() && !names.iter().any(|name| name == strip.name) {
+            continue;
+        }
         let frames = frames(&strip);
         let rows: Vec<Vec<&RgbaImage>> = frames.chunks(3).map(|row| row.iter().collect()).collect();
         let out = folder.join(format!("{}.png", strip.name));
         save(&grid(&rows, SIZE, GAP), &out)?;
+        sheet.add(strip.name, &frames);
     }
-    Ok(())
+    sheet.write(folder)
 }
