@@ -58,13 +58,13 @@ fn reduced(picture: &image::RgbaImage, times: u32, from: u32) -> Light {
 }
 
 /// The mean of the differences of all pixels.
-fn apart(a: &Light, b: &Light) -> f64 {
+fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     let all = a.iter().flatten().zip(b.iter().flatten());
     let sum: f64 = all.map(|(a, b)| (a - b).abs()).sum();
     sum / (3 * a.len()) as f64
 }
 
-fn mean(light: &Light) -> f64 {
+fn mean(light: &[[f64; 3]]) -> f64 {
     light.iter().flatten().sum::<f64>() / (3 * light.len()) as f64
 }
 
