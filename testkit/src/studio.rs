@@ -234,6 +234,7 @@ pub fn village_focus(style: FocusStyle) -> ComicStyle {
         at: FocusAt::Distance,
         style,
         distance: 11.5,
+        period: 4.0,
         radius: if style == FocusStyle::Offset {
             4.0
         } else {
