@@ -47,7 +47,7 @@ pub struct Focus {
     #[reflect(@FieldRange::linear(0.05, 8.0))]
     pub ramp: f32,
     /// Largest radius in logical pixels. Range 0 (the effect is left out) to 24, default 6. At
-    /// most 128 physical pixels. [`FocusStyle::Dots`] and [`FocusStyle::Lines`] have their whole
+    /// most 256 physical pixels. [`FocusStyle::Dots`] and [`FocusStyle::Lines`] have their whole
     /// effect from 6 on.
     #[reflect(@FieldRange::linear(0.0, 24.0).unit("px"))]
     pub radius: f32,
@@ -184,7 +184,7 @@ impl Effect for Focus {
             reference: view.depth_reference.unwrap_or(0.0),
             clear: self.clear,
             steepness: 1.0 / self.ramp,
-            radius: (self.radius * view.scale_factor).min(128.0),
+            radius: (self.radius * view.scale_factor).min(256.0),
             at_centre: u32::from(self.at == FocusAt::Centre),
             centre: middle.as_vec2() + 0.25,
             period,
