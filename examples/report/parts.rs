@@ -5,10 +5,10 @@ use bevy::{
     prelude::*,
 };
 use bevy_comics::{
-    ComicStyle, Creases, DepthWrite, Desaturation, Focus, FocusAt, FocusStyle, Halftone,
-    HalftoneMode, Hatching, LineColor, LineResponse, LineWeight, LineWidths, MeshSections, NoStyle,
-    OutlineStyle, Outlines, Paint, PaintForm, Paper, PrintOffset, ScreenSampling, ScreenShape,
-    SelectionOutline, Silhouettes, SpeedLines, TwoTone, XRayOutline,
+    ColorHarmony, ComicStyle, Creases, DepthWrite, Desaturation, Focus, FocusAt, FocusStyle,
+    Halftone, HalftoneMode, Hatching, LineColor, LineResponse, LineWeight, LineWidths,
+    MeshSections, NoStyle, OutlineStyle, Outlines, Paint, PaintForm, Paper, PrintOffset,
+    ScreenSampling, ScreenShape, SelectionOutline, Silhouettes, SpeedLines, TwoTone, XRayOutline,
 };
 
 use bevy_comics_testkit::scenes::BuiltIn;
@@ -129,6 +129,7 @@ fn page() -> Vec<(String, Wear)> {
         ),
         ("print offset", none.clone().with(PrintOffset::default())),
         ("hatching", none.clone().with(Hatching::default())),
+        ("color harmony", none.clone().with(ColorHarmony::default())),
         ("paper", none.clone().with(Paper::default())),
         ("paint", none.clone().with(Paint::default())),
         (

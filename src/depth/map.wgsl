@@ -135,3 +135,10 @@ fn depth_step(f: DepthFrame, d_raw: f32, p_raw: f32) -> f32 {
     }
     return step;
 }
+
+// Fraction of the far end in the sum of both ends by the square roots of [CS] Eq. 7 and 11,
+// from D and its complement.
+fn root_fraction(d: f32, l: f32) -> f32 {
+    let far = sqrt(max(d, 0.0));
+    return far / (far + sqrt(max(l, 0.0)));
+}

@@ -123,6 +123,18 @@ fn oklab_to_linear(lab: vec3<f32>) -> vec3<f32> {
     );
 }
 
+// Moves a colour towards the grey of its OKLab lightness, as little as possible, until all
+// components are from 0 to 1, or within those of `before` if these are beyond.
+fn in_gamut(c: vec3<f32>, lab_lightness: f32, before: vec3<f32>) -> vec3<f32> {
+    let grey = vec3(lab_lightness * lab_lightness * lab_lightness);
+    let low = min(vec3(min(smallest(before), 0.0)), grey);
+    let high = max(vec3(max(largest(before), 1.0)), grey);
+    let away = c - grey;
+    let room = select(low, high, away > vec3(0.0)) - grey;
+    let kept = select(vec3(1.0), room / away, abs(away) > abs(room));
+    return clamp(grey + smallest(kept) * away, low, high);
+}
+
 // The tones of four inks for a colour of 0 to 1 in linear light: cyan, magenta, yellow,
 // black. Printed with ideal inks, they have the colour as their mean. `black`: fraction of
 // the darkness that all three share which is printed in black.

@@ -28,6 +28,7 @@ effects! {
     tone_bands: ToneBands;
     desaturation: Desaturation;
     colorization: Colorization, ColorizationMode;
+    color_harmony: ColorHarmony, HarmonyCurve, HarmonyMode;
     paint: Paint, PaintForm;
     focus: Focus, FocusAt, FocusStyle;
     print_offset: PrintOffset;

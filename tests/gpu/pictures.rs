@@ -7,10 +7,10 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    BlackFlats, Colorization, ColorizationMode, ComicStyle, ContourOperator, Contours, Creases,
-    DepthMap, DepthMapping, Desaturation, Form, Halftone, KeyLight, LineColor, LineResponse,
-    Outlines, Paint, Paper, PrintOffset, ScreenSampling, ScreenShape, Silhouettes, Sketch,
-    ToneBands, VisibleDepthRange, presets,
+    BlackFlats, ColorHarmony, Colorization, ColorizationMode, ComicStyle, ContourOperator,
+    Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, Halftone, HarmonyCurve,
+    HarmonyMode, KeyLight, LineColor, LineResponse, Outlines, Paint, Paper, PrintOffset,
+    ScreenSampling, ScreenShape, Silhouettes, Sketch, ToneBands, VisibleDepthRange, presets,
 };
 
 use bevy_comics_testkit::{
@@ -507,4 +507,42 @@ fn an_hdr_camera_is_its_twin() {
         DepthMapping::MinMax,
     );
     assert_pass_is_its_twin(&mut small, &style, None, "hdr, faithful");
+}
+
+/// After the other effects of colour, over a background that shows through.
+#[test]
+fn every_mode_of_harmony_is_its_twin() {
+    let mut small = Small::new(UVec2::new(72, 48), Msaa::Sample4);
+    small.insert(Camera {
+        clear_color: Color::srgba(0.1, 0.2, 0.3, 0.4).into(),
+        ..default()
+    });
+    let modes = [
+        (HarmonyMode::TwoHues, Form::Corrected),
+        (HarmonyMode::Distance, Form::Corrected),
+        (HarmonyMode::Distance, Form::Faithful),
+        (HarmonyMode::Rotation, Form::Corrected),
+        (HarmonyMode::Shade, Form::Corrected),
+        (HarmonyMode::Shade, Form::Faithful),
+    ];
+    for (mode, form) in modes {
+        for curve in [HarmonyCurve::Linear, HarmonyCurve::Quadratic] {
+            let harmony = ColorHarmony {
+                mode,
+                form,
+                curve,
+                complement: 1.2,
+                shade: 0.9,
+                ..default()
+            };
+            let desaturation = Desaturation {
+                amount: 0.3,
+                ..default()
+            };
+            let style = ComicStyle::new().with(desaturation).with(harmony);
+            let what = format!("{harmony:?}");
+            assert_pass_is_its_twin(&mut small, &style, None, &what);
+        }
+    }
+    assert_eq!(small.errors(), 0);
 }

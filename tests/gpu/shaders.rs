@@ -62,7 +62,7 @@ fn product(lists: &[Vec<Definitions>]) -> Vec<Definitions> {
 type Modes = (&'static str, Vec<Definitions>);
 
 /// The effects that read the picture, depth and normals.
-fn picture_effects() -> [Modes; 7] {
+fn picture_effects() -> [Modes; 8] {
     let mapped = |more: Definition<'static>| [flags(&["MAP", "DEPTH"]), vec![more]].concat();
     [
         (
@@ -166,7 +166,35 @@ fn picture_effects() -> [Modes; 7] {
                 optional(&["CONTOURS_STEADY"]),
             ]),
         ),
+        ("color_harmony", color_harmony()),
     ]
+}
+
+/// The curve and the form of the modes that have them.
+fn color_harmony() -> Vec<Definitions> {
+    let forms = numbers("COLOR_HARMONY_FAITHFUL", 0..2);
+    let mode = |number| vec![("COLOR_HARMONY_MODE", Some(number))];
+    let plain = vec![("COLOR_HARMONY_QUADRATIC", Some(0))];
+    let maps = || vec![Vec::new(), flags(&["MAP", "DEPTH"])];
+    let harmony = || vec![flags(&["COLOR_HARMONY"])];
+    [
+        product(&[
+            harmony(),
+            vec![mode(0)],
+            vec![plain.clone()],
+            forms[..1].to_vec(),
+            maps(),
+        ]),
+        product(&[
+            harmony(),
+            vec![mode(1), mode(2)],
+            numbers("COLOR_HARMONY_QUADRATIC", 0..2),
+            forms.clone(),
+            maps()[1..].to_vec(),
+        ]),
+        product(&[harmony(), vec![mode(3)], vec![plain], forms]),
+    ]
+    .concat()
 }
 
 /// The effects that draw lines. Only one is compiled at a time, because the

@@ -4,7 +4,7 @@
 use bevy::math::{UVec2, UVec4};
 
 use super::{
-    Rgb, Rgba, black_flats, color, colorization, contours, desaturation,
+    Rgb, Rgba, black_flats, color, color_harmony, colorization, contours, desaturation,
     draw::Ink,
     halftone, mix, paper, print_offset, read,
     sheet::Sheet,
@@ -13,8 +13,8 @@ use super::{
     vignette,
 };
 use bevy_comics::{
-    BlackFlats, Colorization, ComicStyle, Contours, Desaturation, Halftone, Outlines, Paper,
-    PrintOffset, Sketch, ToneBands, Vignette,
+    BlackFlats, ColorHarmony, Colorization, ComicStyle, Contours, Desaturation, Halftone, Outlines,
+    Paper, PrintOffset, Sketch, ToneBands, Vignette,
 };
 
 /// What the pass reads besides the view.
@@ -76,6 +76,7 @@ fn colored(
     let reads_map = (style.get::<Halftone>()).is_some_and(|s| s.near != s.far)
         || style.get::<Desaturation>().is_some()
         || style.get::<Colorization>().is_some()
+        || style.get::<ColorHarmony>().is_some()
         || style.get::<BlackFlats>().is_some()
         || style.get::<Contours>().is_some();
     let mut depth = if reads_map {
@@ -94,6 +95,11 @@ fn colored(
     }
     if let Some(s) = style.get::<Colorization>() {
         linear = colorization::colorize(s, linear, d, l, saturation);
+    }
+    if let Some(s) = style.get::<ColorHarmony>() {
+        let opacity = alpha.max(1e-3);
+        let seen = linear.map(|c| c / opacity);
+        linear = color_harmony::harmonize(s, seen, d, l).map(|c| c * opacity);
     }
     Colored {
         picture: with(linear, alpha),

@@ -9,6 +9,7 @@ pub mod boil;
 pub mod budget;
 pub mod chain;
 pub mod color;
+pub mod color_harmony;
 pub mod colorization;
 pub mod columns;
 pub mod contours;

@@ -5,6 +5,7 @@ mod bend;
 mod blocks;
 mod budget;
 mod cartoon_styles;
+mod color_harmony;
 mod color_styles;
 mod contour_response;
 mod depth_map;
