@@ -41,7 +41,7 @@
 //! 4. where [`Outlines`] are asked for, silhouettes, creases and edges between
 //!    objects are found along the borders of pixels, and drawn at their width;
 //! 5. one full-screen pass after tonemapping applies the effects: [`ToneBands`],
-//!    [`Desaturation`], [`Colorization`], [`ColorHarmony`], [`Paint`], [`Focus`],
+//!    [`Desaturation`], [`Colorization`], [`ColorHarmony`], [`Planes`], [`Paint`], [`Focus`],
 //!    [`PrintOffset`], [`Halftone`], [`Hatching`], [`BlackFlats`], [`Contours`], the outlines or a
 //!    [`Sketch`] of them, [`IsoLines`], [`TwoTone`], [`SpeedLines`], [`Paper`] and [`Vignette`], in
 //!    this order, and those of the game ([`Effect`]) at the end of their [`EffectStage`].

@@ -123,6 +123,17 @@ fn oklab_to_linear(lab: vec3<f32>) -> vec3<f32> {
     );
 }
 
+// The middle of the band that a lightness `y` falls into, of `levels` (2 or more) equal bands from
+// 0 to 1. `step_width` is the width of the step between two bands in lightness; it is at most one band.
+fn banded(levels: f32, y: f32, step_width: f32) -> f32 {
+    let t = y * levels;
+    let step = clamp(round(t), 1.0, levels - 1.0);
+    // At least one display code on either side: otherwise the dither of a flat area
+    // whose tone lies on a step would speckle.
+    let half = 0.5 * clamp(step_width * levels, levels / 128.0, 1.0);
+    return (step - 0.5 + smoothstep(step - half, step + half, t)) / levels;
+}
+
 // Moves a colour towards the grey of its OKLab lightness, as little as possible, until all
 // components are from 0 to 1, or within those of `before` if these are beyond.
 fn in_gamut(c: vec3<f32>, lab_lightness: f32, before: vec3<f32>) -> vec3<f32> {

@@ -5,6 +5,7 @@ mod any;
 mod blend;
 mod blue_noise;
 mod choose;
+mod compiling;
 mod compose;
 mod errors;
 mod facts;
@@ -13,8 +14,11 @@ mod layers;
 mod lines;
 #[cfg(feature = "objects")]
 mod marks;
+mod missing;
+mod part;
 mod pass;
 mod passes;
+mod places;
 pub(crate) mod plan;
 mod plugin;
 mod prepare;
@@ -353,6 +357,15 @@ bitflags! {
         /// [`Needs::IDS`] while some object has one; otherwise it asks for nothing, and
         /// `OBJECT_ANCHORS` is not defined in WGSL.
         const OBJECT_ANCHORS = 1 << 10;
+        /// The two depths that divide what is visible into near, middle and far, by
+        /// `bevy_comics::depth::view::depth_borders`. Counts the depths, and finds the borders in
+        /// a pass. Without compute shaders, and with
+        /// [`ReductionMethod::PingPong`](crate::ReductionMethod::PingPong), there are none.
+        const DEPTH_BORDERS = 1 << 11;
+        /// The place of every object in the depth map, by `bevy_comics::objects::object_depth`.
+        /// Includes [`Needs::IDS`]. Without the crate's feature `objects` it asks for nothing, and
+        /// `OBJECT_DEPTHS` is not defined in WGSL.
+        const OBJECT_DEPTHS = 1 << 12;
     }
 }
 

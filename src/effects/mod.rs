@@ -29,6 +29,7 @@ effects! {
     desaturation: Desaturation;
     colorization: Colorization, ColorizationMode;
     color_harmony: ColorHarmony, HarmonyCurve, HarmonyMode;
+    planes: Planes, PlaneBorders, PlaneStyle, PlaneUnit;
     paint: Paint, PaintForm;
     focus: Focus, FocusAt, FocusStyle;
     print_offset: PrintOffset;

@@ -188,8 +188,8 @@ mod reference {
         Contours, Creases, DepthMap, DepthMapping, Desaturation, EffectRegistry, EffectType,
         FieldRange, Focus, FocusAt, FocusStyle, Form, Halftone, HalftoneMode, HarmonyCurve,
         HarmonyMode, LineBoil, LineColor, LineFog, LineResponse, LineWeight, ObjectEdges, Outlines,
-        Paint, PaintForm, PrintOffset, RangeSmoothing, ReductionMethod, ScreenAnchor,
-        ScreenSampling, ScreenShape, Silhouettes, Sketch, ToneBands,
+        Paint, PaintForm, PlaneBorders, PlaneStyle, PlaneUnit, Planes, PrintOffset, RangeSmoothing,
+        ReductionMethod, ScreenAnchor, ScreenSampling, ScreenShape, Silhouettes, Sketch, ToneBands,
     };
 
     const HEAD: &str = "\
@@ -368,6 +368,10 @@ This page is made from the types by a test, which fails where the two differ.
         section::<ColorHarmony>(&mut page);
         section::<HarmonyMode>(&mut page);
         section::<HarmonyCurve>(&mut page);
+        section::<Planes>(&mut page);
+        section::<PlaneStyle>(&mut page);
+        section::<PlaneUnit>(&mut page);
+        section::<PlaneBorders>(&mut page);
         section::<Paint>(&mut page);
         section::<PaintForm>(&mut page);
         section::<Focus>(&mut page);

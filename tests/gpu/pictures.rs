@@ -9,8 +9,9 @@ use bevy::{
 use bevy_comics::{
     BlackFlats, ColorHarmony, Colorization, ColorizationMode, ComicStyle, ContourOperator,
     Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, Halftone, HarmonyCurve,
-    HarmonyMode, KeyLight, LineColor, LineResponse, Outlines, Paint, Paper, PrintOffset,
-    ScreenSampling, ScreenShape, Silhouettes, Sketch, ToneBands, VisibleDepthRange, presets,
+    HarmonyMode, KeyLight, LineColor, LineResponse, Outlines, Paint, Paper, PlaneBorders,
+    PlaneStyle, PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape, Silhouettes, Sketch,
+    ToneBands, VisibleDepthRange, presets,
 };
 
 use bevy_comics_testkit::{
@@ -541,6 +542,40 @@ fn every_mode_of_harmony_is_its_twin() {
             };
             let style = ComicStyle::new().with(desaturation).with(harmony);
             let what = format!("{harmony:?}");
+            assert_pass_is_its_twin(&mut small, &style, None, &what);
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// With fixed borders; those that are found are tested in `planes.rs`.
+#[test]
+fn planes_are_their_twin() {
+    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        small.restart(msaa);
+        small.insert(Camera {
+            clear_color: Color::srgba(0.1, 0.2, 0.3, 0.4).into(),
+            ..default()
+        });
+        for (bands, flip) in [(0, false), (3, false), (0, true)] {
+            let planes = Planes {
+                near: PlaneStyle {
+                    saturation: 1.4,
+                    contrast: 1.2,
+                    bands,
+                    ..default()
+                },
+                by: PlaneUnit::Pixel,
+                borders: PlaneBorders::Fixed,
+                near_end: 0.3,
+                far_start: 0.6,
+                softness: 0.2,
+                ..default()
+            };
+            let map = DepthMap { flip, ..default() };
+            let style = with_map(ComicStyle::new().with(planes), map);
+            let what = format!("{msaa:?}, {bands} bands, flip: {flip}");
             assert_pass_is_its_twin(&mut small, &style, None, &what);
         }
     }

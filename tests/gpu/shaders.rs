@@ -62,7 +62,7 @@ fn product(lists: &[Vec<Definitions>]) -> Vec<Definitions> {
 type Modes = (&'static str, Vec<Definitions>);
 
 /// The effects that read the picture, depth and normals.
-fn picture_effects() -> [Modes; 8] {
+fn picture_effects() -> [Modes; 9] {
     let mapped = |more: Definition<'static>| [flags(&["MAP", "DEPTH"]), vec![more]].concat();
     [
         (
@@ -167,6 +167,21 @@ fn picture_effects() -> [Modes; 8] {
             ]),
         ),
         ("color_harmony", color_harmony()),
+        (
+            "planes",
+            product(&[
+                vec![flags(&["PLANES", "MAP", "DEPTH"])],
+                vec![Vec::new(), flags(&["DEPTH_BORDERS"])],
+                vec![
+                    Vec::new(),
+                    flags(&["PLANES_OBJECTS", "OBJECT_DEPTHS", "OBJECT_IDS"]),
+                ],
+                vec![
+                    vec![("PLANES_BANDS", Some(0))],
+                    vec![("PLANES_BANDS", Some(1)), ("LIGHTNESS_CHANGE", None)],
+                ],
+            ]),
+        ),
     ]
 }
 
@@ -236,6 +251,11 @@ fn debug_views() -> Vec<Definitions> {
             ("TONE_BANDS_FAITHFUL", Some(0)),
             ("LIGHTNESS_CHANGE", None),
         ],
+        [
+            flags(&["VIEW_EFFECT", "VIEW_PLANES", "PLANES", "MAP", "DEPTH"]),
+            vec![("PLANES_BANDS", Some(0))],
+        ]
+        .concat(),
     ]
 }
 
@@ -492,6 +512,8 @@ fn every_shape_of_the_reduction_composes_and_validates() {
     for defs in subsets(&["HISTOGRAM"]) {
         module(&source, &defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
     }
+    let source = shader("depth/borders.wgsl");
+    module(&source, &[]).unwrap_or_else(|error| panic!("{error}"));
     let source = shader("depth/ping_pong.wgsl");
     for defs in subsets(&["FIRST", "MULTISAMPLED", "OBLIQUE"]) {
         module(&source, &defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));

@@ -8,8 +8,9 @@ use bevy_comics::{
     ComicStyleHandle, ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation,
     Focus, FocusAt, FocusStyle, Form, Halftone, HalftoneMode, HarmonyMode, Hatching,
     HatchingAnchor, LineBoil, LineColor, LineWeight, ObjectEdges, Outlines, Paint, PaintForm,
-    Paper, PrintOffset, RangeSmoothing, ReductionMethod, ScreenAnchor, ScreenSampling, ScreenShape,
-    Silhouettes, Sketch, SpeedLineKind, SpeedLines, ToneBands, TwoTone,
+    Paper, PlaneBorders, PlaneStyle, Planes, PrintOffset, RangeSmoothing, ReductionMethod,
+    ScreenAnchor, ScreenSampling, ScreenShape, Silhouettes, Sketch, SpeedLineKind, SpeedLines,
+    ToneBands, TwoTone,
 };
 use proptest::{
     option,
@@ -126,7 +127,7 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
             |(name, depth_map, desaturation, colorization, black_flats, contours, others)| {
                 let (
                     (tone_bands, outlines, sketch),
-                    (halftone, offset, (paint, focus, hatching, harmony)),
+                    (halftone, offset, (paint, focus, hatching, harmony, planes)),
                     page,
                 ) = others;
                 let (speed_lines, two_tone, paper) = page;
@@ -142,6 +143,7 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
                 style = with_option(style, halftone);
                 style = with_option(style, hatching);
                 style = with_option(style, harmony);
+                style = with_option(style, planes);
                 style = with_option(style, offset);
                 style = with_option(style, paint);
                 style = with_option(style, focus);
@@ -207,6 +209,7 @@ type Painted = (
     Option<Focus>,
     Option<Hatching>,
     Option<ColorHarmony>,
+    Option<Planes>,
 );
 
 /// Print effects, paint and harmony of all modes.
@@ -307,11 +310,29 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Pai
             ..default()
         },
     );
+    let plane = (number(), number(), colors(), any::<u32>()).prop_map(
+        |(saturation, contrast, tint, bands)| PlaneStyle {
+            saturation,
+            tint,
+            tint_amount: contrast,
+            contrast,
+            brightness: saturation,
+            bands,
+        },
+    );
+    let planes = (plane, number(), any::<bool>()).prop_map(|(near, number, fixed)| Planes {
+        near,
+        borders: [PlaneBorders::Auto, PlaneBorders::Fixed][usize::from(fixed)],
+        near_end: number,
+        softness: number,
+        ..default()
+    });
     let painted = (
         option::of(paint),
         option::of(focus),
         option::of(hatching),
         option::of(harmony),
+        option::of(planes),
     );
     (option::of(halftone), option::of(offset), painted)
 }

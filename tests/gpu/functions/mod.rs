@@ -20,6 +20,7 @@ mod iso_lines;
 mod jumps;
 mod memory;
 mod middles;
+mod near_middle_far;
 mod normal;
 mod overshoot;
 mod paint;
