@@ -94,8 +94,8 @@ pub use effect::{
 pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
 pub use lines::{
-    Creases, LineBoil, LineColor, LineFocus, LineFog, LineResponse, LineSettings, LineWeight,
-    MapJumps, ObjectEdges, Sheet, Silhouettes, ViewCracks,
+    Creases, LineBoil, LineColor, LineFocus, LineFog, LinePlanes, LineResponse, LineSettings,
+    LineWeight, MapJumps, ObjectEdges, Sheet, Silhouettes, ViewCracks,
 };
 #[cfg(feature = "objects")]
 pub use objects::{

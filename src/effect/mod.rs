@@ -51,7 +51,7 @@ pub(crate) use {choose::ViewPlan, plan::Plan};
 
 use crate::{
     diagnostics::ComicsStage,
-    lines::{LineFocus, LineSettings, MapJumps, Sheet},
+    lines::{LineFocus, LinePlanes, LineSettings, MapJumps, Sheet},
 };
 
 /// A camera component that changes the picture: one WGSL function of a pixel, and
@@ -177,6 +177,14 @@ pub trait Effect:
     /// of a camera have one, that of the first in the chain is used. Lines of the faithful forms do
     /// not fade, and none without compute shaders. Default: none.
     fn line_focus(&self, view: &ViewFacts) -> Option<LineFocus> {
+        let _ = view;
+        None
+    }
+
+    /// The width and opacity of lines in near, middle and far. If several effects of a camera have
+    /// them, those of the first in the chain are used. Lines of the faithful forms are not
+    /// changed, and none without compute shaders. Default: none.
+    fn line_planes(&self, view: &ViewFacts) -> Option<LinePlanes> {
         let _ = view;
         None
     }

@@ -303,6 +303,7 @@ pub(super) fn build(render_app: &mut SubApp) {
             Core3d,
             place_objects
                 .after(ComicsSystems::DepthRange)
+                .before(ComicsSystems::Outlines)
                 .before(Core3dSystems::MainPass),
         );
 }

@@ -2,10 +2,12 @@
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
-    ComicStyle, DebugView, DepthHistogram, DepthMap, DepthMapping, PlaneBorders, PlaneUnit, Planes,
+    ComicStyle, DebugView, DepthHistogram, DepthMap, DepthMapping, Halftone, HalftoneMode,
+    Hatching, HatchingAnchor, HatchingGround, Outlines, PlaneBorders, PlaneUnit, Planes,
+    ScreenSampling,
 };
 
-use bevy_comics_testkit::studio::with_map;
+use bevy_comics_testkit::{reference::color, studio::with_map, work::along_cracks};
 
 use crate::small::Small;
 
@@ -331,6 +333,131 @@ fn objects_have_planes_in_other_views_too() {
             "{msaa:?}, {origin}: {}, {}",
             count(0),
             count(1)
+        );
+    }
+}
+
+/// Lines on white cards, black: near, in the middle, far.
+fn line_widths(small: &mut Small, planes: Planes, map: DepthMap) -> [f64; 3] {
+    let outlines = Outlines {
+        width: 4.0,
+        creases: None,
+        objects: None,
+        ..along_cracks()
+    };
+    small.style(&with_map(
+        ComicStyle::new().with(outlines).with(planes),
+        map,
+    ));
+    small.settle();
+    let picture = small.picture();
+    let half = picture.width() / 2;
+    [1.0, 0.0, -1.0].map(|row: f32| {
+        let y = picture.height() as f32 * (0.5 - row * 0.27 / (2.0 * 0.414_213_57));
+        let ink = |x: u32| {
+            let code = f64::from(picture.get_pixel(x, y as u32).0[1]) / 255.0;
+            1.0 - color::srgb_decode_one(code)
+        };
+        // Across the left edge of the card.
+        (0..half).map(ink).sum()
+    })
+}
+
+#[test]
+fn lines_have_the_width_and_opacity_of_their_plane() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let mut small = Small::new(UVec2::new(128, 128), msaa);
+        small.insert(Camera {
+            clear_color: Color::WHITE.into(),
+            ..default()
+        });
+        cards(&mut small, [10.0, 30.0, 90.0]);
+        let mut planes = Planes::PLAIN;
+        let even = line_widths(&mut small, planes, hundred());
+        for width in even {
+            assert!(
+                (width - 4.0).abs() < 0.05,
+                "{msaa:?}: {even:?} of even lines"
+            );
+        }
+        planes.middle.line_width = 0.5;
+        planes.far.line_opacity = 0.25;
+        for by in [PlaneUnit::Object, PlaneUnit::Pixel] {
+            for borders in [PlaneBorders::Auto, PlaneBorders::Fixed] {
+                let planes = Planes {
+                    by,
+                    borders,
+                    near_end: 0.2,
+                    far_start: 0.5,
+                    ..planes
+                };
+                for flip in [false, true] {
+                    let map = DepthMap { flip, ..hundred() };
+                    let mut found = line_widths(&mut small, planes, map);
+                    if flip {
+                        found.reverse();
+                    }
+                    let apart = [4.0, 2.0, 1.0].into_iter().zip(found);
+                    // Opacity is stored in eight bits, in draws of a byte of ink.
+                    let worst = apart.map(|(a, b)| f64::abs(a - b)).fold(0.0, f64::max);
+                    assert!(
+                        worst < 0.06,
+                        "{msaa:?}, {by:?}, {borders:?}, {flip}: {found:?}"
+                    );
+                }
+            }
+        }
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+/// A plane without hatching and dots looks as if the effects were not there; one with all of them
+/// has them.
+#[test]
+fn hatching_and_dots_are_as_strong_as_in_their_plane() {
+    let hatching = Hatching {
+        anchor: HatchingAnchor::Page,
+        ground: HatchingGround::Paper,
+        highlights: 1.0,
+        ..default()
+    };
+    let halftone = Halftone {
+        mode: HalftoneMode::Spot,
+        sampling: ScreenSampling::Pixel,
+        ..default()
+    };
+    let printed = [
+        ComicStyle::new().with(hatching),
+        ComicStyle::new().with(halftone),
+    ];
+    for style in printed {
+        let mut small = Small::new(UVec2::new(128, 128), Msaa::Off);
+        cards(&mut small, [10.0, 30.0, 90.0]);
+        let mut materials = small.world().resource_mut::<Assets<StandardMaterial>>();
+        for (_, material) in materials.iter_mut() {
+            material.base_color = Color::srgb(0.5, 0.5, 0.5);
+        }
+        let mut planes = Planes {
+            borders: PlaneBorders::Fixed,
+            near_end: 0.2,
+            far_start: 0.5,
+            ..Planes::PLAIN
+        };
+        planes.far.hatching = 0.0;
+        planes.far.halftone = 0.0;
+        small.style(&with_map(style.with(planes), hundred()));
+        small.settle();
+        let picture = small.picture();
+        // The spread of codes in a square in the middle of each card.
+        let spread = [1.0, 0.0, -1.0].map(|row: f32| {
+            let y = (128.0 * (0.5 - row * 0.27 / (2.0 * 0.414_213_57))) as u32;
+            let codes = (0..400).map(|k| picture.get_pixel(54 + k % 20, y - 10 + k / 20).0[1]);
+            let (low, high) = codes.fold((255, 0), |(low, high), c| (c.min(low), c.max(high)));
+            high - low
+        });
+        assert!(
+            spread[0] > 100 && spread[1] > 100 && spread[2] <= 1,
+            "{spread:?}"
         );
     }
 }

@@ -609,6 +609,18 @@ fn every_kind_of_outline_composes_and_validates() {
                 check(&shader("lines/settle.wgsl"), &flags);
             }
         }
+        for planes in [
+            &["IN_PLANES"][..],
+            &["IN_PLANES", "DEPTH_BORDERS"],
+            &["IN_PLANES", "VISIBLE_RANGE", "DEPTH_BORDERS"],
+            &["IN_PLANES", "VISIBLE_RANGE", "OBJECT_DEPTHS", "OBJECT_IDS"],
+        ] {
+            let weight = &["WEIGHT", "EDITS", "DEPTH"];
+            check(
+                &shader("lines/settle.wgsl"),
+                &[smooth, weight, planes].concat(),
+            );
+        }
         for surface in [
             &["WIDTH_MAP"][..],
             &["LIGHT_WEIGHT", "NORMALS"],

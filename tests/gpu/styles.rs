@@ -318,6 +318,10 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Pai
             contrast,
             brightness: saturation,
             bands,
+            line_width: contrast,
+            line_opacity: saturation,
+            hatching: contrast,
+            halftone: saturation,
         },
     );
     let planes = (plane, number(), any::<bool>()).prop_map(|(near, number, fixed)| Planes {

@@ -15,11 +15,12 @@ pub use style::PlaneStyle;
 
 use crate::{
     effect::{Effect, EffectShader, EffectStage, EffectView, Needs, Variants, ViewFacts},
+    lines::LinePlanes,
     settings::{FieldRange, bounded},
 };
 
-/// Divides the picture into near, middle and far, and gives each plane colours of its own: the
-/// oldest way of comics to show depth (after Sauvaget and Boyer 2008).
+/// Divides the picture into near, middle and far, and gives each plane colours and lines of its
+/// own: the oldest way of comics to show depth (after Sauvaget and Boyer 2008).
 ///
 /// The borders are those of the scene, wherever the camera is: where the visible distances fall
 /// into three groups. The sky belongs to the far plane. With [`DepthMap::flip`](crate::DepthMap::flip),
@@ -91,11 +92,14 @@ impl Default for Planes {
         let plain = PlaneStyle::PLAIN;
         Self {
             middle: PlaneStyle {
+                line_width: 0.75,
                 saturation: 0.8,
                 tint_amount: 0.1,
                 ..plain
             },
             far: PlaneStyle {
+                line_width: 0.5,
+                line_opacity: 0.6,
                 saturation: 0.5,
                 tint_amount: 0.6,
                 contrast: 0.6,
@@ -150,6 +154,22 @@ impl Effect for Planes {
         needs.set(Needs::DEPTH_BORDERS, self.borders == PlaneBorders::Auto);
         needs.set(Needs::LIGHTNESS_CHANGE, self.has_bands());
         needs
+    }
+
+    fn line_planes(&self, _: &ViewFacts) -> Option<LinePlanes> {
+        let planes = [self.near, self.middle, self.far];
+        let part = |factor: f32| 1.0 + (factor - 1.0) * self.amount;
+        let widths = planes.map(|plane| part(plane.line_width));
+        let opacities = planes.map(|plane| part(plane.line_opacity));
+        let differ = widths != [1.0; 3] || opacities != [1.0; 3];
+        differ.then(|| LinePlanes {
+            widths,
+            opacities,
+            borders: [self.near_end, self.far_start.max(self.near_end)],
+            finds_borders: self.borders == PlaneBorders::Auto,
+            by_objects: self.by == PlaneUnit::Object,
+            softness: self.softness,
+        })
     }
 
     fn variants(&self, _: &ViewFacts, variants: &mut Variants) {

@@ -3,7 +3,7 @@
 // Gives the foreground, the middle distance and the background colours of their own (after
 // Sauvaget and Boyer 2008).
 
-#import bevy_comics::depth::map::depth_map
+#import bevy_comics::depth::map::{depth_map, plane_weights}
 #import bevy_comics::depth::view::{depth_frame, load_depth, sample_count, view}
 #import bevy_comics::effect::color::{banded, in_gamut, linear_to_oklab, oklab_to_linear, srgb_encode}
 #import bevy_comics::effect::pixel::Pixel
@@ -24,7 +24,8 @@ struct PlaneColors {
     shift: f32,
     // Number of tones; below 1: all.
     bands: f32,
-    unused: vec2<f32>,
+    // Factors of hatching, and of screens.
+    prints: vec2<f32>,
 }
 
 struct Planes {
@@ -46,19 +47,6 @@ fn has_bands() -> bool {
 #else
     return true;
 #endif
-}
-
-// Fraction of what lies behind a border, 0 to 1.
-fn behind(border: f32, softness: f32, d: f32) -> f32 {
-    let t = clamp((d - border) / max(softness, 1e-6) + 0.5, 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
-
-// Fractions of near, middle and far at a depth of the map. Their sum is 1.
-fn plane_weights(borders: vec2<f32>, softness: f32, d: f32) -> vec3<f32> {
-    let far = behind(borders.y, softness, d);
-    let not_near = max(behind(borders.x, softness, d), far);
-    return vec3(1.0 - not_near, not_near - far, far);
 }
 
 // The lightness of a plane. `change`: of the lightness, over a pixel.
@@ -136,7 +124,10 @@ fn planes(s: Planes, p: Pixel) -> Pixel {
     var out = p;
     // The lightness of what is seen, not of what is left of it at the edge of an object.
     let opacity = max(p.alpha, 1e-3);
-    out.color = planes_color(s, p.color / opacity, pixel_weights(s, p), p.change) * p.alpha;
+    let w = pixel_weights(s, p);
+    out.color = planes_color(s, p.color / opacity, w, p.change) * p.alpha;
+    let prints = w.x * s.near.prints + w.y * s.middle.prints + w.z * s.far.prints;
+    out.prints = p.prints * mix(vec2(1.0), prints, s.amount);
     return out;
 }
 

@@ -39,6 +39,21 @@ pub struct PlaneStyle {
     /// tones) to 8, default 0.
     #[reflect(@FieldRange::linear(0.0, 8.0))]
     pub bands: u32,
+    /// Factor of the width of lines; below 0.6 physical pixels, they become fainter instead. Lines
+    /// belong to the surface in front. Range 0 to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub line_width: f32,
+    /// Factor of the opacity of lines. Range 0 (no lines) to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub line_opacity: f32,
+    /// Factor of the darkness of [`Hatching`](crate::Hatching). Range 0 to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub hatching: f32,
+    /// How much of a [`Halftone`](crate::Halftone) is seen as dots; the rest is printed as plain
+    /// tones. Whole dots ([`ScreenSampling::Cell`](crate::ScreenSampling::Cell)), and what is
+    /// drawn after paint, focus or a print offset, do not change. Range 0 to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub halftone: f32,
 }
 
 const HAZE: Color = Color::srgb(127.0 / 255.0, 166.0 / 255.0, 201.0 / 255.0);
@@ -55,6 +70,10 @@ impl PlaneStyle {
         contrast: 1.0,
         brightness: 0.0,
         bands: 0,
+        line_width: 1.0,
+        line_opacity: 1.0,
+        hatching: 1.0,
+        halftone: 1.0,
     };
 
     /// The settings that are used.
@@ -68,6 +87,10 @@ impl PlaneStyle {
             contrast: bounded(self.contrast, plain.contrast, 0.0, 2.0),
             brightness: bounded(self.brightness, plain.brightness, -0.5, 0.5),
             bands: self.bands.min(8),
+            line_width: bounded(self.line_width, plain.line_width, 0.0, 1.0),
+            line_opacity: bounded(self.line_opacity, plain.line_opacity, 0.0, 1.0),
+            hatching: bounded(self.hatching, plain.hatching, 0.0, 1.0),
+            halftone: bounded(self.halftone, plain.halftone, 0.0, 1.0),
         }
     }
 
@@ -80,6 +103,10 @@ impl PlaneStyle {
             contrast: self.contrast.lerp(other.contrast, t),
             brightness: self.brightness.lerp(other.brightness, t),
             bands: self.bands,
+            line_width: self.line_width.lerp(other.line_width, t),
+            line_opacity: self.line_opacity.lerp(other.line_opacity, t),
+            hatching: self.hatching.lerp(other.hatching, t),
+            halftone: self.halftone.lerp(other.halftone, t),
         }
     }
 
@@ -91,7 +118,7 @@ impl PlaneStyle {
             contrast: self.contrast,
             shift: PIVOT * (1.0 - self.contrast) + self.brightness,
             bands: self.bands as f32,
-            unused: Vec2::ZERO,
+            prints: Vec2::new(self.hatching, self.halftone),
         }
     }
 }
@@ -110,5 +137,5 @@ pub struct PlaneColorsUniform {
     contrast: f32,
     shift: f32,
     bands: f32,
-    unused: Vec2,
+    prints: Vec2,
 }

@@ -6,9 +6,8 @@ use bevy_comics_testkit::reference::{depths, near_middle_far};
 
 use super::*;
 
-const PLANES: &str = "#import bevy_comics::effects::planes::{
-        PlaneColors, Planes, plane_weights, planes_color,
-    }";
+const PLANES: &str = "#import bevy_comics::depth::map::plane_weights
+    #import bevy_comics::effects::planes::{PlaneColors, Planes, planes_color}";
 
 /// What the shader takes of a plane.
 fn packed(s: &PlaneStyle) -> [f32; 6] {
@@ -62,6 +61,7 @@ fn style() -> impl Strategy<Value = PlaneStyle> {
                 contrast,
                 brightness,
                 bands,
+                ..PlaneStyle::PLAIN
             },
         )
 }
