@@ -41,8 +41,10 @@ fn inside_viewport(pixel: vec2<i32>) -> vec2<i32> {
 @group(0) @binding(2) var depth_texture: texture_2d<f32>;
 #endif
 #endif
+// xy: keys of the nearest and the farthest depth, see range.wgsl. zw: see borders.wgsl.
 #ifdef VISIBLE_RANGE
-// xy: keys of the nearest and the farthest depth, see range.wgsl.
+@group(0) @binding(3) var<uniform> range_keys: vec4<u32>;
+#else ifdef DEPTH_BORDERS
 @group(0) @binding(3) var<uniform> range_keys: vec4<u32>;
 #endif
 
@@ -97,6 +99,18 @@ fn depth_frame() -> DepthFrame {
 #endif
     return frame;
 }
+
+#ifdef DEPTH_BORDERS
+// D at the border between near and middle and at that between middle and far; -1 if none are
+// known.
+fn depth_borders(frame: DepthFrame) -> vec2<f32> {
+    if range_keys.z == 0u {
+        return vec2(-1.0);
+    }
+    let ends = bitcast<vec2<f32>>(range_keys.zw);
+    return vec2(depth_map(frame, ends.x).x, depth_map(frame, ends.y).x);
+}
+#endif
 
 // (D, L) of a pixel: the mean over its samples, because its colour is their mean too.
 fn pixel_depth(frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
