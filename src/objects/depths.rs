@@ -13,7 +13,7 @@ use bevy::{
         schedule::IntoScheduleConfigs,
         system::{Commands, Query, Res, ResMut},
     },
-    math::{Mat3, Vec2, Vec3},
+    math::{Mat3, Vec3},
     mesh::Mesh3d,
     platform::collections::HashMap,
     render::{
