@@ -249,3 +249,40 @@ fn a_forest_in_the_distance_is_no_black_bar() {
         assert_eq!(small.errors(), 0);
     }
 }
+
+#[test]
+fn zz_throwaway_lengths() {
+    use bevy_comics_testkit::reference::{chain::piece, link::Place};
+    use std::collections::HashSet;
+    let count = |small: &mut Small, name: &str| {
+        let cracks = small.cracks().expect("cracks");
+        let [_, _, w, h] = cracks.rect.map(i64::from);
+        let lines: HashSet<Place> = (0..w * h)
+            .flat_map(|i| [0usize, 1].map(|side| (i, side)))
+            .filter(|(i, side)| cracks.words[*i as usize][*side] & 7 != 0)
+            .map(|(i, side)| ([i % w, i / w], side))
+            .collect();
+        let mut bins = [0usize; 4];
+        for place in &lines {
+            let bin = match piece(&lines, *place, [w, h]) {
+                None => 0,
+                Some(n) if n < 16 => 1,
+                Some(n) if n < 32 => 2,
+                Some(_) => 3,
+            };
+            bins[bin] += 1;
+        }
+        println!("{name}: {} cracks, branching or closed {}, below 16 {}, below 32 {}, longer {}", lines.len(), bins[0], bins[1], bins[2], bins[3]);
+    };
+    let outlines = Outlines { budget: 0.35, ..default() };
+    for step in [4.0, 6.0, 9.0] {
+        let mut small = crowd(step);
+        small.style(&ComicStyle::new().with(outlines));
+        small.settle();
+        count(&mut small, &format!("plates {step}"));
+    }
+    let mut small = far_forest(UVec2::new(320, 180));
+    small.style(&ComicStyle::new().with(outlines));
+    small.settle();
+    count(&mut small, "forest");
+}
