@@ -234,10 +234,10 @@ fn changes() -> Vec<Part> {
             change: jitter,
             styles: vec![
                 (
-                    "outlines; temporal anti-aliasing, no memory",
+                    "outlines; temporal anti-aliasing; no memory",
                     ComicStyle::new().with(forgetful),
                 ),
-                ("outlines; temporal anti-aliasing, memory", outlines()),
+                ("outlines; temporal anti-aliasing; memory", outlines()),
             ],
         });
     }

@@ -6,8 +6,8 @@
 #import bevy_comics::depth::view::{set_view, texel_depth}
 #import bevy_comics::lines::edge::{decode_ink, encode_ink, is_in_front}
 #import bevy_comics::lines::memory::{
-    STILL, cubic_weights, frames_at, is_limited, is_steady, missing_at, pack_counts, remembered,
-    share_at, unpack_counts, unsteady_at,
+    cubic_weights, frames_at, is_limited, is_steady, missing_at, pack_counts, remembered, share_at,
+    unpack_counts, unsteady_at,
 }
 #import bevy_comics::lines::pass::line_pass
 
@@ -35,38 +35,18 @@ struct Around {
     pixel: vec2<i32>,
 }
 
-// The places of 5 x 5 that are not in 3 x 3, around their border.
-fn ring_place(i: i32) -> vec2<i32> {
-    let along = (i & 3) - 2;
-    let first = select(vec2(along, -2), vec2(2, along), (i & 4) != 0);
-    return select(first, -first, (i & 8) != 0);
-}
-
-fn add_depth(around: ptr<function, Around>, centre: vec2<i32>, offset: vec2<i32>) {
+// The depths around a pixel of the grid, some pixels apart.
+fn depths_around(centre: vec2<i32>) -> Around {
     let rect = line_pass.grid.rect;
-    let at = rect.xy + clamp(centre + line_pass.memory.spacing * offset, vec2(0), rect.zw - 1);
-    let d = texel_depth(at, 0);
-    (*around).pixel = select((*around).pixel, at, d > (*around).wide);
-    (*around).wide = max((*around).wide, d);
-}
-
-// The depths of 3 x 3 pixels of the grid, some pixels apart.
-fn depths_near(centre: vec2<i32>) -> Around {
     var around = Around(0.0, -1.0, vec2(0));
-    for (var i = 0; i < 9; i++) {
-        add_depth(&around, centre, vec2(i % 3 - 1, i / 3 - 1));
-    }
-    around.nearest = max(around.wide, 0.0);
-    return around;
-}
-
-// The same with those of 5 x 5 pixels. For a quiet pixel they are not read: CPU adapters skip the
-// iterations of a loop that no pixel needs, but execute both sides of every branch.
-fn depths_around(near: Around, centre: vec2<i32>, quiet: bool) -> Around {
-    var around = near;
-    let count = select(16, 0, quiet);
-    for (var i = 0; i < count; i++) {
-        add_depth(&around, centre, ring_place(i));
+    for (var i = 0; i < 25; i++) {
+        let offset = vec2(i % 5 - 2, i / 5 - 2);
+        let at = rect.xy + clamp(centre + line_pass.memory.spacing * offset, vec2(0), rect.zw - 1);
+        let d = texel_depth(at, 0);
+        let beside = max(abs(offset.x), abs(offset.y)) < 2;
+        around.nearest = max(around.nearest, select(0.0, d, beside));
+        around.pixel = select(around.pixel, at, d > around.wide);
+        around.wide = max(around.wide, d);
     }
     return around;
 }
@@ -76,35 +56,19 @@ fn past_texel(p: vec2<i32>) -> vec3<f32> {
     return decode_ink(textureLoad(past_ink, clamp(p, vec2(0), last), 0).xyz);
 }
 
-// By how much a pixel of the grid has moved, in pixels of the viewport. What rounding leaves of no
-// motion is none: less than 1/8 pixel in the frames of the longest memory.
-fn motion_at(pixel: vec2<i32>) -> vec2<f32> {
-    let moved = textureLoad(motion_texture, pixel, 0).xy * vec2<f32>(line_pass.seen.viewport.zw);
-    return select(moved, vec2(0.0), all(abs(moved) < vec2(1.0 / 1024.0)));
-}
-
-// The ink of the last frame at a place: bicubic. At the centre of a pixel it is that pixel's.
+// The ink of the last frame at a place: bicubic.
 fn past_at(place: vec2<f32>) -> vec3<f32> {
     let corner = floor(place - 0.5);
     let f = place - 0.5 - corner;
     let across = cubic_weights(f.x);
     let down = cubic_weights(f.y);
-    let is_centre = all(f == vec2(0.0));
-    let count = select(16, 1, is_centre);
     var sum = vec3(0.0);
-    for (var i = 0; i < count; i++) {
-        let offset = select(vec2(i & 3, i >> 2u), vec2(1), is_centre);
+    for (var i = 0; i < 16; i++) {
+        let offset = vec2(i & 3, i >> 2u);
         let weight = across[offset.x] * down[offset.y];
         sum += weight * past_texel(vec2<i32>(corner) + offset - 1);
     }
     return sum;
-}
-
-// Whether a pixel has no ink, and will have none: there is none around it in this frame, and it has
-// moved, or had none in the last frame. So what has come or gone around it does not matter.
-fn is_quiet(pixel: vec2<i32>, moved: vec2<f32>, most: vec3<f32>) -> bool {
-    let no_past = all(moved == vec2(0.0)) && all(past_texel(pixel) == vec3(0.0));
-    return all(most == vec3(0.0)) && (no_past || length(moved) > STILL);
 }
 
 // The nearest raw depth around a pixel of the last frame, as wide as `wide` of depths_around.
@@ -128,23 +92,6 @@ fn jump_at(d: f32) -> f32 {
 // Ink that rounding may change.
 const ROUNDING: f32 = 0.01;
 
-// The least and the largest ink of 3 x 3 pixels of this frame.
-struct Limits {
-    least: vec3<f32>,
-    most: vec3<f32>,
-}
-
-fn limits_around(pixel: vec2<i32>) -> Limits {
-    var limits = Limits(vec3(1.0), vec3(0.0));
-    for (var i = 0; i < 9; i++) {
-        let p = pixel + vec2(i % 3 - 1, i / 3 - 1);
-        let ink = decode_ink(textureLoad(ink_texture, clamp(p, vec2(0), line_pass.seen.viewport.zw - 1), 0).xyz);
-        limits.least = min(limits.least, ink);
-        limits.most = max(limits.most, ink);
-    }
-    return limits;
-}
-
 @fragment
 fn remember(@builtin(position) position: vec4<f32>) -> Remembered {
     set_view(line_pass.seen);
@@ -153,12 +100,17 @@ fn remember(@builtin(position) position: vec4<f32>) -> Remembered {
     let pixel = vec2<i32>(position.xy);
     let texel = textureLoad(ink_texture, pixel, 0);
     let now = decode_ink(texel.xyz);
-    let limits = limits_around(pixel);
+    var least = now;
+    var most = now;
+    for (var i = 0; i < 9; i++) {
+        let p = clamp(pixel + vec2(i % 3 - 1, i / 3 - 1), vec2(0), size - 1);
+        let beside = decode_ink(textureLoad(ink_texture, p, 0).xyz);
+        least = min(least, beside);
+        most = max(most, beside);
+    }
     let centre = vec2<i32>(floor(position.xy * g.from_viewport.xy + g.from_viewport.zw));
-    let near = depths_near(centre);
-    let quiet = is_quiet(pixel, motion_at(near.pixel), limits.most);
-    let around = depths_around(near, centre, quiet);
-    let moved = motion_at(around.pixel);
+    let around = depths_around(centre);
+    let moved = textureLoad(motion_texture, around.pixel, 0).xy * vec2<f32>(size);
     let place = position.xy - moved;
     let seen = all(place >= vec2(0.0)) && all(place < vec2<f32>(size));
     let from_pixel = clamp(vec2<i32>(floor(place)), vec2(0), size - 1);
@@ -172,19 +124,18 @@ fn remember(@builtin(position) position: vec4<f32>) -> Remembered {
     let vanished = is_in_front(past_wide, around.wide, jump_at(past_wide));
     let exists = seen && line_pass.memory.share < 1.0;
     var counted = select(vec3(0.0), unpack_counts(before.y), exists);
-    let changed = !quiet && (covered || uncovered || vanished);
-    let unsteady = unsteady_at(counted.z, changed, speed);
+    let unsteady = unsteady_at(counted.z, covered || uncovered || vanished, speed);
     let steady = is_steady(unsteady);
-    counted = select(counted, vec3(0.0), changed && uncovered && steady);
+    counted = select(counted, vec3(0.0), uncovered && steady);
     let frames = frames_at(counted.x, line_pass.memory.share, speed);
     let past = past_at(place);
-    let outside = any(past < limits.least - ROUNDING) || any(past > limits.most + ROUNDING);
+    let outside = any(past < least - ROUNDING) || any(past > most + ROUNDING);
     let missing = missing_at(counted.y, outside);
     // The sky is still while the camera moves.
     let sky = around.wide <= 0.0;
     let limited = is_limited(missing, speed) || (steady && (covered || vanished || sky));
-    let low = select(vec3(0.0), limits.least, limited);
-    let high = select(vec3(1.0), limits.most, limited);
+    let low = select(vec3(0.0), least, limited);
+    let high = select(vec3(1.0), most, limited);
     let ink = remembered(past, now, low, high, share_at(frames, speed));
     let count = pack_counts(frames, select(missing, 0.0, limited), unsteady);
     // The slot of the strongest line of this frame; where it has none, that of the last one.
