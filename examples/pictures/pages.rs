@@ -10,8 +10,8 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    CartoonScene, ComicStyle, ComicsPlugin, Contours, DepthWrite, Desaturation, NoOutlines,
-    OutlineStyle, Outlines, SelectionOutline, XRayOutline, presets,
+    CartoonScene, ComicStyle, ComicsPlugin, Contours, Desaturation, NoOutlines, OutlineStyle,
+    Outlines, SelectionOutline, XRayOutline, presets,
 };
 use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
@@ -43,7 +43,6 @@ pub fn write(folder: &Path) -> Result<(), String> {
     save(&marks(), &folder.join("marks.png"))?;
     save(&split_screen(), &folder.join("split-screen.png"))?;
     save(&transparency(), &folder.join("transparency.png"))?;
-    save(&depth_write(), &folder.join("depth-write.png"))?;
     save(&glass(), &folder.join("glass.png"))
 }
 
@@ -243,21 +242,6 @@ fn transparency() -> RgbaImage {
         .with(Desaturation::default())
         .with(Contours::default());
     pair(&studio.shoot(None), &studio.shoot(Some(&style)))
-}
-
-/// Two panes of glass before the teapot; the second picture has `DepthWrite` on the right one.
-fn depth_write() -> RgbaImage {
-    let mut studio = Studio::new(BuiltIn::Teapot, SIZE, Msaa::Sample4);
-    pane(&mut studio, [8.0, -1.5, 2.6]);
-    let right = pane(&mut studio, [8.0, 2.3, 2.6]);
-    let style = ComicStyle::new()
-        .with(Outlines::default())
-        .with(Desaturation::default());
-    let without = studio.shoot(Some(&style));
-    let world = studio.headless.app.world_mut();
-    world.entity_mut(right).insert(DepthWrite::default());
-    studio.headless.step(SETTLE);
-    pair(&without, &studio.headless.picture())
 }
 
 /// Glass through the middle of the scene: on the styled camera, and on a camera after it.

@@ -89,12 +89,12 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure one section only: ranges, encodings, lines, models,
                    steps, dashes, memory, straight, page, stability, ladder,
-                   parts, growth, peers or flicker
+                   parts, scene-parts, growth, peers or flicker
   --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
-const SECTIONS: [(&str, Section); 15] = [
+const SECTIONS: [(&str, Section); 16] = [
     ("ranges", ranges::measure),
     ("encodings", encodings::measure),
     ("lines", lines::measure),
@@ -107,6 +107,7 @@ const SECTIONS: [(&str, Section); 15] = [
     ("stability", stability::measure),
     ("ladder", ladder::measure),
     ("parts", parts::measure),
+    ("scene-parts", parts::of_scenes),
     ("growth", growth::measure),
     ("peers", peers::measure),
     ("flicker", flicker::measure),

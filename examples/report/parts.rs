@@ -19,7 +19,6 @@ use bevy_comics_testkit::scenes::BuiltIn;
 use crate::{
     Run,
     rig::{self, Rig, Wear},
-    table::Table,
 };
 
 /// Outlines of which one thing differs from the default.
@@ -180,12 +179,16 @@ fn mark<M: Component + Clone>(rig: &mut Rig, mark: M) {
     }
 }
 
-pub fn measure(run: &Run) -> Result<(), String> {
-    let size = if run.quick {
+fn size(run: &Run) -> UVec2 {
+    if run.quick {
         UVec2::new(320, 180)
     } else {
         UVec2::new(1280, 720)
-    };
+    }
+}
+
+pub fn measure(run: &Run) -> Result<(), String> {
+    let size = size(run);
     let mut times = rig::times();
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
     rig.unlight();
@@ -198,8 +201,6 @@ pub fn measure(run: &Run) -> Result<(), String> {
     ]
     .map(|(name, wear)| (name.to_owned(), wear));
     rig::record(run, &mut times, "marks", "teapot", &mut rig, &variants);
-    // Each on a scene of its own, which takes long.
-    scene_parts(&run.with_rounds(run.rounds.min(3)), &mut times, size);
     run.save("part_times", &times)
 }
 
@@ -251,10 +252,10 @@ fn changes() -> Vec<Part> {
             change: jitter,
             styles: vec![
                 (
-                    "outlines; temporal anti-aliasing, no memory",
+                    "outlines; temporal anti-aliasing; no memory",
                     ComicStyle::new().with(forgetful),
                 ),
-                ("outlines; temporal anti-aliasing, memory", outlines()),
+                ("outlines; temporal anti-aliasing; memory", outlines()),
             ],
         });
     }
@@ -262,7 +263,11 @@ fn changes() -> Vec<Part> {
 }
 
 /// Times each change on a scene of its own.
-fn scene_parts(run: &Run, times: &mut Table, size: UVec2) {
+pub fn of_scenes(run: &Run) -> Result<(), String> {
+    let size = size(run);
+    let mut times = rig::times();
+    // A scene of its own takes long.
+    let run = &run.with_rounds(run.rounds.min(3));
     for part in changes() {
         let mut rig = Rig::new(Some(part.scene), size);
         rig.unlight();
@@ -272,8 +277,16 @@ fn scene_parts(run: &Run, times: &mut Table, size: UVec2) {
         let section = format!("part: {}", part.name);
         let named = |(name, style): (&str, ComicStyle)| (name.to_owned(), Wear::style(style));
         let variants: Vec<_> = part.styles.into_iter().map(named).collect();
-        rig::record(run, times, &section, part.scene.name(), &mut rig, &variants);
+        rig::record(
+            run,
+            &mut times,
+            &section,
+            part.scene.name(),
+            &mut rig,
+            &variants,
+        );
     }
+    run.save("scene_part_times", &times)
 }
 
 fn meshes(rig: &mut Rig) -> Vec<Entity> {

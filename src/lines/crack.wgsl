@@ -9,7 +9,7 @@
     CREASE, Lines, OBJECT, SILHOUETTE, THINNEST, byte, fold_response, pack_ink, step_response,
 }
 #ifdef LEDGES
-#import bevy_comics::lines::ledge::may_be_ledge
+#import bevy_comics::lines::ledge::{PARALLEL, may_be_ledge}
 #endif
 #import bevy_comics::lines::rows::Borders
 #import bevy_comics::objects::kinds_of
@@ -199,13 +199,15 @@ fn add_object_edges(before: Found, s: Lines, at: Borders, reference: vec4<f32>, 
 #ifdef LEDGES
 // A face between two creases may be so thin that it is only seen in some of the pixels along it:
 // at the others, the surfaces on its two sides border on each other with a step. Such a step is
-// too low for a silhouette, and has no fold. It is a crease where it joins lines, see join.wgsl.
+// too low for a silhouette, and the surfaces on its two sides are parallel. It is a crease where it
+// joins lines, see join.wgsl. Steps on curved rims are none: these have folds.
 fn are_ledges(found: Found, s: Lines, at: Borders, here: vec4<u32>, there: vec4<u32>) -> vec4<bool> {
     let near = max(at.here, at.there);
     let joined = at.excess < s.jump * (s.reference_factor * near + s.reference_constant);
     let exists = min(at.here, at.there) > vec4(0.0);
     let drawn = (has(here, CREASE) | has(there, CREASE)) & (found.kinds == vec4(0u));
-    return may_be_ledge(s, at.excess, near) & joined & exists & drawn & !at.outdone;
+    let ledge = may_be_ledge(s, at.excess, near) & (at.folds < vec4(PARALLEL));
+    return ledge & joined & exists & drawn & !at.outdone;
 }
 #endif
 

@@ -8,6 +8,10 @@
 // A step above this fraction of the one that separates two surfaces may be a ledge.
 const LEDGE: f32 = 0.05;
 
+// The surfaces on both sides of a ledge are parallel: the fold is below that of 10 degrees. On a
+// curved surface, neighbours with a step that is not their slope's have a fold too.
+const PARALLEL: f32 = 0.0304;
+
 // Whether the excess of a step is that of a ledge, or more. `near` is the larger of both raw
 // depths.
 fn may_be_ledge(s: Lines, excess: vec4<f32>, near: vec4<f32>) -> vec4<bool> {

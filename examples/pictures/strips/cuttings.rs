@@ -16,8 +16,8 @@ type Cutting = (&'static str, usize, [u32; 2]);
 /// Rows of four; strips that are opposites are side by side.
 const CUTTINGS: [[Cutting; 4]; 4] = [
     [
-        ("kinds", 0, [84, 20]),
-        ("light", 0, [84, 20]),
+        ("kinds", 3, [84, 40]),
+        ("light", 3, [84, 40]),
         ("brush", 0, [84, 60]),
         ("boil", 0, [84, 60]),
     ],
@@ -30,14 +30,14 @@ const CUTTINGS: [[Cutting; 4]; 4] = [
     [
         ("no-budget", 0, [84, 95]),
         ("budget", 0, [84, 95]),
-        ("no-overshoot", 0, [84, 40]),
-        ("overshoot", 0, [84, 40]),
+        ("no-overshoot", 1, [84, 60]),
+        ("overshoot", 1, [84, 60]),
     ],
     [
-        ("no-bridge", 0, [84, 40]),
-        ("bridge", 0, [84, 40]),
-        ("no-sections", 3, [84, 60]),
-        ("sections", 3, [84, 60]),
+        ("no-bridge", 1, [84, 50]),
+        ("bridge", 1, [84, 50]),
+        ("no-sections", 0, [168, 90]),
+        ("sections", 0, [168, 90]),
     ],
 ];
 

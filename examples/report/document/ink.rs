@@ -39,17 +39,21 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
     );
     let all: Vec<&Vec<String>> = table.rows.iter().collect();
     for model in table.distinct(&all, "model") {
-        let [cut, continued, ends, chance] = [
+        let cells = [
             ("cut", "ends"),
             ("continued", "ends"),
             ("continued", "true_ends"),
             ("continued", "by_chance"),
         ]
-        .map(|(method, ends)| dashes(&table, [method, &model, ends]));
-        let _ = writeln!(
-            out,
-            "| {model} | {cut:.2} | {continued:.2} | {ends:.2} | {chance:.2} |"
-        );
+        .map(|(method, ends)| {
+            // Tables of older runs have only the first of these columns.
+            if table.header.iter().any(|column| column == ends) {
+                format!("{:.2}", dashes(&table, [method, &model, ends]))
+            } else {
+                "-".to_owned()
+            }
+        });
+        let _ = writeln!(out, "| {model} | {} |", cells.join(" | "));
     }
     let table = load(folder, "ink_memory")?;
     out.push_str(

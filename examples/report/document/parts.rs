@@ -37,12 +37,11 @@ pub fn parts(out: &mut String, folder: &Path) -> Result<(), String> {
         out.push_str(before);
         cost_table(out, &costs(&times, section, "teapot", laps));
     }
-    scene_parts(out, &times);
+    scene_parts(out, &load(folder, "scene_part_times")?);
     Ok(())
 }
 
-/// The costs of what parts of the scene ask for, each from a scene of its own. Tables of older
-/// runs do not have them.
+/// The costs of what parts of the scene ask for, each from a scene of its own.
 fn scene_parts(out: &mut String, times: &Table) {
     let all: Vec<&Vec<String>> = times.rows.iter().collect();
     let sections = times.distinct(&all, "section");
@@ -57,9 +56,6 @@ fn scene_parts(out: &mut String, times: &Table) {
             }
             found.extend(of_scene);
         }
-    }
-    if found.is_empty() {
-        return;
     }
     out.push_str(
         "What parts of the scene ask for, each on a scene of its own, which is the teapot if no \

@@ -2,8 +2,8 @@
 
 use super::{
     edge::{
-        Normal, fold, fold_response, is_ledge, is_outdone, is_ridge, is_rim_ridge, step_excess,
-        step_response,
+        Normal, fold, fold_response, is_ledge, is_outdone, is_parallel, is_ridge, is_rim_ridge,
+        step_excess, step_response,
     },
     map::is_background,
     smoothstep,
@@ -192,7 +192,11 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
     }
     let low = s.creases.is_some_and(|c| c.form == Form::Corrected) && s.continuity > 0.0;
     let exists = here.min(there) > 0.0 && crack.kinds == [false; 3];
-    if low && exists && is_ledge(excess, jump) && !is_outdone(depths) {
+    let parallel = || {
+        let [a, b] = [2, 3].map(|i: usize| along(view, pixel, v, |x, y| normal(view, x, y))[i]);
+        is_parallel(fold(a, b))
+    };
+    if low && exists && is_ledge(excess, jump) && !is_outdone(depths) && parallel() {
         crack.kinds[1] = true;
         crack.ink = 1.0;
         crack.ledge = true;

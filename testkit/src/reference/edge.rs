@@ -86,6 +86,12 @@ pub fn is_ledge(excess: f64, jump: f64) -> bool {
     excess > 0.05 * jump && excess < jump
 }
 
+/// Whether the surfaces on both sides of a ledge are parallel, by their [`fold`]: below that of 10
+/// degrees.
+pub fn is_parallel(fold: Option<f64>) -> bool {
+    fold.is_none_or(|fold| fold < 0.0304)
+}
+
 /// Squared distance of two unit normals; `None` if one is missing.
 pub fn fold(a: Normal, b: Normal) -> Option<f64> {
     let (a, b) = (a?, b?);
