@@ -1,9 +1,7 @@
 //! Impact frames: for a few drawings a camera shows two tones and focus lines.
 
-use std::collections::VecDeque;
-
 use bevy::{
-    camera::Camera,
+    camera::{Camera, NormalizedRenderTarget, RenderTarget},
     color::Color,
     ecs::{
         component::Component,
@@ -13,13 +11,14 @@ use bevy::{
         query::With,
         reflect::ReflectResource,
         resource::Resource,
-        system::{Commands, Query, Res, ResMut},
+        system::{Commands, Query, Res, ResMut, SystemParam},
     },
     log::{debug, warn_once},
     reflect::{Reflect, std_traits::ReflectDefault},
     time::{Real, Time},
 };
 
+use super::flashes::Flashes;
 use crate::{
     clock,
     diagnostics::ComicsDiagnostics,
@@ -39,10 +38,11 @@ use crate::{
 /// compiles a pipeline; it is shown, and its time begins, when that is done.
 ///
 /// **Flashes.** Fast flashes can cause seizures (WCAG 2.3.1). At most
-/// [`Impact::MOST_FLASHES`] flashes are begun in any second of real time on a camera: what
-/// would exceed that is refused, and counted in
-/// [`ComicsDiagnostics::impacts`](crate::ComicsDiagnostics::impacts). The resource
-/// [`ReduceFlashing`] replaces the tones by a dim picture.
+/// [`Impact::MOST_FLASHES`] flashes are begun in any second of real time on a render target, by
+/// all of its cameras together: what would exceed that is refused, and counted in
+/// [`ComicsDiagnostics::impacts`](crate::ComicsDiagnostics::impacts). A flash counts from the
+/// frame that shows it, not from its trigger. The resource [`ReduceFlashing`] replaces the tones
+/// by a dim picture.
 ///
 /// ```
 /// # use bevy::ecs::prelude::*;
@@ -71,7 +71,7 @@ pub struct Impact {
 }
 
 impl Impact {
-    /// The most flashes that begin in any second on a camera (WCAG 2.3.1).
+    /// The most flashes that begin in any second on a render target (WCAG 2.3.1).
     pub const MOST_FLASHES: usize = 3;
 
     /// An impact of two drawings in black and white, with focus lines.
@@ -153,16 +153,40 @@ pub struct ReduceFlashing(pub bool);
 #[derive(Component, Debug, Default)]
 pub(super) struct Impacts {
     running: Option<Running>,
-    /// Real time of the flashes of the last second, the oldest first.
-    flashes: VecDeque<f64>,
+    flashes: Flashes,
 }
 
 #[derive(Debug)]
 struct Running {
     impact: Impact,
-    /// Time at which it was first shown.
+    /// Game time at which it was first shown.
     since: Option<f64>,
     effects: Vec<Box<dyn AnyEffect>>,
+}
+
+/// A time in seconds since the app started.
+#[derive(Clone, Copy, Debug)]
+struct Moment {
+    game: f64,
+    real: f64,
+}
+
+/// The clocks of the app; tests may have none.
+#[derive(SystemParam)]
+pub(super) struct Clocks<'w> {
+    game: Option<Res<'w, Time>>,
+    real: Option<Res<'w, Time<Real>>>,
+}
+
+impl Clocks<'_> {
+    fn now(&self) -> Moment {
+        let game = self.game.as_ref().map(|time| time.elapsed_secs_f64());
+        let real = self.real.as_ref().map(|time| time.elapsed_secs_f64());
+        Moment {
+            game: game.unwrap_or_default(),
+            real: real.or(game).unwrap_or_default(),
+        }
+    }
 }
 
 impl Impacts {
@@ -173,16 +197,14 @@ impl Impacts {
             .map_or(&[], |running| &running.effects)
     }
 
-    /// Starts an impact, unless it would exceed the limit of flashes. `now`: real time.
-    fn start(&mut self, impact: Impact, now: f64) -> bool {
-        while self.flashes.front().is_some_and(|then| now - then >= 1.0) {
-            self.flashes.pop_front();
-        }
+    /// Starts an impact, unless it would exceed the limit of flashes. `others`: flashes of other
+    /// cameras of the same target in the last second. `now`: real time.
+    fn start(&mut self, impact: Impact, others: usize, now: f64) -> bool {
         let flashes = impact.flashes();
-        if self.flashes.len() + flashes > Impact::MOST_FLASHES {
+        if self.flashes.recent(now) + others + flashes > Impact::MOST_FLASHES {
             return false;
         }
-        self.flashes.extend(std::iter::repeat_n(now, flashes));
+        self.flashes.announce(flashes, now);
         self.running = Some(Running {
             impact,
             since: None,
@@ -192,16 +214,24 @@ impl Impacts {
     }
 
     /// Draws the impact at a time, or ends it. `waits`: its pipeline is compiling.
-    fn run(&mut self, seconds: f64, waits: bool, reduced: bool) {
+    fn run(&mut self, now: Moment, waits: bool, reduced: bool) {
         let Some(running) = &mut self.running else {
             return;
         };
         let since = match running.since {
             Some(since) if !waits => since,
-            _ => *running.since.insert(seconds),
+            _ => *running.since.insert(now.game),
         };
-        let drawing = clock::drawing(seconds - since, running.impact.rate);
-        if drawing >= u64::from(running.impact.drawings) {
+        let drawing = clock::drawing(now.game - since, running.impact.rate);
+        let ends = drawing >= u64::from(running.impact.drawings);
+        // The picture changes with each drawing, and two changes are a flash.
+        let begun = match drawing {
+            _ if waits => 0,
+            0 | 1 if !ends => 1,
+            _ => running.impact.flashes(),
+        };
+        self.flashes.show(begun, now.real);
+        if ends {
             self.running = None;
         } else {
             running.effects = running.impact.effects(drawing as u32, reduced);
@@ -209,31 +239,39 @@ impl Impacts {
     }
 }
 
+/// The target of a camera, to be compared. The primary window has a stand-in.
+fn normalized(target: Option<&RenderTarget>) -> Option<NormalizedRenderTarget> {
+    target?.normalize(Some(Entity::PLACEHOLDER))
+}
+
 /// Starts an impact, or counts that it was refused.
 pub(super) fn start_impact(
     impact: On<Impact>,
-    mut cameras: Query<Option<&mut Impacts>, With<Camera>>,
+    mut cameras: Query<(Entity, Option<&RenderTarget>, Option<&mut Impacts>), With<Camera>>,
     mut commands: Commands,
-    (time, real_time): (Option<Res<Time>>, Option<Res<Time<Real>>>),
+    clocks: Clocks,
     mut diagnostics: ResMut<ComicsDiagnostics>,
 ) {
     let camera = impact.entity;
-    let now = real_time.map(|time| time.elapsed_secs_f64());
-    let now = now.or(time.map(|time| time.elapsed_secs_f64()));
-    let now = now.unwrap_or_default();
+    let now = clocks.now().real;
     let impact = impact.event().clone().sanitized();
-    let shown = match cameras.get_mut(camera) {
-        Ok(Some(mut impacts)) => impacts.start(impact, now),
-        Ok(None) => {
-            let mut impacts = Impacts::default();
-            let shown = impacts.start(impact, now);
-            commands.entity(camera).insert(impacts);
-            shown
-        }
-        Err(_) => {
-            warn_once!("Impact: {camera} is not a camera");
-            return;
-        }
+    let Ok((_, target, _)) = cameras.get(camera) else {
+        warn_once!("Impact: {camera} is not a camera");
+        return;
+    };
+    let target = normalized(target);
+    let others = cameras
+        .iter()
+        .filter(|(other, at, _)| *other != camera && normalized(*at) == target)
+        .filter_map(|(.., impacts)| impacts);
+    let others: usize = others.map(|impacts| impacts.flashes.recent(now)).sum();
+    let shown = if let Ok((.., Some(mut impacts))) = cameras.get_mut(camera) {
+        impacts.start(impact, others, now)
+    } else {
+        let mut impacts = Impacts::default();
+        let shown = impacts.start(impact, others, now);
+        commands.entity(camera).insert(impacts);
+        shown
     };
     let count = diagnostics.impacts.entry(camera).or_default();
     if shown {
@@ -241,7 +279,7 @@ pub(super) fn start_impact(
     } else {
         count.refused += 1;
         debug!(
-            "Impact: {camera} had {} flashes in the last second",
+            "Impact: the target of {camera} had {} flashes in the last second",
             Impact::MOST_FLASHES
         );
     }
@@ -250,15 +288,18 @@ pub(super) fn start_impact(
 /// Draws the impacts that are shown.
 pub(super) fn run_impacts(
     mut cameras: Query<(Entity, &mut Impacts)>,
-    time: Option<Res<Time>>,
+    clocks: Clocks,
     reduced: Res<ReduceFlashing>,
     diagnostics: Res<ComicsDiagnostics>,
 ) {
-    let seconds = time.map_or(0.0, |time| time.elapsed_secs_f64());
+    let now = clocks.now();
     for (camera, mut impacts) in &mut cameras {
         if impacts.running.is_some() {
             let waits = diagnostics.is_compiling(camera);
-            impacts.run(seconds, waits, reduced.0);
+            impacts.run(now, waits, reduced.0);
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

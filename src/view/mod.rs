@@ -2,6 +2,7 @@
 //! extraction to the render world.
 
 mod extract;
+mod flashes;
 mod fog;
 #[cfg(any(feature = "objects", feature = "cartoon"))]
 mod held_pose;

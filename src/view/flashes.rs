@@ -1,0 +1,43 @@
+//! When flashes began, to limit how many there are in a second.
+
+use std::collections::VecDeque;
+
+/// The flashes of a camera in the last second, in real time. Those that are announced may begin
+/// later: while a pipeline is compiled or the game is paused, the picture does not change.
+#[derive(Debug, Default)]
+pub(super) struct Flashes {
+    /// When each began; for one that has not begun, the last time that was known. The oldest is
+    /// first, those of the last impact are last.
+    times: VecDeque<f64>,
+    /// Flashes of the last impact, and how many of them had begun in the frame before.
+    announced: usize,
+    begun: usize,
+}
+
+impl Flashes {
+    /// Number of flashes that began in the second before `now`, or have not begun.
+    pub fn recent(&self, now: f64) -> usize {
+        self.times.iter().filter(|then| now - **then < 1.0).count()
+    }
+
+    /// Adds the flashes of an impact. Those of the impact before stay, even if they had not begun
+    /// and never will.
+    pub fn announce(&mut self, flashes: usize, now: f64) {
+        while self.times.front().is_some_and(|then| now - then >= 1.0) {
+            self.times.pop_front();
+        }
+        self.times.extend(std::iter::repeat_n(now, flashes));
+        self.announced = flashes;
+        self.begun = 0;
+    }
+
+    /// Notes that a frame shows as many flashes of the last impact. Those that had not begun in
+    /// the frame before may have begun in this one.
+    pub fn show(&mut self, begun: usize, now: f64) {
+        let waiting = self.announced - self.begun.min(begun).min(self.announced);
+        for time in self.times.iter_mut().rev().take(waiting) {
+            *time = now;
+        }
+        self.begun = begun;
+    }
+}

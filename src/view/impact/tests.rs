@@ -1,0 +1,97 @@
+//! When flashes begin, and how many are let through.
+
+use super::*;
+
+/// Frames per second, as multiples of which times are exact.
+const RATE: usize = 64;
+
+/// Runs frames from 0 on. In each, `trigger` gives impacts; `waits` says whether a pipeline is
+/// compiling, which is known a frame late, as in the app. Returns the frames in which the
+/// picture begins to change there and back.
+fn flashes(
+    frames: usize,
+    trigger: impl Fn(usize) -> Option<Impact>,
+    compiles: impl Fn(usize) -> bool,
+) -> Vec<usize> {
+    let mut impacts = Impacts::default();
+    let mut changes = Vec::new();
+    let mut before = None;
+    for frame in 0..frames {
+        let seconds = frame as f64 / RATE as f64;
+        let now = Moment {
+            game: seconds,
+            real: seconds,
+        };
+        if let Some(impact) = trigger(frame) {
+            impacts.start(impact.sanitized(), 0, seconds);
+        }
+        let waits = frame > 0 && compiles(frame - 1);
+        impacts.run(now, waits, false);
+        // What the frame shows: a tone, or the original while the pipeline compiles.
+        let running = impacts.running.as_ref().filter(|_| !compiles(frame));
+        let shown = running.map(|running| {
+            let since = running.since.expect("it has run");
+            let drawing = clock::drawing(seconds - since, running.impact.rate);
+            running.impact.alternate && drawing % 2 == 1
+        });
+        if shown != before {
+            changes.push(frame);
+        }
+        before = shown;
+    }
+    changes.into_iter().step_by(2).collect()
+}
+
+/// Truth: no second has more flashes than the limit, wherever it begins.
+fn assert_few(flashes: &[usize], case: &str) {
+    for (i, first) in flashes.iter().enumerate() {
+        let within = flashes[i..].iter().filter(|f| **f < first + RATE).count();
+        assert!(
+            within <= Impact::MOST_FLASHES,
+            "{case}: from frame {first}: {flashes:?}"
+        );
+    }
+}
+
+fn impact(drawings: u32, rate: f32, alternate: bool) -> Impact {
+    Impact {
+        drawings,
+        rate,
+        alternate,
+        ..Impact::new(Entity::PLACEHOLDER)
+    }
+}
+
+#[test]
+fn an_impact_that_waits_flashes_when_it_is_shown() {
+    // Compiles until shortly before a second has passed; then three more are asked for.
+    for done in [1, 2, 30, 61, 64, 90] {
+        let trigger = |frame: usize| {
+            let later = frame >= done && frame.is_multiple_of(6);
+            (frame == 0 || later).then(|| impact(1, 30.0, false))
+        };
+        let found = flashes(done + 160, trigger, |frame| frame < done);
+        assert!(found.len() > 5, "{found:?}");
+        assert_few(&found, &format!("compiled in frame {done}"));
+    }
+}
+
+#[test]
+fn every_flash_of_an_impact_counts_from_where_it_begins() {
+    for (drawings, rate) in [(2, 4.0), (3, 4.0), (3, 12.0), (2, 30.0), (3, 30.0)] {
+        for every in [1, 5, 7, 11, 16, 33] {
+            let trigger = |frame: usize| (frame % every == 0).then(|| impact(drawings, rate, true));
+            let found = flashes(400, trigger, |_| false);
+            assert_few(&found, &format!("{drawings} at {rate}, every {every}"));
+        }
+    }
+}
+
+#[test]
+fn flashes_of_other_cameras_count() {
+    let mut impacts = Impacts::default();
+    let one = || impact(1, 12.0, false);
+    assert!(!impacts.start(one(), Impact::MOST_FLASHES, 0.0));
+    assert!(impacts.start(one(), Impact::MOST_FLASHES - 1, 0.0));
+    assert!(!impacts.start(one(), Impact::MOST_FLASHES - 1, 0.9));
+}
