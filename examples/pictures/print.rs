@@ -20,11 +20,11 @@ const GAP: u32 = 6;
 
 pub fn write(folder: &Path) -> Result<(), String> {
     let printed = [
-        (presets::MANGA_PAGE, BuiltIn::Theatre, [240, 200]),
+        (presets::MANGA_PAGE, BuiltIn::Theatre, [250, 140]),
         (presets::NEWSPRINT, BuiltIn::Village, [40, 150]),
-        (presets::SILVER_AGE, BuiltIn::Theatre, [240, 200]),
+        (presets::SILVER_AGE, BuiltIn::Theatre, [250, 140]),
         (presets::RISOGRAPH, BuiltIn::Village, [470, 150]),
-        (presets::POP_POSTER, BuiltIn::Theatre, [240, 200]),
+        (presets::POP_POSTER, BuiltIn::Theatre, [250, 140]),
         (presets::POP_POSTER, BuiltIn::Village, [470, 150]),
     ];
     save(&parts(&printed), &folder.join("print.png"))?;
