@@ -13,45 +13,48 @@ use image::{RgbaImage, imageops};
 
 use crate::{save, sheet::grid};
 
-/// What is rendered, and the part of it that is shown.
 const SIZE: UVec2 = UVec2::new(960, 540);
-const PART: UVec2 = UVec2::new(480, 270);
 const GAP: u32 = 6;
 
 pub fn write(folder: &Path) -> Result<(), String> {
     let printed = [
-        (presets::MANGA_PAGE, BuiltIn::Theatre, [250, 140]),
-        (presets::NEWSPRINT, BuiltIn::Village, [40, 150]),
-        (presets::SILVER_AGE, BuiltIn::Theatre, [250, 140]),
-        (presets::RISOGRAPH, BuiltIn::Village, [470, 150]),
-        (presets::POP_POSTER, BuiltIn::Theatre, [250, 140]),
-        (presets::POP_POSTER, BuiltIn::Village, [470, 150]),
+        (presets::MANGA_PAGE, BuiltIn::Theatre, [270, 140]),
+        (presets::NEWSPRINT, BuiltIn::Village, [200, 150]),
+        (presets::SILVER_AGE, BuiltIn::Theatre, [270, 140]),
+        (presets::RISOGRAPH, BuiltIn::Village, [520, 150]),
+        (presets::POP_POSTER, BuiltIn::Theatre, [270, 140]),
+        (presets::POP_POSTER, BuiltIn::Village, [520, 150]),
     ];
-    save(&parts(&printed), &folder.join("print.png"))?;
+    save(&parts(&printed, UVec2::new(320, 240), 3), &folder.join("print.png"))?;
     let painted = [
         (presets::GOUACHE, BuiltIn::Mountains, [240, 150]),
         (presets::WATERCOLOR, BuiltIn::Village, [40, 150]),
     ];
-    save(&parts(&painted), &folder.join("paint.png"))?;
+    save(&parts(&painted, UVec2::new(480, 270), 2), &folder.join("paint.png"))?;
     save(&focus(), &folder.join("focus.png"))
 }
 
-/// Parts of scenes in presets, two in a row. The third number pair: the corner of the part.
-fn parts(shown: &[(Preset, BuiltIn, [u32; 2])]) -> RgbaImage {
+/// Parts of scenes in presets, with the corner of each. `columns`: how many are in a row.
+fn parts(shown: &[(Preset, BuiltIn, [u32; 2])], size: UVec2, columns: usize) -> RgbaImage {
     let part = |(preset, scene, [x, y]): &(Preset, BuiltIn, [u32; 2])| {
         let mut studio = Studio::new(*scene, SIZE, Msaa::Sample4);
         let picture = studio.shoot(Some(&preset.style()));
         println!("{}: {preset}", scene.name());
-        imageops::crop_imm(&picture, *x, *y, PART.x, PART.y).to_image()
+        imageops::crop_imm(&picture, *x, *y, size.x, size.y).to_image()
     };
     let pictures: Vec<RgbaImage> = shown.iter().map(part).collect();
-    let rows: Vec<Vec<&RgbaImage>> = pictures.chunks(2).map(|row| row.iter().collect()).collect();
-    grid(&rows, PART, GAP)
+    rows(&pictures, size, columns)
+}
+
+fn rows(pictures: &[RgbaImage], size: UVec2, columns: usize) -> RgbaImage {
+    let rows = pictures.chunks(columns).map(|row| row.iter().collect());
+    grid(&rows.collect::<Vec<_>>(), size, GAP)
 }
 
 /// Without a focus, then in its five styles.
 fn focus() -> RgbaImage {
-    let mut studio = Studio::new(BuiltIn::Village, PART, Msaa::Sample4);
+    let size = UVec2::new(480, 270);
+    let mut studio = Studio::new(BuiltIn::Village, size, Msaa::Sample4);
     let all = [
         FocusStyle::Blur,
         FocusStyle::Offset,
@@ -62,6 +65,5 @@ fn focus() -> RgbaImage {
     let without = ComicStyle::new().with(Outlines::default());
     let styles = std::iter::once(without).chain(all.map(village_focus));
     let pictures: Vec<RgbaImage> = styles.map(|style| studio.shoot(Some(&style))).collect();
-    let rows: Vec<Vec<&RgbaImage>> = pictures.chunks(3).map(|row| row.iter().collect()).collect();
-    grid(&rows, PART, GAP)
+    rows(&pictures, size, 3)
 }
