@@ -25,12 +25,18 @@ pub fn write(folder: &Path) -> Result<(), String> {
         (presets::POP_POSTER, BuiltIn::Theatre, [270, 140]),
         (presets::POP_POSTER, BuiltIn::Village, [520, 150]),
     ];
-    save(&parts(&printed, UVec2::new(320, 240), 3), &folder.join("print.png"))?;
+    save(
+        &parts(&printed, UVec2::new(320, 240), 3),
+        &folder.join("print.png"),
+    )?;
     let painted = [
         (presets::GOUACHE, BuiltIn::Mountains, [240, 150]),
         (presets::WATERCOLOR, BuiltIn::Village, [40, 150]),
     ];
-    save(&parts(&painted, UVec2::new(480, 270), 2), &folder.join("paint.png"))?;
+    save(
+        &parts(&painted, UVec2::new(480, 270), 2),
+        &folder.join("paint.png"),
+    )?;
     save(&focus(), &folder.join("focus.png"))
 }
 
@@ -47,8 +53,9 @@ fn parts(shown: &[(Preset, BuiltIn, [u32; 2])], size: UVec2, columns: usize) -> 
 }
 
 fn rows(pictures: &[RgbaImage], size: UVec2, columns: usize) -> RgbaImage {
-    let rows = pictures.chunks(columns).map(|row| row.iter().collect());
-    grid(&rows.collect::<Vec<_>>(), size, GAP)
+    let chunks = pictures.chunks(columns);
+    let rows: Vec<Vec<&RgbaImage>> = chunks.map(|row| row.iter().collect()).collect();
+    grid(&rows, size, GAP)
 }
 
 /// Without a focus, then in its five styles.
