@@ -81,7 +81,9 @@ pub enum FocusStyle {
     Blur,
     /// Printed with red and blue apart along a diagonal, by up to twice the radius.
     Offset,
-    /// Painted as by [`Paint`](crate::Paint), whose brush has the radius. Two more passes.
+    /// Painted as by [`Paint`](crate::Paint), whose brush has the radius. Two more passes. Before a
+    /// background that varies as much as its outline, a sharp figure's colour may be in the paint
+    /// beside it.
     Paint,
     /// Printed in dots of four ideal inks, which keep the mean colour; between sharp and out of
     /// focus, plain tones become dots. Reads no other pixels. The view is styled after FXAA and
