@@ -172,10 +172,6 @@ pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
         // Those with outlines: the meadow must not become a crowd of lines.
         shown.extend(OUTLINE_PRESETS);
     }
-    // The teapot and the theatre show it among the line presets.
-    if matches!(scene, BuiltIn::Village | BuiltIn::Mountains) {
-        shown.push(presets::WATERCOLOR);
-    }
     shown.into_iter().map(Preset::name).collect()
 }
 

@@ -111,7 +111,10 @@ impl Looks {
         );
         assert!(found <= most, "{what}: {found}, at most {most}");
         assert!(lighter.abs() <= 0.01, "{what}: lighter by {lighter}");
-        assert!(unscaled > 2.0 * found, "{what}: {unscaled}, at least twice {found}");
+        assert!(
+            unscaled > 2.0 * found,
+            "{what}: {unscaled}, at least twice {found}"
+        );
     }
 }
 
