@@ -13,7 +13,7 @@ use bevy::{
         schedule::IntoScheduleConfigs,
         system::{Commands, Query, Res, ResMut},
     },
-    math::{Mat3, Vec2, Vec3},
+    math::{Mat3, Vec3},
     mesh::Mesh3d,
     platform::collections::HashMap,
     render::{
@@ -203,7 +203,7 @@ fn prepare_places(
         unused: 0,
     });
     let mut found: Vec<_> = found.collect();
-    // A buffer is never empty. No pixel has the id 0.
+    // A buffer is never empty. The id 0 is left out.
     found.push(BoundsUniform::default());
     bounds.buffer.set(found);
     bounds.buffer.write_buffer(&device, &queue);

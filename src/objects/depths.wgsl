@@ -71,6 +71,10 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     }
     set_view(eye.view);
     let bounds = objects[id.x];
+    if bounds.id == 0u {
+        // No object: the table stays 0 for pixels that show none.
+        return;
+    }
     let distance = dot(eye.forward, bounds.centre - eye.place);
     let reach = dot(abs(eye.forward), bounds.half);
     let found = object_place(depth_frame(), eye.axis, eye.orthographic != 0u, distance, reach);

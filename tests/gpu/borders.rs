@@ -125,7 +125,7 @@ fn bins(random: &mut Random, k: usize) -> (Bins, f64) {
         1 => (Bins::Octaves, f64::from(random.range(1e-4, 1e-2))),
         _ => {
             let near = random.range(0.5, 1.0);
-            let far = near - 10f32.powf(random.range(-4.0, -0.4));
+            let far = near - 10f32.powf(random.range(-3.0, -0.4));
             (Bins::Window([near, far].map(f64::from)), 0.0)
         }
     }
@@ -152,6 +152,10 @@ fn borders_are_those_of_the_exhaustive_search() {
             assert_eq!(found, [None], "{counted:?}");
             continue;
         };
+        if most < 1e-6 {
+            // All at one distance, to a thousandth: beyond the far plane of the camera.
+            continue;
+        }
         let [near, far] = found[0].expect("borders").map(f64::from);
         assert!(near >= far, "{counted:?}: {near}, {far}");
         let chosen = [counted.bins_before(far), counted.bins_before(near)];
@@ -181,9 +185,9 @@ fn borders_are_those_of_the_exhaustive_search() {
 fn three(by: usize) -> Vec<u32> {
     let mut counts = vec![0; BINS];
     for bin in 0..6 {
-        counts[100 + bin] = 4000;
+        counts[100 + bin] = 500;
         counts[140 + by + bin] = 3000;
-        counts[200 + bin] = 2000;
+        counts[220 + bin] = 3000;
     }
     counts
 }
@@ -199,9 +203,9 @@ fn counted(counts: &[u32]) -> Counted<'_> {
 #[test]
 fn borders_rest_until_others_explain_more_and_then_follow_like_their_twin() {
     // The heap comes nearer, so that it belongs to the others at the end.
-    let scenes: Vec<Vec<u32>> = (0..50).map(|k| three(k.min(40))).collect();
+    let scenes: Vec<Vec<u32>> = (0..60).map(|k| three(k.min(50))).collect();
     let frames: Vec<Frame> = (scenes.iter())
-        .chain(std::iter::repeat_n(&scenes[49], 60))
+        .chain(std::iter::repeat_n(&scenes[59], 120))
         .map(|counts| Frame {
             counted: counted(counts),
             fraction: 0.15,
@@ -228,7 +232,7 @@ fn borders_rest_until_others_explain_more_and_then_follow_like_their_twin() {
         assert!((before - after).abs() <= 0.15 * 5.0, "{pair:?}");
     }
     assert!(
-        (5..90).contains(&moved),
+        (5..150).contains(&moved),
         "the far border moved in {moved} frames"
     );
     // It ends at its goal, bit for bit.
@@ -236,7 +240,7 @@ fn borders_rest_until_others_explain_more_and_then_follow_like_their_twin() {
     let fresh = run(&frames[frames.len() - 1..]);
     let last = found[found.len() - 1].expect("borders");
     let [near, far] = fresh[0].expect("borders");
-    let all = counted(&scenes[49]);
+    let all = counted(&scenes[59]);
     let explained = |near: f32, far: f32| {
         let [near, far] = [near, far].map(|d| all.bins_before(f64::from(d)));
         all.explained(far, near)
@@ -274,7 +278,7 @@ fn noise_moves_no_border() {
 
 #[test]
 fn a_cut_forgets_the_past_and_a_lock_keeps_it() {
-    let (before, after) = (three(0), three(40));
+    let (before, after) = (three(0), three(50));
     let frame = |counts, flags| Frame {
         counted: counted(counts),
         fraction: 0.1,

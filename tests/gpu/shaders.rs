@@ -514,6 +514,10 @@ fn every_shape_of_the_reduction_composes_and_validates() {
     }
     let source = shader("depth/borders.wgsl");
     module(&source, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let source = shader("objects/depths.wgsl");
+    for defs in subsets(&["VISIBLE_RANGE"]) {
+        module(&source, &defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
+    }
     let source = shader("depth/ping_pong.wgsl");
     for defs in subsets(&["FIRST", "MULTISAMPLED", "OBLIQUE"]) {
         module(&source, &defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));

@@ -73,8 +73,8 @@ fn planes_color(s: Planes, linear: vec3<f32>, w: vec3<f32>, change: f32) -> vec3
     );
     let kept = dot(w, vec3(s.near.chroma, s.middle.chroma, s.far.chroma));
     let tint = w.x * s.near.tint + w.y * s.middle.tint + w.z * s.far.tint;
-    let planes = vec3(clamp(dot(w, tones), 0.0, max(lab.x, 1.0)), kept * lab.yz + tint);
-    let mixed = mix(lab, planes, s.amount);
+    let changed = vec3(clamp(dot(w, tones), 0.0, max(lab.x, 1.0)), kept * lab.yz + tint);
+    let mixed = mix(lab, changed, s.amount);
     return in_gamut(oklab_to_linear(mixed), mixed.x, linear);
 }
 

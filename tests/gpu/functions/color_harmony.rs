@@ -105,8 +105,14 @@ fn harmony_is_its_twin() {
     for_cases(cases, |(s, c, (d, l)), result| {
         let twin = color_harmony::harmonize(s, rgb(c), f64::from(*d), f64::from(*l));
         let apart = codes_apart(result, twin);
+        // Colours far beyond white round in all components by a fraction of the largest: three
+        // cube roots of 2 units in the last place, in sums with factors up to 4.9, cubed, in sums
+        // with factors up to 8.2, are 160 units of 2^-23, or 2e-5.
+        let largest = color::largest(rgb(c).map(f64::abs)).max(1.0);
+        let rounding = (0..3).map(|i| (f64::from(result[i]) - twin[i]).abs());
+        let is_rounding = rounding.fold(0.0, f64::max) <= 2e-5 * largest;
         assert!(
-            apart <= 1.0,
+            apart <= 1.0 || is_rounding,
             "{s:?}, {c:?} at {d}: {result:?} on the GPU, {twin:?} in the twin, {apart} codes apart"
         );
     });
@@ -174,11 +180,9 @@ fn the_complement_of_the_complement_is_the_colour() {
         + "return vec4(harmonize(s, once, 1.0, 0.0), 0.0);";
     for (c, result) in rows.iter().zip(gpu().evaluate(HARMONY, &body, &packed)) {
         for i in 0..3 {
-            // A component is a sum of three cubes with factors up to 4.1 (8.2 in all), each
-            // with a relative error of about 8 half units in the last place (three cube
-            // roots, three products), there and back twice: 2 * 8.2 * 8 * 2^-24 = 8e-6.
+            // The rounding of two conversions there and back, see above.
             assert!(
-                (result[i] - c[i]).abs() < 1e-5,
+                (result[i] - c[i]).abs() < 4e-5,
                 "{c:?} became {result:?} after two complements"
             );
         }

@@ -77,6 +77,7 @@ fn settings() -> impl Strategy<Value = Planes> {
             near,
             middle,
             far,
+            by: PlaneUnit::Pixel,
             borders: PlaneBorders::Fixed,
             near_end: a.min(b),
             far_start: a.max(b),
