@@ -84,6 +84,7 @@ fn depth_texel(at: vec2<i32>, sample: i32) -> f32 {
 fn texel_depth(at: vec2<i32>, sample: i32) -> f32 {
     return raw_depth(view.raw, vec2<u32>(at), depth_texel(at, sample));
 }
+#endif
 
 // The depth map of this frame: with the visible range, if that is what it spans.
 fn depth_frame() -> DepthFrame {
@@ -112,6 +113,7 @@ fn depth_borders(frame: DepthFrame) -> vec2<f32> {
 }
 #endif
 
+#ifdef DEPTH
 // (D, L) of a pixel: the mean over its samples, because its colour is their mean too.
 fn pixel_depth(frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
 #ifdef MULTISAMPLED
