@@ -144,9 +144,6 @@ const PAGE_PRESETS: [Preset; 6] = [
     presets::RISOGRAPH,
 ];
 
-/// The presets of planes and harmony.
-const COLOR_PLANES: [Preset; 2] = [presets::STORYBOOK, presets::COPPER_AND_TEAL];
-
 /// The presets after the second paper that outline, and that suit a landscape.
 const OUTLINE_PRESETS: [Preset; 4] = [
     presets::SATURDAY_MORNING,
@@ -174,9 +171,6 @@ pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
     if scene == BuiltIn::Mountains {
         // Those with outlines: the meadow must not become a crowd of lines.
         shown.extend(OUTLINE_PRESETS);
-    }
-    if scene != BuiltIn::Teapot {
-        shown.extend(COLOR_PLANES);
     }
     shown.into_iter().map(Preset::name).collect()
 }
