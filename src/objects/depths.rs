@@ -229,13 +229,13 @@ fn places_table(device: &RenderDevice) -> Buffer {
     device.create_buffer(&BufferDescriptor {
         label: Some("comics_object_depths"),
         size: TABLE_SIZE,
-        usage: BufferUsages::STORAGE | BufferUsages::COPY_SRC,
+        usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     })
 }
 
-/// Records the pass that finds the places of objects. Where it cannot run, the places stay those
-/// of the last frame.
+/// Records the pass that finds the places of objects. Where it cannot run, they are unknown: those
+/// of the last frame may be places in another depth map.
 fn place_objects(
     view: ViewQuery<(&ViewPlaces, &DepthPlaces, Option<&ViewDepthRange>)>,
     bounds: Res<ObjectBounds>,
@@ -243,11 +243,14 @@ fn place_objects(
     mut ctx: RenderContext,
 ) {
     let (places, table, range) = view.into_inner();
-    let (Some(pipeline), Some(uniform), Some(objects)) = (
+    let keys = range.and_then(ViewDepthRange::drawn);
+    let (Some(pipeline), Some(uniform), Some(objects), true) = (
         cache.get_compute_pipeline(places.pipeline),
         places.uniform.binding(),
         bounds.buffer.binding(),
+        keys.is_some() || !places.visible_range,
     ) else {
+        ctx.command_encoder().clear_buffer(&table.table, 0, None);
         return;
     };
     let entry = |binding, resource| BindGroupEntry { binding, resource };
@@ -256,10 +259,7 @@ fn place_objects(
         entry(1, objects),
         entry(2, table.table.as_entire_binding()),
     ];
-    if places.visible_range {
-        let Some(keys) = range.and_then(ViewDepthRange::drawn) else {
-            return;
-        };
+    if let Some(keys) = keys.filter(|_| places.visible_range) {
         entries.push(entry(3, keys.as_entire_binding()));
     }
     let layout = cache.get_bind_group_layout(&PlacePipeline::layout(places.visible_range));

@@ -6,8 +6,10 @@
 #import bevy_comics::depth::map::{DepthFrame, depth_map}
 #import bevy_comics::depth::view::{View, depth_frame, set_view}
 
-// Changes of D up to this are ignored.
+// Changes of D up to this are ignored, and near the eye up to this fraction of D: on a linear map
+// of a large landscape, all that matters may be in the first hundredth.
 const HYSTERESIS: f32 = 0.03;
+const HYSTERESIS_FRACTION: f32 = 0.15;
 
 // Objects that extend over less of D than this are one place; from the second number on, every
 // pixel is its own.
@@ -61,7 +63,8 @@ fn object_place(frame: DepthFrame, axis: vec2<f32>, orthographic: bool, distance
 
 // The place that is kept of one that moves.
 fn kept_place(before: f32, now: f32) -> f32 {
-    return clamp(before, now - HYSTERESIS, now + HYSTERESIS);
+    let ignored = min(HYSTERESIS, HYSTERESIS_FRACTION * now);
+    return clamp(before, now - ignored, now + ignored);
 }
 
 @compute @workgroup_size(64)

@@ -167,17 +167,26 @@ fn borders_are_those_of_the_exhaustive_search() {
             "{counted:?}: {chosen:?} explain {explained}, {pair:?} {most}"
         );
         all += 1;
-        // In the middle of the gap, to a thousandth of a bin.
+        // Where two pairs explain the same up to that error, either may be chosen.
+        if explained < (1.0 - 1e-12) * most {
+            continue;
+        }
+        same += 1;
+        // In the middle of the gap. Raw depth near 1 is rounded to 2^-24, four times, and that is
+        // a fraction of the window; a logarithm of up to 32 to 2^-19.
+        let error = match counted.bins {
+            Bins::Window([near, far]) => 4.0 * 2f64.powi(-24) / (near - far),
+            Bins::Octaves => 2f64.powi(-18),
+        };
         let want = [pair[1], pair[0]].map(|bin| counted.place(counted.gap(bin)));
         let got = [near, far].map(|d| counted.place(d));
-        let is_close = |i: usize| (want[i] - got[i]).abs() < 1e-4;
-        same += usize::from(is_close(0) && is_close(1));
+        let apart = (0..2).map(|i| (want[i] - got[i]).abs()).fold(0.0, f64::max);
+        assert!(apart <= error, "{counted:?}: {got:?} for {want:?}");
     }
     assert!(all > 250, "{all} of 300 heaps can be divided");
-    // The others are ties within the rounding of the sums.
     assert!(
-        same * 100 >= all * 98,
-        "{same} of {all} have the same borders"
+        same > all / 2,
+        "{same} of {all} have the pair of the search"
     );
 }
 
