@@ -1,12 +1,22 @@
 //! What the passes that complete cracks load, counted in their shaders, and how often they
 //! run. A cell has 4 x 8 = 32 pixels, and a word of a plane 32 rows of a column.
 
-use bevy::prelude::*;
+use std::collections::BTreeSet;
+
+use bevy::{
+    prelude::*,
+    render::{
+        render_resource::{PipelineCache, PipelineDescriptor},
+        view::Msaa,
+    },
+};
 use bevy_comics::{ComicStyle, Outlines};
 use bevy_comics_testkit::{
     link_work::{self, LinkWork},
     work::along_cracks,
 };
+
+use crate::small::Small;
 
 const CELL: f64 = 32.0;
 /// Words that tell a pass of `link.wgsl` whether a cell has anything to continue: found
@@ -76,4 +86,46 @@ fn default_lines_load_some_windows() {
 fn cracks_that_are_complete_are_not_completed() {
     let work = link_work::count(&ComicStyle::new().with(along_cracks()));
     assert_eq!(work, LinkWork::default());
+}
+
+/// The kinds of dispatches and draws of the lines in a style, by the names of their pipelines. Each
+/// runs once in a frame, but for `comics_link_lines`, which continues lines by eight cracks.
+fn kernels(outlines: Outlines) -> BTreeSet<String> {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    small.style(&ComicStyle::new().with(outlines));
+    small.settle();
+    let cache = small.render_world().resource::<PipelineCache>();
+    let label = |pipeline: &PipelineDescriptor| match pipeline {
+        PipelineDescriptor::RenderPipelineDescriptor(d) => d.label.clone(),
+        PipelineDescriptor::ComputePipelineDescriptor(d) => d.label.clone(),
+    };
+    cache
+        .pipelines()
+        .filter_map(|pipeline| label(&pipeline.descriptor))
+        .filter_map(|label| Some(label.strip_prefix("comics_")?.to_owned()))
+        .collect()
+}
+
+#[test]
+fn outlines_dispatch_no_more_kernels_than_they_need() {
+    let names = |more: &[&str]| -> BTreeSet<String> {
+        let always = [
+            "walk",
+            "list_tiles",
+            "find_in_cells",
+            "draw_lines",
+            "stylize",
+        ];
+        always.iter().chain(more).map(|s| s.to_string()).collect()
+    };
+    assert_eq!(kernels(along_cracks()), names(&[]));
+    let wide = Outlines {
+        width: 16.0,
+        ..along_cracks()
+    };
+    assert_eq!(kernels(wide), names(&["line_columns"]));
+    assert_eq!(
+        kernels(Outlines::default()),
+        names(&["link_lines", "join_lines", "settle_lines", "object_ids"])
+    );
 }
