@@ -80,7 +80,11 @@ fn an_impact_that_waits_flashes_when_it_is_shown() {
 fn every_flash_of_an_impact_counts_from_where_it_begins() {
     for (drawings, rate) in [(2, 4.0), (3, 4.0), (3, 12.0), (2, 30.0), (3, 30.0)] {
         for every in [1, 5, 7, 11, 16, 33] {
-            let trigger = |frame: usize| (frame % every == 0).then(|| impact(drawings, rate, true));
+            let trigger = |frame: usize| {
+                frame
+                    .is_multiple_of(every)
+                    .then(|| impact(drawings, rate, true))
+            };
             let found = flashes(400, trigger, |_| false);
             assert_few(&found, &format!("{drawings} at {rate}, every {every}"));
         }
