@@ -110,6 +110,7 @@ fn kernels(outlines: Outlines) -> BTreeSet<String> {
 fn outlines_dispatch_no_more_kernels_than_they_need() {
     let names = |more: &[&str]| -> BTreeSet<String> {
         let always = [
+            "object_ids",
             "walk",
             "list_tiles",
             "find_in_cells",
@@ -126,6 +127,6 @@ fn outlines_dispatch_no_more_kernels_than_they_need() {
     assert_eq!(kernels(wide), names(&["line_columns"]));
     assert_eq!(
         kernels(Outlines::default()),
-        names(&["link_lines", "join_lines", "settle_lines", "object_ids"])
+        names(&["link_lines", "join_lines", "settle_lines"])
     );
 }
