@@ -21,8 +21,8 @@ pub enum ComicsSystems {
     /// Applies the effects to the picture: in `Core3dSystems::PostProcess`, after
     /// tonemapping and before FXAA and SMAA, which then smooth the ink.
     Stylize,
-    /// The same for cameras with an effect of [`EffectStage::Print`](crate::EffectStage):
-    /// after FXAA, SMAA and contrast-adaptive sharpening, which would change the dots.
+    /// The same for cameras with an effect that [prints](crate::Effect::prints): after FXAA,
+    /// SMAA and contrast-adaptive sharpening, which would change dots and grain.
     Print,
 }
 

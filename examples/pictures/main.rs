@@ -7,6 +7,7 @@
 //! cargo run --example pictures -- presets [--out FILE.png]
 //! cargo run --example pictures -- pages [--out DIR]
 //! cargo run --example pictures -- motion [--out DIR]
+//! cargo run --example pictures -- print [--out DIR]
 //! cargo run --example pictures -- strips [--out DIR]
 //! cargo run --example pictures -- figures [--out DIR]
 //! cargo run --example pictures -- golden [--out DIR]
@@ -15,6 +16,7 @@
 mod figures;
 mod motion;
 mod pages;
+mod print;
 mod sheet;
 mod strips;
 
@@ -29,6 +31,7 @@ usage: pictures contact-sheet [--size WxH] [--out FILE.png]   every scene in eve
        pictures presets [--out FILE.png]                      the page of the presets
        pictures pages [--out DIR]                             the pages about single tasks
        pictures motion [--out DIR]                            the pages about speed lines and paper
+       pictures print [--out DIR]                             the pages about print, paint and focus
        pictures strips [--out DIR]                            lines in motion, for looking at
        pictures figures [--out DIR]                           the figures of the first paper
        pictures golden [--out DIR]                            the tests' reference pictures";
@@ -76,6 +79,7 @@ fn run() -> Result<(), String> {
         Some("presets") => sheet::presets(&or("target/presets.png")),
         Some("pages") => pages::write(&or("target/pages")),
         Some("motion") => motion::write(&or("target/motion")),
+        Some("print") => print::write(&or("target/print")),
         Some("strips") => strips::write(&or("target/strips")),
         Some("figures") => figures::write(&or("target/figures")),
         Some("golden") => sheet::golden(&or("tests/golden")),

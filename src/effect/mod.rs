@@ -185,8 +185,8 @@ pub trait Effect:
         None
     }
 
-    /// Whether the view is styled after FXAA and SMAA, because the effect draws dots that these
-    /// would smear. Default: for effects of the stage [`EffectStage::Print`].
+    /// Whether the view is styled after FXAA and SMAA, because the effect draws dots or grain that
+    /// these would smear. Default: for effects of the stage [`EffectStage::Print`].
     fn prints(&self) -> bool {
         Self::STAGE == EffectStage::Print
     }

@@ -40,7 +40,7 @@ effects! {
     iso_lines: IsoLines, IsoField;
     two_tone: TwoTone;
     speed_lines: SpeedLines, SpeedLineKind;
-    paper: Paper;
+    paper: Paper, PaperAnchor;
     vignette: Vignette;
 }
 

@@ -6,7 +6,7 @@ use bevy::{math::Vec2, render::render_resource::ShaderType};
 /// [`Halftone`](crate::Halftone).
 ///
 /// Its height is `sheet_height` of `bevy_comics::effect::sheet` in WGSL, from -1 in its deepest
-/// valleys to 1 on its highest hills. It is fixed to the render target.
+/// valleys to 1 on its highest hills.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sheet {
     /// Width of the band in which the edges of ink vary, in physical pixels, 0 or more: half of
@@ -14,6 +14,8 @@ pub struct Sheet {
     pub spread: f32,
     /// How much ink wide lines lose in streaks, 0 to 1.
     pub dry_brush: f32,
+    /// Where the sheet begins, in physical pixels from the render target's top left corner.
+    pub corner: Vec2,
     /// Places on the sheet per physical pixel, as `sheet_height` takes them.
     pub scale: f32,
     /// Physical pixels per logical pixel.
@@ -35,7 +37,7 @@ impl Sheet {
     /// As shaders take it. `origin`: the corner of the viewport in the render target.
     pub(crate) fn uniform(self, origin: Vec2) -> SheetUniform {
         SheetUniform {
-            origin,
+            origin: origin - self.corner,
             spread: self.spread,
             dry_brush: self.dry_brush,
             scale: self.scale,

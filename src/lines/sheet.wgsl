@@ -8,7 +8,7 @@
 
 // Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
 struct Sheet {
-    // The corner of the viewport in the render target, to which the sheet is fixed.
+    // The corner of the viewport, in physical pixels from that of the sheet.
     origin: vec2<f32>,
     // Width of the band in which edges of ink vary, in physical pixels.
     spread: f32,

@@ -104,7 +104,7 @@ presets! {
     PENCIL_SKETCH: "pencil-sketch";
     /// Evening: violet distance, warm lines that thin out with it.
     TWILIGHT_TOON: "twilight-toon";
-    /// Loose ink over a wash of the scene's own colours.
+    /// Washes of the scene's own colours on rough paper, under loose ink.
     WATERCOLOR: "watercolor";
     /// Flat patches of opaque colour on rough paper, soft lines in the colours that they surround.
     GOUACHE: "gouache";

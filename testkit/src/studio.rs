@@ -7,9 +7,10 @@ use bevy::{
     prelude::*, render::view::Msaa, time::TimeUpdateStrategy,
 };
 use bevy_comics::{
-    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, Focus, FocusAt, FocusStyle, Hatching,
-    HatchingGround, IsoLines, MeshSections, Outlines, Paint, PaintForm, Paper, Preset,
-    SpeedLineKind, SpeedLines, ToneBands, TwoTone, presets,
+    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, Focus, FocusAt, FocusStyle, Halftone,
+    HalftoneMode, Hatching, HatchingGround, IsoLines, MeshSections, ObjectScreen, Outlines, Paint,
+    PaintForm, Paper, Preset, ScreenAnchor, ScreenShape, SpeedLineKind, SpeedLines, ToneBands,
+    TwoTone, presets,
 };
 
 use super::{
@@ -72,11 +73,10 @@ impl Studio {
     /// The picture of the scene in a style; unstyled for `None`.
     pub fn shoot(&mut self, style: Option<&ComicStyle>) -> image::RgbaImage {
         let none = ComicStyle::default();
+        let style = style.unwrap_or(&none);
         let world = self.headless.app.world_mut();
-        wear(
-            &mut world.commands().entity(self.camera),
-            style.unwrap_or(&none),
-        );
+        set_screens(world, follows_objects(style));
+        wear(&mut world.commands().entity(self.camera), style);
         world.flush();
         let frame = TimeUpdateStrategy::ManualDuration(SHOT / SETTLE);
         self.headless.app.insert_resource(frame);
@@ -212,55 +212,68 @@ fn single_effects(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
         }
         BuiltIn::Theatre => {
             let kind = SpeedLineKind::Parallel;
-            let focus = Focus {
-                at: FocusAt::Centre,
-                ..Focus::default()
+            let followed = Halftone {
+                mode: HalftoneMode::Spot,
+                shape: ScreenShape::Line,
+                anchor: ScreenAnchor::Object,
+                ..Halftone::default()
             };
-            let focused = |look| {
-                let focus = Focus {
-                    style: look,
-                    ..focus
-                };
-                style.clone().with(focus).with(Outlines::default())
-            };
+            let screens = style.clone().with(followed).with(Outlines::default());
             vec![
-                (
-                    "speed-lines",
-                    style.clone().with(SpeedLines { kind, ..lines }),
-                ),
-                ("focus", focused(FocusStyle::Blur)),
-                ("focus-dots", focused(FocusStyle::Dots)),
-                ("focus-lines", focused(FocusStyle::Lines)),
+                ("speed-lines", style.with(SpeedLines { kind, ..lines })),
+                ("object-screens", screens),
             ]
         }
-        BuiltIn::Village => {
-            let distance = Paint {
-                near: 2.0,
-                far: 9.0,
-                ..Paint::default()
-            };
-            let hatched = Hatching {
-                spacing: 3.0,
-                ground: HatchingGround::Paper,
-                ..Hatching::default()
-            };
-            let strokes = Paint {
-                form: PaintForm::Anisotropic,
-                near: 6.0,
-                far: 6.0,
-                ..Paint::default()
-            };
-            vec![
-                ("paper", style.clone().with(Paper::default())),
-                (
-                    "paint",
-                    style.clone().with(distance).with(Outlines::default()),
-                ),
-                ("strokes", style.clone().with(strokes)),
-                ("hatching", style.with(hatched).with(Outlines::default())),
-            ]
-        }
+        BuiltIn::Village => village_effects(&style),
     }
+}
+
+/// The focus on the barrels and the cart in front of the village.
+pub fn village_focus(style: FocusStyle) -> ComicStyle {
+    let focus = Focus {
+        at: FocusAt::Distance,
+        style,
+        distance: 11.5,
+        period: 4.0,
+        radius: if style == FocusStyle::Offset {
+            4.0
+        } else {
+            8.0
+        },
+        ..Focus::default()
+    };
+    ComicStyle::new().with(focus).with(Outlines::default())
+}
+
+fn village_effects(style: &ComicStyle) -> Vec<(&'static str, ComicStyle)> {
+    let distance = Paint {
+        near: 2.0,
+        far: 9.0,
+        ..Paint::default()
+    };
+    let hatched = Hatching {
+        spacing: 3.0,
+        ground: HatchingGround::Paper,
+        ..Hatching::default()
+    };
+    let strokes = Paint {
+        form: PaintForm::Anisotropic,
+        near: 6.0,
+        far: 6.0,
+        ..Paint::default()
+    };
+    let lined = |style: ComicStyle| style.with(Outlines::default());
+    vec![
+        ("paper", style.clone().with(Paper::default())),
+        ("paint", lined(style.clone().with(distance))),
+        ("strokes", style.clone().with(strokes)),
+        ("hatching", lined(style.clone().with(hatched))),
+        ("focus", village_focus(FocusStyle::Blur)),
+        ("focus-offset", village_focus(FocusStyle::Offset)),
+        ("focus-paint", village_focus(FocusStyle::Paint)),
+        ("focus-dots", village_focus(FocusStyle::Dots)),
+        ("focus-lines", village_focus(FocusStyle::Lines)),
+    ]
 }
 
 /// The roots of the scene's parts.
@@ -276,6 +289,24 @@ pub fn set_cartoon(world: &mut World, on: bool) {
             world.entity_mut(part).insert(CartoonScene::default());
         } else {
             world.entity_mut(part).remove::<CartoonScene>();
+        }
+    }
+}
+
+/// Whether the screens of a style are those of objects with an `ObjectScreen`.
+fn follows_objects(style: &ComicStyle) -> bool {
+    style
+        .get::<Halftone>()
+        .is_some_and(|halftone| halftone.anchor == ScreenAnchor::Object)
+}
+
+/// Gives every part of the scene a screen of its own, or takes it away.
+fn set_screens(world: &mut World, on: bool) {
+    for part in roots(world) {
+        if on {
+            world.entity_mut(part).insert(ObjectScreen::default());
+        } else {
+            world.entity_mut(part).remove::<ObjectScreen>();
         }
     }
 }

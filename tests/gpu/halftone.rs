@@ -1,13 +1,15 @@
 //! Halftone: mean tones, moire, continuity, and pictures against the twin.
 
 use bevy::{
-    anti_alias::fxaa::Fxaa,
+    anti_alias::{
+        contrast_adaptive_sharpening::ContrastAdaptiveSharpening, fxaa::Fxaa, smaa::Smaa,
+    },
     camera::{Hdr, Viewport},
     prelude::*,
     render::view::Msaa,
 };
 use bevy_comics::{
-    ComicStyle, ComicsStage, DepthMap, DepthMapping, Halftone, HalftoneMode, Outlines,
+    ComicStyle, ComicsStage, DepthMap, DepthMapping, Halftone, HalftoneMode, Outlines, Paper,
     ScreenAnchor, ScreenSampling, ScreenShape, Silhouettes, ToneBands,
 };
 use bevy_comics_testkit::{
@@ -425,27 +427,56 @@ fn lines_stay_sharp() {
     assert_eq!(bare, printed);
 }
 
-/// FXAA would smear the dots: printed views are styled after it. Lines without a print are
-/// still smoothed.
+/// FXAA, SMAA and sharpening would change dots and grain: printed views are styled after them.
+/// Lines without a print are still smoothed.
 #[test]
-fn dots_are_drawn_after_fxaa() {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
-    small.clear();
-    let picture = |small: &mut Small, style: &ComicStyle| {
+fn dots_and_grain_are_drawn_after_anti_aliasing() {
+    let sharp = || ContrastAdaptiveSharpening {
+        enabled: true,
+        ..default()
+    };
+    let filter = |small: &mut Small, which: usize| {
+        let mut camera = small.camera_mut();
+        match which {
+            0 => camera.insert(Fxaa::default()),
+            1 => camera.insert(Smaa::default()),
+            _ => camera.insert(sharp()),
+        };
+    };
+    let picture = |style: &ComicStyle, filters: &[usize]| {
+        let mut small = flat(options(UVec2::new(96, 64)), [0.55, 0.4, 0.25]);
+        for which in filters {
+            filter(&mut small, *which);
+        }
         small.style(style);
         small.settle();
+        assert_eq!(small.errors(), 0);
         small.picture()
     };
     let dots = ComicStyle::new().with(ideal_spot(ScreenShape::Round, 6.0));
-    let bare = picture(&mut small, &dots);
-    small.insert(Fxaa::default());
-    assert_eq!(picture(&mut small, &dots), bare);
-    // FXAA does something here.
+    let grain = ComicStyle::new().with(Paper {
+        grain: 1.0,
+        size: 2.0,
+        ..default()
+    });
+    let plain = picture(&ComicStyle::new(), &[]);
+    for style in [dots, grain] {
+        let bare = picture(&style, &[]);
+        assert_ne!(bare, plain);
+        for filters in [&[0][..], &[1], &[2], &[0, 2], &[1, 2]] {
+            assert_eq!(picture(&style, filters), bare, "{filters:?}: {style:?}");
+        }
+    }
+    // Each of them does something here.
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
-    let lines = ComicStyle::new().with(Outlines::default());
-    let bare = picture(&mut small, &lines);
-    small.insert(Fxaa::default());
-    assert_ne!(picture(&mut small, &lines), bare);
+    small.style(&ComicStyle::new().with(Outlines::default()));
+    let mut before = small.settle().picture();
+    for which in 0..3 {
+        filter(&mut small, which);
+        let after = small.settle().picture();
+        assert_ne!(after, before, "filter {which}");
+        before = after;
+    }
 }
 
 /// Effects of all stages at once, with surface lines, MSAA, and an object's own colours.

@@ -46,6 +46,7 @@ mod outlines;
 mod outside;
 mod overshoot;
 mod own_effect;
+mod page_scale;
 mod paint;
 mod panel;
 mod paper;

@@ -5,11 +5,12 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{ComicsStage, Paper};
+use bevy_comics::{ComicStyle, ComicsStage, Halftone, Outlines, Paper, PaperAnchor};
 use bevy_comics_testkit::reference::paper;
+use image::imageops;
 
 use crate::{
-    small::{Small, linear, size, unlit},
+    small::{Small, linear, size, unlit, with_option},
     walls::{towards_the_sky, wall},
 };
 
@@ -149,6 +150,53 @@ fn a_split_screen_is_one_sheet() {
         .insert((straight, part(half.x, 1)));
     small.settle();
     assert_eq!(small.picture(), whole);
+}
+
+/// With a sheet of its own, a viewport shows what a picture of its size does: grain, rough lines
+/// and dots, and dry brushes. On the window's sheet it does not.
+#[test]
+fn a_view_can_have_its_own_sheet() {
+    let part = UVec2::new(44, 30);
+    let place = UVec2::new(23, 9);
+    let style = |anchor: PaperAnchor, dots: bool| {
+        let outlines = Outlines {
+            width: 5.0,
+            ..default()
+        };
+        let paper = Paper {
+            grain: 0.8,
+            spread: 1.5,
+            dry_brush: 0.5,
+            anchor,
+            ..default()
+        };
+        let style = ComicStyle::new().with(outlines).with(paper);
+        with_option(style, dots.then(Halftone::default))
+    };
+    let mut alone = Small::new(part, Msaa::Off);
+    let mut small = Small::new(size(), Msaa::Off);
+    small.insert(Camera {
+        clear_color: Color::srgb(0.3, 0.5, 0.8).into(),
+        viewport: Some(Viewport {
+            physical_position: place,
+            physical_size: part,
+            ..default()
+        }),
+        ..default()
+    });
+    for dots in [false, true] {
+        for anchor in [PaperAnchor::View, PaperAnchor::Window] {
+            let shot = |small: &mut Small| {
+                small.style(&style(anchor, dots));
+                small.settle().picture()
+            };
+            let (whole, picture) = (shot(&mut alone), shot(&mut small));
+            let inside = imageops::crop_imm(&picture, place.x, place.y, part.x, part.y);
+            let same = inside.to_image() == whole;
+            assert_eq!(same, anchor == PaperAnchor::View, "{anchor:?}, dots {dots}");
+        }
+    }
+    assert_eq!(alone.errors() + small.errors(), 0);
 }
 
 /// The sheet stays for all time, or for one drawing.

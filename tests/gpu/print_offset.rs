@@ -1,6 +1,10 @@
 //! Plates out of register.
 
-use bevy::{camera::Viewport, prelude::*, render::view::Msaa};
+use bevy::{
+    camera::{Hdr, Viewport},
+    prelude::*,
+    render::view::Msaa,
+};
 use bevy_comics::{
     CameraCut, ComicStyle, ComicsStage, DebugView, Desaturation, Halftone, Outlines, PrintOffset,
     ScreenSampling, SplitView, ToneBands,
@@ -11,7 +15,7 @@ use bevy_comics_testkit::reference::print_offset::strays;
 use crate::{
     halftone::covered,
     pictures::assert_pass_is_its_twin,
-    small::{Small, linear},
+    small::{Small, linear, unlit},
 };
 
 const STILL: PrintOffset = PrintOffset {
@@ -274,4 +278,79 @@ fn plates_stray_evenly() {
             assert!((found - want).abs() < 0.025, "{i}, {j}: {found}");
         }
     }
+}
+
+/// The opacity of a transparent camera stays, and nothing is printed where nothing is, however far
+/// the plates are moved.
+#[test]
+fn a_transparent_background_stays() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let mut small = Small::new(UVec2::new(72, 48), msaa);
+        small.insert(Camera {
+            clear_color: Color::NONE.into(),
+            ..default()
+        });
+        let far = PrintOffset {
+            cyan_x: 6.0,
+            magenta_y: -5.0,
+            yellow_x: -7.0,
+            black_x: 3.0,
+            ..default()
+        };
+        let style = ComicStyle::new().with(Desaturation::default()).with(far);
+        assert_pass_is_its_twin(&mut small, &style, None, "transparent");
+        let (read, wrote) = small.pass();
+        let mut empty = 0;
+        for (read, wrote) in read.pixels.iter().zip(&wrote.pixels) {
+            assert_eq!(read[3], wrote[3], "opacity stays");
+            if read[3] == 0.0 {
+                assert_eq!(*wrote, [0.0; 4]);
+                empty += 1;
+            }
+        }
+        assert!(empty > 300, "{empty} pixels of background");
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+/// HDR: what is brighter than white is printed as white, and a bright light beside a plate does
+/// not spread. Numbers out of range are those at its end, or the defaults.
+#[test]
+fn light_and_settings_out_of_range_are_finite() {
+    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
+    small.insert(Hdr);
+    let bright = Color::linear_rgb(60000.0, 1e9, 1e-30);
+    let at = Transform::from_xyz(0.0, 1.0, 2.0);
+    small.put(Sphere::new(0.6), unlit(bright), at);
+    let mut shown = Vec::new();
+    for x in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 0.0, 1e30, 32.0] {
+        let s = PrintOffset {
+            cyan_x: x,
+            cyan_y: x,
+            magenta_x: x,
+            magenta_y: x,
+            yellow_x: x,
+            yellow_y: x,
+            black_x: x,
+            black_y: x,
+            black_generation: x,
+            drift: x,
+            rate: x,
+            amount: 1.0,
+        };
+        small.insert(s).settle();
+        assert!(small.ran(ComicsStage::of::<PrintOffset>()), "{x}");
+        let (_, after) = small.pass();
+        let inside = after.pixels.iter().flatten();
+        assert!(inside.copied().all(|v| (0.0..=1.0).contains(&v)), "{x}");
+        // Every page is another one at these rates.
+        small.insert(PrintOffset { rate: 0.0, ..s }).settle();
+        shown.push(small.pass().1.pixels);
+    }
+    let [_, infinite, _, _, huge, end] = &shown[..] else {
+        panic!("six pictures");
+    };
+    assert!(huge == end, "1e30 is the end of the ranges");
+    assert!(infinite != end, "infinity is the default");
+    assert_eq!(small.errors(), 0);
 }

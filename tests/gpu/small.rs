@@ -100,6 +100,11 @@ impl Small {
         self.headless.app.world_mut()
     }
 
+    pub fn camera_mut(&mut self) -> EntityWorldMut<'_> {
+        let camera = self.camera;
+        self.world().entity_mut(camera)
+    }
+
     pub fn insert(&mut self, bundle: impl Bundle) -> &mut Self {
         let camera = self.camera;
         self.world().entity_mut(camera).insert(bundle);

@@ -10,9 +10,10 @@ use bevy::{
     render::{Render, RenderApp, RenderSystems, camera::ExtractedCamera, view::Msaa},
 };
 use bevy_comics::{
-    BlackFlats, ComicStyle, ContourOperator, Contours, Creases, Effect, Form, Outlines,
-    Silhouettes, VisibleDepthRange,
+    BlackFlats, ComicStyle, ContourOperator, Contours, Creases, Effect, Form, Halftone, Outlines,
+    Paper, PrintOffset, ScreenSampling, ScreenShape, Silhouettes, SpeedLines, VisibleDepthRange,
 };
+use bevy_comics_testkit::screens::SHAPES;
 
 use crate::{
     outlines::{look, put, removed},
@@ -462,4 +463,47 @@ fn the_range_is_that_of_a_view_of_the_main_passs_size() {
         assert!(matches!(native, VisibleDepthRange::Visible { .. }));
         assert_eq!(native, upscaled, "scale {scale}");
     }
+}
+
+/// Dots, grain and speed lines are drawn in the pixels of the picture: a flat field has the same,
+/// whatever the size of the main pass.
+#[test]
+fn the_page_has_the_size_of_the_picture() {
+    let mut small = new();
+    small.clear();
+    let shot = |small: &mut Small, style: &ComicStyle| {
+        small.style(style);
+        small.settle();
+        small.picture()
+    };
+    let dots = |shape: ScreenShape| Halftone { shape, ..default() };
+    let cells = Halftone {
+        sampling: ScreenSampling::Cell,
+        near: 0.5,
+        ..dots(ScreenShape::Round)
+    };
+    let lines = SpeedLines {
+        rate: 0.0,
+        ..default()
+    };
+    let rough = Paper {
+        spread: 1.0,
+        ..default()
+    };
+    let mut styles: Vec<_> = SHAPES.into_iter().map(|shape| of(dots(shape))).collect();
+    styles.push(of(cells).with(PrintOffset::default()));
+    styles.push(of(cells).with(rough));
+    styles.push(of(Paper::default()).with(lines));
+    override_main_pass(&mut small, None);
+    let plain = shot(&mut small, &ComicStyle::new());
+    for style in styles {
+        override_main_pass(&mut small, None);
+        let whole = shot(&mut small, &style);
+        assert_ne!(whole, plain, "{style:?}");
+        for scale in [1.5, 2.0] {
+            override_main_pass(&mut small, main_pass(scale));
+            assert_eq!(shot(&mut small, &style), whole, "{scale}: {style:?}");
+        }
+    }
+    assert_eq!(small.errors(), 0);
 }

@@ -47,7 +47,7 @@ pub struct Focus {
     #[reflect(@FieldRange::linear(0.05, 8.0))]
     pub ramp: f32,
     /// Largest radius in logical pixels. Range 0 (the effect is left out) to 24, default 6. At
-    /// most 128 physical pixels. [`FocusStyle::Dots`] and [`FocusStyle::Lines`] have their whole
+    /// most 256 physical pixels. [`FocusStyle::Dots`] and [`FocusStyle::Lines`] have their whole
     /// effect from 6 on.
     #[reflect(@FieldRange::linear(0.0, 24.0).unit("px"))]
     pub radius: f32,
@@ -81,7 +81,9 @@ pub enum FocusStyle {
     Blur,
     /// Printed with red and blue apart along a diagonal, by up to twice the radius.
     Offset,
-    /// Painted as by [`Paint`](crate::Paint), whose brush has the radius. Two more passes.
+    /// Painted as by [`Paint`](crate::Paint), whose brush has the radius. Two more passes. Before a
+    /// background that varies as much as its outline, a sharp figure's colour may be in the paint
+    /// beside it.
     Paint,
     /// Printed in dots of four ideal inks, which keep the mean colour; between sharp and out of
     /// focus, plain tones become dots. Reads no other pixels. The view is styled after FXAA and
@@ -184,7 +186,7 @@ impl Effect for Focus {
             reference: view.depth_reference.unwrap_or(0.0),
             clear: self.clear,
             steepness: 1.0 / self.ramp,
-            radius: (self.radius * view.scale_factor).min(128.0),
+            radius: (self.radius * view.scale_factor).min(256.0),
             at_centre: u32::from(self.at == FocusAt::Centre),
             centre: middle.as_vec2() + 0.25,
             period,

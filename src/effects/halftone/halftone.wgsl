@@ -70,6 +70,8 @@ struct Halftone {
     sheet: u32,
     spread: f32,
     sheet_scale: f32,
+    // Where the sheet begins in the render target, in physical pixels.
+    sheet_corner: vec2<f32>,
     // FOLLOWS: clip space from world space.
     clip_from_world: mat4x4<f32>,
 }
@@ -196,7 +198,7 @@ fn height_under(s: Halftone, p: Pixel) -> f32 {
     if !spreads(s) {
         return 0.0;
     }
-    return sheet_height(p.position * s.sheet_scale, s.sheet);
+    return sheet_height((p.position - s.sheet_corner) * s.sheet_scale, s.sheet);
 }
 
 // Length of the edges of a shape in a cell, in periods. Of grains, it is that of squares that are

@@ -215,6 +215,7 @@ impl Effect for Halftone {
             sheet: view.sheet.map_or(0, |sheet| sheet.seed),
             spread: view.sheet.map_or(0.0, |sheet| 0.5 * sheet.spread),
             sheet_scale: view.sheet.map_or(0.0, |sheet| sheet.scale),
+            sheet_corner: view.sheet.map_or(Vec2::ZERO, |sheet| sheet.corner),
             clip_from_world: view.clip_from_world,
         }
     }
@@ -288,5 +289,6 @@ pub struct HalftoneUniform {
     sheet: u32,
     spread: f32,
     sheet_scale: f32,
+    sheet_corner: Vec2,
     clip_from_world: Mat4,
 }

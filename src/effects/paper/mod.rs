@@ -3,7 +3,7 @@
 use bevy::{
     color::Color,
     ecs::{component::Component, reflect::ReflectComponent},
-    math::Vec3,
+    math::{Vec2, Vec3, Vec4Swizzles},
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
 };
@@ -19,9 +19,12 @@ use crate::{
 /// surface shades the page, and its colour tints it.
 ///
 /// The sheet is fixed to the render target, so that the views of a split screen are printed
-/// on one sheet. Grain, shading and [`spread`](Self::spread) keep the mean tone of a flat area
-/// within 1 %, in linear light. Light above 1 (HDR) and the background of a transparent camera
-/// have no grain. Reads no texture.
+/// on one sheet, unless [`anchor`](Self::anchor) gives each its own. Grain, shading and
+/// [`spread`](Self::spread) keep the mean tone of a flat area within 1 %, in linear light. Light
+/// above 1 (HDR) and the background of a transparent camera have no grain. Reads no texture.
+///
+/// The views of cameras with this effect are styled after FXAA and SMAA, which would smear the
+/// grain.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -64,6 +67,20 @@ pub struct Paper {
     /// sheet for all time) to 60, default 0.
     #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"))]
     pub rate: f32,
+    /// Where the sheet is fixed. Default: [`PaperAnchor::Window`].
+    pub anchor: PaperAnchor,
+}
+
+/// Where the sheet of a [`Paper`] is fixed.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum PaperAnchor {
+    /// At the corner of the render target: in a split screen, all views are on one sheet.
+    #[default]
+    Window,
+    /// At the corner of the viewport: each view is on a sheet of its own, which moves with it.
+    View,
 }
 
 impl Default for Paper {
@@ -77,6 +94,7 @@ impl Default for Paper {
             dry_brush: 0.0,
             color: Color::srgb_u8(251, 247, 236),
             rate: 0.0,
+            anchor: PaperAnchor::Window,
         }
     }
 }
@@ -102,6 +120,7 @@ impl Effect for Paper {
             dry_brush: bounded(self.dry_brush, default.dry_brush, 0.0, 1.0),
             color: displayable(self.color, default.color),
             rate: bounded(self.rate, default.rate, 0.0, 60.0),
+            anchor: self.anchor,
         }
     }
 
@@ -119,10 +138,15 @@ impl Effect for Paper {
         inked.then(|| Sheet {
             spread: self.amount * self.spread * view.scale_factor,
             dry_brush: self.amount * self.dry_brush,
+            corner: self.corner(view),
             scale: self.scale(view),
             unit: view.scale_factor,
             seed: view.drawing(self.rate),
         })
+    }
+
+    fn prints(&self) -> bool {
+        true
     }
 
     fn uniform(&self, view: &ViewFacts) -> PaperUniform {
@@ -133,6 +157,7 @@ impl Effect for Paper {
             shading: 0.5 * self.shading,
             scale: self.scale(view),
             seed: view.drawing(self.rate),
+            corner: self.corner(view),
         }
     }
 }
@@ -141,6 +166,14 @@ impl Paper {
     /// Places on the sheet per physical pixel.
     fn scale(&self, view: &ViewFacts) -> f32 {
         1.0 / (self.size * view.scale_factor)
+    }
+
+    /// Where the sheet begins in the render target, in physical pixels.
+    fn corner(&self, view: &ViewFacts) -> Vec2 {
+        match self.anchor {
+            PaperAnchor::Window => Vec2::ZERO,
+            PaperAnchor::View => view.viewport.xy().as_vec2(),
+        }
     }
 }
 
@@ -153,4 +186,5 @@ pub struct PaperUniform {
     shading: f32,
     scale: f32,
     seed: u32,
+    corner: Vec2,
 }

@@ -14,6 +14,8 @@ struct Paper {
     // Places on the sheet per physical pixel.
     scale: f32,
     seed: u32,
+    // Where the sheet begins in the render target, in physical pixels.
+    corner: vec2<f32>,
 }
 
 // Linear light of a page where the sheet has a height. `page`: without the paper.
@@ -26,7 +28,7 @@ fn on_paper(s: Paper, page: vec3<f32>, height: f32) -> vec3<f32> {
 }
 
 fn paper(s: Paper, p: Pixel) -> Pixel {
-    let height = sheet_height(p.position * s.scale, s.seed);
+    let height = sheet_height((p.position - s.corner) * s.scale, s.seed);
     let printed = on_paper(s, p.color / max(p.alpha, 1e-3), height);
     var out = p;
     // Nothing is added where the background shows through.

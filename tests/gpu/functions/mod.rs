@@ -17,6 +17,7 @@ pub mod halftone;
 mod hatching;
 mod iso_lines;
 mod jumps;
+mod kuwahara;
 mod memory;
 mod middles;
 mod normal;

@@ -26,7 +26,7 @@ fn ink_on_paper_is_that_of_the_twin() {
             ..Paper::default()
         },
     ] {
-        let fields = ["vec3", "f32", "f32", "f32", "f32", "u32"];
+        let fields = ["vec3", "f32", "f32", "f32", "f32", "u32", "vec2"];
         let s = expression("Paper", &fields, &paper, &view([96, 64], 1.0, 0.0));
         for_batches(row(), |rows| {
             let body = format!(

@@ -1,0 +1,352 @@
+//! Effects of the page in a screenshot with eight times the scale factor: reduced to the size of
+//! the screen, it looks like the screen.
+//!
+//! The scenes have edges only between pixels of the screen, so that without effects both pictures
+//! are one. An effect decides in the middle of a pixel what the screenshot decides for 64 parts of
+//! it: edges of dots, of lines and of patches are up to half a pixel elsewhere. So the pictures may
+//! differ by as much as the screenshot does from itself, half a pixel of the screen further across
+//! and down. A screenshot without the scale factor, whose dots are an eighth as large, differs by
+//! at least twice as much from the screen.
+
+use bevy::{
+    asset::RenderAssetUsages,
+    image::{Image, ImageSampler},
+    prelude::*,
+    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
+};
+use bevy_comics::{
+    ComicStyle, Focus, FocusAt, FocusStyle, Halftone, HalftoneMode, Outlines, Paint, PaintForm,
+    Paper, PrintOffset, ScreenSampling, ScreenShape, SpeedLineKind, SpeedLines,
+};
+use bevy_comics_testkit::{
+    reference::{color, noise},
+    screens::{SHAPES, ideal},
+};
+
+use crate::{
+    small::{Small, unlit},
+    walls::towards_the_sky,
+};
+
+const SCREEN: UVec2 = UVec2::new(96, 64);
+const TIMES: u32 = 8;
+/// Half a code of the display is at most this much linear light.
+const ROUNDING: f64 = 0.0045;
+
+/// Linear light of the pixels of a screen, without the last column and row.
+type Light = Vec<[f64; 3]>;
+
+/// The light of a screenshot, reduced to the size of the screen. `from`: the pixel of the
+/// screenshot where the screen's first one begins, in both axes.
+fn reduced(picture: &image::RgbaImage, times: u32, from: u32) -> Light {
+    let light: Vec<f64> = (0..=255u8)
+        .map(|code| color::srgb_decode([f64::from(code) / 255.0; 3])[0])
+        .collect();
+    let area = f64::from(times * times);
+    let pixels = (0..SCREEN.y - 1).flat_map(|y| (0..SCREEN.x - 1).map(move |x| (x, y)));
+    let mean = |(x, y): (u32, u32)| {
+        let mut sum = [0.0; 3];
+        for (i, j) in (0..times).flat_map(|j| (0..times).map(move |i| (i, j))) {
+            let pixel = picture.get_pixel(times * x + from + i, times * y + from + j);
+            for (sum, code) in sum.iter_mut().zip(pixel.0) {
+                *sum += light[usize::from(code)] / area;
+            }
+        }
+        sum
+    };
+    pixels.map(mean).collect()
+}
+
+/// The mean of the differences of all pixels.
+fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    let all = a.iter().flatten().zip(b.iter().flatten());
+    let sum: f64 = all.map(|(a, b)| (a - b).abs()).sum();
+    sum / (3 * a.len()) as f64
+}
+
+fn mean(light: &[[f64; 3]]) -> f64 {
+    light.iter().flatten().sum::<f64>() / (3 * light.len()) as f64
+}
+
+fn shot(small: &mut Small, style: &ComicStyle, times: u32, scale: f32) -> image::RgbaImage {
+    small.headless.resize(times * SCREEN, scale);
+    let target = small.headless.render_target();
+    small.insert(target);
+    small.style(style);
+    small.settle();
+    small.picture()
+}
+
+/// What a style has on the screen, and reduced in a screenshot with the scale factor and in one
+/// without.
+struct Looks {
+    screen: Light,
+    screenshot: Light,
+    /// As the screenshot, half a pixel of the screen further across and down.
+    moved: Light,
+    unscaled: Light,
+}
+
+impl Looks {
+    fn new(small: &mut Small, style: &ComicStyle) -> Self {
+        let screen = shot(small, style, 1, 1.0);
+        let scaled = shot(small, style, TIMES, TIMES as f32);
+        let unscaled = shot(small, style, TIMES, 1.0);
+        assert_eq!(small.errors(), 0);
+        Self {
+            screen: reduced(&screen, 1, 0),
+            screenshot: reduced(&scaled, TIMES, 0),
+            moved: reduced(&scaled, TIMES, TIMES / 2),
+            unscaled: reduced(&unscaled, TIMES, 0),
+        }
+    }
+
+    fn assert_alike(&self, what: &str) {
+        let found = apart(&self.screen, &self.screenshot);
+        let most = apart(&self.screenshot, &self.moved) + ROUNDING;
+        let unscaled = apart(&self.screen, &self.unscaled);
+        let lighter = mean(&self.screenshot) - mean(&self.screen);
+        println!(
+            "{what}: {found:.4} of {most:.4}; unscaled {unscaled:.4}; lighter by {lighter:.4}"
+        );
+        assert!(found <= most, "{what}: {found}, at most {most}");
+        assert!(lighter.abs() <= 0.01, "{what}: lighter by {lighter}");
+        assert!(
+            unscaled > 2.0 * found,
+            "{what}: {unscaled}, at least twice {found}"
+        );
+    }
+}
+
+/// A wall of one colour.
+fn flat() -> Small {
+    let mut small = towards_the_sky(SCREEN);
+    let color = Color::linear_rgb(0.55, 0.4, 0.25);
+    let at = Transform::from_xyz(0.0, 0.0, -80.0);
+    small.put(Rectangle::new(200.0, 200.0), unlit(color), at);
+    small
+}
+
+/// Areas of three colours, with a noise of pixels of the screen.
+fn photograph() -> Image {
+    let pixel = |i: u32| {
+        let [x, y] = [i % SCREEN.x, i / SCREEN.x];
+        let middle = IVec2::new(x as i32 - 60, y as i32 - 36);
+        let area = match (x < 34, middle.length_squared() < 400) {
+            (true, _) => [0.55, 0.35, 0.2],
+            (_, true) => [0.2, 0.4, 0.6],
+            _ => [0.4, 0.6, 0.3],
+        };
+        let noise = f64::from(noise::hash(i) >> 8) / f64::from(1 << 24);
+        let light = area.map(|c: f64| c * (0.7 + 0.6 * noise));
+        let [r, g, b] = color::srgb_encode(light).map(|c| (255.0 * c).round() as u8);
+        [r, g, b, 255]
+    };
+    let mut image = Image::new(
+        Extent3d {
+            width: SCREEN.x,
+            height: SCREEN.y,
+            depth_or_array_layers: 1,
+        },
+        TextureDimension::D2,
+        (0..SCREEN.x * SCREEN.y).flat_map(pixel).collect(),
+        TextureFormat::Rgba8UnormSrgb,
+        RenderAssetUsages::default(),
+    );
+    image.sampler = ImageSampler::nearest();
+    image
+}
+
+/// A photograph that fills the view, and before it a red square.
+fn layers() -> Small {
+    let mut small = towards_the_sky(SCREEN);
+    let image = small
+        .world()
+        .resource_mut::<Assets<Image>>()
+        .add(photograph());
+    let photograph = StandardMaterial {
+        base_color_texture: Some(image),
+        ..unlit(Color::WHITE)
+    };
+    let (width, height) = (SCREEN.x as f32, SCREEN.y as f32);
+    let far = Transform::from_xyz(0.0, 0.0, -80.0);
+    small.put(Rectangle::new(width, height), photograph, far);
+    let near = Transform::from_xyz(-12.0, -5.0, -20.0);
+    let red = unlit(Color::linear_rgb(0.7, 0.2, 0.15));
+    small.put(Rectangle::new(28.0, 22.0), red, near);
+    small
+}
+
+#[test]
+fn without_effects_a_screenshot_is_the_screen() {
+    for mut small in [flat(), layers()] {
+        let none = ComicStyle::new();
+        let looks = Looks::new(&mut small, &none);
+        assert!(apart(&looks.screen, &looks.screenshot) < 1e-9);
+    }
+}
+
+#[test]
+fn dots_are_as_large() {
+    let mut small = flat();
+    let style = ComicStyle::new();
+    for shape in SHAPES {
+        let spot = Halftone {
+            mode: HalftoneMode::Spot,
+            shape,
+            ..ideal()
+        };
+        let looks = Looks::new(&mut small, &style.clone().with(spot));
+        looks.assert_alike(&format!("{shape:?}"));
+    }
+    let inks = Halftone::default();
+    let cells = Halftone {
+        shape: ScreenShape::Round,
+        sampling: ScreenSampling::Cell,
+        ..inks
+    };
+    let rough = Paper {
+        grain: 0.0,
+        shading: 0.0,
+        spread: 1.0,
+        ..default()
+    };
+    for (what, style) in [
+        ("four inks", style.clone().with(inks)),
+        ("whole dots", style.clone().with(cells)),
+        ("rough dots", style.with(inks).with(rough)),
+    ] {
+        Looks::new(&mut small, &style).assert_alike(what);
+    }
+}
+
+#[test]
+fn grain_and_speed_lines_are_as_large() {
+    let mut small = flat();
+    let radial = SpeedLines {
+        rate: 0.0,
+        count: 40,
+        width: 6.0,
+        ..default()
+    };
+    let parallel = SpeedLines {
+        kind: SpeedLineKind::Parallel,
+        ..radial
+    };
+    let dry = SpeedLines { dry: 0.6, ..radial };
+    let coarse = Paper {
+        grain: 1.0,
+        size: 3.0,
+        ..default()
+    };
+    let style = ComicStyle::new();
+    for (what, style) in [
+        ("paper", style.clone().with(Paper::default())),
+        ("coarse paper", style.clone().with(coarse)),
+        ("focus lines", style.clone().with(radial)),
+        ("speed lines", style.clone().with(parallel)),
+        ("dry lines", style.with(dry)),
+    ] {
+        Looks::new(&mut small, &style).assert_alike(what);
+    }
+}
+
+fn focus(style: FocusStyle) -> Focus {
+    Focus {
+        at: FocusAt::Distance,
+        style,
+        distance: 20.0,
+        ramp: 0.3,
+        ..default()
+    }
+}
+
+#[test]
+fn patches_and_focus_are_as_large() {
+    let mut small = layers();
+    let style = ComicStyle::new();
+    for (what, style) in [
+        ("paint", style.clone().with(Paint::default())),
+        (
+            "strokes",
+            style.clone().with(Paint {
+                form: PaintForm::Anisotropic,
+                ..default()
+            }),
+        ),
+        ("blur", style.clone().with(focus(FocusStyle::Blur))),
+        ("offset", style.clone().with(focus(FocusStyle::Offset))),
+        ("painted", style.clone().with(focus(FocusStyle::Paint))),
+        ("dots", style.with(focus(FocusStyle::Dots))),
+    ] {
+        Looks::new(&mut small, &style).assert_alike(what);
+    }
+}
+
+/// Ink on paper: rough edges, dry brushes, and lines that fade out of focus.
+#[test]
+fn ink_is_as_rough() {
+    let mut small = layers();
+    let lines = ComicStyle::new().with(Outlines {
+        width: 6.0,
+        ..Outlines::SILHOUETTES
+    });
+    let paper = |spread: f32, dry_brush: f32| Paper {
+        grain: 0.0,
+        shading: 0.0,
+        spread,
+        dry_brush,
+        ..default()
+    };
+    let beyond = Focus {
+        distance: 26.0,
+        clear: 0.0,
+        ramp: 0.2,
+        ..focus(FocusStyle::Lines)
+    };
+    for (what, style) in [
+        ("rough lines", lines.clone().with(paper(2.0, 0.0))),
+        ("dry lines", lines.clone().with(paper(0.0, 0.5))),
+        ("faded lines", lines.with(beyond)),
+    ] {
+        Looks::new(&mut small, &style).assert_alike(what);
+    }
+}
+
+/// Without black, a moved plate is a moved channel. The bilinear mean of two pixels of the screen
+/// is the mean of their parts in the screenshot: alike but for the rounding of the display.
+#[test]
+fn plates_out_of_register_are_as_far_apart() {
+    let mut small = layers();
+    let three = PrintOffset {
+        black_generation: 0.0,
+        drift: 1.5,
+        ..default()
+    };
+    let looks = Looks::new(&mut small, &ComicStyle::new().with(three));
+    let found = apart(&looks.screen, &looks.screenshot);
+    assert!(found < ROUNDING, "{found}");
+    assert!(apart(&looks.screen, &looks.unscaled) > 4.0 * ROUNDING);
+    let four = ComicStyle::new().with(PrintOffset::default());
+    Looks::new(&mut small, &four).assert_alike("four plates");
+}
+
+/// The largest radius of the settings still grows at this scale factor: 192 physical pixels.
+#[test]
+fn the_largest_blur_is_as_large() {
+    let mut small = layers();
+    let blurred = |radius: f32| {
+        ComicStyle::new().with(Focus {
+            radius,
+            ..focus(FocusStyle::Blur)
+        })
+    };
+    let largest = Looks::new(&mut small, &blurred(24.0));
+    largest.assert_alike("largest blur");
+    let other = reduced(
+        &shot(&mut small, &blurred(16.0), TIMES, TIMES as f32),
+        TIMES,
+        0,
+    );
+    assert!(apart(&largest.screenshot, &other) > ROUNDING);
+}
