@@ -45,6 +45,8 @@ pub trait AnyEffect: Any + Send + Sync + std::fmt::Debug {
     fn any_implied(&self) -> Option<Box<dyn AnyEffect>>;
     /// As [`Effect::variants`].
     fn any_variants(&self, view: &ViewFacts, variants: &mut Variants);
+    /// As [`Effect::box_reach`].
+    fn any_box_reach(&self, view: &ViewFacts) -> Option<u32>;
     /// As [`Effect::extent`].
     fn any_extent(&self, view: &ViewFacts) -> Extent;
     /// As [`Effect::line_focus`].
@@ -129,6 +131,10 @@ impl<E: Effect> AnyEffect for E {
 
     fn any_variants(&self, view: &ViewFacts, variants: &mut Variants) {
         self.variants(view, variants);
+    }
+
+    fn any_box_reach(&self, view: &ViewFacts) -> Option<u32> {
+        self.box_reach(view)
     }
 
     fn any_extent(&self, view: &ViewFacts) -> Extent {

@@ -42,7 +42,7 @@ impl BlueNoise {
                 mip_level_count: 1,
                 sample_count: 1,
                 dimension: TextureDimension::D2,
-                format: TextureFormat::R8Unorm,
+                format: TextureFormat::Rgba32Uint,
                 usage: TextureUsages::TEXTURE_BINDING,
                 view_formats: &[],
             };
@@ -51,7 +51,7 @@ impl BlueNoise {
                     queue,
                     &described,
                     TextureDataOrder::default(),
-                    &classes(),
+                    &around(&classes()),
                 )
                 .create_view(&TextureViewDescriptor::default())
         });
@@ -66,6 +66,23 @@ impl BlueNoise {
 fn classes() -> Vec<u8> {
     let class = |rank: usize| (rank / (GRAINS / 256)) as u8;
     ranks().into_iter().map(class).collect()
+}
+
+/// Where the part of the tile of each plate begins, in plates.
+const PLATE: [usize; 2] = [19, 37];
+
+/// All that a pixel shows of four plates, for every place: of each plate the classes of the grain at
+/// the place, and of those to its right, below it, and to the right below it.
+fn around(classes: &[u8]) -> Vec<u8> {
+    let of = |x: usize, y: usize| classes[y % SIDE * SIDE + x % SIDE];
+    let texel = |i: usize| {
+        (0..4).flat_map(move |plate| {
+            let x = i % SIDE + plate * PLATE[0];
+            let y = i / SIDE + plate * PLATE[1];
+            [of(x, y), of(x + 1, y), of(x, y + 1), of(x + 1, y + 1)]
+        })
+    };
+    (0..GRAINS).flat_map(texel).collect()
 }
 
 /// The pattern while it is made: which grains are set, and how close the set grains are to
@@ -174,6 +191,23 @@ mod tests {
             counts[usize::from(class)] += 1;
         }
         assert_eq!(counts, [GRAINS / 256; 256]);
+    }
+
+    #[test]
+    fn a_texel_has_what_a_pixel_shows_of_each_plate() {
+        let classes = classes();
+        let texels = around(&classes);
+        for (x, y) in [(0, 0), (5, 9), (63, 20), (17, 63), (63, 63)] {
+            let texel = &texels[16 * (y * SIDE + x)..][..16];
+            for (plate, found) in texel.chunks(4).enumerate() {
+                let of = |right: usize, down: usize| {
+                    let column = (x + 19 * plate + right) % SIDE;
+                    let row = (y + 37 * plate + down) % SIDE;
+                    classes[row * SIDE + column]
+                };
+                assert_eq!(found, [of(0, 0), of(1, 0), of(0, 1), of(1, 1)], "{x}, {y}");
+            }
+        }
     }
 
     /// At every tone a, the grains of a square of n x n are nearly as many as the tone says:

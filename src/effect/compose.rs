@@ -11,7 +11,7 @@ const RECIPE: &str = include_str!("fused.wgsl");
 pub(crate) const FILE_KEYS: [&str; 4] = ["version", "name", "partial", "depth_map"];
 
 /// The modules of this crate that an effect may import.
-const MODULES: [&str; 18] = [
+const MODULES: [&str; 19] = [
     "bevy_comics::depth::map",
     "bevy_comics::depth::normal",
     "bevy_comics::depth::raw",
@@ -21,6 +21,7 @@ const MODULES: [&str; 18] = [
     "bevy_comics::effect::color",
     "bevy_comics::effect::means",
     "bevy_comics::effect::noise",
+    "bevy_comics::effect::numbered",
     "bevy_comics::effect::picture",
     "bevy_comics::effect::pixel",
     "bevy_comics::effect::screen",
@@ -33,7 +34,7 @@ const MODULES: [&str; 18] = [
 ];
 
 /// Shader definitions of the fused pass that do not name an effect, in lower case.
-const DEFINITIONS: [&str; 28] = [
+const DEFINITIONS: [&str; 32] = [
     "depth",
     "map",
     "map_flags",
@@ -62,6 +63,10 @@ const DEFINITIONS: [&str; 28] = [
     "means",
     "draws_means",
     "means_down",
+    "box_reach",
+    "numbered",
+    "draws_numbers",
+    "inside",
 ];
 
 /// The shader definition of the effect with this name.
@@ -81,7 +86,7 @@ pub(super) fn refuses(effect: &EffectType, known: &[&EffectType]) -> Option<&'st
         Some("its name is not in snake_case, or ends with a digit or an underscore")
     } else if DEFINITIONS.contains(&name)
         || FILE_KEYS.contains(&name)
-        || ["view_", "without_", "boxes_"]
+        || ["view_", "without_", "boxes_", "numbers_", "reaches_"]
             .iter()
             .any(|prefix| name.starts_with(prefix))
     {
@@ -139,6 +144,7 @@ pub(super) fn fused_pass(types: &[&EffectType]) -> String {
                 text.push_str(RESTORE);
             }
             "//@boxes" => text.extend(types.iter().filter(|e| e.half_box).map(|e| boxes(e))),
+            "//@numbers" => text.extend(types.iter().filter(|e| e.number).map(|e| numbers(e))),
             "//@prints" => {
                 let prints = types.iter().filter(|e| e.stage == EffectStage::Print);
                 text.extend(prints.map(|effect| calls(effect)));
@@ -177,6 +183,19 @@ pub(super) fn left_out(name: &str) -> String {
 /// The shader definition of the passes that draw means for an effect.
 pub(super) fn boxes_of(name: &str) -> String {
     format!("BOXES_{}", definition(name))
+}
+
+/// The shader definition of the pass that draws numbers for an effect.
+pub(super) fn numbers_of(name: &str) -> String {
+    format!("NUMBERS_{}", definition(name))
+}
+
+/// The call of the function that says what the numbers of an effect are.
+fn numbers(effect: &EffectType) -> String {
+    let (name, definition) = (effect.name, numbers_of(effect.name));
+    let path = effect.shader.path;
+    let arguments = arguments(effect);
+    format!("#ifdef {definition}\n    number = {path}::{name}_number({arguments});\n#endif\n")
 }
 
 /// The call of the function that says how large the boxes of an effect are.

@@ -4,7 +4,10 @@
 //
 // LAYER: the pass draws a texture of the viewport's size, in linear light, for a later pass.
 // CONTINUED: the pass starts from such a texture. See passes.rs.
+// DRAWS_NUMBERS: the pass draws such a texture with a number at each pixel, by an entry point of
+// its own. NUMBERED: the pass starts from that.
 // DRAWS_MEANS: the pass draws means over boxes of such a texture, by its own entry point.
+// INSIDE: all pixels that are drawn lie inside the viewport.
 // OVERLAY: all effects draw over the picture, see Extent. Then the pass starts from a
 // transparent picture and returns ink that is multiplied by its opacity, and its opacity,
 // which are blended over the picture.
@@ -15,6 +18,7 @@
     finite, finite_color, lightness, linear_to_oklab, oklab_to_linear, srgb_decode, srgb_encode,
 }
 #import bevy_comics::effect::means::{half_side, mean_across, mean_down, packed_means}
+#import bevy_comics::effect::numbered::{load_numbered, packed_number}
 #import bevy_comics::effect::picture::load_picture
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::finish::{Finish, compare, difference, object_color, range_fraction}
@@ -82,7 +86,11 @@ fn found(pixel: vec2<i32>, stored: vec4<f32>) -> Pixel {
     p.original = to_linear(stored.rgb);
     p.color = p.original;
     p.alpha = clamp(finite(stored.a), 0.0, 1.0);
-#ifdef CONTINUED
+#ifdef NUMBERED
+    let before = load_numbered(pixel).color;
+    p.color = before.rgb;
+    p.alpha = before.a;
+#else ifdef CONTINUED
     let before = load_picture(pixel);
     p.color = before.rgb;
     p.alpha = before.a;
@@ -185,6 +193,55 @@ fn means(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
 }
 #endif
 
+// A pixel before the effects of the pass, without its place and depth.
+fn before_effects(pixel: vec2<i32>, stored: vec4<f32>) -> Pixel {
+    var p = found(pixel, stored);
+#ifdef LIGHTNESS_CHANGE
+    // Must run before any early return: derivatives need all four pixels of a quad.
+    p.change = fwidthFine(lightness(p.original));
+#endif
+    return p;
+}
+
+// A pixel after all effects of the pass.
+fn after_effects(before: Pixel, pixel: vec2<i32>, place: vec2<f32>) -> Pixel {
+#ifdef LINES
+    set_lines(comics.lines);
+#endif
+    var p = before;
+    p.position = place;
+    p = placed(p, pixel);
+#ifdef SURFACE_LINES
+    set_line_surface(surface_color(line_owner(pixel), p.change));
+#endif
+    return inked(printed(colored(p, pixel), pixel));
+}
+
+// What a pass draws for a later one. Larger numbers would become infinite. Later passes read each
+// pixel often: it is made finite once, here.
+fn layer_color(p: Pixel) -> vec4<f32> {
+    let color = clamp(finite_color(p.color), vec3(-65504.0), vec3(65504.0));
+    return vec4(color, clamp(finite(p.alpha), 0.0, 1.0));
+}
+
+#ifdef DRAWS_NUMBERS
+// The number of a pixel.
+fn number_of(p: Pixel) -> f32 {
+    var number = 0.0;
+    //@numbers
+    return number;
+}
+
+@fragment
+fn numbered(@builtin(position) position: vec4<f32>) -> @location(0) vec4<u32> {
+    let place = position.xy + vec2<f32>(comics.view.viewport.xy);
+    let pixel = vec2<i32>(place);
+    set_view(comics.view);
+    let p = after_effects(before_effects(pixel, load_source(pixel)), pixel, place);
+    return packed_number(layer_color(p), number_of(p));
+}
+#endif
+
 @fragment
 fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 #ifdef LAYER
@@ -194,29 +251,17 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 #endif
     let pixel = vec2<i32>(place);
     let stored = load_source(pixel);
-    let opacity = clamp(finite(stored.a), 0.0, 1.0);
     set_view(comics.view);
-    var p = found(pixel, stored);
-#ifdef LIGHTNESS_CHANGE
-    // Must run before the early return: derivatives need all four pixels of a quad.
-    p.change = fwidthFine(lightness(p.original));
-#endif
+    var p = before_effects(pixel, stored);
+#ifndef INSIDE
     let inside = pixel - comics.view.viewport.xy;
     if any(inside < vec2(0)) || any(inside >= comics.view.viewport.zw) {
         return stored;
     }
-#ifdef LINES
-    set_lines(comics.lines);
 #endif
-    p.position = place;
-    p = placed(p, pixel);
-#ifdef SURFACE_LINES
-    set_line_surface(surface_color(line_owner(pixel), p.change));
-#endif
-    p = inked(printed(colored(p, pixel), pixel));
+    p = after_effects(p, pixel, place);
 #ifdef LAYER
-    // Larger numbers would become infinite.
-    return vec4(clamp(p.color, vec3(-65504.0), vec3(65504.0)), p.alpha);
+    return layer_color(p);
 #else
 #ifdef DEBUG_VIEW
     p.color = srgb_decode(view_color(p, pixel));
@@ -224,6 +269,7 @@ fn stylize(@builtin(position) position: vec4<f32>) -> @location(0) vec4<f32> {
 #endif
     var result = vec4(p.color, p.alpha);
 #ifdef FINISH
+    let opacity = clamp(finite(stored.a), 0.0, 1.0);
     result = compare(comics.finish, vec4(p.original, opacity), result, p.inside.x);
 #endif
     return vec4(to_stored(result.rgb), result.a);

@@ -2,7 +2,7 @@
 
 use bevy::{
     camera::CompositingSpace,
-    math::Vec2,
+    math::{UVec2, Vec2, Vec4Swizzles},
     render::render_resource::{
         BindGroupLayoutDescriptor, SamplerBindingType, ShaderStages, TextureFormat,
         TextureSampleType,
@@ -13,9 +13,10 @@ use bevy::{
 
 use super::{
     AnyEffect, EffectStage, Extent, Needs, Plan, Variants, ViewFacts,
-    compose::{boxes_of, definition, left_out},
-    layers::{LAYER_FORMAT, MEANS_FORMAT},
-    passes::Pass,
+    compose::{definition, left_out},
+    layers::LAYER_FORMAT,
+    passes::{Pass, Reads},
+    words::{Boxes, Drawn, Read, WORDS_FORMAT},
 };
 use crate::{
     depth::view::ViewUniform,
@@ -61,43 +62,17 @@ pub(crate) struct StylizeKey {
     finish: bool,
     same_size: bool,
     pub part: Part,
-    /// The pass starts from a layer, and draws one.
+    /// The pass starts from a picture of an earlier one, and draws one for a later one.
     pub continued: bool,
     pub layer: bool,
-    pub means: Means,
+    pub draws: Drawn,
+    pub reads: Read,
+    /// All pixels that are drawn lie inside the viewport.
+    inside: bool,
     /// Effects that are left out of [`Part::Base`] or belong to other passes, and whether
     /// lines are left out too.
     left_out: Vec<&'static str>,
     without_lines: bool,
-}
-
-/// What a pass does with means over boxes of the picture before it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) enum Means {
-    /// It neither draws nor reads them.
-    #[default]
-    None,
-    /// Draws the means of rows for this effect, and nothing else.
-    Across(&'static str),
-    /// Draws the means of boxes from those of rows.
-    Down(&'static str),
-    /// Its effects read them.
-    Read,
-}
-
-impl Means {
-    /// The effect that they are drawn for, in a pass that draws them.
-    fn effect(self) -> Option<&'static str> {
-        match self {
-            Self::Across(effect) | Self::Down(effect) => Some(effect),
-            Self::None | Self::Read => None,
-        }
-    }
-
-    /// Whether the pass reads means.
-    fn reads(self) -> bool {
-        matches!(self, Self::Down(_) | Self::Read)
-    }
 }
 
 /// What a draw call of the fused pass draws.
@@ -170,7 +145,9 @@ impl StylizeKey {
             part: Part::Whole,
             continued: false,
             layer: false,
-            means: Means::None,
+            draws: Drawn::Picture,
+            reads: Read::Picture,
+            inside: facts.viewport.xy() == UVec2::ZERO && facts.viewport.zw() == facts.target_size,
             left_out: vec![],
             without_lines: false,
         }
@@ -186,6 +163,7 @@ impl StylizeKey {
             && self.view.is_none()
             && !self.finish
             && !self.continued
+            && self.reads == Read::Picture
             && !self.surface;
         let local = |effect: &dyn AnyEffect| effect.any_extent(facts) != Extent::Everywhere;
         plain && self.space == CompositingSpace::Linear && plan.drawn().all(local)
@@ -209,9 +187,14 @@ impl StylizeKey {
             unstyled_print: self.unstyled_print && has(|stage| stage == EffectStage::Print),
             view: self.view.filter(|_| !pass.layer),
             finish: self.finish && !pass.layer,
-            continued: pass.continued,
+            continued: pass.continued && !matches!(pass.reads, Some(Reads::Numbers(_))),
             layer: pass.layer,
-            means: pass.means.map_or(Means::None, |_| Means::Read),
+            reads: match pass.reads {
+                Some(Reads::Means(_)) => Read::Means,
+                Some(Reads::Numbers(_)) => Read::Numbered,
+                None => Read::Picture,
+            },
+            inside: self.inside || pass.layer,
             left_out: others
                 .map(|(_, effect)| effect.effect_type().name)
                 .collect(),
@@ -219,26 +202,37 @@ impl StylizeKey {
         }
     }
 
+    /// The key of a pass that draws its picture with the numbers of an effect.
+    pub fn numbered(&self, effect: &'static str) -> Self {
+        Self {
+            format: WORDS_FORMAT,
+            draws: Drawn::Numbered(effect),
+            ..self.clone()
+        }
+    }
+
     /// The keys of the passes that draw the means for this one, for an effect.
-    pub fn means_for(&self, effect: &'static str) -> [Self; 2] {
-        [Means::Across(effect), Means::Down(effect)].map(|means| Self {
-            format: MEANS_FORMAT,
+    pub fn means_for(&self, plan: &Plan, effect: &'static str, facts: &ViewFacts) -> [Self; 2] {
+        let found = plan.drawn().find(|e| e.effect_type().name == effect);
+        let reach = found.and_then(|effect| effect.any_box_reach(facts));
+        let boxes = Boxes { effect, reach };
+        let rows = (Drawn::Across(boxes), Read::Picture);
+        [rows, (Drawn::Down(boxes), Read::Means)].map(|(draws, reads)| Self {
+            format: WORDS_FORMAT,
             view: None,
             finish: false,
             continued: true,
             layer: true,
-            means,
+            inside: true,
+            draws,
+            reads,
             ..self.clone()
         })
     }
 
     /// The entry point of the shader.
     pub fn entry_point(&self) -> &'static str {
-        if self.means.effect().is_some() {
-            "means"
-        } else {
-            "stylize"
-        }
+        self.draws.entry_point()
     }
 
     /// The key of another part of the pass.
@@ -311,9 +305,7 @@ impl StylizeKey {
             (self.unstyled_print, "UNSTYLED_PRINT"),
             (self.continued, "CONTINUED"),
             (self.layer, "LAYER"),
-            (self.means.reads(), "MEANS"),
-            (self.means.effect().is_some(), "DRAWS_MEANS"),
-            (matches!(self.means, Means::Down(_)), "MEANS_DOWN"),
+            (self.inside, "INSIDE"),
             (needs.contains(Needs::LIGHTNESS_CHANGE), "LIGHTNESS_CHANGE"),
             (self.blue_noise(), "BLUE_NOISE"),
             (self.same_size, "SAME_SIZE"),
@@ -328,7 +320,8 @@ impl StylizeKey {
         .chain(self.view.map(|_| "DEBUG_VIEW".into()))
         .chain(self.view.into_iter().flat_map(view_definitions))
         .chain(self.effects.iter().map(|name| definition(name).into()))
-        .chain(self.means.effect().map(|name| boxes_of(name).into()))
+        .chain(self.draws.shader_defs())
+        .chain(self.reads.shader_def())
         .chain(self.left_out.iter().map(|name| left_out(name).into()))
         .chain([number("MAP_FLAGS", self.map_flags)])
         .chain(self.variants.shader_defs())
@@ -352,6 +345,7 @@ impl StylizeKey {
         }
         let layer = texture_2d(TextureSampleType::Float { filterable: true });
         let between = sampler(SamplerBindingType::Filtering);
+        let words = texture_2d(TextureSampleType::Uint);
         let optional = [
             (self.depth, prepass(2)),
             (self.visible_range, range_entry()),
@@ -362,20 +356,14 @@ impl StylizeKey {
             (self.ids(), ids_entry(self.samples > 1)),
             (self.continued, layer.build(9, fragment)),
             (self.continued, between.build(10, fragment)),
-            (
-                self.means.reads(),
-                texture_2d(TextureSampleType::Uint).build(12, fragment),
-            ),
-            (
-                self.blue_noise(),
-                texture_2d(unfilterable).build(11, fragment),
-            ),
+            (self.blue_noise(), words.clone().build(11, fragment)),
         ];
         entries.extend(
             optional
                 .into_iter()
                 .filter_map(|(on, entry)| on.then_some(entry)),
         );
+        entries.extend(self.reads.binding().map(|at| words.build(at, fragment)));
         BindGroupLayoutDescriptor::new("comics_stylize", &entries)
     }
 }

@@ -1,5 +1,5 @@
 //! The passes of a view before the last one, and the textures that they draw: pictures for
-//! effects that read the picture at other places, and means over boxes of them.
+//! effects that read the picture at other places, and means over boxes or numbers beside them.
 
 use bevy::{
     ecs::{
@@ -23,29 +23,33 @@ use bevy::{
 use super::{
     key::StylizeKey,
     pass::{attachment, described, entry},
-    prepare::{FusedRequest, LayerPass},
+    prepare::{FusedRequest, Layer, LayerPass},
+    words::{Drawn, WORDS_FORMAT},
 };
 
 /// Linear light, multiplied by the opacity, and the opacity.
 pub(super) const LAYER_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
-
-/// As `means.wgsl` packs them.
-pub(super) const MEANS_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
 
 /// On a view in the render world: what its passes but the last one draw to.
 #[derive(Component)]
 pub(super) struct ViewLayers {
     /// A pass cannot read what it draws to, so more than one pass draw to two in turns.
     pictures: Vec<CachedTexture>,
+    /// The same of pictures with numbers.
+    numbered: Vec<CachedTexture>,
     /// Means of rows and of boxes, or nothing.
     means: Vec<CachedTexture>,
 }
 
 impl ViewLayers {
     /// The texture that a pass draws to, and the next one reads.
-    fn picture(&self, pass: usize) -> Option<&TextureView> {
-        let at = pass % self.pictures.len().max(1);
-        Some(&self.pictures.get(at)?.default_view)
+    fn picture(&self, pass: usize, key: &StylizeKey) -> Option<&TextureView> {
+        let textures = match key.draws {
+            Drawn::Numbered(_) => &self.numbered,
+            _ => &self.pictures,
+        };
+        let at = pass % textures.len().max(1);
+        Some(&textures.get(at)?.default_view)
     }
 
     fn means(&self, step: usize) -> Option<&TextureView> {
@@ -83,11 +87,21 @@ pub(super) fn prepare_layers(
                 .map(|_| textures.get(&device, layer()))
                 .collect::<Vec<_>>()
         };
-        let pictures = get(LAYER_FORMAT, request.layers.len().min(2));
-        let has_means = request.layers.iter().any(|layer| layer.means.is_some());
-        let means = get(MEANS_FORMAT, if has_means { 2 } else { 0 });
-        if !pictures.is_empty() {
-            commands.entity(view).insert(ViewLayers { pictures, means });
+        let layers = || request.layers.iter();
+        // In turns by the number of the pass: two, even if only one of the passes draws to them.
+        let both = |draws: bool| if draws { layers().len().min(2) } else { 0 };
+        let is_numbered = |layer: &Layer| matches!(layer.picture.key.draws, Drawn::Numbered(_));
+        let pictures = get(LAYER_FORMAT, both(!layers().all(is_numbered)));
+        let numbered = get(WORDS_FORMAT, both(layers().any(is_numbered)));
+        let has_means = layers().any(|layer| layer.means.is_some());
+        let means = get(WORDS_FORMAT, if has_means { 2 } else { 0 });
+        if !request.layers.is_empty() {
+            let layers = ViewLayers {
+                pictures,
+                numbered,
+                means,
+            };
+            commands.entity(view).insert(layers);
         } else if layered.contains(view) {
             commands.entity(view).remove::<ViewLayers>();
         }
@@ -129,7 +143,8 @@ pub(super) struct Inputs<'a> {
 #[derive(Clone, Copy, Default)]
 pub(super) struct Before<'a> {
     picture: Option<&'a TextureView>,
-    means: Option<&'a TextureView>,
+    /// Means, or the picture with numbers.
+    words: Option<&'a TextureView>,
 }
 
 impl Inputs<'_> {
@@ -139,8 +154,8 @@ impl Inputs<'_> {
             entries.push(entry(9, picture.into_binding()));
             entries.push(entry(10, (&self.sampler.0).into_binding()));
         }
-        if let Some(means) = before.means {
-            entries.push(entry(12, means.into_binding()));
+        if let (Some(words), Some(binding)) = (before.words, key.reads.binding()) {
+            entries.push(entry(binding, words.into_binding()));
         }
         let layout = self.cache.get_bind_group_layout(&key.layout());
         let device = ctx.render_device();
@@ -205,7 +220,8 @@ impl<'a> Layers<'a> {
                 ]),
                 None => None,
             };
-            let picture = Draw::new(cache, &layer.picture, textures.picture(i))?;
+            let texture = textures.picture(i, &layer.picture.key);
+            let picture = Draw::new(cache, &layer.picture, texture)?;
             Some(LayerDraw { picture, means })
         });
         draws.collect::<Option<_>>().map(Self)
@@ -215,13 +231,19 @@ impl<'a> Layers<'a> {
     pub fn record(&self, ctx: &mut RenderContext, inputs: &Inputs) -> Before<'a> {
         let mut before = Before::default();
         for layer in &self.0 {
-            let picture = Some(layer.picture.record(ctx, inputs, &before));
-            before = Before {
-                picture,
-                means: None,
+            let drawn = Some(layer.picture.record(ctx, inputs, &before));
+            before = match layer.picture.key.draws {
+                Drawn::Numbered(_) => Before {
+                    picture: None,
+                    words: drawn,
+                },
+                _ => Before {
+                    picture: drawn,
+                    words: None,
+                },
             };
             for draw in layer.means.iter().flatten() {
-                before.means = Some(draw.record(ctx, inputs, &before));
+                before.words = Some(draw.record(ctx, inputs, &before));
             }
         }
         before

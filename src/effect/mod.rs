@@ -24,6 +24,7 @@ mod requests;
 mod set;
 mod target;
 mod variants;
+mod words;
 
 use std::fmt::Debug;
 
@@ -103,6 +104,11 @@ pub trait Effect:
     /// the side of the box around it in physical pixels. Default: false.
     const HALF_BOX: bool = false;
 
+    /// Whether the module has a function `NAME_number` for [`Needs::NUMBERED`]: it takes the
+    /// settings and a pixel, of which only the places and the depth are set, and returns any
+    /// number. Default: false.
+    const NUMBER: bool = false;
+
     /// The settings in the layout of the WGSL struct; [`NoUniform`] if the function
     /// takes none. In the uniform buffer it starts at a multiple of 16 bytes.
     type Uniform: ShaderType + WriteInto;
@@ -151,6 +157,13 @@ pub trait Effect:
     /// pipeline, so modes should not depend on a slider. Default: none.
     fn variants(&self, view: &ViewFacts, variants: &mut Variants) {
         let _ = (view, variants);
+    }
+
+    /// For [`Needs::MEANS`]: how many pixels the boxes reach from their middle at most. Up to 6 are
+    /// compiled in, which is faster where most boxes reach as far. Default: boxes of any size.
+    fn box_reach(&self, view: &ViewFacts) -> Option<u32> {
+        let _ = view;
+        None
     }
 
     /// Where the effect can change the picture. The fused pass leaves it out of the rest.
@@ -353,6 +366,13 @@ bitflags! {
         /// [`Needs::IDS`] while some object has one; otherwise it asks for nothing, and
         /// `OBJECT_ANCHORS` is not defined in WGSL.
         const OBJECT_ANCHORS = 1 << 10;
+        /// That picture together with a number of the effect's own at every pixel, by
+        /// `bevy_comics::effect::numbered::load_numbered`: both by one load, for effects that
+        /// would read the depth of many pixels besides their colours. In place of
+        /// [`Needs::PICTURE`]: the first pass draws a texture of the viewport's size with 16
+        /// bytes a pixel, which holds both. The WGSL says what the number is, see
+        /// [`Effect::NUMBER`]. Of an effect that also has [`Needs::MEANS`], these count.
+        const NUMBERED = 1 << 11;
     }
 }
 
@@ -361,7 +381,8 @@ impl Needs {
     pub(crate) const WITHOUT_PREPASSES: Self = Self::LIGHTNESS_CHANGE
         .union(Self::PICTURE)
         .union(Self::BLUE_NOISE)
-        .union(Self::MEANS);
+        .union(Self::MEANS)
+        .union(Self::NUMBERED);
 }
 
 /// The uniform of an effect whose WGSL function takes no settings.

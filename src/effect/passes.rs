@@ -14,8 +14,17 @@ pub(super) struct Pass {
     pub continued: bool,
     /// Draws that picture for the next pass; else the view's picture.
     pub layer: bool,
-    /// The effect that reads means over boxes of the picture before it.
-    pub means: Option<&'static str>,
+    /// What its first effect reads besides the picture before it.
+    pub reads: Option<Reads>,
+}
+
+/// What an effect reads besides the picture before it, with the effect's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Reads {
+    /// Means over boxes of that picture.
+    Means(&'static str),
+    /// A number of its own at every pixel.
+    Numbers(&'static str),
 }
 
 /// The passes of a plan, in order: one, and one more for each effect that reads the picture
@@ -41,21 +50,28 @@ pub(super) fn passes(plan: &Plan) -> Vec<Pass> {
             effects: start..end,
             continued: i > 0,
             layer: i < last,
-            means: reader_of_means(plan, start).filter(|_| i > 0),
+            reads: reads(plan, start).filter(|_| i > 0),
         })
         .collect()
 }
 
 /// Whether an effect reads the picture before it at other places.
 fn reads_picture(effect: &dyn AnyEffect) -> bool {
-    effect.any_needs().intersects(Needs::PICTURE | Needs::MEANS)
+    let picture = Needs::PICTURE | Needs::MEANS | Needs::NUMBERED;
+    effect.any_needs().intersects(picture)
 }
 
-/// The effect at this position of [`Plan::drawn`], if it reads means.
-fn reader_of_means(plan: &Plan, at: usize) -> Option<&'static str> {
+/// What the effect at this position of [`Plan::drawn`] reads.
+fn reads(plan: &Plan, at: usize) -> Option<Reads> {
     let effect = plan.drawn().nth(at)?;
-    let means = effect.any_needs().contains(Needs::MEANS) && effect.effect_type().half_box;
-    means.then_some(effect.effect_type().name)
+    let (needs, of) = (effect.any_needs(), effect.effect_type());
+    if needs.contains(Needs::MEANS) {
+        of.half_box.then_some(Reads::Means(of.name))
+    } else if needs.contains(Needs::NUMBERED) {
+        of.number.then_some(Reads::Numbers(of.name))
+    } else {
+        None
+    }
 }
 
 /// The last effect that a debug view depends on, as a position in [`Plan::drawn`].
@@ -154,9 +170,10 @@ mod tests {
             let types = EffectRegistry::built_in().types();
             let plan = Plan::new(world.entity(camera), &[], &types, ObjectChanges::default());
             let passes = passes(&plan.expect("a plan"));
-            passes.iter().map(|pass| pass.means).collect::<Vec<_>>()
+            passes.iter().map(|pass| pass.reads).collect::<Vec<_>>()
         };
-        assert_eq!(reads(PaintForm::Box), [None, Some("paint"), None]);
+        let means = Some(Reads::Means("paint"));
+        assert_eq!(reads(PaintForm::Box), [None, means, None]);
         assert_eq!(reads(PaintForm::Anisotropic), [None; 3]);
     }
 

@@ -6,7 +6,8 @@
 #import bevy_comics::depth::view::view
 
 #ifdef CONTINUED
-// The viewport after the passes before this one: linear light, multiplied by the opacity.
+// The viewport after the passes before this one: linear light, multiplied by the opacity. All of it
+// is finite.
 @group(0) @binding(9) var picture_texture: texture_2d<f32>;
 @group(0) @binding(10) var picture_sampler: sampler;
 #endif
@@ -22,7 +23,16 @@ fn load_picture(pixel: vec2<i32>) -> vec4<f32> {
 #endif
 }
 
-// The same at a position in physical pixels from the render target's top left corner:
+// The same at a pixel that must be inside the viewport.
+fn load_inside(pixel: vec2<i32>) -> vec4<f32> {
+#ifdef CONTINUED
+    return textureLoad(picture_texture, pixel - view.viewport.xy, 0);
+#else
+    return vec4(0.0);
+#endif
+}
+
+// As load_picture() at a position in physical pixels from the render target's top left corner:
 // bilinear between the centres of pixels.
 fn picture_at(position: vec2<f32>) -> vec4<f32> {
 #ifdef CONTINUED

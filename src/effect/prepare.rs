@@ -36,8 +36,8 @@ pub(crate) struct FusedRequest {
     pub lines: Option<LinesUniform>,
 }
 
-/// A pass that draws a picture for the next one, and the passes that draw means over boxes of
-/// this picture: of rows, then of boxes.
+/// A pass that draws a picture for the next one, with numbers if that one reads them, and the
+/// passes that draw means over boxes of this picture: of rows, then of boxes.
 #[derive(Clone, Debug)]
 pub(crate) struct Layer {
     pub picture: LayerPass,

@@ -29,6 +29,8 @@ pub struct EffectType {
     pub view: Option<EffectView>,
     /// [`Effect::HALF_BOX`].
     pub half_box: bool,
+    /// [`Effect::NUMBER`].
+    pub number: bool,
     /// The reflection data of the type.
     pub type_info: fn() -> &'static TypeInfo,
     /// Creates an effect with default settings.
@@ -62,6 +64,7 @@ impl EffectType {
                 replaces: E::REPLACES,
                 view: E::VIEW,
                 half_box: E::HALF_BOX,
+                number: E::NUMBER,
                 type_info: E::type_info,
                 default: default::<E>,
                 get: get::<E>,

@@ -27,7 +27,7 @@ use super::{
     key::{KeyInputs, Part, StylizeKey},
     lines::{line_reach, line_request, map_jumps},
     pass::StylizePipeline,
-    passes::passes,
+    passes::{Reads, passes},
     plan::Prepasses,
     prepare::{FusedRequest, Layer, LayerPass},
 };
@@ -186,10 +186,17 @@ impl Services<'_> {
         let all = StylizeKey::new(plan, inputs, &facts);
         let passes = passes(plan);
         let mut keys: Vec<_> = passes.iter().map(|p| all.of_pass(plan, p)).collect();
-        // The passes that draw means read what the layer before has drawn.
-        let means: Vec<_> = (passes.iter().zip(&keys).skip(1))
-            .map(|(pass, key)| Some(key.means_for(pass.means?)))
-            .collect();
+        // What the layers draw besides their pictures, for the next pass.
+        let mut means = vec![None; passes.len() - 1];
+        for (i, pass) in passes.iter().enumerate().skip(1) {
+            match pass.reads {
+                Some(Reads::Means(effect)) => {
+                    means[i - 1] = Some(keys[i].means_for(plan, effect, &facts));
+                }
+                Some(Reads::Numbers(effect)) => keys[i - 1] = keys[i - 1].numbered(effect),
+                None => {}
+            }
+        }
         // There is always a last pass, which draws the view's picture.
         let whole = keys.pop().unwrap_or(all);
         let chosen = ChosenPart::new((plan, &facts), &whole, lines);
@@ -207,7 +214,6 @@ impl Services<'_> {
             picture: pass(key),
             means: means.map(|keys| keys.map(&mut pass)),
         });
-        let layers = layers.collect();
         let key = whole.with_part(chosen.part);
         FusedRequest {
             camera,
@@ -215,7 +221,7 @@ impl Services<'_> {
             facts,
             view: inputs.view,
             lines: lines.map(|(request, _)| request.lines),
-            layers,
+            layers: layers.collect(),
             pipeline: specialize(&key),
             base,
             key,

@@ -38,11 +38,13 @@ fn free_radius(tone: f32, period: f32) -> f32 {
     return select(cone, sqrt(max(x * x - 1.0 / 12.0, 0.0)), x >= 0.57735027);
 }
 
-// Radius in pixels of the discs of a tone. Touching discs: fitted.
+// Radius in pixels of the discs of a tone. Touching discs: fitted, with what the ramps of their
+// edges add.
 fn disc_radius(tone: f32, period: f32) -> f32 {
     if tone > TOUCH {
-        let root = sqrt((1.0 - tone) / (1.0 - TOUCH));
-        return period * (0.70710678 - root * (0.2471 - 0.04 * root));
+        let rest = (1.0 - tone) / (1.0 - TOUCH);
+        let root = sqrt(rest);
+        return period * (0.70710678 - root * (0.2471 - 0.04 * root)) - 0.09 * rest / (period * period);
     }
     return free_radius(tone, period);
 }
@@ -70,7 +72,7 @@ fn checker(offset: vec2<f32>, tone: f32, period: f32) -> f32 {
     let height = 0.5 * (waves.x + waves.y);
     let per_pixel = PI / period;
     // The ramp at the edge of a dot adds to it, that of a hole takes from the rest.
-    let curved = clamp((0.5 - tone) * (1.0 / 0.15), -1.0, 1.0);
+    let curved = clamp((0.5 - tone) * (1.0 / 0.11), -1.0, 1.0);
     let x = 1.0 - 2.0 * tone + curved * per_pixel * per_pixel * (1.0 / (6.0 * PI));
     let threshold = x * (0.40 + 0.65 * abs(x) - 0.05 * x * x);
     // The length of the sines.
@@ -144,9 +146,9 @@ fn cross_lines(at: vec2<f32>, tone: f32, footprint: f32) -> f32 {
     return 1.0 - (1.0 - line(at.x, each, footprint)) * (1.0 - line(at.y, each, footprint));
 }
 
-// Whether a grain of a threshold is printed, with a short ramp.
-fn grain_cover(tone: f32, threshold: f32) -> f32 {
-    return clamp((tone - threshold) * 96.0 + 0.5, 0.0, 1.0);
+// Whether grains of these thresholds are printed, with a short ramp.
+fn grain_covers(tone: f32, thresholds: vec4<f32>) -> vec4<f32> {
+    return clamp((tone - thresholds) * 96.0 + 0.5, vec4(0.0), vec4(1.0));
 }
 
 // Of a tone or of what is left of it, the part that edges may take or add.

@@ -10,6 +10,8 @@ pub mod headless;
 pub mod line_work;
 pub mod link_work;
 pub mod orbit;
+pub mod page_work;
+pub mod painting;
 pub mod read_back;
 pub mod reference;
 pub mod scenes;

@@ -75,7 +75,7 @@ fn ended(text: &str, entry: &str, statement: &str) -> String {
 /// Adds a call of the counter before every line for each load from a buffer. A line that
 /// begins with the buffer stores to it.
 fn tallied(text: &str, buffer: &str, bytes: usize) -> String {
-    let call = format!("tally({bytes}.0);");
+    let call = format!("tally(1.0, {bytes}.0);");
     let mut lines = Vec::new();
     for line in text.lines() {
         let stores = usize::from(line.trim_start().starts_with(buffer));

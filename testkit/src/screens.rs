@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use bevy::color::Color;
 use bevy_comics::{Halftone, ScreenShape};
 
-use crate::reference::halftone::{Plate, inked, plate_cover};
+use crate::reference::halftone::{Plate, inked, plate_cover, plate_tones};
 
 /// All shapes.
 pub const SHAPES: [ScreenShape; 6] = [
@@ -148,19 +148,46 @@ pub fn moire(shape: ScreenShape, period: f64, degrees: f64, zones: bool) -> f64 
     mean(inside.map(|i| slow[i] * slow[i])) / power
 }
 
-/// The mean light of a print of a flat colour, with this phase of the black plate. `tones`: those
-/// of the four plates.
-pub fn printed_mean(s: &Halftone, tones: [f64; 4], phase: f64) -> [f64; 3] {
-    let plates = Plate::all(s, 1.0);
-    let covers: [_; 4] = std::array::from_fn(|i| {
-        let phase = if i == 3 { phase } else { 0.0 };
-        plate_cover(s.shape, Plate { phase, ..plates[i] }, tones[i], &tile)
-    });
+/// The mean light of a print of a flat colour with these plates. `tones`: those of the plates.
+pub fn printed_mean(s: &Halftone, plates: [Plate; 4], tones: [f64; 4]) -> [f64; 3] {
+    let covers: [_; 4] = std::array::from_fn(|i| plate_cover(s.shape, plates[i], tones[i], &tile));
     let prints = square(6.0).map(|place| inked(s, std::array::from_fn(|i| covers[i](place))));
     let (sum, count) = prints.fold(([0.0; 3], 0.0), |(sum, count), print| {
         ([0, 1, 2].map(|c| sum[c] + print[c]), count + 1.0)
     });
     sum.map(|v| v / count)
+}
+
+/// The plates of an effect if black had no phase of its own.
+pub fn in_phase(s: &Halftone) -> [Plate; 4] {
+    Plate::all(s, 1.0).map(|plate| Plate {
+        phase: 0.0,
+        ..plate
+    })
+}
+
+/// Inks that each take some of all light away: what they print depends on whether their screens
+/// are independent.
+pub fn grey_inks(s: Halftone) -> Halftone {
+    let grey = Color::linear_rgb(0.2, 0.2, 0.2);
+    Halftone {
+        cyan: grey,
+        magenta: grey,
+        yellow: Color::WHITE,
+        ..s
+    }
+}
+
+/// The largest difference of the mean light of a print from that of independent screens
+/// (Demichel), of 20 colours and three greys.
+pub fn color_error(s: &Halftone, plates: [Plate; 4]) -> f64 {
+    let greys = [0.25, 0.4, 0.6].map(|v| [v; 3]);
+    let apart = colors().chain(greys).flat_map(|light| {
+        let tones = plate_tones(s, light);
+        let (printed, want) = (printed_mean(s, plates, tones), inked(s, tones));
+        [0, 1, 2].map(|c| (printed[c] - want[c]).abs())
+    });
+    apart.fold(0.0, f64::max)
 }
 
 /// A Gaussian blur of a square picture.

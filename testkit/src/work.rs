@@ -245,15 +245,20 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
     rungs
 }
 
-/// Bytes of the texel or word that a line of WGSL loads, by the name of its binding.
-fn texel_size(line: &str) -> Option<u32> {
-    let size = if line.contains("column_texture") {
-        16
-    } else if line.contains("crack_texture") || line.contains("crack_words[") {
-        8
-    } else {
-        4
-    };
+/// The texels or words that a line of WGSL loads, and the bytes of each, by the name of its
+/// binding.
+fn texels(line: &str) -> Option<[u32; 2]> {
+    let sizes = [
+        ("column_texture", 16),
+        ("means_texture", 16),
+        ("numbered_texture", 16),
+        ("blue_noise_tile", 16),
+        ("crack_texture", 8),
+        ("crack_words[", 8),
+        ("picture_texture", 8),
+    ];
+    let size = sizes.iter().find(|(name, _)| line.contains(name));
+    let size = size.map_or(4, |(_, size)| *size);
     let loads = [
         "textureLoad(",
         "return crack_words[",
@@ -261,7 +266,13 @@ fn texel_size(line: &str) -> Option<u32> {
         "planes[column_word(",
         "planes[row_word(",
     ];
-    loads.iter().any(|load| line.contains(load)).then_some(size)
+    if line.contains("textureSampleLevel(") {
+        return Some([4, size]);
+    }
+    loads
+        .iter()
+        .any(|load| line.contains(load))
+        .then_some([1, size])
 }
 
 /// The file of the fused pass.
@@ -279,7 +290,7 @@ const READERS: [&str; 5] = [
 const COUNTER: &str = "#define_import_path bevy_comics_count::tally
 
 var<private> fetched: vec2<f32>;
-fn tally(bytes: f32) { fetched += vec2(1.0, bytes); }
+fn tally(count: f32, size: f32) { fetched += vec2(count, count * size); }
 fn fetched_so_far() -> vec2<f32> { return fetched; }
 fn packed_count() -> u32 { return u32(fetched.x) | (u32(fetched.y) << 16u); }
 ";
@@ -302,8 +313,8 @@ pub(crate) fn counting(path: &str, text: &str) -> String {
         lines.push(IMPORT.to_owned());
     }
     for line in text.lines() {
-        if let Some(bytes) = texel_size(line) {
-            lines.push(format!("tally({bytes}.0);"));
+        if let Some([count, size]) = texels(line) {
+            lines.push(format!("tally({count}.0, {size}.0);"));
         }
         lines.push(line.to_owned());
         if line.starts_with("#define_import_path") {

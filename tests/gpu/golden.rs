@@ -141,3 +141,16 @@ fn the_village_looks_as_it_did() {
 fn the_theatre_looks_as_it_did() {
     check(BuiltIn::Theatre);
 }
+
+#[test]
+fn tmp_pairs() {
+    for entry in std::fs::read_dir("/tmp/og/tests/golden/rounding").unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_owned();
+        let picture = image::open(&path).unwrap().to_rgba8();
+        println!(
+            "{name:?} {:?}",
+            apart(&Path::new("/tmp/og/tests/golden").join(&name), &picture)
+        );
+    }
+}

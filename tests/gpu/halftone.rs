@@ -16,10 +16,11 @@ use bevy_comics_testkit::{
     headless::HeadlessOptions,
     reference::{
         color,
-        halftone::{inked, plate_tones},
+        halftone::{Plate, inked, plate_tones},
     },
     screens::{
-        PERIODS, SHAPES, colors, ideal, largest_jump, mean, moire, printed_mean, tone_error,
+        PERIODS, SHAPES, color_error, colors, grey_inks, ideal, in_phase, largest_jump, mean,
+        moire, tone_error,
     },
     studio::with_map,
 };
@@ -46,11 +47,11 @@ fn flat_fields_have_their_tone() {
         for period in PERIODS {
             let most = tone_error(shape, period);
             let exact = [ScreenShape::Round, ScreenShape::Line, ScreenShape::Diamond];
-            let limit = match (period, exact.contains(&shape)) {
-                (3.0, _) => 0.015,
-                (_, true) => 0.005,
-                (_, false) => 0.01,
-            };
+            // Upright diamonds of 3 pixels miss the limit: every cell has the same nine pixels, which
+            // hit the tips of a diamond or do not.
+            let is_coarse = shape == ScreenShape::Diamond && period == 3.0;
+            let is_exact = exact.contains(&shape) && !is_coarse;
+            let limit = if is_exact { 0.005 } else { 0.01 };
             println!("{shape:?}, {period} px: {most:?} (error, tone, degrees)");
             worst.push((shape, period, most, limit));
         }
@@ -59,44 +60,31 @@ fn flat_fields_have_their_tone() {
     assert!(worst.is_empty(), "{worst:#?}");
 }
 
-fn largest_difference(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|c| (a[c] - b[c]).abs()).fold(0.0, f64::max)
-}
-
-/// 20 colours, at three fractions of black. With ideal inks, the mean light is the colour.
-/// With real ones, it is that of independent screens (Demichel), which needs the phase of
-/// black: where three inks take away the same light, the screens of cyan, magenta and black
-/// would not be independent.
+/// 20 colours and three greys, at three fractions of black, with the plates of the effect. With
+/// ideal inks, the mean light is the colour. With real ones, it is that of independent screens
+/// (Demichel), which needs the phase of black: where three inks take away the same light, the
+/// screens of cyan, magenta and black would not be independent.
 #[test]
 fn flat_colours_have_their_light_and_need_the_phase_of_black() {
     let mut without = 0.0;
-    let greys = [0.25, 0.4, 0.6].map(|v| [v; 3]);
-    for light in colors().chain(greys) {
-        for black_generation in [0.0, 0.5, 1.0] {
-            let s = Halftone {
-                black_generation,
-                ..ideal()
-            };
-            let tones = plate_tones(&s, light);
-            let off = largest_difference(printed_mean(&s, tones, 0.25), light);
-            assert!(off < 0.01, "{light:?}, black {black_generation}: {off}");
-            // Inks that each take some of all light away.
-            let grey = Color::linear_rgb(0.2, 0.2, 0.2);
-            let real = Halftone {
-                cyan: grey,
-                magenta: grey,
-                yellow: Color::WHITE,
-                ..s
-            };
-            let independent = inked(&real, tones);
-            let off = |phase| largest_difference(printed_mean(&real, tones, phase), independent);
-            assert!(
-                off(0.25) < 0.01,
-                "{light:?}, black {black_generation}: {}",
-                off(0.25)
-            );
-            without = f64::max(without, off(0.0));
+    for black_generation in [0.0, 0.5, 1.0] {
+        let s = Halftone {
+            black_generation,
+            ..ideal()
+        };
+        for light in colors() {
+            let separated = inked(&s, plate_tones(&s, light));
+            for c in 0..3 {
+                let apart = (separated[c] - light[c]).abs();
+                assert!(apart < 1e-9, "{light:?}: {separated:?}");
+            }
         }
+        for s in [s, grey_inks(s)] {
+            let off = color_error(&s, Plate::all(&s, 1.0));
+            assert!(off < 0.01, "black {black_generation}: {off}");
+        }
+        let real = grey_inks(s);
+        without = f64::max(without, color_error(&real, in_phase(&real)));
     }
     println!("without the phase of black: {without}");
     assert!(

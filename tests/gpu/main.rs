@@ -41,6 +41,7 @@ mod marks;
 mod means;
 mod memory;
 mod models;
+mod numbered;
 mod object_screen;
 mod outlines;
 mod outside;

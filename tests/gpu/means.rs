@@ -27,16 +27,15 @@ impl Effect for ShownMeans {
     const SHADER: EffectShader = EffectShader {
         path: "test::shown_means",
         source: "#define_import_path test::shown_means
-            #import bevy_comics::effect::color::luminance
-            #import bevy_comics::effect::means::{load_means, variance}
+            #import bevy_comics::effect::means::{load_means, mean_color, variance}
             #import bevy_comics::effect::pixel::Pixel
             struct ShownMeans { half: f32, numbers: f32 }
             fn shown_means_half_box(s: ShownMeans, p: Pixel) -> f32 { return s.half; }
             fn shown_means(s: ShownMeans, p: Pixel) -> Pixel {
                 var out = p;
                 let m = load_means(vec2<i32>(p.position));
-                let numbers = vec3(luminance(m.color), variance(m), m.coverage);
-                out.color = select(m.color, numbers, s.numbers > 0.0);
+                let numbers = vec3(m.mean, variance(m), m.coverage);
+                out.color = select(mean_color(m), numbers, s.numbers > 0.0);
                 return out;
             }",
         settings: Some("ShownMeans"),

@@ -2,7 +2,7 @@
 
 use std::{collections::HashMap, fs, path::PathBuf, process::Command};
 
-use bevy_comics_testkit::work;
+use bevy_comics_testkit::{page_work, work};
 
 use crate::command_line::example;
 
@@ -242,5 +242,32 @@ fn no_style_does_more_work_than_the_report_says() {
     let wide = wide.expect("wide outlines");
     for column in ["walk", "find", "columns", "draw"] {
         assert!(number(wide, column) > 0.5 && number(&rows[0], column) == 0.0);
+    }
+}
+
+/// Effects of the page do not fetch more than the committed report says, in all of their passes.
+/// Those that read no more than their own pixel fetch what a tint does.
+#[test]
+fn no_effect_of_the_page_fetches_more_than_the_report_says() {
+    let (_, rows) = csv("page_work");
+    let effects = page_work::effects();
+    assert_eq!(rows.len(), effects.len());
+    let mut single = None;
+    for (row, (name, style)) in rows.iter().zip(&effects) {
+        let now = page_work::count(name, style);
+        assert_eq!(row["effect"], name.replace(',', ";"));
+        assert!(now.texels[0] <= number(row, "texels") + 0.01, "{now:?}");
+        assert!(now.texels[1] <= number(row, "most"), "{now:?}");
+        assert!(now.bytes <= number(row, "bytes") + 0.01, "{now:?}");
+        if *name == page_work::ONE_PASS {
+            assert_eq!((now.texels, now.bytes), ([1.0; 2], 4.0));
+            single = Some(now);
+        } else if page_work::OWN_PIXEL.contains(name) {
+            let single = single.as_ref().expect("it comes first");
+            assert_eq!((now.texels, now.bytes), (single.texels, single.bytes));
+        } else if *name != "focus, dots" {
+            // The counter works: these read other places.
+            assert!(now.texels[0] > 3.0, "{now:?}");
+        }
     }
 }

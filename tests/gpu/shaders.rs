@@ -385,6 +385,19 @@ fn every_form_of_a_view_composes_and_validates() {
     }
 }
 
+/// The definitions of boxes that reach so many pixels.
+fn reaches(pixels: usize) -> Definitions {
+    let steps = [
+        "REACHES_ONE",
+        "REACHES_TWO",
+        "REACHES_THREE",
+        "REACHES_FOUR",
+        "REACHES_FIVE",
+        "REACHES_SIX",
+    ];
+    [flags(&["BOX_REACH"]), flags(&steps[..pixels])].concat()
+}
+
 /// The passes of a plan whose effects read the picture at other places.
 #[test]
 fn every_pass_of_a_divided_plan_composes_and_validates() {
@@ -392,6 +405,7 @@ fn every_pass_of_a_divided_plan_composes_and_validates() {
     let forms = [
         "CONTINUED",
         "LAYER",
+        "INSIDE",
         "FINISH",
         "UNSTYLED_COLORS",
         "UNSTYLED_PRINT",
@@ -411,7 +425,14 @@ fn every_pass_of_a_divided_plan_composes_and_validates() {
         flags(&["PAINT", "MEANS", "PAINT_FIGURES", "MULTISAMPLED"]),
         flags(&["PAINT", "PAINT_ANISOTROPIC", "PAINT_FIGURES"]),
         focus(0),
-        focus(1),
+        [focus(0), flags(&["NUMBERED", "MULTISAMPLED"])].concat(),
+        [focus(0), flags(&["DRAWS_NUMBERS", "NUMBERS_FOCUS"])].concat(),
+        [
+            focus(1),
+            flags(&["NUMBERED"]),
+            vec![("FOCUS_PARALLEL", Some(1))],
+        ]
+        .concat(),
         focus(3),
         focus(4),
         [focus(2), flags(&["MEANS", "MULTISAMPLED"])].concat(),
@@ -421,6 +442,17 @@ fn every_pass_of_a_divided_plan_composes_and_validates() {
         ]
         .concat(),
         flags(&["PAINT", "DRAWS_MEANS", "BOXES_PAINT", "MAP", "DEPTH"]),
+        [
+            flags(&["PAINT", "MEANS", "PAINT_WHOLE", "PAINT_FIGURES"]),
+            vec![("PAINT_EIGHTH", Some(1))],
+        ]
+        .concat(),
+        [flags(&["PAINT", "DRAWS_MEANS", "BOXES_PAINT"]), reaches(1)].concat(),
+        [
+            flags(&["PAINT", "MEANS", "DRAWS_MEANS", "MEANS_DOWN", "BOXES_PAINT"]),
+            reaches(6),
+        ]
+        .concat(),
         flags(&["PAINT", "MEANS", "DRAWS_MEANS", "MEANS_DOWN", "BOXES_PAINT"]),
     ];
     for form in optional(&forms) {

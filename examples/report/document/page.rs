@@ -1,8 +1,25 @@
-//! The report's text: how exactly the page is printed.
+//! The report's text: how exactly the page is printed and painted, and which targets of its
+//! effects are met.
 
 use std::{fmt::Write, path::Path};
 
-use crate::load;
+use super::targets::Target;
+use crate::{
+    costs::{Cost, OWN, costs},
+    load,
+    table::Table,
+};
+
+/// The largest number of a column of the screens of a shape, of periods of 4 pixels and more or of
+/// the finer ones.
+fn largest(screens: &Table, shape: &str, fine: bool, column: &str) -> f64 {
+    let rows = screens.matching(&[("what", shape)]);
+    let rows = rows
+        .iter()
+        .filter(|row| (screens.number(row, "period") < 4.0) == fine);
+    rows.map(|row| screens.number(row, column).abs())
+        .fold(f64::NAN, f64::max)
+}
 
 pub fn page(out: &mut String, folder: &Path) -> Result<(), String> {
     let table = load(folder, "page_screens")?;
@@ -18,14 +35,7 @@ pub fn page(out: &mut String, folder: &Path) -> Result<(), String> {
          | screen | tone | jump | moire | tone at 3 px |\n|---|---|---|---|---|\n",
     );
     for shape in table.distinct(&all, "what") {
-        let rows = table.matching(&[("what", &shape)]);
-        let is_fine = |row: &&&Vec<String>| table.number(row, "period") < 4.0;
-        let largest = |fine: bool, column: &str| {
-            let rows = rows.iter().filter(|row| is_fine(row) == fine);
-            rows.map(|row| table.number(row, column).abs())
-                .fold(f64::NAN, f64::max)
-        };
-        let of = |column| largest(false, column);
+        let of = |column| largest(&table, &shape, false, column);
         let _ = writeln!(
             out,
             "| {} | {:.4} | {:.3} | {:.2} % | {:.4} |",
@@ -33,23 +43,158 @@ pub fn page(out: &mut String, folder: &Path) -> Result<(), String> {
             of("tone"),
             of("jump"),
             100.0 * of("moire"),
-            largest(true, "tone"),
+            largest(&table, &shape, true, "tone"),
         );
     }
     let colors = load(folder, "page_colors")?;
     out.push_str(
-        "\nThe largest difference of the mean light of a print with four inks from its colour, of \
-         20 colours and three lights each, by the fraction of grey that is printed in black:\n\n\
-         | black | difference |\n|---|---|\n",
+        "\nThe largest difference of the mean light of a print with four inks from that of \
+         independent screens, of 20 colours, three greys and three lights each, by the fraction of \
+         grey that is printed in black. Ideal inks: that is the colour itself. Grey inks: cyan and \
+         magenta take some of all light, so that it counts whether screens are independent. In \
+         phase: the same if black had no phase of its own.\n\n\
+         | black | ideal inks | grey inks | in phase |\n|---|---|---|---|\n",
     );
     for row in &colors.rows {
+        let of = |column| colors.number(row, column);
         let _ = writeln!(
             out,
-            "| {} | {:.4} |",
+            "| {} | {:.4} | {:.4} | {:.4} |",
             colors.cell(row, "black"),
-            colors.number(row, "error")
+            of("ideal"),
+            of("grey"),
+            of("in_phase"),
         );
     }
-    out.push_str("\nTheir times are under \"Single parts\".\n\n");
+    work(out, &load(folder, "page_work")?);
+    out.push_str("Their times are under \"Effects of the page\" and \"Single parts\".\n\n");
     Ok(())
+}
+
+/// What the effects fetch.
+fn work(out: &mut String, table: &Table) {
+    out.push_str(
+        "\nTexels and bytes that effects of the page fetch per pixel, in all of their passes \
+         together, counted in the shaders on the teapot at 160x90. A place between texels counts as \
+         four of them, and equal loads are counted each: compilers merge the four of grains.\n\n| | texels, mean (most) | bytes |\n|---|---|---|\n",
+    );
+    for row in &table.rows {
+        let cell = |name| table.cell(row, name);
+        let _ = writeln!(
+            out,
+            "| {} | {} ({}) | {} |",
+            cell("effect"),
+            cell("texels"),
+            cell("most"),
+            cell("bytes")
+        );
+    }
+    out.push('\n');
+}
+
+/// The limit of the time of an effect over the pass that it joins, in blits.
+const MOST_BLITS: f64 = 2.5;
+/// The effect that costs one pass and nearly nothing else.
+const ONE_PASS: &str = "two tones";
+
+/// The effects whose errors are those of the screens of a shape.
+const PRINTS: [(&str, &str); 5] = [
+    ("halftone of one ink", "Round"),
+    ("halftone of four inks", "Euclidean"),
+    ("halftone of four inks in grains", "Stochastic"),
+    ("halftone of four inks; whole dots", "Euclidean"),
+    ("focus; dots", "Euclidean"),
+];
+/// Several effects, or one that has targets elsewhere.
+const WITHOUT_TARGET: [&str; 2] = ["halftone; print offset and paper", "hatching"];
+
+/// An error, and its limit.
+fn verdict(value: f64, limit: f64) -> &'static str {
+    if value.abs() <= limit {
+        "met"
+    } else {
+        "**missed**"
+    }
+}
+
+/// The errors of an effect as text, with their limits.
+fn errors_of(effect: &str, tables: [&Table; 3]) -> String {
+    let [screens, colors, errors] = tables;
+    let mut all = Vec::new();
+    let mut add = |what: &str, value: f64, limit: f64| {
+        let verdict = verdict(value, limit);
+        all.push(format!("{what}: {value:.2e}, at most {limit}: {verdict}"));
+    };
+    if let Some((_, shape)) = PRINTS.iter().find(|(name, _)| *name == effect) {
+        let of = |column| largest(screens, shape, false, column);
+        let exact = matches!(*shape, "Round" | "Line" | "Diamond");
+        add("tone", of("tone"), if exact { 0.005 } else { 0.01 });
+        add("jump", of("jump"), 0.1);
+        add("moire", of("moire"), 0.01);
+        if effect == "halftone of four inks" {
+            let rows: Vec<&Vec<String>> = colors.rows.iter().collect();
+            let largest = colors.numbers(&rows, "ideal").into_iter();
+            add("colour", largest.fold(0.0, f64::max), 0.01);
+        }
+    }
+    for row in errors.matching(&[("effect", effect)]) {
+        let of = |column| errors.number(row, column);
+        add(errors.cell(row, "what"), of("error"), of("limit"));
+    }
+    all.join("<br>")
+}
+
+/// The targets of the effects: errors beside times.
+pub fn effects(out: &mut String, folder: &Path) -> Result<(), String> {
+    let [screens, colors, errors, times] =
+        ["page_screens", "page_colors", "page_errors", "part_times"].map(|name| load(folder, name));
+    let (screens, colors, errors) = (screens?, colors?, errors?);
+    let all = costs(&times?, "page", "teapot", &OWN);
+    let of = |name: &str| {
+        let cost = all.iter().find(|cost| cost.name == name);
+        cost.map_or(f64::NAN, |cost| cost.ratio[1])
+    };
+    let single = of(ONE_PASS);
+    let _ = writeln!(
+        out,
+        "### Effects of the page\n\nErrors beside times. Blits: the effect alone, with all of its \
+         passes. Over the pass: less `{ONE_PASS}`, the cheapest effect of one pass in the same \
+         table, {single:.2} blits; at most {MOST_BLITS} are meant. \"Strokes along edges\" are for \
+         photographs, and are not meant to be fast. An effect without an error here equals its twin \
+         pixel by pixel (`tests/gpu`).\n\n\
+         | | error | blits | over the pass | |\n|---|---|---|---|---|"
+    );
+    let known = |cost: &&Cost| {
+        !cost.name.starts_with("blit") && !WITHOUT_TARGET.contains(&cost.name.as_str())
+    };
+    for cost in all.iter().filter(known) {
+        let over = cost.ratio[1] - single;
+        let _ = writeln!(
+            out,
+            "| {} | {} | {:.2} | {over:.2} | {} |",
+            cost.name,
+            errors_of(&cost.name, [&screens, &colors, &errors]),
+            cost.ratio[1],
+            verdict(over.max(0.0), MOST_BLITS)
+        );
+    }
+    out.push_str(
+        "\ndocs/benchmarks.md has what was tried for those that are missed, under \"Effects of the \
+         page\".\n\n",
+    );
+    Ok(())
+}
+
+/// The tones of fine screens.
+pub fn targets(folder: &Path) -> Result<Vec<Target>, String> {
+    let screens = load(folder, "page_screens")?;
+    let rows: Vec<&Vec<String>> = screens.rows.iter().collect();
+    let shapes = screens.distinct(&rows, "what");
+    let target = |shape: String| {
+        let exact = ["Round", "Line", "Diamond"].contains(&shape.as_str());
+        let what = format!("mean tone of {} screens at 3 px", shape.to_lowercase());
+        let error = largest(&screens, &shape, true, "tone");
+        Target::at_most(what, if exact { 0.005 } else { 0.01 }, Some(error)).with_digits(4)
+    };
+    Ok(shapes.into_iter().map(target).collect())
 }

@@ -220,6 +220,7 @@ pub fn targets(out: &mut String, folder: &Path) -> Result<(), String> {
         .into_iter()
         .chain(quality(folder)?)
         .chain(super::ink::targets(folder)?)
+        .chain(super::page::targets(folder)?)
     {
         target.write(out);
     }
@@ -233,5 +234,5 @@ pub fn targets(out: &mut String, folder: &Path) -> Result<(), String> {
          pixel. docs/benchmarks.md has what was tried and what it gained, under \"Targets of the \
          line engine\", and which sections of this report are of older builds.\n\n",
     );
-    Ok(())
+    super::page::effects(out, folder)
 }

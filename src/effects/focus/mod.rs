@@ -76,7 +76,7 @@ pub enum FocusAt {
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum FocusStyle {
-    /// Blurred. Reads up to 64 pixels around each one.
+    /// Blurred. Reads 12 pixels around each one, and one more for every physical pixel of the radius.
     #[default]
     Blur,
     /// Printed with red and blue apart along a diagonal, by up to twice the radius.
@@ -117,6 +117,7 @@ impl Effect for Focus {
         settings: Some("Focus"),
     };
     const HALF_BOX: bool = true;
+    const NUMBER: bool = true;
     type Uniform = FocusUniform;
 
     fn sanitized(self) -> Self {
@@ -144,15 +145,16 @@ impl Effect for Focus {
     fn needs(&self) -> Needs {
         let picture = match self.style {
             FocusStyle::Paint => Needs::MEANS,
-            FocusStyle::Blur | FocusStyle::Offset => Needs::PICTURE,
+            FocusStyle::Blur | FocusStyle::Offset => Needs::NUMBERED,
             FocusStyle::Dots => Needs::empty(),
             FocusStyle::Lines => return Needs::empty(),
         };
         picture | Needs::DEPTH
     }
 
-    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, view: &ViewFacts, variants: &mut Variants) {
         variants.number("STYLE", self.style as u32);
+        variants.number("PARALLEL", u32::from(view.depth_reference.is_some()));
     }
 
     fn extent(&self, _: &ViewFacts) -> Extent {
@@ -161,6 +163,12 @@ impl Effect for Focus {
             FocusStyle::Lines => Extent::AtLines,
             _ => Extent::Everywhere,
         }
+    }
+
+    fn box_reach(&self, view: &ViewFacts) -> Option<u32> {
+        // Boxes of up to 7 pixels, for the default radius; not one pipeline for every radius.
+        let half = (0.5 * self.physical_radius(view) + 0.5).floor();
+        (half <= 3.0).then_some(3)
     }
 
     fn line_focus(&self, view: &ViewFacts) -> Option<LineFocus> {
@@ -186,7 +194,7 @@ impl Effect for Focus {
             reference: view.depth_reference.unwrap_or(0.0),
             clear: self.clear,
             steepness: 1.0 / self.ramp,
-            radius: (self.radius * view.scale_factor).min(256.0),
+            radius: self.physical_radius(view),
             at_centre: u32::from(self.at == FocusAt::Centre),
             centre: middle.as_vec2() + 0.25,
             period,
@@ -203,6 +211,11 @@ impl Focus {
             FocusAt::Distance => Some(self.distance),
             FocusAt::Centre => None,
         }
+    }
+
+    /// The largest radius in physical pixels.
+    fn physical_radius(&self, view: &ViewFacts) -> f32 {
+        (self.radius * view.scale_factor).min(256.0)
     }
 
     /// How much of the dots is seen, and of the lines lost, where all is out of focus.

@@ -2,12 +2,12 @@
 
 // Prints the picture with screens of dots or lines.
 
-#import bevy_comics::effect::blue_noise::blue_noise
+#import bevy_comics::effect::blue_noise::blue_noise_around
 #import bevy_comics::effect::color::{lightness, luminance, separated}
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::effect::screen::{
     LEAST, cross_lines, diamond, diamond_edges, disc, disc_edges, euclidean, euclidean_edges,
-    gained, grain_cover, line, paler, spread_tone, tinted,
+    gained, grain_covers, line, paler, spread_tone, tinted,
 }
 #import bevy_comics::effect::sheet::sheet_height
 #ifdef HALFTONE_CELLS
@@ -170,11 +170,6 @@ fn cell_at(place: vec2<f32>, turn: vec2<f32>, phase: f32) -> vec2<f32> {
     return vec2(dot(place, turn), dot(place, vec2(-turn.y, turn.x))) + phase;
 }
 
-// Whether a grain is printed.
-fn grain(tone: f32, at: vec2<i32>) -> f32 {
-    return grain_cover(tone, blue_noise(at));
-}
-
 // Square grains that are printed or not, averaged over the pixel. Each plate has its own
 // part of the tile.
 fn stochastic(s: Halftone, place: vec2<f32>, tone: f32, plate: i32) -> f32 {
@@ -182,10 +177,9 @@ fn stochastic(s: Halftone, place: vec2<f32>, tone: f32, plate: i32) -> f32 {
     let low = place / s.grain - half;
     let first = floor(low);
     let f = clamp((low + 2.0 * half - first - 1.0) / (2.0 * half), vec2(0.0), vec2(1.0));
-    let at = vec2<i32>(first) + plate * vec2(19, 37);
-    let upper = mix(grain(tone, at), grain(tone, at + vec2(1, 0)), f.x);
-    let lower = mix(grain(tone, at + vec2(0, 1)), grain(tone, at + vec2(1, 1)), f.x);
-    return mix(upper, lower, f.y);
+    let grains = grain_covers(tone, blue_noise_around(vec2<i32>(first), plate));
+    let columns = mix(grains.xz, grains.yw, f.x);
+    return mix(columns.x, columns.y, f.y);
 }
 
 // The screens on the page.

@@ -137,9 +137,21 @@ impl Effect for Paint {
         })
     }
 
-    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, view: &ViewFacts, variants: &mut Variants) {
         variants.flag("ANISOTROPIC", self.form == PaintForm::Anisotropic);
         variants.flag("FIGURES", self.keeps_figures());
+        variants.number("EIGHTH", u32::from(self.sharpness == 8.0));
+        variants.flag("WHOLE", self.is_whole(view));
+    }
+
+    fn box_reach(&self, view: &ViewFacts) -> Option<u32> {
+        let half = 0.5 * physical(self.near.max(self.far), view);
+        if self.is_whole(view) {
+            Some(half as u32)
+        } else {
+            // Not every move of a slider compiles a pipeline.
+            (half <= 3.0).then_some(3)
+        }
     }
 
     fn map_faded(self, fraction: f32) -> Self {
@@ -148,17 +160,26 @@ impl Effect for Paint {
     }
 
     fn uniform(&self, view: &ViewFacts) -> PaintUniform {
-        let radius = |logical: f32| (logical * view.scale_factor).min(256.0);
         PaintUniform {
-            near: radius(self.near),
-            far: radius(self.far),
+            near: physical(self.near, view),
+            far: physical(self.far, view),
             half_sharpness: 0.5 * self.sharpness,
             amount: self.amount,
         }
     }
 }
 
+/// A radius in physical pixels.
+fn physical(radius: f32, view: &ViewFacts) -> f32 {
+    (radius * view.scale_factor).min(256.0)
+}
+
 impl Paint {
+    /// Whether all boxes reach the same whole number of pixels from their middle.
+    fn is_whole(&self, view: &ViewFacts) -> bool {
+        self.near == self.far && (0.5 * physical(self.near, view)).fract() == 0.0
+    }
+
     /// Whether object ids are read.
     fn keeps_figures(&self) -> bool {
         self.figures && cfg!(feature = "objects")

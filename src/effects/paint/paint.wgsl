@@ -10,8 +10,10 @@
 // weights (Kyprianidis, Kang and Döllner 2009; Kyprianidis, Semmo, Kang and Döllner 2010).
 
 #import bevy_comics::depth::view::view
-#import bevy_comics::effect::color::{finite_color, luminance}
-#import bevy_comics::effect::means::{load_means, part_of_box, root, square, variance, Means}
+#import bevy_comics::effect::color::luminance
+#import bevy_comics::effect::means::{
+    color_of, load_means, means_of, part_of_box, root, square, variance, Means,
+}
 #import bevy_comics::effect::picture::{load_picture, picture_at}
 #import bevy_comics::effect::pixel::Pixel
 #ifdef PAINT_FIGURES
@@ -43,32 +45,52 @@ fn paint_half_box(s: Paint, p: Pixel) -> f32 {
     return 0.5 * paint_radius(s, p.depth.x);
 }
 
+// Whether the exponent of the deviation is 8, the default: a constant where the pass defines it.
+fn is_eighth(s: Paint) -> bool {
+#ifdef PAINT_EIGHTH
+    let compiled = #{PAINT_EIGHTH}u;
+    return compiled == 1u;
+#else
+    return s.half_sharpness == 4.0;
+#endif
+}
+
 // The areas that a pixel has chosen so far.
 struct Choice {
-    // Sum of their colours, and of their weights.
-    color: vec3<f32>,
-    weight: f32,
-    // The smallest variance; that area has its own share as its weight.
+    // Sum of their weights times: luminance, red and blue less that, 1.
+    sum: vec4<f32>,
+    // The smallest variance; that area has its own share as its weight. Unused if the exponent is
+    // 8: then weights are powers of the variances themselves.
     least: f32,
 }
 
 fn no_choice() -> Choice {
-    return Choice(vec3(0.0), 0.0, 1e30);
+    return Choice(vec4(0.0), 1e30);
 }
 
-// Adds an area. Weights are relative to the best area, because powers of the variances
-// themselves may be too small for a number. `share`: its weight before its variance counts.
-fn chosen(c: Choice, m: Means, share: f32, half_sharpness: f32) -> Choice {
+// The colour of the areas in linear light, if there are any.
+fn chosen_color(c: Choice) -> vec3<f32> {
+    let mean = c.sum.xyz / max(c.sum.w, 1e-37);
+    return square(color_of(mean.x, mean.yz));
+}
+
+// Adds an area. `share`: its weight before its variance counts; 0 adds nothing.
+fn chosen(c: Choice, m: Means, share: f32, half_sharpness: f32, eighth: bool) -> Choice {
     let found = variance(m) + UNSEEN;
+    let area = vec4(m.mean, m.chroma, 1.0);
+    if eighth {
+        // Light of up to 65504 has variances of up to 16376: the power is above 1e-33.
+        let ratio = UNSEEN / found;
+        let fourth = ratio * ratio;
+        return Choice(c.sum + share * (fourth * fourth) * area, c.least);
+    }
+    // Relative to the best area, because powers of the variances themselves may be too small for
+    // a number.
     let ratio = pow(min(found, c.least) / max(found, c.least), half_sharpness);
     let better = found < c.least;
     let before = select(1.0, ratio, better);
     let now = share * select(ratio, 1.0, better);
-    let next = Choice(
-        before * c.color + now * m.color,
-        before * c.weight + now,
-        min(found, c.least),
-    );
+    let next = Choice(before * c.sum + now * area, min(found, c.least));
     if share > 0.0 {
         return next;
     }
@@ -95,36 +117,58 @@ fn reaching_share(found: f32, half: f32, at: i32) -> f32 {
     return min(part_of_box(found, at) / max(part_of_box(half, at), 1e-6), 1.0);
 }
 
-// Adds the eight boxes at a distance. `half`: half the side that they should have.
-fn ring(s: Paint, pixel: vec2<i32>, at: i32, half: f32, share: f32, before: Choice) -> Choice {
-    var c = before;
-    for (var k = 0; k < 9; k++) {
-        let other = pixel + at * (vec2(k % 3, k / 3) - 1);
-        if k != 4 && is_inside(other) {
-            let m = load_means(other);
-            let other_share = m.coverage * reaching_share(m.half, half, at) * figure_share(pixel, other);
-            c = chosen(c, m, share * other_share, s.half_sharpness);
-        }
-    }
-    return c;
+// The boxes around a pixel at one distance.
+struct Ring {
+    pixel: vec2<i32>,
+    at: i32,
+    // Half the side that they should have.
+    half: f32,
+    share: f32,
+    half_sharpness: f32,
+    eighth: bool,
+}
+
+// Adds the box in one direction. It is read even where it does not count: CPU adapters execute
+// both sides of a branch.
+fn box_added(c: Choice, r: Ring, direction: vec2<i32>) -> Choice {
+    let other = r.pixel + r.at * direction;
+    let m = load_means(other);
+    let reaches = reaching_share(m.half, r.half, r.at);
+    let share = r.share * m.coverage * reaches * figure_share(r.pixel, other);
+    return chosen(c, m, select(0.0, share, is_inside(other)), r.half_sharpness, r.eighth);
+}
+
+// Adds the eight boxes of a ring.
+fn ring_added(before: Choice, r: Ring) -> Choice {
+    var c = box_added(before, r, vec2(-1, -1));
+    c = box_added(c, r, vec2(0, -1));
+    c = box_added(c, r, vec2(1, -1));
+    c = box_added(c, r, vec2(-1, 0));
+    c = box_added(c, r, vec2(1, 0));
+    c = box_added(c, r, vec2(-1, 1));
+    c = box_added(c, r, vec2(0, 1));
+    return box_added(c, r, vec2(1, 1));
+}
+
+// The boxes around a pixel, whose halves are whole pixels.
+fn whole_box_paint(pixel: vec2<i32>, half: f32, half_sharpness: f32, eighth: bool) -> Choice {
+    return ring_added(no_choice(), Ring(pixel, i32(half), half, 1.0, half_sharpness, eighth));
 }
 
 // The boxes around a pixel. Boxes at half a pixel cannot be read: they would reach beyond the
 // pixel, over an edge. So those at both whole distances are, and those that do reach over an
 // edge are not chosen.
-fn box_paint(s: Paint, pixel: vec2<i32>, half: f32) -> Choice {
+fn box_paint(pixel: vec2<i32>, half: f32, half_sharpness: f32, eighth: bool) -> Choice {
     let low = floor(half);
-    var c = ring(s, pixel, i32(low), half, 1.0 - (half - low), no_choice());
-    if half > low {
-        c = ring(s, pixel, i32(low) + 1, half, half - low, c);
-    }
-    return c;
+    let part = half - low;
+    let ring = Ring(pixel, i32(low), half, 1.0 - part, half_sharpness, eighth);
+    let next = Ring(pixel, i32(low) + 1, half, part, half_sharpness, eighth);
+    return ring_added(ring_added(no_choice(), ring), next);
 }
 
 // Luminance of the square root of the light at a pixel.
 fn luminance_at(pixel: vec2<i32>) -> f32 {
-    let found = load_picture(pixel);
-    return luminance(root(finite_color(found.rgb)));
+    return luminance(root(load_picture(pixel).rgb));
 }
 
 // The change of the luminance across (x) and down (y) a pixel: Sobel.
@@ -187,15 +231,6 @@ fn sector_weight(place: vec2<f32>, direction: vec2<f32>) -> f32 {
     return inside * inside * exp(-3.125 * dot(place, place));
 }
 
-// The picture between the centres of pixels.
-fn means_at(position: vec2<f32>) -> Means {
-    let found = picture_at(position);
-    let alpha = clamp(found.a, 0.0, 1.0);
-    let color = root(finite_color(found.rgb) / max(alpha, 1e-3));
-    let mean = luminance(color);
-    return Means(color, mean * mean, alpha, 0.0);
-}
-
 // The sectors of an ellipse with these half axes.
 fn sector_paint(s: Paint, position: vec2<f32>, long: vec2<f32>, short: vec2<f32>) -> Choice {
     var sums: array<vec4<f32>, 8>;
@@ -207,10 +242,10 @@ fn sector_paint(s: Paint, position: vec2<f32>, long: vec2<f32>, short: vec2<f32>
     for (var i = 0; i < SAMPLES; i++) {
         let place = spoke * sqrt((f32(i) + 0.5) / f32(SAMPLES));
         spoke = turn * spoke;
-        let m = means_at(position + place.x * long + place.y * short);
+        let m = means_of(picture_at(position + place.x * long + place.y * short));
         for (var k = 0; k < 8; k++) {
             let weight = sector_weight(place, sector_direction(k));
-            sums[k] += weight * m.coverage * vec4(m.color, m.square);
+            sums[k] += weight * m.coverage * vec4(m.mean, m.square, m.chroma);
             weights[k] += weight * m.coverage;
             whole[k] += weight;
         }
@@ -224,8 +259,8 @@ fn sector_paint(s: Paint, position: vec2<f32>, long: vec2<f32>, short: vec2<f32>
         if is_inside(middle) {
             share *= figure_share(vec2<i32>(position), middle);
         }
-        let m = Means(mean.xyz, mean.w, 1.0, 0.0);
-        c = chosen(c, m, share, s.half_sharpness);
+        let m = Means(mean.x, mean.y, mean.zw, 1.0, 0.0);
+        c = chosen(c, m, share, s.half_sharpness, is_eighth(s));
     }
     return c;
 }
@@ -241,17 +276,20 @@ fn painted(s: Paint, p: Pixel) -> Choice {
     let short = radius / stretch * vec2(-edge.y, edge.x);
     return sector_paint(s, p.position, long, short);
 #else
-    return box_paint(s, pixel, paint_half_box(s, p));
+    let half = paint_half_box(s, p);
+#ifdef PAINT_WHOLE
+    return whole_box_paint(pixel, half, s.half_sharpness, is_eighth(s));
+#else
+    return box_paint(pixel, half, s.half_sharpness, is_eighth(s));
+#endif
 #endif
 }
 
 fn paint(s: Paint, p: Pixel) -> Pixel {
     var out = p;
     let c = painted(s, p);
-    if c.weight > 0.0 {
-        let color = square(c.color / c.weight) * p.alpha;
-        // Light that was added to a transparent background stays.
-        out.color = mix(p.color, color, s.amount * p.alpha);
-    }
+    // Light that was added to a transparent background stays.
+    let color = mix(p.color, chosen_color(c) * p.alpha, s.amount * p.alpha);
+    out.color = select(p.color, color, c.sum.w > 0.0);
     return out;
 }

@@ -64,7 +64,8 @@ impl Scene<'_> {
 
     /// The picture after the effect.
     pub fn focused(&self, s: &Focus) -> Sheet {
-        let half = |at| 0.5 * self.focus_of(s, at)[1];
+        // Whole pixels.
+        let half = |at| (0.5 * self.focus_of(s, at)[1] + 0.5).floor();
         let boxes = match s.style {
             FocusStyle::Paint => means(self.sheet, &half),
             _ => Vec::new(),
@@ -82,7 +83,7 @@ impl Scene<'_> {
                 FocusStyle::Lines => Some(straight),
                 FocusStyle::Offset => Some(self.offset(s, at, own, straight)),
                 FocusStyle::Paint => {
-                    let areas = box_areas(self.sheet, &boxes, at, 0.5 * own[1], &|_| 1.0);
+                    let areas = box_areas(self.sheet, &boxes, at, half(at), &|_| 1.0);
                     chosen(&areas, 8.0)
                 }
                 _ => self.blurred(s, at, own),
@@ -93,7 +94,7 @@ impl Scene<'_> {
     }
 
     fn blurred(&self, s: &Focus, at: [usize; 2], own: [f64; 2]) -> Option<Rgb> {
-        let count = ((own[1] * own[1]).floor() as u32).clamp(12, 64);
+        let count = 12 + own[1].floor() as u32;
         let mut sum = [0.0; 4];
         for i in 0..count {
             let angle = f64::from(i) * PI * (3.0 - 5f64.sqrt());
@@ -110,13 +111,9 @@ impl Scene<'_> {
     }
 
     fn offset(&self, s: &Focus, at: [usize; 2], own: [f64; 2], instead: Rgb) -> Rgb {
-        let place = |side: f64| {
-            let by = [0.8, 0.6].map(|v| side * own[1] * v);
-            [0, 1].map(|i| at[i] as f64 + 0.5 + by[i])
-        };
         let [_, green, _] = instead;
-        let red = self.taken_at(s, place(1.0), own, instead)[0];
-        let blue = self.taken_at(s, place(-1.0), own, instead)[2];
+        let red = self.taken_along(s, at, 1.0, own, instead)[0];
+        let blue = self.taken_along(s, at, -1.0, own, instead)[2];
         [red, green, blue]
     }
 
@@ -143,22 +140,27 @@ impl Scene<'_> {
         inked(&halftone, covers)
     }
 
-    fn taken_at(&self, s: &Focus, place: [f64; 2], own: [f64; 2], instead: Rgb) -> Rgb {
-        let low = place.map(|v| (v - 0.5).floor());
-        let mut sum = [0.0; 3];
-        for (i, j) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-            let weight = |axis: usize, corner: i64| {
-                let part = place[axis] - 0.5 - low[axis];
-                if corner == 1 { part } else { 1.0 - part }
-            };
-            let other = self.inside([low[0] as i64 + i, low[1] as i64 + j]);
+    /// Between the places at both whole distances along the diagonal.
+    fn taken_along(
+        &self,
+        s: &Focus,
+        at: [usize; 2],
+        side: f64,
+        own: [f64; 2],
+        instead: Rgb,
+    ) -> Rgb {
+        let low = own[1].floor();
+        let taken = |by: f64| {
+            let step = [0.8, 0.6].map(|v| (side * by * v + 0.5).floor() as i64);
+            let other = self.inside([at[0] as i64 + step[0], at[1] as i64 + step[1]]);
             let found = self.sheet.at(other);
             let share = taken(own, self.focus_of(s, other));
-            for c in 0..3 {
+            [0, 1, 2].map(|c| {
                 let color = found[c] + (1.0 - found[3]) * instead[c];
-                sum[c] += weight(0, i) * weight(1, j) * mix(instead[c], color, share);
-            }
-        }
-        sum
+                mix(instead[c], color, share)
+            })
+        };
+        let (near, far) = (taken(low), taken(low + 1.0));
+        [0, 1, 2].map(|c| mix(near[c], far[c], own[1] - low))
     }
 }

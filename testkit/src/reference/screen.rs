@@ -24,8 +24,9 @@ fn disc_radius(tone: f64, period: f64) -> f64 {
             (3.0 * square).cbrt() - 0.5
         };
     }
-    let root = ((1.0 - tone) / (1.0 - FRAC_PI_4)).sqrt();
-    period * (0.5f64.sqrt() - root * (0.2471 - 0.04 * root))
+    let rest = (1.0 - tone) / (1.0 - FRAC_PI_4);
+    let root = rest.sqrt();
+    period * (0.5f64.sqrt() - root * (0.2471 - 0.04 * root)) - 0.09 * rest / period.powi(2)
 }
 
 pub fn disc(at: [f64; 2], tone: f64, period: f64) -> f64 {
@@ -46,7 +47,7 @@ fn own_disc(at: [f64; 2], tone: f64, period: f64) -> f64 {
 
 fn checker([u, v]: [f64; 2], tone: f64, period: f64) -> f64 {
     let height = 0.5 * ((TAU * u).cos() + (TAU * v).cos());
-    let curved = ((0.5 - tone) / 0.15).clamp(-1.0, 1.0);
+    let curved = ((0.5 - tone) / 0.11).clamp(-1.0, 1.0);
     let x = 1.0 - 2.0 * (tone - curved * PI / 12.0 / period.powi(2));
     let threshold = x * (0.4 + 0.65 * x.abs() - 0.05 * x * x);
     let gradient = PI / period * (TAU * u).sin().hypot((TAU * v).sin()).max(0.5);

@@ -9,7 +9,7 @@ use bevy_comics_testkit::reference::{
 use super::{settings::expression, *};
 
 const FOCUS: &str = "#import bevy_comics::effects::focus::{
-        Focus, defocus, distance_of, reaching, taken,
+        Focus, defocus, nearness_of, reaching, taken,
     }";
 const FIELDS: [&str; 10] = [
     "vec2", "f32", "f32", "f32", "f32", "f32", "u32", "vec2", "f32", "f32",
@@ -39,11 +39,15 @@ fn radii_are_those_of_the_twin() {
     let distance = || prop_oneof![3 => 0.1f32..100.0, 1 => select(vec![9.9, 10.0, 10.1, 1e30])];
     for view in views() {
         let s = expression("Focus", &FIELDS, &focus(), &view);
-        let body = format!("return vec4(defocus({s}, i(0u), i(1u)));");
+        let parallel = view.depth_reference.is_some();
+        let near = if parallel { "-i(0u)" } else { "1.0 / i(0u)" };
+        let body = format!("return vec4(defocus({s}, {near}, i(1u)));");
         for_batches((distance(), distance()).prop_map(|(a, b)| [a, b]), |rows| {
             for (row, found) in rows.iter().zip(gpu().evaluate(FOCUS, &body, rows)) {
                 let [a, b] = row.map(f64::from);
                 let want = defocus(&focus(), a, b, view.depth_reference.map(f64::from));
+                // Negative in front of the focus.
+                let want = if a < b { -want } else { want };
                 // A logarithm of up to 70 with an error of 2^-21 of it near the ramp, whose
                 // slope is up to 9 * 1.5 / 0.7.
                 let apart = (f64::from(found[0]) - want).abs();
@@ -54,14 +58,14 @@ fn radii_are_those_of_the_twin() {
 }
 
 #[test]
-fn distances_are_those_of_the_projection() {
+fn nearness_is_that_of_the_projection() {
     let [perspective, orthographic] = views();
-    for (view, of) in [
-        (perspective, (|d| 0.1 / d) as fn(f64) -> f64),
-        (orthographic, |d| 52.0 - 50.0 * d),
+    for (view, of, sky) in [
+        (perspective, (|d| d / 0.1) as fn(f64) -> f64, 1.0 / SKY),
+        (orthographic, |d| 50.0 * d - 52.0, -SKY),
     ] {
         let s = expression("Focus", &FIELDS, &focus(), &view);
-        let body = format!("return vec4(distance_of({s}, i(0u)));");
+        let body = format!("return vec4(nearness_of({s}, i(0u)));");
         for_batches((1e-6f32..=1.0).prop_map(|d| [d]), |rows| {
             for (row, found) in rows.iter().zip(gpu().evaluate(FOCUS, &body, rows)) {
                 let want = of(f64::from(row[0]));
@@ -70,28 +74,40 @@ fn distances_are_those_of_the_projection() {
         });
         let none = [[0.0], [f32::NAN], [-1.0], [1e-40]];
         for found in gpu().evaluate(FOCUS, &body, &none) {
-            assert_eq!(f64::from(found[0]), f64::from(SKY as f32));
+            assert!((f64::from(found[0]) / sky - 1.0).abs() < 1e-6, "{found:?}");
         }
     }
 }
 
-/// Truth, too: nothing is taken from what is nearer and sharp.
+/// The twin compares distances; the shader has nothing but the radii, and on which side of the focus
+/// they are. Truth, too: nothing is taken from what is nearer and sharp.
 #[test]
 fn what_is_taken_is_that_of_the_twin() {
+    let [view, _] = views();
+    let s = expression("Focus", &FIELDS, &focus(), &view);
+    let body = format!(
+        "let own = defocus({s}, 1.0 / i(0u), 10.0);
+        let other = defocus({s}, 1.0 / i(1u), 10.0);
+        return vec4(taken(own, other), own, other, reaching(i(2u), i(3u)));"
+    );
+    let distance = || prop_oneof![3 => 1.0f32..100.0, 1 => select(vec![3.0, 10.0, 10.5, 1e30])];
     let number = || prop_oneof![3 => 0.0f32..12.0, 1 => select(vec![0.0, 1.0, 6.0])];
-    let row = (number(), number(), number(), number()).prop_map(|(a, b, c, d)| [a, b, c, d]);
-    let body = "return vec4(
-        taken(vec2(i(0u), i(1u)), vec2(i(2u), i(3u))), reaching(i(0u), i(1u)), 0.0, 0.0);";
+    let row = (distance(), distance(), number(), number()).prop_map(|(a, b, c, d)| [a, b, c, d]);
     for_batches(row, |rows| {
-        for (row, found) in rows.iter().zip(gpu().evaluate(FOCUS, body, rows)) {
+        for (row, found) in rows.iter().zip(gpu().evaluate(FOCUS, &body, rows)) {
             let [a, b, c, d] = row.map(f64::from);
+            let [share, own, other, reaches] = found.map(f64::from);
+            let want = taken([a, own.abs()], [b, other.abs()]);
+            // Only what is out of focus takes; radii are exact to 1e-3 of 9, see above.
+            if own.abs() > 0.1 {
+                assert!((share - want).abs() < 0.02, "{row:?}: {found:?}, {want}");
+            }
             assert!(
-                (f64::from(found[0]) - taken([a, b], [c, d])).abs() < 1e-5,
+                !(b < a && other == 0.0 && own > 0.0) || share == 0.0,
                 "{row:?}"
             );
-            let reaches = smoothstep(b - 1.0, b + 1.0, a);
-            assert!((f64::from(found[1]) - reaches).abs() < 1e-5, "{row:?}");
-            assert!(!(c < a && d == 0.0) || found[0] == 0.0, "{row:?}");
+            let want = smoothstep(d - 1.0, d + 1.0, c);
+            assert!((reaches - want).abs() < 1e-5, "{row:?}");
         }
     });
 }

@@ -1,10 +1,12 @@
 //! Paint and means over boxes.
 
 use bevy_comics::{Paint, PaintForm};
-use bevy_comics_testkit::reference::{
-    means::{Means, Sheet, means, part_of_box, root, square},
-    noise,
-    paint::{Scene, chosen, edge, reaching_share, sector_weight},
+use bevy_comics_testkit::{
+    painting::{QUADRANTS, RADII, SLOPES, edge_moved, noisy, quadrant, random},
+    reference::{
+        means::{Means, Sheet, means, part_of_box, root, square},
+        paint::{Scene, chosen, edge, reaching_share, sector_weight},
+    },
 };
 
 use super::{
@@ -13,17 +15,13 @@ use super::{
 };
 
 const PAINT: &str = "#import bevy_comics::effects::paint::{
-        Paint, chosen, direction_of, no_choice, paint_radius, reaching_share, sector_direction, sector_weight,
+        Paint, chosen, chosen_color, direction_of, no_choice, paint_radius, reaching_share, sector_direction,
+        sector_weight,
     }
     #import bevy_comics::effect::means::{
-        Means, added, divided, half_side, packed_means, part_of_box, root, square, unpacked_means,
+        half_side, mean_color, means_of_color, packed_means, part_of_box, root, square, unpacked_means,
         variance,
     }";
-
-/// Number `i` of a sequence without order, 0 to 1.
-fn random(i: usize) -> f64 {
-    f64::from(noise::hash(i as u32) >> 8) / f64::from(1 << 24)
-}
 
 #[test]
 fn means_are_stored_as_they_are() {
@@ -34,9 +32,13 @@ fn means_are_stored_as_they_are() {
     )
         .prop_map(|((r, g, b), square, coverage)| [r, g, b, square, coverage]);
     for_batches(row, |rows| {
-        let means = "let m = Means(root(vec3(i(0u), i(1u), i(2u))), i(3u), i(4u), 2.5);
+        let means = "let m = means_of_color(root(vec3(i(0u), i(1u), i(2u))), i(3u), i(4u), 2.5);
             let n = unpacked_means(packed_means(m));";
-        let colors = gpu().evaluate(PAINT, &format!("{means} return vec4(n.color, 0.0);"), rows);
+        let colors = gpu().evaluate(
+            PAINT,
+            &format!("{means} return vec4(mean_color(n), 0.0);"),
+            rows,
+        );
         let rest = format!("{means} return vec4(n.square, n.coverage, variance(m), n.half);");
         let rest = gpu().evaluate(PAINT, &rest, rows);
         for ((row, color), rest) in rows.iter().zip(colors).zip(rest) {
@@ -172,52 +174,48 @@ fn areas_are_chosen_as_the_twin_does() {
             0.0f32..=1.0,
         )
     };
-    let row = (area(), area(), area(), 1.0f32..16.0).prop_map(|(a, b, c, sharpness)| {
+    let numbers = |(a, b, c, sharpness)| {
         let of = |(r, g, b, v, share): (f32, f32, f32, f32, f32)| [r, g, b, v, share];
         let all = [of(a), of(b), of(c)].concat();
         std::array::from_fn::<f32, 16, _>(|i| all.get(i).copied().unwrap_or(sharpness))
-    });
-    let body = "var c = no_choice();
-        for (var k = 0u; k < 3u; k++) {
-            let color = vec3(i(5u * k), i(5u * k + 1u), i(5u * k + 2u));
-            let mean = dot(color, vec3(0.2126, 0.7152, 0.0722));
-            let share = i(5u * k + 4u);
-            c = chosen(c, Means(color, mean * mean + i(5u * k + 3u), 1.0, 0.0), share, 0.5 * i(15u));
-        }
-        return vec4(square(c.color / c.weight), c.weight);";
-    for_batches(row, |rows| {
-        for (row, found) in rows.iter().zip(gpu().evaluate(PAINT, body, rows)) {
-            let area = |k: usize| {
-                let row = &row[5 * k..];
-                let color = rgb(row);
-                let square = color::luminance(color).powi(2) + f64::from(row[3]);
-                let coverage = 1.0;
-                let m = Means {
-                    color,
-                    square,
-                    coverage,
-                    half: 0.0,
+    };
+    for eighth in [false, true] {
+        let body = format!(
+            "var c = no_choice();
+            for (var k = 0u; k < 3u; k++) {{
+                let color = vec3(i(5u * k), i(5u * k + 1u), i(5u * k + 2u));
+                let mean = dot(color, vec3(0.2126, 0.7152, 0.0722));
+                let m = means_of_color(color, mean * mean + i(5u * k + 3u), 1.0, 0.0);
+                c = chosen(c, m, i(5u * k + 4u), 0.5 * i(15u), {eighth});
+            }}
+            return vec4(chosen_color(c), c.sum.w);"
+        );
+        let row = (area(), area(), area(), 1.0f32..16.0).prop_map(numbers);
+        for_batches(row, |rows| {
+            for (row, found) in rows.iter().zip(gpu().evaluate(PAINT, &body, rows)) {
+                let area = |k: usize| {
+                    let row = &row[5 * k..];
+                    let color = rgb(row);
+                    let m = Means {
+                        color,
+                        square: color::luminance(color).powi(2) + f64::from(row[3]),
+                        coverage: 1.0,
+                        half: 0.0,
+                    };
+                    (m, f64::from(row[4]))
                 };
-                (m, f64::from(row[4]))
-            };
-            let Some(want) = chosen(&[0, 1, 2].map(area), f64::from(row[15])) else {
-                assert_eq!(found[3], 0.0);
-                continue;
-            };
-            // Variances are differences of numbers up to 1.3 with errors of 1.2e-7: the weight
-            // of an even area is off by up to 8 * 1.3e-7 / 1e-4 = 1 %.
-            let apart = codes_apart(found, want);
-            assert!(apart < 2.0, "{row:?}: {found:?}, {want:?}: {apart}");
-        }
-    });
-}
-
-/// A sheet of random colours.
-fn noisy(size: [usize; 2]) -> Sheet {
-    Sheet::new(size, |[x, y]| {
-        let of = |c: usize| random(3 * (y * size[0] + x) + c);
-        [of(0), of(1), of(2), 1.0]
-    })
+                let sharpness = if eighth { 8.0 } else { f64::from(row[15]) };
+                let Some(want) = chosen(&[0, 1, 2].map(area), sharpness) else {
+                    assert_eq!(found[3], 0.0);
+                    continue;
+                };
+                // Variances are differences of numbers up to 1.3 with errors of 1.2e-7: the
+                // weight of an even area is off by up to 8 * 1.3e-7 / 1e-4 = 1 %.
+                let apart = codes_apart(found, want);
+                assert!(apart < 2.0, "{row:?}: {found:?}, {want:?}: {apart}");
+            }
+        });
+    }
 }
 
 /// Truth: the box of radius 4 around the middle of a quadrant is the quadrant of Kuwahara
@@ -229,10 +227,8 @@ fn boxes_of_even_radii_are_the_quadrants_of_kuwahara() {
         let half = radius / 2;
         let boxes = means(&sheet, &|_| half as f64);
         for (x, y) in [(10, 8), (7, 9), (12, 7)] {
-            for [sx, sy] in [[-1i64, -1], [1, -1], [-1, 1], [1, 1]] {
-                let quadrant = (0..=radius as i64)
-                    .flat_map(|j| (0..=radius as i64).map(move |i| [x + sx * i, y + sy * j]));
-                let pixels: Vec<Means> = quadrant.map(|at| Means::of(sheet.nearest(at))).collect();
+            for [sx, sy] in QUADRANTS {
+                let pixels = quadrant(&sheet, [x, y], [sx, sy], radius as i64);
                 let count = pixels.len() as f64;
                 let of = |f: &dyn Fn(&Means) -> f64| pixels.iter().map(f).sum::<f64>() / count;
                 let lum = |m: &Means| color::luminance(m.color);
@@ -319,37 +315,10 @@ fn noise_is_painted_over() {
 /// their rows, measured as they are seen: in square roots of light.
 #[test]
 fn edges_stay_in_place() {
-    for slope in [0.0, 0.1, 0.37, 0.8] {
-        // Coverage of a pixel beside the edge, as 8 x 8 samples.
-        let coverage = |[x, y]: [usize; 2]| {
-            let inside = (0..64).filter(|i| {
-                let [i, j] = [i % 8, i / 8].map(|v| (f64::from(v) + 0.5) / 8.0);
-                x as f64 + i > 20.0 + slope * (y as f64 + j - 20.0)
-            });
-            inside.count() as f64 / 64.0
-        };
-        let sheet = Sheet::new([40, 40], |at| {
-            let light = 0.1 + 0.7 * coverage(at);
-            [light, light, light, 1.0]
-        });
-        let contrast = 0.8f64.sqrt() - 0.1f64.sqrt();
+    for slope in SLOPES {
         for form in FORMS {
-            for radius in [2.0, 4.0, 6.5] {
-                let s = Paint {
-                    form,
-                    near: radius,
-                    far: radius,
-                    ..Paint::default()
-                };
-                let painted = painted(&sheet, &s);
-                let rows = 10..30;
-                let moved: f64 = rows
-                    .clone()
-                    .flat_map(|y| (0..40).map(move |x| [x, y]))
-                    .map(|at| (painted.at(at)[1].sqrt() - sheet.at(at)[1].sqrt()) / contrast)
-                    .sum();
-                // Across the edge, not along the row.
-                let moved = moved / rows.len() as f64 / slope.hypot(1.0);
+            for radius in RADII {
+                let moved = edge_moved(form, radius, slope);
                 assert!(moved.abs() < 0.1, "{form:?}, {radius}, {slope}: {moved}");
             }
         }

@@ -1,0 +1,130 @@
+//! The picture with a number at every pixel, as an effect of a game reads it.
+
+use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
+use bevy_comics::{
+    ComicsPlugin, ComicsStage, Desaturation, Effect, EffectPlugin, EffectShader, EffectStage,
+    Needs, ViewFacts,
+};
+use bevy_comics_testkit::{before::BeforeStylize, headless::Headless};
+use serde::{Deserialize, Serialize};
+
+use crate::small::{Small, camera, options, spawn_objects};
+
+/// Shows the number and the red of the pixel to the left, and its own green.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default)]
+struct ShownNumbers {
+    scale: f32,
+}
+
+/// The same after it.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default)]
+struct MoreNumbers {
+    scale: f32,
+}
+
+macro_rules! numbered {
+    ($effect:ident, $name:literal) => {
+        impl Effect for $effect {
+            const NAME: &'static str = $name;
+            const STAGE: EffectStage = EffectStage::Color;
+            const SHADER: EffectShader = EffectShader {
+                path: concat!("test::", $name),
+                source: concat!(
+                    "#define_import_path test::",
+                    $name,
+                    "
+            #import bevy_comics::depth::view::inside_viewport
+            #import bevy_comics::effect::numbered::load_numbered
+            #import bevy_comics::effect::pixel::Pixel
+            struct ShownNumbers { scale: f32 }
+            fn ",
+                    $name,
+                    "_number(s: ShownNumbers, p: Pixel) -> f32 {
+                return s.scale * (p.inside.x + 0.5 * p.inside.y);
+            }
+            fn ",
+                    $name,
+                    "(s: ShownNumbers, p: Pixel) -> Pixel {
+                var out = p;
+                let left = inside_viewport(vec2<i32>(p.position) - vec2(1, 0));
+                let found = load_numbered(left);
+                out.color = vec3(found.number, found.color.r, p.color.g);
+                return out;
+            }"
+                ),
+                settings: Some("ShownNumbers"),
+            };
+            const NUMBER: bool = true;
+            type Uniform = Vec2;
+
+            fn sanitized(self) -> Self {
+                self
+            }
+
+            fn strength(&self) -> f32 {
+                1.0
+            }
+
+            fn faded(self, _: f32) -> Self {
+                self
+            }
+
+            fn needs(&self) -> Needs {
+                Needs::NUMBERED
+            }
+
+            fn uniform(&self, _: &ViewFacts) -> Vec2 {
+                Vec2::new(self.scale, 0.0)
+            }
+        }
+    };
+}
+
+numbered!(ShownNumbers, "shown_numbers");
+numbered!(MoreNumbers, "more_numbers");
+
+fn small() -> Small {
+    let plugins = (
+        ComicsPlugin,
+        EffectPlugin::<ShownNumbers>::default(),
+        EffectPlugin::<MoreNumbers>::default(),
+        BeforeStylize::Copy,
+    );
+    let mut headless = Headless::new(options(UVec2::new(48, 33)), plugins);
+    spawn_objects(headless.app.world_mut());
+    let target = headless.render_target();
+    let camera = camera(target, Msaa::Off);
+    let camera = headless.app.world_mut().spawn((camera, Hdr)).id();
+    Small { headless, camera }
+}
+
+/// Everything is exact: the picture has 11 bits before and after.
+#[test]
+fn numbers_are_beside_their_colours() {
+    let mut small = small();
+    small.insert(ShownNumbers { scale: 0.5 }).settle();
+    assert!(small.ran(ComicsStage::of::<ShownNumbers>()));
+    let (read, wrote) = small.pass();
+    let size = [read.width, read.height].map(|v| v as usize);
+    for (i, found) in wrote.pixels.iter().enumerate() {
+        let [x, y] = [i % size[0], i / size[0]];
+        let left = x.saturating_sub(1);
+        let number = 0.5 * (left as f32 + 0.5 * y as f32);
+        let before = read.pixels[y * size[0] + left];
+        let want = [number, before[0], read.pixels[i][1]];
+        assert_eq!(found[..3], want, "({x}, {y})");
+    }
+    // The one after it reads what it has drawn; a colour effect comes before both.
+    let second = MoreNumbers { scale: 0.25 };
+    small.insert((Desaturation::default(), second)).settle();
+    let (_, again) = small.pass();
+    for (i, found) in again.pixels.iter().enumerate() {
+        let [x, y] = [i % size[0], i / size[0]];
+        let number = |x: usize, scale: f32| scale * (x as f32 + 0.5 * y as f32);
+        let left = x.saturating_sub(1);
+        let before = number(left.saturating_sub(1), 0.5);
+        assert_eq!(found[..2], [number(left, 0.25), before], "({x}, {y})");
+    }
+}
