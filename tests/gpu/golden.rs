@@ -44,13 +44,18 @@ fn apart(reference: &Path, picture: &image::RgbaImage) -> (f32, f64) {
     (flip_mean(&reference, picture), far_off(&reference, picture))
 }
 
+/// Twice the largest fraction of pixels that were far off between two processors that round
+/// differently (both EPYC, with and without AVX-512; LLVM 15): 0.0038, of the 19 pictures that
+/// differed most. Edges of dots and of tone bands move by a pixel where the scene rounds
+/// differently. FLIP was at most 0.0071 there, but for two pictures that have a second reference.
+const MOST_FAR_OFF: f64 = 0.0076;
+
 fn is_alike((flip, off): (f32, f64)) -> bool {
-    flip <= 0.01 && off <= 0.001
+    flip <= 0.01 && off <= MOST_FAR_OFF
 }
 
 /// The reference, and a second one for processors that round the scene differently,
-/// if there is one: FLIP sees steps of one code where nothing dithers them, and
-/// steps between tone bands move.
+/// if there is one: FLIP sees steps of one code where nothing dithers them.
 fn references(scene: BuiltIn, name: &str) -> Vec<PathBuf> {
     let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden"));
     let file = format!("{}-{name}.png", scene.name());
@@ -115,7 +120,7 @@ fn small_changes_are_seen() {
         for path in references(BuiltIn::Teapot, name) {
             let (flip, off) = apart(&path, &picture);
             assert!(
-                flip > 0.01 && off > 0.001,
+                flip > 0.01 && off > MOST_FAR_OFF,
                 "FLIP {flip}, {off} far off: {changed:?}"
             );
         }
@@ -140,17 +145,4 @@ fn the_village_looks_as_it_did() {
 #[test]
 fn the_theatre_looks_as_it_did() {
     check(BuiltIn::Theatre);
-}
-
-#[test]
-fn tmp_pairs() {
-    for entry in std::fs::read_dir("/tmp/og/tests/golden/rounding").unwrap() {
-        let path = entry.unwrap().path();
-        let name = path.file_name().unwrap().to_owned();
-        let picture = image::open(&path).unwrap().to_rgba8();
-        println!(
-            "{name:?} {:?}",
-            apart(&Path::new("/tmp/og/tests/golden").join(&name), &picture)
-        );
-    }
 }
