@@ -12,6 +12,7 @@ pub mod color;
 pub mod colorization;
 pub mod columns;
 pub mod contours;
+pub mod coverage;
 pub mod crack;
 pub mod desaturation;
 pub mod draw;

@@ -1,0 +1,28 @@
+#define_import_path bevy_comics::lines::coverage
+
+// Fractions of pixels that drawn lines cover. Pure functions.
+
+#import bevy_comics::lines::edge::line_coverage
+
+// The ramp of a diagonal.
+const SHORTEST_RAMP: f32 = 0.70710678;
+
+// The length of the ramp from no coverage to full coverage across a line with this direction, in
+// pixels: the cosine of its angle with the nearer axis, 1 to sqrt(1/2).
+fn line_ramp(along: vec2<f32>) -> f32 {
+    let cosine = max(abs(along.x), abs(along.y)) * inverseSqrt(max(dot(along, along), 1e-12));
+    return clamp(cosine, SHORTEST_RAMP, 1.0);
+}
+
+// The coverage by a straight line with such a ramp. In each column (of a steep line: in each row) it
+// adds up to the extent of the line along the column, wherever the line lies between the pixels.
+fn straight_coverage(distance: f32, half_width: f32, ramp: f32) -> f32 {
+    return clamp((half_width - distance) / ramp + 0.5, 0.0, min(2.0 * half_width / ramp, 1.0));
+}
+
+// The coverage by a disc around the middle of a line whose direction is not known: no more than that
+// of a straight line in any direction.
+fn disc_coverage(distance: f32, half_width: f32) -> f32 {
+    let steep = straight_coverage(distance, half_width, SHORTEST_RAMP);
+    return min(line_coverage(distance, half_width), steep);
+}

@@ -1,0 +1,25 @@
+//! Twin of `lines/coverage.wgsl`: fractions of pixels that drawn lines cover.
+
+/// Length in pixels of the ramp of coverage across a line with this direction.
+pub fn line_ramp(along: [f64; 2]) -> f64 {
+    let length = along[0].hypot(along[1]);
+    (along[0].abs().max(along[1].abs()) / length).clamp(SHORTEST_RAMP, 1.0)
+}
+
+/// That of a diagonal.
+const SHORTEST_RAMP: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// The coverage by a straight line: the overlap of [-half width, half width] and of an interval of
+/// the length of the ramp, divided by this length.
+pub fn straight_coverage(distance: f64, half_width: f64, ramp: f64) -> f64 {
+    let low = (distance - 0.5 * ramp).max(-half_width);
+    let high = (distance + 0.5 * ramp).min(half_width);
+    (high - low).max(0.0) / ramp
+}
+
+/// The coverage by a disc around the middle of a line: the least of straight lines in all
+/// directions.
+pub fn disc_coverage(distance: f64, half_width: f64) -> f64 {
+    let at = |ramp| straight_coverage(distance, half_width, ramp);
+    at(1.0).min(at(SHORTEST_RAMP))
+}
