@@ -1,6 +1,7 @@
 //! The service of the depth map: the range of visible depths, and the map that
 //! effects read distance from.
 
+mod borders;
 pub(crate) mod follow;
 pub(crate) mod frame;
 mod ping_pong;

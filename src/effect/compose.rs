@@ -33,8 +33,9 @@ const MODULES: [&str; 18] = [
 ];
 
 /// Shader definitions of the fused pass that do not name an effect, in lower case.
-const DEFINITIONS: [&str; 28] = [
+const DEFINITIONS: [&str; 30] = [
     "depth",
+    "depth_borders",
     "map",
     "map_flags",
     "visible_range",
@@ -45,6 +46,7 @@ const DEFINITIONS: [&str; 28] = [
     "object_ids",
     "object_styles",
     "object_anchors",
+    "object_depths",
     "lines",
     "lines_anywhere",
     "surface_lines",

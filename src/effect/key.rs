@@ -15,13 +15,14 @@ use super::{
     AnyEffect, EffectStage, Extent, Needs, Plan, Variants, ViewFacts,
     compose::{boxes_of, definition, left_out},
     layers::{LAYER_FORMAT, MEANS_FORMAT},
+    part::{Means, Part},
     passes::Pass,
 };
 use crate::{
     depth::view::ViewUniform,
     finish::DebugView,
     lines::{ink_entry, owners_entry, range_entry},
-    objects::{ids_entry, object_styles_entry},
+    objects::{ids_entry, object_styles_entry, places_entry},
 };
 
 /// The properties of a view that select a pipeline, besides its plan.
@@ -48,7 +49,7 @@ pub(crate) struct StylizeKey {
     needs: Needs,
     /// Whether the depth texture is bound.
     pub depth: bool,
-    pub visible_range: bool,
+    visible_range: bool,
     pub lines: bool,
     /// Lines have the colour of surfaces.
     pub surface: bool,
@@ -69,63 +70,6 @@ pub(crate) struct StylizeKey {
     /// lines are left out too.
     left_out: Vec<&'static str>,
     without_lines: bool,
-}
-
-/// What a pass does with means over boxes of the picture before it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) enum Means {
-    /// It neither draws nor reads them.
-    #[default]
-    None,
-    /// Draws the means of rows for this effect, and nothing else.
-    Across(&'static str),
-    /// Draws the means of boxes from those of rows.
-    Down(&'static str),
-    /// Its effects read them.
-    Read,
-}
-
-impl Means {
-    /// The effect that they are drawn for, in a pass that draws them.
-    fn effect(self) -> Option<&'static str> {
-        match self {
-            Self::Across(effect) | Self::Down(effect) => Some(effect),
-            Self::None | Self::Read => None,
-        }
-    }
-
-    /// Whether the pass reads means.
-    fn reads(self) -> bool {
-        matches!(self, Self::Down(_) | Self::Read)
-    }
-}
-
-/// What a draw call of the fused pass draws.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) enum Part {
-    /// All effects at all pixels.
-    #[default]
-    Whole,
-    /// All pixels, without the effects that change only some of them.
-    Base,
-    /// All effects in the tiles that those effects may change.
-    Tiles,
-    /// All effects at all pixels, blended over the picture.
-    Overlay,
-    /// All effects in these tiles, blended over the picture.
-    OverlaidTiles,
-}
-
-impl Part {
-    /// Whether the pass is blended over the picture.
-    pub fn is_overlay(self) -> bool {
-        matches!(self, Self::Overlay | Self::OverlaidTiles)
-    }
-
-    /// Whether only tiles are drawn.
-    pub fn is_tiled(self) -> bool {
-        matches!(self, Self::Tiles | Self::OverlaidTiles)
-    }
 }
 
 impl StylizeKey {
@@ -281,6 +225,21 @@ impl StylizeKey {
         self.needs.contains(Needs::IDS)
     }
 
+    /// Whether the borders between near, middle and far are read.
+    fn borders(&self) -> bool {
+        self.needs.contains(Needs::DEPTH_BORDERS)
+    }
+
+    /// Whether the buffer of the visible range is bound, which holds the borders too.
+    pub fn reads_range(&self) -> bool {
+        self.visible_range || self.borders()
+    }
+
+    /// Whether the places of objects in the depth map are read.
+    pub fn places(&self) -> bool {
+        self.needs.contains(Needs::OBJECT_DEPTHS)
+    }
+
     pub fn blue_noise(&self) -> bool {
         self.needs.contains(Needs::BLUE_NOISE)
     }
@@ -297,6 +256,7 @@ impl StylizeKey {
             (self.depth, "DEPTH"),
             (needs.contains(Needs::MAP), "MAP"),
             (self.visible_range, "VISIBLE_RANGE"),
+            (self.borders(), "DEPTH_BORDERS"),
             (self.samples > 1, "MULTISAMPLED"),
             (self.oblique, "OBLIQUE"),
             (self.normals(), "NORMALS"),
@@ -306,6 +266,7 @@ impl StylizeKey {
             (self.surface && self.part != Part::Base, "SURFACE_LINES"),
             (self.object_styles, "OBJECT_STYLES"),
             (needs.contains(Needs::OBJECT_ANCHORS), "OBJECT_ANCHORS"),
+            (self.places(), "OBJECT_DEPTHS"),
             (self.unstyled_colors || self.unstyled_print, "UNSTYLED"),
             (self.unstyled_colors, "UNSTYLED_COLORS"),
             (self.unstyled_print, "UNSTYLED_PRINT"),
@@ -354,12 +315,13 @@ impl StylizeKey {
         let between = sampler(SamplerBindingType::Filtering);
         let optional = [
             (self.depth, prepass(2)),
-            (self.visible_range, range_entry()),
+            (self.reads_range(), range_entry()),
             (self.lines, ink_entry()),
             (self.surface, owners_entry()),
             (self.object_styles, object_styles_entry()),
             (self.normals(), prepass(7)),
             (self.ids(), ids_entry(self.samples > 1)),
+            (self.places(), places_entry()),
             (self.continued, layer.build(9, fragment)),
             (self.continued, between.build(10, fragment)),
             (

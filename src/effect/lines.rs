@@ -77,6 +77,7 @@ pub(super) fn line_request(
         motion: has_motion(scene),
         fog: plan.fog.then(|| fog(view)),
         focus: line_focus(plan, facts),
+        planes: plan.drawn().find_map(|e| e.any_line_planes(facts)),
         sheet: sheet(facts),
         depth_size,
         samples,

@@ -29,7 +29,7 @@ pub(crate) struct FusedRequest {
     pub pipeline: CachedRenderPipelineId,
     /// Draws all pixels before the tiles of `pipeline`, see [`Part::Base`].
     ///
-    /// [`Part::Base`]: super::key::Part::Base
+    /// [`Part::Base`]: super::part::Part::Base
     pub base: Option<CachedRenderPipelineId>,
     pub facts: ViewFacts,
     pub view: ViewUniform,

@@ -205,18 +205,25 @@ fn plot(ui: &mut Ui, histogram: &DepthHistogram, widgets: &mut Widgets) {
                 BarChart::new("fraction of the pixels, in 64 columns", bars)
                     .color(Color32::LIGHT_BLUE),
             );
-            if let Some((near, far)) = histogram.drawn {
-                for (name, at) in [("nearest", near), ("farthest", far)] {
-                    plot.vline(
-                        VLine::new(name, place(at))
-                            .color(Color32::from_rgb(230, 90, 70))
-                            .width(2.0),
-                    );
+            let range = Color32::from_rgb(230, 90, 70);
+            let borders = Color32::from_rgb(240, 200, 90);
+            for (ends, names, color) in [
+                (histogram.drawn, ["nearest", "farthest"], range),
+                (histogram.borders, ["end of near", "start of far"], borders),
+            ] {
+                let Some((near, far)) = ends else {
+                    continue;
+                };
+                for (name, at) in names.into_iter().zip([near, far]) {
+                    plot.vline(VLine::new(name, place(at)).color(color).width(2.0));
                 }
             }
         });
     note(widgets, "histogram", &shown.response);
-    ui.weak("Distance in world units. Lines: the range that is used for drawing.");
+    ui.weak(
+        "Distance in world units. Red: the range that is used for drawing. Yellow: where near, \
+         middle and far meet, if planes are found.",
+    );
 }
 
 /// Reads the depth range of this camera, and of no other.

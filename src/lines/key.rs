@@ -119,6 +119,9 @@ impl LineKey {
             WeightKey {
                 fog: request.fog.is_some(),
                 focus: request.focus.is_some(),
+                planes: request.planes.is_some(),
+                found_borders: request.planes.is_some_and(|planes| planes.finds_borders),
+                by_objects: request.planes.is_some_and(|planes| planes.by_objects) && request.ids,
                 map: request.widths,
                 ..WeightKey::new(lines)
             }
@@ -251,7 +254,7 @@ impl LineKey {
     /// The part that completing cracks depends on.
     pub fn for_settle(self) -> Self {
         let weight = self.weight;
-        let reads_map = weight.perspective;
+        let reads_map = weight.perspective || weight.planes;
         Self {
             ledges: self.ledges,
             rims: self.rims,
@@ -259,7 +262,7 @@ impl LineKey {
             smooth: self.smooth,
             creases: self.creases && self.smooth,
             weight,
-            ids: weight.outer && self.ids,
+            ids: (weight.outer || weight.by_objects) && self.ids,
             oblique: (weight.any() || self.rims || self.creases && self.smooth) && self.oblique,
             visible_range: reads_map && self.visible_range,
             ..Self::default()
