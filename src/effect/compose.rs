@@ -33,7 +33,7 @@ const MODULES: [&str; 18] = [
 ];
 
 /// Shader definitions of the fused pass that do not name an effect, in lower case.
-const DEFINITIONS: [&str; 30] = [
+const DEFINITIONS: [&str; 33] = [
     "depth",
     "depth_borders",
     "map",
@@ -49,7 +49,10 @@ const DEFINITIONS: [&str; 30] = [
     "object_depths",
     "lines",
     "lines_anywhere",
+    "line_owners",
     "surface_lines",
+    "plane_ink",
+    "in_planes",
     "lightness_change",
     "blue_noise",
     "finish",

@@ -52,7 +52,9 @@ pub(crate) struct StylizeKey {
     visible_range: bool,
     pub lines: bool,
     /// Lines have the colour of surfaces.
-    pub surface: bool,
+    surface: bool,
+    /// Lines have other colours in near, middle and far.
+    pub plane_ink: bool,
     pub object_styles: bool,
     /// Some objects are left alone: by the colour effects of the pass, by its prints.
     unstyled_colors: bool,
@@ -98,6 +100,7 @@ impl StylizeKey {
             visible_range: plan.draws_with_range(),
             lines,
             surface: lines && plan.lines.is_some_and(|lines| lines.color.is_surface()),
+            plane_ink: lines && plan.line_planes(facts).is_some_and(|p| p.has_colors()),
             object_styles: (lines && plan.object_styles)
                 || plan.unstyled
                 || needs.contains(Needs::OBJECT_ANCHORS),
@@ -130,7 +133,7 @@ impl StylizeKey {
             && self.view.is_none()
             && !self.finish
             && !self.continued
-            && !self.surface;
+            && !self.reads_owners();
         let local = |effect: &dyn AnyEffect| effect.any_extent(facts) != Extent::Everywhere;
         plain && self.space == CompositingSpace::Linear && plan.drawn().all(local)
     }
@@ -217,6 +220,11 @@ impl StylizeKey {
         self.view.is_some()
     }
 
+    /// Whether the pixels that own lines are read.
+    pub fn reads_owners(&self) -> bool {
+        self.surface || self.plane_ink
+    }
+
     pub fn normals(&self) -> bool {
         self.needs.contains(Needs::NORMALS)
     }
@@ -263,7 +271,10 @@ impl StylizeKey {
             (self.ids(), "OBJECT_IDS"),
             (self.lines, "LINES"),
             (needs.contains(Needs::LINES_ANYWHERE), "LINES_ANYWHERE"),
+            (self.reads_owners(), "LINE_OWNERS"),
             (self.surface && self.part != Part::Base, "SURFACE_LINES"),
+            (self.plane_ink, "IN_PLANES"),
+            (self.plane_ink && self.part != Part::Base, "PLANE_INK"),
             (self.object_styles, "OBJECT_STYLES"),
             (needs.contains(Needs::OBJECT_ANCHORS), "OBJECT_ANCHORS"),
             (self.places(), "OBJECT_DEPTHS"),
@@ -317,7 +328,7 @@ impl StylizeKey {
             (self.depth, prepass(2)),
             (self.reads_range(), range_entry()),
             (self.lines, ink_entry()),
-            (self.surface, owners_entry()),
+            (self.reads_owners(), owners_entry()),
             (self.object_styles, object_styles_entry()),
             (self.normals(), prepass(7)),
             (self.ids(), ids_entry(self.samples > 1)),

@@ -286,7 +286,7 @@ fn inputs<'a>(
         let ink = lines.found().ok_or(not_ready)?;
         entries.push(entry(4, (&ink.default_view).into_binding()));
     }
-    if key.surface {
+    if key.reads_owners() {
         let owners = lines.and_then(|lines| lines.owners.as_ref());
         let owners = owners.ok_or(not_ready)?;
         entries.push(entry(5, (&owners.default_view).into_binding()));

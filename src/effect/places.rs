@@ -21,11 +21,12 @@ pub(super) fn object_depths(
             place: facts.eye,
             orthographic: u32::from(view.projection.kind() == ProjectionKind::Orthographic),
             forward: *extracted.world_from_view.forward(),
-            unused: 0,
+            forgets: 0,
             axis: facts.depth_axis,
             spare: Vec2::ZERO,
             view: uniform,
         },
-        visible_range: plan.depth_map.mapping.follows_visible_range(),
+        mapping: plan.depth_map.mapping,
+        cuts: view.cuts,
     })
 }

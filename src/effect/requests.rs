@@ -37,7 +37,10 @@ use crate::{
         request::{RangePasses, RangePipelines, RangeRequest, Reduction},
         view::{ViewUniform, depth_rect},
     },
-    lines::request::{LinePasses, LinePipelines, LineRequest},
+    lines::{
+        LinePlanes,
+        request::{LinePasses, LinePipelines, LineRequest},
+    },
     objects::{IdRequest, ObjectDepthRequest, QueuedDepth},
 };
 #[cfg(feature = "objects")]
@@ -218,6 +221,7 @@ impl Services<'_> {
             facts,
             view: inputs.view,
             lines: lines.map(|(request, _)| request.lines),
+            line_planes: plan.line_planes(&facts).map(LinePlanes::uniform),
             layers,
             pipeline: specialize(&key),
             base,

@@ -85,7 +85,7 @@ pub(crate) struct LineKey {
     pub smooth: bool,
     /// Which factors of width and opacity are not 1.
     pub weight: WeightKey,
-    /// Lines have the colour of surfaces.
+    /// The colour of lines depends on the surface that they belong to.
     pub surface: bool,
     /// They take the colour a pixel inside of it, because its rim is mixed with others.
     pub inward: bool,
@@ -151,8 +151,8 @@ impl LineKey {
             bridged: lines.bridge > 0 && !by_fragments,
             smooth: lines.smooth && !by_fragments,
             weight,
-            surface: lines.color.is_surface(),
-            inward: lines.color.is_surface() && request.samples > 1,
+            surface: request.needs_owners(),
+            inward: request.needs_owners() && request.samples > 1,
             boils: lines.boil.moves(),
             sheet: request.sheet.key(),
             varied: weight.varies(),

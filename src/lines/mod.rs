@@ -69,6 +69,7 @@ pub(crate) use marks::MarkKey;
 pub(crate) use marks::{MarkPipeline, ViewMarks, draw_marks};
 pub(crate) use memory::MemoryRequest;
 pub use plane_lines::LinePlanes;
+pub(crate) use plane_lines::LinePlanesUniform;
 pub(crate) use prepare::ViewLines;
 pub(crate) use settings::LinesUniform;
 pub use settings::{LineSettings, MapJumps};

@@ -3,9 +3,8 @@
 // Near, middle and far at the pixel that owns a line.
 
 #import bevy_comics::depth::map::{depth_map, plane_weights}
-#import bevy_comics::depth::view::{depth_frame, texel_depth}
-#import bevy_comics::lines::pass::line_pass
-#import bevy_comics::lines::plane_lines::plane_factors
+#import bevy_comics::depth::view::{depth_frame, texel_depth, view}
+#import bevy_comics::lines::plane_lines::LinePlanes
 #ifdef DEPTH_BORDERS
 #import bevy_comics::depth::view::depth_borders
 #endif
@@ -13,9 +12,9 @@
 #import bevy_comics::objects::{object_depth, texel_object}
 #endif
 
-// Factors of the width and of the opacity of a line.
-fn owner_factors(owner: vec2<i32>) -> vec2<f32> {
-    let p = line_pass.planes;
+#ifdef IN_PLANES
+// Fractions of near, middle and far. `owner`: a pixel of the depth texture.
+fn owner_weights(p: LinePlanes, owner: vec2<i32>) -> vec3<f32> {
     let frame = depth_frame();
     var d = depth_map(frame, texel_depth(owner, 0)).x;
 #ifdef OBJECT_DEPTHS
@@ -28,5 +27,6 @@ fn owner_factors(owner: vec2<i32>) -> vec2<f32> {
     borders = select(found, borders, found.x < 0.0);
 #endif
     let w = plane_weights(borders, p.softness, d);
-    return plane_factors(p, select(w, w.zyx, line_pass.seen.flip != 0u));
+    return select(w, w.zyx, view.flip != 0u);
 }
+#endif

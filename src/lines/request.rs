@@ -109,6 +109,12 @@ impl LineRequest {
         self.reach.max(1) + i32::from(!aligned)
     }
 
+    /// Whether the pixels that own lines are drawn, for the colour of lines.
+    pub fn needs_owners(&self) -> bool {
+        let own_colors = |planes: LinePlanes| planes.has_colors();
+        self.settings.color.is_surface() || self.planes.is_some_and(own_colors)
+    }
+
     /// Number of passes that link cracks.
     pub fn links(&self) -> usize {
         (self.steps as usize).div_ceil(LINK_STEPS)

@@ -38,7 +38,8 @@
 #import bevy_comics::lines::focus::line_sharpness
 #endif
 #ifdef IN_PLANES
-#import bevy_comics::lines::owner_plane::owner_factors
+#import bevy_comics::lines::owner_plane::owner_weights
+#import bevy_comics::lines::plane_lines::plane_factors
 #endif
 #ifdef LIGHT_WEIGHT
 #import bevy_comics::depth::normal::texel_normal
@@ -265,7 +266,7 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     left *= line_sharpness(line_pass.focus, texel_depth(owner, 0), middle);
 #endif
 #ifdef IN_PLANES
-    left *= owner_factors(owner);
+    left *= plane_factors(line_pass.planes, owner_weights(line_pass.planes, owner));
 #endif
     return select(weighted_crack(packed, left.x, left.y), 0u, packed == 0u);
 }

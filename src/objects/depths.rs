@@ -40,7 +40,7 @@ use super::{
     ids::object_id,
 };
 use crate::{
-    depth::prepare::ViewDepthRange,
+    depth::{DepthMapping, prepare::ViewDepthRange},
     schedule::{ComicsSystems, PrepareComics},
 };
 
@@ -121,7 +121,19 @@ fn extract_bounds(
 struct ViewPlaces {
     uniform: UniformBuffer<ObjectEye>,
     pipeline: CachedComputePipelineId,
-    visible_range: bool,
+    mapping: DepthMapping,
+    cuts: u32,
+}
+
+impl ViewPlaces {
+    fn reads_range(&self) -> bool {
+        self.mapping.follows_visible_range()
+    }
+
+    /// Whether its places say nothing about those of this request.
+    fn is_past(&self, request: &ObjectDepthRequest) -> bool {
+        (self.mapping, self.cuts) != (request.mapping, request.cuts)
+    }
 }
 
 #[derive(Resource)]
@@ -176,7 +188,7 @@ type Placed<'w, 's> = (
         (
             Entity,
             &'static ObjectDepthRequest,
-            Option<&'static DepthPlaces>,
+            Option<&'static ViewPlaces>,
         ),
     >,
     Query<'w, 's, Entity, (With<DepthPlaces>, Without<ObjectDepthRequest>)>,
@@ -208,14 +220,19 @@ fn prepare_places(
     bounds.buffer.set(found);
     bounds.buffer.write_buffer(&device, &queue);
     for (entity, request, known) in &views {
-        let mut uniform = UniformBuffer::from(request.eye);
+        let forgets = known.is_none_or(|places| places.is_past(request));
+        let mut uniform = UniformBuffer::from(ObjectEye {
+            forgets: u32::from(forgets),
+            ..request.eye
+        });
         uniform.write_buffer(&device, &queue);
-        let visible_range = request.visible_range;
+        let reads_range = request.mapping.follows_visible_range();
         let mut view = commands.entity(entity);
         view.insert(ViewPlaces {
             uniform,
-            pipeline: pipelines.specialize(&cache, &pipeline, visible_range),
-            visible_range,
+            pipeline: pipelines.specialize(&cache, &pipeline, reads_range),
+            mapping: request.mapping,
+            cuts: request.cuts,
         });
         if known.is_none() {
             view.insert(DepthPlaces {
@@ -248,7 +265,7 @@ fn place_objects(
         cache.get_compute_pipeline(places.pipeline),
         places.uniform.binding(),
         bounds.buffer.binding(),
-        keys.is_some() || !places.visible_range,
+        keys.is_some() || !places.reads_range(),
     ) else {
         ctx.command_encoder().clear_buffer(&table.table, 0, None);
         return;
@@ -259,10 +276,10 @@ fn place_objects(
         entry(1, objects),
         entry(2, table.table.as_entire_binding()),
     ];
-    if let Some(keys) = keys.filter(|_| places.visible_range) {
+    if let Some(keys) = keys.filter(|_| places.reads_range()) {
         entries.push(entry(3, keys.as_entire_binding()));
     }
-    let layout = cache.get_bind_group_layout(&PlacePipeline::layout(places.visible_range));
+    let layout = cache.get_bind_group_layout(&PlacePipeline::layout(places.reads_range()));
     let group = ctx
         .render_device()
         .create_bind_group("comics_object_depths", &layout, &entries);

@@ -28,7 +28,8 @@ struct Eye {
     place: vec3<f32>,
     orthographic: u32,
     forward: vec3<f32>,
-    unused: u32,
+    // 1: places of the frames before are forgotten.
+    forgets: u32,
     // Distance along the view's axis from raw depth d: x / (d + y), under an orthographic
     // projection x + y * d.
     axis: vec2<f32>,
@@ -83,6 +84,7 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let found = object_place(depth_frame(), eye.axis, eye.orthographic != 0u, distance, reach);
     let at = min(bounds.id, arrayLength(&depths) - 1u);
     let before = depths[at].x;
-    let d = select(kept_place(before - 1.0, found.x), found.x, before == 0.0);
+    let is_new = before == 0.0 || eye.forgets != 0u;
+    let d = select(kept_place(before - 1.0, found.x), found.x, is_new);
     depths[at] = vec2(d + 1.0, found.y);
 }

@@ -9,7 +9,7 @@ use bevy::{
     },
 };
 
-use crate::depth::view::ViewUniform;
+use crate::depth::{DepthMapping, view::ViewUniform};
 
 /// `Eye` of `depths.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, PartialEq)]
@@ -17,7 +17,8 @@ pub(crate) struct ObjectEye {
     pub place: Vec3,
     pub orthographic: u32,
     pub forward: Vec3,
-    pub unused: u32,
+    /// 1: places of the frames before are forgotten.
+    pub forgets: u32,
     pub axis: Vec2,
     pub spare: Vec2,
     pub view: ViewUniform,
@@ -32,8 +33,9 @@ pub(crate) struct ObjectEye {
 )]
 pub(crate) struct ObjectDepthRequest {
     pub eye: ObjectEye,
-    /// The depth map spans the visible range.
-    pub visible_range: bool,
+    pub mapping: DepthMapping,
+    /// Number of cuts of the camera so far.
+    pub cuts: u32,
 }
 
 /// On a view whose effects treat objects as a whole: the places of all objects in the depth map,

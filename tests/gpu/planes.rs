@@ -424,6 +424,73 @@ fn lines_have_the_width_and_opacity_of_their_plane() {
     }
 }
 
+/// A line has the colour of the plane of the card in front, on both sides of its edge.
+#[test]
+fn lines_have_the_colour_of_their_plane() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let mut small = Small::new(UVec2::new(128, 128), msaa);
+        small.insert(Camera {
+            clear_color: Color::WHITE.into(),
+            ..default()
+        });
+        cards(&mut small, [10.0, 30.0, 90.0]);
+        let mut planes = Planes {
+            near_end: 0.2,
+            far_start: 0.5,
+            ..Planes::PLAIN
+        };
+        planes.near.line_color = Color::srgb(1.0, 0.0, 0.0);
+        planes.near.line_color_amount = 1.0;
+        // Half of black lines: 0.5 in linear light.
+        planes.far.line_color = Color::srgb(0.0, 0.0, 1.0);
+        planes.far.line_color_amount = 0.5;
+        let half = (255.0 * color::srgb_encode([0.5; 3])[0]).round() as u8;
+        let wanted = [[255, 0, 0], [0, 0, 0], [0, 0, half]];
+        for by in [PlaneUnit::Object, PlaneUnit::Pixel] {
+            for borders in [PlaneBorders::Auto, PlaneBorders::Fixed] {
+                for flip in [false, true] {
+                    let mut wanted = wanted;
+                    if flip {
+                        wanted.reverse();
+                    }
+                    let planes = Planes {
+                        by,
+                        borders,
+                        ..planes
+                    };
+                    let map = DepthMap { flip, ..hundred() };
+                    line_widths(&mut small, planes, map);
+                    let found = line_colors(&small.picture());
+                    for (found, wanted) in found.iter().zip(wanted) {
+                        let is_close = |code: &[u8; 3]| {
+                            code.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) <= 1)
+                        };
+                        // A line of 4 pixels covers at least 3 of a row.
+                        let full = found.iter().filter(|code| is_close(code)).count();
+                        assert!(
+                            full >= 3,
+                            "{msaa:?}, {by:?}, {borders:?}, {flip}: {found:?} for {wanted:?}"
+                        );
+                    }
+                }
+            }
+        }
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+/// The codes of the pixels across the left edge of every card that are not white.
+fn line_colors(picture: &image::RgbaImage) -> [Vec<[u8; 3]>; 3] {
+    [1.0, 0.0, -1.0].map(|row: f32| {
+        let y = picture.height() as f32 * (0.5 - row * 0.27 / (2.0 * 0.414_213_57));
+        let codes = (0..picture.width() / 2).map(|x| {
+            let [r, g, b, _] = picture.get_pixel(x, y as u32).0;
+            [r, g, b]
+        });
+        codes.filter(|code| *code != [255; 3]).collect()
+    })
+}
+
 /// A plane without hatching and dots looks as if the effects were not there; one with all of them
 /// has them.
 #[test]

@@ -320,6 +320,8 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Pai
             bands,
             line_width: contrast,
             line_opacity: saturation,
+            line_color: tint,
+            line_color_amount: contrast,
             hatching: contrast,
             halftone: saturation,
         },

@@ -161,10 +161,14 @@ impl Effect for Planes {
         let part = |factor: f32| 1.0 + (factor - 1.0) * self.amount;
         let widths = planes.map(|plane| part(plane.line_width));
         let opacities = planes.map(|plane| part(plane.line_opacity));
-        let differ = widths != [1.0; 3] || opacities != [1.0; 3];
+        let color_amounts = planes.map(|plane| plane.line_color_amount * self.amount);
+        let differ =
+            widths != [1.0; 3] || opacities != [1.0; 3] || color_amounts.iter().any(|a| *a > 0.0);
         differ.then(|| LinePlanes {
             widths,
             opacities,
+            colors: planes.map(|plane| plane.line_color.to_linear()),
+            color_amounts,
             borders: [self.near_end, self.far_start.max(self.near_end)],
             finds_borders: self.borders == PlaneBorders::Auto,
             by_objects: self.by == PlaneUnit::Object,

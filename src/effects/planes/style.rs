@@ -46,6 +46,17 @@ pub struct PlaneStyle {
     /// Factor of the opacity of lines. Range 0 (no lines) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub line_opacity: f32,
+    /// Colour that lines take instead of theirs, see `line_color_amount`. Lines belong to the
+    /// surface in front; those of the faithful forms to what they are drawn on. Objects whose
+    /// `OutlineStyle` has a colour keep that. Default: `#000000`. Components are clamped to what a
+    /// display shows; alpha is ignored.
+    #[serde(with = "file_color")]
+    #[reflect(@HueWheel)]
+    pub line_color: Color,
+    /// How much of the colour of lines comes from `line_color`, mixed in linear light. Range 0 to
+    /// 1, default 0.
+    #[reflect(@FieldRange::FRACTION)]
+    pub line_color_amount: f32,
     /// Factor of the darkness of [`Hatching`](crate::Hatching). Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub hatching: f32,
@@ -72,6 +83,8 @@ impl PlaneStyle {
         bands: 0,
         line_width: 1.0,
         line_opacity: 1.0,
+        line_color: Color::BLACK,
+        line_color_amount: 0.0,
         hatching: 1.0,
         halftone: 1.0,
     };
@@ -89,6 +102,8 @@ impl PlaneStyle {
             bands: self.bands.min(8),
             line_width: bounded(self.line_width, plain.line_width, 0.0, 1.0),
             line_opacity: bounded(self.line_opacity, plain.line_opacity, 0.0, 1.0),
+            line_color: displayable(self.line_color, plain.line_color),
+            line_color_amount: bounded(self.line_color_amount, plain.line_color_amount, 0.0, 1.0),
             hatching: bounded(self.hatching, plain.hatching, 0.0, 1.0),
             halftone: bounded(self.halftone, plain.halftone, 0.0, 1.0),
         }
@@ -105,6 +120,8 @@ impl PlaneStyle {
             bands: self.bands,
             line_width: self.line_width.lerp(other.line_width, t),
             line_opacity: self.line_opacity.lerp(other.line_opacity, t),
+            line_color: blend_color(self.line_color, other.line_color, t),
+            line_color_amount: self.line_color_amount.lerp(other.line_color_amount, t),
             hatching: self.hatching.lerp(other.hatching, t),
             halftone: self.halftone.lerp(other.halftone, t),
         }
