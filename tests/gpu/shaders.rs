@@ -218,10 +218,19 @@ fn line_effects() -> [Modes; 2] {
     [
         (
             "outlines",
-            product(&[
-                vec![flags(&["OUTLINES", "LINES"])],
-                optional(&["OBJECT_STYLES"]),
-            ]),
+            [
+                product(&[
+                    vec![flags(&["OUTLINES", "LINES"])],
+                    optional(&["OBJECT_STYLES"]),
+                ]),
+                product(&[
+                    vec![flags(&["OUTLINES", "LINES", "LINE_OWNERS", "MAP", "DEPTH"])],
+                    vec![flags(&["IN_PLANES", "PLANE_INK"])],
+                    optional(&["OBJECT_STYLES", "SURFACE_LINES", "DEPTH_BORDERS"]),
+                    vec![Vec::new(), flags(&["OBJECT_DEPTHS", "OBJECT_IDS"])],
+                ]),
+            ]
+            .concat(),
         ),
         (
             "sketch",
@@ -382,7 +391,9 @@ fn every_combination_of_effects_composes_and_validates() {
             for view in &views {
                 // Another mode each time.
                 turn += 1;
-                let modes = chosen.iter().map(|i| &pictures[*i]).chain(line);
+                let more = [&[][..], &[7], &[8], &[7, 8]][turn % 4];
+                let chosen = chosen.iter().chain(more);
+                let modes = chosen.map(|i| &pictures[*i]).chain(line);
                 let mut parts: Vec<&[Definition]> = modes
                     .map(|(_, modes)| &modes[turn % modes.len()][..])
                     .collect();
@@ -454,7 +465,13 @@ fn every_pass_of_a_divided_plan_composes_and_validates() {
         flags(&["PRINT_OFFSET", "PRINT_OFFSET_BLACK_STAYS"]),
         flags(&["PRINT_OFFSET", "WITHOUT_PRINT_OFFSET", "TONE_BANDS"]),
         flags(&["HALFTONE", "HALFTONE_CELLS", "LINES", "OUTLINES"]),
-        flags(&["OUTLINES", "LINES", "SURFACE_LINES", "PRINT_OFFSET"]),
+        flags(&[
+            "OUTLINES",
+            "LINES",
+            "LINE_OWNERS",
+            "SURFACE_LINES",
+            "PRINT_OFFSET",
+        ]),
         flags(&["PAINT", "MEANS"]),
         flags(&["PAINT", "MEANS", "PAINT_FIGURES", "MULTISAMPLED"]),
         flags(&["PAINT", "PAINT_ANISOTROPIC", "PAINT_FIGURES"]),
