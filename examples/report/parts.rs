@@ -79,13 +79,18 @@ fn lines() -> Vec<(String, Wear)> {
             },
         ),
     ]
-    .map(|(name, outlines)| {
-        (
-            name.to_owned(),
-            Wear::style(ComicStyle::new().with(outlines)),
-        )
-    })
-    .into()
+    .map(|(name, outlines)| (name, ComicStyle::new().with(outlines)))
+    .into_iter()
+    .chain([("and planes", plane_lines())])
+    .map(|(name, style)| (name.to_owned(), Wear::style(style)))
+    .collect()
+}
+
+/// Outlines with another width and colour in near, middle and far.
+fn plane_lines() -> ComicStyle {
+    let mut planes = Planes::default();
+    planes.far.line_color_amount = 1.0;
+    ComicStyle::new().with(Outlines::default()).with(planes)
 }
 
 fn page() -> Vec<(String, Wear)> {
