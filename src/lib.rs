@@ -41,10 +41,10 @@
 //! 4. where [`Outlines`] are asked for, silhouettes, creases and edges between
 //!    objects are found along the borders of pixels, and drawn at their width;
 //! 5. one full-screen pass after tonemapping applies the effects: [`ToneBands`],
-//!    [`Desaturation`], [`Colorization`], [`Paint`], [`Focus`], [`PrintOffset`], [`Halftone`],
-//!    [`Hatching`], [`BlackFlats`], [`Contours`], the outlines or a [`Sketch`] of them, [`IsoLines`], [`TwoTone`],
-//!    [`SpeedLines`], [`Paper`] and [`Vignette`], in this order, and those of the game
-//!    ([`Effect`]) at the end of their [`EffectStage`].
+//!    [`Desaturation`], [`Colorization`], [`ColorHarmony`], [`Planes`], [`Paint`], [`Focus`],
+//!    [`PrintOffset`], [`Halftone`], [`Hatching`], [`BlackFlats`], [`Contours`], the outlines or a
+//!    [`Sketch`] of them, [`IsoLines`], [`TwoTone`], [`SpeedLines`], [`Paper`] and [`Vignette`], in
+//!    this order, and those of the game ([`Effect`]) at the end of their [`EffectStage`].
 //!
 //! [`Impact`] shows two tones for a few drawings, [`HeldPose`] draws characters "on twos".
 //!
@@ -94,8 +94,8 @@ pub use effect::{
 pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
 pub use lines::{
-    Creases, LineBoil, LineColor, LineFocus, LineFog, LineResponse, LineSettings, LineWeight,
-    MapJumps, ObjectEdges, Sheet, Silhouettes, ViewCracks,
+    Creases, LineBoil, LineColor, LineFocus, LineFog, LinePlanes, LineResponse, LineSettings,
+    LineWeight, MapJumps, ObjectEdges, Sheet, Silhouettes, ViewCracks,
 };
 #[cfg(feature = "objects")]
 pub use objects::{

@@ -1,10 +1,11 @@
-//! How exactly the page is printed and painted, and how many texels its effects fetch.
+//! How exactly the page is printed and painted, how many texels its effects fetch, and how exactly
+//! a harmony of colours keeps the lightness.
 
-use bevy_comics::{FocusStyle, Halftone, PaintForm};
+use bevy_comics::{ColorHarmony, FocusStyle, Halftone, HarmonyMode, PaintForm};
 use bevy_comics_testkit::{
     page_work,
     painting::{RADII, SLOPES, bled, edge_moved, kuwahara_error},
-    reference::halftone::Plate,
+    reference::{color, color_harmony::harmonize, halftone::Plate},
     screens::{
         PERIODS, SHAPES, color_error, grey_inks, ideal, in_phase, largest_jump, moire, tone_error,
     },
@@ -16,6 +17,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     run.save("page_screens", &screens(run))?;
     run.save("page_colors", &colors())?;
     run.save("page_errors", &errors())?;
+    run.save("page_harmonies", &harmonies())?;
     run.say("painted");
     let mut table = Table::new(&["effect", "texels", "most", "bytes"]);
     for (name, style) in page_work::effects() {
@@ -29,6 +31,28 @@ pub fn measure(run: &Run) -> Result<(), String> {
     }
     run.say("texels of the page counted");
     run.save("page_work", &table)
+}
+
+/// The largest change of the lightness in OKLab by a harmony, of 32 x 32 x 32 colours at three
+/// places in the depth map; the complement is as strong as it can be.
+fn lightness_error(mode: HarmonyMode) -> f64 {
+    let s = ColorHarmony {
+        mode,
+        complement: 1.5,
+        shade: 1.0,
+        pull: 1.0,
+        ..ColorHarmony::default()
+    };
+    let mut largest = 0.0;
+    for i in 0..32 * 32 * 32u32 {
+        let light = [i % 32, i / 32 % 32, i / 1024].map(|x| f64::from(x) / 31.0);
+        for d in [0.0, 0.5, 1.0] {
+            let [before, after] = [light, harmonize(&s, light, d, 1.0 - d)]
+                .map(|light| color::linear_to_oklab(light)[0]);
+            largest = f64::max(largest, (before - after).abs());
+        }
+    }
+    largest
 }
 
 /// Tones, jumps and moire of all screens.
@@ -106,4 +130,19 @@ fn errors() -> Table {
     push("focus; offset", colors, bled(FocusStyle::Offset), 0.0);
     push("focus; paint", colors, bled(FocusStyle::Paint), 0.0);
     table
+}
+
+/// The largest changes of lightness by all harmonies.
+fn harmonies() -> Table {
+    let mut harmonies = Table::new(&["mode", "lightness"]);
+    for mode in [
+        HarmonyMode::TwoHues,
+        HarmonyMode::Distance,
+        HarmonyMode::Rotation,
+        HarmonyMode::Shade,
+    ] {
+        let error = lightness_error(mode);
+        harmonies.push(&[&format!("{mode:?}"), &format!("{error:.5}")]);
+    }
+    harmonies
 }

@@ -5,10 +5,11 @@ use bevy::{
     prelude::*,
 };
 use bevy_comics::{
-    ComicStyle, Creases, DepthWrite, Desaturation, Focus, FocusAt, FocusStyle, Halftone,
-    HalftoneMode, Hatching, LineColor, LineResponse, LineWeight, LineWidths, MeshSections, NoStyle,
-    OutlineStyle, Outlines, Paint, PaintForm, Paper, PrintOffset, ScreenSampling, ScreenShape,
-    SelectionOutline, Silhouettes, SpeedLines, TwoTone, XRayOutline,
+    ColorHarmony, ComicStyle, Creases, DepthWrite, Desaturation, Focus, FocusAt, FocusStyle,
+    Halftone, HalftoneMode, Hatching, LineColor, LineResponse, LineWeight, LineWidths,
+    MeshSections, NoStyle, OutlineStyle, Outlines, Paint, PaintForm, Paper, PlaneBorders,
+    PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape, SelectionOutline, Silhouettes,
+    SpeedLines, TwoTone, XRayOutline,
 };
 
 use bevy_comics_testkit::scenes::BuiltIn;
@@ -78,13 +79,18 @@ fn lines() -> Vec<(String, Wear)> {
             },
         ),
     ]
-    .map(|(name, outlines)| {
-        (
-            name.to_owned(),
-            Wear::style(ComicStyle::new().with(outlines)),
-        )
-    })
-    .into()
+    .map(|(name, outlines)| (name, ComicStyle::new().with(outlines)))
+    .into_iter()
+    .chain([("and planes", plane_lines())])
+    .map(|(name, style)| (name.to_owned(), Wear::style(style)))
+    .collect()
+}
+
+/// Outlines with another width and colour in near, middle and far.
+fn plane_lines() -> ComicStyle {
+    let mut planes = Planes::default();
+    planes.far.line_color_amount = 1.0;
+    ComicStyle::new().with(Outlines::default()).with(planes)
 }
 
 fn page() -> Vec<(String, Wear)> {
@@ -129,6 +135,23 @@ fn page() -> Vec<(String, Wear)> {
         ),
         ("print offset", none.clone().with(PrintOffset::default())),
         ("hatching", none.clone().with(Hatching::default())),
+        ("color harmony", none.clone().with(ColorHarmony::default())),
+        ("planes", none.clone().with(Planes::default())),
+        (
+            "planes; of pixels",
+            none.clone().with(Planes {
+                by: PlaneUnit::Pixel,
+                ..Planes::default()
+            }),
+        ),
+        (
+            "planes; of pixels; fixed borders",
+            none.clone().with(Planes {
+                by: PlaneUnit::Pixel,
+                borders: PlaneBorders::Fixed,
+                ..Planes::default()
+            }),
+        ),
         ("paper", none.clone().with(Paper::default())),
         ("paint", none.clone().with(Paint::default())),
         (

@@ -23,14 +23,14 @@ use super::{
     DepthMap, ProjectionKind, RangeSmoothing, frame::DepthProjection, request::RangeRequest,
 };
 
-/// Bits of [`SmoothingUniform::flags`], as in `smoothing.wgsl`.
+/// Bits of [`SmoothingUniform::flags`], as in `level.wgsl`.
 const ORTHOGRAPHIC: u32 = 1;
 const SNAP: u32 = 2;
 const HOLD: u32 = 4;
 const DESPIKE: u32 = 8;
 const RESET: u32 = 16;
 
-/// `Smoothing` of `smoothing.wgsl`.
+/// `Smoothing` of `level.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct SmoothingUniform {
     pub offset: f32,

@@ -10,6 +10,14 @@
 
 const BINS: u32 = 256u;
 
+struct Histogram {
+    bins: array<u32, 256>,
+    total: u32,
+    // Bits of the window in whose bins an orthographic view was counted.
+    window_near: u32,
+    window_far: u32,
+}
+
 // An octave bin is the exponent and the upper three bits of the mantissa of a raw
 // depth: 32 octaves. The farthest bin also counts everything beyond.
 const FIRST_OCTAVE_BIN: u32 = 761u;

@@ -135,3 +135,23 @@ fn depth_step(f: DepthFrame, d_raw: f32, p_raw: f32) -> f32 {
     }
     return step;
 }
+
+// Fraction of the far end in the sum of both ends by the square roots of [CS] Eq. 7 and 11,
+// from D and its complement.
+fn root_fraction(d: f32, l: f32) -> f32 {
+    let far = sqrt(max(d, 0.0));
+    return far / (far + sqrt(max(l, 0.0)));
+}
+
+// Fraction of what lies behind a border, 0 to 1.
+fn behind(border: f32, softness: f32, d: f32) -> f32 {
+    let t = clamp((d - border) / max(softness, 1e-6) + 0.5, 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+// Fractions of near, middle and far at a depth of the map. Their sum is 1.
+fn plane_weights(borders: vec2<f32>, softness: f32, d: f32) -> vec3<f32> {
+    let far = behind(borders.y, softness, d);
+    let not_near = max(behind(borders.x, softness, d), far);
+    return vec3(1.0 - not_near, not_near - far, far);
+}

@@ -1,6 +1,9 @@
 //! The service of the depth map: the range of visible depths, and the map that
 //! effects read distance from.
 
+#[cfg(feature = "inspector")]
+pub(crate) mod axis;
+mod borders;
 pub(crate) mod follow;
 pub(crate) mod frame;
 mod ping_pong;

@@ -23,6 +23,7 @@ use bevy::{
 
 use super::{
     CameraCut, DepthHistogram, DepthMap, VisibleDepthRange,
+    borders::BorderPipeline,
     follow::SmoothingPipeline,
     ping_pong::PingPongPipeline,
     prepare::{RangeUniforms, ViewDepthRange, map_readbacks, prepare_view_ranges},
@@ -56,7 +57,9 @@ impl DepthPlugin {
         load_shader_library!(app, "window.wgsl");
         load_shader_library!(app, "normal.wgsl");
         load_shader_library!(app, "histogram.wgsl");
+        load_shader_library!(app, "level.wgsl");
         embedded_asset!(app, "smoothing.wgsl");
+        embedded_asset!(app, "borders.wgsl");
         embedded_asset!(app, "range.wgsl");
         embedded_asset!(app, "ping_pong.wgsl");
 
@@ -71,6 +74,7 @@ impl DepthPlugin {
             .init_gpu_resource::<SpecializedComputePipelines<RangePipeline>>()
             .init_gpu_resource::<SpecializedRenderPipelines<PingPongPipeline>>()
             .init_gpu_resource::<SpecializedComputePipelines<SmoothingPipeline>>()
+            .init_gpu_resource::<SpecializedComputePipelines<BorderPipeline>>()
             .init_gpu_resource::<RangeUniforms>()
             .add_systems(RenderStartup, init_pipelines)
             .add_systems(
@@ -104,4 +108,5 @@ fn init_pipelines(
     commands.insert_resource(RangePipeline::new(&device, &assets));
     commands.insert_resource(PingPongPipeline::new(&fullscreen, &assets));
     commands.insert_resource(SmoothingPipeline::new(&assets));
+    commands.insert_resource(BorderPipeline::new(&assets));
 }

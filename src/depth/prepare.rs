@@ -22,6 +22,7 @@ use bevy::{
 };
 
 use super::{
+    borders::ViewBorders,
     follow::{SmoothingUniform, ViewSmoothing},
     ping_pong::chain_textures,
     range::RangeView,
@@ -42,6 +43,7 @@ pub(crate) struct ViewDepthRange {
     /// Textures of the ping-pong chain; empty if another reduction runs.
     pub chain: Vec<CachedTexture>,
     pub smoothing: Option<ViewSmoothing>,
+    pub borders: Option<ViewBorders>,
     /// Whether the passes of this frame were recorded.
     pub found: AtomicBool,
     pub readback: Mutex<RangeReadback>,
@@ -56,6 +58,7 @@ impl ViewDepthRange {
             keys: keys_buffer(device),
             chain: Vec::new(),
             smoothing: None,
+            borders: None,
             found: AtomicBool::new(false),
             readback: Mutex::default(),
         }
@@ -155,6 +158,11 @@ impl ViewDepthRange {
             smoothing.uniform_offset = uniforms.smoothings.push(&uniform);
         } else {
             self.smoothing = None;
+        }
+        if passes.borders.is_none() {
+            self.borders = None;
+        } else if self.borders.is_none() {
+            self.borders = Some(ViewBorders::new(device));
         }
         self.chain = match passes.reduction {
             Reduction::PingPong { .. } => chain_textures(textures, device, size),

@@ -34,7 +34,7 @@ struct RangeKeys {
 #endif
 
 #ifdef HISTOGRAM
-// `Histogram` of smoothing.wgsl, with atomics.
+// `Histogram` of histogram.wgsl, with atomics.
 struct Counts {
     bins: array<atomic<u32>, 256>,
     total: atomic<u32>,

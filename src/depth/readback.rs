@@ -99,6 +99,9 @@ pub struct DepthHistogram {
     /// Near and far view depth in world units of the visible range after
     /// [`RangeSmoothing`](crate::RangeSmoothing).
     pub drawn: Option<(f32, f32)>,
+    /// View depths in world units of the borders between near, middle and far, while an effect
+    /// asks for them, as [`Planes`](crate::Planes) does.
+    pub borders: Option<(f32, f32)>,
 }
 
 /// One bin of a [`DepthHistogram`].
@@ -116,9 +119,13 @@ pub struct DepthBin {
 
 impl DepthHistogram {
     /// `keys` are those of the reduction; `words` the keys that are drawn, then
-    /// `Histogram` of `smoothing.wgsl`.
+    /// `Histogram` of `histogram.wgsl`.
     fn of_words(keys: [u32; 2], words: &[u32], projection: &DepthProjection) -> Self {
         let (drawn, words) = words.split_at(DRAWN_WORDS);
+        let borders = (drawn[2] != 0).then(|| {
+            let distance = |bits| projection.distance(f32::from_bits(bits)) as f32;
+            (distance(drawn[2]), distance(drawn[3]))
+        });
         let drawn = VisibleDepthRange::of_keys([drawn[0], drawn[1]], projection).distances();
         let (counts, rest) = words.split_at(BINS);
         let window = [rest[1], rest[2]].map(f32::from_bits);
@@ -129,6 +136,7 @@ impl DepthHistogram {
             return Self {
                 bins: Vec::new(),
                 drawn,
+                borders,
             };
         };
         let (near, far) = (
@@ -150,7 +158,11 @@ impl DepthHistogram {
                 count: counts[bin],
             })
             .collect();
-        Self { bins, drawn }
+        Self {
+            bins,
+            drawn,
+            borders,
+        }
     }
 }
 

@@ -87,6 +87,10 @@ impl Frame<'_> {
             )),
             _ => None,
         };
+        let borders = self.range.passes.borders.zip(self.range.borders.as_ref());
+        if borders.is_some_and(|(id, _)| self.cache.get_compute_pipeline(id).is_none()) {
+            return Err(not_ready);
+        }
         let depth = &depth.default_view;
         let method = match self.range.passes.reduction {
             Reduction::Compute {
@@ -104,8 +108,20 @@ impl Frame<'_> {
             let encoder = ctx.command_encoder();
             let span = diagnostics.time_span(encoder, "comics_range_smoothing");
             let keys = &self.range.keys;
-            smoothing.record(&device, encoder, self.cache, pipeline, (uniforms, keys));
+            smoothing.record(
+                &device,
+                encoder,
+                self.cache,
+                pipeline,
+                (uniforms.clone(), keys),
+            );
             span.end(encoder);
+            if let Some((id, borders)) = borders {
+                let span = diagnostics.time_span(encoder, "comics_depth_borders");
+                let target = (&device, &mut *encoder);
+                borders.record(target, (self.cache, id), (uniforms, smoothing));
+                span.end(encoder);
+            }
         }
         self.range.found.store(true, Ordering::Relaxed);
         Ok(method)

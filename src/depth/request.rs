@@ -18,6 +18,7 @@ use bevy::{
 
 use super::{
     DepthMap, ProjectionKind, RawDepth,
+    borders::BorderPipeline,
     follow::SmoothingPipeline,
     frame::DepthProjection,
     ping_pong::PingPongPipeline,
@@ -43,6 +44,8 @@ pub(crate) struct RangeRequest {
     pub readback: bool,
     /// The camera has a `DepthHistogram`.
     pub histogram: bool,
+    /// Divide the visible depths into near, middle and far.
+    pub borders: bool,
     /// Real time since the last frame, in seconds.
     pub seconds: f32,
     /// Number of cuts of the camera so far.
@@ -62,6 +65,8 @@ pub(crate) struct RangePasses {
     pub reduction: Reduction,
     /// The pass that smooths or holds the range, if it runs.
     pub smoothing: Option<CachedComputePipelineId>,
+    /// The pass that divides the depths, if it runs.
+    pub borders: Option<CachedComputePipelineId>,
     /// Whether the reduction counts a histogram of the depths.
     pub counts: bool,
 }
@@ -85,9 +90,11 @@ pub(crate) struct RangePipelines<'w> {
     ranges: ResMut<'w, SpecializedComputePipelines<RangePipeline>>,
     ping_pongs: ResMut<'w, SpecializedRenderPipelines<PingPongPipeline>>,
     smoothings: ResMut<'w, SpecializedComputePipelines<SmoothingPipeline>>,
+    borders: ResMut<'w, SpecializedComputePipelines<BorderPipeline>>,
     range: Res<'w, RangePipeline>,
     ping_pong: Res<'w, PingPongPipeline>,
     smoothing: Res<'w, SmoothingPipeline>,
+    border: Res<'w, BorderPipeline>,
     adapter: Res<'w, RenderAdapterInfo>,
     device: Res<'w, RenderDevice>,
 }
@@ -97,8 +104,9 @@ impl RangePipelines<'_> {
     pub fn get(&mut self, cache: &PipelineCache, request: &RangeRequest) -> RangePasses {
         let shape = RangeShape::choose(request.map.reduction, &self.adapter, &self.device);
         let has_compute = self.device.limits().max_compute_workgroup_size_x > 0;
-        let follows = (request.smooths || request.histogram) && has_compute;
-        let counts = follows && shape.is_some() && (request.histogram || request.has_outliers());
+        let reads_counts = request.histogram || request.borders;
+        let follows = (request.smooths || reads_counts) && has_compute;
+        let counts = follows && shape.is_some() && (reads_counts || request.has_outliers());
         let kind = request.projection.kind();
         let key = RangeKey {
             multisampled: request.samples > 1,
@@ -124,9 +132,12 @@ impl RangePipelines<'_> {
         };
         let smoothing =
             follows.then(|| (self.smoothings).specialize(cache, &self.smoothing, counts));
+        let borders =
+            (counts && request.borders).then(|| (self.borders).specialize(cache, &self.border, ()));
         RangePasses {
             reduction,
             smoothing,
+            borders,
             counts,
         }
     }

@@ -41,8 +41,10 @@ fn inside_viewport(pixel: vec2<i32>) -> vec2<i32> {
 @group(0) @binding(2) var depth_texture: texture_2d<f32>;
 #endif
 #endif
+// xy: keys of the nearest and the farthest depth, see range.wgsl. zw: see borders.wgsl.
 #ifdef VISIBLE_RANGE
-// xy: keys of the nearest and the farthest depth, see range.wgsl.
+@group(0) @binding(3) var<uniform> range_keys: vec4<u32>;
+#else ifdef DEPTH_BORDERS
 @group(0) @binding(3) var<uniform> range_keys: vec4<u32>;
 #endif
 
@@ -82,6 +84,7 @@ fn depth_texel(at: vec2<i32>, sample: i32) -> f32 {
 fn texel_depth(at: vec2<i32>, sample: i32) -> f32 {
     return raw_depth(view.raw, vec2<u32>(at), depth_texel(at, sample));
 }
+#endif
 
 // The depth map of this frame: with the visible range, if that is what it spans.
 fn depth_frame() -> DepthFrame {
@@ -98,6 +101,19 @@ fn depth_frame() -> DepthFrame {
     return frame;
 }
 
+#ifdef DEPTH_BORDERS
+// D at the border between near and middle and at that between middle and far; -1 if none are
+// known.
+fn depth_borders(frame: DepthFrame) -> vec2<f32> {
+    if range_keys.z == 0u {
+        return vec2(-1.0);
+    }
+    let ends = bitcast<vec2<f32>>(range_keys.zw);
+    return vec2(depth_map(frame, ends.x).x, depth_map(frame, ends.y).x);
+}
+#endif
+
+#ifdef DEPTH
 // (D, L) of a pixel: the mean over its samples, because its colour is their mean too.
 fn pixel_depth(frame: DepthFrame, pixel: vec2<i32>) -> vec2<f32> {
 #ifdef MULTISAMPLED

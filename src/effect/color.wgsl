@@ -123,6 +123,29 @@ fn oklab_to_linear(lab: vec3<f32>) -> vec3<f32> {
     );
 }
 
+// The middle of the band that a lightness `y` falls into, of `levels` (2 or more) equal bands from
+// 0 to 1. `step_width` is the width of the step between two bands in lightness; it is at most one band.
+fn banded(levels: f32, y: f32, step_width: f32) -> f32 {
+    let t = y * levels;
+    let step = clamp(round(t), 1.0, levels - 1.0);
+    // At least one display code on either side: otherwise the dither of a flat area
+    // whose tone lies on a step would speckle.
+    let half = 0.5 * clamp(step_width * levels, levels / 128.0, 1.0);
+    return (step - 0.5 + smoothstep(step - half, step + half, t)) / levels;
+}
+
+// Moves a colour towards the grey of its OKLab lightness, as little as possible, until all
+// components are from 0 to 1, or within those of `before` if these are beyond.
+fn in_gamut(c: vec3<f32>, lab_lightness: f32, before: vec3<f32>) -> vec3<f32> {
+    let grey = vec3(lab_lightness * lab_lightness * lab_lightness);
+    let low = min(vec3(min(smallest(before), 0.0)), grey);
+    let high = max(vec3(max(largest(before), 1.0)), grey);
+    let away = c - grey;
+    let room = select(low, high, away > vec3(0.0)) - grey;
+    let kept = select(vec3(1.0), room / away, abs(away) > abs(room));
+    return clamp(grey + smallest(kept) * away, low, high);
+}
+
 // The tones of four inks for a colour of 0 to 1 in linear light: cyan, magenta, yellow,
 // black. Printed with ideal inks, they have the colour as their mean. `black`: fraction of
 // the darkness that all three share which is printed in black.

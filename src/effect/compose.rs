@@ -34,8 +34,9 @@ const MODULES: [&str; 19] = [
 ];
 
 /// Shader definitions of the fused pass that do not name an effect, in lower case.
-const DEFINITIONS: [&str; 32] = [
+const DEFINITIONS: [&str; 37] = [
     "depth",
+    "depth_borders",
     "map",
     "map_flags",
     "visible_range",
@@ -46,9 +47,13 @@ const DEFINITIONS: [&str; 32] = [
     "object_ids",
     "object_styles",
     "object_anchors",
+    "object_depths",
     "lines",
     "lines_anywhere",
+    "line_owners",
     "surface_lines",
+    "plane_ink",
+    "in_planes",
     "lightness_change",
     "blue_noise",
     "finish",

@@ -13,7 +13,7 @@
 // which are blended over the picture.
 
 #import bevy_comics::depth::normal::load_normal
-#import bevy_comics::depth::view::{View, depth_frame, load_depth, pixel_depth, set_view}
+#import bevy_comics::depth::view::{View, depth_frame, depth_pixel, load_depth, pixel_depth, set_view}
 #import bevy_comics::effect::color::{
     finite, finite_color, lightness, linear_to_oklab, oklab_to_linear, srgb_decode, srgb_encode,
 }
@@ -23,7 +23,9 @@
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::finish::{Finish, compare, difference, object_color, range_fraction}
 #import bevy_comics::lines::edge::Lines
-#import bevy_comics::lines::read::{line_owner, lines_at, set_line_surface, set_lines}
+#import bevy_comics::lines::owner_plane::owner_weights
+#import bevy_comics::lines::plane_lines::{LinePlanes, plane_ink}
+#import bevy_comics::lines::read::{line_owner, lines_at, set_line_ink, set_line_surface, set_lines}
 #import bevy_comics::objects::{load_object, unstyled_fraction}
 
 // Holds only the settings of the effects that are drawn, in the order of the
@@ -33,6 +35,9 @@ struct Comics {
     finish: Finish,
 #ifdef LINES
     @align(16) lines: Lines,
+#endif
+#ifdef IN_PLANES
+    @align(16) planes_of_lines: LinePlanes,
 #endif
     //@members
 }
@@ -103,6 +108,7 @@ fn placed(before: Pixel, pixel: vec2<i32>) -> Pixel {
     var p = before;
     p.inside = vec2<f32>(pixel - comics.view.viewport.xy);
     p.saturation = 1.0;
+    p.prints = vec2(1.0);
     p.depth = vec2(1.0, 0.0);
 #ifdef MAP
     let true_depth = pixel_depth(depth_frame(), pixel);
@@ -213,6 +219,10 @@ fn after_effects(before: Pixel, pixel: vec2<i32>, place: vec2<f32>) -> Pixel {
     p = placed(p, pixel);
 #ifdef SURFACE_LINES
     set_line_surface(surface_color(line_owner(pixel), p.change));
+#endif
+#ifdef PLANE_INK
+    let owner = depth_pixel(line_owner(pixel));
+    set_line_ink(plane_ink(comics.planes_of_lines, owner_weights(comics.planes_of_lines, owner)));
 #endif
     return inked(printed(colored(p, pixel), pixel));
 }

@@ -15,6 +15,7 @@ use super::{
     AnyEffect, EffectStage, Extent, Needs, Plan, Variants, ViewFacts,
     compose::{definition, left_out},
     layers::LAYER_FORMAT,
+    part::Part,
     passes::{Pass, Reads},
     words::{Boxes, Drawn, Read, WORDS_FORMAT},
 };
@@ -22,7 +23,7 @@ use crate::{
     depth::view::ViewUniform,
     finish::DebugView,
     lines::{ink_entry, owners_entry, range_entry},
-    objects::{ids_entry, object_styles_entry},
+    objects::{ids_entry, object_styles_entry, places_entry},
 };
 
 /// The properties of a view that select a pipeline, besides its plan.
@@ -49,10 +50,12 @@ pub(crate) struct StylizeKey {
     needs: Needs,
     /// Whether the depth texture is bound.
     pub depth: bool,
-    pub visible_range: bool,
+    visible_range: bool,
     pub lines: bool,
     /// Lines have the colour of surfaces.
-    pub surface: bool,
+    surface: bool,
+    /// Lines have other colours in near, middle and far.
+    pub plane_ink: bool,
     pub object_styles: bool,
     /// Some objects are left alone: by the colour effects of the pass, by its prints.
     unstyled_colors: bool,
@@ -73,34 +76,6 @@ pub(crate) struct StylizeKey {
     /// lines are left out too.
     left_out: Vec<&'static str>,
     without_lines: bool,
-}
-
-/// What a draw call of the fused pass draws.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) enum Part {
-    /// All effects at all pixels.
-    #[default]
-    Whole,
-    /// All pixels, without the effects that change only some of them.
-    Base,
-    /// All effects in the tiles that those effects may change.
-    Tiles,
-    /// All effects at all pixels, blended over the picture.
-    Overlay,
-    /// All effects in these tiles, blended over the picture.
-    OverlaidTiles,
-}
-
-impl Part {
-    /// Whether the pass is blended over the picture.
-    pub fn is_overlay(self) -> bool {
-        matches!(self, Self::Overlay | Self::OverlaidTiles)
-    }
-
-    /// Whether only tiles are drawn.
-    pub fn is_tiled(self) -> bool {
-        matches!(self, Self::Tiles | Self::OverlaidTiles)
-    }
 }
 
 impl StylizeKey {
@@ -129,6 +104,7 @@ impl StylizeKey {
             visible_range: plan.draws_with_range(),
             lines,
             surface: lines && plan.lines.is_some_and(|lines| lines.color.is_surface()),
+            plane_ink: lines && plan.line_planes(facts).is_some_and(|p| p.has_colors()),
             object_styles: (lines && plan.object_styles)
                 || plan.unstyled
                 || needs.contains(Needs::OBJECT_ANCHORS),
@@ -164,7 +140,7 @@ impl StylizeKey {
             && !self.finish
             && !self.continued
             && self.reads == Read::Picture
-            && !self.surface;
+            && !self.reads_owners();
         let local = |effect: &dyn AnyEffect| effect.any_extent(facts) != Extent::Everywhere;
         plain && self.space == CompositingSpace::Linear && plan.drawn().all(local)
     }
@@ -267,12 +243,32 @@ impl StylizeKey {
         self.view.is_some()
     }
 
+    /// Whether the pixels that own lines are read.
+    pub fn reads_owners(&self) -> bool {
+        self.surface || self.plane_ink
+    }
+
     pub fn normals(&self) -> bool {
         self.needs.contains(Needs::NORMALS)
     }
 
     pub fn ids(&self) -> bool {
         self.needs.contains(Needs::IDS)
+    }
+
+    /// Whether the borders between near, middle and far are read.
+    fn borders(&self) -> bool {
+        self.needs.contains(Needs::DEPTH_BORDERS)
+    }
+
+    /// Whether the buffer of the visible range is bound, which holds the borders too.
+    pub fn reads_range(&self) -> bool {
+        self.visible_range || self.borders()
+    }
+
+    /// Whether the places of objects in the depth map are read.
+    pub fn places(&self) -> bool {
+        self.needs.contains(Needs::OBJECT_DEPTHS)
     }
 
     pub fn blue_noise(&self) -> bool {
@@ -291,15 +287,20 @@ impl StylizeKey {
             (self.depth, "DEPTH"),
             (needs.contains(Needs::MAP), "MAP"),
             (self.visible_range, "VISIBLE_RANGE"),
+            (self.borders(), "DEPTH_BORDERS"),
             (self.samples > 1, "MULTISAMPLED"),
             (self.oblique, "OBLIQUE"),
             (self.normals(), "NORMALS"),
             (self.ids(), "OBJECT_IDS"),
             (self.lines, "LINES"),
             (needs.contains(Needs::LINES_ANYWHERE), "LINES_ANYWHERE"),
+            (self.reads_owners(), "LINE_OWNERS"),
             (self.surface && self.part != Part::Base, "SURFACE_LINES"),
+            (self.plane_ink, "IN_PLANES"),
+            (self.plane_ink && self.part != Part::Base, "PLANE_INK"),
             (self.object_styles, "OBJECT_STYLES"),
             (needs.contains(Needs::OBJECT_ANCHORS), "OBJECT_ANCHORS"),
+            (self.places(), "OBJECT_DEPTHS"),
             (self.unstyled_colors || self.unstyled_print, "UNSTYLED"),
             (self.unstyled_colors, "UNSTYLED_COLORS"),
             (self.unstyled_print, "UNSTYLED_PRINT"),
@@ -348,12 +349,13 @@ impl StylizeKey {
         let words = texture_2d(TextureSampleType::Uint);
         let optional = [
             (self.depth, prepass(2)),
-            (self.visible_range, range_entry()),
+            (self.reads_range(), range_entry()),
             (self.lines, ink_entry()),
-            (self.surface, owners_entry()),
+            (self.reads_owners(), owners_entry()),
             (self.object_styles, object_styles_entry()),
             (self.normals(), prepass(7)),
             (self.ids(), ids_entry(self.samples > 1)),
+            (self.places(), places_entry()),
             (self.continued, layer.build(9, fragment)),
             (self.continued, between.build(10, fragment)),
             (self.blue_noise(), words.clone().build(11, fragment)),

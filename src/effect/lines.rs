@@ -6,8 +6,8 @@ use super::{Extent, Needs, Plan, ViewFacts, ViewPlan, requests::Scene};
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
     lines::{
-        FogUniform, LineFocusUniform, LineSettings, LineWeight, MapJumps, MemoryRequest, Sheet,
-        SheetUniform, request::LineRequest,
+        FogUniform, LineFocusUniform, LinePlanes, LineSettings, LineWeight, MapJumps,
+        MemoryRequest, Sheet, SheetUniform, request::LineRequest,
     },
     objects::Pressure,
 };
@@ -77,6 +77,7 @@ pub(super) fn line_request(
         motion: has_motion(scene),
         fog: plan.fog.then(|| fog(view)),
         focus: line_focus(plan, facts),
+        planes: plan.line_planes(facts),
         sheet: sheet(facts),
         depth_size,
         samples,
@@ -139,6 +140,11 @@ pub(super) fn memory_request(
 }
 
 impl Plan {
+    /// How lines differ in near, middle and far, if an effect says so.
+    pub fn line_planes(&self, facts: &ViewFacts) -> Option<LinePlanes> {
+        self.drawn().find_map(|e| e.any_line_planes(facts))
+    }
+
     /// Whether the widths of lines are drawn with the ids of objects.
     pub fn draws_widths(&self) -> bool {
         let presses = self

@@ -106,6 +106,7 @@ fn request(
         motion: false,
         fog: None,
         focus: None,
+        planes: None,
         sheet: SheetUniform::default(),
         depth_size,
         samples,

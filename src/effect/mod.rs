@@ -5,6 +5,7 @@ mod any;
 mod blend;
 mod blue_noise;
 mod choose;
+mod compiling;
 mod compose;
 mod errors;
 mod facts;
@@ -13,8 +14,11 @@ mod layers;
 mod lines;
 #[cfg(feature = "objects")]
 mod marks;
+mod missing;
+mod part;
 mod pass;
 mod passes;
+mod places;
 pub(crate) mod plan;
 mod plugin;
 mod prepare;
@@ -48,7 +52,7 @@ pub(crate) use {choose::ViewPlan, plan::Plan};
 
 use crate::{
     diagnostics::ComicsStage,
-    lines::{LineFocus, LineSettings, MapJumps, Sheet},
+    lines::{LineFocus, LinePlanes, LineSettings, MapJumps, Sheet},
 };
 
 /// A camera component that changes the picture: one WGSL function of a pixel, and
@@ -186,6 +190,14 @@ pub trait Effect:
     /// of a camera have one, that of the first in the chain is used. Lines of the faithful forms do
     /// not fade, and none without compute shaders. Default: none.
     fn line_focus(&self, view: &ViewFacts) -> Option<LineFocus> {
+        let _ = view;
+        None
+    }
+
+    /// The width and opacity of lines in near, middle and far. If several effects of a camera have
+    /// them, those of the first in the chain are used. Lines of the faithful forms are not
+    /// changed, and none without compute shaders. Default: none.
+    fn line_planes(&self, view: &ViewFacts) -> Option<LinePlanes> {
         let _ = view;
         None
     }
@@ -373,6 +385,15 @@ bitflags! {
         /// bytes a pixel, which holds both. The WGSL says what the number is, see
         /// [`Effect::NUMBER`]. Of an effect that also has [`Needs::MEANS`], these count.
         const NUMBERED = 1 << 11;
+        /// The two depths that divide what is visible into near, middle and far, by
+        /// `bevy_comics::depth::view::depth_borders`. Counts the depths, and finds the borders in
+        /// a pass. Without compute shaders, and with
+        /// [`ReductionMethod::PingPong`](crate::ReductionMethod::PingPong), there are none.
+        const DEPTH_BORDERS = 1 << 12;
+        /// The place of every object in the depth map, by `bevy_comics::objects::object_depth`.
+        /// Includes [`Needs::IDS`]. Without the crate's feature `objects` it asks for nothing, and
+        /// `OBJECT_DEPTHS` is not defined in WGSL.
+        const OBJECT_DEPTHS = 1 << 13;
     }
 }
 

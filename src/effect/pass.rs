@@ -33,7 +33,7 @@ use crate::{
     },
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     lines::{TileList, TileLists, ViewLines, tile_shader, vertices},
-    objects::{ObjectStyleBuffer, ViewObjectIds},
+    objects::{DepthPlaces, ObjectStyleBuffer, ViewObjectIds},
 };
 
 #[derive(Resource)]
@@ -89,7 +89,7 @@ type Found<'a> = (
     SurfaceParts<'a>,
     Option<&'a ViewDepthRange>,
     Option<&'a ViewLines>,
-    Option<&'a ViewObjectIds>,
+    (Option<&'a ViewObjectIds>, Option<&'a DepthPlaces>),
 );
 
 /// Draws the effects of the view. Calls `post_process_write`, which swaps the
@@ -104,7 +104,7 @@ pub(super) fn stylize<const PRINTS: bool>(
             (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),
             Option<&ViewDepthRange>,
             Option<&ViewLines>,
-            Option<&ViewObjectIds>,
+            (Option<&ViewObjectIds>, Option<&DepthPlaces>),
         ),
     )>,
     (object_styles, sampler): (Res<ObjectStyleBuffer>, Res<LayerSampler>),
@@ -266,7 +266,7 @@ pub(super) fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEnt
 /// them is missing in this frame.
 fn inputs<'a>(
     key: &StylizeKey,
-    (surfaces, range, lines, ids): Found<'a>,
+    (surfaces, range, lines, (ids, places)): Found<'a>,
     object_styles: &'a ObjectStyleBuffer,
     blue_noise: &'a BlueNoise,
 ) -> Result<Vec<BindGroupEntry<'a>>, LeftOut> {
@@ -277,7 +277,7 @@ fn inputs<'a>(
         let depth = surfaces.depth().ok_or(LeftOut::SampleCountMismatch)?;
         entries.push(entry(2, sampled(depth, key.samples)?));
     }
-    if key.visible_range {
+    if key.reads_range() {
         let keys = range.and_then(ViewDepthRange::drawn).ok_or(not_ready)?;
         entries.push(entry(3, keys.as_entire_binding()));
     }
@@ -286,7 +286,7 @@ fn inputs<'a>(
         let ink = lines.found().ok_or(not_ready)?;
         entries.push(entry(4, (&ink.default_view).into_binding()));
     }
-    if key.surface {
+    if key.reads_owners() {
         let owners = lines.and_then(|lines| lines.owners.as_ref());
         let owners = owners.ok_or(not_ready)?;
         entries.push(entry(5, (&owners.default_view).into_binding()));
@@ -302,6 +302,10 @@ fn inputs<'a>(
     if key.ids() {
         let ids = ids.ok_or(not_ready)?;
         entries.push(entry(8, (&ids.view).into_binding()));
+    }
+    if key.places() {
+        let places = places.ok_or(not_ready)?;
+        entries.push(entry(13, places.table.as_entire_binding()));
     }
     if key.blue_noise() {
         let tile = blue_noise.view().ok_or(not_ready)?;

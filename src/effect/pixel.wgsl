@@ -23,6 +23,9 @@ struct Pixel {
     depth: vec2<f32>,
     // Fraction of the saturation that remains after Desaturation, 0 to 1.
     saturation: f32,
+    // Factors that Planes has set, 0 to 1: of the darkness of hatching, and of the fraction of
+    // screens that is seen as dots. 1 again in a later pass, see Needs::PICTURE.
+    prints: vec2<f32>,
     // Change of the unstyled picture's lightness over this pixel (fwidth); 0 unless
     // an effect of the camera needs it.
     change: f32,

@@ -192,7 +192,7 @@ impl Plan {
     }
 
     /// Derives the lines, and the effects that are left out or replaced.
-    fn resolve(&mut self) {
+    pub(super) fn resolve(&mut self) {
         let asked = self.effects.iter().find_map(|p| p.effect.any_lines());
         self.lines = asked.map(LineSettings::visible).filter(|l| !l.is_empty());
         self.show_lines();
@@ -256,42 +256,6 @@ impl Plan {
         });
     }
 
-    /// The plan for a view that does not have this prepass, or does not have it yet.
-    pub fn without(&self, missing: Prepasses) -> Self {
-        let mut plan = self.clone();
-        let (needs, reason) = match missing {
-            Prepasses::Depth => (
-                Needs::all().difference(Needs::WITHOUT_PREPASSES),
-                LeftOut::NoDepthPrepass,
-            ),
-            Prepasses::Normals => (Needs::NORMALS, LeftOut::NoNormalPrepass),
-        };
-        for planned in std::mem::take(&mut plan.effects) {
-            let name = planned.effect.effect_type().name;
-            match planned.effect.any_without(needs) {
-                Some(effect)
-                    if effect.any_strength() > 0.0 && !effect.any_needs().intersects(needs) =>
-                {
-                    plan.effects.push(Planned { effect, ..planned });
-                }
-                _ => plan.left_out.push((name, reason)),
-            }
-        }
-        match missing {
-            Prepasses::Depth => {
-                plan.view = plan.view.filter(|v| !v.needs_depth());
-                plan.histogram = false;
-                plan.readback = false;
-                plan.unstyled = false;
-            }
-            Prepasses::Normals => {
-                plan.view = plan.view.filter(|v| *v != DebugView::Creases);
-            }
-        }
-        plan.resolve();
-        plan
-    }
-
     /// The effects that the fused pass applies, in order.
     pub fn drawn(&self) -> impl Iterator<Item = &dyn AnyEffect> {
         self.effects
@@ -323,7 +287,13 @@ impl Plan {
         } else {
             needs - Needs::OBJECT_ANCHORS
         };
-        let needs = if self.unstyled || needs.contains(Needs::OBJECT_ANCHORS) {
+        let needs = if cfg!(feature = "objects") {
+            needs
+        } else {
+            needs - Needs::OBJECT_DEPTHS
+        };
+        let of_objects = Needs::OBJECT_ANCHORS | Needs::OBJECT_DEPTHS;
+        let needs = if self.unstyled || needs.intersects(of_objects) {
             needs | Needs::IDS
         } else {
             needs
@@ -359,11 +329,14 @@ impl Plan {
 
     pub fn needs_range(&self) -> bool {
         let map = self.reads_map() || self.lines_read_map();
-        self.readback || self.histogram || (map && self.depth_map.mapping.follows_visible_range())
+        self.readback
+            || self.histogram
+            || self.needs().contains(Needs::DEPTH_BORDERS)
+            || (map && self.depth_map.mapping.follows_visible_range())
     }
 
     pub fn needs_depth(&self) -> bool {
-        let read = Needs::MAP | Needs::DEPTH | Needs::NORMALS | Needs::IDS;
+        let read = Needs::MAP | Needs::DEPTH | Needs::NORMALS | Needs::IDS | Needs::DEPTH_BORDERS;
         let view = self.view.is_some_and(DebugView::needs_depth);
         self.readback
             || self.marks
@@ -388,11 +361,4 @@ impl Plan {
         let ids = lines || self.draws_widths() || self.needs().contains(Needs::IDS);
         cfg!(feature = "objects") && ids
     }
-}
-
-/// The engine's prepasses that this crate reads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Prepasses {
-    Depth,
-    Normals,
 }

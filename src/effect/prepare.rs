@@ -16,7 +16,10 @@ use bevy::{
 };
 
 use super::{Plan, ViewFacts, any::encode, blue_noise::BlueNoise, key::StylizeKey};
-use crate::{depth::view::ViewUniform, lines::LinesUniform};
+use crate::{
+    depth::view::ViewUniform,
+    lines::{LinePlanesUniform, LinesUniform},
+};
 
 /// On a view in the render world: draw its effects in this frame.
 #[derive(Component, Clone, Debug)]
@@ -29,11 +32,12 @@ pub(crate) struct FusedRequest {
     pub pipeline: CachedRenderPipelineId,
     /// Draws all pixels before the tiles of `pipeline`, see [`Part::Base`].
     ///
-    /// [`Part::Base`]: super::key::Part::Base
+    /// [`Part::Base`]: super::part::Part::Base
     pub base: Option<CachedRenderPipelineId>,
     pub facts: ViewFacts,
     pub view: ViewUniform,
     pub lines: Option<LinesUniform>,
+    pub line_planes: Option<LinePlanesUniform>,
 }
 
 /// A pass that draws a picture for the next one, with numbers if that one reads them, and the
@@ -80,6 +84,9 @@ impl FusedRequest {
         push(encode(&self.plan.finish.uniform(self.facts.viewport.z)));
         if let Some(lines) = self.lines.filter(|_| self.key.lines) {
             push(encode(&lines));
+        }
+        if let Some(planes) = self.line_planes.filter(|_| self.key.plane_ink) {
+            push(encode(&planes));
         }
         for effect in self.plan.drawn() {
             if effect.effect_type().shader.settings.is_some() {

@@ -12,23 +12,23 @@ use bevy::{
     math::{UVec2, UVec4, Vec2},
     render::{
         camera::{ExtractedCamera, TemporalJitter},
-        render_resource::{
-            CachedPipelineState, CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines,
-        },
+        render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines},
         view::ExtractedView,
     },
-    shader::ShaderCacheError,
 };
 
 #[cfg(feature = "objects")]
 use super::marks::{MarkPipelines, MarkRequests};
 use super::{
-    AnyEffect, Extent, Plan, ViewFacts, ViewPlan,
-    key::{KeyInputs, Part, StylizeKey},
+    AnyEffect, Extent, Needs, Plan, ViewFacts, ViewPlan,
+    compiling::{are_compiling, is_compiling},
+    key::{KeyInputs, StylizeKey},
     lines::{line_reach, line_request, map_jumps},
+    missing::Prepasses,
+    part::Part,
     pass::StylizePipeline,
     passes::{Reads, passes},
-    plan::Prepasses,
+    places::object_depths,
     prepare::{FusedRequest, Layer, LayerPass},
 };
 use crate::{
@@ -37,8 +37,11 @@ use crate::{
         request::{RangePasses, RangePipelines, RangeRequest, Reduction},
         view::{ViewUniform, depth_rect},
     },
-    lines::request::{FindPass, LinePasses, LinePipelines, LineRequest},
-    objects::{IdRequest, QueuedDepth},
+    lines::{
+        LinePlanes,
+        request::{LinePasses, LinePipelines, LineRequest},
+    },
+    objects::{IdRequest, ObjectDepthRequest, QueuedDepth},
 };
 #[cfg(feature = "objects")]
 use crate::{lines::ViewMarks, objects::LayerRequest};
@@ -107,6 +110,7 @@ pub(super) struct Requests {
     range: Option<(RangeRequest, RangePasses)>,
     lines: Option<(LineRequest, LinePasses)>,
     ids: Option<IdRequest>,
+    places: Option<ObjectDepthRequest>,
     #[cfg(feature = "objects")]
     marks: Option<MarkRequests>,
     fused: Option<FusedRequest>,
@@ -134,6 +138,7 @@ impl Services<'_> {
         let uniform = view_uniform(view, plan, scene);
         let facts = ViewFacts::new(view, plan, scene.viewport, (extracted, camera));
         let jumps = map_jumps(plan, scene, &facts);
+        let places = object_depths((plan, view), &facts, uniform, extracted);
         let lines = line_request(view, (plan, &facts), scene, (uniform, jumps)).map(|request| {
             let passes = self.lines.get(cache, &request);
             (request, passes)
@@ -170,6 +175,7 @@ impl Services<'_> {
             range,
             lines,
             ids,
+            places,
             #[cfg(feature = "objects")]
             marks,
             fused,
@@ -221,6 +227,7 @@ impl Services<'_> {
             facts,
             view: inputs.view,
             lines: lines.map(|(request, _)| request.lines),
+            line_planes: plan.line_planes(&facts).map(LinePlanes::uniform),
             layers: layers.collect(),
             pipeline: specialize(&key),
             base,
@@ -301,6 +308,7 @@ fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeReq
         smooths: plan.smooths(),
         readback: plan.readback,
         histogram: plan.histogram,
+        borders: plan.needs().contains(Needs::DEPTH_BORDERS),
         seconds: view.seconds,
         cuts: view.cuts,
     })
@@ -317,7 +325,8 @@ impl Requests {
                 Reduction::Compute { pipeline, .. } => compute(pipeline),
                 Reduction::PingPong { first, next } => render(first) || render(next),
             };
-            reduction || passes.smoothing.is_some_and(compute)
+            let later = [passes.smoothing, passes.borders];
+            reduction || later.into_iter().flatten().any(compute)
         });
         let lines = self.lines.as_ref();
         let lines = lines.is_some_and(|(_, passes)| are_compiling(passes, cache));
@@ -345,6 +354,10 @@ impl Requests {
             Some(ids) => view.insert(ids),
             None => view.remove::<IdRequest>(),
         };
+        match self.places {
+            Some(places) => view.insert(places),
+            None => view.remove::<ObjectDepthRequest>(),
+        };
         match self.fused {
             Some(fused) => view.insert(fused),
             None => view.remove::<FusedRequest>(),
@@ -366,35 +379,4 @@ pub(super) fn remove_marks(view: Entity, layer: Option<Entity>, commands: &mut C
         commands.entity(layer).despawn();
     }
     commands.entity(view).remove::<(LayerRequest, ViewMarks)>();
-}
-
-/// Whether a pipeline of lines is still compiling.
-fn are_compiling(passes: &LinePasses, cache: &PipelineCache) -> bool {
-    let compute = |id| is_compiling(cache.get_compute_pipeline_state(id));
-    let render = |id: CachedRenderPipelineId| is_compiling(cache.get_render_pipeline_state(id));
-    let cracks = passes.cracks.is_some_and(|cracks| {
-        let columns = cracks.columns.is_some_and(render);
-        let find = match cracks.find {
-            FindPass::Cells(cells) => cells.ids().any(compute),
-            FindPass::Pixels(id) => render(id),
-        };
-        columns || find || render(cracks.draw)
-    });
-    let resolve = passes.resolve.is_some_and(|(_, id)| render(id));
-    let search = passes.search;
-    let search = search.is_some_and(|ids| ids.into_iter().any(compute));
-    let drawn = [passes.faithful, passes.memory];
-    resolve || search || cracks || drawn.into_iter().flatten().any(render)
-}
-
-fn is_compiling(state: &CachedPipelineState) -> bool {
-    match state {
-        CachedPipelineState::Queued | CachedPipelineState::Creating(_) => true,
-        // The pipeline cache retries after these errors.
-        CachedPipelineState::Err(error) => matches!(
-            error,
-            ShaderCacheError::ShaderNotLoaded(_) | ShaderCacheError::ShaderImportNotYetAvailable
-        ),
-        CachedPipelineState::Ok(_) => false,
-    }
 }

@@ -28,6 +28,8 @@ effects! {
     tone_bands: ToneBands;
     desaturation: Desaturation;
     colorization: Colorization, ColorizationMode;
+    color_harmony: ColorHarmony, HarmonyCurve, HarmonyMode;
+    planes: Planes, PlaneBorders, PlaneStyle, PlaneUnit;
     paint: Paint, PaintForm;
     focus: Focus, FocusAt, FocusStyle;
     print_offset: PrintOffset;

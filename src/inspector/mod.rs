@@ -16,6 +16,7 @@ mod known;
 mod memory;
 mod panel;
 mod photo;
+mod plane_borders;
 mod presets;
 mod search;
 mod shelf;

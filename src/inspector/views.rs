@@ -1,11 +1,13 @@
 //! The page of debug views, the depth range and the histogram of depths.
 
 use bevy::ecs::{component::Component, entity::Entity, query::With, world::World};
-use bevy_egui::egui::{Color32, Grid, Ui};
-use egui_plot::{Bar, BarChart, Plot, VLine};
+use bevy_egui::egui::{Color32, Grid, Pos2, Sense, Ui};
+use egui_plot::{Bar, BarChart, Plot, PlotPoint, VLine};
 
-use super::{Widgets, fields::section, note};
-use crate::{DebugView, DepthBin, DepthHistogram, EffectRegistry, EffectType, VisibleDepthRange};
+use super::{Widgets, fields::section, note, plane_borders::PlaneCuts};
+use crate::{
+    ComicStyle, DebugView, DepthBin, DepthHistogram, EffectRegistry, EffectType, VisibleDepthRange,
+};
 
 /// A camera whose depth range the panel reads, and which of the components for it
 /// the panel has inserted.
@@ -42,7 +44,13 @@ fn describe(view: DebugView, types: &[&EffectType]) -> (&'static str, &'static s
     }
 }
 
-pub fn show(ui: &mut Ui, world: &mut World, camera: Entity, widgets: &mut Widgets) {
+pub fn show(
+    ui: &mut Ui,
+    world: &mut World,
+    camera: Entity,
+    style: &mut ComicStyle,
+    widgets: &mut Widgets,
+) {
     probe(world, camera);
     let types = world.resource::<EffectRegistry>().types();
     let of_effects = types
@@ -89,8 +97,9 @@ pub fn show(ui: &mut Ui, world: &mut World, camera: Entity, widgets: &mut Widget
         .unwrap_or_default();
     let histogram = entity.get::<DepthHistogram>().cloned().unwrap_or_default();
     section(ui, "Depth range", |ui| numbers(ui, range, histogram.drawn));
+    let cuts = PlaneCuts::of(world, camera, style, &histogram);
     section(ui, "Histogram of visible depths", |ui| {
-        plot(ui, &histogram, widgets);
+        plot(ui, &histogram, (cuts, style), widgets);
     });
     ui.ctx().request_repaint();
 }
@@ -171,32 +180,42 @@ fn columns(bins: &[DepthBin], place: impl Fn(f32) -> f64) -> Vec<[f64; 3]> {
 }
 
 /// The chart of the histogram.
-fn plot(ui: &mut Ui, histogram: &DepthHistogram, widgets: &mut Widgets) {
+fn plot(
+    ui: &mut Ui,
+    histogram: &DepthHistogram,
+    (cuts, style): (Option<PlaneCuts>, &mut ComicStyle),
+    widgets: &mut Widgets,
+) {
     if histogram.bins.is_empty() {
         ui.weak("No depths: nothing is visible, or the adapter has no compute shaders.");
         return;
     }
     let logarithmic = is_logarithmic(&histogram.bins);
-    let place = move |distance: f32| {
-        let distance = f64::from(distance);
+    let place = move |distance: f64| {
         if logarithmic {
             distance.log10()
         } else {
             distance.clamp(-1e9, 1e9)
         }
     };
-    let bars = columns(&histogram.bins, place)
+    let bars = columns(&histogram.bins, |distance| place(f64::from(distance)))
         .into_iter()
         .map(|[left, right, percent]| {
             Bar::new(0.5 * (left + right), percent).width((right - left).max(1e-9))
         })
         .collect();
     let distance = move |x: f64| if logarithmic { 10f64.powf(x) } else { x };
+    let pair = |(near, far): (f32, f32)| [near, far].map(f64::from);
+    let drawn_cuts = match &cuts {
+        Some(cuts) => Some(cuts.distances),
+        None => histogram.borders.map(pair),
+    };
     let shown = Plot::new("depths")
         .height(140.0)
         .allow_zoom(false)
         .allow_drag(false)
         .allow_scroll(false)
+        .sense(Sense::hover())
         .include_y(0.0)
         .x_axis_formatter(move |mark, _| format!("{:.3}", distance(mark.value)))
         .y_axis_formatter(|mark, _| format!("{:.0} %", mark.value))
@@ -205,18 +224,32 @@ fn plot(ui: &mut Ui, histogram: &DepthHistogram, widgets: &mut Widgets) {
                 BarChart::new("fraction of the pixels, in 64 columns", bars)
                     .color(Color32::LIGHT_BLUE),
             );
-            if let Some((near, far)) = histogram.drawn {
-                for (name, at) in [("nearest", near), ("farthest", far)] {
-                    plot.vline(
-                        VLine::new(name, place(at))
-                            .color(Color32::from_rgb(230, 90, 70))
-                            .width(2.0),
-                    );
+            let range = Color32::from_rgb(230, 90, 70);
+            let borders = Color32::from_rgb(240, 200, 90);
+            for (ends, names, color) in [
+                (histogram.drawn.map(pair), ["nearest", "farthest"], range),
+                (drawn_cuts, ["end of near", "start of far"], borders),
+            ] {
+                for (name, at) in names.into_iter().zip(ends.into_iter().flatten()) {
+                    plot.vline(VLine::new(name, place(at)).color(color).width(2.0));
                 }
             }
         });
     note(widgets, "histogram", &shown.response);
-    ui.weak("Distance in world units. Lines: the range that is used for drawing.");
+    if let Some(cuts) = cuts {
+        let transform = shown.transform;
+        let x_of = |z| {
+            transform
+                .position_from_point(&PlotPoint::new(place(z), 0.0))
+                .x
+        };
+        let distance_of = |x| distance(transform.value_from_position(Pos2::new(x, 0.0)).x);
+        cuts.drag(ui, (*transform.frame(), x_of, distance_of), style, widgets);
+    }
+    ui.weak(
+        "Distance in world units. Red: the range that is used for drawing. Yellow: where near, \
+         middle and far meet; drag a line, or move it with the arrow keys, to fix both.",
+    );
 }
 
 /// Reads the depth range of this camera, and of no other.

@@ -48,6 +48,9 @@ impl LineKey {
                 (weight.budget, "BUDGET"),
                 (weight.fog, "FOG"),
                 (weight.focus, "IN_FOCUS"),
+                (weight.planes, "IN_PLANES"),
+                (weight.found_borders, "DEPTH_BORDERS"),
+                (weight.by_objects, "OBJECT_DEPTHS"),
             ]))
             .collect()
     }

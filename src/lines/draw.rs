@@ -31,7 +31,7 @@ use crate::objects::{MarkStyleBuffer, ViewLayer};
 use crate::{
     depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
-    objects::{ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
+    objects::{DepthPlaces, ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
 };
 #[cfg(feature = "objects")]
 use bevy::ecs::system::Query;
@@ -77,17 +77,22 @@ pub(crate) fn find_lines(
         (&LineRequest, &LinePasses, &ViewLines),
         (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),
         Option<&ViewDepthRange>,
-        (Option<&ViewObjectIds>, Option<&ViewLineWidths>),
+        (
+            Option<&ViewObjectIds>,
+            Option<&ViewLineWidths>,
+            Option<&DepthPlaces>,
+        ),
     )>,
     object_styles: Res<ObjectStyleBuffer>,
     ledger: Res<StageLedger>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
-    let (parts, prepass, range, (ids, widths)) = view.into_inner();
+    let (parts, prepass, range, (ids, widths, places)) = view.into_inner();
     let (request, passes, lines) = parts;
+    let sources = Sources::new(prepass, ids, widths).with_places(places);
     let inputs = Inputs {
-        parts: (parts, Sources::new(prepass, ids, widths), range),
+        parts: (parts, sources, range),
         styles: &object_styles,
         cache: &cache,
         device: ctx.render_device().clone(),

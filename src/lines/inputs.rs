@@ -148,13 +148,17 @@ impl Inputs<'_> {
             widths: key.weight.map,
         };
         self.texels()?.push(reads, &mut entries)?;
-        if key.visible_range {
+        if key.visible_range || key.weight.found_borders {
             let keys = range.and_then(ViewDepthRange::drawn).ok_or(NOT_READY)?;
             entries.push(entry(3, keys.as_entire_binding()));
         }
         if key.object_styles {
             let styles = self.styles.buffer().ok_or(NOT_READY)?;
             entries.push(entry(6, styles.as_entire_binding()));
+        }
+        if key.weight.by_objects {
+            let places = sources.places.ok_or(NOT_READY)?;
+            entries.push(entry(13, places.as_entire_binding()));
         }
         if key.marks {
             let picture = sources.picture.ok_or(NOT_READY)?;

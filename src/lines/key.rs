@@ -85,7 +85,7 @@ pub(crate) struct LineKey {
     pub smooth: bool,
     /// Which factors of width and opacity are not 1.
     pub weight: WeightKey,
-    /// Lines have the colour of surfaces.
+    /// The colour of lines depends on the surface that they belong to.
     pub surface: bool,
     /// They take the colour a pixel inside of it, because its rim is mixed with others.
     pub inward: bool,
@@ -119,6 +119,9 @@ impl LineKey {
             WeightKey {
                 fog: request.fog.is_some(),
                 focus: request.focus.is_some(),
+                planes: request.planes.is_some(),
+                found_borders: request.planes.is_some_and(|planes| planes.finds_borders),
+                by_objects: request.planes.is_some_and(|planes| planes.by_objects) && request.ids,
                 map: request.widths,
                 ..WeightKey::new(lines)
             }
@@ -148,8 +151,8 @@ impl LineKey {
             bridged: lines.bridge > 0 && !by_fragments,
             smooth: lines.smooth && !by_fragments,
             weight,
-            surface: lines.color.is_surface(),
-            inward: lines.color.is_surface() && request.samples > 1,
+            surface: request.needs_owners(),
+            inward: request.needs_owners() && request.samples > 1,
             boils: lines.boil.moves(),
             sheet: request.sheet.key(),
             varied: weight.varies(),
@@ -251,7 +254,7 @@ impl LineKey {
     /// The part that completing cracks depends on.
     pub fn for_settle(self) -> Self {
         let weight = self.weight;
-        let reads_map = weight.perspective;
+        let reads_map = weight.perspective || weight.planes;
         Self {
             ledges: self.ledges,
             rims: self.rims,
@@ -259,7 +262,7 @@ impl LineKey {
             smooth: self.smooth,
             creases: self.creases && self.smooth,
             weight,
-            ids: weight.outer && self.ids,
+            ids: (weight.outer || weight.by_objects) && self.ids,
             oblique: (weight.any() || self.rims || self.creases && self.smooth) && self.oblique,
             visible_range: reads_map && self.visible_range,
             ..Self::default()

@@ -16,7 +16,7 @@ use super::{
     key::{BLOCK_FORMAT, LineKey, Search},
     pass::LinePassUniform,
 };
-use crate::objects::{ids_entry, object_styles_entry, widths_entry};
+use crate::objects::{ids_entry, object_styles_entry, places_entry, widths_entry};
 
 impl LineKey {
     /// The layout entries of what finding reads. `normals`: the normals are read.
@@ -30,7 +30,7 @@ impl LineKey {
             entry.visibility = stages;
             entry
         };
-        if self.visible_range {
+        if self.visible_range || self.weight.found_borders {
             entries.push(seen(range_entry()));
         }
         if self.object_styles {
@@ -41,6 +41,9 @@ impl LineKey {
         }
         if self.ids {
             entries.push(seen(ids_entry(false)));
+        }
+        if self.weight.by_objects {
+            entries.push(seen(places_entry()));
         }
         if self.marks {
             entries.push(picture_entry(self.multisampled_picture, stages));

@@ -7,7 +7,8 @@ use bevy::{
 
 use super::{
     boil::BoilUniform, focus::LineFocusUniform, fog::FogUniform, memory::MemoryUniform,
-    settings::LinesUniform, sheet::SheetUniform, weight::WeightUniform,
+    plane_lines::LinePlanesUniform, settings::LinesUniform, sheet::SheetUniform,
+    weight::WeightUniform,
 };
 use crate::depth::view::ViewUniform;
 
@@ -38,6 +39,7 @@ pub(crate) struct LinePassUniform {
     pub weight: WeightUniform,
     pub fog: FogUniform,
     pub focus: LineFocusUniform,
+    pub planes: LinePlanesUniform,
     pub boil: BoilUniform,
     pub memory: MemoryUniform,
     pub sheet: SheetUniform,

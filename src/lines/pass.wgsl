@@ -9,6 +9,7 @@
 #import bevy_comics::lines::focus::LineFocus
 #import bevy_comics::lines::fog::Fog
 #import bevy_comics::lines::memory::Memory
+#import bevy_comics::lines::plane_lines::LinePlanes
 #import bevy_comics::lines::sheet::Sheet
 #import bevy_comics::lines::weight::Weight
 
@@ -19,6 +20,7 @@ struct LinePass {
     weight: Weight,
     fog: Fog,
     focus: LineFocus,
+    planes: LinePlanes,
     boil: Boil,
     memory: Memory,
     sheet: Sheet,

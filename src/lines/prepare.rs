@@ -45,7 +45,7 @@ pub(crate) struct ViewLines {
     pub tiles: Option<Tiles>,
     /// The ink of every pixel of the viewport, see `draw.wgsl`.
     pub ink: Option<CachedTexture>,
-    /// The pixels that own its lines, if they have the colour of surfaces.
+    /// The pixels that own its lines, if their colour depends on them.
     pub owners: Option<CachedTexture>,
     /// The ink of this frame and of those before, if lines remember.
     pub memory: Option<LineMemory>,

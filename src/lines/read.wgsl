@@ -22,21 +22,33 @@ fn set_lines(lines: Lines) {
 // The ink of the viewport, see draw.wgsl.
 @group(0) @binding(4) var line_texture: texture_2d<f32>;
 
-#ifdef SURFACE_LINES
+#ifdef LINE_OWNERS
 // From each pixel of the viewport to the one that owns its line, see draw.wgsl.
 @group(0) @binding(5) var owner_texture: texture_2d<i32>;
-
-var<private> line_surface: vec3<f32>;
 
 // The pixel that owns the line at a pixel of the target.
 fn line_owner(pixel: vec2<i32>) -> vec2<i32> {
     let offset = textureLoad(owner_texture, inside_viewport(pixel) - view.viewport.xy, 0).xy;
     return inside_viewport(pixel + offset);
 }
+#endif
+
+#ifdef SURFACE_LINES
+var<private> line_surface: vec3<f32>;
 
 // Sets the colour of the surface that the line at the pixel belongs to.
 fn set_line_surface(color: vec3<f32>) {
     line_surface = color;
+}
+#endif
+
+#ifdef PLANE_INK
+var<private> line_ink: vec4<f32>;
+
+// Sets the colour that takes the place of part of that of the line at the pixel: multiplied by
+// that part, and the part.
+fn set_line_ink(ink: vec4<f32>) {
+    line_ink = ink;
 }
 #endif
 
@@ -75,11 +87,14 @@ fn lines_at(at: vec2<f32>) -> Found {
 }
 
 // The colour of a line: that of the OutlineStyle in `slot`, if it has one, else that of the
-// surface, or `color`.
+// surface, or `kind_color`, mixed with that of its plane.
 fn own_color(slot: u32, kind_color: vec3<f32>) -> vec3<f32> {
     var color = kind_color;
 #ifdef SURFACE_LINES
     color = surface_ink(line_surface, lines_drawn.surface_darken, lines_drawn.surface_saturate);
+#endif
+#ifdef PLANE_INK
+    color = (1.0 - line_ink.a) * color + line_ink.rgb;
 #endif
 #ifdef OBJECT_STYLES
     if slot != 0u {

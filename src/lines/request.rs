@@ -24,6 +24,7 @@ use super::{
     memory::{MemoryKey, MemoryPipeline, MemoryRequest},
     pass::{Grid, LinePassUniform},
     pipelines::{LinePass, LineShaders, SearchPass},
+    plane_lines::LinePlanes,
     resolve::{ResolveKey, ResolvePipeline},
     settings::{LineSettings, LinesUniform, MapJumps},
     sheet::SheetUniform,
@@ -53,6 +54,8 @@ pub(crate) struct LineRequest {
     pub fog: Option<FogUniform>,
     /// What lines are in focus.
     pub focus: Option<LineFocusUniform>,
+    /// How they look in near, middle and far.
+    pub planes: Option<LinePlanes>,
     /// The sheet that lines are drawn on.
     pub sheet: SheetUniform,
     /// Size in pixels of the depth texture, and its samples per pixel.
@@ -104,6 +107,12 @@ impl LineRequest {
             && !self.settings.boil.moves();
         // Between the pixels of the grid, cracks half a pixel further away count.
         self.reach.max(1) + i32::from(!aligned)
+    }
+
+    /// Whether the pixels that own lines are drawn, for the colour of lines.
+    pub fn needs_owners(&self) -> bool {
+        let own_colors = |planes: LinePlanes| planes.has_colors();
+        self.settings.color.is_surface() || self.planes.is_some_and(own_colors)
     }
 
     /// Number of passes that link cracks.
@@ -177,6 +186,7 @@ impl LineRequest {
             weight: self.weight,
             fog: self.fog.unwrap_or_default(),
             focus: self.focus.unwrap_or_default(),
+            planes: self.planes.map(LinePlanes::uniform).unwrap_or_default(),
             boil: self.boil,
             memory: (self.memory)
                 .map(|memory| memory.uniform(self.grid_reach(), is_new))

@@ -27,13 +27,10 @@
 #ifdef WEIGHT
 #import bevy_comics::depth::map::is_background
 #import bevy_comics::depth::view::depth_frame
-#import bevy_comics::lines::weight::{
-    kind_weight, light_weight, nib_weight, perspective_weight, taper_weight, weighted_crack,
-}
+#import bevy_comics::lines::weight::{kind_weight, light_weight, nib_weight, perspective_weight}
+#import bevy_comics::lines::weight::{taper_weight, weighted_crack}
 #ifdef BUDGET
-#import bevy_comics::lines::budget::{
-    NEAR_COLUMNS, budget_weight, column_weight, counted, line_density,
-}
+#import bevy_comics::lines::budget::{NEAR_COLUMNS, budget_weight, column_weight, counted, line_density}
 #import bevy_comics::lines::edge::unpack_width
 #endif
 #ifdef FOG
@@ -41,6 +38,10 @@
 #endif
 #ifdef IN_FOCUS
 #import bevy_comics::lines::focus::line_sharpness
+#endif
+#ifdef IN_PLANES
+#import bevy_comics::lines::owner_plane::owner_weights
+#import bevy_comics::lines::plane_lines::plane_factors
 #endif
 #ifdef LIGHT_WEIGHT
 #import bevy_comics::depth::normal::texel_normal
@@ -261,12 +262,15 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let position = (at * 2.0 - 1.0) * vec2(1.0, -1.0);
     fog = fog_fraction(line_pass.fog, fog_distance(line_pass.fog, position, texel_depth(owner, 0)));
 #endif
-    var sharp = 1.0;
+    var left = vec2(factor, 1.0 - fog);
 #ifdef IN_FOCUS
     let middle = texel_depth(g.rect.xy + g.rect.zw / 2, 0);
-    sharp = line_sharpness(line_pass.focus, texel_depth(owner, 0), middle);
+    left *= line_sharpness(line_pass.focus, texel_depth(owner, 0), middle);
 #endif
-    return select(weighted_crack(packed, factor * sharp, (1.0 - fog) * sharp), 0u, packed == 0u);
+#ifdef IN_PLANES
+    left *= plane_factors(line_pass.planes, owner_weights(line_pass.planes, owner));
+#endif
+    return select(weighted_crack(packed, left.x, left.y), 0u, packed == 0u);
 }
 #endif
 

@@ -1,7 +1,7 @@
 //! The textures of the scene that lines are found in.
 
 use bevy::render::{
-    render_resource::{BindGroupEntry, BindingResource, IntoBinding, TextureView},
+    render_resource::{BindGroupEntry, BindingResource, Buffer, IntoBinding, TextureView},
     texture::CachedTexture,
 };
 
@@ -10,7 +10,7 @@ use crate::objects::ViewLayer;
 use crate::{
     depth::surfaces::{SurfaceParts, Surfaces},
     diagnostics::LeftOut,
-    objects::{ViewLineWidths, ViewObjectIds},
+    objects::{DepthPlaces, ViewLineWidths, ViewObjectIds},
 };
 
 pub(super) const NOT_READY: LeftOut = LeftOut::PipelineNotReady;
@@ -27,6 +27,8 @@ pub(super) struct Sources<'a> {
     pub ids: Option<&'a TextureView>,
     pub widths: Option<&'a TextureView>,
     pub motion: Option<&'a TextureView>,
+    /// Places of objects in the depth map.
+    pub places: Option<&'a Buffer>,
     /// Depth of the picture, which hides marked objects.
     pub picture: Option<&'a TextureView>,
 }
@@ -45,8 +47,15 @@ impl<'a> Sources<'a> {
             ids: ids.map(|ids| &ids.view),
             widths: widths.map(|widths| &widths.view),
             motion: surfaces.motion().map(|motion| &motion.default_view),
+            places: None,
             picture: None,
         }
+    }
+
+    /// With the places of objects.
+    pub fn with_places(self, places: Option<&'a DepthPlaces>) -> Self {
+        let places = places.map(|places| &places.table);
+        Self { places, ..self }
     }
 
     /// Those of marked objects.
@@ -58,6 +67,7 @@ impl<'a> Sources<'a> {
             ids: Some(&layer.ids.default_view),
             widths: None,
             motion: self.motion,
+            places: None,
             picture: self.depth.map(|depth| &depth.default_view),
         }
     }

@@ -233,6 +233,11 @@ pub(crate) struct WeightKey {
     pub fog: bool,
     /// Lines fade out of focus.
     pub focus: bool,
+    /// Near, middle and far have lines of their own; their borders are found; whole objects are
+    /// in one of them.
+    pub planes: bool,
+    pub found_borders: bool,
+    pub by_objects: bool,
 }
 
 impl WeightKey {
@@ -250,12 +255,15 @@ impl WeightKey {
             budget: lines.budget < 1.0,
             fog: false,
             focus: false,
+            planes: false,
+            found_borders: false,
+            by_objects: false,
         }
     }
 
     /// Whether any factor is not 1, those of the budget, the fog and the focus included.
     pub fn any(self) -> bool {
-        self.kinds || self.budget || self.fog || self.focus || self.varies()
+        self.kinds || self.budget || self.fog || self.focus || self.planes || self.varies()
     }
 
     /// Whether the width changes along a line. Where lines crowd, a shift of half a pixel

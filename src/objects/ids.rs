@@ -321,6 +321,7 @@ pub(crate) fn build(app: &mut App) {
         .add_render_command::<ObjectIdItem, DrawId>()
         .add_render_command::<ObjectIdItem, DrawIdWithMaterial>();
     add_systems(render_app);
+    super::depths::build(render_app);
 }
 
 fn add_systems(render_app: &mut SubApp) {

@@ -5,6 +5,8 @@
 #[cfg(feature = "objects")]
 mod anchors;
 #[cfg(feature = "objects")]
+mod depths;
+#[cfg(feature = "objects")]
 mod draw;
 #[cfg(feature = "objects")]
 mod groups;
@@ -20,6 +22,7 @@ mod line_widths;
 mod marks;
 #[cfg(feature = "objects")]
 mod phase;
+mod places;
 #[cfg(feature = "objects")]
 mod sections;
 mod table;
@@ -50,6 +53,7 @@ pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
 #[cfg(feature = "objects")]
 pub use transparent::DepthWrite;
 
+pub(crate) use places::{DepthPlaces, ObjectDepthRequest, ObjectEye, places_entry};
 pub(crate) use table::{DepthWrites, ObjectChanges, ObjectStyleBuffer, ObjectStyles};
 pub use widths::ViewLineWidths;
 pub(crate) use widths::{LARGEST_FACTOR, Pressure, WIDTH_FORMAT, widths_entry};
@@ -245,6 +249,7 @@ impl ObjectsPlugin {
         #[cfg(feature = "objects")]
         {
             load_shader_library!(app, "widths.wgsl");
+            bevy::asset::embedded_asset!(app, "depths.wgsl");
             bevy::asset::embedded_asset!(app, "ids.wgsl");
             bevy::asset::embedded_asset!(app, "sections.wgsl");
             transparent::build_shaders(app);

@@ -1,7 +1,7 @@
 #define_import_path bevy_comics::objects
 
 // Object ids and outline styles of objects: the only module that declares bindings 6
-// (styles), 8 (ids) and 9 (factors of the width of lines).
+// (styles), 8 (ids), 9 (factors of the width of lines) and 13 (places in the depth map).
 
 #import bevy_comics::depth::view::depth_pixel
 #ifdef WIDTH_MAP
@@ -80,6 +80,17 @@ fn texel_slot(at: vec2<i32>, sample: i32) -> u32 {
 // The style in a slot, which is clamped to the table.
 fn style_of(slot: u32) -> ObjectStyle {
     return object_styles[min(slot, arrayLength(&object_styles) - 1u)];
+}
+#endif
+
+#ifdef OBJECT_DEPTHS
+@group(0) @binding(13) var<storage, read> object_depths: array<vec2<f32>>;
+
+// Where the object with this id is in the depth map: D of its centre, and how much its pixels
+// follow it, 0 to 1: 0 for what extends far in depth, and for unknown objects.
+fn object_depth(id: u32) -> vec2<f32> {
+    let place = object_depths[min(id, arrayLength(&object_depths) - 1u)];
+    return vec2(place.x - 1.0, select(0.0, place.y, place.x > 0.0));
 }
 #endif
 

@@ -108,6 +108,10 @@ presets! {
     WATERCOLOR: "watercolor";
     /// Flat patches of opaque colour on rough paper, soft lines in the colours that they surround.
     GOUACHE: "gouache";
+    /// A picture book in three planes: a warm foreground with heavy lines, a teal distance.
+    STORYBOOK: "storybook";
+    /// Two hues in five tones: copper in front of a teal distance.
+    COPPER_AND_TEAL: "copper-and-teal";
     /// Three flat tones with an outline.
     CLEAR_BANDS: "clear-bands";
     /// Brown-grey bands, outlines and dark corners.

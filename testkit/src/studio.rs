@@ -152,6 +152,10 @@ const OUTLINE_PRESETS: [Preset; 4] = [
     presets::SILENT_FILM,
 ];
 
+/// The presets that differ by distance or harmonize colours; last, so that the clock of the others
+/// is the same without them.
+const DEPTH_PRESETS: [Preset; 2] = [presets::STORYBOOK, presets::COPPER_AND_TEAL];
+
 /// The presets that have a golden picture in a scene: all those that print or paint. The mountains
 /// show those after the first paper and those that outline, the theatre those after the
 /// second, the teapot all of them, and the village those after the first and
@@ -175,13 +179,15 @@ pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
     shown.into_iter().map(Preset::name).collect()
 }
 
-/// The styles that have a golden picture in a scene, with their names: presets, and one of
+/// The styles that have a golden picture in a scene, with their names: presets, and those of
 /// effects that no preset has.
 pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
     let names = golden_presets(scene);
     let preset = |name| presets::find(name).expect("listed").style();
     let mut styles: Vec<_> = names.into_iter().map(|name| (name, preset(name))).collect();
     styles.extend(single_effects(scene));
+    let depth = DEPTH_PRESETS.map(Preset::name);
+    styles.extend(depth.map(|name| (name, preset(name))));
     styles
 }
 

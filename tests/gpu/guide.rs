@@ -184,12 +184,12 @@ mod reference {
 
     use bevy::reflect::{NamedField, TypeInfo, Typed};
     use bevy_comics::{
-        BlackFlats, Colorization, ColorizationMode, ComicStyle, ContourOperator, Contours, Creases,
-        DepthMap, DepthMapping, Desaturation, EffectRegistry, EffectType, FieldRange, Focus,
-        FocusAt, FocusStyle, Form, Halftone, HalftoneMode, LineBoil, LineColor, LineFog,
-        LineResponse, LineWeight, ObjectEdges, Outlines, Paint, PaintForm, PrintOffset,
-        RangeSmoothing, ReductionMethod, ScreenAnchor, ScreenSampling, ScreenShape, Silhouettes,
-        Sketch, ToneBands,
+        BlackFlats, ColorHarmony, Colorization, ColorizationMode, ComicStyle, ContourOperator,
+        Contours, Creases, DepthMap, DepthMapping, Desaturation, EffectRegistry, EffectType,
+        FieldRange, Focus, FocusAt, FocusStyle, Form, Halftone, HalftoneMode, HarmonyCurve,
+        HarmonyMode, LineBoil, LineColor, LineFog, LineResponse, LineWeight, ObjectEdges, Outlines,
+        Paint, PaintForm, PlaneBorders, PlaneStyle, PlaneUnit, Planes, PrintOffset, RangeSmoothing,
+        ReductionMethod, ScreenAnchor, ScreenSampling, ScreenShape, Silhouettes, Sketch, ToneBands,
     };
 
     const HEAD: &str = "\
@@ -365,6 +365,13 @@ This page is made from the types by a test, which fails where the two differ.
         section::<Desaturation>(&mut page);
         section::<Colorization>(&mut page);
         section::<ColorizationMode>(&mut page);
+        section::<ColorHarmony>(&mut page);
+        section::<HarmonyMode>(&mut page);
+        section::<HarmonyCurve>(&mut page);
+        section::<Planes>(&mut page);
+        section::<PlaneStyle>(&mut page);
+        section::<PlaneUnit>(&mut page);
+        section::<PlaneBorders>(&mut page);
         section::<Paint>(&mut page);
         section::<PaintForm>(&mut page);
         section::<Focus>(&mut page);

@@ -2,6 +2,7 @@
 
 mod blending;
 mod boil;
+mod borders;
 mod bridge;
 mod by_fragments;
 mod cartoon;
@@ -57,6 +58,7 @@ mod percentiles;
 mod persistence;
 mod pictures;
 mod pipelines;
+mod planes;
 mod plugin_order;
 mod pressure;
 mod print_offset;

@@ -7,9 +7,10 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    BlackFlats, Colorization, ColorizationMode, ComicStyle, ContourOperator, Contours, Creases,
-    DepthMap, DepthMapping, Desaturation, Form, Halftone, KeyLight, LineColor, LineResponse,
-    Outlines, Paint, Paper, PrintOffset, ScreenSampling, ScreenShape, Silhouettes, Sketch,
+    BlackFlats, ColorHarmony, Colorization, ColorizationMode, ComicStyle, ContourOperator,
+    Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, Halftone, HarmonyCurve,
+    HarmonyMode, KeyLight, LineColor, LineResponse, Outlines, Paint, Paper, PlaneBorders,
+    PlaneStyle, PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape, Silhouettes, Sketch,
     ToneBands, VisibleDepthRange, presets,
 };
 
@@ -539,4 +540,76 @@ fn an_hdr_camera_is_its_twin() {
         DepthMapping::MinMax,
     );
     assert_pass_is_its_twin(&mut small, &style, None, "hdr, faithful");
+}
+
+/// After the other effects of colour, over a background that shows through.
+#[test]
+fn every_mode_of_harmony_is_its_twin() {
+    let mut small = Small::new(UVec2::new(72, 48), Msaa::Sample4);
+    small.insert(Camera {
+        clear_color: Color::srgba(0.1, 0.2, 0.3, 0.4).into(),
+        ..default()
+    });
+    let modes = [
+        (HarmonyMode::TwoHues, Form::Corrected),
+        (HarmonyMode::Distance, Form::Corrected),
+        (HarmonyMode::Distance, Form::Faithful),
+        (HarmonyMode::Rotation, Form::Corrected),
+        (HarmonyMode::Shade, Form::Corrected),
+        (HarmonyMode::Shade, Form::Faithful),
+    ];
+    for (mode, form) in modes {
+        for curve in [HarmonyCurve::Linear, HarmonyCurve::Quadratic] {
+            let harmony = ColorHarmony {
+                mode,
+                form,
+                curve,
+                complement: 1.2,
+                shade: 0.9,
+                ..default()
+            };
+            let desaturation = Desaturation {
+                amount: 0.3,
+                ..default()
+            };
+            let style = ComicStyle::new().with(desaturation).with(harmony);
+            let what = format!("{harmony:?}");
+            assert_pass_is_its_twin(&mut small, &style, None, &what);
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// With fixed borders; those that are found are tested in `planes.rs`.
+#[test]
+fn planes_are_their_twin() {
+    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        small.restart(msaa);
+        small.insert(Camera {
+            clear_color: Color::srgba(0.1, 0.2, 0.3, 0.4).into(),
+            ..default()
+        });
+        for (bands, flip) in [(0, false), (3, false), (0, true)] {
+            let planes = Planes {
+                near: PlaneStyle {
+                    saturation: 1.4,
+                    contrast: 1.2,
+                    bands,
+                    ..default()
+                },
+                by: PlaneUnit::Pixel,
+                borders: PlaneBorders::Fixed,
+                near_end: 0.3,
+                far_start: 0.6,
+                softness: 0.2,
+                ..default()
+            };
+            let map = DepthMap { flip, ..default() };
+            let style = with_map(ComicStyle::new().with(planes), map);
+            let what = format!("{msaa:?}, {bands} bands, flip: {flip}");
+            assert_pass_is_its_twin(&mut small, &style, None, &what);
+        }
+    }
+    assert_eq!(small.errors(), 0);
 }

@@ -62,7 +62,7 @@ fn product(lists: &[Vec<Definitions>]) -> Vec<Definitions> {
 type Modes = (&'static str, Vec<Definitions>);
 
 /// The effects that read the picture, depth and normals.
-fn picture_effects() -> [Modes; 7] {
+fn picture_effects() -> [Modes; 9] {
     let mapped = |more: Definition<'static>| [flags(&["MAP", "DEPTH"]), vec![more]].concat();
     [
         (
@@ -166,7 +166,50 @@ fn picture_effects() -> [Modes; 7] {
                 optional(&["CONTOURS_STEADY"]),
             ]),
         ),
+        ("color_harmony", color_harmony()),
+        (
+            "planes",
+            product(&[
+                vec![flags(&["PLANES", "MAP", "DEPTH"])],
+                vec![Vec::new(), flags(&["DEPTH_BORDERS"])],
+                vec![
+                    Vec::new(),
+                    flags(&["PLANES_OBJECTS", "OBJECT_DEPTHS", "OBJECT_IDS"]),
+                ],
+                vec![
+                    vec![("PLANES_BANDS", Some(0))],
+                    vec![("PLANES_BANDS", Some(1)), ("LIGHTNESS_CHANGE", None)],
+                ],
+            ]),
+        ),
     ]
+}
+
+/// The curve and the form of the modes that have them.
+fn color_harmony() -> Vec<Definitions> {
+    let forms = numbers("COLOR_HARMONY_FAITHFUL", 0..2);
+    let mode = |number| vec![("COLOR_HARMONY_MODE", Some(number))];
+    let plain = vec![("COLOR_HARMONY_QUADRATIC", Some(0))];
+    let maps = || vec![Vec::new(), flags(&["MAP", "DEPTH"])];
+    let harmony = || vec![flags(&["COLOR_HARMONY"])];
+    [
+        product(&[
+            harmony(),
+            vec![mode(0)],
+            vec![plain.clone()],
+            forms[..1].to_vec(),
+            maps(),
+        ]),
+        product(&[
+            harmony(),
+            vec![mode(1), mode(2)],
+            numbers("COLOR_HARMONY_QUADRATIC", 0..2),
+            forms.clone(),
+            maps()[1..].to_vec(),
+        ]),
+        product(&[harmony(), vec![mode(3)], vec![plain], forms]),
+    ]
+    .concat()
 }
 
 /// The effects that draw lines. Only one is compiled at a time, because the
@@ -175,10 +218,19 @@ fn line_effects() -> [Modes; 2] {
     [
         (
             "outlines",
-            product(&[
-                vec![flags(&["OUTLINES", "LINES"])],
-                optional(&["OBJECT_STYLES"]),
-            ]),
+            [
+                product(&[
+                    vec![flags(&["OUTLINES", "LINES"])],
+                    optional(&["OBJECT_STYLES"]),
+                ]),
+                product(&[
+                    vec![flags(&["OUTLINES", "LINES", "LINE_OWNERS", "MAP", "DEPTH"])],
+                    vec![flags(&["IN_PLANES", "PLANE_INK"])],
+                    optional(&["OBJECT_STYLES", "SURFACE_LINES", "DEPTH_BORDERS"]),
+                    vec![Vec::new(), flags(&["OBJECT_DEPTHS", "OBJECT_IDS"])],
+                ]),
+            ]
+            .concat(),
         ),
         (
             "sketch",
@@ -208,6 +260,11 @@ fn debug_views() -> Vec<Definitions> {
             ("TONE_BANDS_FAITHFUL", Some(0)),
             ("LIGHTNESS_CHANGE", None),
         ],
+        [
+            flags(&["VIEW_EFFECT", "VIEW_PLANES", "PLANES", "MAP", "DEPTH"]),
+            vec![("PLANES_BANDS", Some(0))],
+        ]
+        .concat(),
     ]
 }
 
@@ -334,7 +391,9 @@ fn every_combination_of_effects_composes_and_validates() {
             for view in &views {
                 // Another mode each time.
                 turn += 1;
-                let modes = chosen.iter().map(|i| &pictures[*i]).chain(line);
+                let more = [&[][..], &[7], &[8], &[7, 8]][turn % 4];
+                let chosen = chosen.iter().chain(more);
+                let modes = chosen.map(|i| &pictures[*i]).chain(line);
                 let mut parts: Vec<&[Definition]> = modes
                     .map(|(_, modes)| &modes[turn % modes.len()][..])
                     .collect();
@@ -420,7 +479,13 @@ fn every_pass_of_a_divided_plan_composes_and_validates() {
         flags(&["PRINT_OFFSET", "PRINT_OFFSET_BLACK_STAYS"]),
         flags(&["PRINT_OFFSET", "WITHOUT_PRINT_OFFSET", "TONE_BANDS"]),
         flags(&["HALFTONE", "HALFTONE_CELLS", "LINES", "OUTLINES"]),
-        flags(&["OUTLINES", "LINES", "SURFACE_LINES", "PRINT_OFFSET"]),
+        flags(&[
+            "OUTLINES",
+            "LINES",
+            "LINE_OWNERS",
+            "SURFACE_LINES",
+            "PRINT_OFFSET",
+        ]),
         flags(&["PAINT", "MEANS"]),
         flags(&["PAINT", "MEANS", "PAINT_FIGURES", "MULTISAMPLED"]),
         flags(&["PAINT", "PAINT_ANISOTROPIC", "PAINT_FIGURES"]),
@@ -494,6 +559,12 @@ fn every_shape_of_the_reduction_composes_and_validates() {
     }
     let source = shader("depth/smoothing.wgsl");
     for defs in subsets(&["HISTOGRAM"]) {
+        module(&source, &defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
+    }
+    let source = shader("depth/borders.wgsl");
+    module(&source, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let source = shader("objects/depths.wgsl");
+    for defs in subsets(&["VISIBLE_RANGE"]) {
         module(&source, &defs).unwrap_or_else(|error| panic!("{defs:?}: {error}"));
     }
     let source = shader("depth/ping_pong.wgsl");
@@ -590,6 +661,18 @@ fn every_kind_of_outline_composes_and_validates() {
                 }
                 check(&shader("lines/settle.wgsl"), &flags);
             }
+        }
+        for planes in [
+            &["IN_PLANES"][..],
+            &["IN_PLANES", "DEPTH_BORDERS"],
+            &["IN_PLANES", "VISIBLE_RANGE", "DEPTH_BORDERS"],
+            &["IN_PLANES", "VISIBLE_RANGE", "OBJECT_DEPTHS", "OBJECT_IDS"],
+        ] {
+            let weight = &["WEIGHT", "EDITS", "DEPTH"];
+            check(
+                &shader("lines/settle.wgsl"),
+                &[smooth, weight, planes].concat(),
+            );
         }
         for surface in [
             &["WIDTH_MAP"][..],

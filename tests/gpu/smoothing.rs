@@ -277,7 +277,7 @@ fn logarithm_and_power_are_exact_to_a_few_units() {
             [std::f32::consts::SQRT_2.next_up()],
         ])
         .collect();
-    let imports = "#import bevy_comics::depth::smoothing::{exact_log2, exact_exp2}";
+    let imports = "#import bevy_comics::depth::level::{exact_log2, exact_exp2}";
     let results = gpu().evaluate(
         imports,
         "return vec4(exact_log2(i(0u)), exact_exp2(exact_log2(i(0u))), 0.0, 0.0);",

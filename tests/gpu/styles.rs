@@ -4,12 +4,13 @@ use std::{fs, time::Duration};
 
 use bevy::{color::Color, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    BlackFlats, Colorization, ColorizationMode, ComicStyle, ComicStyleError, ComicStyleHandle,
-    ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, Focus, FocusAt,
-    FocusStyle, Form, Halftone, HalftoneMode, Hatching, HatchingAnchor, LineBoil, LineColor,
-    LineWeight, ObjectEdges, Outlines, Paint, PaintForm, Paper, PrintOffset, RangeSmoothing,
-    ReductionMethod, ScreenAnchor, ScreenSampling, ScreenShape, Silhouettes, Sketch, SpeedLineKind,
-    SpeedLines, ToneBands, TwoTone,
+    BlackFlats, ColorHarmony, Colorization, ColorizationMode, ComicStyle, ComicStyleError,
+    ComicStyleHandle, ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation,
+    Focus, FocusAt, FocusStyle, Form, Halftone, HalftoneMode, HarmonyMode, Hatching,
+    HatchingAnchor, LineBoil, LineColor, LineWeight, ObjectEdges, Outlines, Paint, PaintForm,
+    Paper, PlaneBorders, PlaneStyle, Planes, PrintOffset, RangeSmoothing, ReductionMethod,
+    ScreenAnchor, ScreenSampling, ScreenShape, Silhouettes, Sketch, SpeedLineKind, SpeedLines,
+    ToneBands, TwoTone,
 };
 use proptest::{
     option,
@@ -126,7 +127,7 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
             |(name, depth_map, desaturation, colorization, black_flats, contours, others)| {
                 let (
                     (tone_bands, outlines, sketch),
-                    (halftone, offset, (paint, focus, hatching)),
+                    (halftone, offset, (paint, focus, hatching, harmony, planes)),
                     page,
                 ) = others;
                 let (speed_lines, two_tone, paper) = page;
@@ -141,6 +142,8 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
                 style = with_option(style, outlines);
                 style = with_option(style, halftone);
                 style = with_option(style, hatching);
+                style = with_option(style, harmony);
+                style = with_option(style, planes);
                 style = with_option(style, offset);
                 style = with_option(style, paint);
                 style = with_option(style, focus);
@@ -201,9 +204,15 @@ fn page_styles() -> impl Strategy<Value = (Option<SpeedLines>, Option<TwoTone>, 
     (option::of(lines), option::of(tones), option::of(paper))
 }
 
-type Painted = (Option<Paint>, Option<Focus>, Option<Hatching>);
+type Painted = (
+    Option<Paint>,
+    Option<Focus>,
+    Option<Hatching>,
+    Option<ColorHarmony>,
+    Option<Planes>,
+);
 
-/// Print effects of all modes.
+/// Print effects, paint and harmony of all modes.
 fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Painted)> {
     let halftone = (number(), number(), colors(), 0u32..99, 0..4usize).prop_map(
         |(period, fraction, ink, tints, kind)| Halftone {
@@ -284,7 +293,53 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Pai
                 ..default()
             }
         });
-    let painted = (option::of(paint), option::of(focus), option::of(hatching));
+    let modes = vec![
+        HarmonyMode::TwoHues,
+        HarmonyMode::Distance,
+        HarmonyMode::Rotation,
+        HarmonyMode::Shade,
+    ];
+    let harmony = (select(modes), number(), colors(), any::<bool>()).prop_map(
+        |(mode, number, color, faithful)| ColorHarmony {
+            mode,
+            complement: number,
+            pull: number,
+            offset: number,
+            color,
+            form: [Form::Corrected, Form::Faithful][usize::from(faithful)],
+            ..default()
+        },
+    );
+    let plane = (number(), number(), colors(), any::<u32>()).prop_map(
+        |(saturation, contrast, tint, bands)| PlaneStyle {
+            saturation,
+            tint,
+            tint_amount: contrast,
+            contrast,
+            brightness: saturation,
+            bands,
+            line_width: contrast,
+            line_opacity: saturation,
+            line_color: tint,
+            line_color_amount: contrast,
+            hatching: contrast,
+            halftone: saturation,
+        },
+    );
+    let planes = (plane, number(), any::<bool>()).prop_map(|(near, number, fixed)| Planes {
+        near,
+        borders: [PlaneBorders::Auto, PlaneBorders::Fixed][usize::from(fixed)],
+        near_end: number,
+        softness: number,
+        ..default()
+    });
+    let painted = (
+        option::of(paint),
+        option::of(focus),
+        option::of(hatching),
+        option::of(harmony),
+        option::of(planes),
+    );
     (option::of(halftone), option::of(offset), painted)
 }
 

@@ -208,7 +208,12 @@ impl Window {
 
     /// Drags the pointer from one fraction of a widget's width to another.
     pub fn drag(&self, widget: &str, from: f64, to: f64) {
-        let ends = [self.place(widget, from), self.place(widget, to)];
+        self.drag_between((widget, from), (widget, to));
+    }
+
+    /// Drags the pointer from a fraction of a widget's width to one of another widget.
+    pub fn drag_between(&self, from: (&str, f64), to: (&str, f64)) {
+        let ends = [from, to].map(|(widget, fraction)| self.place(widget, fraction));
         self.xdotool(&["mousemove", &ends[0][0], &ends[0][1]]);
         self.frames(2);
         self.xdotool(&["mousedown", "1"]);

@@ -66,6 +66,20 @@ pub fn page(out: &mut String, folder: &Path) -> Result<(), String> {
             of("in_phase"),
         );
     }
+    let harmonies = load(folder, "page_harmonies")?;
+    out.push_str(
+        "\nThe largest change of the lightness in OKLab (0 to 1) by a `ColorHarmony`, of 32 x 32 x 32 \
+         colours at three places in the depth map, with the strongest change of hue:\n\n\
+         | mode | change |\n|---|---|\n",
+    );
+    for row in &harmonies.rows {
+        let _ = writeln!(
+            out,
+            "| {} | {:.4} |",
+            harmonies.cell(row, "mode"),
+            harmonies.number(row, "lightness")
+        );
+    }
     work(out, &load(folder, "page_work")?);
     out.push_str("Their times are under \"Effects of the page\" and \"Single parts\".\n\n");
     Ok(())

@@ -2,6 +2,7 @@
 
 // Colours the picture with an atmosphere ([CS] Eq. 8 to 11).
 
+#import bevy_comics::depth::map::root_fraction
 #import bevy_comics::effect::color::{hue_color, hue_of, largest, linear_to_oklab, oklab_to_linear, smallest, srgb_decode, srgb_encode}
 #import bevy_comics::effect::pixel::Pixel
 
@@ -51,8 +52,7 @@ fn atmosphere_weight(mode: u32, d: f32, l: f32) -> f32 {
     if mode == MODE_LINEAR {
         return d;
     }
-    let far = sqrt(max(d, 0.0));
-    return far / (far + sqrt(max(l, 0.0)));
+    return root_fraction(d, l);
 }
 
 // Replaces the HSV hue of the display code; value and saturation stay, so greys

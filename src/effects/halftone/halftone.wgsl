@@ -379,7 +379,7 @@ fn halftone(s: Halftone, p: Pixel) -> Pixel {
     var out = p;
     let color = p.color / max(p.alpha, 1e-3);
     let tones = plate_tones(s, color);
-    let amount = screen_amount(s, color, p.depth.x);
+    let amount = screen_amount(s, color, p.depth.x) * p.prints.y;
 #ifdef HALFTONE_FOLLOWS
     let k = followed_covers(s, p, color, amount, tones);
 #else

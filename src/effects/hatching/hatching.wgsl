@@ -362,7 +362,7 @@ fn hatching(s: Hatching, p: Pixel) -> Pixel {
     var cover = 0.0;
     var tone = 0.0;
     if is_there {
-        tone = hatching_tone(s, light) * mix(s.near, s.far, p.depth.x);
+        tone = hatching_tone(s, light) * mix(s.near, s.far, p.depth.x) * p.prints.x;
         cover = hatched(s, on, tone);
     }
     var ground = s.paper;

@@ -2,7 +2,7 @@
 
 // Divides the picture into areas of uniform tone ([CL] 3.1, Eq. 6).
 
-#import bevy_comics::effect::color::{largest, lightness, luminance, srgb_decode, srgb_encode}
+#import bevy_comics::effect::color::{banded, largest, lightness, luminance, srgb_decode, srgb_encode}
 #import bevy_comics::effect::pixel::Pixel
 
 struct ToneBands {
@@ -40,12 +40,7 @@ fn equation_6(c: f32) -> f32 {
 // change of the lightness over a pixel. The step between two bands is `softness`
 // pixels wide, and at most one band.
 fn band_tone(s: ToneBands, y: f32, change: f32) -> f32 {
-    let t = y * s.levels;
-    let step = clamp(round(t), 1.0, s.levels - 1.0);
-    // At least one display code on either side: otherwise the dither of a flat area
-    // whose tone lies on a step would speckle.
-    let half = 0.5 * clamp(s.softness * change * s.levels, s.levels / 128.0, 1.0);
-    return (step - 0.5 + smoothstep(step - half, step + half, t)) / s.levels;
+    return banded(s.levels, y, s.softness * change);
 }
 
 // The colour with another luminance and the same chromaticity. If the display cannot

@@ -5,7 +5,7 @@ use bevy::reflect::Typed;
 use super::{super::tooltip::plain, *};
 use crate::{
     BlackFlats, ComicStyle, Contours, Creases, DepthMapping, EffectRegistry, LineBoil, LineColor,
-    LineWeight, ObjectEdges, Outlines, RangeSmoothing, Silhouettes,
+    LineWeight, ObjectEdges, Outlines, PlaneStyle, RangeSmoothing, Silhouettes,
 };
 
 /// Every type with settings, by its name in paths.
@@ -20,6 +20,7 @@ fn all_types() -> Vec<(&'static str, &'static TypeInfo)> {
         ("outlines.weight", LineWeight::type_info()),
         ("outlines.boil", LineBoil::type_info()),
         ("outlines.color", LineColor::type_info()),
+        ("planes.near", PlaneStyle::type_info()),
     ];
     for effect in EffectRegistry::built_in().types() {
         all.push((effect.name, (effect.type_info)()));

@@ -54,7 +54,7 @@ impl Panel {
                 {
                     self.debugged.push(camera);
                 }
-                views::show(ui, world, camera, widgets);
+                views::show(ui, world, camera, style, widgets);
             }
             Tab::Cost => self.costs.show(ui, world, camera, widgets),
             Tab::Photo => {

@@ -54,6 +54,9 @@ fn the_range_on_a_field_is_the_range_that_is_used() {
     check(ToneBands::sanitized);
     check(Desaturation::sanitized);
     check(Colorization::sanitized);
+    check(ColorHarmony::sanitized);
+    check(Planes::sanitized);
+    check(PlaneStyle::sanitized);
     check(BlackFlats::sanitized);
     check(Contours::sanitized);
     check(Outlines::sanitized);

@@ -120,6 +120,23 @@ pub fn oklab_to_linear(lab: Rgb) -> Rgb {
     apply(M1, apply(M2, lab).map(|x| x * x * x))
 }
 
+/// Mixes a colour with the grey of the same `OKLab` lightness, as little as possible, until it is
+/// displayable, or no farther from that than `before` was.
+pub fn in_gamut(c: Rgb, lab_lightness: f64, before: Rgb) -> Rgb {
+    let grey = lab_lightness.powi(3);
+    let low = smallest(before).min(0.0).min(grey);
+    let high = largest(before).max(1.0).max(grey);
+    let kept = c
+        .into_iter()
+        .map(|x| match x {
+            x if x > high => (high - grey) / (x - grey),
+            x if x < low => (grey - low) / (grey - x),
+            _ => 1.0,
+        })
+        .fold(1.0, f64::min);
+    c.map(|x| super::mix(grey, x, kept))
+}
+
 /// Tones of cyan, magenta, yellow and black ink for a colour of 0 to 1. `black`: fraction of
 /// the darkness that all channels share which black takes.
 pub fn separated(c: Rgb, black: f64) -> [f64; 4] {

@@ -4,17 +4,17 @@
 use bevy::math::{UVec2, UVec4};
 
 use super::{
-    Rgb, Rgba, black_flats, color, colorization, contours, desaturation,
+    Rgb, Rgba, black_flats, color, color_harmony, colorization, contours, desaturation,
     draw::Ink,
-    halftone, mix, paper, print_offset, read,
+    halftone, mix, near_middle_far, paper, print_offset, read,
     sheet::Sheet,
     sketch, tone_bands,
     view::{View, map_slope, pixel_depth},
     vignette,
 };
 use bevy_comics::{
-    BlackFlats, Colorization, ComicStyle, Contours, Desaturation, Halftone, Outlines, Paper,
-    PrintOffset, Sketch, ToneBands, Vignette,
+    BlackFlats, ColorHarmony, Colorization, ComicStyle, Contours, Desaturation, Halftone, Outlines,
+    Paper, Planes, PrintOffset, Sketch, ToneBands, Vignette,
 };
 
 /// What the pass reads besides the view.
@@ -76,6 +76,8 @@ fn colored(
     let reads_map = (style.get::<Halftone>()).is_some_and(|s| s.near != s.far)
         || style.get::<Desaturation>().is_some()
         || style.get::<Colorization>().is_some()
+        || style.get::<ColorHarmony>().is_some()
+        || style.get::<Planes>().is_some()
         || style.get::<BlackFlats>().is_some()
         || style.get::<Contours>().is_some();
     let mut depth = if reads_map {
@@ -94,6 +96,18 @@ fn colored(
     }
     if let Some(s) = style.get::<Colorization>() {
         linear = colorization::colorize(s, linear, d, l, saturation);
+    }
+    if let Some(s) = style.get::<ColorHarmony>() {
+        let opacity = alpha.max(1e-3);
+        let seen = linear.map(|c| c / opacity);
+        linear = color_harmony::harmonize(s, seen, d, l).map(|c| c * opacity);
+    }
+    if let Some(s) = style.get::<Planes>() {
+        let seen = linear.map(|c| c / alpha.max(1e-3));
+        let weights = near_middle_far::pixel_weights(s, view, [x, y]);
+        let change = (input.change(x, y) + nudge).max(0.0);
+        let seen = seen.map(|c| c * (1.0 + nudge));
+        linear = near_middle_far::color(s, seen, weights, change).map(|c| c * alpha);
     }
     Colored {
         picture: with(linear, alpha),

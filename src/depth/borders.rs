@@ -1,0 +1,112 @@
+//! The compute pass that divides the visible depths into near, middle and far.
+
+use bevy::{
+    asset::{AssetServer, Handle, load_embedded_asset},
+    ecs::resource::Resource,
+    render::{
+        render_resource::{
+            BindGroupEntry, BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource,
+            Buffer, BufferDescriptor, BufferUsages, CachedComputePipelineId, CommandEncoder,
+            ComputePassDescriptor, ComputePipelineDescriptor, PipelineCache, ShaderStages,
+            binding_types::{storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer},
+        },
+        renderer::RenderDevice,
+    },
+    shader::Shader,
+};
+
+use super::follow::{SmoothingUniform, ViewSmoothing};
+
+/// Bytes of `BorderState` in `borders.wgsl`.
+const STATE_SIZE: u64 = 16;
+
+/// The state of a view's borders.
+pub(crate) struct ViewBorders {
+    state: Buffer,
+}
+
+impl ViewBorders {
+    pub fn new(device: &RenderDevice) -> Self {
+        Self {
+            state: device.create_buffer(&BufferDescriptor {
+                label: Some("comics_depth_borders"),
+                size: STATE_SIZE,
+                usage: BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            }),
+        }
+    }
+
+    /// Records the division of the depths that the reduction of this frame has counted. Writes
+    /// the borders beside the drawn range, and must be recorded after the smoothing.
+    pub fn record(
+        &self,
+        (device, encoder): (&RenderDevice, &mut CommandEncoder),
+        (cache, pipeline): (&PipelineCache, CachedComputePipelineId),
+        (uniforms, smoothing): (BindingResource, &ViewSmoothing),
+    ) {
+        let (Some(histogram), Some(pipeline)) =
+            (&smoothing.histogram, cache.get_compute_pipeline(pipeline))
+        else {
+            return;
+        };
+        let entry = |binding, resource| BindGroupEntry { binding, resource };
+        let bind_group = device.create_bind_group(
+            "comics_depth_borders",
+            &cache.get_bind_group_layout(&BorderPipeline::layout()),
+            &[
+                entry(0, uniforms),
+                entry(1, histogram.as_entire_binding()),
+                entry(2, self.state.as_entire_binding()),
+                entry(3, smoothing.drawn.as_entire_binding()),
+            ],
+        );
+        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+            label: Some("comics_depth_borders"),
+            timestamp_writes: None,
+        });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &bind_group, &[smoothing.uniform_offset]);
+        pass.dispatch_workgroups(1, 1, 1);
+    }
+}
+
+#[derive(Resource)]
+pub(crate) struct BorderPipeline {
+    shader: Handle<Shader>,
+}
+
+impl BorderPipeline {
+    pub fn new(assets: &AssetServer) -> Self {
+        Self {
+            shader: load_embedded_asset!(assets, "borders.wgsl"),
+        }
+    }
+
+    fn layout() -> BindGroupLayoutDescriptor {
+        let entries = BindGroupLayoutEntries::sequential(
+            ShaderStages::COMPUTE,
+            (
+                uniform_buffer::<SmoothingUniform>(true),
+                storage_buffer_read_only_sized(false, None),
+                storage_buffer_sized(false, None),
+                storage_buffer_sized(false, None),
+            ),
+        );
+        BindGroupLayoutDescriptor::new("comics_depth_borders", &entries)
+    }
+}
+
+impl bevy::render::render_resource::SpecializedComputePipeline for BorderPipeline {
+    type Key = ();
+
+    fn specialize(&self, (): Self::Key) -> ComputePipelineDescriptor {
+        ComputePipelineDescriptor {
+            label: Some("comics_depth_borders".into()),
+            layout: vec![Self::layout()],
+            shader: self.shader.clone(),
+            entry_point: Some("divide".into()),
+            ..Default::default()
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! Moves colours to opposite hues.
+
+use bevy::{
+    color::{Color, ColorToComponents, Oklaba},
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::Vec2,
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
+    settings::{FieldRange, Form, HueWheel, bounded, displayable, file_color},
+};
+
+/// Brings the colours of the picture into harmony: two opposite hues for everything, or
+/// opposite hues for what is far away or in the shade.
+///
+/// Lightness and greys stay as they are. A new colour that the display cannot show is paler.
+/// Complementary colours are future work in \[CS\].
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ColorHarmony {
+    /// Which colours change, and to which others. Default: [`HarmonyMode::TwoHues`].
+    pub mode: HarmonyMode,
+    /// How the change grows with the depth map in the modes [`HarmonyMode::Distance`] and
+    /// [`HarmonyMode::Rotation`]. Default: [`HarmonyCurve::Linear`].
+    pub curve: HarmonyCurve,
+    /// Saturation of the opposite hue as a fraction of what the colour had, in the modes
+    /// [`HarmonyMode::Distance`] and [`HarmonyMode::Shade`] of [`Form::Corrected`]. At 0 colours
+    /// become grey. Range 0 to 1.5, default 0.8.
+    #[reflect(@FieldRange::linear(0.0, 1.5))]
+    pub complement: f32,
+    /// How far black is on the way to its opposite colour, in the mode [`HarmonyMode::Shade`]:
+    /// lighter colours by the square of their darkness. Range 0 to 1, default 0.35.
+    #[reflect(@FieldRange::FRACTION)]
+    pub shade: f32,
+    /// One of the two hues of [`HarmonyMode::TwoHues`]; the other is its opposite. Only the hue
+    /// is used; a grey has none, and colours become paler. Default: `#e38b4b`, an orange, whose
+    /// opposite is a teal blue. Components are clamped to what a display shows; alpha is ignored.
+    #[serde(with = "file_color")]
+    #[reflect(@HueWheel)]
+    pub color: Color,
+    /// How far other hues are drawn to the two of [`HarmonyMode::TwoHues`]; at 1 there are no
+    /// others. Range 0 to 1, default 0.7.
+    #[reflect(@FieldRange::FRACTION)]
+    pub pull: f32,
+    /// Chroma in `OKLab` that is added to everything in the mode [`HarmonyMode::TwoHues`]: towards
+    /// `color` at the near end of the depth map, and towards its opposite at the far end. Greys are
+    /// tinted too. The depth map is read if it is not 0. Range -0.1 to 0.1, default 0.03.
+    #[reflect(@FieldRange::linear(-0.1, 0.1))]
+    pub offset: f32,
+    /// Fraction of the change that is applied. Range 0 (the effect is left out) to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub amount: f32,
+    /// Selects how colours go to their opposite. [`Form::Corrected`] changes the chroma in `OKLab`.
+    /// [`Form::Faithful`] turns the HSV hue by up to half a turn, as \[CS\] Eq. 9 to 11 do, and
+    /// keeps value and saturation: `complement` is not used, [`HarmonyMode::Distance`] is as
+    /// [`HarmonyMode::Rotation`], and [`HarmonyMode::TwoHues`] does not change. Default:
+    /// [`Form::Corrected`].
+    pub form: Form,
+}
+
+/// Which colours a [`ColorHarmony`] changes, and to which others.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum HarmonyMode {
+    /// All hues are drawn to two that lie opposite each other; one of them is stronger in front,
+    /// the other in the distance.
+    #[default]
+    TwoHues,
+    /// Near things keep their hues, and far things take the opposite ones; in between they are
+    /// grey.
+    Distance,
+    /// Near things keep their hues, and far things take the opposite ones; in between they take
+    /// those that lie between on the wheel.
+    Rotation,
+    /// Dark colours take some of their opposite, as in the shadows of painters.
+    Shade,
+}
+
+/// How a [`ColorHarmony`] grows with the depth map.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+pub enum HarmonyCurve {
+    /// In proportion to the depth map.
+    #[default]
+    Linear,
+    /// With the square root of the depth map, fast in the foreground.
+    Quadratic,
+}
+
+const DEFAULT_COLOR: Color = Color::srgb(227.0 / 255.0, 139.0 / 255.0, 75.0 / 255.0);
+
+/// Chroma below which a colour has no hue.
+const GREY: f32 = 1e-4;
+
+impl Default for ColorHarmony {
+    fn default() -> Self {
+        Self {
+            mode: HarmonyMode::TwoHues,
+            curve: HarmonyCurve::Linear,
+            complement: 0.8,
+            shade: 0.35,
+            color: DEFAULT_COLOR,
+            pull: 0.7,
+            offset: 0.03,
+            amount: 1.0,
+            form: Form::Corrected,
+        }
+    }
+}
+
+impl Effect for ColorHarmony {
+    const NAME: &'static str = "color_harmony";
+    const STAGE: EffectStage = EffectStage::Color;
+    const SHADER: EffectShader = EffectShader {
+        path: "bevy_comics::effects::color_harmony",
+        source: include_str!("color_harmony.wgsl"),
+        settings: Some("ColorHarmony"),
+    };
+    type Uniform = ColorHarmonyUniform;
+
+    fn sanitized(self) -> Self {
+        let default = Self::default();
+        let fraction = |value, default| bounded(value, default, 0.0, 1.0);
+        Self {
+            complement: bounded(self.complement, default.complement, 0.0, 1.5),
+            shade: fraction(self.shade, default.shade),
+            color: displayable(self.color, default.color),
+            pull: fraction(self.pull, default.pull),
+            offset: bounded(self.offset, default.offset, -0.1, 0.1),
+            amount: fraction(self.amount, default.amount),
+            ..self
+        }
+    }
+
+    fn strength(&self) -> f32 {
+        self.amount
+    }
+
+    fn faded(self, fraction: f32) -> Self {
+        let amount = self.amount * fraction;
+        Self { amount, ..self }
+    }
+
+    fn needs(&self) -> Needs {
+        let reads_map = match self.mode {
+            HarmonyMode::TwoHues => self.offset != 0.0,
+            HarmonyMode::Distance | HarmonyMode::Rotation => true,
+            HarmonyMode::Shade => false,
+        };
+        if reads_map {
+            Needs::MAP
+        } else {
+            Needs::empty()
+        }
+    }
+
+    fn without(self, missing: Needs) -> Option<Self> {
+        let left = if self.mode == HarmonyMode::TwoHues && missing.contains(Needs::MAP) {
+            Self {
+                offset: 0.0,
+                ..self
+            }
+        } else {
+            self
+        };
+        (!left.needs().intersects(missing)).then_some(left)
+    }
+
+    fn map_faded(self, fraction: f32) -> Self {
+        match self.mode {
+            HarmonyMode::TwoHues => {
+                let offset = self.offset * fraction;
+                Self { offset, ..self }
+            }
+            HarmonyMode::Distance | HarmonyMode::Rotation => self.faded(fraction),
+            HarmonyMode::Shade => self,
+        }
+    }
+
+    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+        variants.number("MODE", self.mode_number());
+        variants.number("QUADRATIC", u32::from(self.is_quadratic()));
+        variants.number("FAITHFUL", u32::from(self.is_faithful()));
+    }
+
+    fn uniform(&self, _: &ViewFacts) -> ColorHarmonyUniform {
+        let [_, a, b, _] = Oklaba::from(self.color).to_f32_array();
+        let hue = Vec2::new(a, b);
+        ColorHarmonyUniform {
+            hue: if hue.length() > GREY {
+                hue.normalize()
+            } else {
+                Vec2::ZERO
+            },
+            complement: self.complement,
+            shade: self.shade,
+            pull: self.pull,
+            offset: self.offset,
+            amount: self.amount,
+            mode: self.mode_number(),
+            quadratic: u32::from(self.is_quadratic()),
+            faithful: u32::from(self.is_faithful()),
+        }
+    }
+}
+
+impl ColorHarmony {
+    /// The number of the mode in `color_harmony.wgsl`.
+    fn mode_number(&self) -> u32 {
+        match self.mode {
+            HarmonyMode::TwoHues => 0,
+            HarmonyMode::Distance => 1,
+            HarmonyMode::Rotation => 2,
+            HarmonyMode::Shade => 3,
+        }
+    }
+
+    /// Whether the curve is compiled in as quadratic: only the modes that have one.
+    fn is_quadratic(&self) -> bool {
+        let follows_depth = matches!(self.mode, HarmonyMode::Distance | HarmonyMode::Rotation);
+        follows_depth && self.curve == HarmonyCurve::Quadratic
+    }
+
+    fn is_faithful(&self) -> bool {
+        self.mode != HarmonyMode::TwoHues && self.form == Form::Faithful
+    }
+}
+
+/// The uniform: `ColorHarmony` in `color_harmony.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct ColorHarmonyUniform {
+    hue: Vec2,
+    complement: f32,
+    shade: f32,
+    pull: f32,
+    offset: f32,
+    amount: f32,
+    mode: u32,
+    quadratic: u32,
+    faithful: u32,
+}

@@ -1,0 +1,73 @@
+//! Lines of near, middle and far.
+
+use bevy::{
+    color::LinearRgba,
+    math::{Vec2, Vec3, Vec4},
+    render::render_resource::ShaderType,
+};
+
+/// Lines have another width, opacity and colour in near, middle and far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinePlanes {
+    /// Factors of the width of lines whose surface is near, in the middle, far: 0 to 1.
+    pub widths: [f32; 3],
+    /// The same of their opacity.
+    pub opacities: [f32; 3],
+    /// Colours of lines whose surface is near, in the middle, far.
+    pub colors: [LinearRgba; 3],
+    /// How much of the colour of lines comes from `colors`: 0 to 1.
+    pub color_amounts: [f32; 3],
+    /// The depth map at the borders between near and middle, and between middle and far.
+    pub borders: [f32; 2],
+    /// The borders are those of [`Needs::DEPTH_BORDERS`](crate::Needs::DEPTH_BORDERS), if any are
+    /// known, which the effect must need.
+    pub finds_borders: bool,
+    /// A surface is where its object is, see
+    /// [`Needs::OBJECT_DEPTHS`](crate::Needs::OBJECT_DEPTHS), which the effect must need.
+    pub by_objects: bool,
+    /// Width of both borders in the depth map.
+    pub softness: f32,
+}
+
+impl LinePlanes {
+    /// Whether lines have colours of their own somewhere.
+    pub(crate) fn has_colors(&self) -> bool {
+        self.color_amounts != [0.0; 3]
+    }
+
+    /// As shaders take it.
+    pub(crate) fn uniform(self) -> LinePlanesUniform {
+        let ink = |plane: usize| {
+            let LinearRgba {
+                red, green, blue, ..
+            } = self.colors[plane];
+            let amount = self.color_amounts[plane];
+            (Vec3::new(red, green, blue) * amount).extend(amount)
+        };
+        LinePlanesUniform {
+            near_ink: ink(0),
+            middle_ink: ink(1),
+            far_ink: ink(2),
+            widths: Vec3::from(self.widths),
+            softness: self.softness,
+            opacities: Vec3::from(self.opacities),
+            unused: 0.0,
+            borders: Vec2::from(self.borders),
+            unused_pair: Vec2::ZERO,
+        }
+    }
+}
+
+/// `LinePlanes` of `plane_lines.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct LinePlanesUniform {
+    near_ink: Vec4,
+    middle_ink: Vec4,
+    far_ink: Vec4,
+    widths: Vec3,
+    softness: f32,
+    opacities: Vec3,
+    unused: f32,
+    borders: Vec2,
+    unused_pair: Vec2,
+}

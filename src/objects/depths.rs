@@ -1,0 +1,363 @@
+//! The place of every object in the depth map, for effects that treat objects as a whole.
+
+use bevy::{
+    app::SubApp,
+    asset::{AssetServer, Handle, load_embedded_asset},
+    camera::primitives::Aabb,
+    core_pipeline::schedule::{Core3d, Core3dSystems},
+    ecs::{
+        component::Component,
+        entity::Entity,
+        query::{With, Without},
+        resource::Resource,
+        schedule::IntoScheduleConfigs,
+        system::{Commands, Query, Res, ResMut},
+    },
+    math::{Mat3, Vec3},
+    mesh::Mesh3d,
+    platform::collections::HashMap,
+    render::{
+        Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderStartup,
+        render_resource::{
+            BindGroupEntry, BindGroupLayoutDescriptor, BindGroupLayoutEntries, Buffer,
+            BufferDescriptor, BufferUsages, CachedComputePipelineId, ComputePassDescriptor,
+            ComputePipelineDescriptor, PipelineCache, ShaderStages, ShaderType,
+            SpecializedComputePipeline, SpecializedComputePipelines, StorageBuffer, UniformBuffer,
+            binding_types::{
+                storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer,
+                uniform_buffer_sized,
+            },
+        },
+        renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
+    },
+    shader::Shader,
+    transform::components::GlobalTransform,
+};
+
+use super::{
+    DepthPlaces, ObjectDepthRequest, ObjectEye,
+    groups::{ObjectGroups, extract_object_groups},
+    ids::object_id,
+};
+use crate::{
+    depth::{DepthMapping, prepare::ViewDepthRange},
+    schedule::{ComicsSystems, PrepareComics},
+};
+
+/// Bytes of the table of places: eight for every id.
+const TABLE_SIZE: u64 = 65536 * 8;
+
+/// `Bounds` of `depths.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+struct BoundsUniform {
+    centre: Vec3,
+    id: u32,
+    half: Vec3,
+    unused: u32,
+}
+
+/// A box in world space, along its axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Bounds {
+    low: Vec3,
+    high: Vec3,
+}
+
+impl Bounds {
+    /// The box around a mesh; `None` if it is at no finite place.
+    fn of(aabb: &Aabb, at: &GlobalTransform) -> Option<Self> {
+        let affine = at.affine();
+        let centre = affine.transform_point3(aabb.center.into());
+        let axes = Mat3::from(affine.matrix3);
+        let half = Vec3::from(aabb.half_extents);
+        let reach =
+            axes.x_axis.abs() * half.x + axes.y_axis.abs() * half.y + axes.z_axis.abs() * half.z;
+        let found = Self {
+            low: centre - reach,
+            high: centre + reach,
+        };
+        (found.low.is_finite() && found.high.is_finite()).then_some(found)
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+        }
+    }
+}
+
+/// The boxes of all objects, by id, while some view asks for their places.
+#[derive(Resource, Default)]
+struct ObjectBounds {
+    by_id: HashMap<u16, Bounds>,
+    buffer: StorageBuffer<Vec<BoundsUniform>>,
+}
+
+fn extract_bounds(
+    views: Query<(), With<ObjectDepthRequest>>,
+    groups: Res<ObjectGroups>,
+    meshes: Extract<Query<(Entity, &Aabb, &GlobalTransform), With<Mesh3d>>>,
+    mut bounds: ResMut<ObjectBounds>,
+) {
+    bounds.by_id.clear();
+    if views.is_empty() {
+        return;
+    }
+    for (mesh, aabb, at) in &meshes {
+        if let Some(found) = Bounds::of(aabb, at) {
+            let id = object_id(groups.object(mesh));
+            let known = bounds
+                .by_id
+                .get(&id)
+                .map_or(found, |known| known.with(found));
+            bounds.by_id.insert(id, known);
+        }
+    }
+}
+
+/// On a view whose effects treat objects as a whole: the table of their places.
+#[derive(Component)]
+struct ViewPlaces {
+    uniform: UniformBuffer<ObjectEye>,
+    pipeline: CachedComputePipelineId,
+    mapping: DepthMapping,
+    cuts: u32,
+}
+
+impl ViewPlaces {
+    fn reads_range(&self) -> bool {
+        self.mapping.follows_visible_range()
+    }
+
+    /// Whether its places say nothing about those of this request.
+    fn is_past(&self, request: &ObjectDepthRequest) -> bool {
+        (self.mapping, self.cuts) != (request.mapping, request.cuts)
+    }
+}
+
+#[derive(Resource)]
+struct PlacePipeline {
+    shader: Handle<Shader>,
+}
+
+impl PlacePipeline {
+    fn layout(visible_range: bool) -> BindGroupLayoutDescriptor {
+        let compute = ShaderStages::COMPUTE;
+        let mut entries = BindGroupLayoutEntries::sequential(
+            compute,
+            (
+                uniform_buffer::<ObjectEye>(false),
+                storage_buffer_read_only_sized(false, None),
+                storage_buffer_sized(false, None),
+            ),
+        )
+        .to_vec();
+        if visible_range {
+            entries.push(uniform_buffer_sized(false, None).build(3, compute));
+        }
+        BindGroupLayoutDescriptor::new("comics_object_depths", &entries)
+    }
+}
+
+impl SpecializedComputePipeline for PlacePipeline {
+    /// Whether the depth map spans the visible range.
+    type Key = bool;
+
+    fn specialize(&self, visible_range: Self::Key) -> ComputePipelineDescriptor {
+        ComputePipelineDescriptor {
+            label: Some("comics_object_depths".into()),
+            layout: vec![Self::layout(visible_range)],
+            shader: self.shader.clone(),
+            shader_defs: if visible_range {
+                vec!["VISIBLE_RANGE".into()]
+            } else {
+                Vec::new()
+            },
+            entry_point: Some("place".into()),
+            ..Default::default()
+        }
+    }
+}
+
+/// The views with places, and those that may no longer have them.
+type Placed<'w, 's> = (
+    Query<
+        'w,
+        's,
+        (
+            Entity,
+            &'static ObjectDepthRequest,
+            Option<&'static ViewPlaces>,
+        ),
+    >,
+    Query<'w, 's, Entity, (With<DepthPlaces>, Without<ObjectDepthRequest>)>,
+);
+
+fn prepare_places(
+    mut commands: Commands,
+    (views, stale): Placed,
+    mut bounds: ResMut<ObjectBounds>,
+    (pipeline, cache): (Res<PlacePipeline>, Res<PipelineCache>),
+    mut pipelines: ResMut<SpecializedComputePipelines<PlacePipeline>>,
+    (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
+) {
+    for view in &stale {
+        commands.entity(view).remove::<(DepthPlaces, ViewPlaces)>();
+    }
+    if views.is_empty() {
+        return;
+    }
+    let found = bounds.by_id.iter().map(|(id, bounds)| BoundsUniform {
+        centre: bounds.low.midpoint(bounds.high),
+        id: u32::from(*id),
+        half: 0.5 * (bounds.high - bounds.low),
+        unused: 0,
+    });
+    let mut found: Vec<_> = found.collect();
+    // A buffer is never empty. The id 0 is left out.
+    found.push(BoundsUniform::default());
+    bounds.buffer.set(found);
+    bounds.buffer.write_buffer(&device, &queue);
+    for (entity, request, known) in &views {
+        let forgets = known.is_none_or(|places| places.is_past(request));
+        let mut uniform = UniformBuffer::from(ObjectEye {
+            forgets: u32::from(forgets),
+            ..request.eye
+        });
+        uniform.write_buffer(&device, &queue);
+        let reads_range = request.mapping.follows_visible_range();
+        let mut view = commands.entity(entity);
+        view.insert(ViewPlaces {
+            uniform,
+            pipeline: pipelines.specialize(&cache, &pipeline, reads_range),
+            mapping: request.mapping,
+            cuts: request.cuts,
+        });
+        if known.is_none() {
+            view.insert(DepthPlaces {
+                table: places_table(&device),
+            });
+        }
+    }
+}
+
+fn places_table(device: &RenderDevice) -> Buffer {
+    device.create_buffer(&BufferDescriptor {
+        label: Some("comics_object_depths"),
+        size: TABLE_SIZE,
+        usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    })
+}
+
+/// Records the pass that finds the places of objects. Where it cannot run, they are unknown: those
+/// of the last frame may be places in another depth map.
+fn place_objects(
+    view: ViewQuery<(&ViewPlaces, &DepthPlaces, Option<&ViewDepthRange>)>,
+    bounds: Res<ObjectBounds>,
+    cache: Res<PipelineCache>,
+    mut ctx: RenderContext,
+) {
+    let (places, table, range) = view.into_inner();
+    let keys = range.and_then(ViewDepthRange::drawn);
+    let (Some(pipeline), Some(uniform), Some(objects), true) = (
+        cache.get_compute_pipeline(places.pipeline),
+        places.uniform.binding(),
+        bounds.buffer.binding(),
+        keys.is_some() || !places.reads_range(),
+    ) else {
+        ctx.command_encoder().clear_buffer(&table.table, 0, None);
+        return;
+    };
+    let entry = |binding, resource| BindGroupEntry { binding, resource };
+    let mut entries = vec![
+        entry(0, uniform),
+        entry(1, objects),
+        entry(2, table.table.as_entire_binding()),
+    ];
+    if let Some(keys) = keys.filter(|_| places.reads_range()) {
+        entries.push(entry(3, keys.as_entire_binding()));
+    }
+    let layout = cache.get_bind_group_layout(&PlacePipeline::layout(places.reads_range()));
+    let group = ctx
+        .render_device()
+        .create_bind_group("comics_object_depths", &layout, &entries);
+    let mut pass = ctx
+        .command_encoder()
+        .begin_compute_pass(&ComputePassDescriptor {
+            label: Some("comics_object_depths"),
+            timestamp_writes: None,
+        });
+    pass.set_pipeline(pipeline);
+    pass.set_bind_group(0, &group, &[]);
+    pass.dispatch_workgroups((bounds.buffer.get().len() as u32).div_ceil(64), 1, 1);
+}
+
+fn init_pipeline(
+    mut commands: Commands,
+    assets: Res<AssetServer>,
+    views: Query<Entity, With<DepthPlaces>>,
+) {
+    // This runs again after a lost device, whose buffers are no longer valid.
+    for view in &views {
+        commands.entity(view).remove::<(DepthPlaces, ViewPlaces)>();
+    }
+    commands.insert_resource(PlacePipeline {
+        shader: load_embedded_asset!(assets.as_ref(), "depths.wgsl"),
+    });
+}
+
+/// Adds the pass to the render world.
+pub(super) fn build(render_app: &mut SubApp) {
+    render_app
+        .init_gpu_resource::<ObjectBounds>()
+        .init_gpu_resource::<SpecializedComputePipelines<PlacePipeline>>()
+        .add_systems(RenderStartup, init_pipeline)
+        .add_systems(ExtractSchedule, extract_bounds.after(extract_object_groups))
+        .add_systems(Render, prepare_places.in_set(PrepareComics::Services))
+        .add_systems(
+            Core3d,
+            place_objects
+                .after(ComicsSystems::DepthRange)
+                .before(ComicsSystems::Outlines)
+                .before(Core3dSystems::MainPass),
+        );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy::{math::Quat, transform::components::Transform};
+
+    #[test]
+    fn bounds_hold_the_corners_of_the_mesh() {
+        let aabb = Aabb::from_min_max(Vec3::new(-1.0, 0.0, -2.0), Vec3::new(3.0, 1.0, 4.0));
+        let at = Transform {
+            translation: Vec3::new(5.0, -2.0, 1.0),
+            rotation: Quat::from_rotation_y(0.7) * Quat::from_rotation_x(-0.4),
+            scale: Vec3::new(1.0, -2.0, 0.5),
+        };
+        let at = GlobalTransform::from(at);
+        let found = Bounds::of(&aabb, &at).expect("finite");
+        let mut tight = None::<Bounds>;
+        for corner in 0..8 {
+            let side = |axis: usize| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 };
+            let half = Vec3::from(aabb.half_extents) * Vec3::new(side(0), side(1), side(2));
+            let place = at.transform_point(Vec3::from(aabb.center) + half);
+            let point = Bounds {
+                low: place,
+                high: place,
+            };
+            tight = Some(tight.map_or(point, |tight| tight.with(point)));
+        }
+        let tight = tight.expect("corners");
+        assert!(found.low.distance(tight.low) < 1e-5, "{found:?}, {tight:?}");
+        assert!(
+            found.high.distance(tight.high) < 1e-5,
+            "{found:?}, {tight:?}"
+        );
+        let nowhere = GlobalTransform::from(Transform::from_xyz(f32::NAN, 0.0, 0.0));
+        assert_eq!(Bounds::of(&aabb, &nowhere), None);
+    }
+}

@@ -1,0 +1,90 @@
+#define_import_path bevy_comics::objects::depths
+
+// The place of every object in the depth map: that of its centre, for all of its pixels. One
+// invocation for each object, once per view and frame.
+
+#import bevy_comics::depth::map::{DepthFrame, depth_map}
+#import bevy_comics::depth::view::{View, depth_frame, set_view}
+
+// Changes of D up to this are ignored, and near the eye up to this fraction of D: on a linear map
+// of a large landscape, all that matters may be in the first hundredth.
+const HYSTERESIS: f32 = 0.03;
+const HYSTERESIS_FRACTION: f32 = 0.15;
+
+// Objects that extend over less of D than this are one place; from the second number on, every
+// pixel is its own.
+const WHOLE: f32 = 0.15;
+const DIVIDED: f32 = 0.3;
+
+// A box in world space, along its axes.
+struct Bounds {
+    centre: vec3<f32>,
+    id: u32,
+    half: vec3<f32>,
+    unused: u32,
+}
+
+struct Eye {
+    place: vec3<f32>,
+    orthographic: u32,
+    forward: vec3<f32>,
+    // 1: places of the frames before are forgotten.
+    forgets: u32,
+    // Distance along the view's axis from raw depth d: x / (d + y), under an orthographic
+    // projection x + y * d.
+    axis: vec2<f32>,
+    spare: vec2<f32>,
+    view: View,
+}
+
+@group(0) @binding(0) var<uniform> eye: Eye;
+@group(0) @binding(1) var<storage, read> objects: array<Bounds>;
+// By id: D of the centre, plus 1; and how much of each pixel follows it. 0: unknown.
+@group(0) @binding(2) var<storage, read_write> depths: array<vec2<f32>>;
+
+// Raw depth at a distance along the view's axis; 1 behind the eye.
+fn raw_depth_at(axis: vec2<f32>, orthographic: bool, distance: f32) -> f32 {
+    if orthographic {
+        return clamp((distance - axis.x) / axis.y, 0.0, 1.0);
+    }
+    if !(distance > 0.0) {
+        return 1.0;
+    }
+    return clamp(axis.x / distance - axis.y, 0.0, 1.0);
+}
+
+// D of the centre of an object, and how much its pixels follow it. `distance`: of the centre,
+// `reach`: of its nearest and farthest point from there, along the view's axis.
+fn object_place(frame: DepthFrame, axis: vec2<f32>, orthographic: bool, distance: f32, reach: f32) -> vec2<f32> {
+    let near = depth_map(frame, raw_depth_at(axis, orthographic, distance - reach)).x;
+    let centre = depth_map(frame, raw_depth_at(axis, orthographic, distance)).x;
+    let far = depth_map(frame, raw_depth_at(axis, orthographic, distance + reach)).x;
+    return vec2(centre, 1.0 - smoothstep(WHOLE, DIVIDED, far - near));
+}
+
+// The place that is kept of one that moves.
+fn kept_place(before: f32, now: f32) -> f32 {
+    let ignored = min(HYSTERESIS, HYSTERESIS_FRACTION * now);
+    return clamp(before, now - ignored, now + ignored);
+}
+
+@compute @workgroup_size(64)
+fn place(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= arrayLength(&objects) {
+        return;
+    }
+    set_view(eye.view);
+    let bounds = objects[id.x];
+    if bounds.id == 0u {
+        // No object: the table stays 0 for pixels that show none.
+        return;
+    }
+    let distance = dot(eye.forward, bounds.centre - eye.place);
+    let reach = dot(abs(eye.forward), bounds.half);
+    let found = object_place(depth_frame(), eye.axis, eye.orthographic != 0u, distance, reach);
+    let at = min(bounds.id, arrayLength(&depths) - 1u);
+    let before = depths[at].x;
+    let is_new = before == 0.0 || eye.forgets != 0u;
+    let d = select(kept_place(before - 1.0, found.x), found.x, is_new);
+    depths[at] = vec2(d + 1.0, found.y);
+}

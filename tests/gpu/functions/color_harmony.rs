@@ -1,0 +1,288 @@
+//! Complementary colours and two hues.
+
+use bevy_comics::{ColorHarmony, HarmonyCurve, HarmonyMode};
+use bevy_comics_testkit::reference::color_harmony;
+
+use super::*;
+
+const HARMONY: &str = "#import bevy_comics::effects::color_harmony::{ColorHarmony, harmonize}";
+
+/// Evaluates rows of settings, a colour and depth.
+const BODY: &str = "let s = ColorHarmony(
+        vec2(i(0u), i(1u)), i(2u), i(3u), i(4u), i(5u), i(6u), u(7u), u(8u), u(9u),
+    );
+    return vec4(harmonize(s, vec3(i(10u), i(11u), i(12u)), i(13u), i(14u)), 0.0);";
+
+const MODES: [HarmonyMode; 4] = [
+    HarmonyMode::TwoHues,
+    HarmonyMode::Distance,
+    HarmonyMode::Rotation,
+    HarmonyMode::Shade,
+];
+
+/// The most that a conversion to `OKLab` and back changes a component, as a fraction of the largest
+/// one. In units of 2^-24: the cube roots have errors of up to 5 of them (2 units in the last place,
+/// and a third of the rounding of the sum below), their sums a and b with factors of 4.9 and 1.6 in
+/// all 8 times that, L 8. The sums of these with the largest factors have 31, their cubes 95, and
+/// the sums of these with factors of 7.6 in all 98 times 7.6.
+const CONVERSION_ERROR: f64 = 745.0 / (1 << 24) as f64;
+
+/// What the shader takes.
+fn packed(s: &ColorHarmony, [r, g, b]: [f32; 3], (d, l): (f32, f32)) -> [f32; 15] {
+    let [x, y] = color_harmony::hue(s.color);
+    let mode = MODES.iter().position(|mode| *mode == s.mode);
+    let flag = |on: bool| f32::from(u8::from(on));
+    [
+        x as f32,
+        y as f32,
+        s.complement,
+        s.shade,
+        s.pull,
+        s.offset,
+        s.amount,
+        mode.expect("listed") as f32,
+        flag(s.curve == HarmonyCurve::Quadratic),
+        flag(s.form == Form::Faithful),
+        r,
+        g,
+        b,
+        d,
+        l,
+    ]
+}
+
+fn settings() -> impl Strategy<Value = ColorHarmony> {
+    (
+        select(MODES.to_vec()),
+        (any::<bool>(), any::<bool>()),
+        (0.0f32..=1.5, 0.0f32..=1.0, 0.0f32..=1.0, -0.1f32..=0.1),
+        (
+            0.0f32..360.0,
+            prop_oneof![4 => Just(0.15f32), 1 => Just(0.0)],
+        ),
+        prop_oneof![Just(1.0f32), 0.0f32..=1.0],
+    )
+        .prop_map(
+            |(
+                mode,
+                (quadratic, faithful),
+                (complement, shade, pull, offset),
+                (hue, chroma),
+                amount,
+            )| {
+                ColorHarmony {
+                    mode,
+                    curve: [HarmonyCurve::Linear, HarmonyCurve::Quadratic][usize::from(quadratic)],
+                    form: [Form::Corrected, Form::Faithful][usize::from(faithful)],
+                    complement,
+                    shade,
+                    pull,
+                    offset,
+                    color: Color::oklch(0.7, chroma, hue),
+                    amount,
+                }
+            },
+        )
+}
+
+type Case = (ColorHarmony, [f32; 3], (f32, f32));
+
+/// Evaluates 12 batches of 2048 cases.
+fn for_cases(cases: impl Strategy<Value = Case>, check: impl Fn(&Case, [f32; 4])) {
+    let config = ProptestConfig {
+        cases: 12,
+        max_shrink_iters: 64,
+        ..ProptestConfig::default()
+    };
+    TestRunner::new(config)
+        .run(&vec(cases, 2048), |cases| {
+            let rows: Vec<[f32; 15]> = cases.iter().map(|(s, c, d)| packed(s, *c, *d)).collect();
+            for (case, result) in cases.iter().zip(gpu().evaluate(HARMONY, BODY, &rows)) {
+                check(case, result);
+            }
+            Ok(())
+        })
+        .unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn harmony_is_its_twin() {
+    let color = (wide_component(), wide_component(), wide_component());
+    let cases = (settings(), color, depth_pair()).prop_map(|(s, (r, g, b), d)| (s, [r, g, b], d));
+    for_cases(cases, |(s, c, (d, l)), result| {
+        let twin = color_harmony::harmonize(s, rgb(c), f64::from(*d), f64::from(*l));
+        let apart = codes_apart(result, twin);
+        // Colours far beyond white round in all components by a fraction of the largest.
+        let largest = color::largest(rgb(c).map(f64::abs)).max(1.0);
+        let rounding = (0..3).map(|i| (f64::from(result[i]) - twin[i]).abs());
+        let is_rounding = rounding.fold(0.0, f64::max) <= CONVERSION_ERROR * largest;
+        assert!(
+            apart <= 1.0 || is_rounding,
+            "{s:?}, {c:?} at {d}: {result:?} on the GPU, {twin:?} in the twin, {apart} codes apart"
+        );
+    });
+}
+
+#[test]
+fn harmony_stays_in_gamut_and_keeps_greys_bit_for_bit() {
+    let color = (component(), component(), component(), any::<bool>());
+    let cases = (settings(), color, depth_pair()).prop_map(|(s, (r, g, b, grey), d)| {
+        let c = if grey { [r, r, r] } else { [r, g, b] };
+        (s, c, d)
+    });
+    for_cases(cases, |(s, c, d), result| {
+        // The faithful form returns through a power, whose error is 2e-5.
+        let over = if s.form == Form::Faithful { 2e-5 } else { 0.0 };
+        assert!(
+            result[..3].iter().all(|x| (-over..=1.0 + over).contains(x)),
+            "{s:?}, {c:?} at {d:?} became {result:?}"
+        );
+        let is_grey = c[0] == c[1] && c[1] == c[2];
+        if !is_grey || (s.mode == HarmonyMode::TwoHues && s.offset != 0.0) {
+            return;
+        }
+        assert!(
+            result[0] == result[1] && result[1] == result[2],
+            "{s:?}: grey {c:?} became {result:?}"
+        );
+        if s.form == Form::Corrected {
+            assert_eq!(result[0], c[0], "{s:?}: grey {c:?} became {result:?}");
+        }
+    });
+}
+
+/// The complement of the complement at full distance is the colour, where the display can show
+/// the complement.
+#[test]
+fn the_complement_of_the_complement_is_the_colour() {
+    let s = ColorHarmony {
+        mode: HarmonyMode::Distance,
+        complement: 1.0,
+        ..ColorHarmony::default()
+    };
+    let far = (1.0, 0.0);
+    let mut decided = 0;
+    let mut rows = Vec::new();
+    for k in 0..32 * 32 * 32u32 {
+        let c = [k % 32, k / 32 % 32, k / 1024].map(|x| x as f32 / 31.0);
+        let [l, a, b] = color::linear_to_oklab(rgb(&c));
+        let opposite = color::oklab_to_linear([l, -a, -b]);
+        if opposite.iter().all(|x| (0.0..=1.0).contains(x)) {
+            rows.push(c);
+            let once = color_harmony::harmonize(&s, rgb(&c), 1.0, 0.0);
+            let twice = color_harmony::harmonize(&s, once, 1.0, 0.0);
+            // The published matrices have ten digits, and their inverses too.
+            let apart = (0..3).map(|i| (twice[i] - f64::from(c[i])).abs());
+            assert!(apart.fold(0.0, f64::max) < 1e-6, "{c:?}: {twice:?}");
+            decided += 1;
+        }
+    }
+    assert!(decided > 5000, "{decided} colours have a complement");
+    let packed: Vec<_> = rows.iter().map(|c| packed(&s, *c, far)).collect();
+    let body = BODY
+        .replace("return vec4(", "let once = ")
+        .replace(", 0.0);", ";")
+        + "return vec4(harmonize(s, once, 1.0, 0.0), 0.0);";
+    for (c, result) in rows.iter().zip(gpu().evaluate(HARMONY, &body, &packed)) {
+        for i in 0..3 {
+            assert!(
+                f64::from(result[i] - c[i]).abs() < 2.0 * CONVERSION_ERROR,
+                "{c:?} became {result:?} after two complements"
+            );
+        }
+    }
+}
+
+/// Measured in `OKLab`, by the engine's conversion.
+#[test]
+fn complements_lie_opposite_and_two_hues_are_two() {
+    use bevy::color::{LinearRgba, Oklaba};
+    let lab = |c: [f32; 4]| Oklaba::from(LinearRgba::rgb(c[0], c[1], c[2]));
+    let color = (0.05f32..=0.95, 0.05f32..=0.95, 0.05f32..=0.95);
+    let full = prop_oneof![
+        Just(ColorHarmony {
+            mode: HarmonyMode::Distance,
+            ..ColorHarmony::default()
+        }),
+        Just(ColorHarmony {
+            mode: HarmonyMode::Rotation,
+            ..ColorHarmony::default()
+        }),
+        Just(ColorHarmony {
+            pull: 1.0,
+            offset: 0.0,
+            ..ColorHarmony::default()
+        }),
+    ];
+    let cases = (full, color).prop_map(|(s, (r, g, b))| (s, [r, g, b], (1.0, 0.0)));
+    for_cases(cases, |(s, [r, g, b], _), result| {
+        let (before, after) = (lab([*r, *g, *b, 1.0]), lab(result));
+        // In linear light, mixing with grey changes the lightness a little; the brute force
+        // over the cube of colours finds at most 0.0022.
+        assert!(
+            (before.lightness - after.lightness).abs() < 0.01,
+            "{s:?}: {before:?} became {after:?}"
+        );
+        let [x, y] = match s.mode {
+            HarmonyMode::TwoHues => color_harmony::hue(s.color).map(|v| v as f32),
+            _ => [before.a, before.b],
+        };
+        // Mixing with grey also bends the hue of what was out of gamut.
+        let twin = color_harmony::harmonize(s, rgb(&[*r, *g, *b]), 1.0, 0.0);
+        if twin.iter().any(|v| !(1e-4..=1.0 - 1e-4).contains(v)) {
+            return;
+        }
+        let across = (x * after.b - y * after.a).abs() / x.hypot(y).max(1e-3);
+        assert!(across < 1e-3, "{s:?}: {before:?} became {after:?}");
+        if s.mode != HarmonyMode::TwoHues {
+            assert!(
+                x * after.a + y * after.b <= 1e-6,
+                "{s:?}: {before:?}, {after:?}"
+            );
+        }
+    });
+}
+
+/// What is near becomes warmer, what is far colder, and what is in the middle neither.
+#[test]
+fn the_offset_puts_the_hue_in_front() {
+    let s = ColorHarmony::default();
+    let grey = [0.3f32; 3];
+    let rows: Vec<_> = [0.0f32, 0.5, 1.0]
+        .map(|d| packed(&s, grey, (d, 1.0 - d)))
+        .into();
+    let warmth: Vec<f32> = gpu()
+        .evaluate(HARMONY, BODY, &rows)
+        .iter()
+        .map(|c| c[0] - c[2])
+        .collect();
+    assert!(
+        warmth[0] > 0.02 && warmth[1].abs() < 1e-6 && warmth[2] < -0.02,
+        "red minus blue at the near end, in the middle, at the far end: {warmth:?}"
+    );
+}
+
+/// Colours in the shade are paler, those in the light stay.
+#[test]
+fn shade_takes_the_complement() {
+    let s = ColorHarmony {
+        mode: HarmonyMode::Shade,
+        shade: 1.0,
+        complement: 1.0,
+        ..ColorHarmony::default()
+    };
+    let [dark, light] = [[0.02f32, 0.005, 0.005], [1.0, 0.9, 0.9]];
+    let rows = vec![packed(&s, dark, (1.0, 0.0)), packed(&s, light, (1.0, 0.0))];
+    let results = gpu().evaluate(HARMONY, BODY, &rows);
+    let chroma = |c: &[f32]| {
+        let [_, a, b] = color::linear_to_oklab(rgb(c));
+        a.hypot(b)
+    };
+    // w = (1 - L)^2, and w (1 + k) of the chroma is lost.
+    for (c, result) in [dark, light].iter().zip(&results) {
+        let [l, ..] = color::linear_to_oklab(rgb(c));
+        let left = (1.0 - 2.0 * (1.0 - l).powi(2)).abs();
+        let found = chroma(result) / chroma(c);
+        assert!((found - left).abs() < 0.01, "{c:?}: {found} for {left}");
+    }
+}

@@ -1,0 +1,266 @@
+//! The colours of near, middle and far.
+
+use bevy::color::ColorToComponents;
+use bevy_comics::{PlaneBorders, PlaneStyle, PlaneUnit, Planes};
+use bevy_comics_testkit::reference::{depths, near_middle_far};
+
+use super::*;
+
+const PLANES: &str = "#import bevy_comics::depth::map::plane_weights
+    #import bevy_comics::effects::planes::{PlaneColors, Planes, planes_color}";
+
+/// What the shader takes of a plane.
+fn packed(s: &PlaneStyle) -> [f32; 6] {
+    let lab = bevy::color::Oklaba::from(s.tint).to_f32_array();
+    [
+        lab[1] * s.tint_amount,
+        lab[2] * s.tint_amount,
+        s.saturation * (1.0 - s.tint_amount),
+        s.contrast,
+        0.5 * (1.0 - s.contrast) + s.brightness,
+        s.bands as f32,
+    ]
+}
+
+const COLOR_BODY: &str = "let z = vec2(0.0);
+    let s = Planes(
+        PlaneColors(vec2(i(0u), i(1u)), i(2u), i(3u), i(4u), i(5u), z),
+        PlaneColors(vec2(i(6u), i(7u)), i(8u), i(9u), i(10u), i(11u), z),
+        PlaneColors(vec2(i(12u), i(13u)), i(14u), i(15u), i(16u), i(17u), z),
+        vec2(i(18u), i(19u)), i(20u), i(21u),
+    );
+    let w = plane_weights(s.borders, s.softness, i(22u));
+    return vec4(planes_color(s, vec3(i(23u), i(24u), i(25u)), w, i(26u)), 0.0);";
+
+type Case = (Planes, [f32; 3], f32, f32);
+
+fn row((s, color, d, change): &Case) -> [f32; 27] {
+    let mut row = [0.0; 27];
+    let planes = [s.near, s.middle, s.far].map(|s| packed(&s)).concat();
+    row[..18].copy_from_slice(&planes);
+    row[18..23].copy_from_slice(&[s.near_end, s.far_start, s.softness, s.amount, *d]);
+    row[23..26].copy_from_slice(color);
+    row[26] = *change;
+    row
+}
+
+fn style() -> impl Strategy<Value = PlaneStyle> {
+    (
+        0.0f32..=2.0,
+        (0.0f32..=1.0, 0.0f32..=1.0, 0.0f32..=1.0),
+        prop_oneof![Just(0.0f32), Just(1.0f32), 0.0f32..=1.0],
+        0.0f32..=2.0,
+        -0.5f32..=0.5,
+        select(vec![0, 0, 1, 2, 5, 8]),
+    )
+        .prop_map(
+            |(saturation, (r, g, b), tint_amount, contrast, brightness, bands)| PlaneStyle {
+                saturation,
+                tint: Color::linear_rgb(r, g, b),
+                tint_amount,
+                contrast,
+                brightness,
+                bands,
+                ..PlaneStyle::PLAIN
+            },
+        )
+}
+
+fn settings() -> impl Strategy<Value = Planes> {
+    (
+        (style(), style(), style()),
+        (0.0f32..=1.0, 0.0f32..=1.0),
+        0.01f32..=0.5,
+        prop_oneof![Just(1.0f32), 0.0f32..=1.0],
+    )
+        .prop_map(|((near, middle, far), (a, b), softness, amount)| Planes {
+            near,
+            middle,
+            far,
+            by: PlaneUnit::Pixel,
+            borders: PlaneBorders::Fixed,
+            near_end: a.min(b),
+            far_start: a.max(b),
+            softness,
+            amount,
+        })
+}
+
+fn for_cases(cases: impl Strategy<Value = Case>, check: impl Fn(&Case, [f32; 4])) {
+    let config = ProptestConfig {
+        cases: 8,
+        max_shrink_iters: 64,
+        ..ProptestConfig::default()
+    };
+    TestRunner::new(config)
+        .run(&vec(cases, 2048), |cases| {
+            let rows: Vec<[f32; 27]> = cases.iter().map(row).collect();
+            for (case, result) in cases.iter().zip(gpu().evaluate(PLANES, COLOR_BODY, &rows)) {
+                check(case, result);
+            }
+            Ok(())
+        })
+        .unwrap_or_else(|error| panic!("{error}"));
+}
+
+#[test]
+fn the_colors_of_planes_are_their_twin_and_stay_in_gamut() {
+    let color = (component(), component(), component()).prop_map(|(r, g, b)| [r, g, b]);
+    // A step between bands that is wide enough for the rounding of the lightness.
+    let cases = (settings(), color, 0.0f32..=1.0, 0.05f32..=0.3);
+    for_cases(cases, |(s, c, d, change), result| {
+        let borders = [s.near_end, s.far_start].map(f64::from);
+        let weights = near_middle_far::weights(borders, f64::from(s.softness), f64::from(*d));
+        let twin = near_middle_far::color(s, rgb(c), weights, f64::from(*change));
+        let apart = codes_apart(result, twin);
+        assert!(
+            apart <= 1.0,
+            "{s:?}, {c:?} at {d}: {result:?} on the GPU, {twin:?} in the twin, {apart} codes apart"
+        );
+        assert!(
+            result[..3].iter().all(|x| (0.0..=1.0).contains(x)),
+            "{s:?}, {c:?} at {d} became {result:?}"
+        );
+    });
+}
+
+#[test]
+fn the_weights_of_planes_sum_to_one() {
+    let row = (0.0f32..=1.0, 0.0f32..=1.0, 0.0f32..=0.5, 0.0f32..=1.0)
+        .prop_map(|(a, b, softness, d)| [a.min(b), a.max(b), softness, d]);
+    for_batches(row, |rows| {
+        let body = "return vec4(plane_weights(vec2(i(0u), i(1u)), i(2u), i(3u)), 0.0);";
+        for (row, w) in rows.iter().zip(gpu().evaluate(PLANES, body, rows)) {
+            let sum = f64::from(w[0]) + f64::from(w[1]) + f64::from(w[2]);
+            assert!((sum - 1.0).abs() <= 2f64.powi(-23), "{row:?}: {w:?}");
+            assert!(
+                w[..3].iter().all(|w| (0.0..=1.0).contains(w)),
+                "{row:?}: {w:?}"
+            );
+            let [a, b, softness, d] = row.map(f64::from);
+            let twin = near_middle_far::weights([a, b], softness, d);
+            // The slope of a border is 1.5 / softness, and D has an error of an ulp.
+            let slope = 1.5 * 2f64.powi(-22) / softness.max(1e-6);
+            if slope > 0.01 {
+                continue;
+            }
+            for i in 0..3 {
+                let apart = (f64::from(w[i]) - twin[i]).abs();
+                assert!(apart <= slope + 1e-6, "{row:?}: {w:?}, {twin:?}");
+            }
+        }
+    });
+}
+
+/// Near and far are what they would be alone, and a plain look changes nothing.
+#[test]
+fn a_plane_has_its_own_look_alone() {
+    let color = (0.02f32..=0.98, 0.02f32..=0.98, 0.02f32..=0.98).prop_map(|(r, g, b)| [r, g, b]);
+    let cases = (color, 0.0f32..=1.0).prop_map(|(c, d)| {
+        let far = PlaneStyle {
+            saturation: 0.0,
+            ..PlaneStyle::PLAIN
+        };
+        (
+            Planes {
+                far,
+                ..Planes::PLAIN
+            },
+            c,
+            d,
+            0.1,
+        )
+    });
+    for_cases(cases, |(s, c, d, _), result| {
+        let same = (0..3).all(|i| (result[i] - c[i]).abs() < 1e-5);
+        let spread =
+            result[0].max(result[1]).max(result[2]) - result[0].min(result[1]).min(result[2]);
+        if *d < s.far_start - 0.5 * s.softness {
+            assert!(same, "{c:?} at {d} became {result:?}");
+        } else if *d > s.far_start + 0.5 * s.softness {
+            // Grey of the same lightness.
+            assert!(spread < 1e-5, "{c:?} at {d} became {result:?}");
+            let [before, after] =
+                [*c, [result[0], result[1], result[2]]].map(|c| color::linear_to_oklab(rgb(&c))[0]);
+            assert!((before - after).abs() < 1e-5, "{c:?}: {before}, {after}");
+        }
+    });
+}
+
+/// In an infinite perspective whose near plane is at 0.1, and in an orthographic view of 200 units.
+#[test]
+fn the_places_of_objects_are_their_twin() {
+    let row = (
+        any::<bool>(),
+        -20.0f32..150.0,
+        0.0f32..40.0,
+        0.2f32..10.0,
+        11.0f32..120.0,
+    )
+        .prop_map(|(orthographic, distance, reach, near, far)| {
+            let raw = |z: f32| {
+                if orthographic {
+                    1.0 - z / 200.0
+                } else {
+                    0.1 / z
+                }
+            };
+            let flag = f32::from(u8::from(orthographic));
+            [flag, distance, reach, raw(near), raw(far)]
+        });
+    for_batches(row, |rows| {
+        let results = gpu().evaluate(
+            "#import bevy_comics::depth::map::{DepthFrame, ORTHOGRAPHIC}
+             #import bevy_comics::objects::depths::{kept_place, object_place}",
+            "let o = i(0u) != 0.0;
+             let f = DepthFrame(i(3u), i(4u), 0.0, 0.0, 200.0, 200.0, 0.0, select(0u, ORTHOGRAPHIC, o));
+             let axis = select(vec2(0.1, 0.0), vec2(200.0, -200.0), o);
+             let place = object_place(f, axis, o, i(1u), i(2u));
+             return vec4(place, kept_place(place.x + 0.02, place.x), kept_place(0.0, place.x));",
+            rows,
+        );
+        for (row, found) in rows.iter().zip(results) {
+            let [orthographic, distance, reach, near, far] = row.map(f64::from);
+            let is_orthographic = orthographic != 0.0;
+            let frame = Frame {
+                projection: if is_orthographic {
+                    Projection::Orthographic {
+                        plane_far: 200.0,
+                        extent: 200.0,
+                    }
+                } else {
+                    Projection::Perspective { offset: 0.0 }
+                },
+                ends: Some([near, far]),
+                logarithmic: false,
+                floor: 0.0,
+                sky_gap: 0.0,
+            };
+            let raw = |z: f64| {
+                if is_orthographic {
+                    1.0 - z / 200.0
+                } else {
+                    0.1 / z
+                }
+            };
+            let twin = depths::object_place(&frame, raw, distance, reach);
+            // Raw depth has an error of an ulp of 1, which the shortest range, a unit of 200 or
+            // the reciprocal of 10, makes 200 times as large; an extent has two, and
+            // smoothstep's slope is 10.
+            let error = 2f64.powi(-23) * 200.0;
+            assert!(
+                (f64::from(found[0]) - twin[0]).abs() < 2.0 * error
+                    && (f64::from(found[1]) - twin[1]).abs() < 40.0 * error,
+                "{row:?}: {found:?}, {twin:?}"
+            );
+            let [place, near_it, far_from_it] = [found[0], found[2], found[3]];
+            let ignored = (0.15 * place).min(0.03);
+            let wanted = place + ignored.min(0.02);
+            assert!((near_it - wanted).abs() < 1e-6, "{row:?}: {found:?}");
+            assert!(
+                (far_from_it - place + ignored).abs() < 1e-6,
+                "{row:?}: {found:?}"
+            );
+        }
+    });
+}

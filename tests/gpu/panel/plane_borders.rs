@@ -1,0 +1,67 @@
+//! The borders of planes in the histogram of the panel.
+
+use bevy_comics::{ComicStyle, PlaneBorders, Planes};
+use serde_json::Value;
+
+use super::{SCALE, WIDTH, tab_to};
+use crate::window::Window;
+
+/// The histogram is in the window without scrolling.
+const HEIGHT: u32 = 700;
+
+fn planes(style: &ComicStyle) -> Planes {
+    style.get().copied().unwrap_or_default()
+}
+
+/// The middle of a widget in logical pixels.
+fn middle(state: &Value, widget: &str) -> f64 {
+    let side = |i: usize| state["widgets"][widget][i].as_f64().unwrap_or(f64::NAN);
+    0.5 * (side(0) + side(2))
+}
+
+#[test]
+fn borders_of_planes_are_dragged_and_moved_by_keys() {
+    let arguments = ["--scene", "village", "--style", "storybook"];
+    let window = Window::open([WIDTH, HEIGHT], SCALE, &arguments);
+    window.key("F10");
+    window.click("tab.Views");
+    let state = window.until("the borders", |state| {
+        ["border.0", "border.1"]
+            .iter()
+            .all(|name| state["widgets"][name].is_array())
+    });
+    let start = planes(&window.style(0));
+    assert_eq!(start.borders, PlaneBorders::Auto);
+    let first = middle(&state, "border.0");
+    assert!(first < middle(&state, "border.1"), "near is before far");
+
+    // A border follows the pointer, and the other stays.
+    window.drag_between(("border.1", 0.5), ("histogram", 0.9));
+    window.until_style("fixed borders", 0, |style| {
+        planes(style).borders == PlaneBorders::Fixed
+    });
+    window.frames(3);
+    let state = window.state();
+    let side = |i: usize| state["widgets"]["histogram"][i].as_f64().expect("a number");
+    let pointer = side(0) + 0.9 * (side(2) - side(0));
+    // The pointer is at a whole pixel, and its press may be half a grip beside the line.
+    let apart = (middle(&state, "border.1") - pointer).abs();
+    assert!(apart < 2.0, "the border is {apart} points from the pointer");
+    let apart = (middle(&state, "border.0") - first).abs();
+    assert!(apart < 2.0, "the other one has moved by {apart} points");
+    let moved = planes(&window.style(0));
+    assert!(moved.near_end < moved.far_start, "{moved:?}");
+
+    // Keys move it by a hundredth of the depth map.
+    tab_to(&window, "border.0");
+    window.key("Right");
+    window.until_style("a border farther away", 0, |style| {
+        (planes(style).near_end - moved.near_end - 0.01).abs() < 1e-4
+    });
+    assert_eq!(planes(&window.style(0)).far_start, moved.far_start);
+
+    // Both steps can be undone.
+    window.click("undo");
+    window.click("undo");
+    window.until_style("borders that are found", 0, |style| planes(style) == start);
+}
