@@ -14,7 +14,6 @@ pub mod color_harmony;
 pub mod colorization;
 pub mod columns;
 pub mod contours;
-pub mod coverage;
 pub mod crack;
 pub mod depths;
 pub mod desaturation;

@@ -8,7 +8,6 @@ mod cartoon_styles;
 mod color_harmony;
 mod color_styles;
 mod contour_response;
-mod coverage;
 mod depth_map;
 mod finish;
 mod focus;
