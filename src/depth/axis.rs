@@ -32,7 +32,10 @@ impl MapAxis {
             let (near, far) = seen?;
             (f64::from(near), f64::from(far))
         } else {
-            (projection.distance(frame.near), projection.distance(frame.far))
+            (
+                projection.distance(frame.near),
+                projection.distance(frame.far),
+            )
         };
         let is_orthographic = projection.kind() == ProjectionKind::Orthographic;
         // The smallest range that fills the map, see `spread_floor` of `map.wgsl`.
@@ -86,9 +89,7 @@ impl MapAxis {
     pub fn distance(&self, d: f64) -> f64 {
         match self.scale {
             Scale::Linear(length) => self.near + d * length,
-            Scale::Logarithmic { octaves, least } => {
-                self.near.max(least) * (d * octaves).exp2()
-            }
+            Scale::Logarithmic { octaves, least } => self.near.max(least) * (d * octaves).exp2(),
         }
     }
 }
@@ -145,7 +146,9 @@ mod tests {
             let log = |d: f64| {
                 if is_orthographic {
                     let extent = f64::from(frame.extent);
-                    -(f64::from(frame.plane_far) - d * extent).max(1e-4 * extent).log2()
+                    -(f64::from(frame.plane_far) - d * extent)
+                        .max(1e-4 * extent)
+                        .log2()
                 } else {
                     (d + offset).log2()
                 }
@@ -215,7 +218,10 @@ mod tests {
         let one = Some((7.0, 7.0));
         let flat = DepthMap { floor: 0.0, ..map };
         assert_eq!(MapAxis::new(&flat, &perspective(), one), None);
-        assert_eq!(MapAxis::new(&map, &perspective(), Some((f32::NAN, 1.0))), None);
+        assert_eq!(
+            MapAxis::new(&map, &perspective(), Some((f32::NAN, 1.0))),
+            None
+        );
         let infinite = Some((1.0, f32::INFINITY));
         assert_eq!(MapAxis::new(&map, &perspective(), infinite), None);
     }

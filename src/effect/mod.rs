@@ -51,7 +51,7 @@ pub(crate) use {choose::ViewPlan, plan::Plan};
 
 use crate::{
     diagnostics::ComicsStage,
-    lines::{LineFocus, LinePlanes, LineSettings, MapJumps, Sheet},
+    lines::{LineAbstraction, LineFocus, LinePlanes, LineSettings, MapJumps, Sheet},
 };
 
 /// A camera component that changes the picture: one WGSL function of a pixel, and
@@ -181,10 +181,17 @@ pub trait Effect:
         None
     }
 
-    /// The width and opacity of lines in near, middle and far. If several effects of a camera have
+    /// The width, opacity and colour of lines in near, middle and far. If several effects of a camera have
     /// them, those of the first in the chain are used. Lines of the faithful forms are not
     /// changed, and none without compute shaders. Default: none.
     fn line_planes(&self, view: &ViewFacts) -> Option<LinePlanes> {
+        let _ = view;
+        None
+    }
+
+    /// How lines follow the abstraction of a view. If several effects of a camera have it, that of
+    /// the first in the chain is used. Lines of the faithful forms are not changed. Default: none.
+    fn line_abstraction(&self, view: &ViewFacts) -> Option<LineAbstraction> {
         let _ = view;
         None
     }

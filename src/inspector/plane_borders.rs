@@ -107,7 +107,9 @@ impl PlaneCuts {
                     .rect_stroke(rect, 0.0, color, bevy_egui::egui::StrokeKind::Inside);
             }
             grip.on_hover_cursor(CursorIcon::ResizeHorizontal)
-                .on_hover_text(format!("{name}, D = {place:.3}. Drag it to fix both borders."));
+                .on_hover_text(format!(
+                    "{name}, D = {place:.3}. Drag it to fix both borders."
+                ));
         }
     }
 }

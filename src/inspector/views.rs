@@ -5,7 +5,9 @@ use bevy_egui::egui::{Color32, Grid, Pos2, Sense, Ui};
 use egui_plot::{Bar, BarChart, Plot, PlotPoint, VLine};
 
 use super::{Widgets, fields::section, note, plane_borders::PlaneCuts};
-use crate::{ComicStyle, DebugView, DepthBin, DepthHistogram, EffectRegistry, EffectType, VisibleDepthRange};
+use crate::{
+    ComicStyle, DebugView, DepthBin, DepthHistogram, EffectRegistry, EffectType, VisibleDepthRange,
+};
 
 /// A camera whose depth range the panel reads, and which of the components for it
 /// the panel has inserted.
@@ -236,7 +238,11 @@ fn plot(
     note(widgets, "histogram", &shown.response);
     if let Some(cuts) = cuts {
         let transform = shown.transform;
-        let x_of = |z| transform.position_from_point(&PlotPoint::new(place(z), 0.0)).x;
+        let x_of = |z| {
+            transform
+                .position_from_point(&PlotPoint::new(place(z), 0.0))
+                .x
+        };
         let distance_of = |x| distance(transform.value_from_position(Pos2::new(x, 0.0)).x);
         cuts.drag(ui, (*transform.frame(), x_of, distance_of), style, widgets);
     }

@@ -19,7 +19,7 @@ fn owner_weights(p: LinePlanes, owner: vec2<i32>) -> vec3<f32> {
     var d = depth_map(frame, texel_depth(owner, 0)).x;
 #ifdef OBJECT_DEPTHS
     let place = object_depth(texel_object(owner, 0).x);
-    d = mix(d, place.x, place.y);
+    d = mix(d, place.x, place.y * p.by_objects);
 #endif
     var borders = p.borders;
 #ifdef DEPTH_BORDERS
