@@ -57,17 +57,15 @@ use crate::{
 /// A camera component that changes the picture: one WGSL function of a pixel, and
 /// its settings.
 ///
-/// All effects of a camera run in one full-screen pass. [`EffectPlugin`] registers
-/// an effect: it adds the effect to the pass, to style files, to transitions
-/// between styles, to the diagnostics and to the inspector's panel. The effects of
-/// this crate use the same trait. `docs/your-own-effect.md` is a guide with a
-/// complete example.
+/// All effects of a camera run in one full-screen pass. [`EffectPlugin`] registers an effect: it
+/// adds the effect to the pass, to style files, to transitions between styles, to the diagnostics
+/// and to the inspector's panel. The effects of this crate use the same trait.
+/// `docs/your-own-effect.md` is a guide with a complete example.
 ///
-/// The component derives `Component`, `Reflect`, `Clone`, `Debug`, `PartialEq`,
-/// `Serialize` and `Deserialize`, with `#[reflect(Component, Default)]` and
-/// `#[serde(default, deny_unknown_fields)]`, and implements `Default`. The
-/// attribute `#[reflect(@FieldRange::linear(0.0, 1.0))]` on a number states its
-/// range.
+/// The component derives `Component`, `Reflect`, `Clone`, `Debug`, `PartialEq`, `Serialize` and
+/// `Deserialize`, with `#[reflect(Component, Default)]` and
+/// `#[serde(default, deny_unknown_fields)]`, and implements `Default`. The attribute
+/// `#[reflect(@FieldRange::linear(0.0, 1.0))]` on a number states its range.
 pub trait Effect:
     Component<Mutability = Mutable>
     + Struct
@@ -81,9 +79,8 @@ pub trait Effect:
     + Serialize
     + DeserializeOwned
 {
-    /// The effect's name, unique in the app: its key in style files, the name of
-    /// its WGSL function and, in capitals, its shader definition. In `snake_case`;
-    /// the last character is a letter.
+    /// The effect's name, unique in the app: its key in style files, the name of its WGSL function
+    /// and, in capitals, its shader definition. In `snake_case`; the last character is a letter.
     const NAME: &'static str;
 
     /// When the effect applies. Stages run in the order of [`EffectStage`]; within
@@ -97,9 +94,9 @@ pub trait Effect:
     /// this one is drawn. Default: none.
     const REPLACES: &'static [&'static str] = &[];
 
-    /// A debug view that shows what the effect computes, if it has one. Its WGSL
-    /// function is called `NAME_view`. It takes the settings and the pixel that the
-    /// effect returned, and returns a display-encoded (sRGB) colour. Default: none.
+    /// A debug view that shows what the effect computes, if it has one. Its WGSL function is called
+    /// `NAME_view`. It takes the settings and the pixel that the effect returned, and returns a
+    /// display-encoded (sRGB) colour. Default: none.
     const VIEW: Option<EffectView> = None;
 
     /// Whether the module has a function `NAME_half_box` for [`Needs::MEANS`]: it takes the
@@ -111,14 +108,12 @@ pub trait Effect:
     /// takes none. In the uniform buffer it starts at a multiple of 16 bytes.
     type Uniform: ShaderType + WriteInto;
 
-    /// The settings that are used: every number is clamped to its documented range,
-    /// and a number that is not finite is replaced by its default. Values in range
-    /// must be returned unchanged.
+    /// The settings that are used: every number is clamped to its documented range, and a number
+    /// that is not finite is replaced by its default. Values in range must be returned unchanged.
     #[must_use]
     fn sanitized(self) -> Self;
 
-    /// How much the effect changes the picture, 0 to 1. An effect of strength 0 is
-    /// neither compiled, packed nor run.
+    /// How much the effect changes the picture, 0 to 1. An effect of strength 0 is not run.
     fn strength(&self) -> f32;
 
     /// The same effect at a fraction (0 to 1) of its strength; at 0 it changes
@@ -126,8 +121,7 @@ pub trait Effect:
     #[must_use]
     fn faded(self, fraction: f32) -> Self;
 
-    /// The inputs that the effect's WGSL reads besides its pixel's colour. Default:
-    /// none.
+    /// The inputs that the effect's WGSL reads besides its pixel's colour. Default: none.
     fn needs(&self) -> Needs {
         Needs::empty()
     }

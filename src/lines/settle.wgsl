@@ -37,17 +37,8 @@
 #ifdef IN_FOCUS
 #import bevy_comics::lines::focus::line_sharpness
 #endif
-#ifdef IN_PLANES
-#import bevy_comics::lines::owner_plane::owner_weights
+#import bevy_comics::lines::owner_plane::{crease_left, owner_weights}
 #import bevy_comics::lines::plane_lines::plane_factors
-#endif
-#ifdef ABSTRACT_CREASES
-#import bevy_comics::depth::map::depth_map
-#import bevy_comics::lines::abstraction::abstract_crease
-#ifdef OBJECT_DEPTHS
-#import bevy_comics::objects::object_depth
-#endif
-#endif
 #ifdef LIGHT_WEIGHT
 #import bevy_comics::depth::normal::texel_normal
 #endif
@@ -224,19 +215,6 @@ fn density_around(g: Grid, cell: vec2<i32>) -> f32 {
 }
 #endif
 
-#ifdef ABSTRACT_CREASES
-// The factor of the opacity of a crease.
-fn crease_left(owner: vec2<i32>) -> f32 {
-    let a = line_pass.abstraction;
-    var d = depth_map(depth_frame(), texel_depth(owner, 0)).x;
-#ifdef OBJECT_DEPTHS
-    let place = object_depth(texel_object(owner, 0).x);
-    d = mix(d, place.x, place.y * a.by_objects);
-#endif
-    return abstract_crease(a, d);
-}
-#endif
-
 // A packed crack as wide and as strong as it is to be. `bend`: how its line leaves it.
 fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let g = line_pass.grid;
@@ -289,7 +267,7 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     left *= plane_factors(line_pass.planes, owner_weights(line_pass.planes, owner));
 #endif
 #ifdef ABSTRACT_CREASES
-    left.y *= select(1.0, crease_left(owner), (packed & CREASE) != 0u);
+    left.y *= select(1.0, crease_left(line_pass.abstraction, owner), (packed & CREASE) != 0u);
 #endif
     return select(weighted_crack(packed, left.x, left.y), 0u, packed == 0u);
 }
@@ -318,8 +296,7 @@ fn without_specks(g: Grid, p: vec2<i32>, cracks: vec2<u32>) -> vec2<u32> {
 }
 
 #ifdef SMOOTH
-// How the lines along both cracks of a pixel leave them. `kept`: whether it has them; `packed`: the
-// packed cracks.
+// How the lines along both cracks of a pixel leave them. `kept`: whether it has them.
 fn bends_of(p: vec2<i32>, kept: vec2<u32>, packed: vec2<u32>) -> u32 {
     let g = line_pass.grid;
     var bends = 0x80808080u;
