@@ -180,7 +180,7 @@ fn columns(bins: &[DepthBin], place: impl Fn(f32) -> f64) -> Vec<[f64; 3]> {
 }
 
 /// The bars of these columns.
-fn bar_chart<'a>(columns: &[[f64; 3]]) -> BarChart<'a> {
+fn bar_chart(columns: &[[f64; 3]]) -> BarChart {
     let bar = |[left, right, percent]: &[f64; 3]| {
         Bar::new(0.5 * (left + right), *percent).width((right - left).max(1e-9))
     };
