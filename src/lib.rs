@@ -94,8 +94,8 @@ pub use effect::{
 pub use effects::*;
 pub use finish::{DebugView, SplitView, StyleWeight};
 pub use lines::{
-    Creases, LineBoil, LineColor, LineFocus, LineFog, LinePlanes, LineResponse, LineSettings,
-    LineWeight, MapJumps, ObjectEdges, Sheet, Silhouettes, ViewCracks,
+    Creases, LineAbstraction, LineBoil, LineColor, LineFocus, LineFog, LinePlanes, LineResponse,
+    LineSettings, LineWeight, MapJumps, ObjectEdges, Sheet, Silhouettes, ViewCracks,
 };
 #[cfg(feature = "objects")]
 pub use objects::{
@@ -138,6 +138,10 @@ mod pages {
         Paper: "docs/paper.md";
         Paint: "docs/paint.md";
         Focus: "docs/focus.md";
+        Planes: "docs/planes.md";
+        ColorHarmony: "docs/color-harmony.md";
+        Abstraction: "docs/abstraction.md";
+        Hatching: "docs/hatching.md";
         FixedRange: "docs/fixed-range.md";
         SplitScreen: "docs/split-screen.md";
         TransparentThings: "docs/transparent-things.md";

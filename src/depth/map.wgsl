@@ -143,6 +143,12 @@ fn root_fraction(d: f32, l: f32) -> f32 {
     return far / (far + sqrt(max(l, 0.0)));
 }
 
+// What is `near` at D = 0 and `far` at D = 1; between them by a power of D.
+fn graded(near: f32, far: f32, exponent: f32, d: f32) -> f32 {
+    let t = clamp(d, 0.0, 1.0);
+    return mix(near, far, select(0.0, pow(max(t, 1e-30), exponent), t > 0.0));
+}
+
 // Fraction of what lies behind a border, 0 to 1.
 fn behind(border: f32, softness: f32, d: f32) -> f32 {
     let t = clamp((d - border) / max(softness, 1e-6) + 0.5, 0.0, 1.0);

@@ -8,7 +8,7 @@ use bevy::{
 };
 
 use super::{Effect, EffectType, Extent, Needs, Variants, ViewFacts};
-use crate::lines::{LineFocus, LinePlanes, LineSettings, Sheet};
+use crate::lines::{LineAbstraction, LineFocus, LinePlanes, LineSettings, Sheet};
 
 /// An [`Effect`] whose type is known only at run time. Every effect implements it;
 /// lists of effects and tools use it.
@@ -53,6 +53,8 @@ pub trait AnyEffect: Any + Send + Sync + std::fmt::Debug {
     fn any_line_focus(&self, view: &ViewFacts) -> Option<LineFocus>;
     /// As [`Effect::line_planes`].
     fn any_line_planes(&self, view: &ViewFacts) -> Option<LinePlanes>;
+    /// As [`Effect::line_abstraction`].
+    fn any_line_abstraction(&self, view: &ViewFacts) -> Option<LineAbstraction>;
     /// As [`Effect::sheet`].
     fn any_sheet(&self, view: &ViewFacts) -> Option<Sheet>;
 
@@ -149,6 +151,10 @@ impl<E: Effect> AnyEffect for E {
 
     fn any_line_planes(&self, view: &ViewFacts) -> Option<LinePlanes> {
         self.line_planes(view)
+    }
+
+    fn any_line_abstraction(&self, view: &ViewFacts) -> Option<LineAbstraction> {
+        self.line_abstraction(view)
     }
 
     fn any_sheet(&self, view: &ViewFacts) -> Option<Sheet> {

@@ -134,6 +134,15 @@ fn banded(levels: f32, y: f32, step_width: f32) -> f32 {
     return (step - 0.5 + smoothstep(step - half, step + half, t)) / levels;
 }
 
+// The same where every band has split into two `splits` times, of which there can be a fraction:
+// the borders of fewer bands are borders of more bands too.
+fn split_bands(levels: f32, splits: f32, y: f32, step_width: f32) -> f32 {
+    let whole = floor(splits);
+    let bands = levels * exp2(whole);
+    let fewer = banded(bands, y, step_width);
+    return mix(fewer, banded(2.0 * bands, y, step_width), smoothstep(0.0, 1.0, splits - whole));
+}
+
 // Moves a colour towards the grey of its OKLab lightness, as little as possible, until all
 // components are from 0 to 1, or within those of `before` if these are beyond.
 fn in_gamut(c: vec3<f32>, lab_lightness: f32, before: vec3<f32>) -> vec3<f32> {

@@ -109,6 +109,8 @@ fn placed(before: Pixel, pixel: vec2<i32>) -> Pixel {
     p.inside = vec2<f32>(pixel - comics.view.viewport.xy);
     p.saturation = 1.0;
     p.prints = vec2(1.0);
+    p.splits = 0.0;
+    p.spacing = 1.0;
     p.depth = vec2(1.0, 0.0);
 #ifdef MAP
     let true_depth = pixel_depth(depth_frame(), pixel);

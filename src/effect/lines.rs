@@ -78,6 +78,7 @@ pub(super) fn line_request(
         fog: plan.fog.then(|| fog(view)),
         focus: line_focus(plan, facts),
         planes: plan.line_planes(facts),
+        abstraction: plan.drawn().find_map(|e| e.any_line_abstraction(facts)),
         sheet: sheet(facts),
         depth_size,
         samples,

@@ -107,6 +107,7 @@ fn request(
         fog: None,
         focus: None,
         planes: None,
+        abstraction: None,
         sheet: SheetUniform::default(),
         depth_size,
         samples,

@@ -15,6 +15,7 @@ mod lines;
 #[cfg(feature = "objects")]
 mod marks;
 mod missing;
+mod needs;
 mod part;
 mod pass;
 mod passes;
@@ -37,12 +38,12 @@ use bevy::{
     reflect::{FromReflect, GetTypeRegistration, Typed, structs::Struct},
     render::render_resource::{ShaderType, encase::internal::WriteInto},
 };
-use bitflags::bitflags;
 use serde::{Serialize, de::DeserializeOwned};
 
 pub use any::AnyEffect;
 pub(crate) use compose::FILE_KEYS;
 pub use facts::ViewFacts;
+pub use needs::Needs;
 pub(crate) use plugin::FusedPlugin;
 pub use registry::{EffectPlugin, EffectRegistry, EffectType};
 pub use set::EffectSet;
@@ -52,23 +53,21 @@ pub(crate) use {choose::ViewPlan, plan::Plan};
 
 use crate::{
     diagnostics::ComicsStage,
-    lines::{LineFocus, LinePlanes, LineSettings, MapJumps, Sheet},
+    lines::{LineAbstraction, LineFocus, LinePlanes, LineSettings, MapJumps, Sheet},
 };
 
 /// A camera component that changes the picture: one WGSL function of a pixel, and
 /// its settings.
 ///
-/// All effects of a camera run in one full-screen pass. [`EffectPlugin`] registers
-/// an effect: it adds the effect to the pass, to style files, to transitions
-/// between styles, to the diagnostics and to the inspector's panel. The effects of
-/// this crate use the same trait. `docs/your-own-effect.md` is a guide with a
-/// complete example.
+/// All effects of a camera run in one full-screen pass. [`EffectPlugin`] registers an effect: it
+/// adds the effect to the pass, to style files, to transitions between styles, to the diagnostics
+/// and to the inspector's panel. The effects of this crate use the same trait.
+/// `docs/your-own-effect.md` is a guide with a complete example.
 ///
-/// The component derives `Component`, `Reflect`, `Clone`, `Debug`, `PartialEq`,
-/// `Serialize` and `Deserialize`, with `#[reflect(Component, Default)]` and
-/// `#[serde(default, deny_unknown_fields)]`, and implements `Default`. The
-/// attribute `#[reflect(@FieldRange::linear(0.0, 1.0))]` on a number states its
-/// range.
+/// The component derives `Component`, `Reflect`, `Clone`, `Debug`, `PartialEq`, `Serialize` and
+/// `Deserialize`, with `#[reflect(Component, Default)]` and
+/// `#[serde(default, deny_unknown_fields)]`, and implements `Default`. The attribute
+/// `#[reflect(@FieldRange::linear(0.0, 1.0))]` on a number states its range.
 pub trait Effect:
     Component<Mutability = Mutable>
     + Struct
@@ -82,9 +81,8 @@ pub trait Effect:
     + Serialize
     + DeserializeOwned
 {
-    /// The effect's name, unique in the app: its key in style files, the name of
-    /// its WGSL function and, in capitals, its shader definition. In `snake_case`;
-    /// the last character is a letter.
+    /// The effect's name, unique in the app: its key in style files, the name of its WGSL function
+    /// and, in capitals, its shader definition. In `snake_case`; the last character is a letter.
     const NAME: &'static str;
 
     /// When the effect applies. Stages run in the order of [`EffectStage`]; within
@@ -98,9 +96,9 @@ pub trait Effect:
     /// this one is drawn. Default: none.
     const REPLACES: &'static [&'static str] = &[];
 
-    /// A debug view that shows what the effect computes, if it has one. Its WGSL
-    /// function is called `NAME_view`. It takes the settings and the pixel that the
-    /// effect returned, and returns a display-encoded (sRGB) colour. Default: none.
+    /// A debug view that shows what the effect computes, if it has one. Its WGSL function is called
+    /// `NAME_view`. It takes the settings and the pixel that the effect returned, and returns a
+    /// display-encoded (sRGB) colour. Default: none.
     const VIEW: Option<EffectView> = None;
 
     /// Whether the module has a function `NAME_half_box` for [`Needs::MEANS`]: it takes the
@@ -117,14 +115,12 @@ pub trait Effect:
     /// takes none. In the uniform buffer it starts at a multiple of 16 bytes.
     type Uniform: ShaderType + WriteInto;
 
-    /// The settings that are used: every number is clamped to its documented range,
-    /// and a number that is not finite is replaced by its default. Values in range
-    /// must be returned unchanged.
+    /// The settings that are used: every number is clamped to its documented range, and a number
+    /// that is not finite is replaced by its default. Values in range must be returned unchanged.
     #[must_use]
     fn sanitized(self) -> Self;
 
-    /// How much the effect changes the picture, 0 to 1. An effect of strength 0 is
-    /// neither compiled, packed nor run.
+    /// How much the effect changes the picture, 0 to 1. An effect of strength 0 is not run.
     fn strength(&self) -> f32;
 
     /// The same effect at a fraction (0 to 1) of its strength; at 0 it changes
@@ -132,8 +128,7 @@ pub trait Effect:
     #[must_use]
     fn faded(self, fraction: f32) -> Self;
 
-    /// The inputs that the effect's WGSL reads besides its pixel's colour. Default:
-    /// none.
+    /// The inputs that the effect's WGSL reads besides its pixel's colour. Default: none.
     fn needs(&self) -> Needs {
         Needs::empty()
     }
@@ -194,10 +189,17 @@ pub trait Effect:
         None
     }
 
-    /// The width and opacity of lines in near, middle and far. If several effects of a camera have
+    /// The width, opacity and colour of lines in near, middle and far. If several effects of a camera have
     /// them, those of the first in the chain are used. Lines of the faithful forms are not
     /// changed, and none without compute shaders. Default: none.
     fn line_planes(&self, view: &ViewFacts) -> Option<LinePlanes> {
+        let _ = view;
+        None
+    }
+
+    /// How lines follow the abstraction of a view. If several effects of a camera have it, that of
+    /// the first in the chain is used. Lines of the faithful forms are not changed. Default: none.
+    fn line_abstraction(&self, view: &ViewFacts) -> Option<LineAbstraction> {
         let _ = view;
         None
     }
@@ -330,80 +332,6 @@ pub struct EffectView {
     pub label: &'static str,
     /// One sentence that says what the view shows.
     pub explanation: &'static str,
-}
-
-bitflags! {
-    /// The inputs that an effect's WGSL reads besides the colour of its pixel.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-    pub struct Needs: u32 {
-        /// The depth map at the pixel, in `Pixel::depth`. Runs the depth prepass,
-        /// and the search for the visible range if the map follows it.
-        const MAP = 1;
-        /// Raw depth at any pixel, by `bevy_comics::depth::view::load_depth`. Runs
-        /// the depth prepass.
-        const DEPTH = 1 << 1;
-        /// World-space normals at any pixel, by
-        /// `bevy_comics::depth::normal::load_normal`. Runs the depth prepass and the
-        /// normal prepass.
-        const NORMALS = 1 << 2;
-        /// Object ids at any pixel, by `bevy_comics::objects::load_object`. Runs the
-        /// depth prepass and the pass that draws ids. Needs the crate's feature
-        /// `objects`.
-        const IDS = 1 << 3;
-        /// The lines at the pixel, by `bevy_comics::lines::read::lines_at`. The
-        /// effect is left out if no effect of the camera requests lines.
-        const LINES = 1 << 4;
-        /// The lines at any place, read several times per pixel. Includes
-        /// [`Needs::LINES`].
-        const LINES_ANYWHERE = 1 << 5;
-        /// The change of the unstyled picture's lightness over a pixel, in
-        /// `Pixel::change`.
-        const LIGHTNESS_CHANGE = 1 << 6;
-        /// The picture after all effects before this one, at any place, by
-        /// `bevy_comics::effect::picture::load_picture` and `picture_at`. Divides the
-        /// fused pass in two at this effect: the first one draws a texture of the
-        /// viewport's size in 16-bit floating-point numbers. `Pixel::saturation` is 1 again
-        /// in the second one.
-        const PICTURE = 1 << 7;
-        /// A tile of thresholds in an even, irregular order, by
-        /// `bevy_comics::effect::blue_noise::blue_noise`.
-        const BLUE_NOISE = 1 << 8;
-        /// Means and variances of that picture over boxes of any size around every pixel, by
-        /// `bevy_comics::effect::means::load_means`. Includes [`Needs::PICTURE`]. Two passes
-        /// draw them, to two textures of the viewport's size with 16 bytes a pixel. The WGSL
-        /// says how large the boxes are, see [`Effect::HALF_BOX`].
-        const MEANS = 1 << 9;
-        /// Where the object at a pixel is, by `load_object` and `style_of` of
-        /// `bevy_comics::objects`, if it has an [`ObjectScreen`](crate::ObjectScreen). Includes
-        /// [`Needs::IDS`] while some object has one; otherwise it asks for nothing, and
-        /// `OBJECT_ANCHORS` is not defined in WGSL.
-        const OBJECT_ANCHORS = 1 << 10;
-        /// That picture together with a number of the effect's own at every pixel, by
-        /// `bevy_comics::effect::numbered::load_numbered`: both by one load, for effects that
-        /// would read the depth of many pixels besides their colours. In place of
-        /// [`Needs::PICTURE`]: the first pass draws a texture of the viewport's size with 16
-        /// bytes a pixel, which holds both. The WGSL says what the number is, see
-        /// [`Effect::NUMBER`]. Of an effect that also has [`Needs::MEANS`], these count.
-        const NUMBERED = 1 << 11;
-        /// The two depths that divide what is visible into near, middle and far, by
-        /// `bevy_comics::depth::view::depth_borders`. Counts the depths, and finds the borders in
-        /// a pass. Without compute shaders, and with
-        /// [`ReductionMethod::PingPong`](crate::ReductionMethod::PingPong), there are none.
-        const DEPTH_BORDERS = 1 << 12;
-        /// The place of every object in the depth map, by `bevy_comics::objects::object_depth`.
-        /// Includes [`Needs::IDS`]. Without the crate's feature `objects` it asks for nothing, and
-        /// `OBJECT_DEPTHS` is not defined in WGSL.
-        const OBJECT_DEPTHS = 1 << 13;
-    }
-}
-
-impl Needs {
-    /// What every view can provide.
-    pub(crate) const WITHOUT_PREPASSES: Self = Self::LIGHTNESS_CHANGE
-        .union(Self::PICTURE)
-        .union(Self::BLUE_NOISE)
-        .union(Self::MEANS)
-        .union(Self::NUMBERED);
 }
 
 /// The uniform of an effect whose WGSL function takes no settings.

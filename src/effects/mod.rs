@@ -25,6 +25,7 @@ macro_rules! effects {
 }
 
 effects! {
+    abstraction: Abstraction;
     tone_bands: ToneBands;
     desaturation: Desaturation;
     colorization: Colorization, ColorizationMode;

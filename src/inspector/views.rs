@@ -179,6 +179,15 @@ fn columns(bins: &[DepthBin], place: impl Fn(f32) -> f64) -> Vec<[f64; 3]> {
     columns
 }
 
+/// The bars of these columns.
+fn bar_chart(columns: &[[f64; 3]]) -> BarChart {
+    let bar = |[left, right, percent]: &[f64; 3]| {
+        Bar::new(0.5 * (left + right), *percent).width((right - left).max(1e-9))
+    };
+    let bars = columns.iter().map(bar).collect();
+    BarChart::new("fraction of the pixels, in 64 columns", bars).color(Color32::LIGHT_BLUE)
+}
+
 /// The chart of the histogram.
 fn plot(
     ui: &mut Ui,
@@ -191,19 +200,11 @@ fn plot(
         return;
     }
     let logarithmic = is_logarithmic(&histogram.bins);
-    let place = move |distance: f64| {
-        if logarithmic {
-            distance.log10()
-        } else {
-            distance.clamp(-1e9, 1e9)
-        }
+    let place = move |distance: f64| match logarithmic {
+        true => distance.log10(),
+        false => distance.clamp(-1e9, 1e9),
     };
-    let bars = columns(&histogram.bins, |distance| place(f64::from(distance)))
-        .into_iter()
-        .map(|[left, right, percent]| {
-            Bar::new(0.5 * (left + right), percent).width((right - left).max(1e-9))
-        })
-        .collect();
+    let bars = columns(&histogram.bins, |distance| place(f64::from(distance)));
     let distance = move |x: f64| if logarithmic { 10f64.powf(x) } else { x };
     let pair = |(near, far): (f32, f32)| [near, far].map(f64::from);
     let drawn_cuts = match &cuts {
@@ -220,10 +221,7 @@ fn plot(
         .x_axis_formatter(move |mark, _| format!("{:.3}", distance(mark.value)))
         .y_axis_formatter(|mark, _| format!("{:.0} %", mark.value))
         .show(ui, |plot| {
-            plot.bar_chart(
-                BarChart::new("fraction of the pixels, in 64 columns", bars)
-                    .color(Color32::LIGHT_BLUE),
-            );
+            plot.bar_chart(bar_chart(&bars));
             let range = Color32::from_rgb(230, 90, 70);
             let borders = Color32::from_rgb(240, 200, 90);
             for (ends, names, color) in [

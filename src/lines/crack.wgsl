@@ -5,6 +5,10 @@
 
 #import bevy_comics::depth::map::depth_map
 #import bevy_comics::depth::view::depth_frame
+#ifdef ABSTRACT_LINES
+#import bevy_comics::lines::abstraction::abstract_response
+#import bevy_comics::lines::pass::line_pass
+#endif
 #import bevy_comics::lines::edge::{
     CREASE, Lines, OBJECT, SILHOUETTE, THINNEST, byte, fold_response, pack_ink, step_response,
 }
@@ -112,7 +116,7 @@ struct Found {
 #ifdef SILHOUETTES
 fn add_silhouettes(before: Found, s: Lines, at: Borders, reference: vec4<f32>, kinds: vec4<u32>) -> Found {
     var found = before;
-    let response = step_response(at.excess, s.silhouette_k * reference);
+    let response = step_response(at.excess * sqrt(response_factors(at)), s.silhouette_k * reference);
     let ink = smoothstep(vec4(s.silhouette_low), vec4(s.silhouette_high), response);
     let exists = max(at.here, at.there) > vec4(0.0);
     let silhouette = has(kinds, SILHOUETTE) & exists & (byte(ink) > vec4(0u)) & !at.outdone;
@@ -153,7 +157,7 @@ fn are_silent(at: Borders) -> vec4<bool> {
 // A crease is no silhouette, and both sides meet there: no jump in depth separates them.
 fn add_creases(before: Found, s: Lines, at: Borders, reference: vec4<f32>, here: vec4<u32>, there: vec4<u32>) -> Found {
     var found = before;
-    var response = fold_response(at.folds, s.crease_k);
+    var response = fold_response(at.folds * response_factors(at), s.crease_k);
     var ridge = at.ridge;
     var rim = at.rim;
 #ifdef SECTIONS
@@ -229,6 +233,22 @@ fn packed_of(found: Found, s: Lines, at: Borders) -> vec4<u32> {
     let object = has(found.kinds, OBJECT);
     let packed = found.kinds | owner_bit | pack_response(s, found.ink, object, opacity, half_width);
     return select(vec4(0u), packed, found.kinds != vec4(0u));
+}
+
+// Factors of the responses of edges before these are limited to 1, by the nearer side. 1 without
+// Abstraction.
+fn response_factors(at: Borders) -> vec4<f32> {
+#ifdef ABSTRACT_LINES
+    let frame = depth_frame();
+    let near = max(at.here, at.there);
+    let a = line_pass.abstraction;
+    return vec4(
+        abstract_response(a, depth_map(frame, near.x).x), abstract_response(a, depth_map(frame, near.y).x),
+        abstract_response(a, depth_map(frame, near.z).x), abstract_response(a, depth_map(frame, near.w).x),
+    );
+#else
+    return vec4(1.0);
+#endif
 }
 
 fn cracks(s: Lines, at: Borders) -> Cracks {

@@ -51,6 +51,7 @@ impl LineKey {
                 (weight.planes, "IN_PLANES"),
                 (weight.found_borders, "DEPTH_BORDERS"),
                 (weight.by_objects, "OBJECT_DEPTHS"),
+                (weight.abstracts, "ABSTRACT_CREASES"),
             ]))
             .collect()
     }
@@ -98,6 +99,7 @@ impl LineKey {
                 (self.sections, "SECTIONS"),
                 (self.marks, "MARKS"),
                 (self.multisampled_picture, "MULTISAMPLED_PICTURE"),
+                (self.abstracts, "ABSTRACT_LINES"),
                 (self.fading, "FADING"),
                 (self.visible_range, "VISIBLE_RANGE"),
             ]))

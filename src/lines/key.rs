@@ -63,6 +63,8 @@ pub(crate) struct LineKey {
     pub ids: bool,
     pub object_styles: bool,
     pub fading: bool,
+    /// Edges must be stronger where the picture is abstract.
+    pub abstracts: bool,
     pub visible_range: bool,
     /// Whether there are silhouettes and creases of the faithful form.
     pub faithful: [bool; 2],
@@ -121,7 +123,8 @@ impl LineKey {
                 focus: request.focus.is_some(),
                 planes: request.planes.is_some(),
                 found_borders: request.planes.is_some_and(|planes| planes.finds_borders),
-                by_objects: request.planes.is_some_and(|planes| planes.by_objects) && request.ids,
+                by_objects: request.reads_places() && request.ids,
+                abstracts: request.abstraction.is_some_and(|a| a.crease_opacity < 1.0),
                 map: request.widths,
                 ..WeightKey::new(lines)
             }
@@ -137,6 +140,7 @@ impl LineKey {
             ids: request.ids,
             object_styles: request.object_styles,
             fading: lines.fades(),
+            abstracts: request.abstraction.is_some_and(|a| a.threshold > 1.0),
             visible_range: request.visible_range,
             faithful: forms.map(|form| form == Some(Form::Faithful)),
             links: lines.links() && !by_fragments,
@@ -184,6 +188,7 @@ impl LineKey {
             ids: self.object_edges || self.sections,
             object_styles: false,
             fading: false,
+            abstracts: false,
             visible_range: self.jumps && self.visible_range,
             links: false,
             rims: false,
@@ -211,7 +216,7 @@ impl LineKey {
             weight: WeightKey::default(),
             faithful: [false; 2],
             search: Search::default(),
-            visible_range: self.fading && self.visible_range,
+            visible_range: (self.fading || self.abstracts) && self.visible_range,
             boils: false,
             sheet: SheetKey::default(),
             surface: false,
@@ -237,6 +242,7 @@ impl LineKey {
             jumps: false,
             map_flags: 0,
             by_fragments: false,
+            abstracts: false,
             ledges: false,
             rims: false,
             bridged: false,
@@ -254,7 +260,7 @@ impl LineKey {
     /// The part that completing cracks depends on.
     pub fn for_settle(self) -> Self {
         let weight = self.weight;
-        let reads_map = weight.perspective || weight.planes;
+        let reads_map = weight.perspective || weight.planes || weight.abstracts;
         Self {
             ledges: self.ledges,
             rims: self.rims,

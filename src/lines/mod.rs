@@ -6,6 +6,7 @@
 //! closes gaps, and `settle.wgsl` completes them. In the tiles, `columns.wgsl`, for wide lines, and
 //! `draw.wgsl` draw their ink into a texture. Effects read the ink with `read.wgsl`.
 
+mod abstraction;
 mod boil;
 mod color;
 mod completing;
@@ -55,6 +56,7 @@ use bevy::{
     shader::load_shader_library,
 };
 
+pub use abstraction::LineAbstraction;
 pub use boil::LineBoil;
 pub use color::LineColor;
 pub use focus::LineFocus;
@@ -135,6 +137,7 @@ fn load_shaders(app: &mut App) {
     load_shader_library!(app, "hidden.wgsl");
     load_shader_library!(app, "budget.wgsl");
     load_shader_library!(app, "focus.wgsl");
+    load_shader_library!(app, "abstraction.wgsl");
     load_shader_library!(app, "plane_lines.wgsl");
     load_shader_library!(app, "owner_plane.wgsl");
     load_shader_library!(app, "fog.wgsl");

@@ -6,9 +6,9 @@ use bevy::{
 };
 
 use super::{
-    boil::BoilUniform, focus::LineFocusUniform, fog::FogUniform, memory::MemoryUniform,
-    plane_lines::LinePlanesUniform, settings::LinesUniform, sheet::SheetUniform,
-    weight::WeightUniform,
+    abstraction::LineAbstractionUniform, boil::BoilUniform, focus::LineFocusUniform,
+    fog::FogUniform, memory::MemoryUniform, plane_lines::LinePlanesUniform, settings::LinesUniform,
+    sheet::SheetUniform, weight::WeightUniform,
 };
 use crate::depth::view::ViewUniform;
 
@@ -40,6 +40,7 @@ pub(crate) struct LinePassUniform {
     pub fog: FogUniform,
     pub focus: LineFocusUniform,
     pub planes: LinePlanesUniform,
+    pub abstraction: LineAbstractionUniform,
     pub boil: BoilUniform,
     pub memory: MemoryUniform,
     pub sheet: SheetUniform,

@@ -4,6 +4,7 @@
 // binding 1 of their group.
 
 #import bevy_comics::depth::view::View
+#import bevy_comics::lines::abstraction::LineAbstraction
 #import bevy_comics::lines::boil::Boil
 #import bevy_comics::lines::edge::{Grid, Lines}
 #import bevy_comics::lines::focus::LineFocus
@@ -21,6 +22,7 @@ struct LinePass {
     fog: Fog,
     focus: LineFocus,
     planes: LinePlanes,
+    abstraction: LineAbstraction,
     boil: Boil,
     memory: Memory,
     sheet: Sheet,

@@ -51,7 +51,7 @@ impl LinePlanes {
             widths: Vec3::from(self.widths),
             softness: self.softness,
             opacities: Vec3::from(self.opacities),
-            unused: 0.0,
+            by_objects: f32::from(u8::from(self.by_objects)),
             borders: Vec2::from(self.borders),
             unused_pair: Vec2::ZERO,
         }
@@ -67,7 +67,7 @@ pub(crate) struct LinePlanesUniform {
     widths: Vec3,
     softness: f32,
     opacities: Vec3,
-    unused: f32,
+    by_objects: f32,
     borders: Vec2,
     unused_pair: Vec2,
 }

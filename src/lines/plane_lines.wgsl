@@ -15,7 +15,8 @@ struct LinePlanes {
     softness: f32,
     // Factors of the opacity.
     opacities: vec3<f32>,
-    unused: f32,
+    // 1: a surface is where its object is; 0: where it is itself.
+    by_objects: f32,
     // D at the border between near and middle, and between middle and far.
     borders: vec2<f32>,
     unused_pair: vec2<f32>,

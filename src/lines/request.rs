@@ -17,6 +17,7 @@ use bevy::{
 };
 
 use super::{
+    abstraction::LineAbstraction,
     boil::BoilUniform,
     focus::LineFocusUniform,
     fog::FogUniform,
@@ -56,6 +57,8 @@ pub(crate) struct LineRequest {
     pub focus: Option<LineFocusUniform>,
     /// How they look in near, middle and far.
     pub planes: Option<LinePlanes>,
+    /// How they follow the abstraction of the view.
+    pub abstraction: Option<LineAbstraction>,
     /// The sheet that lines are drawn on.
     pub sheet: SheetUniform,
     /// Size in pixels of the depth texture, and its samples per pixel.
@@ -107,6 +110,12 @@ impl LineRequest {
             && !self.settings.boil.moves();
         // Between the pixels of the grid, cracks half a pixel further away count.
         self.reach.max(1) + i32::from(!aligned)
+    }
+
+    /// Whether lines know the places of objects in the depth map.
+    pub fn reads_places(&self) -> bool {
+        let planes = self.planes.is_some_and(|planes| planes.by_objects);
+        planes || self.abstraction.is_some_and(|a| a.by_objects)
     }
 
     /// Whether the pixels that own lines are drawn, for the colour of lines.
@@ -187,6 +196,9 @@ impl LineRequest {
             fog: self.fog.unwrap_or_default(),
             focus: self.focus.unwrap_or_default(),
             planes: self.planes.map(LinePlanes::uniform).unwrap_or_default(),
+            abstraction: (self.abstraction)
+                .map(|a| a.uniform(self.view.flip != 0))
+                .unwrap_or_default(),
             boil: self.boil,
             memory: (self.memory)
                 .map(|memory| memory.uniform(self.grid_reach(), is_new))

@@ -2,9 +2,7 @@
 // the lines of the others run straight through the steps of pixels, and how wide they are.
 
 #import bevy_comics::lines::bend::{end_sign, line_bend, pack_bend, unpack_bend}
-#import bevy_comics::lines::chain::{
-    along_crack, cracks_to_end, first_corner, last_corner, mean_bend,
-}
+#import bevy_comics::lines::chain::{along_crack, cracks_to_end, first_corner, last_corner, mean_bend}
 #import bevy_comics::lines::edge::{CREASE, Grid, SILHOUETTE}
 #import bevy_comics::lines::listed::listed_cell
 #import bevy_comics::lines::pass::line_pass
@@ -39,10 +37,8 @@
 #ifdef IN_FOCUS
 #import bevy_comics::lines::focus::line_sharpness
 #endif
-#ifdef IN_PLANES
-#import bevy_comics::lines::owner_plane::owner_weights
+#import bevy_comics::lines::owner_plane::{crease_left, owner_weights}
 #import bevy_comics::lines::plane_lines::plane_factors
-#endif
 #ifdef LIGHT_WEIGHT
 #import bevy_comics::depth::normal::texel_normal
 #endif
@@ -270,6 +266,9 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
 #ifdef IN_PLANES
     left *= plane_factors(line_pass.planes, owner_weights(line_pass.planes, owner));
 #endif
+#ifdef ABSTRACT_CREASES
+    left.y *= select(1.0, crease_left(line_pass.abstraction, owner), (packed & CREASE) != 0u);
+#endif
     return select(weighted_crack(packed, left.x, left.y), 0u, packed == 0u);
 }
 #endif
@@ -297,8 +296,7 @@ fn without_specks(g: Grid, p: vec2<i32>, cracks: vec2<u32>) -> vec2<u32> {
 }
 
 #ifdef SMOOTH
-// How the lines along both cracks of a pixel leave them. `kept`: whether it has them; `packed`: the
-// packed cracks.
+// How the lines along both cracks of a pixel leave them. `kept`: whether it has them.
 fn bends_of(p: vec2<i32>, kept: vec2<u32>, packed: vec2<u32>) -> u32 {
     let g = line_pass.grid;
     var bends = 0x80808080u;

@@ -238,6 +238,8 @@ pub(crate) struct WeightKey {
     pub planes: bool,
     pub found_borders: bool,
     pub by_objects: bool,
+    /// Creases are fainter where the picture is abstract.
+    pub abstracts: bool,
 }
 
 impl WeightKey {
@@ -258,12 +260,19 @@ impl WeightKey {
             planes: false,
             found_borders: false,
             by_objects: false,
+            abstracts: false,
         }
     }
 
     /// Whether any factor is not 1, those of the budget, the fog and the focus included.
     pub fn any(self) -> bool {
-        self.kinds || self.budget || self.fog || self.focus || self.planes || self.varies()
+        self.kinds
+            || self.budget
+            || self.fog
+            || self.focus
+            || self.planes
+            || self.abstracts
+            || self.varies()
     }
 
     /// Whether the width changes along a line. Where lines crowd, a shift of half a pixel

@@ -92,6 +92,13 @@ fn object_depth(id: u32) -> vec2<f32> {
     let place = object_depths[min(id, arrayLength(&object_depths) - 1u)];
     return vec2(place.x - 1.0, select(0.0, place.y, place.x > 0.0));
 }
+
+// D at a sample of a pixel of the target, and where that shows an object which is treated as a whole,
+// D of this object's centre.
+fn whole_depth(pixel: vec2<i32>, sample: i32, d: f32) -> f32 {
+    let found = object_depth(texel_object(depth_pixel(pixel), sample).x);
+    return mix(d, found.x, found.y);
+}
 #endif
 
 #ifdef UNSTYLED

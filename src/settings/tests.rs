@@ -7,7 +7,7 @@ mod ranges;
 use bevy::color::Color;
 
 use crate::{
-    BlackFlats, ColorHarmony, Colorization, Contours, Creases, DepthMap, DepthMapping,
+    Abstraction, BlackFlats, ColorHarmony, Colorization, Contours, Creases, DepthMap, DepthMapping,
     Desaturation, Effect, Focus, Halftone, Hatching, HeldPose, LineColor, LineWeight, ObjectEdges,
     Outlines, Paint, Paper, PlaneStyle, Planes, PrintOffset, RangeSmoothing, Silhouettes, Sketch,
     SpeedLines, ToneBands, TwoTone, Vignette,

@@ -130,6 +130,14 @@ presets! {
     LIGNE_CLAIRE: "ligne-claire";
     /// Black and white, with shadows as solid ink.
     NOIR: "noir";
+    /// A crime comic: solid shadows that break up into strokes towards the light.
+    HARD_BOILED: "hard-boiled";
+    /// A steel engraving: fine lines that follow the form, crossed in the shadows.
+    ENGRAVING: "engraving";
+    /// A study in graphite: soft strokes in two directions on grained paper.
+    PENCIL_STUDY: "pencil-study";
+    /// A woodcut: few broad cuts and solid blacks, printed with one block.
+    WOODCUT: "woodcut";
     /// Near things keep their colours by day; the distance is a deep blue night.
     COBALT_NIGHT: "cobalt-night";
     /// Colours drain into pale mist; white lines.

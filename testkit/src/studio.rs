@@ -152,9 +152,16 @@ const OUTLINE_PRESETS: [Preset; 4] = [
     presets::SILENT_FILM,
 ];
 
-/// The presets that differ by distance or harmonize colours; last, so that the clock of the others
-/// is the same without them.
-const DEPTH_PRESETS: [Preset; 2] = [presets::STORYBOOK, presets::COPPER_AND_TEAL];
+/// The presets that differ by distance, harmonize colours or hatch; last, so that the clock of the
+/// others is the same without them.
+const LATER_PRESETS: [Preset; 6] = [
+    presets::STORYBOOK,
+    presets::COPPER_AND_TEAL,
+    presets::ENGRAVING,
+    presets::PENCIL_STUDY,
+    presets::WOODCUT,
+    presets::HARD_BOILED,
+];
 
 /// The presets that have a golden picture in a scene: all those that print or paint. The mountains
 /// show those after the first paper and those that outline, the theatre those after the
@@ -186,8 +193,8 @@ pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
     let preset = |name| presets::find(name).expect("listed").style();
     let mut styles: Vec<_> = names.into_iter().map(|name| (name, preset(name))).collect();
     styles.extend(single_effects(scene));
-    let depth = DEPTH_PRESETS.map(Preset::name);
-    styles.extend(depth.map(|name| (name, preset(name))));
+    let later = LATER_PRESETS.map(Preset::name);
+    styles.extend(later.map(|name| (name, preset(name))));
     styles
 }
 

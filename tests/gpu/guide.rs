@@ -184,12 +184,13 @@ mod reference {
 
     use bevy::reflect::{NamedField, TypeInfo, Typed};
     use bevy_comics::{
-        BlackFlats, ColorHarmony, Colorization, ColorizationMode, ComicStyle, ContourOperator,
-        Contours, Creases, DepthMap, DepthMapping, Desaturation, EffectRegistry, EffectType,
-        FieldRange, Focus, FocusAt, FocusStyle, Form, Halftone, HalftoneMode, HarmonyCurve,
-        HarmonyMode, LineBoil, LineColor, LineFog, LineResponse, LineWeight, ObjectEdges, Outlines,
-        Paint, PaintForm, PlaneBorders, PlaneStyle, PlaneUnit, Planes, PrintOffset, RangeSmoothing,
-        ReductionMethod, ScreenAnchor, ScreenSampling, ScreenShape, Silhouettes, Sketch, ToneBands,
+        Abstraction, BlackFlats, ColorHarmony, Colorization, ColorizationMode, ComicStyle,
+        ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, EffectRegistry,
+        EffectType, FieldRange, Focus, FocusAt, FocusStyle, Form, Halftone, HalftoneMode,
+        HarmonyCurve, HarmonyMode, LineBoil, LineColor, LineFog, LineResponse, LineWeight,
+        ObjectEdges, Outlines, Paint, PaintForm, PlaneBorders, PlaneStyle, PlaneUnit, Planes,
+        PrintOffset, RangeSmoothing, ReductionMethod, ScreenAnchor, ScreenSampling, ScreenShape,
+        Silhouettes, Sketch, ToneBands,
     };
 
     const HEAD: &str = "\
@@ -365,6 +366,7 @@ This page is made from the types by a test, which fails where the two differ.
         section::<Desaturation>(&mut page);
         section::<Colorization>(&mut page);
         section::<ColorizationMode>(&mut page);
+        section::<Abstraction>(&mut page);
         section::<ColorHarmony>(&mut page);
         section::<HarmonyMode>(&mut page);
         section::<HarmonyCurve>(&mut page);

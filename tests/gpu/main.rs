@@ -1,5 +1,6 @@
 //! Everything that needs a GPU adapter (a CPU driver will do), in one binary.
 
+mod abstraction;
 mod blending;
 mod boil;
 mod borders;

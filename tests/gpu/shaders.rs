@@ -62,7 +62,7 @@ fn product(lists: &[Vec<Definitions>]) -> Vec<Definitions> {
 type Modes = (&'static str, Vec<Definitions>);
 
 /// The effects that read the picture, depth and normals.
-fn picture_effects() -> [Modes; 9] {
+fn picture_effects() -> [Modes; 10] {
     let mapped = |more: Definition<'static>| [flags(&["MAP", "DEPTH"]), vec![more]].concat();
     [
         (
@@ -168,6 +168,16 @@ fn picture_effects() -> [Modes; 9] {
         ),
         ("color_harmony", color_harmony()),
         (
+            "abstraction",
+            product(&[
+                vec![flags(&["ABSTRACTION", "MAP", "DEPTH"])],
+                vec![
+                    Vec::new(),
+                    flags(&["ABSTRACTION_OBJECTS", "OBJECT_DEPTHS", "OBJECT_IDS"]),
+                ],
+            ]),
+        ),
+        (
             "planes",
             product(&[
                 vec![flags(&["PLANES", "MAP", "DEPTH"])],
@@ -260,6 +270,17 @@ fn debug_views() -> Vec<Definitions> {
             ("TONE_BANDS_FAITHFUL", Some(0)),
             ("LIGHTNESS_CHANGE", None),
         ],
+        [
+            flags(&[
+                "VIEW_EFFECT",
+                "VIEW_ABSTRACTION",
+                "ABSTRACTION",
+                "MAP",
+                "DEPTH",
+            ]),
+            Vec::new(),
+        ]
+        .concat(),
         [
             flags(&["VIEW_EFFECT", "VIEW_PLANES", "PLANES", "MAP", "DEPTH"]),
             vec![("PLANES_BANDS", Some(0))],
@@ -391,7 +412,7 @@ fn every_combination_of_effects_composes_and_validates() {
             for view in &views {
                 // Another mode each time.
                 turn += 1;
-                let more = [&[][..], &[7], &[8], &[7, 8]][turn % 4];
+                let more = [&[][..], &[7], &[8], &[9], &[7, 8, 9]][turn % 5];
                 let chosen = chosen.iter().chain(more);
                 let modes = chosen.map(|i| &pictures[*i]).chain(line);
                 let mut parts: Vec<&[Definition]> = modes
@@ -602,6 +623,10 @@ fn every_kind_of_outline_composes_and_validates() {
             check(&find, &defs);
             check(&cells, &defs);
             check(&cells, &[&defs[..], &["COMPLETED"]].concat());
+            check(
+                &cells,
+                &[&defs[..], &["COMPLETED", "ABSTRACT_LINES"]].concat(),
+            );
             if kinds.contains(&"CREASES") {
                 check(&cells, &[&defs[..], &["COMPLETED", "LEDGES"]].concat());
                 check(&walk, &[&defs[..], &["CRACKS", "LEDGES"]].concat());
@@ -667,6 +692,14 @@ fn every_kind_of_outline_composes_and_validates() {
             &["IN_PLANES", "DEPTH_BORDERS"],
             &["IN_PLANES", "VISIBLE_RANGE", "DEPTH_BORDERS"],
             &["IN_PLANES", "VISIBLE_RANGE", "OBJECT_DEPTHS", "OBJECT_IDS"],
+            &["ABSTRACT_CREASES", "VISIBLE_RANGE"],
+            &["ABSTRACT_CREASES", "OBJECT_DEPTHS", "OBJECT_IDS"],
+            &[
+                "ABSTRACT_CREASES",
+                "IN_PLANES",
+                "OBJECT_DEPTHS",
+                "OBJECT_IDS",
+            ],
         ] {
             let weight = &["WEIGHT", "EDITS", "DEPTH"];
             check(

@@ -345,8 +345,12 @@ fn seen_surface(s: Hatching, p: Pixel) -> Surface {
 }
 #endif
 
-fn hatching(s: Hatching, p: Pixel) -> Pixel {
+fn hatching(settings: Hatching, p: Pixel) -> Pixel {
     var out = p;
+    var s = settings;
+#ifdef ABSTRACTION
+    s.spacing *= p.spacing;
+#endif
     let color = p.color / max(p.alpha, 1e-3);
     var light = lightness(color);
 #ifdef HATCHING_ON_THINGS

@@ -11,8 +11,7 @@
 #import bevy_comics::depth::view::depth_borders
 #endif
 #ifdef OBJECT_DEPTHS
-#import bevy_comics::depth::view::depth_pixel
-#import bevy_comics::objects::{object_depth, texel_object}
+#import bevy_comics::objects::whole_depth
 #endif
 
 // How a plane changes OKLab colours: lightness to `contrast` times it plus `shift`, chroma to
@@ -92,11 +91,13 @@ fn borders_of(s: Planes) -> vec2<f32> {
 fn plane_depth(pixel: vec2<i32>, sample: i32, d: f32) -> f32 {
 #ifdef PLANES_OBJECTS
 #ifdef OBJECT_DEPTHS
-    let found = object_depth(texel_object(depth_pixel(pixel), sample).x);
-    return mix(d, found.x, found.y);
-#endif
-#endif
+    return whole_depth(pixel, sample, d);
+#else
     return d;
+#endif
+#else
+    return d;
+#endif
 }
 
 // Fractions of the planes at a pixel: the mean over its samples, because its colour is their

@@ -2,7 +2,7 @@
 
 // Divides the picture into areas of uniform tone ([CL] 3.1, Eq. 6).
 
-#import bevy_comics::effect::color::{banded, largest, lightness, luminance, srgb_decode, srgb_encode}
+#import bevy_comics::effect::color::{banded, largest, lightness, luminance, split_bands, srgb_decode, srgb_encode}
 #import bevy_comics::effect::pixel::Pixel
 
 struct ToneBands {
@@ -38,9 +38,13 @@ fn equation_6(c: f32) -> f32 {
 
 // The middle of the band that a lightness `y` falls into, 0 to 1. `change` is the
 // change of the lightness over a pixel. The step between two bands is `softness`
-// pixels wide, and at most one band.
-fn band_tone(s: ToneBands, y: f32, change: f32) -> f32 {
+// pixels wide, and at most one band. `splits`: how often bands have split, see Abstraction.
+fn band_tone(s: ToneBands, y: f32, change: f32, splits: f32) -> f32 {
+#ifdef ABSTRACTION
+    return split_bands(s.levels, splits, y, s.softness * change);
+#else
     return banded(s.levels, y, s.softness * change);
+#endif
 }
 
 // The colour with another luminance and the same chromaticity. If the display cannot
@@ -60,13 +64,13 @@ fn with_luminance(linear: vec3<f32>, target_luminance: f32) -> vec3<f32> {
     return mix(grey, scaled, room);
 }
 
-fn banded_color(s: ToneBands, linear: vec3<f32>, change: f32) -> vec3<f32> {
+fn banded_color(s: ToneBands, linear: vec3<f32>, change: f32, splits: f32) -> vec3<f32> {
     var banded: vec3<f32>;
     if is_faithful(s) {
         let c = srgb_encode(linear);
         banded = srgb_decode(vec3(equation_6(c.r), equation_6(c.g), equation_6(c.b)));
     } else {
-        let tone = band_tone(s, lightness(linear), change);
+        let tone = band_tone(s, lightness(linear), change, splits);
         banded = with_luminance(linear, tone * tone);
     }
     return mix(linear, banded, s.amount);
@@ -75,7 +79,7 @@ fn banded_color(s: ToneBands, linear: vec3<f32>, change: f32) -> vec3<f32> {
 fn tone_bands(s: ToneBands, p: Pixel) -> Pixel {
     var out = p;
     // The lowest band is not black: nothing is added where the background shows through.
-    out.color = mix(p.color, banded_color(s, p.color, p.change), p.alpha);
+    out.color = mix(p.color, banded_color(s, p.color, p.change, p.splits), p.alpha);
     return out;
 }
 

@@ -35,6 +35,7 @@ fn fuzz_fields<E: Effect>() {
 fn a_million_floats_in_every_field_of_the_page_effects() {
     fuzz_fields::<ColorHarmony>();
     fuzz_fields::<Planes>();
+    fuzz_fields::<Abstraction>();
     fuzz_fields::<Halftone>();
     fuzz_fields::<Hatching>();
     fuzz_fields::<PrintOffset>();

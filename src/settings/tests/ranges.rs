@@ -56,6 +56,7 @@ fn the_range_on_a_field_is_the_range_that_is_used() {
     check(Colorization::sanitized);
     check(ColorHarmony::sanitized);
     check(Planes::sanitized);
+    check(Abstraction::sanitized);
     check(PlaneStyle::sanitized);
     check(BlackFlats::sanitized);
     check(Contours::sanitized);

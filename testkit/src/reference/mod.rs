@@ -1,6 +1,7 @@
 //! Twins of the shaders in double precision. A twin has the name of the WGSL file
 //! that it mirrors. It is written from the definition, not from the shader.
 
+pub mod abstraction;
 pub mod bend;
 pub mod black_flats;
 pub mod blocks;

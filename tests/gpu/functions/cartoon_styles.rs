@@ -299,7 +299,7 @@ fn tone_bands_are_their_twin() {
         let results = gpu().evaluate(
             "#import bevy_comics::effects::tone_bands::{ToneBands, banded_color}",
             "let s = ToneBands(i(3u), i(4u), i(6u), u(7u));
-             return vec4(banded_color(s, vec3(i(0u), i(1u), i(2u)), i(5u)), 0.0);",
+             return vec4(banded_color(s, vec3(i(0u), i(1u), i(2u)), i(5u), 0.0), 0.0);",
             rows,
         );
         for (row, result) in rows.iter().zip(results) {

@@ -1,6 +1,7 @@
 //! Compares the crate's WGSL functions with their twins, on random inputs and on
 //! edge cases.
 
+mod abstraction;
 mod bend;
 mod blocks;
 mod budget;

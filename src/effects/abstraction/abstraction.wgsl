@@ -1,0 +1,55 @@
+#define_import_path bevy_comics::effects::abstraction
+
+// How abstract the picture is at a pixel, for the effects that follow, and paler colours.
+
+#import bevy_comics::depth::map::graded
+#import bevy_comics::depth::view::view
+#import bevy_comics::effect::color::luminance
+#import bevy_comics::effect::pixel::Pixel
+#ifdef OBJECT_DEPTHS
+#import bevy_comics::objects::whole_depth
+#endif
+
+struct Abstraction {
+    // Abstraction at D = 0 and at D = 1, and the exponent of D between them.
+    near: f32,
+    far: f32,
+    exponent: f32,
+    // How often bands split where there is no abstraction.
+    splits: f32,
+    // Octaves by which strokes are farther apart at full abstraction.
+    spacing: f32,
+    // Factor of the saturation there.
+    saturation: f32,
+}
+
+// The abstraction of a pixel, 0 to 1. In multisampled views, the object is that of the first
+// sample.
+fn abstraction_of(s: Abstraction, p: Pixel) -> f32 {
+    var d = select(p.depth.x, p.depth.y, view.flip != 0u);
+#ifdef ABSTRACTION_OBJECTS
+#ifdef OBJECT_DEPTHS
+    d = whole_depth(vec2<i32>(floor(p.position)), 0, d);
+#endif
+#endif
+    return graded(s.near, s.far, s.exponent, select(d, 1.0 - d, view.flip != 0u));
+}
+
+// The colour with part of its saturation: mixed with the grey of its luminance.
+fn abstract_color(s: Abstraction, linear: vec3<f32>, a: f32) -> vec3<f32> {
+    return mix(linear, vec3(luminance(linear)), a * (1.0 - s.saturation));
+}
+
+fn abstraction(s: Abstraction, p: Pixel) -> Pixel {
+    var out = p;
+    let a = abstraction_of(s, p);
+    out.color = abstract_color(s, p.color, a);
+    out.splits = s.splits * (1.0 - a);
+    out.spacing = exp2(s.spacing * a);
+    return out;
+}
+
+// The debug view, in display codes.
+fn abstraction_view(s: Abstraction, p: Pixel) -> vec3<f32> {
+    return vec3(abstraction_of(s, p));
+}

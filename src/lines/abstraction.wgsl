@@ -1,0 +1,35 @@
+#define_import_path bevy_comics::lines::abstraction
+
+// Fewer and fainter lines where the picture is abstract. Pure functions.
+
+#import bevy_comics::depth::map::graded
+
+// Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
+struct LineAbstraction {
+    // Abstraction at D = 0 and at D = 1, and the exponent of D between them.
+    near: f32,
+    far: f32,
+    exponent: f32,
+    // Factor of the response that a line needs at full abstraction, 1 or more.
+    threshold: f32,
+    crease_opacity: f32,
+    // 1: creases follow the centre of their object; 0: their own place.
+    by_objects: f32,
+    // 1: near and far are exchanged.
+    flip: f32,
+    unused: f32,
+}
+
+fn abstraction_at(s: LineAbstraction, d: f32) -> f32 {
+    return graded(s.near, s.far, s.exponent, mix(d, 1.0 - d, s.flip));
+}
+
+// The factor of the responses of edges at a depth of the map.
+fn abstract_response(s: LineAbstraction, d: f32) -> f32 {
+    return 1.0 / mix(1.0, s.threshold, abstraction_at(s, d));
+}
+
+// The factor of the opacity of creases.
+fn abstract_crease(s: LineAbstraction, d: f32) -> f32 {
+    return mix(1.0, s.crease_opacity, abstraction_at(s, d));
+}

@@ -1,0 +1,27 @@
+//! Twin of `effects/abstraction/abstraction.wgsl` and `lines/abstraction.wgsl`.
+
+use super::{Rgb, color::luminance, mix, smoothstep, tone_bands::band_tone};
+
+/// What is `near` at D = 0 and `far` at D = 1.
+pub fn graded([near, far]: [f64; 2], exponent: f64, d: f64) -> f64 {
+    mix(near, far, d.clamp(0.0, 1.0).powf(exponent))
+}
+
+/// The colour at an abstraction `a`. `saturation`: its factor at full abstraction.
+pub fn color(linear: Rgb, saturation: f64, a: f64) -> Rgb {
+    let grey = luminance(linear);
+    linear.map(|c| mix(c, grey, a * (1.0 - saturation)))
+}
+
+/// Bands that have split `splits` times. `step`: the width of a step in lightness.
+pub fn split_bands(levels: f64, splits: f64, y: f64, step: f64) -> f64 {
+    let whole = splits.floor();
+    let [fewer, more] =
+        [0.0, 1.0].map(|one| band_tone(levels * (whole + one).exp2(), step, y, 1.0));
+    mix(fewer, more, smoothstep(0.0, 1.0, splits - whole))
+}
+
+/// Factors of the response of an edge, and of the opacity of a crease.
+pub fn lines([threshold, crease_opacity]: [f64; 2], a: f64) -> [f64; 2] {
+    [1.0 / mix(1.0, threshold, a), mix(1.0, crease_opacity, a)]
+}
