@@ -9,7 +9,7 @@ use bevy::{
 use bevy_comics::{
     BlackFlats, ColorHarmony, Colorization, ColorizationMode, ComicStyle, ContourOperator,
     Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, Halftone, HarmonyCurve,
-    HarmonyMode, KeyLight, LineColor, LineResponse, Outlines, Paint, Paper, PlaneBorders,
+    HarmonyMode, Hatching, KeyLight, LineColor, LineResponse, Outlines, Paint, Paper, PlaneBorders,
     PlaneStyle, PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape, Silhouettes, Sketch,
     ToneBands, VisibleDepthRange, presets,
 };
@@ -208,18 +208,37 @@ pub fn assert_pass_is_its_twin(
 }
 
 /// A style without what the twin of the whole picture does not know, and what other tests compare
-/// with twins of their own: paint, which changes the picture before the fused pass, and lines in
-/// the colours of surfaces.
+/// with twins of their own: paint, which changes the picture before the fused pass, hatching, lines
+/// in the colours of surfaces, and of planes the borders that are found, whole objects and lines.
 pub fn known_to_twin(style: ComicStyle) -> ComicStyle {
     let outlines = style.get::<Outlines>().map(|outlines| Outlines {
         color: LineColor::Ink,
         ..*outlines
     });
-    let style = style.without::<Paint>();
-    match outlines {
-        Some(outlines) => style.with(outlines),
-        None => style,
+    let planes = style.get::<Planes>().map(|planes| {
+        let plain = |plane: PlaneStyle| PlaneStyle {
+            line_width: 1.0,
+            line_opacity: 1.0,
+            line_color_amount: 0.0,
+            ..plane
+        };
+        Planes {
+            near: plain(planes.near),
+            middle: plain(planes.middle),
+            far: plain(planes.far),
+            by: PlaneUnit::Pixel,
+            borders: PlaneBorders::Fixed,
+            ..*planes
+        }
+    });
+    let mut style = style.without::<Paint>().without::<Hatching>();
+    if let Some(outlines) = outlines {
+        style.insert(outlines);
     }
+    if let Some(planes) = planes {
+        style.insert(planes);
+    }
+    style
 }
 
 #[test]

@@ -83,7 +83,7 @@ impl PlaneStyle {
         bands: 0,
         line_width: 1.0,
         line_opacity: 1.0,
-        line_color: Color::BLACK,
+        line_color: Color::srgb(0.0, 0.0, 0.0),
         line_color_amount: 0.0,
         hatching: 1.0,
         halftone: 1.0,
