@@ -33,7 +33,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     run.save("page_work", &table)
 }
 
-/// The largest change of the lightness in OKLab by a harmony, of 32 x 32 x 32 colours at three
+/// The largest change of the lightness in `OKLab` by a harmony, of 32 x 32 x 32 colours at three
 /// places in the depth map; the complement is as strong as it can be.
 fn lightness_error(mode: HarmonyMode) -> f64 {
     let s = ColorHarmony {
