@@ -5,8 +5,8 @@ use bevy::{
     prelude::*,
 };
 use bevy_comics::{
-    ColorHarmony, ComicStyle, Creases, DepthWrite, Desaturation, Focus, FocusAt, FocusStyle,
-    Halftone, HalftoneMode, Hatching, LineColor, LineResponse, LineWeight, LineWidths,
+    Abstraction, ColorHarmony, ComicStyle, Creases, DepthWrite, Desaturation, Focus, FocusAt,
+    FocusStyle, Halftone, HalftoneMode, Hatching, LineColor, LineResponse, LineWeight, LineWidths,
     MeshSections, NoStyle, OutlineStyle, Outlines, Paint, PaintForm, Paper, PlaneBorders,
     PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape, SelectionOutline, Silhouettes,
     SpeedLines, TwoTone, XRayOutline,
@@ -136,6 +136,7 @@ fn page() -> Vec<(String, Wear)> {
         ("print offset", none.clone().with(PrintOffset::default())),
         ("hatching", none.clone().with(Hatching::default())),
         ("color harmony", none.clone().with(ColorHarmony::default())),
+        ("abstraction", none.clone().with(Abstraction::default())),
         ("planes", none.clone().with(Planes::default())),
         (
             "planes; of pixels",

@@ -116,6 +116,7 @@ fn a_turntable_is_an_animated_png_or_numbered_files() {
 
 #[test]
 fn a_sheet_shows_the_model_in_every_preset_with_its_name() {
+    const COLUMNS: u32 = 6;
     let folder = folder("sheet");
     Gltf::new(&figure(), 1.0, [0.0; 3]).write_glb(&folder.join("figure.glb"));
     let arguments = [
@@ -132,13 +133,13 @@ fn a_sheet_shows_the_model_in_every_preset_with_its_name() {
     let sheet = image::open(folder.join("s.png"))
         .expect("a sheet")
         .to_rgb8();
-    // Five columns: gaps of 4 and labels of 12 pixels.
+    // Six columns: gaps of 4 and labels of 12 pixels.
     let count = bevy_comics::presets::ALL.len() as u32 + 1;
-    let rows = count.div_ceil(5);
-    assert_eq!(sheet.dimensions(), (5 * 76 + 4, rows * 64 + 4));
+    let rows = count.div_ceil(COLUMNS);
+    assert_eq!(sheet.dimensions(), (COLUMNS * 76 + 4, rows * 64 + 4));
     let (mut pictures, mut labels) = (HashSet::new(), HashSet::new());
     for cell in 0..count {
-        let (x, y) = (4 + cell % 5 * 76, 4 + cell / 5 * 64);
+        let (x, y) = (4 + cell % COLUMNS * 76, 4 + cell / COLUMNS * 64);
         let part = |y, height| image::imageops::crop_imm(&sheet, x, y, 72, height).to_image();
         let label = part(y + 48, 12);
         assert!(

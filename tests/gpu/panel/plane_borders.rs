@@ -19,17 +19,33 @@ fn middle(state: &Value, widget: &str) -> f64 {
     0.5 * (side(0) + side(2))
 }
 
+const BORDERS: [&str; 2] = ["border.0", "border.1"];
+
+/// The state once the borders stay where they are: those that are found follow the depths slowly.
+fn at_rest(window: &Window) -> Value {
+    let mut before = window.state();
+    for _ in 0..50 {
+        window.frames(20);
+        let state = window.state();
+        let moved = |name: &&str| (middle(&state, name) - middle(&before, name)).abs() > 0.1;
+        if !BORDERS.iter().any(moved) {
+            return state;
+        }
+        before = state;
+    }
+    panic!("the borders do not come to rest: {before:#}");
+}
+
 #[test]
 fn borders_of_planes_are_dragged_and_moved_by_keys() {
     let arguments = ["--scene", "village", "--style", "storybook"];
     let window = Window::open([WIDTH, HEIGHT], SCALE, &arguments);
     window.key("F10");
     window.click("tab.Views");
-    let state = window.until("the borders", |state| {
-        ["border.0", "border.1"]
-            .iter()
-            .all(|name| state["widgets"][name].is_array())
+    window.until("the borders", |state| {
+        BORDERS.iter().all(|name| state["widgets"][name].is_array())
     });
+    let state = at_rest(&window);
     let start = planes(&window.style(0));
     assert_eq!(start.borders, PlaneBorders::Auto);
     let first = middle(&state, "border.0");
