@@ -23,8 +23,6 @@ fn closing_step(small: &mut Small, scale: u32) {
         Transform::IDENTITY,
         Projection::Orthographic(unit_per_pixel(SIZE)),
     ));
-    // The walls meet 60 pixels to the right of the middle.
-    let angle = 1f32.to_radians();
     put(
         small,
         Rectangle::new(400.0, 200.0),
@@ -35,8 +33,8 @@ fn closing_step(small: &mut Small, scale: u32) {
         small,
         Rectangle::new(800.0, 400.0),
         Color::WHITE,
-        Transform::from_xyz(0.0, 0.0, -50.0 - 60.0 * angle.tan())
-            .with_rotation(Quat::from_rotation_y(-angle)),
+        Transform::from_xyz(0.0, 0.0, -65.0)
+            .with_rotation(Quat::from_rotation_y(-10f32.to_radians())),
     );
 }
 

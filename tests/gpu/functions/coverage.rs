@@ -42,8 +42,8 @@ fn coverage_adds_up_to_the_width_in_every_direction() {
         for width in [0.3, 0.6, 1.0, 2.0, 3.0, 5.0, 8.0] {
             let half_width = 0.5 * width;
             for place in 0..16 {
-                let distances =
-                    (-30..30).map(|y| (f64::from(y) + f64::from(place) / 16.0).abs() * cosine);
+                let distances = (-30..30)
+                    .map(|y| (f64::from(y) + f64::from(place) / 16.0).abs() * cosine);
                 let sum: f64 = distances
                     .clone()
                     .map(|distance| straight_coverage(distance, half_width, ramp))
@@ -53,10 +53,7 @@ fn coverage_adds_up_to_the_width_in_every_direction() {
                 for distance in distances {
                     let disc = disc_coverage(distance, half_width);
                     let line = straight_coverage(distance, half_width, ramp);
-                    assert!(
-                        disc <= line + 1e-12,
-                        "slope {slope}, {width} px: {distance}"
-                    );
+                    assert!(disc <= line + 1e-12, "slope {slope}, {width} px: {distance}");
                 }
             }
         }
