@@ -8,10 +8,9 @@
 #ifdef BOIL
 #import bevy_comics::lines::boil::boiled
 #endif
-#import bevy_comics::lines::coverage::{disc_coverage, line_ramp, straight_coverage}
 #import bevy_comics::lines::edge::{
-    encode_ink, ink_of, inward_step, is_apart, largest_opacity, owner_step, segment_distance,
-    unpack_middle, unpack_owner, unpack_width,
+    encode_ink, ink_of, inward_step, is_apart, largest_opacity, line_coverage, owner_step,
+    segment_distance, unpack_middle, unpack_owner, unpack_width,
 }
 #ifdef BRIDGED
 #import bevy_comics::lines::gaps::source_of
@@ -80,12 +79,12 @@ var<private> viewport_scale: vec2<f32>;
 var<private> height: f32;
 #endif
 
-// The half width of a line at the pixel.
-fn width_here(half_width: f32) -> f32 {
+// The fraction of the pixel that a line covers whose middle is at a distance.
+fn covered(away: f32, half_width: f32) -> f32 {
 #ifdef SPREAD
-    return spread_width(line_pass.sheet, half_width, height);
+    return line_coverage(away, spread_width(line_pass.sheet, half_width, height));
 #else
-    return half_width;
+    return line_coverage(away, half_width);
 #endif
 }
 
@@ -104,8 +103,7 @@ fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: Owner, at
     let half_width = unpack_width(packed >> 20u);
     let away = length((middle - at) * viewport_scale);
     let exists = (packed & 7u) != 0u;
-    let covered = disc_coverage(away, width_here(half_width));
-    let kinds = select(0.0, covered, exists) * ink_of(packed);
+    let kinds = select(0.0, covered(away, half_width), exists) * ink_of(packed);
     (*ink).kinds = max((*ink).kinds, kinds);
 #ifdef OWNERS
     let alpha = alphas(kinds);
@@ -361,9 +359,7 @@ fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
         let s = viewport_scale;
         let away = segment_distance(at * s, ink.first * s, ink.second * s);
         let half_width = unpack_width(ink.packed >> 20u);
-        let ramp = line_ramp((ink.second - ink.first) * s);
-        let covered = straight_coverage(away, width_here(half_width), ramp);
-        let straight = covered * ink_of(ink.packed);
+        let straight = covered(away, half_width) * ink_of(ink.packed);
         ink.kinds = max(ink.kinds, straight);
 #ifdef OWNERS
         let stronger = alphas(straight) > ink.strongest;

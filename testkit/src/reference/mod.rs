@@ -12,7 +12,6 @@ pub mod color;
 pub mod colorization;
 pub mod columns;
 pub mod contours;
-pub mod coverage;
 pub mod crack;
 pub mod desaturation;
 pub mod draw;

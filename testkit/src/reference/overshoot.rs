@@ -5,7 +5,6 @@ use std::collections::HashSet;
 
 use super::{
     chain::follow,
-    coverage::{line_ramp, straight_coverage},
     crack::{Crack, SIDES, THINNEST},
     draw::{ink_of, middle},
     edge::segment_distance,
@@ -132,8 +131,6 @@ impl Stroke {
         let fainter = (half_width / thinnest.max(1e-3)).min(1.0);
         let distance = segment_distance(at, self.start, self.tip);
         let left = fainter * on.dry_ink(along, thinner.half_width);
-        let half_width = on.half_width(thinner.half_width);
-        let covered = straight_coverage(distance, half_width, line_ramp(along));
-        ink_of(&thinner, nudge, covered).map(|ink| ink * left)
+        ink_of(&thinner, nudge, distance, on).map(|ink| ink * left)
     }
 }

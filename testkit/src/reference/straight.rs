@@ -2,7 +2,6 @@
 //! cracks.
 
 use super::{
-    coverage::{line_ramp, straight_coverage},
     draw::{Line, distance, ink_of, is_apart},
     edge::segment_distance,
     sheet::Spot,
@@ -38,14 +37,9 @@ fn between(
     nudge: f64,
 ) -> ([f64; 3], f64) {
     if distance(*from, to) < 1.45 {
+        let ink = ink_of(crack, nudge, segment_distance(at, *from, to), on);
         let along = [to[0] - from[0], to[1] - from[1]];
-        let away = segment_distance(at, *from, to);
-        let half_width = on.half_width(crack.half_width);
-        let covered = straight_coverage(away, half_width, line_ramp(along));
-        (
-            ink_of(crack, nudge, covered),
-            on.dry_ink(along, crack.half_width),
-        )
+        (ink, on.dry_ink(along, crack.half_width))
     } else {
         ([0.0; 3], 1.0)
     }

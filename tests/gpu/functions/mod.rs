@@ -7,7 +7,6 @@ mod budget;
 mod cartoon_styles;
 mod color_styles;
 mod contour_response;
-mod coverage;
 mod depth_map;
 mod finish;
 mod focus;
