@@ -26,7 +26,7 @@ pub fn write(folder: &Path) -> Result<(), String> {
         (presets::POP_POSTER, BuiltIn::Village, [520, 150]),
     ];
     save(
-        &parts(&printed, UVec2::new(320, 240), 3),
+        &parts(&printed, UVec2::new(272, 190), 3),
         &folder.join("print.png"),
     )?;
     let painted = [
@@ -60,7 +60,7 @@ fn rows(pictures: &[RgbaImage], size: UVec2, columns: usize) -> RgbaImage {
 
 /// Without a focus, then in its five styles.
 fn focus() -> RgbaImage {
-    let size = UVec2::new(480, 270);
+    let size = UVec2::new(400, 225);
     let mut studio = Studio::new(BuiltIn::Village, size, Msaa::Sample4);
     let all = [
         FocusStyle::Blur,
@@ -72,5 +72,5 @@ fn focus() -> RgbaImage {
     let without = ComicStyle::new().with(Outlines::default());
     let styles = std::iter::once(without).chain(all.map(village_focus));
     let pictures: Vec<RgbaImage> = styles.map(|style| studio.shoot(Some(&style))).collect();
-    rows(&pictures, size, 3)
+    rows(&pictures, size, 2)
 }

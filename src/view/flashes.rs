@@ -2,6 +2,8 @@
 
 use std::collections::VecDeque;
 
+use bevy::{camera::NormalizedRenderTarget, ecs::resource::Resource};
+
 /// The flashes of a camera in the last second, in real time. Those that are announced may begin
 /// later: while a pipeline is compiled or the game is paused, the picture does not change.
 #[derive(Debug, Default)]
@@ -39,5 +41,25 @@ impl Flashes {
             *time = now;
         }
         self.begun = begun;
+    }
+}
+
+/// Flashes whose camera is gone or has another render target by now. Their targets showed them, so
+/// they count there.
+#[derive(Resource, Debug, Default)]
+pub(super) struct PastFlashes(Vec<(Option<NormalizedRenderTarget>, f64)>);
+
+impl PastFlashes {
+    /// Keeps the flashes that a camera had on a target.
+    pub fn keep(&mut self, target: Option<&NormalizedRenderTarget>, flashes: &Flashes) {
+        let times = flashes.times.iter();
+        self.0.extend(times.map(|time| (target.cloned(), *time)));
+    }
+
+    /// Number of those on a target in the second before `now`. Forgets older ones.
+    pub fn recent(&mut self, target: Option<&NormalizedRenderTarget>, now: f64) -> usize {
+        self.0.retain(|(_, time)| now - time < 1.0);
+        let on_target = self.0.iter().filter(|(at, _)| at.as_ref() == target);
+        on_target.count()
     }
 }

@@ -7,6 +7,7 @@ use bevy::{
         component::Component,
         entity::Entity,
         event::EntityEvent,
+        lifecycle::Remove,
         observer::On,
         query::With,
         reflect::ReflectResource,
@@ -18,7 +19,7 @@ use bevy::{
     time::{Real, Time},
 };
 
-use super::flashes::Flashes;
+use super::flashes::{Flashes, PastFlashes};
 use crate::{
     clock,
     diagnostics::ComicsDiagnostics,
@@ -37,12 +38,12 @@ use crate::{
 /// default clock: while the game is paused, the impact stays. The first impact of a camera
 /// compiles a pipeline; it is shown, and its time begins, when that is done.
 ///
-/// **Flashes.** Fast flashes can cause seizures (WCAG 2.3.1). At most
-/// [`Impact::MOST_FLASHES`] flashes are begun in any second of real time on a render target, by
-/// all of its cameras together: what would exceed that is refused, and counted in
-/// [`ComicsDiagnostics::impacts`](crate::ComicsDiagnostics::impacts). A flash counts from the
-/// frame that shows it, not from its trigger. The resource [`ReduceFlashing`] replaces the tones
-/// by a dim picture.
+/// **Flashes.** Fast flashes can cause seizures (WCAG 2.3.1). At most [`Impact::MOST_FLASHES`]
+/// flashes are begun in any second of real time on a render target, by all of its cameras together,
+/// also those that are gone by now: what would exceed that is refused, and counted in
+/// [`ComicsDiagnostics::impacts`](crate::ComicsDiagnostics::impacts). A flash counts from the frame
+/// that shows it, not from its trigger. The resource [`ReduceFlashing`] replaces the tones by a dim
+/// picture.
 ///
 /// ```
 /// # use bevy::ecs::prelude::*;
@@ -154,6 +155,8 @@ pub struct ReduceFlashing(pub bool);
 pub(super) struct Impacts {
     running: Option<Running>,
     flashes: Flashes,
+    /// Where the camera showed them.
+    target: Option<NormalizedRenderTarget>,
 }
 
 #[derive(Debug)]
@@ -195,6 +198,14 @@ impl Impacts {
         self.running
             .as_ref()
             .map_or(&[], |running| &running.effects)
+    }
+
+    /// Notes the target of the camera. If it had another one, its flashes count on both.
+    fn follow(&mut self, target: Option<&NormalizedRenderTarget>, past: &mut PastFlashes) {
+        if self.target.as_ref() != target {
+            past.keep(self.target.as_ref(), &self.flashes);
+            self.target = target.cloned();
+        }
     }
 
     /// Starts an impact, unless it would exceed the limit of flashes. `others`: flashes of other
@@ -248,6 +259,7 @@ fn normalized(target: Option<&RenderTarget>) -> Option<NormalizedRenderTarget> {
 pub(super) fn start_impact(
     impact: On<Impact>,
     mut cameras: Query<(Entity, Option<&RenderTarget>, Option<&mut Impacts>), With<Camera>>,
+    mut past: ResMut<PastFlashes>,
     mut commands: Commands,
     clocks: Clocks,
     mut diagnostics: ResMut<ComicsDiagnostics>,
@@ -260,15 +272,24 @@ pub(super) fn start_impact(
         return;
     };
     let target = normalized(target);
+    for (_, at, impacts) in &mut cameras {
+        if let Some(mut impacts) = impacts {
+            impacts.follow(normalized(at).as_ref(), &mut past);
+        }
+    }
     let others = cameras
         .iter()
         .filter(|(other, at, _)| *other != camera && normalized(*at) == target)
         .filter_map(|(.., impacts)| impacts);
     let others: usize = others.map(|impacts| impacts.flashes.recent(now)).sum();
+    let others = others + past.recent(target.as_ref(), now);
     let shown = if let Ok((.., Some(mut impacts))) = cameras.get_mut(camera) {
         impacts.start(impact, others, now)
     } else {
-        let mut impacts = Impacts::default();
+        let mut impacts = Impacts {
+            target,
+            ..Impacts::default()
+        };
         let shown = impacts.start(impact, others, now);
         commands.entity(camera).insert(impacts);
         shown
@@ -285,15 +306,28 @@ pub(super) fn start_impact(
     }
 }
 
+/// Keeps the flashes of a camera that is despawned.
+pub(super) fn keep_flashes(
+    removed: On<Remove, Impacts>,
+    cameras: Query<&Impacts>,
+    mut past: ResMut<PastFlashes>,
+) {
+    if let Ok(impacts) = cameras.get(removed.entity) {
+        past.keep(impacts.target.as_ref(), &impacts.flashes);
+    }
+}
+
 /// Draws the impacts that are shown.
 pub(super) fn run_impacts(
-    mut cameras: Query<(Entity, &mut Impacts)>,
+    mut cameras: Query<(Entity, Option<&RenderTarget>, &mut Impacts)>,
+    mut past: ResMut<PastFlashes>,
     clocks: Clocks,
     reduced: Res<ReduceFlashing>,
     diagnostics: Res<ComicsDiagnostics>,
 ) {
     let now = clocks.now();
-    for (camera, mut impacts) in &mut cameras {
+    for (camera, target, mut impacts) in &mut cameras {
+        impacts.follow(normalized(target).as_ref(), &mut past);
         if impacts.running.is_some() {
             let waits = diagnostics.is_compiling(camera);
             impacts.run(now, waits, reduced.0);

@@ -32,10 +32,11 @@ use crate::{
     objects::{ObjectChanges, ObjectStyles},
     schedule::ComicsSystems,
 };
+use flashes::PastFlashes;
 #[cfg(any(feature = "objects", feature = "cartoon"))]
 pub use held_pose::HeldPose;
 pub use impact::{Impact, ReduceFlashing};
-use impact::{Impacts, run_impacts, start_impact};
+use impact::{Impacts, keep_flashes, run_impacts, start_impact};
 pub use light::KeyLight;
 use prepasses::{give_up_claims, request_prepasses};
 
@@ -58,7 +59,9 @@ impl Plugin for ViewPlugin {
             .register_type::<Impact>()
             .register_type::<ReduceFlashing>()
             .init_resource::<ReduceFlashing>()
+            .init_resource::<PastFlashes>()
             .add_observer(start_impact)
+            .add_observer(keep_flashes)
             .add_observer(give_up_claims::<DepthPrepass>)
             .add_observer(give_up_claims::<NormalPrepass>)
             .add_systems(

@@ -35,6 +35,23 @@ pub fn gpu() -> &'static Gpu {
 }
 
 impl Gpu {
+    /// A compute pipeline whose layout is that of the shader.
+    pub fn compute_pipeline(
+        &self,
+        module: wgpu::naga::Module,
+        entry_point: &str,
+    ) -> wgpu::ComputePipeline {
+        self.device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: None,
+                layout: None,
+                module: &self.shader(module),
+                entry_point: Some(entry_point),
+                compilation_options: Default::default(),
+                cache: None,
+            })
+    }
+
     pub fn shader(&self, module: wgpu::naga::Module) -> wgpu::ShaderModule {
         self.device
             .create_shader_module(wgpu::ShaderModuleDescriptor {
@@ -98,16 +115,7 @@ impl Gpu {
             }}"
         );
         let module = wgsl::module(&source, &["DEPTH"]).unwrap_or_else(|error| panic!("{error}"));
-        let pipeline = self
-            .device
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: None,
-                layout: None,
-                module: &self.shader(module),
-                entry_point: Some("evaluate"),
-                compilation_options: Default::default(),
-                cache: None,
-            });
+        let pipeline = self.compute_pipeline(module, "evaluate");
         let bytes: Vec<u8> = rows
             .iter()
             .flatten()

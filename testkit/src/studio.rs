@@ -195,6 +195,10 @@ pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
     styles.extend(single_effects(scene));
     let later = LATER_PRESETS.map(Preset::name);
     styles.extend(later.map(|name| (name, preset(name))));
+    if let BuiltIn::Mountains | BuiltIn::Village = scene {
+        let name = presets::WATERCOLOR.name();
+        styles.push((name, preset(name)));
+    }
     styles
 }
 

@@ -22,16 +22,7 @@ fn divide() -> &'static wgpu::ComputePipeline {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/depth/borders.wgsl");
         let source = std::fs::read_to_string(path).expect("the shader");
         let module = wgsl::module(&source, &[]).unwrap_or_else(|error| panic!("{error}"));
-        gpu()
-            .device
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: None,
-                layout: None,
-                module: &gpu().shader(module),
-                entry_point: Some("divide"),
-                compilation_options: Default::default(),
-                cache: None,
-            })
+        gpu().compute_pipeline(module, "divide")
     })
 }
 

@@ -44,18 +44,48 @@ fn apart(reference: &Path, picture: &image::RgbaImage) -> (f32, f64) {
     (flip_mean(&reference, picture), far_off(&reference, picture))
 }
 
-/// Twice the largest fraction of pixels that were far off between two processors that round
-/// differently (both EPYC, with and without AVX-512; LLVM 15): 0.0038, of the 19 pictures that
-/// differed most. Edges of dots and of tone bands move by a pixel where the scene rounds
-/// differently. FLIP was at most 0.0071 there, but for two pictures that have a second reference.
-const MOST_FAR_OFF: f64 = 0.0076;
+/// The fraction of pixels that may be far off.
+const MOST_FAR_OFF: f64 = 0.001;
 
-fn is_alike((flip, off): (f32, f64)) -> bool {
-    flip <= 0.01 && off <= MOST_FAR_OFF
+/// Styles whose references are of one processor so far. Where another one rounds the scene
+/// differently, edges of dots, strokes and tone bands move by a pixel.
+const ONE_PROCESSOR: [&str; 18] = [
+    "copper-and-teal",
+    "engraving",
+    "focus",
+    "focus-dots",
+    "focus-lines",
+    "focus-offset",
+    "focus-paint",
+    "gouache",
+    "hard-boiled",
+    "manga-page",
+    "object-screens",
+    "pencil-study",
+    "pop-poster",
+    "risograph",
+    "silver-age",
+    "storybook",
+    "watercolor",
+    "woodcut",
+];
+
+/// The same for these styles: twice the largest fraction that was far off between two processors
+/// (both EPYC, with and without AVX-512; LLVM 15), 0.0038. It was that of the older `pop-poster`,
+/// of 19 pictures that have had references of both. FLIP was at most 0.0071 there, but for two.
+const MOST_FAR_OFF_ON_OTHERS: f64 = 0.0076;
+
+fn most_far_off(name: &str) -> f64 {
+    if ONE_PROCESSOR.contains(&name) {
+        MOST_FAR_OFF_ON_OTHERS
+    } else {
+        MOST_FAR_OFF
+    }
 }
 
 /// The reference, and a second one for processors that round the scene differently,
-/// if there is one: FLIP sees steps of one code where nothing dithers them.
+/// if there is one: FLIP sees steps of one code where nothing dithers them, and
+/// steps between tone bands move.
 fn references(scene: BuiltIn, name: &str) -> Vec<PathBuf> {
     let folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden"));
     let file = format!("{}-{name}.png", scene.name());
@@ -79,7 +109,8 @@ fn check(scene: BuiltIn) {
             .iter()
             .map(|path| apart(path, &picture))
             .collect();
-        if !all.iter().copied().any(is_alike) {
+        let most = most_far_off(name);
+        if !all.iter().any(|(flip, off)| *flip <= 0.01 && *off <= most) {
             let seen = Path::new(env!("CARGO_TARGET_TMPDIR"))
                 .join(references[0].file_name().expect("a name"));
             picture.save(&seen).expect("saved");

@@ -1,17 +1,11 @@
 //! Means over boxes, as an effect of a game reads them.
 
 use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
-use bevy_comics::{
-    ComicsPlugin, ComicsStage, Effect, EffectPlugin, EffectShader, EffectStage, Needs, ViewFacts,
-};
-use bevy_comics_testkit::{
-    before::BeforeStylize,
-    headless::Headless,
-    reference::means::{Means, Sheet, part_of_box},
-};
+use bevy_comics::{ComicsStage, Effect, EffectPlugin, EffectShader, EffectStage, Needs, ViewFacts};
+use bevy_comics_testkit::reference::means::{Means, Sheet, part_of_box};
 use serde::{Deserialize, Serialize};
 
-use crate::small::{Small, camera, options, spawn_objects};
+use crate::small::{Small, options};
 
 /// Shows the means: their colours, or luminance, variance and coverage.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -65,17 +59,10 @@ impl Effect for ShownMeans {
 }
 
 fn small() -> Small {
-    let plugins = (
-        ComicsPlugin,
-        EffectPlugin::<ShownMeans>::default(),
-        BeforeStylize::Copy,
-    );
-    let mut headless = Headless::new(options(UVec2::new(48, 33)), plugins);
-    spawn_objects(headless.app.world_mut());
-    let target = headless.render_target();
-    let camera = camera(target, Msaa::Off);
-    let camera = headless.app.world_mut().spawn((camera, Hdr)).id();
-    Small { headless, camera }
+    let effects = EffectPlugin::<ShownMeans>::default();
+    let mut small = Small::with_plugins(options(UVec2::new(48, 33)), Msaa::Off, effects);
+    small.insert(Hdr);
+    small
 }
 
 /// Direct sums over the pixels of a box, each by its part that is inside.

@@ -2,13 +2,11 @@
 
 use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    ComicsPlugin, ComicsStage, Desaturation, Effect, EffectPlugin, EffectShader, EffectStage,
-    Needs, ViewFacts,
+    ComicsStage, Desaturation, Effect, EffectPlugin, EffectShader, EffectStage, Needs, ViewFacts,
 };
-use bevy_comics_testkit::{before::BeforeStylize, headless::Headless};
 use serde::{Deserialize, Serialize};
 
-use crate::small::{Small, camera, options, spawn_objects};
+use crate::small::{Small, options};
 
 /// Shows the number and the red of the pixel to the left, and its own green.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -86,18 +84,13 @@ numbered!(ShownNumbers, "shown_numbers");
 numbered!(MoreNumbers, "more_numbers");
 
 fn small() -> Small {
-    let plugins = (
-        ComicsPlugin,
+    let effects = (
         EffectPlugin::<ShownNumbers>::default(),
         EffectPlugin::<MoreNumbers>::default(),
-        BeforeStylize::Copy,
     );
-    let mut headless = Headless::new(options(UVec2::new(48, 33)), plugins);
-    spawn_objects(headless.app.world_mut());
-    let target = headless.render_target();
-    let camera = camera(target, Msaa::Off);
-    let camera = headless.app.world_mut().spawn((camera, Hdr)).id();
-    Small { headless, camera }
+    let mut small = Small::with_plugins(options(UVec2::new(48, 33)), Msaa::Off, effects);
+    small.insert(Hdr);
+    small
 }
 
 /// Everything is exact: the picture has 11 bits before and after.

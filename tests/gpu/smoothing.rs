@@ -45,16 +45,7 @@ fn follow() -> &'static Follow {
         let source = std::fs::read_to_string(path).expect("the shader");
         let pipeline = |defs: &[&str]| {
             let module = wgsl::module(&source, defs).unwrap_or_else(|error| panic!("{error}"));
-            gpu()
-                .device
-                .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                    label: None,
-                    layout: None,
-                    module: &gpu().shader(module),
-                    entry_point: Some("follow"),
-                    compilation_options: Default::default(),
-                    cache: None,
-                })
+            gpu().compute_pipeline(module, "follow")
         };
         Follow {
             pipeline: pipeline(&[]),

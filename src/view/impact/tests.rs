@@ -1,5 +1,12 @@
 //! When flashes begin, and how many are let through.
 
+use std::time::Duration;
+
+use bevy::{
+    app::{App, Update},
+    math::UVec2,
+};
+
 use super::*;
 
 /// Frames per second, as multiples of which times are exact.
@@ -98,4 +105,55 @@ fn flashes_of_other_cameras_count() {
     assert!(!impacts.start(one(), Impact::MOST_FLASHES, 0.0));
     assert!(impacts.start(one(), Impact::MOST_FLASHES - 1, 0.0));
     assert!(!impacts.start(one(), Impact::MOST_FLASHES - 1, 0.9));
+}
+
+/// Three flashes on a window, then the camera is `changed`: no other camera flashes there within the
+/// second.
+fn assert_flashes_stay(changed: impl FnOnce(&mut App, Entity), case: &str) {
+    let mut app = App::new();
+    app.init_resource::<ComicsDiagnostics>()
+        .init_resource::<ReduceFlashing>()
+        .init_resource::<PastFlashes>()
+        .init_resource::<Time>()
+        .add_observer(start_impact)
+        .add_observer(keep_flashes)
+        .add_systems(Update, run_impacts);
+    let first = app.world_mut().spawn(Camera::default()).id();
+    for _ in 0..Impact::MOST_FLASHES {
+        app.world_mut().trigger(Impact::new(first));
+        app.update();
+    }
+    changed(&mut app, first);
+    app.update();
+    let second = app.world_mut().spawn(Camera::default()).id();
+    let ask = |app: &mut App| {
+        app.world_mut().trigger(Impact::new(second));
+        app.update();
+        app.world().resource::<ComicsDiagnostics>().impacts[&second]
+    };
+    let count = ask(&mut app);
+    assert_eq!((count.shown, count.refused), (0, 1), "{case}");
+    let later = Duration::from_millis(1001);
+    app.world_mut().resource_mut::<Time>().advance_by(later);
+    let count = ask(&mut app);
+    assert_eq!((count.shown, count.refused), (1, 1), "{case}");
+}
+
+#[test]
+fn flashes_of_cameras_that_left_count() {
+    assert_flashes_stay(
+        |app, camera| {
+            app.world_mut().despawn(camera);
+        },
+        "despawned",
+    );
+    assert_flashes_stay(
+        |app, camera| {
+            let elsewhere = RenderTarget::None {
+                size: UVec2::splat(8),
+            };
+            app.world_mut().entity_mut(camera).insert(elsewhere);
+        },
+        "another target",
+    );
 }

@@ -45,6 +45,7 @@ pub mod overshoot;
 pub mod paint;
 pub mod paper;
 pub mod ping_pong;
+pub mod plane_lines;
 pub mod planes;
 pub mod pressure;
 pub mod print_offset;
