@@ -6,8 +6,6 @@
 // numbers. `tone` is the fraction of the area that is printed, 0 to 1: the mean of the
 // coverage over a screen. `period` is the size of a cell in physical pixels.
 
-#import bevy_comics::effect::color::cube_root
-
 const PI: f32 = 3.1415927;
 
 // Tone at which the discs of neighbouring cells touch.
@@ -108,36 +106,37 @@ fn line(x: f32, tone: f32, footprint: f32) -> f32 {
     return (line_area(from_start + half, tone) - line_area(from_start - half, tone)) / footprint;
 }
 
-// Half the diagonal of the diamonds of a tone up to 1/2, in cells. `half_ramp`: half the
-// width of the edge's ramp along x or y, in cells. Squares gain the variance of the ramp;
-// those that nearly touch lose it again to their neighbours.
-fn diamond_radius(tone: f32, half_ramp: f32) -> f32 {
-    let h = half_ramp;
-    if tone < 4.0 / 3.0 * h * h {
-        return cube_root(3.0 * h * tone) - h;
-    }
-    let free = sqrt(max(0.5 * (tone - 2.0 / 3.0 * h * h), 0.0));
-    if free <= 0.5 - h {
-        return free;
-    }
-    // Newton's method for the cubic equation of the mean.
-    var d = (tone - 0.5) / (2.0 - 2.0 * h);
-    for (var i = 0; i < 2; i++) {
-        let off = 0.5 + 2.0 * d * (1.0 - h) - 2.0 / 3.0 * d * d * d / h - tone;
-        d -= off / (2.0 - 2.0 * h - 2.0 * d * d / h);
-    }
-    return 0.5 + d;
+// The area of diamonds of this radius around whole numbers, in the rectangle from the middle of a
+// cell to a place; negative where one of its sides goes back. The radius, half a diagonal, is at
+// most 1/2.
+fn diamonds_area(to: vec2<f32>, radius: f32) -> f32 {
+    let cells = round(to);
+    let rest = to - cells;
+    let side = abs(rest);
+    // What is cut off at the corners of a diamond: right triangles.
+    let cut = max(vec3(radius - side, radius - side.x - side.y), vec3(0.0));
+    let cuts = cut * cut;
+    let square = radius * radius;
+    // Columns and rows that are whole in one direction, and the quarter that is whole in none.
+    let strips = sign(rest) * (square - cuts.xy);
+    let quarter = 0.5 * sign(rest.x) * sign(rest.y) * (square - cuts.x - cuts.y + cuts.z);
+    return 2.0 * square * cells.x * cells.y + dot(cells.yx, strips) + quarter;
 }
 
-// Diamonds: `footprint` is the width of a pixel across their edges, in cells.
-fn diamond(at: vec2<f32>, tone: f32, footprint: f32) -> f32 {
-    let offset = abs(at - round(at));
-    // Wider ramps of opposite corners would meet.
-    let half_ramp = min(footprint * 0.70710678, 0.25);
+// Diamonds. A pixel is a square of its size that lies along the cell, whatever the angle: what it
+// covers is exact then, and so are tones where every cell has the same pixels.
+fn diamond(at: vec2<f32>, tone: f32, period: f32) -> f32 {
     let dark = tone > 0.5;
-    let part = diamond_radius(select(tone, 1.0 - tone, dark), half_ramp);
-    let radius = select(part, 1.0 - part, dark);
-    return clamp(0.5 + (radius - offset.x - offset.y) / (2.0 * half_ramp), 0.0, 1.0);
+    // Beyond a half, the paper is left in diamonds at the corners of the cells.
+    let placed = select(at, at + 0.5, dark);
+    let offset = placed - round(placed);
+    let radius = sqrt(0.5 * select(tone, 1.0 - tone, dark));
+    let low = offset - 0.5 / period;
+    let high = offset + 0.5 / period;
+    let area = diamonds_area(high, radius) - diamonds_area(vec2(low.x, high.y), radius)
+        - diamonds_area(vec2(high.x, low.y), radius) + diamonds_area(low, radius);
+    let covered = clamp(area * period * period, 0.0, 1.0);
+    return select(covered, 1.0 - covered, dark);
 }
 
 // Lines in two directions, independent of each other.

@@ -47,11 +47,7 @@ fn flat_fields_have_their_tone() {
         for period in PERIODS {
             let most = tone_error(shape, period);
             let exact = [ScreenShape::Round, ScreenShape::Line, ScreenShape::Diamond];
-            // Upright diamonds of 3 pixels miss the limit: every cell has the same nine pixels, which
-            // hit the tips of a diamond or do not.
-            let is_coarse = shape == ScreenShape::Diamond && period == 3.0;
-            let is_exact = exact.contains(&shape) && !is_coarse;
-            let limit = if is_exact { 0.005 } else { 0.01 };
+            let limit = if exact.contains(&shape) { 0.005 } else { 0.01 };
             println!("{shape:?}, {period} px: {most:?} (error, tone, degrees)");
             worst.push((shape, period, most, limit));
         }

@@ -106,8 +106,7 @@ fn lines_on_paper_are_their_twins_in_a_viewport_and_while_they_boil() {
     assert_eq!(small.errors(), 0);
 }
 
-/// Every pixel of every shape of dots but grains, and diamonds: their radius is approximate, see
-/// `functions::halftone`.
+/// Every pixel of every shape of dots but grains.
 #[test]
 fn dots_on_paper_are_their_twins() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
@@ -115,6 +114,7 @@ fn dots_on_paper_are_their_twins() {
         ScreenShape::Round,
         ScreenShape::Euclidean,
         ScreenShape::Line,
+        ScreenShape::Diamond,
         ScreenShape::Cross,
     ] {
         let halftone = Halftone {

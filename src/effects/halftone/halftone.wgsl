@@ -249,7 +249,7 @@ fn plate_cover(s: Halftone, on: Screen, place: vec2<f32>, plate: i32, tone: f32)
     } else if shape == SHAPE_LINE {
         k = line(at.x, t, sides.x + sides.y);
     } else if shape == SHAPE_DIAMOND {
-        k = diamond(at, t, 1.4142135 * max(sides.x, sides.y));
+        k = diamond(at, t, period);
     } else if shape == SHAPE_CROSS {
         k = cross_lines(at, t, sides.x + sides.y);
     } else {

@@ -60,12 +60,7 @@ pub fn plate_cover<'a>(
             Box::new(move |p| screen::euclidean(plate.cell(p), printed, period))
         }
         ScreenShape::Line => Box::new(move |p| screen::line(plate.cell(p)[0], printed, across)),
-        ScreenShape::Diamond => {
-            // Edges are at 45 degrees to the cell.
-            let (sin, cos) = (plate.degrees + 45.0).to_radians().sin_cos();
-            let cover = screen::diamond(printed, (sin.abs() + cos.abs()) / period);
-            Box::new(move |p| cover(plate.cell(p)))
-        }
+        ScreenShape::Diamond => Box::new(move |p| screen::diamond(plate.cell(p), printed, period)),
         ScreenShape::Cross => {
             Box::new(move |p| screen::cross_lines(plate.cell(p), printed, across))
         }

@@ -80,48 +80,38 @@ pub fn line(x: f64, tone: f64, footprint: f64) -> f64 {
     covered / footprint
 }
 
-/// The integral from 0 to r of the area of the diamonds |x| + |y| < r in a cell of side 1:
-/// 2 r^2, without the corners beyond the cell if r > 1/2.
-fn diamond_volume(r: f64) -> f64 {
-    if r <= 0.0 {
-        0.0
-    } else if r <= 0.5 {
-        2.0 / 3.0 * r.powi(3)
-    } else if r <= 1.0 {
-        r - 0.5 + 2.0 / 3.0 * (1.0 - r).powi(3)
-    } else {
-        r - 0.5
-    }
+/// The area that the diamond |x| + |y| < r shares with a rectangle: between places where a side
+/// of either begins or ends, the height of what they share is linear.
+fn shared_area(r: f64, x: [f64; 2], y: [f64; 2]) -> f64 {
+    let height = |at: f64| (y[1].min(r - at.abs()) - y[0].max(at.abs() - r)).max(0.0);
+    let [low, high] = y.map(|y| r - y.abs());
+    let ends = [x[0], x[1], 0.0, r, -r, low, -low, high, -high];
+    let mut ends = ends.map(|end| end.clamp(x[0], x[1]));
+    ends.sort_by(f64::total_cmp);
+    let parts = ends.windows(2);
+    parts
+        .map(|part| 0.5 * (part[1] - part[0]) * (height(part[0]) + height(part[1])))
+        .sum()
 }
 
-/// Mean of the area over the ramp of the edge.
-fn ramped_area(r: f64, half_ramp: f64) -> f64 {
-    (diamond_volume(r + half_ramp) - diamond_volume(r - half_ramp)) / (2.0 * half_ramp)
-}
-
-/// The radius whose mean area is the tone, by bisection.
-fn diamond_radius(tone: f64, half_ramp: f64) -> f64 {
-    let (mut low, mut high) = (-half_ramp, 1.0 + half_ramp);
-    for _ in 0..40 {
-        let middle = 0.5 * (low + high);
-        if ramped_area(middle, half_ramp) < tone {
-            low = middle;
-        } else {
-            high = middle;
-        }
+/// Diamonds around whole numbers: what a square of the size of a pixel, along the cell, shares
+/// with them. Tones beyond a half leave diamonds of paper between them.
+pub fn diamond(at: [f64; 2], tone: f64, period: f64) -> f64 {
+    if tone > 0.5 {
+        return 1.0 - diamond(at.map(|v| v + 0.5), 1.0 - tone, period);
     }
-    0.5 * (low + high)
-}
-
-/// Diamonds of a tone; the closure gives the coverage at a place. The radius is the same for
-/// all places.
-pub fn diamond(tone: f64, footprint: f64) -> impl Fn([f64; 2]) -> f64 {
-    let half_ramp = (footprint / 2f64.sqrt()).min(0.25);
-    let radius = diamond_radius(tone, half_ramp);
-    move |at| {
-        let [x, y] = at.map(|v| to_nearest(v).abs());
-        ((radius - x - y) / (2.0 * half_ramp) + 0.5).clamp(0.0, 1.0)
-    }
+    let side = 1.0 / period;
+    let radius = (0.5 * tone).sqrt();
+    let first = at.map(f64::floor);
+    let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]];
+    let shared = corners.map(|corner| {
+        let [x, y] = [0, 1].map(|i| {
+            let to = at[i] - first[i] - corner[i];
+            [to - 0.5 * side, to + 0.5 * side]
+        });
+        shared_area(radius, x, y)
+    });
+    shared.iter().sum::<f64>() / side.powi(2)
 }
 
 pub fn cross_lines([u, v]: [f64; 2], tone: f64, footprint: f64) -> f64 {

@@ -21,7 +21,7 @@ const HALFTONE: &str = "#import bevy_comics::effects::halftone::{
 
 /// Places up to 2000 pixels from the middle, tones with both ends, periods from 2 to 40.
 /// The slope of a coverage is up to one per pixel, and places are exact to an eighth of a
-/// thousandth there. The radius of diamonds is found in two steps.
+/// thousandth there.
 #[test]
 fn coverages_of_all_shapes_are_those_of_the_twin() {
     let tone = prop_oneof![
