@@ -26,6 +26,7 @@ mod ranges;
 mod rig;
 mod scores;
 mod stability;
+mod straight;
 mod table;
 
 use std::{
@@ -86,19 +87,20 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
   --quick          small pictures, few repetitions, no other crates
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure one section only: ranges, encodings, lines, models,
-                   dashes, memory, page, stability, ladder, parts, growth,
-                   peers or flicker
+                   dashes, memory, straight, page, stability, ladder, parts,
+                   growth, peers or flicker
   --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
-const SECTIONS: [(&str, Section); 13] = [
+const SECTIONS: [(&str, Section); 14] = [
     ("ranges", ranges::measure),
     ("encodings", encodings::measure),
     ("lines", lines::measure),
     ("models", models::measure),
     ("dashes", ink::dashes),
     ("memory", ink::memory),
+    ("straight", straight::measure),
     ("page", page::measure),
     ("stability", stability::measure),
     ("ladder", ladder::measure),

@@ -47,6 +47,20 @@ fn line_bend(seen: vec2<u32>, signs: vec2<f32>) -> vec2<f32> {
     return vec2(ends.x + slope * t.x, slope);
 }
 
+// The same along a diagonal run, in which cracks to the east and to the south take turns, with the
+// next runs on different sides of it. Its centres lie on a diagonal, sqrt(1/2) pixels apart, and the
+// next runs are sqrt(1/2) pixels beside it: in these units, with the diagonal in place of the row,
+// the line goes from end to end as along any run. `sense`: 1 if the diagonal goes to the
+// south-east, -1 to the north-east; `side`: 1 or -1, as in end_sign, of the end behind the crack.
+fn diagonal_bend(seen: vec2<u32>, sense: f32, side: f32) -> vec2<f32> {
+    let t = vec2<f32>(seen) - 0.5;
+    let slope = side / (t.x + t.y);
+    let offset = 0.5 * (t.x - t.y) * slope;
+    // Turned from the diagonal's frame into that of the crack.
+    let bend = vec2(offset, sense + slope) / (1.0 - sense * slope);
+    return vec2(clamp(bend.x, -0.49, 0.49), bend.y);
+}
+
 // Packs offset and slope into 16 bits, in steps that no line of fewer than 64 cracks has its
 // middles halfway between.
 fn pack_bend(bend: vec2<f32>) -> u32 {

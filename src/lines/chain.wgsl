@@ -6,6 +6,7 @@
 // corner is a point where four pixels meet: (x, y) is the top left corner of the pixel
 // (x, y).
 
+#import bevy_comics::lines::bend::diagonal_bend
 #import bevy_comics::lines::edge::Grid
 #import bevy_comics::lines::planes::{LINKED_EAST, LINKED_SOUTH}
 #import bevy_comics::lines::read_planes::column_window
@@ -123,4 +124,73 @@ fn mean_bend(g: Grid, crack: vec3<i32>, otherwise: vec2<f32>) -> vec2<f32> {
     let slope = rise / run;
     let offset = dot(away, across) - slope * dot(away, along);
     return select(otherwise, vec2(offset, slope), abs(offset) <= 0.49);
+}
+
+// Cracks of a diagonal run that is followed. A line along a shorter one says less than the mean of
+// seven, and all cracks of a longer one have to agree that it is.
+const SHORTEST_DIAGONAL: i32 = 7;
+const LONGEST_DIAGONAL: i32 = 31;
+
+// A diagonal run of cracks to the east and to the south in turns, seen from one of them in one
+// direction.
+struct Stairs {
+    // Cracks, the first one included.
+    count: i32,
+    // Whether the line goes on with two cracks of a kind, so that the next run is beside this one.
+    doubled: bool,
+    // 1 if the diagonal goes to the south-east, -1 to the north-east; 0 for a single crack.
+    sense: i32,
+}
+
+// `way`: 1 for the direction of the last corner of the crack, -1 for that of the first; `most`:
+// cracks that are looked at.
+fn stairs(g: Grid, crack: vec3<i32>, corner: vec2<i32>, way: i32, most: i32) -> Stairs {
+    let along = vec2<i32>(along_crack(crack));
+    var here = crack;
+    var at = corner;
+    var sense = 0;
+    for (var count = 1; count <= most; count++) {
+        let next = next_crack(g, here, at);
+        if next.z < 0 {
+            return Stairs(count, false, sense);
+        }
+        let behind = other_corner(next, at);
+        let step = way * (behind - at);
+        let ahead = step.x * along.x + step.y * along.y;
+        let aside = step.x * along.y + step.y * along.x;
+        sense = select(sense, aside, count == 1 && next.z != here.z);
+        let onward = ahead == 1 || aside * sense == 1;
+        if next.z == here.z || !onward {
+            return Stairs(count, onward, sense);
+        }
+        here = next;
+        at = behind;
+    }
+    return Stairs(most + 1, false, sense);
+}
+
+// On which side of a diagonal run the next one begins. `way`: 1 for the end behind the crack, -1
+// for that before it.
+fn stairs_side(end: Stairs, sense: i32, way: i32) -> i32 {
+    // The first and the last crack are of one kind if their number is odd.
+    return select(way, -way, (end.count & 1) == 1) * sense;
+}
+
+// Where a line leaves a crack of short runs: see line_bend in bend.wgsl. By its diagonal run if the
+// next runs are on different sides of it, otherwise by the mean of seven cracks; `otherwise` if
+// there are none.
+fn stairs_bend(g: Grid, crack: vec3<i32>, otherwise: vec2<f32>) -> vec2<f32> {
+    let on = stairs(g, crack, last_corner(crack), 1, LONGEST_DIAGONAL);
+    if !on.doubled {
+        return mean_bend(g, crack, otherwise);
+    }
+    let back = stairs(g, crack, first_corner(crack), -1, LONGEST_DIAGONAL + 1 - on.count);
+    let sense = select(on.sense, back.sense, on.sense == 0);
+    let side = stairs_side(on, sense, 1);
+    let crosses = stairs_side(back, sense, -1) * side == -1 && back.sense * on.sense >= 0;
+    let count = back.count + on.count - 1;
+    if !back.doubled || !crosses || count < SHORTEST_DIAGONAL {
+        return mean_bend(g, crack, otherwise);
+    }
+    return diagonal_bend(vec2<u32>(vec2(back.count, on.count)), f32(sense), f32(side));
 }

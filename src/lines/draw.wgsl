@@ -8,9 +8,10 @@
 #ifdef BOIL
 #import bevy_comics::lines::boil::boiled
 #endif
+#import bevy_comics::lines::coverage::{disc_coverage, segment_coverage}
 #import bevy_comics::lines::edge::{
-    encode_ink, ink_of, inward_step, is_apart, largest_opacity, line_coverage, owner_step,
-    segment_distance, unpack_middle, unpack_owner, unpack_width,
+    encode_ink, ink_of, inward_step, is_apart, largest_opacity, owner_step, unpack_middle,
+    unpack_owner, unpack_width,
 }
 #ifdef BRIDGED
 #import bevy_comics::lines::gaps::source_of
@@ -79,12 +80,12 @@ var<private> viewport_scale: vec2<f32>;
 var<private> height: f32;
 #endif
 
-// The fraction of the pixel that a line covers whose middle is at a distance.
-fn covered(away: f32, half_width: f32) -> f32 {
+// The half width of a line at the pixel.
+fn width_here(half_width: f32) -> f32 {
 #ifdef SPREAD
-    return line_coverage(away, spread_width(line_pass.sheet, half_width, height));
+    return spread_width(line_pass.sheet, half_width, height);
 #else
-    return line_coverage(away, half_width);
+    return half_width;
 #endif
 }
 
@@ -101,9 +102,11 @@ struct Owner {
 // Adds the line along a crack.
 fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: Owner, at: vec2<f32>) {
     let half_width = unpack_width(packed >> 20u);
-    let away = length((middle - at) * viewport_scale);
+    let from_middle = (middle - at) * viewport_scale;
+    let away = length(from_middle);
     let exists = (packed & 7u) != 0u;
-    let kinds = select(0.0, covered(away, half_width), exists) * ink_of(packed);
+    let covered = disc_coverage(from_middle, width_here(half_width));
+    let kinds = select(0.0, covered, exists) * ink_of(packed);
     (*ink).kinds = max((*ink).kinds, kinds);
 #ifdef OWNERS
     let alpha = alphas(kinds);
@@ -357,9 +360,10 @@ fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
     // the middles alone would leave diagonal lines too thin.
     if ink.distances.y < 1e5 && distance(ink.first, ink.second) < 1.45 {
         let s = viewport_scale;
-        let away = segment_distance(at * s, ink.first * s, ink.second * s);
         let half_width = unpack_width(ink.packed >> 20u);
-        let straight = covered(away, half_width) * ink_of(ink.packed);
+        let width = width_here(half_width);
+        let covered = segment_coverage(at * s, ink.first * s, ink.second * s, width);
+        let straight = covered * ink_of(ink.packed);
         ink.kinds = max(ink.kinds, straight);
 #ifdef OWNERS
         let stronger = alphas(straight) > ink.strongest;

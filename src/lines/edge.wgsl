@@ -370,13 +370,6 @@ fn is_apart(a: vec2<f32>, b: vec2<f32>) -> bool {
     return dot(apart, apart) > 0.07;
 }
 
-// Distance from a position to a segment.
-fn segment_distance(at: vec2<f32>, a: vec2<f32>, b: vec2<f32>) -> f32 {
-    let along = b - a;
-    let t = clamp(dot(at - a, along) / max(dot(along, along), 1e-12), 0.0, 1.0);
-    return distance(at, a + t * along);
-}
-
 // Ink as it is stored: steps are finest where little light is left. Larger ink is
 // stored as a larger value.
 fn encode_ink(ink: vec3<f32>) -> vec3<f32> {

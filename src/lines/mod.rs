@@ -122,6 +122,7 @@ pub(crate) fn build_render(app: &mut App) {
 
 fn load_shaders(app: &mut App) {
     load_shader_library!(app, "edge.wgsl");
+    load_shader_library!(app, "coverage.wgsl");
     load_shader_library!(app, "blocks.wgsl");
     load_shader_library!(app, "rows.wgsl");
     load_shader_library!(app, "crack.wgsl");

@@ -2,7 +2,9 @@
 // the lines of the others run straight through the steps of pixels, and how wide they are.
 
 #import bevy_comics::lines::bend::{end_sign, line_bend, pack_bend, unpack_bend}
-#import bevy_comics::lines::chain::{along_crack, cracks_to_end, first_corner, last_corner, mean_bend}
+#import bevy_comics::lines::chain::{
+    along_crack, cracks_to_end, first_corner, last_corner, stairs_bend,
+}
 #import bevy_comics::lines::edge::{CREASE, Grid, SILHOUETTE}
 #import bevy_comics::lines::listed::listed_cell
 #import bevy_comics::lines::pass::line_pass
@@ -62,13 +64,13 @@ const ROWS_ABOVE: i32 = 12;
 
 #ifdef SMOOTH
 // How the line along a crack leaves it: by its run. A run of one or two cracks says little:
-// then by the cracks around it.
+// then by the stairs that it is a part of.
 fn bend_of(crack: vec3<i32>, seen: vec2<u32>, signs: vec2<f32>) -> vec2<f32> {
     let bend = line_bend(seen, signs);
     if seen.x + seen.y > 3u {
         return bend;
     }
-    return mean_bend(line_pass.grid, crack, bend);
+    return stairs_bend(line_pass.grid, crack, bend);
 }
 
 // How the line along the crack to the south of a pixel leaves it.

@@ -3,9 +3,8 @@
 #ifdef BOIL
 #import bevy_comics::lines::boil::boiled
 #endif
-#import bevy_comics::lines::edge::{
-    encode_ink, ink_of, line_coverage, segment_distance, unpack_width,
-}
+#import bevy_comics::lines::coverage::segment_coverage
+#import bevy_comics::lines::edge::{encode_ink, ink_of, unpack_width}
 #import bevy_comics::lines::pass::line_pass
 #ifdef TAPER
 #import bevy_comics::lines::overshoot::stroke_width
@@ -89,7 +88,7 @@ fn stroke(at: Corner) -> Drawn {
 #ifdef SPREAD
     half_width = spread_width(line_pass.sheet, half_width, height_under(line_pass.sheet, at.position.xy));
 #endif
-    kinds *= line_coverage(segment_distance(place, a, b), half_width);
+    kinds *= segment_coverage(place, a, b, half_width);
     if all(kinds <= vec3(0.0)) {
         discard;
     }

@@ -20,6 +20,7 @@ pub mod specimens;
 // The crate's own stopwatch, included because it is private there.
 #[path = "../../src/timing/stopwatch.rs"]
 mod stopwatch;
+pub mod straight_edges;
 pub mod studio;
 pub mod truth;
 pub mod wgsl;

@@ -1,10 +1,10 @@
 //! Where creases lie: between pixels, where the two sides meet.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, Creases, Outlines};
+use bevy_comics::{ComicStyle, Creases, LineWeight, Outlines};
 
 use crate::{
-    small::{Small, linear, unlit},
+    small::{Small, black_ink, linear, unlit},
     walls::{towards_the_sky, wall},
 };
 
@@ -74,6 +74,39 @@ fn creases_lie_where_their_sides_meet() {
             assert!(mean.abs() < shifted, "{msaa:?}, {slope}: {mean}");
             assert!(off < spread, "{msaa:?}, {slope}: {off}");
             assert!((width - 4.0).abs() < wider, "{msaa:?}, {slope}: {width}");
+        }
+    }
+}
+
+/// An upright crease alone is as wide as its weight says, in every row. The ink of the pixels at
+/// both borders of the line is rounded by less than 0.01 each.
+#[test]
+fn creases_are_as_wide_as_their_weight() {
+    for shift in [0.0, 0.3] {
+        let mut small = leaning(0.0, shift, Msaa::Off);
+        for factor in [0.25, 0.6, 1.0, 2.0f32] {
+            let outlines = Outlines {
+                silhouettes: None,
+                creases: Some(Creases::default()),
+                objects: None,
+                width: WIDTH,
+                weight: LineWeight {
+                    crease: factor,
+                    ..LineWeight::EVEN
+                },
+                ..default()
+            };
+            small.style(&ComicStyle::new().with(outlines));
+            small.settle();
+            let picture = small.picture();
+            let want = f64::from(WIDTH * factor);
+            for y in 12..52 {
+                let found = black_ink(&picture, (0..SIZE.x).map(|x| (x, y)));
+                assert!(
+                    (found - want).abs() < 0.02,
+                    "{shift}, {factor}, row {y}: {found}, {want}"
+                );
+            }
         }
     }
 }

@@ -8,7 +8,6 @@ use bevy::{
 use bevy_comics::{ComicStyle, ComicsPlugin, OutlineStyle, Outlines, Silhouettes};
 use bevy_comics_testkit::{
     headless::HeadlessOptions,
-    reference::edge::line_coverage,
     scenes::BuiltIn,
     studio::Studio,
     truth::{FINE, Truth, ids_alone, line_ends, mask},
@@ -141,73 +140,98 @@ fn strip(radius: f64, width: f64) -> f64 {
     2.0 * (h * (radius * radius - h * h).sqrt() + radius * radius * (h / radius).asin())
 }
 
-/// Width of a straight line whose coverage is sampled at the centres of pixels. At 45
-/// degrees these lie 1 / sqrt(2) apart across the line; the middle of a line of even width
-/// runs through the middles of cracks, that of odd width through centres of pixels.
-fn sampled_width(width: f64, degrees: f32) -> f64 {
-    if degrees == 0.0 {
-        return width;
-    }
-    let phase = if width % 2.0 == 0.0 { 0.5 } else { 0.0 };
-    let spacing = 0.5f64.sqrt();
-    let samples = (-40..40).map(|k| (f64::from(k) + phase).abs() * spacing);
-    samples
-        .map(|d| line_coverage(d, 0.5 * width) * spacing)
-        .sum()
-}
-
-/// The ink of a line through the middle of a disc of 50 pixels, over the area of a strip
-/// of its width. The mean of four positions between the pixels. Along cracks, at angles
-/// between 0 and 45 degrees, a line follows a staircase and is wider.
+/// The ink of a line through the middle of a disc of 50 pixels, over the area of a strip of its
+/// width. The mean of four positions between the pixels. Lines of up to two pixels are as wide as
+/// asked within 0.02 pixels. Wider ones are drawn from the best two cracks of each column: in
+/// double precision, along 64 slopes at 16 offsets, this makes them up to 0.04 pixels thinner or
+/// wider (docs/benchmarks.md); 0.01 more is left for rounding to eight bits. Along cracks, at
+/// angles between 0 and 45 degrees, a line follows a staircase and is wider.
 #[test]
 fn a_line_is_as_wide_as_asked_in_every_direction() {
-    for (smooth, most) in [(false, 0.01), (true, 0.02)] {
-        let worst = worst_width(smooth);
-        println!("smooth: {smooth}: largest difference from a straight line: {worst:.4}");
-        assert!(worst <= most, "smooth: {smooth}: {worst}");
-    }
-}
-
-/// The largest relative difference of a line's width from the width that is asked for; along
-/// cracks, at 0 and 45 degrees.
-fn worst_width(smooth: bool) -> f64 {
-    const RADIUS: f64 = 50.0;
     let mut small = towards_the_sky();
-    let mut worst = 0.0f64;
-    for width in [1.0, 2.0, 3.0, 5.0, 8.0] {
-        for degrees in [0.0f32, 9.0, 18.0, 27.0, 36.0, 45.0] {
-            let mut area = 0.0;
-            for shift in [0.05f32, 0.3, 0.55, 0.8] {
-                half_plane(&mut small, degrees.to_radians(), shift);
+    for smooth in [false, true] {
+        for width in [1.0, 2.0, 3.0, 5.0, 8.0f32] {
+            for degrees in [0.0f32, 9.0, 18.0, 27.0, 36.0, 45.0] {
                 let lines = Outlines {
                     width,
                     smooth,
                     ..Outlines::SILHOUETTES
                 };
-                let all = ink(&mut small, lines);
-                area += (0..all.len())
-                    .filter(|i| {
-                        let [x, y] = [i % 120, i / 120].map(|v| v as f64 - 59.5);
-                        x.hypot(y) < RADIUS
-                    })
-                    .map(|i| f64::from(all[i]))
-                    .sum::<f64>();
-            }
-            let wanted = 4.0 * strip(RADIUS, f64::from(width));
-            let ratio = area / wanted;
-            println!(
-                "{width} px at {degrees} degrees: {:.3}",
-                ratio * f64::from(width)
-            );
-            if smooth {
-                worst = worst.max((ratio - 1.0).abs());
-            } else if degrees % 45.0 == 0.0 {
-                let ideal = sampled_width(width.into(), degrees);
-                worst = worst.max((ratio * f64::from(width) / ideal - 1.0).abs());
+                let off = mean_width(&mut small, lines, degrees) - f64::from(width);
+                println!("{width} px at {degrees} degrees, smooth: {smooth}: {off:+.4}");
+                if smooth || degrees % 45.0 == 0.0 {
+                    let most = if width > 2.0 { 0.05 } else { 0.02 };
+                    assert!(
+                        off.abs() <= most,
+                        "{width} px at {degrees} degrees, {smooth}: {off}"
+                    );
+                }
             }
         }
     }
-    worst
+}
+
+/// The width of a straight line through the middle of the picture, as an area over its length.
+fn mean_width(small: &mut Small, lines: Outlines, degrees: f32) -> f64 {
+    const RADIUS: f64 = 50.0;
+    let width = f64::from(lines.width);
+    let mut area = 0.0;
+    for shift in [0.05f32, 0.3, 0.55, 0.8] {
+        half_plane(small, degrees.to_radians(), shift);
+        let all = ink(small, lines);
+        area += (0..all.len())
+            .filter(|i| {
+                let [x, y] = [i % 120, i / 120].map(|v| v as f64 - 59.5);
+                x.hypot(y) < RADIUS
+            })
+            .map(|i| f64::from(all[i]))
+            .sum::<f64>();
+    }
+    area / (4.0 * strip(RADIUS, width)) * width
+}
+
+/// Widths across a straight line of a slope, column by column.
+fn widths(small: &mut Small, lines: Outlines, slope: f32) -> Vec<f64> {
+    half_plane(small, slope.atan(), 0.37);
+    let all = ink(small, lines);
+    let cosine = f64::from(slope.atan().cos());
+    (10..110)
+        .map(|x| {
+            let column: f64 = (0..120).map(|y| f64::from(all[y * 120 + x])).sum();
+            column * cosine
+        })
+        .collect()
+}
+
+fn deviation(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (squares / values.len() as f64).sqrt()
+}
+
+/// Along a straight edge, the width of its line is even: the standard deviation is below 0.1
+/// pixels. Along cracks it is larger, except at slope 1/2, where all steps are alike.
+#[test]
+fn straight_lines_have_an_even_width() {
+    let mut small = towards_the_sky();
+    let mut sum = 0.0;
+    for slope in [0.04f32, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9] {
+        let [even, staircase] = [true, false].map(|smooth| {
+            let lines = Outlines {
+                width: 2.0,
+                smooth,
+                ..Outlines::SILHOUETTES
+            };
+            deviation(&widths(&mut small, lines, slope))
+        });
+        println!("slope {slope}: {even:.4} px, along cracks {staircase:.4} px");
+        assert!(even < 0.1, "slope {slope}: {even}");
+        if slope != 0.5 {
+            assert!(staircase > even, "slope {slope}: {staircase}, {even}");
+        }
+        sum += staircase;
+    }
+    assert!(sum / 7.0 > 0.1, "the staircase is even: {sum}");
 }
 
 /// An orthographic view, one unit per pixel, of a wall with one straight side, `shift`

@@ -95,10 +95,11 @@ fn a_selected_object_has_an_outline_also_where_it_is_hidden() {
             assert!(alike(color, want), "{msaa:?}, {i}: {color:?}");
         }
         assert!(small.ran(ComicsStage::MarkedObjects));
-        // The line is as wide as asked: ink along a row through the middle.
+        // The line is as wide as asked: ink along a row through the middle. Of two lines, the ink of
+        // four pixels is rounded, each by less than 0.01.
         let picture = small.picture();
         let ink: f64 = (0..SIZE).map(|x| 1.0 - linear(&picture, x, 47)[0]).sum();
-        assert!((ink - 8.0).abs() < 0.1, "{msaa:?}: {ink}");
+        assert!((ink - 8.0).abs() < 0.04, "{msaa:?}: {ink}");
         small.world().entity_mut(square).insert(green(0.5));
         for color in &sides(&mut small)[..4] {
             assert!(alike(*color, [0.5, 1.0, 0.5]), "{msaa:?}: {color:?}");

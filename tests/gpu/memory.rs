@@ -9,10 +9,10 @@ use crate::{
 };
 
 /// Width and height of the picture in pixels; a unit of the scene is a pixel.
-const SIZE: usize = 120;
+pub const SIZE: usize = 120;
 
 /// A white wall in front of a white background: only lines change the picture.
-fn scene() -> (Small, Entity) {
+pub fn scene() -> (Small, Entity) {
     let mut small = Small::new(UVec2::splat(SIZE as u32), Msaa::Off);
     small.clear();
     let half = 0.5 * SIZE as f32;
@@ -36,7 +36,7 @@ fn scene() -> (Small, Entity) {
     (small, wall)
 }
 
-fn outline(small: &mut Small, memory: f32) {
+pub fn outline(small: &mut Small, memory: f32) {
     let outlines = Outlines {
         memory,
         ..Outlines::SILHOUETTES

@@ -108,7 +108,7 @@ fn the_same_scene_has_the_same_outlines_at_any_scale() {
         let mask = scaled(scale, near, Form::Corrected);
         let same = overlap(&reference, &mask);
         println!("measured, scale {scale:e}, near {near:e}: IoU {same:.4}");
-        assert!(same >= 0.99, "scale {scale:e}, near {near:e}: IoU {same}");
+        assert_eq!(same, 1.0, "scale {scale:e}, near {near:e}");
     }
     // The paper's depth buffer depends on both: its constant k_p fits only one.
     let reference = scaled(1.0, 0.1, Form::Faithful);
@@ -152,7 +152,7 @@ fn an_orthographic_view_has_the_same_outlines_at_any_scale() {
     for (scale, far) in [(1.0, 20.0), (1.0, 1000.0), (1e-3, 0.1), (1e3, 1e5)] {
         let same = overlap(&reference, &mask(scale, far));
         println!("orthographic, scale {scale:e}, far {far:e}: IoU {same:.4}");
-        assert!(same >= 0.99, "scale {scale:e}, far {far:e}: IoU {same}");
+        assert_eq!(same, 1.0, "scale {scale:e}, far {far:e}");
     }
 }
 
@@ -271,7 +271,8 @@ fn the_border_of_the_picture_is_no_line() {
     );
 }
 
-/// In every row a line covers its width.
+/// In every row a line covers its width, within 0.02 physical pixels: the ink at both of its borders
+/// is rounded, and so is its stored width, to 1/1024.
 #[test]
 fn a_line_is_as_wide_as_asked_at_every_scale_and_resolution() {
     let mut worst = 0.0f32;
@@ -307,7 +308,7 @@ fn a_line_is_as_wide_as_asked_at_every_scale_and_resolution() {
             let off = (measured - width * scale_factor).abs();
             worst = worst.max(off);
             assert!(
-                off <= 0.5,
+                off <= 0.02 + width * scale_factor / 1024.0,
                 "{width} px at {scale_factor}, {size}: {measured} physical pixels"
             );
         }

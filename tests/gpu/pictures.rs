@@ -32,10 +32,25 @@ use crate::small::{Small, with_option};
 
 const ONE_CODE: f64 = 1.0 / 255.0;
 
-/// The depth frame of the small scene's infinite perspective.
+/// The orthographic projection of the camera, if it has one.
+fn orthographic(small: &Small) -> Option<OrthographicProjection> {
+    let world = small.headless.app.world();
+    match world.get::<bevy::camera::Projection>(small.camera) {
+        Some(bevy::camera::Projection::Orthographic(projection)) => Some(projection.clone()),
+        _ => None,
+    }
+}
+
+/// The depth frame of the small scene's infinite perspective, or of its orthographic view.
 pub fn frame(small: &Small, map: &DepthMap) -> Frame {
     const NEAR: f64 = 0.1;
     const FAR: f64 = 1000.0;
+    let orthographic = orthographic(small).map(|p| [p.near, p.far].map(f64::from));
+    let raw_depth = |distance: f64| match orthographic {
+        Some([near, far]) => (far - distance) / (far - near),
+        None => NEAR / distance,
+    };
+    let planes = orthographic.unwrap_or([NEAR, FAR]);
     let ends = match map.mapping {
         DepthMapping::MinMax | DepthMapping::MinMaxLogarithmic => match small.range() {
             Some(VisibleDepthRange::Visible {
@@ -43,14 +58,21 @@ pub fn frame(small: &Small, map: &DepthMap) -> Frame {
             }) => Some([f64::from(raw_near), f64::from(raw_far)]),
             other => panic!("no range: {other:?}"),
         },
-        DepthMapping::Linear | DepthMapping::Logarithmic => Some([1.0, NEAR / FAR]),
+        DepthMapping::Linear | DepthMapping::Logarithmic => Some(planes.map(raw_depth)),
         DepthMapping::Fixed { near, far } | DepthMapping::FixedLogarithmic { near, far } => {
-            Some([NEAR / f64::from(near), NEAR / f64::from(far)])
+            Some([near, far].map(|end| raw_depth(f64::from(end))))
         }
         other => panic!("no twin of {other:?}"),
     };
+    let projection = match orthographic {
+        Some([near, far]) => Projection::Orthographic {
+            plane_far: far,
+            extent: far - near,
+        },
+        None => Projection::Perspective { offset: 0.0 },
+    };
     Frame {
-        projection: Projection::Perspective { offset: 0.0 },
+        projection,
         ends,
         logarithmic: map.mapping.is_logarithmic(),
         floor: f64::from(map.floor),
@@ -84,7 +106,7 @@ pub fn view_of<'a>(
         normals: prepass.normals.first(),
         ids: prepass.ids.first(),
         widths: prepass.widths.first(),
-        height: 0.0,
+        height: orthographic(small).map_or(0.0, |p| f64::from(p.area.height())),
         to_light: to_light(small),
     }
 }

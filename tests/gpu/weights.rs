@@ -1,4 +1,6 @@
-//! How wide lines are in different places.
+//! How wide lines are in different places. Widths across upright lines are those asked for within
+//! 0.02 pixels: of the ink of two pixels at the borders of a line, each is rounded by 0.004 in the
+//! texture of ink and by 0.0045 in the picture of 8 bits.
 
 use bevy::{
     pbr::{DistanceFog, FogFalloff},
@@ -220,7 +222,7 @@ fn lines_follow_the_light() {
             [left, right]
         };
         assert!(lit < 0.02, "{sign}: {left}, {right}");
-        assert!((dark - 6.0).abs() < 0.05, "{sign}: {left}, {right}");
+        assert!((dark - 6.0).abs() < 0.02, "{sign}: {left}, {right}");
     }
 }
 
@@ -262,8 +264,8 @@ fn lines_follow_perspective() {
     let near = width_across(&mut small, outlines, 30..66, 16);
     let far = width_across(&mut small, outlines, 30..66, 48);
     // The middle between 12 and 30 is 21.
-    assert!((near - 4.0 * 21.0 / 12.0).abs() < 0.05, "{near}");
-    assert!((far - 4.0 * 21.0 / 24.0).abs() < 0.05, "{far}");
+    assert!((near - 4.0 * 21.0 / 12.0).abs() < 0.02, "{near}");
+    assert!((far - 4.0 * 21.0 / 24.0).abs() < 0.02, "{far}");
 }
 
 /// A line that ends in the middle of the picture is thin at its end, whole behind the
@@ -302,9 +304,13 @@ fn a_line_tapers_towards_its_loose_end() {
     for x in end - 24..end {
         assert!(tapered[x] <= tapered[x - 1] + 1e-3, "{x}: {tapered:.2?}");
     }
-    // Half of the taper's length from the end, the width is half.
+    // Half of the taper's length from the end, the width is half: the end is known to a crack,
+    // over which it changes by 1.5 / 24. `logical_pixels.rs` has every crack of a taper.
     let half = tapered[end - 12] / blunt[end - 12];
-    assert!((half - 0.5).abs() < 0.1, "{half}: {tapered:.2?}");
+    assert!(
+        (half - 0.5).abs() < 1.5 / 24.0 + 0.02,
+        "{half}: {tapered:.2?}"
+    );
 }
 
 /// Lines fade as the engine's fog covers a black surface at the same place, at the middle of

@@ -2,6 +2,8 @@
 
 use std::{fmt::Write, path::Path};
 
+use bevy_comics_testkit::straight_edges::accepted;
+
 use super::targets::Target;
 use crate::{load, table::Table};
 
@@ -59,9 +61,113 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
+/// The largest absolute number of a column.
+fn most(table: &Table, rows: &[&Vec<String>], column: &str) -> f64 {
+    let numbers = table.numbers(rows, column).into_iter();
+    numbers.map(f64::abs).fold(0.0, f64::max)
+}
+
+/// Distances of drawn lines from edges, over what is accepted: the largest of some rows.
+fn over_accepted(table: &Table, rows: &[&Vec<String>]) -> f64 {
+    let ratio =
+        |row: &&Vec<String>| table.number(row, "away") / accepted(table.number(row, "slope"));
+    rows.iter().map(ratio).fold(0.0, f64::max)
+}
+
+/// The widths of lines that the section draws; the second is the default, and of an even number of
+/// pixels: the middles of such lines are at their edges.
+fn straight_widths(table: &Table) -> Vec<String> {
+    table.distinct(&table.rows.iter().collect::<Vec<_>>(), "width")
+}
+
+/// The text on straight lines.
+pub fn straight(out: &mut String, folder: &Path) -> Result<(), String> {
+    out.push_str("### Straight lines\n\n");
+    if !folder.join("ink_straight.csv").exists() {
+        out.push_str("Not measured yet: `report --only straight`.\n\n");
+        return Ok(());
+    }
+    let table = load(folder, "ink_straight")?;
+    out.push_str(
+        "Lines along straight edges of 64 slopes, 1/64 to 1 row per column, at 16 offsets each, \
+         over 200 columns. Width: the ink of a column times the cosine of the edge. Difference: \
+         of the mean width of a line from the width that was asked for, the largest of all lines. \
+         Unevenness: the standard deviation of the width from column to column.\n\n\
+         | px wide | difference, px | unevenness, px: mean | largest |\n|---|---|---|---|\n",
+    );
+    for width in straight_widths(&table) {
+        let rows = table.matching(&[("width", &width)]);
+        let uneven = table.numbers(&rows, "uneven");
+        let _ = writeln!(
+            out,
+            "| {width} | {:.4} | {:.3} | {:.3} |",
+            most(&table, &rows, "most"),
+            uneven.iter().sum::<f64>() / uneven.len().max(1) as f64,
+            most(&table, &rows, "uneven"),
+        );
+    }
+    out.push_str(
+        "\nHow far the middle of the ink of a line of 2 pixels is from its edge: the root mean \
+         square over all columns and offsets. Accepted: a tenth more than what is aimed at for \
+         the slope, or than what one run of steps can tell (`testkit/src/straight_edges.rs`). \
+         The largest of the slopes of each row, and the largest part of what is accepted.\n\n\
+         | slopes | px | part |\n|---|---|---|\n",
+    );
+    let rows = table.matching(&[("width", "2")]);
+    let mut low = 0.0;
+    for high in [0.125, 0.25, 0.5, 0.75, 0.94, 1.0] {
+        let within = |row: &&&Vec<String>| {
+            let slope = table.number(row, "slope");
+            slope > low && slope <= high
+        };
+        let rows: Vec<&Vec<String>> = rows.iter().filter(within).copied().collect();
+        if !rows.is_empty() {
+            let _ = writeln!(
+                out,
+                "| {low} to {high} | {:.3} | {:.2} |",
+                most(&table, &rows, "away"),
+                over_accepted(&table, &rows),
+            );
+        }
+        low = high;
+    }
+    out.push('\n');
+    Ok(())
+}
+
+fn straight_targets(folder: &Path) -> Result<Vec<Target>, String> {
+    if !folder.join("ink_straight.csv").exists() {
+        return Ok(vec![]);
+    }
+    let table = load(folder, "ink_straight")?;
+    let mut all = vec![];
+    for width in straight_widths(&table) {
+        let rows = table.matching(&[("width", &width)]);
+        let what =
+            format!("straight lines of {width} px in 64 directions: difference of the width, px");
+        let target = Target::at_most(what, 0.02, Some(most(&table, &rows, "most")));
+        all.push(target.with_digits(4));
+    }
+    let rows = table.matching(&[("width", "2")]);
+    all.push(
+        Target::at_most(
+            "the same of 2 px: unevenness of the width along a line, px",
+            0.1,
+            Some(most(&table, &rows, "uneven")),
+        )
+        .with_digits(3),
+    );
+    all.push(Target::at_most(
+        "the same: distance from the edge, as a part of what is accepted",
+        1.0,
+        Some(over_accepted(&table, &rows)),
+    ));
+    Ok(all)
+}
+
 pub fn targets(folder: &Path) -> Result<Vec<Target>, String> {
     if !folder.join("ink_dashes.csv").exists() || !folder.join("ink_memory.csv").exists() {
-        return Ok(vec![]);
+        return straight_targets(folder);
     }
     let table = load(folder, "ink_dashes")?;
     let rows: Vec<&Vec<String>> = table.rows.iter().collect();
@@ -79,5 +185,6 @@ pub fn targets(folder: &Path) -> Result<Vec<Target>, String> {
         let what = format!("{scene}: pixels that change under temporal anti-aliasing, %");
         all.push(Target::at_most(what, 0.01, Some(changed(&table, row))).with_digits(4));
     }
+    all.extend(straight_targets(folder)?);
     Ok(all)
 }

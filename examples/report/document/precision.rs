@@ -154,6 +154,7 @@ pub fn lines(out: &mut String, folder: &Path) -> Result<(), String> {
     out.push_str("\n![F1 against time](lines.svg)\n\n");
     models(out, folder)?;
     super::ink::ink(out, folder)?;
+    super::ink::straight(out, folder)?;
     out.push_str(
         "### Anti-aliasing of bands and lines\n\nErrors against the same style at eight times the \
          resolution. `hard` has no softness, `derivative` is the crate's own softness. `2x2 \

@@ -41,6 +41,21 @@ pub fn line_bend(seen: [usize; 2], signs: [f64; 2]) -> [f64; 2] {
     }
 }
 
+/// The same along a diagonal run, whose cracks and whose distance from the next runs are sqrt(1/2)
+/// pixels. `sense`: 1 if the diagonal goes to the south-east, -1 to the north-east; `side`: on
+/// which side of it the run behind the crack is, 1 or -1; that before it is on the other side.
+pub fn diagonal_bend(seen: [usize; 2], sense: f64, side: f64) -> [f64; 2] {
+    let [offset, slope] = line_bend(seen, [-side, side]);
+    // The line through the place `offset` beside the diagonal, in the crack's frame.
+    let half = 0.5f64.sqrt();
+    let [along, beside] = [[half, sense * half], [-sense * half, half]];
+    let direction = [0, 1].map(|i| along[i] + slope * beside[i]);
+    let place = beside.map(|part| half * offset * part);
+    let slope = direction[1] / direction[0];
+    let offset = place[1] - slope * place[0];
+    [offset.clamp(-0.49, 0.49), slope]
+}
+
 /// Offset and slope as they are stored.
 pub fn stored([offset, slope]: [f64; 2]) -> [f64; 2] {
     [

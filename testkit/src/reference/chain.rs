@@ -1,8 +1,11 @@
 //! Twin of `lines/chain.wgsl`: lines are followed from crack to crack.
 
-use std::collections::HashSet;
+use std::{collections::HashSet, ops::RangeInclusive};
 
-use super::link::{Place, at_corner, corners};
+use super::{
+    bend::diagonal_bend,
+    link::{Place, at_corner, corners},
+};
 
 /// How a line goes on at a corner of one of its cracks.
 enum Next {
@@ -104,4 +107,55 @@ pub fn mean_bend(lines: &HashSet<Place>, place: Place) -> Option<[f64; 2]> {
     let slope = rise / run;
     let offset = away(across) - slope * away(along);
     (offset.abs() <= 0.49).then_some([offset, slope])
+}
+
+/// Cracks of a diagonal run that is followed.
+pub const DIAGONALS: RangeInclusive<usize> = 7..=31;
+
+/// The cracks of a diagonal run from one of them in the direction `way` (1 or -1) of its corner,
+/// itself included; from the last one's centre to the corner where the next run begins, along and
+/// across the first crack, if the line goes on in it; and whether the diagonal goes to the
+/// south-east (1) or to the north-east (-1), if it is known.
+fn stairs(
+    lines: &HashSet<Place>,
+    place: Place,
+    corner: [i64; 2],
+    way: i64,
+) -> (usize, Option<[f64; 2]>, Option<i64>) {
+    let (along, across) = if place.1 == 0 { (1, 0) } else { (0, 1) };
+    let (followed, _) = follow(lines, (place, corner), *DIAGONALS.end());
+    let (mut last, mut at, mut sense) = (place, corner, None);
+    for (i, next) in followed.iter().enumerate() {
+        let behind = other_corner(*next, at);
+        let step = [along, across].map(|axis| way * (behind[axis] - at[axis]));
+        let turns = next.1 != last.1;
+        if turns && i == 0 {
+            sense = Some(step[1]);
+        }
+        let onward = step[0] == 1 || sense == Some(step[1]);
+        if !turns || !onward {
+            // Both runs meet at the corner between the two cracks of a kind.
+            let own = centre(last);
+            let to_corner = [along, across].map(|axis| at[axis] as f64 - own[axis]);
+            return (i + 1, onward.then_some(to_corner), sense);
+        }
+        (last, at) = (*next, behind);
+    }
+    (followed.len() + 1, None, sense)
+}
+
+/// Offset and slope of a line in a diagonal run, if the next runs are on different sides of it.
+pub fn stairs_bend(lines: &HashSet<Place>, place: Place) -> Option<[f64; 2]> {
+    let [first, last] = corners(place);
+    let (back, before, one) = stairs(lines, place, first, -1);
+    let (on, after, other) = stairs(lines, place, last, 1);
+    let sense = match (one, other) {
+        (Some(one), Some(other)) if one != other => return None,
+        _ => one.or(other)? as f64,
+    };
+    // On which side of the diagonal the next run begins.
+    let side = |[along, across]: [f64; 2]| (across - sense * along).signum();
+    let [before, after] = [side(before?), side(after?)];
+    let follows = DIAGONALS.contains(&(back + on - 1)) && before != after;
+    follows.then(|| diagonal_bend([back, on], sense, after))
 }

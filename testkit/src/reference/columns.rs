@@ -3,7 +3,7 @@
 use super::{
     crack::{Crack, SIDES},
     draw::{Cracks, Line, distance, ink_of, is_apart, middle},
-    sheet::Spot,
+    edge::line_coverage,
 };
 
 /// A crack and the middle of its line.
@@ -37,7 +37,7 @@ impl Cracks {
                 let Some(crack) = crack else { continue };
                 let middle = middle(&crack, [x, row], v);
                 let away = (middle[1] - (y as f64 + 0.5)).abs();
-                let ink = ink_of(&crack, nudge, away, &Spot::SMOOTH);
+                let ink = ink_of(&crack, nudge, line_coverage(away, crack.half_width));
                 let value = [0, 1, 2]
                     .map(|kind| ink[kind] * self.opacity[kind])
                     .into_iter()

@@ -7,8 +7,9 @@ use super::{
     boil::boiled,
     budget::{budget_weight, line_density},
     chain::cracks_to_ends,
+    coverage::disc_coverage,
     crack::{Crack, SIDES, crack, jump},
-    edge::{line_coverage, line_offset},
+    edge::line_offset,
     faithful::faithful,
     fold::placed,
     gaps::{gaps, source},
@@ -271,8 +272,10 @@ impl Cracks {
 
 /// The ink of lines at a place, which has a place on the sheet.
 fn ink_of_lines(mut lines: Vec<Line>, (at, on): ([f64; 2], &Spot), nudge: f64) -> [f64; 3] {
-    let found = lines.iter().fold([0.0; 3], |found, (border, _, crack)| {
-        larger(found, ink_of(crack, nudge, border + crack.half_width, on))
+    let found = lines.iter().fold([0.0; 3], |found, (_, middle, crack)| {
+        let away = [middle[0] - at[0], middle[1] - at[1]];
+        let covered = disc_coverage(away, on.half_width(crack.half_width));
+        larger(found, ink_of(crack, nudge, covered))
     });
     let straight = straight(&mut lines, (at, on), nudge);
     let straight: Vec<[f64; 3]> = (straight.into_iter())
@@ -322,9 +325,8 @@ pub(super) fn middle(crack: &Crack, [x, y]: [i64; 2], v: [i64; 2]) -> [f64; 2] {
     })
 }
 
-/// Ink by kind at a distance from the middle of a line, at a place on the sheet.
-pub(super) fn ink_of(crack: &Crack, nudge: f64, away: f64, on: &Spot) -> [f64; 3] {
-    let covered = line_coverage(away, on.half_width(crack.half_width));
+/// Ink by kind of a pixel of which a line covers a fraction.
+pub(super) fn ink_of(crack: &Crack, nudge: f64, covered: f64) -> [f64; 3] {
     let opacity = stored(crack.opacity, nudge);
     let soft = stored(crack.ink, nudge);
     let whole = [soft, soft, 1.0];

@@ -116,15 +116,6 @@ pub fn is_rim_ridge(folds: [Option<f64>; 3]) -> bool {
     }
 }
 
-/// Distance from a place to a segment.
-pub fn segment_distance(at: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
-    let along = [b[0] - a[0], b[1] - a[1]];
-    let squared = along[0] * along[0] + along[1] * along[1];
-    let dot = (at[0] - a[0]) * along[0] + (at[1] - a[1]) * along[1];
-    let t = (dot / squared.max(1e-12)).clamp(0.0, 1.0);
-    (at[0] - a[0] - t * along[0]).hypot(at[1] - a[1] - t * along[1])
-}
-
 /// Fraction of a pixel that a line covers, across the line: the overlap of the
 /// intervals [distance - 1/2, distance + 1/2] and [-half width, half width], pixels.
 pub fn line_coverage(distance: f64, half_width: f64) -> f64 {

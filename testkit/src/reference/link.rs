@@ -126,6 +126,6 @@ pub fn bend(linked: &HashSet<Place>, ([x, y], side): Place) -> [f64; 2] {
     let ends = [-(seen[0] as i64), seen[1] as i64 - 1];
     let run = line_bend(seen, ends.map(|n| end_sign(sides(n), single)));
     let short = seen[0] + seen[1] <= 3;
-    let mean = short.then(|| chain::mean_bend(linked, at(0))).flatten();
-    stored(mean.unwrap_or(run))
+    let stairs = || chain::stairs_bend(linked, at(0)).or_else(|| chain::mean_bend(linked, at(0)));
+    stored(short.then(stairs).flatten().unwrap_or(run))
 }

@@ -15,6 +15,7 @@ pub mod color_harmony;
 pub mod colorization;
 pub mod columns;
 pub mod contours;
+pub mod coverage;
 pub mod crack;
 pub mod depths;
 pub mod desaturation;

@@ -5,9 +5,9 @@ use std::collections::HashSet;
 
 use super::{
     chain::follow,
+    coverage::segment_coverage,
     crack::{Crack, SIDES, THINNEST},
     draw::{ink_of, middle},
-    edge::segment_distance,
     link::{Place, corners},
     sheet::Spot,
     weight::taper_weight,
@@ -129,8 +129,9 @@ impl Stroke {
             ..self.crack
         };
         let fainter = (half_width / thinnest.max(1e-3)).min(1.0);
-        let distance = segment_distance(at, self.start, self.tip);
         let left = fainter * on.dry_ink(along, thinner.half_width);
-        ink_of(&thinner, nudge, distance, on).map(|ink| ink * left)
+        let half_width = on.half_width(thinner.half_width);
+        let covered = segment_coverage(at, self.start, self.tip, half_width);
+        ink_of(&thinner, nudge, covered).map(|ink| ink * left)
     }
 }

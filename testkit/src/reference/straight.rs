@@ -2,8 +2,8 @@
 //! cracks.
 
 use super::{
+    coverage::segment_coverage,
     draw::{Line, distance, ink_of, is_apart},
-    edge::segment_distance,
     sheet::Spot,
 };
 
@@ -37,9 +37,13 @@ fn between(
     nudge: f64,
 ) -> ([f64; 3], f64) {
     if distance(*from, to) < 1.45 {
-        let ink = ink_of(crack, nudge, segment_distance(at, *from, to), on);
         let along = [to[0] - from[0], to[1] - from[1]];
-        (ink, on.dry_ink(along, crack.half_width))
+        let half_width = on.half_width(crack.half_width);
+        let covered = segment_coverage(at, *from, to, half_width);
+        (
+            ink_of(crack, nudge, covered),
+            on.dry_ink(along, crack.half_width),
+        )
     } else {
         ([0.0; 3], 1.0)
     }

@@ -4,7 +4,7 @@ use super::*;
 use bevy_comics::{CartoonLight, Form, Sketch, ToneBands};
 use bevy_comics_testkit::reference::{edge, light, sketch, tone_bands};
 
-const EDGE: &str = "#import bevy_comics::lines::edge::{gradient, gradient_extremes, edge_response, component_response, is_outdone, step_excess, step_response, fold, fold_response, is_ridge, is_rim_ridge, line_coverage, line_offset, segment_distance, pack_ink, unpack_crack, encode_ink, decode_ink}";
+const EDGE: &str = "#import bevy_comics::lines::edge::{gradient, gradient_extremes, edge_response, component_response, is_outdone, step_excess, step_response, fold, fold_response, is_ridge, is_rim_ridge, line_coverage, line_offset, pack_ink, unpack_crack, encode_ink, decode_ink}";
 
 /// A window of 5 x 5 depths, row by row (random, a step or a ramp), then `k` of Eq. 2
 /// and an unused element.

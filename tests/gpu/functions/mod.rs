@@ -9,6 +9,7 @@ mod cartoon_styles;
 mod color_harmony;
 mod color_styles;
 mod contour_response;
+mod coverage;
 mod depth_map;
 mod depths;
 mod finish;

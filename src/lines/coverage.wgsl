@@ -1,0 +1,41 @@
+#define_import_path bevy_comics::lines::coverage
+
+// Fractions of pixels that drawn lines cover. Pure functions.
+
+#import bevy_comics::lines::edge::line_coverage
+
+// The ramp of a diagonal.
+const SHORTEST_RAMP: f32 = 0.70710678;
+
+// The length of the ramp from no coverage to full coverage across a line with this direction, in
+// pixels: the cosine of its angle with the nearer axis, 1 to sqrt(1/2).
+fn line_ramp(along: vec2<f32>) -> f32 {
+    let cosine = max(abs(along.x), abs(along.y)) * inverseSqrt(max(dot(along, along), 1e-12));
+    return clamp(cosine, SHORTEST_RAMP, 1.0);
+}
+
+// The coverage by a straight line with such a ramp. In each column (of a steep line: in each row) it
+// adds up to the extent of the line along the column, wherever the line lies between the pixels.
+fn straight_coverage(distance: f32, half_width: f32, ramp: f32) -> f32 {
+    return clamp((half_width - distance) / ramp + 0.5, 0.0, min(2.0 * half_width / ramp, 1.0));
+}
+
+// The coverage by a disc around the middle of a line whose direction is not known, as if the line ran
+// across the direction from its middle to the pixel: beside the line, that is right. `away`: from the
+// one to the other.
+fn disc_coverage(away: vec2<f32>, half_width: f32) -> f32 {
+    let distance = length(away);
+    let across = straight_coverage(distance, half_width, line_ramp(away));
+    return min(line_coverage(distance, half_width), across);
+}
+
+// The coverage by the straight line from `a` to `b`, with round ends.
+fn segment_coverage(at: vec2<f32>, a: vec2<f32>, b: vec2<f32>, half_width: f32) -> f32 {
+    let along = b - a;
+    let t = dot(at - a, along) / max(dot(along, along), 1e-12);
+    let away = at - a - clamp(t, 0.0, 1.0) * along;
+    // Pixels are often right beside an end. They see the line, as those before the end do.
+    let beside = abs(t - 0.5) <= 0.51;
+    let ramp = line_ramp(select(away, along, beside));
+    return straight_coverage(length(away), half_width, ramp);
+}

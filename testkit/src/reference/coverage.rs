@@ -1,0 +1,39 @@
+//! Twin of `lines/coverage.wgsl`: fractions of pixels that drawn lines cover.
+
+/// Length in pixels of the ramp of coverage across a line with this direction.
+pub fn line_ramp(along: [f64; 2]) -> f64 {
+    let length = along[0].hypot(along[1]).max(1e-6);
+    (along[0].abs().max(along[1].abs()) / length).clamp(SHORTEST_RAMP, 1.0)
+}
+
+/// That of a diagonal.
+const SHORTEST_RAMP: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+/// The coverage by a straight line: the overlap of [-half width, half width] and of an interval of
+/// the length of the ramp, divided by this length.
+pub fn straight_coverage(distance: f64, half_width: f64, ramp: f64) -> f64 {
+    let low = (distance - 0.5 * ramp).max(-half_width);
+    let high = (distance + 0.5 * ramp).min(half_width);
+    (high - low).max(0.0) / ramp
+}
+
+/// The coverage by a disc whose middle is `away`: no more than that of a line across this direction,
+/// nor of one along an axis.
+pub fn disc_coverage(away: [f64; 2], half_width: f64) -> f64 {
+    let distance = away[0].hypot(away[1]);
+    let at = |ramp| straight_coverage(distance, half_width, ramp);
+    at(1.0).min(at(line_ramp(away)))
+}
+
+/// The coverage by a segment. Pixels that are a hundredth of its length before or behind it count as
+/// beside it.
+pub fn segment_coverage(at: [f64; 2], a: [f64; 2], b: [f64; 2], half_width: f64) -> f64 {
+    let along = [b[0] - a[0], b[1] - a[1]];
+    let from = [at[0] - a[0], at[1] - a[1]];
+    let squared = (along[0] * along[0] + along[1] * along[1]).max(1e-12);
+    let t = (from[0] * along[0] + from[1] * along[1]) / squared;
+    let nearest = t.clamp(0.0, 1.0);
+    let away = [from[0] - nearest * along[0], from[1] - nearest * along[1]];
+    let direction = if (-0.01..=1.01).contains(&t) { along } else { away };
+    straight_coverage(away[0].hypot(away[1]), half_width, line_ramp(direction))
+}
