@@ -20,22 +20,24 @@ fn straight_coverage(distance: f32, half_width: f32, ramp: f32) -> f32 {
     return clamp((half_width - distance) / ramp + 0.5, 0.0, min(2.0 * half_width / ramp, 1.0));
 }
 
-// The coverage by a disc around the middle of a line whose direction is not known, as if the line ran
-// across the direction from its middle to the pixel: beside the line, that is right. `away`: from the
-// one to the other.
-fn disc_coverage(away: vec2<f32>, half_width: f32) -> f32 {
-    let distance = length(away);
-    let across = straight_coverage(distance, half_width, line_ramp(away));
-    return min(line_coverage(distance, half_width), across);
+// The coverage by a disc around the middle of a line whose direction is not known: no more than that
+// of a straight line in any direction.
+fn disc_coverage(distance: f32, half_width: f32) -> f32 {
+    let steep = straight_coverage(distance, half_width, SHORTEST_RAMP);
+    return min(line_coverage(distance, half_width), steep);
 }
 
-// The coverage by the straight line from `a` to `b`, with round ends.
+// The coverage by the straight line from `a` to `b`, with round ends; or by a dot, if both are the
+// same. Beyond an end, the line counts as if it ran across the direction from its end to the pixel.
 fn segment_coverage(at: vec2<f32>, a: vec2<f32>, b: vec2<f32>, half_width: f32) -> f32 {
     let along = b - a;
-    let t = dot(at - a, along) / max(dot(along, along), 1e-12);
+    let square = dot(along, along);
+    let t = dot(at - a, along) / max(square, 1e-12);
     let away = at - a - clamp(t, 0.0, 1.0) * along;
     // Pixels are often right beside an end. They see the line, as those before the end do.
-    let beside = abs(t - 0.5) <= 0.51;
-    let ramp = line_ramp(select(away, along, beside));
-    return straight_coverage(length(away), half_width, ramp);
+    if square > 0.0 && abs(t - 0.5) <= 0.51 {
+        return straight_coverage(length(away), half_width, line_ramp(along));
+    }
+    let covered = straight_coverage(length(away), half_width, line_ramp(away));
+    return min(covered, 2.0 * half_width);
 }

@@ -102,10 +102,9 @@ struct Owner {
 // Adds the line along a crack.
 fn add(ink: ptr<function, Ink>, packed: u32, middle: vec2<f32>, owner: Owner, at: vec2<f32>) {
     let half_width = unpack_width(packed >> 20u);
-    let from_middle = (middle - at) * viewport_scale;
-    let away = length(from_middle);
+    let away = length((middle - at) * viewport_scale);
     let exists = (packed & 7u) != 0u;
-    let covered = disc_coverage(from_middle, width_here(half_width));
+    let covered = disc_coverage(away, width_here(half_width));
     let kinds = select(0.0, covered, exists) * ink_of(packed);
     (*ink).kinds = max((*ink).kinds, kinds);
 #ifdef OWNERS
@@ -358,11 +357,12 @@ fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
     search(&ink, centre, at);
     // Between the middles of two neighbouring cracks, a line runs straight. Discs around
     // the middles alone would leave diagonal lines too thin.
-    if ink.distances.y < 1e5 && distance(ink.first, ink.second) < 1.45 {
-        let s = viewport_scale;
+    let continues = ink.distances.y < 1e5 && distance(ink.first, ink.second) < 1.45;
+    if ink.distances.x < 1e5 {
+        let first = ink.first * viewport_scale;
+        let second = select(ink.first, ink.second, continues) * viewport_scale;
         let half_width = unpack_width(ink.packed >> 20u);
-        let width = width_here(half_width);
-        let covered = segment_coverage(at * s, ink.first * s, ink.second * s, width);
+        let covered = segment_coverage(at * viewport_scale, first, second, width_here(half_width));
         let straight = covered * ink_of(ink.packed);
         ink.kinds = max(ink.kinds, straight);
 #ifdef OWNERS
@@ -372,7 +372,9 @@ fn draw(@builtin(position) position: vec4<f32>) -> Drawn {
         ink.strongest = max(ink.strongest, alphas(straight));
 #endif
 #ifdef STREAKS
-        ink.kinds *= dry_ink(line_pass.sheet, position.xy, (ink.second - ink.first) * s, half_width);
+        if continues {
+            ink.kinds *= dry_ink(line_pass.sheet, position.xy, second - first, half_width);
+        }
 #endif
     }
 #ifdef BRIDGED

@@ -17,23 +17,25 @@ pub fn straight_coverage(distance: f64, half_width: f64, ramp: f64) -> f64 {
     (high - low).max(0.0) / ramp
 }
 
-/// The coverage by a disc whose middle is `away`: no more than that of a line across this direction,
-/// nor of one along an axis.
-pub fn disc_coverage(away: [f64; 2], half_width: f64) -> f64 {
-    let distance = away[0].hypot(away[1]);
+/// The coverage by a disc around the middle of a line: the least of straight lines in all
+/// directions.
+pub fn disc_coverage(distance: f64, half_width: f64) -> f64 {
     let at = |ramp| straight_coverage(distance, half_width, ramp);
-    at(1.0).min(at(line_ramp(away)))
+    at(1.0).min(at(SHORTEST_RAMP))
 }
 
-/// The coverage by a segment. Pixels that are a hundredth of its length before or behind it count as
-/// beside it.
+/// The coverage by a segment, or by a dot. Pixels that are a hundredth of its length before or behind
+/// a segment count as beside it.
 pub fn segment_coverage(at: [f64; 2], a: [f64; 2], b: [f64; 2], half_width: f64) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     let from = [at[0] - a[0], at[1] - a[1]];
-    let squared = (along[0] * along[0] + along[1] * along[1]).max(1e-12);
-    let t = (from[0] * along[0] + from[1] * along[1]) / squared;
+    let square = along[0] * along[0] + along[1] * along[1];
+    let t = (from[0] * along[0] + from[1] * along[1]) / square.max(1e-12);
     let nearest = t.clamp(0.0, 1.0);
     let away = [from[0] - nearest * along[0], from[1] - nearest * along[1]];
-    let direction = if (-0.01..=1.01).contains(&t) { along } else { away };
-    straight_coverage(away[0].hypot(away[1]), half_width, line_ramp(direction))
+    let distance = away[0].hypot(away[1]);
+    if square > 0.0 && (-0.01..=1.01).contains(&t) {
+        return straight_coverage(distance, half_width, line_ramp(along));
+    }
+    straight_coverage(distance, half_width, line_ramp(away)).min(2.0 * half_width)
 }

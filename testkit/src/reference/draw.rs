@@ -272,8 +272,8 @@ impl Cracks {
 
 /// The ink of lines at a place, which has a place on the sheet.
 fn ink_of_lines(mut lines: Vec<Line>, (at, on): ([f64; 2], &Spot), nudge: f64) -> [f64; 3] {
-    let found = lines.iter().fold([0.0; 3], |found, (_, middle, crack)| {
-        let away = [middle[0] - at[0], middle[1] - at[1]];
+    let found = lines.iter().fold([0.0; 3], |found, (border, _, crack)| {
+        let away = border + crack.half_width;
         let covered = disc_coverage(away, on.half_width(crack.half_width));
         larger(found, ink_of(crack, nudge, covered))
     });

@@ -9,7 +9,7 @@ use super::{
 
 /// The two nearest lines in different places, as the shader keeps them while it goes
 /// through all lines: of lines in nearly the same place, it only keeps the nearest.
-fn followed(lines: &[Line]) -> Option<[Line; 2]> {
+fn followed(lines: &[Line]) -> Option<(Line, Option<Line>)> {
     let mut first: Option<Line> = None;
     let mut second: Option<Line> = None;
     for line in lines {
@@ -25,28 +25,24 @@ fn followed(lines: &[Line]) -> Option<[Line; 2]> {
             second = Some(*line);
         }
     }
-    Some([first?, second?])
+    Some((first?, second))
 }
 
-/// The ink of the straight line from the middle of a line to another middle, and what a dry brush
-/// leaves of all ink there.
+/// The ink of the straight line from the middle of a line to another middle, or of a dot if that is
+/// far away, and what a dry brush leaves of all ink there.
 fn between(
     (_, from, crack): &Line,
-    to: [f64; 2],
+    to: Option<[f64; 2]>,
     (at, on): ([f64; 2], &Spot),
     nudge: f64,
 ) -> ([f64; 3], f64) {
-    if distance(*from, to) < 1.45 {
-        let along = [to[0] - from[0], to[1] - from[1]];
-        let half_width = on.half_width(crack.half_width);
-        let covered = segment_coverage(at, *from, to, half_width);
-        (
-            ink_of(crack, nudge, covered),
-            on.dry_ink(along, crack.half_width),
-        )
-    } else {
-        ([0.0; 3], 1.0)
-    }
+    let next = to.filter(|to| distance(*from, *to) < 1.45);
+    let to = next.unwrap_or(*from);
+    let half_width = on.half_width(crack.half_width);
+    let covered = segment_coverage(at, *from, to, half_width);
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let left = next.map_or(1.0, |_| on.dry_ink(along, crack.half_width));
+    (ink_of(crack, nudge, covered), left)
 }
 
 /// The ink of the straight line between the middles of the two lines whose borders are
@@ -60,7 +56,7 @@ pub(super) fn straight(
     // sqrt(2) / 1024.
     const TIE: f64 = 3e-3;
     let mut found: Vec<_> = followed(lines)
-        .map(|[first, second]| between(&first, second.1, (at, on), nudge))
+        .map(|(first, second)| between(&first, second.map(|line| line.1), (at, on), nudge))
         .into_iter()
         .collect();
     lines.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -70,11 +66,14 @@ pub(super) fn straight(
         }
         // Both cracks at a corner of a line of odd width have their middle in one pixel.
         let others: Vec<&Line> = lines.iter().filter(|other| is_apart(other.1, *a)).collect();
+        if others.is_empty() {
+            found.push(between(&(*border, *a, *crack), None, (at, on), nudge));
+        }
         for (border, b, _) in &others {
             if *border > others[0].0 + TIE {
                 break;
             }
-            found.push(between(&(*border, *a, *crack), *b, (at, on), nudge));
+            found.push(between(&(*border, *a, *crack), Some(*b), (at, on), nudge));
         }
     }
     found
