@@ -7,7 +7,8 @@ use bevy_comics_testkit::{
     painting::{RADII, SLOPES, bled, edge_moved, kuwahara_error},
     reference::{color, color_harmony::harmonize, halftone::Plate},
     screens::{
-        PERIODS, SHAPES, color_error, grey_inks, ideal, in_phase, largest_jump, moire, tone_error,
+        PERIODS, SHAPES, color_error, grey_inks, ideal, in_phase, largest_jump, moire,
+        moire_of_inks, tone_error,
     },
 };
 
@@ -86,7 +87,7 @@ fn screens(run: &Run) -> Table {
 /// Colours of four inks: ideal ones, ones that all take some of all light, and these without the
 /// phase of black.
 fn colors() -> Table {
-    let mut table = Table::new(&["black", "ideal", "grey", "in_phase"]);
+    let mut table = Table::new(&["black", "ideal", "grey", "in_phase", "beats"]);
     for black in [0.0, 0.5, 1.0] {
         let s = Halftone {
             black_generation: black,
@@ -99,9 +100,19 @@ fn colors() -> Table {
             &cell(color_error(&s, Plate::all(&s, 1.0))),
             &cell(color_error(&real, Plate::all(&real, 1.0))),
             &cell(color_error(&real, in_phase(&real))),
+            &cell(beats(black)),
         ]);
     }
     table
+}
+
+/// The slow part of a grey print with the default inks.
+fn beats(black_generation: f32) -> f64 {
+    let s = Halftone {
+        black_generation,
+        ..Halftone::default()
+    };
+    f64::max(moire_of_inks(&s, false), moire_of_inks(&s, true))
 }
 
 /// Errors of single effects with their limits. The names are those of the times.

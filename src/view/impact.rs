@@ -17,6 +17,7 @@ use bevy::{
     log::{debug, warn_once},
     reflect::{Reflect, std_traits::ReflectDefault},
     time::{Real, Time},
+    window::PrimaryWindow,
 };
 
 use super::flashes::{Flashes, PastFlashes};
@@ -250,16 +251,25 @@ impl Impacts {
     }
 }
 
-/// The target of a camera, to be compared. The primary window has a stand-in.
-fn normalized(target: Option<&RenderTarget>) -> Option<NormalizedRenderTarget> {
-    target?.normalize(Some(Entity::PLACEHOLDER))
+/// The targets of cameras, to be compared.
+#[derive(SystemParam)]
+pub(super) struct Targets<'w, 's> {
+    primary: Query<'w, 's, Entity, With<PrimaryWindow>>,
+}
+
+impl Targets<'_, '_> {
+    /// The target of a camera. Without a primary window, a stand-in is one.
+    fn of(&self, target: Option<&RenderTarget>) -> Option<NormalizedRenderTarget> {
+        let primary = self.primary.iter().next().unwrap_or(Entity::PLACEHOLDER);
+        target?.normalize(Some(primary))
+    }
 }
 
 /// Starts an impact, or counts that it was refused.
 pub(super) fn start_impact(
     impact: On<Impact>,
     mut cameras: Query<(Entity, Option<&RenderTarget>, Option<&mut Impacts>), With<Camera>>,
-    mut past: ResMut<PastFlashes>,
+    (mut past, targets): (ResMut<PastFlashes>, Targets),
     mut commands: Commands,
     clocks: Clocks,
     mut diagnostics: ResMut<ComicsDiagnostics>,
@@ -271,15 +281,15 @@ pub(super) fn start_impact(
         warn_once!("Impact: {camera} is not a camera");
         return;
     };
-    let target = normalized(target);
+    let target = targets.of(target);
     for (_, at, impacts) in &mut cameras {
         if let Some(mut impacts) = impacts {
-            impacts.follow(normalized(at).as_ref(), &mut past);
+            impacts.follow(targets.of(at).as_ref(), &mut past);
         }
     }
     let others = cameras
         .iter()
-        .filter(|(other, at, _)| *other != camera && normalized(*at) == target)
+        .filter(|(other, at, _)| *other != camera && targets.of(*at) == target)
         .filter_map(|(.., impacts)| impacts);
     let others: usize = others.map(|impacts| impacts.flashes.recent(now)).sum();
     let others = others + past.recent(target.as_ref(), now);
@@ -320,14 +330,14 @@ pub(super) fn keep_flashes(
 /// Draws the impacts that are shown.
 pub(super) fn run_impacts(
     mut cameras: Query<(Entity, Option<&RenderTarget>, &mut Impacts)>,
-    mut past: ResMut<PastFlashes>,
+    (mut past, targets): (ResMut<PastFlashes>, Targets),
     clocks: Clocks,
     reduced: Res<ReduceFlashing>,
     diagnostics: Res<ComicsDiagnostics>,
 ) {
     let now = clocks.now();
     for (camera, target, mut impacts) in &mut cameras {
-        impacts.follow(normalized(target).as_ref(), &mut past);
+        impacts.follow(targets.of(target).as_ref(), &mut past);
         if impacts.running.is_some() {
             let waits = diagnostics.is_compiling(camera);
             impacts.run(now, waits, reduced.0);

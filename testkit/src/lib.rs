@@ -23,6 +23,9 @@ mod stopwatch;
 pub mod straight_edges;
 pub mod studio;
 pub mod truth;
+// The order of the crate's grains, included because it is private there.
+#[path = "../../src/effect/blue_noise/void_and_cluster.rs"]
+mod void_and_cluster;
 pub mod wgsl;
 pub mod work;
 

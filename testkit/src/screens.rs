@@ -1,12 +1,18 @@
 //! How well screens print flat tones, gradients and rings. Computed with the shader's twin, which
 //! every pixel of a picture equals.
 
-use std::f64::consts::TAU;
+use std::{f64::consts::TAU, sync::OnceLock};
 
 use bevy::color::Color;
 use bevy_comics::{Halftone, ScreenShape};
 
-use crate::reference::halftone::{Plate, inked, plate_cover, plate_tones};
+use crate::{
+    reference::{
+        color::luminance,
+        halftone::{Plate, inked, plate_cover, plate_tones},
+    },
+    void_and_cluster,
+};
 
 /// All shapes.
 pub const SHAPES: [ScreenShape; 6] = [
@@ -24,16 +30,13 @@ pub const ANGLES: [f64; 4] = [15.0, 75.0, 0.0, 45.0];
 /// Periods that are measured, in pixels.
 pub const PERIODS: [f64; 5] = [3.0, 4.0, 6.0, 8.0, 12.5];
 
-/// Thresholds of grains by column and row: each of 256 classes as often as the others.
+/// Thresholds of grains by column and row: those of the tile that the crate prints with.
 pub fn tile(x: i64, y: i64) -> f64 {
-    let i = (y.rem_euclid(64) * 64 + x.rem_euclid(64)) as u32;
-    (f64::from(i.wrapping_mul(37) & 255) + 0.5) / 256.0
-}
-
-/// Thresholds without slow parts: the golden ratio along a lattice (Roberts 2018). Those of
-/// [`tile`] have power at all frequencies.
-fn even(x: i64, y: i64) -> f64 {
-    (0.754_877_666 * x as f64 + 0.569_840_291 * y as f64).rem_euclid(1.0)
+    static CLASSES: OnceLock<Vec<u8>> = OnceLock::new();
+    let classes = CLASSES.get_or_init(void_and_cluster::classes);
+    let side = void_and_cluster::SIDE as i64;
+    let class = classes[(y.rem_euclid(side) * side + x.rem_euclid(side)) as usize];
+    (f64::from(class) + 0.5) / 256.0
 }
 
 /// A plate of a screen that begins in the middle.
@@ -119,33 +122,55 @@ pub fn largest_jump(shape: ScreenShape, period: f64) -> (f64, f64) {
     most
 }
 
-/// The part of the power of a print less its picture that is below half of the screen's frequency.
-/// The picture is a slow gradient, or rings that become finer towards the border (`zones`).
-pub fn moire(shape: ScreenShape, period: f64, degrees: f64, zones: bool) -> f64 {
-    const SIDE: usize = 240;
-    let tone = |x: f64, y: f64| {
-        if zones {
-            // At the border: a period of 12 cells.
-            let frequency = 1.0 / (12.0 * period);
-            let square = (x * x + y * y) / (SIDE as f64 / 2.0);
-            0.5 + 0.35 * (0.5 * TAU * frequency * square).cos()
-        } else {
-            0.5 + x / SIDE as f64
-        }
+/// Side of the pictures whose prints are searched for slow parts.
+const SIDE: usize = 240;
+
+/// The tone of a picture at a place from its middle, as it is stored: in 8 bits. A slow gradient, or
+/// rings that become finer towards the border (`zones`).
+fn picture_tone([x, y]: [f64; 2], period: f64, zones: bool) -> f64 {
+    let tone = if zones {
+        // At the border: a period of 12 cells.
+        let frequency = 1.0 / (12.0 * period);
+        let square = (x * x + y * y) / (SIDE as f64 / 2.0);
+        0.5 + 0.35 * (0.5 * TAU * frequency * square).cos()
+    } else {
+        0.5 + x / SIDE as f64
     };
-    let mut rest = vec![0.0; SIDE * SIDE];
-    for (i, rest) in rest.iter_mut().enumerate() {
-        let [x, y] = [i % SIDE, i / SIDE].map(|v| v as f64 + 0.25 - SIDE as f64 / 2.0);
-        // As the picture stores it: 8 bits.
-        let tone = (tone(x, y).clamp(0.0, 1.0) * 255.0).round() / 255.0;
-        *rest = plate_cover(shape, plate(degrees, period), tone, &even)([x, y]) - tone;
-    }
+    (tone.clamp(0.0, 1.0) * 255.0).round() / 255.0
+}
+
+/// The part of the power of a print less its picture that is below half of the screen's frequency.
+/// `rest`: the print less the picture, at a place where the picture has a tone.
+fn slow_part(period: f64, zones: bool, rest: impl Fn([f64; 2], f64) -> f64) -> f64 {
+    let place = |i: usize| [i % SIDE, i / SIDE].map(|v| v as f64 + 0.25 - SIDE as f64 / 2.0);
+    let rest: Vec<f64> = (0..SIDE * SIDE)
+        .map(|i| rest(place(i), picture_tone(place(i), period, zones)))
+        .collect();
     let power = mean(rest.iter().map(|v| v * v));
     let slow = blurred(&rest, SIDE, 1.2 * period);
     let margin = (3.0 * period) as usize;
     let inside =
         (margin..SIDE - margin).flat_map(|y| (margin..SIDE - margin).map(move |x| y * SIDE + x));
     mean(inside.map(|i| slow[i] * slow[i])) / power
+}
+
+/// The slow part of a print with one plate, of a gradient or of rings.
+pub fn moire(shape: ScreenShape, period: f64, degrees: f64, zones: bool) -> f64 {
+    slow_part(period, zones, |place, tone| {
+        plate_cover(shape, plate(degrees, period), tone, &tile)(place) - tone
+    })
+}
+
+/// The slow part of the light of a grey print with all four inks, whose screens beat with each
+/// other.
+pub fn moire_of_inks(s: &Halftone, zones: bool) -> f64 {
+    let plates = Plate::all(s, 1.0);
+    slow_part(f64::from(s.period), zones, |place, tone| {
+        let tones = plate_tones(s, [1.0 - tone; 3]);
+        let covers =
+            std::array::from_fn(|i| plate_cover(s.shape, plates[i], tones[i], &tile)(place));
+        luminance(inked(s, covers)) - luminance(inked(s, tones))
+    })
 }
 
 /// The mean light of a print of a flat colour with these plates. `tones`: those of the plates.

@@ -20,7 +20,7 @@ use bevy_comics_testkit::{
     },
     screens::{
         PERIODS, SHAPES, color_error, colors, grey_inks, ideal, in_phase, largest_jump, mean,
-        moire, tone_error,
+        moire, moire_of_inks, tone_error,
     },
     studio::with_map,
 };
@@ -116,6 +116,25 @@ fn there_is_no_moire() {
                     );
                 }
             }
+        }
+    }
+}
+
+/// The same of a grey print with four inks, whose screens beat with each other.
+#[test]
+fn four_screens_do_not_beat() {
+    for black_generation in [0.0, 0.5, 1.0] {
+        let s = Halftone {
+            black_generation,
+            ..Halftone::default()
+        };
+        for zones in [false, true] {
+            let moire = moire_of_inks(&s, zones);
+            println!("black {black_generation}, zones {zones}: {moire}");
+            assert!(
+                moire < 0.01,
+                "black {black_generation}, zones {zones}: {moire}"
+            );
         }
     }
 }

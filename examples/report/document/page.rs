@@ -25,8 +25,8 @@ pub fn page(out: &mut String, folder: &Path) -> Result<(), String> {
     let table = load(folder, "page_screens")?;
     let all: Vec<&Vec<String>> = table.rows.iter().collect();
     out.push_str(
-        "### The printed page\n\nErrors of screens, in double precision; every pixel of the shader \
-         equals this within rounding (`tests/gpu/halftone.rs`). Tone: the largest difference of \
+        "### The printed page\n\nErrors of single plates, in double precision; every pixel of the \
+         shader equals this within rounding (`tests/gpu/halftone.rs`). Tone: the largest difference of \
          the mean of a flat area from its tone, of 11 tones at four angles. Jump: the largest \
          change of a pixel when the tone changes by 1/1024. Moire: the part of the power of a \
          print less its picture that is below half of the screen's frequency, the larger one of a \
@@ -52,18 +52,20 @@ pub fn page(out: &mut String, folder: &Path) -> Result<(), String> {
          independent screens, of 20 colours, three greys and three lights each, by the fraction of \
          grey that is printed in black. Ideal inks: that is the colour itself. Grey inks: cyan and \
          magenta take some of all light, so that it counts whether screens are independent. In \
-         phase: the same if black had no phase of its own.\n\n\
-         | black | ideal inks | grey inks | in phase |\n|---|---|---|---|\n",
+         phase: the same if black had no phase of its own. Beats: the slow part of the light of a \
+         grey gradient or of grey rings, as above, with the default inks and all four plates.\n\n\
+         | black | ideal inks | grey inks | in phase | beats |\n|---|---|---|---|---|\n",
     );
     for row in &colors.rows {
         let of = |column| colors.number(row, column);
         let _ = writeln!(
             out,
-            "| {} | {:.4} | {:.4} | {:.4} |",
+            "| {} | {:.4} | {:.4} | {:.4} | {:.2} % |",
             colors.cell(row, "black"),
             of("ideal"),
             of("grey"),
             of("in_phase"),
+            100.0 * of("beats"),
         );
     }
     let harmonies = load(folder, "page_harmonies")?;
@@ -144,11 +146,13 @@ fn errors_of(effect: &str, tables: [&Table; 3]) -> String {
         let exact = matches!(*shape, "Round" | "Line" | "Diamond");
         add("tone", of("tone"), if exact { 0.005 } else { 0.01 });
         add("jump", of("jump"), 0.1);
-        add("moire", of("moire"), 0.01);
+        add("moire of a plate", of("moire"), 0.01);
         if effect == "halftone of four inks" {
             let rows: Vec<&Vec<String>> = colors.rows.iter().collect();
             let largest = colors.numbers(&rows, "ideal").into_iter();
             add("colour", largest.fold(0.0, f64::max), 0.01);
+            let beats = colors.numbers(&rows, "beats").into_iter();
+            add("moire of all plates", beats.fold(0.0, f64::max), 0.01);
         }
     }
     for row in errors.matching(&[("effect", effect)]) {

@@ -5,6 +5,7 @@ use std::time::Duration;
 use bevy::{
     app::{App, Update},
     math::UVec2,
+    window::{Window, WindowRef},
 };
 
 use super::*;
@@ -107,9 +108,7 @@ fn flashes_of_other_cameras_count() {
     assert!(!impacts.start(one(), Impact::MOST_FLASHES - 1, 0.9));
 }
 
-/// Three flashes on a window, then the camera is `changed`: no other camera flashes there within the
-/// second.
-fn assert_flashes_stay(changed: impl FnOnce(&mut App, Entity), case: &str) {
+fn app() -> App {
     let mut app = App::new();
     app.init_resource::<ComicsDiagnostics>()
         .init_resource::<ReduceFlashing>()
@@ -118,6 +117,13 @@ fn assert_flashes_stay(changed: impl FnOnce(&mut App, Entity), case: &str) {
         .add_observer(start_impact)
         .add_observer(keep_flashes)
         .add_systems(Update, run_impacts);
+    app
+}
+
+/// Three flashes on a window, then the camera is `changed`: no other camera flashes there within the
+/// second.
+fn assert_flashes_stay(changed: impl FnOnce(&mut App, Entity), case: &str) {
+    let mut app = app();
     let first = app.world_mut().spawn(Camera::default()).id();
     for _ in 0..Impact::MOST_FLASHES {
         app.world_mut().trigger(Impact::new(first));
@@ -156,4 +162,23 @@ fn flashes_of_cameras_that_left_count() {
         },
         "another target",
     );
+}
+
+#[test]
+fn the_primary_window_is_the_same_by_another_name() {
+    let mut app = app();
+    let window = app
+        .world_mut()
+        .spawn((Window::default(), PrimaryWindow))
+        .id();
+    let named = RenderTarget::Window(WindowRef::Entity(window));
+    let first = app.world_mut().spawn(Camera::default()).id();
+    let second = app.world_mut().spawn((Camera::default(), named)).id();
+    for camera in [first, second, first, second] {
+        app.world_mut().trigger(Impact::new(camera));
+        app.update();
+    }
+    let counts = &app.world().resource::<ComicsDiagnostics>().impacts;
+    assert_eq!((counts[&first].shown, counts[&second].shown), (2, 1));
+    assert_eq!(counts[&second].refused, 1);
 }
