@@ -20,9 +20,9 @@ use crate::{
     table::Table,
 };
 
-/// Columns that are measured, and those beside them.
+/// Columns that are measured, and those beside them: more than the 64 cracks of the longest run.
 const COLUMNS: usize = 200;
-const MARGIN: usize = 20;
+const MARGIN: usize = 80;
 /// Rows from edge to edge.
 const APART: f64 = 26.0;
 
@@ -91,7 +91,7 @@ fn mean(values: impl Iterator<Item = f64> + Clone) -> f64 {
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    let size = UVec2::new((COLUMNS + 2 * MARGIN) as u32, 720);
+    let size = UVec2::new((COLUMNS + 2 * MARGIN) as u32, 800);
     let outlines = |width| Outlines {
         width,
         budget: 1.0,
