@@ -28,11 +28,17 @@ fn disc_coverage(distance: f32, half_width: f32) -> f32 {
 }
 
 // The coverage by the straight line from `a` to `b`, with round ends; or by a dot, if both are the
-// same.
+// same. Far beyond an end, as beside a dot, the line counts as if it ran across the direction to the
+// pixel.
 fn segment_coverage(at: vec2<f32>, a: vec2<f32>, b: vec2<f32>, half_width: f32) -> f32 {
     let along = b - a;
     let square = dot(along, along);
-    let t = clamp(dot(at - a, along) / max(square, 1e-12), 0.0, 1.0);
-    let ramp = select(1.0, line_ramp(along), square > 0.0);
-    return straight_coverage(length(at - a - t * along), half_width, ramp);
+    let t = dot(at - a, along) / max(square, 1e-12);
+    let away = at - a - clamp(t, 0.0, 1.0) * along;
+    // The next part of the line begins within half a length.
+    if square > 0.0 && abs(t - 0.5) <= 1.0 {
+        return straight_coverage(length(away), half_width, line_ramp(along));
+    }
+    let covered = straight_coverage(length(away), half_width, line_ramp(away));
+    return min(covered, 2.0 * half_width);
 }

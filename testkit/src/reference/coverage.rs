@@ -24,15 +24,18 @@ pub fn disc_coverage(distance: f64, half_width: f64) -> f64 {
     at(1.0).min(at(SHORTEST_RAMP))
 }
 
-/// The coverage by a segment, or by a dot.
+/// The coverage by a segment, or by a dot. Pixels that are up to half its length before or behind a
+/// segment count as beside it.
 pub fn segment_coverage(at: [f64; 2], a: [f64; 2], b: [f64; 2], half_width: f64) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     let from = [at[0] - a[0], at[1] - a[1]];
     let square = along[0] * along[0] + along[1] * along[1];
-    if square == 0.0 {
-        return straight_coverage(from[0].hypot(from[1]), half_width, 1.0);
+    let t = (from[0] * along[0] + from[1] * along[1]) / square.max(1e-12);
+    let nearest = t.clamp(0.0, 1.0);
+    let away = [from[0] - nearest * along[0], from[1] - nearest * along[1]];
+    let distance = away[0].hypot(away[1]);
+    if square > 0.0 && (-0.5..=1.5).contains(&t) {
+        return straight_coverage(distance, half_width, line_ramp(along));
     }
-    let t = ((from[0] * along[0] + from[1] * along[1]) / square).clamp(0.0, 1.0);
-    let away = [from[0] - t * along[0], from[1] - t * along[1]];
-    straight_coverage(away[0].hypot(away[1]), half_width, line_ramp(along))
+    straight_coverage(distance, half_width, line_ramp(away)).min(2.0 * half_width)
 }
