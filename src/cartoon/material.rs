@@ -23,13 +23,19 @@ use crate::settings::bounded;
 /// [`shadow_strength`](CartoonLight::shadow_strength) where the surface faces away
 /// from the light (backface shadow) or where the light's shadow map says that the
 /// light does not reach it (projected shadow), otherwise 0. The formula has no N·L
-/// term, so lit areas of one base colour are uniform. All directional, point and spot
-/// lights are used (\[CL\] 2.2, 2.3; Decaudin 1996).
+/// term, so lit areas of one base colour are uniform. All directional, point, spot and
+/// rectangular lights are used, with light textures and contact shadows (\[CL\] 2.2, 2.3;
+/// Decaudin 1996).
 ///
-/// Textures, normal maps, vertex colours, alpha modes, emission, lightmaps, decals,
-/// fog and `unlit` work as in the standard material. Rectangular lights, light
-/// textures, environment maps, irradiance volumes, transmission, clearcoat and
-/// anisotropy are ignored. The light is computed in the forward pass:
+/// `ambient` includes lightmaps, irradiance volumes and the diffuse part of environment
+/// maps, in two tones unless [`flat_environment`](CartoonLight::flat_environment) is
+/// lower. On meshes with a lightmap, lights that do not affect lightmapped meshes only draw
+/// highlights.
+///
+/// Textures, normal maps, vertex colours, alpha modes, emission, decals, fog and `unlit`
+/// work as in the standard material. Reflections of environment maps and of the screen,
+/// transmission, clearcoat and anisotropy are not drawn; a warning names the first material
+/// that asks for one of the last three. The light is computed in the forward pass:
 /// [`opaque_render_method`] is always set to forward, so that on a camera with a
 /// deferred prepass these meshes are drawn forward.
 ///
@@ -65,23 +71,32 @@ pub struct CartoonLight {
     /// spot lights falls off with distance, so that it forms flat rings. Range 0 (no
     /// steps) to 4, default 1.
     pub falloff: f32,
+    /// How flat the light of environment maps, light probes and irradiance volumes is. 1: it
+    /// has two tones, of the brightest side and of the side that faces away from it, with
+    /// the same mean as the original. 0: it changes with every normal, as on the standard
+    /// material. Range 0 to 1, default 1.
+    pub flat_environment: f32,
 }
 
 impl Default for CartoonLight {
     fn default() -> Self {
-        Self {
-            terminator: 0.08,
-            backface_shadows: true,
-            projected_shadows: true,
-            shadow_strength: 1.0,
-            highlight: 1.0,
-            highlight_edge: 0.5,
-            falloff: 1.0,
-        }
+        Self::DEFAULT
     }
 }
 
 impl CartoonLight {
+    /// The default settings.
+    pub const DEFAULT: Self = Self {
+        terminator: 0.08,
+        backface_shadows: true,
+        projected_shadows: true,
+        shadow_strength: 1.0,
+        highlight: 1.0,
+        highlight_edge: 0.5,
+        falloff: 1.0,
+        flat_environment: 1.0,
+    };
+
     /// The settings that are used: every number is clamped to its documented range,
     /// and a number that is not finite is replaced by its default.
     #[must_use]
@@ -93,6 +108,7 @@ impl CartoonLight {
             highlight: bounded(self.highlight, default.highlight, 0.0, 4.0),
             highlight_edge: bounded(self.highlight_edge, default.highlight_edge, 0.01, 0.99),
             falloff: bounded(self.falloff, default.falloff, 0.0, 4.0),
+            flat_environment: bounded(self.flat_environment, default.flat_environment, 0.0, 1.0),
             ..self
         }
     }
@@ -107,6 +123,7 @@ pub struct CartoonLightUniform {
     highlight: f32,
     highlight_edge: f32,
     falloff: f32,
+    environment: f32,
 }
 
 impl From<&CartoonLight> for CartoonLightUniform {
@@ -120,6 +137,7 @@ impl From<&CartoonLight> for CartoonLightUniform {
             highlight: light.highlight,
             highlight_edge: light.highlight_edge,
             falloff: light.falloff,
+            environment: light.flat_environment,
         }
     }
 }

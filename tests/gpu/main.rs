@@ -7,6 +7,7 @@ mod borders;
 mod bridge;
 mod by_fragments;
 mod cartoon;
+mod cartoon_light;
 mod command_line;
 mod cracks;
 mod creases;

@@ -5,6 +5,7 @@ mod abstraction;
 mod bend;
 mod blocks;
 mod budget;
+mod cartoon_light;
 mod cartoon_styles;
 mod color_harmony;
 mod color_styles;
