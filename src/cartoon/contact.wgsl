@@ -5,7 +5,11 @@
 
 #ifdef CONTACT_SHADOWS
 #ifdef DEPTH_PREPASS
-#import bevy_pbr::{mesh_view_bindings as view_bindings, raymarch, view_transformations::position_world_to_ndc}
+#import bevy_pbr::{
+    mesh_view_bindings as view_bindings,
+    raymarch,
+    view_transformations::position_world_to_ndc,
+}
 
 // 1 where no surface is close by in the direction of a light, else 0. What lies deeper behind
 // the surface of the prepass than half of `ContactShadows::thickness` counts less.

@@ -3,7 +3,10 @@
 // Light that arrives from all around: ambient light, lightmaps, irradiance volumes and
 // environment maps. Of the last three the first that there is counts, as in the engine.
 
-#import bevy_pbr::{clustered_forward::ClusterableObjectIndexRanges, mesh_view_bindings as view_bindings}
+#import bevy_pbr::{
+    clustered_forward::ClusterableObjectIndexRanges,
+    mesh_view_bindings as view_bindings,
+}
 #ifdef IRRADIANCE_VOLUME
 #import bevy_pbr::irradiance_volume
 #endif
@@ -24,7 +27,11 @@ const LIGHTMAPPED: bool = false;
 
 // Light of the surroundings at a surface that faces along `normal`, without ambient light
 // and lightmaps.
-fn surroundings(s: Surface, normal: vec3<f32>, ranges: ptr<function, ClusterableObjectIndexRanges>) -> vec3<f32> {
+fn surroundings(
+    s: Surface,
+    normal: vec3<f32>,
+    ranges: ptr<function, ClusterableObjectIndexRanges>,
+) -> vec3<f32> {
     var light = vec3(0.0);
     var found = LIGHTMAPPED;
 #ifdef IRRADIANCE_VOLUME
@@ -50,7 +57,11 @@ fn surroundings(s: Surface, normal: vec3<f32>, ranges: ptr<function, Clusterable
 // Light of the surroundings: `shade` everywhere, and `more` of it from one direction. The
 // more of `CartoonLight::environment`, the more of it is in these two tones; the rest
 // changes with every normal, and is part of `shade`.
-fn light_around(s: Surface, settings: CartoonLight, ranges: ptr<function, ClusterableObjectIndexRanges>) -> TwoTones {
+fn light_around(
+    s: Surface,
+    settings: CartoonLight,
+    ranges: ptr<function, ClusterableObjectIndexRanges>,
+) -> TwoTones {
     var tones = TwoTones(vec3(0.0), vec3(0.0), vec3(0.0, 1.0, 0.0));
     if settings.environment > 0.0 {
         var axes: AxisLight;

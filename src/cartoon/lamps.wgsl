@@ -20,7 +20,8 @@
 #endif
 #endif
 #import bevy_comics::cartoon::{
-    light::{CartoonLight, cone, flat_falloff, rings, sharpen, slope_over_pixel, stops_over_pixel},
+    light::{CartoonLight, cone, rings, sharpen, slope_over_pixel, smooth_falloff,
+        stops_over_pixel},
     rect::{Rect, mirrored, rect_light},
     surface::{Arriving, Surface, pixel_size},
 }
@@ -58,7 +59,14 @@ fn hard_shadow(kind: u32, id: u32, s: Surface) -> f32 {
 }
 
 // The same with the contact shadow, if `contact` is not 0.
-fn whole_shadow(kind: u32, id: u32, s: Surface, to_light: vec3<f32>, maps: u32, contact: u32) -> f32 {
+fn whole_shadow(
+    kind: u32,
+    id: u32,
+    s: Surface,
+    to_light: vec3<f32>,
+    maps: u32,
+    contact: u32,
+) -> f32 {
     var shadow = 1.0;
     if s.receives && maps != 0u {
         shadow = hard_shadow(kind, id, s);
@@ -88,7 +96,8 @@ fn diffuse_part(flag: u32) -> f32 {
 // `directional_light`.
 fn through_atmosphere(position: vec3<f32>, to_light: vec3<f32>, disk: f32) -> vec3<f32> {
     let atmosphere = view_bindings::atmosphere;
-    let place = clamp_to_surface(atmosphere, (atmosphere.world_to_atmosphere * vec4(position, 1.0)).xyz);
+    let at = (atmosphere.world_to_atmosphere * vec4(position, 1.0)).xyz;
+    let place = clamp_to_surface(atmosphere, at);
     let radius = length(place);
     let height = dot(to_light, normalize(place));
     return sample_transmittance_lut(radius, height)
@@ -102,20 +111,24 @@ fn directional_light(id: u32, s: Surface) -> Arriving {
     arriving.to_light = (*light).direction_to_light.xyz;
     arriving.to_highlight = arriving.to_light;
     arriving.color = (*light).color.rgb;
+    arriving.shine = 1.0;
 #ifdef LIGHT_TEXTURES
     arriving.color *= directional_texture((*light).decal_index, s.position);
 #endif
 #ifdef ATMOSPHERE
-    arriving.color *= through_atmosphere(s.position, arriving.to_light, (*light).sun_disk_angular_size);
+    let disk = (*light).sun_disk_angular_size;
+    arriving.color *= through_atmosphere(s.position, arriving.to_light, disk);
 #endif
+    arriving.smooth_color = arriving.color;
     let flags = (*light).flags;
     arriving.lit = whole_shadow(
         DIRECTIONAL, id, s, arriving.to_light,
         flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_SHADOWS_ENABLED_BIT,
         flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_CONTACT_SHADOWS_ENABLED_BIT,
     );
-    arriving.diffuse =
-        diffuse_part(flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_AFFECTS_LIGHTMAPPED_MESH_DIFFUSE_BIT);
+    arriving.diffuse = diffuse_part(
+        flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_AFFECTS_LIGHTMAPPED_MESH_DIFFUSE_BIT,
+    );
     return arriving;
 }
 
@@ -149,7 +162,9 @@ fn clustered_light(id: u32, is_spot: bool, s: Surface, settings: CartoonLight) -
     // that faces the light.
     var color = (*light).color_inverse_square_range.rgb;
     let pixel = pixel_size(s.foot);
-    color *= flat_falloff(settings, distance_squared, (*light).color_inverse_square_range.w, exposed(color), pixel);
+    let smooth_light = smooth_falloff(distance_squared, (*light).color_inverse_square_range.w);
+    let width = stops_over_pixel(distance_squared, pixel);
+    let flat_light = rings(settings, smooth_light, exposed(color), width);
     if is_spot {
         color *= spot_cone(id, arriving.to_light, pixel * inverseSqrt(distance_squared));
     }
@@ -160,15 +175,18 @@ fn clustered_light(id: u32, is_spot: bool, s: Surface, settings: CartoonLight) -
         color *= point_texture((*light).decal_index, s.position);
     }
 #endif
-    arriving.color = color;
+    arriving.color = color * flat_light;
+    arriving.smooth_color = color * smooth_light;
+    arriving.shine = 1.0;
     let flags = (*light).flags;
     arriving.lit = whole_shadow(
         select(POINT, SPOT, is_spot), id, s, arriving.to_light,
         flags & mesh_view_types::POINT_LIGHT_FLAGS_SHADOWS_ENABLED_BIT,
         flags & mesh_view_types::POINT_LIGHT_FLAGS_CONTACT_SHADOWS_ENABLED_BIT,
     );
-    arriving.diffuse =
-        diffuse_part(flags & mesh_view_types::POINT_LIGHT_FLAGS_AFFECTS_LIGHTMAPPED_MESH_DIFFUSE_BIT);
+    arriving.diffuse = diffuse_part(
+        flags & mesh_view_types::POINT_LIGHT_FLAGS_AFFECTS_LIGHTMAPPED_MESH_DIFFUSE_BIT,
+    );
     return arriving;
 }
 
@@ -198,7 +216,11 @@ fn rect_light_at(id: u32, s: Surface, settings: CartoonLight) -> Arriving {
     // Near the rectangle, light changes more slowly than that of a point.
     let size = dot(rect.half_right, rect.half_right) + dot(rect.half_up, rect.half_up);
     let width = stops_over_pixel(distance_squared + size, pixel_size(s.foot));
-    arriving.color = color * rings(settings, fraction * end * end, exposed(color), width);
+    let smooth_light = fraction * end * end;
+    let flat_light = rings(settings, smooth_light, exposed(color), width);
+    arriving.color = color * flat_light;
+    arriving.smooth_color = color * smooth_light;
+    arriving.shine = 1.0;
     arriving.to_light = light_vector / fraction;
     let reflected = reflect(-s.to_eye, s.normal);
     arriving.to_highlight = normalize(mirrored(rect, at, reflected) - at);

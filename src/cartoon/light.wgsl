@@ -98,7 +98,13 @@ fn stops_over_pixel(distance_squared: f32, pixel: f32) -> f32 {
 }
 
 // Light of a point at a distance, in rings. `brightest` is the exposed light at distance 1.
-fn flat_falloff(s: CartoonLight, distance_squared: f32, inverse_range_squared: f32, brightest: f32, pixel: f32) -> f32 {
+fn flat_falloff(
+    s: CartoonLight,
+    distance_squared: f32,
+    inverse_range_squared: f32,
+    brightest: f32,
+    pixel: f32,
+) -> f32 {
     let light = smooth_falloff(distance_squared, inverse_range_squared);
     return rings(s, light, brightest, stops_over_pixel(distance_squared, pixel));
 }

@@ -3,6 +3,7 @@
 
 mod ignored;
 mod material;
+mod ramp;
 mod scene;
 
 use bevy::{
@@ -15,6 +16,7 @@ use bevy::{
 };
 
 pub use material::{CartoonLight, CartoonMaterial};
+pub use ramp::{Ramp, RampBlend, RampMode, RampStop};
 pub use scene::CartoonScene;
 
 /// Registers types, shaders and, if the app has [`PbrPlugin`], the material.
@@ -40,14 +42,22 @@ impl Plugin for CartoonPlugin {
 impl CartoonPlugin {
     /// The part that needs the engine's renderer.
     pub(crate) fn build_render(app: &mut App) {
+        load_shader_library!(app, "bindings.wgsl");
+        load_shader_library!(app, "brightest.wgsl");
         load_shader_library!(app, "contact.wgsl");
         load_shader_library!(app, "indirect.wgsl");
         load_shader_library!(app, "lamps.wgsl");
         load_shader_library!(app, "light.wgsl");
         load_shader_library!(app, "light_textures.wgsl");
+        load_shader_library!(app, "per_light.wgsl");
+        load_shader_library!(app, "ramp.wgsl");
+        load_shader_library!(app, "ramp_light.wgsl");
         load_shader_library!(app, "rect.wgsl");
+        load_shader_library!(app, "reflect.wgsl");
+        load_shader_library!(app, "share.wgsl");
         load_shader_library!(app, "surface.wgsl");
         load_shader_library!(app, "surroundings.wgsl");
+        load_shader_library!(app, "two_shades.wgsl");
         embedded_asset!(app, "cartoon.wgsl");
     }
 }

@@ -19,6 +19,8 @@ struct Surface {
     // Unit vector to the camera.
     to_eye: vec3<f32>,
     foot: Footprint,
+    // Perceptual roughness.
+    roughness: f32,
     // Coordinates of the pixel, and z in view space.
     pixel: vec2<f32>,
     view_z: f32,
@@ -31,6 +33,8 @@ struct Surface {
 struct Arriving {
     // Illuminance in lux, in rings, before shadows and exposure.
     color: vec3<f32>,
+    // The same without rings.
+    smooth_color: vec3<f32>,
     // Unit vector to the light source, and to the place on it that a highlight shows.
     to_light: vec3<f32>,
     to_highlight: vec3<f32>,
@@ -38,6 +42,8 @@ struct Arriving {
     lit: f32,
     // 1, or 0 if the light is part of a lightmap and only draws a highlight.
     diffuse: f32,
+    // 1 if the light draws highlights, else 0.
+    shine: f32,
 }
 
 // Change of the cosine between normal and `direction` over a pixel.

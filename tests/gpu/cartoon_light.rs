@@ -103,7 +103,9 @@ fn both(small: &mut Small, objects: &[Entity], light: CartoonLight) -> (RgbaImag
     let standard = small.picture();
     for object in objects {
         let mut object = small.world().entity_mut(*object);
-        object.insert(CartoonScene { light });
+        object.insert(CartoonScene {
+            light: light.clone(),
+        });
     }
     small.headless.step(6);
     let cartoon = small.picture();
@@ -141,10 +143,13 @@ const SKY: [Vec3; 6] = [
     Vec3::splat(0.5),
 ];
 
-const SMOOTH: CartoonLight = CartoonLight {
-    flat_environment: 0.0,
-    ..CartoonLight::DEFAULT
-};
+/// The light of environments as on the standard material.
+fn smooth_light() -> CartoonLight {
+    CartoonLight {
+        flat_environment: 0.0,
+        ..default()
+    }
+}
 
 #[test]
 fn a_white_environment_lights_as_on_the_standard_material() {
@@ -169,7 +174,7 @@ fn an_environment_is_smooth_or_two_tones_with_its_mean() {
         plain(Color::WHITE),
         Transform::from_xyz(0.0, 0.4, 0.0),
     );
-    let (standard, smooth) = both(&mut small, &[white], SMOOTH);
+    let (standard, smooth) = both(&mut small, &[white], smooth_light());
     assert!(apart(&standard, &smooth) <= 1);
     small
         .world()
@@ -207,7 +212,7 @@ fn probes_and_volumes_light_as_on_the_standard_material() {
         .spawn((Object, LightProbe::default(), probe, whole))
         .id();
     let first = ball(&mut small);
-    let (standard, cartoon) = both(&mut small, &[first], SMOOTH);
+    let (standard, cartoon) = both(&mut small, &[first], smooth_light());
     // The engine needs arrays of textures for reflection probes. CPU adapters have none, so
     // that both pictures are black there.
     assert!(apart(&standard, &cartoon) <= 1);
@@ -231,7 +236,7 @@ fn probes_and_volumes_light_as_on_the_standard_material() {
         whole,
     ));
     let second = ball(&mut small);
-    let (standard, cartoon) = both(&mut small, &[second], SMOOTH);
+    let (standard, cartoon) = both(&mut small, &[second], smooth_light());
     assert!(middle(&cartoon).x > 0.1, "{:?}", middle(&cartoon));
     assert!(apart(&standard, &cartoon) <= 1);
 }
@@ -371,7 +376,7 @@ fn materials_are_those_of_the_standard_material() {
                 at.rotate_y(2.6);
             }
             let object = small.put(mesh.clone(), material.clone(), at);
-            let (standard, cartoon) = both(&mut small, &[object], SMOOTH);
+            let (standard, cartoon) = both(&mut small, &[object], smooth_light());
             let far = apart(&standard, &cartoon);
             assert!(far <= 1, "{name}, fog {fog}: {far} codes");
             let mut plain_sky = cartoon.pixels().filter(|p| *p != cartoon.get_pixel(0, 0));

@@ -62,6 +62,7 @@ mod planes;
 mod plugin_order;
 mod pressure;
 mod print_offset;
+mod ramp;
 mod range;
 mod range_views;
 mod report;

@@ -49,6 +49,7 @@ pub mod plane_lines;
 pub mod planes;
 pub mod pressure;
 pub mod print_offset;
+pub mod ramp;
 pub mod range;
 pub mod raw;
 pub mod read;

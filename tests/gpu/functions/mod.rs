@@ -32,6 +32,7 @@ mod paper;
 mod plane_lines;
 mod planes;
 mod pressure;
+mod ramp;
 mod settings;
 mod sheet;
 mod similarity;
