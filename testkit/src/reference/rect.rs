@@ -26,9 +26,8 @@ pub fn rect_light(half_right: Vec3, half_up: Vec3, at: Vec3, cells: usize) -> Ve
         let squared = dot(to, to);
         let distance = squared.sqrt();
         let cosine = 4.0 * dot(normal, to).abs() / (area * distance);
-        for k in 0..3 {
-            sum[k] += piece * cosine * to[k] / (distance * squared * std::f64::consts::PI);
-        }
+        let part = piece * cosine / (distance * squared * std::f64::consts::PI);
+        sum = std::array::from_fn(|k| sum[k] + part * to[k]);
     }
     sum
 }

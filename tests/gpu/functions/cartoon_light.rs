@@ -44,9 +44,9 @@ fn light_of_a_rectangle_is_the_integral_over_it() {
         let [w, h, x, y, z] = row.map(f64::from);
         let truth = rect::rect_light([w, 0.0, 0.0], [0.0, h, 0.0], [x, y, z], 96);
         let length = truth.iter().map(|c| c * c).sum::<f64>().sqrt();
-        for k in 0..3 {
+        for (part, wanted) in found.into_iter().zip(truth) {
             // The error of the sum: its cells are at most a twentieth of the distance.
-            let off = (f64::from(found[k]) - truth[k]).abs();
+            let off = (f64::from(part) - wanted).abs();
             assert!(
                 off <= 5e-4 * length + 1e-6,
                 "{row:?}: {found:?}, not {truth:?}"
@@ -120,15 +120,14 @@ fn two_tones_of_surroundings_are_their_twin() {
             let sides = std::array::from_fn(|k| std::array::from_fn(|c| f64::from(row[3 * k + c])));
             let (bright, dark) = surroundings::two_tones(sides);
             assert!((shade[3] - 1.0).abs() < 1e-3, "{row:?}: {shade:?}");
-            for k in 0..3 {
-                // Where two sides are nearly alike, the direction is rounding, and so is
-                // the difference of the tones.
-                let close = |found: f32, twin: f64| (f64::from(found) - twin).abs() < 1e-4;
+            // Where two sides are nearly alike, the direction is rounding, and so is the
+            // difference of the tones.
+            let tones = shade.into_iter().zip(dark);
+            for (found, twin) in tones.chain(light.into_iter().zip(bright)) {
                 assert!(
-                    close(shade[k], dark[k]) && close(light[k], bright[k]),
+                    (f64::from(found) - twin).abs() < 1e-4 && found >= -1e-6,
                     "{row:?}: {shade:?} {light:?}, not {dark:?} {bright:?}"
                 );
-                assert!(shade[k] >= -1e-6 && light[k] >= -1e-6, "{row:?}");
             }
         }
     });
