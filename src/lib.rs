@@ -79,7 +79,9 @@ mod timing;
 mod view;
 
 #[cfg(feature = "cartoon")]
-pub use cartoon::{CartoonLight, CartoonMaterial, CartoonScene};
+pub use cartoon::{
+    CartoonLight, CartoonMaterial, CartoonScene, Ramp, RampBlend, RampMode, RampStop,
+};
 pub use depth::{
     CameraCut, DepthBin, DepthHistogram, DepthMap, DepthMapping, ProjectionKind, RangeSmoothing,
     ReductionMethod, VisibleDepthRange,
@@ -165,7 +167,9 @@ pub mod prelude {
         effects::*,
     };
     #[cfg(feature = "cartoon")]
-    pub use crate::{CartoonLight, CartoonMaterial, CartoonScene};
+    pub use crate::{
+        CartoonLight, CartoonMaterial, CartoonScene, Ramp, RampBlend, RampMode, RampStop,
+    };
     #[cfg(feature = "objects")]
     pub use crate::{
         DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle, ObjectScreen, OutlineGroup,

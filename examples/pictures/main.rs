@@ -5,6 +5,7 @@
 //! cargo run --example pictures -- banner [--out FILE.png]
 //! cargo run --example pictures -- looks [--out FILE.png]
 //! cargo run --example pictures -- presets [--out FILE.png]
+//! cargo run --example pictures -- ramps [--out FILE.png]
 //! cargo run --example pictures -- pages [--out DIR]
 //! cargo run --example pictures -- motion [--out DIR]
 //! cargo run --example pictures -- print [--out DIR]
@@ -17,6 +18,7 @@ mod figures;
 mod motion;
 mod pages;
 mod print;
+mod ramps;
 mod sheet;
 mod strips;
 
@@ -29,6 +31,7 @@ usage: pictures contact-sheet [--size WxH] [--out FILE.png]   every scene in eve
        pictures banner [--out FILE.png]                       the README's first picture
        pictures looks [--out FILE.png]                        the README's row of looks
        pictures presets [--out FILE.png]                      the page of the presets
+       pictures ramps [--out FILE.png]                        the ramps of the cartoon material
        pictures pages [--out DIR]                             the pages about single tasks
        pictures motion [--out DIR]                            the pages about speed lines and paper
        pictures print [--out DIR]                             the pages about print, paint and focus
@@ -77,6 +80,7 @@ fn run() -> Result<(), String> {
         Some("banner") => sheet::banner(&or("target/banner.png")),
         Some("looks") => sheet::looks(&or("target/looks.png")),
         Some("presets") => sheet::presets(&or("target/presets.png")),
+        Some("ramps") => save(&ramps::picture(), &or("target/ramps.png")),
         Some("pages") => pages::write(&or("target/pages")),
         Some("motion") => motion::write(&or("target/motion")),
         Some("print") => print::write(&or("target/print")),

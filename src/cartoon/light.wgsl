@@ -15,6 +15,8 @@ struct CartoonLight {
     highlight_edge: f32,
     // Stops between two rings of light; 0: no rings.
     falloff: f32,
+    // 0: light of environments as it is; 1: in two tones.
+    environment: f32,
 }
 
 // 0 where `x` is below `edge`, 1 above, with a transition one pixel wide. `width` is
@@ -64,28 +66,47 @@ fn highlight(s: CartoonLight, perceptual_roughness: f32, n_dot_h: f32, width: f3
     return s.highlight * polish * polish * edge_at(s.highlight_edge, fraction, inner - outer);
 }
 
-// Light at a distance, as a multiple of the light at distance 1: the inverse square
-// with the engine's smooth end at the light's range, rounded down to whole steps of
-// `falloff` stops. Step 0 is an exposed light of 1. `brightest` is the exposed light
-// at distance 1, `pixel` the size of a pixel on the surface in world units.
-fn flat_falloff(s: CartoonLight, distance_squared: f32, inverse_range_squared: f32, brightest: f32, pixel: f32) -> f32 {
+// Light of a point at a distance, as a multiple of the light at distance 1: the inverse
+// square with the engine's smooth end at the light's range.
+fn smooth_falloff(distance_squared: f32, inverse_range_squared: f32) -> f32 {
     let factor = distance_squared * inverse_range_squared;
     let end = clamp(1.0 - factor * factor, 0.0, 1.0);
-    let smooth_light = end * end / max(distance_squared, 1e-4);
+    return end * end / max(distance_squared, 1e-4);
+}
+
+// Rounds light down to whole steps of `falloff` stops. Step 0 is an exposed light of 1.
+// `brightest` is the exposed light where `smooth_light` is 1, `width` the change of stops
+// over a pixel.
+fn rings(s: CartoonLight, smooth_light: f32, brightest: f32, width: f32) -> f32 {
     if s.falloff <= 0.0 || smooth_light <= 0.0 {
         return smooth_light;
     }
     let stops = log2(max(smooth_light * brightest, 1e-30)) / s.falloff;
     // Light more than seven steps down is not visible.
     let lowest = -7.0;
-    // The change of `stops` over a pixel: light loses two stops with every doubling
-    // of the distance.
-    let width = 2.0 * pixel * inverseSqrt(max(distance_squared, 1e-8)) * 1.442695 / s.falloff;
     let step = round(stops);
-    let above = edge_at(step, stops, width);
+    let above = edge_at(step, stops, width / s.falloff);
     let level = step - 1.0 + above;
     let kept = select(exp2(level * s.falloff) / max(brightest, 1e-30), 0.0, level < lowest);
     return min(kept, 1e4);
+}
+
+// Change of stops over a pixel at a distance from a light: light loses two stops with
+// every doubling of the distance. `pixel` is the size of a pixel in world units.
+fn stops_over_pixel(distance_squared: f32, pixel: f32) -> f32 {
+    return 2.0 * pixel * inverseSqrt(max(distance_squared, 1e-8)) * 1.442695;
+}
+
+// Light of a point at a distance, in rings. `brightest` is the exposed light at distance 1.
+fn flat_falloff(
+    s: CartoonLight,
+    distance_squared: f32,
+    inverse_range_squared: f32,
+    brightest: f32,
+    pixel: f32,
+) -> f32 {
+    let light = smooth_falloff(distance_squared, inverse_range_squared);
+    return rings(s, light, brightest, stops_over_pixel(distance_squared, pixel));
 }
 
 // 1 inside the cone of a spot light, 0 outside: the middle of the penumbra becomes a

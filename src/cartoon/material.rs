@@ -4,13 +4,20 @@ use bevy::{
     asset::{Asset, AssetEvent, Assets},
     ecs::{message::MessageReader, system::ResMut},
     material::OpaqueRendererMethod,
-    pbr::{ExtendedMaterial, MaterialExtension, StandardMaterial},
+    mesh::MeshVertexBufferLayoutRef,
+    pbr::{
+        ExtendedMaterial, MaterialExtension, MaterialExtensionKey, MaterialExtensionPipeline,
+        StandardMaterial,
+    },
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::{AsBindGroup, ShaderType},
+    render::render_resource::{
+        AsBindGroup, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError,
+    },
     shader::ShaderRef,
 };
 use serde::{Deserialize, Serialize};
 
+use super::ramp::{Ramp, RampKey, RampUniform};
 use crate::settings::bounded;
 
 /// A [`StandardMaterial`] with the lighting of a cartoon:
@@ -23,13 +30,19 @@ use crate::settings::bounded;
 /// [`shadow_strength`](CartoonLight::shadow_strength) where the surface faces away
 /// from the light (backface shadow) or where the light's shadow map says that the
 /// light does not reach it (projected shadow), otherwise 0. The formula has no N·L
-/// term, so lit areas of one base colour are uniform. All directional, point and spot
-/// lights are used (\[CL\] 2.2, 2.3; Decaudin 1996).
+/// term, so lit areas of one base colour are uniform; a [`Ramp`] gives them more tones.
+/// All directional, point, spot and rectangular lights are used, with light textures and
+/// contact shadows (\[CL\] 2.2, 2.3; Decaudin 1996).
 ///
-/// Textures, normal maps, vertex colours, alpha modes, emission, lightmaps, decals,
-/// fog and `unlit` work as in the standard material. Rectangular lights, light
-/// textures, environment maps, irradiance volumes, transmission, clearcoat and
-/// anisotropy are ignored. The light is computed in the forward pass:
+/// `ambient` includes lightmaps, irradiance volumes and the diffuse part of environment
+/// maps, in two tones unless [`flat_environment`](CartoonLight::flat_environment) is
+/// lower. On meshes with a lightmap, lights that do not affect lightmapped meshes only draw
+/// highlights.
+///
+/// Textures, normal maps, vertex colours, alpha modes, emission, decals, fog and `unlit`
+/// work as in the standard material. Reflections of environment maps and of the screen,
+/// transmission, clearcoat and anisotropy are not drawn; a warning names the first material
+/// that asks for one of the last three. The light is computed in the forward pass:
 /// [`opaque_render_method`] is always set to forward, so that on a camera with a
 /// deferred prepass these meshes are drawn forward.
 ///
@@ -37,8 +50,9 @@ use crate::settings::bounded;
 pub type CartoonMaterial = ExtendedMaterial<StandardMaterial, CartoonLight>;
 
 /// The lighting of a [`CartoonMaterial`].
-#[derive(Asset, AsBindGroup, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[uniform(100, CartoonLightUniform)]
+#[derive(Asset, AsBindGroup, Reflect, Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[uniform(100, CartoonUniform)]
+#[bind_group_data(RampKey)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CartoonLight {
@@ -65,6 +79,13 @@ pub struct CartoonLight {
     /// spot lights falls off with distance, so that it forms flat rings. Range 0 (no
     /// steps) to 4, default 1.
     pub falloff: f32,
+    /// How flat the light of environment maps, light probes and irradiance volumes is. 1: it
+    /// has two tones, of the brightest side and of the side that faces away from it, with
+    /// the same mean as the original. 0: it changes with every normal, as on the standard
+    /// material. Range 0 to 1, default 1.
+    pub flat_environment: f32,
+    /// Tones between shade and light. Default: `None`, which is all of the light or none of it.
+    pub ramp: Option<Ramp>,
 }
 
 impl Default for CartoonLight {
@@ -77,6 +98,8 @@ impl Default for CartoonLight {
             highlight: 1.0,
             highlight_edge: 0.5,
             falloff: 1.0,
+            flat_environment: 1.0,
+            ramp: None,
         }
     }
 }
@@ -93,40 +116,78 @@ impl CartoonLight {
             highlight: bounded(self.highlight, default.highlight, 0.0, 4.0),
             highlight_edge: bounded(self.highlight_edge, default.highlight_edge, 0.01, 0.99),
             falloff: bounded(self.falloff, default.falloff, 0.0, 4.0),
+            flat_environment: bounded(self.flat_environment, default.flat_environment, 0.0, 1.0),
+            ramp: self.ramp.map(Ramp::sanitized),
             ..self
         }
     }
 }
 
-/// The uniform: `CartoonLight` in `light.wgsl`.
+/// The uniform: `Cartoon` in `bindings.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
-pub struct CartoonLightUniform {
+pub struct CartoonUniform {
+    light: CartoonLightUniform,
+    ramp: RampUniform,
+}
+
+/// `CartoonLight` in `light.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+struct CartoonLightUniform {
     terminator: f32,
     backface: f32,
     projected: f32,
     highlight: f32,
     highlight_edge: f32,
     falloff: f32,
+    environment: f32,
 }
 
-impl From<&CartoonLight> for CartoonLightUniform {
+impl From<&CartoonLight> for CartoonUniform {
     fn from(light: &CartoonLight) -> Self {
-        let light = light.sanitized();
+        let light = light.clone().sanitized();
         let strength = |on: bool| if on { light.shadow_strength } else { 0.0 };
         Self {
-            terminator: light.terminator,
-            backface: strength(light.backface_shadows),
-            projected: strength(light.projected_shadows),
-            highlight: light.highlight,
-            highlight_edge: light.highlight_edge,
-            falloff: light.falloff,
+            light: CartoonLightUniform {
+                terminator: light.terminator,
+                backface: strength(light.backface_shadows),
+                projected: strength(light.projected_shadows),
+                highlight: light.highlight,
+                highlight_edge: light.highlight_edge,
+                falloff: light.falloff,
+                environment: light.flat_environment,
+            },
+            ramp: light
+                .ramp
+                .as_ref()
+                .map_or_else(RampUniform::default, RampUniform::from),
         }
+    }
+}
+
+impl From<&CartoonLight> for RampKey {
+    fn from(light: &CartoonLight) -> Self {
+        Self::of(light.ramp.as_ref())
     }
 }
 
 impl MaterialExtension for CartoonLight {
     fn fragment_shader() -> ShaderRef {
         "embedded://bevy_comics/cartoon/cartoon.wgsl".into()
+    }
+
+    fn specialize(
+        _: &MaterialExtensionPipeline,
+        descriptor: &mut RenderPipelineDescriptor,
+        _: &MeshVertexBufferLayoutRef,
+        key: MaterialExtensionKey<Self>,
+    ) -> Result<(), SpecializedMeshPipelineError> {
+        if let Some(fragment) = &mut descriptor.fragment {
+            let definitions = key.bind_group_data.definitions();
+            fragment
+                .shader_defs
+                .extend(definitions.into_iter().map(Into::into));
+        }
+        Ok(())
     }
 }
 

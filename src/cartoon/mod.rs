@@ -1,7 +1,9 @@
 //! The cartoon material: uniformly lit areas with hard shadows (\[CL\] 2.2, 2.3,
 //! after Decaudin).
 
+mod ignored;
 mod material;
+mod ramp;
 mod scene;
 
 use bevy::{
@@ -14,6 +16,7 @@ use bevy::{
 };
 
 pub use material::{CartoonLight, CartoonMaterial};
+pub use ramp::{Ramp, RampBlend, RampMode, RampStop};
 pub use scene::CartoonScene;
 
 /// Registers types, shaders and, if the app has [`PbrPlugin`], the material.
@@ -39,7 +42,22 @@ impl Plugin for CartoonPlugin {
 impl CartoonPlugin {
     /// The part that needs the engine's renderer.
     pub(crate) fn build_render(app: &mut App) {
+        load_shader_library!(app, "bindings.wgsl");
+        load_shader_library!(app, "brightest.wgsl");
+        load_shader_library!(app, "contact.wgsl");
+        load_shader_library!(app, "indirect.wgsl");
+        load_shader_library!(app, "lamps.wgsl");
         load_shader_library!(app, "light.wgsl");
+        load_shader_library!(app, "light_textures.wgsl");
+        load_shader_library!(app, "per_light.wgsl");
+        load_shader_library!(app, "ramp.wgsl");
+        load_shader_library!(app, "ramp_light.wgsl");
+        load_shader_library!(app, "rect.wgsl");
+        load_shader_library!(app, "reflect.wgsl");
+        load_shader_library!(app, "share.wgsl");
+        load_shader_library!(app, "surface.wgsl");
+        load_shader_library!(app, "surroundings.wgsl");
+        load_shader_library!(app, "two_shades.wgsl");
         embedded_asset!(app, "cartoon.wgsl");
     }
 }
@@ -54,7 +72,7 @@ fn add_material(app: &mut App) -> bool {
     }
     app.add_plugins(MaterialPlugin::<CartoonMaterial>::default())
         .register_asset_reflect::<CartoonMaterial>()
-        .add_systems(Update, material::keep_forward)
+        .add_systems(Update, (material::keep_forward, ignored::warn_of_ignored))
         .add_systems(
             PostUpdate,
             (scene::follow_materials, scene::restore, scene::convert).chain(),

@@ -30,7 +30,7 @@ use super::{CartoonLight, CartoonMaterial};
 /// follows changes of the standard material and of this component. Removing the
 /// component restores the standard materials. If several ancestors of an entity have
 /// the component, the nearest one applies.
-#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Component, Reflect, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CartoonScene {
@@ -62,13 +62,13 @@ fn root_of(
 }
 
 /// The cartoon copy of a standard material.
-fn copy(original: &StandardMaterial, light: CartoonLight) -> CartoonMaterial {
+fn copy(original: &StandardMaterial, light: &CartoonLight) -> CartoonMaterial {
     CartoonMaterial {
         base: StandardMaterial {
             opaque_render_method: OpaqueRendererMethod::Forward,
             ..original.clone()
         },
-        extension: light,
+        extension: light.clone(),
     }
 }
 
@@ -99,7 +99,7 @@ pub(super) fn convert(
         };
         let handle = copies
             .entry((root, material.0.id()))
-            .or_insert_with(|| cartoon.add(copy(original, scene.light)))
+            .or_insert_with(|| cartoon.add(copy(original, &scene.light)))
             .clone();
         commands
             .entity(entity)
@@ -169,7 +169,7 @@ pub(super) fn follow_materials(
         if let Some(source) = standard.get(&original.material)
             && let Some(mut material) = cartoon.get_mut(&handle.0)
         {
-            *material = copy(source, scene.light);
+            *material = copy(source, &scene.light);
         }
     }
 }

@@ -377,4 +377,8 @@ fn a_million_floats_in_every_field_of_the_cartoon_light() {
     });
     let falloff = light(|l, x| l.falloff = x);
     fuzz("CartoonLight::falloff", 0.0, 4.0, |x| falloff(x).falloff);
+    let environment = light(|l, x| l.flat_environment = x);
+    fuzz("CartoonLight::flat_environment", 0.0, 1.0, |x| {
+        environment(x).flat_environment
+    });
 }

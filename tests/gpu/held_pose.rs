@@ -42,6 +42,8 @@ struct Seen {
 
 fn look(places: Query<Ref<GlobalTransform>, With<Mesh3d>>, mut seen: ResMut<Seen>) {
     seen.last = places.iter().map(|p| p.translation().x).collect();
+    // The order of a query is not that of spawning.
+    seen.last.sort_by(f32::total_cmp);
     seen.changes += places.iter().filter(Ref::is_changed).count();
 }
 

@@ -30,7 +30,7 @@ const OWN_LEVEL: f32 = 0.5;
 
 /// Beside the environment map, the lamps are weak: its panels give most of the
 /// light, and the highlight of a lamp without size clips on metal. The cartoon
-/// material ignores environment maps, so the lamps are stronger there.
+/// material has no environment map, so the lamps are stronger there.
 const LAMPS: [Lamp; 3] = [
     // Key.
     Lamp {
@@ -75,16 +75,19 @@ pub fn light_camera(
     (lamps, flat): (bool, bool),
 ) {
     let white = 1.0 / Exposure::default().exposure();
-    let environment = environment::light(&mut world.resource_mut::<Assets<Image>>(), white);
     // Made for this: base colours come out as they are, highlights never clip.
     world
         .entity_mut(camera)
-        .insert((Tonemapping::KhronosPbrNeutral, environment));
+        .insert(Tonemapping::KhronosPbrNeutral);
     if flat {
+        // Lamps and even light have clearer shapes than the soft panels around.
         world.entity_mut(camera).insert(AmbientLight {
-            brightness: FLAT_AMBIENT / Exposure::default().exposure(),
+            brightness: FLAT_AMBIENT * white,
             ..default()
         });
+    } else {
+        let environment = environment::light(&mut world.resource_mut::<Assets<Image>>(), white);
+        world.entity_mut(camera).insert(environment);
     }
     if !lamps {
         return;

@@ -477,7 +477,7 @@ fn the_cartoons_light_is_its_twin() {
     for_batches(row, |rows| {
         let results = gpu().evaluate(
             import,
-            "let s = CartoonLight(0.08, 1.0, 1.0, 1.0, 0.5, i(7u));
+            "let s = CartoonLight(0.08, 1.0, 1.0, 1.0, 0.5, i(7u), 1.0);
              return vec4(highlight_fraction(i(0u), i(1u)), highlight(s, i(0u), i(1u), i(2u)),
                  flat_falloff(s, i(3u), i(4u), i(5u), i(6u)), 0.0);",
             rows,

@@ -1,0 +1,55 @@
+#define_import_path bevy_comics::cartoon::light_textures
+
+// The pictures that lights project (`PointLightTexture`, `SpotLightTexture`,
+// `DirectionalLightTexture`), read as the engine reads them.
+
+#ifdef LIGHT_TEXTURES
+#import bevy_pbr::{lighting::cubemap_uv, mesh_view_bindings as view_bindings}
+
+const NO_TEXTURE: u32 = 0xFFFFFFFFu;
+
+fn texture_place(id: u32, position: vec3<f32>) -> vec3<f32> {
+    return (view_bindings::clustered_decals.decals[id].local_from_world * vec4(position, 1.0)).xyz;
+}
+
+fn texture_at(id: u32, uv: vec2<f32>) -> f32 {
+    let image = view_bindings::clustered_decals.decals[id].base_color_texture_index;
+    return textureSampleLevel(
+        view_bindings::clustered_decal_textures[image],
+        view_bindings::clustered_decal_sampler,
+        uv,
+        0.0,
+    ).r;
+}
+
+fn point_texture(id: u32, position: vec3<f32>) -> f32 {
+    if id == NO_TEXTURE {
+        return 1.0;
+    }
+    let order = view_bindings::clustered_decals.decals[id].tag;
+    return texture_at(id, cubemap_uv(texture_place(id, position), order));
+}
+
+fn spot_texture(id: u32, position: vec3<f32>, tan_angle: f32) -> f32 {
+    if id == NO_TEXTURE {
+        return 1.0;
+    }
+    let place = texture_place(id, position);
+    if place.z >= 0.0 {
+        return 1.0;
+    }
+    return texture_at(id, (place.xy / (place.z * tan_angle)) * vec2(-0.5, 0.5) + 0.5);
+}
+
+fn directional_texture(id: u32, position: vec3<f32>) -> f32 {
+    if id == NO_TEXTURE {
+        return 1.0;
+    }
+    let uv = texture_place(id, position).xy * vec2(-0.5, 0.5) + 0.5;
+    let tiled = view_bindings::clustered_decals.decals[id].tag != 0u;
+    if !tiled && any(clamp(uv, vec2(0.0), vec2(1.0)) != uv) {
+        return 0.0;
+    }
+    return texture_at(id, uv - floor(uv));
+}
+#endif

@@ -1,0 +1,259 @@
+//! Tones of a cartoon material by how much light arrives.
+
+use bevy::{
+    color::Color,
+    math::Vec3,
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::settings::{bounded, displayable, file_color, linear_rgb};
+
+/// The tones of a [`CartoonMaterial`](crate::CartoonMaterial), from shade to light (Lake et al.
+/// 2000).
+///
+/// How much light arrives is a number from 0 to 1; [`mode`](Ramp::mode) says what it is. Each
+/// [`RampStop`] begins a tone. Edges between tones are anti-aliased, and as soft as wanted.
+/// The border of a projected shadow goes straight from the tone in the light to the first
+/// tone; none of the tones between is drawn along it.
+///
+/// [`backface_shadows`], [`projected_shadows`] and [`shadow_strength`] work as without a ramp:
+/// where shadows take away only a part of the light, the tone is a mixture with the tone of
+/// full light. [`terminator`] is where highlights end.
+///
+/// [`backface_shadows`]: crate::CartoonLight::backface_shadows
+/// [`projected_shadows`]: crate::CartoonLight::projected_shadows
+/// [`shadow_strength`]: crate::CartoonLight::shadow_strength
+/// [`terminator`]: crate::CartoonLight::terminator
+#[derive(Reflect, Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Ramp {
+    /// Where tones begin, in any order: at most [`Ramp::MOST_STOPS`], of more the first are
+    /// used. Default: a violet shade, and full light from 0.08.
+    pub stops: Vec<RampStop>,
+    /// What the ramp is applied to. Default: [`RampMode::Share`].
+    pub mode: RampMode,
+    /// What the colours of the stops are. Default: [`RampBlend::Multiply`].
+    pub blend: RampBlend,
+    /// How much of the strength of the light is kept in [`RampMode::Share`]: the exponent of the
+    /// luminance. 0: all places are equally bright, whatever the lights and the exposure are.
+    /// 1: as bright as they are lit. Range 0 to 1, default 0.5.
+    pub keep_intensity: f32,
+}
+
+/// Where a tone of a [`Ramp`] begins.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RampStop {
+    /// How much light arrives where the tone begins: the middle of the edge. The tone of the
+    /// lowest stop has no edge. Range 0 to 1, default 0.
+    pub at: f32,
+    /// Colour of the tone. Components are clamped to what a display shows; alpha is ignored.
+    /// Default: white.
+    #[serde(with = "file_color")]
+    pub color: Color,
+    /// Width of the edge, as a fraction of the whole light. 0: as hard as pixels allow. Range
+    /// 0 to 1, default 0.
+    pub softness: f32,
+}
+
+/// What a [`Ramp`] is applied to.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum RampMode {
+    /// The share of all light that arrives: that of surfaces that face every light, without
+    /// shadows, is 1. Lights do not add up to more tones than the ramp has, and the exposure does
+    /// not change them.
+    #[default]
+    Share,
+    /// The cosine of the angle between normal and light, for each light; then the sum. A ramp of
+    /// black, and white from the terminator, is the light without a ramp.
+    PerLight,
+    /// The cosine for the brightest light at each place. All other lights have no shape: half of
+    /// each, its mean over all directions, arrives everywhere.
+    Brightest,
+}
+
+/// What the colours of a [`Ramp`] are.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum RampBlend {
+    /// Factors of the light: white leaves it as it is. Ambient light is added in full.
+    #[default]
+    Multiply,
+    /// Colours of the surface, in place of its base colour. Light and ambient light shine on
+    /// them.
+    Absolute,
+}
+
+impl Default for RampStop {
+    fn default() -> Self {
+        Self {
+            at: 0.0,
+            color: Color::WHITE,
+            softness: 0.0,
+        }
+    }
+}
+
+impl RampStop {
+    /// A tone with a hard edge.
+    #[must_use]
+    pub fn new(at: f32, color: impl Into<Color>) -> Self {
+        Self {
+            at,
+            color: color.into(),
+            softness: 0.0,
+        }
+    }
+
+    /// The same with a soft edge.
+    #[must_use]
+    pub fn soft(self, softness: f32) -> Self {
+        Self { softness, ..self }
+    }
+}
+
+impl Default for Ramp {
+    fn default() -> Self {
+        Self::new([
+            RampStop::new(0.0, Color::linear_rgb(0.42, 0.40, 0.55)),
+            RampStop::new(0.08, Color::WHITE),
+        ])
+    }
+}
+
+impl Ramp {
+    /// The largest number of stops.
+    pub const MOST_STOPS: usize = 8;
+
+    /// A ramp of these stops, otherwise with default settings.
+    #[must_use]
+    pub fn new(stops: impl IntoIterator<Item = RampStop>) -> Self {
+        Self {
+            stops: stops.into_iter().collect(),
+            mode: RampMode::default(),
+            blend: RampBlend::default(),
+            keep_intensity: 0.5,
+        }
+    }
+
+    /// The settings that are used: at most [`Ramp::MOST_STOPS`] stops, sorted; every number is
+    /// clamped to its documented range, and a number that is not finite is replaced by its
+    /// default. A ramp without stops becomes the default one.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        let default = RampStop::default();
+        let mut stops = self.stops;
+        if stops.is_empty() {
+            stops = Self::default().stops;
+        }
+        stops.truncate(Self::MOST_STOPS);
+        for stop in &mut stops {
+            stop.at = bounded(stop.at, default.at, 0.0, 1.0);
+            stop.color = displayable(stop.color, default.color);
+            stop.softness = bounded(stop.softness, default.softness, 0.0, 1.0);
+        }
+        stops.sort_by(|a, b| a.at.total_cmp(&b.at));
+        Self {
+            stops,
+            keep_intensity: bounded(self.keep_intensity, 0.5, 0.0, 1.0),
+            ..self
+        }
+    }
+}
+
+/// `Stop` in `ramp.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+struct StopUniform {
+    color: Vec3,
+    at: f32,
+    softness: f32,
+}
+
+/// `Ramp` in `ramp.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct RampUniform {
+    stops: [StopUniform; Ramp::MOST_STOPS],
+    keep_intensity: f32,
+}
+
+impl From<&Ramp> for RampUniform {
+    fn from(ramp: &Ramp) -> Self {
+        let ramp = ramp.clone().sanitized();
+        // Far above the light that can arrive.
+        let unused = StopUniform {
+            at: 1e6,
+            ..StopUniform::default()
+        };
+        let mut stops = [unused; Ramp::MOST_STOPS];
+        for (to, stop) in stops.iter_mut().zip(&ramp.stops) {
+            *to = StopUniform {
+                color: linear_rgb(stop.color),
+                at: stop.at,
+                softness: stop.softness,
+            };
+        }
+        Self {
+            stops,
+            keep_intensity: ramp.keep_intensity,
+        }
+    }
+}
+
+/// The part of a ramp that selects a variant of the shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(C)]
+pub struct RampKey(Option<(RampMode, RampBlend)>);
+
+impl RampKey {
+    pub(super) fn of(ramp: Option<&Ramp>) -> Self {
+        Self(ramp.map(|ramp| (ramp.mode, ramp.blend)))
+    }
+
+    /// The shader definitions.
+    pub(super) fn definitions(self) -> Vec<&'static str> {
+        let Some((mode, blend)) = self.0 else {
+            return Vec::new();
+        };
+        let mode = match mode {
+            RampMode::Share => "RAMP_SHARE",
+            RampMode::PerLight => "RAMP_PER_LIGHT",
+            RampMode::Brightest => "RAMP_BRIGHTEST",
+        };
+        match blend {
+            RampBlend::Multiply => vec![mode],
+            RampBlend::Absolute => vec![mode, "RAMP_ABSOLUTE"],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stops_are_sorted_clamped_and_at_most_eight() {
+        let stops = (0..20).map(|k| RampStop::new(1.0 - 0.1 * k as f32, Color::WHITE));
+        let ramp = Ramp::new(stops).sanitized();
+        assert_eq!(ramp.stops.len(), Ramp::MOST_STOPS);
+        assert!(ramp.stops.is_sorted_by(|a, b| a.at <= b.at));
+        let bad = RampStop {
+            at: f32::NAN,
+            color: Color::linear_rgb(9.0, f32::NAN, 0.0),
+            softness: f32::INFINITY,
+        };
+        let mut ramp = Ramp::new([bad, RampStop::new(-3.0, Color::BLACK).soft(7.0)]);
+        ramp.keep_intensity = f32::NAN;
+        let ramp = ramp.sanitized();
+        assert_eq!(ramp.stops[0], RampStop::default());
+        assert_eq!(ramp.stops[1], RampStop::new(0.0, Color::BLACK).soft(1.0));
+        assert_eq!(ramp.keep_intensity, 0.5);
+        assert_eq!(Ramp::new([]).sanitized(), Ramp::default());
+    }
+}

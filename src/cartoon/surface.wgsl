@@ -1,0 +1,57 @@
+#define_import_path bevy_comics::cartoon::surface
+
+// A surface of the cartoon material, and light that arrives at it.
+
+// Change of the world position and of the normal over a pixel, to the right and down.
+struct Footprint {
+    position_x: vec3<f32>,
+    position_y: vec3<f32>,
+    normal_x: vec3<f32>,
+    normal_y: vec3<f32>,
+}
+
+struct Surface {
+    position: vec3<f32>,
+    // Unit normal, with the normal map.
+    normal: vec3<f32>,
+    // Unit normal of the mesh. The shadow maps of the engine are read with it.
+    mesh_normal: vec3<f32>,
+    // Unit vector to the camera.
+    to_eye: vec3<f32>,
+    foot: Footprint,
+    // Perceptual roughness.
+    roughness: f32,
+    // Coordinates of the pixel, and z in view space.
+    pixel: vec2<f32>,
+    view_z: f32,
+    // Whether shadow maps are read.
+    receives: bool,
+}
+
+// Light from one light source. Cartoon light has no N.L term: this is the light at a
+// surface that faces the light source.
+struct Arriving {
+    // Illuminance in lux, in rings, before shadows and exposure.
+    color: vec3<f32>,
+    // The same without rings.
+    smooth_color: vec3<f32>,
+    // Unit vector to the light source, and to the place on it that a highlight shows.
+    to_light: vec3<f32>,
+    to_highlight: vec3<f32>,
+    // 1 where the light arrives, 0 in the shadow of something else.
+    lit: f32,
+    // 1, or 0 if the light is part of a lightmap and only draws a highlight.
+    diffuse: f32,
+    // 1 if the light draws highlights, else 0.
+    shine: f32,
+}
+
+// Change of the cosine between normal and `direction` over a pixel.
+fn cosine_over_pixel(foot: Footprint, direction: vec3<f32>) -> f32 {
+    return abs(dot(foot.normal_x, direction)) + abs(dot(foot.normal_y, direction));
+}
+
+// Size of a pixel on the surface in world units.
+fn pixel_size(foot: Footprint) -> f32 {
+    return length(foot.position_x) + length(foot.position_y);
+}
