@@ -2,9 +2,7 @@
 // the lines of the others run straight through the steps of pixels, and how wide they are.
 
 #import bevy_comics::lines::bend::{end_sign, line_bend, pack_bend, unpack_bend}
-#import bevy_comics::lines::chain::{
-    along_crack, cracks_to_end, first_corner, last_corner, stairs_bend,
-}
+#import bevy_comics::lines::chain::{along_crack, cracks_to_end, first_corner, last_corner, stairs_bend}
 #import bevy_comics::lines::edge::{CREASE, Grid, SILHOUETTE}
 #import bevy_comics::lines::listed::listed_cell
 #import bevy_comics::lines::pass::line_pass
