@@ -232,6 +232,8 @@ pub fn assert_pass_is_its_twin(
 /// A style without what the twin of the whole picture does not know, and what other tests compare
 /// with twins of their own: paint, which changes the picture before the fused pass, hatching, lines
 /// in the colours of surfaces, and of planes the borders that are found, whole objects and lines.
+/// After planes also tints: their steps are ten times as steep as tones, and decide by the rounding of
+/// the planes' colours.
 pub fn known_to_twin(style: ComicStyle) -> ComicStyle {
     let outlines = style.get::<Outlines>().map(|outlines| Outlines {
         color: LineColor::Ink,
@@ -259,6 +261,12 @@ pub fn known_to_twin(style: ComicStyle) -> ComicStyle {
     }
     if let Some(planes) = planes {
         style.insert(planes);
+        if let Some(&halftone) = style.get::<Halftone>() {
+            style.insert(Halftone {
+                tints: 0,
+                ..halftone
+            });
+        }
     }
     style
 }
