@@ -397,7 +397,7 @@ fn a_lightmap_replaces_the_lights_that_are_baked_into_it() {
     };
     let baked = 0.3 / exposure();
     let image = layers(&mut small, one, TextureDimension::D2, &[Vec3::splat(0.3)]);
-    let mut mesh = Mesh::from(Sphere::new(1.6).mesh().uv(32, 16));
+    let mut mesh = Sphere::new(1.6).mesh().uv(32, 16);
     let uv = vec![[0.5f32, 0.5]; mesh.count_vertices()];
     mesh.insert_attribute(Mesh::ATTRIBUTE_UV_1, uv);
     let object = small.put(

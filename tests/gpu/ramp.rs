@@ -200,7 +200,7 @@ fn shares_do_not_depend_on_the_exposure() {
         let mut suns = world.query::<&mut DirectionalLight>();
         let mut sun = suns.single_mut(world).expect("one");
         change(&mut sun);
-        sun.clone()
+        *sun
     };
     change(&mut small, |sun| sun.shadow_maps_enabled = false);
     let picture = drawn(&mut small);
