@@ -76,6 +76,17 @@ struct Toys {
 
 /// Adds a mesh with flat light.
 fn put(world: &mut World, mesh: Mesh, color: Color, at: Vec3) -> Entity {
+    put_lit(world, mesh, color, at, CartoonScene::default())
+}
+
+/// Adds a mesh with flat light of its own settings.
+pub fn put_lit(
+    world: &mut World,
+    mesh: Mesh,
+    color: Color,
+    at: Vec3,
+    scene: CartoonScene,
+) -> Entity {
     let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
     let material = StandardMaterial {
         perceptual_roughness: 0.9,
@@ -86,9 +97,7 @@ fn put(world: &mut World, mesh: Mesh, color: Color, at: Vec3) -> Entity {
         .add(material);
     let place = Transform::from_translation(at);
     let material = MeshMaterial3d(material);
-    world
-        .spawn((Mesh3d(mesh), material, place, CartoonScene::default()))
-        .id()
+    world.spawn((Mesh3d(mesh), material, place, scene)).id()
 }
 
 fn toys() -> Toys {

@@ -7,6 +7,8 @@ use bevy_comics::{
 use bevy_comics_testkit::headless::{Headless, HeadlessOptions};
 use image::RgbaImage;
 
+use crate::pages::put_lit;
+
 /// Frames until shaders are compiled and the picture stands still.
 const SETTLE: usize = 12;
 
@@ -44,22 +46,8 @@ fn ramps() -> [Option<Ramp>; 4] {
 }
 
 fn put(world: &mut World, mesh: Mesh, color: Color, light: &CartoonLight, at: Vec3) {
-    let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
-    let material = StandardMaterial {
-        perceptual_roughness: 0.9,
-        ..color.into()
-    };
-    let material = world
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(material);
-    world.spawn((
-        Mesh3d(mesh),
-        MeshMaterial3d(material),
-        Transform::from_translation(at),
-        CartoonScene {
-            light: light.clone(),
-        },
-    ));
+    let light = light.clone();
+    put_lit(world, mesh, color, at, CartoonScene { light });
 }
 
 /// A pawn of a game of chess.

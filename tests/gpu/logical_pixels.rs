@@ -2,10 +2,11 @@
 //! twice as many of them.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, LineWeight, Outlines, Silhouettes};
+use bevy_comics::{ComicStyle, Outlines};
 
 use crate::{
     outlines::{ink, put},
+    overshoot,
     small::Small,
     walls::unit_per_pixel,
 };
@@ -42,20 +43,10 @@ fn closing_step(small: &mut Small, scale: u32) {
 
 fn lines(continuity: f32, taper: f32) -> Outlines {
     Outlines {
-        width: 4.0,
         continuity,
         continuity_level: 0.1,
         specks: 1,
-        budget: 1.0,
-        silhouettes: Some(Silhouettes {
-            softness: 0.0,
-            ..default()
-        }),
-        weight: LineWeight {
-            taper,
-            ..LineWeight::EVEN
-        },
-        ..Outlines::SILHOUETTES
+        ..overshoot::lines(4.0, 0.0, taper)
     }
 }
 

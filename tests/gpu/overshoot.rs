@@ -15,7 +15,8 @@ use crate::{
 /// Width and height of the picture in pixels; a unit of the scene is a pixel.
 const SIZE: usize = 96;
 
-fn lines(width: f32, overshoot: f32, taper: f32) -> Outlines {
+/// Silhouettes of one width, also where they crowd.
+pub fn lines(width: f32, overshoot: f32, taper: f32) -> Outlines {
     Outlines {
         width,
         overshoot,

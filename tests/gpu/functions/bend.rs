@@ -126,10 +126,11 @@ fn distances(slope: f64, offsets: [f64; 16]) -> [f64; 2] {
 /// Straight edges of the slopes for which a distance is aimed at, in sixteenths of a pixel: the
 /// middles of the lines are as near as that, and a tenth more at most. The cracks of edges of
 /// slope 1/25 and 1/10 are the same while an edge moves by so much: the mean of its positions is
-/// known, and no more.
+/// known, and no more. Where lines have always been nearer than what is aimed at, they stay so.
 #[test]
 fn middles_of_lines_are_near_straight_edges() {
-    for (slope, aimed) in straight_edges::AIMED {
+    let kept = [0.015, 0.032, 0.06, 0.07, 0.14, 0.075, 0.14];
+    for ((slope, aimed), kept) in straight_edges::AIMED.into_iter().zip(kept) {
         let [lines, cracks] = distances(slope, std::array::from_fn(|n| n as f64 / 16.0));
         let least = if slope < 0.15 {
             straight_edges::uniform(slope.atan().sin())
@@ -138,6 +139,7 @@ fn middles_of_lines_are_near_straight_edges() {
         };
         println!("slope {slope}: {lines:.4} px, aimed {aimed}, cracks {cracks:.3} px");
         assert!(lines <= 1.1 * aimed.max(least), "slope {slope}: {lines}");
+        assert!(lines <= kept, "slope {slope}: {lines}");
         assert!(lines < 0.7 * cracks, "slope {slope}: {lines}, {cracks}");
     }
 }
