@@ -36,7 +36,7 @@ fn segment_coverage(at: vec2<f32>, a: vec2<f32>, b: vec2<f32>, half_width: f32) 
     let t = dot(at - a, along) / max(square, 1e-12);
     let away = at - a - clamp(t, 0.0, 1.0) * along;
     // The next part of the line begins within half a length; few pixels are right at this limit.
-    if square > 0.0 && abs(t - 0.5) <= 1.07 {
+    if square > 0.0 && abs(t - 0.5) <= 0.93 {
         return straight_coverage(length(away), half_width, line_ramp(along));
     }
     let covered = straight_coverage(length(away), half_width, line_ramp(away));
