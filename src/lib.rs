@@ -133,6 +133,7 @@ mod pages {
         Readme: "README.md";
         YourOwnStyle: "docs/your-own-style.md";
         StylesAndPresets: "docs/styles-and-presets.md";
+        Lines: "docs/lines.md";
         OneObjectsLines: "docs/one-objects-lines.md";
         ExcludeAnObject: "docs/exclude-an-object.md";
         CartoonMaterial: "docs/cartoon-material.md";
@@ -148,6 +149,7 @@ mod pages {
         SplitScreen: "docs/split-screen.md";
         TransparentThings: "docs/transparent-things.md";
         Inspector: "docs/inspector.md";
+        Hatching: "docs/hatching.md";
         Print: "docs/print.md";
         Performance: "docs/performance.md";
         Benchmarks: "docs/benchmarks.md";

@@ -9,7 +9,7 @@
 //! cargo run --example pictures -- pages [--out DIR]
 //! cargo run --example pictures -- motion [--out DIR]
 //! cargo run --example pictures -- print [--out DIR]
-//! cargo run --example pictures -- strips [--out DIR]
+//! cargo run --example pictures -- strips [NAME...] [--out DIR]
 //! cargo run --example pictures -- figures [--out DIR]
 //! cargo run --example pictures -- golden [--out DIR]
 //! ```
@@ -35,7 +35,7 @@ usage: pictures contact-sheet [--size WxH] [--out FILE.png]   every scene in eve
        pictures pages [--out DIR]                             the pages about single tasks
        pictures motion [--out DIR]                            the pages about speed lines and paper
        pictures print [--out DIR]                             the pages about print, paint and focus
-       pictures strips [--out DIR]                            lines in motion, for looking at
+       pictures strips [NAME...] [--out DIR]                  lines in motion, all or some
        pictures figures [--out DIR]                           the figures of the first paper
        pictures golden [--out DIR]                            the tests' reference pictures";
 
@@ -54,9 +54,13 @@ fn run() -> Result<(), String> {
     let mut parser = lexopt::Parser::from_env();
     let wrong = |error: lexopt::Error| format!("{error}\n{USAGE}");
     let (mut what, mut size, mut out) = (None, UVec2::new(480, 270), None);
+    let mut names = Vec::new();
     while let Some(argument) = parser.next().map_err(wrong)? {
         match argument {
             Value(value) if what.is_none() => what = Some(value.to_string_lossy().into_owned()),
+            Value(value) if what.as_deref() == Some("strips") => {
+                names.push(value.to_string_lossy().into_owned());
+            }
             Long("size") => {
                 let text = parser.value().and_then(|v| v.string()).map_err(wrong)?;
                 size = text
@@ -84,7 +88,7 @@ fn run() -> Result<(), String> {
         Some("pages") => pages::write(&or("target/pages")),
         Some("motion") => motion::write(&or("target/motion")),
         Some("print") => print::write(&or("target/print")),
-        Some("strips") => strips::write(&or("target/strips")),
+        Some("strips") => strips::write(&or("target/strips"), &names),
         Some("figures") => figures::write(&or("target/figures")),
         Some("golden") => sheet::golden(&or("tests/golden")),
         Some(other) => Err(format!("no pictures called {other:?}\n{USAGE}")),

@@ -15,7 +15,7 @@ use bevy_comics_testkit::{
     read_back,
     scenes::BuiltIn,
     specimens::Specimen,
-    truth::{FINE, ids_alone, line_ends},
+    truth::{FINE, Truth, at_places, ends_of_lines, ids_alone},
 };
 
 use crate::{
@@ -25,14 +25,22 @@ use crate::{
     table::Table,
 };
 
-/// Ends of lines on models that turn, with and without continuing along weak edges.
+/// How far an end of a line may be from that of a true line, in pixels of the finer picture: two of
+/// the picture.
+const NEAR_END: i64 = 2 * FINE as i64;
+/// By how much true ends are moved to see how many ends are near one by chance, in pixels of the
+/// finer picture.
+const ELSEWHERE: [i64; 2] = [44, -36];
+
+/// Ends of lines on models that turn, with and without continuing along weak edges; and how many
+/// of them are where true lines end.
 pub fn dashes(run: &Run) -> Result<(), String> {
     let (frames, size) = if run.quick {
         (2, UVec2::new(120, 68))
     } else {
         (90, UVec2::new(240, 136))
     };
-    let mut table = Table::new(&["model", "method", "ends", "true"]);
+    let mut table = Table::new(&["model", "method", "ends", "true", "true_ends", "by_chance"]);
     let mut fine = Studio::new(size * FINE, ids_alone());
     let whole = Outlines {
         budget: 1.0,
@@ -45,6 +53,69 @@ pub fn dashes(run: &Run) -> Result<(), String> {
     };
     let methods = [("cut", cut), ("continued", whole)];
     let mut lined = methods.map(|(_, outlines)| Studio::new(size, outlines));
+    let all = turning();
+    for (model, parts) in &all[..if run.quick { 1 } else { all.len() }] {
+        for studio in lined.iter_mut().chain([&mut fine]) {
+            studio.show_meshes(parts.clone());
+            studio.rig.headless.step(4);
+        }
+        let mut counts = [Ends::default(); 2];
+        let mut length = 0;
+        for frame in 0..frames {
+            let turned = frame as f32 / frames as f32;
+            fine.turn(2.6, turned);
+            let truth = fine.rig.truth(size, FINE);
+            length += truth.any(&[0, 1, 2]).iter().filter(|line| **line).count();
+            let true_ends = fine_ends(&fine.rig);
+            for (studio, counts) in lined.iter_mut().zip(&mut counts) {
+                studio.turn(2.6, turned);
+                let world = studio.rig.headless.app.sub_app(RenderApp).world();
+                let cracks = read_back::cracks(world, studio.rig.view());
+                let ends = cracks.as_ref().map(ends_of_lines).unwrap_or_default();
+                counts.add(&ends, &true_ends);
+            }
+        }
+        for ((method, _), counts) in methods.iter().zip(counts) {
+            let Ends {
+                all,
+                true_ends,
+                by_chance,
+            } = counts;
+            table.push(&[model, method, &all, &length, &true_ends, &by_chance]);
+        }
+        run.say(&format!("{model}: ends counted"));
+    }
+    run.save("ink_dashes", &table)
+}
+
+/// Where the lines of the truth end, in pixels of the finer picture.
+fn fine_ends(rig: &Rig) -> Vec<[i64; 2]> {
+    let world = rig.headless.app.sub_app(RenderApp).world();
+    ends_of_lines(&Truth::fine_cracks(world, rig.view(), rig.size))
+}
+
+/// Numbers of ends of lines.
+#[derive(Clone, Copy, Default)]
+struct Ends {
+    all: usize,
+    /// Near the end of a true line, and near one that was moved elsewhere.
+    true_ends: usize,
+    by_chance: usize,
+}
+
+impl Ends {
+    fn add(&mut self, ends: &[[i64; 2]], true_ends: &[[i64; 2]]) {
+        let [x, y] = ELSEWHERE;
+        let moved: Vec<_> = true_ends.iter().map(|[u, v]| [u + x, v + y]).collect();
+        let near = |others: &[[i64; 2]]| at_places(ends, i64::from(FINE), others, NEAR_END);
+        self.all += ends.len();
+        self.true_ends += near(true_ends);
+        self.by_chance += near(&moved);
+    }
+}
+
+/// What turns: two shapes, and the models.
+fn turning() -> Vec<(&'static str, Vec<Mesh>)> {
     let models = Specimen::ALL.map(|model| {
         let parts: Vec<Mesh> = model.parts().into_iter().map(|(mesh, _)| mesh).collect();
         (model.name(), parts)
@@ -58,32 +129,7 @@ pub fn dashes(run: &Run) -> Result<(), String> {
         ),
     ];
     let shapes = shapes.map(|(name, mesh)| (name, vec![mesh]));
-    let all: Vec<(&str, Vec<Mesh>)> = shapes.into_iter().chain(models).collect();
-    for (model, parts) in &all[..if run.quick { 1 } else { all.len() }] {
-        for studio in lined.iter_mut().chain([&mut fine]) {
-            studio.show_meshes(parts.clone());
-            studio.rig.headless.step(4);
-        }
-        let mut ends = [0; 2];
-        let mut length = 0;
-        for frame in 0..frames {
-            let turned = frame as f32 / frames as f32;
-            fine.turn(2.6, turned);
-            let truth = fine.rig.truth(size, FINE);
-            length += truth.any(&[0, 1, 2]).iter().filter(|line| **line).count();
-            for (studio, ends) in lined.iter_mut().zip(&mut ends) {
-                studio.turn(2.6, turned);
-                let world = studio.rig.headless.app.sub_app(RenderApp).world();
-                let cracks = read_back::cracks(world, studio.rig.view());
-                *ends += cracks.as_ref().map_or(0, line_ends);
-            }
-        }
-        for ((method, _), ends) in methods.iter().zip(ends) {
-            table.push(&[model, method, &ends, &length]);
-        }
-        run.say(&format!("{model}: ends counted"));
-    }
-    run.save("ink_dashes", &table)
+    shapes.into_iter().chain(models).collect()
 }
 
 /// A mesh without shared vertices, and so with flat faces.

@@ -26,6 +26,7 @@ mod ranges;
 mod rig;
 mod scores;
 mod stability;
+mod steps;
 mod straight;
 mod table;
 
@@ -87,17 +88,18 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
   --quick          small pictures, few repetitions, no other crates
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure one section only: ranges, encodings, lines, models,
-                   dashes, memory, straight, page, stability, ladder, parts,
-                   growth, peers or flicker
+                   steps, dashes, memory, straight, page, stability, ladder,
+                   parts, scene-parts, growth, peers or flicker
   --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
-const SECTIONS: [(&str, Section); 14] = [
+const SECTIONS: [(&str, Section); 16] = [
     ("ranges", ranges::measure),
     ("encodings", encodings::measure),
     ("lines", lines::measure),
     ("models", models::measure),
+    ("steps", steps::measure),
     ("dashes", ink::dashes),
     ("memory", ink::memory),
     ("straight", straight::measure),
@@ -105,6 +107,7 @@ const SECTIONS: [(&str, Section); 14] = [
     ("stability", stability::measure),
     ("ladder", ladder::measure),
     ("parts", parts::measure),
+    ("scene-parts", parts::of_scenes),
     ("growth", growth::measure),
     ("peers", peers::measure),
     ("flicker", flicker::measure),

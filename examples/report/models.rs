@@ -21,7 +21,7 @@ use crate::{
 
 /// Distances of the camera in radii of the model: it fills the picture, or is a
 /// sixth as high.
-const DISTANCES: [(&str, f32); 2] = [("close", 2.6), ("distant", 16.0)];
+pub const DISTANCES: [(&str, f32); 2] = [("close", 2.6), ("distant", 16.0)];
 
 /// A camera in front of a white model on white: every darker pixel is ink.
 pub struct Studio {
@@ -76,7 +76,7 @@ impl Studio {
     }
 
     /// The pixels with ink: at least a quarter of the light is missing.
-    fn mask(&mut self) -> Vec<bool> {
+    pub fn mask(&mut self) -> Vec<bool> {
         let picture = self.rig.headless.picture();
         picture.pixels().map(|p| p.0[1] < 191).collect()
     }

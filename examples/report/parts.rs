@@ -1,6 +1,8 @@
 //! What single parts cost: factors of lines, marked objects, and effects of the page.
 
 use bevy::{
+    anti_alias::taa::TemporalAntiAliasing,
+    core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass},
     pbr::{DistanceFog, FogFalloff},
     prelude::*,
 };
@@ -17,7 +19,6 @@ use bevy_comics_testkit::scenes::BuiltIn;
 use crate::{
     Run,
     rig::{self, Rig, Wear},
-    table::Table,
 };
 
 /// Outlines of which one thing differs from the default.
@@ -184,12 +185,16 @@ fn mark<M: Component + Clone>(rig: &mut Rig, mark: M) {
     }
 }
 
-pub fn measure(run: &Run) -> Result<(), String> {
-    let size = if run.quick {
+fn size(run: &Run) -> UVec2 {
+    if run.quick {
         UVec2::new(320, 180)
     } else {
         UVec2::new(1280, 720)
-    };
+    }
+}
+
+pub fn measure(run: &Run) -> Result<(), String> {
+    let size = size(run);
     let mut times = rig::times();
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
     rig.unlight();
@@ -202,44 +207,92 @@ pub fn measure(run: &Run) -> Result<(), String> {
     ]
     .map(|(name, wear)| (name.to_owned(), wear));
     rig::record(run, &mut times, "marks", "teapot", &mut rig, &variants);
-    // Each on a scene of its own, which takes long.
-    scene_parts(&run.with_rounds(run.rounds.min(3)), &mut times, size);
     run.save("part_times", &times)
 }
 
-/// A change of the scene whose cost is measured.
-type Change = fn(&mut Rig);
+/// A change of a scene whose cost is measured.
+struct Part {
+    name: &'static str,
+    scene: BuiltIn,
+    change: fn(&mut Rig),
+    /// What is timed on the changed scene, with names.
+    styles: Vec<(&'static str, ComicStyle)>,
+}
 
-/// What a part of the scene asks for: its name, the change, and the style.
-fn changes() -> Vec<(&'static str, Change, ComicStyle)> {
+impl Part {
+    /// One style on the changed teapot.
+    fn new(name: &'static str, change: fn(&mut Rig), style: ComicStyle) -> Self {
+        Self {
+            name,
+            scene: BuiltIn::Teapot,
+            change,
+            styles: vec![(name, style)],
+        }
+    }
+}
+
+fn changes() -> Vec<Part> {
     let outlines = || ComicStyle::new().with(Outlines::default());
     let colors = || ComicStyle::new().with(Desaturation::default());
-    vec![
-        ("outlines", |_| (), outlines()),
-        ("outlines; meshes in sections", sections, outlines()),
-        ("outlines; widths of vertices", widths, outlines()),
-        ("outlines; a width of each mesh", own_widths, outlines()),
-        ("outlines; 4 samples", samples, outlines()),
-        ("outlines; fog", fog, outlines()),
-        ("outlines; a mesh of glass", glass, outlines()),
-        ("outlines; it writes depth", glass_in_depth, outlines()),
-        ("desaturation", |_| (), colors()),
-        ("desaturation; a mesh without style", unstyled, colors()),
-    ]
+    let mut parts = vec![
+        Part::new("outlines", |_| (), outlines()),
+        Part::new("outlines; meshes in sections", sections, outlines()),
+        Part::new("outlines; widths of vertices", widths, outlines()),
+        Part::new("outlines; a width of each mesh", own_widths, outlines()),
+        Part::new("outlines; 4 samples", samples, outlines()),
+        Part::new("outlines; fog", fog, outlines()),
+        Part::new("outlines; a mesh of glass", glass, outlines()),
+        Part::new("outlines; it writes depth", glass_in_depth, outlines()),
+        Part::new("desaturation", |_| (), colors()),
+        Part::new("desaturation; a mesh without style", unstyled, colors()),
+    ];
+    // The village has lines in most of its tiles, the teapot in few.
+    for scene in [BuiltIn::Teapot, BuiltIn::Village] {
+        let forgetful = Outlines {
+            memory: 1.0,
+            ..default()
+        };
+        parts.push(Part {
+            name: "temporal anti-aliasing",
+            scene,
+            change: jitter,
+            styles: vec![
+                (
+                    "outlines; temporal anti-aliasing; no memory",
+                    ComicStyle::new().with(forgetful),
+                ),
+                ("outlines; temporal anti-aliasing; memory", outlines()),
+            ],
+        });
+    }
+    parts
 }
 
 /// Times each change on a scene of its own.
-fn scene_parts(run: &Run, times: &mut Table, size: UVec2) {
-    for (name, change, style) in changes() {
-        let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
+pub fn of_scenes(run: &Run) -> Result<(), String> {
+    let size = size(run);
+    let mut times = rig::times();
+    // A scene of its own takes long.
+    let run = &run.with_rounds(run.rounds.min(3));
+    for part in changes() {
+        let mut rig = Rig::new(Some(part.scene), size);
         rig.unlight();
-        change(&mut rig);
+        (part.change)(&mut rig);
         // Meshes are divided in the background.
         rig.headless.step(30);
-        let section = format!("part: {name}");
-        let variant = [(name.to_owned(), Wear::style(style))];
-        rig::record(run, times, &section, "teapot", &mut rig, &variant);
+        let section = format!("part: {}", part.name);
+        let named = |(name, style): (&str, ComicStyle)| (name.to_owned(), Wear::style(style));
+        let variants: Vec<_> = part.styles.into_iter().map(named).collect();
+        rig::record(
+            run,
+            &mut times,
+            &section,
+            part.scene.name(),
+            &mut rig,
+            &variants,
+        );
     }
+    run.save("scene_part_times", &times)
 }
 
 fn meshes(rig: &mut Rig) -> Vec<Entity> {
@@ -281,6 +334,17 @@ fn own_widths(rig: &mut Rig) {
 fn samples(rig: &mut Rig) {
     let world = rig.headless.app.world_mut();
     world.entity_mut(rig.camera).insert(Msaa::Sample4);
+}
+
+/// The time of temporal anti-aliasing itself is not in that of the styles: it runs without them
+/// too.
+fn jitter(rig: &mut Rig) {
+    let world = rig.headless.app.world_mut();
+    world.entity_mut(rig.camera).insert((
+        TemporalAntiAliasing::default(),
+        DepthPrepass,
+        MotionVectorPrepass,
+    ));
 }
 
 fn fog(rig: &mut Rig) {

@@ -10,11 +10,12 @@
 //! A line is faint where ink of the default outlines begins: at a step of 1 % or a fold of
 //! 20 degrees. Outlines may or may not draw it.
 
-use std::collections::HashSet;
+mod ends;
 
 use bevy::prelude::*;
 use bevy_comics::{ObjectEdges, Outlines};
 
+pub use self::ends::{at_places, ends_of_lines, line_ends};
 use crate::read_back::{self, CrackWords};
 
 /// Finer pixels along each side of a pixel.
@@ -40,6 +41,94 @@ pub struct Seen<'a> {
     pub ids: &'a [u32],
 }
 
+/// The border between two pixels: which kinds of line run along it, and whether one does that may
+/// be faint.
+struct Border {
+    kinds: [bool; 3],
+    faint: bool,
+}
+
+impl Seen<'_> {
+    /// The border between a pixel and the one `step` pixels later, row by row.
+    fn border(&self, i: usize, step: usize) -> Border {
+        let j = i + step;
+        let (a, b) = (self.depth[i], self.depth[j]);
+        let (before, beyond) = (self.depth[i - step], self.depth[j + step]);
+        let near = a.max(b);
+        if near <= 0.0 {
+            return Border {
+                kinds: [false; 3],
+                faint: false,
+            };
+        }
+        let (here, there, back, ahead) = if a >= b {
+            (a, b, before, beyond)
+        } else {
+            (b, a, beyond, before)
+        };
+        let excess = (here - there) - (back - here).max(there - ahead).max(0.0);
+        let silhouette = excess > 0.02 * near;
+        let cosine = cosine(self.normals[i], self.normals[j]);
+        let both = a > 0.0 && b > 0.0;
+        let object = self.ids[i] != self.ids[j];
+        let crease = both && !silhouette && cosine < 30f32.to_radians().cos();
+        Border {
+            kinds: [silhouette, crease, object],
+            faint: excess > 0.01 * near || both && cosine < 20f32.to_radians().cos() || object,
+        }
+    }
+
+    /// The borders of a picture of this size that lines run along: one bit for each kind.
+    fn cracks(&self, [width, height]: [usize; 2]) -> CrackWords {
+        let mut words = vec![[0; 2]; width * height];
+        for y in 1..height.saturating_sub(2) {
+            for x in 1..width.saturating_sub(2) {
+                let i = y * width + x;
+                words[i] = [1, width].map(|step| {
+                    let kinds = self.border(i, step).kinds.into_iter().enumerate();
+                    kinds
+                        .map(|(kind, is_line)| u32::from(is_line) << kind)
+                        .sum()
+                });
+            }
+        }
+        CrackWords {
+            rect: [0, 0, width as u32, height as u32],
+            words,
+            planes: vec![],
+            bends: vec![],
+        }
+    }
+}
+
+/// What was read back of the prepasses of a view that draws [`ids_alone`].
+struct View {
+    depth: Vec<f32>,
+    normals: Vec<[f32; 4]>,
+    ids: Vec<u32>,
+}
+
+impl View {
+    fn read(render_world: &World, view: Entity) -> Self {
+        let depth = read_back::depth(render_world, view).expect("a prepass");
+        let normals = read_back::normals(render_world, view).expect("a prepass");
+        let ids = read_back::object_ids(render_world, view).expect("ids");
+        Self {
+            depth: depth.bits.iter().map(|b| f32::from_bits(*b)).collect(),
+            normals: normals.pixels,
+            ids: ids.pixels.iter().map(|p| p[0]).collect(),
+        }
+    }
+
+    fn seen(&self) -> Seen<'_> {
+        Seen {
+            depth: &self.depth,
+            normals: &self.normals,
+            ids: &self.ids,
+        }
+    }
+}
+
 /// The three kinds, one mask each: silhouettes, creases, object edges.
 pub struct Truth {
     pub width: usize,
@@ -53,42 +142,18 @@ impl Truth {
     /// The lines of a picture of this width and height, from what is seen at `fine` times
     /// both: [`FINE`] for the truth, 1 for what the same rule finds in the picture.
     pub fn new([width, height]: [usize; 2], fine: usize, seen: &Seen) -> Self {
-        let Seen {
-            depth,
-            normals,
-            ids,
-        } = *seen;
         let (w, h) = (width * fine, height * fine);
         let mut kinds = [0; 3].map(|_| vec![false; width * height]);
         let mut faint = vec![false; width * height];
         for y in 1..h - 2 {
             for x in 1..w - 2 {
-                let i = y * w + x;
                 for step in [1, w] {
-                    let j = i + step;
-                    let (a, b) = (depth[i], depth[j]);
-                    let (before, beyond) = (depth[i - step], depth[j + step]);
-                    let near = a.max(b);
-                    if near <= 0.0 {
-                        continue;
-                    }
-                    let (here, there, back, ahead) = if a >= b {
-                        (a, b, before, beyond)
-                    } else {
-                        (b, a, beyond, before)
-                    };
-                    let excess = (here - there) - (back - here).max(there - ahead).max(0.0);
+                    let border = seen.border(y * w + x, step);
                     let at = (y / fine) * width + x / fine;
-                    let silhouette = excess > 0.02 * near;
-                    kinds[0][at] |= silhouette;
-                    let (m, n) = (normals[i], normals[j]);
-                    let cosine = cosine(m, n);
-                    let both = a > 0.0 && b > 0.0;
-                    kinds[1][at] |= both && !silhouette && cosine < 30f32.to_radians().cos();
-                    kinds[2][at] |= ids[i] != ids[j];
-                    faint[at] |= excess > 0.01 * near
-                        || both && cosine < 20f32.to_radians().cos()
-                        || ids[i] != ids[j];
+                    for (kind, is_line) in kinds.iter_mut().zip(border.kinds) {
+                        kind[at] |= is_line;
+                    }
+                    faint[at] |= border.faint;
                 }
             }
         }
@@ -103,17 +168,16 @@ impl Truth {
     /// The lines of a picture of `size`, from the prepasses of a view that is `fine` times
     /// as large and draws [`ids_alone`], with prepasses of depth and normals.
     pub fn read(render_world: &World, view: Entity, size: UVec2, fine: u32) -> Self {
-        let depth = read_back::depth(render_world, view).expect("a prepass");
-        let depth: Vec<f32> = depth.bits.iter().map(|b| f32::from_bits(*b)).collect();
-        let normals = read_back::normals(render_world, view).expect("a prepass");
-        let ids = read_back::object_ids(render_world, view).expect("ids");
-        let ids: Vec<u32> = ids.pixels.iter().map(|p| p[0]).collect();
-        let seen = Seen {
-            depth: &depth,
-            normals: &normals.pixels,
-            ids: &ids,
-        };
-        Self::new(size.to_array().map(|v| v as usize), fine as usize, &seen)
+        let seen = View::read(render_world, view);
+        let size = size.to_array().map(|v| v as usize);
+        Self::new(size, fine as usize, &seen.seen())
+    }
+
+    /// The true lines themselves, from the same view of [`FINE`] times the resolution: the
+    /// borders of its pixels.
+    pub fn fine_cracks(render_world: &World, view: Entity, fine_size: UVec2) -> CrackWords {
+        let seen = View::read(render_world, view);
+        seen.seen().cracks(fine_size.to_array().map(|v| v as usize))
     }
 
     /// The pixels that have a line of any of these kinds.
@@ -178,49 +242,6 @@ pub fn mask(plain: &image::RgbaImage, lined: &image::RgbaImage) -> Vec<bool> {
         .collect()
 }
 
-/// Ends of lines: corners of pixels at which a single crack that is part of a line ends. Not at
-/// the border of the picture, and not where another line runs at most a pixel away, under whose
-/// ink the end lies.
-pub fn line_ends(cracks: &CrackWords) -> usize {
-    let [_, _, width, height] = cracks.rect.map(i64::from);
-    let is_line = |side: usize, x: i64, y: i64| {
-        let inside = (0..width).contains(&x) && (0..height).contains(&y);
-        inside && { cracks.words[(y * width + x) as usize][side] & 7 != 0 }
-    };
-    // The cracks that end at the top left corner of a pixel: above, below, left, right.
-    let at_corner = |x: i64, y: i64| {
-        [
-            (0, x - 1, y - 1),
-            (0, x - 1, y),
-            (1, x - 1, y - 1),
-            (1, x, y - 1),
-        ]
-        .into_iter()
-        .filter(|(side, x, y)| is_line(*side, *x, *y))
-    };
-    let corners_of = |(side, x, y): (usize, i64, i64)| {
-        let first = if side == 0 { (x + 1, y) } else { (x, y + 1) };
-        [first, (x + 1, y + 1)]
-    };
-    let is_end = |x: i64, y: i64| at_corner(x, y).count() == 1;
-    let is_covered = |x: i64, y: i64| {
-        // The corners of the end's own line, up to three cracks away.
-        let mut own = HashSet::from([(x, y)]);
-        for _ in 0..3 {
-            let more = own.iter().flat_map(|(x, y)| at_corner(*x, *y));
-            let more: Vec<_> = more.flat_map(corners_of).collect();
-            own.extend(more);
-        }
-        let around = (-1..=1).flat_map(|j| (-1..=1).map(move |i| (x + i, y + j)));
-        let mut others = around.filter(|corner| !own.contains(corner));
-        others.any(|(x, y)| at_corner(x, y).next().is_some())
-    };
-    let corners = (1..height).flat_map(|y| (1..width).map(move |x| (x, y)));
-    corners
-        .filter(|(x, y)| is_end(*x, *y) && !is_covered(*x, *y))
-        .count()
-}
-
 /// Whether the mask is set within `reach` pixels along both axes.
 fn near(mask: &[bool], width: usize, height: usize, at: usize, reach: i64) -> bool {
     let (x, y) = ((at % width) as i64, (at / width) as i64);
@@ -265,35 +286,7 @@ pub fn fragments(mask: &[bool], width: usize, most: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::{CrackWords, Seen, Truth, line_ends};
-
-    /// A line across the picture has no ends, a loose one two, and a branch one more.
-    #[test]
-    fn ends_of_lines_are_counted() {
-        let ends = |places: &[(usize, i64, i64)]| {
-            let mut cracks = CrackWords {
-                rect: [0, 0, 40, 36],
-                words: vec![[0; 2]; 40 * 36],
-                planes: vec![],
-                bends: vec![],
-            };
-            for (side, x, y) in places {
-                cracks.words[(y * 40 + x) as usize][*side] = 1;
-            }
-            line_ends(&cracks)
-        };
-        let across: Vec<_> = (0..40).map(|x| (1, x, 20)).collect();
-        assert_eq!(ends(&across), 0);
-        let down: Vec<_> = (10..34).map(|y| (0, 7, y)).collect();
-        assert_eq!(ends(&down), 2);
-        let branch: Vec<_> = (21..30).map(|y| (0, 7, y)).collect();
-        assert_eq!(ends(&[across.clone(), branch].concat()), 1);
-        // An end one pixel below the line is covered by it; two pixels below it is not.
-        let near: Vec<_> = (22..30).map(|y| (0, 7, y)).collect();
-        assert_eq!(ends(&[across.clone(), near].concat()), 1);
-        let apart: Vec<_> = (23..30).map(|y| (0, 7, y)).collect();
-        assert_eq!(ends(&[across, apart].concat()), 2);
-    }
+    use super::{Seen, Truth};
 
     #[test]
     fn fragments_are_parts_of_few_pixels() {

@@ -1,5 +1,7 @@
 //! Lines that crowd: how much of the picture they cover.
 
+use std::ops::Range;
+
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{ComicStyle, Outlines};
 use bevy_comics_testkit::forest;
@@ -21,10 +23,17 @@ fn crowd(step: f32) -> Small {
 fn scattered_crowd(step: f32, scatter: f32) -> Small {
     let mut small = towards_the_sky(SIZE);
     wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 900.0);
+    put_plates(&mut small, -48.0, step, scatter);
+    small
+}
+
+/// Puts a crowd of small plates, as wide as half of the picture, into it. `left`: its left border, in
+/// pixels from the middle.
+fn put_plates(small: &mut Small, left: f32, step: f32, scatter: f32) {
     let plate = Rectangle::from_length(0.5 * step);
     let [columns, rows] = [(48.0 / step) as i32, (64.0 / step) as i32];
     for (i, j) in (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))) {
-        let place = Vec2::new(i as f32 + 0.5, j as f32 + 0.5) * step - Vec2::new(48.0, 32.0);
+        let place = Vec2::new(i as f32 + 0.5, j as f32 + 0.5) * step + Vec2::new(left, -32.0);
         let moved = Vec2::new(
             0.618 * i as f32 + 0.37 * j as f32,
             0.73 * i as f32 + 0.28 * j as f32,
@@ -35,11 +44,15 @@ fn scattered_crowd(step: f32, scatter: f32) -> Small {
         let at = Transform::from_translation(place.extend(-depth)).with_rotation(turned);
         small.put(plate, unlit(Color::WHITE), at);
     }
-    small
 }
 
 /// Ink of the crowd's inner part, as a fraction of its area.
 fn coverage(small: &mut Small, width: f32, budget: f32) -> f64 {
+    coverage_of(small, 12..36, width, budget)
+}
+
+/// The same of some columns of the picture.
+fn coverage_of(small: &mut Small, columns: Range<u32>, width: f32, budget: f32) -> f64 {
     let outlines = Outlines {
         width,
         budget,
@@ -47,8 +60,9 @@ fn coverage(small: &mut Small, width: f32, budget: f32) -> f64 {
     };
     small.style(&ComicStyle::new().with(outlines));
     small.settle();
-    let inner = (14..50).flat_map(|y| (12..36).map(move |x| (x, y)));
-    black_ink(&small.picture(), inner) / (36.0 * 24.0)
+    let area = 36.0 * columns.len() as f64;
+    let inner = (14..50).flat_map(|y| columns.clone().map(move |x| (x, y)));
+    black_ink(&small.picture(), inner) / area
 }
 
 /// Truth: the mean tone of a field of crowded lines stays within the budget, for every size
@@ -78,6 +92,28 @@ fn crowded_lines_keep_their_budget() {
                     );
                 }
             }
+        }
+    }
+}
+
+/// Two crowds side by side, of small plates on the left and of large ones on the right: the lines
+/// of the small ones lose the larger part of their ink.
+#[test]
+fn small_features_lose_most() {
+    for [few, many] in [[9.0, 4.0], [9.0, 6.0], [14.0, 6.0]] {
+        let mut small = towards_the_sky(SIZE);
+        wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 900.0);
+        put_plates(&mut small, -48.0, many, 0.0);
+        put_plates(&mut small, 0.0, few, 0.0);
+        for width in [1.0, 2.0, 4.0] {
+            // The inner parts, and at least half a neighbourhood of the budget away from the other.
+            let kept = [12..36, 60..84].map(|columns| {
+                let of =
+                    |small: &mut Small, budget| coverage_of(small, columns.clone(), width, budget);
+                of(&mut small, 0.2) / of(&mut small, 1.0)
+            });
+            println!("{many} and {few} px, {width} px wide: {kept:.3?} of the ink are left");
+            assert!(kept[0] < kept[1], "{many}, {few}, {width}: {kept:?}");
         }
     }
 }

@@ -1,6 +1,7 @@
-//! Strips of frames: every capability of lines in motion. For looking at; not part of the
-//! documents.
+//! Strips of frames: every capability of lines in motion. For looking at; the documents have a
+//! sheet of cuttings from them.
 
+mod cuttings;
 mod stages;
 
 use std::path::Path;
@@ -10,9 +11,10 @@ use bevy_comics::{
     ComicStyle, Desaturation, IsoLines, LineBoil, LineColor, LineWeight, Outlines, ToneBands,
 };
 use bevy_comics_testkit::{scenes::BuiltIn, studio::Studio};
-use image::RgbaImage;
+use image::{RgbaImage, imageops};
 
 use crate::{save, sheet::grid};
+use cuttings::Sheet;
 
 const SIZE: UVec2 = UVec2::new(400, 225);
 const GAP: u32 = 4;
@@ -25,7 +27,7 @@ const EVERY: usize = 6;
 enum Motion {
     /// Around the target, by a third of a turn.
     Turntable,
-    /// Away from the target, to four times the distance.
+    /// Away from the target, to three times the distance.
     Dolly,
     /// From side to side around the target, by a tenth of a degree a frame.
     Sway,
@@ -48,7 +50,7 @@ impl Motion {
                 Transform::from_translation(target + turned).looking_at(target, Vec3::Y)
             }
             Self::Dolly => {
-                let eye = target + away * 4.0f32.powf(t);
+                let eye = target + away * 3.0f32.powf(t);
                 Transform::from_translation(eye).looking_at(target, Vec3::Y)
             }
             Self::Walk => {
@@ -69,6 +71,10 @@ struct Strip {
     outlines: Outlines,
     prepare: fn(&mut Studio),
     more: fn(ComicStyle) -> ComicStyle,
+    /// Frames between two that are shown.
+    every: usize,
+    /// By how much the middle of the frames is enlarged.
+    zoom: u32,
 }
 
 impl Strip {
@@ -80,12 +86,23 @@ impl Strip {
             outlines,
             prepare: |_| (),
             more: |style| style,
+            every: EVERY,
+            zoom: 1,
         }
     }
 
     /// On a changed scene.
     fn on(self, prepare: fn(&mut Studio)) -> Self {
         Self { prepare, ..self }
+    }
+
+    /// Frames in a row, of which the middle is enlarged: for what changes from one to the next.
+    fn closely(self) -> Self {
+        Self {
+            every: 1,
+            zoom: 5,
+            ..self
+        }
     }
 
     /// With more effects.
@@ -195,8 +212,12 @@ fn wholeness() -> Vec<Strip> {
         Strip::new("no-overshoot", Teapot, Turntable, blunt).on(stages::folds),
         Strip::new("bridge", Teapot, Turntable, bridged).on(stages::wires),
         Strip::new("no-bridge", Teapot, Turntable, thin).on(stages::wires),
-        Strip::new("persistence", Teapot, Sway, kept).on(stages::distant_folds),
-        Strip::new("no-persistence", Teapot, Sway, thin).on(stages::distant_folds),
+        Strip::new("persistence", Teapot, Sway, kept)
+            .on(stages::distant_folds)
+            .closely(),
+        Strip::new("no-persistence", Teapot, Sway, thin)
+            .on(stages::distant_folds)
+            .closely(),
         Strip::new("budget", Mountains, Dolly, plain),
         Strip::new("no-budget", Mountains, Dolly, free),
         Strip::new("forest", Teapot, Sway, plain).on(stages::trees),
@@ -245,21 +266,46 @@ fn frames(strip: &Strip) -> Vec<RgbaImage> {
         let world = studio.headless.app.world_mut();
         world.entity_mut(camera).insert(at);
         studio.headless.step(1);
-        if frame % EVERY == 0 {
-            shown.push(studio.headless.picture());
+        if frame % strip.every == 0 && shown.len() < FRAMES / EVERY {
+            shown.push(enlarged(&studio.headless.picture(), strip.zoom));
         }
     }
     shown
 }
 
-/// One picture for each capability: six frames of 36, in two rows.
-pub fn write(folder: &Path) -> Result<(), String> {
-    let all = [weights(), wholeness(), objects()];
-    for strip in all.into_iter().flatten() {
+/// The middle of a picture, its pixels `zoom` times as large.
+fn enlarged(picture: &RgbaImage, zoom: u32) -> RgbaImage {
+    let part = SIZE / zoom;
+    let [x, y] = ((SIZE - part) / 2).to_array();
+    let middle = imageops::crop_imm(picture, x, y, part.x, part.y).to_image();
+    imageops::resize(&middle, SIZE.x, SIZE.y, imageops::FilterType::Nearest)
+}
+
+/// One picture for each capability: six frames of 36, in two rows. `names`: of the strips that are
+/// drawn; none: all, and the sheet of the documents.
+pub fn write(folder: &Path, names: &[String]) -> Result<(), String> {
+    let all: Vec<Strip> = [weights(), wholeness(), objects()]
+        .into_iter()
+        .flatten()
+        .collect();
+    let known = |name: &String| all.iter().any(|strip| strip.name == *name);
+    if let Some(unknown) = names.iter().find(|name| !known(name)) {
+        let known: Vec<_> = all.iter().map(|strip| strip.name).collect();
+        return Err(format!(
+            "no strip {unknown:?}: there are {}",
+            known.join(", ")
+        ));
+    }
+    let mut sheet = Sheet::default();
+    for strip in all {
+        if !names.is_empty() && !names.iter().any(|name| name == strip.name) {
+            continue;
+        }
         let frames = frames(&strip);
         let rows: Vec<Vec<&RgbaImage>> = frames.chunks(3).map(|row| row.iter().collect()).collect();
         let out = folder.join(format!("{}.png", strip.name));
         save(&grid(&rows, SIZE, GAP), &out)?;
+        sheet.add(strip.name, &frames);
     }
-    Ok(())
+    sheet.write(folder)
 }

@@ -45,9 +45,11 @@ fn nearest(world: &mut World, to: Vec3) -> Option<Entity> {
         .map(|(entity, _)| entity)
 }
 
-/// A person behind the well of the village, seen through it.
+/// A person behind a house beside the path of the village, from the path.
 pub fn hide_a_figure(studio: &mut Studio) {
-    let at = Transform::from_xyz(0.0, 1.0, -26.0);
+    studio.vantage.eye = Vec3::new(0.0, 2.2, 7.0);
+    studio.vantage.target = Vec3::new(-8.0, 1.4, -4.0);
+    let at = Transform::from_xyz(-9.2, 1.0, -4.2);
     for part in put(studio, Specimen::Figure, at) {
         let world = studio.headless.app.world_mut();
         world.entity_mut(part).insert(XRayOutline::default());
@@ -201,10 +203,20 @@ pub fn distant_folds(studio: &mut Studio) {
     only(studio, Specimen::Organic, 0.1);
 }
 
-/// The forest, from its distance.
+/// The forest on a meadow, from its distance.
 pub fn trees(studio: &mut Studio) {
     hide(studio);
     let world = studio.headless.app.world_mut();
+    let meadow = Plane3d::default().mesh().size(4000.0, 4000.0).build();
+    let meadow = world.resource_mut::<Assets<Mesh>>().add(meadow);
+    let grass = world
+        .resource_mut::<Assets<StandardMaterial>>()
+        .add(StandardMaterial {
+            base_color: Color::srgb_u8(0x8d, 0xb2, 0x4f),
+            perceptual_roughness: 0.9,
+            ..default()
+        });
+    world.spawn((Mesh3d(meadow), MeshMaterial3d(grass)));
     let material = world
         .resource_mut::<Assets<StandardMaterial>>()
         .add(StandardMaterial {

@@ -7,6 +7,7 @@ mod page;
 mod parts;
 mod precision;
 mod scenes;
+mod steps;
 mod targets;
 
 use std::{fmt::Write, path::Path};
@@ -38,6 +39,7 @@ pub fn render(folder: &Path) -> Result<String, String> {
     precision::ranges(&mut out, folder)?;
     precision::encodings(&mut out, folder)?;
     precision::lines(&mut out, folder)?;
+    steps::steps(&mut out, folder)?;
     page::page(&mut out, folder)?;
     scenes::stability(&mut out, folder)?;
     scenes::ladder(&mut out, folder)?;

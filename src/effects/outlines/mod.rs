@@ -101,7 +101,8 @@ pub struct Outlines {
     /// Fraction of an area that lines may cover where they crowd, as on foliage or in the
     /// distance: there they are thinner, and below 0.6 physical pixels fainter. Areas have
     /// 24x32 physical pixels, and their middle counts most; a line that is alone in its area
-    /// keeps its width. Needs compute shaders. Range 0.05 to 1 (no limit), default 0.35.
+    /// keeps its width. Lines of the faithful forms have no budget. Needs compute shaders.
+    /// Range 0.05 to 1 (no limit), default 0.35.
     #[reflect(@FieldRange::linear(0.05, 1.0))]
     pub budget: f32,
     /// How lines move: as if each drawing of a film had been inked anew. Default:
