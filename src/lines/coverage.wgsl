@@ -27,18 +27,22 @@ fn disc_coverage(distance: f32, half_width: f32) -> f32 {
     return min(line_coverage(distance, half_width), steep);
 }
 
+// Where a line counts no longer as beside a segment, but as beyond its end: from the segment's
+// middle, in its lengths. The next part of the line begins within half a length.
+const BESIDE: f32 = 0.93;
+const BEYOND: f32 = 1.07;
+
 // The coverage by the straight line from `a` to `b`, with round ends; or by a dot, if both are the
-// same. Far beyond an end, as beside a dot, the line counts as if it ran across the direction to the
+// same. Beyond an end, as beside a dot, the line counts as if it ran across the direction to the
 // pixel.
 fn segment_coverage(at: vec2<f32>, a: vec2<f32>, b: vec2<f32>, half_width: f32) -> f32 {
     let along = b - a;
     let square = dot(along, along);
     let t = dot(at - a, along) / max(square, 1e-12);
     let away = at - a - clamp(t, 0.0, 1.0) * along;
-    // The next part of the line begins within half a length; few pixels are right at this limit.
-    if square > 0.0 && abs(t - 0.5) <= 0.93 {
-        return straight_coverage(length(away), half_width, line_ramp(along));
-    }
-    let covered = straight_coverage(length(away), half_width, line_ramp(away));
-    return min(covered, 2.0 * half_width);
+    let distance = length(away);
+    let beside = straight_coverage(distance, half_width, line_ramp(along));
+    let as_dot = min(straight_coverage(distance, half_width, line_ramp(away)), 2.0 * half_width);
+    let beyond = saturate((abs(t - 0.5) - BESIDE) / (BEYOND - BESIDE));
+    return mix(beside, as_dot, select(1.0, beyond, square > 0.0));
 }

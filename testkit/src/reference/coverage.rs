@@ -25,7 +25,7 @@ pub fn disc_coverage(distance: f64, half_width: f64) -> f64 {
 }
 
 /// The coverage by a segment, or by a dot. Pixels that are up to 0.43 of its length before or behind
-/// a segment count as beside it.
+/// a segment count as beside it, from 0.57 as beside a dot, and between in proportion.
 pub fn segment_coverage(at: [f64; 2], a: [f64; 2], b: [f64; 2], half_width: f64) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     let from = [at[0] - a[0], at[1] - a[1]];
@@ -34,8 +34,12 @@ pub fn segment_coverage(at: [f64; 2], a: [f64; 2], b: [f64; 2], half_width: f64)
     let nearest = t.clamp(0.0, 1.0);
     let away = [from[0] - nearest * along[0], from[1] - nearest * along[1]];
     let distance = away[0].hypot(away[1]);
-    if square > 0.0 && (-0.43..=1.43).contains(&t) {
-        return straight_coverage(distance, half_width, line_ramp(along));
+    let beside = straight_coverage(distance, half_width, line_ramp(along));
+    let dot = straight_coverage(distance, half_width, line_ramp(away)).min(2.0 * half_width);
+    if square == 0.0 {
+        return dot;
     }
-    straight_coverage(distance, half_width, line_ramp(away)).min(2.0 * half_width)
+    let beyond = (nearest - t).abs();
+    let part = ((beyond - 0.43) / (0.57 - 0.43)).clamp(0.0, 1.0);
+    (1.0 - part) * beside + part * dot
 }
