@@ -317,7 +317,7 @@ fn tones_split_without_popping() {
     };
     let style = ComicStyle::new().with(bands).with(abstraction);
     small.style(&with_map(style, hundred(false)));
-    let mut seen_at = |small: &mut Small, d: f32| {
+    let seen_at = |small: &mut Small, d: f32| {
         let away = 1.0 + 100.0 * d;
         let at = Transform::from_xyz(0.0, 0.0, -away).with_scale(Vec3::splat(away));
         small.world().entity_mut(wall).insert(at);
