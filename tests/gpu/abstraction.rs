@@ -257,7 +257,8 @@ fn objects_have_lines_of_their_own_level() {
     assert_eq!(small.errors(), 0);
 }
 
-/// One figure has one level: both halves of an object that extends in depth have lines, or none.
+/// One figure has one level: the lines of an object that extends in depth appear at the same step,
+/// between those at which they appear in its two halves.
 #[test]
 fn lines_of_an_object_follow_its_centre() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
@@ -265,21 +266,37 @@ fn lines_of_an_object_follow_its_centre() {
         clear_color: Color::WHITE.into(),
         ..default()
     });
-    // The steps are lines up to D = 0.44, which is between the middle of both cards and the far one.
-    let fronts = cards(&mut small, [30.0, 50.0], 0.042);
     let abstraction = Abstraction {
         line_threshold: 8.0,
         ..default()
     };
     let style = ComicStyle::new().with(sharp()).with(abstraction);
     small.style(&with_map(style, hundred(false)));
-    let apart = ink(&mut small);
-    assert!(apart[0] > 15 && apart[1] < apart[0] / 2, "{apart:?}");
-    let group = (OutlineGroup, Transform::IDENTITY, Visibility::default());
-    let group = small.world().spawn(group).id();
-    small.world().entity_mut(group).add_children(&fronts);
-    let whole = ink(&mut small);
-    assert!(whole[0] > 15 && whole[1] > 15, "{whole:?}");
+    // By whether it is a whole, and by the card: the least step that has a line.
+    let mut least = [[f32::INFINITY; 2]; 2];
+    for step in (5..=40).rev().map(|step| 0.002 * step as f32) {
+        for (whole, least) in least.iter_mut().enumerate() {
+            let fronts = cards(&mut small, [30.0, 50.0], step);
+            if whole == 1 {
+                let group = (OutlineGroup, Transform::IDENTITY, Visibility::default());
+                let group = small.world().spawn(group).id();
+                small.world().entity_mut(group).add_children(&fronts);
+            }
+            let found = ink(&mut small);
+            for (least, found) in least.iter_mut().zip(found) {
+                if found > 15 {
+                    *least = step;
+                }
+            }
+        }
+    }
+    println!("the least steps, apart and as a whole: {least:?}");
+    let [[near, far], whole] = least;
+    assert_eq!(whole[0], whole[1], "{least:?}");
+    assert!(
+        near < whole[0] && whole[0] < far && far.is_finite(),
+        "{least:?}"
+    );
     assert_eq!(small.errors(), 0);
 }
 
