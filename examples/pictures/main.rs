@@ -11,7 +11,7 @@
 //! cargo run --example pictures -- print [--out DIR]
 //! cargo run --example pictures -- strips [--out DIR]
 //! cargo run --example pictures -- figures [--out DIR]
-//! cargo run --example pictures -- golden [--out DIR]
+//! cargo run --example pictures -- golden [--only NAME,NAME] [--out DIR]
 //! ```
 
 mod figures;
@@ -37,7 +37,8 @@ usage: pictures contact-sheet [--size WxH] [--out FILE.png]   every scene in eve
        pictures print [--out DIR]                             the pages about print, paint and focus
        pictures strips [--out DIR]                            lines in motion, for looking at
        pictures figures [--out DIR]                           the figures of the first paper
-       pictures golden [--out DIR]                            the tests' reference pictures";
+       pictures golden [--only NAME,NAME] [--out DIR]         the tests' reference pictures: all, or
+                                                              those of these styles";
 
 fn main() -> ExitCode {
     match run() {
@@ -54,6 +55,7 @@ fn run() -> Result<(), String> {
     let mut parser = lexopt::Parser::from_env();
     let wrong = |error: lexopt::Error| format!("{error}\n{USAGE}");
     let (mut what, mut size, mut out) = (None, UVec2::new(480, 270), None);
+    let mut only = String::new();
     while let Some(argument) = parser.next().map_err(wrong)? {
         match argument {
             Value(value) if what.is_none() => what = Some(value.to_string_lossy().into_owned()),
@@ -65,6 +67,7 @@ fn run() -> Result<(), String> {
                     .filter(|size| size.min_element() >= 16 && size.max_element() <= 4096)
                     .ok_or_else(|| format!("--size {text}: possible are 16x16 to 4096x4096"))?;
             }
+            Long("only") => only = parser.value().and_then(|v| v.string()).map_err(wrong)?,
             Long("out") => out = Some(PathBuf::from(parser.value().map_err(wrong)?)),
             Short('h') | Long("help") => {
                 println!("{USAGE}");
@@ -86,7 +89,7 @@ fn run() -> Result<(), String> {
         Some("print") => print::write(&or("target/print")),
         Some("strips") => strips::write(&or("target/strips")),
         Some("figures") => figures::write(&or("target/figures")),
-        Some("golden") => sheet::golden(&or("tests/golden")),
+        Some("golden") => sheet::golden(&or("tests/golden"), &only),
         Some(other) => Err(format!("no pictures called {other:?}\n{USAGE}")),
         None => Err(USAGE.into()),
     }
