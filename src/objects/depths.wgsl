@@ -13,8 +13,8 @@ const HYSTERESIS_FRACTION: f32 = 0.15;
 
 // Objects that extend over less of D than this are one place; from the second number on, every
 // pixel is its own.
-const WHOLE: f32 = 0.3;
-const DIVIDED: f32 = 0.6;
+const WHOLE: f32 = 0.25;
+const DIVIDED: f32 = 0.4;
 
 // A box in world space, along its axes.
 struct Bounds {
