@@ -102,8 +102,8 @@ pub use lines::{
 #[cfg(feature = "objects")]
 pub use objects::{
     ATTRIBUTE_MESH_SECTION, DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle,
-    ObjectScreen, OutlineGroup, OutlineKinds, OutlineStyle, SelectionOutline, ViewLineWidths,
-    ViewObjectIds, XRayOutline, object_id,
+    ObjectAbstraction, ObjectScreen, OutlineGroup, OutlineKinds, OutlineStyle, SelectionOutline,
+    ViewLineWidths, ViewObjectIds, XRayOutline, object_id,
 };
 pub use plugin::ComicsPlugin;
 pub use schedule::ComicsSystems;
@@ -174,7 +174,7 @@ pub mod prelude {
     };
     #[cfg(feature = "objects")]
     pub use crate::{
-        DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle, ObjectScreen, OutlineGroup,
-        OutlineKinds, OutlineStyle, SelectionOutline, XRayOutline,
+        DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle, ObjectAbstraction, ObjectScreen,
+        OutlineGroup, OutlineKinds, OutlineStyle, SelectionOutline, XRayOutline,
     };
 }

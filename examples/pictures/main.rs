@@ -11,7 +11,7 @@
 //! cargo run --example pictures -- print [--out DIR]
 //! cargo run --example pictures -- strips [NAME...] [--out DIR]
 //! cargo run --example pictures -- figures [--out DIR]
-//! cargo run --example pictures -- golden [--out DIR]
+//! cargo run --example pictures -- golden [--only NAME,NAME] [--out DIR]
 //! ```
 
 mod figures;
@@ -37,7 +37,8 @@ usage: pictures contact-sheet [--size WxH] [--out FILE.png]   every scene in eve
        pictures print [--out DIR]                             the pages about print, paint and focus
        pictures strips [NAME...] [--out DIR]                  lines in motion, all or some
        pictures figures [--out DIR]                           the figures of the first paper
-       pictures golden [--out DIR]                            the tests' reference pictures";
+       pictures golden [--only NAME,NAME] [--out DIR]         the tests' reference pictures: all, or
+                                                              those of these styles";
 
 fn main() -> ExitCode {
     match run() {
@@ -55,6 +56,7 @@ fn run() -> Result<(), String> {
     let wrong = |error: lexopt::Error| format!("{error}\n{USAGE}");
     let (mut what, mut size, mut out) = (None, UVec2::new(480, 270), None);
     let mut names = Vec::new();
+    let mut only = String::new();
     while let Some(argument) = parser.next().map_err(wrong)? {
         match argument {
             Value(value) if what.is_none() => what = Some(value.to_string_lossy().into_owned()),
@@ -69,6 +71,7 @@ fn run() -> Result<(), String> {
                     .filter(|size| size.min_element() >= 16 && size.max_element() <= 4096)
                     .ok_or_else(|| format!("--size {text}: possible are 16x16 to 4096x4096"))?;
             }
+            Long("only") => only = parser.value().and_then(|v| v.string()).map_err(wrong)?,
             Long("out") => out = Some(PathBuf::from(parser.value().map_err(wrong)?)),
             Short('h') | Long("help") => {
                 println!("{USAGE}");
@@ -90,7 +93,7 @@ fn run() -> Result<(), String> {
         Some("print") => print::write(&or("target/print")),
         Some("strips") => strips::write(&or("target/strips"), &names),
         Some("figures") => figures::write(&or("target/figures")),
-        Some("golden") => sheet::golden(&or("tests/golden")),
+        Some("golden") => sheet::golden(&or("tests/golden"), &only),
         Some(other) => Err(format!("no pictures called {other:?}\n{USAGE}")),
         None => Err(USAGE.into()),
     }

@@ -10,6 +10,7 @@ use bevy_comics_testkit::{
         PERIODS, SHAPES, color_error, grey_inks, ideal, in_phase, largest_jump, moire,
         moire_of_inks, tone_error,
     },
+    strokes::{largest_tone_step, mean_tone_error},
 };
 
 use crate::{Run, table::Table};
@@ -17,7 +18,7 @@ use crate::{Run, table::Table};
 pub fn measure(run: &Run) -> Result<(), String> {
     run.save("page_screens", &screens(run))?;
     run.save("page_colors", &colors())?;
-    run.save("page_errors", &errors())?;
+    run.save("page_errors", &errors(run))?;
     run.save("page_harmonies", &harmonies())?;
     run.say("painted");
     let mut table = Table::new(&["effect", "texels", "most", "bytes"]);
@@ -116,7 +117,8 @@ fn beats(black_generation: f32) -> f64 {
 }
 
 /// Errors of single effects with their limits. The names are those of the times.
-fn errors() -> Table {
+fn errors(run: &Run) -> Table {
+    let samples = if run.quick { 1024 } else { 16384 };
     let largest =
         |errors: &mut dyn Iterator<Item = f64>| errors.fold(0.0, |a, b| f64::max(a, b.abs()));
     let kuwahara = largest(&mut [2, 4, 6].into_iter().map(kuwahara_error));
@@ -137,6 +139,12 @@ fn errors() -> Table {
     push("paint", position, edges(PaintForm::Box), 0.1);
     let along = "paint; strokes along edges";
     push(along, position, edges(PaintForm::Anisotropic), 0.1);
+    let tones = "mean tone; 10 tones; 9 angles; 8 zooms";
+    push("hatching", tones, mean_tone_error(0.0, samples), 0.01);
+    let random = "the same with breaks";
+    push("hatching", random, mean_tone_error(0.6, samples), 0.03);
+    let steps = "change of a tone by a step of the dial of 1/200; bands";
+    push("abstraction", steps, largest_tone_step(), 0.02);
     push("focus; blur", colors, bled(FocusStyle::Blur), 0.0);
     push("focus; offset", colors, bled(FocusStyle::Offset), 0.0);
     push("focus; paint", colors, bled(FocusStyle::Paint), 0.0);

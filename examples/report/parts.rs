@@ -136,6 +136,13 @@ fn page() -> Vec<(String, Wear)> {
         ),
         ("print offset", none.clone().with(PrintOffset::default())),
         ("hatching", none.clone().with(Hatching::default())),
+        (
+            "hatching; calm",
+            none.clone().with(Hatching {
+                calm: 1.0,
+                ..Hatching::default()
+            }),
+        ),
         ("color harmony", none.clone().with(ColorHarmony::default())),
         ("abstraction", none.clone().with(Abstraction::default())),
         ("planes", none.clone().with(Planes::default())),

@@ -11,7 +11,7 @@ const RECIPE: &str = include_str!("fused.wgsl");
 pub(crate) const FILE_KEYS: [&str; 4] = ["version", "name", "partial", "depth_map"];
 
 /// The modules of this crate that an effect may import.
-const MODULES: [&str; 19] = [
+const MODULES: [&str; 20] = [
     "bevy_comics::depth::map",
     "bevy_comics::depth::normal",
     "bevy_comics::depth::raw",
@@ -20,6 +20,7 @@ const MODULES: [&str; 19] = [
     "bevy_comics::effect::blue_noise",
     "bevy_comics::effect::color",
     "bevy_comics::effect::means",
+    "bevy_comics::effect::nested",
     "bevy_comics::effect::noise",
     "bevy_comics::effect::numbered",
     "bevy_comics::effect::picture",

@@ -84,6 +84,7 @@ impl FusedPlugin {
         load_shader_library!(app, "blue_noise.wgsl");
         load_shader_library!(app, "color.wgsl");
         load_shader_library!(app, "means.wgsl");
+        load_shader_library!(app, "nested.wgsl");
         load_shader_library!(app, "numbered.wgsl");
         load_shader_library!(app, "noise.wgsl");
         load_shader_library!(app, "picture.wgsl");

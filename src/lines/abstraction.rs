@@ -16,8 +16,8 @@ pub struct LineAbstraction {
     pub threshold: f32,
     /// Factor of the opacity of creases at full abstraction.
     pub crease_opacity: f32,
-    /// Creases of an object follow its centre, see
-    /// [`Needs::OBJECT_DEPTHS`](crate::Needs::OBJECT_DEPTHS), which the effect must need.
+    /// Lines of an object follow its centre and its [`ObjectAbstraction`](crate::ObjectAbstraction),
+    /// see [`Needs::OBJECT_DEPTHS`](crate::Needs::OBJECT_DEPTHS), which the effect must need.
     pub by_objects: bool,
 }
 

@@ -13,23 +13,25 @@ struct LineAbstraction {
     // Factor of the response that a line needs at full abstraction, 1 or more.
     threshold: f32,
     crease_opacity: f32,
-    // 1: creases follow the centre of their object; 0: their own place.
+    // 1: lines follow the centre of their object and its dial; 0: their own place.
     by_objects: f32,
     // 1: near and far are exchanged.
     flip: f32,
     unused: f32,
 }
 
-fn abstraction_at(s: LineAbstraction, d: f32) -> f32 {
-    return graded(s.near, s.far, s.exponent, mix(d, 1.0 - d, s.flip));
+// The abstraction at a depth of the map. `dial`: of the object, a factor and what is added.
+fn abstraction_at(s: LineAbstraction, d: f32, dial: vec2<f32>) -> f32 {
+    let by_distance = graded(s.near, s.far, s.exponent, mix(d, 1.0 - d, s.flip));
+    return clamp(dial.x * by_distance + dial.y, 0.0, 1.0);
 }
 
-// The factor of the responses of edges at a depth of the map.
-fn abstract_response(s: LineAbstraction, d: f32) -> f32 {
-    return 1.0 / mix(1.0, s.threshold, abstraction_at(s, d));
+// The factor of the responses of edges.
+fn abstract_response(s: LineAbstraction, d: f32, dial: vec2<f32>) -> f32 {
+    return 1.0 / mix(1.0, s.threshold, abstraction_at(s, d, dial));
 }
 
 // The factor of the opacity of creases.
-fn abstract_crease(s: LineAbstraction, d: f32) -> f32 {
-    return mix(1.0, s.crease_opacity, abstraction_at(s, d));
+fn abstract_crease(s: LineAbstraction, d: f32, dial: vec2<f32>) -> f32 {
+    return mix(1.0, s.crease_opacity, abstraction_at(s, d, dial));
 }

@@ -17,6 +17,9 @@
 #endif
 #import bevy_comics::lines::rows::Borders
 #import bevy_comics::objects::kinds_of
+#ifdef OBJECT_DEPTHS
+#import bevy_comics::objects::{object_depth, object_dial}
+#endif
 #ifdef OBJECT_STYLES
 #import bevy_comics::objects::style_of
 #endif
@@ -235,16 +238,29 @@ fn packed_of(found: Found, s: Lines, at: Borders) -> vec4<u32> {
     return select(vec4(0u), packed, found.kinds != vec4(0u));
 }
 
+#ifdef ABSTRACT_LINES
+// The factor of the response of an edge of a surface: its raw depth, and the id of its object.
+fn response_factor(raw: f32, object: u32) -> f32 {
+    let a = line_pass.abstraction;
+    let d = depth_map(depth_frame(), raw).x;
+#ifdef OBJECT_DEPTHS
+    let place = object_depth(object);
+    return abstract_response(a, mix(d, place.x, place.y), object_dial(object));
+#else
+    return abstract_response(a, d, vec2(1.0, 0.0));
+#endif
+}
+#endif
+
 // Factors of the responses of edges before these are limited to 1, by the nearer side. 1 without
 // Abstraction.
 fn response_factors(at: Borders) -> vec4<f32> {
 #ifdef ABSTRACT_LINES
-    let frame = depth_frame();
     let near = max(at.here, at.there);
-    let a = line_pass.abstraction;
+    let object = select(at.object_there, at.object_here, at.here >= at.there);
     return vec4(
-        abstract_response(a, depth_map(frame, near.x).x), abstract_response(a, depth_map(frame, near.y).x),
-        abstract_response(a, depth_map(frame, near.z).x), abstract_response(a, depth_map(frame, near.w).x),
+        response_factor(near.x, object.x), response_factor(near.y, object.y),
+        response_factor(near.z, object.z), response_factor(near.w, object.w),
     );
 #else
     return vec4(1.0);

@@ -100,6 +100,7 @@ impl LineKey {
                 (self.marks, "MARKS"),
                 (self.multisampled_picture, "MULTISAMPLED_PICTURE"),
                 (self.abstracts, "ABSTRACT_LINES"),
+                (self.abstracts_objects, "OBJECT_DEPTHS"),
                 (self.fading, "FADING"),
                 (self.visible_range, "VISIBLE_RANGE"),
             ]))

@@ -156,7 +156,7 @@ impl Inputs<'_> {
             let styles = self.styles.buffer().ok_or(NOT_READY)?;
             entries.push(entry(6, styles.as_entire_binding()));
         }
-        if key.weight.by_objects {
+        if key.reads_places() {
             let places = sources.places.ok_or(NOT_READY)?;
             entries.push(entry(13, places.as_entire_binding()));
         }

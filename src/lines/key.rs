@@ -65,6 +65,8 @@ pub(crate) struct LineKey {
     pub fading: bool,
     /// Edges must be stronger where the picture is abstract.
     pub abstracts: bool,
+    /// They are as abstract as their object.
+    pub abstracts_objects: bool,
     pub visible_range: bool,
     /// Whether there are silhouettes and creases of the faithful form.
     pub faithful: [bool; 2],
@@ -141,6 +143,7 @@ impl LineKey {
             object_styles: request.object_styles,
             fading: lines.fades(),
             abstracts: request.abstraction.is_some_and(|a| a.threshold > 1.0),
+            abstracts_objects: request.abstracts_objects() && !by_fragments,
             visible_range: request.visible_range,
             faithful: forms.map(|form| form == Some(Form::Faithful)),
             links: lines.links() && !by_fragments,
@@ -189,6 +192,7 @@ impl LineKey {
             object_styles: false,
             fading: false,
             abstracts: false,
+            abstracts_objects: false,
             visible_range: self.jumps && self.visible_range,
             links: false,
             rims: false,
@@ -205,7 +209,7 @@ impl LineKey {
     /// The part that finding depends on.
     pub fn for_find(self) -> Self {
         Self {
-            ids: self.object_edges || self.object_styles || self.sections,
+            ids: self.object_edges || self.object_styles || self.sections || self.abstracts_objects,
             links: self.settles(),
             rims: false,
             bridged: false,
@@ -243,6 +247,7 @@ impl LineKey {
             map_flags: 0,
             by_fragments: false,
             abstracts: false,
+            abstracts_objects: false,
             ledges: false,
             rims: false,
             bridged: false,
@@ -273,6 +278,11 @@ impl LineKey {
             visible_range: reads_map && self.visible_range,
             ..Self::default()
         }
+    }
+
+    /// Whether the places of objects in the depth map are read, of a key for a pass.
+    pub fn reads_places(&self) -> bool {
+        self.weight.by_objects || self.abstracts_objects
     }
 
     /// Whether completing cracks reads depth, of a key for that pass.

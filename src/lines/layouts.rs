@@ -42,7 +42,7 @@ impl LineKey {
         if self.ids {
             entries.push(seen(ids_entry(false)));
         }
-        if self.weight.by_objects {
+        if self.reads_places() {
             entries.push(seen(places_entry()));
         }
         if self.marks {

@@ -10,7 +10,7 @@
 #import bevy_comics::depth::view::depth_borders
 #endif
 #ifdef OBJECT_DEPTHS
-#import bevy_comics::objects::{object_depth, texel_object}
+#import bevy_comics::objects::{object_depth, object_dial, texel_object}
 #endif
 
 #ifdef DEPTH
@@ -43,6 +43,10 @@ fn owner_weights(p: LinePlanes, owner: vec2<i32>) -> vec3<f32> {
 #ifdef ABSTRACT_CREASES
 // The factor of the opacity of a crease.
 fn crease_left(a: LineAbstraction, owner: vec2<i32>) -> f32 {
-    return abstract_crease(a, owner_depth(owner, a.by_objects));
+    var dial = vec2(1.0, 0.0);
+#ifdef OBJECT_DEPTHS
+    dial = mix(dial, object_dial(texel_object(owner, 0).x), a.by_objects);
+#endif
+    return abstract_crease(a, owner_depth(owner, a.by_objects), dial);
 }
 #endif

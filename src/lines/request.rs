@@ -118,6 +118,12 @@ impl LineRequest {
         planes || self.abstraction.is_some_and(|a| a.by_objects)
     }
 
+    /// Whether edges must be stronger where their object is abstract.
+    pub fn abstracts_objects(&self) -> bool {
+        let by_objects = |a: LineAbstraction| a.threshold > 1.0 && a.by_objects;
+        self.ids && self.abstraction.is_some_and(by_objects)
+    }
+
     /// Whether the pixels that own lines are drawn, for the colour of lines.
     pub fn needs_owners(&self) -> bool {
         let own_colors = |planes: LinePlanes| planes.has_colors();

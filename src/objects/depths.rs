@@ -8,12 +8,13 @@ use bevy::{
     ecs::{
         component::Component,
         entity::Entity,
+        hierarchy::Children,
         query::{With, Without},
         resource::Resource,
         schedule::IntoScheduleConfigs,
         system::{Commands, Query, Res, ResMut},
     },
-    math::{Mat3, Vec3},
+    math::{Mat3, Vec2, Vec3},
     mesh::Mesh3d,
     platform::collections::HashMap,
     render::{
@@ -36,6 +37,7 @@ use bevy::{
 
 use super::{
     DepthPlaces, ObjectDepthRequest, ObjectEye,
+    abstraction::{BY_DISTANCE, ObjectAbstraction, dials},
     groups::{ObjectGroups, extract_object_groups},
     ids::object_id,
 };
@@ -44,8 +46,8 @@ use crate::{
     schedule::{ComicsSystems, PrepareComics},
 };
 
-/// Bytes of the table of places: eight for every id.
-const TABLE_SIZE: u64 = 65536 * 8;
+/// Bytes of the table of places: sixteen for every id.
+const TABLE_SIZE: u64 = 65536 * 16;
 
 /// `Bounds` of `depths.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
@@ -54,6 +56,8 @@ struct BoundsUniform {
     id: u32,
     half: Vec3,
     unused: u32,
+    dial: Vec2,
+    unused_pair: Vec2,
 }
 
 /// A box in world space, along its axes.
@@ -91,6 +95,8 @@ impl Bounds {
 #[derive(Resource, Default)]
 struct ObjectBounds {
     by_id: HashMap<u16, Bounds>,
+    /// The dials of abstraction of the objects that have their own.
+    dials: HashMap<u16, Vec2>,
     buffer: StorageBuffer<Vec<BoundsUniform>>,
 }
 
@@ -98,12 +104,18 @@ fn extract_bounds(
     views: Query<(), With<ObjectDepthRequest>>,
     groups: Res<ObjectGroups>,
     meshes: Extract<Query<(Entity, &Aabb, &GlobalTransform), With<Mesh3d>>>,
+    (dialled, children): (
+        Extract<Query<(Entity, &ObjectAbstraction)>>,
+        Extract<Query<&Children>>,
+    ),
     mut bounds: ResMut<ObjectBounds>,
 ) {
     bounds.by_id.clear();
+    bounds.dials.clear();
     if views.is_empty() {
         return;
     }
+    let dials = dials(&dialled, &children);
     for (mesh, aabb, at) in &meshes {
         if let Some(found) = Bounds::of(aabb, at) {
             let id = object_id(groups.object(mesh));
@@ -112,6 +124,9 @@ fn extract_bounds(
                 .get(&id)
                 .map_or(found, |known| known.with(found));
             bounds.by_id.insert(id, known);
+            if let Some(dial) = dials.get(&mesh) {
+                bounds.dials.insert(id, *dial);
+            }
         }
     }
 }
@@ -208,11 +223,13 @@ fn prepare_places(
     if views.is_empty() {
         return;
     }
+    let dials = &bounds.dials;
     let found = bounds.by_id.iter().map(|(id, bounds)| BoundsUniform {
         centre: bounds.low.midpoint(bounds.high),
         id: u32::from(*id),
         half: 0.5 * (bounds.high - bounds.low),
-        unused: 0,
+        dial: dials.get(id).copied().unwrap_or(BY_DISTANCE),
+        ..BoundsUniform::default()
     });
     let mut found: Vec<_> = found.collect();
     // A buffer is never empty. The id 0 is left out.

@@ -13,8 +13,8 @@ const HYSTERESIS_FRACTION: f32 = 0.15;
 
 // Objects that extend over less of D than this are one place; from the second number on, every
 // pixel is its own.
-const WHOLE: f32 = 0.15;
-const DIVIDED: f32 = 0.3;
+const WHOLE: f32 = 0.25;
+const DIVIDED: f32 = 0.4;
 
 // A box in world space, along its axes.
 struct Bounds {
@@ -22,6 +22,9 @@ struct Bounds {
     id: u32,
     half: vec3<f32>,
     unused: u32,
+    // Its abstraction: a factor of that by distance, and what is added.
+    dial: vec2<f32>,
+    unused_pair: vec2<f32>,
 }
 
 struct Eye {
@@ -39,8 +42,9 @@ struct Eye {
 
 @group(0) @binding(0) var<uniform> eye: Eye;
 @group(0) @binding(1) var<storage, read> objects: array<Bounds>;
-// By id: D of the centre, plus 1; and how much of each pixel follows it. 0: unknown.
-@group(0) @binding(2) var<storage, read_write> depths: array<vec2<f32>>;
+// By id: D of the centre, plus 1; how much of each pixel follows it; and the dial of abstraction.
+// 0: unknown.
+@group(0) @binding(2) var<storage, read_write> depths: array<vec4<f32>>;
 
 // Raw depth at a distance along the view's axis; 1 behind the eye.
 fn raw_depth_at(axis: vec2<f32>, orthographic: bool, distance: f32) -> f32 {
@@ -86,5 +90,5 @@ fn place(@builtin(global_invocation_id) id: vec3<u32>) {
     let before = depths[at].x;
     let is_new = before == 0.0 || eye.forgets != 0u;
     let d = select(kept_place(before - 1.0, found.x), found.x, is_new);
-    depths[at] = vec2(d + 1.0, found.y);
+    depths[at] = vec4(d + 1.0, found.y, bounds.dial);
 }

@@ -3,6 +3,8 @@
 //! meshes that take part in lines and effects.
 
 #[cfg(feature = "objects")]
+mod abstraction;
+#[cfg(feature = "objects")]
 mod anchors;
 #[cfg(feature = "objects")]
 mod depths;
@@ -32,6 +34,8 @@ mod widths;
 
 #[cfg(feature = "objects")]
 mod components;
+#[cfg(feature = "objects")]
+pub use abstraction::ObjectAbstraction;
 #[cfg(feature = "objects")]
 pub use anchors::ObjectScreen;
 #[cfg(feature = "objects")]
@@ -210,6 +214,7 @@ impl Plugin for ObjectsPlugin {
                 .register_type::<NoOutlines>()
                 .register_type::<NoStyle>()
                 .register_type::<ObjectScreen>()
+                .register_type::<ObjectAbstraction>()
                 .register_type::<LineWidths>()
                 .init_resource::<line_widths::WideMeshes>()
                 .add_systems(

@@ -84,13 +84,19 @@ fn style_of(slot: u32) -> ObjectStyle {
 #endif
 
 #ifdef OBJECT_DEPTHS
-@group(0) @binding(13) var<storage, read> object_depths: array<vec2<f32>>;
+@group(0) @binding(13) var<storage, read> object_depths: array<vec4<f32>>;
 
 // Where the object with this id is in the depth map: D of its centre, and how much its pixels
 // follow it, 0 to 1: 0 for what extends far in depth, and for unknown objects.
 fn object_depth(id: u32) -> vec2<f32> {
     let place = object_depths[min(id, arrayLength(&object_depths) - 1u)];
     return vec2(place.x - 1.0, select(0.0, place.y, place.x > 0.0));
+}
+
+// The abstraction of the object with this id: a factor of that by distance, and what is added.
+fn object_dial(id: u32) -> vec2<f32> {
+    let place = object_depths[min(id, arrayLength(&object_depths) - 1u)];
+    return select(vec2(1.0, 0.0), place.zw, place.x > 0.0);
 }
 
 // D at a sample of a pixel of the target, and where that shows an object which is treated as a whole,

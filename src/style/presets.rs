@@ -136,6 +136,8 @@ presets! {
     ENGRAVING: "engraving";
     /// A study in graphite: soft strokes in two directions on grained paper.
     PENCIL_STUDY: "pencil-study";
+    /// Charcoal: broad soft strokes and smudged shadows on rough grey paper.
+    CHARCOAL: "charcoal";
     /// A woodcut: few broad cuts and solid blacks, printed with one block.
     WOODCUT: "woodcut";
     /// Near things keep their colours by day; the distance is a deep blue night.

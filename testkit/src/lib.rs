@@ -21,6 +21,7 @@ pub mod specimens;
 #[path = "../../src/timing/stopwatch.rs"]
 mod stopwatch;
 pub mod straight_edges;
+pub mod strokes;
 pub mod studio;
 pub mod truth;
 // The order of the crate's grains, included because it is private there.

@@ -154,13 +154,14 @@ const OUTLINE_PRESETS: [Preset; 4] = [
 
 /// The presets that differ by distance, harmonize colours or hatch; last, so that the clock of the
 /// others is the same without them.
-const LATER_PRESETS: [Preset; 6] = [
+const LATER_PRESETS: [Preset; 7] = [
     presets::STORYBOOK,
     presets::COPPER_AND_TEAL,
     presets::ENGRAVING,
     presets::PENCIL_STUDY,
     presets::WOODCUT,
     presets::HARD_BOILED,
+    presets::CHARCOAL,
 ];
 
 /// The presets that have a golden picture in a scene: all those that print or paint. The mountains

@@ -2,7 +2,8 @@
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
-    Abstraction, ComicStyle, DepthMap, DepthMapping, Outlines, Silhouettes, ToneBands,
+    Abstraction, ComicStyle, DepthMap, DepthMapping, ObjectAbstraction, OutlineGroup, Outlines,
+    PlaneUnit, Silhouettes, ToneBands,
 };
 use bevy_comics_testkit::{studio::with_map, work::along_cracks};
 
@@ -21,21 +22,23 @@ fn hundred(flip: bool) -> DepthMap {
 }
 
 /// A card over the left half of the view with a shade of its own, and one over the right half, with
-/// another card in front of each by this fraction of the distance.
-fn cards(small: &mut Small, distances: [f32; 2], step: f32) {
+/// another card in front of each by this fraction of the distance: those are returned.
+fn cards(small: &mut Small, distances: [f32; 2], step: f32) -> [Entity; 2] {
     small.clear();
     small.insert(Transform::IDENTITY);
-    for (side, distance) in [-1.0, 1.0].into_iter().zip(distances) {
-        for (height, away) in [(0.6, distance * (1.0 + step)), (0.2, distance)] {
+    [0, 1].map(|card| {
+        let (side, distance) = ([-1.0, 1.0][card], distances[card]);
+        let [_, front] = [(0.6, distance * (1.0 + step)), (0.2, distance)].map(|(height, away)| {
             let at = Transform::from_xyz(side * 0.22 * away, 0.0, -away);
             let material = StandardMaterial {
                 base_color: Color::srgb(0.9, 0.5, 0.3),
                 unlit: true,
                 ..default()
             };
-            small.put(Rectangle::new(0.2 * away, height * away), material, at);
-        }
-    }
+            small.put(Rectangle::new(0.2 * away, height * away), material, at)
+        });
+        front
+    })
 }
 
 /// Codes at the middles of both cards.
@@ -122,15 +125,9 @@ fn ink(small: &mut Small) -> [usize; 2] {
     count
 }
 
-/// A step that is a line near by is none far away, and a large step is one at every distance.
-#[test]
-fn far_edges_must_be_stronger() {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
-    small.insert(Camera {
-        clear_color: Color::WHITE.into(),
-        ..default()
-    });
-    let outlines = Outlines {
+/// Silhouettes that are lines or not, without a transition.
+fn sharp() -> Outlines {
+    Outlines {
         creases: None,
         objects: None,
         silhouettes: Some(Silhouettes {
@@ -139,7 +136,18 @@ fn far_edges_must_be_stronger() {
         }),
         continuity: 0.0,
         ..along_cracks()
-    };
+    }
+}
+
+/// A step that is a line near by is none far away, and a large step is one at every distance.
+#[test]
+fn far_edges_must_be_stronger() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    small.insert(Camera {
+        clear_color: Color::WHITE.into(),
+        ..default()
+    });
+    let outlines = sharp();
     // At the threshold of 0.02 the response is 1, and above, the square of the ratio.
     for (step, stays) in [(0.03, false), (0.3, true)] {
         cards(&mut small, [1.2, 75.0], step);
@@ -160,5 +168,204 @@ fn far_edges_must_be_stronger() {
             assert!(with[1] < without[1] / 2, "{step}: {with:?} of {without:?}");
         }
     }
+    assert_eq!(small.errors(), 0);
+}
+
+/// Objects with an abstraction of their own have its colours, at every distance.
+#[test]
+fn objects_have_colors_of_their_own_level() {
+    let offset = |offset| ObjectAbstraction {
+        offset,
+        ..default()
+    };
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let mut small = Small::new(UVec2::new(96, 64), msaa);
+        let abstraction = Abstraction {
+            saturation: 0.0,
+            band_splits: 0.0,
+            ..default()
+        };
+        let fronts = cards(&mut small, [1.001, 100.9], 0.0001);
+        let plain = spread(seen(&mut small)[0]);
+        let levels = |small: &mut Small, [near, far]: [ObjectAbstraction; 2]| {
+            small.world().entity_mut(fronts[0]).insert(near);
+            small.world().entity_mut(fronts[1]).insert(far);
+            seen(small).map(spread)
+        };
+        let style = |by| {
+            let style = ComicStyle::new().with(Abstraction { by, ..abstraction });
+            with_map(style, hundred(false))
+        };
+        small.style(&style(PlaneUnit::Object));
+        let fixed = ObjectAbstraction::fixed;
+        for reversed in [[fixed(1.0), fixed(0.0)], [offset(1.0), offset(-1.0)]] {
+            let found = levels(&mut small, reversed);
+            let right = found[0] <= 1 && found[1].abs_diff(plain) <= 1;
+            assert!(right, "{msaa:?}: {found:?} of {plain}");
+        }
+        let found = levels(&mut small, [fixed(0.5), offset(-0.5)]);
+        let half = found.map(|found| f32::from(found) / f32::from(plain));
+        assert!(
+            half.iter().all(|part| (0.3..0.75).contains(part)),
+            "{half:?}"
+        );
+        // Inherited from a parent, except for those with their own.
+        for front in fronts {
+            small
+                .world()
+                .entity_mut(front)
+                .remove::<ObjectAbstraction>();
+        }
+        let parent = (fixed(1.0), Transform::IDENTITY, Visibility::default());
+        let parent = small.world().spawn(parent).id();
+        small.world().entity_mut(parent).add_children(&fronts);
+        small.world().entity_mut(fronts[1]).insert(fixed(0.0));
+        let found = seen(&mut small).map(spread);
+        assert!(found[0] <= 1 && found[1].abs_diff(plain) <= 1, "{found:?}");
+        // Where every pixel is on its own, there are no objects.
+        small.style(&style(PlaneUnit::Pixel));
+        let found = seen(&mut small).map(spread);
+        assert!(found[1] <= 1 && found[0].abs_diff(plain) <= 1, "{found:?}");
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+/// The lines of an object follow its level, not its place.
+#[test]
+fn objects_have_lines_of_their_own_level() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    small.insert(Camera {
+        clear_color: Color::WHITE.into(),
+        ..default()
+    });
+    let fronts = cards(&mut small, [1.2, 75.0], 0.03);
+    let style = ComicStyle::new().with(sharp());
+    small.style(&with_map(style.clone(), hundred(false)));
+    let without = ink(&mut small);
+    let abstraction = Abstraction {
+        line_threshold: 8.0,
+        ..default()
+    };
+    small.style(&with_map(style.with(abstraction), hundred(false)));
+    for (card, level) in [1.0, 0.0].into_iter().enumerate() {
+        let own = ObjectAbstraction::fixed(level);
+        small.world().entity_mut(fronts[card]).insert(own);
+    }
+    let with = ink(&mut small);
+    assert_eq!(with[1], without[1], "all detail far away");
+    assert!(with[0] < without[0] / 2, "{with:?} of {without:?}");
+    assert_eq!(small.errors(), 0);
+}
+
+/// One figure has one level: the lines of an object that extends in depth appear at the same step,
+/// between those at which they appear in its two halves.
+#[test]
+fn lines_of_an_object_follow_its_centre() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    small.insert(Camera {
+        clear_color: Color::WHITE.into(),
+        ..default()
+    });
+    let abstraction = Abstraction {
+        line_threshold: 8.0,
+        ..default()
+    };
+    let style = ComicStyle::new().with(sharp()).with(abstraction);
+    small.style(&with_map(style, hundred(false)));
+    // By whether it is a whole, and by the card: the least step that has a line.
+    let mut least = [[f32::INFINITY; 2]; 2];
+    for step in (5..=40).rev().map(|step| 0.002 * step as f32) {
+        for (whole, least) in least.iter_mut().enumerate() {
+            let fronts = cards(&mut small, [30.0, 50.0], step);
+            if whole == 1 {
+                let group = (OutlineGroup, Transform::IDENTITY, Visibility::default());
+                let group = small.world().spawn(group).id();
+                small.world().entity_mut(group).add_children(&fronts);
+            }
+            let found = ink(&mut small);
+            for (least, found) in least.iter_mut().zip(found) {
+                if found > 15 {
+                    *least = step;
+                }
+            }
+        }
+    }
+    println!("the least steps, apart and as a whole: {least:?}");
+    let [[near, far], whole] = least;
+    assert_eq!(whole[0], whole[1], "{least:?}");
+    assert!(
+        near < whole[0] && whole[0] < far && far.is_finite(),
+        "{least:?}"
+    );
+    assert_eq!(small.errors(), 0);
+}
+
+/// Lightness as `color.wgsl` has it: the square root of the luminance.
+fn lightness(code: u8) -> f32 {
+    Color::srgb_u8(code, code, code).to_linear().red.sqrt()
+}
+
+/// Truth: while the camera moves, tones split and never pop. A wall with a gradient keeps its size
+/// on the screen, so that only the dial changes it.
+#[test]
+fn tones_split_without_popping() {
+    const STEPS: usize = 150;
+    const LEVELS: u32 = 2;
+    const SPLITS: f32 = 3.0;
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    small.clear();
+    small.insert(Transform::IDENTITY);
+    let colors: Vec<_> = [1.0, 0.02, 0.02, 1.0].map(|y: f32| [y, y, y, 1.0]).to_vec();
+    let mesh =
+        Mesh::from(Rectangle::new(4.0, 2.0)).with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors);
+    let material = StandardMaterial {
+        unlit: true,
+        ..default()
+    };
+    let wall = small.put(mesh, material, Transform::IDENTITY);
+    let bands = ToneBands {
+        levels: LEVELS,
+        ..default()
+    };
+    let abstraction = Abstraction {
+        band_splits: SPLITS,
+        saturation: 1.0,
+        ..default()
+    };
+    let style = ComicStyle::new().with(bands).with(abstraction);
+    small.style(&with_map(style, hundred(false)));
+    let seen_at = |small: &mut Small, d: f32| {
+        let away = 1.0 + 100.0 * d;
+        let at = Transform::from_xyz(0.0, 0.0, -away).with_scale(Vec3::splat(away));
+        small.world().entity_mut(wall).insert(at);
+        let picture = small.settle().picture();
+        picture
+            .pixels()
+            .map(|p| lightness(p.0[0]))
+            .collect::<Vec<f32>>()
+    };
+    let mut before = seen_at(&mut small, 1.0);
+    let first = before.clone();
+    let mut worst = (0.0f32, 0.0f32);
+    for step in (0..STEPS).rev() {
+        let d = step as f32 / STEPS as f32;
+        let now = seen_at(&mut small, d);
+        // The middles of a band and of its halves differ by a quarter of the band; smoothstep has a
+        // slope of 1.5; and the place of an object near the eye follows it by up to 15 % more.
+        let coarse = 1.0 / (LEVELS as f32 * (SPLITS * (1.0 - d)).floor().exp2());
+        let bound = 1.15 * 1.5 * SPLITS / STEPS as f32 * 0.25 * coarse.max(1.0 / 8.0) * 2.0;
+        for (a, b) in before.iter().zip(&now) {
+            let code = 1.2 / 255.0 / a.min(*b).max(0.05);
+            let moved = (a - b).abs();
+            worst.0 = worst.0.max(moved);
+            worst.1 = worst.1.max((moved - code) / bound);
+        }
+        before = now;
+    }
+    let changed = first.iter().zip(&before).map(|(a, b)| (a - b).abs());
+    let changed = changed.fold(0.0, f32::max);
+    println!("a step changes up to {worst:?} of {changed}");
+    assert!(worst.1 <= 1.0, "{worst:?}");
+    assert!(changed > 0.1, "{changed}");
     assert_eq!(small.errors(), 0);
 }

@@ -49,7 +49,8 @@ const MOST_FAR_OFF: f64 = 0.001;
 
 /// Styles whose references are of one processor so far. Where another one rounds the scene
 /// differently, edges of dots, strokes and tone bands move by a pixel.
-const ONE_PROCESSOR: [&str; 18] = [
+const ONE_PROCESSOR: [&str; 19] = [
+    "charcoal",
     "copper-and-teal",
     "engraving",
     "focus",

@@ -261,6 +261,81 @@ fn strokes_travel_with_their_object() {
     assert_eq!(small.errors(), 0);
 }
 
+/// Truth: calm strokes are those of others on large surfaces, up to their edges.
+#[test]
+fn calm_changes_nothing_on_large_surfaces() {
+    let mut small = empty();
+    let material = unlit(Color::linear_rgb(0.3, 0.3, 0.3));
+    for (degrees, distance) in [(0.0, 7.0), (60.0, 31.0), (75.0, 50.0)] {
+        small.clear();
+        flat(&mut small, 0.3, tilted(degrees, distance));
+        // A box whose sides are some strokes wide, before the wall.
+        let turn = Quat::from_euler(EulerRot::YXZ, 0.6, 0.4, 0.2);
+        let at = Transform::from_xyz(0.1, 0.0, -4.0).with_rotation(turn);
+        small.put(Cuboid::from_length(0.9), material.clone(), at);
+        let [loud, calm] = [0.0, 1.0].map(|calm| covers(&mut small, Hatching { calm, ..plain() }));
+        let apart = loud
+            .iter()
+            .zip(&calm)
+            .filter(|(a, b)| (*a - *b).abs() > 0.02);
+        let apart = apart.count();
+        println!("{degrees} degrees: {apart} of {} pixels differ", loud.len());
+        assert!(apart < loud.len() / 200, "{degrees} degrees: {apart}");
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// Truth: where everything is smaller than the distance of two strokes, the picture is more even, and
+/// its mean stays.
+#[test]
+fn what_is_small_is_more_even() {
+    let mut small = empty();
+    let material = StandardMaterial {
+        double_sided: true,
+        cull_mode: None,
+        ..unlit(Color::linear_rgb(0.3, 0.3, 0.3))
+    };
+    flat(&mut small, 0.3, Transform::from_xyz(0.0, 0.0, -14.0));
+    // Cards of about three pixels.
+    let mut place = |i: i32, j: i32| {
+        let random = |k: i32| (f64::from(i * 37 + j * 101 + k * 53) * 0.618_034).fract() as f32;
+        let turn = Quat::from_euler(
+            EulerRot::YXZ,
+            3.0 * random(1) - 1.5,
+            3.0 * random(2) - 1.5,
+            3.0 * random(3),
+        );
+        let away = 5.0 + 4.0 * random(4);
+        let pixel = 2.0 * (0.5 * FOV).tan() / SIZE.y as f32;
+        let [x, y] = [i, j].map(|at| at as f32 * 2.5 * pixel * away);
+        let at = Transform::from_xyz(x, y, -away).with_rotation(turn);
+        small.put(
+            Rectangle::new(4.0 * pixel * away, 4.0 * pixel * away),
+            material.clone(),
+            at,
+        );
+    };
+    for i in -28..=28 {
+        for j in -20..=20 {
+            place(i, j);
+        }
+    }
+    let [loud, calm] = [0.0, 1.0].map(|calm| covers(&mut small, Hatching { calm, ..plain() }));
+    let spread = |covers: &[f64]| {
+        let mean = mean(covers);
+        let squares: f64 = covers.iter().map(|c| (c - mean).powi(2)).sum();
+        (mean, (squares / covers.len() as f64).sqrt())
+    };
+    let [(loud_mean, loud), (calm_mean, calm)] = [&loud, &calm].map(|covers| spread(covers));
+    println!("mean {loud_mean:.3} and {calm_mean:.3}, spread {loud:.3} and {calm:.3}");
+    assert!(
+        (loud_mean - calm_mean).abs() < 0.03,
+        "{loud_mean}, {calm_mean}"
+    );
+    assert!(calm < loud, "{loud}, {calm}");
+    assert_eq!(small.errors(), 0);
+}
+
 /// The sky has no strokes on things, and has them on a page; light walls have none, black ones are
 /// solid; values out of range are clamped.
 #[test]
@@ -297,6 +372,7 @@ fn extreme_hatching_is_finite() {
             pressure: x,
             rate: x,
             near: x,
+            calm: x,
             ..default()
         };
         let found = covers(&mut small, s);

@@ -121,8 +121,8 @@ const PRINTS: [(&str, &str); 5] = [
     ("halftone of four inks; whole dots", "Euclidean"),
     ("focus; dots", "Euclidean"),
 ];
-/// Several effects, or one that has targets elsewhere.
-const WITHOUT_TARGET: [&str; 2] = ["halftone; print offset and paper", "hatching"];
+/// Several effects.
+const WITHOUT_TARGET: [&str; 1] = ["halftone; print offset and paper"];
 
 /// An error, and its limit.
 fn verdict(value: f64, limit: f64) -> &'static str {

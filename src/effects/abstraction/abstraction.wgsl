@@ -7,7 +7,8 @@
 #import bevy_comics::effect::color::luminance
 #import bevy_comics::effect::pixel::Pixel
 #ifdef OBJECT_DEPTHS
-#import bevy_comics::objects::whole_depth
+#import bevy_comics::depth::view::depth_pixel
+#import bevy_comics::objects::{object_depth, object_dial, texel_object}
 #endif
 
 struct Abstraction {
@@ -23,16 +24,25 @@ struct Abstraction {
     saturation: f32,
 }
 
+// The abstraction at a depth of the map, of an object whose dial is a factor and what is added.
+fn dialled(s: Abstraction, d: f32, dial: vec2<f32>) -> f32 {
+    return clamp(dial.x * graded(s.near, s.far, s.exponent, d) + dial.y, 0.0, 1.0);
+}
+
 // The abstraction of a pixel, 0 to 1. In multisampled views, the object is that of the first
 // sample.
 fn abstraction_of(s: Abstraction, p: Pixel) -> f32 {
     var d = select(p.depth.x, p.depth.y, view.flip != 0u);
+    var dial = vec2(1.0, 0.0);
 #ifdef ABSTRACTION_OBJECTS
 #ifdef OBJECT_DEPTHS
-    d = whole_depth(vec2<i32>(floor(p.position)), 0, d);
+    let object = texel_object(depth_pixel(vec2<i32>(floor(p.position))), 0).x;
+    let place = object_depth(object);
+    d = mix(d, place.x, place.y);
+    dial = object_dial(object);
 #endif
 #endif
-    return graded(s.near, s.far, s.exponent, select(d, 1.0 - d, view.flip != 0u));
+    return dialled(s, select(d, 1.0 - d, view.flip != 0u), dial);
 }
 
 // The colour with part of its saturation: mixed with the grey of its luminance.

@@ -33,8 +33,9 @@ pub struct Abstraction {
     /// is as it is near. Range 0.25 to 4, default 1.
     #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
     pub exponent: f32,
-    /// Whether an object as a whole is as abstract as its centre. Default: [`PlaneUnit::Object`].
-    /// The thresholds of lines always follow pixels.
+    /// Whether an object as a whole is as abstract as its centre, with all of its tones, strokes and
+    /// lines, or as its [`ObjectAbstraction`](crate::ObjectAbstraction) says. Default:
+    /// [`PlaneUnit::Object`]. Without compute shaders, lines follow pixels.
     pub by: PlaneUnit,
     /// How often the bands of [`ToneBands`](crate::ToneBands) split from full abstraction, where
     /// there are `levels` of them, to none, in the corrected form: at 1, there are twice as many. Range 0 to 3, default 1.

@@ -4,7 +4,7 @@
 // Planes are nested: those of one level are every second one of the next.
 
 #import bevy_comics::effect::color::lightness
-#import bevy_comics::effect::noise::{hash, lattice}
+#import bevy_comics::effect::nested::{Level, level_of, mark_of, noise_along, place_of, stroke_factor, stroke_start}
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::lines::edge::line_coverage
 #ifdef HATCHING_ON_THINGS
@@ -53,6 +53,8 @@ struct Hatching {
     far: f32,
     seed: u32,
     ground: u32,
+    // How far strokes turn into a plain tone where they would not continue.
+    calm: f32,
 }
 
 // A place on a surface, in the frame that the strokes are fixed to.
@@ -64,74 +66,6 @@ struct Surface {
     across: vec3<f32>,
     down: vec3<f32>,
     normal: vec3<f32>,
-}
-
-// A level of nested marks along a coordinate.
-struct Level {
-    exponent: i32,
-    // Distance of the old marks, 2^exponent, in units of the coordinate.
-    size: f32,
-    // How far the marks between them have grown, 0 to 1.
-    grown: f32,
-}
-
-// The level at which old marks are at least `least` apart, and less than twice as much.
-fn level_of(least: f32) -> Level {
-    let bits = bitcast<u32>(clamp(least, 1e-30, 1e30));
-    let exponent = i32(bits >> 23u) - 126;
-    let mantissa = bitcast<f32>((bits & 0x7fffffu) | 0x3f800000u);
-    return Level(exponent, bitcast<f32>(u32(exponent + 127) << 23u), 2.0 / mantissa - 1.0);
-}
-
-// A coordinate in units of a level: the number of an old mark near the eye, and the place from it.
-// `from_eye`: the coordinate from the eye on; `eye`: that of the eye.
-fn place_of(from_eye: f32, eye: f32, size: f32) -> vec2<f32> {
-    let whole = round(clamp(eye / size, -1e9, 1e9));
-    return vec2(whole, from_eye / size + (eye / size - whole));
-}
-
-// A random number of the mark with a number at a level, the same at every level that has the mark.
-fn mark_of(number: i32, exponent: i32, seed: u32) -> u32 {
-    if number == 0 {
-        return hash(seed);
-    }
-    let twos = countTrailingZeros(number);
-    return hash(bitcast<u32>(number >> u32(twos)) ^ hash(bitcast<u32>(exponent + twos) ^ hash(seed)));
-}
-
-// Smooth noise from -1 to 1 along a line, at two levels that are mixed: it does not jump where the
-// level changes. `at`: number and place, see place_of.
-fn noise_along(at: vec2<f32>, grown: f32, period: f32, seed: u32) -> f32 {
-    let coarse = smooth_at((at.x + at.y) / period, seed);
-    let fine = smooth_at((at.x + at.y) * 2.0 / period, seed);
-    return mix(coarse, fine, grown);
-}
-
-fn smooth_at(x: f32, seed: u32) -> f32 {
-    let cell = floor(x);
-    let f = x - cell;
-    let i = i32(clamp(cell, -2e9, 2e9));
-    return mix(lattice(vec2(i, 0), seed), lattice(vec2(i + 1, 0), seed), f * f * (3.0 - 2.0 * f));
-}
-
-// Where a stroke of a line begins, as a fraction of its length: at every level at the same place.
-fn stroke_start(mark: u32, exponent: i32) -> f32 {
-    let turn = u32(-exponent) & 31u;
-    let turned = (mark << turn) | (mark >> ((32u - turn) & 31u));
-    return f32(turned >> 8u) / 16777216.0;
-}
-
-// The part of a stroke's length in which it becomes thin at its end.
-const TAPER: f32 = 0.15;
-
-// Factor of a line's width by breaks between strokes; its mean is 1. `at`: place along the line
-// in lengths of strokes, from the first one's beginning; `grown`: of the breaks in the middle.
-fn stroke_factor(at: f32, grown: f32, breaks: f32) -> f32 {
-    let taper = TAPER / (1.0 + grown);
-    let from_break = abs(at - round(at));
-    let old = 1.0 - breaks * (1.0 - smoothstep(0.0, taper, from_break));
-    let fresh = 1.0 - breaks * grown * (1.0 - smoothstep(0.0, taper, 0.5 - from_break));
-    return old * fresh / (1.0 - TAPER * breaks);
 }
 
 // A line near a pixel. `line`: its distance in pixels, and half its width.
@@ -302,6 +236,18 @@ fn in_frame(on: Surface, centre: vec3<f32>, rotation: vec4<f32>) -> Surface {
 }
 #endif
 
+// Whether a surface continues at a neighbour, from 1 to 0. `gap`: how far the neighbour is from where
+// the surface would be, as a fraction of the largest distance of two strokes.
+fn continues(gap: f32) -> f32 {
+    return 1.0 - smoothstep(0.15, 0.5, gap);
+}
+
+// How much of the strokes is left, from how many of four neighbours continue the surface. At the edge
+// of a large surface, two or three do.
+fn strokes_left(calm: f32, neighbours: f32) -> f32 {
+    return 1.0 - calm * (1.0 - smoothstep(0.75, 2.0, neighbours));
+}
+
 // The page at a place in pixels. Its unit is the distance of lines.
 fn page_at(place: vec2<f32>, spacing: f32) -> Surface {
     var on: Surface;
@@ -314,8 +260,35 @@ fn page_at(place: vec2<f32>, spacing: f32) -> Surface {
 }
 
 #ifdef HATCHING_ON_THINGS
-// The surface at a pixel, in world axes or in those of its object; its normal is zero where there
-// is none.
+#ifdef HATCHING_CALM
+// Whether the surface at a pixel, in world axes, continues at a neighbour.
+fn continues_at(s: Hatching, p: Pixel, on: Surface, offset: vec2<i32>) -> f32 {
+    let corner = view.viewport.xy;
+    let pixel = clamp(vec2<i32>(floor(p.position)) + offset, corner, corner + view.viewport.zw - 1);
+    let at = depth_pixel(pixel);
+    let d = depth_texel(at, 0);
+    if is_background(raw_depth(view.raw, vec2<u32>(at), d)) {
+        return 0.0;
+    }
+    let texel = (vec2<f32>(at - corner) + 0.5) / view.depth_scale;
+    let clip = texel / vec2<f32>(view.viewport.zw) * vec2(2.0, -2.0) + vec2(-1.0, 1.0);
+    let h = s.relative_from_clip * vec4(clip, d, 1.0);
+    let away = texel - (p.inside + 0.5);
+    let expected = on.place + on.across * away.x + on.down * away.y;
+    let distance = 2.0 * s.spacing * max(length(on.across), length(on.down));
+    return continues(length(h.xyz / h.w - expected) / max(distance, 1e-25));
+}
+
+// How much of the strokes is left at a pixel.
+fn calmed(s: Hatching, p: Pixel, on: Surface) -> f32 {
+    let r = i32(clamp(round(s.spacing), 2.0, 16.0));
+    let beside = continues_at(s, p, on, vec2(r, 0)) + continues_at(s, p, on, vec2(-r, 0));
+    let above = continues_at(s, p, on, vec2(0, r)) + continues_at(s, p, on, vec2(0, -r));
+    return strokes_left(s.calm, beside + above);
+}
+#endif
+
+// The surface at a pixel, in world axes; its normal is zero where there is none.
 fn seen_surface(s: Hatching, p: Pixel) -> Surface {
     let pixel = vec2<i32>(floor(p.position));
     let at = depth_pixel(pixel);
@@ -334,11 +307,16 @@ fn seen_surface(s: Hatching, p: Pixel) -> Surface {
     let away = p.inside + 0.5 - texel;
     on.place += on.across * away.x + on.down * away.y;
     on.eye = s.eye;
+    return on;
+}
+
+// The same in the axes of the object there, if strokes follow it.
+fn anchored(on: Surface, pixel: vec2<i32>) -> Surface {
 #ifdef OBJECT_ANCHORS
     let object = load_object(pixel);
     let style = style_of(object.y);
     if style.anchor_size > 0.0 {
-        on = in_frame(on, style.anchor_centre, style.anchor_rotation);
+        return in_frame(on, style.anchor_centre, style.anchor_rotation);
     }
 #endif
     return on;
@@ -367,7 +345,14 @@ fn hatching(settings: Hatching, p: Pixel) -> Pixel {
     var tone = 0.0;
     if is_there {
         tone = hatching_tone(s, light) * mix(s.near, s.far, p.depth.x) * p.prints.x;
+#ifdef HATCHING_ON_THINGS
+        cover = hatched(s, anchored(on, vec2<i32>(floor(p.position))), tone);
+#ifdef HATCHING_CALM
+        cover = mix(tone, cover, calmed(s, p, on));
+#endif
+#else
         cover = hatched(s, on, tone);
+#endif
     }
     var ground = s.paper;
     if s.ground != GROUND_PAPER {

@@ -77,7 +77,7 @@ pub enum PlaneBorders {
 #[non_exhaustive]
 pub enum PlaneUnit {
     /// An object: no figure is cut in two. It is where its centre is. What extends over more than
-    /// 0.3 of the depth map, as the ground does, is divided by pixels; below 0.15, not at all; and
+    /// 0.4 of the depth map, as the ground does, is divided by pixels; below 0.25, not at all; and
     /// between the two, in part. An object changes its plane only when its centre has moved by
     /// 0.03 of the depth map, or 15 % of its place in it if that is less. The meshes of an `OutlineGroup` are one object. Object ids are drawn;
     /// without the crate's feature `objects`, as [`PlaneUnit::Pixel`].

@@ -7,6 +7,11 @@ pub fn graded([near, far]: [f64; 2], exponent: f64, d: f64) -> f64 {
     mix(near, far, d.clamp(0.0, 1.0).powf(exponent))
 }
 
+/// The abstraction of an object by distance, with a dial of its own: a factor and what is added.
+pub fn dialled(by_distance: f64, [factor, added]: [f64; 2]) -> f64 {
+    (factor * by_distance + added).clamp(0.0, 1.0)
+}
+
 /// The colour at an abstraction `a`. `saturation`: its factor at full abstraction.
 pub fn color(linear: Rgb, saturation: f64, a: f64) -> Rgb {
     let grey = luminance(linear);

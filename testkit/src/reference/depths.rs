@@ -20,5 +20,5 @@ pub fn object_place(
         frame.depth_map(raw)[0]
     };
     let extent = at(distance + reach) - at(distance - reach);
-    [at(distance), 1.0 - smoothstep(0.15, 0.3, extent)]
+    [at(distance), 1.0 - smoothstep(0.25, 0.4, extent)]
 }

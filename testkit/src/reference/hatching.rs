@@ -9,7 +9,7 @@ use super::{
     Rgb, color,
     edge::line_coverage,
     mix,
-    noise::{hash, wave},
+    nested::{level_of, mark_of, noise_along, stroke_factor, stroke_start},
     smoothstep,
 };
 
@@ -73,42 +73,14 @@ impl Surface {
     }
 }
 
-/// The exponent of a level, and how far its new marks have grown.
-fn level_of(least: f64) -> (i32, f64) {
-    let exponent = least.log2().floor() as i32 + 1;
-    (exponent, f64::from(exponent).exp2() / least - 1.0)
-}
-
-/// A random number of a mark.
-fn mark_of(number: i64, exponent: i32, seed: u32) -> u32 {
-    let (mut odd, mut exponent) = (number, exponent);
-    if odd == 0 {
-        return hash(seed);
-    }
-    while odd % 2 == 0 {
-        odd /= 2;
-        exponent += 1;
-    }
-    hash(odd as u32 ^ hash(exponent as u32 ^ hash(seed)))
-}
-
-/// Noise along a line. The WGSL has it in one dimension: a row of the lattice.
-fn noise_along(at: f64, grown: f64, period: f64, seed: u32) -> f64 {
-    let of = |x: f64| wave([x, 0.0], seed);
-    mix(of(at / period), of(2.0 * at / period), grown)
-}
-
-/// Where a stroke begins, as a fraction of its length.
-fn stroke_start(mark: u32, exponent: i32) -> f64 {
-    f64::from(mark.rotate_left((-exponent).rem_euclid(32) as u32) >> 8) / f64::from(1 << 24)
-}
-
-/// Factor of the width of a line; its mean is 1.
-pub fn stroke_factor(at: f64, grown: f64, breaks: f64) -> f64 {
-    let taper = 0.15 / (1.0 + grown);
-    let thin = |by: f64| 1.0 - smoothstep(0.0, taper, by);
-    let away = (at - at.round()).abs();
-    (1.0 - breaks * thin(away)) * (1.0 - breaks * grown * thin(0.5 - away)) / (1.0 - 0.15 * breaks)
+/// How much of the strokes is left where `gaps` are between a surface and its four neighbours, as
+/// fractions of the largest distance of two strokes.
+pub fn strokes_left(calm: f64, gaps: [f64; 4]) -> f64 {
+    let neighbours: f64 = gaps
+        .iter()
+        .map(|gap| 1.0 - smoothstep(0.15, 0.5, *gap))
+        .sum();
+    mix(1.0, smoothstep(0.75, 2.0, neighbours), calm)
 }
 
 /// Hatching at a scale factor, of a drawing.

@@ -40,6 +40,7 @@ pub mod map;
 pub mod means;
 pub mod memory;
 pub mod near_middle_far;
+pub mod nested;
 pub mod noise;
 pub mod normal;
 pub mod overshoot;

@@ -8,24 +8,33 @@ use super::*;
 fn colors_and_lines_are_their_twins() {
     let ends = (0.0f32..=1.0, 0.0f32..=1.0, 0.25f32..=4.0, depth_pair());
     let dials = (0.0f32..=1.0, 1.0f32..=8.0, 0.0f32..=1.0, any::<bool>());
-    let row = (ends, dials, (component(), component(), component())).prop_map(
-        |((near, far, exponent, (d, _)), (saturation, threshold, crease, flip), (r, g, b))| {
-            let flip = f32::from(u8::from(flip));
-            [
-                near, far, exponent, d, saturation, threshold, crease, flip, r, g, b,
-            ]
-        },
-    );
+    let of_object = (any::<bool>(), -1.0f32..=2.0);
+    let row = (
+        ends,
+        dials,
+        (component(), component(), component()),
+        of_object,
+    )
+        .prop_map(
+            |(ends, (saturation, threshold, crease, flip), (r, g, b), (fixed, added))| {
+                let (near, far, exponent, (d, _)) = ends;
+                let [flip, factor] = [flip, !fixed].map(|on| f32::from(u8::from(on)));
+                [
+                    near, far, exponent, d, saturation, threshold, crease, flip, r, g, b, factor,
+                    added,
+                ]
+            },
+        );
     for_batches(row, |rows| {
         let found = gpu().evaluate(
-            "#import bevy_comics::depth::map::graded
-             #import bevy_comics::effects::abstraction::{Abstraction, abstract_color}
+            "#import bevy_comics::effects::abstraction::{Abstraction, abstract_color, dialled}
              #import bevy_comics::lines::abstraction::{LineAbstraction, abstract_crease, abstract_response}",
             "let s = Abstraction(i(0u), i(1u), i(2u), 0.0, 0.0, i(4u));
              let l = LineAbstraction(i(0u), i(1u), i(2u), i(5u), i(6u), 0.0, i(7u), 0.0);
-             let a = graded(s.near, s.far, s.exponent, i(3u));
+             let dial = vec2(i(11u), i(12u));
+             let a = dialled(s, i(3u), dial);
              let c = abstract_color(s, vec3(i(8u), i(9u), i(10u)), a);
-             return vec4(a, abstract_response(l, i(3u)), abstract_crease(l, i(3u)), c.x);",
+             return vec4(a, abstract_response(l, i(3u), dial), abstract_crease(l, i(3u), dial), c.x);",
             rows,
         );
         for (row, found) in rows.iter().zip(found) {
@@ -41,10 +50,14 @@ fn colors_and_lines_are_their_twins() {
                 r,
                 g,
                 b,
+                factor,
+                added,
             ] = row.map(f64::from);
-            let a = abstraction::graded([near, far], exponent, d);
+            let dial = [factor, added];
+            let at = |d| abstraction::dialled(abstraction::graded([near, far], exponent, d), dial);
+            let a = at(d);
             let seen = if flip == 1.0 { 1.0 - d } else { d };
-            let of_lines = abstraction::graded([near, far], exponent, seen);
+            let of_lines = at(seen);
             let [response, opacity] = abstraction::lines([threshold, crease], of_lines);
             let red = abstraction::color([r, g, b], saturation, a)[0];
             // A power of a number below 1: the built-in logarithm has an error of 2e-5.

@@ -2,12 +2,15 @@
 
 use bevy::math::{DMat4, DVec2, DVec3, Vec3};
 use bevy_comics::{Hatching, HatchingGround};
-use bevy_comics_testkit::reference::hatching::{Hatch, Surface, stroke_factor};
+use bevy_comics_testkit::reference::{
+    hatching::{Hatch, Surface, strokes_left},
+    nested::stroke_factor,
+};
 
 use super::*;
 
 const HATCHING: &str = "#import bevy_comics::effects::hatching::{
-        Hatching, Surface, ground_color, hatched, hatching_tone, page_at, stroke_factor, surface_at,
+        Hatching, Surface, continues, ground_color, hatched, hatching_tone, page_at, strokes_left, surface_at,
     }";
 
 /// A view of 90 degrees, 96 x 64 pixels, from the origin.
@@ -220,6 +223,28 @@ fn tones_and_grounds_are_those_of_the_twin() {
                 let away = (f64::from(*found) - want).abs();
                 assert!(away < 1e-4 * want.max(1.0), "{row:?}: {found}, {want}");
             }
+        }
+    });
+}
+
+#[test]
+fn strokes_are_left_as_by_the_twin() {
+    let row = (0.0f32..=1.0, vec(0.0f32..=0.7, 4))
+        .prop_map(|(calm, gaps)| [calm, gaps[0], gaps[1], gaps[2], gaps[3]]);
+    for_batches(row, |rows| {
+        let results = gpu().evaluate(
+            HATCHING,
+            "let sum = continues(i(1u)) + continues(i(2u)) + continues(i(3u)) + continues(i(4u));
+             return vec4(strokes_left(i(0u), sum), 0.0, 0.0, 0.0);",
+            rows,
+        );
+        for (row, found) in rows.iter().zip(results) {
+            let gaps = [1, 2, 3, 4].map(|k| f64::from(row[k]));
+            let want = strokes_left(f64::from(row[0]), gaps);
+            assert!(
+                (f64::from(found[0]) - want).abs() < 1e-5,
+                "{row:?}: {found:?}, {want}"
+            );
         }
     });
 }

@@ -1,0 +1,108 @@
+//! Objects that are more or less abstract than their distance makes them.
+
+use bevy::{
+    ecs::{
+        component::Component,
+        entity::{Entity, EntityHashMap},
+        hierarchy::Children,
+        reflect::ReflectComponent,
+        system::Query,
+    },
+    math::Vec2,
+    reflect::{Reflect, std_traits::ReflectDefault},
+};
+
+use super::components::inherit;
+use crate::settings::{bounded, bounded_option};
+
+/// Makes this object more or less abstract than the camera's [`Abstraction`](crate::Abstraction)
+/// makes it by distance: a hero with all details among simple figures, or a crowd that is simple
+/// near by too.
+///
+/// Bands, strokes, saturation and lines follow it. It needs an `Abstraction` with
+/// [`PlaneUnit::Object`](crate::PlaneUnit::Object), which is the default. The meshes of an
+/// [`OutlineGroup`](crate::OutlineGroup) are one object: if several of them have this component,
+/// any of them counts.
+#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq)]
+pub struct ObjectAbstraction {
+    /// The abstraction of the object at every distance: 0 is all detail, 1 is none. `None`: that
+    /// of its distance. Range 0 to 1, default `None`.
+    pub level: Option<f32>,
+    /// Added to it; the sum is limited to 0 and 1. Range -1 to 1, default 0.
+    pub offset: f32,
+    /// Applies to all descendants as well, except for those with an `ObjectAbstraction` of their
+    /// own. Default: `false`.
+    pub inherit: bool,
+}
+
+impl ObjectAbstraction {
+    /// For an object and its descendants: the abstraction is `level` at every distance.
+    pub const fn fixed(level: f32) -> Self {
+        Self {
+            level: Some(level),
+            offset: 0.0,
+            inherit: true,
+        }
+    }
+
+    /// The settings that are used, in their documented ranges.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        Self {
+            level: bounded_option(self.level, 0.0, 0.0, 1.0),
+            offset: bounded(self.offset, 0.0, -1.0, 1.0),
+            ..self
+        }
+    }
+
+    /// The factor of the abstraction by distance, and what is added to it.
+    fn dial(self) -> Vec2 {
+        let s = self.sanitized();
+        match s.level {
+            Some(level) => Vec2::new(0.0, level + s.offset),
+            None => Vec2::new(1.0, s.offset),
+        }
+    }
+}
+
+/// The dial of an object without an [`ObjectAbstraction`].
+pub(super) const BY_DISTANCE: Vec2 = Vec2::X;
+
+/// The dials of the meshes that have one of their own.
+pub(super) fn dials(
+    set: &Query<(Entity, &ObjectAbstraction)>,
+    children: &Query<&Children>,
+) -> EntityHashMap<Vec2> {
+    let mut found = EntityHashMap::default();
+    for (entity, abstraction) in set {
+        let own = |child| set.contains(child);
+        let said = (entity, abstraction.dial());
+        inherit(&mut found, said, abstraction.inherit, children, own);
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dials_are_within_their_ranges() {
+        let of = |level, offset| {
+            ObjectAbstraction {
+                level,
+                offset,
+                inherit: false,
+            }
+            .dial()
+        };
+        assert_eq!(ObjectAbstraction::default().dial(), BY_DISTANCE);
+        assert_eq!(of(None, 0.25), Vec2::new(1.0, 0.25));
+        assert_eq!(of(Some(0.5), -0.25), Vec2::new(0.0, 0.25));
+        assert_eq!(of(Some(7.0), -9.0), Vec2::new(0.0, 0.0));
+        assert_eq!(of(Some(f32::NAN), f32::NAN), Vec2::new(0.0, 0.0));
+        assert_eq!(of(None, f32::INFINITY).x, 1.0);
+        assert!(of(None, f32::INFINITY).y.abs() <= 1.0);
+    }
+}

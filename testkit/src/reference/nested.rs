@@ -1,0 +1,45 @@
+//! Twin of `effect/nested.wgsl`.
+
+use super::{
+    mix,
+    noise::{hash, wave},
+    smoothstep,
+};
+
+/// The exponent of a level, and how far its new marks have grown.
+pub fn level_of(least: f64) -> (i32, f64) {
+    let exponent = least.log2().floor() as i32 + 1;
+    (exponent, f64::from(exponent).exp2() / least - 1.0)
+}
+
+/// A random number of a mark.
+pub fn mark_of(number: i64, exponent: i32, seed: u32) -> u32 {
+    let (mut odd, mut exponent) = (number, exponent);
+    if odd == 0 {
+        return hash(seed);
+    }
+    while odd % 2 == 0 {
+        odd /= 2;
+        exponent += 1;
+    }
+    hash(odd as u32 ^ hash(exponent as u32 ^ hash(seed)))
+}
+
+/// Noise along a line. The WGSL has it in one dimension: a row of the lattice.
+pub fn noise_along(at: f64, grown: f64, period: f64, seed: u32) -> f64 {
+    let of = |x: f64| wave([x, 0.0], seed);
+    mix(of(at / period), of(2.0 * at / period), grown)
+}
+
+/// Where a stroke begins, as a fraction of its length.
+pub fn stroke_start(mark: u32, exponent: i32) -> f64 {
+    f64::from(mark.rotate_left((-exponent).rem_euclid(32) as u32) >> 8) / f64::from(1 << 24)
+}
+
+/// Factor of the width of a line; its mean is 1.
+pub fn stroke_factor(at: f64, grown: f64, breaks: f64) -> f64 {
+    let taper = 0.15 / (1.0 + grown);
+    let thin = |by: f64| 1.0 - smoothstep(0.0, taper, by);
+    let away = (at - at.round()).abs();
+    (1.0 - breaks * thin(away)) * (1.0 - breaks * grown * thin(0.5 - away)) / (1.0 - 0.15 * breaks)
+}
