@@ -28,6 +28,7 @@ mod scores;
 mod stability;
 mod straight;
 mod table;
+mod toon;
 
 use std::{
     io::Write,
@@ -88,12 +89,12 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure one section only: ranges, encodings, lines, models,
                    dashes, memory, straight, page, stability, ladder, parts,
-                   growth, peers or flicker
+                   toon, growth, peers or flicker
   --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
-const SECTIONS: [(&str, Section); 14] = [
+const SECTIONS: [(&str, Section); 15] = [
     ("ranges", ranges::measure),
     ("encodings", encodings::measure),
     ("lines", lines::measure),
@@ -105,6 +106,7 @@ const SECTIONS: [(&str, Section); 14] = [
     ("stability", stability::measure),
     ("ladder", ladder::measure),
     ("parts", parts::measure),
+    ("toon", toon::measure),
     ("growth", growth::measure),
     ("peers", peers::measure),
     ("flicker", flicker::measure),

@@ -158,6 +158,7 @@ fn clustered_light(id: u32, is_spot: bool, s: Surface, settings: CartoonLight) -
     var arriving: Arriving;
     arriving.to_light = normalize(offset);
     arriving.to_highlight = arriving.to_light;
+    arriving.per_distance = inverseSqrt(max(distance_squared, 1e-8));
     // Luminous intensity. Times the falloff, it is the illuminance of a surface
     // that faces the light.
     var color = (*light).color_inverse_square_range.rgb;
@@ -223,6 +224,8 @@ fn rect_light_at(id: u32, s: Surface, settings: CartoonLight) -> Arriving {
     arriving.shine = 1.0;
     arriving.to_light = light_vector / fraction;
     let reflected = reflect(-s.to_eye, s.normal);
-    arriving.to_highlight = normalize(mirrored(rect, at, reflected) - at);
+    let to_place = mirrored(rect, at, reflected) - at;
+    arriving.per_distance = inverseSqrt(max(dot(to_place, to_place), 1e-8));
+    arriving.to_highlight = to_place * arriving.per_distance;
     return arriving;
 }

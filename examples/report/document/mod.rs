@@ -8,6 +8,7 @@ mod parts;
 mod precision;
 mod scenes;
 mod targets;
+mod toon;
 
 use std::{fmt::Write, path::Path};
 
@@ -42,6 +43,7 @@ pub fn render(folder: &Path) -> Result<String, String> {
     scenes::stability(&mut out, folder)?;
     scenes::ladder(&mut out, folder)?;
     parts::parts(&mut out, folder)?;
+    toon::toon(&mut out, folder)?;
     scenes::growth(&mut out, folder)?;
     others::peers(&mut out, folder)?;
     others::flicker(&mut out, folder)?;
