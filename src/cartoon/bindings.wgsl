@@ -7,8 +7,8 @@
     form::Form,
     glint::Glint,
     light::CartoonLight,
+    light_rim::Rim,
     ramp::Ramp,
-    rim::Rim,
 }
 
 struct Cartoon {

@@ -78,11 +78,14 @@ fn add_lamps(
     for (var i = 0u; i < view_bindings::lights.n_directional_lights; i++) {
         *lit = lit_by(*lit, s, directional_light(i, s));
     }
-    let end = ranges.first_reflection_probe_index_offset;
-    for (var i = ranges.first_point_light_index_offset; i < end; i++) {
+    let spots = ranges.first_spot_light_index_offset;
+    for (var i = ranges.first_point_light_index_offset; i < spots; i++) {
         let id = clustering::get_clusterable_object_id(i);
-        let is_spot = i >= ranges.first_spot_light_index_offset;
-        *lit = lit_by(*lit, s, clustered_light(id, is_spot, s, cartoon.light));
+        *lit = lit_by(*lit, s, clustered_light(id, false, s, cartoon.light));
+    }
+    for (var i = spots; i < ranges.first_reflection_probe_index_offset; i++) {
+        let id = clustering::get_clusterable_object_id(i);
+        *lit = lit_by(*lit, s, clustered_light(id, true, s, cartoon.light));
     }
     for (var i = 0u; i < view_bindings::lights.n_rect_lights; i++) {
         *lit = lit_by(*lit, s, rect_light_at(i, s, cartoon.light));

@@ -61,13 +61,13 @@ impl CartoonPlugin {
         load_shader_library!(app, "indirect.wgsl");
         load_shader_library!(app, "lamps.wgsl");
         load_shader_library!(app, "light.wgsl");
+        load_shader_library!(app, "light_rim.wgsl");
         load_shader_library!(app, "light_textures.wgsl");
         load_shader_library!(app, "per_light.wgsl");
         load_shader_library!(app, "ramp.wgsl");
         load_shader_library!(app, "ramp_light.wgsl");
         load_shader_library!(app, "rect.wgsl");
         load_shader_library!(app, "reflect.wgsl");
-        load_shader_library!(app, "rim.wgsl");
         load_shader_library!(app, "rim_light.wgsl");
         load_shader_library!(app, "share.wgsl");
         load_shader_library!(app, "shine.wgsl");

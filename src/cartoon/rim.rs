@@ -88,7 +88,7 @@ impl Rim {
     }
 }
 
-/// `Rim` in `rim.wgsl`.
+/// `Rim` in `light_rim.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct RimUniform {
     color: Vec3,

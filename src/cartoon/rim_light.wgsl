@@ -11,7 +11,7 @@
 #endif
 #import bevy_comics::cartoon::{
     bindings::cartoon,
-    rim::{facing_rim, is_behind, rim_side},
+    light_rim::{facing_rim, is_behind, rim_side},
     shine::Shine,
     surface::{Surface, cosine_over_pixel},
 }

@@ -37,6 +37,7 @@ pub mod histogram;
 pub mod iso_lines;
 pub mod jumps;
 pub mod light;
+pub mod light_rim;
 pub mod link;
 pub mod lives;
 pub mod map;

@@ -1,10 +1,10 @@
 //! Signs of light, rims and the detail of ramps against their twins.
 
 use bevy::{color::Color, math::Vec2};
-use bevy_comics::{DetailAxis, Glint, GlintShape, Ramp, RampStop};
+use bevy_comics::{DetailAxis, Glint, GlintShape, Ramp, RampStop, Rim, RimWidth};
 use bevy_comics_testkit::{
     device::gpu,
-    reference::{detail, glint},
+    reference::{detail, glint, light_rim},
 };
 use proptest::{collection::vec, prelude::Strategy};
 
@@ -347,6 +347,44 @@ fn mixed_ramps_are_their_twin() {
                     (f64::from(found) - twin).abs() < 0.5 * ONE_CODE,
                     "{row:?}: {found}, not {twin}"
                 );
+            }
+        }
+    });
+}
+
+#[test]
+fn rims_are_their_twin() {
+    let import = "#import bevy_comics::cartoon::light_rim::{Rim, facing_rim, is_behind, rim_side}";
+    let body = "let r = Rim(vec3(1.0), 1.0, 1.0 - i(0u), i(1u), 3.0, i(2u));
+         return vec4(facing_rim(r, i(3u), i(4u)), rim_side(r, i(3u)), is_behind(1.0 + 0.1 * i(5u)),
+             0.0);";
+    let rows = (
+        0.0f32..1.0,
+        0.0f32..0.5,
+        0.0f32..=1.0,
+        -1.0f32..=1.0,
+        0.003f32..0.2,
+        0.0f32..1.0,
+    )
+        .prop_map(|(share, softness, side, cosine, width, behind)| {
+            [share, softness, side, cosine, width, behind]
+        });
+    for_batches(rows, |rows| {
+        for (row, found) in rows.iter().zip(gpu().evaluate(import, body, rows)) {
+            let [share, softness, lit_side, cosine, width, behind] = *row;
+            let rim = Rim {
+                width: RimWidth::Facing { share, softness },
+                lit_side,
+                ..Rim::default()
+            };
+            let twins = [
+                light_rim::facing_rim(&rim, f64::from(cosine), f64::from(width)),
+                light_rim::rim_side(&rim, f64::from(cosine)),
+                light_rim::is_behind(1.0 + 0.1 * f64::from(behind)),
+            ];
+            for (found, twin) in found.into_iter().zip(twins) {
+                let far = (f64::from(found) - twin).abs();
+                assert!(far < 0.2 * ONE_CODE, "{row:?}: {found}, not {twin}");
             }
         }
     });

@@ -1,4 +1,4 @@
-#define_import_path bevy_comics::cartoon::rim
+#define_import_path bevy_comics::cartoon::light_rim
 
 // Light along the borders of things: pure functions.
 
