@@ -151,7 +151,9 @@ fn cartoon_light(in: PbrInput, foot: Footprint, own: OwnData) -> vec3<f32> {
     brighter.to_highlight = around.direction;
     brighter.lit = 1.0;
     brighter.diffuse = 1.0;
-    add(&lit.sum, s, brighter, unshadowed(s, brighter));
+    var sum = lit.sum;
+    add(&sum, s, brighter, unshadowed(s, brighter));
+    lit.sum = sum;
 #endif
     let base = in.material.base_color;
     // Colour of the highlight: the base colour of a metal; otherwise white at the

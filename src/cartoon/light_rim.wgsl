@@ -9,7 +9,7 @@ struct Rim {
     color: vec3<f32>,
     strength: f32,
     // Facing rims: how far from the border, as 1 minus the cosine between normal and eye.
-    from: f32,
+    begin: f32,
     softness: f32,
     // Rims of constant width: physical pixels.
     pixels: f32,
@@ -25,7 +25,7 @@ fn rim_side(r: Rim, cosine: f32) -> f32 {
 // A rim where the surface turns away from the eye. `cosine` is that between normal and eye,
 // `width` its change over a pixel.
 fn facing_rim(r: Rim, cosine: f32, width: f32) -> f32 {
-    return edge_at(r.from, 1.0 - abs(cosine), max(width, r.softness));
+    return edge_at(r.begin, 1.0 - abs(cosine), max(width, r.softness));
 }
 
 // Whether what lies beside a surface is farther away. `ratio` is its distance over that of the

@@ -93,7 +93,7 @@ impl Rim {
 pub(super) struct RimUniform {
     color: Vec3,
     strength: f32,
-    from: f32,
+    begin: f32,
     softness: f32,
     pixels: f32,
     lit_side: f32,
@@ -110,7 +110,7 @@ impl From<&Rim> for RimUniform {
         Self {
             color: linear_rgb(rim.color),
             strength: rim.strength,
-            from: 1.0 - share,
+            begin: 1.0 - share,
             softness,
             pixels,
             lit_side: rim.lit_side,

@@ -61,8 +61,7 @@ fn shine_of(shine: Shine, s: Surface) -> vec3<f32> {
     // Where another light is nearly as bright, both draw plain highlights.
     let alone = clamp(10.0 * (1.0 - shine.next / max(shine.bright, 1e-30)), 0.0, 1.0);
     if alone > 0.0 {
-        let sign = sign_of(s, shine.source);
-        highlight = mix(highlight, sign, alone);
+        highlight = mix(highlight, sign_of(s, shine.source), alone);
     }
 #endif
     return shine.color + shine.left * highlight;

@@ -106,7 +106,7 @@ fn a_cube_is_shaded_as_a_ball() {
         let near = [0.3, 0.7]
             .iter()
             .any(|edge: &f64| (edge - cosine).abs() < 0.02);
-        let found = f64::from(linear(&picture, x, y)[0]);
+        let found = linear(&picture, x, y)[0];
         wrong += usize::from(!near && (found - wanted).abs() > 0.02);
     }
     assert_eq!(wrong, 0);

@@ -58,7 +58,7 @@ fn covered(picture: &RgbaImage) -> (f64, DVec2) {
     let middle = 0.5 * f64::from(picture.width());
     let (mut area, mut moment) = (0.0, DVec2::ZERO);
     for (x, y, _) in picture.enumerate_pixels() {
-        let cover = f64::from(linear(picture, x, y)[0]) / PEAK;
+        let cover = linear(picture, x, y)[0] / PEAK;
         area += cover;
         moment += cover * DVec2::new(f64::from(x) + 0.5 - middle, middle - f64::from(y) - 0.5);
     }
@@ -279,7 +279,7 @@ fn frames_turn_signs() {
         let mut spread = DVec2::ZERO;
         for (x, y, _) in picture.enumerate_pixels() {
             let at = DVec2::new(f64::from(x) - 127.5, 127.5 - f64::from(y)) - middle;
-            spread += f64::from(linear(&picture, x, y)[0]) / PEAK * at * at;
+            spread += linear(&picture, x, y)[0] / PEAK * at * at;
         }
         assert!(area > 500.0);
         (spread.x / spread.y).ln()

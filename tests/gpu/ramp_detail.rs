@@ -34,7 +34,7 @@ fn off(picture: &RgbaImage, x: u32, y: u32, amount: f64) -> f64 {
     let wanted = detail::tone(&ramp, &plain, amount, 1.0, 0.0);
     let found = linear(picture, x, y);
     (0..3)
-        .map(|c| (f64::from(found[c]) - wanted[c]).abs() * 255.0)
+        .map(|c| (found[c] - wanted[c]).abs() * 255.0)
         .fold(0.0, f64::max)
 }
 

@@ -42,10 +42,7 @@ fn tones_change_with_the_distance() {
         let wanted = tone_ramp::toned(&ramp, [f64::from(gray); 3], 0.0, detail);
         let found = linear(&picture, 32, 32);
         for (found, wanted) in found.into_iter().zip(wanted) {
-            assert!(
-                (f64::from(found) - wanted).abs() < 0.015,
-                "{z}: {found}, not {wanted}"
-            );
+            assert!((found - wanted).abs() < 0.015, "{z}: {found}, not {wanted}");
         }
         all.push(found[0]);
     }
