@@ -10,9 +10,6 @@
 #ifdef DETAIL_HIGHLIGHT
 #import bevy_comics::cartoon::detail::detail_of_highlight
 #endif
-#ifdef RAMP_TEXTURE
-#import bevy_comics::cartoon::ramp_picture::{shadowed_picture_tone, picture_tone}
-#endif
 
 // Cosine of the angle between normal and light, and its change over a pixel. Without
 // backface shadows every surface faces the light.
@@ -35,40 +32,25 @@ fn detail_of(s: Surface, to_light: vec3<f32>) -> f32 {
 // The ramp at a detail.
 fn ramp_of(detail: f32) -> Ramp {
 #ifdef RAMP_DETAIL
-#ifndef RAMP_TEXTURE
     return mixed_ramp(cartoon.ramp, detail);
-#endif
-#endif
-    return cartoon.ramp;
-}
-
-// The tone of a ramp that `ramp_of` returned, or of the texture that takes its place.
-fn tone_in(ramp: Ramp, detail: f32, arriving: f32, width: f32) -> vec3<f32> {
-#ifdef RAMP_TEXTURE
-    return picture_tone(detail, arriving, width);
 #else
-    return tone(ramp, arriving, width);
+    return cartoon.ramp;
 #endif
 }
 
-// A tone, of which shadows take away only a part.
-fn weakened(ramp: Ramp, detail: f32, color: vec3<f32>) -> vec3<f32> {
+// A tone of a ramp, of which shadows take away only a part.
+fn weakened(ramp: Ramp, color: vec3<f32>) -> vec3<f32> {
     let strength = max(cartoon.light.backface, cartoon.light.projected);
     if strength >= 1.0 {
         return color;
     }
-    return mix(tone_in(ramp, detail, 1.0, 0.0), color, strength);
+    return mix(tone(ramp, 1.0, 0.0), color, strength);
 }
 
 // The tone of one light. `angle` is what `angle_of` returned.
 fn tone_of(angle: vec2<f32>, lit: f32, detail: f32) -> vec3<f32> {
     let ramp = ramp_of(detail);
-#ifdef RAMP_TEXTURE
-    let color = shadowed_picture_tone(detail, angle.x, angle.y, lit);
-#else
-    let color = shadowed_tone(ramp, angle.x, angle.y, lit);
-#endif
-    return weakened(ramp, detail, color);
+    return weakened(ramp, shadowed_tone(ramp, angle.x, angle.y, lit));
 }
 
 // The colour of a surface in a tone. `direct` is light of light sources, `even` light from

@@ -4,7 +4,8 @@
 
 #import bevy_comics::cartoon::{
     bindings::cartoon,
-    ramp_light::{angle_of, detail_of, ramp_of, tone_in, toned, weakened},
+    ramp::tone,
+    ramp_light::{angle_of, detail_of, ramp_of, toned, weakened},
     reflect::PI,
     surface::{Arriving, Surface},
     surroundings::brightness,
@@ -72,19 +73,19 @@ fn tone_of_share(sum: Sum) -> vec3<f32> {
     let width = sum.width * whole;
     let a = sum.first.x * whole;
     let b = sum.second.x * whole;
-    var color = tone_in(ramp, detail, share, width);
+    var color = tone(ramp, share, width);
     if a > 0.0 {
-        color = mix(color, tone_in(ramp, detail, share + a, width), sum.first.y);
+        color = mix(color, tone(ramp, share + a, width), sum.first.y);
     }
     if b > 0.0 {
         let beside = mix(
-            tone_in(ramp, detail, share + b, width),
-            tone_in(ramp, detail, share + a + b, width),
+            tone(ramp, share + b, width),
+            tone(ramp, share + a + b, width),
             sum.first.y,
         );
         color = mix(color, beside, sum.second.y);
     }
-    return weakened(ramp, detail, color);
+    return weakened(ramp, color);
 }
 
 fn reflected(sum: Sum, base: vec3<f32>, around: vec3<f32>, shine: vec3<f32>) -> vec3<f32> {
