@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use bevy::{prelude::*, render::view::Msaa};
+use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*, render::view::Msaa};
 use bevy_comics::{
     CartoonLight, CartoonMaterial, ComicStyle, ComicsPlugin, DetailAxis, FormShape, Glint,
     GlintShape, Outlines, Ramp, RampDetail, RampMode, RampStop, Rim, RimWidth, ShadedForm,
@@ -48,9 +48,16 @@ impl Room {
             ..default()
         };
         let lens = Projection::Perspective(PerspectiveProjection { fov, ..default() });
-        world.spawn((Camera3d::default(), lens, eye, target, outlines));
+        world.spawn((
+            Camera3d::default(),
+            Tonemapping::None,
+            lens,
+            eye,
+            target,
+            outlines,
+        ));
         let sun = DirectionalLight {
-            illuminance: 5600.0,
+            illuminance: 2500.0,
             shadow_maps_enabled: true,
             ..default()
         };
@@ -122,7 +129,7 @@ fn ball() -> Mesh {
 /// Balls with one sign each.
 fn signs() -> RgbaImage {
     let eye = Transform::from_xyz(0.0, 1.7, 8.4).looking_at(Vec3::new(0.0, 0.55, 0.0), Vec3::Y);
-    let mut room = Room::new(UVec2::new(800, 240), eye, 0.235);
+    let mut room = Room::new(UVec2::new(800, 200), eye, 0.235);
     room.ground();
     let sign = |shape, size, change: fn(&mut Glint)| {
         let mut sign = Glint {
@@ -134,20 +141,20 @@ fn signs() -> RgbaImage {
         sign
     };
     let signs = [
-        sign(GlintShape::Disc, 1.0, |_| ()),
-        sign(GlintShape::Disc, 0.8, |s| s.split.x = 1.5),
-        sign(GlintShape::Window, 1.4, |s| {
+        sign(GlintShape::Disc, 1.6, |_| ()),
+        sign(GlintShape::Disc, 1.3, |s| s.split.x = 1.5),
+        sign(GlintShape::Window, 2.4, |s| {
             (s.square, s.rotation) = (0.7, -8.0)
         }),
-        sign(GlintShape::Crescent, 1.7, |s| {
+        sign(GlintShape::Crescent, 2.8, |s| {
             (s.bar, s.rotation) = (0.3, -35.0)
         }),
-        sign(GlintShape::Star, 2.2, |_| ()),
-        sign(GlintShape::Streak, 2.2, |s| {
+        sign(GlintShape::Star, 4.0, |_| ()),
+        sign(GlintShape::Streak, 3.6, |s| {
             (s.bar, s.rotation) = (0.2, 40.0)
         }),
-        sign(GlintShape::Faithful, 1.2, |s| {
-            (s.square, s.scale.x) = (1.0, 1.6)
+        sign(GlintShape::Faithful, 1.8, |s| {
+            (s.square, s.sharpness, s.scale.x) = (0.4, 1, 1.5)
         }),
     ];
     let colors = [
@@ -166,7 +173,7 @@ fn signs() -> RgbaImage {
             highlight: 4.0,
             ..default()
         };
-        let at = Transform::from_xyz(-3.45 + 1.15 * k as f32, 0.5, 0.0);
+        let at = Transform::from_xyz(-3.3 + 1.1 * k as f32, 0.5, 0.0);
         room.put(ball(), shiny(color), &light, at);
     }
     room.picture()
@@ -189,6 +196,12 @@ fn details() -> RgbaImage {
             .collect()
     };
     let pale = Color::srgb(0.82, 0.88, 0.98);
+    // The same edges, but all light.
+    let warm = near().into_iter().map(|stop| RampStop {
+        color: Color::srgb(1.0, 0.93, 0.6),
+        ..stop
+    });
+    let warm = warm.collect();
     let cases: [(Vec<RampStop>, Vec<RampStop>, DetailAxis); 3] = [
         (
             near(),
@@ -200,8 +213,8 @@ fn details() -> RgbaImage {
         ),
         (
             near(),
-            same(Color::srgb(1.0, 0.93, 0.6), 4),
-            DetailAxis::Rim { power: 0.9 },
+            warm,
+            DetailAxis::Rim { power: 0.5 },
         ),
         (
             same(Color::WHITE, 2),
@@ -214,7 +227,7 @@ fn details() -> RgbaImage {
     ];
     let pictures = cases.map(|(stops, plain, axis)| {
         let eye = Transform::from_xyz(0.2, 2.1, 4.6).looking_at(Vec3::new(0.1, 0.3, -0.6), Vec3::Y);
-        let mut room = Room::new(size, eye, 0.56);
+        let mut room = Room::new(size, eye, 0.62);
         room.ground();
         let light = CartoonLight {
             ramp: Some(Ramp {
@@ -226,7 +239,7 @@ fn details() -> RgbaImage {
         };
         for k in 0..5u8 {
             let k = f32::from(k);
-            let at = Transform::from_xyz(-0.75 + 0.62 * k, 0.5, 0.5 - 2.1 * k);
+            let at = Transform::from_xyz(-0.6 + 0.56 * k, 0.5, 0.5 - 2.1 * k);
             let color = Color::srgb(0.95, 0.62, 0.42);
             room.put(ball(), matt(color), &light, at);
         }
@@ -259,7 +272,7 @@ fn rims() -> RgbaImage {
             rim,
             ..default()
         };
-        let x = -2.1 + 2.1 * k as f32;
+        let x = -2.4 + 2.1 * k as f32;
         let mut put = |mesh: Mesh, color, x2: f32, y: f32, turn: f32| {
             let at = Transform::from_xyz(x + x2, y, 0.0).with_rotation(Quat::from_rotation_y(turn));
             room.put(mesh, matt(color), &light, at);
@@ -336,7 +349,7 @@ fn forms() -> RgbaImage {
                 form: Some(form),
                 ..default()
             };
-            let x = -2.4 + 3.2 * k as f32 + 1.55 * n as f32;
+            let x = -2.2 + 3.0 * k as f32 + 1.5 * n as f32;
             let at = Transform::from_xyz(x, 0.62, 0.0).with_scale(scale);
             room.put(mesh.clone(), matt(color), &light, at);
         }

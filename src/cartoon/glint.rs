@@ -70,7 +70,8 @@ pub enum GlintShape {
     /// A bar with round ends.
     Streak,
     /// The paper's form: the half vector is scaled, turned, moved, split and squared, one after
-    /// the other. Shapes are discs that this deforms.
+    /// the other. Shapes are discs that this deforms. With much `square`, the formula also lights
+    /// bands far away from the highlight.
     Faithful,
 }
 

@@ -17,7 +17,7 @@ use crate::settings::{bounded, displayable, file_color, linear_rgb};
 pub struct Rim {
     /// How wide it is. Default: [`RimWidth::Facing`].
     pub width: RimWidth,
-    /// The colour of the rim as it is displayed, whatever the light is. Components are clamped to
+    /// The colour of the rim before tonemapping, whatever the light is. Components are clamped to
     /// what a display shows; alpha is ignored. Default: white.
     #[serde(with = "file_color")]
     pub color: Color,
@@ -34,7 +34,8 @@ pub struct Rim {
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub enum RimWidth {
-    /// Where the surface turns away from the eye: wide on what is round, nothing on boxes.
+    /// Where the surface turns away from the eye: wide on what is round. A flat face is all
+    /// rim or none.
     Facing {
         /// The rim is where the cosine between normal and eye is below this. Range 0 to 1, default
         /// 0.35.

@@ -41,8 +41,8 @@ pub struct ToneRamp {
     /// Lightness where the light tone begins, near. Range 0 to 1, default 0.55.
     #[reflect(@FieldRange::FRACTION)]
     pub light_at: f32,
-    /// Width of the edges, near, in lightness. 0 is as hard as pixels allow. Range 0 to 1, default
-    /// 0.
+    /// Width of the edges, near, in lightness. 0 is as hard as pixels and dither allow. Range 0 to
+    /// 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
     /// Tone of what is dark, far away. Default: a pale blue.

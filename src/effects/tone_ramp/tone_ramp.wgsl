@@ -45,8 +45,8 @@ fn tone_edge(at: f32, y: f32, width: f32) -> f32 {
 
 // The tone of a lightness `y`, which changes by `change` over a pixel.
 fn ramp_tone(s: ToneRamp, y: f32, change: f32, detail: f32) -> vec3<f32> {
-    // Wide enough for the dither of a flat area.
-    let width = max(mix(s.far_softness, s.softness, detail), max(change, 2.0 / 255.0));
+    // At least eight display codes, so that the dither of a flat area does not speckle.
+    let width = max(mix(s.far_softness, s.softness, detail), max(change, 8.0 / 255.0));
     let middle = tone_edge(mix(s.far_middle_at, s.middle_at, detail), y, width);
     let light = tone_edge(mix(s.far_light_at, s.light_at, detail), y, width);
     let below = mix(

@@ -28,7 +28,7 @@ fn tone(near: Color, far: Color, detail: f64) -> Rgb {
 /// The picture in tones.
 pub fn toned(s: &ToneRamp, linear: Rgb, change: f64, detail: f64) -> Rgb {
     let between = |near: f32, far: f32| mix(f64::from(far), f64::from(near), detail);
-    let width = between(s.softness, s.far_softness).max(change.max(2.0 / 255.0));
+    let width = between(s.softness, s.far_softness).max(change.max(8.0 / 255.0));
     let y = lightness(linear);
     let above = |at: f64| smoothstep(at - 0.5 * width, at + 0.5 * width, y);
     let middle = above(between(s.middle_at, s.far_middle_at));
