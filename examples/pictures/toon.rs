@@ -211,11 +211,7 @@ fn details() -> RgbaImage {
                 ratio: 3.2,
             },
         ),
-        (
-            near(),
-            warm,
-            DetailAxis::Rim { power: 0.5 },
-        ),
+        (near(), warm, DetailAxis::Rim { power: 0.5 }),
         (
             same(Color::WHITE, 2),
             vec![

@@ -63,8 +63,9 @@ fn frame_along(normal: vec3<f32>, right: vec3<f32>, other: vec3<f32>) -> Frame {
 fn glint_radius(edge: f32, perceptual_roughness: f32) -> f32 {
     let roughness = max(perceptual_roughness * perceptual_roughness, 0.002);
     let a2 = roughness * roughness;
-    let cosine2 = (1.0 - a2 * inverseSqrt(edge)) / (1.0 - min(a2, 0.999));
-    return select(0.0, sqrt(max(1.0 - cosine2, 0.0) / max(cosine2, 1e-6)), cosine2 > 0.0);
+    let rise = inverseSqrt(edge);
+    let left = 1.0 - a2 * rise;
+    return select(0.0, sqrt(a2 * max(rise - 1.0, 0.0) / max(left, 1e-6)), left > 0.0);
 }
 
 fn place_of(frame: Frame, normal: vec3<f32>, half_vector: vec3<f32>) -> vec2<f32> {

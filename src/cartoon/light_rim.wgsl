@@ -29,7 +29,9 @@ fn facing_rim(r: Rim, cosine: f32, width: f32) -> f32 {
 }
 
 // Whether what lies beside a surface is farther away. `ratio` is its distance over that of the
-// surface.
-fn is_behind(ratio: f32) -> f32 {
-    return smoothstep(1.01, 1.03, ratio);
+// surface, `slope` by how much the surface recedes up to there, over its distance: near its border
+// a ball recedes by twice that.
+fn is_behind(ratio: f32, slope: f32) -> f32 {
+    let own = 2.5 * max(slope, 0.0);
+    return smoothstep(1.01 + own, 1.03 + own, ratio);
 }

@@ -25,13 +25,16 @@ fn beside(s: Surface) -> f32 {
         return 0.0;
     }
     let size = view.viewport.zw;
+    let into = vec3(view.view_from_world[0].z, view.view_from_world[1].z, view.view_from_world[2].z);
+    let recedes = vec2(dot(into, s.foot.position_x), dot(into, s.foot.position_y));
+    let slope = dot(recedes, across) / (long * s.view_z);
     var behind = 0.0;
     // Four places along the last pixel, whose mean is anti-aliased where the border is slanted.
     for (var k = 0; k < 4; k++) {
         let reach = cartoon.rim.pixels + 0.25 * f32(k) - 0.375;
         let at = clamp(s.pixel + across * (reach / long), view.viewport.xy, view.viewport.xy + size - 1.0);
         let z = depth_ndc_to_view_z(prepass_depth(vec4(at, 0.0, 0.0), 0u));
-        behind += 0.25 * is_behind(z / s.view_z);
+        behind += 0.25 * is_behind(z / s.view_z, slope * reach);
     }
     return behind;
 }

@@ -1,6 +1,6 @@
 //! Surfaces that are shaded as simpler forms.
 
-use bevy::{math::DVec2, prelude::*};
+use bevy::prelude::*;
 use bevy_comics::{CartoonLight, FormShape, Ramp, RampMode, RampStop, ShadedForm};
 
 use crate::{
@@ -68,48 +68,6 @@ fn simple_meshes_are_their_own_forms() {
         set_light(&mut small, &tones(form(0.0)));
         assert!(apart(&own, &drawn(&mut small)) == 0, "{shape:?}");
     }
-}
-
-/// A cube as an ellipsoid has the tones of a ball: the border between two of them on its front is a
-/// straight line where the normal of the ellipsoid says so.
-#[test]
-fn a_cube_is_shaded_as_a_ball() {
-    let shape = FormShape::Ellipsoid {
-        center: Vec3::ZERO,
-        half_size: Vec3::ONE,
-    };
-    let form = ShadedForm { shape, ..default() };
-    let mut small = room(UVec2::splat(160), 0.0);
-    put(
-        &mut small,
-        Cuboid::new(1.6, 1.6, 1.6),
-        &tones(Some(form)),
-        Transform::IDENTITY,
-    );
-    sun(&mut small, Vec3::X, bright(1.0));
-    let picture = drawn(&mut small);
-    let mut wrong = 0;
-    for (x, y, _) in picture.enumerate_pixels() {
-        let at = DVec2::new(f64::from(x) - 79.5, 79.5 - f64::from(y)) / 80.0;
-        if at.abs().max_element() > 0.79 {
-            continue;
-        }
-        // On the front, z is 0.8.
-        let cosine = at.x / (at.length_squared() + 0.64).sqrt();
-        let wanted = if cosine < 0.3 {
-            0.0
-        } else if cosine < 0.7 {
-            0.4
-        } else {
-            1.0
-        };
-        let near = [0.3, 0.7]
-            .iter()
-            .any(|edge: &f64| (edge - cosine).abs() < 0.02);
-        let found = linear(&picture, x, y)[0];
-        wrong += usize::from(!near && (found - wanted).abs() > 0.02);
-    }
-    assert_eq!(wrong, 0);
 }
 
 /// Grass is as bright as the ground, whichever way it faces; only near the eye, if so asked.

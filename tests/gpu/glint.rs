@@ -14,6 +14,8 @@ const SIZE: u32 = 256;
 /// Of the ball, in units; the camera shows 2.
 const BALL: f64 = 0.95;
 const ROUGHNESS: f32 = 0.3;
+/// Makes the plain highlight 20 pixels wide.
+const EDGE: f32 = 0.05;
 /// The pixels of the ball's radius.
 const RADIUS: f64 = 0.5 * BALL * SIZE as f64;
 /// The brightness of a highlight in the picture.
@@ -24,6 +26,7 @@ fn signed(sign: Glint) -> CartoonLight {
     CartoonLight {
         glint: Some(sign),
         highlight: PEAK as f32 / (polish * polish),
+        highlight_edge: EDGE,
         ..default()
     }
 }
@@ -67,7 +70,7 @@ fn covered(picture: &RgbaImage) -> (f64, DVec2) {
 
 /// The same of the ball's geometry at four times the size. `half` is the half vector.
 fn true_cover(sign: &Glint, half: [f64; 3]) -> (f64, DVec2) {
-    let radius = glint::glint_radius(0.5, f64::from(ROUGHNESS));
+    let radius = glint::glint_radius(f64::from(EDGE), f64::from(ROUGHNESS));
     let fine = 4;
     let (mut area, mut moment) = (0.0, DVec2::ZERO);
     let end = (RADIUS as i32 + 1) * fine;
@@ -150,7 +153,7 @@ fn a_disc_is_the_plain_highlight() {
     };
     set_light(&mut small, &plain);
     let without = drawn(&mut small);
-    let tangent = glint::glint_radius(0.5, f64::from(ROUGHNESS));
+    let tangent = glint::glint_radius(f64::from(EDGE), f64::from(ROUGHNESS));
     let sine2 = tangent * tangent / (1.0 + tangent * tangent);
     let wanted = std::f64::consts::PI * RADIUS * RADIUS * sine2;
     for picture in [&with, &without] {

@@ -19,7 +19,8 @@ pub fn facing_rim(rim: &Rim, cosine: f64, width: f64) -> f64 {
     edge_at(1.0 - share, 1.0 - cosine.abs(), width.max(softness))
 }
 
-/// Whether what is this many times as far away is behind a surface.
-pub fn is_behind(ratio: f64) -> f64 {
-    smoothstep(1.01, 1.03, ratio)
+/// Whether what is this many times as far away is behind a surface that recedes by `slope` of its
+/// distance.
+pub fn is_behind(ratio: f64, slope: f64) -> f64 {
+    smoothstep(1.01, 1.03, ratio - 2.5 * slope.max(0.0))
 }

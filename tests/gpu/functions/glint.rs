@@ -356,7 +356,7 @@ fn mixed_ramps_are_their_twin() {
 fn rims_are_their_twin() {
     let import = "#import bevy_comics::cartoon::light_rim::{Rim, facing_rim, is_behind, rim_side}";
     let body = "let r = Rim(vec3(1.0), 1.0, 1.0 - i(0u), i(1u), 3.0, i(2u));
-         return vec4(facing_rim(r, i(3u), i(4u)), rim_side(r, i(3u)), is_behind(1.0 + 0.1 * i(5u)),
+         return vec4(facing_rim(r, i(3u), i(4u)), rim_side(r, i(3u)), is_behind(1.0 + 0.1 * i(5u), 0.02 * i(3u)),
              0.0);";
     let rows = (
         0.0f32..1.0,
@@ -380,7 +380,7 @@ fn rims_are_their_twin() {
             let twins = [
                 light_rim::facing_rim(&rim, f64::from(cosine), f64::from(width)),
                 light_rim::rim_side(&rim, f64::from(cosine)),
-                light_rim::is_behind(1.0 + 0.1 * f64::from(behind)),
+                light_rim::is_behind(1.0 + 0.1 * f64::from(behind), 0.02 * f64::from(cosine)),
             ];
             for (found, twin) in found.into_iter().zip(twins) {
                 let far = (f64::from(found) - twin).abs();
