@@ -5,7 +5,10 @@ use std::{fmt::Write, path::Path};
 use crate::{costs::size, load};
 
 pub fn toon(out: &mut String, folder: &Path) -> Result<(), String> {
-    let times = load(folder, "toon_times")?;
+    // Reports of older runs do not have this table.
+    let Ok(times) = load(folder, "toon_times") else {
+        return Ok(());
+    };
     let _ = writeln!(
         out,
         "### Cartoon material\n\nThe main pass of a scene at {}, with all of its meshes in one \
