@@ -88,7 +88,8 @@ pub struct CartoonLight {
     /// material. Range 0 to 1, default 1.
     pub flat_environment: f32,
     /// Reads the alpha of vertex colours as how easily a vertex is lit, as artists paint it: 0.5 is
-    /// neutral, at 0 nothing is lit, at 1 everything that no shadow of other things reaches. It is
+    /// neutral, at 0 nothing is lit, at 1 everything but what faces away and the shadows of other
+    /// things. It is
     /// for opaque materials: alpha is still opacity in others. Default: `false`.
     pub vertex_threshold: bool,
     /// Tones between shade and light. Default: `None`, which is all of the light or none of it.

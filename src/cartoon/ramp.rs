@@ -214,7 +214,8 @@ impl From<&Ramp> for RampUniform {
         let ramp = ramp.clone().sanitized();
         let mut stops = [StopUniform::default(); Ramp::MOST_STOPS];
         for (k, to) in stops[..ramp.pairs()].iter_mut().enumerate() {
-            let stop = nth(&ramp.stops, k);
+            let partner = ramp.detail.as_ref().map(|detail| &detail.plain[..]);
+            let stop = paired(&ramp.stops, partner.unwrap_or_default(), k);
             *to = StopUniform {
                 color: linear_rgb(stop.color),
                 at: stop.at,
@@ -222,7 +223,7 @@ impl From<&Ramp> for RampUniform {
                 ..default()
             };
             if let Some(detail) = &ramp.detail {
-                let plain = nth(&detail.plain, k);
+                let plain = paired(&detail.plain, &ramp.stops, k);
                 to.color = oklab(stop.color);
                 to.plain_color = oklab(plain.color);
                 to.plain_at = plain.at;
@@ -236,9 +237,19 @@ impl From<&Ramp> for RampUniform {
     }
 }
 
-/// A stop; beyond the last one, the last one again, which changes nothing.
-fn nth(stops: &[RampStop], k: usize) -> RampStop {
-    stops[k.min(stops.len() - 1)]
+/// A stop; beyond the last one, its tone again at the place of the partner's stop, where nothing
+/// changes.
+fn paired(stops: &[RampStop], partner: &[RampStop], k: usize) -> RampStop {
+    if let Some(stop) = stops.get(k) {
+        return *stop;
+    }
+    let last = stops.last().copied().unwrap_or_default();
+    let other = partner.get(k).copied().unwrap_or_default();
+    RampStop {
+        at: last.at.max(other.at),
+        softness: other.softness,
+        ..last
+    }
 }
 
 fn oklab(color: Color) -> Vec3 {

@@ -422,7 +422,10 @@ fn vertices_say_how_easily_they_are_lit() {
             ramp,
             ..default()
         };
-        for (alpha, lit) in [(0.0, 0.0), (0.5, 0.5), (1.0, 1.0)] {
+        // Where light begins, and the part of a disc beyond it.
+        let at = if light.ramp.is_some() { 0.25f64 } else { 0.08 };
+        let part = |a: f64| (a.acos() - a * (1.0 - a * a).sqrt()) / std::f64::consts::PI;
+        for (alpha, lit) in [(0.0, 0.0), (0.5, part(at)), (1.0, 1.0 - part(1.0 - at))] {
             let mut small = room(UVec2::splat(120), 0.0);
             let mut ball = Sphere::new(0.9).mesh().uv(128, 64);
             let colors = vec![[1.0f32, 1.0, 1.0, alpha]; ball.count_vertices()];
