@@ -40,7 +40,7 @@
 //!    range ([`DepthMap`]);
 //! 4. where [`Outlines`] are asked for, silhouettes, creases and edges between
 //!    objects are found along the borders of pixels, and drawn at their width;
-//! 5. one full-screen pass after tonemapping applies the effects: [`ToneBands`],
+//! 5. one full-screen pass after tonemapping applies the effects: [`ToneRamp`], [`ToneBands`],
 //!    [`Desaturation`], [`Colorization`], [`ColorHarmony`], [`Planes`], [`Paint`], [`Focus`],
 //!    [`PrintOffset`], [`Halftone`], [`Hatching`], [`BlackFlats`], [`Contours`], the outlines or a
 //!    [`Sketch`] of them, [`IsoLines`], [`TwoTone`], [`SpeedLines`], [`Paper`] and [`Vignette`], in
@@ -80,7 +80,8 @@ mod view;
 
 #[cfg(feature = "cartoon")]
 pub use cartoon::{
-    CartoonLight, CartoonMaterial, CartoonScene, Ramp, RampBlend, RampMode, RampStop,
+    CartoonLight, CartoonMaterial, CartoonScene, DetailAxis, FormShape, Glint, GlintFrame,
+    GlintShape, Ramp, RampBlend, RampDetail, RampMode, RampStop, Rim, RimWidth, ShadedForm,
 };
 pub use depth::{
     CameraCut, DepthBin, DepthHistogram, DepthMap, DepthMapping, ProjectionKind, RangeSmoothing,
@@ -170,7 +171,8 @@ pub mod prelude {
     };
     #[cfg(feature = "cartoon")]
     pub use crate::{
-        CartoonLight, CartoonMaterial, CartoonScene, Ramp, RampBlend, RampMode, RampStop,
+        CartoonLight, CartoonMaterial, CartoonScene, DetailAxis, FormShape, Glint, GlintFrame,
+        GlintShape, Ramp, RampBlend, RampDetail, RampMode, RampStop, Rim, RimWidth, ShadedForm,
     };
     #[cfg(feature = "objects")]
     pub use crate::{

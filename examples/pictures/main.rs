@@ -6,6 +6,7 @@
 //! cargo run --example pictures -- looks [--out FILE.png]
 //! cargo run --example pictures -- presets [--out FILE.png]
 //! cargo run --example pictures -- ramps [--out FILE.png]
+//! cargo run --example pictures -- toon [--out DIR]
 //! cargo run --example pictures -- pages [--out DIR]
 //! cargo run --example pictures -- motion [--out DIR]
 //! cargo run --example pictures -- print [--out DIR]
@@ -21,6 +22,7 @@ mod print;
 mod ramps;
 mod sheet;
 mod strips;
+mod toon;
 
 use std::{path::PathBuf, process::ExitCode};
 
@@ -32,6 +34,7 @@ usage: pictures contact-sheet [--size WxH] [--out FILE.png]   every scene in eve
        pictures looks [--out FILE.png]                        the README's row of looks
        pictures presets [--out FILE.png]                      the page of the presets
        pictures ramps [--out FILE.png]                        the ramps of the cartoon material
+       pictures toon [--out DIR]                              signs, rims and X-Toon of the cartoon material
        pictures pages [--out DIR]                             the pages about single tasks
        pictures motion [--out DIR]                            the pages about speed lines and paper
        pictures print [--out DIR]                             the pages about print, paint and focus
@@ -88,6 +91,7 @@ fn run() -> Result<(), String> {
         Some("looks") => sheet::looks(&or("target/looks.png")),
         Some("presets") => sheet::presets(&or("target/presets.png")),
         Some("ramps") => save(&ramps::picture(), &or("target/ramps.png")),
+        Some("toon") => toon::write(&or("target/toon")),
         Some("pages") => pages::write(&or("target/pages")),
         Some("motion") => motion::write(&or("target/motion")),
         Some("print") => print::write(&or("target/print")),

@@ -29,6 +29,7 @@ mod stability;
 mod steps;
 mod straight;
 mod table;
+mod toon;
 
 use std::{
     io::Write,
@@ -89,12 +90,12 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure one section only: ranges, encodings, lines, models,
                    steps, dashes, memory, straight, page, stability, ladder,
-                   parts, scene-parts, growth, peers or flicker
+                   parts, scene-parts, toon, growth, peers or flicker
   --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
-const SECTIONS: [(&str, Section); 16] = [
+const SECTIONS: [(&str, Section); 17] = [
     ("ranges", ranges::measure),
     ("encodings", encodings::measure),
     ("lines", lines::measure),
@@ -108,6 +109,7 @@ const SECTIONS: [(&str, Section); 16] = [
     ("ladder", ladder::measure),
     ("parts", parts::measure),
     ("scene-parts", parts::of_scenes),
+    ("toon", toon::measure),
     ("growth", growth::measure),
     ("peers", peers::measure),
     ("flicker", flicker::measure),

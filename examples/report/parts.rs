@@ -11,7 +11,7 @@ use bevy_comics::{
     FocusStyle, Halftone, HalftoneMode, Hatching, LineColor, LineResponse, LineWeight, LineWidths,
     MeshSections, NoStyle, OutlineStyle, Outlines, Paint, PaintForm, Paper, PlaneBorders,
     PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape, SelectionOutline, Silhouettes,
-    SpeedLines, TwoTone, XRayOutline,
+    SpeedLines, ToneRamp, TwoTone, XRayOutline,
 };
 
 use bevy_comics_testkit::scenes::BuiltIn;
@@ -174,6 +174,7 @@ fn page() -> Vec<(String, Wear)> {
         ("focus; offset", focus(FocusStyle::Offset)),
         ("focus; paint", focus(FocusStyle::Paint)),
         ("focus; dots", focus(FocusStyle::Dots)),
+        ("tone ramp", none.clone().with(ToneRamp::default())),
         ("two tones", none.clone().with(TwoTone::default())),
         ("speed lines", none.with(SpeedLines::default())),
         ("halftone; print offset and paper", printed),

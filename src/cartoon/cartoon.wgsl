@@ -18,7 +18,8 @@
     bindings::cartoon,
     indirect::{ambient, light_around},
     lamps::{clustered_light, directional_light, rect_light_at},
-    reflect::PI,
+    reflect::{PI, unshadowed},
+    shine::{Shine, shine_of, with_light},
     surface::{Arriving, Footprint, Surface},
 }
 #ifdef RAMP_PER_LIGHT
@@ -31,27 +32,86 @@
 #import bevy_comics::cartoon::two_shades::{Sum, add, reflected}
 #endif
 
+#ifdef DETAIL_DEPTH
+#import bevy_comics::cartoon::detail::detail_by_depth
+#endif
+#ifdef DETAIL_FOCUS
+#import bevy_comics::cartoon::detail::detail_in_focus
+#endif
+#ifdef DETAIL_RIM
+#import bevy_comics::cartoon::detail::detail_of_rim
+#endif
+#ifdef RIM
+#import bevy_comics::cartoon::rim_light::with_rim
+#endif
+
+#ifdef FORM
+#import bevy_pbr::mesh_functions::{get_local_from_world, mesh_normal_local_to_world}
+#import bevy_comics::cartoon::form::{between, form_amount, form_normal}
+#endif
+
+// What all lights give.
+struct Lit {
+    sum: Sum,
+    shine: Shine,
+}
+
+// With one light source more.
+fn lit_by(lit: Lit, s: Surface, light: Arriving) -> Lit {
+    var sum = lit.sum;
+    let left = unshadowed(s, light);
+    add(&sum, s, light, left);
+#ifdef RAMP_SHARE
+    let color = light.smooth_color;
+#else
+    let color = light.color;
+#endif
+    return Lit(sum, with_light(lit.shine, s, light, color, left));
+}
+
 // Sum over the light sources.
 fn add_lamps(
-    sum: ptr<function, Sum>,
+    lit: ptr<function, Lit>,
     s: Surface,
     ranges: clustering::ClusterableObjectIndexRanges,
 ) {
     for (var i = 0u; i < view_bindings::lights.n_directional_lights; i++) {
-        add(sum, s, directional_light(i, s));
+        *lit = lit_by(*lit, s, directional_light(i, s));
     }
-    let end = ranges.first_reflection_probe_index_offset;
-    for (var i = ranges.first_point_light_index_offset; i < end; i++) {
+    let spots = ranges.first_spot_light_index_offset;
+    for (var i = ranges.first_point_light_index_offset; i < spots; i++) {
         let id = clustering::get_clusterable_object_id(i);
-        let is_spot = i >= ranges.first_spot_light_index_offset;
-        add(sum, s, clustered_light(id, is_spot, s, cartoon.light));
+        *lit = lit_by(*lit, s, clustered_light(id, false, s, cartoon.light));
+    }
+    for (var i = spots; i < ranges.first_reflection_probe_index_offset; i++) {
+        let id = clustering::get_clusterable_object_id(i);
+        *lit = lit_by(*lit, s, clustered_light(id, true, s, cartoon.light));
     }
     for (var i = 0u; i < view_bindings::lights.n_rect_lights; i++) {
-        add(sum, s, rect_light_at(i, s, cartoon.light));
+        *lit = lit_by(*lit, s, rect_light_at(i, s, cartoon.light));
     }
 }
 
-fn surface_of(in: PbrInput, foot: Footprint) -> Surface {
+// How much detail of its ramp a surface shows.
+fn detail_at(s: Surface) -> f32 {
+#ifdef DETAIL_DEPTH
+    return detail_by_depth(cartoon.detail, -s.view_z);
+#else ifdef DETAIL_FOCUS
+    return detail_in_focus(cartoon.detail, -s.view_z);
+#else ifdef DETAIL_RIM
+    return detail_of_rim(cartoon.detail, dot(s.normal, s.to_eye));
+#else
+    return cartoon.detail.number;
+#endif
+}
+
+// What vertices say of a surface; 0 where they say nothing.
+struct OwnData {
+    tangent: vec3<f32>,
+    bias: f32,
+}
+
+fn surface_of(in: PbrInput, foot: Footprint, own: OwnData) -> Surface {
     var s: Surface;
     s.position = in.world_position.xyz;
     s.normal = in.N;
@@ -60,22 +120,30 @@ fn surface_of(in: PbrInput, foot: Footprint) -> Surface {
     s.foot = foot;
     s.roughness = in.material.perceptual_roughness;
     s.pixel = in.frag_coord.xy;
-    s.view_z = dot(vec4(
-        view_bindings::view.view_from_world[0].z,
-        view_bindings::view.view_from_world[1].z,
-        view_bindings::view.view_from_world[2].z,
-        view_bindings::view.view_from_world[3].z,
-    ), in.world_position);
+    s.view_z = view_z_of(in.world_position);
+    let to_eye = view_bindings::view.world_position - s.position;
+    s.per_eye_distance = select(inverseSqrt(max(dot(to_eye, to_eye), 1e-8)), 0.0, in.is_orthographic);
+    s.tangent = own.tangent;
+    s.bias = own.bias;
+    s.detail = detail_at(s);
     s.receives = (in.flags & MESH_FLAGS_SHADOW_RECEIVER_BIT) != 0u && cartoon.light.projected > 0.0;
     return s;
 }
 
-fn cartoon_light(in: PbrInput, foot: Footprint) -> vec3<f32> {
-    let s = surface_of(in, foot);
+fn cartoon_light(in: PbrInput, foot: Footprint, own: OwnData) -> vec3<f32> {
+    let s = surface_of(in, foot, own);
     let cluster = clustering::view_fragment_cluster_index(s.pixel, s.view_z, in.is_orthographic);
     var ranges = clustering::unpack_clusterable_object_index_ranges(cluster);
     // Light from all around. Its brighter side is one more light, without highlight.
     let around = light_around(s, cartoon.light, &ranges);
+    var even = (around.shade + ambient()) * in.diffuse_occlusion;
+#ifdef LIGHTMAP
+    even += in.lightmap_light;
+#endif
+
+    var lit: Lit;
+    add_lamps(&lit, s, ranges);
+#ifdef ENVIRONMENT
     var brighter: Arriving;
     brighter.color = around.more * in.diffuse_occlusion * PI;
     brighter.smooth_color = brighter.color;
@@ -83,22 +151,44 @@ fn cartoon_light(in: PbrInput, foot: Footprint) -> vec3<f32> {
     brighter.to_highlight = around.direction;
     brighter.lit = 1.0;
     brighter.diffuse = 1.0;
-    var even = (around.shade + ambient()) * in.diffuse_occlusion;
-#ifdef LIGHTMAP
-    even += in.lightmap_light;
+    var sum = lit.sum;
+    add(&sum, s, brighter, unshadowed(s, brighter));
+    lit.sum = sum;
 #endif
-
-    var sum: Sum;
-    add_lamps(&sum, s, ranges);
-    add(&sum, s, brighter);
     let base = in.material.base_color;
     // Colour of the highlight: the base colour of a metal; otherwise white at the
     // default reflectance of 0.5.
     let tint = mix(min(2.0 * in.material.reflectance, vec3(1.0)), base.rgb, in.material.metallic);
+    var color = reflected(lit.sum, base.rgb, even, tint * shine_of(lit.shine, s));
+#ifdef RIM
+    color = with_rim(color, s, lit.shine);
+#endif
     let emissive = in.material.emissive;
-    return reflected(sum, base.rgb, tint, even)
-        + emissive.rgb * base.a * mix(1.0, view_bindings::view.exposure, emissive.a);
+    return color + emissive.rgb * base.a * mix(1.0, view_bindings::view.exposure, emissive.a);
 }
+
+// Distance along the view axis, negative.
+fn view_z_of(world_position: vec4<f32>) -> f32 {
+    return dot(vec4(
+        view_bindings::view.view_from_world[0].z,
+        view_bindings::view.view_from_world[1].z,
+        view_bindings::view.view_from_world[2].z,
+        view_bindings::view.view_from_world[3].z,
+    ), world_position);
+}
+
+#ifdef FORM
+// The normal of the simpler form.
+fn shaded_normal(pbr: PbrInput, in: VertexOutput) -> vec3<f32> {
+    var other = vec3(0.0, 1.0, 0.0);
+#ifndef FORM_UP
+    let place = (get_local_from_world(in.instance_index) * pbr.world_position).xyz;
+    other = mesh_normal_local_to_world(form_normal(cartoon.form, place), in.instance_index);
+#endif
+    let amount = form_amount(cartoon.form, -view_z_of(pbr.world_position));
+    return between(pbr.N, other, amount);
+}
+#endif
 
 @fragment
 fn fragment(vertex_output: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
@@ -107,18 +197,28 @@ fn fragment(vertex_output: VertexOutput, @builtin(front_facing) is_front: bool) 
     visibility_range_dither(in.position, in.visibility_range_dither);
 #endif
     var pbr = pbr_input_from_standard_material(in, is_front);
+#ifdef FORM
+    pbr.N = shaded_normal(pbr, in);
+#endif
     // Must be computed before alpha_discard: derivatives need all pixels.
     var foot: Footprint;
     foot.position_x = dpdx(pbr.world_position.xyz);
     foot.position_y = dpdy(pbr.world_position.xyz);
     foot.normal_x = dpdx(pbr.N);
     foot.normal_y = dpdy(pbr.N);
+    var own: OwnData;
+#ifdef VERTEX_TANGENTS
+    own.tangent = in.world_tangent.xyz;
+#endif
+#ifdef VERTEX_THRESHOLD
+    own.bias = 2.0 * in.color.a - 1.0;
+#endif
     pbr.material.base_color = alpha_discard(pbr.material, pbr.material.base_color);
     apply_decals(&pbr);
 
     var out: FragmentOutput;
     if (pbr.material.flags & STANDARD_MATERIAL_FLAGS_UNLIT_BIT) == 0u {
-        out.color = vec4(cartoon_light(pbr, foot), pbr.material.base_color.a);
+        out.color = vec4(cartoon_light(pbr, foot, own), pbr.material.base_color.a);
     } else {
         out.color = pbr.material.base_color;
     }

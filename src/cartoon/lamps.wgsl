@@ -28,53 +28,48 @@
 
 const PI: f32 = 3.14159265;
 
-const DIRECTIONAL: u32 = 0u;
-const POINT: u32 = 1u;
-const SPOT: u32 = 2u;
-
-// The shadow map of a light of this `kind` at a place, 1 where the light arrives.
-fn shadow_at(kind: u32, id: u32, s: Surface, at: vec3<f32>) -> f32 {
+// The shadow map of a point light or a spot light at a place, 1 where the light arrives.
+fn lamp_shadow_at(is_spot: bool, id: u32, s: Surface, at: vec3<f32>) -> f32 {
     let place = vec4(at, 1.0);
-    if kind == DIRECTIONAL {
-        return shadows::fetch_directional_shadow(id, place, s.mesh_normal, s.view_z, s.pixel);
+    if is_spot {
+        let near = view_bindings::clustered_lights.data[id].shadow_map_near_z;
+        return shadows::fetch_spot_shadow(id, place, s.mesh_normal, near, s.pixel);
     }
-    if kind == POINT {
-        return shadows::fetch_point_shadow(id, place, s.mesh_normal, s.pixel);
-    }
-    let near = view_bindings::clustered_lights.data[id].shadow_map_near_z;
-    return shadows::fetch_spot_shadow(id, place, s.mesh_normal, near, s.pixel);
+    return shadows::fetch_point_shadow(id, place, s.mesh_normal, s.pixel);
 }
 
-// The same with a hard edge.
-fn hard_shadow(kind: u32, id: u32, s: Surface) -> f32 {
-    let shadow = shadow_at(kind, id, s, s.position);
+// The same with a hard edge. Neighbouring pixels may see other lamps, so there are no
+// derivatives: the shadow map is read for them, too.
+fn lamp_shadow(is_spot: bool, id: u32, s: Surface) -> f32 {
+    let shadow = lamp_shadow_at(is_spot, id, s, s.position);
     if shadow <= 0.0 || shadow >= 1.0 {
         return shadow;
     }
     return sharpen(shadow, slope_over_pixel(
         shadow,
-        shadow_at(kind, id, s, s.position + s.foot.position_x),
-        shadow_at(kind, id, s, s.position + s.foot.position_y),
+        lamp_shadow_at(is_spot, id, s, s.position + s.foot.position_x),
+        lamp_shadow_at(is_spot, id, s, s.position + s.foot.position_y),
     ));
 }
 
-// The same with the contact shadow, if `contact` is not 0.
-fn whole_shadow(
-    kind: u32,
-    id: u32,
-    s: Surface,
-    to_light: vec3<f32>,
-    maps: u32,
-    contact: u32,
-) -> f32 {
+// The shadow map of a directional light with a hard edge; 1 if `maps` is 0. All pixels must run
+// it, since it takes derivatives.
+fn directional_shadow(id: u32, s: Surface, maps: u32) -> f32 {
     var shadow = 1.0;
     if s.receives && maps != 0u {
-        shadow = hard_shadow(kind, id, s);
+        let place = vec4(s.position, 1.0);
+        shadow = shadows::fetch_directional_shadow(id, place, s.mesh_normal, s.view_z, s.pixel);
     }
+    let width = fwidth(shadow);
+    return select(sharpen(shadow, width), shadow, shadow <= 0.0 || shadow >= 1.0);
+}
+
+// With the contact shadow, if `contact` is not 0.
+fn with_contact(shadow: f32, s: Surface, to_light: vec3<f32>, contact: u32) -> f32 {
 #ifdef CONTACT_SHADOWS
 #ifdef DEPTH_PREPASS
     if s.receives && contact != 0u && shadow > 0.0 {
-        shadow *= contact_shadow(s.position, to_light);
+        return shadow * contact_shadow(s.position, to_light);
     }
 #endif
 #endif
@@ -121,11 +116,10 @@ fn directional_light(id: u32, s: Surface) -> Arriving {
 #endif
     arriving.smooth_color = arriving.color;
     let flags = (*light).flags;
-    arriving.lit = whole_shadow(
-        DIRECTIONAL, id, s, arriving.to_light,
-        flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_SHADOWS_ENABLED_BIT,
-        flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_CONTACT_SHADOWS_ENABLED_BIT,
-    );
+    let maps = flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_SHADOWS_ENABLED_BIT;
+    let contact = flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_CONTACT_SHADOWS_ENABLED_BIT;
+    let shadow = directional_shadow(id, s, maps);
+    arriving.lit = with_contact(shadow, s, arriving.to_light, contact);
     arriving.diffuse = diffuse_part(
         flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_AFFECTS_LIGHTMAPPED_MESH_DIFFUSE_BIT,
     );
@@ -150,7 +144,8 @@ fn exposed(color: vec3<f32>) -> f32 {
     return max(color.r, max(color.g, color.b)) * view_bindings::view.exposure;
 }
 
-// A point light or spot light.
+// A point light or spot light. `is_spot` is a constant where this is called, so that half of it is
+// left out.
 fn clustered_light(id: u32, is_spot: bool, s: Surface, settings: CartoonLight) -> Arriving {
     let light = &view_bindings::clustered_lights.data[id];
     let offset = (*light).position_radius.xyz - s.position;
@@ -158,6 +153,7 @@ fn clustered_light(id: u32, is_spot: bool, s: Surface, settings: CartoonLight) -
     var arriving: Arriving;
     arriving.to_light = normalize(offset);
     arriving.to_highlight = arriving.to_light;
+    arriving.per_distance = inverseSqrt(max(distance_squared, 1e-8));
     // Luminous intensity. Times the falloff, it is the illuminance of a surface
     // that faces the light.
     var color = (*light).color_inverse_square_range.rgb;
@@ -179,11 +175,12 @@ fn clustered_light(id: u32, is_spot: bool, s: Surface, settings: CartoonLight) -
     arriving.smooth_color = color * smooth_light;
     arriving.shine = 1.0;
     let flags = (*light).flags;
-    arriving.lit = whole_shadow(
-        select(POINT, SPOT, is_spot), id, s, arriving.to_light,
-        flags & mesh_view_types::POINT_LIGHT_FLAGS_SHADOWS_ENABLED_BIT,
-        flags & mesh_view_types::POINT_LIGHT_FLAGS_CONTACT_SHADOWS_ENABLED_BIT,
-    );
+    var shadow = 1.0;
+    if s.receives && (flags & mesh_view_types::POINT_LIGHT_FLAGS_SHADOWS_ENABLED_BIT) != 0u {
+        shadow = lamp_shadow(is_spot, id, s);
+    }
+    let contact = flags & mesh_view_types::POINT_LIGHT_FLAGS_CONTACT_SHADOWS_ENABLED_BIT;
+    arriving.lit = with_contact(shadow, s, arriving.to_light, contact);
     arriving.diffuse = diffuse_part(
         flags & mesh_view_types::POINT_LIGHT_FLAGS_AFFECTS_LIGHTMAPPED_MESH_DIFFUSE_BIT,
     );
@@ -223,6 +220,8 @@ fn rect_light_at(id: u32, s: Surface, settings: CartoonLight) -> Arriving {
     arriving.shine = 1.0;
     arriving.to_light = light_vector / fraction;
     let reflected = reflect(-s.to_eye, s.normal);
-    arriving.to_highlight = normalize(mirrored(rect, at, reflected) - at);
+    let to_place = mirrored(rect, at, reflected) - at;
+    arriving.per_distance = inverseSqrt(max(dot(to_place, to_place), 1e-8));
+    arriving.to_highlight = to_place * arriving.per_distance;
     return arriving;
 }

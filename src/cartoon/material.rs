@@ -11,13 +11,16 @@ use bevy::{
     },
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::{
-        AsBindGroup, RenderPipelineDescriptor, ShaderType, SpecializedMeshPipelineError,
+        AsBindGroup, RenderPipelineDescriptor, SpecializedMeshPipelineError,
     },
     shader::ShaderRef,
 };
 use serde::{Deserialize, Serialize};
 
-use super::ramp::{Ramp, RampKey, RampUniform};
+use super::{
+    Glint, Ramp, Rim, ShadedForm,
+    uniform::{CartoonKey, CartoonUniform},
+};
 use crate::settings::bounded;
 
 /// A [`StandardMaterial`] with the lighting of a cartoon:
@@ -52,7 +55,7 @@ pub type CartoonMaterial = ExtendedMaterial<StandardMaterial, CartoonLight>;
 /// The lighting of a [`CartoonMaterial`].
 #[derive(Asset, AsBindGroup, Reflect, Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[uniform(100, CartoonUniform)]
-#[bind_group_data(RampKey)]
+#[bind_group_data(CartoonKey)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CartoonLight {
@@ -84,8 +87,19 @@ pub struct CartoonLight {
     /// the same mean as the original. 0: it changes with every normal, as on the standard
     /// material. Range 0 to 1, default 1.
     pub flat_environment: f32,
+    /// Reads the alpha of vertex colours as how easily a vertex is lit, as artists paint it: 0.5 is
+    /// neutral, at 0 nothing is lit, at 1 everything but what faces away and the shadows of other
+    /// things. It is
+    /// for opaque materials: alpha is still opacity in others. Default: `false`.
+    pub vertex_threshold: bool,
     /// Tones between shade and light. Default: `None`, which is all of the light or none of it.
     pub ramp: Option<Ramp>,
+    /// The highlight of the brightest light as a sign. Default: `None`, a plain highlight.
+    pub glint: Option<Glint>,
+    /// A simpler form that the surface is shaded as. Default: `None`.
+    pub form: Option<ShadedForm>,
+    /// A rim of light. Default: `None`.
+    pub rim: Option<Rim>,
 }
 
 impl Default for CartoonLight {
@@ -99,7 +113,11 @@ impl Default for CartoonLight {
             highlight_edge: 0.5,
             falloff: 1.0,
             flat_environment: 1.0,
+            vertex_threshold: false,
             ramp: None,
+            glint: None,
+            form: None,
+            rim: None,
         }
     }
 }
@@ -118,55 +136,11 @@ impl CartoonLight {
             falloff: bounded(self.falloff, default.falloff, 0.0, 4.0),
             flat_environment: bounded(self.flat_environment, default.flat_environment, 0.0, 1.0),
             ramp: self.ramp.map(Ramp::sanitized),
+            glint: self.glint.map(Glint::sanitized),
+            form: self.form.map(ShadedForm::sanitized),
+            rim: self.rim.map(Rim::sanitized),
             ..self
         }
-    }
-}
-
-/// The uniform: `Cartoon` in `bindings.wgsl`.
-#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
-pub struct CartoonUniform {
-    light: CartoonLightUniform,
-    ramp: RampUniform,
-}
-
-/// `CartoonLight` in `light.wgsl`.
-#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
-struct CartoonLightUniform {
-    terminator: f32,
-    backface: f32,
-    projected: f32,
-    highlight: f32,
-    highlight_edge: f32,
-    falloff: f32,
-    environment: f32,
-}
-
-impl From<&CartoonLight> for CartoonUniform {
-    fn from(light: &CartoonLight) -> Self {
-        let light = light.clone().sanitized();
-        let strength = |on: bool| if on { light.shadow_strength } else { 0.0 };
-        Self {
-            light: CartoonLightUniform {
-                terminator: light.terminator,
-                backface: strength(light.backface_shadows),
-                projected: strength(light.projected_shadows),
-                highlight: light.highlight,
-                highlight_edge: light.highlight_edge,
-                falloff: light.falloff,
-                environment: light.flat_environment,
-            },
-            ramp: light
-                .ramp
-                .as_ref()
-                .map_or_else(RampUniform::default, RampUniform::from),
-        }
-    }
-}
-
-impl From<&CartoonLight> for RampKey {
-    fn from(light: &CartoonLight) -> Self {
-        Self::of(light.ramp.as_ref())
     }
 }
 
@@ -182,10 +156,9 @@ impl MaterialExtension for CartoonLight {
         key: MaterialExtensionKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
         if let Some(fragment) = &mut descriptor.fragment {
-            let definitions = key.bind_group_data.definitions();
-            fragment
-                .shader_defs
-                .extend(definitions.into_iter().map(Into::into));
+            let key = key.bind_group_data;
+            let definitions = key.definitions(&fragment.shader_defs);
+            fragment.shader_defs.extend(definitions);
         }
         Ok(())
     }

@@ -1,10 +1,15 @@
 //! The cartoon material: uniformly lit areas with hard shadows (\[CL\] 2.2, 2.3,
 //! after Decaudin).
 
+mod detail;
+mod form;
+mod glint;
 mod ignored;
 mod material;
 mod ramp;
+mod rim;
 mod scene;
+mod uniform;
 
 use bevy::{
     app::{App, Plugin, PostUpdate, Update},
@@ -15,8 +20,12 @@ use bevy::{
     shader::load_shader_library,
 };
 
+pub use detail::{DetailAxis, RampDetail};
+pub use form::{FormShape, ShadedForm};
+pub use glint::{Glint, GlintFrame, GlintShape};
 pub use material::{CartoonLight, CartoonMaterial};
 pub use ramp::{Ramp, RampBlend, RampMode, RampStop};
+pub use rim::{Rim, RimWidth};
 pub use scene::CartoonScene;
 
 /// Registers types, shaders and, if the app has [`PbrPlugin`], the material.
@@ -45,16 +54,23 @@ impl CartoonPlugin {
         load_shader_library!(app, "bindings.wgsl");
         load_shader_library!(app, "brightest.wgsl");
         load_shader_library!(app, "contact.wgsl");
+        load_shader_library!(app, "detail.wgsl");
+        load_shader_library!(app, "form.wgsl");
+        load_shader_library!(app, "glint.wgsl");
+        load_shader_library!(app, "glint_light.wgsl");
         load_shader_library!(app, "indirect.wgsl");
         load_shader_library!(app, "lamps.wgsl");
         load_shader_library!(app, "light.wgsl");
+        load_shader_library!(app, "light_rim.wgsl");
         load_shader_library!(app, "light_textures.wgsl");
         load_shader_library!(app, "per_light.wgsl");
         load_shader_library!(app, "ramp.wgsl");
         load_shader_library!(app, "ramp_light.wgsl");
         load_shader_library!(app, "rect.wgsl");
         load_shader_library!(app, "reflect.wgsl");
+        load_shader_library!(app, "rim_light.wgsl");
         load_shader_library!(app, "share.wgsl");
+        load_shader_library!(app, "shine.wgsl");
         load_shader_library!(app, "surface.wgsl");
         load_shader_library!(app, "surroundings.wgsl");
         load_shader_library!(app, "two_shades.wgsl");

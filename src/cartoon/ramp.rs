@@ -1,13 +1,16 @@
 //! Tones of a cartoon material by how much light arrives.
 
 use bevy::{
-    color::Color,
+    color::{Color, Oklaba},
     math::Vec3,
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
+    shader::ShaderDefVal,
+    utils::default,
 };
 use serde::{Deserialize, Serialize};
 
+use super::RampDetail;
 use crate::settings::{bounded, displayable, file_color, linear_rgb};
 
 /// The tones of a [`CartoonMaterial`](crate::CartoonMaterial), from shade to light (Lake et al.
@@ -31,7 +34,9 @@ use crate::settings::{bounded, displayable, file_color, linear_rgb};
 #[serde(default, deny_unknown_fields)]
 pub struct Ramp {
     /// Where tones begin, in any order: at most [`Ramp::MOST_STOPS`], of more the first are
-    /// used. Default: a violet shade, and full light from 0.08.
+    /// used. Default: a violet shade, and full light from 0.25: what a key light reaches
+    /// at an angle of 75 degrees or less, but not what only a second light of less than a third of
+    /// its strength reaches.
     pub stops: Vec<RampStop>,
     /// What the ramp is applied to. Default: [`RampMode::Share`].
     pub mode: RampMode,
@@ -41,6 +46,8 @@ pub struct Ramp {
     /// luminance. 0: all places are equally bright, whatever the lights and the exposure are.
     /// 1: as bright as they are lit. Range 0 to 1, default 0.5.
     pub keep_intensity: f32,
+    /// A second ramp, and where it is used. Default: `None`.
+    pub detail: Option<RampDetail>,
 }
 
 /// Where a tone of a [`Ramp`] begins.
@@ -123,7 +130,7 @@ impl Default for Ramp {
     fn default() -> Self {
         Self::new([
             RampStop::new(0.0, Color::linear_rgb(0.42, 0.40, 0.55)),
-            RampStop::new(0.08, Color::WHITE),
+            RampStop::new(0.25, Color::WHITE),
         ])
     }
 }
@@ -140,6 +147,7 @@ impl Ramp {
             mode: RampMode::default(),
             blend: RampBlend::default(),
             keep_intensity: 0.5,
+            detail: None,
         }
     }
 
@@ -148,24 +156,39 @@ impl Ramp {
     /// default. A ramp without stops becomes the default one.
     #[must_use]
     pub fn sanitized(self) -> Self {
-        let default = RampStop::default();
-        let mut stops = self.stops;
-        if stops.is_empty() {
-            stops = Self::default().stops;
-        }
-        stops.truncate(Self::MOST_STOPS);
-        for stop in &mut stops {
-            stop.at = bounded(stop.at, default.at, 0.0, 1.0);
-            stop.color = displayable(stop.color, default.color);
-            stop.softness = bounded(stop.softness, default.softness, 0.0, 1.0);
-        }
-        stops.sort_by(|a, b| a.at.total_cmp(&b.at));
         Self {
-            stops,
+            stops: sanitized(self.stops, || Self::default().stops),
             keep_intensity: bounded(self.keep_intensity, 0.5, 0.0, 1.0),
+            detail: self.detail.map(|detail| RampDetail {
+                plain: sanitized(detail.plain, || RampDetail::default().plain),
+                axis: detail.axis.sanitized(),
+            }),
             ..self
         }
     }
+
+    /// Stops of the longer of both ramps.
+    fn pairs(&self) -> usize {
+        let plain = self.detail.as_ref().map_or(0, |detail| detail.plain.len());
+        self.stops.len().max(plain)
+    }
+}
+
+/// At most [`Ramp::MOST_STOPS`] stops, sorted and in their ranges; the `default` ones if there are
+/// none.
+fn sanitized(mut stops: Vec<RampStop>, default: fn() -> Vec<RampStop>) -> Vec<RampStop> {
+    if stops.is_empty() {
+        stops = default();
+    }
+    stops.truncate(Ramp::MOST_STOPS);
+    let default = RampStop::default();
+    for stop in &mut stops {
+        stop.at = bounded(stop.at, default.at, 0.0, 1.0);
+        stop.color = displayable(stop.color, default.color);
+        stop.softness = bounded(stop.softness, default.softness, 0.0, 1.0);
+    }
+    stops.sort_by(|a, b| a.at.total_cmp(&b.at));
+    stops
 }
 
 /// `Stop` in `ramp.wgsl`.
@@ -173,63 +196,108 @@ impl Ramp {
 struct StopUniform {
     color: Vec3,
     at: f32,
+    plain_color: Vec3,
+    plain_at: f32,
     softness: f32,
+    plain_softness: f32,
 }
 
 /// `Ramp` in `ramp.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct RampUniform {
-    stops: [StopUniform; Ramp::MOST_STOPS],
     keep_intensity: f32,
+    stops: [StopUniform; Ramp::MOST_STOPS],
 }
 
 impl From<&Ramp> for RampUniform {
     fn from(ramp: &Ramp) -> Self {
         let ramp = ramp.clone().sanitized();
-        // Far above the light that can arrive.
-        let unused = StopUniform {
-            at: 1e6,
-            ..StopUniform::default()
-        };
-        let mut stops = [unused; Ramp::MOST_STOPS];
-        for (to, stop) in stops.iter_mut().zip(&ramp.stops) {
+        let mut stops = [StopUniform::default(); Ramp::MOST_STOPS];
+        for (k, to) in stops[..ramp.pairs()].iter_mut().enumerate() {
+            let partner = ramp.detail.as_ref().map(|detail| &detail.plain[..]);
+            let stop = paired(&ramp.stops, partner.unwrap_or_default(), k);
             *to = StopUniform {
                 color: linear_rgb(stop.color),
                 at: stop.at,
                 softness: stop.softness,
+                ..default()
             };
+            if let Some(detail) = &ramp.detail {
+                let plain = paired(&detail.plain, &ramp.stops, k);
+                to.color = oklab(stop.color);
+                to.plain_color = oklab(plain.color);
+                to.plain_at = plain.at;
+                to.plain_softness = plain.softness;
+            }
         }
         Self {
-            stops,
             keep_intensity: ramp.keep_intensity,
+            stops,
         }
     }
 }
 
+/// A stop; beyond the last one, its tone again at the place of the partner's stop, where nothing
+/// changes.
+fn paired(stops: &[RampStop], partner: &[RampStop], k: usize) -> RampStop {
+    if let Some(stop) = stops.get(k) {
+        return *stop;
+    }
+    let last = stops.last().copied().unwrap_or_default();
+    let other = partner.get(k).copied().unwrap_or_default();
+    RampStop {
+        at: last.at.max(other.at),
+        softness: other.softness,
+        ..last
+    }
+}
+
+fn oklab(color: Color) -> Vec3 {
+    let Oklaba {
+        lightness, a, b, ..
+    } = color.into();
+    Vec3::new(lightness, a, b)
+}
+
 /// The part of a ramp that selects a variant of the shader.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(C)]
-pub struct RampKey(Option<(RampMode, RampBlend)>);
+pub(super) struct RampKey {
+    mode: RampMode,
+    blend: RampBlend,
+    /// Stops of the longer ramp.
+    stops: u8,
+    /// The shader definition of the axis.
+    axis: Option<&'static str>,
+}
+
+impl From<&Ramp> for RampKey {
+    fn from(ramp: &Ramp) -> Self {
+        let ramp = ramp.clone().sanitized();
+        Self {
+            mode: ramp.mode,
+            blend: ramp.blend,
+            stops: ramp.pairs() as u8,
+            axis: ramp.detail.map(|detail| detail.axis.definition()),
+        }
+    }
+}
 
 impl RampKey {
-    pub(super) fn of(ramp: Option<&Ramp>) -> Self {
-        Self(ramp.map(|ramp| (ramp.mode, ramp.blend)))
-    }
-
-    /// The shader definitions.
-    pub(super) fn definitions(self) -> Vec<&'static str> {
-        let Some((mode, blend)) = self.0 else {
-            return Vec::new();
-        };
-        let mode = match mode {
+    pub(super) fn definitions(self) -> impl Iterator<Item = ShaderDefVal> {
+        let mode = match self.mode {
             RampMode::Share => "RAMP_SHARE",
             RampMode::PerLight => "RAMP_PER_LIGHT",
             RampMode::Brightest => "RAMP_BRIGHTEST",
         };
-        match blend {
-            RampBlend::Multiply => vec![mode],
-            RampBlend::Absolute => vec![mode, "RAMP_ABSOLUTE"],
-        }
+        let blend = (self.blend == RampBlend::Absolute).then_some("RAMP_ABSOLUTE");
+        let detail = self.axis.map(|_| "RAMP_DETAIL");
+        let flags = [Some(mode), blend, detail, self.axis];
+        let stops = ShaderDefVal::UInt("RAMP_STOPS".into(), u32::from(self.stops));
+        flags
+            .into_iter()
+            .flatten()
+            .map(ShaderDefVal::from)
+            .chain([stops])
     }
 }
 

@@ -4,9 +4,12 @@
 
 #import bevy_comics::cartoon::{
     bindings::cartoon,
-    ramp::{shadowed_tone, tone},
-    surface::{Arriving, Surface, cosine_over_pixel},
+    ramp::{Ramp, mixed_ramp, shadowed_tone, tone},
+    surface::{Arriving, Surface, biased_cosine, cosine_over_pixel},
 }
+#ifdef DETAIL_HIGHLIGHT
+#import bevy_comics::cartoon::detail::detail_of_highlight
+#endif
 
 // Cosine of the angle between normal and light, and its change over a pixel. Without
 // backface shadows every surface faces the light.
@@ -14,18 +17,40 @@ fn angle_of(s: Surface, light: Arriving) -> vec2<f32> {
     if cartoon.light.backface <= 0.0 {
         return vec2(1.0, 0.0);
     }
-    return vec2(dot(s.normal, light.to_light), cosine_over_pixel(s.foot, light.to_light));
+    return vec2(biased_cosine(s, light.to_light), cosine_over_pixel(s.foot, light.to_light));
 }
 
-// A tone, of which shadows take away only a part.
-fn weakened(color: vec3<f32>) -> vec3<f32> {
+// The detail of the ramp in the light from a direction.
+fn detail_of(s: Surface, to_light: vec3<f32>) -> f32 {
+#ifdef DETAIL_HIGHLIGHT
+    return detail_of_highlight(cartoon.detail, dot(reflect(-to_light, s.normal), s.to_eye));
+#else
+    return s.detail;
+#endif
+}
+
+// The ramp at a detail.
+fn ramp_of(detail: f32) -> Ramp {
+#ifdef RAMP_DETAIL
+    return mixed_ramp(cartoon.ramp, detail);
+#else
+    return cartoon.ramp;
+#endif
+}
+
+// A tone of a ramp, of which shadows take away only a part.
+fn weakened(ramp: Ramp, color: vec3<f32>) -> vec3<f32> {
     let strength = max(cartoon.light.backface, cartoon.light.projected);
-    return mix(tone(cartoon.ramp, 1.0, 0.0), color, strength);
+    if strength >= 1.0 {
+        return color;
+    }
+    return mix(tone(ramp, 1.0, 0.0), color, strength);
 }
 
-// The tone of one light.
-fn tone_of(cosine: f32, width: f32, lit: f32) -> vec3<f32> {
-    return weakened(shadowed_tone(cartoon.ramp, cosine, width, lit));
+// The tone of one light. `angle` is what `angle_of` returned.
+fn tone_of(angle: vec2<f32>, lit: f32, detail: f32) -> vec3<f32> {
+    let ramp = ramp_of(detail);
+    return weakened(ramp, shadowed_tone(ramp, angle.x, angle.y, lit));
 }
 
 // The colour of a surface in a tone. `direct` is light of light sources, `even` light from

@@ -5,17 +5,16 @@
 #import bevy_comics::cartoon::{
     bindings::cartoon,
     ramp::tone,
-    ramp_light::{angle_of, toned, weakened},
-    reflect::{PI, highlight_of},
+    ramp_light::{angle_of, detail_of, ramp_of, toned, weakened},
+    reflect::PI,
     surface::{Arriving, Surface},
     surroundings::brightness,
 }
 #import bevy_pbr::mesh_view_bindings::view
 
 struct Sum {
-    // Light times pi before shadows, without rings; and that of highlights.
+    // Light times pi before shadows, without rings.
     color: vec3<f32>,
-    shine: vec3<f32>,
     // Brightness of `color`, and of the same light in rings.
     bright: f32,
     ringed: f32,
@@ -27,18 +26,24 @@ struct Sum {
     // much of the light arrives.
     first: vec2<f32>,
     second: vec2<f32>,
+#ifdef RAMP_DETAIL
+    // Detail of the ramp, times the brightness of the lights.
+    detail: f32,
+#endif
 }
 
-fn add(sum: ptr<function, Sum>, s: Surface, light: Arriving) {
+fn add(sum: ptr<function, Sum>, s: Surface, light: Arriving, left: f32) {
     let ringed = light.color * light.diffuse;
     let color = light.smooth_color * light.diffuse;
     let bright = max(brightness(color), 0.0);
     let angle = angle_of(s, light);
     (*sum).color += color;
     (*sum).ringed += max(brightness(ringed), 0.0);
-    (*sum).shine += light.smooth_color * highlight_of(s, light);
     (*sum).bright += bright;
     (*sum).width += bright * angle.y;
+#ifdef RAMP_DETAIL
+    (*sum).detail += bright * detail_of(s, light.to_light);
+#endif
     var part = vec2(bright * max(angle.x, 0.0), light.lit);
     if part.y > 0.0 && part.y < 1.0 {
         if part.x > (*sum).first.x {
@@ -58,26 +63,32 @@ fn add(sum: ptr<function, Sum>, s: Surface, light: Arriving) {
 // The tone of the share. A border of a shadow mixes the tones on its sides.
 fn tone_of_share(sum: Sum) -> vec3<f32> {
     let whole = 1.0 / max(sum.bright, 1e-30);
+#ifdef RAMP_DETAIL
+    let detail = sum.detail * whole;
+#else
+    let detail = 1.0;
+#endif
+    let ramp = ramp_of(detail);
     let share = sum.arriving * whole;
     let width = sum.width * whole;
     let a = sum.first.x * whole;
     let b = sum.second.x * whole;
-    var color = tone(cartoon.ramp, share, width);
+    var color = tone(ramp, share, width);
     if a > 0.0 {
-        color = mix(color, tone(cartoon.ramp, share + a, width), sum.first.y);
+        color = mix(color, tone(ramp, share + a, width), sum.first.y);
     }
     if b > 0.0 {
         let beside = mix(
-            tone(cartoon.ramp, share + b, width),
-            tone(cartoon.ramp, share + a + b, width),
+            tone(ramp, share + b, width),
+            tone(ramp, share + a + b, width),
             sum.first.y,
         );
         color = mix(color, beside, sum.second.y);
     }
-    return weakened(color);
+    return weakened(ramp, color);
 }
 
-fn reflected(sum: Sum, base: vec3<f32>, tint: vec3<f32>, around: vec3<f32>) -> vec3<f32> {
+fn reflected(sum: Sum, base: vec3<f32>, around: vec3<f32>, shine: vec3<f32>) -> vec3<f32> {
     let direct = view.exposure * sum.color / PI;
     let even = view.exposure * around;
     // All light has the brightness 1, times what is kept of its own, which falls off in rings.
@@ -86,5 +97,5 @@ fn reflected(sum: Sum, base: vec3<f32>, tint: vec3<f32>, around: vec3<f32>) -> v
     let ringed = max(view.exposure * sum.ringed / PI + evenly, 1e-7);
     let strength = pow(ringed, cartoon.ramp.keep_intensity) / all;
     let colors = toned(base, tone_of_share(sum), direct, even);
-    return strength * (colors + tint * (view.exposure * sum.shine / PI));
+    return strength * (colors + view.exposure * shine / PI);
 }

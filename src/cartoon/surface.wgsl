@@ -19,6 +19,14 @@ struct Surface {
     // Unit vector to the camera.
     to_eye: vec3<f32>,
     foot: Footprint,
+    // 1 over the distance from the camera; 0 in an orthographic view.
+    per_eye_distance: f32,
+    // Tangent of the mesh, 0 if it has none.
+    tangent: vec3<f32>,
+    // Added to the cosines between normal and lights before tones are found.
+    bias: f32,
+    // Of the ramp, see `Detail`.
+    detail: f32,
     // Perceptual roughness.
     roughness: f32,
     // Coordinates of the pixel, and z in view space.
@@ -38,6 +46,8 @@ struct Arriving {
     // Unit vector to the light source, and to the place on it that a highlight shows.
     to_light: vec3<f32>,
     to_highlight: vec3<f32>,
+    // 1 over the distance from the light source; 0 for light from infinitely far away.
+    per_distance: f32,
     // 1 where the light arrives, 0 in the shadow of something else.
     lit: f32,
     // 1, or 0 if the light is part of a lightmap and only draws a highlight.
@@ -46,9 +56,21 @@ struct Arriving {
     shine: f32,
 }
 
+// Where light comes from, as in `Arriving`.
+struct Source {
+    to_light: vec3<f32>,
+    to_highlight: vec3<f32>,
+    per_distance: f32,
+}
+
 // Change of the cosine between normal and `direction` over a pixel.
 fn cosine_over_pixel(foot: Footprint, direction: vec3<f32>) -> f32 {
     return abs(dot(foot.normal_x, direction)) + abs(dot(foot.normal_y, direction));
+}
+
+// Cosine between normal and `direction`, with the surface's own threshold.
+fn biased_cosine(s: Surface, direction: vec3<f32>) -> f32 {
+    return clamp(dot(s.normal, direction) + s.bias, -1.0, 1.0);
 }
 
 // Size of a pixel on the surface in world units.

@@ -26,6 +26,7 @@ macro_rules! effects {
 
 effects! {
     abstraction: Abstraction;
+    tone_ramp: ToneRamp;
     tone_bands: ToneBands;
     desaturation: Desaturation;
     colorization: Colorization, ColorizationMode;

@@ -10,7 +10,7 @@ use crate::{
     Abstraction, BlackFlats, ColorHarmony, Colorization, Contours, Creases, DepthMap, DepthMapping,
     Desaturation, Effect, Focus, Halftone, Hatching, HeldPose, LineColor, LineWeight, ObjectEdges,
     Outlines, Paint, Paper, PlaneStyle, Planes, PrintOffset, RangeSmoothing, Silhouettes, Sketch,
-    SpeedLines, ToneBands, TwoTone, Vignette,
+    SpeedLines, ToneBands, ToneRamp, TwoTone, Vignette,
 };
 
 /// A million floats: hand-picked edge cases, then random bit patterns, which

@@ -25,7 +25,7 @@ fn full() -> f32 {
 }
 
 /// An app without objects; the camera is at +Z and shows 2 units.
-fn room(size: UVec2, ambient: f32) -> Small {
+pub fn room(size: UVec2, ambient: f32) -> Small {
     let mut small = Small::new(size, Msaa::Off);
     small.clear();
     small.insert((
@@ -45,7 +45,7 @@ fn room(size: UVec2, ambient: f32) -> Small {
     small
 }
 
-fn sun(small: &mut Small, to: Vec3, light: DirectionalLight) -> Entity {
+pub fn sun(small: &mut Small, to: Vec3, light: DirectionalLight) -> Entity {
     let at = Transform::from_translation(to).looking_at(Vec3::ZERO, Vec3::Z);
     let shadows = CascadeShadowConfigBuilder {
         num_cascades: 1,
@@ -56,14 +56,19 @@ fn sun(small: &mut Small, to: Vec3, light: DirectionalLight) -> Entity {
     small.world().spawn(bundle).id()
 }
 
-fn bright(part: f32) -> DirectionalLight {
+pub fn bright(part: f32) -> DirectionalLight {
     DirectionalLight {
         illuminance: part * full(),
         ..default()
     }
 }
 
-fn put(small: &mut Small, mesh: impl Into<Mesh>, light: &CartoonLight, at: Transform) -> Entity {
+pub fn put(
+    small: &mut Small,
+    mesh: impl Into<Mesh>,
+    light: &CartoonLight,
+    at: Transform,
+) -> Entity {
     let material = CartoonMaterial {
         base: StandardMaterial {
             base_color: Color::WHITE,
@@ -77,7 +82,7 @@ fn put(small: &mut Small, mesh: impl Into<Mesh>, light: &CartoonLight, at: Trans
     small.put_shared(mesh, material, at)
 }
 
-fn with(ramp: Ramp) -> CartoonLight {
+pub fn with(ramp: Ramp) -> CartoonLight {
     CartoonLight {
         ramp: Some(ramp),
         falloff: 0.0,
@@ -85,7 +90,7 @@ fn with(ramp: Ramp) -> CartoonLight {
     }
 }
 
-fn set_light(small: &mut Small, light: &CartoonLight) {
+pub fn set_light(small: &mut Small, light: &CartoonLight) {
     let mut materials = small.world().resource_mut::<Assets<CartoonMaterial>>();
     let ids: Vec<_> = materials.ids().collect();
     for id in ids {
@@ -93,14 +98,14 @@ fn set_light(small: &mut Small, light: &CartoonLight) {
     }
 }
 
-fn drawn(small: &mut Small) -> RgbaImage {
+pub fn drawn(small: &mut Small) -> RgbaImage {
     small.headless.step(6);
     let picture = small.picture();
     assert_eq!(small.errors(), 0);
     picture
 }
 
-fn apart(a: &RgbaImage, b: &RgbaImage) -> u8 {
+pub fn apart(a: &RgbaImage, b: &RgbaImage) -> u8 {
     let pairs = a.as_raw().iter().zip(b.as_raw());
     pairs.map(|(a, b)| a.abs_diff(*b)).max().expect("pixels")
 }
@@ -372,5 +377,73 @@ fn borders_of_shadows_have_no_bands() {
             .count();
         assert!(dark > 500 && mixed > 20, "{mode:?}: {dark}, {mixed}");
         assert_eq!(picture.pixels().filter(colored).count(), 0, "{mode:?}");
+    }
+}
+
+/// With the default ramp, what a key light does not reach is shade, even if other lights do.
+#[test]
+fn several_lights_leave_some_shade() {
+    let light = with(Ramp {
+        keep_intensity: 0.0,
+        ..Ramp::default()
+    });
+    let mut small = room(UVec2::splat(200), 0.0);
+    let ball = Sphere::new(0.95).mesh().uv(128, 64);
+    put(&mut small, ball, &light, Transform::IDENTITY);
+    let key = Vec3::new(-1.0, 0.8, 1.0);
+    sun(&mut small, key, bright(1.0));
+    sun(&mut small, Vec3::new(1.0, 0.1, 0.8), bright(0.3));
+    sun(&mut small, Vec3::new(0.6, 0.5, -1.0), bright(0.2));
+    let picture = drawn(&mut small);
+    let background = *picture.get_pixel(0, 0);
+    let (mut counts, mut wrong) = ([0usize; 2], 0usize);
+    for (x, y, pixel) in picture.enumerate_pixels() {
+        if *pixel == background {
+            continue;
+        }
+        let shade = linear(&picture, x, y)[0] < 0.8;
+        counts[usize::from(shade)] += 1;
+        let at = Vec2::new(x as f32 - 99.5, 99.5 - y as f32) / 95.0;
+        let normal = at.extend((1.0 - at.length_squared()).max(0.0).sqrt());
+        // The other lights are a third of all.
+        wrong += usize::from(shade && normal.dot(key.normalize()) > 0.4);
+    }
+    let share = counts[1] as f64 / (counts[0] + counts[1]) as f64;
+    assert!((0.15..0.5).contains(&share), "{share} of the ball is shade");
+    assert_eq!(wrong, 0);
+}
+
+/// The alpha of vertex colours moves the edges of tones, with and without a ramp.
+#[test]
+fn vertices_say_how_easily_they_are_lit() {
+    for ramp in [None, Some(Ramp::default())] {
+        let light = CartoonLight {
+            vertex_threshold: true,
+            ramp,
+            ..default()
+        };
+        // Where light begins, and the part of a disc beyond it.
+        let at = if light.ramp.is_some() { 0.25f64 } else { 0.08 };
+        let part = |a: f64| (a.acos() - a * (1.0 - a * a).sqrt()) / std::f64::consts::PI;
+        for (alpha, lit) in [(0.0, 0.0), (0.5, part(at)), (1.0, 1.0 - part(1.0 - at))] {
+            let mut small = room(UVec2::splat(120), 0.0);
+            let mut ball = Sphere::new(0.9).mesh().uv(128, 64);
+            let colors = vec![[1.0f32, 1.0, 1.0, alpha]; ball.count_vertices()];
+            ball.insert_attribute(Mesh::ATTRIBUTE_COLOR, colors);
+            put(&mut small, ball, &light, Transform::IDENTITY);
+            sun(&mut small, Vec3::X, bright(0.8));
+            let picture = drawn(&mut small);
+            let background = *picture.get_pixel(0, 0);
+            let ball = picture.pixels().filter(|p| **p != background).count() as f64;
+            let bright = picture
+                .pixels()
+                .filter(|p| **p != background && p.0[0] > 200);
+            let found = bright.count() as f64 / ball;
+            let room = if lit == 0.5 { 0.2 } else { 0.02 };
+            assert!(
+                (found - lit).abs() < room,
+                "alpha {alpha}: {found} of the ball"
+            );
+        }
     }
 }

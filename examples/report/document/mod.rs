@@ -9,6 +9,7 @@ mod precision;
 mod scenes;
 mod steps;
 mod targets;
+mod toon;
 
 use std::{fmt::Write, path::Path};
 
@@ -44,6 +45,7 @@ pub fn render(folder: &Path) -> Result<String, String> {
     scenes::stability(&mut out, folder)?;
     scenes::ladder(&mut out, folder)?;
     parts::parts(&mut out, folder)?;
+    toon::toon(&mut out, folder)?;
     scenes::growth(&mut out, folder)?;
     others::peers(&mut out, folder)?;
     others::flicker(&mut out, folder)?;

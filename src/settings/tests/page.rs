@@ -71,3 +71,20 @@ fn a_million_floats_in_every_field_of_the_vignette() {
     let softness = vignette(|v, x| v.softness = x);
     fuzz("Vignette::softness", 0.0, 1.0, |x| softness(x).softness);
 }
+
+#[test]
+fn a_million_floats_in_every_field_of_the_tone_ramp() {
+    let ramp = |edit: fn(&mut ToneRamp, f32)| {
+        move |x| {
+            let mut ramp = ToneRamp::default();
+            edit(&mut ramp, x);
+            ramp.sanitized()
+        }
+    };
+    let at = ramp(|r, x| r.light_at = x);
+    fuzz("ToneRamp::light_at", 0.0, 1.0, |x| at(x).light_at);
+    let far = ramp(|r, x| r.far_softness = x);
+    fuzz("ToneRamp::far_softness", 0.0, 1.0, |x| far(x).far_softness);
+    let reach = ramp(|r, x| r.reach = x);
+    fuzz("ToneRamp::reach", 0.01, 1.0, |x| reach(x).reach);
+}

@@ -65,6 +65,7 @@ fn the_range_on_a_field_is_the_range_that_is_used() {
     check(Creases::sanitized);
     check(ObjectEdges::sanitized);
     check(Sketch::sanitized);
+    check(ToneRamp::sanitized);
     check(TwoTone::sanitized);
     check(SpeedLines::sanitized);
     check(Paper::sanitized);

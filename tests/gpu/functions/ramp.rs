@@ -48,7 +48,8 @@ fn tones_of_ramps_are_their_twin() {
     let body = "var ramp: Ramp;
          for (var k = 0u; k < 8u; k++) {
              let gray = i(3u * k + 1u);
-             ramp.stops[k] = Stop(vec3(gray, 1.0 - gray, gray), i(3u * k), i(3u * k + 2u));
+             ramp.stops[k] = Stop(vec3(gray, 1.0 - gray, gray), i(3u * k), vec3(0.0), 0.0,
+                 i(3u * k + 2u), 0.0);
          }
          return vec4(tone(ramp, i(24u), i(25u)).xy,
              shadowed_tone(ramp, i(24u), i(25u), i(26u)).xy);";

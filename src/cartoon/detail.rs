@@ -1,0 +1,166 @@
+//! The second axis of a ramp.
+
+use bevy::{
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use super::RampStop;
+use crate::settings::bounded;
+
+/// A second ramp of a [`Ramp`](crate::Ramp), and how much of each there is: the ramp itself where
+/// there is all detail, this one where there is none (X-Toon: Barla, Thollot and Markosian 2006).
+///
+/// Between the two, stops move, soften and change their colours, which are mixed in `OKLab`. The
+/// first stop becomes the first one, and so on. The shorter ramp's last tone takes the place of
+/// those that it lacks.
+#[derive(Reflect, Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RampDetail {
+    /// The tones where there is no detail, as [`Ramp::stops`](crate::Ramp::stops). Default: one
+    /// tone, white.
+    pub plain: Vec<RampStop>,
+    /// Where there is detail. Default: [`DetailAxis::Depth`].
+    pub axis: DetailAxis,
+}
+
+/// Where a ramp has detail.
+///
+/// Distances are along the axis of the view, in world units.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub enum DetailAxis {
+    /// Near the eye: `1 - ln(z / near) / ln ratio`.
+    Depth {
+        /// All detail is nearer than this. Range 1e-4 to 1e6, default 1.
+        near: f32,
+        /// No detail is farther than this multiple of `near`. Range 1.01 to 1e6, default 10.
+        ratio: f32,
+    },
+    /// At a distance: `1 - (|ln(z / distance)| - ln(1 + clear)) / ln ratio`.
+    Focus {
+        /// What is in focus. Range 1e-4 to 1e6, default 5.
+        distance: f32,
+        /// How far from it there is all detail, as a fraction of it. Range 0 to 10, default 0.15.
+        clear: f32,
+        /// From which multiple of it, and at which fraction, there is none; counted from the end
+        /// of what is clear. Range 1.01 to 1e6, default 3.
+        ratio: f32,
+    },
+    /// Where surfaces face the eye: `|n.v|^power`. The second ramp is that of rims.
+    Rim {
+        /// Range 0.05 to 8, default 1. The larger, the wider is the rim.
+        power: f32,
+    },
+    /// Where surfaces reflect the light: `max(r.v, 0)^power`, with the reflected light `r`. The
+    /// second ramp is that outside of highlights. In [`RampMode::Share`](crate::RampMode::Share),
+    /// the mean of all lights.
+    Highlight {
+        /// Range 1 to 200, default 20. The larger, the smaller is the highlight.
+        power: f32,
+    },
+    /// The same everywhere.
+    Constant(
+        /// 1 is all detail, 0 none. Range 0 to 1.
+        f32,
+    ),
+}
+
+impl Default for RampDetail {
+    fn default() -> Self {
+        Self {
+            plain: vec![RampStop::default()],
+            axis: DetailAxis::default(),
+        }
+    }
+}
+
+impl Default for DetailAxis {
+    fn default() -> Self {
+        Self::Depth {
+            near: 1.0,
+            ratio: 10.0,
+        }
+    }
+}
+
+impl DetailAxis {
+    /// Every number in its documented range; one that is not finite is replaced by its default.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        let distance = |z, default| bounded(z, default, 1e-4, 1e6);
+        let ratio = |r, default| bounded(r, default, 1.01, 1e6);
+        match self {
+            Self::Depth { near, ratio: r } => Self::Depth {
+                near: distance(near, 1.0),
+                ratio: ratio(r, 10.0),
+            },
+            Self::Focus {
+                distance: z,
+                clear,
+                ratio: r,
+            } => Self::Focus {
+                distance: distance(z, 5.0),
+                clear: bounded(clear, 0.15, 0.0, 10.0),
+                ratio: ratio(r, 3.0),
+            },
+            Self::Rim { power } => Self::Rim {
+                power: bounded(power, 1.0, 0.05, 8.0),
+            },
+            Self::Highlight { power } => Self::Highlight {
+                power: bounded(power, 20.0, 1.0, 200.0),
+            },
+            Self::Constant(detail) => Self::Constant(bounded(detail, 1.0, 0.0, 1.0)),
+        }
+    }
+
+    /// The shader definition.
+    pub(super) fn definition(self) -> &'static str {
+        match self {
+            Self::Depth { .. } => "DETAIL_DEPTH",
+            Self::Focus { .. } => "DETAIL_FOCUS",
+            Self::Rim { .. } => "DETAIL_RIM",
+            Self::Highlight { .. } => "DETAIL_HIGHLIGHT",
+            Self::Constant(_) => "DETAIL_CONSTANT",
+        }
+    }
+}
+
+/// `Detail` in `detail.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct DetailUniform {
+    distance: f32,
+    per_log: f32,
+    clear: f32,
+    number: f32,
+}
+
+impl From<DetailAxis> for DetailUniform {
+    fn from(axis: DetailAxis) -> Self {
+        let none = Self::default();
+        match axis.sanitized() {
+            DetailAxis::Depth { near, ratio } => Self {
+                distance: near,
+                per_log: ratio.ln().recip(),
+                ..none
+            },
+            DetailAxis::Focus {
+                distance,
+                clear,
+                ratio,
+            } => Self {
+                distance,
+                per_log: ratio.ln().recip(),
+                clear: clear.ln_1p(),
+                ..none
+            },
+            DetailAxis::Rim { power: number }
+            | DetailAxis::Highlight { power: number }
+            | DetailAxis::Constant(number) => Self { number, ..none },
+        }
+    }
+}

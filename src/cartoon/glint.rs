@@ -1,0 +1,186 @@
+//! Highlights as signs.
+
+use bevy::{
+    math::Vec2,
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::settings::bounded;
+
+/// The highlight of the brightest light as a sign: a window, a star, a pair of dots (Anjyo and
+/// Hiramitsu 2003).
+///
+/// Shapes keep their form on curved surfaces, move with light and view, and have an anti-aliased
+/// edge. Their size is that of the plain highlight, which the roughness of the material and
+/// [`highlight_edge`](crate::CartoonLight::highlight_edge) give. All other lights draw plain
+/// highlights; where the second light has at least 0.9 of the brightness of the first, so does the
+/// first.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Glint {
+    /// Default: [`GlintShape::Disc`].
+    pub shape: GlintShape,
+    /// What the shape is upright to. Default: [`GlintFrame::View`].
+    pub frame: GlintFrame,
+    /// Multiple of the radius of the plain highlight. Range 0.1 to 8, default 1.
+    pub size: f32,
+    /// Where the shape is, in radii of the plain highlight. Range -8 to 8, default 0. It stays
+    /// within 63 degrees of the plain highlight.
+    pub offset: Vec2,
+    /// Degrees, counter-clockwise. Range -360 to 360, default 0.
+    pub rotation: f32,
+    /// Length along both axes. Range 0.1 to 10, default 1.
+    pub scale: Vec2,
+    /// Divides the shape in two along an axis, or in four along both: the distance of each from
+    /// the middle, in its radii. Range 0 to 8, default 0.
+    pub split: Vec2,
+    /// From round corners to square ones: of the disc, the square, the window and the faithful
+    /// form. Range 0 to 1, default 0.
+    pub square: f32,
+    /// Width of the bars of a window and of a streak, half the thickness of a crescent, and inner
+    /// radius of a star, in radii of the shape. Range 0.02 to 1, default 0.25.
+    pub bar: f32,
+    /// Points of a star. Range 3 to 12, default 4.
+    pub points: u32,
+    /// How sharp the corners of the faithful form are. Range 1 to 10, default 2.
+    pub sharpness: u32,
+    /// Width of the edge in physical pixels. Range 0 to 8, default 1, which is anti-aliased.
+    pub softness: f32,
+}
+
+/// The shape of a [`Glint`].
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum GlintShape {
+    /// A disc.
+    #[default]
+    Disc,
+    /// A square with round corners.
+    Square,
+    /// A square with two bars across.
+    Window,
+    /// A crescent, open to the right.
+    Crescent,
+    /// A star, with one point upwards.
+    Star,
+    /// A bar with round ends.
+    Streak,
+    /// The paper's form: the half vector is scaled, turned, moved, split and squared, one after
+    /// the other. Shapes are discs that this deforms. With much `square`, the formula also lights
+    /// bands far away from the highlight.
+    Faithful,
+}
+
+/// What a [`Glint`] is upright to.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum GlintFrame {
+    /// The picture.
+    #[default]
+    View,
+    /// The direction of the light, which is to the right.
+    Light,
+    /// The tangents of the mesh, so that it turns with the object. Meshes without tangents use the
+    /// picture.
+    Tangent,
+    /// The horizon of the world.
+    World,
+}
+
+impl Default for Glint {
+    fn default() -> Self {
+        Self {
+            shape: GlintShape::default(),
+            frame: GlintFrame::default(),
+            size: 1.0,
+            offset: Vec2::ZERO,
+            rotation: 0.0,
+            scale: Vec2::ONE,
+            split: Vec2::ZERO,
+            square: 0.0,
+            bar: 0.25,
+            points: 4,
+            sharpness: 2,
+            softness: 1.0,
+        }
+    }
+}
+
+impl Glint {
+    /// Every number in its documented range; one that is not finite is replaced by its default.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        let default = Self::default();
+        let both = |v: Vec2, default: f32, low: f32, high: f32| {
+            Vec2::new(
+                bounded(v.x, default, low, high),
+                bounded(v.y, default, low, high),
+            )
+        };
+        Self {
+            size: bounded(self.size, default.size, 0.1, 8.0),
+            offset: both(self.offset, 0.0, -8.0, 8.0),
+            rotation: bounded(self.rotation, default.rotation, -360.0, 360.0),
+            scale: both(self.scale, 1.0, 0.1, 10.0),
+            split: both(self.split, 0.0, 0.0, 8.0),
+            square: bounded(self.square, default.square, 0.0, 1.0),
+            bar: bounded(self.bar, default.bar, 0.02, 1.0),
+            points: self.points.clamp(3, 12),
+            sharpness: self.sharpness.clamp(1, 10),
+            softness: bounded(self.softness, default.softness, 0.0, 8.0),
+            ..self
+        }
+    }
+}
+
+impl GlintFrame {
+    /// The shader definition.
+    pub(super) fn definition(self) -> &'static str {
+        match self {
+            Self::View => "GLINT_VIEW",
+            Self::Light => "GLINT_LIGHT",
+            Self::Tangent => "GLINT_TANGENT",
+            Self::World => "GLINT_WORLD",
+        }
+    }
+}
+
+/// `Glint` in `glint.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct GlintUniform {
+    offset: Vec2,
+    scale: Vec2,
+    split: Vec2,
+    turn: Vec2,
+    size: f32,
+    square: f32,
+    bar: f32,
+    softness: f32,
+    points: f32,
+    sharpness: f32,
+    shape: u32,
+}
+
+impl From<&Glint> for GlintUniform {
+    fn from(glint: &Glint) -> Self {
+        let glint = glint.sanitized();
+        Self {
+            offset: glint.offset,
+            scale: glint.scale,
+            split: glint.split,
+            turn: Vec2::from_angle(glint.rotation.to_radians()),
+            size: glint.size,
+            square: glint.square,
+            bar: glint.bar,
+            softness: glint.softness,
+            points: glint.points as f32,
+            sharpness: glint.sharpness as f32,
+            shape: glint.shape as u32,
+        }
+    }
+}

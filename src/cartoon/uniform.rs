@@ -1,0 +1,226 @@
+//! Settings of the cartoon material as its shader reads them.
+
+use bevy::{render::render_resource::ShaderType, shader::ShaderDefVal};
+
+use super::{
+    CartoonLight, GlintFrame, GlintShape, RimWidth,
+    detail::DetailUniform,
+    form::FormUniform,
+    glint::GlintUniform,
+    ramp::{RampKey, RampUniform},
+    rim::RimUniform,
+};
+
+/// The uniform: `Cartoon` in `bindings.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct CartoonUniform {
+    detail: DetailUniform,
+    light: CartoonLightUniform,
+    form: FormUniform,
+    glint: GlintUniform,
+    rim: RimUniform,
+    ramp: RampUniform,
+}
+
+/// `CartoonLight` in `light.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+struct CartoonLightUniform {
+    terminator: f32,
+    backface: f32,
+    projected: f32,
+    highlight: f32,
+    highlight_edge: f32,
+    falloff: f32,
+    environment: f32,
+}
+
+impl From<&CartoonLight> for CartoonUniform {
+    fn from(light: &CartoonLight) -> Self {
+        let light = light.clone().sanitized();
+        let strength = |on: bool| if on { light.shadow_strength } else { 0.0 };
+        let detail = light.ramp.as_ref().and_then(|ramp| ramp.detail.as_ref());
+        Self {
+            light: CartoonLightUniform {
+                terminator: light.terminator,
+                backface: strength(light.backface_shadows),
+                projected: strength(light.projected_shadows),
+                highlight: light.highlight,
+                highlight_edge: light.highlight_edge,
+                falloff: light.falloff,
+                environment: light.flat_environment,
+            },
+            detail: detail.map(|d| d.axis.into()).unwrap_or_default(),
+            form: light.form.as_ref().map(Into::into).unwrap_or_default(),
+            glint: light.glint.as_ref().map(Into::into).unwrap_or_default(),
+            rim: light.rim.as_ref().map(Into::into).unwrap_or_default(),
+            ramp: light.ramp.as_ref().map(Into::into).unwrap_or_default(),
+        }
+    }
+}
+
+/// The settings that select a variant of the shader, in which all others are left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct CartoonKey {
+    ramp: Option<RampKey>,
+    /// Normals of another form, and whether it is a plane.
+    form: Option<bool>,
+    glint: Option<(GlintShape, GlintFrame)>,
+    vertex_threshold: bool,
+    rim: bool,
+    /// The rim has the same width everywhere.
+    even_rim: bool,
+}
+
+impl From<&CartoonLight> for CartoonKey {
+    fn from(light: &CartoonLight) -> Self {
+        let glint = light.glint.filter(|_| light.highlight > 0.0);
+        Self {
+            ramp: light.ramp.as_ref().map(Into::into),
+            form: light.form.map(|form| form.shape.is_up()),
+            glint: glint.map(|glint| (glint.shape, glint.frame)),
+            vertex_threshold: light.vertex_threshold,
+            rim: light.rim.is_some(),
+            even_rim: (light.rim).is_some_and(|rim| matches!(rim.width, RimWidth::Pixels(_))),
+        }
+    }
+}
+
+impl CartoonKey {
+    /// The shader definitions, in addition to those of the mesh and the view.
+    pub(super) fn definitions(self, others: &[ShaderDefVal]) -> Vec<ShaderDefVal> {
+        let has = |names: &[&str]| {
+            let is_one = |d: &ShaderDefVal| matches!(d, ShaderDefVal::Bool(n, true) if names.contains(&n.as_str()));
+            others.iter().any(is_one)
+        };
+        let mut all = Vec::new();
+        if has(&["ENVIRONMENT_MAP", "IRRADIANCE_VOLUME"]) {
+            all.push("ENVIRONMENT".into());
+        }
+        all.extend(self.ramp.into_iter().flat_map(RampKey::definitions));
+        if self.glint.is_some() || self.rim {
+            all.push("KEY_LIGHT".into());
+        }
+        if let Some((shape, frame)) = self.glint {
+            all.extend(["GLINT".into(), frame.definition().into()]);
+            all.push(ShaderDefVal::UInt("GLINT_SHAPE".into(), shape as u32));
+        }
+        if let Some(is_up) = self.form {
+            all.push("FORM".into());
+            all.extend(is_up.then(|| "FORM_UP".into()));
+        }
+        if self.vertex_threshold && has(&["VERTEX_COLORS"]) {
+            all.push("VERTEX_THRESHOLD".into());
+        }
+        if self.rim {
+            all.push("RIM".into());
+        }
+        if self.even_rim && has(&["DEPTH_PREPASS"]) {
+            all.push("DEPTH_RIM".into());
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::math::{Vec2, Vec3};
+
+    use super::*;
+    use crate::{DetailAxis, FormShape, Glint, Ramp, RampDetail, Rim, ShadedForm};
+
+    /// A material whose numbers are all `x`.
+    fn odd(x: f32, axis: DetailAxis, shape: FormShape) -> CartoonLight {
+        let plain = vec![];
+        CartoonLight {
+            ramp: Some(Ramp {
+                detail: Some(RampDetail { plain, axis }),
+                ..Ramp::default()
+            }),
+            glint: Some(Glint {
+                size: x,
+                offset: Vec2::splat(x),
+                rotation: x,
+                scale: Vec2::splat(x),
+                split: Vec2::splat(x),
+                square: x,
+                bar: x,
+                points: 0,
+                sharpness: u32::MAX,
+                softness: x,
+                ..Glint::default()
+            }),
+            form: Some(ShadedForm {
+                shape,
+                amount: x,
+                far_amount: x,
+                near: x,
+                ratio: x,
+            }),
+            rim: Some(Rim {
+                width: RimWidth::Pixels(x),
+                strength: x,
+                lit_side: x,
+                ..Rim::default()
+            }),
+            ..CartoonLight::default()
+        }
+    }
+
+    /// Whatever numbers a material has, all numbers of its uniform are finite.
+    #[test]
+    fn every_number_of_the_uniform_is_finite() {
+        for x in [
+            f32::NAN,
+            f32::INFINITY,
+            -f32::INFINITY,
+            -1.0,
+            0.0,
+            1e-45,
+            1e30,
+        ] {
+            let axes = [
+                DetailAxis::Depth { near: x, ratio: x },
+                DetailAxis::Focus {
+                    distance: x,
+                    clear: x,
+                    ratio: x,
+                },
+                DetailAxis::Rim { power: x },
+                DetailAxis::Highlight { power: x },
+                DetailAxis::Constant(x),
+            ];
+            let [center, half_size] = [Vec3::splat(x); 2];
+            let shapes = [
+                FormShape::Up,
+                FormShape::Ellipsoid { center, half_size },
+                FormShape::Cylinder { center, half_size },
+            ];
+            for (k, axis) in axes.into_iter().enumerate() {
+                let light = odd(x, axis, shapes[k % 3]);
+                let uniform = CartoonUniform::from(&light);
+                let text = format!("{uniform:?}");
+                let is_finite = !text.contains("NaN") && !text.contains("inf");
+                assert!(is_finite, "{x}: {text}");
+                assert_eq!(uniform, CartoonUniform::from(&light.sanitized()));
+            }
+        }
+    }
+
+    #[test]
+    fn the_uniform_can_be_one() {
+        CartoonUniform::assert_uniform_compat();
+    }
+
+    #[test]
+    fn what_is_not_used_is_not_compiled() {
+        let plain = CartoonKey::from(&CartoonLight::default());
+        assert!(plain.definitions(&[]).is_empty());
+        let ramp = CartoonLight {
+            ramp: Some(Ramp::default()),
+            ..CartoonLight::default()
+        };
+        let stops = ShaderDefVal::UInt("RAMP_STOPS".into(), 2);
+        let found = CartoonKey::from(&ramp).definitions(&[]);
+        assert_eq!(found, ["RAMP_SHARE".into(), stops]);
+    }
+}

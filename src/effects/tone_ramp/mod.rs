@@ -1,0 +1,224 @@
+//! Tones by the lightness of the picture, which change with depth.
+
+use bevy::{
+    color::{Color, Oklaba},
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::Vec3,
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::{
+    effect::{Effect, EffectShader, EffectStage, Needs, ViewFacts},
+    settings::{FieldRange, bounded, displayable, file_color},
+};
+
+/// Paints the picture in three tones by its lightness, near ones and far ones (X-Toon: Barla,
+/// Thollot and Markosian 2006). It is the [`Ramp`](crate::Ramp) of cameras whose scenes do not
+/// have a [`CartoonMaterial`](crate::CartoonMaterial).
+///
+/// Between near and far, edges move and soften, and colours are mixed in `OKLab`. Far tones with
+/// soft edges and pale colours are an aerial perspective; equal far tones are an abstraction.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ToneRamp {
+    /// Tone of what is dark, near. Default: a deep violet. Components of all colours are clamped
+    /// to what a display shows; alpha is ignored.
+    #[serde(with = "file_color")]
+    pub dark: Color,
+    /// Tone between dark and light, near. Default: a greyish violet.
+    #[serde(with = "file_color")]
+    pub middle: Color,
+    /// Tone of what is light, near. Default: white.
+    #[serde(with = "file_color")]
+    pub light: Color,
+    /// Lightness where the middle tone begins, near: the square root of the luminance. Range 0 to
+    /// 1, default 0.3.
+    #[reflect(@FieldRange::FRACTION)]
+    pub middle_at: f32,
+    /// Lightness where the light tone begins, near. Range 0 to 1, default 0.55.
+    #[reflect(@FieldRange::FRACTION)]
+    pub light_at: f32,
+    /// Width of the edges, near, in lightness. 0 is as hard as pixels and dither allow. Range 0 to
+    /// 1, default 0.
+    #[reflect(@FieldRange::FRACTION)]
+    pub softness: f32,
+    /// Tone of what is dark, far away. Default: a pale blue.
+    #[serde(with = "file_color")]
+    pub far_dark: Color,
+    /// Tone between dark and light, far away. Default: a paler blue.
+    #[serde(with = "file_color")]
+    pub far_middle: Color,
+    /// Tone of what is light, far away. Default: a nearly white blue.
+    #[serde(with = "file_color")]
+    pub far_light: Color,
+    /// Lightness where the middle tone begins, far away. Range 0 to 1, default 0.3.
+    #[reflect(@FieldRange::FRACTION)]
+    pub far_middle_at: f32,
+    /// Lightness where the light tone begins, far away. Range 0 to 1, default 0.55.
+    #[reflect(@FieldRange::FRACTION)]
+    pub far_light_at: f32,
+    /// Width of the edges, far away, in lightness. Range 0 to 1, default 0.3.
+    #[reflect(@FieldRange::FRACTION)]
+    pub far_softness: f32,
+    /// Place in the depth map that has the near tones. What is nearer than it has more of the far
+    /// ones, too. Range 0 to 1, default 0, the nearest.
+    #[reflect(@FieldRange::FRACTION)]
+    pub focus: f32,
+    /// How far from `focus` there are only far tones, in the depth map. Range 0.01 to 1, default 1.
+    #[reflect(@FieldRange::linear(0.01, 1.0))]
+    pub reach: f32,
+    /// How much of the colours of things is kept: the tones are multiplied by it. Range 0 (the
+    /// tones alone) to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub keep_color: f32,
+    /// How much of the tones is mixed into the picture. Range 0 (the effect is left out) to 1,
+    /// default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub amount: f32,
+}
+
+impl Default for ToneRamp {
+    fn default() -> Self {
+        Self {
+            dark: Color::srgb(0.33, 0.27, 0.48),
+            middle: Color::srgb(0.72, 0.68, 0.84),
+            light: Color::WHITE,
+            middle_at: 0.3,
+            light_at: 0.55,
+            softness: 0.0,
+            far_dark: Color::srgb(0.66, 0.74, 0.86),
+            far_middle: Color::srgb(0.79, 0.85, 0.93),
+            far_light: Color::srgb(0.93, 0.95, 0.98),
+            far_middle_at: 0.3,
+            far_light_at: 0.55,
+            far_softness: 0.3,
+            focus: 0.0,
+            reach: 1.0,
+            keep_color: 1.0,
+            amount: 1.0,
+        }
+    }
+}
+
+impl Effect for ToneRamp {
+    const NAME: &'static str = "tone_ramp";
+    const STAGE: EffectStage = EffectStage::Tone;
+    const SHADER: EffectShader = EffectShader {
+        path: "bevy_comics::effects::tone_ramp",
+        source: include_str!("tone_ramp.wgsl"),
+        settings: Some("ToneRamp"),
+    };
+    type Uniform = ToneRampUniform;
+
+    fn sanitized(self) -> Self {
+        let default = Self::default();
+        let part = |x, default| bounded(x, default, 0.0, 1.0);
+        Self {
+            dark: displayable(self.dark, default.dark),
+            middle: displayable(self.middle, default.middle),
+            light: displayable(self.light, default.light),
+            middle_at: part(self.middle_at, default.middle_at),
+            light_at: part(self.light_at, default.light_at),
+            softness: part(self.softness, default.softness),
+            far_dark: displayable(self.far_dark, default.far_dark),
+            far_middle: displayable(self.far_middle, default.far_middle),
+            far_light: displayable(self.far_light, default.far_light),
+            far_middle_at: part(self.far_middle_at, default.far_middle_at),
+            far_light_at: part(self.far_light_at, default.far_light_at),
+            far_softness: part(self.far_softness, default.far_softness),
+            focus: part(self.focus, default.focus),
+            reach: bounded(self.reach, default.reach, 0.01, 1.0),
+            keep_color: part(self.keep_color, default.keep_color),
+            amount: part(self.amount, default.amount),
+        }
+    }
+
+    fn strength(&self) -> f32 {
+        self.amount
+    }
+
+    fn faded(self, fraction: f32) -> Self {
+        let amount = self.amount * fraction;
+        Self { amount, ..self }
+    }
+
+    fn needs(&self) -> Needs {
+        let mut needs = Needs::LIGHTNESS_CHANGE;
+        needs.set(Needs::MAP, self != &self.near_alone());
+        needs
+    }
+
+    fn without(self, missing: Needs) -> Option<Self> {
+        let left = if missing.contains(Needs::MAP) {
+            self.near_alone()
+        } else {
+            self
+        };
+        (!left.needs().intersects(missing)).then_some(left)
+    }
+
+    fn uniform(&self, _: &ViewFacts) -> ToneRampUniform {
+        ToneRampUniform {
+            dark: oklab(self.dark),
+            middle_at: self.middle_at,
+            middle: oklab(self.middle),
+            light_at: self.light_at,
+            light: oklab(self.light),
+            softness: self.softness,
+            far_dark: oklab(self.far_dark),
+            far_middle_at: self.far_middle_at,
+            far_middle: oklab(self.far_middle),
+            far_light_at: self.far_light_at,
+            far_light: oklab(self.far_light),
+            far_softness: self.far_softness,
+            focus: self.focus,
+            reach: self.reach,
+            keep_color: self.keep_color,
+            amount: self.amount,
+        }
+    }
+}
+
+impl ToneRamp {
+    /// The same with the near tones everywhere.
+    fn near_alone(&self) -> Self {
+        Self {
+            far_dark: self.dark,
+            far_middle: self.middle,
+            far_light: self.light,
+            far_middle_at: self.middle_at,
+            far_light_at: self.light_at,
+            far_softness: self.softness,
+            ..*self
+        }
+    }
+}
+
+fn oklab(color: Color) -> Vec3 {
+    let color = Oklaba::from(color);
+    Vec3::new(color.lightness, color.a, color.b)
+}
+
+/// The uniform: `ToneRamp` in `tone_ramp.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct ToneRampUniform {
+    dark: Vec3,
+    middle_at: f32,
+    middle: Vec3,
+    light_at: f32,
+    light: Vec3,
+    softness: f32,
+    far_dark: Vec3,
+    far_middle_at: f32,
+    far_middle: Vec3,
+    far_light_at: f32,
+    far_light: Vec3,
+    far_softness: f32,
+    focus: f32,
+    reach: f32,
+    keep_color: f32,
+    amount: f32,
+}

@@ -1,0 +1,358 @@
+//! Signs of light and rims: their place, size and edges on a ball.
+
+use bevy::{core_pipeline::prepass::DepthPrepass, math::DVec2, prelude::*};
+use bevy_comics::{CartoonLight, Glint, GlintFrame, GlintShape, Rim, RimWidth};
+use bevy_comics_testkit::reference::glint;
+use image::RgbaImage;
+
+use crate::{
+    ramp::{bright, drawn, put, room, set_light, sun},
+    small::{Small, linear},
+};
+
+const SIZE: u32 = 256;
+/// Of the ball, in units; the camera shows 2.
+const BALL: f64 = 0.95;
+const ROUGHNESS: f32 = 0.3;
+/// Makes the plain highlight 20 pixels wide.
+const EDGE: f32 = 0.05;
+/// The pixels of the ball's radius.
+const RADIUS: f64 = 0.5 * BALL * SIZE as f64;
+/// The brightness of a highlight in the picture.
+const PEAK: f64 = 0.8;
+
+fn signed(sign: Glint) -> CartoonLight {
+    let polish = 1.0 - 1.4 * ROUGHNESS;
+    CartoonLight {
+        glint: Some(sign),
+        highlight: PEAK as f32 / (polish * polish),
+        highlight_edge: EDGE,
+        ..default()
+    }
+}
+
+/// A black ball with smooth normals, under a light from the eye.
+fn ball(light: &CartoonLight) -> Small {
+    let mut small = room(UVec2::splat(SIZE), 0.0);
+    small.insert(Camera {
+        clear_color: Color::BLACK.into(),
+        ..default()
+    });
+    let mesh = Sphere::new(BALL as f32).mesh().uv(256, 128);
+    put(&mut small, mesh, light, Transform::IDENTITY);
+    polish(&mut small);
+    sun(&mut small, Vec3::Z, bright(1.0));
+    small
+}
+
+/// Makes all materials black and shiny.
+fn polish(small: &mut Small) {
+    let world = small.world();
+    let mut materials = world.resource_mut::<Assets<bevy_comics::CartoonMaterial>>();
+    for (_, material) in materials.iter_mut() {
+        material.base.base_color = Color::BLACK;
+        material.base.perceptual_roughness = ROUGHNESS;
+    }
+}
+
+/// Covered pixels, and the middle of what is covered, from the middle of the picture; up is
+/// positive.
+fn covered(picture: &RgbaImage) -> (f64, DVec2) {
+    let middle = 0.5 * f64::from(picture.width());
+    let (mut area, mut moment) = (0.0, DVec2::ZERO);
+    for (x, y, _) in picture.enumerate_pixels() {
+        let cover = linear(picture, x, y)[0] / PEAK;
+        area += cover;
+        moment += cover * DVec2::new(f64::from(x) + 0.5 - middle, middle - f64::from(y) - 0.5);
+    }
+    (area, moment / area.max(1e-9))
+}
+
+/// The same of the ball's geometry at four times the size. `half` is the half vector.
+fn true_cover(sign: &Glint, half: [f64; 3]) -> (f64, DVec2) {
+    let radius = glint::glint_radius(f64::from(EDGE), f64::from(ROUGHNESS));
+    let fine = 4;
+    let (mut area, mut moment) = (0.0, DVec2::ZERO);
+    let end = (RADIUS as i32 + 1) * fine;
+    for (i, j) in (-end..end).flat_map(|i| (-end..end).map(move |j| (i, j))) {
+        let at = DVec2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) / f64::from(fine);
+        let [x, y] = [at.x / RADIUS, at.y / RADIUS];
+        let rest = 1.0 - x * x - y * y;
+        // What faces away from the light shows nothing.
+        if rest < 1e-4 {
+            continue;
+        }
+        let normal = [x, y, rest.sqrt()];
+        let frame = glint::frame_along(normal, [1.0, 0.0, 0.0]);
+        let distance = match sign.shape {
+            GlintShape::Faithful => glint::faithful_distance(sign, frame, radius, normal, half),
+            _ => glint::sign_distance(sign, radius, glint::place_of(frame, normal, half)),
+        };
+        if distance < 0.0 {
+            area += 1.0;
+            moment += at;
+        }
+    }
+    (area / f64::from(fine * fine), moment / area)
+}
+
+/// Every shape is where the geometry of the ball says.
+#[test]
+fn signs_cover_what_they_should() {
+    let base = Glint::default();
+    let of = |shape, change: fn(&mut Glint)| {
+        let mut sign = Glint { shape, ..base };
+        change(&mut sign);
+        sign
+    };
+    let signs = [
+        base,
+        of(GlintShape::Disc, |s| s.scale = Vec2::new(2.0, 0.8)),
+        of(GlintShape::Disc, |s| s.split = Vec2::new(1.6, 0.0)),
+        of(GlintShape::Disc, |s| s.offset = Vec2::new(1.5, 0.7)),
+        of(GlintShape::Disc, |s| s.square = 1.0),
+        of(GlintShape::Square, |s| s.square = 1.0),
+        of(GlintShape::Window, |s| s.rotation = 20.0),
+        of(GlintShape::Crescent, |s| s.size = 1.6),
+        of(GlintShape::Star, |s| s.size = 2.0),
+        of(GlintShape::Star, |s| {
+            (s.size, s.points, s.bar) = (2.0, 5, 0.5)
+        }),
+        of(GlintShape::Streak, |s| (s.size, s.rotation) = (2.0, 45.0)),
+        of(GlintShape::Faithful, |s| s.scale = Vec2::new(1.8, 1.0)),
+        of(GlintShape::Faithful, |s| {
+            (s.square, s.rotation) = (1.0, 30.0);
+        }),
+        of(GlintShape::Faithful, |s| s.split = Vec2::splat(0.6)),
+        of(GlintShape::Faithful, |s| s.offset = Vec2::new(-1.2, 1.0)),
+    ];
+    let mut small = ball(&signed(base));
+    for sign in signs {
+        set_light(&mut small, &signed(sign));
+        let (area, middle) = covered(&drawn(&mut small));
+        let (wanted, centre) = true_cover(&sign, [0.0, 0.0, 1.0]);
+        assert!(wanted > 300.0, "{sign:?}: {wanted} pixels");
+        assert!(
+            (area / wanted - 1.0).abs() < 0.015,
+            "{sign:?}: {area} pixels, not {wanted}"
+        );
+        let away = middle.distance(centre);
+        assert!(away < 0.5, "{sign:?}: {middle}, not {centre}");
+    }
+}
+
+/// The plain disc has the area that its angle says, and is the highlight without a sign.
+#[test]
+fn a_disc_is_the_plain_highlight() {
+    let sign = signed(Glint::default());
+    let mut small = ball(&sign);
+    let with = drawn(&mut small);
+    let plain = CartoonLight {
+        glint: None,
+        ..sign
+    };
+    set_light(&mut small, &plain);
+    let without = drawn(&mut small);
+    let tangent = glint::glint_radius(f64::from(EDGE), f64::from(ROUGHNESS));
+    let sine2 = tangent * tangent / (1.0 + tangent * tangent);
+    let wanted = std::f64::consts::PI * RADIUS * RADIUS * sine2;
+    for picture in [&with, &without] {
+        let (area, _) = covered(picture);
+        assert!((area / wanted - 1.0).abs() < 0.01, "{area}, not {wanted}");
+    }
+    // Edges of the two are one pixel wide, one linear and one smooth.
+    let apart = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 24;
+    let differ = with.as_raw().iter().zip(without.as_raw());
+    let differ = differ.filter(|&pair| apart(pair)).count();
+    let border = 2.0 * std::f64::consts::PI * RADIUS * sine2.sqrt();
+    assert!((differ as f64) < 3.0 * 0.5 * border, "{differ} channels");
+}
+
+/// Moved by parts of a pixel, a sign covers the same.
+#[test]
+fn signs_are_anti_aliased() {
+    let sign = Glint {
+        shape: GlintShape::Window,
+        rotation: 15.0,
+        ..Glint::default()
+    };
+    let mut small = ball(&signed(sign));
+    small.headless.step(6);
+    let world = small.world();
+    let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
+    let ball = meshes.single(world).expect("a ball");
+    let areas: Vec<f64> = (0..64)
+        .map(|shift| {
+            let moved = shift as f32 / 64.0 * 2.0 / SIZE as f32;
+            let at = Transform::from_xyz(moved, 0.37 * moved, 0.0);
+            small.world().entity_mut(ball).insert(at);
+            small.headless.step(3);
+            covered(&small.picture()).0
+        })
+        .collect();
+    let mean = areas.iter().sum::<f64>() / 64.0;
+    let variance = areas.iter().map(|a| (a - mean).powi(2)).sum::<f64>() / 64.0;
+    assert!(
+        variance.sqrt() < 0.01 * mean,
+        "{} of {mean}",
+        variance.sqrt()
+    );
+}
+
+/// While the light turns, the sign moves smoothly, and stays where the geometry says.
+#[test]
+fn signs_move_smoothly_with_the_light() {
+    let sign = Glint {
+        shape: GlintShape::Star,
+        size: 2.0,
+        ..Glint::default()
+    };
+    let mut small = ball(&signed(sign));
+    let world = small.world();
+    let mut suns = world.query_filtered::<Entity, With<DirectionalLight>>();
+    let sun = suns.single(world).expect("a sun");
+    let mut middles = vec![];
+    for degrees in -40..=40 {
+        let angle = (degrees as f32).to_radians();
+        let to = Vec3::new(angle.sin(), 0.0, angle.cos());
+        let at = Transform::from_translation(to).looking_at(Vec3::ZERO, Vec3::Y);
+        small.world().entity_mut(sun).insert(at);
+        small.headless.step(if middles.is_empty() { 6 } else { 3 });
+        let middle = covered(&small.picture()).1;
+        if degrees % 20 == 0 {
+            let half = glint::unit([f64::from(to.x), 0.0, f64::from(to.z) + 1.0]);
+            let wanted = true_cover(&sign, half).1;
+            assert!(
+                middle.distance(wanted) < 0.5,
+                "{degrees}: {middle}, not {wanted}"
+            );
+        }
+        middles.push(middle);
+    }
+    for three in middles.windows(3) {
+        let bend = three[0] - 2.0 * three[1] + three[2];
+        assert!(bend.length() < 0.3, "{three:?}");
+    }
+    assert!(middles[0].distance(middles[80]) > 60.0);
+}
+
+/// Only the brightest light draws a sign; of two that are equal, none does.
+#[test]
+fn the_brightest_light_draws_the_sign() {
+    // A ring around the plain highlight.
+    let sign = Glint {
+        offset: Vec2::new(2.5, 0.0),
+        ..Glint::default()
+    };
+    let mut small = ball(&signed(sign));
+    let one = covered(&drawn(&mut small));
+    assert!(one.1.x > 40.0, "{one:?}");
+    let to = Vec3::new(-1.0, 0.0, 1.0);
+    let weak = sun(&mut small, to, bright(0.5));
+    let two = covered(&drawn(&mut small));
+    // The weaker one's highlight has half its light, and is where it is without a sign.
+    assert!(two.0 > 1.3 * one.0 && two.1.x < one.1.x, "{one:?}, {two:?}");
+    small.world().entity_mut(weak).insert(bright(1.0));
+    let equal = covered(&drawn(&mut small));
+    set_light(
+        &mut small,
+        &CartoonLight {
+            glint: None,
+            ..signed(sign)
+        },
+    );
+    let plain = covered(&drawn(&mut small));
+    assert!(equal.1.distance(plain.1) < 0.5, "{equal:?}, {plain:?}");
+}
+
+/// In every frame, on a mesh with and without tangents, what is drawn is a sign of the same area.
+#[test]
+fn frames_turn_signs() {
+    let sign = |frame| Glint {
+        shape: GlintShape::Streak,
+        size: 2.0,
+        frame,
+        ..Glint::default()
+    };
+    let mut small = ball(&signed(sign(GlintFrame::View)));
+    // How much wider than high it is.
+    let wide = |small: &mut Small| {
+        let picture = drawn(small);
+        let (area, middle) = covered(&picture);
+        let mut spread = DVec2::ZERO;
+        for (x, y, _) in picture.enumerate_pixels() {
+            let at = DVec2::new(f64::from(x) - 127.5, 127.5 - f64::from(y)) - middle;
+            spread += linear(&picture, x, y)[0] / PEAK * at * at;
+        }
+        assert!(area > 500.0);
+        (spread.x / spread.y).ln()
+    };
+    assert!(wide(&mut small) > 1.0);
+    // The camera lies on its side: the sign of the world stays, that of the picture turns.
+    let turned = Transform::from_xyz(0.0, 0.0, 5.0).looking_at(Vec3::ZERO, Vec3::X);
+    small.insert(turned);
+    assert!(wide(&mut small) > 1.0);
+    set_light(&mut small, &signed(sign(GlintFrame::World)));
+    assert!(wide(&mut small) < -1.0);
+    // A light from above: along it is upwards in the upright picture.
+    small.insert(Transform::from_xyz(0.0, 0.0, 5.0));
+    let world = small.world();
+    let mut suns = world.query_filtered::<Entity, With<DirectionalLight>>();
+    let old = suns.single(world).expect("a sun");
+    world.despawn(old);
+    sun(&mut small, Vec3::new(0.0, 1.0, 1.0), bright(1.0));
+    set_light(&mut small, &signed(sign(GlintFrame::Light)));
+    assert!(wide(&mut small) < -0.5);
+    set_light(&mut small, &signed(sign(GlintFrame::Tangent)));
+    assert!(wide(&mut small) > 0.5);
+}
+
+fn rimmed(width: RimWidth, lit_side: f32) -> CartoonLight {
+    CartoonLight {
+        highlight: 0.0,
+        rim: Some(Rim {
+            width,
+            color: Color::linear_rgb(PEAK as f32, PEAK as f32, PEAK as f32),
+            lit_side,
+            ..default()
+        }),
+        ..default()
+    }
+}
+
+/// Rims of a ball are rings of a known area.
+#[test]
+fn rims_are_as_wide_as_they_say() {
+    let share = 0.4;
+    let facing = RimWidth::Facing {
+        share,
+        softness: 0.0,
+    };
+    let mut small = ball(&rimmed(facing, 0.0));
+    small.insert(DepthPrepass);
+    let all = std::f64::consts::PI * RADIUS * RADIUS;
+    let (area, middle) = covered(&drawn(&mut small));
+    let wanted = all * f64::from(share * share);
+    assert!((area / wanted - 1.0).abs() < 0.02, "{area}, not {wanted}");
+    assert!(middle.length() < 0.3);
+    for pixels in [2.0f32, 5.0, 9.0] {
+        set_light(&mut small, &rimmed(RimWidth::Pixels(pixels), 0.0));
+        let (area, middle) = covered(&drawn(&mut small));
+        let wanted = all * (1.0 - (1.0 - f64::from(pixels) / RADIUS).powi(2));
+        // The border of the depth is that of whole pixels.
+        assert!(
+            (area / wanted - 1.0).abs() < 0.05,
+            "{pixels}: {area}, not {wanted}"
+        );
+        assert!(middle.length() < 1.0);
+    }
+    // On the side of a light from the right, and without the prepass as `Facing`.
+    let world = small.world();
+    let mut suns = world.query_filtered::<Entity, With<DirectionalLight>>();
+    let old = suns.single(world).expect("a sun");
+    world.despawn(old);
+    sun(&mut small, Vec3::X, bright(1.0));
+    set_light(&mut small, &rimmed(RimWidth::Pixels(5.0), 1.0));
+    let (_, middle) = covered(&drawn(&mut small));
+    assert!(middle.x > 0.4 * RADIUS, "{middle}");
+}
