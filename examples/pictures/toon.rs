@@ -144,17 +144,17 @@ fn signs() -> RgbaImage {
         sign(GlintShape::Disc, 1.6, |_| ()),
         sign(GlintShape::Disc, 1.3, |s| s.split.x = 1.5),
         sign(GlintShape::Window, 2.4, |s| {
-            (s.square, s.rotation) = (0.7, -8.0)
+            (s.square, s.rotation) = (0.7, -8.0);
         }),
         sign(GlintShape::Crescent, 2.8, |s| {
-            (s.bar, s.rotation) = (0.3, -35.0)
+            (s.bar, s.rotation) = (0.3, -35.0);
         }),
         sign(GlintShape::Star, 4.0, |_| ()),
         sign(GlintShape::Streak, 3.6, |s| {
-            (s.bar, s.rotation) = (0.2, 40.0)
+            (s.bar, s.rotation) = (0.2, 40.0);
         }),
         sign(GlintShape::Faithful, 1.8, |s| {
-            (s.square, s.sharpness, s.scale.x) = (0.4, 1, 1.5)
+            (s.square, s.sharpness, s.scale.x) = (0.4, 1, 1.5);
         }),
     ];
     let colors = [

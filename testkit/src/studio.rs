@@ -10,7 +10,7 @@ use bevy_comics::{
     CartoonScene, ComicStyle, ComicsPlugin, DepthMap, Focus, FocusAt, FocusStyle, Halftone,
     HalftoneMode, Hatching, HatchingGround, IsoLines, MeshSections, ObjectScreen, Outlines, Paint,
     PaintForm, Paper, Preset, ScreenAnchor, ScreenShape, SpeedLineKind, SpeedLines, ToneBands,
-    TwoTone, presets,
+    ToneRamp, TwoTone, presets,
 };
 
 use super::{
@@ -286,6 +286,7 @@ fn village_effects(style: &ComicStyle) -> Vec<(&'static str, ComicStyle)> {
         ("paint", lined(style.clone().with(distance))),
         ("strokes", style.clone().with(strokes)),
         ("hatching", lined(style.clone().with(hatched))),
+        ("tone-ramp", lined(style.clone().with(ToneRamp::default()))),
         ("focus", village_focus(FocusStyle::Blur)),
         ("focus-offset", village_focus(FocusStyle::Offset)),
         ("focus-paint", village_focus(FocusStyle::Paint)),

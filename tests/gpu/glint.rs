@@ -116,7 +116,7 @@ fn signs_cover_what_they_should() {
         of(GlintShape::Crescent, |s| s.size = 1.6),
         of(GlintShape::Star, |s| s.size = 2.0),
         of(GlintShape::Star, |s| {
-            (s.size, s.points, s.bar) = (2.0, 5, 0.5)
+            (s.size, s.points, s.bar) = (2.0, 5, 0.5);
         }),
         of(GlintShape::Streak, |s| (s.size, s.rotation) = (2.0, 45.0)),
         of(GlintShape::Faithful, |s| s.scale = Vec2::new(1.8, 1.0)),
