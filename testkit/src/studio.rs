@@ -154,14 +154,13 @@ const OUTLINE_PRESETS: [Preset; 4] = [
 
 /// The presets that differ by distance, harmonize colours or hatch; last, so that the clock of the
 /// others is the same without them.
-const LATER_PRESETS: [Preset; 7] = [
+const LATER_PRESETS: [Preset; 6] = [
     presets::STORYBOOK,
     presets::COPPER_AND_TEAL,
     presets::ENGRAVING,
     presets::PENCIL_STUDY,
     presets::WOODCUT,
     presets::HARD_BOILED,
-    presets::CHARCOAL,
 ];
 
 /// The presets that have a golden picture in a scene: all those that print or paint. The mountains
@@ -200,6 +199,9 @@ pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
         let name = presets::WATERCOLOR.name();
         styles.push((name, preset(name)));
     }
+    // After the watercolour, which changes with the clock.
+    let name = presets::CHARCOAL.name();
+    styles.push((name, preset(name)));
     styles
 }
 
