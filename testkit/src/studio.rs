@@ -202,6 +202,11 @@ pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
     // After the watercolour, which changes with the clock.
     let name = presets::CHARCOAL.name();
     styles.push((name, preset(name)));
+    if scene == BuiltIn::Village {
+        // The last one: strokes of the others change with the clock.
+        let style = ComicStyle::new().with(ToneRamp::default());
+        styles.push(("tone-ramp", style.with(Outlines::default())));
+    }
     styles
 }
 
@@ -288,7 +293,6 @@ fn village_effects(style: &ComicStyle) -> Vec<(&'static str, ComicStyle)> {
         ("paint", lined(style.clone().with(distance))),
         ("strokes", style.clone().with(strokes)),
         ("hatching", lined(style.clone().with(hatched))),
-        ("tone-ramp", lined(style.clone().with(ToneRamp::default()))),
         ("focus", village_focus(FocusStyle::Blur)),
         ("focus-offset", village_focus(FocusStyle::Offset)),
         ("focus-paint", village_focus(FocusStyle::Paint)),
