@@ -150,7 +150,6 @@ mod pages {
         SplitScreen: "docs/split-screen.md";
         TransparentThings: "docs/transparent-things.md";
         Inspector: "docs/inspector.md";
-        Hatching: "docs/hatching.md";
         Print: "docs/print.md";
         Performance: "docs/performance.md";
         Benchmarks: "docs/benchmarks.md";
