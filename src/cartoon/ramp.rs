@@ -1,7 +1,7 @@
 //! Tones of a cartoon material by how much light arrives.
 
 use bevy::{
-    color::{Color, Oklaba},
+    color::Color,
     math::Vec3,
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
     render::render_resource::ShaderType,
@@ -11,7 +11,7 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use super::RampDetail;
-use crate::settings::{bounded, displayable, file_color, linear_rgb};
+use crate::settings::{bounded, displayable, file_color, linear_rgb, oklab};
 
 /// The tones of a [`CartoonMaterial`](crate::CartoonMaterial), from shade to light (Lake et al.
 /// 2000).
@@ -250,13 +250,6 @@ fn paired(stops: &[RampStop], partner: &[RampStop], k: usize) -> RampStop {
         softness: other.softness,
         ..last
     }
-}
-
-fn oklab(color: Color) -> Vec3 {
-    let Oklaba {
-        lightness, a, b, ..
-    } = color.into();
-    Vec3::new(lightness, a, b)
 }
 
 /// The part of a ramp that selects a variant of the shader.

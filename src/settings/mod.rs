@@ -16,11 +16,16 @@ pub use field::{BlendField, FieldRange, HueWheel};
 pub use form::Form;
 
 use bevy::{
-    color::{Color, ColorToComponents},
+    color::{Color, ColorToComponents, Oklaba},
     math::Vec3,
 };
 
 /// Red, green and blue of a colour in linear light, without alpha: as shaders take it.
 pub fn linear_rgb(color: Color) -> Vec3 {
     color.to_linear().to_vec3()
+}
+
+/// Lightness, a and b of a colour in `OKLab`, without alpha: as shaders take it.
+pub fn oklab(color: Color) -> Vec3 {
+    Oklaba::from(color).to_vec3()
 }

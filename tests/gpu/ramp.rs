@@ -439,9 +439,8 @@ fn vertices_say_how_easily_they_are_lit() {
                 .pixels()
                 .filter(|p| **p != background && p.0[0] > 200);
             let found = bright.count() as f64 / ball;
-            let room = if lit == 0.5 { 0.2 } else { 0.02 };
             assert!(
-                (found - lit).abs() < room,
+                (found - lit).abs() < 0.02,
                 "alpha {alpha}: {found} of the ball"
             );
         }

@@ -1,7 +1,7 @@
 //! Tones by the lightness of the picture, which change with depth.
 
 use bevy::{
-    color::{Color, Oklaba},
+    color::Color,
     ecs::{component::Component, reflect::ReflectComponent},
     math::Vec3,
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     effect::{Effect, EffectShader, EffectStage, Needs, ViewFacts},
-    settings::{FieldRange, bounded, displayable, file_color},
+    settings::{FieldRange, bounded, displayable, file_color, oklab},
 };
 
 /// Paints the picture in three tones by its lightness, near ones and far ones (X-Toon: Barla,
@@ -195,11 +195,6 @@ impl ToneRamp {
             ..*self
         }
     }
-}
-
-fn oklab(color: Color) -> Vec3 {
-    let color = Oklaba::from(color);
-    Vec3::new(color.lightness, color.a, color.b)
 }
 
 /// The uniform: `ToneRamp` in `tone_ramp.wgsl`.
