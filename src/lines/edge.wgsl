@@ -254,17 +254,19 @@ const SILHOUETTE: u32 = 1u;
 const CREASE: u32 = 2u;
 const OBJECT: u32 = 4u;
 
-// 0 to 1 as a byte.
+// 0 to 1 as a byte. Tenths are half way between two bytes: they are rounded down, whatever the
+// last bits are.
 fn byte(x: vec4<f32>) -> vec4<u32> {
-    return vec4<u32>(clamp(x, vec4(0.0), vec4(1.0)) * 255.0 + 0.5);
+    return vec4<u32>(clamp(x, vec4(0.0), vec4(1.0)) * 255.0 + 0.499);
 }
 
 // A half width of up to 31 physical pixels in 12 bits: a float of 3 bits of exponent and
 // 9 of mantissa. 1/8 is added, so that the smallest of these floats stands for 0. Eighths
-// of a pixel are exact; the largest error is 1/1024 of the width.
+// of a pixel are exact; the largest error is 1/1024 of the width. Products with simple factors are
+// often half way between two of these floats: they are rounded down, whatever the last bits are.
 fn pack_width(half_width: vec4<f32>) -> vec4<u32> {
     let bits = bitcast<vec4<u32>>(clamp(half_width, vec4(0.0), vec4(31.0)) + 0.125);
-    return ((bits + vec4(0x2000u)) >> vec4(14u)) - vec4(124u << 9u);
+    return ((bits + vec4(0x1ff0u)) >> vec4(14u)) - vec4(124u << 9u);
 }
 
 fn unpack_width(packed: u32) -> f32 {

@@ -98,17 +98,22 @@ pub fn jump(s: &Outlines) -> f64 {
     f64::from(measured.unwrap_or_default().threshold)
 }
 
+/// 0 to 1 in eight bits. What is half way between two codes is rounded down.
+pub fn stored_byte(value: f64) -> f64 {
+    (255.0 * value.clamp(0.0, 1.0) + 0.499).floor() / 255.0
+}
+
 /// Whether ink is visible after it is stored in eight bits.
 fn is_stored(ink: f64) -> bool {
-    (255.0 * ink.clamp(0.0, 1.0)).round() >= 1.0
+    stored_byte(ink) > 0.0
 }
 
 /// A half width in twelve bits: three of exponent, nine of mantissa, of the half width
-/// plus 1/8.
+/// plus 1/8. What is half way between two of them is rounded down.
 pub fn stored_width(half_width: f64) -> f64 {
     let moved = half_width.clamp(0.0, 31.0) + 0.125;
     let step = 2f64.powi(moved.log2().floor() as i32 - 9);
-    (moved / step).round() * step - 0.125
+    (moved / step + 0.5 - 16.0 / 16384.0).floor() * step - 0.125
 }
 
 /// Whether two sections of an object meet there, and whether one of them has no creases.

@@ -348,7 +348,7 @@ fn stored(value: f64, nudge: f64) -> f64 {
     } else {
         0.02 * nudge.signum()
     };
-    (code + undecided).round().clamp(0.0, 255.0) / 255.0
+    (code + undecided + 0.499).floor().clamp(0.0, 255.0) / 255.0
 }
 
 /// The ink of every pixel of a viewport, as it is stored.

@@ -3,7 +3,7 @@
 use bevy_comics::{LineWeight, Outlines};
 
 use super::{
-    crack::{Crack, SIDES, THINNEST, jump, normal, stored_width},
+    crack::{Crack, SIDES, THINNEST, jump, normal, stored_byte, stored_width},
     map::{Frame, Projection, is_background},
     smoothstep,
     view::View,
@@ -56,10 +56,9 @@ pub fn taper_weight(taper: f64, cracks: f64) -> f64 {
 
 /// A crack whose width is multiplied by a factor; `None` if nothing is left of it.
 pub fn weighted(crack: Crack, factor: f64) -> Option<Crack> {
-    let byte = |value: f64| (255.0 * value.clamp(0.0, 1.0)).round() / 255.0;
     let thinnest = crack.half_width.min(THINNEST);
     let half_width = crack.half_width * factor;
-    let opacity = byte(byte(crack.opacity) * (half_width / thinnest).min(1.0));
+    let opacity = stored_byte(stored_byte(crack.opacity) * (half_width / thinnest).min(1.0));
     let weighted = Crack {
         opacity,
         half_width: stored_width(half_width.max(thinnest)),
