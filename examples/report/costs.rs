@@ -15,7 +15,8 @@ pub struct Cost {
     pub name: String,
     /// Milliseconds more than the frame without it, median of all rounds.
     pub milliseconds: f64,
-    /// Ratio to a blit of the same round: 10th, 50th and 90th percentile.
+    /// Ratio to a blit of the same round: 10th, 50th and 90th percentile. Not a number where
+    /// the blit of a round is lost in the noise: no longer than nothing.
     pub ratio: [f64; 3],
 }
 
@@ -29,7 +30,12 @@ pub fn costs(times: &Table, section: &str, scene: &str, laps: &[&str]) -> Vec<Co
             .collect()
     };
     let (nothing, nothing_post) = (of("nothing", laps), of("nothing", &["post"]));
-    let blit = of("blit", &["post"]);
+    let blit: Vec<f64> = of("blit", &["post"])
+        .iter()
+        .zip(&nothing_post)
+        .map(|(b, n)| b - n)
+        .collect();
+    let lost = blit.iter().any(|b| *b <= 0.0);
     times
         .distinct(&rows, "variant")
         .into_iter()
@@ -37,15 +43,11 @@ pub fn costs(times: &Table, section: &str, scene: &str, laps: &[&str]) -> Vec<Co
         .map(|name| {
             let own = of(&name, laps);
             let over: Vec<f64> = own.iter().zip(&nothing).map(|(v, n)| v - n).collect();
-            let ratios: Vec<f64> = over
-                .iter()
-                .zip(blit.iter().zip(&nothing_post))
-                .map(|(v, (b, n))| v / (b - n))
-                .collect();
+            let ratios: Vec<f64> = over.iter().zip(&blit).map(|(v, b)| v / b).collect();
             Cost {
                 name,
                 milliseconds: median(&over),
-                ratio: [0.1, 0.5, 0.9].map(|q| quantile(&ratios, q)),
+                ratio: [0.1, 0.5, 0.9].map(|q| if lost { f64::NAN } else { quantile(&ratios, q) }),
             }
         })
         .collect()
@@ -64,12 +66,13 @@ pub fn unsigned_zero(x: f64, digits: i32) -> f64 {
 pub fn cost_table(out: &mut String, costs: &[Cost]) {
     let _ = writeln!(out, "| | ms | blits | 10 % to 90 % |\n|---|---|---|---|");
     for cost in costs.iter().filter(|c| !c.name.starts_with("blit")) {
+        let _ = write!(out, "| {} | {:.2} |", cost.name, cost.milliseconds);
         let [low, middle, high] = cost.ratio;
-        let _ = writeln!(
-            out,
-            "| {} | {:.2} | {middle:.2} | {low:.2} to {high:.2} |",
-            cost.name, cost.milliseconds
-        );
+        let _ = if middle.is_nan() {
+            writeln!(out, " - | - |")
+        } else {
+            writeln!(out, " {middle:.2} | {low:.2} to {high:.2} |")
+        };
     }
     out.push('\n');
 }

@@ -254,8 +254,8 @@ const SILHOUETTE: u32 = 1u;
 const CREASE: u32 = 2u;
 const OBJECT: u32 = 4u;
 
-// 0 to 1 as a byte. Tenths are half way between two bytes: they are rounded down, whatever the
-// last bits are.
+// 0 to 1 as a byte. Odd tenths (0.1, 0.3, ...) are half way between two bytes: they are rounded
+// down, whatever the last bits are.
 fn byte(x: vec4<f32>) -> vec4<u32> {
     return vec4<u32>(clamp(x, vec4(0.0), vec4(1.0)) * 255.0 + 0.499);
 }

@@ -1,71 +1,131 @@
-//! The sheet of the page about lines: a part of one frame of some strips, pixel for pixel.
+//! The figures of the pages about lines: parts of frames of strips, pixel for pixel.
 
 use std::{collections::HashMap, path::Path};
 
 use bevy::math::UVec2;
 use image::{RgbaImage, imageops};
 
-use super::GAP;
+use super::{GAP, SIZE};
 use crate::{save, sheet::grid};
-
-const SIZE: UVec2 = UVec2::new(232, 130);
 
 /// A part of a frame: the strip, which of its frames, and the top left corner of the part.
 type Cutting = (&'static str, usize, [u32; 2]);
 
-/// Rows of four; strips that are opposites are side by side.
-const CUTTINGS: [[Cutting; 4]; 4] = [
-    [
-        ("kinds", 3, [84, 40]),
-        ("light", 3, [84, 40]),
-        ("brush", 0, [84, 60]),
-        ("boil", 0, [84, 60]),
-    ],
-    [
-        ("surface", 0, [0, 70]),
-        ("fog", 0, [0, 70]),
-        ("iso-lines", 0, [84, 30]),
-        ("x-ray", 0, [84, 60]),
-    ],
-    [
-        ("no-budget", 0, [84, 95]),
-        ("budget", 0, [84, 95]),
-        ("no-overshoot", 1, [84, 60]),
-        ("overshoot", 1, [84, 60]),
-    ],
-    [
-        ("no-bridge", 1, [84, 50]),
-        ("bridge", 1, [84, 50]),
-        ("no-sections", 0, [168, 90]),
-        ("sections", 0, [168, 90]),
-    ],
-];
-
-/// The parts that have been cut out so far.
-#[derive(Default)]
-pub struct Sheet {
-    parts: HashMap<&'static str, RgbaImage>,
+/// A figure: its name, the size of its parts, and how many are in a row.
+struct Figure {
+    name: &'static str,
+    part: UVec2,
+    columns: usize,
+    cuttings: &'static [Cutting],
 }
 
-impl Sheet {
-    /// Cuts out what the sheet has of a strip.
+/// Two parts in a row.
+const HALF: UVec2 = UVec2::new(470, 264);
+/// Four frames of a motion in a row.
+const QUARTER: UVec2 = UVec2::new(233, 264);
+
+const FIGURES: [Figure; 6] = [
+    Figure {
+        name: "lines",
+        part: HALF,
+        columns: 2,
+        cuttings: &[
+            ("kinds", 3, [125, 70]),
+            ("light", 3, [125, 70]),
+            ("brush", 0, [125, 110]),
+            ("boil", 0, [125, 110]),
+        ],
+    },
+    Figure {
+        name: "lines-color",
+        part: HALF,
+        columns: 2,
+        cuttings: &[
+            ("surface", 0, [0, 100]),
+            ("fog", 0, [0, 100]),
+            ("iso-lines", 0, [125, 60]),
+            ("x-ray", 0, [125, 70]),
+        ],
+    },
+    Figure {
+        name: "lines-whole",
+        part: HALF,
+        columns: 2,
+        cuttings: &[
+            ("no-bridge", 1, [125, 70]),
+            ("bridge", 1, [125, 70]),
+            ("no-sections", 0, [250, 141]),
+            ("sections", 0, [250, 141]),
+            ("no-overshoot", 1, [125, 70]),
+            ("overshoot", 1, [125, 70]),
+        ],
+    },
+    Figure {
+        name: "lines-budget",
+        part: HALF,
+        columns: 2,
+        cuttings: &[("no-budget", 0, [125, 141]), ("budget", 0, [125, 141])],
+    },
+    Figure {
+        name: "lines-motion",
+        part: QUARTER,
+        columns: 4,
+        cuttings: &[
+            ("brush", 0, [243, 90]),
+            ("brush", 1, [243, 90]),
+            ("brush", 2, [243, 90]),
+            ("brush", 3, [243, 90]),
+            ("budget", 0, [243, 90]),
+            ("budget", 1, [243, 90]),
+            ("budget", 3, [243, 90]),
+            ("budget", 5, [243, 90]),
+            ("default", 0, [243, 90]),
+            ("default", 1, [243, 90]),
+            ("default", 3, [243, 90]),
+            ("default", 5, [243, 90]),
+        ],
+    },
+    Figure {
+        name: "depth-write",
+        part: SIZE,
+        columns: 1,
+        cuttings: &[("transparent", 0, [0, 0])],
+    },
+];
+
+/// The strips' frames that figures have parts of.
+#[derive(Default)]
+pub struct Figures {
+    frames: HashMap<(&'static str, usize), RgbaImage>,
+}
+
+impl Figures {
+    /// Keeps what figures have of a strip.
     pub fn add(&mut self, name: &str, frames: &[RgbaImage]) {
-        for (strip, frame, [x, y]) in CUTTINGS.iter().flatten() {
+        for (strip, index, _) in FIGURES.iter().flat_map(|figure| figure.cuttings) {
             if *strip == name {
-                let part = imageops::crop_imm(&frames[*frame], *x, *y, SIZE.x, SIZE.y);
-                self.parts.insert(*strip, part.to_image());
+                self.frames.insert((*strip, *index), frames[*index].clone());
             }
         }
     }
 
-    /// Writes the sheet, if all strips that it has parts of were drawn.
+    /// Writes the figures of which all strips were drawn.
     pub fn write(&self, folder: &Path) -> Result<(), String> {
-        let rows = CUTTINGS
-            .iter()
-            .map(|row| row.iter().map(|(name, ..)| self.parts.get(name)).collect());
-        let Some(rows) = rows.collect::<Option<Vec<Vec<&RgbaImage>>>>() else {
-            return Ok(());
-        };
-        save(&grid(&rows, SIZE, GAP), &folder.join("lines.png"))
+        for figure in FIGURES {
+            let cut = |(strip, index, [x, y]): &Cutting| {
+                let frame = self.frames.get(&(*strip, *index))?;
+                let part = imageops::crop_imm(frame, *x, *y, figure.part.x, figure.part.y);
+                Some(part.to_image())
+            };
+            let parts: Option<Vec<RgbaImage>> = figure.cuttings.iter().map(cut).collect();
+            let Some(parts) = parts else { continue };
+            let rows: Vec<Vec<&RgbaImage>> = parts
+                .chunks(figure.columns)
+                .map(|row| row.iter().collect())
+                .collect();
+            let out = folder.join(format!("figure-{}.png", figure.name));
+            save(&grid(&rows, figure.part, GAP), &out)?;
+        }
+        Ok(())
     }
 }

@@ -1,5 +1,5 @@
-//! Strips of frames: every capability of lines in motion. For looking at; the documents have a
-//! sheet of cuttings from them.
+//! Strips of frames: every capability of lines in motion. For looking at; the documents have
+//! figures of parts of them.
 
 mod cuttings;
 mod stages;
@@ -14,9 +14,9 @@ use bevy_comics_testkit::{scenes::BuiltIn, studio::Studio};
 use image::{RgbaImage, imageops};
 
 use crate::{save, sheet::grid};
-use cuttings::Sheet;
+use cuttings::Figures;
 
-const SIZE: UVec2 = UVec2::new(400, 225);
+const SIZE: UVec2 = UVec2::new(720, 405);
 const GAP: u32 = 4;
 /// Frames that are drawn, and the frames between two of a strip.
 const FRAMES: usize = 36;
@@ -229,7 +229,7 @@ fn wholeness() -> Vec<Strip> {
 
 /// What single objects have of their own, and lines that are not outlines.
 fn objects() -> Vec<Strip> {
-    use BuiltIn::{Mountains, Teapot, Theatre, Village};
+    use BuiltIn::{Mountains, Teapot, Village};
     use Motion::{Sway, Turntable, Walk};
     let plain = Outlines::default();
     let grey = |style: ComicStyle| style.with(Desaturation::default());
@@ -245,7 +245,7 @@ fn objects() -> Vec<Strip> {
         Strip::new("no-style", Teapot, Turntable, plain)
             .on(stages::unstyle_one)
             .with(grey),
-        Strip::new("transparent", Theatre, Sway, plain).on(stages::glass),
+        Strip::new("transparent", Teapot, Sway, plain).on(stages::glass),
         Strip::new("iso-lines", Mountains, Walk, plain).with(levels),
     ]
 }
@@ -282,7 +282,7 @@ fn enlarged(picture: &RgbaImage, zoom: u32) -> RgbaImage {
 }
 
 /// One picture for each capability: six frames of 36, in two rows. `names`: of the strips that are
-/// drawn; none: all, and the sheet of the documents.
+/// drawn; none: all. Writes the figures of the documents too, of which all strips are drawn.
 pub fn write(folder: &Path, names: &[String]) -> Result<(), String> {
     let all: Vec<Strip> = [weights(), wholeness(), objects()]
         .into_iter()
@@ -296,7 +296,7 @@ pub fn write(folder: &Path, names: &[String]) -> Result<(), String> {
             known.join(", ")
         ));
     }
-    let mut sheet = Sheet::default();
+    let mut figures = Figures::default();
     for strip in all {
         if !names.is_empty() && !names.iter().any(|name| name == strip.name) {
             continue;
@@ -305,7 +305,7 @@ pub fn write(folder: &Path, names: &[String]) -> Result<(), String> {
         let rows: Vec<Vec<&RgbaImage>> = frames.chunks(3).map(|row| row.iter().collect()).collect();
         let out = folder.join(format!("{}.png", strip.name));
         save(&grid(&rows, SIZE, GAP), &out)?;
-        sheet.add(strip.name, &frames);
+        figures.add(strip.name, &frames);
     }
-    sheet.write(folder)
+    figures.write(folder)
 }

@@ -108,8 +108,8 @@ pub fn glass(studio: &mut Studio) {
             alpha_mode: AlphaMode::Blend,
             ..default()
         });
-    let middle = target.lerp(eye, 0.35);
-    let size = 0.3 * eye.distance(target);
+    let middle = target.lerp(eye, 0.3);
+    let size = 0.25 * eye.distance(target);
     let side = (eye - target).cross(Vec3::Y).normalize_or(Vec3::X) * 0.6 * size;
     for (i, place) in [middle - side, middle + side].into_iter().enumerate() {
         let at = Transform::from_translation(place).with_scale(Vec3::splat(size));

@@ -8,7 +8,7 @@ use super::{
     budget::{budget_weight, line_density},
     chain::cracks_to_ends,
     coverage::disc_coverage,
-    crack::{Crack, SIDES, crack, jump},
+    crack::{Crack, SIDES, crack, jump, stored_byte},
     edge::line_offset,
     faithful::faithful,
     fold::placed,
@@ -342,13 +342,12 @@ pub(super) fn ink_of(crack: &Crack, nudge: f64, covered: f64) -> [f64; 3] {
 /// A value in eight bits. Within 0.02 codes of a tie, the sign of `nudge` selects the
 /// code.
 fn stored(value: f64, nudge: f64) -> f64 {
-    let code = 255.0 * value.clamp(0.0, 1.0);
     let undecided = if nudge == 0.0 {
         0.0
     } else {
         0.02 * nudge.signum()
     };
-    (code + undecided + 0.499).floor().clamp(0.0, 255.0) / 255.0
+    stored_byte(value.clamp(0.0, 1.0) + undecided / 255.0)
 }
 
 /// The ink of every pixel of a viewport, as it is stored.

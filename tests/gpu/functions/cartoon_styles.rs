@@ -2,7 +2,7 @@
 
 use super::*;
 use bevy_comics::{CartoonLight, Form, Sketch, ToneBands};
-use bevy_comics_testkit::reference::{edge, light, sketch, tone_bands};
+use bevy_comics_testkit::reference::{crack, edge, light, sketch, tone_bands};
 
 const EDGE: &str = "#import bevy_comics::lines::edge::{gradient, gradient_extremes, edge_response, component_response, is_outdone, step_excess, step_response, fold, fold_response, is_ridge, is_rim_ridge, line_coverage, line_offset, pack_ink, unpack_crack, encode_ink, decode_ink}";
 
@@ -258,6 +258,42 @@ fn a_line_covers_what_it_should_and_packs_without_loss() {
             assert_eq!(result[3], 1.0, "{row:?}");
         }
     });
+}
+
+/// Opacities and half widths half way between two codes, and what is a few roundings above and
+/// below them, have one code: the lower.
+#[test]
+fn what_is_half_way_between_two_codes_is_stored_one_way() {
+    // Odd tenths as bytes; as widths, k + 1/2 steps of 1/512, less the 1/8 that is added when
+    // they are packed.
+    let tenths = [0.1f32, 0.3, 0.5, 0.7, 0.9];
+    let halves = [513u16, 601, 777, 1001].map(|k| (f32::from(k) + 0.5) / 512.0 - 0.125);
+    let mut rows = Vec::new();
+    for opacity in tenths {
+        for half_width in halves {
+            for ulps in -3i32..=3 {
+                let moved = |x: f32| f32::from_bits(x.to_bits().wrapping_add_signed(ulps));
+                rows.push([moved(opacity), moved(half_width)]);
+            }
+        }
+    }
+    let results = gpu().evaluate(
+        EDGE,
+        "let back = unpack_crack(pack_ink(vec4(1.0), vec4(i(0u)), vec4(i(1u))).x | 13u);
+         return vec4(back.opacity * 255.0, (back.half_width + 0.125) * 512.0, 0.0, 0.0);",
+        &rows,
+    );
+    for (row, result) in rows.iter().zip(results) {
+        let lower = (row[0] * 255.0 - 0.25).floor();
+        assert_eq!(result[0].round(), lower, "{row:?}");
+        assert_eq!(result[1], ((row[1] + 0.125) * 512.0 - 0.25).floor(), "{row:?}");
+        let twin = [
+            crack::stored_byte(f64::from(row[0])) * 255.0,
+            (crack::stored_width(f64::from(row[1])) + 0.125) * 512.0,
+        ];
+        assert_eq!(twin[0].round() as f32, lower, "{row:?}");
+        assert_eq!(twin[1] as f32, result[1], "{row:?}");
+    }
 }
 
 /// Property: the coverage of all pixels across a line adds up to its width.
