@@ -15,8 +15,9 @@ pub struct Cost {
     pub name: String,
     /// Milliseconds more than the frame without it, median of all rounds.
     pub milliseconds: f64,
-    /// Ratio to a blit of the same round: 10th, 50th and 90th percentile. Not a number where
-    /// the blit of a round is lost in the noise: no longer than nothing.
+    /// Ratio to a blit of the same round: 10th, 50th and 90th percentile. Rounds in which the blit
+    /// is lost in the noise (no longer than nothing) are left out; not a number if they are more
+    /// than a quarter.
     pub ratio: [f64; 3],
 }
 
@@ -35,7 +36,8 @@ pub fn costs(times: &Table, section: &str, scene: &str, laps: &[&str]) -> Vec<Co
         .zip(&nothing_post)
         .map(|(b, n)| b - n)
         .collect();
-    let lost = blit.iter().any(|b| *b <= 0.0);
+    let lost = |b: &f64| *b <= 0.0;
+    let is_noise = 4 * blit.iter().filter(|b| lost(b)).count() > blit.len();
     times
         .distinct(&rows, "variant")
         .into_iter()
@@ -43,11 +45,22 @@ pub fn costs(times: &Table, section: &str, scene: &str, laps: &[&str]) -> Vec<Co
         .map(|name| {
             let own = of(&name, laps);
             let over: Vec<f64> = own.iter().zip(&nothing).map(|(v, n)| v - n).collect();
-            let ratios: Vec<f64> = over.iter().zip(&blit).map(|(v, b)| v / b).collect();
+            let ratios: Vec<f64> = over
+                .iter()
+                .zip(&blit)
+                .filter(|(_, b)| !lost(b))
+                .map(|(v, b)| v / b)
+                .collect();
             Cost {
                 name,
                 milliseconds: median(&over),
-                ratio: [0.1, 0.5, 0.9].map(|q| if lost { f64::NAN } else { quantile(&ratios, q) }),
+                ratio: [0.1, 0.5, 0.9].map(|q| {
+                    if is_noise {
+                        f64::NAN
+                    } else {
+                        quantile(&ratios, q)
+                    }
+                }),
             }
         })
         .collect()

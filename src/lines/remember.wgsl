@@ -60,6 +60,10 @@ fn past_texel(p: vec2<i32>) -> vec3<f32> {
 fn past_at(place: vec2<f32>) -> vec3<f32> {
     let corner = floor(place - 0.5);
     let f = place - 0.5 - corner;
+    if all(f == vec2(0.0)) {
+        // Nothing moves: all other weights are 0.
+        return past_texel(vec2<i32>(corner));
+    }
     let across = cubic_weights(f.x);
     let down = cubic_weights(f.y);
     var sum = vec3(0.0);

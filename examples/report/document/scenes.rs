@@ -213,8 +213,10 @@ pub fn growth(out: &mut String, folder: &Path) -> Result<(), String> {
             let ratio = costs(&times, section, scene, &OWN)
                 .into_iter()
                 .find(|c| c.name == GROWING)
-                .map_or(f64::NAN, |c| c.ratio[1]);
-            let _ = writeln!(out, "| {scene} | {ms:.2} | {ratio:.2} |");
+                .map(|c| c.ratio[1])
+                .filter(|ratio| ratio.is_finite())
+                .map_or_else(|| "-".to_owned(), |ratio| format!("{ratio:.2}"));
+            let _ = writeln!(out, "| {scene} | {ms:.2} | {ratio} |");
         }
         let _ = writeln!(out, "\nFitted exponent: {p:.3}.\n");
         if section == "pixels" {

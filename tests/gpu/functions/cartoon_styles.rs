@@ -286,7 +286,11 @@ fn what_is_half_way_between_two_codes_is_stored_one_way() {
     for (row, result) in rows.iter().zip(results) {
         let lower = (row[0] * 255.0 - 0.25).floor();
         assert_eq!(result[0].round(), lower, "{row:?}");
-        assert_eq!(result[1], ((row[1] + 0.125) * 512.0 - 0.25).floor(), "{row:?}");
+        assert_eq!(
+            result[1],
+            ((row[1] + 0.125) * 512.0 - 0.25).floor(),
+            "{row:?}"
+        );
         let twin = [
             crack::stored_byte(f64::from(row[0])) * 255.0,
             (crack::stored_width(f64::from(row[1])) + 0.125) * 512.0,
