@@ -89,19 +89,20 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
   --quick          small pictures, few repetitions, no other crates
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure one section only: ranges, encodings, lines, models,
-                   steps, dashes, memory, straight, page, stability, ladder,
+                   steps, dashes, dash-steps, memory, straight, page, stability, ladder,
                    parts, scene-parts, toon, growth, peers or flicker
   --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
-const SECTIONS: [(&str, Section); 17] = [
+const SECTIONS: [(&str, Section); 18] = [
     ("ranges", ranges::measure),
     ("encodings", encodings::measure),
     ("lines", lines::measure),
     ("models", models::measure),
     ("steps", steps::measure),
     ("dashes", ink::dashes),
+    ("dash-steps", ink::dash_steps),
     ("memory", ink::memory),
     ("straight", straight::measure),
     ("page", page::measure),

@@ -34,7 +34,7 @@ fn stricter(steps: f32, folds: f32) -> Outlines {
 
 /// The default and its changes, without the ink budget, which makes crowded lines too thin for the
 /// mask.
-fn variants() -> Vec<(&'static str, Outlines)> {
+pub fn variants() -> Vec<(&'static str, Outlines)> {
     let default = Outlines::default();
     let specks = |specks| Outlines { specks, ..default };
     let all = [

@@ -22,7 +22,7 @@ struct Figure {
 /// Two parts in a row.
 const HALF: UVec2 = UVec2::new(470, 264);
 /// Four frames of a motion in a row.
-const QUARTER: UVec2 = UVec2::new(233, 264);
+const QUARTER: UVec2 = UVec2::new(233, 196);
 
 const FIGURES: [Figure; 6] = [
     Figure {
@@ -54,8 +54,8 @@ const FIGURES: [Figure; 6] = [
         cuttings: &[
             ("no-bridge", 1, [125, 70]),
             ("bridge", 1, [125, 70]),
-            ("no-sections", 0, [250, 141]),
-            ("sections", 0, [250, 141]),
+            ("no-sections", 0, [0, 141]),
+            ("sections", 0, [0, 141]),
             ("no-overshoot", 1, [125, 70]),
             ("overshoot", 1, [125, 70]),
         ],
@@ -71,18 +71,18 @@ const FIGURES: [Figure; 6] = [
         part: QUARTER,
         columns: 4,
         cuttings: &[
-            ("brush", 0, [243, 90]),
-            ("brush", 1, [243, 90]),
-            ("brush", 2, [243, 90]),
-            ("brush", 3, [243, 90]),
-            ("budget", 0, [243, 90]),
-            ("budget", 1, [243, 90]),
-            ("budget", 3, [243, 90]),
-            ("budget", 5, [243, 90]),
-            ("default", 0, [243, 90]),
-            ("default", 1, [243, 90]),
-            ("default", 3, [243, 90]),
-            ("default", 5, [243, 90]),
+            ("brush", 0, [243, 130]),
+            ("brush", 1, [243, 130]),
+            ("brush", 2, [243, 130]),
+            ("brush", 3, [243, 130]),
+            ("budget", 0, [243, 130]),
+            ("budget", 1, [243, 130]),
+            ("budget", 3, [243, 130]),
+            ("budget", 5, [243, 130]),
+            ("default", 0, [243, 130]),
+            ("default", 1, [243, 130]),
+            ("default", 3, [243, 130]),
+            ("default", 5, [243, 130]),
         ],
     },
     Figure {

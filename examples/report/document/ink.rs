@@ -30,7 +30,7 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
         "### Whole and steady lines\n\nDashes for each 100 pixels of true line, on the models \
          above and on two shapes while they turn: half of the ends of lines, where no other line begins. \
          `cut` lines do not continue along weak edges (`continuity` 0, `specks` 1); where a line continues \
-         along a weak edge that ends inside a surface, it has one more end than without. The next column has \
+         along a weak edge that ends inside a surface, it has one more end than without, so the hard surface has no fewer dashes with it. The next column has \
          those of continued lines whose end is within 2 pixels of the end of a true line (the borders of \
          pixels of the same view at four times the resolution, where the steps and folds of the truth are): \
          folds that fade out, rims that end on a surface. The last one is what is found if true ends \
@@ -55,6 +55,7 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
         });
         let _ = writeln!(out, "| {model} | {} |", cells.join(" | "));
     }
+    dash_steps(out, folder)?;
     let table = load(folder, "ink_memory")?;
     out.push_str(
         "\nA still view under the engine's temporal anti-aliasing, of a scene that is white except for its lines: pixels that change by more than two codes \
@@ -72,6 +73,29 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
         );
     }
     out.push('\n');
+    Ok(())
+}
+
+/// The organic model, with one setting changed at a time.
+fn dash_steps(out: &mut String, folder: &Path) -> Result<(), String> {
+    if !folder.join("ink_dash_steps.csv").exists() {
+        out.push_str(
+            "\nOne setting changed at a time: not measured yet, `report --only dash-steps`.\n",
+        );
+        return Ok(());
+    }
+    let table = load(folder, "ink_dash_steps")?;
+    out.push_str(
+        "\nThe organic model has most dashes. The same with one setting changed at a time, from the \
+         continued lines:\n\n| changed | dashes | of these at true ends | by chance |\n|---|---|---|---|\n",
+    );
+    for row in &table.rows {
+        let length = table.number(row, "true").max(1.0);
+        let [all, ends, chance] = ["ends", "true_ends", "by_chance"]
+            .map(|column| 50.0 * table.number(row, column) / length);
+        let name = table.cell(row, "method");
+        let _ = writeln!(out, "| {name} | {all:.2} | {ends:.2} | {chance:.2} |");
+    }
     Ok(())
 }
 

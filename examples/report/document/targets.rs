@@ -113,7 +113,7 @@ fn times(folder: &Path) -> Result<Vec<Target>, String> {
         Target::blits("default comic", 4.0, blits("default comic")),
         Target::blits("all outlines, default, 2 px", 6.0, blits("outlines")),
         Target::blits(
-            "the same; target with every factor of linked and smooth lines",
+            "the same; target with every factor of linked and smooth lines (without temporal anti-aliasing, whose memory costs more: see scene parts)",
             9.0,
             blits("outlines"),
         ),
