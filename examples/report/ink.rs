@@ -209,7 +209,7 @@ fn flat(mesh: Mesh) -> Mesh {
 }
 
 /// Makes everything white but the lines: what anti-aliasing does to the picture does not count.
-fn whiten(rig: &mut Rig) {
+pub fn whiten(rig: &mut Rig) {
     let camera = rig.camera;
     let world = rig.headless.app.world_mut();
     world.insert_resource(ClearColor(Color::WHITE));

@@ -17,6 +17,7 @@ mod growth;
 mod ink;
 mod ladder;
 mod lines;
+mod meadow;
 mod models;
 mod page;
 mod parts;
@@ -89,13 +90,13 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
   --quick          small pictures, few repetitions, no other crates
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure one section only: ranges, encodings, lines, models,
-                   steps, dashes, dash-steps, memory, straight, page, stability, ladder,
+                   steps, dashes, dash-steps, memory, meadow, straight, page, stability, ladder,
                    parts, scene-parts, toon, growth, peers or flicker
   --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
-const SECTIONS: [(&str, Section); 18] = [
+const SECTIONS: [(&str, Section); 19] = [
     ("ranges", ranges::measure),
     ("encodings", encodings::measure),
     ("lines", lines::measure),
@@ -104,6 +105,7 @@ const SECTIONS: [(&str, Section); 18] = [
     ("dashes", ink::dashes),
     ("dash-steps", ink::dash_steps),
     ("memory", ink::memory),
+    ("meadow", meadow::measure),
     ("straight", straight::measure),
     ("page", page::measure),
     ("stability", stability::measure),

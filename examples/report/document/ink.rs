@@ -73,6 +73,36 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
         );
     }
     out.push('\n');
+    meadow(out, folder)
+}
+
+/// What the lines of presets cover of a meadow.
+fn meadow(out: &mut String, folder: &Path) -> Result<(), String> {
+    out.push_str("### Ink of a meadow\n\n");
+    if !folder.join("meadow_ink.csv").exists() {
+        out.push_str("Not measured yet: `report --only meadow`.\n\n");
+        return Ok(());
+    }
+    out.push_str(
+        "The fraction of the meadow of `mountains` that the lines of each preset cover, drawn in black on white, \
+         without the rest of the preset: the mean, and that of the area of 32x32 pixels that has most. Lines of the faithful form \
+         have no budget.\n\n| | budget | mean | most | mean without a budget | most |\n|---|---|---|---|---|---|\n",
+    );
+    let table = load(folder, "meadow_ink")?;
+    for row in &table.rows {
+        let budget = match table.cell(row, "form") {
+            "faithful" => "none: faithful",
+            _ => table.cell(row, "budget"),
+        };
+        let [mean, most, free, most_free] =
+            ["mean", "most", "mean_free", "most_free"].map(|column| table.number(row, column));
+        let preset = table.cell(row, "preset");
+        let _ = writeln!(
+            out,
+            "| {preset} | {budget} | {mean:.2} | {most:.2} | {free:.2} | {most_free:.2} |"
+        );
+    }
+    out.push('\n');
     Ok(())
 }
 
