@@ -19,9 +19,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Glint, Ramp, Rim, ShadedForm,
+    hatch::{HatchKey, HatchUniform, VERTEX},
     uniform::{CartoonKey, CartoonUniform},
 };
-use crate::settings::bounded;
+use crate::{effect::Effect, effects::Hatching, settings::bounded};
 
 /// A [`StandardMaterial`] with the lighting of a cartoon:
 ///
@@ -55,6 +56,7 @@ pub type CartoonMaterial = ExtendedMaterial<StandardMaterial, CartoonLight>;
 /// The lighting of a [`CartoonMaterial`].
 #[derive(Asset, AsBindGroup, Reflect, Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[uniform(100, CartoonUniform)]
+#[uniform(103, HatchUniform)]
 #[bind_group_data(CartoonKey)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -100,6 +102,19 @@ pub struct CartoonLight {
     pub form: Option<ShadedForm>,
     /// A rim of light. Default: `None`.
     pub rim: Option<Rim>,
+    /// Strokes on the surface, as dark as the light that does not arrive. Default: `None`.
+    ///
+    /// They are those of the effect [`Hatching`], but stay on the mesh while it moves, is skinned
+    /// and is morphed, and know shadows from dark paint. Lightness is that of a white surface: the
+    /// root of the share that arrives of all light, in the tones of a ramp. Ambient light and
+    /// lightmaps always arrive.
+    ///
+    /// [`spacing`](Hatching::spacing) and [`length`](Hatching::length) are in physical pixels,
+    /// [`ink`](Hatching::ink) and [`paper`](Hatching::paper) are colours before tonemapping, and
+    /// [`near`](Hatching::near) is the factor of the darkness at all distances.
+    /// [`far`](Hatching::far), [`source`](Hatching::source) and [`calm`](Hatching::calm) have no
+    /// meaning here.
+    pub hatching: Option<Hatching>,
 }
 
 impl Default for CartoonLight {
@@ -118,6 +133,7 @@ impl Default for CartoonLight {
             glint: None,
             form: None,
             rim: None,
+            hatching: None,
         }
     }
 }
@@ -139,6 +155,7 @@ impl CartoonLight {
             glint: self.glint.map(Glint::sanitized),
             form: self.form.map(ShadedForm::sanitized),
             rim: self.rim.map(Rim::sanitized),
+            hatching: self.hatching.map(Effect::sanitized),
             ..self
         }
     }
@@ -155,8 +172,11 @@ impl MaterialExtension for CartoonLight {
         _: &MeshVertexBufferLayoutRef,
         key: MaterialExtensionKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
+        let key = key.bind_group_data;
+        if key.hatch.is_some_and(HatchKey::needs_rest) {
+            descriptor.vertex.shader = VERTEX;
+        }
         if let Some(fragment) = &mut descriptor.fragment {
-            let key = key.bind_group_data;
             let definitions = key.definitions(&fragment.shader_defs);
             fragment.shader_defs.extend(definitions);
         }

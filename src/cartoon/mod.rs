@@ -4,6 +4,7 @@
 mod detail;
 mod form;
 mod glint;
+mod hatch;
 mod ignored;
 mod material;
 mod ramp;
@@ -13,11 +14,11 @@ mod uniform;
 
 use bevy::{
     app::{App, Plugin, PostUpdate, Update},
-    asset::{AssetApp, embedded_asset},
+    asset::{AssetApp, embedded_asset, load_internal_asset},
     ecs::schedule::IntoScheduleConfigs,
     pbr::{MaterialPlugin, MeshMaterial3d, PbrPlugin},
     render::erased_render_asset::ErasedRenderAssetPlugin,
-    shader::load_shader_library,
+    shader::{Shader, load_shader_library},
 };
 
 pub use detail::{DetailAxis, RampDetail};
@@ -58,6 +59,8 @@ impl CartoonPlugin {
         load_shader_library!(app, "form.wgsl");
         load_shader_library!(app, "glint.wgsl");
         load_shader_library!(app, "glint_light.wgsl");
+        load_shader_library!(app, "hatch.wgsl");
+        load_shader_library!(app, "hatch_light.wgsl");
         load_shader_library!(app, "indirect.wgsl");
         load_shader_library!(app, "lamps.wgsl");
         load_shader_library!(app, "light.wgsl");
@@ -75,6 +78,7 @@ impl CartoonPlugin {
         load_shader_library!(app, "surroundings.wgsl");
         load_shader_library!(app, "two_shades.wgsl");
         embedded_asset!(app, "cartoon.wgsl");
+        load_internal_asset!(app, hatch::VERTEX, "vertex.wgsl", Shader::from_wgsl);
     }
 }
 

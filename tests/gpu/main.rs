@@ -26,6 +26,7 @@ mod golden;
 mod groups;
 mod guide;
 mod halftone;
+mod hatched_material;
 mod hatching;
 mod held_pose;
 mod house;

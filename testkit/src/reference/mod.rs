@@ -32,6 +32,7 @@ pub mod fused;
 pub mod gaps;
 pub mod glint;
 pub mod halftone;
+pub mod hatch;
 pub mod hatching;
 pub mod histogram;
 pub mod iso_lines;

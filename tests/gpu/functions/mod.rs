@@ -20,6 +20,7 @@ mod form;
 mod gaps;
 mod glint;
 pub mod halftone;
+mod hatch;
 mod hatching;
 mod iso_lines;
 mod jumps;

@@ -1,0 +1,79 @@
+//! Strokes on the cartoon material.
+
+use bevy::{
+    asset::{Handle, uuid_handle},
+    render::render_resource::ShaderType,
+    shader::{Shader, ShaderDefVal},
+};
+
+use super::CartoonLight;
+use crate::{
+    effect::{Effect, Strokes},
+    effects::{Hatching, HatchingAnchor},
+};
+
+/// The vertex shader of materials whose strokes lie on surfaces: `vertex.wgsl`.
+pub(super) const VERTEX: Handle<Shader> = uuid_handle!("0d7b0a5c-31b5-4c6e-9a47-5f0b6d1f3c82");
+
+/// `Hatch` in `hatch.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct HatchUniform {
+    strokes: Strokes,
+    darkness: f32,
+    rate: f32,
+    repeat: f32,
+    unused: f32,
+}
+
+/// The strokes of a material that are seen, in range.
+fn seen(light: &CartoonLight) -> Option<Hatching> {
+    let hatching = light.hatching.map(Effect::sanitized);
+    hatching.filter(|hatching| hatching.opacity > 0.0)
+}
+
+impl From<&CartoonLight> for HatchUniform {
+    fn from(light: &CartoonLight) -> Self {
+        let Some(hatching) = seen(light) else {
+            return Self::default();
+        };
+        Self {
+            // A material does not know the scale factor of a window.
+            strokes: hatching.strokes(1.0, 0),
+            darkness: hatching.near,
+            rate: hatching.rate,
+            repeat: 1.0,
+            unused: 0.0,
+        }
+    }
+}
+
+/// What strokes are fixed to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum HatchKey {
+    Page,
+    Rest,
+}
+
+impl HatchKey {
+    /// That of a material; `None` if it has no strokes.
+    pub(super) fn of(light: &CartoonLight) -> Option<Self> {
+        let hatching = seen(light)?;
+        Some(match hatching.anchor {
+            HatchingAnchor::Page => Self::Page,
+            HatchingAnchor::Object => Self::Rest,
+        })
+    }
+
+    /// Whether the vertex shader hands on the place of a vertex at rest.
+    pub(super) fn needs_rest(self) -> bool {
+        self == Self::Rest
+    }
+
+    pub(super) fn definitions(self) -> Vec<ShaderDefVal> {
+        let mut all = vec!["HATCHED".into()];
+        if self.needs_rest() {
+            all.push("HATCH_REST".into());
+        }
+        all
+    }
+}
