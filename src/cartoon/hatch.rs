@@ -19,7 +19,7 @@ pub(super) const VERTEX: Handle<Shader> = uuid_handle!("0d7b0a5c-31b5-4c6e-9a47-
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub struct HatchUniform {
     strokes: Strokes,
-    darkness: f32,
+    factor: f32,
     rate: f32,
     repeat: f32,
     unused: f32,
@@ -39,7 +39,7 @@ impl From<&CartoonLight> for HatchUniform {
         Self {
             // A material does not know the scale factor of a window.
             strokes: hatching.strokes(1.0, 0),
-            darkness: hatching.near,
+            factor: hatching.near,
             rate: hatching.rate,
             repeat: 1.0,
             unused: 0.0,

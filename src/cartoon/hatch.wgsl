@@ -7,8 +7,8 @@
 
 struct Hatch {
     strokes: Strokes,
-    // Factor of the darkness.
-    darkness: f32,
+    // Of the darkness.
+    factor: f32,
     // Drawings per second.
     rate: f32,
     // How often the art map repeats over the texture coordinates, or over a world unit.
@@ -24,7 +24,7 @@ fn light_share(arriving: f32, all: f32) -> f32 {
 
 // Darkness of the strokes where a share of all light arrives: that of a white surface.
 fn hatch_tone(h: Hatch, share: f32) -> f32 {
-    return darkness(h.strokes, lightness(vec3(share))) * h.darkness;
+    return darkness(h.strokes, lightness(vec3(share))) * h.factor;
 }
 
 // Number of the drawing at a time in seconds, see clock.rs.

@@ -26,7 +26,7 @@ fn tones_of_light_are_those_of_the_twin() {
             HATCH,
             "var h: Hatch;
              h.strokes.shadows = i(2u); h.strokes.highlights = i(3u); h.strokes.gamma = i(4u);
-             h.darkness = i(5u);
+             h.factor = i(5u);
              return vec4(hatch_tone(h, light_share(i(0u), i(1u))), 0.0, 0.0, 0.0);",
             rows,
         );
