@@ -263,6 +263,11 @@ fn fragment(
 #endif
 #ifdef HATCHED
     own.hatch.pixel = in.position.xy;
+#ifdef VERTEX_UVS_A
+    own.hatch.uv = in.uv;
+    own.hatch.right = dpdx(in.uv);
+    own.hatch.down = dpdy(in.uv);
+#endif
 #endif
 #ifdef HATCH_REST
     own.hatch.rest = rest_surface(rest_place, dpdx(rest_place), dpdy(rest_place), rest_normal);

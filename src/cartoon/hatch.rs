@@ -10,6 +10,7 @@ use super::CartoonLight;
 use crate::{
     effect::{Effect, Strokes},
     effects::{Hatching, HatchingAnchor},
+    settings::bounded,
 };
 
 /// The vertex shader of materials whose strokes lie on surfaces: `vertex.wgsl`.
@@ -41,23 +42,27 @@ impl From<&CartoonLight> for HatchUniform {
             strokes: hatching.strokes(1.0, 0),
             factor: hatching.near,
             rate: hatching.rate,
-            repeat: 1.0,
+            repeat: bounded(light.art_map_repeat, 4.0, 0.01, 1000.0),
             unused: 0.0,
         }
     }
 }
 
-/// What strokes are fixed to.
+/// What strokes are drawn from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum HatchKey {
     Page,
     Rest,
+    ArtMap,
 }
 
 impl HatchKey {
     /// That of a material; `None` if it has no strokes.
     pub(super) fn of(light: &CartoonLight) -> Option<Self> {
         let hatching = seen(light)?;
+        if light.art_map.is_some() {
+            return Some(Self::ArtMap);
+        }
         Some(match hatching.anchor {
             HatchingAnchor::Page => Self::Page,
             HatchingAnchor::Object => Self::Rest,
@@ -65,14 +70,23 @@ impl HatchKey {
     }
 
     /// Whether the vertex shader hands on the place of a vertex at rest.
-    pub(super) fn needs_rest(self) -> bool {
-        self == Self::Rest
+    /// `others`: the definitions of the mesh and the view.
+    pub(super) fn needs_rest(self, others: &[ShaderDefVal]) -> bool {
+        match self {
+            Self::Page => false,
+            Self::Rest => true,
+            Self::ArtMap => !others.contains(&"VERTEX_UVS_A".into()),
+        }
     }
 
-    pub(super) fn definitions(self) -> Vec<ShaderDefVal> {
+    /// The shader definitions, in addition to others.
+    pub(super) fn definitions(self, others: &[ShaderDefVal]) -> Vec<ShaderDefVal> {
         let mut all = vec!["HATCHED".into()];
-        if self.needs_rest() {
+        if self.needs_rest(others) {
             all.push("HATCH_REST".into());
+        }
+        if self == Self::ArtMap {
+            all.push("HATCH_ART_MAP".into());
         }
         all
     }

@@ -1,8 +1,9 @@
 //! The cartoon material and its settings.
 
 use bevy::{
-    asset::{Asset, AssetEvent, Assets},
+    asset::{Asset, AssetEvent, Assets, Handle},
     ecs::{message::MessageReader, system::ResMut},
+    image::Image,
     material::OpaqueRendererMethod,
     mesh::MeshVertexBufferLayoutRef,
     pbr::{
@@ -115,6 +116,25 @@ pub struct CartoonLight {
     /// [`far`](Hatching::far), [`source`](Hatching::source) and [`calm`](Hatching::calm) have no
     /// meaning here.
     pub hatching: Option<Hatching>,
+    /// The strokes of `hatching`, as a tonal art map. Default: `None`, strokes by planes. It is not
+    /// part of files.
+    ///
+    /// A map lies on the texture coordinates of the mesh, with its strokes along the first one; on
+    /// meshes without any, it lies on the three planes of coordinates of the mesh at rest. A stroke
+    /// has its width on the screen, as far as the map has mip levels: that of [`TonalArtMap`] has. Of
+    /// the settings of `hatching`, the map takes the place of `anchor`, and of all that tell how
+    /// strokes are drawn, from `spacing` to `rate` but for `tones`.
+    ///
+    /// Other images may be used: each texel of the red channel is the tone from which it is ink, in
+    /// linear light (`is_srgb: false`), and every mip level is drawn, not averaged.
+    ///
+    /// [`TonalArtMap`]: super::TonalArtMap
+    #[texture(101)]
+    #[serde(skip)]
+    pub art_map: Option<Handle<Image>>,
+    /// How often `art_map` repeats over texture coordinates from 0 to 1, or over a unit of the
+    /// world. Range 0.01 to 1000, default 4.
+    pub art_map_repeat: f32,
 }
 
 impl Default for CartoonLight {
@@ -134,6 +154,8 @@ impl Default for CartoonLight {
             form: None,
             rim: None,
             hatching: None,
+            art_map: None,
+            art_map_repeat: 4.0,
         }
     }
 }
@@ -156,6 +178,7 @@ impl CartoonLight {
             form: self.form.map(ShadedForm::sanitized),
             rim: self.rim.map(Rim::sanitized),
             hatching: self.hatching.map(Effect::sanitized),
+            art_map_repeat: bounded(self.art_map_repeat, default.art_map_repeat, 0.01, 1000.0),
             ..self
         }
     }
@@ -173,8 +196,9 @@ impl MaterialExtension for CartoonLight {
         key: MaterialExtensionKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
         let key = key.bind_group_data;
-        if key.hatch.is_some_and(HatchKey::needs_rest) {
-            descriptor.vertex.shader = VERTEX;
+        let vertex = &mut descriptor.vertex;
+        if (key.hatch).is_some_and(|hatch| hatch.needs_rest(&vertex.shader_defs)) {
+            vertex.shader = VERTEX;
         }
         if let Some(fragment) = &mut descriptor.fragment {
             let definitions = key.definitions(&fragment.shader_defs);

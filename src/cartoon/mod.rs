@@ -1,6 +1,8 @@
 //! The cartoon material: uniformly lit areas with hard shadows (\[CL\] 2.2, 2.3,
 //! after Decaudin).
 
+mod art_map;
+mod art_strokes;
 mod detail;
 mod form;
 mod glint;
@@ -21,6 +23,7 @@ use bevy::{
     shader::{Shader, load_shader_library},
 };
 
+pub use art_map::TonalArtMap;
 pub use detail::{DetailAxis, RampDetail};
 pub use form::{FormShape, ShadedForm};
 pub use glint::{Glint, GlintFrame, GlintShape};
@@ -35,7 +38,8 @@ pub(crate) struct CartoonPlugin;
 impl Plugin for CartoonPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<CartoonLight>()
-            .register_type::<CartoonScene>();
+            .register_type::<CartoonScene>()
+            .register_type::<TonalArtMap>();
         add_material(app);
     }
 
@@ -52,6 +56,7 @@ impl Plugin for CartoonPlugin {
 impl CartoonPlugin {
     /// The part that needs the engine's renderer.
     pub(crate) fn build_render(app: &mut App) {
+        load_shader_library!(app, "art_map.wgsl");
         load_shader_library!(app, "bindings.wgsl");
         load_shader_library!(app, "brightest.wgsl");
         load_shader_library!(app, "contact.wgsl");
@@ -74,6 +79,7 @@ impl CartoonPlugin {
         load_shader_library!(app, "rim_light.wgsl");
         load_shader_library!(app, "share.wgsl");
         load_shader_library!(app, "shine.wgsl");
+        load_shader_library!(app, "stroke_level.wgsl");
         load_shader_library!(app, "surface.wgsl");
         load_shader_library!(app, "surroundings.wgsl");
         load_shader_library!(app, "two_shades.wgsl");

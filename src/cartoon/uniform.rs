@@ -114,7 +114,7 @@ impl CartoonKey {
         if self.vertex_threshold && has(&["VERTEX_COLORS"]) {
             all.push("VERTEX_THRESHOLD".into());
         }
-        all.extend(self.hatch.into_iter().flat_map(HatchKey::definitions));
+        all.extend((self.hatch.into_iter()).flat_map(|hatch| hatch.definitions(others)));
         if self.rim {
             all.push("RIM".into());
         }

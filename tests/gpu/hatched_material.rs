@@ -21,7 +21,7 @@ use crate::{
     small::{Object, Small, linear},
 };
 
-const SIZE: UVec2 = UVec2::new(160, 160);
+pub const SIZE: UVec2 = UVec2::new(160, 160);
 
 /// Black strokes on white paper.
 fn inked() -> Hatching {
@@ -32,7 +32,7 @@ fn inked() -> Hatching {
 }
 
 /// The same without what is random, with a tone for every lightness.
-fn plain() -> Hatching {
+pub fn plain() -> Hatching {
     Hatching {
         breaks: 0.0,
         wobble: 0.0,
@@ -51,7 +51,7 @@ fn with(hatching: Hatching) -> CartoonLight {
 }
 
 /// Darkness of every pixel: 0 paper, 1 ink.
-fn covers(small: &mut Small) -> Vec<f64> {
+pub fn covers(small: &mut Small) -> Vec<f64> {
     let picture = drawn(small);
     let places = (0..picture.height()).flat_map(|y| (0..picture.width()).map(move |x| (x, y)));
     places
@@ -59,24 +59,24 @@ fn covers(small: &mut Small) -> Vec<f64> {
         .collect()
 }
 
-fn mean(values: &[f64]) -> f64 {
+pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Pixels that differ by more than two codes of a display of linear light.
-fn differ(a: &[f64], b: &[f64]) -> usize {
+pub fn differ(a: &[f64], b: &[f64]) -> usize {
     let pairs = a.iter().zip(b);
     pairs.filter(|(a, b)| (*a - *b).abs() > 2.0 / 255.0).count()
 }
 
 /// A sun that shines along an axis of a frame, without shadow maps.
-fn light_from(small: &mut Small, frame: Transform, to: Vec3, part: f32) -> Entity {
+pub fn light_from(small: &mut Small, frame: Transform, to: Vec3, part: f32) -> Entity {
     let at = frame * Transform::IDENTITY.looking_to(-to, Vec3::new(0.1, 0.9, 0.2));
     let bundle = (Object, bright(part), at);
     small.world().spawn(bundle).id()
 }
 
-fn tone(hatching: &Hatching, share: f64) -> f64 {
+pub fn tone(hatching: &Hatching, share: f64) -> f64 {
     let hatch = Hatch {
         settings: hatching,
         scale: 1.0,
@@ -156,7 +156,7 @@ fn strokes_follow_the_tones_of_ramps() {
 }
 
 /// The places that a rigid motion takes things to.
-fn frames() -> [Transform; 3] {
+pub fn frames() -> [Transform; 3] {
     let turn = Quat::from_euler(EulerRot::YXZ, 0.7, -0.3, 1.1);
     [
         Transform::from_xyz(0.4, -1.3, 2.9),
@@ -170,7 +170,7 @@ fn ball() -> Mesh {
 }
 
 /// The eye and the light of the pictures below, in a frame.
-fn seen_from(small: &mut Small, frame: Transform, sun: Entity) {
+pub fn seen_from(small: &mut Small, frame: Transform, sun: Entity) {
     small.insert(frame * Transform::from_xyz(0.0, 0.0, 5.0));
     let to = Vec3::new(0.5, 0.6, 0.7);
     let at = frame * Transform::IDENTITY.looking_to(-to, Vec3::Y);
@@ -178,7 +178,7 @@ fn seen_from(small: &mut Small, frame: Transform, sun: Entity) {
 }
 
 /// An empty room with half of the light from a sun and half from all around.
-fn studio() -> (Small, Entity) {
+pub fn studio() -> (Small, Entity) {
     let mut small = room(SIZE, 0.3);
     let sun = light_from(&mut small, Transform::IDENTITY, Vec3::Z, 0.6);
     seen_from(&mut small, Transform::IDENTITY, sun);
@@ -186,7 +186,7 @@ fn studio() -> (Small, Entity) {
 }
 
 /// Where all of it is seen, edges of the light and the mesh may round to another pixel.
-fn assert_same(still: &[f64], now: &[f64], what: &str) {
+pub fn assert_same(still: &[f64], now: &[f64], what: &str) {
     let apart = differ(still, now);
     println!("{what}: {apart} of {} pixels differ", still.len());
     assert!(apart < still.len() / 200, "{what}: {apart}");

@@ -1,6 +1,7 @@
 //! Everything that needs a GPU adapter (a CPU driver will do), in one binary.
 
 mod abstraction;
+mod art_maps;
 mod blending;
 mod boil;
 mod borders;

@@ -2,6 +2,7 @@
 //! edge cases.
 
 mod abstraction;
+mod art_map;
 mod bend;
 mod blocks;
 mod budget;
