@@ -48,6 +48,11 @@ impl From<&CartoonLight> for HatchUniform {
     }
 }
 
+/// Whether definitions are those of a prepass or a shadow map.
+pub(super) fn is_prepass(definitions: &[ShaderDefVal]) -> bool {
+    definitions.contains(&"PREPASS_PIPELINE".into())
+}
+
 /// What strokes are drawn from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum HatchKey {
@@ -89,5 +94,75 @@ impl HatchKey {
             all.push("HATCH_ART_MAP".into());
         }
         all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with(hatching: Hatching) -> CartoonLight {
+        CartoonLight {
+            hatching: Some(hatching),
+            ..CartoonLight::default()
+        }
+    }
+
+    /// Whatever numbers a material has, all numbers of its uniform are finite.
+    #[test]
+    fn every_number_of_the_uniform_is_finite() {
+        for x in [f32::NAN, f32::INFINITY, -1.0, 0.0, 1e-45, 1e30] {
+            let hatching = Hatching {
+                shadows: x,
+                highlights: x,
+                gamma: x,
+                tones: u32::MAX,
+                spacing: x,
+                layers: 0,
+                layer_darkness: x,
+                angle: x,
+                length: x,
+                breaks: x,
+                wobble: x,
+                pressure: x,
+                rate: x,
+                near: x,
+                ..Hatching::default()
+            };
+            let light = CartoonLight {
+                art_map_repeat: x,
+                ..with(hatching)
+            };
+            let uniform = HatchUniform::from(&light);
+            let text = format!("{uniform:?}");
+            assert!(
+                !text.contains("NaN") && !text.contains("inf"),
+                "{x}: {text}"
+            );
+            assert_eq!(uniform, HatchUniform::from(&light.sanitized()));
+        }
+    }
+
+    #[test]
+    fn the_uniform_can_be_one() {
+        HatchUniform::assert_uniform_compat();
+    }
+
+    #[test]
+    fn strokes_that_are_not_seen_are_not_compiled() {
+        assert_eq!(HatchKey::of(&CartoonLight::default()), None);
+        let unseen = Hatching {
+            opacity: 0.0,
+            ..Hatching::default()
+        };
+        assert_eq!(HatchKey::of(&with(unseen)), None);
+        let map = CartoonLight {
+            art_map: Some(Handle::default()),
+            ..with(Hatching::default())
+        };
+        let key = HatchKey::of(&map).expect("strokes");
+        // A map lies on texture coordinates, or on the mesh at rest.
+        assert!(key.needs_rest(&[]));
+        assert!(!key.needs_rest(&["VERTEX_UVS_A".into()]));
     }
 }

@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Glint, Ramp, Rim, ShadedForm,
-    hatch::{HatchKey, HatchUniform, VERTEX},
+    hatch::{HatchUniform, VERTEX, is_prepass},
     uniform::{CartoonKey, CartoonUniform},
 };
 use crate::{effect::Effect, effects::Hatching, settings::bounded};
@@ -197,7 +197,9 @@ impl MaterialExtension for CartoonLight {
     ) -> Result<(), SpecializedMeshPipelineError> {
         let key = key.bind_group_data;
         let vertex = &mut descriptor.vertex;
-        if (key.hatch).is_some_and(|hatch| hatch.needs_rest(&vertex.shader_defs)) {
+        let defs = &vertex.shader_defs;
+        // Prepasses and shadow maps have shaders of their own.
+        if !is_prepass(defs) && key.hatch.is_some_and(|hatch| hatch.needs_rest(defs)) {
             vertex.shader = VERTEX;
         }
         if let Some(fragment) = &mut descriptor.fragment {

@@ -2,6 +2,7 @@
 
 use bevy::{
     camera::Hdr,
+    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     mesh::{
         VertexAttributeValues,
         morph::{MeshMorphWeights, MorphAttributes, MorphWeights},
@@ -99,7 +100,9 @@ fn flat_walls_have_the_tone_of_their_light() {
             light_from(&mut small, Transform::IDENTITY, -Vec3::Z, behind);
             let wall = Plane3d::new(Vec3::Z, Vec2::splat(9.0)).mesh().build();
             let axis = Vec3::new(0.6, 0.8, 0.0);
-            let turn = Quat::from_axis_angle(axis, degrees.to_radians());
+            // Lines at 45 degrees would all lie in the same way on pixels.
+            let roll = Quat::from_rotation_z(0.2);
+            let turn = Quat::from_axis_angle(axis, degrees.to_radians()) * roll;
             let at = Transform::from_rotation(turn);
             put(&mut small, wall, &CartoonLight::default(), at);
             for layers in [1, 3] {
@@ -177,9 +180,13 @@ pub fn seen_from(small: &mut Small, frame: Transform, sun: Entity) {
     small.world().entity_mut(sun).insert(at);
 }
 
-/// An empty room with half of the light from a sun and half from all around.
+/// An empty white room with a sun, and a seventh of the light from all around.
 pub fn studio() -> (Small, Entity) {
-    let mut small = room(SIZE, 0.3);
+    let mut small = room(SIZE, 0.1);
+    small.insert(Camera {
+        clear_color: Color::WHITE.into(),
+        ..default()
+    });
     let sun = light_from(&mut small, Transform::IDENTITY, Vec3::Z, 0.6);
     seen_from(&mut small, Transform::IDENTITY, sun);
     (small, sun)
@@ -187,6 +194,7 @@ pub fn studio() -> (Small, Entity) {
 
 /// Where all of it is seen, edges of the light and the mesh may round to another pixel.
 pub fn assert_same(still: &[f64], now: &[f64], what: &str) {
+    assert!(still.iter().any(|c| *c > 0.9), "{what}: no ink");
     let apart = differ(still, now);
     println!("{what}: {apart} of {} pixels differ", still.len());
     assert!(apart < still.len() / 200, "{what}: {apart}");
@@ -201,7 +209,6 @@ fn strokes_stay_on_what_moves() {
         Transform::from_rotation(Quat::from_rotation_x(0.4)).with_scale(Vec3::new(1.2, 0.7, 1.0));
     let object = put(&mut small, ball(), &with(inked()), own);
     let still = covers(&mut small);
-    assert!((0.05..0.6).contains(&mean(&still)), "{}", mean(&still));
     for frame in frames() {
         small.world().entity_mut(object).insert(frame * own);
         seen_from(&mut small, frame, sun);
@@ -242,6 +249,8 @@ fn strokes_stay_on_skinned_meshes() {
         },
         bevy::camera::visibility::NoFrustumCulling,
     ));
+    // Prepasses have a vertex shader of their own: both must give the same depth.
+    small.insert((DepthPrepass, NormalPrepass));
     for (k, frame) in frames().into_iter().enumerate() {
         small.world().entity_mut(joint).insert(frame);
         let aside = Transform::from_xyz(k as f32, 0.0, 0.0);

@@ -7,8 +7,8 @@ const STEP: f64 = 0.0156;
 
 /// Ink of a texel.
 pub fn ink_at(tone: f64, threshold: f64) -> f64 {
-    let from = (threshold - STEP) / (1.0 + STEP);
-    let to = threshold / (1.0 + STEP);
+    let from = threshold / (1.0 + STEP);
+    let to = (threshold + STEP) / (1.0 + STEP);
     ((tone - from) / (to - from)).clamp(0.0, 1.0)
 }
 

@@ -33,10 +33,15 @@ fn pair(row: &[f32; 4]) -> (DVec2, DVec2) {
     (DVec2::new(a, b), DVec2::new(c, d))
 }
 
-/// The errors of two products cancel in the determinant: each is half an ulp of a product that is up to
-/// the square of the long axis, and the shorter axis is that over the longer one.
-fn rounding(long: f64, short: f64) -> f64 {
-    4.0 * 2f64.powi(-24) * (long / short + 4.0)
+/// Relative errors of the two axes. Where both are equally long, the longer one is the root of the
+/// root of a difference that vanishes: its error is at most the root of that of a number. The
+/// products of the determinant are up to the square of the long axis, and cancel; the shorter axis is
+/// that over the longer one.
+fn rounding(long: f64, short: f64) -> [f64; 2] {
+    let unit = 2f64.powi(-24);
+    let uneven = (1.0 - short / long).max(2f64.powi(-12));
+    let long_off = 8.0 * unit / uneven;
+    [long_off, long_off + 4.0 * unit * long / short]
 }
 
 #[test]
@@ -52,23 +57,20 @@ fn axes_of_pixels_are_those_of_the_twin() {
         for (row, found) in rows.iter().zip(results) {
             let (right, down) = pair(row);
             let [long, short] = singular_values(right, down);
-            let off = [long, short].map(f64::abs);
-            let [long_off, short_off] =
-                [0, 1].map(|k| (f64::from(found[k]) - off[k]).abs() / off[k]);
-            assert!(long_off < 1e-5, "{row:?}: {found:?}, {long}");
             let most = rounding(long, short);
-            assert!(short_off < most, "{row:?}: {found:?}, {short}: {short_off}");
+            for (k, axis) in [long, short].into_iter().enumerate() {
+                let off = (f64::from(found[k]) - axis).abs() / axis;
+                assert!(off < most[k], "{row:?}: {found:?}, {axis}: {off}");
+            }
             let level = stroke_level(right, down);
-            // A logarithm on the GPU is off by up to 3 ulp.
-            assert!(
-                (f64::from(found[2]) - level).abs() < 1e-4,
-                "{row:?}: {found:?}, {level}"
-            );
+            // It is kept between those of both axes; logarithms of GPUs are off by up to 3 ulp.
+            let off = (f64::from(found[2]) - level).abs();
+            assert!(off < 1e-5 + 1.5 * most[0], "{row:?}: {found:?}, {level}");
         }
     });
 }
 
-/// Where the axes differ by 1:1000 and more, the formula of the textbook has lost the shorter one, and
+/// Where the axes differ by 1:5000 and more, the formula of the textbook has lost the shorter one, and
 /// with it the level at which it would be sharp.
 #[test]
 fn the_formula_of_the_textbook_fails() {
@@ -82,12 +84,12 @@ fn the_formula_of_the_textbook_fails() {
     let rows: Vec<[f32; 4]> = (0..64)
         .map(|k| {
             let (sin, cos) = (0.1 + 0.09 * k as f32).sin_cos();
-            // The long axis is 1 in the direction of this angle, the short one 1/5000.
+            // The long axis is 1 in the direction of this angle, the short one 1/10000.
             [
-                cos * cos + 2e-4 * sin * sin,
-                sin * cos * (1.0 - 2e-4),
-                sin * cos * (1.0 - 2e-4),
-                sin * sin + 2e-4 * cos * cos,
+                cos * cos + 1e-4 * sin * sin,
+                sin * cos * (1.0 - 1e-4),
+                sin * cos * (1.0 - 1e-4),
+                sin * sin + 1e-4 * cos * cos,
             ]
         })
         .collect();
@@ -104,7 +106,7 @@ fn the_formula_of_the_textbook_fails() {
         failing = failing.max((f64::from(textbook(row)) / short - 1.0).abs());
     }
     println!("off by up to {stable:.1e}, by the textbook {failing:.2}");
-    assert!(stable < rounding(1.0, 2e-4), "{stable}");
+    assert!(stable < rounding(1.0, 1e-4)[1], "{stable}");
     assert!(failing > 0.5, "{failing}");
 }
 
