@@ -81,10 +81,15 @@ pub fn picture() -> RgbaImage {
     let ball = Sphere::new(0.55).mesh().uv(96, 48);
     room.put(ball, matt(Color::WHITE), &light(on_paper()), at(1, 0.55));
     bent_tube(&mut room, at(2, 0.0));
-    let map = room.image(TonalArtMap::default().image());
+    let map = TonalArtMap {
+        length: 0.8,
+        width: 1.5,
+        ..default()
+    };
+    let map = room.image(map.image());
     let mapped = CartoonLight {
         art_map: Some(map.clone()),
-        art_map_repeat: 2.0,
+        art_map_repeat: 1.0,
         ..light(on_paper())
     };
     let jar = ConicalFrustum {
@@ -97,7 +102,7 @@ pub fn picture() -> RgbaImage {
     let mut stone = bumpy(0.12);
     stone.remove_attribute(Mesh::ATTRIBUTE_UV_0);
     let mapped = CartoonLight {
-        art_map_repeat: 1.2,
+        art_map_repeat: 0.6,
         ..mapped
     };
     room.put(stone, matt(Color::WHITE), &mapped, at(4, 0.6));
