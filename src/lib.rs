@@ -82,6 +82,7 @@ mod view;
 pub use cartoon::{
     CartoonLight, CartoonMaterial, CartoonScene, DetailAxis, FormShape, Glint, GlintFrame,
     GlintShape, Ramp, RampBlend, RampDetail, RampMode, RampStop, Rim, RimWidth, ShadedForm,
+    TonalArtMap,
 };
 pub use depth::{
     CameraCut, DepthBin, DepthHistogram, DepthMap, DepthMapping, ProjectionKind, RangeSmoothing,
@@ -172,6 +173,7 @@ pub mod prelude {
     pub use crate::{
         CartoonLight, CartoonMaterial, CartoonScene, DetailAxis, FormShape, Glint, GlintFrame,
         GlintShape, Ramp, RampBlend, RampDetail, RampMode, RampStop, Rim, RimWidth, ShadedForm,
+        TonalArtMap,
     };
     #[cfg(feature = "objects")]
     pub use crate::{

@@ -22,6 +22,7 @@ mod print;
 mod ramps;
 mod sheet;
 mod strips;
+mod strokes;
 mod toon;
 
 use std::{path::PathBuf, process::ExitCode};

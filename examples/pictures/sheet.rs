@@ -8,7 +8,7 @@ use image::{RgbaImage, imageops};
 
 use bevy_comics_testkit::{
     scenes::BuiltIn,
-    studio::{Studio, golden_styles},
+    studio::{Studio, golden_styles, hatched_theatre},
 };
 
 use crate::save;
@@ -166,6 +166,10 @@ pub fn golden(folder: &Path, only: &str) -> Result<(), String> {
             let path = folder.join(format!("{}-{name}.png", scene.name()));
             save(&picture, &path)?;
         }
+    }
+    if wanted("hatched-material") {
+        let path = folder.join("theatre-hatched-material.png");
+        save(&hatched_theatre(), &path)?;
     }
     Ok(())
 }

@@ -15,7 +15,7 @@ use bevy_comics_testkit::{
 };
 use image::RgbaImage;
 
-use crate::{save, sheet::grid};
+use crate::{save, sheet::grid, strokes};
 
 /// Frames until shaders are compiled and the picture stands still.
 const SETTLE: usize = 12;
@@ -25,16 +25,17 @@ pub fn write(folder: &Path) -> Result<(), String> {
     save(&details(), &folder.join("details.png"))?;
     save(&rims(), &folder.join("rims.png"))?;
     save(&forms(), &folder.join("forms.png"))?;
+    save(&strokes::picture(), &folder.join("hatched-material.png"))?;
     save(&tone_ramp(), &folder.join("tone-ramp.png"))
 }
 
 /// A stage with a ground, under a sun from the left.
-struct Room {
-    headless: Headless,
+pub struct Room {
+    pub headless: Headless,
 }
 
 impl Room {
-    fn new(size: UVec2, eye: Transform, fov: f32) -> Self {
+    pub fn new(size: UVec2, eye: Transform, fov: f32) -> Self {
         let mut headless = Headless::new(HeadlessOptions { size, ..default() }, ComicsPlugin);
         let target = headless.render_target();
         let world = headless.app.world_mut();
@@ -66,13 +67,13 @@ impl Room {
         Self { headless }
     }
 
-    fn put(
+    pub fn put(
         &mut self,
         mesh: impl Into<Mesh>,
         base: StandardMaterial,
         light: &CartoonLight,
         at: Transform,
-    ) {
+    ) -> Entity {
         let world = self.headless.app.world_mut();
         let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
         let material = CartoonMaterial {
@@ -82,26 +83,36 @@ impl Room {
         let material = world
             .resource_mut::<Assets<CartoonMaterial>>()
             .add(material);
-        world.spawn((Mesh3d(mesh), MeshMaterial3d(material), at));
+        world
+            .spawn((Mesh3d(mesh), MeshMaterial3d(material), at))
+            .id()
     }
 
     fn ground(&mut self) {
-        let ground = Plane3d::default().mesh().size(80.0, 80.0);
-        let light = CartoonLight {
+        self.ground_with(&CartoonLight {
             ramp: Some(per_light(Ramp::default().stops)),
             ..default()
-        };
-        let at = Transform::IDENTITY;
-        self.put(ground, matt(Color::srgb(0.93, 0.84, 0.66)), &light, at);
+        });
     }
 
-    fn picture(mut self) -> RgbaImage {
+    pub fn ground_with(&mut self, light: &CartoonLight) {
+        let ground = Plane3d::default().mesh().size(80.0, 80.0);
+        let at = Transform::IDENTITY;
+        self.put(ground, matt(Color::srgb(0.93, 0.84, 0.66)), light, at);
+    }
+
+    pub fn image(&mut self, image: Image) -> Handle<Image> {
+        let world = self.headless.app.world_mut();
+        world.resource_mut::<Assets<Image>>().add(image)
+    }
+
+    pub fn picture(mut self) -> RgbaImage {
         self.headless.step(SETTLE);
         self.headless.picture()
     }
 }
 
-fn matt(color: Color) -> StandardMaterial {
+pub fn matt(color: Color) -> StandardMaterial {
     StandardMaterial {
         perceptual_roughness: 0.9,
         ..color.into()
@@ -300,7 +311,7 @@ fn rims() -> RgbaImage {
 }
 
 /// A ball with dents, as heads and bushes have them.
-fn bumpy(dents: f32) -> Mesh {
+pub fn bumpy(dents: f32) -> Mesh {
     let mut mesh: Mesh = Sphere::new(0.6).mesh().ico(12).expect("few vertices");
     let Some(bevy::mesh::VertexAttributeValues::Float32x3(places)) =
         mesh.attribute_mut(Mesh::ATTRIBUTE_POSITION)

@@ -3,7 +3,8 @@
 
 use bevy::prelude::*;
 use bevy_comics::{
-    CartoonLight, CartoonScene, Glint, GlintShape, Ramp, RampDetail, RampMode, RampStop, Rim,
+    CartoonLight, CartoonScene, Glint, GlintShape, Hatching, Ramp, RampDetail, RampMode, RampStop,
+    Rim,
 };
 use bevy_comics_testkit::{
     bench::{self, Lap},
@@ -64,6 +65,13 @@ fn variants() -> Vec<(&'static str, Option<CartoonLight>)> {
         ("no ramp; a rim", {
             let rim = Some(Rim::default());
             Some(CartoonLight { rim, ..default() })
+        }),
+        ("no ramp; hatching", {
+            let hatching = Some(Hatching::default());
+            Some(CartoonLight {
+                hatching,
+                ..default()
+            })
         }),
         ("standard material again", None),
     ]

@@ -44,6 +44,13 @@
 #ifdef RIM
 #import bevy_comics::cartoon::rim_light::with_rim
 #endif
+#ifdef HATCHED
+#import bevy_comics::cartoon::{
+    hatch::{light_share, rest_surface},
+    hatch_light::{HatchPlace, with_hatching},
+    surroundings::brightness,
+}
+#endif
 
 #ifdef FORM
 #import bevy_pbr::mesh_functions::{get_local_from_world, mesh_normal_local_to_world}
@@ -54,7 +61,24 @@
 struct Lit {
     sum: Sum,
     shine: Shine,
+#ifdef HATCHED
+    // As if all of the light arrived.
+    whole: Sum,
+#endif
 }
+
+#ifdef HATCHED
+// With all of a light more, as where a surface faces it.
+fn with_whole(sum: Sum, s: Surface, light: Arriving) -> Sum {
+    var all = sum;
+    var towards = s;
+    towards.bias = 2.0;
+    var bare = light;
+    bare.lit = 1.0;
+    add(&all, towards, bare, 1.0);
+    return all;
+}
+#endif
 
 // With one light source more.
 fn lit_by(lit: Lit, s: Surface, light: Arriving) -> Lit {
@@ -66,7 +90,13 @@ fn lit_by(lit: Lit, s: Surface, light: Arriving) -> Lit {
 #else
     let color = light.color;
 #endif
-    return Lit(sum, with_light(lit.shine, s, light, color, left));
+    var next = lit;
+    next.sum = sum;
+    next.shine = with_light(lit.shine, s, light, color, left);
+#ifdef HATCHED
+    next.whole = with_whole(lit.whole, s, light);
+#endif
+    return next;
 }
 
 // Sum over the light sources.
@@ -109,6 +139,9 @@ fn detail_at(s: Surface) -> f32 {
 struct OwnData {
     tangent: vec3<f32>,
     bias: f32,
+#ifdef HATCHED
+    hatch: HatchPlace,
+#endif
 }
 
 fn surface_of(in: PbrInput, foot: Footprint, own: OwnData) -> Surface {
@@ -154,12 +187,20 @@ fn cartoon_light(in: PbrInput, foot: Footprint, own: OwnData) -> vec3<f32> {
     var sum = lit.sum;
     add(&sum, s, brighter, unshadowed(s, brighter));
     lit.sum = sum;
+#ifdef HATCHED
+    lit.whole = with_whole(lit.whole, s, brighter);
+#endif
 #endif
     let base = in.material.base_color;
     // Colour of the highlight: the base colour of a metal; otherwise white at the
     // default reflectance of 0.5.
     let tint = mix(min(2.0 * in.material.reflectance, vec3(1.0)), base.rgb, in.material.metallic);
     var color = reflected(lit.sum, base.rgb, even, tint * shine_of(lit.shine, s));
+#ifdef HATCHED
+    let arriving = brightness(reflected(lit.sum, vec3(1.0), even, vec3(0.0)));
+    let all = brightness(reflected(lit.whole, vec3(1.0), even, vec3(0.0)));
+    color = with_hatching(color, light_share(arriving, all), own.hatch);
+#endif
 #ifdef RIM
     color = with_rim(color, s, lit.shine);
 #endif
@@ -191,7 +232,14 @@ fn shaded_normal(pbr: PbrInput, in: VertexOutput) -> vec3<f32> {
 #endif
 
 @fragment
-fn fragment(vertex_output: VertexOutput, @builtin(front_facing) is_front: bool) -> FragmentOutput {
+fn fragment(
+    vertex_output: VertexOutput,
+    @builtin(front_facing) is_front: bool,
+#ifdef HATCH_REST
+    @location(8) rest_place: vec3<f32>,
+    @location(9) rest_normal: vec3<f32>,
+#endif
+) -> FragmentOutput {
     var in = vertex_output;
 #ifdef VISIBILITY_RANGE_DITHER
     visibility_range_dither(in.position, in.visibility_range_dither);
@@ -212,6 +260,17 @@ fn fragment(vertex_output: VertexOutput, @builtin(front_facing) is_front: bool) 
 #endif
 #ifdef VERTEX_THRESHOLD
     own.bias = 2.0 * in.color.a - 1.0;
+#endif
+#ifdef HATCHED
+    own.hatch.pixel = in.position.xy;
+#ifdef VERTEX_UVS_A
+    own.hatch.uv = in.uv;
+    own.hatch.right = dpdx(in.uv);
+    own.hatch.down = dpdy(in.uv);
+#endif
+#endif
+#ifdef HATCH_REST
+    own.hatch.rest = rest_surface(rest_place, dpdx(rest_place), dpdy(rest_place), rest_normal);
 #endif
     pbr.material.base_color = alpha_discard(pbr.material, pbr.material.base_color);
     apply_decals(&pbr);

@@ -1,8 +1,9 @@
 //! The cartoon material and its settings.
 
 use bevy::{
-    asset::{Asset, AssetEvent, Assets},
+    asset::{Asset, AssetEvent, Assets, Handle},
     ecs::{message::MessageReader, system::ResMut},
+    image::Image,
     material::OpaqueRendererMethod,
     mesh::MeshVertexBufferLayoutRef,
     pbr::{
@@ -19,9 +20,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Glint, Ramp, Rim, ShadedForm,
+    hatch::{HatchUniform, VERTEX, is_prepass},
     uniform::{CartoonKey, CartoonUniform},
 };
-use crate::settings::bounded;
+use crate::{effect::Effect, effects::Hatching, settings::bounded};
 
 /// A [`StandardMaterial`] with the lighting of a cartoon:
 ///
@@ -55,6 +57,7 @@ pub type CartoonMaterial = ExtendedMaterial<StandardMaterial, CartoonLight>;
 /// The lighting of a [`CartoonMaterial`].
 #[derive(Asset, AsBindGroup, Reflect, Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[uniform(100, CartoonUniform)]
+#[uniform(103, HatchUniform)]
 #[bind_group_data(CartoonKey)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -100,6 +103,38 @@ pub struct CartoonLight {
     pub form: Option<ShadedForm>,
     /// A rim of light. Default: `None`.
     pub rim: Option<Rim>,
+    /// Strokes on the surface, as dark as the light that does not arrive. Default: `None`.
+    ///
+    /// They are those of the effect [`Hatching`], but stay on the mesh while it moves, is skinned
+    /// and is morphed, and know shadows from dark paint. Lightness is that of a white surface: the
+    /// root of the share that arrives of all light, in the tones of a ramp. Ambient light and
+    /// lightmaps always arrive.
+    ///
+    /// [`spacing`](Hatching::spacing) and [`length`](Hatching::length) are in physical pixels,
+    /// [`ink`](Hatching::ink) and [`paper`](Hatching::paper) are colours before tonemapping, and
+    /// [`near`](Hatching::near) is the factor of the darkness at all distances.
+    /// [`far`](Hatching::far), [`source`](Hatching::source) and [`calm`](Hatching::calm) have no
+    /// meaning here.
+    pub hatching: Option<Hatching>,
+    /// The strokes of `hatching`, as a tonal art map. Default: `None`, strokes by planes. It is not
+    /// part of files.
+    ///
+    /// A map lies on the texture coordinates of the mesh, with its strokes along the first one; on
+    /// meshes without any, it lies on the three planes of coordinates of the mesh at rest. A stroke
+    /// has its width on the screen, as far as the map has mip levels: that of [`TonalArtMap`] has. Of
+    /// the settings of `hatching`, the map takes the place of `anchor`, and of all that tell how
+    /// strokes are drawn, from `spacing` to `rate` but for `tones`.
+    ///
+    /// Other images may be used: each texel of the red channel is the tone from which it is ink, in
+    /// linear light (`is_srgb: false`), and every mip level is drawn, not averaged.
+    ///
+    /// [`TonalArtMap`]: super::TonalArtMap
+    #[texture(101)]
+    #[serde(skip)]
+    pub art_map: Option<Handle<Image>>,
+    /// How often `art_map` repeats over texture coordinates from 0 to 1, or over a unit of the
+    /// world. Range 0.01 to 1000, default 4.
+    pub art_map_repeat: f32,
 }
 
 impl Default for CartoonLight {
@@ -118,6 +153,9 @@ impl Default for CartoonLight {
             glint: None,
             form: None,
             rim: None,
+            hatching: None,
+            art_map: None,
+            art_map_repeat: 4.0,
         }
     }
 }
@@ -139,6 +177,8 @@ impl CartoonLight {
             glint: self.glint.map(Glint::sanitized),
             form: self.form.map(ShadedForm::sanitized),
             rim: self.rim.map(Rim::sanitized),
+            hatching: self.hatching.map(Effect::sanitized),
+            art_map_repeat: bounded(self.art_map_repeat, default.art_map_repeat, 0.01, 1000.0),
             ..self
         }
     }
@@ -155,8 +195,14 @@ impl MaterialExtension for CartoonLight {
         _: &MeshVertexBufferLayoutRef,
         key: MaterialExtensionKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
+        let key = key.bind_group_data;
+        let vertex = &mut descriptor.vertex;
+        let defs = &vertex.shader_defs;
+        // Prepasses and shadow maps have shaders of their own.
+        if !is_prepass(defs) && key.hatch.is_some_and(|hatch| hatch.needs_rest(defs)) {
+            vertex.shader = VERTEX;
+        }
         if let Some(fragment) = &mut descriptor.fragment {
-            let key = key.bind_group_data;
             let definitions = key.definitions(&fragment.shader_defs);
             fragment.shader_defs.extend(definitions);
         }

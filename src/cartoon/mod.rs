@@ -1,9 +1,12 @@
 //! The cartoon material: uniformly lit areas with hard shadows (\[CL\] 2.2, 2.3,
 //! after Decaudin).
 
+mod art_map;
+mod art_strokes;
 mod detail;
 mod form;
 mod glint;
+mod hatch;
 mod ignored;
 mod material;
 mod ramp;
@@ -13,13 +16,14 @@ mod uniform;
 
 use bevy::{
     app::{App, Plugin, PostUpdate, Update},
-    asset::{AssetApp, embedded_asset},
+    asset::{AssetApp, embedded_asset, load_internal_asset},
     ecs::schedule::IntoScheduleConfigs,
     pbr::{MaterialPlugin, MeshMaterial3d, PbrPlugin},
     render::erased_render_asset::ErasedRenderAssetPlugin,
-    shader::load_shader_library,
+    shader::{Shader, load_shader_library},
 };
 
+pub use art_map::TonalArtMap;
 pub use detail::{DetailAxis, RampDetail};
 pub use form::{FormShape, ShadedForm};
 pub use glint::{Glint, GlintFrame, GlintShape};
@@ -34,7 +38,8 @@ pub(crate) struct CartoonPlugin;
 impl Plugin for CartoonPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<CartoonLight>()
-            .register_type::<CartoonScene>();
+            .register_type::<CartoonScene>()
+            .register_type::<TonalArtMap>();
         add_material(app);
     }
 
@@ -51,6 +56,7 @@ impl Plugin for CartoonPlugin {
 impl CartoonPlugin {
     /// The part that needs the engine's renderer.
     pub(crate) fn build_render(app: &mut App) {
+        load_shader_library!(app, "art_map.wgsl");
         load_shader_library!(app, "bindings.wgsl");
         load_shader_library!(app, "brightest.wgsl");
         load_shader_library!(app, "contact.wgsl");
@@ -58,6 +64,8 @@ impl CartoonPlugin {
         load_shader_library!(app, "form.wgsl");
         load_shader_library!(app, "glint.wgsl");
         load_shader_library!(app, "glint_light.wgsl");
+        load_shader_library!(app, "hatch.wgsl");
+        load_shader_library!(app, "hatch_light.wgsl");
         load_shader_library!(app, "indirect.wgsl");
         load_shader_library!(app, "lamps.wgsl");
         load_shader_library!(app, "light.wgsl");
@@ -71,10 +79,12 @@ impl CartoonPlugin {
         load_shader_library!(app, "rim_light.wgsl");
         load_shader_library!(app, "share.wgsl");
         load_shader_library!(app, "shine.wgsl");
+        load_shader_library!(app, "stroke_level.wgsl");
         load_shader_library!(app, "surface.wgsl");
         load_shader_library!(app, "surroundings.wgsl");
         load_shader_library!(app, "two_shades.wgsl");
         embedded_asset!(app, "cartoon.wgsl");
+        load_internal_asset!(app, hatch::VERTEX, "vertex.wgsl", Shader::from_wgsl);
     }
 }
 

@@ -7,6 +7,7 @@ use super::{
     detail::DetailUniform,
     form::FormUniform,
     glint::GlintUniform,
+    hatch::HatchKey,
     ramp::{RampKey, RampUniform},
     rim::RimUniform,
 };
@@ -66,6 +67,7 @@ pub struct CartoonKey {
     form: Option<bool>,
     glint: Option<(GlintShape, GlintFrame)>,
     vertex_threshold: bool,
+    pub(super) hatch: Option<HatchKey>,
     rim: bool,
     /// The rim has the same width everywhere.
     even_rim: bool,
@@ -79,6 +81,7 @@ impl From<&CartoonLight> for CartoonKey {
             form: light.form.map(|form| form.shape.is_up()),
             glint: glint.map(|glint| (glint.shape, glint.frame)),
             vertex_threshold: light.vertex_threshold,
+            hatch: HatchKey::of(light),
             rim: light.rim.is_some(),
             even_rim: (light.rim).is_some_and(|rim| matches!(rim.width, RimWidth::Pixels(_))),
         }
@@ -111,6 +114,7 @@ impl CartoonKey {
         if self.vertex_threshold && has(&["VERTEX_COLORS"]) {
             all.push("VERTEX_THRESHOLD".into());
         }
+        all.extend((self.hatch.into_iter()).flat_map(|hatch| hatch.definitions(others)));
         if self.rim {
             all.push("RIM".into());
         }

@@ -11,7 +11,7 @@ const RECIPE: &str = include_str!("fused.wgsl");
 pub(crate) const FILE_KEYS: [&str; 4] = ["version", "name", "partial", "depth_map"];
 
 /// The modules of this crate that an effect may import.
-const MODULES: [&str; 20] = [
+const MODULES: [&str; 21] = [
     "bevy_comics::depth::map",
     "bevy_comics::depth::normal",
     "bevy_comics::depth::raw",
@@ -28,6 +28,7 @@ const MODULES: [&str; 20] = [
     "bevy_comics::effect::screen",
     "bevy_comics::effect::sheet",
     "bevy_comics::effect::similarity",
+    "bevy_comics::effect::strokes",
     "bevy_comics::lines::edge",
     "bevy_comics::lines::read",
     "bevy_comics::lines::surface",

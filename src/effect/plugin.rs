@@ -92,6 +92,7 @@ impl FusedPlugin {
         load_shader_library!(app, "screen.wgsl");
         load_shader_library!(app, "sheet.wgsl");
         load_shader_library!(app, "similarity.wgsl");
+        load_shader_library!(app, "strokes.wgsl");
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;
         };

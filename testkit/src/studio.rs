@@ -7,10 +7,10 @@ use bevy::{
     prelude::*, render::view::Msaa, time::TimeUpdateStrategy,
 };
 use bevy_comics::{
-    CartoonScene, ComicStyle, ComicsPlugin, DepthMap, Focus, FocusAt, FocusStyle, Halftone,
-    HalftoneMode, Hatching, HatchingGround, IsoLines, MeshSections, ObjectScreen, Outlines, Paint,
-    PaintForm, Paper, Preset, ScreenAnchor, ScreenShape, SpeedLineKind, SpeedLines, ToneBands,
-    ToneRamp, TwoTone, presets,
+    CartoonLight, CartoonScene, ComicStyle, ComicsPlugin, DepthMap, Focus, FocusAt, FocusStyle,
+    Halftone, HalftoneMode, Hatching, HatchingGround, IsoLines, MeshSections, ObjectScreen,
+    Outlines, Paint, PaintForm, Paper, Preset, ScreenAnchor, ScreenShape, SpeedLineKind,
+    SpeedLines, ToneBands, ToneRamp, TwoTone, presets,
 };
 
 use super::{
@@ -316,6 +316,26 @@ pub fn set_cartoon(world: &mut World, on: bool) {
             world.entity_mut(part).remove::<CartoonScene>();
         }
     }
+}
+
+/// The theatre with strokes on all of its materials, and outlines.
+pub fn hatched_theatre() -> image::RgbaImage {
+    let mut studio = Studio::new(BuiltIn::Theatre, UVec2::new(320, 180), Msaa::Off);
+    let world = studio.headless.app.world_mut();
+    let hatching = Some(Hatching {
+        spacing: 3.0,
+        near: 0.7,
+        ..default()
+    });
+    for part in roots(world) {
+        let light = CartoonLight {
+            hatching,
+            ..default()
+        };
+        world.entity_mut(part).insert(CartoonScene { light });
+    }
+    studio.headless.step(4);
+    studio.shoot(Some(&ComicStyle::new().with(Outlines::default())))
 }
 
 /// Whether the screens of a style are those of objects with an `ObjectScreen`.

@@ -11,7 +11,7 @@ use nv_flip::{FlipImageRgb8, FlipPool};
 
 use bevy_comics_testkit::{
     scenes::BuiltIn,
-    studio::{Studio, golden_styles},
+    studio::{Studio, golden_styles, hatched_theatre},
 };
 
 fn flip_mean(reference: &image::RgbaImage, picture: &image::RgbaImage) -> f32 {
@@ -177,4 +177,17 @@ fn the_village_looks_as_it_did() {
 #[test]
 fn the_theatre_looks_as_it_did() {
     check(BuiltIn::Theatre);
+}
+
+/// Strokes on materials, not in a style.
+#[test]
+fn the_hatched_theatre_looks_as_it_did() {
+    let picture = hatched_theatre();
+    let reference = &references(BuiltIn::Theatre, "hatched-material")[0];
+    let (flip, off) = apart(reference, &picture);
+    if flip > 0.01 || off > MOST_FAR_OFF_ON_OTHERS {
+        let seen = Path::new(env!("CARGO_TARGET_TMPDIR")).join("theatre-hatched-material.png");
+        picture.save(&seen).expect("saved");
+        panic!("FLIP {flip}, {off} far off: {}", seen.display());
+    }
 }

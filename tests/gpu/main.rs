@@ -1,6 +1,7 @@
 //! Everything that needs a GPU adapter (a CPU driver will do), in one binary.
 
 mod abstraction;
+mod art_maps;
 mod blending;
 mod boil;
 mod borders;
@@ -26,6 +27,7 @@ mod golden;
 mod groups;
 mod guide;
 mod halftone;
+mod hatched_material;
 mod hatching;
 mod held_pose;
 mod house;

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 pub use kinds::{HatchingAnchor, HatchingGround, HatchingSource};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
+    effect::{Effect, EffectShader, EffectStage, Needs, Strokes, Variants, ViewFacts},
     settings::{BlendField, FieldRange, bounded, displayable, file_color, linear_rgb},
 };
 
@@ -228,17 +228,29 @@ impl Effect for Hatching {
     }
 
     fn uniform(&self, view: &ViewFacts) -> HatchingUniform {
-        let [x, y, z] = self.axes();
         HatchingUniform {
             relative_from_clip: view.relative_from_clip,
-            axes: Mat3::from_cols(x, y, z),
+            strokes: self.strokes(view.scale_factor, view.drawing(self.rate)),
             eye: view.eye,
-            opacity: self.opacity,
-            ink: linear_rgb(self.ink),
-            spacing: self.spacing * view.scale_factor,
-            paper: linear_rgb(self.paper),
-            length: self.length * view.scale_factor,
+            near: self.near,
             to_light: view.to_light,
+            far: self.far,
+            calm: self.calm,
+        }
+    }
+}
+
+impl Hatching {
+    /// The strokes of a drawing. `scale`: physical pixels per logical pixel.
+    pub(crate) fn strokes(&self, scale: f32, seed: u32) -> Strokes {
+        let [x, y, z] = self.axes();
+        Strokes {
+            axes: Mat3::from_cols(x, y, z),
+            ink: linear_rgb(self.ink),
+            opacity: self.opacity,
+            paper: linear_rgb(self.paper),
+            spacing: self.spacing * scale,
+            length: self.length * scale,
             layers: self.layers,
             layer_darkness: self.layer_darkness,
             shadows: self.shadows,
@@ -248,16 +260,11 @@ impl Effect for Hatching {
             breaks: self.breaks,
             wobble: self.wobble,
             pressure: self.pressure,
-            near: self.near,
-            far: self.far,
-            seed: view.drawing(self.rate),
+            seed,
             ground: u32::from(self.ground == HatchingGround::Paper),
-            calm: self.calm,
         }
     }
-}
 
-impl Hatching {
     /// Unit normals of the families of planes, at right angles.
     pub fn axes(&self) -> [Vec3; 3] {
         let turn = self.angle.to_radians();
@@ -281,26 +288,10 @@ impl Hatching {
 #[derive(ShaderType, Clone, Copy, Debug, PartialEq)]
 pub struct HatchingUniform {
     relative_from_clip: Mat4,
-    axes: Mat3,
+    strokes: Strokes,
     eye: Vec3,
-    opacity: f32,
-    ink: Vec3,
-    spacing: f32,
-    paper: Vec3,
-    length: f32,
-    to_light: Vec3,
-    layers: u32,
-    layer_darkness: f32,
-    shadows: f32,
-    highlights: f32,
-    gamma: f32,
-    levels: f32,
-    breaks: f32,
-    wobble: f32,
-    pressure: f32,
     near: f32,
+    to_light: Vec3,
     far: f32,
-    seed: u32,
-    ground: u32,
     calm: f32,
 }

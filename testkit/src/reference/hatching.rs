@@ -1,4 +1,4 @@
-//! Twin of `effects/hatching/hatching.wgsl`.
+//! Twin of `effect/strokes.wgsl` and `effects/hatching/hatching.wgsl`.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 

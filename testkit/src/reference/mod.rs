@@ -2,6 +2,7 @@
 //! that it mirrors. It is written from the definition, not from the shader.
 
 pub mod abstraction;
+pub mod art_map;
 pub mod bend;
 pub mod black_flats;
 pub mod blocks;
@@ -32,6 +33,7 @@ pub mod fused;
 pub mod gaps;
 pub mod glint;
 pub mod halftone;
+pub mod hatch;
 pub mod hatching;
 pub mod histogram;
 pub mod iso_lines;
@@ -69,6 +71,7 @@ pub mod sketch;
 pub mod smoothing;
 pub mod speed_lines;
 mod straight;
+pub mod stroke_level;
 pub mod surface;
 pub mod surroundings;
 pub mod tone_bands;

@@ -9,9 +9,9 @@ use bevy_comics_testkit::reference::{
 
 use super::*;
 
-const HATCHING: &str = "#import bevy_comics::effects::hatching::{
-        Hatching, Surface, continues, ground_color, hatched, hatching_tone, page_at, strokes_left, surface_at,
-    }";
+const HATCHING: &str = "
+    #import bevy_comics::effect::strokes::{Strokes, Surface, darkness, ground_color, hatched, page_at}
+    #import bevy_comics::effects::hatching::{continues, strokes_left, surface_at}";
 
 /// A view of 90 degrees, 96 x 64 pixels, from the origin.
 const VIEW: &str = "const VIEW = mat4x4<f32>(
@@ -130,7 +130,7 @@ fn strokes_are_those_of_the_twin() {
     for_batches(row, |rows| {
         let results = gpu().evaluate(
             &format!("{HATCHING}\n{VIEW}"),
-            "var s: Hatching;
+            "var s: Strokes;
              s.spacing = i(4u); s.length = i(5u); s.breaks = i(6u); s.wobble = i(7u);
              s.pressure = i(8u); s.layers = u32(i(9u)); s.layer_darkness = 0.45; s.seed = 7u;
              let angle = radians(i(10u));
@@ -192,11 +192,11 @@ fn tones_and_grounds_are_those_of_the_twin() {
     for_batches(row, |rows| {
         let results = gpu().evaluate(
             HATCHING,
-            "var s: Hatching;
+            "var s: Strokes;
              s.shadows = i(1u); s.highlights = i(2u); s.gamma = i(3u); s.levels = i(4u);
              s.ink = vec3(0.1, 0.0, 0.3);
              let ground = ground_color(s, vec3(i(5u), 0.5, 1.5), i(0u));
-             return vec4(hatching_tone(s, i(0u)), ground);",
+             return vec4(darkness(s, i(0u)), ground);",
             rows,
         );
         for (row, found) in rows.iter().zip(results) {

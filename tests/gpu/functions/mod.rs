@@ -2,6 +2,7 @@
 //! edge cases.
 
 mod abstraction;
+mod art_map;
 mod bend;
 mod blocks;
 mod budget;
@@ -20,6 +21,7 @@ mod form;
 mod gaps;
 mod glint;
 pub mod halftone;
+mod hatch;
 mod hatching;
 mod iso_lines;
 mod jumps;

@@ -1,0 +1,168 @@
+//! Strokes on the cartoon material.
+
+use bevy::{
+    asset::{Handle, uuid_handle},
+    render::render_resource::ShaderType,
+    shader::{Shader, ShaderDefVal},
+};
+
+use super::CartoonLight;
+use crate::{
+    effect::{Effect, Strokes},
+    effects::{Hatching, HatchingAnchor},
+    settings::bounded,
+};
+
+/// The vertex shader of materials whose strokes lie on surfaces: `vertex.wgsl`.
+pub(super) const VERTEX: Handle<Shader> = uuid_handle!("0d7b0a5c-31b5-4c6e-9a47-5f0b6d1f3c82");
+
+/// `Hatch` in `hatch.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct HatchUniform {
+    strokes: Strokes,
+    factor: f32,
+    rate: f32,
+    repeat: f32,
+    unused: f32,
+}
+
+/// The strokes of a material that are seen, in range.
+fn seen(light: &CartoonLight) -> Option<Hatching> {
+    let hatching = light.hatching.map(Effect::sanitized);
+    hatching.filter(|hatching| hatching.opacity > 0.0)
+}
+
+impl From<&CartoonLight> for HatchUniform {
+    fn from(light: &CartoonLight) -> Self {
+        let Some(hatching) = seen(light) else {
+            return Self::default();
+        };
+        Self {
+            // A material does not know the scale factor of a window.
+            strokes: hatching.strokes(1.0, 0),
+            factor: hatching.near,
+            rate: hatching.rate,
+            repeat: bounded(light.art_map_repeat, 4.0, 0.01, 1000.0),
+            unused: 0.0,
+        }
+    }
+}
+
+/// Whether definitions are those of a prepass or a shadow map.
+pub(super) fn is_prepass(definitions: &[ShaderDefVal]) -> bool {
+    definitions.contains(&"PREPASS_PIPELINE".into())
+}
+
+/// What strokes are drawn from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum HatchKey {
+    Page,
+    Rest,
+    ArtMap,
+}
+
+impl HatchKey {
+    /// That of a material; `None` if it has no strokes.
+    pub(super) fn of(light: &CartoonLight) -> Option<Self> {
+        let hatching = seen(light)?;
+        if light.art_map.is_some() {
+            return Some(Self::ArtMap);
+        }
+        Some(match hatching.anchor {
+            HatchingAnchor::Page => Self::Page,
+            HatchingAnchor::Object => Self::Rest,
+        })
+    }
+
+    /// Whether the vertex shader hands on the place of a vertex at rest.
+    /// `others`: the definitions of the mesh and the view.
+    pub(super) fn needs_rest(self, others: &[ShaderDefVal]) -> bool {
+        match self {
+            Self::Page => false,
+            Self::Rest => true,
+            Self::ArtMap => !others.contains(&"VERTEX_UVS_A".into()),
+        }
+    }
+
+    /// The shader definitions, in addition to others.
+    pub(super) fn definitions(self, others: &[ShaderDefVal]) -> Vec<ShaderDefVal> {
+        let mut all = vec!["HATCHED".into()];
+        if self.needs_rest(others) {
+            all.push("HATCH_REST".into());
+        }
+        if self == Self::ArtMap {
+            all.push("HATCH_ART_MAP".into());
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with(hatching: Hatching) -> CartoonLight {
+        CartoonLight {
+            hatching: Some(hatching),
+            ..CartoonLight::default()
+        }
+    }
+
+    /// Whatever numbers a material has, all numbers of its uniform are finite.
+    #[test]
+    fn every_number_of_the_uniform_is_finite() {
+        for x in [f32::NAN, f32::INFINITY, -1.0, 0.0, 1e-45, 1e30] {
+            let hatching = Hatching {
+                shadows: x,
+                highlights: x,
+                gamma: x,
+                tones: u32::MAX,
+                spacing: x,
+                layers: 0,
+                layer_darkness: x,
+                angle: x,
+                length: x,
+                breaks: x,
+                wobble: x,
+                pressure: x,
+                rate: x,
+                near: x,
+                ..Hatching::default()
+            };
+            let light = CartoonLight {
+                art_map_repeat: x,
+                ..with(hatching)
+            };
+            let uniform = HatchUniform::from(&light);
+            let text = format!("{uniform:?}");
+            assert!(
+                !text.contains("NaN") && !text.contains("inf"),
+                "{x}: {text}"
+            );
+            assert_eq!(uniform, HatchUniform::from(&light.sanitized()));
+        }
+    }
+
+    #[test]
+    fn the_uniform_can_be_one() {
+        HatchUniform::assert_uniform_compat();
+    }
+
+    #[test]
+    fn strokes_that_are_not_seen_are_not_compiled() {
+        assert_eq!(HatchKey::of(&CartoonLight::default()), None);
+        let unseen = Hatching {
+            opacity: 0.0,
+            ..Hatching::default()
+        };
+        assert_eq!(HatchKey::of(&with(unseen)), None);
+        let map = CartoonLight {
+            art_map: Some(Handle::default()),
+            ..with(Hatching::default())
+        };
+        let key = HatchKey::of(&map).expect("strokes");
+        // A map lies on texture coordinates, or on the mesh at rest.
+        assert!(key.needs_rest(&[]));
+        assert!(!key.needs_rest(&["VERTEX_UVS_A".into()]));
+    }
+}
