@@ -6,7 +6,7 @@ use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*, render::view::Ms
 use bevy_comics::{
     CartoonLight, CartoonMaterial, ComicStyle, ComicsPlugin, DetailAxis, FormShape, Glint,
     GlintShape, Outlines, Ramp, RampDetail, RampMode, RampStop, Rim, RimWidth, ShadedForm,
-    ToneRamp,
+    ToneRamp, presets,
 };
 use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
@@ -25,16 +25,17 @@ pub fn write(folder: &Path) -> Result<(), String> {
     save(&details(), &folder.join("details.png"))?;
     save(&rims(), &folder.join("rims.png"))?;
     save(&forms(), &folder.join("forms.png"))?;
-    save(&tone_ramp(), &folder.join("tone-ramp.png"))
+    save(&tone_ramp(), &folder.join("tone-ramp.png"))?;
+    save(&figure(), &folder.join("figure.png"))
 }
 
 /// A stage with a ground, under a sun from the left.
-struct Room {
-    headless: Headless,
+pub struct Room {
+    pub headless: Headless,
 }
 
 impl Room {
-    fn new(size: UVec2, eye: Transform, fov: f32) -> Self {
+    pub fn new(size: UVec2, eye: Transform, fov: f32) -> Self {
         let mut headless = Headless::new(HeadlessOptions { size, ..default() }, ComicsPlugin);
         let target = headless.render_target();
         let world = headless.app.world_mut();
@@ -66,13 +67,13 @@ impl Room {
         Self { headless }
     }
 
-    fn put(
+    pub fn put(
         &mut self,
         mesh: impl Into<Mesh>,
         base: StandardMaterial,
         light: &CartoonLight,
         at: Transform,
-    ) {
+    ) -> Entity {
         let world = self.headless.app.world_mut();
         let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
         let material = CartoonMaterial {
@@ -82,10 +83,11 @@ impl Room {
         let material = world
             .resource_mut::<Assets<CartoonMaterial>>()
             .add(material);
-        world.spawn((Mesh3d(mesh), MeshMaterial3d(material), at));
+        let parts = (Mesh3d(mesh), MeshMaterial3d(material), at);
+        world.spawn(parts).id()
     }
 
-    fn ground(&mut self) {
+    pub fn ground(&mut self) {
         let ground = Plane3d::default().mesh().size(80.0, 80.0);
         let light = CartoonLight {
             ramp: Some(per_light(Ramp::default().stops)),
@@ -101,7 +103,7 @@ impl Room {
     }
 }
 
-fn matt(color: Color) -> StandardMaterial {
+pub fn matt(color: Color) -> StandardMaterial {
     StandardMaterial {
         perceptual_roughness: 0.9,
         ..color.into()
@@ -115,7 +117,7 @@ fn shiny(color: Color) -> StandardMaterial {
     }
 }
 
-fn per_light(stops: Vec<RampStop>) -> Ramp {
+pub fn per_light(stops: Vec<RampStop>) -> Ramp {
     Ramp {
         mode: RampMode::PerLight,
         ..Ramp::new(stops)
@@ -361,4 +363,10 @@ fn tone_ramp() -> RgbaImage {
     let before = studio.shoot(Some(&outlines));
     let after = studio.shoot(Some(&outlines.with(ToneRamp::default())));
     grid(&[vec![&before, &after]], size, 6)
+}
+
+/// A character whose materials have looks of their own, from files.
+fn figure() -> RgbaImage {
+    let mut studio = Studio::new(BuiltIn::Figure, UVec2::new(800, 450), Msaa::Sample4);
+    studio.shoot(Some(&presets::SATURDAY_MORNING.style()))
 }

@@ -5,7 +5,9 @@ mod detail;
 mod form;
 mod glint;
 mod ignored;
+mod look;
 mod material;
+mod name;
 mod ramp;
 mod rim;
 mod scene;
@@ -23,7 +25,9 @@ use bevy::{
 pub use detail::{DetailAxis, RampDetail};
 pub use form::{FormShape, ShadedForm};
 pub use glint::{Glint, GlintFrame, GlintShape};
+pub use look::{ToonLook, ToonLookError, ToonLookHandle, ToonLookHandleTemplate};
 pub use material::{CartoonLight, CartoonMaterial};
+pub use name::MaterialName;
 pub use ramp::{Ramp, RampBlend, RampMode, RampStop};
 pub use rim::{Rim, RimWidth};
 pub use scene::CartoonScene;
@@ -34,7 +38,9 @@ pub(crate) struct CartoonPlugin;
 impl Plugin for CartoonPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<CartoonLight>()
-            .register_type::<CartoonScene>();
+            .register_type::<CartoonScene>()
+            .register_type::<MaterialName>()
+            .register_type::<ToonLookHandle>();
         add_material(app);
     }
 
@@ -49,6 +55,13 @@ impl Plugin for CartoonPlugin {
 }
 
 impl CartoonPlugin {
+    /// The part that needs the engine's assets.
+    pub(crate) fn build_assets(app: &mut App) {
+        app.init_asset::<ToonLook>()
+            .register_asset_reflect::<ToonLook>()
+            .init_asset_loader::<look::ToonLookLoader>();
+    }
+
     /// The part that needs the engine's renderer.
     pub(crate) fn build_render(app: &mut App) {
         load_shader_library!(app, "bindings.wgsl");
@@ -88,10 +101,24 @@ fn add_material(app: &mut App) -> bool {
     }
     app.add_plugins(MaterialPlugin::<CartoonMaterial>::default())
         .register_asset_reflect::<CartoonMaterial>()
-        .add_systems(Update, (material::keep_forward, ignored::warn_of_ignored))
+        .init_resource::<scene::Copies>()
+        .add_systems(
+            Update,
+            (
+                (look::apply_looks, material::keep_forward).chain(),
+                ignored::warn_of_ignored,
+            ),
+        )
         .add_systems(
             PostUpdate,
-            (scene::follow_materials, scene::restore, scene::convert).chain(),
+            (
+                scene::follow_materials,
+                scene::restore,
+                name::name_meshes,
+                scene::choose_again,
+                scene::convert,
+            )
+                .chain(),
         );
     true
 }

@@ -178,3 +178,8 @@ fn the_village_looks_as_it_did() {
 fn the_theatre_looks_as_it_did() {
     check(BuiltIn::Theatre);
 }
+
+#[test]
+fn the_figure_looks_as_it_did() {
+    check(BuiltIn::Figure);
+}
