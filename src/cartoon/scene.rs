@@ -133,17 +133,18 @@ pub(super) struct Materials<'w> {
 }
 
 impl Materials<'_> {
-    /// The cartoon copy of a standard material, if that has loaded.
-    fn copy(&self, original: &Original, scene: &CartoonScene) -> Option<CartoonMaterial> {
+    /// What a copy is, if its standard material has loaded.
+    fn copy(&self, key: CopyKey, scene: &CartoonScene) -> Option<CartoonMaterial> {
+        let (_, original, look) = key;
         let looks = self.looks.as_ref();
-        let loaded = [&original.look, &scene.look]
+        let loaded = [look, scene.look.as_ref().map(Handle::id)]
             .into_iter()
             .flatten()
             .find_map(|look| looks.and_then(|looks| looks.get(look)));
         Some(CartoonMaterial {
             base: StandardMaterial {
                 opaque_render_method: OpaqueRendererMethod::Forward,
-                ..self.standard.get(&original.material)?.clone()
+                ..self.standard.get(original)?.clone()
             },
             extension: loaded.map_or_else(|| scene.light.clone(), |look| look.light.clone()),
         })
@@ -160,7 +161,7 @@ impl Materials<'_> {
         if let Some(handle) = self.copies.0.get(&key) {
             return Some(handle.clone());
         }
-        let copy = self.copy(original, scene)?;
+        let copy = self.copy(key, scene)?;
         let handle = self.cartoon.add(copy);
         self.copies.0.insert(key, handle.clone());
         Some(handle)
@@ -303,7 +304,6 @@ pub(super) fn follow_materials(
     mut standard: MessageReader<AssetEvent<StandardMaterial>>,
     mut looks: MessageReader<AssetEvent<ToonLook>>,
     roots: SceneRoots,
-    converted: Query<(&Original, &MeshMaterial3d<CartoonMaterial>)>,
     mut materials: Materials,
 ) {
     let standard = standard.read().filter_map(|event| match event {
@@ -316,22 +316,26 @@ pub(super) fn follow_materials(
     if standard.is_empty() && looks.is_empty() && !tuned {
         return;
     }
-    let mut done = HashSet::new();
-    for (original, handle) in &converted {
-        let Some(scene) = roots.get(original.root) else {
+    // Also those that no mesh has at the moment: one may have them again.
+    let copies = materials
+        .copies
+        .0
+        .iter()
+        .map(|(key, copy)| (*key, copy.clone()));
+    for (key, handle) in copies.collect::<Vec<_>>() {
+        let (root, original, look) = key;
+        let Some(scene) = roots.get(root) else {
             continue;
         };
-        let is_changed = |look: &Option<Handle<ToonLook>>| {
-            (look.as_ref()).is_some_and(|look| looks.contains(&look.id()))
-        };
+        let is_changed =
+            |look: Option<AssetId<ToonLook>>| look.is_some_and(|id| looks.contains(&id));
         let follows = scene.is_changed()
-            || standard.contains(&original.material.id())
-            || is_changed(&original.look)
-            || is_changed(&scene.look);
+            || standard.contains(&original)
+            || is_changed(look)
+            || is_changed(scene.look.as_ref().map(Handle::id));
         if follows
-            && done.insert(handle.0.id())
-            && let Some(copy) = materials.copy(original, &scene)
-            && let Some(mut material) = materials.cartoon.get_mut(&handle.0)
+            && let Some(copy) = materials.copy(key, &scene)
+            && let Some(mut material) = materials.cartoon.get_mut(&handle)
         {
             *material = copy;
         }

@@ -38,8 +38,8 @@ use crate::settings::{FieldRange, bounded, displayable};
 #[reflect(Component, Default, Clone, PartialEq)]
 #[require(Trail)]
 pub struct MotionLines {
-    /// Number of points on the surface. About half of them, those at the back of the movement,
-    /// draw a line. Range 1 to 128, default 32.
+    /// Number of points on the surface. Those at the back of the movement draw a line: about a third
+    /// of them on what is round. Range 1 to 128, default 48.
     #[reflect(@FieldRange::linear(1.0, 128.0))]
     pub points: u32,
     /// Time of the movement that the longest line shows, in seconds. Range 0.02 to 2, default
@@ -76,7 +76,7 @@ pub struct MotionLines {
 impl Default for MotionLines {
     fn default() -> Self {
         Self {
-            points: 32,
+            points: 48,
             duration: 0.15,
             gap: 0.1,
             variation: 0.5,

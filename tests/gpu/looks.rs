@@ -141,7 +141,7 @@ fn errors_of_looks_name_the_line_and_what_is_wrong() {
         "{unknown}"
     );
     let broken = error("(version: 1,\n light: (\n");
-    assert!(broken.contains("line 3"), "{broken}");
+    assert!(broken.contains("line 2"), "{broken}");
     let color = error("(version: 1, light: (rim: (color: \"reddish\")))");
     assert!(
         color.contains("reddish") || color.contains("#rrggbb"),

@@ -3,6 +3,7 @@
 
 pub mod buildings;
 pub mod figure;
+pub mod lights;
 pub mod mountains;
 pub mod noise;
 pub mod shape;

@@ -4,8 +4,8 @@ use std::f32::consts::{PI, TAU};
 
 use bevy::prelude::*;
 
-use super::clay::{bone, ellipsoid, join, lock, strip, surface};
-use crate::scenes::shape::Shape;
+use super::clay::{bone, ellipsoid, join, lock, outward, sheet, strip, surface};
+use crate::{scenes::shape::Shape, specimens::solid::ball};
 
 /// Joints of the raised arm.
 pub const ELBOW: Vec3 = Vec3::new(1.72, -2.85, 0.2);
@@ -20,26 +20,59 @@ fn fold(p: Vec3, direction: Vec3, depth: f32) -> f32 {
     depth * (p.dot(direction)).sin() * (0.7 * p.dot(direction.zxy()) + 1.0).sin()
 }
 
+/// Distance to the coat.
+fn cloth(p: Vec3) -> f32 {
+    let mirrored = Vec3::new(p.x.abs(), p.y, p.z);
+    let middle = SHOULDER * Vec3::new(0.0, 1.0, 1.0);
+    let across = bone(mirrored, (middle, SHOULDER), (0.4, 0.37));
+    let chest = ellipsoid(p, Vec3::new(0.0, -2.75, -0.24), Vec3::new(1.0, 1.1, 0.62));
+    let neck = bone(
+        p,
+        (Vec3::new(0.0, -1.4, -0.24), Vec3::new(0.0, -2.0, -0.26)),
+        (0.36, 0.62),
+    );
+    let other = SHOULDER * Vec3::new(-1.0, 1.0, 1.0);
+    let hanging = bone(p, (other, Vec3::new(-1.4, -3.6, 0.0)), (0.37, 0.3));
+    let raised = bone(p, (SHOULDER, ELBOW), (0.37, 0.33));
+    let mut coat = join(across, chest, 0.3);
+    coat = join(coat, neck, 0.35);
+    coat = join(coat, hanging.min(raised), 0.12);
+    coat + fold(p, Vec3::new(5.0, 7.0, 3.0), 0.012)
+}
+
 pub fn coat() -> Shape {
     let (low, high) = (Vec3::new(-2.0, -3.6, -1.1), Vec3::new(2.3, -1.2, 0.9));
-    surface(low, high, 0.045, |p| {
-        let mirrored = Vec3::new(p.x.abs(), p.y, p.z);
-        let middle = SHOULDER * Vec3::new(0.0, 1.0, 1.0);
-        let across = bone(mirrored, (middle, SHOULDER), (0.4, 0.37));
-        let chest = ellipsoid(p, Vec3::new(0.0, -2.75, -0.24), Vec3::new(1.0, 1.1, 0.62));
-        let neck = bone(
-            p,
-            (Vec3::new(0.0, -1.4, -0.24), Vec3::new(0.0, -2.0, -0.26)),
-            (0.36, 0.62),
-        );
-        let other = SHOULDER * Vec3::new(-1.0, 1.0, 1.0);
-        let hanging = bone(p, (other, Vec3::new(-1.4, -3.6, 0.0)), (0.37, 0.3));
-        let raised = bone(p, (SHOULDER, ELBOW), (0.37, 0.33));
-        let mut coat = join(across, chest, 0.3);
-        coat = join(coat, neck, 0.35);
-        coat = join(coat, hanging.min(raised), 0.12);
-        coat + fold(p, Vec3::new(5.0, 7.0, 3.0), 0.012)
-    })
+    surface(low, high, 0.045, cloth)
+}
+
+/// The place of the coat in front of a point, and its normal.
+fn on_coat(x: f32, y: f32) -> (Vec3, Vec3) {
+    let mut place = Vec3::new(x, y, 1.4);
+    for _ in 0..40 {
+        place.z -= 0.7 * cloth(place);
+    }
+    (place, outward(&cloth, place))
+}
+
+/// The band down the front of the coat.
+pub fn placket() -> Shape {
+    let mut shape = Shape::default();
+    sheet(&mut shape, 40, 6, |u, v| {
+        let (place, normal) = on_coat(-0.12 + 0.24 * v, -1.5 - 1.4 * u);
+        (place + normal * 0.02, normal)
+    });
+    shape
+}
+
+pub fn buttons() -> Shape {
+    let mut shape = Shape::default();
+    for y in [-2.0, -2.5] {
+        let (place, normal) = on_coat(0.0, y);
+        let turn = Quat::from_rotation_arc(Vec3::Z, normal);
+        let at = Transform::from_translation(place + normal * 0.02).with_rotation(turn);
+        ball(&mut shape, at.with_scale(Vec3::new(0.065, 0.065, 0.03)), 24);
+    }
+    shape
 }
 
 /// The sleeve of the forearm, with its elbow at the origin.
@@ -155,23 +188,40 @@ pub fn scarf() -> Shape {
     shape
 }
 
+/// The middle of the tail of the scarf, from its root on.
+fn tail_path(t: f32) -> Vec3 {
+    let wave = 0.2 * (TAU * 1.1 * t - 0.5).sin() * t;
+    let depth = 0.3 * (6.5 * t).sin() * t - 0.2 * t;
+    Vec3::new(-2.3 * t, 0.3 * t + wave, depth)
+}
+
+/// A part of the tail of the scarf, which turns in the wind.
+fn tail_part(shape: &mut Shape, ends: (f32, f32), thickness: f32) {
+    let at = |t: f32| ends.0 + (ends.1 - ends.0) * t;
+    let out = |p: Vec3| Vec3::new(0.5 * (3.4 * p.x).sin(), 0.3 + 0.3 * (2.2 * p.x).cos(), 1.0);
+    let size = |t: f32| {
+        let end = if (0.001..0.999).contains(&t) {
+            1.0
+        } else {
+            0.0
+        };
+        Vec2::new(0.17 + 0.15 * at(t).sqrt(), thickness) * end
+    };
+    lock(shape, |t| tail_path(at(t)), out, size);
+}
+
 /// The tail of the scarf in the wind, with its root at the origin.
 pub fn tail() -> Shape {
     let mut shape = Shape::default();
-    let path = |t: f32| {
-        let wave = 0.16 * (TAU * 0.9 * t - 0.6).sin() * t;
-        Vec3::new(
-            -2.35 * t,
-            0.25 * t + wave,
-            -0.2 * t + 0.22 * (5.0 * t).sin() * t,
-        )
-    };
-    let out = |p: Vec3| Vec3::new(0.25 + 0.2 * (2.6 * p.x).sin(), 0.3, 1.0);
-    let size = |t: f32| {
-        let t = t.clamp(0.0, 1.0);
-        let end = if t < 0.999 { 1.0 } else { 0.0 };
-        Vec2::new(0.16 + 0.16 * t.sqrt(), 0.035) * end
-    };
-    lock(&mut shape, path, out, size);
+    tail_part(&mut shape, (0.0, 1.0), 0.03);
+    shape
+}
+
+/// Two bands across the end of the tail.
+pub fn bands() -> Shape {
+    let mut shape = Shape::default();
+    for ends in [(0.76, 0.82), (0.87, 0.93)] {
+        tail_part(&mut shape, ends, 0.045);
+    }
     shape
 }

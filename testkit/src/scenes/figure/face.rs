@@ -11,9 +11,9 @@ use crate::scenes::shape::Shape;
 /// Middle of the eye on the side of +x.
 const EYE: Vec2 = Vec2::new(0.35, -0.05);
 /// Half of the width, and the height above and below the middle.
-const EYE_SIZE: Vec3 = Vec3::new(0.185, 0.185, 0.17);
+const EYE_SIZE: Vec3 = Vec3::new(0.185, 0.165, 0.165);
 /// Half of the width and of the height.
-const IRIS: Vec2 = Vec2::new(0.118, 0.162);
+const IRIS: Vec2 = Vec2::new(0.13, 0.168);
 
 /// Distance to the skin of head and neck.
 pub fn skin(p: Vec3) -> f32 {
@@ -135,11 +135,7 @@ fn middle(name: &'static str, lift: f32, draw: impl Fn(&mut Brush)) -> Paint {
 
 /// Open eyes.
 pub fn eyes() -> Vec<Paint> {
-    let gaze = EYE + Vec2::new(-0.012, 0.0);
-    let mut iris = both_sides("iris", 0.01, |brush| {
-        brush.ellipse(gaze, IRIS, |x| lid(x) - 0.01);
-    });
-    bulge(&mut iris.shape, gaze);
+    let gaze = EYE + Vec2::new(-0.012, 0.006);
     vec![
         both_sides("eye", 0.005, |brush| {
             brush.paint(24, 10, |u, v| {
@@ -147,35 +143,36 @@ pub fn eyes() -> Vec<Paint> {
                 lower(across).lerp(upper(across), v)
             });
         }),
-        iris,
+        both_sides("iris", 0.01, |brush| {
+            brush.ellipse(gaze, IRIS, |x| lid(x) - 0.01);
+        }),
+        // Its upper half is in the shade of the lid.
+        both_sides("iris shade", 0.0115, |brush| {
+            let high = |x: f32| lid(x) - 0.01;
+            brush.paint(24, 10, |u, v| {
+                let p = gaze + IRIS * Vec2::from_angle(PI * u);
+                let low = gaze.y + 0.045 - 1.6 * (p.x - gaze.x).powi(2);
+                Vec2::new(p.x, low + (p.y.min(high(p.x)) - low).max(0.0) * v)
+            });
+        }),
         both_sides("ink", 0.013, |brush| {
             let center = gaze - Vec2::new(0.0, 0.012);
-            brush.ellipse(center, Vec2::new(0.052, 0.078), |x| lid(x) - 0.01);
-            // The shade of the lid, and the dark border of the iris.
-            brush.paint(24, 4, |u, v| {
-                let angle = TAU * u;
-                gaze + (IRIS - 0.017 * v) * Vec2::from_angle(angle)
+            brush.ellipse(center, Vec2::new(0.056, 0.084), |x| lid(x) - 0.01);
+            // The dark border of the iris.
+            brush.paint(36, 4, |u, v| {
+                let p = gaze + (IRIS - 0.018 * v) * Vec2::from_angle(TAU * u);
+                Vec2::new(p.x, p.y.min(lid(p.x) - 0.01))
             });
             lashes(brush);
         }),
         both_sides("light", 0.017, |brush| {
             // On the same side of both eyes: that of the light.
             let spot = Vec2::new(-0.042 * brush.side, 0.06);
-            brush.ellipse(gaze + spot, Vec2::new(0.034, 0.042), lid);
+            brush.ellipse(gaze + spot, Vec2::new(0.037, 0.046), lid);
             let spot = Vec2::new(0.045 * brush.side, -0.075);
             brush.ellipse(gaze + spot, Vec2::splat(0.018), lid);
         }),
     ]
-}
-
-/// Bends the normals of both irises as if they were balls, so that they have highlights.
-fn bulge(shape: &mut Shape, gaze: Vec2) {
-    for (place, normal) in shape.positions.iter().zip(&mut shape.normals) {
-        let center = gaze * Vec2::new(place[0].signum(), 1.0);
-        let out = (Vec2::new(place[0], place[1]) - center) / IRIS;
-        let bent = Vec3::from(*normal) + 0.5 * out.extend(0.0);
-        *normal = bent.normalize_or(Vec3::Z).to_array();
-    }
 }
 
 /// The line of the upper lid, which ends in a wing; a short lower one; and the fold above.
@@ -187,11 +184,11 @@ fn lashes(brush: &mut Brush) {
         let wing = Vec2::new(EYE_SIZE.x * beyond, 0.24 * beyond);
         let inner = (across + 1.04).clamp(0.0, 0.5) / 0.5;
         let outer = ((1.26 - across) / 0.5).clamp(0.0, 1.0);
-        let thick = (0.024 + 0.024 * u) * inner * outer;
+        let thick = (0.042 + 0.036 * u) * inner * outer;
         edge + wing + Vec2::new(0.0, (v - 0.25) * thick)
     });
     let below = |u: f32| lower(0.3 + 0.72 * u) - Vec2::new(0.0, 0.004);
-    brush.stroke(below, |u| 0.014 * (PI * (0.12 + 0.88 * u)).sin());
+    brush.stroke(below, |u| 0.018 * (PI * (0.12 + 0.88 * u)).sin());
     let fold = |u: f32| {
         let edge = upper(-0.55 + 1.4 * u);
         edge + Vec2::new(0.0, 0.062)
@@ -228,7 +225,7 @@ pub fn features() -> Vec<Paint> {
                 let rise = (2.2 * u).min(1.9).sin();
                 Vec2::new(0.2 + 0.33 * u, 0.25 + 0.05 * rise)
             };
-            brush.stroke(line, |u| 0.042 * (PI * (0.16 + 0.8 * u)).sin());
+            brush.stroke(line, |u| 0.05 * (PI * (0.16 + 0.8 * u)).sin());
         }),
         both_sides("blush", 0.005, |brush| {
             let center = Vec2::new(0.47, -0.3);
@@ -244,7 +241,7 @@ pub fn features() -> Vec<Paint> {
         }),
         middle("ink", 0.012, |brush| {
             let smile = |u: f32| lips(-1.12 + 2.24 * u) + Vec2::new(0.0, 0.004);
-            brush.stroke(smile, |u| 0.016 * (PI * (0.08 + 0.84 * u)).sin());
+            brush.stroke(smile, |u| 0.026 * (PI * (0.1 + 0.8 * u)).sin());
             let nose = |u: f32| Vec2::new(0.02 - 0.035 * u, -0.318 - 0.012 * (PI * u).sin());
             brush.stroke(nose, |u| 0.014 * (PI * u).sin());
         }),

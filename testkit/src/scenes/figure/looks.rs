@@ -13,12 +13,13 @@ macro_rules! looks {
 const FILES: [(&str, &str); 6] = looks!["face", "skin", "hair", "iris", "paint", "cloth"];
 
 /// Materials, and the look of each.
-const LOOKS: [(&str, &str); 13] = [
+const LOOKS: [(&str, &str); 15] = [
     ("face", "face"),
     ("blush", "face"),
     ("skin", "skin"),
     ("hair", "hair"),
     ("iris", "iris"),
+    ("iris shade", "paint"),
     ("eye", "paint"),
     ("ink", "paint"),
     ("brow", "paint"),
@@ -26,6 +27,7 @@ const LOOKS: [(&str, &str); 13] = [
     ("tongue", "paint"),
     ("scarf", "cloth"),
     ("coat", "cloth"),
+    ("button", "cloth"),
     ("cuff", "cloth"),
 ];
 

@@ -22,20 +22,22 @@ use super::{
 use motion::{Lids, Sway};
 
 /// The materials: name, sRGB code, perceptual roughness.
-const MATERIALS: [(&str, u32, f32); 14] = [
-    ("face", 0xf3c6a5, 0.75),
-    ("skin", 0xf3c6a5, 0.75),
-    ("hair", 0x6c76b4, 0.5),
+const MATERIALS: [(&str, u32, f32); 16] = [
+    ("face", 0xffdbc2, 0.75),
+    ("skin", 0xffdbc2, 0.75),
+    ("hair", 0x7580b6, 0.5),
     ("eye", 0xfbf7f0, 0.9),
     ("iris", 0x2f9a8c, 0.3),
+    ("iris shade", 0x17605e, 0.9),
     ("ink", 0x231a2c, 0.9),
     ("light", 0xffffff, 0.9),
     ("brow", 0x333a66, 0.9),
-    ("blush", 0xeb9a86, 0.9),
+    ("blush", 0xf7a592, 0.9),
     ("mouth", 0x8a2c38, 0.9),
     ("tongue", 0xe5787b, 0.9),
     ("scarf", 0xd8463c, 0.9),
     ("coat", 0xe8b552, 0.85),
+    ("button", 0x7a4a34, 0.85),
     ("cuff", 0xf6ead0, 0.9),
 ];
 
@@ -130,7 +132,9 @@ fn head(shop: &mut Workshop, figure: Entity) {
 }
 
 fn body(shop: &mut Workshop, figure: Entity) {
-    shop.put(figure, "coat", body::coat());
+    let coat = shop.put(figure, "coat", body::coat());
+    shop.put(coat, "coat", body::placket());
+    shop.put(coat, "button", body::buttons());
     shop.put(figure, "scarf", body::scarf());
     let rest = Transform::from_translation(body::KNOT);
     let tail = shop.joint(
@@ -138,6 +142,7 @@ fn body(shop: &mut Workshop, figure: Entity) {
         Sway::new(rest, Vec3::new(0.0, 0.6, 1.0), 0.1, 1.9, 0.0),
     );
     shop.put(tail, "scarf", body::tail());
+    shop.put(tail, "cuff", body::bands());
 
     let rest = Transform::from_translation(body::ELBOW);
     let arm = shop.joint(figure, Sway::new(rest, Vec3::Z, 0.1, 1.5, 0.0));
@@ -146,7 +151,9 @@ fn body(shop: &mut Workshop, figure: Entity) {
     let turn = Quat::from_rotation_z(-0.06) * Quat::from_rotation_y(-0.12);
     let rest = Transform::from_translation(body::WRIST - body::ELBOW).with_rotation(turn);
     let hand = shop.joint(arm, Sway::new(rest, Vec3::Z, 0.16, 1.5, 0.9));
-    shop.put(hand, "skin", body::hand());
+    let hand = shop.put(hand, "skin", body::hand());
+    // Its shadow on the coat would look like a stain.
+    shop.stage.commands.entity(hand).insert(NotShadowCaster);
 }
 
 /// Hills far behind the figure.
@@ -209,8 +216,8 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     });
 
     Vantage {
-        eye: Vec3::new(0.25, -0.35, 7.4),
-        target: Vec3::new(0.25, -0.42, 0.0),
+        eye: Vec3::new(0.2, -0.2, 7.75),
+        target: Vec3::new(0.2, -0.27, 0.0),
         fov: 27f32.to_radians(),
         near: 0.1,
         far: 1000.0,
