@@ -67,8 +67,8 @@ fn speed_lines() -> RgbaImage {
 
 /// A ball that bounces, a dart, and a rotor.
 fn motion_lines() -> RgbaImage {
-    let eye = Transform::from_xyz(0.0, 1.6, 9.0).looking_at(Vec3::new(0.0, 1.15, 0.0), Vec3::Y);
-    let mut room = Room::new(UVec2::new(800, 300), eye, 0.4);
+    let eye = Transform::from_xyz(0.0, 1.6, 9.0).looking_at(Vec3::new(0.0, 1.2, 0.0), Vec3::Y);
+    let mut room = Room::new(UVec2::new(800, 300), eye, 0.34);
     room.ground();
     let light = CartoonLight {
         ramp: Some(per_light(Ramp::default().stops)),
@@ -91,7 +91,7 @@ fn motion_lines() -> RgbaImage {
     let ball = put(
         Sphere::new(0.36).mesh().uv(48, 24),
         Color::srgb(0.82, 0.3, 0.24),
-        lines(36, 0.4),
+        lines(26, 0.4),
     );
     let parcel = put(
         Cuboid::new(0.62, 0.62, 0.62).into(),
@@ -109,15 +109,16 @@ fn motion_lines() -> RgbaImage {
         let bounce = (0.36 + 1.9 * (3.2 * (t + 0.38)).sin().abs()).max(0.36);
         let turn = Quat::from_rotation_z(-2.2 * t) * Quat::from_rotation_y(0.6);
         let poses = [
-            (ball, Transform::from_xyz(-1.55 + 3.4 * t, bounce, 0.0)),
+            (ball, Transform::from_xyz(-1.5 + 3.4 * t, bounce, 0.0)),
             (
                 parcel,
-                Transform::from_xyz(1.15 + 6.5 * t, 1.35 + 1.5 * t - 2.0 * t * t, 0.0)
+                Transform::from_xyz(0.75 + 6.5 * t, 1.25 + 1.5 * t - 2.0 * t * t, 0.0)
                     .with_rotation(turn),
             ),
             (
                 rotor,
-                Transform::from_xyz(2.65, 1.2, 0.0).with_rotation(Quat::from_rotation_z(11.0 * t)),
+                Transform::from_xyz(2.75, 1.45, 0.0)
+                    .with_rotation(Quat::from_rotation_z(11.0 * t + 0.5)),
             ),
         ];
         for (thing, pose) in poses {

@@ -222,8 +222,8 @@ pub fn features() -> Vec<Paint> {
     vec![
         both_sides("brow", 0.012, |brush| {
             let line = |u: f32| {
-                let rise = (2.2 * u).min(1.9).sin();
-                Vec2::new(0.2 + 0.33 * u, 0.25 + 0.05 * rise)
+                let rise = (PI * (0.2 + 0.7 * u)).sin();
+                Vec2::new(0.2 + 0.33 * u, 0.245 + 0.055 * rise)
             };
             brush.stroke(line, |u| 0.05 * (PI * (0.16 + 0.8 * u)).sin());
         }),

@@ -23,8 +23,8 @@ use motion::{Lids, Sway};
 
 /// The materials: name, sRGB code, perceptual roughness.
 const MATERIALS: [(&str, u32, f32); 16] = [
-    ("face", 0xffdbc2, 0.75),
-    ("skin", 0xffdbc2, 0.75),
+    ("face", 0xffd2ae, 0.75),
+    ("skin", 0xffd2ae, 0.75),
     ("hair", 0x7580b6, 0.5),
     ("eye", 0xfbf7f0, 0.9),
     ("iris", 0x2f9a8c, 0.3),
