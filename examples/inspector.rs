@@ -17,14 +17,14 @@ use bevy_comics::{
 };
 use bevy_comics_testkit::{
     orbit::{Orbit, OrbitPlugin},
-    scenes::{BuiltIn, Stage},
+    scenes::{BuiltIn, Stage, figure::motion::MotionPlugin},
     studio::wear,
 };
 
 const HELP: &str = "\
 The inspector on a built-in scene. F10 opens and closes the panel.
 
-    --scene NAME       mountains, teapot, theatre or village (village)
+    --scene NAME       mountains, teapot, theatre, village or figure (village)
     --style NAME       the first style, a preset (graphic-novel)
     --cameras N        1, or 2 side by side (1)
     --size WxH         size of the window in physical pixels (1280x720)
@@ -122,7 +122,7 @@ fn main() {
         }),
         ..default()
     }))
-    .add_plugins((ComicsPlugin, OrbitPlugin));
+    .add_plugins((ComicsPlugin, OrbitPlugin, MotionPlugin));
     if !options.bare {
         app.add_plugins(options.plugin.clone());
     }

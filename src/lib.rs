@@ -46,7 +46,8 @@
 //!    [`Sketch`] of them, [`IsoLines`], [`TwoTone`], [`SpeedLines`], [`Paper`] and [`Vignette`], in
 //!    this order, and those of the game ([`Effect`]) at the end of their [`EffectStage`].
 //!
-//! [`Impact`] shows two tones for a few drawings, [`HeldPose`] draws characters "on twos".
+//! [`Impact`] shows two tones for a few drawings, [`HeldPose`] draws characters "on twos", [`MotionLines`]
+//! draw lines behind what moves fast.
 //!
 //! Whole styles are assets: [`ComicStyle`], with [`presets`]. On meshes, the
 //! feature `objects` adds `NoOutlines`, `OutlineStyle` and `OutlineGroup`, and the feature
@@ -69,6 +70,8 @@ mod finish;
 #[cfg(feature = "inspector")]
 pub mod inspector;
 mod lines;
+#[cfg(any(feature = "objects", feature = "cartoon"))]
+mod motion_lines;
 mod objects;
 mod plugin;
 mod schedule;
@@ -81,8 +84,8 @@ mod view;
 #[cfg(feature = "cartoon")]
 pub use cartoon::{
     CartoonLight, CartoonMaterial, CartoonScene, DetailAxis, FormShape, Glint, GlintFrame,
-    GlintShape, Ramp, RampBlend, RampDetail, RampMode, RampStop, Rim, RimWidth, ShadedForm,
-    TonalArtMap,
+    GlintShape, MaterialName, Ramp, RampBlend, RampDetail, RampMode, RampStop, Rim, RimWidth,
+    ShadedForm, TonalArtMap, ToonLook, ToonLookError, ToonLookHandle, ToonLookHandleTemplate,
 };
 pub use depth::{
     CameraCut, DepthBin, DepthHistogram, DepthMap, DepthMapping, ProjectionKind, RangeSmoothing,
@@ -101,6 +104,8 @@ pub use lines::{
     Creases, LineAbstraction, LineBoil, LineColor, LineFocus, LineFog, LinePlanes, LineResponse,
     LineSettings, LineWeight, MapJumps, ObjectEdges, Sheet, Silhouettes, ViewCracks,
 };
+#[cfg(any(feature = "objects", feature = "cartoon"))]
+pub use motion_lines::MotionLines;
 #[cfg(feature = "objects")]
 pub use objects::{
     ATTRIBUTE_MESH_SECTION, DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle,
@@ -160,8 +165,6 @@ mod pages {
 
 /// What most games need: `use bevy_comics::prelude::*;`.
 pub mod prelude {
-    #[cfg(any(feature = "objects", feature = "cartoon"))]
-    pub use crate::HeldPose;
     pub use crate::{
         CameraCut, ComicStyle, ComicStyleHandle, ComicsPlugin, Creases, DepthMap, DepthMapping,
         Effect, EffectPlugin, EffectTarget, Form, Impact, KeyLight, LineBoil, LineColor, LineFog,
@@ -172,12 +175,14 @@ pub mod prelude {
     #[cfg(feature = "cartoon")]
     pub use crate::{
         CartoonLight, CartoonMaterial, CartoonScene, DetailAxis, FormShape, Glint, GlintFrame,
-        GlintShape, Ramp, RampBlend, RampDetail, RampMode, RampStop, Rim, RimWidth, ShadedForm,
-        TonalArtMap,
+        GlintShape, MaterialName, Ramp, RampBlend, RampDetail, RampMode, RampStop, Rim, RimWidth,
+        ShadedForm, TonalArtMap, ToonLook, ToonLookHandle,
     };
     #[cfg(feature = "objects")]
     pub use crate::{
         DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle, ObjectAbstraction, ObjectScreen,
         OutlineGroup, OutlineKinds, OutlineStyle, SelectionOutline, XRayOutline,
     };
+    #[cfg(any(feature = "objects", feature = "cartoon"))]
+    pub use crate::{HeldPose, MotionLines};
 }

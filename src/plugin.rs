@@ -43,6 +43,8 @@ impl Plugin for ComicsPlugin {
             FinishPlugin,
             FusedPlugin,
         ));
+        #[cfg(any(feature = "objects", feature = "cartoon"))]
+        app.add_plugins(crate::motion_lines::MotionLinesPlugin);
         #[cfg(feature = "cartoon")]
         app.add_plugins(crate::cartoon::CartoonPlugin);
         build_engine_parts(app);
@@ -70,6 +72,8 @@ fn build_engine_parts(app: &mut App) {
     };
     if parts.assets && !built.assets {
         StylePlugin::build_assets(app);
+        #[cfg(feature = "cartoon")]
+        crate::cartoon::CartoonPlugin::build_assets(app);
     }
     if parts.render && !built.render {
         build_render(app);
@@ -86,6 +90,8 @@ fn build_render(app: &mut App) {
     lines::build_render(app);
     FinishPlugin::build_render(app);
     FusedPlugin::build_render(app);
+    #[cfg(any(feature = "objects", feature = "cartoon"))]
+    crate::motion_lines::MotionLinesPlugin::build_render(app);
     #[cfg(feature = "cartoon")]
     crate::cartoon::CartoonPlugin::build_render(app);
     // Back to the main world: what ran.

@@ -13,7 +13,7 @@ use bevy_comics::{
 };
 use bevy_comics_testkit::{
     orbit::{Orbit, OrbitPlugin},
-    scenes::{BuiltIn, ScenePart, Stage, Vantage},
+    scenes::{BuiltIn, CartoonPart, ScenePart, Stage, Vantage, figure::motion::MotionPlugin},
     studio::wear,
 };
 use split::Split;
@@ -62,7 +62,7 @@ fn main() {
         ..default()
     }))
     .add_plugins((ComicsPlugin, ComicsInspectorPlugin::default()))
-    .add_plugins((OrbitPlugin, split::SplitPlugin))
+    .add_plugins((OrbitPlugin, MotionPlugin, split::SplitPlugin))
     .insert_resource(Show {
         scene: BuiltIn::Village,
         style: index_of(presets::GRAPHIC_NOVEL),
@@ -118,19 +118,23 @@ fn open_scene(
         .id();
     show.orthographic = false;
     show.vantage = Some(vantage);
-    show.cartoon = scene == BuiltIn::Theatre;
+    show.cartoon = scene.is_cartoon();
     apply(&mut stage.commands, camera, show.style);
 }
+
+/// A part of the scene: whether it has the cartoon material, and how it looks with it.
+type Part = (Entity, Has<CartoonScene>, Option<&'static CartoonPart>);
 
 /// Draws the scene with the material that is chosen.
 fn light_scene(
     mut commands: Commands,
     show: Res<Show>,
-    parts: Query<(Entity, Has<CartoonScene>), (With<ScenePart>, Without<ChildOf>)>,
+    parts: Query<Part, (With<ScenePart>, Without<ChildOf>)>,
 ) {
-    for (part, is_cartoon) in &parts {
+    for (part, is_cartoon, look) in &parts {
         if show.cartoon && !is_cartoon {
-            commands.entity(part).insert(CartoonScene::default());
+            let look = look.cloned().unwrap_or_default();
+            commands.entity(part).insert(look.0);
         } else if !show.cartoon && is_cartoon {
             commands.entity(part).remove::<CartoonScene>();
         }
@@ -181,6 +185,7 @@ fn choose(
         KeyCode::Digit2,
         KeyCode::Digit3,
         KeyCode::Digit4,
+        KeyCode::Digit5,
     ];
     for (key, scene) in digits.into_iter().zip(BuiltIn::ALL) {
         if keys.just_pressed(key) {

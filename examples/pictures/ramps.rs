@@ -47,7 +47,7 @@ fn ramps() -> [Option<Ramp>; 4] {
 
 fn put(world: &mut World, mesh: Mesh, color: Color, light: &CartoonLight, at: Vec3) {
     let light = light.clone();
-    put_lit(world, mesh, color, at, CartoonScene { light });
+    put_lit(world, mesh, color, at, CartoonScene::new(light));
 }
 
 /// A pawn of a game of chess.

@@ -4,13 +4,16 @@ use std::path::Path;
 
 use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    CartoonLight, CartoonMaterial, ComicStyle, ComicsPlugin, DetailAxis, FormShape, Glint,
-    GlintShape, Outlines, Ramp, RampDetail, RampMode, RampStop, Rim, RimWidth, ShadedForm,
-    ToneRamp,
+    CartoonLight, CartoonMaterial, CartoonScene, ComicStyle, ComicsPlugin, DetailAxis, FormShape,
+    Glint, GlintShape, Outlines, Ramp, RampDetail, RampMode, RampStop, Rim, RimWidth, ShadedForm,
+    ToneRamp, presets,
 };
 use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
-    scenes::BuiltIn,
+    scenes::{
+        BuiltIn, ScenePart,
+        lights::{Lighting, relight},
+    },
     studio::Studio,
 };
 use image::RgbaImage;
@@ -26,7 +29,9 @@ pub fn write(folder: &Path) -> Result<(), String> {
     save(&rims(), &folder.join("rims.png"))?;
     save(&forms(), &folder.join("forms.png"))?;
     save(&strokes::picture(), &folder.join("hatched-material.png"))?;
-    save(&tone_ramp(), &folder.join("tone-ramp.png"))
+    save(&tone_ramp(), &folder.join("tone-ramp.png"))?;
+    save(&figure(), &folder.join("figure.png"))?;
+    save(&lights(), &folder.join("lights.png"))
 }
 
 /// A stage with a ground, under a sun from the left.
@@ -83,12 +88,11 @@ impl Room {
         let material = world
             .resource_mut::<Assets<CartoonMaterial>>()
             .add(material);
-        world
-            .spawn((Mesh3d(mesh), MeshMaterial3d(material), at))
-            .id()
+        let parts = (Mesh3d(mesh), MeshMaterial3d(material), at);
+        world.spawn(parts).id()
     }
 
-    fn ground(&mut self) {
+    pub fn ground(&mut self) {
         self.ground_with(&CartoonLight {
             ramp: Some(per_light(Ramp::default().stops)),
             ..default()
@@ -126,7 +130,7 @@ fn shiny(color: Color) -> StandardMaterial {
     }
 }
 
-fn per_light(stops: Vec<RampStop>) -> Ramp {
+pub fn per_light(stops: Vec<RampStop>) -> Ramp {
     Ramp {
         mode: RampMode::PerLight,
         ..Ramp::new(stops)
@@ -372,4 +376,36 @@ fn tone_ramp() -> RgbaImage {
     let before = studio.shoot(Some(&outlines));
     let after = studio.shoot(Some(&outlines.with(ToneRamp::default())));
     grid(&[vec![&before, &after]], size, 6)
+}
+
+/// A character whose materials have looks of their own, from files.
+fn figure() -> RgbaImage {
+    let mut studio = Studio::new(BuiltIn::Figure, UVec2::new(800, 450), Msaa::Sample4);
+    studio.shoot(Some(&presets::SATURDAY_MORNING.style()))
+}
+
+/// The theatre with the default ramp, under one kind of light after the other.
+fn lights() -> RgbaImage {
+    let size = UVec2::new(400, 225);
+    let mut studio = Studio::new(BuiltIn::Theatre, size, Msaa::Sample4);
+    let scene = CartoonScene::new(CartoonLight {
+        ramp: Some(Ramp::default()),
+        ..default()
+    });
+    let camera = studio.camera;
+    let world = studio.headless.app.world_mut();
+    let mut parts = world.query_filtered::<Entity, (With<ScenePart>, With<Mesh3d>)>();
+    let parts: Vec<Entity> = parts.iter(world).collect();
+    for part in parts {
+        world.entity_mut(part).insert(scene.clone());
+    }
+    let style = presets::SATURDAY_MORNING.style();
+    let pictures = Lighting::ALL.map(|lighting| {
+        relight(studio.headless.app.world_mut(), camera, lighting);
+        studio.shoot(Some(&style));
+        studio.headless.step(SETTLE);
+        studio.headless.picture()
+    });
+    let [environment, sun, lamps, area] = &pictures;
+    grid(&[vec![environment, sun], vec![lamps, area]], size, 4)
 }

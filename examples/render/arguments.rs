@@ -14,10 +14,10 @@ use crate::{model::Model, output::Frames};
 
 const USAGE: &str = "\
 usage: render [SCENE] [options]
-  SCENE                    mountains (default), teapot, theatre, village, or a .glb/.gltf file
+  SCENE                    mountains (default), teapot, theatre, village, figure, or a .glb/.gltf file
 Look
   --style NAME|FILE        a preset, a .comic.ron file, or none (default: the scene's own)
-  --material standard|cartoon  how the scene is shaded (default: cartoon for theatre)
+  --material standard|cartoon  how the scene is shaded (default: cartoon for theatre and figure)
   --sections ANGLE         creases where meshes bend by this angle, 10 to 120 degrees
 View (default: a model fills 85 % of the frame)
   --size WxH               pixels (default 960x540; with --presets 480x270 a picture)
@@ -154,7 +154,7 @@ impl Arguments {
             Some(text) => scene(text)?,
             None => SceneChoice::BuiltIn(BuiltIn::Mountains),
         };
-        let is_theatre = matches!(scene, SceneChoice::BuiltIn(BuiltIn::Theatre));
+        let is_cartoon = matches!(scene, SceneChoice::BuiltIn(scene) if scene.is_cartoon());
         let style = match given.values.get("style").map(String::as_str) {
             Some("none") => None,
             Some(name) => Some(read_style(name)?),
@@ -167,7 +167,7 @@ impl Arguments {
         };
         let arguments = Self {
             style,
-            cartoon: given.get("material", material)?.unwrap_or(is_theatre),
+            cartoon: given.get("material", material)?.unwrap_or(is_cartoon),
             sections: given.get("sections", |text| positive("--sections", text))?,
             size: given.get("size", size)?.unwrap_or(usual_size),
             camera: given.get("camera", camera)?,
@@ -232,7 +232,9 @@ impl Arguments {
 fn own_style(scene: &SceneChoice) -> &'static str {
     match scene {
         SceneChoice::BuiltIn(BuiltIn::Mountains) => "twilight-toon",
-        SceneChoice::BuiltIn(BuiltIn::Teapot | BuiltIn::Theatre) => "saturday-morning",
+        SceneChoice::BuiltIn(BuiltIn::Teapot | BuiltIn::Theatre | BuiltIn::Figure) => {
+            "saturday-morning"
+        }
         SceneChoice::BuiltIn(BuiltIn::Village) => "graphic-novel",
         SceneChoice::Model(_) => "saturday-morning",
     }

@@ -21,7 +21,7 @@ use bevy_comics::{ComicsPlugin, MeshSections};
 use bevy_comics_testkit::{
     before::BeforeStylize,
     headless::{self, Headless, HeadlessOptions},
-    scenes::{BuiltIn, Stage, Vantage},
+    scenes::{BuiltIn, Stage, Vantage, figure::motion::MotionPlugin},
     studio::{set_cartoon, set_sections, wear},
 };
 use model::Model;
@@ -56,7 +56,7 @@ fn run() -> Result<(), String> {
         log: true,
         ..default()
     };
-    let mut headless = Headless::new(options, (ComicsPlugin, BeforeStylize::Copy));
+    let mut headless = Headless::new(options, (ComicsPlugin, BeforeStylize::Copy, MotionPlugin));
     let (vantage, model) = open_scene(&mut headless, &arguments)?;
     if arguments.cartoon {
         set_cartoon(headless.app.world_mut(), true);

@@ -144,7 +144,7 @@ pub fn captures(run: &Run, frames: usize) -> Vec<Capture> {
         UVec2::new(640, 360)
     };
     let mut all = Vec::new();
-    let built_in = BuiltIn::ALL
+    let built_in = BuiltIn::MEASURED
         .into_iter()
         .map(|scene| (scene.name(), Some(scene)));
     for (name, scene) in built_in.chain([("wires", None), ("specks", None)]) {

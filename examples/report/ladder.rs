@@ -126,8 +126,12 @@ fn prepass(run: &Run) -> Result<(), String> {
         UVec2::new(640, 360)
     };
     let mut table = Table::new(&["scene", "prepass", "round", "milliseconds"]);
-    let scenes = BuiltIn::ALL.into_iter().map(Some).chain([None]);
-    for scene in scenes.skip(if run.quick { 4 } else { 0 }) {
+    let scenes = BuiltIn::MEASURED.into_iter().map(Some).chain([None]);
+    for scene in scenes.skip(if run.quick {
+        BuiltIn::MEASURED.len()
+    } else {
+        0
+    }) {
         let name = scene.map_or("a million vertices", BuiltIn::name);
         let mut rig = Rig::new(scene, size);
         if scene.is_none() {

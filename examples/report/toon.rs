@@ -83,9 +83,7 @@ fn wear(rig: &mut Rig, meshes: &[Entity], light: Option<&CartoonLight>) {
     for mesh in meshes {
         let mut mesh = world.entity_mut(*mesh);
         match light {
-            Some(light) => mesh.insert(CartoonScene {
-                light: light.clone(),
-            }),
+            Some(light) => mesh.insert(CartoonScene::new(light.clone())),
             None => mesh.remove::<CartoonScene>(),
         };
     }

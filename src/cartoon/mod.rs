@@ -8,7 +8,9 @@ mod form;
 mod glint;
 mod hatch;
 mod ignored;
+mod look;
 mod material;
+mod name;
 mod ramp;
 mod rim;
 mod scene;
@@ -27,7 +29,9 @@ pub use art_map::TonalArtMap;
 pub use detail::{DetailAxis, RampDetail};
 pub use form::{FormShape, ShadedForm};
 pub use glint::{Glint, GlintFrame, GlintShape};
+pub use look::{ToonLook, ToonLookError, ToonLookHandle, ToonLookHandleTemplate};
 pub use material::{CartoonLight, CartoonMaterial};
+pub use name::MaterialName;
 pub use ramp::{Ramp, RampBlend, RampMode, RampStop};
 pub use rim::{Rim, RimWidth};
 pub use scene::CartoonScene;
@@ -39,7 +43,9 @@ impl Plugin for CartoonPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<CartoonLight>()
             .register_type::<CartoonScene>()
-            .register_type::<TonalArtMap>();
+            .register_type::<TonalArtMap>()
+            .register_type::<MaterialName>()
+            .register_type::<ToonLookHandle>();
         add_material(app);
     }
 
@@ -54,6 +60,13 @@ impl Plugin for CartoonPlugin {
 }
 
 impl CartoonPlugin {
+    /// The part that needs the engine's assets.
+    pub(crate) fn build_assets(app: &mut App) {
+        app.init_asset::<ToonLook>()
+            .register_asset_reflect::<ToonLook>()
+            .init_asset_loader::<look::ToonLookLoader>();
+    }
+
     /// The part that needs the engine's renderer.
     pub(crate) fn build_render(app: &mut App) {
         load_shader_library!(app, "art_map.wgsl");
@@ -98,10 +111,24 @@ fn add_material(app: &mut App) -> bool {
     }
     app.add_plugins(MaterialPlugin::<CartoonMaterial>::default())
         .register_asset_reflect::<CartoonMaterial>()
-        .add_systems(Update, (material::keep_forward, ignored::warn_of_ignored))
+        .init_resource::<scene::Copies>()
+        .add_systems(
+            Update,
+            (
+                (look::apply_looks, material::keep_forward).chain(),
+                ignored::warn_of_ignored,
+            ),
+        )
         .add_systems(
             PostUpdate,
-            (scene::follow_materials, scene::restore, scene::convert).chain(),
+            (
+                scene::follow_materials,
+                scene::restore,
+                name::name_meshes,
+                scene::choose_again,
+                scene::convert,
+            )
+                .chain(),
         );
     true
 }

@@ -9,108 +9,212 @@ use bevy::{
         hierarchy::ChildOf,
         lifecycle::RemovedComponents,
         message::MessageReader,
-        query::With,
+        query::{Changed, Or, With},
         reflect::ReflectComponent,
-        system::{Commands, Local, Query, Res, ResMut},
+        resource::Resource,
+        system::{Commands, Query, Res, ResMut, SystemParam},
     },
     material::OpaqueRendererMethod,
     pbr::{MeshMaterial3d, StandardMaterial},
-    platform::collections::HashMap,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    platform::collections::{HashMap, HashSet},
+    reflect::{Reflect, std_traits::ReflectDefault},
 };
-use serde::{Deserialize, Serialize};
 
-use super::{CartoonLight, CartoonMaterial};
+use super::{CartoonLight, CartoonMaterial, MaterialName, ToonLook, ToonLookHandle, look};
 
 /// Draws an entity and all its descendants with [`CartoonMaterial`]. Put it on the
 /// root of a glTF scene, for example.
 ///
 /// Every `MeshMaterial3d<StandardMaterial>` on these entities is replaced by a
 /// cartoon copy of its material, also on entities that are spawned later. The copy
-/// follows changes of the standard material and of this component. Removing the
+/// follows changes of the standard material, of this component and of its looks. Removing the
 /// component restores the standard materials. If several ancestors of an entity have
 /// the component, the nearest one applies.
-#[derive(Component, Reflect, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
+///
+/// The lighting of a mesh is that of the first of these that there is and that has loaded:
+///
+/// 1. the [`ToonLookHandle`] of the mesh;
+/// 2. the look of its material's name in [`overrides`](Self::overrides);
+/// 3. [`look`](Self::look);
+/// 4. [`light`](Self::light).
+#[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq)]
 pub struct CartoonScene {
-    /// Lighting of the materials. Default: [`CartoonLight::default`].
+    /// Lighting of the materials without a look. Default: [`CartoonLight::default`].
     pub light: CartoonLight,
+    /// Lighting from a file, in place of `light`. Default: `None`.
+    pub look: Option<Handle<ToonLook>>,
+    /// Looks of single materials, by their names in the glTF file, or by the [`MaterialName`] of
+    /// the meshes. Default: none.
+    pub overrides: HashMap<MaterialName, Handle<ToonLook>>,
 }
 
-/// On a converted mesh: its standard material, and the root that converted it.
+impl CartoonScene {
+    /// A scene with this lighting.
+    #[must_use]
+    pub fn new(light: CartoonLight) -> Self {
+        Self {
+            light,
+            ..Self::default()
+        }
+    }
+
+    /// A scene with lighting from a file.
+    #[must_use]
+    pub fn with_look(self, look: Handle<ToonLook>) -> Self {
+        Self {
+            look: Some(look),
+            ..self
+        }
+    }
+
+    /// The same with another look for the material of this name.
+    #[must_use]
+    pub fn with_override(mut self, name: impl Into<MaterialName>, look: Handle<ToonLook>) -> Self {
+        self.overrides.insert(name.into(), look);
+        self
+    }
+
+    /// The look of the scene for a name.
+    fn look_of(&self, name: Option<&MaterialName>) -> Option<&Handle<ToonLook>> {
+        name.and_then(|name| self.overrides.get(name))
+            .or(self.look.as_ref())
+    }
+}
+
+/// On a converted mesh: its standard material, the root that converted it, and the look that was
+/// chosen for it.
 #[derive(Component)]
 pub(super) struct Original {
     material: Handle<StandardMaterial>,
     root: Entity,
+    look: Option<Handle<ToonLook>>,
 }
 
-/// The cartoon copies by root and standard material, so that meshes that share a
-/// material share its copy.
-pub(super) type Copies = HashMap<(Entity, AssetId<StandardMaterial>), Handle<CartoonMaterial>>;
+/// What a cartoon copy is a copy of: root, standard material and look.
+type CopyKey = (Entity, AssetId<StandardMaterial>, Option<AssetId<ToonLook>>);
 
-/// The nearest entity with a [`CartoonScene`] among an entity and its ancestors.
-fn root_of(
-    entity: Entity,
-    parents: &Query<&ChildOf>,
-    roots: &Query<Ref<CartoonScene>>,
-) -> Option<Entity> {
-    let above = parents.iter_ancestors(entity);
-    std::iter::once(entity)
-        .chain(above)
-        .find(|e| roots.contains(*e))
+/// The cartoon copies, so that meshes with the same material and look share one.
+#[derive(Resource, Default)]
+pub(super) struct Copies(HashMap<CopyKey, Handle<CartoonMaterial>>);
+
+/// The scenes, and the way to them.
+#[derive(SystemParam)]
+pub(super) struct SceneRoots<'w, 's> {
+    roots: Query<'w, 's, (Entity, Ref<'static, CartoonScene>)>,
+    parents: Query<'w, 's, &'static ChildOf>,
 }
 
-/// The cartoon copy of a standard material.
-fn copy(original: &StandardMaterial, light: &CartoonLight) -> CartoonMaterial {
-    CartoonMaterial {
-        base: StandardMaterial {
-            opaque_render_method: OpaqueRendererMethod::Forward,
-            ..original.clone()
-        },
-        extension: light.clone(),
+impl SceneRoots<'_, '_> {
+    /// The nearest entity with a [`CartoonScene`] among an entity and its ancestors.
+    pub(super) fn nearest(&self, entity: Entity) -> Option<(Entity, Ref<'_, CartoonScene>)> {
+        let above = self.parents.iter_ancestors(entity);
+        std::iter::once(entity)
+            .chain(above)
+            .find_map(|e| self.roots.get(e).ok())
+    }
+
+    fn get(&self, root: Entity) -> Option<Ref<'_, CartoonScene>> {
+        self.roots.get(root).ok().map(|(_, scene)| scene)
+    }
+
+    pub(super) fn any_has_overrides(&self) -> bool {
+        self.roots.iter().any(|(_, s)| !s.overrides.is_empty())
     }
 }
+
+/// Standard materials, looks, and the copies that are made of both.
+#[derive(SystemParam)]
+pub(super) struct Materials<'w> {
+    standard: Res<'w, Assets<StandardMaterial>>,
+    looks: Option<Res<'w, Assets<ToonLook>>>,
+    cartoon: ResMut<'w, Assets<CartoonMaterial>>,
+    copies: ResMut<'w, Copies>,
+}
+
+impl Materials<'_> {
+    /// What a copy is, if its standard material has loaded.
+    fn copy(&self, key: CopyKey, scene: &CartoonScene) -> Option<CartoonMaterial> {
+        let (_, original, look) = key;
+        let looks = self.looks.as_ref();
+        let loaded = [look, scene.look.as_ref().map(Handle::id)]
+            .into_iter()
+            .flatten()
+            .find_map(|look| looks.and_then(|looks| looks.get(look)));
+        Some(CartoonMaterial {
+            base: StandardMaterial {
+                opaque_render_method: OpaqueRendererMethod::Forward,
+                ..self.standard.get(original)?.clone()
+            },
+            extension: loaded.map_or_else(|| scene.light.clone(), |look| look.light.clone()),
+        })
+    }
+
+    /// The shared copy, which is made if it is not there.
+    fn shared(
+        &mut self,
+        original: &Original,
+        scene: &CartoonScene,
+    ) -> Option<Handle<CartoonMaterial>> {
+        let look = original.look.as_ref().map(Handle::id);
+        let key = (original.root, original.material.id(), look);
+        if let Some(handle) = self.copies.0.get(&key) {
+            return Some(handle.clone());
+        }
+        let copy = self.copy(key, scene)?;
+        let handle = self.cartoon.add(copy);
+        self.copies.0.insert(key, handle.clone());
+        Some(handle)
+    }
+}
+
+/// The look of a mesh: its own, or what the scene says for its name.
+fn choose(
+    scene: &CartoonScene,
+    own: Option<&ToonLookHandle>,
+    name: Option<&MaterialName>,
+) -> Option<Handle<ToonLook>> {
+    own.map(|own| &own.0)
+        .or_else(|| scene.look_of(name))
+        .cloned()
+}
+
+/// What says the look of a mesh.
+type Said = (
+    Option<&'static ToonLookHandle>,
+    Option<&'static MaterialName>,
+);
 
 /// Converts the meshes below a root that have a standard material.
 pub(super) fn convert(
     mut commands: Commands,
-    roots: Query<Ref<CartoonScene>>,
-    parents: Query<&ChildOf>,
-    meshes: Query<(Entity, &MeshMaterial3d<StandardMaterial>)>,
-    (standard, mut cartoon): (
-        Res<Assets<StandardMaterial>>,
-        ResMut<Assets<CartoonMaterial>>,
-    ),
-    mut copies: Local<Copies>,
+    roots: SceneRoots,
+    meshes: Query<(Entity, &MeshMaterial3d<StandardMaterial>, Said)>,
+    mut materials: Materials,
 ) {
-    if roots.is_empty() {
-        copies.clear();
+    if roots.roots.is_empty() {
+        if !materials.copies.0.is_empty() {
+            materials.copies.0.clear();
+        }
         return;
     }
     // The copies of a root are kept as long as the root exists.
-    copies.retain(|(root, _), _| roots.contains(*root));
-    for (entity, material) in &meshes {
-        let Some(root) = root_of(entity, &parents, &roots) else {
+    (materials.copies.0).retain(|(root, ..), _| roots.roots.contains(*root));
+    for (entity, material, (own, name)) in &meshes {
+        let Some((root, scene)) = roots.nearest(entity) else {
             continue;
         };
-        let (Some(original), Ok(scene)) = (standard.get(&material.0), roots.get(root)) else {
-            continue;
+        let original = Original {
+            material: material.0.clone(),
+            root,
+            look: choose(&scene, own, name),
         };
-        let handle = copies
-            .entry((root, material.0.id()))
-            .or_insert_with(|| cartoon.add(copy(original, &scene.light)))
-            .clone();
-        commands
-            .entity(entity)
-            .remove::<MeshMaterial3d<StandardMaterial>>()
-            .insert((
-                MeshMaterial3d(handle),
-                Original {
-                    material: material.0.clone(),
-                    root,
-                },
-            ));
+        if let Some(handle) = materials.shared(&original, &scene) {
+            commands
+                .entity(entity)
+                .remove::<MeshMaterial3d<StandardMaterial>>()
+                .insert((MeshMaterial3d(handle), original));
+        }
     }
 }
 
@@ -118,18 +222,18 @@ pub(super) fn convert(
 pub(super) fn restore(
     mut commands: Commands,
     mut removed: RemovedComponents<CartoonScene>,
-    roots: Query<Ref<CartoonScene>>,
-    parents: Query<&ChildOf>,
-    moved: Query<(), bevy::ecs::query::Changed<ChildOf>>,
+    roots: SceneRoots,
+    moved: Query<(), Changed<ChildOf>>,
     converted: Query<(Entity, &Original), With<MeshMaterial3d<CartoonMaterial>>>,
 ) {
     let root_gone = removed.read().count() > 0;
-    let root_new = roots.iter().any(|root| root.is_added());
+    let root_new = roots.roots.iter().any(|(_, scene)| scene.is_added());
     if !root_gone && !root_new && moved.is_empty() {
         return;
     }
     for (entity, original) in &converted {
-        if root_of(entity, &parents, &roots) != Some(original.root) {
+        let nearest = roots.nearest(entity).map(|(root, _)| root);
+        if nearest != Some(original.root) {
             commands
                 .entity(entity)
                 .remove::<(MeshMaterial3d<CartoonMaterial>, Original)>()
@@ -138,38 +242,102 @@ pub(super) fn restore(
     }
 }
 
-/// Updates the copies after changes of standard materials or of a root's settings.
-pub(super) fn follow_materials(
-    mut events: MessageReader<AssetEvent<StandardMaterial>>,
-    roots: Query<Ref<CartoonScene>>,
-    converted: Query<(&Original, &MeshMaterial3d<CartoonMaterial>)>,
-    standard: Res<Assets<StandardMaterial>>,
-    mut cartoon: ResMut<Assets<CartoonMaterial>>,
+/// Changes of what says the look of a mesh.
+#[derive(SystemParam)]
+pub(super) struct SaidChanges<'w, 's> {
+    changed: Query<
+        'w,
+        's,
+        (),
+        (
+            With<Original>,
+            Or<(Changed<ToonLookHandle>, Changed<MaterialName>)>,
+        ),
+    >,
+    removed_looks: RemovedComponents<'w, 's, ToonLookHandle>,
+    removed_names: RemovedComponents<'w, 's, MaterialName>,
+}
+
+impl SaidChanges<'_, '_> {
+    fn any(&mut self) -> bool {
+        let removed = self.removed_looks.read().count() + self.removed_names.read().count();
+        removed > 0 || !self.changed.is_empty()
+    }
+}
+
+/// Chooses the looks of converted meshes again, after changes of what says them.
+pub(super) fn choose_again(
+    mut commands: Commands,
+    mut changes: SaidChanges,
+    roots: SceneRoots,
+    converted: Query<(Entity, &Original, Said)>,
+    mut materials: Materials,
 ) {
-    let changed: Vec<_> = events
-        .read()
-        .filter_map(|event| match event {
-            AssetEvent::Modified { id } => Some(*id),
-            _ => None,
-        })
-        .collect();
-    let tuned = roots
-        .iter()
-        .any(|root| root.is_changed() && !root.is_added());
-    if changed.is_empty() && !tuned {
+    let any = changes.any();
+    let is_tuned = |scene: &Ref<CartoonScene>| scene.is_changed() && !scene.is_added();
+    if !any && !roots.roots.iter().any(|(_, scene)| is_tuned(&scene)) {
         return;
     }
-    for (original, handle) in &converted {
-        let Ok(scene) = roots.get(original.root) else {
+    for (entity, original, (own, name)) in &converted {
+        let Some(scene) = roots.get(original.root) else {
             continue;
         };
-        if !scene.is_changed() && !changed.contains(&original.material.id()) {
+        let look = choose(&scene, own, name);
+        if look == original.look {
             continue;
         }
-        if let Some(source) = standard.get(&original.material)
-            && let Some(mut material) = cartoon.get_mut(&handle.0)
+        let chosen = Original {
+            material: original.material.clone(),
+            root: original.root,
+            look,
+        };
+        if let Some(handle) = materials.shared(&chosen, &scene) {
+            commands
+                .entity(entity)
+                .insert((MeshMaterial3d(handle), chosen));
+        }
+    }
+}
+
+/// Updates the copies after changes of standard materials, of looks or of a root's settings.
+pub(super) fn follow_materials(
+    mut standard: MessageReader<AssetEvent<StandardMaterial>>,
+    mut looks: MessageReader<AssetEvent<ToonLook>>,
+    roots: SceneRoots,
+    mut materials: Materials,
+) {
+    let standard = standard.read().filter_map(|event| match event {
+        AssetEvent::Modified { id } => Some(*id),
+        _ => None,
+    });
+    let standard: HashSet<_> = standard.collect();
+    let looks: HashSet<_> = looks.read().filter_map(look::changed).collect();
+    let tuned = roots.roots.iter().any(|(_, scene)| scene.is_changed());
+    if standard.is_empty() && looks.is_empty() && !tuned {
+        return;
+    }
+    // Also those that no mesh has at the moment: one may have them again.
+    let copies = materials
+        .copies
+        .0
+        .iter()
+        .map(|(key, copy)| (*key, copy.clone()));
+    for (key, handle) in copies.collect::<Vec<_>>() {
+        let (root, original, look) = key;
+        let Some(scene) = roots.get(root) else {
+            continue;
+        };
+        let is_changed =
+            |look: Option<AssetId<ToonLook>>| look.is_some_and(|id| looks.contains(&id));
+        let follows = scene.is_changed()
+            || standard.contains(&original)
+            || is_changed(look)
+            || is_changed(scene.look.as_ref().map(Handle::id));
+        if follows
+            && let Some(copy) = materials.copy(key, &scene)
+            && let Some(mut material) = materials.cartoon.get_mut(&handle)
         {
-            *material = copy(source, &scene.light);
+            *material = copy;
         }
     }
 }

@@ -60,7 +60,8 @@ pub(crate) struct Read {
     pub advice: Option<String>,
 }
 
-fn ron_options() -> ron::Options {
+/// How all settings are written.
+pub(crate) fn ron_options() -> ron::Options {
     ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
 }
 
@@ -109,9 +110,14 @@ impl EffectRegistry {
     }
 }
 
+/// The version that a text states.
+pub(crate) fn stated_version(text: &str) -> Option<u32> {
+    version_1::version(text)
+}
+
 /// Reads the text of a style file.
 pub(crate) fn read(text: &str, types: &[&'static EffectType]) -> Result<Read, ComicStyleError> {
-    let current = match version_1::version(text) {
+    let current = match stated_version(text) {
         Some(1) => version_1::upgraded(text),
         None | Some(VERSION) => Upgraded::unchanged(text),
         Some(found) => return Err(ComicStyleError::Version { found }),

@@ -15,7 +15,7 @@ use bevy_comics::{
 
 use super::{
     headless::{Headless, HeadlessOptions},
-    scenes::{BuiltIn, ScenePart, Stage, Vantage},
+    scenes::{BuiltIn, CartoonPart, ScenePart, Stage, Vantage},
 };
 
 /// Frames to render after a change of style: the first inserts prepasses and compiles
@@ -55,7 +55,7 @@ impl Studio {
             .world_mut()
             .run_system_once(move |mut stage: Stage| stage.spawn(scene))
             .expect("the stage is there");
-        set_cartoon(headless.app.world_mut(), scene == BuiltIn::Theatre);
+        set_cartoon(headless.app.world_mut(), scene.is_cartoon());
         let target: RenderTarget = headless.render_target();
         let camera = headless
             .app
@@ -163,11 +163,17 @@ const LATER_PRESETS: [Preset; 6] = [
     presets::HARD_BOILED,
 ];
 
+/// The presets of the golden pictures of the figure.
+const FIGURE_PRESETS: [Preset; 2] = [presets::SATURDAY_MORNING, presets::GRAPHIC_NOVEL];
+
 /// The presets that have a golden picture in a scene: all those that print or paint. The mountains
 /// show those after the first paper and those that outline, the theatre those after the
 /// second, the teapot all of them, and the village those after the first and
-/// `graphic-novel`.
+/// `graphic-novel`. The figure shows only what is for characters.
 pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
+    if scene == BuiltIn::Figure {
+        return FIGURE_PRESETS.map(Preset::name).to_vec();
+    }
     let mut shown = match scene {
         BuiltIn::Theatre => Vec::new(),
         _ => COLOR_PRESETS.to_vec(),
@@ -175,7 +181,7 @@ pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
     match scene {
         BuiltIn::Teapot | BuiltIn::Theatre => shown.extend(LINE_PRESETS),
         BuiltIn::Village => shown.push(presets::GRAPHIC_NOVEL),
-        BuiltIn::Mountains => {}
+        BuiltIn::Mountains | BuiltIn::Figure => {}
     }
     // After the others: sketches change with the clock.
     shown.extend(PAGE_PRESETS);
@@ -192,6 +198,9 @@ pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
     let names = golden_presets(scene);
     let preset = |name| presets::find(name).expect("listed").style();
     let mut styles: Vec<_> = names.into_iter().map(|name| (name, preset(name))).collect();
+    if scene == BuiltIn::Figure {
+        return styles;
+    }
     styles.extend(single_effects(scene));
     let later = LATER_PRESETS.map(Preset::name);
     styles.extend(later.map(|name| (name, preset(name))));
@@ -250,6 +259,7 @@ fn single_effects(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
             ]
         }
         BuiltIn::Village => village_effects(&style),
+        BuiltIn::Figure => Vec::new(),
     }
 }
 
@@ -311,7 +321,8 @@ fn roots(world: &mut World) -> Vec<Entity> {
 pub fn set_cartoon(world: &mut World, on: bool) {
     for part in roots(world) {
         if on {
-            world.entity_mut(part).insert(CartoonScene::default());
+            let look = world.get::<CartoonPart>(part).cloned().unwrap_or_default();
+            world.entity_mut(part).insert(look.0);
         } else {
             world.entity_mut(part).remove::<CartoonScene>();
         }

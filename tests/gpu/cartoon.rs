@@ -402,12 +402,11 @@ fn a_scene_is_converted_with_one_component_and_back() {
         .iter()
         .any(|(_, m)| m.base.base_color == Color::srgb(0.1, 0.9, 0.9));
     assert!(changed);
-    small.world().entity_mut(root).insert(CartoonScene {
-        light: CartoonLight {
-            terminator: 0.5,
-            ..default()
-        },
-    });
+    let light = CartoonLight {
+        terminator: 0.5,
+        ..default()
+    };
+    (small.world().entity_mut(root)).insert(CartoonScene::new(light));
     small.headless.step(2);
     assert!(
         small

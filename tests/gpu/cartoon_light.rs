@@ -103,9 +103,7 @@ fn both(small: &mut Small, objects: &[Entity], light: CartoonLight) -> (RgbaImag
     let standard = small.picture();
     for object in objects {
         let mut object = small.world().entity_mut(*object);
-        object.insert(CartoonScene {
-            light: light.clone(),
-        });
+        object.insert(CartoonScene::new(light.clone()));
     }
     small.headless.step(6);
     let cartoon = small.picture();
@@ -466,12 +464,11 @@ fn a_rect_light_lights_what_it_shines_at() {
         plain(Color::WHITE),
         Transform::IDENTITY,
     );
-    small.world().entity_mut(ground).insert(CartoonScene {
-        light: CartoonLight {
-            falloff: 0.0,
-            ..default()
-        },
-    });
+    let light = CartoonLight {
+        falloff: 0.0,
+        ..default()
+    };
+    (small.world().entity_mut(ground)).insert(CartoonScene::new(light));
     small
         .insert(Transform::from_xyz(0.0, 1.2, 3.0).looking_at(Vec3::new(0.02, 0.0, 0.02), Vec3::Y));
     // Light at the ground from all points of the rectangle, of luminance 1.

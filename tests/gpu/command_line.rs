@@ -63,7 +63,10 @@ fn what_cannot_be_done_is_one_line_that_says_what_can() {
     .expect("written");
     fs::write(folder.join("broken.gltf"), "{ not json").expect("written");
     for (arguments, says) in [
-        (&["moonscape"][..], "mountains, teapot, theatre, village"),
+        (
+            &["moonscape"][..],
+            "mountains, teapot, theatre, village, figure",
+        ),
         (&["--style", "nope"], "saturday-morning, graphic-novel"),
         (&["--material", "wood"], "possible are standard, cartoon"),
         (

@@ -191,3 +191,8 @@ fn the_hatched_theatre_looks_as_it_did() {
         panic!("FLIP {flip}, {off} far off: {}", seen.display());
     }
 }
+
+#[test]
+fn the_figure_looks_as_it_did() {
+    check(BuiltIn::Figure);
+}

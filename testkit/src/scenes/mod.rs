@@ -2,6 +2,8 @@
 //! camera.
 
 pub mod buildings;
+pub mod figure;
+pub mod lights;
 pub mod mountains;
 pub mod noise;
 pub mod shape;
@@ -14,6 +16,7 @@ use bevy::{
     camera::ScalingMode, core_pipeline::tonemapping::Tonemapping, ecs::system::SystemParam,
     light::Skybox, prelude::*,
 };
+use bevy_comics::{CartoonScene, ToonLook};
 
 /// The built-in scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -22,10 +25,20 @@ pub enum BuiltIn {
     Teapot,
     Theatre,
     Village,
+    Figure,
 }
 
 impl BuiltIn {
-    pub const ALL: [Self; 4] = [Self::Mountains, Self::Teapot, Self::Theatre, Self::Village];
+    pub const ALL: [Self; 5] = [
+        Self::Mountains,
+        Self::Teapot,
+        Self::Theatre,
+        Self::Village,
+        Self::Figure,
+    ];
+
+    /// Those that the report measures.
+    pub const MEASURED: [Self; 4] = [Self::Mountains, Self::Teapot, Self::Theatre, Self::Village];
 
     pub fn name(self) -> &'static str {
         match self {
@@ -33,7 +46,13 @@ impl BuiltIn {
             Self::Teapot => "teapot",
             Self::Theatre => "theatre",
             Self::Village => "village",
+            Self::Figure => "figure",
         }
+    }
+
+    /// Whether the scene is made for the cartoon material.
+    pub fn is_cartoon(self) -> bool {
+        matches!(self, Self::Theatre | Self::Figure)
     }
 
     pub fn from_name(name: &str) -> Option<Self> {
@@ -65,11 +84,16 @@ pub struct Stage<'w, 's> {
     pub meshes: ResMut<'w, Assets<Mesh>>,
     pub materials: ResMut<'w, Assets<StandardMaterial>>,
     pub images: ResMut<'w, Assets<Image>>,
+    pub looks: Option<ResMut<'w, Assets<ToonLook>>>,
 }
 
 /// Marks all entities of the current scene: despawn them to remove it.
 #[derive(Component, Clone, Copy, Default)]
 pub struct ScenePart;
+
+/// How a part is drawn with the cartoon material. Parts without it have the default look.
+#[derive(Component, Clone, Default)]
+pub struct CartoonPart(pub CartoonScene);
 
 impl Stage<'_, '_> {
     pub fn spawn(&mut self, scene: BuiltIn) -> Vantage {
@@ -78,6 +102,7 @@ impl Stage<'_, '_> {
             BuiltIn::Teapot => teapot::spawn(self),
             BuiltIn::Theatre => theatre::spawn(self),
             BuiltIn::Village => village::spawn(self),
+            BuiltIn::Figure => figure::spawn(self),
         }
     }
 

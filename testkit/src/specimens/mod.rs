@@ -5,7 +5,7 @@ mod figure;
 mod foliage;
 mod hard_surface;
 mod organic;
-mod solid;
+pub(crate) mod solid;
 mod stairs;
 mod wires;
 

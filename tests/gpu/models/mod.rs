@@ -1,7 +1,7 @@
 //! The `render` example with models that it has not seen: how they are framed
 //! and lit, and what is said about textures that cannot be shown.
 
-mod gltf;
+pub mod gltf;
 mod textures;
 mod turntable;
 

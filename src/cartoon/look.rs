@@ -1,0 +1,264 @@
+//! Materials as files: the lighting of a cartoon material as an asset.
+
+use bevy::{
+    asset::{Asset, AssetEvent, AssetId, AssetLoader, Assets, Handle, LoadContext, io::Reader},
+    ecs::{
+        change_detection::{DetectChanges, Ref},
+        component::Component,
+        message::MessageReader,
+        query::Without,
+        reflect::ReflectComponent,
+        system::{Query, Res, ResMut},
+        template::FromTemplate,
+    },
+    pbr::MeshMaterial3d,
+    platform::collections::HashSet,
+    reflect::{
+        Reflect, ReflectDeserialize, ReflectSerialize, TypePath, std_traits::ReflectDefault,
+    },
+};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+use thiserror::Error;
+
+use super::{CartoonLight, CartoonMaterial, scene::Original};
+use crate::style::format;
+
+/// The lighting of a [`CartoonMaterial`](crate::CartoonMaterial) in a file, which several
+/// materials can share.
+///
+/// Files end in `.toon.ron` and are written as [`ComicStyle`](crate::ComicStyle)s are, in RON with
+/// implicit `Some`. `light` has the fields of [`CartoonLight`]; those that a file leaves out have
+/// their defaults:
+///
+/// ```
+/// # use bevy_comics::ToonLook;
+/// let look = ToonLook::from_ron(r##"(
+///     version: 1,
+///     name: "Skin",
+///     light: (
+///         highlight: 0.0,
+///         ramp: (
+///             mode: PerLight,
+///             stops: [
+///                 (color: "#7052a8"),
+///                 (at: 0.08, color: "#d1808f"),
+///                 (at: 0.22, color: "#ffffff", softness: 0.12),
+///             ],
+///         ),
+///     ),
+/// )"##)?;
+/// assert_eq!(look.light.ramp.unwrap().stops.len(), 3);
+/// # Ok::<(), bevy_comics::ToonLookError>(())
+/// ```
+///
+/// [`ToonLookHandle`] gives one to a mesh, [`CartoonScene::look`](crate::CartoonScene::look) to a
+/// whole scene. Both follow changes of the file, if the app watches its files (Bevy's feature
+/// `file_watcher`). A file that becomes unreadable changes nothing: the last look stays, and the
+/// log names line, column and what is wrong.
+#[derive(Asset, Reflect, Clone, Debug, Default, PartialEq)]
+#[reflect(Default, Clone, PartialEq, Debug, Serialize, Deserialize)]
+pub struct ToonLook {
+    /// Title for people; any text. Default: empty.
+    pub name: String,
+    /// The lighting. Numbers outside their documented ranges count as the nearest end.
+    pub light: CartoonLight,
+}
+
+/// Gives the material of a mesh the lighting of a [`ToonLook`].
+///
+/// On an entity with a [`CartoonMaterial`](crate::CartoonMaterial), the material is changed when
+/// the look has loaded, and again whenever the look, the handle or the entity's material changes:
+/// so all meshes with this material have the look. Between those moments the material may be
+/// edited. Removing the component leaves the material as it is.
+///
+/// Below a [`CartoonScene`](crate::CartoonScene), on an entity with a mesh, it takes the place of
+/// the scene's look for this mesh alone; removing it gives the scene's look back.
+///
+/// A scene in code can name a path: the component's template takes one in the handle's place.
+#[derive(Component, FromTemplate, Reflect, Clone, Debug, Default, PartialEq)]
+#[reflect(Component, Default, Clone, PartialEq)]
+pub struct ToonLookHandle(pub Handle<ToonLook>);
+
+/// Why a [`ToonLook`] was not read or written.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ToonLookError {
+    /// The file could not be read.
+    #[error("cannot read the look: {0}")]
+    Io(#[from] std::io::Error),
+    /// The text is not a look: bad syntax, an unknown field, a wrong type.
+    #[error("not a toon look, line {line}, column {column}: {message}")]
+    #[non_exhaustive]
+    Syntax {
+        /// Line of the file, from 1.
+        line: usize,
+        /// Column of that line in characters, from 1.
+        column: usize,
+        /// What is wrong there.
+        message: String,
+    },
+    /// The format's version is not one that this crate reads.
+    #[error("look format version {found} is not known; this crate reads version {VERSION}")]
+    #[non_exhaustive]
+    Version {
+        /// The version that the file states.
+        found: u32,
+    },
+    /// The look could not be written as text.
+    #[error("cannot write the look: {message}")]
+    #[non_exhaustive]
+    Write {
+        /// The reason.
+        message: String,
+    },
+}
+
+/// The version of the file format.
+const VERSION: u32 = 1;
+
+/// What a file has.
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "ToonLook", deny_unknown_fields)]
+struct File {
+    version: u32,
+    #[serde(default)]
+    name: String,
+    #[serde(default)]
+    light: CartoonLight,
+}
+
+impl Serialize for ToonLook {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let file = File {
+            version: VERSION,
+            name: self.name.clone(),
+            light: self.light.clone(),
+        };
+        file.serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for ToonLook {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let file = File::deserialize(deserializer)?;
+        let found = file.version;
+        if found == VERSION {
+            Ok(file.into())
+        } else {
+            Err(D::Error::custom(ToonLookError::Version { found }))
+        }
+    }
+}
+
+impl From<File> for ToonLook {
+    fn from(file: File) -> Self {
+        Self {
+            name: file.name,
+            light: file.light,
+        }
+    }
+}
+
+impl ToonLook {
+    /// A look without a name.
+    #[must_use]
+    pub fn new(light: CartoonLight) -> Self {
+        Self {
+            name: String::new(),
+            light,
+        }
+    }
+
+    /// Reads a look from the text of a `.toon.ron` file.
+    ///
+    /// # Errors
+    /// [`ToonLookError::Syntax`] with line and column, or [`ToonLookError::Version`].
+    pub fn from_ron(text: &str) -> Result<Self, ToonLookError> {
+        if let Some(found) = format::stated_version(text)
+            && found != VERSION
+        {
+            return Err(ToonLookError::Version { found });
+        }
+        let file: Result<File, _> = format::ron_options().from_str(text);
+        file.map(Into::into).map_err(|error| ToonLookError::Syntax {
+            line: error.span.start.line,
+            column: error.span.start.col,
+            message: error.code.to_string(),
+        })
+    }
+
+    /// The text of a `.toon.ron` file that reads back as the same look. Colours are written in
+    /// sRGB, whatever their colour space.
+    ///
+    /// # Errors
+    /// [`ToonLookError::Write`] if a value has no RON form.
+    pub fn to_ron(&self) -> Result<String, ToonLookError> {
+        let pretty = ron::ser::PrettyConfig::default().indentor("    ");
+        let mut text = format::ron_options()
+            .to_string_pretty(self, pretty)
+            .map_err(|error| ToonLookError::Write {
+                message: error.to_string(),
+            })?;
+        text.push('\n');
+        Ok(text)
+    }
+}
+
+/// Reads `.toon.ron` files.
+#[derive(TypePath, Default)]
+pub(super) struct ToonLookLoader;
+
+impl AssetLoader for ToonLookLoader {
+    type Asset = ToonLook;
+    type Settings = ();
+    type Error = ToonLookError;
+
+    async fn load(
+        &self,
+        reader: &mut dyn Reader,
+        _settings: &(),
+        _load_context: &mut LoadContext<'_>,
+    ) -> Result<ToonLook, ToonLookError> {
+        let mut bytes = Vec::new();
+        reader.read_to_end(&mut bytes).await?;
+        let text = String::from_utf8(bytes)
+            .map_err(|error| std::io::Error::new(std::io::ErrorKind::InvalidData, error))?;
+        ToonLook::from_ron(&text)
+    }
+
+    fn extensions(&self) -> &[&str] {
+        &["toon.ron"]
+    }
+}
+
+/// The look that an event says is new or changed.
+pub(super) fn changed(event: &AssetEvent<ToonLook>) -> Option<AssetId<ToonLook>> {
+    match event {
+        AssetEvent::Added { id } | AssetEvent::Modified { id } => Some(*id),
+        _ => None,
+    }
+}
+
+/// Gives the materials of single meshes their looks. A [`CartoonScene`](crate::CartoonScene) does
+/// it for its own copies.
+pub(super) fn apply_looks(
+    meshes: Query<(Ref<ToonLookHandle>, Ref<MeshMaterial3d<CartoonMaterial>>), Without<Original>>,
+    mut events: MessageReader<AssetEvent<ToonLook>>,
+    looks: Res<Assets<ToonLook>>,
+    mut materials: ResMut<Assets<CartoonMaterial>>,
+) {
+    let changed: HashSet<_> = events.read().filter_map(changed).collect();
+    for (handle, material) in &meshes {
+        let id = handle.0.id();
+        if !handle.is_changed() && !material.is_changed() && !changed.contains(&id) {
+            continue;
+        }
+        let Some(look) = looks.get(id) else {
+            continue;
+        };
+        let differs = (materials.get(&material.0)).is_some_and(|m| m.extension != look.light);
+        if differs && let Some(mut material) = materials.get_mut(&material.0) {
+            material.extension = look.light.clone();
+        }
+    }
+}

@@ -1,0 +1,394 @@
+//! Lines behind what moves: where they are, how wide they are, and when there are none.
+
+use bevy::{
+    mesh::VertexAttributeValues,
+    prelude::*,
+    render::view::Msaa,
+    time::{TimeUpdateStrategy, Virtual},
+};
+use bevy_comics::{CameraCut, HeldPose, MotionLines, ObjectEdges, Outlines};
+
+use crate::small::{Object, Small, black_ink, unlit};
+
+const SIZE: UVec2 = UVec2::new(160, 96);
+/// Half of the size of the box.
+const HALF: Vec3 = Vec3::new(0.4, 0.3, 0.2);
+/// Units per second.
+const SPEED: f32 = 12.0;
+
+/// A grey box in front of white, seen along -z at a tenth of a unit per pixel.
+struct Stage {
+    small: Small,
+    mesh: Entity,
+}
+
+fn lines() -> MotionLines {
+    MotionLines {
+        duration: 0.25,
+        variation: 0.0,
+        ..default()
+    }
+}
+
+impl Stage {
+    fn new(lines: MotionLines) -> Self {
+        let mut small = Small::new(SIZE, Msaa::Off);
+        small.clear();
+        let half_height = 0.05 * SIZE.y as f32;
+        small.insert((
+            Camera {
+                clear_color: Color::WHITE.into(),
+                ..default()
+            },
+            Transform::from_xyz(0.0, 0.0, half_height).looking_at(Vec3::ZERO, Vec3::Y),
+            Projection::Perspective(PerspectiveProjection {
+                fov: std::f32::consts::FRAC_PI_2,
+                ..default()
+            }),
+        ));
+        let grey = unlit(Color::srgb(0.5, 0.5, 0.5));
+        let start = Transform::from_xyz(-5.0, 0.0, 0.0);
+        let mesh = small.put(Cuboid::from_size(2.0 * HALF), grey, start);
+        small.world().entity_mut(mesh).insert(lines);
+        small.headless.step(3);
+        Self { small, mesh }
+    }
+
+    fn seconds(&mut self) -> f64 {
+        self.small.world().resource::<Time>().elapsed_secs_f64()
+    }
+
+    /// Steps while the box moves as a function of time says. Returns the time of the last frame.
+    fn fly(&mut self, frames: usize, place: impl Fn(f32) -> Transform) -> f32 {
+        let mut time = 0.0;
+        for _ in 0..frames {
+            time = (self.seconds() + 0.016_667) as f32;
+            let mut mesh = self.small.headless.app.world_mut().entity_mut(self.mesh);
+            mesh.insert(place(time));
+            self.small.headless.step(1);
+        }
+        time
+    }
+
+    /// From left to right.
+    fn dash(&mut self, frames: usize) -> f32 {
+        let begin = self.seconds() as f32;
+        self.fly(frames, |t| {
+            Transform::from_xyz(-5.0 + SPEED * (t - begin), 0.0, 0.0)
+        })
+    }
+
+    /// Places of all ribbons in the world, of both sides, if they are shown.
+    fn places(&mut self) -> Vec<Vec3> {
+        let world = self.small.world();
+        let mut ribbons = world
+            .query_filtered::<(&Mesh3d, &GlobalTransform, &ViewVisibility), (Without<Object>,)>();
+        let meshes = world.resource::<Assets<Mesh>>();
+        let mut places = Vec::new();
+        for (mesh, transform, visibility) in ribbons.iter(world) {
+            let mesh = meshes.get(&mesh.0).expect("a mesh");
+            let Some(VertexAttributeValues::Float32x3(list)) =
+                mesh.attribute(Mesh::ATTRIBUTE_POSITION)
+            else {
+                panic!("places")
+            };
+            if visibility.get() {
+                let place = |p: &[f32; 3]| transform.transform_point(Vec3::from(*p));
+                places.extend(list.iter().map(place));
+            }
+        }
+        places
+    }
+
+    /// The number of entities with ribbons.
+    fn ribbons(&mut self) -> usize {
+        let world = self.small.world();
+        let mut ribbons = world.query_filtered::<(), (With<Mesh3d>, Without<Object>)>();
+        ribbons.iter(world).count()
+    }
+
+    /// Pixels that are darker than the grey of the box.
+    fn ink(&mut self) -> Vec<UVec2> {
+        let picture = self.small.picture();
+        let dark = picture.enumerate_pixels().filter(|(_, _, p)| p.0[0] < 100);
+        dark.map(|(x, y, _)| UVec2::new(x, y)).collect()
+    }
+}
+
+/// Lines of what moves straight on are the paths of points of its surface: at its height, behind it,
+/// from the gap to the whole duration. The tolerance is that of f32 at 10 units, and a microsecond.
+#[test]
+fn lines_are_the_paths_of_points_of_the_surface() {
+    let mut stage = Stage::new(lines());
+    stage.dash(30);
+    let now = stage
+        .small
+        .world()
+        .get::<Transform>(stage.mesh)
+        .expect("it")
+        .translation;
+    let places = stage.places();
+    assert!(places.len() > 100, "{}", places.len());
+    let (gap, whole) = (0.1 * 0.25 * SPEED, 0.25 * SPEED);
+    let (mut first, mut last) = (f32::INFINITY, f32::NEG_INFINITY);
+    for place in places {
+        let from = place - now;
+        assert!(
+            from.y.abs() <= HALF.y + 1e-5 && from.z.abs() <= HALF.z + 1e-5,
+            "{from}"
+        );
+        first = first.min(from.x);
+        last = last.max(from.x);
+    }
+    // Points at the back are on its left side.
+    let off = [first + HALF.x + whole, last + HALF.x + gap];
+    assert!(off.iter().all(|off| off.abs() < 1e-4), "{off:?}");
+    let box_left = 80.0 + 10.0 * (now.x - HALF.x);
+    let ink = stage.ink();
+    assert!(ink.len() > 40, "{}", ink.len());
+    assert!(ink.iter().all(|pixel| (pixel.x as f32) < box_left));
+    assert_eq!(stage.small.errors(), 0);
+}
+
+/// Points of what turns are on circles about its axis, within the height of the arc between two
+/// frames: `r (1 - cos(w / 120))`.
+#[test]
+fn lines_of_what_turns_are_arcs() {
+    const TURN: f32 = 9.0;
+    const SCALE: f32 = 3.0;
+    let mut stage = Stage::new(lines());
+    stage.fly(40, |t| {
+        Transform::from_rotation(Quat::from_rotation_z(TURN * t)).with_scale(Vec3::splat(SCALE))
+    });
+    let places = stage.places();
+    assert!(places.len() > 100);
+    let farthest = SCALE * HALF.truncate().length();
+    let sag = farthest * (1.0 - (TURN / 120.0).cos());
+    // Points of faces that turn in their own plane have no lines, so each line has another height.
+    for line in places.chunk_by(|a, b| (a.z - b.z).abs() < 1e-6) {
+        let radius = line[0].truncate().length();
+        assert!(radius <= farthest + 1e-5);
+        // A point has to move at 1.6 units a second to have a line at all.
+        assert!(radius > 1.6 / TURN - sag, "{radius}");
+        let off = line.iter().map(|p| (p.truncate().length() - radius).abs());
+        let most = off.fold(0.0, f32::max);
+        assert!(most <= sag + 1e-5, "{most}, {sag}");
+    }
+    assert!(stage.ink().len() > 20);
+}
+
+#[test]
+fn there_are_none_of_what_is_still_or_slow() {
+    let mut stage = Stage::new(lines());
+    stage.small.headless.step(20);
+    assert_eq!((stage.ribbons(), stage.ink().len()), (0, 0), "still");
+    let begin = stage.seconds() as f32;
+    // Below 0.8 of the speed that has lines.
+    let slow = |t: f32| Transform::from_xyz(-2.0 + 1.5 * (t - begin), 0.0, 0.0);
+    stage.fly(30, slow);
+    assert_eq!((stage.ribbons(), stage.ink().len()), (0, 0), "slow");
+    stage.dash(30);
+    assert!(!stage.ink().is_empty());
+    // It stops: when the duration is over, nothing is left.
+    let stop = *stage
+        .small
+        .world()
+        .get::<Transform>(stage.mesh)
+        .expect("it");
+    stage.fly(20, |_| stop);
+    assert_eq!((stage.places().len(), stage.ink().len()), (0, 0), "stopped");
+}
+
+#[test]
+fn a_pause_keeps_them() {
+    let mut stage = Stage::new(lines());
+    stage.dash(30);
+    let (picture, places) = (stage.small.picture(), stage.places());
+    stage.small.world().resource_mut::<Time<Virtual>>().pause();
+    stage.small.headless.step(30);
+    assert_eq!(stage.places(), places);
+    assert_eq!(stage.small.picture(), picture);
+    stage
+        .small
+        .world()
+        .resource_mut::<Time<Virtual>>()
+        .unpause();
+    // Standing still, time goes on.
+    stage.small.headless.step(20);
+    assert_eq!(stage.ink().len(), 0);
+}
+
+#[test]
+fn they_begin_anew_at_a_jump_and_at_a_cut() {
+    let mut stage = Stage::new(lines());
+    stage.dash(20);
+    assert!(!stage.ink().is_empty());
+    stage.fly(1, |_| Transform::from_xyz(2.0, 3.0, -1.0));
+    assert_eq!((stage.places().len(), stage.ink().len()), (0, 0));
+    stage.dash(20);
+    assert!(!stage.ink().is_empty());
+    let camera = stage.small.camera;
+    stage.small.world().trigger(CameraCut { entity: camera });
+    stage.fly(1, |_| Transform::from_xyz(-1.0, 0.0, 0.0));
+    assert_eq!((stage.places().len(), stage.ink().len()), (0, 0));
+}
+
+/// Ribbons go with the object or its component, and wait while it is hidden. There is one entity
+/// per object, whatever the time.
+#[test]
+fn they_go_with_their_object() {
+    let mut stage = Stage::new(lines());
+    let meshes = |stage: &mut Stage| stage.small.world().resource::<Assets<Mesh>>().len();
+    stage.dash(12);
+    let before = meshes(&mut stage);
+    for _ in 0..6 {
+        stage.dash(20);
+        assert_eq!(stage.ribbons(), 1);
+    }
+    assert_eq!(meshes(&mut stage), before);
+    let mesh = stage.mesh;
+    stage
+        .small
+        .world()
+        .entity_mut(mesh)
+        .insert(Visibility::Hidden);
+    stage.small.headless.step(2);
+    assert!(stage.places().is_empty());
+    stage
+        .small
+        .world()
+        .entity_mut(mesh)
+        .insert(Visibility::Inherited);
+    stage.dash(20);
+    assert!(!stage.places().is_empty());
+    stage.small.world().entity_mut(mesh).remove::<MotionLines>();
+    stage.small.headless.step(1);
+    assert_eq!(stage.ribbons(), 0);
+    stage.small.world().entity_mut(mesh).insert(lines());
+    stage.dash(20);
+    assert_eq!(stage.ribbons(), 1);
+    stage.small.world().despawn(mesh);
+    stage.small.headless.step(1);
+    assert_eq!(stage.ribbons(), 0);
+    assert_eq!(stage.small.errors(), 0);
+}
+
+/// At the same moment of the same motion, lines are the same at 30 and at 144 frames a second.
+#[test]
+fn the_frame_rate_does_not_matter() {
+    let [slow, fast] = [30u32, 144].map(|rate| {
+        let mut stage = Stage::new(lines());
+        let frame = std::time::Duration::from_secs_f64(1.0 / f64::from(rate));
+        let app = &mut stage.small.headless.app;
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(frame));
+        let begin = stage.seconds();
+        for k in 1..=rate / 2 {
+            let x = -5.0 + SPEED * k as f32 / rate as f32;
+            let mut mesh = stage.small.headless.app.world_mut().entity_mut(stage.mesh);
+            mesh.insert(Transform::from_xyz(x, 0.0, 0.0));
+            stage.small.headless.step(1);
+        }
+        let passed = stage.seconds() - begin;
+        assert!((passed - 0.5).abs() < 1e-6, "{passed}");
+        let places = stage.places();
+        let low = places.iter().copied().reduce(Vec3::min).expect("lines");
+        let high = places.iter().copied().reduce(Vec3::max).expect("lines");
+        (low, high)
+    });
+    let off = (slow.0 - fast.0).abs().max((slow.1 - fast.1).abs());
+    assert!(off.max_element() < 1e-4, "{slow:?}, {fast:?}");
+}
+
+/// The ink across a line is its width: where it is widest, a column of pixels has that much. Along
+/// the line, of 32 pixels, its width changes by 3 % from pixel to pixel. A pixel is rounded to one
+/// of 256 codes, whose steps are less than a hundredth.
+#[test]
+fn lines_are_as_wide_as_asked_in_pixels() {
+    for width in [1.0, 2.5, 6.0] {
+        let one = MotionLines {
+            points: 1,
+            width,
+            duration: 0.3,
+            ..lines()
+        };
+        // A plate that faces backwards, so that the only point has a line.
+        let mut stage = Stage::new(one);
+        let plate = Mesh::from(Rectangle::new(0.1, 0.1));
+        let plate = plate.rotated_by(Quat::from_rotation_y(-std::f32::consts::FRAC_PI_2));
+        let world = stage.small.world();
+        let plate = world.resource_mut::<Assets<Mesh>>().add(plate);
+        world.entity_mut(stage.mesh).insert(Mesh3d(plate));
+        stage.dash(40);
+        let picture = stage.small.picture();
+        let column = |x: u32| black_ink(&picture, (0..SIZE.y).map(|y| (x, y)));
+        let widest = (0..SIZE.x).map(column).fold(0.0, f64::max);
+        // Before its head, the line has 0.85^0.8 = 0.88 of its width.
+        let expected = 0.88 * f64::from(width);
+        assert!(
+            (widest - expected).abs() < 0.03 * expected + 0.02,
+            "{widest}, {expected}"
+        );
+    }
+}
+
+/// They are in no prepass: the depth, the normals and the ids of a picture are those without them,
+/// and so are its outlines away from the ink.
+#[test]
+fn they_are_not_in_the_prepass() {
+    let shots = [false, true].map(|with| {
+        let mut stage = Stage::new(lines());
+        if !with {
+            let mesh = stage.mesh;
+            stage.small.world().entity_mut(mesh).remove::<MotionLines>();
+        }
+        stage.small.insert(Outlines {
+            objects: Some(ObjectEdges::default()),
+            ..default()
+        });
+        stage.dash(40);
+        assert_eq!(!stage.places().is_empty(), with);
+        let depth = stage.small.depth().expect("a prepass");
+        let ids = stage.small.object_ids().expect("ids");
+        let normals = stage.small.normals().expect("normals");
+        assert_eq!(stage.small.errors(), 0);
+        let ids: Vec<bool> = ids.pixels.iter().map(|id| id[0] != 0).collect();
+        (depth.bits, ids, normals.pixels)
+    });
+    assert!(shots[0] == shots[1]);
+}
+
+/// With the rate of a held pose, lines change in the same frames.
+#[test]
+fn they_can_be_drawn_on_twos() {
+    let mut stage = Stage::new(MotionLines {
+        rate: 12.0,
+        ..lines()
+    });
+    let mesh = stage.mesh;
+    stage
+        .small
+        .world()
+        .entity_mut(mesh)
+        .insert(HeldPose::default());
+    stage.dash(30);
+    let mut changes = Vec::new();
+    let mut before = stage.small.picture();
+    for _ in 0..20 {
+        let now = stage.seconds() as f32;
+        let x = stage
+            .small
+            .world()
+            .get::<Transform>(mesh)
+            .expect("it")
+            .translation
+            .x;
+        stage.fly(1, |t| {
+            Transform::from_xyz(x + 0.2 * SPEED * (t - now), 0.0, 0.0)
+        });
+        let picture = stage.small.picture();
+        changes.push(picture != before);
+        before = picture;
+    }
+    let count = changes.iter().filter(|changed| **changed).count();
+    assert_eq!(count, 4, "{changes:?}");
+}
