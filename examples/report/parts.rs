@@ -225,6 +225,8 @@ struct Part {
     change: fn(&mut Rig),
     /// What is timed on the changed scene, with names.
     styles: Vec<(&'static str, ComicStyle)>,
+    /// The change of the scene that this one is compared with, in the first of its styles.
+    base: Option<fn(&mut Rig)>,
 }
 
 impl Part {
@@ -235,7 +237,27 @@ impl Part {
             scene: BuiltIn::Teapot,
             change,
             styles: vec![(name, style)],
+            base: None,
         }
+    }
+
+    /// Compared with the scene as it is.
+    fn compared(self) -> Self {
+        self.compared_with(|_| ())
+    }
+
+    fn compared_with(self, base: fn(&mut Rig)) -> Self {
+        let base = Some(base);
+        Self { base, ..self }
+    }
+
+    fn rig(&self, size: UVec2, change: fn(&mut Rig)) -> Rig {
+        let mut rig = Rig::new(Some(self.scene), size);
+        rig.unlight();
+        change(&mut rig);
+        // Meshes are divided in the background.
+        rig.headless.step(30);
+        rig
     }
 }
 
@@ -244,15 +266,15 @@ fn changes() -> Vec<Part> {
     let colors = || ComicStyle::new().with(Desaturation::default());
     let mut parts = vec![
         Part::new("outlines", |_| (), outlines()),
-        Part::new("outlines; meshes in sections", sections, outlines()),
-        Part::new("outlines; widths of vertices", widths, outlines()),
-        Part::new("outlines; a width of each mesh", own_widths, outlines()),
-        Part::new("outlines; 4 samples", samples, outlines()),
-        Part::new("outlines; fog", fog, outlines()),
-        Part::new("outlines; a mesh of glass", glass, outlines()),
-        Part::new("outlines; it writes depth", glass_in_depth, outlines()),
+        Part::new("outlines; meshes in sections", sections, outlines()).compared(),
+        Part::new("outlines; widths of vertices", widths, outlines()).compared(),
+        Part::new("outlines; a width of each mesh", own_widths, outlines()).compared(),
+        Part::new("outlines; 4 samples", samples, outlines()).compared(),
+        Part::new("outlines; fog", fog, outlines()).compared(),
+        Part::new("outlines; a mesh of glass", glass, outlines()).compared(),
+        Part::new("outlines; it writes depth", glass_in_depth, outlines()).compared_with(glass),
         Part::new("desaturation", |_| (), colors()),
-        Part::new("desaturation; a mesh without style", unstyled, colors()),
+        Part::new("desaturation; a mesh without style", unstyled, colors()).compared(),
     ];
     // The village has lines in most of its tiles, the teapot in few.
     for scene in [BuiltIn::Teapot, BuiltIn::Village] {
@@ -271,34 +293,33 @@ fn changes() -> Vec<Part> {
                 ),
                 ("outlines; temporal anti-aliasing; memory", outlines()),
             ],
+            base: None,
         });
     }
     parts
 }
 
-/// Times each change on a scene of its own.
+/// Times each change on a scene of its own, in turn with the scene that it is compared with.
 pub fn of_scenes(run: &Run) -> Result<(), String> {
     let size = size(run);
     let mut times = rig::times();
-    // A scene of its own takes long.
-    let run = &run.with_rounds(run.rounds.min(3));
+    let rounds = run.rounds.min(5);
+    let run = &run.with_rounds(1);
     for part in changes() {
-        let mut rig = Rig::new(Some(part.scene), size);
-        rig.unlight();
-        (part.change)(&mut rig);
-        // Meshes are divided in the background.
-        rig.headless.step(30);
-        let section = format!("part: {}", part.name);
-        let named = |(name, style): (&str, ComicStyle)| (name.to_owned(), Wear::style(style));
-        let variants: Vec<_> = part.styles.into_iter().map(named).collect();
-        rig::record(
-            run,
-            &mut times,
-            &section,
-            part.scene.name(),
-            &mut rig,
-            &variants,
-        );
+        let mut changed = part.rig(size, part.change);
+        let mut base = part.base.map(|change| part.rig(size, change));
+        let named =
+            |(name, style): &(&str, ComicStyle)| ((*name).to_owned(), Wear::style(style.clone()));
+        let variants: Vec<_> = part.styles.iter().map(named).collect();
+        let scene = part.scene.name();
+        for _ in 0..rounds {
+            if let Some(base) = &mut base {
+                let section = format!("base of: {}", part.name);
+                rig::record(run, &mut times, &section, scene, base, &variants);
+            }
+            let section = format!("part: {}", part.name);
+            rig::record(run, &mut times, &section, scene, &mut changed, &variants);
+        }
     }
     run.save("scene_part_times", &times)
 }

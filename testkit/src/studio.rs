@@ -343,7 +343,7 @@ pub fn hatched_theatre() -> image::RgbaImage {
             hatching,
             ..default()
         };
-        world.entity_mut(part).insert(CartoonScene { light });
+        world.entity_mut(part).insert(CartoonScene::new(light));
     }
     studio.headless.step(4);
     studio.shoot(Some(&ComicStyle::new().with(Outlines::default())))

@@ -22,7 +22,7 @@ struct Figure {
 /// Two parts in a row.
 const HALF: UVec2 = UVec2::new(470, 264);
 /// Four frames of a motion in a row.
-const QUARTER: UVec2 = UVec2::new(233, 196);
+const QUARTER: UVec2 = UVec2::new(233, 160);
 
 const FIGURES: [Figure; 6] = [
     Figure {
@@ -71,18 +71,18 @@ const FIGURES: [Figure; 6] = [
         part: QUARTER,
         columns: 4,
         cuttings: &[
-            ("brush", 0, [243, 130]),
-            ("brush", 1, [243, 130]),
-            ("brush", 2, [243, 130]),
-            ("brush", 3, [243, 130]),
-            ("budget", 0, [243, 130]),
-            ("budget", 1, [243, 130]),
-            ("budget", 3, [243, 130]),
-            ("budget", 5, [243, 130]),
-            ("default", 0, [243, 130]),
-            ("default", 1, [243, 130]),
-            ("default", 3, [243, 130]),
-            ("default", 5, [243, 130]),
+            ("brush", 0, [243, 134]),
+            ("brush", 1, [243, 134]),
+            ("brush", 2, [243, 134]),
+            ("brush", 3, [243, 134]),
+            ("budget", 0, [243, 134]),
+            ("budget", 1, [243, 134]),
+            ("budget", 3, [243, 134]),
+            ("budget", 5, [243, 134]),
+            ("sections", 0, [243, 134]),
+            ("sections", 1, [243, 134]),
+            ("sections", 3, [243, 134]),
+            ("sections", 5, [243, 134]),
         ],
     },
     Figure {

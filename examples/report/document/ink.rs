@@ -216,6 +216,12 @@ fn straight_targets(folder: &Path) -> Result<Vec<Target>, String> {
         let target = Target::at_most(what, 0.02, Some(most(&table, &rows, "most")));
         all.push(target.with_digits(4));
     }
+    for width in straight_widths(&table) {
+        let rows = table.matching(&[("width", &width)]);
+        let part = 100.0 * most(&table, &rows, "mean") / width.parse().unwrap_or(f64::NAN);
+        let what = format!("the same of {width} px: area over 200 px, difference in %");
+        all.push(Target::at_most(what, 0.5, Some(part)));
+    }
     let rows = table.matching(&[("width", "2")]);
     all.push(
         Target::at_most(

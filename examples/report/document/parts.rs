@@ -3,9 +3,9 @@
 use std::{fmt::Write, path::Path};
 
 use crate::{
-    costs::{Cost, OWN, cost_table, costs, size},
+    costs::{OWN, cost_table, costs, size},
     load,
-    table::Table,
+    table::{Table, quantile},
 };
 
 /// The laps in which parts of the scene cost time.
@@ -45,23 +45,64 @@ pub fn parts(out: &mut String, folder: &Path) -> Result<(), String> {
 fn scene_parts(out: &mut String, times: &Table) {
     let all: Vec<&Vec<String>> = times.rows.iter().collect();
     let sections = times.distinct(&all, "section");
-    let parts = sections.iter().filter(|name| name.starts_with("part: "));
-    let mut found: Vec<Cost> = Vec::new();
-    for section in parts {
-        let rows = times.matching(&[("section", section)]);
-        for scene in times.distinct(&rows, "scene") {
-            let mut of_scene = costs(times, section, &scene, &LAPS_OF_PARTS);
-            for cost in of_scene.iter_mut().filter(|_| scene != "teapot") {
-                cost.name = format!("{}, on the {scene}", cost.name);
-            }
-            found.extend(of_scene);
-        }
-    }
     out.push_str(
         "What parts of the scene ask for, each on a scene of its own, which is the teapot if no \
          other is named. The times include the prepass, which a camera without a style does not \
          have; that of temporal anti-aliasing, and its own pass, are left out, since a camera \
-         without a style has them. The glass is the mesh with most vertices:\n\n",
+         without a style has them. Over the base: what the same style costs more than on the same scene without the part, \
+         timed in turn with it; the median, the least and the most of the rounds. The glass is the mesh with most vertices:\n\n\
+         | | ms | blits | over the base, ms | least to most |\n|---|---|---|---|---|\n",
     );
-    cost_table(out, &found);
+    for section in sections.iter().filter(|name| name.starts_with("part: ")) {
+        let rows = times.matching(&[("section", section)]);
+        let base = section.replace("part: ", "base of: ");
+        for scene in times.distinct(&rows, "scene") {
+            for cost in costs(times, section, &scene, &LAPS_OF_PARTS) {
+                if cost.name.starts_with("blit") {
+                    continue;
+                }
+                let on = if scene == "teapot" {
+                    String::new()
+                } else {
+                    format!(", on the {scene}")
+                };
+                let blits = match cost.ratio[1] {
+                    ratio if ratio.is_finite() => format!("{ratio:.2}"),
+                    _ => "-".to_owned(),
+                };
+                let over = over_base(times, [section, &base], &scene, &cost.name);
+                let _ = writeln!(
+                    out,
+                    "| {}{on} | {:.2} | {blits} | {over} |",
+                    cost.name, cost.milliseconds
+                );
+            }
+        }
+    }
+    out.push('\n');
+}
+
+/// By how much a style costs more with a part than without: cells of the table.
+fn over_base(times: &Table, sections: [&str; 2], scene: &str, style: &str) -> String {
+    let [with, without] = sections.map(|section| {
+        let own = |variant| {
+            let rows =
+                times.matching(&[("section", section), ("scene", scene), ("variant", variant)]);
+            let sum = |row: &&Vec<String>| -> f64 {
+                LAPS_OF_PARTS.iter().map(|lap| times.number(row, lap)).sum()
+            };
+            rows.iter().map(sum).collect::<Vec<f64>>()
+        };
+        let (own, nothing) = (own(style), own("nothing"));
+        own.iter()
+            .zip(&nothing)
+            .map(|(v, n)| v - n)
+            .collect::<Vec<f64>>()
+    });
+    if without.is_empty() {
+        return " | ".to_owned();
+    }
+    let over: Vec<f64> = with.iter().zip(&without).map(|(a, b)| a - b).collect();
+    let [least, middle, most] = [0.0, 0.5, 1.0].map(|q| quantile(&over, q));
+    format!("{middle:.2} | {least:.2} to {most:.2}")
 }
