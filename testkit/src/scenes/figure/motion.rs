@@ -48,7 +48,7 @@ pub enum Lids {
 fn is_blinking(seconds: f32) -> bool {
     const PERIOD: f32 = 3.4;
     const LENGTH: f32 = 0.13;
-    (seconds + 1.0) % PERIOD > PERIOD - LENGTH
+    (seconds + 2.87) % PERIOD > PERIOD - LENGTH
 }
 
 /// Animates the scenes that move. Without it they stand still.
