@@ -169,6 +169,15 @@ impl ToonLook {
         }
     }
 
+    /// The lighting, with the tonal art map of `other` if the look has none: files have no images.
+    pub(super) fn with_map_of(&self, other: &CartoonLight) -> CartoonLight {
+        let map = self.light.art_map.as_ref().or(other.art_map.as_ref());
+        CartoonLight {
+            art_map: map.cloned(),
+            ..self.light.clone()
+        }
+    }
+
     /// Reads a look from the text of a `.toon.ron` file.
     ///
     /// # Errors
@@ -256,9 +265,14 @@ pub(super) fn apply_looks(
         let Some(look) = looks.get(id) else {
             continue;
         };
-        let differs = (materials.get(&material.0)).is_some_and(|m| m.extension != look.light);
-        if differs && let Some(mut material) = materials.get_mut(&material.0) {
-            material.extension = look.light.clone();
+        let Some(before) = materials.get(&material.0) else {
+            continue;
+        };
+        let light = look.with_map_of(&before.extension);
+        if before.extension != light
+            && let Some(mut material) = materials.get_mut(&material.0)
+        {
+            material.extension = light;
         }
     }
 }

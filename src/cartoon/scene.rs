@@ -146,7 +146,10 @@ impl Materials<'_> {
                 opaque_render_method: OpaqueRendererMethod::Forward,
                 ..self.standard.get(original)?.clone()
             },
-            extension: loaded.map_or_else(|| scene.light.clone(), |look| look.light.clone()),
+            extension: loaded.map_or_else(
+                || scene.light.clone(),
+                |look| look.with_map_of(&scene.light),
+            ),
         })
     }
 

@@ -13,8 +13,8 @@ use bevy::{
 };
 use bevy_comics::{
     CartoonLight, CartoonMaterial, CartoonScene, DetailAxis, FormShape, Glint, GlintFrame,
-    GlintShape, MaterialName, Ramp, RampBlend, RampDetail, RampMode, RampStop, Rim, RimWidth,
-    ShadedForm, ToonLook, ToonLookError, ToonLookHandle,
+    GlintShape, Hatching, MaterialName, Ramp, RampBlend, RampDetail, RampMode, RampStop, Rim,
+    RimWidth, ShadedForm, ToonLook, ToonLookError, ToonLookHandle,
 };
 use bevy_comics_testkit::headless::HeadlessOptions;
 
@@ -74,6 +74,15 @@ fn everything(axis: DetailAxis, form: FormShape, width: RimWidth) -> CartoonLigh
             strength: 0.5,
             lit_side: 0.25,
         }),
+        hatching: Some(Hatching {
+            spacing: 5.0,
+            layers: 3,
+            ink: Color::srgb_u8(1, 2, 3),
+            ..default()
+        }),
+        // Files have no images.
+        art_map: None,
+        art_map_repeat: 2.5,
     }
 }
 
