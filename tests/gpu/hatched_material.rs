@@ -1,4 +1,4 @@
-//! Strokes on the cartoon material.
+//! Strokes on the cartoon material: `hatch_light.wgsl`, and `vertex.wgsl`, which hands on the mesh at rest.
 
 use bevy::{
     camera::Hdr,
