@@ -1,4 +1,4 @@
-//! Strokes on the cartoon material.
+//! Strokes on the cartoon material: `hatch_light.wgsl`, and `vertex.wgsl`, which hands on the mesh at rest.
 
 use bevy::{
     camera::Hdr,
@@ -224,6 +224,8 @@ fn strokes_stay_on_what_moves() {
 #[test]
 fn strokes_stay_on_skinned_meshes() {
     let (mut small, sun) = studio();
+    // Prepasses have a vertex shader of their own: both must give the same depth.
+    small.insert((DepthPrepass, NormalPrepass));
     let mut mesh = ball();
     let count = mesh.count_vertices();
     mesh.insert_attribute(
@@ -249,8 +251,6 @@ fn strokes_stay_on_skinned_meshes() {
         },
         bevy::camera::visibility::NoFrustumCulling,
     ));
-    // Prepasses have a vertex shader of their own: both must give the same depth.
-    small.insert((DepthPrepass, NormalPrepass));
     for (k, frame) in frames().into_iter().enumerate() {
         small.world().entity_mut(joint).insert(frame);
         let aside = Transform::from_xyz(k as f32, 0.0, 0.0);
