@@ -242,7 +242,7 @@ pub fn features() -> Vec<Paint> {
         middle("ink", 0.012, |brush| {
             let smile = |u: f32| lips(-1.12 + 2.24 * u) + Vec2::new(0.0, 0.004);
             brush.stroke(smile, |u| 0.026 * (PI * (0.1 + 0.8 * u)).sin());
-            let nose = |u: f32| Vec2::new(0.02 - 0.035 * u, -0.318 - 0.012 * (PI * u).sin());
+            let nose = |u: f32| Vec2::new(0.02 - 0.035 * u, -0.317 - 0.012 * (PI * u).sin());
             brush.stroke(nose, |u| 0.014 * (PI * u).sin());
         }),
     ]
