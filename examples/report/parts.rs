@@ -303,7 +303,7 @@ fn changes() -> Vec<Part> {
 pub fn of_scenes(run: &Run) -> Result<(), String> {
     let size = size(run);
     let mut times = rig::times();
-    let rounds = run.rounds.min(5);
+    let rounds = run.rounds.min(3);
     let run = &run.with_rounds(1);
     for part in changes() {
         let mut changed = part.rig(size, part.change);
