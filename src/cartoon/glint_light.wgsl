@@ -6,7 +6,7 @@
 #import bevy_comics::cartoon::{
     bindings::cartoon,
     glint::{Frame, frame_along, glint_coverage, glint_distance, glint_radius},
-    surface::{Source, Surface},
+    surface::{Source, Surface, half_way},
 }
 
 // The frame of a normal, by `Glint::frame`.
@@ -42,7 +42,7 @@ fn distance_at(
     let to = source.to_highlight;
     let light = to + swing(to, movement, source.per_distance);
     let eye = s.to_eye + swing(s.to_eye, movement, s.per_eye_distance);
-    let half_vector = normalize(light + eye);
+    let half_vector = half_way(light, eye);
     let frame = frame_of(s, normal, source.to_light);
     return glint_distance(cartoon.glint, frame, radius, normal, half_vector);
 }

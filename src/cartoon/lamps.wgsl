@@ -52,15 +52,19 @@ fn lamp_shadow(is_spot: bool, id: u32, s: Surface) -> f32 {
     ));
 }
 
-// The shadow map of a directional light with a hard edge; 1 if `maps` is 0. All pixels must run
-// it, since it takes derivatives.
-fn directional_shadow(id: u32, s: Surface, maps: u32) -> f32 {
-    var shadow = 1.0;
-    if s.receives && maps != 0u {
-        let place = vec4(s.position, 1.0);
-        shadow = shadows::fetch_directional_shadow(id, place, s.mesh_normal, s.view_z, s.pixel);
+// The shadow map of a directional light at the surface; 1 if it has none.
+fn directional_shadow(id: u32, s: Surface) -> f32 {
+    let flags = view_bindings::lights.directional_lights[id].flags;
+    let maps = flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_SHADOWS_ENABLED_BIT;
+    if !s.receives || maps == 0u {
+        return 1.0;
     }
-    let width = fwidth(shadow);
+    let place = vec4(s.position, 1.0);
+    return shadows::fetch_directional_shadow(id, place, s.mesh_normal, s.view_z, s.pixel);
+}
+
+// A shadow map that changes by `width` over a pixel, with a hard edge.
+fn hard_shadow(shadow: f32, width: f32) -> f32 {
     return select(sharpen(shadow, width), shadow, shadow <= 0.0 || shadow >= 1.0);
 }
 
@@ -100,7 +104,14 @@ fn through_atmosphere(position: vec3<f32>, to_light: vec3<f32>, disk: f32) -> ve
 }
 #endif
 
+// A directional light. All pixels must run it, since it takes derivatives.
 fn directional_light(id: u32, s: Surface) -> Arriving {
+    let shadow = directional_shadow(id, s);
+    return directional_light_through(id, s, hard_shadow(shadow, fwidth(shadow)));
+}
+
+// The same, with the shadow that its shadow map leaves of it.
+fn directional_light_through(id: u32, s: Surface, shadow: f32) -> Arriving {
     let light = &view_bindings::lights.directional_lights[id];
     var arriving: Arriving;
     arriving.to_light = (*light).direction_to_light.xyz;
@@ -116,9 +127,7 @@ fn directional_light(id: u32, s: Surface) -> Arriving {
 #endif
     arriving.smooth_color = arriving.color;
     let flags = (*light).flags;
-    let maps = flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_SHADOWS_ENABLED_BIT;
     let contact = flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_CONTACT_SHADOWS_ENABLED_BIT;
-    let shadow = directional_shadow(id, s, maps);
     arriving.lit = with_contact(shadow, s, arriving.to_light, contact);
     arriving.diffuse = diffuse_part(
         flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_AFFECTS_LIGHTMAPPED_MESH_DIFFUSE_BIT,
@@ -151,9 +160,10 @@ fn clustered_light(id: u32, is_spot: bool, s: Surface, settings: CartoonLight) -
     let offset = (*light).position_radius.xyz - s.position;
     let distance_squared = dot(offset, offset);
     var arriving: Arriving;
-    arriving.to_light = normalize(offset);
-    arriving.to_highlight = arriving.to_light;
     arriving.per_distance = inverseSqrt(max(distance_squared, 1e-8));
+    // Shorter than 1 where the surface touches the light.
+    arriving.to_light = offset * arriving.per_distance;
+    arriving.to_highlight = arriving.to_light;
     // Luminous intensity. Times the falloff, it is the illuminance of a surface
     // that faces the light.
     var color = (*light).color_inverse_square_range.rgb;
@@ -162,7 +172,7 @@ fn clustered_light(id: u32, is_spot: bool, s: Surface, settings: CartoonLight) -
     let width = stops_over_pixel(distance_squared, pixel);
     let flat_light = rings(settings, smooth_light, exposed(color), width);
     if is_spot {
-        color *= spot_cone(id, arriving.to_light, pixel * inverseSqrt(distance_squared));
+        color *= spot_cone(id, arriving.to_light, pixel * arriving.per_distance);
     }
 #ifdef LIGHT_TEXTURES
     if is_spot {

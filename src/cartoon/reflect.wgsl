@@ -5,7 +5,7 @@
 #import bevy_comics::cartoon::{
     bindings::cartoon,
     light::{facing, highlight},
-    surface::{Arriving, Surface, biased_cosine, cosine_over_pixel},
+    surface::{Arriving, Surface, biased_cosine, cosine_over_pixel, half_way},
 }
 
 const PI: f32 = 3.14159265;
@@ -26,7 +26,7 @@ fn highlight_of(s: Surface, light: Arriving, left: f32) -> f32 {
     if min(most, cartoon.light.highlight) <= 0.0 {
         return 0.0;
     }
-    let half_vector = normalize(light.to_highlight + s.to_eye);
+    let half_vector = half_way(light.to_highlight, s.to_eye);
     let width = cosine_over_pixel(s.foot, half_vector);
     let n_dot_h = saturate(dot(s.normal, half_vector));
     return most * highlight(cartoon.light, s.roughness, n_dot_h, width);

@@ -73,6 +73,12 @@ fn biased_cosine(s: Surface, direction: vec3<f32>) -> f32 {
     return clamp(dot(s.normal, direction) + s.bias, -1.0, 1.0);
 }
 
+// Unit vector half way between two unit vectors, or 0 where they are opposite.
+fn half_way(a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
+    let sum = a + b;
+    return sum * inverseSqrt(max(dot(sum, sum), 1e-12));
+}
+
 // Size of a pixel on the surface in world units.
 fn pixel_size(foot: Footprint) -> f32 {
     return length(foot.position_x) + length(foot.position_y);

@@ -6,6 +6,7 @@
     mesh_view_bindings::view,
     view_transformations::position_world_to_clip,
 }
+#import bevy_comics::motion_lines::ribbon::{coverage, direction_on_screen, moved_across}
 #ifdef TONEMAP_IN_SHADER
 #import bevy_core_pipeline::tonemapping::tone_mapping
 #endif
@@ -34,27 +35,13 @@ fn vertex(v: Vertex) -> Drawn {
     // is in front of the eye too.
     let beside = position_world_to_clip(world + v.normal * 0.01 * abs(at.w));
     let size = view.viewport.zw;
-    let step = (beside.xy / beside.w - at.xy / at.w) * size;
-    let long = length(step);
-    // Seen from the end, a path has no direction.
-    let along = select(vec2(1.0, 0.0), step / long, long > 1e-6);
+    let along = direction_on_screen(at, beside, size);
     let half_width = ink.half_width * v.uv.y;
     let across = v.uv.x * (half_width + 1.0);
     var out: Drawn;
-    out.position = at;
-    // Two units of the clip space are the whole picture.
-    let off = vec2(-along.y, along.x) * across * 2.0 / size * at.w;
-    out.position.x += off.x;
-    out.position.y += off.y;
+    out.position = moved_across(at, along, across, size);
     out.across = vec2(across, half_width);
     return out;
-}
-
-// What a line of a width covers of a pixel at a distance from its middle.
-fn coverage(distance: f32, half_width: f32) -> f32 {
-    // A line that is thinner than a pixel is paler, not thinner.
-    let shown = max(half_width, 0.5);
-    return clamp(shown + 0.5 - abs(distance), 0.0, 1.0) * min(2.0 * half_width, 1.0);
 }
 
 @fragment

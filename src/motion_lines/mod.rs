@@ -17,6 +17,7 @@ use bevy::{
     ecs::schedule::IntoScheduleConfigs,
     pbr::{MaterialPlugin, MeshMaterial3d, PbrPlugin},
     render::erased_render_asset::ErasedRenderAssetPlugin,
+    shader::load_shader_library,
     transform::TransformSystems,
 };
 
@@ -47,6 +48,7 @@ impl Plugin for MotionLinesPlugin {
 impl MotionLinesPlugin {
     /// The part that needs the engine's renderer.
     pub(crate) fn build_render(app: &mut App) {
+        load_shader_library!(app, "ribbon.wgsl");
         embedded_asset!(app, "ink.wgsl");
     }
 }

@@ -100,21 +100,28 @@ impl Gpu {
         body: &str,
         rows: &[[f32; N]],
     ) -> Vec<[f32; 4]> {
-        let source = format!(
-            "{imports}
-            @group(0) @binding(0) var<storage, read> rows: array<u32>;
-            @group(0) @binding(1) var<storage, read_write> results: array<vec4<f32>>;
-            var<private> row: u32;
-            fn i(n: u32) -> f32 {{ return bitcast<f32>(rows[row * {N}u + n]); }}
-            fn u(n: u32) -> u32 {{ return u32(i(n)); }}
-            fn body() -> vec4<f32> {{ {body} }}
-            @compute @workgroup_size(64)
-            fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {{
-                row = id.y * 65536u + id.x;
-                if row < arrayLength(&results) {{ results[row] = body(); }}
-            }}"
-        );
-        let module = wgsl::module(&source, &["DEPTH"]).unwrap_or_else(|error| panic!("{error}"));
+        let module = wgsl::module(&entry_point::<N>(imports, body), &["DEPTH"]);
+        self.run(module.unwrap_or_else(|error| panic!("{error}")), rows)
+    }
+
+    /// As [`evaluate`](Self::evaluate), for functions that read bindings: they are variables that
+    /// `body` sets, see [`wgsl::module_alone`].
+    pub fn evaluate_alone<const N: usize>(
+        &self,
+        definitions: &[wgsl::Definition],
+        imports: &str,
+        body: &str,
+        rows: &[[f32; N]],
+    ) -> Vec<[f32; 4]> {
+        let module = wgsl::module_alone(&entry_point::<N>(imports, body), definitions);
+        self.run(module.unwrap_or_else(|error| panic!("{error}")), rows)
+    }
+
+    fn run<const N: usize>(
+        &self,
+        module: wgpu::naga::Module,
+        rows: &[[f32; N]],
+    ) -> Vec<[f32; 4]> {
         let pipeline = self.compute_pipeline(module, "evaluate");
         let bytes: Vec<u8> = rows
             .iter()
@@ -158,4 +165,22 @@ impl Gpu {
             })
             .collect()
     }
+}
+
+/// Runs `body` for every row of N numbers.
+fn entry_point<const N: usize>(imports: &str, body: &str) -> String {
+    format!(
+        "{imports}
+        @group(0) @binding(0) var<storage, read> rows: array<u32>;
+        @group(0) @binding(1) var<storage, read_write> results: array<vec4<f32>>;
+        var<private> row: u32;
+        fn i(n: u32) -> f32 {{ return bitcast<f32>(rows[row * {N}u + n]); }}
+        fn u(n: u32) -> u32 {{ return u32(i(n)); }}
+        fn body() -> vec4<f32> {{ {body} }}
+        @compute @workgroup_size(64)
+        fn evaluate(@builtin(global_invocation_id) id: vec3<u32>) {{
+            row = id.y * 65536u + id.x;
+            if row < arrayLength(&results) {{ results[row] = body(); }}
+        }}"
+    )
 }

@@ -5,6 +5,7 @@
 pub mod before;
 pub mod bench;
 pub mod device;
+pub mod engine;
 pub mod forest;
 pub mod headless;
 pub mod line_work;

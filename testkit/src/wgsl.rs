@@ -13,7 +13,7 @@ use naga_oil::compose::{
     get_preprocessor_data,
 };
 
-use crate::ROOT;
+use crate::{ROOT, engine};
 
 /// Every WGSL file of the crate.
 pub fn files() -> Vec<PathBuf> {
@@ -48,28 +48,69 @@ pub fn module_with(source: &str, definitions: &[Definition]) -> Result<wgpu::nag
     thread_local! {
         static COMPOSER: RefCell<Composer> = RefCell::default();
     }
+    COMPOSER.with_borrow_mut(|composer| compose(composer, modules(), &ENGINE, source, definitions))
+}
+
+/// As [`module_with`], for functions that read bindings: the uniforms of materials, the view, the
+/// lights and the results of the engine's functions are variables that `source` sets, see
+/// [`engine`].
+pub fn module_alone(
+    source: &str,
+    definitions: &[Definition],
+) -> Result<wgpu::naga::Module, String> {
+    static MODULES: OnceLock<Modules> = OnceLock::new();
+    let modules = MODULES.get_or_init(|| {
+        let alone = |(name, (text, imports)): (&String, &(String, _))| {
+            (name.clone(), (without_bindings(text), Vec::clone(imports)))
+        };
+        modules().iter().map(alone).collect()
+    });
+    thread_local! {
+        static COMPOSER: RefCell<Composer> = RefCell::default();
+    }
     COMPOSER.with_borrow_mut(|composer| {
-        composer.capabilities = wgpu::naga::valid::Capabilities::all();
-        let (_, wanted, _) = get_preprocessor_data(source);
-        for import in wanted {
-            add(composer, modules(), &import.import)?;
-        }
-        let shader_defs = definitions
-            .iter()
-            .map(|(name, number)| {
-                let value = number.map_or(ShaderDefValue::Bool(true), ShaderDefValue::UInt);
-                ((*name).to_owned(), value)
-            })
-            .collect();
-        composer
-            .make_naga_module(NagaModuleDescriptor {
-                source,
-                file_path: "entry.wgsl",
-                shader_defs,
-                ..Default::default()
-            })
-            .map_err(|error| error.emit_to_string(composer))
+        compose(composer, modules, &engine::MODULES, source, definitions)
     })
+}
+
+/// The text with uniforms of materials as private variables.
+fn without_bindings(text: &str) -> String {
+    let line = |line: &str| match line.split_once("var<uniform>") {
+        Some((before, after)) if before.contains("MATERIAL_BIND_GROUP") => {
+            format!("var<private>{after}\n")
+        }
+        _ => format!("{line}\n"),
+    };
+    text.lines().map(line).collect()
+}
+
+fn compose(
+    composer: &mut Composer,
+    modules: &Modules,
+    engine: &[(&str, &str)],
+    source: &str,
+    definitions: &[Definition],
+) -> Result<wgpu::naga::Module, String> {
+    composer.capabilities = wgpu::naga::valid::Capabilities::all();
+    let (_, wanted, _) = get_preprocessor_data(source);
+    for import in wanted {
+        add(composer, modules, engine, &import.import)?;
+    }
+    let shader_defs = definitions
+        .iter()
+        .map(|(name, number)| {
+            let value = number.map_or(ShaderDefValue::Bool(true), ShaderDefValue::UInt);
+            ((*name).to_owned(), value)
+        })
+        .collect();
+    composer
+        .make_naga_module(NagaModuleDescriptor {
+            source,
+            file_path: "entry.wgsl",
+            shader_defs,
+            ..Default::default()
+        })
+        .map_err(|error| error.emit_to_string(composer))
 }
 
 type Modules = HashMap<String, (String, Vec<naga_oil::compose::ImportDefinition>)>;
@@ -90,19 +131,23 @@ fn modules() -> &'static Modules {
     })
 }
 
-fn add(composer: &mut Composer, modules: &Modules, name: &str) -> Result<(), String> {
+fn add(
+    composer: &mut Composer,
+    modules: &Modules,
+    engine: &[(&str, &str)],
+    name: &str,
+) -> Result<(), String> {
     if composer.contains_module(name) {
         return Ok(());
     }
-    let engine = ENGINE.iter().find(|(engine, _)| *engine == name);
-    if let Some((_, text)) = engine {
+    if let Some((_, text)) = engine.iter().find(|(engine, _)| *engine == name) {
         return add_module(composer, name, text);
     }
     let (text, imports) = modules
         .get(name)
         .ok_or_else(|| format!("no module {name:?} in the crate"))?;
     for import in imports {
-        add(composer, modules, &import.import)?;
+        add(composer, modules, engine, &import.import)?;
     }
     add_module(composer, name, text)
 }

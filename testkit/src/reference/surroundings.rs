@@ -2,7 +2,7 @@
 
 use super::Rgb;
 
-fn brightness(light: Rgb) -> f64 {
+pub fn brightness(light: Rgb) -> f64 {
     0.2126 * light[0] + 0.7152 * light[1] + 0.0722 * light[2]
 }
 

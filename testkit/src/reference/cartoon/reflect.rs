@@ -1,0 +1,43 @@
+//! Twin of `cartoon/reflect.wgsl`.
+
+use bevy_comics::CartoonLight;
+
+use super::super::light::{edge_at, highlight};
+use super::surface::{Arriving, Surface, biased_cosine, cosine_over_pixel, half_way};
+
+/// Strengths of the backface shadow and of the projected shadow.
+pub fn shadows(light: &CartoonLight) -> [f64; 2] {
+    [light.backface_shadows, light.projected_shadows].map(|on| match on {
+        true => f64::from(light.shadow_strength),
+        false => 0.0,
+    })
+}
+
+/// Fraction of a light that the stronger of its two shadows leaves. `nudge` is added to the cosine
+/// between normal and light.
+pub fn unshadowed(light: &CartoonLight, s: &Surface, lamp: &Arriving, nudge: f64) -> f64 {
+    let [backface, projected] = shadows(light);
+    let cosine = biased_cosine(s, lamp.to_light) + nudge;
+    let width = cosine_over_pixel(&s.foot, lamp.to_light);
+    let faces = edge_at(f64::from(light.terminator), cosine, width);
+    let left = [
+        1.0 - backface * (1.0 - faces),
+        1.0 - projected * (1.0 - lamp.lit),
+    ];
+    left[0].min(left[1])
+}
+
+/// Highlight of a light, as a multiple of it. `left` is what shadows leave, `nudge` is added to
+/// the cosine between normal and half vector.
+pub fn highlight_of(
+    light: &CartoonLight,
+    s: &Surface,
+    lamp: &Arriving,
+    left: f64,
+    nudge: f64,
+) -> f64 {
+    let half = half_way(lamp.to_highlight, s.to_eye);
+    let cosine = (s.normal.dot(half) + nudge).clamp(0.0, 1.0);
+    let width = cosine_over_pixel(&s.foot, half);
+    lamp.shine * left * highlight(light, s.roughness, cosine, width)
+}
