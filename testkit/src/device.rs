@@ -117,11 +117,7 @@ impl Gpu {
         self.run(module.unwrap_or_else(|error| panic!("{error}")), rows)
     }
 
-    fn run<const N: usize>(
-        &self,
-        module: wgpu::naga::Module,
-        rows: &[[f32; N]],
-    ) -> Vec<[f32; 4]> {
+    fn run<const N: usize>(&self, module: wgpu::naga::Module, rows: &[[f32; N]]) -> Vec<[f32; 4]> {
         let pipeline = self.compute_pipeline(module, "evaluate");
         let bytes: Vec<u8> = rows
             .iter()

@@ -6,6 +6,7 @@ mod art_map;
 mod bend;
 mod blocks;
 mod budget;
+mod cartoon;
 mod cartoon_styles;
 mod color_harmony;
 mod color_styles;

@@ -15,7 +15,9 @@ pub fn reflected(light: &CartoonLight, s: &Surface, lamps: &[Arriving], e: &Even
     let color = |lamp: &Arriving| lamp.color * lamp.diffuse;
     let bright = |lamp: &Arriving| brightness(color(lamp).to_array());
     let most = lamps.iter().map(bright).fold(0.0, f64::max);
-    let key = lamps.iter().position(|lamp| bright(lamp) == most && most > 0.0);
+    let key = lamps
+        .iter()
+        .position(|lamp| bright(lamp) == most && most > 0.0);
     let others: DVec3 = (lamps.iter().enumerate())
         .filter(|(k, _)| Some(*k) != key)
         .map(|(_, lamp)| color(lamp))

@@ -51,9 +51,7 @@ pub fn distances(
         let frame = frame_of(sign, camera, s.tangent, normal, lamp.to_light);
         let (frame, normal) = (frame.map(|v| v.to_array()), normal.to_array());
         match sign.shape {
-            GlintShape::Faithful => {
-                glint::faithful_distance(sign, frame, radius, normal, half)
-            }
+            GlintShape::Faithful => glint::faithful_distance(sign, frame, radius, normal, half),
             _ => glint::sign_distance(sign, radius, glint::place_of(frame, normal, half)),
         }
     };

@@ -36,15 +36,8 @@ pub fn hard_shadow(here: f64, change: f64) -> f64 {
     }
 }
 
-/// Light of a lamp at a surface, without shadows. `nudge` is added to the place in the penumbra, from
-/// 0 to 1.
-pub fn clustered_light(
-    light: &CartoonLight,
-    s: &Surface,
-    lamp: &Lamp,
-    exposure: f64,
-    nudge: f64,
-) -> Arriving {
+/// Light of a lamp at a surface, without shadows.
+pub fn clustered_light(light: &CartoonLight, s: &Surface, lamp: &Lamp, exposure: f64) -> Arriving {
     let offset = lamp.at - s.position;
     let distance = offset.length();
     let per_range = match lamp.range > 0.0 {
@@ -64,7 +57,7 @@ pub fn clustered_light(
     let through = lamp.cone.map_or(1.0, |cone| {
         let width = cone.inner - cone.outer;
         let inside = ((-cone.axis).dot(to_light) - cone.outer) / width;
-        edge_at(0.5, inside + nudge, pixel / distance / width)
+        edge_at(0.5, inside, pixel / distance / width)
     });
     Arriving {
         color: through * falloff(light) * lamp.color,

@@ -13,11 +13,10 @@ pub fn shadows(light: &CartoonLight) -> [f64; 2] {
     })
 }
 
-/// Fraction of a light that the stronger of its two shadows leaves. `nudge` is added to the cosine
-/// between normal and light.
-pub fn unshadowed(light: &CartoonLight, s: &Surface, lamp: &Arriving, nudge: f64) -> f64 {
+/// Fraction of a light that the stronger of its two shadows leaves.
+pub fn unshadowed(light: &CartoonLight, s: &Surface, lamp: &Arriving) -> f64 {
     let [backface, projected] = shadows(light);
-    let cosine = biased_cosine(s, lamp.to_light) + nudge;
+    let cosine = biased_cosine(s, lamp.to_light);
     let width = cosine_over_pixel(&s.foot, lamp.to_light);
     let faces = edge_at(f64::from(light.terminator), cosine, width);
     let left = [
@@ -27,17 +26,10 @@ pub fn unshadowed(light: &CartoonLight, s: &Surface, lamp: &Arriving, nudge: f64
     left[0].min(left[1])
 }
 
-/// Highlight of a light, as a multiple of it. `left` is what shadows leave, `nudge` is added to
-/// the cosine between normal and half vector.
-pub fn highlight_of(
-    light: &CartoonLight,
-    s: &Surface,
-    lamp: &Arriving,
-    left: f64,
-    nudge: f64,
-) -> f64 {
+/// Highlight of a light, as a multiple of it. `left` is what shadows leave.
+pub fn highlight_of(light: &CartoonLight, s: &Surface, lamp: &Arriving, left: f64) -> f64 {
     let half = half_way(lamp.to_highlight, s.to_eye);
-    let cosine = (s.normal.dot(half) + nudge).clamp(0.0, 1.0);
+    let cosine = s.normal.dot(half).clamp(0.0, 1.0);
     let width = cosine_over_pixel(&s.foot, half);
     lamp.shine * left * highlight(light, s.roughness, cosine, width)
 }

@@ -22,7 +22,11 @@ fn tone(light: &CartoonLight, s: &Surface, lamps: &[Arriving]) -> DVec3 {
     let bright = |lamp: &Arriving| brightness(full(lamp).to_array()).max(0.0);
     let all = lamps.iter().map(bright).sum::<f64>().max(1e-30);
     let mean = |of: &dyn Fn(&Arriving) -> f64| -> f64 {
-        lamps.iter().map(|lamp| bright(lamp) * of(lamp)).sum::<f64>() / all
+        lamps
+            .iter()
+            .map(|lamp| bright(lamp) * of(lamp))
+            .sum::<f64>()
+            / all
     };
     let width = mean(&|lamp| angle_of(light, s, lamp).1);
     let detail = match ramp(light).detail {
@@ -61,18 +65,28 @@ fn full(lamp: &Arriving) -> DVec3 {
     lamp.smooth_color * lamp.diffuse
 }
 
-/// The tone of the share, in the colour of all light. Its brightness is that of the light in rings to
-/// the power of `keep_intensity`.
+/// The tone of the share, in the colour of all light.
 pub fn reflected(light: &CartoonLight, s: &Surface, lamps: &[Arriving], e: &Evenly) -> DVec3 {
-    let direct = e.exposure * lamps.iter().map(full).sum::<DVec3>() / PI;
-    let even = e.exposure * e.around;
+    let [direct, even] = light_of(lamps, e);
+    let tone = tone(light, s, lamps);
+    strength(light, lamps, e) * (toned(light, e.base, tone, direct, even) + e.highlights())
+}
+
+/// Exposed light of all lights, and from all around.
+fn light_of(lamps: &[Arriving], e: &Evenly) -> [DVec3; 2] {
+    let direct = lamps.iter().map(full).sum::<DVec3>() / PI;
+    [direct, e.around].map(|light| e.exposure * light)
+}
+
+/// What the light is multiplied by: its brightness becomes that of the light in rings to the power of
+/// `keep_intensity`.
+pub fn strength(light: &CartoonLight, lamps: &[Arriving], e: &Evenly) -> f64 {
+    let [direct, even] = light_of(lamps, e);
     let bright = |light: DVec3| brightness(light.to_array());
     let all = (bright(direct) + bright(even)).max(1e-7);
     let rings: f64 = (lamps.iter())
         .map(|lamp| bright(lamp.color * lamp.diffuse).max(0.0))
         .sum();
     let ringed = (e.exposure * rings / PI + bright(even)).max(1e-7);
-    let strength = ringed.powf(f64::from(ramp(light).keep_intensity)) / all;
-    let tone = tone(light, s, lamps);
-    strength * (toned(light, e.base, tone, direct, even) + e.highlights())
+    ringed.powf(f64::from(ramp(light).keep_intensity)) / all
 }

@@ -18,7 +18,9 @@ pub struct Lit {
 /// The brightest light: the first of several.
 pub fn key(lamps: &[Lit]) -> Option<usize> {
     let most = (lamps.iter().map(bright)).fold(0.0, f64::max);
-    lamps.iter().position(|lit| bright(lit) == most && most > 0.0)
+    lamps
+        .iter()
+        .position(|lit| bright(lit) == most && most > 0.0)
 }
 
 fn bright(lit: &Lit) -> f64 {
@@ -27,15 +29,14 @@ fn bright(lit: &Lit) -> f64 {
 
 /// Light of all highlights, times pi. `sign` is the strength of the sign of a light, if there is one:
 /// the brightest light draws it if it is at least a tenth brighter than all others, a plain highlight
-/// if it is not, and a mixture between. `nudge` is added to the cosines of highlights.
+/// if it is not, and a mixture between.
 pub fn shine(
     light: &CartoonLight,
     s: &Surface,
     lamps: &[Lit],
     sign: Option<&dyn Fn(&Arriving) -> f64>,
-    nudge: f64,
 ) -> DVec3 {
-    let plain = |lit: &Lit| highlight_of(light, s, &lit.lamp, lit.left, nudge);
+    let plain = |lit: &Lit| highlight_of(light, s, &lit.lamp, lit.left);
     let key = key(lamps);
     let of = |(k, lit): (usize, &Lit)| {
         let highlight = match sign {

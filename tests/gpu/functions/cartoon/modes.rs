@@ -1,0 +1,199 @@
+//! What the modes of ramps make of several lights.
+
+use bevy::math::DVec3;
+use bevy_comics::{DetailAxis, RampBlend};
+use bevy_comics_testkit::{
+    device::gpu,
+    reference::{
+        cartoon::{
+            brightest, per_light, reflect, share,
+            surface::{Arriving, Surface},
+            two_shades::{self, Evenly},
+        },
+        surroundings::brightness,
+    },
+    wgsl::Definition,
+};
+
+use super::{READ, Row, assert_color, evenly, lamps, light, rows, surface};
+
+const ROWS: usize = 4096;
+
+/// How the second axis of ramps is found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Axis {
+    None,
+    Surface,
+    Highlight,
+}
+
+/// Both blends, with and without a second ramp.
+const VARIANTS: [(RampBlend, Axis); 5] = [
+    (RampBlend::Multiply, Axis::None),
+    (RampBlend::Absolute, Axis::None),
+    (RampBlend::Multiply, Axis::Surface),
+    (RampBlend::Absolute, Axis::Highlight),
+    (RampBlend::Multiply, Axis::Highlight),
+];
+
+fn definitions(blend: RampBlend, axis: Axis) -> Vec<Definition<'static>> {
+    let mut all = vec![("RAMP_STOPS", Some(3))];
+    if blend == RampBlend::Absolute {
+        all.push(("RAMP_ABSOLUTE", None));
+    }
+    if axis != Axis::None {
+        all.push(("RAMP_DETAIL", None));
+    }
+    if axis == Axis::Highlight {
+        all.push(("DETAIL_HIGHLIGHT", None));
+    }
+    all
+}
+
+fn axis_of(row: &Row, axis: Axis) -> Option<DetailAxis> {
+    match axis {
+        Axis::None => None,
+        Axis::Surface => Some(DetailAxis::Constant(1.0)),
+        Axis::Highlight => Some(DetailAxis::Highlight {
+            power: row[super::POWER],
+        }),
+    }
+}
+
+/// The largest channel that all light could have without shadows and tones.
+fn most(lamps: &[Arriving], e: &Evenly, color: impl Fn(&Arriving) -> DVec3) -> f64 {
+    let direct: DVec3 = lamps.iter().map(|lamp| color(lamp) * lamp.diffuse).sum();
+    e.exposure * ((direct + e.shine) / std::f64::consts::PI + e.around).max_element()
+}
+
+/// A quarter of a display code of all light. An edge is at least 0.1 wide and rises by 15 per unit; the
+/// rounding of a cosine or of a share is below 1e-6, that of a detail by highlights, a power of up to
+/// 20, below 3e-5. Two edges at once: 15 x 3e-5 x 2 = 9e-4.
+const TONE: f64 = 1e-3;
+
+fn check(
+    module: &str,
+    twin: impl Fn(&Row, &bevy_comics::CartoonLight, &Surface, &[Arriving], &Evenly) -> (DVec3, f64),
+    is_decided: impl Fn(&Row, &bevy_comics::CartoonLight, &Surface, &[Arriving]) -> bool,
+) {
+    let import = format!("#import bevy_comics::cartoon::{module}::{{Sum, add, reflected}}\n{READ}");
+    let body = "read_settings();
+         let s = surface();
+         var sum: Sum;
+         for (var k = 0u; k < u(138u); k++) { add(&sum, s, lamp(k), 1.0); }
+         return vec4(reflected(sum, v(99u), v(102u), v(105u)), 0.0);";
+    for (k, (blend, axis)) in VARIANTS.into_iter().enumerate() {
+        let rows = rows(ROWS, 17 + k as u64);
+        let results = gpu().evaluate_alone(&definitions(blend, axis), &import, body, &rows);
+        let mut undecided = 0;
+        for (row, found) in rows.iter().zip(results) {
+            assert!(found.iter().all(|x| x.is_finite()), "{row:?}: {found:?}");
+            let (s, lamps, e) = (surface(row), lamps(row), evenly(row));
+            let light = light(row, blend, axis_of(row, axis));
+            if !is_decided(row, &light, &s, &lamps) {
+                undecided += 1;
+                continue;
+            }
+            let (color, scale) = twin(row, &light, &s, &lamps, &e);
+            assert_color(row, found, color, TONE * scale);
+        }
+        assert!(undecided < ROWS / 100, "{blend:?}, {axis:?}: {undecided}");
+    }
+}
+
+#[test]
+fn ramps_for_each_light_are_their_twin() {
+    check(
+        "per_light",
+        |_, light, s, lamps, e| {
+            let color = per_light::reflected(light, s, lamps, e);
+            (color, most(lamps, e, |lamp| lamp.color))
+        },
+        |_, _, _, _| true,
+    );
+}
+
+/// Which light is the brightest is not decided where two are alike within rounding, unless they are
+/// the same.
+#[test]
+fn ramps_of_the_brightest_light_are_their_twin() {
+    check(
+        "brightest",
+        |_, light, s, lamps, e| {
+            let color = brightest::reflected(light, s, lamps, e);
+            (color, most(lamps, e, |lamp| lamp.color))
+        },
+        |_, _, _, lamps| {
+            let mut bright: Vec<f64> = lamps
+                .iter()
+                .map(|lamp| brightness((lamp.color * lamp.diffuse).to_array()))
+                .collect();
+            bright.sort_by(|a, b| b.total_cmp(a));
+            bright.len() < 2 || bright[0] == bright[1] || bright[1] < (1.0 - 1e-6) * bright[0]
+        },
+    );
+}
+
+/// Which borders of shadows count is not decided where the second and the third are alike.
+#[test]
+fn ramps_of_the_share_are_their_twin() {
+    check(
+        "share",
+        |_, light, s, lamps, e| {
+            let color = share::reflected(light, s, lamps, e);
+            let scale = most(lamps, e, |lamp| lamp.smooth_color);
+            // The power of the strength: 24 times the rounding of a logarithm, below 1e-5.
+            (color, share::strength(light, lamps, e) * scale)
+        },
+        |_, light, s, lamps| {
+            let mut parts: Vec<f64> = (lamps.iter())
+                .filter(|lamp| lamp.lit > 0.0 && lamp.lit < 1.0)
+                .map(|lamp| {
+                    let cosine = bevy_comics_testkit::reference::cartoon::ramp_light::angle_of(
+                        light, s, lamp,
+                    );
+                    let bright = brightness((lamp.smooth_color * lamp.diffuse).to_array());
+                    bright * cosine.0.max(0.0)
+                })
+                .collect();
+            parts.sort_by(|a, b| b.total_cmp(a));
+            parts.len() < 3 || parts[1] == parts[2] || parts[2] < (1.0 - 1e-5) * parts[1]
+        },
+    );
+}
+
+/// The light without a ramp, with the shadows of every light.
+#[test]
+fn light_in_two_shades_is_its_twin() {
+    let import = format!(
+        "#import bevy_comics::cartoon::two_shades::{{Sum, add, reflected}}
+         #import bevy_comics::cartoon::reflect::unshadowed\n{READ}"
+    );
+    let body = "read_settings();
+         let s = surface();
+         var sum: Sum;
+         for (var k = 0u; k < u(138u); k++) {
+             let l = lamp(k);
+             add(&sum, s, l, unshadowed(s, l));
+         }
+         return vec4(reflected(sum, v(99u), v(102u), v(105u)), 0.0);";
+    let rows = rows(ROWS, 5);
+    let results = gpu().evaluate_alone(&[("RAMP_STOPS", Some(3))], &import, body, &rows);
+    for (row, found) in rows.iter().zip(results) {
+        assert!(found.iter().all(|x| x.is_finite()), "{row:?}: {found:?}");
+        let (s, lamps, e) = (surface(row), lamps(row), evenly(row));
+        let light = light(row, RampBlend::Multiply, None);
+        let left = |lamp: Arriving| (lamp, reflect::unshadowed(&light, &s, &lamp));
+        let lit: Vec<_> = lamps.iter().copied().map(left).collect();
+        // Each light is as uncertain as its edge.
+        let unsure: DVec3 = (lamps.iter())
+            .map(|lamp| {
+                super::reflect::doubt_of_an_edge(&s, lamp.to_light) * lamp.color * lamp.diffuse
+            })
+            .sum();
+        let slack = e.exposure * unsure.max_element() / std::f64::consts::PI;
+        let scale = most(&lamps, &e, |lamp| lamp.color);
+        let twin = two_shades::reflected(&lit, &e);
+        assert_color(row, found, twin, slack + 2e-6 * scale);
+    }
+}
