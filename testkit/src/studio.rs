@@ -85,10 +85,12 @@ impl Studio {
     }
 }
 
-/// Gives a camera a style. Tone bands and two tones switch off the engine's dither, which would
-/// speckle flat areas whose tone lies at a step between two bands.
+/// Gives a camera a style. Tone bands, tone ramps and two tones switch off the engine's dither, which
+/// would speckle flat areas whose tone lies at a step between two bands.
 pub fn wear(camera: &mut EntityCommands, style: &ComicStyle) {
-    let divides = style.get::<ToneBands>().is_some() || style.get::<TwoTone>().is_some();
+    let divides = style.get::<ToneBands>().is_some()
+        || style.get::<ToneRamp>().is_some()
+        || style.get::<TwoTone>().is_some();
     camera.insert(if divides {
         DebandDither::Disabled
     } else {

@@ -1,10 +1,17 @@
 //! Tones of the picture by depth.
 
-use bevy::prelude::*;
-use bevy_comics::{ComicStyle, DepthMap, DepthMapping, ToneRamp};
-use bevy_comics_testkit::reference::tone_ramp;
+use bevy::{core_pipeline::tonemapping::DebandDither, prelude::*, render::view::Msaa};
+use bevy_comics::{ComicStyle, DepthMap, DepthMapping, Desaturation, ToneBands, ToneRamp};
+use bevy_comics_testkit::{
+    reference::tone_ramp,
+    studio::{wear, with_map},
+};
 
-use crate::{ramp::room, small::linear};
+use crate::{
+    pictures::assert_pass_is_its_twin,
+    ramp::room,
+    small::{Small, linear},
+};
 
 /// Unlit walls at several distances have the tones that the map says.
 #[test]
@@ -48,4 +55,99 @@ fn tones_change_with_the_distance() {
     }
     assert!(all.is_sorted(), "{all:?}");
     assert_eq!(small.errors(), 0);
+}
+
+/// Whole pictures, pixel by pixel: by themselves, with the depth map turned round, and with effects
+/// that follow.
+#[test]
+fn pictures_in_tones_are_their_twin() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let hard = ToneRamp {
+        far_softness: 0.0,
+        keep_color: 0.4,
+        focus: 0.3,
+        reach: 0.5,
+        ..ToneRamp::default()
+    };
+    let partial = ToneRamp {
+        softness: 0.3,
+        amount: 0.6,
+        ..ToneRamp::default()
+    };
+    let flipped = DepthMap {
+        flip: true,
+        ..DepthMap::default()
+    };
+    let style = |ramp: ToneRamp| ComicStyle::new().with(ramp);
+    let default = style(ToneRamp::default());
+    let cases = [
+        ("tones", default.clone()),
+        ("hard tones", style(hard)),
+        ("some of the tones", style(partial)),
+        ("tones, turned round", with_map(default.clone(), flipped)),
+        (
+            "tones, then bands and greys",
+            default
+                .with(ToneBands::default())
+                .with(Desaturation::default()),
+        ),
+    ];
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        small.restart(msaa);
+        for (name, style) in &cases {
+            assert_pass_is_its_twin(&mut small, style, None, &format!("{name}, {msaa:?}"));
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// The spread of a flat wall whose lightness is where a tone begins, in codes.
+fn spread_at_an_edge(ramp: ToneRamp, dither: DebandDither) -> u8 {
+    let mut small = room(UVec2::splat(64), 0.0);
+    let style = ComicStyle::new().with(ramp);
+    let camera = small.camera;
+    wear(&mut small.world().commands().entity(camera), &style);
+    small.world().flush();
+    let worn = small.headless.app.world().get::<DebandDither>(camera);
+    assert_eq!(worn, Some(&DebandDither::Disabled));
+    small.insert((
+        dither,
+        bevy::core_pipeline::tonemapping::Tonemapping::Reinhard,
+    ));
+    // After this tonemapping, the square of the place.
+    let at = ramp.middle_at * ramp.middle_at;
+    let gray = at / (1.0 - at);
+    let wall = Plane3d::new(Vec3::Z, Vec2::splat(9.0)).mesh().build();
+    let material = StandardMaterial {
+        base_color: Color::linear_rgb(gray, gray, gray),
+        unlit: true,
+        ..default()
+    };
+    small.put(wall, material, Transform::IDENTITY);
+    small.headless.step(6);
+    let picture = small.picture();
+    assert_eq!(small.errors(), 0);
+    let reds = || picture.pixels().map(|p| p.0[0]);
+    reds().max().expect("pixels") - reds().min().expect("pixels")
+}
+
+/// The dither of a flat area speckles at a hard edge, which is why cameras switch it off; without it,
+/// or at a soft edge, the area is flat.
+#[test]
+fn flat_areas_at_an_edge_have_no_speckles() {
+    let hard = ToneRamp {
+        keep_color: 0.0,
+        far_softness: 0.0,
+        far_dark: ToneRamp::default().dark,
+        far_middle: ToneRamp::default().middle,
+        ..ToneRamp::default()
+    };
+    let soft = ToneRamp {
+        softness: 1.0,
+        far_softness: 1.0,
+        ..hard
+    };
+    assert!(spread_at_an_edge(hard, DebandDither::Enabled) > 8);
+    assert_eq!(spread_at_an_edge(hard, DebandDither::Disabled), 0);
+    assert!(spread_at_an_edge(soft, DebandDither::Enabled) <= 2);
 }

@@ -20,6 +20,10 @@ use crate::{
 ///
 /// Between near and far, edges move and soften, and colours are mixed in `OKLab`. Far tones with
 /// soft edges and pale colours are an aerial perspective; equal far tones are an abstraction.
+///
+/// Bevy's cameras dither by default. On a flat area whose lightness is within 4/255 of a place where a
+/// tone begins, a hard edge turns a code of dither into up to a fifth of the difference of both tones,
+/// which shows as dots: add `DebandDither::Disabled` to the camera, or use soft edges.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

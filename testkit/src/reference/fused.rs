@@ -8,13 +8,13 @@ use super::{
     draw::Ink,
     halftone, mix, near_middle_far, paper, print_offset, read,
     sheet::Sheet,
-    sketch, tone_bands,
+    sketch, tone_bands, tone_ramp,
     view::{View, map_slope, pixel_depth},
     vignette,
 };
 use bevy_comics::{
     BlackFlats, ColorHarmony, Colorization, ComicStyle, Contours, Desaturation, Halftone, Outlines,
-    Paper, Planes, PrintOffset, Sketch, ToneBands, Vignette,
+    Paper, Planes, PrintOffset, Sketch, ToneBands, ToneRamp, Vignette,
 };
 
 /// What the pass reads besides the view.
@@ -67,13 +67,8 @@ fn colored(
 ) -> Colored {
     let alpha = input.opacity(x, y);
     let mut linear = input.light(x, y);
-    if let Some(s) = style.get::<ToneBands>() {
-        let nudged = linear.map(|c| c * (1.0 + nudge));
-        let change = (input.change(x, y) + nudge).max(0.0);
-        let banded = tone_bands::banded_color(s, nudged, change, 1.0);
-        linear = std::array::from_fn(|i| mix(linear[i], banded[i], alpha));
-    }
     let reads_map = (style.get::<Halftone>()).is_some_and(|s| s.near != s.far)
+        || style.get::<ToneRamp>().is_some()
         || style.get::<Desaturation>().is_some()
         || style.get::<Colorization>().is_some()
         || style.get::<ColorHarmony>().is_some()
@@ -89,6 +84,18 @@ fn colored(
         depth.reverse();
     }
     let [d, l] = depth;
+    if let Some(s) = style.get::<ToneRamp>() {
+        let seen = linear.map(|c| (c / alpha.max(1e-3)).max(0.0) * (1.0 + nudge));
+        let change = (input.change(x, y) + nudge).max(0.0);
+        let tones = tone_ramp::toned(s, seen, change, tone_ramp::tone_detail(s, d));
+        linear = std::array::from_fn(|i| mix(linear[i], tones[i] * alpha, alpha));
+    }
+    if let Some(s) = style.get::<ToneBands>() {
+        let nudged = linear.map(|c| c * (1.0 + nudge));
+        let change = (input.change(x, y) + nudge).max(0.0);
+        let banded = tone_bands::banded_color(s, nudged, change, 1.0);
+        linear = std::array::from_fn(|i| mix(linear[i], banded[i], alpha));
+    }
     let mut saturation = 1.0;
     if let Some(s) = style.get::<Desaturation>() {
         saturation = desaturation::saturation_left(s, l);
