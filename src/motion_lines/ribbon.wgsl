@@ -7,8 +7,8 @@
 fn direction_on_screen(at: vec4<f32>, beside: vec4<f32>, size: vec2<f32>) -> vec2<f32> {
     let step = (beside.xy / beside.w - at.xy / at.w) * size;
     let long = length(step);
-    // Seen from the end, a path has no direction.
-    return select(vec2(1.0, 0.0), step / long, long > 1e-6);
+    // Seen from the end, or in the plane of the eye, a path has no direction.
+    return select(vec2(1.0, 0.0), step / long, long > 1e-6 && long < 1e30);
 }
 
 // A place in clip space moved by `across` pixels to the left of a direction on the screen.

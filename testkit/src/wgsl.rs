@@ -60,10 +60,12 @@ pub fn module_alone(
 ) -> Result<wgpu::naga::Module, String> {
     static MODULES: OnceLock<Modules> = OnceLock::new();
     let modules = MODULES.get_or_init(|| {
-        let alone = |(name, (text, imports)): (&String, &(String, _))| {
-            (name.clone(), (without_bindings(text), Vec::clone(imports)))
-        };
-        modules().iter().map(alone).collect()
+        let modules = modules().iter();
+        modules
+            .map(|(name, (text, imports))| {
+                (name.clone(), (without_bindings(text), imports.clone()))
+            })
+            .collect()
     });
     thread_local! {
         static COMPOSER: RefCell<Composer> = RefCell::default();
