@@ -558,3 +558,79 @@ fn contact_shadows_are_drawn_and_stand_still() {
     assert_eq!(with, small.picture());
     assert_eq!(small.errors(), 0);
 }
+
+/// Borders of contact shadows are straight, and where the length of the shadow ends: the front border
+/// of that of a box, which is a line on the ground.
+#[test]
+fn borders_of_contact_shadows_are_straight() {
+    let size = UVec2::new(480, 320);
+    let mut small = dark_of(size);
+    let color = plain(Color::WHITE);
+    let to_light = Vec3::new(-1.0, 1.0, -0.4).normalize();
+    let ground = Plane3d::default().mesh().size(12.0, 12.0);
+    let ground = small.put(ground, color.clone(), Transform::IDENTITY);
+    let at = Transform::from_xyz(0.0, 0.5, 0.0);
+    let block = small.put(Cuboid::new(1.0, 1.0, 1.0), color, at);
+    let length = 0.6;
+    small.insert(ContactShadows {
+        thickness: 0.6,
+        length,
+        ..default()
+    });
+    small.world().spawn((
+        Object,
+        DirectionalLight {
+            illuminance: 0.5 * std::f32::consts::PI / exposure(),
+            contact_shadows_enabled: true,
+            ..default()
+        },
+        Transform::from_translation(to_light).looking_at(Vec3::ZERO, Vec3::Y),
+    ));
+    let (_, picture) = both(&mut small, &[ground, block], CartoonLight::default());
+    let camera = *small
+        .headless
+        .app
+        .world()
+        .get::<Transform>(small.camera)
+        .expect("a camera");
+    let clip = PerspectiveProjection {
+        aspect_ratio: 1.5,
+        ..default()
+    };
+    let clip =
+        bevy::camera::CameraProjection::get_clip_from_view(&clip) * camera.to_matrix().inverse();
+    let pixel = |place: Vec3| {
+        let ndc = clip.project_point3(place).truncate();
+        (0.5 + Vec2::new(0.5, -0.5) * ndc) * size.as_vec2()
+    };
+    // Rays of the shadow's length that end at the front of the box.
+    let z = 0.5 - length * to_light.z;
+    let [from, to] = [-0.1, 0.85].map(|x| pixel(Vec3::new(x, 0.0, z)));
+    let lit = linear(&picture, size.x / 2, size.y - 4)[0];
+    let errors: Vec<f64> = (from.x.ceil() as u32..to.x as u32)
+        .map(|x| {
+            let part = (x as f32 + 0.5 - from.x) / (to.x - from.x);
+            let wanted = from.y.lerp(to.y, part);
+            let first = wanted as u32 - 5;
+            let dark = |y| 1.0 - linear(&picture, x, y)[0] / lit;
+            let dark: f64 = (first..first + 12).map(dark).sum();
+            f64::from(first) + dark - f64::from(wanted)
+        })
+        .collect();
+    let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+    let spread = errors.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / errors.len() as f64;
+    println!(
+        "{} columns, {mean} pixels away, spread {}",
+        errors.len(),
+        spread.sqrt()
+    );
+    assert!(errors.len() > 40);
+    // Of four places in a pixel, a quarter: a root of 1/12 of it is 0.07. The depth of the box itself
+    // has steps.
+    assert!(
+        mean.abs() < 0.15 && spread.sqrt() < 0.15,
+        "{mean}, {}",
+        spread.sqrt()
+    );
+    assert_eq!(small.errors(), 0);
+}

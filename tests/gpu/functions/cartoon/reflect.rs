@@ -1,12 +1,12 @@
 //! Shadows and highlights of one light, and of several.
 
-use bevy::math::DVec3;
+use bevy::math::{DVec2, DVec3};
 use bevy_comics::RampBlend;
 use bevy_comics_testkit::{
     device::gpu,
     reference::{
         cartoon::{
-            reflect,
+            contact, reflect,
             shine::{self, Lit},
             surface::{self, Arriving, Surface, cosine_over_pixel, half_way},
         },
@@ -174,5 +174,23 @@ fn highlights_of_several_lights_are_their_twin() {
                 doubt.max_element() + 1e-6 * twin.max_element(),
             );
         }
+    }
+}
+
+/// Places in a pixel, and how contact shadows fade.
+#[test]
+fn contact_shadows_of_a_place_are_their_twin() {
+    let import = format!("#import bevy_comics::cartoon::contact::{{left_at, place_at}}\n{READ}");
+    let body = "return vec4(place_at(surface(), vec2(i(76u), i(77u))), left_at(i(77u)));";
+    let rows = rows(2048, 8);
+    for (row, found) in rows
+        .iter()
+        .zip(gpu().evaluate_alone(&[], &import, body, &rows))
+    {
+        let offset = DVec2::new(row[76].into(), row[77].into());
+        let place = contact::place_at(&surface(row), offset);
+        assert_color(row, found, place, 2e-6);
+        let left = contact::left_at(offset.y);
+        assert!((f64::from(found[3]) - left).abs() < 1e-6, "{row:?}");
     }
 }
