@@ -9,6 +9,7 @@ pub mod blocks;
 pub mod blue_noise;
 pub mod boil;
 pub mod borders;
+pub mod budget;
 pub mod cartoon;
 pub mod chain;
 pub mod color;
