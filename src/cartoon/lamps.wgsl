@@ -73,7 +73,7 @@ fn with_contact(shadow: f32, s: Surface, to_light: vec3<f32>, contact: u32) -> f
 #ifdef CONTACT_SHADOWS
 #ifdef DEPTH_PREPASS
     if s.receives && contact != 0u && shadow > 0.0 {
-        return shadow * contact_shadow(s, to_light);
+        return shadow * contact_shadow(s.position, to_light);
     }
 #endif
 #endif

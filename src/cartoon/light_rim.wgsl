@@ -35,9 +35,3 @@ fn is_behind(ratio: f32, slope: f32) -> f32 {
     let own = 2.5 * max(slope, 0.0);
     return smoothstep(1.01 + own, 1.03 + own, ratio);
 }
-
-// A border that was read between pixels has a transition of two pixels: the mean slope of a square
-// over a pixel, again over a pixel, is 3/4 in the middle. With this one it is 1, that of one pixel.
-fn sharper(behind: f32) -> f32 {
-    return clamp(0.5 + (behind - 0.5) / 0.75, 0.0, 1.0);
-}

@@ -24,8 +24,3 @@ pub fn facing_rim(rim: &Rim, cosine: f64, width: f64) -> f64 {
 pub fn is_behind(ratio: f64, slope: f64) -> f64 {
     smoothstep(1.01, 1.03, ratio - 2.5 * slope.max(0.0))
 }
-
-/// A border over two pixels as one over a pixel, with the same middle.
-pub fn sharper(behind: f64) -> f64 {
-    ((4.0 * behind - 0.5) / 3.0).clamp(0.0, 1.0)
-}

@@ -2,9 +2,7 @@
 //! pure functions lie beside this folder.
 
 pub mod brightest;
-pub mod contact;
 pub mod glint_light;
-pub mod indirect;
 pub mod lamps;
 pub mod light_textures;
 pub mod per_light;

@@ -6,7 +6,6 @@ use bevy_comics_testkit::{
     device::gpu,
     reference::{
         cartoon::{
-            indirect,
             lamps::{self, Cone, Lamp, RectLamp},
             light_textures,
             surface::{Surface, pixel_size},
@@ -16,7 +15,7 @@ use bevy_comics_testkit::{
     wgsl::Definition,
 };
 
-use super::{Numbers, READ, vector};
+use super::{Numbers, READ};
 
 /// A surface as in `super::READ`, then 32 numbers.
 const LAMP_ROW: usize = super::SETTINGS + 32;
@@ -369,77 +368,6 @@ fn rect_lights_are_their_twin() {
         }
     }
     assert!(lit > 80, "{lit}");
-}
-
-/// Light from all around: in two tones, as it is, and between.
-#[test]
-fn light_around_is_its_twin() {
-    let import = format!(
-        "#import bevy_comics::cartoon::indirect::{{ambient, light_around}}
-         #import bevy_pbr::clustered_forward::ClusterableObjectIndexRanges
-         #import bevy_pbr::irradiance_volume::sides
-         #import bevy_pbr::mesh_view_bindings::lights\n{READ}
-         fn read_sides() {{
-             for (var k = 0u; k < 6u; k++) {{ sides[k] = v(3u * k); }}
-             cartoon.light.environment = i(18u);
-             lights.ambient_color = vec4(v(19u), 1.0);
-             lights.ambient_light_affects_lightmapped_meshes = u(22u);
-         }}"
-    );
-    let mut rows = super::rows(2048, 74);
-    let mut n = Numbers::new(74);
-    for row in &mut rows {
-        for slot in &mut row[..22] {
-            *slot = n.part();
-        }
-        row[18] = match (n.part() * 3.0) as u32 {
-            0 => 0.0,
-            1 => 1.0,
-            _ => n.part(),
-        };
-        row[22] = n.part().round();
-    }
-    let cases: [(&[Definition], f64, bool); 5] = [
-        (&[], 0.0, false),
-        (&[("IRRADIANCE_VOLUME", None)], 1.0, false),
-        (&[("ENVIRONMENT_MAP", None)], 2.0, false),
-        (
-            &[("IRRADIANCE_VOLUME", None), ("ENVIRONMENT_MAP", None)],
-            1.0,
-            false,
-        ),
-        (&[("ENVIRONMENT_MAP", None), ("LIGHTMAP", None)], 0.0, true),
-    ];
-    for (definitions, factor, has_lightmap) in cases {
-        let of = |what: &str| {
-            let body = format!(
-                "read_sides();
-                 var ranges: ClusterableObjectIndexRanges;
-                 let t = light_around(surface(), cartoon.light, &ranges);
-                 return {what};"
-            );
-            gpu().evaluate_alone(definitions, &import, &body, &rows)
-        };
-        let (shade, more) = (
-            of("vec4(t.shade, length(t.direction))"),
-            of("vec4(t.more, 0.0)"),
-        );
-        let around = of("vec4(ambient(), 0.0)");
-        for (k, row) in rows.iter().enumerate() {
-            let sides = std::array::from_fn(|k| factor * vector(row, 3 * k));
-            let n = super::surface(row).normal;
-            let own: DVec3 = (0..3)
-                .map(|axis| n[axis] * n[axis] * sides[2 * axis + usize::from(n[axis] <= 0.0)])
-                .sum();
-            let [dark, bright] = indirect::light_around(sides, own, row[18].into());
-            // As in `two_tones_of_surroundings_are_their_twin`.
-            super::assert_color(row, shade[k], dark, 2e-4);
-            super::assert_color(row, more[k], bright, 2e-4);
-            assert!((shade[k][3] - 1.0).abs() < 1e-3);
-            let ambient = indirect::ambient(vector(row, 19), has_lightmap, row[22] > 0.5);
-            super::assert_color(row, around[k], ambient, 0.0);
-        }
-    }
 }
 
 /// Where lights read their pictures.

@@ -6,7 +6,7 @@ use bevy_comics_testkit::{
     device::gpu,
     reference::{
         cartoon::{
-            brightest, per_light, reflect, share,
+            brightest, per_light, reflect,
             surface::{Arriving, Surface},
             two_shades::{self, Evenly},
         },
@@ -130,34 +130,6 @@ fn ramps_of_the_brightest_light_are_their_twin() {
                 .collect();
             bright.sort_by(|a, b| b.total_cmp(a));
             bright.len() < 2 || bright[0] == bright[1] || bright[1] < (1.0 - 1e-6) * bright[0]
-        },
-    );
-}
-
-/// Which borders of shadows count is not decided where the second and the third are alike.
-#[test]
-fn ramps_of_the_share_are_their_twin() {
-    check(
-        "share",
-        |_, light, s, lamps, e| {
-            let color = share::reflected(light, s, lamps, e);
-            let scale = most(lamps, e, |lamp| lamp.smooth_color);
-            // The power of the strength: 24 times the rounding of a logarithm, below 1e-5.
-            (color, share::strength(light, lamps, e) * scale)
-        },
-        |_, light, s, lamps| {
-            let mut parts: Vec<f64> = (lamps.iter())
-                .filter(|lamp| lamp.lit > 0.0 && lamp.lit < 1.0)
-                .map(|lamp| {
-                    let cosine = bevy_comics_testkit::reference::cartoon::ramp_light::angle_of(
-                        light, s, lamp,
-                    );
-                    let bright = brightness((lamp.smooth_color * lamp.diffuse).to_array());
-                    bright * cosine.0.max(0.0)
-                })
-                .collect();
-            parts.sort_by(|a, b| b.total_cmp(a));
-            parts.len() < 3 || parts[1] == parts[2] || parts[2] < (1.0 - 1e-5) * parts[1]
         },
     );
 }
