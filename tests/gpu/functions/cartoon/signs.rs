@@ -72,7 +72,6 @@ fn sign(row: &Row, frame: GlintFrame) -> Glint {
         softness: 0.5 + at(8),
         points: 5,
         sharpness: 3,
-        ..Glint::default()
     }
 }
 
