@@ -166,13 +166,7 @@ const TRANSFORMATIONS: &str = "#define_import_path bevy_pbr::view_transformation
     fn depth_ndc_to_view_z(depth: f32) -> f32 { return -1.0 / depth; }
 ";
 
-/// Two planes that face the eye, on the sides of a line through the picture.
+/// A depth prepass with nothing in it: functions that read it are not run.
 const PREPASS: &str = "#define_import_path bevy_pbr::prepass_utils
-    // Across the line, its place, and the reciprocal depths on both sides.
-    var<private> line: vec3<f32>;
-    var<private> depths: vec2<f32>;
-    fn prepass_depth(at: vec4<f32>, sample_index: u32) -> f32 {
-        let pixel = floor(at.xy) + 0.5;
-        return select(depths.x, depths.y, dot(pixel, line.xy) > line.z);
-    }
+    fn prepass_depth(at: vec4<f32>, sample_index: u32) -> f32 { return 0.0; }
 ";

@@ -13,7 +13,7 @@ use super::{ONE_CODE, for_batches};
 const IMPORT: &str = "#import bevy_comics::cartoon::glint::{Glint, Frame, frame_along, \
     glint_coverage, glint_radius, faithful_distance, moved, place_of, sign_distance}";
 
-const SHAPES: [GlintShape; 7] = [
+pub(super) const SHAPES: [GlintShape; 7] = [
     GlintShape::Disc,
     GlintShape::Square,
     GlintShape::Window,

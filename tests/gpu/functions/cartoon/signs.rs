@@ -17,17 +17,8 @@ use bevy_comics_testkit::{
     },
 };
 
+use super::super::glint::SHAPES;
 use super::{Numbers, READ, Row, assert_color, lamps, light, rows, surface, vector};
-
-const SHAPES: [GlintShape; 7] = [
-    GlintShape::Disc,
-    GlintShape::Square,
-    GlintShape::Window,
-    GlintShape::Crescent,
-    GlintShape::Star,
-    GlintShape::Streak,
-    GlintShape::Faithful,
-];
 
 const FRAMES: [(GlintFrame, &[(&str, Option<u32>)]); 4] = [
     (GlintFrame::View, &[]),
@@ -187,7 +178,7 @@ fn signs_among_highlights_are_their_twin() {
         ("GLINT", None),
         ("RAMP_STOPS", Some(3)),
     ];
-    let mut rows = sign_rows(4096, 40);
+    let mut rows = sign_rows(8192, 40);
     for row in &mut rows {
         // Only the first light has a highlight here; the brightness of the second one counts.
         (row[9 + 16], row[10 + 16], row[11 + 16]) = (-row[64], -row[65], -row[66]);
@@ -227,7 +218,7 @@ fn signs_among_highlights_are_their_twin() {
         assert_color(row, found, twin, slack);
         telling += usize::from(twin.max_element() > 0.05 && slack < 0.02);
     }
-    assert!(telling > 250, "{telling}");
+    assert!(telling > 400, "{telling}");
 }
 
 /// Along a small movement, the direction to a place changes as it should: the rest is of the second
@@ -262,7 +253,7 @@ fn rims_of_surfaces_are_their_twin() {
          shine.source.to_light = v(6u) * i(14u);
          return vec4(with_rim(v(99u), surface(), shine), 0.0);";
     let definitions = [("KEY_LIGHT", None), ("RIM", None)];
-    let rows = rows(4096, 60);
+    let rows = rows(8192, 60);
     let mut telling = 0;
     for (row, found) in rows
         .iter()
@@ -286,5 +277,5 @@ fn rims_of_surfaces_are_their_twin() {
         assert_color(row, found, twin, 1.5 * 1e-6 / width.max(2e-5) + 1e-6);
         telling += usize::from((twin - base).length() > 0.1);
     }
-    assert!(telling > 250, "{telling}");
+    assert!(telling > 500, "{telling}");
 }
