@@ -1,7 +1,7 @@
 //! How exactly the page is printed and painted, how many texels its effects fetch, and how exactly
 //! a harmony of colours keeps the lightness.
 
-use bevy_comics::{ColorHarmony, FocusStyle, Halftone, HarmonyMode, PaintForm};
+use bevy_comics::{ColorHarmony, FocusStyle, Halftone, HarmonyMode, HatchingMarks, PaintForm};
 use bevy_comics_testkit::{
     page_work,
     painting::{RADII, SLOPES, bled, edge_moved, kuwahara_error},
@@ -139,10 +139,24 @@ fn errors(run: &Run) -> Table {
     push("paint", position, edges(PaintForm::Box), 0.1);
     let along = "paint; strokes along edges";
     push(along, position, edges(PaintForm::Anisotropic), 0.1);
-    let tones = "mean tone; 10 tones; 9 angles; 8 zooms";
-    push("hatching", tones, mean_tone_error(0.0, samples), 0.01);
+    let tones = "mean tone; 20 tones; 9 angles; 32 zooms";
     let random = "the same with breaks";
-    push("hatching", random, mean_tone_error(0.6, samples), 0.03);
+    let mean = |marks, random| mean_tone_error(marks, random, samples / 2);
+    push("hatching", tones, mean(HatchingMarks::Strokes, 0.0), 0.01);
+    push("hatching", random, mean(HatchingMarks::Strokes, 0.6), 0.03);
+    let random = "the same with dots that stray and vary";
+    push(
+        "hatching; dots",
+        tones,
+        mean(HatchingMarks::Dots, 0.0),
+        0.01,
+    );
+    push(
+        "hatching; dots",
+        random,
+        mean(HatchingMarks::Dots, 0.6),
+        0.03,
+    );
     let steps = "change of a tone by a step of the dial of 1/200; bands";
     push("abstraction", steps, largest_tone_step(), 0.02);
     push("focus; blur", colors, bled(FocusStyle::Blur), 0.0);

@@ -8,10 +8,10 @@ use bevy::{
 };
 use bevy_comics::{
     Abstraction, ColorHarmony, ComicStyle, Creases, DepthWrite, Desaturation, Focus, FocusAt,
-    FocusStyle, Halftone, HalftoneMode, Hatching, LineColor, LineResponse, LineWeight, LineWidths,
-    MeshSections, NoStyle, OutlineStyle, Outlines, Paint, PaintForm, Paper, PlaneBorders,
-    PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape, SelectionOutline, Silhouettes,
-    SpeedLines, ToneRamp, TwoTone, XRayOutline,
+    FocusStyle, Halftone, HalftoneMode, Hatching, HatchingMarks, LineColor, LineResponse,
+    LineWeight, LineWidths, MeshSections, NoStyle, OutlineStyle, Outlines, Paint, PaintForm, Paper,
+    PlaneBorders, PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape, SelectionOutline,
+    Silhouettes, SpeedLines, ToneRamp, TwoTone, XRayOutline,
 };
 
 use bevy_comics_testkit::scenes::BuiltIn;
@@ -136,6 +136,13 @@ fn page() -> Vec<(String, Wear)> {
         ),
         ("print offset", none.clone().with(PrintOffset::default())),
         ("hatching", none.clone().with(Hatching::default())),
+        (
+            "hatching; dots",
+            none.clone().with(Hatching {
+                marks: HatchingMarks::Dots,
+                ..Hatching::default()
+            }),
+        ),
         (
             "hatching; calm",
             none.clone().with(Hatching {

@@ -9,7 +9,7 @@ use bevy::{
 use super::CartoonLight;
 use crate::{
     effect::{Effect, Strokes},
-    effects::{Hatching, HatchingAnchor},
+    effects::{Hatching, HatchingAnchor, HatchingMarks},
     settings::bounded,
 };
 
@@ -56,8 +56,8 @@ pub(super) fn is_prepass(definitions: &[ShaderDefVal]) -> bool {
 /// What strokes are drawn from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum HatchKey {
-    Page,
-    Rest,
+    Page(HatchingMarks),
+    Rest(HatchingMarks),
     ArtMap,
 }
 
@@ -69,8 +69,8 @@ impl HatchKey {
             return Some(Self::ArtMap);
         }
         Some(match hatching.anchor {
-            HatchingAnchor::Page => Self::Page,
-            HatchingAnchor::Object => Self::Rest,
+            HatchingAnchor::Page => Self::Page(hatching.marks),
+            HatchingAnchor::Object => Self::Rest(hatching.marks),
         })
     }
 
@@ -78,8 +78,8 @@ impl HatchKey {
     /// `others`: the definitions of the mesh and the view.
     pub(super) fn needs_rest(self, others: &[ShaderDefVal]) -> bool {
         match self {
-            Self::Page => false,
-            Self::Rest => true,
+            Self::Page(_) => false,
+            Self::Rest(_) => true,
             Self::ArtMap => !others.contains(&"VERTEX_UVS_A".into()),
         }
     }
@@ -90,8 +90,12 @@ impl HatchKey {
         if self.needs_rest(others) {
             all.push("HATCH_REST".into());
         }
-        if self == Self::ArtMap {
-            all.push("HATCH_ART_MAP".into());
+        match self {
+            Self::ArtMap => all.push("HATCH_ART_MAP".into()),
+            Self::Page(HatchingMarks::Dots) | Self::Rest(HatchingMarks::Dots) => {
+                all.push("HATCH_DOTS".into());
+            }
+            _ => {}
         }
         all
     }

@@ -5,6 +5,9 @@
 #import bevy_comics::cartoon::hatch::{Hatch, hatch_drawing, hatch_tone}
 #import bevy_comics::effect::strokes::{Surface, hatched, page_at, with_strokes}
 #import bevy_pbr::mesh_view_bindings::globals
+#ifdef HATCH_DOTS
+#import bevy_comics::effect::stipple::stippled
+#endif
 #ifdef HATCH_ART_MAP
 #import bevy_comics::cartoon::art_map::{art_ink, plane_tone, plane_weights}
 #endif
@@ -59,9 +62,14 @@ fn hatch_cover(at: HatchPlace, tone: f32) -> f32 {
     var s = hatch.strokes;
     s.seed = hatch_drawing(hatch, globals.time);
 #ifdef HATCH_REST
-    return hatched(s, at.rest, tone);
+    let on = at.rest;
 #else
-    return hatched(s, page_at(at.pixel, s.spacing), tone);
+    let on = page_at(at.pixel, s.spacing);
+#endif
+#ifdef HATCH_DOTS
+    return stippled(s, on, tone);
+#else
+    return hatched(s, on, tone);
 #endif
 #endif
 }

@@ -113,7 +113,7 @@ pub struct CartoonLight {
     /// [`spacing`](Hatching::spacing) and [`length`](Hatching::length) are in physical pixels,
     /// [`ink`](Hatching::ink) and [`paper`](Hatching::paper) are colours before tonemapping, and
     /// [`near`](Hatching::near) is the factor of the darkness at all distances.
-    /// [`far`](Hatching::far), [`source`](Hatching::source) and [`calm`](Hatching::calm) have no
+    /// Dots stay on meshes as strokes do. [`far`](Hatching::far), [`source`](Hatching::source) and [`calm`](Hatching::calm) have no
     /// meaning here.
     pub hatching: Option<Hatching>,
     /// The strokes of `hatching`, as a tonal art map. Default: `None`, strokes by planes. It is not

@@ -11,7 +11,7 @@ const RECIPE: &str = include_str!("fused.wgsl");
 pub(crate) const FILE_KEYS: [&str; 4] = ["version", "name", "partial", "depth_map"];
 
 /// The modules of this crate that an effect may import.
-const MODULES: [&str; 21] = [
+const MODULES: [&str; 23] = [
     "bevy_comics::depth::map",
     "bevy_comics::depth::normal",
     "bevy_comics::depth::raw",
@@ -19,6 +19,7 @@ const MODULES: [&str; 21] = [
     "bevy_comics::depth::window",
     "bevy_comics::effect::blue_noise",
     "bevy_comics::effect::color",
+    "bevy_comics::effect::footprint",
     "bevy_comics::effect::means",
     "bevy_comics::effect::nested",
     "bevy_comics::effect::noise",
@@ -28,6 +29,7 @@ const MODULES: [&str; 21] = [
     "bevy_comics::effect::screen",
     "bevy_comics::effect::sheet",
     "bevy_comics::effect::similarity",
+    "bevy_comics::effect::stipple",
     "bevy_comics::effect::strokes",
     "bevy_comics::lines::edge",
     "bevy_comics::lines::read",

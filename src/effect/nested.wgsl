@@ -38,6 +38,18 @@ fn mark_of(number: i32, exponent: i32, seed: u32) -> u32 {
     return hash(bitcast<u32>(number >> u32(twos)) ^ hash(bitcast<u32>(exponent + twos) ^ hash(seed)));
 }
 
+// The same of a node of nested square lattices.
+fn mark_of_node(node: vec2<i32>, exponent: i32, seed: u32) -> u32 {
+    let both = node.x | node.y;
+    if both == 0 {
+        return hash(seed);
+    }
+    let twos = countTrailingZeros(both);
+    let odd = node >> vec2(u32(twos));
+    let of_level = hash(bitcast<u32>(exponent + twos) ^ hash(seed));
+    return hash(bitcast<u32>(odd.x) ^ hash(bitcast<u32>(odd.y) ^ of_level));
+}
+
 // Smooth noise from -1 to 1 along a line, at two levels that are mixed: it does not jump where the
 // level changes. `at`: number and place, see place_of.
 fn noise_along(at: vec2<f32>, grown: f32, period: f32, seed: u32) -> f32 {

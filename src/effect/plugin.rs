@@ -83,6 +83,7 @@ impl FusedPlugin {
     pub(crate) fn build_render(app: &mut App) {
         load_shader_library!(app, "blue_noise.wgsl");
         load_shader_library!(app, "color.wgsl");
+        load_shader_library!(app, "footprint.wgsl");
         load_shader_library!(app, "means.wgsl");
         load_shader_library!(app, "nested.wgsl");
         load_shader_library!(app, "numbered.wgsl");
@@ -92,6 +93,7 @@ impl FusedPlugin {
         load_shader_library!(app, "screen.wgsl");
         load_shader_library!(app, "sheet.wgsl");
         load_shader_library!(app, "similarity.wgsl");
+        load_shader_library!(app, "stipple.wgsl");
         load_shader_library!(app, "strokes.wgsl");
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {
             return;

@@ -36,7 +36,7 @@ effects! {
     focus: Focus, FocusAt, FocusStyle;
     print_offset: PrintOffset;
     halftone: Halftone, HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape;
-    hatching: Hatching, HatchingAnchor, HatchingGround, HatchingSource;
+    hatching: Hatching, HatchingAnchor, HatchingGround, HatchingMarks, HatchingSource;
     black_flats: BlackFlats;
     contours: Contours, ContourOperator;
     outlines: Outlines;

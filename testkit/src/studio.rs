@@ -8,9 +8,9 @@ use bevy::{
 };
 use bevy_comics::{
     CartoonLight, CartoonScene, ComicStyle, ComicsPlugin, DepthMap, Focus, FocusAt, FocusStyle,
-    Halftone, HalftoneMode, Hatching, HatchingGround, IsoLines, MeshSections, ObjectScreen,
-    Outlines, Paint, PaintForm, Paper, Preset, ScreenAnchor, ScreenShape, SpeedLineKind,
-    SpeedLines, ToneBands, ToneRamp, TwoTone, presets,
+    Halftone, HalftoneMode, Hatching, HatchingGround, HatchingMarks, IsoLines, MeshSections,
+    ObjectScreen, Outlines, Paint, PaintForm, Paper, Preset, ScreenAnchor, ScreenShape,
+    SpeedLineKind, SpeedLines, ToneBands, ToneRamp, TwoTone, presets,
 };
 
 use super::{
@@ -201,6 +201,15 @@ pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
     let preset = |name| presets::find(name).expect("listed").style();
     let mut styles: Vec<_> = names.into_iter().map(|name| (name, preset(name))).collect();
     if scene == BuiltIn::Figure {
+        let dots = Hatching {
+            marks: HatchingMarks::Dots,
+            spacing: 3.0,
+            wobble: 1.0,
+            ground: HatchingGround::Paper,
+            ..Hatching::default()
+        };
+        let style = ComicStyle::new().with(dots).with(Outlines::default());
+        styles.push(("stipple", style));
         return styles;
     }
     styles.extend(single_effects(scene));

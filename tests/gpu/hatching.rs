@@ -14,12 +14,12 @@ use bevy_comics_testkit::reference::{
 
 use crate::small::{Small, options, unlit};
 
-const SIZE: UVec2 = UVec2::new(160, 120);
+pub const SIZE: UVec2 = UVec2::new(160, 120);
 /// Walls that are turned by up to 60 degrees fill the view.
-const FOV: f32 = 0.7;
+pub const FOV: f32 = 0.7;
 
 /// Black strokes on white paper, without what is random.
-fn plain() -> Hatching {
+pub fn plain() -> Hatching {
     Hatching {
         breaks: 0.0,
         wobble: 0.0,
@@ -39,7 +39,7 @@ fn perspective() -> Projection {
 }
 
 /// A camera at the origin that looks at nothing.
-fn empty() -> Small {
+pub fn empty() -> Small {
     let mut small = Small::with(options(SIZE), Msaa::Off);
     small.clear();
     small.insert((Transform::IDENTITY, perspective(), Tonemapping::None));
@@ -47,7 +47,7 @@ fn empty() -> Small {
 }
 
 /// A wall of a light that fills the view.
-fn flat(small: &mut Small, light: f32, at: Transform) -> Entity {
+pub fn flat(small: &mut Small, light: f32, at: Transform) -> Entity {
     let material = StandardMaterial {
         double_sided: true,
         cull_mode: None,
@@ -57,19 +57,19 @@ fn flat(small: &mut Small, light: f32, at: Transform) -> Entity {
 }
 
 /// Darkness of every pixel: 0 paper, 1 ink.
-fn covers(small: &mut Small, s: Hatching) -> Vec<f64> {
+pub fn covers(small: &mut Small, s: Hatching) -> Vec<f64> {
     small.style(&ComicStyle::new().with(s));
     small.settle();
     let (_, after) = small.pass();
     after.pixels.iter().map(|p| 1.0 - f64::from(p[0])).collect()
 }
 
-fn mean(values: &[f64]) -> f64 {
+pub fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// A wall at an angle about a slanted axis, through a point before the camera.
-fn tilted(degrees: f32, distance: f32) -> Transform {
+pub fn tilted(degrees: f32, distance: f32) -> Transform {
     let axis = Vec3::new(0.6, 0.8, 0.0);
     Transform::from_xyz(0.0, 0.0, -distance)
         .with_rotation(Quat::from_axis_angle(axis, degrees.to_radians()))

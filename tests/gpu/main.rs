@@ -87,6 +87,7 @@ mod small;
 mod smoothing;
 mod smoothing_views;
 mod speed_lines;
+mod stipple;
 mod styles;
 mod surface_lines;
 mod tone_ramp;

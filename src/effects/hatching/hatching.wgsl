@@ -5,6 +5,9 @@
 #import bevy_comics::effect::color::lightness
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::effect::strokes::{Strokes, Surface, darkness, hatched, page_at, with_strokes}
+#ifdef HATCHING_DOTS
+#import bevy_comics::effect::stipple::stippled
+#endif
 #ifdef HATCHING_ON_THINGS
 #import bevy_comics::depth::map::is_background
 #import bevy_comics::depth::normal::load_normal
@@ -138,6 +141,15 @@ fn anchored(on: Surface, pixel: vec2<i32>) -> Surface {
 }
 #endif
 
+// Coverage by marks of a mean darkness.
+fn marked(s: Strokes, on: Surface, tone: f32) -> f32 {
+#ifdef HATCHING_DOTS
+    return stippled(s, on, tone);
+#else
+    return hatched(s, on, tone);
+#endif
+}
+
 fn hatching(settings: Hatching, p: Pixel) -> Pixel {
     var out = p;
     var s = settings;
@@ -161,12 +173,12 @@ fn hatching(settings: Hatching, p: Pixel) -> Pixel {
     if is_there {
         tone = darkness(s.strokes, light) * mix(s.near, s.far, p.depth.x) * p.prints.x;
 #ifdef HATCHING_ON_THINGS
-        cover = hatched(s.strokes, anchored(on, vec2<i32>(floor(p.position))), tone);
+        cover = marked(s.strokes, anchored(on, vec2<i32>(floor(p.position))), tone);
 #ifdef HATCHING_CALM
         cover = mix(tone, cover, calmed(s, p, on));
 #endif
 #else
-        cover = hatched(s.strokes, on, tone);
+        cover = marked(s.strokes, on, tone);
 #endif
     }
     // Nothing is drawn where the background shows through.

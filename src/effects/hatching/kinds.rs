@@ -18,6 +18,20 @@ pub enum HatchingAnchor {
     Page,
 }
 
+/// What a [`Hatching`](crate::Hatching) is drawn with.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum HatchingMarks {
+    /// Strokes.
+    #[default]
+    Strokes,
+    /// Dots of one size, as many as the tone asks for: stipple. They lie on surfaces as strokes do,
+    /// are anchored as strokes are, and grow one by one between the others when a thing comes nearer.
+    /// On surfaces that are seen at an angle, they are ellipses.
+    Dots,
+}
+
 /// What is between the strokes of a [`Hatching`](crate::Hatching).
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]

@@ -13,7 +13,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-pub use kinds::{HatchingAnchor, HatchingGround, HatchingSource};
+pub use kinds::{HatchingAnchor, HatchingGround, HatchingMarks, HatchingSource};
 
 use crate::{
     effect::{Effect, EffectShader, EffectStage, Needs, Strokes, Variants, ViewFacts},
@@ -35,6 +35,8 @@ use crate::{
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Hatching {
+    /// What hatching is drawn with. Default: [`HatchingMarks::Strokes`].
+    pub marks: HatchingMarks,
     /// What strokes are fixed to. Default: [`HatchingAnchor::Object`].
     pub anchor: HatchingAnchor,
     /// What hatching is dark by. Default: [`HatchingSource::Picture`].
@@ -54,32 +56,35 @@ pub struct Hatching {
     #[reflect(@FieldRange::linear(0.0, 12.0), @BlendField::Switch)]
     pub tones: u32,
     /// Distance of neighbouring strokes in logical pixels, from this to twice as much: then new
-    /// ones have grown between them. Range 2 to 24, default 4.
+    /// ones have grown between them. Dots are this far apart at `layer_darkness`; they are
+    /// three quarters of it wide by default. Range 2 to 24, default 4.
     #[reflect(@FieldRange::logarithmic(2.0, 24.0).unit("px"))]
     pub spacing: f32,
     /// Number of directions of strokes: crossing ones begin where the first has
-    /// `layer_darkness`. Range 1 to 3, default 2.
+    /// `layer_darkness`. Dots take as many layers as the tone needs, up to five, then a plain tone.
+    /// Range 1 to 3, default 2.
     #[reflect(@FieldRange::linear(1.0, 3.0), @BlendField::Switch)]
     pub layers: u32,
-    /// Darkness of a direction at which the next one begins; the last one goes on to black. Range
-    /// 0.1 to 0.9, default 0.45.
+    /// Darkness of a direction at which the next one begins; the last one goes on to black. Dots
+    /// take at least 0.3 and at most 0.5: they would touch. Range 0.1 to 0.9, default 0.45.
     #[reflect(@FieldRange::linear(0.1, 0.9))]
     pub layer_darkness: f32,
     /// Turn of all strokes in degrees: about the vertical axis of the world or the object, or on the
     /// page. Range -90 to 90, default 0.
     #[reflect(@FieldRange::linear(-90.0, 90.0).unit("°"))]
     pub angle: f32,
-    /// Length of a stroke in logical pixels, on average. Range 10 to 400, default 80.
+    /// Length of a stroke in logical pixels, on average. Not of dots. Range 10 to 400, default 80.
     #[reflect(@FieldRange::logarithmic(10.0, 400.0).unit("px"))]
     pub length: f32,
-    /// How thin strokes become at their ends: 0 (lines without ends) to 1 (gaps). Default 0.6.
+    /// How thin strokes become at their ends: 0 (lines without ends) to 1 (gaps). Not of dots.
+    /// Default 0.6.
     #[reflect(@FieldRange::FRACTION)]
     pub breaks: f32,
-    /// How far strokes stray from their lines, of what they can without crossing. Range 0 to
-    /// 1, default 0.3.
+    /// How far strokes stray from their lines, and dots from their rows, of what they can without
+    /// meeting others. Range 0 to 1, default 0.3.
     #[reflect(@FieldRange::FRACTION)]
     pub wobble: f32,
-    /// How much the width of a stroke varies. Range 0 to 1, default 0.3.
+    /// How much the width of a stroke, or the area of a dot, varies. Range 0 to 1, default 0.3.
     #[reflect(@FieldRange::FRACTION)]
     pub pressure: f32,
     /// How often `wobble` and `pressure` change, in drawings per second. Strokes stay where they
@@ -116,6 +121,7 @@ pub struct Hatching {
 impl Default for Hatching {
     fn default() -> Self {
         Self {
+            marks: HatchingMarks::Strokes,
             anchor: HatchingAnchor::Object,
             source: HatchingSource::Picture,
             shadows: 0.15,
@@ -217,6 +223,7 @@ impl Effect for Hatching {
 
     fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
         let on_things = self.anchor == HatchingAnchor::Object;
+        variants.flag("DOTS", self.marks == HatchingMarks::Dots);
         variants.flag("ON_THINGS", on_things);
         variants.flag("CALM", on_things && self.calm > 0.0);
         variants.flag("FACES", on_things && self.source == HatchingSource::Facing);
@@ -265,22 +272,27 @@ impl Hatching {
         }
     }
 
-    /// Unit normals of the families of planes, at right angles.
+    /// Unit normals of the families of planes, at right angles; of dots, normals of the planes that
+    /// they lie in.
     pub fn axes(&self) -> [Vec3; 3] {
         let turn = self.angle.to_radians();
-        match self.anchor {
-            HatchingAnchor::Page => {
-                let turn = Mat3::from_rotation_z(turn + FRAC_PI_4);
-                [turn.x_axis, turn.y_axis, turn.z_axis]
+        let axes = match (self.anchor, self.marks) {
+            (HatchingAnchor::Page, HatchingMarks::Strokes) => {
+                Mat3::from_rotation_z(turn + FRAC_PI_4)
             }
+            (HatchingAnchor::Page, HatchingMarks::Dots) => Mat3::from_rotation_z(turn),
             // No side of a box sees one of them from its end.
-            HatchingAnchor::Object => [
-                Vec3::new(2.0, 2.0, -1.0),
-                Vec3::new(-1.0, 2.0, 2.0),
-                Vec3::new(2.0, -1.0, 2.0),
-            ]
-            .map(|axis| Mat3::from_rotation_y(turn) * axis / 3.0),
-        }
+            (HatchingAnchor::Object, HatchingMarks::Strokes) => {
+                let axes = Mat3::from_cols(
+                    Vec3::new(2.0, 2.0, -1.0),
+                    Vec3::new(-1.0, 2.0, 2.0),
+                    Vec3::new(2.0, -1.0, 2.0),
+                );
+                Mat3::from_rotation_y(turn) * (axes * (1.0 / 3.0))
+            }
+            (HatchingAnchor::Object, HatchingMarks::Dots) => Mat3::from_rotation_y(turn),
+        };
+        [axes.x_axis, axes.y_axis, axes.z_axis]
     }
 }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use bevy::math::{DMat4, DQuat, DVec2, DVec3, DVec4, Vec4Swizzles};
-use bevy_comics::{Hatching, HatchingGround, linear_rgb};
+use bevy_comics::{Hatching, HatchingGround, HatchingMarks, linear_rgb};
 
 use super::{
     Rgb, color,
@@ -11,6 +11,7 @@ use super::{
     mix,
     nested::{level_of, mark_of, noise_along, stroke_factor, stroke_start},
     smoothstep,
+    stipple::Dots,
 };
 
 /// A place on a surface, in the frame that strokes are fixed to.
@@ -177,8 +178,20 @@ impl Hatch<'_> {
         1.0 - light
     }
 
-    /// Coverage by strokes of a mean darkness.
+    /// Coverage by strokes or dots of a mean darkness.
     pub fn cover(&self, on: &Surface, tone: f64) -> f64 {
+        match self.settings.marks {
+            HatchingMarks::Dots => Dots {
+                settings: self.settings,
+                spacing: self.spacing(),
+                drawing: self.drawing,
+            }
+            .cover(on, tone),
+            _ => self.strokes(on, tone),
+        }
+    }
+
+    fn strokes(&self, on: &Surface, tone: f64) -> f64 {
         let s = self.settings;
         let mut left = tone;
         let mut light = 1.0;

@@ -25,6 +25,18 @@ pub fn mark_of(number: i64, exponent: i32, seed: u32) -> u32 {
     hash(odd as u32 ^ hash(exponent as u32 ^ hash(seed)))
 }
 
+/// A random number of the node of square lattices.
+pub fn mark_of_node([mut i, mut j]: [i64; 2], mut exponent: i32, seed: u32) -> u32 {
+    if [i, j] == [0, 0] {
+        return hash(seed);
+    }
+    while i % 2 == 0 && j % 2 == 0 {
+        (i, j) = (i / 2, j / 2);
+        exponent += 1;
+    }
+    hash(i as u32 ^ hash(j as u32 ^ hash(exponent as u32 ^ hash(seed))))
+}
+
 /// Noise along a line. The WGSL has it in one dimension: a row of the lattice.
 pub fn noise_along(at: f64, grown: f64, period: f64, seed: u32) -> f64 {
     let of = |x: f64| wave([x, 0.0], seed);

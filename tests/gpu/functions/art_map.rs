@@ -3,12 +3,15 @@
 use bevy::math::{DVec2, DVec3};
 use bevy_comics_testkit::reference::{
     art_map::{ink_at, plane_tone, plane_weights},
-    stroke_level::{singular_values, stroke_level},
+    footprint::singular_values,
+    stroke_level::stroke_level,
 };
 
 use super::*;
 
-const LEVEL: &str = "#import bevy_comics::cartoon::stroke_level::{singular_values, stroke_level}";
+const LEVEL: &str = "
+    #import bevy_comics::cartoon::stroke_level::stroke_level
+    #import bevy_comics::effect::footprint::singular_values";
 const MAP: &str = "#import bevy_comics::cartoon::art_map::{ink_at, plane_tone, plane_weights}";
 
 /// Axes at any angle, turned in the picture, of which the shorter one is down to a ten-thousandth of

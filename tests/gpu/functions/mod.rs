@@ -43,6 +43,7 @@ mod settings;
 mod sheet;
 mod similarity;
 mod speed_lines;
+mod stipple;
 mod surroundings;
 mod tone_ramp;
 mod two_tone;
