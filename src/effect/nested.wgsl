@@ -40,13 +40,11 @@ fn mark_of(number: i32, exponent: i32, seed: u32) -> u32 {
 
 // The same of a node of nested square lattices.
 fn mark_of_node(node: vec2<i32>, exponent: i32, seed: u32) -> u32 {
-    let both = node.x | node.y;
-    if both == 0 {
-        return hash(seed);
-    }
-    let twos = countTrailingZeros(both);
-    let odd = node >> vec2(u32(twos));
-    let of_level = hash(bitcast<u32>(exponent + twos) ^ hash(seed));
+    // The node in the middle of all is of every level.
+    let is_middle = (node.x | node.y) == 0;
+    let twos = select(countTrailingZeros(node.x | node.y), -exponent, is_middle);
+    let odd = select(node >> vec2(u32(twos) & 31u), vec2(0), is_middle);
+    let of_level = bitcast<u32>(exponent + twos) * 2654435769u + seed * 2246822519u;
     return hash(bitcast<u32>(odd.x) ^ hash(bitcast<u32>(odd.y) ^ of_level));
 }
 

@@ -7,7 +7,6 @@
 
 #import bevy_comics::effect::footprint::singular_values
 #import bevy_comics::effect::nested::{level_of, mark_of_node, place_of}
-#import bevy_comics::effect::noise::hash
 #import bevy_comics::effect::strokes::{Strokes, Surface, shared_tone}
 
 const PI: f32 = 3.14159265;
@@ -40,6 +39,39 @@ fn disc_coverage(away: vec2<f32>, right: vec2<f32>, down: vec2<f32>, wide: f32, 
     return strength * clamp(0.5 + (drawn - distance) / change, 0.0, 1.0);
 }
 
+// A lattice of dots near a pixel. Lengths are in units of the distance of its finest nodes.
+struct Lattice {
+    // The change of a place over a pixel, and the longest one.
+    right: vec2<f32>,
+    down: vec2<f32>,
+    wide: f32,
+    // Radius of a dot, how much areas vary, and how far the middle of a dot may be from its node, less the
+    // dot's radius.
+    radius: f32,
+    spread: f32,
+    room: f32,
+    // How many of the three new dots for each old one have grown.
+    grown: f32,
+    exponent: i32,
+    seed: u32,
+}
+
+// Coverage by the dot of a node. `away`: of the pixel from the node.
+fn node_cover(s: Strokes, l: Lattice, node: vec2<i32>, away: vec2<f32>) -> f32 {
+    let odd = vec2(node.x & 1, node.y & 1);
+    // The new dot in the middle of four old ones is the first to grow.
+    let turn = select(f32(1 + odd.y), 0.0, odd.x + odd.y == 2);
+    let share = select(clamp(l.grown - turn, 0.0, 1.0), 1.0, odd.x + odd.y == 0);
+    let mark = mark_of_node(node, l.exponent, l.seed);
+    // Three numbers from -1 to 1. Places are in the square inside the circle of the farthest.
+    let random = vec3(f32(mark & 1023u), f32((mark >> 10u) & 1023u), f32(mark >> 20u));
+    let number = random * vec3(2.0 / 1023.0, 2.0 / 1023.0, 2.0 / 4095.0) - 1.0;
+    let full = l.radius * sqrt(1.0 + l.spread * number.z);
+    let most = max(l.room - max(full, 0.5 * l.wide), 0.0);
+    let stray = most * s.wobble * 0.70710678 * number.xy;
+    return disc_coverage(away - stray, l.right, l.down, l.wide, full * sqrt(share));
+}
+
 // Coverage by the dots of a lattice. `u`, `v`: two axes of its plane, at right angles.
 fn lattice_cover(s: Strokes, on: Surface, u: vec3<f32>, v: vec3<f32>, seed: u32, tone: f32) -> f32 {
     if tone <= 0.0 {
@@ -58,38 +90,23 @@ fn lattice_cover(s: Strokes, on: Surface, u: vec3<f32>, v: vec3<f32>, seed: u32,
     let at_v = place_of(dot(v, on.place), dot(v, on.eye), fine);
     let cell = floor(vec2(at_u.y, at_v.y));
     let at = vec2(at_u.y, at_v.y) - cell;
-    let first = vec2(i32(at_u.x) + i32(cell.x), i32(at_v.x) + i32(cell.y));
-    // From here on, lengths are in units of the finest distance.
-    let right = across / fine;
-    let down = below / fine;
-    let wide = axes.x / fine;
-    let unit = pixel / fine;
-    // How many of the three new dots for each old one have grown.
-    let grown = (level.grown + 1.0) * (level.grown + 1.0) - 1.0;
+    let node = vec2(i32(at_u.x) + i32(cell.x), i32(at_v.x) + i32(cell.y));
+    var l: Lattice;
+    l.right = across / fine;
+    l.down = below / fine;
+    l.wide = axes.x / fine;
+    l.radius = dot_radius(s) * pixel / fine;
     // Areas vary and dots stray as far as they do not meet.
-    let spread = min(0.6 * s.pressure, TOUCHING / tone - 1.0);
-    let free = unit * distance * 0.5;
-    var cover = 0.0;
-    for (var k = 0u; k < 4u; k++) {
-        let corner = vec2(i32(k & 1u), i32(k >> 1u));
-        let node = first + corner;
-        let odd = vec2(node.x & 1, node.y & 1);
-        // The new dot in the middle of four old ones is the first to grow.
-        let turn = select(f32(1 + odd.y), 0.0, odd.x + odd.y == 2);
-        let share = select(clamp(grown - turn, 0.0, 1.0), 1.0, odd.x + odd.y == 0);
-        if share <= 0.0 {
-            continue;
-        }
-        let mark = mark_of_node(node, level.exponent - 1, seed) ^ s.seed;
-        let random = hash(mark);
-        let angle = 2.0 * PI * f32(random & 0xffffu) / 65536.0;
-        let far = sqrt(f32(random >> 16u) / 65535.0);
-        let area = 1.0 + spread * (f32(hash(~mark) >> 8u) / 8388608.0 - 1.0);
-        let full = unit * dot_radius(s) * sqrt(area);
-        let most = min(0.866 * free, free - 0.5 * wide) - max(full, 0.5 * wide);
-        let stray = max(most, 0.0) * s.wobble * far * vec2(cos(angle), sin(angle));
-        cover += disc_coverage(at - vec2<f32>(corner) - stray, right, down, wide, full * sqrt(share));
-    }
+    l.spread = min(0.6 * s.pressure, TOUCHING / tone - 1.0);
+    let free = 0.5 * distance * pixel / fine;
+    l.room = min(0.866 * free, free - 0.5 * l.wide);
+    l.grown = (level.grown + 1.0) * (level.grown + 1.0) - 1.0;
+    l.exponent = level.exponent - 1;
+    l.seed = seed ^ s.seed;
+    let cover = node_cover(s, l, node, at)
+        + node_cover(s, l, node + vec2(1, 0), at - vec2(1.0, 0.0))
+        + node_cover(s, l, node + vec2(0, 1), at - vec2(0.0, 1.0))
+        + node_cover(s, l, node + vec2(1, 1), at - 1.0);
     // Dots that are closer than the picture can show, along what a pixel covers, are a plain tone.
     let shown = smoothstep(2.0, 2.8, distance * pixel / max(axes.x, 1e-30));
     return mix(tone, min(cover, 1.0), shown);

@@ -4,7 +4,7 @@
 // those of one level are every second one of the next. For the effect `Hatching` and the cartoon
 // material. Pure functions.
 
-#import bevy_comics::effect::nested::{Level, level_of, mark_of, noise_along, place_of, stroke_factor, stroke_start}
+#import bevy_comics::effect::nested::{Level, TAPER, level_of, mark_of, noise_along, place_of, stroke_factor, stroke_start}
 #import bevy_comics::lines::edge::line_coverage
 
 const GROUND_PAPER: u32 = 1u;
@@ -46,6 +46,13 @@ struct Surface {
     normal: vec3<f32>,
 }
 
+// How far a stroke reaches from its line at most, in pixels. `line`: see stroke.
+fn stroke_reach(s: Strokes, line: vec2<f32>, tone: f32) -> f32 {
+    let free = 1.0 - tone;
+    let widest = line.y * (1.0 + s.pressure * free) / (1.0 - TAPER * s.breaks * free);
+    return widest + 0.5 * s.spacing * s.wobble * free + 0.5;
+}
+
 // A line near a pixel. `line`: its distance in pixels, and half its width.
 fn stroke(s: Strokes, line: vec2<f32>, along: vec2<f32>, level: Level, mark: u32, tone: f32) -> f32 {
     // Dark areas have straight, whole lines: they would cross.
@@ -85,8 +92,16 @@ fn family_cover(s: Strokes, on: Surface, axes: mat3x3<f32>, number: u32, tone: f
     let along = place_of(dot(axis, on.place), dot(axis, on.eye), strokes.size);
     let old_mark = mark_of(first, level.exponent, number);
     let fresh_mark = mark_of(second, level.exponent - 1, number);
-    let cover = stroke(s, vec2((at.y - old) * distance, half_width), along, strokes, old_mark, tone)
-        + stroke(s, vec2((at.y - fresh - 0.5) * distance, level.grown * half_width), along, strokes, fresh_mark, tone);
+    let old_line = vec2((at.y - old) * distance, half_width);
+    let fresh_line = vec2((at.y - fresh - 0.5) * distance, level.grown * half_width);
+    // The line whose edge is nearer, and the other one where it reaches the pixel.
+    let is_old = abs(old_line.x) - old_line.y <= abs(fresh_line.x) - fresh_line.y;
+    let nearer = select(fresh_line, old_line, is_old);
+    let other = select(old_line, fresh_line, is_old);
+    var cover = stroke(s, nearer, along, strokes, select(fresh_mark, old_mark, is_old), tone);
+    if abs(other.x) < stroke_reach(s, other, tone) {
+        cover += stroke(s, other, along, strokes, select(old_mark, fresh_mark, is_old), tone);
+    }
     // Lines that are closer than the picture can show, or almost touch, are a plain tone.
     let shown = smoothstep(1.5, 2.5, 0.5 * distance) * (1.0 - smoothstep(0.9, 1.0, tone));
     return mix(tone, min(cover, 1.0), shown);

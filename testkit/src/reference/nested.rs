@@ -28,13 +28,15 @@ pub fn mark_of(number: i64, exponent: i32, seed: u32) -> u32 {
 /// A random number of the node of square lattices.
 pub fn mark_of_node([mut i, mut j]: [i64; 2], mut exponent: i32, seed: u32) -> u32 {
     if [i, j] == [0, 0] {
-        return hash(seed);
+        exponent = 0;
     }
-    while i % 2 == 0 && j % 2 == 0 {
+    while [i, j] != [0, 0] && i % 2 == 0 && j % 2 == 0 {
         (i, j) = (i / 2, j / 2);
         exponent += 1;
     }
-    hash(i as u32 ^ hash(j as u32 ^ hash(exponent as u32 ^ hash(seed))))
+    let of_level = (exponent as u32).wrapping_mul(2_654_435_769);
+    let of_level = of_level.wrapping_add(seed.wrapping_mul(2_246_822_519));
+    hash(i as u32 ^ hash(j as u32 ^ of_level))
 }
 
 /// Noise along a line. The WGSL has it in one dimension: a row of the lattice.

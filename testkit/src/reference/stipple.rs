@@ -1,6 +1,6 @@
 //! Twin of `effect/stipple.wgsl`.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 use bevy::math::{DVec2, DVec3};
 use bevy_comics::Hatching;
@@ -10,7 +10,6 @@ use super::{
     hatching::Surface,
     mix,
     nested::{level_of, mark_of_node},
-    noise::hash,
     smoothstep,
 };
 
@@ -69,16 +68,15 @@ impl Dots<'_> {
                     (1, _) => count - 2.0,
                     _ => count - 3.0,
                 };
-                let mark = mark_of_node([i, j], exponent - 1, seed) ^ self.drawing;
-                let random = hash(mark);
-                let angle = TAU * f64::from(random & 0xffff) / 65536.0;
-                let far = (f64::from(random >> 16) / 65535.0).sqrt();
-                let noise = f64::from(hash(!mark) >> 8) / f64::from(1 << 23) - 1.0;
-                let area = 1.0 + spread * noise;
+                let mark = mark_of_node([i, j], exponent - 1, seed ^ self.drawing);
+                let number = |bits: u32, most: u32| 2.0 * f64::from(bits) / f64::from(most) - 1.0;
+                let area = 1.0 + spread * number(mark >> 20, 4095);
+                let direction =
+                    DVec2::new(number(mark & 1023, 1023), number(mark >> 10 & 1023, 1023));
                 let full = radius * pixel * area.sqrt();
                 let apart = 0.5 * distance * pixel;
                 let most = (0.866 * apart).min(apart - 0.5 * long) - full.max(0.5 * long);
-                let stray = most.max(0.0) * f64::from(s.wobble) * far * DVec2::from_angle(angle);
+                let stray = most.max(0.0) * f64::from(s.wobble) * FRAC_1_SQRT_2 * direction;
                 let away = place - node * fine - stray;
                 let drawn = full * share.clamp(0.0, 1.0).sqrt();
                 disc_coverage(away, right, down, drawn)
