@@ -186,6 +186,8 @@ fn choose(
         KeyCode::Digit3,
         KeyCode::Digit4,
         KeyCode::Digit5,
+        KeyCode::Digit6,
+        KeyCode::Digit7,
     ];
     for (key, scene) in digits.into_iter().zip(BuiltIn::ALL) {
         if keys.just_pressed(key) {

@@ -235,7 +235,8 @@ fn own_style(scene: &SceneChoice) -> &'static str {
         SceneChoice::BuiltIn(BuiltIn::Teapot | BuiltIn::Theatre | BuiltIn::Figure) => {
             "saturday-morning"
         }
-        SceneChoice::BuiltIn(BuiltIn::Village) => "graphic-novel",
+        SceneChoice::BuiltIn(BuiltIn::Village | BuiltIn::Street) => "graphic-novel",
+        SceneChoice::BuiltIn(BuiltIn::Hall) => "storybook",
         SceneChoice::Model(_) => "saturday-morning",
     }
 }

@@ -168,13 +168,24 @@ const LATER_PRESETS: [Preset; 6] = [
 /// The presets of the golden pictures of the figure.
 const FIGURE_PRESETS: [Preset; 2] = [presets::SATURDAY_MORNING, presets::GRAPHIC_NOVEL];
 
+/// Those of the street at night, and of the hall.
+const STREET_PRESETS: [Preset; 2] = [presets::GRAPHIC_NOVEL, presets::HARD_BOILED];
+const HALL_PRESETS: [Preset; 2] = [presets::STORYBOOK, presets::ENGRAVING];
+
 /// The presets that have a golden picture in a scene: all those that print or paint. The mountains
 /// show those after the first paper and those that outline, the theatre those after the
 /// second, the teapot all of them, and the village those after the first and
-/// `graphic-novel`. The figure shows only what is for characters.
+/// `graphic-novel`. The figure shows only what is for characters, the street and the hall what is for
+/// nights and interiors.
 pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
-    if scene == BuiltIn::Figure {
-        return FIGURE_PRESETS.map(Preset::name).to_vec();
+    let few: &[Preset] = match scene {
+        BuiltIn::Figure => &FIGURE_PRESETS,
+        BuiltIn::Street => &STREET_PRESETS,
+        BuiltIn::Hall => &HALL_PRESETS,
+        _ => &[],
+    };
+    if !few.is_empty() {
+        return few.iter().map(|preset| preset.name()).collect();
     }
     let mut shown = match scene {
         BuiltIn::Theatre => Vec::new(),
@@ -183,7 +194,7 @@ pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
     match scene {
         BuiltIn::Teapot | BuiltIn::Theatre => shown.extend(LINE_PRESETS),
         BuiltIn::Village => shown.push(presets::GRAPHIC_NOVEL),
-        BuiltIn::Mountains | BuiltIn::Figure => {}
+        _ => {}
     }
     // After the others: sketches change with the clock.
     shown.extend(PAGE_PRESETS);
@@ -210,6 +221,8 @@ pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
         };
         let style = ComicStyle::new().with(dots).with(Outlines::default());
         styles.push(("stipple", style));
+    }
+    if let BuiltIn::Figure | BuiltIn::Street | BuiltIn::Hall = scene {
         return styles;
     }
     styles.extend(single_effects(scene));
@@ -270,7 +283,7 @@ fn single_effects(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
             ]
         }
         BuiltIn::Village => village_effects(&style),
-        BuiltIn::Figure => Vec::new(),
+        _ => Vec::new(),
     }
 }
 

@@ -65,7 +65,7 @@ fn what_cannot_be_done_is_one_line_that_says_what_can() {
     for (arguments, says) in [
         (
             &["moonscape"][..],
-            "mountains, teapot, theatre, village, figure",
+            "mountains, teapot, theatre, village, figure, street, hall",
         ),
         (&["--style", "nope"], "saturday-morning, graphic-novel"),
         (&["--material", "wood"], "possible are standard, cartoon"),

@@ -3,11 +3,13 @@
 
 pub mod buildings;
 pub mod figure;
+pub mod hall;
 pub mod lights;
 pub mod mountains;
 pub mod noise;
 pub mod shape;
 pub mod sky;
+pub mod street;
 pub mod teapot;
 pub mod theatre;
 pub mod village;
@@ -26,15 +28,19 @@ pub enum BuiltIn {
     Theatre,
     Village,
     Figure,
+    Street,
+    Hall,
 }
 
 impl BuiltIn {
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 7] = [
         Self::Mountains,
         Self::Teapot,
         Self::Theatre,
         Self::Village,
         Self::Figure,
+        Self::Street,
+        Self::Hall,
     ];
 
     /// Those that the report measures.
@@ -47,6 +53,8 @@ impl BuiltIn {
             Self::Theatre => "theatre",
             Self::Village => "village",
             Self::Figure => "figure",
+            Self::Street => "street",
+            Self::Hall => "hall",
         }
     }
 
@@ -103,6 +111,8 @@ impl Stage<'_, '_> {
             BuiltIn::Theatre => theatre::spawn(self),
             BuiltIn::Village => village::spawn(self),
             BuiltIn::Figure => figure::spawn(self),
+            BuiltIn::Street => street::spawn(self),
+            BuiltIn::Hall => hall::spawn(self),
         }
     }
 
