@@ -169,12 +169,13 @@ impl ToonLook {
         }
     }
 
-    /// The lighting, with the tonal art map of `other` if the look has none: files have no images.
-    pub(super) fn with_map_of(&self, other: &CartoonLight) -> CartoonLight {
-        let map = self.light.art_map.as_ref().or(other.art_map.as_ref());
+    /// The lighting, with the maps of `other` that the look has none of: files lack these images.
+    pub(super) fn with_maps_of(&self, other: &CartoonLight) -> CartoonLight {
+        let light = self.light.clone();
         CartoonLight {
-            art_map: map.cloned(),
-            ..self.light.clone()
+            art_map: light.art_map.or_else(|| other.art_map.clone()),
+            threshold_map: (light.threshold_map).or_else(|| other.threshold_map.clone()),
+            ..light
         }
     }
 
@@ -268,7 +269,7 @@ pub(super) fn apply_looks(
         let Some(before) = materials.get(&material.0) else {
             continue;
         };
-        let light = look.with_map_of(&before.extension);
+        let light = look.with_maps_of(&before.extension);
         if before.extension != light
             && let Some(mut material) = materials.get_mut(&material.0)
         {

@@ -95,6 +95,17 @@ pub struct CartoonLight {
     /// things. It is
     /// for opaque materials: alpha is still opacity in others. Default: `false`.
     pub vertex_threshold: bool,
+    /// How easily places are lit, as an image: its red channel means what the alpha of vertices does
+    /// for `vertex_threshold` (Motomura 2015). Default: `None`. It is not part of files.
+    ///
+    /// The image lies on the texture coordinates of the base colour and is read with the sampler of
+    /// its texture; meshes without coordinates do not read it. Load it with `is_srgb: false`: in
+    /// images in sRGB, 188 of 255 is neutral. Its format must be one that can be filtered, which
+    /// 32-bit floating-point numbers cannot. With `vertex_threshold`, what both add to the cosine
+    /// between normal and light is added up.
+    #[texture(104, visibility(fragment))]
+    #[serde(skip)]
+    pub threshold_map: Option<Handle<Image>>,
     /// Tones between shade and light. Default: `None`, which is all of the light or none of it.
     pub ramp: Option<Ramp>,
     /// The highlight of the brightest light as a sign. Default: `None`, a plain highlight.
@@ -149,6 +160,7 @@ impl Default for CartoonLight {
             falloff: 1.0,
             flat_environment: 1.0,
             vertex_threshold: false,
+            threshold_map: None,
             ramp: None,
             glint: None,
             form: None,

@@ -5,7 +5,7 @@
 #import bevy_comics::cartoon::{
     bindings::cartoon,
     ramp::{Ramp, mixed_ramp, shadowed_tone, tone},
-    surface::{Arriving, Surface, biased_cosine, cosine_over_pixel},
+    surface::{Arriving, Surface, biased_cosine, biased_over_pixel},
 }
 #ifdef DETAIL_HIGHLIGHT
 #import bevy_comics::cartoon::detail::detail_of_highlight
@@ -17,7 +17,7 @@ fn angle_of(s: Surface, light: Arriving) -> vec2<f32> {
     if cartoon.light.backface <= 0.0 {
         return vec2(1.0, 0.0);
     }
-    return vec2(biased_cosine(s, light.to_light), cosine_over_pixel(s.foot, light.to_light));
+    return vec2(biased_cosine(s, light.to_light), biased_over_pixel(s, light.to_light));
 }
 
 // The detail of the ramp in the light from a direction.

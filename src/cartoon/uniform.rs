@@ -67,6 +67,7 @@ pub struct CartoonKey {
     form: Option<bool>,
     glint: Option<(GlintShape, GlintFrame)>,
     vertex_threshold: bool,
+    threshold_map: bool,
     pub(super) hatch: Option<HatchKey>,
     rim: bool,
     /// The rim has the same width everywhere.
@@ -81,6 +82,7 @@ impl From<&CartoonLight> for CartoonKey {
             form: light.form.map(|form| form.shape.is_up()),
             glint: glint.map(|glint| (glint.shape, glint.frame)),
             vertex_threshold: light.vertex_threshold,
+            threshold_map: light.threshold_map.is_some(),
             hatch: HatchKey::of(light),
             rim: light.rim.is_some(),
             even_rim: (light.rim).is_some_and(|rim| matches!(rim.width, RimWidth::Pixels(_))),
@@ -111,9 +113,11 @@ impl CartoonKey {
             all.push("FORM".into());
             all.extend(is_up.then(|| "FORM_UP".into()));
         }
-        if self.vertex_threshold && has(&["VERTEX_COLORS"]) {
-            all.push("VERTEX_THRESHOLD".into());
-        }
+        let of_vertices = self.vertex_threshold && has(&["VERTEX_COLORS"]);
+        let of_map = self.threshold_map && has(&["VERTEX_UVS_A"]);
+        all.extend(of_vertices.then(|| "VERTEX_THRESHOLD".into()));
+        all.extend(of_map.then(|| "THRESHOLD_MAP".into()));
+        all.extend((of_vertices || of_map).then(|| "THRESHOLD".into()));
         all.extend((self.hatch.into_iter()).flat_map(|hatch| hatch.definitions(others)));
         if self.rim {
             all.push("RIM".into());

@@ -81,6 +81,7 @@ fn everything(axis: DetailAxis, form: FormShape, width: RimWidth) -> CartoonLigh
             ..default()
         }),
         // Files have no images.
+        threshold_map: None,
         art_map: None,
         art_map_repeat: 2.5,
     }

@@ -89,6 +89,7 @@ mod smoothing_views;
 mod speed_lines;
 mod styles;
 mod surface_lines;
+mod threshold_map;
 mod tone_ramp;
 mod transparent;
 mod transparent_lines;
