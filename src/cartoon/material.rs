@@ -1,5 +1,7 @@
 //! The cartoon material and its settings.
 
+use std::borrow::Cow;
+
 use bevy::{
     asset::{Asset, AssetEvent, Assets, Handle},
     ecs::{message::MessageReader, system::ResMut},
@@ -19,7 +21,7 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Glint, Ramp, Rim, ShadedForm,
+    Glint, Ramp, RampMap, Rim, ShadedForm,
     hatch::{HatchUniform, VERTEX, is_prepass},
     uniform::{CartoonKey, CartoonUniform},
 };
@@ -108,6 +110,12 @@ pub struct CartoonLight {
     pub threshold_map: Option<Handle<Image>>,
     /// Tones between shade and light. Default: `None`, which is all of the light or none of it.
     pub ramp: Option<Ramp>,
+    /// The tones of `ramp`, painted in an image, in place of its stops. Default: none. Files have the
+    /// path of the image among the assets, as in `ramp_map: "ramps/skin.png"`.
+    ///
+    /// If `ramp` is `None`, its other settings are those of [`Ramp::default`].
+    #[texture(105, visibility(fragment), filterable = false)]
+    pub ramp_map: RampMap,
     /// The highlight of the brightest light as a sign. Default: `None`, a plain highlight.
     pub glint: Option<Glint>,
     /// A simpler form that the surface is shaded as. Default: `None`.
@@ -162,6 +170,7 @@ impl Default for CartoonLight {
             vertex_threshold: false,
             threshold_map: None,
             ramp: None,
+            ramp_map: RampMap::default(),
             glint: None,
             form: None,
             rim: None,
@@ -173,6 +182,13 @@ impl Default for CartoonLight {
 }
 
 impl CartoonLight {
+    /// The ramp that is drawn.
+    pub(super) fn drawn_ramp(&self) -> Option<Cow<'_, Ramp>> {
+        let painted = self.ramp_map.is_ready();
+        let default = painted.then(|| Cow::Owned(Ramp::default()));
+        self.ramp.as_ref().map(Cow::Borrowed).or(default)
+    }
+
     /// The settings that are used: every number is clamped to its documented range,
     /// and a number that is not finite is replaced by its default.
     #[must_use]

@@ -39,7 +39,8 @@ impl From<&CartoonLight> for CartoonUniform {
     fn from(light: &CartoonLight) -> Self {
         let light = light.clone().sanitized();
         let strength = |on: bool| if on { light.shadow_strength } else { 0.0 };
-        let detail = light.ramp.as_ref().and_then(|ramp| ramp.detail.as_ref());
+        let ramp = light.drawn_ramp();
+        let detail = ramp.as_ref().and_then(|ramp| ramp.detail.as_ref());
         Self {
             light: CartoonLightUniform {
                 terminator: light.terminator,
@@ -54,7 +55,7 @@ impl From<&CartoonLight> for CartoonUniform {
             form: light.form.as_ref().map(Into::into).unwrap_or_default(),
             glint: light.glint.as_ref().map(Into::into).unwrap_or_default(),
             rim: light.rim.as_ref().map(Into::into).unwrap_or_default(),
-            ramp: light.ramp.as_ref().map(Into::into).unwrap_or_default(),
+            ramp: ramp.as_deref().map(Into::into).unwrap_or_default(),
         }
     }
 }
@@ -78,7 +79,7 @@ impl From<&CartoonLight> for CartoonKey {
     fn from(light: &CartoonLight) -> Self {
         let glint = light.glint.filter(|_| light.highlight > 0.0);
         Self {
-            ramp: light.ramp.as_ref().map(Into::into),
+            ramp: (light.drawn_ramp()).map(|ramp| RampKey::new(&ramp, light.ramp_map.is_ready())),
             form: light.form.map(|form| form.shape.is_up()),
             glint: glint.map(|glint| (glint.shape, glint.frame)),
             vertex_threshold: light.vertex_threshold,

@@ -72,6 +72,7 @@ mod pressure;
 mod print_offset;
 mod ramp;
 mod ramp_detail;
+mod ramp_map;
 mod ramp_pixels;
 mod range;
 mod range_views;
