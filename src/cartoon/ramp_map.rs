@@ -8,24 +8,25 @@ use bevy::{
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// An image of the tones of a [`Ramp`](crate::Ramp), for
-/// [`CartoonLight::ramp_map`](crate::CartoonLight::ramp_map): the ramps that Lake et al. (2000) and X-Toon
-/// (Barla, Thollot and Markosian 2006) paint.
+/// [`CartoonLight::ramp_map`](crate::CartoonLight::ramp_map): the ramps that Lake et al. (2000) and
+/// X-Toon (Barla, Thollot and Markosian 2006) paint.
 ///
 /// From left to right, more light arrives: each column is a tone, with hard edges between them. A
-/// pixel has the mean of the tones that it covers, exactly, so any number of tones has smooth edges. The
-/// rows are those of the second axis, [`Ramp::detail`](crate::Ramp::detail): the first one, at the top, is
-/// used where there is all detail, the last one where there is none, and tones between rows are mixed in
-/// linear light. Without that axis, only the first row is used.
+/// pixel has the mean of the tones that it covers, exactly, so any number of tones has smooth edges.
+/// The rows are those of the second axis, [`Ramp::detail`](crate::Ramp::detail): the first one, at
+/// the top, is used where there is all detail, the last one where there is none, and tones between
+/// rows are mixed in linear light. Without that axis, only the first row is used.
 ///
-/// The image is 2 to [`LARGEST`](Self::LARGEST) texels wide and 1 to as many high, in a format without
-/// compression; images in sRGB and in linear light are right alike. Colours are clamped to
-/// what a display shows, components that are not finite are 0, and alpha is ignored. Of an image that
-/// cannot be used, a warning says why, and the stops of the ramp are drawn. The image must be kept in the main world, as
-/// loaded ones are
-/// ([`RenderAssetUsages`](bevy::asset::RenderAssetUsages)); when it changes, the tones follow a frame later.
+/// The image is 2 to [`LARGEST`](Self::LARGEST) texels wide and 1 to as many high, in a format
+/// without compression; images in sRGB and in linear light both have the colours that they mean.
+/// Colours are clamped to what a display shows, components that are not finite are 0, and alpha is
+/// ignored. The image must be kept in the main world, as loaded ones are
+/// ([`RenderAssetUsages`](bevy::asset::RenderAssetUsages)). When it changes, the tones follow a
+/// frame later. Of an image that cannot be used, a warning says why, and the stops of the ramp are
+/// drawn.
 ///
-/// Its sums are a texture of their own, of 16 bytes a texel and for one column more: 4 KB for a row of 256
-/// tones, 1 MB for 256 rows.
+/// Its sums are a texture of their own, of 16 bytes a texel and for one column more: 4 KB for a row
+/// of 256 tones, 1 MB for 256 rows.
 ///
 /// ```
 /// # use bevy::prelude::*;

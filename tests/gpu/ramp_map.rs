@@ -132,7 +132,7 @@ fn two_texels_are_two_stops() {
                 }
                 let [a, b] = [&map, &stops].map(|picture| linear(picture, x, y)[0]);
                 let code = 2.0 / 255.0;
-                let most = strength as f64 / (6.0 * 3f64.sqrt()) + code;
+                let most = f64::from(strength) / (6.0 * 3f64.sqrt()) + code;
                 assert!((a - b).abs() <= most, "{mode:?}, ({x}, {y}): {a}, not {b}");
                 let is_between = |c: f64| c > 1.0 - f64::from(strength) + code && c < 1.0 - code;
                 if is_between(a) || is_between(b) {
