@@ -84,7 +84,7 @@ mod view;
 #[cfg(feature = "cartoon")]
 pub use cartoon::{
     CartoonLight, CartoonMaterial, CartoonScene, DetailAxis, FormShape, Glint, GlintFrame,
-    GlintShape, MaterialName, Ramp, RampBlend, RampDetail, RampMode, RampStop, Rim, RimWidth,
+    GlintShape, MaterialName, Ramp, RampBlend, RampDetail, RampMap, RampMode, RampStop, Rim, RimWidth,
     ShadedForm, TonalArtMap, ToonLook, ToonLookError, ToonLookHandle, ToonLookHandleTemplate,
 };
 pub use depth::{
@@ -175,7 +175,7 @@ pub mod prelude {
     #[cfg(feature = "cartoon")]
     pub use crate::{
         CartoonLight, CartoonMaterial, CartoonScene, DetailAxis, FormShape, Glint, GlintFrame,
-        GlintShape, MaterialName, Ramp, RampBlend, RampDetail, RampMode, RampStop, Rim, RimWidth,
+        GlintShape, MaterialName, Ramp, RampBlend, RampDetail, RampMap, RampMode, RampStop, Rim, RimWidth,
         ShadedForm, TonalArtMap, ToonLook, ToonLookHandle,
     };
     #[cfg(feature = "objects")]

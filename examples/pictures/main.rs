@@ -18,6 +18,7 @@
 mod figures;
 mod motion;
 mod pages;
+mod painted;
 mod print;
 mod ramps;
 mod sheet;

@@ -18,7 +18,7 @@ use bevy_comics_testkit::{
 };
 use image::RgbaImage;
 
-use crate::{save, sheet::grid, strokes};
+use crate::{painted, save, sheet::grid, strokes};
 
 /// Frames until shaders are compiled and the picture stands still.
 const SETTLE: usize = 12;
@@ -26,6 +26,7 @@ const SETTLE: usize = 12;
 pub fn write(folder: &Path) -> Result<(), String> {
     save(&signs(), &folder.join("signs.png"))?;
     save(&details(), &folder.join("details.png"))?;
+    save(&painted::picture(), &folder.join("painted-ramps.png"))?;
     save(&rims(), &folder.join("rims.png"))?;
     save(&forms(), &folder.join("forms.png"))?;
     save(&strokes::picture(), &folder.join("hatched-material.png"))?;

@@ -1,7 +1,11 @@
 //! What the cartoon material costs beside the standard material: the main pass of one scene, with
 //! all meshes in one material after the other.
 
-use bevy::prelude::*;
+use bevy::{
+    asset::RenderAssetUsages,
+    prelude::*,
+    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
+};
 use bevy_comics::{
     CartoonLight, CartoonScene, Glint, GlintShape, Hatching, Ramp, RampDetail, RampMode, RampStop,
     Rim,
@@ -13,8 +17,55 @@ use bevy_comics_testkit::{
 
 use crate::{Run, rig::Rig, table::Table};
 
+/// An image of greys, darker to the left.
+fn greys(images: &mut Assets<Image>, width: u32, height: u32) -> Handle<Image> {
+    let texel = |k: u32| {
+        let code = (255 * (k % width) / (width - 1)) as u8;
+        [code, code, code, 255]
+    };
+    let size = Extent3d {
+        width,
+        height,
+        depth_or_array_layers: 1,
+    };
+    images.add(Image::new(
+        size,
+        TextureDimension::D2,
+        (0..width * height).flat_map(texel).collect(),
+        TextureFormat::Rgba8Unorm,
+        RenderAssetUsages::default(),
+    ))
+}
+
+/// Ramps that are images, and thresholds from one.
+fn mapped(images: &mut Assets<Image>) -> Vec<(&'static str, Option<CartoonLight>)> {
+    let mut painted = |mode, height, detail| CartoonLight {
+        ramp: Some(Ramp {
+            mode,
+            detail,
+            ..Ramp::default()
+        }),
+        ramp_map: greys(images, 256, height).into(),
+        ..default()
+    };
+    let row = painted(RampMode::Share, 1, None);
+    let each = painted(RampMode::PerLight, 1, None);
+    let rows = painted(RampMode::Share, 64, Some(RampDetail::default()));
+    let thresholds = CartoonLight {
+        ramp: Some(Ramp::default()),
+        threshold_map: Some(greys(images, 256, 256)),
+        ..default()
+    };
+    vec![
+        ("Share; 256 tones of an image", Some(row)),
+        ("PerLight; 256 tones of an image", Some(each)),
+        ("Share; 64 rows of an image by depth", Some(rows)),
+        ("default ramp; thresholds of an image", Some(thresholds)),
+    ]
+}
+
 /// The materials that are compared: `None` is the standard material.
-fn variants() -> Vec<(&'static str, Option<CartoonLight>)> {
+fn variants(images: &mut Assets<Image>) -> Vec<(&'static str, Option<CartoonLight>)> {
     let with = |ramp| CartoonLight {
         ramp: Some(ramp),
         ..default()
@@ -30,7 +81,7 @@ fn variants() -> Vec<(&'static str, Option<CartoonLight>)> {
         };
         Ramp::new((0..count).map(stop))
     };
-    vec![
+    let mut all = vec![
         ("standard material", None),
         ("no ramp", Some(CartoonLight::default())),
         ("no ramp; no highlights", {
@@ -73,8 +124,10 @@ fn variants() -> Vec<(&'static str, Option<CartoonLight>)> {
                 ..default()
             })
         }),
-        ("standard material again", None),
-    ]
+    ];
+    all.extend(mapped(images));
+    all.push(("standard material again", None));
+    all
 }
 
 /// Gives all meshes the material of a variant.
@@ -97,16 +150,17 @@ pub fn measure(run: &Run) -> Result<(), String> {
         let world = rig.headless.app.world_mut();
         let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
         let meshes: Vec<Entity> = meshes.iter(world).collect();
+        let variants = variants(&mut world.resource_mut::<Assets<Image>>());
         // Round 0 compiles the variants, and is not counted.
         for round in 0..=3 * run.rounds {
-            for (name, light) in variants() {
+            for (name, light) in &variants {
                 wear(&mut rig, &meshes, light.as_ref());
                 rig.headless.step(2);
                 let frames = bench::laps(&mut rig.headless, 2 * run.frames);
                 let main = frames.iter().map(|laps| laps[Lap::Main as usize]);
                 let main = format!("{:.4}", main.fold(f64::INFINITY, f64::min));
                 if round > 0 {
-                    times.push(&[&scene.name(), &name, &size.x, &size.y, &round, &main]);
+                    times.push(&[&scene.name(), name, &size.x, &size.y, &round, &main]);
                 }
             }
         }

@@ -20,8 +20,11 @@
     lamps::{clustered_light, directional_light, rect_light_at},
     reflect::{PI, unshadowed},
     shine::{Shine, shine_of, with_light},
-    surface::{Arriving, Footprint, Surface},
+    surface::{Arriving, Footprint, Surface, bias_of},
 }
+#ifdef THRESHOLD_MAP
+#import bevy_pbr::pbr_bindings::base_color_sampler
+#endif
 #ifdef RAMP_PER_LIGHT
 #import bevy_comics::cartoon::per_light::{Sum, add, reflected}
 #else ifdef RAMP_SHARE
@@ -57,6 +60,23 @@
 #import bevy_comics::cartoon::form::{between, form_amount, form_normal}
 #endif
 
+#ifdef THRESHOLD_MAP
+@group(#{MATERIAL_BIND_GROUP}) @binding(104) var threshold_map: texture_2d<f32>;
+
+// The bias that the map gives, read as the base colour is. All pixels must run it: the mip level is
+// found with derivatives.
+fn mapped_bias(pbr: PbrInput, in: VertexOutput) -> f32 {
+#ifdef STANDARD_MATERIAL_BASE_COLOR_UV_B
+    let uv = in.uv_b;
+#else
+    let uv = in.uv;
+#endif
+    let at = (pbr.material.uv_transform * vec3(uv, 1.0)).xy;
+    let mip_bias = view_bindings::view.mip_bias;
+    return bias_of(textureSampleBias(threshold_map, base_color_sampler, at, mip_bias).r);
+}
+#endif
+
 // What all lights give.
 struct Lit {
     sum: Sum,
@@ -73,6 +93,7 @@ fn with_whole(sum: Sum, s: Surface, light: Arriving) -> Sum {
     var all = sum;
     var towards = s;
     towards.bias = 2.0;
+    towards.foot.bias = vec2(0.0);
     var bare = light;
     bare.lit = 1.0;
     add(&all, towards, bare, 1.0);
@@ -135,7 +156,7 @@ fn detail_at(s: Surface) -> f32 {
 #endif
 }
 
-// What vertices say of a surface; 0 where they say nothing.
+// What vertices and the threshold map say of a surface; 0 where they say nothing.
 struct OwnData {
     tangent: vec3<f32>,
     bias: f32,
@@ -259,7 +280,13 @@ fn fragment(
     own.tangent = in.world_tangent.xyz;
 #endif
 #ifdef VERTEX_THRESHOLD
-    own.bias = 2.0 * in.color.a - 1.0;
+    own.bias = bias_of(in.color.a);
+#endif
+#ifdef THRESHOLD_MAP
+    own.bias += mapped_bias(pbr, in);
+#endif
+#ifdef THRESHOLD
+    foot.bias = vec2(dpdx(own.bias), dpdy(own.bias));
 #endif
 #ifdef HATCHED
     own.hatch.pixel = in.position.xy;

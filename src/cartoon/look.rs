@@ -51,6 +51,9 @@ use crate::style::format;
 /// # Ok::<(), bevy_comics::ToonLookError>(())
 /// ```
 ///
+/// A [`ramp_map`](CartoonLight::ramp_map) is the path of its image among the assets, which is loaded
+/// with the look. Other images are not part of files: a material keeps its own.
+///
 /// [`ToonLookHandle`] gives one to a mesh, [`CartoonScene::look`](crate::CartoonScene::look) to a
 /// whole scene. Both follow changes of the file, if the app watches its files (Bevy's feature
 /// `file_watcher`). A file that becomes unreadable changes nothing: the last look stays, and the
@@ -169,12 +172,17 @@ impl ToonLook {
         }
     }
 
-    /// The lighting, with the tonal art map of `other` if the look has none: files have no images.
-    pub(super) fn with_map_of(&self, other: &CartoonLight) -> CartoonLight {
-        let map = self.light.art_map.as_ref().or(other.art_map.as_ref());
+    /// The lighting, with the maps of `other` that the look has none of: files do not have all of them.
+    pub(super) fn with_maps_of(&self, other: &CartoonLight) -> CartoonLight {
+        let light = self.light.clone();
         CartoonLight {
-            art_map: map.cloned(),
-            ..self.light.clone()
+            art_map: light.art_map.or_else(|| other.art_map.clone()),
+            ramp_map: match light.ramp_map.is_none() {
+                true => other.ramp_map.clone(),
+                false => light.ramp_map,
+            },
+            threshold_map: (light.threshold_map).or_else(|| other.threshold_map.clone()),
+            ..light
         }
     }
 
@@ -226,13 +234,15 @@ impl AssetLoader for ToonLookLoader {
         &self,
         reader: &mut dyn Reader,
         _settings: &(),
-        _load_context: &mut LoadContext<'_>,
+        load_context: &mut LoadContext<'_>,
     ) -> Result<ToonLook, ToonLookError> {
         let mut bytes = Vec::new();
         reader.read_to_end(&mut bytes).await?;
         let text = String::from_utf8(bytes)
             .map_err(|error| std::io::Error::new(std::io::ErrorKind::InvalidData, error))?;
-        ToonLook::from_ron(&text)
+        let mut look = ToonLook::from_ron(&text)?;
+        look.light.ramp_map = look.light.ramp_map.loaded(|path| load_context.load(path));
+        Ok(look)
     }
 
     fn extensions(&self) -> &[&str] {
@@ -268,7 +278,7 @@ pub(super) fn apply_looks(
         let Some(before) = materials.get(&material.0) else {
             continue;
         };
-        let light = look.with_map_of(&before.extension);
+        let light = look.with_maps_of(&before.extension);
         if before.extension != light
             && let Some(mut material) = materials.get_mut(&material.0)
         {

@@ -1,5 +1,7 @@
 //! The cartoon material and its settings.
 
+use std::borrow::Cow;
+
 use bevy::{
     asset::{Asset, AssetEvent, Assets, Handle},
     ecs::{message::MessageReader, system::ResMut},
@@ -19,7 +21,7 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Glint, Ramp, Rim, ShadedForm,
+    Glint, Ramp, RampMap, Rim, ShadedForm,
     hatch::{HatchUniform, VERTEX, is_prepass},
     uniform::{CartoonKey, CartoonUniform},
 };
@@ -95,8 +97,25 @@ pub struct CartoonLight {
     /// things. It is
     /// for opaque materials: alpha is still opacity in others. Default: `false`.
     pub vertex_threshold: bool,
+    /// How easily places are lit, as an image: its red channel means what the alpha of vertices does
+    /// for `vertex_threshold` (Motomura 2015). Default: `None`. It is not part of files.
+    ///
+    /// The image lies on the texture coordinates of the base colour and is read with the sampler of
+    /// its texture; meshes without coordinates do not read it. Load it with `is_srgb: false`: in
+    /// images in sRGB, 188 of 255 is neutral. Its format must be one that can be filtered, which
+    /// 32-bit floating-point numbers cannot. With `vertex_threshold`, what both add to the cosine
+    /// between normal and light is added up.
+    #[texture(104, visibility(fragment))]
+    #[serde(skip)]
+    pub threshold_map: Option<Handle<Image>>,
     /// Tones between shade and light. Default: `None`, which is all of the light or none of it.
     pub ramp: Option<Ramp>,
+    /// The tones of `ramp`, painted in an image, in place of its stops. Default: none. Files have the
+    /// path of the image among the assets, as in `ramp_map: "ramps/skin.png"`.
+    ///
+    /// If `ramp` is `None`, its other settings are those of [`Ramp::default`].
+    #[texture(105, visibility(fragment), filterable = false)]
+    pub ramp_map: RampMap,
     /// The highlight of the brightest light as a sign. Default: `None`, a plain highlight.
     pub glint: Option<Glint>,
     /// A simpler form that the surface is shaded as. Default: `None`.
@@ -149,7 +168,9 @@ impl Default for CartoonLight {
             falloff: 1.0,
             flat_environment: 1.0,
             vertex_threshold: false,
+            threshold_map: None,
             ramp: None,
+            ramp_map: RampMap::default(),
             glint: None,
             form: None,
             rim: None,
@@ -161,6 +182,13 @@ impl Default for CartoonLight {
 }
 
 impl CartoonLight {
+    /// The ramp that is drawn.
+    pub(super) fn drawn_ramp(&self) -> Option<Cow<'_, Ramp>> {
+        let painted = self.ramp_map.is_ready();
+        let default = painted.then(|| Cow::Owned(Ramp::default()));
+        self.ramp.as_ref().map(Cow::Borrowed).or(default)
+    }
+
     /// The settings that are used: every number is clamped to its documented range,
     /// and a number that is not finite is replaced by its default.
     #[must_use]

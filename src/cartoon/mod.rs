@@ -12,13 +12,15 @@ mod look;
 mod material;
 mod name;
 mod ramp;
+mod ramp_map;
+mod ramp_sums;
 mod rim;
 mod scene;
 mod uniform;
 
 use bevy::{
     app::{App, Plugin, PostUpdate, Update},
-    asset::{AssetApp, embedded_asset, load_internal_asset},
+    asset::{AssetApp, AssetEventSystems, embedded_asset, load_internal_asset},
     ecs::schedule::IntoScheduleConfigs,
     pbr::{MaterialPlugin, MeshMaterial3d, PbrPlugin},
     render::erased_render_asset::ErasedRenderAssetPlugin,
@@ -33,6 +35,7 @@ pub use look::{ToonLook, ToonLookError, ToonLookHandle, ToonLookHandleTemplate};
 pub use material::{CartoonLight, CartoonMaterial};
 pub use name::MaterialName;
 pub use ramp::{Ramp, RampBlend, RampMode, RampStop};
+pub use ramp_map::RampMap;
 pub use rim::{Rim, RimWidth};
 pub use scene::CartoonScene;
 
@@ -87,6 +90,7 @@ impl CartoonPlugin {
         load_shader_library!(app, "per_light.wgsl");
         load_shader_library!(app, "ramp.wgsl");
         load_shader_library!(app, "ramp_light.wgsl");
+        load_shader_library!(app, "ramp_map.wgsl");
         load_shader_library!(app, "rect.wgsl");
         load_shader_library!(app, "reflect.wgsl");
         load_shader_library!(app, "rim_light.wgsl");
@@ -112,6 +116,7 @@ fn add_material(app: &mut App) -> bool {
     app.add_plugins(MaterialPlugin::<CartoonMaterial>::default())
         .register_asset_reflect::<CartoonMaterial>()
         .init_resource::<scene::Copies>()
+        .init_resource::<ramp_sums::RampSums>()
         .add_systems(
             Update,
             (
@@ -127,8 +132,11 @@ fn add_material(app: &mut App) -> bool {
                 name::name_meshes,
                 scene::choose_again,
                 scene::convert,
+                // Before the events of this frame: materials and sums arrive together.
+                ramp_sums::sum_ramp_maps,
             )
-                .chain(),
+                .chain()
+                .before(AssetEventSystems),
         );
     true
 }

@@ -25,6 +25,8 @@ use crate::settings::{bounded, displayable, file_color, linear_rgb, oklab};
 /// where shadows take away only a part of the light, the tone is a mixture with the tone of
 /// full light. [`terminator`] is where highlights end.
 ///
+/// An image can take the place of the stops: [`CartoonLight::ramp_map`](crate::CartoonLight::ramp_map).
+///
 /// [`backface_shadows`]: crate::CartoonLight::backface_shadows
 /// [`projected_shadows`]: crate::CartoonLight::projected_shadows
 /// [`shadow_strength`]: crate::CartoonLight::shadow_strength
@@ -257,25 +259,26 @@ fn paired(stops: &[RampStop], partner: &[RampStop], k: usize) -> RampStop {
 pub(super) struct RampKey {
     mode: RampMode,
     blend: RampBlend,
-    /// Stops of the longer ramp.
+    /// Stops of the longer ramp; one if an image takes their place.
     stops: u8,
+    /// The tones are those of an image.
+    painted: bool,
     /// The shader definition of the axis.
     axis: Option<&'static str>,
 }
 
-impl From<&Ramp> for RampKey {
-    fn from(ramp: &Ramp) -> Self {
+impl RampKey {
+    pub(super) fn new(ramp: &Ramp, painted: bool) -> Self {
         let ramp = ramp.clone().sanitized();
         Self {
             mode: ramp.mode,
             blend: ramp.blend,
-            stops: ramp.pairs() as u8,
+            stops: if painted { 1 } else { ramp.pairs() as u8 },
+            painted,
             axis: ramp.detail.map(|detail| detail.axis.definition()),
         }
     }
-}
 
-impl RampKey {
     pub(super) fn definitions(self) -> impl Iterator<Item = ShaderDefVal> {
         let mode = match self.mode {
             RampMode::Share => "RAMP_SHARE",
@@ -284,7 +287,8 @@ impl RampKey {
         };
         let blend = (self.blend == RampBlend::Absolute).then_some("RAMP_ABSOLUTE");
         let detail = self.axis.map(|_| "RAMP_DETAIL");
-        let flags = [Some(mode), blend, detail, self.axis];
+        let map = self.painted.then_some("RAMP_MAP");
+        let flags = [Some(mode), blend, detail, self.axis, map];
         let stops = ShaderDefVal::UInt("RAMP_STOPS".into(), u32::from(self.stops));
         flags
             .into_iter()

@@ -5,14 +5,14 @@
 #import bevy_comics::cartoon::{
     bindings::cartoon,
     light::{facing, highlight},
-    surface::{Arriving, Surface, biased_cosine, cosine_over_pixel, half_way},
+    surface::{Arriving, Surface, biased_cosine, biased_over_pixel, cosine_over_pixel, half_way},
 }
 
 const PI: f32 = 3.14159265;
 
 // Fraction of a light that its two shadows leave: 1 minus the stronger of them.
 fn unshadowed(s: Surface, light: Arriving) -> f32 {
-    let width = cosine_over_pixel(s.foot, light.to_light);
+    let width = biased_over_pixel(s, light.to_light);
     let lit = facing(cartoon.light, biased_cosine(s, light.to_light), width);
     let backface_shadow = (1.0 - lit) * cartoon.light.backface;
     let projected_shadow = (1.0 - light.lit) * cartoon.light.projected;

@@ -148,7 +148,7 @@ impl Materials<'_> {
             },
             extension: loaded.map_or_else(
                 || scene.light.clone(),
-                |look| look.with_map_of(&scene.light),
+                |look| look.with_maps_of(&scene.light),
             ),
         })
     }

@@ -4,8 +4,7 @@
 
 #import bevy_comics::cartoon::{
     bindings::cartoon,
-    ramp::tone,
-    ramp_light::{angle_of, detail_of, ramp_of, toned, weakened},
+    ramp_light::{angle_of, detail_of, full_tone, ramp_of, shadow_strength, tone_at, toned},
     reflect::PI,
     surface::{Arriving, Surface},
     surroundings::brightness,
@@ -73,19 +72,23 @@ fn tone_of_share(sum: Sum) -> vec3<f32> {
     let width = sum.width * whole;
     let a = sum.first.x * whole;
     let b = sum.second.x * whole;
-    var color = tone(ramp, share, width);
+    var color = tone_at(ramp, share, width);
     if a > 0.0 {
-        color = mix(color, tone(ramp, share + a, width), sum.first.y);
+        color = mix(color, tone_at(ramp, share + a, width), sum.first.y);
     }
     if b > 0.0 {
         let beside = mix(
-            tone(ramp, share + b, width),
-            tone(ramp, share + a + b, width),
+            tone_at(ramp, share + b, width),
+            tone_at(ramp, share + a + b, width),
             sum.first.y,
         );
         color = mix(color, beside, sum.second.y);
     }
-    return weakened(ramp, color);
+    let strength = shadow_strength();
+    if strength >= 1.0 {
+        return color;
+    }
+    return mix(full_tone(ramp), color, strength);
 }
 
 fn reflected(sum: Sum, base: vec3<f32>, around: vec3<f32>, shine: vec3<f32>) -> vec3<f32> {

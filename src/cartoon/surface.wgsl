@@ -2,12 +2,13 @@
 
 // A surface of the cartoon material, and light that arrives at it.
 
-// Change of the world position and of the normal over a pixel, to the right and down.
+// Change of the world position, of the normal and of the bias over a pixel, to the right and down.
 struct Footprint {
     position_x: vec3<f32>,
     position_y: vec3<f32>,
     normal_x: vec3<f32>,
     normal_y: vec3<f32>,
+    bias: vec2<f32>,
 }
 
 struct Surface {
@@ -68,9 +69,21 @@ fn cosine_over_pixel(foot: Footprint, direction: vec3<f32>) -> f32 {
     return abs(dot(foot.normal_x, direction)) + abs(dot(foot.normal_y, direction));
 }
 
+// The bias of a threshold from 0 to 1, of which 0.5 is neutral.
+fn bias_of(threshold: f32) -> f32 {
+    return 2.0 * threshold - 1.0;
+}
+
 // Cosine between normal and `direction`, with the surface's own threshold.
 fn biased_cosine(s: Surface, direction: vec3<f32>) -> f32 {
     return clamp(dot(s.normal, direction) + s.bias, -1.0, 1.0);
+}
+
+// Its change over a pixel, where it is not clamped.
+fn biased_over_pixel(s: Surface, direction: vec3<f32>) -> f32 {
+    let right = dot(s.foot.normal_x, direction) + s.foot.bias.x;
+    let down = dot(s.foot.normal_y, direction) + s.foot.bias.y;
+    return abs(right) + abs(down);
 }
 
 // Unit vector half way between two unit vectors, or 0 where they are opposite.

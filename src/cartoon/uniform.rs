@@ -39,7 +39,8 @@ impl From<&CartoonLight> for CartoonUniform {
     fn from(light: &CartoonLight) -> Self {
         let light = light.clone().sanitized();
         let strength = |on: bool| if on { light.shadow_strength } else { 0.0 };
-        let detail = light.ramp.as_ref().and_then(|ramp| ramp.detail.as_ref());
+        let ramp = light.drawn_ramp();
+        let detail = ramp.as_ref().and_then(|ramp| ramp.detail.as_ref());
         Self {
             light: CartoonLightUniform {
                 terminator: light.terminator,
@@ -54,7 +55,7 @@ impl From<&CartoonLight> for CartoonUniform {
             form: light.form.as_ref().map(Into::into).unwrap_or_default(),
             glint: light.glint.as_ref().map(Into::into).unwrap_or_default(),
             rim: light.rim.as_ref().map(Into::into).unwrap_or_default(),
-            ramp: light.ramp.as_ref().map(Into::into).unwrap_or_default(),
+            ramp: ramp.as_deref().map(Into::into).unwrap_or_default(),
         }
     }
 }
@@ -67,6 +68,7 @@ pub struct CartoonKey {
     form: Option<bool>,
     glint: Option<(GlintShape, GlintFrame)>,
     vertex_threshold: bool,
+    threshold_map: bool,
     pub(super) hatch: Option<HatchKey>,
     rim: bool,
     /// The rim has the same width everywhere.
@@ -77,10 +79,11 @@ impl From<&CartoonLight> for CartoonKey {
     fn from(light: &CartoonLight) -> Self {
         let glint = light.glint.filter(|_| light.highlight > 0.0);
         Self {
-            ramp: light.ramp.as_ref().map(Into::into),
+            ramp: (light.drawn_ramp()).map(|ramp| RampKey::new(&ramp, light.ramp_map.is_ready())),
             form: light.form.map(|form| form.shape.is_up()),
             glint: glint.map(|glint| (glint.shape, glint.frame)),
             vertex_threshold: light.vertex_threshold,
+            threshold_map: light.threshold_map.is_some(),
             hatch: HatchKey::of(light),
             rim: light.rim.is_some(),
             even_rim: (light.rim).is_some_and(|rim| matches!(rim.width, RimWidth::Pixels(_))),
@@ -111,9 +114,11 @@ impl CartoonKey {
             all.push("FORM".into());
             all.extend(is_up.then(|| "FORM_UP".into()));
         }
-        if self.vertex_threshold && has(&["VERTEX_COLORS"]) {
-            all.push("VERTEX_THRESHOLD".into());
-        }
+        let of_vertices = self.vertex_threshold && has(&["VERTEX_COLORS"]);
+        let of_map = self.threshold_map && has(&["VERTEX_UVS_A"]);
+        all.extend(of_vertices.then(|| "VERTEX_THRESHOLD".into()));
+        all.extend(of_map.then(|| "THRESHOLD_MAP".into()));
+        all.extend((of_vertices || of_map).then(|| "THRESHOLD".into()));
         all.extend((self.hatch.into_iter()).flat_map(|hatch| hatch.definitions(others)));
         if self.rim {
             all.push("RIM".into());

@@ -101,7 +101,54 @@ impl Gpu {
         rows: &[[f32; N]],
     ) -> Vec<[f32; 4]> {
         let module = wgsl::module(&entry_point::<N>(imports, body), &["DEPTH"]);
-        self.run(module.unwrap_or_else(|error| panic!("{error}")), rows)
+        self.run(module.unwrap_or_else(|error| panic!("{error}")), rows, &[])
+    }
+
+    /// As [`evaluate`](Self::evaluate), for functions of a texture: `imports` declares it as binding 2.
+    pub fn evaluate_texture<const N: usize>(
+        &self,
+        texture: &wgpu::TextureView,
+        imports: &str,
+        body: &str,
+        rows: &[[f32; N]],
+    ) -> Vec<[f32; 4]> {
+        let module = wgsl::module(&entry_point::<N>(imports, body), &[]);
+        let entry = wgpu::BindGroupEntry {
+            binding: 2,
+            resource: wgpu::BindingResource::TextureView(texture),
+        };
+        let module = module.unwrap_or_else(|error| panic!("{error}"));
+        self.run(module, rows, &[entry])
+    }
+
+    /// A texture of 32-bit floating-point numbers.
+    pub fn texture(&self, size: [u32; 2], texels: &[[f32; 4]]) -> wgpu::TextureView {
+        let size = wgpu::Extent3d {
+            width: size[0],
+            height: size[1],
+            depth_or_array_layers: 1,
+        };
+        let texture = self.device.create_texture(&wgpu::TextureDescriptor {
+            label: None,
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let bytes: Vec<u8> = (texels.iter().flatten())
+            .flat_map(|x| x.to_le_bytes())
+            .collect();
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(16 * size.width),
+            rows_per_image: None,
+        };
+        self.queue
+            .write_texture(texture.as_image_copy(), &bytes, layout, size);
+        texture.create_view(&Default::default())
     }
 
     /// As [`evaluate`](Self::evaluate), for functions that read bindings: they are variables that
@@ -114,10 +161,15 @@ impl Gpu {
         rows: &[[f32; N]],
     ) -> Vec<[f32; 4]> {
         let module = wgsl::module_alone(&entry_point::<N>(imports, body), definitions);
-        self.run(module.unwrap_or_else(|error| panic!("{error}")), rows)
+        self.run(module.unwrap_or_else(|error| panic!("{error}")), rows, &[])
     }
 
-    fn run<const N: usize>(&self, module: wgpu::naga::Module, rows: &[[f32; N]]) -> Vec<[f32; 4]> {
+    fn run<const N: usize>(
+        &self,
+        module: wgpu::naga::Module,
+        rows: &[[f32; N]],
+        more: &[wgpu::BindGroupEntry],
+    ) -> Vec<[f32; 4]> {
         let pipeline = self.compute_pipeline(module, "evaluate");
         let bytes: Vec<u8> = rows
             .iter()
@@ -131,19 +183,14 @@ impl Gpu {
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         });
+        let entries = [(0, &input), (1, &output)].map(|(binding, buffer)| wgpu::BindGroupEntry {
+            binding,
+            resource: buffer.as_entire_binding(),
+        });
         let bind_group = self.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &pipeline.get_bind_group_layout(0),
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: input.as_entire_binding(),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: output.as_entire_binding(),
-                },
-            ],
+            entries: &[&entries, more].concat(),
         });
         let mut encoder = self.device.create_command_encoder(&Default::default());
         {

@@ -13,8 +13,8 @@ use bevy::{
 };
 use bevy_comics::{
     CartoonLight, CartoonMaterial, CartoonScene, DetailAxis, FormShape, Glint, GlintFrame,
-    GlintShape, Hatching, MaterialName, Ramp, RampBlend, RampDetail, RampMode, RampStop, Rim,
-    RimWidth, ShadedForm, ToonLook, ToonLookError, ToonLookHandle,
+    GlintShape, Hatching, MaterialName, Ramp, RampBlend, RampDetail, RampMap, RampMode, RampStop,
+    Rim, RimWidth, ShadedForm, ToonLook, ToonLookError, ToonLookHandle,
 };
 use bevy_comics_testkit::headless::HeadlessOptions;
 
@@ -80,7 +80,9 @@ fn everything(axis: DetailAxis, form: FormShape, width: RimWidth) -> CartoonLigh
             ink: Color::srgb_u8(1, 2, 3),
             ..default()
         }),
-        // Files have no images.
+        ramp_map: RampMap::at("ramps/skin.png"),
+        // Files have none of these images.
+        threshold_map: None,
         art_map: None,
         art_map_repeat: 2.5,
     }
@@ -166,7 +168,7 @@ fn errors_of_looks_name_the_line_and_what_is_wrong() {
     ));
 }
 
-fn watching(folder: &Folder) -> Small {
+pub fn watching(folder: &Folder) -> Small {
     let options = HeadlessOptions {
         assets: folder.0.to_string_lossy().into_owned(),
         watch: true,
@@ -176,7 +178,7 @@ fn watching(folder: &Folder) -> Small {
 }
 
 /// Steps until something is so; false after `tries` times 25 ms.
-fn wait(small: &mut Small, tries: usize, done: impl Fn(&mut World) -> bool) -> bool {
+pub fn wait(small: &mut Small, tries: usize, done: impl Fn(&mut World) -> bool) -> bool {
     (0..tries).any(|_| {
         small.headless.step(1);
         let is_done = done(small.world());
@@ -203,7 +205,7 @@ fn load(small: &mut Small, path: &'static str) -> Handle<ToonLook> {
 }
 
 /// A mesh with a cartoon material of its own, that has this look.
-fn mesh_with_look(small: &mut Small, look: Handle<ToonLook>) -> Entity {
+pub fn mesh_with_look(small: &mut Small, look: Handle<ToonLook>) -> Entity {
     let material = CartoonMaterial {
         base: Color::WHITE.into(),
         extension: CartoonLight::default(),

@@ -111,7 +111,7 @@ pub fn apart(a: &RgbaImage, b: &RgbaImage) -> u8 {
 }
 
 /// A ball and a box on a ground, under a sun and a lamp with shadows.
-fn stage(light: &CartoonLight) -> Small {
+pub fn stage(light: &CartoonLight) -> Small {
     let mut small = room(UVec2::new(240, 160), 0.1);
     small.insert((
         Transform::from_xyz(2.6, 3.4, 5.0).looking_at(Vec3::new(0.0, 0.4, 0.0), Vec3::Y),
@@ -231,7 +231,34 @@ fn fractions(picture: &RgbaImage) -> [f64; 4] {
     counts.map(|n| n as f64 / all as f64)
 }
 
-/// Tones of a ball have the areas of its caps: rings around the light, or segments.
+/// Checks that tones of a ball that begin at three places have the areas of its caps: rings around the light,
+/// or segments. `light` gives the light that has black, red, green and blue.
+pub fn check_caps(mode: RampMode, at: [f32; 3], light: impl FnOnce(&mut Small) -> CartoonLight) {
+    let mut small = room(UVec2::splat(240), 0.0);
+    let light = light(&mut small);
+    let ball = Sphere::new(0.95).mesh().uv(256, 128);
+    put(&mut small, ball, &light, Transform::IDENTITY);
+    let segment = |a: f64| (a.acos() - a * (1.0 - a * a).sqrt()) / std::f64::consts::PI;
+    let ring = |a: f64| 1.0 - a * a;
+    let cases: [(Vec3, &dyn Fn(f64) -> f64); 2] = [(Vec3::Z, &ring), (Vec3::X, &segment)];
+    for (to, area) in cases {
+        let lamp = sun(&mut small, to, bright(1.0));
+        let found = fractions(&drawn(&mut small));
+        let above = at.map(|a| area(f64::from(a)));
+        let wanted = [
+            1.0 - above[0],
+            above[0] - above[1],
+            above[1] - above[2],
+            above[2],
+        ];
+        for (found, wanted) in found.into_iter().zip(wanted) {
+            let off = (found - wanted).abs();
+            assert!(off < 0.01, "{mode:?}, {to}: {found}, not {wanted}");
+        }
+        small.world().despawn(lamp);
+    }
+}
+
 #[test]
 fn tones_of_a_ball_have_the_areas_of_its_caps() {
     let at = [0.2, 0.5, 0.8];
@@ -242,40 +269,19 @@ fn tones_of_a_ball_have_the_areas_of_its_caps() {
         RampStop::new(at[1], GREEN),
     ];
     for mode in [RampMode::PerLight, RampMode::Share, RampMode::Brightest] {
-        let mut small = room(UVec2::splat(240), 0.0);
         let ramp = Ramp {
             mode,
             blend: RampBlend::Absolute,
             keep_intensity: 1.0,
             ..Ramp::new(stops)
         };
-        let ball = Sphere::new(0.95).mesh().uv(256, 128);
-        put(&mut small, ball, &with(ramp), Transform::IDENTITY);
-        let segment = |a: f64| (a.acos() - a * (1.0 - a * a).sqrt()) / std::f64::consts::PI;
-        let ring = |a: f64| 1.0 - a * a;
-        let cases: [(Vec3, &dyn Fn(f64) -> f64); 2] = [(Vec3::Z, &ring), (Vec3::X, &segment)];
-        for (to, area) in cases {
-            let lamp = sun(&mut small, to, bright(1.0));
-            let found = fractions(&drawn(&mut small));
-            let above = at.map(|a| area(f64::from(a)));
-            let wanted = [
-                1.0 - above[0],
-                above[0] - above[1],
-                above[1] - above[2],
-                above[2],
-            ];
-            for (found, wanted) in found.into_iter().zip(wanted) {
-                let off = (found - wanted).abs();
-                assert!(off < 0.01, "{mode:?}, {to}: {found}, not {wanted}");
-            }
-            small.world().despawn(lamp);
-        }
+        check_caps(mode, at, |_| with(ramp));
     }
 }
 
 /// A square of 4 units whose normals lean from left to right: towards +X, the cosine is
 /// t / sqrt(1 + t^2), with the place t from -1 to 1.
-fn leaning() -> Mesh {
+pub fn leaning() -> Mesh {
     let corners = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0]];
     let normal = |x: f32| [x.signum() * 0.5f32.sqrt(), 0.0, 0.5f32.sqrt()];
     let usages = RenderAssetUsages::default();
@@ -330,7 +336,43 @@ fn edges_of_tones_cover_what_they_should() {
     assert!(error.abs() < 1.0 / 255.0, "{error} pixels");
 }
 
-/// The border of a shadow mixes light and shade: no tone between is drawn along it.
+/// Checks that the border of a shadow on a wall has no tone between light and shade. `light` gives the light,
+/// with a ramp from black over red and green to white from 0.6 to 0.8 on.
+pub fn check_borders(mode: RampMode, light: impl FnOnce(&mut Small) -> CartoonLight) {
+    let mut small = room(SIZE, 0.0);
+    let light = light(&mut small);
+    let wall = Plane3d::new(Vec3::Z, Vec2::splat(4.0));
+    put(&mut small, wall.mesh(), &light, Transform::IDENTITY);
+    let ball = Transform::from_xyz(0.3, 0.2, 0.8);
+    let ball = put(&mut small, Sphere::new(0.4).mesh().uv(64, 32), &light, ball);
+    // Only its shadow is drawn.
+    small
+        .world()
+        .entity_mut(ball)
+        .insert(bevy::camera::visibility::RenderLayers::layer(3));
+    let lamp = sun(
+        &mut small,
+        Vec3::new(0.5, 0.3, 1.0),
+        DirectionalLight {
+            shadow_maps_enabled: true,
+            ..bright(1.0)
+        },
+    );
+    small
+        .world()
+        .entity_mut(lamp)
+        .insert(bevy::camera::visibility::RenderLayers::from_layers(&[0, 3]));
+    let picture = drawn(&mut small);
+    let colored = |p: &&image::Rgba<u8>| p.0[0].abs_diff(p.0[1]) > 1;
+    let dark = picture.pixels().filter(|p| p.0[0] < 5).count();
+    let mixed = picture
+        .pixels()
+        .filter(|p| (10..245).contains(&p.0[0]))
+        .count();
+    assert!(dark > 500 && mixed > 20, "{mode:?}: {dark}, {mixed}");
+    assert_eq!(picture.pixels().filter(colored).count(), 0, "{mode:?}");
+}
+
 #[test]
 fn borders_of_shadows_have_no_bands() {
     let stops = [
@@ -345,38 +387,7 @@ fn borders_of_shadows_have_no_bands() {
             keep_intensity: 1.0,
             ..Ramp::new(stops)
         };
-        let light = with(ramp);
-        let mut small = room(SIZE, 0.0);
-        let wall = Plane3d::new(Vec3::Z, Vec2::splat(4.0));
-        put(&mut small, wall.mesh(), &light, Transform::IDENTITY);
-        let ball = Transform::from_xyz(0.3, 0.2, 0.8);
-        let ball = put(&mut small, Sphere::new(0.4).mesh().uv(64, 32), &light, ball);
-        // Only its shadow is drawn.
-        small
-            .world()
-            .entity_mut(ball)
-            .insert(bevy::camera::visibility::RenderLayers::layer(3));
-        let lamp = sun(
-            &mut small,
-            Vec3::new(0.5, 0.3, 1.0),
-            DirectionalLight {
-                shadow_maps_enabled: true,
-                ..bright(1.0)
-            },
-        );
-        small
-            .world()
-            .entity_mut(lamp)
-            .insert(bevy::camera::visibility::RenderLayers::from_layers(&[0, 3]));
-        let picture = drawn(&mut small);
-        let colored = |p: &&image::Rgba<u8>| p.0[0].abs_diff(p.0[1]) > 1;
-        let dark = picture.pixels().filter(|p| p.0[0] < 5).count();
-        let mixed = picture
-            .pixels()
-            .filter(|p| (10..245).contains(&p.0[0]))
-            .count();
-        assert!(dark > 500 && mixed > 20, "{mode:?}: {dark}, {mixed}");
-        assert_eq!(picture.pixels().filter(colored).count(), 0, "{mode:?}");
+        check_borders(mode, |_| with(ramp));
     }
 }
 

@@ -46,6 +46,7 @@ fn surface(x: u32, y: u32) -> Option<Surface> {
         foot: Footprint {
             normal: steps,
             position: steps.map(|step| BALL * step),
+            bias: [0.0; 2],
         },
         detail: 1.0,
         roughness: 1.0,

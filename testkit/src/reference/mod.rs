@@ -60,6 +60,7 @@ pub mod planes;
 pub mod pressure;
 pub mod print_offset;
 pub mod ramp;
+pub mod ramp_map;
 pub mod range;
 pub mod raw;
 pub mod read;

@@ -38,6 +38,7 @@ mod plane_lines;
 mod planes;
 mod pressure;
 mod ramp;
+mod ramp_map;
 mod rect;
 mod settings;
 mod sheet;

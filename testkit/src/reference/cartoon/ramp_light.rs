@@ -11,7 +11,7 @@ use super::super::{
     mix,
 };
 use super::reflect::shadows;
-use super::surface::{Arriving, Surface, biased_cosine, cosine_over_pixel};
+use super::surface::{Arriving, Surface, biased_cosine, biased_over_pixel};
 
 /// The tones of a ramp at a detail, lowest first: colour, place and softness.
 pub struct Tones(Vec<(DVec3, f64, f64)>);
@@ -82,7 +82,7 @@ pub fn angle_of(light: &CartoonLight, s: &Surface, lamp: &Arriving) -> (f64, f64
     match shadows(light)[0] > 0.0 {
         true => (
             biased_cosine(s, lamp.to_light),
-            cosine_over_pixel(&s.foot, lamp.to_light),
+            biased_over_pixel(s, lamp.to_light),
         ),
         false => (1.0, 0.0),
     }

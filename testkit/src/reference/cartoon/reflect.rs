@@ -3,7 +3,9 @@
 use bevy_comics::CartoonLight;
 
 use super::super::light::{edge_at, highlight};
-use super::surface::{Arriving, Surface, biased_cosine, cosine_over_pixel, half_way};
+use super::surface::{
+    Arriving, Surface, biased_cosine, biased_over_pixel, cosine_over_pixel, half_way,
+};
 
 /// Strengths of the backface shadow and of the projected shadow.
 pub fn shadows(light: &CartoonLight) -> [f64; 2] {
@@ -17,7 +19,7 @@ pub fn shadows(light: &CartoonLight) -> [f64; 2] {
 pub fn unshadowed(light: &CartoonLight, s: &Surface, lamp: &Arriving) -> f64 {
     let [backface, projected] = shadows(light);
     let cosine = biased_cosine(s, lamp.to_light);
-    let width = cosine_over_pixel(&s.foot, lamp.to_light);
+    let width = biased_over_pixel(s, lamp.to_light);
     let faces = edge_at(f64::from(light.terminator), cosine, width);
     let left = [
         1.0 - backface * (1.0 - faces),

@@ -2,11 +2,12 @@
 
 use bevy::math::DVec3;
 
-/// Changes of the world position and of the normal over a pixel, to the right and down.
+/// Changes of the world position, of the normal and of the bias over a pixel, to the right and down.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Footprint {
     pub position: [DVec3; 2],
     pub normal: [DVec3; 2],
+    pub bias: [f64; 2],
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -44,9 +45,20 @@ pub fn cosine_over_pixel(foot: &Footprint, direction: DVec3) -> f64 {
     foot.normal.iter().map(|n| n.dot(direction).abs()).sum()
 }
 
+/// The bias of a threshold from 0 to 1, of which 0.5 is neutral.
+pub fn bias_of(threshold: f64) -> f64 {
+    2.0 * (threshold - 0.5)
+}
+
 /// Cosine between normal and direction, with the surface's own threshold.
 pub fn biased_cosine(s: &Surface, direction: DVec3) -> f64 {
     (s.normal.dot(direction) + s.bias).clamp(-1.0, 1.0)
+}
+
+/// Its change over a pixel.
+pub fn biased_over_pixel(s: &Surface, direction: DVec3) -> f64 {
+    let steps = s.foot.normal.iter().zip(s.foot.bias);
+    steps.map(|(n, bias)| (n.dot(direction) + bias).abs()).sum()
 }
 
 /// Size of a pixel on the surface in world units.

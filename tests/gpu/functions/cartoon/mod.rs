@@ -62,9 +62,10 @@ const STOP: usize = 10;
 const STOP_COUNT: usize = 3;
 const COUNT: usize = STOPS + STOP_COUNT * STOP;
 const POWER: usize = COUNT + 1;
-/// Lights, a surface, settings, light from all around, stops, the number of lights and the exponent of
-/// the detail by highlights.
-pub const ROW: usize = POWER + 1;
+const BIAS_STEPS: usize = POWER + 1;
+/// Lights, a surface, settings, light from all around, stops, the number of lights, the exponent of the
+/// detail by highlights, and the change of the surface's bias.
+pub const ROW: usize = BIAS_STEPS + 2;
 
 pub type Row = [f32; ROW];
 
@@ -94,6 +95,7 @@ pub const READ: &str = "#import bevy_comics::cartoon::bindings::cartoon
         s.to_eye = v(67u);
         s.foot.normal_x = v(70u);
         s.foot.normal_y = v(73u);
+        s.foot.bias = vec2(i(140u), i(141u));
         s.bias = i(76u);
         s.detail = i(77u);
         s.roughness = i(78u);
@@ -165,6 +167,7 @@ pub fn surface(row: &Row) -> Surface {
         foot: Footprint {
             normal: [vector(6), vector(9)],
             position: [vector(18), vector(21)],
+            bias: [0, 1].map(|k| row[BIAS_STEPS + k].into()),
         },
         bias: number(12),
         detail: number(13),
@@ -284,6 +287,13 @@ fn random_row(n: &mut Numbers) -> Row {
     }
     row[COUNT] = (n.part() * 4.99).floor();
     row[POWER] = n.within(1.0, 20.0);
+    for step in &mut row[BIAS_STEPS..] {
+        *step = if n.once_in(2) {
+            0.0
+        } else {
+            n.within(-0.1, 0.1)
+        };
+    }
     row
 }
 

@@ -8,7 +8,7 @@ use bevy_comics_testkit::{
         cartoon::{
             reflect,
             shine::{self, Lit},
-            surface::{self, Arriving, Surface, cosine_over_pixel, half_way},
+            surface::{self, Arriving, Surface, biased_over_pixel, cosine_over_pixel, half_way},
         },
         light::highlight_fraction,
     },
@@ -17,9 +17,9 @@ use bevy_comics_testkit::{
 use super::{READ, Row, assert_color, lamps, light, rows, surface};
 
 /// How far rounding moves a smooth step over a cosine: by 1.5 over its width. The cosine of two unit
-/// vectors and a bias is right to 1e-6.
+/// vectors and a bias is right to 1e-6, and so is its change over a pixel.
 pub fn doubt_of_an_edge(s: &Surface, direction: DVec3) -> f64 {
-    let width = cosine_over_pixel(&s.foot, direction).max(2e-5);
+    let width = biased_over_pixel(s, direction).max(2e-5);
     (1.5 * 1e-6 / width).min(1.0) + 1e-6
 }
 
@@ -76,6 +76,31 @@ fn angles_and_sizes_of_surfaces_are_their_twin() {
             let slack = if k == 3 { 1e-6 / cancelled } else { 1e-6 };
             assert!(off <= slack, "{k} of {row:?}: {found}, not {twin}");
         }
+    }
+}
+
+#[test]
+fn changes_of_thresholds_over_pixels_are_their_twin() {
+    let import = format!(
+        "#import bevy_comics::cartoon::surface::{{bias_of, biased_over_pixel}}
+         {READ}"
+    );
+    let body =
+        "return vec4(biased_over_pixel(surface(), lamp(0u).to_light), bias_of(i(139u)), 0.0, 0.0);";
+    let rows = rows(4096, 7);
+    let results = gpu().evaluate_alone(&[], &import, body, &rows);
+    for (row, found) in rows.iter().zip(results) {
+        let over = biased_over_pixel(&surface(row), super::vector(row, 6));
+        let bias = surface::bias_of(row[super::POWER].into());
+        // Sums of products of numbers up to 1; a threshold up to 20.
+        assert!(
+            (f64::from(found[0]) - over).abs() < 1e-6,
+            "{row:?}: {found:?}"
+        );
+        assert!(
+            (f64::from(found[1]) - bias).abs() < 1e-5,
+            "{row:?}: {found:?}"
+        );
     }
 }
 

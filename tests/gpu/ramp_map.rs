@@ -1,0 +1,517 @@
+//! Painted ramps of the cartoon material: tones, edges, shadows, rows, files, and images that cannot be used.
+
+use bevy::{
+    asset::RenderAssetUsages,
+    prelude::*,
+    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
+};
+use bevy_comics::{
+    CartoonLight, CartoonMaterial, DetailAxis, Ramp, RampBlend, RampDetail, RampMap, RampMode,
+    RampStop, ToonLook, ToonLookHandle,
+};
+use bevy_comics_testkit::reference::{Rgb, color::srgb_encode, ramp};
+use image::RgbaImage;
+
+use crate::{
+    looks::{mesh_with_look, wait, watching},
+    ramp::{
+        apart, bright, check_borders, check_caps, drawn, leaning, put, room, set_light, stage, sun,
+        with,
+    },
+    small::{Small, linear},
+    styles::Folder,
+};
+
+const MODES: [RampMode; 3] = [RampMode::Share, RampMode::PerLight, RampMode::Brightest];
+const BLACK: Rgb = [0.0; 3];
+const WHITE: Rgb = [1.0; 3];
+const RED: Rgb = [1.0, 0.0, 0.0];
+const GREEN: Rgb = [0.0, 1.0, 0.0];
+const BLUE: Rgb = [0.0, 0.0, 1.0];
+
+/// An image of rows of tones in linear light.
+fn painted(rows: &[Vec<Rgb>]) -> Image {
+    let texel = |color: &Rgb| [color[0] as f32, color[1] as f32, color[2] as f32, 1.0];
+    let bytes = (rows.iter().flatten())
+        .flat_map(texel)
+        .flat_map(f32::to_le_bytes);
+    Image::new(
+        Extent3d {
+            width: rows[0].len() as u32,
+            height: rows.len() as u32,
+            depth_or_array_layers: 1,
+        },
+        TextureDimension::D2,
+        bytes.collect(),
+        TextureFormat::Rgba32Float,
+        RenderAssetUsages::default(),
+    )
+}
+
+fn add(small: &mut Small, image: Image) -> RampMap {
+    let mut images = small.world().resource_mut::<Assets<Image>>();
+    images.add(image).into()
+}
+
+/// The tones of rows, as colours of surfaces, or as factors of the light.
+fn light_of(
+    small: &mut Small,
+    mode: RampMode,
+    blend: RampBlend,
+    rows: &[Vec<Rgb>],
+) -> CartoonLight {
+    CartoonLight {
+        ramp_map: add(small, painted(rows)),
+        ..with(Ramp {
+            mode,
+            blend,
+            keep_intensity: 1.0,
+            ..Ramp::default()
+        })
+    }
+}
+
+/// Truth: tones of a ball have the areas of its caps.
+#[test]
+fn painted_tones_of_a_ball_have_the_areas_of_its_caps() {
+    let row = vec![BLACK, RED, GREEN, BLUE];
+    for mode in MODES {
+        check_caps(mode, [0.25, 0.5, 0.75], |small| {
+            light_of(small, mode, RampBlend::Absolute, std::slice::from_ref(&row))
+        });
+    }
+}
+
+/// Truth: no tone between is drawn along the border of a shadow.
+#[test]
+fn borders_of_shadows_have_no_painted_bands() {
+    let row = vec![BLACK, RED, GREEN, WHITE];
+    for mode in MODES {
+        check_borders(mode, |small| {
+            light_of(small, mode, RampBlend::Multiply, std::slice::from_ref(&row))
+        });
+    }
+}
+
+/// Two texels are two stops with an edge in the middle. Where the edge is in a pixel, the stops have a
+/// smooth step over the pixel in place of the area: at most 1 / (6 sqrt 3) apart, and alike in the mean.
+#[test]
+fn two_texels_are_two_stops() {
+    let size = UVec2::splat(160);
+    for mode in MODES {
+        for (to, strength) in [
+            (Vec3::new(0.8, 0.5, 0.6), 1.0),
+            (Vec3::new(-0.3, 1.0, 0.2), 0.7),
+        ] {
+            let mut small = room(size, 0.0);
+            let mut painted =
+                light_of(&mut small, mode, RampBlend::Absolute, &[vec![BLACK, WHITE]]);
+            painted.shadow_strength = strength;
+            let stops = [
+                RampStop::new(0.0, Color::BLACK),
+                RampStop::new(0.5, Color::WHITE),
+            ];
+            let ramp = Ramp {
+                stops: stops.to_vec(),
+                ..painted.ramp.clone().expect("a ramp")
+            };
+            let analytic = CartoonLight {
+                shadow_strength: strength,
+                ..with(ramp)
+            };
+            let ball = Sphere::new(0.95).mesh().uv(256, 128);
+            put(&mut small, ball, &painted, Transform::IDENTITY);
+            sun(&mut small, to, bright(1.0));
+            let map = drawn(&mut small);
+            set_light(&mut small, &analytic);
+            let stops = drawn(&mut small);
+            let (mut edge, mut all, mut sum) = (0, 0, 0.0);
+            for (x, y) in (0..size.x).flat_map(|x| (0..size.y).map(move |y| (x, y))) {
+                if map.get_pixel(x, y) == map.get_pixel(0, 0) {
+                    continue;
+                }
+                let [a, b] = [&map, &stops].map(|picture| linear(picture, x, y)[0]);
+                let code = 2.0 / 255.0;
+                let most = f64::from(strength) / (6.0 * 3f64.sqrt()) + code;
+                assert!((a - b).abs() <= most, "{mode:?}, ({x}, {y}): {a}, not {b}");
+                let is_between = |c: f64| c > 1.0 - f64::from(strength) + code && c < 1.0 - code;
+                if is_between(a) || is_between(b) {
+                    edge += 1;
+                    sum += a - b;
+                } else {
+                    assert!((a - b).abs() <= code, "{mode:?}, ({x}, {y}): {a}, not {b}");
+                }
+                all += 1;
+            }
+            assert!(edge > 60 && edge < all / 40, "{edge} pixels of the edge");
+            // The mean of so many places in the pixel; a difference has the standard deviation 0.06.
+            let mean = sum / f64::from(edge);
+            assert!(
+                mean.abs() < 4.0 * 0.06 / f64::from(edge).sqrt(),
+                "{mode:?}: {mean}"
+            );
+        }
+    }
+}
+
+/// Soft tones, so that 1024 texels have them within a code.
+fn soft() -> Ramp {
+    Ramp::new([
+        RampStop::new(0.0, Color::linear_rgb(0.15, 0.1, 0.3)),
+        RampStop::new(0.35, Color::linear_rgb(0.5, 0.4, 0.6)).soft(0.6),
+        RampStop::new(0.7, Color::linear_rgb(1.0, 0.9, 0.8)).soft(0.5),
+    ])
+}
+
+/// The fraction of pixels that differ by more than so many codes.
+fn different(a: &RgbaImage, b: &RgbaImage, codes: u8) -> f64 {
+    let pairs = a.pixels().zip(b.pixels());
+    let apart = |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| {
+        (0..3).any(|c| a.0[c].abs_diff(b.0[c]) > codes)
+    };
+    let count = a.pixels().len() as f64;
+    pairs.filter(apart).count() as f64 / count
+}
+
+/// Truth: an image of a soft ramp is that ramp, in every mode and blend, under several lights and shadows.
+#[test]
+fn images_of_soft_ramps_are_these_ramps() {
+    let tone = |k: u32| ramp::tone(&soft(), (f64::from(k) + 0.5) / 1024.0, 0.0);
+    let row: Vec<Rgb> = (0..1024).map(tone).collect();
+    let mut small = stage(&CartoonLight::default());
+    for mode in MODES {
+        for blend in [RampBlend::Multiply, RampBlend::Absolute] {
+            for strength in [1.0, 0.6] {
+                let stops = CartoonLight {
+                    shadow_strength: strength,
+                    ..with(Ramp {
+                        mode,
+                        blend,
+                        ..soft()
+                    })
+                };
+                let map = CartoonLight {
+                    ramp_map: add(&mut small, painted(&[row.clone()])),
+                    ..stops.clone()
+                };
+                set_light(&mut small, &stops);
+                let wanted = drawn(&mut small);
+                set_light(&mut small, &map);
+                let found = drawn(&mut small);
+                // Half a texel of a tone that rises by 3 per unit is 0.4 of a code of linear light, and
+                // up to 1.2 of a dark display. Along the borders of shadows, stops and images do not
+                // weaken soft tones alike.
+                let off = different(&found, &wanted, 2);
+                assert!(off < 0.02, "{mode:?}, {blend:?}, {strength}: {off}");
+                assert!(different(&found, &wanted, 60) < 0.001);
+            }
+        }
+    }
+}
+
+/// Truth: rows lie along the second axis, the first one where there is all detail; between rows, tones are
+/// mixed in linear light.
+#[test]
+fn rows_are_the_second_axis() {
+    let mut small = room(UVec2::splat(120), 0.0);
+    let rows = [vec![RED, RED], vec![GREEN, GREEN], vec![BLUE, BLUE]];
+    let mut light = light_of(&mut small, RampMode::Share, RampBlend::Absolute, &rows);
+    let ball = Sphere::new(0.95).mesh().uv(256, 128);
+    put(&mut small, ball, &light, Transform::IDENTITY);
+    sun(&mut small, Vec3::Z, bright(1.0));
+    let detail = |axis| {
+        Some(RampDetail {
+            plain: Vec::new(),
+            axis,
+        })
+    };
+    for mode in MODES {
+        // Without an axis, the first row.
+        light.ramp = with(Ramp {
+            mode,
+            blend: RampBlend::Absolute,
+            keep_intensity: 1.0,
+            ..Ramp::default()
+        })
+        .ramp;
+        set_light(&mut small, &light);
+        assert_eq!(drawn(&mut small).get_pixel(60, 60).0[..3], [255, 0, 0]);
+        for (amount, wanted) in [
+            (1.0, RED),
+            (0.75, [0.5, 0.5, 0.0]),
+            (0.5, GREEN),
+            (0.125, [0.0, 0.25, 0.75]),
+            (0.0, BLUE),
+        ] {
+            let ramp = light.ramp.as_mut().expect("a ramp");
+            ramp.detail = detail(DetailAxis::Constant(amount));
+            set_light(&mut small, &light);
+            let found = linear(&drawn(&mut small), 60, 60);
+            let off = (0..3)
+                .map(|c| (found[c] - wanted[c]).abs())
+                .fold(0.0, f64::max);
+            assert!(off < 0.005, "{mode:?}, {amount}: {found:?}");
+        }
+        // The cosine between normal and eye: red in the middle, blue at the rim.
+        let ramp = light.ramp.as_mut().expect("a ramp");
+        ramp.detail = detail(DetailAxis::Rim { power: 1.0 });
+        set_light(&mut small, &light);
+        let picture = drawn(&mut small);
+        for x in 60..112 {
+            let [across, up] = [f64::from(x) - 59.5, 0.5].map(|p| p / 57.0);
+            let row = 2.0 * (1.0 - (1.0 - across * across - up * up).sqrt());
+            let wanted = match row < 1.0 {
+                true => [1.0 - row, row, 0.0],
+                false => [0.0, 2.0 - row, row - 1.0],
+            };
+            let found = linear(&picture, x, 60);
+            let off = (0..3)
+                .map(|c| (found[c] - wanted[c]).abs())
+                .fold(0.0, f64::max);
+            assert!(off < 0.02, "{mode:?}, {x}: {found:?}, not {wanted:?}");
+        }
+    }
+}
+
+/// Truth: many tones in a pixel are their mean, without moire; over 64 shifts by parts of a pixel, an edge
+/// covers what it should.
+#[test]
+fn pixels_have_the_mean_of_painted_tones() {
+    let size = UVec2::new(64, 32);
+    let mut small = room(size, 0.0);
+    let stripes: Vec<Rgb> = (0..1024).map(|k| [f64::from(k % 2); 3]).collect();
+    let light = light_of(
+        &mut small,
+        RampMode::PerLight,
+        RampBlend::Absolute,
+        &[stripes],
+    );
+    let square = put(&mut small, leaning(), &light, Transform::IDENTITY);
+    sun(&mut small, Vec3::X, bright(1.0));
+    let picture = drawn(&mut small);
+    // The cosine is t / sqrt(1 + t^2) at t = x / 32 pixels: near the middle it changes by 32 texels a pixel.
+    // Of the mean, half a texel may be left over.
+    for x in 34..56 {
+        let t = (f64::from(x) + 0.5 - 32.0) / 32.0;
+        let texels = 1024.0 / 32.0 * (1.0 + t * t).powf(-1.5);
+        let off = (linear(&picture, x, 16)[0] - 0.5).abs();
+        assert!(off < 0.5 / texels + 0.004, "{x}: {off}");
+    }
+    let halves = light_of(
+        &mut small,
+        RampMode::PerLight,
+        RampBlend::Absolute,
+        &[vec![BLACK, BLACK, WHITE, WHITE, WHITE]],
+    );
+    set_light(&mut small, &halves);
+    let edge = 2.0 * 0.4 / (1.0f64 - 0.16).sqrt();
+    let mut error = 0.0;
+    for shift in 0..64 {
+        let moved = f64::from(shift) / 64.0 / 16.0;
+        let at = Transform::from_xyz(moved as f32, 0.0, 0.0);
+        small.world().entity_mut(square).insert(at);
+        small.headless.step(6);
+        let picture = small.picture();
+        let row: f64 = (4..size.x).map(|x| linear(&picture, x, 16)[0]).sum();
+        let wanted = f64::from(size.x) / 2.0 - (edge + moved) * 16.0;
+        // The area of a pixel is exact on a straight cosine: what is left is the codes of two pixels.
+        assert!((row - wanted).abs() < 0.02, "{row}, not {wanted}");
+        error += (row - wanted) / 64.0;
+    }
+    assert!(error.abs() < 1.0 / 255.0, "{error} pixels");
+    assert_eq!(small.errors(), 0);
+}
+
+/// A material with a map and no ramp has the settings of the default ramp.
+#[test]
+fn a_map_without_a_ramp_has_the_default_settings() {
+    let mut small = stage(&CartoonLight::default());
+    let map = add(&mut small, painted(&[vec![[0.2, 0.1, 0.4], WHITE, WHITE]]));
+    let alone = CartoonLight {
+        ramp_map: map.clone(),
+        ..default()
+    };
+    set_light(&mut small, &alone);
+    let found = drawn(&mut small);
+    let default = CartoonLight {
+        ramp: Some(Ramp::default()),
+        ..alone.clone()
+    };
+    set_light(&mut small, &default);
+    assert_eq!(apart(&found, &drawn(&mut small)), 0);
+    let none = CartoonLight {
+        ramp_map: RampMap::default(),
+        ..alone
+    };
+    set_light(&mut small, &none);
+    assert!(apart(&found, &drawn(&mut small)) > 20);
+}
+
+/// Images that cannot be used, and files that are not there, leave the stops of the ramp.
+#[test]
+fn bad_images_leave_the_stops() {
+    let stops = with(Ramp::default());
+    let mut small = stage(&stops);
+    let wanted = drawn(&mut small);
+    let row = |width: usize| painted(&[vec![RED; width]]);
+    let mut gone = row(4);
+    gone.asset_usage = RenderAssetUsages::RENDER_WORLD;
+    let gone = add(&mut small, gone);
+    // It is moved to the render world before a material has it.
+    small.headless.step(3);
+    let [wide, narrow] = [1025, 1].map(|width| add(&mut small, row(width)));
+    for map in [wide, narrow, gone] {
+        let bad = CartoonLight {
+            ramp_map: map.clone(),
+            ..stops.clone()
+        };
+        set_light(&mut small, &bad);
+        assert_eq!(apart(&wanted, &drawn(&mut small)), 0, "{map:?}");
+    }
+    // Materials that never had another one.
+    let missing = CartoonLight {
+        ramp_map: RampMap::at("nowhere.png"),
+        ..stops.clone()
+    };
+    let mut other = stage(&missing);
+    let is_drawn = (0..100).any(|_| {
+        std::thread::sleep(std::time::Duration::from_millis(25));
+        apart(&wanted, &drawn(&mut other)) == 0
+    });
+    assert!(is_drawn, "a missing file");
+    // The next good one is drawn.
+    let good = CartoonLight {
+        ramp_map: add(&mut small, row(1024)),
+        ..stops
+    };
+    set_light(&mut small, &good);
+    assert!(apart(&wanted, &drawn(&mut small)) > 100);
+}
+
+/// An image of 16 tones of one grey, in 8 bits.
+fn greys(code: u8) -> RgbaImage {
+    RgbaImage::from_pixel(16, 1, image::Rgba([code, code, code, 255]))
+}
+
+/// Tones follow when code changes an image.
+#[test]
+fn tones_follow_their_image() {
+    let mut small = room(UVec2::splat(16), 0.0);
+    let light = light_of(
+        &mut small,
+        RampMode::PerLight,
+        RampBlend::Absolute,
+        &[vec![RED; 4]],
+    );
+    let wall = Plane3d::new(Vec3::Z, Vec2::splat(4.0));
+    put(&mut small, wall.mesh(), &light, Transform::IDENTITY);
+    sun(&mut small, Vec3::Z, bright(1.0));
+    assert_eq!(drawn(&mut small).get_pixel(8, 8).0[..3], [255, 0, 0]);
+    let image = light.ramp_map.image().expect("an image").id();
+    let change = |small: &mut Small, to: Image| {
+        let mut images = small.world().resource_mut::<Assets<Image>>();
+        *images.get_mut(image).expect("it is there") = to;
+        drawn(small).get_pixel(8, 8).0
+    };
+    let green = change(&mut small, painted(&[vec![GREEN; 7], vec![RED; 7]]));
+    assert_eq!(green[..3], [0, 255, 0]);
+    // One that cannot be used leaves the stops, of which the last one is white.
+    let white = change(&mut small, painted(&[vec![BLUE; 1]]));
+    assert_eq!(white[..3], [255; 3]);
+    let blue = change(&mut small, painted(&[vec![BLUE; 2]]));
+    assert_eq!(blue[..3], [0, 0, 255]);
+    assert_eq!(small.errors(), 0);
+}
+
+/// A look names its image by its path, which is loaded with it, and read again when its file changes.
+#[test]
+fn looks_name_their_images_by_path() {
+    let folder = Folder::new("ramp-map");
+    let file = folder.0.join("tones.png");
+    greys(100).save(&file).expect("written");
+    let text = "(version: 1, light: (highlight: 0.0, ramp_map: \"tones.png\",
+        ramp: (mode: PerLight, blend: Absolute)))";
+    std::fs::write(folder.0.join("hero.toon.ron"), text).expect("written");
+    let mut small = watching(&folder);
+    small.clear();
+    let look: Handle<ToonLook> = small
+        .world()
+        .resource::<AssetServer>()
+        .load("hero.toon.ron");
+    let mesh = mesh_with_look(&mut small, look.clone());
+    let image = move |world: &World| {
+        let handle = world.get::<MeshMaterial3d<CartoonMaterial>>(mesh)?;
+        let materials = world.resource::<Assets<CartoonMaterial>>();
+        materials
+            .get(&handle.0)?
+            .extension
+            .ramp_map
+            .image()
+            .cloned()
+    };
+    let loaded = wait(&mut small, 400, |world| image(world).is_some());
+    assert!(loaded, "the look did not load");
+    let server = small.world().resource::<AssetServer>().clone();
+    assert!(wait(&mut small, 400, |_| server
+        .is_loaded_with_dependencies(&look)));
+    let handle = image(small.world()).expect("an image");
+    assert_eq!(handle.path().expect("of a file").to_string(), "tones.png");
+    // By code, a path is the same image.
+    let same = CartoonLight {
+        ramp_map: server.load("tones.png").into(),
+        ..default()
+    };
+    assert_eq!(same.ramp_map.image(), Some(&handle));
+    // A box right before the eye, in full light.
+    small.insert((
+        Transform::from_xyz(0.0, 0.0, 1.2),
+        Projection::Perspective(PerspectiveProjection::default()),
+    ));
+    sun(&mut small, Vec3::Z, bright(1.0));
+    small.world().insert_resource(GlobalAmbientLight::NONE);
+    let grey = |small: &mut Small| drawn(small).get_pixel(48, 32).0[0];
+    assert!(grey(&mut small).abs_diff(100) <= 1);
+    greys(200).save(&file).expect("written");
+    let changed = (0..100).any(|_| {
+        std::thread::sleep(std::time::Duration::from_millis(25));
+        grey(&mut small).abs_diff(200) <= 1
+    });
+    assert!(changed, "the change did not arrive");
+    // Without the component the material stays; the look is written with the path.
+    small.world().entity_mut(mesh).remove::<ToonLookHandle>();
+    let looks = small.world().resource::<Assets<ToonLook>>();
+    let text = looks.get(&look).expect("loaded").to_ron().expect("text");
+    assert!(text.contains("ramp_map: \"tones.png\""), "{text}");
+    assert_eq!(small.errors(), 0);
+}
+
+/// Images in sRGB and in linear light give the colours that they mean.
+#[test]
+fn images_in_srgb_are_decoded() {
+    let mut small = room(UVec2::splat(16), 0.0);
+    let mut light = light_of(
+        &mut small,
+        RampMode::PerLight,
+        RampBlend::Absolute,
+        &[vec![RED; 2]],
+    );
+    let wall = Plane3d::new(Vec3::Z, Vec2::splat(4.0));
+    put(&mut small, wall.mesh(), &light, Transform::IDENTITY);
+    sun(&mut small, Vec3::Z, bright(1.0));
+    let linear_code = (255.0 * srgb_encode([60.0 / 255.0; 3])[0]).round() as u8;
+    for (format, wanted) in [
+        (TextureFormat::Rgba8UnormSrgb, 60),
+        (TextureFormat::Rgba8Unorm, linear_code),
+    ] {
+        let mut image = painted(&[vec![RED; 2]]);
+        image.texture_descriptor.format = format;
+        image.data = Some(vec![60; 8]);
+        light.ramp_map = add(&mut small, image);
+        set_light(&mut small, &light);
+        let found = drawn(&mut small).get_pixel(8, 8).0[0];
+        assert!(
+            found.abs_diff(wanted) <= 1,
+            "{format:?}: {found}, not {wanted}"
+        );
+    }
+}
