@@ -1,5 +1,7 @@
 //! Every number is clamped to the range that its field documents.
 
+#[cfg(all(feature = "cartoon", feature = "objects"))]
+mod materials;
 mod page;
 mod prints;
 mod ranges;

@@ -25,6 +25,33 @@ fn all_types() -> Vec<(&'static str, &'static TypeInfo)> {
     for effect in EffectRegistry::built_in().types() {
         all.push((effect.name, (effect.type_info)()));
     }
+    all.extend(types_of_objects());
+    all
+}
+
+/// The types of the page of a picked object.
+fn types_of_objects() -> Vec<(&'static str, &'static TypeInfo)> {
+    let mut all = Vec::new();
+    #[cfg(feature = "cartoon")]
+    all.extend([
+        ("light", crate::CartoonLight::type_info()),
+        ("light.ramp", crate::Ramp::type_info()),
+        ("light.ramp.stops.0", crate::RampStop::type_info()),
+        ("light.ramp.detail", crate::RampDetail::type_info()),
+        ("light.ramp.detail.axis", crate::DetailAxis::type_info()),
+        ("light.glint", crate::Glint::type_info()),
+        ("light.form", crate::ShadedForm::type_info()),
+        ("light.form.shape", crate::FormShape::type_info()),
+        ("light.rim", crate::Rim::type_info()),
+        ("light.rim.width", crate::RimWidth::type_info()),
+    ]);
+    #[cfg(feature = "objects")]
+    all.extend([
+        ("outline_style", crate::OutlineStyle::type_info()),
+        ("outline_style.kinds", crate::OutlineKinds::type_info()),
+        ("no_outlines", crate::NoOutlines::type_info()),
+        ("mesh_sections", crate::MeshSections::type_info()),
+    ]);
     all
 }
 
@@ -53,7 +80,8 @@ fn every_field_is_documented_and_every_number_has_a_range() {
                 "{name}"
             );
             let path = field.type_path();
-            let is_number = ["f32", "u32"].iter().any(|t| path.contains(t));
+            let kinds = ["f32", "u32", "Vec2", "Vec3", "vec::Vec<"];
+            let is_number = kinds.iter().any(|t| path.contains(t));
             assert_eq!(FieldRange::of(field).is_some(), is_number, "{name}: {path}");
         }
     }
