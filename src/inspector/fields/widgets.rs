@@ -105,6 +105,8 @@ pub(super) fn modes(
             setting.path,
             editor,
         );
+        // Its numbers are not in their ranges yet, and a slider would clamp them.
+        return;
     }
     mode_settings(ui, current, info, setting, editor);
 }

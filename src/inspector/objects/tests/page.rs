@@ -124,9 +124,9 @@ fn light_lines_and_sections_are_undone_in_one_order() {
         assert!(page.take(Way::Redo));
         assert_eq!(state(&page), *wanted);
     }
-    // The width comes back with the component.
+    // A width that was never on has the documented default, and comes back with the component.
     let style = states[3].style;
-    assert!(style.is_some_and(|style| style.width.is_some()));
+    assert_eq!(style.and_then(|style| style.width), Some(2.0));
     page.click("outline_style");
     assert_eq!(state(&page).style, style);
 }
