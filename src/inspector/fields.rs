@@ -23,7 +23,9 @@ use bevy::{
 };
 use bevy_egui::egui::{self, CollapsingHeader, Response, Ui};
 
-pub use self::sections::{optional, style};
+#[cfg(feature = "objects")]
+pub use self::sections::optional;
+pub use self::sections::style;
 use self::{
     images::image,
     lists::list,

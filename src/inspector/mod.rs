@@ -10,10 +10,24 @@ mod clipboard;
 mod cost;
 mod fields;
 mod files;
+#[cfg_attr(
+    not(all(feature = "cartoon", feature = "objects")),
+    allow(
+        dead_code,
+        reason = "only these features have something to edit of an object"
+    )
+)]
 mod history;
 mod hue_wheel;
 mod known;
 mod memory;
+#[cfg_attr(
+    not(all(feature = "cartoon", feature = "objects")),
+    allow(
+        dead_code,
+        reason = "only these features have something to edit of an object"
+    )
+)]
 mod objects;
 mod panel;
 mod photo;

@@ -69,6 +69,7 @@ fn depth_map(ui: &mut Ui, map: &mut Option<DepthMap>, shown: Shown, editor: &mut
 
 /// A section of settings that are there or not, such as a component. `last`: those that come back
 /// when it is turned on; `None` for the defaults.
+#[cfg(feature = "objects")]
 pub fn optional<T: Struct + Typed + Default + Clone + PartialEq>(
     ui: &mut Ui,
     value: &mut Option<T>,

@@ -31,6 +31,10 @@ fn all_types() -> Vec<(&'static str, &'static TypeInfo)> {
 
 /// The types of the page of a picked object.
 fn types_of_objects() -> Vec<(&'static str, &'static TypeInfo)> {
+    #[cfg_attr(
+        not(any(feature = "cartoon", feature = "objects")),
+        allow(unused_mut, reason = "there are no such types")
+    )]
     let mut all = Vec::new();
     #[cfg(feature = "cartoon")]
     all.extend([

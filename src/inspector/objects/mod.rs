@@ -49,12 +49,17 @@ pub struct Objects {
 impl Objects {
     /// `looks`: the folder of look files.
     pub fn new(looks: PathBuf) -> Self {
+        #[cfg_attr(
+            not(any(feature = "cartoon", feature = "objects")),
+            allow(unused_mut, reason = "there is nothing to register")
+        )]
         let mut types = TypeRegistry::default();
         #[cfg(feature = "cartoon")]
         types.register::<crate::CartoonLight>();
         #[cfg(feature = "objects")]
         parts::register(&mut types);
-        let _ = (&mut types, &looks);
+        #[cfg(not(feature = "cartoon"))]
+        let _ = looks;
         Self {
             types,
             shelves: HashMap::default(),
@@ -76,6 +81,10 @@ impl Objects {
             return Vec::new();
         };
         self.head(ui, world, object, widgets);
+        #[cfg_attr(
+            not(any(feature = "cartoon", feature = "objects")),
+            allow(unused_mut, reason = "there is nothing to edit")
+        )]
         let mut changes = Vec::new();
         // The light has many settings, so it comes last.
         #[cfg(feature = "objects")]
