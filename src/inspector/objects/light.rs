@@ -56,8 +56,7 @@ impl Objects {
         widgets: &mut Widgets,
     ) -> Option<Box<dyn Exchange>> {
         let count = place.meshes(world);
-        let text = format!("{}, of {}.", what_is_edited(world, place), meshes(count));
-        let place_label = ui.label(text);
+        let place_label = ui.label(what_is_edited(world, place, count));
         note(widgets, "light.place", &place_label);
         let before = place.light(world)?.clone();
         let title = place.title(world).to_owned();
@@ -94,22 +93,30 @@ impl Objects {
     }
 }
 
-/// Which value an edit changes.
-fn what_is_edited(world: &World, place: &LightPlace) -> String {
-    let shown = |path: Option<String>| path.unwrap_or_else(|| "made by code".into());
-    match place {
+/// Which value an edit changes, and how many meshes have it.
+fn what_is_edited(world: &World, place: &LightPlace, count: usize) -> String {
+    let edited = match place {
         LightPlace::Look(look) => {
-            let path = look.path().map(ToString::to_string);
-            format!("Edits the look {}", shown(path))
+            let title = match place.title(world) {
+                "" => String::new(),
+                title => format!(" “{title}”"),
+            };
+            match look.path() {
+                Some(path) => format!("the look{title} in {path}"),
+                None => format!("the look{title}, which is made by code"),
+            }
         }
         LightPlace::Scene(root) => {
-            let name = name_of(world, *root);
-            format!("Edits the light of the CartoonScene on {name}")
+            format!("CartoonScene::light of {}", name_of(world, *root))
         }
-        LightPlace::Material(material) => {
-            let path = material.path().map(ToString::to_string);
-            format!("Edits the material {}", shown(path))
-        }
+        LightPlace::Material(material) => match material.path() {
+            Some(path) => format!("the material {path}"),
+            None => "the material, which is made by code".into(),
+        },
+    };
+    match count {
+        0 | 1 => format!("Edits {edited}. Only this mesh has it."),
+        _ => format!("Edits {edited}. {} have it.", meshes(count)),
     }
 }
 

@@ -1,7 +1,7 @@
-use bevy::color::Color;
+use bevy::{asset::Assets, color::Color, ecs::name::Name};
 
 use super::*;
-use crate::RampDetail;
+use crate::{CartoonMaterial, CartoonScene, RampDetail, ToonLook};
 
 fn stop(at: f32) -> RampStop {
     RampStop::new(at, Color::WHITE)
@@ -41,4 +41,43 @@ fn stops_keep_their_order_and_every_number_its_range() {
     let count = |light: CartoonLight| in_ranges(light).ramp.expect("a ramp").stops.len();
     assert_eq!(count(of(many)), Ramp::MOST_STOPS);
     assert_eq!(in_ranges(of(Ramp::new([]))), of(Ramp::default()));
+}
+
+#[test]
+fn the_panel_says_what_it_edits() {
+    let mut world = World::new();
+    let mut looks = Assets::<ToonLook>::default();
+    let look = looks.add(ToonLook {
+        name: "Skin".into(),
+        ..ToonLook::default()
+    });
+    let nameless = looks.add(ToonLook::default());
+    world.insert_resource(looks);
+    let scene = (Name::new("Hero"), CartoonScene::default());
+    let root = world.spawn(scene).id();
+    let material = Handle::<CartoonMaterial>::default();
+    for (place, count, wanted) in [
+        (
+            LightPlace::Look(look),
+            3,
+            "Edits the look “Skin”, which is made by code. 3 meshes have it.",
+        ),
+        (
+            LightPlace::Look(nameless),
+            1,
+            "Edits the look, which is made by code. Only this mesh has it.",
+        ),
+        (
+            LightPlace::Scene(root),
+            2,
+            "Edits CartoonScene::light of Hero. 2 meshes have it.",
+        ),
+        (
+            LightPlace::Material(material),
+            1,
+            "Edits the material, which is made by code. Only this mesh has it.",
+        ),
+    ] {
+        assert_eq!(what_is_edited(&world, &place, count), wanted);
+    }
 }
