@@ -14,6 +14,11 @@ use crate::{
     Outlines, Paint, Paper, PlaneStyle, Planes, PrintOffset, RangeSmoothing, Silhouettes, Sketch,
     SpeedLines, ToneBands, ToneRamp, TwoTone, Vignette,
 };
+#[cfg(all(feature = "cartoon", feature = "objects"))]
+use crate::{
+    CartoonLight, DetailAxis, FormShape, Glint, MeshSections, ObjectAbstraction, OutlineStyle,
+    Ramp, RampDetail, RampStop, Rim, RimWidth, ShadedForm,
+};
 
 /// A million floats: hand-picked edge cases, then random bit patterns, which
 /// include NaN and infinities.

@@ -13,10 +13,8 @@ use bevy::{
     },
 };
 
-use crate::{
-    CartoonLight, DetailAxis, FieldRange, FormShape, Glint, MeshSections, ObjectAbstraction,
-    OutlineStyle, Ramp, RampDetail, RampStop, Rim, RimWidth, ShadedForm,
-};
+use super::*;
+use crate::FieldRange;
 
 /// A value far above or far below every range, of the type of a field; `None` if it is no number.
 fn extreme(type_path: &str, high: bool) -> Option<Box<dyn PartialReflect>> {
