@@ -11,14 +11,15 @@ use bevy::{
     window::WindowResolution,
 };
 use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, ComicsPlugin, DebugView, EffectRegistry, SplitView, StyleWeight,
+    CartoonMaterial, ComicStyle, ComicsDiagnostics, ComicsPlugin, DebugView, EffectRegistry,
+    OutlineStyle, SplitView, StyleWeight, ToonLook,
     inspector::{ComicsInspector, ComicsInspectorPlugin},
     presets,
 };
 use bevy_comics_testkit::{
     orbit::{Orbit, OrbitPlugin},
     scenes::{BuiltIn, Stage, figure::motion::MotionPlugin},
-    studio::wear,
+    studio::{set_cartoon, wear},
 };
 
 const HELP: &str = "\
@@ -26,10 +27,12 @@ The inspector on a built-in scene. F10 opens and closes the panel.
 
     --scene NAME       mountains, teapot, theatre, village or figure (village)
     --style NAME       the first style, a preset (graphic-novel)
+    --cartoon          the scene in cartoon materials, with its looks
     --cameras N        1, or 2 side by side (1)
     --size WxH         size of the window in physical pixels (1280x720)
     --scale FACTOR     scale factor of the window (the system's)
     --styles FOLDER    folder of style files (assets/styles)
+    --looks FOLDER     folder of look files (assets/looks)
     --pictures FOLDER  folder of screenshots (screenshots)
     --memory FILE      file of the panel's settings, `none` for no file
     --open             start with the panel open
@@ -43,6 +46,7 @@ The inspector on a built-in scene. F10 opens and closes the panel.
 struct Options {
     scene: BuiltIn,
     style: String,
+    cartoon: bool,
     cameras: u32,
     size: UVec2,
     scale: Option<f32>,
@@ -58,6 +62,7 @@ fn options() -> Result<Options, lexopt::Error> {
     let mut options = Options {
         scene: BuiltIn::Village,
         style: "graphic-novel".into(),
+        cartoon: false,
         cameras: 1,
         size: UVec2::new(1280, 720),
         scale: None,
@@ -84,6 +89,8 @@ fn options() -> Result<Options, lexopt::Error> {
             }
             Long("scale") => options.scale = Some(parser.value()?.parse()?),
             Long("styles") => options.plugin.styles = parser.value()?.into(),
+            Long("cartoon") => options.cartoon = true,
+            Long("looks") => options.plugin.looks = parser.value()?.into(),
             Long("pictures") => options.plugin.pictures = parser.value()?.into(),
             Long("memory") => {
                 let path = PathBuf::from(parser.value()?);
@@ -125,6 +132,10 @@ fn main() {
     .add_plugins((ComicsPlugin, OrbitPlugin, MotionPlugin));
     if !options.bare {
         app.add_plugins(options.plugin.clone());
+    }
+    if options.cartoon {
+        let all = |world: &mut World| set_cartoon(world, true);
+        app.add_systems(PostStartup, all);
     }
     app.insert_resource(options)
         .add_systems(Startup, setup)
@@ -212,6 +223,23 @@ fn lay_out(
     }
 }
 
+/// The picked object, for tests: what the panel edits of it.
+fn picked(world: &World) -> Option<serde_json::Value> {
+    let picked = world.get_resource::<ComicsInspector>()?.picked?;
+    let object = world.get_entity(picked).ok()?;
+    let at = object.get::<GlobalTransform>().map(|at| at.translation());
+    let light = object
+        .get::<MeshMaterial3d<CartoonMaterial>>()
+        .and_then(|own| world.resource::<Assets<CartoonMaterial>>().get(&own.0))
+        .and_then(|material| ToonLook::new(material.extension.clone()).to_ron().ok());
+    Some(serde_json::json!({
+        "at": at.map(|at| at.to_array()),
+        "light": light,
+        "is_standard": object.contains::<MeshMaterial3d<StandardMaterial>>(),
+        "has_style": object.contains::<OutlineStyle>(),
+    }))
+}
+
 /// Writes the state of the panel and the cameras to a file, for tests.
 fn tell(world: &mut World) {
     let Some(path) = world.resource::<Options>().state.clone() else {
@@ -251,6 +279,8 @@ fn tell(world: &mut World) {
         "frame": world.resource::<bevy::diagnostic::FrameCount>().0,
         "open": inspector.map(|inspector| inspector.open),
         "wants_pointer": inspector.map(|inspector| inspector.wants_pointer),
+        "picking": inspector.map(|inspector| inspector.picking),
+        "picked": picked(world),
         "focused": inspector.and_then(|inspector| inspector.focused.as_ref()),
         "widgets": inspector.map(|inspector| &inspector.widgets),
         "panel_cameras": panel_cameras,

@@ -7,7 +7,7 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use super::RampStop;
-use crate::settings::bounded;
+use crate::settings::{FieldRange, bounded};
 
 /// A second ramp of a [`Ramp`](crate::Ramp), and how much of each there is: the ramp itself where
 /// there is all detail, this one where there is none (X-Toon: Barla, Thollot and Markosian 2006).
@@ -21,6 +21,7 @@ use crate::settings::bounded;
 pub struct RampDetail {
     /// The tones where there is no detail, as [`Ramp::stops`](crate::Ramp::stops). Default: one
     /// tone, white.
+    #[reflect(@FieldRange::linear(1.0, 8.0))]
     pub plain: Vec<RampStop>,
     /// Where there is detail. Default: [`DetailAxis::Depth`].
     pub axis: DetailAxis,
@@ -37,23 +38,29 @@ pub enum DetailAxis {
     /// Near the eye: `1 - ln(z / near) / ln ratio`.
     Depth {
         /// All detail is nearer than this. Range 1e-4 to 1e6, default 1.
+        #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units"))]
         near: f32,
         /// No detail is farther than this multiple of `near`. Range 1.01 to 1e6, default 10.
+        #[reflect(@FieldRange::logarithmic(1.01, 1e6))]
         ratio: f32,
     },
     /// At a distance: `1 - (|ln(z / distance)| - ln(1 + clear)) / ln ratio`.
     Focus {
         /// What is in focus. Range 1e-4 to 1e6, default 5.
+        #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units"))]
         distance: f32,
         /// How far from it there is all detail, as a fraction of it. Range 0 to 10, default 0.15.
+        #[reflect(@FieldRange::linear(0.0, 10.0))]
         clear: f32,
         /// From which multiple of it, and at which fraction, there is none; counted from the end
         /// of what is clear. Range 1.01 to 1e6, default 3.
+        #[reflect(@FieldRange::logarithmic(1.01, 1e6))]
         ratio: f32,
     },
     /// Where surfaces face the eye: `|n.v|^power`. The second ramp is that of rims.
     Rim {
         /// Range 0.05 to 8, default 1. The larger, the wider is the rim.
+        #[reflect(@FieldRange::logarithmic(0.05, 8.0))]
         power: f32,
     },
     /// Where surfaces reflect the light: `max(r.v, 0)^power`, with the reflected light `r`. The
@@ -61,11 +68,13 @@ pub enum DetailAxis {
     /// the mean of all lights.
     Highlight {
         /// Range 1 to 200, default 20. The larger, the smaller is the highlight.
+        #[reflect(@FieldRange::logarithmic(1.0, 200.0))]
         power: f32,
     },
     /// The same everywhere.
     Constant(
-        /// 1 is all detail, 0 none. Range 0 to 1.
+        /// 1 is all detail, 0 none. Range 0 to 1, default 1.
+        #[reflect(@FieldRange::FRACTION)]
         f32,
     ),
 }

@@ -9,7 +9,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::settings::bounded;
+use crate::settings::{FieldRange, bounded};
 
 /// Shades a mesh as if it had a simpler form, so that faces, bushes and clouds have large areas of
 /// one tone (Barla, Thollot and Markosian 2006). Lines, shadow maps and the silhouette stay those
@@ -18,18 +18,22 @@ use crate::settings::bounded;
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ShadedForm {
-    /// Default: [`FormShape::Up`].
+    /// The simpler form. Default: [`FormShape::Up`].
     pub shape: FormShape,
     /// How much of its normals is used near the eye. Range 0 (the normals of the mesh) to 1,
     /// default 1.
+    #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
     /// The same far away. Range 0 to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
     pub far_amount: f32,
     /// Up to this distance along the axis of the view, `amount` counts. World units. Range 1e-4 to
     /// 1e6, default 1.
+    #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units"))]
     pub near: f32,
     /// From this multiple of `near` on, `far_amount` counts; between, it changes with the
     /// logarithm of the distance. Range 1.01 to 1e6, default 10.
+    #[reflect(@FieldRange::logarithmic(1.01, 1e6))]
     pub ratio: f32,
 }
 
@@ -42,16 +46,20 @@ pub struct ShadedForm {
 pub enum FormShape {
     /// An ellipsoid: heads, bushes, clouds.
     Ellipsoid {
-        /// Its middle.
+        /// Its middle, in units of the mesh. Range -1e6 to 1e6.
+        #[reflect(@FieldRange::linear(-1e6, 1e6))]
         center: Vec3,
         /// From the middle to the border along the three axes. Range 1e-4 to 1e6.
+        #[reflect(@FieldRange::logarithmic(1e-4, 1e6))]
         half_size: Vec3,
     },
     /// A cylinder along the longest axis of this box: limbs, trunks.
     Cylinder {
-        /// Its middle.
+        /// Its middle, in units of the mesh. Range -1e6 to 1e6.
+        #[reflect(@FieldRange::linear(-1e6, 1e6))]
         center: Vec3,
         /// From the middle to the border along the three axes. Range 1e-4 to 1e6.
+        #[reflect(@FieldRange::logarithmic(1e-4, 1e6))]
         half_size: Vec3,
     },
     /// A plane that faces upwards in the world: grass and leaves look like the ground.

@@ -7,7 +7,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::settings::bounded;
+use crate::settings::{FieldRange, bounded};
 
 /// The highlight of the brightest light as a sign: a window, a star, a pair of dots (Anjyo and
 /// Hiramitsu 2003).
@@ -21,33 +21,43 @@ use crate::settings::bounded;
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Glint {
-    /// Default: [`GlintShape::Disc`].
+    /// What is drawn. Default: [`GlintShape::Disc`].
     pub shape: GlintShape,
     /// What the shape is upright to. Default: [`GlintFrame::View`].
     pub frame: GlintFrame,
     /// Multiple of the radius of the plain highlight. Range 0.1 to 8, default 1.
+    #[reflect(@FieldRange::logarithmic(0.1, 8.0))]
     pub size: f32,
     /// Where the shape is, in radii of the plain highlight. Range -8 to 8, default 0. It stays
     /// within 63 degrees of the plain highlight.
+    #[reflect(@FieldRange::linear(-8.0, 8.0))]
     pub offset: Vec2,
     /// Degrees, counter-clockwise. Range -360 to 360, default 0.
+    #[reflect(@FieldRange::linear(-360.0, 360.0).unit("°"))]
     pub rotation: f32,
     /// Length along both axes. Range 0.1 to 10, default 1.
+    #[reflect(@FieldRange::logarithmic(0.1, 10.0))]
     pub scale: Vec2,
     /// Divides the shape in two along an axis, or in four along both: the distance of each from
     /// the middle, in its radii. Range 0 to 8, default 0.
+    #[reflect(@FieldRange::linear(0.0, 8.0))]
     pub split: Vec2,
     /// From round corners to square ones: of the disc, the square, the window and the faithful
     /// form. Range 0 to 1, default 0.
+    #[reflect(@FieldRange::FRACTION)]
     pub square: f32,
     /// Width of the bars of a window and of a streak, half the thickness of a crescent, and inner
     /// radius of a star, in radii of the shape. Range 0.02 to 1, default 0.25.
+    #[reflect(@FieldRange::linear(0.02, 1.0))]
     pub bar: f32,
     /// Points of a star. Range 3 to 12, default 4.
+    #[reflect(@FieldRange::linear(3.0, 12.0))]
     pub points: u32,
     /// How sharp the corners of the faithful form are. Range 1 to 10, default 2.
+    #[reflect(@FieldRange::linear(1.0, 10.0))]
     pub sharpness: u32,
     /// Width of the edge in physical pixels. Range 0 to 8, default 1, which is anti-aliased.
+    #[reflect(@FieldRange::linear(0.0, 8.0).unit("px"))]
     pub softness: f32,
 }
 

@@ -25,7 +25,11 @@ use super::{
     hatch::{HatchUniform, VERTEX, is_prepass},
     uniform::{CartoonKey, CartoonUniform},
 };
-use crate::{effect::Effect, effects::Hatching, settings::bounded};
+use crate::{
+    effect::Effect,
+    effects::Hatching,
+    settings::{FieldRange, bounded},
+};
 
 /// A [`StandardMaterial`] with the lighting of a cartoon:
 ///
@@ -68,6 +72,7 @@ pub struct CartoonLight {
     /// angle between the normal and the direction to the light at which the shadow
     /// begins. Range 0 to 0.9, default 0.08. Decaudin uses 0; a little more hides the
     /// facets of coarse meshes, which shade themselves near the edge.
+    #[reflect(@FieldRange::linear(0.0, 0.9))]
     pub terminator: f32,
     /// Darkens surfaces that face away from a light. Default: `true`.
     pub backface_shadows: bool,
@@ -75,22 +80,27 @@ pub struct CartoonLight {
     /// Default: `true`.
     pub projected_shadows: bool,
     /// Fraction of a light that its shadows remove. Range 0 to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
     pub shadow_strength: f32,
     /// Strength of the highlights. Range 0 (none) to 4, default 1. A highlight has a
     /// hard edge. The rougher the material, the larger and fainter it is; above a
     /// perceptual roughness of 0.71 there is none.
+    #[reflect(@FieldRange::linear(0.0, 4.0))]
     pub highlight: f32,
     /// Fraction of its peak at which a highlight ends: the lower, the larger the
     /// highlight. Range 0.01 to 0.99, default 0.5.
+    #[reflect(@FieldRange::linear(0.01, 0.99))]
     pub highlight_edge: f32,
     /// Size of the steps, in stops (factors of 2), in which the light of point and
     /// spot lights falls off with distance, so that it forms flat rings. Range 0 (no
     /// steps) to 4, default 1.
+    #[reflect(@FieldRange::linear(0.0, 4.0).unit("stops"))]
     pub falloff: f32,
     /// How flat the light of environment maps, light probes and irradiance volumes is. 1: it
     /// has two tones, of the brightest side and of the side that faces away from it, with
     /// the same mean as the original. 0: it changes with every normal, as on the standard
     /// material. Range 0 to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
     pub flat_environment: f32,
     /// Reads the alpha of vertex colours as how easily a vertex is lit, as artists paint it: 0.5 is
     /// neutral, at 0 nothing is lit, at 1 everything but what faces away and the shadows of other
@@ -153,6 +163,7 @@ pub struct CartoonLight {
     pub art_map: Option<Handle<Image>>,
     /// How often `art_map` repeats over texture coordinates from 0 to 1, or over a unit of the
     /// world. Range 0.01 to 1000, default 4.
+    #[reflect(@FieldRange::logarithmic(0.01, 1000.0))]
     pub art_map_repeat: f32,
 }
 

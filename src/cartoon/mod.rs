@@ -11,6 +11,8 @@ mod ignored;
 mod look;
 mod material;
 mod name;
+#[cfg(feature = "inspector")]
+mod place;
 mod ramp;
 mod ramp_map;
 mod ramp_sums;
@@ -34,6 +36,8 @@ pub use glint::{Glint, GlintFrame, GlintShape};
 pub use look::{ToonLook, ToonLookError, ToonLookHandle, ToonLookHandleTemplate};
 pub use material::{CartoonLight, CartoonMaterial};
 pub use name::MaterialName;
+#[cfg(feature = "inspector")]
+pub(crate) use place::LightPlace;
 pub use ramp::{Ramp, RampBlend, RampMode, RampStop};
 pub use ramp_map::RampMap;
 pub use rim::{Rim, RimWidth};

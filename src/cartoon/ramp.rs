@@ -11,7 +11,7 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use super::RampDetail;
-use crate::settings::{bounded, displayable, file_color, linear_rgb, oklab};
+use crate::settings::{FieldRange, bounded, displayable, file_color, linear_rgb, oklab};
 
 /// The tones of a [`CartoonMaterial`](crate::CartoonMaterial), from shade to light (Lake et al.
 /// 2000).
@@ -39,6 +39,7 @@ pub struct Ramp {
     /// used. Default: a violet shade, and full light from 0.25: what a key light reaches
     /// at an angle of 75 degrees or less, but not what only a second light of less than a third of
     /// its strength reaches.
+    #[reflect(@FieldRange::linear(1.0, 8.0))]
     pub stops: Vec<RampStop>,
     /// What the ramp is applied to. Default: [`RampMode::Share`].
     pub mode: RampMode,
@@ -47,6 +48,7 @@ pub struct Ramp {
     /// How much of the strength of the light is kept in [`RampMode::Share`]: the exponent of the
     /// luminance. 0: all places are equally bright, whatever the lights and the exposure are.
     /// 1: as bright as they are lit. Range 0 to 1, default 0.5.
+    #[reflect(@FieldRange::FRACTION)]
     pub keep_intensity: f32,
     /// A second ramp, and where it is used. Default: `None`.
     pub detail: Option<RampDetail>,
@@ -59,6 +61,7 @@ pub struct Ramp {
 pub struct RampStop {
     /// How much light arrives where the tone begins: the middle of the edge. The tone of the
     /// lowest stop has no edge. Range 0 to 1, default 0.
+    #[reflect(@FieldRange::FRACTION)]
     pub at: f32,
     /// Colour of the tone. Components are clamped to what a display shows; alpha is ignored.
     /// Default: white.
@@ -66,6 +69,7 @@ pub struct RampStop {
     pub color: Color,
     /// Width of the edge, as a fraction of the whole light. 0: as hard as pixels allow. Range
     /// 0 to 1, default 0.
+    #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
 }
 

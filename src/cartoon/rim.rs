@@ -8,7 +8,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::settings::{bounded, displayable, file_color, linear_rgb};
+use crate::settings::{FieldRange, bounded, displayable, file_color, linear_rgb};
 
 /// A rim of light along the borders of things, as of a lamp behind them.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,9 +22,11 @@ pub struct Rim {
     #[serde(with = "file_color")]
     pub color: Color,
     /// How much of it covers the surface. Range 0 to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
     pub strength: f32,
     /// How much of it is only on the side of the brightest light. 0 is all around. Range 0 to 1,
     /// default 1.
+    #[reflect(@FieldRange::FRACTION)]
     pub lit_side: f32,
 }
 
@@ -39,14 +41,20 @@ pub enum RimWidth {
     Facing {
         /// The rim is where the cosine between normal and eye is below this. Range 0 to 1, default
         /// 0.35.
+        #[reflect(@FieldRange::FRACTION)]
         share: f32,
         /// Width of its edge, in the same unit. Range 0 to 1, default 0, which is anti-aliased.
+        #[reflect(@FieldRange::FRACTION)]
         softness: f32,
     },
     /// The same width everywhere, in physical pixels, where something at least 2 % farther away is
     /// beside the surface. It needs the depth prepass, which lines, for example, have; without it,
-    /// the rim is as [`Facing`](Self::Facing). Range 1 to 64.
-    Pixels(f32),
+    /// the rim is as [`Facing`](Self::Facing).
+    Pixels(
+        /// Width in physical pixels. Range 1 to 64, default 3.
+        #[reflect(@FieldRange::linear(1.0, 64.0).unit("px"))]
+        f32,
+    ),
 }
 
 impl Default for RimWidth {

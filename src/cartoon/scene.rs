@@ -87,8 +87,8 @@ impl CartoonScene {
 #[derive(Component)]
 pub(super) struct Original {
     material: Handle<StandardMaterial>,
-    root: Entity,
-    look: Option<Handle<ToonLook>>,
+    pub(super) root: Entity,
+    pub(super) look: Option<Handle<ToonLook>>,
 }
 
 /// What a cartoon copy is a copy of: root, standard material and look.

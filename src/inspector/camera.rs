@@ -49,6 +49,7 @@ pub fn show_or_hide(world: &mut World, mut had_camera: Local<bool>) {
             world.despawn(camera);
             world.resource_scope(|world, mut panel: Mut<Panel>| panel.close(world));
             let mut inspector = world.resource_mut::<ComicsInspector>();
+            inspector.picking = false;
             inspector.wants_pointer = false;
             inspector.wants_keyboard = false;
             inspector.widgets.clear();
@@ -131,11 +132,12 @@ pub fn run_panel(world: &mut World) {
     if let Ok(mut full) = outputs.single_mut(world) {
         **full = Some(output);
     }
-    world
-        .resource_mut::<Panel>()
-        .set_typing(context.text_edit_focused());
+    let mut panel = world.resource_mut::<Panel>();
+    panel.set_typing(context.text_edit_focused());
+    let holds = panel.holds_pointer();
     let mut inspector = world.resource_mut::<ComicsInspector>();
-    inspector.wants_pointer = context.egui_wants_pointer_input();
+    let picks = inspector.picking || holds;
+    inspector.wants_pointer = context.egui_wants_pointer_input() || picks;
     inspector.wants_keyboard = context.egui_wants_keyboard_input();
 }
 

@@ -2,22 +2,35 @@
 //! documentation, ranges, units and defaults of its fields. New fields and the
 //! effects of games need no code here.
 
+mod images;
+mod lists;
 mod options;
+#[cfg(feature = "cartoon")]
+mod ramp_bar;
 mod sections;
+mod vectors;
 mod widgets;
 
 use bevy::{
+    asset::Handle,
     color::Color,
+    image::Image,
+    math::{Vec2, Vec3},
     reflect::{
         NamedField, PartialReflect, Reflect, ReflectMut, ReflectRef, TypeInfo, TypeRegistry,
-        std_traits::ReflectDefault, structs::Struct,
+        UnnamedField, std_traits::ReflectDefault, structs::Struct,
     },
 };
 use bevy_egui::egui::{self, CollapsingHeader, Response, Ui};
 
+#[cfg(feature = "objects")]
+pub use self::sections::optional;
 pub use self::sections::style;
 use self::{
+    images::image,
+    lists::list,
     options::option,
+    vectors::vector,
     widgets::{color, modes, number, whole_number},
 };
 use super::{
@@ -54,6 +67,12 @@ impl Editor<'_> {
         if info.is::<f64>() {
             return Some(Box::new(f64::NAN));
         }
+        if info.is::<Vec2>() {
+            return Some(Box::new(Vec2::NAN));
+        }
+        if info.is::<Vec3>() {
+            return Some(Box::new(Vec3::NAN));
+        }
         Some(self.default_of(info)?.into_partial_reflect())
     }
 }
@@ -86,6 +105,22 @@ impl<'a> Setting<'a> {
             label: label(field.name()),
             docs: field.docs().unwrap_or_default(),
             range: FieldRange::of(field),
+            wheel: field.has_attribute::<HueWheel>(),
+        }
+    }
+
+    /// The only value of a mode, with the mode's name, or one of several, with its number.
+    fn of_mode(field: &'static UnnamedField, mode: &str, count: usize, path: &'a str) -> Self {
+        let mode = label_of_mode(mode);
+        let label = match count {
+            1 => mode,
+            _ => format!("{mode} {}", field.index() + 1),
+        };
+        Self {
+            path,
+            label,
+            docs: field.docs().unwrap_or_default(),
+            range: field.get_attribute::<FieldRange>().copied(),
             wheel: field.has_attribute::<HueWheel>(),
         }
     }
@@ -133,7 +168,7 @@ fn reset_button(ui: &mut Ui, path: &str, widgets: &mut Widgets) -> Response {
 
 /// The fields of a struct, one below the other, by the path of the struct and
 /// the search that leaves some of them out.
-fn settings(
+pub fn settings(
     ui: &mut Ui,
     value: &mut dyn Struct,
     default: Option<&dyn Struct>,
@@ -200,12 +235,18 @@ fn edit(
         u32 => |ui, value| whole_number(ui, value, setting.range),
         bool => |ui, value| ui.checkbox(value, ""),
         Color => |ui, value| color(ui, value, setting.wheel),
+        Vec2 => |ui, value| vector(ui, value.as_mut(), setting.range),
+        Vec3 => |ui, value| vector(ui, value.as_mut(), setting.range),
+    }
+    if let Some(handle) = value.try_downcast_ref::<Option<Handle<Image>>>() {
+        return image(ui, handle.as_ref(), setting, editor.widgets);
     }
     match value.get_represented_type_info() {
         Some(TypeInfo::Enum(info)) if is_option(info) => {
             option(ui, value, default, (setting, search), editor);
         }
         Some(TypeInfo::Enum(info)) => modes(ui, value, info, default, setting, editor),
+        Some(TypeInfo::List(_)) => list(ui, value, default, setting, editor),
         Some(TypeInfo::Struct(_)) => nested(ui, value, default, (setting, search), editor),
         _ => {
             ui.label(format!("{}: no widget for this type", setting.label));
@@ -238,10 +279,11 @@ fn as_struct(value: &dyn PartialReflect) -> Option<&dyn Struct> {
 }
 
 /// A section that opens and closes.
-pub fn section<R>(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui) -> R) {
+pub fn section<R>(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui) -> R) -> Option<R> {
     CollapsingHeader::new(title)
         .default_open(true)
-        .show(ui, contents);
+        .show(ui, contents)
+        .body_returned
 }
 
 /// The text of an error.

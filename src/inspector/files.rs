@@ -102,21 +102,7 @@ impl Files {
     }
 
     fn path(&self) -> Option<PathBuf> {
-        let name = self.name.trim();
-        if name.is_empty() {
-            return None;
-        }
-        let mut path = PathBuf::from(name);
-        if !name.ends_with(SUFFIX) {
-            path = PathBuf::from(format!("{name}{SUFFIX}"));
-        }
-        if path
-            .parent()
-            .is_none_or(|parent| parent.as_os_str().is_empty())
-        {
-            path = self.folder.join(path);
-        }
-        Some(path)
+        path_of(&self.name, SUFFIX, &self.folder)
     }
 
     fn load(&mut self, camera: Entity, path: &Path) -> Option<ComicStyle> {
@@ -243,8 +229,28 @@ impl Files {
     }
 }
 
+/// The path that a typed name means: a name alone is a file in the folder, and the suffix need not
+/// be typed. `None` if nothing is typed.
+pub fn path_of(name: &str, suffix: &str, folder: &Path) -> Option<PathBuf> {
+    let name = name.trim();
+    if name.is_empty() {
+        return None;
+    }
+    let mut path = PathBuf::from(name);
+    if !name.ends_with(suffix) {
+        path = PathBuf::from(format!("{name}{suffix}"));
+    }
+    if path
+        .parent()
+        .is_none_or(|parent| parent.as_os_str().is_empty())
+    {
+        path = folder.join(path);
+    }
+    Some(path)
+}
+
 /// Writes a file at once, so that a game that watches it never reads a part.
-fn write(path: &Path, text: &str) -> io::Result<()> {
+pub fn write(path: &Path, text: &str) -> io::Result<()> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder)?;
     }
@@ -287,6 +293,16 @@ mod tests {
     fn wait(files: &mut Files, camera: Entity, style: &ComicStyle) -> Option<ComicStyle> {
         std::thread::sleep(WATCH + Duration::from_millis(20));
         files.watch(camera, style)
+    }
+
+    #[test]
+    fn a_name_alone_is_a_file_of_the_folder() {
+        let of = |name| path_of(name, ".toon.ron", Path::new("looks"));
+        assert_eq!(of("  "), None);
+        assert_eq!(of(" skin"), Some("looks/skin.toon.ron".into()));
+        assert_eq!(of("skin.toon.ron"), Some("looks/skin.toon.ron".into()));
+        assert_eq!(of("other/skin"), Some("other/skin.toon.ron".into()));
+        assert_eq!(of("/tmp/skin"), Some("/tmp/skin.toon.ron".into()));
     }
 
     #[test]

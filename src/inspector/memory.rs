@@ -31,6 +31,7 @@ impl Dock {
 pub enum Tab {
     #[default]
     Style,
+    Object,
     Presets,
     Files,
     Views,
@@ -41,6 +42,7 @@ pub enum Tab {
 impl Tab {
     pub const ALL: &[Self] = &[
         Self::Style,
+        Self::Object,
         Self::Presets,
         Self::Files,
         Self::Views,
@@ -51,6 +53,7 @@ impl Tab {
     pub fn name(self) -> &'static str {
         match self {
             Self::Style => "Style",
+            Self::Object => "Object",
             Self::Presets => "Presets",
             Self::Files => "Files",
             Self::Views => "Views",

@@ -10,10 +10,25 @@ mod clipboard;
 mod cost;
 mod fields;
 mod files;
+#[cfg_attr(
+    not(all(feature = "cartoon", feature = "objects")),
+    allow(
+        dead_code,
+        reason = "only these features have something to edit of an object"
+    )
+)]
 mod history;
 mod hue_wheel;
 mod known;
 mod memory;
+#[cfg_attr(
+    not(all(feature = "cartoon", feature = "objects")),
+    allow(
+        dead_code,
+        reason = "only these features have something to edit of an object"
+    )
+)]
+mod objects;
 mod panel;
 mod photo;
 mod plane_borders;
@@ -97,6 +112,9 @@ pub struct ComicsInspectorPlugin {
     /// Folder in which `*.comic.ron` files are listed and saved. Default:
     /// `assets/styles` in the working directory.
     pub styles: PathBuf,
+    /// Folder in which the lights of materials are saved as `*.toon.ron` files. Default:
+    /// `assets/looks` in the working directory.
+    pub looks: PathBuf,
     /// Folder for screenshots. Default: `screenshots` in the working directory.
     pub pictures: PathBuf,
     /// File that stores the panel's place, page and sizes from one run to the
@@ -110,6 +128,7 @@ impl Default for ComicsInspectorPlugin {
         Self {
             toggle: KeyCode::F10,
             styles: PathBuf::from("assets/styles"),
+            looks: PathBuf::from("assets/looks"),
             pictures: PathBuf::from("screenshots"),
             memory: dirs::config_dir().map(|dir| dir.join("bevy_comics").join("inspector.ron")),
         }
@@ -126,8 +145,15 @@ pub struct ComicsInspector {
     /// The camera whose style is shown. If `None` or despawned, the first 3D
     /// camera.
     pub camera: Option<Entity>,
-    /// Whether the pointer is over the panel or drags one of its widgets. A game
-    /// that turns its camera with the mouse does not do so while this is set.
+    /// Whether the next press of the primary button in a view picks the object there, as
+    /// after the button Pick. A press on the sky picks nothing. Ends with the press, or with
+    /// Escape.
+    pub picking: bool,
+    /// The picked object: an entity with a mesh. The page Object shows its light, its lines and
+    /// its sections, and the panel draws a box around it. A game may set it.
+    pub picked: Option<Entity>,
+    /// Whether the pointer is over the panel, drags one of its widgets, or picks an object. A
+    /// game that turns its camera with the mouse does not do so while this is set.
     pub wants_pointer: bool,
     /// Whether a widget of the panel has the keyboard focus.
     pub wants_keyboard: bool,
@@ -181,6 +207,8 @@ impl Plugin for ComicsInspectorPlugin {
             open: false,
             toggle: Some(self.toggle),
             camera: None,
+            picking: false,
+            picked: None,
             wants_pointer: false,
             wants_keyboard: false,
             widgets: HashMap::default(),
@@ -307,7 +335,7 @@ fn claim_pointer(
     let Some(pointer) = window.single().ok().and_then(Window::cursor_position) else {
         return;
     };
-    let over = inspector.open && panel.covers(pointer);
+    let over = inspector.open && (panel.covers(pointer) || inspector.picking);
     if over && !inspector.wants_pointer {
         inspector.wants_pointer = true;
     }

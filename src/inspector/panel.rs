@@ -2,6 +2,7 @@
 
 mod head;
 mod pages;
+mod picking;
 mod search_field;
 mod toolbar;
 
@@ -20,6 +21,7 @@ use bevy_egui::egui::{self, Align2, Color32, ScrollArea, Ui};
 
 use self::{
     head::{cameras, chosen_camera},
+    picking::show_picked,
     search_field::SearchField,
 };
 use super::{
@@ -28,9 +30,10 @@ use super::{
     cost::Costs,
     fields,
     files::{Files, on_camera},
-    history::History,
+    history::{History, Step},
     memory::{Dock, Memory, Tab},
     note,
+    objects::Objects,
     photo::Photo,
     presets::Presets,
     shelf::Shelf,
@@ -41,7 +44,6 @@ use crate::{ComicStyle, DebugView, EffectRegistry, StyleTransition, StyleWeight}
 /// The panel's state of one camera.
 #[derive(Default)]
 struct CameraState {
-    history: History,
     shelf: Shelf,
     /// The one of the two styles A and B that is not shown.
     other: Option<ComicStyle>,
@@ -57,6 +59,9 @@ pub struct Panel {
     memory: Memory,
     memory_path: Option<PathBuf>,
     cameras: EntityHashMap<CameraState>,
+    /// The steps of all cameras and of all objects.
+    history: History,
+    objects: Objects,
     files: Files,
     presets: Presets,
     costs: Costs,
@@ -75,6 +80,8 @@ pub struct Panel {
     /// Number of presses of the pointer: all changes of one press are one step of
     /// the history.
     presses: u64,
+    /// Whether the press that picked an object has not ended yet.
+    holds_pointer: bool,
 }
 
 /// The result of the last action.
@@ -89,6 +96,8 @@ impl Panel {
             memory: Memory::load(plugin.memory.as_deref()),
             memory_path: plugin.memory.clone(),
             cameras: EntityHashMap::default(),
+            history: History::default(),
+            objects: Objects::new(plugin.looks.clone()),
             files: Files::new(plugin.styles.clone(), registry.clone()),
             presets: Presets::new(registry.clone()),
             costs: Costs::default(),
@@ -101,6 +110,7 @@ impl Panel {
             message: None,
             place: None,
             presses: 0,
+            holds_pointer: false,
         }
     }
 
@@ -117,6 +127,11 @@ impl Panel {
 
     pub fn set_typing(&mut self, is_typing: bool) {
         self.is_typing = is_typing;
+    }
+
+    /// Whether the pointer belongs to the panel until it is released.
+    pub fn holds_pointer(&self) -> bool {
+        self.holds_pointer
     }
 
     /// Scale of the panel relative to the window's scale factor.
@@ -145,6 +160,7 @@ impl Panel {
         self.message = None;
         self.place = None;
         self.is_typing = false;
+        self.holds_pointer = false;
     }
 
     /// Runs before the engine reads the cameras' targets, so that it sees a
@@ -165,12 +181,14 @@ impl Panel {
         self.place = None;
         // While a screenshot is taken, the cameras do not draw to the window.
         if !self.photo.is_under_way() {
+            show_picked(ui, world, &mut widgets);
             let place = if self.memory.dock == Dock::Floating {
                 self.show_window(ui, world, &mut widgets)
             } else {
                 Some(self.show_docked(ui, world, &mut widgets))
             };
             self.place = place.map(|place| place * ui.ctx().zoom_factor());
+            self.pick(ui, world);
         }
         if self.memory != before
             && !ui.input(|input| input.pointer.any_down())
@@ -221,8 +239,9 @@ impl Panel {
 
     fn contents(&mut self, ui: &mut Ui, world: &mut World, widgets: &mut Widgets) {
         let cameras = cameras(world);
-        self.cameras
-            .retain(|camera, _| cameras.iter().any(|(c, _)| c == camera));
+        let exists = |camera: Entity| cameras.iter().any(|(c, _)| *c == camera);
+        self.cameras.retain(|camera, _| exists(*camera));
+        self.history.keep_cameras(exists);
         let mut camera = chosen_camera(world, &cameras);
 
         self.head(ui, world, &cameras, &mut camera, widgets);
@@ -288,9 +307,7 @@ impl Panel {
         if style == before.sanitized() {
             return;
         }
-        let gesture = ui
-            .input(|input| input.pointer.any_down())
-            .then_some(self.presses);
+        let gesture = self.gesture(ui);
         self.record(camera, before, &style, gesture);
         put(world, camera, &style);
     }
@@ -305,8 +322,15 @@ impl Panel {
     ) {
         let state = self.cameras.entry(camera).or_default();
         state.shelf.keep(&before, after);
-        state.history.record(before, gesture);
+        let step = Step::Style(camera, before);
+        self.history.record(step, camera, gesture);
         self.message = None;
+    }
+
+    /// What all changes while the pointer is pressed have in common.
+    fn gesture(&self, ui: &Ui) -> Option<u64> {
+        let pressed = ui.input(|input| input.pointer.any_down());
+        pressed.then_some(self.presses)
     }
 }
 

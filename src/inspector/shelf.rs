@@ -58,7 +58,8 @@ impl Shelf {
         self.variants.get(&key(path, variant)).map(AsRef::as_ref)
     }
 
-    fn keep_fields(&mut self, path: &str, before: &dyn Struct, after: &dyn Struct) {
+    /// Keeps what a change of a struct at a path turns off.
+    pub fn keep_fields(&mut self, path: &str, before: &dyn Struct, after: &dyn Struct) {
         for (name, before) in before.iter_fields() {
             if let Some(after) = after.field(name) {
                 self.keep_field(&format!("{path}.{name}"), before, after);

@@ -13,7 +13,7 @@ use bevy::{
 };
 
 use super::components::inherit;
-use crate::settings::{bounded, bounded_option};
+use crate::settings::{FieldRange, bounded, bounded_option};
 
 /// Makes this object more or less abstract than the camera's [`Abstraction`](crate::Abstraction)
 /// makes it by distance: a hero with all details among simple figures, or a crowd that is simple
@@ -28,8 +28,10 @@ use crate::settings::{bounded, bounded_option};
 pub struct ObjectAbstraction {
     /// The abstraction of the object at every distance: 0 is all detail, 1 is none. `None`: that
     /// of its distance. Range 0 to 1, default `None`.
+    #[reflect(@FieldRange::FRACTION)]
     pub level: Option<f32>,
     /// Added to it; the sum is limited to 0 and 1. Range -1 to 1, default 0.
+    #[reflect(@FieldRange::linear(-1.0, 1.0))]
     pub offset: f32,
     /// Applies to all descendants as well, except for those with an `ObjectAbstraction` of their
     /// own. Default: `false`.

@@ -19,7 +19,7 @@ use super::{
     anchors::{ObjectScreen, anchors},
     table::{ObjectStyleUniform, ObjectStyles, UNSTYLED},
 };
-use crate::settings::{bounded_option, displayable, linear_rgb};
+use crate::settings::{FieldRange, bounded_option, displayable, linear_rgb};
 
 /// Removes the [`Outlines`](crate::Outlines) of this object.
 ///
@@ -81,10 +81,12 @@ pub struct OutlineStyle {
     pub color: Option<Color>,
     /// Width of all lines in logical pixels; `None` keeps the camera's.
     /// Range 0.5 to 16, default `None`.
+    #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub width: Option<f32>,
     /// Factor of the opacity of all lines. Of lines of the faithful form, which lie on both
     /// sides of an edge, it changes the side of the object. Range 0 to 1; `None` is 1.
     /// Default: `None`.
+    #[reflect(@FieldRange::FRACTION)]
     pub opacity: Option<f32>,
     /// Kinds of line that are drawn, if the camera draws them too. Default: all.
     pub kinds: OutlineKinds,

@@ -23,7 +23,7 @@ use super::{
     components::inherit,
     table::{HIDDEN_ONLY, ObjectStyleUniform, ObjectStyles},
 };
-use crate::settings::{bounded, displayable, linear_rgb};
+use crate::settings::{FieldRange, bounded, displayable, linear_rgb};
 
 /// Bits of `ObjectStyleUniform::kinds`.
 const SILHOUETTES: u32 = 1;
@@ -45,8 +45,10 @@ pub struct SelectionOutline {
     /// Default: orange.
     pub color: Color,
     /// Width of the line in logical pixels. Range 0.5 to 16, default 3.
+    #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub width: f32,
     /// Opacity of the line. Range 0 to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
     /// Applies to all descendants as well, except for those with a `SelectionOutline` or
     /// [`XRayOutline`] of their own. Default: `true`.
@@ -76,8 +78,10 @@ pub struct XRayOutline {
     /// Default: light blue.
     pub color: Color,
     /// Width of the lines in logical pixels. Range 0.5 to 16, default 2.
+    #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub width: f32,
     /// Opacity of the lines. Range 0 to 1, default 0.8.
+    #[reflect(@FieldRange::FRACTION)]
     pub opacity: f32,
     /// Applies to all descendants as well, except for those with an `XRayOutline` or
     /// [`SelectionOutline`] of their own. Default: `true`.

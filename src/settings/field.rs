@@ -3,7 +3,9 @@
 use bevy::reflect::{NamedField, Reflect};
 
 /// The documented range of a number: a reflection attribute of every numeric field
-/// of every effect. Tools make sliders from it.
+/// of every effect, of the cartoon material, and of the components of objects. Tools make
+/// sliders from it. Of a vector, it is the range of each component; of a list, that of its
+/// length.
 ///
 /// ```
 /// # use bevy::reflect::{TypeInfo, Typed};

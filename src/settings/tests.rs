@@ -1,5 +1,7 @@
 //! Every number is clamped to the range that its field documents.
 
+#[cfg(all(feature = "cartoon", feature = "objects"))]
+mod materials;
 mod page;
 mod prints;
 mod ranges;
@@ -11,6 +13,11 @@ use crate::{
     Desaturation, Effect, Focus, Halftone, Hatching, HeldPose, LineColor, LineWeight, ObjectEdges,
     Outlines, Paint, Paper, PlaneStyle, Planes, PrintOffset, RangeSmoothing, Silhouettes, Sketch,
     SpeedLines, ToneBands, ToneRamp, TwoTone, Vignette,
+};
+#[cfg(all(feature = "cartoon", feature = "objects"))]
+use crate::{
+    CartoonLight, DetailAxis, FormShape, Glint, MeshSections, ObjectAbstraction, OutlineStyle,
+    Ramp, RampDetail, RampStop, Rim, RimWidth, ShadedForm,
 };
 
 /// A million floats: hand-picked edge cases, then random bit patterns, which

@@ -1,5 +1,6 @@
 //! Sessions with the inspector, driven through keyboard and mouse.
 
+mod picking;
 mod plane_borders;
 mod toolkit;
 

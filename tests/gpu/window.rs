@@ -92,6 +92,8 @@ impl Window {
             .arg(folder.join("state.json"))
             .arg("--styles")
             .arg(folder.join("styles"))
+            .arg("--looks")
+            .arg(folder.join("looks"))
             .arg("--pictures")
             .arg(folder.join("pictures"))
             .args(arguments)
@@ -202,6 +204,14 @@ impl Window {
     /// is not a click and frames may be slow.
     pub fn click(&self, widget: &str) {
         self.point(widget, 0.5);
+        self.xdotool(&["click", "1"]);
+        self.frames(3);
+    }
+
+    /// Clicks a place of the window, in physical pixels.
+    pub fn click_at(&self, [x, y]: [u32; 2]) {
+        self.xdotool(&["mousemove", &x.to_string(), &y.to_string()]);
+        self.frames(2);
         self.xdotool(&["click", "1"]);
         self.frames(3);
     }

@@ -25,11 +25,13 @@ pub(super) fn option(
 ) {
     let mut on = some(value).is_some();
     let on_path = format!("{}.on", setting.path);
+    let mut is_new = false;
     ui.horizontal(|ui| {
         let check = ui.checkbox(&mut on, "");
         note(editor.widgets, on_path.as_str(), &check);
         if check.changed() {
             turn(value, on, default, setting.path, editor);
+            is_new = on;
         }
         explained(check, setting.docs);
         explained(ui.label(&setting.label), setting.docs);
@@ -43,6 +45,10 @@ pub(super) fn option(
     let ReflectMut::Enum(variant) = value.reflect_mut() else {
         return;
     };
+    // The numbers of a new value are not in their ranges yet, and a slider would clamp them.
+    if is_new {
+        return;
+    }
     let Some(inner) = variant.field_at_mut(0) else {
         return;
     };

@@ -1,7 +1,7 @@
 //! The sections of a style: the depth map and the effects, each of which is on or
 //! off as a whole.
 
-use bevy::reflect::{TypeInfo, Typed};
+use bevy::reflect::{TypeInfo, Typed, structs::Struct};
 use bevy_egui::egui::{RichText, Ui, collapsing_header::CollapsingState};
 
 use super::{
@@ -63,32 +63,57 @@ fn shown<'a>(name: &str, info: &TypeInfo, search: Option<&'a Search>) -> Option<
 }
 
 fn depth_map(ui: &mut Ui, map: &mut Option<DepthMap>, shown: Shown, editor: &mut Editor) {
-    let default = DepthMap::default();
-    let last = editor.shelf.depth_map().unwrap_or(default);
+    let last = editor.shelf.depth_map();
+    whole(ui, map, last, ("depth_map", shown), editor);
+}
+
+/// A section of settings that are there or not, such as a component. `last`: those that come back
+/// when it is turned on; `None` for the defaults.
+#[cfg(feature = "objects")]
+pub fn optional<T: Struct + Typed + Default + Clone + PartialEq>(
+    ui: &mut Ui,
+    value: &mut Option<T>,
+    last: Option<T>,
+    path: &'static str,
+    editor: &mut Editor,
+) {
+    let shown = Shown {
+        is_searched: false,
+        search: None,
+    };
+    whole(ui, value, last, (path, shown), editor);
+}
+
+/// As [`optional`], in a search.
+fn whole<T: Struct + Typed + Default + Clone + PartialEq>(
+    ui: &mut Ui,
+    value: &mut Option<T>,
+    last: Option<T>,
+    (path, shown): (&'static str, Shown),
+    editor: &mut Editor,
+) {
+    let default = T::default();
+    let last = last.unwrap_or_else(|| default.clone());
     let mut part = Part {
-        path: "depth_map",
-        docs: DepthMap::type_info().docs().unwrap_or_default(),
-        on: map.is_some(),
-        edited: map.is_some_and(|map| map != default),
+        path,
+        docs: T::type_info().docs().unwrap_or_default(),
+        on: value.is_some(),
+        edited: value.as_ref().is_some_and(|value| *value != default),
         is_searched: shown.is_searched,
     };
-    // The settings that a switched-off map would have are shown, but not edited.
-    let mut edited = map.unwrap_or(last);
+    // The settings that it would have are shown while it is off, but not edited.
+    let mut edited = value.clone().unwrap_or_else(|| last.clone());
     let change = part.head(ui, editor, |ui, editor| {
-        settings(
-            ui,
-            &mut edited,
-            Some(&default),
-            ("depth_map", shown.search),
-            editor,
-        );
+        let path = (path, shown.search);
+        settings(ui, &mut edited, Some(&default), path, editor);
     });
-    *map = match change {
-        Some(Change::On) => Some(last),
-        Some(Change::Reset) => Some(default),
-        Some(Change::Off) => None,
-        None => map.map(|_| edited),
-    };
+    match change {
+        Some(Change::On) => *value = Some(last),
+        Some(Change::Reset) => *value = Some(default),
+        Some(Change::Off) => *value = None,
+        None if value.is_some() => *value = Some(edited),
+        None => {}
+    }
 }
 
 fn effect_section(

@@ -25,6 +25,37 @@ fn all_types() -> Vec<(&'static str, &'static TypeInfo)> {
     for effect in EffectRegistry::built_in().types() {
         all.push((effect.name, (effect.type_info)()));
     }
+    all.extend(types_of_objects());
+    all
+}
+
+/// The types of the page of a picked object.
+fn types_of_objects() -> Vec<(&'static str, &'static TypeInfo)> {
+    #[cfg_attr(
+        not(any(feature = "cartoon", feature = "objects")),
+        allow(unused_mut, reason = "there are no such types")
+    )]
+    let mut all = Vec::new();
+    #[cfg(feature = "cartoon")]
+    all.extend([
+        ("light", crate::CartoonLight::type_info()),
+        ("light.ramp", crate::Ramp::type_info()),
+        ("light.ramp.stops.0", crate::RampStop::type_info()),
+        ("light.ramp.detail", crate::RampDetail::type_info()),
+        ("light.ramp.detail.axis", crate::DetailAxis::type_info()),
+        ("light.glint", crate::Glint::type_info()),
+        ("light.form", crate::ShadedForm::type_info()),
+        ("light.form.shape", crate::FormShape::type_info()),
+        ("light.rim", crate::Rim::type_info()),
+        ("light.rim.width", crate::RimWidth::type_info()),
+    ]);
+    #[cfg(feature = "objects")]
+    all.extend([
+        ("outline_style", crate::OutlineStyle::type_info()),
+        ("outline_style.kinds", crate::OutlineKinds::type_info()),
+        ("no_outlines", crate::NoOutlines::type_info()),
+        ("mesh_sections", crate::MeshSections::type_info()),
+    ]);
     all
 }
 
@@ -53,7 +84,10 @@ fn every_field_is_documented_and_every_number_has_a_range() {
                 "{name}"
             );
             let path = field.type_path();
-            let is_number = ["f32", "u32"].iter().any(|t| path.contains(t));
+            let kinds = ["f32", "u32", "Vec2", "Vec3", "vec::Vec<"];
+            // A place in the world has no range.
+            let is_place = name == "iso_lines.centre";
+            let is_number = kinds.iter().any(|t| path.contains(t)) && !is_place;
             assert_eq!(FieldRange::of(field).is_some(), is_number, "{name}: {path}");
         }
     }
@@ -297,6 +331,27 @@ fn what_is_turned_on_again_has_its_last_settings() {
     assert_eq!(objects, Some(ObjectEdges::default()));
     let value = page.style.get::<BlackFlats>().and_then(|f| f.value);
     assert_eq!(value, BlackFlats::default().value);
+}
+
+/// Widgets never see a number that is not there yet: a slider would clamp it to an end.
+#[test]
+fn what_was_never_on_has_its_documented_defaults() {
+    let style = ComicStyle {
+        depth_map: Some(DepthMap::default()),
+        ..ComicStyle::new()
+    };
+    let mut page = Page::of(style.with(BlackFlats::default()), &[]);
+    page.show();
+    page.click("black_flats.open");
+    page.click("depth_map.open");
+    page.click("black_flats.slope.on");
+    let slope = page.style.get::<BlackFlats>().and_then(|flats| flats.slope);
+    assert_eq!(slope, Some(0.02));
+    page.click("depth_map.mapping");
+    page.click("depth_map.mapping.Fixed");
+    let (near, far) = (0.1, 1000.0);
+    let mapping = page.style.depth_map.map(|map| map.mapping);
+    assert_eq!(mapping, Some(DepthMapping::Fixed { near, far }));
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn is_too_wide(range: FieldRange) -> bool {
     range.logarithmic && range.min > 0.0 && range.max / range.min > 1e10
 }
 
-fn suffix(unit: &str) -> String {
+pub(super) fn suffix(unit: &str) -> String {
     match unit {
         "" | "°" => unit.to_owned(),
         _ => format!(" {unit}"),
@@ -105,6 +105,8 @@ pub(super) fn modes(
             setting.path,
             editor,
         );
+        // Its numbers are not in their ranges yet, and a slider would clamp them.
+        return;
     }
     mode_settings(ui, current, info, setting, editor);
 }
@@ -188,15 +190,30 @@ fn mode_settings(
     editor: &mut Editor,
 ) {
     let index = current.variant_index();
-    if let Some(VariantInfo::Struct(variant)) = info.variant_at(index) {
-        ui.indent(setting.path, |ui| {
-            for (i, field) in variant.iter().enumerate() {
-                let path = format!("{}.{}", setting.path, field.name());
-                let setting = Setting::of(field, &path);
-                if let Some(value) = current.field_at_mut(i) {
-                    edit(ui, value, None, (&setting, None), editor);
+    let mut field = |ui: &mut Ui, i: usize, setting: &Setting| {
+        if let Some(value) = current.field_at_mut(i) {
+            edit(ui, value, None, (setting, None), editor);
+        }
+    };
+    match info.variant_at(index) {
+        Some(VariantInfo::Struct(variant)) => {
+            ui.indent(setting.path, |ui| {
+                for (i, named) in variant.iter().enumerate() {
+                    let path = format!("{}.{}", setting.path, named.name());
+                    field(ui, i, &Setting::of(named, &path));
                 }
-            }
-        });
+            });
+        }
+        Some(VariantInfo::Tuple(variant)) => {
+            ui.indent(setting.path, |ui| {
+                let count = variant.field_len();
+                for (i, unnamed) in variant.iter().enumerate() {
+                    let path = format!("{}.{i}", setting.path);
+                    let setting = Setting::of_mode(unnamed, variant.name(), count, &path);
+                    field(ui, i, &setting);
+                }
+            });
+        }
+        Some(VariantInfo::Unit(_)) | None => {}
     }
 }

@@ -7,6 +7,7 @@ use super::{
     super::{
         Widgets,
         fields::{self, Editor},
+        history::Step,
         memory::Tab,
         views,
     },
@@ -38,6 +39,14 @@ impl Panel {
                 };
                 let search = self.search.search();
                 fields::style(ui, style, &effects, search.as_ref(), &mut editor);
+            }
+            Tab::Object => {
+                let gesture = self.gesture(ui);
+                for before in self.objects.show(ui, world, widgets) {
+                    let step = Step::Object(before);
+                    self.history.record(step, camera, gesture);
+                    self.message = None;
+                }
             }
             Tab::Presets => self.presets.show(
                 ui,

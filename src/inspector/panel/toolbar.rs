@@ -8,6 +8,7 @@ use super::{
         Widgets,
         fields::{button, button_with_tooltip},
         files::on_camera,
+        history::{Step, Way},
         memory::Tab,
         note,
     },
@@ -62,6 +63,7 @@ impl Panel {
         let mut stepped = false;
         ui.horizontal_wrapped(|ui| {
             stepped = self.undo_and_redo(ui, world, camera, style, &keys, widgets);
+            self.pick_button(ui, world, widgets);
             self.copy_and_paste(ui, world, style, widgets);
         });
         ui.horizontal_wrapped(|ui| {
@@ -98,25 +100,28 @@ impl Panel {
         keys: &Keys,
         widgets: &mut Widgets,
     ) -> bool {
-        let (undos, redos) = self.cameras.entry(camera).or_default().history.steps();
+        let (undos, redos) = self.history.steps(camera);
         let undo = button(ui, widgets, "undo", "⮪ Undo", undos > 0) || keys.undo;
         let redo = button(ui, widgets, "redo", "⮫ Redo", redos > 0) || keys.redo;
-        let state = self.cameras.entry(camera).or_default();
-        let step = if undo {
-            state.history.undo(style)
-        } else if redo {
-            state.history.redo(style)
-        } else {
-            None
+        let way = match (undo, redo) {
+            (true, _) => Way::Undo,
+            (_, true) => Way::Redo,
+            _ => return false,
         };
-        let Some(step) = step else {
-            return false;
-        };
-        state.shelf.keep(style, &step);
+        let shelf = &mut self.cameras.entry(camera).or_default().shelf;
+        let mut is_style = false;
+        self.history.take(way, camera, |step| match step {
+            Step::Style(camera, other) => {
+                is_style = true;
+                shelf.keep(style, &other);
+                put(world, camera, &other);
+                let now = std::mem::replace(style, other);
+                Some(Step::Style(camera, now))
+            }
+            Step::Object(value) => value.exchange(world).map(Step::Object),
+        });
         self.message = None;
-        put(world, camera, &step);
-        *style = step;
-        true
+        is_style
     }
 
     /// Buttons that copy the style to the clipboard and paste it from there.

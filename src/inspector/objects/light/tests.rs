@@ -1,0 +1,83 @@
+use bevy::{asset::Assets, color::Color, ecs::name::Name};
+
+use super::*;
+use crate::{CartoonMaterial, CartoonScene, RampDetail, ToonLook};
+
+fn stop(at: f32) -> RampStop {
+    RampStop::new(at, Color::WHITE)
+}
+
+/// The light in range is what the material draws, with the stops in the order of the panel.
+#[test]
+fn stops_keep_their_order_and_every_number_its_range() {
+    let stops = vec![stop(0.75), stop(f32::NAN), stop(9.0), stop(0.25)];
+    let light = CartoonLight {
+        highlight: -3.0,
+        falloff: f32::NAN,
+        ramp: Some(Ramp {
+            detail: Some(RampDetail {
+                plain: vec![stop(2.0), stop(0.5)],
+                ..RampDetail::default()
+            }),
+            ..Ramp::new(stops)
+        }),
+        ..CartoonLight::default()
+    };
+    let used = in_ranges(light.clone());
+    assert_eq!((used.highlight, used.falloff), (0.0, 1.0));
+    let ramp = used.ramp.clone().expect("a ramp");
+    let places = |stops: &[RampStop]| stops.iter().map(|s| s.at).collect::<Vec<_>>();
+    assert_eq!(places(&ramp.stops), [0.75, 0.0, 1.0, 0.25]);
+    let detail = ramp.detail.expect("a second ramp");
+    assert_eq!(places(&detail.plain), [1.0, 0.5]);
+    assert_eq!(in_ranges(used.clone()), used);
+    assert_eq!(used.sanitized(), light.sanitized());
+    // As many stops as count, and never none.
+    let many = Ramp::new((0..20).map(|_| stop(0.5)));
+    let of = |ramp| CartoonLight {
+        ramp: Some(ramp),
+        ..CartoonLight::default()
+    };
+    let count = |light: CartoonLight| in_ranges(light).ramp.expect("a ramp").stops.len();
+    assert_eq!(count(of(many)), Ramp::MOST_STOPS);
+    assert_eq!(in_ranges(of(Ramp::new([]))), of(Ramp::default()));
+}
+
+#[test]
+fn the_panel_says_what_it_edits() {
+    let mut world = World::new();
+    let mut looks = Assets::<ToonLook>::default();
+    let look = looks.add(ToonLook {
+        name: "Skin".into(),
+        ..ToonLook::default()
+    });
+    let nameless = looks.add(ToonLook::default());
+    world.insert_resource(looks);
+    let scene = (Name::new("Hero"), CartoonScene::default());
+    let root = world.spawn(scene).id();
+    let material = Handle::<CartoonMaterial>::default();
+    for (place, count, wanted) in [
+        (
+            LightPlace::Look(look),
+            3,
+            "Edits the look “Skin”, which is made by code. 3 meshes have it.",
+        ),
+        (
+            LightPlace::Look(nameless),
+            1,
+            "Edits the look, which is made by code. Only this mesh has it.",
+        ),
+        (
+            LightPlace::Scene(root),
+            2,
+            "Edits CartoonScene::light of Hero. 2 meshes have it.",
+        ),
+        (
+            LightPlace::Material(material),
+            1,
+            "Edits the material, which is made by code. Only this mesh has it.",
+        ),
+    ] {
+        assert_eq!(what_is_edited(&world, &place, count), wanted);
+    }
+}

@@ -1,0 +1,160 @@
+//! The page of a picked object: its light, its lines, its sections.
+
+mod highlight;
+#[cfg(feature = "cartoon")]
+mod light;
+#[cfg(feature = "cartoon")]
+mod look_file;
+#[cfg(feature = "objects")]
+mod parts;
+mod pick;
+mod ray;
+#[cfg(feature = "cartoon")]
+mod steps;
+mod surface;
+
+use std::path::PathBuf;
+
+use bevy::{
+    ecs::{entity::Entity, hierarchy::ChildOf, name::Name, world::World},
+    platform::collections::HashMap,
+    reflect::{Reflect, TypeRegistry},
+};
+use bevy_egui::egui::{RichText, Ui};
+
+pub use self::{
+    highlight::highlight,
+    pick::{in_window, pick},
+};
+use super::{
+    ComicsInspector, Widgets,
+    fields::{Editor, button_with_tooltip},
+    history::{Exchange, Subject},
+    note,
+    shelf::Shelf,
+};
+
+/// The state of the page.
+pub struct Objects {
+    /// The types of the settings, for their defaults.
+    types: TypeRegistry,
+    /// What is turned off, of everything that was edited.
+    shelves: HashMap<Subject, Shelf>,
+    /// The last values of components that were removed.
+    removed: HashMap<Subject, Box<dyn Reflect>>,
+    #[cfg(feature = "cartoon")]
+    looks: look_file::LookFile,
+}
+
+impl Objects {
+    /// `looks`: the folder of look files.
+    pub fn new(looks: PathBuf) -> Self {
+        #[cfg_attr(
+            not(any(feature = "cartoon", feature = "objects")),
+            allow(unused_mut, reason = "there is nothing to register")
+        )]
+        let mut types = TypeRegistry::default();
+        #[cfg(feature = "cartoon")]
+        types.register::<crate::CartoonLight>();
+        #[cfg(feature = "objects")]
+        parts::register(&mut types);
+        #[cfg(not(feature = "cartoon"))]
+        let _ = looks;
+        Self {
+            types,
+            shelves: HashMap::default(),
+            removed: HashMap::default(),
+            #[cfg(feature = "cartoon")]
+            looks: look_file::LookFile::new(looks),
+        }
+    }
+
+    /// Draws the page and applies what was edited. Returns what was there before.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        world: &mut World,
+        widgets: &mut Widgets,
+    ) -> Vec<Box<dyn Exchange>> {
+        let Some(object) = picked(world) else {
+            ui.label("No object is picked. Press Pick, then click an object in the view.");
+            return Vec::new();
+        };
+        self.head(ui, world, object, widgets);
+        #[cfg_attr(
+            not(any(feature = "cartoon", feature = "objects")),
+            allow(unused_mut, reason = "there is nothing to edit")
+        )]
+        let mut changes = Vec::new();
+        // The light has many settings, so it comes last.
+        #[cfg(feature = "objects")]
+        changes.extend(self.parts(ui, world, object, widgets));
+        #[cfg(feature = "cartoon")]
+        changes.extend(self.light(ui, world, object, widgets));
+        #[cfg(not(any(feature = "cartoon", feature = "objects")))]
+        ui.label("Nothing to edit: the features cartoon and objects of the crate are off.");
+        changes
+    }
+
+    /// The name of the object, and the button that lets go of it.
+    fn head(&self, ui: &mut Ui, world: &mut World, object: Entity, widgets: &mut Widgets) {
+        ui.horizontal_wrapped(|ui| {
+            let name = ui.label(RichText::new(name_of(world, object)).strong());
+            note(widgets, "object.name", &name);
+            #[cfg(feature = "cartoon")]
+            if let Some(material) = world.get::<crate::MaterialName>(object) {
+                ui.label(format!("material {}", material.0));
+            }
+            let deselect = ("object.deselect", "Deselect", "Lets go of the object (Esc)");
+            if button_with_tooltip(ui, widgets, deselect, true) {
+                world.resource_mut::<ComicsInspector>().picked = None;
+            }
+        });
+    }
+
+    /// What the widgets of a value share.
+    fn editor<'a>(&'a mut self, subject: &Subject, widgets: &'a mut Widgets) -> Editor<'a> {
+        Editor {
+            widgets,
+            shelf: self.shelves.entry(subject.clone()).or_default(),
+            types: &self.types,
+        }
+    }
+}
+
+/// The picked object, if it exists.
+pub fn picked(world: &World) -> Option<Entity> {
+    let picked = world.resource::<ComicsInspector>().picked?;
+    world.get_entity(picked).is_ok().then_some(picked)
+}
+
+/// The name of an object, or of the nearest one above it that has a name.
+pub fn name_of(world: &World, object: Entity) -> String {
+    let mut above = Some(object);
+    // Hierarchies can be circles.
+    for _ in 0..64 {
+        let Some(entity) = above else {
+            break;
+        };
+        if let Some(name) = world.get::<Name>(entity) {
+            return if entity == object {
+                name.to_string()
+            } else {
+                format!("{name}, part {object}")
+            };
+        }
+        above = world.get::<ChildOf>(entity).map(ChildOf::parent);
+    }
+    format!("Object {object}")
+}
+
+/// "1 mesh", "2 meshes".
+fn meshes(count: usize) -> String {
+    match count {
+        1 => "1 mesh".into(),
+        _ => format!("{count} meshes"),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,153 @@
+//! Edits of different kinds in one history, and what they change.
+
+use bevy::{
+    asset::Handle,
+    color::Color,
+    pbr::{MeshMaterial3d, StandardMaterial},
+};
+
+use super::*;
+use crate::{
+    CartoonLight, CartoonMaterial, MeshSections, NoOutlines, OutlineStyle, ToonLook, ToonLookHandle,
+};
+
+fn standard(page: &mut Page) -> Handle<StandardMaterial> {
+    page.add(StandardMaterial {
+        base_color: Color::srgb(0.9, 0.1, 0.2),
+        ..StandardMaterial::default()
+    })
+}
+
+/// The cartoon material of a mesh.
+fn cartoon(page: &Page, mesh: Entity) -> Option<&CartoonMaterial> {
+    let handle = page.world.get::<MeshMaterial3d<CartoonMaterial>>(mesh)?;
+    page.world
+        .resource::<Assets<CartoonMaterial>>()
+        .get(&handle.0)
+}
+
+#[test]
+fn a_standard_material_becomes_a_cartoon_material_and_back() {
+    let mut page = Page::new();
+    page.world.init_resource::<Assets<CartoonMaterial>>();
+    let [red, other] = [standard(&mut page), standard(&mut page)];
+    let [mesh, twin, stranger] = [&red, &red, &other]
+        .map(|material| page.world.spawn(MeshMaterial3d(material.clone())).id());
+    page.pick(mesh);
+    page.click("light.convert");
+    for mesh in [mesh, twin] {
+        let material = cartoon(&page, mesh).expect("a cartoon material");
+        assert_eq!(material.base.base_color, Color::srgb(0.9, 0.1, 0.2));
+        assert_eq!(material.extension, CartoonLight::default());
+        assert!(
+            !page
+                .world
+                .entity(mesh)
+                .contains::<MeshMaterial3d<StandardMaterial>>()
+        );
+    }
+    assert!(cartoon(&page, stranger).is_none());
+    assert!(page.has("light.terminator"), "and can be edited");
+    page.drag("light.terminator", 0.1, 0.5);
+    let edited = cartoon(&page, twin).expect("shared").extension.clone();
+    assert!(edited.terminator > 0.2);
+    assert!(page.take(Way::Undo) && page.take(Way::Undo));
+    for mesh in [mesh, twin] {
+        let material = page.world.get::<MeshMaterial3d<StandardMaterial>>(mesh);
+        assert_eq!(material.map(|material| &material.0), Some(&red));
+        assert!(cartoon(&page, mesh).is_none());
+    }
+    assert!(page.has("light.convert"));
+    // The redo of the edit finds the material of the redone conversion.
+    assert!(page.take(Way::Redo) && page.take(Way::Redo));
+    assert_eq!(cartoon(&page, mesh).expect("again").extension, edited);
+    assert_eq!(page.history.steps(CAMERA), (2, 0));
+}
+
+/// All edited values of an object.
+#[derive(Clone, Debug, PartialEq)]
+struct Edited {
+    light: CartoonLight,
+    style: Option<OutlineStyle>,
+    none: Option<NoOutlines>,
+    sections: Option<MeshSections>,
+}
+
+#[test]
+fn light_lines_and_sections_are_undone_in_one_order() {
+    let mut page = Page::new();
+    let look = page.add(ToonLook::default());
+    let (base, extension) = (StandardMaterial::default(), CartoonLight::default());
+    let material = page.add(CartoonMaterial { base, extension });
+    let bundle = (MeshMaterial3d(material), ToonLookHandle(look.clone()));
+    let mesh = page.world.spawn(bundle).id();
+    page.pick(mesh);
+    let state = |page: &Page| Edited {
+        light: {
+            let looks = page.world.resource::<Assets<ToonLook>>();
+            looks.get(&look).expect("a look").light.clone()
+        },
+        style: page.world.get::<OutlineStyle>(mesh).copied(),
+        none: page.world.get::<NoOutlines>(mesh).copied(),
+        sections: page.world.get::<MeshSections>(mesh).copied(),
+    };
+    let mut states = vec![state(&page)];
+    let edit = |page: &mut Page, states: &mut Vec<Edited>, widget: &str| {
+        if widget.ends_with("angle") || widget.ends_with("terminator") {
+            page.drag(widget, 0.3, 0.6);
+        } else {
+            page.click(widget);
+        }
+        let now = state(page);
+        assert_ne!(Some(&now), states.last(), "{widget} changes something");
+        states.push(now);
+    };
+    for widget in [
+        "light.ramp.on",
+        "outline_style",
+        "outline_style.width.on",
+        "mesh_sections",
+        "mesh_sections.angle",
+        "light.terminator",
+        "no_outlines",
+        "light.ramp.stops.add",
+        "outline_style",
+    ] {
+        edit(&mut page, &mut states, widget);
+    }
+    assert_eq!(page.history.steps(CAMERA), (states.len() - 1, 0));
+    for wanted in states.iter().rev().skip(1) {
+        assert!(page.take(Way::Undo));
+        assert_eq!(state(&page), *wanted);
+    }
+    for wanted in &states[1..] {
+        assert!(page.take(Way::Redo));
+        assert_eq!(state(&page), *wanted);
+    }
+    // A width that was never on has the documented default, and comes back with the component.
+    let style = states[3].style;
+    assert_eq!(style.and_then(|style| style.width), Some(2.0));
+    page.click("outline_style");
+    assert_eq!(state(&page).style, style);
+}
+
+/// What is inherited is edited where it is set.
+#[test]
+fn the_style_of_a_figure_is_edited_on_its_root() {
+    let mut page = Page::new();
+    let style = OutlineStyle {
+        inherit: true,
+        ..OutlineStyle::default()
+    };
+    let root = page.world.spawn((Name::new("Hero"), style)).id();
+    let part = page.world.spawn(ChildOf(root)).id();
+    page.pick(part);
+    assert!(page.has("outline_style.source"));
+    page.click("outline_style.open");
+    page.click("outline_style.kinds.creases");
+    let kinds = page.world.get::<OutlineStyle>(root).expect("a style").kinds;
+    assert!(!kinds.creases && kinds.silhouettes);
+    assert!(!page.world.entity(part).contains::<OutlineStyle>());
+    page.click("outline_style.reset");
+    assert!(!page.has("outline_style.source"), "no longer inherited");
+}

@@ -1,0 +1,146 @@
+//! An object is picked in the view, and edited.
+
+use std::fs;
+
+use bevy_comics::ToonLook;
+use serde_json::Value;
+
+use super::SCALE;
+use crate::window::{Window, changed};
+
+/// Large enough for the teapot to be in the middle of what the panel leaves free.
+const WIDTH: u32 = 900;
+const HEIGHT: u32 = 700;
+/// Pixels on the teapot, on its cube and on the sky.
+const TEAPOT: [u32; 2] = [450, 250];
+const SKY: [u32; 2] = [60, 60];
+
+fn picture(window: &Window) -> image::RgbImage {
+    image::imageops::crop_imm(&window.picture(), 0, 0, 500, HEIGHT).to_image()
+}
+
+/// The light of the picked object.
+fn light(state: &Value) -> Option<ToonLook> {
+    ToonLook::from_ron(state["picked"]["light"].as_str()?).ok()
+}
+
+fn pick(window: &Window, at: [u32; 2]) {
+    window.click("pick");
+    window.until("the pick", |state| state["picking"] == true);
+    window.click_at(at);
+    window.until("the end of the pick", |state| state["picking"] == false);
+}
+
+/// Whether the box that the panel draws is around a place in the window.
+fn is_around(state: &Value, at: [u32; 2]) -> bool {
+    let side = |i: usize| state["widgets"]["object.highlight"][i].as_f64();
+    let at = at.map(|v| Some(f64::from(v) / SCALE));
+    side(0) < at[0] && at[0] < side(2) && side(1) < at[1] && at[1] < side(3)
+}
+
+#[test]
+fn an_object_is_picked_and_edited() {
+    let window = Window::open([WIDTH, HEIGHT], SCALE, &[]);
+    window.key("F10");
+    window.until("the panel", |state| state["widgets"]["pick"].is_array());
+    // Without the button, a click belongs to the game.
+    window.click_at(TEAPOT);
+    assert!(window.state()["picked"].is_null());
+    let before = picture(&window);
+
+    pick(&window, TEAPOT);
+    let state = window.state();
+    let at = |state: &Value| state["picked"]["at"][1].as_f64();
+    assert_eq!(
+        at(&state),
+        Some(4.0),
+        "the teapot stands on its cube: {state}"
+    );
+    assert!(is_around(&state, TEAPOT), "{state}");
+    assert!(!is_around(&state, SKY));
+    let marked = changed(&before, &picture(&window));
+    assert!((50..20_000).contains(&marked), "the box: {marked} pixels");
+
+    // The sky, and Escape.
+    pick(&window, SKY);
+    assert!(window.state()["picked"].is_null());
+    pick(&window, TEAPOT);
+    window.key("Escape");
+    window.until("nothing", |state| state["picked"].is_null());
+    let left = changed(&before, &picture(&window));
+    assert!(left < 50, "the box is gone but for {left} pixels");
+    // Escape ends a pick.
+    window.click("pick");
+    window.until("the pick", |state| state["picking"] == true);
+    window.key("Escape");
+    window.until("no pick", |state| state["picking"] == false);
+
+    pick(&window, TEAPOT);
+    edit(&window);
+    save(&window);
+
+    // The box goes with the panel, and the object stays picked.
+    window.key("F10");
+    window.until("the end", |state| state["panel_cameras"] == 0);
+    assert_eq!(at(&window.state()), Some(4.0));
+}
+
+/// Makes the picked object a cartoon, gives it a ramp and lines of its own, and takes all of it
+/// back and again.
+fn edit(window: &Window) {
+    let plain = picture(window);
+    window.click("light.convert");
+    window.until("the material", |state| light(state).is_some());
+    window.click("light.ramp.on");
+    let ramp = |state: &Value| light(state)?.light.ramp;
+    let stops = |state: &Value| {
+        let stops = ramp(state).map(|ramp| ramp.stops).unwrap_or_default();
+        stops.iter().map(|stop| stop.at).collect::<Vec<_>>()
+    };
+    window.until("a ramp", |state| stops(state) == [0.0, 0.25]);
+    let shaded = picture(window);
+    let apart = changed(&plain, &shaded);
+    assert!(apart > 500, "the teapot has other tones: {apart} pixels");
+    window.click("light.ramp.stops.add");
+    window.until("a stop", |state| stops(state) == [0.0, 0.25, 0.625]);
+    window.drag("light.ramp.stops.2.at", 0.32, 0.05);
+    window.until(
+        "the stop on the left",
+        |state| matches!(stops(state)[..], [0.0, 0.25, moved] if moved < 0.2),
+    );
+    window.click("outline_style");
+    window.until("lines of its own", |state| {
+        state["picked"]["has_style"] == true
+    });
+
+    // One history for all of it.
+    for _ in 0..5 {
+        window.chord(&["ctrl"], "z");
+    }
+    window.until("the standard material", |state| {
+        state["picked"]["is_standard"] == true
+    });
+    assert!(changed(&plain, &picture(window)) < 50, "as before");
+    for _ in 0..5 {
+        window.chord(&["ctrl", "shift"], "z");
+    }
+    window.until("all of it again", |state| {
+        stops(state).len() == 3 && state["picked"]["has_style"] == true
+    });
+}
+
+/// Saves the light as a look.
+fn save(window: &Window) {
+    window.click("look.name");
+    window.xdotool(&["type", "--delay", "120", "glaze"]);
+    window.frames(2);
+    window.click("look.save");
+    window.until("the file", |state| {
+        state["widgets"]["look.saved"].is_array()
+    });
+    let path = window.folder.join("looks").join("glaze.toon.ron");
+    let text = fs::read_to_string(path).expect("saved");
+    let saved = ToonLook::from_ron(&text).expect("it reads");
+    let now = light(&window.state()).expect("a light");
+    assert_eq!(saved.light, now.light.sanitized());
+}
