@@ -84,8 +84,9 @@ mod view;
 #[cfg(feature = "cartoon")]
 pub use cartoon::{
     CartoonLight, CartoonMaterial, CartoonScene, DetailAxis, FormShape, Glint, GlintFrame,
-    GlintShape, MaterialName, Ramp, RampBlend, RampDetail, RampMap, RampMode, RampStop, Rim, RimWidth,
-    ShadedForm, TonalArtMap, ToonLook, ToonLookError, ToonLookHandle, ToonLookHandleTemplate,
+    GlintShape, MaterialName, Ramp, RampBlend, RampDetail, RampMap, RampMode, RampStop, Rim,
+    RimWidth, ShadedForm, TonalArtMap, ToonLook, ToonLookError, ToonLookHandle,
+    ToonLookHandleTemplate,
 };
 pub use depth::{
     CameraCut, DepthBin, DepthHistogram, DepthMap, DepthMapping, ProjectionKind, RangeSmoothing,
@@ -175,8 +176,8 @@ pub mod prelude {
     #[cfg(feature = "cartoon")]
     pub use crate::{
         CartoonLight, CartoonMaterial, CartoonScene, DetailAxis, FormShape, Glint, GlintFrame,
-        GlintShape, MaterialName, Ramp, RampBlend, RampDetail, RampMap, RampMode, RampStop, Rim, RimWidth,
-        ShadedForm, TonalArtMap, ToonLook, ToonLookHandle,
+        GlintShape, MaterialName, Ramp, RampBlend, RampDetail, RampMap, RampMode, RampStop, Rim,
+        RimWidth, ShadedForm, TonalArtMap, ToonLook, ToonLookHandle,
     };
     #[cfg(feature = "objects")]
     pub use crate::{
