@@ -98,7 +98,7 @@ fn stairs(foot: Vec3, ahead: Vec3, half: f32, steps: u32, railed: [bool; 2]) -> 
         let high = start + aside * half + ahead * TREAD;
         let riser = v(0.0, RISE * (k + 1.0) - 0.04, 0.0);
         let body = rgb(0xeee2ca);
-        quad_box(&mut treads, low - Vec3::Y * 0.0, high + riser, body);
+        quad_box(&mut treads, low, high + riser, body);
         let nose = low - ahead * 0.03 - aside * 0.03 + riser;
         let top = high + aside * 0.03 + riser + Vec3::Y * 0.04;
         quad_box(&mut treads, nose, top, rgb(OAK));

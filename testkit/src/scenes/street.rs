@@ -483,6 +483,9 @@ fn end_of_the_street(parts: &mut Parts) {
     }
 }
 
+/// A sign: its side, height and place along the street, its size, its colour, and its marks.
+type Board<'a> = (f32, f32, f32, Vec2, u32, &'a [[f32; 4]]);
+
 /// Signs of a bar, a kitchen, a hotel and others, and the light they give.
 fn signs(parts: &mut Parts) -> Vec<Shining> {
     let rows: [[f32; 4]; 3] = [
@@ -502,7 +505,7 @@ fn signs(parts: &mut Parts) -> Vec<Shining> {
         [0.62, 0.1, 0.18, 0.8],
         [0.38, 0.42, 0.24, 0.16],
     ];
-    let all: [(f32, f32, f32, Vec2, u32, &[[f32; 4]]); 6] = [
+    let all: [Board; 6] = [
         (1.0, 4.0, 2.6, Vec2::new(1.0, 2.6), 0xff4f6d, &rows),
         (-1.0, 3.7, -0.8, Vec2::new(1.5, 1.4), 0x35e0d0, &bowl),
         (1.0, 5.4, -9.0, Vec2::new(1.3, 1.3), 0x7dff8a, &cross),
