@@ -21,6 +21,7 @@ mod pages;
 mod print;
 mod ramps;
 mod sheet;
+mod smoothed;
 mod strips;
 mod strokes;
 mod toon;

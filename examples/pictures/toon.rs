@@ -18,7 +18,7 @@ use bevy_comics_testkit::{
 };
 use image::RgbaImage;
 
-use crate::{save, sheet::grid, strokes};
+use crate::{save, sheet::grid, smoothed, strokes};
 
 /// Frames until shaders are compiled and the picture stands still.
 const SETTLE: usize = 12;
@@ -28,6 +28,7 @@ pub fn write(folder: &Path) -> Result<(), String> {
     save(&details(), &folder.join("details.png"))?;
     save(&rims(), &folder.join("rims.png"))?;
     save(&forms(), &folder.join("forms.png"))?;
+    save(&smoothed::picture(), &folder.join("smoothed.png"))?;
     save(&strokes::picture(), &folder.join("hatched-material.png"))?;
     save(&tone_ramp(), &folder.join("tone-ramp.png"))?;
     save(&figure(), &folder.join("figure.png"))?;

@@ -3,8 +3,8 @@
 
 use bevy::prelude::*;
 use bevy_comics::{
-    CartoonLight, CartoonScene, Glint, GlintShape, Hatching, Ramp, RampDetail, RampMode, RampStop,
-    Rim,
+    CartoonLight, CartoonScene, DetailAxis, FormShape, Glint, GlintShape, Hatching, Ramp,
+    RampDetail, RampMode, RampStop, Rim, ShadedForm,
 };
 use bevy_comics_testkit::{
     bench::{self, Lap},
@@ -51,6 +51,27 @@ fn variants() -> Vec<(&'static str, Option<CartoonLight>)> {
                 ..Ramp::default()
             };
             Some(with(ramp))
+        }),
+        ("default ramp; a second one by the visible range", {
+            let detail = RampDetail {
+                axis: DetailAxis::VisibleRange,
+                ..default()
+            };
+            let ramp = Ramp {
+                detail: Some(detail),
+                ..Ramp::default()
+            };
+            Some(with(ramp))
+        }),
+        ("no ramp; smoothed normals", {
+            let form = ShadedForm {
+                shape: FormShape::Smoothed { rounds: 8 },
+                ..default()
+            };
+            Some(CartoonLight {
+                form: Some(form),
+                ..default()
+            })
         }),
         ("no ramp; a window as highlight", {
             let glint = Glint {

@@ -20,8 +20,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Glint, Ramp, Rim, ShadedForm,
-    hatch::{HatchUniform, VERTEX, is_prepass},
+    hatch::HatchUniform,
     uniform::{CartoonKey, CartoonUniform},
+    vertex,
+    view_range::ViewRanges,
 };
 use crate::{effect::Effect, effects::Hatching, settings::bounded};
 
@@ -135,6 +137,12 @@ pub struct CartoonLight {
     /// How often `art_map` repeats over texture coordinates from 0 to 1, or over a unit of the
     /// world. Range 0.01 to 1000, default 4.
     pub art_map_repeat: f32,
+    /// Of all views: no setting.
+    #[doc(hidden)]
+    #[texture(107, sample_type = "u_int", visibility(vertex))]
+    #[serde(skip)]
+    #[reflect(ignore)]
+    pub view_ranges: ViewRanges,
 }
 
 impl Default for CartoonLight {
@@ -156,6 +164,7 @@ impl Default for CartoonLight {
             hatching: None,
             art_map: None,
             art_map_repeat: 4.0,
+            view_ranges: ViewRanges,
         }
     }
 }
@@ -192,18 +201,14 @@ impl MaterialExtension for CartoonLight {
     fn specialize(
         _: &MaterialExtensionPipeline,
         descriptor: &mut RenderPipelineDescriptor,
-        _: &MeshVertexBufferLayoutRef,
+        layout: &MeshVertexBufferLayoutRef,
         key: MaterialExtensionKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
         let key = key.bind_group_data;
-        let vertex = &mut descriptor.vertex;
-        let defs = &vertex.shader_defs;
-        // Prepasses and shadow maps have shaders of their own.
-        if !is_prepass(defs) && key.hatch.is_some_and(|hatch| hatch.needs_rest(defs)) {
-            vertex.shader = VERTEX;
-        }
+        vertex::specialize(&mut descriptor.vertex, layout, key)?;
         if let Some(fragment) = &mut descriptor.fragment {
-            let definitions = key.definitions(&fragment.shader_defs);
+            let smoothed = vertex::is_smoothed(layout);
+            let definitions = key.definitions(&fragment.shader_defs, smoothed);
             fragment.shader_defs.extend(definitions);
         }
         Ok(())

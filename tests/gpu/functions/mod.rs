@@ -46,6 +46,7 @@ mod speed_lines;
 mod surroundings;
 mod tone_ramp;
 mod two_tone;
+mod visible;
 mod walk;
 mod weight;
 
