@@ -10,7 +10,7 @@ use image::RgbaImage;
 use crate::sheet::grid;
 
 /// Frames until normals are made and the picture stands still.
-const SETTLE: usize = 100;
+const SETTLE: usize = 10;
 
 pub fn picture() -> RgbaImage {
     let size = UVec2::new(400, 400);
@@ -26,7 +26,7 @@ pub fn picture() -> RgbaImage {
     studio.shoot(Some(&style));
     let stopped = TimeUpdateStrategy::ManualDuration(Duration::ZERO);
     studio.headless.app.insert_resource(stopped);
-    let pictures = [None, Some(10)].map(|rounds| {
+    let pictures = [None, Some(30)].map(|rounds| {
         let form = rounds.map(|rounds| ShadedForm {
             shape: FormShape::Smoothed { rounds },
             ..default()
@@ -40,7 +40,7 @@ pub fn picture() -> RgbaImage {
         }
         for _ in 0..SETTLE {
             studio.headless.step(1);
-            thread::sleep(Duration::from_millis(10));
+            thread::sleep(Duration::from_millis(200));
         }
         studio.headless.picture()
     });

@@ -56,9 +56,8 @@
 #endif
 
 #ifdef FORM
-#import bevy_pbr::mesh_functions::{get_local_from_world, mesh_normal_local_to_world}
 #import bevy_pbr::pbr_types::STANDARD_MATERIAL_FLAGS_DOUBLE_SIDED_BIT
-#import bevy_comics::cartoon::form::{between, form_amount, form_normal}
+#import bevy_comics::cartoon::form::{between, form_amount, unit_or_none}
 #endif
 
 // What all lights give.
@@ -229,27 +228,6 @@ fn view_z_of(world_position: vec4<f32>) -> f32 {
     ), world_position);
 }
 
-#ifdef FORM
-#ifdef FORM_SMOOTHED
-// A normal that was interpolated between vertices, at unit length and on the side that is seen.
-fn seen_normal(normal: vec3<f32>, pbr: PbrInput, is_front: bool) -> vec3<f32> {
-    let sided = (pbr.material.flags & STANDARD_MATERIAL_FLAGS_DOUBLE_SIDED_BIT) != 0u;
-    let side = select(1.0, -1.0, sided && !is_front);
-    return side * normal * inverseSqrt(max(dot(normal, normal), 1e-12));
-}
-#else
-// The normal of the simpler form.
-fn normal_of_form(pbr: PbrInput, in: VertexOutput) -> vec3<f32> {
-#ifdef FORM_UP
-    return vec3(0.0, 1.0, 0.0);
-#else
-    let place = (get_local_from_world(in.instance_index) * pbr.world_position).xyz;
-    return mesh_normal_local_to_world(form_normal(cartoon.form, place), in.instance_index);
-#endif
-}
-#endif
-#endif
-
 // What the vertex shader hands on beside the engine's `VertexOutput`, see vertex.wgsl.
 struct MoreInput {
     @builtin(front_facing) is_front: bool,
@@ -257,8 +235,8 @@ struct MoreInput {
     @location(8) rest_place: vec3<f32>,
     @location(9) rest_normal: vec3<f32>,
 #endif
-#ifdef FORM_SMOOTHED
-    @location(10) smoothed_normal: vec3<f32>,
+#ifdef FORM_NORMAL
+    @location(10) other_normal: vec3<f32>,
 #endif
 #ifdef DETAIL_VISIBLE
     @location(11) @interpolate(flat) range_ends: vec4<f32>,
@@ -268,11 +246,16 @@ struct MoreInput {
 
 #ifdef FORM
 // The normal between that of the mesh and that of the form.
-fn shaded_normal(pbr: PbrInput, in: VertexOutput, more: MoreInput) -> vec3<f32> {
-#ifdef FORM_SMOOTHED
-    let other = seen_normal(more.smoothed_normal, pbr, more.is_front);
+fn shaded_normal(pbr: PbrInput, more: MoreInput) -> vec3<f32> {
+#ifdef FORM_NORMAL
+    var other = unit_or_none(more.other_normal);
 #else
-    let other = normal_of_form(pbr, in);
+    let other = vec3(0.0, 1.0, 0.0);
+#endif
+#ifdef FORM_SMOOTHED
+    // Of a surface with two sides, that of the side that is seen.
+    let sided = (pbr.material.flags & STANDARD_MATERIAL_FLAGS_DOUBLE_SIDED_BIT) != 0u;
+    other = select(other, -other, sided && !more.is_front);
 #endif
     return between(pbr.N, other, form_amount(cartoon.form, -view_z_of(pbr.world_position)));
 }
@@ -322,7 +305,7 @@ fn fragment(vertex_output: VertexOutput, more: MoreInput) -> FragmentOutput {
 #endif
     var pbr = pbr_input_from_standard_material(in, more.is_front);
 #ifdef FORM
-    pbr.N = shaded_normal(pbr, in, more);
+    pbr.N = shaded_normal(pbr, more);
 #endif
     // Must be computed before alpha_discard: derivatives need all pixels.
     let foot = footprint_of(pbr);

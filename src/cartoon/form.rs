@@ -165,8 +165,8 @@ impl FormKey {
     pub(super) fn definitions(self, is_smoothed: bool) -> &'static [&'static str] {
         match self {
             Self::Up => &["FORM", "FORM_UP"],
-            Self::Solid => &["FORM"],
-            Self::Smoothed if is_smoothed => &["FORM", "FORM_SMOOTHED"],
+            Self::Solid => &["FORM", "FORM_NORMAL"],
+            Self::Smoothed if is_smoothed => &["FORM", "FORM_NORMAL", "FORM_SMOOTHED"],
             Self::Smoothed => &[],
         }
     }

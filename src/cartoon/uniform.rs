@@ -106,9 +106,11 @@ impl CartoonKey {
         smoothed: bool,
     ) -> Vec<ShaderDefVal> {
         let rest = self.hatch.is_some_and(|hatch| hatch.needs_rest(others));
+        let smoothed = smoothed && self.reads_smoothed();
         let names = [
             (rest, "HATCH_REST"),
-            (smoothed && self.reads_smoothed(), "FORM_SMOOTHED"),
+            (smoothed, "FORM_SMOOTHED"),
+            (smoothed || self.form == Some(FormKey::Solid), "FORM_NORMAL"),
             (self.visible, "DETAIL_VISIBLE"),
         ];
         let used = names.into_iter().filter(|(is_used, _)| *is_used);

@@ -1,6 +1,6 @@
 // The engine's vertex shader of meshes (bevy_pbr/src/render/mesh.wgsl), which hands on more: where a
-// vertex was before morphing and skinning, for strokes on surfaces; its smoothed normal; the visible
-// range of the view.
+// vertex was before morphing and skinning, for strokes on surfaces; its normal on a simpler form; the
+// visible range of the view.
 
 #import bevy_pbr::{
     forward_io::Vertex,
@@ -12,6 +12,8 @@
 }
 #ifdef FORM_SMOOTHED
 #import bevy_comics::cartoon::octahedral::octahedral
+#else ifdef FORM_NORMAL
+#import bevy_comics::cartoon::{bindings::cartoon, form::form_normal}
 #endif
 #ifdef DETAIL_VISIBLE
 #import bevy_comics::cartoon::view_range::range_of_view
@@ -46,9 +48,9 @@ struct MoreOutput {
     @location(8) rest_place: vec3<f32>,
     @location(9) rest_normal: vec3<f32>,
 #endif
-#ifdef FORM_SMOOTHED
-    // In world space.
-    @location(10) smoothed_normal: vec3<f32>,
+#ifdef FORM_NORMAL
+    // In world space. That of an ellipsoid is not of unit length: so it is linear over a triangle.
+    @location(10) other_normal: vec3<f32>,
 #endif
 #ifdef DETAIL_VISIBLE
     // `ViewRange` of bevy_comics::cartoon::visible.
@@ -88,6 +90,19 @@ fn normal_in_world(normal: vec3<f32>, world_from_local: mat4x4<f32>, instance: u
     return mesh_functions::mesh_normal_local_to_world(normal, instance);
 #endif
 }
+#endif
+
+#ifndef FORM_SMOOTHED
+#ifdef FORM_NORMAL
+// The normal of an ellipsoid or a cylinder in the space of the entity. Fragments could not find it:
+// matrices of meshes are in storage buffers, which not all adapters read for the pixels beside a
+// triangle, and derivatives need these.
+fn solid_normal(place: vec4<f32>, instance: u32) -> vec3<f32> {
+    let from_world = mesh_functions::get_local_from_world(instance);
+    let normal = form_normal(cartoon.form, (from_world * place).xyz);
+    return normal * mat3x3(from_world[0].xyz, from_world[1].xyz, from_world[2].xyz);
+}
+#endif
 #endif
 
 #ifdef HATCH_REST
@@ -131,7 +146,9 @@ fn vertex(
 #ifdef FORM_SMOOTHED
     // Morph targets add to it what they add to the mesh's normal.
     let form = octahedral(smoothed) + (moved.normal - at_rest.normal);
-    out.smoothed_normal = normal_in_world(form, world_from_local, at_rest.instance_index);
+    out.other_normal = normal_in_world(form, world_from_local, at_rest.instance_index);
+#else ifdef FORM_NORMAL
+    out.other_normal = solid_normal(out.world_position, at_rest.instance_index);
 #endif
 #ifdef HATCH_REST
     out = with_rest(out, at_rest, own);

@@ -102,8 +102,8 @@ fn turned() -> Quat {
 }
 
 /// The normal of a ball through the place of a cube that a pixel of 160 by 160 shows, if it does, and
-/// what it becomes a pixel to the right and down on the same face.
-fn ball_on_cube(x: u32, y: u32) -> Option<Surface> {
+/// its change over a pixel on the same face, as found from a neighbour (1: right, down; -1: left, up).
+fn ball_on_cube(x: u32, y: u32, beside: [f64; 2]) -> Option<Surface> {
     let rotation = turned().as_dquat();
     let back = rotation.inverse();
     let down = back * DVec3::NEG_Z;
@@ -120,7 +120,11 @@ fn ball_on_cube(x: u32, y: u32) -> Option<Surface> {
     }
     let normal = |x, y| (rotation * on_face(from(x, y))).normalize();
     let here = normal(x, y);
-    let steps = [normal(x + 1.0, y) - here, normal(x, y + 1.0) - here];
+    let [right, down] = beside;
+    let steps = [
+        right * (normal(x + right, y) - here),
+        down * (normal(x, y + down) - here),
+    ];
     Some(Surface {
         normal: here,
         to_eye: DVec3::Z,
@@ -150,7 +154,6 @@ fn a_cube_as_a_ball_has_its_tones() {
     let to = Vec3::new(1.0, 0.5, 0.3);
     sun(&mut small, to, bright(1.0));
     let picture = drawn(&mut small);
-    picture.save("/tmp/shape-cube.png").ok();
     let color = DVec3::splat(f64::from(full()));
     let to = to.normalize().as_dvec3();
     let suns = [Arriving {
@@ -169,23 +172,27 @@ fn a_cube_as_a_ball_has_its_tones() {
         shine: DVec3::ZERO,
         exposure: f64::from(bevy::camera::Exposure::default().exposure()),
     };
-    let mut most: [(f64, (u32, u32), f64, f64); 4] = Default::default();
     let mut seen = 0;
     for (x, y) in (0..160).flat_map(|x| (0..160).map(move |y| (x, y))) {
-        let Some(s) = ball_on_cube(x, y) else {
+        // Derivatives are found from either neighbour.
+        let sides = [[1.0, 1.0], [1.0, -1.0], [-1.0, 1.0], [-1.0, -1.0]];
+        let tones = sides.map(|side| {
+            let s = ball_on_cube(x, y, side)?;
+            Some(per_light::reflected(&light, &s, &suns, &evenly).x)
+        });
+        let [Some(a), Some(b), Some(c), Some(d)] = tones else {
             continue;
         };
         seen += 1;
-        let wanted = per_light::reflected(&light, &s, &suns, &evenly).x;
+        let (low, high) = (a.min(b).min(c).min(d), a.max(b).max(c).max(d));
         let found = linear(&picture, x, y)[0];
-        let off = (wanted - found).abs();
-        let last = most.iter_mut().min_by(|a, b| a.0.total_cmp(&b.0)).expect("some");
-        if off > last.0 {
-            *last = (off, (x, y), wanted, found);
-        }
+        // The row of the derivative may be the neighbour's too, which changes it as much as the choice
+        // of the neighbour does. Half a code near white is 0.0046 in linear light.
+        let slack = 0.0046 + high - low;
+        assert!(
+            (low - slack..=high + slack).contains(&found),
+            "({x}, {y}): {found}, not {low} to {high}"
+        );
     }
-    println!("{seen} pixels, {most:?}");
-    assert!(seen > 5000, "{seen}");
-    // Half a code, in linear light: at most 1 / 255 of 2.4.
-    assert!(most.iter().all(|m| m.0 < 0.008), "{most:?}");
+    assert!(seen > 10_000, "{seen}");
 }

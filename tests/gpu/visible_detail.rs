@@ -252,9 +252,6 @@ fn every_view_has_its_own_range() {
         small.put_shared(Rectangle::new(0.5, 0.8), material, at);
     }
     let picture = drawn(&mut small);
-    picture
-        .save(std::env::temp_dir().join("shape-two-views.png"))
-        .ok();
     let of = |x: u32, detail: f64| off(&picture, x, 16, detail);
     // 8 units are the far end for one camera, and the near end for the other one.
     let found = [of(12, 1.0), of(38, 0.0), of(58, 1.0), of(82, 0.0)];

@@ -104,3 +104,24 @@ fn octahedral_vectors_are_their_twin() {
         |rows| check(rows),
     );
 }
+
+/// Vectors of any length at unit length; 0 stays 0.
+#[test]
+fn vectors_of_any_length_have_directions() {
+    let import = "#import bevy_comics::cartoon::form::unit_or_none";
+    let body = "return vec4(unit_or_none(vec3(i(0u), i(1u), i(2u))), 0.0);";
+    let rows = (vec(-1.0f32..1.0, 3), -18.0f32..18.0)
+        .prop_map(|(v, size)| [0, 1, 2].map(|c| v[c] * 10f32.powf(size)));
+    for_batches(rows, |rows| {
+        for (row, found) in rows.iter().zip(gpu().evaluate(import, body, rows)) {
+            let twin = unit(row.map(f64::from));
+            for (found, twin) in found.into_iter().zip(twin) {
+                assert!(
+                    (f64::from(found) - twin).abs() < 1e-6,
+                    "{row:?}: {found}, not {twin}"
+                );
+            }
+        }
+    });
+    assert_eq!(gpu().evaluate(import, body, &[[0.0; 3]])[0], [0.0; 4]);
+}
