@@ -177,9 +177,10 @@ impl ToonLook {
         let light = self.light.clone();
         CartoonLight {
             art_map: light.art_map.or_else(|| other.art_map.clone()),
-            ramp_map: match light.ramp_map.is_none() {
-                true => other.ramp_map.clone(),
-                false => light.ramp_map,
+            ramp_map: if light.ramp_map.is_none() {
+                other.ramp_map.clone()
+            } else {
+                light.ramp_map
             },
             threshold_map: (light.threshold_map).or_else(|| other.threshold_map.clone()),
             ..light

@@ -166,6 +166,22 @@ pub struct ComicsInspector {
     pub focused: Option<String>,
 }
 
+impl ComicsInspector {
+    fn new(open: bool, toggle: Option<KeyCode>) -> Self {
+        Self {
+            open,
+            toggle,
+            camera: None,
+            picking: false,
+            picked: None,
+            wants_pointer: false,
+            wants_keyboard: false,
+            widgets: HashMap::default(),
+            focused: None,
+        }
+    }
+}
+
 /// The widgets of a frame.
 #[derive(Default)]
 struct Widgets {
@@ -203,18 +219,8 @@ impl Plugin for ComicsInspectorPlugin {
             .world_mut()
             .get_resource_or_init::<EffectRegistry>()
             .clone();
-        app.insert_resource(ComicsInspector {
-            open: false,
-            toggle: Some(self.toggle),
-            camera: None,
-            picking: false,
-            picked: None,
-            wants_pointer: false,
-            wants_keyboard: false,
-            widgets: HashMap::default(),
-            focused: None,
-        })
-        .insert_resource(Panel::new(self, &registry));
+        app.insert_resource(ComicsInspector::new(false, Some(self.toggle)))
+            .insert_resource(Panel::new(self, &registry));
     }
 
     /// Every other plugin is built by now, whatever their order.

@@ -191,7 +191,7 @@ fn images_of_soft_ramps_are_these_ramps() {
                     })
                 };
                 let map = CartoonLight {
-                    ramp_map: add(&mut small, painted(&[row.clone()])),
+                    ramp_map: add(&mut small, painted(std::slice::from_ref(&row))),
                     ..stops.clone()
                 };
                 set_light(&mut small, &stops);

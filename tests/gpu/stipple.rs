@@ -12,7 +12,7 @@ use bevy_comics_testkit::reference::{color, hatching::Hatch, stipple::dot_radius
 
 use crate::{
     hatched_material::{self, assert_same, frames, seen_from, studio},
-    hatching::{FOV, SIZE, covers, empty, flat, mean, tilted},
+    hatching::{FOV, SIZE, come_nearer, covers, empty, flat, mean, tilted},
     ramp::put,
     small::Small,
 };
@@ -196,27 +196,7 @@ fn dots_grow_while_the_camera_comes_nearer() {
             ..plain()
         },
     ] {
-        let mut before: Option<Vec<f64>> = None;
-        let (mut largest, mut means) = (0.0f64, Vec::new());
-        for frame in 0..100 {
-            // Towards the middle of the wall: the distance is halved.
-            let distance = 20.0 * (1.0 - 0.9925f32.powi(frame));
-            small.insert(Transform::from_xyz(0.0, 0.0, -distance));
-            let now = covers(&mut small, s);
-            if let Some(before) = &before {
-                let moved = (0..now.len())
-                    .filter(|i| {
-                        let [x, y] = [i % SIZE.x as usize, i / SIZE.x as usize].map(|v| v as f64);
-                        (x - 80.0).hypot(y - 60.0) < 20.0
-                    })
-                    .map(|i| (now[i] - before[i]).abs());
-                largest = moved.fold(largest, f64::max);
-            }
-            means.push(mean(&now));
-            before = Some(now);
-        }
-        let [low, high] =
-            [f64::min, f64::max].map(|of| means.iter().copied().reduce(of).expect("some"));
+        let [largest, low, high] = come_nearer(&mut small, s, 100);
         println!("largest change {largest:.3}, mean tone {low:.3} to {high:.3}");
         // Within 20 pixels of the middle, things move by 0.15 pixels. While there are x^2 dots for each old
         // one, the newest grows by 2 * 0.0075 * x^2 of its area in a frame: the last of three begins at

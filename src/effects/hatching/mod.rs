@@ -283,12 +283,12 @@ impl Hatching {
             (HatchingAnchor::Page, HatchingMarks::Dots) => Mat3::from_rotation_z(turn),
             // No side of a box sees one of them from its end.
             (HatchingAnchor::Object, HatchingMarks::Strokes) => {
-                let axes = Mat3::from_cols(
-                    Vec3::new(2.0, 2.0, -1.0),
-                    Vec3::new(-1.0, 2.0, 2.0),
-                    Vec3::new(2.0, -1.0, 2.0),
-                );
-                Mat3::from_rotation_y(turn) * (axes * (1.0 / 3.0))
+                Mat3::from_rotation_y(turn)
+                    * Mat3::from_cols(
+                        Vec3::new(2.0, 2.0, -1.0) / 3.0,
+                        Vec3::new(-1.0, 2.0, 2.0) / 3.0,
+                        Vec3::new(2.0, -1.0, 2.0) / 3.0,
+                    )
             }
             (HatchingAnchor::Object, HatchingMarks::Dots) => Mat3::from_rotation_y(turn),
         };

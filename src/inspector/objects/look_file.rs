@@ -49,7 +49,7 @@ impl LookFile {
             let save = (
                 "look.save",
                 "Save as a look",
-                "Writes the light as a .toon.ron file. Images are not part of it.",
+                "Writes the light as a .toon.ron file, with the path of its ramp's image. Other images are not part of it.",
             );
             let path = self.path(place);
             if button_with_tooltip(ui, widgets, save, path.is_some())

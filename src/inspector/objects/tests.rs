@@ -33,17 +33,7 @@ impl Page {
         // Sections open at once, so that the widgets below them do not move.
         context.all_styles_mut(|style| style.animation_time = 0.0);
         let mut world = World::new();
-        world.insert_resource(ComicsInspector {
-            open: true,
-            toggle: None,
-            camera: None,
-            picking: false,
-            picked: None,
-            wants_pointer: false,
-            wants_keyboard: false,
-            widgets: HashMap::default(),
-            focused: None,
-        });
+        world.insert_resource(ComicsInspector::new(true, None));
         Self {
             context,
             world,

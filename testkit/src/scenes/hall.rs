@@ -502,15 +502,13 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     let [brass, flames] = chandelier();
     shapes.push(brass);
     for shape in shapes {
-        let mesh = stage.meshes.add(shape.into_mesh());
-        stage.solid(mesh, matt.clone(), Transform::IDENTITY);
+        stage.shape(shape, &matt);
     }
     let unlit = stage.materials.add(StandardMaterial {
         unlit: true,
         ..default()
     });
-    let mesh = stage.meshes.add(flames.into_mesh());
-    stage.solid(mesh, unlit, Transform::IDENTITY);
+    stage.shape(flames, &unlit);
     let sun = v(-0.85, 0.75, 0.3);
     spawn_lights(stage, sun);
     let sky = Sky {

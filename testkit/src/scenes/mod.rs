@@ -122,6 +122,12 @@ impl Stage<'_, '_> {
             .spawn((ScenePart, Mesh3d(mesh), MeshMaterial3d(material), at));
     }
 
+    /// Spawns a shape where it is as a part of the scene.
+    pub fn shape(&mut self, shape: shape::Shape, material: &Handle<StandardMaterial>) {
+        let mesh = self.meshes.add(shape.into_mesh());
+        self.solid(mesh, material.clone(), Transform::IDENTITY);
+    }
+
     /// A rough material that leaves the colour to the vertices.
     pub fn matt(&mut self) -> Handle<StandardMaterial> {
         self.materials.add(StandardMaterial {

@@ -533,9 +533,9 @@ fn spawn_lights(stage: &mut Stage, lamps: &[Shining], signs: &[Shining]) {
         stage.commands.spawn((
             ScenePart,
             PointLight {
-                intensity: 260_000.0,
+                intensity: 900_000.0,
                 color: color(lamp.color),
-                range: 16.0,
+                range: 24.0,
                 // The nearest three.
                 shadow_maps_enabled: number < 3,
                 ..default()
@@ -547,9 +547,9 @@ fn spawn_lights(stage: &mut Stage, lamps: &[Shining], signs: &[Shining]) {
         stage.commands.spawn((
             ScenePart,
             PointLight {
-                intensity: 60_000.0,
+                intensity: 220_000.0,
                 color: color(sign.color),
-                range: 9.0,
+                range: 13.0,
                 ..default()
             },
             Transform::from_translation(sign.at),
@@ -559,7 +559,7 @@ fn spawn_lights(stage: &mut Stage, lamps: &[Shining], signs: &[Shining]) {
     stage.commands.spawn((
         ScenePart,
         DirectionalLight {
-            illuminance: 180.0,
+            illuminance: 320.0,
             color: Color::srgb(0.62, 0.74, 1.0),
             shadow_maps_enabled: true,
             ..default()
@@ -575,15 +575,9 @@ fn spawn_lights(stage: &mut Stage, lamps: &[Shining], signs: &[Shining]) {
     ));
     stage.commands.insert_resource(GlobalAmbientLight {
         color: Color::srgb(0.5, 0.6, 0.95),
-        brightness: 95.0,
+        brightness: 170.0,
         ..default()
     });
-}
-
-/// Moves what a mesh is of into an entity.
-fn put(stage: &mut Stage, shape: Shape, material: &Handle<StandardMaterial>) {
-    let mesh = stage.meshes.add(shape.into_mesh());
-    stage.solid(mesh, material.clone(), Transform::IDENTITY);
 }
 
 pub fn spawn(stage: &mut Stage) -> Vantage {
@@ -612,13 +606,13 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
             z -= width;
             let mut house = Parts::default();
             front(&mut house, &mut random, side, z, width);
-            put(stage, house.lit, &damp);
-            put(stage, house.shining, &shining);
+            stage.shape(house.lit, &damp);
+            stage.shape(house.shining, &shining);
         }
     }
     let mut parts = Parts::default();
     ground(&mut parts);
-    put(stage, std::mem::take(&mut parts.lit), &damp);
+    stage.shape(std::mem::take(&mut parts.lit), &damp);
     end_of_the_street(&mut parts);
     let signs = signs(&mut parts);
     let lamps: Vec<Shining> = [
@@ -630,7 +624,7 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     ]
     .map(|(side, z)| lamp(&mut parts, side, z))
     .into();
-    put(stage, std::mem::take(&mut parts.lit), &damp);
+    stage.shape(std::mem::take(&mut parts.lit), &damp);
     for (from, to, sag) in [
         (
             Vec3::new(-FRONTS, 8.6, -3.0),
@@ -650,22 +644,22 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     ] {
         cable(&mut parts.lit, from, to, sag);
     }
-    put(stage, std::mem::take(&mut parts.lit), &damp);
+    stage.shape(std::mem::take(&mut parts.lit), &damp);
     let parked = Transform::from_xyz(2.5, 0.0, -9.5).with_rotation(Quat::from_rotation_y(0.04));
     car(&mut parts, parked);
-    put(stage, std::mem::take(&mut parts.lit), &damp);
+    stage.shape(std::mem::take(&mut parts.lit), &damp);
     let mut person = Shape::default();
     person.add(
         &walker(),
         Transform::from_xyz(-0.9, 0.0, 5.2).with_rotation(Quat::from_rotation_y(0.25)),
     );
-    put(stage, person, &damp);
+    stage.shape(person, &damp);
     for shining in lamps.iter().chain(&signs) {
         reflection(&mut parts, shining);
     }
     rain(&mut parts, &mut random);
-    put(stage, parts.shining, &shining);
-    put(stage, parts.mixed, &mixed);
+    stage.shape(parts.shining, &shining);
+    stage.shape(parts.mixed, &mixed);
     spawn_lights(stage, &lamps, &signs);
     let sky = Sky {
         zenith: 0x060a16,

@@ -2,28 +2,23 @@
 
 use std::f64::consts::PI;
 
-use bevy::math::{DMat4, DVec2, DVec3};
+use bevy::math::{DVec2, DVec3};
 use bevy_comics::{Hatching, HatchingMarks};
 use bevy_comics_testkit::reference::{
     hatching::{Hatch, Surface},
-    nested::mark_of_node,
     stipple::disc_coverage,
 };
 
-use super::*;
+use super::{
+    hatching::{VIEW, is_near, view},
+    *,
+};
 
 const STIPPLE: &str = "
     #import bevy_comics::effect::footprint::singular_values
-    #import bevy_comics::effect::nested::mark_of_node
     #import bevy_comics::effect::stipple::{disc_coverage, stippled}
     #import bevy_comics::effect::strokes::{Strokes, page_at}
     #import bevy_comics::effects::hatching::surface_at";
-
-/// A view of 90 degrees, 96 x 64 pixels, from the origin.
-const VIEW: &str = "const VIEW = mat4x4<f32>(
-        vec4(1.5, 0.0, 0.0, 0.0), vec4(0.0, 1.0, 0.0, 0.0),
-        vec4(0.0, 0.0, 0.0, 10.0), vec4(0.0, 0.0, -1.0, 0.0),
-    );";
 
 /// The change of a place over a pixel, turned and stretched: `[right, down]`.
 fn change([x, y, long, short]: [f64; 4]) -> [DVec2; 2] {
@@ -66,34 +61,6 @@ fn discs_are_those_of_the_twin() {
             // The edge of a pixel is as steep as a hundredth of a unit.
             let off = (f64::from(found[0]) - want).abs();
             assert!(off < 1e-3, "{row:?}: {found:?}, {want}");
-        }
-    });
-}
-
-#[test]
-fn numbers_of_nodes_are_those_of_the_twin() {
-    let row = (-64i32..=64, -64i32..=64, 0u32..=6, -20i32..=20, 0u32..=20).prop_map(
-        |(x, y, twos, exponent, seed)| {
-            let [x, y] = [x, y].map(|i| (i << twos) as f32);
-            [x, y, exponent as f32, seed as f32]
-        },
-    );
-    for_batches(row, |rows| {
-        let results = gpu().evaluate(
-            STIPPLE,
-            "let node = vec2(i32(i(0u)), i32(i(1u)));
-             let mark = mark_of_node(node, i32(i(2u)), u32(i(3u)));
-             let coarser = mark_of_node(node * 2, i32(i(2u)) - 1, u32(i(3u)));
-             return vec4(f32(mark >> 16u), f32(mark & 0xffffu), f32(coarser == mark), 0.0);",
-            rows,
-        );
-        for (row, found) in rows.iter().zip(results) {
-            let node = [row[0], row[1]].map(|i| i as i64);
-            let want = mark_of_node(node, row[2] as i32, row[3] as u32);
-            let got = (found[0] as u32) << 16 | found[1] as u32;
-            assert_eq!(got, want, "{row:?}");
-            // The same node at the next finer level.
-            assert_eq!(found[2], 1.0, "{row:?}");
         }
     });
 }
@@ -156,22 +123,10 @@ fn dots_are_those_of_the_twin() {
             let clip = DVec2::new(f64::from(row[9]), f64::from(0.3f32));
             let place = DVec3::new(1.5 * clip.x, clip.y, -1.0) * distance;
             let normal = DVec3::new(a, b, 1.5).normalize();
-            let view = DMat4::from_cols_array(&[
-                1.5, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 10.0, 0.0, 0.0, -1.0, 0.0,
-            ]);
-            let on = Surface::of_plane(view, clip, DVec2::new(96.0, 64.0), (place, normal));
+            let on = Surface::of_plane(view(), clip, DVec2::new(96.0, 64.0), (place, normal));
             let page = Surface::page(DVec2::new(place.x, place.y) * 9.0, f64::from(s.spacing));
             for (on, found) in [on, page].into_iter().zip(found) {
-                let near = [-0.02, 0.0, 0.02].map(|by| {
-                    let moved = Surface {
-                        place: on.place + by * (on.across + on.down),
-                        ..on
-                    };
-                    hatch.cover(&moved, tone)
-                });
-                let low = near.iter().copied().fold(f64::MAX, f64::min) - 0.01;
-                let high = near.iter().copied().fold(f64::MIN, f64::max) + 0.01;
-                apart += usize::from(!(low..=high).contains(&f64::from(found)));
+                apart += usize::from(!is_near(&hatch, &on, tone, f64::from(found)));
             }
         }
         assert!(apart <= rows.len() / 200, "{apart} of {}", 2 * rows.len());
