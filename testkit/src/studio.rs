@@ -32,6 +32,14 @@ pub struct Studio {
     pub vantage: Vantage,
 }
 
+/// The entities of a scene come after this index. How many an app has before them changes with the
+/// plugins and resources of the engine and this crate, and the pressure of lines is random by entity.
+const FIRST_OF_SCENE: u32 = 1024;
+
+fn reserve_entities(world: &mut World) {
+    while world.spawn_empty().id().index_u32() < FIRST_OF_SCENE {}
+}
+
 impl Studio {
     pub fn new(scene: BuiltIn, size: UVec2, msaa: Msaa) -> Self {
         let options = HeadlessOptions { size, ..default() };
@@ -50,6 +58,7 @@ impl Studio {
         plugins: impl bevy::app::Plugins<M>,
     ) -> Self {
         let mut headless = Headless::new(options, plugins);
+        reserve_entities(headless.app.world_mut());
         let vantage = headless
             .app
             .world_mut()
