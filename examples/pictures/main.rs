@@ -22,6 +22,7 @@ mod painted;
 mod print;
 mod ramps;
 mod sheet;
+mod smoothed;
 mod strips;
 mod strokes;
 mod toon;

@@ -18,7 +18,7 @@ use bevy_comics_testkit::{
 };
 use image::RgbaImage;
 
-use crate::{painted, save, sheet::grid, strokes};
+use crate::{painted, save, sheet::grid, smoothed, strokes};
 
 /// Frames until shaders are compiled and the picture stands still.
 const SETTLE: usize = 12;
@@ -29,6 +29,7 @@ pub fn write(folder: &Path) -> Result<(), String> {
     save(&painted::picture(), &folder.join("painted-ramps.png"))?;
     save(&rims(), &folder.join("rims.png"))?;
     save(&forms(), &folder.join("forms.png"))?;
+    save(&smoothed::picture(), &folder.join("smoothed.png"))?;
     save(&strokes::picture(), &folder.join("hatched-material.png"))?;
     save(&tone_ramp(), &folder.join("tone-ramp.png"))?;
     save(&figure(), &folder.join("figure.png"))?;

@@ -141,7 +141,15 @@ fn errors(run: &Run) -> Table {
     push(along, position, edges(PaintForm::Anisotropic), 0.1);
     let tones = "mean tone; 20 tones; 9 angles; 32 zooms";
     let random = "the same with breaks";
-    let mean = |marks, random| mean_tone_error(marks, random, samples / 2);
+    let mean = |marks, random| {
+        // A window of 160 pixels, or random places.
+        let samples = if random > 0.0 {
+            samples / 2
+        } else {
+            samples * 25 / 16
+        };
+        mean_tone_error(marks, random, samples)
+    };
     push("hatching", tones, mean(HatchingMarks::Strokes, 0.0), 0.01);
     push("hatching", random, mean(HatchingMarks::Strokes, 0.6), 0.03);
     let random = "the same with dots that stray and vary";

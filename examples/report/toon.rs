@@ -7,8 +7,8 @@ use bevy::{
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
 use bevy_comics::{
-    CartoonLight, CartoonScene, Glint, GlintShape, Hatching, Ramp, RampDetail, RampMode, RampStop,
-    Rim,
+    CartoonLight, CartoonScene, DetailAxis, FormShape, Glint, GlintShape, Hatching, Ramp,
+    RampDetail, RampMode, RampStop, Rim, ShadedForm,
 };
 use bevy_comics_testkit::{
     bench::{self, Lap},
@@ -102,6 +102,27 @@ fn variants(images: &mut Assets<Image>) -> Vec<(&'static str, Option<CartoonLigh
                 ..Ramp::default()
             };
             Some(with(ramp))
+        }),
+        ("default ramp; a second one by the visible range", {
+            let detail = RampDetail {
+                axis: DetailAxis::VisibleRange,
+                ..default()
+            };
+            let ramp = Ramp {
+                detail: Some(detail),
+                ..Ramp::default()
+            };
+            Some(with(ramp))
+        }),
+        ("no ramp; smoothed normals", {
+            let form = ShadedForm {
+                shape: FormShape::Smoothed { rounds: 8 },
+                ..default()
+            };
+            Some(CartoonLight {
+                form: Some(form),
+                ..default()
+            })
         }),
         ("no ramp; a window as highlight", {
             let glint = Glint {

@@ -44,6 +44,9 @@
 #ifdef DETAIL_RIM
 #import bevy_comics::cartoon::detail::detail_of_rim
 #endif
+#ifdef DETAIL_VISIBLE
+#import bevy_comics::cartoon::visible::{ViewRange, detail_in_range}
+#endif
 #ifdef RIM
 #import bevy_comics::cartoon::rim_light::with_rim
 #endif
@@ -56,8 +59,8 @@
 #endif
 
 #ifdef FORM
-#import bevy_pbr::mesh_functions::{get_local_from_world, mesh_normal_local_to_world}
-#import bevy_comics::cartoon::form::{between, form_amount, form_normal}
+#import bevy_pbr::pbr_types::STANDARD_MATERIAL_FLAGS_DOUBLE_SIDED_BIT
+#import bevy_comics::cartoon::form::{between, form_amount, unit_or_none}
 #endif
 
 #ifdef THRESHOLD_MAP
@@ -160,6 +163,9 @@ fn detail_at(s: Surface) -> f32 {
 struct OwnData {
     tangent: vec3<f32>,
     bias: f32,
+#ifdef DETAIL_VISIBLE
+    range: ViewRange,
+#endif
 #ifdef HATCHED
     hatch: HatchPlace,
 #endif
@@ -179,7 +185,11 @@ fn surface_of(in: PbrInput, foot: Footprint, own: OwnData) -> Surface {
     s.per_eye_distance = select(inverseSqrt(max(dot(to_eye, to_eye), 1e-8)), 0.0, in.is_orthographic);
     s.tangent = own.tangent;
     s.bias = own.bias;
+#ifdef DETAIL_VISIBLE
+    s.detail = detail_in_range(own.range, in.frag_coord.z, -s.view_z);
+#else
     s.detail = detail_at(s);
+#endif
     s.receives = (in.flags & MESH_FLAGS_SHADOW_RECEIVER_BIT) != 0u && cartoon.light.projected > 0.0;
     return s;
 }
@@ -239,42 +249,50 @@ fn view_z_of(world_position: vec4<f32>) -> f32 {
     ), world_position);
 }
 
-#ifdef FORM
-// The normal of the simpler form.
-fn shaded_normal(pbr: PbrInput, in: VertexOutput) -> vec3<f32> {
-    var other = vec3(0.0, 1.0, 0.0);
-#ifndef FORM_UP
-    let place = (get_local_from_world(in.instance_index) * pbr.world_position).xyz;
-    other = mesh_normal_local_to_world(form_normal(cartoon.form, place), in.instance_index);
-#endif
-    let amount = form_amount(cartoon.form, -view_z_of(pbr.world_position));
-    return between(pbr.N, other, amount);
-}
-#endif
-
-@fragment
-fn fragment(
-    vertex_output: VertexOutput,
+// What the vertex shader hands on beside the engine's `VertexOutput`, see vertex.wgsl.
+struct MoreInput {
     @builtin(front_facing) is_front: bool,
 #ifdef HATCH_REST
     @location(8) rest_place: vec3<f32>,
     @location(9) rest_normal: vec3<f32>,
 #endif
-) -> FragmentOutput {
-    var in = vertex_output;
-#ifdef VISIBILITY_RANGE_DITHER
-    visibility_range_dither(in.position, in.visibility_range_dither);
+#ifdef FORM_NORMAL
+    @location(10) other_normal: vec3<f32>,
 #endif
-    var pbr = pbr_input_from_standard_material(in, is_front);
+#ifdef DETAIL_VISIBLE
+    @location(11) @interpolate(flat) range_ends: vec4<f32>,
+    @location(12) @interpolate(flat) range_scale: vec4<f32>,
+#endif
+}
+
 #ifdef FORM
-    pbr.N = shaded_normal(pbr, in);
+// The normal between that of the mesh and that of the form.
+fn shaded_normal(pbr: PbrInput, more: MoreInput) -> vec3<f32> {
+#ifdef FORM_NORMAL
+    var other = unit_or_none(more.other_normal);
+#else
+    let other = vec3(0.0, 1.0, 0.0);
 #endif
-    // Must be computed before alpha_discard: derivatives need all pixels.
+#ifdef FORM_SMOOTHED
+    // Of a surface with two sides, that of the side that is seen.
+    let sided = (pbr.material.flags & STANDARD_MATERIAL_FLAGS_DOUBLE_SIDED_BIT) != 0u;
+    other = select(other, -other, sided && !more.is_front);
+#endif
+    return between(pbr.N, other, form_amount(cartoon.form, -view_z_of(pbr.world_position)));
+}
+#endif
+
+// Both functions need all pixels: derivatives.
+fn footprint_of(pbr: PbrInput) -> Footprint {
     var foot: Footprint;
     foot.position_x = dpdx(pbr.world_position.xyz);
     foot.position_y = dpdy(pbr.world_position.xyz);
     foot.normal_x = dpdx(pbr.N);
     foot.normal_y = dpdy(pbr.N);
+    return foot;
+}
+
+fn own_data(in: VertexOutput, more: MoreInput) -> OwnData {
     var own: OwnData;
 #ifdef VERTEX_TANGENTS
     own.tangent = in.world_tangent.xyz;
@@ -288,6 +306,9 @@ fn fragment(
 #ifdef THRESHOLD
     foot.bias = vec2(dpdx(own.bias), dpdy(own.bias));
 #endif
+#ifdef DETAIL_VISIBLE
+    own.range = ViewRange(more.range_ends, more.range_scale);
+#endif
 #ifdef HATCHED
     own.hatch.pixel = in.position.xy;
 #ifdef VERTEX_UVS_A
@@ -297,8 +318,25 @@ fn fragment(
 #endif
 #endif
 #ifdef HATCH_REST
-    own.hatch.rest = rest_surface(rest_place, dpdx(rest_place), dpdy(rest_place), rest_normal);
+    let place = more.rest_place;
+    own.hatch.rest = rest_surface(place, dpdx(place), dpdy(place), more.rest_normal);
 #endif
+    return own;
+}
+
+@fragment
+fn fragment(vertex_output: VertexOutput, more: MoreInput) -> FragmentOutput {
+    var in = vertex_output;
+#ifdef VISIBILITY_RANGE_DITHER
+    visibility_range_dither(in.position, in.visibility_range_dither);
+#endif
+    var pbr = pbr_input_from_standard_material(in, more.is_front);
+#ifdef FORM
+    pbr.N = shaded_normal(pbr, more);
+#endif
+    // Must be computed before alpha_discard: derivatives need all pixels.
+    let foot = footprint_of(pbr);
+    let own = own_data(in, more);
     pbr.material.base_color = alpha_discard(pbr.material, pbr.material.base_color);
     apply_decals(&pbr);
 

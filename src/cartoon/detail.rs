@@ -77,6 +77,20 @@ pub enum DetailAxis {
         #[reflect(@FieldRange::FRACTION)]
         f32,
     ),
+    /// Near the eye, between the nearest and the farthest thing that the camera sees:
+    /// `1 - ln(z / nearest) / ln(farthest / nearest)`.
+    ///
+    /// The range is that of the depth map, smoothed as [`DepthMap::smoothing`] says; where it is smaller
+    /// than [`DepthMap::floor`], that is the range. It is found for
+    /// cameras that have any component of this crate which reads depth or draws, such as an effect or
+    /// [`VisibleDepthRange`], up to 64 of them. In other views, such as those of a camera without
+    /// effects, and where nothing is seen in the depth prepass, there is all detail. Cameras with the
+    /// same viewport, place, axis and field of view on several targets have one range.
+    ///
+    /// [`DepthMap::smoothing`]: crate::DepthMap::smoothing
+    /// [`DepthMap::floor`]: crate::DepthMap::floor
+    /// [`VisibleDepthRange`]: crate::VisibleDepthRange
+    VisibleRange,
 }
 
 impl Default for RampDetail {
@@ -124,6 +138,7 @@ impl DetailAxis {
                 power: bounded(power, 20.0, 1.0, 200.0),
             },
             Self::Constant(detail) => Self::Constant(bounded(detail, 1.0, 0.0, 1.0)),
+            Self::VisibleRange => Self::VisibleRange,
         }
     }
 
@@ -135,6 +150,7 @@ impl DetailAxis {
             Self::Rim { .. } => "DETAIL_RIM",
             Self::Highlight { .. } => "DETAIL_HIGHLIGHT",
             Self::Constant(_) => "DETAIL_CONSTANT",
+            Self::VisibleRange => "DETAIL_VISIBLE",
         }
     }
 }
@@ -170,6 +186,7 @@ impl From<DetailAxis> for DetailUniform {
             DetailAxis::Rim { power: number }
             | DetailAxis::Highlight { power: number }
             | DetailAxis::Constant(number) => Self { number, ..none },
+            DetailAxis::VisibleRange => none,
         }
     }
 }

@@ -65,6 +65,24 @@ pub enum FormShape {
     /// A plane that faces upwards in the world: grass and leaves look like the ground.
     #[default]
     Up,
+    /// The mesh without its details: faces, hair and cloth.
+    ///
+    /// The normal of a vertex is the mean of those of the triangles around it, and of those of its
+    /// neighbours, again and again; vertices at one place count as one, so that seams and hard
+    /// edges disappear. Neighbours are weighted so that it does not matter how an area is divided into
+    /// triangles, and a ball keeps its normals. Normals follow bones and morph targets.
+    ///
+    /// They are made in a task when a mesh first has such a material, and kept in a vertex
+    /// attribute of the mesh, of 4 bytes a vertex; until then, and for meshes
+    /// without normals or whose data is only on the GPU, the mesh's own normals are used; the log
+    /// says so of the first one of these. Of all materials that are on a mesh, the one with most
+    /// rounds counts.
+    Smoothed {
+        /// How often neighbours are averaged: 0 is smooth shading, more remove larger details, as
+        /// wide as so many edges of the mesh. Range 0 to 50.
+        #[reflect(@FieldRange::linear(0.0, 50.0))]
+        rounds: u32,
+    },
 }
 
 impl Default for ShadedForm {
@@ -113,6 +131,9 @@ impl FormShape {
                 half_size: size(half_size),
             },
             Self::Up => Self::Up,
+            Self::Smoothed { rounds } => Self::Smoothed {
+                rounds: rounds.min(50),
+            },
         }
     }
 
@@ -126,12 +147,37 @@ impl FormShape {
                 weights[longest] = 0.0;
                 (center, weights)
             }
-            Self::Up => (Vec3::ZERO, Vec3::ZERO),
+            Self::Up | Self::Smoothed { .. } => (Vec3::ZERO, Vec3::ZERO),
         }
     }
 
-    pub(super) fn is_up(self) -> bool {
-        self == Self::Up
+    /// What of it is compiled.
+    pub(super) fn key(self) -> FormKey {
+        match self {
+            Self::Up => FormKey::Up,
+            Self::Ellipsoid { .. } | Self::Cylinder { .. } => FormKey::Solid,
+            Self::Smoothed { .. } => FormKey::Smoothed,
+        }
+    }
+}
+
+/// The part of a form that selects a variant of the shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum FormKey {
+    Up,
+    Solid,
+    Smoothed,
+}
+
+impl FormKey {
+    /// The shader definitions. `is_smoothed`: the mesh has smoothed normals.
+    pub(super) fn definitions(self, is_smoothed: bool) -> &'static [&'static str] {
+        match self {
+            Self::Up => &["FORM", "FORM_UP"],
+            Self::Solid => &["FORM", "FORM_NORMAL"],
+            Self::Smoothed if is_smoothed => &["FORM", "FORM_NORMAL", "FORM_SMOOTHED"],
+            Self::Smoothed => &[],
+        }
     }
 }
 

@@ -21,6 +21,13 @@ fn form_normal(f: Form, place: vec3<f32>) -> vec3<f32> {
     return (place - f.center) * f.weights;
 }
 
+// At unit length, whatever its length is; 0 if it is 0.
+fn unit_or_none(normal: vec3<f32>) -> vec3<f32> {
+    let largest = max(max(abs(normal.x), abs(normal.y)), abs(normal.z));
+    let scaled = normal / max(largest, 1e-30);
+    return scaled * inverseSqrt(max(dot(scaled, scaled), 0.5));
+}
+
 // How much of the form's normal there is, from the distance along the view axis.
 fn form_amount(f: Form, z: f32) -> f32 {
     let near = clamp(1.0 - log(max(z / f.distance, 1e-9)) * f.per_log, 0.0, 1.0);

@@ -1,10 +1,6 @@
 //! Strokes on the cartoon material.
 
-use bevy::{
-    asset::{Handle, uuid_handle},
-    render::render_resource::ShaderType,
-    shader::{Shader, ShaderDefVal},
-};
+use bevy::{render::render_resource::ShaderType, shader::ShaderDefVal};
 
 use super::CartoonLight;
 use crate::{
@@ -12,9 +8,6 @@ use crate::{
     effects::{Hatching, HatchingAnchor, HatchingMarks},
     settings::bounded,
 };
-
-/// The vertex shader of materials whose strokes lie on surfaces: `vertex.wgsl`.
-pub(super) const VERTEX: Handle<Shader> = uuid_handle!("0d7b0a5c-31b5-4c6e-9a47-5f0b6d1f3c82");
 
 /// `Hatch` in `hatch.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
@@ -46,11 +39,6 @@ impl From<&CartoonLight> for HatchUniform {
             unused: 0.0,
         }
     }
-}
-
-/// Whether definitions are those of a prepass or a shadow map.
-pub(super) fn is_prepass(definitions: &[ShaderDefVal]) -> bool {
-    definitions.contains(&"PREPASS_PIPELINE".into())
 }
 
 /// What strokes are drawn from.
@@ -161,7 +149,7 @@ mod tests {
         };
         assert_eq!(HatchKey::of(&with(unseen)), None);
         let map = CartoonLight {
-            art_map: Some(Handle::default()),
+            art_map: Some(bevy::asset::Handle::default()),
             ..with(Hatching::default())
         };
         let key = HatchKey::of(&map).expect("strokes");

@@ -22,8 +22,10 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Glint, Ramp, RampMap, Rim, ShadedForm,
-    hatch::{HatchUniform, VERTEX, is_prepass},
+    hatch::HatchUniform,
     uniform::{CartoonKey, CartoonUniform},
+    vertex,
+    view_range::ViewRanges,
 };
 use crate::{
     effect::Effect,
@@ -165,6 +167,12 @@ pub struct CartoonLight {
     /// world. Range 0.01 to 1000, default 4.
     #[reflect(@FieldRange::logarithmic(0.01, 1000.0))]
     pub art_map_repeat: f32,
+    /// Of all views: no setting.
+    #[doc(hidden)]
+    #[texture(107, sample_type = "u_int", visibility(vertex))]
+    #[serde(skip)]
+    #[reflect(ignore)]
+    pub view_ranges: ViewRanges,
 }
 
 impl Default for CartoonLight {
@@ -188,6 +196,7 @@ impl Default for CartoonLight {
             hatching: None,
             art_map: None,
             art_map_repeat: 4.0,
+            view_ranges: ViewRanges,
         }
     }
 }
@@ -231,18 +240,14 @@ impl MaterialExtension for CartoonLight {
     fn specialize(
         _: &MaterialExtensionPipeline,
         descriptor: &mut RenderPipelineDescriptor,
-        _: &MeshVertexBufferLayoutRef,
+        layout: &MeshVertexBufferLayoutRef,
         key: MaterialExtensionKey<Self>,
     ) -> Result<(), SpecializedMeshPipelineError> {
         let key = key.bind_group_data;
-        let vertex = &mut descriptor.vertex;
-        let defs = &vertex.shader_defs;
-        // Prepasses and shadow maps have shaders of their own.
-        if !is_prepass(defs) && key.hatch.is_some_and(|hatch| hatch.needs_rest(defs)) {
-            vertex.shader = VERTEX;
-        }
+        vertex::specialize(&mut descriptor.vertex, layout, key)?;
         if let Some(fragment) = &mut descriptor.fragment {
-            let definitions = key.definitions(&fragment.shader_defs);
+            let smoothed = vertex::is_smoothed(layout);
+            let definitions = key.definitions(&fragment.shader_defs, smoothed);
             fragment.shader_defs.extend(definitions);
         }
         Ok(())

@@ -18,12 +18,16 @@ mod ramp_map;
 mod ramp_sums;
 mod rim;
 mod scene;
+mod smooth;
 mod uniform;
+mod vertex;
+mod view_range;
 
 use bevy::{
     app::{App, Plugin, PostUpdate, Update},
-    asset::{AssetApp, AssetEventSystems, embedded_asset, load_internal_asset},
+    asset::{AssetApp, AssetEventSystems, Assets, embedded_asset, load_internal_asset},
     ecs::schedule::IntoScheduleConfigs,
+    image::Image,
     pbr::{MaterialPlugin, MeshMaterial3d, PbrPlugin},
     render::erased_render_asset::ErasedRenderAssetPlugin,
     shader::{Shader, load_shader_library},
@@ -91,6 +95,7 @@ impl CartoonPlugin {
         load_shader_library!(app, "light.wgsl");
         load_shader_library!(app, "light_rim.wgsl");
         load_shader_library!(app, "light_textures.wgsl");
+        load_shader_library!(app, "octahedral.wgsl");
         load_shader_library!(app, "per_light.wgsl");
         load_shader_library!(app, "ramp.wgsl");
         load_shader_library!(app, "ramp_light.wgsl");
@@ -104,8 +109,11 @@ impl CartoonPlugin {
         load_shader_library!(app, "surface.wgsl");
         load_shader_library!(app, "surroundings.wgsl");
         load_shader_library!(app, "two_shades.wgsl");
+        load_shader_library!(app, "view_range.wgsl");
+        load_shader_library!(app, "visible.wgsl");
         embedded_asset!(app, "cartoon.wgsl");
-        load_internal_asset!(app, hatch::VERTEX, "vertex.wgsl", Shader::from_wgsl);
+        load_internal_asset!(app, vertex::VERTEX, "vertex.wgsl", Shader::from_wgsl);
+        view_range::build_render(app);
     }
 }
 
@@ -117,15 +125,21 @@ fn add_material(app: &mut App) -> bool {
     {
         return false;
     }
+    if let Some(mut images) = app.world_mut().get_resource_mut::<Assets<Image>>() {
+        view_range::add_texture(&mut images);
+    }
     app.add_plugins(MaterialPlugin::<CartoonMaterial>::default())
         .register_asset_reflect::<CartoonMaterial>()
         .init_resource::<scene::Copies>()
         .init_resource::<ramp_sums::RampSums>()
+        .init_resource::<smooth::SmoothMeshes>()
         .add_systems(
             Update,
             (
                 (look::apply_looks, material::keep_forward).chain(),
                 ignored::warn_of_ignored,
+                view_range::ask_for_range,
+                (smooth::begin_smoothing, smooth::finish_smoothing).chain(),
             ),
         )
         .add_systems(

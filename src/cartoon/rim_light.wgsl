@@ -4,7 +4,7 @@
 
 #ifdef DEPTH_RIM
 #import bevy_pbr::{
-    mesh_view_bindings::view,
+    mesh_view_bindings::{depth_prepass_texture, view},
     prepass_utils::prepass_depth,
     view_transformations::depth_ndc_to_view_z,
 }
@@ -17,26 +17,42 @@
 }
 
 #ifdef DEPTH_RIM
-// 1 where the depth prepass is behind the surface at some pixels beside it, along its normal.
+// The part of a pixel whose depth in the prepass is behind the surface, over all of its samples.
+// `slope` is by how much the surface recedes up to there, over its distance.
+fn behind_at(pixel: vec2<f32>, view_z: f32, slope: f32) -> f32 {
+    let first = view.viewport.xy;
+    let at = clamp(pixel, first, first + view.viewport.zw - 1.0);
+#ifdef MULTISAMPLED
+    let samples = textureNumSamples(depth_prepass_texture);
+#else
+    let samples = 1u;
+#endif
+    var behind = 0.0;
+    for (var k = 0u; k < samples; k++) {
+        let z = depth_ndc_to_view_z(prepass_depth(vec4(at, 0.0, 0.0), k));
+        behind += is_behind(z / view_z, slope);
+    }
+    return behind / f32(samples);
+}
+
+// 1 where the depth prepass is behind the surface at some pixels beside it, along its normal: mixed
+// between the four pixels around that place, so that the rim has no steps where its border has none.
 fn beside(s: Surface) -> f32 {
     let across = (view.view_from_world * vec4(s.normal, 0.0)).xy * vec2(1.0, -1.0);
     let long = length(across);
     if long < 1e-3 {
         return 0.0;
     }
-    let size = view.viewport.zw;
     let into = vec3(view.view_from_world[0].z, view.view_from_world[1].z, view.view_from_world[2].z);
     let recedes = vec2(dot(into, s.foot.position_x), dot(into, s.foot.position_y));
-    let slope = dot(recedes, across) / (long * s.view_z);
-    var behind = 0.0;
-    // Four places along the last pixel, whose mean is anti-aliased where the border is slanted.
-    for (var k = 0; k < 4; k++) {
-        let reach = cartoon.rim.pixels + 0.25 * f32(k) - 0.375;
-        let at = clamp(s.pixel + across * (reach / long), view.viewport.xy, view.viewport.xy + size - 1.0);
-        let z = depth_ndc_to_view_z(prepass_depth(vec4(at, 0.0, 0.0), 0u));
-        behind += 0.25 * is_behind(z / s.view_z, slope * reach);
-    }
-    return behind;
+    let reach = cartoon.rim.pixels;
+    let slope = reach * dot(recedes, across) / (long * s.view_z);
+    let place = s.pixel + across * (reach / long);
+    let corner = floor(place - 0.5) + 0.5;
+    let part = place - corner;
+    let low = mix(behind_at(corner, s.view_z, slope), behind_at(corner + vec2(1.0, 0.0), s.view_z, slope), part.x);
+    let high = mix(behind_at(corner + vec2(0.0, 1.0), s.view_z, slope), behind_at(corner + 1.0, s.view_z, slope), part.x);
+    return mix(low, high, part.y);
 }
 #endif
 

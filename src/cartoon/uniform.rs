@@ -3,9 +3,9 @@
 use bevy::{render::render_resource::ShaderType, shader::ShaderDefVal};
 
 use super::{
-    CartoonLight, GlintFrame, GlintShape, RimWidth,
+    CartoonLight, DetailAxis, GlintFrame, GlintShape, RimWidth,
     detail::DetailUniform,
-    form::FormUniform,
+    form::{FormKey, FormUniform},
     glint::GlintUniform,
     hatch::HatchKey,
     ramp::{RampKey, RampUniform},
@@ -64,8 +64,8 @@ impl From<&CartoonLight> for CartoonUniform {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CartoonKey {
     ramp: Option<RampKey>,
-    /// Normals of another form, and whether it is a plane.
-    form: Option<bool>,
+    /// Normals of another form.
+    form: Option<FormKey>,
     glint: Option<(GlintShape, GlintFrame)>,
     vertex_threshold: bool,
     threshold_map: bool,
@@ -73,27 +73,59 @@ pub struct CartoonKey {
     rim: bool,
     /// The rim has the same width everywhere.
     even_rim: bool,
+    /// The ramp has detail by the visible range.
+    visible: bool,
 }
 
 impl From<&CartoonLight> for CartoonKey {
     fn from(light: &CartoonLight) -> Self {
         let glint = light.glint.filter(|_| light.highlight > 0.0);
+        let ramp = light.drawn_ramp();
+        let axis = ramp
+            .as_ref()
+            .and_then(|ramp| Some(ramp.detail.as_ref()?.axis));
         Self {
-            ramp: (light.drawn_ramp()).map(|ramp| RampKey::new(&ramp, light.ramp_map.is_ready())),
-            form: light.form.map(|form| form.shape.is_up()),
+            ramp: ramp.map(|ramp| RampKey::new(&ramp, light.ramp_map.is_ready())),
+            form: light.form.map(|form| form.shape.key()),
             glint: glint.map(|glint| (glint.shape, glint.frame)),
             vertex_threshold: light.vertex_threshold,
             threshold_map: light.threshold_map.is_some(),
             hatch: HatchKey::of(light),
             rim: light.rim.is_some(),
             even_rim: (light.rim).is_some_and(|rim| matches!(rim.width, RimWidth::Pixels(_))),
+            visible: axis == Some(DetailAxis::VisibleRange),
         }
     }
 }
 
 impl CartoonKey {
-    /// The shader definitions, in addition to those of the mesh and the view.
-    pub(super) fn definitions(self, others: &[ShaderDefVal]) -> Vec<ShaderDefVal> {
+    /// Whether the material reads smoothed normals.
+    pub(super) fn reads_smoothed(self) -> bool {
+        self.form == Some(FormKey::Smoothed)
+    }
+
+    /// What the vertex shader hands on beside what the engine's does. `smoothed`: normals of the
+    /// mesh are smoothed.
+    pub(super) fn vertex_definitions(
+        self,
+        others: &[ShaderDefVal],
+        smoothed: bool,
+    ) -> Vec<ShaderDefVal> {
+        let rest = self.hatch.is_some_and(|hatch| hatch.needs_rest(others));
+        let smoothed = smoothed && self.reads_smoothed();
+        let names = [
+            (rest, "HATCH_REST"),
+            (smoothed, "FORM_SMOOTHED"),
+            (smoothed || self.form == Some(FormKey::Solid), "FORM_NORMAL"),
+            (self.visible, "DETAIL_VISIBLE"),
+        ];
+        let used = names.into_iter().filter(|(is_used, _)| *is_used);
+        used.map(|(_, name)| name.into()).collect()
+    }
+
+    /// The shader definitions, in addition to those of the mesh and the view. `smoothed`: the mesh
+    /// has smoothed normals.
+    pub(super) fn definitions(self, others: &[ShaderDefVal], smoothed: bool) -> Vec<ShaderDefVal> {
         let has = |names: &[&str]| {
             let is_one = |d: &ShaderDefVal| matches!(d, ShaderDefVal::Bool(n, true) if names.contains(&n.as_str()));
             others.iter().any(is_one)
@@ -110,10 +142,8 @@ impl CartoonKey {
             all.extend(["GLINT".into(), frame.definition().into()]);
             all.push(ShaderDefVal::UInt("GLINT_SHAPE".into(), shape as u32));
         }
-        if let Some(is_up) = self.form {
-            all.push("FORM".into());
-            all.extend(is_up.then(|| "FORM_UP".into()));
-        }
+        let form = self.form.map_or(&[][..], |form| form.definitions(smoothed));
+        all.extend(form.iter().map(|name| ShaderDefVal::from(*name)));
         let of_vertices = self.vertex_threshold && has(&["VERTEX_COLORS"]);
         let of_map = self.threshold_map && has(&["VERTEX_UVS_A"]);
         all.extend(of_vertices.then(|| "VERTEX_THRESHOLD".into()));
@@ -197,15 +227,17 @@ mod tests {
                 DetailAxis::Rim { power: x },
                 DetailAxis::Highlight { power: x },
                 DetailAxis::Constant(x),
+                DetailAxis::VisibleRange,
             ];
             let [center, half_size] = [Vec3::splat(x); 2];
             let shapes = [
                 FormShape::Up,
                 FormShape::Ellipsoid { center, half_size },
                 FormShape::Cylinder { center, half_size },
+                FormShape::Smoothed { rounds: u32::MAX },
             ];
             for (k, axis) in axes.into_iter().enumerate() {
-                let light = odd(x, axis, shapes[k % 3]);
+                let light = odd(x, axis, shapes[k % shapes.len()]);
                 let uniform = CartoonUniform::from(&light);
                 let text = format!("{uniform:?}");
                 let is_finite = !text.contains("NaN") && !text.contains("inf");
@@ -223,13 +255,14 @@ mod tests {
     #[test]
     fn what_is_not_used_is_not_compiled() {
         let plain = CartoonKey::from(&CartoonLight::default());
-        assert!(plain.definitions(&[]).is_empty());
+        assert!(plain.definitions(&[], true).is_empty());
+        assert!(plain.vertex_definitions(&[], true).is_empty());
         let ramp = CartoonLight {
             ramp: Some(Ramp::default()),
             ..CartoonLight::default()
         };
         let stops = ShaderDefVal::UInt("RAMP_STOPS".into(), 2);
-        let found = CartoonKey::from(&ramp).definitions(&[]);
+        let found = CartoonKey::from(&ramp).definitions(&[], true);
         assert_eq!(found, ["RAMP_SHARE".into(), stops]);
     }
 }

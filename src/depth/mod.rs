@@ -18,7 +18,7 @@ pub(crate) mod surfaces;
 pub(crate) mod view;
 
 use bevy::{
-    ecs::{component::Component, reflect::ReflectComponent},
+    ecs::{component::Component, reflect::ReflectComponent, resource::Resource},
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
 };
 use serde::{Deserialize, Serialize};
@@ -29,6 +29,10 @@ pub use readback::{DepthBin, DepthHistogram, VisibleDepthRange};
 pub use smoothing::{CameraCut, RangeSmoothing};
 
 use crate::settings::{FieldRange, bounded, ordered_planes};
+
+/// Whether some material reads the smoothed range of each view that has a plan.
+#[derive(Resource, Default)]
+pub(crate) struct MaterialsReadRange(pub bool);
 
 /// How a camera turns distance into the depth map `D`: 0 at the near end of a
 /// range of distances, 1 at its far end. Every effect that depends on distance

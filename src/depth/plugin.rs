@@ -22,7 +22,7 @@ use bevy::{
 };
 
 use super::{
-    CameraCut, DepthHistogram, DepthMap, VisibleDepthRange,
+    CameraCut, DepthHistogram, DepthMap, MaterialsReadRange, VisibleDepthRange,
     borders::BorderPipeline,
     follow::SmoothingPipeline,
     ping_pong::PingPongPipeline,
@@ -44,6 +44,7 @@ impl Plugin for DepthPlugin {
             .register_type::<VisibleDepthRange>()
             .register_type::<DepthHistogram>()
             .register_type::<CameraCut>()
+            .init_resource::<MaterialsReadRange>()
             .add_observer(count_cut);
     }
 }

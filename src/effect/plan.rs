@@ -60,6 +60,8 @@ pub(crate) struct Plan {
     pub readback: bool,
     /// The game reads the histogram of depths.
     pub histogram: bool,
+    /// Some material reads the smoothed visible range.
+    pub materials: bool,
     pub finish: Finish,
     /// The debug view that replaces the picture.
     pub view: Option<DebugView>,
@@ -322,8 +324,8 @@ impl Plan {
 
     /// Whether the range depends on earlier frames: it is smoothed or locked.
     pub fn smooths(&self) -> bool {
-        (self.reads_map() || self.lines_read_map())
-            && self.depth_map.mapping.follows_visible_range()
+        let map = self.reads_map() || self.lines_read_map();
+        (self.materials || (map && self.depth_map.mapping.follows_visible_range()))
             && (self.depth_map.smoothing.is_some() || self.depth_map.locked)
     }
 
@@ -331,6 +333,7 @@ impl Plan {
         let map = self.reads_map() || self.lines_read_map();
         self.readback
             || self.histogram
+            || self.materials
             || self.needs().contains(Needs::DEPTH_BORDERS)
             || (map && self.depth_map.mapping.follows_visible_range())
     }
@@ -341,6 +344,7 @@ impl Plan {
         self.readback
             || self.marks
             || self.histogram
+            || self.materials
             || self.lines.is_some()
             || self.needs().intersects(read)
             || view

@@ -28,6 +28,7 @@ use bevy::{
 };
 
 use crate::{
+    depth::MaterialsReadRange,
     effect::{EffectRegistry, Plan},
     objects::{ObjectChanges, ObjectStyles},
     schedule::ComicsSystems,
@@ -93,13 +94,18 @@ fn plan_cameras(
     cameras: Query<EntityRef, With<Camera3d>>,
     registry: Res<EffectRegistry>,
     objects: Res<ObjectStyles>,
+    materials: Res<MaterialsReadRange>,
 ) {
     let types = registry.types();
     for camera in &cameras {
         let known = camera.get::<CameraPlan>();
         let mut entity = commands.entity(camera.id());
         let shown = camera.get::<Impacts>().map_or(&[][..], Impacts::effects);
-        match (Plan::new(camera, shown, &types, objects.changes()), known) {
+        let mut plan = Plan::new(camera, shown, &types, objects.changes());
+        if let Some(plan) = &mut plan {
+            plan.materials = materials.0;
+        }
+        match (plan, known) {
             (Some(plan), Some(known)) if *known.plan == plan => {}
             (Some(plan), known) => {
                 entity.insert(CameraPlan {

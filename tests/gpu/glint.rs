@@ -356,3 +356,47 @@ fn rims_are_as_wide_as_they_say() {
     let (_, middle) = covered(&drawn(&mut small));
     assert!(middle.x > 0.4 * RADIUS, "{middle}");
 }
+
+/// Truth: the inner border of a rim of constant width is a straight line along a pillar that leans,
+/// where it should be. The border of the depth has the steps of pixels, or of their samples: half of
+/// a pixel, or of the half pixel that four samples are apart at most.
+#[test]
+fn rims_of_constant_width_have_straight_borders() {
+    let pixels = 8.0f64;
+    let radius = 0.35;
+    let pillar = || Cylinder::new(radius, 6.0).mesh().resolution(256);
+    for (msaa, limit) in [(Msaa::Off, 0.5), (Msaa::Sample4, 0.25)] {
+        for degrees in [3.0f64, 17.0, 40.0] {
+            let mut small = room(UVec2::splat(SIZE), 0.0);
+            small.insert((msaa, DepthPrepass));
+            let lean = degrees.to_radians();
+            let at = Transform::from_rotation(Quat::from_rotation_z(-lean as f32));
+            let light = rimmed(RimWidth::Pixels(pixels as f32), 0.0);
+            put(&mut small, pillar(), &light, at);
+            polish(&mut small);
+            sun(&mut small, Vec3::Z, bright(1.0));
+            let picture = drawn(&mut small);
+            let middle = 0.5 * f64::from(SIZE);
+            let inner = (f64::from(radius) * middle - pixels) / lean.cos();
+            let (mut sum, mut worst) = (0.0, 0.0f64);
+            let rows = 90..166;
+            for y in rows.clone() {
+                // Rows go down, and the pillar leans to the right.
+                let axis = middle + (middle - f64::from(y) - 0.5) * lean.tan();
+                // What is not covered between the axis and a place well inside of the rim.
+                let first = (axis - inner - 3.0).floor() as u32;
+                let last = axis.floor() as u32;
+                let bare = (first..last).map(|x| 1.0 - linear(&picture, x, y)[0] / PEAK);
+                // Across the border.
+                let off = (f64::from(last) - bare.sum::<f64>() - (axis - inner)) * lean.cos();
+                sum += off;
+                worst = worst.max(off.abs());
+            }
+            let mean = sum / f64::from(rows.end - rows.start);
+            assert!(
+                worst < limit && mean.abs() < 0.2,
+                "{msaa:?}, {degrees}: {worst}, {mean}"
+            );
+        }
+    }
+}

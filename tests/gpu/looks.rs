@@ -85,6 +85,7 @@ fn everything(axis: DetailAxis, form: FormShape, width: RimWidth) -> CartoonLigh
         threshold_map: None,
         art_map: None,
         art_map_repeat: 2.5,
+        ..default()
     }
 }
 
@@ -105,11 +106,13 @@ fn a_look_that_was_written_reads_back_the_same() {
         DetailAxis::Rim { power: 2.0 },
         DetailAxis::Highlight { power: 50.0 },
         DetailAxis::Constant(0.25),
+        DetailAxis::VisibleRange,
     ];
     let forms = [
         FormShape::Up,
         FormShape::Ellipsoid { center, half_size },
         FormShape::Cylinder { center, half_size },
+        FormShape::Smoothed { rounds: 7 },
     ];
     let widths = [
         RimWidth::Pixels(3.0),
@@ -120,7 +123,7 @@ fn a_look_that_was_written_reads_back_the_same() {
     ];
     let mut looks = vec![ToonLook::default()];
     for (k, axis) in axes.into_iter().enumerate() {
-        let light = everything(axis, forms[k % 3], widths[k % 2]);
+        let light = everything(axis, forms[k % forms.len()], widths[k % 2]);
         assert_eq!(
             light,
             light.clone().sanitized(),

@@ -20,7 +20,7 @@ const GREEN: Color = Color::linear_rgb(0.0, 1.0, 0.0);
 const BLUE: Color = Color::linear_rgb(0.0, 0.0, 1.0);
 
 /// Illuminance that makes white of white in a picture.
-fn full() -> f32 {
+pub fn full() -> f32 {
     std::f32::consts::PI / Exposure::default().exposure()
 }
 

@@ -14,7 +14,7 @@ const ORANGE: Color = Color::linear_rgb(0.9, 0.4, 0.1);
 const BLUE: Color = Color::linear_rgb(0.1, 0.2, 0.8);
 
 /// A ramp of one tone that becomes another one.
-fn two_tones(axis: DetailAxis, mode: RampMode) -> CartoonLight {
+pub fn two_tones(axis: DetailAxis, mode: RampMode) -> CartoonLight {
     with(Ramp {
         mode,
         blend: RampBlend::Absolute,
@@ -28,7 +28,7 @@ fn two_tones(axis: DetailAxis, mode: RampMode) -> CartoonLight {
 }
 
 /// Largest difference of a pixel from the colour at a detail, in codes of linear light.
-fn off(picture: &RgbaImage, x: u32, y: u32, amount: f64) -> f64 {
+pub fn off(picture: &RgbaImage, x: u32, y: u32, amount: f64) -> f64 {
     let ramp = Ramp::new([RampStop::new(0.0, ORANGE)]);
     let plain = [RampStop::new(0.0, BLUE)];
     let wanted = detail::tone(&ramp, &plain, amount, 1.0, 0.0);

@@ -80,7 +80,7 @@ fn oblique(clip: Mat4) -> Mat4 {
 
 /// A projection with an oblique near plane, as mirrors use.
 #[derive(Clone, Debug)]
-struct Tilted(PerspectiveProjection);
+pub struct Tilted(pub PerspectiveProjection);
 
 impl bevy::camera::CameraProjection for Tilted {
     fn get_clip_from_view(&self) -> Mat4 {
@@ -101,7 +101,7 @@ impl bevy::camera::CameraProjection for Tilted {
 }
 
 /// A perspective projection with a far plane; the engine's has none.
-fn finite(projection: PerspectiveProjection) -> Projection {
+pub fn finite(projection: PerspectiveProjection) -> Projection {
     Projection::custom(Reshaped {
         projection,
         plane: Vec4::ZERO,

@@ -4,13 +4,16 @@
 //! ```text
 //! cargo run --manifest-path benches/peers/Cargo.toml
 //! cargo run --manifest-path benches/peers/Cargo.toml -- times FILE ROUNDS FRAMES
+//! cargo run --manifest-path benches/peers/Cargo.toml -- sheet FILE.png
 //! ```
 //!
-//! The second form times passes for the report: see `times.rs`.
+//! The second form times passes for the report: see `times.rs`. The third one draws a figure with
+//! three materials under four kinds of light: see `sheet.rs`.
 //!
 //! The true lines come from raw depth, normals and object ids of the same scene at four times
 //! the resolution: see `truth.rs` of the examples' shared code.
 
+mod sheet;
 mod times;
 
 use bevy::{
@@ -190,6 +193,12 @@ fn main() {
         let number = |text: &String| text.parse().expect("a number of rounds and of frames");
         std::fs::write(file, times::measure(number(rounds), number(frames)))
             .unwrap_or_else(|error| panic!("{file}: {error}"));
+        return;
+    }
+    if let [mode, file] = &arguments[..]
+        && mode == "sheet"
+    {
+        sheet::write(std::path::Path::new(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
         return;
     }
     println!("| scene | | silhouettes found | creases found | object edges found | precision | false pixels |");

@@ -27,9 +27,15 @@ pub fn detail(axis: DetailAxis, at: f64) -> f64 {
         DetailAxis::Rim { power } => at.abs().powf(f64::from(power)),
         DetailAxis::Highlight { power } => at.max(0.0).powf(f64::from(power)),
         DetailAxis::Constant(detail) => f64::from(detail),
+        DetailAxis::VisibleRange => panic!("the range of a view is needed: see `in_range`"),
         _ => panic!("an axis without a twin"),
     }
     .clamp(0.0, 1.0)
+}
+
+/// How much detail there is at a distance, between the ends of the visible range.
+pub fn in_range(z: f64, near: f64, far: f64) -> f64 {
+    (1.0 - (z / near).ln() / (far / near).ln()).clamp(0.0, 1.0)
 }
 
 /// The tone of a ramp and its second ramp, with as many stops each.

@@ -51,6 +51,7 @@ mod stroke_level;
 mod surroundings;
 mod tone_ramp;
 mod two_tone;
+mod visible;
 mod walk;
 mod weight;
 

@@ -1,0 +1,111 @@
+//! The figure with the engine's `StandardMaterial`, with bevy_shader_mtoon and with this crate, under
+//! four kinds of light.
+
+use std::path::Path;
+
+use bevy::{
+    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
+    ecs::system::RunSystemOnce,
+    prelude::*,
+    render::view::Msaa,
+};
+use bevy_comics::{CartoonScene, ComicsPlugin, presets};
+use bevy_comics_testkit::{
+    headless::{Headless, HeadlessOptions},
+    scenes::{
+        BuiltIn, Stage,
+        lights::{Lighting, relight},
+    },
+};
+use bevy_shader_mtoon::{MtoonMaterial, MtoonPlugin, MtoonSun, VrmOutlineMode};
+use image::{RgbaImage, imageops};
+
+const SIZE: UVec2 = UVec2::new(480, 480);
+/// Pixels between pictures.
+const GAP: u32 = 6;
+
+#[derive(Clone, Copy, PartialEq)]
+enum Who {
+    Engine,
+    Peer,
+    Ours,
+}
+
+/// The figure under each kind of light.
+fn row(who: Who) -> Vec<RgbaImage> {
+    let options = HeadlessOptions { size: SIZE, ..default() };
+    let mut headless = Headless::new(options, (ComicsPlugin, MtoonPlugin));
+    let target = headless.render_target();
+    let world = headless.app.world_mut();
+    let vantage = world
+        .run_system_once(|mut stage: Stage| stage.spawn(BuiltIn::Figure))
+        .expect("the stage is there");
+    let camera = world.spawn(vantage.camera()).id();
+    world
+        .entity_mut(camera)
+        .insert((target, Msaa::Sample4, DepthPrepass, NormalPrepass));
+    if who == Who::Ours {
+        let style = presets::SATURDAY_MORNING.style();
+        style.apply(&mut world.commands().entity(camera));
+        world.flush();
+    } else {
+        let mut scenes = world.query_filtered::<Entity, With<CartoonScene>>();
+        for scene in scenes.iter(world).collect::<Vec<_>>() {
+            world.entity_mut(scene).remove::<CartoonScene>();
+        }
+    }
+    headless.step(3);
+    if who == Who::Peer {
+        wear_mtoon(headless.app.world_mut());
+    }
+    let picture = |lighting| {
+        let world = headless.app.world_mut();
+        relight(world, camera, lighting);
+        let mut suns = world.query_filtered::<Entity, With<DirectionalLight>>();
+        for sun in suns.iter(world).collect::<Vec<_>>() {
+            world.entity_mut(sun).insert(MtoonSun);
+        }
+        headless.step(12);
+        headless.picture()
+    };
+    Lighting::ALL.map(picture).into()
+}
+
+/// Gives all meshes that crate's material: colours as they are, shades that are half as bright, its
+/// own lines.
+fn wear_mtoon(world: &mut World) {
+    let mut worn = world.query::<(Entity, &MeshMaterial3d<StandardMaterial>)>();
+    let worn: Vec<_> = worn.iter(world).map(|(e, m)| (e, m.0.clone())).collect();
+    for (entity, material) in worn {
+        let color = (world.resource::<Assets<StandardMaterial>>().get(&material)).map(|m| m.base_color);
+        let color = color.unwrap_or(Color::WHITE);
+        let toon = MtoonMaterial {
+            base_color: color,
+            shade_factor: color.darker(0.2),
+            shading_toony_factor: 0.95,
+            outline_mode: VrmOutlineMode::Screen,
+            outline_width: 0.004,
+            ..default()
+        };
+        let toon = world.resource_mut::<Assets<MtoonMaterial>>().add(toon);
+        world
+            .entity_mut(entity)
+            .remove::<MeshMaterial3d<StandardMaterial>>()
+            .insert(MeshMaterial3d(toon));
+    }
+}
+
+/// Draws the sheet: a row for each material, a column for each kind of light.
+pub fn write(file: &Path) -> image::ImageResult<()> {
+    let rows = [Who::Engine, Who::Peer, Who::Ours].map(row);
+    let step = SIZE + UVec2::splat(GAP);
+    let columns = rows[0].len() as u32;
+    let size = step * UVec2::new(columns, rows.len() as u32) - UVec2::splat(GAP);
+    let mut sheet = RgbaImage::from_pixel(size.x, size.y, image::Rgba([255; 4]));
+    for (y, row) in (0u32..).zip(&rows) {
+        for (x, picture) in (0u32..).zip(row) {
+            imageops::replace(&mut sheet, picture, (x * step.x).into(), (y * step.y).into());
+        }
+    }
+    sheet.save(file)
+}
