@@ -49,7 +49,14 @@ pub fn mean_tone_error(marks: HatchingMarks, random: f32, samples: u32) -> f64 {
             let mean = if random > 0.0 {
                 spread_mean(cover, samples)
             } else {
-                window_mean(cover, samples)
+                let mean = window_mean(cover, samples);
+                // Directions beat with each other and with the pixels; some beats are as long as
+                // the window.
+                if (mean - tone).abs() > 0.002 {
+                    window_mean(cover, 9 * samples)
+                } else {
+                    mean
+                }
             };
             largest = largest.max((mean - tone).abs());
         }
