@@ -5,8 +5,8 @@
 
 use bevy::render::{RenderApp, sync_world::RenderEntity};
 use bevy_comics::{
-    Colorization, ComicStyle, Focus, FocusAt, FocusStyle, Halftone, Paint, Paper, PrintOffset,
-    ScreenSampling, ScreenShape, SpeedLines, TwoTone,
+    ColorHarmony, Colorization, ComicStyle, Focus, FocusAt, FocusStyle, Halftone, Hatching, Paint,
+    Paper, PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape, SpeedLines, TwoTone,
 };
 
 use crate::{
@@ -18,7 +18,8 @@ const MEANS: &str = "bevy_comics/effect/means.wgsl";
 const NUMBERED: &str = "bevy_comics/effect/numbered.wgsl";
 const PICTURE: &str = "bevy_comics/effect/picture.wgsl";
 /// The files whose functions read textures for effects of the page, sorted.
-const READERS: [&str; 7] = [
+const READERS: [&str; 8] = [
+    "bevy_comics/depth/normal.wgsl",
     "bevy_comics/depth/view.wgsl",
     "bevy_comics/effect/blue_noise.wgsl",
     FUSED,
@@ -67,6 +68,10 @@ pub fn effects() -> Vec<(&'static str, ComicStyle)> {
         sampling,
         ..Halftone::default()
     };
+    let pixels = Planes {
+        by: PlaneUnit::Pixel,
+        ..Planes::default()
+    };
     let [dots, grains] = [ScreenShape::Euclidean, ScreenShape::Stochastic];
     let [pixel, cell] = [ScreenSampling::Pixel, ScreenSampling::Cell];
     vec![
@@ -84,6 +89,10 @@ pub fn effects() -> Vec<(&'static str, ComicStyle)> {
         ("focus, offset", style().with(focus(FocusStyle::Offset))),
         ("focus, paint", style().with(focus(FocusStyle::Paint))),
         ("focus, dots", style().with(focus(FocusStyle::Dots))),
+        ("hatching", style().with(Hatching::default())),
+        ("color harmony", style().with(ColorHarmony::default())),
+        ("planes", style().with(Planes::default())),
+        ("planes of pixels", style().with(pixels)),
     ]
 }
 

@@ -142,6 +142,16 @@ fn village(headless: &mut Headless) -> Transform {
     vantage.expect("the stage is there").transform()
 }
 
+/// Gives all meshes texture coordinates, which bevy_shader_mtoon needs even without textures.
+fn give_uvs(world: &mut World) {
+    for (_, mesh) in world.resource_mut::<Assets<Mesh>>().iter_mut() {
+        if !mesh.contains_attribute(Mesh::ATTRIBUTE_UV_0) {
+            let none = vec![[0.0f32; 2]; mesh.count_vertices()];
+            mesh.insert_attribute(Mesh::ATTRIBUTE_UV_0, none);
+        }
+    }
+}
+
 /// Makes every material unlit, so that only lines change the picture.
 fn unlit(world: &mut World) {
     for (_, material) in world.resource_mut::<Assets<StandardMaterial>>().iter_mut() {

@@ -4,16 +4,16 @@
 use std::path::Path;
 
 use bevy::{
-    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     ecs::system::RunSystemOnce,
+    light::RectLight,
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{CartoonScene, ComicsPlugin, presets};
+use bevy_comics::{ComicsPlugin, presets};
 use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
     scenes::{
-        BuiltIn, Stage,
+        BuiltIn, CartoonPart, Stage,
         lights::{Lighting, relight},
     },
 };
@@ -33,7 +33,7 @@ enum Who {
 
 /// The figure under each kind of light.
 fn row(who: Who) -> Vec<RgbaImage> {
-    let options = HeadlessOptions { size: SIZE, ..default() };
+    let options = HeadlessOptions { size: SIZE, log: true, ..default() };
     let mut headless = Headless::new(options, (ComicsPlugin, MtoonPlugin));
     let target = headless.render_target();
     let world = headless.app.world_mut();
@@ -41,17 +41,15 @@ fn row(who: Who) -> Vec<RgbaImage> {
         .run_system_once(|mut stage: Stage| stage.spawn(BuiltIn::Figure))
         .expect("the stage is there");
     let camera = world.spawn(vantage.camera()).id();
-    world
-        .entity_mut(camera)
-        .insert((target, Msaa::Sample4, DepthPrepass, NormalPrepass));
+    world.entity_mut(camera).insert((target, Msaa::Sample4));
     if who == Who::Ours {
         let style = presets::SATURDAY_MORNING.style();
         style.apply(&mut world.commands().entity(camera));
         world.flush();
-    } else {
-        let mut scenes = world.query_filtered::<Entity, With<CartoonScene>>();
-        for scene in scenes.iter(world).collect::<Vec<_>>() {
-            world.entity_mut(scene).remove::<CartoonScene>();
+        let mut parts = world.query::<(Entity, &CartoonPart)>();
+        let parts: Vec<_> = parts.iter(world).map(|(part, light)| (part, light.0.clone())).collect();
+        for (part, light) in parts {
+            world.entity_mut(part).insert(light);
         }
     }
     headless.step(3);
@@ -65,15 +63,20 @@ fn row(who: Who) -> Vec<RgbaImage> {
         for sun in suns.iter(world).collect::<Vec<_>>() {
             world.entity_mut(sun).insert(MtoonSun);
         }
+        // The lamp of a theatre is nearer to a face.
+        let mut areas = world.query_filtered::<&mut Transform, With<RectLight>>();
+        for mut at in areas.iter_mut(world) {
+            *at = Transform::from_xyz(-3.0, 3.5, 6.0).looking_at(Vec3::ZERO, Vec3::Y);
+        }
         headless.step(12);
         headless.picture()
     };
     Lighting::ALL.map(picture).into()
 }
 
-/// Gives all meshes that crate's material: colours as they are, shades that are half as bright, its
-/// own lines.
+/// Gives all meshes that crate's material: colours as they are, darker shades, its own lines.
 fn wear_mtoon(world: &mut World) {
+    crate::give_uvs(world);
     let mut worn = world.query::<(Entity, &MeshMaterial3d<StandardMaterial>)>();
     let worn: Vec<_> = worn.iter(world).map(|(e, m)| (e, m.0.clone())).collect();
     for (entity, material) in worn {

@@ -58,6 +58,7 @@ impl Bench {
         let vantage = world
             .run_system_once(|mut stage: Stage| stage.spawn(BuiltIn::Teapot))
             .expect("the stage is there");
+        crate::give_uvs(world);
         // Crates that draw shells read the meshes in the main world.
         for (_, mesh) in world.resource_mut::<Assets<Mesh>>().iter_mut() {
             mesh.asset_usage = RenderAssetUsages::default();

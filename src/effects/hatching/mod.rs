@@ -77,7 +77,7 @@ pub struct Hatching {
     #[reflect(@FieldRange::logarithmic(10.0, 400.0).unit("px"))]
     pub length: f32,
     /// How thin strokes become at their ends: 0 (lines without ends) to 1 (gaps). Not of dots.
-    /// Default 0.6.
+    /// Range 0 to 1, default 0.6.
     #[reflect(@FieldRange::FRACTION)]
     pub breaks: f32,
     /// How far strokes stray from their lines, and dots from their rows, of what they can without

@@ -57,7 +57,8 @@ pub struct PlaneStyle {
     /// 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
     pub line_color_amount: f32,
-    /// Factor of the darkness of [`Hatching`](crate::Hatching). Range 0 to 1, default 1.
+    /// Factor of the darkness of [`Hatching`](crate::Hatching). Hatching that is drawn after paint,
+    /// focus or a print offset does not change. Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub hatching: f32,
     /// How much of a [`Halftone`](crate::Halftone) is seen as dots; the rest is printed as plain
