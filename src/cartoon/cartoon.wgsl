@@ -292,7 +292,7 @@ fn footprint_of(pbr: PbrInput) -> Footprint {
     return foot;
 }
 
-fn own_data(in: VertexOutput, more: MoreInput) -> OwnData {
+fn own_data(pbr: PbrInput, in: VertexOutput, more: MoreInput) -> OwnData {
     var own: OwnData;
 #ifdef VERTEX_TANGENTS
     own.tangent = in.world_tangent.xyz;
@@ -302,9 +302,6 @@ fn own_data(in: VertexOutput, more: MoreInput) -> OwnData {
 #endif
 #ifdef THRESHOLD_MAP
     own.bias += mapped_bias(pbr, in);
-#endif
-#ifdef THRESHOLD
-    foot.bias = vec2(dpdx(own.bias), dpdy(own.bias));
 #endif
 #ifdef DETAIL_VISIBLE
     own.range = ViewRange(more.range_ends, more.range_scale);
@@ -335,8 +332,11 @@ fn fragment(vertex_output: VertexOutput, more: MoreInput) -> FragmentOutput {
     pbr.N = shaded_normal(pbr, more);
 #endif
     // Must be computed before alpha_discard: derivatives need all pixels.
-    let foot = footprint_of(pbr);
-    let own = own_data(in, more);
+    var foot = footprint_of(pbr);
+    let own = own_data(pbr, in, more);
+#ifdef THRESHOLD
+    foot.bias = vec2(dpdx(own.bias), dpdy(own.bias));
+#endif
     pbr.material.base_color = alpha_discard(pbr.material, pbr.material.base_color);
     apply_decals(&pbr);
 

@@ -10,7 +10,9 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{ComicStyle, ComicsPlugin, Contours, Form, Outlines, Silhouettes};
+use bevy_comics::{
+    CartoonLight, CartoonScene, ComicStyle, ComicsPlugin, Contours, Form, Outlines, Ramp, Silhouettes,
+};
 use bevy_edge_detection_outline::{EdgeDetection, EdgeDetectionPlugin, EdgeOperator};
 use bevy_mod_outline::{OutlineMode, OutlinePlugin, OutlineVolume};
 use bevy_shader_mtoon::{MtoonMaterial, MtoonPlugin, MtoonSun, VrmOutlineMode};
@@ -112,7 +114,7 @@ impl Bench {
         for (part, _, material) in &self.plain {
             world
                 .entity_mut(*part)
-                .remove::<(OutlineVolume, OutlineMode, MeshMaterial3d<MtoonMaterial>)>()
+                .remove::<(OutlineVolume, OutlineMode, MeshMaterial3d<MtoonMaterial>, CartoonScene)>()
                 .insert(MeshMaterial3d(material.clone()));
         }
         let mut shells = world.query_filtered::<Entity, With<Shell>>();
@@ -129,6 +131,13 @@ impl Bench {
 
     fn edges(&mut self, operator: EdgeOperator) {
         self.camera().insert(EdgeDetection { operator, ..default() });
+    }
+
+    fn light(&mut self, light: &CartoonLight) {
+        let world = self.headless.app.world_mut();
+        for (part, _, _) in &self.plain {
+            world.entity_mut(*part).insert(CartoonScene::new(light.clone()));
+        }
     }
 
     fn volumes(&mut self, mode: &OutlineMode) {
@@ -198,6 +207,13 @@ const VARIANTS: &[(&str, Put)] = &[
                 .remove::<MeshMaterial3d<StandardMaterial>>()
                 .insert(MeshMaterial3d(toon.clone()));
         }
+    }),
+    ("bevy_comics: cartoon material", |b| b.light(&CartoonLight::default())),
+    ("bevy_comics: cartoon material; default ramp", |b| {
+        b.light(&CartoonLight {
+            ramp: Some(Ramp::default()),
+            ..default()
+        });
     }),
     ("cloudiful-bevy-outline 0.3.0: shells", |b| {
         let plain = b.plain.clone();
