@@ -80,6 +80,7 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
             render_creation: WgpuSettings {
                 backends: Some(backends()),
                 constrained_limits: options.limits.clone(),
+                instance_flags: instance_flags(),
                 ..default()
             }
             .into(),
@@ -102,6 +103,12 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
     } else {
         group.disable::<LogPlugin>()
     }
+}
+
+/// Names of resources stay in wgpu: the Vulkan loader (1.3.239) looks for the device of a named
+/// resource in a list that another test may be changing.
+fn instance_flags() -> wgpu::InstanceFlags {
+    WgpuSettings::default().instance_flags | wgpu::InstanceFlags::DISCARD_HAL_LABELS
 }
 
 /// The backends that `WGPU_BACKEND` names; by default all but OpenGL, which needs a
