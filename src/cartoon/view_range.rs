@@ -143,7 +143,7 @@ fn column(view: &ExtractedView, request: &RangeRequest) -> [[u32; 4]; ROWS] {
     ]
 }
 
-/// Gives each view with a range a column.
+/// Gives each view with a range a column, while some material reads it.
 fn write_columns(
     views: Query<(Entity, &ExtractedView, &RangeRequest)>,
     images: Res<RenderAssets<GpuImage>>,
@@ -156,7 +156,8 @@ fn write_columns(
         return;
     };
     let mut written = Vec::new();
-    for (entity, view, request) in views.iter().take(COLUMNS as usize) {
+    let read = views.iter().filter(|(.., request)| request.materials);
+    for (entity, view, request) in read.take(COLUMNS as usize) {
         columns.0.insert(entity, written.len() as u32);
         written.push(column(view, request));
     }

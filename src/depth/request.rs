@@ -46,6 +46,9 @@ pub(crate) struct RangeRequest {
     pub histogram: bool,
     /// Divide the visible depths into near, middle and far.
     pub borders: bool,
+    /// Some material reads the range.
+    #[cfg(feature = "cartoon")]
+    pub materials: bool,
     /// Real time since the last frame, in seconds.
     pub seconds: f32,
     /// Number of cuts of the camera so far.

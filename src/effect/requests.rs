@@ -309,6 +309,8 @@ fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeReq
         readback: plan.readback,
         histogram: plan.histogram,
         borders: plan.needs().contains(Needs::DEPTH_BORDERS),
+        #[cfg(feature = "cartoon")]
+        materials: plan.materials,
         seconds: view.seconds,
         cuts: view.cuts,
     })

@@ -4,12 +4,13 @@ use bevy::{math::DVec3, prelude::*};
 use bevy_comics::{CartoonLight, FormShape, Ramp, RampMode, RampStop, ShadedForm};
 use bevy_comics_testkit::reference::cartoon::{
     per_light,
-    surface::{Arriving, Footprint, Surface},
+    surface::{Footprint, Surface},
     two_shades::Evenly,
 };
 
 use crate::{
-    ramp::{apart, bright, drawn, full, put, room, set_light, sun, with},
+    ramp::{apart, bright, drawn, put, room, set_light, sun, with},
+    ramp_pixels::arriving,
     small::linear,
 };
 
@@ -155,18 +156,7 @@ fn a_cube_as_a_ball_has_its_tones() {
     let to = Vec3::new(1.0, 0.5, 0.3);
     sun(&mut small, to, bright(1.0));
     let picture = drawn(&mut small);
-    let color = DVec3::splat(f64::from(full()));
-    let to = to.normalize().as_dvec3();
-    let suns = [Arriving {
-        color,
-        smooth_color: color,
-        to_light: to,
-        to_highlight: to,
-        lit: 1.0,
-        diffuse: 1.0,
-        shine: 1.0,
-        ..Arriving::default()
-    }];
+    let suns = [arriving((to, 1.0))];
     let evenly = Evenly {
         base: DVec3::ONE,
         around: DVec3::ZERO,

@@ -13,7 +13,7 @@ use bevy_comics_testkit::reference::{
 };
 
 use crate::{
-    ramp::{bright, drawn, put, room, set_light, sun},
+    ramp::{bright, drawn, full, put, room, set_light, sun},
     small::linear,
 };
 
@@ -54,23 +54,24 @@ fn surface(x: u32, y: u32) -> Option<Surface> {
     })
 }
 
+/// A directional light without shadows; `part` of what makes white of white.
+pub fn arriving((to, part): (Vec3, f32)) -> Arriving {
+    let color = DVec3::splat(f64::from(part * full()));
+    let to = to.normalize().as_dvec3();
+    Arriving {
+        color,
+        smooth_color: color,
+        to_light: to,
+        to_highlight: to,
+        lit: 1.0,
+        diffuse: 1.0,
+        shine: 1.0,
+        ..Arriving::default()
+    }
+}
+
 fn suns() -> Vec<Arriving> {
-    let full = std::f32::consts::PI / Exposure::default().exposure();
-    let sun = |(to, part): (Vec3, f32)| {
-        let color = DVec3::splat(f64::from(part * full));
-        let to = to.normalize().as_dvec3();
-        Arriving {
-            color,
-            smooth_color: color,
-            to_light: to,
-            to_highlight: to,
-            lit: 1.0,
-            diffuse: 1.0,
-            shine: 1.0,
-            ..Arriving::default()
-        }
-    };
-    SUNS.map(sun).to_vec()
+    SUNS.map(arriving).to_vec()
 }
 
 /// Soft tones, so that interpolated normals of the mesh do not decide; the last edge is as sharp as

@@ -15,7 +15,7 @@ use bevy::{
     prelude::*,
 };
 use bevy_comics::{CartoonLight, CartoonMaterial, FormShape, Ramp, RampMode, RampStop, ShadedForm};
-use bevy_comics_testkit::reference::form;
+use bevy_comics_testkit::reference::octahedral::octahedral;
 use image::RgbaImage;
 
 use crate::{
@@ -97,7 +97,7 @@ fn made(small: &mut Small, entity: Entity) -> Vec<[i16; 2]> {
 
 /// The same mesh with the vectors of these codes as its own normals.
 fn with_normals(mut mesh: Mesh, codes: &[[i16; 2]]) -> Mesh {
-    let normal = |code: &[i16; 2]| form::octahedral(code.map(|c| f64::from(c) / 32767.0));
+    let normal = |code: &[i16; 2]| octahedral(code.map(|c| f64::from(c) / 32767.0));
     let normals: Vec<_> = codes.iter().map(|c| normal(c).map(|x| x as f32)).collect();
     mesh.insert_attribute(Mesh::ATTRIBUTE_NORMAL, normals);
     mesh

@@ -51,6 +51,7 @@ pub mod near_middle_far;
 pub mod nested;
 pub mod noise;
 pub mod normal;
+pub mod octahedral;
 pub mod overshoot;
 pub mod paint;
 pub mod paper;

@@ -33,6 +33,7 @@ mod middles;
 mod near_middle_far;
 mod nested;
 mod normal;
+mod octahedral;
 mod overshoot;
 mod paint;
 mod paper;
