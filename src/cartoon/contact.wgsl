@@ -3,6 +3,12 @@
 // Contact shadows, marched through the depth prepass as the engine does, but without its
 // noise: each pixel steps at the same places, so that the shadow is flat and stands still.
 
+// The light that is left where a march found a surface, or none. `penetration`: how deep behind that
+// surface, in parts of its thickness.
+fn contact_left(found: bool, penetration: f32) -> f32 {
+    return select(1.0, clamp(2.0 * penetration - 1.0, 0.0, 1.0), found);
+}
+
 #ifdef CONTACT_SHADOWS
 #ifdef DEPTH_PREPASS
 #import bevy_pbr::{
@@ -27,7 +33,7 @@ fn contact_shadow(position: vec3<f32>, to_light: vec3<f32>) -> f32 {
     march.march_behind_surfaces = true;
     march.jitter = 0.5;
     let found = raymarch::depth_ray_march_march(&march);
-    return select(1.0, clamp(2.0 * found.hit_penetration_frac - 1.0, 0.0, 1.0), found.hit);
+    return contact_left(found.hit, found.hit_penetration_frac);
 }
 #endif
 #endif

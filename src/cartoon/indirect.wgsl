@@ -9,8 +9,7 @@
 }
 #ifdef IRRADIANCE_VOLUME
 #import bevy_pbr::irradiance_volume
-#endif
-#ifdef ENVIRONMENT_MAP
+#else ifdef ENVIRONMENT_MAP
 #import bevy_pbr::{environment_map, lighting::LayerLightingInput}
 #endif
 #import bevy_comics::cartoon::{
@@ -19,39 +18,26 @@
     surroundings::{AxisLight, TwoTones, two_tones},
 }
 
-#ifdef LIGHTMAP
-const LIGHTMAPPED: bool = true;
-#else
-const LIGHTMAPPED: bool = false;
-#endif
-
 // Light of the surroundings at a surface that faces along `normal`, without ambient light
-// and lightmaps.
+// and lightmaps. Materials of meshes with a lightmap are compiled without surroundings.
 fn surroundings(
     s: Surface,
     normal: vec3<f32>,
     ranges: ptr<function, ClusterableObjectIndexRanges>,
 ) -> vec3<f32> {
-    var light = vec3(0.0);
-    var found = LIGHTMAPPED;
 #ifdef IRRADIANCE_VOLUME
-    if !found {
-        light = irradiance_volume::irradiance_volume_light(s.position, normal, ranges);
-        found = true;
-    }
+    return irradiance_volume::irradiance_volume_light(s.position, normal, ranges);
+#else ifdef ENVIRONMENT_MAP
+    var layer: LayerLightingInput;
+    layer.N = normal;
+    layer.R = normal;
+    layer.NdotV = 1.0;
+    layer.perceptual_roughness = 1.0;
+    layer.roughness = 1.0;
+    return environment_map::compute_radiances(layer, ranges, s.position, false).irradiance;
+#else
+    return vec3(0.0);
 #endif
-#ifdef ENVIRONMENT_MAP
-    if !found {
-        var layer: LayerLightingInput;
-        layer.N = normal;
-        layer.R = normal;
-        layer.NdotV = 1.0;
-        layer.perceptual_roughness = 1.0;
-        layer.roughness = 1.0;
-        light = environment_map::compute_radiances(layer, ranges, s.position, false).irradiance;
-    }
-#endif
-    return light;
 }
 
 // Light of the surroundings: `shade` everywhere, and `more` of it from one direction. The
@@ -83,8 +69,10 @@ fn light_around(
 
 // Ambient light, unless it is baked into the lightmap of the mesh.
 fn ambient() -> vec3<f32> {
-    if LIGHTMAPPED && view_bindings::lights.ambient_light_affects_lightmapped_meshes == 0u {
+#ifdef LIGHTMAP
+    if view_bindings::lights.ambient_light_affects_lightmapped_meshes == 0u {
         return vec3(0.0);
     }
+#endif
     return view_bindings::lights.ambient_color.rgb;
 }

@@ -16,7 +16,7 @@ use bevy::{
     render::render_resource::{
         AsBindGroup, RenderPipelineDescriptor, SpecializedMeshPipelineError,
     },
-    shader::ShaderRef,
+    shader::{ShaderDefVal, ShaderRef},
 };
 use serde::{Deserialize, Serialize};
 
@@ -247,6 +247,13 @@ impl MaterialExtension for CartoonLight {
         vertex::specialize(&mut descriptor.vertex, layout, key)?;
         if let Some(fragment) = &mut descriptor.fragment {
             let smoothed = vertex::is_smoothed(layout);
+            if fragment.shader_defs.contains(&"LIGHTMAP".into()) {
+                // A lightmap takes the place of light from the surroundings. With both, and without
+                // arrays of textures, the engine's shader is not valid (Bevy 0.19.1: a number is
+                // used as a truth value), and the mesh would not be drawn.
+                let surroundings = ["ENVIRONMENT_MAP", "IRRADIANCE_VOLUME"].map(ShaderDefVal::from);
+                (fragment.shader_defs).retain(|definition| !surroundings.contains(definition));
+            }
             let definitions = key.definitions(&fragment.shader_defs, smoothed);
             fragment.shader_defs.extend(definitions);
         }

@@ -8,6 +8,7 @@ use std::{
     sync::OnceLock,
 };
 
+use bevy::shader::{Shader, ShaderDefVal, ShaderImport, Source};
 use naga_oil::compose::{
     ComposableModuleDescriptor, Composer, NagaModuleDescriptor, ShaderDefValue,
     get_preprocessor_data,
@@ -115,6 +116,63 @@ fn compose(
         .map_err(|error| error.emit_to_string(composer))
 }
 
+/// The crate's modules with the engine's own, for materials.
+pub struct Library {
+    composer: Composer,
+    engine: HashMap<String, (String, HashMap<String, ShaderDefValue>)>,
+}
+
+impl Library {
+    /// `shaders`: those that the engine has loaded.
+    pub fn new<'a>(shaders: impl Iterator<Item = &'a Shader>) -> Self {
+        let module = |shader: &Shader| {
+            let ShaderImport::Custom(name) = &shader.import_path else {
+                return None;
+            };
+            let Source::Wgsl(text) = &shader.source else {
+                return None;
+            };
+            let definitions = shader
+                .shader_defs
+                .iter()
+                .map(|definition| match definition {
+                    ShaderDefVal::Bool(name, value) => (name.clone(), ShaderDefValue::Bool(*value)),
+                    ShaderDefVal::Int(name, value) => (name.clone(), ShaderDefValue::Int(*value)),
+                    ShaderDefVal::UInt(name, value) => (name.clone(), ShaderDefValue::UInt(*value)),
+                });
+            Some((name.clone(), (text.to_string(), definitions.collect())))
+        };
+        Self {
+            composer: Composer::default(),
+            engine: shaders.filter_map(module).collect(),
+        }
+    }
+
+    /// Composes and validates an entry point.
+    pub fn compose(&mut self, source: &str, definitions: &[Definition]) -> Result<(), String> {
+        self.composer.capabilities = wgpu::naga::valid::Capabilities::all();
+        self.add_imports(source)?;
+        compose(&mut self.composer, modules(), &[], source, definitions).map(|_| ())
+    }
+
+    fn add_imports(&mut self, text: &str) -> Result<(), String> {
+        let (_, imports, _) = get_preprocessor_data(text);
+        for name in imports.into_iter().map(|import| import.import) {
+            if self.composer.contains_module(&name) {
+                continue;
+            }
+            let none = HashMap::new();
+            let own = modules().get(&name).map(|(text, _)| (text.clone(), none));
+            let (text, definitions) = own
+                .or_else(|| self.engine.get(&name).cloned())
+                .ok_or_else(|| format!("no module {name:?}"))?;
+            self.add_imports(&text)?;
+            add_module(&mut self.composer, &name, &text, &definitions)?;
+        }
+        Ok(())
+    }
+}
+
 type Modules = HashMap<String, (String, Vec<naga_oil::compose::ImportDefinition>)>;
 
 /// What can be imported: text and imports by name.
@@ -143,7 +201,11 @@ fn add(
         return Ok(());
     }
     if let Some((_, text)) = engine.iter().find(|(engine, _)| *engine == name) {
-        return add_module(composer, name, text);
+        let (_, imports, _) = get_preprocessor_data(text);
+        for import in imports {
+            add(composer, modules, engine, &import.import)?;
+        }
+        return add_module(composer, name, text, &HashMap::new());
     }
     let (text, imports) = modules
         .get(name)
@@ -151,7 +213,7 @@ fn add(
     for import in imports {
         add(composer, modules, engine, &import.import)?;
     }
-    add_module(composer, name, text)
+    add_module(composer, name, text, &HashMap::new())
 }
 
 /// What the crate imports of the engine, as far as it uses it.
@@ -174,11 +236,17 @@ const ENGINE: [(&str, &str); 2] = [
     ),
 ];
 
-fn add_module(composer: &mut Composer, name: &str, text: &str) -> Result<(), String> {
+fn add_module(
+    composer: &mut Composer,
+    name: &str,
+    text: &str,
+    shader_defs: &HashMap<String, ShaderDefValue>,
+) -> Result<(), String> {
     composer
         .add_composable_module(ComposableModuleDescriptor {
             source: text,
             file_path: name,
+            shader_defs: shader_defs.clone(),
             ..Default::default()
         })
         .map(|_| ())

@@ -449,6 +449,13 @@ fn a_lightmap_replaces_the_lights_that_are_baked_into_it() {
         );
         small.world().despawn(light);
     }
+    // It replaces the light of the surroundings, too.
+    small.world().insert_resource(ambient(false));
+    let sky = environment(&mut small, SKY);
+    small.insert(sky);
+    small.headless.step(6);
+    let found = middle(&small.picture()).x;
+    assert!((found - 0.3).abs() < 0.01, "with an environment: {found}");
     assert_eq!(small.errors(), 0);
 }
 

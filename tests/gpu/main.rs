@@ -9,6 +9,7 @@ mod bridge;
 mod by_fragments;
 mod cartoon;
 mod cartoon_light;
+mod cartoon_shaders;
 mod command_line;
 mod cracks;
 mod creases;

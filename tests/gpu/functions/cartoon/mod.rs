@@ -1,6 +1,7 @@
 //! What a surface of the cartoon material reflects of lights, against twins: the shipped functions,
 //! with their uniforms, the view and the lights as variables.
 
+mod around;
 mod lamps;
 mod modes;
 mod reflect;
@@ -53,6 +54,8 @@ impl Numbers {
 
 pub const LAMPS: usize = 4;
 const LAMP: usize = 16;
+/// Of a lamp, what arrives.
+const LIT: usize = 13;
 const SURFACE: usize = LAMPS * LAMP;
 const SETTINGS: usize = SURFACE + 28;
 const EVENLY: usize = SETTINGS + 7;

@@ -1,12 +1,12 @@
 //! What the modes of ramps make of several lights.
 
 use bevy::math::DVec3;
-use bevy_comics::{DetailAxis, RampBlend};
+use bevy_comics::{CartoonLight, DetailAxis, RampBlend};
 use bevy_comics_testkit::{
     device::gpu,
     reference::{
         cartoon::{
-            brightest, per_light, reflect,
+            brightest, per_light, ramp_light, reflect, share,
             surface::{Arriving, Surface},
             two_shades::{self, Evenly},
         },
@@ -73,8 +73,8 @@ const TONE: f64 = 1e-3;
 
 fn check(
     module: &str,
-    twin: impl Fn(&Row, &bevy_comics::CartoonLight, &Surface, &[Arriving], &Evenly) -> (DVec3, f64),
-    is_decided: impl Fn(&Row, &bevy_comics::CartoonLight, &Surface, &[Arriving]) -> bool,
+    twin: impl Fn(&Row, &CartoonLight, &Surface, &[Arriving], &Evenly) -> (DVec3, f64),
+    is_decided: impl Fn(&Row, &CartoonLight, &Surface, &[Arriving]) -> bool,
 ) {
     let import = format!("#import bevy_comics::cartoon::{module}::{{Sum, add, reflected}}\n{READ}");
     let body = "read_settings();
@@ -132,6 +132,101 @@ fn ramps_of_the_brightest_light_are_their_twin() {
             bright.len() < 2 || bright[0] == bright[1] || bright[1] < (1.0 - 1e-6) * bright[0]
         },
     );
+}
+
+/// What a light adds to the share of all light, if all of it arrives.
+fn share_of(light: &CartoonLight, s: &Surface, lamp: &Arriving) -> f64 {
+    let color = lamp.smooth_color * lamp.diffuse;
+    brightness(color.to_array()) * ramp_light::angle_of(light, s, lamp).0.max(0.0)
+}
+
+/// Of more than two lights with borders of shadows, two are mixed: which two is not decided where they
+/// are alike within rounding, unless they are the same.
+#[test]
+fn ramps_of_the_share_are_their_twin() {
+    check(
+        "share",
+        |_, light, s, lamps, e| {
+            let color = share::reflected(light, s, lamps, e);
+            let scale = share::strength(light, lamps, e) * most(lamps, e, |lamp| lamp.smooth_color);
+            (color, scale)
+        },
+        |_, light, s, lamps| {
+            let borders = lamps.iter().filter(|lamp| lamp.lit > 0.0 && lamp.lit < 1.0);
+            let mut parts: Vec<f64> = borders.map(|lamp| share_of(light, s, lamp)).collect();
+            parts.sort_by(|a, b| b.total_cmp(a));
+            parts.len() < 3 || parts[2] <= 0.0 || parts[2] < (1.0 - 1e-4) * parts[1]
+        },
+    );
+}
+
+/// A pixel in which the borders of two shadows cross at right angles, and the same pixel in 128 x 128
+/// pieces, in each of which either light arrives or does not: a picture that is drawn larger.
+#[test]
+fn crossing_borders_of_shadows_are_mixed_by_their_areas() {
+    const PIECES: usize = 128;
+    let import = format!("#import bevy_comics::cartoon::share::{{Sum, add, reflected}}\n{READ}");
+    let body = "read_settings();
+         var s = surface();
+         s.foot.normal_x = vec3(0.0);
+         s.foot.normal_y = vec3(0.0);
+         s.foot.bias = vec2(0.0);
+         var sum: Sum;
+         for (var k = 0u; k < 2u; k++) { add(&sum, s, lamp(k), 1.0); }
+         return vec4(reflected(sum, v(99u), v(102u), v(105u)), 0.0);";
+    let colors =
+        |rows: &[Row]| gpu().evaluate_alone(&[("RAMP_STOPS", Some(3))], &import, body, rows);
+    let mut numbers = super::Numbers::new(23);
+    let both_lit = |row: &Row, lit: [f64; 2]| {
+        let mut row = *row;
+        row[super::COUNT] = 2.0;
+        for (k, lit) in lit.into_iter().enumerate() {
+            row[super::LAMP * k + super::LIT] = lit as f32;
+        }
+        row
+    };
+    let (mut pixels, mut pieces, mut parts) = (Vec::new(), Vec::new(), Vec::new());
+    for row in rows(64, 23) {
+        // Borders through the pixel: x cos a + y sin a = c, and the other one at a right angle.
+        let (sin, cos) = f64::from(numbers.within(0.0, 6.3)).sin_cos();
+        let [c, d] = [0; 2].map(|_| f64::from(numbers.within(-0.3, 0.3)));
+        let mut counts = [0usize; 4];
+        for i in 0..PIECES * PIECES {
+            let at = |k: usize| (k as f64 + 0.5) / PIECES as f64 - 0.5;
+            let (x, y) = (at(i % PIECES), at(i / PIECES));
+            let lit = [x * cos + y * sin > c, y * cos - x * sin > d];
+            counts[usize::from(lit[0]) + 2 * usize::from(lit[1])] += 1;
+        }
+        let part = counts.map(|n| n as f64 / (PIECES * PIECES) as f64);
+        pixels.push(both_lit(&row, [part[1] + part[3], part[2] + part[3]]));
+        for state in 0..4 {
+            pieces.push(both_lit(
+                &row,
+                [state & 1, state >> 1].map(|lit| lit as f64),
+            ));
+        }
+        parts.push(part);
+    }
+    let (found, states) = (colors(&pixels), colors(&pieces));
+    for (k, part) in parts.iter().enumerate() {
+        let (row, e) = (&pixels[k], evenly(&pixels[k]));
+        let light = light(row, RampBlend::Multiply, None);
+        let lamps = lamps(row);
+        let scale =
+            share::strength(&light, &lamps, &e) * most(&lamps, &e, |lamp| lamp.smooth_color);
+        // The mixture takes the borders as independent of each other, which they are in a pixel
+        // whose sides they are parallel to.
+        let together = part[3] - (part[1] + part[3]) * (part[2] + part[3]);
+        let bound = (2.0 * together.abs() + TONE) * scale;
+        assert!(together.abs() < 0.05, "{together}");
+        for c in 0..3 {
+            let mean: f64 = (0..4)
+                .map(|s| part[s] * f64::from(states[4 * k + s][c]))
+                .sum();
+            let off = (f64::from(found[k][c]) - mean).abs();
+            assert!(off <= bound, "{row:?}: {off}, not {bound}");
+        }
+    }
 }
 
 /// The light without a ramp, with the shadows of every light.
