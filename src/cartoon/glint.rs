@@ -29,7 +29,7 @@ pub struct Glint {
     #[reflect(@FieldRange::logarithmic(0.1, 8.0))]
     pub size: f32,
     /// Where the shape is, in radii of the plain highlight. Range -8 to 8, default 0. It stays
-    /// within 63 degrees of the plain highlight.
+    /// within 63 degrees (a tangent of 2) of the plain highlight.
     #[reflect(@FieldRange::linear(-8.0, 8.0))]
     pub offset: Vec2,
     /// Degrees, counter-clockwise. Range -360 to 360, default 0.
@@ -95,8 +95,8 @@ pub enum GlintFrame {
     View,
     /// The direction of the light, which is to the right.
     Light,
-    /// The tangents of the mesh, so that it turns with the object. Meshes without tangents use the
-    /// picture.
+    /// The tangents of the mesh, so that it turns with the object. On meshes without tangents it is
+    /// [`View`](Self::View).
     Tangent,
     /// The horizon of the world.
     World,

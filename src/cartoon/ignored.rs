@@ -1,10 +1,14 @@
-//! Names what a cartoon material asks for and does not get.
+//! Names what cartoon materials ask for and do not get.
 
 use bevy::{
     asset::{AssetEvent, Assets},
-    ecs::{message::MessageReader, system::Res},
+    ecs::{
+        message::MessageReader,
+        query::Added,
+        system::{Query, Res},
+    },
     log::warn_once,
-    pbr::StandardMaterial,
+    pbr::{ScreenSpaceReflections, StandardMaterial},
 };
 
 use super::CartoonMaterial;
@@ -43,6 +47,19 @@ pub(super) fn warn_of_ignored(
                 names.join(", ")
             );
         }
+    }
+}
+
+/// Warns of a camera with reflections of the screen, which forward materials do not have.
+pub(super) fn warn_of_reflections(
+    cameras: Query<(), Added<ScreenSpaceReflections>>,
+    materials: Res<Assets<CartoonMaterial>>,
+) {
+    if !cameras.is_empty() && !materials.is_empty() {
+        warn_once!(
+            "a camera has `ScreenSpaceReflections`, which a `CartoonMaterial` does not draw: it is drawn \
+             forward"
+        );
     }
 }
 

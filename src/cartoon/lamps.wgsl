@@ -9,6 +9,9 @@
     lighting::sample_transmittance_lut,
 }
 #endif
+#ifdef SLOPED_SHADOWS
+#import bevy_comics::cartoon::lamp_shadow::{point_shadow, spot_shadow}
+#endif
 #ifdef LIGHT_TEXTURES
 #import bevy_comics::cartoon::light_textures::{
     directional_texture, point_texture, spot_texture,
@@ -39,8 +42,14 @@ fn lamp_shadow_at(is_spot: bool, id: u32, s: Surface, at: vec3<f32>) -> f32 {
 }
 
 // The same with a hard edge. Neighbouring pixels may see other lamps, so there are no
-// derivatives: the shadow map is read for them, too.
+// derivatives: filters whose slope is not known are read for them, too.
 fn lamp_shadow(is_spot: bool, id: u32, s: Surface) -> f32 {
+#ifdef SLOPED_SHADOWS
+    if is_spot {
+        return spot_shadow(id, s, view_bindings::clustered_lights.data[id].shadow_map_near_z);
+    }
+    return point_shadow(id, s);
+#else
     let shadow = lamp_shadow_at(is_spot, id, s, s.position);
     if shadow <= 0.0 || shadow >= 1.0 {
         return shadow;
@@ -50,6 +59,7 @@ fn lamp_shadow(is_spot: bool, id: u32, s: Surface) -> f32 {
         lamp_shadow_at(is_spot, id, s, s.position + s.foot.position_x),
         lamp_shadow_at(is_spot, id, s, s.position + s.foot.position_y),
     ));
+#endif
 }
 
 // The shadow map of a directional light at the surface; 1 if it has none.

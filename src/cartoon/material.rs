@@ -53,9 +53,10 @@ use crate::{
 /// highlights.
 ///
 /// Textures, normal maps, vertex colours, alpha modes, emission, decals, fog and `unlit`
-/// work as in the standard material. Reflections of environment maps and of the screen,
+/// work as in the standard material. Metals are drawn as paint of their base colour, with highlights
+/// of that colour. Reflections of environment maps and of the screen,
 /// transmission, clearcoat and anisotropy are not drawn; a warning names the first material
-/// that asks for one of the last three. The light is computed in the forward pass:
+/// that asks for one of the last three, and the first camera with `ScreenSpaceReflections`. The light is computed in the forward pass:
 /// [`opaque_render_method`] is always set to forward, so that on a camera with a
 /// deferred prepass these meshes are drawn forward.
 ///

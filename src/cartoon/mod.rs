@@ -91,6 +91,7 @@ impl CartoonPlugin {
         load_shader_library!(app, "hatch.wgsl");
         load_shader_library!(app, "hatch_light.wgsl");
         load_shader_library!(app, "indirect.wgsl");
+        load_shader_library!(app, "lamp_shadow.wgsl");
         load_shader_library!(app, "lamps.wgsl");
         load_shader_library!(app, "light.wgsl");
         load_shader_library!(app, "light_rim.wgsl");
@@ -103,6 +104,7 @@ impl CartoonPlugin {
         load_shader_library!(app, "rect.wgsl");
         load_shader_library!(app, "reflect.wgsl");
         load_shader_library!(app, "rim_light.wgsl");
+        load_shader_library!(app, "shadow_texels.wgsl");
         load_shader_library!(app, "share.wgsl");
         load_shader_library!(app, "shine.wgsl");
         load_shader_library!(app, "stroke_level.wgsl");
@@ -138,6 +140,7 @@ fn add_material(app: &mut App) -> bool {
             (
                 (look::apply_looks, material::keep_forward).chain(),
                 ignored::warn_of_ignored,
+                ignored::warn_of_reflections,
                 view_range::ask_for_range,
                 (smooth::begin_smoothing, smooth::finish_smoothing).chain(),
             ),

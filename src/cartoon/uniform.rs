@@ -134,6 +134,12 @@ impl CartoonKey {
         if has(&["ENVIRONMENT_MAP", "IRRADIANCE_VOLUME"]) {
             all.push("ENVIRONMENT".into());
         }
+        // The engine's other filters, and soft shadows, are read as they are. WebGL 2 cannot read four
+        // texels at once.
+        let unlike = ["WEBGL2", "PCSS_SAMPLERS_AVAILABLE"];
+        if has(&["SHADOW_FILTER_METHOD_GAUSSIAN"]) && !has(&unlike) {
+            all.push("SLOPED_SHADOWS".into());
+        }
         all.extend(self.ramp.into_iter().flat_map(RampKey::definitions));
         if self.glint.is_some() || self.rim {
             all.push("KEY_LIGHT".into());

@@ -59,7 +59,7 @@ const LISTS: &[&[Choice]] = &[
         ],
     ],
     &[
-        &["SHADOW_FILTER_METHOD_GAUSSIAN"],
+        &["SHADOW_FILTER_METHOD_GAUSSIAN", "SLOPED_SHADOWS"],
         &["SHADOW_FILTER_METHOD_HARDWARE_2X2"],
         &["SHADOW_FILTER_METHOD_TEMPORAL", "TEMPORAL_JITTER"],
     ],

@@ -70,6 +70,7 @@ pub mod resolve;
 pub mod ribbon;
 mod rim;
 pub mod screen;
+pub mod shadow_texels;
 pub mod sheet;
 pub mod similarity;
 pub mod sketch;

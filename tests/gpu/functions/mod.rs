@@ -44,6 +44,7 @@ mod ramp;
 mod ramp_map;
 mod rect;
 mod settings;
+mod shadow_texels;
 mod sheet;
 mod similarity;
 mod speed_lines;

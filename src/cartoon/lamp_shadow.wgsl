@@ -1,0 +1,116 @@
+#define_import_path bevy_comics::cartoon::lamp_shadow
+
+// The shadow maps of point lights and spot lights, read as the engine reads them (`fetch_point_shadow`,
+// `fetch_spot_shadow`), with the slope of the shadow from the same texels. Neighbouring pixels may see
+// other lamps, so there are no derivatives.
+
+#ifdef SLOPED_SHADOWS
+#import bevy_pbr::{
+    mesh_view_bindings as view_bindings,
+    mesh_view_types,
+    shadow_sampling::{
+        D3D_SAMPLE_POINT_COEFFS, D3D_SAMPLE_POINT_POSITIONS, POINT_SHADOW_SCALE,
+        sample_shadow_cubemap_hardware,
+    },
+}
+#import bevy_render::maths::orthonormalize
+#import bevy_comics::cartoon::{
+    light::sharpen,
+    shadow_texels::{Filtered, slope_of_sums, texels_at, with_sample, with_texels},
+    surface::Surface,
+}
+
+// The direction from the surface to a spot light, against its axis.
+fn against_axis(id: u32) -> vec3<f32> {
+    let light = &view_bindings::clustered_lights.data[id];
+    let x = (*light).light_custom_data.x;
+    let z = (*light).light_custom_data.y;
+    let y = sqrt(max(0.0, 1.0 - x * x - z * z));
+    let is_down = ((*light).flags & mesh_view_types::POINT_LIGHT_FLAGS_SPOT_LIGHT_Y_NEGATIVE) != 0u;
+    return -vec3(x, select(y, -y, is_down), z);
+}
+
+// A place in the shadow map: texture coordinates, and the distance along the axis of the light. `axes`
+// are those of the light.
+fn place_in_map(id: u32, axes: mat3x3<f32>, at: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    let light = &view_bindings::clustered_lights.data[id];
+    let to_light = (*light).position_radius.xyz - at;
+    let biased = -to_light
+        + (*light).shadow_depth_bias * normalize(to_light)
+        + normal * (*light).shadow_normal_bias * dot(axes[2], to_light);
+    let place = biased * axes;
+    let clip = place.xy / ((*light).spot_light_tan_angle * -place.z);
+    return vec3(clip * vec2(0.5, -0.5) + 0.5, -place.z);
+}
+
+// The filtered shadow at a place, from 36 texels that are read four at a time.
+fn filtered_at(id: u32, uv: vec2<f32>, depth: f32, size: vec2<f32>) -> Filtered {
+    let layer = i32(id) + view_bindings::lights.spot_light_shadowmap_offset;
+    let on = texels_at(uv * size);
+    var filtered: Filtered;
+    for (var y = 0u; y < 3u; y++) {
+        for (var x = 0u; x < 3u; x++) {
+            let corner = on.corner + 2.0 * vec2(f32(x), f32(y)) - 2.0;
+            let four = textureGatherCompare(
+                view_bindings::directional_shadow_textures,
+                view_bindings::directional_shadow_textures_comparison_sampler,
+                corner / size,
+                layer,
+                depth,
+            );
+            filtered = with_texels(filtered, four, vec2(x, y), on.part);
+        }
+    }
+    return filtered;
+}
+
+// The shadow of a spot light with a hard edge, 1 where the light arrives. `near`: of its shadow map.
+fn spot_shadow(id: u32, s: Surface, near: f32) -> f32 {
+    let axes = orthonormalize(against_axis(id));
+    let here = place_in_map(id, axes, s.position, s.mesh_normal);
+    let size = vec2<f32>(textureDimensions(view_bindings::directional_shadow_textures));
+    let filtered = filtered_at(id, here.xy, near / here.z, size);
+    if filtered.shadow <= 0.0 || filtered.shadow >= 1.0 {
+        return filtered.shadow;
+    }
+    let right = place_in_map(id, axes, s.position + s.foot.position_x, s.mesh_normal);
+    let down = place_in_map(id, axes, s.position + s.foot.position_y, s.mesh_normal);
+    let slope = filtered.slope * size;
+    let width = abs(dot(slope, right.xy - here.xy)) + abs(dot(slope, down.xy - here.xy));
+    return sharpen(filtered.shadow, width);
+}
+
+// The shadow of a point light with a hard edge.
+fn point_shadow(id: u32, s: Surface) -> f32 {
+    let light = &view_bindings::clustered_lights.data[id];
+    let to_light = (*light).position_radius.xyz - s.position;
+    let distances = abs(to_light);
+    // Along the axis of the face of the cube.
+    let distance = max(distances.x, max(distances.y, distances.z));
+    let from_light = -to_light
+        + (*light).shadow_normal_bias * distance * s.mesh_normal
+        + (*light).shadow_depth_bias * normalize(to_light);
+    let biased = abs(from_light);
+    let major = max(biased.x, max(biased.y, biased.z));
+    let zw = -major * (*light).light_custom_data.xy + (*light).light_custom_data.zw;
+    // Cube maps are left-handed.
+    let flip = vec3(1.0, 1.0, -1.0);
+    let direction = from_light * flip;
+    let axes = orthonormalize(normalize(direction));
+    let scale = POINT_SHADOW_SCALE * distance;
+    var sums: Filtered;
+    for (var k = 0u; k < 8u; k++) {
+        let at = D3D_SAMPLE_POINT_POSITIONS[k];
+        let place = direction + scale * (at.x * axes[0] + at.y * axes[1]);
+        let sample = sample_shadow_cubemap_hardware(place, zw.x / zw.y, id);
+        sums = with_sample(sums, at, D3D_SAMPLE_POINT_COEFFS[k], sample);
+    }
+    if sums.shadow <= 0.0 || sums.shadow >= 1.0 {
+        return clamp(sums.shadow, 0.0, 1.0);
+    }
+    let slope = slope_of_sums(sums) / max(scale, 1e-20);
+    let across = slope.x * axes[0] + slope.y * axes[1];
+    let width = abs(dot(across, s.foot.position_x * flip)) + abs(dot(across, s.foot.position_y * flip));
+    return sharpen(sums.shadow, width);
+}
+#endif
