@@ -76,8 +76,11 @@ pub fn find(name: &str) -> Option<Preset> {
 }
 
 macro_rules! presets {
-    ($($(#[$docs:meta])* $CONSTANT:ident: $name:literal;)*) => {
-        $(
+    ($(
+        $(#[$group_docs:meta])*
+        $GROUP:ident { $($(#[$docs:meta])* $CONSTANT:ident: $name:literal;)* }
+    )*) => {
+        $($(
             $(#[$docs])*
             pub const $CONSTANT: Preset = Preset {
                 name: $name,
@@ -86,88 +89,123 @@ macro_rules! presets {
                     env!("CARGO_MANIFEST_DIR"), "/assets/styles/", $name, ".comic.ron"
                 )),
             };
+        )*)*
+
+        $(
+            $(#[$group_docs])*
+            pub const $GROUP: &[Preset] = &[$($CONSTANT),*];
         )*
 
-        /// Every preset, in the order of the gallery: outlines first, then contours,
-        /// then the figures of the second paper.
-        pub const ALL: &[Preset] = &[$($CONSTANT),*];
+        /// Every preset: [`LOOKS`], then [`PAPERS`].
+        pub const ALL: &[Preset] = &[$($($CONSTANT,)*)*];
     };
 }
 
 presets! {
-    /// A television cartoon: strong dark outlines. Flat with
-    /// [`CartoonScene`](crate::CartoonScene).
-    SATURDAY_MORNING: "saturday-morning";
-    /// Four tones and heavy outlines under one blue-grey atmosphere.
-    GRAPHIC_NOVEL: "graphic-novel";
-    /// Graphite strokes on paper, drawn anew eight times a second.
-    PENCIL_SKETCH: "pencil-sketch";
-    /// Evening: violet distance, warm lines that thin out with it.
-    TWILIGHT_TOON: "twilight-toon";
-    /// Washes of the scene's own colours on rough paper, under loose ink.
-    WATERCOLOR: "watercolor";
-    /// Flat patches of opaque colour on rough paper, soft lines in the colours that they surround.
-    GOUACHE: "gouache";
-    /// A picture book in three planes: a warm foreground with heavy lines, a teal distance.
-    STORYBOOK: "storybook";
-    /// Two hues in five tones: copper in front of a teal distance.
-    COPPER_AND_TEAL: "copper-and-teal";
-    /// Three flat tones with an outline.
-    CLEAR_BANDS: "clear-bands";
-    /// Brown-grey bands, outlines and dark corners.
-    SILENT_FILM: "silent-film";
-    /// A manga's page: black line art, shadows in a few screentones, solid blacks.
-    MANGA_PAGE: "manga-page";
-    /// A newspaper's comic: four inks on grey paper, out of register.
-    NEWSPRINT: "newsprint";
-    /// A comic book of the sixties: dots of four inks and brush lines on cheap paper.
-    SILVER_AGE: "silver-age";
-    /// Two spot inks in fine dots on warm paper.
-    RISOGRAPH: "risograph";
-    /// Pop art: large dots of bright ink, thick black lines.
-    POP_POSTER: "pop-poster";
-    /// Even lines on clean colours that pale a little with distance.
-    LIGNE_CLAIRE: "ligne-claire";
-    /// Black and white, with shadows as solid ink.
-    NOIR: "noir";
-    /// A crime comic: solid shadows that break up into strokes towards the light.
-    HARD_BOILED: "hard-boiled";
-    /// A steel engraving: fine lines that follow the form, crossed in the shadows.
-    ENGRAVING: "engraving";
-    /// A study in graphite: soft strokes in two directions on grained paper.
-    PENCIL_STUDY: "pencil-study";
-    /// Charcoal: broad soft strokes and smudged shadows on rough grey paper.
-    CHARCOAL: "charcoal";
-    /// A woodcut: few broad cuts and solid blacks, printed with one block.
-    WOODCUT: "woodcut";
-    /// Near things keep their colours by day; the distance is a deep blue night.
-    COBALT_NIGHT: "cobalt-night";
-    /// Colours drain into pale mist; white lines.
-    MISTY_MORNING: "misty-morning";
-    /// Warm light on what is far away, brown ink.
-    GOLDEN_HOUR: "golden-hour";
-    /// White lines on blue.
-    BLUEPRINT: "blueprint";
-    /// A red atmosphere that grows with distance. \[CS\] Figure 4, row 1.
-    CRIMSON_DUSK: "crimson-dusk";
-    /// One blue atmosphere for the whole picture, and colours that fade with
-    /// distance. \[CS\] Figure 4, row 2.
-    MUSEUM_PRINT: "museum-print";
-    /// A green atmosphere with solid ink on steep and dark areas. \[CS\] Figure 4,
-    /// row 3.
-    EMERALD_INK: "emerald-ink";
-    /// A brown old photograph. \[CS\] Figure 3.
-    SEPIA: "sepia";
-    /// Figure 7 (a) of \[CL\].
-    FIGURE_7A: "figure-7a";
-    /// Figure 7 (b) of \[CL\].
-    FIGURE_7B: "figure-7b";
-    /// Figure 8 (a) of \[CL\].
-    FIGURE_8A: "figure-8a";
-    /// Figure 8 (b) of \[CL\].
-    FIGURE_8B: "figure-8b";
-    /// Figure 8 (c) of \[CL\].
-    FIGURE_8C: "figure-8c";
+    /// The looks, in the order of the gallery: cartoons, books, prints, drawings, paintings, light.
+    LOOKS {
+        /// A television cartoon: strong dark outlines. Flat with
+        /// [`CartoonScene`](crate::CartoonScene).
+        SATURDAY_MORNING: "saturday-morning";
+        /// Four tones and heavy outlines under one blue-grey atmosphere.
+        GRAPHIC_NOVEL: "graphic-novel";
+        /// Even black lines around flat, clean colours, without ink in the shadows.
+        LIGNE_CLAIRE: "ligne-claire";
+        /// A vector poster: three flat tones of each colour, lines in the colours of things.
+        CLEAR_BANDS: "clear-bands";
+        /// A picture book in three planes: a warm foreground with heavy lines, a teal distance.
+        STORYBOOK: "storybook";
+        /// A naturalist's plate: dots of ink over washes of colour, fine lines.
+        FIELD_GUIDE: "field-guide";
+        /// A church window: panes of pure colour between thick leads.
+        STAINED_GLASS: "stained-glass";
+        /// A print of old Edo: prussian blue, persimmon and ochre under indigo lines.
+        UKIYO_E: "ukiyo-e";
+        /// A hiking map: contour lines of height over pale tints.
+        SURVEY_MAP: "survey-map";
+        /// A manga's page: black line art, shadows in a few screentones, solid blacks.
+        MANGA_PAGE: "manga-page";
+        /// A newspaper's comic: four inks on grey paper, out of register.
+        NEWSPRINT: "newsprint";
+        /// A comic book of the sixties: dots of four inks and brush lines on cheap paper.
+        SILVER_AGE: "silver-age";
+        /// Two spot inks in fine dots on warm paper.
+        RISOGRAPH: "risograph";
+        /// Pop art: large dots of bright ink, thick black lines.
+        POP_POSTER: "pop-poster";
+        /// A poster of the twenties in red, cream and black.
+        RED_POSTER: "red-poster";
+        /// A woodcut: few broad cuts and solid blacks, printed with one block.
+        WOODCUT: "woodcut";
+        /// A steel engraving: fine lines that follow the form, crossed in the shadows.
+        ENGRAVING: "engraving";
+        /// A crime comic: solid shadows that break up into strokes towards the light.
+        HARD_BOILED: "hard-boiled";
+        /// Graphite strokes on paper, drawn anew eight times a second.
+        PENCIL_SKETCH: "pencil-sketch";
+        /// A study in graphite: soft strokes in two directions on grained paper.
+        PENCIL_STUDY: "pencil-study";
+        /// A doodle in blue ballpoint, crossed again and again.
+        BALLPOINT: "ballpoint";
+        /// Charcoal: broad soft strokes and smudged shadows on rough grey paper.
+        CHARCOAL: "charcoal";
+        /// A study in red chalk on toned paper.
+        RED_CHALK: "red-chalk";
+        /// White chalk on a green blackboard.
+        CHALKBOARD: "chalkboard";
+        /// White lines on cyanotype blue.
+        BLUEPRINT: "blueprint";
+        /// Ink wash on rice paper, with brush lines that run dry.
+        SUMI_E: "sumi-e";
+        /// Washes of the scene's own colours on rough paper, under loose ink.
+        WATERCOLOR: "watercolor";
+        /// Flat patches of opaque colour on rough paper, soft lines in the colours that they surround.
+        GOUACHE: "gouache";
+        /// Strokes of thick paint along the forms, cool shadows, no lines.
+        OIL_SKETCH: "oil-sketch";
+        /// Two hues in five tones: copper in front of a teal distance.
+        COPPER_AND_TEAL: "copper-and-teal";
+        /// The last hour of light: amber lights, plum shadows, brown lines.
+        GOLDEN_HOUR: "golden-hour";
+        /// Evening: violet distance, warm lines that thin out with it.
+        TWILIGHT_TOON: "twilight-toon";
+        /// Dark and clear nearby, almost white in the distance.
+        MISTY_MORNING: "misty-morning";
+        /// Day for night: deep blues, moonlit edges, black shadows.
+        COBALT_NIGHT: "cobalt-night";
+        /// Violet and magenta tones, glowing cyan lines.
+        NEON_NIGHT: "neon-night";
+        /// A film noir: solid shadows and one grey on cold white.
+        NOIR: "noir";
+        /// Brown-grey bands, outlines and dark corners.
+        SILENT_FILM: "silent-film";
+        /// An old television: glowing dots of red, green and blue.
+        PHOSPHOR: "phosphor";
+    }
+
+    /// Pictures of the two papers, for those who compare: \[CS\] first, then \[CL\].
+    PAPERS {
+        /// A brown old photograph. \[CS\] Figure 3.
+        SEPIA: "sepia";
+        /// A red atmosphere that grows with distance. \[CS\] Figure 4, row 1.
+        CRIMSON_DUSK: "crimson-dusk";
+        /// One blue atmosphere for the whole picture, and colours that fade with
+        /// distance. \[CS\] Figure 4, row 2.
+        MUSEUM_PRINT: "museum-print";
+        /// A green atmosphere with solid ink on steep and dark areas. \[CS\] Figure 4,
+        /// row 3.
+        EMERALD_INK: "emerald-ink";
+        /// Figure 7 (a) of \[CL\].
+        FIGURE_7A: "figure-7a";
+        /// Figure 7 (b) of \[CL\].
+        FIGURE_7B: "figure-7b";
+        /// Figure 8 (a) of \[CL\].
+        FIGURE_8A: "figure-8a";
+        /// Figure 8 (b) of \[CL\].
+        FIGURE_8B: "figure-8b";
+        /// Figure 8 (c) of \[CL\].
+        FIGURE_8C: "figure-8c";
+    }
 }
 
 /// Makes the presets loadable.

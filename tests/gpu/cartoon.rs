@@ -308,7 +308,7 @@ fn borders_of_shadows_cover_what_the_light_reaches() {
             off += (found - cover).abs();
             sum += found - cover;
         }
-        let [off, mean] = [off, sum].map(|x| x / f64::from(count));
+        let [off, mean] = [off, sum].map(|x| x / count as f64);
         println!(
             "{name}: {count} border pixels, {between} between, off by {off:.4}, mean {mean:.4}"
         );
