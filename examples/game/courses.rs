@@ -23,8 +23,8 @@ pub struct Level {
     pub caption: &'static str,
     pub scene: BuiltIn,
     pub preset: Preset,
-    /// Colour of what is in shadow, as a factor of the light.
-    shade: (f32, f32, f32),
+    /// Colour of what is in shadow, as a factor of the sun's light; `None` where lamps light the place.
+    shade: Option<(f32, f32, f32)>,
     /// Points of a closed line, in the order of flight. Heights are above the ground.
     line: &'static [(f32, f32, f32)],
     laps: usize,
@@ -47,7 +47,7 @@ const VILLAGE: Level = Level {
     caption: "ONE FINE MORNING...",
     scene: BuiltIn::Village,
     preset: presets::SATURDAY_MORNING,
-    shade: (0.46, 0.44, 0.66),
+    shade: Some((0.46, 0.44, 0.66)),
     line: &[
         (0.0, 4.5, 26.0),
         (1.0, 3.6, 8.0),
@@ -84,7 +84,7 @@ const STREET: Level = Level {
     caption: "MIDNIGHT. RAIN AGAIN.",
     scene: BuiltIn::Street,
     preset: presets::COBALT_NIGHT,
-    shade: (0.2, 0.26, 0.5),
+    shade: None,
     line: &[
         (0.6, 2.9, 9.0),
         (-1.4, 3.2, 0.0),
@@ -118,7 +118,7 @@ const VALLEY: Level = Level {
     caption: "AND THEN THE SUN WENT DOWN.",
     scene: BuiltIn::Mountains,
     preset: presets::GOLDEN_HOUR,
-    shade: (0.42, 0.36, 0.62),
+    shade: Some((0.42, 0.36, 0.62)),
     line: &[
         (0.0, 9.0, -10.0),
         (10.0, 8.0, -70.0),
@@ -170,16 +170,15 @@ impl Level {
 
     /// Flat light, and shadows in the colour of the place.
     pub fn light(&self) -> CartoonLight {
-        let (red, green, blue) = self.shade;
-        let shade = RampStop::new(0.0, Color::srgb(red, green, blue));
-        let light = RampStop::new(0.25, Color::WHITE);
-        CartoonLight {
-            ramp: Some(Ramp {
+        let ramp = self.shade.map(|(red, green, blue)| {
+            let shade = RampStop::new(0.0, Color::srgb(red, green, blue));
+            let light = RampStop::new(0.25, Color::WHITE);
+            Ramp {
                 stops: vec![shade, light],
                 ..default()
-            }),
-            ..default()
-        }
+            }
+        });
+        CartoonLight { ramp, ..default() }
     }
 
     /// A point above the ground.

@@ -105,10 +105,9 @@ fn move_plane(game: Res<Game>, mut plane: Single<&mut Transform, With<Plane>>) {
     plane.rotation = flight.rotation() * lower;
 }
 
-/// Shows the lanterns that are lit, the next one as the largest.
+/// Shows the lanterns that are lit, the next one as the largest. They face the plane.
 fn light_lanterns(
     game: Res<Game>,
-    time: Res<Time>,
     mut lanterns: Query<(&mut Transform, &mut Visibility, &LanternAt)>,
 ) {
     let lit: Vec<usize> = game.flight.lit().collect();
@@ -121,7 +120,8 @@ fn light_lanterns(
         if let Some(place) = place {
             let size = if place == 0 { 1.0 } else { 0.6 };
             transform.scale = Vec3::splat(size * game.flight.course.scale);
-            transform.rotation = Quat::from_rotation_y(time.elapsed_secs() * 1.5);
+            let away = transform.translation - game.flight.at;
+            transform.rotation = Quat::from_rotation_y(away.x.atan2(away.z));
         }
     }
 }

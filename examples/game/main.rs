@@ -21,6 +21,7 @@ use std::path::PathBuf;
 
 use bevy::{camera::RenderTarget, prelude::*, window::WindowResolution};
 use bevy_comics::ComicsPlugin;
+use bevy_comics_testkit::demo;
 
 use best::BestTimes;
 use courses::LEVELS;
@@ -147,21 +148,16 @@ fn options() -> Result<Option<Options>, lexopt::Error> {
                 options.play = true;
             }
             Long("lanterns") => orders.lanterns = Some(parser.value()?.parse()?),
-            Long("size") => orders.size = parser.value()?.parse_with(size)?,
+            Long("size") => {
+                let wrong = "possible are 16x16 to 4096x4096";
+                let size = |text: &str| demo::parse_size(text).ok_or(wrong);
+                orders.size = parser.value()?.parse_with(size)?;
+            }
             Long("help") => return Ok(None),
             _ => return Err(argument.unexpected()),
         }
     }
     Ok(Some(options))
-}
-
-/// A size such as `960x540`.
-fn size(text: &str) -> Result<UVec2, &'static str> {
-    let size = text
-        .split_once('x')
-        .and_then(|(w, h)| Some(UVec2::new(w.parse().ok()?, h.parse().ok()?)));
-    size.filter(|size| size.min_element() >= 16 && size.max_element() <= 4096)
-        .ok_or("possible are 16x16 to 4096x4096")
 }
 
 fn open_window(options: Options) {

@@ -60,6 +60,7 @@ fn spawn(mut commands: Commands) {
             border: UiRect::all(Val::Vh(0.5)),
             ..default()
         },
+        TextLayout::no_wrap(),
     ));
     let page = Node {
         width: Val::Percent(100.0),
