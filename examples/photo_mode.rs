@@ -1,4 +1,4 @@
-//! Photo mode: pause the game, fly around, choose a look, and save a picture that is three times as
+//! Photo mode: pause the game, fly around, choose a look, and save a picture that is twice as
 //! large as the window.
 
 use std::process::ExitCode;
@@ -24,7 +24,7 @@ use bevy_comics_testkit::{
 };
 
 /// How much larger a photo is than the window.
-const SCALE: u32 = 3;
+const SCALE: u32 = 2;
 
 const LOOKS: [Preset; 6] = [
     presets::SATURDAY_MORNING,
@@ -233,7 +233,7 @@ fn main() -> ExitCode {
     let demo = Demo {
         title: "Photo mode",
         keys: KEYS,
-        size: UVec2::new(320, 240),
+        size: UVec2::new(480, 360),
         frames: 4,
     };
     let add = |app: &mut App| {

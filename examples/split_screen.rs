@@ -24,7 +24,7 @@ fn spawn(mut stage: Stage, screen: Res<Screen>) {
     let vantage = stage.spawn(BuiltIn::Street);
     let looks = [
         presets::COBALT_NIGHT.style().with(Outlines::default()),
-        presets::MANGA_PAGE.style(),
+        presets::COPPER_AND_TEAL.style(),
     ];
     for (player, look) in (0..).zip(&looks) {
         let camera = Camera {

@@ -5,7 +5,7 @@
 use std::process::ExitCode;
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{CartoonScene, ComicStyle, Outlines, presets};
+use bevy_comics::{BlackFlats, CartoonScene, ComicStyle, Outlines, Vignette, presets};
 use bevy_comics_testkit::{
     demo::{Demo, Screen},
     headless::Headless,
@@ -85,6 +85,21 @@ fn walk(
         Transform::from_translation(eye).looking_at(eye + Vec3::new(-0.25, 0.25, -8.0), Vec3::Y);
 }
 
+/// Noir for a place in the sun: more ink than the preset has.
+fn night(lines: Outlines) -> ComicStyle {
+    let flats = BlackFlats {
+        value: Some(0.78),
+        softness: 0.05,
+        ..default()
+    };
+    let corners = Vignette {
+        amount: 0.9,
+        ..default()
+    };
+    let noir = presets::NOIR.style().with(lines);
+    noir.with(flats).with(corners)
+}
+
 fn spawn(mut stage: Stage, screen: Res<Screen>) {
     let vantage = stage.spawn(BuiltIn::Village);
     let day = presets::SATURDAY_MORNING.style();
@@ -103,7 +118,7 @@ fn spawn(mut stage: Stage, screen: Res<Screen>) {
         StyleVolume {
             half_size: Vec3::new(12.0, 6.0, 12.0),
             border: 22.0,
-            style: presets::NOIR.style().with(lines),
+            style: night(lines),
         },
     ));
 }
@@ -123,7 +138,7 @@ fn steps(headless: &mut Headless) -> RgbaImage {
         size.y,
         image::Rgba([255, 255, 255, 255]),
     );
-    for (column, at) in [0.0, 0.3, 0.5, 0.9].into_iter().enumerate() {
+    for (column, at) in [0.0, 0.32, 0.52, 0.8].into_iter().enumerate() {
         headless.app.insert_resource(Walk(at));
         headless.step(4);
         let x = column as i64 * i64::from(size.x + gap);

@@ -59,8 +59,8 @@ const BALLOONS: [Balloon; 3] = [
         words: "HOLD ON TIGHT,\nLITTLE LETTER!",
     },
     Balloon {
-        body: [18.0, 54.5, 14.5, 8.0],
-        tip: (24.0, 69.5),
+        body: [13.2, 53.6, 9.6, 6.0],
+        tip: (21.5, 65.5),
         spikes: 17.0,
         words: "FLY!",
     },
@@ -87,7 +87,7 @@ pub struct Panel {
 
 impl UiMaterial for Panel {
     fn fragment_shader() -> ShaderRef {
-        "embedded://comic_page/panel.wgsl".into()
+        "embedded://comic_page/comic_page/panel.wgsl".into()
     }
 }
 
@@ -102,7 +102,7 @@ pub struct Speech {
 
 impl UiMaterial for Speech {
     fn fragment_shader() -> ShaderRef {
-        "embedded://comic_page/balloon.wgsl".into()
+        "embedded://comic_page/comic_page/balloon.wgsl".into()
     }
 }
 
@@ -110,8 +110,8 @@ pub struct PagePlugin;
 
 impl Plugin for PagePlugin {
     fn build(&self, app: &mut App) {
-        embedded_asset!(app, "panel.wgsl");
-        embedded_asset!(app, "balloon.wgsl");
+        embedded_asset!(app, "examples", "panel.wgsl");
+        embedded_asset!(app, "examples", "balloon.wgsl");
         app.add_plugins((
             UiMaterialPlugin::<Panel>::default(),
             UiMaterialPlugin::<Speech>::default(),
@@ -243,7 +243,7 @@ fn speak(sheet: &mut ChildSpawnerCommands, balloon: &Balloon, speech: &mut Asset
         tail: Vec4::new(tip.x, tip.y, 16.0, balloon.spikes),
     });
     sheet.spawn((at(place), MaterialNode(material)));
-    let size = if balloon.spikes > 0.0 { 4.2 } else { 1.55 };
+    let size = if balloon.spikes > 0.0 { 3.0 } else { 1.55 };
     sheet
         .spawn(at(body))
         .with_child(lettering(balloon.words, size));

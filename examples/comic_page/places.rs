@@ -7,7 +7,9 @@ use bevy::{
     prelude::*,
     render::{render_resource::TextureFormat, view::Msaa},
 };
-use bevy_comics::{CartoonScene, ComicStyle, Outlines, SpeedLineKind, SpeedLines, presets};
+use bevy_comics::{
+    CartoonScene, ComicStyle, OutlineGroup, Outlines, SpeedLineKind, SpeedLines, presets,
+};
 use bevy_comics_testkit::{
     headless::new_target,
     scenes::{BuiltIn, CartoonPart, ScenePart, Stage, Vantage, paper_plane::paper_plane},
@@ -19,7 +21,7 @@ use crate::page::PANELS;
 /// What a panel shows.
 pub struct View {
     pub scene: BuiltIn,
-    /// Position and target of the camera; that of the scene if they are the same.
+    /// Position and target of the camera.
     eye: Vec3,
     target: Vec3,
     /// Where the paper plane is, seen from the camera, and how large it is.
@@ -42,8 +44,8 @@ pub const VIEWS: [View; PANELS] = [
     },
     View {
         scene: BuiltIn::Figure,
-        eye: Vec3::ZERO,
-        target: Vec3::ZERO,
+        eye: v(-0.1, -0.05, 9.1),
+        target: v(-0.1, -0.12, 0.0),
         plane: None,
         style: || presets::SATURDAY_MORNING.style(),
     },
@@ -51,7 +53,7 @@ pub const VIEWS: [View; PANELS] = [
         scene: BuiltIn::Village,
         eye: v(-16.0, 26.0, -70.0),
         target: v(-9.0, 7.0, -134.0),
-        plane: Some((v(-0.6, -0.7, -6.0), 0.9)),
+        plane: Some((v(0.85, -0.8, -6.0), 0.8)),
         style: || {
             presets::GRAPHIC_NOVEL.style().with(SpeedLines {
                 kind: SpeedLineKind::Radial,
@@ -77,6 +79,9 @@ pub const VIEWS: [View; PANELS] = [
     },
 ];
 
+/// The layer of the first panel's plane.
+const PLANES: usize = 16;
+
 /// The pictures of the panels.
 #[derive(Resource)]
 pub struct Pictures(pub Vec<Handle<Image>>);
@@ -92,7 +97,9 @@ pub fn spawn(world: &mut World) {
             places.len() - 1
         });
         let (_, vantage, ambient) = &places[place];
-        let layer = RenderLayers::layer(place + 1);
+        // Every panel has a plane of its own, which the others do not show.
+        let own = PLANES + panel;
+        let layers = RenderLayers::layer(place + 1).with(own);
         let size = crate::page::picture_size(panel);
         let picture = new_target(world, size, TextureFormat::Rgba8UnormSrgb);
         pictures.push(picture.clone());
@@ -100,20 +107,17 @@ pub fn spawn(world: &mut World) {
             handle: picture,
             scale_factor: 1.0,
         });
-        let mut at = vantage.transform();
-        if view.eye != view.target {
-            at = Transform::from_translation(view.eye).looking_at(view.target, Vec3::Y);
-        }
+        let at = Transform::from_translation(view.eye).looking_at(view.target, Vec3::Y);
         let order = Camera {
             order: panel as isize - 20,
             ..default()
         };
         let mut camera = world.spawn((vantage.camera(), order, target, Msaa::Sample4));
-        camera.insert((at, layer.clone(), ambient.clone()));
+        camera.insert((at, layers, ambient.clone()));
         let camera = camera.id();
         wear(&mut world.commands().entity(camera), &(view.style)());
         if let Some((from_eye, size)) = view.plane {
-            fold_plane(world, at, from_eye, size, layer.clone());
+            fold_plane(world, at, from_eye, size, RenderLayers::layer(own));
         }
     }
     world.flush();
@@ -127,10 +131,16 @@ fn build(world: &mut World, scene: BuiltIn, layer: usize) -> (BuiltIn, Vantage, 
     let mut roots = world
         .query_filtered::<Entity, (With<ScenePart>, Without<ChildOf>, Without<RenderLayers>)>();
     let roots: Vec<Entity> = roots.iter(world).collect();
+    // The tiles of the ground are one object: there are no lines between them.
+    let whole = (OutlineGroup, Transform::IDENTITY, Visibility::default());
+    let whole = (scene == BuiltIn::Mountains).then(|| world.spawn(whole).id());
     for root in roots {
         let look = world.get::<CartoonPart>(root).cloned().unwrap_or_default();
         world.entity_mut(root).insert(look.0);
         put_on_layer(world, root, layer);
+        if let Some(whole) = whole {
+            world.entity_mut(root).insert(ChildOf(whole));
+        }
     }
     // Every scene sets the light from all sides: it becomes that of its cameras.
     let all = world.resource::<GlobalAmbientLight>();
@@ -159,7 +169,7 @@ fn fold_plane(world: &mut World, eye: Transform, from_eye: Vec3, size: f32, laye
         double_sided: true,
         cull_mode: None,
         perceptual_roughness: 0.9,
-        emissive: LinearRgba::gray(0.15),
+        emissive: LinearRgba::gray(0.3),
         ..default()
     };
     let paper = world.resource_mut::<Assets<StandardMaterial>>().add(paper);

@@ -6,7 +6,13 @@ use bevy::{prelude::*, time::TimeUpdateStrategy};
 use bevy_comics::ComicsPlugin;
 use bevy_comics_testkit::headless::{Headless, HeadlessOptions};
 
-use crate::{Game, GamePlugin, Target, courses::LEVELS, input::Input, pages::Page, rules::Flight};
+use crate::{
+    Game, GamePlugin, Target,
+    courses::LEVELS,
+    input::Input,
+    pages::Page,
+    rules::{Event, Flight},
+};
 
 /// What the autopilot is asked for.
 pub struct Orders {
@@ -22,7 +28,7 @@ const FRAME: Duration = Duration::from_millis(50);
 /// Frames after which the end of the flight is given up: half a minute.
 const PATIENCE: usize = 600;
 /// Frames before a picture: the camera arrives, and motion lines grow.
-const SHOT: usize = 16;
+const SHOT: usize = 14;
 /// Frames for the transition to the style of the last page.
 const SETTLE: usize = 30;
 
@@ -36,8 +42,12 @@ pub fn by_itself(orders: &Orders) -> i32 {
         headless.step(1);
     }
     if let Some(path) = &orders.picture {
-        let game = headless.app.world_mut().resource_mut::<Game>();
-        skip_to(&mut game.into_inner().flight, orders.lanterns);
+        let world = headless.app.world_mut();
+        let now = world.resource::<Time>().elapsed_secs();
+        let game = world.resource_mut::<Game>().into_inner();
+        skip_to(&mut game.flight, orders.lanterns);
+        // The last lantern still rings on the picture.
+        game.shout(Event::Lantern(0), now + 0.3);
         headless.step(SHOT);
         if let Err(error) = headless.picture().save(path) {
             eprintln!("{}: {error}", path.display());

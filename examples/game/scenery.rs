@@ -119,7 +119,9 @@ fn hang_lanterns(stage: &mut Stage, flight: &Flight) {
 
 fn gather_clouds(stage: &mut Stage, flight: &Flight, level: &Level) {
     let storm = stage.materials.add(StandardMaterial {
-        base_color: Color::srgb(0.42, 0.4, 0.58),
+        base_color: Color::srgb(0.36, 0.34, 0.5),
+        // Storm clouds are seen at night.
+        emissive: LinearRgba::rgb(0.1, 0.08, 0.16),
         perceptual_roughness: 1.0,
         ..default()
     });
@@ -155,7 +157,7 @@ fn fold_plane(stage: &mut Stage, flight: &Flight, level: &Level) {
         cull_mode: None,
         perceptual_roughness: 0.9,
         // Paper is seen at night, too.
-        emissive: LinearRgba::gray(0.12),
+        emissive: LinearRgba::gray(0.25),
         ..default()
     });
     let scale = flight.course.scale;

@@ -96,7 +96,7 @@ fn spawn(mut commands: Commands) {
         Node {
             position_type: PositionType::Absolute,
             top: Val::Percent(26.0),
-            left: Val::Percent(56.0),
+            left: Val::Percent(60.0),
             ..default()
         },
     ));
