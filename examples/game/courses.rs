@@ -250,7 +250,7 @@ mod tests {
             stage.spawn(scene);
         };
         world.run_system_once(spawn).expect("the stage is there");
-        let parts = world.query_filtered::<scenery::Part, With<ScenePart>>();
+        let mut parts = world.query_filtered::<scenery::Part, With<ScenePart>>();
         let meshes = world.resource::<Assets<Mesh>>();
         let materials = world.resource::<Assets<StandardMaterial>>();
         let solid = scenery::solid(parts.iter(&world), meshes, materials);
