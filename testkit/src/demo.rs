@@ -59,7 +59,6 @@ impl Demo {
         let target = headless.render_target();
         let out = Some(path.clone());
         headless.app.insert_resource(Screen { target, out });
-        headless.app.init_resource::<ButtonInput<KeyCode>>();
         headless.step(self.frames);
         let shot = image::DynamicImage::ImageRgba8(picture(&mut headless)).into_rgb8();
         match shot.save(&path) {
