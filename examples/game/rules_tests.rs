@@ -106,7 +106,7 @@ fn the_ground_slows_and_no_more() {
 #[test]
 fn a_storm_cloud_costs_four_seconds() {
     let mut flight = Flight::new(Course {
-        clouds: vec![Vec3::new(0.0, 10.0, -40.0)],
+        clouds: vec![Vec3::new(-5.0, 9.0, -40.0)],
         ..course()
     });
     let mut hits = 0;
