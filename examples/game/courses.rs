@@ -5,7 +5,7 @@ use bevy::{
     prelude::*,
 };
 use bevy_comics::{
-    CartoonLight, ComicStyle, LineWeight, Outlines, Preset, Ramp, RampStop, presets,
+    BlackFlats, CartoonLight, ComicStyle, LineWeight, Outlines, Preset, Ramp, RampStop, presets,
 };
 use bevy_comics_testkit::scenes::{BuiltIn, mountains};
 
@@ -151,9 +151,13 @@ const VALLEY: Level = Level {
 pub const LEVELS: [Level; 3] = [VILLAGE, STREET, VALLEY];
 
 impl Level {
-    /// The preset; one without outlines gets those of the game.
+    /// The preset, with less solid ink, which would hide walls from the player. One without
+    /// outlines gets those of the game.
     pub fn style(&self) -> ComicStyle {
-        let style = self.preset.style();
+        let mut style = self.preset.style();
+        if let Some(flats) = style.get_mut::<BlackFlats>() {
+            flats.value = flats.value.map(|value| 0.45 * value);
+        }
         if style.get::<Outlines>().is_some() {
             return style;
         }
