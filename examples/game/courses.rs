@@ -1,242 +1,308 @@
-//! The three levels: their courses and their scenes.
+//! The levels: their places, their looks and their courses.
 
-use bevy::{asset::RenderAssetUsages, mesh::PrimitiveTopology, prelude::*};
-use bevy_comics::ComicStyle;
-
-use bevy_comics_testkit::scenes::{BuiltIn, ScenePart, Stage, Vantage, mountains};
+use bevy::{
+    math::cubic_splines::{CubicCardinalSpline, CyclicCubicGenerator},
+    prelude::*,
+};
+use bevy_comics::{
+    BlackFlats, CartoonLight, ComicStyle, LineWeight, Outlines, Preset, Ramp, RampStop, presets,
+};
+use bevy_comics_testkit::scenes::{BuiltIn, mountains};
 
 use crate::{
-    looks::named,
-    rules::{CLOUD_RADIUS, Course, Flight},
+    rules::Course,
+    solids::{Solids, triangles},
 };
 
 /// A level of the game.
 pub struct Level {
     pub name: &'static str,
+    /// In the file of best times.
+    pub key: &'static str,
+    /// What the caption says at the start.
+    pub caption: &'static str,
     pub scene: BuiltIn,
-    /// Name of a preset.
-    pub style: &'static str,
+    pub preset: Preset,
+    /// Colour of what is in shadow, as a factor of the sun's light; `None` where lamps light the place.
+    shade: Option<(f32, f32, f32)>,
+    /// Points of a closed line, in the order of flight. Heights are above the ground.
+    line: &'static [(f32, f32, f32)],
+    laps: usize,
+    /// Storm clouds, as points of the line are.
+    clouds: &'static [(f32, f32, f32)],
+    /// Size and speed of the plane: at scale 1, it is 3 units wide.
+    scale: f32,
+    ceiling: f32,
+    ground: fn(Vec2) -> f32,
 }
 
-pub const LEVELS: [Level; 3] = [
-    Level {
-        name: "The village",
-        scene: BuiltIn::Village,
-        style: "graphic-novel",
-    },
-    Level {
-        name: "The valley",
-        scene: BuiltIn::Mountains,
-        style: "emerald-ink",
-    },
-    Level {
-        name: "The village at dusk",
-        scene: BuiltIn::Village,
-        style: "cobalt-night",
-    },
-];
+/// What the player has for each level, seconds.
+const TIME: f32 = 120.0;
+/// Distance between lanterns at scale 1, units.
+const SPACING: f32 = 46.0;
+
+const VILLAGE: Level = Level {
+    name: "The Village",
+    key: "village",
+    caption: "ONE FINE MORNING...",
+    scene: BuiltIn::Village,
+    preset: presets::SATURDAY_MORNING,
+    shade: Some((0.46, 0.44, 0.66)),
+    line: &[
+        (0.0, 4.5, 26.0),
+        (1.0, 3.6, 8.0),
+        (-1.0, 4.2, -8.0),
+        (1.5, 6.8, -24.0),
+        (-1.0, 4.2, -46.0),
+        (0.5, 4.6, -70.0),
+        (2.0, 9.0, -98.0),
+        (-1.0, 16.0, -124.0),
+        (-4.0, 19.0, -150.0),
+        (-22.0, 18.0, -158.0),
+        (-34.0, 15.0, -134.0),
+        (-30.0, 13.0, -100.0),
+        (-20.0, 12.5, -62.0),
+        (-19.0, 14.0, -26.0),
+        (-18.0, 15.0, 6.0),
+        (-14.0, 12.0, 32.0),
+        (-5.0, 7.0, 42.0),
+    ],
+    laps: 3,
+    clouds: &[
+        (6.5, 9.5, -40.0),
+        (-6.0, 14.0, -112.0),
+        (-27.0, 17.0, -84.0),
+    ],
+    scale: 0.6,
+    ceiling: 40.0,
+    ground: |_| 0.0,
+};
+
+const STREET: Level = Level {
+    name: "The Street at Night",
+    key: "street",
+    caption: "MIDNIGHT. RAIN AGAIN.",
+    scene: BuiltIn::Street,
+    preset: presets::COBALT_NIGHT,
+    shade: None,
+    line: &[
+        (0.6, 2.9, 9.0),
+        (-1.4, 3.2, 0.0),
+        (0.0, 2.4, -9.0),
+        (-1.6, 2.6, -17.0),
+        (1.4, 2.3, -26.0),
+        (-1.2, 2.8, -36.0),
+        (1.2, 4.0, -46.0),
+        (2.4, 7.0, -53.0),
+        (-1.0, 9.5, -56.5),
+        (-2.8, 8.4, -50.0),
+        (-1.4, 6.4, -38.0),
+        (1.2, 5.9, -28.0),
+        (-0.8, 6.0, -17.0),
+        (1.2, 5.7, -6.0),
+        (-1.4, 6.2, 4.0),
+        (-1.6, 6.4, 12.0),
+        (0.8, 5.0, 15.0),
+        (1.9, 3.6, 13.0),
+    ],
+    laps: 4,
+    clouds: &[(2.4, 5.2, -33.0), (-2.6, 5.4, -42.0), (2.8, 7.4, -12.0)],
+    scale: 0.3,
+    ceiling: 13.0,
+    ground: |_| 0.0,
+};
+
+const VALLEY: Level = Level {
+    name: "The Valley at Dusk",
+    key: "valley",
+    caption: "AND THEN THE SUN WENT DOWN.",
+    scene: BuiltIn::Mountains,
+    preset: presets::GOLDEN_HOUR,
+    shade: Some((0.42, 0.36, 0.62)),
+    line: &[
+        (0.0, 9.0, -10.0),
+        (10.0, 8.0, -70.0),
+        (-16.0, 11.0, -140.0),
+        (18.0, 9.0, -215.0),
+        (-22.0, 13.0, -300.0),
+        (0.0, 16.0, -385.0),
+        (60.0, 20.0, -440.0),
+        (120.0, 26.0, -400.0),
+        (125.0, 30.0, -320.0),
+        (95.0, 27.0, -240.0),
+        (105.0, 26.0, -160.0),
+        (75.0, 24.0, -80.0),
+        (50.0, 18.0, 0.0),
+        (20.0, 12.0, 40.0),
+    ],
+    laps: 2,
+    clouds: &[
+        (9.0, 14.0, -105.0),
+        (-14.0, 14.0, -190.0),
+        (10.0, 15.0, -262.0),
+        (96.0, 30.0, -420.0),
+        (110.0, 32.0, -205.0),
+    ],
+    scale: 1.0,
+    ceiling: 70.0,
+    ground: mountains::height,
+};
+
+pub const LEVELS: [Level; 3] = [VILLAGE, STREET, VALLEY];
 
 impl Level {
+    /// The preset, with less solid ink, which would hide walls from the player. One without
+    /// outlines gets those of the game.
     pub fn style(&self) -> ComicStyle {
-        named(self.style, &ComicStyle::default())
+        let mut style = self.preset.style();
+        if let Some(flats) = style.get_mut::<BlackFlats>() {
+            flats.value = flats.value.map(|value| 0.45 * value);
+        }
+        if style.get::<Outlines>().is_some() {
+            return style;
+        }
+        style.with(Outlines {
+            width: 2.2,
+            weight: LineWeight {
+                outer: 1.3,
+                inner: 0.8,
+                ..default()
+            },
+            ..default()
+        })
+    }
+
+    /// Flat light, and shadows in the colour of the place.
+    pub fn light(&self) -> CartoonLight {
+        let ramp = self.shade.map(|(red, green, blue)| {
+            let shade = RampStop::new(0.0, Color::srgb(red, green, blue));
+            let light = RampStop::new(0.25, Color::WHITE);
+            Ramp {
+                stops: vec![shade, light],
+                ..default()
+            }
+        });
+        CartoonLight { ramp, ..default() }
+    }
+
+    /// A point above the ground.
+    fn above(&self, &(x, y, z): &(f32, f32, f32)) -> Vec3 {
+        Vec3::new(x, (self.ground)(Vec2::new(x, z)) + y, z)
+    }
+
+    /// The course, without the solid things of its scene.
+    pub fn course(&self) -> Course {
+        let line: Vec<Vec3> = self.line.iter().map(|p| self.above(p)).collect();
+        let start = line[0];
+        let ahead = line[1] - start;
+        let lap = evenly(&line, SPACING * self.scale);
+        Course {
+            start,
+            heading: (-ahead.x).atan2(-ahead.z),
+            lanterns: std::iter::repeat_n(lap, self.laps).flatten().collect(),
+            clouds: self.clouds.iter().map(|p| self.above(p)).collect(),
+            seconds: TIME,
+            ground: self.ground,
+            ceiling: self.ceiling,
+            scale: self.scale,
+            solids: Solids::default(),
+        }
+    }
+
+    /// The solid things of a scene, from its meshes.
+    pub fn solids<'a>(&self, meshes: impl Iterator<Item = (&'a Mesh, &'a Transform)>) -> Solids {
+        let all = meshes.flat_map(|(mesh, at)| triangles(mesh, at)).collect();
+        Solids::new(all, 2.5 * self.scale)
     }
 }
 
-/// Offset of the `i`th object of a course, -1 to 1.
-fn wave(i: usize, pace: f32) -> f32 {
-    (i as f32 * pace).sin()
+/// Points at even distances on a smooth closed line through `points`, except for its start.
+fn evenly(points: &[Vec3], spacing: f32) -> Vec<Vec3> {
+    let Ok(curve) = CubicCardinalSpline::new_catmull_rom(points.to_vec()).to_curve_cyclic() else {
+        return points.to_vec();
+    };
+    let samples: Vec<Vec3> = curve.iter_positions(points.len() * 64).collect();
+    let lengths: Vec<f32> = samples.windows(2).map(|p| p[0].distance(p[1])).collect();
+    let total: f32 = lengths.iter().sum();
+    let count = (total / spacing).round().max(1.0);
+    let (mut found, mut gone) = (Vec::new(), 0.0);
+    for (at, length) in samples.iter().skip(1).zip(lengths) {
+        gone += length;
+        if gone >= total / count * (found.len() as f32 + 1.0) - 1e-3 * total / count {
+            found.push(*at);
+        }
+    }
+    found
 }
 
-/// The course of a level.
-pub fn course(level: usize) -> Course {
-    match level {
-        0 => Course {
-            start: Vec3::new(0.0, 7.0, 44.0),
-            heading: 0.0,
-            lanterns: (0..10)
-                .map(|i| {
-                    Vec3::new(
-                        5.0 * wave(i, 1.1),
-                        6.0 + 3.5 * wave(i, 0.8),
-                        12.0 - 21.0 * i as f32,
-                    )
-                })
-                .collect(),
-            clouds: vec![
-                Vec3::new(7.0, 9.0, -60.0),
-                Vec3::new(-8.0, 11.0, -112.0),
-                Vec3::new(6.0, 8.0, -148.0),
-            ],
-            seconds: 24.0,
-            ground: |_| 0.0,
-        },
-        1 => {
-            let above =
-                |x: f32, z: f32, up: f32| Vec3::new(x, mountains::height(Vec2::new(x, z)) + up, z);
-            Course {
-                start: above(0.0, 10.0, 12.0),
-                heading: 0.0,
-                lanterns: (0..12)
-                    .map(|i| {
-                        above(
-                            26.0 * wave(i, 0.7),
-                            -40.0 - 40.0 * i as f32,
-                            11.0 + 5.0 * wave(i, 1.3),
-                        )
-                    })
-                    .collect(),
-                clouds: (0..6)
-                    .map(|i| {
-                        above(
-                            26.0 * wave(i * 2 + 1, 0.7) + 9.0,
-                            -100.0 - 78.0 * i as f32,
-                            15.0,
-                        )
-                    })
-                    .collect(),
-                seconds: 32.0,
-                ground: mountains::height,
+#[cfg(test)]
+mod tests {
+    use bevy::ecs::system::RunSystemOnce;
+    use bevy_comics_testkit::scenes::{ScenePart, Stage};
+
+    use super::*;
+    use crate::{rules::Flight, scenery};
+
+    /// The course with the solid things of the real scene.
+    fn solid_course(level: &Level) -> Course {
+        let mut world = World::new();
+        world.init_resource::<Assets<Mesh>>();
+        world.init_resource::<Assets<StandardMaterial>>();
+        world.init_resource::<Assets<Image>>();
+        let scene = level.scene;
+        let spawn = move |mut stage: Stage| {
+            stage.spawn(scene);
+        };
+        world.run_system_once(spawn).expect("the stage is there");
+        let mut parts = world.query_filtered::<scenery::Part, With<ScenePart>>();
+        let meshes = world.resource::<Assets<Mesh>>();
+        let materials = world.resource::<Assets<StandardMaterial>>();
+        let solid = scenery::solid(parts.iter(&world), meshes, materials);
+        let solids = level.solids(solid);
+        Course {
+            solids,
+            ..level.course()
+        }
+    }
+
+    #[test]
+    fn levels_have_courses_of_two_minutes() {
+        for level in &LEVELS {
+            let course = level.course();
+            assert!(course.lanterns.len() > 20, "{}", level.name);
+            assert!((100.0..=140.0).contains(&course.seconds));
+            assert!(
+                !level.style().name.is_empty(),
+                "{} has no style",
+                level.name
+            );
+        }
+    }
+
+    #[test]
+    fn every_course_can_be_won_among_its_houses_and_trees() {
+        for level in &LEVELS {
+            let course = solid_course(level);
+            for (index, lantern) in course.lanterns.iter().enumerate() {
+                let inside = course.solids.way_out(*lantern, course.scale);
+                assert!(
+                    inside.is_none(),
+                    "{}: lantern {index} is in a wall",
+                    level.name
+                );
+            }
+            for frame in [0.05, 1.0 / 60.0] {
+                let mut flight = Flight::new(course.clone());
+                while !flight.is_over {
+                    let controls = flight.autopilot();
+                    flight.step(&controls, frame);
+                }
+                let (found, all) = (flight.found(), course.lanterns.len());
+                assert_eq!(found, all, "{} at {:?}", level.name, flight.at);
+                let used = flight.seconds_used();
+                println!("{}: {found} lanterns in {used:.1} s", level.name);
+                assert!((75.0..119.0).contains(&used), "{}: {used}", level.name);
             }
         }
-        _ => Course {
-            start: Vec3::new(0.0, 10.0, -210.0),
-            heading: std::f32::consts::PI,
-            lanterns: (0..12)
-                .map(|i| {
-                    Vec3::new(
-                        11.0 * wave(i, 0.9),
-                        9.0 + 5.0 * wave(i, 1.2),
-                        -185.0 + 18.0 * i as f32,
-                    )
-                })
-                .collect(),
-            clouds: (0..5)
-                .map(|i| Vec3::new(-12.0 * wave(i * 2 + 1, 0.9), 12.0, -158.0 + 36.0 * i as f32))
-                .collect(),
-            seconds: 34.0,
-            ground: |_| 0.0,
-        },
     }
-}
-
-/// A lantern, by its index in [`Course::lanterns`].
-#[derive(Component)]
-pub struct LanternAt(pub usize);
-
-/// A storm cloud, by its index in [`Course::clouds`].
-#[derive(Component)]
-pub struct CloudAt(pub usize);
-
-/// The player's paper plane.
-#[derive(Component)]
-pub struct Plane;
-
-/// A paper plane: two slightly raised wings, and between them a red keel, which makes the
-/// plane easy to see in every style.
-fn paper_plane() -> Mesh {
-    const PAPER: [f32; 4] = [1.0, 0.98, 0.92, 1.0];
-    const RED: [f32; 4] = [0.85, 0.08, 0.06, 1.0];
-    let nose = Vec3::new(0.0, 0.0, -1.7);
-    let (left, right) = (Vec3::new(-1.45, 0.42, 1.15), Vec3::new(1.45, 0.42, 1.15));
-    let (inner_left, inner_right) = (Vec3::new(-0.16, 0.0, 1.15), Vec3::new(0.16, 0.0, 1.15));
-    let keel = Vec3::new(0.0, -0.6, 1.05);
-    let triangles = [
-        ([nose, left, inner_left], PAPER),
-        ([nose, inner_right, right], PAPER),
-        ([nose, inner_left, keel], RED),
-        ([nose, keel, inner_right], RED),
-    ];
-    let corners = |(triangle, color): &([Vec3; 3], [f32; 4])| triangle.map(|at| (at, *color));
-    let (positions, colors): (Vec<[f32; 3]>, Vec<[f32; 4]>) = triangles
-        .iter()
-        .flat_map(corners)
-        .map(|(at, color)| (at.to_array(), color))
-        .unzip();
-    let mut mesh = Mesh::new(
-        PrimitiveTopology::TriangleList,
-        RenderAssetUsages::RENDER_WORLD,
-    )
-    .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
-    .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors);
-    mesh.compute_flat_normals();
-    mesh
-}
-
-/// Builds a level: its scene, its lanterns and clouds, and the plane.
-pub fn build(stage: &mut Stage, level: &Level, flight: &Flight) -> Vantage {
-    let vantage = stage.spawn(level.scene);
-    let glow = stage.materials.add(StandardMaterial {
-        base_color: Color::srgb(1.0, 0.75, 0.2),
-        emissive: LinearRgba::rgb(2.4, 1.3, 0.25),
-        ..default()
-    });
-    let lamp = stage.meshes.add(Sphere::new(1.1));
-    let ring = stage.meshes.add(Torus::new(1.9, 2.25));
-    for (i, at) in flight.course.lanterns.iter().enumerate() {
-        let part = stage
-            .commands
-            .spawn((
-                ScenePart,
-                LanternAt(i),
-                Mesh3d(lamp.clone()),
-                MeshMaterial3d(glow.clone()),
-                Transform::from_translation(*at),
-            ))
-            .id();
-        stage.commands.spawn((
-            ChildOf(part),
-            Mesh3d(ring.clone()),
-            MeshMaterial3d(glow.clone()),
-            Transform::from_rotation(Quat::from_rotation_x(std::f32::consts::FRAC_PI_2)),
-        ));
-    }
-    let storm = stage.materials.add(StandardMaterial {
-        base_color: Color::srgb(0.16, 0.15, 0.2),
-        perceptual_roughness: 1.0,
-        ..default()
-    });
-    let puff = stage.meshes.add(Sphere::new(CLOUD_RADIUS * 0.62));
-    for i in 0..flight.course.clouds.len() {
-        let cloud = stage
-            .commands
-            .spawn((
-                ScenePart,
-                CloudAt(i),
-                Transform::from_translation(flight.cloud(i)),
-                Visibility::default(),
-            ))
-            .id();
-        for (x, y, z, size) in [
-            (0.0, 0.0, 0.0, 1.0),
-            (0.62, -0.12, 0.1, 0.75),
-            (-0.6, -0.1, -0.05, 0.8),
-            (0.15, 0.38, 0.1, 0.7),
-            (-0.2, -0.05, 0.5, 0.65),
-        ] {
-            stage.commands.spawn((
-                ChildOf(cloud),
-                Mesh3d(puff.clone()),
-                MeshMaterial3d(storm.clone()),
-                Transform::from_translation(Vec3::new(x, y, z) * CLOUD_RADIUS)
-                    .with_scale(Vec3::splat(size)),
-            ));
-        }
-    }
-    let paper = stage.materials.add(StandardMaterial {
-        // Thin paper transmits light.
-        diffuse_transmission: 0.6,
-        double_sided: true,
-        cull_mode: None,
-        perceptual_roughness: 0.9,
-        ..default()
-    });
-    let plane = stage.meshes.add(paper_plane());
-    stage.commands.spawn((
-        ScenePart,
-        Plane,
-        Mesh3d(plane),
-        MeshMaterial3d(paper),
-        Transform::from_translation(flight.at),
-    ));
-    vantage
 }

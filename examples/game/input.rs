@@ -15,6 +15,9 @@ pub struct Input {
     pub pause: bool,
     pub photo: bool,
     pub restart: bool,
+    pub quit: bool,
+    /// The next level (1) or the one before (-1).
+    pub choose: i32,
 }
 
 pub struct InputPlugin;
@@ -51,6 +54,9 @@ fn read(keys: Res<ButtonInput<KeyCode>>, pads: Query<&Gamepad>, mut input: ResMu
         pause: pressed(&[KeyCode::Escape, KeyCode::KeyP]),
         photo: pressed(&[KeyCode::KeyF]),
         restart: pressed(&[KeyCode::KeyR]),
+        quit: pressed(&[KeyCode::KeyQ]),
+        choose: i32::from(pressed(&[KeyCode::ArrowRight, KeyCode::KeyD]))
+            - i32::from(pressed(&[KeyCode::ArrowLeft, KeyCode::KeyA])),
     };
     for pad in &pads {
         let stick = pad.left_stick();
@@ -63,6 +69,9 @@ fn read(keys: Res<ButtonInput<KeyCode>>, pads: Query<&Gamepad>, mut input: ResMu
         now.pause |= pad.just_pressed(GamepadButton::Start);
         now.photo |= pad.just_pressed(GamepadButton::North);
         now.restart |= pad.just_pressed(GamepadButton::Select);
+        now.quit |= pad.just_pressed(GamepadButton::East);
+        now.choose += i32::from(pad.just_pressed(GamepadButton::DPadRight))
+            - i32::from(pad.just_pressed(GamepadButton::DPadLeft));
     }
     now.steer = now.steer.clamp_length_max(1.0);
     *input = now;

@@ -3,8 +3,9 @@
 
 use bevy::prelude::*;
 use bevy_comics::{
-    BlackFlats, Colorization, ColorizationMode, ComicStyle, Contours, Desaturation, Form, Outlines,
-    Preset, Sketch, StyleTransition, StyleTransitionFinished, ToneBands, presets,
+    BlackFlats, Colorization, ColorizationMode, ComicStyle, Contours, Desaturation, Form, Impact,
+    Outlines, Preset, Sketch, SpeedLines, StyleTransition, StyleTransitionFinished, ToneBands,
+    presets,
 };
 
 /// The situation that the style shows.
@@ -14,6 +15,7 @@ pub enum Mood {
     Title,
     Flying,
     Slow,
+    Fast,
     Paused,
     Won,
     Lost,
@@ -32,6 +34,8 @@ pub struct Looks {
     flash: Option<ComicStyle>,
     /// Whether a transition to a flash is running.
     flashing: bool,
+    /// Whether an impact is yet to be shown.
+    bumped: bool,
     /// The danger that the camera's style shows.
     tinted: f32,
 }
@@ -66,11 +70,15 @@ impl Looks {
         self.flash = Some(blow);
     }
 
+    pub fn bump(&mut self) {
+        self.bumped = true;
+    }
+
     pub fn lantern(&mut self) {
         let glow = self.level.clone().with(Colorization {
             mode: ColorizationMode::Atmosphere,
             color: Color::srgb(1.0, 0.82, 0.35),
-            amount: 0.55,
+            amount: 0.35,
             form: Form::Corrected,
         });
         self.flash = Some(glow);
@@ -98,6 +106,12 @@ impl Looks {
     fn style(&self) -> ComicStyle {
         match self.mood {
             Mood::Flying => self.in_danger(),
+            Mood::Fast => self.in_danger().with(SpeedLines {
+                inner: 0.75,
+                width: 3.0,
+                opacity: 0.7,
+                ..default()
+            }),
             Mood::Slow => ComicStyle::new()
                 .with(Outlines {
                     width: 1.6,
@@ -142,6 +156,10 @@ pub fn dress(
     let Ok(mut camera) = commands.get_entity(camera) else {
         return;
     };
+    if std::mem::take(&mut looks.bumped) {
+        let impact = Impact::new(camera.id());
+        camera.commands().trigger(impact);
+    }
     if let Some(flash) = looks.flash.take() {
         camera.insert(StyleTransition::to(flash, 0.09));
         looks.flashing = true;
@@ -151,7 +169,7 @@ pub fn dress(
     if looks.shown != Some(mood) {
         let seconds = match (looks.shown, mood) {
             (None, _) => 0.0,
-            (_, Mood::Slow) => 0.3,
+            (_, Mood::Slow | Mood::Fast) | (Some(Mood::Fast), _) => 0.3,
             (Some(Mood::Slow), _) => 0.5,
             _ => 0.6,
         };
@@ -161,9 +179,12 @@ pub fn dress(
         looks.tinted = looks.danger;
         return;
     }
-    if mood == Mood::Flying && !fading && (looks.danger - looks.tinted).abs() > 0.004 {
+    if matches!(mood, Mood::Flying | Mood::Fast)
+        && !fading
+        && (looks.danger - looks.tinted).abs() > 0.004
+    {
         looks.tinted = looks.danger;
-        looks.in_danger().apply(&mut camera);
+        looks.style().apply(&mut camera);
     }
 }
 

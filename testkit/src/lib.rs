@@ -4,6 +4,7 @@
 
 pub mod before;
 pub mod bench;
+pub mod demo;
 pub mod device;
 pub mod engine;
 pub mod forest;

@@ -7,6 +7,7 @@ pub mod hall;
 pub mod lights;
 pub mod mountains;
 pub mod noise;
+pub mod paper_plane;
 pub mod shape;
 pub mod sky;
 pub mod street;

@@ -1,0 +1,127 @@
+//! A small example: a window, or with `--out FILE` a picture without one.
+
+use std::{path::PathBuf, process::ExitCode};
+
+use bevy::{camera::RenderTarget, prelude::*, window::WindowResolution};
+use bevy_comics::ComicsPlugin;
+
+use crate::headless::{Headless, HeadlessOptions};
+
+/// What an example shows.
+pub struct Demo {
+    pub title: &'static str,
+    /// Keys, for the help on the command line.
+    pub keys: &'static str,
+    /// Size of the window, and of the picture unless `--size` says otherwise.
+    pub size: UVec2,
+    /// Frames before the picture is taken.
+    pub frames: usize,
+}
+
+/// Where the cameras of an example draw to: its window, or the picture.
+#[derive(Resource, Clone, Default)]
+pub struct Screen {
+    pub target: RenderTarget,
+    /// Where the picture is saved; `None` for a window.
+    pub out: Option<PathBuf>,
+}
+
+impl Demo {
+    /// Adds the example to an app and runs it. `add` gets the app before the engine starts; the
+    /// resource [`Screen`] is there when systems run.
+    pub fn run(self, add: impl Fn(&mut App) + Send + Sync + 'static) -> ExitCode {
+        self.run_with(add, Headless::picture)
+    }
+
+    /// The same with another picture than that of the screen.
+    pub fn run_with(
+        self,
+        add: impl Fn(&mut App) + Send + Sync + 'static,
+        picture: impl FnOnce(&mut Headless) -> image::RgbaImage,
+    ) -> ExitCode {
+        let (size, out) = match self.arguments() {
+            Ok(Some(wanted)) => wanted,
+            Ok(None) => return ExitCode::SUCCESS,
+            Err(message) => {
+                eprintln!("{message}\n\n{}", self.help());
+                return ExitCode::from(2);
+            }
+        };
+        let Some(path) = out else {
+            self.open_window(size, add);
+            return ExitCode::SUCCESS;
+        };
+        let options = HeadlessOptions { size, ..default() };
+        let mut headless = Headless::new(options, move |app: &mut App| {
+            app.add_plugins(ComicsPlugin).init_resource::<Screen>();
+            add(app);
+        });
+        let target = headless.render_target();
+        let out = Some(path.clone());
+        headless.app.insert_resource(Screen { target, out });
+        headless.step(self.frames);
+        let shot = image::DynamicImage::ImageRgba8(picture(&mut headless)).into_rgb8();
+        match shot.save(&path) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(error) => {
+                eprintln!("{}: {error}", path.display());
+                ExitCode::from(2)
+            }
+        }
+    }
+
+    fn open_window(&self, size: UVec2, add: impl Fn(&mut App) + Send + Sync + 'static) {
+        let mut app = App::new();
+        app.add_plugins(DefaultPlugins.set(WindowPlugin {
+            primary_window: Some(Window {
+                title: self.title.into(),
+                resolution: WindowResolution::new(size.x, size.y),
+                ..default()
+            }),
+            ..default()
+        }))
+        .add_plugins(ComicsPlugin)
+        .init_resource::<Screen>();
+        add(&mut app);
+        app.run();
+    }
+
+    fn help(&self) -> String {
+        let (title, UVec2 { x, y }) = (self.title, self.size);
+        format!(
+            "{title}. Without arguments it opens a window.\n\n{}\n\n    \
+             --out FILE.png   save a picture without a window, and exit\n    \
+             --size WxH       size in pixels (default {x}x{y})\n    \
+             --help           print this help",
+            self.keys
+        )
+    }
+
+    /// The size and the picture's path; `None` if only help was asked for.
+    fn arguments(&self) -> Result<Option<(UVec2, Option<PathBuf>)>, String> {
+        let (mut size, mut out) = (self.size, None);
+        let mut arguments = std::env::args().skip(1);
+        while let Some(argument) = arguments.next() {
+            match argument.as_str() {
+                "--out" => out = Some(arguments.next().ok_or("--out needs a file")?.into()),
+                "--size" => {
+                    let text = arguments.next().unwrap_or_default();
+                    size = parse_size(&text).ok_or("--size: possible are 16x16 to 4096x4096")?;
+                }
+                "--help" | "-h" => {
+                    println!("{}", self.help());
+                    return Ok(None);
+                }
+                other => return Err(format!("unknown argument {other}")),
+            }
+        }
+        Ok(Some((size, out)))
+    }
+}
+
+/// A size such as `960x540`, within what an adapter can draw.
+pub fn parse_size(text: &str) -> Option<UVec2> {
+    let (width, height) = text.split_once('x')?;
+    let size = UVec2::new(width.parse().ok()?, height.parse().ok()?);
+    (size.min_element() >= 16 && size.max_element() <= 4096).then_some(size)
+}
