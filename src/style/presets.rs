@@ -151,8 +151,6 @@ presets! {
         CHARCOAL: "charcoal";
         /// A study in red chalk on toned paper.
         RED_CHALK: "red-chalk";
-        /// White chalk on a green blackboard.
-        CHALKBOARD: "chalkboard";
         /// White lines on cyanotype blue.
         BLUEPRINT: "blueprint";
         /// Ink wash on rice paper, with brush lines that run dry.
@@ -179,8 +177,6 @@ presets! {
         NOIR: "noir";
         /// Brown-grey bands, outlines and dark corners.
         SILENT_FILM: "silent-film";
-        /// An old television: glowing dots of red, green and blue.
-        PHOSPHOR: "phosphor";
     }
 
     /// Pictures of the two papers, for those who compare: \[CS\] first, then \[CL\].
@@ -225,6 +221,19 @@ pub(super) fn embed(app: &mut App) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The first line of a look's file says what it is and what it was made for; its lines are those of
+    /// the second paper or of later effects.
+    #[test]
+    fn looks_say_their_intent_and_do_not_lean_on_contours() {
+        assert_eq!(LOOKS.len(), 36);
+        for look in LOOKS {
+            let first = look.source.lines().next().unwrap_or_default();
+            let intent = first.strip_prefix("// ").unwrap_or_default();
+            assert!(intent.contains(". For "), "{look}: {first:?}");
+            assert!(look.style().get::<crate::Contours>().is_none(), "{look}");
+        }
+    }
 
     #[test]
     fn every_preset_reads_and_is_within_its_ranges() {

@@ -177,6 +177,20 @@ const LATER_PRESETS: [Preset; 6] = [
 /// The presets of the golden pictures of the figure.
 const FIGURE_PRESETS: [Preset; 2] = [presets::SATURDAY_MORNING, presets::GRAPHIC_NOVEL];
 
+/// The presets that have golden pictures of the figure and of the street alone.
+const NEW_PRESETS: [Preset; 10] = [
+    presets::FIELD_GUIDE,
+    presets::STAINED_GLASS,
+    presets::UKIYO_E,
+    presets::SURVEY_MAP,
+    presets::RED_POSTER,
+    presets::BALLPOINT,
+    presets::RED_CHALK,
+    presets::SUMI_E,
+    presets::OIL_SKETCH,
+    presets::NEON_NIGHT,
+];
+
 /// Those of the street at night, and of the hall.
 const STREET_PRESETS: [Preset; 2] = [presets::GRAPHIC_NOVEL, presets::HARD_BOILED];
 const HALL_PRESETS: [Preset; 2] = [presets::STORYBOOK, presets::ENGRAVING];
@@ -231,7 +245,12 @@ pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
         let style = ComicStyle::new().with(dots).with(Outlines::default());
         styles.push(("stipple", style));
     }
-    if let BuiltIn::Figure | BuiltIn::Street | BuiltIn::Hall = scene {
+    if let BuiltIn::Figure | BuiltIn::Street = scene {
+        let new = NEW_PRESETS.map(Preset::name);
+        styles.extend(new.map(|name| (name, preset(name))));
+        return styles;
+    }
+    if scene == BuiltIn::Hall {
         return styles;
     }
     styles.extend(single_effects(scene));

@@ -197,8 +197,12 @@ fn discs_are_the_plain_highlight_at_every_roughness() {
         let tangent = glint::glint_radius(f64::from(EDGE), f64::from(roughness));
         let sine2 = tangent * tangent / (1.0 + tangent * tangent);
         let wanted = std::f64::consts::PI * RADIUS * RADIUS * sine2;
-        println!("{roughness}: {areas:?}, {wanted}, peak {peak}");
         for area in areas {
+            // Smaller than the footprint of its edge: a dot.
+            if wanted < 30.0 {
+                assert!(area < 30.0, "{roughness}: {area}");
+                continue;
+            }
             // An edge of a pixel around a disc, a hundredth of it off, and a hundredth of the area.
             let border = 2.0 * std::f64::consts::PI * RADIUS * sine2.sqrt();
             let slack = 0.01 * wanted + 0.01 * border;
