@@ -9,6 +9,7 @@ use bevy::{
     prelude::*,
     render::{
         render_resource::TextureFormat,
+        renderer::RenderDevice,
         view::{
             Msaa,
             screenshot::{Screenshot, ScreenshotCaptured, save_to_disk},
@@ -151,9 +152,14 @@ fn begin(world: &mut World) {
     ) else {
         return;
     };
+    // No larger than the adapter's textures.
+    let most = world
+        .get_resource::<RenderDevice>()
+        .map_or(8192, |device| device.limits().max_texture_dimension_2d);
+    let larger = (most / size.max_element().max(1)).clamp(1, SCALE);
     let image = ImageRenderTarget {
-        handle: new_target(world, size * SCALE, TextureFormat::Rgba8UnormSrgb),
-        scale_factor: scale * SCALE as f32,
+        handle: new_target(world, size * larger, TextureFormat::Rgba8UnormSrgb),
+        scale_factor: scale * larger as f32,
     };
     let before = redirect(world, entity, RenderTarget::Image(image.clone()));
     world.insert_resource(Photo {

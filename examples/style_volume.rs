@@ -28,7 +28,8 @@ struct StyleVolume {
 #[derive(Component)]
 struct StyleOutside {
     style: ComicStyle,
-    weight: f32,
+    /// The volume that counts, and how much of it; `None` before the first frame.
+    within: Option<Option<(f32, Entity)>>,
 }
 
 /// 1 inside the box, 0 from `border` outside of it on, and smooth between. `at` is in the frame of
@@ -42,23 +43,25 @@ fn weight(at: Vec3, half_size: Vec3, border: f32) -> f32 {
 /// Gives every camera the style of where it is.
 fn dress(
     mut commands: Commands,
-    volumes: Query<(&GlobalTransform, &StyleVolume)>,
+    volumes: Query<(Entity, &GlobalTransform, &StyleVolume)>,
     mut cameras: Query<(Entity, &Transform, &mut StyleOutside)>,
 ) {
-    for (entity, eye, mut outside) in &mut cameras {
-        let weighed = volumes.iter().map(|(place, volume)| {
+    for (camera, eye, mut outside) in &mut cameras {
+        let weighed = volumes.iter().map(|(entity, place, volume)| {
             let at = place.affine().inverse().transform_point3(eye.translation);
-            (weight(at, volume.half_size, volume.border), volume)
+            (weight(at, volume.half_size, volume.border), entity, volume)
         });
-        let strongest = weighed.max_by(|(a, _), (b, _)| a.total_cmp(b));
-        let Some((weight, volume)) = strongest else {
+        let strongest = weighed.max_by(|a, b| a.0.total_cmp(&b.0));
+        let now = strongest.map(|(weight, entity, _)| (weight, entity));
+        if outside.within == Some(now) {
             continue;
-        };
-        if weight != outside.weight {
-            outside.weight = weight;
-            let style = outside.style.blend(&volume.style, weight);
-            wear(&mut commands.entity(entity), &style);
         }
+        outside.within = Some(now);
+        let style = match strongest {
+            Some((weight, _, volume)) => outside.style.blend(&volume.style, weight),
+            None => outside.style.clone(),
+        };
+        wear(&mut commands.entity(camera), &style);
     }
 }
 
@@ -110,7 +113,7 @@ fn spawn(mut stage: Stage, screen: Res<Screen>) {
         Msaa::Sample4,
         StyleOutside {
             style: day,
-            weight: -1.0,
+            within: None,
         },
     ));
     stage.commands.spawn((

@@ -128,7 +128,7 @@ pub fn presets(out: &Path) -> Result<(), String> {
         "silent-film",
         "ligne-claire",
         "noir",
-        "crimson-dusk",
+        "golden-hour",
         "cobalt-night",
         "blueprint",
     ];

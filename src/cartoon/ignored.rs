@@ -4,7 +4,7 @@ use bevy::{
     asset::{AssetEvent, Assets},
     ecs::{
         message::MessageReader,
-        query::Added,
+        query::With,
         system::{Query, Res},
     },
     log::warn_once,
@@ -52,7 +52,7 @@ pub(super) fn warn_of_ignored(
 
 /// Warns of a camera with reflections of the screen, which forward materials do not have.
 pub(super) fn warn_of_reflections(
-    cameras: Query<(), Added<ScreenSpaceReflections>>,
+    cameras: Query<(), With<ScreenSpaceReflections>>,
     materials: Res<Assets<CartoonMaterial>>,
 ) {
     if !cameras.is_empty() && !materials.is_empty() {

@@ -20,6 +20,11 @@
     surface::Surface,
 }
 
+// A direction; 0 where there is none, as where a surface touches the light.
+fn direction_of(v: vec3<f32>) -> vec3<f32> {
+    return v * inverseSqrt(max(dot(v, v), 1e-20));
+}
+
 // The direction from the surface to a spot light, against its axis.
 fn against_axis(id: u32) -> vec3<f32> {
     let light = &view_bindings::clustered_lights.data[id];
@@ -36,11 +41,13 @@ fn place_in_map(id: u32, axes: mat3x3<f32>, at: vec3<f32>, normal: vec3<f32>) ->
     let light = &view_bindings::clustered_lights.data[id];
     let to_light = (*light).position_radius.xyz - at;
     let biased = -to_light
-        + (*light).shadow_depth_bias * normalize(to_light)
+        + (*light).shadow_depth_bias * direction_of(to_light)
         + normal * (*light).shadow_normal_bias * dot(axes[2], to_light);
     let place = biased * axes;
-    let clip = place.xy / ((*light).spot_light_tan_angle * -place.z);
-    return vec3(clip * vec2(0.5, -0.5) + 0.5, -place.z);
+    // What is beside or behind the light gets none of it.
+    let distance = max(-place.z, 1e-4);
+    let clip = place.xy / ((*light).spot_light_tan_angle * distance);
+    return vec3(clamp(clip, vec2(-4.0), vec2(4.0)) * vec2(0.5, -0.5) + 0.5, distance);
 }
 
 // The filtered shadow at a place, from 36 texels that are read four at a time.
@@ -89,14 +96,14 @@ fn point_shadow(id: u32, s: Surface) -> f32 {
     let distance = max(distances.x, max(distances.y, distances.z));
     let from_light = -to_light
         + (*light).shadow_normal_bias * distance * s.mesh_normal
-        + (*light).shadow_depth_bias * normalize(to_light);
+        + (*light).shadow_depth_bias * direction_of(to_light);
     let biased = abs(from_light);
     let major = max(biased.x, max(biased.y, biased.z));
     let zw = -major * (*light).light_custom_data.xy + (*light).light_custom_data.zw;
     // Cube maps are left-handed.
     let flip = vec3(1.0, 1.0, -1.0);
     let direction = from_light * flip;
-    let axes = orthonormalize(normalize(direction));
+    let axes = orthonormalize(direction_of(direction));
     let scale = POINT_SHADOW_SCALE * distance;
     var sums: Filtered;
     for (var k = 0u; k < 8u; k++) {

@@ -114,8 +114,8 @@ pub fn with_map(mut style: ComicStyle, map: DepthMap) -> ComicStyle {
     style
 }
 
-/// The presets after the first paper, \[CS\]. Golden pictures are taken in the order of
-/// this list and the next: sketches change with the clock.
+/// The presets after the first paper, \[CS\], and looks that began as its contours. Golden pictures are
+/// taken in the order of this list and the next: sketches change with the clock.
 const COLOR_PRESETS: [Preset; 10] = [
     presets::CRIMSON_DUSK,
     presets::MUSEUM_PRINT,

@@ -296,7 +296,9 @@ fn borders_of_shadows_cover_what_the_light_reaches() {
             let lit = nearby
                 .filter_map(|(dx, dy)| {
                     let (x, y) = (x.checked_add_signed(dx)?, y.checked_add_signed(dy)?);
-                    picture.pixels.get((y * SIZE.x + x) as usize).map(|p| p[1])
+                    let i = (y * SIZE.x + x) as usize;
+                    let is_ground = x < SIZE.x && ids.pixels.get(i)?[0] == id;
+                    is_ground.then(|| picture.pixels[i][1])
                 })
                 .fold(0f32, f32::max);
             if cover <= 0.0 || cover >= 1.0 {
@@ -321,6 +323,26 @@ fn borders_of_shadows_cover_what_the_light_reaches() {
         };
         assert!(off < most && mean.abs() < moved, "{name}: {off}, {mean}");
         assert!(2 * between > count, "{name}: {between} of {count}");
+    }
+}
+
+/// A wall in the plane of a spot light, before it and behind it: every pixel is finite.
+#[test]
+fn walls_beside_a_spot_light_are_finite() {
+    for at in [0.0f32, 0.5, -0.5] {
+        let (from, to) = (Vec3::new(0.0, 0.7, 3.0), Vec3::new(0.0, 0.7, -5.0));
+        let mut stage = stage(&Kind::Spot(from, to), Msaa::Off);
+        let wall = Plane3d::new(Vec3::Z, Vec2::splat(3.0)).mesh();
+        let white = material(&mut stage.small, CartoonLight::default());
+        let place = Transform::from_xyz(0.0, 0.7, 3.0 + at);
+        stage.small.put_shared(wall, white, place);
+        stage.small.headless.step(4);
+        let (_, picture) = stage.small.pass();
+        assert!(
+            picture.pixels.iter().flatten().all(|x| x.is_finite()),
+            "{at}"
+        );
+        assert_eq!(stage.small.errors(), 0);
     }
 }
 

@@ -1,7 +1,7 @@
 //! The shaders of the cartoon material compose and validate with every pair of settings, together with
 //! the engine's own modules.
 
-use std::{collections::HashSet, fs};
+use std::{collections::BTreeSet, fs};
 
 use bevy::{prelude::*, render::view::Msaa, shader::Shader};
 use bevy_comics_testkit::wgsl::{Definition, Library, files};
@@ -160,19 +160,28 @@ const ALWAYS: &[&str] = &[
 /// A row has the number of one choice of every list.
 type Row = Vec<usize>;
 
-/// The pairs of choices that a row has.
-fn pairs(row: &Row) -> impl Iterator<Item = (usize, usize, usize, usize)> {
-    let numbers: Vec<(usize, usize)> = row.iter().copied().enumerate().collect();
-    let later = numbers.clone();
-    (numbers.into_iter()).flat_map(move |(i, a)| {
-        let after = later.clone().into_iter().skip(i + 1);
-        after.map(move |(j, b)| (i, a, j, b))
-    })
+/// The pairs of choices that a row has and that are compiled.
+fn pairs(row: &Row) -> Vec<(usize, usize, usize, usize)> {
+    let names = names(row);
+    let is_compiled =
+        |(i, a): &(usize, usize)| LISTS[*i][*a].iter().all(|name| names.contains(name));
+    let kept: Vec<(usize, usize)> = row
+        .iter()
+        .copied()
+        .enumerate()
+        .filter(is_compiled)
+        .collect();
+    let mut found = Vec::new();
+    for (k, (i, a)) in kept.iter().enumerate() {
+        found.extend(kept[k + 1..].iter().map(|(j, b)| (*i, *a, *j, *b)));
+    }
+    found
 }
 
-/// Rows that together have every pair of choices. Each is the best of several random ones.
-fn rows() -> Vec<Row> {
-    let mut missing: HashSet<_> = (0..LISTS.len())
+/// Rows that together have every pair of choices that can be, and the pairs that cannot. Each row is the
+/// best of several random ones.
+fn rows() -> (Vec<Row>, Vec<(usize, usize, usize, usize)>) {
+    let mut missing: BTreeSet<_> = (0..LISTS.len())
         .flat_map(|i| (i + 1..LISTS.len()).map(move |j| (i, j)))
         .flat_map(|(i, j)| {
             let choices =
@@ -187,23 +196,29 @@ fn rows() -> Vec<Row> {
             .wrapping_add(1442695040888963407);
         (state >> 33) as usize % below
     };
-    let mut rows = Vec::new();
-    while !missing.is_empty() {
-        // One pair that is missing, so that every row brings at least that.
-        let (i, a, j, b) = *missing.iter().min().expect("not empty");
-        let candidates = (0..40).map(|_| {
+    let (mut rows, mut never) = (Vec::new(), Vec::new());
+    while let Some(wanted) = missing.first().copied() {
+        let (i, a, j, b) = wanted;
+        // A pair may need a third choice: one of many random rows has it.
+        let candidates = (0..120).map(|_| {
             let mut row: Row = LISTS.iter().map(|list| random(list.len())).collect();
             (row[i], row[j]) = (a, b);
-            row
+            let pairs = pairs(&row);
+            (row, pairs)
         });
-        let new = |row: &Row| pairs(row).filter(|pair| missing.contains(pair)).count();
-        let best = candidates.max_by_key(new).expect("candidates");
-        for pair in pairs(&best) {
-            missing.remove(&pair);
+        let candidates = candidates.filter(|(_, pairs)| pairs.contains(&wanted));
+        let new = |(_, pairs): &(Row, Vec<_>)| pairs.iter().filter(|p| missing.contains(p)).count();
+        let Some((row, pairs)) = candidates.max_by_key(new) else {
+            missing.remove(&wanted);
+            never.push(wanted);
+            continue;
+        };
+        for pair in &pairs {
+            missing.remove(pair);
         }
-        rows.push(best);
+        rows.push(row);
     }
-    rows
+    (rows, never)
 }
 
 fn definition(text: &'static str) -> Definition<'static> {
@@ -214,7 +229,7 @@ fn definition(text: &'static str) -> Definition<'static> {
 }
 
 /// The definitions of a row, without those that need others that it lacks.
-fn definitions(row: &Row) -> Vec<Definition<'static>> {
+fn names(row: &Row) -> Vec<&'static str> {
     let chosen = LISTS.iter().zip(row).flat_map(|(list, k)| list[*k]);
     let mut names: Vec<&str> = ALWAYS.iter().chain(chosen).copied().collect();
     names.sort_unstable();
@@ -240,7 +255,31 @@ fn definitions(row: &Row) -> Vec<Definition<'static>> {
     if names.contains(&"HATCH_ART_MAP") && !uvs && !names.contains(&"HATCH_REST") {
         names.push("HATCH_REST");
     }
-    names.into_iter().map(definition).collect()
+    names
+}
+
+/// Every definition that the shaders of the material ask for is compiled here.
+#[test]
+fn the_lists_have_every_definition() {
+    let all: Vec<&str> = (LISTS.iter().flat_map(|list| list.iter().copied().flatten()))
+        .chain(ALWAYS)
+        .map(|text| definition(text).0)
+        .collect();
+    for path in files() {
+        if !path.to_string_lossy().contains("/cartoon/") {
+            continue;
+        }
+        let text = fs::read_to_string(&path).expect("readable");
+        let asks = |line: &&str| {
+            ["#ifdef", "#ifndef", "#else ifdef"]
+                .iter()
+                .any(|word| line.starts_with(word))
+        };
+        for line in text.lines().filter(asks) {
+            let name = line.split_whitespace().last().expect("a name");
+            assert!(all.contains(&name), "{}: {name}", path.display());
+        }
+    }
 }
 
 #[test]
@@ -255,10 +294,17 @@ fn every_pair_of_settings_composes_and_validates() {
         fs::read_to_string(path).expect("readable")
     };
     let (vertex, fragment) = (entry("cartoon/vertex.wgsl"), entry("cartoon/cartoon.wgsl"));
-    let rows = rows();
-    println!("{} rows", rows.len());
+    let (rows, never) = rows();
+    println!("{} rows, {} pairs that cannot be", rows.len(), never.len());
+    for (i, a, j, b) in never {
+        let both = [LISTS[i][a], LISTS[j][b]].concat();
+        let needs = |names: &[&str]| both.iter().any(|name| names.contains(name));
+        let has_reason = needs(&["LIGHTMAP", "THRESHOLD_MAP", "DEPTH_RIM"])
+            || needs(&["RAMP_ABSOLUTE", "RAMP_MAP", "RAMP_DETAIL", "THRESHOLD"]);
+        assert!(has_reason, "{both:?} are never compiled together");
+    }
     for row in &rows {
-        let definitions = definitions(row);
+        let definitions: Vec<_> = names(row).into_iter().map(definition).collect();
         for source in [&vertex, &fragment] {
             if let Err(error) = library.compose(source, &definitions) {
                 panic!("{definitions:?}: {error}");

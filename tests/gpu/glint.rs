@@ -172,11 +172,12 @@ fn a_disc_is_the_plain_highlight() {
     assert!((differ as f64) < 3.0 * 0.5 * border, "{differ} channels");
 }
 
-/// The same over all roughnesses whose highlight can be seen: the disc of the sign is the highlight.
+/// The same over all roughnesses: the disc of the sign is the highlight. From 0.65 on, its peak is below
+/// a few codes and cannot be measured.
 #[test]
 fn discs_are_the_plain_highlight_at_every_roughness() {
     let mut small = ball(&signed(Glint::default()));
-    for roughness in [0.0f32, 0.1, 0.2, 0.35, 0.5, 0.6, 0.7] {
+    for roughness in [0.0f32, 0.1, 0.2, 0.35, 0.5, 0.6] {
         let polish = (1.0 - 1.4 * roughness).max(0.01);
         let light = CartoonLight {
             // As bright as the strength allows.
@@ -203,7 +204,7 @@ fn discs_are_the_plain_highlight_at_every_roughness() {
                 assert!(area < 30.0, "{roughness}: {area}");
                 continue;
             }
-            // An edge of a pixel around a disc, a hundredth of it off, and a hundredth of the area.
+            // A hundredth of the area, and of the edge, which is one pixel wide.
             let border = 2.0 * std::f64::consts::PI * RADIUS * sine2.sqrt();
             let slack = 0.01 * wanted + 0.01 * border;
             assert!(
@@ -245,7 +246,8 @@ fn signs_are_anti_aliased() {
     );
 }
 
-/// While the light turns, the sign moves smoothly, and stays where the geometry says.
+/// While the light turns by 80 degrees in 360 frames, the sign moves smoothly, and stays where the
+/// geometry says. A sign that stood still for a frame would bend its way by 0.2 pixels.
 #[test]
 fn signs_move_smoothly_with_the_light() {
     let sign = Glint {
@@ -277,10 +279,12 @@ fn signs_move_smoothly_with_the_light() {
         }
         middles.push(middle);
     }
-    for three in middles.windows(3) {
-        let bend = three[0] - 2.0 * three[1] + three[2];
-        assert!(bend.length() < 0.3, "{three:?}");
-    }
+    let bends = middles
+        .windows(3)
+        .map(|m| (m[0] - 2.0 * m[1] + m[2]).length());
+    let most = bends.fold(0.0, f64::max);
+    println!("largest bend: {most}");
+    assert!(most < 0.05, "{most}");
     assert!(middles[0].distance(middles[360]) > 60.0);
 }
 
