@@ -111,7 +111,7 @@ presets! {
         GRAPHIC_NOVEL: "graphic-novel";
         /// Even black lines around flat, clean colours, without ink in the shadows.
         LIGNE_CLAIRE: "ligne-claire";
-        /// A vector poster: three flat tones of each colour, lines in the colours of things.
+        /// A vector poster: three flat tones of each colour, dark blue lines around things.
         CLEAR_BANDS: "clear-bands";
         /// A picture book in three planes: a warm foreground with heavy lines, a teal distance.
         STORYBOOK: "storybook";

@@ -5,10 +5,12 @@
 //! functions of such variables, which tests set and know.
 
 /// Modules by name.
-pub const MODULES: [(&str, &str); 11] = [
+pub const MODULES: [(&str, &str); 13] = [
     ("bevy_pbr::mesh_view_bindings", VIEW_BINDINGS),
     ("bevy_pbr::mesh_view_types", VIEW_TYPES),
     ("bevy_pbr::shadows", SHADOWS),
+    ("bevy_pbr::shadow_sampling", SHADOW_SAMPLING),
+    ("bevy_render::maths", MATHS),
     ("bevy_pbr::lighting", LIGHTING),
     ("bevy_pbr::atmosphere::functions", ATMOSPHERE),
     ("bevy_pbr::clustered_forward", CLUSTERS),
@@ -92,6 +94,22 @@ const SHADOWS: &str = "#define_import_path bevy_pbr::shadows
         id: u32, at: vec4<f32>, normal: vec3<f32>, view_z: f32, pixel: vec2<f32>,
     ) -> f32 {
         return clamp(dot(at, border), 0.0, 1.0);
+    }
+";
+
+/// Readings of shadow maps: functions that use them are not run.
+const SHADOW_SAMPLING: &str = "#define_import_path bevy_pbr::shadow_sampling
+    const POINT_SHADOW_SCALE: f32 = 0.003;
+    const D3D_SAMPLE_POINT_COEFFS: array<f32, 8> = array(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    const D3D_SAMPLE_POINT_POSITIONS: array<vec2<f32>, 8> = array(
+        vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0),
+    );
+    fn sample_shadow_cubemap_hardware(at: vec3<f32>, depth: f32, id: u32) -> f32 { return 1.0; }
+";
+
+const MATHS: &str = "#define_import_path bevy_render::maths
+    fn orthonormalize(z: vec3<f32>) -> mat3x3<f32> {
+        return mat3x3(vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), z);
     }
 ";
 

@@ -5,7 +5,8 @@ use std::time::Duration;
 use bevy::{asset::Assets, prelude::*, render::view::Msaa};
 use bevy_comics::{
     ComicStyle, ComicStyleHandle, ComicsDiagnostics, ComicsStage, Contours, Desaturation,
-    EffectRegistry, Sketch, StyleTransition, StyleTransitionFinished, TransitionEasing, presets,
+    EffectRegistry, Outlines, Sketch, StyleTransition, StyleTransitionFinished, TransitionEasing,
+    presets,
 };
 use image::RgbaImage;
 use proptest::{prelude::ProptestConfig, test_runner::TestRunner};
@@ -148,7 +149,7 @@ fn a_transition_takes_its_time_and_arrives() {
     let half = look(&small);
     assert!(fading(&small) && half != unnamed(&a) && half != unnamed(&b));
     let want = unnamed(&a).blend(&b, 0.5);
-    let width = |style: &ComicStyle| style.get::<Contours>().expect("contours").width;
+    let width = |style: &ComicStyle| style.get::<Outlines>().expect("outlines").width;
     assert!(
         (width(&half) - width(&want)).abs() < 0.05,
         "{} {}",
@@ -161,8 +162,8 @@ fn a_transition_takes_its_time_and_arrives() {
     small.insert(StyleTransition::to(c.clone(), 0.5));
     small.headless.step(1);
     assert_eq!(
-        look(&small).get::<Contours>(),
-        half.get::<Contours>(),
+        look(&small).get::<Outlines>(),
+        half.get::<Outlines>(),
         "it starts where the last one was"
     );
     small.headless.step(40);

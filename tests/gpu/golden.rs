@@ -152,7 +152,7 @@ fn check(scene: BuiltIn) {
 #[test]
 fn small_changes_are_seen() {
     let mut studio = Studio::new(BuiltIn::Teapot, UVec2::new(320, 180), Msaa::Off);
-    let name = "emerald-ink";
+    let name = "museum-print";
     let style = preset(name);
     let contours = *style.get::<Contours>().expect("it has contours");
     for changed in [
