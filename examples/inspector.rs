@@ -26,7 +26,7 @@ const HELP: &str = "\
 The inspector on a built-in scene. F10 opens and closes the panel.
 
     --scene NAME       mountains, teapot, theatre, village or figure (village)
-    --style NAME       the first style, a preset (graphic-novel)
+    --style NAME       the first style: a preset, a style file, or `none` (graphic-novel)
     --cartoon          the scene in cartoon materials, with its looks
     --cameras N        1, or 2 side by side (1)
     --size WxH         size of the window in physical pixels (1280x720)
@@ -45,7 +45,7 @@ The inspector on a built-in scene. F10 opens and closes the panel.
 #[derive(Resource, Clone)]
 struct Options {
     scene: BuiltIn,
-    style: String,
+    style: ComicStyle,
     cartoon: bool,
     cameras: u32,
     size: UVec2,
@@ -57,11 +57,24 @@ struct Options {
     bench: Option<u32>,
 }
 
+/// A preset, a style file, or no style.
+fn style(name: &str) -> Result<ComicStyle, String> {
+    if let Some(preset) = presets::find(name) {
+        return Ok(preset.style());
+    }
+    if name == "none" {
+        return Ok(ComicStyle::new());
+    }
+    let text = fs::read_to_string(name)
+        .map_err(|error| format!("--style {name}: no preset, and no file: {error}"))?;
+    ComicStyle::from_ron(&text).map_err(|error| format!("--style {name}: {error}"))
+}
+
 fn options() -> Result<Options, lexopt::Error> {
     use lexopt::prelude::*;
     let mut options = Options {
         scene: BuiltIn::Village,
-        style: "graphic-novel".into(),
+        style: presets::GRAPHIC_NOVEL.style(),
         cartoon: false,
         cameras: 1,
         size: UVec2::new(1280, 720),
@@ -79,7 +92,7 @@ fn options() -> Result<Options, lexopt::Error> {
                 let name = parser.value()?.string()?;
                 options.scene = BuiltIn::from_name(&name).ok_or("no scene of this name")?;
             }
-            Long("style") => options.style = parser.value()?.string()?,
+            Long("style") => options.style = style(&parser.value()?.string()?)?,
             Long("cameras") => options.cameras = parser.value()?.parse::<u32>()?.clamp(1, 2),
             Long("size") => {
                 let text = parser.value()?.string()?;
@@ -172,9 +185,7 @@ fn setup(mut stage: Stage, options: Res<Options>, inspector: Option<ResMut<Comic
             Msaa::Off,
             RenderLayers::default(),
         ));
-        if let Some(preset) = presets::find(&options.style) {
-            wear(&mut camera, &preset.style());
-        }
+        wear(&mut camera, &options.style);
     }
 }
 

@@ -54,6 +54,15 @@ fn tool(name: &str) -> Command {
     Command::new(name)
 }
 
+/// The style that windows start with.
+const START: &str = r##"(
+    version: 2,
+    name: "Contours",
+    depth_map: (mapping: MinMaxLogarithmic),
+    desaturation: (amount: 0.35, exponent: 0.5),
+    contours: (operator: Sobel, threshold: 0.035, width: 2.0, softness: 0.4, color: "#14141c"),
+)"##;
+
 impl Window {
     /// Starts the example in a window of a size in physical pixels, with `scale`
     /// physical pixels per logical pixel.
@@ -83,8 +92,11 @@ impl Window {
             assert!(started.elapsed() < PATIENCE, "the X server does not start");
             sleep(Duration::from_millis(20));
         }
+        let start = folder.join("start.comic.ron");
+        fs::write(&start, START).expect("written");
         let app = Command::new(program)
-            .args(["--scene", "teapot", "--style", "ligne-claire"])
+            .args(["--scene", "teapot", "--style"])
+            .arg(&start)
             .args(["--memory", "none"])
             .args(["--size", &format!("{}x{}", size[0], size[1])])
             .args(["--scale", &scale.to_string()])
