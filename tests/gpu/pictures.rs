@@ -9,9 +9,9 @@ use bevy::{
 use bevy_comics::{
     BlackFlats, ColorHarmony, Colorization, ColorizationMode, ComicStyle, ContourOperator,
     Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, Halftone, HarmonyCurve,
-    HarmonyMode, Hatching, KeyLight, LineColor, LineResponse, Outlines, Paint, Paper, PlaneBorders,
-    PlaneStyle, PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape, Silhouettes, Sketch,
-    ToneBands, VisibleDepthRange,
+    HarmonyMode, Hatching, IsoLines, KeyLight, LineColor, LineResponse, Outlines, Paint, Paper,
+    PlaneBorders, PlaneStyle, PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape,
+    Silhouettes, Sketch, ToneBands, VisibleDepthRange,
     presets::{self, Preset},
 };
 
@@ -231,8 +231,8 @@ pub fn assert_pass_is_its_twin(
 }
 
 /// A style without what the twin of the whole picture does not know, and what other tests compare
-/// with twins of their own: paint, which changes the picture before the fused pass, hatching, lines
-/// in the colours of surfaces, and of planes the borders that are found, whole objects and lines.
+/// with twins of their own: paint, which changes the picture before the fused pass, hatching,
+/// iso-lines, lines in the colours of surfaces, and of planes the borders that are found, whole objects and lines.
 fn known_to_twin(style: ComicStyle) -> ComicStyle {
     let outlines = style.get::<Outlines>().map(|outlines| Outlines {
         color: LineColor::Ink,
@@ -254,7 +254,10 @@ fn known_to_twin(style: ComicStyle) -> ComicStyle {
             ..*planes
         }
     });
-    let mut style = style.without::<Paint>().without::<Hatching>();
+    let mut style = style
+        .without::<Paint>()
+        .without::<Hatching>()
+        .without::<IsoLines>();
     if let Some(outlines) = outlines {
         style.insert(outlines);
     }
