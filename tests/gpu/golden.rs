@@ -49,12 +49,9 @@ const MOST_FAR_OFF: f64 = 0.001;
 
 /// Styles whose references are of one processor so far. Where another one rounds the scene
 /// differently, edges of dots, strokes and tone bands move by a pixel.
-const ONE_PROCESSOR: [&str; 36] = [
+const ONE_PROCESSOR: [&str; 29] = [
     "ballpoint",
-    "blueprint",
     "charcoal",
-    "clear-bands",
-    "cobalt-night",
     "copper-and-teal",
     "engraving",
     "field-guide",
@@ -63,14 +60,10 @@ const ONE_PROCESSOR: [&str; 36] = [
     "focus-lines",
     "focus-offset",
     "focus-paint",
-    "golden-hour",
     "gouache",
     "hard-boiled",
-    "ligne-claire",
     "manga-page",
-    "misty-morning",
     "neon-night",
-    "noir",
     "object-screens",
     "oil-sketch",
     "pencil-study",

@@ -232,7 +232,8 @@ pub fn assert_pass_is_its_twin(
 
 /// A style without what the twin of the whole picture does not know, and what other tests compare
 /// with twins of their own: paint, which changes the picture before the fused pass, hatching,
-/// iso-lines, lines in the colours of surfaces, and of planes the borders that are found, whole objects and lines.
+/// iso-lines, lines in the colours of surfaces, and of planes the borders that are found, whole
+/// objects and lines.
 fn known_to_twin(style: ComicStyle) -> ComicStyle {
     let outlines = style.get::<Outlines>().map(|outlines| Outlines {
         color: LineColor::Ink,
