@@ -206,3 +206,8 @@ fn the_hatched_theatre_looks_as_it_did() {
 fn the_figure_looks_as_it_did() {
     check(BuiltIn::Figure);
 }
+
+#[test]
+fn the_street_looks_as_it_did() {
+    check(BuiltIn::Street);
+}
