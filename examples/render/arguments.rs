@@ -106,11 +106,10 @@ struct Given {
 
 impl Given {
     /// `None` when help was asked for.
-    fn read() -> Result<Option<Self>, String> {
+    fn read(mut parser: lexopt::Parser) -> Result<Option<Self>, String> {
         use lexopt::prelude::*;
         let wrong = |error: lexopt::Error| format!("{error}; --help lists the options");
         let mut given = Self::default();
-        let mut parser = lexopt::Parser::from_env();
         while let Some(argument) = parser.next().map_err(wrong)? {
             match argument {
                 Short('h') | Long("help") => return Ok(None),
@@ -146,7 +145,11 @@ impl Given {
 impl Arguments {
     /// `None` when only help was asked for.
     pub fn parse() -> Result<Option<Self>, String> {
-        let Some(given) = Given::read()? else {
+        Self::read(lexopt::Parser::from_env())
+    }
+
+    fn read(parser: lexopt::Parser) -> Result<Option<Self>, String> {
+        let Some(given) = Given::read(parser)? else {
             println!("{USAGE}");
             return Ok(None);
         };
@@ -387,5 +390,53 @@ fn png(text: &str) -> Result<PathBuf, String> {
         Ok(PathBuf::from(text))
     } else {
         Err(format!("--out {text}: must end in .png"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_comics_testkit::fuzz::{Counting, Texts, cases, check};
+
+    use super::*;
+
+    #[global_allocator]
+    static ALLOCATOR: Counting = Counting;
+
+    /// Command lines that can be drawn, with an argument on each line.
+    const RIGHT: [&str; 7] = [
+        "teapot\n--style\nnoir\n--size\n320x180\n--out\na.png",
+        "village\n--camera\n1,2,3,0,0,0\n--near\n0.1\n--far\n100\n--msaa\n4\n--hdr",
+        "--ortho\n12.5\n--frames\n3\n--dump\nfolder",
+        "figure\n--ortho=fit\n--material=standard\n--sections=30\n--turntable=24\n--out=a%03d.png",
+        "--presets\n--size=480x270\n--out=sheet.png",
+        "street\n--style=none\n--turntable\n2\n--out\nfolder",
+        "theatre\n--style=missing.comic.ron\n--material\ncartoon",
+    ];
+
+    /// Every command line is read, or refused with a message.
+    #[test]
+    fn no_command_line_is_dangerous() {
+        let mut texts = Texts::new(3, RIGHT.map(str::to_owned));
+        let (mut read, mut refused) = (0, 0);
+        for _ in 0..cases() {
+            check(&texts.next_text(), |text| {
+                let parser = lexopt::Parser::from_args(text.split('\n'));
+                match Arguments::read(parser) {
+                    Ok(Some(arguments)) => {
+                        read += 1;
+                        assert!(arguments.size.min_element() > 0 && arguments.frames > 0);
+                    }
+                    Ok(None) => {}
+                    Err(message) => {
+                        refused += 1;
+                        assert!(!message.is_empty());
+                    }
+                }
+            });
+        }
+        assert!(
+            read * 20 > cases() && refused * 20 > cases(),
+            "{read}, {refused}"
+        );
     }
 }

@@ -26,6 +26,7 @@ mod plots;
 mod ranges;
 mod rig;
 mod scores;
+mod soak;
 mod stability;
 mod steps;
 mod straight;
@@ -91,12 +92,12 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure one section only: ranges, encodings, lines, models,
                    steps, dashes, dash-steps, memory, meadow, straight, page, stability, ladder,
-                   parts, scene-parts, toon, growth, peers or flicker
+                   parts, scene-parts, toon, growth, peers, flicker or soak
   --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
-const SECTIONS: [(&str, Section); 19] = [
+const SECTIONS: [(&str, Section); 20] = [
     ("ranges", ranges::measure),
     ("encodings", encodings::measure),
     ("lines", lines::measure),
@@ -116,6 +117,7 @@ const SECTIONS: [(&str, Section); 19] = [
     ("growth", growth::measure),
     ("peers", peers::measure),
     ("flicker", flicker::measure),
+    ("soak", soak::measure),
 ];
 
 fn run() -> Result<(), String> {

@@ -341,11 +341,12 @@ fn fragment(vertex_output: VertexOutput, more: MoreInput) -> FragmentOutput {
     apply_decals(&pbr);
 
     var out: FragmentOutput;
-    if (pbr.material.flags & STANDARD_MATERIAL_FLAGS_UNLIT_BIT) == 0u {
-        out.color = vec4(cartoon_light(pbr, foot, own), pbr.material.base_color.a);
-    } else {
-        out.color = pbr.material.base_color;
-    }
+    // Not in a branch: browsers cannot know that all pixels would take the same one, and shadows take
+    // derivatives.
+    let light = cartoon_light(pbr, foot, own);
+    let is_unlit = (pbr.material.flags & STANDARD_MATERIAL_FLAGS_UNLIT_BIT) != 0u;
+    let base = pbr.material.base_color;
+    out.color = vec4(select(light, base.rgb, is_unlit), base.a);
     out.color = main_pass_post_lighting_processing(pbr, out.color);
     return out;
 }

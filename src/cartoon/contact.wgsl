@@ -3,10 +3,11 @@
 // Contact shadows, marched through the depth prepass as the engine does, but without its
 // noise: each pixel steps at the same places, so that the shadow is flat and stands still.
 
-// The light that is left where a march found a surface, or none. `penetration`: how deep behind that
-// surface, in parts of its thickness.
+// The light that is left where a march found a surface, or none: 0 or 1. `penetration`: how deep behind
+// that surface, in parts of its thickness. The engine's shadow fades over the second half of the
+// thickness; this one ends in the middle of the fade.
 fn contact_left(found: bool, penetration: f32) -> f32 {
-    return select(1.0, clamp(2.0 * penetration - 1.0, 0.0, 1.0), found);
+    return select(1.0, step(0.75, penetration), found);
 }
 
 #ifdef CONTACT_SHADOWS
@@ -17,8 +18,8 @@ fn contact_left(found: bool, penetration: f32) -> f32 {
     view_transformations::position_world_to_ndc,
 }
 
-// 1 where no surface is close by in the direction of a light, else 0. What lies deeper behind
-// the surface of the prepass than half of `ContactShadows::thickness` counts less.
+// 1 where no surface is close by in the direction of a light, else 0. What lies deeper behind the surface
+// of the prepass than three quarters of `ContactShadows::thickness` does not count.
 fn contact_shadow(position: vec3<f32>, to_light: vec3<f32>) -> f32 {
     let settings = view_bindings::contact_shadows_settings;
     if settings.linear_steps == 0u {

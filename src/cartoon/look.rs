@@ -1,7 +1,9 @@
 //! Materials as files: the lighting of a cartoon material as an asset.
 
 use bevy::{
-    asset::{Asset, AssetEvent, AssetId, AssetLoader, Assets, Handle, LoadContext, io::Reader},
+    asset::{
+        Asset, AssetEvent, AssetId, AssetLoader, AssetPath, Assets, Handle, LoadContext, io::Reader,
+    },
     ecs::{
         change_detection::{DetectChanges, Ref},
         component::Component,
@@ -52,7 +54,7 @@ use crate::style::format;
 /// ```
 ///
 /// A [`ramp_map`](CartoonLight::ramp_map) is the path of its image among the assets, which is loaded
-/// with the look. Other images are not part of files: a material keeps its own.
+/// with the look. A look whose path leads out of their folder is not loaded. Other images are not part of files: a material keeps its own.
 ///
 /// [`ToonLookHandle`] gives one to a mesh, [`CartoonScene::look`](crate::CartoonScene::look) to a
 /// whole scene. Both follow changes of the file, if the app watches its files (Bevy's feature
@@ -106,6 +108,13 @@ pub enum ToonLookError {
     Version {
         /// The version that the file states.
         found: u32,
+    },
+    /// The path of an image leads out of the folder of assets, or to another computer.
+    #[error("the image {path} is outside the folder of assets")]
+    #[non_exhaustive]
+    Path {
+        /// The path in the file.
+        path: String,
     },
     /// The look could not be written as text.
     #[error("cannot write the look: {message}")]
@@ -242,6 +251,11 @@ impl AssetLoader for ToonLookLoader {
         let text = String::from_utf8(bytes)
             .map_err(|error| std::io::Error::new(std::io::ErrorKind::InvalidData, error))?;
         let mut look = ToonLook::from_ron(&text)?;
+        // Files of strangers, of a mod for example, read only what is among the assets.
+        if let Some(path) = look.light.ramp_map.path().filter(|path| !is_local(path)) {
+            let path = path.to_string();
+            return Err(ToonLookError::Path { path });
+        }
         look.light.ramp_map = look.light.ramp_map.loaded(|path| load_context.load(path));
         Ok(look)
     }
@@ -249,6 +263,12 @@ impl AssetLoader for ToonLookLoader {
     fn extensions(&self) -> &[&str] {
         &["toon.ron"]
     }
+}
+
+/// Whether a path stays in the folder of its assets, and is not an address of the web.
+fn is_local(path: &AssetPath) -> bool {
+    let is_web = |source: &str| matches!(source, "http" | "https");
+    !path.is_unapproved() && !path.source().as_str().is_some_and(is_web)
 }
 
 /// The look that an event says is new or changed.

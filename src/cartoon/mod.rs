@@ -41,7 +41,7 @@ pub use look::{ToonLook, ToonLookError, ToonLookHandle, ToonLookHandleTemplate};
 pub use material::{CartoonLight, CartoonMaterial};
 pub use name::MaterialName;
 #[cfg(feature = "inspector")]
-pub(crate) use place::LightPlace;
+pub(crate) use place::{LightPlace, original_of};
 pub use ramp::{Ramp, RampBlend, RampMode, RampStop};
 pub use ramp_map::RampMap;
 pub use rim::{Rim, RimWidth};

@@ -3,7 +3,7 @@
 use bevy::{
     asset::{Assets, Handle},
     ecs::{entity::Entity, query::With, world::World},
-    pbr::MeshMaterial3d,
+    pbr::{MeshMaterial3d, StandardMaterial},
 };
 
 use super::{
@@ -106,6 +106,11 @@ impl LightPlace {
         let has_this = |mesh: &&Entity| Self::of(world, **mesh).as_ref() == Some(self);
         all.iter().filter(has_this).count()
     }
+}
+
+/// The standard material that a scene has replaced on a mesh.
+pub(crate) fn original_of(world: &World, mesh: Entity) -> Option<&Handle<StandardMaterial>> {
+    Some(&world.get::<Original>(mesh)?.material)
 }
 
 fn is_loaded(world: &World, look: &Handle<ToonLook>) -> bool {

@@ -86,7 +86,7 @@ impl CartoonScene {
 /// chosen for it.
 #[derive(Component)]
 pub(super) struct Original {
-    material: Handle<StandardMaterial>,
+    pub(super) material: Handle<StandardMaterial>,
     pub(super) root: Entity,
     pub(super) look: Option<Handle<ToonLook>>,
 }

@@ -271,4 +271,23 @@ mod tests {
         let found = CartoonKey::from(&ramp).definitions(&[], true);
         assert_eq!(found, ["RAMP_SHARE".into(), stops]);
     }
+
+    /// Borders of shadows come from the texels of shadow maps where the engine's filter is the one that
+    /// the shader knows, and four texels can be read at once.
+    #[test]
+    fn shadows_have_slopes_where_their_filter_is_known() {
+        let plain = CartoonKey::from(&CartoonLight::default());
+        let is_sloped = |names: &[&str]| {
+            let others: Vec<ShaderDefVal> = names.iter().map(|name| (*name).into()).collect();
+            let found = plain.definitions(&others, false);
+            found.contains(&"SLOPED_SHADOWS".into())
+        };
+        let gaussian = "SHADOW_FILTER_METHOD_GAUSSIAN";
+        assert!(is_sloped(&[gaussian]));
+        assert!(!is_sloped(&[]));
+        assert!(!is_sloped(&["SHADOW_FILTER_METHOD_TEMPORAL"]));
+        assert!(!is_sloped(&["SHADOW_FILTER_METHOD_HARDWARE_2X2"]));
+        assert!(!is_sloped(&[gaussian, "PCSS_SAMPLERS_AVAILABLE"]));
+        assert!(!is_sloped(&[gaussian, "WEBGL2"]));
+    }
 }

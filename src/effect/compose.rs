@@ -174,14 +174,17 @@ pub(super) fn fused_pass(types: &[&EffectType]) -> String {
 /// The member of `Comics` that holds an effect's settings. Its type has the full
 /// module path, so that two effects may use the same struct name. The suffix
 /// `_settings` keeps the member's name different from every name that the template
-/// imports: the composer would replace equal names.
+/// imports: the composer would replace equal names. The vector before it puts it at a multiple of 16 bytes.
 fn members(effect: &EffectType) -> String {
     let Some(settings) = effect.shader.settings else {
         return String::new();
     };
     let (name, definition) = (effect.name, definition(effect.name));
     let path = effect.shader.path;
-    format!("#ifdef {definition}\n    @align(16) {name}_settings: {path}::{settings},\n#endif\n")
+    format!(
+        "#ifdef {definition}\n    {name}_before: vec4<u32>,\n    {name}_settings: {path}::{settings},\n\
+         #endif\n"
+    )
 }
 
 /// The shader definition that leaves out an effect, with the settings kept in the uniform.

@@ -29,15 +29,19 @@
 #import bevy_comics::objects::{load_object, unstyled_fraction}
 
 // Holds only the settings of the effects that are drawn, in the order of the
-// chain. Uniform structs inside a struct start at multiples of 16 bytes.
+// chain. Structs inside a uniform start at multiples of 16 bytes: the vector before each of them, which is
+// not read, puts them there. An attribute would be lost where the shader is written as WGSL again, as for
+// browsers.
 struct Comics {
     view: View,
     finish: Finish,
 #ifdef LINES
-    @align(16) lines: Lines,
+    lines_before: vec4<u32>,
+    lines: Lines,
 #endif
 #ifdef IN_PLANES
-    @align(16) planes_of_lines: LinePlanes,
+    planes_before: vec4<u32>,
+    planes_of_lines: LinePlanes,
 #endif
     //@members
 }

@@ -73,15 +73,22 @@ impl FusedRequest {
     }
 
     /// The bytes of `Comics` in `fused.wgsl`: only the parts that the key compiles
-    /// in, each at a multiple of 16 bytes.
+    /// in, each at a multiple of 16 bytes, with 16 bytes before all but the first two.
     fn uniform_bytes(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
-        let mut push = |part: Vec<u8>| {
+        let pad = |bytes: &mut Vec<u8>| bytes.resize(bytes.len().next_multiple_of(16), 0);
+        for part in [
+            encode(&self.view),
+            encode(&self.plan.finish.uniform(self.facts.viewport.z)),
+        ] {
             bytes.extend(part);
-            bytes.resize(bytes.len().next_multiple_of(16), 0);
+            pad(&mut bytes);
+        }
+        let mut push = |part: Vec<u8>| {
+            bytes.extend([0; 16]);
+            bytes.extend(part);
+            pad(&mut bytes);
         };
-        push(encode(&self.view));
-        push(encode(&self.plan.finish.uniform(self.facts.viewport.z)));
         if let Some(lines) = self.lines.filter(|_| self.key.lines) {
             push(encode(&lines));
         }

@@ -4,16 +4,21 @@
 use std::marker::PhantomData;
 
 use bevy::{
-    camera::Camera3d,
+    camera::{Camera, Camera3d, RenderTarget},
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     ecs::{
         component::{Component, ComponentId, Components},
+        entity::{Entity, EntityHashSet},
         lifecycle::Insert,
         observer::On,
         query::With,
         system::{Commands, EntityCommands, Query, Res},
         world::EntityRef,
     },
+    log::warn_once,
+    platform::collections::HashMap,
+    render::view::Msaa,
+    window::PrimaryWindow,
 };
 
 use super::CameraPlan;
@@ -42,12 +47,54 @@ pub(super) fn give_up_claims<P: Component>(
     }
 }
 
+/// Cameras that can have no prepass of this crate. The engine has one prepass for all cameras of a target,
+/// with the samples of one of them, and its renderer fails where another one has other samples.
+fn refused(
+    cameras: &Query<EntityRef, With<Camera3d>>,
+    primary_window: Option<Entity>,
+) -> EntityHashSet {
+    let mut sharing: Vec<_> = cameras
+        .iter()
+        .filter_map(|camera| {
+            let own = camera.contains::<OwnPrepass<DepthPrepass>>()
+                || camera.contains::<OwnPrepass<NormalPrepass>>();
+            let has = camera.contains::<DepthPrepass>() || camera.contains::<NormalPrepass>();
+            let wanted = camera.get::<CameraPlan>();
+            let is_wanted =
+                wanted.is_some_and(|own| own.plan.needs_depth() || own.plan.needs_normals());
+            let settings = camera.get::<Camera>()?;
+            let target = camera.get::<RenderTarget>()?.normalize(primary_window)?;
+            let msaa = camera.get::<Msaa>()?;
+            // Those that the game has given prepasses come first.
+            let key = (!has || own, settings.order, camera.id());
+            (settings.is_active && (has || is_wanted)).then_some((key, target, *msaa))
+        })
+        .collect();
+    sharing.sort_by_key(|(key, ..)| *key);
+    let mut samples = HashMap::<_, Msaa>::default();
+    let mut refused = EntityHashSet::default();
+    for ((.., camera), target, msaa) in sharing {
+        if *samples.entry(target).or_insert(msaa) != msaa {
+            refused.insert(camera);
+        }
+    }
+    refused
+}
+
 pub(super) fn request_prepasses(
     mut commands: Commands,
     cameras: Query<EntityRef, With<Camera3d>>,
+    primary_window: Query<Entity, With<PrimaryWindow>>,
     components: &Components,
     diagnostics: Res<ComicsDiagnostics>,
 ) {
+    let refused = refused(&cameras, primary_window.single().ok());
+    if !refused.is_empty() {
+        warn_once!(
+            "a camera shares its target with another one of other samples (`Msaa`): the engine cannot give \
+             both a prepass, so that one is drawn without lines and without effects by depth"
+        );
+    }
     for camera in &cameras {
         let drawn = diagnostics
             .cameras
@@ -58,6 +105,7 @@ pub(super) fn request_prepasses(
             camera,
             components,
             drawn,
+            is_refused: refused.contains(&camera.id()),
         };
         request.handle::<DepthPrepass>(Plan::needs_depth, &mut commands);
         request.handle::<NormalPrepass>(Plan::needs_normals, &mut commands);
@@ -69,6 +117,8 @@ struct Request<'a> {
     components: &'a Components,
     /// Number of the newest plan that the render world is known to draw.
     drawn: Option<u64>,
+    /// Whether it can have no prepass.
+    is_refused: bool,
 }
 
 impl Request<'_> {
@@ -83,8 +133,8 @@ impl Request<'_> {
             unread_since,
             prepass: PhantomData,
         };
-        let Some(plan) = plan else {
-            // The camera draws no effects, so nothing reads the prepass.
+        let Some(plan) = plan.filter(|_| !self.is_refused) else {
+            // The camera draws no effects, or none with a prepass.
             if own.is_some() && !self.is_required::<P>() {
                 commands.remove::<(P, OwnPrepass<P>)>();
             }

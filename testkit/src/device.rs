@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::{headless::INSTALL_ADAPTER, wgsl};
+use crate::{headless::INSTALL_ADAPTER, validation, wgsl};
 
 pub struct Gpu {
     pub device: wgpu::Device,
@@ -16,6 +16,7 @@ pub fn gpu() -> &'static Gpu {
     GPU.get_or_init(|| {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
             backends: wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY),
+            flags: validation::instance_flags(),
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
         let adapter = bevy::tasks::block_on(

@@ -22,7 +22,7 @@ use bevy::{
     winit::WinitPlugin,
 };
 
-use crate::{ROOT, read_back};
+use crate::{ROOT, read_back, validation};
 
 /// The command that installs an adapter that runs on the CPU, on Debian.
 pub const INSTALL_ADAPTER: &str = "apt-get install mesa-vulkan-drivers libvulkan1";
@@ -80,7 +80,7 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
             render_creation: WgpuSettings {
                 backends: Some(backends()),
                 constrained_limits: options.limits.clone(),
-                instance_flags: instance_flags(),
+                instance_flags: validation::instance_flags(),
                 ..default()
             }
             .into(),
@@ -103,12 +103,6 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
     } else {
         group.disable::<LogPlugin>()
     }
-}
-
-/// Names of resources stay in wgpu: the Vulkan loader (1.3.239) looks for the device of a named
-/// resource in a list that another test may be changing.
-fn instance_flags() -> wgpu::InstanceFlags {
-    WgpuSettings::default().instance_flags | wgpu::InstanceFlags::DISCARD_HAL_LABELS
 }
 
 /// The backends that `WGPU_BACKEND` names; by default all but OpenGL, which needs a
@@ -263,6 +257,9 @@ impl Headless {
             device
                 .poll(PollType::wait_indefinitely())
                 .expect("the device answers");
+        }
+        if validation::is_wanted() {
+            validation::check();
         }
     }
 

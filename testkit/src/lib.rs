@@ -8,6 +8,7 @@ pub mod demo;
 pub mod device;
 pub mod engine;
 pub mod forest;
+pub mod fuzz;
 pub mod headless;
 pub mod line_work;
 pub mod link_work;
@@ -18,6 +19,7 @@ pub mod read_back;
 pub mod reference;
 pub mod scenes;
 pub mod screens;
+pub mod soak;
 pub mod specimens;
 // The crate's own stopwatch, included because it is private there.
 #[path = "../../src/timing/stopwatch.rs"]
@@ -26,6 +28,7 @@ pub mod straight_edges;
 pub mod strokes;
 pub mod studio;
 pub mod truth;
+pub mod validation;
 // The order of the crate's grains, included because it is private there.
 #[path = "../../src/effect/blue_noise/void_and_cluster.rs"]
 mod void_and_cluster;

@@ -4,6 +4,7 @@ use std::{
     cell::RefCell,
     collections::HashMap,
     fs,
+    hash::{DefaultHasher, Hash, Hasher},
     path::{Path, PathBuf},
     sync::OnceLock,
 };
@@ -106,14 +107,60 @@ fn compose(
             ((*name).to_owned(), value)
         })
         .collect();
-    composer
+    let module = composer
         .make_naga_module(NagaModuleDescriptor {
             source,
             file_path: "entry.wgsl",
             shader_defs,
             ..Default::default()
         })
-        .map_err(|error| error.emit_to_string(composer))
+        .map_err(|error| error.emit_to_string(composer))?;
+    keep(&module, definitions);
+    Ok(module)
+}
+
+/// A composed shader as WGSL text, which is what browsers get.
+pub fn written(module: &wgpu::naga::Module) -> String {
+    use wgpu::naga::{
+        back::wgsl::{WriterFlags, write_string},
+        valid::{Capabilities, ValidationFlags, Validator},
+    };
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
+    let info = validator.validate(module).expect("composed as valid");
+    write_string(module, &info, WriterFlags::empty()).expect("valid")
+}
+
+/// Whether a text is a valid shader.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn check(text: &str) -> Result<(), String> {
+    use wgpu::naga::{
+        front::wgsl::parse_str,
+        valid::{Capabilities, ValidationFlags, Validator},
+    };
+    let module = parse_str(text).map_err(|error| error.emit_to_string(text))?;
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::all());
+    let valid = validator.validate(&module);
+    valid
+        .map(|_| ())
+        .map_err(|error| format!("{:?}", error.as_inner()))
+}
+
+/// Writes a composed shader into the folder that the variable `WGSL_OUT` names, if there is one, for
+/// `tools/translate`.
+fn keep(module: &wgpu::naga::Module, definitions: &[Definition]) {
+    let Some(folder) = std::env::var_os("WGSL_OUT") else {
+        return;
+    };
+    let text = written(module);
+    let mut hasher = DefaultHasher::new();
+    text.hash(&mut hasher);
+    let path = Path::new(&folder).join(format!("{:016x}.wgsl", hasher.finish()));
+    if !path.exists() {
+        fs::write(path, format!("// {definitions:?}\n{text}"))
+            .expect("a folder that can be written");
+    }
 }
 
 /// The crate's modules with the engine's own, for materials.

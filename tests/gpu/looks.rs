@@ -4,7 +4,7 @@
 use std::{fs, time::Duration};
 
 use bevy::{
-    asset::AssetLoadFailedEvent,
+    asset::{AssetLoadFailedEvent, AssetPath},
     ecs::message::{MessageCursor, Messages},
     gltf::GltfMaterialName,
     prelude::*,
@@ -89,9 +89,8 @@ fn everything(axis: DetailAxis, form: FormShape, width: RimWidth) -> CartoonLigh
     }
 }
 
-/// What is written reads back as it was, whatever variants its enums have.
-#[test]
-fn a_look_that_was_written_reads_back_the_same() {
+/// Looks that together have every variant of every enum.
+pub fn all_kinds() -> Vec<ToonLook> {
     let (center, half_size) = (Vec3::new(0.5, -1.0, 2.0), Vec3::new(1.0, 2.0, 3.0));
     let axes = [
         DetailAxis::Depth {
@@ -134,7 +133,13 @@ fn a_look_that_was_written_reads_back_the_same() {
             light,
         });
     }
-    for look in looks {
+    looks
+}
+
+/// What is written reads back as it was.
+#[test]
+fn a_look_that_was_written_reads_back_the_same() {
+    for look in all_kinds() {
         let text = look.to_ron().expect("written");
         let again = ToonLook::from_ron(&text).unwrap_or_else(|error| panic!("{error}: {text}"));
         assert_eq!(again, look, "{text}");
@@ -203,7 +208,7 @@ fn terminator(world: &World, mesh: Entity) -> Option<f32> {
     Some(materials.get(&handle.0)?.extension.terminator)
 }
 
-fn load(small: &mut Small, path: &'static str) -> Handle<ToonLook> {
+fn load(small: &mut Small, path: impl Into<AssetPath<'static>>) -> Handle<ToonLook> {
     small.world().resource::<AssetServer>().load(path)
 }
 
@@ -399,4 +404,37 @@ fn meshes_made_by_code_have_looks_by_name_too() {
     small.headless.step(2);
     assert_eq!(terminator(small.world(), named[0]), Some(default));
     assert_eq!(small.errors(), 0);
+}
+
+/// A look of a stranger reads nothing outside the folder of assets, whatever the app allows.
+#[test]
+fn a_look_loads_no_image_from_elsewhere() {
+    let folder = Folder::new("stranger");
+    let mut small = watching(&folder);
+    for (k, path) in [
+        "../secret.png",
+        "a/../../secret.png",
+        "/etc/secret.png",
+        "https://a/b.png",
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let name = format!("stranger{k}.toon.ron");
+        let text = format!("(version: 1, light: (ramp_map: \"{path}\"))");
+        assert!(ToonLook::from_ron(&text).is_ok(), "{path} is a path");
+        fs::write(folder.0.join(&name), text).expect("written");
+        let mut failures = MessageCursor::default();
+        failures.clear(messages(small.world()));
+        let look = load(&mut small, name);
+        let failed = |world: &mut World| {
+            let server = world.resource::<AssetServer>();
+            matches!(server.load_state(&look), bevy::asset::LoadState::Failed(_))
+        };
+        assert!(wait(&mut small, 400, failed), "{path} was read");
+        let read = failures.read(messages(small.world()));
+        let told: Vec<_> = read.map(|failure| failure.error.to_string()).collect();
+        let is_named = told.iter().all(|text| text.contains(path));
+        assert!(!told.is_empty() && is_named, "{told:?}");
+    }
 }

@@ -4,7 +4,7 @@ use std::{fs, ops::Range};
 
 use bevy_comics::{DebugView, EffectRegistry, Needs};
 
-use bevy_comics_testkit::wgsl::{Definition, files, module, module_with};
+use bevy_comics_testkit::wgsl::{Definition, check, files, module, module_with, written};
 
 fn shader(name: &str) -> String {
     let path = files()
@@ -421,6 +421,33 @@ fn every_combination_of_effects_composes_and_validates() {
                 parts.push(view);
                 compose(&source, &parts);
             }
+        }
+    }
+}
+
+/// Browsers get shaders as text again, without attributes of structs.
+#[test]
+fn shaders_that_are_written_as_text_are_valid() {
+    let source = EffectRegistry::built_in().shader();
+    let others = other_effects();
+    let [outlines, sketch] = line_effects();
+    let all = picture_effects().into_iter().chain(others);
+    let mut modes: Vec<Definitions> = all.flat_map(|(_, modes)| modes).collect();
+    modes.extend([outlines.1, sketch.1].concat());
+    // Each mode with the next: structs of all sizes follow one another.
+    let mut pairs: Vec<Definitions> = modes.windows(2).map(<[_]>::concat).collect();
+    pairs.extend(modes);
+    // A sketch replaces the outlines.
+    let has = |pair: &Definitions, name| pair.iter().any(|(own, _)| *own == name);
+    pairs.retain(|pair| !(has(pair, "SKETCH") && has(pair, "OUTLINES")));
+    for mut definitions in pairs {
+        definitions.sort_unstable();
+        definitions.dedup_by_key(|(name, _)| *name);
+        definitions.push(("MAP_FLAGS", Some(0)));
+        let module = module_with(&source, &definitions);
+        let module = module.unwrap_or_else(|error| panic!("{definitions:?}: {error}"));
+        if let Err(error) = check(&written(&module)) {
+            panic!("{definitions:?}: {error}");
         }
     }
 }

@@ -7,6 +7,7 @@ mod page;
 mod parts;
 mod precision;
 mod scenes;
+mod soak;
 mod steps;
 mod targets;
 mod toon;
@@ -49,5 +50,6 @@ pub fn render(folder: &Path) -> Result<String, String> {
     scenes::growth(&mut out, folder)?;
     others::peers(&mut out, folder)?;
     others::flicker(&mut out, folder)?;
+    soak::soak(&mut out, folder)?;
     Ok(out)
 }

@@ -1,5 +1,7 @@
-//! The page of a picked object: its light, its lines, its sections.
+//! The page of a picked object: its material, its light, its lines, its sections.
 
+#[cfg(feature = "cartoon")]
+mod base;
 mod highlight;
 #[cfg(feature = "cartoon")]
 mod light;
@@ -89,6 +91,8 @@ impl Objects {
         // The light has many settings, so it comes last.
         #[cfg(feature = "objects")]
         changes.extend(self.parts(ui, world, object, widgets));
+        #[cfg(feature = "cartoon")]
+        changes.extend(self.base(ui, world, object, widgets));
         #[cfg(feature = "cartoon")]
         changes.extend(self.light(ui, world, object, widgets));
         #[cfg(not(any(feature = "cartoon", feature = "objects")))]

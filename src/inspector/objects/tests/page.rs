@@ -151,3 +151,37 @@ fn the_style_of_a_figure_is_edited_on_its_root() {
     page.click("outline_style.reset");
     assert!(!page.has("outline_style.source"), "no longer inherited");
 }
+
+/// The material that an edit changes is the one that the mesh shows last: its own, or the standard
+/// material that a scene copies.
+#[test]
+fn the_material_of_an_object_is_edited_and_undone() {
+    let mut page = Page::new();
+    page.world.init_resource::<Assets<CartoonMaterial>>();
+    let red = standard(&mut page);
+    let mesh = page.world.spawn(MeshMaterial3d(red.clone())).id();
+    page.pick(mesh);
+    let rough = |page: &Page| {
+        let materials = page.world.resource::<Assets<StandardMaterial>>();
+        materials.get(&red).expect("red").perceptual_roughness
+    };
+    page.drag("material.perceptual_roughness", 0.1, 0.5);
+    assert!((rough(&page) - 0.5).abs() > 0.1, "{}", rough(&page));
+    assert!(page.take(Way::Undo));
+    assert_eq!(rough(&page), 0.5);
+    // As a cartoon material of its own.
+    page.click("light.convert");
+    page.drag("material.metallic", 0.1, 0.5);
+    let material = cartoon(&page, mesh).expect("a cartoon material");
+    assert!(material.base.metallic > 0.2, "{}", material.base.metallic);
+    assert_eq!(material.base.base_color, Color::srgb(0.9, 0.1, 0.2));
+    assert!(page.take(Way::Undo));
+    assert_eq!(cartoon(&page, mesh).expect("still").base.metallic, 0.0);
+    // A material that has not loaded has no section.
+    let none = page
+        .world
+        .spawn(MeshMaterial3d(Handle::<StandardMaterial>::default()))
+        .id();
+    page.pick(none);
+    assert!(!page.has("material.metallic"));
+}

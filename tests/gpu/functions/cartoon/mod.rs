@@ -6,6 +6,7 @@ mod lamps;
 mod modes;
 mod reflect;
 mod signs;
+mod strokes;
 
 use bevy::{color::Color, math::DVec3};
 use bevy_comics::{CartoonLight, DetailAxis, Ramp, RampBlend, RampDetail, RampStop};

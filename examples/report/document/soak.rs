@@ -1,0 +1,74 @@
+//! The report's text: the long run.
+
+use std::{fmt::Write, path::Path};
+
+use bevy_comics_testkit::soak::{CYCLE, WARM_UP};
+
+use crate::{load, table::Table};
+
+/// The part of the numbers after the warm-up that the mean of an end is taken of.
+const END: usize = 10;
+
+/// The mean of the first and of the last cycles after the warm-up.
+fn ends(numbers: &[f64]) -> Option<[f64; 2]> {
+    let count = END.min(numbers.len() / 2);
+    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+    (count > 0).then(|| {
+        [
+            mean(&numbers[..count]),
+            mean(&numbers[numbers.len() - count..]),
+        ]
+    })
+}
+
+/// How much of a column there was in the first four cycles after the warm-up, and in the last four: the
+/// four kinds of views.
+fn counts(table: &Table, name: &str) -> [f64; 2] {
+    let numbers: Vec<f64> = table
+        .rows
+        .iter()
+        .map(|row| table.number(row, name))
+        .collect();
+    let settled = &numbers[(WARM_UP as usize).min(numbers.len() - 1)..];
+    let most = |part: &[f64]| part.iter().copied().fold(0.0, f64::max);
+    let kinds = (WARM_UP as usize).min(settled.len());
+    [
+        most(&settled[..kinds]),
+        most(&settled[settled.len() - kinds..]),
+    ]
+}
+
+pub fn soak(out: &mut String, folder: &Path) -> Result<(), String> {
+    let table = load(folder, "soak")?;
+    let Some(last) = table.rows.last() else {
+        return Err("soak.csv is empty".into());
+    };
+    let _ = writeln!(
+        out,
+        "## 7. A long run\n\n{} frames of 1 to 128 pixels a side. In every {CYCLE} of them a camera changes its \
+         size 60 times and wears each of the looks; another one comes and goes, as do 20 objects; the scene \
+         gets the cartoon material and loses it; a style file breaks and is mended. From cycle to cycle \
+         the samples and the range of colours change. Nothing may be left of it. Errors of the renderer: {}.\n\n\
+         | | after {} frames | at the end |\n|---|---|---|",
+        table.cell(last, "frame"),
+        table.cell(last, "errors"),
+        WARM_UP * CYCLE,
+    );
+    let resident: Vec<f64> = (table.rows.iter().skip(WARM_UP as usize))
+        .filter(|row| !table.cell(row, "resident KiB").is_empty())
+        .map(|row| table.number(row, "resident KiB") / 1024.0)
+        .collect();
+    if let Some([first, last]) = ends(&resident) {
+        let _ = writeln!(
+            out,
+            "| memory of the process, MiB (means of {END} cycles) | {first:.1} | {last:.1} ({:+.2} %) |",
+            100.0 * (last / first - 1.0)
+        );
+    }
+    for name in table.header.iter().skip(3) {
+        let [first, last] = counts(&table, name);
+        let _ = writeln!(out, "| {name} | {first:.0} | {last:.0} |");
+    }
+    out.push('\n');
+    Ok(())
+}

@@ -1,0 +1,48 @@
+//! The long run: 100,000 frames in which everything changes.
+
+use bevy_comics_testkit::soak::{CYCLE, Sample, Soak, WARM_UP};
+
+use crate::{Run, table::Table};
+
+/// Frames of the whole run.
+const FRAMES: u64 = 100_000;
+
+pub fn measure(run: &Run) -> Result<(), String> {
+    let folder = std::env::temp_dir().join(format!("bevy_comics_soak_{}", std::process::id()));
+    let problem = |error| format!("{}: {error}", folder.display());
+    let mut soak = Soak::new(&folder).map_err(problem)?;
+    let cycles = if run.quick {
+        WARM_UP + 1
+    } else {
+        FRAMES.div_ceil(CYCLE)
+    };
+    let mut table: Option<Table> = None;
+    for cycle in 1..=cycles {
+        let sample = soak.cycle().map_err(problem)?;
+        if cycle.is_multiple_of(10) {
+            run.say(&format!("{} frames", sample.frame));
+        }
+        let table = table.get_or_insert_with(|| header(&sample));
+        let mut row = vec![
+            sample.frame.to_string(),
+            sample
+                .resident
+                .map_or_else(String::new, |kib| kib.to_string()),
+            sample.errors.to_string(),
+        ];
+        row.extend(sample.resources.iter().map(|(_, count)| count.to_string()));
+        let cells: Vec<&dyn std::fmt::Display> = row
+            .iter()
+            .map(|cell| cell as &dyn std::fmt::Display)
+            .collect();
+        table.push(&cells);
+    }
+    std::fs::remove_dir_all(&folder).map_err(problem)?;
+    run.save("soak", &table.expect("at least one cycle"))
+}
+
+fn header(sample: &Sample) -> Table {
+    let mut names = vec!["frame", "resident KiB", "errors"];
+    names.extend(sample.resources.iter().map(|(name, _)| *name));
+    Table::new(&names)
+}

@@ -1,0 +1,218 @@
+//! Texts of strangers: nearly right, and wrong somewhere. What reads them must neither panic, nor take
+//! long, nor ask for much memory.
+
+#![expect(unsafe_code, reason = "the trait of allocators is unsafe")]
+
+use std::{
+    alloc::{GlobalAlloc, Layout, System},
+    cell::Cell,
+    time::{Duration, Instant},
+};
+
+use crate::scenes::noise::Random;
+
+thread_local! {
+    /// Bytes that this thread has allocated and not freed, and the most of them.
+    static BYTES: Cell<(isize, isize)> = const { Cell::new((0, 0)) };
+}
+
+/// The system's allocator, which counts the bytes of every thread. A binary that calls [`check`] needs it
+/// as its `#[global_allocator]`.
+pub struct Counting;
+
+fn count(bytes: isize) {
+    // A thread that ends has no counter any more.
+    let _ = BYTES.try_with(|cell| {
+        let (live, most) = cell.get();
+        let live = live + bytes;
+        cell.set((live, most.max(live)));
+    });
+}
+
+// SAFETY: every call goes to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count(layout.size() as isize);
+        // SAFETY: as promised by the caller.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, at: *mut u8, layout: Layout) {
+        count(-(layout.size() as isize));
+        // SAFETY: as promised by the caller.
+        unsafe { System.dealloc(at, layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        count(layout.size() as isize);
+        // SAFETY: as promised by the caller.
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, at: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count(size as isize - layout.size() as isize);
+        // SAFETY: as promised by the caller.
+        unsafe { System.realloc(at, layout, size) }
+    }
+}
+
+/// How many texts are tried: the variable `FUZZ_CASES`, else 2000.
+pub fn cases() -> usize {
+    let given = std::env::var("FUZZ_CASES").ok();
+    given.and_then(|text| text.parse().ok()).unwrap_or(2000)
+}
+
+/// What reading a text may take at most: a second, and a mebibyte with 256 bytes for each of its own.
+fn most_bytes(text: &str) -> usize {
+    (1 << 20) + 256 * text.len()
+}
+
+/// Prints a text if reading it panics.
+struct Shown<'a>(&'a str);
+
+impl Drop for Shown<'_> {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            println!("the text was: {:?}", self.0);
+        }
+    }
+}
+
+/// Runs `read` on a text. Panics if it panics, takes longer than a second, or allocates more than stated.
+pub fn check(text: &str, read: impl FnOnce(&str)) {
+    let _shown = Shown(text);
+    let before = BYTES.get().0;
+    BYTES.set((before, before));
+    let start = Instant::now();
+    read(text);
+    let took = start.elapsed();
+    let bytes = BYTES.get().1 - before;
+    assert!(took < Duration::from_secs(1), "it took {took:?}");
+    let most = most_bytes(text);
+    assert!(bytes <= most as isize, "{bytes} bytes, {most} are allowed");
+}
+
+/// What text may contain that is wrong, or just right.
+const WORDS: [&str; 40] = [
+    "NaN",
+    "inf",
+    "-inf",
+    "1e999",
+    "-0.0",
+    "0",
+    "-1",
+    "4294967296",
+    "18446744073709551616",
+    "1e-45",
+    "3.4028236e38",
+    "true",
+    "None",
+    "Some(",
+    "()",
+    "(((((((((((((((((",
+    "))))",
+    "[[[[[[[[",
+    "]",
+    "{",
+    "}",
+    "\"",
+    "'",
+    "\\u{0}",
+    "\\",
+    "r#\"",
+    "\"#",
+    "/*",
+    "*/",
+    "//",
+    "\u{feff}",
+    "\u{1f600}",
+    "\u{202e}",
+    ":",
+    ",",
+    "#",
+    "#ffffffff",
+    "version: 1,",
+    "version: 2,",
+    "..",
+];
+
+/// Texts that are made of right ones.
+pub struct Texts {
+    random: Random,
+    right: Vec<String>,
+}
+
+impl Texts {
+    pub fn new(seed: u64, right: impl IntoIterator<Item = String>) -> Self {
+        let right: Vec<_> = right.into_iter().collect();
+        assert!(!right.is_empty(), "texts are made of others");
+        Self {
+            random: Random::new(seed),
+            right,
+        }
+    }
+
+    fn below(&mut self, end: usize) -> usize {
+        // The generator has 24 bits.
+        ((self.random.unit() * end as f32) as usize).min(end.saturating_sub(1))
+    }
+
+    /// A place between two characters.
+    fn place(&mut self, text: &str) -> usize {
+        let at = self.below(text.len() + 1);
+        (0..=at)
+            .rev()
+            .find(|at| text.is_char_boundary(*at))
+            .unwrap_or(0)
+    }
+
+    /// Two places in their order, not far apart.
+    fn span(&mut self, text: &str) -> std::ops::Range<usize> {
+        let start = self.place(text);
+        let end = (start + self.below(60)).min(text.len());
+        let end = (end..=text.len()).find(|at| text.is_char_boundary(*at));
+        start..end.unwrap_or(text.len())
+    }
+
+    fn change(&mut self, text: &mut String) {
+        let span = self.span(text);
+        match self.below(8) {
+            0 => text.replace_range(span, ""),
+            1 => {
+                let twice = text[span.clone()].to_owned();
+                text.insert_str(span.end, &twice);
+            }
+            2 => text.truncate(span.start),
+            3 => {
+                // A part of another text.
+                let other = self.below(self.right.len());
+                let other = self.right[other].clone();
+                let part = self.span(&other);
+                text.replace_range(span, &other[part]);
+            }
+            4 => {
+                let many = 1 << self.below(12);
+                let word = WORDS[self.below(WORDS.len())];
+                text.insert_str(span.start, &word.repeat(many));
+            }
+            5 => {
+                let code = self.below(0x11_0000) as u32;
+                text.insert(span.start, char::from_u32(code).unwrap_or('\u{fffd}'));
+            }
+            _ => {
+                let word = WORDS[self.below(WORDS.len())];
+                text.replace_range(span, word);
+            }
+        }
+    }
+
+    /// The next text: a right one with up to six changes.
+    pub fn next_text(&mut self) -> String {
+        let right = self.below(self.right.len());
+        let mut text = self.right[right].clone();
+        for _ in 0..self.below(7) {
+            self.change(&mut text);
+        }
+        text
+    }
+}

@@ -1,0 +1,62 @@
+//! Vulkan's validation layer: on where the variable `VULKAN_VALIDATION` is set, as `scripts/validate`
+//! does. On Debian it is in the package `vulkan-validationlayers`.
+
+use std::sync::{Mutex, Once};
+
+/// What the layer said and nobody has read.
+static MESSAGES: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// Keeps warnings and errors of the driver.
+struct Keeper;
+
+impl log::Log for Keeper {
+    fn enabled(&self, metadata: &log::Metadata) -> bool {
+        metadata.level() <= log::Level::Warn && metadata.target().starts_with("wgpu_hal::vulkan")
+    }
+
+    fn log(&self, record: &log::Record) {
+        if self.enabled(record.metadata()) {
+            let mut messages = MESSAGES.lock().expect("no panic while it is held");
+            messages.push(format!("{}: {}", record.level(), record.args()));
+        }
+    }
+
+    fn flush(&self) {}
+}
+
+pub fn is_wanted() -> bool {
+    std::env::var_os("VULKAN_VALIDATION").is_some()
+}
+
+/// The flags of an instance. Names of resources stay in wgpu: the Vulkan loader (1.3.239) looks for the
+/// device of a named resource in a list that another test may be changing.
+pub fn instance_flags() -> wgpu::InstanceFlags {
+    let flags =
+        wgpu::InstanceFlags::DISCARD_HAL_LABELS | wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL;
+    if !is_wanted() {
+        return flags;
+    }
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        log::set_logger(&Keeper).expect("tests have no other logger");
+        log::set_max_level(log::LevelFilter::Warn);
+    });
+    flags | wgpu::InstanceFlags::VALIDATION
+}
+
+/// Takes the messages so far.
+pub fn messages() -> Vec<String> {
+    std::mem::take(&mut MESSAGES.lock().expect("no panic while it is held"))
+}
+
+/// Whether the layer is loaded into this process; `None` where the system does not say.
+pub fn is_loaded() -> Option<bool> {
+    let maps = std::fs::read_to_string("/proc/self/maps").ok()?;
+    Some(maps.contains("VkLayer_khronos_validation"))
+}
+
+/// Panics if the layer has said anything.
+pub fn check() {
+    let messages = messages();
+    assert!(messages.is_empty(), "validation: {}", messages.join("\n"));
+}

@@ -1,0 +1,181 @@
+//! Devices that are lost, lack something, or allow little.
+
+use bevy::light::cluster::GlobalClusterSettings;
+use bevy::render::{
+    error_handler::{ErrorType, RenderErrorHandler, RenderErrorPolicy},
+    occlusion_culling::OcclusionCulling,
+    renderer::RenderDevice,
+    settings::WgpuSettings,
+};
+use bevy_comics::{Halftone, Hatching, Outlines, Paint, Paper};
+use bevy_comics_testkit::device::gpu;
+
+use super::*;
+
+/// A style that has passes of every kind: range, lines, screens, boxes, textures.
+fn many_passes() -> ComicStyle {
+    full_style()
+        .with(Outlines::default())
+        .with(Hatching::default())
+        .with(Halftone::default())
+        .with(Paint::default())
+        .with(Paper::default())
+}
+
+/// How often a device was lost.
+#[derive(Resource, Default)]
+struct Lost(usize);
+
+/// After the loss of the device, the picture is the same again, and no error follows.
+#[test]
+fn the_picture_comes_back_after_a_lost_device() {
+    for (msaa, style) in [
+        (Msaa::Off, None),
+        (Msaa::Off, Some(many_passes())),
+        (Msaa::Sample4, Some(many_passes())),
+    ] {
+        let mut small = Small::new(size(), msaa);
+        if let Some(style) = &style {
+            small.style(style);
+        }
+        small.settle();
+        let before = small.picture();
+        let app = &mut small.headless.app;
+        app.init_resource::<Lost>();
+        // The engine's clustering reads back a buffer of the device that is lost, and panics.
+        let mut clusters = app.world_mut().resource_mut::<GlobalClusterSettings>();
+        clusters.gpu_clustering = None;
+        app.update();
+        app.insert_resource(RenderErrorHandler(|error, main, _| {
+            assert!(matches!(error.ty, ErrorType::DeviceLost), "{error:?}");
+            main.resource_mut::<Lost>().0 += 1;
+            RenderErrorPolicy::Recover(WgpuSettings::default().into())
+        }));
+        let world = app.sub_app(RenderApp).world();
+        world.resource::<RenderDevice>().wgpu_device().destroy();
+        small.headless.step(12);
+        assert_eq!(small.world().resource::<Lost>().0, 1);
+        let after = small.picture();
+        let off = changed(&before, &after);
+        assert!(off == 0.0, "{msaa:?}, styled {}: {off}", style.is_some());
+    }
+}
+
+/// The engine cannot give cameras of one target prepasses with different samples: the first camera has
+/// them, and the other one is drawn without.
+#[test]
+fn cameras_with_different_samples_share_a_target() {
+    let mut small = Small::new(size(), Msaa::Off);
+    let target = small.headless.render_target();
+    let second = small.world().spawn(camera(target, Msaa::Sample4)).id();
+    let mut own = small.world().get_mut::<Camera>(second).expect("a camera");
+    own.order = 1;
+    own.clear_color = ClearColorConfig::None;
+    let style = many_passes();
+    small.style(&style);
+    let world = small.world();
+    style.apply(&mut world.commands().entity(second));
+    world.flush();
+    small.headless.step(8);
+    assert_eq!(small.errors(), 0);
+    let has = |small: &Small, camera| {
+        let world = small.headless.app.world();
+        world.get::<DepthPrepass>(camera).is_some()
+    };
+    let first = small.camera;
+    assert!(has(&small, first) && !has(&small, second));
+    assert_eq!(
+        outcome(&small, second, ComicsStage::Stylize),
+        Some(StageOutcome::Ran)
+    );
+    // With the same samples, both have one; and again not.
+    small.insert(Msaa::Sample4);
+    small.headless.step(8);
+    assert!(has(&small, first) && has(&small, second));
+    small.insert(Msaa::Off);
+    small.headless.step(8);
+    assert!(has(&small, first) && !has(&small, second));
+    // The prepass of a game stays, and the other camera goes without.
+    small.world().entity_mut(second).insert(DepthPrepass);
+    small.headless.step(8);
+    assert!(!has(&small, first) && has(&small, second));
+}
+
+/// Objects that the engine leaves out because others hide them are not missed.
+#[test]
+fn occlusion_culling_changes_nothing() {
+    let mut small = Small::new(size(), Msaa::Off);
+    small.style(&many_passes());
+    // A wall before half of the scene.
+    small.put(
+        Cuboid::new(1.2, 3.0, 0.2),
+        StandardMaterial::default(),
+        Transform::from_xyz(0.6, 0.5, 2.0),
+    );
+    small.settle();
+    let before = small.picture();
+    small.insert(OcclusionCulling);
+    small.headless.step(8);
+    assert!(changed(&before, &small.picture()) == 0.0);
+    assert_eq!(small.errors(), 0);
+}
+
+/// Nothing that is allocated is larger than the target, which may be as large as the device allows.
+#[test]
+fn the_largest_target_is_styled() {
+    let most = 1024;
+    for size in [UVec2::new(most, 16), UVec2::new(16, most)] {
+        let limits = wgpu::Limits {
+            max_texture_dimension_2d: most,
+            ..gpu().device.limits()
+        };
+        let options = HeadlessOptions {
+            limits: Some(limits),
+            ..options(size)
+        };
+        let mut small = Small::with(options, Msaa::Off);
+        let plain = small.settle().picture();
+        small.style(&many_passes());
+        small.settle();
+        assert_eq!(small.errors(), 0, "{size}");
+        assert!(
+            changed(&plain, &small.picture()) > 0.1,
+            "{size} is not styled"
+        );
+    }
+}
+
+/// Without compute shaders and storage, as in WebGL 2, a style is drawn without what needs them.
+#[test]
+fn a_device_without_compute_shaders_draws_a_style() {
+    let limits = wgpu::Limits {
+        max_compute_workgroup_size_x: 0,
+        max_compute_workgroup_size_y: 0,
+        max_compute_workgroup_size_z: 0,
+        max_compute_invocations_per_workgroup: 0,
+        max_compute_workgroups_per_dimension: 0,
+        max_compute_workgroup_storage_size: 0,
+        max_storage_textures_per_shader_stage: 0,
+        ..gpu().device.limits()
+    };
+    let options = HeadlessOptions {
+        limits: Some(limits),
+        ..options(size())
+    };
+    let mut small = Small::with(options, Msaa::Off);
+    // The engine decides by the adapter, not by its limits, whether it has compute shaders, and fails.
+    let mut clusters = small.world().resource_mut::<GlobalClusterSettings>();
+    clusters.gpu_clustering = None;
+    let plain = small.settle().picture();
+    let of_engine = small.errors();
+    small.settle();
+    let each = small.errors() - of_engine;
+    small.style(&many_passes());
+    small.settle();
+    assert_eq!(
+        small.errors(),
+        of_engine + 2 * each,
+        "{each} are the engine's"
+    );
+    assert!(changed(&plain, &small.picture()) > 0.1, "it is not styled");
+}

@@ -1,0 +1,195 @@
+//! Shadows of lamps: their borders against rays, and the engine's own shadows.
+
+use bevy::{prelude::*, render::view::Msaa};
+use bevy_comics::{CartoonLight, CartoonMaterial, object_id};
+
+use crate::{
+    cartoon::{HIGH, Kind, LOW, SIZE, Stage, blocked, ground_point_at, material, stage},
+    small::Object,
+};
+
+fn lamps() -> [(&'static str, Kind); 2] {
+    let to = Vec3::new(0.3, 0.0, -0.2);
+    [
+        ("lamp", Kind::Lamp(Vec3::new(-1.8, 3.0, 1.2))),
+        ("spot", Kind::Spot(Vec3::new(-2.0, 3.4, 1.0), to)),
+    ]
+}
+
+/// How much of a pixel of the ground the lamp reaches, from 64 rays; `None` beside the ground and where
+/// `cone` says so.
+fn true_cover(stage: &Stage, light: &Kind, x: u32, y: u32) -> Option<f64> {
+    let mut lit = 0;
+    for k in 0..64u32 {
+        let sub = (Vec2::new((k % 8) as f32, (k / 8) as f32) + 0.5) / 8.0 - 0.5;
+        let point = ground_point_at(stage, Vec2::new(x as f32, y as f32) + 0.5 + sub)?;
+        let at = match *light {
+            Kind::Sun(to) => point + to.normalize() * 50.0,
+            Kind::Lamp(at) => at,
+            Kind::Spot(at, to) if (to - at).angle_between(point - at) > 0.9 => return None,
+            Kind::Spot(at, _) => at,
+        };
+        lit += u32::from(!blocked(point, at, LOW, HIGH));
+    }
+    Some(f64::from(lit) / 64.0)
+}
+
+/// Truth: what pixels on the border of a shadow show is how much of them the light reaches. The border
+/// in the shadow map has steps of a texel, so single pixels are off; their mean is not.
+#[test]
+fn borders_of_shadows_cover_what_the_light_reaches() {
+    for (name, light) in lamps() {
+        let stage = stage(&light, Msaa::Off);
+        let ids = stage.small.object_ids().expect("ids are drawn");
+        let (_, picture) = stage.small.pass();
+        let id = u32::from(object_id(stage.ground));
+        // Ambient light alone.
+        let ground = (picture.pixels.iter().zip(&ids.pixels)).filter(|(_, ids)| ids[0] == id);
+        let dark = ground.map(|(pixel, _)| pixel[1]).fold(1.0, f32::min);
+        let (mut count, mut off, mut sum, mut between) = (0, 0.0, 0.0, 0);
+        for (x, y) in (2..SIZE.y - 2).flat_map(|y| (2..SIZE.x - 2).map(move |x| (x, y))) {
+            let i = (y * SIZE.x + x) as usize;
+            if ids.pixels[i][0] != id {
+                continue;
+            }
+            let Some(cover) = true_cover(&stage, &light, x, y) else {
+                continue;
+            };
+            // The light without shadows: that of the pixels around, which changes slowly.
+            let nearby = (-8..=8i32).flat_map(|dy| (-8..=8i32).map(move |dx| (dx, dy)));
+            let lit = nearby
+                .filter_map(|(dx, dy)| {
+                    let (x, y) = (x.checked_add_signed(dx)?, y.checked_add_signed(dy)?);
+                    let i = (y * SIZE.x + x) as usize;
+                    let is_ground = x < SIZE.x && ids.pixels.get(i)?[0] == id;
+                    is_ground.then(|| picture.pixels[i][1])
+                })
+                .fold(0f32, f32::max);
+            if cover <= 0.0 || cover >= 1.0 {
+                continue;
+            }
+            let found = f64::from((picture.pixels[i][1] - dark) / (lit - dark));
+            count += 1;
+            between += usize::from((0.05..0.95).contains(&found));
+            off += (found - cover).abs();
+            sum += found - cover;
+        }
+        let [off, mean] = [off, sum].map(|x| x / count as f64);
+        println!(
+            "{name}: {count} border pixels, {between} between, off by {off:.4}, mean {mean:.4}"
+        );
+        assert!(count > 150, "{count}");
+        // Shadow maps are moved by their biases, towards the shadow.
+        let [most, moved] = if name == "lamp" {
+            [0.16, 0.1]
+        } else {
+            [0.22, 0.18]
+        };
+        assert!(off < most && mean.abs() < moved, "{name}: {off}, {mean}");
+        assert!(2 * between > count, "{name}: {between} of {count}");
+    }
+}
+
+/// A wall in the plane of a spot light, before it and behind it: every pixel is finite.
+#[test]
+fn walls_beside_a_spot_light_are_finite() {
+    for at in [0.0f32, 0.5, -0.5] {
+        let (from, to) = (Vec3::new(0.0, 0.7, 3.0), Vec3::new(0.0, 0.7, -5.0));
+        let mut stage = stage(&Kind::Spot(from, to), Msaa::Off);
+        let wall = Plane3d::new(Vec3::Z, Vec2::splat(3.0)).mesh();
+        let white = material(&mut stage.small, CartoonLight::default());
+        let place = Transform::from_xyz(0.0, 0.7, 3.0 + at);
+        stage.small.put_shared(wall, white, place);
+        stage.small.headless.step(4);
+        let (_, picture) = stage.small.pass();
+        assert!(
+            picture.pixels.iter().flatten().all(|x| x.is_finite()),
+            "{at}"
+        );
+        assert_eq!(stage.small.errors(), 0);
+    }
+}
+
+/// Draws the stage with the engine's material.
+fn be_standard(stage: &mut Stage) {
+    let world = stage.small.world();
+    let white = StandardMaterial {
+        base_color: Color::WHITE,
+        perceptual_roughness: 1.0,
+        reflectance: 0.0,
+        ..default()
+    };
+    let white = world.resource_mut::<Assets<StandardMaterial>>().add(white);
+    let mut objects = world.query_filtered::<Entity, With<Object>>();
+    let objects: Vec<Entity> = objects.iter(world).collect();
+    for object in objects {
+        (world.entity_mut(object))
+            .remove::<MeshMaterial3d<CartoonMaterial>>()
+            .insert(MeshMaterial3d(white.clone()));
+    }
+}
+
+/// What is left of the light of each pixel because of shadow maps: 0 to 1. `None`: the lamp does not
+/// reach it, shadows or not.
+fn left_of_light(stage: &mut Stage) -> Vec<Option<f32>> {
+    let mut light = |intensity: f32, has_shadows: bool| {
+        let world = stage.small.world();
+        for mut lamp in world.query::<&mut PointLight>().iter_mut(world) {
+            lamp.shadow_maps_enabled = has_shadows;
+            lamp.intensity *= intensity;
+        }
+        for mut lamp in world.query::<&mut SpotLight>().iter_mut(world) {
+            lamp.shadow_maps_enabled = has_shadows;
+            lamp.intensity *= intensity;
+        }
+        stage.small.headless.step(6);
+        let (_, picture) = stage.small.pass();
+        let green = picture.pixels.iter().map(|pixel| pixel[1]);
+        green.collect::<Vec<f32>>()
+    };
+    let with = light(1.0, true);
+    let without = light(1.0, false);
+    let none = light(0.0, false);
+    let pixels = with.iter().zip(&without).zip(&none);
+    let left = pixels.map(|((with, without), none)| {
+        let all = without - none;
+        (all > 0.02).then(|| (with - none) / all)
+    });
+    left.collect()
+}
+
+/// The shadow of a lamp is the engine's with a hard border: the same pixels are fully lit and fully
+/// dark, and those between lie on the same side of one half.
+#[test]
+fn shadows_of_lamps_are_those_of_the_engine() {
+    for (name, light) in lamps() {
+        let mut own = stage(&light, Msaa::Off);
+        let ours = left_of_light(&mut own);
+        let mut other = stage(&light, Msaa::Off);
+        be_standard(&mut other);
+        let theirs = left_of_light(&mut other);
+        let (mut lit, mut dark, mut between) = (0, 0, 0);
+        // Pictures are of half precision.
+        let near = 0.01;
+        for (i, (ours, theirs)) in ours.iter().zip(&theirs).enumerate() {
+            let (Some(ours), Some(theirs)) = (*ours, *theirs) else {
+                continue;
+            };
+            let at = (i as u32 % SIZE.x, i as u32 / SIZE.x);
+            if theirs > 1.0 - near / 10.0 {
+                lit += 1;
+                assert!(ours > 1.0 - near, "{name} {at:?}: {ours}, not lit");
+            } else if theirs < near / 10.0 {
+                dark += 1;
+                assert!(ours < near, "{name} {at:?}: {ours}, not dark");
+            } else {
+                between += 1;
+                let same_side = (ours - 0.5) * (theirs - 0.5) > -near;
+                assert!(same_side, "{name} {at:?}: {ours}, the engine {theirs}");
+            }
+        }
+        println!("{name}: {lit} lit, {dark} dark, {between} between");
+        assert!(lit > 5000 && dark > 500 && between > 100, "{name}");
+        assert_eq!(own.small.errors() + other.small.errors(), 0);
+    }
+}

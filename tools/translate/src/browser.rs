@@ -1,0 +1,190 @@
+//! Compiles shaders in a browser: serves them on localhost, and starts Chromium without a window.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    io::{BufRead, BufReader, Read, Write},
+    net::{TcpListener, TcpStream},
+    path::PathBuf,
+    process::{Child, Command, Stdio},
+    time::{Duration, Instant},
+};
+
+const PAGE: &str = include_str!("page.html");
+
+/// The names under which systems have the browser.
+const BROWSERS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
+
+/// How long the browser may be silent.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A request: method, path, body.
+struct Request {
+    method: String,
+    path: String,
+    body: String,
+}
+
+fn read(stream: &TcpStream) -> std::io::Result<Request> {
+    let mut reader = BufReader::new(stream);
+    let mut first = String::new();
+    reader.read_line(&mut first)?;
+    let mut words = first.split_whitespace().map(str::to_owned);
+    let (method, path) = (
+        words.next().unwrap_or_default(),
+        words.next().unwrap_or_default(),
+    );
+    let mut length = 0;
+    loop {
+        let mut line = String::new();
+        reader.read_line(&mut line)?;
+        let line = line.trim().to_ascii_lowercase();
+        if line.is_empty() {
+            break;
+        }
+        if let Some(text) = line.strip_prefix("content-length:") {
+            length = text.trim().parse().unwrap_or(0);
+        }
+    }
+    let mut body = vec![0; length];
+    reader.read_exact(&mut body)?;
+    Ok(Request {
+        method,
+        path,
+        body: String::from_utf8_lossy(&body).into_owned(),
+    })
+}
+
+fn answer(mut stream: &TcpStream, kind: &str, text: &str) -> std::io::Result<()> {
+    write!(
+        stream,
+        "HTTP/1.1 200 OK\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nConnection: close\r\n\r\n{text}",
+        text.len()
+    )
+}
+
+/// Starts the browser with a software adapter, which every machine has.
+fn start(address: &str) -> Result<Child, String> {
+    let arguments = [
+        "--headless=new",
+        "--no-sandbox",
+        "--enable-unsafe-webgpu",
+        "--use-webgpu-adapter=swiftshader",
+        address,
+    ];
+    for browser in BROWSERS {
+        let child = Command::new(browser)
+            .args(arguments)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn();
+        if let Ok(child) = child {
+            return Ok(child);
+        }
+    }
+    Err(format!(
+        "no browser: none of {} is installed",
+        BROWSERS.join(", ")
+    ))
+}
+
+/// What a browser said.
+#[derive(Default)]
+struct Said {
+    adapter: String,
+    compiled: usize,
+    /// Errors: the first file of each.
+    errors: BTreeMap<String, String>,
+    done: bool,
+}
+
+impl Said {
+    fn hear(&mut self, request: &Request, files: &[PathBuf]) {
+        let file = |path: &str| {
+            let index = path
+                .rsplit('/')
+                .next()
+                .and_then(|text| text.parse::<usize>().ok());
+            index.and_then(|index| files.get(index))
+        };
+        match request.path.as_str() {
+            "/adapter" => self.adapter = request.body.clone(),
+            "/done" => self.done = true,
+            "/failed" => {
+                self.errors.insert(request.body.clone(), "the page".into());
+                self.done = true;
+            }
+            path if path.starts_with("/good/") => self.compiled += 1,
+            path => {
+                if let Some(file) = file(path) {
+                    // The same error is on other lines of other files.
+                    let end = request.body.find(" (line").unwrap_or(request.body.len());
+                    let kind = request.body[..end].to_owned();
+                    let example = || format!("{}:\n{}", file.display(), request.body);
+                    self.errors.entry(kind).or_insert_with(example);
+                }
+            }
+        }
+    }
+}
+
+/// Compiles every file. Whether all are valid in the browser.
+pub fn compile(files: &[PathBuf]) -> Result<bool, String> {
+    let listener = TcpListener::bind("127.0.0.1:0").map_err(|error| error.to_string())?;
+    let address = listener.local_addr().map_err(|error| error.to_string())?;
+    listener
+        .set_nonblocking(true)
+        .map_err(|error| error.to_string())?;
+    let mut browser = start(&format!("http://{address}/"))?;
+    let page = PAGE.replace("COUNT", &files.len().to_string());
+    let mut said = Said::default();
+    let mut heard = Instant::now();
+    while !said.done && heard.elapsed() < PATIENCE {
+        let Ok((stream, _)) = listener.accept() else {
+            std::thread::sleep(Duration::from_millis(1));
+            continue;
+        };
+        heard = Instant::now();
+        let _ = stream.set_nonblocking(false);
+        let Ok(request) = read(&stream) else {
+            continue;
+        };
+        let text = match (request.method.as_str(), request.path.as_str()) {
+            ("GET", "/") => page.clone(),
+            ("GET", path) => {
+                let file = path[1..]
+                    .parse()
+                    .ok()
+                    .and_then(|index: usize| files.get(index));
+                file.map_or_else(String::new, |file| {
+                    fs::read_to_string(file).unwrap_or_default()
+                })
+            }
+            _ => {
+                said.hear(&request, files);
+                String::new()
+            }
+        };
+        let kind = if request.path == "/" {
+            "text/html"
+        } else {
+            "text/plain"
+        };
+        let _ = answer(&stream, kind, &text);
+    }
+    let _ = browser.kill();
+    let _ = browser.wait();
+    println!("browser: {}", said.adapter);
+    println!(
+        "{} of {} files compile in the browser",
+        said.compiled,
+        files.len()
+    );
+    for (error, file) in &said.errors {
+        println!("\n## {error}\n{file}");
+    }
+    if !said.done {
+        return Err("the browser did not answer".into());
+    }
+    Ok(said.compiled == files.len())
+}
