@@ -49,6 +49,7 @@ use super::{
         ObjectTable, init_object_id_pipeline,
     },
     layer::{LayerRequest, MarkSpecializer, prepare_layers},
+    lightmaps::{Lightmapped, extract_lightmapped},
     line_widths::{WideMeshes, WidthViews, extract_wide_meshes, prepare_line_widths},
     marks::{Marks, extract_marks},
     phase::{Layer, ObjectIdItem},
@@ -316,6 +317,7 @@ pub(crate) fn build(app: &mut App) {
         .init_gpu_resource::<ObjectTable>()
         .init_resource::<ObjectGroups>()
         .init_resource::<WideMeshes>()
+        .init_resource::<Lightmapped>()
         .init_resource::<WidthViews>()
         .init_resource::<DrawFunctions<ObjectIdItem>>()
         .add_render_command::<ObjectIdItem, DrawId>()
@@ -338,6 +340,7 @@ fn add_systems(render_app: &mut SubApp) {
                 extract_sections,
                 extract_marks,
                 extract_wide_meshes,
+                extract_lightmapped,
             ),
         )
         .add_systems(

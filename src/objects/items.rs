@@ -47,6 +47,7 @@ use bevy::{
 use super::{
     ID_FORMAT, Pressure, WIDTH_FORMAT,
     layer::MarkSpecializer,
+    lightmaps::MeshLightmaps,
     line_widths::{WideMeshes, WidthBindings},
     phase::{Layer, ObjectIdItem},
     sections::{SectionBuffer, SectionTables},
@@ -295,6 +296,7 @@ pub(super) struct IdItems<'w> {
     cache: Res<'w, PipelineCache>,
     meshes: Res<'w, RenderAssets<RenderMesh>>,
     instances: Res<'w, RenderMeshInstances>,
+    lightmaps: MeshLightmaps<'w>,
     materials: Res<'w, ErasedRenderAssets<PreparedMaterial>>,
     material_instances: Res<'w, RenderMaterialInstances>,
 }
@@ -329,8 +331,7 @@ impl IdItems<'_> {
             return None;
         }
         let mut mesh_key = view_key | MeshPipelineKey::from_bits_retain(mesh.key_bits.bits());
-        let lightmapped = instance.lightmap_slab_index().is_some();
-        mesh_key.set(MeshPipelineKey::LIGHTMAPPED, lightmapped);
+        mesh_key.set(MeshPipelineKey::LIGHTMAPPED, self.lightmaps.has(object.1));
         let uses_material = reads_material(&material.properties);
         mesh_key.set(MeshPipelineKey::PREPASS_READS_MATERIAL, uses_material);
         let key = ErasedMaterialPipelineKey {

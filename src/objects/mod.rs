@@ -19,6 +19,8 @@ mod items;
 #[cfg(feature = "objects")]
 mod layer;
 #[cfg(feature = "objects")]
+mod lightmaps;
+#[cfg(feature = "objects")]
 mod line_widths;
 #[cfg(feature = "objects")]
 mod marks;

@@ -469,7 +469,7 @@ fn a_scene_is_converted_with_one_component_and_back() {
     assert_eq!(small.errors(), 0);
 }
 
-/// Cartoon meshes are drawn forward on a deferred camera: the same picture.
+/// Cartoon meshes are drawn forward on a deferred camera, beside meshes that are not: the same picture.
 #[test]
 fn a_deferred_camera_draws_the_same_cartoon() {
     let sun = Kind::Sun(Vec3::new(-0.6, 1.0, 0.35));
@@ -496,6 +496,16 @@ fn a_deferred_camera_draws_the_same_cartoon() {
             .expect("listed")
             .base
             .opaque_render_method = bevy::material::OpaqueRendererMethod::Deferred;
+    }
+    for stage in [&mut forward, &mut deferred] {
+        let matte = StandardMaterial {
+            base_color: Color::srgb(0.8, 0.4, 0.2),
+            perceptual_roughness: 1.0,
+            reflectance: 0.0,
+            ..default()
+        };
+        let at = Transform::from_xyz(1.4, 0.5, 1.6);
+        stage.small.put(Cuboid::from_length(1.0), matte, at);
     }
     let (a, b) = (
         picture_of(&mut forward.small),

@@ -20,7 +20,7 @@ use bevy_comics_testkit::{
 use bevy_shader_mtoon::{MtoonMaterial, MtoonPlugin, MtoonSun, VrmOutlineMode};
 use image::{RgbaImage, imageops};
 
-const SIZE: UVec2 = UVec2::new(480, 480);
+const SIZE: UVec2 = UVec2::new(320, 320);
 /// Pixels between pictures.
 const GAP: u32 = 6;
 
@@ -84,7 +84,7 @@ fn wear_mtoon(world: &mut World) {
         let color = color.unwrap_or(Color::WHITE);
         let toon = MtoonMaterial {
             base_color: color,
-            shade_factor: color.darker(0.2),
+            shade_factor: shade(color),
             shading_toony_factor: 0.95,
             outline_mode: VrmOutlineMode::Screen,
             outline_width: 0.004,
@@ -96,6 +96,12 @@ fn wear_mtoon(world: &mut World) {
             .remove::<MeshMaterial3d<StandardMaterial>>()
             .insert(MeshMaterial3d(toon));
     }
+}
+
+/// The colour of shade: three fifths of the light.
+fn shade(color: Color) -> Color {
+    let light = color.to_linear();
+    Color::linear_rgb(0.6 * light.red, 0.6 * light.green, 0.6 * light.blue)
 }
 
 /// Draws the sheet: a row for each material, a column for each kind of light.

@@ -37,6 +37,7 @@ use bevy::{
 use crate::objects::{
     ID_FORMAT, QueuedDepth,
     items::{ObjectIdPipeline, draw_function, in_prepass, reads_material},
+    lightmaps::MeshLightmaps,
     phase::{Layer, ObjectIdItem},
     table::DepthWrites,
 };
@@ -134,6 +135,7 @@ pub(in crate::objects) struct TransparentItems<'w> {
     cache: Res<'w, PipelineCache>,
     meshes: Res<'w, RenderAssets<RenderMesh>>,
     instances: Res<'w, RenderMeshInstances>,
+    lightmaps: MeshLightmaps<'w>,
     materials: Res<'w, ErasedRenderAssets<PreparedMaterial>>,
     material_instances: Res<'w, RenderMaterialInstances>,
 }
@@ -160,6 +162,7 @@ impl TransparentItems<'_> {
         let cutoff = self.own.has_cutoff(object.1, properties)?;
         let mut mesh_key = view_key | MeshPipelineKey::from_bits_retain(mesh.key_bits.bits());
         mesh_key.set(MeshPipelineKey::NORMAL_PREPASS, targets.normals);
+        mesh_key.set(MeshPipelineKey::LIGHTMAPPED, self.lightmaps.has(object.1));
         let uses_material = cutoff || reads_material(properties);
         mesh_key.set(MeshPipelineKey::PREPASS_READS_MATERIAL, uses_material);
         mesh_key.set(MeshPipelineKey::MAY_DISCARD, cutoff);

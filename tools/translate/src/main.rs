@@ -31,7 +31,7 @@ pub struct Shader {
     pub name: String,
     pub module: naga::Module,
     pub info: ModuleInfo,
-    /// Capabilities that WebGPU does not have in every browser.
+    /// Capabilities that WebGPU has not by itself.
     pub needs: Capabilities,
 }
 
@@ -41,7 +41,8 @@ impl Shader {
             naga::front::wgsl::parse_str(text).map_err(|error| error.emit_to_string(text))?;
         let valid =
             |capabilities| Validator::new(ValidationFlags::all(), capabilities).validate(&module);
-        let web = Capabilities::default();
+        // WebGPU converts packed halves everywhere.
+        let web = Capabilities::default() | Capabilities::SHADER_FLOAT16_IN_FLOAT32;
         let mut needs = Capabilities::empty();
         let info = match valid(web) {
             Ok(info) => info,
@@ -110,7 +111,14 @@ fn check(file: &Path, results: &Mutex<Results>) {
     let outcomes =
         Language::ALL.map(|language| (language, writers::write(language, &shader, &scratch)));
     let mut results = lock();
-    let row = results.rows.entry(shader.name.clone()).or_default();
+    let empty = || Row {
+        needs: Capabilities::empty(),
+        ..Row::default()
+    };
+    let row = results
+        .rows
+        .entry(shader.name.clone())
+        .or_insert_with(empty);
     row.variants += 1;
     row.needs |= shader.needs;
     for (language, outcome) in &outcomes {
