@@ -79,21 +79,43 @@ fn style(look: Preset) -> Result<ComicStyle, String> {
     ComicStyle::from_ron(&text).map_err(|error| format!("{}: {error}", path.display()))
 }
 
+/// The scene without a style, and its picture in every style.
+fn measure_in(
+    scene: BuiltIn,
+    looks: &[Preset],
+    styles: &[ComicStyle],
+) -> (Measures, Vec<(RgbaImage, Measures)>) {
+    let mut bench = LookBench::new(scene, UVec2::new(240, 135), FRAMES);
+    let unstyled = bench.measure(None).1;
+    let of = |(look, style): (&Preset, &ComicStyle)| {
+        let (shot, measures) = bench.measure(Some(style));
+        println!("{}: {look}: {measures:.3?}", scene.name());
+        (shot, measures)
+    };
+    (unstyled, looks.iter().zip(styles).map(of).collect())
+}
+
 /// Looks, and the scenes without a style.
 fn measure(looks: &[Preset]) -> Result<(Vec<Measured>, Measures), String> {
-    let mut shots: Vec<Vec<RgbaImage>> = vec![Vec::new(); looks.len()];
-    let mut own: Vec<Vec<Measures>> = vec![Vec::new(); looks.len()];
-    let mut unstyled = Vec::new();
-    for scene in COMPARED {
-        let mut bench = LookBench::new(scene, UVec2::new(240, 135), FRAMES);
-        unstyled.push(bench.measure(None).1);
-        for (k, look) in looks.iter().enumerate() {
-            let (shot, measures) = bench.measure(Some(&style(*look)?));
-            println!("{}: {look}: {measures:.3?}", scene.name());
-            shots[k].push(shot);
-            own[k].push(measures);
-        }
-    }
+    let styles: Vec<ComicStyle> = looks
+        .iter()
+        .map(|look| style(*look))
+        .collect::<Result<_, _>>()?;
+    let scenes = std::thread::scope(|scope| {
+        let styles = &styles;
+        let start = |scene| scope.spawn(move || measure_in(scene, looks, styles));
+        let running = COMPARED.map(start);
+        running.map(|scene| scene.join().expect("no panic"))
+    });
+    let of_look = |k: usize| scenes.iter().map(move |(_, of)| &of[k]);
+    let all = 0..looks.len();
+    let shots: Vec<Vec<&RgbaImage>> = (all.clone())
+        .map(|k| of_look(k).map(|(shot, _)| shot).collect())
+        .collect();
+    let own: Vec<Vec<Measures>> = all
+        .map(|k| of_look(k).map(|(_, measures)| *measures).collect())
+        .collect();
+    let unstyled: Vec<Measures> = scenes.iter().map(|(unstyled, _)| *unstyled).collect();
     let apart = distances(&shots);
     let of = |(k, own): (usize, &Vec<Measures>)| {
         let distances = apart[k].iter().copied().enumerate();
@@ -112,7 +134,7 @@ fn measure(looks: &[Preset]) -> Result<(Vec<Measured>, Measures), String> {
 }
 
 /// The mean FLIP of each two looks over the scenes.
-fn distances(shots: &[Vec<RgbaImage>]) -> Vec<Vec<f64>> {
+fn distances(shots: &[Vec<&RgbaImage>]) -> Vec<Vec<f64>> {
     let mut apart = vec![vec![f64::INFINITY; shots.len()]; shots.len()];
     for a in 0..shots.len() {
         for b in 0..a {
@@ -206,6 +228,12 @@ pub fn write(folder: &Path, only: &str) -> Result<(), String> {
     let wanted = |look: &Preset| only.is_empty() || only.split(',').any(|one| one == look.name());
     let looks: Vec<Preset> = presets::LOOKS.iter().copied().filter(wanted).collect();
     let (measured, unstyled) = measure(&looks)?;
+    for (look, m) in looks.iter().zip(&measured) {
+        println!(
+            "{look}: {:.3} from {}, {:.3?}",
+            m.nearest.1, m.nearest.0, m.own
+        );
+    }
     let failed = failures(&looks, &measured, &unstyled);
     if !failed.is_empty() {
         return Err(format!("looks beyond the limits:\n{}", failed.join("\n")));

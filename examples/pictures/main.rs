@@ -39,7 +39,7 @@ use bevy::math::UVec2;
 const USAGE: &str = "\
 usage: pictures contact-sheet [--size WxH] [--out FILE.png]   every scene in every preset
        pictures banner [--out FILE.png]                       the README's first picture
-       pictures looks [--out FILE.png]                        the README's row of looks
+       pictures looks [--out FILE.png]                        a row of looks, for the page of examples
        pictures presets [--out FILE.png]                      the page of the presets
        pictures gallery [--only NAME,NAME] [--out DIR]        docs/looks: every look, and how they differ;
                                                               or only the numbers of these looks

@@ -33,7 +33,7 @@ pub const WHITE_PAPER: [Preset; 2] = [presets::MANGA_PAGE, presets::HARD_BOILED]
 /// Pieces of line of fewer pixels are fragments.
 const FRAGMENT: usize = 8;
 /// The change of a channel, in codes, from which a pixel belongs to a line.
-const LINE: u8 = 24;
+const LINE: u8 = 8;
 /// The move of what is far away from one frame of the turntable to the next, pixels.
 const STEP: f32 = 0.25;
 
