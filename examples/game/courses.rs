@@ -34,6 +34,8 @@ pub struct Level {
     scale: f32,
     ceiling: f32,
     ground: fn(Vec2) -> f32,
+    /// Whether the ground is in tiles, which have no lines between them.
+    pub tiled: bool,
 }
 
 /// What the player has for each level, seconds.
@@ -76,6 +78,7 @@ const VILLAGE: Level = Level {
     scale: 0.6,
     ceiling: 40.0,
     ground: |_| 0.0,
+    tiled: false,
 };
 
 const STREET: Level = Level {
@@ -110,6 +113,7 @@ const STREET: Level = Level {
     scale: 0.3,
     ceiling: 13.0,
     ground: |_| 0.0,
+    tiled: false,
 };
 
 const VALLEY: Level = Level {
@@ -146,6 +150,7 @@ const VALLEY: Level = Level {
     scale: 1.0,
     ceiling: 70.0,
     ground: mountains::height,
+    tiled: true,
 };
 
 pub const LEVELS: [Level; 3] = [VILLAGE, STREET, VALLEY];
@@ -158,7 +163,10 @@ impl Level {
         if let Some(flats) = style.get_mut::<BlackFlats>() {
             flats.value = flats.value.map(|value| 0.45 * value);
         }
-        if style.get::<Outlines>().is_some() {
+        if let Some(outlines) = style.get_mut::<Outlines>() {
+            // The step of a road to the grass is a silhouette nearby and an edge between objects far away:
+            // one width for both.
+            outlines.weight.object = outlines.weight.outer;
             return style;
         }
         style.with(Outlines {

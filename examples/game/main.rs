@@ -97,7 +97,7 @@ Paper Glider. Without arguments it opens a window.
     --play           let the autopilot fly a level without a window, and print the result
     --out FILE       without a window: save a picture when half of the lanterns are found
     --picture FILE   the same
-    --lanterns N     when this many are found
+    --lanterns N     when this many are found; with --play, draw only from then on (default: all but two)
     --size WxH       size of the picture (default 960x540)
     --help           print this help
 ";

@@ -18,15 +18,16 @@ use crate::{
 pub struct Orders {
     pub level: usize,
     pub picture: Option<PathBuf>,
-    /// Number of lanterns that are found on the picture; half of them without it.
+    /// Number of lanterns that are found before it is drawn; by default half of them on a picture, and
+    /// all but two else.
     pub lanterns: Option<usize>,
     pub size: UVec2,
 }
 
 /// App time per frame.
 const FRAME: Duration = Duration::from_millis(50);
-/// Frames after which the end of the flight is given up: half a minute.
-const PATIENCE: usize = 600;
+/// Frames after which the end of the flight is given up: more than a level takes.
+const PATIENCE: usize = 2600;
 /// Frames before a picture: the camera arrives, and motion lines grow.
 const SHOT: usize = 14;
 /// Frames for the transition to the style of the last page.
@@ -58,7 +59,8 @@ pub fn by_itself(orders: &Orders) -> i32 {
     // Most of the flight is not drawn: without a GPU that would take minutes.
     let all = LEVELS[orders.level].course().lanterns.len();
     let game = headless.app.world_mut().resource_mut::<Game>();
-    skip_to(&mut game.into_inner().flight, Some(all.saturating_sub(2)));
+    let lanterns = orders.lanterns.unwrap_or(all.saturating_sub(2));
+    skip_to(&mut game.into_inner().flight, Some(lanterns));
     let page = |headless: &Headless| *headless.app.world().resource::<State<Page>>().get();
     for _ in 0..PATIENCE {
         headless.step(1);

@@ -5,7 +5,8 @@
 //! cargo run --example pictures -- banner [--out FILE.png]
 //! cargo run --example pictures -- looks [--out FILE.png]
 //! cargo run --example pictures -- presets [--out FILE.png]
-//! cargo run --example pictures -- gallery [--out DIR]
+//! cargo run --example pictures -- gallery [--only NAME,NAME] [--out DIR]
+//! cargo run --example pictures -- loops [--out DIR]
 //! cargo run --example pictures -- ramps [--out FILE.png]
 //! cargo run --example pictures -- toon [--out DIR]
 //! cargo run --example pictures -- pages [--out DIR]
@@ -18,9 +19,11 @@
 
 mod figures;
 mod gallery;
+mod loops;
 mod motion;
 mod pages;
 mod painted;
+mod palette;
 mod print;
 mod ramps;
 mod sheet;
@@ -36,9 +39,11 @@ use bevy::math::UVec2;
 const USAGE: &str = "\
 usage: pictures contact-sheet [--size WxH] [--out FILE.png]   every scene in every preset
        pictures banner [--out FILE.png]                       the README's first picture
-       pictures looks [--out FILE.png]                        the README's row of looks
+       pictures looks [--out FILE.png]                        a row of looks, for the page of examples
        pictures presets [--out FILE.png]                      the page of the presets
-       pictures gallery [--out DIR]                           docs/looks: every look, and how they differ
+       pictures gallery [--only NAME,NAME] [--out DIR]        docs/looks: every look, and how they differ;
+                                                              or only the numbers of these looks
+       pictures loops [--out DIR]                             docs/looks: strokes and lines in motion
        pictures ramps [--out FILE.png]                        the ramps of the cartoon material
        pictures toon [--out DIR]                              signs, rims and X-Toon of the cartoon material
        pictures pages [--out DIR]                             the pages about single tasks
@@ -96,7 +101,8 @@ fn run() -> Result<(), String> {
         Some("banner") => sheet::banner(&or("target/banner.png")),
         Some("looks") => sheet::looks(&or("target/looks.png")),
         Some("presets") => sheet::presets(&or("target/presets.png")),
-        Some("gallery") => gallery::write(&or("docs/looks")),
+        Some("gallery") => gallery::write(&or("docs/looks"), &only),
+        Some("loops") => loops::write(&or("docs/looks")),
         Some("ramps") => save(&ramps::picture(), &or("target/ramps.png")),
         Some("toon") => toon::write(&or("target/toon")),
         Some("pages") => pages::write(&or("target/pages")),

@@ -103,7 +103,7 @@ fn shoot_small(scene: BuiltIn, looks: &[Look]) -> Result<Vec<RgbaImage>, String>
     Ok(pictures.iter().map(reduced).collect())
 }
 
-/// The README's row of looks.
+/// A row of looks, for the page of the examples.
 pub fn looks(out: &Path) -> Result<(), String> {
     let looks = [
         "saturday-morning",

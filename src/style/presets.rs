@@ -111,11 +111,11 @@ presets! {
         GRAPHIC_NOVEL: "graphic-novel";
         /// Even black lines around flat, clean colours, without ink in the shadows.
         LIGNE_CLAIRE: "ligne-claire";
-        /// A vector poster: three flat tones of each colour, dark blue lines around things.
+        /// A vector poster: four flat tones of each colour, dark blue lines around things.
         CLEAR_BANDS: "clear-bands";
         /// A picture book in three planes: a warm foreground with heavy lines, a teal distance.
         STORYBOOK: "storybook";
-        /// A naturalist's plate: dots of ink over washes of colour, fine lines.
+        /// A naturalist's plate: dots of ink over pale washes of colour, which fade with distance.
         FIELD_GUIDE: "field-guide";
         /// A church window: panes of pure colour between thick leads.
         STAINED_GLASS: "stained-glass";
@@ -135,7 +135,7 @@ presets! {
         POP_POSTER: "pop-poster";
         /// A poster of the twenties in red, cream and black.
         RED_POSTER: "red-poster";
-        /// A woodcut: few broad cuts and solid blacks, printed with one block.
+        /// A print of two blocks: solid blacks and few broad cuts over a tone of ochre.
         WOODCUT: "woodcut";
         /// A steel engraving: fine lines that follow the form, crossed in the shadows.
         ENGRAVING: "engraving";
@@ -147,7 +147,7 @@ presets! {
         PENCIL_STUDY: "pencil-study";
         /// A doodle in blue ballpoint, crossed again and again.
         BALLPOINT: "ballpoint";
-        /// Charcoal: broad soft strokes and smudged shadows on rough grey paper.
+        /// Charcoal: dark strokes over rubbed greys on rough paper.
         CHARCOAL: "charcoal";
         /// A study in red chalk on toned paper.
         RED_CHALK: "red-chalk";
@@ -159,7 +159,7 @@ presets! {
         WATERCOLOR: "watercolor";
         /// Flat patches of opaque colour on rough paper, soft lines in the colours that they surround.
         GOUACHE: "gouache";
-        /// Strokes of thick paint along the forms, cool shadows, no lines.
+        /// Dabs of thick paint along the forms, golden lights and violet shadows, no lines.
         OIL_SKETCH: "oil-sketch";
         /// Two hues in five tones: copper in front of a teal distance.
         COPPER_AND_TEAL: "copper-and-teal";

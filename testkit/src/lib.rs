@@ -12,6 +12,7 @@ pub mod fuzz;
 pub mod headless;
 pub mod line_work;
 pub mod link_work;
+pub mod look_work;
 pub mod orbit;
 pub mod page_work;
 pub mod painting;

@@ -211,3 +211,38 @@ fn the_figure_looks_as_it_did() {
 fn the_street_looks_as_it_did() {
     check(BuiltIn::Street);
 }
+
+#[test]
+fn the_hall_looks_as_it_did() {
+    check(BuiltIn::Hall);
+}
+
+/// Every look is compared on two scenes, and every picture in the folder is compared.
+#[test]
+fn every_look_has_two_references() {
+    let styles = BuiltIn::ALL.map(|scene| (scene, golden_styles(scene)));
+    let mut compared: Vec<String> = vec!["theatre-hatched-material.png".into()];
+    for (scene, styles) in &styles {
+        let files = styles
+            .iter()
+            .map(|(name, _)| format!("{}-{name}.png", scene.name()));
+        compared.extend(files);
+    }
+    for look in presets::LOOKS {
+        let scenes = styles.iter().filter(|(scene, styles)| {
+            let listed = styles.iter().any(|(name, _)| *name == look.name());
+            listed && references(*scene, look.name())[0].exists()
+        });
+        let count = scenes.count();
+        assert!(count >= 2, "{look} has {count} reference pictures");
+    }
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden");
+    for folder in [folder.to_string(), format!("{folder}/rounding")] {
+        for entry in std::fs::read_dir(&folder).expect("the folder") {
+            let file = entry.expect("entry").file_name();
+            let file = file.to_string_lossy();
+            let is_known = file == "rounding" || compared.iter().any(|known| *known == file);
+            assert!(is_known, "{file} is compared with nothing");
+        }
+    }
+}

@@ -49,6 +49,7 @@ mod lines;
 mod link_work;
 mod links;
 mod logical_pixels;
+mod look_limits;
 mod looks;
 mod marks;
 mod means;

@@ -1,0 +1,136 @@
+//! Two loops: strokes on a figure that turns, and lines while the camera goes to and fro.
+
+use std::{
+    f32::consts::TAU,
+    fs::{self, File},
+    io::BufWriter,
+    path::Path,
+    thread,
+    time::Duration,
+};
+
+use bevy::{prelude::*, render::view::Msaa};
+use bevy_comics::{MeshSections, ObjectScreen, presets};
+use bevy_comics_testkit::{
+    scenes::BuiltIn,
+    studio::{Studio, set_sections},
+};
+use image::RgbaImage;
+
+use crate::palette::Palette;
+
+const SIZE: UVec2 = UVec2::new(384, 216);
+const FRAMES: u16 = 36;
+/// Frames per second.
+const RATE: u16 = 15;
+
+/// Frames in which meshes are divided into sections.
+const SETTLE: usize = 10;
+
+/// What the page of looks says about them.
+pub const SECTION: &str = "\n## In motion\n\n\
+    ![A figure turns, and broad cuts turn with it](strokes-in-motion.png)\n\n\
+    *`woodcut`. The figure has an `ObjectScreen`: strokes stay where they are on what moves.*\n\n\
+    ![The camera goes to and fro in the village](lines-in-motion.png)\n\n\
+    *`ligne-claire`. Houses have `MeshSections`: lines neither break nor jump. Made by `cargo run --example pictures -- loops`.*\n";
+
+pub fn write(folder: &Path) -> Result<(), String> {
+    fs::create_dir_all(folder)
+        .map_err(|error| format!("cannot make {}: {error}", folder.display()))?;
+    save(&strokes(), 24, &folder.join("strokes-in-motion.png"))?;
+    save(&lines(), 56, &folder.join("lines-in-motion.png"))
+}
+
+/// From -1 to 1 and back, once over all frames.
+fn swing(frame: u16) -> f32 {
+    (TAU * f32::from(frame) / f32::from(FRAMES)).sin()
+}
+
+fn strokes() -> Vec<RgbaImage> {
+    let mut studio = Studio::new(BuiltIn::Figure, SIZE, Msaa::Sample4);
+    let world = studio.headless.app.world_mut();
+    let mut named = world.query::<(Entity, &Name)>();
+    let figure = named
+        .iter(world)
+        .find(|(_, name)| name.as_str() == "figure");
+    let figure = figure.map(|(entity, _)| entity).expect("the figure");
+    let screen = ObjectScreen {
+        inherit: true,
+        ..default()
+    };
+    world.entity_mut(figure).insert(screen);
+    let rest = *world.get::<Transform>(figure).expect("a place");
+    studio.shoot(Some(&presets::WOODCUT.style()));
+    let frames = (0..FRAMES).map(|frame| {
+        let turn = Quat::from_rotation_y(0.5 * swing(frame));
+        let turned = Transform {
+            rotation: turn * rest.rotation,
+            ..rest
+        };
+        let world = studio.headless.app.world_mut();
+        world.entity_mut(figure).insert(turned);
+        studio.headless.step(1);
+        studio.headless.picture()
+    });
+    frames.collect()
+}
+
+fn lines() -> Vec<RgbaImage> {
+    let mut studio = Studio::new(BuiltIn::Village, SIZE, Msaa::Sample4);
+    set_sections(studio.headless.app.world_mut(), MeshSections::default());
+    studio.shoot(Some(&presets::LIGNE_CLAIRE.style()));
+    for _ in 0..SETTLE {
+        studio.headless.step(1);
+        thread::sleep(Duration::from_millis(100));
+    }
+    let (eye, target) = (studio.vantage.eye, studio.vantage.target);
+    let frames = (0..FRAMES).map(|frame| {
+        let turn = Quat::from_rotation_y(0.06 * swing(frame));
+        let at = Transform::from_translation(target + turn * (eye - target));
+        let world = studio.headless.app.world_mut();
+        world
+            .entity_mut(studio.camera)
+            .insert(at.looking_at(target, Vec3::Y));
+        studio.headless.step(1);
+        studio.headless.picture()
+    });
+    frames.collect()
+}
+
+/// An animated PNG of `colors` colours. A frame has only the pixels that differ from the one before.
+fn save(frames: &[RgbaImage], colors: usize, path: &Path) -> Result<(), String> {
+    let palette = Palette::of(frames, colors);
+    let written = encode(frames, &palette, path);
+    written.map_err(|error| format!("cannot write {}: {error}", path.display()))?;
+    println!("wrote {}", path.display());
+    Ok(())
+}
+
+fn encode(frames: &[RgbaImage], palette: &Palette, path: &Path) -> Result<(), png::EncodingError> {
+    let file = BufWriter::new(File::create(path)?);
+    let mut encoder = png::Encoder::new(file, SIZE.x, SIZE.y);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_depth(png::BitDepth::Eight);
+    // The first colour of the file is transparent.
+    let colors = palette.colors.iter().flatten();
+    encoder.set_palette([0; 3].iter().chain(colors).copied().collect::<Vec<u8>>());
+    encoder.set_trns(vec![0u8]);
+    encoder.set_compression(png::Compression::High);
+    encoder.set_filter(png::Filter::NoFilter);
+    encoder.set_animated(frames.len() as u32, 0)?;
+    encoder.set_frame_delay(1, RATE)?;
+    encoder.set_blend_op(png::BlendOp::Over)?;
+    let mut writer = encoder.write_header()?;
+    let mut last: Vec<u8> = Vec::new();
+    for frame in frames {
+        let places: Vec<u8> = frame.pixels().map(|p| palette.place(p) + 1).collect();
+        let changed = |(k, place): (usize, &u8)| match last.get(k) == Some(place) {
+            true => 0,
+            false => *place,
+        };
+        let data: Vec<u8> = places.iter().enumerate().map(changed).collect();
+        writer.write_image_data(&data)?;
+        last = places;
+    }
+    writer.finish()
+}

@@ -1,0 +1,20 @@
+//! Looks keep the limits that the page of looks states.
+
+use bevy::math::UVec2;
+use bevy_comics::presets;
+use bevy_comics_testkit::{look_work::LookBench, scenes::BuiltIn};
+
+/// The figure alone, with fewer frames than the page; `pictures gallery` measures three scenes, and the
+/// distances of looks.
+#[test]
+fn looks_keep_their_limits() {
+    let mut bench = LookBench::new(BuiltIn::Figure, UVec2::new(240, 135), 3);
+    let (_, unstyled) = bench.measure(None);
+    let mut failed = Vec::new();
+    for look in presets::LOOKS {
+        let (_, measures) = bench.measure(Some(&look.style()));
+        let found = measures.failures(*look, &unstyled);
+        failed.extend(found.into_iter().map(|text| format!("{look}: {text}")));
+    }
+    assert!(failed.is_empty(), "{failed:#?}");
+}
