@@ -40,7 +40,7 @@ struct Comics {
     lines: Lines,
 #endif
 #ifdef IN_PLANES
-    planes_before: vec4<u32>,
+    planes_of_lines_before: vec4<u32>,
     planes_of_lines: LinePlanes,
 #endif
     //@members

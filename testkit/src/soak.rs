@@ -53,8 +53,56 @@ pub struct Sample {
     pub errors: usize,
 }
 
+/// What changes in a run: to find out what is left of which change.
+#[derive(Clone, Copy, Debug)]
+pub struct Changes {
+    pub sizes: bool,
+    /// How many looks follow each other.
+    pub looks: usize,
+    pub cameras: bool,
+    pub materials: bool,
+    pub objects: bool,
+    pub files: bool,
+}
+
+impl Default for Changes {
+    fn default() -> Self {
+        Self {
+            sizes: true,
+            looks: presets::LOOKS.len(),
+            cameras: true,
+            materials: true,
+            objects: true,
+            files: true,
+        }
+    }
+}
+
+impl Changes {
+    /// Those that a text names, with commas between them, as `sizes,looks=3`; all for an empty one.
+    pub fn of(names: &str) -> Self {
+        let has = |name| names.is_empty() || names.split(',').any(|own| own == name);
+        Self {
+            sizes: has("sizes"),
+            looks: if has("looks") {
+                presets::LOOKS.len()
+            } else {
+                names
+                    .split(',')
+                    .find_map(|own| own.strip_prefix("looks=")?.parse().ok())
+                    .unwrap_or(0)
+            },
+            cameras: has("cameras"),
+            materials: has("materials"),
+            objects: has("objects"),
+            files: has("files"),
+        }
+    }
+}
+
 /// The run.
 pub struct Soak {
+    changes: Changes,
     headless: Headless,
     /// Wears one look after the other.
     camera: Entity,
@@ -80,7 +128,7 @@ impl Soak {
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn new(folder: &Path) -> io::Result<Self> {
+    pub fn new(folder: &Path, changes: Changes) -> io::Result<Self> {
         fs::create_dir_all(folder)?;
         fs::write(folder.join(FILE), mended(0))?;
         let options = HeadlessOptions {
@@ -117,6 +165,7 @@ impl Soak {
             .spawn((view(small.into()), ComicStyleHandle(style)))
             .id();
         Ok(Self {
+            changes,
             headless,
             camera,
             reader,
@@ -144,49 +193,56 @@ impl Soak {
 
     /// What changes before a frame of a cycle.
     fn change(&mut self, number: u64, at: u64) -> io::Result<()> {
-        if at.is_multiple_of(12) && at < CYCLE - 12 {
-            self.resize(SIZES[(at / 12) as usize % SIZES.len()]);
-        } else if at == CYCLE - 12 {
-            self.resize(SIZES[0]);
+        let changes = self.changes;
+        if changes.sizes && at.is_multiple_of(12) {
+            let size = if at == CYCLE - 12 { 0 } else { at / 12 };
+            self.resize(SIZES[size as usize % SIZES.len()]);
         }
-        if at.is_multiple_of(20) {
-            let look = presets::LOOKS[(at / 20) as usize % presets::LOOKS.len()];
+        if changes.looks > 0 && at.is_multiple_of(20) {
+            let look = presets::LOOKS[(at / 20) as usize % changes.looks];
             let world = self.headless.app.world_mut();
             look.style()
                 .apply(&mut world.commands().entity(self.camera));
             world.flush();
         }
         match at {
-            0 => self.set_up_camera(number),
-            60 => self.come(),
-            200 => self.go(),
-            260 => {
-                let light = CartoonLight::default();
-                let root = self.root;
-                let world = self.headless.app.world_mut();
-                world.entity_mut(root).insert(CartoonScene::new(light));
-            }
-            460 => {
-                let root = self.root;
-                let world = self.headless.app.world_mut();
-                world.entity_mut(root).remove::<CartoonScene>();
-            }
-            500 => self.write(BROKEN)?,
-            560 => self.write(&mended(number))?,
+            0 if changes.cameras => self.set_up_camera(number),
+            60 if changes.cameras => self.come(),
+            200 if changes.cameras => self.go(),
+            260 if changes.materials => self.be_cartoon(true),
+            460 if changes.materials => self.be_cartoon(false),
+            500 if changes.files => self.write(BROKEN)?,
+            560 if changes.files => self.write(&mended(number))?,
             _ => {}
         }
+        if changes.objects && at.is_multiple_of(5) {
+            self.crowd(at);
+        }
+        Ok(())
+    }
+
+    /// Twenty objects come one after the other, and go.
+    fn crowd(&mut self, at: u64) {
         let world = self.headless.app.world_mut();
-        if (300..400).contains(&at) && at.is_multiple_of(5) {
+        if (300..400).contains(&at) {
             let new = object(world, at);
             world.entity_mut(new).insert(OutlineStyle::default());
             self.crowd.push(new);
         }
-        if (400..600).contains(&at) && at.is_multiple_of(5) {
-            if let Some(old) = self.crowd.pop() {
-                world.despawn(old);
-            }
+        if (400..600).contains(&at)
+            && let Some(old) = self.crowd.pop()
+        {
+            world.despawn(old);
         }
-        Ok(())
+    }
+
+    fn be_cartoon(&mut self, is_cartoon: bool) {
+        let mut root = self.headless.app.world_mut().entity_mut(self.root);
+        if is_cartoon {
+            root.insert(CartoonScene::new(CartoonLight::default()));
+        } else {
+            root.remove::<CartoonScene>();
+        }
     }
 
     /// Samples and range of colours change from cycle to cycle.

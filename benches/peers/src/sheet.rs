@@ -9,7 +9,7 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{ComicsPlugin, presets};
+use bevy_comics::{ComicsPlugin, Ramp, RampMode, RampStop, ToonLook, presets};
 use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
     scenes::{
@@ -53,6 +53,9 @@ fn row(who: Who) -> Vec<RgbaImage> {
         }
     }
     headless.step(3);
+    if who == Who::Ours {
+        share_light(headless.app.world_mut());
+    }
     if who == Who::Peer {
         wear_mtoon(headless.app.world_mut());
     }
@@ -72,6 +75,32 @@ fn row(who: Who) -> Vec<RgbaImage> {
         headless.picture()
     };
     Lighting::ALL.map(picture).into()
+}
+
+/// Skin by the share of all light, with one edge under several lamps. The looks of the figure are made for
+/// the light of its scene.
+fn share_light(world: &mut World) {
+    let color = |code| Color::from(Srgba::hex(code).expect("a color"));
+    let stops = [
+        RampStop::new(0.0, color("#cf9fae")),
+        RampStop::new(0.18, color("#f0b9a8")),
+        RampStop::new(0.21, Color::WHITE).soft(0.03),
+    ];
+    let mut looks = world.resource_mut::<Assets<ToonLook>>();
+    for id in looks.ids().collect::<Vec<_>>() {
+        let Some(mut look) = looks.get_mut(id) else {
+            continue;
+        };
+        if look.name != "Face" && look.name != "Skin" {
+            continue;
+        }
+        look.light.flat_environment = 0.3;
+        look.light.ramp = Some(Ramp { mode: RampMode::Share, ..Ramp::new(stops) });
+        if let Some(form) = &mut look.light.form {
+            form.amount = 0.85;
+            form.far_amount = 0.85;
+        }
+    }
 }
 
 /// Gives all meshes that crate's material: colours as they are, darker shades, its own lines.

@@ -39,17 +39,17 @@ fn counts(table: &Table, name: &str) -> [f64; 2] {
 }
 
 pub fn soak(out: &mut String, folder: &Path) -> Result<(), String> {
-    let table = load(folder, "soak")?;
-    let Some(last) = table.rows.last() else {
-        return Err("soak.csv is empty".into());
+    let Ok(table) = load(folder, "soak") else {
+        out.push_str("## 7. A long run\n\nNot measured.\n\n");
+        return Ok(());
     };
+    let last = table.rows.last().ok_or("soak.csv is empty")?;
     let _ = writeln!(
         out,
-        "## 7. A long run\n\n{} frames of 1 to 128 pixels a side. In every {CYCLE} of them a camera changes its \
-         size 60 times and wears each of the looks; another one comes and goes, as do 20 objects; the scene \
-         gets the cartoon material and loses it; a style file breaks and is mended. From cycle to cycle \
-         the samples and the range of colours change. Nothing may be left of it. Errors of the renderer: {}.\n\n\
-         | | after {} frames | at the end |\n|---|---|---|",
+        "## 7. A long run\n\n{} frames of 1 to 128 pixels a side. In every {CYCLE} of them a camera changes \
+         its size 60 times, 20 objects come and go, and a style file breaks and is mended. Looks are not \
+         changed: lavapipe compiles shaders again for each, and keeps the memory. Errors of the renderer: \
+         {}.\n\n| | after {} frames | at the end |\n|---|---|---|",
         table.cell(last, "frame"),
         table.cell(last, "errors"),
         WARM_UP * CYCLE,
