@@ -254,7 +254,7 @@ impl Soak {
         } else {
             Msaa::Sample4
         });
-        if number / 2 % 2 == 0 {
+        if (number / 2).is_multiple_of(2) {
             camera.remove::<Hdr>();
         } else {
             camera.insert(Hdr);

@@ -92,7 +92,6 @@ mod small;
 mod smoothed;
 mod smoothing;
 mod smoothing_views;
-mod soak;
 mod speed_lines;
 mod stipple;
 mod styles;
