@@ -44,11 +44,11 @@ pub struct Measures {
     pub ink: f64,
     pub white: f64,
     pub black: f64,
-    /// See [`contrast`].
+    /// See `contrast`.
     pub contrast: f64,
-    /// See [`flicker`].
+    /// See `flicker`.
     pub flicker: f64,
-    /// See [`fragments`]; 0 without lines.
+    /// See `fragments`; 0 without lines.
     pub fragments: f64,
 }
 
