@@ -106,8 +106,6 @@ pub struct Soak {
     headless: Headless,
     /// Wears one look after the other.
     camera: Entity,
-    /// Wears a file that breaks and is mended.
-    reader: Entity,
     root: Entity,
     visitor: Option<Entity>,
     crowd: Vec<Entity>,
@@ -161,14 +159,12 @@ impl Soak {
         let camera = world.spawn(view(target)).id();
         let small = new_target(world, UVec2::new(40, 24), TextureFormat::Rgba8UnormSrgb);
         let style = world.resource::<AssetServer>().load::<ComicStyle>(FILE);
-        let reader = world
-            .spawn((view(small.into()), ComicStyleHandle(style)))
-            .id();
+        // Wears a file that breaks and is mended.
+        world.spawn((view(small.into()), ComicStyleHandle(style)));
         Ok(Self {
             changes,
             headless,
             camera,
-            reader,
             root,
             visitor: None,
             crowd: Vec::new(),
@@ -294,12 +290,6 @@ impl Soak {
             .resource::<AssetServer>()
             .reload(FILE);
         Ok(())
-    }
-
-    /// The width of the lines of the camera that wears the file.
-    pub fn width_of_file(&self) -> Option<f32> {
-        let outlines = self.headless.app.world().get::<Outlines>(self.reader)?;
-        Some(outlines.width)
     }
 
     fn sample(&self) -> Sample {

@@ -6,7 +6,7 @@ use bevy_comics_testkit::{device::gpu, validation};
 /// A layer that is missing is silent, too.
 #[test]
 fn the_layer_is_active_where_it_is_wanted() {
-    let device = &gpu().device;
+    gpu();
     if !validation::is_wanted() {
         return;
     }
@@ -15,5 +15,4 @@ fn the_layer_is_active_where_it_is_wanted() {
         Some(false),
         "the layer is not loaded"
     );
-    assert!(!format!("{device:?}").is_empty());
 }

@@ -17,7 +17,7 @@ use super::{
         history::{Exchange, Subject},
         note,
     },
-    Objects, meshes,
+    Objects, edits,
     steps::with_material,
 };
 use crate::{
@@ -138,10 +138,7 @@ impl Place {
             Some(path) => format!("the {what} {path}"),
             None => format!("the {what}, which is made by code"),
         };
-        match count {
-            0 | 1 => format!("Edits {edited}. Only this mesh has it."),
-            _ => format!("Edits {edited}. {} have it.", meshes(count)),
-        }
+        edits(&edited, count)
     }
 }
 

@@ -14,7 +14,7 @@ use super::{
         history::{Exchange, Subject},
         note,
     },
-    Objects, meshes, name_of,
+    Objects, edits, meshes, name_of,
     steps::{LightStep, MaterialStep, subject_of, with_material},
 };
 use crate::{CartoonLight, Ramp, RampStop, cartoon::LightPlace};
@@ -114,10 +114,7 @@ fn what_is_edited(world: &World, place: &LightPlace, count: usize) -> String {
             None => "the material, which is made by code".into(),
         },
     };
-    match count {
-        0 | 1 => format!("Edits {edited}. Only this mesh has it."),
-        _ => format!("Edits {edited}. {} have it.", meshes(count)),
-    }
+    edits(&edited, count)
 }
 
 /// Offers to make a standard material a cartoon material.

@@ -160,5 +160,14 @@ fn meshes(count: usize) -> String {
     }
 }
 
+/// Which value an edit changes, and how many meshes have it.
+#[cfg(feature = "cartoon")]
+fn edits(what: &str, count: usize) -> String {
+    match count {
+        0 | 1 => format!("Edits {what}. Only this mesh has it."),
+        _ => format!("Edits {what}. {} have it.", meshes(count)),
+    }
+}
+
 #[cfg(test)]
 mod tests;
