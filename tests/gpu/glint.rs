@@ -1,5 +1,7 @@
 //! Signs of light and rims: their place, size and edges on a ball.
 
+use std::f32::consts::FRAC_PI_2;
+
 use bevy::{core_pipeline::prepass::DepthPrepass, math::DVec2, prelude::*};
 use bevy_comics::{CartoonLight, Glint, GlintFrame, GlintShape, Rim, RimWidth};
 use bevy_comics_testkit::reference::glint;
@@ -317,6 +319,18 @@ fn the_brightest_light_draws_the_sign() {
     assert!(equal.1.distance(plain.1) < 0.5, "{equal:?}, {plain:?}");
 }
 
+/// How much wider than high a sign is, as the logarithm of the ratio of the squares.
+fn wider_than_high(picture: &RgbaImage) -> f64 {
+    let (area, middle) = covered(picture);
+    let mut spread = DVec2::ZERO;
+    for (x, y, _) in picture.enumerate_pixels() {
+        let at = DVec2::new(f64::from(x) - 127.5, 127.5 - f64::from(y)) - middle;
+        spread += linear(picture, x, y)[0] / PEAK * at * at;
+    }
+    assert!(area > 500.0);
+    (spread.x / spread.y).ln()
+}
+
 /// In every frame, on a mesh with and without tangents, what is drawn is a sign of the same area.
 #[test]
 fn frames_turn_signs() {
@@ -327,18 +341,7 @@ fn frames_turn_signs() {
         ..Glint::default()
     };
     let mut small = ball(&signed(sign(GlintFrame::View)));
-    // How much wider than high it is.
-    let wide = |small: &mut Small| {
-        let picture = drawn(small);
-        let (area, middle) = covered(&picture);
-        let mut spread = DVec2::ZERO;
-        for (x, y, _) in picture.enumerate_pixels() {
-            let at = DVec2::new(f64::from(x) - 127.5, 127.5 - f64::from(y)) - middle;
-            spread += linear(&picture, x, y)[0] / PEAK * at * at;
-        }
-        assert!(area > 500.0);
-        (spread.x / spread.y).ln()
-    };
+    let wide = |small: &mut Small| wider_than_high(&drawn(small));
     assert!(wide(&mut small) > 1.0);
     // The camera lies on its side: the sign of the world stays, that of the picture turns.
     let turned = Transform::from_xyz(0.0, 0.0, 5.0).looking_at(Vec3::ZERO, Vec3::X);
@@ -357,6 +360,44 @@ fn frames_turn_signs() {
     assert!(wide(&mut small) < -0.5);
     set_light(&mut small, &signed(sign(GlintFrame::Tangent)));
     assert!(wide(&mut small) > 0.5);
+}
+
+/// A sign in the frame of the tangents turns with its ball; without tangents it stays.
+#[test]
+fn tangents_turn_signs() {
+    let sign = Glint {
+        shape: GlintShape::Streak,
+        size: 2.0,
+        frame: GlintFrame::Tangent,
+        ..Glint::default()
+    };
+    let mut small = ball(&signed(sign));
+    // The seam of the texture is behind, and no pole of it in front.
+    let stands = Quat::from_rotation_x(FRAC_PI_2) * Quat::from_rotation_z(FRAC_PI_2);
+    for has_tangents in [false, true] {
+        if has_tangents {
+            let world = small.world();
+            let mut meshes = world.resource_mut::<Assets<Mesh>>();
+            for (_, mesh) in meshes.iter_mut() {
+                mesh.generate_tangents().expect("UVs");
+            }
+        }
+        let mut spread = [0.0, FRAC_PI_2].map(|turn| {
+            let world = small.world();
+            let mut balls = world.query_filtered::<&mut Transform, With<Mesh3d>>();
+            let mut at = balls.single_mut(world).expect("a ball");
+            at.rotation = Quat::from_rotation_z(turn) * stands;
+            wider_than_high(&drawn(&mut small))
+        });
+        // The direction of the tangents depends on the mesh; that they turn does not.
+        if spread[0] < 0.0 {
+            spread = spread.map(|log| -log);
+        }
+        let [before, after] = spread;
+        assert!(before > 0.5, "{spread:?}");
+        assert!((after < -0.5) == has_tangents, "{spread:?}");
+        assert!(has_tangents || (after - before).abs() < 0.05, "{spread:?}");
+    }
 }
 
 fn rimmed(width: RimWidth, lit_side: f32) -> CartoonLight {

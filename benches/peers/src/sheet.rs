@@ -1,13 +1,11 @@
 //! The figure with the engine's `StandardMaterial`, with bevy_shader_mtoon and with this crate, under
 //! four kinds of light.
 
-use std::path::Path;
+use std::{fs::File, io::BufWriter, path::Path};
 
 use bevy::{
-    ecs::system::RunSystemOnce,
-    light::RectLight,
-    prelude::*,
-    render::view::Msaa,
+    core_pipeline::tonemapping::DebandDither, ecs::system::RunSystemOnce, light::RectLight,
+    prelude::*, render::view::Msaa,
 };
 use bevy_comics::{ComicsPlugin, Ramp, RampMode, RampStop, ToonLook, presets};
 use bevy_comics_testkit::{
@@ -18,9 +16,13 @@ use bevy_comics_testkit::{
     },
 };
 use bevy_shader_mtoon::{MtoonMaterial, MtoonPlugin, MtoonSun, VrmOutlineMode};
-use image::{RgbaImage, imageops};
+use image::{
+    RgbaImage,
+    codecs::png::{CompressionType, FilterType, PngEncoder},
+    imageops,
+};
 
-const SIZE: UVec2 = UVec2::new(320, 320);
+const SIZE: UVec2 = UVec2::splat(280);
 /// Pixels between pictures.
 const GAP: u32 = 6;
 
@@ -33,7 +35,11 @@ enum Who {
 
 /// The figure under each kind of light.
 fn row(who: Who) -> Vec<RgbaImage> {
-    let options = HeadlessOptions { size: SIZE, log: true, ..default() };
+    let options = HeadlessOptions {
+        size: SIZE,
+        log: true,
+        ..default()
+    };
     let mut headless = Headless::new(options, (ComicsPlugin, MtoonPlugin));
     let target = headless.render_target();
     let world = headless.app.world_mut();
@@ -41,13 +47,18 @@ fn row(who: Who) -> Vec<RgbaImage> {
         .run_system_once(|mut stage: Stage| stage.spawn(BuiltIn::Figure))
         .expect("the stage is there");
     let camera = world.spawn(vantage.camera()).id();
-    world.entity_mut(camera).insert((target, Msaa::Sample4));
+    world
+        .entity_mut(camera)
+        .insert((target, Msaa::Sample4, DebandDither::Disabled));
     if who == Who::Ours {
         let style = presets::SATURDAY_MORNING.style();
         style.apply(&mut world.commands().entity(camera));
         world.flush();
         let mut parts = world.query::<(Entity, &CartoonPart)>();
-        let parts: Vec<_> = parts.iter(world).map(|(part, light)| (part, light.0.clone())).collect();
+        let parts: Vec<_> = parts
+            .iter(world)
+            .map(|(part, light)| (part, light.0.clone()))
+            .collect();
         for (part, light) in parts {
             world.entity_mut(part).insert(light);
         }
@@ -95,7 +106,10 @@ fn share_light(world: &mut World) {
             continue;
         }
         look.light.flat_environment = 0.3;
-        look.light.ramp = Some(Ramp { mode: RampMode::Share, ..Ramp::new(stops) });
+        look.light.ramp = Some(Ramp {
+            mode: RampMode::Share,
+            ..Ramp::new(stops)
+        });
         if let Some(form) = &mut look.light.form {
             form.amount = 0.85;
             form.far_amount = 0.85;
@@ -109,7 +123,8 @@ fn wear_mtoon(world: &mut World) {
     let mut worn = world.query::<(Entity, &MeshMaterial3d<StandardMaterial>)>();
     let worn: Vec<_> = worn.iter(world).map(|(e, m)| (e, m.0.clone())).collect();
     for (entity, material) in worn {
-        let color = (world.resource::<Assets<StandardMaterial>>().get(&material)).map(|m| m.base_color);
+        let color =
+            (world.resource::<Assets<StandardMaterial>>().get(&material)).map(|m| m.base_color);
         let color = color.unwrap_or(Color::WHITE);
         let toon = MtoonMaterial {
             base_color: color,
@@ -142,8 +157,15 @@ pub fn write(file: &Path) -> image::ImageResult<()> {
     let mut sheet = RgbaImage::from_pixel(size.x, size.y, image::Rgba([255; 4]));
     for (y, row) in (0u32..).zip(&rows) {
         for (x, picture) in (0u32..).zip(row) {
-            imageops::replace(&mut sheet, picture, (x * step.x).into(), (y * step.y).into());
+            imageops::replace(
+                &mut sheet,
+                picture,
+                (x * step.x).into(),
+                (y * step.y).into(),
+            );
         }
     }
-    sheet.save(file)
+    let file = BufWriter::new(File::create(file)?);
+    let small = PngEncoder::new_with_quality(file, CompressionType::Best, FilterType::Adaptive);
+    sheet.write_with_encoder(small)
 }
