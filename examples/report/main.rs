@@ -90,14 +90,16 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
 
   --quick          small pictures, few repetitions, no other crates
   --out FOLDER     folder of the report; default docs/report
-  --only SECTION   measure one section only: ranges, encodings, lines, models,
+  --only SECTION   measure one section only: machine, ranges, encodings, lines, models,
                    steps, dashes, dash-steps, memory, meadow, straight, page, stability, ladder,
                    parts, scene-parts, toon, growth, peers, flicker or soak
+  --tables         write the CSV files alone, without text and plots
   --render         measure nothing; write text and plots from the CSV files";
 
 type Section = fn(&Run) -> Result<(), String>;
 
-const SECTIONS: [(&str, Section); 20] = [
+const SECTIONS: [(&str, Section); 21] = [
+    ("machine", machine),
     ("ranges", ranges::measure),
     ("encodings", encodings::measure),
     ("lines", lines::measure),
@@ -120,45 +122,60 @@ const SECTIONS: [(&str, Section); 20] = [
     ("soak", soak::measure),
 ];
 
-fn run() -> Result<(), String> {
-    let mut quick = false;
-    let mut render = false;
-    let mut only: Option<String> = None;
-    let mut out = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/report"));
-    let mut arguments = lexopt::Parser::from_env();
-    let complain = |error: lexopt::Error| format!("{error}\n\n{USAGE}");
-    while let Some(argument) = arguments.next().map_err(complain)? {
-        match argument {
-            Long("quick") => quick = true,
-            Long("render") => render = true,
-            Long("out") => out = arguments.value().map_err(complain)?.into(),
-            Long("only") => {
-                only = Some(
-                    arguments
-                        .value()
-                        .and_then(|v| v.string())
-                        .map_err(complain)?,
-                );
+/// What the command line asks for.
+struct Arguments {
+    quick: bool,
+    render: bool,
+    tables: bool,
+    only: Option<String>,
+    out: PathBuf,
+}
+
+impl Arguments {
+    fn read() -> Result<Self, lexopt::Error> {
+        let mut read = Self {
+            quick: false,
+            render: false,
+            tables: false,
+            only: None,
+            out: PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/report")),
+        };
+        let mut arguments = lexopt::Parser::from_env();
+        while let Some(argument) = arguments.next()? {
+            match argument {
+                Long("quick") => read.quick = true,
+                Long("render") => read.render = true,
+                Long("tables") => read.tables = true,
+                Long("out") => read.out = arguments.value()?.into(),
+                Long("only") => read.only = Some(arguments.value()?.string()?),
+                Long("help") => {
+                    println!("{USAGE}");
+                    std::process::exit(0);
+                }
+                other => return Err(other.unexpected()),
             }
-            Long("help") => {
-                println!("{USAGE}");
-                return Ok(());
-            }
-            other => return Err(complain(other.unexpected())),
         }
+        Ok(read)
     }
-    if let Some(name) = &only
+}
+
+fn run() -> Result<(), String> {
+    let arguments = Arguments::read().map_err(|error| format!("{error}\n\n{USAGE}"))?;
+    let Arguments {
+        quick, only, out, ..
+    } = &arguments;
+    if let Some(name) = only
         && !SECTIONS.iter().any(|(section, _)| section == name)
     {
         return Err(format!("no section {name:?}\n\n{USAGE}"));
     }
     let problem = |error| format!("{}: {error}", out.display());
-    std::fs::create_dir_all(&out).map_err(problem)?;
-    if !render {
+    std::fs::create_dir_all(out).map_err(problem)?;
+    if !arguments.render {
         let run = Run {
-            quick,
-            rounds: if quick { 2 } else { 7 },
-            frames: if quick { 1 } else { 2 },
+            quick: *quick,
+            rounds: if *quick { 2 } else { 7 },
+            frames: if *quick { 1 } else { 2 },
             folder: out.clone(),
             started: Instant::now(),
         };
@@ -169,14 +186,17 @@ fn run() -> Result<(), String> {
                 measure(&run)?;
             }
         }
-        if only.is_none() || !out.join("machine.csv").exists() {
+        if !out.join("machine.csv").exists() {
             machine(&run)?;
         }
     }
-    let text = document::render(&out)?;
+    if arguments.tables {
+        return Ok(());
+    }
+    let text = document::render(out)?;
     std::fs::write(out.join("report.md"), text).map_err(problem)?;
 
-    plots::draw(&out)?;
+    plots::draw(out)?;
     println!("{}", out.join("report.md").display());
     Ok(())
 }

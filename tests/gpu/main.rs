@@ -95,6 +95,7 @@ mod smoothing_views;
 mod speed_lines;
 mod stipple;
 mod styles;
+mod support;
 mod surface_lines;
 mod threshold_map;
 mod tone_ramp;
