@@ -148,12 +148,12 @@ pub fn assert_still(small: &mut Small, row: &Row, shown: &Shown) {
 fn reach(row: &Row) -> u32 {
     let small = row.area == Area::SmallMainPass;
     // Other samples, and filters of anti-aliasing, move an edge into a neighbour.
-    1 // A texel of two pixels moves an edge by one more.
-        + u32::from(small)
-        // The jitter is in texels.
-        + u32::from(small && row.is_temporal())
-        // The engine's SMAA measures pixels of the target in those of the viewport.
-        + u32::from(row.area == Area::Part && row.anti_aliasing == AntiAliasing::Smaa)
+    let one = 1;
+    // A texel of two pixels moves an edge by one more, and the jitter is in texels.
+    let texel = u32::from(small) + u32::from(small && row.is_temporal());
+    // The engine's SMAA takes the size of a pixel from the viewport, not from the target.
+    let smaa = row.area == Area::Part && row.anti_aliasing == AntiAliasing::Smaa;
+    one + texel + u32::from(smaa)
 }
 
 /// The fraction of the flat parts of `base` where a picture has a colour that `other` has not, within
