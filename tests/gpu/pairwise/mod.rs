@@ -126,7 +126,7 @@ fn check_rows(test: usize) {
     let samples = headless::adapter().expect("an adapter").samples;
     let mut bench = Bench::new();
     let rows = rows(&samples);
-    // Rows follow one another by their effects: every test has rows of each group.
+    // The first rows go through the groups in turn: rows of one test have bases in common.
     for levels in rows.into_iter().skip(test).step_by(TESTS) {
         bench.check(&Row::new(levels, &samples));
     }
