@@ -64,6 +64,7 @@ mod overshoot;
 mod own_effect;
 mod page_scale;
 mod paint;
+mod pairwise;
 mod panel;
 mod paper;
 mod percentiles;

@@ -122,6 +122,48 @@ fn occlusion_culling_changes_nothing() {
     assert_eq!(small.errors(), 0);
 }
 
+/// The picture of the first frame after a wall is gone, and that of a later one.
+fn behind_a_wall(style: Option<&ComicStyle>) -> [image::RgbaImage; 2] {
+    let mut small = Small::new(size(), Msaa::Off);
+    // The culling reads the prepass of the frame before.
+    small.insert((DepthPrepass, OcclusionCulling));
+    if let Some(style) = style {
+        small.style(style);
+    }
+    let wall = small.put(
+        Cuboid::new(1.2, 3.0, 0.2),
+        StandardMaterial::default(),
+        Transform::from_xyz(0.6, 0.5, 2.0),
+    );
+    small.headless.step(8);
+    small.world().despawn(wall);
+    small.headless.step(1);
+    let first = small.picture();
+    small.headless.step(8);
+    assert_eq!(small.errors(), 0);
+    [first, small.picture()]
+}
+
+/// What was hidden and is not any more is drawn by the late prepass of the engine: effects that read
+/// depth, normals or ids before it would miss it for a frame.
+#[test]
+fn what_is_no_longer_hidden_is_styled_at_once() {
+    let [first, later] = behind_a_wall(None);
+    assert_eq!(
+        changed(&first, &later),
+        0.0,
+        "the engine draws it later: nothing is tested"
+    );
+    // Without smoothing, the range is that of its own frame.
+    let style = many_passes().with_depth_map(DepthMap {
+        smoothing: None,
+        ..default()
+    });
+    let [first, later] = behind_a_wall(Some(&style));
+    let off = changed(&first, &later);
+    assert_eq!(off, 0.0, "{off} of the picture is styled later");
+}
+
 /// Nothing that is allocated is larger than the target, which may be as large as the device allows.
 #[test]
 fn the_largest_target_is_styled() {

@@ -1,0 +1,148 @@
+//! Pairs of what a camera can be: samples, HDR, projection, renderer, anti-aliasing, viewport and effects.
+//! Every pair that the engine supports is in a row, and every row is drawn and checked.
+
+mod checks;
+mod compare;
+mod covering;
+mod effects;
+mod stage;
+
+use std::collections::HashMap;
+
+use bevy::prelude::*;
+use bevy_comics::ComicStyle;
+use bevy_comics_testkit::headless;
+
+use checks::{
+    Base, Shown, assert_drawn, assert_finite, assert_near, assert_outside, assert_silhouettes,
+    assert_still, assert_styled,
+};
+use compare::{Mask, crop};
+use covering::{AntiAliasing, Area, Row, View, rows};
+use effects::GROUPS;
+use stage::SIZE;
+
+use crate::small::Small;
+
+/// The rows are divided among tests, which run at the same time.
+const TESTS: usize = 3;
+
+/// Apps that are used for all rows of a test: starting one takes longer than drawing a row.
+struct Bench {
+    forward: Small,
+    deferred: Small,
+    bases: HashMap<(View, usize, UVec2), Base>,
+}
+
+/// Where the view's main pass has drawn things, in pixels of the picture; `None` without a depth prepass.
+fn mask(small: &Small, row: &Row, rect: URect) -> Option<Mask> {
+    let depth = small.depth()?;
+    let size = rect.size();
+    let pixels = (0..size.y).flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y)));
+    let is_thing = |inside: UVec2| {
+        let texel = match row.area {
+            Area::SmallMainPass => inside / 2,
+            Area::Whole | Area::Part => inside,
+        };
+        let at = rect.min + texel;
+        // The sky is at 0.
+        depth.at(at.x, at.y, 0) > 0.0
+    };
+    let things = pixels.map(is_thing).collect();
+    Some(Mask { size, things })
+}
+
+impl Bench {
+    fn new() -> Self {
+        Self {
+            forward: stage::app(false),
+            deferred: stage::app(true),
+            bases: HashMap::new(),
+        }
+    }
+
+    /// Draws the base of a row, unless it has been drawn.
+    fn base(&mut self, row: &Row, size: UVec2) -> &Base {
+        let plainest = Row {
+            samples: 1,
+            hdr: false,
+            deferred: false,
+            anti_aliasing: AntiAliasing::Off,
+            area: Area::Whole,
+            ..*row
+        };
+        let small = &mut self.forward;
+        let key = (row.view, row.effects, size);
+        self.bases.entry(key).or_insert_with(|| {
+            let mut shoot = |style: Option<&ComicStyle>| {
+                stage::shoot(small, &plainest, size, style);
+                small.picture()
+            };
+            let (_, style) = GROUPS[row.effects];
+            Base {
+                plain: shoot(None),
+                styled: shoot(Some(&style())),
+            }
+        })
+    }
+
+    fn check(&mut self, row: &Row) {
+        let (name, style) = GROUPS[row.effects];
+        let (what, style) = (format!("{name}, {row:?}"), style());
+        let rect = stage::rect(row.area, SIZE);
+        let small = if row.deferred {
+            &mut self.deferred
+        } else {
+            &mut self.forward
+        };
+        stage::shoot(small, row, SIZE, None);
+        let plain = small.picture();
+        let silhouettes = mask(small, row, rect).expect("a depth prepass");
+        stage::shoot(small, row, SIZE, Some(&style));
+        let styled = small.picture();
+        for picture in [&plain, &styled] {
+            assert_outside(picture, rect, &what);
+        }
+        let [plain, styled] = [plain, styled].map(|picture| crop(&picture, rect));
+        let shown = Shown {
+            what,
+            rect,
+            plain,
+            styled,
+        };
+        assert_drawn(small, &style, &shown.what);
+        assert_finite(small, &shown);
+        assert_styled(&shown);
+        assert_silhouettes(row, &silhouettes, mask(small, row, rect).as_ref(), &shown);
+        assert_still(small, row, &shown);
+        assert_eq!(small.errors(), 0, "{}", shown.what);
+        assert_near(row, &shown, self.base(row, rect.size()));
+        // Sees errors of the base, too.
+        assert_eq!(self.forward.errors(), 0, "{}", shown.what);
+    }
+}
+
+fn check_rows(test: usize) {
+    let samples = headless::adapter().expect("an adapter").samples;
+    let mut bench = Bench::new();
+    let rows = rows(&samples);
+    // The first rows go through the groups in turn: rows of one test have bases in common.
+    for levels in rows.into_iter().skip(test).step_by(TESTS) {
+        bench.check(&Row::new(levels, &samples));
+    }
+}
+
+#[test]
+fn pairs_are_drawn_as_on_a_plain_camera_1() {
+    check_rows(0);
+}
+
+#[test]
+fn pairs_are_drawn_as_on_a_plain_camera_2() {
+    check_rows(1);
+}
+
+#[test]
+fn pairs_are_drawn_as_on_a_plain_camera_3() {
+    check_rows(2);
+}
