@@ -8,9 +8,10 @@ use crate::{
     small::Object,
 };
 
-fn lamps() -> [(&'static str, Kind); 2] {
+fn lights() -> [(&'static str, Kind); 3] {
     let to = Vec3::new(0.3, 0.0, -0.2);
     [
+        ("sun", Kind::Sun(Vec3::new(-2.6, 2.4, 1.0))),
         ("lamp", Kind::Lamp(Vec3::new(-1.8, 3.0, 1.2))),
         ("spot", Kind::Spot(Vec3::new(-2.0, 3.4, 1.0), to)),
     ]
@@ -38,7 +39,7 @@ fn true_cover(stage: &Stage, light: &Kind, x: u32, y: u32) -> Option<f64> {
 /// in the shadow map has steps of a texel, so single pixels are off; their mean is not.
 #[test]
 fn borders_of_shadows_cover_what_the_light_reaches() {
-    for (name, light) in lamps() {
+    for (name, light) in lights() {
         let stage = stage(&light, Msaa::Off);
         let ids = stage.small.object_ids().expect("ids are drawn");
         let (_, picture) = stage.small.pass();
@@ -134,6 +135,10 @@ fn be_standard(stage: &mut Stage) {
 fn left_of_light(stage: &mut Stage) -> Vec<Option<f32>> {
     let mut light = |intensity: f32, has_shadows: bool| {
         let world = stage.small.world();
+        for mut sun in world.query::<&mut DirectionalLight>().iter_mut(world) {
+            sun.shadow_maps_enabled = has_shadows;
+            sun.illuminance *= intensity;
+        }
         for mut lamp in world.query::<&mut PointLight>().iter_mut(world) {
             lamp.shadow_maps_enabled = has_shadows;
             lamp.intensity *= intensity;
@@ -162,7 +167,7 @@ fn left_of_light(stage: &mut Stage) -> Vec<Option<f32>> {
 /// dark, and those between lie on the same side of one half.
 #[test]
 fn shadows_of_lamps_are_those_of_the_engine() {
-    for (name, light) in lamps() {
+    for (name, light) in lights() {
         let mut own = stage(&light, Msaa::Off);
         let ours = left_of_light(&mut own);
         let mut other = stage(&light, Msaa::Off);
