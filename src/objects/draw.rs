@@ -66,10 +66,9 @@ pub(super) fn draw_object_ids(
     };
     if let Some((request, target, widths, own)) = ids {
         let targets = [Some(cleared(&target.view)), widths.map(attachment)];
-        let count = if widths.is_some() { 2 } else { 1 };
         let pass = RenderPassDescriptor {
             label: Some("comics_object_ids"),
-            color_attachments: &targets[..count],
+            color_attachments: &targets[..1 + usize::from(widths.is_some())],
             depth_stencil_attachment: Some(match own {
                 Some(own) => own.attachment(),
                 None => depth.get_attachment(StoreOp::Store),

@@ -7,14 +7,12 @@ use std::sync::{
 };
 
 use bevy::{
-    asset::{AssetServer, Handle, load_embedded_asset},
     camera::{MainPassResolutionOverride, Viewport},
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::{
         component::Component,
         entity::Entity,
         query::{With, Without},
-        resource::Resource,
         system::{Commands, Query, Res, ResMut},
     },
     math::UVec4,
@@ -22,22 +20,21 @@ use bevy::{
         camera::ExtractedCamera,
         render_phase::ViewSortedRenderPhases,
         render_resource::{
-            BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, Buffer,
-            BufferDescriptor, BufferUsages, CachedComputePipelineId, ComputePassDescriptor,
-            ComputePipelineDescriptor, MapMode, PipelineCache, ShaderStages,
-            SpecializedComputePipeline, SpecializedComputePipelines, TextureSampleType,
+            BindGroupEntries, Buffer, BufferDescriptor, BufferUsages, CachedComputePipelineId,
+            ComputePassDescriptor, MapMode, PipelineCache, SpecializedComputePipelines,
             TextureView,
-            binding_types::{
-                storage_buffer_sized, texture_2d, texture_2d_multisampled, uniform_buffer_sized,
-            },
         },
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
         view::{ExtractedView, ViewDepthTexture},
     },
-    shader::Shader,
 };
 
-use super::{DepthTest, tolerant::TolerantIds, watch::Reading};
+use super::{
+    DepthTest,
+    pipeline::{CountPipeline, count_layout},
+    tolerant::TolerantIds,
+    watch::Reading,
+};
 use crate::objects::{
     IdRequest, ViewObjectIds,
     phase::{Layer, ObjectIdItem},
@@ -54,67 +51,6 @@ const COUNTS_SIZE: u64 = 8;
 /// The counts that have arrived.
 #[derive(Clone, Default)]
 pub(super) struct Readings(pub Arc<Mutex<Vec<Reading>>>);
-
-/// Counts missing ids. Its key: whether the view is multisampled.
-#[derive(Resource)]
-pub(super) struct CountPipeline {
-    shader: Handle<Shader>,
-}
-
-pub(super) fn init_count_pipeline(
-    mut commands: Commands,
-    assets: Res<AssetServer>,
-    views: Query<Entity, With<IdCount>>,
-) {
-    // This runs again after a lost device, whose buffers are no longer valid.
-    for view in &views {
-        commands.entity(view).remove::<IdCount>();
-    }
-    commands.insert_resource(CountPipeline {
-        shader: load_embedded_asset!(assets.as_ref(), "count.wgsl"),
-    });
-}
-
-fn count_layout(multisampled: bool) -> BindGroupLayoutDescriptor {
-    let types = [
-        TextureSampleType::Float { filterable: false },
-        TextureSampleType::Uint,
-    ];
-    let [depth, ids] = if multisampled {
-        types.map(texture_2d_multisampled)
-    } else {
-        types.map(texture_2d)
-    };
-    let entries = BindGroupLayoutEntries::sequential(
-        ShaderStages::COMPUTE,
-        (
-            depth,
-            ids,
-            uniform_buffer_sized(false, None),
-            storage_buffer_sized(false, None),
-        ),
-    );
-    BindGroupLayoutDescriptor::new("comics_count_ids", &entries)
-}
-
-impl SpecializedComputePipeline for CountPipeline {
-    type Key = bool;
-
-    fn specialize(&self, multisampled: bool) -> ComputePipelineDescriptor {
-        ComputePipelineDescriptor {
-            label: Some("comics_count_ids".into()),
-            layout: vec![count_layout(multisampled)],
-            shader: self.shader.clone(),
-            shader_defs: if multisampled {
-                vec!["MULTISAMPLED".into()]
-            } else {
-                Vec::new()
-            },
-            entry_point: Some("count".into()),
-            ..Default::default()
-        }
-    }
-}
 
 /// States of [`IdCount`].
 const FREE: u8 = 0;
@@ -209,28 +145,26 @@ impl IdCount {
         let (buffer, state) = (self.copy.clone(), self.state.clone());
         let (camera, readings) = (self.camera, readings.clone());
         let tolerant = self.tolerant.load(Ordering::Relaxed);
-        self.copy
-            .slice(..)
-            .map_async(MapMode::Read, move |result| {
-                // Mapping fails on a lost device, whose buffers are dropped.
-                if result.is_ok() {
-                    let words: Vec<u32> = buffer
-                        .slice(..)
-                        .get_mapped_range()
-                        .chunks_exact(4)
-                        .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-                        .collect();
-                    buffer.unmap();
-                    let mut readings = readings.0.lock().unwrap_or_else(PoisonError::into_inner);
-                    readings.push(Reading {
-                        camera,
-                        covered: words[0],
-                        missing: words[1],
-                        tolerant,
-                    });
-                }
-                state.store(FREE, Ordering::Release);
-            });
+        self.copy.slice(..).map_async(MapMode::Read, move |result| {
+            // Mapping fails on a lost device, whose buffers are dropped.
+            if result.is_ok() {
+                let words: Vec<u32> = buffer
+                    .slice(..)
+                    .get_mapped_range()
+                    .chunks_exact(4)
+                    .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+                    .collect();
+                buffer.unmap();
+                let mut readings = readings.0.lock().unwrap_or_else(PoisonError::into_inner);
+                readings.push(Reading {
+                    camera,
+                    covered: words[0],
+                    missing: words[1],
+                    tolerant,
+                });
+            }
+            state.store(FREE, Ordering::Release);
+        });
     }
 }
 

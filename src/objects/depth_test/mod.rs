@@ -5,6 +5,7 @@
 //! tolerance brings them back (`watch.rs`), ids are drawn with one (`tolerant.rs`).
 
 mod count;
+mod pipeline;
 mod tolerant;
 mod watch;
 
@@ -33,7 +34,8 @@ use bevy::{
 };
 
 use self::{
-    count::{CountPipeline, Readings, init_count_pipeline, map_counts, prepare_counts},
+    count::{Readings, map_counts, prepare_counts},
+    pipeline::{CountPipeline, init_count_pipeline},
     tolerant::prepare_tolerant_ids,
     watch::Watch,
 };

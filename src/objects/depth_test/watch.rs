@@ -157,8 +157,8 @@ impl Watch {
 
     fn read(&mut self, reading: &Reading) {
         let fraction = reading.fraction();
-        let suspicious = reading.missing >= LEAST_PIXELS
-            && fraction > LEAST_FRACTION.max(2.0 * self.explained);
+        let suspicious =
+            reading.missing >= LEAST_PIXELS && fraction > LEAST_FRACTION.max(2.0 * self.explained);
         let own = |suspect: &Suspect| suspect.camera == reading.camera;
         self.stage = match self.stage {
             Stage::Watching(None) if suspicious && !reading.tolerant => {
