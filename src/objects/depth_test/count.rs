@@ -12,7 +12,7 @@ use bevy::{
     ecs::{
         component::Component,
         entity::Entity,
-        query::{With, Without},
+        query::With,
         system::{Commands, Query, Res, ResMut},
     },
     math::UVec4,
