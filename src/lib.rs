@@ -110,8 +110,8 @@ pub use motion_lines::MotionLines;
 #[cfg(feature = "objects")]
 pub use objects::{
     ATTRIBUTE_MESH_SECTION, DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle,
-    ObjectAbstraction, ObjectScreen, OutlineGroup, OutlineKinds, OutlineStyle, SelectionOutline,
-    ViewLineWidths, ViewObjectIds, XRayOutline, object_id,
+    ObjectAbstraction, ObjectIdDepthTest, ObjectScreen, OutlineGroup, OutlineKinds, OutlineStyle,
+    SelectionOutline, ViewLineWidths, ViewObjectIds, XRayOutline, object_id,
 };
 pub use plugin::ComicsPlugin;
 pub use schedule::ComicsSystems;

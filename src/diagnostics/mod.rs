@@ -102,7 +102,9 @@ pub enum StageOutcome {
     /// It ran.
     Ran,
     /// It ran with this method: a
-    /// [`ReductionMethod::name`](crate::ReductionMethod::name).
+    /// [`ReductionMethod::name`](crate::ReductionMethod::name), or `tolerant depth` for
+    /// [`ObjectIds`](ComicsStage::ObjectIds) that are not drawn at equal depth
+    /// (`ObjectIdDepthTest`).
     RanAs(&'static str),
     /// It was left out, for this reason.
     LeftOut(LeftOut),

@@ -2,11 +2,11 @@
 
 use bevy::{
     camera::{MainPassResolutionOverride, Viewport},
-    ecs::{system::Res, world::World},
+    ecs::{entity::Entity, system::Res, world::World},
     log::error_once,
     render::{
         camera::ExtractedCamera,
-        render_phase::ViewSortedRenderPhases,
+        render_phase::{SortedRenderPhase, TrackedRenderPass, ViewSortedRenderPhases},
         render_resource::{
             LoadOp, Operations, RenderPassColorAttachment, RenderPassDescriptor, StoreOp,
             TextureView,
@@ -18,11 +18,20 @@ use bevy::{
 
 use super::{
     IdRequest, ViewLineWidths, ViewObjectIds,
+    depth_test::{DepthTest, TOLERANT, TolerantIds},
     layer::{LayerRequest, ViewLayer},
     line_widths::attachment,
     phase::{Layer, ObjectIdItem},
 };
 use crate::diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome};
+
+/// A view whose ids are drawn.
+type Ids = (
+    &'static IdRequest,
+    &'static ViewObjectIds,
+    Option<&'static ViewLineWidths>,
+    Option<&'static TolerantIds>,
+);
 
 /// Draws the object ids of a view.
 pub(super) fn draw_object_ids(
@@ -32,9 +41,10 @@ pub(super) fn draw_object_ids(
         &ExtractedView,
         &ViewDepthTexture,
         Option<&MainPassResolutionOverride>,
-        Option<(&IdRequest, &ViewObjectIds, Option<&ViewLineWidths>)>,
+        Option<Ids>,
         Option<(&LayerRequest, &ViewLayer)>,
     )>,
+    test: Res<DepthTest>,
     phases: Option<Res<ViewSortedRenderPhases<ObjectIdItem>>>,
     ledger: Res<StageLedger>,
     mut ctx: RenderContext,
@@ -52,30 +62,29 @@ pub(super) fn draw_object_ids(
         if let Some(viewport) = &viewport {
             render_pass.set_camera_viewport(viewport);
         }
-        let range = ObjectIdItem::of(phase, layer);
-        if range.is_empty() {
-            return Ok(StageOutcome::Ran);
-        }
-        let drawn = phase.render_range(&mut render_pass, world, entity, range);
-        drawn.map(|()| StageOutcome::Ran).map_err(|error| {
-            error_once!("the object ids were not drawn: {error:?}");
-            LeftOut::PipelineNotReady
-        })
+        render_layer(phase, &mut render_pass, (world, entity), layer)
     };
-    if let Some((request, target, widths)) = ids {
+    if let Some((request, target, widths, own)) = ids {
         let targets = [Some(cleared(&target.view)), widths.map(attachment)];
-        let count = if widths.is_some() { 2 } else { 1 };
-        let outcome = draw(
-            RenderPassDescriptor {
-                label: Some("comics_object_ids"),
-                color_attachments: &targets[..count],
-                depth_stencil_attachment: Some(depth.get_attachment(StoreOp::Store)),
-                ..Default::default()
-            },
-            request.samples,
-            Layer::Prepass,
-        );
-        let outcome = outcome.unwrap_or_else(StageOutcome::LeftOut);
+        let pass = RenderPassDescriptor {
+            label: Some("comics_object_ids"),
+            color_attachments: &targets[..1 + usize::from(widths.is_some())],
+            depth_stencil_attachment: Some(match own {
+                Some(own) => own.attachment(),
+                None => depth.get_attachment(StoreOp::Store),
+            }),
+            ..Default::default()
+        };
+        let outcome = if test.tolerant() == own.is_some() {
+            draw(pass, request.samples, Layer::Prepass)
+        } else {
+            // The depth of the prepass could not be bound.
+            Err(LeftOut::SampleCountMismatch)
+        };
+        let outcome = match outcome {
+            Ok(_) if own.is_some() => StageOutcome::RanAs(TOLERANT),
+            outcome => outcome.unwrap_or_else(StageOutcome::LeftOut),
+        };
         ledger.set(request.camera, ComicsStage::ObjectIds, outcome);
     }
     if let Some((request, layer)) = layer {
@@ -84,6 +93,24 @@ pub(super) fn draw_object_ids(
         let outcome = outcome.unwrap_or_else(StageOutcome::LeftOut);
         ledger.set(request.camera, ComicsStage::MarkedObjects, outcome);
     }
+}
+
+/// Draws the items of a layer.
+fn render_layer<'w>(
+    phase: &SortedRenderPhase<ObjectIdItem>,
+    pass: &mut TrackedRenderPass<'w>,
+    (world, view): (&'w World, Entity),
+    layer: Layer,
+) -> Result<StageOutcome, LeftOut> {
+    let range = ObjectIdItem::of(phase, layer);
+    if range.is_empty() {
+        return Ok(StageOutcome::Ran);
+    }
+    let drawn = phase.render_range(pass, world, view, range);
+    drawn.map(|()| StageOutcome::Ran).map_err(|error| {
+        error_once!("the object ids were not drawn: {error:?}");
+        LeftOut::PipelineNotReady
+    })
 }
 
 /// A texture of ids that is cleared before it is drawn to.

@@ -1,5 +1,5 @@
 //! Draws object ids: every mesh of the depth prepass is drawn again where its depth is
-//! equal to that of the prepass.
+//! equal to that of the prepass (`depth_test/`: or nearly so).
 //!
 //! Skins, morph targets and materials with their own vertex shader are correct, because
 //! the vertex shader is that of the prepass. Alpha masks are correct, because what the
@@ -256,7 +256,7 @@ type Tables<'w> = (
     Res<'w, DepthWrites>,
 );
 
-fn prepare_object_table(
+pub(super) fn prepare_object_table(
     phases: Res<ViewSortedRenderPhases<ObjectIdItem>>,
     (styles, groups, marks, writes): Tables,
     (sections, section_tables): (Res<SectionBuffer>, Res<SectionTables>),
@@ -323,6 +323,7 @@ pub(crate) fn build(app: &mut App) {
         .add_render_command::<ObjectIdItem, DrawId>()
         .add_render_command::<ObjectIdItem, DrawIdWithMaterial>();
     add_systems(render_app);
+    super::depth_test::build_render(render_app);
     super::depths::build(render_app);
 }
 

@@ -4,6 +4,9 @@
 #ifdef LINE_WIDTHS
 #import bevy_comics::objects::widths::line_width
 #endif
+#ifdef TOLERANT
+#import bevy_comics::objects::tolerance::near_samples
+#endif
 
 // Id, slot, and the first word of the sections.
 @group(1) @binding(0) var<storage, read> objects: array<vec4<u32>>;
@@ -12,6 +15,9 @@ struct Drawn {
     @location(0) object: vec2<u32>,
 #ifdef LINE_WIDTHS
     @location(1) width: f32,
+#endif
+#ifdef TOLERANT_MULTISAMPLED
+    @builtin(sample_mask) samples: u32,
 #endif
 }
 
@@ -24,8 +30,20 @@ fn object_id(
     @location(8) color: vec4<f32>,
 #endif
     @location(7) @interpolate(flat) instance: u32,
+#ifdef TOLERANT
+    @builtin(position) position: vec4<f32>,
+#endif
 ) -> Drawn {
     var drawn: Drawn;
+#ifdef TOLERANT
+    let samples = near_samples(position);
+    if samples == 0u {
+        discard;
+    }
+#ifdef TOLERANT_MULTISAMPLED
+    drawn.samples = samples;
+#endif
+#endif
     drawn.object = objects[min(instance, arrayLength(&objects) - 1u)].xy;
 #ifdef LINE_WIDTHS
     var vertex_factor = 1.0;

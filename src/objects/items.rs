@@ -46,6 +46,7 @@ use bevy::{
 
 use super::{
     ID_FORMAT, Pressure, WIDTH_FORMAT,
+    depth_test::{DepthTest, TolerantIds, with_prepass_depth},
     layer::MarkSpecializer,
     lightmaps::MeshLightmaps,
     line_widths::{WideMeshes, WidthBindings},
@@ -108,6 +109,8 @@ pub(super) struct IdVariant {
     widths: bool,
     /// They are those of the mesh's vertices.
     vertex_widths: bool,
+    /// Depth is compared with a tolerance.
+    tolerant: bool,
 }
 
 impl IdVariant {
@@ -115,6 +118,7 @@ impl IdVariant {
         [
             (self.widths, "LINE_WIDTHS"),
             (self.vertex_widths, "VERTEX_WIDTHS"),
+            (self.tolerant, "TOLERANT"),
         ]
         .into_iter()
         .filter(|(on, _)| *on)
@@ -160,7 +164,12 @@ impl SpecializedMeshPipeline for ObjectIdSpecializer {
     ) -> Result<RenderPipelineDescriptor, SpecializedMeshPipelineError> {
         let mut descriptor = self.prepass.specialize(key, layout)?;
         descriptor.label = Some("comics_object_ids".into());
-        descriptor.layout[1] = self.layout.clone();
+        let multisampled = descriptor.multisample.count > 1;
+        descriptor.layout[1] = if variant.tolerant {
+            with_prepass_depth(&self.layout, multisampled)
+        } else {
+            self.layout.clone()
+        };
         let target = |format| {
             Some(ColorTargetState {
                 format,
@@ -177,15 +186,23 @@ impl SpecializedMeshPipeline for ObjectIdSpecializer {
         let engine = variant
             .widths
             .then(|| descriptor.vertex.shader_defs.clone());
+        let mut shader_defs: Vec<_> = engine.into_iter().flatten().chain(variant.defs()).collect();
+        if variant.tolerant && multisampled {
+            shader_defs.push("TOLERANT_MULTISAMPLED".into());
+        }
         descriptor.fragment = Some(FragmentState {
             shader: self.shader.clone(),
-            shader_defs: engine.into_iter().flatten().chain(variant.defs()).collect(),
+            shader_defs,
             entry_point: Some("object_id".into()),
             targets: formats.iter().copied().map(target).collect(),
         });
         if let Some(depth) = &mut descriptor.depth_stencil {
-            depth.depth_write_enabled = Some(false);
-            depth.depth_compare = Some(CompareFunction::Equal);
+            depth.depth_write_enabled = Some(variant.tolerant);
+            depth.depth_compare = Some(if variant.tolerant {
+                CompareFunction::GreaterEqual
+            } else {
+                CompareFunction::Equal
+            });
         }
         Ok(descriptor)
     }
@@ -203,19 +220,21 @@ pub(super) struct SetObjectTable<const I: usize>;
 
 impl<const I: usize> RenderCommand<ObjectIdItem> for SetObjectTable<I> {
     type Param = SRes<ObjectTable>;
-    type ViewQuery = Option<Read<WidthBindings>>;
+    type ViewQuery = (Option<Read<WidthBindings>>, Option<Read<TolerantIds>>);
     type ItemQuery = ();
 
     fn render<'w>(
         item: &ObjectIdItem,
-        widths: Option<&'w WidthBindings>,
+        (widths, tolerant): (Option<&'w WidthBindings>, Option<&'w TolerantIds>),
         _entity: Option<()>,
         table: SystemParamItem<'w, '_, Self::Param>,
         pass: &mut TrackedRenderPass<'w>,
     ) -> RenderCommandResult {
-        // Only the pipelines of ids draw widths.
-        let bind_group = match widths.filter(|_| item.layer == Layer::Prepass) {
-            Some(widths) => &widths.0,
+        // Only the pipelines of ids draw widths, and compare depth with a tolerance.
+        let own = tolerant.map(|tolerant| &tolerant.bind_group);
+        let own = own.or(widths.map(|widths| &widths.0));
+        let bind_group = match own.filter(|_| item.layer == Layer::Prepass) {
+            Some(own) => own,
             None => &table.into_inner().bind_group,
         };
         let Some(bind_group) = bind_group else {
@@ -292,6 +311,7 @@ pub(super) struct IdItems<'w> {
     pipelines: ResMut<'w, SpecializedMeshPipelines<ObjectIdSpecializer>>,
     marked: ResMut<'w, SpecializedMeshPipelines<MarkSpecializer>>,
     wide: Res<'w, WideMeshes>,
+    test: Res<'w, DepthTest>,
     sections: (Res<'w, SectionBuffer>, Res<'w, SectionTables>),
     cache: Res<'w, PipelineCache>,
     meshes: Res<'w, RenderAssets<RenderMesh>>,
@@ -313,6 +333,7 @@ impl IdItems<'_> {
             sections: buffer.start(tables, entity).is_some(),
             widths,
             vertex_widths: wanted && has_colors,
+            tolerant: self.test.tolerant(),
         }
     }
 
@@ -347,8 +368,18 @@ impl IdItems<'_> {
             }
         };
         let specializer = self.shared.specializer(&material.properties, variant);
-        let key = (key, variant);
         let (cache, layout) = (&self.cache, &mesh.layout);
+        if layer == Layer::Prepass && self.test.compiles_ahead() {
+            let tolerant = IdVariant {
+                tolerant: true,
+                ..variant
+            };
+            let key = (key.clone(), tolerant);
+            let pipeline = self.pipelines.specialize(cache, &specializer, key, layout);
+            let compiled = pipeline.is_ok_and(|id| cache.get_render_pipeline(id).is_some());
+            self.test.note_ahead(compiled);
+        }
+        let key = (key, variant);
         let pipeline = match layer {
             Layer::Marked => {
                 let specializer = MarkSpecializer(specializer);

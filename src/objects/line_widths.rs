@@ -19,9 +19,9 @@ use bevy::{
     render::{
         Extract,
         render_resource::{
-            BindGroup, BindGroupEntries, Extent3d, LoadOp, Operations, PipelineCache,
+            BindGroup, BindGroupEntry, Extent3d, IntoBinding, LoadOp, Operations, PipelineCache,
             RenderPassColorAttachment, StoreOp, TextureDescriptor, TextureDimension, TextureUsages,
-            UniformBuffer,
+            TextureView, UniformBuffer,
         },
         renderer::{RenderDevice, RenderQueue},
         texture::TextureCache,
@@ -32,6 +32,7 @@ use bevy::{
 use super::{
     IdRequest, IdsWanted, ObjectStyles, ViewLineWidths,
     components::inherit,
+    depth_test::with_prepass_depth,
     items::{ObjectIdPipeline, ObjectTable},
     sections::SectionBuffer,
     widths::WIDTH_FORMAT,
@@ -140,7 +141,7 @@ impl WidthViews {
 #[derive(Component)]
 pub(super) struct WidthBindings(pub Option<BindGroup>);
 
-/// What the preparation of widths reads.
+/// What binds the objects of a view.
 #[derive(SystemParam)]
 pub(super) struct Drawing<'w> {
     queued: Res<'w, WidthViews>,
@@ -153,26 +154,41 @@ pub(super) struct Drawing<'w> {
 }
 
 impl Drawing<'_> {
-    fn bindings(&self, request: &IdRequest) -> WidthBindings {
-        let mut uniform = UniformBuffer::from(request.pressure.unwrap_or_default());
-        uniform.write_buffer(&self.device, &self.queue);
-        let parts = (
-            self.table.objects.binding(),
-            self.sections.buffer(),
-            uniform.binding(),
-        );
+    /// Whether the widths of a view are drawn.
+    pub fn draws_widths(&self, view: RetainedViewEntity) -> bool {
+        self.queued.0.contains(&view)
+    }
+
+    /// What the pass of object ids binds; `None` without an object. `depth`: that of the
+    /// prepass, if depth is compared with a tolerance.
+    pub fn bind_group(
+        &self,
+        request: &IdRequest,
+        widths: bool,
+        depth: Option<&TextureView>,
+    ) -> Option<BindGroup> {
         // Without an object there is no group either.
-        let (true, (Some(objects), Some(sections), Some(uniform))) =
-            (self.table.bind_group.is_some(), parts)
-        else {
-            return WidthBindings(None);
+        self.table.bind_group.as_ref()?;
+        let mut pressure = UniformBuffer::from(request.pressure.unwrap_or_default());
+        let entry = |binding, resource| BindGroupEntry { binding, resource };
+        let mut entries = vec![
+            entry(0, self.table.objects.binding()?),
+            entry(1, self.sections.buffer()?.as_entire_binding()),
+        ];
+        let mut layout = if widths {
+            pressure.write_buffer(&self.device, &self.queue);
+            entries.push(entry(2, pressure.binding()?));
+            self.shared.with_widths.clone()
+        } else {
+            self.shared.layout.clone()
         };
-        let layout = self.cache.get_bind_group_layout(&self.shared.with_widths);
-        WidthBindings(Some(self.device.create_bind_group(
-            "comics_objects_with_widths",
-            &layout,
-            &BindGroupEntries::sequential((objects, sections.as_entire_binding(), uniform)),
-        )))
+        if let Some(depth) = depth {
+            entries.push(entry(3, depth.into_binding()));
+            layout = with_prepass_depth(&layout, request.samples > 1);
+        }
+        let layout = self.cache.get_bind_group_layout(&layout);
+        let group = (self.device).create_bind_group("comics_objects_of_view", &layout, &entries);
+        Some(group)
     }
 }
 
@@ -192,7 +208,7 @@ pub(super) fn prepare_line_widths(
 ) {
     for (entity, view, request) in &views {
         let mut target = commands.entity(entity);
-        if !drawing.queued.0.contains(&view.retained_view_entity) {
+        if !drawing.draws_widths(view.retained_view_entity) {
             target.remove::<(ViewLineWidths, WidthBindings)>();
             continue;
         }
@@ -213,7 +229,8 @@ pub(super) fn prepare_line_widths(
             view_formats: &[],
         };
         let texture = ViewLineWidths::from(textures.get(&drawing.device, descriptor));
-        target.insert((texture, drawing.bindings(request)));
+        let bindings = WidthBindings(drawing.bind_group(request, true, None));
+        target.insert((texture, bindings));
     }
     for entity in &stale {
         let mut target = commands.entity(entity);

@@ -7,6 +7,8 @@ mod abstraction;
 #[cfg(feature = "objects")]
 mod anchors;
 #[cfg(feature = "objects")]
+mod depth_test;
+#[cfg(feature = "objects")]
 mod depths;
 #[cfg(feature = "objects")]
 mod draw;
@@ -42,6 +44,8 @@ pub use abstraction::ObjectAbstraction;
 pub use anchors::ObjectScreen;
 #[cfg(feature = "objects")]
 pub use components::{NoOutlines, NoStyle, OutlineKinds, OutlineStyle};
+#[cfg(feature = "objects")]
+pub use depth_test::ObjectIdDepthTest;
 #[cfg(feature = "objects")]
 pub use groups::OutlineGroup;
 #[cfg(feature = "objects")]
@@ -228,6 +232,7 @@ impl Plugin for ObjectsPlugin {
                         .chain()
                         .after(bevy::transform::TransformSystems::Propagate),
                 );
+            depth_test::build(app);
             marks::build(app);
             groups::build(app);
             sections::build(app);
@@ -259,6 +264,7 @@ impl ObjectsPlugin {
             bevy::asset::embedded_asset!(app, "depths.wgsl");
             bevy::asset::embedded_asset!(app, "ids.wgsl");
             bevy::asset::embedded_asset!(app, "sections.wgsl");
+            depth_test::build_shaders(app);
             transparent::build_shaders(app);
         }
         let Some(render_app) = app.get_sub_app_mut(RenderApp) else {

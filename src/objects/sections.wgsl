@@ -6,6 +6,9 @@ enable primitive_index;
 #ifdef LINE_WIDTHS
 #import bevy_comics::objects::widths::line_width
 #endif
+#ifdef TOLERANT
+#import bevy_comics::objects::tolerance::near_samples
+#endif
 
 @group(1) @binding(0) var<storage, read> objects: array<vec4<u32>>;
 // Four triangles to a word.
@@ -15,6 +18,9 @@ struct Drawn {
     @location(0) object: vec2<u32>,
 #ifdef LINE_WIDTHS
     @location(1) width: f32,
+#endif
+#ifdef TOLERANT_MULTISAMPLED
+    @builtin(sample_mask) samples: u32,
 #endif
 }
 
@@ -28,10 +34,22 @@ fn object_id(
 #endif
     @location(7) @interpolate(flat) instance: u32,
     @builtin(primitive_index) triangle: u32,
+#ifdef TOLERANT
+    @builtin(position) position: vec4<f32>,
+#endif
 ) -> Drawn {
+    var drawn: Drawn;
+#ifdef TOLERANT
+    let samples = near_samples(position);
+    if samples == 0u {
+        discard;
+    }
+#ifdef TOLERANT_MULTISAMPLED
+    drawn.samples = samples;
+#endif
+#endif
     let object = objects[min(instance, arrayLength(&objects) - 1u)];
     let word = sections[min(object.z + triangle / 4u, arrayLength(&sections) - 1u)];
-    var drawn: Drawn;
     drawn.object = vec2(object.x, object.y | (((word >> (8u * (triangle % 4u))) & 255u) << 8u));
 #ifdef LINE_WIDTHS
     var vertex_factor = 1.0;

@@ -33,6 +33,7 @@ mod hatched_material;
 mod hatching;
 mod held_pose;
 mod house;
+mod id_depth;
 mod ids;
 mod impact;
 mod ink_on_paper;

@@ -770,7 +770,16 @@ fn every_kind_of_outline_composes_and_validates() {
         check(&resolve, &[&["DEPTH", "MULTISAMPLED"], &view[..]].concat());
     }
     for widths in [&[][..], &["LINE_WIDTHS"], &["LINE_WIDTHS", "VERTEX_WIDTHS"]] {
-        let ids = module(&shader("objects/ids.wgsl"), widths);
-        ids.unwrap_or_else(|error| panic!("{widths:?}: {error}"));
+        for depth in [
+            &[][..],
+            &["TOLERANT"],
+            &["TOLERANT", "TOLERANT_MULTISAMPLED"],
+        ] {
+            let defs = [widths, depth].concat();
+            check(&shader("objects/ids.wgsl"), &defs);
+        }
+    }
+    for view in subsets(&["MULTISAMPLED"]) {
+        check(&shader("objects/depth_test/count.wgsl"), &view);
     }
 }

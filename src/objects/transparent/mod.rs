@@ -28,7 +28,7 @@ use self::{
     items::{TransparentSpecializer, init_transparent_pipeline},
     pass::{NormalCopyPipeline, draw_transparent_depth, init_normal_copy, prepare_own_surfaces},
 };
-use super::{components::inherit, draw::draw_object_ids, table::DepthWrites};
+use super::{components::inherit, depth_test::count_ids, table::DepthWrites};
 use crate::{
     schedule::{ComicsSystems, PrepareComics},
     settings::{FieldRange, bounded},
@@ -156,7 +156,7 @@ pub(super) fn finish(app: &mut App) {
         .add_systems(
             Core3d,
             draw_transparent_depth
-                .after(draw_object_ids)
+                .after(count_ids)
                 .after(Core3dSystems::Prepass)
                 .before(ComicsSystems::DepthRange)
                 .before(Core3dSystems::MainPass),

@@ -1,0 +1,264 @@
+//! Counts covered pixels without an id, on the GPU. The CPU never waits for the counts, so they
+//! arrive a few frames late.
+
+use std::sync::{
+    Arc, Mutex, PoisonError,
+    atomic::{AtomicBool, AtomicU8, Ordering},
+};
+
+use bevy::{
+    camera::{MainPassResolutionOverride, Viewport},
+    core_pipeline::prepass::ViewPrepassTextures,
+    ecs::{
+        component::Component,
+        entity::Entity,
+        query::With,
+        system::{Commands, Query, Res, ResMut},
+    },
+    math::UVec4,
+    render::{
+        camera::ExtractedCamera,
+        render_phase::ViewSortedRenderPhases,
+        render_resource::{
+            BindGroupEntries, Buffer, BufferDescriptor, BufferUsages, CachedComputePipelineId,
+            ComputePassDescriptor, MapMode, PipelineCache, SpecializedComputePipelines,
+            TextureView,
+        },
+        renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
+        view::{ExtractedView, ViewDepthTexture},
+    },
+};
+
+use super::{
+    DepthTest,
+    pipeline::{CountPipeline, count_layout},
+    tolerant::TolerantIds,
+    watch::Reading,
+};
+use crate::objects::{
+    IdRequest, ViewObjectIds,
+    phase::{Layer, ObjectIdItem},
+};
+
+/// `STEP` and `STRIP` of `count.wgsl`.
+const STEP: u32 = 4;
+const STRIP: u32 = 16;
+/// Invocations of a workgroup in x, and in y.
+const WORKGROUP: u32 = 8;
+/// Bytes of the counts.
+const COUNTS_SIZE: u64 = 8;
+
+/// The counts that have arrived.
+#[derive(Clone, Default)]
+pub(super) struct Readings(pub Arc<Mutex<Vec<Reading>>>);
+
+/// States of [`IdCount`].
+const FREE: u8 = 0;
+const RECORDED: u8 = 1;
+const MAPPED: u8 = 2;
+
+/// On a view whose missing ids are counted.
+#[derive(Component)]
+pub(in crate::objects) struct IdCount {
+    camera: Entity,
+    multisampled: bool,
+    pipeline: CachedComputePipelineId,
+    /// The viewport, the counts, and their copy for the CPU.
+    viewport: Buffer,
+    counts: Buffer,
+    copy: Buffer,
+    /// From the recording of a count until it was read, no other is recorded.
+    state: Arc<AtomicU8>,
+    /// Whether the ids of the recorded count were drawn with a tolerance.
+    tolerant: AtomicBool,
+}
+
+impl IdCount {
+    fn new(device: &RenderDevice, request: &IdRequest, pipeline: CachedComputePipelineId) -> Self {
+        let buffer = |label, size, usage| {
+            device.create_buffer(&BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: usage | BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let counted = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
+        Self {
+            camera: request.camera,
+            multisampled: request.samples > 1,
+            pipeline,
+            viewport: buffer("comics_count_ids_viewport", 16, BufferUsages::UNIFORM),
+            counts: buffer("comics_count_ids", COUNTS_SIZE, counted),
+            copy: buffer("comics_count_ids_copy", COUNTS_SIZE, BufferUsages::MAP_READ),
+            state: Arc::default(),
+            tolerant: AtomicBool::new(false),
+        }
+    }
+
+    /// Records a count, unless the pipeline is compiling.
+    fn record(
+        &self,
+        ctx: &mut RenderContext,
+        (cache, queue): (&PipelineCache, &RenderQueue),
+        (depth, ids): (&TextureView, &TextureView),
+        viewport: UVec4,
+    ) {
+        let Some(pipeline) = cache.get_compute_pipeline(self.pipeline) else {
+            return;
+        };
+        let bytes: Vec<u8> = viewport.to_array().map(u32::to_le_bytes).concat();
+        queue.write_buffer(&self.viewport, 0, &bytes);
+        let layout = cache.get_bind_group_layout(&count_layout(self.multisampled));
+        let group = ctx.render_device().create_bind_group(
+            "comics_count_ids",
+            &layout,
+            &BindGroupEntries::sequential((
+                depth,
+                ids,
+                self.viewport.as_entire_binding(),
+                self.counts.as_entire_binding(),
+            )),
+        );
+        let encoder = ctx.command_encoder();
+        encoder.clear_buffer(&self.counts, 0, None);
+        {
+            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+                label: Some("comics_count_ids"),
+                timestamp_writes: None,
+            });
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            let across = viewport.z.div_ceil(STEP * STRIP * WORKGROUP);
+            pass.dispatch_workgroups(across, viewport.w.div_ceil(STEP * WORKGROUP), 1);
+        }
+        encoder.copy_buffer_to_buffer(&self.counts, 0, &self.copy, 0, COUNTS_SIZE);
+        self.state.store(RECORDED, Ordering::Release);
+    }
+
+    /// Maps the count of this frame. Call it after it was submitted.
+    fn map(&self, readings: &Readings) {
+        if self.state.load(Ordering::Acquire) != RECORDED {
+            return;
+        }
+        self.state.store(MAPPED, Ordering::Release);
+        let (buffer, state) = (self.copy.clone(), self.state.clone());
+        let (camera, readings) = (self.camera, readings.clone());
+        let tolerant = self.tolerant.load(Ordering::Relaxed);
+        self.copy.slice(..).map_async(MapMode::Read, move |result| {
+            // Mapping fails on a lost device, whose buffers are dropped.
+            if result.is_ok() {
+                let words: Vec<u32> = buffer
+                    .slice(..)
+                    .get_mapped_range()
+                    .chunks_exact(4)
+                    .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
+                    .collect();
+                buffer.unmap();
+                let mut readings = readings.0.lock().unwrap_or_else(PoisonError::into_inner);
+                readings.push(Reading {
+                    camera,
+                    covered: words[0],
+                    missing: words[1],
+                    tolerant,
+                });
+            }
+            state.store(FREE, Ordering::Release);
+        });
+    }
+}
+
+/// Gives the views whose ids are drawn what counting needs, on devices with compute shaders.
+pub(super) fn prepare_counts(
+    mut commands: Commands,
+    views: Query<(Entity, &IdRequest, Option<&IdCount>)>,
+    counted: Query<(Entity, Option<&IdRequest>), With<IdCount>>,
+    test: Res<DepthTest>,
+    (pipeline, cache, device): (Res<CountPipeline>, Res<PipelineCache>, Res<RenderDevice>),
+    mut pipelines: ResMut<SpecializedComputePipelines<CountPipeline>>,
+) {
+    for (view, request) in &counted {
+        if request.is_none() || !test.watches() {
+            commands.entity(view).remove::<IdCount>();
+        }
+    }
+    if !test.counts() || device.limits().max_compute_workgroup_size_x == 0 {
+        return;
+    }
+    for (view, request, known) in &views {
+        let multisampled = request.samples > 1;
+        if known.is_none_or(|known| known.multisampled != multisampled) {
+            let id = pipelines.specialize(&cache, &pipeline, multisampled);
+            let count = IdCount::new(&device, request, id);
+            commands.entity(view).insert(count);
+        }
+    }
+}
+
+/// The view whose ids are counted.
+type Counted = (
+    (
+        &'static ExtractedCamera,
+        &'static ExtractedView,
+        Option<&'static MainPassResolutionOverride>,
+    ),
+    (&'static ViewDepthTexture, &'static ViewPrepassTextures),
+    (
+        &'static IdRequest,
+        &'static ViewObjectIds,
+        Option<&'static TolerantIds>,
+        &'static IdCount,
+    ),
+);
+
+/// Counts the missing ids of a view, after they were drawn, in some of the frames.
+pub(in crate::objects) fn count_ids(
+    view: ViewQuery<Counted>,
+    phases: Option<Res<ViewSortedRenderPhases<ObjectIdItem>>>,
+    test: Res<DepthTest>,
+    (cache, queue): (Res<PipelineCache>, Res<RenderQueue>),
+    mut ctx: RenderContext,
+) {
+    let ((camera, extracted, resolution), (depth, prepass), ids) = view.into_inner();
+    let (request, ids, tolerant, count) = ids;
+    let is_tolerant = test.tolerant();
+    let free = count.state.load(Ordering::Acquire) == FREE;
+    if !test.counts() || !free || is_tolerant != tolerant.is_some() {
+        return;
+    }
+    let Some(covered) = prepass.depth.as_ref().map(|depth| &depth.texture) else {
+        return;
+    };
+    let samples = [&depth.texture, &covered.texture, &ids.texture].map(|t| t.sample_count());
+    if samples != [request.samples; 3] || count.multisampled != (request.samples > 1) {
+        return;
+    }
+    // Meshes whose pipelines compile have no ids yet. Without a mesh, the depth may be old.
+    let ready = phases.is_some_and(|phases| {
+        let phase = phases.get(&extracted.retained_view_entity);
+        phase.is_some_and(|phase| {
+            let drawn = ObjectIdItem::of(phase, Layer::Prepass);
+            let mut items = phase.items.values().take(drawn.end);
+            !drawn.is_empty() && items.all(|i| cache.get_render_pipeline(i.pipeline).is_some())
+        })
+    });
+    if !ready {
+        return;
+    }
+    // What is beside the viewport is depth of other cameras.
+    let own = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
+    let viewport = own.map_or(UVec4::new(0, 0, request.size.x, request.size.y), |own| {
+        let (at, size) = (own.physical_position, own.physical_size);
+        UVec4::new(at.x, at.y, size.x, size.y)
+    });
+    count.tolerant.store(is_tolerant, Ordering::Relaxed);
+    let views = (&covered.default_view, &ids.view);
+    count.record(&mut ctx, (&cache, &queue), views, viewport);
+}
+
+/// Maps the counts of this frame. Runs after they were submitted.
+pub(super) fn map_counts(counts: Query<&IdCount>, test: Res<DepthTest>) {
+    for count in &counts {
+        count.map(&test.readings);
+    }
+}

@@ -1,0 +1,128 @@
+//! What object ids are drawn with instead of the view's depth, if their depth is compared with a
+//! tolerance: a depth texture of their own, and the depth of the prepass as a texture.
+//!
+//! A depth test alone cannot do it. A bias in front of the prepass, or depth of their own without
+//! the prepass, would give ids to what an alpha mask has cut away, because that lies in front.
+//! Only a comparison from both sides needs no code of the materials.
+
+use bevy::{
+    core_pipeline::{core_3d::CORE_3D_DEPTH_FORMAT, prepass::ViewPrepassTextures},
+    ecs::{
+        component::Component,
+        entity::Entity,
+        query::{With, Without},
+        system::{Commands, Query, Res, ResMut},
+    },
+    render::{
+        render_resource::{
+            BindGroup, BindGroupLayoutDescriptor, Extent3d, LoadOp, Operations,
+            RenderPassDepthStencilAttachment, ShaderStages, StoreOp, TextureDescriptor,
+            TextureDimension, TextureSampleType, TextureUsages,
+            binding_types::{texture_2d, texture_2d_multisampled},
+        },
+        renderer::RenderDevice,
+        texture::{CachedTexture, TextureCache},
+        view::ExtractedView,
+    },
+};
+
+use super::DepthTest;
+use crate::objects::{IdRequest, line_widths::Drawing};
+
+/// On a view whose ids are drawn with a tolerance in this frame.
+#[derive(Component)]
+pub(in crate::objects) struct TolerantIds {
+    depth: CachedTexture,
+    /// What the pass binds instead of `ObjectTable::bind_group`; `None` if there is no object.
+    pub bind_group: Option<BindGroup>,
+}
+
+impl TolerantIds {
+    /// The depth attachment of the pass. Nothing reads it later.
+    pub fn attachment(&self) -> RenderPassDepthStencilAttachment<'_> {
+        RenderPassDepthStencilAttachment {
+            view: &self.depth.default_view,
+            depth_ops: Some(Operations {
+                load: LoadOp::Clear(0.0),
+                store: StoreOp::Discard,
+            }),
+            stencil_ops: None,
+        }
+    }
+}
+
+/// A layout of the pass, with the depth of the prepass.
+pub(in crate::objects) fn with_prepass_depth(
+    layout: &BindGroupLayoutDescriptor,
+    multisampled: bool,
+) -> BindGroupLayoutDescriptor {
+    let float = TextureSampleType::Float { filterable: false };
+    let texture = if multisampled {
+        texture_2d_multisampled(float)
+    } else {
+        texture_2d(float)
+    };
+    let mut layout = layout.clone();
+    layout
+        .entries
+        .push(texture.build(3, ShaderStages::FRAGMENT));
+    layout
+}
+
+/// The views whose ids are drawn, and those whose ids are no longer drawn.
+type Views<'w, 's> = (
+    Query<
+        'w,
+        's,
+        (
+            Entity,
+            &'static ExtractedView,
+            &'static IdRequest,
+            Option<&'static ViewPrepassTextures>,
+        ),
+    >,
+    Query<'w, 's, Entity, (With<TolerantIds>, Without<IdRequest>)>,
+);
+
+/// Gets the textures of this frame, and binds the depth of the prepass.
+pub(super) fn prepare_tolerant_ids(
+    mut commands: Commands,
+    (views, stale): Views,
+    test: Res<DepthTest>,
+    drawing: Drawing,
+    (mut textures, device): (ResMut<TextureCache>, Res<RenderDevice>),
+) {
+    for view in &stale {
+        commands.entity(view).remove::<TolerantIds>();
+    }
+    for (entity, view, request, prepass) in &views {
+        let mut target = commands.entity(entity);
+        let found = prepass
+            .and_then(|prepass| prepass.depth.as_ref())
+            .map(|depth| &depth.texture)
+            .filter(|depth| depth.texture.sample_count() == request.samples);
+        let (true, Some(found)) = (test.tolerant(), found) else {
+            target.remove::<TolerantIds>();
+            continue;
+        };
+        let descriptor = TextureDescriptor {
+            label: Some("comics_object_id_depth"),
+            size: Extent3d {
+                width: request.size.x,
+                height: request.size.y,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: request.samples,
+            dimension: TextureDimension::D2,
+            format: CORE_3D_DEPTH_FORMAT,
+            usage: TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        };
+        let widths = drawing.draws_widths(view.retained_view_entity);
+        target.insert(TolerantIds {
+            depth: textures.get(&device, descriptor),
+            bind_group: drawing.bind_group(request, widths, Some(&found.default_view)),
+        });
+    }
+}

@@ -1,0 +1,289 @@
+//! Object ids on devices that compute other positions in the pass of ids than in the prepass.
+//!
+//! No such device is at hand, so the engine's vertex shader is changed: it multiplies depth by a
+//! factor, in the pass of ids only. That pass is the one without normals.
+
+use bevy::{
+    asset::RenderAssetUsages,
+    prelude::*,
+    render::{
+        render_resource::{Extent3d, TextureDimension, TextureFormat},
+        view::Msaa,
+    },
+    shader::{Shader, Source},
+};
+use bevy_comics::{
+    ComicStyle, ComicsDiagnostics, ComicsStage, DepthWrite, NoOutlines, ObjectIdDepthTest,
+    Outlines, StageOutcome, object_id,
+};
+use bevy_comics_testkit::read_back::IdImage;
+
+use crate::small::{Small, unlit};
+
+/// Eight to seventeen steps of single-precision numbers, to both sides.
+const NUDGES: [f32; 2] = [1.000_001, 0.999_999];
+
+/// The engine's vertex shader of the prepass.
+struct Nudge {
+    id: AssetId<Shader>,
+    path: String,
+    text: String,
+}
+
+impl Nudge {
+    fn new(small: &mut Small) -> Self {
+        let shaders = small.world().resource::<Assets<Shader>>();
+        let (id, shader) = shaders
+            .iter()
+            .find(|(_, shader)| shader.path.ends_with("prepass/prepass.wgsl"))
+            .expect("the engine's shader is an asset");
+        let Source::Wgsl(text) = &shader.source else {
+            panic!("not WGSL")
+        };
+        Self {
+            id,
+            path: shader.path.clone(),
+            text: text.to_string(),
+        }
+    }
+
+    /// Multiplies depth by a factor in the pass of ids.
+    fn set(&self, small: &mut Small, factor: f32) {
+        let position = "out.position = position_world_to_clip(out.world_position.xyz);";
+        assert_eq!(self.text.matches(position).count(), 1);
+        let nudged = format!(
+            "{position}\n#ifndef NORMAL_PREPASS_OR_DEFERRED_PREPASS\n    out.position.z *= {factor:?};\n#endif"
+        );
+        let text = self.text.replace(position, &nudged);
+        let mut shaders = small.world().resource_mut::<Assets<Shader>>();
+        shaders
+            .insert(self.id, Shader::from_wgsl(text, self.path.clone()))
+            .expect("replaced");
+        small.settle();
+    }
+}
+
+/// The small scene under outlines, with a screen of which an alpha mask has cut two quarters
+/// away. Returns the screen.
+fn scene(msaa: Msaa) -> (Small, Entity) {
+    let mut small = Small::new(UVec2::new(120, 80), msaa);
+    let [white, clear] = [[255; 4], [255, 255, 255, 0]];
+    let image = Image::new(
+        Extent3d {
+            width: 2,
+            height: 2,
+            depth_or_array_layers: 1,
+        },
+        TextureDimension::D2,
+        [white, clear, clear, white].concat(),
+        TextureFormat::Rgba8UnormSrgb,
+        RenderAssetUsages::default(),
+    );
+    let image = small.world().resource_mut::<Assets<Image>>().add(image);
+    let mask = StandardMaterial {
+        base_color_texture: Some(image),
+        alpha_mode: AlphaMode::Mask(0.5),
+        cull_mode: None,
+        ..unlit(Color::WHITE)
+    };
+    let at = Transform::from_xyz(0.9, 1.2, 2.0);
+    let screen = small.put(Rectangle::new(1.6, 1.6), mask, at);
+    small.style(&ComicStyle::default().with(Outlines::default()));
+    small.settle();
+    (small, screen)
+}
+
+/// The method by which ids were drawn in the last frame; `None`: at equal depth.
+fn method(small: &Small) -> Option<&'static str> {
+    let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
+    let stages = diagnostics.cameras.get(&small.camera);
+    match stages.and_then(|stages| stages.outcome(ComicsStage::ObjectIds)) {
+        Some(StageOutcome::RanAs(method)) => Some(method),
+        _ => None,
+    }
+}
+
+const TOLERANT: Option<&str> = Some("tolerant depth");
+
+/// Pixels that the prepass covers, and those of them without an id.
+fn covered_and_missing(small: &Small) -> [usize; 2] {
+    let depth = small.depth().expect("a prepass");
+    let ids = small.object_ids().expect("drawn");
+    let mut found = [0, 0];
+    for y in 0..ids.height {
+        for x in 0..ids.width {
+            let covered = depth.at(x, y, 0) > 0.0;
+            let missing = ids.pixels[(y * ids.width + x) as usize][0] == 0;
+            found[0] += usize::from(covered);
+            found[1] += usize::from(covered && missing);
+        }
+    }
+    found
+}
+
+/// Pixels that are not at a border between objects, and those of them with another id.
+fn inner_and_wrong(want: &IdImage, got: &IdImage) -> [usize; 2] {
+    let (w, h) = (want.width as usize, want.height as usize);
+    let mut found = [0, 0];
+    for y in 1..h - 1 {
+        for x in 1..w - 1 {
+            let id = want.pixels[y * w + x];
+            let same = |j: usize| (x - 1..=x + 1).all(|i| want.pixels[j * w + i] == id);
+            if (y - 1..=y + 1).all(same) {
+                found[0] += 1;
+                found[1] += usize::from(got.pixels[y * w + x] != id);
+            }
+        }
+    }
+    found
+}
+
+/// Every covered pixel has an id, and all but those at borders the one that is wanted.
+fn assert_complete(small: &Small, want: &IdImage, what: &str) {
+    let [covered, missing] = covered_and_missing(small);
+    assert!(covered > 3000, "{what}: {covered} covered");
+    assert_eq!(missing, 0, "{what}: of {covered}");
+    let [inner, wrong] = inner_and_wrong(want, &small.object_ids().expect("drawn"));
+    assert!(inner > 5000, "{what}: {inner} inner pixels");
+    assert_eq!(wrong, 0, "{what}: of {inner}");
+}
+
+fn pixels_of(ids: &IdImage, entity: Entity) -> usize {
+    let id = u32::from(object_id(entity));
+    ids.pixels.iter().filter(|pixel| pixel[0] == id).count()
+}
+
+/// At equal depth nearly all ids are lost; with a tolerance none is, and what an alpha mask has
+/// cut away has the ids of what is behind it.
+#[test]
+fn nudged_positions_lose_ids_and_a_tolerance_keeps_them() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let (mut small, screen) = scene(msaa);
+        let nudge = Nudge::new(&mut small);
+        let want = small.object_ids().expect("drawn");
+        assert_complete(&small, &want, "as it is");
+        let mask = pixels_of(&want, screen);
+        assert!(mask > 100, "the screen is visible: {mask} pixels");
+        small.world().insert_resource(ObjectIdDepthTest::Tolerant);
+        small.settle();
+        assert_eq!(method(&small), TOLERANT);
+        assert_complete(&small, &want, "a tolerance without need");
+        for factor in NUDGES {
+            nudge.set(&mut small, factor);
+            let what = format!("{msaa:?}, {factor}");
+            assert_complete(&small, &want, &what);
+            small.world().insert_resource(ObjectIdDepthTest::Equal);
+            small.settle();
+            assert_eq!(method(&small), None);
+            let [covered, missing] = covered_and_missing(&small);
+            assert!(10 * missing > 9 * covered, "{what}: {missing} of {covered}");
+            small.world().insert_resource(ObjectIdDepthTest::Tolerant);
+            small.settle();
+            assert_complete(&small, &want, &what);
+        }
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+/// The pass switches by itself, and stays so when positions are the same again.
+#[test]
+fn lost_ids_are_noticed_and_come_back_for_good() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let (mut small, _) = scene(msaa);
+        let nudge = Nudge::new(&mut small);
+        let want = small.object_ids().expect("drawn");
+        small.headless.step(30);
+        assert_eq!(method(&small), None);
+        nudge.set(&mut small, NUDGES[0]);
+        small.headless.step(120);
+        assert_eq!(method(&small), TOLERANT, "{msaa:?}");
+        assert_complete(&small, &want, "noticed");
+        nudge.set(&mut small, 1.0);
+        small.headless.step(120);
+        assert_eq!(method(&small), TOLERANT, "{msaa:?}");
+        assert_complete(&small, &want, "for good");
+        // The game decides.
+        small.world().insert_resource(ObjectIdDepthTest::Equal);
+        small.settle();
+        assert_eq!(method(&small), None);
+        assert_complete(&small, &want, "at equal depth again");
+        assert_eq!(small.errors(), 0);
+    }
+}
+
+/// Pixels that no tolerance gives an id (here: depth is off by a twentieth) are tried for a few
+/// frames, and then let be.
+#[test]
+fn what_a_tolerance_does_not_bring_back_is_drawn_at_equal_depth() {
+    let (mut small, _) = scene(Msaa::Off);
+    let nudge = Nudge::new(&mut small);
+    nudge.set(&mut small, 1.05);
+    let mut tried = 0;
+    for _ in 0..200 {
+        small.headless.step(1);
+        tried += usize::from(method(&small) == TOLERANT);
+    }
+    assert!(tried < 10, "{tried} frames of trials");
+    let [covered, missing] = covered_and_missing(&small);
+    assert!(10 * missing > 9 * covered, "{missing} of {covered}");
+    assert_eq!(method(&small), None);
+    assert_eq!(small.errors(), 0);
+}
+
+/// Adds what rightly has no id, or another one than what the prepass covers.
+fn furnish(small: &mut Small) {
+    let glass = |alpha| StandardMaterial {
+        alpha_mode: AlphaMode::Blend,
+        ..unlit(Color::srgba(0.4, 0.6, 0.9, alpha))
+    };
+    let at = |x| Transform::from_xyz(x, 1.0, 2.2);
+    small.put(Rectangle::new(0.8, 0.8), glass(0.4), at(-1.5));
+    let pane = small.put(Rectangle::new(0.8, 0.8), glass(0.8), at(-0.5));
+    let bare = small.put(
+        Sphere::new(0.3),
+        unlit(Color::srgb(0.7, 0.4, 0.6)),
+        Transform::from_xyz(0.2, 0.3, 2.4),
+    );
+    let hidden = small.put(
+        Cuboid::default(),
+        unlit(Color::BLACK),
+        Transform::from_xyz(0.0, 0.5, 3.0),
+    );
+    let world = small.world();
+    world.entity_mut(pane).insert(DepthWrite::default());
+    world.entity_mut(bare).insert(NoOutlines::default());
+    world.entity_mut(hidden).insert(Visibility::Hidden);
+}
+
+/// Sky, transparent and excluded things, alpha masks, what comes, goes and moves: no frame is
+/// drawn with a tolerance, although missing ids of the same scene are noticed.
+#[test]
+fn an_ordinary_scene_is_drawn_at_equal_depth() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        let (mut small, screen) = scene(msaa);
+        furnish(&mut small);
+        let nudge = Nudge::new(&mut small);
+        for frame in 0..200 {
+            let turn = 0.03 * frame as f32;
+            let eye = Vec3::new(6.0 * turn.sin(), 2.4, 6.0 * turn.cos());
+            small.insert(Transform::from_translation(eye).looking_at(Vec3::Y, Vec3::Y));
+            let shown = if frame % 20 < 10 {
+                Visibility::Inherited
+            } else {
+                Visibility::Hidden
+            };
+            small.world().entity_mut(screen).insert(shown);
+            small.headless.step(1);
+            assert_eq!(method(&small), None, "{msaa:?}, frame {frame}");
+        }
+        let [covered, missing] = covered_and_missing(&small);
+        assert!(covered > 1000 && missing == 0, "{missing} of {covered}");
+        nudge.set(&mut small, NUDGES[0]);
+        small.headless.step(120);
+        assert_eq!(method(&small), TOLERANT, "{msaa:?}");
+        // Without any object there is nothing to bind.
+        small.clear();
+        small.settle();
+        assert_eq!(small.errors(), 0);
+    }
+}
