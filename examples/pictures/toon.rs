@@ -308,7 +308,7 @@ fn rims() -> RgbaImage {
         put(
             Cuboid::new(0.5, 0.5, 0.5).into(),
             Color::srgb(0.62, 0.26, 0.24),
-            0.75,
+            0.95,
             0.25,
             0.5,
         );

@@ -6,6 +6,8 @@ use crate::{Run, table::Table};
 
 /// Frames of the whole run.
 const FRAMES: u64 = 100_000;
+/// What changes, unless the environment variable `SOAK` names it: see [`Changes::of`].
+const CHANGES: &str = "sizes,objects,files";
 
 pub fn measure(run: &Run) -> Result<(), String> {
     if run.quick {
@@ -13,8 +15,12 @@ pub fn measure(run: &Run) -> Result<(), String> {
     }
     let folder = std::env::temp_dir().join(format!("bevy_comics_soak_{}", std::process::id()));
     let problem = |error| format!("{}: {error}", folder.display());
-    let mut soak = Soak::new(&folder, Changes::of("sizes,objects,files")).map_err(problem)?;
-    let cycles = FRAMES.div_ceil(CYCLE);
+    let changes = std::env::var("SOAK").unwrap_or_else(|_| CHANGES.into());
+    let frames = std::env::var("SOAK_FRAMES")
+        .ok()
+        .and_then(|n| n.parse().ok());
+    let mut soak = Soak::new(&folder, Changes::of(&changes)).map_err(problem)?;
+    let cycles = frames.unwrap_or(FRAMES).div_ceil(CYCLE);
     let mut table: Option<Table> = None;
     for cycle in 1..=cycles {
         let sample = soak.cycle().map_err(problem)?;

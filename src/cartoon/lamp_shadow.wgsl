@@ -1,13 +1,14 @@
 #define_import_path bevy_comics::cartoon::lamp_shadow
 
-// The shadow maps of point lights and spot lights, read as the engine reads them (`fetch_point_shadow`,
-// `fetch_spot_shadow`), with the slope of the shadow from the same texels. Neighbouring pixels may see
-// other lamps, so there are no derivatives.
+// The shadow maps of lights, read as the engine reads them (`fetch_point_shadow`, `fetch_spot_shadow`,
+// `fetch_directional_shadow`), with the slope of the shadow from the same texels. There are no derivatives:
+// neighbouring pixels may see other lamps, or lie on other surfaces.
 
 #ifdef SLOPED_SHADOWS
 #import bevy_pbr::{
     mesh_view_bindings as view_bindings,
     mesh_view_types,
+    shadows::{get_cascade_index, world_to_directional_light_local},
     shadow_sampling::{
         D3D_SAMPLE_POINT_COEFFS, D3D_SAMPLE_POINT_POSITIONS, POINT_SHADOW_SCALE,
         sample_shadow_cubemap_hardware,
@@ -51,8 +52,7 @@ fn place_in_map(id: u32, axes: mat3x3<f32>, at: vec3<f32>, normal: vec3<f32>) ->
 }
 
 // The filtered shadow at a place, from 36 texels that are read four at a time.
-fn filtered_at(id: u32, uv: vec2<f32>, depth: f32, size: vec2<f32>) -> Filtered {
-    let layer = i32(id) + view_bindings::lights.spot_light_shadowmap_offset;
+fn filtered_at(layer: i32, uv: vec2<f32>, depth: f32, size: vec2<f32>) -> Filtered {
     let on = texels_at(uv * size);
     var filtered: Filtered;
     for (var y = 0u; y < 3u; y++) {
@@ -76,7 +76,8 @@ fn spot_shadow(id: u32, s: Surface, near: f32) -> f32 {
     let axes = orthonormalize(against_axis(id));
     let here = place_in_map(id, axes, s.position, s.mesh_normal);
     let size = vec2<f32>(textureDimensions(view_bindings::directional_shadow_textures));
-    let filtered = filtered_at(id, here.xy, near / here.z, size);
+    let layer = i32(id) + view_bindings::lights.spot_light_shadowmap_offset;
+    let filtered = filtered_at(layer, here.xy, near / here.z, size);
     if filtered.shadow <= 0.0 || filtered.shadow >= 1.0 {
         return filtered.shadow;
     }
@@ -85,6 +86,49 @@ fn spot_shadow(id: u32, s: Surface, near: f32) -> f32 {
     let slope = filtered.slope * size;
     let width = abs(dot(slope, right.xy - here.xy)) + abs(dot(slope, down.xy - here.xy));
     return sharpen(filtered.shadow, width);
+}
+
+// A cascade of a directional light: the filtered shadow, and how much it changes over a pixel.
+fn shadow_in_cascade(id: u32, index: u32, s: Surface) -> vec2<f32> {
+    let light = &view_bindings::lights.directional_lights[id];
+    let cascade = &(*light).cascades[index];
+    let biased = s.position
+        + (*light).shadow_normal_bias * (*cascade).texel_size * s.mesh_normal
+        + (*light).shadow_depth_bias * (*light).direction_to_light;
+    let here = world_to_directional_light_local(id, index, vec4(biased, 1.0));
+    if here.w == 0.0 {
+        return vec2(1.0, 0.0);
+    }
+    let size = vec2<f32>(textureDimensions(view_bindings::directional_shadow_textures));
+    let layer = i32((*light).depth_texture_base_index + index);
+    let filtered = filtered_at(layer, here.xy, here.z, size);
+    // The projection is orthographic.
+    let right = ((*cascade).clip_from_world * vec4(s.foot.position_x, 0.0)).xy * vec2(0.5, -0.5);
+    let down = ((*cascade).clip_from_world * vec4(s.foot.position_y, 0.0)).xy * vec2(0.5, -0.5);
+    let slope = filtered.slope * size;
+    return vec2(filtered.shadow, abs(dot(slope, right)) + abs(dot(slope, down)));
+}
+
+// The shadow of a directional light with a hard edge.
+fn sun_shadow(id: u32, s: Surface) -> f32 {
+    let light = &view_bindings::lights.directional_lights[id];
+    let index = get_cascade_index(id, s.view_z);
+    if index >= (*light).num_cascades {
+        return 1.0;
+    }
+    var shadow = shadow_in_cascade(id, index, s);
+    if index + 1u < (*light).num_cascades {
+        let far = (*light).cascades[index].far_bound;
+        let overlap = (1.0 - (*light).cascades_overlap_proportion) * far;
+        if -s.view_z >= overlap {
+            let next = shadow_in_cascade(id, index + 1u, s);
+            shadow = mix(shadow, next, (-s.view_z - overlap) / (far - overlap));
+        }
+    }
+    if shadow.x <= 0.0 || shadow.x >= 1.0 {
+        return shadow.x;
+    }
+    return sharpen(shadow.x, shadow.y);
 }
 
 // The shadow of a point light with a hard edge.

@@ -10,7 +10,7 @@
 }
 #endif
 #ifdef SLOPED_SHADOWS
-#import bevy_comics::cartoon::lamp_shadow::{point_shadow, spot_shadow}
+#import bevy_comics::cartoon::lamp_shadow::{point_shadow, spot_shadow, sun_shadow}
 #endif
 #ifdef LIGHT_TEXTURES
 #import bevy_comics::cartoon::light_textures::{
@@ -62,15 +62,25 @@ fn lamp_shadow(is_spot: bool, id: u32, s: Surface) -> f32 {
 #endif
 }
 
-// The shadow map of a directional light at the surface; 1 if it has none.
+// The shadow of a directional light at the surface with a hard edge; 1 if it has no shadow map. All
+// pixels must run it: filters whose slope is not known have that of neighbouring pixels.
 fn directional_shadow(id: u32, s: Surface) -> f32 {
     let flags = view_bindings::lights.directional_lights[id].flags;
     let maps = flags & mesh_view_types::DIRECTIONAL_LIGHT_FLAGS_SHADOWS_ENABLED_BIT;
-    if !s.receives || maps == 0u {
-        return 1.0;
+    var shadow = 1.0;
+    if s.receives && maps != 0u {
+#ifdef SLOPED_SHADOWS
+        shadow = sun_shadow(id, s);
+#else
+        let place = vec4(s.position, 1.0);
+        shadow = shadows::fetch_directional_shadow(id, place, s.mesh_normal, s.view_z, s.pixel);
+#endif
     }
-    let place = vec4(s.position, 1.0);
-    return shadows::fetch_directional_shadow(id, place, s.mesh_normal, s.view_z, s.pixel);
+#ifdef SLOPED_SHADOWS
+    return shadow;
+#else
+    return hard_shadow(shadow, fwidth(shadow));
+#endif
 }
 
 // A shadow map that changes by `width` over a pixel, with a hard edge.
@@ -114,13 +124,12 @@ fn through_atmosphere(position: vec3<f32>, to_light: vec3<f32>, disk: f32) -> ve
 }
 #endif
 
-// A directional light. All pixels must run it, since it takes derivatives.
+// A directional light. All pixels must run it, since it may take derivatives.
 fn directional_light(id: u32, s: Surface) -> Arriving {
-    let shadow = directional_shadow(id, s);
-    return directional_light_through(id, s, hard_shadow(shadow, fwidth(shadow)));
+    return directional_light_through(id, s, directional_shadow(id, s));
 }
 
-// The same, with the shadow that its shadow map leaves of it.
+// The same, with what its shadow map leaves of it.
 fn directional_light_through(id: u32, s: Surface, shadow: f32) -> Arriving {
     let light = &view_bindings::lights.directional_lights[id];
     var arriving: Arriving;

@@ -33,7 +33,7 @@ use crate::{
     },
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     lines::{TileList, TileLists, ViewLines, tile_shader, vertices},
-    objects::{DepthPlaces, ObjectStyleBuffer, ViewObjectIds},
+    objects::{DepthPlaces, ObjectStyleBuffer, PLACES_BINDING, ViewObjectIds},
 };
 
 #[derive(Resource)]
@@ -305,7 +305,7 @@ fn inputs<'a>(
     }
     if key.places() {
         let places = places.ok_or(not_ready)?;
-        entries.push(entry(13, places.table.as_entire_binding()));
+        entries.push(entry(PLACES_BINDING, places.table.as_entire_binding()));
     }
     if key.blue_noise() {
         let tile = blue_noise.view().ok_or(not_ready)?;

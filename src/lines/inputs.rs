@@ -21,7 +21,11 @@ use super::{
     sources::{NOT_READY, Reads, Sources, Texels, entry},
     store::CrackStore,
 };
-use crate::{depth::prepare::ViewDepthRange, diagnostics::LeftOut, objects::ObjectStyleBuffer};
+use crate::{
+    depth::prepare::ViewDepthRange,
+    diagnostics::LeftOut,
+    objects::{ObjectStyleBuffer, PLACES_BINDING},
+};
 
 /// What the passes of a view read: of the lines, of the scene, the visible range.
 pub(super) type ViewParts<'a> = (
@@ -158,7 +162,7 @@ impl Inputs<'_> {
         }
         if key.reads_places() {
             let places = sources.places.ok_or(NOT_READY)?;
-            entries.push(entry(13, places.as_entire_binding()));
+            entries.push(entry(PLACES_BINDING, places.as_entire_binding()));
         }
         if key.marks {
             let picture = sources.picture.ok_or(NOT_READY)?;

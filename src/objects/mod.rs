@@ -63,7 +63,7 @@ pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
 #[cfg(feature = "objects")]
 pub use transparent::DepthWrite;
 
-pub(crate) use places::{DepthPlaces, ObjectDepthRequest, ObjectEye, places_entry};
+pub(crate) use places::{DepthPlaces, ObjectDepthRequest, ObjectEye, PLACES_BINDING, places_entry};
 pub(crate) use table::{DepthWrites, ObjectChanges, ObjectStyleBuffer, ObjectStyles};
 pub use widths::ViewLineWidths;
 pub(crate) use widths::{LARGEST_FACTOR, Pressure, WIDTH_FORMAT, widths_entry};

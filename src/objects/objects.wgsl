@@ -84,7 +84,7 @@ fn style_of(slot: u32) -> ObjectStyle {
 #endif
 
 #ifdef OBJECT_DEPTHS
-@group(0) @binding(13) var<storage, read> object_depths: array<vec4<f32>>;
+@group(0) @binding(32) var<storage, read> object_depths: array<vec4<f32>>;
 
 // Where the object with this id is in the depth map: D of its centre, and how much its pixels
 // follow it, 0 to 1: 0 for what extends far in depth, and for unknown objects.

@@ -45,7 +45,10 @@ pub(crate) struct DepthPlaces {
     pub table: Buffer,
 }
 
+/// The number of the binding in `objects.wgsl`: passes of lines and of effects have others.
+pub(crate) const PLACES_BINDING: u32 = 32;
+
 /// The layout entry of the table.
 pub(crate) fn places_entry() -> BindGroupLayoutEntry {
-    storage_buffer_read_only_sized(false, None).build(13, ShaderStages::FRAGMENT)
+    storage_buffer_read_only_sized(false, None).build(PLACES_BINDING, ShaderStages::FRAGMENT)
 }

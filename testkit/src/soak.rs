@@ -63,6 +63,8 @@ pub struct Changes {
     pub materials: bool,
     pub objects: bool,
     pub files: bool,
+    /// Nothing of this crate is used: what then grows is the engine's.
+    pub plain: bool,
 }
 
 impl Default for Changes {
@@ -74,6 +76,7 @@ impl Default for Changes {
             materials: true,
             objects: true,
             files: true,
+            plain: false,
         }
     }
 }
@@ -96,6 +99,7 @@ impl Changes {
             materials: has("materials"),
             objects: has("objects"),
             files: has("files"),
+            plain: names.split(',').any(|own| own == "plain"),
         }
     }
 }
@@ -134,7 +138,11 @@ impl Soak {
             assets: folder.display().to_string(),
             ..default()
         };
-        let mut headless = Headless::new(options, ComicsPlugin);
+        let mut headless = if changes.plain {
+            Headless::new(options, ())
+        } else {
+            Headless::new(options, ComicsPlugin)
+        };
         headless
             .app
             .init_resource::<Errors>()
@@ -158,9 +166,12 @@ impl Soak {
         ));
         let camera = world.spawn(view(target)).id();
         let small = new_target(world, UVec2::new(40, 24), TextureFormat::Rgba8UnormSrgb);
-        let style = world.resource::<AssetServer>().load::<ComicStyle>(FILE);
-        // Wears a file that breaks and is mended.
-        world.spawn((view(small.into()), ComicStyleHandle(style)));
+        let second = world.spawn(view(small.into())).id();
+        if !changes.plain {
+            // Wears a file that breaks and is mended.
+            let style = world.resource::<AssetServer>().load::<ComicStyle>(FILE);
+            world.entity_mut(second).insert(ComicStyleHandle(style));
+        }
         Ok(Self {
             changes,
             headless,
@@ -272,8 +283,11 @@ impl Soak {
     fn come(&mut self) {
         let world = self.headless.app.world_mut();
         let target = new_target(world, UVec2::new(50, 30), TextureFormat::Rgba8UnormSrgb);
-        let outlines = Outlines::default();
-        self.visitor = Some(world.spawn((view(target.into()), outlines)).id());
+        let mut visitor = world.spawn(view(target.into()));
+        if !self.changes.plain {
+            visitor.insert(Outlines::default());
+        }
+        self.visitor = Some(visitor.id());
     }
 
     fn go(&mut self) {

@@ -79,15 +79,17 @@ fn borders_of_shadows_cover_what_the_light_reaches() {
         println!(
             "{name}: {count} border pixels, {between} between, off by {off:.4}, mean {mean:.4}"
         );
-        assert!(count > 150, "{count}");
-        // Shadow maps are moved by their biases, towards the shadow.
-        let [most, moved] = if name == "lamp" {
-            [0.16, 0.1]
-        } else {
-            [0.22, 0.18]
+        // Shadow maps are moved by their biases, towards the shadow. With the slope from neighbouring
+        // pixels, the sun's were off by 0.24, and 0.28 of them lay between.
+        let (most, moved, least, part) = match light {
+            Kind::Sun(_) => (0.21, 0.18, 130, 0.45),
+            Kind::Lamp(_) => (0.16, 0.1, 150, 0.5),
+            Kind::Spot(..) => (0.22, 0.18, 150, 0.5),
         };
+        assert!(count > least, "{count}");
         assert!(off < most && mean.abs() < moved, "{name}: {off}, {mean}");
-        assert!(2 * between > count, "{name}: {between} of {count}");
+        let found = between as f64 / count as f64;
+        assert!(found > part, "{name}: {between} of {count}");
     }
 }
 

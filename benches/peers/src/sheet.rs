@@ -105,14 +105,13 @@ fn share_light(world: &mut World) {
         if look.name != "Face" && look.name != "Skin" {
             continue;
         }
-        look.light.flat_environment = 0.3;
         look.light.ramp = Some(Ramp {
             mode: RampMode::Share,
             ..Ramp::new(stops)
         });
         if let Some(form) = &mut look.light.form {
-            form.amount = 0.85;
-            form.far_amount = 0.85;
+            form.amount = 0.95;
+            form.far_amount = 0.95;
         }
     }
 }

@@ -196,6 +196,16 @@ type Fact = (&'static [Feature], &'static [&'static str], Known);
 
 #[rustfmt::skip]
 pub const FACTS: &[Fact] = &[
+    // Every effect is in a group and in the group of all, and each group meets each feature in a row. The
+    // rows are divided among three tests.
+    (
+        &[
+            Msaa1, Msaa4, Hdr, Taa, Fxaa, Smaa, Resolution, Deferred, Orthographic, Oblique,
+            OffCentre, Viewport,
+        ],
+        ALL,
+        Run("pairwise::pairs_are_drawn_as_on_a_plain_camera_1"),
+    ),
     (&[Metal, Direct3D12, WebGpu, OpenGl], ALL, Translated),
     (&[WebGl2, NoCompute], ALL, Unknown),
     (&[NoCompute], MANY_PASSES, Run("failures::devices::a_device_without_compute_shaders_draws_a_style")),
