@@ -285,7 +285,7 @@ fn rims() -> RgbaImage {
             rim,
             ..default()
         };
-        let x = -2.4 + 2.1 * k as f32;
+        let x = -2.45 + 1.95 * k as f32;
         let mut put = |mesh: Mesh, color, x2: f32, y: f32, turn: f32| {
             let at = Transform::from_xyz(x + x2, y, 0.0).with_rotation(Quat::from_rotation_y(turn));
             room.put(mesh, matt(color), &light, at);
