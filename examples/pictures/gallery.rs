@@ -172,7 +172,8 @@ fn method(least: f64, unstyled: &Measures) -> String {
     format!(
         "## Numbers\n\n\
          Looks are measured on the village, the figure and the street, at 240x135 pixels. The page is not\n\
-         written if a look does not keep a limit.\n\n\
+         written if a look does not keep a limit. To judge by eye, `cargo run --example pictures -- contact-sheet\n\
+         --size 960x540` draws every scene in every look, and with `--zoom 4` the middle of each at four times the size.\n\n\
          | number | is | limit |\n\
          |---|---|---|\n\
          | nearest look | the mean of FLIP to the look that differs least (0: the same picture, 1: black and white) | at least {LEAST_APART}; the least is {least:.3} |\n\

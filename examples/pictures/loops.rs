@@ -10,7 +10,7 @@ use std::{
 };
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{MeshSections, ObjectScreen, presets};
+use bevy_comics::{MeshSections, ObjectScreen, Paint, presets};
 use bevy_comics_testkit::{
     scenes::BuiltIn,
     studio::{Studio, set_sections},
@@ -30,7 +30,7 @@ const SETTLE: usize = 10;
 /// What the page of looks says about them.
 pub const SECTION: &str = "\n## In motion\n\n\
     ![A figure turns, and broad cuts turn with it](strokes-in-motion.png)\n\n\
-    *`woodcut`. The figure has an `ObjectScreen`: strokes stay where they are on what moves.*\n\n\
+    *`woodcut` with a smaller brush. The figure has an `ObjectScreen`: strokes stay where they are on what moves.*\n\n\
     ![The camera goes to and fro in the village](lines-in-motion.png)\n\n\
     *`ligne-claire`. Houses have `MeshSections`: lines neither break nor jump. Made by `cargo run --example pictures -- loops`.*\n";
 
@@ -60,7 +60,12 @@ fn strokes() -> Vec<RgbaImage> {
     };
     world.entity_mut(figure).insert(screen);
     let rest = *world.get::<Transform>(figure).expect("a place");
-    studio.shoot(Some(&presets::WOODCUT.style()));
+    let mut style = presets::WOODCUT.style();
+    // The brush of a small picture is small: eyes stay.
+    if let Some(paint) = style.get_mut::<Paint>() {
+        paint.near = 2.0;
+    }
+    studio.shoot(Some(&style));
     let frames = (0..FRAMES).map(|frame| {
         let turn = Quat::from_rotation_y(0.5 * swing(frame));
         let turned = Transform {

@@ -1,7 +1,7 @@
 //! Renders the pictures of the documents and of the tests, without a window.
 //!
 //! ```text
-//! cargo run --example pictures -- contact-sheet [--size WxH] [--out FILE.png]
+//! cargo run --example pictures -- contact-sheet [--size WxH] [--zoom N] [--out FILE.png]
 //! cargo run --example pictures -- banner [--out FILE.png]
 //! cargo run --example pictures -- looks [--out FILE.png]
 //! cargo run --example pictures -- presets [--out FILE.png]
@@ -37,7 +37,9 @@ use std::{path::PathBuf, process::ExitCode};
 use bevy::math::UVec2;
 
 const USAGE: &str = "\
-usage: pictures contact-sheet [--size WxH] [--out FILE.png]   every scene in every preset
+usage: pictures contact-sheet [--size WxH] [--zoom N] [--out FILE.png]
+                                                              every scene in every preset; or the
+                                                              middle of each, enlarged 2 to 8 times
        pictures banner [--out FILE.png]                       the README's first picture
        pictures looks [--out FILE.png]                        a row of looks, for the page of examples
        pictures presets [--out FILE.png]                      the page of the presets
@@ -70,7 +72,7 @@ fn run() -> Result<(), String> {
     let wrong = |error: lexopt::Error| format!("{error}\n{USAGE}");
     let (mut what, mut size, mut out) = (None, UVec2::new(480, 270), None);
     let mut names = Vec::new();
-    let mut only = String::new();
+    let (mut only, mut zoom) = (String::new(), 1);
     while let Some(argument) = parser.next().map_err(wrong)? {
         match argument {
             Value(value) if what.is_none() => what = Some(value.to_string_lossy().into_owned()),
@@ -85,6 +87,11 @@ fn run() -> Result<(), String> {
                     .filter(|size| size.min_element() >= 16 && size.max_element() <= 4096)
                     .ok_or_else(|| format!("--size {text}: possible are 16x16 to 4096x4096"))?;
             }
+            Long("zoom") => {
+                let text = parser.value().and_then(|v| v.string()).map_err(wrong)?;
+                let number = text.parse().ok().filter(|zoom| (1..=8).contains(zoom));
+                zoom = number.ok_or_else(|| format!("--zoom {text}: possible are 1 to 8"))?;
+            }
             Long("only") => only = parser.value().and_then(|v| v.string()).map_err(wrong)?,
             Long("out") => out = Some(PathBuf::from(parser.value().map_err(wrong)?)),
             Short('h') | Long("help") => {
@@ -97,7 +104,7 @@ fn run() -> Result<(), String> {
     bevy_comics_testkit::headless::adapter()?;
     let or = |path: &str| out.clone().unwrap_or_else(|| PathBuf::from(path));
     match what.as_deref() {
-        Some("contact-sheet") => sheet::contact_sheet(size, &or("target/contact-sheet.png")),
+        Some("contact-sheet") => sheet::contact_sheet(size, zoom, &or("target/contact-sheet.png")),
         Some("banner") => sheet::banner(&or("target/banner.png")),
         Some("looks") => sheet::looks(&or("target/looks.png")),
         Some("presets") => sheet::presets(&or("target/presets.png")),

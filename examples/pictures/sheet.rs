@@ -41,15 +41,29 @@ fn shoot(scene: BuiltIn, size: UVec2, looks: &[Look]) -> Result<Vec<RgbaImage>, 
     Ok(pictures)
 }
 
-/// Rows of presets, the original first; columns of scenes.
-pub fn contact_sheet(size: UVec2, out: &Path) -> Result<(), String> {
+/// The middle of a picture, enlarged to its size: every pixel is a square.
+fn enlarged(picture: &RgbaImage, zoom: u32) -> RgbaImage {
+    let (width, height) = picture.dimensions();
+    let (x, y) = ((width - width / zoom) / 2, (height - height / zoom) / 2);
+    let middle = imageops::crop_imm(picture, x, y, width / zoom, height / zoom).to_image();
+    imageops::resize(&middle, width, height, imageops::FilterType::Nearest)
+}
+
+/// Rows of presets, the original first; columns of scenes. `zoom` enlarges the middle of each.
+pub fn contact_sheet(size: UVec2, zoom: u32, out: &Path) -> Result<(), String> {
     let looks: Vec<Look> = std::iter::once(None)
         .chain(presets::ALL.iter().map(|preset| Some(preset.name())))
         .collect();
     let columns: Vec<Vec<RgbaImage>> = BuiltIn::ALL
         .into_iter()
-        .map(|scene| shoot(scene, size, &looks))
-        .collect::<Result<_, _>>()?;
+        .map(|scene| {
+            let pictures = shoot(scene, size, &looks)?;
+            Ok(pictures
+                .iter()
+                .map(|picture| enlarged(picture, zoom))
+                .collect())
+        })
+        .collect::<Result<_, String>>()?;
     let rows: Vec<Vec<&RgbaImage>> = (0..looks.len())
         .map(|row| columns.iter().map(|column| &column[row]).collect())
         .collect();

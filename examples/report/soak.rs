@@ -7,7 +7,7 @@ use crate::{Run, table::Table};
 /// Frames of the whole run.
 const FRAMES: u64 = 100_000;
 /// What changes, unless the environment variable `SOAK` names it: see [`Changes::of`].
-const CHANGES: &str = "sizes,objects,files";
+const CHANGES: &str = "sizes,cameras,materials,objects,files";
 
 pub fn measure(run: &Run) -> Result<(), String> {
     if run.quick {

@@ -366,6 +366,8 @@ fn add_systems(render_app: &mut SubApp) {
             Core3d,
             draw_object_ids
                 .after(Core3dSystems::Prepass)
+                // With occlusion culling, it writes what indirect draws read.
+                .after(bevy::pbr::main_build_indirect_parameters)
                 .before(ComicsSystems::DepthRange)
                 .before(ComicsSystems::Outlines)
                 .before(Core3dSystems::MainPass),

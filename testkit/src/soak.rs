@@ -7,9 +7,11 @@ use std::{
 
 use bevy::{
     camera::{Hdr, RenderTarget},
+    pbr::BinUnpackingBindGroups,
     prelude::*,
     render::{
-        RenderApp,
+        Render, RenderApp, RenderSystems,
+        batching::gpu_preprocessing::BinUnpackingBuffers,
         error_handler::{RenderErrorHandler, RenderErrorPolicy},
         render_resource::TextureFormat,
         renderer::RenderInstance,
@@ -143,6 +145,10 @@ impl Soak {
         } else {
             Headless::new(options, ComicsPlugin)
         };
+        headless
+            .app
+            .sub_app_mut(RenderApp)
+            .add_systems(Render, forget_gone_views.in_set(RenderSystems::Cleanup));
         headless
             .app
             .init_resource::<Errors>()
@@ -330,6 +336,15 @@ impl Soak {
             errors: self.headless.app.world().resource::<Errors>().0,
         }
     }
+}
+
+/// Bevy 0.19.1 keeps bind groups of cameras that are gone (`BinUnpackingBindGroups`): three for each
+/// camera, six with a prepass. Without them, what grows is this crate's.
+fn forget_gone_views(
+    mut groups: ResMut<BinUnpackingBindGroups>,
+    buffers: Res<BinUnpackingBuffers>,
+) {
+    groups.retain(|view, _| buffers.view_phase_buffers.contains_key(view));
 }
 
 fn view(target: RenderTarget) -> impl Bundle {

@@ -7,6 +7,8 @@ use bevy::{
     prelude::*,
 };
 
+use bevy_comics::OutlineGroup;
+
 use super::{
     ScenePart, Stage, Vantage,
     noise::{Random, fractal, noise2, ridges, smoothstep},
@@ -268,9 +270,13 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
         ..default()
     });
 
+    // One object, without lines between its tiles.
+    let root = (ScenePart, OutlineGroup, Visibility::default());
+    let land = stage.commands.spawn((root, Transform::IDENTITY)).id();
     for tile in ground() {
-        let mesh = stage.meshes.add(tile.into_mesh());
-        stage.solid(mesh, matt.clone(), Transform::IDENTITY);
+        let mesh = Mesh3d(stage.meshes.add(tile.into_mesh()));
+        let tile = (ScenePart, mesh, MeshMaterial3d(matt.clone()), ChildOf(land));
+        stage.commands.spawn((tile, Transform::IDENTITY));
     }
     let flowers = stage.meshes.add(meadow(&mut random).into_mesh());
     stage.solid(flowers, leaf.clone(), Transform::IDENTITY);

@@ -103,23 +103,31 @@ fn cameras_with_different_samples_share_a_target() {
     assert!(!has(&small, first) && has(&small, second));
 }
 
-/// Objects that the engine leaves out because others hide them are not missed.
+/// Objects that the engine leaves out because others hide them are not missed. Lines remember the frames
+/// before, so each picture is that of an app of its own.
 #[test]
 fn occlusion_culling_changes_nothing() {
-    let mut small = Small::new(size(), Msaa::Off);
-    small.style(&many_passes());
-    // A wall before half of the scene.
-    small.put(
-        Cuboid::new(1.2, 3.0, 0.2),
-        StandardMaterial::default(),
-        Transform::from_xyz(0.6, 0.5, 2.0),
-    );
-    small.settle();
-    let before = small.picture();
-    small.insert(OcclusionCulling);
-    small.headless.step(8);
-    assert!(changed(&before, &small.picture()) == 0.0);
-    assert_eq!(small.errors(), 0);
+    let [without, with] = [false, true].map(|culls| {
+        let mut small = Small::new(size(), Msaa::Off);
+        small.style(&many_passes());
+        // A wall before half of the scene.
+        small.put(
+            Cuboid::new(1.2, 3.0, 0.2),
+            StandardMaterial::default(),
+            Transform::from_xyz(0.6, 0.5, 2.0),
+        );
+        if culls {
+            small.insert(OcclusionCulling);
+        }
+        small.settle();
+        assert_eq!(small.errors(), 0);
+        let ids = small.object_ids().expect("ids are drawn");
+        (small.picture(), ids.pixels)
+    });
+    assert!(without.1.iter().any(|id| id[0] != 0), "no ids");
+    assert!(without.1 == with.1, "other ids");
+    let off = changed(&without.0, &with.0);
+    assert!(off == 0.0, "{off} differs");
 }
 
 /// The picture of the first frame after a wall is gone, and that of a later one.
