@@ -111,6 +111,8 @@ fn outlines_dispatch_no_more_kernels_than_they_need() {
     let names = |more: &[&str]| -> BTreeSet<String> {
         let always = [
             "object_ids",
+            // Now and then: whether pixels of the prepass have no id.
+            "count_ids",
             "walk",
             "list_tiles",
             "find_in_cells",
