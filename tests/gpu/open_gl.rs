@@ -64,3 +64,21 @@ fn try_multisampled() {
         check(scene, Msaa::Sample4);
     }
 }
+
+#[test]
+fn try_webgl2() {
+    for backends in [wgpu::Backends::VULKAN, wgpu::Backends::GL] {
+        let options = HeadlessOptions {
+            size: SIZE,
+            backends,
+            log: std::env::var_os("GL_LOG").is_some(),
+            limits: Some(wgpu::Limits::downlevel_webgl2_defaults()),
+            ..default()
+        };
+        let mut studio = Studio::with_options(BuiltIn::Teapot, options, Msaa::Off);
+        studio
+            .shoot(None)
+            .save(format!("/tmp/gl/webgl2-{backends:?}.png").replace(['(', ')', ' '], ""))
+            .expect("saved");
+    }
+}
