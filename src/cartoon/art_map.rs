@@ -19,6 +19,9 @@ use crate::settings::bounded;
 /// every level the fraction of texels that are ink is the tone, and strokes are equally wide in
 /// texels. The image repeats without seams. Equal settings give equal images.
 ///
+/// In WebGL 2, the levels of an image cannot be counted: other images need mip levels down to 16
+/// texels there, as these have.
+///
 /// ```
 /// # use bevy::prelude::*;
 /// # use bevy_comics::prelude::*;

@@ -50,10 +50,20 @@ fn level_ink(map: texture_2d<f32>, place: vec2<f32>, level: i32, tone: f32) -> f
     return mix(above, below, part.y);
 }
 
+fn last_level(map: texture_2d<f32>) -> f32 {
+#ifdef NO_TEXTURE_LEVELS
+    // WebGL 2 cannot ask for it: that of maps which `TonalArtMap` draws.
+    let size = vec2<f32>(textureDimensions(map));
+    return max(floor(log2(min(size.x, size.y))) - 4.0, 0.0);
+#else
+    return f32(textureNumLevels(map) - 1u);
+#endif
+}
+
 // Ink at a place in repeats of the map. `right` and `down`: its changes from pixel to pixel.
 fn art_ink(map: texture_2d<f32>, place: vec2<f32>, right: vec2<f32>, down: vec2<f32>, tone: f32) -> f32 {
     let size = vec2<f32>(textureDimensions(map));
-    let last = f32(textureNumLevels(map) - 1u);
+    let last = last_level(map);
     // Half a level coarser: texels are 0.7 to 1.4 pixels.
     let wanted = stroke_level(right * size, down * size) + 0.5;
     let level = clamp(wanted, 0.0, last);

@@ -79,7 +79,12 @@ impl HatchKey {
             all.push("HATCH_REST".into());
         }
         match self {
-            Self::ArtMap => all.push("HATCH_ART_MAP".into()),
+            Self::ArtMap => {
+                all.push("HATCH_ART_MAP".into());
+                if others.contains(&"WEBGL2".into()) {
+                    all.push("NO_TEXTURE_LEVELS".into());
+                }
+            }
             Self::Page(HatchingMarks::Dots) | Self::Rest(HatchingMarks::Dots) => {
                 all.push("HATCH_DOTS".into());
             }

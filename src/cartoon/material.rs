@@ -257,6 +257,8 @@ impl MaterialExtension for CartoonLight {
             }
             let definitions = key.definitions(&fragment.shader_defs, smoothed);
             fragment.shader_defs.extend(definitions);
+            let samples = descriptor.multisample.count;
+            (fragment.shader_defs).push(ShaderDefVal::UInt("SAMPLES".into(), samples));
         }
         Ok(())
     }

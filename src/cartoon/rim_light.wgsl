@@ -4,7 +4,7 @@
 
 #ifdef DEPTH_RIM
 #import bevy_pbr::{
-    mesh_view_bindings::{depth_prepass_texture, view},
+    mesh_view_bindings::view,
     prepass_utils::prepass_depth,
     view_transformations::depth_ndc_to_view_z,
 }
@@ -23,7 +23,7 @@ fn behind_at(pixel: vec2<f32>, view_z: f32, slope: f32) -> f32 {
     let first = view.viewport.xy;
     let at = clamp(pixel, first, first + view.viewport.zw - 1.0);
 #ifdef MULTISAMPLED
-    let samples = textureNumSamples(depth_prepass_texture);
+    let samples = #{SAMPLES}u;
 #else
     let samples = 1u;
 #endif

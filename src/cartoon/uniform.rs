@@ -159,7 +159,8 @@ impl CartoonKey {
         if self.rim {
             all.push("RIM".into());
         }
-        if self.even_rim && has(&["DEPTH_PREPASS"]) {
+        // No shader of WebGL 2 can load depth.
+        if self.even_rim && has(&["DEPTH_PREPASS"]) && !has(&["WEBGL2"]) {
             all.push("DEPTH_RIM".into());
         }
         all

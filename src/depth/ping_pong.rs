@@ -22,6 +22,7 @@ use bevy::{
 };
 
 use super::range::RangeView;
+use crate::samples;
 
 const FORMAT: TextureFormat = TextureFormat::R32Uint;
 
@@ -67,22 +68,20 @@ impl PingPongPipeline {
 }
 
 impl SpecializedRenderPipeline for PingPongPipeline {
-    /// Whether it is the first pass, the depth is multisampled, the projection is oblique.
-    type Key = (bool, bool, bool);
+    /// Whether it is the first pass, the samples of the depth, whether the projection is oblique.
+    type Key = (bool, u32, bool);
 
-    fn specialize(&self, (first, multisampled, oblique): Self::Key) -> RenderPipelineDescriptor {
+    fn specialize(&self, (first, samples, oblique): Self::Key) -> RenderPipelineDescriptor {
         let mut shader_defs = Vec::new();
         if first {
             shader_defs.push("FIRST".into());
         }
-        if multisampled {
-            shader_defs.push("MULTISAMPLED".into());
-        }
+        shader_defs.extend(samples::definitions(samples));
         if oblique {
             shader_defs.push("OBLIQUE".into());
         }
         let layout = if first {
-            Self::first_layout(multisampled)
+            Self::first_layout(samples > 1)
         } else {
             Self::next_layout()
         };

@@ -28,7 +28,7 @@ struct PingPongView {
 fn depth_key(pixel: vec2<u32>, farthest: bool) -> u32 {
     var best = 0u;
 #ifdef MULTISAMPLED
-    let samples = i32(textureNumSamples(depth_texture));
+    let samples = #{SAMPLES};
     for (var s = 0; s < samples; s++) {
         let bits = raw_depth_key(view.raw, pixel, textureLoad(depth_texture, vec2<i32>(pixel), s).r);
         best = max(best, select(bits, 0u - bits, farthest && bits != 0u));

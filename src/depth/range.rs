@@ -20,6 +20,7 @@ use bevy::{
 use wgpu_types::DeviceType;
 
 use super::{RawDepth, ReductionMethod};
+use crate::samples;
 
 /// `RangeView` of `range.wgsl` and `PingPongView` of `ping_pong.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug)]
@@ -102,7 +103,7 @@ impl RangePipeline {
 
     pub fn layout(key: RangeKey) -> BindGroupLayoutDescriptor {
         let unfilterable = TextureSampleType::Float { filterable: false };
-        let depth = if key.multisampled {
+        let depth = if key.samples > 1 {
             texture_2d_multisampled(unfilterable)
         } else {
             texture_2d(unfilterable)
@@ -117,7 +118,7 @@ impl RangePipeline {
             ),
         )
         .to_vec();
-        if !key.multisampled {
+        if key.samples <= 1 {
             entries.push(sampler(SamplerBindingType::NonFiltering).build(3, compute));
         }
         if key.histogram {
@@ -130,7 +131,8 @@ impl RangePipeline {
 /// What selects a shader variant of a shape.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct RangeKey {
-    pub multisampled: bool,
+    /// Samples of a pixel.
+    pub samples: u32,
     pub oblique: bool,
     pub histogram: bool,
     /// The histogram has the bins of an orthographic projection.
@@ -147,9 +149,7 @@ impl SpecializedComputePipeline for RangePipeline {
             RangeShape::Subgroup => shader_defs.push("SUBGROUP".into()),
             RangeShape::SharedMemory => {}
         }
-        if key.multisampled {
-            shader_defs.push("MULTISAMPLED".into());
-        }
+        shader_defs.extend(samples::definitions(key.samples));
         if key.oblique {
             shader_defs.push("OBLIQUE".into());
         }

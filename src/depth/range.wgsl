@@ -107,7 +107,7 @@ fn block_keys(at: vec2<u32>) -> vec2<u32> {
     let below = at.y + 1u < view.rect.w;
 #ifdef MULTISAMPLED
     var found = vec2(0u);
-    let samples = i32(textureNumSamples(depth_texture));
+    let samples = #{SAMPLES};
     let last = view.rect.xy + view.rect.zw - 1u;
     for (var i = 0u; i < 4u; i++) {
         let pixel = corner + vec2(i & 1u, i >> 1u);

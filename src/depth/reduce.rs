@@ -141,7 +141,7 @@ impl Frame<'_> {
             .ok_or(LeftOut::PipelineNotReady)?;
         let histogram = range.histogram();
         let key = RangeKey {
-            multisampled: range.request.samples > 1,
+            samples: range.request.samples,
             histogram: histogram.is_some(),
             ..RangeKey::default()
         };
@@ -151,7 +151,7 @@ impl Frame<'_> {
             entry(1, view),
             entry(2, range.keys.as_entire_binding()),
         ];
-        if !key.multisampled {
+        if key.samples <= 1 {
             entries.push(entry(3, (&pipeline.nearest_sampler).into_binding()));
         }
         if let Some(histogram) = histogram {

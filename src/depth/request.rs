@@ -112,7 +112,7 @@ impl RangePipelines<'_> {
         let counts = follows && shape.is_some() && (reads_counts || request.has_outliers());
         let kind = request.projection.kind();
         let key = RangeKey {
-            multisampled: request.samples > 1,
+            samples: request.samples,
             oblique: kind == ProjectionKind::Oblique,
             histogram: counts,
             orthographic: counts && kind == ProjectionKind::Orthographic,
@@ -124,7 +124,7 @@ impl RangePipelines<'_> {
             },
             None => {
                 let mut chain = |first| {
-                    let key = (first, key.multisampled, key.oblique);
+                    let key = (first, key.samples, key.oblique);
                     self.ping_pongs.specialize(cache, &self.ping_pong, key)
                 };
                 Reduction::PingPong {

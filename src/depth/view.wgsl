@@ -60,7 +60,7 @@ fn depth_pixel(pixel: vec2<i32>) -> vec2<i32> {
 #ifdef DEPTH
 fn sample_count() -> i32 {
 #ifdef MULTISAMPLED
-    return i32(textureNumSamples(depth_texture));
+    return #{SAMPLES};
 #else
     return 1;
 #endif

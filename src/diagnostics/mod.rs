@@ -136,6 +136,8 @@ pub enum LeftOut {
     /// The device has no compute shaders, or too few storage textures or buffers for
     /// them; all pixels are drawn.
     NoComputeShaders,
+    /// The device has too few storage buffers for object ids.
+    NoStorageBuffers,
     /// The view has no depth prepass.
     NoDepthPrepass,
     /// The view has no normal prepass.
@@ -171,6 +173,7 @@ impl fmt::Display for LeftOut {
             Self::NoComputeShaders => {
                 "the device lacks compute shaders or storage textures and buffers"
             }
+            Self::NoStorageBuffers => "the device has too few storage buffers for object ids",
             Self::NoDepthPrepass => "the view has no depth prepass",
             Self::NoNormalPrepass => "the view has no normal prepass",
             Self::Replaced => "another effect replaces it",

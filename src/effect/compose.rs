@@ -38,13 +38,14 @@ const MODULES: [&str; 23] = [
 ];
 
 /// Shader definitions of the fused pass that do not name an effect, in lower case.
-const DEFINITIONS: [&str; 37] = [
+const DEFINITIONS: [&str; 38] = [
     "depth",
     "depth_borders",
     "map",
     "map_flags",
     "visible_range",
     "multisampled",
+    "samples",
     "oblique",
     "same_size",
     "normals",

@@ -24,6 +24,7 @@ use crate::{
     finish::DebugView,
     lines::{ink_entry, owners_entry, range_entry},
     objects::{ids_entry, object_styles_entry, places_entry},
+    samples,
 };
 
 /// The properties of a view that select a pipeline, besides its plan.
@@ -288,7 +289,6 @@ impl StylizeKey {
             (needs.contains(Needs::MAP), "MAP"),
             (self.visible_range, "VISIBLE_RANGE"),
             (self.borders(), "DEPTH_BORDERS"),
-            (self.samples > 1, "MULTISAMPLED"),
             (self.oblique, "OBLIQUE"),
             (self.normals(), "NORMALS"),
             (self.ids(), "OBJECT_IDS"),
@@ -321,6 +321,7 @@ impl StylizeKey {
         .chain(self.view.map(|_| "DEBUG_VIEW".into()))
         .chain(self.view.into_iter().flat_map(view_definitions))
         .chain(self.effects.iter().map(|name| definition(name).into()))
+        .chain(samples::definitions(self.samples))
         .chain(self.draws.shader_defs())
         .chain(self.reads.shader_def())
         .chain(self.left_out.iter().map(|name| left_out(name).into()))

@@ -151,7 +151,7 @@ impl Plan {
         let presses = self
             .lines
             .is_some_and(|lines| lines.has_wide_lines() && lines.weight.pressure > 0.0);
-        cfg!(feature = "objects") && (presses || self.vertex_widths)
+        self.has_ids() && (presses || self.vertex_widths)
     }
 
     /// The pressure of the lines whose widths are drawn. `scale`: physical pixels per logical

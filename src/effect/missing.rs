@@ -1,25 +1,80 @@
-//! Plans of views that lack a prepass.
+//! Plans of views that lack a prepass, and of devices that lack what effects use.
+
+use bevy::{log::warn_once, render::settings::WgpuLimits};
 
 use super::{Needs, Plan, plan::Planned};
 use crate::{diagnostics::LeftOut, finish::DebugView};
 
-/// The engine's prepasses that this crate reads.
+/// Inputs that a view may lack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Prepasses {
-    Depth,
-    Normals,
+pub(crate) enum Input {
+    DepthPrepass,
+    NormalPrepass,
+    ObjectIds,
+}
+
+/// What a device lacks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct DeviceLacks {
+    pub compute_shaders: bool,
+    /// Storage buffers in vertex and fragment shaders, which object ids need.
+    pub object_ids: bool,
+}
+
+impl DeviceLacks {
+    /// Most storage buffers of a stage of the pipelines that draw or read object ids, the engine's
+    /// included.
+    const ID_BUFFERS: u32 = 4;
+
+    pub fn new(limits: &WgpuLimits) -> Self {
+        Self {
+            compute_shaders: limits.max_compute_workgroup_size_x == 0,
+            object_ids: limits.max_storage_buffers_per_shader_stage < Self::ID_BUFFERS,
+        }
+    }
+
+    /// Warns once about each, with what is not drawn.
+    pub fn warn(self) {
+        if self.compute_shaders {
+            warn_once!(
+                "this device has no compute shaders: visible ranges are not smoothed, locked or \
+                 trimmed, borders of planes are not found, and lines are drawn without continuity, \
+                 bridges, budget, persistence and weights"
+            );
+        }
+        if self.object_ids && cfg!(feature = "objects") {
+            warn_once!(
+                "this device has too few storage buffers for object ids: edges between objects, line \
+                 styles of objects, sections, marks, screens that follow objects and depth of \
+                 transparent meshes are not drawn"
+            );
+        }
+    }
 }
 
 impl Plan {
-    /// The plan for a view that does not have this prepass, or does not have it yet.
-    pub fn without(&self, missing: Prepasses) -> Self {
+    /// The plan on a device.
+    #[must_use]
+    pub fn on_device(mut self, lacks: DeviceLacks) -> Self {
+        self.lacks = lacks;
+        if lacks.object_ids {
+            self.without(Input::ObjectIds)
+        } else {
+            self
+        }
+    }
+
+    /// The plan for a view that does not have this input, or does not have it yet.
+    #[must_use]
+    pub fn without(&self, missing: Input) -> Self {
         let mut plan = self.clone();
         let (needs, reason) = match missing {
-            Prepasses::Depth => (
+            Input::DepthPrepass => (
                 Needs::all().difference(Needs::WITHOUT_PREPASSES),
                 LeftOut::NoDepthPrepass,
             ),
-            Prepasses::Normals => (Needs::NORMALS, LeftOut::NoNormalPrepass),
+            Input::NormalPrepass => (Needs::NORMALS, LeftOut::NoNormalPrepass),
+            Input::ObjectIds => (Needs::IDS, LeftOut::NoStorageBuffers),
         };
         for planned in std::mem::take(&mut plan.effects) {
             let name = planned.effect.effect_type().name;
@@ -33,14 +88,24 @@ impl Plan {
             }
         }
         match missing {
-            Prepasses::Depth => {
+            Input::DepthPrepass => {
                 plan.view = plan.view.filter(|v| !v.needs_depth());
                 plan.histogram = false;
                 plan.readback = false;
                 plan.unstyled = false;
             }
-            Prepasses::Normals => {
+            Input::NormalPrepass => {
                 plan.view = plan.view.filter(|v| *v != DebugView::Creases);
+            }
+            Input::ObjectIds => {
+                plan.view = plan.view.filter(|v| !v.reads_ids());
+                plan.lacks.object_ids = true;
+                plan.object_styles = false;
+                plan.sections = false;
+                plan.vertex_widths = false;
+                plan.unstyled = false;
+                plan.anchored = false;
+                plan.marks = false;
             }
         }
         plan.resolve();

@@ -51,7 +51,7 @@ pub use set::EffectSet;
 pub(crate) use strokes::Strokes;
 pub use target::EffectTarget;
 pub use variants::Variants;
-pub(crate) use {choose::ViewPlan, plan::Plan};
+pub(crate) use {choose::ViewPlan, missing::DeviceLacks, plan::Plan};
 
 use crate::{
     diagnostics::ComicsStage,

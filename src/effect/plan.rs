@@ -5,7 +5,7 @@ use std::fmt::Debug;
 
 use bevy::ecs::world::EntityRef;
 
-use super::{AnyEffect, EffectStage, EffectType, Needs};
+use super::{AnyEffect, EffectStage, EffectType, Needs, missing::DeviceLacks};
 use crate::{
     depth::{DepthHistogram, DepthMap, VisibleDepthRange},
     diagnostics::LeftOut,
@@ -56,6 +56,7 @@ pub(crate) struct Plan {
     pub marks: bool,
     /// Lines fade into the camera's distance fog.
     pub fog: bool,
+    pub lacks: DeviceLacks,
     /// The game reads the visible range.
     pub readback: bool,
     /// The game reads the histogram of depths.
@@ -196,7 +197,14 @@ impl Plan {
     /// Derives the lines, and the effects that are left out or replaced.
     pub(super) fn resolve(&mut self) {
         let asked = self.effects.iter().find_map(|p| p.effect.any_lines());
-        self.lines = asked.map(LineSettings::visible).filter(|l| !l.is_empty());
+        let has_ids = self.has_ids();
+        self.lines = asked
+            .map(LineSettings::visible)
+            .map(|lines| LineSettings {
+                objects: lines.objects.filter(|_| has_ids),
+                ..lines
+            })
+            .filter(|l| !l.is_empty());
         self.show_lines();
         let lost = self.lines.is_none();
         let needs_lines = Needs::LINES | Needs::LINES_ANYWHERE;
@@ -289,7 +297,7 @@ impl Plan {
         } else {
             needs - Needs::OBJECT_ANCHORS
         };
-        let needs = if cfg!(feature = "objects") {
+        let needs = if self.has_ids() {
             needs
         } else {
             needs - Needs::OBJECT_DEPTHS
@@ -363,6 +371,11 @@ impl Plan {
             lines.objects.is_some() || self.object_styles || self.sections || weighs
         });
         let ids = lines || self.draws_widths() || self.needs().contains(Needs::IDS);
-        cfg!(feature = "objects") && ids
+        self.has_ids() && ids
+    }
+
+    /// Whether object ids can be drawn.
+    pub fn has_ids(&self) -> bool {
+        cfg!(feature = "objects") && !self.lacks.object_ids
     }
 }

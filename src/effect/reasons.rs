@@ -39,6 +39,9 @@ impl Plan {
                 LeftOut::NotRequested
             }
             ComicsStage::DepthPrepass => LeftOut::NoDepthStyle,
+            ComicsStage::ObjectIds | ComicsStage::TransparentDepth if self.lacks.object_ids => {
+                LeftOut::NoStorageBuffers
+            }
             ComicsStage::TransparentDepth if self.needs_depth() => LeftOut::NoSuchMeshes,
             ComicsStage::TransparentDepth => LeftOut::NoDepthStyle,
             ComicsStage::NormalPrepass
@@ -51,6 +54,9 @@ impl Plan {
                 if self.depth_map.smoothing.is_none() && !self.depth_map.locked =>
             {
                 LeftOut::NotRequested
+            }
+            ComicsStage::RangeSmoothing if self.lacks.compute_shaders && self.smooths() => {
+                LeftOut::NoComputeShaders
             }
             ComicsStage::DepthRange | ComicsStage::RangeSmoothing if maps => LeftOut::FixedRange,
             ComicsStage::DepthRange | ComicsStage::RangeSmoothing if lines => LeftOut::NoMapStyle,

@@ -24,7 +24,7 @@ use super::{
     compiling::{are_compiling, is_compiling},
     key::{KeyInputs, StylizeKey},
     lines::{line_reach, line_request, map_jumps},
-    missing::Prepasses,
+    missing::Input,
     part::Part,
     pass::StylizePipeline,
     passes::{Reads, passes},
@@ -96,10 +96,10 @@ impl Scene {
     pub fn reduce(&self, plan: &Arc<Plan>) -> Arc<Plan> {
         let mut reduced = plan.clone();
         if self.depth.is_none() && reduced.needs_depth() {
-            reduced = Arc::new(reduced.without(Prepasses::Depth));
+            reduced = Arc::new(reduced.without(Input::DepthPrepass));
         }
         if !self.normals && reduced.needs_normals() {
-            reduced = Arc::new(reduced.without(Prepasses::Normals));
+            reduced = Arc::new(reduced.without(Input::NormalPrepass));
         }
         reduced
     }

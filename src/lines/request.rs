@@ -356,7 +356,7 @@ impl LinePipelines<'_> {
             renders.specialize(cache, &self.shaders, (pass, pass.part(key)))
         };
         let resolve = (request.samples > 1).then(|| {
-            let key = ResolveKey::new(&key);
+            let key = ResolveKey::new(&key, request.samples);
             (key, self.resolves.specialize(cache, &self.resolve, key))
         });
         let faithful = key.has_faithful().then(|| render(LinePass::Faithful));

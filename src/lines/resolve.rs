@@ -24,7 +24,10 @@ use super::{
     draw::cleared, key::LineKey, pass::LinePassUniform, prepare::texture, request::LineRequest,
     sources::Texels,
 };
-use crate::objects::{ID_FORMAT, WIDTH_FORMAT, ids_entry, widths_entry};
+use crate::{
+    objects::{ID_FORMAT, WIDTH_FORMAT, ids_entry, widths_entry},
+    samples,
+};
 
 /// A texel of the engine's depth prepass, which is a `Depth32Float`.
 const DEPTH_FORMAT: TextureFormat = TextureFormat::R32Float;
@@ -32,6 +35,7 @@ const DEPTH_FORMAT: TextureFormat = TextureFormat::R32Float;
 /// Selects the variant of the pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ResolveKey {
+    samples: u32,
     oblique: bool,
     /// Whether the normals, the object ids and the widths of lines are read.
     pub normals: bool,
@@ -40,8 +44,9 @@ pub(crate) struct ResolveKey {
 }
 
 impl ResolveKey {
-    pub fn new(key: &LineKey) -> Self {
+    pub fn new(key: &LineKey, samples: u32) -> Self {
         Self {
+            samples,
             oblique: key.oblique,
             normals: key.creases || key.faithful[1] || key.weight.light,
             ids: key.ids,
@@ -81,7 +86,6 @@ impl ResolveKey {
     fn defs(self) -> Vec<ShaderDefVal> {
         [
             (true, "DEPTH"),
-            (true, "MULTISAMPLED"),
             (self.oblique, "OBLIQUE"),
             (self.normals, "NORMALS"),
             (self.ids, "OBJECT_IDS"),
@@ -90,6 +94,7 @@ impl ResolveKey {
         .into_iter()
         .filter(|(on, _)| *on)
         .map(|(_, name)| name.into())
+        .chain(samples::definitions(self.samples))
         .collect()
     }
 }

@@ -112,7 +112,7 @@ fn whole_depth(pixel: vec2<i32>, sample: i32, d: f32) -> f32 {
 fn unstyled_fraction(pixel: vec2<i32>) -> f32 {
     let at = depth_pixel(pixel);
 #ifdef MULTISAMPLED
-    let samples = i32(textureNumSamples(object_texture));
+    let samples = #{SAMPLES};
     var found = 0u;
     for (var s = 0; s < samples; s++) {
         found += (style_of(texel_slot(at, s)).kinds >> 3u) & 1u;

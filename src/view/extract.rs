@@ -100,7 +100,7 @@ fn want_objects(view: &mut EntityCommands, (camera, plan): (Entity, &Plan), writ
     } else {
         view.remove::<IdsWanted>();
     }
-    if writes && plan.needs_depth() {
+    if writes && plan.has_ids() && plan.needs_depth() {
         view.insert(DepthWanted {
             camera,
             normals: plan.needs_normals(),

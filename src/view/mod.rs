@@ -24,12 +24,12 @@ use bevy::{
         world::EntityRef,
     },
     log::warn_once,
-    render::{ExtractSchedule, RenderApp},
+    render::{ExtractSchedule, RenderApp, renderer::RenderDevice},
 };
 
 use crate::{
     depth::MaterialsReadRange,
-    effect::{EffectRegistry, Plan},
+    effect::{DeviceLacks, EffectRegistry, Plan},
     objects::{ObjectChanges, ObjectStyles},
     schedule::ComicsSystems,
 };
@@ -95,14 +95,20 @@ fn plan_cameras(
     registry: Res<EffectRegistry>,
     objects: Res<ObjectStyles>,
     materials: Res<MaterialsReadRange>,
+    device: Option<Res<RenderDevice>>,
 ) {
+    let lacks = device.map_or_else(DeviceLacks::default, |device| {
+        DeviceLacks::new(&device.limits())
+    });
     let types = registry.types();
     for camera in &cameras {
         let known = camera.get::<CameraPlan>();
         let mut entity = commands.entity(camera.id());
         let shown = camera.get::<Impacts>().map_or(&[][..], Impacts::effects);
-        let mut plan = Plan::new(camera, shown, &types, objects.changes());
+        let mut plan =
+            Plan::new(camera, shown, &types, objects.changes()).map(|plan| plan.on_device(lacks));
         if let Some(plan) = &mut plan {
+            lacks.warn();
             plan.materials = materials.0;
         }
         match (plan, known) {

@@ -51,6 +51,9 @@ pub struct HeadlessOptions {
     pub background_pipelines: bool,
     /// Limits of the device below those of the adapter.
     pub limits: Option<wgpu::Limits>,
+    /// Graphics APIs that may be used. Default: those that `WGPU_BACKEND` names, else all but
+    /// OpenGL.
+    pub backends: wgpu::Backends,
 }
 
 impl Default for HeadlessOptions {
@@ -64,6 +67,7 @@ impl Default for HeadlessOptions {
             watch: false,
             background_pipelines: false,
             limits: None,
+            backends: default_backends(),
         }
     }
 }
@@ -78,7 +82,7 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
         })
         .set(RenderPlugin {
             render_creation: WgpuSettings {
-                backends: Some(backends()),
+                backends: Some(options.backends),
                 constrained_limits: options.limits.clone(),
                 instance_flags: validation::instance_flags(),
                 ..default()
@@ -107,7 +111,7 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
 
 /// The backends that `WGPU_BACKEND` names; by default all but OpenGL, which needs a
 /// display.
-fn backends() -> wgpu::Backends {
+fn default_backends() -> wgpu::Backends {
     wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY)
 }
 
@@ -123,8 +127,13 @@ pub struct Adapter {
 
 /// Finds the adapter; the error names the command that installs one.
 pub fn adapter() -> Result<Adapter, String> {
+    adapter_of(default_backends())
+}
+
+/// The same of some graphics APIs.
+pub fn adapter_of(backends: wgpu::Backends) -> Result<Adapter, String> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends: backends(),
+        backends,
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     });
     let request = instance.request_adapter(&wgpu::RequestAdapterOptions::default());
@@ -181,7 +190,7 @@ impl Headless {
         options: HeadlessOptions,
         add_plugins: impl FnOnce(&mut App, PluginGroupBuilder),
     ) -> Self {
-        if let Err(message) = adapter() {
+        if let Err(message) = adapter_of(options.backends) {
             panic!("{message}");
         }
         let mut app = App::new();

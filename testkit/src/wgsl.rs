@@ -100,13 +100,17 @@ fn compose(
     for import in wanted {
         add(composer, modules, engine, &import.import)?;
     }
-    let shader_defs = definitions
+    let mut shader_defs: HashMap<_, _> = definitions
         .iter()
         .map(|(name, number)| {
             let value = number.map_or(ShaderDefValue::Bool(true), ShaderDefValue::UInt);
             ((*name).to_owned(), value)
         })
         .collect();
+    // Its value is the only difference between views with 2, 4 and 8 samples.
+    shader_defs
+        .entry("SAMPLES".to_owned())
+        .or_insert(ShaderDefValue::UInt(4));
     let module = composer
         .make_naga_module(NagaModuleDescriptor {
             source,

@@ -137,6 +137,7 @@ const LISTS: &[&[Choice]] = &[
         &["HATCHED", "HATCH_REST"],
         &["HATCHED", "HATCH_REST", "HATCH_DOTS"],
         &["HATCHED", "HATCH_ART_MAP"],
+        &["HATCHED", "HATCH_ART_MAP", "NO_TEXTURE_LEVELS"],
         &["HATCHED", "HATCH_REST", "HATCH_ART_MAP"],
     ],
 ];

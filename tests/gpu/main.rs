@@ -59,6 +59,7 @@ mod models;
 mod motion_lines;
 mod numbered;
 mod object_screen;
+mod open_gl;
 mod outlines;
 mod outside;
 mod overshoot;

@@ -34,7 +34,7 @@ fn near_samples(position: vec4<f32>) -> u32 {
     let at = min(vec2<u32>(position.xy), textureDimensions(prepass_depth) - 1u);
     var bits = 0u;
 #ifdef TOLERANT_MULTISAMPLED
-    let samples = textureNumSamples(prepass_depth);
+    let samples = #{SAMPLES}u;
     for (var s = 0u; s < samples; s++) {
         let found = textureLoad(prepass_depth, at, i32(s)).x;
         bits |= u32(is_near(position.z, found, slope)) << s;
