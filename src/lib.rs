@@ -74,6 +74,7 @@ mod lines;
 mod motion_lines;
 mod objects;
 mod plugin;
+mod readback;
 mod samples;
 mod schedule;
 mod settings;

@@ -17,12 +17,13 @@ use bevy::{
     },
     reflect::{Reflect, std_traits::ReflectDefault},
     render::{
-        render_resource::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder, MapMode},
+        render_resource::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder},
         renderer::RenderDevice,
     },
 };
 
 use super::{ProjectionKind, frame::DepthProjection};
+use crate::readback::map_words;
 
 /// The view depths of the nearest and farthest visible geometry of a camera. Put it
 /// on the camera; its value is updated.
@@ -275,34 +276,24 @@ impl RangeReadback {
             let Some(projection) = slot.copied.take() else {
                 continue;
             };
-            let (buffer, busy) = (slot.buffer.clone(), slot.busy.clone());
+            let busy = slot.busy.clone();
             let readings = readings.0.clone();
-            slot.buffer
-                .slice(..)
-                .map_async(MapMode::Read, move |result| {
-                    // Mapping fails on a lost device, whose buffers are dropped.
-                    if result.is_ok() {
-                        let words: Vec<u32> = buffer
-                            .slice(..)
-                            .get_mapped_range()
-                            .chunks_exact(4)
-                            .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-                            .collect();
-                        buffer.unmap();
-                        let (keys, rest) = words.split_at((KEYS_SIZE / 4) as usize);
-                        let keys = [keys[0], keys[1]];
-                        let reading = RangeReading {
-                            range: VisibleDepthRange::of_keys(keys, &projection),
-                            histogram: (!rest.is_empty())
-                                .then(|| DepthHistogram::of_words(keys, rest, &projection)),
-                        };
-                        readings
-                            .lock()
-                            .unwrap_or_else(PoisonError::into_inner)
-                            .insert(camera, reading);
-                    }
-                    busy.store(false, Ordering::Release);
-                });
+            map_words(&slot.buffer, move |words| {
+                if let Some(words) = words {
+                    let (keys, rest) = words.split_at((KEYS_SIZE / 4) as usize);
+                    let keys = [keys[0], keys[1]];
+                    let reading = RangeReading {
+                        range: VisibleDepthRange::of_keys(keys, &projection),
+                        histogram: (!rest.is_empty())
+                            .then(|| DepthHistogram::of_words(keys, rest, &projection)),
+                    };
+                    readings
+                        .lock()
+                        .unwrap_or_else(PoisonError::into_inner)
+                        .insert(camera, reading);
+                }
+                busy.store(false, Ordering::Release);
+            });
         }
     }
 }

@@ -9,6 +9,12 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
 }
 
+/// Shadow maps of directional lights, and the sampler that compares their depths.
+pub struct ShadowMaps {
+    maps: wgpu::TextureView,
+    sampler: wgpu::Sampler,
+}
+
 /// The device, shared by all tests of a process. Without an adapter it panics with
 /// the command that installs one.
 pub fn gpu() -> &'static Gpu {
@@ -123,11 +129,25 @@ impl Gpu {
     }
 
     /// A texture of 32-bit floating-point numbers.
-    pub fn texture(&self, size: [u32; 2], texels: &[[f32; 4]]) -> wgpu::TextureView {
+    pub fn texture(&self, [width, height]: [u32; 2], texels: &[[f32; 4]]) -> wgpu::TextureView {
+        let bytes: Vec<u8> = (texels.iter().flatten())
+            .flat_map(|x| x.to_le_bytes())
+            .collect();
+        let size = [width, height, 1];
+        self.texture_of(wgpu::TextureFormat::Rgba32Float, size, &bytes)
+    }
+
+    /// A texture with a width, a height and a number of layers, from the bytes of its rows.
+    pub fn texture_of(
+        &self,
+        format: wgpu::TextureFormat,
+        [width, height, layers]: [u32; 3],
+        bytes: &[u8],
+    ) -> wgpu::TextureView {
         let size = wgpu::Extent3d {
-            width: size[0],
-            height: size[1],
-            depth_or_array_layers: 1,
+            width,
+            height,
+            depth_or_array_layers: layers,
         };
         let texture = self.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
@@ -135,21 +155,60 @@ impl Gpu {
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba32Float,
+            format,
             usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
             view_formats: &[],
         });
-        let bytes: Vec<u8> = (texels.iter().flatten())
-            .flat_map(|x| x.to_le_bytes())
-            .collect();
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
-            bytes_per_row: Some(16 * size.width),
-            rows_per_image: None,
+            bytes_per_row: Some(bytes.len() as u32 / (height * layers)),
+            rows_per_image: Some(height),
         };
         self.queue
-            .write_texture(texture.as_image_copy(), &bytes, layout, size);
+            .write_texture(texture.as_image_copy(), bytes, layout, size);
         texture.create_view(&Default::default())
+    }
+
+    /// Square shadow maps of directional lights: layers of depths in steps of 1 / 65535.
+    pub fn shadow_maps(&self, size: u32, layers: &[Vec<u16>]) -> ShadowMaps {
+        let depths = layers.iter().flatten();
+        let bytes: Vec<u8> = depths.flat_map(|depth| depth.to_le_bytes()).collect();
+        let size = [size, size, layers.len() as u32];
+        ShadowMaps {
+            maps: self.texture_of(wgpu::TextureFormat::Depth16Unorm, size, &bytes),
+            // As the engine's.
+            sampler: self.device.create_sampler(&wgpu::SamplerDescriptor {
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                compare: Some(wgpu::CompareFunction::GreaterEqual),
+                ..Default::default()
+            }),
+        }
+    }
+
+    /// As [`evaluate_alone`](Self::evaluate_alone), for functions that read the shadow maps of
+    /// directional lights with the slope of the shadow.
+    pub fn evaluate_shadows<const N: usize>(
+        &self,
+        shadows: &ShadowMaps,
+        imports: &str,
+        body: &str,
+        rows: &[[f32; N]],
+    ) -> Vec<[f32; 4]> {
+        let definitions = [("SLOPED_SHADOWS", None)];
+        let module = wgsl::module_alone(&entry_point::<N>(imports, body), &definitions);
+        let module = module.unwrap_or_else(|error| panic!("{error}"));
+        let entries = [
+            wgpu::BindGroupEntry {
+                binding: 2,
+                resource: wgpu::BindingResource::TextureView(&shadows.maps),
+            },
+            wgpu::BindGroupEntry {
+                binding: 3,
+                resource: wgpu::BindingResource::Sampler(&shadows.sampler),
+            },
+        ];
+        self.run(module, rows, &entries)
     }
 
     /// As [`evaluate`](Self::evaluate), for functions that read bindings: they are variables that

@@ -2,7 +2,8 @@
 //! ([`wgsl::module_alone`](crate::wgsl::module_alone)).
 //!
 //! What the engine binds are private variables, and what it reads from textures are simple
-//! functions of such variables, which tests set and know.
+//! functions of such variables, which tests set and know. Only the shadow maps of directional
+//! lights are textures, see [`Gpu::evaluate_shadows`](crate::device::Gpu::evaluate_shadows).
 
 /// Modules by name.
 pub const MODULES: [(&str, &str); 13] = [
@@ -29,10 +30,21 @@ const VIEW_BINDINGS: &str = "#define_import_path bevy_pbr::mesh_view_bindings
         world_from_view: mat4x4<f32>,
         view_from_world: mat4x4<f32>,
     }
+    struct DirectionalCascade {
+        clip_from_world: mat4x4<f32>,
+        texel_size: f32,
+        far_bound: f32,
+    }
     struct DirectionalLight {
+        cascades: array<DirectionalCascade, 2>,
         color: vec4<f32>,
         direction_to_light: vec3<f32>,
         flags: u32,
+        shadow_depth_bias: f32,
+        shadow_normal_bias: f32,
+        num_cascades: u32,
+        cascades_overlap_proportion: f32,
+        depth_texture_base_index: u32,
         decal_index: u32,
         sun_disk_angular_size: f32,
     }
@@ -49,6 +61,7 @@ const VIEW_BINDINGS: &str = "#define_import_path bevy_pbr::mesh_view_bindings
         directional_lights: array<DirectionalLight, 1>,
         rect_lights: array<RectLight, 1>,
         ambient_color: vec4<f32>,
+        spot_light_shadowmap_offset: i32,
         ambient_light_affects_lightmapped_meshes: u32,
     }
     struct ClusteredLight {
@@ -56,6 +69,8 @@ const VIEW_BINDINGS: &str = "#define_import_path bevy_pbr::mesh_view_bindings
         color_inverse_square_range: vec4<f32>,
         position_radius: vec4<f32>,
         flags: u32,
+        shadow_depth_bias: f32,
+        shadow_normal_bias: f32,
         spot_light_tan_angle: f32,
         shadow_map_near_z: f32,
         decal_index: u32,
@@ -68,6 +83,8 @@ const VIEW_BINDINGS: &str = "#define_import_path bevy_pbr::mesh_view_bindings
     var<private> clustered_lights: ClusteredLights;
     var<private> atmosphere: Atmosphere;
     var<private> globals: Globals;
+    @group(0) @binding(2) var directional_shadow_textures: texture_depth_2d_array;
+    @group(0) @binding(3) var directional_shadow_textures_comparison_sampler: sampler_comparison;
 ";
 
 /// The bits are the engine's.
@@ -81,8 +98,10 @@ const VIEW_TYPES: &str = "#define_import_path bevy_pbr::mesh_view_types
     const DIRECTIONAL_LIGHT_FLAGS_CONTACT_SHADOWS_ENABLED_BIT: u32 = 8u;
 ";
 
-/// Half planes with a soft border: those of spot lights are moved by the near plane.
+/// Half planes with a soft border: those of spot lights are moved by the near plane. Cascades are
+/// found as in the engine.
 const SHADOWS: &str = "#define_import_path bevy_pbr::shadows
+    #import bevy_pbr::mesh_view_bindings::lights
     var<private> border: vec4<f32>;
     fn fetch_spot_shadow(id: u32, at: vec4<f32>, normal: vec3<f32>, near: f32, pixel: vec2<f32>) -> f32 {
         return clamp(dot(at, border) + near, 0.0, 1.0);
@@ -95,14 +114,37 @@ const SHADOWS: &str = "#define_import_path bevy_pbr::shadows
     ) -> f32 {
         return clamp(dot(at, border), 0.0, 1.0);
     }
+    fn get_cascade_index(id: u32, view_z: f32) -> u32 {
+        let count = lights.directional_lights[id].num_cascades;
+        for (var i = 0u; i < count; i++) {
+            if -view_z < lights.directional_lights[id].cascades[i].far_bound {
+                return i;
+            }
+        }
+        return count;
+    }
+    fn world_to_directional_light_local(id: u32, index: u32, at: vec4<f32>) -> vec4<f32> {
+        let clip = lights.directional_lights[id].cascades[index].clip_from_world * at;
+        if clip.w <= 0.0 {
+            return vec4(0.0);
+        }
+        let ndc = clip.xyz / clip.w;
+        if any(ndc.xy < vec2<f32>(-1.0)) || ndc.z < 0.0 || any(ndc > vec3<f32>(1.0)) {
+            return vec4(0.0);
+        }
+        return vec4(ndc.xy * vec2(0.5, -0.5) + vec2(0.5), ndc.z, 1.0);
+    }
 ";
 
-/// Readings of shadow maps: functions that use them are not run.
+/// Readings of cube maps: functions that use them are not run.
 const SHADOW_SAMPLING: &str = "#define_import_path bevy_pbr::shadow_sampling
     const POINT_SHADOW_SCALE: f32 = 0.003;
-    const D3D_SAMPLE_POINT_COEFFS: array<f32, 8> = array(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    const D3D_SAMPLE_POINT_COEFFS: array<f32, 8> = array(
+        0.157112, 0.157112, 0.138651, 0.130251, 0.114946, 0.114946, 0.107982, 0.079001,
+    );
     const D3D_SAMPLE_POINT_POSITIONS: array<vec2<f32>, 8> = array(
-        vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0), vec2(0.0),
+        vec2(0.125, -0.375), vec2(-0.125, 0.375), vec2(0.625, 0.125), vec2(-0.375, -0.625),
+        vec2(-0.625, 0.625), vec2(-0.875, -0.125), vec2(0.375, 0.875), vec2(0.875, -0.875),
     );
     fn sample_shadow_cubemap_hardware(at: vec3<f32>, depth: f32, id: u32) -> f32 { return 1.0; }
 ";

@@ -119,6 +119,7 @@ fn default_backends() -> wgpu::Backends {
 #[derive(Clone, Debug)]
 pub struct Adapter {
     pub info: wgpu::AdapterInfo,
+    pub limits: wgpu::Limits,
     /// Largest width and height of a picture in pixels.
     pub max_size: u32,
     /// Sample counts that targets of colour, HDR colour and depth all support.
@@ -155,6 +156,7 @@ pub fn adapter_of(backends: wgpu::Backends) -> Result<Adapter, String> {
     };
     Ok(Adapter {
         info: adapter.get_info(),
+        limits: adapter.limits(),
         max_size: adapter.limits().max_texture_dimension_2d,
         samples: [1, 2, 4, 8].into_iter().filter(supported).collect(),
     })

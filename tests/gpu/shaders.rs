@@ -776,7 +776,10 @@ fn every_kind_of_outline_composes_and_validates() {
             &["TOLERANT", "TOLERANT_MULTISAMPLED"],
         ] {
             let defs = [widths, depth].concat();
-            check(&shader("objects/ids.wgsl"), &defs);
+            // Both are built by `IdVariant` and `ObjectIdSpecializer` of `objects/items.rs`.
+            for name in ["objects/ids.wgsl", "objects/sections.wgsl"] {
+                check(&shader(name), &defs);
+            }
         }
     }
     for view in subsets(&["MULTISAMPLED"]) {

@@ -21,8 +21,7 @@ use bevy::{
         render_phase::ViewSortedRenderPhases,
         render_resource::{
             BindGroupEntries, Buffer, BufferDescriptor, BufferUsages, CachedComputePipelineId,
-            ComputePassDescriptor, MapMode, PipelineCache, SpecializedComputePipelines,
-            TextureView,
+            ComputePassDescriptor, PipelineCache, SpecializedComputePipelines, TextureView,
         },
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
         view::{ExtractedView, ViewDepthTexture},
@@ -35,9 +34,12 @@ use super::{
     tolerant::TolerantIds,
     watch::Reading,
 };
-use crate::objects::{
-    IdRequest, ViewObjectIds,
-    phase::{Layer, ObjectIdItem},
+use crate::{
+    objects::{
+        IdRequest, ViewObjectIds,
+        phase::{Layer, ObjectIdItem},
+    },
+    readback::map_words,
 };
 
 /// `STEP` and `STRIP` of `count.wgsl`.
@@ -142,19 +144,11 @@ impl IdCount {
             return;
         }
         self.state.store(MAPPED, Ordering::Release);
-        let (buffer, state) = (self.copy.clone(), self.state.clone());
-        let (camera, readings) = (self.camera, readings.clone());
+        let (camera, state) = (self.camera, self.state.clone());
+        let readings = readings.clone();
         let tolerant = self.tolerant.load(Ordering::Relaxed);
-        self.copy.slice(..).map_async(MapMode::Read, move |result| {
-            // Mapping fails on a lost device, whose buffers are dropped.
-            if result.is_ok() {
-                let words: Vec<u32> = buffer
-                    .slice(..)
-                    .get_mapped_range()
-                    .chunks_exact(4)
-                    .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-                    .collect();
-                buffer.unmap();
+        map_words(&self.copy, move |words| {
+            if let Some(words) = words {
                 let mut readings = readings.0.lock().unwrap_or_else(PoisonError::into_inner);
                 readings.push(Reading {
                     camera,

@@ -152,8 +152,14 @@ impl Said {
     }
 }
 
+/// Whether browsers get a shader: devices that cannot number triangles have no sections.
+fn is_for_browsers(file: &&PathBuf) -> bool {
+    !fs::read_to_string(file).is_ok_and(|text| text.contains("enable primitive_index;"))
+}
+
 /// Compiles every file. Whether all are valid in the browser, but for what is known.
 pub fn compile(files: &[PathBuf]) -> Result<bool, String> {
+    let files: Vec<PathBuf> = files.iter().filter(is_for_browsers).cloned().collect();
     let listener = TcpListener::bind("127.0.0.1:0").map_err(|error| error.to_string())?;
     let address = listener.local_addr().map_err(|error| error.to_string())?;
     listener
@@ -185,7 +191,7 @@ pub fn compile(files: &[PathBuf]) -> Result<bool, String> {
                 })
             }
             _ => {
-                said.hear(&request, files);
+                said.hear(&request, &files);
                 String::new()
             }
         };

@@ -3,6 +3,7 @@
 
 pub mod brightest;
 pub mod glint_light;
+pub mod lamp_shadow;
 pub mod lamps;
 pub mod light_textures;
 pub mod per_light;

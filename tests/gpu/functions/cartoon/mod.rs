@@ -2,6 +2,7 @@
 //! with their uniforms, the view and the lights as variables.
 
 mod around;
+mod lamp_shadow;
 mod lamps;
 mod modes;
 mod reflect;
