@@ -2,7 +2,8 @@
 //! writes the report.
 //!
 //! ```text
-//! cargo run --release --example report                # writes docs/report in half an hour
+//! cargo run --release --example report                # writes docs/report
+//! cargo run --release --example report -- --only soak # the long run, which is no part of it
 //! cargo run --example report -- --quick --out target/report
 //! cargo run --example report -- --render              # text and plots from the CSV files
 //! ```
@@ -20,14 +21,17 @@ mod lines;
 mod meadow;
 mod models;
 mod page;
+mod page_styles;
 mod parts;
 mod peers;
 mod plots;
 mod ranges;
 mod rig;
 mod scores;
+mod sections;
 mod soak;
 mod stability;
+mod stamp;
 mod steps;
 mod straight;
 mod table;
@@ -45,6 +49,8 @@ use bevy_comics_testkit::{
     headless::{self, Headless, HeadlessOptions},
 };
 use lexopt::prelude::*;
+use sections::{MACHINE, SECTIONS, Section};
+use stamp::Stamp;
 use table::Table;
 
 /// How much is measured, and where the results go.
@@ -56,6 +62,7 @@ struct Run {
     pub frames: usize,
     folder: PathBuf,
     started: Instant,
+    stamp: Stamp,
 }
 
 impl Run {
@@ -70,6 +77,7 @@ impl Run {
         Self {
             rounds,
             folder: self.folder.clone(),
+            stamp: self.stamp.clone(),
             ..*self
         }
     }
@@ -84,6 +92,15 @@ impl Run {
             .save(&path)
             .map_err(|error| format!("{}: {error}", path.display()))
     }
+
+    /// Measures a section, and writes when and of what it was measured.
+    fn measure(&self, section: &Section) -> Result<(), String> {
+        self.say(section.name);
+        let started = Instant::now();
+        (section.measure)(self)?;
+        let seconds = started.elapsed().as_secs_f64();
+        self.stamp.record(&self.folder, section.name, seconds)
+    }
 }
 
 const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
@@ -94,33 +111,10 @@ const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
                    steps, dashes, dash-steps, memory, meadow, straight, page, stability, ladder,
                    parts, scene-parts, toon, growth, peers, flicker or soak
   --tables         write the CSV files alone, without text and plots
-  --render         measure nothing; write text and plots from the CSV files";
+  --render         measure nothing; write text and plots from the CSV files
 
-type Section = fn(&Run) -> Result<(), String>;
-
-const SECTIONS: [(&str, Section); 21] = [
-    ("machine", machine),
-    ("ranges", ranges::measure),
-    ("encodings", encodings::measure),
-    ("lines", lines::measure),
-    ("models", models::measure),
-    ("steps", steps::measure),
-    ("dashes", ink::dashes),
-    ("dash-steps", ink::dash_steps),
-    ("memory", ink::memory),
-    ("meadow", meadow::measure),
-    ("straight", straight::measure),
-    ("page", page::measure),
-    ("stability", stability::measure),
-    ("ladder", ladder::measure),
-    ("parts", parts::measure),
-    ("scene-parts", parts::of_scenes),
-    ("toon", toon::measure),
-    ("growth", growth::measure),
-    ("peers", peers::measure),
-    ("flicker", flicker::measure),
-    ("soak", soak::measure),
-];
+Without --only, everything is measured but soak, which draws 100,000 frames and has no times. Date, commit
+and seconds of each section are written to sections.csv in the folder of the report.";
 
 /// What the command line asks for.
 struct Arguments {
@@ -165,7 +159,7 @@ fn run() -> Result<(), String> {
         quick, only, out, ..
     } = &arguments;
     if let Some(name) = only
-        && !SECTIONS.iter().any(|(section, _)| section == name)
+        && !SECTIONS.iter().any(|section| section.name == name)
     {
         return Err(format!("no section {name:?}\n\n{USAGE}"));
     }
@@ -178,16 +172,20 @@ fn run() -> Result<(), String> {
             frames: if *quick { 1 } else { 2 },
             folder: out.clone(),
             started: Instant::now(),
+            stamp: Stamp::now(),
         };
         headless::adapter()?;
-        for (name, measure) in SECTIONS {
-            if only.as_deref().is_none_or(|o| o == name) {
-                run.say(name);
-                measure(&run)?;
+        for section in &SECTIONS {
+            let is_wanted = match only {
+                Some(name) => name == section.name,
+                None => !section.is_alone,
+            };
+            if is_wanted {
+                run.measure(section)?;
             }
         }
         if !out.join("machine.csv").exists() {
-            machine(&run)?;
+            run.measure(&MACHINE)?;
         }
     }
     if arguments.tables {
@@ -216,6 +214,8 @@ fn machine(run: &Run) -> Result<(), String> {
     let mut table = Table::new(&["what", "value"]);
     let cores = std::thread::available_parallelism().map_or(0, usize::from);
     for (what, value) in [
+        ("date", run.stamp.date.clone()),
+        ("commit", run.stamp.commit.clone()),
         ("adapter", info.name.clone()),
         ("kind", format!("{:?}", info.device_type)),
         ("backend", info.backend.to_string()),

@@ -7,17 +7,15 @@ use bevy::{
     prelude::*,
 };
 use bevy_comics::{
-    Abstraction, ColorHarmony, ComicStyle, Creases, DepthWrite, Desaturation, Focus, FocusAt,
-    FocusStyle, Halftone, HalftoneMode, Hatching, HatchingMarks, LineColor, LineResponse,
-    LineWeight, LineWidths, MeshSections, NoStyle, OutlineStyle, Outlines, Paint, PaintForm, Paper,
-    PlaneBorders, PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape, SelectionOutline,
-    Silhouettes, SpeedLines, ToneRamp, TwoTone, XRayOutline,
+    ComicStyle, Creases, DepthWrite, Desaturation, LineColor, LineResponse, LineWeight, LineWidths,
+    MeshSections, NoStyle, OutlineStyle, Outlines, Planes, SelectionOutline, Silhouettes,
+    XRayOutline,
 };
 
 use bevy_comics_testkit::scenes::BuiltIn;
 
 use crate::{
-    Run,
+    Run, page_styles,
     rig::{self, Rig, Wear},
 };
 
@@ -94,100 +92,12 @@ fn plane_lines() -> ComicStyle {
     ComicStyle::new().with(Outlines::default()).with(planes)
 }
 
+/// Effects of the page.
 fn page() -> Vec<(String, Wear)> {
-    let none = ComicStyle::new();
-    let screen = |halftone: Halftone| ComicStyle::new().with(halftone);
-    let default = Halftone::default();
-    let focus = |style: FocusStyle| {
-        ComicStyle::new().with(Focus {
-            at: FocusAt::Centre,
-            style,
-            ..Focus::default()
-        })
-    };
-    let printed = none
-        .clone()
-        .with(PrintOffset::default())
-        .with(default)
-        .with(Paper::default());
-    [
-        ("halftone of four inks", screen(default)),
-        (
-            "halftone of one ink",
-            screen(Halftone {
-                mode: HalftoneMode::Spot,
-                shape: ScreenShape::Round,
-                ..default
-            }),
-        ),
-        (
-            "halftone of four inks in grains",
-            screen(Halftone {
-                shape: ScreenShape::Stochastic,
-                ..default
-            }),
-        ),
-        (
-            "halftone of four inks; whole dots",
-            screen(Halftone {
-                sampling: ScreenSampling::Cell,
-                ..default
-            }),
-        ),
-        ("print offset", none.clone().with(PrintOffset::default())),
-        ("hatching", none.clone().with(Hatching::default())),
-        (
-            "hatching; dots",
-            none.clone().with(Hatching {
-                marks: HatchingMarks::Dots,
-                ..Hatching::default()
-            }),
-        ),
-        (
-            "hatching; calm",
-            none.clone().with(Hatching {
-                calm: 1.0,
-                ..Hatching::default()
-            }),
-        ),
-        ("color harmony", none.clone().with(ColorHarmony::default())),
-        ("abstraction", none.clone().with(Abstraction::default())),
-        ("planes", none.clone().with(Planes::default())),
-        (
-            "planes; of pixels",
-            none.clone().with(Planes {
-                by: PlaneUnit::Pixel,
-                ..Planes::default()
-            }),
-        ),
-        (
-            "planes; of pixels; fixed borders",
-            none.clone().with(Planes {
-                by: PlaneUnit::Pixel,
-                borders: PlaneBorders::Fixed,
-                ..Planes::default()
-            }),
-        ),
-        ("paper", none.clone().with(Paper::default())),
-        ("paint", none.clone().with(Paint::default())),
-        (
-            "paint; strokes along edges",
-            none.clone().with(Paint {
-                form: PaintForm::Anisotropic,
-                ..Paint::default()
-            }),
-        ),
-        ("focus; blur", focus(FocusStyle::Blur)),
-        ("focus; offset", focus(FocusStyle::Offset)),
-        ("focus; paint", focus(FocusStyle::Paint)),
-        ("focus; dots", focus(FocusStyle::Dots)),
-        ("tone ramp", none.clone().with(ToneRamp::default())),
-        ("two tones", none.clone().with(TwoTone::default())),
-        ("speed lines", none.with(SpeedLines::default())),
-        ("halftone; print offset and paper", printed),
-    ]
-    .map(|(name, style)| (name.to_owned(), Wear::style(style)))
-    .into()
+    page_styles::all()
+        .into_iter()
+        .map(|(name, style)| (name.to_owned(), Wear::style(style)))
+        .collect()
 }
 
 /// Marks every mesh of the scene.

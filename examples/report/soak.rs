@@ -1,18 +1,15 @@
-//! The long run: 100,000 frames in which everything changes.
+//! The long run: 100,000 frames in which everything changes. It runs where `--only soak` asks for it.
 
-use bevy_comics_testkit::soak::{CYCLE, Changes, Sample, Soak};
+use bevy_comics_testkit::soak::{CYCLE, Changes, Sample, Soak, WARM_UP};
 
 use crate::{Run, table::Table};
 
-/// Frames of the whole run.
-const FRAMES: u64 = 100_000;
+/// Frames of the whole run, and of a quick one.
+const FRAMES: [u64; 2] = [100_000, 2 * WARM_UP * CYCLE];
 /// What changes, unless the environment variable `SOAK` names it: see [`Changes::of`].
 const CHANGES: &str = "sizes,cameras,materials,objects,files";
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    if run.quick {
-        return Ok(());
-    }
     let folder = std::env::temp_dir().join(format!("bevy_comics_soak_{}", std::process::id()));
     let problem = |error| format!("{}: {error}", folder.display());
     let changes = std::env::var("SOAK").unwrap_or_else(|_| CHANGES.into());
@@ -20,7 +17,9 @@ pub fn measure(run: &Run) -> Result<(), String> {
         .ok()
         .and_then(|n| n.parse().ok());
     let mut soak = Soak::new(&folder, Changes::of(&changes)).map_err(problem)?;
-    let cycles = frames.unwrap_or(FRAMES).div_ceil(CYCLE);
+    let cycles = frames
+        .unwrap_or(FRAMES[usize::from(run.quick)])
+        .div_ceil(CYCLE);
     let mut table: Option<Table> = None;
     for cycle in 1..=cycles {
         let sample = soak.cycle().map_err(problem)?;

@@ -6,6 +6,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
+use crate::support::{assert_is_test, file_of};
+
 fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
 }
@@ -170,6 +172,25 @@ fn services_import_nothing_of_the_effects() {
             assert!(!imported.contains(above), "{service} imports {above}");
         }
     }
+}
+
+/// The test binary does not fail for a name that matches no test: `scripts/gpu` would test less than it
+/// says, or run what it means to leave out.
+#[test]
+fn the_tests_that_the_script_for_gpus_names_exist() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/gpu");
+    let text = fs::read_to_string(path).expect("the script");
+    let code = text.lines().filter(|line| !line.trim().starts_with('#'));
+    let words = code.flat_map(|line| line.split([' ', '(', ')']));
+    let mut named = 0;
+    for name in words.filter(|word| word.contains("::") && !word.contains('"')) {
+        match name.strip_suffix("::") {
+            Some(module) => drop(file_of(module)),
+            None => assert_is_test(name),
+        }
+        named += 1;
+    }
+    assert!(named >= 10, "the check sees {named} names");
 }
 
 /// The check finds a circle in a graph that has one.

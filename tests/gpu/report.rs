@@ -2,6 +2,7 @@
 
 use std::{collections::HashMap, fs, path::PathBuf, process::Command};
 
+use bevy_comics::EffectRegistry;
 use bevy_comics_testkit::{page_work, work};
 
 use crate::command_line::example;
@@ -37,6 +38,37 @@ fn number(row: &HashMap<String, String>, name: &str) -> f64 {
     row[name]
         .parse()
         .unwrap_or_else(|_| panic!("{name} of {row:?}"))
+}
+
+/// The index counts the targets that the tables below it show as missed.
+#[test]
+fn the_index_counts_what_is_missed() {
+    let text = fs::read_to_string(folder().join("report.md")).expect("the report");
+    let (_, index) = text.split_once("\n## Index\n").expect("an index");
+    let (index, tables) = index.split_once("\n## ").expect("tables below it");
+    let missed = tables.matches("**missed**").count();
+    let counts = index
+        .lines()
+        .filter_map(|line| line.split('|').nth(4)?.trim().parse::<usize>().ok());
+    assert_eq!(counts.sum::<usize>(), missed);
+    let said = format!("{missed} are missed");
+    assert!(index.contains(&said), "the index does not say: {said}");
+}
+
+/// Every effect is among the styles that are timed: on the ladder, or on the page.
+#[test]
+fn every_effect_is_timed() {
+    let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
+    let timed = ["examples/report/page_styles.rs", "testkit/src/work.rs"]
+        .map(|path| fs::read_to_string(root.join(path)).expect(path));
+    for effect in EffectRegistry::built_in().types() {
+        let name = (effect.type_info)().type_path_table().short_path();
+        let wanted = format!("{name}::default()");
+        assert!(
+            timed.iter().any(|text| text.contains(&wanted)),
+            "the report has no time of {name}"
+        );
+    }
 }
 
 /// The median.

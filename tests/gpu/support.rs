@@ -43,15 +43,32 @@ fn tests() -> Vec<&'static str> {
     tests
 }
 
+/// The path of the file of a module of tests, from the root of the repository.
+pub fn file_of(module: &str) -> String {
+    let name = module.replace("::", "/");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let paths = ["", "/mod"].map(|end| format!("tests/gpu/{name}{end}.rs"));
+    let path = paths.into_iter().find(|path| root.join(path).is_file());
+    path.unwrap_or_else(|| panic!("{module}: there is no such module"))
+}
+
 /// The path of the file that has a test, from the root of the repository, and the name of the function.
 fn source(test: &str) -> (String, &str) {
     let (module, function) = test.rsplit_once("::").expect("module::function");
-    let module = module.replace("::", "/");
+    (file_of(module), function)
+}
+
+/// Panics if a test does not exist, or is not compiled.
+pub fn assert_is_test(test: &str) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let paths = ["", "/mod"].map(|end| format!("tests/gpu/{module}{end}.rs"));
-    let path = paths.into_iter().find(|path| root.join(path).is_file());
-    let path = path.unwrap_or_else(|| panic!("{test}: there is no such module"));
-    (path, function)
+    let modules = fs::read_to_string(root.join("tests/gpu/main.rs")).expect("the list of modules");
+    let (path, function) = source(test);
+    let text = fs::read_to_string(root.join(&path)).expect("a source file");
+    let wanted = format!("#[test]\nfn {function}(");
+    assert!(text.contains(&wanted), "{path} has no test `{function}`");
+    let module = test.split("::").next().unwrap_or_default();
+    let wanted = format!("mod {module};");
+    assert!(modules.contains(&wanted), "{module} is not compiled");
 }
 
 /// What is known of a feature with an effect.
@@ -158,16 +175,8 @@ fn the_table_of_support_is_that_of_the_facts() {
 
 #[test]
 fn every_test_of_the_table_of_support_exists() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let modules = fs::read_to_string(root.join("tests/gpu/main.rs")).expect("the list of modules");
     for test in tests() {
-        let (path, function) = source(test);
-        let text = fs::read_to_string(root.join(&path)).expect("a source file");
-        let wanted = format!("#[test]\nfn {function}(");
-        assert!(text.contains(&wanted), "{path} has no test `{function}`");
-        let module = test.split("::").next().unwrap_or_default();
-        let wanted = format!("mod {module};");
-        assert!(modules.contains(&wanted), "{module} is not compiled");
+        assert_is_test(test);
     }
 }
 

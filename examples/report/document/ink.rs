@@ -4,7 +4,7 @@ use std::{fmt::Write, path::Path};
 
 use bevy_comics_testkit::straight_edges::accepted;
 
-use super::targets::Target;
+use super::target::Target;
 use crate::{load, table::Table};
 
 /// Half of a number of ends per 100 pixels of true line: dashes, if they are all ends. `ends`:
@@ -213,26 +213,28 @@ fn straight_targets(folder: &Path) -> Result<Vec<Target>, String> {
         let rows = table.matching(&[("width", &width)]);
         let what =
             format!("straight lines of {width} px in 64 directions: difference of the width, px");
-        let target = Target::at_most(what, 0.02, Some(most(&table, &rows, "most")));
+        let target = Target::at_most("straight", what, 0.02, Some(most(&table, &rows, "most")));
         all.push(target.with_digits(4));
     }
     for width in straight_widths(&table) {
         let rows = table.matching(&[("width", &width)]);
         let part = 100.0 * most(&table, &rows, "mean") / width.parse().unwrap_or(f64::NAN);
-        let what = format!("the same of {width} px: area over 200 px, difference in %");
-        all.push(Target::at_most(what, 0.5, Some(part)));
+        let what = format!("straight lines of {width} px: area over 200 px, difference in %");
+        all.push(Target::at_most("straight", what, 0.5, Some(part)));
     }
     let rows = table.matching(&[("width", "2")]);
     all.push(
         Target::at_most(
-            "the same of 2 px: unevenness of the width along a line, px",
+            "straight",
+            "straight lines of 2 px: unevenness of the width along a line, px",
             0.1,
             Some(most(&table, &rows, "uneven")),
         )
         .with_digits(3),
     );
     all.push(Target::at_most(
-        "the same: distance from the edge, as a part of what is accepted",
+        "straight",
+        "straight lines of 2 px: distance from the edge, as a part of what is accepted",
         1.0,
         Some(over_accepted(&table, &rows)),
     ));
@@ -250,18 +252,16 @@ pub fn targets(folder: &Path) -> Result<Vec<Target>, String> {
         .into_iter()
         .map(|shape| {
             let what = format!("{shape}, turning: dashes per 100 px of line");
-            Target::at_most(
-                what,
-                0.5,
-                Some(dashes(&table, ["continued", &shape, "ends"])),
-            )
+            let found = dashes(&table, ["continued", &shape, "ends"]);
+            Target::at_most("dashes", what, 0.5, Some(found))
         })
         .collect();
     let table = load(folder, "ink_memory")?;
     for row in table.matching(&[("method", "memory")]) {
         let scene = table.cell(row, "scene");
         let what = format!("{scene}: pixels that change under temporal anti-aliasing, %");
-        all.push(Target::at_most(what, 0.01, Some(changed(&table, row))).with_digits(4));
+        let target = Target::at_most("memory", what, 0.01, Some(changed(&table, row)));
+        all.push(target.with_digits(4));
     }
     all.extend(straight_targets(folder)?);
     Ok(all)

@@ -1,6 +1,8 @@
 //! The text of the report. It is made from the CSV files alone, so that it can be made
 //! again without measuring.
 
+mod figures;
+mod index;
 mod ink;
 mod others;
 mod page;
@@ -9,6 +11,7 @@ mod precision;
 mod scenes;
 mod soak;
 mod steps;
+mod target;
 mod targets;
 mod toon;
 
@@ -19,11 +22,18 @@ use crate::load;
 /// The whole report.
 pub fn render(folder: &Path) -> Result<String, String> {
     let machine = load(folder, "machine")?;
+    let stamps = index::stamps(folder)?;
+    let body = body(folder)?;
     let mut out = String::from(
         "# Error against run time\n\nWritten by `cargo run --release --example report`. Every \
-         number is computed from the CSV files in this folder, and a test computes it again.\n\n\
-         | | |\n|---|---|\n",
+         number is computed from the CSV files in this folder, and a test computes it again.\n\n",
     );
+    let measured = index::measured(&machine, stamps.as_ref());
+    if !measured.is_empty() {
+        let _ = writeln!(out, "{measured}\n");
+    }
+    index::index(&mut out, folder, stamps.as_ref(), &body)?;
+    out.push_str("## Machine and method\n\n| | |\n|---|---|\n");
     for row in &machine.rows {
         let _ = writeln!(out, "| {} | {} |", row[0], row[1]);
     }
@@ -36,6 +46,13 @@ pub fn render(folder: &Path) -> Result<String, String> {
          on other kinds of adapter; nothing here was measured on a GPU unless the table above \
          says so.\n\n",
     );
+    out.push_str(&body);
+    Ok(out)
+}
+
+/// The report without its head.
+fn body(folder: &Path) -> Result<String, String> {
+    let mut out = String::new();
     targets::targets(&mut out, folder)?;
     out.push_str("## 1. Error against run time\n\n");
     precision::ranges(&mut out, folder)?;

@@ -3,7 +3,7 @@
 
 use std::{fmt::Write, path::Path};
 
-use super::targets::Target;
+use super::target::Target;
 use crate::{
     costs::{Cost, OWN, costs},
     load,
@@ -124,55 +124,94 @@ const PRINTS: [(&str, &str); 5] = [
 /// Several effects.
 const WITHOUT_TARGET: [&str; 1] = ["halftone; print offset and paper"];
 
-/// An error, and its limit.
-fn verdict(value: f64, limit: f64) -> &'static str {
-    if value.abs() <= limit {
-        "met"
-    } else {
-        "**missed**"
-    }
+/// An effect of the page: its cost, its errors, and its time over that of the cheapest pass.
+struct Effect {
+    cost: Cost,
+    errors: Vec<Target>,
+    over: Target,
 }
 
-/// The errors of an effect as text, with their limits.
-fn errors_of(effect: &str, tables: [&Table; 3]) -> String {
-    let [screens, colors, errors] = tables;
-    let mut all = Vec::new();
-    let mut add = |what: &str, value: f64, limit: f64| {
-        let verdict = verdict(value, limit);
-        all.push(format!("{what}: {value:.2e}, at most {limit}: {verdict}"));
-    };
-    if let Some((_, shape)) = PRINTS.iter().find(|(name, _)| *name == effect) {
-        let of = |column| largest(screens, shape, false, column);
-        let exact = matches!(*shape, "Round" | "Line" | "Diamond");
-        add("tone", of("tone"), if exact { 0.005 } else { 0.01 });
-        add("jump", of("jump"), 0.1);
-        add("moire of a plate", of("moire"), 0.01);
-        if effect == "halftone of four inks" {
-            let rows: Vec<&Vec<String>> = colors.rows.iter().collect();
-            let largest = colors.numbers(&rows, "ideal").into_iter();
-            add("colour", largest.fold(0.0, f64::max), 0.01);
-            let beats = colors.numbers(&rows, "beats").into_iter();
-            add("moire of all plates", beats.fold(0.0, f64::max), 0.01);
+/// The tables that errors of effects are in.
+struct Errors {
+    screens: Table,
+    colors: Table,
+    errors: Table,
+}
+
+impl Errors {
+    fn load(folder: &Path) -> Result<Self, String> {
+        Ok(Self {
+            screens: load(folder, "page_screens")?,
+            colors: load(folder, "page_colors")?,
+            errors: load(folder, "page_errors")?,
+        })
+    }
+
+    /// The errors of an effect.
+    fn of(&self, effect: &str) -> Vec<Target> {
+        let target = |what: &str, value: f64, limit: f64| {
+            Target::at_most("page", what, limit, Some(value.abs()))
+                .in_powers()
+                .about(effect)
+        };
+        let mut all = Vec::new();
+        if let Some((_, shape)) = PRINTS.iter().find(|(name, _)| *name == effect) {
+            let of = |column| largest(&self.screens, shape, false, column);
+            let exact = matches!(*shape, "Round" | "Line" | "Diamond");
+            all.push(target("tone", of("tone"), if exact { 0.005 } else { 0.01 }));
+            all.push(target("jump", of("jump"), 0.1));
+            all.push(target("moire of a plate", of("moire"), 0.01));
+            if effect == "halftone of four inks" {
+                let rows: Vec<&Vec<String>> = self.colors.rows.iter().collect();
+                let most = |column| {
+                    let numbers = self.colors.numbers(&rows, column).into_iter();
+                    numbers.fold(0.0, f64::max)
+                };
+                all.push(target("colour", most("ideal"), 0.01));
+                all.push(target("moire of all plates", most("beats"), 0.01));
+            }
         }
+        for row in self.errors.matching(&[("effect", effect)]) {
+            let of = |column| self.errors.number(row, column);
+            let what = self.errors.cell(row, "what");
+            all.push(target(what, of("error"), of("limit")));
+        }
+        all
     }
-    for row in errors.matching(&[("effect", effect)]) {
-        let of = |column| errors.number(row, column);
-        add(errors.cell(row, "what"), of("error"), of("limit"));
-    }
-    all.join("<br>")
 }
 
-/// The targets of the effects: errors beside times.
-pub fn effects(out: &mut String, folder: &Path) -> Result<(), String> {
-    let [screens, colors, errors, times] =
-        ["page_screens", "page_colors", "page_errors", "part_times"].map(|name| load(folder, name));
-    let (screens, colors, errors) = (screens?, colors?, errors?);
-    let all = costs(&times?, "page", "teapot", &OWN);
-    let of = |name: &str| {
-        let cost = all.iter().find(|cost| cost.name == name);
-        cost.map_or(f64::NAN, |cost| cost.ratio[1])
+/// All effects of the page, and the time of the cheapest pass in blits.
+fn effects_of(folder: &Path) -> Result<(Vec<Effect>, f64), String> {
+    let errors = Errors::load(folder)?;
+    let costs = costs(&load(folder, "part_times")?, "page", "teapot", &OWN);
+    let single = costs.iter().find(|cost| cost.name == ONE_PASS);
+    let single = single.map_or(f64::NAN, |cost| cost.ratio[1]);
+    let is_known = |cost: &Cost| {
+        !cost.name.starts_with("blit") && !WITHOUT_TARGET.contains(&cost.name.as_str())
     };
-    let single = of(ONE_PASS);
+    let effect = |cost: Cost| {
+        let over = cost.ratio[1] - single;
+        let what = "blits over the cheapest pass";
+        Effect {
+            errors: errors.of(&cost.name),
+            over: Target::at_most("parts", what, MOST_BLITS, Some(over)).about(&cost.name),
+            cost,
+        }
+    };
+    let all = costs.into_iter().filter(is_known).map(effect).collect();
+    Ok((all, single))
+}
+
+/// The targets of the effects: errors and times.
+pub fn effect_targets(folder: &Path) -> Result<Vec<Target>, String> {
+    let (effects, _) = effects_of(folder)?;
+    let targets = |effect: Effect| effect.errors.into_iter().chain([effect.over]);
+    Ok(effects.into_iter().flat_map(targets).collect())
+}
+
+/// The table of these targets.
+pub fn effects(out: &mut String, folder: &Path) -> Result<(), String> {
+    let (effects, single) = effects_of(folder)?;
     let _ = writeln!(
         out,
         "### Effects of the page\n\nErrors beside times. Blits: the effect alone, with all of its \
@@ -182,18 +221,16 @@ pub fn effects(out: &mut String, folder: &Path) -> Result<(), String> {
          pixel by pixel (`tests/gpu`).\n\n\
          | | error | blits | over the pass | |\n|---|---|---|---|---|"
     );
-    let known = |cost: &&Cost| {
-        !cost.name.starts_with("blit") && !WITHOUT_TARGET.contains(&cost.name.as_str())
-    };
-    for cost in all.iter().filter(known) {
-        let over = cost.ratio[1] - single;
+    for effect in &effects {
+        let errors: Vec<String> = effect.errors.iter().map(Target::phrase).collect();
+        let blits = effect.cost.ratio[1];
         let _ = writeln!(
             out,
-            "| {} | {} | {:.2} | {over:.2} | {} |",
-            cost.name,
-            errors_of(&cost.name, [&screens, &colors, &errors]),
-            cost.ratio[1],
-            verdict(over.max(0.0), MOST_BLITS)
+            "| {} | {} | {blits:.2} | {:.2} | {} |",
+            effect.cost.name,
+            errors.join("<br>"),
+            blits - single,
+            effect.over.verdict()
         );
     }
     out.push_str(
@@ -212,7 +249,8 @@ pub fn targets(folder: &Path) -> Result<Vec<Target>, String> {
         let exact = ["Round", "Line", "Diamond"].contains(&shape.as_str());
         let what = format!("mean tone of {} screens at 3 px", shape.to_lowercase());
         let error = largest(&screens, &shape, true, "tone");
-        Target::at_most(what, if exact { 0.005 } else { 0.01 }, Some(error)).with_digits(4)
+        let limit = if exact { 0.005 } else { 0.01 };
+        Target::at_most("page", what, limit, Some(error)).with_digits(4)
     };
     Ok(shapes.into_iter().map(target).collect())
 }

@@ -71,6 +71,10 @@ fn scene_parts(out: &mut String, times: &Table) {
                     _ => "-".to_owned(),
                 };
                 let over = over_base(times, [section, &base], &scene, &cost.name);
+                let over = over.map_or_else(
+                    || " | ".to_owned(),
+                    |[least, middle, most]| format!("{middle:.2} | {least:.2} to {most:.2}"),
+                );
                 let _ = writeln!(
                     out,
                     "| {}{on} | {:.2} | {blits} | {over} |",
@@ -82,8 +86,9 @@ fn scene_parts(out: &mut String, times: &Table) {
     out.push('\n');
 }
 
-/// By how much a style costs more with a part than without: cells of the table.
-fn over_base(times: &Table, sections: [&str; 2], scene: &str, style: &str) -> String {
+/// By how many milliseconds a style costs more with a part than without: the least, the median and the
+/// most of the rounds.
+fn over_base(times: &Table, sections: [&str; 2], scene: &str, style: &str) -> Option<[f64; 3]> {
     let [with, without] = sections.map(|section| {
         let own = |variant| {
             let rows =
@@ -100,9 +105,31 @@ fn over_base(times: &Table, sections: [&str; 2], scene: &str, style: &str) -> St
             .collect::<Vec<f64>>()
     });
     if without.is_empty() {
-        return " | ".to_owned();
+        return None;
     }
     let over: Vec<f64> = with.iter().zip(&without).map(|(a, b)| a - b).collect();
-    let [least, middle, most] = [0.0, 0.5, 1.0].map(|q| quantile(&over, q));
-    format!("{middle:.2} | {least:.2} to {most:.2}")
+    Some([0.0, 0.5, 1.0].map(|q| quantile(&over, q)))
+}
+
+/// The part of a scene that adds most to the cost of a style.
+pub fn figure(folder: &Path) -> Option<String> {
+    let times = load(folder, "scene_part_times").ok()?;
+    let all: Vec<&Vec<String>> = times.rows.iter().collect();
+    let mut most: Option<(String, f64)> = None;
+    for section in times.distinct(&all, "section") {
+        let Some(name) = section.strip_prefix("part: ") else {
+            continue;
+        };
+        let base = format!("base of: {name}");
+        let rows = times.matching(&[("section", &section)]);
+        for scene in times.distinct(&rows, "scene") {
+            let over = over_base(&times, [&section, &base], &scene, name);
+            let middle = over.map_or(f64::NAN, |[_, middle, _]| middle);
+            if middle.is_finite() && most.as_ref().is_none_or(|(_, known)| middle > *known) {
+                most = Some((name.to_owned(), middle));
+            }
+        }
+    }
+    let (name, middle) = most?;
+    Some(format!("dearest over its base: {name}, {middle:.1} ms"))
 }

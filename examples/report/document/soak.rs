@@ -38,9 +38,34 @@ fn counts(table: &Table, name: &str) -> [f64; 2] {
     ]
 }
 
+/// The memory of the process in MiB after the warm-up and at the end.
+fn memory(table: &Table) -> Option<[f64; 2]> {
+    let resident: Vec<f64> = (table.rows.iter().skip(WARM_UP as usize))
+        .filter(|row| !table.cell(row, "resident KiB").is_empty())
+        .map(|row| table.number(row, "resident KiB") / 1024.0)
+        .collect();
+    ends(&resident)
+}
+
+/// How much the memory grows, and how often the renderer fails.
+pub fn figure(folder: &Path) -> Option<String> {
+    let table = load(folder, "soak").ok()?;
+    let last = table.rows.last()?;
+    let growth = memory(&table).map_or_else(String::new, |[first, last]| {
+        format!("memory {:+.2} %, ", 100.0 * (last / first - 1.0))
+    });
+    Some(format!(
+        "{} frames: {growth}{} errors of the renderer",
+        table.cell(last, "frame"),
+        table.cell(last, "errors")
+    ))
+}
+
 pub fn soak(out: &mut String, folder: &Path) -> Result<(), String> {
     let Ok(table) = load(folder, "soak") else {
-        out.push_str("## 7. A long run\n\nNot measured.\n\n");
+        out.push_str(
+            "## 7. A long run\n\nNot measured yet: `report --only soak`, a command of its own.\n\n",
+        );
         return Ok(());
     };
     let last = table.rows.last().ok_or("soak.csv is empty")?;
@@ -54,11 +79,7 @@ pub fn soak(out: &mut String, folder: &Path) -> Result<(), String> {
         table.cell(last, "errors"),
         WARM_UP * CYCLE,
     );
-    let resident: Vec<f64> = (table.rows.iter().skip(WARM_UP as usize))
-        .filter(|row| !table.cell(row, "resident KiB").is_empty())
-        .map(|row| table.number(row, "resident KiB") / 1024.0)
-        .collect();
-    if let Some([first, last]) = ends(&resident) {
+    if let Some([first, last]) = memory(&table) {
         let _ = writeln!(
             out,
             "| memory of the process, MiB (means of {END} cycles) | {first:.1} | {last:.1} ({:+.2} %) |",

@@ -2,7 +2,34 @@
 
 use std::{fmt::Write, path::Path};
 
-use crate::{costs::size, load};
+use super::target::Target;
+use crate::{costs::size, load, table::Table};
+
+/// The variant that the others are compared with.
+const STANDARD: &str = "standard material";
+
+/// The least time of a variant's main pass on a scene.
+fn least(times: &Table, scene: &str, variant: &str) -> f64 {
+    let rows = times.matching(&[("scene", scene), ("variant", variant)]);
+    (times.numbers(&rows, "main").into_iter()).fold(f64::INFINITY, f64::min)
+}
+
+fn scenes(times: &Table) -> Vec<String> {
+    times.distinct(&times.rows.iter().collect::<Vec<_>>(), "scene")
+}
+
+/// The main pass with the default ramp, compared with that of the standard material.
+pub fn targets(folder: &Path) -> Vec<Target> {
+    let Ok(times) = load(folder, "toon_times") else {
+        return Vec::new();
+    };
+    let target = |scene: String| {
+        let ratio = least(&times, &scene, "default ramp") / least(&times, &scene, STANDARD);
+        let what = format!("{scene}: main pass with the cartoon material / with the standard one");
+        Target::at_most("toon", what, 1.1, Some(ratio))
+    };
+    scenes(&times).into_iter().map(target).collect()
+}
 
 pub fn toon(out: &mut String, folder: &Path) -> Result<(), String> {
     // Reports of older runs do not have this table.
@@ -18,11 +45,7 @@ pub fn toon(out: &mut String, folder: &Path) -> Result<(), String> {
         size(&times)
     );
     let all: Vec<&Vec<String>> = times.rows.iter().collect();
-    let scenes = times.distinct(&all, "scene");
-    let least = |scene: &str, variant: &str| {
-        let rows = times.matching(&[("scene", scene), ("variant", variant)]);
-        (times.numbers(&rows, "main").into_iter()).fold(f64::INFINITY, f64::min)
-    };
+    let scenes = scenes(&times);
     let mut head = String::from("| |");
     for scene in &scenes {
         let _ = write!(head, " {scene}, ms | ratio |");
@@ -31,8 +54,8 @@ pub fn toon(out: &mut String, folder: &Path) -> Result<(), String> {
     for variant in times.distinct(&all, "variant") {
         let _ = write!(out, "| {variant} |");
         for scene in &scenes {
-            let time = least(scene, &variant);
-            let ratio = time / least(scene, "standard material");
+            let time = least(&times, scene, &variant);
+            let ratio = time / least(&times, scene, STANDARD);
             let _ = write!(out, " {time:.2} | {ratio:.2} |");
         }
         out.push('\n');

@@ -1,0 +1,170 @@
+//! The report's text: what each section asks, and how many of its targets are met.
+
+use std::{fmt::Write, path::Path};
+
+use super::{
+    figures::figure,
+    target::{Count, Target},
+    targets,
+};
+use crate::{
+    load,
+    sections::{SECTIONS, Section},
+    stamp::UNKNOWN,
+    table::Table,
+};
+
+/// The part of a link after `#` that leads to a heading.
+fn anchor(heading: &str) -> String {
+    let kept = |c: &char| c.is_alphanumeric() || " -_".contains(*c);
+    let text: String = heading.to_lowercase().chars().filter(kept).collect();
+    text.replace(' ', "-")
+}
+
+/// The sections of the index.
+fn asked() -> impl Iterator<Item = Section> {
+    SECTIONS
+        .into_iter()
+        .filter(|section| !section.question.is_empty())
+}
+
+/// When and of which commits all sections were measured.
+fn runs(stamps: &Table) -> String {
+    let all: Vec<&Vec<String>> = stamps.rows.iter().collect();
+    let commits = stamps.distinct(&all, "commit");
+    let mut dates = stamps.distinct(&all, "date");
+    dates.sort();
+    let (Some(first), Some(last)) = (dates.first(), dates.last()) else {
+        return String::new();
+    };
+    let days = if first == last {
+        first.clone()
+    } else {
+        format!("{first} to {last}")
+    };
+    let seconds: f64 = stamps.numbers(&all, "seconds").iter().sum();
+    let is_stamped = |section: &Section| all.iter().any(|row| row[0] == section.name);
+    let is_whole = asked().all(|section| section.is_alone || is_stamped(&section));
+    match commits.as_slice() {
+        [commit] if is_whole && commit != UNKNOWN => format!(
+            "All sections were measured on one commit, {commit}, on {days}, in {:.0} minutes.",
+            seconds / 60.0
+        ),
+        _ => format!(
+            "The sections were not measured in one go: the last column says when, of which commit, \
+             and in how many seconds ({days}). Where it is empty, that was not written down."
+        ),
+    }
+}
+
+/// When and of what everything was measured, as far as the tables say so.
+pub fn measured(machine: &Table, stamps: Option<&Table>) -> String {
+    if let Some(stamps) = stamps {
+        return runs(stamps);
+    }
+    let about = |what| {
+        let rows = machine.matching(&[("what", what)]);
+        let first = rows.first().copied();
+        first.map(|row| machine.cell(row, "value"))
+    };
+    match (about("date"), about("commit")) {
+        (Some(date), Some(commit)) => format!("Measured on {date}, of commit {commit}."),
+        _ => String::new(),
+    }
+}
+
+/// The dates of the sections, if they were written.
+pub fn stamps(folder: &Path) -> Result<Option<Table>, String> {
+    if folder.join("sections.csv").exists() {
+        load(folder, "sections").map(Some)
+    } else {
+        Ok(None)
+    }
+}
+
+/// The worst miss of a section; else its main figure, or what is nearest to its limit.
+fn outcome(section: &Section, targets: &[&Target], folder: &Path) -> String {
+    let nearest = (targets.iter()).max_by(|a, b| a.excess().total_cmp(&b.excess()));
+    match nearest {
+        Some(worst) if worst.count().missed > 0 => format!("worst: {}", worst.summary()),
+        Some(nearest) => format!("nearest: {}", nearest.summary()),
+        None => figure(section.name, folder).unwrap_or_else(|| "not measured".to_owned()),
+    }
+}
+
+/// A row of the index.
+fn row(section: &Section, targets: &[&Target], folder: &Path, body: &str) -> String {
+    let name = if body.contains(&format!("# {}\n", section.heading)) {
+        format!("[{}](#{})", section.name, anchor(section.heading))
+    } else {
+        section.name.to_owned()
+    };
+    let Count { met, missed, .. } = Count::of(targets.iter().copied());
+    let [met, missed] = if targets.is_empty() {
+        ["", ""].map(str::to_owned)
+    } else {
+        [met, missed].map(|count| count.to_string())
+    };
+    let outcome = outcome(section, targets, folder);
+    let question = section.question;
+    format!("| {name} | {question} | {met} | {missed} | {outcome} |")
+}
+
+/// When a section was measured, of what, and how long it took: a cell.
+fn stamp(stamps: &Table, section: &str) -> String {
+    let rows = stamps.matching(&[("section", section)]);
+    let of = |row: &Vec<String>| {
+        let [date, commit, seconds] =
+            ["date", "commit", "seconds"].map(|name| stamps.cell(row, name));
+        format!("{date}, {commit}, {seconds} s")
+    };
+    rows.first().copied().map_or_else(String::new, of)
+}
+
+/// The index of a report whose other text is `body`.
+pub fn index(
+    out: &mut String,
+    folder: &Path,
+    stamps: Option<&Table>,
+    body: &str,
+) -> Result<(), String> {
+    let all = targets::all(folder)?;
+    let Count {
+        met,
+        missed,
+        nearly,
+        unknown,
+    } = Count::of(&all);
+    let _ = writeln!(
+        out,
+        "## Index\n\nOf {} limits, {met} are met and {missed} are missed, {nearly} of these by less than \
+         the noise of the measurement. Targets that were not measured: {unknown}. A target with two limits \
+         counts twice. [Targets](#targets) and [effects of the page](#effects-of-the-page) have them all. \
+         \"Worst\" is what is farthest beyond its limit, \"nearest\" what is nearest to its limit where all \
+         are met. A blit is the time of copying the picture.\n",
+        met + missed
+    );
+    let [head, rule] = if stamps.is_some() {
+        [" measured |", "---|"]
+    } else {
+        ["", ""]
+    };
+    let _ = writeln!(
+        out,
+        "| section | question | met | missed | worst miss, or main figure |{head}\n\
+         |---|---|---|---|---|{rule}"
+    );
+    for section in asked() {
+        let own: Vec<&Target> = all
+            .iter()
+            .filter(|target| target.section == section.name)
+            .collect();
+        out.push_str(&row(&section, &own, folder, body));
+        if let Some(stamps) = stamps {
+            let _ = write!(out, " {} |", stamp(stamps, section.name));
+        }
+        out.push('\n');
+    }
+    out.push('\n');
+    Ok(())
+}

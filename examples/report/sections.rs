@@ -1,0 +1,168 @@
+//! The sections of the report: what each measures, and the question that it answers.
+
+use crate::{
+    Run, encodings, flicker, growth, ink, ladder, lines, machine, meadow, models, page, parts,
+    peers, ranges, soak, stability, steps, straight, toon,
+};
+
+/// A part of the report that is measured by itself.
+pub struct Section {
+    /// As `--only` names it.
+    pub name: &'static str,
+    pub measure: fn(&Run) -> Result<(), String>,
+    /// For the index; empty if the section has no row there.
+    pub question: &'static str,
+    /// The heading of the text that has the answer.
+    pub heading: &'static str,
+    /// Whether it runs only where `--only` names it: it is long, and gives no accuracy and no times.
+    pub is_alone: bool,
+}
+
+const fn section(
+    name: &'static str,
+    measure: fn(&Run) -> Result<(), String>,
+    question: &'static str,
+    heading: &'static str,
+) -> Section {
+    Section {
+        name,
+        measure,
+        question,
+        heading,
+        is_alone: false,
+    }
+}
+
+/// The heading of three sections.
+const WHOLE: &str = "Whole and steady lines";
+
+/// All sections, in the order in which they are measured.
+pub const SECTIONS: [Section; 21] = [
+    MACHINE,
+    section(
+        "ranges",
+        ranges::measure,
+        "How exact is the visible range, and would a cheaper search do?",
+        "The range",
+    ),
+    section(
+        "encodings",
+        encodings::measure,
+        "Could depth be stored in fewer bits?",
+        "Stored depth",
+    ),
+    section(
+        "lines",
+        lines::measure,
+        "Are outlines where the edges of a scene are?",
+        "Lines",
+    ),
+    section(
+        "models",
+        models::measure,
+        "Do outlines of turning models fall into fragments?",
+        "Lines of models",
+    ),
+    section(
+        "steps",
+        steps::measure,
+        "Would another setting leave fewer fragments?",
+        "One step changed at a time",
+    ),
+    section(
+        "dashes",
+        ink::dashes,
+        "Do outlines of turning models break into dashes?",
+        WHOLE,
+    ),
+    section(
+        "dash-steps",
+        ink::dash_steps,
+        "Would another setting leave fewer dashes?",
+        WHOLE,
+    ),
+    section(
+        "memory",
+        ink::memory,
+        "Do lines hold still under temporal anti-aliasing?",
+        WHOLE,
+    ),
+    section(
+        "meadow",
+        meadow::measure,
+        "How much of a meadow do lines cover?",
+        "Ink of a meadow",
+    ),
+    section(
+        "straight",
+        straight::measure,
+        "Are straight lines even, and as wide as asked?",
+        "Straight lines",
+    ),
+    section(
+        "page",
+        page::measure,
+        "Do prints, strokes and paint keep tones, colours and edges?",
+        "The printed page",
+    ),
+    section(
+        "stability",
+        stability::measure,
+        "Do extreme depths and colours break the picture?",
+        "2. Stability on stiff and extreme cases",
+    ),
+    section(
+        "ladder",
+        ladder::measure,
+        "What does each style cost, and what is left out?",
+        "3. What is left out",
+    ),
+    section(
+        "parts",
+        parts::measure,
+        "What does each effect of the page cost, and each option of lines?",
+        "Effects of the page",
+    ),
+    section(
+        "scene-parts",
+        parts::of_scenes,
+        "What do sections, samples, fog and glass add to the cost of a style?",
+        "Single parts",
+    ),
+    section(
+        "toon",
+        toon::measure,
+        "What does the cartoon material cost?",
+        "Cartoon material",
+    ),
+    section(
+        "growth",
+        growth::measure,
+        "How does the cost grow with pixels, vertices and cameras?",
+        "4. Cost and its growth",
+    ),
+    section(
+        "peers",
+        peers::measure,
+        "What do other crates cost?",
+        "5. Other crates, in the same app and run",
+    ),
+    section(
+        "flicker",
+        flicker::measure,
+        "Do colours by distance flicker when things come and go?",
+        "6. A range that does not flicker",
+    ),
+    Section {
+        is_alone: true,
+        ..section(
+            "soak",
+            soak::measure,
+            "Does a long run keep memory, or fail?",
+            "7. A long run",
+        )
+    },
+];
+
+/// What everything was measured on.
+pub const MACHINE: Section = section("machine", machine, "", "");
