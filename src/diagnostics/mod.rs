@@ -149,8 +149,9 @@ pub enum LeftOut {
     ShaderError,
     /// No effect of the camera is left to draw.
     NothingToDraw,
-    /// The depth texture is missing or has another number of samples: another camera
-    /// with a different MSAA setting draws to the same target.
+    /// The depth or normal texture is missing or has another number of samples: the game
+    /// has given prepasses to two cameras of one target with different MSAA settings, which
+    /// the engine cannot draw.
     SampleCountMismatch,
     /// A pipeline is still compiling, its shader has an error, or an input is not
     /// ready. The stage does not run in this frame.

@@ -4,7 +4,7 @@ use bevy::render::{
     render_resource::{
         BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, BindingResource,
         CachedComputePipelineId, CachedRenderPipelineId, ComputePipeline, IntoBinding,
-        PipelineCache, RenderPipeline,
+        PipelineCache, RenderPipeline, TextureView,
     },
     renderer::RenderDevice,
     texture::CachedTexture,
@@ -85,7 +85,9 @@ impl Inputs<'_> {
     fn prepass(&self) -> Result<Texels<'_>, LeftOut> {
         let ((request, ..), sources, _) = self.parts;
         let depth = sources.depth.ok_or(LeftOut::NoDepthPrepass)?;
-        if depth.texture.sample_count() != request.samples {
+        // Those of a game's prepasses can be of cameras with different samples.
+        let fits = |texture: &TextureView| texture.texture().sample_count() == request.samples;
+        if !fits(&depth.default_view) || sources.normal.is_some_and(|normal| !fits(normal)) {
             return Err(LeftOut::SampleCountMismatch);
         }
         Ok(Texels {

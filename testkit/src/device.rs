@@ -78,6 +78,8 @@ impl Gpu {
         buffer
     }
 
+    /// The bytes of a buffer, after all that was submitted. Panics if Vulkan's validation layer has said
+    /// anything.
     pub fn read(&self, buffer: &wgpu::Buffer) -> Vec<u8> {
         let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: None,
@@ -96,6 +98,7 @@ impl Gpu {
             .expect("the device answers");
         let bytes = staging.slice(..).get_mapped_range().to_vec();
         staging.unmap();
+        validation::check();
         bytes
     }
 

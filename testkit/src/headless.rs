@@ -269,9 +269,7 @@ impl Headless {
                 .poll(PollType::wait_indefinitely())
                 .expect("the device answers");
         }
-        if validation::is_wanted() {
-            validation::check();
-        }
+        validation::check();
     }
 
     fn in_render_world<R: Resource>(&self) -> Option<&R> {
@@ -295,6 +293,16 @@ impl Headless {
         let size = gpu_image.texture_descriptor.size;
         let bytes = read_back::texture_bytes(world, &texture);
         image::RgbaImage::from_raw(size.width, size.height, bytes).expect("four bytes a pixel")
+    }
+}
+
+impl Drop for Headless {
+    /// Checks what Vulkan's validation layer said since the last frame, and while the app ended.
+    fn drop(&mut self) {
+        drop(std::mem::replace(&mut self.app, App::empty()));
+        if !std::thread::panicking() {
+            validation::check();
+        }
     }
 }
 

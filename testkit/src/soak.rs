@@ -19,16 +19,42 @@ use bevy::{
     },
 };
 use bevy_comics::{
-    CartoonLight, CartoonScene, ComicStyle, ComicStyleHandle, ComicsPlugin, OutlineStyle, Outlines,
-    presets,
+    CartoonLight, CartoonScene, ComicStyle, ComicStyleHandle, ComicsDiagnostics, ComicsPlugin,
+    ComicsStage, OutlineStyle, Outlines, presets,
 };
 
 use crate::headless::{Headless, HeadlessOptions, new_target};
 
-/// Frames after which everything is as it was at the start.
+/// Frames of a cycle of the long run, after which everything is as it was at the start.
 pub const CYCLE: u64 = 720;
-/// Cycles until every combination has been drawn once: what is compiled stays.
-pub const WARM_UP: u64 = 4;
+/// Cycles of the long run until every combination has been drawn once: what is compiled stays.
+pub const WARM_UP: u64 = Pace::LONG.kinds.len() as u64;
+
+/// How fast things change.
+#[derive(Clone, Copy, Debug)]
+pub struct Pace {
+    /// A frame of this run stands for so many of the long run: 1, 2 or 4, which divide the times of all
+    /// changes.
+    pub frames: u64,
+    /// Frames of the long run until the next look.
+    pub look: u64,
+    /// The kinds of the first camera, one for each cycle in turn: 1 for multisampled, plus 2 for HDR.
+    pub kinds: &'static [u64],
+}
+
+impl Pace {
+    pub const LONG: Self = Self {
+        frames: 1,
+        look: 20,
+        kinds: &[0, 1, 2, 3],
+    };
+    /// That of a test. The driver compiles shaders again for a look: there are few.
+    pub const SHORT: Self = Self {
+        frames: 4,
+        look: 120,
+        kinds: &[0, 3],
+    };
+}
 
 const SIZES: [UVec2; 6] = [
     UVec2::new(64, 36),
@@ -53,6 +79,8 @@ pub struct Sample {
     pub resources: Vec<(&'static str, usize)>,
     /// Errors of the renderer so far.
     pub errors: usize,
+    /// Whether the first camera wears a look that is drawn.
+    pub styled: bool,
 }
 
 /// What changes in a run: to find out what is left of which change.
@@ -109,6 +137,7 @@ impl Changes {
 /// The run.
 pub struct Soak {
     changes: Changes,
+    pace: Pace,
     headless: Headless,
     /// Wears one look after the other.
     camera: Entity,
@@ -128,48 +157,25 @@ fn mended(k: u64) -> String {
 }
 
 impl Soak {
-    /// `folder`: for the file of a style; it is made if it is not there.
+    /// The long run. `folder`: for the file of a style; it is made if it is not there.
     ///
     /// # Errors
     /// If the file cannot be written.
     pub fn new(folder: &Path, changes: Changes) -> io::Result<Self> {
+        Self::with_pace(folder, changes, Pace::LONG)
+    }
+
+    /// The same at another pace.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn with_pace(folder: &Path, changes: Changes, pace: Pace) -> io::Result<Self> {
         fs::create_dir_all(folder)?;
         fs::write(folder.join(FILE), mended(0))?;
-        let options = HeadlessOptions {
-            size: SIZES[0],
-            assets: folder.display().to_string(),
-            ..default()
-        };
-        let mut headless = if changes.plain {
-            Headless::new(options, ())
-        } else {
-            Headless::new(options, ComicsPlugin)
-        };
-        headless
-            .app
-            .sub_app_mut(RenderApp)
-            .add_systems(Render, forget_gone_views.in_set(RenderSystems::Cleanup));
-        headless
-            .app
-            .init_resource::<Errors>()
-            .insert_resource(RenderErrorHandler(|error, main, _| {
-                println!("{}", error.description);
-                main.resource_mut::<Errors>().0 += 1;
-                RenderErrorPolicy::Ignore
-            }));
+        let mut headless = app(folder, changes.plain);
         let target = headless.render_target();
         let world = headless.app.world_mut();
-        let root = world
-            .spawn((Transform::default(), Visibility::default()))
-            .id();
-        for k in 0..3 {
-            let cube = object(world, k);
-            world.entity_mut(cube).insert(ChildOf(root));
-        }
-        world.spawn((
-            DirectionalLight::default(),
-            Transform::from_xyz(1.0, 3.0, 2.0).looking_at(Vec3::ZERO, Vec3::Y),
-        ));
+        let root = spawn_scene(world);
         let camera = world.spawn(view(target)).id();
         let small = new_target(world, UVec2::new(40, 24), TextureFormat::Rgba8UnormSrgb);
         let second = world.spawn(view(small.into())).id();
@@ -180,6 +186,7 @@ impl Soak {
         }
         Ok(Self {
             changes,
+            pace,
             headless,
             camera,
             root,
@@ -195,31 +202,33 @@ impl Soak {
     /// # Errors
     /// If the file of the style cannot be written.
     pub fn cycle(&mut self) -> io::Result<Sample> {
-        let number = self.frame / CYCLE;
-        for at in 0..CYCLE {
-            self.change(number, at)?;
+        let frames = CYCLE / self.pace.frames;
+        let kinds = self.pace.kinds;
+        let number = (self.frame / frames) as usize % kinds.len();
+        for frame in 0..frames {
+            self.change((number as u64, kinds[number]), frame * self.pace.frames)?;
             self.headless.step(1);
             self.frame += 1;
         }
         Ok(self.sample())
     }
 
-    /// What changes before a frame of a cycle.
-    fn change(&mut self, number: u64, at: u64) -> io::Result<()> {
+    /// What changes before a frame of a cycle, of which the number and the kind of the camera are given.
+    fn change(&mut self, (number, kind): (u64, u64), at: u64) -> io::Result<()> {
         let changes = self.changes;
         if changes.sizes && at.is_multiple_of(12) {
             let size = if at == CYCLE - 12 { 0 } else { at / 12 };
             self.resize(SIZES[size as usize % SIZES.len()]);
         }
-        if changes.looks > 0 && at.is_multiple_of(20) {
-            let look = presets::LOOKS[(at / 20) as usize % changes.looks];
+        if changes.looks > 0 && at.is_multiple_of(self.pace.look) {
+            let look = presets::LOOKS[(at / self.pace.look) as usize % changes.looks];
             let world = self.headless.app.world_mut();
             look.style()
                 .apply(&mut world.commands().entity(self.camera));
             world.flush();
         }
         match at {
-            0 if changes.cameras => self.set_up_camera(number),
+            0 if changes.cameras => self.set_up_camera(kind),
             60 if changes.cameras => self.come(),
             200 if changes.cameras => self.go(),
             260 if changes.materials => self.be_cartoon(true),
@@ -259,15 +268,15 @@ impl Soak {
     }
 
     /// Samples and range of colours change from cycle to cycle.
-    fn set_up_camera(&mut self, number: u64) {
+    fn set_up_camera(&mut self, kind: u64) {
         let camera = self.camera;
         let mut camera = self.headless.app.world_mut().entity_mut(camera);
-        camera.insert(if number.is_multiple_of(2) {
+        camera.insert(if kind & 1 == 0 {
             Msaa::Off
         } else {
             Msaa::Sample4
         });
-        if (number / 2).is_multiple_of(2) {
+        if kind & 2 == 0 {
             camera.remove::<Hdr>();
         } else {
             camera.insert(Hdr);
@@ -329,13 +338,59 @@ impl Soak {
                 ("compute pipelines", hub.compute_pipelines.num_allocated),
             ]
         });
+        let world = self.headless.app.world();
+        let diagnostics = world.get_resource::<ComicsDiagnostics>();
         Sample {
             frame: self.frame,
             resident: resident(),
             resources,
-            errors: self.headless.app.world().resource::<Errors>().0,
+            errors: world.resource::<Errors>().0,
+            styled: diagnostics.is_some_and(|d| d.ran(self.camera, ComicsStage::Stylize)),
         }
     }
+}
+
+/// An app that counts errors of the renderer.
+fn app(folder: &Path, plain: bool) -> Headless {
+    let options = HeadlessOptions {
+        size: SIZES[0],
+        assets: folder.display().to_string(),
+        ..default()
+    };
+    let mut headless = if plain {
+        Headless::new(options, ())
+    } else {
+        Headless::new(options, ComicsPlugin)
+    };
+    headless
+        .app
+        .sub_app_mut(RenderApp)
+        .add_systems(Render, forget_gone_views.in_set(RenderSystems::Cleanup));
+    headless
+        .app
+        .init_resource::<Errors>()
+        .insert_resource(RenderErrorHandler(|error, main, _| {
+            println!("{}", error.description);
+            main.resource_mut::<Errors>().0 += 1;
+            RenderErrorPolicy::Ignore
+        }));
+    headless
+}
+
+/// Three cubes below one root, in the light of the sun.
+fn spawn_scene(world: &mut World) -> Entity {
+    let root = world
+        .spawn((Transform::default(), Visibility::default()))
+        .id();
+    for k in 0..3 {
+        let cube = object(world, k);
+        world.entity_mut(cube).insert(ChildOf(root));
+    }
+    world.spawn((
+        DirectionalLight::default(),
+        Transform::from_xyz(1.0, 3.0, 2.0).looking_at(Vec3::ZERO, Vec3::Y),
+    ));
+    root
 }
 
 /// Bevy 0.19.1 keeps bind groups of cameras that are gone (`BinUnpackingBindGroups`): three for each

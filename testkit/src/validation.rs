@@ -1,12 +1,20 @@
 //! Vulkan's validation layer: on where the variable `VULKAN_VALIDATION` is set, as `scripts/validate`
 //! does. On Debian it is in the package `vulkan-validationlayers`.
 
-use std::sync::{Mutex, Once};
+use std::{
+    sync::{Mutex, Once},
+    thread,
+};
 
 /// What the layer said and nobody has read.
 static MESSAGES: Mutex<Vec<String>> = Mutex::new(Vec::new());
 
-/// Keeps warnings and errors of the driver.
+/// The name of the current thread: a test has a thread with its name.
+fn this_thread() -> String {
+    thread::current().name().unwrap_or("without a name").into()
+}
+
+/// Keeps warnings and errors of the driver, with the thread that called it.
 struct Keeper;
 
 impl log::Log for Keeper {
@@ -16,8 +24,14 @@ impl log::Log for Keeper {
 
     fn log(&self, record: &log::Record) {
         if self.enabled(record.metadata()) {
+            let message = format!(
+                "{} on thread {}: {}",
+                record.level(),
+                this_thread(),
+                record.args()
+            );
             let mut messages = MESSAGES.lock().expect("no panic while it is held");
-            messages.push(format!("{}: {}", record.level(), record.args()));
+            messages.push(message);
         }
     }
 
@@ -55,8 +69,14 @@ pub fn is_loaded() -> Option<bool> {
     Some(maps.contains("VkLayer_khronos_validation"))
 }
 
-/// Panics if the layer has said anything.
+/// Panics with all messages if the layer has said anything, in whichever test of this process: the threads
+/// in the text tell which.
 pub fn check() {
     let messages = messages();
-    assert!(messages.is_empty(), "validation: {}", messages.join("\n"));
+    assert!(
+        messages.is_empty(),
+        "validation, found by thread {}:\n{}",
+        this_thread(),
+        messages.join("\n")
+    );
 }

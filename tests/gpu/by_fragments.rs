@@ -1,8 +1,11 @@
-//! On a device without storage textures, lines are found and drawn by fragment shaders:
-//! slower, neither linked nor smooth, without weight, boil, fog and budget, but otherwise the
-//! same. The range is still found by compute shaders.
+//! On a device without storage textures, and in views whose lines are larger than a buffer may be, lines are
+//! found and drawn by fragment shaders: slower, neither linked nor smooth, without weight, boil, fog and
+//! budget, but otherwise the same. The range is still found by compute shaders.
 
-use bevy::{prelude::*, render::view::Msaa};
+use bevy::{
+    prelude::*,
+    render::{error_handler::RenderErrorHandler, view::Msaa},
+};
 use bevy_comics::{
     ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Contours, LeftOut, LineWeight,
     Outlines, Sketch, StageOutcome,
@@ -11,28 +14,63 @@ use bevy_comics_testkit::{
     device::gpu, headless::HeadlessOptions, scenes::BuiltIn, studio::Studio, work::along_cracks,
 };
 
+/// No multiple of the widths and heights of blocks, cells and tiles.
+const SIZE: UVec2 = UVec2::new(157, 91);
+
+/// An app in which an error of the renderer is a panic.
+fn with_limits(size: UVec2, limits: Option<wgpu::Limits>) -> Studio {
+    let options = HeadlessOptions {
+        size,
+        limits,
+        ..default()
+    };
+    let mut studio = Studio::with_plugins(BuiltIn::Teapot, options, Msaa::Off, ComicsPlugin);
+    let fails = RenderErrorHandler(|error, _, _| panic!("{}", error.description));
+    studio.headless.app.insert_resource(fails);
+    studio
+}
+
 fn studio(by_fragments: bool) -> Studio {
     let limits = by_fragments.then(|| wgpu::Limits {
         max_storage_textures_per_shader_stage: 0,
         ..gpu().device.limits()
     });
-    let options = HeadlessOptions {
-        // No multiple of the widths and heights of blocks, cells and tiles.
-        size: UVec2::new(157, 91),
-        limits,
-        ..default()
-    };
-    Studio::with_plugins(BuiltIn::Teapot, options, Msaa::Off, ComicsPlugin)
+    with_limits(SIZE, limits)
+}
+
+/// Whether the lines of the last picture were drawn without compute shaders.
+fn is_by_fragments(studio: &Studio) -> bool {
+    let world = studio.headless.app.world();
+    let diagnostics = world.resource::<ComicsDiagnostics>();
+    diagnostics.cameras[&studio.camera].outcome(ComicsStage::SearchTiles)
+        == Some(StageOutcome::LeftOut(LeftOut::NoComputeShaders))
+}
+
+/// Fails unless a picture shows the same lines as another one, and that one shows any.
+fn assert_same(
+    name: &str,
+    plain: &image::RgbaImage,
+    wanted: &image::RgbaImage,
+    found: &image::RgbaImage,
+) {
+    let far = (wanted.as_raw().iter().zip(found.as_raw()))
+        .filter(|(a, b)| a.abs_diff(**b) > 1)
+        .count();
+    let inked = (plain.as_raw().iter().zip(wanted.as_raw())).filter(|(a, b)| a != b);
+    assert!(inked.count() > 500, "{name} draws nothing");
+    // Lines blended over the picture may round differently.
+    assert_eq!(far, 0, "{name}: {far} values differ");
+}
+
+fn outlines(width: f32) -> ComicStyle {
+    ComicStyle::new().with(Outlines {
+        width,
+        ..along_cracks()
+    })
 }
 
 #[test]
 fn lines_without_compute_passes_are_the_same() {
-    let outlines = |width: f32| {
-        ComicStyle::new().with(Outlines {
-            width,
-            ..along_cracks()
-        })
-    };
     let styles = [
         ("outlines", outlines(2.0)),
         ("wide outlines", outlines(3.0)),
@@ -62,21 +100,36 @@ fn lines_without_compute_passes_are_the_same() {
     for (name, style) in &styles {
         let wanted = with.shoot(Some(style));
         let picture = without.shoot(Some(style));
-        let world = without.headless.app.world();
-        let diagnostics = world.resource::<ComicsDiagnostics>();
-        assert_eq!(
-            diagnostics.cameras[&without.camera].outcome(ComicsStage::SearchTiles),
-            Some(StageOutcome::LeftOut(LeftOut::NoComputeShaders)),
-            "{name}"
-        );
-        let far: Vec<u8> = (wanted.as_raw().iter().zip(picture.as_raw()))
-            .map(|(a, b)| a.abs_diff(*b))
-            .filter(|d| *d > 1)
-            .collect();
-        let inked = (plain.as_raw().iter().zip(wanted.as_raw())).filter(|(a, b)| a != b);
-        assert!(inked.count() > 500, "{name} draws nothing");
-        // Lines blended over the picture may round differently.
-        assert!(far.is_empty(), "{name}: {} values differ", far.len());
+        assert!(is_by_fragments(&without), "{name}");
+        assert_same(name, &plain, &wanted, &picture);
+    }
+}
+
+/// Eight bytes a pixel are more than the device binds: in this view alone, lines are drawn by fragments.
+#[test]
+fn lines_of_a_view_larger_than_a_buffer_are_the_same() {
+    let large = UVec2::new(413, 331);
+    let most: u64 = 1 << 20;
+    assert!(8 * u64::from(large.x * large.y) > most && 8 * u64::from(SIZE.x * SIZE.y) < most);
+    let limited = |size| {
+        let limits = wgpu::Limits {
+            max_storage_buffer_binding_size: most,
+            ..gpu().device.limits()
+        };
+        with_limits(size, Some(limits))
+    };
+    let mut small = limited(SIZE);
+    small.shoot(Some(&outlines(2.0)));
+    assert!(!is_by_fragments(&small), "the small view is not searched");
+    let (mut with, mut without) = (with_limits(large, None), limited(large));
+    let plain = with.shoot(None);
+    for width in [2.0, 16.0] {
+        let (name, style) = (format!("width {width}"), outlines(width));
+        let wanted = with.shoot(Some(&style));
+        let picture = without.shoot(Some(&style));
+        assert!(is_by_fragments(&without), "{name}");
+        assert!(!is_by_fragments(&with), "{name}");
+        assert_same(&name, &plain, &wanted, &picture);
     }
 }
 

@@ -95,6 +95,7 @@ mod small;
 mod smoothed;
 mod smoothing;
 mod smoothing_views;
+mod soak;
 mod speed_lines;
 mod stipple;
 mod styles;

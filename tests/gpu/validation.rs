@@ -1,18 +1,93 @@
 //! Vulkan's validation layer. `scripts/validate` runs all tests under it: every app checks after each
-//! frame that it has said nothing.
+//! frame and at its end that it has said nothing, the bare device whenever something is read.
 
-use bevy_comics_testkit::{device::gpu, validation};
+use std::{panic::catch_unwind, process::Command};
 
-/// A layer that is missing is silent, too.
+use bevy_comics_testkit::{device::gpu, validation, wgsl};
+
+/// The only test of this file, by its whole name.
+const TEST: &str = "validation::the_layer_is_active_where_it_is_wanted";
+/// Set in the process in which the layer is made to speak: here, a test beside would find the message.
+const SPEAKS: &str = "VALIDATION_SPEAKS";
+/// Precedes the text of the failed check.
+const ARRIVED: &str = "the check failed with";
+
+/// Writes to a second colour target.
+const TWO_TARGETS: &str = "
+    struct Targets {
+        @location(0) first: vec4<f32>,
+        @location(1) second: vec4<f32>,
+    }
+    @vertex fn vertex() -> @builtin(position) vec4<f32> { return vec4(0.0); }
+    @fragment fn fragment() -> Targets { return Targets(vec4(0.0), vec4(1.0)); }
+";
+
+/// Makes a pipeline that has one colour target for a shader that writes to two. wgpu ignores the second, as
+/// Vulkan does, but the layer warns.
+fn write_to_no_target() {
+    let gpu = gpu();
+    let module = wgsl::module(TWO_TARGETS, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let module = gpu.shader(module);
+    let _ = gpu
+        .device
+        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: None,
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: None,
+            multisample: Default::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment"),
+                compilation_options: Default::default(),
+                targets: &[Some(wgpu::TextureFormat::Rgba8Unorm.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+}
+
+/// Prints the text with which a check fails after the layer has warned.
+fn speak() {
+    gpu();
+    validation::check();
+    write_to_no_target();
+    let panic = catch_unwind(validation::check).expect_err("no message of the layer arrives");
+    let text = panic.downcast::<String>().expect("a text");
+    assert!(text.contains(TEST), "the thread is missing: {text}");
+    println!("{ARRIVED} {text}");
+}
+
+/// A layer that is missing is silent, too, and so is one whose messages do not arrive.
 #[test]
 fn the_layer_is_active_where_it_is_wanted() {
-    gpu();
     if !validation::is_wanted() {
         return;
     }
-    assert_ne!(
+    if std::env::var_os(SPEAKS).is_some() {
+        speak();
+        return;
+    }
+    gpu();
+    assert_eq!(
         validation::is_loaded(),
-        Some(false),
-        "the layer is not loaded"
+        Some(true),
+        "the layer is not loaded, or the system does not say"
+    );
+    let output = Command::new(std::env::current_exe().expect("the path of the tests"))
+        .args(["--exact", TEST, "--nocapture", "--test-threads=2"])
+        .env(SPEAKS, "1")
+        .output()
+        .expect("the tests start");
+    let [said, errors] = [&output.stdout, &output.stderr].map(|out| String::from_utf8_lossy(out));
+    assert!(
+        output.status.success() && said.contains(ARRIVED),
+        "{said}\n{errors}"
     );
 }

@@ -4,54 +4,26 @@ use std::{fmt::Write, path::Path};
 
 use bevy_comics_testkit::soak::{CYCLE, WARM_UP};
 
-use crate::{load, table::Table};
+use crate::{
+    load,
+    soak::{END, FIRST_RESOURCE, MOST_GROWTH, counts, ends, growth, resident},
+    table::Table,
+};
 
-/// The part of the numbers after the warm-up that the mean of an end is taken of.
-const END: usize = 10;
-
-/// The mean of the first and of the last cycles after the warm-up.
-fn ends(numbers: &[f64]) -> Option<[f64; 2]> {
-    let count = END.min(numbers.len() / 2);
-    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
-    (count > 0).then(|| {
-        [
-            mean(&numbers[..count]),
-            mean(&numbers[numbers.len() - count..]),
-        ]
-    })
-}
-
-/// How much of a column there was in the first four cycles after the warm-up, and in the last four: the
-/// four kinds of views.
-fn counts(table: &Table, name: &str) -> [f64; 2] {
-    let numbers: Vec<f64> = table
-        .rows
-        .iter()
-        .map(|row| table.number(row, name))
-        .collect();
-    let settled = &numbers[(WARM_UP as usize).min(numbers.len() - 1)..];
-    let most = |part: &[f64]| part.iter().copied().fold(0.0, f64::max);
-    let kinds = (WARM_UP as usize).min(settled.len());
-    [
-        most(&settled[..kinds]),
-        most(&settled[settled.len() - kinds..]),
-    ]
-}
-
-/// The memory of the process in MiB after the warm-up and at the end.
-fn memory(table: &Table) -> Option<[f64; 2]> {
-    let resident: Vec<f64> = (table.rows.iter().skip(WARM_UP as usize))
-        .filter(|row| !table.cell(row, "resident KiB").is_empty())
-        .map(|row| table.number(row, "resident KiB") / 1024.0)
-        .collect();
-    ends(&resident)
-}
+/// What is left out of the run, and why.
+const EXCEPTIONS: &str = "Two things that grow are not this crate's, and are left out:\n\n\
+    - Bevy 0.19.1 keeps bind groups of cameras that are gone (`BinUnpackingBindGroups`): three for each, six \
+    with a prepass, with this crate or without. The run removes them after each frame (`forget_gone_views` in \
+    `testkit/src/soak.rs`).\n\
+    - Looks are not changed, since lavapipe compiles shaders again for each and keeps the memory. \
+    `SOAK=looks` changes nothing else, and an empty `SOAK` everything; tests change looks in a short run that \
+    counts the resources of the GPU.\n\n";
 
 /// How much the memory grows, and how often the renderer fails.
 pub fn figure(folder: &Path) -> Option<String> {
     let table = load(folder, "soak").ok()?;
     let last = table.rows.last()?;
-    let growth = memory(&table).map_or_else(String::new, |[first, last]| {
+    let growth = ends(&resident(&table)).map_or_else(String::new, |[first, last]| {
         format!("memory {:+.2} %, ", 100.0 * (last / first - 1.0))
     });
     Some(format!(
@@ -72,24 +44,41 @@ pub fn soak(out: &mut String, folder: &Path) -> Result<(), String> {
     let _ = writeln!(
         out,
         "## 7. A long run\n\n{} frames of 1 to 128 pixels a side. In every {CYCLE} of them a camera changes \
-         its size 60 times, 20 objects come and go, and a style file breaks and is mended. Looks are not \
-         changed: lavapipe compiles shaders again for each, and keeps the memory. Errors of the renderer: \
-         {}.\n\n| | after {} frames | at the end |\n|---|---|---|",
+         its size 60 times, another one comes and goes, 20 objects come and go, the scene takes the cartoon \
+         material and loses it, and a style file breaks and is mended; samples and HDR change from one to the \
+         next. Errors of the renderer: {}.\n",
         table.cell(last, "frame"),
         table.cell(last, "errors"),
-        WARM_UP * CYCLE,
     );
-    if let Some([first, last]) = memory(&table) {
+    out.push_str(EXCEPTIONS);
+    numbers(out, &table);
+    Ok(())
+}
+
+/// Memory and resources, at either end.
+fn numbers(out: &mut String, table: &Table) {
+    let _ = writeln!(
+        out,
+        "| | after {} frames | at the end |\n|---|---|---|",
+        WARM_UP * CYCLE
+    );
+    if let Some([first, last]) = ends(&resident(table)) {
         let _ = writeln!(
             out,
             "| memory of the process, MiB (means of {END} cycles) | {first:.1} | {last:.1} ({:+.2} %) |",
             100.0 * (last / first - 1.0)
         );
     }
-    for name in table.header.iter().skip(3) {
-        let [first, last] = counts(&table, name);
+    for name in table.header.iter().skip(FIRST_RESOURCE) {
+        let [first, last] = counts(table, name);
         let _ = writeln!(out, "| {name} | {first:.0} | {last:.0} |");
     }
     out.push('\n');
-    Ok(())
+    if let Some(growth) = growth(table) {
+        let _ = writeln!(
+            out,
+            "Memory grew by {growth:.2} % over the second half. `report --only soak` fails from \
+             {MOST_GROWTH:.0} % on, if there is more of any resource at the end, and after any error.\n"
+        );
+    }
 }

@@ -5,6 +5,7 @@ mod effects;
 mod inputs;
 mod lifetimes;
 mod prepasses;
+mod recovery;
 mod views;
 
 use bevy::{

@@ -4,7 +4,7 @@
 mod checks;
 mod compare;
 mod covering;
-mod effects;
+pub mod effects;
 mod stage;
 
 use std::collections::HashMap;
