@@ -17,6 +17,7 @@
 //! cargo run --example pictures -- golden [--only NAME,NAME] [--out DIR]
 //! ```
 
+mod arguments;
 mod figures;
 mod gallery;
 mod loops;
@@ -34,27 +35,7 @@ mod toon;
 
 use std::{path::PathBuf, process::ExitCode};
 
-use bevy::math::UVec2;
-
-const USAGE: &str = "\
-usage: pictures contact-sheet [--size WxH] [--zoom N] [--out FILE.png]
-                                                              every scene in every preset; or the
-                                                              middle of each, enlarged 2 to 8 times
-       pictures banner [--out FILE.png]                       the README's first picture
-       pictures looks [--out FILE.png]                        a row of looks, for the page of examples
-       pictures presets [--out FILE.png]                      the page of the presets
-       pictures gallery [--only NAME,NAME] [--out DIR]        docs/looks: every look, and how they differ;
-                                                              or only the numbers of these looks
-       pictures loops [--out DIR]                             docs/looks: strokes and lines in motion
-       pictures ramps [--out FILE.png]                        the ramps of the cartoon material
-       pictures toon [--out DIR]                              signs, rims and X-Toon of the cartoon material
-       pictures pages [--out DIR]                             the pages about single tasks
-       pictures motion [--out DIR]                            the pages about speed lines and paper
-       pictures print [--out DIR]                             the pages about print, paint and focus
-       pictures strips [NAME...] [--out DIR]                  lines in motion, all or some
-       pictures figures [--out DIR]                           the figures of the first paper
-       pictures golden [--only NAME,NAME] [--out DIR]         the tests' reference pictures: all, or
-                                                              those of these styles";
+use arguments::Arguments;
 
 fn main() -> ExitCode {
     match run() {
@@ -67,59 +48,34 @@ fn main() -> ExitCode {
 }
 
 fn run() -> Result<(), String> {
-    use lexopt::prelude::*;
-    let mut parser = lexopt::Parser::from_env();
-    let wrong = |error: lexopt::Error| format!("{error}\n{USAGE}");
-    let (mut what, mut size, mut out) = (None, UVec2::new(480, 270), None);
-    let mut names = Vec::new();
-    let (mut only, mut zoom) = (String::new(), 1);
-    while let Some(argument) = parser.next().map_err(wrong)? {
-        match argument {
-            Value(value) if what.is_none() => what = Some(value.to_string_lossy().into_owned()),
-            Value(value) if what.as_deref() == Some("strips") => {
-                names.push(value.to_string_lossy().into_owned());
-            }
-            Long("size") => {
-                let text = parser.value().and_then(|v| v.string()).map_err(wrong)?;
-                size = text
-                    .split_once('x')
-                    .and_then(|(w, h)| Some(UVec2::new(w.parse().ok()?, h.parse().ok()?)))
-                    .filter(|size| size.min_element() >= 16 && size.max_element() <= 4096)
-                    .ok_or_else(|| format!("--size {text}: possible are 16x16 to 4096x4096"))?;
-            }
-            Long("zoom") => {
-                let text = parser.value().and_then(|v| v.string()).map_err(wrong)?;
-                let number = text.parse().ok().filter(|zoom| (1..=8).contains(zoom));
-                zoom = number.ok_or_else(|| format!("--zoom {text}: possible are 1 to 8"))?;
-            }
-            Long("only") => only = parser.value().and_then(|v| v.string()).map_err(wrong)?,
-            Long("out") => out = Some(PathBuf::from(parser.value().map_err(wrong)?)),
-            Short('h') | Long("help") => {
-                println!("{USAGE}");
-                return Ok(());
-            }
-            other => return Err(wrong(other.unexpected())),
-        }
-    }
+    let Some(arguments) = Arguments::parse()? else {
+        return Ok(());
+    };
+    let Arguments {
+        size,
+        zoom,
+        only,
+        names,
+        ..
+    } = &arguments;
     bevy_comics_testkit::headless::adapter()?;
-    let or = |path: &str| out.clone().unwrap_or_else(|| PathBuf::from(path));
-    match what.as_deref() {
-        Some("contact-sheet") => sheet::contact_sheet(size, zoom, &or("target/contact-sheet.png")),
-        Some("banner") => sheet::banner(&or("target/banner.png")),
-        Some("looks") => sheet::looks(&or("target/looks.png")),
-        Some("presets") => sheet::presets(&or("target/presets.png")),
-        Some("gallery") => gallery::write(&or("docs/looks"), &only),
-        Some("loops") => loops::write(&or("docs/looks")),
-        Some("ramps") => save(&ramps::picture(), &or("target/ramps.png")),
-        Some("toon") => toon::write(&or("target/toon")),
-        Some("pages") => pages::write(&or("target/pages")),
-        Some("motion") => motion::write(&or("target/motion")),
-        Some("print") => print::write(&or("target/print")),
-        Some("strips") => strips::write(&or("target/strips"), &names),
-        Some("figures") => figures::write(&or("target/figures")),
-        Some("golden") => sheet::golden(&or("tests/golden"), &only),
-        Some(other) => Err(format!("no pictures called {other:?}\n{USAGE}")),
-        None => Err(USAGE.into()),
+    let or = |path: &str| arguments.out.clone().unwrap_or_else(|| PathBuf::from(path));
+    match arguments.what.as_str() {
+        "contact-sheet" => sheet::contact_sheet(*size, *zoom, &or("target/contact-sheet.png")),
+        "banner" => sheet::banner(&or("target/banner.png")),
+        "looks" => sheet::looks(&or("target/looks.png")),
+        "presets" => sheet::presets(&or("target/presets.png")),
+        "gallery" => gallery::write(&or("docs/looks"), only),
+        "loops" => loops::write(&or("docs/looks")),
+        "ramps" => save(&ramps::picture(), &or("target/ramps.png")),
+        "toon" => toon::write(&or("target/toon")),
+        "pages" => pages::write(&or("target/pages")),
+        "motion" => motion::write(&or("target/motion")),
+        "print" => print::write(&or("target/print")),
+        "strips" => strips::write(&or("target/strips"), names),
+        "figures" => figures::write(&or("target/figures")),
+        "golden" => sheet::golden(&or("tests/golden"), only),
+        other => Err(format!("no pictures called {other:?}")),
     }
 }
 

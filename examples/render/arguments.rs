@@ -145,12 +145,16 @@ impl Given {
 impl Arguments {
     /// `None` when only help was asked for.
     pub fn parse() -> Result<Option<Self>, String> {
-        Self::read(lexopt::Parser::from_env())
+        let read = Self::read(lexopt::Parser::from_env())?;
+        if read.is_none() {
+            println!("{USAGE}");
+        }
+        Ok(read)
     }
 
+    /// `None` when help was asked for.
     fn read(parser: lexopt::Parser) -> Result<Option<Self>, String> {
         let Some(given) = Given::read(parser)? else {
-            println!("{USAGE}");
             return Ok(None);
         };
         let scene = match &given.scene {

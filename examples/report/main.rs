@@ -8,6 +8,7 @@
 //! cargo run --example report -- --render              # text and plots from the CSV files
 //! ```
 
+mod arguments;
 mod bare;
 mod capture;
 mod costs;
@@ -44,11 +45,11 @@ use std::{
     time::Instant,
 };
 
+use arguments::Arguments;
 use bevy_comics_testkit::{
     bench,
     headless::{self, Headless, HeadlessOptions},
 };
-use lexopt::prelude::*;
 use sections::{MACHINE, SECTIONS, Section};
 use stamp::Stamp;
 use table::Table;
@@ -103,66 +104,14 @@ impl Run {
     }
 }
 
-const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
-
-  --quick          small pictures, few repetitions, no other crates
-  --out FOLDER     folder of the report; default docs/report
-  --only SECTION   measure one section only: machine, ranges, encodings, lines, models,
-                   steps, dashes, dash-steps, memory, meadow, straight, page, stability, ladder,
-                   parts, scene-parts, toon, growth, peers, flicker or soak
-  --tables         write the CSV files alone, without text and plots
-  --render         measure nothing; write text and plots from the CSV files
-
-Without --only, everything is measured but soak, which draws 100,000 frames and has no times. Date, commit
-and seconds of each section are written to sections.csv in the folder of the report.";
-
-/// What the command line asks for.
-struct Arguments {
-    quick: bool,
-    render: bool,
-    tables: bool,
-    only: Option<String>,
-    out: PathBuf,
-}
-
-impl Arguments {
-    fn read() -> Result<Self, lexopt::Error> {
-        let mut read = Self {
-            quick: false,
-            render: false,
-            tables: false,
-            only: None,
-            out: PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/report")),
-        };
-        let mut arguments = lexopt::Parser::from_env();
-        while let Some(argument) = arguments.next()? {
-            match argument {
-                Long("quick") => read.quick = true,
-                Long("render") => read.render = true,
-                Long("tables") => read.tables = true,
-                Long("out") => read.out = arguments.value()?.into(),
-                Long("only") => read.only = Some(arguments.value()?.string()?),
-                Long("help") => {
-                    println!("{USAGE}");
-                    std::process::exit(0);
-                }
-                other => return Err(other.unexpected()),
-            }
-        }
-        Ok(read)
-    }
-}
 
 fn run() -> Result<(), String> {
-    let arguments = Arguments::read().map_err(|error| format!("{error}\n\n{USAGE}"))?;
+    let Some(arguments) = Arguments::parse()? else {
+        return Ok(());
+    };
     let Arguments {
         quick, only, out, ..
     } = &arguments;
-    if let Some(name) = only
-        && !SECTIONS.iter().any(|section| section.name == name)
-    {
-        return Err(format!("no section {name:?}\n\n{USAGE}"));
-    }
     let problem = |error| format!("{}: {error}", out.display());
     std::fs::create_dir_all(out).map_err(problem)?;
     if !arguments.render {

@@ -54,7 +54,9 @@ use crate::style::format;
 /// ```
 ///
 /// A [`ramp_map`](CartoonLight::ramp_map) is the path of its image among the assets, which is loaded
-/// with the look. A look whose path leads out of their folder is not loaded. Other images are not part of files: a material keeps its own.
+/// with the look. A look whose path leads out of their folder, or to another source of assets than that of
+/// the look, is not loaded; neither is one whose path has a `\` or a `:`, which mean something else on
+/// other systems. Other images are not part of files: a material keeps its own.
 ///
 /// [`ToonLookHandle`] gives one to a mesh, [`CartoonScene::look`](crate::CartoonScene::look) to a
 /// whole scene. Both follow changes of the file, if the app watches its files (Bevy's feature
@@ -109,7 +111,7 @@ pub enum ToonLookError {
         /// The version that the file states.
         found: u32,
     },
-    /// The path of an image leads out of the folder of assets, or to another computer.
+    /// The path of an image leads out of the folder of assets, to another source, or to another computer.
     #[error("the image {path} is outside the folder of assets")]
     #[non_exhaustive]
     Path {
@@ -196,7 +198,8 @@ impl ToonLook {
         }
     }
 
-    /// Reads a look from the text of a `.toon.ron` file.
+    /// Reads a look from the text of a `.toon.ron` file. The path of its image is not checked: only what
+    /// the app's assets load is.
     ///
     /// # Errors
     /// [`ToonLookError::Syntax`] with line and column, or [`ToonLookError::Version`].
@@ -252,7 +255,9 @@ impl AssetLoader for ToonLookLoader {
             .map_err(|error| std::io::Error::new(std::io::ErrorKind::InvalidData, error))?;
         let mut look = ToonLook::from_ron(&text)?;
         // Files of strangers, of a mod for example, read only what is among the assets.
-        if let Some(path) = look.light.ramp_map.path().filter(|path| !is_local(path)) {
+        if let Some(path) = look.light.ramp_map.path()
+            && !is_local(path, load_context.path())
+        {
             let path = path.to_string();
             return Err(ToonLookError::Path { path });
         }
@@ -265,10 +270,14 @@ impl AssetLoader for ToonLookLoader {
     }
 }
 
-/// Whether a path stays in the folder of its assets, and is not an address of the web.
-fn is_local(path: &AssetPath) -> bool {
-    let is_web = |source: &str| matches!(source, "http" | "https");
-    !path.is_unapproved() && !path.source().as_str().is_some_and(is_web)
+/// Whether a look may read a path: it stays in the folder of its assets on every system, and is among the
+/// app's usual assets or those that the look is from, but not on the web.
+fn is_local(path: &AssetPath, look: &AssetPath) -> bool {
+    let source = path.source().as_str();
+    let is_known = source.is_none() || source == look.source().as_str();
+    let is_web = matches!(source, Some("http" | "https"));
+    let is_foreign = path.path().to_string_lossy().contains(['\\', ':']);
+    is_known && !is_web && !is_foreign && !path.is_unapproved()
 }
 
 /// The look that an event says is new or changed.

@@ -5,6 +5,8 @@ mod art_map;
 mod art_strokes;
 mod detail;
 mod form;
+#[cfg(test)]
+mod fuzz;
 mod glint;
 mod hatch;
 mod ignored;

@@ -11,6 +11,7 @@ use super::{
     ramp::{RampKey, RampUniform},
     rim::RimUniform,
 };
+use crate::settings::bounded;
 
 /// The uniform: `Cartoon` in `bindings.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
@@ -79,7 +80,8 @@ pub struct CartoonKey {
 
 impl From<&CartoonLight> for CartoonKey {
     fn from(light: &CartoonLight) -> Self {
-        let glint = light.glint.filter(|_| light.highlight > 0.0);
+        let highlight = bounded(light.highlight, 1.0, 0.0, 4.0);
+        let glint = light.glint.filter(|_| highlight > 0.0);
         let ramp = light.drawn_ramp();
         let axis = ramp
             .as_ref()

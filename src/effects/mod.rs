@@ -62,3 +62,6 @@ impl EffectRegistry {
         BUILT_IN.clone()
     }
 }
+
+#[cfg(test)]
+mod tests;

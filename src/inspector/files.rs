@@ -274,7 +274,10 @@ pub fn style_files(folder: &Path) -> Vec<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Contours, ToneBands};
+    use crate::{
+        Contours, ToneBands,
+        settings::tests::odd::{Numbers, cases},
+    };
 
     fn folder(name: &str) -> PathBuf {
         let folder = std::env::temp_dir().join(format!("comics-{name}-{}", std::process::id()));
@@ -303,6 +306,40 @@ mod tests {
         assert_eq!(of("skin.toon.ron"), Some("looks/skin.toon.ron".into()));
         assert_eq!(of("other/skin"), Some("other/skin.toon.ron".into()));
         assert_eq!(of("/tmp/skin"), Some("/tmp/skin.toon.ron".into()));
+    }
+
+    /// A name without separators is a file in the folder, whatever it is; what is typed as a path is that path.
+    #[test]
+    fn no_name_of_a_file_is_dangerous() {
+        const PARTS: [&str; 14] = [
+            "skin",
+            ".",
+            "..",
+            "/",
+            "\\",
+            ":",
+            "C:",
+            "~",
+            " ",
+            "\0",
+            "\u{1f600}",
+            SUFFIX,
+            ".ron",
+            "\n",
+        ];
+        let (folder, mut numbers) = (Path::new("looks"), Numbers::new(7));
+        for _ in 0..cases() {
+            let parts = (0..numbers.below(8)).map(|_| PARTS[numbers.below(PARTS.len())]);
+            let name: String = parts.collect();
+            let Some(path) = path_of(&name, SUFFIX, folder) else {
+                assert!(name.trim().is_empty(), "{name:?}");
+                continue;
+            };
+            assert!(path.to_string_lossy().ends_with(SUFFIX), "{name:?}");
+            if !name.contains(['/', '\\', ':']) {
+                assert_eq!(path.parent(), Some(folder), "{name:?}");
+            }
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::{
     fs,
     path::{Path, PathBuf},
     sync::{Arc, Mutex, PoisonError},
-    time::{SystemTime, UNIX_EPOCH},
+    time::{Duration, SystemTime, UNIX_EPOCH},
 };
 
 use bevy::{
@@ -100,7 +100,7 @@ impl Photo {
         *multiple = (*multiple).clamp(1, largest);
         let slider = ui.add(Slider::new(multiple, 1..=largest).text("× window size"));
         note(widgets, "photo.multiple", &slider);
-        let size = window * *multiple;
+        let size = picture_size(window, *multiple);
         ui.label(format!("{} x {} pixels", size.x, size.y));
         if button(ui, widgets, "photo.take", "Take a screenshot", true) {
             self.last = None;
@@ -179,12 +179,26 @@ fn largest(world: &World, window: UVec2) -> u32 {
     let side = world
         .get_resource::<RenderDevice>()
         .map_or(8192, |device| device.limits().max_texture_dimension_2d);
-    (side / window.max_element().max(1)).clamp(1, 8)
+    largest_below(side, window)
+}
+
+/// The largest multiple of a size of which no side is longer than `side`.
+fn largest_below(side: u32, size: UVec2) -> u32 {
+    (side / size.max_element().max(1)).clamp(1, 8)
+}
+
+/// The size of a screenshot of a window.
+fn picture_size(window: UVec2, multiple: u32) -> UVec2 {
+    window
+        .saturating_mul(UVec2::splat(multiple))
+        .max(UVec2::ONE)
 }
 
 /// Redirects the window's 3D cameras to an image.
 fn begin(world: &mut World, window: UVec2, multiple: u32) -> Option<Shot> {
-    let size = (window * multiple).max(UVec2::ONE);
+    // The window may have grown since the page was shown.
+    let multiple = multiple.clamp(1, largest(world, window));
+    let size = picture_size(window, multiple);
     let image = Image::new_target_texture(size.x, size.y, TextureFormat::Rgba8UnormSrgb, None);
     let image = world.resource_mut::<Assets<Image>>().add(image);
     let scale = window_size(world)?.1 * multiple as f32;
@@ -207,8 +221,9 @@ fn begin(world: &mut World, window: UVec2, multiple: u32) -> Option<Shot> {
         });
         projection.set_changed();
         if let Some(viewport) = &mut camera.viewport {
-            viewport.physical_position *= multiple;
-            viewport.physical_size *= multiple;
+            let factor = UVec2::splat(multiple);
+            viewport.physical_position = viewport.physical_position.saturating_mul(factor);
+            viewport.physical_size = viewport.physical_size.saturating_mul(factor);
         }
     }
     if cameras.is_empty() {
@@ -245,22 +260,108 @@ fn end(world: &mut World, shot: Shot) {
     world.resource_mut::<Assets<Image>>().remove(&shot.image);
 }
 
-/// Saves the image as a PNG file without alpha.
-fn save(image: &Image, folder: &Path) -> Result<PathBuf, String> {
+/// The colours of a screenshot without alpha.
+fn colors(image: &Image) -> Result<image::RgbImage, String> {
     let size = image.size();
     let bytes = image.data.as_ref().ok_or("The screenshot is empty.")?;
+    let count = u64::from(size.x) * u64::from(size.y);
+    if count == 0 || bytes.len() as u64 != 4 * count {
+        return Err("The screenshot has the wrong size.".into());
+    }
     let opaque: Vec<u8> = bytes
         .chunks_exact(4)
         .flat_map(|p| [p[0], p[1], p[2]])
         .collect();
-    let picture = image::RgbImage::from_raw(size.x, size.y, opaque)
-        .ok_or("The screenshot has the wrong size.")?;
+    image::RgbImage::from_raw(size.x, size.y, opaque)
+        .ok_or_else(|| "The screenshot has the wrong size.".into())
+}
+
+/// The name of the file of a screenshot, by the time since 1970.
+fn file_name(now: Duration) -> String {
+    format!("comic-{}.png", now.as_millis())
+}
+
+/// Saves the image as a PNG file without alpha.
+fn save(image: &Image, folder: &Path) -> Result<PathBuf, String> {
+    let picture = colors(image)?;
     let in_folder = |error: &dyn std::fmt::Display| format!("{}: {error}", folder.display());
     fs::create_dir_all(folder).map_err(|error| in_folder(&error))?;
-    let now = SystemTime::now()
-        .duration_since(UNIX_EPOCH)
-        .map_or(0, |since| since.as_millis());
-    let path = folder.join(format!("comic-{now}.png"));
+    let now = SystemTime::now().duration_since(UNIX_EPOCH);
+    let path = folder.join(file_name(now.unwrap_or_default()));
     picture.save(&path).map_err(|error| in_folder(&error))?;
     Ok(path)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Component;
+
+    use super::*;
+    use crate::settings::tests::odd::{Numbers, cases};
+
+    /// A length: any, one of a window, or one beside a power of two.
+    fn length(numbers: &mut Numbers) -> u32 {
+        match numbers.below(4) {
+            0 => numbers.bits(),
+            1 => (1u32 << numbers.below(32)).wrapping_sub(numbers.below(3) as u32),
+            _ => numbers.below(16385) as u32,
+        }
+    }
+
+    /// A screenshot of a window that the adapter can draw is one that it can draw, too; whatever the numbers
+    /// are, there is a size.
+    #[test]
+    fn no_size_of_a_window_is_dangerous() {
+        let mut numbers = Numbers::new(4);
+        for _ in 0..cases() {
+            let window = UVec2::new(length(&mut numbers), length(&mut numbers));
+            let side = length(&mut numbers);
+            let most = largest_below(side, window);
+            assert!((1..=8).contains(&most), "{window}, {side}");
+            // As stored, or as typed.
+            let multiple = length(&mut numbers).clamp(1, most);
+            let size = picture_size(window, multiple);
+            assert!(size.min_element() > 0, "{window}, {multiple}");
+            let fits = |size: UVec2| size.max_element() <= side.max(1);
+            assert!(!fits(window) || fits(size), "{window}, {multiple}, {side}");
+        }
+    }
+
+    /// A picture is read if it has the bytes of its size, and refused otherwise.
+    #[test]
+    fn no_screenshot_is_dangerous() {
+        let mut numbers = Numbers::new(5);
+        for _ in 0..cases() {
+            let mut image = Image::default();
+            let size = UVec2::new(numbers.below(12) as u32, numbers.below(12) as u32);
+            let is_huge = numbers.below(16) == 0;
+            let side = if is_huge { u32::MAX } else { size.x };
+            image.texture_descriptor.size.width = side;
+            image.texture_descriptor.size.height = size.y;
+            let wanted = 4 * (size.x * size.y) as usize;
+            let count = (wanted + numbers.below(3)).saturating_sub(numbers.below(2));
+            image.data = (numbers.below(16) > 0).then(|| vec![7; count]);
+            let is_right = image.data.is_some() && !is_huge && wanted > 0 && count == wanted;
+            match colors(&image) {
+                Ok(picture) => {
+                    assert!(is_right, "{side} x {}, {count} bytes", size.y);
+                    assert_eq!(picture.dimensions(), (size.x, size.y));
+                }
+                Err(message) => assert!(!is_right && !message.is_empty()),
+            }
+        }
+    }
+
+    /// The name is that of a file in the folder.
+    #[test]
+    fn no_time_names_a_file_elsewhere() {
+        let mut numbers = Numbers::new(6);
+        for _ in 0..cases() {
+            let seconds = u64::from(numbers.bits()) << numbers.below(33);
+            let name = file_name(Duration::new(seconds, numbers.bits() % 1_000_000_000));
+            let parts: Vec<_> = Path::new(&name).components().collect();
+            assert!(matches!(parts[..], [Component::Normal(_)]), "{name}");
+            assert!(name.starts_with("comic-") && name.ends_with(".png"));
+        }
+    }
 }

@@ -6,7 +6,7 @@ mod field;
 pub mod file_color;
 mod form;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 pub(crate) use blend::{Blend, dip};
 pub use blend::{blend_color, blend_ratio};

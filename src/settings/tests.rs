@@ -2,6 +2,7 @@
 
 #[cfg(all(feature = "cartoon", feature = "objects"))]
 mod materials;
+pub(crate) mod odd;
 mod page;
 mod prints;
 mod ranges;

@@ -82,12 +82,33 @@ pub(super) fn version(text: &str) -> Option<u32> {
         .and_then(|word| text[word.range].parse().ok())
 }
 
-/// The text of a version 1 file with the names of version 2.
+/// The end of a text that grows: line and column from 1.
+struct End {
+    line: usize,
+    column: usize,
+}
+
+impl End {
+    /// Moves behind `more`.
+    fn pass(&mut self, more: &str) {
+        for c in more.chars() {
+            if c == '\n' {
+                self.line += 1;
+                self.column = 1;
+            } else {
+                self.column += 1;
+            }
+        }
+    }
+}
+
+/// The text of a version 1 file with the names of version 2. Takes time in proportion to the text.
 pub(super) fn upgraded(text: &str) -> Upgraded {
     let mut upgraded = Upgraded {
         text: String::with_capacity(text.len()),
         edits: Vec::new(),
     };
+    let mut end = End { line: 1, column: 1 };
     let mut copied = 0;
     for word in entry_words(text) {
         let old = &text[word.range.clone()];
@@ -100,16 +121,18 @@ pub(super) fn upgraded(text: &str) -> Upgraded {
                 .map(|(_, _, to)| *to)
         };
         let Some(new) = new else { continue };
-        upgraded.text.push_str(&text[copied..word.range.start]);
-        let line_start = upgraded.text.rfind('\n').map_or(0, |at| at + 1);
+        let before = &text[copied..word.range.start];
+        upgraded.text.push_str(before);
+        end.pass(before);
         upgraded.edits.push(Edit {
-            line: upgraded.text.matches('\n').count() + 1,
-            column: upgraded.text[line_start..].chars().count() + 1,
+            line: end.line,
+            column: end.column,
             entry: word.entry.to_owned(),
             old: old.to_owned(),
             new,
         });
         upgraded.text.push_str(new);
+        end.pass(new);
         copied = word.range.end;
     }
     upgraded.text.push_str(&text[copied..]);

@@ -1,6 +1,6 @@
 //! A small example: a window, or with `--out FILE` a picture without one.
 
-use std::{path::PathBuf, process::ExitCode};
+use std::{ffi::OsString, path::PathBuf, process::ExitCode};
 
 use bevy::{camera::RenderTarget, prelude::*, window::WindowResolution};
 use bevy_comics::ComicsPlugin;
@@ -39,9 +39,12 @@ impl Demo {
         add: impl Fn(&mut App) + Send + Sync + 'static,
         picture: impl FnOnce(&mut Headless) -> image::RgbaImage,
     ) -> ExitCode {
-        let (size, out) = match self.arguments() {
+        let (size, out) = match self.arguments(std::env::args_os().skip(1)) {
             Ok(Some(wanted)) => wanted,
-            Ok(None) => return ExitCode::SUCCESS,
+            Ok(None) => {
+                println!("{}", self.help());
+                return ExitCode::SUCCESS;
+            }
             Err(message) => {
                 eprintln!("{message}\n\n{}", self.help());
                 return ExitCode::from(2);
@@ -98,20 +101,20 @@ impl Demo {
     }
 
     /// The size and the picture's path; `None` if only help was asked for.
-    fn arguments(&self) -> Result<Option<(UVec2, Option<PathBuf>)>, String> {
+    fn arguments(
+        &self,
+        mut given: impl Iterator<Item = OsString>,
+    ) -> Result<Option<(UVec2, Option<PathBuf>)>, String> {
         let (mut size, mut out) = (self.size, None);
-        let mut arguments = std::env::args().skip(1);
-        while let Some(argument) = arguments.next() {
-            match argument.as_str() {
-                "--out" => out = Some(arguments.next().ok_or("--out needs a file")?.into()),
+        while let Some(argument) = given.next() {
+            match &*argument.to_string_lossy() {
+                "--out" => out = Some(given.next().ok_or("--out needs a file")?.into()),
                 "--size" => {
-                    let text = arguments.next().unwrap_or_default();
-                    size = parse_size(&text).ok_or("--size: possible are 16x16 to 4096x4096")?;
+                    let text = given.next().unwrap_or_default();
+                    size = parse_size(&text.to_string_lossy())
+                        .ok_or("--size: possible are 16x16 to 4096x4096")?;
                 }
-                "--help" | "-h" => {
-                    println!("{}", self.help());
-                    return Ok(None);
-                }
+                "--help" | "-h" => return Ok(None),
                 other => return Err(format!("unknown argument {other}")),
             }
         }
@@ -124,4 +127,74 @@ pub fn parse_size(text: &str) -> Option<UVec2> {
     let (width, height) = text.split_once('x')?;
     let size = UVec2::new(width.parse().ok()?, height.parse().ok()?);
     (size.min_element() >= 16 && size.max_element() <= 4096).then_some(size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fuzz::{Counting, Texts, cases, check};
+
+    #[global_allocator]
+    static ALLOCATOR: Counting = Counting;
+
+    /// Command lines of the photo mode and its like, with an argument on each line.
+    const RIGHT: [&str; 5] = [
+        "--out\nphoto.png",
+        "--size\n480x360",
+        "--size\n4096x16\n--out\nfolder/photo.png",
+        "--out\na.png\n--size\n960x540",
+        "--help",
+    ];
+
+    /// Every command line is read, or refused with a message.
+    #[test]
+    fn no_command_line_is_dangerous() {
+        let demo = Demo {
+            title: "Photo mode",
+            keys: "",
+            size: UVec2::new(480, 360),
+            frames: 4,
+        };
+        let mut texts = Texts::new(4, RIGHT.map(str::to_owned));
+        let (mut read, mut refused) = (0, 0);
+        for _ in 0..cases() {
+            check(&texts.next_text(), |text| {
+                match demo.arguments(text.split('\n').map(OsString::from)) {
+                    Ok(Some((size, _))) => {
+                        read += 1;
+                        assert!(size.min_element() >= 16 && size.max_element() <= 4096);
+                    }
+                    Ok(None) => {}
+                    Err(message) => {
+                        refused += 1;
+                        assert!(!message.is_empty());
+                    }
+                }
+            });
+        }
+        assert!(
+            read * 20 > cases() && refused * 20 > cases(),
+            "{read}, {refused}"
+        );
+    }
+
+    /// Bytes that are no text are an argument, too.
+    #[cfg(unix)]
+    #[test]
+    fn arguments_may_be_no_text() {
+        use std::os::unix::ffi::OsStringExt;
+        let demo = Demo {
+            title: "Photo mode",
+            keys: "",
+            size: UVec2::new(480, 360),
+            frames: 4,
+        };
+        let odd = || OsString::from_vec(vec![0xff, b'.', b'p', b'n', b'g']);
+        assert!(demo.arguments([odd()].into_iter()).is_err());
+        let named = ["--out".into(), odd()];
+        let read = demo.arguments(named.into_iter()).expect("read");
+        assert_eq!(read, Some((demo.size, Some(odd().into()))));
+        let sized = ["--size".into(), odd()];
+        assert!(demo.arguments(sized.into_iter()).is_err());
+    }
 }

@@ -6,6 +6,7 @@
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     cell::Cell,
+    ops::Range,
     time::{Duration, Instant},
 };
 
@@ -56,13 +57,14 @@ unsafe impl GlobalAlloc for Counting {
     }
 }
 
-/// How many texts are tried: the variable `FUZZ_CASES`, else 2000.
+/// How many inputs are tried: the variable `FUZZ_CASES`, else 2000.
 pub fn cases() -> usize {
     let given = std::env::var("FUZZ_CASES").ok();
     given.and_then(|text| text.parse().ok()).unwrap_or(2000)
 }
 
-/// What reading a text may take at most: a second, and a mebibyte with 256 bytes for each of its own.
+/// The bytes that reading a text may take at most, as `docs/style-format.md` states: a mebibyte, and 256 for
+/// each of its own.
 fn most_bytes(text: &str) -> usize {
     (1 << 20) + 256 * text.len()
 }
@@ -93,7 +95,7 @@ pub fn check(text: &str, read: impl FnOnce(&str)) {
 }
 
 /// What text may contain that is wrong, or just right.
-const WORDS: [&str; 40] = [
+const WORDS: [&str; 44] = [
     "NaN",
     "inf",
     "-inf",
@@ -134,12 +136,38 @@ const WORDS: [&str; 40] = [
     "version: 1,",
     "version: 2,",
     "..",
+    "../",
+    "/etc/",
+    "file://",
+    "C:\\",
 ];
 
 /// Texts that are made of right ones.
 pub struct Texts {
     random: Random,
     right: Vec<String>,
+}
+
+/// A random number below `end`, which has at most 24 bits.
+fn below(random: &mut Random, end: usize) -> usize {
+    ((random.unit() * end as f32) as usize).min(end.saturating_sub(1))
+}
+
+/// A place between two characters.
+fn place(random: &mut Random, text: &str) -> usize {
+    let at = below(random, text.len() + 1);
+    (0..=at)
+        .rev()
+        .find(|at| text.is_char_boundary(*at))
+        .unwrap_or(0)
+}
+
+/// Two places in their order, not far apart.
+fn span(random: &mut Random, text: &str) -> Range<usize> {
+    let start = place(random, text);
+    let end = (start + below(random, 60)).min(text.len());
+    let end = (end..=text.len()).find(|at| text.is_char_boundary(*at));
+    start..end.unwrap_or(text.len())
 }
 
 impl Texts {
@@ -152,65 +180,43 @@ impl Texts {
         }
     }
 
-    fn below(&mut self, end: usize) -> usize {
-        // The generator has 24 bits.
-        ((self.random.unit() * end as f32) as usize).min(end.saturating_sub(1))
-    }
-
-    /// A place between two characters.
-    fn place(&mut self, text: &str) -> usize {
-        let at = self.below(text.len() + 1);
-        (0..=at)
-            .rev()
-            .find(|at| text.is_char_boundary(*at))
-            .unwrap_or(0)
-    }
-
-    /// Two places in their order, not far apart.
-    fn span(&mut self, text: &str) -> std::ops::Range<usize> {
-        let start = self.place(text);
-        let end = (start + self.below(60)).min(text.len());
-        let end = (end..=text.len()).find(|at| text.is_char_boundary(*at));
-        start..end.unwrap_or(text.len())
-    }
-
     fn change(&mut self, text: &mut String) {
-        let span = self.span(text);
-        match self.below(8) {
-            0 => text.replace_range(span, ""),
+        let random = &mut self.random;
+        let at = span(random, text);
+        match below(random, 8) {
+            0 => text.replace_range(at, ""),
             1 => {
-                let twice = text[span.clone()].to_owned();
-                text.insert_str(span.end, &twice);
+                let twice = text[at.clone()].to_owned();
+                text.insert_str(at.end, &twice);
             }
-            2 => text.truncate(span.start),
+            2 => text.truncate(at.start),
             3 => {
                 // A part of another text.
-                let other = self.below(self.right.len());
-                let other = self.right[other].clone();
-                let part = self.span(&other);
-                text.replace_range(span, &other[part]);
+                let other = &self.right[below(random, self.right.len())];
+                let part = span(random, other);
+                text.replace_range(at, &other[part]);
             }
             4 => {
-                let many = 1 << self.below(12);
-                let word = WORDS[self.below(WORDS.len())];
-                text.insert_str(span.start, &word.repeat(many));
+                let many = 1 << below(random, 12);
+                let word = WORDS[below(random, WORDS.len())];
+                text.insert_str(at.start, &word.repeat(many));
             }
             5 => {
-                let code = self.below(0x11_0000) as u32;
-                text.insert(span.start, char::from_u32(code).unwrap_or('\u{fffd}'));
+                let code = below(random, 0x11_0000) as u32;
+                text.insert(at.start, char::from_u32(code).unwrap_or('\u{fffd}'));
             }
             _ => {
-                let word = WORDS[self.below(WORDS.len())];
-                text.replace_range(span, word);
+                let word = WORDS[below(random, WORDS.len())];
+                text.replace_range(at, word);
             }
         }
     }
 
     /// The next text: a right one with up to six changes.
     pub fn next_text(&mut self) -> String {
-        let right = self.below(self.right.len());
+        let right = below(&mut self.random, self.right.len());
         let mut text = self.right[right].clone();
-        for _ in 0..self.below(7) {
+        for _ in 0..below(&mut self.random, 7) {
             self.change(&mut text);
         }
         text

@@ -1,22 +1,88 @@
 //! Files of strangers. `FUZZ_CASES=1000000` tries as many texts as are promised; without it, 2000.
 
+use std::fmt::{Debug, Write};
+
 use bevy::ecs::world::{CommandQueue, World};
 use bevy::prelude::Commands;
-use bevy_comics::{ComicStyle, ToonLook, presets};
+use bevy_comics::{CartoonLight, ComicStyle, RampMap, ToonLook, ViewFacts, presets};
 use bevy_comics_testkit::fuzz::{Counting, Texts, cases, check};
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// A style that is read can be written, read again, and worn.
+/// Styles of version 1, with the names of their time.
+const OLD: [&str; 3] = [
+    r##"// feather in a comment stays
+(
+    version: 1,
+    name: "method: Levels, \"feather\"",
+    tone_bands: (method: Levels, feather: 3),
+    black_flats: (feather: 0.25),
+    contours: (form: PlaneAware, fade: 0.5, color: "#102030"),
+    outlines: (silhouettes: (form: Measured, threshold: 0.05), creases: (form: Measured)),
+)
+"##,
+    "(version: 1, partial: true, contours: None, colorization: (method: Faithful))",
+    "(version: 1, desaturation: (method: Corrected, amount: 0.5), depth_map: (mapping: Linear))",
+];
+
+/// The presets, in both versions, and older styles.
+fn styles() -> impl Iterator<Item = String> {
+    let presets = presets::LOOKS.iter().chain(presets::PAPERS);
+    let new = presets.map(|preset| preset.source().to_owned());
+    // New names are read in old files, too.
+    let aged = new
+        .clone()
+        .map(|text| text.replacen("version: 2", "version: 1", 1));
+    new.chain(aged).chain(OLD.map(str::to_owned))
+}
+
+/// Panics if a value has a number that is not finite. `text` is room for its debug text.
+fn assert_finite(value: &impl Debug, text: &mut String) {
+    text.clear();
+    write!(text, "{value:?}").expect("written");
+    let mut words = text.split(|c: char| !c.is_alphanumeric());
+    assert!(!words.any(|word| matches!(word, "NaN" | "inf")), "{text}");
+}
+
+/// The word of the uniform of `SpeedLines` that is no number: the seed has all of its bits.
+const SEED: (&str, usize) = ("speed_lines", 13);
+
+/// Whatever a file says, what is used of it can be used: the numbers of all effects, of the lines that they
+/// ask for, and of the depth map are finite, and so is what is packed for the GPU.
+fn assert_usable(style: &ComicStyle, view: &ViewFacts, text: &mut String) {
+    let used = style.sanitized();
+    assert!(used.sanitized() == used, "{used:?}");
+    assert_finite(&used.depth_map, text);
+    for effect in used.effects() {
+        assert_finite(&effect, text);
+        let lines = (
+            effect.any_lines(),
+            effect.any_line_focus(view),
+            effect.any_line_planes(view),
+            effect.any_line_abstraction(view),
+            effect.any_sheet(view),
+        );
+        assert_finite(&lines, text);
+        assert!((0.0..=1.0).contains(&effect.any_strength()), "{effect:?}");
+        let name = effect.effect_type().name;
+        for (k, word) in effect.uniform_bytes(view).chunks_exact(4).enumerate() {
+            let x = f32::from_le_bytes([word[0], word[1], word[2], word[3]]);
+            let is_right = x.is_finite() || (name, k) == SEED;
+            assert!(is_right, "word {k} is {x}: {effect:?}");
+        }
+    }
+}
+
+/// A style that is read can be written, read again, used, and worn.
 #[test]
 fn no_text_of_a_style_is_dangerous() {
-    let all = presets::LOOKS.iter().chain(presets::PAPERS);
-    let mut texts = Texts::new(1, all.map(|preset| preset.source().to_owned()));
+    let mut texts = Texts::new(1, styles());
     // The first style that is read makes the tables of effects.
     let _ = presets::NOIR.style();
     let mut world = World::new();
     let camera = world.spawn_empty().id();
+    let (view, mut shown) = (ViewFacts::default(), String::new());
     let mut read_count = 0;
     for _ in 0..cases() {
         check(&texts.next_text(), |text| {
@@ -27,6 +93,7 @@ fn no_text_of_a_style_is_dangerous() {
             let written = style.to_ron().expect("what was read can be written");
             let again = ComicStyle::from_ron(&written).expect("what was written can be read");
             assert_eq!(again.to_ron().expect("again"), written);
+            assert_usable(&style, &view, &mut shown);
             let mut queue = CommandQueue::default();
             style.apply(&mut Commands::new(&mut queue, &world).entity(camera));
             queue.apply(&mut world);
@@ -35,11 +102,32 @@ fn no_text_of_a_style_is_dangerous() {
     assert!(read_count * 20 > cases(), "{read_count} texts are right");
 }
 
+/// All texts that others are made of are right, those of version 1 included.
+#[test]
+fn styles_of_both_versions_are_read() {
+    for text in styles() {
+        let read = ComicStyle::from_ron(&text);
+        assert!(read.is_ok(), "{read:?}: {text}");
+    }
+}
+
+/// A large file of version 1 with a name to replace in every few bytes.
+#[test]
+fn large_files_of_version_1_are_read_in_time() {
+    let fields = "form: PlaneAware, fade: 0.5, ".repeat(20_000);
+    let text = format!("(version: 1, contours: ({fields}))");
+    check(&text, |text| {
+        let error = ComicStyle::from_ron(text).expect_err("fields are there twice");
+        assert!(error.to_string().contains("form"), "{error}");
+    });
+}
+
 #[test]
 fn no_text_of_a_look_is_dangerous() {
     let kinds = crate::looks::all_kinds();
     let written = kinds.iter().map(|look| look.to_ron().expect("written"));
     let mut texts = Texts::new(2, written);
+    let mut shown = String::new();
     let mut read_count = 0;
     for _ in 0..cases() {
         check(&texts.next_text(), |text| {
@@ -47,7 +135,14 @@ fn no_text_of_a_look_is_dangerous() {
                 return;
             };
             read_count += 1;
-            let _ = look.light.clone().sanitized();
+            let used = look.light.clone().sanitized();
+            assert!(used.clone().sanitized() == used, "{used:?}");
+            // The path of an image is no number, whatever it is.
+            let numbers = CartoonLight {
+                ramp_map: RampMap::default(),
+                ..used
+            };
+            assert_finite(&numbers, &mut shown);
             let written = look.to_ron().expect("what was read can be written");
             let again = ToonLook::from_ron(&written).expect("what was written can be read");
             assert_eq!(again.to_ron().expect("again"), written);

@@ -2,6 +2,7 @@
 
 mod abstraction;
 mod art_maps;
+mod asset_paths;
 mod blending;
 mod boil;
 mod borders;
@@ -102,6 +103,7 @@ mod styles;
 mod support;
 mod surface_lines;
 mod threshold_map;
+mod together;
 mod tone_ramp;
 mod transparent;
 mod transparent_lines;

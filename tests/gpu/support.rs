@@ -3,12 +3,19 @@
 
 mod facts;
 
-use std::{collections::BTreeMap, fmt::Write, fs, path::Path};
+use std::{collections::BTreeMap, fmt::Write, fs, path::Path, sync::LazyLock};
 
 use bevy_comics::{ComicStyle, EffectRegistry, EffectType, presets};
-use facts::{FACTS, Feature, GROUPS, Group, Known, OF_LOOKS, OF_PRESETS};
+use facts::{FACTS, Feature, GROUPS, Group, Known, OF_LOOKS, OF_PRESETS, PAIRED};
 
-use crate::pictures::known_forms;
+use crate::{
+    pairwise::{
+        self,
+        covering::{AntiAliasing, Area, Row, View},
+        effects,
+    },
+    pictures::known_forms,
+};
 
 const HEAD: &str = "\
 # What is supported
@@ -21,7 +28,14 @@ Each cell is about one effect and one feature, and says how the answer is known:
 * **not supported**: the text says what happens instead.
 * **unknown**: no test draws this effect with this feature. It may work.
 
-A cell says nothing about two features at once, or about two effects at once.
+A cell says nothing about two features at once, or about two effects at once. Pairs are what the tests of
+[`pairwise`](../tests/gpu/pairwise/mod.rs) are for: of the number of samples (1, 4), HDR, the renderer (forward, deferred),
+the projection (perspective and the three below), anti-aliasing (none, FXAA, SMAA, TAA), the area (the whole target, a
+viewport, a lower resolution) and nine groups of effects, every two are drawn together at least once, and compared with the
+plainest camera. One of the groups is all effects on one camera, where `Sketch` takes the place of `Outlines`. Left out are
+the pairs that the engine does not support: more than one sample with the deferred renderer or with TAA, and TAA with a
+viewport. Three at once are drawn only where they happen to meet. The other columns are not paired with each other; where
+they have numbers for every effect, all groups of effects are drawn with them.
 ";
 
 const FOOT: &str = "
@@ -30,14 +44,58 @@ differ: a new effect has no row until the page is made again with
 `UPDATE_DOCS=1 cargo test --test gpu -- support::`.
 ";
 
+/// The sample counts of lavapipe, of whose rows the page tells.
+const SAMPLES: &[u32] = &[1, 4];
+
+/// The rows of the tests of pairs.
+static ROWS: LazyLock<Vec<(&str, Vec<Row>)>> = LazyLock::new(|| {
+    let tests = pairwise::TESTS.iter().enumerate();
+    let rows = tests.map(|(k, test)| (*test, pairwise::rows_of(k, SAMPLES)));
+    rows.collect()
+});
+
+/// Whether a row of the tests of pairs has a feature.
+fn has(row: &Row, feature: Feature) -> bool {
+    match feature {
+        Feature::Msaa1 => row.samples == 1,
+        Feature::Msaa4 => row.samples == 4,
+        Feature::Hdr => row.hdr,
+        Feature::Taa => row.anti_aliasing == AntiAliasing::Taa,
+        Feature::Fxaa => row.anti_aliasing == AntiAliasing::Fxaa,
+        Feature::Smaa => row.anti_aliasing == AntiAliasing::Smaa,
+        Feature::Resolution => row.area == Area::SmallMainPass,
+        Feature::Viewport => row.area == Area::Part,
+        Feature::Deferred => row.deferred,
+        Feature::Orthographic => row.view == View::Orthographic,
+        Feature::Oblique => row.view == View::ClipPlane,
+        Feature::OffCentre => row.view == View::OffCentre,
+        _ => false,
+    }
+}
+
+/// The tests of pairs that draw an effect with a feature.
+fn pairs(feature: Feature, effect: &str) -> impl Iterator<Item = &'static str> {
+    let draws = effects::GROUPS.map(|group| effects::draws(&group, effect));
+    let is_drawn = move |row: &Row| has(row, feature) && draws[row.effects];
+    let drawing = ROWS
+        .iter()
+        .filter(move |(_, rows)| rows.iter().any(is_drawn));
+    drawing.map(|(test, _)| *test)
+}
+
 /// All tests that facts name, in the order of the table.
 fn tests() -> Vec<&'static str> {
     let mut tests = Vec::new();
     for (_, _, known) in FACTS {
-        if let Known::Run(test) = known
-            && !tests.contains(test)
-        {
-            tests.push(*test);
+        let named = match known {
+            Known::Run(test) => vec![*test],
+            Known::Pairs => pairwise::TESTS.to_vec(),
+            _ => Vec::new(),
+        };
+        for test in named {
+            if !tests.contains(&test) {
+                tests.push(test);
+            }
         }
     }
     tests
@@ -76,7 +134,11 @@ fn known(feature: Feature, effect: &str) -> Vec<Known> {
     let about = FACTS.iter().filter(|(features, effects, _)| {
         features.contains(&feature) && (effects.is_empty() || effects.contains(&effect))
     });
-    about.map(|(_, _, known)| *known).collect()
+    let expanded = about.flat_map(|(_, _, known)| match known {
+        Known::Pairs => pairs(feature, effect).map(Known::Run).collect(),
+        known => vec![*known],
+    });
+    expanded.collect()
 }
 
 /// The kind of a cell, and its text: tests, or the strongest of the other facts.
@@ -93,7 +155,8 @@ fn cell(feature: Feature, effect: &str, tests: &[&str]) -> (&'static str, String
             }
             Known::NotSupported(text) => instead = Some(*text),
             Known::Translated => translated = true,
-            Known::Unknown => {}
+            // Pairs are named by their tests.
+            Known::Pairs | Known::Unknown => {}
         }
     }
     assert!(
@@ -193,6 +256,18 @@ fn facts_of_the_table_of_support_are_about_what_there_is() {
             let columns = shown().filter(|(known, _)| known == feature).count();
             assert_eq!(columns, 1, "columns of {feature:?}");
         }
+    }
+}
+
+/// Every effect is in a row of pairs with every feature that rows have, and cells name no test that has none.
+#[test]
+fn pairs_of_the_table_of_support_are_in_rows() {
+    for effect in EffectRegistry::built_in().types() {
+        for feature in PAIRED {
+            let found = pairs(*feature, effect.name).count();
+            assert!(found > 0, "{}, {feature:?}", effect.name);
+        }
+        assert_eq!(pairs(Feature::Skinned, effect.name).count(), 0);
     }
 }
 

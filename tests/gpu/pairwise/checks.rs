@@ -34,9 +34,14 @@ pub struct Shown {
 
 /// Sees effects that are left out silently in a configuration.
 pub fn assert_drawn(small: &Small, style: &ComicStyle, what: &str) {
+    assert_drawn_by(small, small.camera, style, what);
+}
+
+/// The same of any camera.
+pub fn assert_drawn_by(small: &Small, camera: Entity, style: &ComicStyle, what: &str) {
     let world = small.headless.app.world();
     let diagnostics = world.resource::<ComicsDiagnostics>();
-    let stages = diagnostics.cameras.get(&small.camera);
+    let stages = diagnostics.cameras.get(&camera);
     let stages = stages.unwrap_or_else(|| panic!("{what}: nothing is reported"));
     let sketched = style.get::<Sketch>().is_some();
     for effect in style.effects() {

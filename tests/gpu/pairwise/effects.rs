@@ -25,6 +25,13 @@ pub const GROUPS: [Group; 9] = [
     ("all", all),
 ];
 
+/// Whether a group draws an effect: it has it, and no other that takes its place.
+pub fn draws((_, style): &Group, name: &str) -> bool {
+    let style = style();
+    let is_replaced = (style.effects()).any(|e| e.effect_type().replaces.contains(&name));
+    style.by_name(name).is_some() && !is_replaced
+}
+
 /// The group of which lines are looked for.
 pub const LINES: &str = "lines";
 

@@ -1,9 +1,9 @@
 //! Pairs of what a camera can be: samples, HDR, projection, renderer, anti-aliasing, viewport and effects.
 //! Every pair that the engine supports is in a row, and every row is drawn and checked.
 
-mod checks;
-mod compare;
-mod covering;
+pub mod checks;
+pub mod compare;
+pub mod covering;
 pub mod effects;
 mod stage;
 
@@ -24,8 +24,19 @@ use stage::SIZE;
 
 use crate::small::Small;
 
-/// The rows are divided among tests, which run at the same time.
-const TESTS: usize = 3;
+/// The tests that the rows are divided among, which run at the same time.
+pub const TESTS: [&str; 3] = [
+    "pairwise::pairs_are_drawn_as_on_a_plain_camera_1",
+    "pairwise::pairs_are_drawn_as_on_a_plain_camera_2",
+    "pairwise::pairs_are_drawn_as_on_a_plain_camera_3",
+];
+
+/// The rows of one of the tests.
+pub fn rows_of(test: usize, samples: &[u32]) -> Vec<Row> {
+    // The first rows go through the groups in turn: rows of one test have bases in common.
+    let rows = rows(samples).into_iter().skip(test).step_by(TESTS.len());
+    rows.map(|levels| Row::new(levels, samples)).collect()
+}
 
 /// Apps that are used for all rows of a test: starting one takes longer than drawing a row.
 struct Bench {
@@ -125,10 +136,8 @@ impl Bench {
 fn check_rows(test: usize) {
     let samples = headless::adapter().expect("an adapter").samples;
     let mut bench = Bench::new();
-    let rows = rows(&samples);
-    // The first rows go through the groups in turn: rows of one test have bases in common.
-    for levels in rows.into_iter().skip(test).step_by(TESTS) {
-        bench.check(&Row::new(levels, &samples));
+    for row in rows_of(test, &samples) {
+        bench.check(&row);
     }
 }
 

@@ -41,6 +41,8 @@ pub enum Feature {
 pub enum Known {
     /// The test that draws it, as `module::function`.
     Run(&'static str),
+    /// Those tests of `pairwise` in whose rows it is.
+    Pairs,
     /// `scripts/translate` translates its shaders.
     Translated,
     /// What happens instead.
@@ -120,8 +122,8 @@ or another frustum that is not symmetric.",
         title: "Cameras",
         note: "\
 \"Viewport\" is one camera that draws into a part of its target, \"split screen\" two such cameras on one target. \"Several
-cameras\" have the effect at the same time, on one target or on two. \"Texture\" is a camera that draws into an image, as
-in all tests but those of the panel.",
+cameras\" have the effect at the same time, on one target or on two. Each draws what it draws alone. \"Texture\" is a camera
+that draws into an image, as in all tests but those of the panel.",
         features: &[
             (Viewport, "viewport"),
             (SplitScreen, "split screen"),
@@ -133,7 +135,8 @@ in all tests but those of the panel.",
         title: "Meshes",
         note: "\
 \"Transparent\" is a blended mesh with `DepthWrite`; without it, the effect sees what is behind the mesh. \"Instanced\" are
-meshes that the engine draws together, \"own pipeline\" instances that a pipeline of the game draws.",
+meshes that the engine draws together, \"own pipeline\" instances that a pipeline of the game draws. Blended, skinned, morphed
+and instanced meshes are drawn as plain meshes of the same shape and colour are.",
         features: &[
             (Transparent, "transparent"),
             (Skinned, "skinned"),
@@ -191,20 +194,37 @@ const DRAWN: &[Feature] = &[Vulkan, Msaa1, Texture];
 /// What every test shows that draws it with one sample and with four.
 const DRAWN_TWICE: &[Feature] = &[Vulkan, Msaa1, Msaa4, Texture];
 
+/// What the rows of `pairwise` have.
+pub const PAIRED: &[Feature] = &[
+    Msaa1,
+    Msaa4,
+    Hdr,
+    Taa,
+    Fxaa,
+    Smaa,
+    Resolution,
+    Deferred,
+    Orthographic,
+    Oblique,
+    OffCentre,
+    Viewport,
+];
+
 /// Features, effects (none: all), and how it is known.
 type Fact = (&'static [Feature], &'static [&'static str], Known);
 
 #[rustfmt::skip]
 pub const FACTS: &[Fact] = &[
-    // Every effect is in a group and in the group of all, and each group meets each feature in a row. The
-    // rows are divided among three tests.
+    (PAIRED, ALL, Pairs),
     (
-        &[
-            Msaa1, Msaa4, Hdr, Taa, Fxaa, Smaa, Resolution, Deferred, Orthographic, Oblique,
-            OffCentre, Viewport,
-        ],
+        &[SplitScreen, SeveralCameras],
         ALL,
-        Run("pairwise::pairs_are_drawn_as_on_a_plain_camera_1"),
+        Run("together::views_beside_others_are_drawn_as_alone"),
+    ),
+    (
+        &[Transparent, Skinned, Morphed, Instanced],
+        ALL,
+        Run("together::meshes_of_every_kind_are_drawn_as_plain_ones"),
     ),
     (&[Metal, Direct3D12, WebGpu, OpenGl], ALL, Translated),
     (&[WebGl2, NoCompute], ALL, Unknown),

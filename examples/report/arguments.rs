@@ -1,0 +1,126 @@
+//! The command line: everything is checked before anything is measured.
+
+use std::path::PathBuf;
+
+use crate::sections::SECTIONS;
+
+const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
+
+  --quick          small pictures, few repetitions, no other crates
+  --out FOLDER     folder of the report; default docs/report
+  --only SECTION   measure one section only: machine, ranges, encodings, lines, models,
+                   steps, dashes, dash-steps, memory, meadow, straight, page, stability, ladder,
+                   parts, scene-parts, toon, growth, peers, flicker or soak
+  --tables         write the CSV files alone, without text and plots
+  --render         measure nothing; write text and plots from the CSV files
+
+Without --only, everything is measured but soak, which draws 100,000 frames and has no times. Date, commit
+and seconds of each section are written to sections.csv in the folder of the report.";
+
+/// What the command line asks for.
+pub struct Arguments {
+    pub quick: bool,
+    pub render: bool,
+    pub tables: bool,
+    pub only: Option<String>,
+    pub out: PathBuf,
+}
+
+impl Arguments {
+    /// `None` when only help was asked for.
+    pub fn parse() -> Result<Option<Self>, String> {
+        let read = Self::read(lexopt::Parser::from_env())
+            .map_err(|message| format!("{message}\n\n{USAGE}"))?;
+        if read.is_none() {
+            println!("{USAGE}");
+        }
+        Ok(read)
+    }
+
+    /// `None` when help was asked for.
+    fn read(mut parser: lexopt::Parser) -> Result<Option<Self>, String> {
+        use lexopt::prelude::*;
+        let wrong = |error: lexopt::Error| error.to_string();
+        let mut read = Self {
+            quick: false,
+            render: false,
+            tables: false,
+            only: None,
+            out: PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/report")),
+        };
+        while let Some(argument) = parser.next().map_err(wrong)? {
+            match argument {
+                Long("quick") => read.quick = true,
+                Long("render") => read.render = true,
+                Long("tables") => read.tables = true,
+                Long("out") => read.out = parser.value().map_err(wrong)?.into(),
+                Long("only") => {
+                    let name = parser.value().and_then(|v| v.string()).map_err(wrong)?;
+                    if !SECTIONS.iter().any(|section| section.name == name) {
+                        return Err(format!("no section {name:?}"));
+                    }
+                    read.only = Some(name);
+                }
+                Short('h') | Long("help") => return Ok(None),
+                other => return Err(wrong(other.unexpected())),
+            }
+        }
+        Ok(Some(read))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_comics_testkit::fuzz::{Counting, Texts, cases, check};
+
+    use super::*;
+
+    #[global_allocator]
+    static ALLOCATOR: Counting = Counting;
+
+    /// Command lines with an argument on each line.
+    const RIGHT: [&str; 5] = [
+        "--quick\n--out\ntarget/report",
+        "--only\nflicker\n--tables",
+        "--render\n--out=folder",
+        "--quick\n--only=scene-parts\n--tables",
+        "--help",
+    ];
+
+    /// Every command line is read, or refused with a message.
+    #[test]
+    fn no_command_line_is_dangerous() {
+        let mut texts = Texts::new(5, RIGHT.map(str::to_owned));
+        let (mut read, mut refused) = (0, 0);
+        for _ in 0..cases() {
+            check(&texts.next_text(), |text| {
+                let parser = lexopt::Parser::from_args(text.split('\n'));
+                match Arguments::read(parser) {
+                    Ok(Some(arguments)) => {
+                        read += 1;
+                        let known = |name: &String| SECTIONS.iter().any(|s| s.name == name);
+                        assert!(arguments.only.iter().all(known));
+                    }
+                    Ok(None) => {}
+                    Err(message) => {
+                        refused += 1;
+                        assert!(!message.is_empty());
+                    }
+                }
+            });
+        }
+        assert!(
+            read * 20 > cases() && refused * 20 > cases(),
+            "{read}, {refused}"
+        );
+    }
+
+    /// The help names every section.
+    #[test]
+    fn the_help_names_every_section() {
+        let words: Vec<&str> = USAGE.split([' ', ',', '\n']).collect();
+        for section in SECTIONS {
+            assert!(words.contains(&section.name), "{}", section.name);
+        }
+    }
+}

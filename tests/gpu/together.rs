@@ -1,0 +1,355 @@
+//! Every effect in views beside others, and on meshes that the engine draws in other ways: compared with
+//! views alone, and with plain meshes. The effects are in the groups of `pairwise`.
+
+use bevy::{
+    camera::{RenderTarget, Viewport, primitives::Aabb, visibility::NoAutoAabb},
+    math::Vec3A,
+    mesh::{
+        VertexAttributeValues,
+        morph::{MeshMorphWeights, MorphAttributes, MorphWeights},
+        skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
+    },
+    prelude::*,
+    render::{render_resource::TextureFormat, view::Msaa},
+};
+use bevy_comics::{ComicStyle, DepthWrite};
+use bevy_comics_testkit::headless::new_target;
+use image::RgbaImage;
+
+use crate::{
+    pairwise::{
+        checks::assert_drawn_by,
+        compare::{changed, crop},
+        effects::GROUPS,
+    },
+    small::{self, Object, Small, unlit},
+};
+
+const SIZE: UVec2 = UVec2::new(96, 64);
+
+/// A part of a target, and the eye that draws it.
+#[derive(Clone)]
+struct Seat {
+    target: Handle<Image>,
+    part: Option<URect>,
+    eye: Transform,
+}
+
+impl Seat {
+    fn spawn(&self, small: &mut Small, order: isize, style: Option<&ComicStyle>) -> Entity {
+        let target = RenderTarget::Image(self.target.clone().into());
+        let camera = Camera {
+            order,
+            clear_color: Color::srgb(0.3, 0.5, 0.8).into(),
+            viewport: self.part.map(|part| Viewport {
+                physical_position: part.min,
+                physical_size: part.size(),
+                ..default()
+            }),
+            ..default()
+        };
+        let world = small.world();
+        let spawned = world.spawn(small::camera(target, Msaa::Off)).id();
+        world.entity_mut(spawned).insert((camera, self.eye));
+        if let Some(style) = style {
+            style.apply(&mut world.commands().entity(spawned));
+            world.flush();
+        }
+        spawned
+    }
+
+    fn picture(&self, small: &mut Small) -> RgbaImage {
+        let whole = small.headless.picture_of(&self.target);
+        match self.part {
+            Some(part) => crop(&whole, part),
+            None => whole,
+        }
+    }
+}
+
+/// An app whose cameras are those of seats.
+fn app() -> Small {
+    let mut small = Small::new(SIZE, Msaa::Off);
+    let camera = small.camera;
+    small.world().despawn(camera);
+    small
+}
+
+fn target(small: &mut Small) -> Handle<Image> {
+    new_target(small.world(), SIZE, TextureFormat::Rgba8UnormSrgb)
+}
+
+/// The pictures of seats whose cameras draw in the same frames. They are new, without history.
+fn shoot(
+    small: &mut Small,
+    seats: &[&Seat],
+    style: Option<&ComicStyle>,
+    what: &str,
+) -> Vec<RgbaImage> {
+    let mut cameras = Vec::new();
+    for (order, seat) in (0..).zip(seats) {
+        cameras.push(seat.spawn(small, order, style));
+    }
+    small.settle();
+    let pictures = seats.iter().map(|seat| seat.picture(small)).collect();
+    for camera in cameras {
+        if let Some(style) = style {
+            assert_drawn_by(small, camera, style, what);
+        }
+        small.world().despawn(camera);
+    }
+    pictures
+}
+
+/// Cameras on one target, and on two, draw what each of them draws alone.
+#[test]
+fn views_beside_others_are_drawn_as_alone() {
+    let mut small = app();
+    let targets = [target(&mut small), target(&mut small), target(&mut small)];
+    let half = |x: u32| Some(URect::new(x, 0, x + SIZE.x / 2, SIZE.y));
+    let eyes = [Vec3::new(1.5, 2.4, 6.0), Vec3::new(-2.5, 1.6, 4.6)]
+        .map(|eye| Transform::from_translation(eye).looking_at(Vec3::new(0.0, 0.4, 0.0), Vec3::Y));
+    let seat = |target: usize, part: Option<URect>, eye: usize| Seat {
+        target: targets[target].clone(),
+        part,
+        eye: eyes[eye],
+    };
+    let split = [seat(0, half(0), 0), seat(0, half(SIZE.x / 2), 1)];
+    let apart = [seat(1, None, 0), seat(2, None, 1)];
+    for (place, seats) in [("one target", split), ("two targets", apart)] {
+        let both = [&seats[0], &seats[1]];
+        let plain = shoot(&mut small, &both, None, place);
+        for (name, style) in GROUPS {
+            let (what, style) = (format!("{place}, {name}"), style());
+            let found = shoot(&mut small, &both, Some(&style), &what);
+            for (k, seat) in seats.iter().enumerate() {
+                let alone = shoot(&mut small, &[seat], Some(&style), &what);
+                let off = changed(&alone[0], &found[k]);
+                assert_eq!(off, 0.0, "{what}: view {k} beside the other");
+                let off = changed(&plain[k], &found[k]);
+                assert!(off > 0.02, "{what}: {off} of view {k} is styled");
+            }
+        }
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// What is drawn in other ways.
+struct Things {
+    boxes: [Entity; 2],
+    pane: Entity,
+    cubes: Vec<Entity>,
+}
+
+/// A box with three different sides.
+fn slab() -> Mesh {
+    Cuboid::new(0.9, 0.6, 0.3).into()
+}
+
+/// The bounds of both boxes, whatever their shape: that of an object decides where its planes are.
+fn bounds() -> impl Bundle {
+    let bounds = Aabb {
+        center: Vec3A::ZERO,
+        half_extents: Vec3A::splat(0.45),
+    };
+    (bounds, NoAutoAabb)
+}
+
+/// Where the boxes are: turned about the vertical axis.
+fn places() -> [Transform; 2] {
+    [(-1.3, 0.5), (1.4, -0.4)].map(|(x, turn)| {
+        Transform::from_xyz(x, 0.6, 0.8).with_rotation(Quat::from_rotation_y(turn))
+    })
+}
+
+/// How a morph target moves a vertex: the top to one side, the bottom to the other.
+fn lean(at: [f32; 3]) -> Vec3 {
+    Vec3::new(0.8 * at[1], 0.0, 0.0)
+}
+
+fn positions(mesh: &Mesh) -> Vec<[f32; 3]> {
+    let positions = mesh.attribute(Mesh::ATTRIBUTE_POSITION);
+    let positions = positions.and_then(VertexAttributeValues::as_float3);
+    positions.expect("positions").to_vec()
+}
+
+/// The box that the morph target makes.
+fn leaning_slab() -> Mesh {
+    let mut mesh = slab();
+    let moved: Vec<[f32; 3]> = (positions(&mesh).into_iter())
+        .map(|at| (Vec3::from(at) + lean(at)).to_array())
+        .collect();
+    mesh.insert_attribute(Mesh::ATTRIBUTE_POSITION, moved);
+    mesh
+}
+
+/// Plain meshes: two boxes, a pane, and cubes that each have a mesh and a material of their own.
+fn put_things(small: &mut Small) -> Things {
+    small.clear();
+    let ground = Plane3d::default().mesh().size(9.0, 9.0);
+    let sand = unlit(Color::srgb(0.8, 0.7, 0.5));
+    small.put(ground, sand, Transform::IDENTITY);
+    let [left, right] = places();
+    let boxes = [
+        small.put(slab(), unlit(Color::srgb(0.85, 0.2, 0.15)), left),
+        small.put(leaning_slab(), unlit(Color::srgb(0.15, 0.6, 0.3)), right),
+    ];
+    for entity in boxes {
+        small.world().entity_mut(entity).insert(bounds());
+    }
+    let turned = Quat::from_euler(EulerRot::XYZ, 0.5, 0.7, 0.1);
+    let pane = small.put(
+        Cuboid::from_length(0.8),
+        unlit(Color::srgb(0.3, 0.8, 0.9)),
+        Transform::from_xyz(0.1, 1.2, 1.6).with_rotation(turned),
+    );
+    let cubes = (0..9).map(|k| {
+        let at = Transform::from_xyz(0.55 * k as f32 - 2.2, 0.3, -1.6);
+        let grey = unlit(Color::srgb(0.5, 0.5, 0.5));
+        small.put(Cuboid::from_length(0.4), grey, at)
+    });
+    let cubes = cubes.collect();
+    Things { boxes, pane, cubes }
+}
+
+fn change_pane(small: &mut Small, things: &Things, alpha_mode: AlphaMode) {
+    let world = small.world();
+    let material = world.get::<MeshMaterial3d<StandardMaterial>>(things.pane);
+    let id = material.expect("it has one").0.id();
+    let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+    let mut material = materials.get_mut(id).expect("it is there");
+    material.alpha_mode = alpha_mode;
+}
+
+/// One mesh and one material for all cubes: the engine draws them as instances.
+fn share(small: &mut Small, things: &Things) {
+    let world = small.world();
+    let mesh = world
+        .get::<Mesh3d>(things.cubes[0])
+        .expect("a mesh")
+        .clone();
+    let material = world.get::<MeshMaterial3d<StandardMaterial>>(things.cubes[0]);
+    let material = material.expect("a material").clone();
+    for cube in &things.cubes {
+        let mut cube = world.entity_mut(*cube);
+        cube.insert((mesh.clone(), material.clone()));
+    }
+}
+
+/// A joint takes the place of the first box's transform. A quarter turn of the entity itself, which the
+/// bounds do not show, changes nothing.
+fn skin(small: &mut Small, things: &Things) {
+    let mut mesh = slab();
+    let count = mesh.count_vertices();
+    mesh.insert_attribute(
+        Mesh::ATTRIBUTE_JOINT_INDEX,
+        VertexAttributeValues::Uint16x4(vec![[0; 4]; count]),
+    );
+    mesh.insert_attribute(
+        Mesh::ATTRIBUTE_JOINT_WEIGHT,
+        vec![[1.0, 0.0, 0.0, 0.0]; count],
+    );
+    let [at, _] = places();
+    let quarter = Quat::from_rotation_y(std::f32::consts::FRAC_PI_2);
+    let turned = at.with_rotation(at.rotation * quarter);
+    let world = small.world();
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+    let inverse_bindposes = world
+        .resource_mut::<Assets<SkinnedMeshInverseBindposes>>()
+        .add(SkinnedMeshInverseBindposes::from(vec![Mat4::IDENTITY]));
+    let joints = vec![world.spawn((Object, at)).id()];
+    let skin = SkinnedMesh {
+        inverse_bindposes,
+        joints,
+    };
+    let mut entity = world.entity_mut(things.boxes[0]);
+    entity.insert((Mesh3d(mesh), skin, turned));
+}
+
+/// The second box leans by a morph target.
+fn morph(small: &mut Small, things: &Things) {
+    let mut mesh = slab();
+    let targets = positions(&mesh).into_iter().map(|at| MorphAttributes {
+        position: lean(at),
+        ..default()
+    });
+    mesh.set_morph_targets(targets.collect());
+    let world = small.world();
+    let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
+    let mut entity = world.entity_mut(things.boxes[1]);
+    entity.insert((
+        Mesh3d(mesh),
+        MorphWeights::new(vec![1.0], None).expect("one weight"),
+        MeshMorphWeights::Value { weights: vec![1.0] },
+    ));
+}
+
+/// The pictures of all groups.
+fn pictures(small: &mut Small, seat: &Seat, what: &str) -> Vec<RgbaImage> {
+    // Until meshes and materials that changed are on the GPU.
+    small.settle();
+    let plain = shoot(small, &[seat], None, what);
+    let mut pictures = Vec::new();
+    for (name, style) in GROUPS {
+        let what = format!("{what}, {name}");
+        let mut shot = shoot(small, &[seat], Some(&style()), &what);
+        let off = changed(&plain[0], &shot[0]);
+        assert!(off > 0.02, "{what}: {off} is styled");
+        pictures.append(&mut shot);
+    }
+    pictures
+}
+
+/// The fraction of each group's picture that is not what it was.
+fn apart(before: &[RgbaImage], now: &[RgbaImage]) -> Vec<(&'static str, f64)> {
+    let pairs = before.iter().zip(now).map(|(a, b)| changed(a, b));
+    GROUPS.iter().map(|(name, _)| *name).zip(pairs).collect()
+}
+
+fn assert_same(before: &[RgbaImage], now: &[RgbaImage], most: f64, what: &str) {
+    for (name, off) in apart(before, now) {
+        assert!(off <= most, "{what}, {name}: {off} differs");
+    }
+}
+
+/// Instances, blended meshes with `DepthWrite`, skinned and morphed meshes have the picture of plain meshes that
+/// have their shape and colour.
+#[test]
+fn meshes_of_every_kind_are_drawn_as_plain_ones() {
+    let mut small = app();
+    let things = put_things(&mut small);
+    let seat = Seat {
+        target: target(&mut small),
+        part: None,
+        eye: Transform::from_xyz(1.5, 2.4, 6.0).looking_at(Vec3::new(0.0, 0.4, 0.0), Vec3::Y),
+    };
+    let plain = pictures(&mut small, &seat, "plain");
+    share(&mut small, &things);
+    let shared = pictures(&mut small, &seat, "instanced");
+    assert_same(&plain, &shared, 0.0, "instanced");
+
+    change_pane(&mut small, &things, AlphaMode::Blend);
+    let unseen = pictures(&mut small, &seat, "blended");
+    // Lines, the sketch of lines, and all.
+    let differ = apart(&plain, &unseen)
+        .into_iter()
+        .filter(|(_, off)| *off > 0.0);
+    assert!(differ.count() >= 3, "without `DepthWrite`, it is not seen");
+    let pane = things.pane;
+    small.world().entity_mut(pane).insert(DepthWrite::default());
+    let blended = pictures(&mut small, &seat, "blended, with depth");
+    assert_same(&plain, &blended, 0.0, "blended, with depth");
+    // Plain again: what is next is compared alone.
+    small.world().entity_mut(pane).remove::<DepthWrite>();
+    change_pane(&mut small, &things, AlphaMode::Opaque);
+
+    // Joints and targets are added up by the GPU: a vertex may be off by a last bit.
+    let most = 0.01;
+    skin(&mut small, &things);
+    let skinned = pictures(&mut small, &seat, "skinned");
+    assert_same(&plain, &skinned, most, "skinned");
+    morph(&mut small, &things);
+    let morphed = pictures(&mut small, &seat, "morphed");
+    assert_same(&skinned, &morphed, most, "morphed");
+    assert_eq!(small.errors(), 0);
+}
