@@ -2,9 +2,9 @@
 //! Every pair that the engine supports is in a row, and every row is drawn and checked.
 
 mod checks;
-mod compare;
+pub mod compare;
 mod covering;
-mod effects;
+pub mod effects;
 mod stage;
 
 use std::collections::HashMap;
