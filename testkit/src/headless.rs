@@ -83,7 +83,7 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
         .set(RenderPlugin {
             render_creation: WgpuSettings {
                 backends: Some(options.backends),
-                constrained_limits: options.limits.clone(),
+                constrained_limits: options.limits.clone().or_else(|| gl_limits(options.backends)),
                 instance_flags: validation::instance_flags(),
                 ..default()
             }
@@ -113,6 +113,19 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
 /// display.
 fn default_backends() -> wgpu::Backends {
     wgpu::Backends::from_env().unwrap_or(wgpu::Backends::PRIMARY)
+}
+
+/// Limits under which the engine draws with OpenGL: with more storage textures it compiles its
+/// screen-space ambient occlusion, which OpenGL refuses, and stops drawing (Bevy 0.19.1).
+fn gl_limits(backends: wgpu::Backends) -> Option<wgpu::Limits> {
+    if backends != wgpu::Backends::GL {
+        return None;
+    }
+    let adapter = adapter_of(backends).ok()?;
+    Some(wgpu::Limits {
+        max_storage_textures_per_shader_stage: 4,
+        ..adapter.limits
+    })
 }
 
 /// The adapter that renders, and its limits.

@@ -2,6 +2,7 @@
 //! that renders without a window, a bare GPU device, the shipped WGSL, and the
 //! shaders' twins in double precision.
 
+pub mod asked;
 pub mod before;
 pub mod bench;
 pub mod demo;

@@ -88,7 +88,20 @@ fn without_bindings(text: &str) -> String {
     text.lines().map(line).collect()
 }
 
+/// Composes a module, and keeps it for `tools/translate`.
 fn compose(
+    composer: &mut Composer,
+    modules: &Modules,
+    engine: &[(&str, &str)],
+    source: &str,
+    definitions: &[Definition],
+) -> Result<wgpu::naga::Module, String> {
+    let module = composed(composer, modules, engine, source, definitions)?;
+    keep(&module, definitions);
+    Ok(module)
+}
+
+fn composed(
     composer: &mut Composer,
     modules: &Modules,
     engine: &[(&str, &str)],
@@ -111,16 +124,14 @@ fn compose(
     shader_defs
         .entry("SAMPLES".to_owned())
         .or_insert(ShaderDefValue::UInt(4));
-    let module = composer
+    composer
         .make_naga_module(NagaModuleDescriptor {
             source,
             file_path: "entry.wgsl",
             shader_defs,
             ..Default::default()
         })
-        .map_err(|error| error.emit_to_string(composer))?;
-    keep(&module, definitions);
-    Ok(module)
+        .map_err(|error| error.emit_to_string(composer))
 }
 
 /// A composed shader as WGSL text, which is what browsers get.
@@ -204,6 +215,13 @@ impl Library {
         self.composer.capabilities = wgpu::naga::valid::Capabilities::all();
         self.add_imports(source)?;
         compose(&mut self.composer, modules(), &[], source, definitions).map(|_| ())
+    }
+
+    /// The same of an entry point that only some native devices can have: it is not translated.
+    pub fn check(&mut self, source: &str, definitions: &[Definition]) -> Result<(), String> {
+        self.composer.capabilities = wgpu::naga::valid::Capabilities::all();
+        self.add_imports(source)?;
+        composed(&mut self.composer, modules(), &[], source, definitions).map(|_| ())
     }
 
     fn add_imports(&mut self, text: &str) -> Result<(), String> {

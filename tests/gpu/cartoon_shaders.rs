@@ -1,18 +1,17 @@
 //! The shaders of the cartoon material compose and validate with every pair of settings, together with
 //! the engine's own modules.
 
-use std::{collections::BTreeSet, fs};
+use crate::shaders::{
+    Definitions,
+    covering::{Choice, covering, definitions},
+    materials::library,
+    shader,
+};
 
-use bevy::{prelude::*, render::view::Msaa, shader::Shader};
-use bevy_comics_testkit::wgsl::{Definition, Library, files};
+/// The files of its entry points.
+pub const FILES: [&str; 2] = ["cartoon/vertex.wgsl", "cartoon/cartoon.wgsl"];
 
-use crate::small::{Small, size};
-
-/// One way of something, with its definitions.
-type Choice = &'static [&'static str];
-
-/// What views, meshes and materials can be; of each list one choice is compiled. A definition that ends
-/// in `=` and a number has that value.
+/// What views, meshes and materials can be; of each list one choice is compiled.
 const LISTS: &[&[Choice]] = &[
     &[
         &["VIEW_PROJECTION_PERSPECTIVE"],
@@ -143,7 +142,7 @@ const LISTS: &[&[Choice]] = &[
 ];
 
 /// What is always set.
-const ALWAYS: &[&str] = &[
+pub const ALWAYS: &[&str] = &[
     "MESH_PIPELINE",
     "VERTEX_OUTPUT_INSTANCE_INDEX",
     "VERTEX_POSITIONS",
@@ -158,81 +157,16 @@ const ALWAYS: &[&str] = &[
     "AVAILABLE_STORAGE_BUFFER_BINDINGS=8",
 ];
 
-/// A row has the number of one choice of every list.
-type Row = Vec<usize>;
-
-/// The pairs of choices that a row has and that are compiled.
-fn pairs(row: &Row) -> Vec<(usize, usize, usize, usize)> {
-    let names = names(row);
-    let is_compiled =
-        |(i, a): &(usize, usize)| LISTS[*i][*a].iter().all(|name| names.contains(name));
-    let kept: Vec<(usize, usize)> = row
-        .iter()
-        .copied()
-        .enumerate()
-        .filter(is_compiled)
-        .collect();
-    let mut found = Vec::new();
-    for (k, (i, a)) in kept.iter().enumerate() {
-        found.extend(kept[k + 1..].iter().map(|(j, b)| (*i, *a, *j, *b)));
-    }
-    found
-}
-
-/// Rows that together have every pair of choices that can be, and the pairs that cannot. Each row is the
-/// best of several random ones.
-fn rows() -> (Vec<Row>, Vec<(usize, usize, usize, usize)>) {
-    let mut missing: BTreeSet<_> = (0..LISTS.len())
-        .flat_map(|i| (i + 1..LISTS.len()).map(move |j| (i, j)))
-        .flat_map(|(i, j)| {
-            let choices =
-                (0..LISTS[i].len()).flat_map(move |a| (0..LISTS[j].len()).map(move |b| (a, b)));
-            choices.map(move |(a, b)| (i, a, j, b))
-        })
-        .collect();
-    let mut state = 1u64;
-    let mut random = move |below: usize| {
-        state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (state >> 33) as usize % below
-    };
-    let (mut rows, mut never) = (Vec::new(), Vec::new());
-    while let Some(wanted) = missing.first().copied() {
-        let (i, a, j, b) = wanted;
-        // A pair may need a third choice: one of many random rows has it.
-        let candidates = (0..120).map(|_| {
-            let mut row: Row = LISTS.iter().map(|list| random(list.len())).collect();
-            (row[i], row[j]) = (a, b);
-            let pairs = pairs(&row);
-            (row, pairs)
-        });
-        let candidates = candidates.filter(|(_, pairs)| pairs.contains(&wanted));
-        let new = |(_, pairs): &(Row, Vec<_>)| pairs.iter().filter(|p| missing.contains(p)).count();
-        let Some((row, pairs)) = candidates.max_by_key(new) else {
-            missing.remove(&wanted);
-            never.push(wanted);
-            continue;
-        };
-        for pair in &pairs {
-            missing.remove(pair);
-        }
-        rows.push(row);
-    }
-    (rows, never)
-}
-
-fn definition(text: &'static str) -> Definition<'static> {
-    match text.split_once('=') {
-        Some((name, number)) => (name, Some(number.parse().expect("a number"))),
-        None => (text, None),
-    }
+/// All definitions of the lists.
+pub fn all() -> Definitions {
+    let lists = LISTS.iter().flat_map(|list| list.iter().copied().flatten());
+    let all: Vec<&str> = lists.chain(ALWAYS).copied().collect();
+    definitions(&all)
 }
 
 /// The definitions of a row, without those that need others that it lacks.
-fn names(row: &Row) -> Vec<&'static str> {
-    let chosen = LISTS.iter().zip(row).flat_map(|(list, k)| list[*k]);
-    let mut names: Vec<&str> = ALWAYS.iter().chain(chosen).copied().collect();
+fn names(mut names: Vec<&'static str>) -> Vec<&'static str> {
+    names.extend(ALWAYS);
     names.sort_unstable();
     names.dedup();
     let has = |name: &str| names.contains(&name);
@@ -259,54 +193,23 @@ fn names(row: &Row) -> Vec<&'static str> {
     names
 }
 
-/// Every definition that the shaders of the material ask for is compiled here.
-#[test]
-fn the_lists_have_every_definition() {
-    let all: Vec<&str> = (LISTS.iter().flat_map(|list| list.iter().copied().flatten()))
-        .chain(ALWAYS)
-        .map(|text| definition(text).0)
-        .collect();
-    for path in files() {
-        if !path.to_string_lossy().contains("/cartoon/") {
-            continue;
-        }
-        let text = fs::read_to_string(&path).expect("readable");
-        let asks = |line: &&str| {
-            ["#ifdef", "#ifndef", "#else ifdef"]
-                .iter()
-                .any(|word| line.starts_with(word))
-        };
-        for line in text.lines().filter(asks) {
-            let name = line.split_whitespace().last().expect("a name");
-            assert!(all.contains(&name), "{}: {name}", path.display());
-        }
-    }
-}
-
 #[test]
 fn every_pair_of_settings_composes_and_validates() {
-    let mut small = Small::new(size(), Msaa::Off);
-    small.headless.step(2);
-    let shaders = small.world().resource::<Assets<Shader>>();
-    let mut library = Library::new(shaders.iter().map(|(_, shader)| shader));
-    let entry = |name: &str| {
-        let mut paths = files().into_iter();
-        let path = paths.find(|path| path.ends_with(name)).expect("a shader");
-        fs::read_to_string(path).expect("readable")
-    };
-    let (vertex, fragment) = (entry("cartoon/vertex.wgsl"), entry("cartoon/cartoon.wgsl"));
-    let (rows, never) = rows();
-    println!("{} rows, {} pairs that cannot be", rows.len(), never.len());
-    for (i, a, j, b) in never {
-        let both = [LISTS[i][a], LISTS[j][b]].concat();
+    let mut library = library();
+    let sources = FILES.map(shader);
+    let found = covering(LISTS, names);
+    let counts = [found.rows.len(), found.never.len()];
+    println!("{} rows, {} pairs that cannot be", counts[0], counts[1]);
+    for both in found.never {
+        let both = both.concat();
         let needs = |names: &[&str]| both.iter().any(|name| names.contains(name));
         let has_reason = needs(&["LIGHTMAP", "THRESHOLD_MAP", "DEPTH_RIM"])
             || needs(&["RAMP_ABSOLUTE", "RAMP_MAP", "RAMP_DETAIL", "THRESHOLD"]);
         assert!(has_reason, "{both:?} are never compiled together");
     }
-    for row in &rows {
-        let definitions: Vec<_> = names(row).into_iter().map(definition).collect();
-        for source in [&vertex, &fragment] {
+    for row in &found.rows {
+        let definitions = definitions(row);
+        for source in &sources {
             if let Err(error) = library.compose(source, &definitions) {
                 panic!("{definitions:?}: {error}");
             }

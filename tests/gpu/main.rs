@@ -15,6 +15,7 @@ mod command_line;
 mod cracks;
 mod creases;
 mod crowds;
+mod default_limits;
 mod diagonals;
 mod extremes;
 mod failures;

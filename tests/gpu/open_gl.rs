@@ -2,7 +2,7 @@
 
 use bevy::{math::UVec2, prelude::default, render::view::Msaa};
 use bevy_comics_testkit::{
-    headless::{self, HeadlessOptions},
+    headless::HeadlessOptions,
     scenes::BuiltIn,
     studio::{Studio, golden_styles},
 };
@@ -10,16 +10,9 @@ use bevy_comics_testkit::{
 const SIZE: UVec2 = UVec2::new(160, 90);
 
 fn studio(scene: BuiltIn, backends: wgpu::Backends, msaa: Msaa) -> Studio {
-    let limits = (backends == wgpu::Backends::GL).then(|| wgpu::Limits {
-        // With more, the engine asks for its screen-space ambient occlusion, whose shader does not
-        // compile there, and stops drawing (Bevy 0.19.1).
-        max_storage_textures_per_shader_stage: 4,
-        ..headless::adapter_of(backends).expect("an adapter").limits
-    });
     let options = HeadlessOptions {
         size: SIZE,
         backends,
-        limits,
         log: std::env::var_os("GL_LOG").is_some(),
         ..default()
     };

@@ -32,7 +32,7 @@ fn section(marks: u32) -> u32 {
 }
 
 /// Steps until the sections of all visible objects are as they should be.
-fn wait(small: &mut Small, are_there: impl Fn(&IdImage) -> bool) {
+pub fn wait(small: &mut Small, are_there: impl Fn(&IdImage) -> bool) {
     for _ in 0..200 {
         small.headless.step(2);
         if small.object_ids().is_some_and(|ids| are_there(&ids)) {
@@ -51,7 +51,7 @@ fn kinds(ids: &IdImage) -> usize {
     found.len()
 }
 
-fn none_has_sections(ids: &IdImage) -> bool {
+pub fn none_has_sections(ids: &IdImage) -> bool {
     ids.pixels.iter().all(|[_, marks]| section(*marks) == 0)
 }
 

@@ -1,0 +1,83 @@
+//! Every shader variant that production can ask for composes and validates; where there are too many of
+//! them, every pair of what selects them. `scripts/translate` translates what the tests of this folder
+//! and of `cartoon_shaders` compose, and nothing else.
+
+mod complete;
+pub mod covering;
+mod effects;
+mod fused;
+mod lines;
+pub mod materials;
+mod parts;
+mod production;
+mod scene;
+
+use std::{collections::HashMap, fs, ops::Range};
+
+use bevy_comics_testkit::wgsl::{Definition, files, module_with};
+
+/// Definitions that are set together.
+pub type Definitions = Vec<Definition<'static>>;
+
+/// An entry point, by the path of its file in `src/`, with its definitions.
+pub type Variant = (&'static str, Definitions);
+
+/// The text of a shader of the crate. `name`: the end of its path.
+pub fn shader(name: &str) -> String {
+    let path = files()
+        .into_iter()
+        .find(|path| path.ends_with(name))
+        .expect("a shader of the crate");
+    fs::read_to_string(path).expect("readable")
+}
+
+/// Composes entry points that need little of the engine.
+fn check(variants: &[Variant]) {
+    let mut texts = HashMap::new();
+    for (file, definitions) in variants {
+        let source: &String = texts.entry(*file).or_insert_with(|| shader(file));
+        if let Err(error) = module_with(source, definitions) {
+            panic!("{file}, {definitions:?}: {error}");
+        }
+    }
+}
+
+/// Every subset of `choices`.
+fn subsets<T: Copy>(choices: &[T]) -> Vec<Vec<T>> {
+    (0..1u32 << choices.len())
+        .map(|bits| {
+            choices
+                .iter()
+                .enumerate()
+                .filter(|(i, _)| bits >> i & 1 == 1)
+                .map(|(_, c)| *c)
+                .collect()
+        })
+        .collect()
+}
+
+fn flags(names: &[&'static str]) -> Definitions {
+    names.iter().map(|name| (*name, None)).collect()
+}
+
+/// A definition that is always one of these numbers.
+fn numbers(name: &'static str, values: Range<u32>) -> Vec<Definitions> {
+    values.map(|value| vec![(name, Some(value))]).collect()
+}
+
+/// Flags that each may be set or not.
+fn optional(names: &[&'static str]) -> Vec<Definitions> {
+    subsets(names).iter().map(|names| flags(names)).collect()
+}
+
+/// One choice of every list, in all combinations.
+fn product(lists: &[Vec<Definitions>]) -> Vec<Definitions> {
+    let all = |found: Vec<Definitions>, list: &Vec<Definitions>| {
+        let with = |before: &Definitions| {
+            let before = before.clone();
+            list.iter().map(move |one| [&before[..], one].concat())
+        };
+        found.iter().flat_map(with).collect()
+    };
+    lists.iter().fold(vec![Vec::new()], all)
+}
