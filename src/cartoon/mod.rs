@@ -25,13 +25,18 @@ mod uniform;
 mod vertex;
 mod view_range;
 
+use std::sync::atomic::Ordering;
+
 use bevy::{
     app::{App, Plugin, PostUpdate, Update},
     asset::{AssetApp, AssetEventSystems, Assets, embedded_asset, load_internal_asset},
-    ecs::schedule::IntoScheduleConfigs,
+    ecs::{schedule::IntoScheduleConfigs, system::Res},
     image::Image,
     pbr::{MaterialPlugin, MeshMaterial3d, PbrPlugin},
-    render::erased_render_asset::ErasedRenderAssetPlugin,
+    render::{
+        RenderApp, RenderStartup, erased_render_asset::ErasedRenderAssetPlugin,
+        renderer::RenderAdapterInfo,
+    },
     shader::{Shader, load_shader_library},
 };
 
@@ -48,6 +53,8 @@ pub use ramp::{Ramp, RampBlend, RampMode, RampStop};
 pub use ramp_map::RampMap;
 pub use rim::{Rim, RimWidth};
 pub use scene::CartoonScene;
+
+use crate::depth::surfaces::prepass_is_empty;
 
 /// Registers types, shaders and, if the app has [`PbrPlugin`], the material.
 pub(crate) struct CartoonPlugin;
@@ -118,6 +125,12 @@ impl CartoonPlugin {
         embedded_asset!(app, "cartoon.wgsl");
         load_internal_asset!(app, vertex::VERTEX, "vertex.wgsl", Shader::from_wgsl);
         view_range::build_render(app);
+        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
+            render_app.add_systems(RenderStartup, |adapter: Res<RenderAdapterInfo>| {
+                let loads_depth = !prepass_is_empty(&adapter);
+                uniform::LOADS_DEPTH.store(loads_depth, Ordering::Relaxed);
+            });
+        }
     }
 }
 

@@ -49,7 +49,7 @@ pub enum RimWidth {
     },
     /// The same width everywhere, in physical pixels, where something at least 2 % farther away is
     /// beside the surface. It needs the depth prepass, which lines, for example, have; without it,
-    /// the rim is as [`Facing`](Self::Facing).
+    /// and with OpenGL and WebGL 2, the rim is as [`Facing`](Self::Facing).
     Pixels(
         /// Width in physical pixels. Range 1 to 64, default 3.
         #[reflect(@FieldRange::linear(1.0, 64.0).unit("px"))]

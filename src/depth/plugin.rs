@@ -31,6 +31,7 @@ use super::{
     readback::{RangeReadings, receive_ranges},
     reduce::reduce_depth_range,
     smoothing::count_cut,
+    surfaces::use_drawn_depth,
 };
 use crate::schedule::{ComicsSystems, PrepareComics};
 
@@ -81,7 +82,7 @@ impl DepthPlugin {
             .add_systems(
                 Render,
                 (
-                    prepare_view_ranges.in_set(PrepareComics::Services),
+                    (prepare_view_ranges, use_drawn_depth).in_set(PrepareComics::Services),
                     map_readbacks.in_set(RenderSystems::Cleanup),
                 ),
             )

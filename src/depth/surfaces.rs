@@ -1,5 +1,5 @@
 //! The depth and the normals that effects read: those of the engine's prepass, or copies of
-//! them with transparent meshes drawn in.
+//! them with transparent meshes drawn in. With OpenGL, the depth that the engine draws with.
 //!
 //! Every pass that reads them gets them here.
 
@@ -7,12 +7,23 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use bevy::{
     core_pipeline::prepass::ViewPrepassTextures,
-    ecs::component::Component,
-    render::{render_resource::CachedRenderPipelineId, texture::CachedTexture},
+    ecs::{
+        component::Component,
+        entity::Entity,
+        system::{Commands, Query, Res},
+    },
+    render::{
+        render_resource::{CachedRenderPipelineId, TextureUsages},
+        renderer::RenderAdapterInfo,
+        texture::CachedTexture,
+        view::ViewDepthTexture,
+    },
 };
+use wgpu_types::Backend;
 
 /// On a view in the render world that draws transparent meshes into its depth: copies of its
-/// prepass textures, with these meshes.
+/// prepass textures, with these meshes. With OpenGL, on all views with a depth prepass: see
+/// [`use_drawn_depth`].
 #[derive(Component)]
 #[cfg_attr(
     not(feature = "objects"),
@@ -35,6 +46,43 @@ pub(crate) struct OwnNormals {
     pub texture: CachedTexture,
     /// The pipeline that copies the normal prepass.
     pub copy: CachedRenderPipelineId,
+}
+
+/// Whether the engine's depth prepass is empty: wgpu 29 does not copy depth textures with OpenGL, and no
+/// shader there can load from the depth textures that the engine binds for materials.
+pub(crate) fn prepass_is_empty(adapter: &RenderAdapterInfo) -> bool {
+    adapter.backend == Backend::Gl
+}
+
+/// With OpenGL, effects read the depth that the engine draws with. It holds the same, and opaque meshes
+/// that are not in the prepass.
+pub(super) fn use_drawn_depth(
+    mut commands: Commands,
+    adapter: Res<RenderAdapterInfo>,
+    views: Query<(Entity, &ViewDepthTexture, Option<&ViewPrepassTextures>)>,
+) {
+    if !prepass_is_empty(&adapter) {
+        return;
+    }
+    for (view, depth, prepass) in &views {
+        let is_read = prepass.is_some_and(|prepass| prepass.depth.is_some())
+            && depth
+                .texture
+                .usage()
+                .contains(TextureUsages::TEXTURE_BINDING);
+        if is_read {
+            commands.entity(view).insert(OwnSurfaces {
+                depth: CachedTexture {
+                    texture: depth.texture.clone(),
+                    default_view: depth.view().clone(),
+                },
+                normal: None,
+                drawn: AtomicBool::new(true),
+            });
+        } else {
+            commands.entity(view).remove::<OwnSurfaces>();
+        }
+    }
 }
 
 /// The textures of a view in which its surfaces are found.

@@ -138,6 +138,8 @@ pub enum LeftOut {
     NoComputeShaders,
     /// The device has too few storage buffers for object ids.
     NoStorageBuffers,
+    /// OpenGL cannot copy depth.
+    NoDepthCopies,
     /// The view has no depth prepass.
     NoDepthPrepass,
     /// The view has no normal prepass.
@@ -175,6 +177,7 @@ impl fmt::Display for LeftOut {
                 "the device lacks compute shaders or storage textures and buffers"
             }
             Self::NoStorageBuffers => "the device has too few storage buffers for object ids",
+            Self::NoDepthCopies => "OpenGL cannot copy depth",
             Self::NoDepthPrepass => "the view has no depth prepass",
             Self::NoNormalPrepass => "the view has no normal prepass",
             Self::Replaced => "another effect replaces it",

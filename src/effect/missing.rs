@@ -1,9 +1,12 @@
 //! Plans of views that lack a prepass, and of devices that lack what effects use.
 
-use bevy::{log::warn_once, render::settings::WgpuLimits};
+use bevy::{
+    log::warn_once,
+    render::{renderer::RenderAdapterInfo, settings::WgpuLimits},
+};
 
 use super::{Needs, Plan, plan::Planned};
-use crate::{diagnostics::LeftOut, finish::DebugView};
+use crate::{depth::surfaces::prepass_is_empty, diagnostics::LeftOut, finish::DebugView};
 
 /// Inputs that a view may lack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +22,8 @@ pub(crate) struct DeviceLacks {
     pub compute_shaders: bool,
     /// Storage buffers in vertex and fragment shaders, which object ids need.
     pub object_ids: bool,
+    /// Copies of depth textures: see [`prepass_is_empty`].
+    pub depth_copies: bool,
 }
 
 impl DeviceLacks {
@@ -26,10 +31,11 @@ impl DeviceLacks {
     /// included.
     const ID_BUFFERS: u32 = 4;
 
-    pub fn new(limits: &WgpuLimits) -> Self {
+    pub fn new(limits: &WgpuLimits, adapter: &RenderAdapterInfo) -> Self {
         Self {
             compute_shaders: limits.max_compute_workgroup_size_x == 0,
             object_ids: limits.max_storage_buffers_per_shader_stage < Self::ID_BUFFERS,
+            depth_copies: prepass_is_empty(adapter),
         }
     }
 

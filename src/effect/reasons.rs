@@ -39,6 +39,7 @@ impl Plan {
                 LeftOut::NotRequested
             }
             ComicsStage::DepthPrepass => LeftOut::NoDepthStyle,
+            ComicsStage::TransparentDepth if self.lacks.depth_copies => LeftOut::NoDepthCopies,
             ComicsStage::ObjectIds | ComicsStage::TransparentDepth if self.lacks.object_ids => {
                 LeftOut::NoStorageBuffers
             }

@@ -27,27 +27,37 @@ use super::{
     sources::Sources,
 };
 #[cfg(feature = "objects")]
-use crate::objects::{MarkStyleBuffer, ViewLayer};
+use crate::{
+    depth::surfaces::prepass_is_empty,
+    objects::{MarkStyleBuffer, ViewLayer},
+};
 use crate::{
     depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
     diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
     objects::{DepthPlaces, ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
 };
 #[cfg(feature = "objects")]
-use bevy::ecs::system::Query;
+use bevy::{ecs::system::Query, render::renderer::RenderAdapterInfo};
 
 /// Records the passes that find the lines of the marked objects of the view, and draw their
 /// ink.
 #[cfg(feature = "objects")]
 pub(crate) fn find_marks(
-    view: ViewQuery<(&ViewMarks, &ViewPrepassTextures, &ViewLayer)>,
+    view: ViewQuery<(
+        &ViewMarks,
+        (&ViewPrepassTextures, Option<&OwnSurfaces>),
+        &ViewLayer,
+    )>,
+    adapter: Res<RenderAdapterInfo>,
     layers: Query<(&LineRequest, &LinePasses, &ViewLines)>,
     styles: Res<MarkStyleBuffer>,
     ledger: Res<StageLedger>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
-    let (marks, prepass, layer) = view.into_inner();
+    let (marks, (prepass, own), layer) = view.into_inner();
+    // Transparent meshes hide no marked object.
+    let own = own.filter(|_| prepass_is_empty(&adapter));
     let Ok(parts) = layers.get(marks.layer) else {
         return;
     };
@@ -55,7 +65,7 @@ pub(crate) fn find_marks(
     let inputs = Inputs {
         parts: (
             parts,
-            Sources::new((Some(prepass), None), None, None).layer(layer),
+            Sources::new((Some(prepass), own), None, None).layer(layer),
             None,
         ),
         styles: &styles.0,

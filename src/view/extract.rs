@@ -100,7 +100,8 @@ fn want_objects(view: &mut EntityCommands, (camera, plan): (Entity, &Plan), writ
     } else {
         view.remove::<IdsWanted>();
     }
-    if writes && plan.has_ids() && plan.needs_depth() {
+    let can_write = plan.has_ids() && !plan.lacks.depth_copies;
+    if writes && can_write && plan.needs_depth() {
         view.insert(DepthWanted {
             camera,
             normals: plan.needs_normals(),

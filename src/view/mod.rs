@@ -24,7 +24,10 @@ use bevy::{
         world::EntityRef,
     },
     log::warn_once,
-    render::{ExtractSchedule, RenderApp, renderer::RenderDevice},
+    render::{
+        ExtractSchedule, RenderApp,
+        renderer::{RenderAdapterInfo, RenderDevice},
+    },
 };
 
 use crate::{
@@ -39,7 +42,7 @@ pub use held_pose::HeldPose;
 pub use impact::{Impact, ReduceFlashing};
 use impact::{Impacts, keep_flashes, run_impacts, start_impact};
 pub use light::KeyLight;
-use prepasses::{give_up_claims, request_prepasses};
+use prepasses::{give_up_claims, read_drawn_depth, request_prepasses};
 
 /// On a camera in the main world: what it draws, planned from its components.
 #[derive(Component, Clone, Debug)]
@@ -69,7 +72,12 @@ impl Plugin for ViewPlugin {
                 // After the systems that change a camera's components.
                 Last,
                 (
-                    (run_impacts, plan_cameras, request_prepasses)
+                    (
+                        run_impacts,
+                        plan_cameras,
+                        request_prepasses,
+                        read_drawn_depth,
+                    )
                         .chain()
                         .in_set(ComicsSystems::Plan),
                     warn_unsupported,
@@ -95,10 +103,10 @@ fn plan_cameras(
     registry: Res<EffectRegistry>,
     objects: Res<ObjectStyles>,
     materials: Res<MaterialsReadRange>,
-    device: Option<Res<RenderDevice>>,
+    (device, adapter): (Option<Res<RenderDevice>>, Option<Res<RenderAdapterInfo>>),
 ) {
-    let lacks = device.map_or_else(DeviceLacks::default, |device| {
-        DeviceLacks::new(&device.limits())
+    let lacks = (device.zip(adapter)).map_or_else(DeviceLacks::default, |(device, adapter)| {
+        DeviceLacks::new(&device.limits(), &adapter)
     });
     let types = registry.types();
     for camera in &cameras {

@@ -17,7 +17,7 @@ use bevy::{
     },
     log::warn_once,
     platform::collections::HashMap,
-    render::view::Msaa,
+    render::{render_resource::TextureUsages, view::Msaa},
     window::PrimaryWindow,
 };
 
@@ -109,6 +109,17 @@ pub(super) fn request_prepasses(
         };
         request.handle::<DepthPrepass>(Plan::needs_depth, &mut commands);
         request.handle::<NormalPrepass>(Plan::needs_normals, &mut commands);
+    }
+}
+
+/// With OpenGL, effects read the depth that the engine draws with.
+pub(super) fn read_drawn_depth(mut cameras: Query<(&CameraPlan, &mut Camera3d)>) {
+    for (plan, mut camera) in &mut cameras {
+        let usage = TextureUsages::from(camera.depth_texture_usages);
+        let wanted = usage | TextureUsages::TEXTURE_BINDING;
+        if plan.plan.lacks.depth_copies && usage != wanted {
+            camera.depth_texture_usages = wanted.into();
+        }
     }
 }
 

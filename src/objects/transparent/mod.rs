@@ -21,6 +21,7 @@ use bevy::{
     render::{
         Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderApp, RenderStartup,
         render_resource::{SpecializedMeshPipelines, SpecializedRenderPipelines},
+        renderer::RenderAdapterInfo,
     },
 };
 
@@ -30,6 +31,7 @@ use self::{
 };
 use super::{components::inherit, depth_test::count_ids, table::DepthWrites};
 use crate::{
+    depth::surfaces::prepass_is_empty,
     schedule::{ComicsSystems, PrepareComics},
     settings::{FieldRange, bounded},
 };
@@ -152,7 +154,12 @@ pub(super) fn finish(app: &mut App) {
             ),
         )
         .add_systems(ExtractSchedule, extract_depth_writes)
-        .add_systems(Render, prepare_own_surfaces.in_set(PrepareComics::Services))
+        .add_systems(
+            Render,
+            // With OpenGL, no transparent mesh is drawn, and the depth is not copied.
+            (prepare_own_surfaces.in_set(PrepareComics::Services))
+                .run_if(|adapter: Res<RenderAdapterInfo>| !prepass_is_empty(&adapter)),
+        )
         .add_systems(
             Core3d,
             draw_transparent_depth
