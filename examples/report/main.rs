@@ -104,7 +104,6 @@ impl Run {
     }
 }
 
-
 fn run() -> Result<(), String> {
     let Some(arguments) = Arguments::parse()? else {
         return Ok(());

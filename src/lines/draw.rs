@@ -48,11 +48,10 @@ pub(crate) fn find_marks(
         (&ViewPrepassTextures, Option<&OwnSurfaces>),
         &ViewLayer,
     )>,
-    adapter: Res<RenderAdapterInfo>,
     layers: Query<(&LineRequest, &LinePasses, &ViewLines)>,
     styles: Res<MarkStyleBuffer>,
     ledger: Res<StageLedger>,
-    cache: Res<PipelineCache>,
+    (cache, adapter): (Res<PipelineCache>, Res<RenderAdapterInfo>),
     mut ctx: RenderContext,
 ) {
     let (marks, (prepass, own), layer) = view.into_inner();

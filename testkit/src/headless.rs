@@ -83,7 +83,10 @@ pub fn plugins(options: &HeadlessOptions) -> PluginGroupBuilder {
         .set(RenderPlugin {
             render_creation: WgpuSettings {
                 backends: Some(options.backends),
-                constrained_limits: options.limits.clone().or_else(|| gl_limits(options.backends)),
+                constrained_limits: options
+                    .limits
+                    .clone()
+                    .or_else(|| gl_limits(options.backends)),
                 instance_flags: validation::instance_flags(),
                 ..default()
             }

@@ -1,26 +1,55 @@
-//! The golden scenes under OpenGL, beside Vulkan.
+//! Pictures with OpenGL, beside those with Vulkan, and within the limits of WebGL 2.
+//!
+//! Each test runs in a process of its own, since materials know one adapter in a process.
 
-use bevy::{math::UVec2, prelude::default, render::view::Msaa};
+use std::process::Command;
+
+use bevy::{
+    light::cluster::GlobalClusterSettings, math::UVec2, prelude::*, render::view::Msaa,
+};
+use bevy_comics::{ComicStyle, ComicsDiagnostics, ComicsStage, LeftOut, StageOutcome, presets};
 use bevy_comics_testkit::{
-    headless::HeadlessOptions,
+    headless::{HeadlessOptions, adapter_of},
     scenes::BuiltIn,
     studio::{Studio, golden_styles},
 };
+use image::RgbaImage;
 
-const SIZE: UVec2 = UVec2::new(160, 90);
+use crate::{
+    pairwise::{compare::changed, effects::GROUPS},
+    small::{self, Small},
+};
 
-fn studio(scene: BuiltIn, backends: wgpu::Backends, msaa: Msaa) -> Studio {
-    let options = HeadlessOptions {
-        size: SIZE,
-        backends,
-        log: std::env::var_os("GL_LOG").is_some(),
-        ..default()
-    };
-    Studio::with_options(scene, options, msaa)
+/// Set in the process of a test.
+const ALONE: &str = "OPEN_GL_ALONE";
+
+/// The APIs that are compared.
+const APIS: [wgpu::Backends; 2] = [wgpu::Backends::VULKAN, wgpu::Backends::GL];
+
+/// Runs a test of this file in a process of its own.
+fn alone(name: &str, test: fn()) {
+    if cfg!(not(target_os = "linux")) {
+        // OpenGL without a window needs EGL.
+        return;
+    }
+    if std::env::var_os(ALONE).is_some() {
+        adapter_of(wgpu::Backends::GL)
+            .expect("OpenGL; on Debian: apt-get install libegl1 libgl1-mesa-dri");
+        return test();
+    }
+    let output = Command::new(std::env::current_exe().expect("the test"))
+        .args(["--exact", "--nocapture", &format!("open_gl::{name}")])
+        .env(ALONE, "yes")
+        .output()
+        .expect("it starts");
+    let text = String::from_utf8_lossy(&output.stdout);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{text}\n{errors}");
+    assert!(text.contains("1 passed"), "no test has run: {text}");
 }
 
 /// The fraction of pixels that differ by more than two codes.
-fn apart(a: &image::RgbaImage, b: &image::RgbaImage) -> f64 {
+fn apart(a: &RgbaImage, b: &RgbaImage) -> f64 {
     let far = |(a, b): &(&image::Rgba<u8>, &image::Rgba<u8>)| {
         a.0.iter().zip(b.0).any(|(a, b)| a.abs_diff(b) > 2)
     };
@@ -28,57 +57,136 @@ fn apart(a: &image::RgbaImage, b: &image::RgbaImage) -> f64 {
     off as f64 / f64::from(a.width() * a.height())
 }
 
-fn check(scene: BuiltIn, msaa: Msaa) {
-    let [mut vulkan, mut gl] = [wgpu::Backends::VULKAN, wgpu::Backends::GL]
-        .map(|backends| studio(scene, backends, msaa));
-    let styles = golden_styles(scene);
-    let all = std::iter::once(("original", None)).chain(styles.iter().map(|(n, s)| (*n, Some(s))));
-    for (name, style) in all {
-        let pictures = [&mut vulkan, &mut gl].map(|studio| studio.shoot(style));
-        let off = apart(&pictures[0], &pictures[1]);
-        println!("{} {name} {off:.5}", scene.name());
-        if off > 0.0 {
-            for (picture, api) in pictures.iter().zip(["vulkan", "gl"]) {
-                let file = format!("/tmp/gl/{}-{name}-{api}.png", scene.name());
-                picture.save(file).expect("saved");
-            }
-        }
-    }
-}
-
-#[test]
-fn try_teapot() {
-    check(BuiltIn::Teapot, Msaa::Off);
-}
-
-#[test]
-fn try_all() {
-    for scene in BuiltIn::ALL {
-        check(scene, Msaa::Off);
-    }
-}
-
-#[test]
-fn try_multisampled() {
-    for scene in BuiltIn::ALL {
-        check(scene, Msaa::Sample4);
-    }
-}
-
-#[test]
-fn try_webgl2() {
-    for backends in [wgpu::Backends::VULKAN, wgpu::Backends::GL] {
+/// Draws a scene with both APIs. `most`: the fraction of pixels that may be apart.
+fn check(scene: BuiltIn, msaa: Msaa, styles: &[(&str, ComicStyle)], most: f64) {
+    let mut studios = APIS.map(|backends| {
         let options = HeadlessOptions {
-            size: SIZE,
+            size: UVec2::new(160, 90),
             backends,
-            log: std::env::var_os("GL_LOG").is_some(),
-            limits: Some(wgpu::Limits::downlevel_webgl2_defaults()),
             ..default()
         };
-        let mut studio = Studio::with_options(BuiltIn::Teapot, options, Msaa::Off);
-        studio
-            .shoot(None)
-            .save(format!("/tmp/gl/webgl2-{backends:?}.png").replace(['(', ')', ' '], ""))
-            .expect("saved");
+        Studio::with_options(scene, options, msaa)
+    });
+    let original = studios.each_mut().map(|studio| studio.shoot(None));
+    let off = apart(&original[0], &original[1]);
+    assert!(off <= 0.001, "{scene:?}, the engine's picture: {off}");
+    for (name, style) in styles {
+        let [vulkan, gl] = studios.each_mut().map(|studio| studio.shoot(Some(style)));
+        let off = apart(&vulkan, &gl);
+        assert!(off <= most, "{scene:?}, {msaa:?}, {name}: {off}");
+        // The comparison can fail.
+        let styled = apart(&original[1], &gl);
+        assert!(styled > 2.0 * most, "{name} changes {styled} only");
     }
+}
+
+fn looks() -> [(&'static str, ComicStyle); 4] {
+    [
+        presets::CRIMSON_DUSK,
+        presets::MANGA_PAGE,
+        presets::LIGNE_CLAIRE,
+        presets::WOODCUT,
+    ]
+    .map(|preset| (preset.name(), preset.style()))
+}
+
+#[test]
+fn golden_pictures_of_the_teapot_are_those_with_vulkan() {
+    alone(
+        "golden_pictures_of_the_teapot_are_those_with_vulkan",
+        || {
+            let styles = golden_styles(BuiltIn::Teapot);
+            check(BuiltIn::Teapot, Msaa::Off, &styles, 0.0005);
+        },
+    );
+}
+
+#[test]
+fn multisampled_pictures_are_those_with_vulkan() {
+    alone("multisampled_pictures_are_those_with_vulkan", || {
+        check(BuiltIn::Teapot, Msaa::Sample4, &looks(), 0.01);
+    });
+}
+
+/// OpenGL stores depth as 0.5 (2 z - 1) + 0.5, in steps of 6e-8, which are half a per cent of the distance
+/// of the mountains: lines and borders of dots at their limit are others.
+#[test]
+fn far_scenes_are_nearly_those_with_vulkan() {
+    alone("far_scenes_are_nearly_those_with_vulkan", || {
+        for scene in [BuiltIn::Mountains, BuiltIn::Village] {
+            check(scene, Msaa::Off, &looks(), 0.05);
+        }
+    });
+}
+
+fn small(backends: wgpu::Backends, limits: Option<wgpu::Limits>, msaa: Msaa) -> Small {
+    let options = HeadlessOptions {
+        backends,
+        limits,
+        ..small::options(small::size())
+    };
+    Small::with(options, msaa)
+}
+
+#[test]
+fn every_effect_is_drawn_as_with_vulkan() {
+    alone("every_effect_is_drawn_as_with_vulkan", || {
+        for msaa in [Msaa::Off, Msaa::Sample4] {
+            let mut apps = APIS.map(|api| small(api, None, msaa));
+            let plain = apps.each_mut().map(|app| app.settle().picture());
+            let off = changed(&plain[0], &plain[1]);
+            assert!(off <= 0.002, "the engine's picture: {off}");
+            for (name, style) in GROUPS {
+                let [vulkan, gl] = apps.each_mut().map(|app| {
+                    app.style(&style());
+                    app.settle().picture()
+                });
+                assert!(changed(&plain[1], &gl) > 0.02, "{name} is not drawn");
+                let off = apart(&vulkan, &gl);
+                assert!(off <= 0.02, "{msaa:?}, {name}: {off}");
+            }
+            assert!(apps.iter().all(|app| app.errors() == 0));
+        }
+    });
+}
+
+/// Limits of WebGL 2: no compute shaders, no storage. Larger pictures, and more colours at once, than it
+/// promises.
+#[test]
+fn every_effect_is_drawn_within_the_limits_of_webgl2() {
+    alone("every_effect_is_drawn_within_the_limits_of_webgl2", || {
+        for api in APIS {
+            let limits = wgpu::Limits::downlevel_webgl2_defaults();
+            let mut app = small(api, Some(limits), Msaa::Off);
+            // The engine looks at the adapter, not at its limits.
+            app.world()
+                .resource_mut::<GlobalClusterSettings>()
+                .gpu_clustering = None;
+            let plain = app.settle().picture();
+            assert_eq!(app.errors(), 0, "{api:?}: of the engine");
+            for (name, style) in GROUPS {
+                app.style(&style());
+                let picture = app.settle().picture();
+                assert_eq!(app.errors(), 0, "{api:?}: {name}");
+                let styled = changed(&plain, &picture);
+                assert!(styled > 0.02, "{api:?}: {name} changes {styled}");
+            }
+            let world = app.headless.app.world();
+            let diagnostics = world.resource::<ComicsDiagnostics>();
+            let stages = &diagnostics.cameras[&app.camera];
+            for (stage, outcome) in [
+                (ComicsStage::DepthRange, StageOutcome::RanAs("PingPong")),
+                (
+                    ComicsStage::RangeSmoothing,
+                    StageOutcome::LeftOut(LeftOut::NoComputeShaders),
+                ),
+                (
+                    ComicsStage::ObjectIds,
+                    StageOutcome::LeftOut(LeftOut::NoStorageBuffers),
+                ),
+            ] {
+                assert_eq!(stages.outcome(stage), Some(outcome), "{api:?}");
+            }
+        }
+    });
 }

@@ -2,7 +2,7 @@
 //!
 //! A device that is lost ends the app, since the engine's clusters of lights panic (Bevy 0.19.1).
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use bevy::render::{
     error_handler::{ErrorType, RenderErrorHandler, RenderErrorPolicy},
@@ -128,6 +128,12 @@ fn recover(small: &mut Small) {
         usage: wgpu::BufferUsages::empty(),
         mapped_at_creation: false,
     });
+    // A task asks for the device.
+    let until = Instant::now() + Duration::from_secs(30);
+    while old == device(small) && Instant::now() < until {
+        small.headless.step(1);
+        std::thread::sleep(Duration::from_millis(5));
+    }
     small.headless.step(12);
     assert_eq!(small.errors(), 1, "errors, of which one was wanted");
     assert!(old != device(small), "the device is still the same");

@@ -49,10 +49,7 @@ fn every_entry_point_is_composed() {
     let (files, entries) = (files(), entries());
     for file in files.iter().filter(|file| has_entry_point(&file.text)) {
         let path = file.path.as_str();
-        assert!(
-            entries.contains_key(path),
-            "no test composes {path}"
-        );
+        assert!(entries.contains_key(path), "no test composes {path}");
     }
     for path in entries.keys() {
         let file = files.iter().find(|file| file.path == *path);

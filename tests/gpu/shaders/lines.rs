@@ -373,7 +373,14 @@ fn drawing() -> Vec<Variant> {
             }
         }
     }
-    for view in subsets(&["OBLIQUE", "NORMALS", "OBJECT_IDS", "WIDTH_MAP"]) {
+    let resolved = [
+        "OBLIQUE",
+        "NORMALS",
+        "OBJECT_IDS",
+        "WIDTH_MAP",
+        "RESOLVE_AS_DEPTH",
+    ];
+    for view in subsets(&resolved) {
         let defs = [&["DEPTH", "MULTISAMPLED"][..], &view[..]].concat();
         add(&mut all, "lines/resolve.wgsl", &defs);
     }

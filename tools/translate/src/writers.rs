@@ -36,12 +36,11 @@ impl Language {
 }
 
 /// Whether a failure is of a language that lacks what the shader uses. OpenGL ES 3.1 cannot ask for the
-/// number of samples or levels of a texture, so views with samples and tonal art maps are not for it;
-/// nor can it load from depth textures, as the engine's prepass is in materials.
+/// number of levels of a texture, so tonal art maps are not for it; nor can it load from depth textures, as
+/// the engine's prepass is in materials.
 pub fn is_known_gap(what: &str) -> bool {
     what.starts_with(Language::GlslEs.name())
-        && (what.contains("MissingFeatures(Features(TEXTURE_SAMPLES")
-            || what.contains("MissingFeatures(Features(TEXTURE_LEVELS")
+        && (what.contains("MissingFeatures(Features(TEXTURE_LEVELS")
             || what.contains("`textureLoad` from depth textures"))
 }
 
