@@ -95,10 +95,13 @@ impl Scene {
     /// The plan without the effects whose inputs this view does not provide.
     pub fn reduce(&self, plan: &Arc<Plan>) -> Arc<Plan> {
         let mut reduced = plan.clone();
-        if self.depth.is_none() && reduced.needs_depth() {
+        // With OpenGL, no multisampled texture can be read.
+        let unreadable =
+            plan.lacks.depth_copies && self.depth.is_some_and(|(_, samples)| samples > 1);
+        if (self.depth.is_none() || unreadable) && reduced.needs_depth() {
             reduced = Arc::new(reduced.without(Input::DepthPrepass));
         }
-        if !self.normals && reduced.needs_normals() {
+        if (!self.normals || unreadable) && reduced.needs_normals() {
             reduced = Arc::new(reduced.without(Input::NormalPrepass));
         }
         reduced

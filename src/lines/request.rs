@@ -12,7 +12,7 @@ use bevy::{
             CachedComputePipelineId, CachedRenderPipelineId, PipelineCache,
             SpecializedComputePipelines, SpecializedRenderPipelines,
         },
-        renderer::{RenderAdapterInfo, RenderDevice},
+        renderer::RenderDevice,
     },
 };
 
@@ -332,7 +332,6 @@ pub(crate) struct LinePipelines<'w> {
     memories: ResMut<'w, SpecializedRenderPipelines<MemoryPipeline>>,
     memory: Res<'w, MemoryPipeline>,
     device: Res<'w, RenderDevice>,
-    adapter: Res<'w, RenderAdapterInfo>,
 }
 
 impl LinePipelines<'_> {
@@ -357,7 +356,7 @@ impl LinePipelines<'_> {
             renders.specialize(cache, &self.shaders, (pass, pass.part(key)))
         };
         let resolve = (request.samples > 1).then(|| {
-            let key = ResolveKey::new(&key, request.samples, &self.adapter);
+            let key = ResolveKey::new(&key, request.samples);
             (key, self.resolves.specialize(cache, &self.resolve, key))
         });
         let faithful = key.has_faithful().then(|| render(LinePass::Faithful));

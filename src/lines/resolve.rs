@@ -3,21 +3,18 @@
 
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
-    core_pipeline::{
-        FullscreenShader, core_3d::CORE_3D_DEPTH_FORMAT, prepass::NORMAL_PREPASS_FORMAT,
-    },
+    core_pipeline::{FullscreenShader, prepass::NORMAL_PREPASS_FORMAT},
     ecs::resource::Resource,
     math::UVec2,
     render::{
         render_resource::{
             BindGroup, BindGroupLayoutDescriptor, ColorTargetState, ColorWrites, CommandEncoder,
-            CompareFunction, DepthBiasState, DepthStencilState, FragmentState, LoadOp, Operations,
-            RenderPassDepthStencilAttachment, RenderPassDescriptor, RenderPipeline,
-            RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline, StencilState,
-            StoreOp, TextureFormat, TextureSampleType, TextureUsages,
+            FragmentState, RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor,
+            ShaderStages, SpecializedRenderPipeline, TextureFormat, TextureSampleType,
+            TextureUsages,
             binding_types::{texture_2d_multisampled, uniform_buffer},
         },
-        renderer::{RenderAdapterInfo, RenderDevice},
+        renderer::RenderDevice,
         texture::{CachedTexture, TextureCache},
     },
     shader::{Shader, ShaderDefVal},
@@ -28,7 +25,6 @@ use super::{
     sources::Texels,
 };
 use crate::{
-    depth::surfaces::prepass_is_empty,
     objects::{ID_FORMAT, WIDTH_FORMAT, ids_entry, widths_entry},
     samples,
 };
@@ -40,8 +36,6 @@ const DEPTH_FORMAT: TextureFormat = TextureFormat::R32Float;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ResolveKey {
     samples: u32,
-    /// Depth is written as depth, not as a colour: OpenGL does not draw into 32-bit floats.
-    as_depth: bool,
     oblique: bool,
     /// Whether the normals, the object ids and the widths of lines are read.
     pub normals: bool,
@@ -50,10 +44,9 @@ pub(crate) struct ResolveKey {
 }
 
 impl ResolveKey {
-    pub fn new(key: &LineKey, samples: u32, adapter: &RenderAdapterInfo) -> Self {
+    pub fn new(key: &LineKey, samples: u32) -> Self {
         Self {
             samples,
-            as_depth: prepass_is_empty(adapter),
             oblique: key.oblique,
             normals: key.creases || key.faithful[1] || key.weight.light,
             ids: key.ids,
@@ -64,7 +57,7 @@ impl ResolveKey {
     /// Formats by `@location`; `None`: it is not written.
     fn formats(self) -> [Option<TextureFormat>; 4] {
         [
-            (!self.as_depth).then_some(DEPTH_FORMAT),
+            Some(DEPTH_FORMAT),
             self.normals.then_some(NORMAL_PREPASS_FORMAT),
             self.ids.then_some(ID_FORMAT),
             self.widths.then_some(WIDTH_FORMAT),
@@ -93,7 +86,6 @@ impl ResolveKey {
     fn defs(self) -> Vec<ShaderDefVal> {
         [
             (true, "DEPTH"),
-            (self.as_depth, "RESOLVE_AS_DEPTH"),
             (self.oblique, "OBLIQUE"),
             (self.normals, "NORMALS"),
             (self.ids, "OBJECT_IDS"),
@@ -141,13 +133,6 @@ impl SpecializedRenderPipeline for ResolvePipeline {
                 entry_point: Some("resolve".into()),
                 targets: key.formats().map(|format| format.map(target)).to_vec(),
             }),
-            depth_stencil: key.as_depth.then(|| DepthStencilState {
-                format: CORE_3D_DEPTH_FORMAT,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(CompareFunction::Always),
-                stencil: StencilState::default(),
-                bias: DepthBiasState::default(),
-            }),
             ..Default::default()
         }
     }
@@ -156,7 +141,6 @@ impl SpecializedRenderPipeline for ResolvePipeline {
 /// One sample per pixel of the prepass textures, valid inside [`LineRequest::rect`].
 pub(crate) struct Resolved {
     pub depth: CachedTexture,
-    as_depth: bool,
     pub normal: Option<CachedTexture>,
     pub ids: Option<CachedTexture>,
     pub widths: Option<CachedTexture>,
@@ -169,13 +153,11 @@ impl Resolved {
         key: ResolveKey,
         size: UVec2,
     ) -> Self {
-        let [depth, normal, ids, widths] = key.formats();
-        let depth = depth.unwrap_or(CORE_3D_DEPTH_FORMAT);
+        let [_, normal, ids, widths] = key.formats();
         let drawn = TextureUsages::RENDER_ATTACHMENT;
         let mut new = |label, format| texture((textures, device), label, size, (format, drawn));
         Self {
-            depth: new("comics_resolved_depth", depth),
-            as_depth: key.as_depth,
+            depth: new("comics_resolved_depth", DEPTH_FORMAT),
             normal: normal.map(|format| new("comics_resolved_normals", format)),
             ids: ids.map(|format| new("comics_resolved_ids", format)),
             widths: widths.map(|format| new("comics_resolved_widths", format)),
@@ -201,19 +183,11 @@ impl Resolved {
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("comics_resolve_samples"),
             color_attachments: &[
-                (!self.as_depth).then(|| cleared(&self.depth)),
+                Some(cleared(&self.depth)),
                 self.normal.as_ref().map(cleared),
                 self.ids.as_ref().map(cleared),
                 self.widths.as_ref().map(cleared),
             ],
-            depth_stencil_attachment: self.as_depth.then_some(RenderPassDepthStencilAttachment {
-                view: &self.depth.default_view,
-                depth_ops: Some(Operations {
-                    load: LoadOp::Clear(0.0),
-                    store: StoreOp::Store,
-                }),
-                stencil_ops: None,
-            }),
             ..Default::default()
         });
         let [x, y, width, height] = request.rect.to_array().map(|v| v as f32);

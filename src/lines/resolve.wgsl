@@ -27,11 +27,7 @@
 
 // Texels as the prepasses store them.
 struct Resolved {
-#ifdef RESOLVE_AS_DEPTH
-    @builtin(frag_depth) depth: f32,
-#else
     @location(0) depth: f32,
-#endif
 #ifdef NORMALS
     @location(1) normal: vec4<f32>,
 #endif

@@ -81,6 +81,13 @@ fn refused(
     refused
 }
 
+/// Whether the prepasses of a camera cannot be read: wgpu 29 binds no multisampled textures with OpenGL.
+fn is_unreadable(camera: EntityRef) -> bool {
+    let plan = camera.get::<CameraPlan>();
+    let lacks = plan.is_some_and(|own| own.plan.lacks.depth_copies && own.plan.needs_depth());
+    lacks && camera.get::<Msaa>().is_some_and(|msaa| *msaa != Msaa::Off)
+}
+
 pub(super) fn request_prepasses(
     mut commands: Commands,
     cameras: Query<EntityRef, With<Camera3d>>,
@@ -95,6 +102,13 @@ pub(super) fn request_prepasses(
              both a prepass, so that one is drawn without lines and without effects by depth"
         );
     }
+    let multisampled = cameras.iter().any(is_unreadable);
+    if multisampled {
+        warn_once!(
+            "wgpu cannot read multisampled textures with OpenGL: a camera is drawn without lines and without \
+             effects by depth; give it `Msaa::Off`"
+        );
+    }
     for camera in &cameras {
         let drawn = diagnostics
             .cameras
@@ -105,7 +119,7 @@ pub(super) fn request_prepasses(
             camera,
             components,
             drawn,
-            is_refused: refused.contains(&camera.id()),
+            is_refused: refused.contains(&camera.id()) || is_unreadable(camera),
         };
         request.handle::<DepthPrepass>(Plan::needs_depth, &mut commands);
         request.handle::<NormalPrepass>(Plan::needs_normals, &mut commands);

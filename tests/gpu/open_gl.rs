@@ -5,7 +5,11 @@
 use std::process::Command;
 
 use bevy::{
-    light::cluster::GlobalClusterSettings, math::UVec2, prelude::*, render::view::Msaa,
+    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
+    light::cluster::GlobalClusterSettings,
+    math::UVec2,
+    prelude::*,
+    render::view::Msaa,
 };
 use bevy_comics::{ComicStyle, ComicsDiagnostics, ComicsStage, LeftOut, StageOutcome, presets};
 use bevy_comics_testkit::{
@@ -58,14 +62,14 @@ fn apart(a: &RgbaImage, b: &RgbaImage) -> f64 {
 }
 
 /// Draws a scene with both APIs. `most`: the fraction of pixels that may be apart.
-fn check(scene: BuiltIn, msaa: Msaa, styles: &[(&str, ComicStyle)], most: f64) {
+fn check(scene: BuiltIn, styles: &[(&str, ComicStyle)], most: f64) {
     let mut studios = APIS.map(|backends| {
         let options = HeadlessOptions {
             size: UVec2::new(160, 90),
             backends,
             ..default()
         };
-        Studio::with_options(scene, options, msaa)
+        Studio::with_options(scene, options, Msaa::Off)
     });
     let original = studios.each_mut().map(|studio| studio.shoot(None));
     let off = apart(&original[0], &original[1]);
@@ -73,7 +77,7 @@ fn check(scene: BuiltIn, msaa: Msaa, styles: &[(&str, ComicStyle)], most: f64) {
     for (name, style) in styles {
         let [vulkan, gl] = studios.each_mut().map(|studio| studio.shoot(Some(style)));
         let off = apart(&vulkan, &gl);
-        assert!(off <= most, "{scene:?}, {msaa:?}, {name}: {off}");
+        assert!(off <= most, "{scene:?}, {name}: {off}");
         // The comparison can fail.
         let styled = apart(&original[1], &gl);
         assert!(styled > 2.0 * most, "{name} changes {styled} only");
@@ -96,15 +100,33 @@ fn golden_pictures_of_the_teapot_are_those_with_vulkan() {
         "golden_pictures_of_the_teapot_are_those_with_vulkan",
         || {
             let styles = golden_styles(BuiltIn::Teapot);
-            check(BuiltIn::Teapot, Msaa::Off, &styles, 0.0005);
+            check(BuiltIn::Teapot, &styles, 0.0005);
         },
     );
 }
 
+/// wgpu cannot read multisampled textures with OpenGL: what needs depth is left out, whether this crate or
+/// the game asked for the prepass.
 #[test]
-fn multisampled_pictures_are_those_with_vulkan() {
-    alone("multisampled_pictures_are_those_with_vulkan", || {
-        check(BuiltIn::Teapot, Msaa::Sample4, &looks(), 0.01);
+fn multisampled_views_are_drawn_without_depth() {
+    alone("multisampled_views_are_drawn_without_depth", || {
+        for by_game in [false, true] {
+            let mut app = small(wgpu::Backends::GL, None, Msaa::Sample4);
+            if by_game {
+                app.insert((DepthPrepass, NormalPrepass));
+            }
+            let plain = app.settle().picture();
+            for (name, style) in GROUPS {
+                app.style(&style());
+                app.settle();
+                assert_eq!(app.errors(), 0, "{name}");
+                assert!(!app.ran(ComicsStage::DepthRange), "{name}");
+                assert!(!app.ran(ComicsStage::FindLines), "{name}");
+            }
+            app.style(&presets::POP_POSTER.style());
+            let styled = changed(&plain, &app.settle().picture());
+            assert!(styled > 0.1, "{styled}");
+        }
     });
 }
 
@@ -114,7 +136,7 @@ fn multisampled_pictures_are_those_with_vulkan() {
 fn far_scenes_are_nearly_those_with_vulkan() {
     alone("far_scenes_are_nearly_those_with_vulkan", || {
         for scene in [BuiltIn::Mountains, BuiltIn::Village] {
-            check(scene, Msaa::Off, &looks(), 0.05);
+            check(scene, &looks(), 0.05);
         }
     });
 }
@@ -131,22 +153,20 @@ fn small(backends: wgpu::Backends, limits: Option<wgpu::Limits>, msaa: Msaa) -> 
 #[test]
 fn every_effect_is_drawn_as_with_vulkan() {
     alone("every_effect_is_drawn_as_with_vulkan", || {
-        for msaa in [Msaa::Off, Msaa::Sample4] {
-            let mut apps = APIS.map(|api| small(api, None, msaa));
-            let plain = apps.each_mut().map(|app| app.settle().picture());
-            let off = changed(&plain[0], &plain[1]);
-            assert!(off <= 0.002, "the engine's picture: {off}");
-            for (name, style) in GROUPS {
-                let [vulkan, gl] = apps.each_mut().map(|app| {
-                    app.style(&style());
-                    app.settle().picture()
-                });
-                assert!(changed(&plain[1], &gl) > 0.02, "{name} is not drawn");
-                let off = apart(&vulkan, &gl);
-                assert!(off <= 0.02, "{msaa:?}, {name}: {off}");
-            }
-            assert!(apps.iter().all(|app| app.errors() == 0));
+        let mut apps = APIS.map(|api| small(api, None, Msaa::Off));
+        let plain = apps.each_mut().map(|app| app.settle().picture());
+        let off = changed(&plain[0], &plain[1]);
+        assert!(off <= 0.002, "the engine's picture: {off}");
+        for (name, style) in GROUPS {
+            let [vulkan, gl] = apps.each_mut().map(|app| {
+                app.style(&style());
+                app.settle().picture()
+            });
+            assert!(changed(&plain[1], &gl) > 0.02, "{name} is not drawn");
+            let off = apart(&vulkan, &gl);
+            assert!(off <= 0.02, "{name}: {off}");
         }
+        assert!(apps.iter().all(|app| app.errors() == 0));
     });
 }
 

@@ -373,14 +373,7 @@ fn drawing() -> Vec<Variant> {
             }
         }
     }
-    let resolved = [
-        "OBLIQUE",
-        "NORMALS",
-        "OBJECT_IDS",
-        "WIDTH_MAP",
-        "RESOLVE_AS_DEPTH",
-    ];
-    for view in subsets(&resolved) {
+    for view in subsets(&["OBLIQUE", "NORMALS", "OBJECT_IDS", "WIDTH_MAP"]) {
         let defs = [&["DEPTH", "MULTISAMPLED"][..], &view[..]].concat();
         add(&mut all, "lines/resolve.wgsl", &defs);
     }
