@@ -27,7 +27,7 @@ fn entries() -> BTreeMap<&'static str, BTreeSet<&'static str>> {
     }
     let variants = [lines::variants(), scene::variants(), materials::variants()].concat();
     for (file, definitions) in &variants {
-        add(*file, definitions);
+        add(file, definitions);
     }
     for file in cartoon_shaders::FILES {
         add(file, &cartoon_shaders::all());

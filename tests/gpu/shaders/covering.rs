@@ -31,7 +31,7 @@ pub fn definitions(texts: &[&'static str]) -> Definitions {
 
 /// Whether one of these texts is `name`.
 pub fn has(texts: &[&'static str], name: &str) -> bool {
-    texts.iter().any(|text| *text == name)
+    texts.contains(&name)
 }
 
 /// Whether one of these texts is among `names`.
