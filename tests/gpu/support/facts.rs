@@ -223,7 +223,7 @@ pub const FACTS: &[Fact] = &[
         Run("together::views_beside_others_are_drawn_as_alone"),
     ),
     (
-        &[Transparent, Skinned, Morphed, Instanced],
+        &[Transparent, Skinned, Instanced],
         ALL,
         Run("together::meshes_of_every_kind_are_drawn_as_plain_ones"),
     ),
@@ -298,7 +298,7 @@ pub const FACTS: &[Fact] = &[
     (&[SeveralCameras], &["colorization"], Run("smoothing_views::cameras_have_ranges_of_their_own")),
     (&[SeveralCameras], MANY_PASSES, Run("failures::devices::cameras_with_different_samples_share_a_target")),
 
-    (&[Transparent, Skinned, Morphed, Instanced, OwnPipeline], ALL, Unknown),
+    (&[Morphed, OwnPipeline], ALL, Unknown),
     (&[Transparent], &["outlines", "desaturation", "colorization", "contours", "sketch"],
         Run("transparent_lines::it_is_drawn_as_an_opaque_mesh_would_be")),
     (&[Transparent], MANY_PASSES, Run("failures::devices::objects_with_lightmaps_have_lines")),
