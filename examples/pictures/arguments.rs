@@ -120,7 +120,7 @@ fn size(text: &str) -> Result<UVec2, String> {
 
 #[cfg(test)]
 mod tests {
-    use bevy_comics_testkit::fuzz::{Counting, Texts, cases, check};
+    use bevy_comics_testkit::fuzz::{Counting, check_command_lines};
 
     use super::*;
 
@@ -139,27 +139,11 @@ mod tests {
     /// Every command line is read, or refused with a message.
     #[test]
     fn no_command_line_is_dangerous() {
-        let mut texts = Texts::new(6, RIGHT.map(str::to_owned));
-        let (mut read, mut refused) = (0, 0);
-        for _ in 0..cases() {
-            check(&texts.next_text(), |text| {
-                let parser = lexopt::Parser::from_args(text.split('\n'));
-                match Arguments::read(parser) {
-                    Ok(Some(arguments)) => {
-                        read += 1;
-                        assert!(arguments.size.min_element() >= 16 && arguments.zoom <= 8);
-                    }
-                    Ok(None) => {}
-                    Err(message) => {
-                        refused += 1;
-                        assert!(!message.is_empty());
-                    }
-                }
-            });
-        }
-        assert!(
-            read * 20 > cases() && refused * 20 > cases(),
-            "{read}, {refused}"
+        check_command_lines(
+            6,
+            &RIGHT,
+            |given| Arguments::read(lexopt::Parser::from_args(given)),
+            |arguments| assert!(arguments.size.min_element() >= 16 && arguments.zoom <= 8),
         );
     }
 }

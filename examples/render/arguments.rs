@@ -399,7 +399,7 @@ fn png(text: &str) -> Result<PathBuf, String> {
 
 #[cfg(test)]
 mod tests {
-    use bevy_comics_testkit::fuzz::{Counting, Texts, cases, check};
+    use bevy_comics_testkit::fuzz::{Counting, check_command_lines};
 
     use super::*;
 
@@ -422,27 +422,11 @@ mod tests {
     fn no_command_line_is_dangerous() {
         // The first style that is read makes the tables of effects.
         let _ = presets::NOIR.style();
-        let mut texts = Texts::new(3, RIGHT.map(str::to_owned));
-        let (mut read, mut refused) = (0, 0);
-        for _ in 0..cases() {
-            check(&texts.next_text(), |text| {
-                let parser = lexopt::Parser::from_args(text.split('\n'));
-                match Arguments::read(parser) {
-                    Ok(Some(arguments)) => {
-                        read += 1;
-                        assert!(arguments.size.min_element() > 0 && arguments.frames > 0);
-                    }
-                    Ok(None) => {}
-                    Err(message) => {
-                        refused += 1;
-                        assert!(!message.is_empty());
-                    }
-                }
-            });
-        }
-        assert!(
-            read * 20 > cases() && refused * 20 > cases(),
-            "{read}, {refused}"
+        check_command_lines(
+            3,
+            &RIGHT,
+            |given| Arguments::read(lexopt::Parser::from_args(given)),
+            |arguments| assert!(arguments.size.min_element() > 0 && arguments.frames > 0),
         );
     }
 }

@@ -71,7 +71,7 @@ impl Arguments {
 
 #[cfg(test)]
 mod tests {
-    use bevy_comics_testkit::fuzz::{Counting, Texts, cases, check};
+    use bevy_comics_testkit::fuzz::{Counting, check_command_lines};
 
     use super::*;
 
@@ -90,28 +90,14 @@ mod tests {
     /// Every command line is read, or refused with a message.
     #[test]
     fn no_command_line_is_dangerous() {
-        let mut texts = Texts::new(5, RIGHT.map(str::to_owned));
-        let (mut read, mut refused) = (0, 0);
-        for _ in 0..cases() {
-            check(&texts.next_text(), |text| {
-                let parser = lexopt::Parser::from_args(text.split('\n'));
-                match Arguments::read(parser) {
-                    Ok(Some(arguments)) => {
-                        read += 1;
-                        let known = |name: &String| SECTIONS.iter().any(|s| s.name == name);
-                        assert!(arguments.only.iter().all(known));
-                    }
-                    Ok(None) => {}
-                    Err(message) => {
-                        refused += 1;
-                        assert!(!message.is_empty());
-                    }
-                }
-            });
-        }
-        assert!(
-            read * 20 > cases() && refused * 20 > cases(),
-            "{read}, {refused}"
+        check_command_lines(
+            5,
+            &RIGHT,
+            |given| Arguments::read(lexopt::Parser::from_args(given)),
+            |arguments| {
+                let known = |name: &String| SECTIONS.iter().any(|s| s.name == name);
+                assert!(arguments.only.iter().all(known));
+            },
         );
     }
 

@@ -132,7 +132,7 @@ pub fn parse_size(text: &str) -> Option<UVec2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fuzz::{Counting, Texts, cases, check};
+    use crate::fuzz::{Counting, check_command_lines};
 
     #[global_allocator]
     static ALLOCATOR: Counting = Counting;
@@ -155,26 +155,11 @@ mod tests {
             size: UVec2::new(480, 360),
             frames: 4,
         };
-        let mut texts = Texts::new(4, RIGHT.map(str::to_owned));
-        let (mut read, mut refused) = (0, 0);
-        for _ in 0..cases() {
-            check(&texts.next_text(), |text| {
-                match demo.arguments(text.split('\n').map(OsString::from)) {
-                    Ok(Some((size, _))) => {
-                        read += 1;
-                        assert!(size.min_element() >= 16 && size.max_element() <= 4096);
-                    }
-                    Ok(None) => {}
-                    Err(message) => {
-                        refused += 1;
-                        assert!(!message.is_empty());
-                    }
-                }
-            });
-        }
-        assert!(
-            read * 20 > cases() && refused * 20 > cases(),
-            "{read}, {refused}"
+        check_command_lines(
+            4,
+            &RIGHT,
+            |given| demo.arguments(given.map(OsString::from)),
+            |(size, _)| assert!(size.min_element() >= 16 && size.max_element() <= 4096),
         );
     }
 

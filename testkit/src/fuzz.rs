@@ -7,6 +7,7 @@ use std::{
     alloc::{GlobalAlloc, Layout, System},
     cell::Cell,
     ops::Range,
+    str::Split,
     time::{Duration, Instant},
 };
 
@@ -92,6 +93,38 @@ pub fn check(text: &str, read: impl FnOnce(&str)) {
     assert!(took < Duration::from_secs(1), "it took {took:?}");
     let most = most_bytes(text);
     assert!(bytes <= most as isize, "{bytes} bytes, {most} are allowed");
+}
+
+/// Changes command lines and reads them. Each must be read, or refused with a message, within the limits of
+/// [`check`]. More than one in twenty must be read, and as many refused, so that both paths are tested.
+///
+/// `right` has correct command lines, with an argument on each line. `read` returns `None` where only help is
+/// asked for. `assert_usable` panics if what was read is outside its ranges.
+pub fn check_command_lines<T>(
+    seed: u64,
+    right: &[&str],
+    read: impl Fn(Split<'_, char>) -> Result<Option<T>, String>,
+    assert_usable: impl Fn(&T),
+) {
+    let mut texts = Texts::new(seed, right.iter().map(|&line| line.to_owned()));
+    let (mut accepted, mut refused) = (0, 0);
+    for _ in 0..cases() {
+        check(&texts.next_text(), |text| match read(text.split('\n')) {
+            Ok(Some(arguments)) => {
+                accepted += 1;
+                assert_usable(&arguments);
+            }
+            Ok(None) => {}
+            Err(message) => {
+                refused += 1;
+                assert!(!message.is_empty());
+            }
+        });
+    }
+    assert!(
+        accepted * 20 > cases() && refused * 20 > cases(),
+        "{accepted}, {refused}"
+    );
 }
 
 /// What text may contain that is wrong, or just right.
