@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::sections::SECTIONS;
 
-const USAGE: &str = "cargo run --release --example report -- [OPTIONS]
+const USAGE: &str = "cargo run --example report -- [OPTIONS]
 
   --quick          small pictures, few repetitions, no other crates
   --out FOLDER     folder of the report; default docs/report

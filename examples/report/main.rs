@@ -2,10 +2,10 @@
 //! writes the report.
 //!
 //! ```text
-//! cargo run --release --example report                # writes docs/report
-//! cargo run --release --example report -- --only soak # the long run, which is no part of it
+//! cargo run --example report                # writes docs/report
+//! cargo run --example report -- --only soak # the long run, which is no part of it
 //! cargo run --example report -- --quick --out target/report
-//! cargo run --example report -- --render              # text and plots from the CSV files
+//! cargo run --example report -- --render    # text and plots from the CSV files
 //! ```
 
 mod arguments;

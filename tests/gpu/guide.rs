@@ -48,8 +48,8 @@ fn links(page: &str) -> impl Iterator<Item = &str> {
         .filter(|link| !link.is_empty() && !link.contains("://"))
 }
 
-/// Links lead to files, commands name examples, and no command of the README builds the engine
-/// another time: other features or another profile would.
+/// Links lead to files, and commands name examples. No page runs an example in another profile, and no
+/// command of the README builds with other features: both would build the engine once more.
 #[test]
 fn links_and_commands_of_the_pages_lead_somewhere() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -74,6 +74,9 @@ fn links_and_commands_of_the_pages_lead_somewhere() {
                 path.display()
             );
             commands += 1;
+        }
+        for line in page.lines().filter(|line| line.contains("--example ")) {
+            assert!(!line.contains("--release"), "{}: {line}", path.display());
         }
     }
     assert!(

@@ -25,7 +25,7 @@ pub fn render(folder: &Path) -> Result<String, String> {
     let stamps = index::stamps(folder)?;
     let body = body(folder)?;
     let mut out = String::from(
-        "# Error against run time\n\nWritten by `cargo run --release --example report`. Every \
+        "# Error against run time\n\nWritten by `cargo run --example report`. Every \
          number is computed from the CSV files in this folder, and a test computes it again.\n\n",
     );
     let measured = index::measured(&machine, stamps.as_ref());
