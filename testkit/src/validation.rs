@@ -55,7 +55,8 @@ pub fn instance_flags() -> wgpu::InstanceFlags {
         log::set_logger(&Keeper).expect("tests have no other logger");
         log::set_max_level(log::LevelFilter::Warn);
     });
-    flags | wgpu::InstanceFlags::VALIDATION
+    // Without the debug flag, the layer has nobody to tell, and prints its messages.
+    flags | wgpu::InstanceFlags::VALIDATION | wgpu::InstanceFlags::DEBUG
 }
 
 /// Takes the messages so far.

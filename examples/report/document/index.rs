@@ -28,9 +28,10 @@ fn asked() -> impl Iterator<Item = Section> {
         .filter(|section| !section.question.is_empty())
 }
 
-/// When and of which commits all sections were measured.
+/// When and of which commits all sections were measured. Those that run alone say it in their rows only.
 fn runs(stamps: &Table) -> String {
-    let all: Vec<&Vec<String>> = stamps.rows.iter().collect();
+    let is_part = |row: &&Vec<String>| !SECTIONS.iter().any(|s| s.is_alone && s.name == row[0]);
+    let all: Vec<&Vec<String>> = stamps.rows.iter().filter(is_part).collect();
     let commits = stamps.distinct(&all, "commit");
     let mut dates = stamps.distinct(&all, "date");
     dates.sort();
@@ -47,7 +48,8 @@ fn runs(stamps: &Table) -> String {
     let is_whole = asked().all(|section| section.is_alone || is_stamped(&section));
     match commits.as_slice() {
         [commit] if is_whole && commit != UNKNOWN => format!(
-            "All sections were measured on one commit, {commit}, on {days}, in {:.0} minutes.",
+            "All sections but the long run were measured in one go, of commit {commit}, on {days}, in {:.0} \
+             minutes.",
             seconds / 60.0
         ),
         _ => format!(

@@ -37,11 +37,25 @@ impl Language {
 
 /// Whether a failure is of a language that lacks what the shader uses. OpenGL ES 3.1 cannot ask for the
 /// number of levels of a texture, so tonal art maps are not for it; nor can it load from depth textures, as
-/// the engine's prepass is in materials.
+/// the engine's prepass is in materials; nor has it arrays of bindings, as materials without bind groups use
+/// where the adapter has them.
 pub fn is_known_gap(what: &str) -> bool {
     what.starts_with(Language::GlslEs.name())
         && (what.contains("MissingFeatures(Features(TEXTURE_LEVELS")
-            || what.contains("`textureLoad` from depth textures"))
+            || what.contains("`textureLoad` from depth textures")
+            || what.contains(BINDING_ARRAYS))
+}
+
+/// naga's writer of GLSL panics on these.
+const BINDING_ARRAYS: &str = "arrays of bindings";
+
+fn has_binding_arrays(module: &naga::Module) -> bool {
+    module.global_variables.iter().any(|(_, variable)| {
+        matches!(
+            module.types[variable.ty].inner,
+            naga::TypeInner::BindingArray { .. }
+        )
+    })
 }
 
 /// Translates a shader, and checks the result. `scratch`: a path for files, without extension.
@@ -111,6 +125,9 @@ fn direct3d(shader: &Shader) -> Result<(), String> {
 }
 
 fn opengl(shader: &Shader, scratch: &Path) -> Result<(), String> {
+    if has_binding_arrays(&shader.module) {
+        return Err(BINDING_ARRAYS.into());
+    }
     let options = glsl::Options::default();
     for entry in &shader.module.entry_points {
         let pipeline = glsl::PipelineOptions {
