@@ -188,9 +188,7 @@ impl SpecializedMeshPipeline for ObjectIdSpecializer {
             .then(|| descriptor.vertex.shader_defs.clone());
         let mut shader_defs: Vec<_> = engine.into_iter().flatten().chain(variant.defs()).collect();
         if variant.tolerant && multisampled {
-            let samples = descriptor.multisample.count;
             shader_defs.push("TOLERANT_MULTISAMPLED".into());
-            shader_defs.push(ShaderDefVal::UInt("SAMPLES".into(), samples));
         }
         descriptor.fragment = Some(FragmentState {
             shader: self.shader.clone(),

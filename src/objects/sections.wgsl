@@ -7,7 +7,7 @@ enable primitive_index;
 #import bevy_comics::objects::widths::line_width
 #endif
 #ifdef TOLERANT
-#import bevy_comics::objects::tolerance::near_samples
+#import bevy_comics::objects::tolerance::shows
 #endif
 
 @group(1) @binding(0) var<storage, read> objects: array<vec4<u32>>;
@@ -18,9 +18,6 @@ struct Drawn {
     @location(0) object: vec2<u32>,
 #ifdef LINE_WIDTHS
     @location(1) width: f32,
-#endif
-#ifdef TOLERANT_MULTISAMPLED
-    @builtin(sample_mask) samples: u32,
 #endif
 }
 
@@ -37,16 +34,18 @@ fn object_id(
 #ifdef TOLERANT
     @builtin(position) position: vec4<f32>,
 #endif
+#ifdef TOLERANT_MULTISAMPLED
+    @builtin(sample_index) sample: u32,
+#endif
 ) -> Drawn {
     var drawn: Drawn;
 #ifdef TOLERANT
-    let samples = near_samples(position);
-    if samples == 0u {
+#ifndef TOLERANT_MULTISAMPLED
+    let sample = 0u;
+#endif
+    if !shows(position, sample) {
         discard;
     }
-#ifdef TOLERANT_MULTISAMPLED
-    drawn.samples = samples;
-#endif
 #endif
     let object = objects[min(instance, arrayLength(&objects) - 1u)];
     let word = sections[min(object.z + triangle / 4u, arrayLength(&sections) - 1u)];

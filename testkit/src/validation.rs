@@ -17,19 +17,24 @@ fn this_thread() -> String {
 /// Keeps warnings and errors of the driver, with the thread that called it.
 struct Keeper;
 
+/// Whether a message says that something is wrong. Advice on performance does not: shaders of vertices may
+/// compute what their fragments do not read. Nor do the names of objects, which follow a message on a line of
+/// their own, nor that layers older than 2023 do not know the number of WGSL in shaders compiled from a text.
+fn is_fault(message: &str) -> bool {
+    !message.starts_with("PERFORMANCE")
+        && !message.starts_with('\t')
+        && !message.contains("Invalid source language operand: 10")
+}
+
 impl log::Log for Keeper {
     fn enabled(&self, metadata: &log::Metadata) -> bool {
         metadata.level() <= log::Level::Warn && metadata.target().starts_with("wgpu_hal::vulkan")
     }
 
     fn log(&self, record: &log::Record) {
-        if self.enabled(record.metadata()) {
-            let message = format!(
-                "{} on thread {}: {}",
-                record.level(),
-                this_thread(),
-                record.args()
-            );
+        let text = record.args().to_string();
+        if self.enabled(record.metadata()) && is_fault(&text) {
+            let message = format!("{} on thread {}: {text}", record.level(), this_thread());
             let mut messages = MESSAGES.lock().expect("no panic while it is held");
             messages.push(message);
         }

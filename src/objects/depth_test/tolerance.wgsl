@@ -1,7 +1,7 @@
 #define_import_path bevy_comics::objects::tolerance
 
-// Which samples of a pixel show a fragment in the depth prepass, up to a tolerance. The test has
-// two sides: what the prepass discarded (alpha masks) lies in front of its depth, and has no id.
+// Whether the depth prepass shows a fragment, up to a tolerance. The test has two sides: what the
+// prepass discarded (alpha masks) lies in front of its depth, and has no id.
 
 #ifdef TOLERANT_MULTISAMPLED
 @group(1) @binding(3) var prepass_depth: texture_multisampled_2d<f32>;
@@ -16,7 +16,7 @@ const ABSOLUTE: f32 = 2.384185791015625e-7;
 // It moves surfaces across the screen, too: by at most a few steps of 1/256 pixel, to which
 // positions are rounded. Pixels of slope, in x and in y.
 #ifdef TOLERANT_MULTISAMPLED
-// Samples are up to half a pixel from the middle, whose depth the fragment has.
+// Samples are up to half a pixel from the middle, whose depth a driver may give for all of them.
 const SHIFT: f32 = 0.75;
 #else
 const SHIFT: f32 = 0.0625;
@@ -28,19 +28,15 @@ fn is_near(drawn: f32, found: f32, slope: f32) -> bool {
     return found > 0.0 && abs(drawn - found) <= tolerance;
 }
 
-// The samples as bits. `position` is that of the fragment. Takes derivatives.
-fn near_samples(position: vec4<f32>) -> u32 {
+// `position` is that of the fragment, which is drawn for each sample if there are several: `sample`
+// is its number. Takes derivatives.
+fn shows(position: vec4<f32>, sample: u32) -> bool {
     let slope = fwidth(position.z);
     let at = min(vec2<u32>(position.xy), textureDimensions(prepass_depth) - 1u);
-    var bits = 0u;
 #ifdef TOLERANT_MULTISAMPLED
-    let samples = #{SAMPLES}u;
-    for (var s = 0u; s < samples; s++) {
-        let found = textureLoad(prepass_depth, at, i32(s)).x;
-        bits |= u32(is_near(position.z, found, slope)) << s;
-    }
+    let found = textureLoad(prepass_depth, at, i32(sample)).x;
 #else
-    bits = u32(is_near(position.z, textureLoad(prepass_depth, at, 0).x, slope));
+    let found = textureLoad(prepass_depth, at, 0).x;
 #endif
-    return bits;
+    return is_near(position.z, found, slope);
 }

@@ -10,13 +10,8 @@ use super::*;
 const NEAR: &str = "#import bevy_comics::objects::tolerance::is_near";
 
 /// Views with one sample and with several.
-const VIEWS: [(bool, &[Definition]); 2] = [
-    (false, &[]),
-    (
-        true,
-        &[("TOLERANT_MULTISAMPLED", None), ("SAMPLES", Some(4))],
-    ),
-];
+const VIEWS: [(bool, &[Definition]); 2] =
+    [(false, &[]), (true, &[("TOLERANT_MULTISAMPLED", None)])];
 
 /// Whether each row (drawn depth, found depth, slope) is near on the GPU.
 fn found(definitions: &[Definition], rows: &[[f32; 3]]) -> Vec<bool> {
