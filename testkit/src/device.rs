@@ -223,8 +223,22 @@ impl Gpu {
         body: &str,
         rows: &[[f32; N]],
     ) -> Vec<[f32; 4]> {
+        self.evaluate_bound(definitions, &[], imports, body, rows)
+    }
+
+    /// As [`evaluate_alone`](Self::evaluate_alone), for functions that also read textures and
+    /// buffers: `entries` are those that they use, from binding 2 on.
+    pub fn evaluate_bound<const N: usize>(
+        &self,
+        definitions: &[wgsl::Definition],
+        entries: &[wgpu::BindGroupEntry],
+        imports: &str,
+        body: &str,
+        rows: &[[f32; N]],
+    ) -> Vec<[f32; 4]> {
         let module = wgsl::module_alone(&entry_point::<N>(imports, body), definitions);
-        self.run(module.unwrap_or_else(|error| panic!("{error}")), rows, &[])
+        let module = module.unwrap_or_else(|error| panic!("{error}"));
+        self.run(module, rows, entries)
     }
 
     fn run<const N: usize>(

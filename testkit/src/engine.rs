@@ -1,4 +1,5 @@
-//! The engine's modules as far as the cartoon material uses them, for its functions in isolation
+//! The engine's modules as far as the cartoon material and the object service use them, for their
+//! functions in isolation
 //! ([`wgsl::module_alone`](crate::wgsl::module_alone)).
 //!
 //! What the engine binds are private variables, and what it reads from textures are simple
@@ -6,7 +7,8 @@
 //! lights are textures, see [`Gpu::evaluate_shadows`](crate::device::Gpu::evaluate_shadows).
 
 /// Modules by name.
-pub const MODULES: [(&str, &str); 13] = [
+pub const MODULES: [(&str, &str); 14] = [
+    ("bevy_pbr::mesh_bindings", MESH_BINDINGS),
     ("bevy_pbr::mesh_view_bindings", VIEW_BINDINGS),
     ("bevy_pbr::mesh_view_types", VIEW_TYPES),
     ("bevy_pbr::shadows", SHADOWS),
@@ -22,6 +24,12 @@ pub const MODULES: [(&str, &str); 13] = [
     ("bevy_pbr::prepass_utils", PREPASS),
 ];
 
+/// Four meshes.
+const MESH_BINDINGS: &str = "#define_import_path bevy_pbr::mesh_bindings
+    struct Mesh { world_from_local: mat3x4<f32> }
+    var<private> mesh: array<Mesh, 4>;
+";
+
 const VIEW_BINDINGS: &str = "#define_import_path bevy_pbr::mesh_view_bindings
     struct View {
         exposure: f32,
@@ -29,6 +37,8 @@ const VIEW_BINDINGS: &str = "#define_import_path bevy_pbr::mesh_view_bindings
         viewport: vec4<f32>,
         world_from_view: mat4x4<f32>,
         view_from_world: mat4x4<f32>,
+        clip_from_world: mat4x4<f32>,
+        clip_from_view: mat4x4<f32>,
     }
     struct DirectionalCascade {
         clip_from_world: mat4x4<f32>,

@@ -7,6 +7,7 @@ pub mod before;
 pub mod bench;
 pub mod demo;
 pub mod device;
+pub mod drawing;
 pub mod engine;
 pub mod forest;
 pub mod fuzz;

@@ -53,9 +53,8 @@ pub fn module_with(source: &str, definitions: &[Definition]) -> Result<wgpu::nag
     COMPOSER.with_borrow_mut(|composer| compose(composer, modules(), &ENGINE, source, definitions))
 }
 
-/// As [`module_with`], for functions that read bindings: the uniforms of materials, the view, the
-/// lights and the results of the engine's functions are variables that `source` sets, see
-/// [`engine`].
+/// As [`module_with`], for functions that read bindings: uniforms, the view, the lights and the
+/// results of the engine's functions are variables that `source` sets, see [`engine`].
 pub fn module_alone(
     source: &str,
     definitions: &[Definition],
@@ -77,15 +76,26 @@ pub fn module_alone(
     })
 }
 
-/// The text with uniforms of materials as private variables.
+/// The text with uniforms as private variables.
 fn without_bindings(text: &str) -> String {
     let line = |line: &str| match line.split_once("var<uniform>") {
-        Some((before, after)) if before.contains("MATERIAL_BIND_GROUP") => {
-            format!("var<private>{after}\n")
-        }
-        _ => format!("{line}\n"),
+        Some((_, after)) => format!("var<private>{after}\n"),
+        None => format!("{line}\n"),
     };
     text.lines().map(line).collect()
+}
+
+/// The text of a fragment shader with its entry point as a plain function, which others can call.
+pub fn without_stage(text: &str) -> String {
+    let attributes = [
+        "@fragment",
+        "@builtin(position) ",
+        "@location(0) ",
+        "@location(1) ",
+    ];
+    (attributes.iter()).fold(text.to_owned(), |text, attribute| {
+        text.replace(*attribute, "")
+    })
 }
 
 /// Composes a module, and keeps it for `tools/translate`.

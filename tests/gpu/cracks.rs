@@ -55,7 +55,7 @@ fn unpacked(word: u32) -> ([bool; 4], [f64; 2], f64) {
 
 /// Compares what is stored of a crack. The bits that say what it is are exact; of the others,
 /// each may be one step away, where rounding decides. Returns whether one is.
-fn is_rounded(word: u32, bend: u32, want: &Crack, what: &str) -> bool {
+pub fn is_rounded(word: u32, bend: u32, want: &Crack, what: &str) -> bool {
     let (kinds, [ink, opacity], half_width) = unpacked(word);
     let [silhouette, crease, object] = want.kinds;
     assert_eq!(kinds, [silhouette, crease, object, want.mine], "{what}");
