@@ -21,9 +21,13 @@ struct Ink {
 
 struct Drawn {
     @builtin(position) position: vec4<f32>,
-    // Physical pixels from the middle of the ribbon, and half of its width.
-    @location(0) @interpolate(linear) across: vec2<f32>,
+    // Physical pixels from the middle of the ribbon, and half of its width, both times w, and w: divided,
+    // they are interpolated on the screen. OpenGL ES has no attribute for that.
+    @location(0) across: vec3<f32>,
 }
+
+// Keeps what is behind the eye from turning the sign of what is interpolated.
+const LEAST_W: f32 = 1e-6;
 
 // The ribbon is wider than its line by a pixel on each side, for its soft edge.
 @vertex
@@ -40,14 +44,15 @@ fn vertex(v: Vertex) -> Drawn {
     let across = v.uv.x * (half_width + 1.0);
     var out: Drawn;
     out.position = moved_across(at, along, across, size);
-    out.across = vec2(across, half_width);
+    out.across = vec3(across, half_width, 1.0) * max(at.w, LEAST_W);
     return out;
 }
 
 @fragment
 fn fragment(in: Drawn) -> @location(0) vec4<f32> {
     var color = ink.color;
-    color.a *= coverage(in.across.x, in.across.y);
+    let across = in.across.xy / in.across.z;
+    color.a *= coverage(across.x, across.y);
 #ifdef TONEMAP_IN_SHADER
     color = tone_mapping(color, view.color_grading);
 #endif

@@ -87,7 +87,11 @@ struct Results {
 
 impl Results {
     fn fail(&mut self, what: &str, file: &Path, message: &str) {
-        let line = message.lines().find(|line| !line.trim().is_empty());
+        // Tools begin with the path of the file.
+        let is_error = |line: &&str| line.to_lowercase().contains("error");
+        let mut lines = message.lines().filter(|line| !line.trim().is_empty());
+        let first = lines.clone().next();
+        let line = lines.find(is_error).or(first);
         let line: String = line.unwrap_or("no message").chars().take(240).collect();
         let example = || format!("{}:\n{message}", file.display());
         self.failures
