@@ -7,13 +7,13 @@ use crate::{Run, table::Table};
 /// Frames of the whole run, and of a quick one.
 const FRAMES: [u64; 2] = [100_000, 2 * WARM_UP * CYCLE];
 /// What changes, unless the environment variable `SOAK` names it: see [`Changes::of`].
-const CHANGES: &str = "sizes,cameras,materials,objects,files";
+const CHANGES: &str = "sizes,cameras,materials,objects,files,looks=1";
 /// Cycles of which the mean is taken at either end.
 pub const END: usize = 10;
 /// The run fails if memory grows by this percentage over its second half.
 pub const MOST_GROWTH: f64 = 2.0;
 /// Columns before those of the resources of the GPU.
-pub const FIRST_RESOURCE: usize = 3;
+pub const FIRST_RESOURCE: usize = 4;
 
 /// Writes `soak.csv`. An error if memory or resources have grown, or the renderer has reported an error.
 pub fn measure(run: &Run) -> Result<(), String> {
@@ -23,7 +23,8 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let frames = std::env::var("SOAK_FRAMES")
         .ok()
         .and_then(|n| n.parse().ok());
-    let mut soak = Soak::new(&folder, Changes::of(&changes)).map_err(problem)?;
+    let changes = Changes::of(&changes);
+    let mut soak = Soak::new(&folder, changes).map_err(problem)?;
     let frames = frames.unwrap_or(FRAMES[usize::from(run.quick)]);
     let cycles = frames.div_ceil(CYCLE).max(1);
     let mut table: Option<Table> = None;
@@ -40,7 +41,11 @@ pub fn measure(run: &Run) -> Result<(), String> {
     if settled(&table).len() < LEAST {
         run.say("too few frames to say whether resources or memory grow");
     }
-    let faults = faults(&table);
+    let mut faults = faults(&table);
+    let is_plain = |row: &Vec<String>| table.cell(row, "styled") != "true";
+    if changes.looks > 0 && settled(&table).iter().any(is_plain) {
+        faults.push("the look is not always drawn".into());
+    }
     if faults.is_empty() {
         Ok(())
     } else {
@@ -52,7 +57,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
 }
 
 fn header(sample: &Sample) -> Table {
-    let mut names = vec!["frame", "resident KiB", "errors"];
+    let mut names = vec!["frame", "resident KiB", "errors", "styled"];
     names.extend(sample.resources.iter().map(|(name, _)| *name));
     Table::new(&names)
 }
@@ -63,6 +68,7 @@ fn push(table: &mut Table, sample: &Sample) {
         sample.frame.to_string(),
         resident.unwrap_or_default(),
         sample.errors.to_string(),
+        sample.styled.to_string(),
     ];
     row.extend(sample.resources.iter().map(|(_, count)| count.to_string()));
     let cells: Vec<&dyn std::fmt::Display> = row

@@ -15,9 +15,9 @@ const EXCEPTIONS: &str = "Two things that grow are not this crate's, and are lef
     - Bevy 0.19.1 keeps bind groups of cameras that are gone (`BinUnpackingBindGroups`): three for each, six \
     with a prepass, with this crate or without. The run removes them after each frame (`forget_gone_views` in \
     `testkit/src/soak.rs`).\n\
-    - Looks are not changed, since lavapipe compiles shaders again for each and keeps the memory. \
-    `SOAK=looks` changes nothing else, and an empty `SOAK` everything; tests change looks in a short run that \
-    counts the resources of the GPU.\n\n";
+    - The first camera wears one look throughout, since lavapipe compiles shaders again for each change of looks \
+    and keeps the memory. `SOAK=looks` changes nothing else, and an empty `SOAK` everything; tests change looks \
+    in a short run that counts the resources of the GPU.\n\n";
 
 /// How much the memory grows, and how often the renderer fails.
 pub fn figure(folder: &Path) -> Option<String> {
@@ -43,8 +43,8 @@ pub fn soak(out: &mut String, folder: &Path) -> Result<(), String> {
     let last = table.rows.last().ok_or("soak.csv is empty")?;
     let _ = writeln!(
         out,
-        "## 7. A long run\n\n{} frames of 1 to 128 pixels a side. In every {CYCLE} of them a camera changes \
-         its size 60 times, another one comes and goes, 20 objects come and go, the scene takes the cartoon \
+        "## 7. A long run\n\n{} frames of 1 to 128 pixels a side. In every {CYCLE} of them a camera with a \
+         look changes its size 60 times, another one comes and goes, 20 objects come and go, the scene takes the cartoon \
          material and loses it, and a style file breaks and is mended; samples and HDR change from one to the \
          next. Errors of the renderer: {}.\n",
         table.cell(last, "frame"),
