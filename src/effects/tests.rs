@@ -2,7 +2,7 @@
 
 use crate::{
     AnyEffect, EffectRegistry, ViewFacts, presets,
-    settings::tests::odd::{Numbers, cases, scramble, wrong},
+    settings::tests::odd::{Numbers, cases, in_time, scramble, wrong},
 };
 
 /// Every effect, with its default settings and with those of the presets.
@@ -40,7 +40,7 @@ fn no_number_of_an_effect_is_dangerous() {
             effect.as_struct_mut().as_partial_reflect_mut(),
             &mut numbers,
         );
-        let used = effect.any_sanitized();
+        let used = in_time(&effect, || effect.any_sanitized());
         let found = wrong(used.as_struct().as_partial_reflect(), None);
         assert_eq!(found, None, "{effect:?}");
         let again = used.any_sanitized();

@@ -145,7 +145,7 @@ impl Memory {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::tests::odd::{Numbers, cases};
+    use crate::settings::tests::odd::{Numbers, cases, in_time};
 
     /// Whatever the file has become, the size of screenshots and all other numbers are in their ranges.
     #[test]
@@ -174,7 +174,7 @@ mod tests {
                 let end = (at + numbers.below(9)).min(text.len());
                 text.replace_range(at..end, WORDS[numbers.below(WORDS.len())]);
             }
-            let read = Memory::read(&text);
+            let read = in_time(&text, || Memory::read(&text));
             assert_eq!(read, read.clone().sane(), "{text}");
             assert!((1..=8).contains(&read.multiple), "{text}");
             let numbers = [read.width, read.zoom, read.fade];

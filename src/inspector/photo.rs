@@ -297,7 +297,7 @@ mod tests {
     use std::path::Component;
 
     use super::*;
-    use crate::settings::tests::odd::{Numbers, cases};
+    use crate::settings::tests::odd::{Numbers, cases, in_time};
 
     /// A length: any, one of a window, or one beside a power of two.
     fn length(numbers: &mut Numbers) -> u32 {
@@ -342,7 +342,7 @@ mod tests {
             let count = (wanted + numbers.below(3)).saturating_sub(numbers.below(2));
             image.data = (numbers.below(16) > 0).then(|| vec![7; count]);
             let is_right = image.data.is_some() && !is_huge && wanted > 0 && count == wanted;
-            match colors(&image) {
+            match in_time(&size, || colors(&image)) {
                 Ok(picture) => {
                     assert!(is_right, "{side} x {}, {count} bytes", size.y);
                     assert_eq!(picture.dimensions(), (size.x, size.y));
@@ -354,7 +354,7 @@ mod tests {
 
     /// The name is that of a file in the folder.
     #[test]
-    fn no_time_names_a_file_elsewhere() {
+    fn no_time_as_a_name_is_dangerous() {
         let mut numbers = Numbers::new(6);
         for _ in 0..cases() {
             let seconds = u64::from(numbers.bits()) << numbers.below(33);

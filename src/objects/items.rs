@@ -39,10 +39,13 @@ use bevy::{
             SpecializedMeshPipelines, StorageBuffer, TextureFormat,
             binding_types::{storage_buffer_read_only, uniform_buffer},
         },
+        renderer::RenderAdapter,
         sync_world::MainEntity,
     },
     shader::{Shader, ShaderDefVal},
 };
+
+use crate::samples;
 
 use super::{
     ID_FORMAT, Pressure, WIDTH_FORMAT,
@@ -63,14 +66,17 @@ pub(super) struct ObjectIdPipeline {
     pub with_widths: BindGroupLayoutDescriptor,
     /// Without and with sections.
     shaders: [Handle<Shader>; 2],
+    shades_samples: bool,
 }
 
 pub(super) fn init_object_id_pipeline(
     mut commands: Commands,
     prepass: Res<PrepassPipeline>,
     assets: Res<AssetServer>,
+    adapter: Res<RenderAdapter>,
 ) {
     commands.insert_resource(ObjectIdPipeline {
+        shades_samples: samples::can_be_shaded(&adapter),
         prepass: prepass.clone(),
         layout: BindGroupLayoutDescriptor::new(
             "comics_objects",
@@ -144,6 +150,7 @@ impl ObjectIdPipeline {
             },
             layout: layout.clone(),
             shader: self.shaders[usize::from(variant.sections)].clone(),
+            shades_samples: self.shades_samples,
         }
     }
 }
@@ -152,6 +159,7 @@ pub(super) struct ObjectIdSpecializer {
     prepass: PrepassPipelineSpecializer,
     layout: BindGroupLayoutDescriptor,
     shader: Handle<Shader>,
+    shades_samples: bool,
 }
 
 impl SpecializedMeshPipeline for ObjectIdSpecializer {
@@ -189,6 +197,9 @@ impl SpecializedMeshPipeline for ObjectIdSpecializer {
         let mut shader_defs: Vec<_> = engine.into_iter().flatten().chain(variant.defs()).collect();
         if variant.tolerant && multisampled {
             shader_defs.push("TOLERANT_MULTISAMPLED".into());
+            if self.shades_samples {
+                shader_defs.push("SAMPLE_SHADING".into());
+            }
         }
         descriptor.fragment = Some(FragmentState {
             shader: self.shader.clone(),

@@ -34,13 +34,13 @@ fn object_id(
 #ifdef TOLERANT
     @builtin(position) position: vec4<f32>,
 #endif
-#ifdef TOLERANT_MULTISAMPLED
+#ifdef SAMPLE_SHADING
     @builtin(sample_index) sample: u32,
 #endif
 ) -> Drawn {
     var drawn: Drawn;
 #ifdef TOLERANT
-#ifndef TOLERANT_MULTISAMPLED
+#ifndef SAMPLE_SHADING
     let sample = 0u;
 #endif
     if !shows(position, sample) {

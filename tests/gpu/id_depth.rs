@@ -105,17 +105,25 @@ fn method(small: &Small) -> Option<&'static str> {
 
 const TOLERANT: Option<&str> = Some("tolerant depth");
 
-/// Pixels that the prepass covers, and those of them without an id.
+/// The ids of every sample.
+fn ids(small: &Small) -> Vec<IdImage> {
+    let ids = small.prepass().expect("a prepass").ids;
+    assert!(!ids.is_empty(), "no ids");
+    ids
+}
+
+/// Samples that the prepass covers, and those of them without an id.
 fn covered_and_missing(small: &Small) -> [usize; 2] {
     let depth = small.depth().expect("a prepass");
-    let ids = small.object_ids().expect("drawn");
     let mut found = [0, 0];
-    for y in 0..ids.height {
-        for x in 0..ids.width {
-            let covered = depth.at(x, y, 0) > 0.0;
-            let missing = ids.pixels[(y * ids.width + x) as usize][0] == 0;
-            found[0] += usize::from(covered);
-            found[1] += usize::from(covered && missing);
+    for (sample, ids) in (0..).zip(ids(small)) {
+        for y in 0..ids.height {
+            for x in 0..ids.width {
+                let covered = depth.at(x, y, sample) > 0.0;
+                let missing = ids.pixels[(y * ids.width + x) as usize][0] == 0;
+                found[0] += usize::from(covered);
+                found[1] += usize::from(covered && missing);
+            }
         }
     }
     found
@@ -138,19 +146,27 @@ fn inner_and_wrong(want: &IdImage, got: &IdImage) -> [usize; 2] {
     found
 }
 
-/// Every covered pixel has an id, and all but those at borders the one that is wanted.
-fn assert_complete(small: &Small, want: &IdImage, what: &str) {
+/// Every covered sample has an id, and all but those at borders the one that is wanted.
+fn assert_complete(small: &Small, want: &[IdImage], what: &str) {
     let [covered, missing] = covered_and_missing(small);
-    assert!(covered > 3000, "{what}: {covered} covered");
+    assert!(covered > 3000 * want.len(), "{what}: {covered} covered");
     assert_eq!(missing, 0, "{what}: of {covered}");
-    let [inner, wrong] = inner_and_wrong(want, &small.object_ids().expect("drawn"));
-    assert!(inner > 5000, "{what}: {inner} inner pixels");
-    assert_eq!(wrong, 0, "{what}: of {inner}");
+    for (want, got) in want.iter().zip(ids(small)) {
+        let [inner, wrong] = inner_and_wrong(want, &got);
+        assert!(inner > 5000, "{what}: {inner} inner pixels");
+        assert_eq!(wrong, 0, "{what}: of {inner}");
+    }
 }
 
 fn pixels_of(ids: &IdImage, entity: Entity) -> usize {
     let id = u32::from(object_id(entity));
     ids.pixels.iter().filter(|pixel| pixel[0] == id).count()
+}
+
+/// Pixels of which the samples have several ids.
+fn mixed(ids: &[IdImage]) -> usize {
+    let is_mixed = |&k: &usize| ids.iter().any(|own| own.pixels[k] != ids[0].pixels[k]);
+    (0..ids[0].pixels.len()).filter(is_mixed).count()
 }
 
 /// At equal depth nearly all ids are lost; with a tolerance none is, and what an alpha mask has
@@ -160,10 +176,13 @@ fn nudged_positions_lose_ids_and_a_tolerance_keeps_them() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
         let (mut small, screen) = scene(msaa);
         let nudge = Nudge::new(&mut small);
-        let want = small.object_ids().expect("drawn");
+        let want = ids(&small);
         assert_complete(&small, &want, "as it is");
-        let mask = pixels_of(&want, screen);
+        let mask = pixels_of(&want[0], screen);
         assert!(mask > 100, "the screen is visible: {mask} pixels");
+        // Each sample has an id of its own, with a tolerance too.
+        let borders = mixed(&want);
+        assert!((borders > 100) == (msaa != Msaa::Off), "{borders} pixels");
         small.world().insert_resource(ObjectIdDepthTest::Tolerant);
         small.settle();
         assert_eq!(method(&small), TOLERANT);
@@ -180,6 +199,11 @@ fn nudged_positions_lose_ids_and_a_tolerance_keeps_them() {
             small.world().insert_resource(ObjectIdDepthTest::Tolerant);
             small.settle();
             assert_complete(&small, &want, &what);
+            let found = mixed(&ids(&small));
+            assert!(
+                found.abs_diff(borders) * 10 <= borders,
+                "{what}: {found}, {borders} pixels of several ids"
+            );
         }
         assert_eq!(small.errors(), 0);
     }
@@ -191,7 +215,7 @@ fn lost_ids_are_noticed_and_come_back_for_good() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
         let (mut small, _) = scene(msaa);
         let nudge = Nudge::new(&mut small);
-        let want = small.object_ids().expect("drawn");
+        let want = ids(&small);
         small.headless.step(30);
         assert_eq!(method(&small), None);
         nudge.set(&mut small, NUDGES[0]);

@@ -20,7 +20,7 @@ use bevy_comics_testkit::{
 use image::RgbaImage;
 
 use crate::{
-    pairwise::{compare::changed, effects::GROUPS},
+    pairwise::{checks::assert_drawn, compare::changed, effects::GROUPS},
     small::{self, Small},
 };
 
@@ -159,8 +159,11 @@ fn every_effect_is_drawn_as_with_vulkan() {
         assert!(off <= 0.002, "the engine's picture: {off}");
         for (name, style) in GROUPS {
             let [vulkan, gl] = apps.each_mut().map(|app| {
-                app.style(&style());
-                app.settle().picture()
+                let style = style();
+                app.style(&style);
+                let picture = app.settle().picture();
+                assert_drawn(app, &style, name);
+                picture
             });
             assert!(changed(&plain[1], &gl) > 0.02, "{name} is not drawn");
             let off = apart(&vulkan, &gl);
@@ -185,8 +188,10 @@ fn every_effect_is_drawn_within_the_limits_of_webgl2() {
             let plain = app.settle().picture();
             assert_eq!(app.errors(), 0, "{api:?}: of the engine");
             for (name, style) in GROUPS {
-                app.style(&style());
+                let style = style();
+                app.style(&style);
                 let picture = app.settle().picture();
+                assert_drawn(&app, &style, name);
                 assert_eq!(app.errors(), 0, "{api:?}: {name}");
                 let styled = changed(&plain, &picture);
                 assert!(styled > 0.02, "{api:?}: {name} changes {styled}");

@@ -48,12 +48,11 @@ fn runs(stamps: &Table) -> String {
     let is_whole = asked().all(|section| section.is_alone || is_stamped(&section));
     match commits.as_slice() {
         [commit] if is_whole && commit != UNKNOWN => format!(
-            "All sections but the long run were measured in one go, of commit {commit}, on {days}, in {:.0} \
-             minutes.",
+            "All sections but the long run were measured of one commit, {commit}, on {days}, in {:.0} minutes.",
             seconds / 60.0
         ),
         _ => format!(
-            "The sections were not measured in one go: the last column says when, of which commit, \
+            "The sections were not measured of one commit: the last column says when, of which commit, \
              and in how many seconds ({days}). Where it is empty, that was not written down."
         ),
     }

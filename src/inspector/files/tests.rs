@@ -3,7 +3,7 @@
 use super::*;
 use crate::{
     Contours, ToneBands,
-    settings::tests::odd::{Numbers, cases},
+    settings::tests::odd::{Numbers, cases, in_time},
 };
 
 fn folder(name: &str) -> PathBuf {
@@ -58,7 +58,7 @@ fn no_name_of_a_file_is_dangerous() {
     for _ in 0..cases() {
         let parts = (0..numbers.below(8)).map(|_| PARTS[numbers.below(PARTS.len())]);
         let name: String = parts.collect();
-        let Some(path) = path_of(&name, SUFFIX, folder) else {
+        let Some(path) = in_time(&name, || path_of(&name, SUFFIX, folder)) else {
             assert!(name.trim().is_empty(), "{name:?}");
             continue;
         };

@@ -16,7 +16,8 @@ const ABSOLUTE: f32 = 2.384185791015625e-7;
 // It moves surfaces across the screen, too: by at most a few steps of 1/256 pixel, to which
 // positions are rounded. Pixels of slope, in x and in y.
 #ifdef TOLERANT_MULTISAMPLED
-// Samples are up to half a pixel from the middle, whose depth a driver may give for all of them.
+// Some drivers give every sample the depth at the middle of the pixel, up to half a pixel away in
+// x and in y.
 const SHIFT: f32 = 0.75;
 #else
 const SHIFT: f32 = 0.0625;
@@ -28,8 +29,7 @@ fn is_near(drawn: f32, found: f32, slope: f32) -> bool {
     return found > 0.0 && abs(drawn - found) <= tolerance;
 }
 
-// `position` is that of the fragment, which is drawn for each sample if there are several: `sample`
-// is its number. Takes derivatives.
+// `position` is that of the fragment, `sample` the number of its sample. Takes derivatives.
 fn shows(position: vec4<f32>, sample: u32) -> bool {
     let slope = fwidth(position.z);
     let at = min(vec2<u32>(position.xy), textureDimensions(prepass_depth) - 1u);

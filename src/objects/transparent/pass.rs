@@ -31,7 +31,7 @@ use bevy::{
             TextureDimension, TextureFormat, TextureSampleType, TextureUsages, TextureView,
             binding_types::{texture_2d, texture_2d_multisampled},
         },
-        renderer::{RenderContext, RenderDevice, ViewQuery},
+        renderer::{RenderAdapter, RenderContext, RenderDevice, ViewQuery},
         texture::{CachedTexture, TextureCache},
         view::{ExtractedView, ViewDepthTexture},
     },
@@ -45,6 +45,7 @@ use crate::{
         DepthWanted, QueuedDepth, ViewObjectIds,
         phase::{Layer, ObjectIdItem},
     },
+    samples,
 };
 
 /// Copies the normal prepass. Its key is the number of samples per pixel.
@@ -52,14 +53,17 @@ use crate::{
 pub(super) struct NormalCopyPipeline {
     fullscreen: FullscreenShader,
     shader: Handle<Shader>,
+    shades_samples: bool,
 }
 
 pub(super) fn init_normal_copy(
     mut commands: Commands,
     fullscreen: Res<FullscreenShader>,
     assets: Res<AssetServer>,
+    adapter: Res<RenderAdapter>,
 ) {
     commands.insert_resource(NormalCopyPipeline {
+        shades_samples: samples::can_be_shaded(&adapter),
         fullscreen: fullscreen.clone(),
         shader: load_embedded_asset!(assets.as_ref(), "copy_normals.wgsl"),
     });
@@ -80,7 +84,11 @@ impl SpecializedRenderPipeline for NormalCopyPipeline {
     type Key = u32;
 
     fn specialize(&self, samples: u32) -> RenderPipelineDescriptor {
-        let multisampled = (samples > 1).then(|| "MULTISAMPLED".into());
+        let multisampled = samples > 1;
+        let shader_defs = [
+            (multisampled, "MULTISAMPLED"),
+            (multisampled && self.shades_samples, "SAMPLE_SHADING"),
+        ];
         RenderPipelineDescriptor {
             label: Some("comics_copy_normals".into()),
             layout: vec![copy_layout(samples)],
@@ -91,7 +99,10 @@ impl SpecializedRenderPipeline for NormalCopyPipeline {
             },
             fragment: Some(FragmentState {
                 shader: self.shader.clone(),
-                shader_defs: multisampled.into_iter().collect(),
+                shader_defs: (shader_defs.into_iter())
+                    .filter(|(on, _)| *on)
+                    .map(|(_, name)| name.into())
+                    .collect(),
                 entry_point: Some("copy_normal".into()),
                 targets: vec![Some(ColorTargetState {
                     format: NORMAL_PREPASS_FORMAT,

@@ -1,5 +1,10 @@
 //! Odd numbers in every field of a value, which are found by reflection.
 
+use std::{
+    fmt::Debug,
+    time::{Duration, Instant},
+};
+
 use bevy::reflect::{
     PartialReflect, ReflectMut, ReflectRef,
     enums::{DynamicEnum, DynamicVariant, Enum, VariantInfo},
@@ -11,6 +16,15 @@ use crate::FieldRange;
 pub(crate) fn cases() -> usize {
     let given = std::env::var("FUZZ_CASES").ok();
     given.and_then(|text| text.parse().ok()).unwrap_or(20_000)
+}
+
+/// What `f` makes of an input. Panics if that takes a second or longer.
+pub(crate) fn in_time<T>(input: &impl Debug, f: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let made = f();
+    let took = start.elapsed();
+    assert!(took < Duration::from_secs(1), "{took:?}: {input:?}");
+    made
 }
 
 /// Repeatable numbers: xorshift64*, Marsaglia and Vigna.

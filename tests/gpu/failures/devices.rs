@@ -264,6 +264,10 @@ fn put_lightmapped(small: &mut Small) {
 fn objects_with_lightmaps_have_lines() {
     let mut small = Small::new(size(), Msaa::Off);
     put_lightmapped(&mut small);
+    let plain = small.settle().picture();
+    small.style(&ComicStyle::new().with(Outlines::default()));
+    let lines = changed(&plain, &small.settle().picture());
+    assert!((0.005..0.2).contains(&lines), "{lines} of the picture");
     small.style(&many_passes());
     small.settle();
     assert_eq!(small.errors(), 0);

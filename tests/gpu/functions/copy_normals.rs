@@ -78,11 +78,10 @@ fn normals_of_all_samples_are_copied() {
         .map(|codes| codes.iter().map(|codes| levels(*codes)).collect())
         .collect();
     let source = gpu().multisampled(FORMAT, SIZE, &layers);
-    let definitions = [("MULTISAMPLED", None)];
-    assert_copies(
-        &source,
-        &samples,
-        &definitions,
-        "texture_multisampled_2d<f32>",
-    );
+    let declared = "texture_multisampled_2d<f32>";
+    let definitions = [("MULTISAMPLED", None), ("SAMPLE_SHADING", None)];
+    assert_copies(&source, &samples, &definitions, declared);
+    // Where a shader cannot be run for each sample, all have the normal of the first.
+    let first = vec![samples[0].clone(); 4];
+    assert_copies(&source, &first, &definitions[..1], declared);
 }

@@ -1,4 +1,4 @@
-//! Which samples show a fragment in the depth prepass, up to a tolerance.
+//! Whether the depth prepass shows a fragment, up to a tolerance.
 
 use bevy_comics_testkit::{
     reference::tolerance::{is_near, tolerance},

@@ -41,6 +41,10 @@ fn objects() -> Vec<Variant> {
             &[],
             &["MULTISAMPLED"],
         ),
+        vec![(
+            "objects/transparent/copy_normals.wgsl",
+            definitions(&["MULTISAMPLED", "SAMPLE_SHADING"]),
+        )],
     ]
     .concat();
     for widths in [&[][..], &["LINE_WIDTHS"], &["LINE_WIDTHS", "VERTEX_WIDTHS"]] {
@@ -48,6 +52,7 @@ fn objects() -> Vec<Variant> {
             &[][..],
             &["TOLERANT"],
             &["TOLERANT", "TOLERANT_MULTISAMPLED"],
+            &["TOLERANT", "TOLERANT_MULTISAMPLED", "SAMPLE_SHADING"],
         ] {
             let defs = [widths, depth].concat();
             // `objects/items.rs` builds both.

@@ -117,6 +117,7 @@ fn start(address: &str) -> Result<Child, String> {
 struct Said {
     adapter: String,
     compiled: usize,
+    refused: usize,
     /// Errors: the first file of each.
     errors: BTreeMap<String, String>,
     done: bool,
@@ -141,6 +142,7 @@ impl Said {
             path if path.starts_with("/good/") => self.compiled += 1,
             path => {
                 if let Some(file) = file(path) {
+                    self.refused += 1;
                     // The same error is on other lines of other files.
                     let end = request.body.find(" (line").unwrap_or(request.body.len());
                     let kind = request.body[..end].to_owned();
@@ -153,13 +155,22 @@ impl Said {
 }
 
 /// Whether browsers get a shader: devices that cannot number triangles have no sections.
-fn is_for_browsers(file: &&PathBuf) -> bool {
-    !fs::read_to_string(file).is_ok_and(|text| text.contains("enable primitive_index;"))
+fn is_for_browsers(text: &str) -> bool {
+    !text.contains("enable primitive_index;")
 }
 
 /// Compiles every file. Whether all are valid in the browser, but for what is known.
-pub fn compile(files: &[PathBuf]) -> Result<bool, String> {
-    let files: Vec<PathBuf> = files.iter().filter(is_for_browsers).cloned().collect();
+pub fn compile(all: &[PathBuf]) -> Result<bool, String> {
+    let mut files = Vec::new();
+    let mut texts = Vec::new();
+    for file in all {
+        let text = fs::read_to_string(file);
+        let text = text.map_err(|error| format!("{}: {error}", file.display()))?;
+        if is_for_browsers(&text) {
+            files.push(file.clone());
+            texts.push(text);
+        }
+    }
     let listener = TcpListener::bind("127.0.0.1:0").map_err(|error| error.to_string())?;
     let address = listener.local_addr().map_err(|error| error.to_string())?;
     listener
@@ -182,13 +193,9 @@ pub fn compile(files: &[PathBuf]) -> Result<bool, String> {
         let text = match (request.method.as_str(), request.path.as_str()) {
             ("GET", "/") => page.clone(),
             ("GET", path) => {
-                let file = path[1..]
-                    .parse()
-                    .ok()
-                    .and_then(|index: usize| files.get(index));
-                file.map_or_else(String::new, |file| {
-                    fs::read_to_string(file).unwrap_or_default()
-                })
+                let index = path[1..].parse().ok();
+                let text = index.and_then(|index: usize| texts.get(index));
+                text.cloned().unwrap_or_default()
             }
             _ => {
                 said.hear(&request, &files);
@@ -206,9 +213,10 @@ pub fn compile(files: &[PathBuf]) -> Result<bool, String> {
     let _ = browser.wait();
     println!("browser: {}", said.adapter);
     println!(
-        "{} of {} files compile in the browser",
+        "{} of {} files are valid in the browser; {} more are not for browsers",
         said.compiled,
-        files.len()
+        files.len(),
+        all.len() - files.len()
     );
     for (error, file) in &said.errors {
         let whose = known(error).map_or_else(String::new, |whose| format!(" (known: {whose})"));
@@ -216,6 +224,10 @@ pub fn compile(files: &[PathBuf]) -> Result<bool, String> {
     }
     if !said.done {
         return Err("the browser did not answer".into());
+    }
+    let heard = said.compiled + said.refused;
+    if heard != files.len() {
+        return Err(format!("answers for {heard} of {} files", files.len()));
     }
     Ok(said.errors.keys().all(|error| known(error).is_some()))
 }
