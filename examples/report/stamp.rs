@@ -76,21 +76,17 @@ fn git(arguments: &[&str]) -> Option<String> {
     output.status.success().then(|| text.trim().to_owned())
 }
 
-/// The commit of the source, and whether files that matter to measurements have changed since. Pages
-/// and the report's own tables do not.
+/// Files that matter to measurements: all but pages and the report's own tables.
+const MEASURED: [&str; 4] = ["--", ".", ":(exclude)docs", ":(exclude)*.md"];
+
+/// The last commit of files that matter, and whether one of them has changed since.
 fn commit() -> String {
-    let Some(commit) = git(&["rev-parse", "--short", "HEAD"]) else {
+    let of = |command: &[&str]| git(&[command, &MEASURED].concat());
+    let commit = of(&["log", "-1", "--format=%h"]).filter(|commit| !commit.is_empty());
+    let Some(commit) = commit else {
         return UNKNOWN.to_owned();
     };
-    let changed = git(&[
-        "status",
-        "--porcelain",
-        "--untracked-files=no",
-        "--",
-        ".",
-        ":(exclude)docs",
-        ":(exclude)*.md",
-    ]);
+    let changed = of(&["status", "--porcelain", "--untracked-files=no"]);
     if changed.is_some_and(|files| files.is_empty()) {
         commit
     } else {
