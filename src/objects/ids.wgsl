@@ -5,7 +5,7 @@
 #import bevy_comics::objects::widths::line_width
 #endif
 #ifdef TOLERANT
-#import bevy_comics::objects::tolerance::shows
+#import bevy_comics::objects::tolerance::{Fragment, shows}
 #endif
 
 // Id, slot, and the first word of the sections.
@@ -28,18 +28,12 @@ fn object_id(
 #endif
     @location(7) @interpolate(flat) instance: u32,
 #ifdef TOLERANT
-    @builtin(position) position: vec4<f32>,
-#endif
-#ifdef SAMPLE_SHADING
-    @builtin(sample_index) sample: u32,
+    fragment: Fragment,
 #endif
 ) -> Drawn {
     var drawn: Drawn;
 #ifdef TOLERANT
-#ifndef SAMPLE_SHADING
-    let sample = 0u;
-#endif
-    if !shows(position, sample) {
+    if !shows(fragment) {
         discard;
     }
 #endif

@@ -45,8 +45,6 @@ use bevy::{
     shader::{Shader, ShaderDefVal},
 };
 
-use crate::samples;
-
 use super::{
     ID_FORMAT, Pressure, WIDTH_FORMAT,
     depth_test::{DepthTest, TolerantIds, with_prepass_depth},
@@ -55,6 +53,7 @@ use super::{
     line_widths::{WideMeshes, WidthBindings},
     phase::{Layer, ObjectIdItem},
     sections::{SectionBuffer, SectionTables},
+    shading::has_sample_shading,
 };
 
 /// The parts that all pipelines of this pass have in common.
@@ -75,30 +74,19 @@ pub(super) fn init_object_id_pipeline(
     assets: Res<AssetServer>,
     adapter: Res<RenderAdapter>,
 ) {
+    let entries = BindGroupLayoutEntries::sequential(
+        ShaderStages::FRAGMENT,
+        (
+            storage_buffer_read_only::<Vec<UVec4>>(false),
+            storage_buffer_read_only::<Vec<u32>>(false),
+            uniform_buffer::<Pressure>(false),
+        ),
+    );
     commands.insert_resource(ObjectIdPipeline {
-        shades_samples: samples::can_be_shaded(&adapter),
+        shades_samples: has_sample_shading(&adapter),
         prepass: prepass.clone(),
-        layout: BindGroupLayoutDescriptor::new(
-            "comics_objects",
-            &BindGroupLayoutEntries::sequential(
-                ShaderStages::FRAGMENT,
-                (
-                    storage_buffer_read_only::<Vec<UVec4>>(false),
-                    storage_buffer_read_only::<Vec<u32>>(false),
-                ),
-            ),
-        ),
-        with_widths: BindGroupLayoutDescriptor::new(
-            "comics_objects_with_widths",
-            &BindGroupLayoutEntries::sequential(
-                ShaderStages::FRAGMENT,
-                (
-                    storage_buffer_read_only::<Vec<UVec4>>(false),
-                    storage_buffer_read_only::<Vec<u32>>(false),
-                    uniform_buffer::<Pressure>(false),
-                ),
-            ),
-        ),
+        layout: BindGroupLayoutDescriptor::new("comics_objects", &entries[..2]),
+        with_widths: BindGroupLayoutDescriptor::new("comics_objects_with_widths", &entries),
         shaders: [
             load_embedded_asset!(assets.as_ref(), "ids.wgsl"),
             load_embedded_asset!(assets.as_ref(), "sections.wgsl"),

@@ -31,6 +31,8 @@ mod phase;
 mod places;
 #[cfg(feature = "objects")]
 mod sections;
+#[cfg(feature = "objects")]
+mod shading;
 mod table;
 #[cfg(feature = "objects")]
 mod transparent;

@@ -7,7 +7,7 @@ enable primitive_index;
 #import bevy_comics::objects::widths::line_width
 #endif
 #ifdef TOLERANT
-#import bevy_comics::objects::tolerance::shows
+#import bevy_comics::objects::tolerance::{Fragment, shows}
 #endif
 
 @group(1) @binding(0) var<storage, read> objects: array<vec4<u32>>;
@@ -32,18 +32,12 @@ fn object_id(
     @location(7) @interpolate(flat) instance: u32,
     @builtin(primitive_index) triangle: u32,
 #ifdef TOLERANT
-    @builtin(position) position: vec4<f32>,
-#endif
-#ifdef SAMPLE_SHADING
-    @builtin(sample_index) sample: u32,
+    fragment: Fragment,
 #endif
 ) -> Drawn {
     var drawn: Drawn;
 #ifdef TOLERANT
-#ifndef SAMPLE_SHADING
-    let sample = 0u;
-#endif
-    if !shows(position, sample) {
+    if !shows(fragment) {
         discard;
     }
 #endif

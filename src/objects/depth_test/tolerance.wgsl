@@ -29,12 +29,20 @@ fn is_near(drawn: f32, found: f32, slope: f32) -> bool {
     return found > 0.0 && abs(drawn - found) <= tolerance;
 }
 
-// `position` is that of the fragment, `sample` the number of its sample. Takes derivatives.
-fn shows(position: vec4<f32>, sample: u32) -> bool {
+struct Fragment {
+    @builtin(position) position: vec4<f32>,
+#ifdef SAMPLE_SHADING
+    @builtin(sample_index) sample: u32,
+#endif
+}
+
+// Takes derivatives.
+fn shows(fragment: Fragment) -> bool {
+    let position = fragment.position;
     let slope = fwidth(position.z);
     let at = min(vec2<u32>(position.xy), textureDimensions(prepass_depth) - 1u);
-#ifdef TOLERANT_MULTISAMPLED
-    let found = textureLoad(prepass_depth, at, i32(sample)).x;
+#ifdef SAMPLE_SHADING
+    let found = textureLoad(prepass_depth, at, i32(fragment.sample)).x;
 #else
     let found = textureLoad(prepass_depth, at, 0).x;
 #endif

@@ -44,8 +44,8 @@ use crate::{
     objects::{
         DepthWanted, QueuedDepth, ViewObjectIds,
         phase::{Layer, ObjectIdItem},
+        shading::has_sample_shading,
     },
-    samples,
 };
 
 /// Copies the normal prepass. Its key is the number of samples per pixel.
@@ -63,7 +63,7 @@ pub(super) fn init_normal_copy(
     adapter: Res<RenderAdapter>,
 ) {
     commands.insert_resource(NormalCopyPipeline {
-        shades_samples: samples::can_be_shaded(&adapter),
+        shades_samples: has_sample_shading(&adapter),
         fullscreen: fullscreen.clone(),
         shader: load_embedded_asset!(assets.as_ref(), "copy_normals.wgsl"),
     });
