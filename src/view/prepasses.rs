@@ -47,6 +47,11 @@ pub(super) fn give_up_claims<P: Component>(
     }
 }
 
+/// Whether a camera has a prepass that this crate did not add.
+fn is_given<P: Component>(camera: EntityRef) -> bool {
+    camera.contains::<P>() && !camera.contains::<OwnPrepass<P>>()
+}
+
 /// Cameras that can have no prepass of this crate. The engine has one prepass for all cameras of a target,
 /// with the samples of one of them, and its renderer fails where another one has other samples.
 fn refused(
@@ -56,8 +61,6 @@ fn refused(
     let mut sharing: Vec<_> = cameras
         .iter()
         .filter_map(|camera| {
-            let own = camera.contains::<OwnPrepass<DepthPrepass>>()
-                || camera.contains::<OwnPrepass<NormalPrepass>>();
             let has = camera.contains::<DepthPrepass>() || camera.contains::<NormalPrepass>();
             let wanted = camera.get::<CameraPlan>();
             let is_wanted =
@@ -66,7 +69,8 @@ fn refused(
             let target = camera.get::<RenderTarget>()?.normalize(primary_window)?;
             let msaa = camera.get::<Msaa>()?;
             // Those that the game has given prepasses come first.
-            let key = (!has || own, settings.order, camera.id());
+            let is_given = is_given::<DepthPrepass>(camera) || is_given::<NormalPrepass>(camera);
+            let key = (!is_given, settings.order, camera.id());
             (settings.is_active && (has || is_wanted)).then_some((key, target, *msaa))
         })
         .collect();

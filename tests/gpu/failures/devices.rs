@@ -64,13 +64,16 @@ fn cameras_with_different_samples_share_a_target() {
     small.insert(Msaa::Sample4);
     small.headless.step(8);
     assert!(has(&small, first) && has(&small, second));
+    assert_eq!(small.errors(), 0, "the same samples");
     small.insert(Msaa::Off);
     small.headless.step(8);
     assert!(has(&small, first) && !has(&small, second));
+    assert_eq!(small.errors(), 0, "other samples");
     // The prepass of a game stays, and the other camera goes without.
     small.world().entity_mut(second).insert(DepthPrepass);
     small.headless.step(8);
     assert!(!has(&small, first) && has(&small, second));
+    assert_eq!(small.errors(), 0, "a prepass of the game");
 }
 
 /// Texts of errors, without numbers.
