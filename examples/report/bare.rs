@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use bevy_comics_testkit::device::gpu;
+use bevy_comics_testkit::{device::gpu, drawing::draw};
 
 pub fn words(values: &[u32]) -> Vec<u8> {
     values.iter().flat_map(|v| v.to_le_bytes()).collect()
@@ -85,30 +85,6 @@ pub fn fullscreen(source: &str, format: wgpu::TextureFormat) -> wgpu::RenderPipe
             multiview_mask: None,
             cache: None,
         })
-}
-
-pub fn draw(
-    encoder: &mut wgpu::CommandEncoder,
-    pipeline: &wgpu::RenderPipeline,
-    group: &wgpu::BindGroup,
-    target: &wgpu::TextureView,
-) {
-    let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-        label: None,
-        color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-            view: target,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations::default(),
-        })],
-        depth_stencil_attachment: None,
-        timestamp_writes: None,
-        occlusion_query_set: None,
-        multiview_mask: None,
-    });
-    pass.set_pipeline(pipeline);
-    pass.set_bind_group(0, group, &[]);
-    pass.draw(0..3, 0..1);
 }
 
 pub fn group(layout: &wgpu::BindGroupLayout, entries: &[wgpu::BindingResource]) -> wgpu::BindGroup {

@@ -2,11 +2,11 @@
 
 use bevy::math::UVec2;
 
-use bevy_comics_testkit::device::gpu;
+use bevy_comics_testkit::{device::gpu, drawing::draw};
 
 use crate::{
     Run,
-    bare::{self, Blit, draw, fullscreen, group, texture, time, upload, view},
+    bare::{self, Blit, fullscreen, group, texture, time, upload, view},
     capture,
     table::Table,
 };

@@ -125,7 +125,7 @@ fn small_features_lose_most() {
 #[test]
 fn crowds_that_pass_slowly_are_steady() {
     const SPEED: f32 = 0.25;
-    const FRAMES: u16 = 20;
+    const FRAMES: u16 = 32;
     for step in [4.0, 6.0, 9.0] {
         // Plates in step would all gain a row of pixels in the same frame.
         let mut small = scattered_crowd(step, 0.5);
