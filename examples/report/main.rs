@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! cargo run --example report                # writes docs/report
-//! cargo run --example report -- --only soak # the long run, which is no part of it
+//! cargo run --example report -- --only soak # the long run, which runs apart
 //! cargo run --example report -- --quick --out target/report
 //! cargo run --example report -- --render    # text and plots from the CSV files
 //! ```

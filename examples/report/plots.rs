@@ -5,9 +5,9 @@ use std::path::Path;
 use plotters::prelude::*;
 
 use crate::{
-    costs::{GROWING, OWN, bare_costs, costs, growth_exponent, line_score},
+    costs::{GROWING, OWN, bare_costs, costs, growth_exponent, line_score, size},
     load,
-    table::largest,
+    table::{Table, largest},
 };
 
 struct Plot<'a> {
@@ -16,6 +16,7 @@ struct Plot<'a> {
     x: &'a str,
     y: &'a str,
     logarithmic: [bool; 2],
+    /// Whether the points are joined by a line. Then a grey one shows growth in proportion.
     joined: bool,
 }
 
@@ -67,10 +68,13 @@ fn scatter(folder: &Path, plot: &Plot, points: &[Point]) -> Result<(), String> {
         .map_err(problem)?;
     let label = |axis: usize| {
         move |value: &f64| {
-            let value = if plot.logarithmic[axis] {
-                10f64.powf(*value)
-            } else {
-                *value
+            let value = match *value {
+                // Powers of ten only.
+                power if plot.logarithmic[axis] && (power - power.round()).abs() > 0.01 => {
+                    return String::new();
+                }
+                power if plot.logarithmic[axis] => 10f64.powf(power),
+                value => value,
             };
             if value != 0.0 && !(0.01..10_000.0).contains(&value.abs()) {
                 format!("{value:.0e}")
@@ -96,6 +100,14 @@ fn scatter(folder: &Path, plot: &Plot, points: &[Point]) -> Result<(), String> {
         .map_err(problem)?;
     let at = |p: &Point| (on_axis(p.0, 0), on_axis(p.1, 1));
     if plot.joined {
+        let (x, y, _) = points[0];
+        let proportional = points
+            .iter()
+            .map(|p| (on_axis(p.0, 0), on_axis(y * p.0 / x, 1)));
+        let grey = RGBColor(150, 150, 150);
+        chart
+            .draw_series(LineSeries::new(proportional, &grey))
+            .map_err(problem)?;
         chart
             .draw_series(LineSeries::new(points.iter().map(|p| at(p)), &BLUE))
             .map_err(problem)?;
@@ -103,8 +115,12 @@ fn scatter(folder: &Path, plot: &Plot, points: &[Point]) -> Result<(), String> {
     chart
         .draw_series(points.iter().map(|p| Circle::new(at(p), 4, BLUE.filled())))
         .map_err(problem)?;
-    // Labels move up or down until they cover no earlier label.
-    let mut taken: Vec<(i32, i32, i32)> = Vec::new();
+    // Labels move up or down until they cover no point and no earlier label.
+    let circle = |point: &&Point| {
+        let (x, y) = chart.backend_coord(&at(point));
+        (x - 5, y - 6, 10)
+    };
+    let mut taken: Vec<(i32, i32, i32)> = points.iter().map(circle).collect();
     for point in &points {
         let (px, py) = chart.backend_coord(&at(point));
         let width = 6 * point.2.chars().count() as i32;
@@ -118,7 +134,7 @@ fn scatter(folder: &Path, plot: &Plot, points: &[Point]) -> Result<(), String> {
                 .iter()
                 .any(|(x, y, w)| (top - y).abs() < 13 && left < x + w && *x < left + width)
         };
-        let top = [0, -13, 13, -26, 26, -39, 39]
+        let top = [0, -13, 13, -26, 26, -39, 39, -52, 52]
             .into_iter()
             .map(|by| py - 6 + by)
             .find(|top| is_free(*top))
@@ -134,7 +150,16 @@ fn scatter(folder: &Path, plot: &Plot, points: &[Point]) -> Result<(), String> {
     area.present().map_err(problem)
 }
 
+/// A label for times, with the adapter and the size of the pictures.
+fn blits(machine: &Table, what: &str, times: &Table) -> String {
+    let rows = machine.matching(&[("what", "adapter")]);
+    let adapter = rows.first().map_or("", |row| machine.cell(row, "value"));
+    let adapter = adapter.split(" (").next().unwrap_or_default();
+    format!("{what}, blits ({adapter}, {})", size(times))
+}
+
 pub fn draw(folder: &Path) -> Result<(), String> {
+    let machine = load(folder, "machine")?;
     // Errors of the range against time.
     let errors = load(folder, "range_errors")?;
     let times = load(folder, "range_times")?;
@@ -164,8 +189,8 @@ pub fn draw(folder: &Path) -> Result<(), String> {
         &Plot {
             file: "range.svg",
             title: "The range: worst error of the map over all scenes",
-            x: "time, blits",
-            y: "largest error of D (6e-8: none)",
+            x: &blits(&machine, "time", &times),
+            y: "largest error of the map, 0 to 1 (6e-8: none)",
             logarithmic: [true, true],
             joined: false,
         },
@@ -173,7 +198,8 @@ pub fn draw(folder: &Path) -> Result<(), String> {
     )?;
 
     let errors = load(folder, "encoding_errors")?;
-    let points: Vec<Point> = bare_costs(&load(folder, "encoding_times")?, "encoding")
+    let times = load(folder, "encoding_times")?;
+    let points: Vec<Point> = bare_costs(&times, "encoding")
         .into_iter()
         .filter(|(name, ..)| !name.starts_with("blit"))
         .map(|(name, _, ratio)| {
@@ -191,8 +217,8 @@ pub fn draw(folder: &Path) -> Result<(), String> {
         &Plot {
             file: "encoding.svg",
             title: "Stored depth: worst error of the map over all scenes",
-            x: "time of storing and mapping, blits",
-            y: "largest error of D",
+            x: &blits(&machine, "time of storing and mapping", &times),
+            y: "largest error of the map, 0 to 1",
             logarithmic: [false, true],
             joined: false,
         },
@@ -200,7 +226,8 @@ pub fn draw(folder: &Path) -> Result<(), String> {
     )?;
 
     let scores = load(folder, "line_scores")?;
-    let costs_of = costs(&load(folder, "line_times")?, "lines", "teapot", &OWN);
+    let times = load(folder, "line_times")?;
+    let costs_of = costs(&times, "lines", "teapot", &OWN);
     let all: Vec<&Vec<String>> = scores.rows.iter().collect();
     let points: Vec<Point> = scores
         .distinct(&all, "detector")
@@ -216,15 +243,15 @@ pub fn draw(folder: &Path) -> Result<(), String> {
         &Plot {
             file: "lines.svg",
             title: "Lines: error against time",
-            x: "time, blits",
+            x: &blits(&machine, "time", &times),
             y: "1 - F1, every line of all scenes",
-            logarithmic: [false, false],
+            logarithmic: [false, true],
             joined: false,
         },
         &points,
     )?;
 
-    let (_, points) = growth_exponent(&load(folder, "growth_times")?, "pixels", GROWING);
+    let (exponent, points) = growth_exponent(&load(folder, "growth_times")?, "pixels", GROWING);
     let points: Vec<Point> = points
         .into_iter()
         .map(|(x, y)| (x, y, format!("{y:.1} ms")))
@@ -233,9 +260,9 @@ pub fn draw(folder: &Path) -> Result<(), String> {
         folder,
         &Plot {
             file: "growth.svg",
-            title: "The default comic's passes",
-            x: "pixels",
-            y: "milliseconds",
+            title: &format!("Time of the default comic's passes: exponent {exponent:.2} (grey: 1)"),
+            x: "pixels of the picture",
+            y: "time, milliseconds",
             logarithmic: [true, true],
             joined: true,
         },

@@ -114,7 +114,7 @@ pub const SECTIONS: [Section; 21] = [
     section(
         "ladder",
         ladder::measure,
-        "What does each style cost, and what is left out?",
+        "What does each style cost, an idle plugin, and a prepass? What is left out?",
         "3. What is left out",
     ),
     section(
@@ -138,7 +138,7 @@ pub const SECTIONS: [Section; 21] = [
     section(
         "growth",
         growth::measure,
-        "How does the cost grow with pixels, vertices and cameras?",
+        "How does the cost grow with pixels, vertices (to a million) and cameras?",
         "4. Cost and its growth",
     ),
     section(
@@ -158,7 +158,7 @@ pub const SECTIONS: [Section; 21] = [
         ..section(
             "soak",
             soak::measure,
-            "Does a long run keep memory, or fail?",
+            "In a long run, does memory grow or rendering fail?",
             "7. A long run",
         )
     },

@@ -95,7 +95,14 @@ fn the_text_is_made_of_the_tables() {
         .expect("the example runs");
     let said = String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{said}");
-    for name in ["report.md", "range.svg", "flicker.svg"] {
+    for name in [
+        "report.md",
+        "range.svg",
+        "encoding.svg",
+        "lines.svg",
+        "growth.svg",
+        "flicker.svg",
+    ] {
         let made = fs::read_to_string(copy.join(name)).expect("made");
         let kept = fs::read_to_string(folder().join(name)).expect("kept");
         assert!(made == kept, "{name} is not what its tables make");

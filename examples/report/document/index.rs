@@ -28,10 +28,15 @@ fn asked() -> impl Iterator<Item = Section> {
         .filter(|section| !section.question.is_empty())
 }
 
-/// When and of which commits all sections were measured. Those that run alone say it in their rows only.
+/// Whether a stamp names a commit, without changes since.
+fn is_exact(commit: &str) -> bool {
+    commit != UNKNOWN && !commit.contains(' ')
+}
+
+/// When and at which commits all sections were measured.
 fn runs(stamps: &Table) -> String {
-    let is_part = |row: &&Vec<String>| !SECTIONS.iter().any(|s| s.is_alone && s.name == row[0]);
-    let all: Vec<&Vec<String>> = stamps.rows.iter().filter(is_part).collect();
+    let is_alone = |row: &&Vec<String>| SECTIONS.iter().any(|s| s.is_alone && s.name == row[0]);
+    let (alone, all): (Vec<_>, Vec<_>) = stamps.rows.iter().partition(is_alone);
     let commits = stamps.distinct(&all, "commit");
     let mut dates = stamps.distinct(&all, "date");
     dates.sort();
@@ -39,38 +44,48 @@ fn runs(stamps: &Table) -> String {
         return String::new();
     };
     let days = if first == last {
-        first.clone()
+        format!("on {first}")
     } else {
-        format!("{first} to {last}")
+        format!("from {first} to {last}")
     };
     let seconds: f64 = stamps.numbers(&all, "seconds").iter().sum();
     let is_stamped = |section: &Section| all.iter().any(|row| row[0] == section.name);
     let is_whole = asked().all(|section| section.is_alone || is_stamped(&section));
-    match commits.as_slice() {
-        [commit] if is_whole && commit != UNKNOWN => format!(
-            "All sections but the long run were measured of one commit, {commit}, on {days}, in {:.0} minutes.",
+    let when = match commits.as_slice() {
+        [commit] if is_whole && is_exact(commit) => format!(
+            "All sections but the long run were measured at one commit, {commit}, {days}, in {:.0} minutes.",
             seconds / 60.0
         ),
         _ => format!(
-            "The sections were not measured of one commit: the last column says when, of which commit, \
-             and in how many seconds ({days}). Where it is empty, that was not written down."
+            "The sections were not measured at one commit: the last column says when, at which commit, \
+             and in how many seconds ({days}). Where it is empty, that was not recorded."
         ),
+    };
+    let alone: Vec<String> = alone.iter().map(|row| stamp_of(stamps, row)).collect();
+    if alone.is_empty() {
+        when
+    } else {
+        format!("{when} The long run: {}.", alone.join("; "))
     }
 }
 
 /// When and of what everything was measured, as far as the tables say so.
 pub fn measured(machine: &Table, stamps: Option<&Table>) -> String {
-    if let Some(stamps) = stamps {
-        return runs(stamps);
-    }
     let about = |what| {
         let rows = machine.matching(&[("what", what)]);
         let first = rows.first().copied();
         first.map(|row| machine.cell(row, "value"))
     };
-    match (about("date"), about("commit")) {
-        (Some(date), Some(commit)) => format!("Measured on {date}, of commit {commit}."),
+    let when = match (stamps, about("date"), about("commit")) {
+        (Some(stamps), ..) => runs(stamps),
+        (None, Some(date), Some(commit)) => format!("Measured on {date}, at commit {commit}."),
         _ => String::new(),
+    };
+    match (about("adapter"), about("cores")) {
+        (Some(adapter), Some(cores)) => {
+            format!("{when} Adapter: {adapter}, on a machine with {cores} cores.")
+        }
+        _ => when,
     }
 }
 
@@ -114,12 +129,13 @@ fn row(section: &Section, targets: &[&Target], folder: &Path, body: &str) -> Str
 /// When a section was measured, of what, and how long it took: a cell.
 fn stamp(stamps: &Table, section: &str) -> String {
     let rows = stamps.matching(&[("section", section)]);
-    let of = |row: &Vec<String>| {
-        let [date, commit, seconds] =
-            ["date", "commit", "seconds"].map(|name| stamps.cell(row, name));
-        format!("{date}, {commit}, {seconds} s")
-    };
+    let of = |row: &Vec<String>| stamp_of(stamps, row);
     rows.first().copied().map_or_else(String::new, of)
+}
+
+fn stamp_of(stamps: &Table, row: &[String]) -> String {
+    let [date, commit, seconds] = ["date", "commit", "seconds"].map(|name| stamps.cell(row, name));
+    format!("{date}, {commit}, {seconds} s")
 }
 
 /// The index of a report whose other text is `body`.
@@ -141,8 +157,8 @@ pub fn index(
         "## Index\n\nOf {} limits, {met} are met and {missed} are missed, {nearly} of these by less than \
          the noise of the measurement. Targets that were not measured: {unknown}. A target with two limits \
          counts twice. [Targets](#targets) and [effects of the page](#effects-of-the-page) have them all. \
-         \"Worst\" is what is farthest beyond its limit, \"nearest\" what is nearest to its limit where all \
-         are met. A blit is the time of copying the picture.\n",
+         \"Worst\" is the largest miss, as a factor of its limit; \"nearest\" is the closest call where \
+         all are met. A blit is the time of copying the picture.\n",
         met + missed
     );
     let [head, rule] = if stamps.is_some() {

@@ -30,7 +30,7 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
         "### Whole and steady lines\n\nDashes for each 100 pixels of true line, on the models \
          above and on two shapes while they turn: half of the ends of lines, where no other line begins. \
          `cut` lines do not continue along weak edges (`continuity` 0, `specks` 1); where a line continues \
-         along a weak edge that ends inside a surface, it has one more end than without, so the hard surface has no fewer dashes with it. The next column has \
+         along a weak edge that ends inside a surface, it has one more end than without, so a model may have more dashes with it. The next column has \
          those of continued lines whose end is within 2 pixels of the end of a true line (the borders of \
          pixels of the same view at four times the resolution, where the steps and folds of the truth are): \
          folds that fade out, rims that end on a surface. The last one is what is found if true ends \
@@ -116,8 +116,7 @@ fn dash_steps(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     let table = load(folder, "ink_dash_steps")?;
     out.push_str(
-        "\nThe organic model has most dashes. The same with one setting changed at a time, from the \
-         continued lines:\n\n| changed | dashes | of these at true ends | by chance |\n|---|---|---|---|\n",
+        "\nThe organic model with one setting changed at a time, from the continued lines:\n\n| changed | dashes | of these at true ends | by chance |\n|---|---|---|---|\n",
     );
     for row in &table.rows {
         let length = table.number(row, "true").max(1.0);
@@ -160,16 +159,20 @@ pub fn straight(out: &mut String, folder: &Path) -> Result<(), String> {
         "Lines along straight edges of 64 slopes, 1/64 to 1 row per column, at 16 offsets each, \
          over 200 columns. Width: the ink of a column times the cosine of the edge. Difference: \
          of the mean width of a line from the width that was asked for, the largest of all lines. \
-         Unevenness: the standard deviation of the width from column to column.\n\n\
-         | px wide | difference, px | unevenness, px: mean | largest |\n|---|---|---|---|\n",
+         Area: the same difference, of the mean width of all lines of a slope, in percent of the width \
+         that was asked for. Unevenness: the standard deviation of the width from column to \
+         column.\n\n\
+         | px wide | difference, px | area, % | unevenness, px: mean | largest |\n\
+         |---|---|---|---|---|\n",
     );
     for width in straight_widths(&table) {
         let rows = table.matching(&[("width", &width)]);
         let uneven = table.numbers(&rows, "uneven");
         let _ = writeln!(
             out,
-            "| {width} | {:.4} | {:.3} | {:.3} |",
+            "| {width} | {:.4} | {:.2} | {:.3} | {:.3} |",
             most(&table, &rows, "most"),
+            area(&table, &rows, &width),
             uneven.iter().sum::<f64>() / uneven.len().max(1) as f64,
             most(&table, &rows, "uneven"),
         );
@@ -203,6 +206,11 @@ pub fn straight(out: &mut String, folder: &Path) -> Result<(), String> {
     Ok(())
 }
 
+/// The largest difference of the area of a slope's lines, in percent of that of lines of `width`.
+fn area(table: &Table, rows: &[&Vec<String>], width: &str) -> f64 {
+    100.0 * most(table, rows, "mean") / width.parse().unwrap_or(f64::NAN)
+}
+
 fn straight_targets(folder: &Path) -> Result<Vec<Target>, String> {
     if !folder.join("ink_straight.csv").exists() {
         return Ok(vec![]);
@@ -218,9 +226,9 @@ fn straight_targets(folder: &Path) -> Result<Vec<Target>, String> {
     }
     for width in straight_widths(&table) {
         let rows = table.matching(&[("width", &width)]);
-        let part = 100.0 * most(&table, &rows, "mean") / width.parse().unwrap_or(f64::NAN);
         let what = format!("straight lines of {width} px: area over 200 px, difference in %");
-        all.push(Target::at_most("straight", what, 0.5, Some(part)));
+        let found = area(&table, &rows, &width);
+        all.push(Target::at_most("straight", what, 0.5, Some(found)));
     }
     let rows = table.matching(&[("width", "2")]);
     all.push(

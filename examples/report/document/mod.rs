@@ -26,7 +26,8 @@ pub fn render(folder: &Path) -> Result<String, String> {
     let body = body(folder)?;
     let mut out = String::from(
         "# Error against run time\n\nWritten by `cargo run --example report`. Every \
-         number is computed from the CSV files in this folder, and a test computes it again.\n\n",
+         number that was measured comes from the CSV files in this folder. A test writes this text again \
+         from them, and checks some numbers with other code.\n\n",
     );
     let measured = index::measured(&machine, stamps.as_ref());
     if !measured.is_empty() {
@@ -38,7 +39,9 @@ pub fn render(folder: &Path) -> Result<String, String> {
         let _ = writeln!(out, "| {} | {} |", row[0], row[1]);
     }
     out.push_str(
-        "\nVariants are timed in turn (A B C A B C). The time of a variant is that of the frame \
+        "\n`peers` is a program of its own, whose dependencies are built without optimisation \
+         (`opt-level` 0; all else is built with 1): it compares crates with each other, and its times \
+         do not compare with those of other sections.\n\nVariants are timed in turn (A B C A B C). The time of a variant is that of the frame \
          with it, less that of the frame without it; the tables give the median of all rounds. \
          Ratios are to a copying pass of the same size in the same round (\"blits\"): the median, \
          and in some tables the 10th and 90th percentile of the rounds. \"blit again\" is the \

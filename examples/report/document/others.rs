@@ -23,7 +23,8 @@ pub fn peers(out: &mut String, folder: &Path) -> Result<(), String> {
          are those over the frame without any of the crates. \"Full-screen passes\" are all \
          passes after the main pass, and this crate's passes before it. \"Whole camera\" is the \
          whole frame, with the noise of the main pass: the time of crates that draw lines or \
-         light with the meshes. The crates do not draw the same: extruded and scaled shells \
+         light with the meshes. It is negative where a camera is faster than the frame without the crates, in \
+         which meshes have the standard material, and by noise. The crates do not draw the same: extruded and scaled shells \
          are lines around objects only, and a material draws no lines.\n\n\
          | | full-screen passes, ms | blits | 10 % to 90 % | whole camera, ms |\n\
          |---|---|---|---|---|",

@@ -13,13 +13,12 @@ pub fn stability(out: &mut String, folder: &Path) -> Result<(), String> {
     out.push_str(
         "## 2. Stability on stiff and extreme cases\n\nThe depth map (Eq. 4) on the adapter, \
          compared with the exact quotient of the raw depths. The textbook's form computes \
-         distances first, then `(z - min) / (max - min)`; this crate's form (`ours`) is a \
-         quotient of differences of raw depth. The condition is the factor by which the map \
+         distances first, then `(z - min) / (max - min)`; this crate's form is a quotient of \
+         differences of raw depth. The condition is the factor by which the map \
          multiplies a relative error of a depth. `ulp` and `codes` are the largest errors, in \
-         units in the last place and in 8-bit codes; `wild` is the number of results that are \
-         not finite. The floor that hides noise (`DepthMap::floor`) is off. A single depth has \
+         units in the last place and in 8-bit codes; `not finite` is the number of such results. The floor that hides noise (`DepthMap::floor`) is off. A single depth has \
          no quotient: its map is 0 by definition. Subnormal depths count as sky.\n\n\
-         | case | condition | textbook, ulp | codes | wild | ours, ulp | codes | wild |\n\
+         | case | condition | textbook, ulp | codes | not finite | this crate, ulp | codes | not finite |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
     for row in table.matching(&[("kind", "depth map")]) {

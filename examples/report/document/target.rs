@@ -10,10 +10,10 @@ pub struct Target {
     subject: Option<String>,
     what: String,
     limits: [f64; 2],
-    /// A second limit, below the first.
-    then: Option<f64>,
+    /// A second limit, and what it is for.
+    second: Option<(&'static str, f64)>,
     value: Option<f64>,
-    /// Digits after the point; `None` for numbers as 1.20e-3.
+    /// Digits after the point; `None` for as many as the number needs.
     digits: Option<usize>,
     /// How far apart rounds of the same measurement are.
     noise: f64,
@@ -56,7 +56,7 @@ impl Target {
             subject: None,
             what: what.into(),
             limits: [f64::NEG_INFINITY, limit],
-            then: None,
+            second: None,
             value,
             digits: Some(2),
             noise: 0.0,
@@ -94,8 +94,8 @@ impl Target {
         }
     }
 
-    /// With its value as a power of ten.
-    pub fn in_powers(self) -> Self {
+    /// With four digits after the point, and smaller values as a power of ten.
+    pub fn with_small_values(self) -> Self {
         Self {
             digits: None,
             ..self
@@ -114,10 +114,10 @@ impl Target {
         }
     }
 
-    /// A second, lower limit for later.
-    pub fn then_at_most(self, limit: f64) -> Self {
+    /// With a second limit, and what it is for.
+    pub fn and_at_most(self, case: &'static str, limit: f64) -> Self {
         Self {
-            then: Some(limit),
+            second: Some((case, limit)),
             ..self
         }
     }
@@ -129,8 +129,8 @@ impl Target {
 
     /// Both ends of every limit.
     fn ranges(&self) -> Vec<[f64; 2]> {
-        let then = self.then.map(|then| [f64::NEG_INFINITY, then]);
-        std::iter::once(self.limits).chain(then).collect()
+        let second = self.second.map(|(_, limit)| [f64::NEG_INFINITY, limit]);
+        std::iter::once(self.limits).chain(second).collect()
     }
 
     /// Whether each limit is met; empty where nothing was measured.
@@ -142,21 +142,22 @@ impl Target {
         self.ranges().into_iter().map(is_met).collect()
     }
 
-    /// Whether the value is as near to the first limit as rounds are to each other.
-    fn is_near(&self) -> bool {
-        let [low, high] = self.limits;
-        let near = |value: f64| (value - low).abs().min((value - high).abs()) < self.noise;
-        self.known().is_some_and(near)
+    /// For each limit, whether the value is as near to it as rounds are to each other.
+    fn near(&self) -> Vec<bool> {
+        let value = self.known().unwrap_or(f64::NAN);
+        let is_near =
+            |[low, high]: [f64; 2]| (value - low).abs().min((value - high).abs()) < self.noise;
+        self.ranges().into_iter().map(is_near).collect()
     }
 
     pub fn count(&self) -> Count {
         let verdicts = self.verdicts();
         let met = verdicts.iter().filter(|is_met| **is_met).count();
-        let is_nearly = self.is_near() && verdicts.first() == Some(&false);
+        let nearly = |(is_met, is_near): &(&bool, bool)| !**is_met && *is_near;
         Count {
             met,
             missed: verdicts.len() - met,
-            nearly: usize::from(is_nearly),
+            nearly: verdicts.iter().zip(self.near()).filter(nearly).count(),
             unknown: usize::from(verdicts.is_empty()),
         }
     }
@@ -182,8 +183,8 @@ impl Target {
         } else {
             format!("{low} to {high}")
         };
-        if let Some(then) = self.then {
-            let _ = write!(limits, "; then {then}");
+        if let Some((case, limit)) = self.second {
+            let _ = write!(limits, "; {case}: {limit}");
         }
         limits
     }
@@ -191,22 +192,21 @@ impl Target {
     fn shown(&self) -> String {
         match (self.known(), self.digits) {
             (Some(value), Some(digits)) => format!("{value:.digits$}"),
-            (Some(value), None) => format!("{value:.2e}"),
+            (Some(value), None) if value != 0.0 && value.abs() < 1e-4 => format!("{value:.1e}"),
+            (Some(value), None) => format!("{value:.4}"),
             (None, _) => "not measured".to_owned(),
         }
     }
 
     /// Whether it is met, as text; empty where nothing was measured.
     pub fn verdict(&self) -> String {
-        let text = |is_met: &bool| if *is_met { "met" } else { "**missed**" };
-        let verdicts = self.verdicts();
-        let mut all: Vec<String> = verdicts.iter().map(|met| text(met).to_owned()).collect();
-        if let Some(first) = all.first_mut()
-            && self.is_near()
-        {
-            first.push_str(", within the noise");
-        }
-        all.join("; ")
+        let text = |(is_met, is_near)| {
+            let text = if is_met { "met" } else { "**missed**" };
+            let noise = if is_near { ", within the noise" } else { "" };
+            format!("{text}{noise}")
+        };
+        let verdicts = self.verdicts().into_iter().zip(self.near());
+        verdicts.map(text).collect::<Vec<String>>().join("; ")
     }
 
     /// A row of the table of targets.
