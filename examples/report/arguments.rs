@@ -8,7 +8,7 @@ const USAGE: &str = "cargo run --example report -- [OPTIONS]
 
   --quick          small pictures, few repetitions, no other crates
   --out FOLDER     folder of the report; default docs/report
-  --only SECTION   measure one section only: machine, ranges, encodings, lines, models,
+  --only SECTION   measure this section only; may be given several times: machine, ranges, encodings, lines, models,
                    steps, dashes, dash-steps, memory, meadow, straight, page, stability, ladder,
                    parts, scene-parts, toon, growth, peers, flicker or soak
   --tables         write the CSV files alone, without text and plots
@@ -22,7 +22,8 @@ pub struct Arguments {
     pub quick: bool,
     pub render: bool,
     pub tables: bool,
-    pub only: Option<String>,
+    /// The sections to measure; empty for all of the report.
+    pub only: Vec<String>,
     pub out: PathBuf,
 }
 
@@ -45,7 +46,7 @@ impl Arguments {
             quick: false,
             render: false,
             tables: false,
-            only: None,
+            only: Vec::new(),
             out: PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/report")),
         };
         while let Some(argument) = parser.next().map_err(wrong)? {
@@ -59,7 +60,7 @@ impl Arguments {
                     if !SECTIONS.iter().any(|section| section.name == name) {
                         return Err(format!("no section {name:?}"));
                     }
-                    read.only = Some(name);
+                    read.only.push(name);
                 }
                 Short('h') | Long("help") => return Ok(None),
                 other => return Err(wrong(other.unexpected())),
@@ -83,7 +84,7 @@ mod tests {
         "--quick\n--out\ntarget/report",
         "--only\nflicker\n--tables",
         "--render\n--out=folder",
-        "--quick\n--only=scene-parts\n--tables",
+        "--quick\n--only=scene-parts\n--tables\n--only\nparts",
         "--help",
     ];
 
@@ -99,6 +100,15 @@ mod tests {
                 assert!(arguments.only.iter().all(known));
             },
         );
+    }
+
+    /// Every section that is named is measured.
+    #[test]
+    fn several_sections_may_be_named() {
+        let given = ["--only", "parts", "--only=toon"];
+        let read = Arguments::read(lexopt::Parser::from_args(given));
+        let read = read.expect("a right command line").expect("no help");
+        assert_eq!(read.only, ["parts", "toon"]);
     }
 
     /// The help names every section.

@@ -124,9 +124,10 @@ fn run() -> Result<(), String> {
         };
         headless::adapter()?;
         for section in &SECTIONS {
-            let is_wanted = match only {
-                Some(name) => name == section.name,
-                None => !section.is_alone,
+            let is_wanted = if only.is_empty() {
+                !section.is_alone
+            } else {
+                only.iter().any(|name| name == section.name)
             };
             if is_wanted {
                 run.measure(section)?;

@@ -53,7 +53,7 @@ fn runs(stamps: &Table) -> String {
     let is_whole = asked().all(|section| section.is_alone || is_stamped(&section));
     let when = match commits.as_slice() {
         [commit] if is_whole && is_exact(commit) => format!(
-            "All sections but the long run were measured at one commit, {commit}, {days}, in {:.0} minutes.",
+            "All sections but the long run were measured at one commit, {commit}, {days}; their times add up to {:.0} minutes.",
             seconds / 60.0
         ),
         _ => format!(

@@ -17,7 +17,11 @@ mod toon;
 
 use std::{fmt::Write, path::Path};
 
-use crate::load;
+use crate::{
+    costs::costs,
+    load,
+    table::{median, quantile},
+};
 
 /// The whole report.
 pub fn render(folder: &Path) -> Result<String, String> {
@@ -49,8 +53,35 @@ pub fn render(folder: &Path) -> Result<String, String> {
          on other kinds of adapter; nothing here was measured on a GPU unless the table above \
          says so.\n\n",
     );
+    noise(&mut out, folder)?;
     out.push_str(&body);
     Ok(out)
+}
+
+/// How much the time of a copy varies from round to round in the ladder.
+fn noise(out: &mut String, folder: &Path) -> Result<(), String> {
+    let times = load(folder, "ladder_times")?;
+    let of = |variant| {
+        let rows = times.matching(&[("section", "ladder"), ("variant", variant)]);
+        times.numbers(&rows, "post")
+    };
+    let copies: Vec<f64> = of("blit")
+        .iter()
+        .zip(of("nothing"))
+        .map(|(copy, nothing)| copy - nothing)
+        .collect();
+    let again = costs(&times, "ladder", "teapot", &["post"]);
+    let again = again.iter().find(|cost| cost.name == "blit again");
+    let again = again.map_or(f64::NAN, |cost| cost.ratio[1]);
+    let _ = writeln!(
+        out,
+        "How quiet the machine was: in the rounds of section 3, a copy took {:.1} ms (10 % to 90 % of \
+         the rounds: {:.1} to {:.1} ms), and \"blit again\" {again:.2} blits.\n",
+        median(&copies),
+        quantile(&copies, 0.1),
+        quantile(&copies, 0.9)
+    );
+    Ok(())
 }
 
 /// The report without its head.

@@ -125,15 +125,12 @@ const PRINTS: [(&str, &str); 5] = [
 ];
 /// Several effects.
 const SEVERAL: [&str; 1] = ["halftone; print offset and paper"];
-/// Effects for photographs, whose time has no limit.
-const FOR_PHOTOGRAPHS: [&str; 1] = ["paint; strokes along edges"];
 
 /// An effect of the page: its cost, its errors, and its time over that of one pass.
 struct Effect {
     cost: Cost,
     errors: Vec<Target>,
-    /// The target of the time; `None` where there is no limit.
-    over: Option<Target>,
+    over: Target,
 }
 
 /// The tables that errors of effects are in.
@@ -206,10 +203,9 @@ fn effects_of(folder: &Path) -> Result<(Vec<Effect>, f64), String> {
         let over = Target::at_most("parts", what, MOST_BLITS, Some(middle - single))
             .with_noise(0.5 * (high - low))
             .about(&cost.name);
-        let has_limit = !FOR_PHOTOGRAPHS.contains(&cost.name.as_str());
         Effect {
             errors: errors.of(&cost.name),
-            over: has_limit.then_some(over),
+            over,
             cost,
         }
     };
@@ -220,7 +216,7 @@ fn effects_of(folder: &Path) -> Result<(Vec<Effect>, f64), String> {
 /// The targets of the effects: errors and times.
 pub fn effect_targets(folder: &Path) -> Result<Vec<Target>, String> {
     let (effects, _) = effects_of(folder)?;
-    let targets = |effect: Effect| effect.errors.into_iter().chain(effect.over);
+    let targets = |effect: Effect| effect.errors.into_iter().chain([effect.over]);
     Ok(effects.into_iter().flat_map(targets).collect())
 }
 
@@ -233,14 +229,14 @@ pub fn effects(out: &mut String, folder: &Path) -> Result<(), String> {
          passes. Over one pass: less the time of `{ONE_PASS}`, an effect of one pass ({single:.2} \
          blits). Target: at most {MOST_BLITS}; what is as near to it as half the distance between the \
          10th and the 90th percentile of the rounds is within the noise. \"Strokes along edges\" are \
-         for photographs: their time has no target. An effect without an error has no figure of its \
-         own here: tests compare it with its twin pixel by pixel (`tests/gpu`).\n\n\
+         for photographs, and are not meant to be fast. An effect without an error has no figure of its \
+         own here: tests compare it with its twin (`tests/gpu`).\n\n\
          | effect | error | blits | over one pass | target of the time |\n|---|---|---|---|---|"
     );
     for effect in &effects {
         let mut errors: Vec<String> = effect.errors.iter().map(Target::phrase).collect();
         if errors.is_empty() {
-            errors.push("equals its twin".to_owned());
+            errors.push("compared with its twin in tests".to_owned());
         }
         let blits = effect.cost.ratio[1];
         let _ = writeln!(
@@ -249,10 +245,7 @@ pub fn effects(out: &mut String, folder: &Path) -> Result<(), String> {
             effect.cost.name,
             errors.join("<br>"),
             blits - single,
-            effect
-                .over
-                .as_ref()
-                .map_or_else(|| "none".to_owned(), Target::verdict)
+            effect.over.verdict()
         );
     }
     out.push_str(
