@@ -123,7 +123,7 @@ pub fn dash_steps(run: &Run) -> Result<(), String> {
         persistence: 8,
         ..default
     };
-    let mut variants = steps::variants();
+    let mut variants = steps::some(run, steps::variants());
     variants.push(("persistence 8", kept));
     variants.push((IN_SECTIONS, default));
     let mut table = Table::new(&["method", "ends", "true", "true_ends", "by_chance"]);
@@ -231,10 +231,10 @@ pub fn whiten(rig: &mut Rig) {
 
 /// Pixels that change by more than two codes from frame to frame, and the time of a frame.
 pub fn memory(run: &Run) -> Result<(), String> {
-    let (frames, size) = if run.quick {
-        (4, UVec2::new(160, 90))
+    let (settled, frames, size) = if run.quick {
+        (20, 4, UVec2::new(160, 90))
     } else {
-        (64, UVec2::new(640, 360))
+        (150, 64, UVec2::new(640, 360))
     };
     let mut table = Table::new(&["scene", "method", "changed", "pixels", "ms"]);
     let lines = |memory: f32| {
@@ -259,7 +259,7 @@ pub fn memory(run: &Run) -> Result<(), String> {
         ));
         for (method, wear) in &methods {
             rig.wear(wear);
-            rig.headless.step(150);
+            rig.headless.step(settled);
             let mut before = rig.headless.picture();
             let mut changed = 0;
             for _ in 0..frames {

@@ -3,12 +3,7 @@
 use bevy::{core_pipeline::prepass::DepthPrepass, prelude::*};
 use bevy_comics::ComicsPlugin;
 
-use bevy_comics_testkit::{
-    bench,
-    headless::{Headless, HeadlessOptions},
-    scenes::BuiltIn,
-    work,
-};
+use bevy_comics_testkit::{bench, headless::Headless, scenes::BuiltIn, work};
 
 use crate::{
     Run,
@@ -62,7 +57,7 @@ fn idle(run: &Run) -> Result<(), String> {
         "idle plugin",
         "without the plugin again",
     ] {
-        let options = HeadlessOptions { size, ..default() };
+        let options = rig::options(size);
         let mut headless = if name == "idle plugin" {
             Headless::new(options, ComicsPlugin)
         } else {

@@ -28,6 +28,15 @@ pub struct Rig {
     pub size: UVec2,
 }
 
+/// Systems run as in a game.
+pub fn options(size: UVec2) -> HeadlessOptions {
+    HeadlessOptions {
+        size,
+        parallel_systems: true,
+        ..default()
+    }
+}
+
 /// What a camera draws while it is timed.
 #[derive(Clone, Debug)]
 pub enum Wear {
@@ -49,8 +58,7 @@ impl Wear {
 impl Rig {
     /// A built-in scene, or an empty world.
     pub fn new(scene: Option<BuiltIn>, size: UVec2) -> Self {
-        let options = HeadlessOptions { size, ..default() };
-        let mut headless = Headless::new(options, (ComicsPlugin, BenchPlugin));
+        let mut headless = Headless::new(options(size), (ComicsPlugin, BenchPlugin));
         let target = headless.render_target();
         let world = headless.app.world_mut();
         let vantage = scene.map(|scene| {

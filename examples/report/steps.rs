@@ -90,6 +90,14 @@ pub fn variants() -> Vec<(&'static str, Outlines)> {
     all.map(free).into()
 }
 
+/// The first few in a quick run.
+pub fn some<T>(run: &Run, mut variants: Vec<T>) -> Vec<T> {
+    if run.quick {
+        variants.truncate(2);
+    }
+    variants
+}
+
 /// What is counted of a variant.
 #[derive(Clone, Copy, Default)]
 struct Counts {
@@ -177,7 +185,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     } else {
         UVec2::new(240, 136)
     };
-    let variants = variants();
+    let variants = some(run, variants());
     let mut studios = [
         Studio::new(size * FINE, ids_alone()),
         Studio::new(size, Outlines::default()),

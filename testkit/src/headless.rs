@@ -7,6 +7,7 @@ use bevy::{
     app::{PluginGroupBuilder, PluginsState},
     asset::{AssetPlugin, RenderAssetUsages},
     camera::{ImageRenderTarget, RenderTarget},
+    ecs::schedule::{Schedules, SingleThreadedExecutor},
     log::LogPlugin,
     prelude::*,
     render::{
@@ -49,6 +50,9 @@ pub struct HeadlessOptions {
     /// Whether pipelines compile while frames are drawn, as in a game; else every
     /// pipeline is compiled before its first use.
     pub background_pipelines: bool,
+    /// Whether systems run on several threads, as in a game. By default they run one after another: of
+    /// a frame with a small picture, threads that wait for each other are the larger part.
+    pub parallel_systems: bool,
     /// Limits of the device below those of the adapter.
     pub limits: Option<wgpu::Limits>,
     /// Graphics APIs that may be used. Default: those that `WGPU_BACKEND` names, else all but
@@ -66,6 +70,7 @@ impl Default for HeadlessOptions {
             assets: format!("{ROOT}/assets"),
             watch: false,
             background_pipelines: false,
+            parallel_systems: false,
             limits: None,
             backends: default_backends(),
         }
@@ -223,6 +228,9 @@ impl Headless {
         }
         app.finish();
         app.cleanup();
+        if !options.parallel_systems {
+            run_systems_in_turn(&mut app);
+        }
         Self {
             app,
             target,
@@ -319,6 +327,19 @@ impl Drop for Headless {
         if !std::thread::panicking() {
             validation::check();
         }
+    }
+}
+
+/// Gives every schedule of the game and of the renderer an executor on one thread.
+fn run_systems_in_turn(app: &mut App) {
+    let in_turn = |world: &mut World| {
+        for (_, schedule) in world.resource_mut::<Schedules>().iter_mut() {
+            schedule.set_executor(SingleThreadedExecutor::new());
+        }
+    };
+    in_turn(app.world_mut());
+    if let Some(renderer) = app.get_sub_app_mut(RenderApp) {
+        in_turn(renderer.world_mut());
     }
 }
 

@@ -48,7 +48,7 @@ pub struct Measures {
     pub contrast: f64,
     /// See `flicker`.
     pub flicker: f64,
-    /// See `fragments`; 0 without lines.
+    /// See `fragments`; 0 without lines, and where they are not counted.
     pub fragments: f64,
 }
 
@@ -94,6 +94,8 @@ pub struct LookBench {
     /// The plane of each pixel: 0 near, 1 middle, 2 far; `None` for the sky.
     planes: Vec<Option<u8>>,
     frames: usize,
+    /// Whether fragments of lines are counted, which needs a picture without lines. Default: true.
+    pub count_fragments: bool,
 }
 
 impl LookBench {
@@ -110,13 +112,14 @@ impl LookBench {
             planes: planes(&depth),
             studio,
             frames,
+            count_fragments: true,
         }
     }
 
     /// The picture in a style, and what is measured of it. Time stands still on the turntable, so
     /// that lines that are drawn anew by the clock do not count as flicker.
     pub fn measure(&mut self, style: Option<&ComicStyle>) -> (RgbaImage, Measures) {
-        let lined = style.filter(|style| style.get::<Outlines>().is_some());
+        let lined = style.filter(|style| self.count_fragments && style.get::<Outlines>().is_some());
         let bare = lined.map(|style| {
             self.studio
                 .shoot(Some(&style.clone().without::<Outlines>()))

@@ -355,6 +355,7 @@ fn app(folder: &Path, plain: bool) -> Headless {
     let options = HeadlessOptions {
         size: SIZES[0],
         assets: folder.display().to_string(),
+        parallel_systems: true,
         ..default()
     };
     let mut headless = if plain {

@@ -7,7 +7,7 @@ use bevy_comics_testkit::truth::fragments;
 use crate::{
     pictures::{assert_pass_is_its_twin, outlined},
     small::{Object, Small, linear, unlit},
-    walls::{towards_the_sky, wall},
+    walls::{towards_the_sky, towards_the_sky_again, wall},
 };
 
 const SIZE: UVec2 = UVec2::new(96, 64);
@@ -35,9 +35,9 @@ fn mask(picture: &image::RgbaImage) -> Vec<bool> {
 
 /// A white wall, and in front of it an upright or level wire of one pixel, in pieces of eight
 /// pixels with gaps.
-fn dashed(gap: f32, upright: bool, color: Color) -> Small {
-    let mut small = towards_the_sky(SIZE);
-    wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 900.0);
+fn dashed(small: &mut Small, gap: f32, upright: bool, color: Color) {
+    towards_the_sky_again(small, Msaa::Off);
+    wall(small, [-60.0, -40.0], [60.0, 40.0], 900.0);
     let mut from = -24.0_f32;
     while from < 24.0 {
         let to = (from + 8.0).min(24.0);
@@ -54,20 +54,20 @@ fn dashed(gap: f32, upright: bool, color: Color) -> Small {
         );
         from = to + gap;
     }
-    small
 }
 
 /// Truth: with its gaps closed, a dashed wire looks like a whole one; gaps that are longer than
 /// asked look like before.
 #[test]
 fn a_wire_with_short_gaps_looks_like_a_whole_one() {
+    let mut small = towards_the_sky(SIZE);
     for upright in [false, true] {
-        let mut whole = dashed(0.0, upright, Color::WHITE);
-        let whole = drawn(&mut whole, thin(0));
+        dashed(&mut small, 0.0, upright, Color::WHITE);
+        let whole = drawn(&mut small, thin(0));
         let ink = mask(&whole).into_iter().filter(|ink| *ink).count();
         assert_eq!(ink, 48, "a line of 48 pixels");
         for gap in 1..=4 {
-            let mut small = dashed(gap as f32, upright, Color::WHITE);
+            dashed(&mut small, gap as f32, upright, Color::WHITE);
             let before = drawn(&mut small, thin(0));
             assert!(before != whole);
             for bridge in 1..=3 {
@@ -98,9 +98,10 @@ fn a_wire_with_short_gaps_looks_like_a_whole_one() {
 /// their gaps are at most three pixels long.
 #[test]
 fn thin_wires_at_small_angles_are_whole() {
+    let mut small = towards_the_sky(SIZE);
     for (slope, thickness) in [(0.2, 0.7), (0.25, 0.6), (0.34, 0.5)] {
         for upright in [false, true] {
-            let mut small = towards_the_sky(SIZE);
+            towards_the_sky_again(&mut small, Msaa::Off);
             wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 900.0);
             let angle = f32::atan(slope)
                 + if upright {
@@ -129,6 +130,7 @@ fn thin_wires_at_small_angles_are_whole() {
 /// were whole.
 #[test]
 fn closed_gaps_are_like_the_line_beside_them() {
+    let mut small = towards_the_sky(SIZE);
     let weight = LineWeight {
         outer: 1.5,
         inner: 0.5,
@@ -154,7 +156,7 @@ fn closed_gaps_are_like_the_line_beside_them() {
                 ..Outlines::SILHOUETTES
             };
             let pictures = [0.0, 3.0].map(|gap| {
-                let mut small = dashed(gap, false, Color::srgb(0.9, 0.5, 0.2));
+                dashed(&mut small, gap, false, Color::srgb(0.9, 0.5, 0.2));
                 small.world().spawn((KeyLight, light, Object));
                 drawn(&mut small, outlines(3))
             });

@@ -7,7 +7,7 @@ use bevy_comics::{ComicStyle, Outlines};
 use bevy_comics_testkit::forest;
 
 use crate::{
-    small::{Small, black_ink, unlit},
+    small::{Object, Small, black_ink, unlit},
     walls::{towards_the_sky, wall},
 };
 
@@ -30,7 +30,15 @@ fn scattered_crowd(step: f32, scatter: f32) -> Small {
 /// Puts a crowd of small plates, as wide as half of the picture, into it. `left`: its left border, in
 /// pixels from the middle.
 fn put_plates(small: &mut Small, left: f32, step: f32, scatter: f32) {
-    let plate = Rectangle::from_length(0.5 * step);
+    let world = small.world();
+    // One mesh and one material, so that all are drawn at once.
+    let plate = Mesh3d(
+        world
+            .resource_mut::<Assets<Mesh>>()
+            .add(Rectangle::from_length(0.5 * step)),
+    );
+    let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+    let white = MeshMaterial3d(materials.add(unlit(Color::WHITE)));
     let [columns, rows] = [(48.0 / step) as i32, (64.0 / step) as i32];
     for (i, j) in (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j))) {
         let place = Vec2::new(i as f32 + 0.5, j as f32 + 0.5) * step + Vec2::new(left, -32.0);
@@ -42,7 +50,7 @@ fn put_plates(small: &mut Small, left: f32, step: f32, scatter: f32) {
         let turned = Quat::from_rotation_z(0.7 * (i + 3 * j) as f32);
         let depth = 100.0 + 80.0 * ((i * 7 + j * 3) % 9) as f32;
         let at = Transform::from_translation(place.extend(-depth)).with_rotation(turned);
-        small.put(plate, unlit(Color::WHITE), at);
+        world.spawn((Object, plate.clone(), white.clone(), at));
     }
 }
 

@@ -18,12 +18,23 @@ pub fn unit_per_pixel(size: UVec2) -> OrthographicProjection {
 /// An orthographic view towards the sky, one unit per pixel, its origin in the middle.
 pub fn towards_the_sky(size: UVec2) -> Small {
     let mut small = Small::new(size, Msaa::Off);
+    face_the_sky(&mut small);
+    small
+}
+
+/// The same view in an app that has drawn something else, by a new camera.
+pub fn towards_the_sky_again(small: &mut Small, msaa: Msaa) {
+    small.restart(msaa);
+    face_the_sky(small);
+}
+
+fn face_the_sky(small: &mut Small) {
     small.clear();
+    let size = small.headless.options.size;
     small.insert((
         Transform::IDENTITY,
         Projection::Orthographic(unit_per_pixel(size)),
     ));
-    small
 }
 
 /// A wall at a distance, from its left and lower to its right and upper end.
