@@ -57,7 +57,7 @@ fn idle(run: &Run) -> Result<(), String> {
         "idle plugin",
         "without the plugin again",
     ] {
-        let options = rig::options(size);
+        let options = bench::options(size);
         let mut headless = if name == "idle plugin" {
             Headless::new(options, ComicsPlugin)
         } else {

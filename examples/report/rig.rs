@@ -12,7 +12,7 @@ use bevy_comics::{ComicStyle, ComicsPlugin};
 
 use bevy_comics_testkit::{
     bench::{self, BenchPlugin, Blit, Lap, Laps},
-    headless::{Headless, HeadlessOptions},
+    headless::Headless,
     scenes::{BuiltIn, Stage, Vantage},
     truth::Truth,
 };
@@ -26,15 +26,6 @@ pub struct Rig {
     pub others: Vec<Entity>,
     pub vantage: Option<Vantage>,
     pub size: UVec2,
-}
-
-/// Systems run as in a game.
-pub fn options(size: UVec2) -> HeadlessOptions {
-    HeadlessOptions {
-        size,
-        parallel_systems: true,
-        ..default()
-    }
 }
 
 /// What a camera draws while it is timed.
@@ -58,7 +49,7 @@ impl Wear {
 impl Rig {
     /// A built-in scene, or an empty world.
     pub fn new(scene: Option<BuiltIn>, size: UVec2) -> Self {
-        let mut headless = Headless::new(options(size), (ComicsPlugin, BenchPlugin));
+        let mut headless = Headless::new(bench::options(size), (ComicsPlugin, BenchPlugin));
         let target = headless.render_target();
         let world = headless.app.world_mut();
         let vantage = scene.map(|scene| {

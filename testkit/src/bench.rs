@@ -25,7 +25,7 @@ use bevy::{
 use bevy_comics::ComicsSystems;
 
 use crate::{
-    headless::Headless,
+    headless::{Headless, HeadlessOptions},
     stopwatch::{self, Stopwatch},
 };
 
@@ -48,6 +48,15 @@ pub const LAPS: usize = 5;
 
 /// Milliseconds of a frame, by [`Lap`].
 pub type Laps = [f64; LAPS];
+
+/// Of an app that is timed: its systems run as in a game.
+pub fn options(size: UVec2) -> HeadlessOptions {
+    HeadlessOptions {
+        size,
+        parallel_systems: true,
+        ..default()
+    }
+}
 
 /// How times are measured on this adapter, in words.
 pub fn method(headless: &Headless) -> &'static str {

@@ -50,8 +50,8 @@ pub struct HeadlessOptions {
     /// Whether pipelines compile while frames are drawn, as in a game; else every
     /// pipeline is compiled before its first use.
     pub background_pipelines: bool,
-    /// Whether systems run on several threads, as in a game. By default they run one after another: of
-    /// a frame with a small picture, threads that wait for each other are the larger part.
+    /// Whether systems run on several threads, as in a game. Default: one after another, because with
+    /// small pictures up to half of a frame goes into waking threads.
     pub parallel_systems: bool,
     /// Limits of the device below those of the adapter.
     pub limits: Option<wgpu::Limits>,

@@ -20,7 +20,7 @@ use cloudiful_bevy_outline::{GpmoOutlinePlugin, OutlineAssets, spawn_default_out
 
 use bevy_comics_testkit::{
     bench::{self, BenchPlugin, Blit, Laps},
-    headless::{Headless, HeadlessOptions},
+    headless::Headless,
     scenes::{BuiltIn, ScenePart, Stage},
     work::{along_cracks, default_comic},
 };
@@ -43,9 +43,8 @@ type Put = fn(&mut Bench);
 
 impl Bench {
     fn new() -> Self {
-        let options = HeadlessOptions { size: SIZE, ..default() };
         let mut headless = Headless::new(
-            options,
+            bench::options(SIZE),
             (
                 ComicsPlugin,
                 EdgeDetectionPlugin,
