@@ -30,6 +30,8 @@ The inspector on a built-in scene. F10 opens and closes the panel.
     --cartoon          the scene in cartoon materials, with its looks
     --cameras N        1, or 2 side by side (1)
     --size WxH         size of the window in physical pixels (1280x720)
+    --picture WIDTH    cameras draw to this part of the window from the left, in physical
+                       pixels (all of it)
     --scale FACTOR     scale factor of the window (the system's)
     --styles FOLDER    folder of style files (assets/styles)
     --looks FOLDER     folder of look files (assets/looks)
@@ -49,6 +51,7 @@ struct Options {
     cartoon: bool,
     cameras: u32,
     size: UVec2,
+    picture: Option<u32>,
     scale: Option<f32>,
     plugin: ComicsInspectorPlugin,
     open: bool,
@@ -78,6 +81,7 @@ fn options() -> Result<Options, lexopt::Error> {
         cartoon: false,
         cameras: 1,
         size: UVec2::new(1280, 720),
+        picture: None,
         scale: None,
         plugin: ComicsInspectorPlugin::default(),
         open: false,
@@ -100,6 +104,7 @@ fn options() -> Result<Options, lexopt::Error> {
                 let side = |text: &str| text.parse().map_err(|_| "a size is WIDTHxHEIGHT");
                 options.size = UVec2::new(side(width)?, side(height)?);
             }
+            Long("picture") => options.picture = Some(parser.value()?.parse()?),
             Long("scale") => options.scale = Some(parser.value()?.parse()?),
             Long("styles") => options.plugin.styles = parser.value()?.into(),
             Long("cartoon") => options.cartoon = true,
@@ -189,18 +194,19 @@ fn setup(mut stage: Stage, options: Res<Options>, inspector: Option<ResMut<Comic
     }
 }
 
-/// Two cameras share the window: the first draws to its left half, the second to
+/// Two cameras share the picture: the first draws to its left half, the second to
 /// its right half.
 fn lay_out(
     options: Res<Options>,
     window: Single<&Window>,
     mut cameras: Query<(&mut Camera, &Half)>,
 ) {
-    if options.cameras < 2 {
+    if options.cameras < 2 && options.picture.is_none() {
         return;
     }
-    let size = window.physical_size();
-    if size.x < 2 || size.y == 0 {
+    let mut size = window.physical_size();
+    size.x = options.picture.unwrap_or(size.x).min(size.x);
+    if size.x < options.cameras || size.y == 0 {
         return;
     }
     for (mut camera, half) in &mut cameras {
@@ -212,7 +218,7 @@ fn lay_out(
             // A screenshot is being taken.
             continue;
         }
-        let width = size.x / 2;
+        let width = size.x / options.cameras;
         let viewport = Viewport {
             physical_position: UVec2::new(half.0 * width, 0),
             physical_size: UVec2::new(width, size.y),

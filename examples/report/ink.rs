@@ -58,8 +58,7 @@ pub fn dashes(run: &Run) -> Result<(), String> {
     };
     let methods = [("cut", cut), ("continued", whole)];
     let mut lined = methods.map(|(_, outlines)| Studio::new(size, outlines));
-    let all = turning();
-    for (model, parts) in &all[..if run.quick { 1 } else { all.len() }] {
+    for (model, parts) in &run.some(1, turning()) {
         for studio in lined.iter_mut().chain([&mut fine]) {
             studio.show_meshes(parts.clone());
             studio.rig.headless.step(4);
@@ -123,7 +122,7 @@ pub fn dash_steps(run: &Run) -> Result<(), String> {
         persistence: 8,
         ..default
     };
-    let mut variants = steps::some(run, steps::variants());
+    let mut variants = run.some(2, steps::variants());
     variants.push(("persistence 8", kept));
     variants.push((IN_SECTIONS, default));
     let mut table = Table::new(&["method", "ends", "true", "true_ends", "by_chance"]);
@@ -231,10 +230,10 @@ pub fn whiten(rig: &mut Rig) {
 
 /// Pixels that change by more than two codes from frame to frame, and the time of a frame.
 pub fn memory(run: &Run) -> Result<(), String> {
-    let (settled, frames, size) = if run.quick {
-        (20, 4, UVec2::new(160, 90))
+    let (settled, frames, timed, size) = if run.quick {
+        (4, 2, 1, UVec2::new(160, 90))
     } else {
-        (150, 64, UVec2::new(640, 360))
+        (150, 64, 21, UVec2::new(640, 360))
     };
     let mut table = Table::new(&["scene", "method", "changed", "pixels", "ms"]);
     let lines = |memory: f32| {
@@ -248,7 +247,7 @@ pub fn memory(run: &Run) -> Result<(), String> {
         ("no memory", lines(1.0)),
         ("memory", lines(0.125)),
     ];
-    for scene in [BuiltIn::Teapot, BuiltIn::Village] {
+    for scene in run.some(1, [BuiltIn::Teapot, BuiltIn::Village]) {
         let mut rig = Rig::new(Some(scene), size);
         whiten(&mut rig);
         let world = rig.headless.app.world_mut();
@@ -271,7 +270,7 @@ pub fn memory(run: &Run) -> Result<(), String> {
                 changed += before.pixels().zip(now.pixels()).filter(differ).count();
                 before = now;
             }
-            let mut times: Vec<f64> = (0..21)
+            let mut times: Vec<f64> = (0..timed)
                 .map(|_| {
                     let start = Instant::now();
                     rig.headless.step(1);

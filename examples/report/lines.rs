@@ -83,7 +83,7 @@ fn smooth(run: &Run) -> Result<(), String> {
         ),
         ("silhouettes", soft_outlines, soft_outlines),
     ];
-    for (what, hard, derivative) in looks {
+    for (what, hard, derivative) in run.some(1, looks) {
         let truth = shrunk(
             &picture(size * REFERENCE, hard(REFERENCE as f32)),
             REFERENCE,
@@ -127,7 +127,8 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let mut times = rig::times();
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
     rig.unlight();
-    let mut variants: Vec<(String, Wear)> = detectors()
+    let mut variants: Vec<(String, Wear)> = run
+        .some(2, detectors())
         .into_iter()
         .map(|(name, style)| (name, Wear::style(style)))
         .collect();

@@ -73,6 +73,13 @@ impl Run {
         let _ = std::io::stdout().flush();
     }
 
+    /// All of what a section measures, or the first `few` in a quick run, which shows only that the
+    /// section works.
+    pub fn some<T>(&self, few: usize, all: impl IntoIterator<Item = T>) -> Vec<T> {
+        let count = if self.quick { few } else { usize::MAX };
+        all.into_iter().take(count).collect()
+    }
+
     /// The same with another number of rounds.
     pub fn with_rounds(&self, rounds: usize) -> Self {
         Self {
@@ -116,7 +123,7 @@ fn run() -> Result<(), String> {
     if !arguments.render {
         let run = Run {
             quick: *quick,
-            rounds: if *quick { 2 } else { 7 },
+            rounds: if *quick { 1 } else { 7 },
             frames: if *quick { 1 } else { 2 },
             folder: out.clone(),
             started: Instant::now(),

@@ -80,11 +80,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         "mean_free",
         "most_free",
     ]);
-    let presets = presets::ALL.iter().copied();
-    let all: Vec<Preset> = presets
-        .take(if run.quick { 2 } else { usize::MAX })
-        .collect();
-    for preset in all {
+    for preset in run.some(1, presets::ALL.iter().copied()) {
         let Some((lines, alone)) = lines_alone(preset) else {
             continue;
         };

@@ -98,7 +98,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         "line",
     ]);
     let (frames, size) = if run.quick {
-        (2, UVec2::new(120, 68))
+        (1, UVec2::new(120, 68))
     } else {
         (90, UVec2::new(240, 136))
     };
@@ -115,8 +115,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     };
     let large = size * FINE;
     let mut thin = Studio::new(large, thin);
-    let models = &Specimen::ALL[..if run.quick { 1 } else { Specimen::ALL.len() }];
-    for &model in models {
+    for model in run.some(1, Specimen::ALL) {
         for studio in [&mut fine, &mut lined, &mut thin] {
             studio.show(model);
             studio.rig.headless.step(4);

@@ -3,7 +3,7 @@
 
 use bevy_comics::{ColorHarmony, FocusStyle, Halftone, HarmonyMode, HatchingMarks, PaintForm};
 use bevy_comics_testkit::{
-    page_work,
+    page_work::{self, PageCounter},
     painting::{RADII, SLOPES, bled, edge_moved, kuwahara_error},
     reference::{color, color_harmony::harmonize, halftone::Plate},
     screens::{
@@ -22,8 +22,9 @@ pub fn measure(run: &Run) -> Result<(), String> {
     run.save("page_harmonies", &harmonies())?;
     run.say("painted");
     let mut table = Table::new(&["effect", "texels", "most", "bytes"]);
-    for (name, style) in page_work::effects() {
-        let work = page_work::count(name, &style);
+    let mut counter = PageCounter::default();
+    for (name, style) in run.some(4, page_work::effects()) {
+        let work = counter.count(name, &style);
         table.push(&[
             &name.replace(',', ";"),
             &format!("{:.2}", work.texels[0]),
@@ -118,14 +119,14 @@ fn beats(black_generation: f32) -> f64 {
 
 /// Errors of single effects with their limits. The names are those of the times.
 fn errors(run: &Run) -> Table {
-    let samples = if run.quick { 1024 } else { 16384 };
+    let samples = if run.quick { 64 } else { 16384 };
+    let radii = run.some(1, RADII);
     let largest =
         |errors: &mut dyn Iterator<Item = f64>| errors.fold(0.0, |a, b| f64::max(a, b.abs()));
-    let kuwahara = largest(&mut [2, 4, 6].into_iter().map(kuwahara_error));
+    let kuwahara = largest(&mut run.some(1, [2, 4, 6]).into_iter().map(kuwahara_error));
     let edges = |form| {
-        let cases = SLOPES
-            .into_iter()
-            .flat_map(|slope| RADII.map(|r| (slope, r)));
+        let slopes = run.some(1, SLOPES).into_iter();
+        let cases = slopes.flat_map(|slope| radii.iter().map(move |r| (slope, *r)));
         largest(&mut cases.map(|(slope, radius)| edge_moved(form, radius, slope)))
     };
     let classic = "difference from Kuwahara's quadrants; linear light";

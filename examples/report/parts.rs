@@ -123,8 +123,10 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let mut times = rig::times();
     let mut rig = Rig::new(Some(BuiltIn::Teapot), size);
     rig.unlight();
-    rig::record(run, &mut times, "lines", "teapot", &mut rig, &lines());
-    rig::record(run, &mut times, "page", "teapot", &mut rig, &page());
+    let styles = run.some(2, lines());
+    rig::record(run, &mut times, "lines", "teapot", &mut rig, &styles);
+    let styles = run.some(4, page());
+    rig::record(run, &mut times, "page", "teapot", &mut rig, &styles);
     let variants = [
         ("nothing marked", Wear::Nothing),
         ("selected", Wear::Selected),
@@ -222,7 +224,7 @@ pub fn of_scenes(run: &Run) -> Result<(), String> {
     let mut times = rig::times();
     let rounds = run.rounds.min(3);
     let run = &run.with_rounds(1);
-    for part in changes() {
+    for part in run.some(3, changes()) {
         let mut changed = part.rig(size, part.change);
         let mut base = part.base.map(|change| part.rig(size, change));
         let named =

@@ -89,8 +89,8 @@ pub fn score(run: &Run) -> Result<(), String> {
     } else {
         UVec2::new(480, 270)
     };
-    let scenes = if run.quick { &SCENES[..1] } else { &SCENES };
-    for &scene in scenes {
+    let scenes = run.some(1, SCENES);
+    for &scene in &scenes {
         let truth = truth(scene, size, FINE);
         let mut push = |name: &str, lines: &[bool]| {
             for (what, kinds) in [("silhouettes", &[0][..]), ("every line", &[0, 1, 2])] {
@@ -117,7 +117,7 @@ pub fn score(run: &Run) -> Result<(), String> {
         rig.wear(&Wear::Nothing);
         rig.headless.step(4);
         let plain = rig.headless.picture();
-        for (name, style) in detectors() {
+        for (name, style) in run.some(2, detectors()) {
             rig.wear(&Wear::style(style));
             rig.headless.step(4);
             push(&name, &mask(&plain, &rig.headless.picture()));
@@ -126,7 +126,7 @@ pub fn score(run: &Run) -> Result<(), String> {
         run.say(&format!("{}: lines scored", scene.name()));
     }
     run.save("line_scores", &table)?;
-    whole(run, scenes)
+    whole(run, &scenes)
 }
 
 /// How many small parts the lines of each scene fall into.

@@ -90,14 +90,6 @@ pub fn variants() -> Vec<(&'static str, Outlines)> {
     all.map(free).into()
 }
 
-/// The first few in a quick run.
-pub fn some<T>(run: &Run, mut variants: Vec<T>) -> Vec<T> {
-    if run.quick {
-        variants.truncate(2);
-    }
-    variants
-}
-
 /// What is counted of a variant.
 #[derive(Clone, Copy, Default)]
 struct Counts {
@@ -185,7 +177,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     } else {
         UVec2::new(240, 136)
     };
-    let variants = some(run, variants());
+    let variants = run.some(2, variants());
     let mut studios = [
         Studio::new(size * FINE, ids_alone()),
         Studio::new(size, Outlines::default()),
@@ -205,8 +197,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         }
         run.say(&format!("{subject} {distance}: steps scored"));
     };
-    let models = &Specimen::ALL[..if run.quick { 1 } else { Specimen::ALL.len() }];
-    for &model in models {
+    for model in run.some(1, Specimen::ALL) {
         for studio in &mut studios {
             studio.show(model);
             studio.rig.headless.step(4);

@@ -166,16 +166,20 @@ fn wear(rig: &mut Rig, meshes: &[Entity], light: Option<&CartoonLight>) {
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    let size = UVec2::new(400, 280);
+    let size = if run.quick {
+        UVec2::new(100, 70)
+    } else {
+        UVec2::new(400, 280)
+    };
     let mut times = Table::new(&["scene", "variant", "width", "height", "round", "main"]);
-    for scene in [BuiltIn::Theatre, BuiltIn::Teapot] {
+    for scene in run.some(1, [BuiltIn::Theatre, BuiltIn::Teapot]) {
         let mut rig = Rig::new(Some(scene), size);
         let camera = rig.camera;
         let world = rig.headless.app.world_mut();
         world.entity_mut(camera).insert(DepthPrepass);
         let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
         let meshes: Vec<Entity> = meshes.iter(world).collect();
-        let variants = variants(&mut world.resource_mut::<Assets<Image>>());
+        let variants = run.some(4, variants(&mut world.resource_mut::<Assets<Image>>()));
         // Round 0 compiles the variants, and is not counted.
         for round in 0..=run.rounds {
             for (name, light) in &variants {

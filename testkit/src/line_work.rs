@@ -16,14 +16,14 @@ use bevy::{
     },
     shader::ShaderDefVal,
 };
-use bevy_comics::ComicStyle;
+use bevy_comics::{ComicStyle, Outlines};
 use wgpu::naga::{Block, Expression, Function, Module, Statement};
 
 use crate::{
     ROOT, read_back,
     studio::Studio,
     wgsl,
-    work::{FUSED, RESULT, counting, edit_shaders, teapot},
+    work::{self, FUSED, RESULT, counting, edit_shaders, teapot},
 };
 
 /// Texels and words that the passes of the lines fetch per pixel of the picture, mean.
@@ -167,14 +167,25 @@ pub(crate) fn edited(counted: &str, path: &str, text: &str) -> String {
     }
 }
 
-/// Draws the teapot in a style, with these edits of the shaders.
-pub(crate) fn drawn(style: &ComicStyle, edit: impl Fn(&str, &str) -> String) -> Studio {
+/// The teapot, with these edits of the shaders.
+fn edited_teapot(edit: impl Fn(&str, &str) -> String) -> Studio {
     let mut studio = teapot();
     let files = edit_shaders(studio.headless.app.world_mut(), &FILES, edit);
     assert_eq!(files, FILES, "the files of the passes");
+    studio
+}
+
+/// Draws the teapot in a style, with these edits of the shaders.
+pub(crate) fn drawn(style: &ComicStyle, edit: impl Fn(&str, &str) -> String) -> Studio {
+    let mut studio = edited_teapot(edit);
+    draw(&mut studio, style);
+    studio
+}
+
+/// Draws a style until it no longer changes.
+pub(crate) fn draw(studio: &mut Studio, style: &ComicStyle) {
     studio.shoot(Some(style));
     studio.headless.step(4);
-    studio
 }
 
 /// The number that the passes have handed on for every pixel.
@@ -189,9 +200,30 @@ pub(crate) fn numbers(studio: &Studio) -> Vec<u32> {
     pixels.map(|p| u32::from_le_bytes(bytes(p))).collect()
 }
 
-/// (texels, bytes) per pixel that one pass fetches.
-fn count_pass(style: &ComicStyle, file: &str) -> [f64; 2] {
-    let counted = numbers(&drawn(style, |path, text| edited(file, path, text)));
+/// The passes that are counted while they run.
+const COUNTED: [&str; 3] = [CELLS, COLUMNS, DRAW];
+
+/// Apps that each count one pass, made when it is first needed.
+#[derive(Default)]
+pub(crate) struct PassCounters([Option<Studio>; COUNTED.len()]);
+
+/// (texels, bytes) per pixel that the pass of a file fetches.
+fn count_pass(studio: &mut Option<Studio>, style: &ComicStyle, file: &str) -> [f64; 2] {
+    let boils = |outlines: &Outlines| outlines.boil.amplitude > 0.0;
+    if style.get::<Outlines>().is_some_and(boils) {
+        // It depends on the time since the start.
+        *studio = None;
+    }
+    let studio = match studio {
+        Some(studio) => {
+            // Where a pass does not run, the counts of the style before would be left.
+            work::renew_camera(studio);
+            studio
+        }
+        None => studio.insert(edited_teapot(|path, text| edited(file, path, text))),
+    };
+    draw(studio, style);
+    let counted = numbers(studio);
     let mean = |part: fn(u32) -> u32| {
         let sum: f64 = counted.iter().map(|number| f64::from(part(*number))).sum();
         sum / counted.len() as f64
@@ -246,7 +278,12 @@ fn count_walk(definitions: &[ShaderDefVal], size: UVec2) -> f64 {
 
 /// Counts the work of the lines of a style. `cache`: the pipelines of an app that draws
 /// it in a picture of `size`.
-pub fn count(style: &ComicStyle, cache: &PipelineCache, size: UVec2) -> LineWork {
+pub(crate) fn count(
+    counters: &mut PassCounters,
+    style: &ComicStyle,
+    cache: &PipelineCache,
+    size: UVec2,
+) -> LineWork {
     let mut walk = 0.0;
     let mut passes = [false; 3];
     for pipeline in cache.pipelines() {
@@ -265,9 +302,9 @@ pub fn count(style: &ComicStyle, cache: &PipelineCache, size: UVec2) -> LineWork
         }
     }
     let mut fetched = [[0.0; 2]; 3];
-    for ((fetched, there), file) in fetched.iter_mut().zip(passes).zip([CELLS, COLUMNS, DRAW]) {
-        if there {
-            *fetched = count_pass(style, file);
+    for (i, file) in COUNTED.into_iter().enumerate() {
+        if passes[i] {
+            fetched[i] = count_pass(&mut counters.0[i], style, file);
         }
     }
     LineWork {

@@ -10,7 +10,9 @@ use bevy_comics::{
 };
 
 use crate::{
+    line_work::draw,
     read_back,
+    studio::Studio,
     work::{FUSED, RESULT, counting, edit_shaders, teapot},
 };
 
@@ -186,14 +188,29 @@ fn counting_all(path: &str, text: &str) -> String {
     text
 }
 
-/// Counts the work of a style on the teapot at 160 x 90 pixels.
-pub fn count(name: &'static str, style: &ComicStyle) -> PageWork {
-    let mut studio = teapot();
+/// Counts the work of styles on the teapot at 160 x 90 pixels, in one app.
+pub struct PageCounter {
+    studio: Studio,
+}
+
+impl Default for PageCounter {
+    fn default() -> Self {
+        let mut studio = teapot();
+        let changed = edit_shaders(studio.headless.app.world_mut(), &READERS, counting_all);
+        assert_eq!(changed, READERS, "the files that read textures");
+        Self { studio }
+    }
+}
+
+impl PageCounter {
+    pub fn count(&mut self, name: &'static str, style: &ComicStyle) -> PageWork {
+        count(&mut self.studio, name, style)
+    }
+}
+
+fn count(studio: &mut Studio, name: &'static str, style: &ComicStyle) -> PageWork {
+    draw(studio, style);
     let camera = studio.camera;
-    let changed = edit_shaders(studio.headless.app.world_mut(), &READERS, counting_all);
-    assert_eq!(changed, READERS, "the files that read textures");
-    studio.shoot(Some(style));
-    studio.headless.step(4);
     let world = studio.headless.app.world();
     let view = world.get::<RenderEntity>(camera).expect("extracted").id();
     let render_world = studio.headless.app.sub_app(RenderApp).world();

@@ -23,7 +23,7 @@ use bevy_comics::{
 use super::{
     before::BeforeStylize,
     headless::HeadlessOptions,
-    line_work::{self, LineWork},
+    line_work::{self, LineWork, PassCounters},
     read_back,
     scenes::BuiltIn,
     studio::{Studio, with_map},
@@ -385,14 +385,36 @@ pub(crate) fn teapot() -> Studio {
     studio
 }
 
-/// Counts the work of a style on the teapot at 160 x 90 pixels.
-pub fn count(name: &'static str, style: &ComicStyle) -> Work {
+/// Replaces the camera by one that has no buffers and textures yet.
+pub(crate) fn renew_camera(studio: &mut Studio) {
+    let target = studio.headless.render_target();
+    studio.headless.app.world_mut().despawn(studio.camera);
+    // The engine keeps textures for some frames.
+    studio.headless.step(4);
+    let camera = (studio.vantage.camera(), target, Msaa::Off, Hdr);
+    studio.camera = studio.headless.app.world_mut().spawn(camera).id();
+    studio.headless.step(2);
+}
+
+/// Counts the work of styles on the teapot at 160 x 90 pixels. Passes of lines are counted in apps
+/// that draw one style after the other.
+#[derive(Default)]
+pub struct WorkCounter {
+    lines: PassCounters,
+}
+
+impl WorkCounter {
+    pub fn count(&mut self, name: &'static str, style: &ComicStyle) -> Work {
+        count(&mut self.lines, name, style)
+    }
+}
+
+fn count(lines: &mut PassCounters, name: &'static str, style: &ComicStyle) -> Work {
     let mut studio = teapot();
     let camera = studio.camera;
     let changed = edit_shaders(studio.headless.app.world_mut(), &READERS, counting);
     assert_eq!(changed, READERS, "the files that read textures");
-    studio.shoot(Some(style));
-    studio.headless.step(4);
+    line_work::draw(&mut studio, style);
 
     let world = studio.headless.app.world();
     let stages = world
@@ -434,6 +456,6 @@ pub fn count(name: &'static str, style: &ComicStyle) -> Work {
         bindings,
         fetches,
         bytes,
-        lines: line_work::count(style, render_world.resource::<PipelineCache>(), SIZE),
+        lines: line_work::count(lines, style, render_world.resource::<PipelineCache>(), SIZE),
     }
 }

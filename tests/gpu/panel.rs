@@ -17,8 +17,9 @@ use crate::window::{Window, changed};
 const WIDTH: u32 = 574;
 const HEIGHT: u32 = 420;
 const SCALE: f64 = 0.7;
-/// Width of the picture left of the panel in pixels.
+/// Width of the picture left of the panel in pixels. What lies under the panel is not drawn.
 const PICTURE: u32 = 231;
+const DRAWN: [&str; 2] = ["--picture", "231"];
 
 fn picture(window: &Window) -> RgbImage {
     image::imageops::crop_imm(&window.picture(), 0, 0, PICTURE, HEIGHT).to_image()
@@ -43,7 +44,7 @@ fn until_width(window: &Window, wanted: f32) {
 /// program, break it, repair it, compare, take a screenshot, close.
 #[test]
 fn a_style_is_tuned_in_a_window() {
-    let window = Window::open([WIDTH, HEIGHT], SCALE, &[]);
+    let window = Window::open([WIDTH, HEIGHT], SCALE, &DRAWN);
     let state = window.state();
     assert_eq!(state["open"], false);
     assert_eq!(state["panel_cameras"], 0, "a closed panel has no camera");
@@ -274,7 +275,7 @@ fn tab_to(window: &Window, widget: &str) {
 
 #[test]
 fn the_keyboard_alone_tunes_a_style() {
-    let window = Window::open([WIDTH, HEIGHT], SCALE, &[]);
+    let window = Window::open([WIDTH, HEIGHT], SCALE, &DRAWN);
     window.key("F10");
     window.until("the panel", |state| {
         state["widgets"]["tab.Style"].is_array()
@@ -320,7 +321,8 @@ fn the_keyboard_alone_tunes_a_style() {
 /// Two cameras in a window with scale factor 1.2.
 #[test]
 fn two_cameras_have_styles_of_their_own() {
-    let window = Window::open([984, 672], 1.2, &["--cameras", "2"]);
+    let arguments = ["--cameras", "2", "--picture", "492"];
+    let window = Window::open([984, 672], 1.2, &arguments);
     window.key("F10");
     window.until("the panel", |state| {
         state["widgets"]["tab.Style"].is_array()
@@ -403,8 +405,8 @@ fn two_cameras_have_styles_of_their_own() {
         .expect("a picture");
     let photo = image::open(photo.path()).expect("a picture").to_rgb8();
     assert_eq!(photo.dimensions(), (2 * 984, 2 * 672));
-    for half in [0, 984] {
-        let half = image::imageops::crop_imm(&photo, half, 0, 984, 1344).to_image();
+    for half in [0, 492] {
+        let half = image::imageops::crop_imm(&photo, half, 0, 492, 1344).to_image();
         let shades: std::collections::HashSet<_> = half.pixels().collect();
         assert!(shades.len() > 100, "a half has {} shades", shades.len());
     }

@@ -3,7 +3,10 @@
 use std::{collections::HashMap, fs, path::PathBuf, process::Command};
 
 use bevy_comics::EffectRegistry;
-use bevy_comics_testkit::{page_work, work};
+use bevy_comics_testkit::{
+    page_work::{self, PageCounter},
+    work::{self, WorkCounter},
+};
 
 use crate::command_line::example;
 
@@ -240,8 +243,9 @@ fn no_style_does_more_work_than_the_report_says() {
     let (_, rows) = csv("work");
     let ladder = work::ladder();
     assert_eq!(rows.len(), ladder.len());
+    let mut counter = WorkCounter::default();
     for (row, (name, style)) in rows.iter().zip(&ladder) {
-        let now = work::count(name, style);
+        let now = counter.count(name, style);
         assert_eq!(row["style"], name.replace(',', ";"));
         assert_eq!(row["ran"], now.ran.join(" + "), "{name}");
         assert_eq!(number(row, "left_out") as usize, now.left_out, "{name}");
@@ -306,8 +310,9 @@ fn no_effect_of_the_page_fetches_more_than_the_report_says() {
     let effects = page_work::effects();
     assert_eq!(rows.len(), effects.len());
     let mut single = None;
+    let mut counter = PageCounter::default();
     for (row, (name, style)) in rows.iter().zip(&effects) {
-        let now = page_work::count(name, style);
+        let now = counter.count(name, style);
         assert_eq!(row["effect"], name.replace(',', ";"));
         assert!(now.texels[0] <= number(row, "texels") + 0.01, "{now:?}");
         assert!(now.texels[1] <= number(row, "most"), "{now:?}");

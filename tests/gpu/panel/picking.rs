@@ -8,15 +8,17 @@ use serde_json::Value;
 use super::SCALE;
 use crate::window::{Window, changed};
 
-/// Large enough for the teapot to be in the middle of what the panel leaves free.
 const WIDTH: u32 = 900;
 const HEIGHT: u32 = 700;
+/// Width of the picture left of the panel.
+const PICTURE: u32 = 500;
+const DRAWN: [&str; 2] = ["--picture", "500"];
 /// Pixels on the teapot, on its cube and on the sky.
-const TEAPOT: [u32; 2] = [450, 250];
+const TEAPOT: [u32; 2] = [250, 250];
 const SKY: [u32; 2] = [60, 60];
 
 fn picture(window: &Window) -> image::RgbImage {
-    image::imageops::crop_imm(&window.picture(), 0, 0, 500, HEIGHT).to_image()
+    image::imageops::crop_imm(&window.picture(), 0, 0, PICTURE, HEIGHT).to_image()
 }
 
 /// The light of the picked object.
@@ -40,7 +42,7 @@ fn is_around(state: &Value, at: [u32; 2]) -> bool {
 
 #[test]
 fn an_object_is_picked_and_edited() {
-    let window = Window::open([WIDTH, HEIGHT], SCALE, &[]);
+    let window = Window::open([WIDTH, HEIGHT], SCALE, &DRAWN);
     window.key("F10");
     window.until("the panel", |state| state["widgets"]["pick"].is_array());
     // Without the button, a click belongs to the game.

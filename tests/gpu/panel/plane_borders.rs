@@ -3,7 +3,7 @@
 use bevy_comics::{ComicStyle, PlaneBorders, Planes};
 use serde_json::Value;
 
-use super::{SCALE, WIDTH, tab_to};
+use super::{DRAWN, SCALE, WIDTH, tab_to};
 use crate::window::Window;
 
 /// The histogram is in the window without scrolling.
@@ -38,7 +38,8 @@ fn at_rest(window: &Window) -> Value {
 
 #[test]
 fn borders_of_planes_are_dragged_and_moved_by_keys() {
-    let arguments = ["--scene", "village", "--style", "storybook"];
+    let [picture, width] = DRAWN;
+    let arguments = ["--scene", "village", "--style", "storybook", picture, width];
     let window = Window::open([WIDTH, HEIGHT], SCALE, &arguments);
     window.key("F10");
     window.click("tab.Views");
