@@ -30,8 +30,8 @@ The inspector on a built-in scene. F10 opens and closes the panel.
     --cartoon          the scene in cartoon materials, with its looks
     --cameras N        1, or 2 side by side (1)
     --size WxH         size of the window in physical pixels (1280x720)
-    --picture WIDTH    cameras draw to this part of the window from the left, in physical
-                       pixels (all of it)
+    --viewport WIDTH   cameras draw only to this width of the window, from its left side,
+                       in physical pixels (all of it)
     --scale FACTOR     scale factor of the window (the system's)
     --styles FOLDER    folder of style files (assets/styles)
     --looks FOLDER     folder of look files (assets/looks)
@@ -51,7 +51,7 @@ struct Options {
     cartoon: bool,
     cameras: u32,
     size: UVec2,
-    picture: Option<u32>,
+    viewport: Option<u32>,
     scale: Option<f32>,
     plugin: ComicsInspectorPlugin,
     open: bool,
@@ -81,7 +81,7 @@ fn options() -> Result<Options, lexopt::Error> {
         cartoon: false,
         cameras: 1,
         size: UVec2::new(1280, 720),
-        picture: None,
+        viewport: None,
         scale: None,
         plugin: ComicsInspectorPlugin::default(),
         open: false,
@@ -104,7 +104,7 @@ fn options() -> Result<Options, lexopt::Error> {
                 let side = |text: &str| text.parse().map_err(|_| "a size is WIDTHxHEIGHT");
                 options.size = UVec2::new(side(width)?, side(height)?);
             }
-            Long("picture") => options.picture = Some(parser.value()?.parse()?),
+            Long("viewport") => options.viewport = Some(parser.value()?.parse()?),
             Long("scale") => options.scale = Some(parser.value()?.parse()?),
             Long("styles") => options.plugin.styles = parser.value()?.into(),
             Long("cartoon") => options.cartoon = true,
@@ -124,6 +124,12 @@ fn options() -> Result<Options, lexopt::Error> {
             }
             _ => return Err(argument.unexpected()),
         }
+    }
+    if options
+        .viewport
+        .is_some_and(|width| width < options.cameras)
+    {
+        return Err("--viewport: at least one pixel for each camera".into());
     }
     Ok(options)
 }
@@ -194,18 +200,18 @@ fn setup(mut stage: Stage, options: Res<Options>, inspector: Option<ResMut<Comic
     }
 }
 
-/// Two cameras share the picture: the first draws to its left half, the second to
-/// its right half.
+/// Keeps cameras within the width that `--viewport` names. Two cameras share it: the first draws to its
+/// left half, the second to its right half.
 fn lay_out(
     options: Res<Options>,
     window: Single<&Window>,
     mut cameras: Query<(&mut Camera, &Half)>,
 ) {
-    if options.cameras < 2 && options.picture.is_none() {
+    if options.cameras < 2 && options.viewport.is_none() {
         return;
     }
     let mut size = window.physical_size();
-    size.x = options.picture.unwrap_or(size.x).min(size.x);
+    size.x = options.viewport.unwrap_or(size.x).min(size.x);
     if size.x < options.cameras || size.y == 0 {
         return;
     }

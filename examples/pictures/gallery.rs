@@ -85,7 +85,7 @@ fn measure_in(
     looks: &[Preset],
     styles: &[ComicStyle],
 ) -> (Measures, Vec<(RgbaImage, Measures)>) {
-    let mut bench = LookBench::new(scene, UVec2::new(240, 135), Msaa::Sample4, FRAMES);
+    let mut bench = LookBench::new(scene, UVec2::new(240, 135), FRAMES);
     let unstyled = bench.measure(None).1;
     let of = |(look, style): (&Preset, &ComicStyle)| {
         let (shot, measures) = bench.measure(Some(style));

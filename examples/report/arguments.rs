@@ -6,7 +6,8 @@ use crate::sections::SECTIONS;
 
 const USAGE: &str = "cargo run --example report -- [OPTIONS]
 
-  --quick          small pictures, few repetitions, no other crates
+  --quick          small pictures, few repetitions, the first few of many styles and
+                   models, no other crates
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure this section only; may be given several times: machine, ranges, encodings, lines, models,
                    steps, dashes, dash-steps, memory, meadow, straight, page, stability, ladder,

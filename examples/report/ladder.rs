@@ -164,12 +164,18 @@ fn prepass(run: &Run) -> Result<(), String> {
 
 pub fn measure(run: &Run) -> Result<(), String> {
     let mut counted = Table::new(&WORK);
-    let styles = run.some(4, work::ladder());
+    let mut styles = run.some(4, work::ladder());
+    if run.quick {
+        // With lines, and everything else.
+        styles.extend(work::ladder().pop());
+    }
     let mut counter = WorkCounter::default();
     for (name, style) in &styles {
         let work = counter.count(name, style);
         counted.rows.push(work_row(&work));
     }
+    // Its apps are not there while times are measured.
+    drop(counter);
     run.say("work counted");
     run.save("work", &counted)?;
 

@@ -224,7 +224,7 @@ pub fn of_scenes(run: &Run) -> Result<(), String> {
     let mut times = rig::times();
     let rounds = run.rounds.min(3);
     let run = &run.with_rounds(1);
-    for part in run.some(3, changes()) {
+    for part in changes() {
         let mut changed = part.rig(size, part.change);
         let mut base = part.base.map(|change| part.rig(size, change));
         let named =

@@ -321,7 +321,7 @@ fn rendered(table: &mut Table, run: &Run) {
     };
     let style = everything();
     let sketch = style.clone().with(Sketch::default());
-    for (name, scene) in run.some(2, rendered_cases()) {
+    for (name, scene) in rendered_cases() {
         let mut rig = Rig::new(None, size);
         scene(&mut rig);
         let world = rig.headless.app.world_mut();

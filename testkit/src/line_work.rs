@@ -182,7 +182,7 @@ pub(crate) fn drawn(style: &ComicStyle, edit: impl Fn(&str, &str) -> String) -> 
     studio
 }
 
-/// Draws a style until it no longer changes.
+/// Draws a style for as many frames as it needs to settle.
 pub(crate) fn draw(studio: &mut Studio, style: &ComicStyle) {
     studio.shoot(Some(style));
     studio.headless.step(4);
@@ -211,7 +211,7 @@ pub(crate) struct PassCounters([Option<Studio>; COUNTED.len()]);
 fn count_pass(studio: &mut Option<Studio>, style: &ComicStyle, file: &str) -> [f64; 2] {
     let boils = |outlines: &Outlines| outlines.boil.amplitude > 0.0;
     if style.get::<Outlines>().is_some_and(boils) {
-        // It depends on the time since the start.
+        // Where boiling lines are depends on the time since the start of the app.
         *studio = None;
     }
     let studio = match studio {

@@ -100,8 +100,8 @@ pub struct LookBench {
 
 impl LookBench {
     /// `frames` on the turntable.
-    pub fn new(scene: BuiltIn, size: UVec2, msaa: Msaa, frames: usize) -> Self {
-        let mut studio = Studio::new(scene, size, msaa);
+    pub fn new(scene: BuiltIn, size: UVec2, frames: usize) -> Self {
+        let mut studio = Studio::new(scene, size, Msaa::Sample4);
         // For its depth prepass.
         studio.shoot(Some(&ComicStyle::new().with(Outlines::default())));
         let world = studio.headless.app.world();

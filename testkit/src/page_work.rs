@@ -5,8 +5,9 @@
 
 use bevy::render::{RenderApp, sync_world::RenderEntity};
 use bevy_comics::{
-    ColorHarmony, Colorization, ComicStyle, Focus, FocusAt, FocusStyle, Halftone, Hatching, Paint,
-    Paper, PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape, SpeedLines, TwoTone,
+    ColorHarmony, Colorization, ComicStyle, ComicsDiagnostics, Focus, FocusAt, FocusStyle,
+    Halftone, Hatching, Paint, Paper, PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape,
+    SpeedLines, TwoTone,
 };
 
 use crate::{
@@ -212,6 +213,8 @@ fn count(studio: &mut Studio, name: &'static str, style: &ComicStyle) -> PageWor
     draw(studio, style);
     let camera = studio.camera;
     let world = studio.headless.app.world();
+    let is_compiling = world.resource::<ComicsDiagnostics>().is_compiling(camera);
+    assert!(!is_compiling, "the style before {name} is still drawn");
     let view = world.get::<RenderEntity>(camera).expect("extracted").id();
     let render_world = studio.headless.app.sub_app(RenderApp).world();
     let (_, counted) = read_back::pictures(render_world, view).expect("a picture");

@@ -1,15 +1,15 @@
 //! Looks keep the limits that the page of looks states.
 
-use bevy::{math::UVec2, render::view::Msaa};
+use bevy::math::UVec2;
 use bevy_comics::presets;
 use bevy_comics_testkit::{look_work::LookBench, scenes::BuiltIn};
 
-/// The figure alone, with one sample and fewer frames than the page; `pictures gallery` measures three scenes, and the
+/// The figure alone, smaller and with fewer frames than the page; `pictures gallery` measures three scenes, and the
 /// distances of looks. It alone counts fragments: their limit is of the mean over the scenes, and looks
 /// with broken lines have more on one of them.
 #[test]
 fn looks_keep_their_limits() {
-    let mut bench = LookBench::new(BuiltIn::Figure, UVec2::new(240, 135), Msaa::Off, 3);
+    let mut bench = LookBench::new(BuiltIn::Figure, UVec2::new(160, 90), 3);
     bench.count_fragments = false;
     let (_, unstyled) = bench.measure(None);
     let mut failed = Vec::new();

@@ -17,9 +17,10 @@ use crate::window::{Window, changed};
 const WIDTH: u32 = 574;
 const HEIGHT: u32 = 420;
 const SCALE: f64 = 0.7;
-/// Width of the picture left of the panel in pixels. What lies under the panel is not drawn.
+/// Width of the picture left of the panel in pixels.
 const PICTURE: u32 = 231;
-const DRAWN: [&str; 2] = ["--picture", "231"];
+/// Arguments with which nothing is drawn under the panel: frames take half as long. The width is `PICTURE`.
+const DRAWN: [&str; 2] = ["--viewport", "231"];
 
 fn picture(window: &Window) -> RgbImage {
     image::imageops::crop_imm(&window.picture(), 0, 0, PICTURE, HEIGHT).to_image()
@@ -44,7 +45,7 @@ fn until_width(window: &Window, wanted: f32) {
 /// program, break it, repair it, compare, take a screenshot, close.
 #[test]
 fn a_style_is_tuned_in_a_window() {
-    let window = Window::open([WIDTH, HEIGHT], SCALE, &DRAWN);
+    let window = Window::open([WIDTH, HEIGHT], SCALE, &[]);
     let state = window.state();
     assert_eq!(state["open"], false);
     assert_eq!(state["panel_cameras"], 0, "a closed panel has no camera");
@@ -321,7 +322,7 @@ fn the_keyboard_alone_tunes_a_style() {
 /// Two cameras in a window with scale factor 1.2.
 #[test]
 fn two_cameras_have_styles_of_their_own() {
-    let arguments = ["--cameras", "2", "--picture", "492"];
+    let arguments = ["--cameras", "2", "--viewport", "492"];
     let window = Window::open([984, 672], 1.2, &arguments);
     window.key("F10");
     window.until("the panel", |state| {

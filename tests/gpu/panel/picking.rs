@@ -12,7 +12,8 @@ const WIDTH: u32 = 900;
 const HEIGHT: u32 = 700;
 /// Width of the picture left of the panel.
 const PICTURE: u32 = 500;
-const DRAWN: [&str; 2] = ["--picture", "500"];
+/// Nothing is drawn under the panel. The width is `PICTURE`.
+const DRAWN: [&str; 2] = ["--viewport", "500"];
 /// Pixels on the teapot, on its cube and on the sky.
 const TEAPOT: [u32; 2] = [250, 250];
 const SKY: [u32; 2] = [60, 60];

@@ -38,8 +38,15 @@ fn at_rest(window: &Window) -> Value {
 
 #[test]
 fn borders_of_planes_are_dragged_and_moved_by_keys() {
-    let [picture, width] = DRAWN;
-    let arguments = ["--scene", "village", "--style", "storybook", picture, width];
+    let [viewport, width] = DRAWN;
+    let arguments = [
+        "--scene",
+        "village",
+        "--style",
+        "storybook",
+        viewport,
+        width,
+    ];
     let window = Window::open([WIDTH, HEIGHT], SCALE, &arguments);
     window.key("F10");
     window.click("tab.Views");
