@@ -1,5 +1,5 @@
 //! Counts the texels, and the words of buffers, that the passes of the lines fetch: see
-//! [`work`](crate::work).
+//! [`work`].
 //!
 //! In the pass that searches blocks, every invocation fetches the same number: it is
 //! counted in the composed shader. The other passes are counted while they run. A pass
