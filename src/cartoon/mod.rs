@@ -19,24 +19,20 @@ mod ramp;
 mod ramp_map;
 mod ramp_sums;
 mod rim;
+mod rim_shader;
 mod scene;
 mod smooth;
 mod uniform;
 mod vertex;
 mod view_range;
 
-use std::sync::atomic::Ordering;
-
 use bevy::{
     app::{App, Plugin, PostUpdate, Update},
     asset::{AssetApp, AssetEventSystems, Assets, embedded_asset, load_internal_asset},
-    ecs::{schedule::IntoScheduleConfigs, system::Res},
+    ecs::schedule::IntoScheduleConfigs,
     image::Image,
     pbr::{MaterialPlugin, MeshMaterial3d, PbrPlugin},
-    render::{
-        RenderApp, RenderStartup, erased_render_asset::ErasedRenderAssetPlugin,
-        renderer::RenderAdapterInfo,
-    },
+    render::erased_render_asset::ErasedRenderAssetPlugin,
     shader::{Shader, load_shader_library},
 };
 
@@ -53,8 +49,6 @@ pub use ramp::{Ramp, RampBlend, RampMode, RampStop};
 pub use ramp_map::RampMap;
 pub use rim::{Rim, RimWidth};
 pub use scene::CartoonScene;
-
-use crate::depth::surfaces::prepass_is_empty;
 
 /// Registers types, shaders and, if the app has [`PbrPlugin`], the material.
 pub(crate) struct CartoonPlugin;
@@ -112,7 +106,6 @@ impl CartoonPlugin {
         load_shader_library!(app, "ramp_map.wgsl");
         load_shader_library!(app, "rect.wgsl");
         load_shader_library!(app, "reflect.wgsl");
-        load_shader_library!(app, "rim_light.wgsl");
         load_shader_library!(app, "shadow_texels.wgsl");
         load_shader_library!(app, "share.wgsl");
         load_shader_library!(app, "shine.wgsl");
@@ -124,13 +117,8 @@ impl CartoonPlugin {
         load_shader_library!(app, "visible.wgsl");
         embedded_asset!(app, "cartoon.wgsl");
         load_internal_asset!(app, vertex::VERTEX, "vertex.wgsl", Shader::from_wgsl);
+        rim_shader::build_render(app);
         view_range::build_render(app);
-        if let Some(render_app) = app.get_sub_app_mut(RenderApp) {
-            render_app.add_systems(RenderStartup, |adapter: Res<RenderAdapterInfo>| {
-                let loads_depth = !prepass_is_empty(&adapter);
-                uniform::LOADS_DEPTH.store(loads_depth, Ordering::Relaxed);
-            });
-        }
     }
 }
 

@@ -1,14 +1,7 @@
 #define_import_path bevy_comics::cartoon::rim_light
 
-// The rim of a surface of the cartoon material.
+// The rim of a surface of the cartoon material. `rim_shader.rs` sets NO_DEPTH_LOADS.
 
-#ifdef DEPTH_RIM
-#import bevy_pbr::{
-    mesh_view_bindings::view,
-    prepass_utils::prepass_depth,
-    view_transformations::depth_ndc_to_view_z,
-}
-#endif
 #import bevy_comics::cartoon::{
     bindings::cartoon,
     light_rim::{facing_rim, is_behind, rim_side},
@@ -17,6 +10,13 @@
 }
 
 #ifdef DEPTH_RIM
+#ifndef NO_DEPTH_LOADS
+#import bevy_pbr::{
+    mesh_view_bindings::view,
+    prepass_utils::prepass_depth,
+    view_transformations::depth_ndc_to_view_z,
+}
+
 // The part of a pixel whose depth in the prepass is behind the surface, over all of its samples.
 // `slope` is by how much the surface recedes up to there, over its distance.
 fn behind_at(pixel: vec2<f32>, view_z: f32, slope: f32) -> f32 {
@@ -55,14 +55,22 @@ fn beside(s: Surface) -> f32 {
     return mix(low, high, part.y);
 }
 #endif
+#endif
+
+// 1 where the surface turns away from the eye.
+fn facing(s: Surface) -> f32 {
+    let width = cosine_over_pixel(s.foot, s.to_eye);
+    return facing_rim(cartoon.rim, dot(s.normal, s.to_eye), width);
+}
 
 fn with_rim(color: vec3<f32>, s: Surface, shine: Shine) -> vec3<f32> {
     let rim = cartoon.rim;
-#ifdef DEPTH_RIM
+#ifdef NO_DEPTH_LOADS
+    let there = facing(s);
+#else ifdef DEPTH_RIM
     let there = beside(s);
 #else
-    let width = cosine_over_pixel(s.foot, s.to_eye);
-    let there = facing_rim(rim, dot(s.normal, s.to_eye), width);
+    let there = facing(s);
 #endif
     let side = rim_side(rim, dot(s.normal, shine.source.to_light));
     return mix(color, rim.color, there * side * rim.strength);

@@ -1,7 +1,5 @@
 //! Settings of the cartoon material as its shader reads them.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use bevy::{render::render_resource::ShaderType, shader::ShaderDefVal};
 
 use super::{
@@ -14,10 +12,6 @@ use super::{
     rim::RimUniform,
 };
 use crate::settings::bounded;
-
-/// Whether shaders of materials can load depth. A pipeline that does is not valid with OpenGL. What makes
-/// pipelines of materials knows no adapter, and a process has one.
-pub(super) static LOADS_DEPTH: AtomicBool = AtomicBool::new(true);
 
 /// The uniform: `Cartoon` in `bindings.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
@@ -167,8 +161,7 @@ impl CartoonKey {
         if self.rim {
             all.push("RIM".into());
         }
-        let loads_depth = LOADS_DEPTH.load(Ordering::Relaxed);
-        if self.even_rim && has(&["DEPTH_PREPASS"]) && loads_depth {
+        if self.even_rim && has(&["DEPTH_PREPASS"]) {
             all.push("DEPTH_RIM".into());
         }
         all

@@ -1,6 +1,4 @@
 //! Pictures with OpenGL, beside those with Vulkan, and within the limits of WebGL 2.
-//!
-//! Each test runs in a process of its own, since materials know one adapter in a process.
 
 use std::process::Command;
 
@@ -11,7 +9,10 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{ComicStyle, ComicsDiagnostics, ComicsStage, LeftOut, StageOutcome, presets};
+use bevy_comics::{
+    CartoonLight, ComicStyle, ComicsDiagnostics, ComicsStage, LeftOut, Rim, RimWidth, StageOutcome,
+    presets,
+};
 use bevy_comics_testkit::{
     headless::{HeadlessOptions, adapter_of},
     scenes::BuiltIn,
@@ -20,36 +21,26 @@ use bevy_comics_testkit::{
 use image::RgbaImage;
 
 use crate::{
-    pairwise::{checks::assert_drawn, compare::changed, effects::GROUPS},
+    cartoon,
+    pairwise::{
+        checks::assert_drawn,
+        compare::changed,
+        effects::{GROUPS, Group, LINES},
+    },
     small::{self, Small},
 };
-
-/// Set in the process of a test.
-const ALONE: &str = "OPEN_GL_ALONE";
 
 /// The APIs that are compared.
 const APIS: [wgpu::Backends; 2] = [wgpu::Backends::VULKAN, wgpu::Backends::GL];
 
-/// Runs a test of this file in a process of its own.
-fn alone(name: &str, test: fn()) {
-    if cfg!(not(target_os = "linux")) {
-        // OpenGL without a window needs EGL.
-        return;
-    }
-    if std::env::var_os(ALONE).is_some() {
+/// Whether the tests can run: OpenGL without a window needs EGL. Panics where that is not installed.
+fn has_open_gl() -> bool {
+    let is_linux = cfg!(target_os = "linux");
+    if is_linux {
         adapter_of(wgpu::Backends::GL)
             .expect("OpenGL; on Debian: apt-get install libegl1 libgl1-mesa-dri");
-        return test();
     }
-    let output = Command::new(std::env::current_exe().expect("the test"))
-        .args(["--exact", "--nocapture", &format!("open_gl::{name}")])
-        .env(ALONE, "yes")
-        .output()
-        .expect("it starts");
-    let text = String::from_utf8_lossy(&output.stdout);
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{text}\n{errors}");
-    assert!(text.contains("1 passed"), "no test has run: {text}");
+    is_linux
 }
 
 /// The fraction of pixels that differ by more than two codes.
@@ -95,50 +86,34 @@ fn looks() -> [(&'static str, ComicStyle); 4] {
 }
 
 #[test]
-fn golden_pictures_of_the_teapot_are_those_with_vulkan() {
-    alone(
-        "golden_pictures_of_the_teapot_are_those_with_vulkan",
-        || {
-            let styles = golden_styles(BuiltIn::Teapot);
-            check(BuiltIn::Teapot, &styles, 0.0005);
-        },
-    );
+fn a_preset_is_drawn_as_with_vulkan() {
+    if has_open_gl() {
+        let preset = presets::LIGNE_CLAIRE;
+        check(BuiltIn::Teapot, &[(preset.name(), preset.style())], 0.0005);
+    }
 }
 
-/// wgpu cannot read multisampled textures with OpenGL: what needs depth is left out, whether this crate or
-/// the game asked for the prepass.
+#[ignore = "long: every preset, twice"]
 #[test]
-fn multisampled_views_are_drawn_without_depth() {
-    alone("multisampled_views_are_drawn_without_depth", || {
-        for by_game in [false, true] {
-            let mut app = small(wgpu::Backends::GL, None, Msaa::Sample4);
-            if by_game {
-                app.insert((DepthPrepass, NormalPrepass));
-            }
-            let plain = app.settle().picture();
-            for (name, style) in GROUPS {
-                app.style(&style());
-                app.settle();
-                assert_eq!(app.errors(), 0, "{name}");
-                assert!(!app.ran(ComicsStage::DepthRange), "{name}");
-                assert!(!app.ran(ComicsStage::FindLines), "{name}");
-            }
-            app.style(&presets::POP_POSTER.style());
-            let styled = changed(&plain, &app.settle().picture());
-            assert!(styled > 0.1, "{styled}");
-        }
-    });
+fn every_preset_is_drawn_as_with_vulkan() {
+    if has_open_gl() {
+        let presets = presets::ALL.iter();
+        let presets = presets.map(|preset| (preset.name(), preset.style()));
+        let styles: Vec<_> = presets.chain(golden_styles(BuiltIn::Teapot)).collect();
+        check(BuiltIn::Teapot, &styles, 0.0005);
+    }
 }
 
 /// OpenGL stores depth as 0.5 (2 z - 1) + 0.5, in steps of 6e-8, which are half a per cent of the distance
 /// of the mountains: lines and borders of dots at their limit are others.
+#[ignore = "long: four looks in two large scenes, twice"]
 #[test]
 fn far_scenes_are_nearly_those_with_vulkan() {
-    alone("far_scenes_are_nearly_those_with_vulkan", || {
+    if has_open_gl() {
         for scene in [BuiltIn::Mountains, BuiltIn::Village] {
             check(scene, &looks(), 0.05);
         }
-    });
+    }
 }
 
 fn small(backends: wgpu::Backends, limits: Option<wgpu::Limits>, msaa: Msaa) -> Small {
@@ -150,68 +125,188 @@ fn small(backends: wgpu::Backends, limits: Option<wgpu::Limits>, msaa: Msaa) -> 
     Small::with(options, msaa)
 }
 
+/// The rim of a ball has the same width everywhere where the adapter loads depth. With OpenGL it is where
+/// the ball turns away, since a pipeline of a material that loads depth is not valid.
+#[test]
+fn two_apps_in_one_process_draw_what_each_draws_alone() {
+    if !has_open_gl() {
+        return;
+    }
+    let [vulkan, gl] = APIS;
+    let start = |api| {
+        let mut app = small(api, None, Msaa::Off);
+        app.clear();
+        app.insert(DepthPrepass).headless.step(1);
+        app
+    };
+    let draw = |mut app: Small| {
+        let rim = Rim {
+            width: RimWidth::Pixels(5.0),
+            lit_side: 0.0,
+            ..default()
+        };
+        let light = CartoonLight {
+            rim: Some(rim),
+            ..default()
+        };
+        let material = cartoon::material(&mut app, light);
+        let at = Transform::from_xyz(0.4, 1.0, 2.5);
+        app.put_shared(Sphere::new(0.8), material, at);
+        let picture = app.settle().picture();
+        assert_eq!(app.errors(), 0);
+        picture
+    };
+    let alone = APIS.map(|api| draw(start(api)));
+    let rims = apart(&alone[0], &alone[1]);
+    assert!(rims > 0.01, "the rims are the same: {rims}");
+    // Each makes the pipeline of its material when one with the other API has started after it.
+    let (first, second) = (start(vulkan), start(gl));
+    assert!(draw(first) == alone[0], "Vulkan, before OpenGL");
+    let third = start(vulkan);
+    assert!(draw(second) == alone[1], "OpenGL, before Vulkan");
+    assert!(draw(third) == alone[0], "Vulkan, after OpenGL");
+}
+
+/// wgpu cannot read multisampled textures with OpenGL: what needs depth is left out, whether this crate or
+/// the game asked for the prepass.
+#[test]
+fn multisampled_views_are_drawn_without_depth() {
+    if !has_open_gl() {
+        return;
+    }
+    let mut app = small(wgpu::Backends::GL, None, Msaa::Sample4);
+    for by_game in [false, true] {
+        if by_game {
+            app.restart(Msaa::Sample4);
+            app.insert((DepthPrepass, NormalPrepass));
+        }
+        let plain = app.settle().picture();
+        for (name, style) in GROUPS {
+            app.style(&style());
+            app.settle();
+            assert_eq!(app.errors(), 0, "{name}");
+            assert!(!app.ran(ComicsStage::DepthRange), "{name}");
+            assert!(!app.ran(ComicsStage::FindLines), "{name}");
+        }
+        app.style(&presets::POP_POSTER.style());
+        let styled = changed(&plain, &app.settle().picture());
+        assert!(styled > 0.1, "{styled}");
+    }
+}
+
+fn check_groups(groups: impl Iterator<Item = Group>) {
+    let mut apps = APIS.map(|api| small(api, None, Msaa::Off));
+    let plain = apps.each_mut().map(|app| app.settle().picture());
+    let off = changed(&plain[0], &plain[1]);
+    assert!(off <= 0.002, "the engine's picture: {off}");
+    for (name, style) in groups {
+        let [vulkan, gl] = apps.each_mut().map(|app| {
+            let style = style();
+            app.style(&style);
+            let picture = app.settle().picture();
+            assert_drawn(app, &style, name);
+            picture
+        });
+        assert!(changed(&plain[1], &gl) > 0.02, "{name} is not drawn");
+        let off = apart(&vulkan, &gl);
+        assert!(off <= 0.02, "{name}: {off}");
+    }
+    assert!(apps.iter().all(|app| app.errors() == 0));
+}
+
+/// The group with lines.
+fn lines() -> impl Iterator<Item = Group> {
+    GROUPS.into_iter().filter(|(name, _)| *name == LINES)
+}
+
+#[test]
+fn lines_are_drawn_as_with_vulkan() {
+    if has_open_gl() {
+        check_groups(lines());
+    }
+}
+
+#[ignore = "long: every effect, twice"]
 #[test]
 fn every_effect_is_drawn_as_with_vulkan() {
-    alone("every_effect_is_drawn_as_with_vulkan", || {
-        let mut apps = APIS.map(|api| small(api, None, Msaa::Off));
-        let plain = apps.each_mut().map(|app| app.settle().picture());
-        let off = changed(&plain[0], &plain[1]);
-        assert!(off <= 0.002, "the engine's picture: {off}");
-        for (name, style) in GROUPS {
-            let [vulkan, gl] = apps.each_mut().map(|app| {
-                let style = style();
-                app.style(&style);
-                let picture = app.settle().picture();
-                assert_drawn(app, &style, name);
-                picture
-            });
-            assert!(changed(&plain[1], &gl) > 0.02, "{name} is not drawn");
-            let off = apart(&vulkan, &gl);
-            assert!(off <= 0.02, "{name}: {off}");
-        }
-        assert!(apps.iter().all(|app| app.errors() == 0));
-    });
+    if has_open_gl() {
+        check_groups(GROUPS.into_iter());
+    }
+}
+
+/// Set in the process of a test that has one of its own.
+const ALONE: &str = "WEBGL2_ALONE";
+
+/// Runs a test of this file in a process of its own, in which no device has storage buffers. The engine looks
+/// at one device in a process (`bevy_render::storage_buffers_are_unsupported`, Bevy 0.19.1), so that
+/// apps with and without them cannot be in the same one.
+fn alone(name: &str, test: fn()) {
+    if !has_open_gl() {
+        return;
+    }
+    if std::env::var_os(ALONE).is_some() {
+        return test();
+    }
+    let output = Command::new(std::env::current_exe().expect("the test"))
+        .args(["--exact", "--nocapture", &format!("open_gl::{name}")])
+        .env(ALONE, "yes")
+        .output()
+        .expect("it starts");
+    let text = String::from_utf8_lossy(&output.stdout);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{text}\n{errors}");
+    assert!(text.contains("1 passed"), "no test has run: {text}");
 }
 
 /// Limits of WebGL 2: no compute shaders, no storage. Larger pictures, and more colours at once, than it
 /// promises.
+fn check_webgl2(api: wgpu::Backends) {
+    let limits = wgpu::Limits::downlevel_webgl2_defaults();
+    let mut app = small(api, Some(limits), Msaa::Off);
+    // The engine looks at the adapter, not at its limits.
+    app.world()
+        .resource_mut::<GlobalClusterSettings>()
+        .gpu_clustering = None;
+    let plain = app.settle().picture();
+    assert_eq!(app.errors(), 0, "{api:?}: of the engine");
+    for (name, style) in GROUPS {
+        let style = style();
+        app.style(&style);
+        let picture = app.settle().picture();
+        assert_drawn(&app, &style, name);
+        assert_eq!(app.errors(), 0, "{api:?}: {name}");
+        let styled = changed(&plain, &picture);
+        assert!(styled > 0.02, "{api:?}: {name} changes {styled}");
+    }
+    let world = app.headless.app.world();
+    let diagnostics = world.resource::<ComicsDiagnostics>();
+    let stages = &diagnostics.cameras[&app.camera];
+    for (stage, outcome) in [
+        (ComicsStage::DepthRange, StageOutcome::RanAs("PingPong")),
+        (
+            ComicsStage::RangeSmoothing,
+            StageOutcome::LeftOut(LeftOut::NoComputeShaders),
+        ),
+        (
+            ComicsStage::ObjectIds,
+            StageOutcome::LeftOut(LeftOut::NoStorageBuffers),
+        ),
+    ] {
+        assert_eq!(stages.outcome(stage), Some(outcome), "{api:?}");
+    }
+}
+
 #[test]
 fn every_effect_is_drawn_within_the_limits_of_webgl2() {
     alone("every_effect_is_drawn_within_the_limits_of_webgl2", || {
-        for api in APIS {
-            let limits = wgpu::Limits::downlevel_webgl2_defaults();
-            let mut app = small(api, Some(limits), Msaa::Off);
-            // The engine looks at the adapter, not at its limits.
-            app.world()
-                .resource_mut::<GlobalClusterSettings>()
-                .gpu_clustering = None;
-            let plain = app.settle().picture();
-            assert_eq!(app.errors(), 0, "{api:?}: of the engine");
-            for (name, style) in GROUPS {
-                let style = style();
-                app.style(&style);
-                let picture = app.settle().picture();
-                assert_drawn(&app, &style, name);
-                assert_eq!(app.errors(), 0, "{api:?}: {name}");
-                let styled = changed(&plain, &picture);
-                assert!(styled > 0.02, "{api:?}: {name} changes {styled}");
-            }
-            let world = app.headless.app.world();
-            let diagnostics = world.resource::<ComicsDiagnostics>();
-            let stages = &diagnostics.cameras[&app.camera];
-            for (stage, outcome) in [
-                (ComicsStage::DepthRange, StageOutcome::RanAs("PingPong")),
-                (
-                    ComicsStage::RangeSmoothing,
-                    StageOutcome::LeftOut(LeftOut::NoComputeShaders),
-                ),
-                (
-                    ComicsStage::ObjectIds,
-                    StageOutcome::LeftOut(LeftOut::NoStorageBuffers),
-                ),
-            ] {
-                assert_eq!(stages.outcome(stage), Some(outcome), "{api:?}");
-            }
-        }
+        check_webgl2(wgpu::Backends::GL);
     });
+}
+
+#[test]
+fn every_effect_is_drawn_with_vulkan_within_the_limits_of_webgl2() {
+    alone(
+        "every_effect_is_drawn_with_vulkan_within_the_limits_of_webgl2",
+        || check_webgl2(wgpu::Backends::VULKAN),
+    );
 }
