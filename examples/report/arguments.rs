@@ -1,6 +1,6 @@
 //! The command line: everything is checked before anything is measured.
 
-use std::path::PathBuf;
+use std::{num::NonZero, path::PathBuf};
 
 use crate::sections::SECTIONS;
 
@@ -8,6 +8,7 @@ const USAGE: &str = "cargo run --example report -- [OPTIONS]
 
   --quick          small pictures, few repetitions, the first few of many styles and
                    models, no other crates
+  --rounds N       repetitions of every variant; default 7, with --quick 1
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure this section only; may be given several times: machine, ranges, encodings, lines, models,
                    steps, dashes, dash-steps, memory, meadow, straight, page, stability, ladder,
@@ -16,13 +17,18 @@ const USAGE: &str = "cargo run --example report -- [OPTIONS]
   --render         measure nothing; write text and plots from the CSV files
 
 Without --only, everything is measured but soak, which draws 100,000 frames and has no times. Date, commit
-and seconds of each section are written to sections.csv in the folder of the report.";
+and seconds of each section are written to sections.csv in the folder of the report.
+
+The section peers builds benches/peers, or starts the program that the variable PEERS_PROGRAM names,
+also with --quick.";
 
 /// What the command line asks for.
 pub struct Arguments {
     pub quick: bool,
     pub render: bool,
     pub tables: bool,
+    /// Repetitions of every variant, where they are not those of the report.
+    pub rounds: Option<NonZero<usize>>,
     /// The sections to measure; empty for all of the report.
     pub only: Vec<String>,
     pub out: PathBuf,
@@ -47,6 +53,7 @@ impl Arguments {
             quick: false,
             render: false,
             tables: false,
+            rounds: None,
             only: Vec::new(),
             out: PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/report")),
         };
@@ -55,6 +62,10 @@ impl Arguments {
                 Long("quick") => read.quick = true,
                 Long("render") => read.render = true,
                 Long("tables") => read.tables = true,
+                Long("rounds") => {
+                    let rounds = parser.value().and_then(|value| value.parse());
+                    read.rounds = Some(rounds.map_err(wrong)?);
+                }
                 Long("out") => read.out = parser.value().map_err(wrong)?.into(),
                 Long("only") => {
                     let name = parser.value().and_then(|v| v.string()).map_err(wrong)?;
@@ -81,11 +92,12 @@ mod tests {
     static ALLOCATOR: Counting = Counting;
 
     /// Command lines with an argument on each line.
-    const RIGHT: [&str; 5] = [
+    const RIGHT: [&str; 6] = [
         "--quick\n--out\ntarget/report",
         "--only\nflicker\n--tables",
         "--render\n--out=folder",
         "--quick\n--only=scene-parts\n--tables\n--only\nparts",
+        "--rounds\n3\n--only\nladder",
         "--help",
     ];
 
@@ -110,6 +122,17 @@ mod tests {
         let read = Arguments::read(lexopt::Parser::from_args(given));
         let read = read.expect("a right command line").expect("no help");
         assert_eq!(read.only, ["parts", "toon"]);
+    }
+
+    /// A section without a repetition would have no times.
+    #[test]
+    fn no_rounds_are_refused() {
+        let read = |rounds| Arguments::read(lexopt::Parser::from_args(["--rounds", rounds]));
+        let some = read("3").expect("a right command line").expect("no help");
+        assert_eq!(some.rounds, NonZero::new(3));
+        for wrong in ["0", "-1", "some", ""] {
+            assert!(read(wrong).is_err(), "{wrong:?} is read");
+        }
     }
 
     /// The help names every section.

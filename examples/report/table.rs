@@ -24,12 +24,15 @@ impl Table {
         self.rows.push(row);
     }
 
+    /// A program that is stopped leaves a whole file, or the file that was there.
     pub fn save(&self, path: &Path) -> std::io::Result<()> {
         let lines: Vec<String> = std::iter::once(&self.header)
             .chain(&self.rows)
             .map(|row| row.join(","))
             .collect();
-        fs::write(path, lines.join("\n") + "\n")
+        let part = path.with_extension("part");
+        fs::write(&part, lines.join("\n") + "\n")?;
+        fs::rename(part, path)
     }
 
     pub fn load(path: &Path) -> Result<Self, String> {
