@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use bevy::math::UVec2;
 
 const USAGE: &str = "\
-usage: pictures contact-sheet [--size WxH] [--zoom N] [--out FILE.png]
+usage: pictures styles [--size WxH] [--out FILE.png]         each style of the gallery in its own scene
+       pictures contact-sheet [--size WxH] [--zoom N] [--out FILE.png]
                                                               every scene in every preset; or the
                                                               middle of each, enlarged 2 to 8 times
        pictures banner [--out FILE.png]                       the README's first picture
@@ -25,7 +26,8 @@ usage: pictures contact-sheet [--size WxH] [--zoom N] [--out FILE.png]
                                                               those of these styles";
 
 /// What can be drawn.
-const PICTURES: [&str; 14] = [
+const PICTURES: [&str; 15] = [
+    "styles",
     "contact-sheet",
     "banner",
     "looks",

@@ -23,7 +23,7 @@ const COMPARED: [BuiltIn; 3] = [BuiltIn::Village, BuiltIn::Figure, BuiltIn::Stre
 /// Frames of the turntable.
 const FRAMES: usize = 6;
 
-/// The scene that shows a look best; else the village.
+/// The scene that shows a style best; else the village.
 const SHOWN: [(Preset, BuiltIn); 23] = [
     (presets::SATURDAY_MORNING, BuiltIn::Figure),
     (presets::LIGNE_CLAIRE, BuiltIn::Figure),
@@ -50,7 +50,8 @@ const SHOWN: [(Preset, BuiltIn); 23] = [
     (presets::SILENT_FILM, BuiltIn::Theatre),
 ];
 
-fn scene_of(look: Preset) -> BuiltIn {
+/// The scene in which the gallery shows a style.
+pub fn scene_of(look: Preset) -> BuiltIn {
     let own = SHOWN.into_iter().find(|(preset, _)| *preset == look);
     own.map_or(BuiltIn::Village, |(_, scene)| scene)
 }

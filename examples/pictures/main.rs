@@ -1,6 +1,7 @@
 //! Renders the pictures of the documents and of the tests, without a window.
 //!
 //! ```text
+//! cargo run --example pictures -- styles [--size WxH] [--out FILE.png]
 //! cargo run --example pictures -- contact-sheet [--size WxH] [--zoom N] [--out FILE.png]
 //! cargo run --example pictures -- banner [--out FILE.png]
 //! cargo run --example pictures -- looks [--out FILE.png]
@@ -61,6 +62,7 @@ fn run() -> Result<(), String> {
     bevy_comics_testkit::headless::adapter()?;
     let or = |path: &str| arguments.out.clone().unwrap_or_else(|| PathBuf::from(path));
     match arguments.what.as_str() {
+        "styles" => sheet::styles(*size, &or("target/styles.png")),
         "contact-sheet" => sheet::contact_sheet(*size, *zoom, &or("target/contact-sheet.png")),
         "banner" => sheet::banner(&or("target/banner.png")),
         "looks" => sheet::looks(&or("target/looks.png")),

@@ -1,6 +1,6 @@
-//! Every scene in every preset.
+//! Sheets of many pictures: each style in its own scene, every scene in every preset.
 
-use std::path::Path;
+use std::{path::Path, time::Instant};
 
 use bevy::{math::UVec2, render::view::Msaa};
 use bevy_comics::{Preset, presets};
@@ -11,7 +11,7 @@ use bevy_comics_testkit::{
     studio::{Studio, golden_styles, hatched_theatre},
 };
 
-use crate::save;
+use crate::{gallery::scene_of, save};
 
 const GAP: u32 = 6;
 /// The colour of gutters.
@@ -47,6 +47,39 @@ fn enlarged(picture: &RgbaImage, zoom: u32) -> RgbaImage {
     let (x, y) = ((width - width / zoom) / 2, (height - height / zoom) / 2);
     let middle = imageops::crop_imm(picture, x, y, width / zoom, height / zoom).to_image();
     imageops::resize(&middle, width, height, imageops::FilterType::Nearest)
+}
+
+/// Pictures in a row of the sheet of styles.
+const COLUMNS: usize = 6;
+
+/// Every style of the gallery in the scene that shows it best, in the gallery's order. Says after each
+/// picture how long the others will take.
+pub fn styles(size: UVec2, out: &Path) -> Result<(), String> {
+    let started = Instant::now();
+    let count = presets::LOOKS.len();
+    let mut pictures = vec![RgbaImage::default(); count];
+    let mut drawn = 0;
+    for scene in BuiltIn::ALL {
+        let shown: Vec<usize> = (0..count)
+            .filter(|k| scene_of(presets::LOOKS[*k]) == scene)
+            .collect();
+        if shown.is_empty() {
+            continue;
+        }
+        let mut studio = Studio::new(scene, size, Msaa::Sample4);
+        for k in shown {
+            let preset = presets::LOOKS[k];
+            pictures[k] = studio.shoot(Some(&preset.style()));
+            drawn += 1;
+            let left = started.elapsed().as_secs_f64() / drawn as f64 * (count - drawn) as f64;
+            println!("{drawn:2} of {count}, about {left:.0} s left: {preset}");
+        }
+    }
+    let rows: Vec<Vec<&RgbaImage>> = pictures
+        .chunks(COLUMNS)
+        .map(|row| row.iter().collect())
+        .collect();
+    save(&grid(&rows, size, GAP), out)
 }
 
 /// Rows of presets, the original first; columns of scenes. `zoom` enlarges the middle of each.
@@ -167,7 +200,7 @@ pub fn grid(rows: &[Vec<&RgbaImage>], size: UVec2, gap: u32) -> RgbaImage {
 }
 
 /// The reference pictures of the tests, 320x180. `only`: names of styles with commas between them;
-/// empty: all. Of styles that change with the clock, a selection is another drawing.
+/// empty: all.
 pub fn golden(folder: &Path, only: &str) -> Result<(), String> {
     let wanted = |name: &str| only.is_empty() || only.split(',').any(|one| one == name);
     for scene in BuiltIn::ALL {
@@ -176,7 +209,7 @@ pub fn golden(folder: &Path, only: &str) -> Result<(), String> {
             if !wanted(name) {
                 continue;
             }
-            let picture = studio.shoot(Some(&style));
+            let picture = studio.shoot_golden(name, &style);
             let path = folder.join(format!("{}-{name}.png", scene.name()));
             save(&picture, &path)?;
         }
