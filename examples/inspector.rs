@@ -11,13 +11,13 @@ use bevy::{
     window::WindowResolution,
 };
 use bevy_comics::{
-    CartoonMaterial, ComicStyle, ComicsDiagnostics, ComicsPlugin, DebugView, EffectRegistry,
-    OutlineStyle, SplitView, StyleWeight, ToonLook,
+    ComicStyle, ComicsPlugin,
     inspector::{ComicsInspector, ComicsInspectorPlugin},
     presets,
 };
 use bevy_comics_testkit::{
     orbit::{Orbit, OrbitPlugin},
+    panel_state::panel_state,
     scenes::{BuiltIn, Stage, figure::motion::MotionPlugin},
     studio::{set_cartoon, wear},
 };
@@ -246,23 +246,6 @@ fn lay_out(
     }
 }
 
-/// The picked object, for tests: what the panel edits of it.
-fn picked(world: &World) -> Option<serde_json::Value> {
-    let picked = world.get_resource::<ComicsInspector>()?.picked?;
-    let object = world.get_entity(picked).ok()?;
-    let at = object.get::<GlobalTransform>().map(|at| at.translation());
-    let light = object
-        .get::<MeshMaterial3d<CartoonMaterial>>()
-        .and_then(|own| world.resource::<Assets<CartoonMaterial>>().get(&own.0))
-        .and_then(|material| ToonLook::new(material.extension.clone()).to_ron().ok());
-    Some(serde_json::json!({
-        "at": at.map(|at| at.to_array()),
-        "light": light,
-        "is_standard": object.contains::<MeshMaterial3d<StandardMaterial>>(),
-        "has_style": object.contains::<OutlineStyle>(),
-    }))
-}
-
 /// Writes the state of the panel and the cameras to a file, for tests.
 fn tell(world: &mut World) {
     let Some(path) = world.resource::<Options>().state.clone() else {
@@ -275,40 +258,8 @@ fn tell(world: &mut World) {
         .map(|(camera, half)| (half.0, camera))
         .collect();
     cameras.sort_unstable();
-    let diagnostics = world.resource::<ComicsDiagnostics>();
-    let effects = world.resource::<EffectRegistry>();
-    let cameras: Vec<_> = cameras
-        .into_iter()
-        .map(|(_, camera)| {
-            let entity = world.entity(camera);
-            serde_json::json!({
-                "name": entity.get::<Name>().map(|name| name.to_string()),
-                "style": ComicStyle::of(entity, effects).to_ron().unwrap_or_default(),
-                "compiling": diagnostics.is_compiling(camera),
-                "weight": entity.get::<StyleWeight>().map(|weight| weight.0),
-                "split": entity.get::<SplitView>().map(|split| split.at),
-                "view": entity.get::<DebugView>().map(|view| format!("{view:?}")),
-                "fading": entity.contains::<bevy_comics::StyleTransition>(),
-            })
-        })
-        .collect();
-    // The panel's camera is the only 2D camera here.
-    let panel_cameras = world
-        .query_filtered::<(), With<Camera2d>>()
-        .iter(world)
-        .count();
-    let inspector = world.get_resource::<ComicsInspector>();
-    let state = serde_json::json!({
-        "frame": world.resource::<bevy::diagnostic::FrameCount>().0,
-        "open": inspector.map(|inspector| inspector.open),
-        "wants_pointer": inspector.map(|inspector| inspector.wants_pointer),
-        "picking": inspector.map(|inspector| inspector.picking),
-        "picked": picked(world),
-        "focused": inspector.and_then(|inspector| inspector.focused.as_ref()),
-        "widgets": inspector.map(|inspector| &inspector.widgets),
-        "panel_cameras": panel_cameras,
-        "cameras": cameras,
-    });
+    let cameras: Vec<Entity> = cameras.into_iter().map(|(_, camera)| camera).collect();
+    let state = panel_state(world, &cameras);
     // Readers never see a partial file.
     let part = path.with_extension("part");
     if let Err(error) = fs::write(&part, state.to_string()).and_then(|()| fs::rename(&part, &path))

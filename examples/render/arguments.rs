@@ -3,7 +3,7 @@
 use std::{collections::HashMap, path::PathBuf, str::FromStr};
 
 use bevy::math::{UVec2, Vec3};
-use bevy_comics::{ComicStyle, presets};
+use bevy_comics::{ComicStyle, Preset, presets};
 
 use bevy_comics_testkit::{
     headless::Adapter,
@@ -32,7 +32,7 @@ Output
   --out FILE.png           the picture (default target/render.png)
   --turntable N            N pictures (2 to 720) around the scene: FILE.png is an animated PNG,
                            NAME%03d.png are numbered files, DIR is a folder of numbered files
-  --presets                one sheet with the scene in every preset
+  --presets[=NAME,NAME]    one sheet with the scene in every preset, or in these
   --dump DIR               also write the pass's input, output, depth, normals,
                            object ids and frame.json";
 
@@ -69,8 +69,8 @@ pub enum Ortho {
 
 pub enum Output {
     Picture(PathBuf),
-    /// Every preset on one sheet.
-    Sheet(PathBuf),
+    /// Presets on one sheet.
+    Sheet(PathBuf, Vec<Preset>),
     /// Pictures around the scene.
     Turntable(u32, Frames),
 }
@@ -101,7 +101,7 @@ struct Given {
     scene: Option<String>,
     values: HashMap<&'static str, String>,
     hdr: bool,
-    presets: bool,
+    presets: Option<Vec<Preset>>,
 }
 
 impl Given {
@@ -114,7 +114,13 @@ impl Given {
             match argument {
                 Short('h') | Long("help") => return Ok(None),
                 Long("hdr") => given.hdr = true,
-                Long("presets") => given.presets = true,
+                Long("presets") => {
+                    let names = parser.optional_value().map(|names| names.string());
+                    given.presets = Some(match names.transpose().map_err(wrong)? {
+                        Some(names) => names.split(',').map(preset).collect::<Result<_, _>>()?,
+                        None => presets::ALL.to_vec(),
+                    });
+                }
                 Long(name) => {
                     let Some(name) = VALUED.iter().find(|known| **known == name) else {
                         return Err(wrong(argument.unexpected()));
@@ -167,7 +173,7 @@ impl Arguments {
             Some(name) => Some(read_style(name)?),
             None => Some(read_style(own_style(&scene))?),
         };
-        let usual_size = if given.presets {
+        let usual_size = if given.presets.is_some() {
             UVec2::new(480, 270)
         } else {
             UVec2::new(960, 540)
@@ -272,14 +278,15 @@ fn read_style(name: &str) -> Result<ComicStyle, String> {
             .map_err(|error| format!("cannot read {name}: {error}"))?;
         return ComicStyle::from_ron(&text).map_err(|error| format!("{name}: {error}"));
     }
-    if let Some(preset) = presets::find(name) {
-        return Ok(preset.style());
-    }
-    let names: Vec<&str> = presets::ALL.iter().map(|preset| preset.name()).collect();
-    Err(format!(
-        "no style {name:?}; possible are none, {}, or a .comic.ron file",
-        names.join(", ")
-    ))
+    let preset = preset(name).map_err(|error| error + ", none, or a .comic.ron file")?;
+    Ok(preset.style())
+}
+
+fn preset(name: &str) -> Result<Preset, String> {
+    presets::find(name).ok_or_else(|| {
+        let names: Vec<&str> = presets::ALL.iter().map(|preset| preset.name()).collect();
+        format!("no style {name:?}; possible are {}", names.join(", "))
+    })
 }
 
 /// Where the pictures go, and how many there are.
@@ -287,7 +294,7 @@ fn output(given: &Given) -> Result<Output, String> {
     let out = given.values.get("out").map(String::as_str);
     let out = out.unwrap_or("target/render.png");
     let turntable = given.get("turntable", |text| count("--turntable", text, 2, 720))?;
-    if given.presets {
+    if let Some(presets) = &given.presets {
         for (option, set) in [
             ("--turntable", turntable.is_some()),
             ("--style", given.values.contains_key("style")),
@@ -297,7 +304,7 @@ fn output(given: &Given) -> Result<Output, String> {
                 return Err(format!("--presets and {option} exclude each other"));
             }
         }
-        return Ok(Output::Sheet(png(out)?));
+        return Ok(Output::Sheet(png(out)?, presets.clone()));
     }
     Ok(match turntable {
         Some(count) => Output::Turntable(count, Frames::parse(out)),
@@ -407,12 +414,13 @@ mod tests {
     static ALLOCATOR: Counting = Counting;
 
     /// Command lines that can be drawn, with an argument on each line.
-    const RIGHT: [&str; 7] = [
+    const RIGHT: [&str; 8] = [
         "teapot\n--style\nnoir\n--size\n320x180\n--out\na.png",
         "village\n--camera\n1,2,3,0,0,0\n--near\n0.1\n--far\n100\n--msaa\n4\n--hdr",
         "--ortho\n12.5\n--frames\n3\n--dump\nfolder",
         "figure\n--ortho=fit\n--material=standard\n--sections=30\n--turntable=24\n--out=a%03d.png",
         "--presets\n--size=480x270\n--out=sheet.png",
+        "teapot\n--presets=noir,sepia\n--out\nsheet.png",
         "street\n--style=none\n--turntable\n2\n--out\nfolder",
         "theatre\n--style=missing.comic.ron\n--material\ncartoon",
     ];

@@ -47,7 +47,7 @@ fn run() -> Result<(), String> {
         adapter.info.name, adapter.info.device_type
     );
     let scale_factor = match arguments.output {
-        Output::Sheet(_) => sheet::scale_factor(arguments.size),
+        Output::Sheet(..) => sheet::scale_factor(arguments.size),
         Output::Picture(_) | Output::Turntable(..) => 1.0,
     };
     let options = HeadlessOptions {
@@ -80,8 +80,8 @@ fn run() -> Result<(), String> {
             output::save(headless.picture(), path)?;
             println!("wrote {}", path.display());
         }
-        Output::Sheet(path) => {
-            output::save(sheet::shoot(&mut headless, camera), path)?;
+        Output::Sheet(path, presets) => {
+            output::save(sheet::shoot(&mut headless, camera, presets), path)?;
             println!("wrote {}", path.display());
         }
         Output::Turntable(count, frames) => {

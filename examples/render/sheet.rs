@@ -1,7 +1,7 @@
 //! A contact sheet: one scene in every preset, with its name below.
 
 use bevy::{camera::RenderTarget, prelude::*};
-use bevy_comics::{ComicStyle, presets};
+use bevy_comics::{ComicStyle, Preset};
 use image::{Rgba, RgbaImage, imageops};
 
 use bevy_comics_testkit::{
@@ -22,14 +22,10 @@ pub fn scale_factor(size: UVec2) -> f32 {
     (size.min_element() as f32 / 540.0).clamp(0.4, 1.0)
 }
 
-/// The scene without a style and in every preset, in rows.
-pub fn shoot(headless: &mut Headless, camera: Entity) -> RgbaImage {
+/// The scene without a style and in each preset, in rows.
+pub fn shoot(headless: &mut Headless, camera: Entity, presets: &[Preset]) -> RgbaImage {
     let mut looks = vec![("original", ComicStyle::new())];
-    looks.extend(
-        presets::ALL
-            .iter()
-            .map(|preset| (preset.name(), preset.style())),
-    );
+    looks.extend(presets.iter().map(|preset| (preset.name(), preset.style())));
     let size = headless.options.size;
     let names: Vec<&str> = looks.iter().map(|(name, _)| *name).collect();
     let labels = labels(headless, size, &names);

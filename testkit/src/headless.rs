@@ -13,7 +13,9 @@ use bevy::{
     render::{
         RenderApp, RenderPlugin,
         render_asset::RenderAssets,
-        render_resource::{PipelineCache, PollType, TextureFormat, TextureUsages},
+        render_resource::{
+            PipelineCache, PipelineDescriptor, PollType, TextureFormat, TextureUsages,
+        },
         renderer::RenderDevice,
         settings::WgpuSettings,
         texture::GpuImage,
@@ -218,6 +220,11 @@ impl Headless {
         }
         let mut app = App::new();
         add_plugins(&mut app, plugins(&options));
+        Self::of(app, options)
+    }
+
+    /// Starts an app that has the engine's [`plugins`].
+    pub fn of(mut app: App, options: HeadlessOptions) -> Self {
         // Every frame takes 1/60 s of the app's time, so that tests are repeatable.
         app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_micros(
             16_667,
@@ -269,8 +276,11 @@ impl Headless {
 
     /// Whether any pipeline is missing, the engine's included.
     pub fn is_compiling(&self) -> bool {
-        let pipelines = self.in_render_world::<PipelineCache>();
-        pipelines.is_some_and(|pipelines| pipelines.waiting_pipelines().next().is_some())
+        let Some(cache) = self.in_render_world::<PipelineCache>() else {
+            return false;
+        };
+        let pipelines: Vec<_> = cache.pipelines().collect();
+        (cache.waiting_pipelines()).any(|id| has_shader(&pipelines[id].descriptor))
     }
 
     fn draw_until_compiled(&mut self) {
@@ -327,6 +337,17 @@ impl Drop for Headless {
         if !std::thread::panicking() {
             validation::check();
         }
+    }
+}
+
+/// Whether a pipeline can ever compile. On devices with few storage buffers, the engine's pipeline that
+/// updates buffers in part has no shader (Bevy 0.19.1), and a wait for it would take [`LOADING`] each frame.
+fn has_shader(pipeline: &PipelineDescriptor) -> bool {
+    match pipeline {
+        PipelineDescriptor::ComputePipelineDescriptor(compute) => {
+            compute.shader != Handle::default()
+        }
+        PipelineDescriptor::RenderPipelineDescriptor(_) => true,
     }
 }
 

@@ -18,6 +18,7 @@ pub mod look_work;
 pub mod orbit;
 pub mod page_work;
 pub mod painting;
+pub mod panel_state;
 pub mod read_back;
 pub mod reference;
 pub mod scenes;

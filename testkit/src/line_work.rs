@@ -231,6 +231,16 @@ fn count_pass(studio: &mut Option<Studio>, style: &ComicStyle, file: &str) -> [f
     [mean(|number| number & 0xffff), mean(|number| number >> 16)]
 }
 
+/// Texels per pixel that the pass that finds cracks in cells fetches in a style, in an app of its own.
+pub fn count_find(style: &ComicStyle) -> f64 {
+    count_pass(&mut None, style, CELLS)[0]
+}
+
+/// The same of the pass that draws lines.
+pub fn count_draw(style: &ComicStyle) -> f64 {
+    count_pass(&mut None, style, DRAW)[0]
+}
+
 /// Texels that an execution of these statements loads. Loops run `rounds` times.
 fn loads(module: &Module, function: &Function, block: &Block, rounds: usize) -> usize {
     let within = |block: &Block| loads(module, function, block, rounds);

@@ -10,12 +10,13 @@ use bevy_comics::ComicStyle;
 
 use crate::{
     line_work::{CELLS, LINK, READ_PLANES, SETTLE, drawn, edited, numbers},
+    studio::Studio,
     work::counting,
 };
 
 /// What completing the cracks of a style loads. Pixels are those of the listed cells; a texel,
 /// a word of a plane and the two cracks of a pixel count as one load each.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct LinkWork {
     /// The cells of 4 x 8 pixels that the passes run for.
     pub cells: usize,
@@ -115,24 +116,28 @@ fn completing(counted: &str, path: &str, text: &str) -> String {
     }
 }
 
-/// Counts what completing the cracks of a style loads, on the teapot at 160 x 90 pixels.
-/// Draws it twice, so the work of styles is counted without it.
+/// Whether a pass has run.
+fn ran(studio: &Studio, label: &str) -> bool {
+    let render_world = studio.headless.app.sub_app(RenderApp).world();
+    let mut pipelines = render_world.resource::<PipelineCache>().pipelines();
+    pipelines.any(|pipeline| match &pipeline.descriptor {
+        PipelineDescriptor::ComputePipelineDescriptor(d) => d.label.as_deref() == Some(label),
+        PipelineDescriptor::RenderPipelineDescriptor(_) => false,
+    })
+}
+
+/// Counts what completing the cracks of a style loads, on the teapot at 160 x 90 pixels. It draws it once
+/// more if lines are continued, so the work of styles is counted without it.
 pub fn count(style: &ComicStyle) -> LinkWork {
-    let counted = |file: &str| {
-        let studio = drawn(style, |path, text| completing(file, path, text));
-        let render_world = studio.headless.app.sub_app(RenderApp).world();
-        let mut pipelines = render_world.resource::<PipelineCache>().pipelines();
-        let completes = pipelines.any(|pipeline| match &pipeline.descriptor {
-            PipelineDescriptor::ComputePipelineDescriptor(d) => {
-                d.label.as_deref() == Some("comics_settle_lines")
-            }
-            PipelineDescriptor::RenderPipelineDescriptor(_) => false,
-        });
-        // Without this pass, cracks are handed on instead.
-        completes.then(|| numbers(&studio))
-    };
-    let Some((linked, settled)) = counted(LINK).zip(counted(SETTLE)) else {
-        return LinkWork::default();
+    let counted = |file: &str| drawn(style, |path, text| completing(file, path, text));
+    let studio = counted(SETTLE);
+    // Without this pass, cracks are handed on instead.
+    assert!(ran(&studio, "comics_settle_lines"), "nothing is completed");
+    let settled = numbers(&studio);
+    let linked = if ran(&studio, "comics_link_lines") {
+        numbers(&counted(LINK))
+    } else {
+        vec![]
     };
     let all = linked.iter().copied().max().unwrap_or(0);
     assert!(linked.iter().all(|number| [0, all].contains(number)));

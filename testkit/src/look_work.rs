@@ -126,7 +126,7 @@ impl LookBench {
         });
         let picture = self.studio.shoot(style);
         let fragments = bare.map_or(0.0, |bare| fragments(&picture, &bare));
-        let frames = self.turn();
+        let frames = self.turn(&picture);
         let measures = Measures {
             ink: part(&picture, |c| c < 64),
             white: part(&picture, |c| c == 255),
@@ -138,8 +138,8 @@ impl LookBench {
         (picture, measures)
     }
 
-    /// Frames while the camera goes around its target.
-    fn turn(&mut self) -> Vec<RgbaImage> {
+    /// Frames while the camera goes around its target, from `start` on.
+    fn turn(&mut self, start: &RgbaImage) -> Vec<RgbaImage> {
         let vantage = &self.studio.vantage;
         let (eye, target) = (vantage.eye, vantage.target);
         let height = self.studio.headless.options.size.y as f32;
@@ -150,15 +150,23 @@ impl LookBench {
             let turn = Quat::from_rotation_y(angle * frame as f32);
             Transform::from_translation(target + turn * (eye - target)).looking_at(target, Vec3::Y)
         };
-        let mut frames = Vec::new();
-        // The last one goes back to the start.
-        for frame in (0..self.frames).chain([0]) {
-            let world = self.studio.headless.app.world_mut();
-            world.entity_mut(self.studio.camera).insert(turned(frame));
-            self.studio.headless.step(1);
-            frames.push(self.studio.headless.picture());
+        let camera = self.studio.camera;
+        let headless = &mut self.studio.headless;
+        let mut frames = vec![start.clone()];
+        for frame in 1..self.frames {
+            headless
+                .app
+                .world_mut()
+                .entity_mut(camera)
+                .insert(turned(frame));
+            headless.step(1);
+            frames.push(headless.picture());
         }
-        frames.truncate(self.frames);
+        headless
+            .app
+            .world_mut()
+            .entity_mut(camera)
+            .insert(turned(0));
         frames
     }
 }

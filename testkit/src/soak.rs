@@ -34,7 +34,7 @@ pub const WARM_UP: u64 = Pace::LONG.kinds.len() as u64;
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
     /// A frame of this run stands for so many of the long run: 1, 2 or 4, which divide the times of all
-    /// changes.
+    /// changes; or 20, with which fewer sizes and objects come.
     pub frames: u64,
     /// Frames of the long run until the next look.
     pub look: u64,
@@ -53,6 +53,12 @@ impl Pace {
         frames: 4,
         look: 120,
         kinds: &[0, 3],
+    };
+    /// The shortest, with one kind of camera.
+    pub const SHORTEST: Self = Self {
+        frames: 20,
+        look: 360,
+        kinds: &[0],
     };
 }
 

@@ -22,8 +22,7 @@ use super::{
 /// pipelines, the second draws with them. The depth range has no delay.
 const SETTLE: u32 = 2;
 
-/// What a picture advances the clock by. Sketches change with time, so that the
-/// reference pictures depend on it.
+/// What a picture advances the clock by.
 const SHOT: Duration = Duration::from_micros(4 * 16_667);
 
 pub struct Studio {
@@ -92,6 +91,14 @@ impl Studio {
         self.headless.step(SETTLE as usize);
         self.headless.picture()
     }
+
+    /// The golden picture of a style, whatever was drawn before.
+    pub fn shoot_golden(&mut self, name: &str, style: &ComicStyle) -> image::RgbaImage {
+        let mut clock = Time::<Virtual>::default();
+        clock.advance_to(golden_time(name) - SHOT);
+        self.headless.app.insert_resource(clock);
+        self.shoot(Some(style))
+    }
 }
 
 /// Gives a camera a style. Tone bands, tone ramps and two tones switch off the engine's dither, which
@@ -114,161 +121,85 @@ pub fn with_map(mut style: ComicStyle, map: DepthMap) -> ComicStyle {
     style
 }
 
-/// The presets after the first paper, \[CS\], and looks that began as its contours. Golden pictures are
-/// taken in the order of this list and the next: sketches change with the clock.
-const COLOR_PRESETS: [Preset; 10] = [
-    presets::CRIMSON_DUSK,
-    presets::MUSEUM_PRINT,
-    presets::EMERALD_INK,
-    presets::SEPIA,
-    presets::LIGNE_CLAIRE,
-    presets::NOIR,
-    presets::COBALT_NIGHT,
-    presets::MISTY_MORNING,
-    presets::GOLDEN_HOUR,
-    presets::BLUEPRINT,
-];
-
-/// The presets after the second paper, \[CL\].
-const LINE_PRESETS: [Preset; 12] = [
-    presets::SATURDAY_MORNING,
-    presets::GRAPHIC_NOVEL,
-    presets::PENCIL_SKETCH,
-    presets::FIGURE_7A,
-    presets::FIGURE_7B,
-    presets::FIGURE_8A,
-    presets::FIGURE_8B,
-    presets::FIGURE_8C,
-    presets::TWILIGHT_TOON,
-    presets::WATERCOLOR,
-    presets::CLEAR_BANDS,
-    presets::SILENT_FILM,
-];
-
-/// The presets that print, and the one that paints.
-const PAGE_PRESETS: [Preset; 6] = [
-    presets::GOUACHE,
-    presets::MANGA_PAGE,
-    presets::NEWSPRINT,
-    presets::POP_POSTER,
-    presets::SILVER_AGE,
-    presets::RISOGRAPH,
-];
-
-/// The presets after the second paper that outline, and that suit a landscape.
-const OUTLINE_PRESETS: [Preset; 4] = [
-    presets::SATURDAY_MORNING,
-    presets::GRAPHIC_NOVEL,
-    presets::TWILIGHT_TOON,
-    presets::SILENT_FILM,
-];
-
-/// The presets that differ by distance, harmonize colours or hatch; last, so that the clock of the
-/// others is the same without them.
-const LATER_PRESETS: [Preset; 6] = [
-    presets::STORYBOOK,
-    presets::COPPER_AND_TEAL,
-    presets::ENGRAVING,
-    presets::PENCIL_STUDY,
-    presets::WOODCUT,
-    presets::HARD_BOILED,
-];
-
-/// The presets of the golden pictures of the figure.
-const FIGURE_PRESETS: [Preset; 2] = [presets::SATURDAY_MORNING, presets::GRAPHIC_NOVEL];
-
-/// The presets that have golden pictures of the figure and of the street alone.
-const NEW_PRESETS: [Preset; 10] = [
-    presets::FIELD_GUIDE,
-    presets::STAINED_GLASS,
-    presets::UKIYO_E,
-    presets::SURVEY_MAP,
-    presets::RED_POSTER,
-    presets::BALLPOINT,
-    presets::RED_CHALK,
-    presets::SUMI_E,
-    presets::OIL_SKETCH,
-    presets::NEON_NIGHT,
-];
-
-/// Those of the street at night, and of the hall.
-const STREET_PRESETS: [Preset; 2] = [presets::GRAPHIC_NOVEL, presets::HARD_BOILED];
-const HALL_PRESETS: [Preset; 2] = [presets::STORYBOOK, presets::ENGRAVING];
-
-/// The presets that have a golden picture in a scene: all those that print or paint. The mountains
-/// show those after the first paper and those that outline, the theatre those after the
-/// second, the teapot all of them, and the village those after the first and
-/// `graphic-novel`. The figure shows only what is for characters, the street and the hall what is for
-/// nights and interiors.
-pub fn golden_presets(scene: BuiltIn) -> Vec<&'static str> {
-    let few: &[Preset] = match scene {
-        BuiltIn::Figure => &FIGURE_PRESETS,
-        BuiltIn::Street => &STREET_PRESETS,
-        BuiltIn::Hall => &HALL_PRESETS,
-        _ => &[],
-    };
-    if !few.is_empty() {
-        return few.iter().map(|preset| preset.name()).collect();
-    }
-    let mut shown = match scene {
-        BuiltIn::Theatre => Vec::new(),
-        _ => COLOR_PRESETS.to_vec(),
-    };
+/// The presets with a golden picture in a scene: each in the scene that suits it best.
+fn golden_presets(scene: BuiltIn) -> &'static [Preset] {
     match scene {
-        BuiltIn::Teapot | BuiltIn::Theatre => shown.extend(LINE_PRESETS),
-        BuiltIn::Village => shown.push(presets::GRAPHIC_NOVEL),
-        _ => {}
+        BuiltIn::Mountains => &[
+            presets::TWILIGHT_TOON,
+            presets::CRIMSON_DUSK,
+            presets::EMERALD_INK,
+            presets::WATERCOLOR,
+        ],
+        BuiltIn::Teapot => &[
+            presets::MUSEUM_PRINT,
+            presets::SEPIA,
+            presets::FIGURE_7A,
+            presets::FIGURE_7B,
+            presets::FIGURE_8A,
+            presets::FIGURE_8B,
+            presets::FIGURE_8C,
+        ],
+        BuiltIn::Theatre => &[
+            presets::SILVER_AGE,
+            presets::PENCIL_SKETCH,
+            presets::CLEAR_BANDS,
+            presets::SILENT_FILM,
+            presets::MANGA_PAGE,
+            presets::POP_POSTER,
+            presets::PENCIL_STUDY,
+        ],
+        BuiltIn::Village => &[
+            presets::GRAPHIC_NOVEL,
+            presets::LIGNE_CLAIRE,
+            presets::NOIR,
+            presets::COBALT_NIGHT,
+            presets::MISTY_MORNING,
+            presets::GOLDEN_HOUR,
+            presets::BLUEPRINT,
+            presets::GOUACHE,
+            presets::NEWSPRINT,
+            presets::RISOGRAPH,
+            presets::STORYBOOK,
+            presets::COPPER_AND_TEAL,
+            presets::WOODCUT,
+            presets::CHARCOAL,
+        ],
+        BuiltIn::Figure => &[
+            presets::SATURDAY_MORNING,
+            presets::FIELD_GUIDE,
+            presets::STAINED_GLASS,
+            presets::RED_POSTER,
+            presets::BALLPOINT,
+            presets::RED_CHALK,
+            presets::SUMI_E,
+        ],
+        BuiltIn::Street => &[
+            presets::HARD_BOILED,
+            presets::NEON_NIGHT,
+            presets::UKIYO_E,
+            presets::SURVEY_MAP,
+            presets::OIL_SKETCH,
+        ],
+        BuiltIn::Hall => &[presets::ENGRAVING],
     }
-    // After the others: sketches change with the clock.
-    shown.extend(PAGE_PRESETS);
-    if scene == BuiltIn::Mountains {
-        // Those with outlines: the meadow must not become a crowd of lines.
-        shown.extend(OUTLINE_PRESETS);
-    }
-    shown.into_iter().map(Preset::name).collect()
 }
 
 /// The styles that have a golden picture in a scene, with their names: presets, and those of
 /// effects that no preset has.
 pub fn golden_styles(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
-    let names = golden_presets(scene);
-    let preset = |name| presets::find(name).expect("listed").style();
-    let mut styles: Vec<_> = names.into_iter().map(|name| (name, preset(name))).collect();
-    if scene == BuiltIn::Figure {
-        let dots = Hatching {
-            marks: HatchingMarks::Dots,
-            spacing: 3.0,
-            wobble: 1.0,
-            ground: HatchingGround::Paper,
-            ..Hatching::default()
-        };
-        let style = ComicStyle::new().with(dots).with(Outlines::default());
-        styles.push(("stipple", style));
-    }
-    if let BuiltIn::Figure | BuiltIn::Street = scene {
-        let new = NEW_PRESETS.map(Preset::name);
-        styles.extend(new.map(|name| (name, preset(name))));
-        return styles;
-    }
-    if scene == BuiltIn::Hall {
-        return styles;
-    }
-    styles.extend(single_effects(scene));
-    let later = LATER_PRESETS.map(Preset::name);
-    styles.extend(later.map(|name| (name, preset(name))));
-    if let BuiltIn::Mountains | BuiltIn::Village = scene {
-        let name = presets::WATERCOLOR.name();
-        styles.push((name, preset(name)));
-    }
-    // After the watercolour, which changes with the clock.
-    let name = presets::CHARCOAL.name();
-    styles.push((name, preset(name)));
-    if scene == BuiltIn::Village {
-        // The last one: strokes of the others change with the clock.
-        let style = ComicStyle::new().with(ToneRamp::default());
-        styles.push(("tone-ramp", style.with(Outlines::default())));
-    }
-    styles
+    let presets = golden_presets(scene).iter();
+    let presets = presets.map(|preset| (preset.name(), preset.style()));
+    presets.chain(single_effects(scene)).collect()
+}
+
+/// When the golden picture of a style is drawn, in the app's time: some styles are drawn anew some times
+/// a second.
+fn golden_time(name: &str) -> Duration {
+    Duration::from_millis(match name {
+        "silent-film" => 834,
+        "watercolor" => 1900,
+        _ => 200,
+    })
 }
 
 /// Styles of effects that no preset has, for one scene each.
@@ -311,7 +242,17 @@ fn single_effects(scene: BuiltIn) -> Vec<(&'static str, ComicStyle)> {
             ]
         }
         BuiltIn::Village => village_effects(&style),
-        _ => Vec::new(),
+        BuiltIn::Figure => {
+            let dots = Hatching {
+                marks: HatchingMarks::Dots,
+                spacing: 3.0,
+                wobble: 1.0,
+                ground: HatchingGround::Paper,
+                ..Hatching::default()
+            };
+            vec![("stipple", style.with(dots).with(Outlines::default()))]
+        }
+        BuiltIn::Street | BuiltIn::Hall => Vec::new(),
     }
 }
 
@@ -360,6 +301,7 @@ fn village_effects(style: &ComicStyle) -> Vec<(&'static str, ComicStyle)> {
         ("focus-paint", village_focus(FocusStyle::Paint)),
         ("focus-dots", village_focus(FocusStyle::Dots)),
         ("focus-lines", village_focus(FocusStyle::Lines)),
+        ("tone-ramp", lined(style.clone().with(ToneRamp::default()))),
     ]
 }
 

@@ -405,11 +405,23 @@ pub struct WorkCounter {
 
 impl WorkCounter {
     pub fn count(&mut self, name: &'static str, style: &ComicStyle) -> Work {
-        count(&mut self.lines, name, style)
+        let (work, studio) = count_fused(name, style);
+        let render_world = studio.headless.app.sub_app(RenderApp).world();
+        let pipelines = render_world.resource::<PipelineCache>();
+        Work {
+            lines: line_work::count(&mut self.lines, style, pipelines, SIZE),
+            ..work
+        }
     }
 }
 
-fn count(lines: &mut PassCounters, name: &'static str, style: &ComicStyle) -> Work {
+/// Counts the work of a style but for that of its lines.
+pub fn count_without_lines(name: &'static str, style: &ComicStyle) -> Work {
+    count_fused(name, style).0
+}
+
+/// The same, with the app that has drawn the style.
+fn count_fused(name: &'static str, style: &ComicStyle) -> (Work, Studio) {
     let mut studio = teapot();
     let camera = studio.camera;
     let changed = edit_shaders(studio.headless.app.world_mut(), &READERS, counting);
@@ -449,13 +461,14 @@ fn count(lines: &mut PassCounters, name: &'static str, style: &ComicStyle) -> Wo
             bytes += f64::from(p[1]) / pixels;
         }
     }
-    Work {
+    let work = Work {
         name,
         ran: ran.into_iter().map(ComicsStage::name).collect(),
         left_out: left.len(),
         bindings,
         fetches,
         bytes,
-        lines: line_work::count(lines, style, render_world.resource::<PipelineCache>(), SIZE),
-    }
+        lines: LineWork::default(),
+    };
+    (work, studio)
 }

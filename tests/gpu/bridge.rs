@@ -60,13 +60,24 @@ fn dashed(small: &mut Small, gap: f32, upright: bool, color: Color) {
 /// asked look like before.
 #[test]
 fn a_wire_with_short_gaps_looks_like_a_whole_one() {
+    assert_gaps_close(&[(false, &[2, 3, 4]), (true, &[3])]);
+}
+
+#[test]
+#[ignore = "long: gaps of every length in both directions"]
+fn wires_with_gaps_of_any_length_look_like_whole_ones() {
+    assert_gaps_close(&[(false, &[1, 2, 3, 4]), (true, &[1, 2, 3, 4])]);
+}
+
+/// Whether a wire is upright, and the lengths of gaps.
+fn assert_gaps_close(wires: &[(bool, &[u32])]) {
     let mut small = towards_the_sky(SIZE);
-    for upright in [false, true] {
+    for &(upright, gaps) in wires {
         dashed(&mut small, 0.0, upright, Color::WHITE);
         let whole = drawn(&mut small, thin(0));
         let ink = mask(&whole).into_iter().filter(|ink| *ink).count();
         assert_eq!(ink, 48, "a line of 48 pixels");
-        for gap in 1..=4 {
+        for &gap in gaps {
             dashed(&mut small, gap as f32, upright, Color::WHITE);
             let before = drawn(&mut small, thin(0));
             assert!(before != whole);
@@ -197,36 +208,55 @@ fn put_wires(small: &mut Small) {
 /// Every pixel, with gaps in rows, columns, and at the borders of cells and words.
 #[test]
 fn closed_gaps_are_their_twin() {
+    assert_closed_as_twin(&[(3, &LINES[0]), (2, &LINES[1])]);
+}
+
+#[test]
+#[ignore = "long: gaps of every length in every kind of line"]
+fn closed_gaps_of_all_lines_are_their_twin() {
+    let cases = LINES
+        .each_ref()
+        .map(|lines| [(1, lines), (2, lines), (3, lines)]);
+    assert_closed_as_twin(cases.as_flattened());
+}
+
+/// Width, weight and continuity of lines.
+type Lines = (f32, LineWeight, f32);
+
+const LINES: [Lines; 3] = [
+    (2.0, LineWeight::EVEN, 8.0),
+    (1.0, LineWeight::EVEN, 0.0),
+    (
+        5.0,
+        LineWeight {
+            outer: 1.4,
+            inner: 0.6,
+            taper: 9.0,
+            perspective: 0.5,
+            ..LineWeight::EVEN
+        },
+        12.0,
+    ),
+];
+
+fn assert_closed_as_twin(cases: &[(u32, &Lines)]) {
     let mut small = Small::new(UVec2::new(101, 70), Msaa::Off);
     put_wires(&mut small);
-    let weighted = LineWeight {
-        outer: 1.4,
-        inner: 0.6,
-        taper: 9.0,
-        perspective: 0.5,
-        ..LineWeight::EVEN
-    };
-    for bridge in 1..=3 {
-        for (width, weight, continuity) in [
-            (2.0, LineWeight::EVEN, 8.0),
-            (1.0, LineWeight::EVEN, 0.0),
-            (5.0, weighted, 12.0),
-        ] {
-            let outlines = Outlines {
-                bridge,
-                width,
-                weight,
-                continuity,
-                continuity_level: 0.3,
-                silhouettes: Some(Silhouettes {
-                    threshold: 0.1,
-                    ..default()
-                }),
+    for &(bridge, &(width, weight, continuity)) in cases {
+        let outlines = Outlines {
+            bridge,
+            width,
+            weight,
+            continuity,
+            continuity_level: 0.3,
+            silhouettes: Some(Silhouettes {
+                threshold: 0.1,
                 ..default()
-            };
-            let what = format!("bridge {bridge}, {width} px");
-            assert_pass_is_its_twin(&mut small, &outlined(outlines), None, &what);
-        }
+            }),
+            ..default()
+        };
+        let what = format!("bridge {bridge}, {width} px");
+        assert_pass_is_its_twin(&mut small, &outlined(outlines), None, &what);
     }
     assert_eq!(small.errors(), 0);
 }

@@ -1,45 +1,74 @@
 //! Examples on the command line: their output files and their errors.
 
 use std::{
-    env, fs,
+    collections::{BTreeMap, BTreeSet},
+    env,
+    ffi::OsStr,
+    fs,
     path::{Path, PathBuf},
     process::{Command, Output},
-    sync::OnceLock,
+    sync::{Arc, Mutex, PoisonError},
 };
 
 use serde_json::Value;
 
 use bevy_comics_testkit::reference::range;
 
-/// Builds an example and returns its path.
-pub fn example(name: &str) -> PathBuf {
-    let debug = env::current_exe()
-        .expect("this test")
-        .ancestors()
-        .find(|path| path.file_name().is_some_and(|name| name == "debug"))
-        .expect("the target folder")
-        .to_owned();
-    let status = Command::new(env::var("CARGO").unwrap_or_else(|_| "cargo".into()))
-        .args(["build", "--quiet", "--example", name])
+/// Builds an example with the profile of this test, in its target folder; nothing is compiled there if
+/// it was built with the tests. Returns what cargo says about the example and all that is linked into it.
+pub fn build(example: &'static str) -> Arc<[Value]> {
+    static BUILT: Mutex<BTreeMap<&str, Arc<[Value]>>> = Mutex::new(BTreeMap::new());
+    let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
+    built
+        .entry(example)
+        .or_insert_with(|| ask_cargo(example))
+        .clone()
+}
+
+fn ask_cargo(example: &str) -> Arc<[Value]> {
+    let program = env::current_exe().expect("this test");
+    // The program lies in TARGET/PROFILE/deps.
+    let mut folders = program.ancestors().skip(2);
+    let [Some(profile), Some(target)] = [folders.next(), folders.next()] else {
+        panic!("{} is not in a target folder", program.display());
+    };
+    let profile = match profile.file_name().and_then(OsStr::to_str) {
+        Some("debug") => "dev",
+        Some(name) => name,
+        None => panic!("{} is not the folder of a profile", profile.display()),
+    };
+    let output = Command::new(env::var("CARGO").unwrap_or_else(|_| "cargo".into()))
+        .args(["build", "--quiet", "--locked", "--offline"])
+        .args(["--profile", profile, "--example", example])
+        .arg("--message-format=json-render-diagnostics")
         .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .env("CARGO_TARGET_DIR", debug.parent().expect("a parent"))
+        .env("CARGO_TARGET_DIR", target)
         // `scripts/test` sets it for the test binary; build scripts would see it and run again.
         .env_remove("RUSTC_BOOTSTRAP")
-        .status()
+        .output()
         .expect("cargo runs");
-    assert!(status.success(), "the example does not build");
-    debug.join("examples").join(name)
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.success(),
+        "{example} does not build: {errors}"
+    );
+    let messages = String::from_utf8(output.stdout).expect("UTF-8");
+    messages
+        .lines()
+        .map(|line| serde_json::from_str(line).expect("JSON"))
+        .collect()
 }
 
-/// The example, built once.
-fn render() -> &'static Path {
-    static RENDER: OnceLock<PathBuf> = OnceLock::new();
-    RENDER.get_or_init(|| example("render"))
+/// Builds an example and returns its path.
+pub fn example(name: &'static str) -> PathBuf {
+    let messages = build(name);
+    let mut programs = messages.iter().filter_map(|m| m["executable"].as_str());
+    programs.next_back().expect("the example").into()
 }
 
-/// The example's output, started in a folder.
+/// The output of `render`, started in a folder.
 pub fn run(folder: &Path, arguments: &[&str]) -> Output {
-    Command::new(render())
+    Command::new(example("render"))
         .args(arguments)
         .current_dir(folder)
         .output()
@@ -195,7 +224,7 @@ fn a_dump_holds_the_depth_without_loss_and_says_what_was_decided() {
 fn a_dump_of_outlines_holds_ids_and_counts_the_lights() {
     let folder = folder("dump-ids");
     let arguments = [
-        "theatre", "--size", "64x48", "--msaa", "1", "--frames", "4", "--out", "p.png", "--dump",
+        "theatre", "--size", "64x48", "--msaa", "1", "--frames", "1", "--out", "p.png", "--dump",
         "d",
     ];
     let output = run(&folder, &arguments);
@@ -218,7 +247,7 @@ fn a_dump_of_outlines_holds_ids_and_counts_the_lights() {
     let exr::prelude::FlatSamples::U32(values) = &channel.sample_data else {
         panic!("ids are not whole numbers")
     };
-    let different: std::collections::BTreeSet<u32> = values.iter().copied().collect();
+    let different: BTreeSet<u32> = values.iter().copied().collect();
     assert!(different.len() > 10, "{} objects", different.len());
     assert!(folder.join("d/normal.exr").exists());
     fs::remove_dir_all(folder).expect("the folder goes");
@@ -280,11 +309,13 @@ fn a_gltf_file_is_framed_and_lit() {
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 
-/// The game plays a level by itself and prints the result.
+/// The game plays a level by itself and prints the result. That each level can be won is tested by the
+/// game itself, without drawing it.
 #[test]
+#[ignore = "long: draws a village for many frames"]
 fn the_game_finishes_a_level() {
     let output = Command::new(example("game"))
-        .args(["--play", "--level", "1"])
+        .args(["--play", "--level", "1", "--lanterns", "47"])
         .output()
         .expect("it starts");
     let said = String::from_utf8_lossy(&output.stdout).into_owned();

@@ -11,29 +11,46 @@ use crate::{
 const SIZE: UVec2 = UVec2::new(96, 64);
 const WIDTH: f32 = 4.0;
 
-/// A cube seen along one of its edges, which leans by an angle and passes the middle of the
-/// picture at a distance in pixels.
-fn leaning(small: &mut Small, lean: f32, shift: f32, msaa: Msaa) {
+/// A cube that is seen along one of its edges, with creases.
+fn cube(small: &mut Small, msaa: Msaa) -> Entity {
     towards_the_sky_again(small, msaa);
-    let turned = Quat::from_rotation_z(lean) * Quat::from_rotation_y(45f32.to_radians());
-    let at = Transform::from_xyz(shift, 0.0, -400.0).with_rotation(turned);
-    small.put(Cuboid::from_length(300.0), unlit(Color::WHITE), at);
+    let at = leaning(0.0, 0.0);
+    let cube = small.put(Cuboid::from_length(300.0), unlit(Color::WHITE), at);
+    draw(small, LineWeight::EVEN);
+    cube
 }
 
-/// The middle of the ink of every row, less where the edge is, and the ink.
-fn rows(small: &mut Small, lean: f32, shift: f32) -> Vec<[f64; 2]> {
+fn draw(small: &mut Small, weight: LineWeight) {
     let outlines = Outlines {
         silhouettes: None,
         creases: Some(Creases::default()),
         objects: None,
         width: WIDTH,
+        weight,
         ..default()
     };
     small.style(&ComicStyle::new().with(outlines));
     small.settle();
-    let picture = small.picture();
+}
+
+/// The place of the cube of which the edge leans by an angle and passes the middle of the picture at a
+/// distance in pixels.
+fn leaning(lean: f32, shift: f32) -> Transform {
+    let turned = Quat::from_rotation_z(lean) * Quat::from_rotation_y(45f32.to_radians());
+    Transform::from_xyz(shift, 0.0, -400.0).with_rotation(turned)
+}
+
+/// The next picture, with the cube at a place.
+fn moved(small: &mut Small, cube: Entity, at: Transform) -> image::RgbaImage {
+    small.world().entity_mut(cube).insert(at);
+    small.headless.step(1);
+    small.picture()
+}
+
+/// The middle of the ink of every row, less where the edge is, and the ink.
+fn rows(picture: &image::RgbaImage, lean: f32, shift: f32) -> Vec<[f64; 2]> {
     let row = |y: u32| {
-        let ink = |x: u32| 1.0 - linear(&picture, x, y)[0];
+        let ink = |x: u32| 1.0 - linear(picture, x, y)[0];
         let sum: f64 = (0..SIZE.x).map(ink).sum();
         let moment: f64 = (0..SIZE.x).map(|x| ink(x) * (f64::from(x) + 0.5)).sum();
         let up = 32.0 - (f64::from(y) + 0.5);
@@ -54,13 +71,14 @@ fn creases_lie_where_their_sides_meet() {
         (Msaa::Off, 0.05, 0.09, 0.1),
         (Msaa::Sample4, 0.15, 0.16, 0.2),
     ] {
+        let cube = cube(&mut small, msaa);
         for slope in [0.05f32, 0.2, 0.35, 0.5, 0.7, 0.9] {
             let mut errors = vec![];
             let mut widths = vec![];
             for shift in [0.0, 0.27, 0.61] {
                 let lean = slope.atan();
-                leaning(&mut small, lean, shift, msaa);
-                for [error, ink] in rows(&mut small, lean, shift) {
+                let picture = moved(&mut small, cube, leaning(lean, shift));
+                for [error, ink] in rows(&picture, lean, shift) {
                     errors.push(error * f64::from(lean.cos()));
                     widths.push(ink * f64::from(lean.cos()));
                 }
@@ -82,23 +100,15 @@ fn creases_lie_where_their_sides_meet() {
 #[test]
 fn creases_are_as_wide_as_their_weight() {
     let mut small = towards_the_sky(SIZE);
-    for shift in [0.0, 0.3] {
-        leaning(&mut small, 0.0, shift, Msaa::Off);
-        for factor in [0.25, 0.6, 1.0, 2.0f32] {
-            let outlines = Outlines {
-                silhouettes: None,
-                creases: Some(Creases::default()),
-                objects: None,
-                width: WIDTH,
-                weight: LineWeight {
-                    crease: factor,
-                    ..LineWeight::EVEN
-                },
-                ..default()
-            };
-            small.style(&ComicStyle::new().with(outlines));
-            small.settle();
-            let picture = small.picture();
+    let cube = cube(&mut small, Msaa::Off);
+    for factor in [0.25, 0.6, 1.0, 2.0f32] {
+        let weight = LineWeight {
+            crease: factor,
+            ..LineWeight::EVEN
+        };
+        draw(&mut small, weight);
+        for shift in [0.0, 0.3] {
+            let picture = moved(&mut small, cube, leaning(0.0, shift));
             let want = f64::from(WIDTH * factor);
             for y in 12..52 {
                 let found = black_ink(&picture, (0..SIZE.x).map(|x| (x, y)));
@@ -116,10 +126,12 @@ fn creases_are_as_wide_as_their_weight() {
 #[test]
 fn other_edges_do_not_move_creases() {
     let mut small = towards_the_sky(SIZE);
-    leaning(&mut small, 0.0, 0.3, Msaa::Off);
+    let cube = cube(&mut small, Msaa::Off);
+    small.world().entity_mut(cube).insert(leaning(0.0, 0.3));
     // A bar two pixels to the left of the edge, in front of it.
     wall(&mut small, [-20.0, -10.0], [-1.2, 10.0], 100.0);
-    let found = rows(&mut small, 0.0, 0.3);
+    small.settle();
+    let found = rows(&small.picture(), 0.0, 0.3);
     for [error, ink] in found {
         assert!(error.abs() < 0.5, "{error}");
         assert!(ink > 0.9 * f64::from(WIDTH), "{ink}");

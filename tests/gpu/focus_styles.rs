@@ -9,6 +9,8 @@ use crate::{
 };
 
 const SIZE: UVec2 = UVec2::new(96, 96);
+/// Size of the pictures with lines.
+const LINED: UVec2 = UVec2::new(64, 64);
 
 /// Truth: what is out of focus is printed with its mean light, in dots that grow with the distance
 /// from the focus; what is in focus is as it was.
@@ -65,8 +67,9 @@ fn ink(picture: &image::RgbaImage) -> f64 {
 /// they have, down to none; and the colours stay.
 #[test]
 fn lines_fade_out_of_focus() {
+    let mut small = Small::new(LINED, Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let mut small = Small::new(SIZE, msaa);
+        small.restart(msaa);
         figure(&mut small, 5.0, 60.0);
         let bare = shot(&mut small, &ComicStyle::new());
         let lines = ComicStyle::new().with(Outlines {
@@ -98,7 +101,7 @@ fn lines_fade_out_of_focus() {
 /// A line that is half as strong is half as wide too: its ink is about a quarter.
 #[test]
 fn lines_become_thinner_and_fainter() {
-    let mut small = Small::new(SIZE, Msaa::Off);
+    let mut small = Small::new(LINED, Msaa::Off);
     figure(&mut small, 5.0, 60.0);
     let bare = shot(&mut small, &ComicStyle::new());
     let lines = ComicStyle::new().with(Outlines {

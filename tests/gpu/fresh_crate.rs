@@ -16,34 +16,30 @@ use crate::{
 };
 
 /// Runs a printed program from its own `main`, with the engine's plugins without a window in place
-/// of `DefaultPlugins`. Saves the picture with the outlines, then the picture without them; then
-/// presses F10 twice.
+/// of `DefaultPlugins`. Saves the picture with the outlines, presses F10 twice if there is a panel, and
+/// saves the picture without outlines.
 const CHECK: &str = r#"
 use bevy::{
     app::PluginGroupBuilder,
-    app::PluginsState,
     input::{ButtonState, keyboard::{Key, KeyboardInput}},
     prelude::*,
     window::PrimaryWindow,
 };
 use bevy_comics::{Outlines, inspector::ComicsInspector};
-use bevy_comics_testkit::headless::{Headless, HeadlessOptions, new_target, plugins};
+use bevy_comics_testkit::headless::{Headless, HeadlessOptions, plugins};
 
-#[path = "../styles.rs"]
-mod styles;
-
-mod readme {
+pub mod readme {
     // Stronger than the prelude's glob.
-    use crate::Windowless as DefaultPlugins;
-    include!("../readme.rs");
+    use super::Windowless as DefaultPlugins;
+    include!("printed/readme.rs");
     pub fn run() {
         main();
     }
 }
 
-mod guide {
-    use crate::Windowless as DefaultPlugins;
-    include!("../guide.rs");
+pub mod guide {
+    use super::Windowless as DefaultPlugins;
+    include!("printed/guide.rs");
     pub fn run() {
         main();
     }
@@ -63,25 +59,11 @@ impl PluginGroup for Windowless {
     }
 }
 
-fn main() {
-    match std::env::args().nth(1).as_deref() {
-        Some("readme") => readme::run(),
-        Some("guide") => guide::run(),
-        Some("styles") => styles::check(),
-        other => panic!("no program {other:?}"),
-    }
-}
-
-fn check(mut app: App) -> AppExit {
-    while app.plugins_state() == PluginsState::Adding {
-        bevy::tasks::tick_global_task_pools_on_main_thread();
-    }
-    app.finish();
-    app.cleanup();
-    app.update();
-    let options = options();
-    let target = new_target(app.world_mut(), options.size, options.format);
-    let mut headless = Headless { app, target, options };
+fn check(app: App) -> AppExit {
+    let mut headless = Headless::of(app, options());
+    headless.step(1);
+    // The engine overlooks that a camera's target changes, unless the image is new.
+    headless.resize(options().size, 1.0);
     let target = headless.render_target();
     let world = headless.app.world_mut();
     let camera = world.query_filtered::<Entity, With<Camera3d>>().single(world).expect("a camera");
@@ -96,21 +78,27 @@ fn check(mut app: App) -> AppExit {
     }
     headless.step(5);
     headless.picture().save("comic.png").expect("saved");
-    // The panel needs the size of a window. It is not shown.
-    headless.app.world_mut().spawn((Window::default(), PrimaryWindow));
-    press_f10(&mut headless);
-    headless.step(6);
-    if let Some(inspector) = headless.app.world().get_resource::<ComicsInspector>() {
-        println!("laid out: {}", inspector.widgets.contains_key("outlines"));
+    if headless.app.world().contains_resource::<ComicsInspector>() {
+        open_and_close_the_panel(&mut headless);
     }
-    press_f10(&mut headless);
     headless.app.world_mut().entity_mut(camera).remove::<Outlines>();
     headless.step(5);
     headless.picture().save("plain.png").expect("saved");
     AppExit::Success
 }
 
-/// Says whether the panel is open then, if the program has one.
+/// Presses F10 twice, and says what the panel does.
+fn open_and_close_the_panel(headless: &mut Headless) {
+    // The panel needs the size of a window. It is not shown.
+    headless.app.world_mut().spawn((Window::default(), PrimaryWindow));
+    press_f10(headless);
+    headless.step(6);
+    let inspector = headless.app.world().resource::<ComicsInspector>();
+    println!("laid out: {}", inspector.widgets.contains_key("outlines"));
+    press_f10(headless);
+}
+
+/// Says whether the panel is open then.
 fn press_f10(headless: &mut Headless) {
     for state in [ButtonState::Pressed, ButtonState::Released] {
         headless.app.world_mut().write_message(KeyboardInput {
@@ -123,9 +111,7 @@ fn press_f10(headless: &mut Headless) {
         });
         headless.step(1);
     }
-    if let Some(inspector) = headless.app.world().get_resource::<ComicsInspector>() {
-        println!("open: {}", inspector.open);
-    }
+    println!("open: {}", headless.app.world().resource::<ComicsInspector>().open);
 }
 "#;
 
@@ -234,7 +220,7 @@ fn hues(picture: &RgbImage) -> usize {
 /// Runs a program of the crate, and holds its picture to what the page promises: many colours, and
 /// lines where objects meet. What it printed.
 fn assert_it_draws_a_comic(name: &str) -> String {
-    let printed = outside::run("check", &[name]);
+    let printed = outside::run(name);
     let [comic, plain] = ["comic.png", "plain.png"].map(|file| {
         let picture = image::open(outside::folder().join(file)).expect("a picture");
         picture.to_rgb8()
@@ -329,36 +315,41 @@ fn styles_as_rust() -> String {
     format!("{code}pub fn check() {{\n{checks}}}\n")
 }
 
-/// The printed programs as they stand, as modules of the outside crate, and a binary that runs them
+/// The printed programs as they stand, as modules of the outside crate, and a module that runs them
 /// without a window.
 pub fn files() -> Vec<File> {
     let readme = read("README.md");
     let guide = page("your-own-style.md");
     let program = |page: &str| blocks(page, "rust,no_run")[0].to_owned();
     vec![
-        ("readme.rs", program(&readme)),
-        ("guide.rs", program(&guide)),
-        ("styles.rs", styles_as_rust()),
-        ("bin/check.rs", CHECK.to_owned()),
+        ("Cargo.toml", blocks(&readme, "toml")[0].to_owned()),
+        ("src/printed/readme.rs", program(&readme)),
+        ("src/printed/guide.rs", program(&guide)),
+        ("src/styles.rs", styles_as_rust()),
+        ("src/check.rs", CHECK.to_owned()),
         (
-            "../assets/styles/mine.comic.ron",
+            "assets/styles/mine.comic.ron",
             blocks(&guide, "ron")[0].to_owned(),
         ),
     ]
 }
 
+/// The first program is an example and in the documentation of the crate, too.
 #[test]
-fn the_readme_and_the_guide_work_as_printed_from_an_empty_folder() {
+fn what_the_readme_and_the_guide_print_is_what_is_compiled() {
     let readme = read("README.md");
     let guide = page("your-own-style.md");
     let first = blocks(&readme, "rust,no_run")[0];
     assert_eq!(program(first), program(&read("examples/simple.rs")));
     let crate_docs = read("src/lib.rs").replace("//!", "");
     assert_eq!(program(first), program(blocks(&crate_docs, "no_run")[0]));
-    assert!(first.lines().count() <= 25, "the first program grew");
-    assert!(readme.lines().count() <= 150, "the README grew");
     assert_dependencies(blocks(&readme, "toml")[0], "");
     assert_dependencies(blocks(&guide, "toml")[0], ", features = [\"inspector\"]");
+}
+
+#[test]
+#[ignore = "long: compiles and links a crate"]
+fn the_readme_and_the_guide_work_as_printed_from_an_empty_folder() {
     assert_it_draws_a_comic("readme");
     let printed = assert_it_draws_a_comic("guide");
     let panel: Vec<&str> = printed
@@ -374,16 +365,16 @@ fn the_readme_and_the_guide_work_as_printed_from_an_empty_folder() {
 
 /// `ComicStyle::to_rust` writes code that builds the style.
 #[test]
+#[ignore = "long: compiles and links a crate"]
 fn exported_styles_build_the_same_style() {
-    outside::run("check", &["styles"]);
+    outside::run("styles");
 }
 
 /// The packages that a game compiles: no dev-dependencies.
 fn packages(features: &[&str]) -> std::collections::BTreeSet<String> {
     let output = Command::new(env::var("CARGO").unwrap_or_else(|_| "cargo".into()))
-        .args([
-            "tree", "--locked", "--edges", "normal", "--prefix", "none", "--format", "{p}",
-        ])
+        .args(["tree", "--locked", "--offline", "--edges", "normal"])
+        .args(["--prefix", "none", "--format", "{p}"])
         .args(features)
         .current_dir(ROOT)
         .output()
@@ -403,7 +394,6 @@ fn packages(features: &[&str]) -> std::collections::BTreeSet<String> {
 
 /// Without the feature `inspector` none of its dependencies are compiled.
 #[test]
-#[cfg(target_os = "linux")]
 fn the_inspector_is_not_built_unasked() {
     let without = packages(&[]);
     let with = packages(&["--features", "inspector"]);
@@ -417,10 +407,4 @@ fn the_inspector_is_not_built_unasked() {
         assert!(!named(&without), "{name} is built without the feature");
         assert!(named(&with), "{name} is built with it");
     }
-    // Counted on Linux. Update it when a dependency is added on purpose.
-    assert_eq!(
-        without.len(),
-        208,
-        "the default build has other crates than before"
-    );
 }

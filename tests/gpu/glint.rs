@@ -107,17 +107,55 @@ fn true_cover(sign: &Glint, half: [f64; 3]) -> (f64, DVec2) {
     (area / f64::from(fine * fine), moment / area)
 }
 
-/// Every shape is where the geometry of the ball says.
+fn sign_of(shape: GlintShape, change: fn(&mut Glint)) -> Glint {
+    let mut sign = Glint {
+        shape,
+        ..Glint::default()
+    };
+    change(&mut sign);
+    sign
+}
+
+/// Checks that signs are where the geometry of the ball says.
+fn check_cover(signs: &[Glint]) {
+    let mut small = ball(&signed(Glint::default()));
+    for &sign in signs {
+        set_light(&mut small, &signed(sign));
+        let (area, middle) = covered(&drawn(&mut small));
+        let (wanted, centre) = true_cover(&sign, [0.0, 0.0, 1.0]);
+        assert!(wanted > 300.0, "{sign:?}: {wanted} pixels");
+        assert!(
+            (area / wanted - 1.0).abs() < 0.01,
+            "{sign:?}: {area} pixels, not {wanted}"
+        );
+        let away = middle.distance(centre);
+        assert!(away < 0.5, "{sign:?}: {middle}, not {centre}");
+    }
+}
+
+/// Signs are where the geometry of the ball says: what moves, turns and bends them.
 #[test]
 fn signs_cover_what_they_should() {
-    let base = Glint::default();
-    let of = |shape, change: fn(&mut Glint)| {
-        let mut sign = Glint { shape, ..base };
-        change(&mut sign);
-        sign
-    };
-    let signs = [
-        base,
+    check_cover(&[
+        sign_of(GlintShape::Disc, |s| {
+            (s.scale, s.offset) = (Vec2::new(2.0, 0.8), Vec2::new(1.5, 0.7));
+        }),
+        sign_of(GlintShape::Star, |s| {
+            (s.size, s.points, s.bar) = (2.0, 5, 0.5);
+        }),
+        sign_of(GlintShape::Faithful, |s| {
+            (s.square, s.rotation) = (1.0, 30.0);
+        }),
+    ]);
+}
+
+/// The same of every shape and what changes it.
+#[test]
+#[ignore = "long: every shape of a sign"]
+fn signs_of_every_shape_cover_what_they_should() {
+    let of = sign_of;
+    check_cover(&[
+        Glint::default(),
         of(GlintShape::Disc, |s| s.scale = Vec2::new(2.0, 0.8)),
         of(GlintShape::Disc, |s| s.split = Vec2::new(1.6, 0.0)),
         of(GlintShape::Disc, |s| s.offset = Vec2::new(1.5, 0.7)),
@@ -136,20 +174,7 @@ fn signs_cover_what_they_should() {
         }),
         of(GlintShape::Faithful, |s| s.split = Vec2::splat(0.6)),
         of(GlintShape::Faithful, |s| s.offset = Vec2::new(-1.2, 1.0)),
-    ];
-    let mut small = ball(&signed(base));
-    for sign in signs {
-        set_light(&mut small, &signed(sign));
-        let (area, middle) = covered(&drawn(&mut small));
-        let (wanted, centre) = true_cover(&sign, [0.0, 0.0, 1.0]);
-        assert!(wanted > 300.0, "{sign:?}: {wanted} pixels");
-        assert!(
-            (area / wanted - 1.0).abs() < 0.01,
-            "{sign:?}: {area} pixels, not {wanted}"
-        );
-        let away = middle.distance(centre);
-        assert!(away < 0.5, "{sign:?}: {middle}, not {centre}");
-    }
+    ]);
 }
 
 /// The plain disc has the area that its angle says, and is the highlight without a sign.
@@ -179,12 +204,23 @@ fn a_disc_is_the_plain_highlight() {
     assert!((differ as f64) < 3.0 * 0.5 * border, "{differ} channels");
 }
 
-/// The same over all roughnesses: the disc of the sign is the highlight. From 0.65 on, its peak is below
-/// a few codes and cannot be measured.
+/// Polished, between, and matt.
 #[test]
+fn discs_are_the_plain_highlight_of_some_roughness() {
+    check_roughness(&[0.0, 0.2, 0.6]);
+}
+
+#[test]
+#[ignore = "long: six roughnesses"]
 fn discs_are_the_plain_highlight_at_every_roughness() {
+    check_roughness(&[0.0, 0.1, 0.2, 0.35, 0.5, 0.6]);
+}
+
+/// The same over these roughnesses: the disc of the sign is the highlight. From 0.65 on, its peak is below
+/// a few codes and cannot be measured.
+fn check_roughness(all: &[f32]) {
     let mut small = ball(&signed(Glint::default()));
-    for roughness in [0.0f32, 0.1, 0.2, 0.35, 0.5, 0.6] {
+    for roughness in all.iter().copied() {
         let polish = (1.0 - 1.4 * roughness).max(0.01);
         let light = CartoonLight {
             // As bright as the strength allows.
@@ -222,30 +258,29 @@ fn discs_are_the_plain_highlight_at_every_roughness() {
     }
 }
 
-/// Moved by parts of a pixel, a sign covers the same.
-#[test]
-fn signs_are_anti_aliased() {
+/// Checks that a sign covers the same when it is moved by these numbers of parts of a pixel.
+fn check_shifts(shifts: u32) {
     let sign = Glint {
         shape: GlintShape::Window,
         rotation: 15.0,
         ..Glint::default()
     };
     let mut small = ball(&signed(sign));
-    small.headless.step(6);
+    small.headless.step(3);
     let world = small.world();
     let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
     let ball = meshes.single(world).expect("a ball");
-    let areas: Vec<f64> = (0..64)
+    let areas: Vec<f64> = (0..shifts)
         .map(|shift| {
-            let moved = shift as f32 / 64.0 * 2.0 / SIZE as f32;
+            let moved = shift as f32 / shifts as f32 * 2.0 / SIZE as f32;
             let at = Transform::from_xyz(moved, 0.37 * moved, 0.0);
             small.world().entity_mut(ball).insert(at);
-            small.headless.step(3);
+            small.headless.step(1);
             covered(&small.picture()).0
         })
         .collect();
-    let mean = areas.iter().sum::<f64>() / 64.0;
-    let variance = areas.iter().map(|a| (a - mean).powi(2)).sum::<f64>() / 64.0;
+    let mean = areas.iter().sum::<f64>() / f64::from(shifts);
+    let variance = areas.iter().map(|a| (a - mean).powi(2)).sum::<f64>() / f64::from(shifts);
     assert!(
         variance.sqrt() < 0.01 * mean,
         "{} of {mean}",
@@ -253,10 +288,23 @@ fn signs_are_anti_aliased() {
     );
 }
 
-/// While the light turns by 80 degrees in 360 frames, the sign moves smoothly, and stays where the
-/// geometry says. A sign that stood still for a frame would bend its way by 0.2 pixels.
+/// Moved by parts of a pixel, a sign covers the same.
 #[test]
-fn signs_move_smoothly_with_the_light() {
+fn signs_are_anti_aliased() {
+    check_shifts(16);
+}
+
+/// The same in finer steps.
+#[test]
+#[ignore = "long: 64 frames"]
+fn signs_are_anti_aliased_at_every_place() {
+    check_shifts(64);
+}
+
+/// A light turns by 80 degrees in 360 frames. Checks that in these frames, of which some follow one
+/// another, the sign moves smoothly, and is where the geometry says at every 90th. A sign that stood
+/// still for a frame would bend its way by 0.2 pixels.
+fn check_way(frames: impl Iterator<Item = i32>) {
     let sign = Glint {
         shape: GlintShape::Star,
         size: 2.0,
@@ -268,14 +316,13 @@ fn signs_move_smoothly_with_the_light() {
     let mut suns = world.query_filtered::<Entity, With<DirectionalLight>>();
     let sun = suns.single(world).expect("a sun");
     let mut middles = vec![];
-    // 360 frames.
-    for frame in 0..=360 {
+    for frame in frames {
         let degrees = frame as f32 / 4.5 - 40.0;
         let angle = degrees.to_radians();
         let to = Vec3::new(angle.sin(), 0.0, angle.cos());
         let at = Transform::from_translation(to).looking_at(Vec3::ZERO, Vec3::Y);
         small.world().entity_mut(sun).insert(at);
-        small.headless.step(if middles.is_empty() { 6 } else { 1 });
+        small.headless.step(if middles.is_empty() { 3 } else { 1 });
         let picture = small.picture();
         let middle = covered(&picture).1;
         if frame % 90 == 0 {
@@ -288,15 +335,33 @@ fn signs_move_smoothly_with_the_light() {
                 "{degrees}: {middle}, not {wanted}"
             );
         }
-        middles.push(middle);
+        middles.push((frame, middle));
     }
-    let bends = middles
-        .windows(3)
-        .map(|m| (m[0] - 2.0 * m[1] + m[2]).length());
-    let most = bends.fold(0.0, f64::max);
-    println!("largest bend: {most}");
-    assert!(most < 0.05, "{most}");
-    assert!(middles[0].distance(middles[360]) > 60.0);
+    let (mut most, mut bends) = (0.0f64, 0);
+    for three in middles.windows(3) {
+        let [(first, a), (_, b), (last, c)] = [three[0], three[1], three[2]];
+        if last == first + 2 {
+            most = most.max((a - 2.0 * b + c).length());
+            bends += 1;
+        }
+    }
+    println!("largest of {bends} bends: {most}");
+    assert!(bends > 10 && most < 0.05, "{most}");
+    let [first, last] = [middles[0].1, middles[middles.len() - 1].1];
+    assert!(first.distance(last) > 60.0);
+}
+
+/// At both ends of the way and in the middle, and in 16 frames one after another.
+#[test]
+fn signs_move_smoothly_with_the_light() {
+    check_way([0].into_iter().chain(180..=196).chain([360]));
+}
+
+/// The same in all frames of the way.
+#[test]
+#[ignore = "long: 361 frames"]
+fn signs_move_smoothly_all_the_way() {
+    check_way(0..=360);
 }
 
 /// Only the brightest light draws a sign; of two that are equal, none does.
@@ -467,9 +532,10 @@ fn rims_of_constant_width_have_straight_borders() {
     let pixels = 8.0f64;
     let radius = 0.35;
     let pillar = || Cylinder::new(radius, 6.0).mesh().resolution(256);
+    let mut small = room(UVec2::splat(SIZE), 0.0);
     for (msaa, limit) in [(Msaa::Off, 0.5), (Msaa::Sample4, 0.25)] {
         for degrees in [3.0f64, 17.0, 40.0] {
-            let mut small = room(UVec2::splat(SIZE), 0.0);
+            small.clear();
             small.insert((msaa, DepthPrepass));
             let lean = degrees.to_radians();
             let at = Transform::from_rotation(Quat::from_rotation_z(-lean as f32));

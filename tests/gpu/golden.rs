@@ -1,12 +1,12 @@
-//! Reference pictures of every preset, and of effects that no preset has, 320x180. To update them, run
-//! `cargo run --example pictures -- golden` and look at the result. Those in
+//! Reference pictures of every preset, and of effects that no preset has, each in one scene, 320x180. To
+//! update them, run `cargo run --example pictures -- golden` and look at the result. Those in
 //! `rounding` are copied by hand from the pictures that a failing test leaves in
 //! the target folder.
 
 use std::path::{Path, PathBuf};
 
 use bevy::{math::UVec2, render::view::Msaa};
-use bevy_comics::{ComicStyle, Contours, presets};
+use bevy_comics::{Contours, presets};
 use nv_flip::{FlipImageRgb8, FlipPool};
 
 use bevy_comics_testkit::{
@@ -106,15 +106,12 @@ fn references(scene: BuiltIn, name: &str) -> Vec<PathBuf> {
     found
 }
 
-fn preset(name: &str) -> ComicStyle {
-    presets::find(name).expect("listed").style()
-}
-
-fn check(scene: BuiltIn) {
+/// Compares the pictures of the first styles of a scene, or of all.
+fn check(scene: BuiltIn, count: usize) {
     let mut studio = Studio::new(scene, UVec2::new(320, 180), Msaa::Off);
     let mut failed = Vec::new();
-    for (name, style) in golden_styles(scene) {
-        let picture = studio.shoot(Some(&style));
+    for (name, style) in golden_styles(scene).into_iter().take(count) {
+        let picture = studio.shoot_golden(name, &style);
         let references = references(scene, name);
         let all: Vec<_> = references
             .iter()
@@ -134,7 +131,7 @@ fn check(scene: BuiltIn) {
     );
     // The comparison can fail: the original matches no preset.
     let original = studio.shoot(None);
-    for (name, _) in golden_styles(scene) {
+    for (name, _) in golden_styles(scene).into_iter().take(count) {
         for path in references(scene, name) {
             let (flip, _) = apart(&path, &original);
             assert!(flip > 0.01, "the measure sees no {name}: {flip}");
@@ -145,8 +142,8 @@ fn check(scene: BuiltIn) {
 #[test]
 fn small_changes_are_seen() {
     let mut studio = Studio::new(BuiltIn::Teapot, UVec2::new(320, 180), Msaa::Off);
-    let name = "museum-print";
-    let style = preset(name);
+    let name = presets::MUSEUM_PRINT.name();
+    let style = presets::MUSEUM_PRINT.style();
     let contours = *style.get::<Contours>().expect("it has contours");
     for changed in [
         Contours {
@@ -171,22 +168,73 @@ fn small_changes_are_seen() {
 
 #[test]
 fn mountains_look_as_they_did() {
-    check(BuiltIn::Mountains);
+    check(BuiltIn::Mountains, 1);
 }
 
 #[test]
 fn the_teapot_looks_as_it_did() {
-    check(BuiltIn::Teapot);
+    check(BuiltIn::Teapot, 1);
 }
 
 #[test]
 fn the_village_looks_as_it_did() {
-    check(BuiltIn::Village);
+    check(BuiltIn::Village, 1);
 }
 
 #[test]
 fn the_theatre_looks_as_it_did() {
-    check(BuiltIn::Theatre);
+    check(BuiltIn::Theatre, 1);
+}
+
+#[test]
+fn the_figure_looks_as_it_did() {
+    check(BuiltIn::Figure, 1);
+}
+
+#[test]
+fn the_street_looks_as_it_did() {
+    check(BuiltIn::Street, 1);
+}
+
+#[test]
+fn the_hall_looks_as_it_did() {
+    check(BuiltIn::Hall, 1);
+}
+
+#[test]
+#[ignore = "long: every style of the scene"]
+fn mountains_look_as_they_did_in_every_style() {
+    check(BuiltIn::Mountains, usize::MAX);
+}
+
+#[test]
+#[ignore = "long: every style of the scene"]
+fn the_teapot_looks_as_it_did_in_every_style() {
+    check(BuiltIn::Teapot, usize::MAX);
+}
+
+#[test]
+#[ignore = "long: every style of the scene"]
+fn the_village_looks_as_it_did_in_every_style() {
+    check(BuiltIn::Village, usize::MAX);
+}
+
+#[test]
+#[ignore = "long: every style of the scene"]
+fn the_theatre_looks_as_it_did_in_every_style() {
+    check(BuiltIn::Theatre, usize::MAX);
+}
+
+#[test]
+#[ignore = "long: every style of the scene"]
+fn the_figure_looks_as_it_did_in_every_style() {
+    check(BuiltIn::Figure, usize::MAX);
+}
+
+#[test]
+#[ignore = "long: every style of the scene"]
+fn the_street_looks_as_it_did_in_every_style() {
+    check(BuiltIn::Street, usize::MAX);
 }
 
 /// Strokes on materials, not in a style.
@@ -202,41 +250,25 @@ fn the_hatched_theatre_looks_as_it_did() {
     }
 }
 
+/// Every preset is compared in one scene, and every picture in the folder is compared.
 #[test]
-fn the_figure_looks_as_it_did() {
-    check(BuiltIn::Figure);
-}
-
-#[test]
-fn the_street_looks_as_it_did() {
-    check(BuiltIn::Street);
-}
-
-#[test]
-fn the_hall_looks_as_it_did() {
-    check(BuiltIn::Hall);
-}
-
-/// Every look is compared on two scenes, and every picture in the folder is compared.
-#[test]
-fn every_look_has_two_references() {
-    let styles = BuiltIn::ALL.map(|scene| (scene, golden_styles(scene)));
+fn every_style_has_a_reference() {
     let mut compared: Vec<String> = vec!["theatre-hatched-material.png".into()];
-    for (scene, styles) in &styles {
-        let files = styles
-            .iter()
-            .map(|(name, _)| format!("{}-{name}.png", scene.name()));
-        compared.extend(files);
+    let mut names = Vec::new();
+    for scene in BuiltIn::ALL {
+        for (name, _) in golden_styles(scene) {
+            compared.push(format!("{}-{name}.png", scene.name()));
+            names.push(name);
+        }
     }
-    for look in presets::LOOKS {
-        let scenes = styles.iter().filter(|(scene, styles)| {
-            let listed = styles.iter().any(|(name, _)| *name == look.name());
-            listed && references(*scene, look.name())[0].exists()
-        });
-        let count = scenes.count();
-        assert!(count >= 2, "{look} has {count} reference pictures");
+    for preset in presets::ALL {
+        let count = names.iter().filter(|name| **name == preset.name()).count();
+        assert_eq!(count, 1, "scenes with {preset}");
     }
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden");
+    for file in &compared {
+        assert!(Path::new(folder).join(file).exists(), "{file} is missing");
+    }
     for folder in [folder.to_string(), format!("{folder}/rounding")] {
         for entry in std::fs::read_dir(&folder).expect("the folder") {
             let file = entry.expect("entry").file_name();

@@ -7,7 +7,7 @@ use bevy_comics::{OutlineGroup, OutlineStyle, Outlines, object_id};
 use serde_json::json;
 
 use crate::{
-    ids::{cube, material, seam, skinned_and_morphed, total, two_cubes},
+    ids::{cube, material, put_two_cubes, seam, skinned_and_morphed, total, two_cubes},
     outlines::ink,
     small::{Object, Small, options},
 };
@@ -52,8 +52,9 @@ fn group(small: &mut Small, members: &[Entity]) -> Entity {
 
 #[test]
 fn a_group_has_no_object_edge_inside_and_one_against_others() {
+    let (mut small, _) = two_cubes();
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let (mut small, [left, right]) = two_cubes(msaa);
+        let [left, right] = put_two_cubes(&mut small, msaa);
         let plain = material(&mut small, |_| {});
         let other = cube(&mut small, plain, Transform::from_xyz(1.5, 0.0, 0.0));
         assert!(seam(&lines(&mut small)) > 0.9, "without a group");
@@ -76,7 +77,7 @@ fn a_group_has_no_object_edge_inside_and_one_against_others() {
 
 #[test]
 fn a_group_follows_changes_of_the_hierarchy() {
-    let (mut small, [left, right]) = two_cubes(Msaa::Off);
+    let (mut small, [left, right]) = two_cubes();
     let root = group(&mut small, &[left, right]);
     assert!(inside(&lines(&mut small)) < 0.02, "grouped");
     small.world().entity_mut(root).remove::<OutlineGroup>();
@@ -129,7 +130,7 @@ fn a_group_follows_changes_of_the_hierarchy() {
 
 #[test]
 fn silhouettes_and_styles_inside_a_group_remain() {
-    let (mut small, [left, right]) = two_cubes(Msaa::Off);
+    let (mut small, [left, right]) = two_cubes();
     group(&mut small, &[left, right]);
     small
         .world()

@@ -39,8 +39,10 @@ fn ideal_spot(shape: ScreenShape, period: f32) -> Halftone {
     }
 }
 
-/// 11 tones, 6 shapes, 5 periods, 4 angles: the mean of a flat area is its tone.
+/// 11 tones, 6 shapes, 5 periods, 4 angles: the mean of a flat area is its tone. Fewer are rendered, by
+/// `rendered_flats_have_their_tone`.
 #[test]
+#[ignore = "long: 1,320 flat areas in double precision"]
 fn flat_fields_have_their_tone() {
     let mut worst = Vec::new();
     for shape in SHAPES {
@@ -56,18 +58,17 @@ fn flat_fields_have_their_tone() {
     assert!(worst.is_empty(), "{worst:#?}");
 }
 
-/// 20 colours and three greys, at three fractions of black, with the plates of the effect. With
-/// ideal inks, the mean light is the colour. With real ones, it is that of independent screens
-/// (Demichel), which needs the phase of black: where three inks take away the same light, the
-/// screens of cyan, magenta and black would not be independent.
+fn with_black(black_generation: f32) -> Halftone {
+    Halftone {
+        black_generation,
+        ..ideal()
+    }
+}
+
+/// 20 colours, at three fractions of black, are divided among ideal inks without a rest.
 #[test]
-fn flat_colours_have_their_light_and_need_the_phase_of_black() {
-    let mut without = 0.0;
-    for black_generation in [0.0, 0.5, 1.0] {
-        let s = Halftone {
-            black_generation,
-            ..ideal()
-        };
+fn ideal_inks_print_every_colour() {
+    for s in [0.0, 0.5, 1.0].map(with_black) {
         for light in colors() {
             let separated = inked(&s, plate_tones(&s, light));
             for c in 0..3 {
@@ -75,13 +76,38 @@ fn flat_colours_have_their_light_and_need_the_phase_of_black() {
                 assert!(apart < 1e-9, "{light:?}: {separated:?}");
             }
         }
+    }
+}
+
+/// 20 colours and three greys, with half of the black and with the plates of the effect. With real
+/// inks, the mean light is that of independent screens (Demichel), which needs the phase of black:
+/// where three inks take away the same light, the screens of cyan, magenta and black would not be
+/// independent.
+#[test]
+fn flat_colours_have_their_light_and_need_the_phase_of_black() {
+    let real = grey_inks(with_black(0.5));
+    let off = color_error(&real, Plate::all(&real, 1.0));
+    assert!(off < 0.01, "{off}");
+    assert_needs_phase(color_error(&real, in_phase(&real)));
+}
+
+/// The same at three fractions of black, and with ideal inks, of which the mean light is the colour.
+#[test]
+#[ignore = "long: three fractions of black, in double precision"]
+fn flat_colours_have_their_light_at_every_fraction_of_black() {
+    let mut without = 0.0;
+    for s in [0.0, 0.5, 1.0].map(with_black) {
         for s in [s, grey_inks(s)] {
             let off = color_error(&s, Plate::all(&s, 1.0));
-            assert!(off < 0.01, "black {black_generation}: {off}");
+            assert!(off < 0.01, "black {}: {off}", s.black_generation);
         }
         let real = grey_inks(s);
         without = f64::max(without, color_error(&real, in_phase(&real)));
     }
+    assert_needs_phase(without);
+}
+
+fn assert_needs_phase(without: f64) {
     println!("without the phase of black: {without}");
     assert!(
         without > 0.01,
@@ -92,8 +118,18 @@ fn flat_colours_have_their_light_and_need_the_phase_of_black() {
 /// No pixel changes by more than 0.1 when the tone changes by 1 / 1024.
 #[test]
 fn no_pixel_jumps() {
+    assert_no_jumps(&[2.5, 6.0, 40.0]);
+}
+
+#[test]
+#[ignore = "long: five periods, in double precision"]
+fn no_pixel_jumps_at_any_period() {
+    assert_no_jumps(&PERIODS);
+}
+
+fn assert_no_jumps(periods: &[f64]) {
     for shape in SHAPES {
-        for period in PERIODS.into_iter().chain([2.5, 40.0]) {
+        for &period in periods {
             let most = largest_jump(shape, period);
             println!("{shape:?}, {period} px: {most:?} (jump, tone)");
             assert!(most.0 <= 0.1, "{shape:?}, {period} px: {most:?}");
@@ -105,16 +141,26 @@ fn no_pixel_jumps() {
 /// half of the screen's frequency is less than 1 % of the power of the screen.
 #[test]
 fn there_is_no_moire() {
+    assert_no_moire(&[(4.0, 15.0), (6.0, 45.0)]);
+}
+
+#[test]
+#[ignore = "long: three angles of two periods, in double precision"]
+fn there_is_no_moire_at_any_angle() {
+    let angles = [0.0, 15.0, 45.0].map(|degrees| [(4.0, degrees), (6.0, degrees)]);
+    assert_no_moire(angles.as_flattened());
+}
+
+/// `screens`: periods in pixels, and degrees.
+fn assert_no_moire(screens: &[(f64, f64)]) {
     for shape in SHAPES {
-        for period in [4.0, 6.0] {
-            for degrees in [0.0, 15.0, 45.0] {
-                for zones in [false, true] {
-                    let moire = moire(shape, period, degrees, zones);
-                    assert!(
-                        moire < 0.01,
-                        "{shape:?}, {period} px, {degrees} degrees, zones {zones}: {moire}"
-                    );
-                }
+        for &(period, degrees) in screens {
+            for zones in [false, true] {
+                let moire = moire(shape, period, degrees, zones);
+                assert!(
+                    moire < 0.01,
+                    "{shape:?}, {period} px, {degrees} degrees, zones {zones}: {moire}"
+                );
             }
         }
     }
@@ -147,38 +193,38 @@ pub fn flat(options: HeadlessOptions, light: [f32; 3]) -> Small {
     small
 }
 
-fn fill(small: &mut Small, color: Color) {
+pub fn fill(small: &mut Small, color: Color) {
     let entity = small.camera;
     let mut camera = small.world().get_mut::<Camera>(entity).expect("a camera");
     camera.clear_color = color.into();
 }
 
-/// The mean light of a picture.
-fn mean_light(small: &mut Small) -> [f64; 3] {
+/// The mean light of a picture in a style.
+fn mean_light(small: &mut Small, style: &ComicStyle) -> [f64; 3] {
+    small.style(style);
+    small.settle();
     let picture = small.picture();
     let (width, height) = picture.dimensions();
     let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
     [0, 1, 2].map(|c| mean(pixels.clone().map(|(x, y)| linear(&picture, x, y)[c])))
 }
 
+/// Size of flat pictures.
+const FLAT: UVec2 = UVec2::new(144, 144);
+
 /// Rendered: every shape, in one ink. A code of the display is up to 0.009 in light, but the
 /// rounding of many different coverages cancels.
 #[test]
 fn rendered_flats_have_their_tone() {
-    let mut small = flat(options(UVec2::new(240, 240)), [0.5; 3]);
-    for shape in SHAPES {
-        for (period, tone) in [(4.0, 0.3), (6.0, 0.85), (12.0, 0.6)] {
-            fill(
-                &mut small,
-                Color::linear_rgb(1.0 - tone, 1.0 - tone, 1.0 - tone),
-            );
-            small.style(&ComicStyle::new());
-            small.settle();
-            let want = mean_light(&mut small)[0];
-            small.style(&ComicStyle::new().with(ideal_spot(shape, period)));
-            small.settle();
+    let mut small = flat(options(FLAT), [0.5; 3]);
+    for (period, tone) in [(4.0, 0.3), (6.0, 0.85), (12.0, 0.6)] {
+        let light = 1.0 - tone;
+        fill(&mut small, Color::linear_rgb(light, light, light));
+        let want = mean_light(&mut small, &ComicStyle::new())[0];
+        for shape in SHAPES {
+            let style = ComicStyle::new().with(ideal_spot(shape, period));
+            let found = mean_light(&mut small, &style)[0];
             assert!(small.ran(ComicsStage::of::<Halftone>()));
-            let found = mean_light(&mut small)[0];
             assert!(
                 (found - want).abs() < 0.01,
                 "{shape:?}, {period} px, {tone}: {found}, {want}"
@@ -190,21 +236,18 @@ fn rendered_flats_have_their_tone() {
 
 #[test]
 fn rendered_colours_have_their_light() {
-    let mut small = flat(options(UVec2::new(240, 240)), [0.5; 3]);
+    let mut small = flat(options(FLAT), [0.5; 3]);
     for light in [
         [0.8, 0.3, 0.1],
         [0.1, 0.4, 0.7],
         [0.25, 0.25, 0.25],
         [0.6, 0.6, 0.05],
     ] {
+        fill(&mut small, Color::linear_rgb(light[0], light[1], light[2]));
+        let want = mean_light(&mut small, &ComicStyle::new());
         for mode in [HalftoneMode::Cmyk, HalftoneMode::Rgb] {
-            fill(&mut small, Color::linear_rgb(light[0], light[1], light[2]));
-            small.style(&ComicStyle::new());
-            small.settle();
-            let want = mean_light(&mut small);
-            small.style(&ComicStyle::new().with(Halftone { mode, ..ideal() }));
-            small.settle();
-            let found = mean_light(&mut small);
+            let style = ComicStyle::new().with(Halftone { mode, ..ideal() });
+            let found = mean_light(&mut small, &style);
             for c in 0..3 {
                 assert!(
                     (found[c] - want[c]).abs() < 0.01,
@@ -218,7 +261,7 @@ fn rendered_colours_have_their_light() {
 /// Two inks have the luminance of the picture, if the second is black.
 #[test]
 fn a_duotone_has_the_luminance() {
-    let mut small = flat(options(UVec2::new(240, 240)), [0.5; 3]);
+    let mut small = flat(options(FLAT), [0.5; 3]);
     for tone in [0.1, 0.3, 0.5, 0.8] {
         fill(&mut small, Color::linear_rgb(tone, tone, tone));
         let s = Halftone {
@@ -226,9 +269,8 @@ fn a_duotone_has_the_luminance() {
             cyan: Color::srgb(0.95, 0.45, 0.2),
             ..ideal()
         };
-        small.style(&ComicStyle::new().with(s));
-        small.settle();
-        let found = color::luminance(mean_light(&mut small));
+        let light = mean_light(&mut small, &ComicStyle::new().with(s));
+        let found = color::luminance(light);
         assert!((found - f64::from(tone)).abs() < 0.012, "{tone}: {found}");
     }
 }
@@ -245,7 +287,7 @@ fn screened(s: Halftone) -> ComicStyle {
 /// The whole pass, pixel by pixel, in every mode; in two passes where cells are read.
 #[test]
 fn every_pixel_is_its_twins() {
-    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
+    let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
     for (mode, shape) in [
         (HalftoneMode::Cmyk, ScreenShape::Euclidean),
         (HalftoneMode::Spot, ScreenShape::Round),
@@ -273,8 +315,8 @@ fn every_pixel_is_its_twins() {
 /// Screens begin in the middle of a viewport, and nothing is printed outside of it.
 #[test]
 fn viewports_are_pages_or_parts_of_one() {
-    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
-    let viewport = [11, 5, 43, 30];
+    let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
+    let viewport = [11, 5, 29, 20];
     small.insert(Camera {
         clear_color: Color::srgb(0.3, 0.5, 0.8).into(),
         viewport: Some(Viewport {
@@ -302,12 +344,11 @@ fn viewports_are_pages_or_parts_of_one() {
 /// factor.
 #[test]
 fn periods_are_logical() {
-    let shot = |scale_factor: f32, period: f32| {
-        let options = HeadlessOptions {
-            scale_factor,
-            ..options(UVec2::new(96, 64))
-        };
-        let mut small = Small::with(options, Msaa::Off);
+    let size = UVec2::new(96, 64);
+    let mut small = Small::new(size, Msaa::Off);
+    let mut shot = |scale_factor: f32, period: f32| {
+        small.headless.resize(size, scale_factor);
+        small.restart(Msaa::Off);
         small.style(&ComicStyle::new().with(Halftone {
             period,
             ..default()
@@ -316,8 +357,9 @@ fn periods_are_logical() {
         small.picture()
     };
     assert_eq!(shot(1.0, 12.0), shot(3.0, 4.0));
-    assert_eq!(shot(1.0, 10.0), shot(1.25, 8.0));
-    assert_ne!(shot(1.0, 10.0), shot(1.0, 8.0));
+    let ten = shot(1.0, 10.0);
+    assert_eq!(ten, shot(1.25, 8.0));
+    assert_ne!(ten, shot(1.0, 8.0));
 }
 
 /// Too fine for the screen: plain tones, the picture itself with ideal inks. Settings out of
@@ -326,7 +368,7 @@ fn periods_are_logical() {
 fn impossible_periods_show_a_picture() {
     let options = HeadlessOptions {
         scale_factor: 0.1,
-        ..options(UVec2::new(96, 64))
+        ..options(UVec2::new(48, 32))
     };
     let mut small = Small::with(options, Msaa::Off);
     small.settle();
@@ -423,7 +465,7 @@ pub fn covered(small: &mut Small, style: &ComicStyle) -> Vec<bool> {
 /// Lines are drawn over the print: they cover the pixels that they cover without one.
 #[test]
 fn lines_stay_sharp() {
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     let bare = covered(&mut small, &ComicStyle::new());
     let printed = covered(&mut small, &ComicStyle::new().with(Halftone::default()));
     assert!(bare.iter().filter(|covered| **covered).count() > 100);
@@ -446,8 +488,11 @@ fn dots_and_grain_are_drawn_after_anti_aliasing() {
             _ => camera.insert(sharp()),
         };
     };
-    let picture = |style: &ComicStyle, filters: &[usize]| {
-        let mut small = flat(options(UVec2::new(96, 64)), [0.55, 0.4, 0.25]);
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    let mut picture = |style: &ComicStyle, filters: &[usize]| {
+        small.restart(Msaa::Off);
+        small.clear();
+        fill(&mut small, Color::linear_rgb(0.55, 0.4, 0.25));
         for which in filters {
             filter(&mut small, *which);
         }
@@ -471,7 +516,7 @@ fn dots_and_grain_are_drawn_after_anti_aliasing() {
         }
     }
     // Each of them does something here.
-    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
+    small.restart(Msaa::Off);
     small.style(&ComicStyle::new().with(Outlines::default()));
     let mut before = small.settle().picture();
     for which in 0..3 {
@@ -485,8 +530,9 @@ fn dots_and_grain_are_drawn_after_anti_aliasing() {
 /// Effects of all stages at once, with surface lines, MSAA, and an object's own colours.
 #[test]
 fn all_stages_work_together() {
+    let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let mut small = Small::new(UVec2::new(72, 48), msaa);
+        small.restart(msaa);
         let style = screened(Halftone {
             sampling: ScreenSampling::Cell,
             tints: 0,

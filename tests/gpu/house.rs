@@ -192,18 +192,3 @@ fn the_tests_that_the_script_for_gpus_names_exist() {
     }
     assert!(named >= 10, "the check sees {named} names");
 }
-
-/// The check finds a circle in a graph that has one.
-#[test]
-fn a_circle_is_found() {
-    let edge = |to: &[&str]| to.iter().map(ToString::to_string).collect::<BTreeSet<_>>();
-    let mut graph = BTreeMap::from([
-        ("a".to_owned(), edge(&["b"])),
-        ("b".to_owned(), edge(&["c"])),
-    ]);
-    assert_eq!(circle(&graph), None);
-    graph.insert("c".to_owned(), edge(&["b"]));
-    assert_eq!(circle(&graph), Some(vec!["b".to_owned(), "c".to_owned()]));
-    let names = heads("use crate::{a::{B, C}, D}; crate::e::F");
-    assert_eq!(names, edge(&["a", "D", "e"]));
-}

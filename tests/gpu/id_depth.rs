@@ -173,66 +173,96 @@ fn mixed(ids: &[IdImage]) -> usize {
 /// cut away has the ids of what is behind it.
 #[test]
 fn nudged_positions_lose_ids_and_a_tolerance_keeps_them() {
-    for msaa in [Msaa::Off, Msaa::Sample4] {
-        let (mut small, screen) = scene(msaa);
-        let nudge = Nudge::new(&mut small);
-        let want = ids(&small);
-        assert_complete(&small, &want, "as it is");
-        let mask = pixels_of(&want[0], screen);
-        assert!(mask > 100, "the screen is visible: {mask} pixels");
-        // Each sample has an id of its own, with a tolerance too.
-        let borders = mixed(&want);
-        assert!((borders > 100) == (msaa != Msaa::Off), "{borders} pixels");
+    assert_tolerance_keeps_ids(Msaa::Off);
+}
+
+#[test]
+#[ignore = "long: four samples"]
+fn nudged_positions_lose_ids_of_samples_and_a_tolerance_keeps_them() {
+    assert_tolerance_keeps_ids(Msaa::Sample4);
+}
+
+fn assert_tolerance_keeps_ids(msaa: Msaa) {
+    let (mut small, screen) = scene(msaa);
+    let nudge = Nudge::new(&mut small);
+    let want = ids(&small);
+    assert_complete(&small, &want, "as it is");
+    let mask = pixels_of(&want[0], screen);
+    assert!(mask > 100, "the screen is visible: {mask} pixels");
+    // Each sample has an id of its own, with a tolerance too.
+    let borders = mixed(&want);
+    assert!((borders > 100) == (msaa != Msaa::Off), "{borders} pixels");
+    small.world().insert_resource(ObjectIdDepthTest::Tolerant);
+    small.settle();
+    assert_eq!(method(&small), TOLERANT);
+    assert_complete(&small, &want, "a tolerance without need");
+    for factor in NUDGES {
+        nudge.set(&mut small, factor);
+        let what = format!("{msaa:?}, {factor}");
+        assert_complete(&small, &want, &what);
+        small.world().insert_resource(ObjectIdDepthTest::Equal);
+        small.settle();
+        assert_eq!(method(&small), None);
+        let [covered, missing] = covered_and_missing(&small);
+        assert!(10 * missing > 9 * covered, "{what}: {missing} of {covered}");
         small.world().insert_resource(ObjectIdDepthTest::Tolerant);
         small.settle();
-        assert_eq!(method(&small), TOLERANT);
-        assert_complete(&small, &want, "a tolerance without need");
-        for factor in NUDGES {
-            nudge.set(&mut small, factor);
-            let what = format!("{msaa:?}, {factor}");
-            assert_complete(&small, &want, &what);
-            small.world().insert_resource(ObjectIdDepthTest::Equal);
-            small.settle();
-            assert_eq!(method(&small), None);
-            let [covered, missing] = covered_and_missing(&small);
-            assert!(10 * missing > 9 * covered, "{what}: {missing} of {covered}");
-            small.world().insert_resource(ObjectIdDepthTest::Tolerant);
-            small.settle();
-            assert_complete(&small, &want, &what);
-            let found = mixed(&ids(&small));
-            assert!(
-                found.abs_diff(borders) * 10 <= borders,
-                "{what}: {found}, {borders} pixels of several ids"
-            );
-        }
-        assert_eq!(small.errors(), 0);
+        assert_complete(&small, &want, &what);
+        let found = mixed(&ids(&small));
+        assert!(
+            found.abs_diff(borders) * 10 <= borders,
+            "{what}: {found}, {borders} pixels of several ids"
+        );
     }
+    assert_eq!(small.errors(), 0);
+}
+
+/// Steps until ids have been drawn with a tolerance in more frames in a row than a trial takes.
+fn wait_for_tolerance(small: &mut Small, what: &str) {
+    let mut tolerant = 0;
+    for _ in 0..120 {
+        small.headless.step(1);
+        let is_tolerant = method(small) == TOLERANT;
+        tolerant = if is_tolerant { tolerant + 1 } else { 0 };
+        if tolerant == 16 {
+            return;
+        }
+    }
+    panic!("{what}: lost ids are not noticed");
 }
 
 /// The pass switches by itself, and stays so when positions are the same again.
 #[test]
 fn lost_ids_are_noticed_and_come_back_for_good() {
-    for msaa in [Msaa::Off, Msaa::Sample4] {
-        let (mut small, _) = scene(msaa);
-        let nudge = Nudge::new(&mut small);
-        let want = ids(&small);
-        small.headless.step(30);
-        assert_eq!(method(&small), None);
-        nudge.set(&mut small, NUDGES[0]);
-        small.headless.step(120);
+    assert_noticed_for_good(Msaa::Off, 8);
+}
+
+#[test]
+#[ignore = "long: many frames of four samples"]
+fn lost_ids_of_samples_are_noticed_and_come_back_for_good() {
+    assert_noticed_for_good(Msaa::Sample4, 120);
+}
+
+fn assert_noticed_for_good(msaa: Msaa, frames: usize) {
+    let (mut small, _) = scene(msaa);
+    let nudge = Nudge::new(&mut small);
+    let want = ids(&small);
+    assert_eq!(method(&small), None);
+    nudge.set(&mut small, NUDGES[0]);
+    wait_for_tolerance(&mut small, "noticed");
+    assert_complete(&small, &want, "noticed");
+    nudge.set(&mut small, 1.0);
+    for _ in 0..frames {
+        small.headless.step(1);
         assert_eq!(method(&small), TOLERANT, "{msaa:?}");
-        assert_complete(&small, &want, "noticed");
-        nudge.set(&mut small, 1.0);
-        small.headless.step(120);
-        assert_eq!(method(&small), TOLERANT, "{msaa:?}");
-        assert_complete(&small, &want, "for good");
-        // The game decides.
-        small.world().insert_resource(ObjectIdDepthTest::Equal);
-        small.settle();
-        assert_eq!(method(&small), None);
-        assert_complete(&small, &want, "at equal depth again");
-        assert_eq!(small.errors(), 0);
     }
+    assert_complete(&small, &want, "for good");
+    // The game decides.
+    small.world().insert_resource(ObjectIdDepthTest::Equal);
+    small.settle();
+    assert_eq!(method(&small), None);
+    assert_complete(&small, &want, "at equal depth again");
+    assert_eq!(small.errors(), 0);
 }
 
 /// Pixels that no tolerance gives an id (here: depth is off by a twentieth) are tried for a few
@@ -243,7 +273,7 @@ fn what_a_tolerance_does_not_bring_back_is_drawn_at_equal_depth() {
     let nudge = Nudge::new(&mut small);
     nudge.set(&mut small, 1.05);
     let mut tried = 0;
-    for _ in 0..200 {
+    for _ in 0..60 {
         small.headless.step(1);
         tried += usize::from(method(&small) == TOLERANT);
     }
@@ -280,15 +310,27 @@ fn furnish(small: &mut Small) {
 }
 
 /// Sky, transparent and excluded things, alpha masks, what comes, goes and moves: no frame is
-/// drawn with a tolerance, although missing ids of the same scene are noticed.
+/// drawn with a tolerance, although missing ids of the same scene are noticed. In the first frames
+/// ids are counted often.
 #[test]
 fn an_ordinary_scene_is_drawn_at_equal_depth() {
-    for msaa in [Msaa::Off, Msaa::Sample4] {
+    assert_drawn_at_equal_depth(&[Msaa::Off], 24);
+}
+
+#[test]
+#[ignore = "long: many frames, with and without multisampling"]
+fn an_ordinary_scene_is_drawn_at_equal_depth_for_long() {
+    assert_drawn_at_equal_depth(&[Msaa::Off, Msaa::Sample4], 200);
+}
+
+fn assert_drawn_at_equal_depth(msaas: &[Msaa], frames: u16) {
+    for &msaa in msaas {
         let (mut small, screen) = scene(msaa);
         furnish(&mut small);
         let nudge = Nudge::new(&mut small);
-        for frame in 0..200 {
-            let turn = 0.03 * frame as f32;
+        for frame in 0..frames {
+            // Once around.
+            let turn = 6.0 * f32::from(frame) / f32::from(frames);
             let eye = Vec3::new(6.0 * turn.sin(), 2.4, 6.0 * turn.cos());
             small.insert(Transform::from_translation(eye).looking_at(Vec3::Y, Vec3::Y));
             let shown = if frame % 20 < 10 {
@@ -303,8 +345,7 @@ fn an_ordinary_scene_is_drawn_at_equal_depth() {
         let [covered, missing] = covered_and_missing(&small);
         assert!(covered > 1000 && missing == 0, "{missing} of {covered}");
         nudge.set(&mut small, NUDGES[0]);
-        small.headless.step(120);
-        assert_eq!(method(&small), TOLERANT, "{msaa:?}");
+        wait_for_tolerance(&mut small, &format!("{msaa:?}"));
         // Without any object there is nothing to bind.
         small.clear();
         small.settle();

@@ -34,14 +34,21 @@ pub fn cube(small: &mut Small, material: Handle<StandardMaterial>, at: Transform
 }
 
 /// Two cubes side by side, flush in front, before the sky.
-pub fn two_cubes(msaa: Msaa) -> (Small, [Entity; 2]) {
-    let mut small = Small::new(UVec2::new(120, 60), msaa);
+pub fn two_cubes() -> (Small, [Entity; 2]) {
+    let mut small = Small::new(UVec2::new(120, 60), Msaa::Off);
+    let cubes = put_two_cubes(&mut small, Msaa::Off);
+    (small, cubes)
+}
+
+/// Starts over with the two cubes.
+pub fn put_two_cubes(small: &mut Small, msaa: Msaa) -> [Entity; 2] {
+    small.restart(msaa);
     small.clear();
-    let plain = material(&mut small, |_| {});
+    let plain = material(small, |_| {});
     // One mesh and one material: the engine draws both as instances of one.
     let world = small.world();
     let mesh = world.resource_mut::<Assets<Mesh>>().add(Cuboid::default());
-    let [left, right] = [-0.5, 0.5].map(|x| {
+    let cubes = [-0.5, 0.5].map(|x| {
         let at = Transform::from_xyz(x, 0.0, 0.0);
         let parts = (
             Object,
@@ -52,7 +59,7 @@ pub fn two_cubes(msaa: Msaa) -> (Small, [Entity; 2]) {
         world.spawn(parts).id()
     });
     small.insert(Transform::from_xyz(0.0, 0.0, 2.2).looking_at(Vec3::ZERO, Vec3::Y));
-    (small, [left, right])
+    cubes
 }
 
 fn at(ink: &[f32], x: usize, y: usize) -> f32 {
@@ -75,8 +82,9 @@ pub fn total(ink: &[f32], columns: std::ops::Range<usize>) -> f32 {
 
 #[test]
 fn touching_objects_of_like_depth_and_normal_have_an_edge() {
+    let (mut small, _) = two_cubes();
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let (mut small, [left, right]) = two_cubes(msaa);
+        let [left, right] = put_two_cubes(&mut small, msaa);
         let with = ink(&mut small, Outlines::default());
         assert!(seam(&with) > 0.9, "{msaa:?}");
         let ids = small.object_ids().expect("drawn");
@@ -104,7 +112,7 @@ fn touching_objects_of_like_depth_and_normal_have_an_edge() {
 
 #[test]
 fn an_object_without_contours_has_none_and_its_neighbour_keeps_its_own() {
-    let (mut small, [left, right]) = two_cubes(Msaa::Off);
+    let (mut small, [left, right]) = two_cubes();
     let both = ink(&mut small, Outlines::default());
     small.world().entity_mut(left).insert(NoOutlines::default());
     let one = ink(&mut small, Outlines::default());
@@ -125,7 +133,7 @@ fn an_object_without_contours_has_none_and_its_neighbour_keeps_its_own() {
 
 #[test]
 fn a_bare_object_in_front_hides_and_one_behind_is_outlined_over() {
-    let (mut small, [left, right]) = two_cubes(Msaa::Off);
+    let (mut small, [left, right]) = two_cubes();
     // The right cube stands half before the left one.
     small
         .world()
@@ -162,7 +170,7 @@ fn a_bare_object_in_front_hides_and_one_behind_is_outlined_over() {
 
 #[test]
 fn an_object_has_its_own_colour_width_and_kinds() {
-    let (mut small, [left, _]) = two_cubes(Msaa::Off);
+    let (mut small, [left, _]) = two_cubes();
     let plain = ink(
         &mut small,
         Outlines {
@@ -222,7 +230,7 @@ fn an_object_has_its_own_colour_width_and_kinds() {
 /// keep theirs.
 #[test]
 fn an_object_has_its_own_opacity() {
-    let (mut small, [left, _]) = two_cubes(Msaa::Off);
+    let (mut small, [left, _]) = two_cubes();
     let plain = ink(&mut small, Outlines::SILHOUETTES);
     let [own, others] = [total(&plain, 0..57), total(&plain, 62..96)];
     assert!(own > 5.0 && others > 5.0, "{own}, {others}");
@@ -242,7 +250,7 @@ fn an_object_has_its_own_opacity() {
 
 #[test]
 fn styles_are_inherited_where_asked() {
-    let (mut small, [left, right]) = two_cubes(Msaa::Off);
+    let (mut small, [left, right]) = two_cubes();
     let world = small.world();
     let root = world
         .spawn((Transform::default(), Visibility::default()))
@@ -265,7 +273,7 @@ fn styles_are_inherited_where_asked() {
 /// Transparent surfaces have no lines; those of what is behind them show.
 #[test]
 fn transparent_alpha_masked_and_unlit_meshes() {
-    let (mut small, [_, right]) = two_cubes(Msaa::Off);
+    let (mut small, [_, right]) = two_cubes();
     let opaque = ink(&mut small, Outlines::default());
     let glass = material(&mut small, |m| {
         m.alpha_mode = AlphaMode::Blend;

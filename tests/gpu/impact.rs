@@ -7,10 +7,10 @@ use bevy_comics::{
 };
 use image::RgbaImage;
 
-use crate::small::{Small, linear, size};
+use crate::small::{Small, linear};
 
 fn small() -> Small {
-    let mut small = Small::new(size(), Msaa::Off);
+    let mut small = Small::new(UVec2::new(64, 44), Msaa::Off);
     small.settle();
     small
 }

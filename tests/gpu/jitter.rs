@@ -49,18 +49,16 @@ impl Axis {
     }
 }
 
-/// A perspective view of a wall with one straight side, `at` pixels from the left or the
-/// top of the picture.
-fn wall(axis: Axis, at: f32) -> Small {
+/// A perspective view of a wall with one straight side.
+fn wall() -> (Small, Entity) {
     let mut small = Small::new(UVec2::splat(SIZE as u32), Msaa::Off);
-    move_wall(&mut small, axis, at);
-    small
+    let wall = put_wall(&mut small, place(Axis::X, 60.0));
+    (small, wall)
 }
 
-fn move_wall(small: &mut Small, axis: Axis, at: f32) {
+fn put_wall(small: &mut Small, at: Transform) -> Entity {
     small.clear();
     // 90 degrees, at a distance of half of the picture's height: a unit is a pixel.
-    let half = 0.5 * SIZE as f32;
     small.insert((
         Transform::IDENTITY,
         Projection::Perspective(PerspectiveProjection {
@@ -68,16 +66,16 @@ fn move_wall(small: &mut Small, axis: Axis, at: f32) {
             ..default()
         }),
     ));
-    let middle = match axis {
+    put(small, Rectangle::new(800.0, 800.0), Color::WHITE, at)
+}
+
+/// The place of a wall whose side is `at` pixels from the left or the top of the picture.
+fn place(axis: Axis, at: f32) -> Transform {
+    let half = 0.5 * SIZE as f32;
+    Transform::from_translation(match axis {
         Axis::X => Vec3::new(at - half - 400.0, 0.0, -half),
         Axis::Y => Vec3::new(0.0, half - at - 400.0, -half),
-    };
-    put(
-        small,
-        Rectangle::new(800.0, 800.0),
-        Color::WHITE,
-        Transform::from_translation(middle),
-    );
+    })
 }
 
 /// The middle of the line in pixels from the left or the top.
@@ -99,6 +97,13 @@ fn lines() -> Outlines {
     }
 }
 
+/// The ink of a frame that is moved by an offset.
+fn ink_at(small: &mut Small, offset: Vec2) -> Vec<f32> {
+    small.insert(TemporalJitter { offset });
+    small.headless.step(1);
+    removed(small)
+}
+
 /// The engine draws an edge at `at - offset`. The nearest border of pixels has the line,
 /// which is moved back by the offset. So it is at most half a pixel of the depth texture
 /// from the edge.
@@ -115,14 +120,14 @@ fn expected(at: f32, offset: f32, texel: f32) -> f32 {
 
 #[test]
 fn lines_stay_at_their_edge_under_jitter() {
-    let mut small = wall(Axis::X, 60.0);
+    let (mut small, wall) = wall();
+    ink(&mut small, lines());
     for axis in [Axis::X, Axis::Y] {
         for at in [60.03, 60.3, 60.42, 60.7] {
-            move_wall(&mut small, axis, at);
+            small.world().entity_mut(wall).insert(place(axis, at));
             let mut found = Vec::new();
             for offset in HALTON {
-                small.insert(TemporalJitter { offset });
-                let x = middle(&ink(&mut small, lines()), axis);
+                let x = middle(&ink_at(&mut small, offset), axis);
                 let right = expected(at, axis.of(offset), 1.0);
                 println!("{axis:?} {at} {:.3}: {x:.3}, {right:.3}", axis.of(offset));
                 assert!((right - at).abs() <= 0.5);
@@ -149,14 +154,14 @@ fn lines_stay_at_their_edge_under_jitter() {
 /// The same where the main pass has a lower resolution: offsets are in its pixels.
 #[test]
 fn lines_stay_at_their_edge_under_jitter_of_a_smaller_main_pass() {
-    let mut small = wall(Axis::X, 60.0);
+    let (mut small, wall) = wall();
     override_main_pass(&mut small, Some(UVec2::splat(SIZE as u32 / 2)));
+    ink(&mut small, lines());
     for axis in [Axis::X, Axis::Y] {
         for at in [60.3, 61.16] {
-            move_wall(&mut small, axis, at);
+            small.world().entity_mut(wall).insert(place(axis, at));
             for offset in HALTON {
-                small.insert(TemporalJitter { offset });
-                let x = middle(&ink(&mut small, lines()), axis);
+                let x = middle(&ink_at(&mut small, offset), axis);
                 let right = expected(at, axis.of(offset), 2.0);
                 assert!(
                     (x - right).abs() <= MEASURED,
@@ -170,14 +175,14 @@ fn lines_stay_at_their_edge_under_jitter_of_a_smaller_main_pass() {
 
 #[test]
 fn lines_stay_at_their_edge_under_temporal_anti_aliasing() {
-    let mut small = wall(Axis::X, 60.0);
-    small.insert(TemporalAntiAliasing::default());
+    let (mut small, _) = wall();
     for axis in [Axis::X, Axis::Y] {
         for at in [60.03, 60.3] {
-            move_wall(&mut small, axis, at);
-            let _ = ink(&mut small, lines());
-            // The history of the wall in its old place fades.
-            small.headless.step(30);
+            // A new camera, without the history of the wall in its old place.
+            small.restart(Msaa::Off);
+            small.insert(TemporalAntiAliasing::default());
+            put_wall(&mut small, place(axis, at));
+            ink(&mut small, lines());
             let mut errors = Vec::new();
             for _ in 0..8 {
                 small.headless.step(1);

@@ -153,8 +153,10 @@ fn weak(continuity: f32) -> Outlines {
 /// Views of sizes that no word, block, cell or tile divides.
 #[test]
 fn lines_are_their_twin_in_views_of_odd_sizes() {
+    let mut small = Small::new(UVec2::new(61, 37), Msaa::Off);
     for size in [[61, 37], [97, 65], [131, 33]] {
-        let mut small = Small::new(size.into(), Msaa::Off);
+        small.headless.resize(size.into(), 1.0);
+        small.restart(Msaa::Off);
         for outlines in [Outlines::default(), weak(8.0)] {
             let what = format!("{size:?}, {} px", outlines.continuity);
             assert_pass_is_its_twin(&mut small, &outlined(outlines), None, &what);
@@ -165,15 +167,26 @@ fn lines_are_their_twin_in_views_of_odd_sizes() {
 /// Distances of more than one pass, and of parts of passes.
 #[test]
 fn lines_continue_as_far_as_asked() {
+    let cases = [(0.0, 2), (7.0, 1), (8.0, 3), (9.0, 7), (23.5, 2), (32.0, 3)];
+    assert_continued_as_twin(cases);
+}
+
+#[test]
+#[ignore = "long: every distance with every size of specks"]
+fn lines_continue_as_far_as_asked_with_any_specks() {
+    let distances = [0.0, 1.0, 7.0, 8.0, 9.0, 16.0, 23.5, 32.0];
+    let with_specks = |continuity| [1, 2, 3, 7].map(|specks| (continuity, specks));
+    assert_continued_as_twin(distances.into_iter().flat_map(with_specks));
+}
+
+fn assert_continued_as_twin(cases: impl IntoIterator<Item = (f32, u32)>) {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
-    for continuity in [0.0, 1.0, 7.0, 8.0, 9.0, 16.0, 23.5, 32.0] {
-        for specks in [1, 2, 3, 7] {
-            let outlines = Outlines {
-                specks,
-                ..weak(continuity)
-            };
-            let what = format!("{continuity} px, specks {specks}");
-            assert_pass_is_its_twin(&mut small, &outlined(outlines), None, &what);
-        }
+    for (continuity, specks) in cases {
+        let outlines = Outlines {
+            specks,
+            ..weak(continuity)
+        };
+        let what = format!("{continuity} px, specks {specks}");
+        assert_pass_is_its_twin(&mut small, &outlined(outlines), None, &what);
     }
 }

@@ -13,13 +13,15 @@ const SIZE: u32 = 96;
 const HALF: f32 = 0.5 * SIZE as f32;
 
 /// A white square of 40 pixels in the middle, and a grey wall in front of its left half.
-fn scene(msaa: Msaa) -> (Small, Entity, Entity) {
-    let mut small = Small::new(UVec2::splat(SIZE), msaa);
-    let (square, wall) = spawn(&mut small);
+fn scene() -> (Small, Entity, Entity) {
+    let mut small = Small::new(UVec2::splat(SIZE), Msaa::Off);
+    let (square, wall) = spawn(&mut small, Msaa::Off);
     (small, square, wall)
 }
 
-fn spawn(small: &mut Small) -> (Entity, Entity) {
+/// Starts over with the scene.
+fn spawn(small: &mut Small, msaa: Msaa) -> (Entity, Entity) {
+    small.restart(msaa);
     small.clear();
     small.insert((
         Transform::IDENTITY,
@@ -85,8 +87,9 @@ fn sides(small: &mut Small) -> [[f64; 3]; 5] {
 
 #[test]
 fn a_selected_object_has_an_outline_also_where_it_is_hidden() {
+    let (mut small, ..) = scene();
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let (mut small, square, _) = scene(msaa);
+        let (square, _) = spawn(&mut small, msaa);
         assert_eq!(sides(&mut small), [WHITE; 5]);
         assert!(!small.ran(ComicsStage::MarkedObjects));
         small.world().entity_mut(square).insert(green(1.0));
@@ -116,8 +119,9 @@ fn a_selected_object_has_an_outline_also_where_it_is_hidden() {
 
 #[test]
 fn only_the_hidden_part_of_an_object_has_x_ray_lines() {
+    let (mut small, ..) = scene();
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let (mut small, square, wall) = scene(msaa);
+        let (square, wall) = spawn(&mut small, msaa);
         small.world().entity_mut(square).insert(x_ray());
         let [left, right, top_left, top_right, middle] = sides(&mut small);
         assert!(
@@ -140,7 +144,7 @@ fn only_the_hidden_part_of_an_object_has_x_ray_lines() {
 /// The meshes of one selection have one outline, those of two selections two.
 #[test]
 fn children_share_the_outline_of_their_parent() {
-    let (mut small, square, wall) = scene(Msaa::Off);
+    let (mut small, square, wall) = scene();
     small.world().despawn(wall);
     let other = put(
         &mut small,
@@ -183,7 +187,7 @@ fn children_share_the_outline_of_their_parent() {
 /// the same beside it.
 #[test]
 fn the_outline_lies_over_the_effects() {
-    let (mut small, square, _) = scene(Msaa::Off);
+    let (mut small, square, _) = scene();
     let style = ComicStyle::default()
         .with(Outlines::default())
         .with(Desaturation::default());
@@ -212,7 +216,7 @@ fn the_outline_lies_over_the_effects() {
 
 #[test]
 fn cameras_come_and_go_beside_marked_objects() {
-    let (mut small, square, _) = scene(Msaa::Off);
+    let (mut small, square, _) = scene();
     small.world().entity_mut(square).insert(green(1.0));
     small.settle();
     for (msaa, size) in [
@@ -220,8 +224,7 @@ fn cameras_come_and_go_beside_marked_objects() {
         (Msaa::Off, UVec2::splat(SIZE)),
     ] {
         small.headless.resize(size, 1.0);
-        small.restart(msaa);
-        let (square, _) = spawn(&mut small);
+        let (square, _) = spawn(&mut small, msaa);
         small.world().entity_mut(square).insert(x_ray());
         small.settle();
         if size.x != SIZE {
@@ -242,7 +245,7 @@ fn cameras_come_and_go_beside_marked_objects() {
 
 #[test]
 fn bad_values_are_clamped() {
-    let (mut small, square, _) = scene(Msaa::Off);
+    let (mut small, square, _) = scene();
     for bad in [f32::NAN, f32::INFINITY, -1.0, 1e30] {
         let selected = SelectionOutline {
             color: Color::linear_rgb(bad, bad, bad),

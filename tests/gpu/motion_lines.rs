@@ -304,6 +304,14 @@ fn the_frame_rate_does_not_matter() {
 /// of 256 codes, whose steps are less than a hundredth.
 #[test]
 fn lines_are_as_wide_as_asked_in_pixels() {
+    let mut stage = Stage::new(lines());
+    let mesh = stage.mesh;
+    // A plate that faces backwards, so that the only point has a line.
+    let plate = Mesh::from(Rectangle::new(0.1, 0.1));
+    let plate = plate.rotated_by(Quat::from_rotation_y(-std::f32::consts::FRAC_PI_2));
+    let world = stage.small.world();
+    let plate = world.resource_mut::<Assets<Mesh>>().add(plate);
+    world.entity_mut(mesh).insert(Mesh3d(plate));
     for width in [1.0, 2.5, 6.0] {
         let one = MotionLines {
             points: 1,
@@ -311,13 +319,7 @@ fn lines_are_as_wide_as_asked_in_pixels() {
             duration: 0.3,
             ..lines()
         };
-        // A plate that faces backwards, so that the only point has a line.
-        let mut stage = Stage::new(one);
-        let plate = Mesh::from(Rectangle::new(0.1, 0.1));
-        let plate = plate.rotated_by(Quat::from_rotation_y(-std::f32::consts::FRAC_PI_2));
-        let world = stage.small.world();
-        let plate = world.resource_mut::<Assets<Mesh>>().add(plate);
-        world.entity_mut(stage.mesh).insert(Mesh3d(plate));
+        stage.small.world().entity_mut(mesh).insert(one);
         stage.dash(40);
         let picture = stage.small.picture();
         let column = |x: u32| black_ink(&picture, (0..SIZE.y).map(|y| (x, y)));
@@ -335,17 +337,18 @@ fn lines_are_as_wide_as_asked_in_pixels() {
 /// and so are its outlines away from the ink.
 #[test]
 fn they_are_not_in_the_prepass() {
-    let shots = [false, true].map(|with| {
-        let mut stage = Stage::new(lines());
+    let mut stage = Stage::new(lines());
+    stage.small.insert(Outlines {
+        objects: Some(ObjectEdges::default()),
+        ..default()
+    });
+    stage.dash(40);
+    let shots = [true, false].map(|with| {
         if !with {
             let mesh = stage.mesh;
             stage.small.world().entity_mut(mesh).remove::<MotionLines>();
+            stage.small.headless.step(2);
         }
-        stage.small.insert(Outlines {
-            objects: Some(ObjectEdges::default()),
-            ..default()
-        });
-        stage.dash(40);
         assert_eq!(!stage.places().is_empty(), with);
         let depth = stage.small.depth().expect("a prepass");
         let ids = stage.small.object_ids().expect("ids");

@@ -28,7 +28,9 @@ use crate::{
     walls::towards_the_sky,
 };
 
-const SCREEN: UVec2 = UVec2::new(96, 64);
+const SCREEN: UVec2 = UVec2::new(48, 32);
+/// A screen for lines across all of it.
+const WIDE: UVec2 = UVec2::new(96, 64);
 const TIMES: u32 = 8;
 /// Half a code of the display is at most this much linear light.
 const ROUNDING: f64 = 0.0045;
@@ -39,11 +41,12 @@ type Light = Vec<[f64; 3]>;
 /// The light of a screenshot, reduced to the size of the screen. `from`: the pixel of the
 /// screenshot where the screen's first one begins, in both axes.
 fn reduced(picture: &image::RgbaImage, times: u32, from: u32) -> Light {
+    let (width, height) = (picture.width() / times, picture.height() / times);
     let light: Vec<f64> = (0..=255u8)
         .map(|code| color::srgb_decode([f64::from(code) / 255.0; 3])[0])
         .collect();
     let area = f64::from(times * times);
-    let pixels = (0..SCREEN.y - 1).flat_map(|y| (0..SCREEN.x - 1).map(move |x| (x, y)));
+    let pixels = (0..height - 1).flat_map(|y| (0..width - 1).map(move |x| (x, y)));
     let mean = |(x, y): (u32, u32)| {
         let mut sum = [0.0; 3];
         for (i, j) in (0..times).flat_map(|j| (0..times).map(move |i| (i, j))) {
@@ -68,8 +71,8 @@ fn mean(light: &[[f64; 3]]) -> f64 {
     light.iter().flatten().sum::<f64>() / (3 * light.len()) as f64
 }
 
-fn shot(small: &mut Small, style: &ComicStyle, times: u32, scale: f32) -> image::RgbaImage {
-    small.headless.resize(times * SCREEN, scale);
+fn shot(small: &mut Small, style: &ComicStyle, size: UVec2, scale: f32) -> image::RgbaImage {
+    small.headless.resize(size, scale);
     let target = small.headless.render_target();
     small.insert(target);
     small.style(style);
@@ -89,9 +92,13 @@ struct Looks {
 
 impl Looks {
     fn new(small: &mut Small, style: &ComicStyle) -> Self {
-        let screen = shot(small, style, 1, 1.0);
-        let scaled = shot(small, style, TIMES, TIMES as f32);
-        let unscaled = shot(small, style, TIMES, 1.0);
+        Self::on(SCREEN, small, style)
+    }
+
+    fn on(size: UVec2, small: &mut Small, style: &ComicStyle) -> Self {
+        let screen = shot(small, style, size, 1.0);
+        let scaled = shot(small, style, TIMES * size, TIMES as f32);
+        let unscaled = shot(small, style, TIMES * size, 1.0);
         assert_eq!(small.errors(), 0);
         Self {
             screen: reduced(&screen, 1, 0),
@@ -125,8 +132,8 @@ impl Looks {
 }
 
 /// A wall of one colour.
-fn flat() -> Small {
-    let mut small = towards_the_sky(SCREEN);
+fn flat(screen: UVec2) -> Small {
+    let mut small = towards_the_sky(screen);
     let color = Color::linear_rgb(0.55, 0.4, 0.25);
     let at = Transform::from_xyz(0.0, 0.0, -80.0);
     small.put(Rectangle::new(200.0, 200.0), unlit(color), at);
@@ -137,8 +144,8 @@ fn flat() -> Small {
 fn photograph() -> Image {
     let pixel = |i: u32| {
         let [x, y] = [i % SCREEN.x, i / SCREEN.x];
-        let middle = IVec2::new(x as i32 - 60, y as i32 - 36);
-        let area = match (x < 34, middle.length_squared() < 400) {
+        let middle = IVec2::new(x as i32 - 30, y as i32 - 18);
+        let area = match (x < 17, middle.length_squared() < 100) {
             (true, _) => [0.55, 0.35, 0.2],
             (_, true) => [0.2, 0.4, 0.6],
             _ => [0.4, 0.6, 0.3],
@@ -175,17 +182,17 @@ fn layers() -> Small {
         ..unlit(Color::WHITE)
     };
     let (width, height) = (SCREEN.x as f32, SCREEN.y as f32);
-    let far = Transform::from_xyz(0.0, 0.0, -80.0);
+    let far = Transform::from_xyz(0.0, 0.0, -40.0);
     small.put(Rectangle::new(width, height), photograph, far);
-    let near = Transform::from_xyz(-12.0, -5.0, -20.0);
+    let near = Transform::from_xyz(-6.0, -2.5, -10.0);
     let red = unlit(Color::linear_rgb(0.7, 0.2, 0.15));
-    small.put(Rectangle::new(28.0, 22.0), red, near);
+    small.put(Rectangle::new(14.0, 11.0), red, near);
     small
 }
 
 #[test]
 fn without_effects_a_screenshot_is_the_screen() {
-    for mut small in [flat(), layers()] {
+    for mut small in [flat(SCREEN), layers()] {
         let none = ComicStyle::new();
         let looks = Looks::new(&mut small, &none);
         assert!(apart(&looks.screen, &looks.screenshot) < 1e-9);
@@ -194,7 +201,7 @@ fn without_effects_a_screenshot_is_the_screen() {
 
 #[test]
 fn dots_are_as_large() {
-    let mut small = flat();
+    let mut small = flat(SCREEN);
     let style = ComicStyle::new();
     for shape in SHAPES {
         let spot = Halftone {
@@ -205,6 +212,12 @@ fn dots_are_as_large() {
         let looks = Looks::new(&mut small, &style.clone().with(spot));
         looks.assert_alike(&format!("{shape:?}"));
     }
+}
+
+#[test]
+fn dots_of_inks_are_as_large() {
+    let mut small = flat(SCREEN);
+    let style = ComicStyle::new();
     let inks = Halftone::default();
     let cells = Halftone {
         shape: ScreenShape::Round,
@@ -227,8 +240,21 @@ fn dots_are_as_large() {
 }
 
 #[test]
-fn grain_and_speed_lines_are_as_large() {
-    let mut small = flat();
+fn grain_is_as_large() {
+    let mut small = flat(SCREEN);
+    let coarse = Paper {
+        grain: 1.0,
+        size: 3.0,
+        ..default()
+    };
+    for (what, paper) in [("paper", Paper::default()), ("coarse paper", coarse)] {
+        Looks::new(&mut small, &ComicStyle::new().with(paper)).assert_alike(what);
+    }
+}
+
+#[test]
+fn speed_lines_are_as_large() {
+    let mut small = flat(WIDE);
     let radial = SpeedLines {
         rate: 0.0,
         count: 40,
@@ -240,20 +266,13 @@ fn grain_and_speed_lines_are_as_large() {
         ..radial
     };
     let dry = SpeedLines { dry: 0.6, ..radial };
-    let coarse = Paper {
-        grain: 1.0,
-        size: 3.0,
-        ..default()
-    };
-    let style = ComicStyle::new();
-    for (what, style) in [
-        ("paper", style.clone().with(Paper::default())),
-        ("coarse paper", style.clone().with(coarse)),
-        ("focus lines", style.clone().with(radial)),
-        ("speed lines", style.clone().with(parallel)),
-        ("dry lines", style.with(dry)),
+    for (what, lines) in [
+        ("focus lines", radial),
+        ("speed lines", parallel),
+        ("dry lines", dry),
     ] {
-        Looks::new(&mut small, &style).assert_alike(what);
+        let style = ComicStyle::new().with(lines);
+        Looks::on(WIDE, &mut small, &style).assert_alike(what);
     }
 }
 
@@ -270,30 +289,28 @@ fn focus(style: FocusStyle) -> Focus {
     Focus {
         at: FocusAt::Distance,
         style,
-        distance: 20.0,
+        distance: 10.0,
         ramp: 0.3,
         ..default()
     }
 }
 
 #[test]
-fn patches_and_focus_are_as_large() {
+fn patches_are_as_large() {
     let mut small = layers();
-    let style = ComicStyle::new();
-    for (what, style) in [
-        ("paint", style.clone().with(Paint::default())),
-        (
-            "strokes",
-            style.clone().with(Paint {
-                form: PaintForm::Anisotropic,
-                ..default()
-            }),
-        ),
-        ("offset", style.clone().with(focus(FocusStyle::Offset))),
-        ("painted", style.clone().with(focus(FocusStyle::Paint))),
-        ("dots", style.with(focus(FocusStyle::Dots))),
-    ] {
-        Looks::new(&mut small, &style).assert_alike(what);
+    for form in [PaintForm::Box, PaintForm::Anisotropic] {
+        let paint = Paint { form, ..default() };
+        let looks = Looks::new(&mut small, &ComicStyle::new().with(paint));
+        looks.assert_alike(&format!("{form:?}"));
+    }
+}
+
+#[test]
+fn focus_is_as_large() {
+    let mut small = layers();
+    for style in [FocusStyle::Offset, FocusStyle::Paint, FocusStyle::Dots] {
+        let looks = Looks::new(&mut small, &ComicStyle::new().with(focus(style)));
+        looks.assert_alike(&format!("{style:?}"));
     }
     let blur = focus(FocusStyle::Blur);
     Looks::new(&mut small, &ComicStyle::new().with(blur))
@@ -316,7 +333,7 @@ fn ink_is_as_rough() {
         ..default()
     };
     let beyond = Focus {
-        distance: 26.0,
+        distance: 13.0,
         clear: 0.0,
         ramp: 0.2,
         ..focus(FocusStyle::Lines)
@@ -360,10 +377,7 @@ fn the_largest_blur_is_as_large() {
     };
     let largest = Looks::new(&mut small, &blurred(24.0));
     largest.assert_within("largest blur", sampling(24.0));
-    let other = reduced(
-        &shot(&mut small, &blurred(16.0), TIMES, TIMES as f32),
-        TIMES,
-        0,
-    );
+    let other = shot(&mut small, &blurred(16.0), TIMES * SCREEN, TIMES as f32);
+    let other = reduced(&other, TIMES, 0);
     assert!(apart(&largest.screenshot, &other) > ROUNDING);
 }

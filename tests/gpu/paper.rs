@@ -17,16 +17,17 @@ use crate::{
 /// A wall of one colour that fills the picture.
 fn flat(size: UVec2, color: Color) -> Small {
     let mut small = towards_the_sky(size);
-    let wall = wall(&mut small, [-600.0, -600.0], [600.0, 600.0], 100.0);
-    let material = small
-        .world()
-        .resource_mut::<Assets<StandardMaterial>>()
-        .add(unlit(color));
+    wall(&mut small, [-600.0, -600.0], [600.0, 600.0], 100.0);
+    paint(&mut small, color);
     small
-        .world()
-        .entity_mut(wall)
-        .insert(MeshMaterial3d(material));
-    small
+}
+
+/// Gives the wall another colour.
+fn paint(small: &mut Small, color: Color) {
+    let mut materials = small.world().resource_mut::<Assets<StandardMaterial>>();
+    for (_, material) in materials.iter_mut() {
+        *material = unlit(color);
+    }
 }
 
 /// Every pixel of the fused pass equals its twin, at every scale factor, in HDR and with a
@@ -39,16 +40,16 @@ fn every_pixel_is_its_twins() {
         size: 2.0,
         ..default()
     };
+    let mut small = Small::new(size(), Msaa::Off);
     for (settings, scale, hdr) in [
         (Paper::default(), 1.0, false),
         (Paper::default(), 1.25, false),
         (strong, 3.0, false),
         (strong, 1.0, true),
     ] {
-        let mut small = Small::new(size(), Msaa::Off);
         small.headless.resize(size(), scale);
-        let target = small.headless.render_target();
-        small.insert((target, settings));
+        small.restart(Msaa::Off);
+        small.insert(settings);
         small.insert(Camera {
             clear_color: Color::NONE.into(),
             ..default()
@@ -77,6 +78,8 @@ fn every_pixel_is_its_twins() {
 #[test]
 fn the_mean_tone_stays() {
     let page = UVec2::new(256, 192);
+    let mut small = flat(page, Color::WHITE);
+    small.insert(Hdr);
     for grain in [Paper::default().grain, 1.0] {
         let settings = Paper {
             grain,
@@ -85,8 +88,8 @@ fn the_mean_tone_stays() {
         };
         for tone in 0..=10u8 {
             let light = f32::from(tone) / 10.0;
-            let mut small = flat(page, Color::linear_rgb(light, light, light));
-            small.insert(Hdr).insert(settings).settle();
+            paint(&mut small, Color::linear_rgb(light, light, light));
+            small.insert(settings).settle();
             let (before, after) = small.pass();
             let count = after.pixels.len() as f64;
             let mean = |p: &[[f32; 4]]| p.iter().map(|p| f64::from(p[0])).sum::<f64>() / count;
@@ -104,11 +107,11 @@ fn the_mean_tone_stays() {
         }
     }
     // On the screen too, where light above 1 is lost.
-    let mut small = flat(page, Color::WHITE);
     let white = Paper {
         color: Color::WHITE,
         ..default()
     };
+    small.camera_mut().remove::<Hdr>();
     small.insert(white).settle();
     let picture = small.picture();
     let sum: f64 = picture
@@ -158,6 +161,7 @@ fn a_split_screen_is_one_sheet() {
 fn a_view_can_have_its_own_sheet() {
     let part = UVec2::new(44, 30);
     let place = UVec2::new(23, 9);
+    let target = UVec2::new(72, 48);
     let style = |anchor: PaperAnchor, dots: bool| {
         let outlines = Outlines {
             width: 5.0,
@@ -174,7 +178,7 @@ fn a_view_can_have_its_own_sheet() {
         with_option(style, dots.then(Halftone::default))
     };
     let mut alone = Small::new(part, Msaa::Off);
-    let mut small = Small::new(size(), Msaa::Off);
+    let mut small = Small::new(target, Msaa::Off);
     small.insert(Camera {
         clear_color: Color::srgb(0.3, 0.5, 0.8).into(),
         viewport: Some(Viewport {
@@ -202,7 +206,7 @@ fn a_view_can_have_its_own_sheet() {
 /// The sheet stays for all time, or for one drawing.
 #[test]
 fn sheets_change_at_their_rate() {
-    let mut small = flat(size(), Color::linear_rgb(0.4, 0.4, 0.4));
+    let mut small = flat(UVec2::new(48, 32), Color::linear_rgb(0.4, 0.4, 0.4));
     for (rate, sheets) in [(0.0, 1), (12.0, 13)] {
         small.insert(Paper { rate, ..default() }).settle();
         let mut film = vec![small.picture()];

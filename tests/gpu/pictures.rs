@@ -199,8 +199,8 @@ pub fn assert_pass_is_its_twin(
                 [r, g, b, alpha]
             };
             let got = encode(wrote.map(f64::from));
-            let [want, more, less] = [0.0, 1e-5, -1e-5]
-                .map(|nudge| encode(stylize(style, &view, &read_by_pass, x, y, nudge)));
+            let of_twin = |nudge| encode(stylize(style, &view, &read_by_pass, x, y, nudge));
+            let want = of_twin(0.0);
             let apart = |a: Rgba, b: Rgba| {
                 (0..4)
                     .map(|i| (a[i].min(1.0) - b[i].min(1.0)).abs())
@@ -210,6 +210,7 @@ pub fn assert_pass_is_its_twin(
             if apart(got, want) <= 1.5 * ONE_CODE {
                 continue;
             }
+            let [more, less] = [1e-5, -1e-5].map(of_twin);
             // Ink that is stored between two codes can be either.
             let close = (0..4).all(|i| {
                 let low = want[i].min(more[i]).min(less[i]);
@@ -285,17 +286,43 @@ pub fn known_forms(preset: &Preset) -> Vec<ComicStyle> {
     vec![style.clone().without::<Planes>(), style.with(all_tones)]
 }
 
-#[test]
-fn every_preset_is_its_twin_with_and_without_msaa() {
-    let mut small = Small::new(UVec2::new(80, 56), Msaa::Off);
-    for msaa in [Msaa::Off, Msaa::Sample4] {
-        small.restart(msaa);
-        for preset in presets::ALL {
-            for style in known_forms(preset) {
-                assert_pass_is_its_twin(&mut small, &style, None, &format!("{preset}, {msaa:?}"));
-            }
+fn check_presets(msaa: Msaa, presets: &[Preset]) {
+    let mut small = Small::new(UVec2::new(80, 56), msaa);
+    for preset in presets {
+        for style in known_forms(preset) {
+            assert_pass_is_its_twin(&mut small, &style, None, &format!("{preset}, {msaa:?}"));
         }
-        assert_eq!(small.errors(), 0);
+    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// Colours, contours, bands and a sketch.
+#[test]
+fn presets_are_their_twins() {
+    check_presets(
+        Msaa::Off,
+        &[presets::CRIMSON_DUSK, presets::NOIR, presets::FIGURE_8B],
+    );
+}
+
+/// Outlines, dots, planes and a vignette.
+#[test]
+fn multisampled_presets_are_their_twins() {
+    check_presets(
+        Msaa::Sample4,
+        &[
+            presets::SATURDAY_MORNING,
+            presets::NEWSPRINT,
+            presets::STORYBOOK,
+        ],
+    );
+}
+
+#[test]
+#[ignore = "long: every preset, twice"]
+fn every_preset_is_its_twin_with_and_without_msaa() {
+    for msaa in [Msaa::Off, Msaa::Sample4] {
+        check_presets(msaa, presets::ALL);
     }
 }
 
@@ -339,129 +366,173 @@ fn everything(
     with_map(style, map)
 }
 
-#[test]
-fn every_mode_of_every_style_is_its_twin() {
+const MAPPINGS: [DepthMapping; 6] = [
+    DepthMapping::MinMax,
+    DepthMapping::MinMaxLogarithmic,
+    DepthMapping::Linear,
+    DepthMapping::Logarithmic,
+    DepthMapping::Fixed {
+        near: 4.0,
+        far: 9.0,
+    },
+    DepthMapping::FixedLogarithmic {
+        near: 4.0,
+        far: 9.0,
+    },
+];
+
+const FORMS: [Form; 2] = [Form::Corrected, Form::Faithful];
+
+/// Checks these pairs of a mapping and a form, with another mode each time.
+fn check_mappings(pairs: impl IntoIterator<Item = (usize, usize)>) {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
-    let mappings = [
-        DepthMapping::MinMax,
-        DepthMapping::MinMaxLogarithmic,
-        DepthMapping::Linear,
-        DepthMapping::Logarithmic,
-        DepthMapping::Fixed {
-            near: 4.0,
-            far: 9.0,
-        },
-        DepthMapping::FixedLogarithmic {
-            near: 4.0,
-            far: 9.0,
-        },
-    ];
     let modes = [
         ColorizationMode::Hue,
         ColorizationMode::Atmosphere,
         ColorizationMode::Linear,
         ColorizationMode::Quadratic,
     ];
-    for (i, mapping) in mappings.into_iter().enumerate() {
-        for (j, method) in [Form::Corrected, Form::Faithful].into_iter().enumerate() {
-            let form = if (i + j) % 2 == 0 {
-                Form::Corrected
-            } else {
-                Form::Faithful
-            };
-            let style = everything(method, modes[(i + 2 * j) % 4], form, mapping);
-            assert_pass_is_its_twin(&mut small, &style, None, &format!("{style:?}"));
-        }
+    for (i, j) in pairs {
+        let form = FORMS[(i + j) % 2];
+        let style = everything(FORMS[j], modes[(i + 2 * j) % 4], form, MAPPINGS[i]);
+        assert_pass_is_its_twin(&mut small, &style, None, &format!("{style:?}"));
     }
-    for operator in [
-        ContourOperator::Prewitt,
-        ContourOperator::Sobel,
-        ContourOperator::Laplace,
-        ContourOperator::Roberts,
-    ] {
-        for form in [Form::Corrected, Form::Faithful] {
-            for width in [0.5, 1.0, 3.0, 7.5] {
-                let style = ComicStyle::default().with(Contours {
-                    operator,
-                    form,
-                    width,
-                    softness: 0.3,
-                    threshold: 0.08,
-                    ..default()
-                });
-                assert_pass_is_its_twin(
-                    &mut small,
-                    &style,
-                    None,
-                    &format!("{operator:?} {form:?} {width} px"),
-                );
-            }
-        }
-    }
+    assert_eq!(small.errors(), 0);
+}
+
+/// Every mapping, and every mode.
+#[test]
+fn every_mapping_is_its_twin() {
+    check_mappings((0..6).map(|i| (i, i / 2 % 2)));
+    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     let flip = DepthMap {
         flip: true,
         ..default()
     };
     let flipped = with_map(ComicStyle::default().with(Desaturation::default()), flip);
     assert_pass_is_its_twin(&mut small, &flipped, None, "flipped");
+}
+
+#[test]
+#[ignore = "long: every mapping in both forms"]
+fn every_mapping_is_its_twin_in_both_forms() {
+    check_mappings((0..6).flat_map(|i| [(i, 0), (i, 1)]));
+}
+
+/// Checks contours of an operator, a form and a width in pixels.
+fn check_contours(cases: impl IntoIterator<Item = (ContourOperator, Form, f32)>) {
+    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
+    for (operator, form, width) in cases {
+        let style = ComicStyle::default().with(Contours {
+            operator,
+            form,
+            width,
+            softness: 0.3,
+            threshold: 0.08,
+            ..default()
+        });
+        let what = format!("{operator:?} {form:?} {width} px");
+        assert_pass_is_its_twin(&mut small, &style, None, &what);
+    }
     assert_eq!(small.errors(), 0);
+}
+
+const OPERATORS: [ContourOperator; 4] = [
+    ContourOperator::Prewitt,
+    ContourOperator::Sobel,
+    ContourOperator::Laplace,
+    ContourOperator::Roberts,
+];
+const WIDTHS: [f32; 4] = [0.5, 1.0, 3.0, 7.5];
+
+/// Every operator in both forms, and every width.
+#[test]
+fn contours_are_their_twin() {
+    let width = |i: usize, j: usize| WIDTHS[(i + 2 * j) % 4];
+    let of = |i: usize| [0, 1].map(|j| (OPERATORS[i], FORMS[j], width(i, j)));
+    check_contours((0..4).flat_map(of));
+}
+
+#[test]
+#[ignore = "long: every operator, form and width"]
+fn contours_of_every_operator_form_and_width_are_their_twin() {
+    for operator in OPERATORS {
+        for form in FORMS {
+            check_contours(WIDTHS.map(|width| (operator, form, width)));
+        }
+    }
 }
 
 pub fn outlined(outlines: Outlines) -> ComicStyle {
     ComicStyle::default().with(outlines)
 }
 
+/// Checks outlines of every kind and form, and of these widths.
+fn check_outlines(msaa: Msaa, widths: &[f32]) {
+    let mut small = Small::new(UVec2::new(72, 48), msaa);
+    for width in widths.iter().copied() {
+        let style = outlined(Outlines {
+            width,
+            width_fade: 0.3,
+            opacity_fade: 0.5,
+            ..default()
+        });
+        assert_pass_is_its_twin(&mut small, &style, None, &format!("{width} px, {msaa:?}"));
+    }
+    for kind in 0..3 {
+        let all = Outlines::default();
+        let style = outlined(Outlines {
+            silhouettes: all.silhouettes.filter(|_| kind == 0),
+            creases: all.creases.filter(|_| kind == 1),
+            objects: all.objects.filter(|_| kind == 2),
+            width: 3.0,
+            ..all
+        });
+        assert_pass_is_its_twin(&mut small, &style, None, &format!("kind {kind}, {msaa:?}"));
+    }
+    let faithful = outlined(Outlines {
+        silhouettes: Some(Silhouettes {
+            form: Form::Faithful,
+            threshold: 0.0008,
+            edge_limit: 0.7,
+            ..default()
+        }),
+        creases: Some(Creases {
+            form: Form::Faithful,
+            color: Color::srgb(0.6, 0.1, 0.1),
+            ..default()
+        }),
+        ..default()
+    });
+    assert_pass_is_its_twin(&mut small, &faithful, None, &format!("faithful, {msaa:?}"));
+    // Measured creases have no line at a jump, which faithful silhouettes have no measure of.
+    let mixed = outlined(Outlines {
+        silhouettes: Some(Silhouettes {
+            form: Form::Faithful,
+            threshold: 0.0008,
+            ..default()
+        }),
+        ..default()
+    });
+    assert_pass_is_its_twin(&mut small, &mixed, None, &format!("mixed, {msaa:?}"));
+    assert_eq!(small.errors(), 0);
+}
+
 #[test]
+fn outlines_of_every_kind_and_form_are_their_twin() {
+    check_outlines(Msaa::Off, &[0.5, 1.7, 4.0]);
+}
+
+#[test]
+fn multisampled_outlines_are_their_twin() {
+    check_outlines(Msaa::Sample4, &[1.0]);
+}
+
+#[test]
+#[ignore = "long: every width, twice"]
 fn outlines_of_every_kind_form_and_width_are_their_twin() {
-    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        small.restart(msaa);
-        for width in [0.5, 1.0, 1.7, 2.0, 3.0, 4.0] {
-            let style = outlined(Outlines {
-                width,
-                width_fade: 0.3,
-                opacity_fade: 0.5,
-                ..default()
-            });
-            assert_pass_is_its_twin(&mut small, &style, None, &format!("{width} px, {msaa:?}"));
-        }
-        for kind in 0..3 {
-            let all = Outlines::default();
-            let style = outlined(Outlines {
-                silhouettes: all.silhouettes.filter(|_| kind == 0),
-                creases: all.creases.filter(|_| kind == 1),
-                objects: all.objects.filter(|_| kind == 2),
-                width: 3.0,
-                ..all
-            });
-            assert_pass_is_its_twin(&mut small, &style, None, &format!("kind {kind}, {msaa:?}"));
-        }
-        let faithful = outlined(Outlines {
-            silhouettes: Some(Silhouettes {
-                form: Form::Faithful,
-                threshold: 0.0008,
-                edge_limit: 0.7,
-                ..default()
-            }),
-            creases: Some(Creases {
-                form: Form::Faithful,
-                color: Color::srgb(0.6, 0.1, 0.1),
-                ..default()
-            }),
-            ..default()
-        });
-        assert_pass_is_its_twin(&mut small, &faithful, None, &format!("faithful, {msaa:?}"));
-        // Measured creases have no line at a jump, which faithful silhouettes have no measure of.
-        let mixed = outlined(Outlines {
-            silhouettes: Some(Silhouettes {
-                form: Form::Faithful,
-                threshold: 0.0008,
-                ..default()
-            }),
-            ..default()
-        });
-        assert_pass_is_its_twin(&mut small, &mixed, None, &format!("mixed, {msaa:?}"));
-        assert_eq!(small.errors(), 0);
+        check_outlines(msaa, &[0.5, 1.0, 1.7, 2.0, 3.0, 4.0]);
     }
 }
 

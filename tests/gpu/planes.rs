@@ -328,8 +328,9 @@ fn an_object_that_trembles_at_a_border_stays_in_its_plane() {
 /// and far from the origin.
 #[test]
 fn objects_have_planes_in_other_views_too() {
+    let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
     for (msaa, origin) in [(Msaa::Sample4, 0.0), (Msaa::Off, 1e4)] {
-        let mut small = Small::new(UVec2::new(96, 64), msaa);
+        small.restart(msaa);
         let figure = long_box(&mut small, 26.5);
         small.insert(Transform::from_xyz(origin, 0.0, origin));
         let mut at = small.world().get_mut::<Transform>(figure).expect("there");
@@ -349,6 +350,9 @@ fn objects_have_planes_in_other_views_too() {
         );
     }
 }
+
+/// Size of the pictures with lines.
+const LINED: UVec2 = UVec2::new(64, 64);
 
 /// Lines on white cards, black: near, in the middle, far.
 fn line_widths(small: &mut Small, planes: Planes, map: DepthMap) -> [f64; 3] {
@@ -376,10 +380,53 @@ fn line_widths(small: &mut Small, planes: Planes, map: DepthMap) -> [f64; 3] {
     })
 }
 
+/// What is in a plane, and how the planes are divided.
+type Division = (PlaneUnit, PlaneBorders);
+
+/// Every two of the sample count, the unit and the borders together.
+const PAIRS: [(Msaa, &[Division]); 2] = [
+    (
+        Msaa::Off,
+        &[
+            (PlaneUnit::Object, PlaneBorders::Auto),
+            (PlaneUnit::Pixel, PlaneBorders::Fixed),
+        ],
+    ),
+    (
+        Msaa::Sample4,
+        &[
+            (PlaneUnit::Object, PlaneBorders::Fixed),
+            (PlaneUnit::Pixel, PlaneBorders::Auto),
+        ],
+    ),
+];
+
+/// All three together.
+const ALL: [(Msaa, &[Division]); 2] = {
+    const EVERY: [Division; 4] = [
+        (PlaneUnit::Object, PlaneBorders::Auto),
+        (PlaneUnit::Object, PlaneBorders::Fixed),
+        (PlaneUnit::Pixel, PlaneBorders::Auto),
+        (PlaneUnit::Pixel, PlaneBorders::Fixed),
+    ];
+    [(Msaa::Off, &EVERY), (Msaa::Sample4, &EVERY)]
+};
+
 #[test]
 fn lines_have_the_width_and_opacity_of_their_plane() {
-    for msaa in [Msaa::Off, Msaa::Sample4] {
-        let mut small = Small::new(UVec2::new(128, 128), msaa);
+    assert_width_and_opacity(PAIRS);
+}
+
+#[test]
+#[ignore = "long: every division of planes at every sample count"]
+fn lines_have_the_width_and_opacity_of_every_kind_of_plane() {
+    assert_width_and_opacity(ALL);
+}
+
+fn assert_width_and_opacity(cases: [(Msaa, &[Division]); 2]) {
+    let mut small = Small::new(LINED, Msaa::Off);
+    for (msaa, divisions) in cases {
+        small.restart(msaa);
         small.insert(Camera {
             clear_color: Color::WHITE.into(),
             ..default()
@@ -395,29 +442,27 @@ fn lines_have_the_width_and_opacity_of_their_plane() {
         }
         planes.middle.line_width = 0.5;
         planes.far.line_opacity = 0.25;
-        for by in [PlaneUnit::Object, PlaneUnit::Pixel] {
-            for borders in [PlaneBorders::Auto, PlaneBorders::Fixed] {
-                let planes = Planes {
-                    by,
-                    borders,
-                    near_end: 0.2,
-                    far_start: 0.5,
-                    ..planes
-                };
-                for flip in [false, true] {
-                    let map = DepthMap { flip, ..hundred() };
-                    let mut found = line_widths(&mut small, planes, map);
-                    if flip {
-                        found.reverse();
-                    }
-                    let apart = [4.0, 2.0, 1.0].into_iter().zip(found);
-                    // Opacity is stored in eight bits, in draws of a byte of ink.
-                    let worst = apart.map(|(a, b)| f64::abs(a - b)).fold(0.0, f64::max);
-                    assert!(
-                        worst < 0.06,
-                        "{msaa:?}, {by:?}, {borders:?}, {flip}: {found:?}"
-                    );
+        for &(by, borders) in divisions {
+            let planes = Planes {
+                by,
+                borders,
+                near_end: 0.2,
+                far_start: 0.5,
+                ..planes
+            };
+            for flip in [false, true] {
+                let map = DepthMap { flip, ..hundred() };
+                let mut found = line_widths(&mut small, planes, map);
+                if flip {
+                    found.reverse();
                 }
+                let apart = [4.0, 2.0, 1.0].into_iter().zip(found);
+                // Opacity is stored in eight bits, in draws of a byte of ink.
+                let worst = apart.map(|(a, b)| f64::abs(a - b)).fold(0.0, f64::max);
+                assert!(
+                    worst < 0.06,
+                    "{msaa:?}, {by:?}, {borders:?}, {flip}: {found:?}"
+                );
             }
         }
         assert_eq!(small.errors(), 0);
@@ -427,8 +472,19 @@ fn lines_have_the_width_and_opacity_of_their_plane() {
 /// A line has the colour of the plane of the card in front, on both sides of its edge.
 #[test]
 fn lines_have_the_colour_of_their_plane() {
-    for msaa in [Msaa::Off, Msaa::Sample4] {
-        let mut small = Small::new(UVec2::new(128, 128), msaa);
+    assert_colour(PAIRS);
+}
+
+#[test]
+#[ignore = "long: every division of planes at every sample count"]
+fn lines_have_the_colour_of_every_kind_of_plane() {
+    assert_colour(ALL);
+}
+
+fn assert_colour(cases: [(Msaa, &[Division]); 2]) {
+    let mut small = Small::new(LINED, Msaa::Off);
+    for (msaa, divisions) in cases {
+        small.restart(msaa);
         small.insert(Camera {
             clear_color: Color::WHITE.into(),
             ..default()
@@ -446,32 +502,29 @@ fn lines_have_the_colour_of_their_plane() {
         planes.far.line_color_amount = 0.5;
         let half = (255.0 * color::srgb_encode([0.5; 3])[0]).round() as u8;
         let wanted = [[255, 0, 0], [0, 0, 0], [0, 0, half]];
-        for by in [PlaneUnit::Object, PlaneUnit::Pixel] {
-            for borders in [PlaneBorders::Auto, PlaneBorders::Fixed] {
-                for flip in [false, true] {
-                    let mut wanted = wanted;
-                    if flip {
-                        wanted.reverse();
-                    }
-                    let planes = Planes {
-                        by,
-                        borders,
-                        ..planes
-                    };
-                    let map = DepthMap { flip, ..hundred() };
-                    line_widths(&mut small, planes, map);
-                    let found = line_colors(&small.picture());
-                    for (found, wanted) in found.iter().zip(wanted) {
-                        let is_close = |code: &[u8; 3]| {
-                            code.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) <= 1)
-                        };
-                        // A line of 4 pixels covers at least 3 of a row.
-                        let full = found.iter().filter(|code| is_close(code)).count();
-                        assert!(
-                            full >= 3,
-                            "{msaa:?}, {by:?}, {borders:?}, {flip}: {found:?} for {wanted:?}"
-                        );
-                    }
+        for &(by, borders) in divisions {
+            for flip in [false, true] {
+                let mut wanted = wanted;
+                if flip {
+                    wanted.reverse();
+                }
+                let planes = Planes {
+                    by,
+                    borders,
+                    ..planes
+                };
+                let map = DepthMap { flip, ..hundred() };
+                line_widths(&mut small, planes, map);
+                let found = line_colors(&small.picture());
+                for (found, wanted) in found.iter().zip(wanted) {
+                    let is_close =
+                        |code: &[u8; 3]| code.iter().zip(wanted).all(|(a, b)| a.abs_diff(b) <= 1);
+                    // A line of 4 pixels covers at least 3 of a row.
+                    let full = found.iter().filter(|code| is_close(code)).count();
+                    assert!(
+                        full >= 3,
+                        "{msaa:?}, {by:?}, {borders:?}, {flip}: {found:?} for {wanted:?}"
+                    );
                 }
             }
         }
@@ -510,8 +563,8 @@ fn hatching_and_dots_are_as_strong_as_in_their_plane() {
         ComicStyle::new().with(hatching),
         ComicStyle::new().with(halftone),
     ];
+    let mut small = Small::new(UVec2::new(128, 128), Msaa::Off);
     for style in printed {
-        let mut small = Small::new(UVec2::new(128, 128), Msaa::Off);
         cards(&mut small, [10.0, 30.0, 90.0]);
         let mut materials = small.world().resource_mut::<Assets<StandardMaterial>>();
         for (_, material) in materials.iter_mut() {

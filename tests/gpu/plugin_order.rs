@@ -6,7 +6,7 @@ use bevy_comics::{
 };
 use bevy_comics_testkit::headless::Headless;
 
-use crate::small::{camera, options, size};
+use crate::small::{camera, options};
 
 /// A scene that uses every part of the plugin: a style asset, the depth range,
 /// outlines, one object's own lines, the cartoon material.
@@ -35,7 +35,7 @@ fn picture(mut headless: Headless) -> (image::RgbaImage, image::RgbaImage) {
         Transform::from_xyz(2.0, 4.0, 3.0),
     ));
     let camera = world.spawn(camera(target, Msaa::Off)).id();
-    headless.step(8);
+    headless.step(3);
     let original = headless.picture();
     let world = headless.app.world_mut();
     let style = world
@@ -61,14 +61,15 @@ fn picture(mut headless: Headless) -> (image::RgbaImage, image::RgbaImage) {
         "the preset did not load"
     );
     assert_eq!(headless.app.world().get::<DepthMap>(camera), Some(&own_map));
-    headless.step(6);
+    headless.step(4);
     (original, headless.picture())
 }
 
 #[test]
 fn before_or_after_the_engines_plugins() {
-    let (original, after) = picture(Headless::new(options(size()), ComicsPlugin));
-    let first = Headless::with_plugins_first(options(size()), ComicsPlugin);
+    let options = options(UVec2::new(48, 32));
+    let (original, after) = picture(Headless::new(options.clone(), ComicsPlugin));
+    let first = Headless::with_plugins_first(options, ComicsPlugin);
     let (same_original, before) = picture(first);
     assert_ne!(original, after, "nothing was drawn");
     let apart = |a: &image::RgbaImage, b: &image::RgbaImage| {

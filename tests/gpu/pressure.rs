@@ -17,6 +17,7 @@ use bevy_comics_testkit::reference::pressure::{
 
 use crate::{
     ids::{cube, material, skinned_and_morphed},
+    sections::{none_has_sections, wait},
     small::{Small, black_ink, unlit},
     walls::{towards_the_sky, unit_per_pixel, wall},
 };
@@ -235,8 +236,9 @@ fn zooming_changes_widths_gradually() {
 #[test]
 fn drawn_factors_are_their_twin() {
     let size = UVec2::new(96, 64);
+    let mut small = Small::new(size, Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let mut small = Small::new(size, msaa);
+        small.restart(msaa);
         small.clear();
         small.insert(Transform::IDENTITY);
         let turn = Quat::from_euler(EulerRot::XYZ, 0.4, -0.7, 0.2);
@@ -422,41 +424,48 @@ fn widths_of_vertices_are_inherited() {
 /// pressure, there is no texture.
 #[test]
 fn widths_are_drawn_of_every_mesh() {
-    for msaa in [Msaa::Off, Msaa::Sample4] {
-        let (mut small, _) = skinned_and_morphed();
-        small.insert(msaa);
-        let plain = material(&mut small, |_| {});
-        let at = Transform::from_xyz(0.0, 1.0, 0.0).with_rotation(Quat::from_rotation_y(0.6));
-        let divided = cube(&mut small, plain, at);
-        small
-            .world()
-            .entity_mut(divided)
-            .insert((MeshSections::default(), LineWidths::default()));
-        let outlines = |pressure| Outlines {
-            silhouettes: Some(Silhouettes::default()),
-            weight: pressed(pressure, 12.0),
-            ..default()
-        };
-        for _ in 0..20 {
-            drawn(&mut small, outlines(1.0));
-        }
-        let (ids, widths) = (small.object_ids(), small.line_widths());
-        let (ids, widths) = (ids.expect("drawn"), widths.expect("drawn"));
-        let mut seen: Vec<u32> = ids.pixels.iter().map(|p| p[0]).collect();
-        assert!(ids.pixels.iter().any(|p| p[1] >> 8 != 0), "no sections");
-        let all = seen.clone();
-        seen.sort_unstable();
-        seen.dedup();
-        for id in seen.into_iter().filter(|id| *id != 0) {
-            let own: Vec<f64> = (all.iter().zip(&widths.factors))
-                .filter(|(other, _)| **other == id)
-                .map(|(_, factor)| *factor)
-                .collect();
-            assert!(deviation(&own) > 0.1, "{msaa:?}, {id}: even");
-        }
-        small.world().entity_mut(divided).remove::<LineWidths>();
-        drawn(&mut small, outlines(0.0));
-        assert!(small.object_ids().is_some() && small.line_widths().is_none());
-        assert_eq!(small.errors(), 0);
+    assert_widths_of_meshes(Msaa::Off);
+}
+
+#[test]
+#[ignore = "long: pipelines of four samples"]
+fn widths_are_drawn_of_every_mesh_in_multisampled_views() {
+    assert_widths_of_meshes(Msaa::Sample4);
+}
+
+fn assert_widths_of_meshes(msaa: Msaa) {
+    let (mut small, _) = skinned_and_morphed();
+    let plain = material(&mut small, |_| {});
+    let at = Transform::from_xyz(0.0, 1.0, 0.0).with_rotation(Quat::from_rotation_y(0.6));
+    let divided = cube(&mut small, plain, at);
+    small
+        .world()
+        .entity_mut(divided)
+        .insert((MeshSections::default(), LineWidths::default()));
+    let outlines = |pressure| Outlines {
+        silhouettes: Some(Silhouettes::default()),
+        weight: pressed(pressure, 12.0),
+        ..default()
+    };
+    small.insert(msaa);
+    drawn(&mut small, outlines(1.0));
+    wait(&mut small, |ids| !none_has_sections(ids));
+    let (ids, widths) = (small.object_ids(), small.line_widths());
+    let (ids, widths) = (ids.expect("drawn"), widths.expect("drawn"));
+    let mut seen: Vec<u32> = ids.pixels.iter().map(|p| p[0]).collect();
+    assert!(ids.pixels.iter().any(|p| p[1] >> 8 != 0), "no sections");
+    let all = seen.clone();
+    seen.sort_unstable();
+    seen.dedup();
+    for id in seen.into_iter().filter(|id| *id != 0) {
+        let own: Vec<f64> = (all.iter().zip(&widths.factors))
+            .filter(|(other, _)| **other == id)
+            .map(|(_, factor)| *factor)
+            .collect();
+        assert!(deviation(&own) > 0.1, "{msaa:?}, {id}: even");
     }
+    small.world().entity_mut(divided).remove::<LineWidths>();
+    drawn(&mut small, outlines(0.0));
+    assert!(small.object_ids().is_some() && small.line_widths().is_none());
+    assert_eq!(small.errors(), 0);
 }

@@ -284,8 +284,9 @@ fn plates_stray_evenly() {
 /// the plates are moved.
 #[test]
 fn a_transparent_background_stays() {
+    let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let mut small = Small::new(UVec2::new(72, 48), msaa);
+        small.restart(msaa);
         small.insert(Camera {
             clear_color: Color::NONE.into(),
             ..default()

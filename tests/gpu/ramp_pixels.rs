@@ -17,7 +17,7 @@ use crate::{
     small::linear,
 };
 
-const SIZE: u32 = 200;
+const SIZE: u32 = 100;
 const BALL: f64 = 0.95;
 /// Units of a pixel.
 const PIXEL: f64 = 2.0 / SIZE as f64;
@@ -123,9 +123,21 @@ fn twin(light: &CartoonLight, s: &Surface, e: &Evenly) -> DVec3 {
     }
 }
 
-/// Pixel by pixel, the picture is the twin of the whole light.
+/// Pixel by pixel, the picture is the twin of the whole light, in every mode.
 #[test]
 fn a_ball_under_three_suns_is_its_twin() {
+    let cases = cases();
+    // No ramp, a share on two axes, each light alone, the brightest one on two axes.
+    check([0, 2, 7, 12].map(|k| cases[k].clone()));
+}
+
+#[test]
+#[ignore = "long: every mode with every blend and axis"]
+fn a_ball_under_three_suns_is_its_twin_in_every_case() {
+    check(cases());
+}
+
+fn check(cases: impl IntoIterator<Item = Option<Ramp>>) {
     let mut small = room(UVec2::splat(SIZE), AMBIENT);
     let ball = Sphere::new(BALL as f32).mesh().uv(256, 128);
     put(
@@ -138,7 +150,7 @@ fn a_ball_under_three_suns_is_its_twin() {
         sun(&mut small, to, bright(part));
     }
     let exposure = f64::from(Exposure::default().exposure());
-    for ramp in cases() {
+    for ramp in cases {
         let light = CartoonLight {
             ramp,
             falloff: 0.0,
@@ -146,7 +158,7 @@ fn a_ball_under_three_suns_is_its_twin() {
         };
         set_light(&mut small, &light);
         let picture = drawn(&mut small);
-        let (mut looked, mut off) = (0, 0);
+        let (mut looked, mut off) = (0u32, 0u32);
         for (x, y) in (0..SIZE).flat_map(|x| (0..SIZE).map(move |y| (x, y))) {
             let Some(mut s) = surface(x, y) else {
                 continue;
@@ -173,13 +185,13 @@ fn a_ball_under_three_suns_is_its_twin() {
             // per unit, and dark tones by 12 codes per hundredth: 1.5 codes, and half of one in the
             // picture. Without a ramp, an edge is one pixel wide.
             let most = if light.ramp.is_some() { 2.0 } else { 6.0 };
-            off += usize::from(codes > most);
+            off += u32::from(codes > most);
             assert!(
                 codes < 12.0,
                 "({x}, {y}): {found:?}, not {wanted:?}, {light:?}"
             );
         }
-        assert!(looked > 20_000, "{looked}");
+        assert!(looked > SIZE * SIZE / 2, "{looked}");
         assert!(off * 500 < looked, "{off} of {looked}, {light:?}");
     }
 }

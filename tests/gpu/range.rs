@@ -1,5 +1,7 @@
 //! The depth range against a scan of all depths, bit for bit.
 
+use std::{collections::BTreeMap, sync::Mutex};
+
 use proptest::{
     collection::vec,
     prelude::{ProptestConfig, Strategy, any, prop_oneof},
@@ -15,19 +17,22 @@ use bevy_comics_testkit::{
 
 pub const SHAPES: [&[&str]; 3] = [&["BARRIER_FREE"], &["SUBGROUP"], &[]];
 
-/// Runs a shape of `range.wgsl` over a table of depths.
-fn reduce(shape: &[&str], depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Option<[u32; 2]> {
-    reduce_and_count(shape, depths, (size, rect), [0.0; 2]).0
+/// A shape of `range.wgsl` with its bindings.
+#[derive(Clone)]
+struct Reduction {
+    layout: wgpu::BindGroupLayout,
+    pipeline: wgpu::ComputePipeline,
 }
 
-/// The same; with `HISTOGRAM`, bins and total as well. `window`: raw depths (near, far)
-/// that the bins of an orthographic view divide.
-pub fn reduce_and_count(
-    shape: &[&str],
-    depths: &[f32],
-    (size, rect): ([u32; 2], [u32; 4]),
-    window: [f32; 2],
-) -> (Option<[u32; 2]>, Vec<u32>) {
+/// Each shape is compiled once.
+fn reduction(shape: &[&str]) -> Reduction {
+    static COMPILED: Mutex<BTreeMap<String, Reduction>> = Mutex::new(BTreeMap::new());
+    let mut compiled = COMPILED.lock().expect("no panic");
+    let made = || compile(shape);
+    compiled.entry(shape.join(" ")).or_insert_with(made).clone()
+}
+
+fn compile(shape: &[&str]) -> Reduction {
     let gpu = gpu();
     let counts = shape.contains(&"HISTOGRAM");
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/src/depth/range.wgsl");
@@ -88,6 +93,25 @@ pub fn reduce_and_count(
             },
             cache: None,
         });
+    Reduction { layout, pipeline }
+}
+
+/// Runs a shape of `range.wgsl` over a table of depths.
+fn reduce(shape: &[&str], depths: &[f32], size: [u32; 2], rect: [u32; 4]) -> Option<[u32; 2]> {
+    reduce_and_count(shape, depths, (size, rect), [0.0; 2]).0
+}
+
+/// The same; with `HISTOGRAM`, bins and total as well. `window`: raw depths (near, far)
+/// that the bins of an orthographic view divide.
+pub fn reduce_and_count(
+    shape: &[&str],
+    depths: &[f32],
+    (size, rect): ([u32; 2], [u32; 4]),
+    window: [f32; 2],
+) -> (Option<[u32; 2]>, Vec<u32>) {
+    let gpu = gpu();
+    let counts = shape.contains(&"HISTOGRAM");
+    let Reduction { layout, pipeline } = reduction(shape);
     let extent = wgpu::Extent3d {
         width: size[0],
         height: size[1],

@@ -44,8 +44,9 @@ fn assert_range_is_the_scan(small: &Small, rect: Option<[u32; 4]>, what: &str) {
 #[test]
 fn every_method_reads_every_sample_of_a_rendered_view() {
     let samples = headless::adapter().expect("an adapter").samples;
+    let mut small = Small::new(UVec2::new(71, 53), Msaa::Off);
     for samples in samples {
-        let mut small = Small::new(UVec2::new(71, 53), msaa_of(samples));
+        small.restart(msaa_of(samples));
         for reduction in [
             ReductionMethod::Auto,
             ReductionMethod::BarrierFree,
@@ -125,13 +126,14 @@ fn distances_are_right_under_every_projection() {
         far: 40.0,
         ..default()
     };
+    let mut small = Small::new(UVec2::new(64, 64), Msaa::Off);
     for (name, projection) in [
         ("perspective", Projection::Perspective(perspective.clone())),
         ("orthographic", Projection::Orthographic(ortho)),
         ("finite", finite(perspective.clone())),
         ("oblique", Projection::custom(Tilted(perspective))),
     ] {
-        let mut small = Small::new(UVec2::new(64, 64), Msaa::Off);
+        small.restart(Msaa::Off);
         // Only a wall across the view, at distance 7.
         small.clear();
         small.put(

@@ -85,9 +85,19 @@ fn draw(small: &mut Small, vantage: &Vantage, size: UVec2, width: f32) -> Vec<bo
 /// the same size as in the report.
 #[test]
 fn lines_of_scenes_follow_their_edges() {
+    lines_follow_edges(&REPORTED[..1]);
+}
+
+#[test]
+#[ignore = "long: the four scenes of the report"]
+fn lines_of_every_scene_follow_their_edges() {
+    lines_follow_edges(&REPORTED);
+}
+
+fn lines_follow_edges(scenes: &[(BuiltIn, [f64; 2])]) {
     let large = SIZE * FINE;
     let mut small = Small::new(large, Msaa::Off);
-    for (scene, reported) in REPORTED {
+    for &(scene, reported) in scenes {
         let vantage = show(&mut small, scene);
         let mut scores = Scores::default();
         scores.add_thin(&draw(&mut small, &vantage, large, 1.0), large.x);

@@ -1,15 +1,6 @@
 //! Properties of the built-in scenes.
 
-use bevy_comics_testkit::scenes::{mountains, teapot};
-
-#[test]
-fn the_landscape_has_a_million_vertices() {
-    let vertices: usize = mountains::ground()
-        .iter()
-        .map(|tile| tile.positions.len())
-        .sum();
-    assert!(vertices >= 1_000_000, "{vertices}");
-}
+use bevy_comics_testkit::scenes::teapot;
 
 #[test]
 fn the_teapot_is_32_patches_that_close() {

@@ -154,9 +154,23 @@ impl Small {
         world.flush();
     }
 
-    /// Renders until a change has reached the picture and the diagnostics.
+    /// Renders until a change has reached the picture and the diagnostics: until two frames in turn report
+    /// the same stages. The depth range arrives in the game a few frames later than the picture, so an app
+    /// whose camera reads it back renders all frames.
     pub fn settle(&mut self) -> &mut Self {
-        self.headless.step(5);
+        const LEAST: usize = 3;
+        const MOST: usize = 5;
+        let mut before = None;
+        for frame in 1..=MOST {
+            self.headless.step(1);
+            let world = self.headless.app.world();
+            let now = world.resource::<ComicsDiagnostics>().cameras.clone();
+            let reads_range = world.get::<VisibleDepthRange>(self.camera).is_some();
+            if frame >= LEAST && before.as_ref() == Some(&now) && !reads_range {
+                break;
+            }
+            before = Some(now);
+        }
         self
     }
 

@@ -114,9 +114,9 @@ fn differ(a: &RgbaImage, b: &RgbaImage, codes: u8) -> usize {
 /// are turned and stretched, beside prepasses, and of some of the amount.
 #[test]
 fn smoothed_normals_are_normals() {
+    let mut small = studio();
+    small.insert(DepthPrepass);
     for rounds in [0, 2] {
-        let mut small = studio();
-        small.insert(DepthPrepass);
         let mesh = || Cuboid::new(0.9, 1.1, 0.8).mesh().build();
         let own = put(&mut small, mesh(), &light(None), turned());
         let plain = drawn(&mut small);
@@ -131,7 +131,7 @@ fn smoothed_normals_are_normals() {
         set_light(&mut small, &none);
         assert_eq!(apart(&plain, &drawn(&mut small)), 0);
         small.world().despawn(object);
-        put(
+        let same = put(
             &mut small,
             with_normals(mesh(), &codes),
             &light(None),
@@ -141,6 +141,7 @@ fn smoothed_normals_are_normals() {
         assert!(differ(&found, &plain, 2) > 500);
         let wrong = differ(&found, &wanted, 2);
         assert!(wrong <= 4, "{rounds} rounds: {wrong} pixels");
+        small.world().despawn(same);
     }
 }
 
@@ -275,14 +276,11 @@ fn meshes_that_cannot_be_smoothed_stay_as_they_are() {
 fn normals_are_made_anew_when_something_changes() {
     let mut small = studio();
     let alone = |rounds| {
-        let mut small = studio();
-        let object = put(
-            &mut small,
-            block_of_squares(),
-            &light(Some(rounds)),
-            turned(),
-        );
-        made(&mut small, object)
+        let light = light(Some(rounds));
+        let object = put(&mut small, block_of_squares(), &light, turned());
+        let codes = made(&mut small, object);
+        small.world().despawn(object);
+        codes
     };
     let [one, two, six] = [1, 2, 6].map(alone);
     let first = put(&mut small, block_of_squares(), &light(Some(2)), turned());

@@ -118,6 +118,13 @@ pub fn run(s: &Smoothing, frames: &[Frame], outliers: Option<Outliers>) -> Vec<O
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let mut group: Option<(Frame, wgpu::BindGroup)> = None;
     for (i, frame) in frames.iter().enumerate() {
+        // Each pass of wgpu looks at all buffers that there are: those of some frames at a time.
+        if i % 64 == 63 {
+            gpu.queue.submit([encoder.finish()]);
+            let done = gpu.device.poll(wgpu::PollType::wait_indefinitely());
+            done.expect("the device answers");
+            encoder = gpu.device.create_command_encoder(&Default::default());
+        }
         // Equal frames share their buffers.
         let shared = group.take().filter(|(before, _)| before == frame);
         let (_, bind_group) = group.insert(shared.unwrap_or_else(|| {

@@ -245,8 +245,9 @@ fn every_method_and_sample_count_smooths() {
     let samples = bevy_comics_testkit::headless::adapter()
         .expect("an adapter")
         .samples;
+    let mut small = Small::new(size(), Msaa::Off);
     for samples in samples {
-        let mut small = Small::new(size(), Msaa::from_samples(samples));
+        small.restart(Msaa::from_samples(samples));
         for reduction in [
             ReductionMethod::BarrierFree,
             ReductionMethod::Subgroup,
@@ -342,8 +343,9 @@ fn cameras_have_ranges_of_their_own() {
 
 #[test]
 fn wild_settings_are_clamped() {
+    let mut small = Small::new(size(), Msaa::Off);
     for wild in [f32::NAN, f32::INFINITY, -3.0, 1e30] {
-        let mut small = Small::new(size(), Msaa::Off);
+        small.restart(Msaa::Off);
         small.style(&look(Some(RangeSmoothing {
             outliers: wild,
             despike: true,

@@ -69,8 +69,8 @@ const CODE: f64 = 0.009;
 /// cameras: lines are where they should be, and nothing else changes.
 #[test]
 fn every_pixel_is_its_twins() {
+    let mut small = page();
     for (scale, hdr) in [(1.0, false), (1.25, false), (3.0, false), (1.0, true)] {
-        let mut small = page();
         small.headless.resize(SIZE, scale);
         let target = small.headless.render_target();
         small.insert(target);

@@ -122,8 +122,15 @@ pub fn assert_is_test(test: &str) {
     let modules = fs::read_to_string(root.join("tests/gpu/main.rs")).expect("the list of modules");
     let (path, function) = source(test);
     let text = fs::read_to_string(root.join(&path)).expect("a source file");
-    let wanted = format!("#[test]\nfn {function}(");
-    assert!(text.contains(&wanted), "{path} has no test `{function}`");
+    // Long tests are `#[ignore = "..."]`, on a line of its own.
+    let lines: Vec<&str> = text.lines().collect();
+    let wanted = format!("fn {function}(");
+    let is_test = lines.iter().enumerate().any(|(i, line)| {
+        let above = lines[..i].iter().rev();
+        let mut attributes = above.take_while(|line| line.starts_with("#["));
+        line.starts_with(&wanted) && attributes.any(|line| *line == "#[test]")
+    });
+    assert!(is_test, "{path} has no test `{function}`");
     let module = test.split("::").next().unwrap_or_default();
     let wanted = format!("mod {module};");
     assert!(modules.contains(&wanted), "{module} is not compiled");

@@ -11,8 +11,15 @@ use crate::{
 const SIZE: u32 = 80;
 
 /// A red square of 40 pixels in front of a blue sky.
-fn scene(msaa: Msaa) -> (Small, Entity) {
-    let mut small = Small::new(UVec2::splat(SIZE), msaa);
+fn scene() -> (Small, Entity) {
+    let mut small = Small::new(UVec2::splat(SIZE), Msaa::Off);
+    let square = spawn(&mut small, Msaa::Off);
+    (small, square)
+}
+
+/// Starts over with the scene.
+fn spawn(small: &mut Small, msaa: Msaa) -> Entity {
+    small.restart(msaa);
     small.clear();
     let half = 0.5 * SIZE as f32;
     small.insert((
@@ -25,13 +32,12 @@ fn scene(msaa: Msaa) -> (Small, Entity) {
     let camera = small.camera;
     let mut camera = small.world().get_mut::<Camera>(camera).expect("a camera");
     camera.clear_color = Color::linear_rgb(0.0, 0.0, 1.0).into();
-    let square = put(
-        &mut small,
+    put(
+        small,
         Rectangle::new(40.4, 40.4),
         Color::linear_rgb(0.8, 0.2, 0.2),
         Transform::from_xyz(0.0, 0.0, -half),
-    );
-    (small, square)
+    )
 }
 
 fn lines(width: f32, darken: f32) -> Outlines {
@@ -54,8 +60,9 @@ fn alike(a: [f64; 3], b: [f64; 3]) -> bool {
 /// sky, and also where the rim of the square is mixed with the sky.
 #[test]
 fn lines_have_the_colour_of_their_surface() {
+    let (mut small, _) = scene();
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let (mut small, _) = scene(msaa);
+        spawn(&mut small, msaa);
         for width in [2.0, 4.0, 12.0] {
             small.style(&ComicStyle::default().with(lines(width, 0.5)));
             small.settle();
@@ -86,7 +93,7 @@ fn lines_have_the_colour_of_their_surface() {
 /// alone, that before them.
 #[test]
 fn the_colour_is_that_of_the_styled_surface() {
-    let (mut small, square) = scene(Msaa::Off);
+    let (mut small, square) = scene();
     let grey = Desaturation {
         amount: 1.0,
         ..default()
@@ -117,17 +124,19 @@ fn the_colour_is_that_of_the_styled_surface() {
 /// through the steps of pixels lie away from the pixels that own them.
 #[test]
 fn slanted_lines_have_the_colour_of_their_surface() {
+    let (mut small, _) = scene();
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let (mut small, square) = scene(msaa);
-        for turned in [0.1, 0.35, 0.6, 0.785] {
-            let mut at = small
-                .world()
-                .get_mut::<Transform>(square)
-                .expect("a square");
-            at.rotation = Quat::from_rotation_z(turned);
-            for width in [1.0, 2.0, 3.0, 7.5] {
-                small.style(&ComicStyle::default().with(lines(width, 0.5)));
-                small.settle();
+        let square = spawn(&mut small, msaa);
+        for width in [1.0, 2.0, 3.0, 7.5] {
+            small.style(&ComicStyle::default().with(lines(width, 0.5)));
+            small.settle();
+            for turned in [0.1, 0.35, 0.6, 0.785] {
+                let mut at = small
+                    .world()
+                    .get_mut::<Transform>(square)
+                    .expect("a square");
+                at.rotation = Quat::from_rotation_z(turned);
+                small.headless.step(1);
                 let picture = small.picture();
                 let [mut inked, mut wrong] = [0; 2];
                 for (x, y, _) in picture.enumerate_pixels() {

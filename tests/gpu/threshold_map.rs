@@ -98,11 +98,12 @@ fn set(small: &mut Small, light: &CartoonLight, uv_transform: Affine2) {
         material.extension = light.clone();
         material.base.uv_transform = uv_transform;
     }
+    small.headless.step(5);
 }
 
 /// How much of a row is white, in pixels; and how many of its pixels are neither black nor white.
 fn white(small: &mut Small) -> (f64, usize) {
-    small.headless.step(6);
+    small.headless.step(1);
     let picture = small.picture();
     let row: Vec<f64> = (0..SIZE.x).map(|x| linear(&picture, x, 8)[0]).collect();
     let between = row.iter().filter(|c| (0.01..0.99).contains(*c)).count();
@@ -139,18 +140,28 @@ fn crossing(begins: f64, bias: f64) -> f64 {
 
 #[test]
 fn edges_lie_where_a_gradient_crosses_the_threshold() {
+    assert_edges_of_a_gradient(&lights()[..1]);
+}
+
+#[test]
+#[ignore = "long: ramps of every mode"]
+fn edges_of_ramps_lie_where_a_gradient_crosses_the_threshold() {
+    assert_edges_of_a_gradient(&lights());
+}
+
+fn assert_edges_of_a_gradient(lights: &[(CartoonLight, f64)]) {
     let (mut small, entity) = lit_wall(wall(0.625));
     let map = thresholds(&mut small, &gradient());
     let plain = Affine2::IDENTITY;
     let turned =
         Affine2::from_scale_angle_translation(Vec2::new(0.5, 1.0), 0.0, Vec2::new(0.25, 0.0));
-    for (light, begins) in lights() {
+    for (light, begins) in lights {
         let light = CartoonLight {
             threshold_map: Some(map.clone()),
-            ..light
+            ..light.clone()
         };
         let what = format!("{:?}", light.ramp.as_ref().map(|ramp| ramp.mode));
-        let edge = crossing(begins, 0.0);
+        let edge = crossing(*begins, 0.0);
         set(&mut small, &light, plain);
         check_edge(&mut small, entity, 160.0 * edge, &what);
         // The map is read by the coordinates of the base colour.
@@ -163,7 +174,7 @@ fn edges_lie_where_a_gradient_crosses_the_threshold() {
             ..light
         };
         set(&mut small, &both, plain);
-        let edge = crossing(begins, 2.0 * 0.625 - 1.0);
+        let edge = crossing(*begins, 2.0 * 0.625 - 1.0);
         check_edge(&mut small, entity, 160.0 * edge, &format!("{what}, both"));
     }
 }
@@ -171,15 +182,25 @@ fn edges_lie_where_a_gradient_crosses_the_threshold() {
 /// The step is a texel wide, from middle to middle, as the sampler mixes both sides.
 #[test]
 fn edges_lie_in_the_texel_of_a_step() {
+    assert_edges_of_a_step(&lights()[1..3]);
+}
+
+#[test]
+#[ignore = "long: ramps of every mode"]
+fn edges_of_ramps_lie_in_the_texel_of_a_step() {
+    assert_edges_of_a_step(&lights());
+}
+
+fn assert_edges_of_a_step(lights: &[(CartoonLight, f64)]) {
     let (mut small, entity) = lit_wall(wall(1.0));
     let map = thresholds(&mut small, &step());
-    for (light, begins) in lights() {
+    for (light, begins) in lights {
         let light = CartoonLight {
             threshold_map: Some(map.clone()),
-            ..light
+            ..light.clone()
         };
         set(&mut small, &light, Affine2::IDENTITY);
-        let part = (crossing(begins, 0.0) - 0.125) / 0.5;
+        let part = (crossing(*begins, 0.0) - 0.125) / 0.5;
         let what = format!("{:?}", light.ramp.as_ref().map(|ramp| ramp.mode));
         check_edge(&mut small, entity, 10.0 * (7.5 + part), &what);
     }

@@ -19,12 +19,15 @@ use crate::{
     pairwise::{
         checks::assert_drawn_by,
         compare::{changed, crop},
-        effects::GROUPS,
+        effects::{GROUPS, Group},
     },
     small::{self, Object, Small, unlit},
 };
 
 const SIZE: UVec2 = UVec2::new(96, 64);
+
+/// The group of all effects.
+const ALL: Group = GROUPS[GROUPS.len() - 1];
 
 /// A part of a target, and the eye that draws it.
 #[derive(Clone)]
@@ -103,6 +106,16 @@ fn shoot(
 /// Cameras on one target, and on two, draw what each of them draws alone.
 #[test]
 fn views_beside_others_are_drawn_as_alone() {
+    assert_drawn_as_alone(&[ALL]);
+}
+
+#[test]
+#[ignore = "long: every group of effects"]
+fn views_with_each_group_beside_others_are_drawn_as_alone() {
+    assert_drawn_as_alone(&GROUPS);
+}
+
+fn assert_drawn_as_alone(groups: &[Group]) {
     let mut small = app();
     let targets = [target(&mut small), target(&mut small), target(&mut small)];
     let half = |x: u32| Some(URect::new(x, 0, x + SIZE.x / 2, SIZE.y));
@@ -118,7 +131,7 @@ fn views_beside_others_are_drawn_as_alone() {
     for (place, seats) in [("one target", split), ("two targets", apart)] {
         let both = [&seats[0], &seats[1]];
         let plain = shoot(&mut small, &both, None, place);
-        for (name, style) in GROUPS {
+        for (name, style) in groups {
             let (what, style) = (format!("{place}, {name}"), style());
             let found = shoot(&mut small, &both, Some(&style), &what);
             for (k, seat) in seats.iter().enumerate() {
@@ -247,13 +260,13 @@ fn skin(small: &mut Small, things: &Things) {
     entity.insert((Mesh3d(mesh), skin, turned));
 }
 
-/// The pictures of all groups.
-fn pictures(small: &mut Small, seat: &Seat, what: &str) -> Vec<RgbaImage> {
+/// The pictures of groups.
+fn pictures(small: &mut Small, seat: &Seat, groups: &[Group], what: &str) -> Vec<RgbaImage> {
     // Until meshes and materials that changed are on the GPU.
     small.settle();
     let plain = shoot(small, &[seat], None, what);
     let mut pictures = Vec::new();
-    for (name, style) in GROUPS {
+    for (name, style) in groups {
         let what = format!("{what}, {name}");
         let mut shot = shoot(small, &[seat], Some(&style()), &what);
         let off = changed(&plain[0], &shot[0]);
@@ -263,15 +276,14 @@ fn pictures(small: &mut Small, seat: &Seat, what: &str) -> Vec<RgbaImage> {
     pictures
 }
 
-/// The fraction of each group's picture that is not what it was.
-fn apart(before: &[RgbaImage], now: &[RgbaImage]) -> Vec<(&'static str, f64)> {
-    let pairs = before.iter().zip(now).map(|(a, b)| changed(a, b));
-    GROUPS.iter().map(|(name, _)| *name).zip(pairs).collect()
+/// The fraction of each picture that is not what it was.
+fn apart(before: &[RgbaImage], now: &[RgbaImage]) -> impl Iterator<Item = f64> {
+    before.iter().zip(now).map(|(a, b)| changed(a, b))
 }
 
 fn assert_same(before: &[RgbaImage], now: &[RgbaImage], most: f64, what: &str) {
-    for (name, off) in apart(before, now) {
-        assert!(off <= most, "{what}, {name}: {off} differs");
+    for (i, off) in apart(before, now).enumerate() {
+        assert!(off <= most, "{what}, group {i}: {off} differs");
     }
 }
 
@@ -279,6 +291,18 @@ fn assert_same(before: &[RgbaImage], now: &[RgbaImage], most: f64, what: &str) {
 /// have their shape and colour.
 #[test]
 fn meshes_of_every_kind_are_drawn_as_plain_ones() {
+    assert_drawn_as_plain(&[ALL], 1);
+}
+
+/// Lines, the sketch of lines, and all see the depth of a blended mesh.
+#[test]
+#[ignore = "long: every group of effects"]
+fn meshes_of_every_kind_are_drawn_as_plain_ones_by_each_group() {
+    assert_drawn_as_plain(&GROUPS, 3);
+}
+
+/// `see_depth`: how many groups draw something else where a blended mesh has no depth, at least.
+fn assert_drawn_as_plain(groups: &[Group], see_depth: usize) {
     let mut small = app();
     let things = put_things(&mut small);
     let seat = Seat {
@@ -286,21 +310,19 @@ fn meshes_of_every_kind_are_drawn_as_plain_ones() {
         part: None,
         eye: Transform::from_xyz(1.5, 2.4, 6.0).looking_at(Vec3::new(0.0, 0.4, 0.0), Vec3::Y),
     };
-    let plain = pictures(&mut small, &seat, "plain");
+    let shoot = |small: &mut Small, what: &str| pictures(small, &seat, groups, what);
+    let plain = shoot(&mut small, "plain");
     share(&mut small, &things);
-    let shared = pictures(&mut small, &seat, "instanced");
+    let shared = shoot(&mut small, "instanced");
     assert_same(&plain, &shared, 0.0, "instanced");
 
     change_pane(&mut small, &things, AlphaMode::Blend);
-    let unseen = pictures(&mut small, &seat, "blended");
-    // Lines, the sketch of lines, and all.
-    let differ = apart(&plain, &unseen)
-        .into_iter()
-        .filter(|(_, off)| *off > 0.0);
-    assert!(differ.count() >= 3, "without `DepthWrite`, it is not seen");
+    let unseen = shoot(&mut small, "blended");
+    let differ = apart(&plain, &unseen).filter(|off| *off > 0.0).count();
+    assert!(differ >= see_depth, "without `DepthWrite`, it is not seen");
     let pane = things.pane;
     small.world().entity_mut(pane).insert(DepthWrite::default());
-    let blended = pictures(&mut small, &seat, "blended, with depth");
+    let blended = shoot(&mut small, "blended, with depth");
     assert_same(&plain, &blended, 0.0, "blended, with depth");
     // Plain again: what is next is compared alone.
     small.world().entity_mut(pane).remove::<DepthWrite>();
@@ -309,7 +331,7 @@ fn meshes_of_every_kind_are_drawn_as_plain_ones() {
     // The GPU adds up joints: a vertex may be off by a last bit.
     let most = 0.01;
     skin(&mut small, &things);
-    let skinned = pictures(&mut small, &seat, "skinned");
+    let skinned = shoot(&mut small, "skinned");
     assert_same(&plain, &skinned, most, "skinned");
     assert_eq!(small.errors(), 0);
 }

@@ -12,6 +12,7 @@ use crate::{
 /// Every pixel of the fused pass equals its twin, away from edges of the picture.
 #[test]
 fn every_pixel_is_its_twins() {
+    let mut small = Small::new(size(), Msaa::Off);
     for settings in [
         TwoTone {
             threshold: 0.5,
@@ -27,7 +28,7 @@ fn every_pixel_is_its_twins() {
         },
     ] {
         for hdr in [false, true] {
-            let mut small = Small::new(size(), Msaa::Off);
+            small.restart(Msaa::Off);
             if hdr {
                 small.insert(Hdr);
             }

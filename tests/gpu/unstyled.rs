@@ -54,8 +54,9 @@ fn changes(small: &mut Small, style: &ComicStyle) -> Vec<(f32, usize, usize)> {
 /// are not; multisampled pixels of its rim are in between.
 #[test]
 fn an_object_keeps_its_colours() {
+    let mut small = Small::new(size(), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        let mut small = Small::new(size(), msaa);
+        small.restart(msaa);
         let cube = orange_cube(&mut small);
         small.world().entity_mut(cube).insert(NoStyle::default());
         let pixels = changes(&mut small, &colors());

@@ -12,6 +12,7 @@ const INK: Color = Color::srgb(0.8, 0.1, 0.3);
 /// Every pixel of the fused pass equals its twin, in the camera's viewport.
 #[test]
 fn every_pixel_is_its_twins() {
+    let mut small = Small::new(size(), Msaa::Off);
     for settings in [
         Vignette::default(),
         Vignette {
@@ -27,7 +28,6 @@ fn every_pixel_is_its_twins() {
             color: INK,
         },
     ] {
-        let mut small = Small::new(size(), Msaa::Off);
         small.insert(settings).settle();
         assert!(small.ran(ComicsStage::of::<Vignette>()));
         let (picture, shown) = small.pass();
@@ -60,11 +60,11 @@ fn every_pixel_is_its_twins() {
 /// as it was, to the bit.
 #[test]
 fn a_hard_vignette_is_an_ellipse_of_its_area() {
+    let mut small = Small::new(UVec2::new(192, 128), Msaa::Off);
+    small.clear();
+    small.settle();
+    let bare = small.picture();
     for radius in [0.2f32, 0.45, 0.7] {
-        let mut small = Small::new(UVec2::new(192, 128), Msaa::Off);
-        small.clear();
-        small.settle();
-        let bare = small.picture();
         small
             .insert(Vignette {
                 amount: 1.0,

@@ -85,14 +85,25 @@ fn projections(scale: f32) -> [(&'static str, Projection); 4] {
 /// ends are exact, and what is farther away never has more of it.
 #[test]
 fn detail_spans_the_visible_range_under_every_projection() {
+    assert_detail_spans(&[1.0], &[2.0, 4.0, 24.0, 50.0]);
+}
+
+#[test]
+#[ignore = "long: two units of the world, and more distances"]
+fn detail_spans_the_visible_range_in_every_unit() {
+    assert_detail_spans(&[1.0, 1000.0], &[2.0, 2.5, 4.0, 10.0, 24.0, 45.0, 50.0]);
+}
+
+fn assert_detail_spans(scales: &[f32], distances: &[f32]) {
     let (near, far) = (2.0f32, 50.0f32);
-    for scale in [1.0f32, 1000.0] {
+    let mut small = hall(Projection::default());
+    small.insert(DepthMap {
+        smoothing: None,
+        ..default()
+    });
+    for &scale in scales {
         for (name, projection) in projections(scale) {
-            let mut small = hall(projection);
-            small.insert(DepthMap {
-                smoothing: None,
-                ..default()
-            });
+            small.insert(projection);
             // Width of a third of the view at a distance.
             let spread = |z: f32| match name {
                 "orthographic" => scale,
@@ -100,10 +111,10 @@ fn detail_spans_the_visible_range_under_every_projection() {
             };
             let at = |z: f32| z * scale;
             let opaque = AlphaMode::Opaque;
-            wall(&mut small, -1.0, at(near), spread(near), opaque);
-            wall(&mut small, 1.0, at(far), spread(far), opaque);
+            let ends = [(-1.0, near), (1.0, far)]
+                .map(|(third, z)| wall(&mut small, third, at(z), spread(z), opaque));
             let mut last = f64::INFINITY;
-            for z in [2.0f32, 2.5, 4.0, 10.0, 24.0, 45.0, 50.0] {
+            for &z in distances {
                 let middle = wall(&mut small, 0.0, at(z), spread(z), opaque);
                 let picture = drawn(&mut small);
                 let detail = wanted(z, near, far);
@@ -117,6 +128,9 @@ fn detail_spans_the_visible_range_under_every_projection() {
                 last = red;
                 ends_are_exact(&picture, name);
                 small.world().despawn(middle);
+            }
+            for end in ends {
+                small.world().despawn(end);
             }
         }
     }
@@ -180,11 +194,10 @@ fn a_locked_range_is_kept() {
 #[test]
 fn without_a_range_there_is_all_detail() {
     let spread = |z: f32| 2.0 * (std::f32::consts::FRAC_PI_8).tan() * z;
-    for alpha_mode in [AlphaMode::Opaque, AlphaMode::Blend] {
-        let mut small = hall(projections(1.0)[0].1.clone());
-        for (third, z) in [(-1.0, 2.0), (0.0, 9.0), (1.0, 50.0)] {
-            wall(&mut small, third, z, spread(z), alpha_mode);
-        }
+    let mut small = hall(projections(1.0)[0].1.clone());
+    for alpha_mode in [AlphaMode::Blend, AlphaMode::Opaque] {
+        let walls = [(-1.0, 2.0), (0.0, 9.0), (1.0, 50.0)]
+            .map(|(third, z)| wall(&mut small, third, z, spread(z), alpha_mode));
         if alpha_mode == AlphaMode::Opaque {
             let styled = drawn(&mut small);
             assert!(off(&styled, x_of(1.0), 16, 0.0) < 1.0);
@@ -194,6 +207,9 @@ fn without_a_range_there_is_all_detail() {
         for third in [-1.0, 0.0, 1.0] {
             let wrong = off(&picture, x_of(third), 16, 1.0);
             assert!(wrong < 1.0, "{alpha_mode:?}, {third}: {wrong}");
+        }
+        for wall in walls {
+            small.world().despawn(wall);
         }
     }
 }

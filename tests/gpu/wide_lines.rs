@@ -11,8 +11,18 @@ use crate::{
 
 #[test]
 fn wide_lines_are_their_twin() {
+    assert_wide_as_twin(&[6.5, 16.0]);
+}
+
+#[test]
+#[ignore = "long: more widths"]
+fn lines_of_more_widths_are_their_twin() {
+    assert_wide_as_twin(&[5.0, 8.0, 12.0]);
+}
+
+fn assert_wide_as_twin(widths: &[f32]) {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
-    for width in [5.0, 6.5, 8.0, 12.0, 16.0] {
+    for &width in widths {
         let style = outlined(Outlines { width, ..default() });
         assert_pass_is_its_twin(&mut small, &style, None, &format!("{width} px"));
     }
@@ -97,8 +107,18 @@ fn a_faint_part_of_a_wide_line_is_as_wide_as_a_strong_one() {
 /// most 1 pixel of 200.
 #[test]
 fn a_search_by_columns_draws_what_an_exhaustive_search_draws() {
+    assert_columns_are_exhaustive(&[4.0]);
+}
+
+#[test]
+#[ignore = "long: more widths"]
+fn a_search_by_columns_draws_lines_of_any_width_as_an_exhaustive_search_does() {
+    assert_columns_are_exhaustive(&[3.0, 4.0, 5.0, 8.0, 16.0]);
+}
+
+fn assert_columns_are_exhaustive(widths: &[f32]) {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
-    for width in [3.0, 4.0, 5.0, 8.0, 16.0] {
+    for &width in widths {
         for (width_fade, softness) in [(0.0, 0.5), (0.6, 0.5), (0.0, 1.0)] {
             let outlines = Outlines {
                 width,

@@ -11,11 +11,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-use bevy_comics::ComicStyle;
 use image::RgbImage;
 use serde_json::Value;
 
-use crate::command_line::example;
+use crate::{command_line::example, panel::session::Session};
 
 /// Time after which an expected state is given up, also on a slow machine.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -23,15 +22,15 @@ const PATIENCE: Duration = Duration::from_secs(120);
 /// The running example and its X server.
 pub struct Window {
     /// Size in physical pixels.
-    pub size: [u32; 2],
+    size: [u32; 2],
     /// Physical pixels per logical pixel.
     scale: f64,
     server: Child,
     app: Child,
     display: String,
-    pub folder: PathBuf,
+    folder: PathBuf,
     /// Whether a mouse button is held; the pointer is not moved then.
-    pub held: Cell<bool>,
+    held: Cell<bool>,
 }
 
 impl Drop for Window {
@@ -55,7 +54,7 @@ fn tool(name: &str) -> Command {
 }
 
 /// The style that windows start with.
-const START: &str = r##"(
+pub const START: &str = r##"(
     version: 2,
     name: "Contours",
     depth_map: (mapping: MinMaxLogarithmic),
@@ -134,12 +133,7 @@ impl Window {
         window
     }
 
-    /// The window's size in logical pixels.
-    pub fn points(&self) -> [f64; 2] {
-        self.size.map(|pixels| f64::from(pixels) / self.scale)
-    }
-
-    pub fn xdotool(&self, arguments: &[&str]) {
+    fn xdotool(&self, arguments: &[&str]) {
         let status = tool("xdotool")
             .args(arguments)
             .env("DISPLAY", &self.display)
@@ -155,14 +149,32 @@ impl Window {
         let lines: Vec<&str> = log.lines().collect();
         lines[lines.len().saturating_sub(12)..].join("\n")
     }
+}
 
-    pub fn state(&self) -> Value {
+/// A place in physical pixels as arguments.
+fn arguments(at: [f64; 2]) -> [String; 2] {
+    at.map(|v| format!("{}", v.round()))
+}
+
+impl Session for Window {
+    fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    fn state(&self) -> Value {
         let text = fs::read_to_string(self.folder.join("state.json")).unwrap_or_default();
         serde_json::from_str(&text).unwrap_or(Value::Null)
     }
 
-    /// Waits for a state and returns it.
-    pub fn until(&self, what: &str, is_so: impl Fn(&Value) -> bool) -> Value {
+    fn until(&self, what: &str, is_so: impl Fn(&Value) -> bool) -> Value {
         let started = Instant::now();
         loop {
             let state = self.state();
@@ -174,122 +186,53 @@ impl Window {
                 "timed out waiting for {what}: {state}\n{}",
                 self.log()
             );
-            sleep(Duration::from_millis(15));
+            sleep(Duration::from_millis(5));
         }
     }
 
-    /// Waits for this number of frames.
-    pub fn frames(&self, count: u64) {
+    fn frames(&self, count: u64) {
         let now = self.state()["frame"].as_u64().unwrap_or(0);
         self.until("the next frame", |state| {
             state["frame"].as_u64() >= Some(now + count)
         });
     }
 
-    /// A position in a widget in physical pixels: at a fraction of its width, in the
-    /// middle of its height. Waits until the widget does not move.
-    fn place(&self, widget: &str, fraction: f64) -> [String; 2] {
-        let mut state = self.until(widget, |state| state["widgets"][widget].is_array());
-        loop {
-            self.frames(3);
-            let now = self.until(widget, |state| state["widgets"][widget].is_array());
-            let rests = now["widgets"][widget] == state["widgets"][widget];
-            state = now;
-            if rests && state["cameras"][0]["compiling"] == false {
-                break;
-            }
-        }
-        let side = |i: usize| state["widgets"][widget][i].as_f64().expect("a number");
-        let x = side(0) + fraction * (side(2) - side(0));
-        let y = 0.5 * (side(1) + side(3));
-        [x, y].map(|v| format!("{}", (v * self.scale).round()))
+    /// The next frame may have begun before the input came.
+    fn seen(&self) {
+        self.frames(2);
     }
 
-    /// Moves the pointer to a widget.
-    pub fn point(&self, widget: &str, fraction: f64) {
-        let [x, y] = self.place(widget, fraction);
+    fn move_to(&self, at: [f64; 2]) {
+        let [x, y] = arguments(at);
         self.xdotool(&["mousemove", &x, &y]);
-        self.frames(2);
     }
 
-    /// Clicks a widget. The button goes down and up at once, because a long press
-    /// is not a click and frames may be slow.
-    pub fn click(&self, widget: &str) {
-        self.point(widget, 0.5);
+    fn hold(&self, down: bool) {
+        self.xdotool(&[if down { "mousedown" } else { "mouseup" }, "1"]);
+        self.held.set(down);
+    }
+
+    /// At once, because a long press is not a click and frames may be slow.
+    fn press_and_release(&self) {
         self.xdotool(&["click", "1"]);
-        self.frames(3);
     }
 
-    /// Clicks a place of the window, in physical pixels.
-    pub fn click_at(&self, [x, y]: [u32; 2]) {
-        self.xdotool(&["mousemove", &x.to_string(), &y.to_string()]);
-        self.frames(2);
-        self.xdotool(&["click", "1"]);
-        self.frames(3);
+    fn hold_key(&self, key: &str, down: bool) {
+        self.xdotool(&[if down { "keydown" } else { "keyup" }, key]);
     }
 
-    /// Drags the pointer from one fraction of a widget's width to another.
-    pub fn drag(&self, widget: &str, from: f64, to: f64) {
-        self.drag_between((widget, from), (widget, to));
+    fn press_key(&self, key: &str) {
+        self.xdotool(&["key", key]);
     }
 
-    /// Drags the pointer from a fraction of a widget's width to one of another widget.
-    pub fn drag_between(&self, from: (&str, f64), to: (&str, f64)) {
-        let ends = [from, to].map(|(widget, fraction)| self.place(widget, fraction));
-        self.xdotool(&["mousemove", &ends[0][0], &ends[0][1]]);
-        self.frames(2);
-        self.xdotool(&["mousedown", "1"]);
-        self.frames(2);
-        self.xdotool(&["mousemove", &ends[1][0], &ends[1][1]]);
-        self.frames(2);
-        self.xdotool(&["mouseup", "1"]);
-        self.frames(3);
+    fn type_text(&self, text: &str) {
+        self.xdotool(&["type", "--delay", "40", text]);
     }
 
-    /// Presses a key while others are held. The panel reads held keys once per
-    /// frame.
-    pub fn chord(&self, held: &[&str], key: &str) {
-        for held in held {
-            self.xdotool(&["keydown", held]);
-        }
-        self.frames(2);
-        self.xdotool(&["keydown", key]);
-        self.frames(2);
-        self.xdotool(&["keyup", key]);
-        for held in held {
-            self.xdotool(&["keyup", held]);
-        }
-        self.frames(3);
-    }
-
-    pub fn key(&self, key: &str) {
-        self.xdotool(&["key", "--delay", "120", key]);
-        self.frames(3);
-    }
-
-    /// The style of a camera.
-    pub fn style(&self, camera: usize) -> ComicStyle {
-        let state = self.state();
-        let text = state["cameras"][camera]["style"].as_str().expect("a style");
-        ComicStyle::from_ron(text).expect("it reads")
-    }
-
-    /// Waits until a camera's style satisfies `is_so`.
-    pub fn until_style(&self, what: &str, camera: usize, is_so: impl Fn(&ComicStyle) -> bool) {
-        self.until(what, |state| {
-            let text = state["cameras"][camera]["style"]
-                .as_str()
-                .unwrap_or_default();
-            ComicStyle::from_ron(text).is_ok_and(|style| is_so(&style))
-        });
-    }
-
-    /// A picture of the screen when all pipelines are compiled.
-    pub fn picture(&self) -> RgbImage {
+    fn picture(&self) -> RgbImage {
         // No tooltip is in the picture.
         if !self.held.get() {
-            let [x, y] = self.size.map(|v| (v - 12).to_string());
-            self.xdotool(&["mousemove", &x, &y]);
+            self.move_to(self.size.map(|v| f64::from(v - 12)));
         }
         self.until("the pipelines", |state| {
             state["cameras"][0]["compiling"] == false

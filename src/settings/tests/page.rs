@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_million_floats_in_every_field_of_the_page() {
+fn no_number_of_the_page_is_dangerous() {
     fn paper(edit: fn(&mut Paper, f32)) -> impl Fn(f32) -> Paper {
         move |x| {
             let mut value = Paper::default();
@@ -56,7 +56,7 @@ fn a_million_floats_in_every_field_of_the_page() {
 }
 
 #[test]
-fn a_million_floats_in_every_field_of_the_vignette() {
+fn no_number_of_the_vignette_is_dangerous() {
     let vignette = |edit: fn(&mut Vignette, f32)| {
         move |x| {
             let mut v = Vignette::default();
@@ -73,7 +73,7 @@ fn a_million_floats_in_every_field_of_the_vignette() {
 }
 
 #[test]
-fn a_million_floats_in_every_field_of_the_tone_ramp() {
+fn no_number_of_the_tone_ramp_is_dangerous() {
     let ramp = |edit: fn(&mut ToneRamp, f32)| {
         move |x| {
             let mut ramp = ToneRamp::default();

@@ -32,7 +32,7 @@ fn fuzz_fields<E: Effect>() {
 }
 
 #[test]
-fn a_million_floats_in_every_field_of_the_page_effects() {
+fn no_number_of_the_page_effects_is_dangerous() {
     fuzz_fields::<ColorHarmony>();
     fuzz_fields::<Planes>();
     fuzz_fields::<Abstraction>();

@@ -4,7 +4,7 @@ mod devices;
 mod effects;
 mod inputs;
 mod lifetimes;
-mod prepasses;
+pub mod prepasses;
 mod recovery;
 mod views;
 
@@ -32,6 +32,11 @@ fn full_style() -> ComicStyle {
             threshold: 0.05,
             ..default()
         })
+}
+
+/// Where the number of pixels does not matter.
+fn tiny() -> UVec2 {
+    UVec2::new(48, 32)
 }
 
 fn styled(msaa: Msaa) -> Small {

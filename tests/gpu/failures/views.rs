@@ -39,13 +39,14 @@ fn hdr_can_be_toggled_and_a_target_may_store_linear_colour() {
 
 #[test]
 fn each_camera_on_a_shared_target_has_its_own_range() {
+    let mut small = Small::new(UVec2::new(120, 48), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        two_cameras_on_one_target(msaa);
+        small.restart(msaa);
+        two_cameras_on_one_target(&mut small, msaa);
     }
 }
 
-fn two_cameras_on_one_target(msaa: Msaa) {
-    let mut small = Small::new(UVec2::new(120, 48), msaa);
+fn two_cameras_on_one_target(small: &mut Small, msaa: Msaa) {
     let half = |x: u32, order: isize| Camera {
         order,
         viewport: Some(Viewport {
@@ -166,44 +167,58 @@ fn a_deferred_camera_looks_like_a_forward_one() {
     assert_eq!(small.errors(), 0);
 }
 
+/// Checks these numbers of samples, with and without HDR.
+fn check_post_processes(cases: &[(Msaa, bool)]) {
+    let mut small = Small::new(size(), Msaa::Off);
+    for (msaa, hdr) in cases.iter().copied() {
+        small.restart(msaa);
+        small.style(&full_style());
+        if hdr {
+            small.insert((Hdr, bevy::post_process::bloom::Bloom::NATURAL));
+        }
+        small.insert(bevy::core_pipeline::tonemapping::Tonemapping::TonyMcMapface);
+        small.settle();
+        let plain = small.picture();
+        small.insert(Fxaa::default()).settle();
+        let fxaa = small.picture();
+        assert!(changed(&plain, &fxaa) < 0.5, "FXAA lost the picture");
+        let camera = small.camera;
+        small.world().entity_mut(camera).remove::<Fxaa>();
+        small.insert((
+            Smaa::default(),
+            bevy::anti_alias::contrast_adaptive_sharpening::ContrastAdaptiveSharpening {
+                enabled: true,
+                ..default()
+            },
+        ));
+        if hdr && msaa == Msaa::Off {
+            small.insert(bevy::post_process::dof::DepthOfField::default());
+        }
+        small.settle();
+        assert!(small.ran(ComicsStage::Stylize), "{msaa:?}, hdr {hdr}");
+        assert_ne!(
+            small.picture().get_pixel(1, 1).0,
+            [0, 0, 0, 0],
+            "the picture was lost"
+        );
+        assert_eq!(small.errors(), 0, "{msaa:?}, hdr {hdr}");
+    }
+}
+
 #[test]
 fn styles_work_beside_the_engines_post_processes() {
-    let mut small = Small::new(size(), Msaa::Off);
-    for msaa in [Msaa::Off, Msaa::Sample4] {
-        for hdr in [false, true] {
-            small.restart(msaa);
-            small.style(&full_style());
-            if hdr {
-                small.insert((Hdr, bevy::post_process::bloom::Bloom::NATURAL));
-            }
-            small.insert(bevy::core_pipeline::tonemapping::Tonemapping::TonyMcMapface);
-            small.settle();
-            let plain = small.picture();
-            small.insert(Fxaa::default()).settle();
-            let fxaa = small.picture();
-            assert!(changed(&plain, &fxaa) < 0.5, "FXAA lost the picture");
-            let camera = small.camera;
-            small.world().entity_mut(camera).remove::<Fxaa>();
-            small.insert((
-                Smaa::default(),
-                bevy::anti_alias::contrast_adaptive_sharpening::ContrastAdaptiveSharpening {
-                    enabled: true,
-                    ..default()
-                },
-            ));
-            if hdr && msaa == Msaa::Off {
-                small.insert(bevy::post_process::dof::DepthOfField::default());
-            }
-            small.settle();
-            assert!(small.ran(ComicsStage::Stylize), "{msaa:?}, hdr {hdr}");
-            assert_ne!(
-                small.picture().get_pixel(1, 1).0,
-                [0, 0, 0, 0],
-                "the picture was lost"
-            );
-            assert_eq!(small.errors(), 0, "{msaa:?}, hdr {hdr}");
-        }
-    }
+    check_post_processes(&[(Msaa::Off, true)]);
+}
+
+#[test]
+fn multisampled_styles_work_beside_the_engines_post_processes() {
+    check_post_processes(&[(Msaa::Sample4, false)]);
+}
+
+#[test]
+#[ignore = "long: HDR and samples the other way round"]
+fn styles_work_beside_post_processes_on_other_cameras() {
+    check_post_processes(&[(Msaa::Off, false), (Msaa::Sample4, true)]);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::{fs, path::Path};
 
 use serde_json::{Value, json};
 
-use super::{Gltf, SKIN, Shot, ball};
+use super::{Gltf, SKIN, Shot, assert_color_of_skin, ball};
 use crate::command_line::{folder, run};
 
 /// A PNG of one colour.
@@ -34,7 +34,15 @@ fn embedded(image: &[u8], mime: &str, texture: Value) -> Gltf {
     gltf
 }
 
-/// Warnings of the example; it must end well and write a picture.
+/// What the example warns of.
+fn ours(errors: &str) -> Vec<String> {
+    let ours = errors
+        .lines()
+        .filter(|line| line.starts_with("render: warning"));
+    ours.map(str::to_owned).collect()
+}
+
+/// The same of a run; it must end well and write a picture.
 fn warnings(folder: &Path, model: &str) -> Vec<String> {
     let arguments = [
         model, "--size", "64x64", "--msaa", "1", "--frames", "2", "--style", "none", "--out",
@@ -50,15 +58,26 @@ fn warnings(folder: &Path, model: &str) -> Vec<String> {
     fs::remove_file(folder.join("w.png")).expect("it goes");
     let [first, middle] = [(0, 0), (32, 32)].map(|(x, y)| picture.get_pixel(x, y).0);
     assert_ne!(first, middle, "{model}: no model is in the middle");
-    let ours = errors
-        .lines()
-        .filter(|line| line.starts_with("render: warning"));
-    ours.map(str::to_owned).collect()
+    ours(&errors)
+}
+
+/// The example says of each texture what these parts are found in.
+fn assert_named(folder: &Path, model: &str, says: &[&[&str]]) {
+    let warnings = warnings(folder, model);
+    assert_eq!(warnings.len(), says.len(), "{model}: {warnings:?}");
+    for (warning, parts) in warnings.iter().zip(says) {
+        for part in *parts {
+            assert!(
+                warning.contains(part),
+                "{model}: {part} is not in {warning}"
+            );
+        }
+    }
 }
 
 #[test]
-fn textures_that_this_build_cannot_show_are_named_with_the_remedy() {
-    let folder = folder("textures");
+fn textures_of_formats_that_this_build_lacks_are_named_with_the_remedy() {
+    let folder = folder("formats");
     let source = |extension: &str| json!({"extensions": {extension: {"source": 0}}});
     embedded(b"RIFF....WEBP", "image/webp", json!({"source": 0}))
         .write_glb(&folder.join("webp.glb"));
@@ -66,6 +85,15 @@ fn textures_that_this_build_cannot_show_are_named_with_the_remedy() {
     basis.json["extensionsRequired"] = json!(["KHR_texture_basisu"]);
     basis.json["extensionsUsed"] = json!(["KHR_texture_basisu"]);
     basis.write_glb(&folder.join("basis.glb"));
+    let webp = ["texture 0", "\"paint\"", "`webp`", "bevy/webp"];
+    assert_named(&folder, "webp.glb", &[&webp]);
+    assert_named(&folder, "basis.glb", &[&["texture 0", "`basis-universal`"]]);
+    fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+#[test]
+fn damaged_and_missing_textures_are_named() {
+    let folder = folder("damaged");
     embedded(
         b"\x89PNG\r\n\x1a\nbroken",
         "image/png",
@@ -77,56 +105,47 @@ fn textures_that_this_build_cannot_show_are_named_with_the_remedy() {
     beside.texture(json!({"uri": "coat.tga"}), json!({"source": 1}));
     beside.write_gltf(&folder.join("beside.gltf"), "a buffer.bin");
     fs::write(folder.join("coat.tga"), b"tga").expect("written");
-    for (model, says) in [
-        (
-            "webp.glb",
-            &[&["texture 0", "\"paint\"", "`webp`", "bevy/webp"][..]][..],
-        ),
-        ("basis.glb", &[&["texture 0", "`basis-universal`"]]),
-        ("damaged.glb", &[&["texture 0", "\"paint\"", "damaged"]]),
-        (
-            "beside.gltf",
-            &[
-                &["texture 0", "\"my skin.png\"", "missing"],
-                &["texture 1", "\"coat.tga\"", "`tga`"],
-            ],
-        ),
-    ] {
-        let warnings = warnings(&folder, model);
-        assert_eq!(warnings.len(), says.len(), "{model}: {warnings:?}");
-        for (warning, parts) in warnings.iter().zip(says) {
-            for part in *parts {
-                assert!(
-                    warning.contains(part),
-                    "{model}: {part} is not in {warning}"
-                );
-            }
-        }
-    }
+    let damaged = ["texture 0", "\"paint\"", "damaged"];
+    assert_named(&folder, "damaged.glb", &[&damaged]);
+    let missing = ["texture 0", "\"my skin.png\"", "missing"];
+    let unknown = ["texture 1", "\"coat.tga\"", "`tga`"];
+    assert_named(&folder, "beside.gltf", &[&missing, &unknown]);
+    fs::remove_dir_all(folder).expect("the folder goes");
+}
+
+/// The picture of a ball of skin.
+fn paint() -> Vec<u8> {
+    png(SKIN.map(|c| (255.0 * c).round() as u8))
+}
+
+/// The ball has the colour of its texture, and nothing is said.
+fn assert_seen(folder: &Path, model: &str) {
+    let shot = Shot::take(folder, model, (64, 64), &["--style", "none"]);
+    assert_eq!(ours(&shot.errors), Vec::<String>::new(), "{model}");
+    assert_color_of_skin(&shot);
+}
+
+#[test]
+fn textures_in_the_model_are_seen_and_nothing_is_said() {
+    let folder = folder("good-textures");
+    let good = embedded(&paint(), "image/png", json!({"source": 0}));
+    good.write_glb(&folder.join("good.glb"));
+    // An image that only an extension names is shown if the build reads its format.
+    let by_extension = json!({"extensions": {"EXT_texture_webp": {"source": 0}}});
+    embedded(&paint(), "image/png", by_extension).write_glb(&folder.join("extension.glb"));
+    assert_seen(&folder, "good.glb");
+    assert_seen(&folder, "extension.glb");
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 
 #[test]
-fn textures_that_can_be_shown_are_seen_and_nothing_is_said() {
-    let folder = folder("good-textures");
-    let paint = png(SKIN.map(|c| (255.0 * c).round() as u8));
-    let good = embedded(&paint, "image/png", json!({"source": 0}));
-    good.write_glb(&folder.join("good.glb"));
-    // An image that only an extension names is shown if the build reads its format.
-    let by_extension = json!({"extensions": {"EXT_texture_webp": {"source": 0}}});
-    embedded(&paint, "image/png", by_extension).write_glb(&folder.join("extension.glb"));
+fn textures_beside_the_model_are_seen_and_nothing_is_said() {
+    let folder = folder("textures-beside");
     let mut beside = ball([1.0; 3], 0.0, 0.8);
     beside.texture(json!({"uri": "my%20skin.png"}), json!({"source": 0}));
     beside.write_gltf(&folder.join("beside.gltf"), "a buffer.bin");
-    fs::write(folder.join("my skin.png"), &paint).expect("written");
-    for model in ["good.glb", "extension.glb", "beside.gltf"] {
-        assert_eq!(warnings(&folder, model), Vec::<String>::new(), "{model}");
-        let shot = Shot::take(&folder, model, (64, 64), &["--style", "none"]);
-        let lit = shot.lit_color();
-        for (seen, own) in lit.iter().zip(SKIN) {
-            assert!((seen - f64::from(own)).abs() <= 0.1, "{model}: {lit:?}");
-        }
-    }
+    fs::write(folder.join("my skin.png"), paint()).expect("written");
+    assert_seen(&folder, "beside.gltf");
     fs::remove_dir_all(folder).expect("the folder goes");
 }
 

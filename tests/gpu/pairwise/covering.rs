@@ -48,19 +48,19 @@ pub struct Row {
     pub effects: usize,
 }
 
-const VIEWS: [View; 4] = [
+pub const VIEWS: [View; 4] = [
     View::Perspective,
     View::Orthographic,
     View::ClipPlane,
     View::OffCentre,
 ];
-const ANTI_ALIASING: [AntiAliasing; 4] = [
+pub const ANTI_ALIASING: [AntiAliasing; 4] = [
     AntiAliasing::Off,
     AntiAliasing::Fxaa,
     AntiAliasing::Smaa,
     AntiAliasing::Taa,
 ];
-const AREAS: [Area; 3] = [Area::Whole, Area::Part, Area::SmallMainPass];
+pub const AREAS: [Area; 3] = [Area::Whole, Area::Part, Area::SmallMainPass];
 
 /// How many levels each factor has; `samples` are the sample counts of the adapter.
 pub fn sizes(samples: &[u32]) -> Levels {

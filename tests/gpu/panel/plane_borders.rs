@@ -1,13 +1,18 @@
 //! The borders of planes in the histogram of the panel.
 
 use bevy_comics::{ComicStyle, PlaneBorders, Planes};
+use bevy_comics_testkit::scenes::BuiltIn;
 use serde_json::Value;
 
-use super::{DRAWN, SCALE, WIDTH, tab_to};
-use crate::window::Window;
+use super::{
+    SCALE, WIDTH,
+    hidden::{Drawn, HiddenWindow, Shown},
+    session::Session,
+    tab_to,
+};
 
 /// The histogram is in the window without scrolling.
-const HEIGHT: u32 = 700;
+const HEIGHT: u32 = 550;
 
 fn planes(style: &ComicStyle) -> Planes {
     style.get().copied().unwrap_or_default()
@@ -22,10 +27,10 @@ fn middle(state: &Value, widget: &str) -> f64 {
 const BORDERS: [&str; 2] = ["border.0", "border.1"];
 
 /// The state once the borders stay where they are: those that are found follow the depths slowly.
-fn at_rest(window: &Window) -> Value {
+fn at_rest(window: &impl Session) -> Value {
     let mut before = window.state();
-    for _ in 0..50 {
-        window.frames(20);
+    for _ in 0..100 {
+        window.frames(3);
         let state = window.state();
         let moved = |name: &&str| (middle(&state, name) - middle(&before, name)).abs() > 0.1;
         if !BORDERS.iter().any(moved) {
@@ -38,22 +43,19 @@ fn at_rest(window: &Window) -> Value {
 
 #[test]
 fn borders_of_planes_are_dragged_and_moved_by_keys() {
-    let [viewport, width] = DRAWN;
-    let arguments = [
-        "--scene",
-        "village",
-        "--style",
-        "storybook",
-        viewport,
-        width,
-    ];
-    let window = Window::open([WIDTH, HEIGHT], SCALE, &arguments);
-    window.key("F10");
+    let shown = Shown {
+        scene: BuiltIn::Village,
+        style: ComicStyle::new().with(Planes::default()),
+        cameras: 1,
+        drawn: Drawn::Picture([64, 36]),
+    };
+    let window = &HiddenWindow::open([WIDTH, HEIGHT], SCALE, &shown);
+    super::open(window);
     window.click("tab.Views");
     window.until("the borders", |state| {
         BORDERS.iter().all(|name| state["widgets"][name].is_array())
     });
-    let state = at_rest(&window);
+    let state = at_rest(window);
     let start = planes(&window.style(0));
     assert_eq!(start.borders, PlaneBorders::Auto);
     let first = middle(&state, "border.0");
@@ -77,7 +79,7 @@ fn borders_of_planes_are_dragged_and_moved_by_keys() {
     assert!(moved.near_end < moved.far_start, "{moved:?}");
 
     // Keys move it by a hundredth of the depth map.
-    tab_to(&window, "border.0");
+    tab_to(window, "border.0");
     window.key("Right");
     window.until_style("a border farther away", 0, |style| {
         (planes(style).near_end - moved.near_end - 0.01).abs() < 1e-4

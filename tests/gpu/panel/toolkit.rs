@@ -1,7 +1,6 @@
 //! The panel beside a game's own egui windows, and the order of the plugins.
 
 use bevy::{
-    app::PluginsState,
     camera::{ImageRenderTarget, RenderTarget},
     image::Image,
     prelude::*,
@@ -38,19 +37,8 @@ fn score(mut contexts: EguiContexts) -> Result {
 
 /// Starts an app with a camera that draws nothing but black, and renders some
 /// frames.
-fn start(mut app: App) -> Headless {
-    let options = options();
-    let target = new_target(app.world_mut(), options.size, options.format);
-    while app.plugins_state() == PluginsState::Adding {
-        bevy::tasks::tick_global_task_pools_on_main_thread();
-    }
-    app.finish();
-    app.cleanup();
-    let mut app = Headless {
-        app,
-        target,
-        options,
-    };
+fn start(app: App) -> Headless {
+    let mut app = Headless::of(app, options());
     let target = app.render_target();
     app.app.insert_resource(ClearColor(Color::BLACK));
     app.app

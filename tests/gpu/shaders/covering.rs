@@ -39,6 +39,18 @@ pub fn has_any(texts: &[&'static str], names: &[&str]) -> bool {
     names.iter().any(|name| has(texts, name))
 }
 
+/// Those of these variants that set something, or a number, that none before them sets.
+pub fn fewest<V: AsRef<[Definition<'static>]>>(variants: Vec<V>) -> Vec<V> {
+    let mut seen = BTreeSet::new();
+    let mut kept = variants;
+    kept.retain(|variant| {
+        let before = seen.len();
+        seen.extend(variant.as_ref().iter().copied());
+        seen.len() > before
+    });
+    kept
+}
+
 fn all_pairs(lists: &[&[Choice]]) -> BTreeSet<Pair> {
     let mut all = BTreeSet::new();
     for (i, first) in lists.iter().enumerate() {

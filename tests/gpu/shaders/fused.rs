@@ -5,6 +5,7 @@ use bevy_comics_testkit::wgsl::{Definition, check as check_text, module_with, wr
 
 use super::{
     Definitions,
+    covering::fewest,
     effects::{self, debug_views, line_effects, picture_effects},
     flags, optional, parts, subsets,
 };
@@ -186,23 +187,56 @@ fn every_effect_of_the_crate_is_composed() {
     assert_eq!(debug_views().len(), DebugView::SHARED.len() + of_effects);
 }
 
+/// Each effect alone, with everything that its modes set, in some view; and all without variants at once.
 #[test]
-fn every_mode_of_every_effect_composes_and_validates() {
-    check(&modes());
+fn every_effect_composes_and_validates() {
+    let views = views();
+    let mut all = vec![of_pass(&[])];
+    for (_, modes) in effects::all() {
+        let chosen = fewest(modes);
+        let of = |(k, mode): (usize, &Definitions)| of_pass(&[mode, &views[k % views.len()]]);
+        all.extend(chosen.iter().enumerate().map(of));
+    }
+    check(&all);
     check(&[read()]);
 }
 
 #[test]
+#[ignore = "long: some thousand shaders"]
+fn every_mode_of_every_effect_composes_and_validates() {
+    check(&modes());
+}
+
+/// Of all combinations, some of few and some of many effects.
+#[test]
+fn effects_compose_and_validate_together() {
+    let all = combinations();
+    let some: Vec<Definitions> = all.iter().step_by(97).chain(all.last()).cloned().collect();
+    check(&some);
+}
+
+#[test]
+#[ignore = "long: some thousand shaders"]
 fn every_combination_of_effects_composes_and_validates() {
     check(&combinations());
 }
 
-/// Browsers get shaders as text again, without attributes of structs.
+/// Browsers get shaders as text again, without attributes of structs: some modes of each effect.
 #[test]
 fn shaders_that_are_written_as_text_are_valid() {
-    let source = EffectRegistry::built_in().shader();
     let all = effects::all().into_iter();
-    let modes: Vec<Definitions> = all.flat_map(|(_, modes)| modes).collect();
+    check_written(all.flat_map(|(_, modes)| [modes[0].clone(), modes[modes.len() - 1].clone()]));
+}
+
+#[test]
+#[ignore = "long: every mode, written and read"]
+fn shaders_of_every_mode_are_valid_as_text() {
+    check_written(effects::all().into_iter().flat_map(|(_, modes)| modes));
+}
+
+fn check_written(modes: impl Iterator<Item = Definitions>) {
+    let source = EffectRegistry::built_in().shader();
+    let modes: Vec<Definitions> = modes.collect();
     // Each mode with the next: structs of all sizes follow one another.
     let mut pairs: Vec<Definitions> = modes.windows(2).map(<[_]>::concat).collect();
     pairs.extend(modes);
@@ -222,11 +256,25 @@ fn shaders_that_are_written_as_text_are_valid() {
 }
 
 #[test]
+fn forms_of_views_compose_and_validate() {
+    let some: Vec<Definitions> = forms_of_views().into_iter().step_by(7).collect();
+    check(&some);
+}
+
+#[test]
+#[ignore = "long: every form, with all effects"]
 fn every_form_of_a_view_composes_and_validates() {
     check(&forms_of_views());
 }
 
+/// Everything that passes and parts set.
 #[test]
+fn parts_and_passes_of_a_plan_compose_and_validate() {
+    check(&fewest(parts::variants()));
+}
+
+#[test]
+#[ignore = "long: every pass in every form"]
 fn every_part_and_pass_of_a_plan_composes_and_validates() {
     check(&parts::variants());
 }
