@@ -89,9 +89,10 @@ fn assert_within_budget(steps: &[f32], widths: &[f32]) {
     for &step in steps {
         put_crowd(&mut small, step, 0.0);
         for &width in widths {
-            let [free] = coverage(&mut small, [12..36], width, 1.0);
+            let inner = 12..36;
+            let [free] = coverage(&mut small, [inner.clone()], width, 1.0);
             for budget in [0.1, 0.2, 0.35] {
-                let [found] = coverage(&mut small, [12..36], width, budget);
+                let [found] = coverage(&mut small, [inner.clone()], width, budget);
                 println!("{step} px, {width} px wide, {budget}: {free:.3} -> {found:.3}");
                 // A band of the budget's own areas: the density changes from cell to cell.
                 assert!(

@@ -76,13 +76,13 @@ fn check(app: App) -> AppExit {
         }
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
-    headless.step(5);
+    headless.step(2);
     headless.picture().save("comic.png").expect("saved");
     if headless.app.world().contains_resource::<ComicsInspector>() {
         open_and_close_the_panel(&mut headless);
     }
     headless.app.world_mut().entity_mut(camera).remove::<Outlines>();
-    headless.step(5);
+    headless.step(2);
     headless.picture().save("plain.png").expect("saved");
     AppExit::Success
 }
@@ -92,7 +92,7 @@ fn open_and_close_the_panel(headless: &mut Headless) {
     // The panel needs the size of a window. It is not shown.
     headless.app.world_mut().spawn((Window::default(), PrimaryWindow));
     press_f10(headless);
-    headless.step(6);
+    headless.step(2);
     let inspector = headless.app.world().resource::<ComicsInspector>();
     println!("laid out: {}", inspector.widgets.contains_key("outlines"));
     press_f10(headless);
@@ -109,8 +109,8 @@ fn press_f10(headless: &mut Headless) {
             repeat: false,
             window: Entity::PLACEHOLDER,
         });
-        headless.step(1);
     }
+    headless.step(1);
     println!("open: {}", headless.app.world().resource::<ComicsInspector>().open);
 }
 "#;

@@ -353,6 +353,7 @@ fn check_way(frames: impl Iterator<Item = i32>) {
 
 /// At both ends of the way and in the middle, and in 16 frames one after another.
 #[test]
+#[ignore = "long: many frames of a moving light"]
 fn signs_move_smoothly_with_the_light() {
     check_way([0].into_iter().chain(180..=196).chain([360]));
 }

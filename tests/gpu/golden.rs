@@ -167,6 +167,7 @@ fn small_changes_are_seen() {
 }
 
 #[test]
+#[ignore = "long: the terrain alone takes ten seconds"]
 fn mountains_look_as_they_did() {
     check(BuiltIn::Mountains, 1);
 }

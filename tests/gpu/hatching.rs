@@ -240,6 +240,7 @@ pub fn come_nearer(small: &mut Small, s: Hatching, frames: i32) -> [f64; 3] {
 /// changes by more than motion and growth explain: two edges that move by 0.1 pixels, and half of a
 /// tenth.
 #[test]
+#[ignore = "long: many frames of a moving camera"]
 fn strokes_grow_while_the_camera_comes_nearer() {
     strokes_grow(&[(0.05, 0.0)]);
 }

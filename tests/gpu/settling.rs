@@ -130,6 +130,7 @@ const STILL_VIEWS: [(Option<f64>, [f32; 2], f32); 3] = [
 ];
 
 #[test]
+#[ignore = "long: thousands of frames of every history"]
 fn a_still_view_ends_with_its_own_range_whatever_came_before() {
     for (offset, view, h) in STILL_VIEWS {
         let s = Smoothing { offset, ..DEFAULT };

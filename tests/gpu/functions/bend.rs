@@ -146,6 +146,7 @@ fn middles_of_lines_are_near_straight_edges() {
 
 /// The same of 64 slopes, with offsets that are spread evenly for each.
 #[test]
+#[ignore = "long: 64 slopes at 16 offsets"]
 fn middles_of_lines_are_near_straight_edges_of_all_slopes() {
     for slope in straight_edges::slopes() {
         let [lines, cracks] = distances(slope, straight_edges::offsets());

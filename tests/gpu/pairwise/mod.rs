@@ -211,16 +211,19 @@ fn check_short_row(row: usize) {
 }
 
 #[test]
+#[ignore = "long: two cameras in nine styles"]
 fn a_small_deferred_main_pass_is_drawn_as_on_a_plain_camera() {
     check_short_row(0);
 }
 
 #[test]
+#[ignore = "long: two cameras in nine styles"]
 fn a_deferred_viewport_is_drawn_as_on_a_plain_camera() {
     check_short_row(1);
 }
 
 #[test]
+#[ignore = "long: two cameras in nine styles"]
 fn a_view_with_history_is_drawn_as_on_a_plain_camera() {
     check_short_row(2);
 }

@@ -432,6 +432,7 @@ fn drawn(mut names: Vec<&'static str>) -> Vec<&'static str> {
 
 /// Every pair of what finding depends on.
 #[test]
+#[ignore = "long: hundreds of shaders"]
 fn passes_that_find_lines_compose_and_validate() {
     check(&found_pairs());
     check(&walking());
@@ -450,6 +451,7 @@ fn every_pass_that_completes_lines_composes_and_validates() {
 }
 
 #[test]
+#[ignore = "long: hundreds of shaders"]
 fn every_pass_that_draws_lines_composes_and_validates() {
     check(&drawing());
 }
