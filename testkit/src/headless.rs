@@ -25,7 +25,7 @@ use bevy::{
     winit::WinitPlugin,
 };
 
-use crate::{ROOT, read_back, validation};
+use crate::{ROOT, pool, read_back, validation};
 
 /// The command that installs an adapter that runs on the CPU, on Debian.
 pub const INSTALL_ADAPTER: &str = "apt-get install mesa-vulkan-drivers libvulkan1";
@@ -34,8 +34,11 @@ pub const INSTALL_ADAPTER: &str = "apt-get install mesa-vulkan-drivers libvulkan
 /// never does.
 const LOADING: Duration = Duration::from_secs(2);
 
+/// What every frame takes of the app's time, so that tests are repeatable.
+pub const FRAME: Duration = Duration::from_micros(16_667);
+
 /// Options of a headless app.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct HeadlessOptions {
     /// Size of the picture in pixels.
     pub size: UVec2,
@@ -190,6 +193,8 @@ pub struct Headless {
     pub app: App,
     pub target: Handle<Image>,
     pub options: HeadlessOptions,
+    /// For an app that other tests may use after this one: its state before.
+    pub(crate) start: Option<pool::Start>,
 }
 
 impl Headless {
@@ -225,10 +230,7 @@ impl Headless {
 
     /// Starts an app that has the engine's [`plugins`].
     pub fn of(mut app: App, options: HeadlessOptions) -> Self {
-        // Every frame takes 1/60 s of the app's time, so that tests are repeatable.
-        app.insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_micros(
-            16_667,
-        )));
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(FRAME));
         let target = new_target(app.world_mut(), options.size, options.format);
         while app.plugins_state() == PluginsState::Adding {
             bevy::tasks::tick_global_task_pools_on_main_thread();
@@ -242,6 +244,7 @@ impl Headless {
             app,
             target,
             options,
+            start: None,
         }
     }
 
@@ -333,6 +336,7 @@ impl Headless {
 impl Drop for Headless {
     /// Checks what Vulkan's validation layer said since the last frame, and while the app ended.
     fn drop(&mut self) {
+        pool::give_back(self);
         drop(std::mem::replace(&mut self.app, App::empty()));
         if !std::thread::panicking() {
             validation::check();

@@ -19,6 +19,7 @@ pub mod orbit;
 pub mod page_work;
 pub mod painting;
 pub mod panel_state;
+pub mod pool;
 pub mod read_back;
 pub mod reference;
 pub mod scenes;

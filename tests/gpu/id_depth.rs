@@ -18,7 +18,7 @@ use bevy_comics::{
 };
 use bevy_comics_testkit::read_back::IdImage;
 
-use crate::small::{Small, unlit};
+use crate::small::{Small, options, unlit};
 
 /// Eight to seventeen steps of single-precision numbers, to both sides.
 const NUDGES: [f32; 2] = [1.000_001, 0.999_999];
@@ -66,7 +66,8 @@ impl Nudge {
 /// The small scene under outlines, with a screen of which an alpha mask has cut two quarters
 /// away. Returns the screen.
 fn scene(msaa: Msaa) -> (Small, Entity) {
-    let mut small = Small::new(UVec2::new(120, 80), msaa);
+    // The depth test that an app has found out stays for as long as it runs.
+    let mut small = Small::alone(options(UVec2::new(120, 80)), msaa);
     let [white, clear] = [[255; 4], [255, 255, 255, 0]];
     let image = Image::new(
         Extent3d {

@@ -13,7 +13,7 @@ use bevy::{
 use bevy_comics::{ComicStyle, Outlines};
 use bevy_comics_testkit::{link_work, work::along_cracks};
 
-use crate::small::Small;
+use crate::small::{Small, options};
 
 const CELL: f64 = 32.0;
 /// Words that tell a pass of `link.wgsl` whether a cell has anything to continue: found
@@ -114,7 +114,7 @@ fn outlines_dispatch_no_more_kernels_than_they_need() {
         ];
         always.iter().chain(more).map(|s| s.to_string()).collect()
     };
-    let app = || Small::new(UVec2::new(96, 64), Msaa::Off);
+    let app = || Small::alone(options(UVec2::new(96, 64)), Msaa::Off);
     let mut small = app();
     assert_eq!(kernels(&mut small, along_cracks()), names(&[]));
     let wide = Outlines {

@@ -11,7 +11,7 @@ use bevy::{
 };
 use bevy_comics::{AnyEffect, EffectRegistry, FieldRange};
 
-use crate::small::Small;
+use crate::small::{Small, options};
 
 /// A number of an effect: the names of the fields that lead to it, and its range.
 struct Slider {
@@ -114,7 +114,7 @@ fn documented(slider: &str) -> usize {
 
 /// Drags every slider over so many values, or only those of some effects. Gives the number of sliders.
 fn drag(steps: usize, is_dragged: impl Fn(&str) -> bool) -> usize {
-    let mut small = Small::new(UVec2::new(16, 12), Msaa::Off);
+    let mut small = Small::alone(options(UVec2::new(16, 12)), Msaa::Off);
     let mut seen = 0;
     let mut too_many = Vec::new();
     for effect in EffectRegistry::built_in().types() {

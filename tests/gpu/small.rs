@@ -14,12 +14,13 @@ use bevy::{
     },
 };
 use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Effect, VisibleDepthRange,
+    ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Effect, Outlines, VisibleDepthRange,
 };
 
 use bevy_comics_testkit::{
     before::BeforeStylize,
     headless::{Headless, HeadlessOptions},
+    pool,
     read_back::{self, CrackWords, DepthImage, FloatImage, IdImage, WidthImage},
     reference::{color, resolve::Prepass},
 };
@@ -58,34 +59,65 @@ pub fn camera(target: RenderTarget, msaa: Msaa) -> impl Bundle {
     )
 }
 
+fn start<M>(options: HeadlessOptions, more: impl Plugins<M>) -> Headless {
+    let mut headless = Headless::new(options, ((ComicsPlugin, BeforeStylize::Copy), more));
+    headless
+        .app
+        .init_resource::<RenderErrors>()
+        .insert_resource(RenderErrorHandler(|error, main, _| {
+            println!("{}", error.description);
+            main.resource_mut::<RenderErrors>().0 += 1;
+            RenderErrorPolicy::Ignore
+        }));
+    headless
+}
+
+/// Draws the small scene with lines, with an image that is new.
+fn draw_once(headless: &mut Headless) {
+    let target = headless.render_target();
+    let world = headless.app.world_mut();
+    spawn_objects(world);
+    let camera = world.spawn(camera(target, Msaa::Off)).id();
+    let style = ComicStyle::new().with(Outlines::default());
+    style.apply(&mut world.commands().entity(camera));
+    let image = world.resource_mut::<Assets<Image>>().add(Image::default());
+    headless.step(2);
+    drop(image);
+    headless.step(1);
+}
+
 impl Small {
     pub fn new(size: UVec2, msaa: Msaa) -> Self {
         Self::with(options(size), msaa)
     }
 
+    /// The app may have drawn other tests before ([`pool`]). A test of what an app does first, or of what it
+    /// finds out for good, needs [`Small::alone`].
     pub fn with(options: HeadlessOptions, msaa: Msaa) -> Self {
+        Self::of(
+            pool::take(options, |options| start(options, ()), draw_once),
+            msaa,
+        )
+    }
+
+    /// The same in a new app.
+    pub fn alone(options: HeadlessOptions, msaa: Msaa) -> Self {
         Self::with_plugins(options, msaa, ())
     }
 
     /// The same with more plugins.
     pub fn with_plugins<M>(options: HeadlessOptions, msaa: Msaa, more: impl Plugins<M>) -> Self {
-        let mut headless = Headless::new(options, ((ComicsPlugin, BeforeStylize::Copy), more));
-        headless
-            .app
-            .init_resource::<RenderErrors>()
-            .insert_resource(RenderErrorHandler(|error, main, _| {
-                println!("{}", error.description);
-                main.resource_mut::<RenderErrors>().0 += 1;
-                RenderErrorPolicy::Ignore
-            }));
+        Self::of(start(options, more), msaa)
+    }
+
+    fn of(mut headless: Headless, msaa: Msaa) -> Self {
         spawn_objects(headless.app.world_mut());
         let target = headless.render_target();
         let camera = headless.app.world_mut().spawn(camera(target, msaa)).id();
         Self { headless, camera }
     }
 
-    /// Starts over in the same app: the small scene, and a new camera without
-    /// history. A new app would compile every pipeline again, about a second.
+    /// Starts over: the small scene, and a new camera without history.
     pub fn restart(&mut self, msaa: Msaa) {
         self.clear();
         let old = self.camera;

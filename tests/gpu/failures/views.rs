@@ -129,7 +129,7 @@ fn a_target_may_have_another_size_in_every_frame() {
 #[test]
 fn an_empty_viewport_adds_no_render_error() {
     let run = |style: bool| {
-        let mut small = Small::new(size(), Msaa::Off);
+        let mut small = Small::alone(options(size()), Msaa::Off);
         if style {
             small.style(&full_style());
         }
