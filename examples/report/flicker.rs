@@ -309,12 +309,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         UVec2::new(192, 108)
     };
     let mut table = Table::new(&["sequence", "variant", "frame", "mean", "p99", "lag"]);
-    let names = if run.quick {
-        &SEQUENCES[..2]
-    } else {
-        &SEQUENCES[..]
-    };
-    for name in names {
+    for name in run.some(1, SEQUENCES) {
         let sequence = play(name, size);
         let exact = ranges(&sequence, None);
         for (variant, settings) in variants() {
@@ -337,7 +332,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
             }
         }
         run.say(&format!("{name}: flicker measured"));
-        if *name == "intruder, 30 frames" && !run.quick {
+        if name == "intruder, 30 frames" && !run.quick {
             strip(run, &sequence, size)?;
         }
     }

@@ -38,7 +38,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let by_pixels = [&comic[..], &fewer].concat();
     let mut times = rig::times();
     let sizes: &[(u32, u32)] = if run.quick {
-        &[(128, 128), (256, 256)]
+        &[(96, 96), (192, 192)]
     } else {
         &[
             (256, 256),
@@ -62,12 +62,13 @@ pub fn measure(run: &Run) -> Result<(), String> {
         rig::record(run, &mut times, "pixels", &what, &mut rig, &styles);
     }
     let counts: &[u32] = if run.quick {
-        &[1_000, 30_000]
+        &[1_000, 10_000]
     } else {
         &[1_000, 10_000, 100_000, 1_000_000, 4_000_000]
     };
+    let side = UVec2::splat(if run.quick { 128 } else { 512 });
     for &vertices in counts {
-        let mut rig = Rig::new(None, UVec2::splat(512));
+        let mut rig = Rig::new(None, side);
         ball(&mut rig, vertices);
         rig.headless.step(2);
         let what = vertices.to_string();
@@ -105,7 +106,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
 fn paper(run: &Run) -> Result<(), String> {
     let mut table = Table::new(&["app", "round", "milliseconds"]);
     let vertices = if run.quick { 10_000 } else { 1_000_000 };
-    let mut rig = Rig::new(None, UVec2::splat(512));
+    let mut rig = Rig::new(None, UVec2::splat(if run.quick { 128 } else { 512 }));
     ball(&mut rig, vertices);
     let rounds = if run.quick { 3 } else { 20 };
     for round in 0..=rounds {

@@ -163,7 +163,7 @@ fn prepass(run: &Run) -> Result<(), String> {
 }
 
 pub fn measure(run: &Run) -> Result<(), String> {
-    let mut styles = run.some(4, work::ladder());
+    let mut styles = run.some(2, work::ladder());
     if run.quick {
         // With lines, and everything else.
         styles.extend(work::ladder().pop());

@@ -43,6 +43,8 @@ use std::{
     num::NonZero,
     path::{Path, PathBuf},
     process::ExitCode,
+    sync::Mutex,
+    thread::ScopedJoinHandle,
     time::Instant,
 };
 
@@ -102,13 +104,34 @@ impl Run {
             .map_err(|error| format!("{}: {error}", path.display()))
     }
 
-    /// Measures a section, and writes when and of what it was measured.
-    fn measure(&self, section: &Section) -> Result<(), String> {
-        self.say(section.name);
-        let started = Instant::now();
-        (section.measure)(self)?;
-        let seconds = started.elapsed().as_secs_f64();
-        self.stamp.record(&self.folder, section.name, seconds)
+    /// Measures sections, one after another. A quick run, whose times count for nothing, measures as many at
+    /// once as there are cores.
+    fn measure_all(&self, sections: Vec<&Section>) -> Result<(), String> {
+        let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
+        let queue = Mutex::new(sections.into_iter());
+        let work = || {
+            let next = || queue.lock().ok()?.next();
+            while let Some(section) = next() {
+                self.say(section.name);
+                let started = Instant::now();
+                (section.measure)(self)?;
+                let seconds = started.elapsed().as_secs_f64();
+                // One at a time writes when and of what its section was measured.
+                let _alone = queue.lock();
+                self.stamp.record(&self.folder, section.name, seconds)?;
+            }
+            Ok(())
+        };
+        std::thread::scope(|scope| {
+            let workers: Vec<_> = (0..if self.quick { cores } else { 1 })
+                .map(|_| scope.spawn(work))
+                .collect();
+            let ended = |worker: ScopedJoinHandle<_>| {
+                let panicked = || Err("a section panicked".to_owned());
+                worker.join().unwrap_or_else(|_| panicked())
+            };
+            workers.into_iter().try_for_each(ended)
+        })
     }
 }
 
@@ -135,18 +158,16 @@ fn run() -> Result<(), String> {
             stamp: Stamp::now(),
         };
         headless::adapter()?;
-        for section in &SECTIONS {
-            let is_wanted = if only.is_empty() {
+        let is_wanted = |section: &&Section| {
+            if only.is_empty() {
                 !section.is_alone
             } else {
                 only.iter().any(|name| name == section.name)
-            };
-            if is_wanted {
-                run.measure(section)?;
             }
-        }
+        };
+        run.measure_all(SECTIONS.iter().filter(is_wanted).collect())?;
         if !out.join("machine.csv").exists() {
-            run.measure(&MACHINE)?;
+            run.measure_all(vec![&MACHINE])?;
         }
     }
     if arguments.tables {

@@ -17,9 +17,10 @@ use crate::{Run, table::Table};
 
 pub fn measure(run: &Run) -> Result<(), String> {
     run.save("page_screens", &screens(run))?;
-    run.save("page_colors", &colors())?;
+    run.save("page_colors", &colors(run))?;
+    run.say("colours printed");
     run.save("page_errors", &errors(run))?;
-    run.save("page_harmonies", &harmonies())?;
+    run.save("page_harmonies", &harmonies(run))?;
     run.say("painted");
     let mut table = Table::new(&["effect", "texels", "most", "bytes"]);
     let mut counter = PageCounter::default();
@@ -62,7 +63,7 @@ fn lightness_error(mode: HarmonyMode) -> f64 {
 fn screens(run: &Run) -> Table {
     let mut table = Table::new(&["what", "period", "tone", "jump", "moire"]);
     let periods = if run.quick { &PERIODS[2..3] } else { &PERIODS };
-    for shape in SHAPES {
+    for shape in run.some(1, SHAPES) {
         for &period in periods {
             let (tone, ..) = tone_error(shape, period);
             let (jump, _) = largest_jump(shape, period);
@@ -88,9 +89,9 @@ fn screens(run: &Run) -> Table {
 
 /// Colours of four inks: ideal ones, ones that all take some of all light, and these without the
 /// phase of black.
-fn colors() -> Table {
+fn colors(run: &Run) -> Table {
     let mut table = Table::new(&["black", "ideal", "grey", "in_phase", "beats"]);
-    for black in [0.0, 0.5, 1.0] {
+    for black in run.some(1, [0.0, 0.5, 1.0]) {
         let s = Halftone {
             black_generation: black,
             ..ideal()
@@ -175,14 +176,15 @@ fn errors(run: &Run) -> Table {
 }
 
 /// The largest changes of lightness by all harmonies.
-fn harmonies() -> Table {
+fn harmonies(run: &Run) -> Table {
     let mut harmonies = Table::new(&["mode", "lightness"]);
-    for mode in [
+    let modes = [
         HarmonyMode::TwoHues,
         HarmonyMode::Distance,
         HarmonyMode::Rotation,
         HarmonyMode::Shade,
-    ] {
+    ];
+    for mode in run.some(1, modes) {
         let error = lightness_error(mode);
         harmonies.push(&[&format!("{mode:?}"), &format!("{error:.5}")]);
     }

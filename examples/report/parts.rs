@@ -170,12 +170,12 @@ impl Part {
         Self { base, ..self }
     }
 
-    fn rig(&self, size: UVec2, change: fn(&mut Rig)) -> Rig {
-        let mut rig = Rig::new(Some(self.scene), size);
+    fn rig(&self, run: &Run, change: fn(&mut Rig)) -> Rig {
+        let mut rig = Rig::new(Some(self.scene), size(run));
         rig.unlight();
         change(&mut rig);
         // Meshes are divided in the background.
-        rig.headless.step(30);
+        rig.headless.step(if run.quick { 5 } else { 30 });
         rig
     }
 }
@@ -220,15 +220,12 @@ fn changes() -> Vec<Part> {
 
 /// Times each change on a scene of its own, in turn with the scene that it is compared with.
 pub fn of_scenes(run: &Run) -> Result<(), String> {
-    let size = size(run);
     let mut times = rig::times();
     let rounds = run.rounds.min(3);
     let run = &run.with_rounds(1);
-    for (i, part) in changes().into_iter().enumerate() {
-        let mut changed = part.rig(size, part.change);
-        // A quick run draws every change, but compares only the first ones.
-        let base = part.base.filter(|_| !run.quick || i < 2);
-        let mut base = base.map(|change| part.rig(size, change));
+    for part in run.some(2, changes()) {
+        let mut changed = part.rig(run, part.change);
+        let mut base = part.base.map(|change| part.rig(run, change));
         let named =
             |(name, style): &(&str, ComicStyle)| ((*name).to_owned(), Wear::style(style.clone()));
         let variants: Vec<_> = part.styles.iter().map(named).collect();

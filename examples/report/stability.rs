@@ -321,7 +321,7 @@ fn rendered(table: &mut Table, run: &Run) {
     };
     let style = everything();
     let sketch = style.clone().with(Sketch::default());
-    for (name, scene) in rendered_cases() {
+    for (name, scene) in run.some(3, rendered_cases()) {
         let mut rig = Rig::new(None, size);
         scene(&mut rig);
         let world = rig.headless.app.world_mut();
@@ -388,14 +388,15 @@ pub fn measure(run: &Run) -> Result<(), String> {
         picture.pixels().map(codes).collect::<Vec<_>>()
     };
     let plain = shoot(1.0, Vec3::ZERO);
-    for (name, scale, origin) in [
+    let cases = [
         ("scaled by 1e-6", 1e-6, Vec3::ZERO),
         ("scaled by 1e-3", 1e-3, Vec3::ZERO),
         ("scaled by 1e3", 1e3, Vec3::ZERO),
         ("scaled by 1e6", 1e6, Vec3::ZERO),
         ("moved by 1e3", 1.0, Vec3::new(1e3, 0.0, -1e3)),
         ("moved by 1e6", 1.0, Vec3::new(1e6, 0.0, -1e6)),
-    ] {
+    ];
+    for (name, scale, origin) in run.some(1, cases) {
         let other = shoot(scale, origin);
         moved.push(&[
             &name,
