@@ -7,7 +7,7 @@ use crate::sections::SECTIONS;
 const USAGE: &str = "cargo run --example report -- [OPTIONS]
 
   --quick          small pictures, few repetitions, the first few of many styles and
-                   models, no other crates
+                   models, no other crates; sections run at the same time, so times mean little
   --rounds N       repetitions of every variant; default 7, with --quick 1
   --out FOLDER     folder of the report; default docs/report
   --only SECTION   measure this section only; may be given several times: machine, ranges, encodings, lines, models,

@@ -105,33 +105,45 @@ impl Run {
     }
 
     /// Measures sections, one after another. A quick run, whose times count for nothing, measures as many at
-    /// once as there are cores.
+    /// once as there are cores. The first failure ends the run; the error names its section.
     fn measure_all(&self, sections: Vec<&Section>) -> Result<(), String> {
-        let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
         let queue = Mutex::new(sections.into_iter());
+        let record = Mutex::new(());
         let work = || {
             let next = || queue.lock().ok()?.next();
             while let Some(section) = next() {
                 self.say(section.name);
                 let started = Instant::now();
-                (section.measure)(self)?;
+                let failed = |error| {
+                    if let Ok(mut queue) = queue.lock() {
+                        *queue = Vec::new().into_iter();
+                    }
+                    format!("section {}: {error}", section.name)
+                };
+                (section.measure)(self).map_err(failed)?;
                 let seconds = started.elapsed().as_secs_f64();
-                // One at a time writes when and of what its section was measured.
-                let _alone = queue.lock();
+                let _alone = record.lock();
                 self.stamp.record(&self.folder, section.name, seconds)?;
             }
             Ok(())
         };
-        std::thread::scope(|scope| {
-            let workers: Vec<_> = (0..if self.quick { cores } else { 1 })
-                .map(|_| scope.spawn(work))
-                .collect();
-            let ended = |worker: ScopedJoinHandle<_>| {
-                let panicked = || Err("a section panicked".to_owned());
-                worker.join().unwrap_or_else(|_| panicked())
+        if !self.quick {
+            return work();
+        }
+        let cores = std::thread::available_parallelism().map_or(1, NonZero::get);
+        let results: Vec<Result<(), String>> = std::thread::scope(|scope| {
+            let workers: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
+            let end = |worker: ScopedJoinHandle<Result<(), String>>| match worker.join() {
+                Ok(result) => result,
+                Err(_) => Err("a section panicked; its message is above".to_owned()),
             };
-            workers.into_iter().try_for_each(ended)
-        })
+            workers.into_iter().map(end).collect()
+        });
+        let errors: Vec<String> = results.into_iter().filter_map(Result::err).collect();
+        if errors.is_empty() {
+            return Ok(());
+        }
+        Err(errors.join("\n"))
     }
 }
 

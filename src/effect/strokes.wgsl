@@ -184,7 +184,9 @@ fn hatched(s: Strokes, on: Surface, tone: f32) -> f32 {
 
 // Darkness of strokes at a lightness from 0 to 1.
 fn darkness(s: Strokes, light: f32) -> f32 {
-    let t = 1.0 - smoothstep(s.shadows, s.highlights, light);
+    // 1 - smoothstep, but exact near 0, where a power below 1 shows what 1 - x rounds off.
+    let u = clamp((s.highlights - light) / (s.highlights - s.shadows), 0.0, 1.0);
+    let t = u * u * (3.0 - 2.0 * u);
     let tone = select(pow(max(t, 1e-20), s.gamma), 0.0, t <= 0.0);
     if s.levels > 0.0 {
         return min(floor(tone * (s.levels + 1.0)), s.levels) / s.levels;

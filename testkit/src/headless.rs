@@ -25,7 +25,11 @@ use bevy::{
     winit::WinitPlugin,
 };
 
-use crate::{ROOT, pool, read_back, validation};
+use crate::{
+    ROOT,
+    pool::{self, Baseline, Pool},
+    read_back, validation,
+};
 
 /// The command that installs an adapter that runs on the CPU, on Debian.
 pub const INSTALL_ADAPTER: &str = "apt-get install mesa-vulkan-drivers libvulkan1";
@@ -193,8 +197,8 @@ pub struct Headless {
     pub app: App,
     pub target: Handle<Image>,
     pub options: HeadlessOptions,
-    /// For an app that other tests may use after this one: its state before.
-    pub(crate) start: Option<pool::Start>,
+    /// For an app of a pool: the pool, and the state of the app before.
+    pub(crate) lent: Option<(&'static Pool, Baseline)>,
 }
 
 impl Headless {
@@ -244,7 +248,7 @@ impl Headless {
             app,
             target,
             options,
-            start: None,
+            lent: None,
         }
     }
 

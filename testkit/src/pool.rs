@@ -1,8 +1,9 @@
 //! Apps that tests use one after another. A new app compiles every pipeline again, about a second on a CPU.
 //!
 //! What a test spawned is removed after it, and resources that tests commonly replace are set back. An app that
-//! a test changed otherwise is not used again: by a system, by a resource of its own, or by another value of a
-//! resource that frames leave alone.
+//! a test changed otherwise is not used again: one with another number of systems, or in whose main world other
+//! resources were added or changed than those that change in every frame. Not seen: assets that are changed in
+//! place, and what the renderer keeps for as long as the app runs. Tests of those need an app of their own.
 
 use std::{
     collections::HashMap,
@@ -13,148 +14,171 @@ use std::{
 use bevy::{
     app::SubApps,
     diagnostic::FrameCount,
-    ecs::{component::ComponentId, schedule::Schedules},
+    ecs::{component::ComponentId, resource::IsResource, schedule::Schedules},
     light::DirectionalLightShadowMap,
     pbr::DefaultOpaqueRendererMethod,
     prelude::*,
     render::RenderApp,
     time::{Fixed, Real, TimeUpdateStrategy, Virtual},
 };
-
 use bevy_comics::{ObjectIdDepthTest, ReduceFlashing};
 
-use crate::headless::{self, Headless, HeadlessOptions};
+use crate::{
+    headless::{self, Headless, HeadlessOptions},
+    validation,
+};
+
+/// Apps with the same plugins and the default options, but for their targets.
+pub struct Pool {
+    new: fn(HeadlessOptions) -> Headless,
+    draw: fn(&mut Headless),
+    idle: Mutex<Vec<Idle>>,
+}
 
 /// An app that no test uses at the moment.
 struct Idle {
     apps: SubApps,
-    start: Start,
+    baseline: Baseline,
 }
 
-static IDLE: Mutex<Vec<Idle>> = Mutex::new(Vec::new());
+impl Pool {
+    /// A pool of the apps that `new` makes. `draw` draws what tests commonly do.
+    pub const fn new(new: fn(HeadlessOptions) -> Headless, draw: fn(&mut Headless)) -> Self {
+        let idle = Mutex::new(Vec::new());
+        Self { new, draw, idle }
+    }
 
-fn idle() -> MutexGuard<'static, Vec<Idle>> {
-    IDLE.lock().unwrap_or_else(PoisonError::into_inner)
+    /// An app that a test gave back, else a new one. With other options than the default ones, always a new
+    /// one, which is not given back.
+    pub fn take(&'static self, options: HeadlessOptions) -> Headless {
+        let usual = HeadlessOptions {
+            size: options.size,
+            format: options.format,
+            scale_factor: options.scale_factor,
+            ..default()
+        };
+        // The validation layer speaks of an app until it ends.
+        if options != usual || validation::is_wanted() {
+            return (self.new)(options);
+        }
+        let idle = self.idle().pop();
+        let mut headless =
+            idle.map_or_else(|| self.start(&options), |idle| self.resume(idle, &options));
+        restore(headless.app.world_mut());
+        headless
+    }
+
+    /// Number of apps that no test uses at the moment.
+    pub fn idle_apps(&self) -> usize {
+        self.idle().len()
+    }
+
+    fn idle(&self) -> MutexGuard<'_, Vec<Idle>> {
+        self.idle.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn start(&'static self, options: &HeadlessOptions) -> Headless {
+        let mut headless = (self.new)(options.clone());
+        let baseline = Baseline::of(&mut headless, self.draw);
+        remove_spawned(&mut headless, &baseline);
+        headless.lent = Some((self, baseline));
+        headless
+    }
+
+    fn resume(&'static self, idle: Idle, options: &HeadlessOptions) -> Headless {
+        let mut app = App::empty();
+        *app.sub_apps_mut() = idle.apps;
+        let target = headless::new_target(app.world_mut(), options.size, options.format);
+        Headless {
+            app,
+            target,
+            options: options.clone(),
+            lent: Some((self, idle.baseline)),
+        }
+    }
+}
+
+/// Takes an app back after a test, if it came from a pool and is as it was.
+pub(crate) fn give_back(headless: &mut Headless) {
+    let Some((pool, baseline)) = headless.lent.take() else {
+        return;
+    };
+    if std::thread::panicking() {
+        return;
+    }
+    restore(headless.app.world_mut());
+    remove_spawned(headless, &baseline);
+    if !baseline.is_of(&headless.app) {
+        return;
+    }
+    let apps = std::mem::take(headless.app.sub_apps_mut());
+    pool.idle().push(Idle { apps, baseline });
 }
 
 /// The state of an app before each test.
-pub struct Start {
+pub(crate) struct Baseline {
     entities: Vec<Entity>,
-    /// The tick of the last change of each resource; `None` for those that frames change, and those that
-    /// [`restore`] sets.
+    /// The tick of the last change of each resource of the main world; `None` for those that frames change,
+    /// those that [`restore`] sets, and those that go with the scene.
     resources: HashMap<ComponentId, Option<u32>>,
-    /// The numbers of systems of the game and of the renderer.
+    /// How many systems the game and the renderer have.
     systems: [usize; 2],
 }
 
-impl Start {
-    /// Notes the state of an app. `draw` draws what tests commonly do, and so tells which resources change
-    /// in every frame.
-    fn of(headless: &mut Headless, draw: impl FnOnce(&mut Headless)) -> Self {
+impl Baseline {
+    /// Notes the state of a new app. `draw` tells which resources change in every frame.
+    fn of(headless: &mut Headless, draw: fn(&mut Headless)) -> Self {
         headless.step(1);
+        restore(headless.app.world_mut());
         let entities = entities(headless.app.world());
         let before = changes(headless.app.world());
         draw(headless);
+        // The fixed schedule has its turn, too.
+        headless.step(3);
         restore(headless.app.world_mut());
         let world = headless.app.world();
-        let after = changes(world);
         let unless_changed = |(id, tick)| {
-            let left_alone = before.get(&id) == Some(&tick) && !follows_the_scene(world, id);
+            let left_alone = before.get(&id) == Some(&tick) && !goes_with_the_scene(world, id);
             (id, left_alone.then_some(tick))
         };
         Self {
             entities,
-            resources: after.into_iter().map(unless_changed).collect(),
+            resources: changes(world).into_iter().map(unless_changed).collect(),
             systems: systems(&headless.app),
         }
     }
 
-    /// Whether a test left more behind than entities and pipelines.
-    fn has_changed(&self, app: &App) -> bool {
-        let world = app.world();
-        let now = changes(world);
-        let as_before = |(id, tick): (&ComponentId, &u32)| {
-            let before = self.resources.get(id);
-            before.is_some_and(|before| before.is_none_or(|before| before == *tick))
+    /// Whether an app has nothing but this, and pipelines.
+    fn is_of(&self, app: &App) -> bool {
+        let now = changes(app.world());
+        let is_same = |(id, now): (&ComponentId, &u32)| {
+            let known = self.resources.get(id);
+            known.is_some_and(|tick| tick.is_none_or(|tick| tick == *now))
         };
-        now.len() != self.resources.len()
-            || !now.iter().all(as_before)
-            || !self
-                .entities
-                .iter()
-                .all(|entity| world.get_entity(*entity).is_ok())
-            || systems(app) != self.systems
+        now.len() == self.resources.len()
+            && now.iter().all(is_same)
+            && entities(app.world()) == self.entities
+            && systems(app) == self.systems
     }
+}
 
-    /// Removes what a test spawned, the youngest first, and lets the renderer see it.
-    fn remove_others(&self, headless: &mut Headless) {
-        let world = headless.app.world_mut();
-        let mut others = entities(world);
-        others.retain(|entity| self.entities.binary_search(entity).is_err());
-        for entity in others.into_iter().rev() {
+/// Removes what a test spawned, and draws until the renderer has forgotten it: the engine keeps textures
+/// for three frames.
+fn remove_spawned(headless: &mut Headless, baseline: &Baseline) {
+    let world = headless.app.world_mut();
+    for entity in entities(world) {
+        // An entity that has a resource may not be despawned.
+        let is_kept = baseline.entities.binary_search(&entity).is_ok()
+            || world.get::<IsResource>(entity).is_some();
+        if !is_kept {
             world.try_despawn(entity).ok();
         }
-        headless.step(1);
     }
+    headless.step(3);
 }
 
-/// An app that a test gave back, else a `new` one. Only apps with the default options are given back; their
-/// targets may differ. `draw` draws what tests commonly do.
-pub fn take(
-    options: HeadlessOptions,
-    new: impl FnOnce(HeadlessOptions) -> Headless,
-    draw: impl FnOnce(&mut Headless),
-) -> Headless {
-    let usual = HeadlessOptions {
-        size: options.size,
-        format: options.format,
-        scale_factor: options.scale_factor,
-        ..default()
-    };
-    if options != usual {
-        return new(options);
-    }
-    let known = idle().pop();
-    let mut headless = known.map_or_else(
-        || {
-            let mut headless = new(options.clone());
-            let start = Start::of(&mut headless, draw);
-            start.remove_others(&mut headless);
-            headless.start = Some(start);
-            headless
-        },
-        |known| {
-            let mut app = App::empty();
-            *app.sub_apps_mut() = known.apps;
-            let target = headless::new_target(app.world_mut(), options.size, options.format);
-            Headless {
-                app,
-                target,
-                options: options.clone(),
-                start: Some(known.start),
-            }
-        },
-    );
-    restore(headless.app.world_mut());
-    headless
-}
-
-/// Takes an app back after a test.
-pub(crate) fn give_back(headless: &mut Headless) {
-    let Some(start) = headless.start.take() else {
-        return;
-    };
-    if std::thread::panicking() || start.has_changed(&headless.app) {
-        return;
-    }
-    restore(headless.app.world_mut());
-    start.remove_others(headless);
-    let apps = std::mem::take(headless.app.sub_apps_mut());
-    idle().push(Idle { apps, start });
-}
-
-/// Whether a resource holds what belongs to assets and entities, and goes with them.
-fn follows_the_scene(world: &World, resource: ComponentId) -> bool {
+/// Whether a resource holds assets, messages, or what this crate keeps of materials and objects.
+fn goes_with_the_scene(world: &World, resource: ComponentId) -> bool {
     const CONTENTS: [&str; 4] = [
         "bevy_asset::",
         "bevy_ecs::message::",

@@ -394,6 +394,8 @@ fn a_scene_is_converted_with_one_component_and_back() {
     for id in &ids {
         materials.get_mut(*id).expect("listed").unlit = false;
     }
+    let first = world.get::<MeshMaterial3d<StandardMaterial>>(parts[0]);
+    let first = first.expect("a material").id();
     world.spawn((
         DirectionalLight::default(),
         Transform::from_xyz(1.0, 2.0, 1.5).looking_at(Vec3::ZERO, Vec3::Y),
@@ -420,7 +422,6 @@ fn a_scene_is_converted_with_one_component_and_back() {
         );
     }
     // Changes of the original material and of the settings reach the copy.
-    let first = ids[0];
     small
         .world()
         .resource_mut::<Assets<StandardMaterial>>()

@@ -77,6 +77,7 @@ mod pictures;
 mod pipelines;
 mod planes;
 mod plugin_order;
+mod pool;
 mod pressure;
 mod print_offset;
 mod ramp;

@@ -122,7 +122,7 @@ fn small(backends: wgpu::Backends, limits: Option<wgpu::Limits>, msaa: Msaa) -> 
         limits,
         ..small::options(small::size())
     };
-    Small::with(options, msaa)
+    Small::alone(options, msaa)
 }
 
 /// The rim of a ball has the same width everywhere where the adapter loads depth. With OpenGL it is where

@@ -20,7 +20,7 @@ use bevy_comics::{
 use bevy_comics_testkit::{
     before::BeforeStylize,
     headless::{Headless, HeadlessOptions},
-    pool,
+    pool::Pool,
     read_back::{self, CrackWords, DepthImage, FloatImage, IdImage, WidthImage},
     reference::{color, resolve::Prepass},
 };
@@ -72,6 +72,9 @@ fn start<M>(options: HeadlessOptions, more: impl Plugins<M>) -> Headless {
     headless
 }
 
+/// The apps of most tests.
+static POOL: Pool = Pool::new(|options| start(options, ()), draw_once);
+
 /// Draws the small scene with lines, with an image that is new.
 fn draw_once(headless: &mut Headless) {
     let target = headless.render_target();
@@ -91,13 +94,10 @@ impl Small {
         Self::with(options(size), msaa)
     }
 
-    /// The app may have drawn other tests before ([`pool`]). A test of what an app does first, or of what it
+    /// The app may have drawn other tests before ([`Pool`]). A test of what an app does first, or of what it
     /// finds out for good, needs [`Small::alone`].
     pub fn with(options: HeadlessOptions, msaa: Msaa) -> Self {
-        Self::of(
-            pool::take(options, |options| start(options, ()), draw_once),
-            msaa,
-        )
+        Self::of(POOL.take(options), msaa)
     }
 
     /// The same in a new app.

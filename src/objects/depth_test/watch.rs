@@ -42,8 +42,11 @@ const LEFT: f32 = 0.75;
 const FIRST_FRAMES: u32 = 64;
 const FIRST_PERIOD: u32 = 4;
 const PERIOD: u32 = 64;
-/// Frames after which a suspicion or a trial without a result ends.
+/// Frames after which a suspicion without a result ends: pipelines may take long.
 const PATIENCE: u32 = 600;
+/// Frames after which a trial without a result ends: its camera is gone, since ids are counted in every frame
+/// of a trial.
+const TRIAL: u32 = 60;
 
 /// A camera with missing ids.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,13 +146,12 @@ impl Watch {
                     Stage::Watching(None)
                 }
             }
-            Stage::Watching(Some(suspect))
-            | Stage::Compiling(suspect)
-            | Stage::Trying(suspect, ..)
+            Stage::Watching(Some(suspect)) | Stage::Compiling(suspect)
                 if age(&suspect) > PATIENCE =>
             {
                 Stage::Watching(None)
             }
+            Stage::Trying(suspect, ..) if age(&suspect) > TRIAL => Stage::Watching(None),
             stage => stage,
         };
         success

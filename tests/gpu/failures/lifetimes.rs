@@ -1,24 +1,28 @@
 //! Pipelines that are not ready, styles and cameras that come and go.
 
-use super::*;
+use super::{
+    prepasses::{in_background, is_compiling, step, still},
+    *,
+};
 
 /// While a pipeline compiles, or has failed to, the original picture is shown.
 #[test]
 fn a_picture_is_never_lost_while_a_pipeline_is_missing() {
-    let mut small = Small::new(size(), Msaa::Off);
-    small.settle();
-    let original = small.picture();
+    let mut small = in_background();
+    let original = still(&mut small);
     small.style(&full_style());
-    for _ in 0..6 {
-        small.headless.step(1);
-        let picture = small.picture();
-        let background = picture.get_pixel(1, 1).0;
+    let mut was_missing = false;
+    for _ in 0..12 {
+        step(&mut small);
+        was_missing |= is_compiling(&small);
+        let background = small.picture().get_pixel(1, 1).0;
         assert_ne!(background, [0, 0, 0, 0], "the picture was lost");
     }
-    assert_ne!(small.picture(), original);
+    assert!(was_missing, "every pipeline was there at once");
+    let styled = still(&mut small);
+    assert_ne!(styled, original);
 
     // A broken shader shows the original picture; a repaired one, the style.
-    let styled = small.picture();
     let (id, source) = shader(&mut small, "effect/fused.wgsl");
     replace(
         &mut small,
@@ -37,8 +41,7 @@ fn a_picture_is_never_lost_while_a_pipeline_is_missing() {
         Some(StageOutcome::LeftOut(LeftOut::PipelineNotReady))
     );
     replace(&mut small, id, source);
-    small.settle();
-    assert_eq!(small.picture(), styled);
+    assert_eq!(still(&mut small), styled);
 }
 
 fn shader(small: &mut Small, name: &str) -> (AssetId<Shader>, String) {
@@ -163,7 +166,10 @@ fn a_removed_style_and_an_inactive_camera_run_nothing() {
 
 #[test]
 fn views_that_come_and_go_leave_no_buffers() {
-    let mut small = styled(Msaa::Off);
+    // No buffers of other tests end beside those of this one.
+    let mut small = Small::alone(options(size()), Msaa::Off);
+    small.style(&full_style());
+    small.settle();
     let buffers = |small: &Small| {
         let world = small.headless.app.sub_app(RenderApp).world();
         let instance = world.resource::<bevy::render::renderer::RenderInstance>();

@@ -18,7 +18,7 @@ fn remove<B: Bundle>(small: &mut Small) {
 }
 
 /// An app whose pipelines compile in the background, as in a game.
-fn in_background() -> Small {
+pub fn in_background() -> Small {
     Small::with(
         HeadlessOptions {
             background_pipelines: true,
@@ -28,12 +28,12 @@ fn in_background() -> Small {
     )
 }
 
-fn step(small: &mut Small) {
+pub fn step(small: &mut Small) {
     small.headless.step(1);
     std::thread::sleep(Duration::from_millis(5));
 }
 
-fn is_compiling(small: &Small) -> bool {
+pub fn is_compiling(small: &Small) -> bool {
     let world = small.headless.app.world();
     let diagnostics = world.resource::<ComicsDiagnostics>();
     diagnostics.is_compiling(small.camera)

@@ -11,12 +11,12 @@ use super::{
 };
 use crate::{
     cartoon_shaders::ALWAYS,
-    small::{Small, size},
+    small::{Small, options, size},
 };
 
 /// The crate's modules and the engine's, as an app loads them.
 pub fn library() -> Library {
-    let mut small = Small::new(size(), Msaa::Off);
+    let mut small = Small::alone(options(size()), Msaa::Off);
     small.headless.step(2);
     let shaders = small.world().resource::<Assets<Shader>>();
     Library::new(shaders.iter().map(|(_, shader)| shader))

@@ -96,7 +96,7 @@ fn a_camera_that_is_gone_leaves_no_trial_behind() {
     assert!(watch.compiles());
     watch.advance(Vec::new(), true);
     assert!(watch.tolerant());
-    for _ in 0..=PATIENCE {
+    for _ in 0..=TRIAL {
         watch.advance(vec![reading(1, 0)], false);
     }
     assert!(!watch.tolerant() && watch.watches() && !watch.compiles());
