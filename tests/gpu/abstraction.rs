@@ -7,7 +7,7 @@ use bevy_comics::{
 };
 use bevy_comics_testkit::{studio::with_map, work::along_cracks};
 
-use crate::small::Small;
+use crate::small::{Small, options};
 
 /// Depth from 1 to 101 units.
 fn hundred(flip: bool) -> DepthMap {
