@@ -338,7 +338,8 @@ impl Headless {
 }
 
 impl Drop for Headless {
-    /// Checks what Vulkan's validation layer said since the last frame, and while the app ended.
+    /// Gives an app of a pool back. Ends any other, and checks what Vulkan's validation layer said since the
+    /// last frame, and while the app ended.
     fn drop(&mut self) {
         pool::give_back(self);
         drop(std::mem::replace(&mut self.app, App::empty()));
