@@ -2,7 +2,7 @@
 #![cfg_attr(rustfmt, rustfmt_skip)] // Short methods take one line here.
 
 use bevy::{input::common_conditions::input_just_pressed, prelude::*};
-use bevy_comics::*;
+use bevy_comics::{effect::*, prelude::*};
 use serde::{Deserialize, Serialize};
 
 /// Rain in front of the scene. Near things hide what rains behind them.
@@ -23,7 +23,7 @@ struct Rain {
     #[reflect(@FieldRange::linear(-60.0, 60.0).unit("°"))]
     slant: f32,
     /// Colour of the drops. Default: a light, bluish grey.
-    #[serde(with = "bevy_comics::file_color")]
+    #[serde(with = "bevy_comics::effect::color_serde")]
     color: Color,
 }
 
@@ -49,14 +49,14 @@ impl Effect for Rain {
     fn sanitized(self) -> Self {
         let default = Self::default();
         Self {
-            amount: bounded(self.amount, default.amount, 0.0, 1.0),
-            speed: bounded(self.speed, default.speed, 0.0, 4000.0),
-            length: bounded(self.length, default.length, 4.0, 240.0),
-            slant: bounded(self.slant, default.slant, -60.0, 60.0),
-            color: displayable(self.color, default.color),
+            amount: clamp_or_default(self.amount, default.amount, 0.0, 1.0),
+            speed: clamp_or_default(self.speed, default.speed, 0.0, 4000.0),
+            length: clamp_or_default(self.length, default.length, 4.0, 240.0),
+            slant: clamp_or_default(self.slant, default.slant, -60.0, 60.0),
+            color: clamp_color(self.color, default.color),
         }
     }
-    fn uniform(&self, view: &ViewFacts) -> [Vec4; 2] {
+    fn uniform(&self, view: &EffectContext) -> [Vec4; 2] {
         let fall = (view.seconds * f64::from(self.speed) / 240.0).rem_euclid(256.0) as f32;
         let (color, slope) = (linear_rgb(self.color), self.slant.to_radians().tan());
         [color.extend(self.amount), Vec4::new(slope, self.length, fall, view.scale_factor)]
@@ -69,7 +69,7 @@ fn main() {
         .add_systems(Startup, setup)
         .add_systems(Update, toggle_rain.run_if(input_just_pressed(KeyCode::Space)));
     #[cfg(feature = "inspector")]
-    app.add_plugins(inspector::ComicsInspectorPlugin::default());
+    app.add_plugins(bevy_comics::inspector::ComicsInspectorPlugin::default());
     app.run();
 }
 
@@ -92,7 +92,7 @@ fn setup(mut commands: Commands, assets: Res<AssetServer>) {
 fn toggle_rain(world: &mut World) -> Result {
     let (camera, rains, _) = world.query::<(Entity, Has<Rain>, &Camera3d)>().single(world)?;
     let rain = if rains { "" } else { "rain: (amount: 0.8)" };
-    let text = format!("(version: 2, outlines: (), desaturation: (), {rain})");
+    let text = format!("(version: 3, outlines: (), desaturation: (), {rain})");
     let style = world.resource::<EffectRegistry>().style_from_ron(&text)?;
     world.entity_mut(camera).insert(StyleTransition::to(style, 2.0));
     Ok(())

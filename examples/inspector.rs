@@ -19,7 +19,7 @@ use bevy_comics_testkit::{
     orbit::{Orbit, OrbitPlugin},
     panel_state::panel_state,
     scenes::{BuiltIn, Stage, figure::motion::MotionPlugin},
-    studio::{set_cartoon, wear},
+    studio::{set_toon, wear},
 };
 
 const HELP: &str = "\
@@ -27,14 +27,14 @@ The inspector on a built-in scene. F10 opens and closes the panel.
 
     --scene NAME       mountains, teapot, theatre, village or figure (village)
     --style NAME       the first style: a preset, a style file, or `none` (graphic-novel)
-    --cartoon          the scene in cartoon materials, with its looks
+    --toon          the scene in toon materials, with its looks
     --cameras N        1, or 2 side by side (1)
     --size WxH         size of the window in physical pixels (1280x720)
     --viewport WIDTH   cameras draw only to this width of the window, from its left side,
                        in physical pixels (all of it)
     --scale FACTOR     scale factor of the window (the system's)
     --styles FOLDER    folder of style files (assets/styles)
-    --looks FOLDER     folder of look files (assets/looks)
+    --shadings FOLDER     folder of look files (assets/shading)
     --pictures FOLDER  folder of screenshots (screenshots)
     --memory FILE      file of the panel's settings, `none` for no file
     --open             start with the panel open
@@ -48,7 +48,7 @@ The inspector on a built-in scene. F10 opens and closes the panel.
 struct Options {
     scene: BuiltIn,
     style: ComicStyle,
-    cartoon: bool,
+    toon: bool,
     cameras: u32,
     size: UVec2,
     viewport: Option<u32>,
@@ -78,7 +78,7 @@ fn options() -> Result<Options, lexopt::Error> {
     let mut options = Options {
         scene: BuiltIn::Village,
         style: presets::GRAPHIC_NOVEL.style(),
-        cartoon: false,
+        toon: false,
         cameras: 1,
         size: UVec2::new(1280, 720),
         viewport: None,
@@ -107,8 +107,8 @@ fn options() -> Result<Options, lexopt::Error> {
             Long("viewport") => options.viewport = Some(parser.value()?.parse()?),
             Long("scale") => options.scale = Some(parser.value()?.parse()?),
             Long("styles") => options.plugin.styles = parser.value()?.into(),
-            Long("cartoon") => options.cartoon = true,
-            Long("looks") => options.plugin.looks = parser.value()?.into(),
+            Long("toon") => options.toon = true,
+            Long("shadings") => options.plugin.shadings = parser.value()?.into(),
             Long("pictures") => options.plugin.pictures = parser.value()?.into(),
             Long("memory") => {
                 let path = PathBuf::from(parser.value()?);
@@ -157,8 +157,8 @@ fn main() {
     if !options.bare {
         app.add_plugins(options.plugin.clone());
     }
-    if options.cartoon {
-        let all = |world: &mut World| set_cartoon(world, true);
+    if options.toon {
+        let all = |world: &mut World| set_toon(world, true);
         app.add_systems(PostStartup, all);
     }
     app.insert_resource(options)

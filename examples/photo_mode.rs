@@ -16,18 +16,18 @@ use bevy::{
         },
     },
 };
-use bevy_comics::{ComicsDiagnostics, Preset, presets};
+use bevy_comics::{ComicsDiagnostics, presets, style::Preset};
 use bevy_comics_testkit::{
     demo::{Demo, Screen},
     headless::{Headless, new_target},
     scenes::{BuiltIn, Stage, figure::motion::MotionPlugin},
-    studio::{set_cartoon, wear},
+    studio::{set_toon, wear},
 };
 
 /// How much larger a photo is than the window.
 const SCALE: u32 = 2;
 
-const LOOKS: [Preset; 6] = [
+const STYLES: [Preset; 6] = [
     presets::SATURDAY_MORNING,
     presets::SILVER_AGE,
     presets::MANGA_PAGE,
@@ -42,7 +42,7 @@ W A S D Q E  fly, with the mouse button held: look around
 Left Right   look
 Enter        save a photo in the working folder";
 
-/// The camera of the game, and its look as an index of [`LOOKS`].
+/// The camera of the game, and its look as an index of [`STYLES`].
 #[derive(Component)]
 struct Photographer {
     look: usize,
@@ -65,10 +65,10 @@ fn spawn(mut stage: Stage, screen: Res<Screen>) {
         Msaa::Sample4,
         Photographer { look: 0 },
     ));
-    wear(&mut camera, &LOOKS[0].style());
+    wear(&mut camera, &STYLES[0].style());
     stage
         .commands
-        .queue(|world: &mut World| set_cartoon(world, true));
+        .queue(|world: &mut World| set_toon(world, true));
     stage.commands.spawn((
         Text::new(KEYS),
         TextFont {
@@ -102,13 +102,13 @@ fn choose_look(
     let step = if keys.just_pressed(KeyCode::ArrowRight) {
         1
     } else if keys.just_pressed(KeyCode::ArrowLeft) {
-        LOOKS.len() - 1
+        STYLES.len() - 1
     } else {
         return;
     };
     let (entity, photographer) = &mut *camera;
-    photographer.look = (photographer.look + step) % LOOKS.len();
-    let style = LOOKS[photographer.look].style();
+    photographer.look = (photographer.look + step) % STYLES.len();
+    let style = STYLES[photographer.look].style();
     wear(&mut commands.entity(*entity), &style);
 }
 

@@ -13,7 +13,8 @@ fn main() {
 fn setup(mut commands: Commands, assets: Res<AssetServer>) {
     let from = |x, y, z| Transform::from_xyz(x, y, z).looking_at(Vec3::ZERO, Vec3::Y);
     let eye = from(0.0, 12.0, 10.0);
-    commands.spawn((Camera3d::default(), eye, Outlines::default()));
+    let style = Comic(assets.load(presets::SATURDAY_MORNING.path()));
+    commands.spawn((Camera3d::default(), eye, style));
 
     let sun = DirectionalLight {
         shadow_maps_enabled: true,
@@ -29,7 +30,7 @@ fn setup(mut commands: Commands, assets: Res<AssetServer>) {
             Mesh3d(assets.add(mesh)),
             MeshMaterial3d(assets.add(paint)),
             Transform::from_translation(place),
-            CartoonScene::default(),
+            ToonScene::default(),
         ));
     }
 }

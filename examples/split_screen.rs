@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use bevy::{camera::Viewport, prelude::*, render::view::Msaa};
-use bevy_comics::{CartoonScene, Outlines, presets};
+use bevy_comics::{Outlines, ToonScene, presets};
 use bevy_comics_testkit::{
     demo::{Demo, Screen},
     scenes::{BuiltIn, ScenePart, Stage},
@@ -39,7 +39,7 @@ fn spawn(mut stage: Stage, screen: Res<Screen>) {
 
 fn flatten(mut commands: Commands, parts: Query<Entity, (With<ScenePart>, Without<ChildOf>)>) {
     for part in &parts {
-        commands.entity(part).insert(CartoonScene::default());
+        commands.entity(part).insert(ToonScene::default());
     }
 }
 

@@ -5,7 +5,7 @@
 use std::process::ExitCode;
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{BlackFlats, CartoonScene, ComicStyle, Outlines, Vignette, presets};
+use bevy_comics::{BlackFlats, ComicStyle, Outlines, ToonScene, Vignette, presets};
 use bevy_comics_testkit::{
     demo::{Demo, Screen},
     headless::Headless,
@@ -128,7 +128,7 @@ fn spawn(mut stage: Stage, screen: Res<Screen>) {
 
 fn flatten(mut commands: Commands, parts: Query<Entity, (With<ScenePart>, Without<ChildOf>)>) {
     for part in &parts {
-        commands.entity(part).insert(CartoonScene::default());
+        commands.entity(part).insert(ToonScene::default());
     }
 }
 

@@ -1,5 +1,7 @@
 //! Turns any 3D scene into a comic, in real time.
 //!
+//! Add [`ComicsPlugin`] to the app and a style to a camera:
+//!
 //! ```no_run
 //! use bevy::prelude::*;
 //! use bevy_comics::prelude::*;
@@ -9,125 +11,113 @@
 //! }
 //!
 //! fn setup(mut commands: Commands, assets: Res<AssetServer>) {
-//!     let from = |x, y, z| Transform::from_xyz(x, y, z).looking_at(Vec3::ZERO, Vec3::Y);
-//!     let eye = from(0.0, 12.0, 10.0);
-//!     commands.spawn((Camera3d::default(), eye, Outlines::default()));
+//!     let at = |x, y, z| Transform::from_xyz(x, y, z).looking_at(Vec3::Y, Vec3::Y);
+//!     let style = Comic(assets.load(presets::SATURDAY_MORNING.path()));
+//!     commands.spawn((Camera3d::default(), at(2.0, 2.0, 5.0), style));
 //!     let sun = DirectionalLight { shadow_maps_enabled: true, ..default() };
-//!     commands.spawn((sun, from(8.0, 9.0, 3.0)));
-//!     for i in (0..300).map(|i| i as f32) {
-//!         let mesh = Mesh::from(Cylinder::new(0.75, 3.0 + i.sqrt().cos()));
-//!         let paint = StandardMaterial::from(Color::oklch(0.72, 0.15, 137.5 * i));
-//!         let place = Quat::from_rotation_y(2.4 * i) * Vec3::Z * i.sqrt();
-//!         commands.spawn((
-//!             Mesh3d(assets.add(mesh)),
-//!             MeshMaterial3d(assets.add(paint)),
-//!             Transform::from_translation(place),
-//!             CartoonScene::default(),
-//!         ));
-//!     }
+//!     commands.spawn((sun, at(4.0, 8.0, 3.0)));
+//!     let mesh = assets.add(Mesh::from(Torus::default()));
+//!     let material = assets.add(StandardMaterial::from(Color::oklch(0.72, 0.15, 30.0)));
+//!     commands.spawn((Mesh3d(mesh), MeshMaterial3d(material), Transform::from_xyz(0.0, 1.0, 0.0)));
 //! }
 //! ```
 //!
-//! Add the plugin, put effects on a camera as components, and that camera draws a
-//! comic. In every frame:
+//! # How it works
 //!
-//! 1. the components of a camera become a plan; what is absent, or changes
-//!    nothing, is left out, down to the shader ([`ComicsDiagnostics`] says what
-//!    and why);
-//! 2. a compute shader finds the nearest and farthest depth that is visible
-//!    ([`ReductionMethod`], [`VisibleDepthRange`]);
-//! 3. depth becomes the map `D`, 0 at the near end and 1 at the far end of the
-//!    range ([`DepthMap`]);
-//! 4. where [`Outlines`] are asked for, silhouettes, creases and edges between
-//!    objects are found along the borders of pixels, and drawn at their width;
-//! 5. one full-screen pass after tonemapping applies the effects: [`ToneRamp`], [`ToneBands`],
-//!    [`Desaturation`], [`Colorization`], [`ColorHarmony`], [`Planes`], [`Paint`], [`Focus`],
-//!    [`PrintOffset`], [`Halftone`], [`Hatching`], [`BlackFlats`], [`Contours`], the outlines or a
-//!    [`Sketch`] of them, [`IsoLines`], [`TwoTone`], [`SpeedLines`], [`Paper`] and [`Vignette`], in
-//!    this order, and those of the game ([`Effect`]) at the end of their [`EffectStage`].
+//! Effects are components on a camera. A style ([`ComicStyle`]) is a set of effects in a file, and
+//! [`Comic`] puts one on a camera. Every frame, for each camera with effects:
 //!
-//! [`Impact`] shows two tones for a few drawings, [`HeldPose`] draws characters "on twos", [`MotionLines`]
-//! draw lines behind what moves fast.
+//! 1. The components become a plan. An effect that changes nothing is left out of it, of the passes
+//!    and of the shader; [`ComicsDiagnostics`] reports what ran and why the rest did not.
+//! 2. A compute shader finds the nearest and the farthest visible depth in the depth prepass.
+//! 3. Depth is mapped to `D`, which is 0 at the near end of that range and 1 at its far end
+//!    ([`DepthMap`]).
+//! 4. If the camera has [`Outlines`], silhouettes, creases and edges between objects are found along
+//!    the borders between pixels, linked to lines and drawn.
+//! 5. One full-screen pass after tonemapping applies the effects, stage by stage
+//!    ([`EffectStage`](effect::EffectStage)).
 //!
-//! Whole styles are assets: [`ComicStyle`], with [`presets`]. On meshes, the
-//! feature `objects` adds `NoOutlines`, `OutlineStyle` and `OutlineGroup`, and the feature
-//! `cartoon` adds `CartoonMaterial` and `CartoonScene`; both are on by default.
+//! # Where to find what
 //!
-//! Equations are those of *Comics stylizations of 3D scenes using GPU*
-//! (Suarez, Belhadj, Boyer), cited as \[CS\], and of *Cartoon-Looking Rendering
-//! of 3D-Scenes* (Wang, after Decaudin), cited as \[CL\]. Every setting is brought into its
-//! documented range before it is used; no value makes a panic or a NaN.
+//! | Module | Contents |
+//! |---|---|
+//! | crate root | the plugin, styles, all effects, and the components that most games use |
+//! | [`presets`] | styles that come with the crate |
+//! | [`style`] | errors and events of styles, transitions |
+//! | [`effects`] | modes of the effects, such as [`HalftoneMode`](effects::HalftoneMode) |
+//! | [`lines`] | settings of outlines, such as [`LineWeight`](lines::LineWeight) |
+//! | [`depth`] | the depth map, its smoothing and its reduction |
+//! | `objects` | components for single meshes (feature `objects`, on by default) |
+//! | `toon` | the toon material (feature `toon`, on by default) |
+//! | [`effect`] | the trait for effects of your own, and what it needs |
+//! | [`diagnostics`] | which stages ran on which camera, and debug views |
+//! | `inspector` | a panel that edits styles while the game runs (feature `inspector`) |
+//!
+//! Equations are those of *Comics stylizations of 3D scenes using GPU* (Suarez, Belhadj, Boyer),
+//! cited as \[CS\], and of *Cartoon-Looking Rendering of 3D-Scenes* (Wang, after Decaudin), cited as
+//! \[CL\]. Every setting is clamped to its documented range before it is used; no value causes a
+//! panic or a NaN.
 #![warn(missing_docs)]
 
-#[cfg(feature = "cartoon")]
-mod cartoon;
+mod animation;
+mod camera;
 mod clock;
-mod depth;
-mod diagnostics;
-mod effect;
-mod effects;
-mod finish;
+mod composite;
+pub mod depth;
+pub mod diagnostics;
+pub mod effect;
+pub mod effects;
+mod fused;
 #[cfg(feature = "inspector")]
 pub mod inspector;
-mod lines;
-#[cfg(any(feature = "objects", feature = "cartoon"))]
+pub mod lines;
+#[cfg(any(feature = "objects", feature = "toon"))]
 mod motion_lines;
+#[cfg(feature = "objects")]
+pub mod objects;
+#[cfg(not(feature = "objects"))]
 mod objects;
 mod plugin;
 mod readback;
 mod samples;
 mod schedule;
 mod settings;
-mod style;
+pub mod style;
 #[cfg(feature = "inspector")]
 mod timing;
-mod view;
+#[cfg(feature = "toon")]
+pub mod toon;
 
-#[cfg(feature = "cartoon")]
-pub use cartoon::{
-    CartoonLight, CartoonMaterial, CartoonScene, DetailAxis, FormShape, Glint, GlintFrame,
-    GlintShape, MaterialName, Ramp, RampBlend, RampDetail, RampMap, RampMode, RampStop, Rim,
-    RimWidth, ShadedForm, TonalArtMap, ToonLook, ToonLookError, ToonLookHandle,
-    ToonLookHandleTemplate,
+#[cfg(any(feature = "objects", feature = "toon"))]
+pub use animation::SteppedAnimation;
+pub use animation::{Impact, ReduceFlashing};
+pub use camera::KeyLight;
+pub use composite::{SplitView, StyleWeight};
+pub use depth::{CameraCut, DepthMap, DepthMapping};
+pub use diagnostics::ComicsDiagnostics;
+pub use effect::{Effect, EffectPlugin};
+pub use effects::{
+    Abstraction, BlackFlats, ColorHarmony, Colorization, Contours, DepthLayers, Desaturation,
+    Focus, Halftone, Hatching, IsoLines, Misregistration, Outlines, Paint, Paper, Sketch,
+    SpeedLines, ToneBands, ToneRamp, TwoTone, Vignette,
 };
-pub use depth::{
-    CameraCut, DepthBin, DepthHistogram, DepthMap, DepthMapping, ProjectionKind, RangeSmoothing,
-    ReductionMethod, VisibleDepthRange,
-};
-pub use diagnostics::{
-    CameraStages, ComicsDiagnostics, ComicsStage, ImpactCounts, LeftOut, StageOutcome,
-};
-pub use effect::{
-    AnyEffect, Effect, EffectPlugin, EffectRegistry, EffectSet, EffectShader, EffectStage,
-    EffectTarget, EffectType, EffectView, Extent, Needs, NoUniform, Variants, ViewFacts,
-};
-pub use effects::*;
-pub use finish::{DebugView, SplitView, StyleWeight};
-pub use lines::{
-    Creases, LineAbstraction, LineBoil, LineColor, LineFocus, LineFog, LinePlanes, LineResponse,
-    LineSettings, LineWeight, MapJumps, ObjectEdges, Sheet, Silhouettes, ViewCracks,
-};
-#[cfg(any(feature = "objects", feature = "cartoon"))]
+#[cfg(any(feature = "objects", feature = "toon"))]
 pub use motion_lines::MotionLines;
 #[cfg(feature = "objects")]
-pub use objects::{
-    ATTRIBUTE_MESH_SECTION, DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle,
-    ObjectAbstraction, ObjectIdDepthTest, ObjectScreen, OutlineGroup, OutlineKinds, OutlineStyle,
-    SelectionOutline, ViewLineWidths, ViewObjectIds, XRayOutline, object_id,
-};
+pub use objects::{NoOutlines, NoStyle, OutlineGroup, OutlineStyle, SelectionOutline, XRayOutline};
 pub use plugin::ComicsPlugin;
 pub use schedule::ComicsSystems;
-pub use settings::{
-    BlendField, FieldRange, Form, HueWheel, blend_color, blend_ratio, bounded, bounded_option,
-    displayable, file_color, linear_rgb,
-};
-pub use style::{
-    ComicStyle, ComicStyleError, ComicStyleHandle, ComicStyleHandleTemplate, Preset,
-    StyleTransition, StyleTransitionFinished, TransitionEasing, presets,
-};
-#[cfg(any(feature = "objects", feature = "cartoon"))]
-pub use view::HeldPose;
-pub use view::{Impact, KeyLight, ReduceFlashing};
+pub use style::{Comic, ComicStyle, StyleTransition, presets};
+#[cfg(feature = "toon")]
+pub use toon::{ToonLight, ToonMaterial, ToonScene, ToonShadingHandle};
+
+/// What the crate's own tests read; not part of its interface.
+#[doc(hidden)]
+pub mod testing {
+    pub use crate::lines::ViewCracks;
+    #[cfg(feature = "objects")]
+    pub use crate::objects::{ViewLineWidths, ViewObjectIds, object_id};
+}
 
 /// The code of the README and of the pages, compiled as doctests. That of
 /// `your-own-effect.md` has several files and is compiled by `tests/gpu`.
@@ -146,12 +136,12 @@ mod pages {
         Lines: "docs/lines.md";
         OneObjectsLines: "docs/one-objects-lines.md";
         ExcludeAnObject: "docs/exclude-an-object.md";
-        CartoonMaterial: "docs/cartoon-material.md";
+        ToonMaterial: "docs/toon-material.md";
         Motion: "docs/motion.md";
         Paper: "docs/paper.md";
         Paint: "docs/paint.md";
         Focus: "docs/focus.md";
-        Planes: "docs/planes.md";
+        DepthLayers: "docs/depth-layers.md";
         ColorHarmony: "docs/color-harmony.md";
         Abstraction: "docs/abstraction.md";
         Hatching: "docs/hatching.md";
@@ -168,24 +158,22 @@ mod pages {
 
 /// What most games need: `use bevy_comics::prelude::*;`.
 pub mod prelude {
+    #[cfg(any(feature = "objects", feature = "toon"))]
+    pub use crate::SteppedAnimation;
     pub use crate::{
-        CameraCut, ComicStyle, ComicStyleHandle, ComicsPlugin, Creases, DepthMap, DepthMapping,
-        Effect, EffectPlugin, EffectTarget, Form, Impact, KeyLight, LineBoil, LineColor, LineFog,
-        LineResponse, LineWeight, ObjectEdges, RangeSmoothing, ReduceFlashing, Silhouettes,
-        SplitView, StyleTransition, StyleTransitionFinished, StyleWeight, VisibleDepthRange,
-        effects::*,
-    };
-    #[cfg(feature = "cartoon")]
-    pub use crate::{
-        CartoonLight, CartoonMaterial, CartoonScene, DetailAxis, FormShape, Glint, GlintFrame,
-        GlintShape, MaterialName, Ramp, RampBlend, RampDetail, RampMap, RampMode, RampStop, Rim,
-        RimWidth, ShadedForm, TonalArtMap, ToonLook, ToonLookHandle,
+        CameraCut, Comic, ComicStyle, ComicsPlugin, DepthMap, DepthMapping, Impact, SplitView,
+        StyleTransition, StyleWeight,
+        effects::{
+            Abstraction, BlackFlats, ColorHarmony, Colorization, Contours, DepthLayers,
+            Desaturation, Focus, Halftone, Hatching, Outlines, Paint, Paper, Sketch, SpeedLines,
+            ToneBands, ToneRamp, Vignette,
+        },
+        presets,
     };
     #[cfg(feature = "objects")]
     pub use crate::{
-        DepthWrite, LineWidths, MeshSections, NoOutlines, NoStyle, ObjectAbstraction, ObjectScreen,
-        OutlineGroup, OutlineKinds, OutlineStyle, SelectionOutline, XRayOutline,
+        NoOutlines, NoStyle, OutlineGroup, OutlineStyle, SelectionOutline, XRayOutline,
     };
-    #[cfg(any(feature = "objects", feature = "cartoon"))]
-    pub use crate::{HeldPose, MotionLines};
+    #[cfg(feature = "toon")]
+    pub use crate::{ToonLight, ToonMaterial, ToonScene, ToonShadingHandle};
 }

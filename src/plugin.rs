@@ -8,15 +8,16 @@ use bevy::{
 };
 
 use crate::{
+    animation::AnimationPlugin,
+    camera::CameraPlugin,
+    composite::CompositePlugin,
     depth::plugin::DepthPlugin,
     diagnostics::{ComicsDiagnostics, StageLedger, publish_ledger, read_ledger},
-    effect::FusedPlugin,
     effects,
-    finish::FinishPlugin,
+    fused::FusedPlugin,
     lines,
     objects::ObjectsPlugin,
     style::StylePlugin,
-    view::ViewPlugin,
 };
 
 /// Adds comics stylization: every [`Camera3d`](bevy::camera::Camera3d) with an
@@ -37,16 +38,17 @@ impl Plugin for ComicsPlugin {
         effects::add(app);
         app.add_plugins((
             StylePlugin,
-            ViewPlugin,
+            AnimationPlugin,
+            CameraPlugin,
             DepthPlugin,
             ObjectsPlugin,
-            FinishPlugin,
+            CompositePlugin,
             FusedPlugin,
         ));
-        #[cfg(any(feature = "objects", feature = "cartoon"))]
+        #[cfg(any(feature = "objects", feature = "toon"))]
         app.add_plugins(crate::motion_lines::MotionLinesPlugin);
-        #[cfg(feature = "cartoon")]
-        app.add_plugins(crate::cartoon::CartoonPlugin);
+        #[cfg(feature = "toon")]
+        app.add_plugins(crate::toon::ToonPlugin);
         build_engine_parts(app);
     }
 
@@ -72,8 +74,8 @@ fn build_engine_parts(app: &mut App) {
     };
     if parts.assets && !built.assets {
         StylePlugin::build_assets(app);
-        #[cfg(feature = "cartoon")]
-        crate::cartoon::CartoonPlugin::build_assets(app);
+        #[cfg(feature = "toon")]
+        crate::toon::ToonPlugin::build_assets(app);
     }
     if parts.render && !built.render {
         build_render(app);
@@ -84,16 +86,18 @@ fn build_engine_parts(app: &mut App) {
 /// The render world: what is asked of depth, objects and lines, and the pass
 /// that draws with it.
 fn build_render(app: &mut App) {
-    ViewPlugin::build_render(app);
+    #[cfg(any(feature = "objects", feature = "toon"))]
+    AnimationPlugin::build_render(app);
+    CameraPlugin::build_render(app);
     DepthPlugin::build_render(app);
     ObjectsPlugin::build_render(app);
     lines::build_render(app);
-    FinishPlugin::build_render(app);
+    CompositePlugin::build_render(app);
     FusedPlugin::build_render(app);
-    #[cfg(any(feature = "objects", feature = "cartoon"))]
+    #[cfg(any(feature = "objects", feature = "toon"))]
     crate::motion_lines::MotionLinesPlugin::build_render(app);
-    #[cfg(feature = "cartoon")]
-    crate::cartoon::CartoonPlugin::build_render(app);
+    #[cfg(feature = "toon")]
+    crate::toon::ToonPlugin::build_render(app);
     // Back to the main world: what ran.
     let ledger = StageLedger::default();
     let reader = ledger.reader();

@@ -21,7 +21,7 @@ pub enum ComicsSystems {
     /// Applies the effects to the picture: in `Core3dSystems::PostProcess`, after
     /// tonemapping and before FXAA and SMAA, which then smooth the ink.
     Stylize,
-    /// The same for cameras with an effect that [prints](crate::Effect::prints): after FXAA,
+    /// The same for cameras with an effect that [prints](crate::Effect::runs_after_anti_aliasing): after FXAA,
     /// SMAA and contrast-adaptive sharpening, which would change dots and grain.
     Print,
 }
@@ -37,3 +37,7 @@ pub(crate) enum PrepareComics {
     /// Prepares the fused pass.
     Fused,
 }
+
+/// The systems that put the effects of impacts on cameras, before cameras are planned.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct RunImpacts;

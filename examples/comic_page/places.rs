@@ -8,11 +8,11 @@ use bevy::{
     render::{render_resource::TextureFormat, view::Msaa},
 };
 use bevy_comics::{
-    CartoonScene, ComicStyle, OutlineGroup, Outlines, SpeedLineKind, SpeedLines, presets,
+    ComicStyle, OutlineGroup, Outlines, SpeedLines, ToonScene, effects::SpeedLineKind, presets,
 };
 use bevy_comics_testkit::{
     headless::new_target,
-    scenes::{BuiltIn, CartoonPart, ScenePart, Stage, Vantage, paper_plane::paper_plane},
+    scenes::{BuiltIn, ScenePart, Stage, ToonPart, Vantage, paper_plane::paper_plane},
     studio::wear,
 };
 
@@ -124,7 +124,7 @@ pub fn spawn(world: &mut World) {
     world.insert_resource(Pictures(pictures));
 }
 
-/// Builds a scene on a layer, with the cartoon material.
+/// Builds a scene on a layer, with the toon material.
 fn build(world: &mut World, scene: BuiltIn, layer: usize) -> (BuiltIn, Vantage, AmbientLight) {
     let spawned = world.run_system_once(move |mut stage: Stage| stage.spawn(scene));
     let vantage = spawned.expect("the stage is there");
@@ -135,7 +135,7 @@ fn build(world: &mut World, scene: BuiltIn, layer: usize) -> (BuiltIn, Vantage, 
     let whole = (OutlineGroup, Transform::IDENTITY, Visibility::default());
     let whole = (scene == BuiltIn::Mountains).then(|| world.spawn(whole).id());
     for root in roots {
-        let look = world.get::<CartoonPart>(root).cloned().unwrap_or_default();
+        let look = world.get::<ToonPart>(root).cloned().unwrap_or_default();
         world.entity_mut(root).insert(look.0);
         put_on_layer(world, root, layer);
         if let Some(whole) = whole {
@@ -178,7 +178,7 @@ fn fold_plane(world: &mut World, eye: Transform, from_eye: Vec3, size: f32, laye
     world.spawn((
         Mesh3d(mesh),
         MeshMaterial3d(paper),
-        CartoonScene::default(),
+        ToonScene::default(),
         eye * place.with_scale(Vec3::splat(size)),
         layer,
     ));

@@ -8,12 +8,12 @@ use bevy::{
     camera::Hdr, ecs::system::SystemParam, prelude::*, render::view::Msaa, window::WindowResolution,
 };
 use bevy_comics::{
-    CartoonScene, ComicsDiagnostics, ComicsPlugin, Preset, StageOutcome, VisibleDepthRange,
-    inspector::ComicsInspectorPlugin, presets,
+    ComicsDiagnostics, ComicsPlugin, ToonScene, depth::VisibleDepthRange,
+    diagnostics::StageOutcome, inspector::ComicsInspectorPlugin, presets, style::Preset,
 };
 use bevy_comics_testkit::{
     orbit::{Orbit, OrbitPlugin},
-    scenes::{BuiltIn, CartoonPart, ScenePart, Stage, Vantage, figure::motion::MotionPlugin},
+    scenes::{BuiltIn, ScenePart, Stage, ToonPart, Vantage, figure::motion::MotionPlugin},
     studio::wear,
 };
 use split::Split;
@@ -25,8 +25,8 @@ struct Show {
     /// Index into the presets.
     style: usize,
     orthographic: bool,
-    /// Whether the scene is drawn with the cartoon material.
-    cartoon: bool,
+    /// Whether the scene is drawn with the toon material.
+    toon: bool,
     help: bool,
     vantage: Option<Vantage>,
 }
@@ -41,7 +41,7 @@ struct HelpText;
 const HELP: &str = "\
 1 2 3 4      scene
 Left Right   style
-L            light: standard / cartoon
+L            light: standard / toon
 O            perspective / orthographic
 M            samples: 1 / 4
 D            HDR on / off
@@ -67,7 +67,7 @@ fn main() {
         scene: BuiltIn::Village,
         style: index_of(presets::GRAPHIC_NOVEL),
         orthographic: false,
-        cartoon: false,
+        toon: false,
         help: true,
         vantage: None,
     })
@@ -118,12 +118,12 @@ fn open_scene(
         .id();
     show.orthographic = false;
     show.vantage = Some(vantage);
-    show.cartoon = scene.is_cartoon();
+    show.toon = scene.is_toon();
     apply(&mut stage.commands, camera, show.style);
 }
 
-/// A part of the scene: whether it has the cartoon material, and how it looks with it.
-type Part = (Entity, Has<CartoonScene>, Option<&'static CartoonPart>);
+/// A part of the scene: whether it has the toon material, and how it looks with it.
+type Part = (Entity, Has<ToonScene>, Option<&'static ToonPart>);
 
 /// Draws the scene with the material that is chosen.
 fn light_scene(
@@ -131,12 +131,12 @@ fn light_scene(
     show: Res<Show>,
     parts: Query<Part, (With<ScenePart>, Without<ChildOf>)>,
 ) {
-    for (part, is_cartoon, look) in &parts {
-        if show.cartoon && !is_cartoon {
+    for (part, is_toon, look) in &parts {
+        if show.toon && !is_toon {
             let look = look.cloned().unwrap_or_default();
             commands.entity(part).insert(look.0);
-        } else if !show.cartoon && is_cartoon {
-            commands.entity(part).remove::<CartoonScene>();
+        } else if !show.toon && is_toon {
+            commands.entity(part).remove::<ToonScene>();
         }
     }
 }
@@ -209,7 +209,7 @@ fn choose(
         apply(&mut commands, entity, show.style);
     }
     if keys.just_pressed(KeyCode::KeyL) {
-        show.cartoon = !show.cartoon;
+        show.toon = !show.toon;
     }
     if keys.just_pressed(KeyCode::KeyM) {
         *msaa = if *msaa == Msaa::Off {
@@ -287,8 +287,8 @@ fn describe(
     for (stage, outcome) in stages.into_iter().flatten() {
         lines += &match outcome {
             StageOutcome::Ran => format!("{}\n", stage.name()),
-            StageOutcome::RanAs(method) => format!("{} ({method})\n", stage.name()),
-            StageOutcome::LeftOut(reason) => format!("no {}: {reason}\n", stage.name()),
+            StageOutcome::RanWith(method) => format!("{} ({method})\n", stage.name()),
+            StageOutcome::Skipped(reason) => format!("no {}: {reason}\n", stage.name()),
             _ => String::new(),
         };
     }

@@ -5,7 +5,11 @@ use bevy::{
     prelude::*,
 };
 use bevy_comics::{
-    BlackFlats, CartoonLight, ComicStyle, LineWeight, Outlines, Preset, Ramp, RampStop, presets,
+    BlackFlats, ComicStyle, Outlines, ToonLight,
+    lines::LineWeight,
+    presets,
+    style::Preset,
+    toon::{Ramp, RampStop},
 };
 use bevy_comics_testkit::scenes::{BuiltIn, mountains};
 
@@ -181,7 +185,7 @@ impl Level {
     }
 
     /// Flat light, and shadows in the colour of the place.
-    pub fn light(&self) -> CartoonLight {
+    pub fn light(&self) -> ToonLight {
         let ramp = self.shade.map(|(red, green, blue)| {
             let shade = RampStop::new(0.0, Color::srgb(red, green, blue));
             let light = RampStop::new(0.25, Color::WHITE);
@@ -190,7 +194,7 @@ impl Level {
                 ..default()
             }
         });
-        CartoonLight { ramp, ..default() }
+        ToonLight { ramp, ..default() }
     }
 
     /// A point above the ground.

@@ -5,10 +5,10 @@ use bevy::prelude::*;
 use crate::{
     Game,
     input::Input,
-    looks::{Dressed, Looks, Mood, come_back, dress},
     pages::{Page, Pages},
     rules::{Controls, Event, Flight},
     scenery::{CloudAt, LanternAt, Plane},
+    styles::{Dressed, Looks, Mood, come_back, dress},
 };
 
 pub struct FlyingPlugin;

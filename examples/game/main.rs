@@ -9,13 +9,13 @@ mod best;
 mod courses;
 mod flying;
 mod input;
-mod looks;
 mod pages;
 mod play;
 mod rules;
 mod scenery;
 mod screen;
 mod solids;
+mod styles;
 
 use std::path::PathBuf;
 

@@ -1,7 +1,7 @@
 //! The pages of the game, as states of the engine, and how the player turns them.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{CameraCut, EffectTarget};
+use bevy_comics::{CameraCut, effect::EffectTarget};
 use bevy_comics_testkit::scenes::{ScenePart, Stage};
 
 use crate::{
@@ -10,8 +10,8 @@ use crate::{
     courses::LEVELS,
     flying::Chase,
     input::Input,
-    looks::{Dressed, Looks},
     scenery::{self, Plane, build},
+    styles::{Dressed, Looks},
 };
 
 /// The page that is shown.

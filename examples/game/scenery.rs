@@ -1,7 +1,7 @@
 //! What a level is made of: its scene, lanterns, storm clouds and the plane.
 
 use bevy::prelude::*;
-use bevy_comics::{CartoonScene, MeshSections, MotionLines, OutlineGroup};
+use bevy_comics::{MotionLines, OutlineGroup, ToonScene, objects::MeshSections};
 use bevy_comics_testkit::scenes::{ScenePart, Stage, Vantage, paper_plane::paper_plane};
 
 use crate::{
@@ -70,7 +70,7 @@ pub fn finish(
 ) {
     let level = &LEVELS[game.level];
     game.flight.course.solids = level.solids(solid(parts.iter(), &meshes, &materials));
-    let look = CartoonScene::new(level.light());
+    let look = ToonScene::new(level.light());
     let root = (ScenePart, OutlineGroup, Visibility::default());
     let root = (root, Transform::IDENTITY, look.clone());
     let ground = commands.spawn(root).id();
@@ -136,7 +136,7 @@ fn gather_clouds(stage: &mut Stage, flight: &Flight, level: &Level) {
         let at = Transform::from_translation(flight.cloud(index))
             .with_scale(Vec3::splat(flight.course.scale));
         let cloud = (ScenePart, CloudAt(index), at, Visibility::default());
-        let look = CartoonScene::new(level.light());
+        let look = ToonScene::new(level.light());
         let cloud = stage.commands.spawn((cloud, look)).id();
         for (x, y, z, size) in [
             (0.0, 0.0, 0.0, 1.0),
@@ -178,7 +178,7 @@ fn fold_plane(stage: &mut Stage, flight: &Flight, level: &Level) {
         Plane,
         Mesh3d(stage.meshes.add(paper_plane())),
         MeshMaterial3d(paper),
-        CartoonScene::new(level.light()),
+        ToonScene::new(level.light()),
         lines,
         Transform::from_translation(flight.at).with_scale(Vec3::splat(scale)),
     ));

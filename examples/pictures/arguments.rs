@@ -12,11 +12,11 @@ usage: pictures styles [--size WxH] [--out FILE.png]         each style of the g
        pictures banner [--out FILE.png]                       the README's first picture
        pictures looks [--out FILE.png]                        a row of looks, for the page of examples
        pictures presets [--out FILE.png]                      the page of the presets
-       pictures gallery [--only NAME,NAME] [--out DIR]        docs/looks: every look, and how they differ;
+       pictures gallery [--only NAME,NAME] [--out DIR]        docs/gallery: every look, and how they differ;
                                                               or only the numbers of these looks
-       pictures loops [--out DIR]                             docs/looks: strokes and lines in motion
-       pictures ramps [--out FILE.png]                        the ramps of the cartoon material
-       pictures toon [--out DIR]                              signs, rims and X-Toon of the cartoon material
+       pictures loops [--out DIR]                             docs/gallery: strokes and lines in motion
+       pictures ramps [--out FILE.png]                        the ramps of the toon material
+       pictures toon [--out DIR]                              signs, rims and X-Toon of the toon material
        pictures pages [--out DIR]                             the pages about single tasks
        pictures motion [--out DIR]                            the pages about speed lines and paper
        pictures print [--out DIR]                             the pages about print, paint and focus
@@ -140,7 +140,7 @@ mod tests {
 
     /// Every command line is read, or refused with a message.
     #[test]
-    fn no_command_line_is_dangerous() {
+    fn parsing_a_command_line_never_panics() {
         check_command_lines(
             6,
             &RIGHT,

@@ -9,8 +9,9 @@ use bevy::{
     render::{RenderApp, sync_world::RenderEntity, view::Msaa},
 };
 use bevy_comics::{
-    Colorization, ColorizationMode, ComicStyle, ComicsPlugin, Contours, DepthMap, DepthMapping,
-    Desaturation, Form, presets,
+    Colorization, ComicStyle, ComicsPlugin, Contours, DepthMap, DepthMapping, Desaturation,
+    effects::{ColorizationMode, Equations},
+    presets,
 };
 use image::{Rgba, RgbaImage};
 
@@ -236,10 +237,10 @@ fn figure_4(folder: &Path) -> Result<(), String> {
         let style = preset.style();
         let mut faithful = style.clone();
         if let Some(s) = faithful.get_mut::<Desaturation>() {
-            s.form = Form::Faithful;
+            s.equations = Equations::Faithful;
         }
         if let Some(s) = faithful.get_mut::<Colorization>() {
-            s.form = Form::Faithful;
+            s.equations = Equations::Faithful;
         }
         let mut studio = Studio::new(scene, SMALL, Msaa::Sample4);
         rows.push(vec![

@@ -3,15 +3,15 @@
 use std::{fmt::Write, fs, path::Path};
 
 use bevy::{math::UVec2, render::view::Msaa};
-use bevy_comics::{ComicStyle, Preset, presets};
+use bevy_comics::{ComicStyle, presets, style::Preset};
 use bevy_comics_testkit::{
     ROOT,
-    look_work::{
+    scenes::BuiltIn,
+    studio::Studio,
+    style_work::{
         LEAST_APART, LEAST_CONTRAST, LookBench, MOST_CLIPPED, MOST_FLICKER, MOST_FRAGMENTS,
         Measures,
     },
-    scenes::BuiltIn,
-    studio::Studio,
 };
 use image::RgbaImage;
 
@@ -200,7 +200,7 @@ fn page(measured: &[Measured], unstyled: &Measures) -> String {
         measured.len(),
         loops::SECTION,
     );
-    for (look, m) in presets::LOOKS.iter().zip(measured) {
+    for (look, m) in presets::STYLES.iter().zip(measured) {
         let title = look.style().name;
         let own = &m.own;
         write!(
@@ -228,7 +228,7 @@ fn page(measured: &[Measured], unstyled: &Measures) -> String {
 /// `only`: names of looks with commas between them, which are measured and not written; empty: all.
 pub fn write(folder: &Path, only: &str) -> Result<(), String> {
     let wanted = |look: &Preset| only.is_empty() || only.split(',').any(|one| one == look.name());
-    let looks: Vec<Preset> = presets::LOOKS.iter().copied().filter(wanted).collect();
+    let looks: Vec<Preset> = presets::STYLES.iter().copied().filter(wanted).collect();
     let (measured, unstyled) = measure(&looks)?;
     for (look, m) in looks.iter().zip(&measured) {
         println!(
@@ -244,7 +244,7 @@ pub fn write(folder: &Path, only: &str) -> Result<(), String> {
         return Ok(());
     }
     for scene in BuiltIn::ALL {
-        let looks: Vec<Preset> = (presets::LOOKS.iter().copied())
+        let looks: Vec<Preset> = (presets::STYLES.iter().copied())
             .filter(|look| scene_of(*look) == scene)
             .collect();
         if looks.is_empty() {

@@ -10,7 +10,11 @@ use std::{
 };
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{MeshSections, ObjectScreen, Paint, presets};
+use bevy_comics::{
+    Paint,
+    objects::{MeshSections, PatternAnchor},
+    presets,
+};
 use bevy_comics_testkit::{
     scenes::BuiltIn,
     studio::{Studio, set_sections},
@@ -30,7 +34,7 @@ const SETTLE: usize = 10;
 /// What the page of looks says about them.
 pub const SECTION: &str = "\n## In motion\n\n\
     ![A figure turns, and broad cuts turn with it](strokes-in-motion.png)\n\n\
-    *`woodcut` with a smaller brush. The figure has an `ObjectScreen`: strokes stay where they are on what moves.*\n\n\
+    *`woodcut` with a smaller brush. The figure has a `PatternAnchor`: strokes stay where they are on what moves.*\n\n\
     ![The camera goes to and fro in the village](lines-in-motion.png)\n\n\
     *`ligne-claire`. Houses have `MeshSections`: lines neither break nor jump. Made by `cargo run --example pictures -- loops`.*\n";
 
@@ -54,7 +58,7 @@ fn strokes() -> Vec<RgbaImage> {
         .iter(world)
         .find(|(_, name)| name.as_str() == "figure");
     let figure = figure.map(|(entity, _)| entity).expect("the figure");
-    let screen = ObjectScreen {
+    let screen = PatternAnchor {
         inherit: true,
         ..default()
     };
@@ -63,7 +67,7 @@ fn strokes() -> Vec<RgbaImage> {
     let mut style = presets::WOODCUT.style();
     // The brush of a small picture is small: eyes stay.
     if let Some(paint) = style.get_mut::<Paint>() {
-        paint.near = 2.0;
+        paint.at_near = 2.0;
     }
     studio.shoot(Some(&style));
     let frames = (0..FRAMES).map(|frame| {

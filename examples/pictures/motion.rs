@@ -4,8 +4,8 @@ use std::path::Path;
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
-    CartoonLight, ComicStyle, Impact, MotionLines, Outlines, Paper, Ramp, SpeedLineKind,
-    SpeedLines, ToneBands, presets,
+    ComicStyle, Impact, MotionLines, Outlines, Paper, SpeedLines, ToneBands, ToonLight,
+    effects::SpeedLineKind, presets, toon::Ramp,
 };
 use bevy_comics_testkit::{scenes::BuiltIn, studio::Studio};
 use image::RgbaImage;
@@ -70,7 +70,7 @@ fn motion_lines() -> RgbaImage {
     let eye = Transform::from_xyz(0.0, 1.6, 9.0).looking_at(Vec3::new(0.0, 1.2, 0.0), Vec3::Y);
     let mut room = Room::new(UVec2::new(800, 300), eye, 0.34);
     room.ground();
-    let light = CartoonLight {
+    let light = ToonLight {
         ramp: Some(per_light(Ramp::default().stops)),
         ..default()
     };

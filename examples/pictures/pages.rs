@@ -10,8 +10,8 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    CartoonScene, ComicStyle, ComicsPlugin, Contours, Desaturation, NoOutlines, OutlineStyle,
-    Outlines, SelectionOutline, XRayOutline, presets,
+    ComicStyle, ComicsPlugin, Contours, Desaturation, NoOutlines, OutlineStyle, Outlines,
+    SelectionOutline, ToonScene, XRayOutline, presets,
 };
 use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
@@ -76,17 +76,11 @@ struct Toys {
 
 /// Adds a mesh with flat light.
 fn put(world: &mut World, mesh: Mesh, color: Color, at: Vec3) -> Entity {
-    put_lit(world, mesh, color, at, CartoonScene::default())
+    put_lit(world, mesh, color, at, ToonScene::default())
 }
 
 /// Adds a mesh with flat light of its own settings.
-pub fn put_lit(
-    world: &mut World,
-    mesh: Mesh,
-    color: Color,
-    at: Vec3,
-    scene: CartoonScene,
-) -> Entity {
+pub fn put_lit(world: &mut World, mesh: Mesh, color: Color, at: Vec3, scene: ToonScene) -> Entity {
     let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
     let material = StandardMaterial {
         perceptual_roughness: 0.9,

@@ -5,7 +5,10 @@ use bevy::{
     prelude::*,
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
-use bevy_comics::{CartoonLight, DetailAxis, Ramp, RampDetail, RampMap, RampMode, RampStop};
+use bevy_comics::{
+    ToonLight,
+    toon::{DetailAxis, Ramp, RampDetail, RampMap, RampMode, RampStop},
+};
 use image::{Rgba, RgbaImage, imageops};
 
 use crate::{
@@ -122,7 +125,7 @@ fn panel(part: Panel) -> RgbaImage {
     room.ground();
     let map = (part.map.as_ref()).map(|map| texture(map, TextureFormat::Rgba8UnormSrgb));
     let thresholds = (part.thresholds.as_ref()).map(|map| texture(map, TextureFormat::Rgba8Unorm));
-    let light = CartoonLight {
+    let light = ToonLight {
         highlight: 0.0,
         ramp: Some(part.ramp),
         ramp_map: map.map_or_else(RampMap::default, |map| room.image(map).into()),

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use bevy::{math::UVec2, render::view::Msaa};
-use bevy_comics::{ComicStyle, FocusStyle, Outlines, Preset, presets};
+use bevy_comics::{ComicStyle, Outlines, effects::FocusStyle, presets, style::Preset};
 use bevy_comics_testkit::{
     scenes::BuiltIn,
     studio::{Studio, village_focus},

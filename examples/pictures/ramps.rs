@@ -1,8 +1,9 @@
-//! The picture of the ramps of the cartoon material.
+//! The picture of the ramps of the toon material.
 
 use bevy::prelude::*;
 use bevy_comics::{
-    CartoonLight, CartoonScene, ComicsPlugin, Outlines, Ramp, RampBlend, RampMode, RampStop,
+    ComicsPlugin, Outlines, ToonLight, ToonScene,
+    toon::{Ramp, RampBlend, RampMode, RampStop},
 };
 use bevy_comics_testkit::headless::{Headless, HeadlessOptions};
 use image::RgbaImage;
@@ -45,13 +46,13 @@ fn ramps() -> [Option<Ramp>; 4] {
     ]
 }
 
-fn put(world: &mut World, mesh: Mesh, color: Color, light: &CartoonLight, at: Vec3) {
+fn put(world: &mut World, mesh: Mesh, color: Color, light: &ToonLight, at: Vec3) {
     let light = light.clone();
-    put_lit(world, mesh, color, at, CartoonScene::new(light));
+    put_lit(world, mesh, color, at, ToonScene::new(light));
 }
 
 /// A pawn of a game of chess.
-fn pawn(world: &mut World, light: &CartoonLight, x: f32) {
+fn pawn(world: &mut World, light: &ToonLight, x: f32) {
     let color = Color::srgb(0.95, 0.66, 0.45);
     let body = ConicalFrustum {
         radius_top: 0.26,
@@ -105,7 +106,7 @@ pub fn picture() -> RgbaImage {
     };
     world.spawn((sun, from(-4.4, 4.4, 2.8)));
     let ground = Plane3d::default().mesh().size(40.0, 40.0).build();
-    let plain = CartoonLight {
+    let plain = ToonLight {
         ramp: Some(Ramp::default()),
         ..default()
     };
@@ -117,7 +118,7 @@ pub fn picture() -> RgbaImage {
         Vec3::ZERO,
     );
     for (k, ramp) in ramps().into_iter().enumerate() {
-        let light = CartoonLight { ramp, ..default() };
+        let light = ToonLight { ramp, ..default() };
         pawn(world, &light, -2.55 + 1.7 * k as f32);
     }
     headless.step(SETTLE);

@@ -3,7 +3,7 @@
 use std::{path::Path, time::Instant};
 
 use bevy::{math::UVec2, render::view::Msaa};
-use bevy_comics::{Preset, presets};
+use bevy_comics::{presets, style::Preset};
 use image::{RgbaImage, imageops};
 
 use bevy_comics_testkit::{
@@ -56,19 +56,19 @@ const COLUMNS: usize = 6;
 /// picture how long the others will take.
 pub fn styles(size: UVec2, out: &Path) -> Result<(), String> {
     let started = Instant::now();
-    let count = presets::LOOKS.len();
+    let count = presets::STYLES.len();
     let mut pictures = vec![RgbaImage::default(); count];
     let mut drawn = 0;
     for scene in BuiltIn::ALL {
         let shown: Vec<usize> = (0..count)
-            .filter(|k| scene_of(presets::LOOKS[*k]) == scene)
+            .filter(|k| scene_of(presets::STYLES[*k]) == scene)
             .collect();
         if shown.is_empty() {
             continue;
         }
         let mut studio = Studio::new(scene, size, Msaa::Sample4);
         for k in shown {
-            let preset = presets::LOOKS[k];
+            let preset = presets::STYLES[k];
             pictures[k] = studio.shoot(Some(&preset.style()));
             drawn += 1;
             let left = started.elapsed().as_secs_f64() / drawn as f64 * (count - drawn) as f64;

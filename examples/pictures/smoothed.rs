@@ -3,7 +3,10 @@
 use std::{thread, time::Duration};
 
 use bevy::{prelude::*, render::view::Msaa, time::TimeUpdateStrategy};
-use bevy_comics::{FormShape, ShadedForm, ToonLook, presets};
+use bevy_comics::{
+    presets,
+    toon::{ProxyShape, ShadingProxy, ToonShading},
+};
 use bevy_comics_testkit::{scenes::BuiltIn, studio::Studio};
 use image::RgbaImage;
 
@@ -27,15 +30,15 @@ pub fn picture() -> RgbaImage {
     let stopped = TimeUpdateStrategy::ManualDuration(Duration::ZERO);
     studio.headless.app.insert_resource(stopped);
     let pictures = [None, Some(30)].map(|rounds| {
-        let form = rounds.map(|rounds| ShadedForm {
-            shape: FormShape::Smoothed { rounds },
+        let form = rounds.map(|rounds| ShadingProxy {
+            shape: ProxyShape::Smoothed { rounds },
             ..default()
         });
         let world = studio.headless.app.world_mut();
-        let mut looks = world.resource_mut::<Assets<ToonLook>>();
+        let mut looks = world.resource_mut::<Assets<ToonShading>>();
         for (_, look) in looks.iter_mut() {
             if ["Face", "Hair"].contains(&look.name.as_str()) {
-                look.light.form = form;
+                look.light.proxy = form;
             }
         }
         for _ in 0..SETTLE {

@@ -1,4 +1,4 @@
-//! A picture of strokes on the cartoon material.
+//! A picture of strokes on the toon material.
 
 use bevy::{
     camera::visibility::NoFrustumCulling,
@@ -8,7 +8,11 @@ use bevy::{
     },
     prelude::*,
 };
-use bevy_comics::{CartoonLight, Hatching, HatchingGround, Ramp, RampMode, RampStop, TonalArtMap};
+use bevy_comics::{
+    Hatching, ToonLight,
+    effects::HatchingGround,
+    toon::{Ramp, RampMode, RampStop, TonalArtMap},
+};
 use image::RgbaImage;
 
 use crate::toon::{Room, bumpy, matt};
@@ -24,8 +28,8 @@ fn soft() -> Ramp {
     }
 }
 
-fn light(hatching: Hatching) -> CartoonLight {
-    CartoonLight {
+fn light(hatching: Hatching) -> ToonLight {
+    ToonLight {
         ramp: Some(soft()),
         hatching: Some(hatching),
         highlight: 0.0,
@@ -41,7 +45,7 @@ fn on_paper() -> Hatching {
         spacing: 3.0,
         shadows: 0.0,
         highlights: 1.0,
-        near: 0.8,
+        at_near: 0.8,
         ..default()
     }
 }
@@ -52,10 +56,10 @@ pub fn picture() -> RgbaImage {
     let mut room = Room::new(UVec2::new(900, 260), eye, 0.21);
     let shadow = Hatching {
         spacing: 3.0,
-        near: 0.7,
+        at_near: 0.7,
         ..default()
     };
-    room.ground_with(&CartoonLight {
+    room.ground_with(&ToonLight {
         hatching: Some(shadow),
         ..default()
     });
@@ -64,7 +68,7 @@ pub fn picture() -> RgbaImage {
         spacing: 3.0,
         shadows: 0.0,
         highlights: 1.0,
-        near: 0.8,
+        at_near: 0.8,
         ..default()
     };
     let knot = Torus::new(0.2, 0.5)
@@ -87,7 +91,7 @@ pub fn picture() -> RgbaImage {
         ..default()
     };
     let map = room.image(map.image());
-    let mapped = CartoonLight {
+    let mapped = ToonLight {
         art_map: Some(map.clone()),
         art_map_repeat: 1.0,
         ..light(on_paper())
@@ -101,7 +105,7 @@ pub fn picture() -> RgbaImage {
     room.put(jar, matt(Color::WHITE), &mapped, at(3, 0.6));
     let mut stone = bumpy(0.12);
     stone.remove_attribute(Mesh::ATTRIBUTE_UV_0);
-    let mapped = CartoonLight {
+    let mapped = ToonLight {
         art_map_repeat: 0.6,
         ..mapped
     };

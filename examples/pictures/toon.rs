@@ -1,12 +1,14 @@
-//! Pictures of the cartoon material: signs of light, rims, and tones that change with depth.
+//! Pictures of the toon material: signs of light, rims, and tones that change with depth.
 
 use std::path::Path;
 
 use bevy::{core_pipeline::tonemapping::Tonemapping, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    CartoonLight, CartoonMaterial, CartoonScene, ComicStyle, ComicsPlugin, DetailAxis, FormShape,
-    Glint, GlintShape, Outlines, Ramp, RampDetail, RampMode, RampStop, Rim, RimWidth, ShadedForm,
-    ToneRamp, presets,
+    ComicStyle, ComicsPlugin, Outlines, ToneRamp, ToonLight, ToonMaterial, ToonScene, presets,
+    toon::{
+        DetailAxis, HighlightShape, ProxyShape, Ramp, RampDetail, RampMode, RampStop, Rim,
+        RimWidth, ShadingProxy, StylizedHighlight,
+    },
 };
 use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
@@ -78,30 +80,28 @@ impl Room {
         &mut self,
         mesh: impl Into<Mesh>,
         base: StandardMaterial,
-        light: &CartoonLight,
+        light: &ToonLight,
         at: Transform,
     ) -> Entity {
         let world = self.headless.app.world_mut();
         let mesh = world.resource_mut::<Assets<Mesh>>().add(mesh);
-        let material = CartoonMaterial {
+        let material = ToonMaterial {
             base,
             extension: light.clone(),
         };
-        let material = world
-            .resource_mut::<Assets<CartoonMaterial>>()
-            .add(material);
+        let material = world.resource_mut::<Assets<ToonMaterial>>().add(material);
         let parts = (Mesh3d(mesh), MeshMaterial3d(material), at);
         world.spawn(parts).id()
     }
 
     pub fn ground(&mut self) {
-        self.ground_with(&CartoonLight {
+        self.ground_with(&ToonLight {
             ramp: Some(per_light(Ramp::default().stops)),
             ..default()
         });
     }
 
-    pub fn ground_with(&mut self, light: &CartoonLight) {
+    pub fn ground_with(&mut self, light: &ToonLight) {
         let ground = Plane3d::default().mesh().size(80.0, 80.0);
         let at = Transform::IDENTITY;
         self.put(ground, matt(Color::srgb(0.93, 0.84, 0.66)), light, at);
@@ -148,8 +148,8 @@ fn signs() -> RgbaImage {
     let eye = Transform::from_xyz(0.0, 1.7, 8.4).looking_at(Vec3::new(0.0, 0.55, 0.0), Vec3::Y);
     let mut room = Room::new(UVec2::new(800, 200), eye, 0.235);
     room.ground();
-    let sign = |shape, size, change: fn(&mut Glint)| {
-        let mut sign = Glint {
+    let sign = |shape, size, change: fn(&mut StylizedHighlight)| {
+        let mut sign = StylizedHighlight {
             shape,
             size,
             ..default()
@@ -158,19 +158,19 @@ fn signs() -> RgbaImage {
         sign
     };
     let signs = [
-        sign(GlintShape::Disc, 1.6, |_| ()),
-        sign(GlintShape::Disc, 1.3, |s| s.split.x = 1.5),
-        sign(GlintShape::Window, 2.4, |s| {
+        sign(HighlightShape::Disc, 1.6, |_| ()),
+        sign(HighlightShape::Disc, 1.3, |s| s.split.x = 1.5),
+        sign(HighlightShape::Window, 2.4, |s| {
             (s.square, s.rotation) = (0.7, -8.0);
         }),
-        sign(GlintShape::Crescent, 2.8, |s| {
+        sign(HighlightShape::Crescent, 2.8, |s| {
             (s.bar, s.rotation) = (0.3, -35.0);
         }),
-        sign(GlintShape::Star, 4.0, |_| ()),
-        sign(GlintShape::Streak, 3.6, |s| {
+        sign(HighlightShape::Star, 4.0, |_| ()),
+        sign(HighlightShape::Streak, 3.6, |s| {
             (s.bar, s.rotation) = (0.2, 40.0);
         }),
-        sign(GlintShape::Faithful, 1.8, |s| {
+        sign(HighlightShape::Faithful, 1.8, |s| {
             (s.square, s.sharpness, s.scale.x) = (0.4, 1, 1.5);
         }),
     ];
@@ -183,10 +183,10 @@ fn signs() -> RgbaImage {
         Color::srgb(0.24, 0.26, 0.34),
         Color::srgb(0.72, 0.3, 0.45),
     ];
-    for (k, (glint, color)) in signs.into_iter().zip(colors).enumerate() {
-        let light = CartoonLight {
+    for (k, (stylized_highlight, color)) in signs.into_iter().zip(colors).enumerate() {
+        let light = ToonLight {
             ramp: Some(per_light(Ramp::default().stops)),
-            glint: Some(glint),
+            stylized_highlight: Some(stylized_highlight),
             highlight: 4.0,
             ..default()
         };
@@ -224,7 +224,7 @@ fn details() -> RgbaImage {
             near(),
             same(pale, 4),
             DetailAxis::Depth {
-                near: 4.5,
+                from: 4.5,
                 ratio: 3.2,
             },
         ),
@@ -242,7 +242,7 @@ fn details() -> RgbaImage {
         let eye = Transform::from_xyz(0.2, 2.1, 4.6).looking_at(Vec3::new(0.1, 0.3, -0.6), Vec3::Y);
         let mut room = Room::new(size, eye, 0.62);
         room.ground();
-        let light = CartoonLight {
+        let light = ToonLight {
             ramp: Some(Ramp {
                 detail: Some(RampDetail { plain, axis }),
                 ..per_light(stops)
@@ -280,7 +280,7 @@ fn rims() -> RgbaImage {
     };
     let cases = [None, rim(facing), rim(RimWidth::Pixels(5.0))];
     for (k, rim) in cases.into_iter().enumerate() {
-        let light = CartoonLight {
+        let light = ToonLight {
             ramp: Some(per_light(Ramp::default().stops)),
             rim,
             ..default()
@@ -348,18 +348,18 @@ fn forms() -> RgbaImage {
     ];
     for (k, (dents, color, scale)) in cases.into_iter().enumerate() {
         let mesh = bumpy(dents);
-        let shape = FormShape::ellipsoid_of(&mesh).expect("it has vertices");
+        let shape = ProxyShape::ellipsoid_of(&mesh).expect("it has vertices");
         for (n, amount) in [0.0, 0.85].into_iter().enumerate() {
-            let form = ShadedForm {
+            let form = ShadingProxy {
                 shape,
                 amount,
-                far_amount: amount,
+                amount_at_far: amount,
                 ..default()
             };
-            let light = CartoonLight {
+            let light = ToonLight {
                 ramp: Some(per_light(Ramp::default().stops)),
                 highlight: 0.0,
-                form: Some(form),
+                proxy: Some(form),
                 ..default()
             };
             let x = -2.2 + 3.0 * k as f32 + 1.5 * n as f32;
@@ -390,7 +390,7 @@ fn figure() -> RgbaImage {
 fn lights() -> RgbaImage {
     let size = UVec2::new(400, 225);
     let mut studio = Studio::new(BuiltIn::Theatre, size, Msaa::Sample4);
-    let scene = CartoonScene::new(CartoonLight {
+    let scene = ToonScene::new(ToonLight {
         ramp: Some(Ramp::default()),
         ..default()
     });

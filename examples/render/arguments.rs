@@ -3,7 +3,7 @@
 use std::{collections::HashMap, path::PathBuf, str::FromStr};
 
 use bevy::math::{UVec2, Vec3};
-use bevy_comics::{ComicStyle, Preset, presets};
+use bevy_comics::{ComicStyle, presets, style::Preset};
 
 use bevy_comics_testkit::{
     headless::Adapter,
@@ -17,7 +17,7 @@ usage: render [SCENE] [options]
   SCENE                    mountains (default), teapot, theatre, village, figure, or a .glb/.gltf file
 Look
   --style NAME|FILE        a preset, a .comic.ron file, or none (default: the scene's own)
-  --material standard|cartoon  how the scene is shaded (default: cartoon for theatre and figure)
+  --material standard|toon  how the scene is shaded (default: toon for theatre and figure)
   --sections ANGLE         creases where meshes bend by this angle, 10 to 120 degrees
 View (default: a model fills 85 % of the frame)
   --size WxH               pixels (default 960x540; with --presets 480x270 a picture)
@@ -79,8 +79,8 @@ pub struct Arguments {
     pub scene: SceneChoice,
     /// `None`: the original picture.
     pub style: Option<ComicStyle>,
-    /// Whether the scene is drawn with the cartoon material.
-    pub cartoon: bool,
+    /// Whether the scene is drawn with the toon material.
+    pub toon: bool,
     /// The angle of `MeshSections`.
     pub sections: Option<f32>,
     pub size: UVec2,
@@ -167,7 +167,7 @@ impl Arguments {
             Some(text) => scene(text)?,
             None => SceneChoice::BuiltIn(BuiltIn::Mountains),
         };
-        let is_cartoon = matches!(scene, SceneChoice::BuiltIn(scene) if scene.is_cartoon());
+        let is_toon = matches!(scene, SceneChoice::BuiltIn(scene) if scene.is_toon());
         let style = match given.values.get("style").map(String::as_str) {
             Some("none") => None,
             Some(name) => Some(read_style(name)?),
@@ -180,7 +180,7 @@ impl Arguments {
         };
         let arguments = Self {
             style,
-            cartoon: given.get("material", material)?.unwrap_or(is_cartoon),
+            toon: given.get("material", material)?.unwrap_or(is_toon),
             sections: given.get("sections", |text| positive("--sections", text))?,
             size: given.get("size", size)?.unwrap_or(usual_size),
             camera: given.get("camera", camera)?,
@@ -340,8 +340,8 @@ fn positive(option: &str, text: &str) -> Result<f32, String> {
 fn material(text: &str) -> Result<bool, String> {
     match text {
         "standard" => Ok(false),
-        "cartoon" => Ok(true),
-        _ => Err(format!("--material {text}: possible are standard, cartoon")),
+        "toon" => Ok(true),
+        _ => Err(format!("--material {text}: possible are standard, toon")),
     }
 }
 
@@ -427,7 +427,7 @@ mod tests {
 
     /// Every command line is read, or refused with a message.
     #[test]
-    fn no_command_line_is_dangerous() {
+    fn parsing_a_command_line_never_panics() {
         // The first style that is read makes the tables of effects.
         let _ = presets::NOIR.style();
         check_command_lines(

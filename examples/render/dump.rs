@@ -7,7 +7,11 @@ use bevy::{
     prelude::*,
     render::{RenderApp, sync_world::RenderEntity},
 };
-use bevy_comics::{ComicStyle, ComicsDiagnostics, ProjectionKind, StageOutcome, VisibleDepthRange};
+use bevy_comics::{
+    ComicStyle, ComicsDiagnostics,
+    depth::{ProjectionKind, VisibleDepthRange},
+    diagnostics::StageOutcome,
+};
 use exr::prelude::{
     AnyChannel, AnyChannels, Encoding, FlatSamples, Image as ExrImage, Layer, LayerAttributes,
     SpecificChannels, WritableImage,
@@ -157,14 +161,14 @@ fn describe(
     let world = headless.app.world();
     let range = match world.get::<VisibleDepthRange>(camera) {
         Some(VisibleDepthRange::Visible {
-            near,
-            far,
-            raw_near,
-            raw_far,
+            nearest,
+            farthest,
+            raw_nearest,
+            raw_farthest,
         }) => json!({
-            "raw": [raw_near, raw_far],
-            "raw_bits": [raw_near.to_bits(), raw_far.to_bits()],
-            "distance": [near, far],
+            "raw": [raw_nearest, raw_farthest],
+            "raw_bits": [raw_nearest.to_bits(), raw_farthest.to_bits()],
+            "distance": [nearest, farthest],
         }),
         Some(VisibleDepthRange::Empty) => json!("empty"),
         _ => Value::Null,
@@ -176,10 +180,10 @@ fn describe(
     for (stage, outcome) in stages.into_iter().flatten() {
         match outcome {
             StageOutcome::Ran => ran.push(json!(stage.name())),
-            StageOutcome::RanAs(method) => {
+            StageOutcome::RanWith(method) => {
                 ran.push(json!(format!("{} ({method})", stage.name())));
             }
-            StageOutcome::LeftOut(reason) => {
+            StageOutcome::Skipped(reason) => {
                 left_out.insert(stage.name().into(), json!(reason.to_string()));
             }
             _ => {}
@@ -200,7 +204,7 @@ fn describe(
         "size": [arguments.size.x, arguments.size.y],
         "samples": arguments.msaa,
         "hdr": arguments.hdr,
-        "material": if arguments.cartoon { "cartoon" } else { "standard" },
+        "material": if arguments.toon { "toon" } else { "standard" },
         "lights": lights(headless),
         "range": range,
         "projection": match ProjectionKind::of(&clip) {

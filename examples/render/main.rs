@@ -17,12 +17,12 @@ use std::process::ExitCode;
 
 use arguments::{Arguments, Ortho, Output, SceneChoice};
 use bevy::{camera::Hdr, ecs::system::RunSystemOnce, prelude::*, render::view::Msaa};
-use bevy_comics::{ComicsPlugin, MeshSections};
+use bevy_comics::{ComicsPlugin, objects::MeshSections};
 use bevy_comics_testkit::{
     before::BeforeStylize,
     headless::{self, Headless, HeadlessOptions},
     scenes::{BuiltIn, Stage, Vantage, figure::motion::MotionPlugin},
-    studio::{set_cartoon, set_sections, wear},
+    studio::{set_sections, set_toon, wear},
 };
 use model::Model;
 
@@ -58,8 +58,8 @@ fn run() -> Result<(), String> {
     };
     let mut headless = Headless::new(options, (ComicsPlugin, BeforeStylize::Copy, MotionPlugin));
     let (vantage, model) = open_scene(&mut headless, &arguments)?;
-    if arguments.cartoon {
-        set_cartoon(headless.app.world_mut(), true);
+    if arguments.toon {
+        set_toon(headless.app.world_mut(), true);
     }
     if let Some(angle) = arguments.sections {
         set_sections(headless.app.world_mut(), MeshSections { angle });
@@ -67,7 +67,7 @@ fn run() -> Result<(), String> {
     let camera = spawn_camera(&mut headless, &arguments, &vantage);
     if let Some(model) = &model {
         let world = headless.app.world_mut();
-        model.light(world, camera, &vantage, arguments.cartoon);
+        model.light(world, camera, &vantage, arguments.toon);
     }
     turntable::set_place(headless.app.world_mut(), camera, vantage.transform());
     for frame in 0..arguments.frames {
@@ -137,7 +137,7 @@ fn spawn_camera(headless: &mut Headless, arguments: &Arguments, vantage: &Vantag
         vantage.camera(),
         target,
         Msaa::from_samples(arguments.msaa),
-        bevy_comics::VisibleDepthRange::default(),
+        bevy_comics::depth::VisibleDepthRange::default(),
     ));
     camera.insert(projection);
     if arguments.hdr {

@@ -13,7 +13,7 @@ pub enum Frames {
     /// An animated PNG.
     Animation(PathBuf),
     /// One PNG a frame; the number goes between the two parts.
-    Numbered {
+    WithScalar {
         before: String,
         digits: usize,
         after: String,
@@ -30,7 +30,7 @@ impl Frames {
         if out.to_lowercase().ends_with(".png") {
             return Self::Animation(out.into());
         }
-        Self::Numbered {
+        Self::WithScalar {
             before: format!("{}/frame-", out.trim_end_matches(['/', '\\'])),
             digits: 3,
             after: ".png".into(),
@@ -47,7 +47,7 @@ fn pattern(out: &str) -> Option<Frames> {
         _ => digits.strip_prefix('0')?.parse().ok()?,
     };
     let valid = digits <= 9 && after.to_lowercase().ends_with(".png");
-    valid.then(|| Frames::Numbered {
+    valid.then(|| Frames::WithScalar {
         before: before.into(),
         digits,
         after: after.into(),
@@ -57,7 +57,7 @@ fn pattern(out: &str) -> Option<Frames> {
 /// Writes frames as they come.
 pub enum FrameWriter {
     Animation(PathBuf, Box<png::Writer<BufWriter<File>>>),
-    Numbered {
+    WithScalar {
         before: String,
         digits: usize,
         after: String,
@@ -80,11 +80,11 @@ impl FrameWriter {
                 let writer = writer.map_err(|error| cannot_write(path, &error))?;
                 Ok(Self::Animation(path.clone(), Box::new(writer)))
             }
-            Frames::Numbered {
+            Frames::WithScalar {
                 before,
                 digits,
                 after,
-            } => Ok(Self::Numbered {
+            } => Ok(Self::WithScalar {
                 before: before.clone(),
                 digits: *digits,
                 after: after.clone(),
@@ -98,7 +98,7 @@ impl FrameWriter {
             Self::Animation(path, writer) => writer
                 .write_image_data(&opaque(picture))
                 .map_err(|error| cannot_write(path, &error)),
-            Self::Numbered {
+            Self::WithScalar {
                 before,
                 digits,
                 after,
@@ -119,7 +119,7 @@ impl FrameWriter {
                 ended.map_err(|error| cannot_write(&path, &error))?;
                 Ok(path.display().to_string())
             }
-            Self::Numbered {
+            Self::WithScalar {
                 before,
                 digits,
                 after,

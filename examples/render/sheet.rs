@@ -1,7 +1,7 @@
 //! A contact sheet: one scene in every preset, with its name below.
 
 use bevy::{camera::RenderTarget, prelude::*};
-use bevy_comics::{ComicStyle, Preset};
+use bevy_comics::{ComicStyle, style::Preset};
 use image::{Rgba, RgbaImage, imageops};
 
 use bevy_comics_testkit::{

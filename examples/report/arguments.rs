@@ -103,7 +103,7 @@ mod tests {
 
     /// Every command line is read, or refused with a message.
     #[test]
-    fn no_command_line_is_dangerous() {
+    fn parsing_a_command_line_never_panics() {
         check_command_lines(
             5,
             &RIGHT,

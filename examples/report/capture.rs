@@ -5,7 +5,7 @@ use bevy::{
     prelude::*,
     render::RenderApp,
 };
-use bevy_comics::{Colorization, ComicStyle, Desaturation, Form};
+use bevy_comics::{Colorization, ComicStyle, Desaturation, effects::Equations};
 use nv_flip::{FlipImageRgb8, FlipPool};
 
 use bevy_comics_testkit::{
@@ -196,12 +196,12 @@ pub fn frame(ends: [f64; 2]) -> Frame {
     }
 }
 
-/// The style in which errors of the map are judged: the corrected forms of [CS] Eq. 6 and
+/// The style in which errors of the map are judged: the corrected equations of [CS] Eq. 6 and
 /// 11 at full strength.
 pub fn look() -> ComicStyle {
     ComicStyle::new()
         .with(Desaturation {
-            form: Form::Corrected,
+            equations: Equations::Corrected,
             ..Desaturation::default()
         })
         .with(Colorization::default())

@@ -8,7 +8,7 @@ use bevy::{
     core_pipeline::{prepass::DepthPrepass, tonemapping::Tonemapping},
     prelude::*,
 };
-use bevy_comics::RangeSmoothing;
+use bevy_comics::depth::RangeSmoothing;
 
 use bevy_comics_testkit::{
     reference::{
@@ -72,7 +72,7 @@ pub fn variants() -> Vec<(&'static str, Option<RangeSmoothing>)> {
     ]
 }
 
-/// The ranges that are drawn, frame by frame, computed by the twin of the shader.
+/// The ranges that are drawn, frame by frame, computed by the reference of the shader.
 fn ranges(sequence: &Sequence, settings: Option<RangeSmoothing>) -> Vec<Option<[f64; 2]>> {
     let mut range = Range::default();
     sequence
@@ -89,14 +89,14 @@ fn ranges(sequence: &Sequence, settings: Option<RangeSmoothing>) -> Vec<Option<[
                 let fraction = f64::from(s.outliers);
                 ends = ends.map(|e| Bins::Octaves.percentiles(&bins, total, fraction, e));
             }
-            let twin = Smoothing {
+            let reference = Smoothing {
                 offset: Some(0.0),
                 despike: s.despike,
                 hysteresis: f64::from(s.hysteresis),
                 expand: f64::from(s.expand),
                 shrink: f64::from(s.shrink),
             };
-            range.step(ends, &twin, SECONDS, sequence.cuts.contains(&i))
+            range.step(ends, &reference, SECONDS, sequence.cuts.contains(&i))
         })
         .collect()
 }

@@ -10,7 +10,7 @@ use bevy::{
     prelude::*,
     render::RenderApp,
 };
-use bevy_comics::{ComicStyle, MeshSections, Outlines};
+use bevy_comics::{ComicStyle, Outlines, objects::MeshSections};
 use bevy_comics_testkit::{
     read_back,
     scenes::BuiltIn,
@@ -48,12 +48,12 @@ pub fn dashes(run: &Run) -> Result<(), String> {
     let mut table = Table::new(&["model", "method", "ends", "true", "true_ends", "by_chance"]);
     let mut fine = Studio::new(size * FINE, ids_alone());
     let whole = Outlines {
-        budget: 1.0,
+        ink_budget: 1.0,
         ..default()
     };
     let cut = Outlines {
-        continuity: 0.0,
-        specks: 1,
+        hysteresis: 0.0,
+        min_length: 1,
         ..whole
     };
     let methods = [("cut", cut), ("continued", whole)];
@@ -115,15 +115,15 @@ pub fn dash_steps(run: &Run) -> Result<(), String> {
         truth.push(fine_ends(&fine.rig));
     }
     let default = Outlines {
-        budget: 1.0,
+        ink_budget: 1.0,
         ..default()
     };
     let kept = Outlines {
-        persistence: 8,
+        hold_frames: 8,
         ..default
     };
     let mut variants = run.some(2, steps::variants());
-    variants.push(("persistence 8", kept));
+    variants.push(("hold_frames 8", kept));
     variants.push((IN_SECTIONS, default));
     let mut table = Table::new(&["method", "ends", "true", "true_ends", "by_chance"]);
     for (method, outlines) in variants {
@@ -236,16 +236,16 @@ pub fn memory(run: &Run) -> Result<(), String> {
         (150, 64, 21, UVec2::new(640, 360))
     };
     let mut table = Table::new(&["scene", "method", "changed", "pixels", "ms"]);
-    let lines = |memory: f32| {
+    let lines = |history_weight: f32| {
         Wear::style(ComicStyle::new().with(Outlines {
-            memory,
+            history_weight,
             ..default()
         }))
     };
     let methods = [
         ("no lines", Wear::Nothing),
-        ("no memory", lines(1.0)),
-        ("memory", lines(0.125)),
+        ("no history", lines(0.0)),
+        ("history", lines(0.875)),
     ];
     for scene in run.some(1, [BuiltIn::Teapot, BuiltIn::Village]) {
         let mut rig = Rig::new(Some(scene), size);

@@ -1,7 +1,9 @@
 //! How much of a meadow the lines of each preset cover.
 
 use bevy::prelude::*;
-use bevy_comics::{ComicStyle, Form, LineColor, Outlines, Preset, presets};
+use bevy_comics::{
+    ComicStyle, Outlines, effects::Equations, lines::LineColor, presets, style::Preset,
+};
 use bevy_comics_testkit::scenes::BuiltIn;
 use image::RgbaImage;
 
@@ -35,9 +37,9 @@ fn lines_alone(preset: Preset) -> Option<(Outlines, ComicStyle)> {
 }
 
 fn is_faithful(lines: &Outlines) -> bool {
-    let silhouettes = lines.silhouettes.map(|kind| kind.form);
-    let creases = lines.creases.map(|kind| kind.form);
-    [silhouettes, creases].contains(&Some(Form::Faithful))
+    let silhouettes = lines.silhouettes.map(|kind| kind.equations);
+    let creases = lines.creases.map(|kind| kind.equations);
+    [silhouettes, creases].contains(&Some(Equations::Faithful))
 }
 
 /// The fractions of the meadow's areas that black lines on white cover: the meadow is the lower 5/12
@@ -85,7 +87,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
             continue;
         };
         let free = Outlines {
-            budget: 1.0,
+            ink_budget: 1.0,
             ..lines
         };
         let [own, free] = [lines, free].map(|lines| {
@@ -103,7 +105,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
         table.push(&[
             &preset.name(),
             &form,
-            &lines.budget,
+            &lines.ink_budget,
             &own[0],
             &own[1],
             &free[0],

@@ -105,7 +105,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let mut fine = Studio::new(size * FINE, ids_alone());
     // Without the ink budget, which makes crowded lines too thin for the mask.
     let found = Outlines {
-        budget: 1.0,
+        ink_budget: 1.0,
         ..default()
     };
     let mut lined = Studio::new(size, found);

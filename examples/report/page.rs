@@ -1,7 +1,10 @@
 //! How exactly the page is printed and painted, how many texels its effects fetch, and how exactly
 //! a harmony of colours keeps the lightness.
 
-use bevy_comics::{ColorHarmony, FocusStyle, Halftone, HarmonyMode, HatchingMarks, PaintForm};
+use bevy_comics::{
+    ColorHarmony, Halftone,
+    effects::{FocusStyle, HarmonyMode, HatchingMarks, PaintKernel},
+};
 use bevy_comics_testkit::{
     page_work::{self, PageCounter},
     painting::{RADII, SLOPES, bled, edge_moved, kuwahara_error},
@@ -138,9 +141,9 @@ fn errors(run: &Run) -> Table {
         table.push(&[&effect, &what, &format!("{error:.2e}"), &limit]);
     };
     push("paint", classic, kuwahara, 1e-3);
-    push("paint", position, edges(PaintForm::Box), 0.1);
+    push("paint", position, edges(PaintKernel::Box), 0.1);
     let along = "paint; strokes along edges";
-    push(along, position, edges(PaintForm::Anisotropic), 0.1);
+    push(along, position, edges(PaintKernel::Anisotropic), 0.1);
     let tones = "mean tone; 20 tones; 9 angles; 32 zooms";
     let random = "the same with breaks";
     let mean = |marks, random| {

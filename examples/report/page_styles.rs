@@ -1,10 +1,12 @@
 //! Effects of the page, each alone, and three together: what `parts` times.
 
 use bevy_comics::{
-    Abstraction, BlackFlats, ColorHarmony, ComicStyle, Effect, Focus, FocusAt, FocusStyle,
-    Halftone, HalftoneMode, Hatching, HatchingMarks, Paint, PaintForm, Paper, PlaneBorders,
-    PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape, SpeedLines, ToneRamp, TwoTone,
-    Vignette,
+    Abstraction, BlackFlats, ColorHarmony, ComicStyle, DepthLayers, Effect, Focus, Halftone,
+    Hatching, Misregistration, Paint, Paper, SpeedLines, ToneRamp, TwoTone, Vignette,
+    effects::{
+        FocusAt, FocusStyle, Granularity, HalftoneMode, HatchingMarks, LayerBorders, PaintKernel,
+        ScreenSampling, ScreenShape,
+    },
 };
 
 /// A style of one effect.
@@ -32,8 +34,8 @@ pub fn all() -> Vec<(&'static str, ComicStyle)> {
         ),
         ("vignette", alone(Vignette::default())),
         (
-            "halftone; print offset and paper",
-            alone(PrintOffset::default())
+            "halftone; misregistration and paper",
+            alone(Misregistration::default())
                 .with(Halftone::default())
                 .with(Paper::default()),
         ),
@@ -67,7 +69,7 @@ fn prints() -> Vec<(&'static str, ComicStyle)> {
                 ..default
             }),
         ),
-        ("print offset", alone(PrintOffset::default())),
+        ("misregistration", alone(Misregistration::default())),
     ]
 }
 
@@ -82,9 +84,9 @@ fn strokes() -> Vec<(&'static str, ComicStyle)> {
             }),
         ),
         (
-            "hatching; calm",
+            "hatching; simplify_small",
             alone(Hatching {
-                calm: 1.0,
+                simplify_small: 1.0,
                 ..Hatching::default()
             }),
         ),
@@ -92,28 +94,28 @@ fn strokes() -> Vec<(&'static str, ComicStyle)> {
 }
 
 fn planes() -> Vec<(&'static str, ComicStyle)> {
-    let pixels = Planes {
-        by: PlaneUnit::Pixel,
-        ..Planes::default()
+    let pixels = DepthLayers {
+        granularity: Granularity::Pixel,
+        ..DepthLayers::default()
     };
-    let fixed = Planes {
-        by: PlaneUnit::Pixel,
-        borders: PlaneBorders::Fixed,
-        ..Planes::default()
+    let fixed = DepthLayers {
+        granularity: Granularity::Pixel,
+        borders: LayerBorders::Fixed,
+        ..DepthLayers::default()
     };
     vec![
         ("color harmony", alone(ColorHarmony::default())),
         ("abstraction", alone(Abstraction::default())),
-        ("planes", alone(Planes::default())),
-        ("planes; of pixels", alone(pixels)),
-        ("planes; of pixels; fixed borders", alone(fixed)),
+        ("depth layers", alone(DepthLayers::default())),
+        ("depth layers; of pixels", alone(pixels)),
+        ("depth layers; of pixels; fixed borders", alone(fixed)),
     ]
 }
 
 fn paintings() -> Vec<(&'static str, ComicStyle)> {
     let focus = |style: FocusStyle| {
         alone(Focus {
-            at: FocusAt::Centre,
+            at: FocusAt::Center,
             style,
             ..Focus::default()
         })
@@ -124,7 +126,7 @@ fn paintings() -> Vec<(&'static str, ComicStyle)> {
         (
             "paint; strokes along edges",
             alone(Paint {
-                form: PaintForm::Anisotropic,
+                kernel: PaintKernel::Anisotropic,
                 ..Paint::default()
             }),
         ),

@@ -7,9 +7,10 @@ use bevy::{
     prelude::*,
 };
 use bevy_comics::{
-    ComicStyle, Creases, DepthWrite, Desaturation, LineColor, LineResponse, LineWeight, LineWidths,
-    MeshSections, NoStyle, OutlineStyle, Outlines, Planes, SelectionOutline, Silhouettes,
+    ComicStyle, DepthLayers, Desaturation, NoStyle, OutlineStyle, Outlines, SelectionOutline,
     XRayOutline,
+    lines::{Creases, LineColor, LineResponse, LineWeight, Silhouettes},
+    objects::{DepthWrite, LineWidths, MeshSections},
 };
 
 use bevy_comics_testkit::scenes::BuiltIn;
@@ -27,7 +28,7 @@ fn lines() -> Vec<(String, Wear)> {
         (
             "gaps up to 3 pixels closed",
             Outlines {
-                bridge: 3,
+                gap_closing: 3,
                 ..default
             },
         ),
@@ -41,7 +42,7 @@ fn lines() -> Vec<(String, Wear)> {
         (
             "persistent for 4 frames",
             Outlines {
-                persistence: 4,
+                hold_frames: 4,
                 ..default
             },
         ),
@@ -80,15 +81,15 @@ fn lines() -> Vec<(String, Wear)> {
     ]
     .map(|(name, outlines)| (name, ComicStyle::new().with(outlines)))
     .into_iter()
-    .chain([("and planes", plane_lines())])
+    .chain([("and depth layers", layer_lines())])
     .map(|(name, style)| (name.to_owned(), Wear::style(style)))
     .collect()
 }
 
 /// Outlines with another width and colour in near, middle and far.
-fn plane_lines() -> ComicStyle {
-    let mut planes = Planes::default();
-    planes.far.line_color_amount = 1.0;
+fn layer_lines() -> ComicStyle {
+    let mut planes = DepthLayers::default();
+    planes.background.line_color_amount = 1.0;
     ComicStyle::new().with(Outlines::default()).with(planes)
 }
 
@@ -198,7 +199,7 @@ fn changes() -> Vec<Part> {
     // The village has lines in most of its tiles, the teapot in few.
     for scene in [BuiltIn::Teapot, BuiltIn::Village] {
         let forgetful = Outlines {
-            memory: 1.0,
+            history_weight: 0.0,
             ..default()
         };
         parts.push(Part {

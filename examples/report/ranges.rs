@@ -1,7 +1,10 @@
 //! The error of depth ranges that are found with less work.
 
 use bevy::math::UVec2;
-use bevy_comics::{Colorization, ComicStyle, DepthMap, RangeSmoothing, ReductionMethod};
+use bevy_comics::{
+    Colorization, ComicStyle, DepthMap,
+    depth::{RangeSmoothing, ReductionMethod},
+};
 
 use bevy_comics_testkit::{
     device::gpu, reference::histogram::Bins, scenes::BuiltIn, studio::with_map,
@@ -211,7 +214,7 @@ fn measure_errors(run: &Run, captures: &[Capture]) -> Table {
                 let stride = |k| strided.job(&textures[frame], k, [0, 0]).ends();
                 let found = match method {
                     "full" => stride(1),
-                    // Computed by the twin.
+                    // Computed by the reference.
                     "ping-pong" => {
                         let (w, h) = (size[0] as usize, size[1] as usize);
                         bevy_comics_testkit::reference::ping_pong::reduce(&shot.depth, w, h)

@@ -4,7 +4,7 @@ use bevy::{
     core_pipeline::prepass::{DepthPrepass, NormalPrepass},
     prelude::*,
 };
-use bevy_comics::{ComicStyle, ContourOperator, Contours, Outlines};
+use bevy_comics::{ComicStyle, Contours, Outlines, effects::ContourOperator};
 
 use bevy_comics_testkit::{
     scenes::BuiltIn,
@@ -44,13 +44,13 @@ pub fn detectors() -> Vec<(String, ComicStyle)> {
     // The ink budget makes crowded lines too thin for the mask. It is not a property of the
     // search for lines, and has a row of its own.
     let found = Outlines {
-        budget: 1.0,
+        ink_budget: 1.0,
         ..default()
     };
     all.push((
         "silhouettes".into(),
         outlines(Outlines {
-            budget: 1.0,
+            ink_budget: 1.0,
             ..Outlines::SILHOUETTES
         }),
     ));
@@ -139,7 +139,7 @@ fn whole(run: &Run, scenes: &[BuiltIn]) -> Result<(), String> {
     };
     let thin = Outlines {
         width: 1.0,
-        budget: 1.0,
+        ink_budget: 1.0,
         ..default()
     };
     for scene in scenes {

@@ -132,7 +132,7 @@ pub const SECTIONS: [Section; 21] = [
     section(
         "toon",
         toon::measure,
-        "What does the cartoon material cost?",
+        "What does the toon material cost?",
         "Cartoon material",
     ),
     section(

@@ -185,7 +185,7 @@ fn map_cases(table: &mut Table, run: &Run) {
         let mut worst = [[0.0f64; 2]; 2];
         let mut wild = [0usize; 2];
         for (d, got) in depths.iter().zip(&got) {
-            // Depths that count as sky are sky for the twin too.
+            // Depths that count as sky are sky for the reference too.
             let want = exact.depth_map(f64::from(*d))[0];
             for form in 0..2 {
                 if got[form].is_finite() {

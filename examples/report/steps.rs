@@ -2,7 +2,10 @@
 //! linking them is changed at a time.
 
 use bevy::prelude::*;
-use bevy_comics::{ComicStyle, Creases, Outlines, Silhouettes};
+use bevy_comics::{
+    ComicStyle, Outlines,
+    lines::{Creases, Silhouettes},
+};
 use bevy_comics_testkit::{
     scenes::BuiltIn,
     specimens::Specimen,
@@ -36,30 +39,33 @@ fn stricter(steps: f32, folds: f32) -> Outlines {
 /// mask.
 pub fn variants() -> Vec<(&'static str, Outlines)> {
     let default = Outlines::default();
-    let specks = |specks| Outlines { specks, ..default };
+    let specks = |specks| Outlines {
+        min_length: specks,
+        ..default
+    };
     let all = [
         ("the default", default),
-        ("specks 8", specks(8)),
-        ("specks 3", specks(3)),
-        ("specks 1", specks(1)),
+        ("min_length 8", specks(8)),
+        ("min_length 3", specks(3)),
+        ("min_length 1", specks(1)),
         (
             "not linked",
             Outlines {
-                continuity: 0.0,
+                hysteresis: 0.0,
                 ..default
             },
         ),
         (
-            "continuity 32",
+            "hysteresis 32",
             Outlines {
-                continuity: 32.0,
+                hysteresis: 32.0,
                 ..default
             },
         ),
         (
-            "continuity_level 0.25",
+            "hysteresis_ratio 0.25",
             Outlines {
-                continuity_level: 0.25,
+                hysteresis_ratio: 0.25,
                 ..default
             },
         ),
@@ -71,9 +77,9 @@ pub fn variants() -> Vec<(&'static str, Outlines)> {
             },
         ),
         (
-            "bridge 3",
+            "gap_closing 3",
             Outlines {
-                bridge: 3,
+                gap_closing: 3,
                 ..default
             },
         ),
@@ -82,7 +88,7 @@ pub fn variants() -> Vec<(&'static str, Outlines)> {
     ];
     let free = |(name, outlines)| {
         let free = Outlines {
-            budget: 1.0,
+            ink_budget: 1.0,
             ..outlines
         };
         (name, free)

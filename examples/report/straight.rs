@@ -94,7 +94,7 @@ pub fn measure(run: &Run) -> Result<(), String> {
     let size = UVec2::new((COLUMNS + 2 * MARGIN) as u32, 800);
     let outlines = |width| Outlines {
         width,
-        budget: 1.0,
+        ink_budget: 1.0,
         ..Outlines::SILHOUETTES
     };
     let mut studio = Studio::new(size, outlines(2.0));

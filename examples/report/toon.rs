@@ -1,4 +1,4 @@
-//! What the cartoon material costs beside the standard material: the main pass of one scene, with
+//! What the toon material costs beside the standard material: the main pass of one scene, with
 //! all meshes in one material after the other. A depth prepass lets each pixel be shaded once; without
 //! it, the order of draws, which is another one for every material, decides how many are shaded twice.
 
@@ -9,8 +9,11 @@ use bevy::{
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
 use bevy_comics::{
-    CartoonLight, CartoonScene, DetailAxis, FormShape, Glint, GlintShape, Hatching, Ramp,
-    RampDetail, RampMode, RampStop, Rim, ShadedForm,
+    Hatching, ToonLight, ToonScene,
+    toon::{
+        DetailAxis, HighlightShape, ProxyShape, Ramp, RampDetail, RampMode, RampStop, Rim,
+        ShadingProxy, StylizedHighlight,
+    },
 };
 use bevy_comics_testkit::{
     bench::{self, Lap},
@@ -40,8 +43,8 @@ fn greys(images: &mut Assets<Image>, width: u32, height: u32) -> Handle<Image> {
 }
 
 /// Ramps that are images, and thresholds from one.
-fn mapped(images: &mut Assets<Image>) -> Vec<(&'static str, Option<CartoonLight>)> {
-    let mut painted = |mode, height, detail| CartoonLight {
+fn mapped(images: &mut Assets<Image>) -> Vec<(&'static str, Option<ToonLight>)> {
+    let mut painted = |mode, height, detail| ToonLight {
         ramp: Some(Ramp {
             mode,
             detail,
@@ -50,25 +53,25 @@ fn mapped(images: &mut Assets<Image>) -> Vec<(&'static str, Option<CartoonLight>
         ramp_map: greys(images, 256, height).into(),
         ..default()
     };
-    let row = painted(RampMode::Share, 1, None);
+    let row = painted(RampMode::LightFraction, 1, None);
     let each = painted(RampMode::PerLight, 1, None);
-    let rows = painted(RampMode::Share, 64, Some(RampDetail::default()));
-    let thresholds = CartoonLight {
+    let rows = painted(RampMode::LightFraction, 64, Some(RampDetail::default()));
+    let thresholds = ToonLight {
         ramp: Some(Ramp::default()),
         threshold_map: Some(greys(images, 256, 256)),
         ..default()
     };
     vec![
-        ("Share; 256 tones of an image", Some(row)),
+        ("LightFraction; 256 tones of an image", Some(row)),
         ("PerLight; 256 tones of an image", Some(each)),
-        ("Share; 64 rows of an image by depth", Some(rows)),
+        ("LightFraction; 64 rows of an image by depth", Some(rows)),
         ("default ramp; thresholds of an image", Some(thresholds)),
     ]
 }
 
 /// The materials that are compared: `None` is the standard material.
-fn variants(images: &mut Assets<Image>) -> Vec<(&'static str, Option<CartoonLight>)> {
-    let with = |ramp| CartoonLight {
+fn variants(images: &mut Assets<Image>) -> Vec<(&'static str, Option<ToonLight>)> {
+    let with = |ramp| ToonLight {
         ramp: Some(ramp),
         ..default()
     };
@@ -85,10 +88,10 @@ fn variants(images: &mut Assets<Image>) -> Vec<(&'static str, Option<CartoonLigh
     };
     let mut all = vec![
         ("standard material", None),
-        ("no ramp", Some(CartoonLight::default())),
+        ("no ramp", Some(ToonLight::default())),
         ("no ramp; no highlights", {
             let highlight = 0.0;
-            Some(CartoonLight {
+            Some(ToonLight {
                 highlight,
                 ..default()
             })
@@ -96,8 +99,8 @@ fn variants(images: &mut Assets<Image>) -> Vec<(&'static str, Option<CartoonLigh
         ("default ramp", Some(with(Ramp::default()))),
         ("PerLight", Some(with(in_mode(RampMode::PerLight)))),
         ("Brightest", Some(with(in_mode(RampMode::Brightest)))),
-        ("Share; 4 stops", Some(with(tones(4)))),
-        ("Share; 8 stops", Some(with(tones(8)))),
+        ("LightFraction; 4 stops", Some(with(tones(4)))),
+        ("LightFraction; 8 stops", Some(with(tones(8)))),
         ("default ramp; a second one by depth", {
             let ramp = Ramp {
                 detail: Some(RampDetail::default()),
@@ -117,32 +120,32 @@ fn variants(images: &mut Assets<Image>) -> Vec<(&'static str, Option<CartoonLigh
             Some(with(ramp))
         }),
         ("no ramp; smoothed normals", {
-            let form = ShadedForm {
-                shape: FormShape::Smoothed { rounds: 8 },
+            let form = ShadingProxy {
+                shape: ProxyShape::Smoothed { rounds: 8 },
                 ..default()
             };
-            Some(CartoonLight {
-                form: Some(form),
+            Some(ToonLight {
+                proxy: Some(form),
                 ..default()
             })
         }),
         ("no ramp; a window as highlight", {
-            let glint = Glint {
-                shape: GlintShape::Window,
+            let stylized_highlight = StylizedHighlight {
+                shape: HighlightShape::Window,
                 ..default()
             };
-            Some(CartoonLight {
-                glint: Some(glint),
+            Some(ToonLight {
+                stylized_highlight: Some(stylized_highlight),
                 ..default()
             })
         }),
         ("no ramp; a rim", {
             let rim = Some(Rim::default());
-            Some(CartoonLight { rim, ..default() })
+            Some(ToonLight { rim, ..default() })
         }),
         ("no ramp; hatching", {
             let hatching = Some(Hatching::default());
-            Some(CartoonLight {
+            Some(ToonLight {
                 hatching,
                 ..default()
             })
@@ -154,13 +157,13 @@ fn variants(images: &mut Assets<Image>) -> Vec<(&'static str, Option<CartoonLigh
 }
 
 /// Gives all meshes the material of a variant.
-fn wear(rig: &mut Rig, meshes: &[Entity], light: Option<&CartoonLight>) {
+fn wear(rig: &mut Rig, meshes: &[Entity], light: Option<&ToonLight>) {
     let world = rig.headless.app.world_mut();
     for mesh in meshes {
         let mut mesh = world.entity_mut(*mesh);
         match light {
-            Some(light) => mesh.insert(CartoonScene::new(light.clone())),
-            None => mesh.remove::<CartoonScene>(),
+            Some(light) => mesh.insert(ToonScene::new(light.clone())),
+            None => mesh.remove::<ToonScene>(),
         };
     }
 }

@@ -172,12 +172,12 @@ mod tests {
             DepthMapping::Linear,
             DepthMapping::Logarithmic,
             DepthMapping::Fixed {
-                near: 3.0,
-                far: 90.0,
+                from: 3.0,
+                to: 90.0,
             },
             DepthMapping::FixedLogarithmic {
-                near: 3.0,
-                far: 90.0,
+                from: 3.0,
+                to: 90.0,
             },
         ];
         let ranges = [(2.0, 300.0), (40.0, 41.0), (40.0, 40.001)];

@@ -211,8 +211,8 @@ impl DepthProjection {
                 let near = self.plane(self.near, 1e-4);
                 (near, self.plane(self.far, 1000.0).max(near * 1.001))
             }
-            DepthMapping::Fixed { near, far } | DepthMapping::FixedLogarithmic { near, far } => {
-                (f64::from(near), f64::from(far))
+            DepthMapping::Fixed { from, to } | DepthMapping::FixedLogarithmic { from, to } => {
+                (f64::from(from), f64::from(to))
             }
         };
         let (raw_near, raw_far) = if map.mapping.follows_visible_range() {
@@ -369,7 +369,7 @@ mod tests {
         ] {
             for far in [10.0, 50.0, 1e6, 1e36] {
                 let map = DepthMap {
-                    mapping: DepthMapping::Fixed { near: 1.0, far },
+                    mapping: DepthMapping::Fixed { from: 1.0, to: far },
                     ..Default::default()
                 };
                 let frame = projection.frame(&map);

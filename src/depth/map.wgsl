@@ -156,7 +156,7 @@ fn behind(border: f32, softness: f32, d: f32) -> f32 {
 }
 
 // Fractions of near, middle and far at a depth of the map. Their sum is 1.
-fn plane_weights(borders: vec2<f32>, softness: f32, d: f32) -> vec3<f32> {
+fn layer_weights(borders: vec2<f32>, softness: f32, d: f32) -> vec3<f32> {
     let far = behind(borders.y, softness, d);
     let not_near = max(behind(borders.x, softness, d), far);
     return vec3(1.0 - not_near, not_near - far, far);

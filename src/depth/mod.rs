@@ -28,7 +28,7 @@ pub(crate) use frame::{DepthFrame, RawDepth};
 pub use readback::{DepthBin, DepthHistogram, VisibleDepthRange};
 pub use smoothing::{CameraCut, RangeSmoothing};
 
-use crate::settings::{FieldRange, bounded, ordered_planes};
+use crate::settings::{FieldRange, clamp_fields, ordered_planes};
 
 /// Whether some material reads the smoothed range of each view that has a plan.
 #[derive(Resource, Default)]
@@ -110,22 +110,13 @@ impl DepthMap {
     /// that changes nothing replaced by `None`.
     #[must_use]
     pub fn sanitized(self) -> Self {
-        let default = Self::default();
+        let map = clamp_fields(self);
         Self {
-            mapping: self.mapping.sanitized(),
-            sky_gap: bounded(self.sky_gap, default.sky_gap, 0.0, 10.0),
-            floor: bounded(self.floor, default.floor, 0.0, 1.0),
-            orthographic_floor: bounded(
-                self.orthographic_floor,
-                default.orthographic_floor,
-                0.0,
-                1e6,
-            ),
-            smoothing: self
-                .smoothing
+            mapping: map.mapping.sanitized(),
+            smoothing: (map.smoothing)
                 .map(RangeSmoothing::sanitized)
                 .filter(|smoothing| !smoothing.is_negligible()),
-            ..self
+            ..map
         }
     }
 }
@@ -160,21 +151,21 @@ pub enum DepthMapping {
         /// Distance that maps to 0, in world units. Range 1e-6 to 1e30; 0.1 if it
         /// is not finite.
         #[reflect(@FieldRange::logarithmic(1e-6, 1e30).unit("units"))]
-        near: f32,
+        from: f32,
         /// Distance that maps to 1, in world units. Range 1e-6 to 1e36, at least
-        /// 1.001 times `near`; 1000 if it is not finite. If it is below `near`, the
+        /// 1.001 times `from`; 1000 if it is not finite. If it is below `from`, the
         /// two are exchanged.
         #[reflect(@FieldRange::logarithmic(1e-6, 1e36).unit("units"))]
-        far: f32,
+        to: f32,
     },
     /// Logarithmic between two given distances; no reduction runs.
     FixedLogarithmic {
         /// Distance that maps to 0, as in [`DepthMapping::Fixed`].
         #[reflect(@FieldRange::logarithmic(1e-6, 1e30).unit("units"))]
-        near: f32,
+        from: f32,
         /// Distance that maps to 1, as in [`DepthMapping::Fixed`].
         #[reflect(@FieldRange::logarithmic(1e-6, 1e36).unit("units"))]
-        far: f32,
+        to: f32,
     },
 }
 
@@ -195,13 +186,13 @@ impl DepthMapping {
 
     fn sanitized(self) -> Self {
         match self {
-            Self::Fixed { near, far } => {
-                let (near, far) = ordered_planes(near, far);
-                Self::Fixed { near, far }
+            Self::Fixed { from, to } => {
+                let (from, to) = ordered_planes(from, to);
+                Self::Fixed { from, to }
             }
-            Self::FixedLogarithmic { near, far } => {
-                let (near, far) = ordered_planes(near, far);
-                Self::FixedLogarithmic { near, far }
+            Self::FixedLogarithmic { from, to } => {
+                let (from, to) = ordered_planes(from, to);
+                Self::FixedLogarithmic { from, to }
             }
             other => other,
         }

@@ -43,14 +43,14 @@ pub enum VisibleDepthRange {
     Visible {
         /// View depth of the nearest visible geometry in world units, measured along
         /// the camera's forward axis.
-        near: f32,
+        nearest: f32,
         /// View depth of the farthest visible geometry in world units.
-        far: f32,
+        farthest: f32,
         /// Raw reversed depth of the nearest geometry, as in the depth texture. Under
         /// an oblique projection: 2^-14 world units over view depth.
-        raw_near: f32,
-        /// Raw reversed depth of the farthest geometry, as `raw_near`.
-        raw_far: f32,
+        raw_nearest: f32,
+        /// Raw reversed depth of the farthest geometry, as `raw_nearest`.
+        raw_farthest: f32,
     },
 }
 
@@ -58,7 +58,9 @@ impl VisibleDepthRange {
     /// Near and far view depth in world units; `None` unless geometry is visible.
     pub fn distances(self) -> Option<(f32, f32)> {
         match self {
-            Self::Visible { near, far, .. } => Some((near, far)),
+            Self::Visible {
+                nearest, farthest, ..
+            } => Some((nearest, farthest)),
             _ => None,
         }
     }
@@ -70,10 +72,10 @@ impl VisibleDepthRange {
         let raw_near = f32::from_bits(keys[0]);
         let raw_far = f32::from_bits(keys[1].wrapping_neg());
         Self::Visible {
-            near: projection.distance(raw_near) as f32,
-            far: projection.distance(raw_far) as f32,
-            raw_near,
-            raw_far,
+            nearest: projection.distance(raw_near) as f32,
+            farthest: projection.distance(raw_far) as f32,
+            raw_nearest: raw_near,
+            raw_farthest: raw_far,
         }
     }
 }
@@ -85,7 +87,7 @@ impl VisibleDepthRange {
 /// prepass and the reduction run for it. The counts are exact up to rounding at the
 /// edges of the bins. Without compute
 /// shaders, or with
-/// [`ReductionMethod::PingPong`](crate::ReductionMethod::PingPong), it stays empty.
+/// [`ReductionMethod::PingPong`](crate::depth::ReductionMethod::PingPong), it stays empty.
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct DepthHistogram {
@@ -98,10 +100,10 @@ pub struct DepthHistogram {
     /// reach to the nearest and the farthest depth.
     pub bins: Vec<DepthBin>,
     /// Near and far view depth in world units of the visible range after
-    /// [`RangeSmoothing`](crate::RangeSmoothing).
+    /// [`RangeSmoothing`](crate::depth::RangeSmoothing).
     pub drawn: Option<(f32, f32)>,
     /// View depths in world units of the borders between near, middle and far, while an effect
-    /// asks for them, as [`Planes`](crate::Planes) does.
+    /// asks for them, as [`DepthLayers`](crate::DepthLayers) does.
     pub borders: Option<(f32, f32)>,
 }
 

@@ -23,7 +23,7 @@ use super::{
     request::Reduction,
     surfaces::{OwnSurfaces, Surfaces},
 };
-use crate::diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome};
+use crate::diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome};
 
 /// Records the reduction, the smoothing and the readback of a view's visible range.
 pub(crate) fn reduce_depth_range(
@@ -44,7 +44,7 @@ pub(crate) fn reduce_depth_range(
     };
     match frame.record(surfaces, &pipeline, &mut ctx) {
         Ok(method) => {
-            let outcome = StageOutcome::RanAs(method.name());
+            let outcome = StageOutcome::RanWith(method.name());
             ledger.set(camera, ComicsStage::DepthRange, outcome);
             if range.smoothing.is_some() {
                 ledger.set(camera, ComicsStage::RangeSmoothing, StageOutcome::Ran);
@@ -52,7 +52,7 @@ pub(crate) fn reduce_depth_range(
             frame.read_back(&ledger, &mut ctx);
         }
         Err(reason) => {
-            let outcome = StageOutcome::LeftOut(reason);
+            let outcome = StageOutcome::Skipped(reason);
             ledger.set(camera, ComicsStage::DepthRange, outcome);
         }
     }
@@ -72,11 +72,11 @@ impl Frame<'_> {
         surfaces: Surfaces,
         pipeline: &RangePipeline,
         ctx: &mut RenderContext,
-    ) -> Result<ReductionMethod, LeftOut> {
-        let not_ready = LeftOut::PipelineNotReady;
-        let depth = surfaces.depth().ok_or(LeftOut::NoDepthPrepass)?;
+    ) -> Result<ReductionMethod, SkipReason> {
+        let not_ready = SkipReason::PipelineNotReady;
+        let depth = surfaces.depth().ok_or(SkipReason::NoDepthPrepass)?;
         if depth.texture.sample_count() != self.range.request.samples {
-            return Err(LeftOut::SampleCountMismatch);
+            return Err(SkipReason::SampleCountMismatch);
         }
         let view = self.uniforms.views.binding().ok_or(not_ready)?;
         let smoothing = match (self.range.passes.smoothing, &self.range.smoothing) {
@@ -133,12 +133,12 @@ impl Frame<'_> {
         (depth, view): (&TextureView, BindingResource),
         pipeline: &RangePipeline,
         ctx: &mut RenderContext,
-    ) -> Result<ReductionMethod, LeftOut> {
+    ) -> Result<ReductionMethod, SkipReason> {
         let range = self.range;
         let compute = self
             .cache
             .get_compute_pipeline(id)
-            .ok_or(LeftOut::PipelineNotReady)?;
+            .ok_or(SkipReason::PipelineNotReady)?;
         let histogram = range.histogram();
         let key = RangeKey {
             samples: range.request.samples,
@@ -189,11 +189,11 @@ impl Frame<'_> {
         (first, next): (CachedRenderPipelineId, CachedRenderPipelineId),
         (depth, view): (&TextureView, BindingResource),
         ctx: &mut RenderContext,
-    ) -> Result<ReductionMethod, LeftOut> {
+    ) -> Result<ReductionMethod, SkipReason> {
         let pipeline = |id| {
             self.cache
                 .get_render_pipeline(id)
-                .ok_or(LeftOut::PipelineNotReady)
+                .ok_or(SkipReason::PipelineNotReady)
         };
         let pipelines = (pipeline(first)?, pipeline(next)?);
         let source = ChainSource {
@@ -240,7 +240,7 @@ impl Frame<'_> {
         let outcome = if copied {
             StageOutcome::Ran
         } else {
-            StageOutcome::LeftOut(LeftOut::Busy)
+            StageOutcome::Skipped(SkipReason::Busy)
         };
         ledger.set(request.camera, ComicsStage::RangeReadback, outcome);
     }

@@ -47,7 +47,7 @@ pub(crate) struct RangeRequest {
     /// Divide the visible depths into near, middle and far.
     pub borders: bool,
     /// Some material reads the range.
-    #[cfg(feature = "cartoon")]
+    #[cfg(feature = "toon")]
     pub materials: bool,
     /// Real time since the last frame, in seconds.
     pub seconds: f32,

@@ -15,7 +15,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::settings::{FieldRange, bounded};
+use crate::settings::{FieldRange, clamp_fields};
 
 /// Smooths the visible range of a [`DepthMap`](crate::DepthMap) over time, so that it
 /// does not flicker when something small or short-lived enters or leaves the view.
@@ -49,7 +49,7 @@ pub struct RangeSmoothing {
     /// flickers more than with 0 (measured in `docs/report`). Has no effect with
     /// `ReductionMethod::PingPong`.
     ///
-    /// The fraction is found in bins (see [`DepthHistogram`](crate::DepthHistogram)) and
+    /// The fraction is found in bins (see [`DepthHistogram`](crate::depth::DepthHistogram)) and
     /// interpolated inside of a bin. In perspective a bin is a ninth of a distance or
     /// less. Under an orthographic projection it is 0.8 % of the distance between the
     /// nearest and the farthest geometry, less towards both; there the bins are those of
@@ -104,14 +104,7 @@ impl RangeSmoothing {
     /// is not finite replaced by its default.
     #[must_use]
     pub fn sanitized(self) -> Self {
-        let default = Self::default();
-        Self {
-            outliers: bounded(self.outliers, default.outliers, 0.0, 0.2),
-            despike: self.despike,
-            hysteresis: bounded(self.hysteresis, default.hysteresis, 0.0, 4.0),
-            expand: bounded(self.expand, default.expand, 0.0, 60.0),
-            shrink: bounded(self.shrink, default.shrink, 0.0, 60.0),
-        }
+        clamp_fields(self)
     }
 
     /// Whether it changes nothing.

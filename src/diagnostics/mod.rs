@@ -13,6 +13,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
+pub use crate::composite::DebugView;
 pub(crate) use ledger::{StageLedger, publish_ledger, read_ledger};
 
 /// The stages in the frame of a camera with effects, in order.
@@ -31,12 +32,12 @@ pub enum ComicsStage {
     /// The reduction that finds the nearest and farthest visible depth.
     DepthRange,
     /// The smoothing or locking of that range over time
-    /// ([`RangeSmoothing`](crate::RangeSmoothing),
+    /// ([`RangeSmoothing`](crate::depth::RangeSmoothing),
     /// [`DepthMap::locked`](crate::DepthMap::locked)).
     RangeSmoothing,
     /// The copy of the range, or of the histogram, to the game
-    /// ([`VisibleDepthRange`](crate::VisibleDepthRange),
-    /// [`DepthHistogram`](crate::DepthHistogram)).
+    /// ([`VisibleDepthRange`](crate::depth::VisibleDepthRange),
+    /// [`DepthHistogram`](crate::depth::DepthHistogram)).
     RangeReadback,
     /// The pass that picks one sample of every pixel of a multisampled view, for the
     /// lines.
@@ -102,18 +103,18 @@ pub enum StageOutcome {
     /// It ran.
     Ran,
     /// It ran with this method: a
-    /// [`ReductionMethod::name`](crate::ReductionMethod::name), or `tolerant depth` for
+    /// [`ReductionMethod::name`](crate::depth::ReductionMethod::name), or `tolerant depth` for
     /// [`ObjectIds`](ComicsStage::ObjectIds) that are not drawn at equal depth
     /// (`ObjectIdDepthTest`).
-    RanAs(&'static str),
+    RanWith(&'static str),
     /// It was left out, for this reason.
-    LeftOut(LeftOut),
+    Skipped(SkipReason),
 }
 
 /// Why a stage was left out.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
-pub enum LeftOut {
+pub enum SkipReason {
     /// No component of the camera requests it.
     NotRequested,
     /// It would change nothing: its amount or opacity is 0,
@@ -162,7 +163,7 @@ pub enum LeftOut {
     Busy,
 }
 
-impl fmt::Display for LeftOut {
+impl fmt::Display for SkipReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::NotRequested => "not requested",
@@ -217,7 +218,7 @@ impl CameraStages {
     pub fn ran(&self, stage: ComicsStage) -> bool {
         matches!(
             self.outcome(stage),
-            Some(StageOutcome::Ran | StageOutcome::RanAs(_))
+            Some(StageOutcome::Ran | StageOutcome::RanWith(_))
         )
     }
 

@@ -7,8 +7,8 @@ use bevy::{
     render::render_resource::encase::UniformBuffer,
 };
 
-use super::{Effect, EffectType, Extent, Needs, Variants, ViewFacts};
-use crate::lines::{LineAbstraction, LineFocus, LinePlanes, LineSettings, Sheet};
+use super::{AffectedArea, Effect, EffectContext, EffectType, Needs, Variants};
+use crate::lines::{LineModifiers, Outlines};
 
 /// An [`Effect`] whose type is known only at run time. Every effect implements it;
 /// lists of effects and tools use it.
@@ -40,33 +40,27 @@ pub trait AnyEffect: Any + Send + Sync + std::fmt::Debug {
     /// As [`Effect::without`].
     fn any_without(&self, missing: Needs) -> Option<Box<dyn AnyEffect>>;
     /// As [`Effect::lines`].
-    fn any_lines(&self) -> Option<LineSettings>;
+    fn any_lines(&self) -> Option<Outlines>;
     /// As [`Effect::implied`].
     fn any_implied(&self) -> Option<Box<dyn AnyEffect>>;
     /// As [`Effect::variants`].
-    fn any_variants(&self, view: &ViewFacts, variants: &mut Variants);
-    /// As [`Effect::box_reach`].
-    fn any_box_reach(&self, view: &ViewFacts) -> Option<u32>;
-    /// As [`Effect::extent`].
-    fn any_extent(&self, view: &ViewFacts) -> Extent;
-    /// As [`Effect::line_focus`].
-    fn any_line_focus(&self, view: &ViewFacts) -> Option<LineFocus>;
-    /// As [`Effect::line_planes`].
-    fn any_line_planes(&self, view: &ViewFacts) -> Option<LinePlanes>;
-    /// As [`Effect::line_abstraction`].
-    fn any_line_abstraction(&self, view: &ViewFacts) -> Option<LineAbstraction>;
-    /// As [`Effect::sheet`].
-    fn any_sheet(&self, view: &ViewFacts) -> Option<Sheet>;
+    fn any_variants(&self, view: &EffectContext, variants: &mut Variants);
+    /// As [`Effect::max_radius`].
+    fn any_max_radius(&self, view: &EffectContext) -> Option<u32>;
+    /// As [`Effect::affected_area`].
+    fn any_affected_area(&self, view: &EffectContext) -> AffectedArea;
+    /// As [`Effect::line_modifiers`].
+    fn any_line_modifiers(&self, view: &EffectContext) -> LineModifiers;
 
-    /// As [`Effect::prints`].
-    fn any_prints(&self) -> bool;
+    /// As [`Effect::runs_after_anti_aliasing`].
+    fn any_runs_after_anti_aliasing(&self) -> bool;
 
     /// As [`Effect::line_reach`].
-    fn any_line_reach(&self, view: &ViewFacts) -> Option<f32>;
+    fn any_line_reach(&self, view: &EffectContext) -> Option<f32>;
     /// As [`Effect::report_name`].
     fn any_report_name(&self) -> Option<String>;
     /// The bytes of [`Effect::uniform`] in WGSL's uniform layout.
-    fn uniform_bytes(&self, view: &ViewFacts) -> Vec<u8>;
+    fn uniform_bytes(&self, view: &EffectContext) -> Vec<u8>;
     /// Inserts a copy of the effect as a component of an entity.
     fn insert_into(&self, entity: &mut EntityWorldMut);
 }
@@ -125,7 +119,7 @@ impl<E: Effect> AnyEffect for E {
         Some(Box::new(effect))
     }
 
-    fn any_lines(&self) -> Option<LineSettings> {
+    fn any_lines(&self) -> Option<Outlines> {
         self.lines()
     }
 
@@ -133,39 +127,27 @@ impl<E: Effect> AnyEffect for E {
         self.implied()
     }
 
-    fn any_variants(&self, view: &ViewFacts, variants: &mut Variants) {
+    fn any_variants(&self, view: &EffectContext, variants: &mut Variants) {
         self.variants(view, variants);
     }
 
-    fn any_box_reach(&self, view: &ViewFacts) -> Option<u32> {
-        self.box_reach(view)
+    fn any_max_radius(&self, view: &EffectContext) -> Option<u32> {
+        self.max_radius(view)
     }
 
-    fn any_extent(&self, view: &ViewFacts) -> Extent {
-        self.extent(view)
+    fn any_affected_area(&self, view: &EffectContext) -> AffectedArea {
+        self.affected_area(view)
     }
 
-    fn any_line_focus(&self, view: &ViewFacts) -> Option<LineFocus> {
-        self.line_focus(view)
+    fn any_line_modifiers(&self, view: &EffectContext) -> LineModifiers {
+        self.line_modifiers(view)
     }
 
-    fn any_line_planes(&self, view: &ViewFacts) -> Option<LinePlanes> {
-        self.line_planes(view)
+    fn any_runs_after_anti_aliasing(&self) -> bool {
+        self.runs_after_anti_aliasing()
     }
 
-    fn any_line_abstraction(&self, view: &ViewFacts) -> Option<LineAbstraction> {
-        self.line_abstraction(view)
-    }
-
-    fn any_sheet(&self, view: &ViewFacts) -> Option<Sheet> {
-        self.sheet(view)
-    }
-
-    fn any_prints(&self) -> bool {
-        self.prints()
-    }
-
-    fn any_line_reach(&self, view: &ViewFacts) -> Option<f32> {
+    fn any_line_reach(&self, view: &EffectContext) -> Option<f32> {
         self.line_reach(view)
     }
 
@@ -173,7 +155,7 @@ impl<E: Effect> AnyEffect for E {
         self.report_name()
     }
 
-    fn uniform_bytes(&self, view: &ViewFacts) -> Vec<u8> {
+    fn uniform_bytes(&self, view: &EffectContext) -> Vec<u8> {
         encode(&self.uniform(view))
     }
 

@@ -1,18 +1,19 @@
 //! Interpolates between two effects of one type.
 //!
-//! Numbers are interpolated linearly or by ratio, colours in `OKLab`. A mode has
+//! Numbers and vectors are interpolated linearly, numbers of logarithmic ranges by ratio,
+//! colours in `OKLab`. A mode has
 //! no value in between: the effect fades out, its mode changes at half time, when
 //! it has no strength, and it fades in again, so that the picture does not jump.
 //! Only fields with [`BlendField::Switch`] change at half time without a fade.
 
 use bevy::{
     color::Color,
-    math::FloatExt,
+    math::{FloatExt, Vec2, Vec3},
     reflect::{NamedField, TypeInfo},
 };
 
 use super::Effect;
-use crate::settings::{BlendField, FieldRange, blend_color, blend_ratio, dip};
+use crate::settings::{BlendField, FieldRange, blend_color, blend_ratio, crossfade_weight};
 
 /// The effect between `a` (`t` = 0) and `b` (`t` = 1). If only one side has it, it
 /// fades. If the depth map is `remapped`, the part that depends on the map fades
@@ -31,13 +32,13 @@ pub(super) fn blend<E: Effect>(a: Option<E>, b: Option<E>, t: f32, remapped: boo
             if !a.same_modes(&b) {
                 // No need to fade the map as well: the effect has no strength at
                 // half time.
-                return Some(mixed.faded(dip(t)));
+                return Some(mixed.faded(crossfade_weight(t)));
             }
             mixed
         }
     };
     Some(if remapped {
-        effect.map_faded(dip(t))
+        effect.map_faded(crossfade_weight(t))
     } else {
         effect
     })
@@ -52,7 +53,7 @@ fn fields<E: Effect>() -> impl Iterator<Item = &'static NamedField> {
     info.into_iter().flat_map(|info| info.iter())
 }
 
-pub(super) fn mixed<E: Effect>(a: &E, b: &E, t: f32) -> E {
+pub(crate) fn mixed<E: Effect>(a: &E, b: &E, t: f32) -> E {
     let mut mixed = a.clone();
     for field in fields::<E>() {
         if field.has_attribute::<BlendField>() {
@@ -70,13 +71,23 @@ pub(super) fn mixed<E: Effect>(a: &E, b: &E, t: f32) -> E {
             *slot = if by_ratio {
                 blend_ratio(*slot, *other, t)
             } else {
-                slot.lerp(*other, t)
+                FloatExt::lerp(*slot, *other, t)
             };
         } else if let (Some(slot), Some(other)) = (
             slot.try_downcast_mut::<Color>(),
             other.try_downcast_ref::<Color>(),
         ) {
             *slot = blend_color(*slot, *other, t);
+        } else if let (Some(slot), Some(other)) = (
+            slot.try_downcast_mut::<Vec2>(),
+            other.try_downcast_ref::<Vec2>(),
+        ) {
+            *slot = slot.lerp(*other, t);
+        } else if let (Some(slot), Some(other)) = (
+            slot.try_downcast_mut::<Vec3>(),
+            other.try_downcast_ref::<Vec3>(),
+        ) {
+            *slot = slot.lerp(*other, t);
         }
     }
     mixed
@@ -91,6 +102,8 @@ pub(super) fn same_modes<E: Effect>(a: &E, b: &E) -> bool {
         field.has_attribute::<BlendField>()
             || a.try_downcast_ref::<f32>().is_some()
             || a.try_downcast_ref::<Color>().is_some()
+            || a.try_downcast_ref::<Vec2>().is_some()
+            || a.try_downcast_ref::<Vec3>().is_some()
             || a.reflect_partial_eq(b).unwrap_or(false)
     })
 }

@@ -2,7 +2,7 @@
 
 // Colour conversions shared by the effects. Effects take and return linear
 // light. The papers' formulas work on display codes (sRGB-encoded, 0 to 1), so
-// the faithful forms convert inside.
+// the faithful equations convert inside.
 
 // Replaces NaN and infinity. Tests the bits, since a compiler may assume that
 // neither exists and remove a test such as `x != x`.

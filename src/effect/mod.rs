@@ -1,61 +1,49 @@
-//! Effects: the trait, the registry, the plan of a camera, and the fused pass
-//! that is composed from the registered effects.
+//! Effects of your own: the trait [`Effect`], its registration, and what an effect is written with.
+//!
+//! `docs/your-own-effect.md` is a guide with a complete example.
 
 mod any;
 mod blend;
-mod blue_noise;
-mod choose;
-mod compiling;
-mod compose;
-mod errors;
-mod facts;
-mod key;
-mod layers;
-mod lines;
-#[cfg(feature = "objects")]
-mod marks;
-mod missing;
+mod context;
+pub(crate) mod names;
 mod needs;
-mod part;
-mod pass;
-mod passes;
-mod places;
-pub(crate) mod plan;
-mod plugin;
-mod prepare;
-mod reasons;
 mod registry;
-mod requests;
 mod set;
 mod strokes;
 mod target;
 mod variants;
-mod words;
 
 use std::fmt::Debug;
 
 use bevy::{
+    app::App,
     ecs::component::{Component, Mutable},
     reflect::{FromReflect, GetTypeRegistration, Typed, structs::Struct},
     render::render_resource::{ShaderType, encase::internal::WriteInto},
+    shader::load_shader_library,
 };
 use serde::{Serialize, de::DeserializeOwned};
 
+pub use crate::settings::{
+    BlendField, FieldRange, HueWheel, blend_color, blend_ratio, clamp_color,
+    clamp_option_or_default, clamp_or_default, clamp_vec2_or_default, color_serde, linear_rgb,
+};
 pub use any::AnyEffect;
-pub(crate) use compose::FILE_KEYS;
-pub use facts::ViewFacts;
+pub(crate) use any::encode;
+pub(crate) use blend::mixed as mix_fields;
+pub use context::EffectContext;
 pub use needs::Needs;
-pub(crate) use plugin::FusedPlugin;
 pub use registry::{EffectPlugin, EffectRegistry, EffectType};
 pub use set::EffectSet;
 pub(crate) use strokes::Strokes;
 pub use target::EffectTarget;
+pub(crate) use target::place_in;
 pub use variants::Variants;
-pub(crate) use {choose::ViewPlan, missing::DeviceLacks, plan::Plan};
 
 use crate::{
     diagnostics::ComicsStage,
-    lines::{LineAbstraction, LineFocus, LinePlanes, LineSettings, MapJumps, Sheet},
+    lines::{LineModifiers, MapJumps, Outlines},
+    settings::clamp_fields,
 };
 
 /// A camera component that changes the picture: one WGSL function of a pixel, and
@@ -103,24 +91,28 @@ pub trait Effect:
     /// display-encoded (sRGB) colour. Default: none.
     const VIEW: Option<EffectView> = None;
 
-    /// Whether the module has a function `NAME_half_box` for [`Needs::MEANS`]: it takes the
+    /// Whether the module has a function `NAME_half_box` for [`Needs::BOX_STATISTICS`]: it takes the
     /// settings and a pixel, of which only the places and the depth are set, and returns half
     /// the side of the box around it in physical pixels. Default: false.
     const HALF_BOX: bool = false;
 
-    /// Whether the module has a function `NAME_number` for [`Needs::NUMBERED`]: it takes the
+    /// Whether the module has a function `NAME_aux_scalar` for [`Needs::AUX_SCALAR`]: it takes the
     /// settings and a pixel, of which only the places and the depth are set, and returns any
     /// number. Default: false.
-    const NUMBER: bool = false;
+    const AUX_SCALAR: bool = false;
 
     /// The settings in the layout of the WGSL struct; [`NoUniform`] if the function
     /// takes none. In the uniform buffer it starts at a multiple of 16 bytes.
     type Uniform: ShaderType + WriteInto;
 
-    /// The settings that are used: every number is clamped to its documented range, and a number
-    /// that is not finite is replaced by its default. Values in range must be returned unchanged.
+    /// The settings that are used. Values in range must be returned unchanged. Default: every number
+    /// is clamped to the [`FieldRange`] of its field, a number that is not finite is replaced by its
+    /// default, and colours are clamped to what a display shows. Fields of enums, and structs in
+    /// options, are not changed.
     #[must_use]
-    fn sanitized(self) -> Self;
+    fn sanitized(self) -> Self {
+        clamp_fields(self)
+    }
 
     /// How much the effect changes the picture, 0 to 1. An effect of strength 0 is not run.
     fn strength(&self) -> f32;
@@ -142,9 +134,9 @@ pub trait Effect:
         (!self.needs().intersects(missing)).then_some(self)
     }
 
-    /// The lines that this effect requests. If several effects of a camera request
-    /// lines, the request of the first one in the chain is used. Default: none.
-    fn lines(&self) -> Option<LineSettings> {
+    /// The lines that this effect requests; every number must be in its range. If several effects of
+    /// a camera request lines, the request of the first one in the chain is used. Default: none.
+    fn lines(&self) -> Option<Outlines> {
         None
     }
 
@@ -156,76 +148,52 @@ pub trait Effect:
 
     /// Modes that select a shader variant. Every new combination compiles a
     /// pipeline, so modes should not depend on a slider. Default: none.
-    fn variants(&self, view: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, view: &EffectContext, variants: &mut Variants) {
         let _ = (view, variants);
     }
 
-    /// For [`Needs::MEANS`]: how many pixels the boxes reach from their middle at most. Up to 6 are
+    /// For [`Needs::BOX_STATISTICS`]: how many pixels the boxes reach from their middle at most. Up to 6 are
     /// compiled in, which is faster where most boxes reach as far. Default: boxes of any size.
-    fn box_reach(&self, view: &ViewFacts) -> Option<u32> {
+    fn max_radius(&self, view: &EffectContext) -> Option<u32> {
         let _ = view;
         None
     }
 
     /// Where the effect can change the picture. The fused pass leaves it out of the rest.
-    /// Default: [`Extent::Everywhere`].
-    fn extent(&self, view: &ViewFacts) -> Extent {
+    /// Default: [`AffectedArea::Everywhere`].
+    fn affected_area(&self, view: &EffectContext) -> AffectedArea {
         let _ = view;
-        Extent::Everywhere
+        AffectedArea::Everywhere
     }
 
     /// The largest distance in physical pixels, across or down, from its pixel at which
     /// the effect's WGSL reads lines; `None` if it is not known. If all effects that read
     /// lines know it, the fused pass defines `WITHOUT_LINES` where no line is that near:
     /// `lines_at` finds no ink there. Default: `None`.
-    fn line_reach(&self, view: &ViewFacts) -> Option<f32> {
+    fn line_reach(&self, view: &EffectContext) -> Option<f32> {
         let _ = view;
         None
     }
 
-    /// The distance at which lines are in focus; farther from it they fade. If several effects
-    /// of a camera have one, that of the first in the chain is used. Lines of the faithful forms do
-    /// not fade, and none without compute shaders. Default: none.
-    fn line_focus(&self, view: &ViewFacts) -> Option<LineFocus> {
+    /// What the effect changes about the lines of its camera. If several effects of a camera change the
+    /// same, the first one in the chain counts. Default: nothing.
+    fn line_modifiers(&self, view: &EffectContext) -> LineModifiers {
         let _ = view;
-        None
-    }
-
-    /// The width, opacity and colour of lines in near, middle and far. If several effects of a camera have
-    /// them, those of the first in the chain are used. Lines of the faithful forms are not
-    /// changed, and none without compute shaders. Default: none.
-    fn line_planes(&self, view: &ViewFacts) -> Option<LinePlanes> {
-        let _ = view;
-        None
-    }
-
-    /// How lines follow the abstraction of a view. If several effects of a camera have it, that of
-    /// the first in the chain is used. Lines of the faithful forms are not changed. Default: none.
-    fn line_abstraction(&self, view: &ViewFacts) -> Option<LineAbstraction> {
-        let _ = view;
-        None
-    }
-
-    /// The sheet that the view is printed on: the edges of its lines and dots are rough, and wide
-    /// lines have streaks. If several effects of a camera have one, that of the first in the chain
-    /// is used. Lines of the faithful forms are not changed. Default: none.
-    fn sheet(&self, view: &ViewFacts) -> Option<Sheet> {
-        let _ = view;
-        None
+        LineModifiers::default()
     }
 
     /// Whether the view is styled after FXAA and SMAA, because the effect draws dots or grain that
     /// these would smear. Default: for effects of the stage [`EffectStage::Print`].
-    fn prints(&self) -> bool {
+    fn runs_after_anti_aliasing(&self) -> bool {
         Self::STAGE == EffectStage::Print
     }
 
     /// Packs the settings for the shader.
-    fn uniform(&self, view: &ViewFacts) -> Self::Uniform;
+    fn uniform(&self, view: &EffectContext) -> Self::Uniform;
 
     /// Interpolates between this effect (`t` = 0) and `other` (`t` = 1). Default:
     /// `f32` fields are interpolated linearly, or by ratio if their
-    /// [`FieldRange`](crate::FieldRange) is logarithmic; colours are interpolated in
+    /// [`FieldRange`](crate::effect::FieldRange) is logarithmic; colours are interpolated in
     /// `OKLab`; all other fields keep this effect's values.
     #[must_use]
     fn mixed(&self, other: &Self, t: f32) -> Self {
@@ -236,7 +204,7 @@ pub trait Effect:
     /// jump. If not, a transition fades the effect out, exchanges the settings at
     /// half time, and fades the effect in. Default: true if all fields are equal
     /// that are neither `f32` nor `Color` nor marked by
-    /// [`BlendField`](crate::BlendField).
+    /// [`BlendField`](crate::effect::BlendField).
     fn same_modes(&self, other: &Self) -> bool {
         blend::same_modes(self, other)
     }
@@ -271,7 +239,7 @@ pub trait Effect:
 /// fused pass is blended over the picture instead of copying it, unless the camera is HDR.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Extent {
+pub enum AffectedArea {
     /// At any pixel.
     Everywhere,
     /// Where the lines of the camera have ink.
@@ -347,4 +315,22 @@ impl ComicsStage {
     pub const fn of<E: Effect>() -> Self {
         Self::Effect(E::NAME)
     }
+}
+
+/// Loads the WGSL modules that effects import.
+pub(crate) fn load_shaders(app: &mut App) {
+    load_shader_library!(app, "aux_scalar.wgsl");
+    load_shader_library!(app, "blue_noise.wgsl");
+    load_shader_library!(app, "box_statistics.wgsl");
+    load_shader_library!(app, "color.wgsl");
+    load_shader_library!(app, "footprint.wgsl");
+    load_shader_library!(app, "nested.wgsl");
+    load_shader_library!(app, "noise.wgsl");
+    load_shader_library!(app, "picture.wgsl");
+    load_shader_library!(app, "pixel.wgsl");
+    load_shader_library!(app, "screen.wgsl");
+    load_shader_library!(app, "sheet.wgsl");
+    load_shader_library!(app, "similarity.wgsl");
+    load_shader_library!(app, "stipple.wgsl");
+    load_shader_library!(app, "strokes.wgsl");
 }

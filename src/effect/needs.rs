@@ -39,26 +39,26 @@ bitflags! {
         /// `bevy_comics::effect::blue_noise::blue_noise`.
         const BLUE_NOISE = 1 << 8;
         /// Means and variances of that picture over boxes of any size around every pixel, by
-        /// `bevy_comics::effect::means::load_means`. Includes [`Needs::PICTURE`]. Two passes
+        /// `bevy_comics::effect::box_statistics::load_means`. Includes [`Needs::PICTURE`]. Two passes
         /// draw them, to two textures of the viewport's size with 16 bytes a pixel. The WGSL
         /// says how large the boxes are, see [`Effect::HALF_BOX`](super::Effect::HALF_BOX).
-        const MEANS = 1 << 9;
+        const BOX_STATISTICS = 1 << 9;
         /// Where the object at a pixel is, by `load_object` and `style_of` of
-        /// `bevy_comics::objects`, if it has an [`ObjectScreen`](crate::ObjectScreen). Includes
+        /// `bevy_comics::objects`, if it has a [`PatternAnchor`](crate::objects::PatternAnchor). Includes
         /// [`Needs::IDS`] while some object has one; otherwise it asks for nothing, and
         /// `OBJECT_ANCHORS` is not defined in WGSL.
         const OBJECT_ANCHORS = 1 << 10;
         /// That picture together with a number of the effect's own at every pixel, by
-        /// `bevy_comics::effect::numbered::load_numbered`: both by one load, for effects that
+        /// `bevy_comics::effect::aux_scalar::load_aux_scalar`: both by one load, for effects that
         /// would read the depth of many pixels besides their colours. In place of
         /// [`Needs::PICTURE`]: the first pass draws a texture of the viewport's size with 16
         /// bytes a pixel, which holds both. The WGSL says what the number is, see
-        /// [`Effect::NUMBER`](super::Effect::NUMBER). Of an effect that also has [`Needs::MEANS`], these count.
-        const NUMBERED = 1 << 11;
+        /// [`Effect::AUX_SCALAR`](super::Effect::AUX_SCALAR). Of an effect that also has [`Needs::BOX_STATISTICS`], these count.
+        const AUX_SCALAR = 1 << 11;
         /// The two depths that divide what is visible into near, middle and far, by
         /// `bevy_comics::depth::view::depth_borders`. Counts the depths, and finds the borders in
         /// a pass. Without compute shaders, and with
-        /// [`ReductionMethod::PingPong`](crate::ReductionMethod::PingPong), there are none.
+        /// [`ReductionMethod::PingPong`](crate::depth::ReductionMethod::PingPong), there are none.
         const DEPTH_BORDERS = 1 << 12;
         /// The place of every object in the depth map, by `bevy_comics::objects::object_depth`.
         /// Includes [`Needs::IDS`]. Without the crate's feature `objects` it asks for nothing, and
@@ -72,6 +72,6 @@ impl Needs {
     pub(crate) const WITHOUT_PREPASSES: Self = Self::LIGHTNESS_CHANGE
         .union(Self::PICTURE)
         .union(Self::BLUE_NOISE)
-        .union(Self::MEANS)
-        .union(Self::NUMBERED);
+        .union(Self::BOX_STATISTICS)
+        .union(Self::AUX_SCALAR);
 }

@@ -23,7 +23,7 @@ struct Pixel {
     depth: vec2<f32>,
     // Fraction of the saturation that remains after Desaturation, 0 to 1.
     saturation: f32,
-    // Factors that Planes has set, 0 to 1: of the darkness of hatching, and of the fraction of
+    // Factors that DepthLayers has set, 0 to 1: of the darkness of hatching, and of the fraction of
     // screens that is seen as dots. 1 again in a later pass, see Needs::PICTURE.
     prints: vec2<f32>,
     // Set by Abstraction: how often the bands of tones split, and the factor of the distance of

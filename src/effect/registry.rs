@@ -13,7 +13,7 @@ use bevy::{
 };
 use serde::Deserialize;
 
-use super::{AnyEffect, Effect, EffectShader, EffectStage, EffectView, blend, compose};
+use super::{AnyEffect, Effect, EffectShader, EffectStage, EffectView, blend, names};
 
 /// The description of an effect's type.
 pub struct EffectType {
@@ -29,7 +29,7 @@ pub struct EffectType {
     pub view: Option<EffectView>,
     /// [`Effect::HALF_BOX`].
     pub half_box: bool,
-    /// [`Effect::NUMBER`].
+    /// [`Effect::AUX_SCALAR`].
     pub number: bool,
     /// The reflection data of the type.
     pub type_info: fn() -> &'static TypeInfo,
@@ -64,7 +64,7 @@ impl EffectType {
                 replaces: E::REPLACES,
                 view: E::VIEW,
                 half_box: E::HALF_BOX,
-                number: E::NUMBER,
+                number: E::AUX_SCALAR,
                 type_info: E::type_info,
                 default: default::<E>,
                 get: get::<E>,
@@ -143,12 +143,6 @@ impl EffectRegistry {
         self.types().into_iter().find(|effect| effect.name == name)
     }
 
-    /// The WGSL of the fused pass before preprocessing. The code of each effect is
-    /// in an `#ifdef`: it runs only on cameras that have the effect.
-    pub fn shader(&self) -> String {
-        compose::fused_pass(&self.types())
-    }
-
     /// Refuses every further effect, because the fused pass is composed now.
     pub(crate) fn seal(&self) {
         let mut known = self.0.write().unwrap_or_else(PoisonError::into_inner);
@@ -163,7 +157,7 @@ impl EffectRegistry {
             .sealed
             .then_some("the shader is already composed; add its plugin before the app runs");
         let types = &mut known.types;
-        if let Some(reason) = late.or_else(|| compose::refuses(effect, types)) {
+        if let Some(reason) = late.or_else(|| names::refuses(effect, types)) {
             error!("the effect `{}` is not registered: {reason}", effect.name);
             return;
         }

@@ -3,7 +3,7 @@
 // Dots of one size that lie on surfaces, as many as the tone asks for. They are the nodes of nested
 // square lattices in the plane of coordinates that a surface faces. A node keeps its place and its
 // random number at every level, so zooming in adds dots between those that are there. For the
-// effect `Hatching` and the cartoon material. Pure functions.
+// effect `Hatching` and the toon material. Pure functions.
 
 #import bevy_comics::effect::footprint::singular_values
 #import bevy_comics::effect::nested::{level_of, mark_of_node, place_of}

@@ -1,4 +1,4 @@
-//! What strokes on surfaces look like: for the effect `Hatching` and the cartoon material.
+//! What strokes on surfaces look like: for the effect `Hatching` and the toon material.
 
 use bevy::{
     math::{Mat3, Vec3},

@@ -1,7 +1,7 @@
 #define_import_path bevy_comics::effect::strokes
 
 // Strokes that lie on surfaces, where these meet families of parallel planes. Planes are nested:
-// those of one level are every second one of the next. For the effect `Hatching` and the cartoon
+// those of one level are every second one of the next. For the effect `Hatching` and the toon
 // material. Pure functions.
 
 #import bevy_comics::effect::nested::{Level, TAPER, level_of, mark_of, noise_along, place_of, stroke_factor, stroke_start}

@@ -33,7 +33,7 @@ impl EffectTarget {
 
 /// Where a world position is in the viewport, in physical pixels from its top left corner;
 /// `None` if it is behind the camera.
-pub(super) fn place_in(viewport: UVec4, clip_from_world: Mat4, position: Vec3) -> Option<Vec2> {
+pub(crate) fn place_in(viewport: UVec4, clip_from_world: Mat4, position: Vec3) -> Option<Vec2> {
     let clip = clip_from_world * position.extend(1.0);
     let device = Vec2::new(clip.x, clip.y) / clip.w;
     let size = Vec2::new(viewport.z as f32, viewport.w as f32);

@@ -2,14 +2,14 @@
 
 use bevy::shader::ShaderDefVal;
 
-use super::compose::definition;
+use super::names::definition;
 
 /// Modes of an effect that select a shader variant. Each becomes a shader
 /// definition, whose name is the effect's name in capitals, an underscore, and the
 /// variant's name: `MODE` of the effect `rain` becomes `RAIN_MODE`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Variants {
-    pub(super) effect: &'static str,
+    pub(crate) effect: &'static str,
     entries: Vec<(&'static str, &'static str, Option<u32>)>,
 }
 
@@ -26,7 +26,7 @@ impl Variants {
         self.entries.push((self.effect, name, Some(value)));
     }
 
-    pub(super) fn shader_defs(&self) -> impl Iterator<Item = ShaderDefVal> {
+    pub(crate) fn shader_defs(&self) -> impl Iterator<Item = ShaderDefVal> {
         self.entries.iter().map(|(effect, name, value)| {
             let name = format!("{}_{name}", definition(effect));
             match value {

@@ -1,9 +1,12 @@
-//! The effects of this crate, in the order in which they are registered. Each has
-//! a folder with its settings, their packing and one WGSL function.
+//! The effects of this crate and their modes, in the order in which they are registered.
+//!
+//! Each effect has a folder with its settings, their packing and one WGSL function.
 
 use std::sync::LazyLock;
 
 use bevy::app::App;
+
+pub use crate::settings::Equations;
 
 use crate::effect::{EffectPlugin, EffectRegistry, EffectType};
 
@@ -31,10 +34,10 @@ effects! {
     desaturation: Desaturation;
     colorization: Colorization, ColorizationMode;
     color_harmony: ColorHarmony, HarmonyCurve, HarmonyMode;
-    planes: Planes, PlaneBorders, PlaneStyle, PlaneUnit;
-    paint: Paint, PaintForm;
+    depth_layers: DepthLayers, DepthLayer, Granularity, LayerBorders;
+    paint: Paint, PaintKernel;
     focus: Focus, FocusAt, FocusStyle;
-    print_offset: PrintOffset;
+    misregistration: Misregistration;
     halftone: Halftone, HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape;
     hatching: Hatching, HatchingAnchor, HatchingGround, HatchingMarks, HatchingSource;
     black_flats: BlackFlats;

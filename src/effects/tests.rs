@@ -1,8 +1,9 @@
 //! What holds for every effect.
 
 use crate::{
-    AnyEffect, EffectRegistry, ViewFacts, presets,
-    settings::tests::odd::{Numbers, cases, in_time, scramble, wrong},
+    effect::{AnyEffect, EffectContext, EffectRegistry},
+    presets,
+    settings::tests::non_finite::{Numbers, cases, in_time, scramble, wrong},
 };
 
 /// Every effect, with its default settings and with those of the presets.
@@ -19,7 +20,7 @@ fn effects() -> Vec<Box<dyn AnyEffect>> {
 /// The word of the uniform of `SpeedLines` that is no number: the seed has all of its bits.
 const SEED: (&str, usize) = ("speed_lines", 13);
 
-fn assert_packed(effect: &dyn AnyEffect, view: &ViewFacts) {
+fn assert_packed(effect: &dyn AnyEffect, view: &EffectContext) {
     let name = effect.effect_type().name;
     for (k, word) in effect.uniform_bytes(view).chunks_exact(4).enumerate() {
         let x = f32::from_le_bytes([word[0], word[1], word[2], word[3]]);
@@ -31,8 +32,8 @@ fn assert_packed(effect: &dyn AnyEffect, view: &ViewFacts) {
 /// Whatever the numbers of an effect are, those that are used are in their ranges, and those that are packed
 /// for the GPU are finite.
 #[test]
-fn no_number_of_an_effect_is_dangerous() {
-    let (effects, view) = (effects(), ViewFacts::default());
+fn any_number_of_an_effect_is_clamped() {
+    let (effects, view) = (effects(), EffectContext::default());
     let mut numbers = Numbers::new(1);
     for case in 0..cases() {
         let mut effect = effects[case % effects.len()].clone();

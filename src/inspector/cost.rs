@@ -7,9 +7,11 @@ use bevy::ecs::{entity::Entity, world::World};
 use bevy_egui::egui::{Color32, Grid, RichText, Sense, Ui, Vec2};
 use egui_plot::{Line, Plot, PlotPoints};
 
-use super::{Widgets, fields::section, known, note};
+use super::{Widgets, fields::section, note, report_data};
 use crate::{
-    ComicStyle, ComicsDiagnostics, EffectRegistry, StageOutcome,
+    ComicStyle, ComicsDiagnostics,
+    diagnostics::StageOutcome,
+    effect::EffectRegistry,
     timing::{Pass, PassTimes},
 };
 
@@ -38,8 +40,9 @@ impl Costs {
         times.run(true);
         self.running = true;
         let frames = times.frames();
-        let medians: Medians =
-            std::array::from_fn(|i| known::median(frames.iter().map(|frame| frame[i]).collect()));
+        let medians: Medians = std::array::from_fn(|i| {
+            report_data::median(frames.iter().map(|frame| frame[i]).collect())
+        });
         section(ui, "Time of the passes, all cameras together", |ui| {
             self.chart(ui, &frames, widgets);
             ui.weak(times.method().unwrap_or("Waiting for the first frame."));
@@ -126,11 +129,11 @@ fn stages(ui: &mut Ui, world: &World, camera: Entity) {
                         ui.strong(stage.name());
                         ui.label("ran");
                     }
-                    StageOutcome::RanAs(form) => {
+                    StageOutcome::RanWith(form) => {
                         ui.strong(stage.name());
                         ui.label(format!("ran ({form})"));
                     }
-                    StageOutcome::LeftOut(reason) => {
+                    StageOutcome::Skipped(reason) => {
                         ui.weak(stage.name());
                         ui.weak(format!("left out: {reason}"));
                     }

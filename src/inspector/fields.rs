@@ -5,7 +5,7 @@
 mod images;
 mod lists;
 mod options;
-#[cfg(feature = "cartoon")]
+#[cfg(feature = "toon")]
 mod ramp_bar;
 mod sections;
 mod vectors;
@@ -36,16 +36,20 @@ use self::{
 use super::{
     Widgets, note,
     search::{Found, Search},
-    shelf::Shelf,
+    stash::Stash,
     tooltip::tooltip,
 };
-use crate::{DepthMap, EffectType, FieldRange, HueWheel, style::rust_code::is_option};
+use crate::{
+    DepthMap,
+    effect::{EffectType, FieldRange, HueWheel},
+    style::rust_code::is_option,
+};
 
 /// What the widgets of a style share.
 pub struct Editor<'a> {
     pub widgets: &'a mut Widgets,
     /// Settings that come back when something is turned on again.
-    pub shelf: &'a Shelf,
+    pub stash: &'a Stash,
     /// The types of the style's values, for their defaults.
     pub types: &'a TypeRegistry,
 }

@@ -13,7 +13,11 @@ use bevy::{
     log::warn,
 };
 
-use crate::{ComicStyle, ComicStyleError, EffectRegistry, style::format};
+use crate::{
+    ComicStyle,
+    effect::EffectRegistry,
+    style::{ComicStyleError, format},
+};
 
 const SUFFIX: &str = ".comic.ron";
 /// How often the open file is read again.

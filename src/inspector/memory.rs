@@ -145,11 +145,11 @@ impl Memory {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::tests::odd::{Numbers, cases, in_time};
+    use crate::settings::tests::non_finite::{Numbers, cases, in_time};
 
     /// Whatever the file has become, the size of screenshots and all other numbers are in their ranges.
     #[test]
-    fn no_text_of_stored_settings_is_dangerous() {
+    fn parsing_stored_settings_never_panics() {
         const WORDS: [&str; 12] = [
             "NaN",
             "inf",

@@ -11,7 +11,7 @@ mod cost;
 mod fields;
 mod files;
 #[cfg_attr(
-    not(all(feature = "cartoon", feature = "objects")),
+    not(all(feature = "toon", feature = "objects")),
     allow(
         dead_code,
         reason = "only these features have something to edit of an object"
@@ -19,10 +19,10 @@ mod files;
 )]
 mod history;
 mod hue_wheel;
-mod known;
+mod layer_borders;
 mod memory;
 #[cfg_attr(
-    not(all(feature = "cartoon", feature = "objects")),
+    not(all(feature = "toon", feature = "objects")),
     allow(
         dead_code,
         reason = "only these features have something to edit of an object"
@@ -31,10 +31,10 @@ mod memory;
 mod objects;
 mod panel;
 mod photo;
-mod plane_borders;
 mod presets;
+mod report_data;
 mod search;
-mod shelf;
+mod stash;
 mod toolkit;
 mod tooltip;
 mod views;
@@ -72,7 +72,7 @@ use bevy::{
 };
 use bevy_egui::{EguiPostUpdateSet, egui};
 
-use crate::{ComicsPlugin, EffectRegistry, timing::PassTimesPlugin};
+use crate::{ComicsPlugin, effect::EffectRegistry, timing::PassTimesPlugin};
 use camera::window_size;
 use panel::Panel;
 
@@ -113,8 +113,8 @@ pub struct ComicsInspectorPlugin {
     /// `assets/styles` in the working directory.
     pub styles: PathBuf,
     /// Folder in which the lights of materials are saved as `*.toon.ron` files. Default:
-    /// `assets/looks` in the working directory.
-    pub looks: PathBuf,
+    /// `assets/shading` in the working directory.
+    pub shadings: PathBuf,
     /// Folder for screenshots. Default: `screenshots` in the working directory.
     pub pictures: PathBuf,
     /// File that stores the panel's place, page and sizes from one run to the
@@ -128,7 +128,7 @@ impl Default for ComicsInspectorPlugin {
         Self {
             toggle: KeyCode::F10,
             styles: PathBuf::from("assets/styles"),
-            looks: PathBuf::from("assets/looks"),
+            shadings: PathBuf::from("assets/shading"),
             pictures: PathBuf::from("screenshots"),
             memory: dirs::config_dir().map(|dir| dir.join("bevy_comics").join("inspector.ron")),
         }

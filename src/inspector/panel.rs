@@ -1,6 +1,6 @@
 //! The panel: its state, its frame, and how its changes reach the cameras.
 
-mod head;
+mod header;
 mod pages;
 mod picking;
 mod search_field;
@@ -20,7 +20,7 @@ use bevy::{
 use bevy_egui::egui::{self, Align2, Color32, ScrollArea, Ui};
 
 use self::{
-    head::{cameras, chosen_camera},
+    header::{cameras, chosen_camera},
     picking::show_picked,
     search_field::SearchField,
 };
@@ -36,15 +36,17 @@ use super::{
     objects::Objects,
     photo::Photo,
     presets::Presets,
-    shelf::Shelf,
+    stash::Stash,
     views,
 };
-use crate::{ComicStyle, DebugView, EffectRegistry, StyleTransition, StyleWeight};
+use crate::{
+    ComicStyle, StyleTransition, StyleWeight, diagnostics::DebugView, effect::EffectRegistry,
+};
 
 /// The panel's state of one camera.
 #[derive(Default)]
 struct CameraState {
-    shelf: Shelf,
+    stash: Stash,
     /// The one of the two styles A and B that is not shown.
     other: Option<ComicStyle>,
     /// Whether style B is shown.
@@ -97,7 +99,7 @@ impl Panel {
             memory_path: plugin.memory.clone(),
             cameras: EntityHashMap::default(),
             history: History::default(),
-            objects: Objects::new(plugin.looks.clone()),
+            objects: Objects::new(plugin.shadings.clone()),
             files: Files::new(plugin.styles.clone(), registry.clone()),
             presets: Presets::new(registry.clone()),
             costs: Costs::default(),
@@ -321,7 +323,7 @@ impl Panel {
         gesture: Option<u64>,
     ) {
         let state = self.cameras.entry(camera).or_default();
-        state.shelf.keep(&before, after);
+        state.stash.keep(&before, after);
         let step = Step::Style(camera, before);
         self.history.record(step, camera, gesture);
         self.message = None;

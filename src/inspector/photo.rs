@@ -297,7 +297,7 @@ mod tests {
     use std::path::Component;
 
     use super::*;
-    use crate::settings::tests::odd::{Numbers, cases, in_time};
+    use crate::settings::tests::non_finite::{Numbers, cases, in_time};
 
     /// A length: any, one of a window, or one beside a power of two.
     fn length(numbers: &mut Numbers) -> u32 {
@@ -311,7 +311,7 @@ mod tests {
     /// A screenshot of a window that the adapter can draw is one that it can draw, too; whatever the numbers
     /// are, there is a size.
     #[test]
-    fn no_size_of_a_window_is_dangerous() {
+    fn a_window_of_any_size_is_drawn() {
         let mut numbers = Numbers::new(4);
         for _ in 0..cases() {
             let window = UVec2::new(length(&mut numbers), length(&mut numbers));
@@ -329,7 +329,7 @@ mod tests {
 
     /// A picture is read if it has the bytes of its size, and refused otherwise.
     #[test]
-    fn no_screenshot_is_dangerous() {
+    fn any_screenshot_is_read_or_refused() {
         let mut numbers = Numbers::new(5);
         for _ in 0..cases() {
             let mut image = Image::default();
@@ -354,7 +354,7 @@ mod tests {
 
     /// The name is that of a file in the folder.
     #[test]
-    fn no_time_as_a_name_is_dangerous() {
+    fn any_time_makes_a_file_name() {
         let mut numbers = Numbers::new(6);
         for _ in 0..cases() {
             let seconds = u64::from(numbers.bits()) << numbers.below(33);

@@ -25,7 +25,10 @@ use super::{
     files::style_files,
     note,
 };
-use crate::{ComicStyle, ComicsDiagnostics, ComicsStage, EffectRegistry, presets, style::format};
+use crate::{
+    ComicStyle, ComicsDiagnostics, diagnostics::ComicsStage, effect::EffectRegistry, presets,
+    style::format,
+};
 
 /// Size of a thumbnail in pixels.
 const WIDTH: u32 = 240;

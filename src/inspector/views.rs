@@ -4,9 +4,12 @@ use bevy::ecs::{component::Component, entity::Entity, query::With, world::World}
 use bevy_egui::egui::{Color32, Grid, Pos2, Sense, Ui};
 use egui_plot::{Bar, BarChart, Plot, PlotPoint, VLine};
 
-use super::{Widgets, fields::section, note, plane_borders::PlaneCuts};
+use super::{Widgets, fields::section, layer_borders::PlaneCuts, note};
 use crate::{
-    ComicStyle, DebugView, DepthBin, DepthHistogram, EffectRegistry, EffectType, VisibleDepthRange,
+    ComicStyle,
+    depth::{DepthBin, DepthHistogram, VisibleDepthRange},
+    diagnostics::DebugView,
+    effect::{EffectRegistry, EffectType},
 };
 
 /// A camera whose depth range the panel reads, and which of the components for it
@@ -112,8 +115,10 @@ fn numbers(ui: &mut Ui, range: VisibleDepthRange, drawn: Option<(f32, f32)>) {
     };
     let raw = match range {
         VisibleDepthRange::Visible {
-            raw_near, raw_far, ..
-        } => [format!("{raw_near:.6}"), format!("{raw_far:.6}")],
+            raw_nearest,
+            raw_farthest,
+            ..
+        } => [format!("{raw_nearest:.6}"), format!("{raw_farthest:.6}")],
         _ => text(None),
     };
     Grid::new("range").striped(true).show(ui, |ui| {

@@ -7,17 +7,17 @@ use bevy::render::render_resource::ShaderType;
 pub struct LineAbstraction {
     /// Abstraction at the near end of the depth map, at its far end, and the exponent of the depth
     /// map between them.
-    pub near: f32,
-    /// See `near`.
-    pub far: f32,
-    /// See `near`.
+    pub at_near: f32,
+    /// See `at_near`.
+    pub at_far: f32,
+    /// See `at_near`.
     pub exponent: f32,
     /// How many times as strong an edge must be at full abstraction to have a line: 1 or more.
     pub threshold: f32,
     /// Factor of the opacity of creases at full abstraction.
     pub crease_opacity: f32,
-    /// Lines of an object follow its centre and its [`ObjectAbstraction`](crate::ObjectAbstraction),
-    /// see [`Needs::OBJECT_DEPTHS`](crate::Needs::OBJECT_DEPTHS), which the effect must need.
+    /// Lines of an object follow its centre and its [`ObjectAbstraction`](crate::objects::ObjectAbstraction),
+    /// see [`Needs::OBJECT_DEPTHS`](crate::effect::Needs::OBJECT_DEPTHS), which the effect must need.
     pub by_objects: bool,
 }
 
@@ -26,8 +26,8 @@ impl LineAbstraction {
     /// `flip`: near and far are exchanged.
     pub(crate) fn uniform(self, flip: bool) -> LineAbstractionUniform {
         LineAbstractionUniform {
-            near: self.near,
-            far: self.far,
+            at_near: self.at_near,
+            at_far: self.at_far,
             exponent: self.exponent,
             threshold: self.threshold.max(1.0),
             crease_opacity: self.crease_opacity,
@@ -41,8 +41,8 @@ impl LineAbstraction {
 /// `LineAbstraction` of `abstraction.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct LineAbstractionUniform {
-    near: f32,
-    far: f32,
+    at_near: f32,
+    at_far: f32,
     exponent: f32,
     threshold: f32,
     crease_opacity: f32,

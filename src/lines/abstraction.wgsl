@@ -7,8 +7,8 @@
 // Its size is a multiple of 16 bytes, as WGSL requires of a struct inside a uniform.
 struct LineAbstraction {
     // Abstraction at D = 0 and at D = 1, and the exponent of D between them.
-    near: f32,
-    far: f32,
+    at_near: f32,
+    at_far: f32,
     exponent: f32,
     // Factor of the response that a line needs at full abstraction, 1 or more.
     threshold: f32,
@@ -22,7 +22,7 @@ struct LineAbstraction {
 
 // The abstraction at a depth of the map. `dial`: of the object, a factor and what is added.
 fn abstraction_at(s: LineAbstraction, d: f32, dial: vec2<f32>) -> f32 {
-    let by_distance = graded(s.near, s.far, s.exponent, mix(d, 1.0 - d, s.flip));
+    let by_distance = graded(s.at_near, s.at_far, s.exponent, mix(d, 1.0 - d, s.flip));
     return clamp(dial.x * by_distance + dial.y, 0.0, 1.0);
 }
 

@@ -9,14 +9,14 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     clock::drawing_seed,
-    settings::{FieldRange, bounded},
+    settings::{FieldRange, clamp_fields},
 };
 
 /// Displaces lines by noise that changes several times a second, as if each drawing of an
 /// animated film had been inked anew ("boiling" lines).
 ///
 /// The noise is a function of the picture, so lines crawl through it while the camera moves.
-/// Between two drawings it stands still. Lines of the faithful forms do not boil. Narrow
+/// Between two drawings it stands still. Faithful lines do not boil. Narrow
 /// lines cost about twice as much when they boil.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,11 +51,7 @@ impl LineBoil {
     /// The settings that are used.
     #[must_use]
     pub fn sanitized(self) -> Self {
-        Self {
-            amplitude: bounded(self.amplitude, 0.0, 0.0, 3.0),
-            wavelength: bounded(self.wavelength, 60.0, 20.0, 120.0),
-            rate: bounded(self.rate, 12.0, 0.0, 60.0),
-        }
+        clamp_fields(self)
     }
 
     /// The settings between two, at `t` from 0 to 1. Waves and drawings change at once,

@@ -6,7 +6,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use crate::settings::{FieldRange, bounded};
+use crate::settings::{FieldRange, clamp_or_default};
 
 /// Where the colour of lines comes from. Objects whose `OutlineStyle` has a colour keep that.
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -14,11 +14,11 @@ use crate::settings::{FieldRange, bounded};
 pub enum LineColor {
     /// The kinds of line have colours of their own: [`Silhouettes::color`] and the others.
     ///
-    /// [`Silhouettes::color`]: crate::Silhouettes::color
+    /// [`Silhouettes::color`]: crate::lines::Silhouettes::color
     #[default]
     Ink,
     /// The surface that a line belongs to, after the effects that change colours (a "colour
-    /// hold" of cel animation). Lines of the faithful forms take the colour below them. In
+    /// hold" of cel animation). Faithful lines take the colour below them. In
     /// multisampled views, a few pixels of slanted lines mix in what lies behind.
     Surface {
         /// Factor of the luminance. Range 0 (black) to 1, 0.35 if it is not finite.
@@ -43,8 +43,8 @@ impl LineColor {
         match self {
             Self::Ink => Self::Ink,
             Self::Surface { darken, saturate } => Self::Surface {
-                darken: bounded(darken, 0.35, 0.0, 1.0),
-                saturate: bounded(saturate, 1.2, 0.0, 2.0),
+                darken: clamp_or_default(darken, 0.35, 0.0, 1.0),
+                saturate: clamp_or_default(saturate, 1.2, 0.0, 2.0),
             },
         }
     }

@@ -11,7 +11,7 @@ use super::{
     sources::{NOT_READY, Reads, entry},
     store::CrackBuffers,
 };
-use crate::diagnostics::LeftOut;
+use crate::diagnostics::SkipReason;
 
 impl Inputs<'_> {
     /// The passes that continue lines.
@@ -19,7 +19,7 @@ impl Inputs<'_> {
         &'a self,
         passes: &CellPasses,
         buffers: &CrackBuffers,
-    ) -> Result<Vec<Ready<'a, ComputePipeline>>, LeftOut> {
+    ) -> Result<Vec<Ready<'a, ComputePipeline>>, SkipReason> {
         let Some([full, last]) = passes.link else {
             return Ok(vec![]);
         };
@@ -41,7 +41,7 @@ impl Inputs<'_> {
         &'a self,
         passes: &CellPasses,
         buffers: &CrackBuffers,
-    ) -> Result<Option<Ready<'a, ComputePipeline>>, LeftOut> {
+    ) -> Result<Option<Ready<'a, ComputePipeline>>, SkipReason> {
         let Some(id) = passes.join else {
             return Ok(None);
         };
@@ -57,7 +57,7 @@ impl Inputs<'_> {
         &'a self,
         passes: &CellPasses,
         buffers: &CrackBuffers,
-    ) -> Result<Option<Ready<'a, ComputePipeline>>, LeftOut> {
+    ) -> Result<Option<Ready<'a, ComputePipeline>>, SkipReason> {
         let Some(id) = passes.bridge else {
             return Ok(None);
         };
@@ -73,7 +73,7 @@ impl Inputs<'_> {
         &'a self,
         passes: &CellPasses,
         buffers: &CrackBuffers,
-    ) -> Result<Option<Ready<'a, ComputePipeline>>, LeftOut> {
+    ) -> Result<Option<Ready<'a, ComputePipeline>>, SkipReason> {
         let Some(id) = passes.settle else {
             return Ok(None);
         };
@@ -95,7 +95,7 @@ impl Inputs<'_> {
         &'a self,
         passes: &CellPasses,
         buffers: &CrackBuffers,
-    ) -> Result<Option<ReadyLives<'a>>, LeftOut> {
+    ) -> Result<Option<ReadyLives<'a>>, SkipReason> {
         let ((request, all, lines), sources, _) = self.parts;
         let (Some(id), Some(lives)) = (passes.persist, &lines.lives) else {
             return Ok(None);
@@ -119,7 +119,7 @@ impl Inputs<'_> {
         &'a self,
         passes: &CellPasses,
         cracks: &Cracks,
-    ) -> Result<Option<Ready<'a, ComputePipeline>>, LeftOut> {
+    ) -> Result<Option<Ready<'a, ComputePipeline>>, SkipReason> {
         let (Some(id), Some(strokes)) = (passes.ends, &cracks.strokes) else {
             return Ok(None);
         };

@@ -33,8 +33,8 @@ use crate::{
 };
 use crate::{
     depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
-    diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
-    objects::{DepthPlaces, ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
+    diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
+    objects::{ObjectDepths, ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
 };
 #[cfg(feature = "objects")]
 use bevy::{ecs::system::Query, render::renderer::RenderAdapterInfo};
@@ -74,7 +74,7 @@ pub(crate) fn find_marks(
     match inputs.record(&mut ctx) {
         Ok(()) => lines.found.store(true, Ordering::Relaxed),
         Err(reason) => {
-            let outcome = StageOutcome::LeftOut(reason);
+            let outcome = StageOutcome::Skipped(reason);
             ledger.set(request.camera, ComicsStage::MarkedObjects, outcome);
         }
     }
@@ -89,7 +89,7 @@ pub(crate) fn find_lines(
         (
             Option<&ViewObjectIds>,
             Option<&ViewLineWidths>,
-            Option<&DepthPlaces>,
+            Option<&ObjectDepths>,
         ),
     )>,
     object_styles: Res<ObjectStyleBuffer>,
@@ -111,24 +111,24 @@ pub(crate) fn find_lines(
             lines.found.store(true, Ordering::Relaxed);
             StageOutcome::Ran
         }
-        Err(reason) => StageOutcome::LeftOut(reason),
+        Err(reason) => StageOutcome::Skipped(reason),
     };
     let resolved = if request.samples > 1 {
         outcome
     } else {
-        StageOutcome::LeftOut(LeftOut::SingleSampled)
+        StageOutcome::Skipped(SkipReason::SingleSampled)
     };
     let searched = if passes.search.is_some() {
         outcome
     } else if passes.key.has_cracks() || passes.key.jumps {
-        StageOutcome::LeftOut(LeftOut::NoComputeShaders)
+        StageOutcome::Skipped(SkipReason::NoComputeShaders)
     } else {
-        StageOutcome::LeftOut(LeftOut::NoSuchLines)
+        StageOutcome::Skipped(SkipReason::NoSuchLines)
     };
     let inked = if passes.has_ink() {
         outcome
     } else {
-        StageOutcome::LeftOut(LeftOut::NoSuchLines)
+        StageOutcome::Skipped(SkipReason::NoSuchLines)
     };
     for (stage, outcome) in [
         (ComicsStage::ResolveSamples, resolved),
@@ -142,7 +142,7 @@ pub(crate) fn find_lines(
 
 impl Inputs<'_> {
     /// Records the passes of the view, or says why not.
-    fn record(&self, ctx: &mut RenderContext) -> Result<(), LeftOut> {
+    fn record(&self, ctx: &mut RenderContext) -> Result<(), SkipReason> {
         let (request, passes, lines) = self.parts.0;
         let resolve = self.resolve_pass()?;
         let search = self.search_passes()?;

@@ -12,7 +12,7 @@ struct Lines {
     object_color: vec3<f32>,
     object_opacity: f32,
     // Responses at which ink begins (low) and is full (high), and k of [CL] Eq. 2.
-    // Faithful: 1 for Form::Faithful.
+    // Faithful: 1 for Equations::Faithful.
     silhouette_low: f32,
     silhouette_high: f32,
     silhouette_k: f32,

@@ -1,4 +1,4 @@
-// Finds the lines of the faithful forms and writes their ink, in the format of draw.wgsl:
+// Finds the faithful lines and writes their ink, in the format of draw.wgsl:
 // the pixels that respond are the line ([CL] Eq. 1 and 2 over 5 x 5 pixels).
 
 #import bevy_comics::depth::map::{depth_map, is_background}

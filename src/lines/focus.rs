@@ -6,7 +6,7 @@ use bevy::{math::Vec2, render::render_resource::ShaderType};
 ///
 /// Distances are along the view's axis. In perspective, what counts is the ratio of two of them;
 /// in an orthographic view their difference, as a fraction of
-/// [`ViewFacts::depth_reference`](crate::ViewFacts::depth_reference).
+/// [`EffectContext::depth_reference`](crate::effect::EffectContext::depth_reference).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineFocus {
     /// Distance of the focus in world units; `None`: that of what the pixel in the middle of the
@@ -21,7 +21,7 @@ pub struct LineFocus {
 }
 
 impl LineFocus {
-    /// As shaders take it. `axis`: see [`ViewFacts::depth_axis`](crate::ViewFacts::depth_axis).
+    /// As shaders take it. `axis`: see [`EffectContext::depth_axis`](crate::effect::EffectContext::depth_axis).
     pub(crate) fn uniform(self, axis: Vec2, reference: Option<f32>) -> LineFocusUniform {
         LineFocusUniform {
             axis,

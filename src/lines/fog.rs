@@ -17,7 +17,7 @@ pub enum LineFog {
     /// Nothing: lines are as strong in the fog as elsewhere.
     Ignore,
     /// They fade by the fog in front of the surface that they belong to. Lines of the faithful
-    /// forms do not. Needs compute shaders, and the crate's feature `objects` or `cartoon`.
+    /// forms do not. Needs compute shaders, and the crate's feature `objects` or `toon`.
     /// Other fog (volumetric, or drawn by materials of the game) is not known, nor are
     /// materials without fog (`fog_enabled: false`).
     #[default]
@@ -26,9 +26,9 @@ pub enum LineFog {
 
 /// Whether a camera has the engine's distance fog.
 pub(crate) fn has_fog(camera: EntityRef) -> bool {
-    #[cfg(any(feature = "objects", feature = "cartoon"))]
+    #[cfg(any(feature = "objects", feature = "toon"))]
     return camera.contains::<bevy::pbr::DistanceFog>();
-    #[cfg(not(any(feature = "objects", feature = "cartoon")))]
+    #[cfg(not(any(feature = "objects", feature = "toon")))]
     {
         let _ = camera;
         false

@@ -23,8 +23,8 @@ use super::{
 };
 use crate::{
     depth::prepare::ViewDepthRange,
-    diagnostics::LeftOut,
-    objects::{ObjectStyleBuffer, PLACES_BINDING},
+    diagnostics::SkipReason,
+    objects::{OBJECT_DEPTHS_BINDING, ObjectStyleBuffer},
 };
 
 /// What the passes of a view read: of the lines, of the scene, the visible range.
@@ -50,8 +50,8 @@ type MemoryPass<'a> = (&'a LineMemory, Ready<'a, RenderPipeline>);
 type ResolvePass<'a> = (&'a Resolved, Ready<'a, RenderPipeline>);
 
 impl Inputs<'_> {
-    /// The pass that draws the faithful forms, if there are any.
-    pub fn faithful_pass(&self) -> Result<Option<Ready<'_, RenderPipeline>>, LeftOut> {
+    /// The pass that draws the faithful equations, if there are any.
+    pub fn faithful_pass(&self) -> Result<Option<Ready<'_, RenderPipeline>>, SkipReason> {
         let (_, passes, _) = self.parts.0;
         let Some(id) = passes.faithful else {
             return Ok(None);
@@ -62,7 +62,10 @@ impl Inputs<'_> {
         Ok(Some((self.pipeline(id)?, group)))
     }
 
-    pub(super) fn pipeline(&self, id: CachedRenderPipelineId) -> Result<&RenderPipeline, LeftOut> {
+    pub(super) fn pipeline(
+        &self,
+        id: CachedRenderPipelineId,
+    ) -> Result<&RenderPipeline, SkipReason> {
         self.cache.get_render_pipeline(id).ok_or(NOT_READY)
     }
 
@@ -76,19 +79,19 @@ impl Inputs<'_> {
             .create_bind_group("comics_lines", &layout, entries)
     }
 
-    pub(super) fn uniform(&self) -> Result<BindingResource<'_>, LeftOut> {
+    pub(super) fn uniform(&self) -> Result<BindingResource<'_>, SkipReason> {
         let (_, _, lines) = self.parts.0;
         lines.uniform.binding().ok_or(NOT_READY)
     }
 
     /// The surfaces of the view.
-    fn prepass(&self) -> Result<Texels<'_>, LeftOut> {
+    fn prepass(&self) -> Result<Texels<'_>, SkipReason> {
         let ((request, ..), sources, _) = self.parts;
-        let depth = sources.depth.ok_or(LeftOut::NoDepthPrepass)?;
+        let depth = sources.depth.ok_or(SkipReason::NoDepthPrepass)?;
         // Those of a game's prepasses can be of cameras with different samples.
         let fits = |texture: &TextureView| texture.texture().sample_count() == request.samples;
         if !fits(&depth.default_view) || sources.normal.is_some_and(|normal| !fits(normal)) {
-            return Err(LeftOut::SampleCountMismatch);
+            return Err(SkipReason::SampleCountMismatch);
         }
         Ok(Texels {
             depth: &depth.default_view,
@@ -99,7 +102,7 @@ impl Inputs<'_> {
     }
 
     /// The textures that lines are found in.
-    pub(super) fn texels(&self) -> Result<Texels<'_>, LeftOut> {
+    pub(super) fn texels(&self) -> Result<Texels<'_>, SkipReason> {
         let (_, _, lines) = self.parts.0;
         match &lines.resolved {
             Some(resolved) => Ok(resolved.texels()),
@@ -108,7 +111,7 @@ impl Inputs<'_> {
     }
 
     /// The pass that picks one sample of every pixel, if the view is multisampled.
-    pub fn resolve_pass(&self) -> Result<Option<ResolvePass<'_>>, LeftOut> {
+    pub fn resolve_pass(&self) -> Result<Option<ResolvePass<'_>>, SkipReason> {
         let (_, passes, lines) = self.parts.0;
         let (Some((key, id)), Some(resolved)) = (&passes.resolve, &lines.resolved) else {
             return Ok(None);
@@ -125,7 +128,7 @@ impl Inputs<'_> {
     }
 
     /// The pass that mixes the ink with that of the frames before, if lines remember.
-    pub fn memory_pass(&self) -> Result<Option<MemoryPass<'_>>, LeftOut> {
+    pub fn memory_pass(&self) -> Result<Option<MemoryPass<'_>>, SkipReason> {
         let ((_, passes, lines), sources, _) = self.parts;
         let (Some(id), Some(memory), Some(ink)) = (passes.memory, &lines.memory, &lines.ink) else {
             return Ok(None);
@@ -145,7 +148,7 @@ impl Inputs<'_> {
         &self,
         key: &LineKey,
         normals: bool,
-    ) -> Result<Vec<BindGroupEntry<'_>>, LeftOut> {
+    ) -> Result<Vec<BindGroupEntry<'_>>, SkipReason> {
         let (_, sources, range) = self.parts;
         let mut entries = vec![entry(1, self.uniform()?)];
         let reads = Reads {
@@ -164,7 +167,7 @@ impl Inputs<'_> {
         }
         if key.reads_places() {
             let places = sources.places.ok_or(NOT_READY)?;
-            entries.push(entry(PLACES_BINDING, places.as_entire_binding()));
+            entries.push(entry(OBJECT_DEPTHS_BINDING, places.as_entire_binding()));
         }
         if key.marks {
             let picture = sources.picture.ok_or(NOT_READY)?;
@@ -178,7 +181,7 @@ impl Inputs<'_> {
         &'a self,
         passes: &CrackPasses,
         cracks: &'a Cracks,
-    ) -> Result<ReadyCracks<'a>, LeftOut> {
+    ) -> Result<ReadyCracks<'a>, SkipReason> {
         let key = self.parts.0.1.key.for_find();
         let (_, _, lines) = self.parts.0;
         let find = self.find_pass(passes.find, &key, cracks)?;
@@ -205,7 +208,7 @@ impl Inputs<'_> {
         pass: FindPass,
         key: &LineKey,
         cracks: &'a Cracks,
-    ) -> Result<ReadyFind<'a>, LeftOut> {
+    ) -> Result<ReadyFind<'a>, SkipReason> {
         let mut entries = self.entries(key, key.creases)?;
         match (pass, &cracks.store) {
             (FindPass::Pixels(id), CrackStore::Texture(texture)) => {
@@ -233,17 +236,20 @@ impl Inputs<'_> {
         }
     }
 
-    pub(super) fn tiles(&self) -> Result<&Tiles, LeftOut> {
+    pub(super) fn tiles(&self) -> Result<&Tiles, SkipReason> {
         let (_, _, lines) = self.parts.0;
         lines.tiles.as_ref().ok_or(NOT_READY)
     }
 
-    pub(super) fn compute(&self, id: CachedComputePipelineId) -> Result<&ComputePipeline, LeftOut> {
+    pub(super) fn compute(
+        &self,
+        id: CachedComputePipelineId,
+    ) -> Result<&ComputePipeline, SkipReason> {
         self.cache.get_compute_pipeline(id).ok_or(NOT_READY)
     }
 
     /// The bindings of a pass that searches stored cracks.
-    fn stored<'a>(&'a self, cracks: &'a Cracks) -> Result<Vec<BindGroupEntry<'a>>, LeftOut> {
+    fn stored<'a>(&'a self, cracks: &'a Cracks) -> Result<Vec<BindGroupEntry<'a>>, SkipReason> {
         let uniform = [entry(1, self.uniform()?)];
         let copies = self.parts.0.0.copies();
         let stored = cracks.store.entries(copies);
@@ -252,7 +258,7 @@ impl Inputs<'_> {
 
     /// The passes that look for blocks with cracks and list the tiles near them, if there
     /// are any.
-    pub fn search_passes(&self) -> Result<Option<[Ready<'_, ComputePipeline>; 2]>, LeftOut> {
+    pub fn search_passes(&self) -> Result<Option<[Ready<'_, ComputePipeline>; 2]>, SkipReason> {
         let (_, passes, lines) = self.parts.0;
         let (Some([walk, list]), Some(tiles)) = (passes.search, &lines.tiles) else {
             return Ok(None);
@@ -277,7 +283,7 @@ impl Inputs<'_> {
     fn searched<'a>(
         &'a self,
         (binding, texture): (u32, &'a CachedTexture),
-    ) -> Result<Vec<BindGroupEntry<'a>>, LeftOut> {
+    ) -> Result<Vec<BindGroupEntry<'a>>, SkipReason> {
         Ok(vec![
             entry(1, self.uniform()?),
             entry(binding, (&texture.default_view).into_binding()),
@@ -289,7 +295,7 @@ impl Inputs<'_> {
         &'a self,
         passes: &CrackPasses,
         cracks: &'a Cracks,
-    ) -> Result<Option<ReadyStrokes<'a>>, LeftOut> {
+    ) -> Result<Option<ReadyStrokes<'a>>, SkipReason> {
         let (Some(id), Some(strokes)) = (passes.strokes, &cracks.strokes) else {
             return Ok(None);
         };
@@ -303,7 +309,7 @@ impl Inputs<'_> {
         Ok(Some(((self.pipeline(id)?, group), strokes)))
     }
 
-    fn draw_group(&self, cracks: &Cracks) -> Result<BindGroup, LeftOut> {
+    fn draw_group(&self, cracks: &Cracks) -> Result<BindGroup, SkipReason> {
         let (_, passes, _) = self.parts.0;
         let key = passes.key.for_draw();
         let mut entries = match (&cracks.columns, &cracks.store) {

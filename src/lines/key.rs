@@ -3,7 +3,7 @@
 use bevy::{math::Vec2, render::render_resource::TextureFormat};
 
 use super::{request::LineRequest, sheet::SheetKey, weight::WeightKey};
-use crate::settings::Form;
+use crate::settings::Equations;
 
 /// The two cracks of a pixel, see `Crack` in `edge.wgsl`.
 pub(crate) const CRACK_FORMAT: TextureFormat = TextureFormat::Rg32Uint;
@@ -50,7 +50,7 @@ pub(crate) enum Search {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct LineKey {
     pub oblique: bool,
-    /// Measured silhouettes and creases: those of the corrected form.
+    /// Measured silhouettes and creases: those of the corrected equations.
     pub silhouettes: bool,
     pub creases: bool,
     pub object_edges: bool,
@@ -68,7 +68,7 @@ pub(crate) struct LineKey {
     /// They are as abstract as their object.
     pub abstracts_objects: bool,
     pub visible_range: bool,
-    /// Whether there are silhouettes and creases of the faithful form.
+    /// Whether there are silhouettes and creases of the faithful equations.
     pub faithful: [bool; 2],
     /// Cracks are linked to lines; of a part of a key: they are completed after they were
     /// found.
@@ -113,18 +113,18 @@ impl LineKey {
     pub fn new(request: &LineRequest, by_fragments: bool) -> Self {
         let lines = &request.settings;
         let forms = [
-            lines.silhouettes.map(|s| s.form),
-            lines.creases.map(|c| c.form),
+            lines.silhouettes.map(|s| s.equations),
+            lines.creases.map(|c| c.equations),
         ];
-        let [silhouettes, creases] = forms.map(|form| form == Some(Form::Corrected));
+        let [silhouettes, creases] = forms.map(|form| form == Some(Equations::Corrected));
         let weight = if by_fragments {
             WeightKey::default()
         } else {
             WeightKey {
                 fog: request.fog.is_some(),
                 focus: request.focus.is_some(),
-                planes: request.planes.is_some(),
-                found_borders: request.planes.is_some_and(|planes| planes.finds_borders),
+                layers: request.layers.is_some(),
+                found_borders: request.layers.is_some_and(|layers| layers.finds_borders),
                 by_objects: request.reads_places() && request.ids,
                 abstracts: request.abstraction.is_some_and(|a| a.crease_opacity < 1.0),
                 map: request.widths,
@@ -145,7 +145,7 @@ impl LineKey {
             abstracts: request.abstraction.is_some_and(|a| a.threshold > 1.0),
             abstracts_objects: request.abstracts_objects() && !by_fragments,
             visible_range: request.visible_range,
-            faithful: forms.map(|form| form == Some(Form::Faithful)),
+            faithful: forms.map(|form| form == Some(Equations::Faithful)),
             links: lines.links() && !by_fragments,
             persists: lines.persists() && !by_fragments,
             motion: lines.persists() && request.motion,
@@ -155,7 +155,7 @@ impl LineKey {
                 && (creases || lines.objects.is_some() && request.ids)
                 && lines.links()
                 && !by_fragments,
-            bridged: lines.bridge > 0 && !by_fragments,
+            bridged: lines.gap_closing > 0 && !by_fragments,
             smooth: lines.smooth && !by_fragments,
             weight,
             surface: request.needs_owners(),
@@ -171,7 +171,7 @@ impl LineKey {
         }
     }
 
-    /// Whether there are lines along cracks, besides those of the faithful forms.
+    /// Whether there are lines along cracks, besides those of the faithful equations.
     pub fn has_cracks(&self) -> bool {
         self.silhouettes || self.creases || self.object_edges
     }
@@ -232,7 +232,7 @@ impl LineKey {
         }
     }
 
-    /// The part that the faithful forms depend on.
+    /// The part that the faithful equations depend on.
     pub fn for_faithful(self) -> Self {
         Self {
             silhouettes: false,
@@ -265,7 +265,7 @@ impl LineKey {
     /// The part that completing cracks depends on.
     pub fn for_settle(self) -> Self {
         let weight = self.weight;
-        let reads_map = weight.perspective || weight.planes || weight.abstracts;
+        let reads_map = weight.perspective || weight.layers || weight.abstracts;
         Self {
             ledges: self.ledges,
             rims: self.rims,

@@ -8,7 +8,7 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::settings::{
-    Blend, FieldRange, Form, blend_color, blend_ratio, bounded, displayable, file_color,
+    Blend, Equations, FieldRange, blend_color, blend_ratio, clamp_fields, color_serde,
 };
 
 /// Outlines where a surface ends in front of another one or of the sky.
@@ -21,13 +21,13 @@ use crate::settings::{
 #[serde(default, deny_unknown_fields)]
 pub struct Silhouettes {
     /// How a jump in depth is measured, and how wide its line is.
-    /// [`Form::Corrected`] does not depend on the world's unit, the clipping planes
+    /// [`Equations::Corrected`] does not depend on the world's unit, the clipping planes
     /// or the camera's rotation, and draws a line of the given width along the edge.
-    /// With [`Form::Faithful`] the response depends on the near plane and the scale
+    /// With [`Equations::Faithful`] the response depends on the near plane and the scale
     /// of the world, and the line is the four columns of pixels that respond.
-    /// Default: [`Form::Corrected`]. Faithful: \[CL\] Eq. 1 and 2 on the depth
+    /// Default: [`Equations::Corrected`]. Faithful: \[CL\] Eq. 1 and 2 on the depth
     /// buffer.
-    pub form: Form,
+    pub equations: Equations,
     /// Sets how large a jump in depth must be to draw a line; the lower, the more
     /// lines. Range 1e-6 to 1, default 0.02. At this jump the response is 1.
     ///
@@ -49,7 +49,7 @@ pub struct Silhouettes {
     pub softness: f32,
     /// Colour of the line, clamped to what a display shows; its alpha is not used.
     /// Default: black.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub color: Color,
     /// Opacity of the line. Range 0 (this kind of line is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
@@ -58,7 +58,7 @@ pub struct Silhouettes {
 
 impl Silhouettes {
     pub(crate) const DEFAULT: Self = Self {
-        form: Form::Corrected,
+        equations: Equations::Corrected,
         threshold: 0.02,
         edge_limit: 0.5,
         softness: 0.5,
@@ -69,23 +69,15 @@ impl Silhouettes {
     /// The settings that are used.
     #[must_use]
     pub fn sanitized(self) -> Self {
-        let default = Self::DEFAULT;
-        Self {
-            form: self.form,
-            threshold: bounded(self.threshold, default.threshold, 1e-6, 1.0),
-            edge_limit: bounded(self.edge_limit, default.edge_limit, 0.01, 0.99),
-            softness: bounded(self.softness, default.softness, 0.0, 1.0),
-            color: displayable(self.color, default.color),
-            opacity: bounded(self.opacity, default.opacity, 0.0, 1.0),
-        }
+        clamp_fields(self)
     }
 
     /// `k` of Eq. 2. The corrected form halves the threshold, because a straight edge
     /// of height h has `g_max - g_min = h / 2`.
     pub(crate) fn k(&self) -> f32 {
-        match self.form {
-            Form::Corrected => 0.5 * self.threshold,
-            Form::Faithful => self.threshold,
+        match self.equations {
+            Equations::Corrected => 0.5 * self.threshold,
+            Equations::Faithful => self.threshold,
         }
     }
 }
@@ -102,13 +94,13 @@ impl Default for Silhouettes {
 #[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Creases {
-    /// How a crease is measured, and how wide its line is. [`Form::Corrected`] uses
+    /// How a crease is measured, and how wide its line is. [`Equations::Corrected`] uses
     /// the angle between the normals of its two sides and draws a line of the given
-    /// width. With [`Form::Faithful`] the response depends on the direction of the
+    /// width. With [`Equations::Faithful`] the response depends on the direction of the
     /// world's axes, and the line is the pixels that respond.
-    /// Default: [`Form::Corrected`]. Faithful: \[CL\] Eq. 1 and 2 on each component
+    /// Default: [`Equations::Corrected`]. Faithful: \[CL\] Eq. 1 and 2 on each component
     /// of the normal.
-    pub form: Form,
+    pub equations: Equations,
     /// Sets how sharply a surface must bend to draw a line; the lower, the more
     /// lines. It is the angle between the normals of the two sides, in degrees, at
     /// which the response is 1. Range 3 to 180, default 40. Faithful: `k_p` of
@@ -126,7 +118,7 @@ pub struct Creases {
     pub softness: f32,
     /// Colour of the line, clamped to what a display shows; its alpha is not used.
     /// Default: black.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub color: Color,
     /// Opacity of the line. Range 0 (this kind of line is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
@@ -137,15 +129,7 @@ impl Creases {
     /// The settings that are used.
     #[must_use]
     pub fn sanitized(self) -> Self {
-        let default = Self::default();
-        Self {
-            form: self.form,
-            angle: bounded(self.angle, default.angle, 3.0, 180.0),
-            edge_limit: bounded(self.edge_limit, default.edge_limit, 0.01, 0.99),
-            softness: bounded(self.softness, default.softness, 0.0, 1.0),
-            color: displayable(self.color, default.color),
-            opacity: bounded(self.opacity, default.opacity, 0.0, 1.0),
-        }
+        clamp_fields(self)
     }
 
     /// `k_n = sin(angle / 2)`, and at least the noise of normals with 10 bits per
@@ -158,7 +142,7 @@ impl Creases {
 impl Default for Creases {
     fn default() -> Self {
         Self {
-            form: Form::Corrected,
+            equations: Equations::Corrected,
             angle: 40.0,
             edge_limit: 0.5,
             softness: 0.5,
@@ -177,7 +161,7 @@ impl Default for Creases {
 pub struct ObjectEdges {
     /// Colour of the line, clamped to what a display shows; its alpha is not used.
     /// Default: black.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub color: Color,
     /// Opacity of the line. Range 0 (this kind of line is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
@@ -188,11 +172,7 @@ impl ObjectEdges {
     /// The settings that are used.
     #[must_use]
     pub fn sanitized(self) -> Self {
-        let default = Self::default();
-        Self {
-            color: displayable(self.color, default.color),
-            opacity: bounded(self.opacity, default.opacity, 0.0, 1.0),
-        }
+        clamp_fields(self)
     }
 }
 
@@ -246,12 +226,12 @@ impl Blend for Silhouettes {
     }
 
     fn same_modes(&self, other: &Self) -> bool {
-        self.form == other.form
+        self.equations == other.equations
     }
 
     fn mixed(self, other: Self, t: f32) -> Self {
         Self {
-            form: self.form,
+            equations: self.equations,
             threshold: blend_ratio(self.threshold, other.threshold, t),
             edge_limit: self.edge_limit.lerp(other.edge_limit, t),
             softness: self.softness.lerp(other.softness, t),
@@ -268,12 +248,12 @@ impl Blend for Creases {
     }
 
     fn same_modes(&self, other: &Self) -> bool {
-        self.form == other.form
+        self.equations == other.equations
     }
 
     fn mixed(self, other: Self, t: f32) -> Self {
         Self {
-            form: self.form,
+            equations: self.equations,
             angle: self.angle.lerp(other.angle, t),
             edge_limit: self.edge_limit.lerp(other.edge_limit, t),
             softness: self.softness.lerp(other.softness, t),

@@ -16,7 +16,7 @@ use super::{
     key::{BLOCK_FORMAT, LineKey, Search},
     pass::LinePassUniform,
 };
-use crate::objects::{ids_entry, object_styles_entry, places_entry, widths_entry};
+use crate::objects::{ids_entry, object_depths_entry, object_styles_entry, widths_entry};
 
 impl LineKey {
     /// The layout entries of what finding reads. `normals`: the normals are read.
@@ -43,7 +43,7 @@ impl LineKey {
             entries.push(seen(ids_entry(false)));
         }
         if self.reads_places() {
-            entries.push(seen(places_entry()));
+            entries.push(seen(object_depths_entry()));
         }
         if self.marks {
             entries.push(picture_entry(self.multisampled_picture, stages));

@@ -23,7 +23,7 @@ use super::{
     draw::cleared,
     pass::LinePassUniform,
     prepare::descriptor,
-    settings::LineSettings,
+    settings::Outlines,
     tiles::{TileList, TileLists, tile_shader, vertices},
 };
 
@@ -154,7 +154,7 @@ pub(crate) struct LineMemory {
     /// This frame and the one before.
     frames: [Frame; 2],
     cuts: u32,
-    settings: LineSettings,
+    settings: Outlines,
     /// Whether there is nothing in it yet.
     pub is_new: bool,
 }
@@ -165,7 +165,7 @@ impl LineMemory {
         before: Option<Self>,
         kept: bool,
         device: &RenderDevice,
-        (request, size, settings): (&MemoryRequest, UVec2, &LineSettings),
+        (request, size, settings): (&MemoryRequest, UVec2, &Outlines),
     ) -> Self {
         if let Some(mut before) = before.filter(|before| before.size == size) {
             before.frames.swap(0, 1);

@@ -2,10 +2,10 @@
 
 // Near, middle and far, and the abstraction, at the pixel that owns a line.
 
-#import bevy_comics::depth::map::{depth_map, plane_weights}
+#import bevy_comics::depth::map::{depth_map, layer_weights}
 #import bevy_comics::depth::view::{depth_frame, texel_depth, view}
 #import bevy_comics::lines::abstraction::{LineAbstraction, abstract_crease}
-#import bevy_comics::lines::plane_lines::LinePlanes
+#import bevy_comics::lines::layer_lines::LineLayers
 #ifdef DEPTH_BORDERS
 #import bevy_comics::depth::view::depth_borders
 #endif
@@ -26,16 +26,16 @@ fn owner_depth(owner: vec2<i32>, by_objects: f32) -> f32 {
 }
 #endif
 
-#ifdef IN_PLANES
+#ifdef IN_LAYERS
 // Fractions of near, middle and far. `owner`: a pixel of the depth texture.
-fn owner_weights(p: LinePlanes, owner: vec2<i32>) -> vec3<f32> {
+fn owner_weights(p: LineLayers, owner: vec2<i32>) -> vec3<f32> {
     let d = owner_depth(owner, p.by_objects);
     var borders = p.borders;
 #ifdef DEPTH_BORDERS
     let found = depth_borders(depth_frame());
     borders = select(found, borders, found.x < 0.0);
 #endif
-    let w = plane_weights(borders, p.softness, d);
+    let w = layer_weights(borders, p.softness, d);
     return select(w, w.zyx, view.flip != 0u);
 }
 #endif

@@ -7,7 +7,7 @@ use bevy::{
 
 use super::{
     abstraction::LineAbstractionUniform, boil::BoilUniform, focus::LineFocusUniform,
-    fog::FogUniform, memory::MemoryUniform, plane_lines::LinePlanesUniform, settings::LinesUniform,
+    fog::FogUniform, layer_lines::LineLayersUniform, memory::MemoryUniform, settings::LinesUniform,
     sheet::SheetUniform, weight::WeightUniform,
 };
 use crate::depth::view::ViewUniform;
@@ -39,7 +39,7 @@ pub(crate) struct LinePassUniform {
     pub weight: WeightUniform,
     pub fog: FogUniform,
     pub focus: LineFocusUniform,
-    pub planes: LinePlanesUniform,
+    pub layers: LineLayersUniform,
     pub abstraction: LineAbstractionUniform,
     pub boil: BoilUniform,
     pub memory: MemoryUniform,

@@ -10,7 +10,7 @@
 #import bevy_comics::lines::focus::LineFocus
 #import bevy_comics::lines::fog::Fog
 #import bevy_comics::lines::memory::Memory
-#import bevy_comics::lines::plane_lines::LinePlanes
+#import bevy_comics::lines::layer_lines::LineLayers
 #import bevy_comics::lines::sheet::Sheet
 #import bevy_comics::lines::weight::Weight
 
@@ -21,7 +21,7 @@ struct LinePass {
     weight: Weight,
     fog: Fog,
     focus: LineFocus,
-    planes: LinePlanes,
+    layers: LineLayers,
     abstraction: LineAbstraction,
     boil: Boil,
     memory: Memory,

@@ -8,7 +8,7 @@ use bevy::{
     },
 };
 
-use super::{request::LineRequest, settings::LineSettings};
+use super::{request::LineRequest, settings::Outlines};
 
 /// The lives of a view's lines, see `lives.wgsl`.
 pub(crate) struct LineLives {
@@ -17,7 +17,7 @@ pub(crate) struct LineLives {
     /// This frame and the one before.
     buffers: [Buffer; 2],
     cuts: u32,
-    settings: LineSettings,
+    settings: Outlines,
     /// Whether the last frame says nothing about this one.
     is_new: bool,
 }

@@ -166,7 +166,7 @@ impl SpecializedRenderPipeline for LineShaders {
             LinePass::Draw => ("comics_draw_lines", "draw", INK),
             LinePass::Strokes => ("comics_line_strokes", "stroke", INK),
         };
-        // The pass that draws ink has this target too; the faithful forms do not write it.
+        // The pass that draws ink has this target too; the faithful equations do not write it.
         let owners = Some(ColorTargetState {
             write_mask: match pass {
                 LinePass::Draw | LinePass::Strokes => ColorWrites::ALL,

@@ -42,7 +42,7 @@ fn set_line_surface(color: vec3<f32>) {
 }
 #endif
 
-#ifdef PLANE_INK
+#ifdef LAYER_INK
 var<private> line_ink: vec4<f32>;
 
 // Sets the colour that takes the place of part of that of the line at the pixel: multiplied by
@@ -93,7 +93,7 @@ fn own_color(slot: u32, kind_color: vec3<f32>) -> vec3<f32> {
 #ifdef SURFACE_LINES
     color = surface_ink(line_surface, lines_drawn.surface_darken, lines_drawn.surface_saturate);
 #endif
-#ifdef PLANE_INK
+#ifdef LAYER_INK
     color = (1.0 - line_ink.a) * color + line_ink.rgb;
 #endif
 #ifdef OBJECT_STYLES

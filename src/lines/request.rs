@@ -22,12 +22,12 @@ use super::{
     focus::LineFocusUniform,
     fog::FogUniform,
     key::{LINK_STEPS, LineKey, Search},
+    layer_lines::LineLayers,
     memory::{MemoryKey, MemoryPipeline, MemoryRequest},
     pass::{Grid, LinePassUniform},
     pipelines::{LinePass, LineShaders, SearchPass},
-    plane_lines::LinePlanes,
     resolve::{ResolveKey, ResolvePipeline},
-    settings::{LineSettings, LinesUniform, MapJumps},
+    settings::{LinesUniform, MapJumps, Outlines},
     sheet::SheetUniform,
     store::{largest_buffer, words},
     tiles::TileList,
@@ -40,7 +40,7 @@ use crate::depth::view::ViewUniform;
 #[derive(Component, Clone, Debug)]
 pub(crate) struct LineRequest {
     pub camera: Entity,
-    pub settings: LineSettings,
+    pub settings: Outlines,
     pub view: ViewUniform,
     pub lines: LinesUniform,
     pub weight: WeightUniform,
@@ -55,8 +55,8 @@ pub(crate) struct LineRequest {
     pub fog: Option<FogUniform>,
     /// What lines are in focus.
     pub focus: Option<LineFocusUniform>,
-    /// How they look in near, middle and far.
-    pub planes: Option<LinePlanes>,
+    /// How they differ between the depth layers.
+    pub layers: Option<LineLayers>,
     /// How they follow the abstraction of the view.
     pub abstraction: Option<LineAbstraction>,
     /// The sheet that lines are drawn on.
@@ -94,9 +94,9 @@ pub(crate) struct LineRequest {
     pub widths: bool,
     /// Physical pixels from a pixel within which the fused pass reads lines.
     pub line_reach: f32,
-    /// Places that count as inked, besides lines: those of [`Extent::AtJumps`].
+    /// Places that count as inked, besides lines: those of [`AffectedArea::AtJumps`].
     ///
-    /// [`Extent::AtJumps`]: crate::Extent::AtJumps
+    /// [`AffectedArea::AtJumps`]: crate::effect::AffectedArea::AtJumps
     pub jumps: Option<MapJumps>,
     /// Flags of the depth map.
     pub map_flags: u32,
@@ -114,8 +114,8 @@ impl LineRequest {
 
     /// Whether lines know the places of objects in the depth map.
     pub fn reads_places(&self) -> bool {
-        let planes = self.planes.is_some_and(|planes| planes.by_objects);
-        planes || self.abstraction.is_some_and(|a| a.by_objects)
+        let layers = self.layers.is_some_and(|layers| layers.by_objects);
+        layers || self.abstraction.is_some_and(|a| a.by_objects)
     }
 
     /// Whether edges must be stronger where their object is abstract.
@@ -126,8 +126,8 @@ impl LineRequest {
 
     /// Whether the pixels that own lines are drawn, for the colour of lines.
     pub fn needs_owners(&self) -> bool {
-        let own_colors = |planes: LinePlanes| planes.has_colors();
-        self.settings.color.is_surface() || self.planes.is_some_and(own_colors)
+        let own_colors = |layers: LineLayers| layers.has_colors();
+        self.settings.color.is_surface() || self.layers.is_some_and(own_colors)
     }
 
     /// Number of passes that link cracks.
@@ -142,7 +142,7 @@ impl LineRequest {
 
     /// Number of passes that copy the planes of cracks and add to them.
     pub fn copies(&self) -> usize {
-        self.joined() + usize::from(self.settings.bridge > 0)
+        self.joined() + usize::from(self.settings.gap_closing > 0)
     }
 
     /// Columns leave out too much where lines are hardly wider than a pixel of the grid.
@@ -185,8 +185,8 @@ impl LineRequest {
             words: words(self.rect).as_ivec2(),
             steps: self.steps,
             specks: self.specks,
-            bridge: self.settings.bridge as i32,
-            persistence: self.settings.persistence as i32,
+            bridge: self.settings.gap_closing as i32,
+            persistence: self.settings.hold_frames as i32,
             overshoot: self.extension,
             unused: 0,
         }
@@ -201,7 +201,7 @@ impl LineRequest {
             weight: self.weight,
             fog: self.fog.unwrap_or_default(),
             focus: self.focus.unwrap_or_default(),
-            planes: self.planes.map(LinePlanes::uniform).unwrap_or_default(),
+            layers: self.layers.map(LineLayers::uniform).unwrap_or_default(),
             abstraction: (self.abstraction)
                 .map(|a| a.uniform(self.view.flip != 0))
                 .unwrap_or_default(),
@@ -225,7 +225,7 @@ pub(crate) struct LinePasses {
     pub search: Option<[CachedComputePipelineId; 2]>,
     /// Finds and draws the lines along cracks, if there are any.
     pub cracks: Option<CrackPasses>,
-    /// Draws the lines of the faithful forms, if there are any.
+    /// Draws the faithful lines, if there are any.
     pub faithful: Option<CachedRenderPipelineId>,
     /// Mixes the ink with that of the frames before.
     pub memory: Option<CachedRenderPipelineId>,

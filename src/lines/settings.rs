@@ -1,6 +1,12 @@
-//! The settings of the service of lines: which lines it finds, and their ink.
+//! The settings of lines: which lines are found, and their ink.
 
-use bevy::{math::Vec3, render::render_resource::ShaderType};
+use bevy::{
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::Vec3,
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
 
 use super::{
     boil::LineBoil,
@@ -10,61 +16,125 @@ use super::{
     sheet::Sheet,
     weight::LineWeight,
 };
-use crate::settings::{Form, linear_rgb};
+use crate::settings::{Equations, FieldRange, linear_rgb};
 
-/// Lines that an effect requests ([`Effect::lines`](crate::Effect::lines)). Every
-/// number must be in the range that [`Outlines`](crate::Outlines) documents for it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LineSettings {
-    /// Lines where a surface ends in front of another or of the sky; `None` for none.
+/// Draws outlines: silhouettes, where one surface hides another; creases, where a
+/// surface bends sharply; and edges between objects (\[CL\] 2.1).
+///
+/// The three kinds are found separately, and where they overlap the strongest is
+/// drawn. By default the same settings fit a tabletop and a landscape, whatever the
+/// near and far planes. `Equations::Faithful`, which silhouettes and creases have each,
+/// computes the paper's equations instead.
+///
+/// Geometry that is not in the depth prepass has no outlines: over a transparent
+/// surface, the lines of the geometry behind it are drawn, unless it has the component
+/// `DepthWrite`. The components `OutlineStyle` and `NoOutlines` change the lines of single
+/// objects.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Outlines {
+    /// Draws lines where a surface ends in front of another one or of the sky;
+    /// `None` draws none. Default: [`Silhouettes::default`].
     pub silhouettes: Option<Silhouettes>,
-    /// Lines where a surface bends sharply; `None` for none.
+    /// Draws lines along creases; `None` draws none and saves the normal prepass.
+    /// Default: [`Creases::default`].
     pub creases: Option<Creases>,
-    /// Lines where two objects meet; `None` for none.
+    /// Draws lines where two objects meet, whatever their depths and normals; `None`
+    /// draws none. Without the crate's feature `objects`, none are drawn either.
+    /// Default: [`ObjectEdges::default`].
     pub objects: Option<ObjectEdges>,
-    /// Width of the lines in logical pixels.
+    /// Width of the lines in logical pixels. Range 0.5 to 16, default 2. Lines in the
+    /// faithful form are four physical pixels wide instead.
+    #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub width: f32,
-    /// Fraction of the width that is lost at the far end of the depth map.
+    /// Fraction of the width that is lost at the far end of the depth map. Range 0 to
+    /// 1, default 0.
+    #[reflect(@FieldRange::FRACTION)]
     pub width_fade: f32,
-    /// Fraction of the opacity that is lost at the far end of the depth map.
+    /// Fraction of the opacity that is lost at the far end of the depth map. Range 0
+    /// to 1, default 0.
+    #[reflect(@FieldRange::FRACTION)]
     pub opacity_fade: f32,
-    /// How far lines continue along weak edges, in logical pixels; 0: not at all.
-    pub continuity: f32,
-    /// Response from which an edge is weak but continues a line, as a fraction of the
-    /// kind's edge limit.
-    pub continuity_level: f32,
-    /// Pieces of line of fewer borders of pixels than this are left out.
-    pub specks: u32,
-    /// Gaps of at most this many borders of pixels are closed; at most 3.
-    pub bridge: u32,
-    /// For how many frames lines stay where their edges have become weak; at most 8.
-    pub persistence: u32,
-    /// By how much loose ends of lines are extended, in logical pixels.
-    pub overshoot: f32,
-    /// What a line loses where an edge is weak.
+    /// How far lines continue along weak edges, in logical pixels: an edge that responds
+    /// below `edge_limit`, but not below `hysteresis_ratio`, has a line if it continues
+    /// one (hysteresis, Canny 1986). At most 64 physical pixels. Range 0 (not at all) to
+    /// 32, default 8.
+    #[reflect(@FieldRange::linear(0.0, 32.0).unit("px"))]
+    pub hysteresis: f32,
+    /// Response from which an edge continues a line, as a fraction of the kind's
+    /// `edge_limit`. Range 0.1 to 1 (only what responds above the limit), default 0.5.
+    #[reflect(@FieldRange::linear(0.1, 1.0))]
+    pub hysteresis_ratio: f32,
+    /// Leaves out pieces of line of fewer borders of pixels than this, at scale factor 1:
+    /// noise. Closed lines and pieces that meet others stay, however short they are. Range 1
+    /// (leaves out nothing) to 8, default 7.
+    #[reflect(@FieldRange::linear(1.0, 8.0))]
+    pub min_length: u32,
+    /// Closes gaps in lines, where nothing responds between two parts of a row or column of
+    /// borders of pixels: up to this many physical pixels, as along wires that are thinner than a
+    /// pixel. Real gaps are closed too. Needs compute shaders. Range 0 (closes none) to 3,
+    /// default 0. Morphological closing along the line.
+    #[reflect(@FieldRange::linear(0.0, 3.0).unit("px"))]
+    pub gap_closing: u32,
+    /// For how many frames a line stays where its edge has become weak: one that responds below
+    /// `edge_limit`, but not below `hysteresis_ratio`, has a line if there was one at most a pixel
+    /// away in the last frame (hysteresis in time). So lines flicker less in motion. What moves
+    /// by more than a pixel per frame is followed where the engine draws motion vectors, in views
+    /// with one sample. Lines are forgotten at a `CameraCut`. Needs `hysteresis` and compute
+    /// shaders. Range 0 (off) to 8, default 0.
+    #[reflect(@FieldRange::linear(0.0, 8.0))]
+    pub hold_frames: u32,
+    /// What a line loses where an edge is weak. Default: [`LineResponse::Width`].
     pub response: LineResponse,
-    /// Whether lines run straight through the steps of pixels.
+    /// Whether lines run straight through the steps of pixels; otherwise they follow the
+    /// borders of pixels. Needs compute shaders. Default: `true`.
     pub smooth: bool,
-    /// How wide lines are in different places.
+    /// By how much lines go on beyond their loose ends, in their direction there, as strokes of a
+    /// draughtsman do; in logical pixels. A stroke is at most as long as its line. Closed lines
+    /// and lines that meet others have no loose ends. With `weight.taper`, lines become thinner
+    /// towards the end of the stroke. Needs `smooth` lines. At most 64 physical pixels. Range 0
+    /// (off) to 16, default 0.
+    #[reflect(@FieldRange::linear(0.0, 16.0).unit("px"))]
+    pub overshoot: f32,
+    /// How wide lines are in different places. Default: [`LineWeight::EVEN`].
     pub weight: LineWeight,
-    /// Fraction of an area that lines may cover where they crowd; 1: no limit.
-    pub budget: f32,
-    /// How lines move.
+    /// Fraction of an area that lines may cover where they crowd, as on foliage or in the
+    /// distance: there they are thinner, and below 0.6 physical pixels fainter. Areas have
+    /// 24x32 physical pixels, and their middle counts most; a line that is alone in its area
+    /// keeps its width. Faithful lines have no budget. Needs compute shaders.
+    /// Range 0.05 to 1 (no limit), default 0.35.
+    #[reflect(@FieldRange::linear(0.05, 1.0))]
+    pub ink_budget: f32,
+    /// How lines move: as if each drawing of a film had been inked anew. Default:
+    /// [`LineBoil::STILL`].
     pub boil: LineBoil,
-    /// Where the colour of lines comes from.
+    /// Where the colour of lines comes from. Default: [`LineColor::Ink`].
     pub color: LineColor,
-    /// Fraction of each frame in lines that remember the frames before; 1: they do not.
-    pub memory: f32,
-    /// What happens to lines in the engine's distance fog.
+    /// Weight of the previous frames under temporal anti-aliasing, whose jitter lines would
+    /// otherwise follow. History is rejected where lines move fast, where something else comes into
+    /// view, and at a `CameraCut`. Lines that boil have no history, and neither have views without
+    /// the engine's motion vectors. Range 0 (no history) to 31/32, default 7/8.
+    #[reflect(@FieldRange::linear(0.0, 0.96875))]
+    pub history_weight: f32,
+    /// What happens to lines in the engine's `DistanceFog`, if the camera has it. Default:
+    /// [`LineFog::Fade`].
     pub fog: LineFog,
 }
 
-/// Most borders of pixels that a line continues along weak edges, and most pixels that it
-/// overshoots by.
-const LONGEST: i32 = 64;
+impl Default for Outlines {
+    fn default() -> Self {
+        Self {
+            silhouettes: Some(Silhouettes::default()),
+            creases: Some(Creases::default()),
+            objects: Some(ObjectEdges::default()),
+            ..Self::NONE
+        }
+    }
+}
 
-impl LineSettings {
-    /// No kind of line, and no factor that changes lines.
+impl Outlines {
+    /// No kind of line; everything else has its default.
     pub const NONE: Self = Self {
         silhouettes: None,
         creases: None,
@@ -72,20 +142,39 @@ impl LineSettings {
         width: 2.0,
         width_fade: 0.0,
         opacity_fade: 0.0,
-        continuity: 8.0,
-        continuity_level: 0.5,
-        specks: 3,
-        bridge: 0,
-        persistence: 0,
+        hysteresis: 8.0,
+        hysteresis_ratio: 0.5,
+        min_length: 7,
+        gap_closing: 0,
+        hold_frames: 0,
         overshoot: 0.0,
         response: LineResponse::Width,
         smooth: true,
         weight: LineWeight::EVEN,
-        budget: 1.0,
+        ink_budget: 0.35,
         boil: LineBoil::STILL,
         color: LineColor::Ink,
-        memory: 0.125,
+        history_weight: 0.875,
         fog: LineFog::Fade,
+    };
+
+    /// Silhouettes only, the one kind that \[CL\] 3.2 implements, with the corrected equations.
+    pub const SILHOUETTES: Self = Self {
+        silhouettes: Some(Silhouettes::DEFAULT),
+        ..Self::NONE
+    };
+}
+
+/// Most borders of pixels that a line continues along weak edges, and most pixels that it
+/// overshoots by.
+const LONGEST: i32 = 64;
+
+impl Outlines {
+    /// No kind of line, and no factor that changes lines.
+    pub(crate) const BARE: Self = Self {
+        min_length: 3,
+        ink_budget: 1.0,
+        ..Self::NONE
     };
 
     /// The lines of marked objects: their styles say which kinds, and how wide they are.
@@ -98,7 +187,7 @@ impl LineSettings {
         }),
         width: 0.5,
         fog: LineFog::Ignore,
-        ..Self::NONE
+        ..Self::BARE
     };
 
     /// The settings without the kinds that are invisible: those of opacity 0, and
@@ -122,18 +211,18 @@ impl LineSettings {
 
     /// Whether cracks are linked to lines, added, or left out if they are not part of one.
     pub(crate) fn links(&self) -> bool {
-        self.continuity > 0.0 || self.specks > 1 || self.bridge > 0
+        self.hysteresis > 0.0 || self.min_length > 1 || self.gap_closing > 0
     }
 
     /// Whether lines are joined where a face between two creases is thinner than a pixel.
     pub(crate) fn joins(&self) -> bool {
-        self.continuity > 0.0 && self.has_measured_creases()
+        self.hysteresis > 0.0 && self.has_measured_creases()
     }
 
     /// Whether lines stay where their edges have become weak. Without continuity there are
     /// no weak edges.
     pub(crate) fn persists(&self) -> bool {
-        self.persistence > 0 && self.continuity > 0.0
+        self.hold_frames > 0 && self.hysteresis > 0.0
     }
 
     /// Whether loose ends of lines are extended.
@@ -154,14 +243,14 @@ impl LineSettings {
     /// Borders of pixels that a line continues along weak edges. `scale`: pixels of the
     /// grid per logical pixel.
     pub(crate) fn steps(&self, scale: f32) -> i32 {
-        ((self.continuity * scale).ceil() as i32).min(LONGEST)
+        ((self.hysteresis * scale).ceil() as i32).min(LONGEST)
     }
 
     /// Borders of pixels that a piece of line must have. `scale`: see [`steps`](Self::steps).
-    pub(crate) fn specks(&self, scale: f32) -> i32 {
-        match self.specks {
+    pub(crate) fn min_length(&self, scale: f32) -> i32 {
+        match self.min_length {
             0 | 1 => 1,
-            specks => ((specks as f32 * scale).ceil() as i32).clamp(1, LONGEST),
+            min_length => ((min_length as f32 * scale).ceil() as i32).clamp(1, LONGEST),
         }
     }
 
@@ -170,22 +259,30 @@ impl LineSettings {
         self.width_fade > 0.0 || self.opacity_fade > 0.0
     }
 
-    /// Whether there are creases of the corrected form.
+    /// Whether there are creases of the corrected equations.
     pub(crate) fn has_measured_creases(&self) -> bool {
-        self.creases.is_some_and(|c| c.form == Form::Corrected)
+        self.creases
+            .is_some_and(|c| c.equations == Equations::Corrected)
     }
 
-    /// Whether any kind has the faithful form, whose ink is not found along cracks.
+    /// Whether any kind has the faithful equations, whose ink is not found along cracks.
     pub(crate) fn has_faithful(&self) -> bool {
-        self.silhouettes.is_some_and(|s| s.form == Form::Faithful)
-            || self.creases.is_some_and(|c| c.form == Form::Faithful)
+        self.silhouettes
+            .is_some_and(|s| s.equations == Equations::Faithful)
+            || self
+                .creases
+                .is_some_and(|c| c.equations == Equations::Faithful)
     }
 
-    /// Whether any kind uses `width`. The faithful forms have their own width.
+    /// Whether any kind uses `width`. The faithful lines have their own width.
     pub(crate) fn has_wide_lines(&self) -> bool {
         self.objects.is_some()
-            || self.silhouettes.is_some_and(|s| s.form != Form::Faithful)
-            || self.creases.is_some_and(|c| c.form != Form::Faithful)
+            || self
+                .silhouettes
+                .is_some_and(|s| s.equations != Equations::Faithful)
+            || self
+                .creases
+                .is_some_and(|c| c.equations != Equations::Faithful)
     }
 
     /// Distance in physical pixels within which lines are searched around a pixel.
@@ -219,10 +316,12 @@ impl LineSettings {
     }
 
     /// The jump in depth from which one surface hides another, instead of meeting it:
-    /// the threshold of measured silhouettes. That of the faithful form has another
+    /// the threshold of measured silhouettes. That of the faithful equations has another
     /// meaning.
     fn jump(&self) -> f32 {
-        let measured = self.silhouettes.filter(|s| s.form == Form::Corrected);
+        let measured = self
+            .silhouettes
+            .filter(|s| s.equations == Equations::Corrected);
         measured.unwrap_or_default().threshold
     }
 
@@ -232,18 +331,18 @@ impl LineSettings {
         let s = self.silhouettes.unwrap_or_default();
         let c = self.creases.unwrap_or_default();
         let o = self.objects.unwrap_or_default();
-        let continues = self.continuity > 0.0;
-        // The faithful forms do not know weak edges.
-        let ends = |form, limit, softness| {
-            let weak = continues && form == Form::Corrected;
+        let continues = self.hysteresis > 0.0;
+        // The faithful lines do not know weak edges.
+        let ends = |equations, limit, softness| {
+            let weak = continues && equations == Equations::Corrected;
             ramp(
                 limit,
                 softness,
-                weak.then_some(self.continuity_level * limit),
+                weak.then_some(self.hysteresis_ratio * limit),
             )
         };
-        let [silhouette_low, silhouette_high] = ends(s.form, s.edge_limit, s.softness);
-        let [crease_low, crease_high] = ends(c.form, c.edge_limit, c.softness);
+        let [silhouette_low, silhouette_high] = ends(s.equations, s.edge_limit, s.softness);
+        let [crease_low, crease_high] = ends(c.equations, c.edge_limit, c.softness);
         let [ink_part, width_part] = self.response.parts();
         let [surface_darken, surface_saturate] = self.color.factors();
         let limit = |limit| if continues { limit } else { 0.0 };
@@ -257,11 +356,11 @@ impl LineSettings {
             silhouette_low,
             silhouette_high,
             silhouette_k: s.k(),
-            silhouette_faithful: u32::from(s.form == Form::Faithful),
+            silhouette_faithful: u32::from(s.equations == Equations::Faithful),
             crease_low,
             crease_high,
             crease_k: c.k(),
-            crease_faithful: u32::from(c.form == Form::Faithful),
+            crease_faithful: u32::from(c.equations == Equations::Faithful),
             half_width: 0.5 * self.width * scale,
             scale,
             width_fade: self.width_fade,
@@ -343,19 +442,19 @@ mod tests {
     use super::*;
 
     /// Whether two surfaces meet at a crease does not depend on the form of silhouettes,
-    /// nor on the threshold of the faithful form.
+    /// nor on the threshold of the faithful equations.
     #[test]
     fn creases_are_the_same_beside_faithful_silhouettes() {
         let jump = |silhouettes| {
-            let settings = LineSettings {
+            let settings = Outlines {
                 silhouettes,
                 creases: Some(Creases::default()),
-                ..LineSettings::NONE
+                ..Outlines::NONE
             };
             settings.uniform(1.0, [1.0, 0.0]).jump
         };
         let faithful = |threshold| Silhouettes {
-            form: Form::Faithful,
+            equations: Equations::Faithful,
             threshold,
             ..Silhouettes::default()
         };

@@ -38,7 +38,7 @@
 #import bevy_comics::lines::focus::line_sharpness
 #endif
 #import bevy_comics::lines::owner_plane::{crease_left, owner_weights}
-#import bevy_comics::lines::plane_lines::plane_factors
+#import bevy_comics::lines::layer_lines::layer_factors
 #ifdef LIGHT_WEIGHT
 #import bevy_comics::depth::normal::texel_normal
 #endif
@@ -263,8 +263,8 @@ fn weighed(crack: vec3<i32>, packed: u32, bend: u32) -> u32 {
     let middle = texel_depth(g.rect.xy + g.rect.zw / 2, 0);
     left *= line_sharpness(line_pass.focus, texel_depth(owner, 0), middle);
 #endif
-#ifdef IN_PLANES
-    left *= plane_factors(line_pass.planes, owner_weights(line_pass.planes, owner));
+#ifdef IN_LAYERS
+    left *= layer_factors(line_pass.layers, owner_weights(line_pass.layers, owner));
 #endif
 #ifdef ABSTRACT_CREASES
     left.y *= select(1.0, crease_left(line_pass.abstraction, owner), (packed & CREASE) != 0u);

@@ -11,7 +11,7 @@ use bevy::{math::Vec2, render::render_resource::ShaderType};
 pub struct Sheet {
     /// Width of the band in which the edges of ink vary, in physical pixels, 0 or more: half of
     /// it outwards in the valleys, and half of it inwards on the hills.
-    pub spread: f32,
+    pub ink_bleed: f32,
     /// How much ink wide lines lose in streaks, 0 to 1.
     pub dry_brush: f32,
     /// Where the sheet begins, in physical pixels from the render target's top left corner.
@@ -31,14 +31,14 @@ impl Sheet {
     /// The largest half width that a line has anywhere. `half_width`: where the height is 0, in
     /// physical pixels.
     pub(crate) fn largest(&self, half_width: f32) -> f32 {
-        half_width + (0.5 * self.spread).min(MOST_SPREAD * half_width)
+        half_width + (0.5 * self.ink_bleed).min(MOST_SPREAD * half_width)
     }
 
     /// As shaders take it. `origin`: the corner of the viewport in the render target.
     pub(crate) fn uniform(self, origin: Vec2) -> SheetUniform {
         SheetUniform {
             origin: origin - self.corner,
-            spread: self.spread,
+            ink_bleed: self.ink_bleed,
             dry_brush: self.dry_brush,
             scale: self.scale,
             unit: self.unit,
@@ -52,7 +52,7 @@ impl Sheet {
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct SheetUniform {
     origin: Vec2,
-    spread: f32,
+    ink_bleed: f32,
     dry_brush: f32,
     scale: f32,
     unit: f32,
@@ -72,7 +72,7 @@ pub(crate) struct SheetKey {
 impl SheetUniform {
     pub fn key(&self) -> SheetKey {
         SheetKey {
-            spreads: self.spread > 0.0,
+            spreads: self.ink_bleed > 0.0,
             streaks: self.dry_brush > 0.0,
         }
     }

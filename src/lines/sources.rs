@@ -9,11 +9,11 @@ use bevy::render::{
 use crate::objects::ViewLayer;
 use crate::{
     depth::surfaces::{SurfaceParts, Surfaces},
-    diagnostics::LeftOut,
-    objects::{DepthPlaces, ViewLineWidths, ViewObjectIds},
+    diagnostics::SkipReason,
+    objects::{ObjectDepths, ViewLineWidths, ViewObjectIds},
 };
 
-pub(super) const NOT_READY: LeftOut = LeftOut::PipelineNotReady;
+pub(super) const NOT_READY: SkipReason = SkipReason::PipelineNotReady;
 
 pub(super) fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
     BindGroupEntry { binding, resource }
@@ -53,7 +53,7 @@ impl<'a> Sources<'a> {
     }
 
     /// With the places of objects.
-    pub fn with_places(self, places: Option<&'a DepthPlaces>) -> Self {
+    pub fn with_places(self, places: Option<&'a ObjectDepths>) -> Self {
         let places = places.map(|places| &places.table);
         Self { places, ..self }
     }
@@ -91,7 +91,11 @@ pub(super) struct Reads {
 
 impl<'a> Texels<'a> {
     /// Adds the bindings: the depth, and what else is read.
-    pub fn push(self, reads: Reads, entries: &mut Vec<BindGroupEntry<'a>>) -> Result<(), LeftOut> {
+    pub fn push(
+        self,
+        reads: Reads,
+        entries: &mut Vec<BindGroupEntry<'a>>,
+    ) -> Result<(), SkipReason> {
         entries.push(entry(2, self.depth.into_binding()));
         if reads.normals {
             let normal = self.normal.ok_or(NOT_READY)?;

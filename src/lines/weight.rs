@@ -7,16 +7,16 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::settings::LineSettings;
+use super::settings::Outlines;
 use crate::{
     objects::LARGEST_FACTOR,
-    settings::{FieldRange, blend_ratio, bounded},
+    settings::{FieldRange, blend_ratio, clamp_fields},
 };
 
 /// How wide lines are in different places. Every number is a factor of the line's width, or
 /// says how a factor is found; the factors are multiplied. With the defaults, all are 1.
 ///
-/// They apply to lines of the corrected forms, on devices with compute shaders. The ideas
+/// They apply to corrected lines, on devices with compute shaders. The ideas
 /// are those of ink drawing: thick outside and thin inside, heavy in the shade, tapered
 /// where a line ends. The light is that of the surface in front; of creases and object
 /// edges, the mean over both sides. The middle of a line whose width changes is exactly the edge; that of an even
@@ -61,7 +61,7 @@ pub struct LineWeight {
     /// Width of lines along the edge of the pen's nib, as a fraction of that across it: 1 is
     /// a round pen. Needs `smooth` lines. Range 0.1 to 1, default 1.
     #[reflect(@FieldRange::linear(0.1, 1.0))]
-    pub nib: f32,
+    pub nib_roundness: f32,
     /// Direction of the edge of the nib, anticlockwise from a horizontal line in the
     /// picture, in degrees. Range 0 to 180, default 40.
     #[reflect(@FieldRange::linear(0.0, 180.0).unit("°"))]
@@ -98,7 +98,7 @@ impl LineWeight {
         shade: 0.0,
         lit: 0.0,
         perspective: 0.0,
-        nib: 1.0,
+        nib_roundness: 1.0,
         nib_angle: 40.0,
         taper: 0.0,
         pressure: 0.0,
@@ -108,21 +108,7 @@ impl LineWeight {
     /// The settings that are used.
     #[must_use]
     pub fn sanitized(self) -> Self {
-        let factor = |value| bounded(value, 1.0, 0.0, 4.0);
-        Self {
-            outer: factor(self.outer),
-            inner: factor(self.inner),
-            crease: factor(self.crease),
-            object: factor(self.object),
-            shade: bounded(self.shade, 0.0, 0.0, 2.0),
-            lit: bounded(self.lit, 0.0, 0.0, 1.0),
-            perspective: bounded(self.perspective, 0.0, 0.0, 1.0),
-            nib: bounded(self.nib, 1.0, 0.1, 1.0),
-            nib_angle: bounded(self.nib_angle, 40.0, 0.0, 180.0),
-            taper: bounded(self.taper, 0.0, 0.0, 48.0),
-            pressure: bounded(self.pressure, 0.0, 0.0, 1.0),
-            pressure_length: bounded(self.pressure_length, 60.0, 10.0, 500.0),
-        }
+        clamp_fields(self)
     }
 
     /// The settings between two, at `t` from 0 to 1.
@@ -136,7 +122,7 @@ impl LineWeight {
             shade: self.shade.lerp(other.shade, t),
             lit: self.lit.lerp(other.lit, t),
             perspective: self.perspective.lerp(other.perspective, t),
-            nib: self.nib.lerp(other.nib, t),
+            nib_roundness: self.nib_roundness.lerp(other.nib_roundness, t),
             nib_angle: self.nib_angle.lerp(other.nib_angle, t),
             taper: self.taper.lerp(other.taper, t),
             pressure: self.pressure.lerp(other.pressure, t),
@@ -181,7 +167,7 @@ impl LineWeight {
             shade: self.shade,
             // The picture's y goes down.
             nib_edge: Vec2::new(angle.cos(), -angle.sin()),
-            nib: self.nib,
+            nib_roundness: self.nib_roundness,
             lit: self.lit,
             perspective: self.perspective,
             taper: (self.taper * scale).min(LONGEST_TAPER),
@@ -207,7 +193,7 @@ pub(crate) struct WeightUniform {
     to_light: Vec3,
     shade: f32,
     nib_edge: Vec2,
-    nib: f32,
+    nib_roundness: f32,
     lit: f32,
     perspective: f32,
     taper: f32,
@@ -223,7 +209,7 @@ pub(crate) struct WeightKey {
     pub outer: bool,
     pub light: bool,
     pub perspective: bool,
-    pub nib: bool,
+    pub nib_roundness: bool,
     pub taper: bool,
     /// The widths that are drawn with object ids: pressure, and those of vertices.
     pub map: bool,
@@ -235,7 +221,7 @@ pub(crate) struct WeightKey {
     pub focus: bool,
     /// Near, middle and far have lines of their own; their borders are found; whole objects are
     /// in one of them.
-    pub planes: bool,
+    pub layers: bool,
     pub found_borders: bool,
     pub by_objects: bool,
     /// Creases are fainter where the picture is abstract.
@@ -243,7 +229,7 @@ pub(crate) struct WeightKey {
 }
 
 impl WeightKey {
-    pub fn new(lines: &LineSettings) -> Self {
+    pub fn new(lines: &Outlines) -> Self {
         let weight = &lines.weight;
         let kinds = [weight.outer, weight.inner, weight.crease, weight.object];
         Self {
@@ -251,13 +237,13 @@ impl WeightKey {
             outer: weight.reads_ids(),
             light: weight.reads_normals(),
             perspective: weight.perspective > 0.0,
-            nib: weight.nib < 1.0 && lines.smooth,
+            nib_roundness: weight.nib_roundness < 1.0 && lines.smooth,
             taper: weight.taper > 0.0,
             map: false,
-            budget: lines.budget < 1.0,
+            budget: lines.ink_budget < 1.0,
             fog: false,
             focus: false,
-            planes: false,
+            layers: false,
             found_borders: false,
             by_objects: false,
             abstracts: false,
@@ -270,7 +256,7 @@ impl WeightKey {
             || self.budget
             || self.fog
             || self.focus
-            || self.planes
+            || self.layers
             || self.abstracts
             || self.varies()
     }
@@ -278,6 +264,6 @@ impl WeightKey {
     /// Whether the width changes along a line. Where lines crowd, a shift of half a pixel
     /// cannot be seen.
     pub fn varies(self) -> bool {
-        self.light || self.perspective || self.nib || self.taper || self.map
+        self.light || self.perspective || self.nib_roundness || self.taper || self.map
     }
 }

@@ -7,7 +7,7 @@ use bevy::{
 };
 
 use super::trail::Trail;
-use crate::settings::{FieldRange, bounded, displayable};
+use crate::settings::{FieldRange, clamp_fields};
 
 /// Draws lines behind a mesh while it moves fast: each is the path that a point of its surface
 /// took, so those of what turns are curved (Lake et al. 2000).
@@ -25,7 +25,7 @@ use crate::settings::{FieldRange, bounded, displayable};
 /// not in the prepass: they have no outlines and no shadows, do not change the visible range, and
 /// the effects of a camera treat them as what is behind them. Of skinned meshes, points follow the
 /// entity, not the bones. The mesh has to be readable in the main world, as meshes are by default.
-/// Needs the feature `objects` or `cartoon`.
+/// Needs the feature `objects` or `toon`.
 ///
 /// ```
 /// # use bevy::prelude::*;
@@ -64,7 +64,7 @@ pub struct MotionLines {
     /// Colour of the ink before tonemapping; its alpha is the opacity. Components are clamped to
     /// what a display shows. Default: black.
     pub color: Color,
-    /// Drawings per second: lines change with the drawings of a [`HeldPose`](crate::HeldPose) of
+    /// Drawings per second: lines change with the drawings of a [`SteppedAnimation`](crate::SteppedAnimation) of
     /// the same rate. 0: in every frame. Range 0 to 60, default 0.
     #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"))]
     pub rate: f32,
@@ -97,17 +97,6 @@ impl MotionLines {
     /// that is not finite is replaced by its default.
     #[must_use]
     pub fn sanitized(self) -> Self {
-        let default = Self::default();
-        Self {
-            points: self.points.clamp(1, Self::MOST_POINTS),
-            duration: bounded(self.duration, default.duration, 0.02, 2.0),
-            gap: bounded(self.gap, default.gap, 0.0, 0.9),
-            variation: bounded(self.variation, default.variation, 0.0, 0.9),
-            min_speed: bounded(self.min_speed, default.min_speed, 1e-4, 1e6),
-            width: bounded(self.width, default.width, 0.5, 16.0),
-            color: displayable(self.color, default.color),
-            rate: bounded(self.rate, default.rate, 0.0, 60.0),
-            seed: self.seed.min(65535),
-        }
+        clamp_fields(self)
     }
 }

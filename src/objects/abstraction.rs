@@ -13,17 +13,17 @@ use bevy::{
 };
 
 use super::components::inherit;
-use crate::settings::{FieldRange, bounded, bounded_option};
+use crate::settings::{FieldRange, clamp_option_or_default, clamp_or_default};
 
 /// Makes this object more or less abstract than the camera's [`Abstraction`](crate::Abstraction)
 /// makes it by distance: a hero with all details among simple figures, or a crowd that is simple
 /// near by too.
 ///
 /// Bands, strokes, saturation and lines follow it. It needs an `Abstraction` with
-/// [`PlaneUnit::Object`](crate::PlaneUnit::Object), which is the default. The meshes of an
+/// [`Granularity::Object`](crate::effects::Granularity::Object), which is the default. The meshes of an
 /// [`OutlineGroup`](crate::OutlineGroup) are one object: if several of them have this component,
 /// any of them counts.
-#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct ObjectAbstraction {
     /// The abstraction of the object at every distance: 0 is all detail, 1 is none. `None`: that
@@ -34,8 +34,18 @@ pub struct ObjectAbstraction {
     #[reflect(@FieldRange::linear(-1.0, 1.0))]
     pub offset: f32,
     /// Applies to all descendants as well, except for those with an `ObjectAbstraction` of their
-    /// own. Default: `false`.
+    /// own. Default: `true`.
     pub inherit: bool,
+}
+
+impl Default for ObjectAbstraction {
+    fn default() -> Self {
+        Self {
+            level: None,
+            offset: 0.0,
+            inherit: true,
+        }
+    }
 }
 
 impl ObjectAbstraction {
@@ -52,8 +62,8 @@ impl ObjectAbstraction {
     #[must_use]
     pub fn sanitized(self) -> Self {
         Self {
-            level: bounded_option(self.level, 0.0, 0.0, 1.0),
-            offset: bounded(self.offset, 0.0, -1.0, 1.0),
+            level: clamp_option_or_default(self.level, 0.0, 0.0, 1.0),
+            offset: clamp_or_default(self.offset, 0.0, -1.0, 1.0),
             ..self
         }
     }

@@ -16,33 +16,34 @@ use bevy::{
 use super::{components::inherit, table::ObjectStyleUniform};
 
 /// The screens of a [`Halftone`](crate::Halftone) with
-/// [`ScreenAnchor::Object`](crate::ScreenAnchor::Object) follow this object: the dots move, turn
+/// [`ScreenAnchor::Object`](crate::effects::ScreenAnchor::Object) follow this object: the dots move, turn
 /// and grow with it, as if they were printed on the figure.
 ///
 /// Dots turn with the object's roll about the view's axis: the direction in which its Y axis
 /// points on the page, or its -Z axis where Y points within 6 degrees of the camera. They grow with
-/// its apparent size, from 0.71 to 1.41 of [`Halftone::period`](crate::Halftone::period); then
+/// its apparent size, from 0.71 to 1.41 of [`Halftone::cell_size`](crate::Halftone::cell_size); then
 /// dots of half the size take over, faded in and out. While the centre is behind the camera, its
 /// dots lie on the page.
 ///
 /// Each object takes a slot of the table of [`OutlineStyle`](crate::OutlineStyle)s, which has 255.
-#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
-pub struct ObjectScreen {
+pub struct PatternAnchor {
     /// What the dots turn and grow about, in the object's own space; zero if a component is not
     /// finite. Default: its origin.
-    pub centre: Vec3,
-    /// Applies to all descendants as well, which the screen treats as one figure with this object,
-    /// except for those with an `ObjectScreen` of their own. Default: `false`.
+    pub center: Vec3,
+    /// Applies to all descendants as well, which are one figure with this object, except for those
+    /// with a `PatternAnchor` of their own. Default: `true`.
     pub inherit: bool,
 }
 
-impl ObjectScreen {
-    /// For a figure of several meshes: [`inherit`](Self::inherit) is `true`.
-    pub const INHERITED: Self = Self {
-        centre: Vec3::ZERO,
-        inherit: true,
-    };
+impl Default for PatternAnchor {
+    fn default() -> Self {
+        Self {
+            center: Vec3::ZERO,
+            inherit: true,
+        }
+    }
 }
 
 /// Where an object is.
@@ -55,8 +56,8 @@ pub(super) struct Anchor {
 
 impl Anchor {
     /// `None` for an object without an extent, or not at a finite place.
-    fn new(screen: &ObjectScreen, at: &GlobalTransform) -> Option<Self> {
-        let offset = Some(screen.centre).filter(|centre| centre.is_finite());
+    fn new(screen: &PatternAnchor, at: &GlobalTransform) -> Option<Self> {
+        let offset = Some(screen.center).filter(|centre| centre.is_finite());
         let centre = at.transform_point(offset.unwrap_or_default());
         let (scale, rotation, _) = at.to_scale_rotation_translation();
         let size = scale.abs().element_product().cbrt();
@@ -78,7 +79,7 @@ impl Anchor {
 
 /// The objects that screens follow.
 pub(super) fn anchors(
-    anchored: &Query<(Entity, &ObjectScreen, &GlobalTransform)>,
+    anchored: &Query<(Entity, &PatternAnchor, &GlobalTransform)>,
     children: &Query<&Children>,
 ) -> EntityHashMap<Anchor> {
     let mut found = EntityHashMap::default();

@@ -16,51 +16,53 @@ use bevy::{
 };
 
 use super::{
-    anchors::{ObjectScreen, anchors},
+    anchors::{PatternAnchor, anchors},
     table::{ObjectStyleUniform, ObjectStyles, UNSTYLED},
 };
-use crate::settings::{FieldRange, bounded_option, displayable, linear_rgb};
+use crate::settings::{FieldRange, clamp_color, clamp_option_or_default, linear_rgb};
 
 /// Removes the [`Outlines`](crate::Outlines) of this object.
 ///
 /// Other objects keep theirs: an object in front of this one still has its outline,
 /// also where the two meet. It works on every mesh in the depth prepass (opaque and
 /// alpha-masked, lit or unlit, skinned, morphed, instanced by the engine), and on transparent
-/// ones with [`DepthWrite`](crate::DepthWrite); others have no outlines anyway.
+/// ones with [`DepthWrite`](crate::objects::DepthWrite); others have no outlines anyway.
 ///
 /// [`Contours`](crate::Contours) do not change: they are found in the depth map, which
 /// does not distinguish objects.
-#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct NoOutlines {
     /// Applies to all descendants as well, for example on the root of a glTF scene.
     /// A descendant with an [`OutlineStyle`] or `NoOutlines` of its own is left out,
-    /// together with everything below it. Default: `false`.
+    /// together with everything below it. Default: `true`.
     pub inherit: bool,
 }
 
-impl NoOutlines {
-    /// For an object and its descendants: [`inherit`](Self::inherit) is `true`.
-    pub const INHERITED: Self = Self { inherit: true };
+impl Default for NoOutlines {
+    fn default() -> Self {
+        Self { inherit: true }
+    }
 }
 
 /// Takes this object out of the colour effects: its colours stay as they were rendered.
 ///
-/// The effects of the stages [`Tone`, `Color` and `Print`](crate::EffectStage) leave it alone:
+/// The effects of the stages [`Tone`, `Color` and `Print`](crate::effect::EffectStage) leave it alone:
 /// tone bands, desaturation, colorization, screens, and those of a game. Lines and the effects of the whole
 /// page still apply; [`NoOutlines`] removes its lines. At its rim, multisampled pixels mix
 /// both colours. For what has to keep its colour: a cursor, a team's flag, a light.
-#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct NoStyle {
     /// Applies to all descendants as well, except for those with a `NoStyle` of their own.
-    /// Default: `false`.
+    /// Default: `true`.
     pub inherit: bool,
 }
 
-impl NoStyle {
-    /// For an object and its descendants: [`inherit`](Self::inherit) is `true`.
-    pub const INHERITED: Self = Self { inherit: true };
+impl Default for NoStyle {
+    fn default() -> Self {
+        Self { inherit: true }
+    }
 }
 
 /// Draws the lines of this object in another style than the camera's
@@ -73,7 +75,7 @@ impl NoStyle {
 ///
 /// At most 255 different styles are told apart; objects with any further style get
 /// the 255th, and the log warns.
-#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct OutlineStyle {
     /// Colour of all lines, clamped to what a display shows; its alpha is not used.
@@ -83,15 +85,27 @@ pub struct OutlineStyle {
     /// Range 0.5 to 16, default `None`.
     #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub width: Option<f32>,
-    /// Factor of the opacity of all lines. Of lines of the faithful form, which lie on both
+    /// Factor of the opacity of all lines. Of faithful lines, which lie on both
     /// sides of an edge, it changes the side of the object. Range 0 to 1; `None` is 1.
     /// Default: `None`.
     #[reflect(@FieldRange::FRACTION)]
     pub opacity: Option<f32>,
     /// Kinds of line that are drawn, if the camera draws them too. Default: all.
     pub kinds: OutlineKinds,
-    /// Applies to all descendants as well, as [`NoOutlines::inherit`]. Default: `false`.
+    /// Applies to all descendants as well, as [`NoOutlines::inherit`]. Default: `true`.
     pub inherit: bool,
+}
+
+impl Default for OutlineStyle {
+    fn default() -> Self {
+        Self {
+            color: None,
+            width: None,
+            opacity: None,
+            kinds: OutlineKinds::default(),
+            inherit: true,
+        }
+    }
 }
 
 /// The kinds of outline.
@@ -122,9 +136,9 @@ impl OutlineStyle {
     #[must_use]
     pub fn sanitized(self) -> Self {
         Self {
-            color: self.color.map(|c| displayable(c, Color::BLACK)),
-            width: bounded_option(self.width, 2.0, 0.5, 16.0),
-            opacity: bounded_option(self.opacity, 1.0, 0.0, 1.0),
+            color: self.color.map(|c| clamp_color(c, Color::BLACK)),
+            width: clamp_option_or_default(self.width, 2.0, 0.5, 16.0),
+            opacity: clamp_option_or_default(self.opacity, 1.0, 0.0, 1.0),
             ..self
         }
     }
@@ -176,7 +190,7 @@ type Drawn = Or<(With<OutlineStyle>, With<NoOutlines>)>;
 pub(crate) fn assign_object_styles(
     outlined: Query<(Entity, Option<&OutlineStyle>, Option<&NoOutlines>), Drawn>,
     unstyled: Query<(Entity, &NoStyle)>,
-    anchored: Query<(Entity, &ObjectScreen, &GlobalTransform)>,
+    anchored: Query<(Entity, &PatternAnchor, &GlobalTransform)>,
     children: Query<&Children>,
     mut styles: ResMut<ObjectStyles>,
 ) {

@@ -36,7 +36,7 @@ use bevy::{
 };
 
 use super::{
-    DepthPlaces, ObjectDepthRequest, ObjectEye,
+    ObjectDepthRequest, ObjectDepths, ObjectEye,
     abstraction::{BY_DISTANCE, ObjectAbstraction, dials},
     groups::{ObjectGroups, extract_object_groups},
     ids::object_id,
@@ -206,7 +206,7 @@ type Placed<'w, 's> = (
             Option<&'static ViewPlaces>,
         ),
     >,
-    Query<'w, 's, Entity, (With<DepthPlaces>, Without<ObjectDepthRequest>)>,
+    Query<'w, 's, Entity, (With<ObjectDepths>, Without<ObjectDepthRequest>)>,
 );
 
 fn prepare_places(
@@ -218,7 +218,7 @@ fn prepare_places(
     (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
 ) {
     for view in &stale {
-        commands.entity(view).remove::<(DepthPlaces, ViewPlaces)>();
+        commands.entity(view).remove::<(ObjectDepths, ViewPlaces)>();
     }
     if views.is_empty() {
         return;
@@ -252,7 +252,7 @@ fn prepare_places(
             cuts: request.cuts,
         });
         if known.is_none() {
-            view.insert(DepthPlaces {
+            view.insert(ObjectDepths {
                 table: places_table(&device),
             });
         }
@@ -271,7 +271,7 @@ fn places_table(device: &RenderDevice) -> Buffer {
 /// Records the pass that finds the places of objects. Where it cannot run, they are unknown: those
 /// of the last frame may be places in another depth map.
 fn place_objects(
-    view: ViewQuery<(&ViewPlaces, &DepthPlaces, Option<&ViewDepthRange>)>,
+    view: ViewQuery<(&ViewPlaces, &ObjectDepths, Option<&ViewDepthRange>)>,
     bounds: Res<ObjectBounds>,
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
@@ -314,11 +314,11 @@ fn place_objects(
 fn init_pipeline(
     mut commands: Commands,
     assets: Res<AssetServer>,
-    views: Query<Entity, With<DepthPlaces>>,
+    views: Query<Entity, With<ObjectDepths>>,
 ) {
     // This runs again after a lost device, whose buffers are no longer valid.
     for view in &views {
-        commands.entity(view).remove::<(DepthPlaces, ViewPlaces)>();
+        commands.entity(view).remove::<(ObjectDepths, ViewPlaces)>();
     }
     commands.insert_resource(PlacePipeline {
         shader: load_embedded_asset!(assets.as_ref(), "depths.wgsl"),

@@ -23,7 +23,7 @@ use super::{
     line_widths::attachment,
     phase::{Layer, ObjectIdItem},
 };
-use crate::diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome};
+use crate::diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome};
 
 /// A view whose ids are drawn.
 type Ids = (
@@ -54,9 +54,9 @@ pub(super) fn draw_object_ids(
     let phase = (phases.as_ref()).and_then(|phases| phases.get(&extracted.retained_view_entity));
     let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
     let mut draw = |descriptor: RenderPassDescriptor, samples: u32, layer: Layer| {
-        let phase = phase.ok_or(LeftOut::PipelineNotReady)?;
+        let phase = phase.ok_or(SkipReason::PipelineNotReady)?;
         if depth.texture.sample_count() != samples {
-            return Err(LeftOut::SampleCountMismatch);
+            return Err(SkipReason::SampleCountMismatch);
         }
         let mut render_pass = ctx.begin_tracked_render_pass(descriptor);
         if let Some(viewport) = &viewport {
@@ -79,18 +79,18 @@ pub(super) fn draw_object_ids(
             draw(pass, request.samples, Layer::Prepass)
         } else {
             // The depth of the prepass could not be bound.
-            Err(LeftOut::SampleCountMismatch)
+            Err(SkipReason::SampleCountMismatch)
         };
         let outcome = match outcome {
-            Ok(_) if own.is_some() => StageOutcome::RanAs(TOLERANT),
-            outcome => outcome.unwrap_or_else(StageOutcome::LeftOut),
+            Ok(_) if own.is_some() => StageOutcome::RanWith(TOLERANT),
+            outcome => outcome.unwrap_or_else(StageOutcome::Skipped),
         };
         ledger.set(request.camera, ComicsStage::ObjectIds, outcome);
     }
     if let Some((request, layer)) = layer {
         let targets = [Some(cleared(&layer.ids.default_view))];
         let outcome = draw(layer.pass(&targets), request.samples, Layer::Marked);
-        let outcome = outcome.unwrap_or_else(StageOutcome::LeftOut);
+        let outcome = outcome.unwrap_or_else(StageOutcome::Skipped);
         ledger.set(request.camera, ComicsStage::MarkedObjects, outcome);
     }
 }
@@ -101,7 +101,7 @@ fn render_layer<'w>(
     pass: &mut TrackedRenderPass<'w>,
     (world, view): (&'w World, Entity),
     layer: Layer,
-) -> Result<StageOutcome, LeftOut> {
+) -> Result<StageOutcome, SkipReason> {
     let range = ObjectIdItem::of(phase, layer);
     if range.is_empty() {
         return Ok(StageOutcome::Ran);
@@ -109,7 +109,7 @@ fn render_layer<'w>(
     let drawn = phase.render_range(pass, world, view, range);
     drawn.map(|()| StageOutcome::Ran).map_err(|error| {
         error_once!("the object ids were not drawn: {error:?}");
-        LeftOut::PipelineNotReady
+        SkipReason::PipelineNotReady
     })
 }
 

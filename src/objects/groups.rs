@@ -24,7 +24,7 @@ use bevy::{
 };
 
 /// All meshes of this entity and of its descendants are one object: between them, there
-/// are no [object edges](crate::ObjectEdges).
+/// are no [object edges](crate::lines::ObjectEdges).
 ///
 /// For what is seen as one thing but has several meshes: the chunks of a terrain, the
 /// parts of a building. Between the group and other objects, edges remain. Silhouettes
@@ -36,7 +36,7 @@ use bevy::{
 /// So a mesh with an `OutlineGroup` of its own is an object of its own.
 ///
 /// The primitives of one glTF node are one object without a group, see
-/// [`object_id`](crate::object_id). An `OutlineGroup` on a primitive separates it from
+/// [`object_id`](crate::testing::object_id). An `OutlineGroup` on a primitive separates it from
 /// the others.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]

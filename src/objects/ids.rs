@@ -71,7 +71,7 @@ use crate::schedule::{ComicsSystems, PrepareComics};
 /// spawns them. A second mesh with the same `P` begins a second object.
 ///
 /// Entities whose indices differ by a multiple of 65535 have the same id, and no
-/// [object edge](crate::ObjectEdges) between them.
+/// [object edge](crate::lines::ObjectEdges) between them.
 pub fn object_id(entity: Entity) -> u16 {
     (entity.index_u32() % 65535 + 1) as u16
 }

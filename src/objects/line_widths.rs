@@ -43,8 +43,8 @@ use super::{
 /// 0 is no line, 0.5 the width that lines have otherwise, 1 twice that width.
 ///
 /// In between, the width changes gradually, over the surface as colours do. It is a factor
-/// beside those of the camera's [`LineWeight`](crate::LineWeight), of which it multiplies
-/// [`pressure`](crate::LineWeight::pressure) to 2 at most. It applies to lines of the
+/// beside those of the camera's [`LineWeight`](crate::lines::LineWeight), of which it multiplies
+/// [`pressure`](crate::lines::LineWeight::pressure) to 2 at most. It applies to lines of the
 /// corrected forms, on devices with compute shaders. A line belongs to the surface in front;
 /// the width of creases and object edges is the mean over both sides.
 ///
@@ -59,17 +59,18 @@ use super::{
 ///
 /// [`AlphaMode::Opaque`]: bevy::prelude::AlphaMode::Opaque
 /// [`AlphaMode::Mask`]: bevy::prelude::AlphaMode::Mask
-#[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Eq)]
 #[reflect(Component, Default, Clone, PartialEq)]
 pub struct LineWidths {
     /// Applies to all descendants as well, for example on the root of a glTF scene. Default:
-    /// `false`.
+    /// `true`.
     pub inherit: bool,
 }
 
-impl LineWidths {
-    /// For an object and its descendants: [`inherit`](Self::inherit) is `true`.
-    pub const INHERITED: Self = Self { inherit: true };
+impl Default for LineWidths {
+    fn default() -> Self {
+        Self { inherit: true }
+    }
 }
 
 /// The meshes with [`LineWidths`]. Both worlds have a copy.

@@ -23,7 +23,7 @@ use super::{
     components::inherit,
     table::{HIDDEN_ONLY, ObjectStyleUniform, ObjectStyles},
 };
-use crate::settings::{FieldRange, bounded, displayable, linear_rgb};
+use crate::settings::{FieldRange, clamp_color, clamp_or_default, linear_rgb};
 
 /// Bits of `ObjectStyleUniform::kinds`.
 const SILHOUETTES: u32 = 1;
@@ -105,9 +105,9 @@ fn bounded_line(
     (default_color, default_width, default_opacity): (Color, f32, f32),
 ) -> (Color, f32, f32) {
     (
-        displayable(color, default_color),
-        bounded(width, default_width, 0.5, 16.0),
-        bounded(opacity, default_opacity, 0.0, 1.0),
+        clamp_color(color, default_color),
+        clamp_or_default(width, default_width, 0.5, 16.0),
+        clamp_or_default(opacity, default_opacity, 0.0, 1.0),
     )
 }
 

@@ -26,9 +26,9 @@ mod lightmaps;
 mod line_widths;
 #[cfg(feature = "objects")]
 mod marks;
+mod object_depths;
 #[cfg(feature = "objects")]
 mod phase;
-mod places;
 #[cfg(feature = "objects")]
 mod sections;
 #[cfg(feature = "objects")]
@@ -43,7 +43,7 @@ mod components;
 #[cfg(feature = "objects")]
 pub use abstraction::ObjectAbstraction;
 #[cfg(feature = "objects")]
-pub use anchors::ObjectScreen;
+pub use anchors::PatternAnchor;
 #[cfg(feature = "objects")]
 pub use components::{NoOutlines, NoStyle, OutlineKinds, OutlineStyle};
 #[cfg(feature = "objects")]
@@ -65,7 +65,9 @@ pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
 #[cfg(feature = "objects")]
 pub use transparent::DepthWrite;
 
-pub(crate) use places::{DepthPlaces, ObjectDepthRequest, ObjectEye, PLACES_BINDING, places_entry};
+pub(crate) use object_depths::{
+    OBJECT_DEPTHS_BINDING, ObjectDepthRequest, ObjectDepths, ObjectEye, object_depths_entry,
+};
 pub(crate) use table::{DepthWrites, ObjectChanges, ObjectStyleBuffer, ObjectStyles};
 pub use widths::ViewLineWidths;
 pub(crate) use widths::{LARGEST_FACTOR, Pressure, WIDTH_FORMAT, widths_entry};
@@ -113,7 +115,7 @@ pub(crate) struct IdsWanted {
 }
 
 /// On a view in the render world: the plan of its camera reads depth, and there are meshes with
-/// [`DepthWrite`](crate::DepthWrite).
+/// [`DepthWrite`](crate::objects::DepthWrite).
 #[derive(Component)]
 #[cfg_attr(
     not(feature = "objects"),
@@ -125,7 +127,7 @@ pub(crate) struct DepthWanted {
     pub normals: bool,
 }
 
-/// On a view in the render world that shows meshes with [`DepthWrite`](crate::DepthWrite):
+/// On a view in the render world that shows meshes with [`DepthWrite`](crate::objects::DepthWrite):
 /// what they are drawn into, besides its depth.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(
@@ -163,9 +165,9 @@ pub(crate) struct IdRequest {
     allow(dead_code, reason = "only the feature `objects` draws ids")
 )]
 pub struct ViewObjectIds {
-    /// `Rg16Uint`: red is the [`object_id`](crate::object_id) (0: no object). The low byte of
+    /// `Rg16Uint`: red is the [`object_id`](crate::testing::object_id) (0: no object). The low byte of
     /// green is the slot of the mesh's outline style (0: it has none), the high byte the
-    /// section of the mesh (0: it has none; see [`MeshSections`](crate::MeshSections)).
+    /// section of the mesh (0: it has none; see [`MeshSections`](crate::objects::MeshSections)).
     pub texture: Texture,
     pub(crate) view: TextureView,
 }
@@ -221,7 +223,7 @@ impl Plugin for ObjectsPlugin {
             app.register_type::<OutlineStyle>()
                 .register_type::<NoOutlines>()
                 .register_type::<NoStyle>()
-                .register_type::<ObjectScreen>()
+                .register_type::<PatternAnchor>()
                 .register_type::<ObjectAbstraction>()
                 .register_type::<LineWidths>()
                 .init_resource::<line_widths::WideMeshes>()

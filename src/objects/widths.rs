@@ -41,8 +41,8 @@ impl Pressure {
 }
 
 /// On a view in the render world: the factor of the width of lines at each pixel, if lines
-/// have [pressure](crate::LineWeight::pressure) or some mesh has
-/// [`LineWidths`](crate::LineWidths).
+/// have [pressure](crate::lines::LineWeight::pressure) or some mesh has
+/// [`LineWidths`](crate::objects::LineWidths).
 ///
 /// The texture has the size and the number of samples of the depth texture. It can be another
 /// texture in every frame.

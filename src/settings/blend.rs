@@ -38,7 +38,7 @@ pub fn blend_ratio(a: f32, b: f32, t: f32) -> f32 {
 
 /// Strength, 0 to 1, of a setting that changes its mode halfway through a
 /// transition: 1 at both ends, 0 at `t = 0.5`.
-pub(crate) fn dip(t: f32) -> f32 {
+pub(crate) fn crossfade_weight(t: f32) -> f32 {
     (1.0 - 2.0 * t).abs()
 }
 
@@ -70,7 +70,7 @@ pub(crate) trait Blend: Copy {
                 if a.same_modes(&b) {
                     mixed
                 } else {
-                    mixed.faded(dip(t))
+                    mixed.faded(crossfade_weight(t))
                 }
             }
         })
@@ -90,6 +90,13 @@ mod tests {
 
     #[test]
     fn a_mode_changes_where_its_effect_has_no_strength() {
-        assert_eq!([dip(0.0), dip(0.5), dip(1.0)], [1.0, 0.0, 1.0]);
+        assert_eq!(
+            [
+                crossfade_weight(0.0),
+                crossfade_weight(0.5),
+                crossfade_weight(1.0)
+            ],
+            [1.0, 0.0, 1.0]
+        );
     }
 }

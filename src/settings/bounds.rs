@@ -1,10 +1,13 @@
 //! Clamps. Settings come from files, sliders and arithmetic, so every number is
 //! brought into its documented range before it reaches the GPU.
 
-use bevy::color::{Color, LinearRgba};
+use bevy::{
+    color::{Color, LinearRgba},
+    math::Vec2,
+};
 
 /// `value` clamped to `low` to `high`; `default` if it is NaN or infinite.
-pub fn bounded(value: f32, default: f32, low: f32, high: f32) -> f32 {
+pub fn clamp_or_default(value: f32, default: f32, low: f32, high: f32) -> f32 {
     if value.is_finite() {
         value.clamp(low, high)
     } else {
@@ -12,15 +15,28 @@ pub fn bounded(value: f32, default: f32, low: f32, high: f32) -> f32 {
     }
 }
 
-/// As [`bounded`], for an optional setting: `None` stays `None`.
-pub fn bounded_option(value: Option<f32>, default: f32, low: f32, high: f32) -> Option<f32> {
-    value.map(|value| bounded(value, default, low, high))
+/// As [`clamp_or_default`], for each component.
+pub fn clamp_vec2_or_default(value: Vec2, default: Vec2, low: f32, high: f32) -> Vec2 {
+    Vec2::new(
+        clamp_or_default(value.x, default.x, low, high),
+        clamp_or_default(value.y, default.y, low, high),
+    )
+}
+
+/// As [`clamp_or_default`], for an optional setting: `None` stays `None`.
+pub fn clamp_option_or_default(
+    value: Option<f32>,
+    default: f32,
+    low: f32,
+    high: f32,
+) -> Option<f32> {
+    value.map(|value| clamp_or_default(value, default, low, high))
 }
 
 /// A displayable colour: every component, alpha included, clamped to 0 to 1 in
 /// linear light. A colour with a component that is NaN or infinite becomes
 /// `default`.
-pub fn displayable(color: Color, default: Color) -> Color {
+pub fn clamp_color(color: Color, default: Color) -> Color {
     let linear = |color: Color| {
         let c = color.to_linear();
         [c.red, c.green, c.blue, c.alpha]
@@ -52,8 +68,8 @@ pub fn displayable(color: Color, default: Color) -> Color {
 /// exchanged if far is below near, and far at least 1.001 times near. What is not
 /// finite becomes 0.1 (near) or 1000 (far).
 pub(crate) fn ordered_planes(near: f32, far: f32) -> (f32, f32) {
-    let near = bounded(near, 0.1, 1e-6, 1e30);
-    let far = bounded(far, 1000.0, 1e-6, 1e36);
+    let near = clamp_or_default(near, 0.1, 1e-6, 1e30);
+    let far = clamp_or_default(far, 1000.0, 1e-6, 1e36);
     let (near, far) = if near <= far {
         (near, far)
     } else {

@@ -3,13 +3,13 @@
 use bevy::reflect::{NamedField, Reflect};
 
 /// The documented range of a number: a reflection attribute of every numeric field
-/// of every effect, of the cartoon material, and of the components of objects. Tools make
+/// of every effect, of the toon material, and of the components of objects. Tools make
 /// sliders from it. Of a vector, it is the range of each component; of a list, that of its
 /// length.
 ///
 /// ```
 /// # use bevy::reflect::{TypeInfo, Typed};
-/// # use bevy_comics::{Contours, FieldRange};
+/// # use bevy_comics::{Contours, effect::FieldRange};
 /// let TypeInfo::Struct(info) = Contours::type_info() else { panic!() };
 /// let range = FieldRange::of(info.field("width").unwrap()).unwrap();
 /// assert_eq!((range.min, range.max, range.unit), (0.5, 16.0, "px"));

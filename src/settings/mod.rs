@@ -2,18 +2,20 @@
 
 mod blend;
 mod bounds;
+mod clamp;
+pub mod color_serde;
+mod equations;
 mod field;
-pub mod file_color;
-mod form;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub(crate) use blend::{Blend, dip};
+pub(crate) use blend::{Blend, crossfade_weight};
 pub use blend::{blend_color, blend_ratio};
 pub(crate) use bounds::ordered_planes;
-pub use bounds::{bounded, bounded_option, displayable};
+pub use bounds::{clamp_color, clamp_option_or_default, clamp_or_default, clamp_vec2_or_default};
+pub(crate) use clamp::clamp_fields;
+pub use equations::Equations;
 pub use field::{BlendField, FieldRange, HueWheel};
-pub use form::Form;
 
 use bevy::{
     color::{Color, ColorToComponents, Oklaba},

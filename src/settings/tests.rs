@@ -1,8 +1,8 @@
 //! Every number is clamped to the range that its field documents.
 
-#[cfg(all(feature = "cartoon", feature = "objects"))]
+#[cfg(all(feature = "toon", feature = "objects"))]
 mod materials;
-pub(crate) mod odd;
+pub(crate) mod non_finite;
 mod page;
 mod prints;
 mod ranges;
@@ -10,15 +10,21 @@ mod ranges;
 use bevy::color::Color;
 
 use crate::{
-    Abstraction, BlackFlats, ColorHarmony, Colorization, Contours, Creases, DepthMap, DepthMapping,
-    Desaturation, Effect, Focus, Halftone, Hatching, HeldPose, LineColor, LineWeight, ObjectEdges,
-    Outlines, Paint, Paper, PlaneStyle, Planes, PrintOffset, RangeSmoothing, Silhouettes, Sketch,
-    SpeedLines, ToneBands, ToneRamp, TwoTone, Vignette,
+    Abstraction, BlackFlats, ColorHarmony, Colorization, Contours, DepthLayers, DepthMap,
+    DepthMapping, Desaturation, Effect, Focus, Halftone, Hatching, Misregistration, Outlines,
+    Paint, Paper, Sketch, SpeedLines, SteppedAnimation, ToneBands, ToneRamp, TwoTone, Vignette,
+    depth::RangeSmoothing,
+    effects::DepthLayer,
+    lines::{Creases, LineColor, LineWeight, ObjectEdges, Silhouettes},
 };
-#[cfg(all(feature = "cartoon", feature = "objects"))]
+#[cfg(all(feature = "toon", feature = "objects"))]
 use crate::{
-    CartoonLight, DetailAxis, FormShape, Glint, MeshSections, ObjectAbstraction, OutlineStyle,
-    Ramp, RampDetail, RampStop, Rim, RimWidth, ShadedForm,
+    OutlineStyle, ToonLight,
+    objects::{MeshSections, ObjectAbstraction},
+    toon::{
+        DetailAxis, ProxyShape, Ramp, RampDetail, RampStop, Rim, RimWidth, ShadingProxy,
+        StylizedHighlight,
+    },
 };
 
 /// Floats: hand-picked edge cases, then as many random bit patterns as there are cases, which include
@@ -51,7 +57,7 @@ fn floats() -> impl Iterator<Item = f32> {
         state ^= state >> 27;
         f32::from_bits((state.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 32) as u32)
     });
-    edges.into_iter().chain(random.take(odd::cases()))
+    edges.into_iter().chain(random.take(non_finite::cases()))
 }
 
 /// Asserts for many values of a field, among them the ends of its range and those beside them, that the
@@ -75,7 +81,7 @@ fn fuzz(field: &str, low: f32, high: f32, through: impl Fn(f32) -> f32) {
 }
 
 #[test]
-fn no_number_of_the_colour_effects_is_dangerous() {
+fn any_number_of_the_colour_effects_is_clamped() {
     fuzz("Desaturation::amount", 0.0, 1.0, |x| {
         Desaturation {
             amount: x,
@@ -119,7 +125,7 @@ fn no_number_of_the_colour_effects_is_dangerous() {
 }
 
 #[test]
-fn no_number_of_the_ink_effects_is_dangerous() {
+fn any_number_of_the_ink_effects_is_clamped() {
     let contours = |edit: fn(&mut Contours, f32)| {
         move |x| {
             let mut c = Contours::default();
@@ -166,7 +172,7 @@ fn no_number_of_the_ink_effects_is_dangerous() {
 }
 
 #[test]
-fn no_number_of_the_depth_map_is_dangerous() {
+fn any_number_of_the_depth_map_is_clamped() {
     let map = |edit: fn(&mut DepthMap, f32)| {
         move |x| {
             let mut m = DepthMap::default();
@@ -202,8 +208,8 @@ fn no_number_of_the_depth_map_is_dangerous() {
         floor(x).orthographic_floor
     });
     for (a, b) in floats().zip(floats().skip(7)) {
-        let mapping = DepthMapping::Fixed { near: a, far: b };
-        let DepthMapping::Fixed { near, far } = DepthMap {
+        let mapping = DepthMapping::Fixed { from: a, to: b };
+        let DepthMapping::Fixed { from, to } = DepthMap {
             mapping,
             ..Default::default()
         }
@@ -213,14 +219,14 @@ fn no_number_of_the_depth_map_is_dangerous() {
             panic!("the mapping changed its kind");
         };
         assert!(
-            near > 0.0 && far > near && far.is_finite(),
-            "{a}, {b}: {near}, {far}"
+            from > 0.0 && to > from && to.is_finite(),
+            "{a}, {b}: {from}, {to}"
         );
     }
 }
 
 #[test]
-fn no_number_of_the_lines_is_dangerous() {
+fn any_number_of_the_lines_is_clamped() {
     let outlines = |edit: fn(&mut Outlines, f32)| {
         move |x| {
             let mut o = Outlines::default();
@@ -234,19 +240,21 @@ fn no_number_of_the_lines_is_dangerous() {
     fuzz("Outlines::width_fade", 0.0, 1.0, |x| fade(x).width_fade);
     let fade = outlines(|o, x| o.opacity_fade = x);
     fuzz("Outlines::opacity_fade", 0.0, 1.0, |x| fade(x).opacity_fade);
-    let continuity = outlines(|o, x| o.continuity = x);
-    let continuity = |x| continuity(x).continuity;
-    fuzz("Outlines::continuity", 0.0, 32.0, continuity);
+    let continuity = outlines(|o, x| o.hysteresis = x);
+    let continuity = |x| continuity(x).hysteresis;
+    fuzz("Outlines::hysteresis", 0.0, 32.0, continuity);
     let over = outlines(|o, x| o.overshoot = x);
     fuzz("Outlines::overshoot", 0.0, 16.0, |x| over(x).overshoot);
-    let level = outlines(|o, x| o.continuity_level = x);
-    fuzz("Outlines::continuity_level", 0.1, 1.0, |x| {
-        level(x).continuity_level
+    let level = outlines(|o, x| o.hysteresis_ratio = x);
+    fuzz("Outlines::hysteresis_ratio", 0.1, 1.0, |x| {
+        level(x).hysteresis_ratio
     });
-    let budget = outlines(|o, x| o.budget = x);
-    fuzz("Outlines::budget", 0.05, 1.0, |x| budget(x).budget);
-    let memory = outlines(|o, x| o.memory = x);
-    fuzz("Outlines::memory", 0.03125, 1.0, |x| memory(x).memory);
+    let budget = outlines(|o, x| o.ink_budget = x);
+    fuzz("Outlines::ink_budget", 0.05, 1.0, |x| budget(x).ink_budget);
+    let history = outlines(|o, x| o.history_weight = x);
+    fuzz("Outlines::history_weight", 0.0, 0.96875, |x| {
+        history(x).history_weight
+    });
     let color = |darken, saturate| {
         LineColor::Surface { darken, saturate }
             .sanitized()
@@ -270,7 +278,7 @@ fn no_number_of_the_lines_is_dangerous() {
         ("shade", 0.0, 2.0, |w| &mut w.shade),
         ("lit", 0.0, 1.0, |w| &mut w.lit),
         ("perspective", 0.0, 1.0, |w| &mut w.perspective),
-        ("nib", 0.1, 1.0, |w| &mut w.nib),
+        ("nib_roundness", 0.1, 1.0, |w| &mut w.nib_roundness),
         ("nib_angle", 0.0, 180.0, |w| &mut w.nib_angle),
         ("taper", 0.0, 48.0, |w| &mut w.taper),
         ("pressure", 0.0, 1.0, |w| &mut w.pressure),
@@ -318,7 +326,7 @@ fn no_number_of_the_lines_is_dangerous() {
 }
 
 #[test]
-fn no_number_of_sketch_and_bands_is_dangerous() {
+fn any_number_of_sketch_and_bands_is_clamped() {
     let sketch = |edit: fn(&mut Sketch, f32)| {
         move |x| {
             let mut s = Sketch::default();
@@ -358,37 +366,35 @@ fn no_number_of_sketch_and_bands_is_dangerous() {
     });
 }
 
-#[cfg(feature = "cartoon")]
+#[cfg(feature = "toon")]
 #[test]
-fn no_number_of_the_cartoon_light_is_dangerous() {
-    use crate::CartoonLight;
-    let light = |edit: fn(&mut CartoonLight, f32)| {
+fn any_number_of_the_toon_light_is_clamped() {
+    use crate::ToonLight;
+    let light = |edit: fn(&mut ToonLight, f32)| {
         move |x| {
-            let mut l = CartoonLight::default();
+            let mut l = ToonLight::default();
             edit(&mut l, x);
             l.sanitized()
         }
     };
-    let terminator = light(|l, x| l.terminator = x);
-    fuzz("CartoonLight::terminator", 0.0, 0.9, |x| {
-        terminator(x).terminator
+    let terminator = light(|l, x| l.shadow_threshold = x);
+    fuzz("ToonLight::shadow_threshold", 0.0, 0.9, |x| {
+        terminator(x).shadow_threshold
     });
     let strength = light(|l, x| l.shadow_strength = x);
-    fuzz("CartoonLight::shadow_strength", 0.0, 1.0, |x| {
+    fuzz("ToonLight::shadow_strength", 0.0, 1.0, |x| {
         strength(x).shadow_strength
     });
     let highlight = light(|l, x| l.highlight = x);
-    fuzz("CartoonLight::highlight", 0.0, 4.0, |x| {
-        highlight(x).highlight
-    });
+    fuzz("ToonLight::highlight", 0.0, 4.0, |x| highlight(x).highlight);
     let edge = light(|l, x| l.highlight_edge = x);
-    fuzz("CartoonLight::highlight_edge", 0.01, 0.99, |x| {
+    fuzz("ToonLight::highlight_edge", 0.01, 0.99, |x| {
         edge(x).highlight_edge
     });
     let falloff = light(|l, x| l.falloff = x);
-    fuzz("CartoonLight::falloff", 0.0, 4.0, |x| falloff(x).falloff);
+    fuzz("ToonLight::falloff", 0.0, 4.0, |x| falloff(x).falloff);
     let environment = light(|l, x| l.flat_environment = x);
-    fuzz("CartoonLight::flat_environment", 0.0, 1.0, |x| {
+    fuzz("ToonLight::flat_environment", 0.0, 1.0, |x| {
         environment(x).flat_environment
     });
 }

@@ -33,13 +33,13 @@ use crate::effect::EffectRegistry;
 /// handle's place.
 #[derive(Component, FromTemplate, Reflect, Clone, Debug, Default, PartialEq)]
 #[reflect(Component, Default, Clone, PartialEq)]
-pub struct ComicStyleHandle(pub Handle<ComicStyle>);
+pub struct Comic(pub Handle<ComicStyle>);
 
 pub(super) fn apply_styles(
     mut commands: Commands,
-    cameras: Query<(Entity, Ref<ComicStyleHandle>)>,
-    mut removed: RemovedComponents<ComicStyleHandle>,
-    existing: Query<(), With<ComicStyleHandle>>,
+    cameras: Query<(Entity, Ref<Comic>)>,
+    mut removed: RemovedComponents<Comic>,
+    existing: Query<(), With<Comic>>,
     mut events: MessageReader<AssetEvent<ComicStyle>>,
     styles: Res<Assets<ComicStyle>>,
 ) {

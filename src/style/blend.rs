@@ -81,24 +81,24 @@ fn mixed_map(a: DepthMap, b: DepthMap, t: f32) -> DepthMap {
     let modes = if t < 0.5 { a } else { b };
     let mapping = match (a.mapping, b.mapping) {
         (
-            DepthMapping::Fixed { near, far },
+            DepthMapping::Fixed { from, to },
             DepthMapping::Fixed {
-                near: near_b,
-                far: far_b,
+                from: from_b,
+                to: to_b,
             },
         ) => DepthMapping::Fixed {
-            near: blend_ratio(near, near_b, t),
-            far: blend_ratio(far, far_b, t),
+            from: blend_ratio(from, from_b, t),
+            to: blend_ratio(to, to_b, t),
         },
         (
-            DepthMapping::FixedLogarithmic { near, far },
+            DepthMapping::FixedLogarithmic { from, to },
             DepthMapping::FixedLogarithmic {
-                near: near_b,
-                far: far_b,
+                from: from_b,
+                to: to_b,
             },
         ) => DepthMapping::FixedLogarithmic {
-            near: blend_ratio(near, near_b, t),
-            far: blend_ratio(far, far_b, t),
+            from: blend_ratio(from, from_b, t),
+            to: blend_ratio(to, to_b, t),
         },
         _ => modes.mapping,
     };

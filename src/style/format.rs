@@ -12,9 +12,9 @@ use thiserror::Error;
 
 use super::{
     ComicStyle,
-    version_1::{self, Upgraded},
+    renamed::{self, Upgraded},
 };
-use crate::effect::{AnyEffect, EffectRegistry, EffectType, FILE_KEYS};
+use crate::effect::{AnyEffect, EffectRegistry, EffectType, names::FILE_KEYS};
 
 /// Why a style was not read or written.
 #[derive(Debug, Error)]
@@ -35,7 +35,9 @@ pub enum ComicStyleError {
         message: String,
     },
     /// The format's version is not one that this crate reads.
-    #[error("style format version {found} is not known; this crate reads versions 1 to {VERSION}")]
+    #[error(
+        "style format version {found} is not known; this crate reads versions {PREVIOUS} and {VERSION}"
+    )]
     #[non_exhaustive]
     Version {
         /// The version that the file states.
@@ -50,8 +52,9 @@ pub enum ComicStyleError {
     },
 }
 
-/// The version of the file format that this crate writes. It reads version 1 too.
-const VERSION: u32 = 2;
+/// The version of the file format that this crate writes. It reads the previous version too.
+const VERSION: u32 = 3;
+const PREVIOUS: u32 = VERSION - 1;
 
 /// A style that was read.
 pub(crate) struct Read {
@@ -68,8 +71,8 @@ pub(crate) fn ron_options() -> ron::Options {
 impl ComicStyle {
     /// Reads a style from the text of a `.comic.ron` file, with the effects of
     /// this crate. [`EffectRegistry::style_from_ron`] also knows those of an app.
-    /// A file of format version 1 is read with one warning in the log, which says
-    /// what to rename.
+    /// A file of the previous format version is read with one warning in the log, which
+    /// says what to rename.
     ///
     /// # Errors
     /// [`ComicStyleError::Syntax`] with line and column, or
@@ -112,13 +115,13 @@ impl EffectRegistry {
 
 /// The version that a text states.
 pub(crate) fn stated_version(text: &str) -> Option<u32> {
-    version_1::version(text)
+    renamed::version(text)
 }
 
 /// Reads the text of a style file.
 pub(crate) fn read(text: &str, types: &[&'static EffectType]) -> Result<Read, ComicStyleError> {
     let current = match stated_version(text) {
-        Some(1) => version_1::upgraded(text),
+        Some(PREVIOUS) => renamed::upgraded(text, "3", renamed::STYLE),
         None | Some(VERSION) => Upgraded::unchanged(text),
         Some(found) => return Err(ComicStyleError::Version { found }),
     };
@@ -269,11 +272,11 @@ impl StyleSeed<'_> {
     }
 }
 
-/// Version 1 is upgraded as text, which a deserializer does not have.
+/// The previous version is upgraded as text, which a deserializer does not have.
 fn other_version(found: u32) -> String {
     match found {
-        1 => String::from(
-            "style format version 1 is read from RON text only; save the style again as version 2",
+        PREVIOUS => format!(
+            "style format version {PREVIOUS} is read from RON text only; save the style again as version {VERSION}"
         ),
         _ => ComicStyleError::Version { found }.to_string(),
     }

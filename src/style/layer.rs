@@ -1,4 +1,4 @@
-//! Styles over a camera's own look.
+//! Styles over a camera's own style.
 
 use bevy::ecs::{
     component::Component,
@@ -15,7 +15,7 @@ use crate::{
 /// On a camera that a style was applied to: what it looks like without.
 #[derive(Component, Clone, Debug)]
 struct StyleLayer {
-    /// The camera's own look.
+    /// The camera's own style.
     own: ComicStyle,
     /// The style that lies over it.
     style: ComicStyle,
@@ -24,7 +24,7 @@ struct StyleLayer {
 }
 
 impl StyleLayer {
-    /// The camera's own look, with what the game has changed since the style was
+    /// The camera's own style, with what the game has changed since the style was
     /// applied: components that the style says nothing about, and effects that
     /// were added. Edits of what the style has set are gone with the style.
     fn own_now(mut self, current: &ComicStyle, types: &[&'static EffectType]) -> ComicStyle {
@@ -120,8 +120,8 @@ impl ComicStyle {
     }
 
     /// Makes a camera look like this complete style, which was made by editing
-    /// what it looked like before. Over a camera's own look it takes the place of
-    /// the applied style, so that the camera has its own look again when that is
+    /// what it looked like before. Over a camera's own style it takes the place of
+    /// the applied style, so that the camera has its own style again when that is
     /// removed.
     #[cfg(feature = "inspector")]
     pub(crate) fn edit(&self, camera: &mut EntityCommands) {
@@ -168,7 +168,7 @@ impl ComicStyle {
     }
 }
 
-/// The camera's look without the style that was applied to it.
+/// The camera's style without the style that was applied to it.
 pub(super) fn own_look(camera: &EntityWorldMut) -> ComicStyle {
     let Some(registry) = camera.world().get_resource::<EffectRegistry>() else {
         return ComicStyle::new();

@@ -5,11 +5,11 @@ mod blend;
 pub(crate) mod format;
 mod layer;
 pub mod presets;
+pub(crate) mod renamed;
 pub(crate) mod rust_code;
 #[cfg(test)]
 mod tests;
 mod transition;
-mod version_1;
 
 use std::collections::BTreeSet;
 
@@ -20,7 +20,7 @@ use bevy::{
     reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
 };
 
-pub use apply::{ComicStyleHandle, ComicStyleHandleTemplate};
+pub use apply::{Comic, ComicTemplate};
 pub use format::ComicStyleError;
 pub use presets::Preset;
 pub use transition::{StyleTransition, StyleTransitionFinished, TransitionEasing};
@@ -47,7 +47,7 @@ use crate::{
 ///
 /// ```ron
 /// (
-///     version: 2,
+///     version: 3,
 ///     name: "Old photograph",
 ///     colorization: (mode: Atmosphere, color: "#9e8057"),
 ///     outlines: (width: 1.5),
@@ -200,7 +200,7 @@ pub(crate) struct StylePlugin;
 impl Plugin for StylePlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<StyleTransition>()
-            .register_type::<ComicStyleHandle>();
+            .register_type::<Comic>();
     }
 }
 

@@ -2,10 +2,10 @@
 //!
 //! ```no_run
 //! # use bevy::prelude::*;
-//! # use bevy_comics::{ComicStyleHandle, StyleTransition, presets};
+//! # use bevy_comics::{Comic, StyleTransition, presets};
 //! # fn setup(mut commands: Commands, assets: Res<AssetServer>, camera: Single<Entity, With<Camera3d>>) {
 //! // As an asset: the camera follows it.
-//! commands.entity(*camera).insert(ComicStyleHandle(assets.load(presets::NOIR.path())));
+//! commands.entity(*camera).insert(Comic(assets.load(presets::NOIR.path())));
 //! // As a value.
 //! commands.entity(*camera).insert(StyleTransition::to(presets::NOIR.style(), 0.4));
 //! # }
@@ -96,16 +96,16 @@ macro_rules! presets {
             pub const $GROUP: &[Preset] = &[$($CONSTANT),*];
         )*
 
-        /// Every preset: [`LOOKS`], then [`PAPERS`].
+        /// Every preset: [`STYLES`], then [`PAPERS`].
         pub const ALL: &[Preset] = &[$($($CONSTANT,)*)*];
     };
 }
 
 presets! {
-    /// The looks, in the order of the gallery: cartoons, books, prints, drawings, paintings, light.
-    LOOKS {
-        /// A television cartoon: strong dark outlines. Flat with
-        /// [`CartoonScene`](crate::CartoonScene).
+    /// The looks, in the order of the gallery: toons, books, prints, drawings, paintings, light.
+    STYLES {
+        /// A television toon: strong dark outlines. Flat with
+        /// [`ToonScene`](crate::ToonScene).
         SATURDAY_MORNING: "saturday-morning";
         /// Four tones and heavy outlines under one blue-grey atmosphere.
         GRAPHIC_NOVEL: "graphic-novel";
@@ -226,8 +226,8 @@ mod tests {
     /// the second paper or of later effects.
     #[test]
     fn looks_say_their_intent_and_do_not_lean_on_contours() {
-        assert_eq!(LOOKS.len(), 36);
-        for look in LOOKS {
+        assert_eq!(STYLES.len(), 36);
+        for look in STYLES {
             let first = look.source.lines().next().unwrap_or_default();
             let intent = first.strip_prefix("// ").unwrap_or_default();
             assert!(intent.contains(". For "), "{look}: {first:?}");

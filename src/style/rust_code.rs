@@ -13,20 +13,28 @@ use bevy::{
 use super::ComicStyle;
 use crate::{depth::DepthMap, effect::AnyEffect};
 
-/// Types of [`crate::prelude`] outside of `effects`.
+/// The types of [`crate::prelude`] that a style can hold.
 const PRELUDE: &[&str] = &[
-    "Creases",
+    "Abstraction",
+    "BlackFlats",
+    "ColorHarmony",
+    "Colorization",
+    "Contours",
+    "DepthLayers",
     "DepthMap",
     "DepthMapping",
-    "Form",
-    "LineBoil",
-    "LineColor",
-    "LineFog",
-    "LineResponse",
-    "LineWeight",
-    "ObjectEdges",
-    "RangeSmoothing",
-    "Silhouettes",
+    "Desaturation",
+    "Focus",
+    "Halftone",
+    "Hatching",
+    "Outlines",
+    "Paint",
+    "Paper",
+    "Sketch",
+    "SpeedLines",
+    "ToneBands",
+    "ToneRamp",
+    "Vignette",
 ];
 
 impl ComicStyle {
@@ -322,12 +330,14 @@ fn path_of(value: &dyn PartialReflect) -> String {
     // Rust infers the parameters of a generic type.
     let path = path.split('<').next().unwrap_or(path);
     let (module, name) = path.rsplit_once("::").unwrap_or(("", path));
-    match module.split("::").next() {
-        Some("bevy_comics") => {
-            let in_prelude = module.starts_with("bevy_comics::effects") || PRELUDE.contains(&name);
-            let start = if in_prelude { "" } else { "bevy_comics::" };
-            format!("{start}{name}")
-        }
+    let mut parts = module.split("::");
+    match parts.next() {
+        Some("bevy_comics") if PRELUDE.contains(&name) => name.to_owned(),
+        // Each public module re-exports what its private modules define.
+        Some("bevy_comics") => match parts.next() {
+            Some("settings") | None => format!("bevy_comics::effects::{name}"),
+            Some(public) => format!("bevy_comics::{public}::{name}"),
+        },
         Some("glam") => format!("bevy::math::{name}"),
         _ => match path.strip_prefix("bevy_") {
             Some(rest) => format!("bevy::{rest}"),

@@ -16,17 +16,17 @@ use bevy::{
 };
 use serde::de::DeserializeSeed;
 
-use super::{ComicStyle, ComicStyleHandle, StyleTransition, presets};
+use super::{Comic, ComicStyle, StyleTransition, presets};
 use crate::{
-    ComicsPlugin, Contours, DepthMap, DepthMapping, Desaturation, EffectRegistry, Outlines,
-    Vignette,
+    ComicsPlugin, Contours, DepthMap, DepthMapping, Desaturation, Outlines, Vignette,
+    effect::EffectRegistry,
 };
 
 fn fixed() -> DepthMap {
     DepthMap {
         mapping: DepthMapping::Fixed {
-            near: 2.0,
-            far: 50.0,
+            from: 2.0,
+            to: 50.0,
         },
         ..DepthMap::default()
     }
@@ -178,7 +178,7 @@ fn an_edit_of_an_applied_style_leaves_the_own_look_alone() {
         ..own
     };
     assert_eq!(look(&app, camera), without_map);
-    // Without an applied style, the camera's own look is edited.
+    // Without an applied style, the camera's own style is edited.
     edit(&mut app, &edited);
     take_off(&mut app, camera);
     assert_eq!(look(&app, camera), edited);
@@ -228,7 +228,7 @@ fn a_transition_to_a_partial_style_keeps_the_cameras_own() {
 
 #[test]
 fn partial_styles_are_files_too() {
-    let text = "(version: 2, partial: true, contours: None, outlines: (width: 3.0))";
+    let text = "(version: 3, partial: true, contours: None, outlines: (width: 3.0))";
     let style = ComicStyle::from_ron(text).expect("readable");
     let made = ComicStyle::new()
         .partial()
@@ -241,7 +241,7 @@ fn partial_styles_are_files_too() {
     let again = ComicStyle::from_ron(&written).expect("readable");
     assert_eq!(again.to_ron().expect("writable"), written);
     // A complete style needs no entry for what is off.
-    let complete = ComicStyle::from_ron("(version: 2, contours: None)").expect("readable");
+    let complete = ComicStyle::from_ron("(version: 3, contours: None)").expect("readable");
     assert_eq!(complete, ComicStyle::new());
     // What a default style writes can be read.
     let text = ComicStyle::default().to_ron().expect("writable");
@@ -276,7 +276,7 @@ fn every_preset_is_an_asset_that_a_template_can_name() {
         assert_eq!(load(&mut app, &handle), preset.style(), "{preset}");
     }
     // As a scene in code does it: the template holds the path.
-    let template = super::ComicStyleHandleTemplate(presets::NOIR.path().into());
+    let template = super::ComicTemplate(presets::NOIR.path().into());
     let mut entity = app.world_mut().entity_mut(camera);
     let handle = entity.build_template(&template).expect("a handle");
     entity.insert(handle.clone());
@@ -285,12 +285,10 @@ fn every_preset_is_an_asset_that_a_template_can_name() {
     let noir = presets::NOIR.style();
     assert!(noir.effects().count() > 0);
     assert_eq!(look(&app, camera).effects, noir.effects);
-    app.world_mut()
-        .entity_mut(camera)
-        .remove::<ComicStyleHandle>();
+    app.world_mut().entity_mut(camera).remove::<Comic>();
     app.update();
     assert_eq!(look(&app, camera).get::<Outlines>(), Some(&outlines(1.0)));
-    let _: <ComicStyleHandle as FromTemplate>::Template = template;
+    let _: <Comic as FromTemplate>::Template = template;
 }
 
 #[test]

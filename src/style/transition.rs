@@ -20,7 +20,7 @@ use bevy::{
     time::Time,
 };
 
-use super::{ComicStyle, ComicStyleHandle, layer::own_look};
+use super::{Comic, ComicStyle, layer::own_look};
 use crate::{diagnostics::ComicsDiagnostics, effect::EffectRegistry};
 
 /// Carries a camera from the style that it has to another one, over time.
@@ -93,14 +93,14 @@ pub struct StyleTransitionFinished {
 
 impl StyleTransition {
     /// To a style, in so many seconds; 0, or what is not a positive number, is
-    /// at once. The camera's [`ComicStyleHandle`], if it has one, is emptied, so
+    /// at once. The camera's [`Comic`], if it has one, is emptied, so
     /// later changes of that file have no effect.
     pub fn to(style: ComicStyle, seconds: f32) -> Self {
         Self::new(StyleTarget::Style(style), seconds)
     }
 
     /// To the style of an asset, which the camera keeps as its
-    /// [`ComicStyleHandle`]. Starts when the asset has loaded; an asset that
+    /// [`Comic`]. Starts when the asset has loaded; an asset that
     /// fails to load ends it where it is, with a warning.
     pub fn to_asset(style: Handle<ComicStyle>, seconds: f32) -> Self {
         Self::new(StyleTarget::Asset(style), seconds)
@@ -131,7 +131,7 @@ impl StyleTransition {
         }
     }
 
-    /// How far the look has come, 0 to 1.
+    /// How far the transition has come, 0 to 1.
     fn fraction(&self) -> f32 {
         let curve = match self.easing {
             TransitionEasing::Linear => EaseFunction::Linear,
@@ -143,7 +143,7 @@ impl StyleTransition {
 
 pub(super) fn run_transitions(
     mut commands: Commands,
-    mut cameras: Query<(Entity, &mut StyleTransition, Has<ComicStyleHandle>)>,
+    mut cameras: Query<(Entity, &mut StyleTransition, Has<Comic>)>,
     styles: Option<Res<Assets<ComicStyle>>>,
     assets: Option<Res<AssetServer>>,
     diagnostics: Res<ComicsDiagnostics>,
@@ -174,7 +174,7 @@ pub(super) fn run_transitions(
             camera.queue(remember_start);
             if matches!(transition.target, StyleTarget::Style(_)) {
                 // Removing the handle would also remove the style.
-                camera.insert_if(ComicStyleHandle::default(), || has_handle);
+                camera.insert_if(Comic::default(), || has_handle);
             }
         } else if !diagnostics.is_compiling(entity) {
             transition.elapsed += time.as_ref().map_or(0.0, |time| time.delta_secs());
@@ -182,7 +182,7 @@ pub(super) fn run_transitions(
         if transition.progress() >= 1.0 {
             target.apply(&mut camera);
             if let StyleTarget::Asset(handle) = &transition.target {
-                camera.insert(ComicStyleHandle(handle.clone()));
+                camera.insert(Comic(handle.clone()));
             }
             camera.remove::<StyleTransition>();
             commands.trigger(StyleTransitionFinished { entity });
@@ -196,7 +196,7 @@ pub(super) fn run_transitions(
     }
 }
 
-/// Remembers the look from which the camera's transition starts.
+/// Remembers the style from which the camera's transition starts.
 fn remember_start(mut camera: EntityWorldMut) {
     let Some(registry) = camera.world().get_resource::<EffectRegistry>().cloned() else {
         return;

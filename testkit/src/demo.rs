@@ -148,7 +148,7 @@ mod tests {
 
     /// Every command line is read, or refused with a message.
     #[test]
-    fn no_command_line_is_dangerous() {
+    fn parsing_a_command_line_never_panics() {
         let demo = Demo {
             title: "Photo mode",
             keys: "",

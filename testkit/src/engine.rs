@@ -1,4 +1,4 @@
-//! The engine's modules as far as the cartoon material and the object service use them, for their
+//! The engine's modules as far as the toon material and the object service use them, for their
 //! functions in isolation
 //! ([`wgsl::module_alone`](crate::wgsl::module_alone)).
 //!

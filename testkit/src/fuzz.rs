@@ -1,4 +1,4 @@
-//! Texts of strangers: nearly right, and wrong somewhere. What reads them must neither panic, nor take
+//! Untrusted texts: nearly right, and wrong somewhere. What reads them must neither panic, nor take
 //! long, nor ask for much memory.
 
 #![expect(unsafe_code, reason = "the trait of allocators is unsafe")]
@@ -166,8 +166,8 @@ const WORDS: [&str; 44] = [
     ",",
     "#",
     "#ffffffff",
-    "version: 1,",
     "version: 2,",
+    "version: 3,",
     "..",
     "../",
     "/etc/",

@@ -1,6 +1,6 @@
 //! Shared by the tests, the examples and the report: scenes made by code, an app
 //! that renders without a window, a bare GPU device, the shipped WGSL, and the
-//! shaders' twins in double precision.
+//! shaders' references in double precision.
 
 pub mod asked;
 pub mod before;
@@ -14,7 +14,6 @@ pub mod fuzz;
 pub mod headless;
 pub mod line_work;
 pub mod link_work;
-pub mod look_work;
 pub mod orbit;
 pub mod page_work;
 pub mod painting;
@@ -26,6 +25,7 @@ pub mod scenes;
 pub mod screens;
 pub mod soak;
 pub mod specimens;
+pub mod style_work;
 // The crate's own stopwatch, included because it is private there.
 #[path = "../../src/timing/stopwatch.rs"]
 mod stopwatch;
@@ -35,7 +35,7 @@ pub mod studio;
 pub mod truth;
 pub mod validation;
 // The order of the crate's grains, included because it is private there.
-#[path = "../../src/effect/blue_noise/void_and_cluster.rs"]
+#[path = "../../src/fused/blue_noise/void_and_cluster.rs"]
 mod void_and_cluster;
 pub mod wgsl;
 pub mod work;

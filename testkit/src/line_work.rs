@@ -4,7 +4,7 @@
 //! In the pass that searches blocks, every invocation fetches the same number: it is
 //! counted in the composed shader. The other passes are counted while they run. A pass
 //! returns its count instead of its result, and the passes after it hand the count on to
-//! the picture. Lists of tiles, the choice of samples and the faithful forms are not counted,
+//! the picture. Lists of tiles, the choice of samples and the faithful equations are not counted,
 //! nor are writes. Those that complete cracks are counted in [`link_work`](crate::link_work).
 
 use bevy::{

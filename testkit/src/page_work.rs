@@ -5,9 +5,9 @@
 
 use bevy::render::{RenderApp, sync_world::RenderEntity};
 use bevy_comics::{
-    ColorHarmony, Colorization, ComicStyle, ComicsDiagnostics, Focus, FocusAt, FocusStyle,
-    Halftone, Hatching, Paint, Paper, PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape,
-    SpeedLines, TwoTone,
+    ColorHarmony, Colorization, ComicStyle, ComicsDiagnostics, DepthLayers, Focus, Halftone,
+    Hatching, Misregistration, Paint, Paper, SpeedLines, TwoTone,
+    effects::{FocusAt, FocusStyle, Granularity, ScreenSampling, ScreenShape},
 };
 
 use crate::{
@@ -17,18 +17,18 @@ use crate::{
     work::{FUSED, RESULT, counting, edit_shaders, teapot},
 };
 
-const MEANS: &str = "bevy_comics/effect/means.wgsl";
-const NUMBERED: &str = "bevy_comics/effect/numbered.wgsl";
+const BOX_STATISTICS: &str = "bevy_comics/effect/box_statistics.wgsl";
+const AUX_SCALAR: &str = "bevy_comics/effect/aux_scalar.wgsl";
 const PICTURE: &str = "bevy_comics/effect/picture.wgsl";
 /// The files whose functions read textures for effects of the page, sorted.
 const READERS: [&str; 8] = [
     "bevy_comics/depth/normal.wgsl",
     "bevy_comics/depth/view.wgsl",
+    AUX_SCALAR,
     "bevy_comics/effect/blue_noise.wgsl",
-    FUSED,
-    MEANS,
-    NUMBERED,
+    BOX_STATISTICS,
     PICTURE,
+    FUSED,
     "bevy_comics/objects/objects.wgsl",
 ];
 
@@ -58,12 +58,12 @@ pub const OWN_PIXEL: [&str; 5] = [
 pub fn effects() -> Vec<(&'static str, ComicStyle)> {
     let style = ComicStyle::new;
     let focus = |style| Focus {
-        at: FocusAt::Centre,
+        at: FocusAt::Center,
         style,
         ..Focus::default()
     };
     let rough = Paper {
-        spread: 1.0,
+        ink_bleed: 1.0,
         ..Paper::default()
     };
     let screen = |shape, sampling| Halftone {
@@ -71,9 +71,9 @@ pub fn effects() -> Vec<(&'static str, ComicStyle)> {
         sampling,
         ..Halftone::default()
     };
-    let pixels = Planes {
-        by: PlaneUnit::Pixel,
-        ..Planes::default()
+    let pixels = DepthLayers {
+        granularity: Granularity::Pixel,
+        ..DepthLayers::default()
     };
     let [dots, grains] = [ScreenShape::Euclidean, ScreenShape::Stochastic];
     let [pixel, cell] = [ScreenSampling::Pixel, ScreenSampling::Cell];
@@ -86,7 +86,7 @@ pub fn effects() -> Vec<(&'static str, ComicStyle)> {
         (OWN_PIXEL[4], style().with(SpeedLines::default())),
         ("halftone in grains", style().with(screen(grains, pixel))),
         ("halftone in whole dots", style().with(screen(dots, cell))),
-        ("print offset", style().with(PrintOffset::default())),
+        ("misregistration", style().with(Misregistration::default())),
         ("paint", style().with(Paint::default())),
         ("focus, blur", style().with(focus(FocusStyle::Blur))),
         ("focus, offset", style().with(focus(FocusStyle::Offset))),
@@ -94,8 +94,8 @@ pub fn effects() -> Vec<(&'static str, ComicStyle)> {
         ("focus, dots", style().with(focus(FocusStyle::Dots))),
         ("hatching", style().with(Hatching::default())),
         ("color harmony", style().with(ColorHarmony::default())),
-        ("planes", style().with(Planes::default())),
-        ("planes of pixels", style().with(pixels)),
+        ("depth layers", style().with(DepthLayers::default())),
+        ("depth layers of pixels", style().with(pixels)),
     ]
 }
 
@@ -111,7 +111,7 @@ fn counted_picture(pixel: vec2<i32>) -> vec2<f32> {
 ";
 const BEFORE_MEANS: &str = "
 fn counted_means(pixel: vec2<i32>) -> vec2<f32> {
-#ifdef MEANS
+#ifdef BOX_STATISTICS
     return vec2<f32>(textureLoad(means_texture, pixel - view.viewport.xy, 0).xy);
 #else
     return vec2(0.0);
@@ -120,8 +120,8 @@ fn counted_means(pixel: vec2<i32>) -> vec2<f32> {
 ";
 const BEFORE_NUMBERS: &str = "
 fn counted_numbers(pixel: vec2<i32>) -> vec2<f32> {
-#ifdef NUMBERED
-    return vec2<f32>(textureLoad(numbered_texture, pixel - view.viewport.xy, 0).xw);
+#ifdef AUX_SCALAR
+    return vec2<f32>(textureLoad(aux_scalar_texture, pixel - view.viewport.xy, 0).xw);
 #else
     return vec2(0.0);
 #endif
@@ -129,13 +129,13 @@ fn counted_numbers(pixel: vec2<i32>) -> vec2<f32> {
 ";
 /// The count of a pass and of those before it.
 const TOTAL: &str = "
-#import bevy_comics::effect::means::counted_means
-#import bevy_comics::effect::numbered::counted_numbers
+#import bevy_comics::effect::box_statistics::counted_means
+#import bevy_comics::effect::aux_scalar::counted_numbers
 #import bevy_comics::effect::picture::counted_picture
 fn total(pixel: vec2<i32>) -> vec2<f32> {
-#ifdef MEANS
+#ifdef BOX_STATISTICS
     return fetched_so_far() + counted_means(pixel);
-#else ifdef NUMBERED
+#else ifdef AUX_SCALAR
     return fetched_so_far() + counted_numbers(pixel);
 #else
     return fetched_so_far() + counted_picture(pixel);
@@ -173,8 +173,8 @@ fn counting_all(path: &str, text: &str) -> String {
     let mut text = counting(path, text);
     match path {
         PICTURE => text.push_str(BEFORE_PICTURE),
-        MEANS => text.push_str(BEFORE_MEANS),
-        NUMBERED => text.push_str(BEFORE_NUMBERS),
+        BOX_STATISTICS => text.push_str(BEFORE_MEANS),
+        AUX_SCALAR => text.push_str(BEFORE_NUMBERS),
         FUSED => {
             assert!(!text.contains(RESULT), "the end of the last pass counts");
             for (end, counted) in ENDS {

@@ -1,12 +1,15 @@
-//! How well paint and focus keep to what they paint. Computed with the shaders' twins, which every
+//! How well paint and focus keep to what they paint. Computed with the shaders' references, which every
 //! pixel of a picture equals.
 
-use bevy_comics::{Focus, FocusAt, FocusStyle, Paint, PaintForm};
+use bevy_comics::{
+    Focus, Paint,
+    effects::{FocusAt, FocusStyle, PaintKernel},
+};
 
 use crate::reference::{
-    Rgb, color, focus,
-    means::{Means, Sheet, means, square},
-    noise,
+    Rgb,
+    box_statistics::{Means, Sheet, means, square},
+    color, focus, noise,
     paint::{Scene, box_areas, chosen},
 };
 
@@ -73,7 +76,7 @@ pub fn kuwahara_error(radius: usize) -> f64 {
 /// How far paint moves an anti-aliased edge that moves by `slope` pixels to the right in each row:
 /// pixels across the edge, on the mean of its rows, measured as they are seen, in square roots of
 /// light.
-pub fn edge_moved(form: PaintForm, radius: f32, slope: f64) -> f64 {
+pub fn edge_moved(form: PaintKernel, radius: f32, slope: f64) -> f64 {
     // Coverage of a pixel beside the edge, as 8 x 8 samples.
     let coverage = |[x, y]: [usize; 2]| {
         let inside = (0..64).filter(|i| {
@@ -88,9 +91,9 @@ pub fn edge_moved(form: PaintForm, radius: f32, slope: f64) -> f64 {
     });
     let contrast = 0.8f64.sqrt() - 0.1f64.sqrt();
     let s = Paint {
-        form,
-        near: radius,
-        far: radius,
+        kernel: form,
+        at_near: radius,
+        at_far: radius,
         ..Paint::default()
     };
     let scene = Scene {

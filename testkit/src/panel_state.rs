@@ -2,8 +2,9 @@
 
 use bevy::{diagnostic::FrameCount, prelude::*};
 use bevy_comics::{
-    CartoonMaterial, ComicStyle, ComicsDiagnostics, DebugView, EffectRegistry, OutlineStyle,
-    SplitView, StyleTransition, StyleWeight, ToonLook, inspector::ComicsInspector,
+    ComicStyle, ComicsDiagnostics, OutlineStyle, SplitView, StyleTransition, StyleWeight,
+    ToonMaterial, diagnostics::DebugView, effect::EffectRegistry, inspector::ComicsInspector,
+    toon::ToonShading,
 };
 use serde_json::{Value, json};
 
@@ -49,9 +50,9 @@ fn picked(world: &World) -> Option<Value> {
     let object = world.get_entity(picked).ok()?;
     let at = object.get::<GlobalTransform>().map(|at| at.translation());
     let light = object
-        .get::<MeshMaterial3d<CartoonMaterial>>()
-        .and_then(|own| world.resource::<Assets<CartoonMaterial>>().get(&own.0))
-        .and_then(|material| ToonLook::new(material.extension.clone()).to_ron().ok());
+        .get::<MeshMaterial3d<ToonMaterial>>()
+        .and_then(|own| world.resource::<Assets<ToonMaterial>>().get(&own.0))
+        .and_then(|material| ToonShading::new(material.extension.clone()).to_ron().ok());
     Some(json!({
         "at": at.map(|at| at.to_array()),
         "light": light,

@@ -21,7 +21,7 @@ use bevy::{
     render::RenderApp,
     time::{Fixed, Real, TimeUpdateStrategy, Virtual},
 };
-use bevy_comics::{ObjectIdDepthTest, ReduceFlashing};
+use bevy_comics::{ReduceFlashing, objects::ObjectIdDepthTest};
 
 use crate::{
     headless::{self, Headless, HeadlessOptions},
@@ -182,7 +182,7 @@ fn goes_with_the_scene(world: &World, resource: ComponentId) -> bool {
     const CONTENTS: [&str; 4] = [
         "bevy_asset::",
         "bevy_ecs::message::",
-        "bevy_comics::cartoon::",
+        "bevy_comics::toon::",
         "bevy_comics::objects::",
     ];
     let name = world.components().get_name(resource);

@@ -9,7 +9,7 @@ use bevy::{
         view::ViewTarget,
     },
 };
-use bevy_comics::{ViewCracks, ViewLineWidths, ViewObjectIds};
+use bevy_comics::testing::{ViewCracks, ViewLineWidths, ViewObjectIds};
 use half::f16;
 
 use crate::{before::Pictures, reference::planes::column_word};

@@ -1,10 +1,10 @@
-//! How well screens print flat tones, gradients and rings. Computed with the shader's twin, which
+//! How well screens print flat tones, gradients and rings. Computed with the shader's reference, which
 //! every pixel of a picture equals.
 
 use std::{f64::consts::TAU, sync::OnceLock};
 
 use bevy::color::Color;
-use bevy_comics::{Halftone, ScreenShape};
+use bevy_comics::{Halftone, effects::ScreenShape};
 
 use crate::{
     reference::{
@@ -165,7 +165,7 @@ pub fn moire(shape: ScreenShape, period: f64, degrees: f64, zones: bool) -> f64 
 /// other.
 pub fn moire_of_inks(s: &Halftone, zones: bool) -> f64 {
     let plates = Plate::all(s, 1.0);
-    slow_part(f64::from(s.period), zones, |place, tone| {
+    slow_part(f64::from(s.cell_size), zones, |place, tone| {
         let tones = plate_tones(s, [1.0 - tone; 3]);
         let covers =
             std::array::from_fn(|i| plate_cover(s.shape, plates[i], tones[i], &tile)(place));

@@ -19,8 +19,8 @@ use bevy::{
     },
 };
 use bevy_comics::{
-    CartoonLight, CartoonScene, ComicStyle, ComicStyleHandle, ComicsDiagnostics, ComicsPlugin,
-    ComicsStage, OutlineStyle, Outlines, presets,
+    Comic, ComicStyle, ComicsDiagnostics, ComicsPlugin, OutlineStyle, Outlines, ToonLight,
+    ToonScene, diagnostics::ComicsStage, presets,
 };
 
 use crate::headless::{Headless, HeadlessOptions, new_target};
@@ -107,7 +107,7 @@ impl Default for Changes {
     fn default() -> Self {
         Self {
             sizes: true,
-            looks: presets::LOOKS.len(),
+            looks: presets::STYLES.len(),
             cameras: true,
             materials: true,
             objects: true,
@@ -124,7 +124,7 @@ impl Changes {
         Self {
             sizes: has("sizes"),
             looks: if has("looks") {
-                presets::LOOKS.len()
+                presets::STYLES.len()
             } else {
                 names
                     .split(',')
@@ -155,11 +155,11 @@ pub struct Soak {
 }
 
 const FILE: &str = "soak.comic.ron";
-const BROKEN: &str = "(version: 2, outlines: (width: \"wide\"))";
+const BROKEN: &str = "(version: 3, outlines: (width: \"wide\"))";
 
 fn mended(k: u64) -> String {
     let width = 1.0 + (k % 4) as f32;
-    format!("(version: 2, outlines: (width: {width:?}))")
+    format!("(version: 3, outlines: (width: {width:?}))")
 }
 
 impl Soak {
@@ -188,7 +188,7 @@ impl Soak {
         if !changes.plain {
             // Wears a file that breaks and is mended.
             let style = world.resource::<AssetServer>().load::<ComicStyle>(FILE);
-            world.entity_mut(second).insert(ComicStyleHandle(style));
+            world.entity_mut(second).insert(Comic(style));
         }
         Ok(Self {
             changes,
@@ -227,7 +227,7 @@ impl Soak {
             self.resize(SIZES[size as usize % SIZES.len()]);
         }
         if changes.looks > 0 && at.is_multiple_of(self.pace.look) {
-            let look = presets::LOOKS[(at / self.pace.look) as usize % changes.looks];
+            let look = presets::STYLES[(at / self.pace.look) as usize % changes.looks];
             let world = self.headless.app.world_mut();
             look.style()
                 .apply(&mut world.commands().entity(self.camera));
@@ -237,8 +237,8 @@ impl Soak {
             0 if changes.cameras => self.set_up_camera(kind),
             60 if changes.cameras => self.come(),
             200 if changes.cameras => self.go(),
-            260 if changes.materials => self.be_cartoon(true),
-            460 if changes.materials => self.be_cartoon(false),
+            260 if changes.materials => self.be_toon(true),
+            460 if changes.materials => self.be_toon(false),
             500 if changes.files => self.write(BROKEN)?,
             560 if changes.files => self.write(&mended(number))?,
             _ => {}
@@ -264,12 +264,12 @@ impl Soak {
         }
     }
 
-    fn be_cartoon(&mut self, is_cartoon: bool) {
+    fn be_toon(&mut self, is_toon: bool) {
         let mut root = self.headless.app.world_mut().entity_mut(self.root);
-        if is_cartoon {
-            root.insert(CartoonScene::new(CartoonLight::default()));
+        if is_toon {
+            root.insert(ToonScene::new(ToonLight::default()));
         } else {
-            root.remove::<CartoonScene>();
+            root.remove::<ToonScene>();
         }
     }
 

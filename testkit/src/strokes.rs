@@ -1,9 +1,9 @@
-//! How exact the strokes of hatching and the tones of abstraction are, by their twins.
+//! How exact the strokes of hatching and the tones of abstraction are, by their references.
 
 use std::{f64::consts::PI, thread};
 
 use bevy::math::DVec3;
-use bevy_comics::{Hatching, HatchingMarks};
+use bevy_comics::{Hatching, effects::HatchingMarks};
 
 use crate::reference::{
     abstraction::split_bands,

@@ -7,15 +7,20 @@ use bevy::{
     prelude::*, render::view::Msaa, time::TimeUpdateStrategy,
 };
 use bevy_comics::{
-    CartoonLight, CartoonScene, ComicStyle, ComicsPlugin, DepthMap, Focus, FocusAt, FocusStyle,
-    Halftone, HalftoneMode, Hatching, HatchingGround, HatchingMarks, IsoLines, MeshSections,
-    ObjectScreen, Outlines, Paint, PaintForm, Paper, Preset, ScreenAnchor, ScreenShape,
-    SpeedLineKind, SpeedLines, ToneBands, ToneRamp, TwoTone, presets,
+    ComicStyle, ComicsPlugin, DepthMap, Focus, Halftone, Hatching, IsoLines, Outlines, Paint,
+    Paper, SpeedLines, ToneBands, ToneRamp, ToonLight, ToonScene, TwoTone,
+    effects::{
+        FocusAt, FocusStyle, HalftoneMode, HatchingGround, HatchingMarks, PaintKernel,
+        ScreenAnchor, ScreenShape, SpeedLineKind,
+    },
+    objects::{MeshSections, PatternAnchor},
+    presets,
+    style::Preset,
 };
 
 use super::{
     headless::{Headless, HeadlessOptions},
-    scenes::{BuiltIn, CartoonPart, ScenePart, Stage, Vantage},
+    scenes::{BuiltIn, ScenePart, Stage, ToonPart, Vantage},
 };
 
 /// Frames to render after a change of style: the first inserts prepasses and compiles
@@ -63,7 +68,7 @@ impl Studio {
             .world_mut()
             .run_system_once(move |mut stage: Stage| stage.spawn(scene))
             .expect("the stage is there");
-        set_cartoon(headless.app.world_mut(), scene.is_cartoon());
+        set_toon(headless.app.world_mut(), scene.is_toon());
         let target: RenderTarget = headless.render_target();
         let camera = headless
             .app
@@ -262,7 +267,7 @@ pub fn village_focus(style: FocusStyle) -> ComicStyle {
         at: FocusAt::Distance,
         style,
         distance: 11.5,
-        period: 4.0,
+        cell_size: 4.0,
         radius: if style == FocusStyle::Offset {
             4.0
         } else {
@@ -275,8 +280,8 @@ pub fn village_focus(style: FocusStyle) -> ComicStyle {
 
 fn village_effects(style: &ComicStyle) -> Vec<(&'static str, ComicStyle)> {
     let distance = Paint {
-        near: 2.0,
-        far: 9.0,
+        at_near: 2.0,
+        at_far: 9.0,
         ..Paint::default()
     };
     let hatched = Hatching {
@@ -285,9 +290,9 @@ fn village_effects(style: &ComicStyle) -> Vec<(&'static str, ComicStyle)> {
         ..Hatching::default()
     };
     let strokes = Paint {
-        form: PaintForm::Anisotropic,
-        near: 6.0,
-        far: 6.0,
+        kernel: PaintKernel::Anisotropic,
+        at_near: 6.0,
+        at_far: 6.0,
         ..Paint::default()
     };
     let lined = |style: ComicStyle| style.with(Outlines::default());
@@ -311,14 +316,14 @@ fn roots(world: &mut World) -> Vec<Entity> {
     parts.iter(world).collect()
 }
 
-/// Draws the whole scene with the cartoon material, or with its own materials.
-pub fn set_cartoon(world: &mut World, on: bool) {
+/// Draws the whole scene with the toon material, or with its own materials.
+pub fn set_toon(world: &mut World, on: bool) {
     for part in roots(world) {
         if on {
-            let look = world.get::<CartoonPart>(part).cloned().unwrap_or_default();
+            let look = world.get::<ToonPart>(part).cloned().unwrap_or_default();
             world.entity_mut(part).insert(look.0);
         } else {
-            world.entity_mut(part).remove::<CartoonScene>();
+            world.entity_mut(part).remove::<ToonScene>();
         }
     }
 }
@@ -329,21 +334,21 @@ pub fn hatched_theatre() -> image::RgbaImage {
     let world = studio.headless.app.world_mut();
     let hatching = Some(Hatching {
         spacing: 3.0,
-        near: 0.7,
+        at_near: 0.7,
         ..default()
     });
     for part in roots(world) {
-        let light = CartoonLight {
+        let light = ToonLight {
             hatching,
             ..default()
         };
-        world.entity_mut(part).insert(CartoonScene::new(light));
+        world.entity_mut(part).insert(ToonScene::new(light));
     }
     studio.headless.step(4);
     studio.shoot(Some(&ComicStyle::new().with(Outlines::default())))
 }
 
-/// Whether the screens of a style are those of objects with an `ObjectScreen`.
+/// Whether the screens of a style are those of objects with a `PatternAnchor`.
 fn follows_objects(style: &ComicStyle) -> bool {
     style
         .get::<Halftone>()
@@ -354,9 +359,9 @@ fn follows_objects(style: &ComicStyle) -> bool {
 fn set_screens(world: &mut World, on: bool) {
     for part in roots(world) {
         if on {
-            world.entity_mut(part).insert(ObjectScreen::default());
+            world.entity_mut(part).insert(PatternAnchor::default());
         } else {
-            world.entity_mut(part).remove::<ObjectScreen>();
+            world.entity_mut(part).remove::<PatternAnchor>();
         }
     }
 }

@@ -13,7 +13,7 @@
 mod ends;
 
 use bevy::prelude::*;
-use bevy_comics::{ObjectEdges, Outlines};
+use bevy_comics::{Outlines, lines::ObjectEdges};
 
 pub use self::ends::{at_places, ends_of_lines, line_ends};
 use crate::read_back::{self, CrackWords};

@@ -15,9 +15,11 @@ use bevy::{
     shader::Source,
 };
 use bevy_comics::{
-    Colorization, ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Contours, DepthMap,
-    DepthMapping, Desaturation, IsoLines, LineBoil, LineResponse, LineWeight, Outlines,
-    RangeSmoothing, Sketch, ToneBands,
+    Colorization, ComicStyle, ComicsDiagnostics, ComicsPlugin, Contours, DepthMap, DepthMapping,
+    Desaturation, IsoLines, Outlines, Sketch, ToneBands,
+    depth::RangeSmoothing,
+    diagnostics::ComicsStage,
+    lines::{LineBoil, LineResponse, LineWeight},
 };
 
 use super::{
@@ -72,11 +74,11 @@ pub fn default_comic() -> ComicStyle {
 /// Outlines that are neither linked to lines nor smooth, and have no budget.
 pub fn along_cracks() -> Outlines {
     Outlines {
-        continuity: 0.0,
-        specks: 1,
+        hysteresis: 0.0,
+        min_length: 1,
         response: LineResponse::Ink,
         smooth: false,
-        budget: 1.0,
+        ink_budget: 1.0,
         ..default()
     }
 }
@@ -92,8 +94,8 @@ fn factors() -> [(&'static str, Outlines); 9] {
         (
             "outlines, not linked",
             Outlines {
-                continuity: 0.0,
-                specks: 1,
+                hysteresis: 0.0,
+                min_length: 1,
                 ..default()
             },
         ),
@@ -107,7 +109,7 @@ fn factors() -> [(&'static str, Outlines); 9] {
         (
             "outlines, without a budget",
             Outlines {
-                budget: 1.0,
+                ink_budget: 1.0,
                 ..default()
             },
         ),
@@ -148,7 +150,10 @@ fn factors() -> [(&'static str, Outlines); 9] {
         ),
         (
             "outlines, drawn with a nib",
-            weighted(LineWeight { nib: 0.4, ..even }),
+            weighted(LineWeight {
+                nib_roundness: 0.4,
+                ..even
+            }),
         ),
         (
             "outlines, tapered",
@@ -167,8 +172,8 @@ pub fn ladder() -> Vec<(&'static str, ComicStyle)> {
     let comic = default_comic();
     let outlined = |outlines: Outlines| ComicStyle::new().with(outlines);
     let fixed = DepthMapping::Fixed {
-        near: 1.0,
-        far: 20.0,
+        from: 1.0,
+        to: 20.0,
     };
     let mut rungs = vec![
         ("no style", none.clone()),
@@ -251,7 +256,7 @@ fn texels(line: &str) -> Option<[u32; 2]> {
     let sizes = [
         ("column_texture", 16),
         ("means_texture", 16),
-        ("numbered_texture", 16),
+        ("aux_scalar_texture", 16),
         ("blue_noise_tile", 16),
         ("crack_texture", 8),
         ("crack_words[", 8),
@@ -276,7 +281,7 @@ fn texels(line: &str) -> Option<[u32; 2]> {
 }
 
 /// The file of the fused pass.
-pub(crate) const FUSED: &str = "bevy_comics/effect/fused.wgsl";
+pub(crate) const FUSED: &str = "bevy_comics/fused/fused.wgsl";
 /// The files whose functions read textures for the fused pass, sorted.
 const READERS: [&str; 5] = [
     "bevy_comics/depth/normal.wgsl",

@@ -2,8 +2,8 @@
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
-    Abstraction, ComicStyle, DepthMap, DepthMapping, ObjectAbstraction, OutlineGroup, Outlines,
-    PlaneUnit, Silhouettes, ToneBands,
+    Abstraction, ComicStyle, DepthMap, DepthMapping, OutlineGroup, Outlines, ToneBands,
+    effects::Granularity, lines::Silhouettes, objects::ObjectAbstraction,
 };
 use bevy_comics_testkit::{studio::with_map, work::along_cracks};
 
@@ -13,8 +13,8 @@ use crate::small::{Small, options};
 fn hundred(flip: bool) -> DepthMap {
     DepthMap {
         mapping: DepthMapping::Fixed {
-            near: 1.0,
-            far: 101.0,
+            from: 1.0,
+            to: 101.0,
         },
         flip,
         ..default()
@@ -135,7 +135,7 @@ fn sharp() -> Outlines {
             softness: 0.0,
             ..default()
         }),
-        continuity: 0.0,
+        hysteresis: 0.0,
         ..along_cracks()
     }
 }
@@ -195,10 +195,13 @@ fn objects_have_colors_of_their_own_level() {
             seen(small).map(spread)
         };
         let style = |by| {
-            let style = ComicStyle::new().with(Abstraction { by, ..abstraction });
+            let style = ComicStyle::new().with(Abstraction {
+                granularity: by,
+                ..abstraction
+            });
             with_map(style, hundred(false))
         };
-        small.style(&style(PlaneUnit::Object));
+        small.style(&style(Granularity::Object));
         let fixed = ObjectAbstraction::fixed;
         for reversed in [[fixed(1.0), fixed(0.0)], [offset(1.0), offset(-1.0)]] {
             let found = levels(&mut small, reversed);
@@ -225,7 +228,7 @@ fn objects_have_colors_of_their_own_level() {
         let found = seen(&mut small).map(spread);
         assert!(found[0] <= 1 && found[1].abs_diff(plain) <= 1, "{found:?}");
         // Where every pixel is on its own, there are no objects.
-        small.style(&style(PlaneUnit::Pixel));
+        small.style(&style(Granularity::Pixel));
         let found = seen(&mut small).map(spread);
         assert!(found[1] <= 1 && found[0].abs_diff(plain) <= 1, "{found:?}");
         assert_eq!(small.errors(), 0);

@@ -1,11 +1,11 @@
-//! Strokes of tonal art maps on the cartoon material: `art_map.wgsl`, `stroke_level.wgsl`.
+//! Strokes of tonal art maps on the toon material: `art_map.wgsl`, `stroke_level.wgsl`.
 
 use bevy::{
     asset::RenderAssetUsages,
     prelude::*,
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
-use bevy_comics::{CartoonLight, Hatching, TonalArtMap};
+use bevy_comics::{Hatching, ToonLight, toon::TonalArtMap};
 
 use crate::{
     hatched_material::{SIZE, assert_same, covers, differ, frames, light_from, mean, plain},
@@ -18,8 +18,8 @@ fn image(small: &mut Small, image: Image) -> Handle<Image> {
     small.world().resource_mut::<Assets<Image>>().add(image)
 }
 
-fn drawn_with(map: &Handle<Image>, repeat: f32) -> CartoonLight {
-    CartoonLight {
+fn drawn_with(map: &Handle<Image>, repeat: f32) -> ToonLight {
+    ToonLight {
         hatching: Some(Hatching { ..plain() }),
         art_map: Some(map.clone()),
         art_map_repeat: repeat,
@@ -68,7 +68,7 @@ fn walls_have_the_tone_of_their_light(walls: &[(f32, &[f32])]) {
             let axis = Vec3::new(0.6, 0.8, 0.0);
             let turn = Quat::from_axis_angle(axis, degrees.to_radians());
             let at = Transform::from_rotation(turn);
-            put(&mut small, wall(has_uvs), &CartoonLight::default(), at);
+            put(&mut small, wall(has_uvs), &ToonLight::default(), at);
             // The view shows 2 of 18 units: from half a repeat of the map to 60 of them.
             for &repeats in sizes {
                 for gamma in [0.5f32, 2.5] {
@@ -103,7 +103,7 @@ fn strokes_of_maps_have_their_width_at_every_size() {
         ..default()
     };
     let map = image(&mut small, map.image());
-    put(&mut small, wall(true), &CartoonLight::default(), default());
+    put(&mut small, wall(true), &ToonLight::default(), default());
     let mut edges = Vec::new();
     for k in 0..6 {
         // Two octaves.
@@ -166,7 +166,7 @@ fn images_are_maps() {
         RenderAssetUsages::default(),
     );
     let map = image(&mut small, stripes);
-    put(&mut small, wall(true), &CartoonLight::default(), default());
+    put(&mut small, wall(true), &ToonLight::default(), default());
     set_light(&mut small, &drawn_with(&map, 9.0));
     let found = covers(&mut small);
     let half = mean(&found);

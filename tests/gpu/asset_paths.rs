@@ -1,4 +1,4 @@
-//! Files of strangers name no file outside the folder of assets.
+//! Untrusted files name no file outside the folder of assets.
 
 use std::{collections::BTreeSet, fs};
 
@@ -8,11 +8,11 @@ use bevy::{
     prelude::*,
     reflect::{NamedField, TypeInfo, Typed, UnnamedField, enums::VariantInfo},
 };
-use bevy_comics::{CartoonLight, DepthMap, EffectRegistry, ToonLook};
+use bevy_comics::{DepthMap, ToonLight, effect::EffectRegistry, toon::ToonShading};
 
 use crate::{
-    looks::{load, messages, wait, watching},
     styles::Folder,
+    toon_shading::{load, messages, wait, watching},
 };
 
 /// Paths that lead out of the folder of assets, on some system.
@@ -33,15 +33,15 @@ const ELSEWHERE: [&str; 14] = [
     r"\\server\secret.png",
 ];
 
-/// A look of a stranger reads nothing outside the folder of assets, whatever the app allows.
+/// An untrusted shading reads nothing outside the folder of assets, whatever the app allows.
 #[test]
 fn a_look_loads_no_image_from_elsewhere() {
-    let folder = Folder::new("stranger");
+    let folder = Folder::new("untrusted");
     let mut small = watching(&folder);
     for (k, path) in ELSEWHERE.into_iter().enumerate() {
-        let name = format!("stranger{k}.toon.ron");
-        let text = format!("(version: 1, light: (ramp_map: {path:?}))");
-        let read = ToonLook::from_ron(&text).expect("a path");
+        let name = format!("untrusted{k}.toon.ron");
+        let text = format!("(version: 2, light: (ramp_map: {path:?}))");
+        let read = ToonShading::from_ron(&text).expect("a path");
         let shown = read.light.ramp_map.path().expect("its path").to_string();
         fs::write(folder.0.join(&name), text).expect("written");
         let mut failures = MessageCursor::default();
@@ -70,7 +70,7 @@ fn a_look_loads_an_image_of_its_assets() {
     let server = small.world().resource::<AssetServer>().clone();
     for (k, path) in ["ramps/a.png", "./ramps/a.png"].into_iter().enumerate() {
         let name = format!("own{k}.toon.ron");
-        let text = format!("(version: 1, light: (ramp_map: {path:?}))");
+        let text = format!("(version: 2, light: (ramp_map: {path:?}))");
         fs::write(folder.0.join(&name), text).expect("written");
         let look = load(&mut small, name);
         let loaded = wait(&mut small, 400, |_| {
@@ -145,7 +145,7 @@ fn files_name_one_kind_of_file() {
     }
     names(DepthMap::type_info(), "depth_map", &mut found);
     assert!(found.is_empty(), "{found:?}");
-    names(CartoonLight::type_info(), "light", &mut found);
+    names(ToonLight::type_info(), "light", &mut found);
     let found: Vec<&str> = found.iter().map(String::as_str).collect();
     let wanted = [
         "light.art_map",
@@ -155,8 +155,8 @@ fn files_name_one_kind_of_file() {
     ];
     assert_eq!(found, wanted);
     for field in ["art_map", "threshold_map"] {
-        let text = format!("(version: 1, light: ({field}: \"a.png\"))");
-        let error = ToonLook::from_ron(&text).expect_err(field).to_string();
+        let text = format!("(version: 2, light: ({field}: \"a.png\"))");
+        let error = ToonShading::from_ron(&text).expect_err(field).to_string();
         assert!(error.contains(field), "{error}");
     }
 }

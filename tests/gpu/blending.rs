@@ -4,9 +4,12 @@ use std::time::Duration;
 
 use bevy::{asset::Assets, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    Colorization, ComicStyle, ComicStyleHandle, ComicsDiagnostics, ComicsStage, Contours, DepthMap,
-    Desaturation, EffectRegistry, Sketch, StyleTransition, StyleTransitionFinished,
-    TransitionEasing, presets,
+    Colorization, Comic, ComicStyle, ComicsDiagnostics, Contours, DepthMap, Desaturation, Sketch,
+    StyleTransition,
+    diagnostics::ComicsStage,
+    effect::EffectRegistry,
+    presets,
+    style::{StyleTransitionFinished, TransitionEasing},
 };
 use image::RgbaImage;
 use proptest::{prelude::ProptestConfig, test_runner::TestRunner};
@@ -236,19 +239,15 @@ fn a_transition_and_the_cameras_file_agree() {
     let [a, b, c] = three_styles();
     let first = add(&mut small, a);
     let second = add(&mut small, b.clone());
-    small.insert(ComicStyleHandle(first.clone()));
+    small.insert(Comic(first.clone()));
     small.settle();
     small.insert(StyleTransition::to_asset(second.clone(), 0.1));
     small.headless.step(12);
     assert_eq!(look(&small), unnamed(&b));
-    let handle = small
-        .headless
-        .app
-        .world()
-        .get::<ComicStyleHandle>(small.camera);
+    let handle = small.headless.app.world().get::<Comic>(small.camera);
     assert_eq!(
         handle,
-        Some(&ComicStyleHandle(second.clone())),
+        Some(&Comic(second.clone())),
         "its file goes on with it"
     );
 

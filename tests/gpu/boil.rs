@@ -1,10 +1,13 @@
 //! Lines that are drawn again several times a second.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, LineBoil, LineWeight, Outlines};
+use bevy_comics::{
+    ComicStyle, Outlines,
+    lines::{LineBoil, LineWeight},
+};
 
 use crate::{
-    pictures::{assert_pass_is_its_twin, outlined},
+    pictures::{assert_pass_matches_the_reference, outlined},
     small::{Small, black_ink, linear},
     walls::{towards_the_sky, wall},
 };
@@ -27,7 +30,7 @@ fn boiling(amplitude: f32, rate: f32) -> Outlines {
 /// searched by columns, of which two cracks are kept: where two are as near to the middle of
 /// a pixel, rounding decides which the line of a displaced place is.
 #[test]
-fn boiling_lines_are_their_twins() {
+fn boiling_lines_match_the_reference() {
     let mut small = Small::new(SIZE, Msaa::Off);
     for (width, amplitude) in [(1.0, 3.0), (2.0, 0.7), (2.0, 3.0)] {
         let outlines = Outlines {
@@ -38,7 +41,7 @@ fn boiling_lines_are_their_twins() {
             ..boiling(amplitude, 0.0)
         };
         let what = format!("{width} px, boiling by {amplitude} px");
-        assert_pass_is_its_twin(&mut small, &outlined(outlines), None, &what);
+        assert_pass_matches_the_reference(&mut small, &outlined(outlines), None, &what);
     }
     assert_eq!(small.errors(), 0);
 }

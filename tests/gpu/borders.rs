@@ -201,7 +201,7 @@ fn counted(counts: &[u32]) -> Counted<'_> {
 }
 
 #[test]
-fn borders_rest_until_others_explain_more_and_then_follow_like_their_twin() {
+fn borders_rest_until_others_explain_more_and_then_follow_like_their_reference() {
     // The heap comes nearer, so that it belongs to the others at the end.
     let scenes: Vec<Vec<u32>> = (0..60).map(|k| three(k.min(50))).collect();
     let frames: Vec<Frame> = (scenes.iter())
@@ -213,16 +213,16 @@ fn borders_rest_until_others_explain_more_and_then_follow_like_their_twin() {
         })
         .collect();
     let found = run(&frames);
-    let mut twin = Borders::default();
+    let mut reference = Borders::default();
     let mut moved = 0;
     for (i, (frame, found)) in frames.iter().zip(&found).enumerate() {
-        let want = twin
+        let want = reference
             .next(&frame.counted, 0.15, [false; 2])
             .expect("borders");
         let found = found.expect("borders");
         for k in 0..2 {
             let apart = (f64::from(found[k]) / want[k]).log2().abs();
-            assert!(apart < 1e-4, "frame {i}: {found:?}, twin {want:?}");
+            assert!(apart < 1e-4, "frame {i}: {found:?}, reference {want:?}");
         }
     }
     for pair in found.windows(2) {

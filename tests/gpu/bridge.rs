@@ -1,11 +1,14 @@
 //! Gaps in lines: closed up to the length that is asked for, and no further.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, KeyLight, LineColor, LineWeight, Outlines, Silhouettes};
+use bevy_comics::{
+    ComicStyle, KeyLight, Outlines,
+    lines::{LineColor, LineWeight, Silhouettes},
+};
 use bevy_comics_testkit::truth::fragments;
 
 use crate::{
-    pictures::{assert_pass_is_its_twin, outlined},
+    pictures::{assert_pass_matches_the_reference, outlined},
     small::{Object, Small, linear, unlit},
     walls::{towards_the_sky, towards_the_sky_again, wall},
 };
@@ -16,7 +19,7 @@ const SIZE: UVec2 = UVec2::new(96, 64);
 fn thin(bridge: u32) -> Outlines {
     Outlines {
         width: 1.0,
-        bridge,
+        gap_closing: bridge,
         ..Outlines::SILHOUETTES
     }
 }
@@ -161,9 +164,9 @@ fn closed_gaps_are_like_the_line_beside_them() {
             let outlines = |bridge| Outlines {
                 width,
                 weight,
-                bridge,
+                gap_closing: bridge,
                 color,
-                budget: 1.0,
+                ink_budget: 1.0,
                 ..Outlines::SILHOUETTES
             };
             let pictures = [0.0, 3.0].map(|gap| {
@@ -207,17 +210,17 @@ fn put_wires(small: &mut Small) {
 
 /// Every pixel, with gaps in rows, columns, and at the borders of cells and words.
 #[test]
-fn closed_gaps_are_their_twin() {
-    assert_closed_as_twin(&[(3, &LINES[0]), (2, &LINES[1])]);
+fn closed_gaps_match_the_reference() {
+    assert_closed_as_reference(&[(3, &LINES[0]), (2, &LINES[1])]);
 }
 
 #[test]
 #[ignore = "long: gaps of every length in every kind of line"]
-fn closed_gaps_of_all_lines_are_their_twin() {
+fn closed_gaps_of_all_lines_match_the_reference() {
     let cases = LINES
         .each_ref()
         .map(|lines| [(1, lines), (2, lines), (3, lines)]);
-    assert_closed_as_twin(cases.as_flattened());
+    assert_closed_as_reference(cases.as_flattened());
 }
 
 /// Width, weight and continuity of lines.
@@ -239,16 +242,16 @@ const LINES: [Lines; 3] = [
     ),
 ];
 
-fn assert_closed_as_twin(cases: &[(u32, &Lines)]) {
+fn assert_closed_as_reference(cases: &[(u32, &Lines)]) {
     let mut small = Small::new(UVec2::new(101, 70), Msaa::Off);
     put_wires(&mut small);
     for &(bridge, &(width, weight, continuity)) in cases {
         let outlines = Outlines {
-            bridge,
+            gap_closing: bridge,
             width,
             weight,
-            continuity,
-            continuity_level: 0.3,
+            hysteresis: continuity,
+            hysteresis_ratio: 0.3,
             silhouettes: Some(Silhouettes {
                 threshold: 0.1,
                 ..default()
@@ -256,7 +259,7 @@ fn assert_closed_as_twin(cases: &[(u32, &Lines)]) {
             ..default()
         };
         let what = format!("bridge {bridge}, {width} px");
-        assert_pass_is_its_twin(&mut small, &outlined(outlines), None, &what);
+        assert_pass_matches_the_reference(&mut small, &outlined(outlines), None, &what);
     }
     assert_eq!(small.errors(), 0);
 }

@@ -7,8 +7,9 @@ use bevy::{
     render::{error_handler::RenderErrorHandler, view::Msaa},
 };
 use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Contours, LeftOut, LineWeight,
-    Outlines, Sketch, StageOutcome,
+    ComicStyle, ComicsDiagnostics, ComicsPlugin, Contours, Outlines, Sketch,
+    diagnostics::{ComicsStage, SkipReason, StageOutcome},
+    lines::LineWeight,
 };
 use bevy_comics_testkit::{
     device::gpu, headless::HeadlessOptions, scenes::BuiltIn, studio::Studio, work::along_cracks,
@@ -43,7 +44,7 @@ fn is_by_fragments(studio: &Studio) -> bool {
     let world = studio.headless.app.world();
     let diagnostics = world.resource::<ComicsDiagnostics>();
     diagnostics.cameras[&studio.camera].outcome(ComicsStage::SearchTiles)
-        == Some(StageOutcome::LeftOut(LeftOut::NoComputeShaders))
+        == Some(StageOutcome::Skipped(SkipReason::NoComputeShaders))
 }
 
 /// Fails unless a picture shows the same lines as another one, and that one shows any.

@@ -87,7 +87,7 @@ fn what_cannot_be_done_is_one_line_that_says_what_can() {
     let folder = folder("errors");
     fs::write(
         folder.join("broken.comic.ron"),
-        "(version: 2, contours: (thresh: 1))",
+        "(version: 3, contours: (thresh: 1))",
     )
     .expect("written");
     fs::write(folder.join("broken.gltf"), "{ not json").expect("written");
@@ -97,7 +97,7 @@ fn what_cannot_be_done_is_one_line_that_says_what_can() {
             "mountains, teapot, theatre, village, figure, street, hall",
         ),
         (&["--style", "nope"], "saturday-morning, graphic-novel"),
-        (&["--material", "wood"], "possible are standard, cartoon"),
+        (&["--material", "wood"], "possible are standard, toon"),
         (
             &["--style", "missing.comic.ron"],
             "cannot read missing.comic.ron",
@@ -236,7 +236,7 @@ fn a_dump_of_outlines_holds_ids_and_counts_the_lights() {
     let frame: Value =
         serde_json::from_slice(&fs::read(folder.join("d/frame.json")).expect("frame.json"))
             .expect("JSON");
-    assert_eq!(frame["material"], "cartoon");
+    assert_eq!(frame["material"], "toon");
     for kind in ["directional", "point", "spot"] {
         assert_eq!(frame["lights"][kind], 1, "{kind}");
     }

@@ -1,10 +1,14 @@
-//! The cracks of a view against their twin, bit by bit: where they are, which of them are
+//! The cracks of a view against their reference, bit by bit: where they are, which of them are
 //! parts of lines, and what is stored of each.
 
 use std::collections::{HashMap, HashSet};
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{LineResponse, LineWeight, Outlines, VisibleDepthRange};
+use bevy_comics::{
+    Outlines,
+    depth::VisibleDepthRange,
+    lines::{LineResponse, LineWeight},
+};
 use bevy_comics_testkit::{
     read_back::CrackWords,
     reference::{
@@ -87,44 +91,44 @@ fn settings() -> [Outlines; 3] {
     [
         Outlines::default(),
         Outlines {
-            continuity: 0.0,
-            specks: 1,
+            hysteresis: 0.0,
+            min_length: 1,
             width: 1.3,
             response: LineResponse::Both,
             width_fade: 0.4,
             ..default()
         },
         Outlines {
-            continuity: 21.0,
-            continuity_level: 0.2,
-            specks: 2,
+            hysteresis: 21.0,
+            hysteresis_ratio: 0.2,
+            min_length: 2,
             width: 7.0,
             opacity_fade: 0.7,
             weight: weighted,
-            budget: 0.2,
+            ink_budget: 0.2,
             ..default()
         },
     ]
 }
 
 #[test]
-fn cracks_are_their_twin_bit_by_bit() {
+fn cracks_match_the_reference_bit_by_bit() {
     let [.., all_passes] = settings();
-    assert_cracks_are_their_twin(&[(Msaa::Off, Specimen::Foliage, &[all_passes])]);
+    assert_cracks_match_the_reference(&[(Msaa::Off, Specimen::Foliage, &[all_passes])]);
 }
 
 /// Not the hard surface: where the two bends of a bevel are equal, rounding decides which of them is the
 /// sharper one.
 #[test]
 #[ignore = "long: more models, each with every setting"]
-fn cracks_of_models_are_their_twin_bit_by_bit() {
+fn cracks_of_models_match_the_reference_bit_by_bit() {
     let models = [Specimen::Organic, Specimen::Foliage, Specimen::Figure];
     let settings = settings();
     let cases = [Msaa::Off, Msaa::Sample4].map(|m| models.map(|model| (m, model, &settings[..])));
-    assert_cracks_are_their_twin(cases.as_flattened());
+    assert_cracks_match_the_reference(cases.as_flattened());
 }
 
-fn assert_cracks_are_their_twin(cases: &[(Msaa, Specimen, &[Outlines])]) {
+fn assert_cracks_match_the_reference(cases: &[(Msaa, Specimen, &[Outlines])]) {
     let mut small = Small::new(SIZE, Msaa::Off);
     let mut joins = 0;
     for &(msaa, scene, settings) in cases {
@@ -153,7 +157,7 @@ fn assert_cracks_are_their_twin(cases: &[(Msaa, Specimen, &[Outlines])]) {
                     Some(((pixel, side), crack))
                 })
                 .collect();
-            let lines = joined(&linked(&all, outlines.continuity as i32), &all);
+            let lines = joined(&linked(&all, outlines.hysteresis as i32), &all);
             let places = |ledge: bool| {
                 let which = all.iter().filter(move |(_, crack)| crack.ledge == ledge);
                 which.map(|(place, _)| *place).collect::<HashSet<Place>>()

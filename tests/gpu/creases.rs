@@ -1,7 +1,10 @@
 //! Where creases lie: between pixels, where the two sides meet.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, Creases, LineWeight, Outlines};
+use bevy_comics::{
+    ComicStyle, Outlines,
+    lines::{Creases, LineWeight},
+};
 
 use crate::{
     small::{Small, black_ink, linear, unlit},

@@ -58,7 +58,7 @@ fn coverage<const N: usize>(
 ) -> [f64; N] {
     let outlines = Outlines {
         width,
-        budget,
+        ink_budget: budget,
         ..Outlines::SILHOUETTES
     };
     small.style(&ComicStyle::new().with(outlines));
@@ -159,7 +159,7 @@ fn assert_steady(steps: &[f32], widths: &[f32]) {
             for budget in [0.35, 0.2] {
                 let outlines = Outlines {
                     width,
-                    budget,
+                    ink_budget: budget,
                     ..Outlines::SILHOUETTES
                 };
                 small.insert(Transform::IDENTITY);
@@ -193,7 +193,7 @@ fn lone_lines_do_not_change() {
     for width in [1.0, 2.0, 4.0, 8.0] {
         let outlines = |budget| Outlines {
             width,
-            budget,
+            ink_budget: budget,
             ..Outlines::SILHOUETTES
         };
         for budget in [1.0, 0.35] {
@@ -250,7 +250,7 @@ fn assert_no_black_bar(size: UVec2, widths: &[f32]) {
         let found = [1.0, 0.35, 0.2].map(|budget| {
             let outlines = Outlines {
                 width,
-                budget,
+                ink_budget: budget,
                 ..default()
             };
             small.style(&ComicStyle::new().with(outlines));

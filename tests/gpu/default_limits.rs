@@ -13,14 +13,14 @@ use bevy::{
         view::Msaa,
     },
 };
-use bevy_comics::{ComicsStage, MeshSections, Sketch, TonalArtMap};
+use bevy_comics::{Sketch, diagnostics::ComicsStage, objects::MeshSections, toon::TonalArtMap};
 use bevy_comics_testkit::headless::HeadlessOptions;
 
 use crate::{
-    cartoon, looks,
     pairwise::{compare::changed, effects::GROUPS},
     sections::{none_has_sections, wait},
     small::{Object, Small, options, size},
+    toon, toon_shading,
 };
 
 /// A row of four tones, which can be filtered.
@@ -39,7 +39,7 @@ fn tones() -> Image {
     )
 }
 
-/// A ball with every attribute that the cartoon material reads.
+/// A ball with every attribute that the toon material reads.
 fn ball() -> Mesh {
     let ball = Sphere::new(0.3).mesh().uv(24, 12);
     let mut ball = ball.with_generated_tangents().expect("coordinates");
@@ -48,7 +48,7 @@ fn ball() -> Mesh {
     ball
 }
 
-/// Balls with looks of the cartoon material under a light, and a cube with sections. All looks have every
+/// Balls with looks of the toon material under a light, and a cube with sections. All looks have every
 /// texture, and together every option.
 fn put_things(small: &mut Small, looks: Range<usize>) {
     let world = small.world();
@@ -57,7 +57,7 @@ fn put_things(small: &mut Small, looks: Range<usize>) {
     let mut images = world.resource_mut::<Assets<Image>>();
     let map = images.add(tones());
     let art_map = images.add(TonalArtMap::default().image());
-    for (k, look) in looks::all_kinds().into_iter().enumerate() {
+    for (k, look) in toon_shading::all_kinds().into_iter().enumerate() {
         if !looks.contains(&k) {
             continue;
         }
@@ -66,7 +66,7 @@ fn put_things(small: &mut Small, looks: Range<usize>) {
         light.ramp_map = map.clone().into();
         // Strokes by planes on every other ball.
         light.art_map = (k % 2 == 0).then(|| art_map.clone());
-        let material = cartoon::material(small, light);
+        let material = toon::material(small, light);
         let at = Transform::from_xyz(0.5 * k as f32 - 1.75, 0.4, 2.2);
         small.put_shared(ball(), material, at);
     }
@@ -123,10 +123,10 @@ fn everything_is_drawn_within_the_default_limits_with_four_samples() {
     check(Msaa::Sample4, FEW);
 }
 
-#[ignore = "long: every look of the cartoon material has large shaders"]
+#[ignore = "long: every look of the toon material has large shaders"]
 #[test]
 fn every_look_is_drawn_within_the_default_limits() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        check(msaa, 0..looks::all_kinds().len());
+        check(msaa, 0..toon_shading::all_kinds().len());
     }
 }

@@ -5,7 +5,7 @@ use bevy_comics::Outlines;
 
 use crate::{
     outlines::put,
-    pictures::{assert_pass_is_its_twin, outlined},
+    pictures::{assert_pass_matches_the_reference, outlined},
     small::Small,
     walls::towards_the_sky,
 };
@@ -31,13 +31,13 @@ fn half_plane(small: &mut Small, degrees: f32) {
 /// Every pixel of lines in all directions near the diagonals, whose runs are short, long, longer
 /// than is looked, and without an end.
 #[test]
-fn lines_near_diagonals_are_their_twin() {
+fn lines_near_diagonals_match_the_reference() {
     assert_near_diagonals(&[-6.3, 0.0, 0.9]);
 }
 
 #[test]
 #[ignore = "long: more directions"]
-fn lines_near_diagonals_in_more_directions_are_their_twin() {
+fn lines_near_diagonals_in_more_directions_match_the_reference() {
     assert_near_diagonals(&[-9.0, -6.3, -3.1, -1.2, 0.0, 0.9, 2.2, 4.4, 7.9]);
 }
 
@@ -49,7 +49,7 @@ fn assert_near_diagonals(directions: &[f32]) {
             half_plane(&mut small, degrees);
             let what = format!("{degrees} degrees");
             let style = outlined(silhouettes(2.0));
-            assert_pass_is_its_twin(&mut small, &style, None, &what);
+            assert_pass_matches_the_reference(&mut small, &style, None, &what);
         }
     }
     assert_eq!(small.errors(), 0);
@@ -57,7 +57,7 @@ fn assert_near_diagonals(directions: &[f32]) {
 
 /// The same where the runs belong to curves and corners: discs, and squares on their corners.
 #[test]
-fn lines_of_discs_and_corners_are_their_twin() {
+fn lines_of_discs_and_corners_match_the_reference() {
     let mut small = towards_the_sky(SIZE);
     for radius in [11.0, 14.0, 21.7, 30.3] {
         small.clear();
@@ -71,7 +71,7 @@ fn lines_of_discs_and_corners_are_their_twin() {
         for width in [1.0, 3.0] {
             let style = outlined(silhouettes(width));
             let what = format!("radius {radius}, {width} px");
-            assert_pass_is_its_twin(&mut small, &style, None, &what);
+            assert_pass_matches_the_reference(&mut small, &style, None, &what);
         }
     }
     assert_eq!(small.errors(), 0);

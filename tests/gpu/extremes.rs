@@ -5,8 +5,10 @@
 
 use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    Colorization, ColorizationMode, ComicStyle, ComicsStage, Contours, DepthMap, Desaturation,
-    Form, Outlines, ToneBands, VisibleDepthRange,
+    Colorization, ComicStyle, Contours, DepthMap, Desaturation, Outlines, ToneBands,
+    depth::VisibleDepthRange,
+    diagnostics::ComicsStage,
+    effects::{ColorizationMode, Equations},
 };
 
 use crate::small::{Small, unlit};
@@ -183,7 +185,7 @@ fn greys_stay_grey_under_the_faithful_equations() {
                 Desaturation::QUADRATIC,
                 Colorization {
                     mode,
-                    form: Form::Faithful,
+                    equations: Equations::Faithful,
                     ..default()
                 },
             ))

@@ -2,8 +2,9 @@
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
-    ComicStyle, ComicsStage, Contours, DebugView, DepthHistogram, Desaturation, Outlines, Sketch,
-    SplitView, StyleWeight, ToneBands, VisibleDepthRange,
+    ComicStyle, Contours, Desaturation, Outlines, Sketch, SplitView, StyleWeight, ToneBands,
+    depth::{DepthHistogram, VisibleDepthRange},
+    diagnostics::{ComicsStage, DebugView},
 };
 use image::RgbaImage;
 

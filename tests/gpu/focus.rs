@@ -6,14 +6,18 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    ComicStyle, ComicsStage, Desaturation, EffectTarget, Focus, FocusAt, FocusStyle, Outlines,
-    VisibleDepthRange,
+    ComicStyle, Desaturation, Focus, Outlines,
+    depth::VisibleDepthRange,
+    diagnostics::ComicsStage,
+    effect::EffectTarget,
+    effects::{FocusAt, FocusStyle},
 };
 use bevy_comics_testkit::reference::{
-    Rgba, color,
+    Rgba,
+    box_statistics::Sheet,
+    color,
     focus::{SKY, Scene},
     fused::{Input, stylize},
-    means::Sheet,
 };
 use half::f16;
 
@@ -41,9 +45,14 @@ pub fn at(distance: f32, style: FocusStyle) -> Focus {
     }
 }
 
-/// Compares every pixel with the twin, which starts from what the pass read. Counts pixels for
+/// Compares every pixel with the reference, which starts from what the pass read. Counts pixels for
 /// which rounding decides what is read; at most 1 in 200 may be. Perspective views.
-fn assert_is_its_twin(small: &mut Small, s: Focus, focus_at: f64, viewport: Option<[u32; 4]>) {
+fn assert_matches_the_reference(
+    small: &mut Small,
+    s: Focus,
+    focus_at: f64,
+    viewport: Option<[u32; 4]>,
+) {
     let before = ComicStyle::new().with(Desaturation::default());
     small.insert(VisibleDepthRange::default());
     small.style(&before.clone().with(s));
@@ -114,7 +123,7 @@ fn assert_is_its_twin(small: &mut Small, s: Focus, focus_at: f64, viewport: Opti
 }
 
 #[test]
-fn every_pixel_is_its_twins() {
+fn every_pixel_matches_the_reference() {
     let mut small = Small::new(UVec2::new(64, 44), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         small.restart(msaa);
@@ -125,7 +134,7 @@ fn every_pixel_is_its_twins() {
                 radius: 7.5,
                 ..at(5.0, style)
             };
-            assert_is_its_twin(&mut small, s, 5.0, None);
+            assert_matches_the_reference(&mut small, s, 5.0, None);
         }
     }
     assert_eq!(small.errors(), 0);
@@ -143,7 +152,7 @@ fn a_viewport_is_a_picture_of_its_own() {
         ..default()
     });
     for style in STYLES {
-        assert_is_its_twin(&mut small, at(5.0, style), 5.0, Some(viewport));
+        assert_matches_the_reference(&mut small, at(5.0, style), 5.0, Some(viewport));
     }
     assert_eq!(small.errors(), 0);
 }
@@ -157,7 +166,7 @@ fn a_transparent_background_stays() {
         ..default()
     });
     for style in STYLES {
-        assert_is_its_twin(&mut small, at(4.0, style), 4.0, None);
+        assert_matches_the_reference(&mut small, at(4.0, style), 4.0, None);
         let (read, wrote) = small.pass();
         for (read, wrote) in read.pixels.iter().zip(&wrote.pixels) {
             assert_eq!(read[3], wrote[3]);
@@ -345,7 +354,7 @@ fn the_focus_follows_an_object() {
 fn the_middle_of_the_view_is_in_focus() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     let style = ComicStyle::new().with(Focus {
-        at: FocusAt::Centre,
+        at: FocusAt::Center,
         ..default()
     });
     for distance in [5.0, 50.0] {
@@ -418,15 +427,15 @@ fn extreme_values_are_finite() {
     for style in STYLES {
         for x in [f32::NAN, 1e30] {
             let s = Focus {
-                at: FocusAt::Centre,
+                at: FocusAt::Center,
                 style,
                 distance: x,
                 clear: if x.is_nan() { x } else { 0.0 },
                 ramp: x,
                 radius: x,
-                period: x,
+                cell_size: x,
             };
-            for at in [FocusAt::Centre, FocusAt::Distance] {
+            for at in [FocusAt::Center, FocusAt::Distance] {
                 small
                     .insert((Focus { at, ..s }, Outlines::default()))
                     .settle();

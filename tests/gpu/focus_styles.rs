@@ -1,7 +1,7 @@
 //! Focus by dots and by lines.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, FocusStyle, Outlines, Silhouettes};
+use bevy_comics::{ComicStyle, Outlines, effects::FocusStyle, lines::Silhouettes};
 
 use crate::{
     focus::{at, figure, shot},

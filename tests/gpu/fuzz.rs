@@ -1,39 +1,43 @@
-//! Files of strangers. `FUZZ_CASES=1000000` tries as many texts as are promised; without it, 2000.
+//! Untrusted files. `FUZZ_CASES=1000000` tries as many texts as are promised; without it, 2000.
 
 use std::fmt::{Debug, Write};
 
 use bevy::ecs::world::{CommandQueue, World};
 use bevy::prelude::Commands;
-use bevy_comics::{CartoonLight, ComicStyle, RampMap, ToonLook, ViewFacts, presets};
+use bevy_comics::{
+    ComicStyle, ToonLight,
+    effect::EffectContext,
+    presets,
+    toon::{RampMap, ToonShading},
+};
 use bevy_comics_testkit::fuzz::{Counting, Texts, cases, check};
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Styles of version 1, with the names of their time.
+/// Styles of the previous version, with its names.
 const OLD: [&str; 3] = [
-    r##"// feather in a comment stays
+    r##"// specks in a comment stays
 (
-    version: 1,
-    name: "method: Levels, \"feather\"",
-    tone_bands: (method: Levels, feather: 3),
-    black_flats: (feather: 0.25),
-    contours: (form: PlaneAware, fade: 0.5, color: "#102030"),
-    outlines: (silhouettes: (form: Measured, threshold: 0.05), creases: (form: Measured)),
+    version: 2,
+    name: "form: Faithful, \"specks\"",
+    color_harmony: (curve: Quadratic, form: Faithful),
+    planes: (near: (saturation: 0.5), near_end: 0.125),
+    outlines: (specks: 3, silhouettes: (form: Faithful), weight: (nib: 0.5)),
 )
 "##,
-    "(version: 1, partial: true, contours: None, colorization: (method: Faithful))",
-    "(version: 1, desaturation: (method: Corrected, amount: 0.5), depth_map: (mapping: Linear))",
+    "(version: 2, partial: true, contours: None, colorization: (form: Faithful))",
+    "(version: 2, desaturation: (form: Corrected, amount: 0.5), depth_map: (mapping: Fixed(near: 1, far: 9)))",
 ];
 
 /// The presets, in both versions, and older styles.
 fn styles() -> impl Iterator<Item = String> {
-    let presets = presets::LOOKS.iter().chain(presets::PAPERS);
+    let presets = presets::STYLES.iter().chain(presets::PAPERS);
     let new = presets.map(|preset| preset.source().to_owned());
     // New names are read in old files, too.
     let aged = new
         .clone()
-        .map(|text| text.replacen("version: 2", "version: 1", 1));
+        .map(|text| text.replacen("version: 3", "version: 2", 1));
     new.chain(aged).chain(OLD.map(str::to_owned))
 }
 
@@ -50,19 +54,13 @@ const SEED: (&str, usize) = ("speed_lines", 13);
 
 /// Whatever a file says, what is used of it can be used: the numbers of all effects, of the lines that they
 /// ask for, and of the depth map are finite, and so is what is packed for the GPU.
-fn assert_usable(style: &ComicStyle, view: &ViewFacts, text: &mut String) {
+fn assert_usable(style: &ComicStyle, view: &EffectContext, text: &mut String) {
     let used = style.sanitized();
     assert!(used.sanitized() == used, "{used:?}");
     assert_finite(&used.depth_map, text);
     for effect in used.effects() {
         assert_finite(&effect, text);
-        let lines = (
-            effect.any_lines(),
-            effect.any_line_focus(view),
-            effect.any_line_planes(view),
-            effect.any_line_abstraction(view),
-            effect.any_sheet(view),
-        );
+        let lines = (effect.any_lines(), effect.any_line_modifiers(view));
         assert_finite(&lines, text);
         assert!((0.0..=1.0).contains(&effect.any_strength()), "{effect:?}");
         let name = effect.effect_type().name;
@@ -76,13 +74,13 @@ fn assert_usable(style: &ComicStyle, view: &ViewFacts, text: &mut String) {
 
 /// A style that is read can be written, read again, used, and worn.
 #[test]
-fn no_text_of_a_style_is_dangerous() {
+fn parsing_a_style_never_panics() {
     let mut texts = Texts::new(1, styles());
     // The first style that is read makes the tables of effects.
     let _ = presets::NOIR.style();
     let mut world = World::new();
     let camera = world.spawn_empty().id();
-    let (view, mut shown) = (ViewFacts::default(), String::new());
+    let (view, mut shown) = (EffectContext::default(), String::new());
     let mut read_count = 0;
     for _ in 0..cases() {
         check(&texts.next_text(), |text| {
@@ -102,7 +100,7 @@ fn no_text_of_a_style_is_dangerous() {
     assert!(read_count * 20 > cases(), "{read_count} texts are right");
 }
 
-/// All texts that others are made of are right, those of version 1 included.
+/// All texts that others are made of are right, those of the previous version included.
 #[test]
 fn styles_of_both_versions_are_read() {
     for text in styles() {
@@ -111,40 +109,40 @@ fn styles_of_both_versions_are_read() {
     }
 }
 
-/// A large file of version 1 with a name to replace in every few bytes.
+/// A large file of the previous version with a name to replace in every few bytes.
 #[test]
-fn large_files_of_version_1_are_read_in_time() {
-    let fields = "form: PlaneAware, fade: 0.5, ".repeat(20_000);
-    let text = format!("(version: 1, contours: ({fields}))");
+fn large_files_of_the_previous_version_are_read_in_time() {
+    let fields = "form: Faithful, ".repeat(40_000);
+    let text = format!("(version: 2, contours: ({fields}))");
     check(&text, |text| {
         let error = ComicStyle::from_ron(text).expect_err("fields are there twice");
-        assert!(error.to_string().contains("form"), "{error}");
+        assert!(error.to_string().contains("equations"), "{error}");
     });
 }
 
 #[test]
-fn no_text_of_a_look_is_dangerous() {
-    let kinds = crate::looks::all_kinds();
+fn parsing_a_look_never_panics() {
+    let kinds = crate::toon_shading::all_kinds();
     let written = kinds.iter().map(|look| look.to_ron().expect("written"));
     let mut texts = Texts::new(2, written);
     let mut shown = String::new();
     let mut read_count = 0;
     for _ in 0..cases() {
         check(&texts.next_text(), |text| {
-            let Ok(look) = ToonLook::from_ron(text) else {
+            let Ok(look) = ToonShading::from_ron(text) else {
                 return;
             };
             read_count += 1;
             let used = look.light.clone().sanitized();
             assert!(used.clone().sanitized() == used, "{used:?}");
             // The path of an image is no number, whatever it is.
-            let numbers = CartoonLight {
+            let numbers = ToonLight {
                 ramp_map: RampMap::default(),
                 ..used
             };
             assert_finite(&numbers, &mut shown);
             let written = look.to_ron().expect("what was read can be written");
-            let again = ToonLook::from_ron(&written).expect("what was written can be read");
+            let again = ToonShading::from_ron(&written).expect("what was written can be read");
             assert_eq!(again.to_ron().expect("again"), written);
         });
     }

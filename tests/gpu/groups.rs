@@ -3,7 +3,7 @@
 use std::{fs, path::Path, time::Duration};
 
 use bevy::{prelude::*, render::view::Msaa, world_serialization::WorldAssetRoot};
-use bevy_comics::{OutlineGroup, OutlineStyle, Outlines, object_id};
+use bevy_comics::{OutlineGroup, OutlineStyle, Outlines, testing::object_id};
 use serde_json::json;
 
 use crate::{

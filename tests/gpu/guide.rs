@@ -6,7 +6,7 @@ use std::{
 };
 
 use bevy::render::view::Msaa;
-use bevy_comics::{ComicStyle, ComicStyleError};
+use bevy_comics::{ComicStyle, style::ComicStyleError};
 
 use crate::small::{Small, size};
 
@@ -138,22 +138,22 @@ fn the_steps_of_the_ten_minutes_can_be_followed() {
         .first()
         .expect("the broken file's message")
         .trim();
-    let error = ComicStyle::from_ron("(\n    version: 2,\n    outlines: (widht: 3.0),\n)")
+    let error = ComicStyle::from_ron("(\n    version: 3,\n    outlines: (widht: 3.0),\n)")
         .expect_err("broken");
     assert_eq!(error.to_string(), broken);
 }
 
 #[test]
 fn an_unknown_version_and_an_unknown_field_are_said() {
-    let error = ComicStyle::from_ron("(version: 3)").expect_err("a later version");
+    let error = ComicStyle::from_ron("(version: 4)").expect_err("a later version");
     assert!(
-        matches!(error, ComicStyleError::Version { found: 3, .. }),
+        matches!(error, ComicStyleError::Version { found: 4, .. }),
         "{error}"
     );
     for text in [
-        "(version: 2, glitter: ())",
-        "(version: 2, sketch: (glitter: 1))",
-        "(version: 2, depth_map: (smoothing: (glitter: 1)))",
+        "(version: 3, glitter: ())",
+        "(version: 3, sketch: (glitter: 1))",
+        "(version: 3, depth_map: (smoothing: (glitter: 1)))",
     ] {
         let error = ComicStyle::from_ron(text).expect_err(text).to_string();
         assert!(
@@ -187,13 +187,20 @@ mod reference {
 
     use bevy::reflect::{NamedField, TypeInfo, Typed};
     use bevy_comics::{
-        Abstraction, BlackFlats, ColorHarmony, Colorization, ColorizationMode, ComicStyle,
-        ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation, EffectRegistry,
-        EffectType, FieldRange, Focus, FocusAt, FocusStyle, Form, Halftone, HalftoneMode,
-        HarmonyCurve, HarmonyMode, LineBoil, LineColor, LineFog, LineResponse, LineWeight,
-        ObjectEdges, Outlines, Paint, PaintForm, PlaneBorders, PlaneStyle, PlaneUnit, Planes,
-        PrintOffset, RangeSmoothing, ReductionMethod, ScreenAnchor, ScreenSampling, ScreenShape,
-        Silhouettes, Sketch, ToneBands,
+        Abstraction, BlackFlats, ColorHarmony, Colorization, ComicStyle, Contours, DepthLayers,
+        DepthMap, DepthMapping, Desaturation, Focus, Halftone, Misregistration, Outlines, Paint,
+        Sketch, ToneBands,
+        depth::{RangeSmoothing, ReductionMethod},
+        effect::{EffectRegistry, EffectType, FieldRange},
+        effects::{
+            ColorizationMode, ContourOperator, DepthLayer, Equations, FocusAt, FocusStyle,
+            Granularity, HalftoneMode, HarmonyCurve, HarmonyMode, LayerBorders, PaintKernel,
+            ScreenAnchor, ScreenSampling, ScreenShape,
+        },
+        lines::{
+            Creases, LineBoil, LineColor, LineFog, LineResponse, LineWeight, ObjectEdges,
+            Silhouettes,
+        },
     };
 
     const HEAD: &str = "\
@@ -206,7 +213,7 @@ is an error that names line and column. Every other entry is optional: an effect
 partial style: as the camera has it), a field that is left out has its default. Colours are `\"#rrggbb\"`,
 `\"#rrggbbaa\"` or four sRGB components. Numbers outside their range count as its nearest end.
 
-Files may come from strangers. Reading a text, using its settings and writing it again allocates at most 1 MiB and 256
+Files may be untrusted. Reading a text, using its settings and writing it again allocates at most 1 MiB and 256
 bytes for each byte of the text, and takes less than a second; a test holds texts that are wrong somewhere to both. No
 entry names another file.
 
@@ -369,7 +376,7 @@ This page is made from the types by a test, which fails where the two differ.
         section::<RangeSmoothing>(&mut page);
         section::<ReductionMethod>(&mut page);
         section::<ToneBands>(&mut page);
-        section::<Form>(&mut page);
+        section::<Equations>(&mut page);
         section::<Desaturation>(&mut page);
         section::<Colorization>(&mut page);
         section::<ColorizationMode>(&mut page);
@@ -377,16 +384,16 @@ This page is made from the types by a test, which fails where the two differ.
         section::<ColorHarmony>(&mut page);
         section::<HarmonyMode>(&mut page);
         section::<HarmonyCurve>(&mut page);
-        section::<Planes>(&mut page);
-        section::<PlaneStyle>(&mut page);
-        section::<PlaneUnit>(&mut page);
-        section::<PlaneBorders>(&mut page);
+        section::<DepthLayers>(&mut page);
+        section::<DepthLayer>(&mut page);
+        section::<Granularity>(&mut page);
+        section::<LayerBorders>(&mut page);
         section::<Paint>(&mut page);
-        section::<PaintForm>(&mut page);
+        section::<PaintKernel>(&mut page);
         section::<Focus>(&mut page);
         section::<FocusAt>(&mut page);
         section::<FocusStyle>(&mut page);
-        section::<PrintOffset>(&mut page);
+        section::<Misregistration>(&mut page);
         section::<Halftone>(&mut page);
         section::<HalftoneMode>(&mut page);
         section::<ScreenShape>(&mut page);

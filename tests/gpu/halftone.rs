@@ -1,4 +1,4 @@
-//! Halftone: mean tones, moire, continuity, and pictures against the twin.
+//! Halftone: mean tones, moire, continuity, and pictures against the reference.
 
 use bevy::{
     anti_alias::{
@@ -9,8 +9,10 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    ComicStyle, ComicsStage, DepthMap, DepthMapping, Halftone, HalftoneMode, Outlines, Paper,
-    ScreenAnchor, ScreenSampling, ScreenShape, Silhouettes, ToneBands,
+    ComicStyle, DepthMap, DepthMapping, Halftone, Outlines, Paper, ToneBands,
+    diagnostics::ComicsStage,
+    effects::{HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape},
+    lines::Silhouettes,
 };
 use bevy_comics_testkit::{
     headless::HeadlessOptions,
@@ -26,7 +28,7 @@ use bevy_comics_testkit::{
 };
 
 use crate::{
-    pictures::assert_pass_is_its_twin,
+    pictures::assert_pass_matches_the_reference,
     small::{Small, linear, options},
 };
 
@@ -34,7 +36,7 @@ fn ideal_spot(shape: ScreenShape, period: f32) -> Halftone {
     Halftone {
         mode: HalftoneMode::Spot,
         shape,
-        period,
+        cell_size: period,
         ..ideal()
     }
 }
@@ -286,7 +288,7 @@ fn screened(s: Halftone) -> ComicStyle {
 
 /// The whole pass, pixel by pixel, in every mode; in two passes where cells are read.
 #[test]
-fn every_pixel_is_its_twins() {
+fn every_pixel_matches_the_reference() {
     let mut small = Small::new(UVec2::new(48, 32), Msaa::Off);
     for (mode, shape) in [
         (HalftoneMode::Cmyk, ScreenShape::Euclidean),
@@ -299,14 +301,14 @@ fn every_pixel_is_its_twins() {
                 mode,
                 shape,
                 sampling,
-                near: 1.0,
-                far: 0.3,
+                at_near: 1.0,
+                at_far: 0.3,
                 gain: 0.1,
-                below: 0.7,
+                shadows_only_below: 0.7,
                 ..default()
             };
             let what = format!("{mode:?}, {shape:?}, {sampling:?}");
-            assert_pass_is_its_twin(&mut small, &screened(s), None, &what);
+            assert_pass_matches_the_reference(&mut small, &screened(s), None, &what);
         }
     }
     assert_eq!(small.errors(), 0);
@@ -331,11 +333,11 @@ fn viewports_are_pages_or_parts_of_one() {
             let s = Halftone {
                 anchor,
                 sampling,
-                near: 0.5,
+                at_near: 0.5,
                 ..default()
             };
             let what = format!("{anchor:?}, {sampling:?}");
-            assert_pass_is_its_twin(&mut small, &screened(s), Some(viewport), &what);
+            assert_pass_matches_the_reference(&mut small, &screened(s), Some(viewport), &what);
         }
     }
 }
@@ -350,7 +352,7 @@ fn periods_are_logical() {
         small.headless.resize(size, scale_factor);
         small.restart(Msaa::Off);
         small.style(&ComicStyle::new().with(Halftone {
-            period,
+            cell_size: period,
             ..default()
         }));
         small.settle();
@@ -384,7 +386,7 @@ fn impossible_periods_show_a_picture() {
             ScreenShape::Stochastic,
         ] {
             let s = Halftone {
-                period,
+                cell_size: period,
                 shape,
                 ..ideal()
             };
@@ -539,7 +541,7 @@ fn all_stages_work_together() {
             ..default()
         })
         .with(ToneBands::default());
-        assert_pass_is_its_twin(&mut small, &style, None, &format!("{msaa:?}"));
+        assert_pass_matches_the_reference(&mut small, &style, None, &format!("{msaa:?}"));
         assert_eq!(small.errors(), 0);
     }
 }

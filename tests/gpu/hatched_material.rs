@@ -1,4 +1,4 @@
-//! Strokes on the cartoon material: `hatch_light.wgsl`, and `vertex.wgsl`, which hands on the mesh at rest.
+//! Strokes on the toon material: `hatch_light.wgsl`, and `vertex.wgsl`, which hands on the mesh at rest.
 
 use bevy::{
     camera::Hdr,
@@ -12,8 +12,9 @@ use bevy::{
     prelude::*,
 };
 use bevy_comics::{
-    CartoonLight, ComicStyle, Hatching, HatchingAnchor, HatchingGround, Ramp, RampMode, RampStop,
-    Vignette,
+    ComicStyle, Hatching, ToonLight, Vignette,
+    effects::{HatchingAnchor, HatchingGround},
+    toon::{Ramp, RampMode, RampStop},
 };
 use bevy_comics_testkit::reference::hatching::Hatch;
 use image::RgbaImage;
@@ -45,8 +46,8 @@ pub fn plain() -> Hatching {
     }
 }
 
-fn with(hatching: Hatching) -> CartoonLight {
-    CartoonLight {
+fn with(hatching: Hatching) -> ToonLight {
+    ToonLight {
         hatching: Some(hatching),
         ..default()
     }
@@ -84,7 +85,7 @@ pub fn tone(hatching: &Hatching, share: f64) -> f64 {
         scale: 1.0,
         drawing: 0,
     };
-    hatch.tone(share.sqrt()) * f64::from(hatching.near)
+    hatch.tone(share.sqrt()) * f64::from(hatching.at_near)
 }
 
 /// Light from the front, from behind, and from all around.
@@ -128,7 +129,7 @@ fn walls_have_the_tone_of_their_light(walls: &[([f32; 3], &[f32])]) {
             let roll = Quat::from_rotation_z(0.2);
             let turn = Quat::from_axis_angle(axis, degrees.to_radians()) * roll;
             let at = Transform::from_rotation(turn);
-            put(&mut small, wall, &CartoonLight::default(), at);
+            put(&mut small, wall, &ToonLight::default(), at);
             for layers in [1, 3] {
                 for (random, worst) in [0.0, 1.0].into_iter().zip(&mut worst) {
                     let s = Hatching {
@@ -136,7 +137,7 @@ fn walls_have_the_tone_of_their_light(walls: &[([f32; 3], &[f32])]) {
                         breaks: random,
                         wobble: random,
                         pressure: 0.5 * random,
-                        near: 1.0 - 0.2 * random,
+                        at_near: 1.0 - 0.2 * random,
                         ..plain()
                     };
                     set_light(&mut small, &with(s));
@@ -158,7 +159,11 @@ fn walls_have_the_tone_of_their_light(walls: &[([f32; 3], &[f32])]) {
 fn strokes_follow_the_tones_of_ramps() {
     let grey = |part| Color::linear_rgb(part, part, part);
     let mut small = room(SIZE, 0.0);
-    for mode in [RampMode::Share, RampMode::PerLight, RampMode::Brightest] {
+    for mode in [
+        RampMode::LightFraction,
+        RampMode::PerLight,
+        RampMode::Brightest,
+    ] {
         small.clear();
         // 60 degrees from the normal.
         let to = Vec3::new(0.0, 0.75f32.sqrt(), 0.5);
@@ -169,7 +174,7 @@ fn strokes_follow_the_tones_of_ramps() {
             RampStop::new(0.3, grey(0.3)),
             RampStop::new(0.7, grey(0.9)),
         ];
-        let light = CartoonLight {
+        let light = ToonLight {
             ramp: Some(Ramp {
                 mode,
                 ..Ramp::new(stops)
@@ -358,7 +363,7 @@ fn no_strokes_change_nothing() {
     put(
         &mut small,
         ball(),
-        &CartoonLight::default(),
+        &ToonLight::default(),
         Transform::IDENTITY,
     );
     let before = drawn(&mut small);
@@ -382,12 +387,7 @@ fn shades_keep_their_mean_colour() {
     let mut small = room(SIZE, 0.2);
     light_from(&mut small, Transform::IDENTITY, -Vec3::Z, 0.6);
     let wall = Plane3d::new(Vec3::Z, Vec2::splat(9.0)).mesh().build();
-    put(
-        &mut small,
-        wall,
-        &CartoonLight::default(),
-        Transform::IDENTITY,
-    );
+    put(&mut small, wall, &ToonLight::default(), Transform::IDENTITY);
     let bare = mean(&covers(&mut small));
     let s = Hatching {
         ground: HatchingGround::Color,
@@ -416,10 +416,10 @@ fn extreme_strokes_are_finite() {
     flat.insert_attribute(Mesh::ATTRIBUTE_NORMAL, vec![[0.0; 3]; count]);
     for (x, mesh) in [(-0.4, ball()), (0.0, bare), (0.4, flat)] {
         let at = Transform::from_xyz(x, 0.0, 0.0);
-        put(&mut small, mesh, &CartoonLight::default(), at);
+        put(&mut small, mesh, &ToonLight::default(), at);
     }
     let squashed = Transform::from_scale(Vec3::new(1.0, 0.0, 1e-20));
-    put(&mut small, ball(), &CartoonLight::default(), squashed);
+    put(&mut small, ball(), &ToonLight::default(), squashed);
     for x in [f32::NAN, f32::INFINITY, -1e30, 0.0, 1e30] {
         for anchor in [HatchingAnchor::Object, HatchingAnchor::Page] {
             let s = Hatching {
@@ -437,7 +437,7 @@ fn extreme_strokes_are_finite() {
                 wobble: x,
                 pressure: x,
                 rate: x,
-                near: x,
+                at_near: x,
                 ..default()
             };
             set_light(&mut small, &with(s));

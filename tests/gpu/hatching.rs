@@ -7,7 +7,9 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    Abstraction, ComicStyle, Hatching, HatchingAnchor, HatchingGround, ObjectScreen,
+    Abstraction, ComicStyle, Hatching,
+    effects::{HatchingAnchor, HatchingGround},
+    objects::PatternAnchor,
 };
 use bevy_comics_testkit::reference::{
     color,
@@ -341,8 +343,8 @@ fn abstraction_draws_strokes_farther_apart() {
     flat(&mut small, 0.3, tilted(20.0, 12.0));
     for (level, factor) in [(0.0, 1.0), (0.5, std::f32::consts::SQRT_2), (1.0, 2.0)] {
         let dial = Abstraction {
-            near: level,
-            far: level,
+            at_near: level,
+            at_far: level,
             spacing: 2.0,
             saturation: 1.0,
             ..default()
@@ -373,7 +375,7 @@ fn strokes_travel_with_their_object() {
     small
         .world()
         .entity_mut(object)
-        .insert(ObjectScreen::default());
+        .insert(PatternAnchor::default());
     let s = Hatching {
         ground: HatchingGround::Paper,
         ..default()
@@ -402,7 +404,7 @@ fn strokes_travel_with_their_object() {
         println!("moved by {by}: {apart} pixels differ; codes: mean {mean:.2}, most {most:.1}");
         assert!(apart < still.len() / 200, "{apart}");
         // Fixed to the world, strokes swim.
-        small.world().entity_mut(object).remove::<ObjectScreen>();
+        small.world().entity_mut(object).remove::<PatternAnchor>();
         let swims = covers(&mut small, s);
         let apart = (still.iter().zip(&swims))
             .filter(|(a, b)| (*a - *b).abs() > limit)
@@ -411,7 +413,7 @@ fn strokes_travel_with_their_object() {
         small
             .world()
             .entity_mut(object)
-            .insert(ObjectScreen::default());
+            .insert(PatternAnchor::default());
     }
     assert_eq!(small.errors(), 0);
 }
@@ -428,7 +430,15 @@ fn calm_changes_nothing_on_large_surfaces() {
         let turn = Quat::from_euler(EulerRot::YXZ, 0.6, 0.4, 0.2);
         let at = Transform::from_xyz(0.1, 0.0, -4.0).with_rotation(turn);
         small.put(Cuboid::from_length(0.9), material.clone(), at);
-        let [loud, calm] = [0.0, 1.0].map(|calm| covers(&mut small, Hatching { calm, ..plain() }));
+        let [loud, calm] = [0.0, 1.0].map(|calm| {
+            covers(
+                &mut small,
+                Hatching {
+                    simplify_small: calm,
+                    ..plain()
+                },
+            )
+        });
         let apart = loud
             .iter()
             .zip(&calm)
@@ -475,7 +485,15 @@ fn what_is_small_is_more_even() {
             place(i, j);
         }
     }
-    let [loud, calm] = [0.0, 1.0].map(|calm| covers(&mut small, Hatching { calm, ..plain() }));
+    let [loud, calm] = [0.0, 1.0].map(|calm| {
+        covers(
+            &mut small,
+            Hatching {
+                simplify_small: calm,
+                ..plain()
+            },
+        )
+    });
     let spread = |covers: &[f64]| {
         let mean = mean(covers);
         let squares: f64 = covers.iter().map(|c| (c - mean).powi(2)).sum();
@@ -526,8 +544,8 @@ fn extreme_hatching_is_finite() {
             wobble: x,
             pressure: x,
             rate: x,
-            near: x,
-            calm: x,
+            at_near: x,
+            simplify_small: x,
             ..default()
         };
         let found = covers(&mut small, s);

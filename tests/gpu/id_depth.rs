@@ -13,8 +13,10 @@ use bevy::{
     shader::{Shader, Source},
 };
 use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, ComicsStage, DepthWrite, NoOutlines, ObjectIdDepthTest,
-    Outlines, StageOutcome, object_id,
+    ComicStyle, ComicsDiagnostics, NoOutlines, Outlines,
+    diagnostics::{ComicsStage, StageOutcome},
+    objects::{DepthWrite, ObjectIdDepthTest},
+    testing::object_id,
 };
 use bevy_comics_testkit::read_back::IdImage;
 
@@ -99,7 +101,7 @@ fn method(small: &Small) -> Option<&'static str> {
     let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
     let stages = diagnostics.cameras.get(&small.camera);
     match stages.and_then(|stages| stages.outcome(ComicsStage::ObjectIds)) {
-        Some(StageOutcome::RanAs(method)) => Some(method),
+        Some(StageOutcome::RanWith(method)) => Some(method),
         _ => None,
     }
 }

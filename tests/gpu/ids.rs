@@ -10,7 +10,10 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{NoOutlines, ObjectEdges, OutlineKinds, OutlineStyle, Outlines, object_id};
+use bevy_comics::{
+    NoOutlines, OutlineStyle, Outlines, lines::ObjectEdges, objects::OutlineKinds,
+    testing::object_id,
+};
 
 use crate::{
     outlines::ink,
@@ -256,10 +259,10 @@ fn styles_are_inherited_where_asked() {
         .spawn((Transform::default(), Visibility::default()))
         .id();
     world.entity_mut(root).add_children(&[left, right]);
-    world.entity_mut(root).insert(NoOutlines::default());
+    world.entity_mut(root).insert(NoOutlines { inherit: false });
     let own = ink(&mut small, Outlines::default());
     assert!(own.iter().any(|i| *i > 0.9), "not asked, not inherited");
-    small.world().entity_mut(root).insert(NoOutlines::INHERITED);
+    small.world().entity_mut(root).insert(NoOutlines::default());
     let inherited = ink(&mut small, Outlines::default());
     assert!(inherited.iter().all(|i| *i < 0.02));
     small

@@ -2,8 +2,8 @@
 
 use bevy::{camera::RenderTarget, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    ComicsDiagnostics, Impact, ImpactCounts, Outlines, ReduceFlashing, SpeedLines, StyleWeight,
-    TwoTone,
+    ComicsDiagnostics, Impact, Outlines, ReduceFlashing, SpeedLines, StyleWeight, TwoTone,
+    diagnostics::ImpactCounts,
 };
 use image::RgbaImage;
 

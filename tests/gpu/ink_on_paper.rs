@@ -2,13 +2,15 @@
 
 use bevy::{camera::Viewport, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    ComicStyle, Halftone, HalftoneMode, LineBoil, Outlines, Paper, ScreenShape, Sketch, Vignette,
+    ComicStyle, Halftone, Outlines, Paper, Sketch, Vignette,
+    effects::{HalftoneMode, ScreenShape},
+    lines::LineBoil,
 };
 use bevy_comics_testkit::screens::{SHAPES, ideal};
 
 use crate::{
     halftone::fill,
-    pictures::{assert_pass_is_its_twin, outlined},
+    pictures::{assert_pass_matches_the_reference, outlined},
     small::{Small, black_ink, linear},
     walls::{towards_the_sky, wall},
 };
@@ -20,7 +22,7 @@ fn plain(spread: f32, dry_brush: f32) -> Paper {
         shading: 0.0,
         size: 0.5,
         color: Color::WHITE,
-        spread,
+        ink_bleed: spread,
         dry_brush,
         ..default()
     }
@@ -32,8 +34,8 @@ type Lines = [f32; 5];
 
 /// Every pixel, at widths of every kind of search, with strokes beyond loose ends.
 #[test]
-fn lines_on_paper_are_their_twins() {
-    assert_lines_are_their_twins(&[
+fn lines_on_paper_match_the_reference() {
+    assert_lines_match_the_reference(&[
         [0.5, 2.0, 0.0, 1.0, 0.0],
         [2.0, 2.0, 0.0, 2.0, 6.0],
         [9.0, 1.5, 0.3, 1.0, 0.0],
@@ -42,8 +44,8 @@ fn lines_on_paper_are_their_twins() {
 
 #[test]
 #[ignore = "long: eight kinds of lines"]
-fn all_kinds_of_lines_on_paper_are_their_twins() {
-    assert_lines_are_their_twins(&[
+fn all_kinds_of_lines_on_paper_match_the_reference() {
+    assert_lines_match_the_reference(&[
         [0.5, 2.0, 0.0, 1.0, 0.0],
         [1.0, 0.7, 0.0, 1.0, 0.0],
         [2.0, 2.0, 0.0, 2.0, 6.0],
@@ -55,7 +57,7 @@ fn all_kinds_of_lines_on_paper_are_their_twins() {
     ]);
 }
 
-fn assert_lines_are_their_twins(lines: &[Lines]) {
+fn assert_lines_match_the_reference(lines: &[Lines]) {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     for &[width, spread, dry_brush, size, overshoot] in lines {
         let outlines = Outlines {
@@ -64,14 +66,14 @@ fn assert_lines_are_their_twins(lines: &[Lines]) {
             ..default()
         };
         let paper = Paper {
-            spread,
+            ink_bleed: spread,
             dry_brush,
             size,
             amount: 0.9,
             ..default()
         };
         let style = outlined(outlines).with(paper);
-        assert_pass_is_its_twin(
+        assert_pass_matches_the_reference(
             &mut small,
             &style,
             None,
@@ -81,16 +83,16 @@ fn assert_lines_are_their_twins(lines: &[Lines]) {
     let sketch = ComicStyle::new()
         .with(Sketch::default())
         .with(plain(1.5, 0.0));
-    assert_pass_is_its_twin(&mut small, &sketch, None, "sketch");
+    assert_pass_matches_the_reference(&mut small, &sketch, None, "sketch");
     assert_eq!(small.errors(), 0);
 }
 
 /// Every pixel of a viewport that does not begin at the corner of the target, and of lines that
 /// boil: the sheet stays with the target, while lines move over it.
 #[test]
-fn lines_on_paper_are_their_twins_in_a_viewport_and_while_they_boil() {
+fn lines_on_paper_match_the_reference_in_a_viewport_and_while_they_boil() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
-    // Boiling lines are narrow, see `boil::boiling_lines_are_their_twins`.
+    // Boiling lines are narrow, see `boil::boiling_lines_match_the_reference`.
     let styles = [(6.0, 0.0), (2.0, 1.5)].map(|(width, amplitude)| {
         let boil = LineBoil {
             amplitude,
@@ -105,7 +107,7 @@ fn lines_on_paper_are_their_twins_in_a_viewport_and_while_they_boil() {
         .with(plain(1.5, 0.4))
     });
     for style in &styles {
-        assert_pass_is_its_twin(&mut small, style, None, "the whole target");
+        assert_pass_matches_the_reference(&mut small, style, None, "the whole target");
     }
     let (_, whole) = small.pass();
     small.insert(Camera {
@@ -118,7 +120,7 @@ fn lines_on_paper_are_their_twins_in_a_viewport_and_while_they_boil() {
     });
     let viewport = Some([13, 7, 51, 41]);
     for style in &styles {
-        assert_pass_is_its_twin(&mut small, style, viewport, "a viewport");
+        assert_pass_matches_the_reference(&mut small, style, viewport, "a viewport");
     }
     let (_, part) = small.pass();
     assert_ne!(whole.pixels, part.pixels);
@@ -127,7 +129,7 @@ fn lines_on_paper_are_their_twins_in_a_viewport_and_while_they_boil() {
 
 /// Every pixel of every shape of dots but grains.
 #[test]
-fn dots_on_paper_are_their_twins() {
+fn dots_on_paper_match_the_reference() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
     for shape in [
         ScreenShape::Round,
@@ -138,11 +140,11 @@ fn dots_on_paper_are_their_twins() {
     ] {
         let halftone = Halftone {
             shape,
-            period: 5.0,
+            cell_size: 5.0,
             ..default()
         };
         let style = ComicStyle::new().with(halftone).with(plain(1.5, 0.0));
-        assert_pass_is_its_twin(&mut small, &style, None, &format!("{shape:?}"));
+        assert_pass_matches_the_reference(&mut small, &style, None, &format!("{shape:?}"));
     }
     assert_eq!(small.errors(), 0);
 }
@@ -323,7 +325,7 @@ fn extreme_inks_on_paper_are_finite() {
         for x in [f32::NAN, f32::INFINITY, -1e30, 0.0, 1e30] {
             for width in [0.5, 16.0] {
                 let paper = Paper {
-                    spread: x,
+                    ink_bleed: x,
                     dry_brush: x,
                     size: x,
                     ..default()
@@ -347,6 +349,6 @@ fn extreme_inks_on_paper_are_finite() {
         (plain(-1.0, -1.0), [0.0, 0.0]),
     ] {
         let used = bevy_comics::Effect::sanitized(paper);
-        assert_eq!([used.spread, used.dry_brush], want);
+        assert_eq!([used.ink_bleed, used.dry_brush], want);
     }
 }

@@ -1,7 +1,7 @@
 //! Where lines of equal depth, height and distance lie.
 
 use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, IsoField, IsoLines};
+use bevy_comics::{ComicStyle, IsoLines, effects::IsoField};
 
 use crate::{
     small::{Small, black_ink, linear, unlit},
@@ -73,7 +73,7 @@ fn distances_are_rings() {
     let mut small = towards_the_sky(SIZE);
     wall(&mut small, [-60.0, -40.0], [60.0, 40.0], 100.0);
     let lines = IsoLines {
-        centre: Vec3::new(0.0, 0.0, -100.0),
+        center: Vec3::new(0.0, 0.0, -100.0),
         ..every_8(IsoField::Distance)
     };
     let picture = draw(&mut small, lines);

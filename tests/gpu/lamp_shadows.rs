@@ -1,9 +1,9 @@
 //! Shadows of lamps: their borders against rays, and the engine's own shadows.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{CartoonLight, CartoonMaterial, object_id};
+use bevy_comics::{ToonLight, ToonMaterial, testing::object_id};
 
-use crate::cartoon::{HIGH, Kind, LOW, SIZE, Stage, blocked, ground_point_at, material, stage};
+use crate::toon::{HIGH, Kind, LOW, SIZE, Stage, blocked, ground_point_at, material, stage};
 
 fn lights() -> [(&'static str, Kind); 3] {
     let to = Vec3::new(0.3, 0.0, -0.2);
@@ -97,7 +97,7 @@ fn walls_beside_a_spot_light_are_finite() {
     let (from, to) = (Vec3::new(0.0, 0.7, 3.0), Vec3::new(0.0, 0.7, -5.0));
     let mut stage = stage(&Kind::Spot(from, to), Msaa::Off);
     let wall = Plane3d::new(Vec3::Z, Vec2::splat(3.0)).mesh();
-    let white = material(&mut stage.small, CartoonLight::default());
+    let white = material(&mut stage.small, ToonLight::default());
     let wall = stage.small.put_shared(wall, white, Transform::IDENTITY);
     for at in [0.0f32, 0.5, -0.5] {
         let place = Transform::from_xyz(0.0, 0.7, 3.0 + at);
@@ -126,7 +126,7 @@ fn be_standard(stage: &mut Stage) {
     let objects: Vec<Entity> = objects.iter(world).collect();
     for object in objects {
         (world.entity_mut(object))
-            .remove::<MeshMaterial3d<CartoonMaterial>>()
+            .remove::<MeshMaterial3d<ToonMaterial>>()
             .insert(MeshMaterial3d(white.clone()));
     }
 }

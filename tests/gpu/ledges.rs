@@ -40,7 +40,7 @@ fn creases(continuity: f32) -> Outlines {
     Outlines {
         width: 1.0,
         objects: None,
-        continuity,
+        hysteresis: continuity,
         ..default()
     }
 }

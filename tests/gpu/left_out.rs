@@ -2,9 +2,11 @@
 
 use bevy::{core_pipeline::prepass::DepthPrepass, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    BlackFlats, Colorization, ColorizationMode, ComicsDiagnostics, ComicsStage, Contours, DepthMap,
-    DepthMapping, Desaturation, LeftOut, Outlines, Sketch, StageOutcome, ToneBands,
-    VisibleDepthRange,
+    BlackFlats, Colorization, ComicsDiagnostics, Contours, DepthMap, DepthMapping, Desaturation,
+    Outlines, Sketch, ToneBands,
+    depth::VisibleDepthRange,
+    diagnostics::{ComicsStage, SkipReason, StageOutcome},
+    effects::ColorizationMode,
 };
 
 use crate::small::{Small, size};
@@ -14,7 +16,7 @@ fn small() -> Small {
 }
 
 /// The stages that ran, and the reason for each that did not.
-fn stages(small: &Small) -> (Vec<ComicsStage>, Vec<(ComicsStage, LeftOut)>) {
+fn stages(small: &Small) -> (Vec<ComicsStage>, Vec<(ComicsStage, SkipReason)>) {
     let diagnostics = small.headless.app.world().resource::<ComicsDiagnostics>();
     let stages = &diagnostics
         .cameras
@@ -25,7 +27,7 @@ fn stages(small: &Small) -> (Vec<ComicsStage>, Vec<(ComicsStage, LeftOut)>) {
     let mut left = Vec::new();
     for (stage, outcome) in stages {
         match outcome {
-            StageOutcome::LeftOut(reason) => left.push((*stage, *reason)),
+            StageOutcome::Skipped(reason) => left.push((*stage, *reason)),
             _ => ran.push(*stage),
         }
     }
@@ -78,9 +80,9 @@ fn one_atmosphere_for_all_reads_no_depth() {
         ran,
         [ComicsStage::of::<Colorization>(), ComicsStage::Stylize]
     );
-    assert!(left.contains(&(ComicsStage::DepthPrepass, LeftOut::NoDepthStyle)));
-    assert!(left.contains(&(ComicsStage::DepthRange, LeftOut::NoDepthStyle)));
-    assert!(left.contains(&(ComicsStage::of::<Contours>(), LeftOut::NotRequested)));
+    assert!(left.contains(&(ComicsStage::DepthPrepass, SkipReason::NoDepthStyle)));
+    assert!(left.contains(&(ComicsStage::DepthRange, SkipReason::NoDepthStyle)));
+    assert!(left.contains(&(ComicsStage::of::<Contours>(), SkipReason::NotRequested)));
     assert!(!has_prepass(&small));
     small.insert(BlackFlats::default()).settle();
     assert!(!has_prepass(&small), "flats of one threshold read no depth");
@@ -100,12 +102,12 @@ fn a_fixed_range_has_no_reduction() {
         DepthMapping::Linear,
         DepthMapping::Logarithmic,
         DepthMapping::Fixed {
-            near: 2.0,
-            far: 12.0,
+            from: 2.0,
+            to: 12.0,
         },
         DepthMapping::FixedLogarithmic {
-            near: 2.0,
-            far: 12.0,
+            from: 2.0,
+            to: 12.0,
         },
     ] {
         small
@@ -128,7 +130,7 @@ fn a_fixed_range_has_no_reduction() {
             ]
         );
         assert!(
-            left.contains(&(ComicsStage::DepthRange, LeftOut::FixedRange)),
+            left.contains(&(ComicsStage::DepthRange, SkipReason::FixedRange)),
             "{mapping:?}"
         );
     }
@@ -148,7 +150,7 @@ fn what_changes_nothing_is_left_out() {
                 ..default()
             },
             Colorization {
-                mode: ColorizationMode::Hue,
+                mode: ColorizationMode::KeepHue,
                 ..default()
             },
             BlackFlats {
@@ -169,9 +171,9 @@ fn what_changes_nothing_is_left_out() {
         ComicsStage::of::<BlackFlats>(),
         ComicsStage::of::<Contours>(),
     ] {
-        assert!(left.contains(&(stage, LeftOut::Negligible)), "{stage:?}");
+        assert!(left.contains(&(stage, SkipReason::Negligible)), "{stage:?}");
     }
-    assert!(left.contains(&(ComicsStage::Stylize, LeftOut::NothingToDraw)));
+    assert!(left.contains(&(ComicsStage::Stylize, SkipReason::NothingToDraw)));
     assert!(!has_prepass(&small));
     assert_eq!(small.picture(), original);
 }
@@ -194,9 +196,9 @@ fn outlines_run_what_they_need_and_no_more() {
             ComicsStage::Stylize,
         ]
     );
-    assert!(left.contains(&(ComicsStage::DepthRange, LeftOut::NoMapStyle)));
-    assert!(left.contains(&(ComicsStage::NormalPrepass, LeftOut::NoSuchLines)));
-    assert!(left.contains(&(ComicsStage::ObjectIds, LeftOut::NoSuchLines)));
+    assert!(left.contains(&(ComicsStage::DepthRange, SkipReason::NoMapStyle)));
+    assert!(left.contains(&(ComicsStage::NormalPrepass, SkipReason::NoSuchLines)));
+    assert!(left.contains(&(ComicsStage::ObjectIds, SkipReason::NoSuchLines)));
     small
         .insert(Outlines {
             width: 9.0,
@@ -246,7 +248,10 @@ fn outlines_run_what_they_need_and_no_more() {
 fn a_sketch_draws_in_place_of_the_outlines() {
     let mut small = small();
     small.insert(Sketch::default()).settle();
-    for (own, reason) in [(false, LeftOut::NotRequested), (true, LeftOut::Replaced)] {
+    for (own, reason) in [
+        (false, SkipReason::NotRequested),
+        (true, SkipReason::Replaced),
+    ] {
         if own {
             small.insert(Outlines::default()).settle();
         }

@@ -52,7 +52,7 @@ pub fn truth(small: &mut Small, size: UVec2, fine: u32) -> Truth {
 pub fn scored(width: f32) -> Outlines {
     Outlines {
         width,
-        budget: 1.0,
+        ink_budget: 1.0,
         ..default()
     }
 }
@@ -274,8 +274,8 @@ fn turning_shapes_have_few_dashes() {
     fine.style(&ComicStyle::new().with(ids_alone()));
     let mut lined = Small::new(size, Msaa::Off);
     let cut = Outlines {
-        continuity: 0.0,
-        specks: 1,
+        hysteresis: 0.0,
+        min_length: 1,
         ..scored(2.0)
     };
     // Its faces bend by 42 degrees, where creases begin at 40.
@@ -339,7 +339,7 @@ fn closed_gaps_make_distant_wires_whole() {
         for (scores, bridge) in scores.iter_mut().zip([0, 3]) {
             for width in [2.0, 1.0] {
                 lined.style(&ComicStyle::new().with(Outlines {
-                    bridge,
+                    gap_closing: bridge,
                     ..scored(width)
                 }));
                 lined.settle();

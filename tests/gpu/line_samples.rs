@@ -2,14 +2,17 @@
 
 use bevy::{camera::Viewport, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, ComicsStage, Form, LeftOut, Outlines, Silhouettes, StageOutcome,
+    ComicStyle, ComicsDiagnostics, Outlines,
+    diagnostics::{ComicsStage, SkipReason, StageOutcome},
+    effects::Equations,
+    lines::Silhouettes,
 };
 
 use bevy_comics_testkit::reference::resolve::STANDARD_4;
 
 use crate::{
     outlines::{ink, look, put, removed},
-    pictures::{assert_pass_is_its_twin, outlined},
+    pictures::{assert_pass_matches_the_reference, outlined},
     small::{Small, size},
     walls::unit_per_pixel,
 };
@@ -138,7 +141,7 @@ fn a_silhouette_moves_outwards_alike_in_every_direction() {
 
 /// In a viewport of a larger target, in both forms.
 #[test]
-fn a_multisampled_viewport_is_its_twin() {
+fn a_multisampled_viewport_matches_the_reference() {
     let mut small = Small::new(UVec2::new(90, 60), Msaa::Sample4);
     small.insert(Camera {
         viewport: Some(Viewport {
@@ -150,7 +153,7 @@ fn a_multisampled_viewport_is_its_twin() {
     });
     let faithful = Outlines {
         silhouettes: Some(Silhouettes {
-            form: Form::Faithful,
+            equations: Equations::Faithful,
             threshold: 0.0008,
             ..default()
         }),
@@ -158,7 +161,7 @@ fn a_multisampled_viewport_is_its_twin() {
     };
     for outlines in [Outlines::default(), faithful] {
         let viewport = Some([13, 7, 51, 41]);
-        assert_pass_is_its_twin(&mut small, &outlined(outlines), viewport, "viewport");
+        assert_pass_matches_the_reference(&mut small, &outlined(outlines), viewport, "viewport");
     }
     assert_eq!(small.errors(), 0);
 }
@@ -174,13 +177,13 @@ fn samples_are_picked_only_for_lines_of_multisampled_views() {
     };
     let lines = outlined(Outlines::default());
     let contours = ComicStyle::default().with(bevy_comics::Contours::default());
-    let left_out = |reason| Some(StageOutcome::LeftOut(reason));
+    let left_out = |reason| Some(StageOutcome::Skipped(reason));
     let mut small = Small::new(size(), Msaa::Sample4);
     assert_eq!(outcome(&mut small, &lines), Some(StageOutcome::Ran));
     let none = outcome(&mut small, &contours);
-    assert_eq!(none, left_out(LeftOut::NoSuchLines));
+    assert_eq!(none, left_out(SkipReason::NoSuchLines));
     small.restart(Msaa::Off);
     let single = outcome(&mut small, &lines);
-    assert_eq!(single, left_out(LeftOut::SingleSampled));
+    assert_eq!(single, left_out(SkipReason::SingleSampled));
     assert_eq!(small.errors(), 0);
 }

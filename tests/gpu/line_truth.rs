@@ -5,7 +5,7 @@ use bevy::{
     prelude::*,
     render::{RenderApp, sync_world::RenderEntity, view::Msaa},
 };
-use bevy_comics::{ComicStyle, ComicsPlugin, OutlineStyle, Outlines, Silhouettes};
+use bevy_comics::{ComicStyle, ComicsPlugin, OutlineStyle, Outlines, lines::Silhouettes};
 use bevy_comics_testkit::{
     headless::HeadlessOptions,
     scenes::BuiltIn,

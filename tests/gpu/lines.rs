@@ -1,7 +1,7 @@
 //! Where the default contours draw lines, and where they must not.
 
 use bevy::{camera::ScalingMode, prelude::*, render::view::Msaa};
-use bevy_comics::{ContourOperator, Contours, DepthMap, DepthMapping};
+use bevy_comics::{Contours, DepthMap, DepthMapping, effects::ContourOperator};
 
 use bevy_comics_testkit::read_back::DepthImage;
 

@@ -34,10 +34,10 @@ fn objects(continuity: f32, budget: f32) -> ComicStyle {
     ComicStyle::new().with(Outlines {
         silhouettes: None,
         creases: None,
-        continuity,
-        specks: 1,
+        hysteresis: continuity,
+        min_length: 1,
         smooth: false,
-        budget,
+        ink_budget: budget,
         ..default()
     })
 }

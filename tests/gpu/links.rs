@@ -3,14 +3,17 @@
 use std::collections::HashMap;
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{Creases, Outlines, Silhouettes};
+use bevy_comics::{
+    Outlines,
+    lines::{Creases, Silhouettes},
+};
 use bevy_comics_testkit::reference::{
     crack::Crack,
     link::{Place, linked, without_specks},
 };
 
 use crate::{
-    pictures::{assert_pass_is_its_twin, outlined},
+    pictures::{assert_pass_matches_the_reference, outlined},
     small::Small,
 };
 
@@ -133,8 +136,8 @@ fn specks_are_pieces_of_fewer_cracks_than_asked() {
 /// Outlines with many weak edges.
 fn weak(continuity: f32) -> Outlines {
     Outlines {
-        continuity,
-        continuity_level: 0.1,
+        hysteresis: continuity,
+        hysteresis_ratio: 0.1,
         silhouettes: Some(Silhouettes {
             threshold: 0.3,
             edge_limit: 0.9,
@@ -152,14 +155,14 @@ fn weak(continuity: f32) -> Outlines {
 
 /// Views of sizes that no word, block, cell or tile divides.
 #[test]
-fn lines_are_their_twin_in_views_of_odd_sizes() {
+fn lines_match_the_reference_in_views_of_odd_sizes() {
     let mut small = Small::new(UVec2::new(61, 37), Msaa::Off);
     for size in [[61, 37], [97, 65], [131, 33]] {
         small.headless.resize(size.into(), 1.0);
         small.restart(Msaa::Off);
         for outlines in [Outlines::default(), weak(8.0)] {
-            let what = format!("{size:?}, {} px", outlines.continuity);
-            assert_pass_is_its_twin(&mut small, &outlined(outlines), None, &what);
+            let what = format!("{size:?}, {} px", outlines.hysteresis);
+            assert_pass_matches_the_reference(&mut small, &outlined(outlines), None, &what);
         }
     }
 }
@@ -168,7 +171,7 @@ fn lines_are_their_twin_in_views_of_odd_sizes() {
 #[test]
 fn lines_continue_as_far_as_asked() {
     let cases = [(0.0, 2), (7.0, 1), (8.0, 3), (9.0, 7), (23.5, 2), (32.0, 3)];
-    assert_continued_as_twin(cases);
+    assert_continued_as_reference(cases);
 }
 
 #[test]
@@ -176,17 +179,17 @@ fn lines_continue_as_far_as_asked() {
 fn lines_continue_as_far_as_asked_with_any_specks() {
     let distances = [0.0, 1.0, 7.0, 8.0, 9.0, 16.0, 23.5, 32.0];
     let with_specks = |continuity| [1, 2, 3, 7].map(|specks| (continuity, specks));
-    assert_continued_as_twin(distances.into_iter().flat_map(with_specks));
+    assert_continued_as_reference(distances.into_iter().flat_map(with_specks));
 }
 
-fn assert_continued_as_twin(cases: impl IntoIterator<Item = (f32, u32)>) {
+fn assert_continued_as_reference(cases: impl IntoIterator<Item = (f32, u32)>) {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
     for (continuity, specks) in cases {
         let outlines = Outlines {
-            specks,
+            min_length: specks,
             ..weak(continuity)
         };
         let what = format!("{continuity} px, specks {specks}");
-        assert_pass_is_its_twin(&mut small, &outlined(outlines), None, &what);
+        assert_pass_matches_the_reference(&mut small, &outlined(outlines), None, &what);
     }
 }

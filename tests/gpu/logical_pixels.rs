@@ -43,9 +43,9 @@ fn closing_step(small: &mut Small, scale: u32) {
 
 fn lines(continuity: f32, taper: f32) -> Outlines {
     Outlines {
-        continuity,
-        continuity_level: 0.1,
-        specks: 1,
+        hysteresis: continuity,
+        hysteresis_ratio: 0.1,
+        min_length: 1,
         ..overshoot::lines(4.0, 0.0, taper)
     }
 }

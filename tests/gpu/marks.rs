@@ -1,7 +1,9 @@
 //! Outlines of selected objects, and of the hidden parts of others.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, ComicsStage, Desaturation, Outlines, SelectionOutline, XRayOutline};
+use bevy_comics::{
+    ComicStyle, Desaturation, Outlines, SelectionOutline, XRayOutline, diagnostics::ComicsStage,
+};
 
 use crate::{
     outlines::put,

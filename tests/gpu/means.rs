@@ -1,8 +1,12 @@
 //! Means over boxes, as an effect of a game reads them.
 
 use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
-use bevy_comics::{ComicsStage, Effect, EffectPlugin, EffectShader, EffectStage, Needs, ViewFacts};
-use bevy_comics_testkit::reference::means::{Means, Sheet, part_of_box};
+use bevy_comics::{
+    Effect, EffectPlugin,
+    diagnostics::ComicsStage,
+    effect::{EffectContext, EffectShader, EffectStage, Needs},
+};
+use bevy_comics_testkit::reference::box_statistics::{Means, Sheet, part_of_box};
 use serde::{Deserialize, Serialize};
 
 use crate::small::{Small, options};
@@ -21,7 +25,7 @@ impl Effect for ShownMeans {
     const SHADER: EffectShader = EffectShader {
         path: "test::shown_means",
         source: "#define_import_path test::shown_means
-            #import bevy_comics::effect::means::{load_means, mean_color, variance}
+            #import bevy_comics::effect::box_statistics::{load_means, mean_color, variance}
             #import bevy_comics::effect::pixel::Pixel
             struct ShownMeans { half: f32, numbers: f32 }
             fn shown_means_half_box(s: ShownMeans, p: Pixel) -> f32 { return s.half; }
@@ -50,10 +54,10 @@ impl Effect for ShownMeans {
     }
 
     fn needs(&self) -> Needs {
-        Needs::MEANS
+        Needs::BOX_STATISTICS
     }
 
-    fn uniform(&self, _: &ViewFacts) -> Vec2 {
+    fn uniform(&self, _: &EffectContext) -> Vec2 {
         Vec2::new(self.half, self.numbers)
     }
 }

@@ -37,13 +37,13 @@ pub fn scene() -> (Small, Entity) {
 }
 
 /// Draws until all has settled.
-pub fn outline(small: &mut Small, memory: f32) {
-    outline_for(small, memory, 40);
+pub fn outline(small: &mut Small, history_weight: f32) {
+    outline_for(small, history_weight, 40);
 }
 
-fn outline_for(small: &mut Small, memory: f32, frames: usize) {
+fn outline_for(small: &mut Small, history_weight: f32, frames: usize) {
     let outlines = Outlines {
-        memory,
+        history_weight,
         ..Outlines::SILHOUETTES
     };
     small.style(&ComicStyle::default().with(outlines));
@@ -101,12 +101,12 @@ fn error(small: &Small) -> f64 {
 fn lines_of_a_still_view_stand_still() {
     let (mut small, _) = scene();
     let mut found = Vec::new();
-    for (memory, frames) in [(1.0, 16), (0.125, 40)] {
-        outline_for(&mut small, memory, frames);
+    for (history_weight, frames) in [(0.0, 16), (0.875, 40)] {
+        outline_for(&mut small, history_weight, frames);
         let away = error(&small);
         let changed = changes(&mut small);
         println!(
-            "memory {memory}: {away:.3} px away, {:.4} % change",
+            "history weight {history_weight}: {away:.3} px away, {:.4} % change",
             100.0 * changed
         );
         found.push((away, changed));
@@ -114,7 +114,7 @@ fn lines_of_a_still_view_stand_still() {
     let [(trembling, many), (still, few)] = found[..] else {
         unreachable!()
     };
-    assert!(many > 0.001, "{many}: nothing trembles without a memory");
+    assert!(many > 0.001, "{many}: nothing trembles without history");
     assert!(few < 1e-4, "{few}");
     assert!(
         still < 0.1 && still < 0.8 * trembling,
@@ -147,9 +147,9 @@ fn lines_that_are_found_now_and_then_stand_still() {
         put(&mut small, Cuboid::from_size(size), Color::WHITE, at);
     }
     let mut found = Vec::new();
-    for (memory, frames) in [(1.0, 16), (0.125, 150)] {
+    for (history_weight, frames) in [(0.0, 16), (0.875, 150)] {
         let outlines = Outlines {
-            memory,
+            history_weight,
             objects: None,
             ..default()
         };
@@ -158,7 +158,7 @@ fn lines_that_are_found_now_and_then_stand_still() {
         assert!(total(&small) > 50.0, "{}", total(&small));
         found.push(changes(&mut small));
         println!(
-            "memory {memory}: {:.4} % change",
+            "history weight {history_weight}: {:.4} % change",
             100.0 * found[found.len() - 1]
         );
     }
@@ -189,10 +189,13 @@ fn lines_of_surfaces_narrower_than_a_pixel_stand_still() {
             put(&mut small, Rectangle::new(width, 80.0), Color::WHITE, at)
         })
         .collect();
-    let found = [(1.0, 16), (0.125, 150)].map(|(memory, frames)| {
-        outline_for(&mut small, memory, frames);
+    let found = [(0.0, 16), (0.875, 150)].map(|(history_weight, frames)| {
+        outline_for(&mut small, history_weight, frames);
         let changed = changes(&mut small);
-        println!("memory {memory}: {:.4} % change", 100.0 * changed);
+        println!(
+            "history weight {history_weight}: {:.4} % change",
+            100.0 * changed
+        );
         changed
     });
     assert!(found[0] > 0.01, "{found:?}");
@@ -220,7 +223,7 @@ fn lines_of_surfaces_narrower_than_a_pixel_stand_still() {
 #[test]
 fn lines_that_are_covered_leave_no_ghosts() {
     let (mut small, _) = scene();
-    outline(&mut small, 0.125);
+    outline(&mut small, 0.875);
     assert!(total(&small) > 100.0);
     let half = 0.5 * SIZE as f32;
     let cover = Transform::from_xyz(0.0, 0.0, -0.5 * half);
@@ -293,7 +296,7 @@ fn a_cut_forgets_lines() {
     let once = removed(&small);
     small.headless.step(40);
     let later = removed(&small);
-    // A frame without a memory: each line may be half a pixel away.
+    // A frame without history: each line may be half a pixel away.
     let apart = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum::<f32>();
     let found = apart(&once, &later);
     println!("{found} of {}", total(&small));
@@ -305,7 +308,7 @@ fn a_cut_forgets_lines() {
 #[test]
 fn lines_follow_what_moves() {
     let (mut small, wall) = scene();
-    outline(&mut small, 0.125);
+    outline(&mut small, 0.875);
     let middle = |small: &Small| {
         let ink = removed(small);
         let row = (0..SIZE).map(|x| (x, ink[58 * SIZE + x]));
@@ -343,9 +346,9 @@ fn darkness(small: &Small) -> f32 {
     squares / ink.iter().sum::<f32>()
 }
 
-/// Lines are as dark while the camera moves: the memory
+/// Lines are as dark while the camera moves: the history
 /// reads the last frame between its pixels, and must not spread lines. As a mean of pictures
-/// without a memory, so that where lines lie between pixels does not count.
+/// without history, so that where lines lie between pixels does not count.
 #[test]
 fn lines_are_as_dark_while_the_camera_moves() {
     assert_dark_while_moving(&[Vec3::new(0.37, 0.21, 0.0)]);
@@ -364,9 +367,9 @@ fn lines_are_as_dark_while_the_camera_moves_slowly_fast_or_forward() {
 fn assert_dark_while_moving(steps: &[Vec3]) {
     let (mut small, _) = scene();
     for &step in steps {
-        let [without, with] = [(1.0, 8), (0.125, 40)].map(|(memory, frames)| {
+        let [without, with] = [(0.0, 8), (0.875, 40)].map(|(history_weight, frames)| {
             small.insert(Transform::IDENTITY);
-            outline_for(&mut small, memory, frames);
+            outline_for(&mut small, history_weight, frames);
             let mut sum = 0.0;
             for frame in 1..=24 {
                 small.insert(Transform::from_translation(step * frame as f32));
@@ -379,7 +382,7 @@ fn assert_dark_while_moving(steps: &[Vec3]) {
             }
             sum
         });
-        println!("{step}: {without:.3} without a memory, {with:.3} with one");
+        println!("{step}: {without:.3} without history, {with:.3} with one");
         assert!(with > 0.85 * without, "{step}: {with}, {without}");
     }
     assert_eq!(small.errors(), 0);
@@ -399,6 +402,6 @@ fn object_edges_are_drawn_under_temporal_anti_aliasing() {
     small.style(&ComicStyle::default().with(Outlines::default()));
     small.headless.step(30);
     assert!(total(&small) > 400.0, "{}", total(&small));
-    assert!(small.ran(bevy_comics::ComicsStage::ObjectIds));
+    assert!(small.ran(bevy_comics::diagnostics::ComicsStage::ObjectIds));
     assert_eq!(small.errors(), 0);
 }

@@ -6,7 +6,7 @@ use bevy::{
     render::view::Msaa,
     time::{TimeUpdateStrategy, Virtual},
 };
-use bevy_comics::{CameraCut, HeldPose, MotionLines, ObjectEdges, Outlines};
+use bevy_comics::{CameraCut, MotionLines, Outlines, SteppedAnimation, lines::ObjectEdges};
 
 use crate::small::{Object, Small, black_ink, unlit};
 
@@ -372,7 +372,7 @@ fn they_can_be_drawn_on_twos() {
         .small
         .world()
         .entity_mut(mesh)
-        .insert(HeldPose::default());
+        .insert(SteppedAnimation::default());
     stage.dash(30);
     let mut changes = Vec::new();
     let mut before = stage.small.picture();

@@ -2,7 +2,9 @@
 
 use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    ComicsStage, Desaturation, Effect, EffectPlugin, EffectShader, EffectStage, Needs, ViewFacts,
+    Desaturation, Effect, EffectPlugin,
+    diagnostics::ComicsStage,
+    effect::{EffectContext, EffectShader, EffectStage, Needs},
 };
 use serde::{Deserialize, Serialize};
 
@@ -34,12 +36,12 @@ macro_rules! numbered {
                     $name,
                     "
             #import bevy_comics::depth::view::inside_viewport
-            #import bevy_comics::effect::numbered::load_numbered
+            #import bevy_comics::effect::aux_scalar::load_aux_scalar
             #import bevy_comics::effect::pixel::Pixel
             struct ShownNumbers { scale: f32 }
             fn ",
                     $name,
-                    "_number(s: ShownNumbers, p: Pixel) -> f32 {
+                    "_aux_scalar(s: ShownNumbers, p: Pixel) -> f32 {
                 return s.scale * (p.inside.x + 0.5 * p.inside.y);
             }
             fn ",
@@ -47,14 +49,14 @@ macro_rules! numbered {
                     "(s: ShownNumbers, p: Pixel) -> Pixel {
                 var out = p;
                 let left = inside_viewport(vec2<i32>(p.position) - vec2(1, 0));
-                let found = load_numbered(left);
+                let found = load_aux_scalar(left);
                 out.color = vec3(found.number, found.color.r, p.color.g);
                 return out;
             }"
                 ),
                 settings: Some("ShownNumbers"),
             };
-            const NUMBER: bool = true;
+            const AUX_SCALAR: bool = true;
             type Uniform = Vec2;
 
             fn sanitized(self) -> Self {
@@ -70,10 +72,10 @@ macro_rules! numbered {
             }
 
             fn needs(&self) -> Needs {
-                Needs::NUMBERED
+                Needs::AUX_SCALAR
             }
 
-            fn uniform(&self, _: &ViewFacts) -> Vec2 {
+            fn uniform(&self, _: &EffectContext) -> Vec2 {
                 Vec2::new(self.scale, 0.0)
             }
         }

@@ -7,8 +7,10 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    ComicStyle, ComicsStage, Halftone, HalftoneMode, ObjectScreen, ScreenAnchor, ScreenSampling,
-    ScreenShape,
+    ComicStyle, Halftone,
+    diagnostics::ComicsStage,
+    effects::{HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape},
+    objects::PatternAnchor,
 };
 use bevy_comics_testkit::{
     reference::{
@@ -27,7 +29,7 @@ fn spot(anchor: ScreenAnchor) -> Halftone {
     Halftone {
         mode: HalftoneMode::Spot,
         shape: ScreenShape::Round,
-        period: 7.0,
+        cell_size: 7.0,
         anchor,
         ..ideal()
     }
@@ -90,7 +92,7 @@ fn dots_lie_on_their_object() {
     small
         .world()
         .entity_mut(board)
-        .insert(ObjectScreen::default());
+        .insert(PatternAnchor::default());
     let turned = Quat::from_rotation_z(0.4);
     for at in [
         Transform::IDENTITY,
@@ -143,7 +145,7 @@ fn a_moved_object_carries_its_dots() {
     small
         .world()
         .entity_mut(board)
-        .insert(ObjectScreen::default());
+        .insert(PatternAnchor::default());
     let mut differences = |anchor| {
         place(&mut small, board, Transform::from_xyz(0.375, 0.5, 0.0));
         let before = shot(&mut small, spot(anchor));
@@ -159,7 +161,7 @@ fn a_moved_object_carries_its_dots() {
     assert!(differences(ScreenAnchor::View) > 100);
 }
 
-/// Without an `ObjectScreen`, dots are those of the page. With one that is inherited, a figure of
+/// Without a `PatternAnchor`, dots are those of the page. With one that is inherited, a figure of
 /// two meshes has one screen.
 #[test]
 fn only_marked_objects_carry_dots() {
@@ -170,7 +172,7 @@ fn only_marked_objects_carry_dots() {
     assert_eq!(shot(&mut small, spot(ScreenAnchor::Object)), page);
     let figure = small
         .world()
-        .spawn((at, Visibility::default(), ObjectScreen::INHERITED))
+        .spawn((at, Visibility::default(), PatternAnchor::default()))
         .id();
     small
         .world()
@@ -204,7 +206,7 @@ fn every_size_has_the_tone() {
         for size in [0.72, 0.9, 1.0, 1.31, 1.36, 1.41] {
             for tone in [0.2, 0.5, 0.85] {
                 let s = Halftone {
-                    period: 8.0,
+                    cell_size: 8.0,
                     ..default()
                 };
                 let plate = Plate::all(&s, 1.0)[0];
@@ -231,7 +233,7 @@ fn every_size_has_the_tone() {
 #[test]
 fn octaves_follow_each_other_without_a_jump() {
     let s = Halftone {
-        period: 8.0,
+        cell_size: 8.0,
         ..default()
     };
     let plate = Plate::all(&s, 1.0)[0];

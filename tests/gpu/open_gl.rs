@@ -10,8 +10,10 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    CartoonLight, ComicStyle, ComicsDiagnostics, ComicsStage, LeftOut, Rim, RimWidth, StageOutcome,
+    ComicStyle, ComicsDiagnostics, ToonLight,
+    diagnostics::{ComicsStage, SkipReason, StageOutcome},
     presets,
+    toon::{Rim, RimWidth},
 };
 use bevy_comics_testkit::{
     headless::{HeadlessOptions, adapter_of},
@@ -21,13 +23,13 @@ use bevy_comics_testkit::{
 use image::RgbaImage;
 
 use crate::{
-    cartoon,
     pairwise::{
         checks::assert_drawn,
         compare::changed,
         effects::{GROUPS, Group, LINES},
     },
     small::{self, Small},
+    toon,
 };
 
 /// The APIs that are compared.
@@ -145,11 +147,11 @@ fn two_apps_in_one_process_draw_what_each_draws_alone() {
             lit_side: 0.0,
             ..default()
         };
-        let light = CartoonLight {
+        let light = ToonLight {
             rim: Some(rim),
             ..default()
         };
-        let material = cartoon::material(&mut app, light);
+        let material = toon::material(&mut app, light);
         let at = Transform::from_xyz(0.4, 1.0, 2.5);
         app.put_shared(Sphere::new(0.8), material, at);
         let picture = app.settle().picture();
@@ -282,14 +284,14 @@ fn check_webgl2(api: wgpu::Backends) {
     let diagnostics = world.resource::<ComicsDiagnostics>();
     let stages = &diagnostics.cameras[&app.camera];
     for (stage, outcome) in [
-        (ComicsStage::DepthRange, StageOutcome::RanAs("PingPong")),
+        (ComicsStage::DepthRange, StageOutcome::RanWith("PingPong")),
         (
             ComicsStage::RangeSmoothing,
-            StageOutcome::LeftOut(LeftOut::NoComputeShaders),
+            StageOutcome::Skipped(SkipReason::NoComputeShaders),
         ),
         (
             ComicsStage::ObjectIds,
-            StageOutcome::LeftOut(LeftOut::NoStorageBuffers),
+            StageOutcome::Skipped(SkipReason::NoStorageBuffers),
         ),
     ] {
         assert_eq!(stages.outcome(stage), Some(outcome), "{api:?}");

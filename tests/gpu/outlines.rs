@@ -2,7 +2,11 @@
 //! false lines, the width as set.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, Creases, Form, Outlines, Silhouettes};
+use bevy_comics::{
+    ComicStyle, Outlines,
+    effects::Equations,
+    lines::{Creases, Silhouettes},
+};
 
 use bevy_comics_testkit::{read_back::IdImage, work::along_cracks};
 
@@ -62,17 +66,17 @@ fn restart_scaled(small: &mut Small, scale: f32) {
 }
 
 /// The outlines of the scaled scene, from the scaled distance.
-fn scaled(small: &mut Small, scale: f32, near: f32, form: Form) -> Vec<bool> {
+fn scaled(small: &mut Small, scale: f32, near: f32, form: Equations) -> Vec<bool> {
     restart_scaled(small, scale);
     let eye = Vec3::new(1.5, 2.4, 6.0) * scale;
     look(small, eye, Vec3::new(0.0, 0.4, 0.0) * scale, near);
     let threshold = match form {
-        Form::Corrected => 0.02,
-        Form::Faithful => 0.0008,
+        Equations::Corrected => 0.02,
+        Equations::Faithful => 0.0008,
     };
     let outlines = Outlines {
         silhouettes: Some(Silhouettes {
-            form,
+            equations: form,
             threshold,
             ..default()
         }),
@@ -102,19 +106,19 @@ const SCALES: [(f32, f32); 8] = [
 fn the_same_scene_has_the_same_outlines_at_any_scale() {
     let mut small = Small::new(UVec2::new(240, 160), Msaa::Off);
     let mut scaled = |scale, near, form| scaled(&mut small, scale, near, form);
-    let reference = scaled(1.0, 0.1, Form::Corrected);
+    let reference = scaled(1.0, 0.1, Equations::Corrected);
     assert!(reference.iter().filter(|line| **line).count() > 400);
     for (scale, near) in SCALES {
-        let mask = scaled(scale, near, Form::Corrected);
+        let mask = scaled(scale, near, Equations::Corrected);
         let same = overlap(&reference, &mask);
         println!("measured, scale {scale:e}, near {near:e}: IoU {same:.4}");
         assert_eq!(same, 1.0, "scale {scale:e}, near {near:e}");
     }
     // The paper's depth buffer depends on both: its constant k_p fits only one.
-    let reference = scaled(1.0, 0.1, Form::Faithful);
+    let reference = scaled(1.0, 0.1, Equations::Faithful);
     let worst = SCALES
         .map(|(scale, near)| {
-            let same = overlap(&reference, &scaled(scale, near, Form::Faithful));
+            let same = overlap(&reference, &scaled(scale, near, Equations::Faithful));
             println!("faithful, scale {scale:e}, near {near:e}: IoU {same:.4}");
             same
         })
@@ -122,7 +126,7 @@ fn the_same_scene_has_the_same_outlines_at_any_scale() {
         .fold(1.0, f64::min);
     assert!(
         worst < 0.5,
-        "the faithful form is not free of scale: {worst}"
+        "the faithful equations is not free of scale: {worst}"
     );
 }
 
@@ -333,7 +337,7 @@ fn a_line_is_as_wide_as_asked_at_every_scale_and_resolution() {
     println!("largest difference from the asked width: {worst} physical pixels");
 }
 
-/// A crease that the corrected form finds is whole beside silhouettes of the faithful form,
+/// A crease that the corrected equations finds is whole beside silhouettes of the faithful equations,
 /// whose threshold is one of raw depth and says nothing about a jump between surfaces.
 #[test]
 fn measured_creases_are_whole_beside_faithful_silhouettes() {
@@ -361,7 +365,7 @@ fn measured_creases_are_whole_beside_faithful_silhouettes() {
         assert!(pixels > 150, "scale {scale}: {pixels}");
         for threshold in [1e-6, 1e-4, 8e-4, 0.02, 0.5] {
             let silhouettes = Silhouettes {
-                form: Form::Faithful,
+                equations: Equations::Faithful,
                 threshold,
                 ..default()
             };

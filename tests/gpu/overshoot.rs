@@ -1,11 +1,14 @@
 //! Lines that go on beyond their loose ends.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{LineBoil, LineWeight, Outlines, Silhouettes};
+use bevy_comics::{
+    Outlines,
+    lines::{LineBoil, LineWeight, Silhouettes},
+};
 
 use crate::{
     outlines::{ink, put, removed},
-    pictures::{assert_pass_is_its_twin, outlined},
+    pictures::{assert_pass_matches_the_reference, outlined},
     small::Small,
     walls::{towards_the_sky, wall},
 };
@@ -19,7 +22,7 @@ pub fn lines(width: f32, overshoot: f32, taper: f32) -> Outlines {
         width,
         overshoot,
         // Lines of full width to their ends.
-        continuity: 0.0,
+        hysteresis: 0.0,
         silhouettes: Some(Silhouettes {
             softness: 0.0,
             ..default()
@@ -28,7 +31,7 @@ pub fn lines(width: f32, overshoot: f32, taper: f32) -> Outlines {
             taper,
             ..LineWeight::EVEN
         },
-        budget: 1.0,
+        ink_budget: 1.0,
         ..Outlines::SILHOUETTES
     }
 }
@@ -262,7 +265,7 @@ fn strokes_are_not_longer_than_their_lines() {
 }
 
 #[test]
-fn strokes_are_their_twin() {
+fn strokes_match_the_reference() {
     let mut small = Small::new(UVec2::new(80, 56), Msaa::Off);
     let loose = |width, overshoot, taper| Outlines {
         width,
@@ -272,7 +275,7 @@ fn strokes_are_their_twin() {
             ..LineWeight::EVEN
         },
         // Many edges that end.
-        creases: Some(bevy_comics::Creases {
+        creases: Some(bevy_comics::lines::Creases {
             angle: 100.0,
             ..default()
         }),
@@ -291,7 +294,7 @@ fn strokes_are_their_twin() {
     ] {
         let what = format!("{width} px, overshoot {overshoot}, taper {taper}");
         let style = outlined(loose(width, overshoot, taper));
-        assert_pass_is_its_twin(&mut small, &style, None, &what);
+        assert_pass_matches_the_reference(&mut small, &style, None, &what);
     }
     let boiling = Outlines {
         boil: LineBoil {
@@ -301,6 +304,6 @@ fn strokes_are_their_twin() {
         },
         ..loose(2.0, 8.0, 0.0)
     };
-    assert_pass_is_its_twin(&mut small, &outlined(boiling), None, "boiling");
+    assert_pass_matches_the_reference(&mut small, &outlined(boiling), None, "boiling");
     assert_eq!(small.errors(), 0);
 }

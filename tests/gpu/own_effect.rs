@@ -14,7 +14,7 @@ const HEADLESS: &str = r##"
 mod tint;
 
 use bevy::{ecs::system::RunSystemOnce, prelude::*};
-use bevy_comics::*;
+use bevy_comics::{ComicsDiagnostics, diagnostics::*, effect::*, prelude::*};
 use bevy_comics_testkit::headless::{Headless, HeadlessOptions};
 use tint::Tint;
 
@@ -80,7 +80,7 @@ pub fn run() {
     let again = registry.style_from_ron(&text).expect("read again");
     assert_eq!(again.get::<Tint>(), style.get());
     let handle = headless.app.world().resource::<AssetServer>().load("styles/amber.comic.ron");
-    headless.app.world_mut().entity_mut(camera).insert(ComicStyleHandle(handle));
+    headless.app.world_mut().entity_mut(camera).insert(Comic(handle));
     for _ in 0..500 {
         headless.step(1);
         if headless.app.world().get::<Tint>(camera) == style.get() {

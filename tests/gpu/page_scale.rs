@@ -15,8 +15,10 @@ use bevy::{
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
 use bevy_comics::{
-    ComicStyle, Focus, FocusAt, FocusStyle, Halftone, HalftoneMode, Outlines, Paint, PaintForm,
-    Paper, PrintOffset, ScreenSampling, ScreenShape, SpeedLineKind, SpeedLines,
+    ComicStyle, Focus, Halftone, Misregistration, Outlines, Paint, Paper, SpeedLines,
+    effects::{
+        FocusAt, FocusStyle, HalftoneMode, PaintKernel, ScreenSampling, ScreenShape, SpeedLineKind,
+    },
 };
 use bevy_comics_testkit::{
     reference::{color, noise},
@@ -227,7 +229,7 @@ fn dots_of_inks_are_as_large() {
     let rough = Paper {
         grain: 0.0,
         shading: 0.0,
-        spread: 1.0,
+        ink_bleed: 1.0,
         ..default()
     };
     for (what, style) in [
@@ -265,7 +267,10 @@ fn speed_lines_are_as_large() {
         kind: SpeedLineKind::Parallel,
         ..radial
     };
-    let dry = SpeedLines { dry: 0.6, ..radial };
+    let dry = SpeedLines {
+        dry_brush: 0.6,
+        ..radial
+    };
     for (what, lines) in [
         ("focus lines", radial),
         ("speed lines", parallel),
@@ -298,8 +303,11 @@ fn focus(style: FocusStyle) -> Focus {
 #[test]
 fn patches_are_as_large() {
     let mut small = layers();
-    for form in [PaintForm::Box, PaintForm::Anisotropic] {
-        let paint = Paint { form, ..default() };
+    for form in [PaintKernel::Box, PaintKernel::Anisotropic] {
+        let paint = Paint {
+            kernel: form,
+            ..default()
+        };
         let looks = Looks::new(&mut small, &ComicStyle::new().with(paint));
         looks.assert_alike(&format!("{form:?}"));
     }
@@ -328,7 +336,7 @@ fn ink_is_as_rough() {
     let paper = |spread: f32, dry_brush: f32| Paper {
         grain: 0.0,
         shading: 0.0,
-        spread,
+        ink_bleed: spread,
         dry_brush,
         ..default()
     };
@@ -352,7 +360,7 @@ fn ink_is_as_rough() {
 #[test]
 fn plates_out_of_register_are_as_far_apart() {
     let mut small = layers();
-    let three = PrintOffset {
+    let three = Misregistration {
         black_generation: 0.0,
         drift: 1.5,
         ..default()
@@ -361,7 +369,7 @@ fn plates_out_of_register_are_as_far_apart() {
     let found = apart(&looks.screen, &looks.screenshot);
     assert!(found < ROUNDING, "{found}");
     assert!(apart(&looks.screen, &looks.unscaled) > 4.0 * ROUNDING);
-    let four = ComicStyle::new().with(PrintOffset::default());
+    let four = ComicStyle::new().with(Misregistration::default());
     Looks::new(&mut small, &four).assert_alike("four plates");
 }
 

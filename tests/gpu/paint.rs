@@ -6,13 +6,16 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    ComicStyle, ComicsStage, DebugView, Desaturation, Halftone, Paint, PaintForm, PrintOffset,
-    ScreenSampling, ToneBands, VisibleDepthRange,
+    ComicStyle, Desaturation, Halftone, Misregistration, Paint, ToneBands,
+    depth::VisibleDepthRange,
+    diagnostics::{ComicsStage, DebugView},
+    effects::{PaintKernel, ScreenSampling},
 };
 use bevy_comics_testkit::reference::{
-    Rgba, color,
+    Rgba,
+    box_statistics::Sheet,
+    color,
     fused::{Input, stylize},
-    means::Sheet,
     paint::Scene,
     view::{View, pixel_depth},
 };
@@ -25,11 +28,14 @@ use crate::{
     walls::{towards_the_sky, wall},
 };
 
-const FORMS: [PaintForm; 2] = [PaintForm::Box, PaintForm::Anisotropic];
+const FORMS: [PaintKernel; 2] = [PaintKernel::Box, PaintKernel::Anisotropic];
 const CODE: f64 = 1.0 / 255.0;
 
-fn paint(form: PaintForm) -> Paint {
-    Paint { form, ..default() }
+fn paint(form: PaintKernel) -> Paint {
+    Paint {
+        kernel: form,
+        ..default()
+    }
 }
 
 /// The picture of a style without paint, as the pass before it stores it: in 11 bits.
@@ -42,9 +48,9 @@ fn sheet(view: &View, input: &Input, style: &ComicStyle) -> Sheet {
     })
 }
 
-/// Compares every pixel with the twin, which starts from what the pass read. `before`: the
+/// Compares every pixel with the reference, which starts from what the pass read. `before`: the
 /// other effects of the camera.
-fn assert_is_its_twin(
+fn assert_matches_the_reference(
     small: &mut Small,
     before: &ComicStyle,
     s: Paint,
@@ -103,22 +109,22 @@ fn assert_is_its_twin(
 }
 
 #[test]
-fn every_pixel_is_its_twins() {
+fn every_pixel_matches_the_reference() {
     let mut small = Small::new(UVec2::new(64, 44), Msaa::Off);
     let colors = ComicStyle::new().with(Desaturation::default());
     for form in FORMS {
         let s = paint(form);
-        assert_is_its_twin(&mut small, &colors, s, None);
+        assert_matches_the_reference(&mut small, &colors, s, None);
         // Radii of no whole number, by depth, part of the paint, figures.
         let mixed = Paint {
-            near: 1.3,
-            far: 7.9,
+            at_near: 1.3,
+            at_far: 7.9,
             sharpness: 4.5,
             figures: true,
             amount: 0.8,
             ..s
         };
-        assert_is_its_twin(&mut small, &colors, mixed, None);
+        assert_matches_the_reference(&mut small, &colors, mixed, None);
     }
     assert_eq!(small.errors(), 0);
 }
@@ -136,7 +142,7 @@ fn a_viewport_is_a_picture_of_its_own() {
     });
     let colors = ComicStyle::new().with(Desaturation::default());
     for form in FORMS {
-        assert_is_its_twin(&mut small, &colors, paint(form), Some(viewport));
+        assert_matches_the_reference(&mut small, &colors, paint(form), Some(viewport));
     }
     assert_eq!(small.errors(), 0);
 }
@@ -156,7 +162,7 @@ fn a_transparent_background_stays() {
             figures: true,
             ..paint(form)
         };
-        assert_is_its_twin(&mut small, &colors, s, None);
+        assert_matches_the_reference(&mut small, &colors, s, None);
         let (read, wrote) = small.pass();
         let mut empty = 0;
         for (read, wrote) in read.pixels.iter().zip(&wrote.pixels) {
@@ -209,13 +215,13 @@ fn an_edge_stays_sharp() {
     let at = Transform::from_xyz(0.0, 0.0, -30.0);
     small.put(Rectangle::new(90.0, 90.0), unlit(grey), at);
     let plain = shot(&mut small, &ComicStyle::new());
-    let painted = shot(&mut small, &ComicStyle::new().with(paint(PaintForm::Box)));
+    let painted = shot(&mut small, &ComicStyle::new().with(paint(PaintKernel::Box)));
     for (a, b) in plain.as_raw().iter().zip(painted.as_raw()) {
         assert!(a.abs_diff(*b) <= 1, "a vertical edge between two pixels");
     }
     let painted = shot(
         &mut small,
-        &ComicStyle::new().with(paint(PaintForm::Anisotropic)),
+        &ComicStyle::new().with(paint(PaintKernel::Anisotropic)),
     );
     for y in 0..40 {
         let ink = |picture: &image::RgbaImage| -> f64 {
@@ -272,7 +278,7 @@ fn prints_and_lines_come_after_the_paint() {
     let style = ComicStyle::new()
         .with(ToneBands::default())
         .with(Paint::default())
-        .with(PrintOffset::default())
+        .with(Misregistration::default())
         .with(Halftone {
             sampling: ScreenSampling::Cell,
             ..default()
@@ -312,7 +318,7 @@ fn extreme_values_are_finite() {
     for form in FORMS {
         for x in [f32::NAN, 0.0, 1e30] {
             let s = Paint {
-                near: x,
+                at_near: x,
                 sharpness: x,
                 figures: true,
                 amount: if x == 0.0 { 1.0 } else { x },

@@ -3,8 +3,8 @@
 //! A session runs in a window that is never shown, and a long test runs it in a real one.
 
 mod hidden;
+mod layer_borders;
 mod picking;
-mod plane_borders;
 pub mod session;
 mod toolkit;
 
@@ -297,7 +297,7 @@ fn save_and_watch(window: &impl Session) {
     );
 
     // Break the file: the last valid style stays, the panel shows the error.
-    fs::write(&path, "(version: 2,\n    contours: (widht: 3.0))").expect("written");
+    fs::write(&path, "(version: 3,\n    contours: (widht: 3.0))").expect("written");
     window.until("the error", |state| {
         state["widgets"]["files.error"].is_array()
     });

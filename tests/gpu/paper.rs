@@ -5,7 +5,9 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{ComicStyle, ComicsStage, Halftone, Outlines, Paper, PaperAnchor};
+use bevy_comics::{
+    ComicStyle, Halftone, Outlines, Paper, diagnostics::ComicsStage, effects::PaperAnchor,
+};
 use bevy_comics_testkit::reference::paper;
 use image::imageops;
 
@@ -30,10 +32,10 @@ fn paint(small: &mut Small, color: Color) {
     }
 }
 
-/// Every pixel of the fused pass equals its twin, at every scale factor, in HDR and with a
+/// Every pixel of the fused pass equals its reference, at every scale factor, in HDR and with a
 /// background that shows through.
 #[test]
-fn every_pixel_is_its_twins() {
+fn every_pixel_matches_the_reference() {
     let strong = Paper {
         grain: 1.0,
         shading: 0.3,
@@ -169,7 +171,7 @@ fn a_view_can_have_its_own_sheet() {
         };
         let paper = Paper {
             grain: 0.8,
-            spread: 1.5,
+            ink_bleed: 1.5,
             dry_brush: 0.5,
             anchor,
             ..default()

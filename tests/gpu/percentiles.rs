@@ -1,4 +1,4 @@
-//! Percentiles of orthographic views: the bins against their twin, the percentiles
+//! Percentiles of orthographic views: the bins against their reference, the percentiles
 //! against sorted depths.
 
 use bevy::{
@@ -7,8 +7,8 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    CameraCut, Colorization, ComicStyle, DepthHistogram, DepthMap, RangeSmoothing,
-    VisibleDepthRange,
+    CameraCut, Colorization, ComicStyle, DepthMap,
+    depth::{DepthHistogram, RangeSmoothing, VisibleDepthRange},
 };
 use bevy_comics_testkit::{reference::histogram::Bins, scenes::noise::Random, studio::with_map};
 
@@ -72,7 +72,7 @@ fn every_shape_counts_in_the_bins_of_the_window() {
             let (_, counted) = reduce_and_count(&defs, &depths, (size, [0, 0, 150, 200]), window);
             assert_eq!(counted[256], valid, "{shape:?}, {window:?}");
             assert_eq!(counted[..256].iter().sum::<u32>(), valid);
-            // The depths below every edge: those that the twin finds there, but for
+            // The depths below every edge: those that the reference finds there, but for
             // depths that rounding brings across. The shader's differences are exact or
             // rounded once; its product, root and factor have a few ulp: 8 in all, of the
             // distance from the end of the window.
@@ -124,7 +124,7 @@ fn percentiles_are_those_of_the_sorted_depths() {
                     .map(f32::from_bits);
                 let rank = (f64::from(fraction) * f64::from(total)) as usize;
                 let exact = [sorted[sorted.len() - 1 - rank], sorted[rank]];
-                let twin =
+                let reference =
                     bins.percentiles(&counts, total, f64::from(fraction), ends.map(f64::from));
                 let length = f64::from(ends[0]) - f64::from(ends[1]);
                 for end in 0..2 {
@@ -132,10 +132,10 @@ fn percentiles_are_those_of_the_sorted_depths() {
                     // Three units in the last place of a depth.
                     let rounding = 3.0 * 2f64.powi(-24) * f64::from(ends[0]);
                     assert!(
-                        (f64::from(got[end]) - twin[end]).abs() <= rounding + 1e-6 * length,
+                        (f64::from(got[end]) - reference[end]).abs() <= rounding + 1e-6 * length,
                         "{what}: {} for {}",
                         got[end],
-                        twin[end]
+                        reference[end]
                     );
                     // A bin is 1/128 of the range or less.
                     let apart = (f64::from(got[end]) - f64::from(exact[end])).abs();
@@ -295,7 +295,7 @@ fn the_histogram_of_an_orthographic_view_tells_its_depths() {
         assert!(there, "{bin:?}");
     }
     let at = |d: f32| -> u32 {
-        let near = |bin: &&bevy_comics::DepthBin| bin.near - 0.5 < d && d < bin.far + 0.5;
+        let near = |bin: &&bevy_comics::depth::DepthBin| bin.near - 0.5 < d && d < bin.far + 0.5;
         bins.iter().filter(near).map(|bin| bin.count).sum()
     };
     assert_eq!(at(2.0), 8 * 8, "the speck, at ten pixels per unit");

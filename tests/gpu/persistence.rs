@@ -7,7 +7,7 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{CameraCut, ComicStyle, Outlines, Silhouettes, VisibleDepthRange};
+use bevy_comics::{CameraCut, ComicStyle, Outlines, depth::VisibleDepthRange, lines::Silhouettes};
 use bevy_comics_testkit::{
     reference::{
         crack::{Crack, crack, jump},
@@ -31,16 +31,16 @@ const SIZE: UVec2 = UVec2::new(101, 70);
 
 fn persistent(persistence: u32) -> Outlines {
     Outlines {
-        persistence,
-        continuity: 3.0,
-        continuity_level: 0.3,
+        hold_frames: persistence,
+        hysteresis: 3.0,
+        hysteresis_ratio: 0.3,
         ..default()
     }
 }
 
 /// The lines of every frame of a turning model, bit by bit.
 #[test]
-fn persistent_lines_are_their_twin() {
+fn persistent_lines_match_the_reference() {
     let mut small = Small::new(SIZE, Msaa::Off);
     let mut kept = 0;
     for (scene, persistence) in [(Specimen::Organic, 1), (Specimen::Organic, 4)] {
@@ -72,11 +72,11 @@ fn persistent_lines_are_their_twin() {
                     Some(((pixel, side), crack(&outlines, &seen, pixel, side, 1.0)?))
                 })
                 .collect();
-            let grown = joined(&linked(&all, outlines.continuity as i32), &all);
+            let grown = joined(&linked(&all, outlines.hysteresis as i32), &all);
             let found_ones = all.iter().filter(|(_, crack)| !crack.ledge);
             let weak = found_ones.map(|(place, crack)| (*place, *crack)).collect();
             let want = lives.next(&weak, &grown, persistence);
-            // Until the twin has seen as many frames as lines can stay.
+            // Until the reference has seen as many frames as lines can stay.
             if frame < 5 {
                 continue;
             }
@@ -114,7 +114,7 @@ fn assert_unchanged(specimens: &[Specimen]) {
         turn(&mut small, 2.6, 1.1);
         let pictures = [0, 8].map(|persistence| {
             small.style(&ComicStyle::new().with(Outlines {
-                persistence,
+                hold_frames: persistence,
                 ..default()
             }));
             // Until lines that were found by chance would be gone.
@@ -164,7 +164,7 @@ impl Step {
 
     fn style(&mut self, persistence: u32) {
         let outlines = Outlines {
-            persistence,
+            hold_frames: persistence,
             ..Outlines::SILHOUETTES
         };
         self.small.style(&ComicStyle::new().with(outlines));
@@ -238,7 +238,7 @@ fn assert_stay_as_asked(numbers: &[u32]) {
         assert_eq!(stays(&mut step, WEAK, 0.0), 0, "after a cut");
         step.strong();
         step.small.style(&ComicStyle::new().with(Outlines {
-            persistence,
+            hold_frames: persistence,
             width: 1.9,
             ..Outlines::SILHOUETTES
         }));

@@ -1,4 +1,4 @@
-//! The whole fused pass against its twin, pixel by pixel. The twin starts from
+//! The whole fused pass against its reference, pixel by pixel. The reference starts from
 //! the texels that the pass read.
 
 use bevy::{
@@ -7,11 +7,15 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    BlackFlats, ColorHarmony, Colorization, ColorizationMode, ComicStyle, ContourOperator,
-    Contours, Creases, DepthMap, DepthMapping, Desaturation, Form, Halftone, HarmonyCurve,
-    HarmonyMode, Hatching, IsoLines, KeyLight, LineColor, LineResponse, Outlines, Paint, Paper,
-    PlaneBorders, PlaneStyle, PlaneUnit, Planes, PrintOffset, ScreenSampling, ScreenShape,
-    Silhouettes, Sketch, ToneBands, VisibleDepthRange,
+    BlackFlats, ColorHarmony, Colorization, ComicStyle, Contours, DepthLayers, DepthMap,
+    DepthMapping, Desaturation, Halftone, Hatching, IsoLines, KeyLight, Misregistration, Outlines,
+    Paint, Paper, Sketch, ToneBands,
+    depth::VisibleDepthRange,
+    effects::{
+        ColorizationMode, ContourOperator, DepthLayer, Equations, Granularity, HarmonyCurve,
+        HarmonyMode, LayerBorders, ScreenSampling, ScreenShape,
+    },
+    lines::{Creases, LineColor, LineResponse, Silhouettes},
     presets::{self, Preset},
 };
 
@@ -55,15 +59,17 @@ pub fn frame(small: &Small, map: &DepthMap) -> Frame {
     let ends = match map.mapping {
         DepthMapping::MinMax | DepthMapping::MinMaxLogarithmic => match small.range() {
             Some(VisibleDepthRange::Visible {
-                raw_near, raw_far, ..
-            }) => Some([f64::from(raw_near), f64::from(raw_far)]),
+                raw_nearest,
+                raw_farthest,
+                ..
+            }) => Some([f64::from(raw_nearest), f64::from(raw_farthest)]),
             other => panic!("no range: {other:?}"),
         },
         DepthMapping::Linear | DepthMapping::Logarithmic => Some(planes.map(raw_depth)),
-        DepthMapping::Fixed { near, far } | DepthMapping::FixedLogarithmic { near, far } => {
-            Some([near, far].map(|end| raw_depth(f64::from(end))))
+        DepthMapping::Fixed { from, to } | DepthMapping::FixedLogarithmic { from, to } => {
+            Some([from, to].map(|end| raw_depth(f64::from(end))))
         }
-        other => panic!("no twin of {other:?}"),
+        other => panic!("no reference of {other:?}"),
     };
     let projection = match orthographic {
         Some([near, far]) => Projection::Orthographic {
@@ -116,12 +122,12 @@ pub fn view_of<'a>(
 fn is_divided(style: &ComicStyle) -> bool {
     let cells =
         |s: &Halftone| s.sampling == ScreenSampling::Cell && s.shape != ScreenShape::Stochastic;
-    style.get::<PrintOffset>().is_some() || style.get::<Halftone>().is_some_and(cells)
+    style.get::<Misregistration>().is_some() || style.get::<Halftone>().is_some_and(cells)
 }
 
 /// Compares every pixel. Pixels so close to a threshold that the error of the
 /// response decides are counted instead; at most 1 in 200 may be.
-pub fn assert_pass_is_its_twin(
+pub fn assert_pass_matches_the_reference(
     small: &mut Small,
     style: &ComicStyle,
     viewport: Option<[u32; 4]>,
@@ -199,8 +205,8 @@ pub fn assert_pass_is_its_twin(
                 [r, g, b, alpha]
             };
             let got = encode(wrote.map(f64::from));
-            let of_twin = |nudge| encode(stylize(style, &view, &read_by_pass, x, y, nudge));
-            let want = of_twin(0.0);
+            let of_reference = |nudge| encode(stylize(style, &view, &read_by_pass, x, y, nudge));
+            let want = of_reference(0.0);
             let apart = |a: Rgba, b: Rgba| {
                 (0..4)
                     .map(|i| (a[i].min(1.0) - b[i].min(1.0)).abs())
@@ -210,7 +216,7 @@ pub fn assert_pass_is_its_twin(
             if apart(got, want) <= 1.5 * ONE_CODE {
                 continue;
             }
-            let [more, less] = [1e-5, -1e-5].map(of_twin);
+            let [more, less] = [1e-5, -1e-5].map(of_reference);
             // Ink that is stored between two codes can be either.
             let close = (0..4).all(|i| {
                 let low = want[i].min(more[i]).min(less[i]);
@@ -219,7 +225,7 @@ pub fn assert_pass_is_its_twin(
             });
             assert!(
                 close || apart(more, less) > ONE_CODE,
-                "{what}: ({x}, {y}) is {got:?}, its twin {want:?} ({more:?}, {less:?}), from {read:?}"
+                "{what}: ({x}, {y}) is {got:?}, its reference {want:?} ({more:?}, {less:?}), from {read:?}"
             );
             undecided += 1;
         }
@@ -231,28 +237,28 @@ pub fn assert_pass_is_its_twin(
     );
 }
 
-/// A style without what the twin of the whole picture does not know, and what other tests compare
-/// with twins of their own: paint, which changes the picture before the fused pass, hatching,
+/// A style without what the reference of the whole picture does not know, and what other tests compare
+/// with references of their own: paint, which changes the picture before the fused pass, hatching,
 /// iso-lines, lines in the colours of surfaces, and of planes the borders that are found, whole
 /// objects and lines.
-fn known_to_twin(style: ComicStyle) -> ComicStyle {
+fn known_to_reference(style: ComicStyle) -> ComicStyle {
     let outlines = style.get::<Outlines>().map(|outlines| Outlines {
         color: LineColor::Ink,
         ..*outlines
     });
-    let planes = style.get::<Planes>().map(|planes| {
-        let plain = |plane: PlaneStyle| PlaneStyle {
+    let planes = style.get::<DepthLayers>().map(|planes| {
+        let plain = |plane: DepthLayer| DepthLayer {
             line_width: 1.0,
             line_opacity: 1.0,
             line_color_amount: 0.0,
             ..plane
         };
-        Planes {
-            near: plain(planes.near),
+        DepthLayers {
+            foreground: plain(planes.foreground),
             middle: plain(planes.middle),
-            far: plain(planes.far),
-            by: PlaneUnit::Pixel,
-            borders: PlaneBorders::Fixed,
+            background: plain(planes.background),
+            granularity: Granularity::Pixel,
+            borders: LayerBorders::Fixed,
             ..*planes
         }
     });
@@ -269,13 +275,13 @@ fn known_to_twin(style: ComicStyle) -> ComicStyle {
     style
 }
 
-/// A preset as the twin of the whole picture knows it. One with planes and tints is compared twice,
+/// A preset as the reference of the whole picture knows it. One with planes and tints is compared twice,
 /// without the ones and without the others: steps of tints are ten times as steep as tones, and turn
 /// the rounding of the planes' colours into another tint.
 pub fn known_forms(preset: &Preset) -> Vec<ComicStyle> {
-    let style = known_to_twin(preset.style().sanitized());
+    let style = known_to_reference(preset.style().sanitized());
     let halftone = style.get::<Halftone>().copied();
-    let tinted = halftone.filter(|s| s.tints > 0 && style.get::<Planes>().is_some());
+    let tinted = halftone.filter(|s| s.tints > 0 && style.get::<DepthLayers>().is_some());
     let Some(halftone) = tinted else {
         return vec![style];
     };
@@ -283,14 +289,22 @@ pub fn known_forms(preset: &Preset) -> Vec<ComicStyle> {
         tints: 0,
         ..halftone
     };
-    vec![style.clone().without::<Planes>(), style.with(all_tones)]
+    vec![
+        style.clone().without::<DepthLayers>(),
+        style.with(all_tones),
+    ]
 }
 
 fn check_presets(msaa: Msaa, presets: &[Preset]) {
     let mut small = Small::new(UVec2::new(80, 56), msaa);
     for preset in presets {
         for style in known_forms(preset) {
-            assert_pass_is_its_twin(&mut small, &style, None, &format!("{preset}, {msaa:?}"));
+            assert_pass_matches_the_reference(
+                &mut small,
+                &style,
+                None,
+                &format!("{preset}, {msaa:?}"),
+            );
         }
     }
     assert_eq!(small.errors(), 0);
@@ -298,7 +312,7 @@ fn check_presets(msaa: Msaa, presets: &[Preset]) {
 
 /// Colours, contours, bands and a sketch.
 #[test]
-fn presets_are_their_twins() {
+fn presets_match_the_reference() {
     check_presets(
         Msaa::Off,
         &[presets::CRIMSON_DUSK, presets::NOIR, presets::FIGURE_8B],
@@ -307,7 +321,7 @@ fn presets_are_their_twins() {
 
 /// Outlines, dots, planes and a vignette.
 #[test]
-fn multisampled_presets_are_their_twins() {
+fn multisampled_presets_match_the_reference() {
     check_presets(
         Msaa::Sample4,
         &[
@@ -320,16 +334,16 @@ fn multisampled_presets_are_their_twins() {
 
 #[test]
 #[ignore = "long: every preset, twice"]
-fn every_preset_is_its_twin_with_and_without_msaa() {
+fn every_preset_matches_the_reference_with_and_without_msaa() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
         check_presets(msaa, presets::ALL);
     }
 }
 
 fn everything(
-    color: Form,
+    color: Equations,
     mode: ColorizationMode,
-    form: Form,
+    form: Equations,
     mapping: DepthMapping,
 ) -> ComicStyle {
     let mut style = ComicStyle::new();
@@ -338,11 +352,11 @@ fn everything(
         .with(Desaturation {
             amount: 0.7,
             exponent: 0.5,
-            form: color,
+            equations: color,
         })
         .with(Colorization {
             mode,
-            form: color,
+            equations: color,
             amount: 0.8,
             ..default()
         })
@@ -353,7 +367,7 @@ fn everything(
             ..default()
         })
         .with(Contours {
-            form,
+            equations: form,
             width: 2.5,
             threshold: 0.06,
             opacity_fade: 0.4,
@@ -371,23 +385,17 @@ const MAPPINGS: [DepthMapping; 6] = [
     DepthMapping::MinMaxLogarithmic,
     DepthMapping::Linear,
     DepthMapping::Logarithmic,
-    DepthMapping::Fixed {
-        near: 4.0,
-        far: 9.0,
-    },
-    DepthMapping::FixedLogarithmic {
-        near: 4.0,
-        far: 9.0,
-    },
+    DepthMapping::Fixed { from: 4.0, to: 9.0 },
+    DepthMapping::FixedLogarithmic { from: 4.0, to: 9.0 },
 ];
 
-const FORMS: [Form; 2] = [Form::Corrected, Form::Faithful];
+const FORMS: [Equations; 2] = [Equations::Corrected, Equations::Faithful];
 
 /// Checks these pairs of a mapping and a form, with another mode each time.
 fn check_mappings(pairs: impl IntoIterator<Item = (usize, usize)>) {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     let modes = [
-        ColorizationMode::Hue,
+        ColorizationMode::KeepHue,
         ColorizationMode::Atmosphere,
         ColorizationMode::Linear,
         ColorizationMode::Quadratic,
@@ -395,14 +403,14 @@ fn check_mappings(pairs: impl IntoIterator<Item = (usize, usize)>) {
     for (i, j) in pairs {
         let form = FORMS[(i + j) % 2];
         let style = everything(FORMS[j], modes[(i + 2 * j) % 4], form, MAPPINGS[i]);
-        assert_pass_is_its_twin(&mut small, &style, None, &format!("{style:?}"));
+        assert_pass_matches_the_reference(&mut small, &style, None, &format!("{style:?}"));
     }
     assert_eq!(small.errors(), 0);
 }
 
 /// Every mapping, and every mode.
 #[test]
-fn every_mapping_is_its_twin() {
+fn every_mapping_matches_the_reference() {
     check_mappings((0..6).map(|i| (i, i / 2 % 2)));
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     let flip = DepthMap {
@@ -410,29 +418,29 @@ fn every_mapping_is_its_twin() {
         ..default()
     };
     let flipped = with_map(ComicStyle::default().with(Desaturation::default()), flip);
-    assert_pass_is_its_twin(&mut small, &flipped, None, "flipped");
+    assert_pass_matches_the_reference(&mut small, &flipped, None, "flipped");
 }
 
 #[test]
 #[ignore = "long: every mapping in both forms"]
-fn every_mapping_is_its_twin_in_both_forms() {
+fn every_mapping_matches_the_reference_in_both_forms() {
     check_mappings((0..6).flat_map(|i| [(i, 0), (i, 1)]));
 }
 
 /// Checks contours of an operator, a form and a width in pixels.
-fn check_contours(cases: impl IntoIterator<Item = (ContourOperator, Form, f32)>) {
+fn check_contours(cases: impl IntoIterator<Item = (ContourOperator, Equations, f32)>) {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     for (operator, form, width) in cases {
         let style = ComicStyle::default().with(Contours {
             operator,
-            form,
+            equations: form,
             width,
             softness: 0.3,
             threshold: 0.08,
             ..default()
         });
         let what = format!("{operator:?} {form:?} {width} px");
-        assert_pass_is_its_twin(&mut small, &style, None, &what);
+        assert_pass_matches_the_reference(&mut small, &style, None, &what);
     }
     assert_eq!(small.errors(), 0);
 }
@@ -447,7 +455,7 @@ const WIDTHS: [f32; 4] = [0.5, 1.0, 3.0, 7.5];
 
 /// Every operator in both forms, and every width.
 #[test]
-fn contours_are_their_twin() {
+fn contours_match_the_reference() {
     let width = |i: usize, j: usize| WIDTHS[(i + 2 * j) % 4];
     let of = |i: usize| [0, 1].map(|j| (OPERATORS[i], FORMS[j], width(i, j)));
     check_contours((0..4).flat_map(of));
@@ -455,7 +463,7 @@ fn contours_are_their_twin() {
 
 #[test]
 #[ignore = "long: every operator, form and width"]
-fn contours_of_every_operator_form_and_width_are_their_twin() {
+fn contours_of_every_operator_form_and_width_match_the_reference() {
     for operator in OPERATORS {
         for form in FORMS {
             check_contours(WIDTHS.map(|width| (operator, form, width)));
@@ -477,7 +485,12 @@ fn check_outlines(msaa: Msaa, widths: &[f32]) {
             opacity_fade: 0.5,
             ..default()
         });
-        assert_pass_is_its_twin(&mut small, &style, None, &format!("{width} px, {msaa:?}"));
+        assert_pass_matches_the_reference(
+            &mut small,
+            &style,
+            None,
+            &format!("{width} px, {msaa:?}"),
+        );
     }
     for kind in 0..3 {
         let all = Outlines::default();
@@ -488,49 +501,54 @@ fn check_outlines(msaa: Msaa, widths: &[f32]) {
             width: 3.0,
             ..all
         });
-        assert_pass_is_its_twin(&mut small, &style, None, &format!("kind {kind}, {msaa:?}"));
+        assert_pass_matches_the_reference(
+            &mut small,
+            &style,
+            None,
+            &format!("kind {kind}, {msaa:?}"),
+        );
     }
     let faithful = outlined(Outlines {
         silhouettes: Some(Silhouettes {
-            form: Form::Faithful,
+            equations: Equations::Faithful,
             threshold: 0.0008,
             edge_limit: 0.7,
             ..default()
         }),
         creases: Some(Creases {
-            form: Form::Faithful,
+            equations: Equations::Faithful,
             color: Color::srgb(0.6, 0.1, 0.1),
             ..default()
         }),
         ..default()
     });
-    assert_pass_is_its_twin(&mut small, &faithful, None, &format!("faithful, {msaa:?}"));
+    assert_pass_matches_the_reference(&mut small, &faithful, None, &format!("faithful, {msaa:?}"));
     // Measured creases have no line at a jump, which faithful silhouettes have no measure of.
     let mixed = outlined(Outlines {
         silhouettes: Some(Silhouettes {
-            form: Form::Faithful,
+            equations: Equations::Faithful,
             threshold: 0.0008,
             ..default()
         }),
         ..default()
     });
-    assert_pass_is_its_twin(&mut small, &mixed, None, &format!("mixed, {msaa:?}"));
+    assert_pass_matches_the_reference(&mut small, &mixed, None, &format!("mixed, {msaa:?}"));
     assert_eq!(small.errors(), 0);
 }
 
 #[test]
-fn outlines_of_every_kind_and_form_are_their_twin() {
+fn outlines_of_every_kind_and_form_match_the_reference() {
     check_outlines(Msaa::Off, &[0.5, 1.7, 4.0]);
 }
 
 #[test]
-fn multisampled_outlines_are_their_twin() {
+fn multisampled_outlines_match_the_reference() {
     check_outlines(Msaa::Sample4, &[1.0]);
 }
 
 #[test]
 #[ignore = "long: every width, twice"]
-fn outlines_of_every_kind_form_and_width_are_their_twin() {
+fn outlines_of_every_kind_form_and_width_match_the_reference() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
         check_outlines(msaa, &[0.5, 1.0, 1.7, 2.0, 3.0, 4.0]);
     }
@@ -538,13 +556,13 @@ fn outlines_of_every_kind_form_and_width_are_their_twin() {
 
 /// The two papers on one camera in one pass.
 #[test]
-fn everything_at_once_is_its_twin() {
+fn everything_at_once_matches_the_reference() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     let both = |sketch: Option<Sketch>| {
         let style = everything(
-            Form::Corrected,
+            Equations::Corrected,
             ColorizationMode::Quadratic,
-            Form::Corrected,
+            Equations::Corrected,
             DepthMapping::MinMax,
         )
         .with(ToneBands {
@@ -559,12 +577,12 @@ fn everything_at_once_is_its_twin() {
         });
         with_option(style, sketch)
     };
-    assert_pass_is_its_twin(&mut small, &both(None), None, "both papers");
+    assert_pass_matches_the_reference(&mut small, &both(None), None, "both papers");
     let sketch = Sketch {
         wash: 0.5,
         ..default()
     };
-    assert_pass_is_its_twin(
+    assert_pass_matches_the_reference(
         &mut small,
         &both(Some(sketch)),
         None,
@@ -572,14 +590,14 @@ fn everything_at_once_is_its_twin() {
     );
     // Larger, since every pixel of an edge lies on a steep step between bands.
     let mut small = Small::new(UVec2::new(144, 96), Msaa::Off);
-    for method in [Form::Corrected, Form::Faithful] {
+    for method in [Equations::Corrected, Equations::Faithful] {
         for softness in [0.0, 1.0, 3.0] {
             let style = ComicStyle::default().with(ToneBands {
-                form: method,
+                equations: method,
                 softness,
                 ..default()
             });
-            assert_pass_is_its_twin(
+            assert_pass_matches_the_reference(
                 &mut small,
                 &style,
                 None,
@@ -604,12 +622,12 @@ fn a_viewport_is_styled_inside_and_untouched_outside() {
             ..default()
         });
         let style = everything(
-            Form::Corrected,
+            Equations::Corrected,
             ColorizationMode::Quadratic,
-            Form::Corrected,
+            Equations::Corrected,
             DepthMapping::MinMax,
         );
-        assert_pass_is_its_twin(
+        assert_pass_matches_the_reference(
             &mut small,
             &style,
             Some([13, 7, 51, 41]),
@@ -620,62 +638,62 @@ fn a_viewport_is_styled_inside_and_untouched_outside() {
 
 /// Storage in display codes (`CompositingSpace::Srgb`). Bevy 0.19.1 draws unlit
 /// meshes darker there, with or without a style, so the picture is compared with
-/// the twin of the pass and not with that of a linear camera.
+/// the reference of the pass and not with that of a linear camera.
 #[test]
-fn a_camera_that_stores_display_codes_is_its_twin() {
+fn a_camera_that_stores_display_codes_matches_the_reference() {
     let mut small = Small::new(UVec2::new(64, 48), Msaa::Off);
     small.insert(CompositingSpace::Srgb);
     let style = everything(
-        Form::Corrected,
+        Equations::Corrected,
         ColorizationMode::Linear,
-        Form::Corrected,
+        Equations::Corrected,
         DepthMapping::MinMax,
     );
-    assert_pass_is_its_twin(&mut small, &style, None, "gamma-encoded");
+    assert_pass_matches_the_reference(&mut small, &style, None, "gamma-encoded");
 }
 
 /// HDR storage, with colours above 1.
 #[test]
-fn an_hdr_camera_is_its_twin() {
+fn an_hdr_camera_matches_the_reference() {
     let mut small = Small::new(UVec2::new(64, 48), Msaa::Off);
     small.insert(Hdr);
     let style = everything(
-        Form::Corrected,
+        Equations::Corrected,
         ColorizationMode::Linear,
-        Form::Corrected,
+        Equations::Corrected,
         DepthMapping::MinMax,
     );
-    assert_pass_is_its_twin(&mut small, &style, None, "hdr");
+    assert_pass_matches_the_reference(&mut small, &style, None, "hdr");
     let style = everything(
-        Form::Faithful,
+        Equations::Faithful,
         ColorizationMode::Quadratic,
-        Form::Faithful,
+        Equations::Faithful,
         DepthMapping::MinMax,
     );
-    assert_pass_is_its_twin(&mut small, &style, None, "hdr, faithful");
+    assert_pass_matches_the_reference(&mut small, &style, None, "hdr, faithful");
 }
 
 /// After the other effects of colour, over a background that shows through.
 #[test]
-fn every_mode_of_harmony_is_its_twin() {
+fn every_mode_of_harmony_matches_the_reference() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Sample4);
     small.insert(Camera {
         clear_color: Color::srgba(0.1, 0.2, 0.3, 0.4).into(),
         ..default()
     });
     let modes = [
-        (HarmonyMode::TwoHues, Form::Corrected),
-        (HarmonyMode::Distance, Form::Corrected),
-        (HarmonyMode::Distance, Form::Faithful),
-        (HarmonyMode::Rotation, Form::Corrected),
-        (HarmonyMode::Shade, Form::Corrected),
-        (HarmonyMode::Shade, Form::Faithful),
+        (HarmonyMode::TwoHues, Equations::Corrected),
+        (HarmonyMode::Distance, Equations::Corrected),
+        (HarmonyMode::Distance, Equations::Faithful),
+        (HarmonyMode::Rotation, Equations::Corrected),
+        (HarmonyMode::Shade, Equations::Corrected),
+        (HarmonyMode::Shade, Equations::Faithful),
     ];
     for (mode, form) in modes {
-        for curve in [HarmonyCurve::Linear, HarmonyCurve::Quadratic] {
+        for curve in [HarmonyCurve::Linear, HarmonyCurve::SquareRoot] {
             let harmony = ColorHarmony {
                 mode,
-                form,
+                equations: form,
                 curve,
                 complement: 1.2,
                 shade: 0.9,
@@ -687,7 +705,7 @@ fn every_mode_of_harmony_is_its_twin() {
             };
             let style = ComicStyle::new().with(desaturation).with(harmony);
             let what = format!("{harmony:?}");
-            assert_pass_is_its_twin(&mut small, &style, None, &what);
+            assert_pass_matches_the_reference(&mut small, &style, None, &what);
         }
     }
     assert_eq!(small.errors(), 0);
@@ -695,7 +713,7 @@ fn every_mode_of_harmony_is_its_twin() {
 
 /// With fixed borders; those that are found are tested in `planes.rs`.
 #[test]
-fn planes_are_their_twin() {
+fn planes_match_the_reference() {
     let mut small = Small::new(UVec2::new(72, 48), Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
         small.restart(msaa);
@@ -704,24 +722,24 @@ fn planes_are_their_twin() {
             ..default()
         });
         for (bands, flip) in [(0, false), (3, false), (0, true)] {
-            let planes = Planes {
-                near: PlaneStyle {
+            let planes = DepthLayers {
+                foreground: DepthLayer {
                     saturation: 1.4,
                     contrast: 1.2,
                     bands,
                     ..default()
                 },
-                by: PlaneUnit::Pixel,
-                borders: PlaneBorders::Fixed,
-                near_end: 0.3,
-                far_start: 0.6,
+                granularity: Granularity::Pixel,
+                borders: LayerBorders::Fixed,
+                foreground_end: 0.3,
+                background_start: 0.6,
                 softness: 0.2,
                 ..default()
             };
             let map = DepthMap { flip, ..default() };
             let style = with_map(ComicStyle::new().with(planes), map);
             let what = format!("{msaa:?}, {bands} bands, flip: {flip}");
-            assert_pass_is_its_twin(&mut small, &style, None, &what);
+            assert_pass_matches_the_reference(&mut small, &style, None, &what);
         }
     }
     assert_eq!(small.errors(), 0);

@@ -9,7 +9,7 @@ use bevy::{
         view::Msaa,
     },
 };
-use bevy_comics::{AnyEffect, EffectRegistry, FieldRange};
+use bevy_comics::effect::{AnyEffect, EffectRegistry, FieldRange};
 
 use crate::small::{Small, options};
 

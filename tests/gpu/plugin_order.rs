@@ -1,15 +1,13 @@
 //! `ComicsPlugin` before the engine's plugins does what it does after them.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    CartoonScene, ComicStyleHandle, ComicsPlugin, DepthMap, OutlineStyle, Outlines, presets,
-};
+use bevy_comics::{Comic, ComicsPlugin, DepthMap, OutlineStyle, Outlines, ToonScene, presets};
 use bevy_comics_testkit::headless::Headless;
 
 use crate::small::{camera, options};
 
 /// A scene that uses every part of the plugin: a style asset, the depth range,
-/// outlines, one object's own lines, the cartoon material.
+/// outlines, one object's own lines, the toon material.
 fn picture(mut headless: Headless) -> (image::RgbaImage, image::RgbaImage) {
     let target = headless.render_target();
     let world = headless.app.world_mut();
@@ -23,7 +21,7 @@ fn picture(mut headless: Headless) -> (image::RgbaImage, image::RgbaImage) {
             Mesh3d(mesh.clone()),
             MeshMaterial3d(material.clone()),
             Transform::from_xyz(x, 0.5, 0.0),
-            CartoonScene::default(),
+            ToonScene::default(),
             OutlineStyle {
                 color: (x > 0.0).then_some(Color::WHITE),
                 ..default()
@@ -47,7 +45,7 @@ fn picture(mut headless: Headless) -> (image::RgbaImage, image::RgbaImage) {
     };
     world
         .entity_mut(camera)
-        .insert((ComicStyleHandle(style.clone()), own_map));
+        .insert((Comic(style.clone()), own_map));
     // The file is read on another thread.
     for _ in 0..500 {
         headless.step(1);

@@ -9,7 +9,10 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    ComicStyle, LineWeight, LineWidths, MeshSections, Outlines, Silhouettes, object_id,
+    ComicStyle, Outlines,
+    lines::{LineWeight, Silhouettes},
+    objects::{LineWidths, MeshSections},
+    testing::object_id,
 };
 use bevy_comics_testkit::reference::pressure::{
     Frame as ObjectFrame, pressure_factor, stored_factor,
@@ -231,10 +234,10 @@ fn zooming_changes_widths_gradually() {
     assert!(largest > 0.1, "{largest} px");
 }
 
-/// The factors that are drawn are those of the twin, on a surface that is moved, turned and
+/// The factors that are drawn are those of the reference, on a surface that is moved, turned and
 /// stretched, in perspective.
 #[test]
-fn drawn_factors_are_their_twin() {
+fn drawn_factors_match_the_reference() {
     let size = UVec2::new(96, 64);
     let mut small = Small::new(size, Msaa::Off);
     for msaa in [Msaa::Off, Msaa::Sample4] {
@@ -412,7 +415,10 @@ fn widths_of_vertices_are_inherited() {
     let parts = (Transform::default(), Visibility::default());
     let root = small.world().spawn(parts).id();
     small.world().entity_mut(root).add_child(plate);
-    for (widths, want) in [(LineWidths::default(), 4.0), (LineWidths::INHERITED, 8.0)] {
+    for (widths, want) in [
+        (LineWidths { inherit: false }, 4.0),
+        (LineWidths::default(), 8.0),
+    ] {
         small.world().entity_mut(root).insert(widths);
         let picture = drawn(&mut small, silhouettes(4.0, LineWeight::EVEN));
         let found = mean(&ink(&picture, 20..380, 20..60));

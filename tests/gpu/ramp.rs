@@ -1,4 +1,4 @@
-//! Ramps of the cartoon material: tones, their places, edges and shadows.
+//! Ramps of the toon material: tones, their places, edges and shadows.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -8,7 +8,10 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{CartoonLight, CartoonMaterial, Ramp, RampBlend, RampMode, RampStop};
+use bevy_comics::{
+    ToonLight, ToonMaterial,
+    toon::{Ramp, RampBlend, RampMode, RampStop},
+};
 use image::RgbaImage;
 
 use crate::small::{Object, Small, linear};
@@ -19,7 +22,11 @@ const RED: Color = Color::linear_rgb(1.0, 0.0, 0.0);
 const GREEN: Color = Color::linear_rgb(0.0, 1.0, 0.0);
 const BLUE: Color = Color::linear_rgb(0.0, 0.0, 1.0);
 
-pub const MODES: [RampMode; 3] = [RampMode::Share, RampMode::PerLight, RampMode::Brightest];
+pub const MODES: [RampMode; 3] = [
+    RampMode::LightFraction,
+    RampMode::PerLight,
+    RampMode::Brightest,
+];
 
 /// Illuminance that makes white of white in a picture.
 pub fn full() -> f32 {
@@ -65,13 +72,8 @@ pub fn bright(part: f32) -> DirectionalLight {
     }
 }
 
-pub fn put(
-    small: &mut Small,
-    mesh: impl Into<Mesh>,
-    light: &CartoonLight,
-    at: Transform,
-) -> Entity {
-    let material = CartoonMaterial {
+pub fn put(small: &mut Small, mesh: impl Into<Mesh>, light: &ToonLight, at: Transform) -> Entity {
+    let material = ToonMaterial {
         base: StandardMaterial {
             base_color: Color::WHITE,
             perceptual_roughness: 1.0,
@@ -79,21 +81,21 @@ pub fn put(
         },
         extension: light.clone(),
     };
-    let mut materials = small.world().resource_mut::<Assets<CartoonMaterial>>();
+    let mut materials = small.world().resource_mut::<Assets<ToonMaterial>>();
     let material = MeshMaterial3d(materials.add(material));
     small.put_shared(mesh, material, at)
 }
 
-pub fn with(ramp: Ramp) -> CartoonLight {
-    CartoonLight {
+pub fn with(ramp: Ramp) -> ToonLight {
+    ToonLight {
         ramp: Some(ramp),
         falloff: 0.0,
         ..default()
     }
 }
 
-pub fn set_light(small: &mut Small, light: &CartoonLight) {
-    let mut materials = small.world().resource_mut::<Assets<CartoonMaterial>>();
+pub fn set_light(small: &mut Small, light: &ToonLight) {
+    let mut materials = small.world().resource_mut::<Assets<ToonMaterial>>();
     let ids: Vec<_> = materials.ids().collect();
     for id in ids {
         materials.get_mut(id).expect("listed").extension = light.clone();
@@ -114,7 +116,7 @@ pub fn apart(a: &RgbaImage, b: &RgbaImage) -> u8 {
 }
 
 /// A ball and a box on a ground, under a sun and a lamp with shadows.
-pub fn stage(light: &CartoonLight) -> Small {
+pub fn stage(light: &ToonLight) -> Small {
     let mut small = room(UVec2::new(240, 160), 0.1);
     small.insert((
         Transform::from_xyz(2.6, 3.4, 5.0).looking_at(Vec3::new(0.0, 0.4, 0.0), Vec3::Y),
@@ -146,30 +148,30 @@ pub fn stage(light: &CartoonLight) -> Small {
 /// Black, and white from the terminator, for each light: the light without a ramp.
 #[test]
 fn two_stops_per_light_are_the_light_without_a_ramp() {
-    let mut small = stage(&CartoonLight::default());
+    let mut small = stage(&ToonLight::default());
     for (shadow_strength, backface_shadows, projected_shadows) in [
         (1.0, true, true),
         (0.6, true, true),
         (1.0, false, true),
         (0.7, true, false),
     ] {
-        let plain = CartoonLight {
+        let plain = ToonLight {
             shadow_strength,
-            backface_shadows,
-            projected_shadows,
+            form_shadows: backface_shadows,
+            cast_shadows: projected_shadows,
             ..default()
         };
         set_light(&mut small, &plain);
         let before = drawn(&mut small);
         let stops = [
             RampStop::new(0.0, Color::BLACK),
-            RampStop::new(plain.terminator, Color::WHITE),
+            RampStop::new(plain.shadow_threshold, Color::WHITE),
         ];
         let ramp = Ramp {
             mode: RampMode::PerLight,
             ..Ramp::new(stops)
         };
-        let light = CartoonLight {
+        let light = ToonLight {
             ramp: Some(ramp),
             ..plain
         };
@@ -183,7 +185,7 @@ fn two_stops_per_light_are_the_light_without_a_ramp() {
 /// that is divided in two.
 #[test]
 fn shares_do_not_depend_on_the_exposure() {
-    let light = CartoonLight {
+    let light = ToonLight {
         falloff: 1.0,
         ..with(Ramp {
             keep_intensity: 0.0,
@@ -237,15 +239,10 @@ fn fractions(picture: &RgbaImage) -> [f64; 4] {
 
 /// Checks that tones of a ball that begin at three places have the areas of its caps: rings around the light,
 /// or segments. `light` gives the light of a mode that has black, red, green and blue.
-pub fn check_caps(at: [f32; 3], light: impl Fn(&mut Small, RampMode) -> CartoonLight) {
+pub fn check_caps(at: [f32; 3], light: impl Fn(&mut Small, RampMode) -> ToonLight) {
     let mut small = room(UVec2::splat(120), 0.0);
     let ball = Sphere::new(0.95).mesh().uv(128, 64);
-    put(
-        &mut small,
-        ball,
-        &CartoonLight::default(),
-        Transform::IDENTITY,
-    );
+    put(&mut small, ball, &ToonLight::default(), Transform::IDENTITY);
     let segment = |a: f64| (a.acos() - a * (1.0 - a * a).sqrt()) / std::f64::consts::PI;
     let ring = |a: f64| 1.0 - a * a;
     let cases: [(Vec3, &dyn Fn(f64) -> f64); 2] = [(Vec3::Z, &ring), (Vec3::X, &segment)];
@@ -349,9 +346,9 @@ fn edges_of_tones_cover_what_they_should() {
 
 /// Checks that the border of a shadow on a wall has no tone between light and shade. `light_of` gives the light
 /// of a mode, with a ramp from black over red and green to white from 0.6 to 0.8 on.
-pub fn check_borders(light_of: impl Fn(&mut Small, RampMode) -> CartoonLight) {
+pub fn check_borders(light_of: impl Fn(&mut Small, RampMode) -> ToonLight) {
     let mut small = room(SIZE, 0.0);
-    let light = CartoonLight::default();
+    let light = ToonLight::default();
     let wall = Plane3d::new(Vec3::Z, Vec2::splat(4.0));
     put(&mut small, wall.mesh(), &light, Transform::IDENTITY);
     let ball = Transform::from_xyz(0.3, 0.2, 0.8);
@@ -443,7 +440,7 @@ fn several_lights_leave_some_shade() {
 fn vertices_say_how_easily_they_are_lit() {
     let mut small = room(UVec2::splat(120), 0.0);
     for ramp in [None, Some(Ramp::default())] {
-        let light = CartoonLight {
+        let light = ToonLight {
             vertex_threshold: true,
             ramp,
             ..default()

@@ -1,7 +1,10 @@
 //! The second axis of ramps: where tones change, against its definition.
 
 use bevy::prelude::*;
-use bevy_comics::{CartoonLight, DetailAxis, Ramp, RampBlend, RampDetail, RampMode, RampStop};
+use bevy_comics::{
+    ToonLight,
+    toon::{DetailAxis, Ramp, RampBlend, RampDetail, RampMode, RampStop},
+};
 use bevy_comics_testkit::reference::detail;
 use image::RgbaImage;
 
@@ -14,7 +17,7 @@ const ORANGE: Color = Color::linear_rgb(0.9, 0.4, 0.1);
 const BLUE: Color = Color::linear_rgb(0.1, 0.2, 0.8);
 
 /// A ramp of one tone that becomes another one.
-pub fn two_tones(axis: DetailAxis, mode: RampMode) -> CartoonLight {
+pub fn two_tones(axis: DetailAxis, mode: RampMode) -> ToonLight {
     with(Ramp {
         mode,
         blend: RampBlend::Absolute,
@@ -48,12 +51,7 @@ fn check_ends(modes: &[RampMode]) {
     let plain = [RampStop::new(0.0, BLUE), RampStop::new(0.5, Color::WHITE)];
     let mut small = room(UVec2::splat(96), 0.1);
     let ball = Sphere::new(0.9).mesh().uv(64, 32);
-    put(
-        &mut small,
-        ball,
-        &CartoonLight::default(),
-        Transform::IDENTITY,
-    );
+    put(&mut small, ball, &ToonLight::default(), Transform::IDENTITY);
     sun(&mut small, Vec3::new(1.0, 0.6, 0.7), bright(0.8));
     for mode in modes.iter().copied() {
         let ramp = |stops: &[RampStop], detail| Ramp {
@@ -99,7 +97,7 @@ fn depth_and_focus_are_their_formulas() {
     for scale in [1.0f32, 1000.0] {
         let axes = [
             DetailAxis::Depth {
-                near: 2.0 * scale,
+                from: 2.0 * scale,
                 ratio: 8.0,
             },
             DetailAxis::Focus {
@@ -120,14 +118,14 @@ fn depth_and_focus_are_their_formulas() {
             } else {
                 Projection::Perspective(PerspectiveProjection { far, ..default() })
             });
-            let first = two_tones(axes[0], RampMode::Share);
+            let first = two_tones(axes[0], RampMode::LightFraction);
             let at = Transform::from_scale(Vec3::splat(scale));
             let wall = put(&mut small, wall(), &first, at);
             sun(&mut small, Vec3::Z, bright(1.0));
             small.headless.step(2);
             let mut seen = [0usize; 2];
             for axis in axes {
-                set_light(&mut small, &two_tones(axis, RampMode::Share));
+                set_light(&mut small, &two_tones(axis, RampMode::LightFraction));
                 for z in [1.0f32, 2.0, 3.0, 5.0, 6.5, 9.0, 16.0, 40.0] {
                     small
                         .world()

@@ -1,4 +1,4 @@
-//! Painted ramps of the cartoon material: tones, edges, shadows, rows, files, and images that cannot be used.
+//! Painted ramps of the toon material: tones, edges, shadows, rows, files, and images that cannot be used.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -6,20 +6,20 @@ use bevy::{
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
 use bevy_comics::{
-    CartoonLight, CartoonMaterial, DetailAxis, Ramp, RampBlend, RampDetail, RampMap, RampMode,
-    RampStop, ToonLook, ToonLookHandle,
+    ToonLight, ToonMaterial, ToonShadingHandle,
+    toon::{DetailAxis, Ramp, RampBlend, RampDetail, RampMap, RampMode, RampStop, ToonShading},
 };
 use bevy_comics_testkit::reference::{Rgb, color::srgb_encode, ramp};
 use image::RgbaImage;
 
 use crate::{
-    looks::{mesh_with_look, wait, watching},
     ramp::{
         MODES, apart, bright, check_borders, check_caps, drawn, leaning, put, room, set_light,
         stage, sun, with,
     },
     small::{Small, linear},
     styles::Folder,
+    toon_shading::{mesh_with_shading, wait, watching},
 };
 
 const BLACK: Rgb = [0.0; 3];
@@ -53,13 +53,8 @@ fn add(small: &mut Small, image: Image) -> RampMap {
 }
 
 /// The tones of rows, as colours of surfaces, or as factors of the light.
-fn light_of(
-    small: &mut Small,
-    mode: RampMode,
-    blend: RampBlend,
-    rows: &[Vec<Rgb>],
-) -> CartoonLight {
-    CartoonLight {
+fn light_of(small: &mut Small, mode: RampMode, blend: RampBlend, rows: &[Vec<Rgb>]) -> ToonLight {
+    ToonLight {
         ramp_map: add(small, painted(rows)),
         ..with(Ramp {
             mode,
@@ -95,12 +90,7 @@ fn two_texels_are_two_stops() {
     let size = UVec2::splat(160);
     let mut small = room(size, 0.0);
     let ball = Sphere::new(0.95).mesh().uv(128, 64);
-    put(
-        &mut small,
-        ball,
-        &CartoonLight::default(),
-        Transform::IDENTITY,
-    );
+    put(&mut small, ball, &ToonLight::default(), Transform::IDENTITY);
     for (to, strength) in [
         (Vec3::new(0.8, 0.5, 0.6), 1.0),
         (Vec3::new(-0.3, 1.0, 0.2), 0.7),
@@ -118,7 +108,7 @@ fn two_texels_are_two_stops() {
                 stops: stops.to_vec(),
                 ..painted.ramp.clone().expect("a ramp")
             };
-            let analytic = CartoonLight {
+            let analytic = ToonLight {
                 shadow_strength: strength,
                 ..with(ramp)
             };
@@ -180,9 +170,9 @@ fn different(a: &RgbaImage, b: &RgbaImage, codes: u8) -> f64 {
 fn check_soft_ramps(cases: impl IntoIterator<Item = (RampMode, RampBlend, f32)>) {
     let tone = |k: u32| ramp::tone(&soft(), (f64::from(k) + 0.5) / 1024.0, 0.0);
     let row: Vec<Rgb> = (0..1024).map(tone).collect();
-    let mut small = stage(&CartoonLight::default());
+    let mut small = stage(&ToonLight::default());
     for (mode, blend, strength) in cases {
-        let stops = CartoonLight {
+        let stops = ToonLight {
             shadow_strength: strength,
             ..with(Ramp {
                 mode,
@@ -190,7 +180,7 @@ fn check_soft_ramps(cases: impl IntoIterator<Item = (RampMode, RampBlend, f32)>)
                 ..soft()
             })
         };
-        let map = CartoonLight {
+        let map = ToonLight {
             ramp_map: add(&mut small, painted(std::slice::from_ref(&row))),
             ..stops.clone()
         };
@@ -211,7 +201,7 @@ fn check_soft_ramps(cases: impl IntoIterator<Item = (RampMode, RampBlend, f32)>)
 #[test]
 fn images_of_soft_ramps_are_these_ramps() {
     check_soft_ramps([
-        (RampMode::Share, RampBlend::Multiply, 0.6),
+        (RampMode::LightFraction, RampBlend::Multiply, 0.6),
         (RampMode::PerLight, RampBlend::Absolute, 0.6),
         (RampMode::Brightest, RampBlend::Multiply, 1.0),
     ]);
@@ -234,7 +224,12 @@ fn images_of_soft_ramps_are_these_ramps_in_full() {
 fn check_rows(modes: &[RampMode]) {
     let mut small = room(UVec2::splat(120), 0.0);
     let rows = [vec![RED, RED], vec![GREEN, GREEN], vec![BLUE, BLUE]];
-    let mut light = light_of(&mut small, RampMode::Share, RampBlend::Absolute, &rows);
+    let mut light = light_of(
+        &mut small,
+        RampMode::LightFraction,
+        RampBlend::Absolute,
+        &rows,
+    );
     let ball = Sphere::new(0.95).mesh().uv(128, 64);
     put(&mut small, ball, &light, Transform::IDENTITY);
     sun(&mut small, Vec3::Z, bright(1.0));
@@ -357,21 +352,21 @@ fn pixels_have_the_mean_of_painted_tones() {
 /// A material with a map and no ramp has the settings of the default ramp.
 #[test]
 fn a_map_without_a_ramp_has_the_default_settings() {
-    let mut small = stage(&CartoonLight::default());
+    let mut small = stage(&ToonLight::default());
     let map = add(&mut small, painted(&[vec![[0.2, 0.1, 0.4], WHITE, WHITE]]));
-    let alone = CartoonLight {
+    let alone = ToonLight {
         ramp_map: map.clone(),
         ..default()
     };
     set_light(&mut small, &alone);
     let found = drawn(&mut small);
-    let default = CartoonLight {
+    let default = ToonLight {
         ramp: Some(Ramp::default()),
         ..alone.clone()
     };
     set_light(&mut small, &default);
     assert_eq!(apart(&found, &drawn(&mut small)), 0);
-    let none = CartoonLight {
+    let none = ToonLight {
         ramp_map: RampMap::default(),
         ..alone
     };
@@ -393,7 +388,7 @@ fn bad_images_leave_the_stops() {
     small.headless.step(3);
     let [wide, narrow] = [1025, 1].map(|width| add(&mut small, row(width)));
     for map in [wide, narrow, gone] {
-        let bad = CartoonLight {
+        let bad = ToonLight {
             ramp_map: map.clone(),
             ..stops.clone()
         };
@@ -401,7 +396,7 @@ fn bad_images_leave_the_stops() {
         assert_eq!(apart(&wanted, &drawn(&mut small)), 0, "{map:?}");
     }
     // Materials that never had another one.
-    let missing = CartoonLight {
+    let missing = ToonLight {
         ramp_map: RampMap::at("nowhere.png"),
         ..stops.clone()
     };
@@ -418,7 +413,7 @@ fn bad_images_leave_the_stops() {
     set_light(&mut other, &stops);
     assert_eq!(apart(&found, &drawn(&mut other)), 0, "a missing file");
     // The next good one is drawn.
-    let good = CartoonLight {
+    let good = ToonLight {
         ramp_map: add(&mut small, row(1024)),
         ..stops
     };
@@ -467,19 +462,19 @@ fn looks_name_their_images_by_path() {
     let folder = Folder::new("ramp-map");
     let file = folder.0.join("tones.png");
     greys(100).save(&file).expect("written");
-    let text = "(version: 1, light: (highlight: 0.0, ramp_map: \"tones.png\",
+    let text = "(version: 2, light: (highlight: 0.0, ramp_map: \"tones.png\",
         ramp: (mode: PerLight, blend: Absolute)))";
     std::fs::write(folder.0.join("hero.toon.ron"), text).expect("written");
     let mut small = watching(&folder);
     small.clear();
-    let look: Handle<ToonLook> = small
+    let look: Handle<ToonShading> = small
         .world()
         .resource::<AssetServer>()
         .load("hero.toon.ron");
-    let mesh = mesh_with_look(&mut small, look.clone());
+    let mesh = mesh_with_shading(&mut small, look.clone());
     let image = move |world: &World| {
-        let handle = world.get::<MeshMaterial3d<CartoonMaterial>>(mesh)?;
-        let materials = world.resource::<Assets<CartoonMaterial>>();
+        let handle = world.get::<MeshMaterial3d<ToonMaterial>>(mesh)?;
+        let materials = world.resource::<Assets<ToonMaterial>>();
         materials
             .get(&handle.0)?
             .extension
@@ -495,7 +490,7 @@ fn looks_name_their_images_by_path() {
     let handle = image(small.world()).expect("an image");
     assert_eq!(handle.path().expect("of a file").to_string(), "tones.png");
     // By code, a path is the same image.
-    let same = CartoonLight {
+    let same = ToonLight {
         ramp_map: server.load("tones.png").into(),
         ..default()
     };
@@ -516,8 +511,8 @@ fn looks_name_their_images_by_path() {
     });
     assert!(changed, "the change did not arrive");
     // Without the component the material stays; the look is written with the path.
-    small.world().entity_mut(mesh).remove::<ToonLookHandle>();
-    let looks = small.world().resource::<Assets<ToonLook>>();
+    small.world().entity_mut(mesh).remove::<ToonShadingHandle>();
+    let looks = small.world().resource::<Assets<ToonShading>>();
     let text = looks.get(&look).expect("loaded").to_ron().expect("text");
     assert!(text.contains("ramp_map: \"tones.png\""), "{text}");
     assert_eq!(small.errors(), 0);

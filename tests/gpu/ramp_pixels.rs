@@ -1,15 +1,18 @@
-//! A ball under several lights, in every mode of a ramp, against the twin of every pixel.
+//! A ball under several lights, in every mode of a ramp, against the reference of every pixel.
 
 use bevy::{camera::Exposure, math::DVec3, prelude::*};
-use bevy_comics::{CartoonLight, DetailAxis, Ramp, RampBlend, RampDetail, RampMode, RampStop};
+use bevy_comics::{
+    ToonLight,
+    toon::{DetailAxis, Ramp, RampBlend, RampDetail, RampMode, RampStop},
+};
 use bevy_comics_testkit::reference::{
-    cartoon::{
-        brightest, per_light, reflect, share,
+    color::srgb_encode,
+    detail,
+    toon::{
+        brightest, light_fraction, per_light, reflect,
         surface::{Arriving, Footprint, Surface},
         two_shades::{self, Evenly},
     },
-    color::srgb_encode,
-    detail,
 };
 
 use crate::{
@@ -86,7 +89,11 @@ fn stops(last: f32) -> [RampStop; 3] {
 
 fn cases() -> Vec<Option<Ramp>> {
     let mut all = vec![None];
-    for mode in [RampMode::Share, RampMode::PerLight, RampMode::Brightest] {
+    for mode in [
+        RampMode::LightFraction,
+        RampMode::PerLight,
+        RampMode::Brightest,
+    ] {
         for blend in [RampBlend::Multiply, RampBlend::Absolute] {
             for axis in [None, Some(DetailAxis::Rim { power: 1.5 })] {
                 let plain = stops(0.5).map(|stop| RampStop {
@@ -109,7 +116,7 @@ fn cases() -> Vec<Option<Ramp>> {
     all
 }
 
-fn twin(light: &CartoonLight, s: &Surface, e: &Evenly) -> DVec3 {
+fn reference(light: &ToonLight, s: &Surface, e: &Evenly) -> DVec3 {
     let suns = suns();
     let Some(ramp) = &light.ramp else {
         let left = |sun: &Arriving| (*sun, reflect::unshadowed(light, s, sun));
@@ -119,13 +126,13 @@ fn twin(light: &CartoonLight, s: &Surface, e: &Evenly) -> DVec3 {
     match ramp.mode {
         RampMode::PerLight => per_light::reflected(light, s, &suns, e),
         RampMode::Brightest => brightest::reflected(light, s, &suns, e),
-        _ => share::reflected(light, s, &suns, e),
+        _ => light_fraction::reflected(light, s, &suns, e),
     }
 }
 
-/// Pixel by pixel, the picture is the twin of the whole light, in every mode.
+/// Pixel by pixel, the picture is the reference of the whole light, in every mode.
 #[test]
-fn a_ball_under_three_suns_is_its_twin() {
+fn a_ball_under_three_suns_matches_the_reference() {
     let cases = cases();
     // No ramp, a share on two axes, each light alone, the brightest one on two axes.
     check([0, 2, 7, 12].map(|k| cases[k].clone()));
@@ -133,28 +140,23 @@ fn a_ball_under_three_suns_is_its_twin() {
 
 #[test]
 #[ignore = "long: every mode with every blend and axis"]
-fn a_ball_under_three_suns_is_its_twin_in_every_case() {
+fn a_ball_under_three_suns_matches_the_reference_in_every_case() {
     check(cases());
 }
 
 fn check(cases: impl IntoIterator<Item = Option<Ramp>>) {
     let mut small = room(UVec2::splat(SIZE), AMBIENT);
     let ball = Sphere::new(BALL as f32).mesh().uv(256, 128);
-    put(
-        &mut small,
-        ball,
-        &CartoonLight::default(),
-        Transform::IDENTITY,
-    );
+    put(&mut small, ball, &ToonLight::default(), Transform::IDENTITY);
     for (to, part) in SUNS {
         sun(&mut small, to, bright(part));
     }
     let exposure = f64::from(Exposure::default().exposure());
     for ramp in cases {
-        let light = CartoonLight {
+        let light = ToonLight {
             ramp,
             falloff: 0.0,
-            ..CartoonLight::default()
+            ..ToonLight::default()
         };
         set_light(&mut small, &light);
         let picture = drawn(&mut small);
@@ -175,7 +177,7 @@ fn check(cases: impl IntoIterator<Item = Option<Ramp>>) {
                 shine: DVec3::ZERO,
                 exposure,
             };
-            let [wanted, found] = [twin(&light, &s, &e).to_array(), linear(&picture, x, y)]
+            let [wanted, found] = [reference(&light, &s, &e).to_array(), linear(&picture, x, y)]
                 .map(|color| srgb_encode(color.map(|c| c.clamp(0.0, 1.0))));
             let codes = (0..3)
                 .map(|c| 255.0 * (wanted[c] - found[c]).abs())

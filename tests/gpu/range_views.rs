@@ -5,7 +5,11 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{ComicsStage, DepthMap, DepthMapping, ReductionMethod, VisibleDepthRange};
+use bevy_comics::{
+    DepthMap, DepthMapping,
+    depth::{ReductionMethod, VisibleDepthRange},
+    diagnostics::ComicsStage,
+};
 
 use bevy_comics_testkit::{headless, reference::range};
 
@@ -30,11 +34,17 @@ fn assert_range_is_the_scan(small: &Small, rect: Option<[u32; 4]>, what: &str) {
     match (small.range(), scan) {
         (
             Some(VisibleDepthRange::Visible {
-                raw_near, raw_far, ..
+                raw_nearest,
+                raw_farthest,
+                ..
             }),
             Some(scan),
         ) => {
-            assert_eq!([raw_near.to_bits(), raw_far.to_bits()], scan, "{what}");
+            assert_eq!(
+                [raw_nearest.to_bits(), raw_farthest.to_bits()],
+                scan,
+                "{what}"
+            );
         }
         (Some(VisibleDepthRange::Empty), None) => {}
         (got, want) => panic!("{what}: {got:?} for {want:?}"),
@@ -233,8 +243,8 @@ fn the_sky_has_no_slope() {
         DepthMapping::MinMax,
         DepthMapping::MinMaxLogarithmic,
         DepthMapping::Fixed {
-            near: 1.0,
-            far: 1e36,
+            from: 1.0,
+            to: 1e36,
         },
     ] {
         for (name, projection) in [

@@ -2,7 +2,7 @@
 
 use std::{collections::HashMap, fs, path::PathBuf, process::Command};
 
-use bevy_comics::{ComicStyle, EffectRegistry};
+use bevy_comics::{ComicStyle, effect::EffectRegistry};
 use bevy_comics_testkit::{
     line_work,
     page_work::{self, PageCounter},
@@ -344,8 +344,8 @@ const FEW: [&str; 5] = [
     "focus, dots",
     "hatching",
     "color harmony",
-    "planes",
-    "planes of pixels",
+    "depth layers",
+    "depth layers of pixels",
 ];
 
 /// Effects of the page do not fetch more than the committed report says, in all of their passes.

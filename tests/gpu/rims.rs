@@ -2,7 +2,7 @@
 //! than at the rim.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, LineWeight, Outlines};
+use bevy_comics::{ComicStyle, Outlines, lines::LineWeight};
 use bevy_comics_testkit::scenes::shape::Shape;
 
 use crate::{line_truth::empty, outlines::put, small::Small, walls};

@@ -4,14 +4,15 @@ use std::collections::HashSet;
 
 use bevy::{mesh::MeshBuilder, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    ATTRIBUTE_MESH_SECTION, ComicStyle, Creases, MeshSections, OutlineGroup, OutlineKinds,
-    OutlineStyle, Outlines,
+    ComicStyle, OutlineGroup, OutlineStyle, Outlines,
+    lines::Creases,
+    objects::{ATTRIBUTE_MESH_SECTION, MeshSections, OutlineKinds},
 };
 use bevy_comics_testkit::read_back::IdImage;
 
 use crate::{
     ids::skinned_and_morphed,
-    pictures::{assert_pass_is_its_twin, outlined},
+    pictures::{assert_pass_matches_the_reference, outlined},
     small::{Object, Small, black_ink, unlit},
     walls::{towards_the_sky, towards_the_sky_again, wall},
 };
@@ -232,7 +233,7 @@ fn settings() -> [Outlines; 3] {
 }
 
 /// Every pixel of the small scene.
-fn assert_divided_as_twin(msaa: Msaa, settings: &[Outlines]) {
+fn assert_divided_as_reference(msaa: Msaa, settings: &[Outlines]) {
     let mut small = Small::new(SIZE, msaa);
     small.style(&outlined(creases()));
     let world = small.world();
@@ -245,28 +246,28 @@ fn assert_divided_as_twin(msaa: Msaa, settings: &[Outlines]) {
     wait(&mut small, |ids| !none_has_sections(ids));
     for &outlines in settings {
         let what = format!("{msaa:?}, {} px", outlines.width);
-        assert_pass_is_its_twin(&mut small, &outlined(outlines), None, &what);
+        assert_pass_matches_the_reference(&mut small, &outlined(outlines), None, &what);
     }
     assert_eq!(small.errors(), 0);
 }
 
 #[test]
-fn multisampled_pictures_with_sections_are_their_twins() {
+fn multisampled_pictures_with_sections_match_the_reference() {
     let [creases, ..] = settings();
-    assert_divided_as_twin(Msaa::Sample4, &[creases]);
+    assert_divided_as_reference(Msaa::Sample4, &[creases]);
 }
 
 #[test]
 #[ignore = "long: more kinds of lines"]
-fn all_lines_beside_sections_are_their_twins() {
+fn all_lines_beside_sections_match_the_reference() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
-        assert_divided_as_twin(msaa, &settings());
+        assert_divided_as_reference(msaa, &settings());
     }
 }
 
 /// Every pixel of skinned and morphed meshes.
 #[test]
-fn pictures_with_sections_are_their_twins() {
+fn pictures_with_sections_match_the_reference() {
     let (mut small, bent) = skinned_and_morphed();
     for entity in bent {
         small
@@ -276,7 +277,7 @@ fn pictures_with_sections_are_their_twins() {
     }
     small.style(&outlined(creases()));
     wait(&mut small, |ids| !none_has_sections(ids));
-    assert_pass_is_its_twin(
+    assert_pass_matches_the_reference(
         &mut small,
         &outlined(creases()),
         None,

@@ -41,9 +41,9 @@ fn deviation(values: &[f64]) -> f64 {
 #[test]
 fn a_slow_pan_keeps_lines_even() {
     let (mut small, _) = scene();
-    let [without, with] = [1.0, 0.125].map(|memory| {
+    let [without, with] = [0.0, 0.875].map(|history_weight| {
         small.insert(Transform::IDENTITY);
-        outline(&mut small, memory);
+        outline(&mut small, history_weight);
         let mut sums = [0.0; 2];
         for frame in 1..=48 {
             small.insert(Transform::from_xyz(0.1 * frame as f32, 0.0, 0.0));
@@ -58,7 +58,7 @@ fn a_slow_pan_keeps_lines_even() {
             }
         }
         println!(
-            "memory {memory}: width {:.4} px, place {:.4} px",
+            "history weight {history_weight}: width {:.4} px, place {:.4} px",
             sums[0], sums[1]
         );
         sums

@@ -14,7 +14,8 @@ use bevy::{
     },
 };
 use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage, Effect, Outlines, VisibleDepthRange,
+    ComicStyle, ComicsDiagnostics, ComicsPlugin, Effect, Outlines, depth::VisibleDepthRange,
+    diagnostics::ComicsStage,
 };
 
 use bevy_comics_testkit::{

@@ -14,7 +14,10 @@ use bevy::{
     },
     prelude::*,
 };
-use bevy_comics::{CartoonLight, CartoonMaterial, FormShape, Ramp, RampMode, RampStop, ShadedForm};
+use bevy_comics::{
+    ToonLight, ToonMaterial,
+    toon::{ProxyShape, Ramp, RampMode, RampStop, ShadingProxy},
+};
 use bevy_comics_testkit::reference::octahedral::octahedral;
 use image::RgbaImage;
 
@@ -26,16 +29,16 @@ use crate::{
 const SIZE: UVec2 = UVec2::new(128, 128);
 
 /// Three tones for each light; the normals of a number of rounds, or the mesh's own.
-fn light(rounds: Option<u32>) -> CartoonLight {
+fn light(rounds: Option<u32>) -> ToonLight {
     let grey = |part| Color::linear_rgb(part, part, part);
     let stops = [
         RampStop::new(0.0, grey(0.0)),
         RampStop::new(0.3, grey(0.4)),
         RampStop::new(0.7, grey(1.0)),
     ];
-    CartoonLight {
-        form: rounds.map(|rounds| ShadedForm {
-            shape: FormShape::Smoothed { rounds },
+    ToonLight {
+        proxy: rounds.map(|rounds| ShadingProxy {
+            shape: ProxyShape::Smoothed { rounds },
             ..default()
         }),
         ..with(Ramp {
@@ -125,8 +128,8 @@ fn smoothed_normals_are_normals() {
         let codes = made(&mut small, object);
         let found = drawn(&mut small);
         let mut none = light(Some(rounds));
-        if let Some(form) = &mut none.form {
-            (form.amount, form.far_amount) = (0.0, 0.0);
+        if let Some(form) = &mut none.proxy {
+            (form.amount, form.amount_at_far) = (0.0, 0.0);
         }
         set_light(&mut small, &none);
         assert_eq!(apart(&plain, &drawn(&mut small)), 0);
@@ -234,8 +237,8 @@ fn backs_of_two_sided_surfaces_are_turned() {
         ..default()
     };
     let extension = light(Some(0));
-    let mut materials = small.world().resource_mut::<Assets<CartoonMaterial>>();
-    let material = MeshMaterial3d(materials.add(CartoonMaterial { base, extension }));
+    let mut materials = small.world().resource_mut::<Assets<ToonMaterial>>();
+    let material = MeshMaterial3d(materials.add(ToonMaterial { base, extension }));
     let back = Transform::from_rotation(Quat::from_rotation_y(3.0));
     let object = small.put_shared(Rectangle::new(1.2, 1.2), material, back);
     made(&mut small, object);

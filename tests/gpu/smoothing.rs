@@ -1,4 +1,4 @@
-//! The smoothed range, frame by frame, against its twin.
+//! The smoothed range, frame by frame, against its reference.
 
 use std::sync::OnceLock;
 
@@ -197,7 +197,7 @@ pub fn octaves(a: f32, b: f32) -> f64 {
 }
 
 #[test]
-fn random_views_are_followed_as_the_twin_does() {
+fn random_views_are_followed_as_the_reference_does() {
     let mut random = Random::new(5);
     for offset in [Some(0.0), Some(1e-3), Some(0.25), None] {
         for despike in [false, true] {
@@ -236,9 +236,9 @@ fn random_views_are_followed_as_the_twin_does() {
                         }
                     })
                     .collect();
-                let mut twin = Range::default();
+                let mut reference = Range::default();
                 for (i, (got, frame)) in run(&s, &frames, None).iter().zip(&frames).enumerate() {
-                    let want = twin.step(
+                    let want = reference.step(
                         frame.found.map(|f| f.map(f64::from)),
                         &s,
                         frame.seconds,
@@ -446,7 +446,7 @@ fn ends_that_would_pass_each_other_meet() {
 }
 
 #[test]
-fn percentiles_are_the_twins_and_grow_with_the_area() {
+fn percentiles_match_the_reference_and_grow_with_the_area() {
     let mut random = Random::new(3);
     for fraction in [0.001f32, 0.005, 0.05, 0.2] {
         for cluster in [0.0f32, 0.5] {

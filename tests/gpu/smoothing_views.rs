@@ -6,8 +6,9 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    CameraCut, Colorization, ComicStyle, ComicsStage, Contours, DepthMap, RangeSmoothing,
-    ReductionMethod, VisibleDepthRange,
+    CameraCut, Colorization, ComicStyle, Contours, DepthMap,
+    depth::{RangeSmoothing, ReductionMethod, VisibleDepthRange},
+    diagnostics::ComicsStage,
 };
 
 use bevy_comics_testkit::{
@@ -232,7 +233,11 @@ fn the_range_that_the_game_reads_is_the_exact_one() {
     small.insert(VisibleDepthRange::default());
     intrude(&mut small);
     small.settle();
-    let Some(VisibleDepthRange::Visible { raw_near, .. }) = small.range() else {
+    let Some(VisibleDepthRange::Visible {
+        raw_nearest: raw_near,
+        ..
+    }) = small.range()
+    else {
         panic!("{:?}", small.range());
     };
     let depth = small.depth().expect("a prepass");

@@ -5,7 +5,9 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{ComicsStage, EffectTarget, SpeedLineKind, SpeedLines};
+use bevy_comics::{
+    SpeedLines, diagnostics::ComicsStage, effect::EffectTarget, effects::SpeedLineKind,
+};
 use bevy_comics_testkit::reference::speed_lines::Drawing;
 
 use crate::{
@@ -31,7 +33,7 @@ fn ink(picture: &image::RgbaImage) -> Vec<f64> {
         .collect()
 }
 
-/// The largest difference of a picture from its twin, in linear light.
+/// The largest difference of a picture from its reference, in linear light.
 fn apart(picture: &image::RgbaImage, drawing: &Drawing) -> f64 {
     let found = ink(picture);
     let width = picture.width() as usize;
@@ -68,7 +70,7 @@ const CODE: f64 = 0.009;
 /// Every pixel, at every scale factor, in a viewport that is a part of the picture, on HDR
 /// cameras: lines are where they should be, and nothing else changes.
 #[test]
-fn every_pixel_is_its_twins() {
+fn every_pixel_matches_the_reference() {
     let mut small = page();
     for (scale, hdr) in [(1.0, false), (1.25, false), (3.0, false), (1.0, true)] {
         small.headless.resize(SIZE, scale);
@@ -151,8 +153,7 @@ fn twelve_drawings_a_second() {
 fn lines_follow_an_object() {
     let mut small = page();
     let lines = SpeedLines {
-        centre_x: 0.25,
-        centre_y: 0.75,
+        center: Vec2::new(0.25, 0.75),
         ..still(SpeedLineKind::Radial)
     };
     small.insert(lines).settle();
@@ -218,13 +219,12 @@ fn extreme_values_are_finite() {
         for kind in [SpeedLineKind::Radial, SpeedLineKind::Parallel] {
             let lines = SpeedLines {
                 kind,
-                centre_x: x,
-                centre_y: x,
+                center: Vec2::splat(x),
                 angle: x,
                 count: u32::MAX,
                 inner: x,
                 width: x,
-                dry: x,
+                dry_brush: x,
                 rate: x,
                 seed: u32::MAX,
                 ..default()
@@ -262,7 +262,7 @@ fn ink_follows_the_width() {
     let drier = [0.2, 0.5, 0.8, 1.0].map(|dry| {
         ink(SpeedLines {
             width: 4.0,
-            dry,
+            dry_brush: dry,
             ..still(SpeedLineKind::Radial)
         }) / wide
     });

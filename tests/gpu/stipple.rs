@@ -7,7 +7,11 @@ use bevy::{
     math::DVec2,
     prelude::*,
 };
-use bevy_comics::{CartoonLight, Hatching, HatchingAnchor, HatchingMarks, ObjectScreen};
+use bevy_comics::{
+    Hatching, ToonLight,
+    effects::{HatchingAnchor, HatchingMarks},
+    objects::PatternAnchor,
+};
 use bevy_comics_testkit::reference::{color, hatching::Hatch, stipple::dot_radius};
 
 use crate::{
@@ -228,7 +232,7 @@ fn dots_travel_with_their_object() {
     let mut small = empty();
     let at = tilted(30.0, 12.0);
     let object = flat(&mut small, 0.2, at);
-    let screen = ObjectScreen::default();
+    let screen = PatternAnchor::default();
     small.world().entity_mut(object).insert(screen);
     let s = Hatching {
         wobble: 1.0,
@@ -249,13 +253,13 @@ fn dots_travel_with_their_object() {
     println!("moved: {stays} pixels differ");
     assert!(stays < still.len() / 200, "{stays}");
     // Fixed to the world, they swim.
-    small.world().entity_mut(object).remove::<ObjectScreen>();
+    small.world().entity_mut(object).remove::<PatternAnchor>();
     let swims = apart(&covers(&mut small, s));
     assert!(swims > still.len() / 10, "{swims}");
     assert_eq!(small.errors(), 0);
 }
 
-/// Truth: dots of the cartoon material stay on a mesh that moves, turns and is stretched.
+/// Truth: dots of the toon material stay on a mesh that moves, turns and is stretched.
 #[test]
 fn dots_stay_on_the_material() {
     let (mut small, sun) = studio();
@@ -266,7 +270,7 @@ fn dots_stay_on_the_material() {
         shadows: 0.0,
         ..plain()
     });
-    let light = CartoonLight {
+    let light = ToonLight {
         hatching,
         ..default()
     };
@@ -318,7 +322,7 @@ fn extreme_dots_are_finite() {
             wobble: x,
             pressure: x,
             rate: x,
-            calm: x,
+            simplify_small: x,
             ..plain()
         };
         let found = covers(&mut small, s);

@@ -4,13 +4,17 @@ use std::{fs, time::Duration};
 
 use bevy::{color::Color, prelude::*, render::view::Msaa};
 use bevy_comics::{
-    BlackFlats, ColorHarmony, Colorization, ColorizationMode, ComicStyle, ComicStyleError,
-    ComicStyleHandle, ContourOperator, Contours, Creases, DepthMap, DepthMapping, Desaturation,
-    Focus, FocusAt, FocusStyle, Form, Halftone, HalftoneMode, HarmonyMode, Hatching,
-    HatchingAnchor, LineBoil, LineColor, LineWeight, ObjectEdges, Outlines, Paint, PaintForm,
-    Paper, PlaneBorders, PlaneStyle, Planes, PrintOffset, RangeSmoothing, ReductionMethod,
-    ScreenAnchor, ScreenSampling, ScreenShape, Silhouettes, Sketch, SpeedLineKind, SpeedLines,
-    ToneBands, TwoTone,
+    BlackFlats, ColorHarmony, Colorization, Comic, ComicStyle, Contours, DepthLayers, DepthMap,
+    DepthMapping, Desaturation, Focus, Halftone, Hatching, Misregistration, Outlines, Paint, Paper,
+    Sketch, SpeedLines, ToneBands, TwoTone,
+    depth::{RangeSmoothing, ReductionMethod},
+    effects::{
+        ColorizationMode, ContourOperator, DepthLayer, Equations, FocusAt, FocusStyle,
+        HalftoneMode, HarmonyMode, HatchingAnchor, LayerBorders, PaintKernel, ScreenAnchor,
+        ScreenSampling, ScreenShape, SpeedLineKind,
+    },
+    lines::{Creases, LineBoil, LineColor, LineWeight, ObjectEdges, Silhouettes},
+    style::ComicStyleError,
 };
 use proptest::{
     option,
@@ -38,7 +42,7 @@ fn colors() -> impl Strategy<Value = Color> {
 }
 
 pub fn styles() -> impl Strategy<Value = ComicStyle> {
-    let methods = || select(vec![Form::Corrected, Form::Faithful]);
+    let methods = || select(vec![Equations::Corrected, Equations::Faithful]);
     let map = (number(), number(), number(), any::<bool>(), 0..6usize).prop_map(
         |(near, far, gap, flip, kind)| DepthMap {
             mapping: [
@@ -46,8 +50,14 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
                 DepthMapping::MinMaxLogarithmic,
                 DepthMapping::Linear,
                 DepthMapping::Logarithmic,
-                DepthMapping::Fixed { near, far },
-                DepthMapping::FixedLogarithmic { near, far },
+                DepthMapping::Fixed {
+                    from: near,
+                    to: far,
+                },
+                DepthMapping::FixedLogarithmic {
+                    from: near,
+                    to: far,
+                },
             ][kind],
             flip,
             sky_gap: gap,
@@ -66,20 +76,20 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
         (number(), number(), methods()).prop_map(|(amount, exponent, method)| Desaturation {
             amount,
             exponent,
-            form: method,
+            equations: method,
         });
     let colorization =
         (colors(), number(), methods(), 0..4usize).prop_map(|(color, amount, method, mode)| {
             Colorization {
                 mode: [
-                    ColorizationMode::Hue,
+                    ColorizationMode::KeepHue,
                     ColorizationMode::Atmosphere,
                     ColorizationMode::Linear,
                     ColorizationMode::Quadratic,
                 ][mode],
                 color,
                 amount,
-                form: method,
+                equations: method,
             }
         });
     let flats = (
@@ -103,10 +113,10 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
                 ContourOperator::Laplace,
                 ContourOperator::Roberts,
             ][operator],
-            form: if faithful {
-                Form::Faithful
+            equations: if faithful {
+                Equations::Faithful
             } else {
-                Form::Corrected
+                Equations::Corrected
             },
             threshold,
             width,
@@ -121,7 +131,7 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
         option::of(colorization),
         option::of(flats),
         option::of(contours),
-        (cartoon_styles(), prints(), page_styles()),
+        (toon_styles(), prints(), page_styles()),
     )
         .prop_map(
             |(name, depth_map, desaturation, colorization, black_flats, contours, others)| {
@@ -161,7 +171,7 @@ fn weights() -> impl Strategy<Value = LineWeight> {
             outer,
             shade,
             perspective,
-            nib,
+            nib_roundness: nib,
             taper,
             ..default()
         },
@@ -170,14 +180,14 @@ fn weights() -> impl Strategy<Value = LineWeight> {
 
 fn page_styles() -> impl Strategy<Value = (Option<SpeedLines>, Option<TwoTone>, Option<Paper>)> {
     let lines = (number(), number(), any::<u32>(), (any::<bool>(), colors())).prop_map(
-        |(centre_x, width, count, (parallel, color))| SpeedLines {
+        |(center, width, count, (parallel, color))| SpeedLines {
             color,
             kind: if parallel {
                 SpeedLineKind::Parallel
             } else {
                 SpeedLineKind::Radial
             },
-            centre_x,
+            center: Vec2::new(center, 0.5),
             width,
             count,
             ..default()
@@ -197,7 +207,7 @@ fn page_styles() -> impl Strategy<Value = (Option<SpeedLines>, Option<TwoTone>, 
             color,
             grain,
             size,
-            spread,
+            ink_bleed: spread,
             dry_brush: spread,
             ..default()
         });
@@ -209,11 +219,11 @@ type Painted = (
     Option<Focus>,
     Option<Hatching>,
     Option<ColorHarmony>,
-    Option<Planes>,
+    Option<DepthLayers>,
 );
 
 /// Print effects, paint and harmony of all modes.
-fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Painted)> {
+fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<Misregistration>, Painted)> {
     let halftone = (number(), number(), colors(), 0u32..99, 0..4usize).prop_map(
         |(period, fraction, ink, tints, kind)| Halftone {
             mode: [
@@ -234,9 +244,9 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Pai
                 ScreenAnchor::Window,
                 ScreenAnchor::Object,
             ][kind % 3],
-            period,
+            cell_size: period,
             gain: fraction,
-            near: fraction,
+            at_near: fraction,
             tints,
             cyan: ink,
             paper: ink,
@@ -244,20 +254,20 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Pai
             ..default()
         },
     );
-    let offset = (number(), number()).prop_map(|(cyan_x, amount)| PrintOffset {
-        cyan_x,
-        drift: cyan_x,
+    let offset = (number(), number()).prop_map(|(offset, amount)| Misregistration {
+        cyan: Vec2::new(offset, 0.3),
+        drift: offset,
         rate: amount,
         amount,
         ..default()
     });
     let paint = (number(), number(), any::<bool>()).prop_map(|(near, sharpness, fine)| Paint {
-        form: if fine {
-            PaintForm::Anisotropic
+        kernel: if fine {
+            PaintKernel::Anisotropic
         } else {
-            PaintForm::Box
+            PaintKernel::Box
         },
-        near,
+        at_near: near,
         sharpness,
         figures: fine,
         ..default()
@@ -271,14 +281,14 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Pai
     ];
     let focus = (number(), number(), select(looks)).prop_map(|(distance, radius, style)| Focus {
         at: if style == FocusStyle::Offset {
-            FocusAt::Centre
+            FocusAt::Center
         } else {
             FocusAt::Distance
         },
         style,
         distance,
         radius,
-        period: radius,
+        cell_size: radius,
         ..default()
     });
     let hatching =
@@ -306,12 +316,12 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Pai
             pull: number,
             offset: number,
             color,
-            form: [Form::Corrected, Form::Faithful][usize::from(faithful)],
+            equations: [Equations::Corrected, Equations::Faithful][usize::from(faithful)],
             ..default()
         },
     );
     let plane = (number(), number(), colors(), any::<u32>()).prop_map(
-        |(saturation, contrast, tint, bands)| PlaneStyle {
+        |(saturation, contrast, tint, bands)| DepthLayer {
             saturation,
             tint,
             tint_amount: contrast,
@@ -326,10 +336,10 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Pai
             halftone: saturation,
         },
     );
-    let planes = (plane, number(), any::<bool>()).prop_map(|(near, number, fixed)| Planes {
-        near,
-        borders: [PlaneBorders::Auto, PlaneBorders::Fixed][usize::from(fixed)],
-        near_end: number,
+    let planes = (plane, number(), any::<bool>()).prop_map(|(near, number, fixed)| DepthLayers {
+        foreground: near,
+        borders: [LayerBorders::Auto, LayerBorders::Fixed][usize::from(fixed)],
+        foreground_end: number,
         softness: number,
         ..default()
     });
@@ -343,15 +353,14 @@ fn prints() -> impl Strategy<Value = (Option<Halftone>, Option<PrintOffset>, Pai
     (option::of(halftone), option::of(offset), painted)
 }
 
-fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines>, Option<Sketch>)>
-{
-    let forms = || select(vec![Form::Corrected, Form::Faithful]);
+fn toon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines>, Option<Sketch>)> {
+    let forms = || select(vec![Equations::Corrected, Equations::Faithful]);
     let bands = (0u32..99, number(), number(), any::<bool>()).prop_map(
         |(levels, softness, amount, faithful)| ToneBands {
-            form: if faithful {
-                Form::Faithful
+            equations: if faithful {
+                Equations::Faithful
             } else {
-                Form::Corrected
+                Equations::Corrected
             },
             levels,
             softness,
@@ -361,7 +370,7 @@ fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines
     let silhouettes =
         (forms(), number(), number(), colors()).prop_map(|(form, threshold, softness, color)| {
             Silhouettes {
-                form,
+                equations: form,
                 threshold,
                 softness,
                 color,
@@ -371,7 +380,7 @@ fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines
     let creases =
         (forms(), number(), number(), colors()).prop_map(|(form, angle, edge_limit, color)| {
             Creases {
-                form,
+                equations: form,
                 angle,
                 edge_limit,
                 color,
@@ -396,7 +405,7 @@ fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines
                 width_fade: fade,
                 opacity_fade: fade,
                 weight,
-                budget: fade,
+                ink_budget: fade,
                 boil: LineBoil {
                     amplitude: width,
                     wavelength: fade,
@@ -406,10 +415,10 @@ fn cartoon_styles() -> impl Strategy<Value = (Option<ToneBands>, Option<Outlines
                     darken: fade,
                     saturate: width,
                 },
-                memory: fade,
+                history_weight: fade,
                 overshoot: width,
-                bridge: 2,
-                persistence: 5,
+                gap_closing: 2,
+                hold_frames: 5,
                 ..default()
             },
         );
@@ -447,14 +456,14 @@ fn errors_name_the_line_and_what_is_wrong() {
             .expect_err("must not read")
             .to_string()
     };
-    let unknown = error("(\n    version: 2,\n    contours: (\n        treshold: 0.1,\n    ),\n)");
+    let unknown = error("(\n    version: 3,\n    contours: (\n        treshold: 0.1,\n    ),\n)");
     assert!(
         unknown.contains("line 4") && unknown.contains("treshold"),
         "{unknown}"
     );
-    let broken = error("(version: 2,\n contours: (\n");
+    let broken = error("(version: 3,\n contours: (\n");
     assert!(broken.contains("line 2"), "{broken}");
-    let colour = error("(version: 2, contours: (color: \"reddish\"))");
+    let colour = error("(version: 3, contours: (color: \"reddish\"))");
     assert!(
         colour.contains("reddish") || colour.contains("#rrggbb"),
         "{colour}"
@@ -499,7 +508,7 @@ fn wait(small: &mut Small, done: impl Fn(Option<&Contours>) -> bool) -> bool {
 fn a_style_file_is_loaded_reloaded_and_survives_being_broken() {
     let folder = Folder::new("styles");
     let file = folder.0.join("mine.comic.ron");
-    fs::write(&file, "(version: 2, contours: (width: 3.0))").expect("written");
+    fs::write(&file, "(version: 3, contours: (width: 3.0))").expect("written");
     let assets = folder.0.to_string_lossy().into_owned();
     let mut small = Small::with(
         HeadlessOptions {
@@ -513,7 +522,7 @@ fn a_style_file_is_loaded_reloaded_and_survives_being_broken() {
         .world()
         .resource::<AssetServer>()
         .load("mine.comic.ron");
-    small.insert(ComicStyleHandle(handle));
+    small.insert(Comic(handle));
     assert!(
         wait(&mut small, |c| c.is_some_and(|c| c.width == 3.0)),
         "the style did not load"
@@ -521,7 +530,7 @@ fn a_style_file_is_loaded_reloaded_and_survives_being_broken() {
 
     fs::write(
         &file,
-        "(version: 2, contours: (width: 5.0), desaturation: ())",
+        "(version: 3, contours: (width: 5.0), desaturation: ())",
     )
     .expect("written");
     assert!(
@@ -531,13 +540,13 @@ fn a_style_file_is_loaded_reloaded_and_survives_being_broken() {
     let camera = small.camera;
     assert!(small.world().get::<Desaturation>(camera).is_some());
 
-    fs::write(&file, "(version: 2, contours: (width: ").expect("written");
+    fs::write(&file, "(version: 3, contours: (width: ").expect("written");
     assert!(
         !wait_briefly(&mut small, |c| c.is_none_or(|c| c.width != 5.0)),
         "the last good look is kept"
     );
 
-    fs::write(&file, "(version: 2, contours: (width: 7.0))").expect("written");
+    fs::write(&file, "(version: 3, contours: (width: 7.0))").expect("written");
     assert!(
         wait(&mut small, |c| c.is_some_and(|c| c.width == 7.0)),
         "mended, it is back"
@@ -547,10 +556,7 @@ fn a_style_file_is_loaded_reloaded_and_survives_being_broken() {
         "what the style lost, the camera lost"
     );
 
-    small
-        .world()
-        .entity_mut(camera)
-        .remove::<ComicStyleHandle>();
+    small.world().entity_mut(camera).remove::<Comic>();
     assert!(
         wait(&mut small, |c| c.is_none()),
         "without the handle there is no look"

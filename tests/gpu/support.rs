@@ -5,7 +5,11 @@ mod facts;
 
 use std::{collections::BTreeMap, fmt::Write, fs, path::Path, sync::LazyLock};
 
-use bevy_comics::{ComicStyle, EffectRegistry, EffectType, presets};
+use bevy_comics::{
+    ComicStyle,
+    effect::{EffectRegistry, EffectType},
+    presets,
+};
 use facts::{FACTS, Feature, GROUPS, Group, Known, OF_LOOKS, OF_PRESETS, PAIRED};
 
 use crate::{
@@ -292,7 +296,7 @@ fn every_effect_is_drawn_by_a_test_of_the_table_of_support() {
 #[test]
 fn presets_have_the_effects_of_the_table_of_support() {
     let known: Vec<ComicStyle> = presets::ALL.iter().flat_map(known_forms).collect();
-    let looks: Vec<ComicStyle> = presets::LOOKS.iter().map(|look| look.style()).collect();
+    let looks: Vec<ComicStyle> = presets::STYLES.iter().map(|look| look.style()).collect();
     for (effects, styles) in [(OF_PRESETS, known), (OF_LOOKS, looks)] {
         for effect in effects {
             let mut all = styles.iter();

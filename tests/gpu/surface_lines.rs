@@ -1,7 +1,7 @@
 //! Lines in the colour of the surfaces that they belong to.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, Desaturation, LineColor, NoStyle, Outlines};
+use bevy_comics::{ComicStyle, Desaturation, NoStyle, Outlines, lines::LineColor};
 
 use crate::{
     outlines::put,

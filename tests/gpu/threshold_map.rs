@@ -1,4 +1,4 @@
-//! Thresholds of the cartoon material from an image: where edges lie, and what their pixels cover.
+//! Thresholds of the toon material from an image: where edges lie, and what their pixels cover.
 
 use bevy::{
     asset::RenderAssetUsages,
@@ -6,7 +6,10 @@ use bevy::{
     prelude::*,
     render::render_resource::{Extent3d, TextureDimension, TextureFormat},
 };
-use bevy_comics::{CartoonLight, CartoonMaterial, Ramp, RampBlend, RampMode, RampStop};
+use bevy_comics::{
+    ToonLight, ToonMaterial,
+    toon::{Ramp, RampBlend, RampMode, RampStop},
+};
 
 use crate::{
     ramp::{bright, put, room, sun, with},
@@ -47,10 +50,14 @@ fn step() -> Vec<f32> {
 
 /// No ramp, and one of black and white from a quarter of the light on, in each mode; with where light
 /// begins.
-fn lights() -> Vec<(CartoonLight, f64)> {
-    let plain = CartoonLight::default();
-    let begins = f64::from(plain.terminator);
-    let modes = [RampMode::Share, RampMode::PerLight, RampMode::Brightest];
+fn lights() -> Vec<(ToonLight, f64)> {
+    let plain = ToonLight::default();
+    let begins = f64::from(plain.shadow_threshold);
+    let modes = [
+        RampMode::LightFraction,
+        RampMode::PerLight,
+        RampMode::Brightest,
+    ];
     let ramp = |mode| Ramp {
         mode,
         blend: RampBlend::Absolute,
@@ -83,15 +90,15 @@ fn wall(alpha: f32) -> Mesh {
 /// A wall under a sun, with coordinates from 0 at the left border of the picture to 1 at the right one.
 fn lit_wall(mesh: Mesh) -> (Small, Entity) {
     let mut small = room(SIZE, 0.0);
-    let entity = put(&mut small, mesh, &CartoonLight::default(), default());
+    let entity = put(&mut small, mesh, &ToonLight::default(), default());
     let across = (1.0 - COSINE * COSINE).sqrt();
     let to = Vec3::new(0.0, across as f32, COSINE as f32);
     sun(&mut small, to, bright(1.0));
     (small, entity)
 }
 
-fn set(small: &mut Small, light: &CartoonLight, uv_transform: Affine2) {
-    let mut materials = small.world().resource_mut::<Assets<CartoonMaterial>>();
+fn set(small: &mut Small, light: &ToonLight, uv_transform: Affine2) {
+    let mut materials = small.world().resource_mut::<Assets<ToonMaterial>>();
     let ids: Vec<_> = materials.ids().collect();
     for id in ids {
         let mut material = materials.get_mut(id).expect("listed");
@@ -149,14 +156,14 @@ fn edges_of_ramps_lie_where_a_gradient_crosses_the_threshold() {
     assert_edges_of_a_gradient(&lights());
 }
 
-fn assert_edges_of_a_gradient(lights: &[(CartoonLight, f64)]) {
+fn assert_edges_of_a_gradient(lights: &[(ToonLight, f64)]) {
     let (mut small, entity) = lit_wall(wall(0.625));
     let map = thresholds(&mut small, &gradient());
     let plain = Affine2::IDENTITY;
     let turned =
         Affine2::from_scale_angle_translation(Vec2::new(0.5, 1.0), 0.0, Vec2::new(0.25, 0.0));
     for (light, begins) in lights {
-        let light = CartoonLight {
+        let light = ToonLight {
             threshold_map: Some(map.clone()),
             ..light.clone()
         };
@@ -169,7 +176,7 @@ fn assert_edges_of_a_gradient(lights: &[(CartoonLight, f64)]) {
         let moved = (edge - 0.25) / 0.5;
         check_edge(&mut small, entity, 160.0 * moved, &format!("{what}, moved"));
         // What vertices and the map say adds up.
-        let both = CartoonLight {
+        let both = ToonLight {
             vertex_threshold: true,
             ..light
         };
@@ -191,11 +198,11 @@ fn edges_of_ramps_lie_in_the_texel_of_a_step() {
     assert_edges_of_a_step(&lights());
 }
 
-fn assert_edges_of_a_step(lights: &[(CartoonLight, f64)]) {
+fn assert_edges_of_a_step(lights: &[(ToonLight, f64)]) {
     let (mut small, entity) = lit_wall(wall(1.0));
     let map = thresholds(&mut small, &step());
     for (light, begins) in lights {
-        let light = CartoonLight {
+        let light = ToonLight {
             threshold_map: Some(map.clone()),
             ..light.clone()
         };
@@ -213,7 +220,7 @@ fn without_coordinates_there_is_no_threshold() {
     mesh.remove_attribute(Mesh::ATTRIBUTE_UV_0);
     let (mut small, _) = lit_wall(mesh);
     let map = thresholds(&mut small, &[0.0]);
-    let light = CartoonLight {
+    let light = ToonLight {
         threshold_map: Some(map),
         ..default()
     };

@@ -11,7 +11,7 @@ use bevy::{
     prelude::*,
     render::{render_resource::TextureFormat, view::Msaa},
 };
-use bevy_comics::{ComicStyle, DepthWrite};
+use bevy_comics::{ComicStyle, objects::DepthWrite};
 use bevy_comics_testkit::headless::new_target;
 use image::RgbaImage;
 

@@ -8,7 +8,7 @@ use bevy_comics_testkit::{
 };
 
 use crate::{
-    pictures::assert_pass_is_its_twin,
+    pictures::assert_pass_matches_the_reference,
     ramp::room,
     small::{Small, linear},
 };
@@ -23,10 +23,7 @@ fn tones_change_with_the_distance() {
         ..ToneRamp::default()
     };
     let map = DepthMap {
-        mapping: DepthMapping::Fixed {
-            near: 1.0,
-            far: 9.0,
-        },
+        mapping: DepthMapping::Fixed { from: 1.0, to: 9.0 },
         ..DepthMap::default()
     };
     small.style(&ComicStyle::new().with(ramp));
@@ -60,7 +57,7 @@ fn tones_change_with_the_distance() {
 /// Whole pictures, pixel by pixel: by themselves, with the depth map turned round, and with effects
 /// that follow.
 #[test]
-fn pictures_in_tones_are_their_twin() {
+fn pictures_in_tones_match_the_reference() {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
     let hard = ToneRamp {
         far_softness: 0.0,
@@ -95,7 +92,12 @@ fn pictures_in_tones_are_their_twin() {
     for msaa in [Msaa::Off, Msaa::Sample4] {
         small.restart(msaa);
         for (name, style) in &cases {
-            assert_pass_is_its_twin(&mut small, style, None, &format!("{name}, {msaa:?}"));
+            assert_pass_matches_the_reference(
+                &mut small,
+                style,
+                None,
+                &format!("{name}, {msaa:?}"),
+            );
         }
     }
     assert_eq!(small.errors(), 0);

@@ -2,13 +2,14 @@
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
-    BlackFlats, Colorization, ComicStyle, Contours, Desaturation, Outlines, Silhouettes, Sketch,
-    SplitView, StyleWeight, ToneBands, Vignette,
+    BlackFlats, Colorization, ComicStyle, Contours, Desaturation, Outlines, Sketch, SplitView,
+    StyleWeight, ToneBands, Vignette,
+    lines::Silhouettes,
     presets::{self, Preset},
 };
 
 use crate::{
-    pictures::{assert_pass_is_its_twin, known_forms, outlined},
+    pictures::{assert_pass_matches_the_reference, known_forms, outlined},
     small::{Small, size},
 };
 
@@ -155,25 +156,25 @@ fn weight_and_split_mix_the_opacity_too() {
 
 /// Presets that print, and that draw on paper.
 #[test]
-fn presets_are_their_twin_without_a_background() {
+fn presets_match_the_reference_without_a_background() {
     let presets = [presets::POP_POSTER, presets::PENCIL_SKETCH];
-    assert_presets_are_their_twin(&[Msaa::Off], &presets);
+    assert_presets_match_the_reference(&[Msaa::Off], &presets);
 }
 
 #[test]
 #[ignore = "long: every preset"]
-fn every_preset_is_its_twin_without_a_background() {
-    assert_presets_are_their_twin(&[Msaa::Off, Msaa::Sample4], presets::ALL);
+fn every_preset_matches_the_reference_without_a_background() {
+    assert_presets_match_the_reference(&[Msaa::Off, Msaa::Sample4], presets::ALL);
 }
 
-fn assert_presets_are_their_twin(msaas: &[Msaa], presets: &[Preset]) {
+fn assert_presets_match_the_reference(msaas: &[Msaa], presets: &[Preset]) {
     let mut small = Small::new(UVec2::new(80, 56), Msaa::Off);
     for &msaa in msaas {
         again(&mut small, msaa);
         for preset in presets {
             let what = format!("{preset} without a background, {msaa:?}");
             for style in known_forms(preset) {
-                assert_pass_is_its_twin(&mut small, &style, None, &what);
+                assert_pass_matches_the_reference(&mut small, &style, None, &what);
             }
         }
         assert_eq!(small.errors(), 0);

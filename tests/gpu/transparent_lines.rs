@@ -11,9 +11,14 @@ use bevy::{
     },
 };
 use bevy_comics::{
-    Colorization, ComicStyle, ComicsDiagnostics, ComicsStage, Contours, Creases, DebugView,
-    DepthMap, DepthWrite, Desaturation, Form, LeftOut, LineWeight, NoOutlines, NoStyle,
-    OutlineStyle, Outlines, Silhouettes, Sketch, StageOutcome, VisibleDepthRange, object_id,
+    Colorization, ComicStyle, ComicsDiagnostics, Contours, DepthMap, Desaturation, NoOutlines,
+    NoStyle, OutlineStyle, Outlines, Sketch,
+    depth::VisibleDepthRange,
+    diagnostics::{ComicsStage, DebugView, SkipReason, StageOutcome},
+    effects::Equations,
+    lines::{Creases, LineWeight, Silhouettes},
+    objects::DepthWrite,
+    testing::object_id,
 };
 
 use crate::{
@@ -56,10 +61,16 @@ fn write_depth(small: &mut Small, object: Entity) {
 }
 
 fn faithful() -> Outlines {
-    let form = Form::Faithful;
+    let form = Equations::Faithful;
     Outlines {
-        silhouettes: Some(Silhouettes { form, ..default() }),
-        creases: Some(Creases { form, ..default() }),
+        silhouettes: Some(Silhouettes {
+            equations: form,
+            ..default()
+        }),
+        creases: Some(Creases {
+            equations: form,
+            ..default()
+        }),
         ..default()
     }
 }
@@ -456,10 +467,13 @@ fn it_is_an_object_like_others() {
         .add_child(glass)
         .id();
     let outlines = Outlines::default();
-    small.world().entity_mut(root).insert(DepthWrite::default());
+    small.world().entity_mut(root).insert(DepthWrite {
+        inherit: false,
+        ..default()
+    });
     let none = ink(&mut small, outlines);
     assert_eq!(total(&none, UVec2::splat(60)), 0.0, "not inherited");
-    small.world().entity_mut(root).insert(DepthWrite::INHERITED);
+    small.world().entity_mut(root).insert(DepthWrite::default());
     let plain = ink(&mut small, outlines);
     assert!(total(&plain, UVec2::splat(60)) > 400.0, "inherited");
     let ids = small.object_ids().expect("drawn").pixels;
@@ -518,7 +532,7 @@ fn it_runs_only_where_it_does_something() {
         white_glass(0.6, AlphaMode::Blend),
         Transform::IDENTITY,
     );
-    let no_meshes = StageOutcome::LeftOut(LeftOut::NoSuchMeshes);
+    let no_meshes = StageOutcome::Skipped(SkipReason::NoSuchMeshes);
     small.style(&outlined(Outlines::SILHOUETTES));
     small.settle();
     assert_eq!(outcome(&small), no_meshes);
@@ -543,7 +557,7 @@ fn it_runs_only_where_it_does_something() {
     small.settle();
     assert_eq!(
         outcome(&small),
-        StageOutcome::LeftOut(LeftOut::NoDepthStyle)
+        StageOutcome::Skipped(SkipReason::NoDepthStyle)
     );
     assert_eq!(small.errors(), 0);
 }

@@ -9,9 +9,9 @@ use crate::{
     walls::{towards_the_sky, wall},
 };
 
-/// Every pixel of the fused pass equals its twin, away from edges of the picture.
+/// Every pixel of the fused pass equals its reference, away from edges of the picture.
 #[test]
-fn every_pixel_is_its_twins() {
+fn every_pixel_matches_the_reference() {
     let mut small = Small::new(size(), Msaa::Off);
     for settings in [
         TwoTone {

@@ -2,8 +2,8 @@
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
-    Colorization, ComicStyle, ComicsStage, Contours, Desaturation, NoStyle, OutlineStyle, Outlines,
-    Sketch, ToneBands,
+    Colorization, ComicStyle, Contours, Desaturation, NoStyle, OutlineStyle, Outlines, Sketch,
+    ToneBands, diagnostics::ComicsStage,
 };
 
 use crate::{
@@ -140,9 +140,12 @@ fn descendants_inherit_it_where_asked() {
         pixels.iter().filter(|(change, ..)| *change == 0.0).count()
     };
     let none = own(&mut small);
-    small.world().entity_mut(root).insert(NoStyle::default());
+    small
+        .world()
+        .entity_mut(root)
+        .insert(NoStyle { inherit: false });
     assert_eq!(own(&mut small), none, "not inherited");
-    small.world().entity_mut(root).insert(NoStyle::INHERITED);
+    small.world().entity_mut(root).insert(NoStyle::default());
     assert!(own(&mut small) > none + 200, "inherited");
     small.world().entity_mut(root).remove::<NoStyle>();
     assert_eq!(own(&mut small), none, "taken off");

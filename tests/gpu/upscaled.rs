@@ -10,8 +10,11 @@ use bevy::{
     render::{Render, RenderApp, RenderSystems, camera::ExtractedCamera, view::Msaa},
 };
 use bevy_comics::{
-    BlackFlats, ComicStyle, ContourOperator, Contours, Creases, Effect, Form, Halftone, Outlines,
-    Paper, PrintOffset, ScreenSampling, ScreenShape, Silhouettes, SpeedLines, VisibleDepthRange,
+    BlackFlats, ComicStyle, Contours, Effect, Halftone, Misregistration, Outlines, Paper,
+    SpeedLines,
+    depth::VisibleDepthRange,
+    effects::{ContourOperator, Equations, ScreenSampling, ScreenShape},
+    lines::{Creases, Silhouettes},
 };
 use bevy_comics_testkit::screens::SHAPES;
 
@@ -363,7 +366,7 @@ fn assert_lines_at_the_horizon_alone(heights: &[f32], widths: &[f32]) {
 fn faithful_contours_are_those_of_a_view_of_the_main_passs_size() {
     let contours = |width| {
         of(Contours {
-            form: Form::Faithful,
+            equations: Equations::Faithful,
             width,
             ..default()
         })
@@ -389,18 +392,18 @@ fn faithful_contours_are_those_of_a_view_of_the_main_passs_size() {
     }
 }
 
-/// Nor do the faithful forms of outlines know pixels of the picture: they compare 5 x 5
+/// Nor do the faithful equations of outlines know pixels of the picture: they compare 5 x 5
 /// neighbours, and between these a slope would be a staircase.
 #[test]
 fn faithful_outlines_are_those_of_a_view_of_the_main_passs_size() {
     let style = of(Outlines {
         silhouettes: Some(Silhouettes {
-            form: Form::Faithful,
+            equations: Equations::Faithful,
             threshold: 0.002,
             ..default()
         }),
         creases: Some(Creases {
-            form: Form::Faithful,
+            equations: Equations::Faithful,
             ..default()
         }),
         objects: None,
@@ -501,7 +504,7 @@ fn the_page_has_the_size_of_the_picture() {
     let dots = |shape: ScreenShape| Halftone { shape, ..default() };
     let cells = Halftone {
         sampling: ScreenSampling::Cell,
-        near: 0.5,
+        at_near: 0.5,
         ..dots(ScreenShape::Round)
     };
     let lines = SpeedLines {
@@ -509,11 +512,11 @@ fn the_page_has_the_size_of_the_picture() {
         ..default()
     };
     let rough = Paper {
-        spread: 1.0,
+        ink_bleed: 1.0,
         ..default()
     };
     let mut styles: Vec<_> = SHAPES.into_iter().map(|shape| of(dots(shape))).collect();
-    styles.push(of(cells).with(PrintOffset::default()));
+    styles.push(of(cells).with(Misregistration::default()));
     styles.push(of(cells).with(rough));
     styles.push(of(Paper::default()).with(lines));
     override_main_pass(&mut small, None);

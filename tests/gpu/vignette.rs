@@ -1,7 +1,7 @@
-//! The vignette: its function against its twin, and the rule against geometry.
+//! The vignette: its function against its reference, and the rule against geometry.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicsStage, Vignette};
+use bevy_comics::{Vignette, diagnostics::ComicsStage};
 
 use bevy_comics_testkit::reference::vignette;
 
@@ -9,9 +9,9 @@ use crate::small::{Small, size};
 
 const INK: Color = Color::srgb(0.8, 0.1, 0.3);
 
-/// Every pixel of the fused pass equals its twin, in the camera's viewport.
+/// Every pixel of the fused pass equals its reference, in the camera's viewport.
 #[test]
-fn every_pixel_is_its_twins() {
+fn every_pixel_matches_the_reference() {
     let mut small = Small::new(size(), Msaa::Off);
     for settings in [
         Vignette::default(),

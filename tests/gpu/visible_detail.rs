@@ -5,7 +5,9 @@ use bevy::{
     prelude::*,
 };
 use bevy_comics::{
-    CartoonLight, CartoonMaterial, DepthMap, DetailAxis, RampMode, VisibleDepthRange,
+    DepthMap, ToonLight, ToonMaterial,
+    depth::VisibleDepthRange,
+    toon::{DetailAxis, RampMode},
 };
 use bevy_comics_testkit::reference::detail;
 use image::RgbaImage;
@@ -19,8 +21,8 @@ use crate::{
 
 const SIZE: UVec2 = UVec2::new(96, 32);
 
-fn light(axis: DetailAxis) -> CartoonLight {
-    two_tones(axis, RampMode::Share)
+fn light(axis: DetailAxis) -> ToonLight {
+    two_tones(axis, RampMode::LightFraction)
 }
 
 /// A wall in the left, middle or right third of a view of 96 by 32 pixels (-1, 0, 1).
@@ -31,8 +33,8 @@ fn wall(small: &mut Small, third: f32, z: f32, spread: f32, alpha_mode: AlphaMod
         alpha_mode,
         ..default()
     };
-    let mut materials = small.world().resource_mut::<Assets<CartoonMaterial>>();
-    let material = MeshMaterial3d(materials.add(CartoonMaterial { base, extension }));
+    let mut materials = small.world().resource_mut::<Assets<ToonMaterial>>();
+    let material = MeshMaterial3d(materials.add(ToonMaterial { base, extension }));
     let at = Transform::from_xyz(third * spread, 0.0, -z).with_scale(Vec3::splat(spread));
     small.put_shared(Rectangle::new(0.9, 0.9), material, at)
 }
@@ -263,8 +265,8 @@ fn every_view_has_its_own_range() {
             ..default()
         };
         let extension = light(DetailAxis::VisibleRange);
-        let mut materials = small.world().resource_mut::<Assets<CartoonMaterial>>();
-        let material = MeshMaterial3d(materials.add(CartoonMaterial { base, extension }));
+        let mut materials = small.world().resource_mut::<Assets<ToonMaterial>>();
+        let material = MeshMaterial3d(materials.add(ToonMaterial { base, extension }));
         small.put_shared(Rectangle::new(0.5, 0.8), material, at);
     }
     let picture = drawn(&mut small);

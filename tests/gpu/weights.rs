@@ -10,11 +10,12 @@ use bevy::{
     render::view::Msaa,
 };
 use bevy_comics::{
-    ComicStyle, KeyLight, LineFog, LineWeight, ObjectEdges, OutlineGroup, Outlines, Silhouettes,
+    ComicStyle, KeyLight, OutlineGroup, Outlines,
+    lines::{LineFog, LineWeight, ObjectEdges, Silhouettes},
 };
 
 use crate::{
-    pictures::{assert_pass_is_its_twin, outlined},
+    pictures::{assert_pass_matches_the_reference, outlined},
     small::{Object, Small, black_ink, linear, unlit},
     walls::{towards_the_sky, wall},
 };
@@ -37,7 +38,7 @@ const ALL: LineWeight = LineWeight {
     shade: 0.6,
     lit: 0.4,
     perspective: 0.5,
-    nib: 0.4,
+    nib_roundness: 0.4,
     nib_angle: 40.0,
     taper: 20.0,
     pressure: 0.5,
@@ -46,15 +47,15 @@ const ALL: LineWeight = LineWeight {
 
 /// Every pixel of the small scene, at two widths.
 #[test]
-fn every_factor_is_its_twin() {
-    assert_factors_are_their_twin(&[ALL]);
+fn every_factor_matches_the_reference() {
+    assert_factors_match_the_reference(&[ALL]);
 }
 
 #[test]
 #[ignore = "long: each factor has a shader of its own"]
-fn every_factor_alone_is_its_twin() {
+fn every_factor_alone_matches_the_reference() {
     let even = LineWeight::EVEN;
-    assert_factors_are_their_twin(&[
+    assert_factors_match_the_reference(&[
         LineWeight {
             outer: 2.0,
             inner: 0.5,
@@ -72,7 +73,7 @@ fn every_factor_alone_is_its_twin() {
             ..even
         },
         LineWeight {
-            nib: 0.2,
+            nib_roundness: 0.2,
             nib_angle: 30.0,
             ..even
         },
@@ -88,7 +89,7 @@ fn every_factor_alone_is_its_twin() {
     ]);
 }
 
-fn assert_factors_are_their_twin(factors: &[LineWeight]) {
+fn assert_factors_match_the_reference(factors: &[LineWeight]) {
     let mut small = Small::new(SIZE, Msaa::Off);
     let light = Transform::from_xyz(2.0, 3.0, 4.0).looking_at(Vec3::ZERO, Vec3::Y);
     small.world().spawn((KeyLight, light, Object));
@@ -98,7 +99,7 @@ fn assert_factors_are_their_twin(factors: &[LineWeight]) {
                 width,
                 ..weighted(weight)
             };
-            assert_pass_is_its_twin(
+            assert_pass_matches_the_reference(
                 &mut small,
                 &outlined(outlines),
                 None,
@@ -242,7 +243,7 @@ fn lines_follow_the_light() {
 #[test]
 fn a_nib_draws_thick_and_thin() {
     let weight = |nib_angle| LineWeight {
-        nib: 0.25,
+        nib_roundness: 0.25,
         nib_angle,
         ..LineWeight::EVEN
     };
@@ -417,7 +418,7 @@ fn lines_follow_the_light_in_multisampled_views() {
         ..LineWeight::EVEN
     };
     let outlines = silhouettes(3.0, lit);
-    assert_pass_is_its_twin(&mut small, &outlined(outlines), None, "4 samples");
+    assert_pass_matches_the_reference(&mut small, &outlined(outlines), None, "4 samples");
 }
 
 /// Ink of every row of the picture between two columns.

@@ -1,30 +1,34 @@
 //! Wide lines against an exhaustive search.
 
 use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, Creases, DepthMap, Outlines, Silhouettes, VisibleDepthRange};
+use bevy_comics::{
+    ComicStyle, DepthMap, Outlines,
+    depth::VisibleDepthRange,
+    lines::{Creases, Silhouettes},
+};
 use bevy_comics_testkit::reference::{crack::Crack, draw::Cracks, view::View};
 
 use crate::{
-    pictures::{assert_pass_is_its_twin, frame, outlined},
+    pictures::{assert_pass_matches_the_reference, frame, outlined},
     small::Small,
 };
 
 #[test]
-fn wide_lines_are_their_twin() {
-    assert_wide_as_twin(&[6.5, 16.0]);
+fn wide_lines_match_the_reference() {
+    assert_wide_as_reference(&[6.5, 16.0]);
 }
 
 #[test]
 #[ignore = "long: more widths"]
-fn lines_of_more_widths_are_their_twin() {
-    assert_wide_as_twin(&[5.0, 8.0, 12.0]);
+fn lines_of_more_widths_match_the_reference() {
+    assert_wide_as_reference(&[5.0, 8.0, 12.0]);
 }
 
-fn assert_wide_as_twin(widths: &[f32]) {
+fn assert_wide_as_reference(widths: &[f32]) {
     let mut small = Small::new(UVec2::new(96, 64), Msaa::Off);
     for &width in widths {
         let style = outlined(Outlines { width, ..default() });
-        assert_pass_is_its_twin(&mut small, &style, None, &format!("{width} px"));
+        assert_pass_matches_the_reference(&mut small, &style, None, &format!("{width} px"));
     }
 }
 

@@ -55,7 +55,7 @@ fn tool(name: &str) -> Command {
 
 /// The style that windows start with.
 pub const START: &str = r##"(
-    version: 2,
+    version: 3,
     name: "Contours",
     depth_map: (mapping: MinMaxLogarithmic),
     desaturation: (amount: 0.35, exponent: 0.5),
@@ -103,7 +103,7 @@ impl Window {
             .arg(folder.join("state.json"))
             .arg("--styles")
             .arg(folder.join("styles"))
-            .arg("--looks")
+            .arg("--shadings")
             .arg(folder.join("looks"))
             .arg("--pictures")
             .arg(folder.join("pictures"))

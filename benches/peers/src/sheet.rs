@@ -7,11 +7,11 @@ use bevy::{
     core_pipeline::tonemapping::DebandDither, ecs::system::RunSystemOnce, light::RectLight,
     prelude::*, render::view::Msaa,
 };
-use bevy_comics::{ComicsPlugin, Ramp, RampMode, RampStop, ToonLook, presets};
+use bevy_comics::{ComicsPlugin, presets, toon::{Ramp, RampMode, RampStop, ToonShading}};
 use bevy_comics_testkit::{
     headless::{Headless, HeadlessOptions},
     scenes::{
-        BuiltIn, CartoonPart, Stage,
+        BuiltIn, ToonPart, Stage,
         lights::{Lighting, relight},
     },
 };
@@ -54,7 +54,7 @@ fn row(who: Who) -> Vec<RgbaImage> {
         let style = presets::SATURDAY_MORNING.style();
         style.apply(&mut world.commands().entity(camera));
         world.flush();
-        let mut parts = world.query::<(Entity, &CartoonPart)>();
+        let mut parts = world.query::<(Entity, &ToonPart)>();
         let parts: Vec<_> = parts
             .iter(world)
             .map(|(part, light)| (part, light.0.clone()))
@@ -97,7 +97,7 @@ fn share_light(world: &mut World) {
         RampStop::new(0.18, color("#f0b9a8")),
         RampStop::new(0.21, Color::WHITE).soft(0.03),
     ];
-    let mut looks = world.resource_mut::<Assets<ToonLook>>();
+    let mut looks = world.resource_mut::<Assets<ToonShading>>();
     for id in looks.ids().collect::<Vec<_>>() {
         let Some(mut look) = looks.get_mut(id) else {
             continue;
@@ -106,7 +106,7 @@ fn share_light(world: &mut World) {
             continue;
         }
         look.light.ramp = Some(Ramp {
-            mode: RampMode::Share,
+            mode: RampMode::LightFraction,
             ..Ramp::new(stops)
         });
         if let Some(form) = &mut look.light.form {

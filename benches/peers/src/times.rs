@@ -10,9 +10,7 @@ use bevy::{
     prelude::*,
     render::view::Msaa,
 };
-use bevy_comics::{
-    CartoonLight, CartoonScene, ComicStyle, ComicsPlugin, Contours, Form, Outlines, Ramp, Silhouettes,
-};
+use bevy_comics::{ToonLight, ToonScene, ComicStyle, ComicsPlugin, Contours, Outlines, effects::Equations, toon::Ramp, lines::Silhouettes};
 use bevy_edge_detection_outline::{EdgeDetection, EdgeDetectionPlugin, EdgeOperator};
 use bevy_mod_outline::{OutlineMode, OutlinePlugin, OutlineVolume};
 use bevy_shader_mtoon::{MtoonMaterial, MtoonPlugin, MtoonSun, VrmOutlineMode};
@@ -113,7 +111,7 @@ impl Bench {
         for (part, _, material) in &self.plain {
             world
                 .entity_mut(*part)
-                .remove::<(OutlineVolume, OutlineMode, MeshMaterial3d<MtoonMaterial>, CartoonScene)>()
+                .remove::<(OutlineVolume, OutlineMode, MeshMaterial3d<MtoonMaterial>, ToonScene)>()
                 .insert(MeshMaterial3d(material.clone()));
         }
         let mut shells = world.query_filtered::<Entity, With<Shell>>();
@@ -132,10 +130,10 @@ impl Bench {
         self.camera().insert(EdgeDetection { operator, ..default() });
     }
 
-    fn light(&mut self, light: &CartoonLight) {
+    fn light(&mut self, light: &ToonLight) {
         let world = self.headless.app.world_mut();
         for (part, _, _) in &self.plain {
-            world.entity_mut(*part).insert(CartoonScene::new(light.clone()));
+            world.entity_mut(*part).insert(ToonScene::new(light.clone()));
         }
     }
 
@@ -183,7 +181,7 @@ const VARIANTS: &[(&str, Put)] = &[
     ("bevy_comics: faithful silhouettes", |b| {
         b.style(&outlines(Outlines {
             silhouettes: Some(Silhouettes {
-                form: Form::Faithful,
+                form: Equations::Faithful,
                 ..default()
             }),
             ..Outlines::SILHOUETTES
@@ -207,9 +205,9 @@ const VARIANTS: &[(&str, Put)] = &[
                 .insert(MeshMaterial3d(toon.clone()));
         }
     }),
-    ("bevy_comics: cartoon material", |b| b.light(&CartoonLight::default())),
-    ("bevy_comics: cartoon material; default ramp", |b| {
-        b.light(&CartoonLight {
+    ("bevy_comics: toon material", |b| b.light(&ToonLight::default())),
+    ("bevy_comics: toon material; default ramp", |b| {
+        b.light(&ToonLight {
             ramp: Some(Ramp::default()),
             ..default()
         });

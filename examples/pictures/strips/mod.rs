@@ -8,7 +8,8 @@ use std::path::Path;
 
 use bevy::{prelude::*, render::view::Msaa};
 use bevy_comics::{
-    ComicStyle, Desaturation, IsoLines, LineBoil, LineColor, LineWeight, Outlines, ToneBands,
+    ComicStyle, Desaturation, IsoLines, Outlines, ToneBands,
+    lines::{LineBoil, LineColor, LineWeight},
 };
 use bevy_comics_testkit::{scenes::BuiltIn, studio::Studio};
 use image::{RgbaImage, imageops};
@@ -140,7 +141,7 @@ fn weights() -> Vec<Strip> {
     let brush = LineWeight {
         pressure: 0.6,
         taper: 16.0,
-        nib: 0.3,
+        nib_roundness: 0.3,
         ..even
     };
     let boil = Outlines {
@@ -179,7 +180,7 @@ fn wholeness() -> Vec<Strip> {
     use Motion::{Dolly, Sway, Turntable, Walk};
     let plain = Outlines::default();
     let free = Outlines {
-        budget: 1.0,
+        ink_budget: 1.0,
         ..plain
     };
     let thin = Outlines {
@@ -198,13 +199,16 @@ fn wholeness() -> Vec<Strip> {
         overshoot: 0.0,
         ..stroke
     };
-    let bridged = Outlines { bridge: 3, ..thin };
+    let bridged = Outlines {
+        gap_closing: 3,
+        ..thin
+    };
     let kept = Outlines {
-        persistence: 8,
+        hold_frames: 8,
         ..thin
     };
     let forgetful = Outlines {
-        memory: 1.0,
+        history_weight: 0.0,
         ..plain
     };
     vec![

@@ -6,7 +6,10 @@ use bevy::{
     pbr::{DistanceFog, FogFalloff},
     prelude::*,
 };
-use bevy_comics::{DepthWrite, LineWidths, MeshSections, NoStyle, SelectionOutline, XRayOutline};
+use bevy_comics::{
+    NoStyle, SelectionOutline, XRayOutline,
+    objects::{DepthWrite, LineWidths, MeshSections},
+};
 use bevy_comics_testkit::{
     forest,
     specimens::Specimen,

@@ -16,7 +16,7 @@ pub const FOV: f32 = 30.0 * std::f32::consts::PI / 180.0;
 const FROM: Vec3 = Vec3::new(0.55, 0.33, 1.0);
 
 /// The points of a model, relative to the centre of their bounding box.
-pub struct Extent {
+pub struct AffectedArea {
     points: Points,
     /// Centre of the bounding box, world space.
     pub centre: Vec3,
@@ -43,7 +43,7 @@ pub struct Framing {
     pub height: f32,
 }
 
-impl Extent {
+impl AffectedArea {
     /// `None` if there is no point with finite coordinates.
     pub fn new(points: impl IntoIterator<Item = Vec3>, turned: bool) -> Option<Self> {
         let mut points: Vec<Vec3> = points.into_iter().filter(|p| p.is_finite()).collect();

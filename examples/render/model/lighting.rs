@@ -19,7 +19,7 @@ struct Lamp {
     towards: Vec3,
     /// Value to which a white surface that faces the lamp is exposed by it alone.
     level: f32,
-    /// The same for the cartoon material.
+    /// The same for the toon material.
     flat_level: f32,
     color: Color,
     shadows: bool,
@@ -29,7 +29,7 @@ struct Lamp {
 const OWN_LEVEL: f32 = 0.5;
 
 /// Beside the environment map, the lamps are weak: its panels give most of the
-/// light, and the highlight of a lamp without size clips on metal. The cartoon
+/// light, and the highlight of a lamp without size clips on metal. The toon
 /// material has no environment map, so the lamps are stronger there.
 const LAMPS: [Lamp; 3] = [
     // Key.
@@ -63,11 +63,11 @@ fn illuminance(level: f32) -> f32 {
     level * PI / Exposure::default().exposure()
 }
 
-/// Level of the ambient light in the shadows of the cartoon material.
+/// Level of the ambient light in the shadows of the toon material.
 const FLAT_AMBIENT: f32 = 0.16;
 
 /// Gives the camera the tone mapping, surroundings and, if the model has no
-/// lights, the lamps of the studio. `flat`: for the cartoon material.
+/// lights, the lamps of the studio. `flat`: for the toon material.
 pub fn light_camera(
     world: &mut World,
     camera: Entity,

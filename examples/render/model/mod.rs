@@ -24,7 +24,7 @@ use bevy_comics_testkit::{
     scenes::{ScenePart, Vantage},
 };
 use document::Document;
-use framing::{Extent, FOV};
+use framing::{AffectedArea, FOV};
 pub use lighting::turn_environment;
 
 /// Updates that a file may take to load. They are short while nothing is drawn.
@@ -32,7 +32,7 @@ const MAX_UPDATES: usize = 20_000;
 
 /// A spawned model.
 pub struct Model {
-    pub extent: Extent,
+    pub extent: AffectedArea,
     /// Whether the file has lights.
     pub has_lights: bool,
 }
@@ -55,7 +55,7 @@ pub fn load(headless: &mut Headless, path: &Path, turned: bool) -> Result<Model,
     let points = world
         .run_system_once(vertices::collect)
         .map_err(|error| cannot(&error))?;
-    let extent = Extent::new(points, turned)
+    let extent = AffectedArea::new(points, turned)
         .ok_or_else(|| cannot(&"nothing to see: no mesh in its scene"))?;
     let (centre, radius) = (extent.centre, extent.radius);
     let has_lights = world
@@ -94,10 +94,10 @@ impl Model {
         (vantage.near, vantage.far) = (framing.near, framing.far);
     }
 
-    /// Gives the camera the light for models. `cartoon`: for the cartoon material.
-    pub fn light(&self, world: &mut World, camera: Entity, vantage: &Vantage, cartoon: bool) {
+    /// Gives the camera the light for models. `toon`: for the toon material.
+    pub fn light(&self, world: &mut World, camera: Entity, vantage: &Vantage, toon: bool) {
         let framing = self.extent.with_planes(vantage.eye, vantage.target);
-        lighting::light_camera(world, camera, &framing, (!self.has_lights, cartoon));
+        lighting::light_camera(world, camera, &framing, (!self.has_lights, toon));
     }
 }
 

@@ -85,7 +85,7 @@ fn meadow(out: &mut String, folder: &Path) -> Result<(), String> {
     }
     out.push_str(
         "The fraction of the meadow of `mountains` that the lines of each preset cover, drawn in black on white, \
-         without the rest of the preset: the mean, and that of the area of 32x32 pixels that has most. Lines of the faithful form \
+         without the rest of the preset: the mean, and that of the area of 32x32 pixels that has most. Faithful lines \
          have no budget.\n\n| | budget | mean | most | mean without a budget | most |\n|---|---|---|---|---|---|\n",
     );
     let table = load(folder, "meadow_ink")?;

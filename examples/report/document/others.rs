@@ -76,7 +76,7 @@ pub fn flicker(out: &mut String, folder: &Path) -> Result<(), String> {
          between the drawn and the exact range in octaves of distance, for the end that \
          differs more, as the mean over all frames (outliers that percentiles leave out count \
          as lag). The camera cut is announced, and starts every variant anew. The ranges are \
-         computed by the twin of the shader, which the tests compare with the shader.\n\n\
+         computed by the reference of the shader, which the tests compare with the shader.\n\n\
          | sequence | smoothing | flicker, mean | worst frame | worst 99 % | lag, octaves |\n\
          |---|---|---|---|---|---|\n",
     );

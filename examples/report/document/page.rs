@@ -124,7 +124,7 @@ const PRINTS: [(&str, &str); 5] = [
     ("focus; dots", "Euclidean"),
 ];
 /// Several effects.
-const SEVERAL: [&str; 1] = ["halftone; print offset and paper"];
+const SEVERAL: [&str; 1] = ["halftone; misregistration and paper"];
 
 /// An effect of the page: its cost, its errors, and its time over that of one pass.
 struct Effect {
@@ -230,13 +230,13 @@ pub fn effects(out: &mut String, folder: &Path) -> Result<(), String> {
          blits). Target: at most {MOST_BLITS}; what is as near to it as half the distance between the \
          10th and the 90th percentile of the rounds is within the noise. \"Strokes along edges\" are \
          for photographs, and are not meant to be fast. An effect without an error has no figure of its \
-         own here: tests compare it with its twin (`tests/gpu`).\n\n\
+         own here: tests compare it with its reference (`tests/gpu`).\n\n\
          | effect | error | blits | over one pass | target of the time |\n|---|---|---|---|---|"
     );
     for effect in &effects {
         let mut errors: Vec<String> = effect.errors.iter().map(Target::phrase).collect();
         if errors.is_empty() {
-            errors.push("compared with its twin in tests".to_owned());
+            errors.push("compared with its reference in tests".to_owned());
         }
         let blits = effect.cost.ratio[1];
         let _ = writeln!(

@@ -44,7 +44,7 @@ pub fn soak(out: &mut String, folder: &Path) -> Result<(), String> {
     let _ = writeln!(
         out,
         "## 7. A long run\n\n{} frames of 1 to 128 pixels a side. In every {CYCLE} of them a camera with a \
-         look changes its size 60 times, another one comes and goes, 20 objects come and go, the scene takes the cartoon \
+         look changes its size 60 times, another one comes and goes, 20 objects come and go, the scene takes the toon \
          material and loses it, and a style file breaks and is mended; samples and HDR change from one to the \
          next. Errors of the renderer: {}.\n",
         table.cell(last, "frame"),

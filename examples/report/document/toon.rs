@@ -1,4 +1,4 @@
-//! The report's text: what the cartoon material costs.
+//! The report's text: what the toon material costs.
 
 use std::{fmt::Write, path::Path};
 
@@ -25,7 +25,7 @@ pub fn targets(folder: &Path) -> Vec<Target> {
     };
     let target = |scene: String| {
         let ratio = least(&times, &scene, "default ramp") / least(&times, &scene, STANDARD);
-        let what = format!("{scene}: main pass with the cartoon material / with the standard one");
+        let what = format!("{scene}: main pass with the toon material / with the standard one");
         Target::at_most("toon", what, 1.1, Some(ratio))
     };
     scenes(&times).into_iter().map(target).collect()

@@ -13,8 +13,8 @@
 
 struct Abstraction {
     // Abstraction at D = 0 and at D = 1, and the exponent of D between them.
-    near: f32,
-    far: f32,
+    at_near: f32,
+    at_far: f32,
     exponent: f32,
     // How often bands split where there is no abstraction.
     splits: f32,
@@ -26,7 +26,7 @@ struct Abstraction {
 
 // The abstraction at a depth of the map, of an object whose dial is a factor and what is added.
 fn dialled(s: Abstraction, d: f32, dial: vec2<f32>) -> f32 {
-    return clamp(dial.x * graded(s.near, s.far, s.exponent, d) + dial.y, 0.0, 1.0);
+    return clamp(dial.x * graded(s.at_near, s.at_far, s.exponent, d) + dial.y, 0.0, 1.0);
 }
 
 // The abstraction of a pixel, 0 to 1. In multisampled views, the object is that of the first

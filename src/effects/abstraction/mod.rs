@@ -7,11 +7,11 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
-use super::PlaneUnit;
+use super::Granularity;
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, EffectView, Needs, Variants, ViewFacts},
-    lines::LineAbstraction,
-    settings::{FieldRange, bounded},
+    effect::{Effect, EffectContext, EffectShader, EffectStage, EffectView, Needs, Variants},
+    lines::{LineAbstraction, LineModifiers},
+    settings::FieldRange,
 };
 
 /// One dial for how abstract the picture is at every distance, from 0 (all detail) to 1: tone
@@ -25,31 +25,31 @@ use crate::{
 pub struct Abstraction {
     /// Abstraction at the near end of the depth map. Range 0 to 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
-    pub near: f32,
+    pub at_near: f32,
     /// Abstraction at the far end of the depth map. Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
-    pub far: f32,
-    /// Exponent of the depth map on the way from `near` to `far`: above 1, more of the foreground
+    pub at_far: f32,
+    /// Exponent of the depth map on the way from `at_near` to `at_far`: above 1, more of the foreground
     /// is as it is near. Range 0.25 to 4, default 1.
     #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
     pub exponent: f32,
     /// Whether an object as a whole is as abstract as its centre, with all of its tones, strokes and
-    /// lines, or as its [`ObjectAbstraction`](crate::ObjectAbstraction) says. Default:
-    /// [`PlaneUnit::Object`]. Without compute shaders, lines follow pixels.
-    pub by: PlaneUnit,
+    /// lines, or as its [`ObjectAbstraction`](crate::objects::ObjectAbstraction) says. Default:
+    /// [`Granularity::Object`]. Without compute shaders, lines follow pixels.
+    pub granularity: Granularity,
     /// How often the bands of [`ToneBands`](crate::ToneBands) split from full abstraction, where
-    /// there are `levels` of them, to none, in the corrected form: at 1, there are twice as many. Range 0 to 3, default 1.
+    /// there are `levels` of them, to none, with the corrected equations: at 1, there are twice as many. Range 0 to 3, default 1.
     #[reflect(@FieldRange::linear(0.0, 3.0))]
     pub band_splits: f32,
     /// Factor of [`Hatching::spacing`](crate::Hatching::spacing) at full abstraction. Range 1 to 4,
-    /// default 2. Hatching that is drawn after paint, focus or a print offset does not change.
+    /// default 2. Hatching that is drawn after paint, focus or a misregistration does not change.
     #[reflect(@FieldRange::logarithmic(1.0, 4.0))]
     pub spacing: f32,
     /// Factor of the saturation at full abstraction. Range 0 to 1, default 0.7.
     #[reflect(@FieldRange::FRACTION)]
     pub saturation: f32,
     /// How many times as strong an edge must be at full abstraction to have a line. Range 1 to 8,
-    /// default 2. Object edges and lines of the faithful forms do not change.
+    /// default 2. Object edges and faithful lines do not change.
     #[reflect(@FieldRange::logarithmic(1.0, 8.0))]
     pub line_threshold: f32,
     /// Factor of the opacity of creases at full abstraction. Needs compute shaders. Range 0 to 1,
@@ -61,10 +61,10 @@ pub struct Abstraction {
 impl Default for Abstraction {
     fn default() -> Self {
         Self {
-            near: 0.0,
-            far: 1.0,
+            at_near: 0.0,
+            at_far: 1.0,
             exponent: 1.0,
-            by: PlaneUnit::Object,
+            granularity: Granularity::Object,
             band_splits: 1.0,
             spacing: 2.0,
             saturation: 0.7,
@@ -88,31 +88,15 @@ impl Effect for Abstraction {
     });
     type Uniform = AbstractionUniform;
 
-    fn sanitized(self) -> Self {
-        let default = Self::default();
-        let fraction = |value, default| bounded(value, default, 0.0, 1.0);
-        Self {
-            near: fraction(self.near, default.near),
-            far: fraction(self.far, default.far),
-            exponent: bounded(self.exponent, default.exponent, 0.25, 4.0),
-            by: self.by,
-            band_splits: bounded(self.band_splits, default.band_splits, 0.0, 3.0),
-            spacing: bounded(self.spacing, default.spacing, 1.0, 4.0),
-            saturation: fraction(self.saturation, default.saturation),
-            line_threshold: bounded(self.line_threshold, default.line_threshold, 1.0, 8.0),
-            crease_opacity: fraction(self.crease_opacity, default.crease_opacity),
-        }
-    }
-
     /// The largest abstraction; with bands that split, also where there is none.
     fn strength(&self) -> f32 {
-        self.near.max(self.far).max(self.band_splits.min(1.0))
+        self.at_near.max(self.at_far).max(self.band_splits.min(1.0))
     }
 
     fn faded(self, fraction: f32) -> Self {
         Self {
-            near: self.near * fraction,
-            far: self.far * fraction,
+            at_near: self.at_near * fraction,
+            at_far: self.at_far * fraction,
             band_splits: self.band_splits * fraction,
             ..self
         }
@@ -120,30 +104,28 @@ impl Effect for Abstraction {
 
     fn needs(&self) -> Needs {
         let mut needs = Needs::MAP | Needs::DEPTH;
-        needs.set(Needs::OBJECT_DEPTHS, self.by == PlaneUnit::Object);
+        needs.set(
+            Needs::OBJECT_DEPTHS,
+            self.granularity == Granularity::Object,
+        );
         needs
     }
 
-    fn line_abstraction(&self, _: &ViewFacts) -> Option<LineAbstraction> {
-        let changes = self.line_threshold > 1.0 || self.crease_opacity < 1.0;
-        changes.then(|| LineAbstraction {
-            near: self.near,
-            far: self.far,
-            exponent: self.exponent,
-            threshold: self.line_threshold,
-            crease_opacity: self.crease_opacity,
-            by_objects: self.by == PlaneUnit::Object,
-        })
+    fn line_modifiers(&self, _: &EffectContext) -> LineModifiers {
+        LineModifiers {
+            abstraction: self.line_abstraction(),
+            ..LineModifiers::default()
+        }
     }
 
-    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
-        variants.flag("OBJECTS", self.by == PlaneUnit::Object);
+    fn variants(&self, _: &EffectContext, variants: &mut Variants) {
+        variants.flag("OBJECTS", self.granularity == Granularity::Object);
     }
 
-    fn uniform(&self, _: &ViewFacts) -> AbstractionUniform {
+    fn uniform(&self, _: &EffectContext) -> AbstractionUniform {
         AbstractionUniform {
-            near: self.near,
-            far: self.far,
+            at_near: self.at_near,
+            at_far: self.at_far,
             exponent: self.exponent,
             splits: self.band_splits,
             spacing: self.spacing.log2(),
@@ -152,11 +134,25 @@ impl Effect for Abstraction {
     }
 }
 
+impl Abstraction {
+    fn line_abstraction(&self) -> Option<LineAbstraction> {
+        let changes = self.line_threshold > 1.0 || self.crease_opacity < 1.0;
+        changes.then(|| LineAbstraction {
+            at_near: self.at_near,
+            at_far: self.at_far,
+            exponent: self.exponent,
+            threshold: self.line_threshold,
+            crease_opacity: self.crease_opacity,
+            by_objects: self.granularity == Granularity::Object,
+        })
+    }
+}
+
 /// The uniform: `Abstraction` in `abstraction.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub struct AbstractionUniform {
-    near: f32,
-    far: f32,
+    at_near: f32,
+    at_far: f32,
     exponent: f32,
     splits: f32,
     spacing: f32,

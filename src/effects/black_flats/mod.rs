@@ -10,9 +10,9 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
+    effect::{Effect, EffectContext, EffectShader, EffectStage, Needs, Variants},
     settings::{
-        FieldRange, blend_color, blend_ratio, bounded, bounded_option, displayable, file_color,
+        FieldRange, blend_color, blend_ratio, clamp_fields, clamp_option_or_default, color_serde,
         linear_rgb,
     },
 };
@@ -45,7 +45,7 @@ pub struct BlackFlats {
     pub softness: f32,
     /// Colour of the ink. Default: black. Components are clamped to what a display
     /// shows; alpha is ignored.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub color: Color,
     /// Opacity of the ink. Range 0 (the effect is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
@@ -87,14 +87,9 @@ impl Effect for BlackFlats {
     type Uniform = BlackFlatsUniform;
 
     fn sanitized(self) -> Self {
-        let default = Self::default();
         Self {
-            slope: bounded_option(self.slope, DEFAULT_SLOPE, 1e-6, 100.0),
-            value: bounded_option(self.value, DEFAULT_VALUE, 0.0, 1.0),
-            depth_weight: bounded(self.depth_weight, default.depth_weight, 0.0, 1.0),
-            softness: bounded(self.softness, default.softness, 0.0, 1.0),
-            color: displayable(self.color, default.color),
-            opacity: bounded(self.opacity, default.opacity, 0.0, 1.0),
+            slope: clamp_option_or_default(self.slope, DEFAULT_SLOPE, 1e-6, 100.0),
+            ..clamp_fields(self)
         }
     }
 
@@ -132,11 +127,11 @@ impl Effect for BlackFlats {
         })
     }
 
-    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.flag("STEEP", self.slope.is_some());
     }
 
-    fn uniform(&self, view: &ViewFacts) -> BlackFlatsUniform {
+    fn uniform(&self, view: &EffectContext) -> BlackFlatsUniform {
         // smoothstep needs two different ends: a hard edge rises within 0.1 % of the
         // threshold on either side.
         let softness = self.softness.max(1e-3);

@@ -10,8 +10,8 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
-    settings::{FieldRange, Form, HueWheel, bounded, displayable, file_color},
+    effect::{Effect, EffectContext, EffectShader, EffectStage, Needs, Variants},
+    settings::{Equations, FieldRange, HueWheel, color_serde},
 };
 
 /// Brings the colours of the picture into harmony: two opposite hues for everything, or
@@ -29,7 +29,7 @@ pub struct ColorHarmony {
     /// [`HarmonyMode::Rotation`]. Default: [`HarmonyCurve::Linear`].
     pub curve: HarmonyCurve,
     /// Saturation of the opposite hue as a fraction of what the colour had, in the modes
-    /// [`HarmonyMode::Distance`] and [`HarmonyMode::Shade`] of [`Form::Corrected`]. At 0 colours
+    /// [`HarmonyMode::Distance`] and [`HarmonyMode::Shade`] of [`Equations::Corrected`]. At 0 colours
     /// become grey. Range 0 to 1.5, default 0.8.
     #[reflect(@FieldRange::linear(0.0, 1.5))]
     pub complement: f32,
@@ -40,7 +40,7 @@ pub struct ColorHarmony {
     /// One of the two hues of [`HarmonyMode::TwoHues`]; the other is its opposite. Only the hue
     /// is used; a grey has none, and colours become paler. Default: `#e38b4b`, an orange, whose
     /// opposite is a teal blue. Components are clamped to what a display shows; alpha is ignored.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     #[reflect(@HueWheel)]
     pub color: Color,
     /// How far other hues are drawn to the two of [`HarmonyMode::TwoHues`]; at 1 there are no
@@ -55,12 +55,12 @@ pub struct ColorHarmony {
     /// Fraction of the change that is applied. Range 0 (the effect is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
-    /// Selects how colours go to their opposite. [`Form::Corrected`] changes the chroma in `OKLab`.
-    /// [`Form::Faithful`] turns the HSV hue by up to half a turn, as \[CS\] Eq. 9 to 11 do, and
+    /// Selects how colours go to their opposite. [`Equations::Corrected`] changes the chroma in `OKLab`.
+    /// [`Equations::Faithful`] turns the HSV hue by up to half a turn, as \[CS\] Eq. 9 to 11 do, and
     /// keeps value and saturation: `complement` is not used, [`HarmonyMode::Distance`] is as
     /// [`HarmonyMode::Rotation`], and [`HarmonyMode::TwoHues`] does not change. Default:
-    /// [`Form::Corrected`].
-    pub form: Form,
+    /// [`Equations::Corrected`].
+    pub equations: Equations,
 }
 
 /// Which colours a [`ColorHarmony`] changes, and to which others.
@@ -90,7 +90,7 @@ pub enum HarmonyCurve {
     #[default]
     Linear,
     /// With the square root of the depth map, fast in the foreground.
-    Quadratic,
+    SquareRoot,
 }
 
 const DEFAULT_COLOR: Color = Color::srgb(227.0 / 255.0, 139.0 / 255.0, 75.0 / 255.0);
@@ -109,7 +109,7 @@ impl Default for ColorHarmony {
             pull: 0.7,
             offset: 0.03,
             amount: 1.0,
-            form: Form::Corrected,
+            equations: Equations::Corrected,
         }
     }
 }
@@ -123,20 +123,6 @@ impl Effect for ColorHarmony {
         settings: Some("ColorHarmony"),
     };
     type Uniform = ColorHarmonyUniform;
-
-    fn sanitized(self) -> Self {
-        let default = Self::default();
-        let fraction = |value, default| bounded(value, default, 0.0, 1.0);
-        Self {
-            complement: bounded(self.complement, default.complement, 0.0, 1.5),
-            shade: fraction(self.shade, default.shade),
-            color: displayable(self.color, default.color),
-            pull: fraction(self.pull, default.pull),
-            offset: bounded(self.offset, default.offset, -0.1, 0.1),
-            amount: fraction(self.amount, default.amount),
-            ..self
-        }
-    }
 
     fn strength(&self) -> f32 {
         self.amount
@@ -183,13 +169,13 @@ impl Effect for ColorHarmony {
         }
     }
 
-    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.number("MODE", self.mode_number());
         variants.number("QUADRATIC", u32::from(self.is_quadratic()));
         variants.number("FAITHFUL", u32::from(self.is_faithful()));
     }
 
-    fn uniform(&self, _: &ViewFacts) -> ColorHarmonyUniform {
+    fn uniform(&self, _: &EffectContext) -> ColorHarmonyUniform {
         let [_, a, b, _] = Oklaba::from(self.color).to_f32_array();
         let hue = Vec2::new(a, b);
         ColorHarmonyUniform {
@@ -224,11 +210,11 @@ impl ColorHarmony {
     /// Whether the curve is compiled in as quadratic: only the modes that have one.
     fn is_quadratic(&self) -> bool {
         let follows_depth = matches!(self.mode, HarmonyMode::Distance | HarmonyMode::Rotation);
-        follows_depth && self.curve == HarmonyCurve::Quadratic
+        follows_depth && self.curve == HarmonyCurve::SquareRoot
     }
 
     fn is_faithful(&self) -> bool {
-        self.mode != HarmonyMode::TwoHues && self.form == Form::Faithful
+        self.mode != HarmonyMode::TwoHues && self.equations == Equations::Faithful
     }
 }
 

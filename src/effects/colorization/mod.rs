@@ -13,8 +13,8 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
-    settings::{FieldRange, Form, HueWheel, blend_color, bounded, displayable, file_color},
+    effect::{Effect, EffectContext, EffectShader, EffectStage, Needs, Variants},
+    settings::{Equations, FieldRange, HueWheel, blend_color, color_serde},
 };
 
 /// Colours the picture with the hue of an atmosphere, everywhere or increasingly
@@ -27,24 +27,24 @@ pub struct Colorization {
     /// everywhere, or increasingly with distance. Default:
     /// [`ColorizationMode::Quadratic`].
     pub mode: ColorizationMode,
-    /// Colour of the atmosphere. [`Form::Corrected`] uses its hue and saturation: at
+    /// Colour of the atmosphere. [`Equations::Corrected`] uses its hue and saturation: at
     /// full effect, a grey of the same lightness becomes this colour.
-    /// [`Form::Faithful`] uses only its hue, `a_h` in \[CS\]. Default: `#c8413a`, a
+    /// [`Equations::Faithful`] uses only its hue, `a_h` in \[CS\]. Default: `#c8413a`, a
     /// warm red. Components are clamped to what a display shows; alpha is ignored; a
     /// colour that is not finite becomes the default.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     #[reflect(@HueWheel)]
     pub color: Color,
     /// Fraction of the change that is applied. Range 0 (the effect is left out) to
     /// 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
     pub amount: f32,
-    /// Selects how colours change. [`Form::Corrected`] blends chroma in `OKLab` and
-    /// keeps the lightness; greys are tinted too. [`Form::Faithful`] changes the HSV
+    /// Selects how colours change. [`Equations::Corrected`] blends chroma in `OKLab` and
+    /// keeps the lightness; greys are tinted too. [`Equations::Faithful`] changes the HSV
     /// hue and keeps value and saturation; greys stay grey, and a hue between two
-    /// others can be unrelated to both. Default: [`Form::Corrected`]. Source of the
+    /// others can be unrelated to both. Default: [`Equations::Corrected`]. Source of the
     /// faithful form: \[CS\] Eq. 9 to 11 as printed.
-    pub form: Form,
+    pub equations: Equations,
 }
 
 /// How the atmosphere depends on distance (\[CS\] Eq. 8 to 11).
@@ -53,7 +53,7 @@ pub struct Colorization {
 #[non_exhaustive]
 pub enum ColorizationMode {
     /// The picture keeps its hues; the effect is left out (Eq. 8).
-    Hue,
+    KeepHue,
     /// The whole picture takes the hue of the atmosphere, near and far (Eq. 9).
     Atmosphere,
     /// Near things keep their hues; the atmosphere increases linearly with the depth
@@ -73,7 +73,7 @@ impl Default for Colorization {
             mode: ColorizationMode::default(),
             color: DEFAULT_COLOR,
             amount: 1.0,
-            form: Form::Corrected,
+            equations: Equations::Corrected,
         }
     }
 }
@@ -84,7 +84,7 @@ impl Colorization {
         mode: ColorizationMode::Atmosphere,
         color: Color::srgb(0.62, 0.50, 0.34),
         amount: 1.0,
-        form: Form::Corrected,
+        equations: Equations::Corrected,
     };
 
     /// Whether the atmosphere depends on the depth map.
@@ -98,7 +98,7 @@ impl Colorization {
     /// The number of the mode in `colorization.wgsl`.
     fn mode_number(&self) -> u32 {
         match self.mode {
-            ColorizationMode::Hue => 0,
+            ColorizationMode::KeepHue => 0,
             ColorizationMode::Atmosphere => 1,
             ColorizationMode::Linear => 2,
             ColorizationMode::Quadratic => 3,
@@ -106,7 +106,7 @@ impl Colorization {
     }
 
     fn is_faithful(&self) -> bool {
-        self.form == Form::Faithful
+        self.equations == Equations::Faithful
     }
 }
 
@@ -120,16 +120,8 @@ impl Effect for Colorization {
     };
     type Uniform = ColorizationUniform;
 
-    fn sanitized(self) -> Self {
-        Self {
-            color: displayable(self.color, DEFAULT_COLOR),
-            amount: bounded(self.amount, 1.0, 0.0, 1.0),
-            ..self
-        }
-    }
-
     fn strength(&self) -> f32 {
-        if self.mode == ColorizationMode::Hue {
+        if self.mode == ColorizationMode::KeepHue {
             0.0
         } else {
             self.amount
@@ -151,12 +143,12 @@ impl Effect for Colorization {
         }
     }
 
-    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.number("MODE", self.mode_number());
         variants.number("FAITHFUL", u32::from(self.is_faithful()));
     }
 
-    fn uniform(&self, _: &ViewFacts) -> ColorizationUniform {
+    fn uniform(&self, _: &EffectContext) -> ColorizationUniform {
         let hue = Hsva::from(self.color).hue / 360.0;
         let [lightness, a, b, _] = Oklaba::from(self.color).to_f32_array().map(f64::from);
         let chroma = a.hypot(b);
@@ -189,10 +181,10 @@ impl Effect for Colorization {
     }
 
     fn same_modes(&self, other: &Self) -> bool {
-        // In the faithful form, hues between two colours are unrelated to both, so
+        // With the faithful equations, hues between two colours are unrelated to both, so
         // colours are not interpolated but count as modes.
         let colors_mix = !self.is_faithful() || self.color == other.color;
-        (self.mode, self.form) == (other.mode, other.form) && colors_mix
+        (self.mode, self.equations) == (other.mode, other.equations) && colors_mix
     }
 
     fn mixed(&self, other: &Self, t: f32) -> Self {

@@ -12,9 +12,9 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Extent, Needs, Variants, ViewFacts},
+    effect::{AffectedArea, Effect, EffectContext, EffectShader, EffectStage, Needs, Variants},
     lines::MapJumps,
-    settings::{FieldRange, Form, bounded, displayable, file_color, linear_rgb},
+    settings::{Equations, FieldRange, color_serde, linear_rgb},
 };
 
 /// Draws lines where the depth map jumps: around objects, and between near and far
@@ -29,15 +29,15 @@ use crate::{
 pub struct Contours {
     /// Selects the edge detector. Default: [`ContourOperator::Prewitt`].
     pub operator: ContourOperator,
-    /// Selects what is detected. [`Form::Corrected`] finds departures from the plane
+    /// Selects what is detected. [`Equations::Corrected`] finds departures from the plane
     /// through the pixel, so a plane has no lines even at a grazing angle.
-    /// [`Form::Faithful`] finds every change of the depth map, slopes included.
-    /// Default: [`Form::Corrected`]. Source of the faithful form: \[CS\] 3.2.
-    pub form: Form,
+    /// [`Equations::Faithful`] finds every change of the depth map, slopes included.
+    /// Default: [`Equations::Corrected`]. Source of the faithful equations: \[CS\] 3.2.
+    pub equations: Equations,
     /// Sets how large a depth jump must be to draw a line: at this jump, in units of
     /// the depth map, a line has half its opacity (0.02 is 2 % of the map's range).
     /// Range 1e-6 to 100, default 0.02.
-    /// [`Form::Faithful`] compares this threshold with the raw response of the
+    /// [`Equations::Faithful`] compares this threshold with the raw response of the
     /// operator, which for a straight jump is 3 times (Prewitt, Laplace), 4 times
     /// (Sobel) or 1.4 times (Roberts) the jump.
     #[reflect(@FieldRange::logarithmic(1e-6, 100.0))]
@@ -53,7 +53,7 @@ pub struct Contours {
     pub softness: f32,
     /// Colour of the line. Default: black. Components are clamped to what a display
     /// shows; alpha is ignored.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub color: Color,
     /// Opacity of the line. Range 0 (the effect is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
@@ -86,7 +86,7 @@ impl Default for Contours {
     fn default() -> Self {
         Self {
             operator: ContourOperator::default(),
-            form: Form::default(),
+            equations: Equations::default(),
             threshold: 0.02,
             width: 2.0,
             softness: 0.5,
@@ -107,19 +107,6 @@ impl Effect for Contours {
     };
     type Uniform = ContoursUniform;
 
-    fn sanitized(self) -> Self {
-        let default = Self::default();
-        Self {
-            threshold: bounded(self.threshold, default.threshold, 1e-6, 100.0),
-            width: bounded(self.width, default.width, 0.5, 16.0),
-            softness: bounded(self.softness, default.softness, 0.0, 1.0),
-            color: displayable(self.color, default.color),
-            opacity: bounded(self.opacity, default.opacity, 0.0, 1.0),
-            opacity_fade: bounded(self.opacity_fade, default.opacity_fade, 0.0, 1.0),
-            ..self
-        }
-    }
-
     fn strength(&self) -> f32 {
         self.opacity
     }
@@ -135,7 +122,7 @@ impl Effect for Contours {
         Needs::MAP
     }
 
-    fn variants(&self, view: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, view: &EffectContext, variants: &mut Variants) {
         let radius = self.radius(view);
         variants.number("OPERATOR", self.operator_number());
         variants.number("FAITHFUL", u32::from(self.is_faithful()));
@@ -146,17 +133,17 @@ impl Effect for Contours {
 
     /// The response is at most the square root of 2 times the largest departure: each
     /// component of a gradient is a mean of departures.
-    fn extent(&self, view: &ViewFacts) -> Extent {
+    fn affected_area(&self, view: &EffectContext) -> AffectedArea {
         if self.is_faithful() {
-            return Extent::Everywhere;
+            return AffectedArea::Everywhere;
         }
-        Extent::AtJumps(MapJumps {
+        AffectedArea::AtJumps(MapJumps {
             least: self.least_visible() * FRAC_1_SQRT_2,
             radius: self.radius(view),
         })
     }
 
-    fn uniform(&self, view: &ViewFacts) -> ContoursUniform {
+    fn uniform(&self, view: &EffectContext) -> ContoursUniform {
         let half_ramp = self.half_ramp();
         ContoursUniform {
             color: linear_rgb(self.color),
@@ -171,9 +158,9 @@ impl Effect for Contours {
     }
 
     fn report_name(&self) -> Option<String> {
-        Some(match self.form {
-            Form::Corrected => format!("{:?}", self.operator),
-            Form::Faithful => format!("{:?}, faithful form", self.operator),
+        Some(match self.equations {
+            Equations::Corrected => format!("{:?}", self.operator),
+            Equations::Faithful => format!("{:?}, faithful equations", self.operator),
         })
     }
 }
@@ -187,7 +174,7 @@ impl Contours {
     }
 
     /// Half the line's width in physical pixels.
-    fn radius(&self, view: &ViewFacts) -> f32 {
+    fn radius(&self, view: &EffectContext) -> f32 {
         (0.5 * self.width * view.scale_factor).clamp(0.125, 64.0)
     }
 
@@ -198,7 +185,7 @@ impl Contours {
     }
 
     fn is_faithful(&self) -> bool {
-        self.form == Form::Faithful
+        self.equations == Equations::Faithful
     }
 
     /// The number of the operator in `contours.wgsl`.

@@ -51,7 +51,7 @@ fn saturation_left(s: Desaturation, l: f32) -> f32 {
 }
 
 // Mixes a colour with grey; `k` is the fraction of the saturation that remains. The
-// grey has the same luminance or, in the faithful form, the same HSV value, which
+// grey has the same luminance or, with the faithful equations, the same HSV value, which
 // makes colours brighter ([CS] Eq. 5).
 fn desaturate(s: Desaturation, linear: vec3<f32>, k: f32) -> vec3<f32> {
     if is_faithful(s) {

@@ -8,8 +8,8 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
-    settings::{FieldRange, Form, bounded},
+    effect::{Effect, EffectContext, EffectShader, EffectStage, Needs, Variants},
+    settings::{Equations, FieldRange},
 };
 
 /// Removes saturation with distance: the nearest geometry keeps its colours, the
@@ -27,11 +27,11 @@ pub struct Desaturation {
     /// to 4, default 1. Source: \[CS\] Eq. 6 (1) and Eq. 7 (0.5).
     #[reflect(@FieldRange::logarithmic(0.25, 4.0))]
     pub exponent: f32,
-    /// Selects what stays constant while saturation is lost. [`Form::Corrected`]
-    /// keeps the luminance. [`Form::Faithful`] keeps the HSV value, which makes full
-    /// blue fourteen times as bright. Default: [`Form::Corrected`]. Source of the
+    /// Selects what stays constant while saturation is lost. [`Equations::Corrected`]
+    /// keeps the luminance. [`Equations::Faithful`] keeps the HSV value, which makes full
+    /// blue fourteen times as bright. Default: [`Equations::Corrected`]. Source of the
     /// faithful form: \[CS\] Eq. 5.
-    pub form: Form,
+    pub equations: Equations,
 }
 
 impl Default for Desaturation {
@@ -39,7 +39,7 @@ impl Default for Desaturation {
         Self {
             amount: 1.0,
             exponent: 1.0,
-            form: Form::Corrected,
+            equations: Equations::Corrected,
         }
     }
 }
@@ -50,14 +50,14 @@ impl Desaturation {
     pub const LINEAR: Self = Self {
         amount: 1.0,
         exponent: 1.0,
-        form: Form::Faithful,
+        equations: Equations::Faithful,
     };
     /// Saturation falls with the square root of `1 - D`; HSV value is kept (\[CS\]
     /// Eq. 7 as printed).
     pub const QUADRATIC: Self = Self {
         amount: 1.0,
         exponent: 0.5,
-        form: Form::Faithful,
+        equations: Equations::Faithful,
     };
 }
 
@@ -70,15 +70,6 @@ impl Effect for Desaturation {
         settings: Some("Desaturation"),
     };
     type Uniform = DesaturationUniform;
-
-    fn sanitized(self) -> Self {
-        let default = Self::default();
-        Self {
-            amount: bounded(self.amount, default.amount, 0.0, 1.0),
-            exponent: bounded(self.exponent, default.exponent, 0.25, 4.0),
-            ..self
-        }
-    }
 
     fn strength(&self) -> f32 {
         self.amount
@@ -95,12 +86,12 @@ impl Effect for Desaturation {
         Needs::MAP
     }
 
-    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.number("CURVE", self.curve());
         variants.number("FAITHFUL", u32::from(self.is_faithful()));
     }
 
-    fn uniform(&self, _: &ViewFacts) -> DesaturationUniform {
+    fn uniform(&self, _: &EffectContext) -> DesaturationUniform {
         DesaturationUniform {
             amount: self.amount,
             exponent: self.exponent,
@@ -121,7 +112,7 @@ impl Desaturation {
     }
 
     fn is_faithful(&self) -> bool {
-        self.form == Form::Faithful
+        self.equations == Equations::Faithful
     }
 }
 

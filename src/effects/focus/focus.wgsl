@@ -9,7 +9,7 @@
 #import bevy_comics::depth::view::{load_depth, sample_count}
 #endif
 #import bevy_comics::effect::color::separated
-#import bevy_comics::effect::numbered::load_numbered
+#import bevy_comics::effect::aux_scalar::load_aux_scalar
 #import bevy_comics::effect::pixel::Pixel
 #import bevy_comics::effect::screen::{LEAST, euclidean, paler}
 #import bevy_comics::effects::paint::{chosen_color, whole_box_paint}
@@ -41,8 +41,8 @@ struct Focus {
     at_centre: u32,
     // DOTS: where the screens begin in the render target, their period in physical pixels, and
     // how much of them is seen where all is out of focus.
-    centre: vec2<f32>,
-    period: f32,
+    center: vec2<f32>,
+    cell_size: f32,
     amount: f32,
 }
 
@@ -139,7 +139,7 @@ fn focus_of(s: Focus, pixel: vec2<i32>, focus_at: f32) -> f32 {
 }
 
 // The number that is stored beside the picture, for BLURRED and OFFSET.
-fn focus_number(s: Focus, p: Pixel) -> f32 {
+fn focus_aux_scalar(s: Focus, p: Pixel) -> f32 {
     return focus_of(s, vec2<i32>(p.position), focus_distance(s));
 }
 
@@ -159,7 +159,7 @@ fn blurred(pixel: vec2<i32>, own: f32) -> vec4<f32> {
         let by = sqrt((f32(i) + 0.5) * per_place);
         let other = inside_viewport(pixel + vec2<i32>(floor(by * spoke + 0.5)));
         spoke = TURN * spoke;
-        let there = load_numbered(other);
+        let there = load_aux_scalar(other);
         sum += reaching(abs(there.number), by) * taken(own, there.number) * there.color;
     }
     return sum;
@@ -167,7 +167,7 @@ fn blurred(pixel: vec2<i32>, own: f32) -> vec4<f32> {
 
 // A pixel without what may not be taken. `instead`: what is there in its place.
 fn taken_from(pixel: vec2<i32>, own: f32, instead: vec3<f32>) -> vec3<f32> {
-    let found = load_numbered(inside_viewport(pixel));
+    let found = load_aux_scalar(inside_viewport(pixel));
     let color = found.color.rgb + (1.0 - found.color.a) * instead;
     return mix(instead, color, taken(own, found.number));
 }
@@ -197,8 +197,8 @@ fn focus_half_box(s: Focus, p: Pixel) -> f32 {
 
 // Coverage by a plate. `turn`: cosine and sine of its angle; `phase` in cells.
 fn dots(s: Focus, place: vec2<f32>, turn: vec2<f32>, phase: f32, tone: f32) -> f32 {
-    let at = vec2(dot(place, turn), dot(place, vec2(-turn.y, turn.x))) / s.period + phase;
-    return paler(euclidean(at, clamp(tone, LEAST, 1.0 - LEAST), s.period), tone);
+    let at = vec2(dot(place, turn), dot(place, vec2(-turn.y, turn.x))) / s.cell_size + phase;
+    return paler(euclidean(at, clamp(tone, LEAST, 1.0 - LEAST), s.cell_size), tone);
 }
 
 // A colour in dots of four ideal inks, at the angles of Halftone. `amount`: how much of the dots
@@ -206,7 +206,7 @@ fn dots(s: Focus, place: vec2<f32>, turn: vec2<f32>, phase: f32, tone: f32) -> f
 fn dotted(s: Focus, position: vec2<f32>, color: vec3<f32>, amount: f32) -> vec3<f32> {
     let shown = clamp(color, vec3(0.0), vec3(1.0));
     let tones = separated(shown, 0.7);
-    let place = position - s.centre;
+    let place = position - s.center;
     let k = vec4(
         dots(s, place, vec2(0.9659258, 0.2588190), 0.0, tones.x),
         dots(s, place, vec2(0.2588190, 0.9659258), 0.0, tones.y),
@@ -246,7 +246,7 @@ fn focus(s: Focus, p: Pixel) -> Pixel {
     let pixel = vec2<i32>(p.position);
     var own = 0.0;
     if style_of(s) == BLURRED || style_of(s) == OFFSET {
-        own = load_numbered(pixel).number;
+        own = load_aux_scalar(pixel).number;
     } else {
         own = focus_of(s, pixel, focus_distance(s));
     }

@@ -9,9 +9,9 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Extent, Needs, Variants, ViewFacts},
-    lines::LineFocus,
-    settings::{FieldRange, bounded},
+    effect::{AffectedArea, Effect, EffectContext, EffectShader, EffectStage, Needs, Variants},
+    lines::{LineFocus, LineModifiers},
+    settings::FieldRange,
 };
 
 /// Draws the reader's eye to a distance: what is nearer or farther is out of focus. Drawn after
@@ -53,7 +53,7 @@ pub struct Focus {
     pub radius: f32,
     /// Size of the cells of [`FocusStyle::Dots`] in logical pixels. Range 2.5 to 40, default 6.
     #[reflect(@FieldRange::logarithmic(2.5, 40.0).unit("px"))]
-    pub period: f32,
+    pub cell_size: f32,
 }
 
 /// What is in focus.
@@ -61,14 +61,14 @@ pub struct Focus {
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
 pub enum FocusAt {
-    /// The camera's [`EffectTarget`](crate::EffectTarget). While it has none, or it is behind
+    /// The camera's [`EffectTarget`](crate::effect::EffectTarget). While it has none, or it is behind
     /// the camera: as [`FocusAt::Distance`].
     #[default]
     Target,
     /// What is at [`Focus::distance`].
     Distance,
     /// What the pixel in the middle of the view shows.
-    Centre,
+    Center,
 }
 
 /// How things out of focus look.
@@ -103,7 +103,7 @@ impl Default for Focus {
             clear: 0.15,
             ramp: 1.0,
             radius: 6.0,
-            period: 6.0,
+            cell_size: 6.0,
         }
     }
 }
@@ -117,21 +117,8 @@ impl Effect for Focus {
         settings: Some("Focus"),
     };
     const HALF_BOX: bool = true;
-    const NUMBER: bool = true;
+    const AUX_SCALAR: bool = true;
     type Uniform = FocusUniform;
-
-    fn sanitized(self) -> Self {
-        let default = Self::default();
-        Self {
-            at: self.at,
-            style: self.style,
-            distance: bounded(self.distance, default.distance, 0.01, 100_000.0),
-            clear: bounded(self.clear, default.clear, 0.0, 4.0),
-            ramp: bounded(self.ramp, default.ramp, 0.05, 8.0),
-            radius: bounded(self.radius, default.radius, 0.0, 24.0),
-            period: bounded(self.period, default.period, 2.5, 40.0),
-        }
-    }
 
     fn strength(&self) -> f32 {
         if self.radius > 0.0 { 1.0 } else { 0.0 }
@@ -144,49 +131,47 @@ impl Effect for Focus {
 
     fn needs(&self) -> Needs {
         let picture = match self.style {
-            FocusStyle::Paint => Needs::MEANS,
-            FocusStyle::Blur | FocusStyle::Offset => Needs::NUMBERED,
+            FocusStyle::Paint => Needs::BOX_STATISTICS,
+            FocusStyle::Blur | FocusStyle::Offset => Needs::AUX_SCALAR,
             FocusStyle::Dots => Needs::empty(),
             FocusStyle::Lines => return Needs::empty(),
         };
         picture | Needs::DEPTH
     }
 
-    fn variants(&self, view: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, view: &EffectContext, variants: &mut Variants) {
         variants.number("STYLE", self.style as u32);
         variants.number("PARALLEL", u32::from(view.depth_reference.is_some()));
     }
 
-    fn extent(&self, _: &ViewFacts) -> Extent {
+    fn affected_area(&self, _: &EffectContext) -> AffectedArea {
         match self.style {
             // The lines are drawn by other effects.
-            FocusStyle::Lines => Extent::AtLines,
-            _ => Extent::Everywhere,
+            FocusStyle::Lines => AffectedArea::AtLines,
+            _ => AffectedArea::Everywhere,
         }
     }
 
-    fn box_reach(&self, view: &ViewFacts) -> Option<u32> {
+    fn max_radius(&self, view: &EffectContext) -> Option<u32> {
         // Boxes of up to 7 pixels, for the default radius; not one pipeline for every radius.
         let half = (0.5 * self.physical_radius(view) + 0.5).floor();
         (half <= 3.0).then_some(3)
     }
 
-    fn line_focus(&self, view: &ViewFacts) -> Option<LineFocus> {
-        (self.style == FocusStyle::Lines).then(|| LineFocus {
-            distance: self.focus_distance(view),
-            clear: self.clear,
-            ramp: self.ramp,
-            amount: self.whole(),
-        })
+    fn line_modifiers(&self, view: &EffectContext) -> LineModifiers {
+        LineModifiers {
+            focus: self.line_focus(view),
+            ..LineModifiers::default()
+        }
     }
 
-    fn prints(&self) -> bool {
+    fn runs_after_anti_aliasing(&self) -> bool {
         self.style == FocusStyle::Dots
     }
 
-    fn uniform(&self, view: &ViewFacts) -> FocusUniform {
-        let period = self.period * view.scale_factor;
-        let shown = ((period - 1.5) / (2.5 - 1.5)).clamp(0.0, 1.0);
+    fn uniform(&self, view: &EffectContext) -> FocusUniform {
+        let cell_size = self.cell_size * view.scale_factor;
+        let shown = ((cell_size - 1.5) / (2.5 - 1.5)).clamp(0.0, 1.0);
         let middle = view.viewport.xy() + view.viewport.zw() / 2;
         FocusUniform {
             axis: view.depth_axis,
@@ -195,9 +180,9 @@ impl Effect for Focus {
             clear: self.clear,
             steepness: 1.0 / self.ramp,
             radius: self.physical_radius(view),
-            at_centre: u32::from(self.at == FocusAt::Centre),
-            centre: middle.as_vec2() + 0.25,
-            period,
+            at_centre: u32::from(self.at == FocusAt::Center),
+            center: middle.as_vec2() + 0.25,
+            cell_size,
             amount: self.whole() * shown * shown * (3.0 - 2.0 * shown),
         }
     }
@@ -205,22 +190,33 @@ impl Effect for Focus {
 
 impl Focus {
     /// Distance of the focus; `None` if it is at what the middle of the view shows.
-    fn focus_distance(&self, view: &ViewFacts) -> Option<f32> {
+    fn focus_distance(&self, view: &EffectContext) -> Option<f32> {
         match self.at {
             FocusAt::Target => Some(view.target_depth.unwrap_or(self.distance)),
             FocusAt::Distance => Some(self.distance),
-            FocusAt::Centre => None,
+            FocusAt::Center => None,
         }
     }
 
     /// The largest radius in physical pixels.
-    fn physical_radius(&self, view: &ViewFacts) -> f32 {
+    fn physical_radius(&self, view: &EffectContext) -> f32 {
         (self.radius * view.scale_factor).min(256.0)
     }
 
     /// How much of the dots is seen, and of the lines lost, where all is out of focus.
     fn whole(&self) -> f32 {
         (self.radius / 6.0).min(1.0)
+    }
+}
+
+impl Focus {
+    fn line_focus(&self, view: &EffectContext) -> Option<LineFocus> {
+        (self.style == FocusStyle::Lines).then(|| LineFocus {
+            distance: self.focus_distance(view),
+            clear: self.clear,
+            ramp: self.ramp,
+            amount: self.whole(),
+        })
     }
 }
 
@@ -234,7 +230,7 @@ pub struct FocusUniform {
     steepness: f32,
     radius: f32,
     at_centre: u32,
-    centre: Vec2,
-    period: f32,
+    center: Vec2,
+    cell_size: f32,
     amount: f32,
 }

@@ -46,15 +46,15 @@ struct Halftone {
     paper: vec3<f32>,
     opacity: f32,
     // Where the screens begin: physical pixels in the render target.
-    centre: vec2<f32>,
+    center: vec2<f32>,
     // Physical pixels: period of the screens, and size of a grain.
-    period: f32,
+    cell_size: f32,
     grain: f32,
     // Fraction of the screens at the near and the far end of the depth map.
-    near: f32,
-    far: f32,
+    at_near: f32,
+    at_far: f32,
     // Lightness from which the screens fade out.
-    below: f32,
+    shadows_only_below: f32,
     black_generation: f32,
     gain: f32,
     tints: f32,
@@ -79,7 +79,7 @@ struct Halftone {
 // Where the screens of a pixel lie.
 struct Screen {
     // Where they begin: physical pixels in the render target.
-    centre: vec2<f32>,
+    center: vec2<f32>,
     // Cosine and sine of their turn, clockwise; and their size.
     turn: vec2<f32>,
     size: f32,
@@ -184,7 +184,7 @@ fn stochastic(s: Halftone, place: vec2<f32>, tone: f32, plate: i32) -> f32 {
 
 // The screens on the page.
 fn page_screen(s: Halftone, height: f32) -> Screen {
-    return Screen(s.centre, vec2(1.0, 0.0), 1.0, height);
+    return Screen(s.center, vec2(1.0, 0.0), 1.0, height);
 }
 
 // Height of the sheet under a pixel, if ink runs into its valleys.
@@ -213,12 +213,12 @@ fn edges(shape: u32, tone: f32) -> f32 {
 }
 
 // The tone that a screen shows at a pixel, within LEAST: edges of ink follow the sheet.
-fn tone_on_sheet(s: Halftone, on: Screen, tone: f32, period: f32) -> f32 {
+fn tone_on_sheet(s: Halftone, on: Screen, tone: f32, cell_size: f32) -> f32 {
     let t = clamp(tone, LEAST, 1.0 - LEAST);
     if !spreads(s) {
         return t;
     }
-    return spread_tone(t, edges(shape_of(s), t), s.spread / period, on.height);
+    return spread_tone(t, edges(shape_of(s), t), s.spread / cell_size, on.height);
 }
 
 // Cosine and sine of the angle of a plate, divided by its period.
@@ -235,21 +235,21 @@ fn plate_turn(s: Halftone, on: Screen, plate: i32) -> vec2<f32> {
 // Coverage of a pixel by a plate (0 cyan, 1 magenta, 2 yellow, 3 black). `place`: pixels
 // from where the screens begin.
 fn plate_cover(s: Halftone, on: Screen, place: vec2<f32>, plate: i32, tone: f32) -> f32 {
-    let period = s.period * on.size;
-    let t = tone_on_sheet(s, on, tone, period);
+    let cell_size = s.cell_size * on.size;
+    let t = tone_on_sheet(s, on, tone, cell_size);
     let turn = plate_turn(s, on, plate);
     let at = cell_at(place, turn, plate_phase(plate));
     let sides = abs(turn);
     let shape = shape_of(s);
     var k = 0.0;
     if shape == SHAPE_ROUND {
-        k = disc(at, t, period);
+        k = disc(at, t, cell_size);
     } else if shape == SHAPE_EUCLIDEAN {
-        k = euclidean(at, t, period);
+        k = euclidean(at, t, cell_size);
     } else if shape == SHAPE_LINE {
         k = line(at.x, t, sides.x + sides.y);
     } else if shape == SHAPE_DIAMOND {
-        k = diamond(at, t, period);
+        k = diamond(at, t, cell_size);
     } else if shape == SHAPE_CROSS {
         k = cross_lines(at, t, sides.x + sides.y);
     } else {
@@ -267,10 +267,10 @@ fn plate_phase(plate: i32) -> f32 {
 // Fraction of the screens at a pixel, 0 (plain tones) to 1.
 fn screen_amount(s: Halftone, color: vec3<f32>, depth: f32) -> f32 {
     if !adjusts(s) {
-        return mix(s.near, s.far, depth);
+        return mix(s.at_near, s.at_far, depth);
     }
-    let shade = 1.0 - smoothstep(s.below, s.below + 0.1, lightness(color));
-    return mix(s.near, s.far, depth) * shade;
+    let shade = 1.0 - smoothstep(s.shadows_only_below, s.shadows_only_below + 0.1, lightness(color));
+    return mix(s.at_near, s.at_far, depth) * shade;
 }
 
 // The colour of inks on paper. `k`: coverage of each plate.
@@ -287,12 +287,12 @@ fn inked(s: Halftone, k: vec4<f32>) -> vec3<f32> {
 // the background shows through.
 fn cell_color(s: Halftone, on: Screen, position: vec2<f32>, own: vec3<f32>, plate: i32) -> vec3<f32> {
     let turn = plate_turn(s, on, plate);
-    let period = s.period * on.size;
-    let at = cell_at(position - on.centre, turn, plate_phase(plate));
+    let cell_size = s.cell_size * on.size;
+    let at = cell_at(position - on.center, turn, plate_phase(plate));
     var sum = vec3(0.0);
     for (var i = 0; i < 4; i++) {
         let e = round(at) - at + 0.5 * vec2(f32(i & 1), f32(i >> 1u)) - 0.25;
-        let back = period * period * vec2(dot(e, vec2(turn.x, -turn.y)), dot(e, turn.yx));
+        let back = cell_size * cell_size * vec2(dot(e, vec2(turn.x, -turn.y)), dot(e, turn.yx));
         let found = picture_at(position + back);
         sum += found.rgb + (1.0 - found.a) * own;
     }
@@ -317,7 +317,7 @@ fn screened(s: Halftone, on: Screen, place: vec2<f32>, amount: f32, plate: i32, 
 // Coverages at a pixel by all plates.
 fn covers(s: Halftone, on: Screen, p: Pixel, color: vec3<f32>, amount: f32, tones: vec4<f32>) -> vec4<f32> {
     let mode = mode_of(s);
-    let place = p.position - on.centre;
+    let place = p.position - on.center;
     var k = vec4(0.0);
     if mode != MODE_SPOT {
         k.x = screened(s, on, place, amount, 0, tone_read(s, on, p, color, 0, tones.x));
@@ -350,7 +350,7 @@ fn followed(s: Halftone, p: Pixel) -> Similarity {
 
 // How much of a screen of a size is seen: finer ones than the picture can show would be noise.
 fn shown_amount(s: Halftone, size: f32) -> f32 {
-    return select(smoothstep(1.5, 2.5, s.period * size), 1.0, shape_of(s) == SHAPE_STOCHASTIC);
+    return select(smoothstep(1.5, 2.5, s.cell_size * size), 1.0, shape_of(s) == SHAPE_STOCHASTIC);
 }
 
 // Coverages by the plates of an object that they follow. Both octaves have the tone, so that

@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 pub use kinds::{HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
-    settings::{BlendField, FieldRange, file_color, linear_rgb},
+    effect::{Effect, EffectContext, EffectShader, EffectStage, Needs, Variants},
+    settings::{BlendField, FieldRange, color_serde, linear_rgb},
 };
 
 /// Prints the colours of the picture with screens of dots or lines: four-colour print,
@@ -41,7 +41,7 @@ pub struct Halftone {
     /// [`ScreenShape::Stochastic`] have a third of it, at least a physical pixel. Range 2.5
     /// to 40, default 6.
     #[reflect(@FieldRange::logarithmic(2.5, 40.0).unit("px"))]
-    pub period: f32,
+    pub cell_size: f32,
     /// Fraction of the darkness that cyan, magenta and yellow share which is printed in
     /// black instead, in [`HalftoneMode::Cmyk`]. Range 0 to 1, default 0.7.
     #[reflect(@FieldRange::FRACTION)]
@@ -64,35 +64,35 @@ pub struct Halftone {
     /// Where the tone of a dot is read. Default: [`ScreenSampling::Pixel`].
     pub sampling: ScreenSampling,
     /// How much of the screens is seen at the near end of the depth map; the rest is
-    /// printed as plain tones. Range 0 to 1, default 1. The depth map is read if `near` and
-    /// `far` differ.
+    /// printed as plain tones. Range 0 to 1, default 1. The depth map is read if `at_near` and
+    /// `at_far` differ.
     #[reflect(@FieldRange::FRACTION)]
-    pub near: f32,
+    pub at_near: f32,
     /// The same at the far end. Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
-    pub far: f32,
+    pub at_far: f32,
     /// Lightness up to which screens are seen; within 0.1 above it they become plain
     /// tones. Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
-    pub below: f32,
+    pub shadows_only_below: f32,
     /// Where the screens are fixed. Default: [`ScreenAnchor::View`].
     pub anchor: ScreenAnchor,
     /// The cyan ink, and the first ink of [`HalftoneMode::Duotone`]. Default: a process
     /// cyan. Components of inks are clamped to what a display shows; alpha is ignored.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub cyan: Color,
     /// The magenta ink. Default: a process magenta.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub magenta: Color,
     /// The yellow ink. Default: a process yellow.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub yellow: Color,
     /// The black ink, the ink of [`HalftoneMode::Spot`], and the second ink of
     /// [`HalftoneMode::Duotone`]. Default: a warm black.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub black: Color,
     /// The paper. Default: a warm white. [`HalftoneMode::Rgb`] has black ground instead.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub paper: Color,
     /// Angle of the cyan screen in degrees, clockwise; of the red one in
     /// [`HalftoneMode::Rgb`]. Range -180 to 180, default 15.
@@ -123,10 +123,6 @@ impl Effect for Halftone {
     };
     type Uniform = HalftoneUniform;
 
-    fn sanitized(self) -> Self {
-        self.clamped()
-    }
-
     fn strength(&self) -> f32 {
         self.opacity
     }
@@ -138,7 +134,7 @@ impl Effect for Halftone {
 
     fn needs(&self) -> Needs {
         let mut needs = Needs::empty();
-        needs.set(Needs::MAP, self.near != self.far);
+        needs.set(Needs::MAP, self.at_near != self.at_far);
         needs.set(Needs::PICTURE, self.reads_cells());
         needs.set(Needs::BLUE_NOISE, self.shape == ScreenShape::Stochastic);
         needs.set(Needs::OBJECT_ANCHORS, self.anchor == ScreenAnchor::Object);
@@ -147,63 +143,63 @@ impl Effect for Halftone {
 
     fn without(self, missing: Needs) -> Option<Self> {
         // Without the map, screens are as at its far end, as for the sky.
-        let near = if missing.contains(Needs::MAP) {
-            self.far
+        let at_near = if missing.contains(Needs::MAP) {
+            self.at_far
         } else {
-            self.near
+            self.at_near
         };
         let anchor = match self.anchor {
             ScreenAnchor::Object if missing.contains(Needs::OBJECT_ANCHORS) => ScreenAnchor::View,
             anchor => anchor,
         };
         Some(Self {
-            near,
+            at_near,
             anchor,
             ..self
         })
     }
 
-    fn variants(&self, view: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, view: &EffectContext, variants: &mut Variants) {
         variants.number("MODE", self.mode as u32);
         variants.number("SHAPE", self.shape as u32);
         variants.flag("CELLS", self.reads_cells());
         variants.number("ADJUSTED", u32::from(self.adjusts()));
         variants.flag("FOLLOWS", self.anchor == ScreenAnchor::Object);
-        let spreads = view.sheet.is_some_and(|sheet| sheet.spread > 0.0);
+        let spreads = view.sheet.is_some_and(|sheet| sheet.ink_bleed > 0.0);
         variants.number("SPREADS", u32::from(spreads));
     }
 
     fn map_faded(self, fraction: f32) -> Self {
-        let near = self.far + (self.near - self.far) * fraction;
-        Self { near, ..self }
+        let at_near = self.at_far + (self.at_near - self.at_far) * fraction;
+        Self { at_near, ..self }
     }
 
-    fn uniform(&self, view: &ViewFacts) -> HalftoneUniform {
-        let period = self.period * view.scale_factor;
+    fn uniform(&self, view: &EffectContext) -> HalftoneUniform {
+        let cell_size = self.cell_size * view.scale_factor;
         let turns = self.angles().map(|degrees| degrees.to_radians());
         let inks = [self.cyan, self.magenta, self.yellow, self.black];
         let [cyan, magenta, yellow, black] =
             inks.map(|ink| (Vec3::ONE - linear_rgb(ink)).extend(0.0));
         // Finer screens than the picture can show would be noise.
-        let shown = smooth((period - 1.5) / (2.5 - 1.5));
+        let shown = smooth((cell_size - 1.5) / (2.5 - 1.5));
         let stochastic = self.shape == ScreenShape::Stochastic;
         let shown = if stochastic { 1.0 } else { shown };
         let luminance = linear_rgb(self.cyan).dot(Vec3::new(0.2126, 0.7152, 0.0722));
         HalftoneUniform {
-            cosines: Vec4::from(turns.map(|angle| angle.cos() / period)),
-            sines: Vec4::from(turns.map(|angle| angle.sin() / period)),
+            cosines: Vec4::from(turns.map(|angle| angle.cos() / cell_size)),
+            sines: Vec4::from(turns.map(|angle| angle.sin() / cell_size)),
             cyan,
             magenta,
             yellow,
             black,
             paper: linear_rgb(self.paper),
             opacity: self.opacity,
-            centre: self.centre(view),
-            period,
-            grain: (period / 3.0).max(1.0),
-            near: self.near * shown,
-            far: self.far * shown,
-            below: self.below,
+            center: self.center(view),
+            cell_size,
+            grain: (cell_size / 3.0).max(1.0),
+            at_near: self.at_near * shown,
+            at_far: self.at_far * shown,
+            shadows_only_below: self.shadows_only_below,
             black_generation: self.black_generation,
             gain: self.gain,
             tints: self.tints as f32,
@@ -213,7 +209,7 @@ impl Effect for Halftone {
             mode: self.mode as u32,
             shape: self.shape as u32,
             sheet: view.sheet.map_or(0, |sheet| sheet.seed),
-            spread: view.sheet.map_or(0.0, |sheet| 0.5 * sheet.spread),
+            spread: view.sheet.map_or(0.0, |sheet| 0.5 * sheet.ink_bleed),
             sheet_scale: view.sheet.map_or(0.0, |sheet| sheet.scale),
             sheet_corner: view.sheet.map_or(Vec2::ZERO, |sheet| sheet.corner),
             clip_from_world: view.clip_from_world,
@@ -230,7 +226,7 @@ impl Halftone {
     /// Whether tones, levels or screens depend on more than the colour.
     fn adjusts(&self) -> bool {
         let levels = self.shadows > 0.0 || self.highlights < 1.0;
-        levels || self.tints > 0 || self.gain > 0.0 || self.below < 1.0
+        levels || self.tints > 0 || self.gain > 0.0 || self.shadows_only_below < 1.0
     }
 
     /// Angles of cyan, magenta, yellow and black in degrees.
@@ -246,7 +242,7 @@ impl Halftone {
     /// The place in the render target where the screens begin, in physical pixels: a
     /// quarter of a pixel from the corner of a pixel near the middle. If whole cells are
     /// whole pixels, every dot has the same pixels; there, their errors cancel.
-    fn centre(&self, view: &ViewFacts) -> Vec2 {
+    fn center(&self, view: &EffectContext) -> Vec2 {
         let (first, size) = match self.anchor {
             ScreenAnchor::View | ScreenAnchor::Object => (view.viewport.xy(), view.viewport.zw()),
             ScreenAnchor::Window => (UVec2::ZERO, view.target_size),
@@ -272,12 +268,12 @@ pub struct HalftoneUniform {
     black: Vec4,
     paper: Vec3,
     opacity: f32,
-    centre: Vec2,
-    period: f32,
+    center: Vec2,
+    cell_size: f32,
     grain: f32,
-    near: f32,
-    far: f32,
-    below: f32,
+    at_near: f32,
+    at_far: f32,
+    shadows_only_below: f32,
     black_generation: f32,
     gain: f32,
     tints: f32,

@@ -26,12 +26,12 @@ struct Hatching {
     strokes: Strokes,
     eye: vec3<f32>,
     // Fraction of the hatching at the near and the far end of the depth map.
-    near: f32,
+    at_near: f32,
     // Unit vector towards the light, in world space.
     to_light: vec3<f32>,
-    far: f32,
+    at_far: f32,
     // How far strokes turn into a plain tone where they would not continue.
-    calm: f32,
+    simplify_small: f32,
 }
 
 // The surface at a place relative to the eye, in world axes. `h`: that place in homogeneous
@@ -73,8 +73,8 @@ fn continues(gap: f32) -> f32 {
 
 // How much of the strokes is left, from how many of four neighbours continue the surface. At the edge
 // of a large surface, two or three do.
-fn strokes_left(calm: f32, neighbours: f32) -> f32 {
-    return 1.0 - calm * (1.0 - smoothstep(0.75, 2.0, neighbours));
+fn strokes_left(simplify_small: f32, neighbours: f32) -> f32 {
+    return 1.0 - simplify_small * (1.0 - smoothstep(0.75, 2.0, neighbours));
 }
 
 #ifdef HATCHING_ON_THINGS
@@ -102,7 +102,7 @@ fn calmed(s: Hatching, p: Pixel, on: Surface) -> f32 {
     let r = i32(clamp(round(s.strokes.spacing), 2.0, 16.0));
     let beside = continues_at(s, p, on, vec2(r, 0)) + continues_at(s, p, on, vec2(-r, 0));
     let above = continues_at(s, p, on, vec2(0, r)) + continues_at(s, p, on, vec2(0, -r));
-    return strokes_left(s.calm, beside + above);
+    return strokes_left(s.simplify_small, beside + above);
 }
 #endif
 
@@ -171,7 +171,7 @@ fn hatching(settings: Hatching, p: Pixel) -> Pixel {
     var cover = 0.0;
     var tone = 0.0;
     if is_there {
-        tone = darkness(s.strokes, light) * mix(s.near, s.far, p.depth.x) * p.prints.x;
+        tone = darkness(s.strokes, light) * mix(s.at_near, s.at_far, p.depth.x) * p.prints.x;
 #ifdef HATCHING_ON_THINGS
         cover = marked(s.strokes, anchored(on, vec2<i32>(floor(p.position))), tone);
 #ifdef HATCHING_CALM

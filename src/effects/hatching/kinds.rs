@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[non_exhaustive]
 pub enum HatchingAnchor {
     /// Things: strokes follow their form. They are fixed to the world, and to objects that have an
-    /// [`ObjectScreen`](crate::ObjectScreen). Needs depth and normals; without them, strokes are
+    /// [`PatternAnchor`](crate::objects::PatternAnchor). Needs depth and normals; without them, strokes are
     /// fixed to the page.
     #[default]
     Object,

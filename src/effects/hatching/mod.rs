@@ -16,15 +16,15 @@ use serde::{Deserialize, Serialize};
 pub use kinds::{HatchingAnchor, HatchingGround, HatchingMarks, HatchingSource};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, Strokes, Variants, ViewFacts},
-    settings::{BlendField, FieldRange, bounded, displayable, file_color, linear_rgb},
+    effect::{Effect, EffectContext, EffectShader, EffectStage, Needs, Strokes, Variants},
+    settings::{BlendField, FieldRange, color_serde, linear_rgb},
 };
 
 /// Shades with strokes: hatching in the half tones, crossed in the shadows, bare where it is light.
 ///
 /// Strokes lie where surfaces meet families of parallel planes, as in an engraving: they follow
 /// the form of things, without texture coordinates. They stay on things that stand still, and on
-/// moving objects that have an [`ObjectScreen`](crate::ObjectScreen). Their width on the screen
+/// moving objects that have a [`PatternAnchor`](crate::objects::PatternAnchor). Their width on the screen
 /// stays the same: when a thing comes nearer, new strokes grow between the old ones. The mean
 /// of an area has the darkness that is asked for.
 ///
@@ -95,23 +95,23 @@ pub struct Hatching {
     /// on what is smaller than the distance of two strokes, as grass, leaves and what is far away.
     /// Reads the depth at four more places. Range 0 to 1, default 0.
     #[reflect(@FieldRange::FRACTION)]
-    pub calm: f32,
+    pub simplify_small: f32,
     /// Colour of the strokes. Default: black. Components are clamped to what a display shows;
     /// alpha is ignored.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub ink: Color,
     /// What is between strokes. Default: [`HatchingGround::Color`].
     pub ground: HatchingGround,
     /// The paper of [`HatchingGround::Paper`]. Default: white.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub paper: Color,
     /// Factor of the darkness at the near end of the depth map. Range 0 to 1, default 1. The depth
-    /// map is read if `near` and `far` differ.
+    /// map is read if `at_near` and `at_far` differ.
     #[reflect(@FieldRange::FRACTION)]
-    pub near: f32,
+    pub at_near: f32,
     /// The same at the far end. Range 0 to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
-    pub far: f32,
+    pub at_far: f32,
     /// How much of the hatching and its ground is seen over the picture. Range 0 (the effect is
     /// left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
@@ -137,12 +137,12 @@ impl Default for Hatching {
             wobble: 0.3,
             pressure: 0.3,
             rate: 0.0,
-            calm: 0.0,
+            simplify_small: 0.0,
             ink: Color::srgb(0.0, 0.0, 0.0),
             ground: HatchingGround::Color,
             paper: Color::srgb(1.0, 1.0, 1.0),
-            near: 1.0,
-            far: 1.0,
+            at_near: 1.0,
+            at_far: 1.0,
             opacity: 1.0,
         }
     }
@@ -158,33 +158,6 @@ impl Effect for Hatching {
     };
     type Uniform = HatchingUniform;
 
-    fn sanitized(self) -> Self {
-        let default = Self::default();
-        let fraction = |value, default| bounded(value, default, 0.0, 1.0);
-        Self {
-            shadows: bounded(self.shadows, default.shadows, 0.0, 0.9),
-            highlights: bounded(self.highlights, default.highlights, 0.05, 1.0),
-            gamma: bounded(self.gamma, default.gamma, 0.25, 4.0),
-            tones: self.tones.min(12),
-            spacing: bounded(self.spacing, default.spacing, 2.0, 24.0),
-            layers: self.layers.clamp(1, 3),
-            layer_darkness: bounded(self.layer_darkness, default.layer_darkness, 0.1, 0.9),
-            angle: bounded(self.angle, default.angle, -90.0, 90.0),
-            length: bounded(self.length, default.length, 10.0, 400.0),
-            breaks: fraction(self.breaks, default.breaks),
-            wobble: fraction(self.wobble, default.wobble),
-            pressure: fraction(self.pressure, default.pressure),
-            rate: bounded(self.rate, default.rate, 0.0, 60.0),
-            calm: fraction(self.calm, default.calm),
-            ink: displayable(self.ink, default.ink),
-            paper: displayable(self.paper, default.paper),
-            near: fraction(self.near, default.near),
-            far: fraction(self.far, default.far),
-            opacity: fraction(self.opacity, default.opacity),
-            ..self
-        }
-    }
-
     fn strength(&self) -> f32 {
         self.opacity
     }
@@ -196,7 +169,7 @@ impl Effect for Hatching {
 
     fn needs(&self) -> Needs {
         let mut needs = Needs::empty();
-        needs.set(Needs::MAP, self.near != self.far);
+        needs.set(Needs::MAP, self.at_near != self.at_far);
         if self.anchor == HatchingAnchor::Object {
             needs |= Needs::DEPTH | Needs::NORMALS | Needs::OBJECT_ANCHORS;
         }
@@ -204,10 +177,10 @@ impl Effect for Hatching {
     }
 
     fn without(self, missing: Needs) -> Option<Self> {
-        let near = if missing.contains(Needs::MAP) {
-            self.far
+        let at_near = if missing.contains(Needs::MAP) {
+            self.at_far
         } else {
-            self.near
+            self.at_near
         };
         let anchor = if missing.intersects(Needs::DEPTH | Needs::NORMALS) {
             HatchingAnchor::Page
@@ -215,34 +188,34 @@ impl Effect for Hatching {
             self.anchor
         };
         Some(Self {
-            near,
+            at_near,
             anchor,
             ..self
         })
     }
 
-    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         let on_things = self.anchor == HatchingAnchor::Object;
         variants.flag("DOTS", self.marks == HatchingMarks::Dots);
         variants.flag("ON_THINGS", on_things);
-        variants.flag("CALM", on_things && self.calm > 0.0);
+        variants.flag("CALM", on_things && self.simplify_small > 0.0);
         variants.flag("FACES", on_things && self.source == HatchingSource::Facing);
     }
 
     fn map_faded(self, fraction: f32) -> Self {
-        let near = self.far + (self.near - self.far) * fraction;
-        Self { near, ..self }
+        let at_near = self.at_far + (self.at_near - self.at_far) * fraction;
+        Self { at_near, ..self }
     }
 
-    fn uniform(&self, view: &ViewFacts) -> HatchingUniform {
+    fn uniform(&self, view: &EffectContext) -> HatchingUniform {
         HatchingUniform {
             relative_from_clip: view.relative_from_clip,
-            strokes: self.strokes(view.scale_factor, view.drawing(self.rate)),
+            strokes: self.strokes(view.scale_factor, view.animation_seed(self.rate)),
             eye: view.eye,
-            near: self.near,
+            at_near: self.at_near,
             to_light: view.to_light,
-            far: self.far,
-            calm: self.calm,
+            at_far: self.at_far,
+            simplify_small: self.simplify_small,
         }
     }
 }
@@ -302,8 +275,8 @@ pub struct HatchingUniform {
     relative_from_clip: Mat4,
     strokes: Strokes,
     eye: Vec3,
-    near: f32,
+    at_near: f32,
     to_light: Vec3,
-    far: f32,
-    calm: f32,
+    at_far: f32,
+    simplify_small: f32,
 }

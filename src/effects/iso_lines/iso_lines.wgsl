@@ -24,7 +24,7 @@ struct IsoLines {
     color: vec3<f32>,
     opacity: f32,
     // The point that distances are measured from.
-    centre: vec3<f32>,
+    center: vec3<f32>,
     // Difference of two neighbouring lines.
     step: f32,
     // Half the width of a line, and of every `major`-th, in physical pixels.
@@ -56,7 +56,7 @@ fn iso_value(s: IsoLines, p: vec3<f32>, map: f32) -> f32 {
     if field == DEPTH {
         return map;
     }
-    return select(distance(p, s.centre), p.y, field == HEIGHT);
+    return select(distance(p, s.center), p.y, field == HEIGHT);
 }
 
 // How exact the value is: a world position is known to about 1e-6 of its coordinates.

@@ -10,8 +10,8 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
-    settings::{BlendField, FieldRange, bounded, displayable, file_color, linear_rgb},
+    effect::{Effect, EffectContext, EffectShader, EffectStage, Needs, Variants},
+    settings::{BlendField, FieldRange, clamp_fields, clamp_or_default, color_serde, linear_rgb},
 };
 
 /// Draws lines of equal depth, height or distance over all surfaces: the contour lines of a
@@ -34,7 +34,7 @@ pub struct IsoLines {
     pub step: f32,
     /// The point that [`IsoField::Distance`] is measured from, in world units. Components
     /// are clamped to -1e6 to 1e6. Default: the origin.
-    pub centre: Vec3,
+    pub center: Vec3,
     /// Width of a line in logical pixels. Range 0.5 to 16, default 1.
     #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub width: f32,
@@ -47,7 +47,7 @@ pub struct IsoLines {
     pub major_width: f32,
     /// Colour of the lines. Default: black. Components are clamped to what a display shows;
     /// alpha is ignored.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub color: Color,
     /// Opacity of the lines. Range 0 (the effect is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
@@ -64,7 +64,7 @@ pub enum IsoField {
     /// The height above the world's origin: y.
     #[default]
     Height,
-    /// The distance from [`IsoLines::centre`].
+    /// The distance from [`IsoLines::center`].
     Distance,
 }
 
@@ -73,7 +73,7 @@ impl Default for IsoLines {
         Self {
             field: IsoField::Height,
             step: 0.5,
-            centre: Vec3::ZERO,
+            center: Vec3::ZERO,
             width: 1.0,
             major: 5,
             major_width: 2.0,
@@ -94,17 +94,10 @@ impl Effect for IsoLines {
     type Uniform = IsoLinesUniform;
 
     fn sanitized(self) -> Self {
-        let default = Self::default();
-        let component = |value| bounded(value, 0.0, -1e6, 1e6);
+        let component = |value| clamp_or_default(value, 0.0, -1e6, 1e6);
         Self {
-            field: self.field,
-            step: bounded(self.step, default.step, 1e-3, 1e3),
-            centre: Vec3::from(self.centre.to_array().map(component)),
-            width: bounded(self.width, default.width, 0.5, 16.0),
-            major: self.major.min(20),
-            major_width: bounded(self.major_width, default.major_width, 0.5, 16.0),
-            color: displayable(self.color, default.color),
-            opacity: bounded(self.opacity, default.opacity, 0.0, 1.0),
+            center: Vec3::from(self.center.to_array().map(component)),
+            ..clamp_fields(self)
         }
     }
 
@@ -124,17 +117,17 @@ impl Effect for IsoLines {
         }
     }
 
-    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.number("FIELD", self.field_number());
     }
 
-    fn uniform(&self, view: &ViewFacts) -> IsoLinesUniform {
+    fn uniform(&self, view: &EffectContext) -> IsoLinesUniform {
         let half = |width: f32| 0.5 * width * view.scale_factor;
         IsoLinesUniform {
             world_from_clip: view.world_from_clip,
             color: linear_rgb(self.color),
             opacity: self.opacity,
-            centre: self.centre,
+            center: self.center,
             step: self.step,
             half_width: half(self.width),
             major_half_width: half(self.major_width),
@@ -161,7 +154,7 @@ pub struct IsoLinesUniform {
     world_from_clip: Mat4,
     color: Vec3,
     opacity: f32,
-    centre: Vec3,
+    center: Vec3,
     step: f32,
     half_width: f32,
     major_half_width: f32,

@@ -8,8 +8,8 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
-    settings::{FieldRange, bounded},
+    effect::{Effect, EffectContext, EffectShader, EffectStage, Needs, Variants},
+    settings::FieldRange,
 };
 
 /// Paints the picture: areas become flat patches of one colour, their edges stay sharp, and
@@ -20,21 +20,21 @@ use crate::{
 /// lightness varies least (Kuwahara 1976), so no colour crosses an edge. Nothing is painted
 /// where the background of a transparent camera shows through.
 ///
-/// The brush is `near` wide at the near end of the depth map, and `far` wide at its far end.
+/// The brush is `at_near` wide at the near end of the depth map, and `at_far` wide at its far end.
 /// The depth map is read if they differ.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Paint {
-    /// How the areas lie. Default: [`PaintForm::Box`].
-    pub form: PaintForm,
+    /// How the areas lie. Default: [`PaintKernel::Box`].
+    pub kernel: PaintKernel,
     /// Radius of the brush at the near end of the depth map, in logical pixels. Range 0 (not
     /// painted) to 12, default 4.
     #[reflect(@FieldRange::linear(0.0, 12.0).unit("px"))]
-    pub near: f32,
+    pub at_near: f32,
     /// The same at the far end. Range 0 (not painted) to 12, default 4.
     #[reflect(@FieldRange::linear(0.0, 12.0).unit("px"))]
-    pub far: f32,
+    pub at_far: f32,
     /// How much more areas of even lightness count: the exponent of their deviation. Range 1
     /// (soft, as seen through frosted glass) to 16 (patches with hard borders), default 8.
     #[reflect(@FieldRange::linear(1.0, 16.0))]
@@ -53,7 +53,7 @@ pub struct Paint {
 #[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[reflect(Default, Clone, PartialEq, Hash, Serialize, Deserialize)]
 #[non_exhaustive]
-pub enum PaintForm {
+pub enum PaintKernel {
     /// Squares: the same effort for every radius. Two more passes average the picture, to two
     /// textures of the viewport's size with 16 bytes a pixel.
     #[default]
@@ -66,9 +66,9 @@ pub enum PaintForm {
 impl Default for Paint {
     fn default() -> Self {
         Self {
-            form: PaintForm::Box,
-            near: 4.0,
-            far: 4.0,
+            kernel: PaintKernel::Box,
+            at_near: 4.0,
+            at_far: 4.0,
             sharpness: 8.0,
             figures: false,
             amount: 1.0,
@@ -87,20 +87,8 @@ impl Effect for Paint {
     const HALF_BOX: bool = true;
     type Uniform = PaintUniform;
 
-    fn sanitized(self) -> Self {
-        let default = Self::default();
-        Self {
-            form: self.form,
-            near: bounded(self.near, default.near, 0.0, 12.0),
-            far: bounded(self.far, default.far, 0.0, 12.0),
-            sharpness: bounded(self.sharpness, default.sharpness, 1.0, 16.0),
-            figures: self.figures,
-            amount: bounded(self.amount, default.amount, 0.0, 1.0),
-        }
-    }
-
     fn strength(&self) -> f32 {
-        if self.near == 0.0 && self.far == 0.0 {
+        if self.at_near == 0.0 && self.at_far == 0.0 {
             0.0
         } else {
             self.amount
@@ -113,39 +101,39 @@ impl Effect for Paint {
     }
 
     fn needs(&self) -> Needs {
-        let mut needs = match self.form {
-            PaintForm::Box => Needs::MEANS,
-            PaintForm::Anisotropic => Needs::PICTURE,
+        let mut needs = match self.kernel {
+            PaintKernel::Box => Needs::BOX_STATISTICS,
+            PaintKernel::Anisotropic => Needs::PICTURE,
         };
-        needs.set(Needs::MAP, self.near != self.far);
+        needs.set(Needs::MAP, self.at_near != self.at_far);
         needs.set(Needs::IDS, self.keeps_figures());
         needs
     }
 
     fn without(self, missing: Needs) -> Option<Self> {
         // Without the map, the brush is as at its far end, as for the sky.
-        let near = if missing.contains(Needs::MAP) {
-            self.far
+        let at_near = if missing.contains(Needs::MAP) {
+            self.at_far
         } else {
-            self.near
+            self.at_near
         };
         let figures = self.figures && !missing.contains(Needs::IDS);
         Some(Self {
-            near,
+            at_near,
             figures,
             ..self
         })
     }
 
-    fn variants(&self, view: &ViewFacts, variants: &mut Variants) {
-        variants.flag("ANISOTROPIC", self.form == PaintForm::Anisotropic);
+    fn variants(&self, view: &EffectContext, variants: &mut Variants) {
+        variants.flag("ANISOTROPIC", self.kernel == PaintKernel::Anisotropic);
         variants.flag("FIGURES", self.keeps_figures());
         variants.number("EIGHTH", u32::from(self.sharpness == 8.0));
         variants.flag("WHOLE", self.is_whole(view));
     }
 
-    fn box_reach(&self, view: &ViewFacts) -> Option<u32> {
-        let half = 0.5 * physical(self.near.max(self.far), view);
+    fn max_radius(&self, view: &EffectContext) -> Option<u32> {
+        let half = 0.5 * physical(self.at_near.max(self.at_far), view);
         if self.is_whole(view) {
             Some(half as u32)
         } else {
@@ -155,14 +143,14 @@ impl Effect for Paint {
     }
 
     fn map_faded(self, fraction: f32) -> Self {
-        let near = self.far + (self.near - self.far) * fraction;
-        Self { near, ..self }
+        let at_near = self.at_far + (self.at_near - self.at_far) * fraction;
+        Self { at_near, ..self }
     }
 
-    fn uniform(&self, view: &ViewFacts) -> PaintUniform {
+    fn uniform(&self, view: &EffectContext) -> PaintUniform {
         PaintUniform {
-            near: physical(self.near, view),
-            far: physical(self.far, view),
+            at_near: physical(self.at_near, view),
+            at_far: physical(self.at_far, view),
             half_sharpness: 0.5 * self.sharpness,
             amount: self.amount,
         }
@@ -170,14 +158,14 @@ impl Effect for Paint {
 }
 
 /// A radius in physical pixels.
-fn physical(radius: f32, view: &ViewFacts) -> f32 {
+fn physical(radius: f32, view: &EffectContext) -> f32 {
     (radius * view.scale_factor).min(256.0)
 }
 
 impl Paint {
     /// Whether all boxes reach the same whole number of pixels from their middle.
-    fn is_whole(&self, view: &ViewFacts) -> bool {
-        self.near == self.far && (0.5 * physical(self.near, view)).fract() == 0.0
+    fn is_whole(&self, view: &EffectContext) -> bool {
+        self.at_near == self.at_far && (0.5 * physical(self.at_near, view)).fract() == 0.0
     }
 
     /// Whether object ids are read.
@@ -189,8 +177,8 @@ impl Paint {
 /// The uniform: `Paint` in `paint.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
 pub struct PaintUniform {
-    near: f32,
-    far: f32,
+    at_near: f32,
+    at_far: f32,
     half_sharpness: f32,
     amount: f32,
 }

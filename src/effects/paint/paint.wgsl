@@ -11,7 +11,7 @@
 
 #import bevy_comics::depth::view::view
 #import bevy_comics::effect::color::luminance
-#import bevy_comics::effect::means::{
+#import bevy_comics::effect::box_statistics::{
     color_of, load_means, means_of, part_of_box, root, square, variance, Means,
 }
 #import bevy_comics::effect::picture::{load_picture, picture_at}
@@ -22,8 +22,8 @@
 
 // Radii in physical pixels at both ends of the depth map.
 struct Paint {
-    near: f32,
-    far: f32,
+    at_near: f32,
+    at_far: f32,
     // Half the exponent of the deviation.
     half_sharpness: f32,
     amount: f32,
@@ -38,7 +38,7 @@ const ZETA: f32 = 0.33333333;
 const ETA: f32 = 3.7739;
 
 fn paint_radius(s: Paint, depth: f32) -> f32 {
-    return mix(s.near, s.far, clamp(depth, 0.0, 1.0));
+    return mix(s.at_near, s.at_far, clamp(depth, 0.0, 1.0));
 }
 
 fn paint_half_box(s: Paint, p: Pixel) -> f32 {

@@ -10,9 +10,9 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, ViewFacts},
-    lines::Sheet,
-    settings::{FieldRange, bounded, displayable, file_color, linear_rgb},
+    effect::{Effect, EffectContext, EffectShader, EffectStage},
+    lines::{LineModifiers, Sheet},
+    settings::{FieldRange, color_serde, linear_rgb},
 };
 
 /// Prints the picture on paper: its grain shows in what is neither solid ink nor bare, its
@@ -20,7 +20,7 @@ use crate::{
 ///
 /// The sheet is fixed to the render target, so that the views of a split screen are printed
 /// on one sheet, unless [`anchor`](Self::anchor) gives each its own. Grain, shading and
-/// [`spread`](Self::spread) keep the mean tone of a flat area within 1 %, in linear light. Light
+/// [`ink_bleed`](Self::spread) keep the mean tone of a flat area within 1 %, in linear light. Light
 /// above 1 (HDR) and the background of a transparent camera have no grain. Reads no texture.
 ///
 /// The views of cameras with this effect are styled after FXAA and SMAA, which would smear the
@@ -49,10 +49,10 @@ pub struct Paper {
     /// sketches and of the dots of a [`Halftone`](crate::Halftone) vary within a band of this
     /// width. The mean width of a line stays within 0.05 pixels; a line that is thin for the
     /// spread varies by at most three quarters of its width, so that it never vanishes. Lines of
-    /// the faithful forms, contours and outlines around marked objects stay smooth. Range 0 to 2,
+    /// the faithful equations, contours and outlines around marked objects stay smooth. Range 0 to 2,
     /// default 0.
     #[reflect(@FieldRange::linear(0.0, 2.0).unit("px"))]
-    pub spread: f32,
+    pub ink_bleed: f32,
     /// How dry the brush is that draws wide outlines: it leaves out streaks along the stroke, 1.6
     /// logical pixels wide and 8 times as long, fixed to the sheet. Lines narrower than 3 logical
     /// pixels have none, and lines from 6 on have all of them. Range 0 (wet: whole lines) to 1
@@ -61,7 +61,7 @@ pub struct Paper {
     pub dry_brush: f32,
     /// Colour of the sheet; the page is multiplied by it. Default: warm white. Components are
     /// clamped to what a display shows; alpha is ignored.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub color: Color,
     /// Sheets per second, as if each drawing of a film were on paper of its own. Range 0 (one
     /// sheet for all time) to 60, default 0.
@@ -90,7 +90,7 @@ impl Default for Paper {
             grain: 0.3,
             shading: 0.08,
             size: 1.0,
-            spread: 0.0,
+            ink_bleed: 0.0,
             dry_brush: 0.0,
             color: Color::srgb_u8(251, 247, 236),
             rate: 0.0,
@@ -109,21 +109,6 @@ impl Effect for Paper {
     };
     type Uniform = PaperUniform;
 
-    fn sanitized(self) -> Self {
-        let default = Self::default();
-        Self {
-            amount: bounded(self.amount, default.amount, 0.0, 1.0),
-            grain: bounded(self.grain, default.grain, 0.0, 1.0),
-            shading: bounded(self.shading, default.shading, 0.0, 0.3),
-            size: bounded(self.size, default.size, 0.5, 8.0),
-            spread: bounded(self.spread, default.spread, 0.0, 2.0),
-            dry_brush: bounded(self.dry_brush, default.dry_brush, 0.0, 1.0),
-            color: displayable(self.color, default.color),
-            rate: bounded(self.rate, default.rate, 0.0, 60.0),
-            anchor: self.anchor,
-        }
-    }
-
     fn strength(&self) -> f32 {
         self.amount
     }
@@ -133,30 +118,25 @@ impl Effect for Paper {
         Self { amount, ..self }
     }
 
-    fn sheet(&self, view: &ViewFacts) -> Option<Sheet> {
-        let inked = self.spread > 0.0 || self.dry_brush > 0.0;
-        inked.then(|| Sheet {
-            spread: self.amount * self.spread * view.scale_factor,
-            dry_brush: self.amount * self.dry_brush,
-            corner: self.corner(view),
-            scale: self.scale(view),
-            unit: view.scale_factor,
-            seed: view.drawing(self.rate),
-        })
+    fn line_modifiers(&self, view: &EffectContext) -> LineModifiers {
+        LineModifiers {
+            sheet: self.line_sheet(view),
+            ..LineModifiers::default()
+        }
     }
 
-    fn prints(&self) -> bool {
+    fn runs_after_anti_aliasing(&self) -> bool {
         true
     }
 
-    fn uniform(&self, view: &ViewFacts) -> PaperUniform {
+    fn uniform(&self, view: &EffectContext) -> PaperUniform {
         PaperUniform {
             color: linear_rgb(self.color),
             amount: self.amount,
             grain: self.grain,
             shading: 0.5 * self.shading,
             scale: self.scale(view),
-            seed: view.drawing(self.rate),
+            seed: view.animation_seed(self.rate),
             corner: self.corner(view),
         }
     }
@@ -164,16 +144,30 @@ impl Effect for Paper {
 
 impl Paper {
     /// Places on the sheet per physical pixel.
-    fn scale(&self, view: &ViewFacts) -> f32 {
+    fn scale(&self, view: &EffectContext) -> f32 {
         1.0 / (self.size * view.scale_factor)
     }
 
     /// Where the sheet begins in the render target, in physical pixels.
-    fn corner(&self, view: &ViewFacts) -> Vec2 {
+    fn corner(&self, view: &EffectContext) -> Vec2 {
         match self.anchor {
             PaperAnchor::Window => Vec2::ZERO,
             PaperAnchor::View => view.viewport.xy().as_vec2(),
         }
+    }
+}
+
+impl Paper {
+    fn line_sheet(&self, view: &EffectContext) -> Option<Sheet> {
+        let inked = self.ink_bleed > 0.0 || self.dry_brush > 0.0;
+        inked.then(|| Sheet {
+            ink_bleed: self.amount * self.ink_bleed * view.scale_factor,
+            dry_brush: self.amount * self.dry_brush,
+            corner: self.corner(view),
+            scale: self.scale(view),
+            unit: view.scale_factor,
+            seed: view.animation_seed(self.rate),
+        })
     }
 }
 

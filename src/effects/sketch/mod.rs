@@ -11,9 +11,9 @@ use serde::{Deserialize, Serialize};
 
 use super::Outlines;
 use crate::{
-    effect::{AnyEffect, Effect, EffectShader, EffectStage, Needs, Variants, ViewFacts},
+    effect::{AnyEffect, Effect, EffectContext, EffectShader, EffectStage, Needs, Variants},
     lines::{LineFog, LineResponse},
-    settings::{BlendField, FieldRange, bounded, displayable, file_color, linear_rgb},
+    settings::{BlendField, FieldRange, color_serde, linear_rgb},
 };
 
 /// Replaces the picture by a drawing of its outlines: ink on paper (\[CL\] 3.2,
@@ -33,11 +33,11 @@ pub struct Sketch {
     pub amount: f32,
     /// Colour of the paper. Default: sRGB (0.97, 0.955, 0.915), a warm white.
     /// Components are clamped to what a display shows; alpha is ignored.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub paper: Color,
     /// Colour of the ink. Default: sRGB (0.13, 0.12, 0.14), a soft black. Components
     /// are clamped to what a display shows; alpha is ignored.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub ink: Color,
     /// How much the picture tints the paper, like a wash of colour. Range 0 to 1,
     /// default 0.
@@ -95,22 +95,6 @@ impl Effect for Sketch {
     const REPLACES: &'static [&'static str] = &[Outlines::NAME];
     type Uniform = SketchUniform;
 
-    fn sanitized(self) -> Self {
-        let default = Self::default();
-        Self {
-            amount: bounded(self.amount, default.amount, 0.0, 1.0),
-            paper: displayable(self.paper, default.paper),
-            ink: displayable(self.ink, default.ink),
-            wash: bounded(self.wash, default.wash, 0.0, 1.0),
-            gamma: bounded(self.gamma, default.gamma, 0.25, 4.0),
-            strokes: self.strokes.clamp(1, 3),
-            jitter: bounded(self.jitter, default.jitter, 0.0, 8.0),
-            wavelength: bounded(self.wavelength, default.wavelength, 2.0, 256.0),
-            rate: bounded(self.rate, default.rate, 0.0, 60.0),
-            pressure: bounded(self.pressure, default.pressure, 0.0, 1.0),
-        }
-    }
-
     fn strength(&self) -> f32 {
         self.amount
     }
@@ -136,16 +120,16 @@ impl Effect for Sketch {
         }))
     }
 
-    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.flag("FADES", self.amount < 1.0);
     }
 
     /// One pixel more than strokes are displaced: lines are interpolated between pixels.
-    fn line_reach(&self, view: &ViewFacts) -> Option<f32> {
+    fn line_reach(&self, view: &EffectContext) -> Option<f32> {
         Some(self.jitter * view.scale_factor + 1.0)
     }
 
-    fn uniform(&self, view: &ViewFacts) -> SketchUniform {
+    fn uniform(&self, view: &EffectContext) -> SketchUniform {
         SketchUniform {
             paper: linear_rgb(self.paper),
             wash: self.wash,
@@ -155,7 +139,7 @@ impl Effect for Sketch {
             wavelength: self.wavelength * view.scale_factor,
             pressure: self.pressure,
             strokes: self.strokes,
-            drawing: view.drawing(self.rate),
+            drawing: view.animation_seed(self.rate),
             amount: self.amount,
             lines_below: if view.lines_implied { 0.0 } else { 1.0 },
         }

@@ -10,8 +10,8 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Variants, ViewFacts},
-    settings::{BlendField, FieldRange, bounded, displayable, file_color, linear_rgb},
+    effect::{Effect, EffectContext, EffectShader, EffectStage, Variants},
+    settings::{BlendField, FieldRange, color_serde, linear_rgb},
 };
 
 /// Draws lines that run towards a point (focus lines) or alongside each other (speed lines),
@@ -21,21 +21,17 @@ use crate::{
 /// Lines are drawn with the stroke of a pen: as wide as asked at the border of the picture,
 /// and pointed at their inner end. Places, lengths and widths are random and change with
 /// every drawing. The point is a place of the viewport, or follows the camera's
-/// [`EffectTarget`](crate::EffectTarget). Reads no texture.
+/// [`EffectTarget`](crate::effect::EffectTarget). Reads no texture.
 #[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SpeedLines {
     /// How the lines run. Default: [`SpeedLineKind::Radial`].
     pub kind: SpeedLineKind,
-    /// Horizontal place of the point: fraction of the viewport's width from its left side.
-    /// Range -1 to 2, default 0.5.
+    /// Position of the point, as fractions of the viewport's width and height from its top left
+    /// corner. Range of each component -1 to 2, default 0.5.
     #[reflect(@FieldRange::linear(-1.0, 2.0))]
-    pub centre_x: f32,
-    /// Vertical place of the point: fraction of the viewport's height from its top. Range -1
-    /// to 2, default 0.5.
-    #[reflect(@FieldRange::linear(-1.0, 2.0))]
-    pub centre_y: f32,
+    pub center: Vec2,
     /// Direction of parallel lines in degrees: 0 is horizontal, and lines of positive angles
     /// rise to the right. Range -180 to 180, default 0.
     #[reflect(@FieldRange::linear(-180.0, 180.0).unit("°"))]
@@ -56,7 +52,7 @@ pub struct SpeedLines {
     /// How dry the brush is: it leaves streaks of the lines out. Range 0 (wet: whole lines) to
     /// 1 (almost nothing is left), default 0.
     #[reflect(@FieldRange::FRACTION)]
-    pub dry: f32,
+    pub dry_brush: f32,
     /// Drawings per second. Range 0 (one drawing for all time) to 60, default 12.
     #[reflect(@FieldRange::linear(0.0, 60.0).unit("/ s"))]
     pub rate: f32,
@@ -65,7 +61,7 @@ pub struct SpeedLines {
     pub seed: u32,
     /// Colour of the lines. Default: black. Components are clamped to what a display shows;
     /// alpha is ignored.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub color: Color,
     /// Opacity of the lines. Range 0 (the effect is left out) to 1, default 1.
     #[reflect(@FieldRange::FRACTION)]
@@ -88,13 +84,12 @@ impl Default for SpeedLines {
     fn default() -> Self {
         Self {
             kind: SpeedLineKind::Radial,
-            centre_x: 0.5,
-            centre_y: 0.5,
+            center: Vec2::splat(0.5),
             angle: 0.0,
             count: 120,
             inner: 0.45,
             width: 12.0,
-            dry: 0.0,
+            dry_brush: 0.0,
             rate: 12.0,
             seed: 0,
             color: Color::BLACK,
@@ -113,24 +108,6 @@ impl Effect for SpeedLines {
     };
     type Uniform = SpeedLinesUniform;
 
-    fn sanitized(self) -> Self {
-        let default = Self::default();
-        Self {
-            kind: self.kind,
-            centre_x: bounded(self.centre_x, default.centre_x, -1.0, 2.0),
-            centre_y: bounded(self.centre_y, default.centre_y, -1.0, 2.0),
-            angle: bounded(self.angle, default.angle, -180.0, 180.0),
-            count: self.count.clamp(20, 400),
-            inner: bounded(self.inner, default.inner, 0.0, 1.5),
-            width: bounded(self.width, default.width, 1.0, 40.0),
-            dry: bounded(self.dry, default.dry, 0.0, 1.0),
-            rate: bounded(self.rate, default.rate, 0.0, 60.0),
-            seed: self.seed.min(65535),
-            color: displayable(self.color, default.color),
-            opacity: bounded(self.opacity, default.opacity, 0.0, 1.0),
-        }
-    }
-
     fn strength(&self) -> f32 {
         self.opacity
     }
@@ -140,19 +117,19 @@ impl Effect for SpeedLines {
         Self { opacity, ..self }
     }
 
-    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.number("KIND", self.kind as u32);
-        variants.number("DRY", u32::from(self.dry > 0.0));
+        variants.number("DRY", u32::from(self.dry_brush > 0.0));
     }
 
-    fn uniform(&self, view: &ViewFacts) -> SpeedLinesUniform {
+    fn uniform(&self, view: &EffectContext) -> SpeedLinesUniform {
         let size = Vec2::new(view.viewport.z as f32, view.viewport.w as f32).max(Vec2::ONE);
-        let own = Vec2::new(self.centre_x, self.centre_y) * size;
-        let centre = view.target.unwrap_or(own).clamp(-size, 2.0 * size);
+        let own = self.center * size;
+        let center = view.target.unwrap_or(own).clamp(-size, 2.0 * size);
         let (sin, cos) = self.angle.to_radians().sin_cos();
         let axis = Vec2::new(cos, -sin);
         // From the point to the farthest corner, and along the lines to the farthest one.
-        let corner = centre.abs().max((size - centre).abs());
+        let corner = center.abs().max((size - center).abs());
         let (far, across) = match self.kind {
             SpeedLineKind::Radial => (corner.length(), 0.0),
             SpeedLineKind::Parallel => (
@@ -163,17 +140,17 @@ impl Effect for SpeedLines {
         SpeedLinesUniform {
             color: linear_rgb(self.color),
             opacity: self.opacity,
-            centre,
+            center,
             // Not 0: places are divided by it.
             hole: (0.5 * self.inner * size).max(Vec2::splat(1e-3)),
             axis,
             far,
             half_width: 0.5 * self.width * view.scale_factor,
             count: self.count as i32,
-            seed: (self.seed << 16) | view.drawing(self.rate),
+            seed: (self.seed << 16) | view.animation_seed(self.rate),
             spacing: across / self.count as f32,
             kind: self.kind as u32,
-            dry: self.dry,
+            dry_brush: self.dry_brush,
             unit: view.scale_factor,
         }
     }
@@ -184,7 +161,7 @@ impl Effect for SpeedLines {
 pub struct SpeedLinesUniform {
     color: Vec3,
     opacity: f32,
-    centre: Vec2,
+    center: Vec2,
     hole: Vec2,
     axis: Vec2,
     far: f32,
@@ -193,6 +170,6 @@ pub struct SpeedLinesUniform {
     seed: u32,
     spacing: f32,
     kind: u32,
-    dry: f32,
+    dry_brush: f32,
     unit: f32,
 }

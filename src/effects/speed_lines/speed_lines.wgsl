@@ -16,7 +16,7 @@ const TURN: f32 = 6.283185307;
 struct SpeedLines {
     color: vec3<f32>,
     opacity: f32,
-    centre: vec2<f32>,
+    center: vec2<f32>,
     // Half axes of the ellipse that stays clear.
     hole: vec2<f32>,
     // Direction of parallel lines.
@@ -30,7 +30,7 @@ struct SpeedLines {
     // Distance of two parallel lines.
     spacing: f32,
     kind: u32,
-    dry: f32,
+    dry_brush: f32,
     // Physical pixels per logical pixel.
     unit: f32,
 }
@@ -50,7 +50,7 @@ fn is_dry(s: SpeedLines) -> bool {
     let compiled = #{SPEED_LINES_DRY}u;
     return compiled != 0u;
 #else
-    return s.dry > 0.0;
+    return s.dry_brush > 0.0;
 #endif
 }
 
@@ -103,7 +103,7 @@ fn dry_ink(s: SpeedLines, seed: u32, d: vec2<f32>) -> f32 {
     if !is_dry(s) {
         return 1.0;
     }
-    return bristles(s.dry, wave(d / (s.unit * vec2(60.0, 1.6)), seed));
+    return bristles(s.dry_brush, wave(d / (s.unit * vec2(60.0, 1.6)), seed));
 }
 
 // Coverage of one radial line. `u`: direction of the pixel in cells; `rho`: its distance
@@ -148,7 +148,7 @@ fn parallel_line(s: SpeedLines, line: i32, d: vec2<f32>) -> f32 {
 
 // Coverage of the lines at a place.
 fn speed_line_coverage(s: SpeedLines, at: vec2<f32>) -> f32 {
-    let d = at - s.centre;
+    let d = at - s.center;
     var sum = 0.0;
     if kind_of(s) == PARALLEL {
         let turned = vec2(dot(d, s.axis), s.axis.x * d.y - s.axis.y * d.x);

@@ -8,8 +8,8 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, EffectView, Needs, Variants, ViewFacts},
-    settings::{FieldRange, Form, bounded},
+    effect::{Effect, EffectContext, EffectShader, EffectStage, EffectView, Needs, Variants},
+    settings::{Equations, FieldRange},
 };
 
 /// Reduces the tones of the picture to a few flat bands, however the scene is lit
@@ -22,19 +22,19 @@ use crate::{
 #[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ToneBands {
-    /// Selects how tones are banded. [`Form::Corrected`] moves the lightness (the
+    /// Selects how tones are banded. [`Equations::Corrected`] moves the lightness (the
     /// square root of the luminance) to the middle of its band and keeps hue and
-    /// saturation. [`Form::Faithful`] compresses each channel of the display colour
-    /// separately in three ranges; white becomes 0.83. Default: [`Form::Corrected`].
-    /// Source of the faithful form: \[CL\] Eq. 6, without its gaps at 0.33 and 0.66.
-    pub form: Form,
-    /// Number of bands. Range 2 to 8, default 4. [`Form::Faithful`] always has three.
+    /// saturation. [`Equations::Faithful`] compresses each channel of the display colour
+    /// separately in three ranges; white becomes 0.83. Default: [`Equations::Corrected`].
+    /// Source of the faithful equations: \[CL\] Eq. 6, without its gaps at 0.33 and 0.66.
+    pub equations: Equations,
+    /// Number of bands. Range 2 to 8, default 4. [`Equations::Faithful`] always has three.
     #[reflect(@FieldRange::linear(2.0, 8.0))]
     pub levels: u32,
     /// Width of the step between two bands, in logical pixels: 1 is anti-aliased,
     /// more is softer. Range 0 to 16, default 1. A step spans at least two display
     /// codes, so that the dither of a flat area does not speckle, and at most one
-    /// band. [`Form::Faithful`] has hard steps.
+    /// band. [`Equations::Faithful`] has hard steps.
     #[reflect(@FieldRange::linear(0.0, 16.0).unit("px"))]
     pub softness: f32,
     /// Fraction of the banded picture in the mix with the original. Range 0 (the
@@ -46,7 +46,7 @@ pub struct ToneBands {
 impl Default for ToneBands {
     fn default() -> Self {
         Self {
-            form: Form::default(),
+            equations: Equations::default(),
             levels: 4,
             softness: 1.0,
             amount: 1.0,
@@ -68,16 +68,6 @@ impl Effect for ToneBands {
     });
     type Uniform = ToneBandsUniform;
 
-    fn sanitized(self) -> Self {
-        let default = Self::default();
-        Self {
-            form: self.form,
-            levels: self.levels.clamp(2, 8),
-            softness: bounded(self.softness, default.softness, 0.0, 16.0),
-            amount: bounded(self.amount, default.amount, 0.0, 1.0),
-        }
-    }
-
     fn strength(&self) -> f32 {
         self.amount
     }
@@ -93,11 +83,11 @@ impl Effect for ToneBands {
         Needs::LIGHTNESS_CHANGE
     }
 
-    fn variants(&self, _: &ViewFacts, variants: &mut Variants) {
+    fn variants(&self, _: &EffectContext, variants: &mut Variants) {
         variants.number("FAITHFUL", u32::from(self.is_faithful()));
     }
 
-    fn uniform(&self, view: &ViewFacts) -> ToneBandsUniform {
+    fn uniform(&self, view: &EffectContext) -> ToneBandsUniform {
         ToneBandsUniform {
             levels: self.levels as f32,
             softness: self.softness * view.scale_factor,
@@ -109,7 +99,7 @@ impl Effect for ToneBands {
 
 impl ToneBands {
     fn is_faithful(&self) -> bool {
-        self.form == Form::Faithful
+        self.equations == Equations::Faithful
     }
 }
 

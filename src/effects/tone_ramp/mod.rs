@@ -10,13 +10,13 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, ViewFacts},
-    settings::{FieldRange, bounded, displayable, file_color, oklab},
+    effect::{Effect, EffectContext, EffectShader, EffectStage, Needs},
+    settings::{FieldRange, color_serde, oklab},
 };
 
 /// Paints the picture in three tones by its lightness, near ones and far ones (X-Toon: Barla,
-/// Thollot and Markosian 2006). It is the [`Ramp`](crate::Ramp) of cameras whose scenes do not
-/// have a [`CartoonMaterial`](crate::CartoonMaterial).
+/// Thollot and Markosian 2006). It is the [`Ramp`](crate::toon::Ramp) of cameras whose scenes do not
+/// have a [`ToonMaterial`](crate::ToonMaterial).
 ///
 /// Between near and far, edges move and soften, and colours are mixed in `OKLab`. Far tones with
 /// soft edges and pale colours are an aerial perspective; equal far tones are an abstraction.
@@ -30,13 +30,13 @@ use crate::{
 pub struct ToneRamp {
     /// Tone of what is dark, near. Default: a deep violet. Components of all colours are clamped
     /// to what a display shows; alpha is ignored.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub dark: Color,
     /// Tone between dark and light, near. Default: a greyish violet.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub middle: Color,
     /// Tone of what is light, near. Default: white.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub light: Color,
     /// Lightness where the middle tone begins, near: the square root of the luminance. Range 0 to
     /// 1, default 0.3.
@@ -50,13 +50,13 @@ pub struct ToneRamp {
     #[reflect(@FieldRange::FRACTION)]
     pub softness: f32,
     /// Tone of what is dark, far away. Default: a pale blue.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub far_dark: Color,
     /// Tone between dark and light, far away. Default: a paler blue.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub far_middle: Color,
     /// Tone of what is light, far away. Default: a nearly white blue.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub far_light: Color,
     /// Lightness where the middle tone begins, far away. Range 0 to 1, default 0.3.
     #[reflect(@FieldRange::FRACTION)]
@@ -117,29 +117,6 @@ impl Effect for ToneRamp {
     };
     type Uniform = ToneRampUniform;
 
-    fn sanitized(self) -> Self {
-        let default = Self::default();
-        let part = |x, default| bounded(x, default, 0.0, 1.0);
-        Self {
-            dark: displayable(self.dark, default.dark),
-            middle: displayable(self.middle, default.middle),
-            light: displayable(self.light, default.light),
-            middle_at: part(self.middle_at, default.middle_at),
-            light_at: part(self.light_at, default.light_at),
-            softness: part(self.softness, default.softness),
-            far_dark: displayable(self.far_dark, default.far_dark),
-            far_middle: displayable(self.far_middle, default.far_middle),
-            far_light: displayable(self.far_light, default.far_light),
-            far_middle_at: part(self.far_middle_at, default.far_middle_at),
-            far_light_at: part(self.far_light_at, default.far_light_at),
-            far_softness: part(self.far_softness, default.far_softness),
-            focus: part(self.focus, default.focus),
-            reach: bounded(self.reach, default.reach, 0.01, 1.0),
-            keep_color: part(self.keep_color, default.keep_color),
-            amount: part(self.amount, default.amount),
-        }
-    }
-
     fn strength(&self) -> f32 {
         self.amount
     }
@@ -164,7 +141,7 @@ impl Effect for ToneRamp {
         (!left.needs().intersects(missing)).then_some(left)
     }
 
-    fn uniform(&self, _: &ViewFacts) -> ToneRampUniform {
+    fn uniform(&self, _: &EffectContext) -> ToneRampUniform {
         ToneRampUniform {
             dark: oklab(self.dark),
             middle_at: self.middle_at,

@@ -10,8 +10,8 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, Needs, ViewFacts},
-    settings::{FieldRange, bounded, displayable, file_color, linear_rgb},
+    effect::{Effect, EffectContext, EffectShader, EffectStage, Needs},
+    settings::{FieldRange, color_serde, linear_rgb},
 };
 
 /// Paints the picture, lines included, with two colours: one where it is darker than a
@@ -29,11 +29,11 @@ pub struct TwoTone {
     pub threshold: f32,
     /// Colour where the picture is darker. Default: black. Components are clamped to what a
     /// display shows; alpha is ignored.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub dark: Color,
     /// Colour where the picture is lighter. Default: white. Components are clamped to what a
     /// display shows; alpha is ignored.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub light: Color,
     /// Whether the two colours are exchanged. Default: `false`.
     pub invert: bool,
@@ -82,18 +82,6 @@ impl Effect for TwoTone {
     };
     type Uniform = TwoToneUniform;
 
-    fn sanitized(self) -> Self {
-        let default = Self::default();
-        Self {
-            threshold: bounded(self.threshold, default.threshold, 0.0, 1.0),
-            dark: displayable(self.dark, default.dark),
-            light: displayable(self.light, default.light),
-            invert: self.invert,
-            softness: bounded(self.softness, default.softness, 0.0, 16.0),
-            amount: bounded(self.amount, default.amount, 0.0, 1.0),
-        }
-    }
-
     fn strength(&self) -> f32 {
         self.amount
     }
@@ -107,7 +95,7 @@ impl Effect for TwoTone {
         Needs::LIGHTNESS_CHANGE
     }
 
-    fn uniform(&self, _: &ViewFacts) -> TwoToneUniform {
+    fn uniform(&self, _: &EffectContext) -> TwoToneUniform {
         let (dark, light) = if self.invert {
             (self.light, self.dark)
         } else {

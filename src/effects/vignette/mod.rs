@@ -10,8 +10,8 @@ use bevy::{
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    effect::{Effect, EffectShader, EffectStage, ViewFacts},
-    settings::{FieldRange, bounded, displayable, file_color, linear_rgb},
+    effect::{Effect, EffectContext, EffectShader, EffectStage},
+    settings::{FieldRange, color_serde, linear_rgb},
 };
 
 /// Mixes a colour into the picture towards the corners of the viewport, over lines
@@ -37,7 +37,7 @@ pub struct Vignette {
     pub softness: f32,
     /// Colour that is mixed in. Default: black. Components are clamped to what a
     /// display shows; alpha is ignored.
-    #[serde(with = "file_color")]
+    #[serde(with = "color_serde")]
     pub color: Color,
 }
 
@@ -62,16 +62,6 @@ impl Effect for Vignette {
     };
     type Uniform = VignetteUniform;
 
-    fn sanitized(self) -> Self {
-        let default = Self::default();
-        Self {
-            amount: bounded(self.amount, default.amount, 0.0, 1.0),
-            radius: bounded(self.radius, default.radius, 0.0, 1.0),
-            softness: bounded(self.softness, default.softness, 0.0, 1.0),
-            color: displayable(self.color, default.color),
-        }
-    }
-
     fn strength(&self) -> f32 {
         self.amount
     }
@@ -81,7 +71,7 @@ impl Effect for Vignette {
         Self { amount, ..self }
     }
 
-    fn uniform(&self, view: &ViewFacts) -> VignetteUniform {
+    fn uniform(&self, view: &EffectContext) -> VignetteUniform {
         let size = Vec2::new(view.viewport.z as f32, view.viewport.w as f32).max(Vec2::ONE);
         // smoothstep needs two different ends: a hard edge has a width of 0.001.
         let half = 0.5 * self.softness.max(1e-3);

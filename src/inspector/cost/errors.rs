@@ -4,7 +4,7 @@ use bevy_egui::egui::{Color32, Label, Ui};
 use egui_plot::{GridInput, GridMark, Plot, PlotPoint, PlotUi, Points, Text, VLine};
 
 use super::{
-    super::{Widgets, known, note},
+    super::{Widgets, note, report_data},
     COLORS, Medians,
 };
 use crate::{ComicStyle, timing::Pass};
@@ -17,7 +17,7 @@ struct Known {
 }
 
 fn line_error(detector: &str) -> String {
-    match known::lines(detector) {
+    match report_data::lines(detector) {
         Some(lines) => format!(
             "misses {:.0} % of the lines; {:.0} % of its ink is not on a line",
             100.0 * lines.missed,
@@ -38,7 +38,8 @@ fn depth_range_rows(style: &ComicStyle, medians: &Medians) -> Vec<Known> {
     if !map.mapping.follows_visible_range() {
         return Vec::new();
     }
-    let known = known::smoothing(&map).map(|variant| (variant, known::flicker(variant)));
+    let known =
+        report_data::smoothing(&map).map(|variant| (variant, report_data::flicker(variant)));
     let error = match known {
         Some((_, Some((codes, lag)))) => {
             format!("mean change {codes:.3} 8-bit codes per frame; lags by up to {lag:.1} octaves")
@@ -153,7 +154,7 @@ fn time_label(place: f64) -> String {
 }
 
 /// The dot of a detector; with its name if it is chosen.
-fn dot(plot: &mut PlotUi<'_>, detector: &str, lines: known::Lines, is_chosen: bool) {
+fn dot(plot: &mut PlotUi<'_>, detector: &str, lines: report_data::Lines, is_chosen: bool) {
     let color = if is_chosen {
         COLORS[Pass::Outlines as usize]
     } else {
@@ -194,8 +195,8 @@ fn error_against_time(ui: &mut Ui, chosen: &[String], now: f64, widgets: &mut Wi
             format!("{name}\n{:.3} ms\n{:.1} %", 10f64.powf(value.x), value.y)
         })
         .show(ui, |plot| {
-            for detector in known::DETECTORS {
-                if let Some(lines) = known::lines(detector) {
+            for detector in report_data::DETECTORS {
+                if let Some(lines) = report_data::lines(detector) {
                     let is_chosen = chosen.iter().any(|name| name == detector);
                     dot(plot, detector, lines, is_chosen);
                 }
@@ -211,6 +212,6 @@ fn error_against_time(ui: &mut Ui, chosen: &[String], now: f64, widgets: &mut Wi
         "Error: 1 − F₁; 0 % means that every line and nothing else is drawn. Dots: all passes \
          of bevy_comics at 1280x720 on {}; chosen detectors are filled. Red line: the \
          current time of these passes.",
-        known::adapter()
+        report_data::adapter()
     ));
 }

@@ -3,7 +3,7 @@
 use bevy::reflect::{PartialReflect, ReflectMut, TypeInfo};
 use bevy_egui::egui::Ui;
 
-#[cfg(feature = "cartoon")]
+#[cfg(feature = "toon")]
 use super::ramp_bar;
 use super::{
     super::note, Editor, Setting, button_with_tooltip, edit, explained, options::apply,
@@ -50,7 +50,7 @@ fn head(
     (setting, most): (&Setting, usize),
     editor: &mut Editor,
 ) {
-    #[cfg(feature = "cartoon")]
+    #[cfg(feature = "toon")]
     ramp_bar::show(ui, value, setting, editor.widgets);
     ui.horizontal(|ui| {
         explained(ui.label(&setting.label), setting.docs);
@@ -86,7 +86,7 @@ fn apply_list(value: &mut dyn PartialReflect, new: &dyn PartialReflect) {
 /// What is added to a list: a stop where a ramp has room for one, else the last item again, else
 /// the default of the type.
 fn new_item(list: &dyn PartialReflect, editor: &Editor) -> Option<Box<dyn PartialReflect>> {
-    #[cfg(feature = "cartoon")]
+    #[cfg(feature = "toon")]
     if let Some(stop) = ramp_bar::new_stop(list) {
         return Some(Box::new(stop));
     }

@@ -85,7 +85,7 @@ fn turn(
 ) {
     if !on {
         apply(value, &DynamicEnum::new("None", DynamicVariant::Unit));
-    } else if let Some(last) = editor.shelf.variant(path, "Some") {
+    } else if let Some(last) = editor.stash.variant(path, "Some") {
         apply(value, last);
     } else if let Some(default) = default.filter(|default| some(*default).is_some()) {
         apply(value, default);

@@ -10,7 +10,7 @@ use super::{
     super::{Widgets, note},
     Setting,
 };
-use crate::{Ramp, RampStop};
+use crate::toon::{Ramp, RampStop};
 
 const HEIGHT: f32 = 18.0;
 

@@ -11,7 +11,7 @@ use super::{
     },
     Editor, explained, label, reset_button, settings,
 };
-use crate::{ComicStyle, DepthMap, EffectType};
+use crate::{ComicStyle, DepthMap, effect::EffectType};
 
 /// The depth map and every registered effect: whether it is on, and its
 /// settings. A search leaves out what it does not find.
@@ -63,7 +63,7 @@ fn shown<'a>(name: &str, info: &TypeInfo, search: Option<&'a Search>) -> Option<
 }
 
 fn depth_map(ui: &mut Ui, map: &mut Option<DepthMap>, shown: Shown, editor: &mut Editor) {
-    let last = editor.shelf.depth_map();
+    let last = editor.stash.depth_map();
     whole(ui, map, last, ("depth_map", shown), editor);
 }
 
@@ -135,7 +135,7 @@ fn effect_section(
         is_searched: shown.is_searched,
     };
     let was_on = part.on;
-    let last = || editor.shelf.effect(effect.name);
+    let last = || editor.stash.effect(effect.name);
     let mut edited = own.or_else(last).unwrap_or_else(|| default.clone());
     let change = part.head(ui, editor, |ui, editor| {
         let default = Some(default.as_struct());

@@ -4,8 +4,11 @@ use bevy::reflect::Typed;
 
 use super::{super::tooltip::plain, *};
 use crate::{
-    BlackFlats, ComicStyle, Contours, Creases, DepthMapping, EffectRegistry, LineBoil, LineColor,
-    LineWeight, ObjectEdges, Outlines, PlaneStyle, RangeSmoothing, Silhouettes,
+    BlackFlats, ComicStyle, Contours, DepthMapping, Outlines,
+    depth::RangeSmoothing,
+    effect::EffectRegistry,
+    effects::DepthLayer,
+    lines::{Creases, LineBoil, LineColor, LineWeight, ObjectEdges, Silhouettes},
 };
 
 /// Every type with settings, by its name in paths.
@@ -20,7 +23,7 @@ fn all_types() -> Vec<(&'static str, &'static TypeInfo)> {
         ("outlines.weight", LineWeight::type_info()),
         ("outlines.boil", LineBoil::type_info()),
         ("outlines.color", LineColor::type_info()),
-        ("planes.near", PlaneStyle::type_info()),
+        ("depth_layers.foreground", DepthLayer::type_info()),
     ];
     for effect in EffectRegistry::built_in().types() {
         all.push((effect.name, (effect.type_info)()));
@@ -32,29 +35,38 @@ fn all_types() -> Vec<(&'static str, &'static TypeInfo)> {
 /// The types of the page of a picked object.
 fn types_of_objects() -> Vec<(&'static str, &'static TypeInfo)> {
     #[cfg_attr(
-        not(any(feature = "cartoon", feature = "objects")),
+        not(any(feature = "toon", feature = "objects")),
         allow(unused_mut, reason = "there are no such types")
     )]
     let mut all = Vec::new();
-    #[cfg(feature = "cartoon")]
+    #[cfg(feature = "toon")]
     all.extend([
-        ("light", crate::CartoonLight::type_info()),
-        ("light.ramp", crate::Ramp::type_info()),
-        ("light.ramp.stops.0", crate::RampStop::type_info()),
-        ("light.ramp.detail", crate::RampDetail::type_info()),
-        ("light.ramp.detail.axis", crate::DetailAxis::type_info()),
-        ("light.glint", crate::Glint::type_info()),
-        ("light.form", crate::ShadedForm::type_info()),
-        ("light.form.shape", crate::FormShape::type_info()),
-        ("light.rim", crate::Rim::type_info()),
-        ("light.rim.width", crate::RimWidth::type_info()),
+        ("light", crate::ToonLight::type_info()),
+        ("light.ramp", crate::toon::Ramp::type_info()),
+        ("light.ramp.stops.0", crate::toon::RampStop::type_info()),
+        ("light.ramp.detail", crate::toon::RampDetail::type_info()),
+        (
+            "light.ramp.detail.axis",
+            crate::toon::DetailAxis::type_info(),
+        ),
+        (
+            "light.stylized_highlight",
+            crate::toon::StylizedHighlight::type_info(),
+        ),
+        ("light.proxy", crate::toon::ShadingProxy::type_info()),
+        ("light.proxy.shape", crate::toon::ProxyShape::type_info()),
+        ("light.rim", crate::toon::Rim::type_info()),
+        ("light.rim.width", crate::toon::RimWidth::type_info()),
     ]);
     #[cfg(feature = "objects")]
     all.extend([
         ("outline_style", crate::OutlineStyle::type_info()),
-        ("outline_style.kinds", crate::OutlineKinds::type_info()),
+        (
+            "outline_style.kinds",
+            crate::objects::OutlineKinds::type_info(),
+        ),
         ("no_outlines", crate::NoOutlines::type_info()),
-        ("mesh_sections", crate::MeshSections::type_info()),
+        ("mesh_sections", crate::objects::MeshSections::type_info()),
     ]);
     all
 }
@@ -86,7 +98,7 @@ fn every_field_is_documented_and_every_number_has_a_range() {
             let path = field.type_path();
             let kinds = ["f32", "u32", "Vec2", "Vec3", "vec::Vec<"];
             // A place in the world has no range.
-            let is_place = name == "iso_lines.centre";
+            let is_place = name == "iso_lines.center";
             let is_number = kinds.iter().any(|t| path.contains(t)) && !is_place;
             assert_eq!(FieldRange::of(field).is_some(), is_number, "{name}: {path}");
         }
@@ -143,7 +155,7 @@ struct Page {
     effects: Vec<&'static EffectType>,
     types: TypeRegistry,
     style: ComicStyle,
-    shelf: Shelf,
+    stash: Stash,
     search: String,
     widgets: Widgets,
 }
@@ -160,7 +172,7 @@ impl Page {
             types: types(&effects),
             effects,
             style,
-            shelf: Shelf::default(),
+            stash: Stash::default(),
             search: String::new(),
             widgets: Widgets::default(),
         }
@@ -187,7 +199,7 @@ impl Page {
         let _ = self.context.clone().run_ui(input, |ui| {
             let mut editor = Editor {
                 widgets: &mut self.widgets,
-                shelf: &self.shelf,
+                stash: &self.stash,
                 types: &self.types,
             };
             style(
@@ -199,7 +211,7 @@ impl Page {
             );
         });
         self.style = self.style.sanitized();
-        self.shelf.keep(&before, &self.style);
+        self.stash.keep(&before, &self.style);
     }
 
     fn click(&mut self, widget: &str) {
@@ -231,8 +243,8 @@ fn full(effects: &[&'static EffectType]) -> ComicStyle {
     let mut full = ComicStyle {
         depth_map: Some(DepthMap {
             mapping: DepthMapping::Fixed {
-                near: 1.0,
-                far: 30.0,
+                from: 1.0,
+                to: 30.0,
             },
             ..DepthMap::default()
         }),
@@ -260,7 +272,7 @@ fn showing_a_style_does_not_change_it() {
         "colorization.color",
         "black_flats.slope.on",
         "outlines.creases.angle",
-        "depth_map.mapping.far",
+        "depth_map.mapping.to",
         "depth_map.smoothing.shrink",
         "tone_bands.levels",
         "depth_map.flip",
@@ -289,10 +301,7 @@ fn what_is_turned_on_again_has_its_last_settings() {
         ..BlackFlats::default()
     };
     let map = DepthMap {
-        mapping: DepthMapping::Fixed {
-            near: 2.0,
-            far: 9.0,
-        },
+        mapping: DepthMapping::Fixed { from: 2.0, to: 9.0 },
         smoothing: Some(RangeSmoothing {
             shrink: 7.0,
             ..RangeSmoothing::default()
@@ -351,7 +360,13 @@ fn what_was_never_on_has_its_documented_defaults() {
     page.click("depth_map.mapping.Fixed");
     let (near, far) = (0.1, 1000.0);
     let mapping = page.style.depth_map.map(|map| map.mapping);
-    assert_eq!(mapping, Some(DepthMapping::Fixed { near, far }));
+    assert_eq!(
+        mapping,
+        Some(DepthMapping::Fixed {
+            from: near,
+            to: far
+        })
+    );
 }
 
 #[test]

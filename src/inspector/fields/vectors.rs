@@ -3,7 +3,7 @@
 use bevy_egui::egui::{DragValue, Response, Ui};
 
 use super::widgets::suffix;
-use crate::FieldRange;
+use crate::effect::FieldRange;
 
 /// Numbers that are dragged or typed, one for each axis.
 pub(super) fn vector(ui: &mut Ui, axes: &mut [f32], range: Option<FieldRange>) -> Response {

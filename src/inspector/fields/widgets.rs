@@ -17,7 +17,7 @@ use super::{
     options::apply,
     reset_button,
 };
-use crate::FieldRange;
+use crate::effect::FieldRange;
 
 /// Whether a range is too wide for a slider; such a number is dragged or typed.
 fn is_too_wide(range: FieldRange) -> bool {
@@ -154,7 +154,7 @@ fn choose_mode(
     path: &str,
     editor: &Editor,
 ) {
-    if let Some(last) = editor.shelf.variant(path, variant.name()) {
+    if let Some(last) = editor.stash.variant(path, variant.name()) {
         apply(current, last);
         return;
     }

@@ -1,4 +1,4 @@
-//! The colour and the gloss of a picked object: its standard material, or the base of its cartoon
+//! The colour and the gloss of a picked object: its standard material, or the base of its toon
 //! material.
 
 use bevy::{
@@ -21,9 +21,9 @@ use super::{
     steps::with_material,
 };
 use crate::{
-    CartoonMaterial,
-    cartoon::original_of,
-    settings::{FieldRange, bounded},
+    ToonMaterial,
+    settings::{FieldRange, clamp_or_default},
+    toon::original_of,
 };
 
 /// The path of the material in the panel.
@@ -35,7 +35,7 @@ struct Base {
     /// Colour of the surface, by which its texture is multiplied. Alpha counts in transparent
     /// materials.
     base_color: Color,
-    /// How rough the surface is: rough ones have large, weak highlights. Cartoon materials have none
+    /// How rough the surface is: rough ones have large, weak highlights. Toon materials have none
     /// above 0.71. Range 0.089 to 1, default 0.5.
     #[reflect(@FieldRange::linear(0.089, 1.0))]
     perceptual_roughness: f32,
@@ -63,8 +63,8 @@ impl Base {
     fn in_ranges(self) -> Self {
         Self {
             base_color: self.base_color,
-            perceptual_roughness: bounded(self.perceptual_roughness, 0.5, 0.089, 1.0),
-            metallic: bounded(self.metallic, 0.0, 0.0, 1.0),
+            perceptual_roughness: clamp_or_default(self.perceptual_roughness, 0.5, 0.089, 1.0),
+            metallic: clamp_or_default(self.metallic, 0.0, 0.0, 1.0),
         }
     }
 }
@@ -72,9 +72,9 @@ impl Base {
 /// Where the colour and the gloss of a mesh are set last, so that an edit of them stays.
 #[derive(Clone, Debug, PartialEq)]
 enum Place {
-    /// Also of meshes that a `CartoonScene` draws: their copies follow.
+    /// Also of meshes that a `ToonScene` draws: their copies follow.
     Standard(Handle<StandardMaterial>),
-    Cartoon(Handle<CartoonMaterial>),
+    Toon(Handle<ToonMaterial>),
 }
 
 impl Place {
@@ -83,8 +83,8 @@ impl Place {
             return Some(Self::Standard(original.clone()));
         }
         let mesh = world.get_entity(mesh).ok()?;
-        if let Some(material) = mesh.get::<MeshMaterial3d<CartoonMaterial>>() {
-            return Some(Self::Cartoon(material.0.clone()));
+        if let Some(material) = mesh.get::<MeshMaterial3d<ToonMaterial>>() {
+            return Some(Self::Toon(material.0.clone()));
         }
         let material = mesh.get::<MeshMaterial3d<StandardMaterial>>()?;
         Some(Self::Standard(material.0.clone()))
@@ -97,8 +97,8 @@ impl Place {
                 let materials = world.get_resource::<Assets<StandardMaterial>>()?;
                 materials.get(material).map(Base::of)
             }
-            Self::Cartoon(material) => {
-                let materials = world.get_resource::<Assets<CartoonMaterial>>()?;
+            Self::Toon(material) => {
+                let materials = world.get_resource::<Assets<ToonMaterial>>()?;
                 materials.get(material).map(|own| Base::of(&own.base))
             }
         }
@@ -112,8 +112,8 @@ impl Place {
                 let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
                 base.write(&mut *materials.get_mut(material)?);
             }
-            Self::Cartoon(material) => {
-                let mut materials = world.resource_mut::<Assets<CartoonMaterial>>();
+            Self::Toon(material) => {
+                let mut materials = world.resource_mut::<Assets<ToonMaterial>>();
                 base.write(&mut materials.get_mut(material)?.base);
             }
         }
@@ -128,8 +128,8 @@ impl Place {
                 material.path(),
                 with_original(world, material),
             ),
-            Self::Cartoon(material) => (
-                "cartoon material",
+            Self::Toon(material) => (
+                "toon material",
                 material.path(),
                 with_material(world, material).len(),
             ),
@@ -145,7 +145,7 @@ impl Place {
 /// The number of meshes with a standard material, or with a scene's copy of it.
 fn with_original(world: &mut World, material: &Handle<StandardMaterial>) -> usize {
     let converted: Vec<Entity> = world
-        .query_filtered::<Entity, bevy::ecs::query::With<MeshMaterial3d<CartoonMaterial>>>()
+        .query_filtered::<Entity, bevy::ecs::query::With<MeshMaterial3d<ToonMaterial>>>()
         .iter(world)
         .collect();
     let copies = converted
@@ -165,7 +165,7 @@ impl Exchange for BaseStep {
     fn subject(&self) -> Subject {
         Subject::Asset(match &self.place {
             Place::Standard(material) => material.id().untyped(),
-            Place::Cartoon(material) => material.id().untyped(),
+            Place::Toon(material) => material.id().untyped(),
         })
     }
 

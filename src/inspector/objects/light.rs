@@ -17,7 +17,10 @@ use super::{
     Objects, edits, meshes, name_of,
     steps::{LightStep, MaterialStep, subject_of, with_material},
 };
-use crate::{CartoonLight, Ramp, RampStop, cartoon::LightPlace};
+use crate::{
+    ToonLight,
+    toon::{LightOwner, Ramp, RampStop},
+};
 
 /// The path of the lighting in the panel.
 const PATH: &str = "light";
@@ -32,14 +35,14 @@ impl Objects {
         widgets: &mut Widgets,
     ) -> Option<Box<dyn Exchange>> {
         section(ui, "Light", |ui| {
-            if let Some(place) = LightPlace::of(world, object) {
+            if let Some(place) = LightOwner::of(world, object) {
                 return self.settings_of(ui, world, &place, widgets);
             }
             let standard = world.get::<MeshMaterial3d<StandardMaterial>>(object);
             match standard.map(|material| material.0.clone()) {
                 Some(standard) => offer(ui, world, &standard, widgets),
                 None => {
-                    ui.label("The object has neither a cartoon material nor a standard material.");
+                    ui.label("The object has neither a toon material nor a standard material.");
                     None
                 }
             }
@@ -52,7 +55,7 @@ impl Objects {
         &mut self,
         ui: &mut Ui,
         world: &mut World,
-        place: &LightPlace,
+        place: &LightOwner,
         widgets: &mut Widgets,
     ) -> Option<Box<dyn Exchange>> {
         let count = place.meshes(world);
@@ -60,11 +63,11 @@ impl Objects {
         note(widgets, "light.place", &place_label);
         let before = place.light(world)?.clone();
         let title = place.title(world).to_owned();
-        self.looks.show(ui, place, (&before, &title), widgets);
+        self.shadings.show(ui, place, (&before, &title), widgets);
         ui.separator();
         let mut edited = before.clone();
         let subject = subject_of(place);
-        let default = CartoonLight::default();
+        let default = ToonLight::default();
         let mut editor = self.editor(&subject, widgets);
         settings(ui, &mut edited, Some(&default), (PATH, None), &mut editor);
         self.set(world, place, (before, edited), subject)
@@ -74,8 +77,8 @@ impl Objects {
     fn set(
         &mut self,
         world: &mut World,
-        place: &LightPlace,
-        (before, edited): (CartoonLight, CartoonLight),
+        place: &LightOwner,
+        (before, edited): (ToonLight, ToonLight),
         subject: Subject,
     ) -> Option<Box<dyn Exchange>> {
         let edited = in_ranges(edited);
@@ -83,8 +86,8 @@ impl Objects {
         if edited == in_ranges(before.clone()) {
             return None;
         }
-        let shelf = self.shelves.entry(subject).or_default();
-        shelf.keep_fields(PATH, &before, &edited);
+        let stash = self.shelves.entry(subject).or_default();
+        stash.keep_fields(PATH, &before, &edited);
         let step = Box::new(LightStep {
             place: place.clone(),
             light: edited,
@@ -94,22 +97,22 @@ impl Objects {
 }
 
 /// Which value an edit changes, and how many meshes have it.
-fn what_is_edited(world: &World, place: &LightPlace, count: usize) -> String {
+fn what_is_edited(world: &World, place: &LightOwner, count: usize) -> String {
     let edited = match place {
-        LightPlace::Look(look) => {
+        LightOwner::Shading(shading) => {
             let title = match place.title(world) {
                 "" => String::new(),
                 title => format!(" “{title}”"),
             };
-            match look.path() {
-                Some(path) => format!("the look{title} in {path}"),
-                None => format!("the look{title}, which is made by code"),
+            match shading.path() {
+                Some(path) => format!("the shading{title} in {path}"),
+                None => format!("the shading{title}, which is made by code"),
             }
         }
-        LightPlace::Scene(root) => {
-            format!("CartoonScene::light of {}", name_of(world, *root))
+        LightOwner::Scene(root) => {
+            format!("ToonScene::light of {}", name_of(world, *root))
         }
-        LightPlace::Material(material) => match material.path() {
+        LightOwner::Material(material) => match material.path() {
             Some(path) => format!("the material {path}"),
             None => "the material, which is made by code".into(),
         },
@@ -117,7 +120,7 @@ fn what_is_edited(world: &World, place: &LightPlace, count: usize) -> String {
     edits(&edited, count)
 }
 
-/// Offers to make a standard material a cartoon material.
+/// Offers to make a standard material a toon material.
 fn offer(
     ui: &mut Ui,
     world: &mut World,
@@ -128,15 +131,15 @@ fn offer(
     ui.label(format!("A standard material, of {}.", meshes(count)));
     let convert = (
         "light.convert",
-        "Make it a cartoon material",
-        "All meshes that have this material get a CartoonMaterial with its colours and textures.",
+        "Make it a toon material",
+        "All meshes that have this material get a ToonMaterial with its colours and textures.",
     );
     if !button_with_tooltip(ui, widgets, convert, true) {
         return None;
     }
-    let step = MaterialStep::cartoon(world, standard);
+    let step = MaterialStep::toon(world, standard);
     let Some(step) = step else {
-        ui.label("The material has not loaded, or the app does not draw cartoon materials.");
+        ui.label("The material has not loaded, or the app does not draw toon materials.");
         return None;
     };
     Box::new(step).exchange(world)
@@ -144,7 +147,7 @@ fn offer(
 
 /// A lighting with every number in its range. Stops stay in their order, so that one that is
 /// dragged past another keeps its row.
-pub(super) fn in_ranges(light: CartoonLight) -> CartoonLight {
+pub(super) fn in_ranges(light: ToonLight) -> ToonLight {
     let ramp = light.ramp.clone();
     let mut used = light.sanitized();
     if let (Some(used), Some(own)) = (&mut used.ramp, ramp) {

@@ -1,17 +1,17 @@
 //! The page of a picked object: its material, its light, its lines, its sections.
 
-#[cfg(feature = "cartoon")]
+#[cfg(feature = "toon")]
 mod base;
 mod highlight;
-#[cfg(feature = "cartoon")]
+#[cfg(feature = "toon")]
 mod light;
-#[cfg(feature = "cartoon")]
-mod look_file;
 #[cfg(feature = "objects")]
 mod parts;
 mod pick;
 mod ray;
-#[cfg(feature = "cartoon")]
+#[cfg(feature = "toon")]
+mod shading_file;
+#[cfg(feature = "toon")]
 mod steps;
 mod surface;
 
@@ -33,7 +33,7 @@ use super::{
     fields::{Editor, button_with_tooltip},
     history::{Exchange, Subject},
     note,
-    shelf::Shelf,
+    stash::Stash,
 };
 
 /// The state of the page.
@@ -41,33 +41,33 @@ pub struct Objects {
     /// The types of the settings, for their defaults.
     types: TypeRegistry,
     /// What is turned off, of everything that was edited.
-    shelves: HashMap<Subject, Shelf>,
+    shelves: HashMap<Subject, Stash>,
     /// The last values of components that were removed.
     removed: HashMap<Subject, Box<dyn Reflect>>,
-    #[cfg(feature = "cartoon")]
-    looks: look_file::LookFile,
+    #[cfg(feature = "toon")]
+    shadings: shading_file::ShadingFile,
 }
 
 impl Objects {
-    /// `looks`: the folder of look files.
-    pub fn new(looks: PathBuf) -> Self {
+    /// `shadings`: the folder of shading files.
+    pub fn new(shadings: PathBuf) -> Self {
         #[cfg_attr(
-            not(any(feature = "cartoon", feature = "objects")),
+            not(any(feature = "toon", feature = "objects")),
             allow(unused_mut, reason = "there is nothing to register")
         )]
         let mut types = TypeRegistry::default();
-        #[cfg(feature = "cartoon")]
-        types.register::<crate::CartoonLight>();
+        #[cfg(feature = "toon")]
+        types.register::<crate::ToonLight>();
         #[cfg(feature = "objects")]
         parts::register(&mut types);
-        #[cfg(not(feature = "cartoon"))]
-        let _ = looks;
+        #[cfg(not(feature = "toon"))]
+        let _ = shadings;
         Self {
             types,
             shelves: HashMap::default(),
             removed: HashMap::default(),
-            #[cfg(feature = "cartoon")]
-            looks: look_file::LookFile::new(looks),
+            #[cfg(feature = "toon")]
+            shadings: shading_file::ShadingFile::new(shadings),
         }
     }
 
@@ -84,19 +84,19 @@ impl Objects {
         };
         self.head(ui, world, object, widgets);
         #[cfg_attr(
-            not(any(feature = "cartoon", feature = "objects")),
+            not(any(feature = "toon", feature = "objects")),
             allow(unused_mut, reason = "there is nothing to edit")
         )]
         let mut changes = Vec::new();
         // The light has many settings, so it comes last.
         #[cfg(feature = "objects")]
         changes.extend(self.parts(ui, world, object, widgets));
-        #[cfg(feature = "cartoon")]
+        #[cfg(feature = "toon")]
         changes.extend(self.base(ui, world, object, widgets));
-        #[cfg(feature = "cartoon")]
+        #[cfg(feature = "toon")]
         changes.extend(self.light(ui, world, object, widgets));
-        #[cfg(not(any(feature = "cartoon", feature = "objects")))]
-        ui.label("Nothing to edit: the features cartoon and objects of the crate are off.");
+        #[cfg(not(any(feature = "toon", feature = "objects")))]
+        ui.label("Nothing to edit: the features toon and objects of the crate are off.");
         changes
     }
 
@@ -105,8 +105,8 @@ impl Objects {
         ui.horizontal_wrapped(|ui| {
             let name = ui.label(RichText::new(name_of(world, object)).strong());
             note(widgets, "object.name", &name);
-            #[cfg(feature = "cartoon")]
-            if let Some(material) = world.get::<crate::MaterialName>(object) {
+            #[cfg(feature = "toon")]
+            if let Some(material) = world.get::<crate::toon::MaterialName>(object) {
                 ui.label(format!("material {}", material.0));
             }
             let deselect = ("object.deselect", "Deselect", "Lets go of the object (Esc)");
@@ -120,7 +120,7 @@ impl Objects {
     fn editor<'a>(&'a mut self, subject: &Subject, widgets: &'a mut Widgets) -> Editor<'a> {
         Editor {
             widgets,
-            shelf: self.shelves.entry(subject.clone()).or_default(),
+            stash: self.shelves.entry(subject.clone()).or_default(),
             types: &self.types,
         }
     }
@@ -161,7 +161,7 @@ fn meshes(count: usize) -> String {
 }
 
 /// Which value an edit changes, and how many meshes have it.
-#[cfg(feature = "cartoon")]
+#[cfg(feature = "toon")]
 fn edits(what: &str, count: usize) -> String {
     match count {
         0 | 1 => format!("Edits {what}. Only this mesh has it."),

@@ -22,7 +22,7 @@ use super::{
     },
     Objects, name_of,
 };
-use crate::{MeshSections, NoOutlines, OutlineStyle};
+use crate::{NoOutlines, OutlineStyle, objects::MeshSections};
 
 /// A component that the panel edits.
 trait Part:
@@ -188,8 +188,8 @@ impl Objects {
         }
         match (&before, &edited) {
             (Some(before), Some(edited)) => {
-                let shelf = self.shelves.entry(subject).or_default();
-                shelf.keep_fields(T::PATH, before, edited);
+                let stash = self.shelves.entry(subject).or_default();
+                stash.keep_fields(T::PATH, before, edited);
             }
             (Some(before), None) => {
                 self.removed.insert(subject, Box::new(before.clone()));

@@ -6,7 +6,7 @@
 
 use std::any::TypeId;
 
-#[cfg(any(feature = "cartoon", feature = "objects"))]
+#[cfg(any(feature = "toon", feature = "objects"))]
 use bevy::pbr::{Material, MeshMaterial3d, StandardMaterial};
 use bevy::{
     asset::Assets,
@@ -26,8 +26,8 @@ use super::{
     ray::{Ray, Sides},
     surface::Known,
 };
-#[cfg(feature = "cartoon")]
-use crate::CartoonMaterial;
+#[cfg(feature = "toon")]
+use crate::ToonMaterial;
 
 /// The first object at a place in the primary window, in logical pixels: that of the camera that
 /// draws last there. `cameras`: the 3D cameras, in the order in which they draw.
@@ -152,11 +152,11 @@ fn sides(world: &World, mesh: Entity) -> Sides {
 
 /// The sides that the material of a mesh leaves out; `None` if the material is not known.
 fn culled(world: &World, mesh: Entity) -> Option<Option<Face>> {
-    #[cfg(feature = "cartoon")]
-    if let Some(material) = asset_of::<CartoonMaterial>(world, mesh) {
+    #[cfg(feature = "toon")]
+    if let Some(material) = asset_of::<ToonMaterial>(world, mesh) {
         return Some(material.base.cull_mode);
     }
-    #[cfg(any(feature = "cartoon", feature = "objects"))]
+    #[cfg(any(feature = "toon", feature = "objects"))]
     if let Some(material) = asset_of::<StandardMaterial>(world, mesh) {
         return Some(material.cull_mode);
     }
@@ -165,7 +165,7 @@ fn culled(world: &World, mesh: Entity) -> Option<Option<Face>> {
 }
 
 /// The material of a mesh, if it is of this type and has loaded.
-#[cfg(any(feature = "cartoon", feature = "objects"))]
+#[cfg(any(feature = "toon", feature = "objects"))]
 fn asset_of<M: Material>(world: &World, mesh: Entity) -> Option<&M> {
     let material = world.get::<MeshMaterial3d<M>>(mesh)?;
     world.get_resource::<Assets<M>>()?.get(&material.0)

@@ -7,20 +7,20 @@ use bevy::{
 };
 
 use super::super::history::{Exchange, Subject};
-use crate::{CartoonLight, CartoonMaterial, CartoonScene, cartoon::LightPlace};
+use crate::{ToonLight, ToonMaterial, ToonScene, toon::LightOwner};
 
 /// The lighting that was set in a place.
 pub struct LightStep {
-    pub place: LightPlace,
-    pub light: CartoonLight,
+    pub place: LightOwner,
+    pub light: ToonLight,
 }
 
 /// What an edit of the lighting in a place changes.
-pub fn subject_of(place: &LightPlace) -> Subject {
+pub fn subject_of(place: &LightOwner) -> Subject {
     match place {
-        LightPlace::Look(look) => Subject::Asset(look.id().untyped()),
-        LightPlace::Scene(root) => Subject::Part(*root, std::any::TypeId::of::<CartoonScene>()),
-        LightPlace::Material(material) => Subject::Asset(material.id().untyped()),
+        LightOwner::Shading(shading) => Subject::Asset(shading.id().untyped()),
+        LightOwner::Scene(root) => Subject::Part(*root, std::any::TypeId::of::<ToonScene>()),
+        LightOwner::Material(material) => Subject::Asset(material.id().untyped()),
     }
 }
 
@@ -44,30 +44,30 @@ impl Exchange for LightStep {
 pub struct MaterialStep {
     meshes: Vec<Entity>,
     standard: Handle<StandardMaterial>,
-    cartoon: Handle<CartoonMaterial>,
+    toon: Handle<ToonMaterial>,
     /// Which one the step gives them.
-    to_cartoon: bool,
+    to_toon: bool,
 }
 
 impl MaterialStep {
-    /// The step that gives a cartoon material to all meshes that have a standard material. `None`
+    /// The step that gives a toon material to all meshes that have a standard material. `None`
     /// if that material has not loaded.
-    pub fn cartoon(world: &mut World, standard: &Handle<StandardMaterial>) -> Option<Self> {
+    pub fn toon(world: &mut World, standard: &Handle<StandardMaterial>) -> Option<Self> {
         let base = world
             .get_resource::<Assets<StandardMaterial>>()?
             .get(standard)?
             .clone();
-        let cartoon = world
-            .get_resource_mut::<Assets<CartoonMaterial>>()?
-            .add(CartoonMaterial {
+        let toon = world
+            .get_resource_mut::<Assets<ToonMaterial>>()?
+            .add(ToonMaterial {
                 base,
-                extension: CartoonLight::default(),
+                extension: ToonLight::default(),
             });
         Some(Self {
             meshes: with_material(world, standard),
             standard: standard.clone(),
-            cartoon,
-            to_cartoon: true,
+            toon,
+            to_toon: true,
         })
     }
 }
@@ -84,22 +84,22 @@ pub fn with_material<M: Material>(world: &mut World, material: &Handle<M>) -> Ve
 
 impl Exchange for MaterialStep {
     fn subject(&self) -> Subject {
-        // The cartoon material is of the step alone.
+        // The toon material is of the step alone.
         Subject::Asset(self.standard.id().untyped())
     }
 
     fn exchange(mut self: Box<Self>, world: &mut World) -> Option<Box<dyn Exchange>> {
-        let (standard, cartoon) = (&self.standard, &self.cartoon);
-        let to_cartoon = self.to_cartoon;
+        let (standard, toon) = (&self.standard, &self.toon);
+        let to_toon = self.to_toon;
         // Meshes that are gone, or that have a third material now, are left as they are.
         self.meshes.retain(|mesh| {
-            if to_cartoon {
-                replace(world, *mesh, standard, cartoon)
+            if to_toon {
+                replace(world, *mesh, standard, toon)
             } else {
-                replace(world, *mesh, cartoon, standard)
+                replace(world, *mesh, toon, standard)
             }
         });
-        self.to_cartoon = !to_cartoon;
+        self.to_toon = !to_toon;
         (!self.meshes.is_empty()).then_some(self as Box<dyn Exchange>)
     }
 }

@@ -1,8 +1,8 @@
 //! The page of a picked object, laid out without a window.
 
-#[cfg(all(feature = "cartoon", feature = "objects"))]
+#[cfg(all(feature = "toon", feature = "objects"))]
 mod page;
-#[cfg(feature = "cartoon")]
+#[cfg(feature = "toon")]
 mod widgets;
 
 use bevy::{
@@ -37,7 +37,7 @@ impl Page {
         Self {
             context,
             world,
-            objects: Objects::new(PathBuf::from("looks")),
+            objects: Objects::new(PathBuf::from("shadings")),
             history: History::default(),
             presses: 0,
             widgets: Widgets::default(),

@@ -13,7 +13,7 @@ use super::{
     },
     Panel,
 };
-use crate::{ComicStyle, DebugView, EffectRegistry, StyleTransition};
+use crate::{ComicStyle, StyleTransition, diagnostics::DebugView, effect::EffectRegistry};
 
 impl Panel {
     /// Draws the chosen page.
@@ -34,7 +34,7 @@ impl Panel {
                 let types = self.types.get_or_insert_with(|| fields::types(&effects));
                 let mut editor = Editor {
                     widgets,
-                    shelf: &self.cameras.entry(camera).or_default().shelf,
+                    stash: &self.cameras.entry(camera).or_default().stash,
                     types,
                 };
                 let search = self.search.search();

@@ -14,7 +14,7 @@ use super::{
         objects::{highlight, in_window, pick, picked},
     },
     Panel,
-    head::cameras,
+    header::cameras,
 };
 
 /// Draws a box around the picked object, in every view of the window.

@@ -14,7 +14,7 @@ use super::{
     },
     Message, Panel, put,
 };
-use crate::{ComicStyle, ComicsDiagnostics, EffectRegistry, SplitView, StyleWeight};
+use crate::{ComicStyle, ComicsDiagnostics, SplitView, StyleWeight, effect::EffectRegistry};
 
 /// The toolbar's keyboard shortcuts that were pressed in this frame.
 struct Keys {
@@ -108,12 +108,12 @@ impl Panel {
             (_, true) => Way::Redo,
             _ => return false,
         };
-        let shelf = &mut self.cameras.entry(camera).or_default().shelf;
+        let stash = &mut self.cameras.entry(camera).or_default().stash;
         let mut is_style = false;
         self.history.take(way, camera, |step| match step {
             Step::Style(camera, other) => {
                 is_style = true;
-                shelf.keep(style, &other);
+                stash.keep(style, &other);
                 put(world, camera, &other);
                 let now = std::mem::replace(style, other);
                 Some(Step::Style(camera, now))

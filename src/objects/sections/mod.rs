@@ -36,7 +36,7 @@ use super::{
     groups::{ObjectGroups, update_object_groups},
     table::ObjectStyles,
 };
-use crate::settings::{FieldRange, bounded};
+use crate::settings::{FieldRange, clamp_or_default};
 
 pub(crate) use table::{SectionBuffer, SectionTables, extract_sections, prepare_sections};
 
@@ -81,7 +81,7 @@ impl MeshSections {
     #[must_use]
     pub fn sanitized(self) -> Self {
         Self {
-            angle: bounded(self.angle, 50.0, 10.0, 120.0),
+            angle: clamp_or_default(self.angle, 50.0, 10.0, 120.0),
         }
     }
 }

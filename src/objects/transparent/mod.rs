@@ -33,13 +33,13 @@ use super::{components::inherit, depth_test::count_ids, table::DepthWrites};
 use crate::{
     depth::surfaces::prepass_is_empty,
     schedule::{ComicsSystems, PrepareComics},
-    settings::{FieldRange, bounded},
+    settings::{FieldRange, clamp_or_default},
 };
 
 pub(super) use items::TransparentItems;
 
 /// Lets a transparent mesh take part in lines and effects: it writes its depth, its normal and
-/// its [`object_id`](crate::object_id) for the effects of this crate.
+/// its [`object_id`](crate::testing::object_id) for the effects of this crate.
 ///
 /// Then it has outlines of its own, hides the lines of what is behind it, and the colour
 /// effects use its own distance. The engine's depth and its picture do not change: what is
@@ -51,7 +51,7 @@ pub(super) use items::TransparentItems;
 ///
 /// | material | pixels that are written |
 /// |---|---|
-/// | [`StandardMaterial`](bevy::pbr::StandardMaterial), `CartoonMaterial`, and extended materials with the prepass shader of the standard material | those with an alpha of at least [`alpha_cutoff`](Self::alpha_cutoff) |
+/// | [`StandardMaterial`](bevy::pbr::StandardMaterial), `ToonMaterial`, and extended materials with the prepass shader of the standard material | those with an alpha of at least [`alpha_cutoff`](Self::alpha_cutoff) |
 /// | any other | the whole mesh; the log says so once |
 /// | any whose `Material::enable_prepass` is `false` | none; the log says so once |
 ///
@@ -69,7 +69,7 @@ pub struct DepthWrite {
     #[reflect(@FieldRange::linear(0.01, 1.0))]
     pub alpha_cutoff: f32,
     /// Applies to all descendants as well, except for those with a `DepthWrite` of their own
-    /// and everything below them. Default: `false`.
+    /// and everything below them. Default: `true`.
     pub inherit: bool,
 }
 
@@ -77,24 +77,18 @@ impl Default for DepthWrite {
     fn default() -> Self {
         Self {
             alpha_cutoff: 0.5,
-            inherit: false,
+            inherit: true,
         }
     }
 }
 
 impl DepthWrite {
-    /// For an object and its descendants: [`inherit`](Self::inherit) is `true`.
-    pub const INHERITED: Self = Self {
-        alpha_cutoff: 0.5,
-        inherit: true,
-    };
-
     /// The settings that are used: [`alpha_cutoff`](Self::alpha_cutoff) in its documented
     /// range.
     #[must_use]
     pub fn sanitized(self) -> Self {
         Self {
-            alpha_cutoff: bounded(self.alpha_cutoff, 0.5, 0.01, 1.0),
+            alpha_cutoff: clamp_or_default(self.alpha_cutoff, 0.5, 0.01, 1.0),
             ..self
         }
     }

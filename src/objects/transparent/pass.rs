@@ -40,7 +40,7 @@ use bevy::{
 
 use crate::{
     depth::surfaces::{OwnNormals, OwnSurfaces},
-    diagnostics::{ComicsStage, LeftOut, StageLedger, StageOutcome},
+    diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
     objects::{
         DepthWanted, QueuedDepth, ViewObjectIds,
         phase::{Layer, ObjectIdItem},
@@ -190,7 +190,7 @@ pub(in crate::objects) fn draw_transparent_depth(
         .as_ref()
         .and_then(|phases| phases.get(&extracted.retained_view_entity));
     let recorded = Targets::new((textures, own), &cache, &ctx).and_then(|targets| {
-        let phase = phase.ok_or(LeftOut::PipelineNotReady)?;
+        let phase = phase.ok_or(SkipReason::PipelineNotReady)?;
         let viewport = Viewport::from_viewport_and_override(camera.viewport.as_ref(), resolution);
         targets.record(&mut ctx, (world, entity, phase), viewport)
     });
@@ -199,7 +199,7 @@ pub(in crate::objects) fn draw_transparent_depth(
             own.1.drawn.store(true, Ordering::Relaxed);
             StageOutcome::Ran
         }
-        Err(reason) => StageOutcome::LeftOut(reason),
+        Err(reason) => StageOutcome::Skipped(reason),
     };
     ledger.set(wanted.camera, ComicsStage::TransparentDepth, outcome);
 }
@@ -218,17 +218,17 @@ impl<'a> Targets<'a> {
         ((depth, prepass), (queued, own, ids)): Parts<'a>,
         cache: &'a PipelineCache,
         ctx: &RenderContext,
-    ) -> Result<Self, LeftOut> {
-        let not_ready = LeftOut::PipelineNotReady;
+    ) -> Result<Self, SkipReason> {
+        let not_ready = SkipReason::PipelineNotReady;
         let samples = own.depth.texture.sample_count();
         let same = depth.texture.sample_count() == samples
             && depth.texture.size() == own.depth.texture.size();
         if !same {
-            return Err(LeftOut::SampleCountMismatch);
+            return Err(SkipReason::SampleCountMismatch);
         }
         let ids = match (queued.ids, ids) {
             (true, Some(ids)) if ids.texture.sample_count() == samples => Some(&ids.view),
-            (true, Some(_)) => return Err(LeftOut::SampleCountMismatch),
+            (true, Some(_)) => return Err(SkipReason::SampleCountMismatch),
             (true, None) => return Err(not_ready),
             (false, _) => None,
         };
@@ -241,7 +241,7 @@ impl<'a> Targets<'a> {
                 let pipeline = cache.get_render_pipeline(own.copy).ok_or(not_ready)?;
                 Some((&own.texture.default_view, pipeline, group))
             }
-            (Some(_), None) => return Err(LeftOut::NoNormalPrepass),
+            (Some(_), None) => return Err(SkipReason::NoNormalPrepass),
             (None, _) => None,
         };
         Ok(Self {
@@ -256,7 +256,7 @@ impl<'a> Targets<'a> {
         ctx: &mut RenderContext,
         (world, view, phase): (&'w World, Entity, &SortedRenderPhase<ObjectIdItem>),
         viewport: Option<Viewport>,
-    ) -> Result<(), LeftOut> {
+    ) -> Result<(), SkipReason> {
         let diagnostics = ctx.diagnostic_recorder();
         let diagnostics = diagnostics.as_deref();
         let span = diagnostics.time_span(ctx.command_encoder(), "comics_transparent_depth");
@@ -293,7 +293,7 @@ impl<'a> Targets<'a> {
         ctx: &mut RenderContext,
         (world, view, phase): (&'w World, Entity, &SortedRenderPhase<ObjectIdItem>),
         viewport: Option<Viewport>,
-    ) -> Result<(), LeftOut> {
+    ) -> Result<(), SkipReason> {
         let range = ObjectIdItem::of(phase, Layer::OwnDepth);
         let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
             label: Some("comics_transparent_depth"),
@@ -320,7 +320,7 @@ impl<'a> Targets<'a> {
             .render_range(&mut pass, world, view, range)
             .map_err(|error| {
                 error_once!("transparent meshes wrote no depth: {error:?}");
-                LeftOut::PipelineNotReady
+                SkipReason::PipelineNotReady
             })
     }
 }

@@ -1,4 +1,4 @@
-//! The ranges that tools show for the cartoon material and for the components of objects are
+//! The ranges that tools show for the toon material and for the components of objects are
 //! those that are used.
 
 use std::fmt::Debug;
@@ -14,7 +14,7 @@ use bevy::{
 };
 
 use super::*;
-use crate::FieldRange;
+use crate::settings::FieldRange;
 
 /// A value far above or far below every range, of the type of a field; `None` if it is no number.
 fn extreme(type_path: &str, high: bool) -> Option<Box<dyn PartialReflect>> {
@@ -151,7 +151,7 @@ fn mode(variant: &'static VariantInfo, high: bool) -> (DynamicVariant, Vec<Field
 
 #[test]
 fn the_ranges_of_the_material_are_those_that_are_used() {
-    check(CartoonLight::sanitized);
+    check(ToonLight::sanitized);
     check(Ramp::sanitized);
     check::<RampStop>(|stop| Ramp::new([stop]).sanitized().stops[0]);
     check::<RampDetail>(|detail| {
@@ -162,7 +162,7 @@ fn the_ranges_of_the_material_are_those_that_are_used() {
         ramp.sanitized().detail.expect("a second ramp")
     });
     check_modes(DetailAxis::sanitized);
-    check(Glint::sanitized);
+    check(StylizedHighlight::sanitized);
     check(Rim::sanitized);
     check_modes::<RimWidth>(|width| {
         let rim = Rim {
@@ -171,11 +171,11 @@ fn the_ranges_of_the_material_are_those_that_are_used() {
         };
         rim.sanitized().width
     });
-    check(ShadedForm::sanitized);
-    check_modes::<FormShape>(|shape| {
-        let form = ShadedForm {
+    check(ShadingProxy::sanitized);
+    check_modes::<ProxyShape>(|shape| {
+        let form = ShadingProxy {
             shape,
-            ..ShadedForm::default()
+            ..ShadingProxy::default()
         };
         form.sanitized().shape
     });

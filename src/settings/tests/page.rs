@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn no_number_of_the_page_is_dangerous() {
+fn any_number_of_the_page_is_clamped() {
     fn paper(edit: fn(&mut Paper, f32)) -> impl Fn(f32) -> Paper {
         move |x| {
             let mut value = Paper::default();
@@ -26,18 +26,18 @@ fn no_number_of_the_page_is_dangerous() {
     fuzz("Paper::size", 0.5, 8.0, |x| set(x).size);
     let set = paper(|p, x| p.rate = x);
     fuzz("Paper::rate", 0.0, 60.0, |x| set(x).rate);
-    let set = lines(|s, x| s.centre_x = x);
-    fuzz("SpeedLines::centre_x", -1.0, 2.0, |x| set(x).centre_x);
-    let set = lines(|s, x| s.centre_y = x);
-    fuzz("SpeedLines::centre_y", -1.0, 2.0, |x| set(x).centre_y);
+    let set = lines(|s, x| s.center.x = x);
+    fuzz("SpeedLines::center.x", -1.0, 2.0, |x| set(x).center.x);
+    let set = lines(|s, x| s.center.y = x);
+    fuzz("SpeedLines::center.y", -1.0, 2.0, |x| set(x).center.y);
     let set = lines(|s, x| s.angle = x);
     fuzz("SpeedLines::angle", -180.0, 180.0, |x| set(x).angle);
     let set = lines(|s, x| s.inner = x);
     fuzz("SpeedLines::inner", 0.0, 1.5, |x| set(x).inner);
     let set = lines(|s, x| s.width = x);
     fuzz("SpeedLines::width", 1.0, 40.0, |x| set(x).width);
-    let set = lines(|s, x| s.dry = x);
-    fuzz("SpeedLines::dry", 0.0, 1.0, |x| set(x).dry);
+    let set = lines(|s, x| s.dry_brush = x);
+    fuzz("SpeedLines::dry_brush", 0.0, 1.0, |x| set(x).dry_brush);
     let set = lines(|s, x| s.rate = x);
     fuzz("SpeedLines::rate", 0.0, 60.0, |x| set(x).rate);
     let two_tone = |x| TwoTone {
@@ -50,13 +50,13 @@ fn no_number_of_the_page_is_dangerous() {
     fuzz("TwoTone::threshold", 0.0, 1.0, |x| set(x).threshold);
     fuzz("TwoTone::softness", 0.0, 16.0, |x| set(x).softness);
     fuzz("TwoTone::amount", 0.0, 1.0, |x| set(x).amount);
-    fuzz("HeldPose::rate", 1.0, 60.0, |rate| {
-        HeldPose { rate }.sanitized().rate
+    fuzz("SteppedAnimation::rate", 1.0, 60.0, |rate| {
+        SteppedAnimation { rate }.sanitized().rate
     });
 }
 
 #[test]
-fn no_number_of_the_vignette_is_dangerous() {
+fn any_number_of_the_vignette_is_clamped() {
     let vignette = |edit: fn(&mut Vignette, f32)| {
         move |x| {
             let mut v = Vignette::default();
@@ -73,7 +73,7 @@ fn no_number_of_the_vignette_is_dangerous() {
 }
 
 #[test]
-fn no_number_of_the_tone_ramp_is_dangerous() {
+fn any_number_of_the_tone_ramp_is_clamped() {
     let ramp = |edit: fn(&mut ToneRamp, f32)| {
         move |x| {
             let mut ramp = ToneRamp::default();

@@ -9,7 +9,7 @@ fn fuzz_fields<E: Effect>() {
         panic!("{} is no struct", E::NAME);
     };
     for field in info.iter() {
-        let Some(range) = crate::FieldRange::of(field) else {
+        let Some(range) = crate::settings::FieldRange::of(field) else {
             continue;
         };
         if E::default()
@@ -32,13 +32,13 @@ fn fuzz_fields<E: Effect>() {
 }
 
 #[test]
-fn no_number_of_the_page_effects_is_dangerous() {
+fn any_number_of_the_page_effects_is_clamped() {
     fuzz_fields::<ColorHarmony>();
-    fuzz_fields::<Planes>();
+    fuzz_fields::<DepthLayers>();
     fuzz_fields::<Abstraction>();
     fuzz_fields::<Halftone>();
     fuzz_fields::<Hatching>();
-    fuzz_fields::<PrintOffset>();
+    fuzz_fields::<Misregistration>();
     fuzz_fields::<Paint>();
     fuzz_fields::<Focus>();
     fuzz_fields::<Vignette>();

@@ -5,7 +5,10 @@ use super::*;
 /// The `FieldRange` of a field, which tools show, is the range of `sanitized`.
 #[test]
 fn the_range_on_a_field_is_the_range_that_is_used() {
-    use bevy::reflect::{TypeInfo, Typed, structs::Struct};
+    use bevy::{
+        math::Vec2,
+        reflect::{TypeInfo, Typed, structs::Struct},
+    };
 
     fn check<T: Struct + Typed + Default + Clone>(sanitized: impl Fn(T) -> T) {
         let TypeInfo::Struct(info) = T::type_info() else {
@@ -13,7 +16,7 @@ fn the_range_on_a_field_is_the_range_that_is_used() {
         };
         let mut numbers = 0;
         for field in info.iter() {
-            let Some(range) = crate::FieldRange::of(field) else {
+            let Some(range) = crate::settings::FieldRange::of(field) else {
                 continue;
             };
             for (asked, wanted) in [(f32::MAX, range.max), (f32::MIN, range.min)] {
@@ -24,6 +27,8 @@ fn the_range_on_a_field_is_the_range_that_is_used() {
                     *number = asked;
                 } else if let Some(number) = slot.try_downcast_mut::<Option<f32>>() {
                     *number = Some(asked);
+                } else if let Some(vector) = slot.try_downcast_mut::<Vec2>() {
+                    *vector = Vec2::splat(asked);
                 } else if let Some(number) = slot.try_downcast_mut::<u32>() {
                     *number = whole;
                 } else {
@@ -37,6 +42,7 @@ fn the_range_on_a_field_is_the_range_that_is_used() {
                     .or(slot
                         .try_downcast_ref::<Option<f32>>()
                         .and_then(|x| x.map(f64::from)))
+                    .or(slot.try_downcast_ref::<Vec2>().map(|v| f64::from(v.y)))
                     .or(slot.try_downcast_ref::<u32>().map(|x| f64::from(*x)))
                     .expect("a number");
                 let apart = (used - wanted).abs();
@@ -55,9 +61,9 @@ fn the_range_on_a_field_is_the_range_that_is_used() {
     check(Desaturation::sanitized);
     check(Colorization::sanitized);
     check(ColorHarmony::sanitized);
-    check(Planes::sanitized);
+    check(DepthLayers::sanitized);
     check(Abstraction::sanitized);
-    check(PlaneStyle::sanitized);
+    check(DepthLayer::sanitized);
     check(BlackFlats::sanitized);
     check(Contours::sanitized);
     check(Outlines::sanitized);
@@ -71,7 +77,7 @@ fn the_range_on_a_field_is_the_range_that_is_used() {
     check(Paper::sanitized);
     check(Halftone::sanitized);
     check(Hatching::sanitized);
-    check(PrintOffset::sanitized);
+    check(Misregistration::sanitized);
     check(Paint::sanitized);
     check(Focus::sanitized);
     check(Vignette::sanitized);

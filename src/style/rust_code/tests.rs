@@ -2,8 +2,10 @@ use bevy::{math::Vec2, reflect::Reflect};
 
 use super::*;
 use crate::{
-    BlackFlats, ContourOperator, Contours, DepthMapping, Outlines, RangeSmoothing, ReductionMethod,
-    Silhouettes, ToneBands,
+    BlackFlats, Contours, DepthMapping, Outlines, ToneBands,
+    depth::{RangeSmoothing, ReductionMethod},
+    effects::ContourOperator,
+    lines::Silhouettes,
 };
 
 fn code(value: &dyn PartialReflect) -> String {
@@ -101,20 +103,23 @@ fn options_and_variants() {
     assert_eq!(code(&Some(0.25f32)), "Some(0.25)");
     assert_eq!(
         code(&Some(Silhouettes::default())),
-        "Some(Silhouettes::default())"
+        "Some(bevy_comics::lines::Silhouettes::default())"
     );
-    assert_eq!(code(&ContourOperator::Sobel), "ContourOperator::Sobel");
+    assert_eq!(
+        code(&ContourOperator::Sobel),
+        "bevy_comics::effects::ContourOperator::Sobel"
+    );
     assert_eq!(
         code(&DepthMapping::Fixed {
-            near: 1.0,
-            far: 30.0
+            from: 1.0,
+            to: 30.0
         }),
-        "DepthMapping::Fixed {\n    near: 1.0,\n    far: 30.0,\n}"
+        "DepthMapping::Fixed {\n    from: 1.0,\n    to: 30.0,\n}"
     );
     // Not in the prelude.
     assert_eq!(
         code(&ReductionMethod::PingPong),
-        "bevy_comics::ReductionMethod::PingPong"
+        "bevy_comics::depth::ReductionMethod::PingPong"
     );
 }
 
@@ -195,7 +200,7 @@ fn only_what_differs_from_the_default_is_written() {
     ..default()
 })
 .with(Outlines {
-    silhouettes: Some(Silhouettes {
+    silhouettes: Some(bevy_comics::lines::Silhouettes {
         threshold: 0.1,
         ..default()
     }),
@@ -219,6 +224,6 @@ fn only_what_differs_from_the_default_is_written() {
     );
     assert_eq!(
         code(&RangeSmoothing::default()),
-        "RangeSmoothing::default()"
+        "bevy_comics::depth::RangeSmoothing::default()"
     );
 }

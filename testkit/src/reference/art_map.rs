@@ -1,4 +1,4 @@
-//! Twin of `cartoon/art_map.wgsl`.
+//! Reference of `toon/art_map.wgsl`.
 
 use bevy::math::DVec3;
 

@@ -1,4 +1,4 @@
-//! Twin of `effects/black_flats/black_flats.wgsl`.
+//! Reference of `effects/black_flats/black_flats.wgsl`.
 
 use super::{
     Rgb, Rgba,

@@ -1,4 +1,4 @@
-//! Twin of `lines/blocks.wgsl`: which rows and pixels matter to a block or tile.
+//! Reference of `lines/blocks.wgsl`: which rows and pixels matter to a block or tile.
 
 /// Width and height of a tile in pixels.
 pub const TILE: i64 = 16;

@@ -1,4 +1,4 @@
-//! Twin of `effect/blue_noise.wgsl` in a pass that has no tile.
+//! Reference of `effect/blue_noise.wgsl` in a pass that has no tile.
 
 use super::noise;
 

@@ -1,6 +1,6 @@
-//! Twin of `lines/boil.wgsl`: how far lines are displaced.
+//! Reference of `lines/boil.wgsl`: how far lines are displaced.
 
-use bevy_comics::LineBoil;
+use bevy_comics::lines::LineBoil;
 
 use super::noise::wave;
 

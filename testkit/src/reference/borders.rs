@@ -1,4 +1,4 @@
-//! Twin of `depth/borders.wgsl`: the search by trying all pairs, and a view's borders over time.
+//! Reference of `depth/borders.wgsl`: the search by trying all pairs, and a view's borders over time.
 
 use super::histogram::{BINS, Bins};
 

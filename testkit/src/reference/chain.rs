@@ -1,4 +1,4 @@
-//! Twin of `lines/chain.wgsl`: lines are followed from crack to crack.
+//! Reference of `lines/chain.wgsl`: lines are followed from crack to crack.
 
 use std::{collections::HashSet, ops::RangeInclusive};
 

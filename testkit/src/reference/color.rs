@@ -1,4 +1,4 @@
-//! Twin of `effect/color.wgsl`.
+//! Reference of `effect/color.wgsl`.
 
 use super::Rgb;
 

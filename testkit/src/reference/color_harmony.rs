@@ -1,4 +1,4 @@
-//! Twin of `effects/color_harmony/color_harmony.wgsl`.
+//! Reference of `effects/color_harmony/color_harmony.wgsl`.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,10 @@ use super::{
     mix,
 };
 use bevy::color::Color;
-use bevy_comics::{ColorHarmony, Form, HarmonyCurve, HarmonyMode};
+use bevy_comics::{
+    ColorHarmony,
+    effects::{Equations, HarmonyCurve, HarmonyMode},
+};
 
 /// The unit vector (a, b) of a colour's hue in `OKLab`; 0 for greys.
 pub fn hue(color: Color) -> [f64; 2] {
@@ -29,7 +32,7 @@ fn weight(s: &ColorHarmony, lightness: f64, d: f64, l: f64) -> f64 {
     match (s.mode, s.curve) {
         (HarmonyMode::Shade, _) => f64::from(s.shade) * (1.0 - lightness.clamp(0.0, 1.0)).powi(2),
         (_, HarmonyCurve::Linear) => d,
-        (_, HarmonyCurve::Quadratic) => d.sqrt() / (d.sqrt() + l.sqrt()),
+        (_, HarmonyCurve::SquareRoot) => d.sqrt() / (d.sqrt() + l.sqrt()),
     }
 }
 
@@ -64,7 +67,7 @@ fn chroma(s: &ColorHarmony, [lightness, a, b]: Rgb, d: f64, l: f64) -> [f64; 2] 
 /// `d`, `l`: depth map and its complement.
 pub fn harmonize(s: &ColorHarmony, linear: Rgb, d: f64, l: f64) -> Rgb {
     let amount = f64::from(s.amount);
-    if s.form == Form::Faithful && s.mode != HarmonyMode::TwoHues {
+    if s.equations == Equations::Faithful && s.mode != HarmonyMode::TwoHues {
         let c = srgb_encode(linear);
         let (v, chroma) = (largest(c), largest(c) - smallest(c));
         let p = hue_color(hue_of(c) + weight(s, v, d, l) / 2.0);

@@ -1,4 +1,4 @@
-//! Twin of `effects/colorization/colorization.wgsl` (\[CS\] Eq. 8 to 11).
+//! Reference of `effects/colorization/colorization.wgsl` (\[CS\] Eq. 8 to 11).
 
 use super::{
     Rgb,
@@ -9,7 +9,10 @@ use super::{
     mix,
 };
 use bevy::color::{Color, Hsva};
-use bevy_comics::{Colorization, ColorizationMode, Form};
+use bevy_comics::{
+    Colorization,
+    effects::{ColorizationMode, Equations},
+};
 
 fn linear_of(color: Color) -> Rgb {
     let c = color.to_linear();
@@ -62,11 +65,11 @@ pub fn atmosphere(color: Color) -> ([f64; 2], f64, f64) {
 /// `d`, `l`: depth map and its complement; `saturation`: fraction of the saturation
 /// that desaturation left.
 pub fn colorize(s: &Colorization, linear: Rgb, d: f64, l: f64, saturation: f64) -> Rgb {
-    if s.mode == ColorizationMode::Hue {
+    if s.mode == ColorizationMode::KeepHue {
         return linear;
     }
     let amount = f64::from(s.amount);
-    if s.form == Form::Faithful {
+    if s.equations == Equations::Faithful {
         let c = srgb_encode(linear);
         let (v, chroma) = (largest(c), largest(c) - smallest(c));
         let atmosphere = f64::from(Hsva::from(s.color).hue) / 360.0;

@@ -1,4 +1,4 @@
-//! Twin of `effects/contours/contours.wgsl`.
+//! Reference of `effects/contours/contours.wgsl`.
 
 use super::{
     Rgba,
@@ -7,7 +7,10 @@ use super::{
     view::{View, load_window},
     window::{Steps, Window, gradient, map_steps, prewitt},
 };
-use bevy_comics::{ContourOperator, Contours, Form};
+use bevy_comics::{
+    Contours,
+    effects::{ContourOperator, Equations},
+};
 
 const SOBEL: [[f64; 3]; 3] = [[-1.0, 0.0, 1.0], [-2.0, 0.0, 2.0], [-1.0, 0.0, 1.0]];
 
@@ -92,7 +95,7 @@ pub fn response(s: &Contours, frame: &Frame, win: &Window) -> f64 {
     if frame.ends.is_none() {
         return 0.0;
     }
-    if s.form == Form::Corrected {
+    if s.equations == Equations::Corrected {
         return scaled_response(s, &plane_steps(frame, win));
     }
     let steps = map_steps(frame, win);
@@ -101,11 +104,11 @@ pub fn response(s: &Contours, frame: &Frame, win: &Window) -> f64 {
         ContourOperator::Sobel => gradient(&steps, SOBEL),
         ContourOperator::Laplace => steps.iter().flatten().sum::<f64>().abs(),
         ContourOperator::Roberts => steps[2][2].hypot(steps[1][2] - steps[2][1]),
-        other => panic!("no twin of {other:?}"),
+        other => panic!("no reference of {other:?}"),
     }
 }
 
-/// The response of the corrected form to steps over a plane.
+/// The response of the corrected equations to steps over a plane.
 fn scaled_response(s: &Contours, steps: &Steps) -> f64 {
     match s.operator {
         ContourOperator::Prewitt => prewitt(steps) / 3.0,
@@ -114,11 +117,11 @@ fn scaled_response(s: &Contours, steps: &Steps) -> f64 {
         ContourOperator::Roberts => {
             (steps[2][2] - steps[0][0]).hypot(steps[2][0] - steps[0][2]) / 2f64.sqrt()
         }
-        other => panic!("no twin of {other:?}"),
+        other => panic!("no reference of {other:?}"),
     }
 }
 
-/// The response of the corrected form where the depth texture is smaller than the
+/// The response of the corrected equations where the depth texture is smaller than the
 /// viewport, see `uneven_plane_steps`.
 pub fn uneven_response(
     s: &Contours,

@@ -1,4 +1,4 @@
-//! Twin of `objects/depth_test/count.wgsl`.
+//! Reference of `objects/depth_test/count.wgsl`.
 
 /// Pixels that the depth prepass covers, and those of them without an object id, among every fourth
 /// pixel of every fourth row of a viewport (origin and size). What lies beyond the picture is as at

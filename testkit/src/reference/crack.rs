@@ -1,4 +1,4 @@
-//! Twin of `lines/crack.wgsl`: the cracks that lines run along.
+//! Reference of `lines/crack.wgsl`: the cracks that lines run along.
 
 use super::{
     edge::{
@@ -9,7 +9,7 @@ use super::{
     smoothstep,
     view::View,
 };
-use bevy_comics::{Form, LineResponse, Outlines};
+use bevy_comics::{Outlines, effects::Equations, lines::LineResponse};
 
 /// The border between a pixel and its neighbour to the east or south.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,8 +47,8 @@ pub fn ink(limit: f32, softness: f32, weakest: f64, p: f64) -> f64 {
 
 /// The fraction of the edge limit from which edges continue lines; 1 if none does.
 fn weakest(s: &Outlines) -> f64 {
-    if s.continuity > 0.0 {
-        f64::from(s.continuity_level)
+    if s.hysteresis > 0.0 {
+        f64::from(s.hysteresis_ratio)
     } else {
         1.0
     }
@@ -94,7 +94,9 @@ pub fn normal(view: &View, x: u32, y: u32) -> Normal {
 
 /// The jump in depth that separates two surfaces, as a fraction of the reference.
 pub fn jump(s: &Outlines) -> f64 {
-    let measured = s.silhouettes.filter(|s| s.form == Form::Corrected);
+    let measured = s
+        .silhouettes
+        .filter(|s| s.equations == Equations::Corrected);
     f64::from(measured.unwrap_or_default().threshold)
 }
 
@@ -134,7 +136,7 @@ fn sections(view: &View, pixel: [i64; 2], v: [i64; 2], fold: Option<f64>) -> (bo
 
 /// The crack between a pixel and its neighbour at a side, an entry of [`SIDES`].
 /// `scale`: physical pixels per logical pixel. `OutlineStyle` and `NoOutlines` of
-/// objects are not part of the twin.
+/// objects are not part of the reference.
 pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64) -> Option<Crack> {
     let v = SIDES[side];
     let depths = along(view, pixel, v, |x, y| view.depth(x, y, 0));
@@ -155,13 +157,16 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         shifts: true,
     };
     let limit = |limit: f32| {
-        if s.continuity > 0.0 {
+        if s.hysteresis > 0.0 {
             f64::from(limit)
         } else {
             0.0
         }
     };
-    if let Some(k) = s.silhouettes.filter(|k| k.form == Form::Corrected) {
+    if let Some(k) = s
+        .silhouettes
+        .filter(|k| k.equations == Equations::Corrected)
+    {
         let p = step_response(excess, 0.5 * f64::from(k.threshold) * reference);
         let amount = ink(k.edge_limit, k.softness, weakest(s), p);
         if near > 0.0 && is_stored(amount) && !is_outdone(depths) {
@@ -170,7 +175,7 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
             crack.certain = p >= limit(k.edge_limit);
         }
     }
-    if let Some(k) = s.creases.filter(|k| k.form == Form::Corrected) {
+    if let Some(k) = s.creases.filter(|k| k.equations == Equations::Corrected) {
         let normals = along(view, pixel, v, |x, y| normal(view, x, y));
         let folds = [1, 2, 3].map(|i: usize| fold(normals[i], normals[i + 1]));
         let kn = (0.5 * f64::from(k.angle)).to_radians().sin().max(0.02);
@@ -195,7 +200,10 @@ pub fn crack(s: &Outlines, view: &View, pixel: [i64; 2], side: usize, scale: f64
         crack.kinds[2] = objects[2] != objects[3];
         crack.certain |= crack.kinds[2];
     }
-    let low = s.creases.is_some_and(|c| c.form == Form::Corrected) && s.continuity > 0.0;
+    let low = s
+        .creases
+        .is_some_and(|c| c.equations == Equations::Corrected)
+        && s.hysteresis > 0.0;
     let exists = here.min(there) > 0.0 && crack.kinds == [false; 3];
     if low && exists && is_ledge(excess, jump) && !is_outdone(depths) {
         crack.kinds[1] = true;

@@ -1,4 +1,4 @@
-//! Twin of `objects/depths.wgsl`: the place of an object in the depth map.
+//! Reference of `objects/depths.wgsl`: the place of an object in the depth map.
 
 use super::{map::Frame, smoothstep};
 

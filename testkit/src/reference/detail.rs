@@ -1,6 +1,6 @@
-//! Twin of `cartoon/detail.wgsl`, and of the mixture of two ramps in `cartoon/ramp.wgsl`.
+//! Reference of `toon/detail.wgsl`, and of the mixture of two ramps in `toon/ramp.wgsl`.
 
-use bevy_comics::{DetailAxis, Ramp, RampStop};
+use bevy_comics::toon::{DetailAxis, Ramp, RampStop};
 
 use super::{
     Rgb,
@@ -13,7 +13,7 @@ use super::{
 /// that the axis asks for.
 pub fn detail(axis: DetailAxis, at: f64) -> f64 {
     match axis {
-        DetailAxis::Depth { near, ratio } => {
+        DetailAxis::Depth { from: near, ratio } => {
             1.0 - (at / f64::from(near)).ln() / f64::from(ratio).ln()
         }
         DetailAxis::Focus {
@@ -28,7 +28,7 @@ pub fn detail(axis: DetailAxis, at: f64) -> f64 {
         DetailAxis::Highlight { power } => at.max(0.0).powf(f64::from(power)),
         DetailAxis::Constant(detail) => f64::from(detail),
         DetailAxis::VisibleRange => panic!("the range of a view is needed: see `in_range`"),
-        _ => panic!("an axis without a twin"),
+        _ => panic!("an axis without a reference"),
     }
     .clamp(0.0, 1.0)
 }

@@ -1,4 +1,4 @@
-//! Twin of `lines/draw.wgsl`: the ink of the lines at every pixel.
+//! Reference of `lines/draw.wgsl`: the ink of the lines at every pixel.
 
 use std::collections::{HashMap, HashSet};
 
@@ -21,7 +21,7 @@ use super::{
     view::View,
     weight::{largest_weight, local_weight, taper_weight, weighted},
 };
-use bevy_comics::{LineBoil, Outlines};
+use bevy_comics::{Outlines, lines::LineBoil};
 
 /// The cracks of a viewport.
 pub struct Cracks {
@@ -76,16 +76,16 @@ impl Cracks {
             strokes: vec![],
             taper: (f64::from(s.weight.taper) * scale).min(64.0),
         };
-        let steps = ((f64::from(s.continuity) * scale).ceil() as i32).min(64);
+        let steps = ((f64::from(s.hysteresis) * scale).ceil() as i32).min(64);
         let all: HashMap<Place, Crack> = found.places().collect();
         // Only where gaps are closed, cracks are like others.
-        let counts = |crack: &Crack| s.bridge == 0 || !crack.ledge;
+        let counts = |crack: &Crack| s.gap_closing == 0 || !crack.ledge;
         let sources = all.iter().filter(|(_, crack)| counts(crack));
         let sources = sources.map(|(place, crack)| (*place, *crack)).collect();
-        let specks = if s.specks < 2 {
+        let specks = if s.min_length < 2 {
             1
         } else {
-            (f64::from(s.specks) * scale).ceil().min(64.0) as u32
+            (f64::from(s.min_length) * scale).ceil().min(64.0) as u32
         };
         let linked = found.complete((&all, &sources), (steps, specks, s), (view, jump(s)));
         let longest = if s.smooth {
@@ -117,7 +117,7 @@ impl Cracks {
         let varies = w.shade > 0.0
             || w.lit > 0.0
             || w.perspective > 0.0
-            || (w.nib < 1.0 && s.smooth)
+            || (w.nib_roundness < 1.0 && s.smooth)
             || w.taper > 0.0
             || view.widths.is_some();
         for (i, cracks) in self.cracks.iter_mut().enumerate() {
@@ -134,10 +134,10 @@ impl Cracks {
                     let stroke = stroke.min((ends[0] + ends[1] + 1) as f64);
                     factor *= taper_weight(taper, ends[0].min(ends[1]) as f64 + stroke);
                 }
-                if s.budget < 1.0 {
+                if s.ink_budget < 1.0 {
                     let density = line_density(linked, pixel);
                     let width = 2.0 * crack.half_width * factor;
-                    factor *= budget_weight(f64::from(s.budget), density, width);
+                    factor *= budget_weight(f64::from(s.ink_budget), density, width);
                 }
                 *slot = weighted(crack, factor);
             }
@@ -165,7 +165,7 @@ impl Cracks {
         let width = self.width;
         let place = |i: usize, side| ([i as i64 % width, i as i64 / width], side);
         let mut linked = joined(&linked(all, steps), all);
-        let closed = gaps(&linked, s.bridge);
+        let closed = gaps(&linked, s.gap_closing);
         linked.extend(&closed);
         let kept = without_specks(&linked, [self.width, self.height], specks);
         for (i, cracks) in self.cracks.iter_mut().enumerate() {
@@ -178,7 +178,7 @@ impl Cracks {
                 if let Some(crack) = crack.as_mut() {
                     let place = place(i, side);
                     let at = source(sources, place);
-                    let links = s.continuity > 0.0 || s.specks > 1 || s.bridge > 0;
+                    let links = s.hysteresis > 0.0 || s.min_length > 1 || s.gap_closing > 0;
                     if links && !crack.kinds[0] && is_rim((all, &linked), place, (view, jump), at) {
                         crack.kinds = [true, false, crack.kinds[2]];
                         crack.shifts = true;

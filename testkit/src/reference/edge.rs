@@ -1,4 +1,4 @@
-//! Twin of `lines/edge.wgsl`: responses and line geometry.
+//! Reference of `lines/edge.wgsl`: responses and line geometry.
 
 use super::Rgb;
 

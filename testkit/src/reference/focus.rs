@@ -1,14 +1,17 @@
-//! Twin of `effects/focus/focus.wgsl`.
+//! Reference of `effects/focus/focus.wgsl`.
 
 use std::f64::consts::PI;
 
 use bevy::color::Color;
-use bevy_comics::{Focus, FocusStyle, Halftone, ScreenShape};
+use bevy_comics::{
+    Focus, Halftone,
+    effects::{FocusStyle, ScreenShape},
+};
 
 use super::{
     Rgb,
+    box_statistics::{Sheet, means},
     halftone::{Plate, inked, plate_cover, plate_tones},
-    means::{Sheet, means},
     mix,
     paint::{box_areas, chosen},
     smoothstep,
@@ -122,7 +125,7 @@ impl Scene<'_> {
         let whole = (f64::from(s.radius) / 6.0).min(1.0);
         let amount = whole * radius / (f64::from(s.radius) * self.scale);
         let halftone = Halftone {
-            period: s.period,
+            cell_size: s.cell_size,
             cyan: Color::srgb(0.0, 1.0, 1.0),
             magenta: Color::srgb(1.0, 0.0, 1.0),
             yellow: Color::srgb(1.0, 1.0, 0.0),

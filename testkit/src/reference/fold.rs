@@ -1,4 +1,4 @@
-//! Twin of `lines/fold.wgsl`: where the two sides of a crease meet.
+//! Reference of `lines/fold.wgsl`: where the two sides of a crease meet.
 
 use std::collections::HashSet;
 

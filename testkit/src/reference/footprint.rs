@@ -1,4 +1,4 @@
-//! Twin of `effect/footprint.wgsl`.
+//! Reference of `effect/footprint.wgsl`.
 
 use bevy::math::DVec2;
 

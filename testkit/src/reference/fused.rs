@@ -1,20 +1,21 @@
-//! Twin of `effect/fused.wgsl` with the effects of this crate: the fused pass for
+//! Reference of `fused/fused.wgsl` with the effects of this crate: the fused pass for
 //! one pixel, without the finish, the debug views and screens of grains.
 
 use bevy::math::{UVec2, UVec4};
 
 use super::{
-    Rgb, Rgba, black_flats, color, color_harmony, colorization, contours, desaturation,
+    Rgb, Rgba, black_flats, color, color_harmony, colorization, contours, depth_layers,
+    desaturation,
     draw::Ink,
-    halftone, mix, near_middle_far, paper, print_offset, read,
+    halftone, misregistration, mix, paper, read,
     sheet::Sheet,
     sketch, tone_bands, tone_ramp,
     view::{View, map_slope, pixel_depth},
     vignette,
 };
 use bevy_comics::{
-    BlackFlats, ColorHarmony, Colorization, ComicStyle, Contours, Desaturation, Halftone, Outlines,
-    Paper, Planes, PrintOffset, Sketch, ToneBands, ToneRamp, Vignette,
+    BlackFlats, ColorHarmony, Colorization, ComicStyle, Contours, DepthLayers, Desaturation,
+    Halftone, Misregistration, Outlines, Paper, Sketch, ToneBands, ToneRamp, Vignette,
 };
 
 /// What the pass reads besides the view.
@@ -67,12 +68,12 @@ fn colored(
 ) -> Colored {
     let alpha = input.opacity(x, y);
     let mut linear = input.light(x, y);
-    let reads_map = (style.get::<Halftone>()).is_some_and(|s| s.near != s.far)
+    let reads_map = (style.get::<Halftone>()).is_some_and(|s| s.at_near != s.at_far)
         || style.get::<ToneRamp>().is_some()
         || style.get::<Desaturation>().is_some()
         || style.get::<Colorization>().is_some()
         || style.get::<ColorHarmony>().is_some()
-        || style.get::<Planes>().is_some()
+        || style.get::<DepthLayers>().is_some()
         || style.get::<BlackFlats>().is_some()
         || style.get::<Contours>().is_some();
     let mut depth = if reads_map {
@@ -109,12 +110,12 @@ fn colored(
         let seen = linear.map(|c| c / opacity);
         linear = color_harmony::harmonize(s, seen, d, l).map(|c| c * opacity);
     }
-    if let Some(s) = style.get::<Planes>() {
+    if let Some(s) = style.get::<DepthLayers>() {
         let seen = linear.map(|c| c / alpha.max(1e-3));
-        let weights = near_middle_far::pixel_weights(s, view, [x, y]);
+        let weights = depth_layers::pixel_weights(s, view, [x, y]);
         let change = (input.change(x, y) + nudge).max(0.0);
         let seen = seen.map(|c| c * (1.0 + nudge));
-        linear = near_middle_far::color(s, seen, weights, change).map(|c| c * alpha);
+        linear = depth_layers::color(s, seen, weights, change).map(|c| c * alpha);
     }
     Colored {
         picture: with(linear, alpha),
@@ -157,14 +158,14 @@ fn print(style: &ComicStyle, view: &View, input: &Input, at: [u32; 2], nudge: f6
         with([r, g, b].map(|c| c * stored), alpha)
     };
     let moved = |at: [u32; 2]| -> Rgba {
-        let Some(s) = style.get::<PrintOffset>() else {
+        let Some(s) = style.get::<Misregistration>() else {
             return load(at);
         };
         let read = |at| between(view.viewport, &load, at);
-        let rgb = print_offset::print_offset(s, &read, at.map(|v| f64::from(v) + 0.5), 1.0);
+        let rgb = misregistration::misregistration(s, &read, at.map(|v| f64::from(v) + 0.5), 1.0);
         with(rgb, load(at)[3])
     };
-    if style.get::<PrintOffset>().is_some() {
+    if style.get::<Misregistration>().is_some() {
         pixel.picture = moved(at);
     }
     if let Some(s) = style.get::<Halftone>() {

@@ -1,7 +1,11 @@
-//! Twin of `effects/halftone/halftone.wgsl`.
+//! Reference of `effects/halftone/halftone.wgsl`.
 
 use bevy::math::{UVec2, UVec4};
-use bevy_comics::{Halftone, HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape, linear_rgb};
+use bevy_comics::{
+    Halftone,
+    effect::linear_rgb,
+    effects::{HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape},
+};
 
 use super::{Rgb, Rgba, color, mix, screen, sheet::Sheet, similarity::Similarity, smoothstep};
 
@@ -24,7 +28,7 @@ impl Plate {
         let angles = [s.cyan_angle, s.magenta_angle, s.yellow_angle, s.black_angle];
         std::array::from_fn(|i| Self {
             degrees: f64::from(angles[i]),
-            period: f64::from(s.period) * scale,
+            period: f64::from(s.cell_size) * scale,
             phase: if i == 3 { 0.25 } else { 0.0 },
             number: i as i32,
             spread: 0.0,
@@ -71,7 +75,7 @@ pub fn plate_cover<'a>(
                 tile(x + 19 * number, y + 37 * number)
             })
         }),
-        other => panic!("no twin of {other:?}"),
+        other => panic!("no reference of {other:?}"),
     };
     Box::new(move |place| {
         let k = shaped(place);
@@ -156,7 +160,7 @@ pub fn plate_tones(s: &Halftone, linear: Rgb) -> [f64; 4] {
             [dark / pivot, 0.0, 0.0, (dark - pivot) / (1.0 - pivot)]
         }
         HalftoneMode::Rgb => [c[0], c[1], c[2], 0.0],
-        other => panic!("no twin of {other:?}"),
+        other => panic!("no reference of {other:?}"),
     };
     tones.map(|tone| {
         let tone = screen::tinted(tone.clamp(0.0, 1.0), s.tints);
@@ -176,9 +180,9 @@ pub fn inked(s: &Halftone, k: [f64; 4]) -> Rgb {
 }
 
 pub fn screen_amount(s: &Halftone, linear: Rgb, d: f64) -> f64 {
-    let below = f64::from(s.below);
+    let below = f64::from(s.shadows_only_below);
     let shade = 1.0 - smoothstep(below, below + 0.1, color::lightness(linear));
-    mix(f64::from(s.near), f64::from(s.far), d) * shade
+    mix(f64::from(s.at_near), f64::from(s.at_far), d) * shade
 }
 
 /// Where the screens begin, in pixels of the target.
@@ -188,7 +192,7 @@ pub fn centre(s: &Halftone, viewport: UVec4, target: UVec2) -> [f64; 2] {
             [[viewport.x, viewport.y], [viewport.z, viewport.w]]
         }
         ScreenAnchor::Window => [[0, 0], target.to_array()],
-        other => panic!("no twin of {other:?}"),
+        other => panic!("no reference of {other:?}"),
     };
     [0, 1].map(|i| f64::from(first[i] + size[i] / 2) + 0.25)
 }

@@ -1,4 +1,4 @@
-//! Twin of `cartoon/hatch.wgsl`.
+//! Reference of `toon/hatch.wgsl`.
 
 use bevy::math::DVec3;
 use bevy_comics::Hatching;
@@ -13,7 +13,7 @@ pub fn hatch_tone(settings: &Hatching, arriving: f64, all: f64) -> f64 {
         drawing: 0,
     };
     let share = if all > 0.0 { arriving / all } else { 0.0 };
-    hatch.tone(share.clamp(0.0, 1.0).sqrt()) * f64::from(settings.near)
+    hatch.tone(share.clamp(0.0, 1.0).sqrt()) * f64::from(settings.at_near)
 }
 
 /// The unit normal of a surface at rest: that of the mesh, or of the plane that its place changes in.

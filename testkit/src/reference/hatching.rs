@@ -1,9 +1,13 @@
-//! Twin of `effect/strokes.wgsl` and `effects/hatching/hatching.wgsl`.
+//! Reference of `effect/strokes.wgsl` and `effects/hatching/hatching.wgsl`.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use bevy::math::{DMat4, DQuat, DVec2, DVec3, DVec4, Vec4Swizzles};
-use bevy_comics::{Hatching, HatchingGround, HatchingMarks, linear_rgb};
+use bevy_comics::{
+    Hatching,
+    effect::linear_rgb,
+    effects::{HatchingGround, HatchingMarks},
+};
 
 use super::{
     Rgb, color,
@@ -244,7 +248,7 @@ impl Hatch<'_> {
 
     /// The whole effect on a surface of the page.
     pub fn page(&self, linear: Rgb, place: DVec2) -> Rgb {
-        let tone = self.tone(color::lightness(linear)) * f64::from(self.settings.far);
+        let tone = self.tone(color::lightness(linear)) * f64::from(self.settings.at_far);
         let cover = self.cover(&Surface::page(place, self.spacing()), tone);
         self.hatched(linear, tone, cover)
     }

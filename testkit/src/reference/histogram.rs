@@ -1,4 +1,4 @@
-//! Twin of `depth/histogram.wgsl`, of the counting in `depth/range.wgsl` and of the
+//! Reference of `depth/histogram.wgsl`, of the counting in `depth/range.wgsl` and of the
 //! percentiles in `depth/smoothing.wgsl`.
 
 /// Number of bins, from far to near.

@@ -1,7 +1,7 @@
-//! Twin of `effects/iso_lines/iso_lines.wgsl`.
+//! Reference of `effects/iso_lines/iso_lines.wgsl`.
 
 use bevy::math::{DMat4, DVec3, DVec4};
-use bevy_comics::{IsoField, IsoLines};
+use bevy_comics::{IsoLines, effects::IsoField};
 
 use super::{edge::line_coverage, smoothstep};
 
@@ -17,7 +17,7 @@ pub fn iso_value(s: &IsoLines, p: DVec3, map: f64) -> f64 {
     match s.field {
         IsoField::Depth => map,
         IsoField::Height => p.y,
-        _ => p.distance(s.centre.as_dvec3()),
+        _ => p.distance(s.center.as_dvec3()),
     }
 }
 

@@ -1,7 +1,7 @@
-//! Twin of `cartoon/light.wgsl`.
+//! Reference of `toon/light.wgsl`.
 
 use super::smoothstep;
-use bevy_comics::CartoonLight;
+use bevy_comics::ToonLight;
 
 /// A smooth step from 0 to 1, `width` wide, with its middle at `edge`.
 pub fn edge_at(edge: f64, x: f64, width: f64) -> f64 {
@@ -18,7 +18,7 @@ pub fn highlight_fraction(roughness: f64, n_dot_h: f64) -> f64 {
 }
 
 /// Strength of the highlight. `width`: change of `n_dot_h` over a pixel.
-pub fn highlight(s: &CartoonLight, perceptual_roughness: f64, n_dot_h: f64, width: f64) -> f64 {
+pub fn highlight(s: &ToonLight, perceptual_roughness: f64, n_dot_h: f64, width: f64) -> f64 {
     let roughness = (perceptual_roughness * perceptual_roughness).max(0.002);
     let fraction = |c: f64| highlight_fraction(roughness, c.clamp(0.0, 1.0));
     let change = fraction(n_dot_h + 0.5 * width) - fraction(n_dot_h - 0.5 * width);
@@ -33,7 +33,7 @@ pub fn highlight(s: &CartoonLight, perceptual_roughness: f64, n_dot_h: f64, widt
 /// `brightest`: exposed light at distance 1; `pixel`: size of a pixel at the lit
 /// place, world units.
 pub fn flat_falloff(
-    s: &CartoonLight,
+    s: &ToonLight,
     distance_squared: f64,
     inverse_range_squared: f64,
     brightest: f64,

@@ -1,4 +1,4 @@
-//! Twin of `lines/link.wgsl`, `lines/join.wgsl` and `lines/settle.wgsl`: the cracks that are parts of lines,
+//! Reference of `lines/link.wgsl`, `lines/join.wgsl` and `lines/settle.wgsl`: the cracks that are parts of lines,
 //! and how these run. A graph of cracks and of the corners of pixels that they end at.
 
 use std::collections::{HashMap, HashSet};

@@ -1,4 +1,4 @@
-//! Twin of `lines/lives.wgsl` and `lines/persist.wgsl`: lines that stay where their edges have
+//! Reference of `lines/lives.wgsl` and `lines/persist.wgsl`: lines that stay where their edges have
 //! become weak. Without motion vectors.
 
 use std::collections::{HashMap, HashSet};

@@ -1,4 +1,4 @@
-//! Twin of `depth/map.wgsl`: \[CS\] Eq. 2 to 4. The logarithmic map is computed from
+//! Reference of `depth/map.wgsl`: \[CS\] Eq. 2 to 4. The logarithmic map is computed from
 //! distances, the linear map as the exact quotient of raw depths.
 
 /// How a projection turns the view depth z into the raw depth d.

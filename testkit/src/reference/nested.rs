@@ -1,4 +1,4 @@
-//! Twin of `effect/nested.wgsl`.
+//! Reference of `effect/nested.wgsl`.
 
 use super::{
     mix,

@@ -1,4 +1,4 @@
-//! Twin of `effect/noise.wgsl`.
+//! Reference of `effect/noise.wgsl`.
 
 use super::mix;
 

@@ -1,4 +1,4 @@
-//! Twin of `depth/normal.wgsl`: decodes texels of the normal prepass.
+//! Reference of `depth/normal.wgsl`: decodes texels of the normal prepass.
 
 /// The unit normal of a decoded texel (components -1 to 1); `None` unless its squared
 /// length is 0.05 to 1.5. Interpolated normals are shorter than 1; cleared texels have

@@ -1,6 +1,6 @@
-//! Twin of `cartoon/octahedral.wgsl`.
+//! Reference of `toon/octahedral.wgsl`.
 
-use super::glint::unit;
+use super::stylized_highlight::unit;
 
 /// The point of the surface `|x| + |y| + |z| = 1` above or below a
 /// place of the square, whose lower half is folded outwards over the four edges.

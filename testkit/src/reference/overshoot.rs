@@ -1,4 +1,4 @@
-//! Twin of `lines/ends.wgsl`, `lines/overshoot.wgsl` and `lines/strokes.wgsl`: strokes that
+//! Reference of `lines/ends.wgsl`, `lines/overshoot.wgsl` and `lines/strokes.wgsl`: strokes that
 //! extend lines beyond their loose ends.
 
 use std::collections::HashSet;

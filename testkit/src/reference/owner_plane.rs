@@ -1,8 +1,8 @@
-//! Twin of `lines/owner_plane.wgsl`: near, middle and far, and the abstraction, where lines are.
+//! Reference of `lines/owner_plane.wgsl`: near, middle and far, and the abstraction, where lines are.
 
 use super::{
     abstraction::{dialled, graded, lines},
-    mix, near_middle_far,
+    depth_layers, mix,
 };
 
 /// An object in the depth map.
@@ -26,7 +26,7 @@ pub fn depth(pixel: f64, object: Option<Placed>, by_objects: f64) -> f64 {
 
 /// Fractions of near, middle and far. `flip`: near and far are exchanged.
 pub fn weights(borders: [f64; 2], softness: f64, d: f64, flip: bool) -> [f64; 3] {
-    let [near, middle, far] = near_middle_far::weights(borders, softness, d);
+    let [near, middle, far] = depth_layers::weights(borders, softness, d);
     if flip {
         [far, middle, near]
     } else {

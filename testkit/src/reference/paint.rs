@@ -1,13 +1,13 @@
-//! Twin of `effects/paint/paint.wgsl`.
+//! Reference of `effects/paint/paint.wgsl`.
 
 use std::f64::consts::{PI, TAU};
 
-use bevy_comics::{Paint, PaintForm};
+use bevy_comics::{Paint, effects::PaintKernel};
 
 use super::{
-    Rgb, Rgba, color,
-    means::{Means, Sheet, means, part_of_box, root, square},
-    mix,
+    Rgb, Rgba,
+    box_statistics::{Means, Sheet, means, part_of_box, root, square},
+    color, mix,
 };
 
 /// Variance that is not seen.
@@ -44,7 +44,7 @@ pub fn chosen(areas: &[Area], sharpness: f64) -> Option<Rgb> {
 impl Scene<'_> {
     fn radius(&self, s: &Paint, at: [usize; 2]) -> f64 {
         let depth = (self.depth)(at).clamp(0.0, 1.0);
-        mix(f64::from(s.near), f64::from(s.far), depth) * self.scale
+        mix(f64::from(s.at_near), f64::from(s.at_far), depth) * self.scale
     }
 
     fn share(&self, s: &Paint, own: [usize; 2], other: [i64; 2]) -> f64 {
@@ -55,14 +55,14 @@ impl Scene<'_> {
     /// The picture after the effect.
     pub fn painted(&self, s: &Paint) -> Sheet {
         let half = |at| 0.5 * self.radius(s, at);
-        let boxes = match s.form {
-            PaintForm::Box => means(self.sheet, &half),
+        let boxes = match s.kernel {
+            PaintKernel::Box => means(self.sheet, &half),
             _ => Vec::new(),
         };
         Sheet::new(self.sheet.size, |at| {
             let share = |other| self.share(s, at, other);
-            let areas = match s.form {
-                PaintForm::Box => box_areas(self.sheet, &boxes, at, half(at), &share),
+            let areas = match s.kernel {
+                PaintKernel::Box => box_areas(self.sheet, &boxes, at, half(at), &share),
                 _ => self.sectors(s, at),
             };
             over(

@@ -1,7 +1,7 @@
-//! Twin of `effects/paper/paper.wgsl`.
+//! Reference of `effects/paper/paper.wgsl`.
 
 use super::{Rgb, Rgba, mix, sheet::height};
-use bevy_comics::{Paper, linear_rgb};
+use bevy_comics::{Paper, effect::linear_rgb};
 
 /// Linear light of a page where the sheet has a height.
 pub fn on_paper(s: &Paper, page: Rgb, height: f64) -> Rgb {

@@ -1,4 +1,4 @@
-//! Twin of `depth/ping_pong.wgsl`, with the index arithmetic of \[CS\] 3.1.
+//! Reference of `depth/ping_pong.wgsl`, with the index arithmetic of \[CS\] 3.1.
 
 use super::raw;
 

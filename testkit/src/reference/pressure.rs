@@ -1,4 +1,4 @@
-//! Twin of `objects/pressure.wgsl`: noise that is anchored to an object.
+//! Reference of `objects/pressure.wgsl`: noise that is anchored to an object.
 
 use super::{mix, noise::hash};
 

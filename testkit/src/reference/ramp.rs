@@ -1,6 +1,6 @@
-//! Twin of `cartoon/ramp.wgsl`.
+//! Reference of `toon/ramp.wgsl`.
 
-use bevy_comics::Ramp;
+use bevy_comics::toon::Ramp;
 
 use super::{Rgb, light::edge_at, mix};
 

@@ -1,4 +1,4 @@
-//! Twin of `cartoon/ramp_map.wgsl`: tones are areas of texels, without sums.
+//! Reference of `toon/ramp_map.wgsl`: tones are areas of texels, without sums.
 
 use super::{Rgb, mix};
 

@@ -1,4 +1,4 @@
-//! Twin of `depth/range.wgsl`: a plain scan.
+//! Reference of `depth/range.wgsl`: a plain scan.
 
 use super::raw;
 

@@ -1,4 +1,4 @@
-//! Twin of `raw_depth_key` in `depth/raw.wgsl`, without the oblique projection.
+//! Reference of `raw_depth_key` in `depth/raw.wgsl`, without the oblique projection.
 
 /// The bits of a raw depth that counts for the range (0 < d <= 1), else 0.
 pub fn key(d: f32) -> u32 {

@@ -1,4 +1,4 @@
-//! Twin of `cartoon/rect.wgsl`.
+//! Reference of `toon/rect.wgsl`.
 
 type Vec3 = [f64; 3];
 

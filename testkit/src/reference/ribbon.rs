@@ -1,4 +1,4 @@
-//! Twin of `motion_lines/ribbon.wgsl`.
+//! Reference of `motion_lines/ribbon.wgsl`.
 
 use bevy::math::{DVec2, DVec4};
 

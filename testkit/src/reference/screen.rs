@@ -1,8 +1,8 @@
-//! Twin of `effect/screen.wgsl`: coverages of screens. `at`: cells; `period`: pixels.
+//! Reference of `effect/screen.wgsl`: coverages of screens. `at`: cells; `period`: pixels.
 
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
-use bevy_comics::ScreenShape;
+use bevy_comics::effects::ScreenShape;
 
 use super::{mix, smoothstep};
 

@@ -1,4 +1,4 @@
-//! Twin of `cartoon/shadow_texels.wgsl`.
+//! Reference of `toon/shadow_texels.wgsl`.
 
 use bevy::math::{DMat2, DVec2};
 

@@ -1,4 +1,4 @@
-//! Twin of `effect/sheet.wgsl` and `lines/sheet.wgsl`: the surface of the sheet, and ink on it.
+//! Reference of `effect/sheet.wgsl` and `lines/sheet.wgsl`: the surface of the sheet, and ink on it.
 
 use std::f64::consts::PI;
 
@@ -54,7 +54,7 @@ impl Sheet {
     /// The sheet of an effect at a scale factor.
     pub fn new(paper: &Paper, scale: f64, seed: u32) -> Self {
         Self {
-            spread: f64::from(paper.amount) * f64::from(paper.spread) * scale,
+            spread: f64::from(paper.amount) * f64::from(paper.ink_bleed) * scale,
             dry_brush: f64::from(paper.amount) * f64::from(paper.dry_brush),
             grain: f64::from(paper.size) * scale,
             unit: scale,

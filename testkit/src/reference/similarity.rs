@@ -1,4 +1,4 @@
-//! Twin of `effect/similarity.wgsl`.
+//! Reference of `effect/similarity.wgsl`.
 
 use bevy::math::{DMat4, DQuat, DVec2, DVec3};
 

@@ -1,4 +1,4 @@
-//! Twin of `effects/sketch/sketch.wgsl`.
+//! Reference of `effects/sketch/sketch.wgsl`.
 
 use super::{Rgb, Rgba, mix, noise::wave};
 use bevy_comics::Sketch;

@@ -1,4 +1,4 @@
-//! Twin of `depth/smoothing.wgsl`.
+//! Reference of `depth/smoothing.wgsl`.
 
 /// An end that rests beside everything that was found for this time, in seconds, begins
 /// to settle.

@@ -1,9 +1,9 @@
-//! Twin of `effects/speed_lines/speed_lines.wgsl`. It adds up all lines, not only those of
+//! Reference of `effects/speed_lines/speed_lines.wgsl`. It adds up all lines, not only those of
 //! three cells.
 
 use std::f64::consts::TAU;
 
-use bevy_comics::{SpeedLineKind, SpeedLines};
+use bevy_comics::{SpeedLines, effects::SpeedLineKind};
 
 use super::{
     edge::line_coverage,
@@ -91,7 +91,7 @@ impl Drawing {
 
     /// Fraction of a line that a dry brush leaves.
     fn dry_ink(&self, seed: u32, along: f64, across: f64) -> f64 {
-        let dry = f64::from(self.settings.dry);
+        let dry = f64::from(self.settings.dry_brush);
         if dry == 0.0 {
             return 1.0;
         }

@@ -1,4 +1,4 @@
-//! Twin of `effect/stipple.wgsl`.
+//! Reference of `effect/stipple.wgsl`.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 

@@ -1,4 +1,4 @@
-//! Twin of `cartoon/stroke_level.wgsl`.
+//! Reference of `toon/stroke_level.wgsl`.
 
 use bevy::math::DVec2;
 

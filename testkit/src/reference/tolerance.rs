@@ -1,4 +1,4 @@
-//! Twin of `objects/depth_test/tolerance.wgsl`.
+//! Reference of `objects/depth_test/tolerance.wgsl`.
 
 /// Largest distance of two depths of one surface: rounding moves it by 2^-12 of its depth, in
 /// orthographic views by 2^-22, and across the screen by a sixteenth of a pixel. Samples are up to

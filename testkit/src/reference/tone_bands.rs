@@ -1,11 +1,11 @@
-//! Twin of `effects/tone_bands/tone_bands.wgsl`.
+//! Reference of `effects/tone_bands/tone_bands.wgsl`.
 
 use super::{
     Rgb,
     color::{lightness, luminance, srgb_decode, srgb_encode},
     mix, smoothstep,
 };
-use bevy_comics::{Form, ToneBands};
+use bevy_comics::{ToneBands, effects::Equations};
 
 /// \[CL\] Eq. 6 for one channel of the display code, with its three ranges joined at
 /// 0.33 and 0.66.
@@ -48,9 +48,9 @@ pub fn with_luminance(linear: Rgb, target: f64) -> Rgb {
 
 /// `scale`: physical pixels per logical pixel.
 pub fn banded_color(s: &ToneBands, linear: Rgb, change: f64, scale: f64) -> Rgb {
-    let banded = match s.form {
-        Form::Faithful => srgb_decode(srgb_encode(linear).map(equation_6)),
-        Form::Corrected => {
+    let banded = match s.equations {
+        Equations::Faithful => srgb_decode(srgb_encode(linear).map(equation_6)),
+        Equations::Corrected => {
             let tone = band_tone(
                 f64::from(s.levels),
                 f64::from(s.softness) * scale,

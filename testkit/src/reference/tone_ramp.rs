@@ -1,4 +1,4 @@
-//! Twin of `effects/tone_ramp/tone_ramp.wgsl`.
+//! Reference of `effects/tone_ramp/tone_ramp.wgsl`.
 
 use bevy::color::Color;
 use bevy_comics::ToneRamp;

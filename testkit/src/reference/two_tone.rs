@@ -1,7 +1,7 @@
-//! Twin of `effects/two_tone/two_tone.wgsl`.
+//! Reference of `effects/two_tone/two_tone.wgsl`.
 
 use super::{Rgb, Rgba, color::luminance, mix, smoothstep};
-use bevy_comics::{TwoTone, linear_rgb};
+use bevy_comics::{TwoTone, effect::linear_rgb};
 
 /// Fraction of the light tone at a lightness that changes by `change` over a pixel.
 pub fn light_fraction(s: &TwoTone, y: f64, change: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Twin of `depth/view.wgsl`: the view that is drawn, and its depth around a pixel.
+//! Reference of `depth/view.wgsl`: the view that is drawn, and its depth around a pixel.
 
 use super::{
     map::{Frame, Projection},

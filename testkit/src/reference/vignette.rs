@@ -1,7 +1,7 @@
-//! Twin of `effects/vignette/vignette.wgsl`.
+//! Reference of `effects/vignette/vignette.wgsl`.
 
 use super::{Rgb, Rgba, mix, smoothstep};
-use bevy_comics::{Vignette, linear_rgb};
+use bevy_comics::{Vignette, effect::linear_rgb};
 
 /// Fraction of the colour that is mixed in. `at`: pixels from the top left corner of
 /// the viewport; `size`: of the viewport, pixels.

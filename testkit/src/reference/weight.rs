@@ -1,6 +1,6 @@
-//! Twin of `lines/weight.wgsl`: how wide a line is at a crack.
+//! Reference of `lines/weight.wgsl`: how wide a line is at a crack.
 
-use bevy_comics::{LineWeight, Outlines};
+use bevy_comics::{Outlines, lines::LineWeight};
 
 use super::{
     crack::{Crack, SIDES, THINNEST, jump, normal, stored_byte, stored_width},
@@ -46,7 +46,7 @@ pub fn perspective_weight(w: &LineWeight, frame: &Frame, d: f64) -> f64 {
 pub fn nib_weight(w: &LineWeight, [x, y]: [f64; 2]) -> f64 {
     let line = (-y).atan2(x);
     let apart = line - f64::from(w.nib_angle).to_radians();
-    apart.sin().hypot(f64::from(w.nib) * apart.cos())
+    apart.sin().hypot(f64::from(w.nib_roundness) * apart.cos())
 }
 
 /// `cracks`: those between the crack and the loose end of its line.
@@ -98,7 +98,7 @@ pub fn local_weight(s: &Outlines, view: &View, crack: &Crack, pixel: [i64; 2], s
         factor *= surface_weight(s, view, (pixel, side), crack.kinds[0]);
     }
     factor *= perspective_weight(w, &view.frame, depth(owner));
-    if w.nib < 1.0 && s.smooth {
+    if w.nib_roundness < 1.0 && s.smooth {
         let slope = crack.bend[1];
         let along = if side == 0 {
             [slope, 1.0]

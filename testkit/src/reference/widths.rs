@@ -1,4 +1,4 @@
-//! Twin of `objects/widths.wgsl`: the factor of the width of an object's lines.
+//! Reference of `objects/widths.wgsl`: the factor of the width of an object's lines.
 
 use super::pressure::{Frame, pressure_factor, stored_factor};
 

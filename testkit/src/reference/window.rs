@@ -1,4 +1,4 @@
-//! Twin of `depth/window.wgsl`: differences of the depth map in a window of 3 x 3
+//! Reference of `depth/window.wgsl`: differences of the depth map in a window of 3 x 3
 //! depths.
 
 use super::map::Frame;

@@ -19,7 +19,7 @@ use bevy::{
     camera::ScalingMode, core_pipeline::tonemapping::Tonemapping, ecs::system::SystemParam,
     light::Skybox, prelude::*,
 };
-use bevy_comics::{CartoonScene, ToonLook};
+use bevy_comics::{ToonScene, toon::ToonShading};
 
 /// The built-in scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -59,8 +59,8 @@ impl BuiltIn {
         }
     }
 
-    /// Whether the scene is made for the cartoon material.
-    pub fn is_cartoon(self) -> bool {
+    /// Whether the scene is made for the toon material.
+    pub fn is_toon(self) -> bool {
         matches!(self, Self::Theatre | Self::Figure)
     }
 
@@ -93,16 +93,16 @@ pub struct Stage<'w, 's> {
     pub meshes: ResMut<'w, Assets<Mesh>>,
     pub materials: ResMut<'w, Assets<StandardMaterial>>,
     pub images: ResMut<'w, Assets<Image>>,
-    pub looks: Option<ResMut<'w, Assets<ToonLook>>>,
+    pub looks: Option<ResMut<'w, Assets<ToonShading>>>,
 }
 
 /// Marks all entities of the current scene: despawn them to remove it.
 #[derive(Component, Clone, Copy, Default)]
 pub struct ScenePart;
 
-/// How a part is drawn with the cartoon material. Parts without it have the default look.
+/// How a part is drawn with the toon material. Parts without it have the default look.
 #[derive(Component, Clone, Default)]
-pub struct CartoonPart(pub CartoonScene);
+pub struct ToonPart(pub ToonScene);
 
 impl Stage<'_, '_> {
     pub fn spawn(&mut self, scene: BuiltIn) -> Vantage {

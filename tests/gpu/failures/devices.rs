@@ -7,7 +7,7 @@ use std::{
 
 use bevy::render::{occlusion_culling::OcclusionCulling, renderer::RenderDevice};
 use bevy::{light::cluster::GlobalClusterSettings, pbr::Lightmap};
-use bevy_comics::{DepthWrite, Halftone, Hatching, Outlines, Paint, Paper};
+use bevy_comics::{Halftone, Hatching, Outlines, Paint, Paper, objects::DepthWrite};
 use bevy_comics_testkit::device::gpu;
 
 use super::*;
@@ -128,7 +128,7 @@ fn prepasses_of_a_game_with_different_samples_are_reported() {
     let all = errors_of(&mut small, &errors, 8);
     let own: Vec<_> = all.difference(&of_engine).collect();
     assert!(own.is_empty(), "{own:#?}, besides {of_engine:#?}");
-    let mismatch = Some(StageOutcome::LeftOut(LeftOut::SampleCountMismatch));
+    let mismatch = Some(StageOutcome::Skipped(SkipReason::SampleCountMismatch));
     let found = ids(&small);
     let count = found.iter().filter(|found| **found == mismatch).count();
     assert_eq!(count, 1, "{found:?}");

@@ -2,8 +2,8 @@
 
 use bevy::render::render_resource::ShaderType;
 use bevy_comics::{
-    Effect, EffectPlugin, EffectRegistry, EffectShader, EffectStage, Needs, NoUniform, Outlines,
-    ViewFacts,
+    Effect, EffectPlugin, Outlines,
+    effect::{EffectContext, EffectRegistry, EffectShader, EffectStage, Needs, NoUniform},
 };
 use serde::{Deserialize, Serialize};
 
@@ -49,7 +49,7 @@ macro_rules! test_effect {
                 $needs
             }
 
-            fn uniform(&self, _: &ViewFacts) -> NoUniform {
+            fn uniform(&self, _: &EffectContext) -> NoUniform {
                 NoUniform::default()
             }
         }
@@ -120,16 +120,16 @@ fn passes_through<E: Effect>() {
     small.insert((E::default(), Colorization::SEPIA)).settle();
     assert_eq!(small.picture(), bare, "{}", E::NAME);
     let camera = small.camera;
-    let of = |stage| Some(StageOutcome::LeftOut(stage));
+    let of = |stage| Some(StageOutcome::Skipped(stage));
     assert_eq!(
         outcome(&small, camera, ComicsStage::of::<E>()),
-        of(LeftOut::ShaderError),
+        of(SkipReason::ShaderError),
         "{}",
         E::NAME
     );
     assert_eq!(
         outcome(&small, camera, ComicsStage::Stylize),
-        of(LeftOut::PipelineNotReady)
+        of(SkipReason::PipelineNotReady)
     );
     small.world().entity_mut(camera).remove::<E>();
     small.settle();
@@ -186,7 +186,7 @@ fn an_effect_reads_lines_where_there_are_any() {
     let camera = small.camera;
     assert_eq!(
         outcome(&small, camera, ComicsStage::of::<Tracer>()),
-        Some(StageOutcome::LeftOut(LeftOut::NoSuchLines))
+        Some(StageOutcome::Skipped(SkipReason::NoSuchLines))
     );
     small.insert(Outlines::SILHOUETTES).settle();
     assert!(small.ran(ComicsStage::of::<Tracer>()));
@@ -272,7 +272,7 @@ fn effects_of_odd_sizes_stand_side_by_side() {
                 fn faded(self, _: f32) -> Self {
                     self
                 }
-                fn uniform(&self, _: &ViewFacts) -> One {
+                fn uniform(&self, _: &EffectContext) -> One {
                     One { level: $level }
                 }
             }

@@ -1,7 +1,10 @@
 //! Invalid settings, invalid colours, missing depth.
 
 use super::*;
-use bevy_comics::{ComicsSystems, Creases, Outlines, Silhouettes, Sketch, ToneBands};
+use bevy_comics::{
+    ComicsSystems, Outlines, Sketch, ToneBands,
+    lines::{Creases, Silhouettes},
+};
 use bevy_comics_testkit::studio::with_map;
 
 /// Removes the depth prepass as soon as it is requested.
@@ -29,7 +32,7 @@ fn without_a_prepass_effects_without_depth_still_run() {
         "nothing can be drawn without depth"
     );
     let camera = small.camera;
-    let missing = Some(StageOutcome::LeftOut(LeftOut::NoDepthPrepass));
+    let missing = Some(StageOutcome::Skipped(SkipReason::NoDepthPrepass));
     assert_eq!(
         outcome(&small, camera, ComicsStage::of::<Contours>()),
         missing
@@ -58,8 +61,8 @@ fn check_absurd(ways: std::ops::Range<usize>) {
         let other = wild[(i + 3) % wild.len()];
         let map = DepthMap {
             mapping: DepthMapping::Fixed {
-                near: value,
-                far: other,
+                from: value,
+                to: other,
             },
             sky_gap: other,
             floor: value,
@@ -224,7 +227,7 @@ fn the_default_draws_no_slopes_and_the_faithful_form_does() {
     let ink = |small: &mut Small, form| {
         small
             .insert(Contours {
-                form,
+                equations: form,
                 threshold: 0.03,
                 softness: 0.0,
                 ..default()
@@ -236,8 +239,8 @@ fn the_default_draws_no_slopes_and_the_faithful_form_does() {
             .filter(|p| p.0[..3] == [0, 0, 0])
             .count()
     };
-    let faithful = ink(&mut small, Form::Faithful);
-    let plane_aware = ink(&mut small, Form::Corrected);
+    let faithful = ink(&mut small, Equations::Faithful);
+    let plane_aware = ink(&mut small, Equations::Corrected);
     assert!(
         plane_aware > 100 && faithful > 2 * plane_aware,
         "{plane_aware} and {faithful}"

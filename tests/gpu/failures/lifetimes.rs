@@ -23,7 +23,7 @@ fn a_picture_is_never_lost_while_a_pipeline_is_missing() {
     assert_ne!(styled, original);
 
     // A broken shader shows the original picture; a repaired one, the style.
-    let (id, source) = shader(&mut small, "effect/fused.wgsl");
+    let (id, source) = shader(&mut small, "fused/fused.wgsl");
     replace(
         &mut small,
         id,
@@ -38,7 +38,7 @@ fn a_picture_is_never_lost_while_a_pipeline_is_missing() {
     let camera = small.camera;
     assert_eq!(
         outcome(&small, camera, ComicsStage::Stylize),
-        Some(StageOutcome::LeftOut(LeftOut::PipelineNotReady))
+        Some(StageOutcome::Skipped(SkipReason::PipelineNotReady))
     );
     replace(&mut small, id, source);
     assert_eq!(still(&mut small), styled);

@@ -16,8 +16,11 @@ use bevy::{
     render::{RenderApp, render_resource::TextureFormat, view::Msaa},
 };
 use bevy_comics::{
-    Colorization, ColorizationMode, ComicStyle, ComicsDiagnostics, ComicsPlugin, ComicsStage,
-    Contours, DepthMap, DepthMapping, Desaturation, Form, LeftOut, StageOutcome, VisibleDepthRange,
+    Colorization, ComicStyle, ComicsDiagnostics, ComicsPlugin, Contours, DepthMap, DepthMapping,
+    Desaturation,
+    depth::VisibleDepthRange,
+    diagnostics::{ComicsStage, SkipReason, StageOutcome},
+    effects::{ColorizationMode, Equations},
 };
 
 use bevy_comics_testkit::headless::{HeadlessOptions, new_target};

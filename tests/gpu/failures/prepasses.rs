@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use bevy::{core_pipeline::prepass::NormalPrepass, pbr::ScreenSpaceAmbientOcclusion};
-use bevy_comics::{Creases, Outlines, RangeSmoothing, ToneBands};
+use bevy_comics::{Outlines, ToneBands, depth::RangeSmoothing, lines::Creases};
 
 use super::*;
 

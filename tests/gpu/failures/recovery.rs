@@ -10,7 +10,10 @@ use bevy::render::{
     renderer::RenderDevice,
     settings::WgpuSettings,
 };
-use bevy_comics::{DepthWrite, MeshSections, OutlineStyle, SelectionOutline, XRayOutline};
+use bevy_comics::{
+    OutlineStyle, SelectionOutline, XRayOutline,
+    objects::{DepthWrite, MeshSections},
+};
 use bevy_comics_testkit::{headless::Headless, validation};
 use image::RgbaImage;
 

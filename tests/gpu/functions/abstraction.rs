@@ -5,7 +5,7 @@ use bevy_comics_testkit::reference::abstraction;
 use super::*;
 
 #[test]
-fn colors_and_lines_are_their_twins() {
+fn colors_and_lines_match_the_reference() {
     let ends = (0.0f32..=1.0, 0.0f32..=1.0, 0.25f32..=4.0, depth_pair());
     let dials = (0.0f32..=1.0, 1.0f32..=8.0, 0.0f32..=1.0, any::<bool>());
     let of_object = (any::<bool>(), -1.0f32..=2.0);
@@ -84,12 +84,12 @@ fn bands_split_and_never_jump() {
             );";
         for (row, found) in rows.iter().zip(gpu().evaluate(import, body, rows)) {
             let [levels, splits, y, step] = row.map(f64::from);
-            let twin = abstraction::split_bands(levels, splits, y, step);
+            let reference = abstraction::split_bands(levels, splits, y, step);
             // A step is at least levels / 128 of a band wide; the slope of smoothstep is 1.5.
             let slope = 1.5 * 2f64.powi(-22) * 128.0 * levels * splits.exp2();
             assert!(
-                (f64::from(found[0]) - twin).abs() < slope + 1e-6,
-                "{row:?}: {found:?}, {twin}"
+                (f64::from(found[0]) - reference).abs() < slope + 1e-6,
+                "{row:?}: {found:?}, {reference}"
             );
             // The middles of a band and of its halves differ by a quarter of the band, and the part
             // of the finer ones changes by at most 1.5 times as much as the dial.

@@ -5,10 +5,10 @@ use bevy_comics_testkit::reference::art_map::{ink_at, plane_tone, plane_weights}
 
 use super::*;
 
-const MAP: &str = "#import bevy_comics::cartoon::art_map::{ink_at, plane_tone, plane_weights}";
+const MAP: &str = "#import bevy_comics::toon::art_map::{ink_at, plane_tone, plane_weights}";
 
 #[test]
-fn thresholds_and_planes_are_those_of_the_twin() {
+fn thresholds_and_planes_match_the_reference() {
     let row = (0.0f32..=1.0, 0.0f32..=1.0, vec(-1.0f32..=1.0, 3)).prop_filter_map(
         "a direction",
         |(tone, threshold, n)| {

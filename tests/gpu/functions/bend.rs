@@ -15,7 +15,7 @@ const BEND: &str = "#import bevy_comics::lines::bend::{diagonal_bend, end_sign, 
 
 /// All sixteen neighbourhoods of an end, of single cracks and of runs.
 #[test]
-fn signs_of_ends_are_those_of_the_twin() {
+fn signs_of_ends_match_the_reference() {
     let rows: Vec<[f32; 2]> = (0..16)
         .flat_map(|bits| [0, 1].map(|single| [bits as f32, single as f32]))
         .collect();
@@ -31,7 +31,7 @@ fn signs_of_ends_are_those_of_the_twin() {
 /// Every place in every run of up to 40 cracks with every pair of ends; packed and
 /// unpacked, too.
 #[test]
-fn bends_are_those_of_the_twin() {
+fn bends_match_the_reference() {
     let mut rows: Vec<[f32; 4]> = Vec::new();
     for length in 1..=40 {
         for place in 1..=length {
@@ -67,7 +67,7 @@ fn bends_are_those_of_the_twin() {
 
 /// Every place in all diagonal runs, in both directions, with the next run on either side.
 #[test]
-fn diagonal_bends_are_those_of_the_twin() {
+fn diagonal_bends_match_the_reference() {
     let mut rows: Vec<[f32; 4]> = Vec::new();
     for length in DIAGONALS {
         for place in 1..=length {

@@ -11,7 +11,7 @@ const BLOCKS: &str = "#import bevy_comics::lines::edge::Grid
 
 /// Every range of rows that begins or ends in a block or up to two rows beside it.
 #[test]
-fn rows_of_a_block_are_those_of_the_twin() {
+fn rows_of_a_block_match_the_reference() {
     for top in [0, 32, 64] {
         let rows: Vec<[f32; 3]> = (-2..34)
             .flat_map(|first| (first..34).map(move |last| [first, last]))
@@ -64,7 +64,7 @@ fn part(row: &[f32; 7]) -> ([i64; 2], [f64; 4], i64) {
     )
 }
 
-/// The part of a tile is its twin's, up to a pixel where a position is whole, and
+/// The part of a tile matches its reference's, up to a pixel where a position is whole, and
 /// contains the surroundings of each of the tile's pixels.
 #[test]
 fn a_tile_knows_every_pixel_that_may_ink_it() {

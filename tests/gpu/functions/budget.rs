@@ -16,7 +16,7 @@ const BUDGET: &str = "#import bevy_comics::lines::budget::{
 /// Random cracks in one column: the sum over columns is the test's.
 #[test]
 #[ignore = "long: thousands of random columns"]
-fn the_density_of_lines_is_that_of_the_twin() {
+fn the_density_of_lines_matches_the_reference() {
     let row = (0u32..=0x3fff, 0u32..=0x3fff, 0u32..24)
         .prop_map(|(high, low, column)| [high as f32, low as f32, column as f32]);
     for_batches(row, |rows| {

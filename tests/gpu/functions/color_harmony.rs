@@ -1,6 +1,9 @@
 //! Complementary colours and two hues.
 
-use bevy_comics::{ColorHarmony, HarmonyCurve, HarmonyMode};
+use bevy_comics::{
+    ColorHarmony,
+    effects::{HarmonyCurve, HarmonyMode},
+};
 use bevy_comics_testkit::reference::color_harmony;
 
 use super::*;
@@ -41,8 +44,8 @@ fn packed(s: &ColorHarmony, [r, g, b]: [f32; 3], (d, l): (f32, f32)) -> [f32; 15
         s.offset,
         s.amount,
         mode.expect("listed") as f32,
-        flag(s.curve == HarmonyCurve::Quadratic),
-        flag(s.form == Form::Faithful),
+        flag(s.curve == HarmonyCurve::SquareRoot),
+        flag(s.equations == Equations::Faithful),
         r,
         g,
         b,
@@ -72,8 +75,8 @@ fn settings() -> impl Strategy<Value = ColorHarmony> {
             )| {
                 ColorHarmony {
                     mode,
-                    curve: [HarmonyCurve::Linear, HarmonyCurve::Quadratic][usize::from(quadratic)],
-                    form: [Form::Corrected, Form::Faithful][usize::from(faithful)],
+                    curve: [HarmonyCurve::Linear, HarmonyCurve::SquareRoot][usize::from(quadratic)],
+                    equations: [Equations::Corrected, Equations::Faithful][usize::from(faithful)],
                     complement,
                     shade,
                     pull,
@@ -106,19 +109,19 @@ fn for_cases(cases: impl Strategy<Value = Case>, check: impl Fn(&Case, [f32; 4])
 }
 
 #[test]
-fn harmony_is_its_twin() {
+fn harmony_matches_the_reference() {
     let color = (wide_component(), wide_component(), wide_component());
     let cases = (settings(), color, depth_pair()).prop_map(|(s, (r, g, b), d)| (s, [r, g, b], d));
     for_cases(cases, |(s, c, (d, l)), result| {
-        let twin = color_harmony::harmonize(s, rgb(c), f64::from(*d), f64::from(*l));
-        let apart = codes_apart(result, twin);
+        let reference = color_harmony::harmonize(s, rgb(c), f64::from(*d), f64::from(*l));
+        let apart = codes_apart(result, reference);
         // Colours far beyond white round in all components by a fraction of the largest.
         let largest = color::largest(rgb(c).map(f64::abs)).max(1.0);
-        let rounding = (0..3).map(|i| (f64::from(result[i]) - twin[i]).abs());
+        let rounding = (0..3).map(|i| (f64::from(result[i]) - reference[i]).abs());
         let is_rounding = rounding.fold(0.0, f64::max) <= CONVERSION_ERROR * largest;
         assert!(
             apart <= 1.0 || is_rounding,
-            "{s:?}, {c:?} at {d}: {result:?} on the GPU, {twin:?} in the twin, {apart} codes apart"
+            "{s:?}, {c:?} at {d}: {result:?} on the GPU, {reference:?} in the reference, {apart} codes apart"
         );
     });
 }
@@ -132,7 +135,11 @@ fn harmony_stays_in_gamut_and_keeps_greys_bit_for_bit() {
     });
     for_cases(cases, |(s, c, d), result| {
         // The faithful form returns through a power, whose error is 2e-5.
-        let over = if s.form == Form::Faithful { 2e-5 } else { 0.0 };
+        let over = if s.equations == Equations::Faithful {
+            2e-5
+        } else {
+            0.0
+        };
         assert!(
             result[..3].iter().all(|x| (-over..=1.0 + over).contains(x)),
             "{s:?}, {c:?} at {d:?} became {result:?}"
@@ -145,7 +152,7 @@ fn harmony_stays_in_gamut_and_keeps_greys_bit_for_bit() {
             result[0] == result[1] && result[1] == result[2],
             "{s:?}: grey {c:?} became {result:?}"
         );
-        if s.form == Form::Corrected {
+        if s.equations == Equations::Corrected {
             assert_eq!(result[0], c[0], "{s:?}: grey {c:?} became {result:?}");
         }
     });
@@ -228,8 +235,8 @@ fn complements_lie_opposite_and_two_hues_are_two() {
             _ => [before.a, before.b],
         };
         // Mixing with grey also bends the hue of what was out of gamut.
-        let twin = color_harmony::harmonize(s, rgb(&[*r, *g, *b]), 1.0, 0.0);
-        if twin.iter().any(|v| !(1e-4..=1.0 - 1e-4).contains(v)) {
+        let reference = color_harmony::harmonize(s, rgb(&[*r, *g, *b]), 1.0, 0.0);
+        if reference.iter().any(|v| !(1e-4..=1.0 - 1e-4).contains(v)) {
             return;
         }
         let across = (x * after.b - y * after.a).abs() / x.hypot(y).max(1e-3);

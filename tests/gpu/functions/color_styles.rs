@@ -91,13 +91,13 @@ fn hue_and_its_color_are_inverse() {
         |rows| {
             let body = "let c = vec3(i(0u), i(1u), i(2u)); let h = hue_of(c); return vec4(hue_color(h), h);";
             for (row, result) in rows.iter().zip(gpu().evaluate(COLOR, body, rows)) {
-                let twin = color::hue_color(color::hue_of(rgb(row)));
+                let reference = color::hue_color(color::hue_of(rgb(row)));
                 for i in 0..3 {
                     // The error of the hue is that of a quotient, and the colour
                     // changes six times as fast as the hue. 1e-5 is 1/400 of a code.
                     assert!(
-                        (f64::from(result[i]) - twin[i]).abs() < 1e-5,
-                        "{row:?}: {result:?}, {twin:?}"
+                        (f64::from(result[i]) - reference[i]).abs() < 1e-5,
+                        "{row:?}: {result:?}, {reference:?}"
                     );
                 }
             }
@@ -114,16 +114,16 @@ fn desaturation_settings() -> impl Strategy<Value = Desaturation> {
         .prop_map(|(amount, exponent, faithful)| Desaturation {
             amount,
             exponent,
-            form: if faithful {
-                Form::Faithful
+            equations: if faithful {
+                Equations::Faithful
             } else {
-                Form::Corrected
+                Equations::Corrected
             },
         })
 }
 
 #[test]
-fn desaturation_is_its_twin_and_keeps_greys() {
+fn desaturation_matches_the_reference_and_keeps_greys() {
     let row = (
         desaturation_settings(),
         wide_component(),
@@ -134,7 +134,7 @@ fn desaturation_is_its_twin_and_keeps_greys() {
     )
         .prop_map(|(s, r, g, b, (_, l), grey)| {
             let (g, b) = if grey { (r, r) } else { (g, b) };
-            let faithful = f32::from(u8::from(s.form == Form::Faithful));
+            let faithful = f32::from(u8::from(s.equations == Equations::Faithful));
             [s.amount, s.exponent, faithful, r, g, b, l]
         });
     for_batches(row, |rows| {
@@ -150,15 +150,15 @@ fn desaturation_is_its_twin_and_keeps_greys() {
             let s = Desaturation {
                 amount: row[0],
                 exponent: row[1],
-                form: if row[2] == 1.0 {
-                    Form::Faithful
+                equations: if row[2] == 1.0 {
+                    Equations::Faithful
                 } else {
-                    Form::Corrected
+                    Equations::Corrected
                 },
             };
             let k = desaturation::saturation_left(&s, f64::from(row[6]));
             assert_same_color(row, result, desaturation::desaturate(&s, rgb(&row[3..]), k));
-            if s.form == Form::Faithful && row[3] == row[4] && row[4] == row[5] {
+            if s.equations == Equations::Faithful && row[3] == row[4] && row[4] == row[5] {
                 assert!(
                     result[0] == result[1] && result[1] == result[2],
                     "{row:?}: grey became {result:?}"
@@ -170,7 +170,7 @@ fn desaturation_is_its_twin_and_keeps_greys() {
 
 fn modes() -> impl Strategy<Value = ColorizationMode> {
     select(vec![
-        ColorizationMode::Hue,
+        ColorizationMode::KeepHue,
         ColorizationMode::Atmosphere,
         ColorizationMode::Linear,
         ColorizationMode::Quadratic,
@@ -178,7 +178,7 @@ fn modes() -> impl Strategy<Value = ColorizationMode> {
 }
 
 #[test]
-fn colorization_is_its_twin_and_faithful_greys_stay_grey() {
+fn colorization_matches_the_reference_and_faithful_greys_stay_grey() {
     let row = (
         modes(),
         any::<bool>(),
@@ -208,20 +208,20 @@ fn colorization_is_its_twin_and_faithful_greys_stay_grey() {
             },
         );
     for_batches(row, |rows| {
-        // `packed` holds what the shader takes; the twin derives it from the colour.
+        // `packed` holds what the shader takes; the reference derives it from the colour.
         let settings: Vec<Colorization> = rows
             .iter()
             .map(|row| Colorization {
                 mode: [
-                    ColorizationMode::Hue,
+                    ColorizationMode::KeepHue,
                     ColorizationMode::Atmosphere,
                     ColorizationMode::Linear,
                     ColorizationMode::Quadratic,
                 ][row[0] as usize],
-                form: if row[1] == 1.0 {
-                    Form::Faithful
+                equations: if row[1] == 1.0 {
+                    Equations::Faithful
                 } else {
-                    Form::Corrected
+                    Equations::Corrected
                 },
                 color: Color::hsv(row[2], row[3], row[4]),
                 amount: row[5],
@@ -262,7 +262,7 @@ fn colorization_is_its_twin_and_faithful_greys_stay_grey() {
                 result,
                 colorization::colorize(s, rgb(&row[6..]), d, l, 0.75),
             );
-            if s.form == Form::Faithful && row[6] == row[7] && row[7] == row[8] {
+            if s.equations == Equations::Faithful && row[6] == row[7] && row[7] == row[8] {
                 assert!(
                     result[0] == result[1] && result[1] == result[2],
                     "{row:?}: grey became {result:?}"
@@ -273,7 +273,7 @@ fn colorization_is_its_twin_and_faithful_greys_stay_grey() {
 }
 
 #[test]
-fn dark_areas_are_their_twin() {
+fn dark_areas_match_the_reference() {
     let row = (
         component(),
         component(),

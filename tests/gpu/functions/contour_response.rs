@@ -1,4 +1,4 @@
-//! The contour operators against their twins.
+//! The contour operators against their references.
 
 use super::*;
 
@@ -11,7 +11,7 @@ const OPERATORS: [ContourOperator; 4] = [
 ];
 
 #[test]
-fn every_operator_answers_as_its_twin() {
+fn every_operator_answers_as_its_reference() {
     let depth = || prop_oneof![5 => 0.0f32..=1.0, 1 => select(vec![-1.0f32, 0.0, 1.0, 0.5])];
     let row = (
         (0.01f32..0.9, 0.001f32..0.99),
@@ -67,10 +67,10 @@ fn every_operator_answers_as_its_twin() {
         for (row, result) in rows.iter().zip(results) {
             let s = Contours {
                 operator: OPERATORS[row[2] as usize],
-                form: if row[3] == 1.0 {
-                    Form::Faithful
+                equations: if row[3] == 1.0 {
+                    Equations::Faithful
                 } else {
-                    Form::Corrected
+                    Equations::Corrected
                 },
                 ..Contours::default()
             };
@@ -108,7 +108,7 @@ fn every_operator_answers_as_its_twin() {
 #[test]
 fn no_plane_has_a_contour_at_any_angle() {
     // Raw depth of planes, affine in the pixel, from face-on to grazing, in a range of
-    // 1 : 1000. The response of the corrected form is rounding alone.
+    // 1 : 1000. The response of the corrected equations is rounding alone.
     let rows: Vec<[f32; 10]> = (0..2000)
         .map(|k| {
             let (sx, sy) = (
@@ -139,7 +139,7 @@ fn no_plane_has_a_contour_at_any_angle() {
 
 /// Taps at uneven distances: what a smaller depth texture gives.
 #[test]
-fn uneven_taps_answer_as_their_twin_and_find_no_contour_in_a_plane() {
+fn uneven_taps_answer_as_the_reference_and_find_no_contour_in_a_plane() {
     let row = (
         (0.2f32..0.8, -0.02f32..0.02, -0.02f32..0.02),
         (0u8..4, 0u8..4, 0u8..4, 0u8..4),

@@ -2,7 +2,7 @@
 
 use bevy_comics_testkit::{drawing::Target, wgsl::Definition};
 
-use super::{bound::texture, cartoon::Numbers, *};
+use super::{bound::texture, toon::Numbers, *};
 use crate::shaders::shader;
 
 /// The format of the engine's prepass.

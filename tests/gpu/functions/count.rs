@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use bevy_comics_testkit::{reference::count::counts, wgsl};
 
-use super::{cartoon::Numbers, *};
+use super::{toon::Numbers, *};
 
 /// Pixels that a workgroup counts: 8 invocations in x and in y, of which each counts a row of 16
 /// pixels, and every fourth pixel of every fourth row.
@@ -89,7 +89,7 @@ impl Picture {
         [0, 4].map(|k| u32::from_le_bytes([bytes[k], bytes[k + 1], bytes[k + 2], bytes[k + 3]]))
     }
 
-    fn twin(&self, viewport: [u32; 4]) -> [u32; 2] {
+    fn reference(&self, viewport: [u32; 4]) -> [u32; 2] {
         let at = |x: u32, y: u32| (y * self.size[0] + x) as usize;
         counts(
             self.size,
@@ -102,7 +102,7 @@ impl Picture {
 
 /// Whole pictures and parts of them, up to several workgroups in both directions.
 #[test]
-fn counted_ids_are_their_twin() {
+fn counted_ids_match_the_reference() {
     let mut n = Numbers::new(91);
     let cases = [
         ([1, 1], [0, 0, 1, 1]),
@@ -124,7 +124,7 @@ fn counted_ids_are_their_twin() {
     for (size, viewport) in cases {
         let picture = Picture::new(size, &mut n);
         let found = picture.counted(viewport);
-        assert_eq!(found, picture.twin(viewport), "{size:?}, {viewport:?}");
+        assert_eq!(found, picture.reference(viewport), "{size:?}, {viewport:?}");
         all = [0, 1].map(|k| all[k] + found[k]);
     }
     assert!(all[1] > 1000 && all[0] > all[1] + 1000, "{all:?}");

@@ -8,7 +8,7 @@ use super::*;
 
 /// Pixels around the middle of a pixel-sized part of a line of any direction, and half widths.
 #[test]
-fn coverage_is_its_twin() {
+fn coverage_matches_the_reference() {
     let place = || (-20.0f32..20.0, -20.0f32..20.0);
     let row = (place(), place(), 0.05f32..16.0, 0.1f32..1.4)
         .prop_filter("a direction", |(_, (x, y), ..)| x.hypot(*y) > 0.01)

@@ -1,4 +1,4 @@
-//! The depth map and its differences against their twins.
+//! The depth map and its differences against their references.
 
 use super::*;
 

@@ -6,7 +6,7 @@ use super::*;
 
 /// In an infinite perspective whose near plane is at 0.1, and in an orthographic view of 200 units.
 #[test]
-fn the_places_of_objects_are_their_twin() {
+fn the_places_of_objects_match_the_reference() {
     let row = (
         any::<bool>(),
         -20.0f32..150.0,
@@ -60,15 +60,15 @@ fn the_places_of_objects_are_their_twin() {
                     0.1 / z
                 }
             };
-            let twin = depths::object_place(&frame, raw, distance, reach);
+            let reference = depths::object_place(&frame, raw, distance, reach);
             // Raw depth has an error of an ulp of 1, which the shortest range, a unit of 200 or
             // the reciprocal of 10, makes 200 times as large; an extent has two, and
             // smoothstep's slope is 10.
             let error = 2f64.powi(-23) * 200.0;
             assert!(
-                (f64::from(found[0]) - twin[0]).abs() < 2.0 * error
-                    && (f64::from(found[1]) - twin[1]).abs() < 40.0 * error,
-                "{row:?}: {found:?}, {twin:?}"
+                (f64::from(found[0]) - reference[0]).abs() < 2.0 * error
+                    && (f64::from(found[1]) - reference[1]).abs() < 40.0 * error,
+                "{row:?}: {found:?}, {reference:?}"
             );
             let [place, near_it, far_from_it] = [found[0], found[2], found[3]];
             let ignored = (0.15 * place).min(0.03);

@@ -1,6 +1,9 @@
 //! The cracks that a fragment finds, which is run as a function.
 
-use bevy_comics::{Creases, LineResponse, ObjectEdges, Outlines, Silhouettes};
+use bevy_comics::{
+    Outlines,
+    lines::{Creases, LineResponse, ObjectEdges, Silhouettes},
+};
 use bevy_comics_testkit::{
     read_back::{FloatImage, IdImage},
     reference::{crack::crack, view::View},
@@ -9,8 +12,8 @@ use bevy_comics_testkit::{
 
 use super::{
     bound::{floats, pairs, texture},
-    cartoon::Numbers,
     rows::{GRIDS, Picture},
+    toon::Numbers,
     *,
 };
 use crate::{cracks::is_rounded, shaders::shader};
@@ -25,7 +28,7 @@ fn outlines() -> Outlines {
         creases: Some(Creases::default()),
         objects: Some(ObjectEdges::default()),
         width: 1.5,
-        continuity: 0.0,
+        hysteresis: 0.0,
         response: LineResponse::Ink,
         ..Outlines::default()
     }
@@ -81,7 +84,7 @@ fn rows() -> Vec<[f32; 6]> {
     rows
 }
 
-/// What the twin reads of a picture.
+/// What the reference reads of a picture.
 struct Read {
     bits: Vec<u32>,
     normals: FloatImage,
@@ -134,7 +137,11 @@ impl Read {
 
 /// Compares the cracks of all pixels. Returns how many run along silhouettes, creases and borders of
 /// objects.
-fn assert_is_twin(picture: &Picture, outlines: &Outlines, names: &[&str]) -> [u32; 3] {
+fn assert_matches_the_reference(
+    picture: &Picture,
+    outlines: &Outlines,
+    names: &[&str],
+) -> [u32; 3] {
     let definitions: Vec<Definition> = names.iter().map(|name| (*name, None)).collect();
     let surfaces = names.contains(&"NORMALS");
     let depths = floats(Picture::SIZE, &picture.depths);
@@ -173,7 +180,7 @@ fn assert_is_twin(picture: &Picture, outlines: &Outlines, names: &[&str]) -> [u3
 
 /// Also at the borders of grids, and in grids that are smaller than what a crack depends on.
 #[test]
-fn cracks_of_fragments_are_their_twin() {
+fn cracks_of_fragments_match_the_reference() {
     let mut n = Numbers::new(81);
     let all = outlines();
     let silhouettes = Outlines {
@@ -193,10 +200,10 @@ fn cracks_of_fragments_are_their_twin() {
             "OBJECT_EDGES",
             "SECTIONS",
         ];
-        let kinds = assert_is_twin(&picture, &all, &names);
+        let kinds = assert_matches_the_reference(&picture, &all, &names);
         assert!(kinds.iter().all(|count| *count > 50), "{kinds:?}");
         let names = ["DEPTH", "EXCESS", "SILHOUETTES"];
-        let [count, ..] = assert_is_twin(&picture, &silhouettes, &names);
+        let [count, ..] = assert_matches_the_reference(&picture, &silhouettes, &names);
         assert!(count > 50, "{count}");
     }
 }

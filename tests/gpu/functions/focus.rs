@@ -1,6 +1,6 @@
 //! Focus: distances, radii, and what may be taken from where.
 
-use bevy_comics::{Effect, Focus, FocusAt, ViewFacts};
+use bevy_comics::{Effect, Focus, effect::EffectContext, effects::FocusAt};
 use bevy_comics_testkit::reference::{
     focus::{SKY, defocus, taken},
     smoothstep,
@@ -26,8 +26,8 @@ fn focus() -> Focus {
 }
 
 /// Perspective, and orthographic: raw depth 1 is 2 units away and 0 is 52.
-fn views() -> [ViewFacts; 2] {
-    let perspective = ViewFacts::default();
+fn views() -> [EffectContext; 2] {
+    let perspective = EffectContext::default();
     let mut orthographic = perspective;
     orthographic.depth_axis = bevy::math::Vec2::new(52.0, -50.0);
     orthographic.depth_reference = Some(12.0);
@@ -35,7 +35,7 @@ fn views() -> [ViewFacts; 2] {
 }
 
 #[test]
-fn radii_are_those_of_the_twin() {
+fn radii_match_the_reference() {
     let distance = || prop_oneof![3 => 0.1f32..100.0, 1 => select(vec![9.9, 10.0, 10.1, 1e30])];
     for view in views() {
         let s = expression("Focus", &FIELDS, &focus(), &view);
@@ -79,10 +79,10 @@ fn nearness_is_that_of_the_projection() {
     }
 }
 
-/// The twin compares distances; the shader has nothing but the radii, and on which side of the focus
+/// The reference compares distances; the shader has nothing but the radii, and on which side of the focus
 /// they are. Truth, too: nothing is taken from what is nearer and sharp.
 #[test]
-fn what_is_taken_is_that_of_the_twin() {
+fn what_is_taken_matches_the_reference() {
     let [view, _] = views();
     let s = expression("Focus", &FIELDS, &focus(), &view);
     let body = format!(
@@ -120,7 +120,7 @@ fn a_target_is_in_focus() {
         distance: 7.0,
         ..Focus::default()
     };
-    let text = |view: &ViewFacts, at| {
+    let text = |view: &EffectContext, at| {
         let fields = &FIELDS;
         expression("Focus", fields, &Focus { at, ..s }, view)
     };
@@ -139,7 +139,7 @@ fn a_target_is_in_focus() {
 
 /// What is left of a line is what the radius of a blur leaves.
 #[test]
-fn lines_are_as_sharp_as_by_the_twin() {
+fn lines_are_as_sharp_as_by_the_reference() {
     const LINES: &str = "#import bevy_comics::lines::focus::{LineFocus, line_sharpness}";
     for (view, of) in [
         (views()[0], (|d| 0.1 / d) as fn(f64) -> f64),

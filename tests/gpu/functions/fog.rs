@@ -7,7 +7,7 @@ use super::*;
 
 const FOG: &str = "#import bevy_comics::lines::fog::{Fog, fog_distance, fog_fraction}";
 
-/// Every falloff at distances from 0 to infinity: that of the twin, which is the engine's
+/// Every falloff at distances from 0 to infinity: that of the reference, which is the engine's
 /// formula; no fog at 0, and never more than the opacity of the fog's colour.
 #[test]
 fn fog_grows_with_distance() {

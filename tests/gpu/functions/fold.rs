@@ -49,7 +49,7 @@ fn planes_meet_where_they_meet() {
             let (across, beside) = depths(row);
             let across = across.map(f64::from);
             let beside = beside.map(|b| b.map(f64::from));
-            let twin = fold_bend(across, beside, 0.1, run(row).map(f64::from));
+            let reference = fold_bend(across, beside, 0.1, run(row).map(f64::from));
             let [offset, slope] = [0, 1].map(|i| f64::from(row[i]));
             // Depths near 1/2 are stored in steps of 6e-8, eight of them in each result.
             let rounding = 8.0 * 6e-8 / f64::from(row[2]);
@@ -57,8 +57,8 @@ fn planes_meet_where_they_meet() {
                 (0..2).all(|i| (got[i] - want[i]).abs() <= by)
             };
             let got = [found[0], found[1]].map(f64::from);
-            let twin = twin.expect("they bend");
-            assert!(is(got, twin, 1e-3), "{row:?}: {got:?}, {twin:?}");
+            let reference = reference.expect("they bend");
+            assert!(is(got, reference, 1e-3), "{row:?}: {got:?}, {reference:?}");
             let truth = [offset.clamp(-0.49, 0.49), slope];
             assert!(
                 is(got, truth, 0.011 + rounding),
@@ -86,13 +86,13 @@ fn planes_that_do_not_meet_say_nothing() {
     );
     for (found, row) in results.iter().zip([flat, far, steep, unlike, sky, jump]) {
         let d = row.map(f64::from);
-        let twin = fold_bend(
+        let reference = fold_bend(
             [d[0], d[1], d[2], d[3]],
             [[d[4], d[5]], [d[6], d[7]]],
             0.1,
             [0.3, 0.1],
         );
-        assert_eq!(twin, None, "{row:?}");
+        assert_eq!(reference, None, "{row:?}");
         assert_eq!([found[0], found[1]], [0.3, 0.1], "{row:?}");
     }
 }

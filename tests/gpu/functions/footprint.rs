@@ -41,7 +41,7 @@ pub fn rounding(long: f64, short: f64) -> [f64; 2] {
 }
 
 #[test]
-fn axes_of_pixels_are_those_of_the_twin() {
+fn axes_of_pixels_match_the_reference() {
     for_batches(change(), |rows| {
         let results = gpu().evaluate(
             FOOTPRINT,

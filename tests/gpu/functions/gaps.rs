@@ -18,7 +18,7 @@ fn column(bits: u32) -> HashSet<Place> {
     rows.map(|row| ([0, row], 0)).collect()
 }
 
-/// Random columns: those of the twin, and by counting, every gap that is short enough is
+/// Random columns: those of the reference, and by counting, every gap that is short enough is
 /// closed and no other one.
 #[test]
 fn gaps_are_closed_up_to_their_length() {

@@ -1,7 +1,7 @@
 //! Screens and plates.
 
 use bevy::color::Color;
-use bevy_comics::{Halftone, HalftoneMode};
+use bevy_comics::{Halftone, effects::HalftoneMode};
 use bevy_comics_testkit::{
     reference::{
         blue_noise::blue_noise,
@@ -23,7 +23,7 @@ const HALFTONE: &str = "#import bevy_comics::effects::halftone::{
 /// The slope of a coverage is up to one per pixel, and places are exact to an eighth of a
 /// thousandth there.
 #[test]
-fn coverages_of_all_shapes_are_those_of_the_twin() {
+fn coverages_of_all_shapes_match_the_reference() {
     let tone = prop_oneof![
         4 => 0.0f32..=1.0,
         1 => select(vec![0.0, 1.0, 0.5, 0.01, 0.995, 0.785, 0.786, 1.0 / 32.0, 31.0 / 32.0]),
@@ -49,7 +49,7 @@ fn coverages_of_all_shapes_are_those_of_the_twin() {
                      let turn = i(4u) * 0.017453292519943295;
                      s.cosines = vec4(cos(turn)) / i(3u);
                      s.sines = vec4(sin(turn)) / i(3u);
-                     s.period = i(3u);
+                     s.cell_size = i(3u);
                      s.grain = max(i(3u) / 3.0, 1.0);
                      s.shape = {number}u;
                      s.spread = i(6u);
@@ -84,7 +84,7 @@ fn coverages_of_all_shapes_are_those_of_the_twin() {
 }
 
 #[test]
-fn tones_of_all_modes_are_those_of_the_twin() {
+fn tones_of_all_modes_match_the_reference() {
     let row = || {
         (
             (wide_component(), wide_component(), wide_component()),
@@ -109,7 +109,7 @@ fn tones_of_all_modes_are_those_of_the_twin() {
             cyan: Color::srgb(0.9, 0.3, 0.2),
             ..Halftone::default()
         };
-        let ink = bevy_comics::linear_rgb(s.cyan);
+        let ink = bevy_comics::effect::linear_rgb(s.cyan);
         let pivot = 1.0 - (0.2126 * ink.x + 0.7152 * ink.y + 0.0722 * ink.z);
         for_batches(row(), |rows| {
             let results = gpu().evaluate(
@@ -162,7 +162,7 @@ fn tones_of_all_modes_are_those_of_the_twin() {
 }
 
 #[test]
-fn inks_and_amounts_are_those_of_the_twin() {
+fn inks_and_amounts_match_the_reference() {
     let row = (
         [component(), component(), component(), component()],
         component(),
@@ -172,7 +172,7 @@ fn inks_and_amounts_are_those_of_the_twin() {
         .prop_map(|([c, m, y, k], near, depth, below)| [c, m, y, k, near, depth, below]);
     let s = Halftone::default();
     let vector = |ink: Color| {
-        let c = bevy_comics::linear_rgb(ink);
+        let c = bevy_comics::effect::linear_rgb(ink);
         format!("vec3({:?}, {:?}, {:?})", c.x, c.y, c.z)
     };
     let [cyan, magenta, yellow, black, paper] =
@@ -185,7 +185,7 @@ fn inks_and_amounts_are_those_of_the_twin() {
                  s.cyan = vec4(1.0 - {cyan}, 0.0); s.magenta = vec4(1.0 - {magenta}, 0.0);
                  s.yellow = vec4(1.0 - {yellow}, 0.0); s.black = vec4(1.0 - {black}, 0.0);
                  s.paper = {paper};
-                 s.near = i(4u); s.far = 0.25; s.below = i(6u);
+                 s.at_near = i(4u); s.at_far = 0.25; s.shadows_only_below = i(6u);
                  let k = vec4(i(0u), i(1u), i(2u), i(3u));
                  return vec4(inked(s, k), screen_amount(s, k.xyz, i(5u)));"
             ),
@@ -193,9 +193,9 @@ fn inks_and_amounts_are_those_of_the_twin() {
         );
         for (row, found) in rows.iter().zip(results) {
             let s = Halftone {
-                near: row[4],
-                far: 0.25,
-                below: row[6],
+                at_near: row[4],
+                at_far: 0.25,
+                shadows_only_below: row[6],
                 ..s
             };
             let k = [0, 1, 2, 3].map(|i| f64::from(row[i]));
@@ -213,7 +213,7 @@ fn inks_and_amounts_are_those_of_the_twin() {
 }
 
 #[test]
-fn small_functions_are_those_of_the_twin() {
+fn small_functions_match_the_reference() {
     let row = (-300.0f32..300.0, component(), 0.0f32..0.3, 0u32..13)
         .prop_map(|(turn, tone, gain, tints)| [turn, tone, gain, tints as f32]);
     for_batches(row, |rows| {
@@ -244,7 +244,7 @@ fn small_functions_are_those_of_the_twin() {
 
 /// With ideal inks, the plates have the colour: what black takes is given back.
 #[test]
-fn separation_is_that_of_the_twin_and_exact() {
+fn separation_matches_the_reference_and_exact() {
     let row = ([component(), component(), component()], component())
         .prop_map(|([r, g, b], black)| [r, g, b, black]);
     for_batches(row, |rows| {

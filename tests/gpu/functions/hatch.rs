@@ -1,4 +1,4 @@
-//! Strokes of the cartoon material: tones of light, surfaces at rest, drawings.
+//! Strokes of the toon material: tones of light, surfaces at rest, drawings.
 
 use bevy::math::DVec3;
 use bevy_comics::Hatching;
@@ -6,10 +6,10 @@ use bevy_comics_testkit::reference::hatch::{hatch_tone, rest_normal};
 
 use super::*;
 
-const HATCH: &str = "#import bevy_comics::cartoon::hatch::{Hatch, hatch_drawing, hatch_tone, light_share, rest_surface}";
+const HATCH: &str = "#import bevy_comics::toon::hatch::{Hatch, hatch_drawing, hatch_tone, light_share, rest_surface}";
 
 #[test]
-fn tones_of_light_are_those_of_the_twin() {
+fn tones_of_light_match_the_reference() {
     let row = (
         0.0f32..=1.2,
         prop_oneof![9 => 0.1f32..=1.0, 1 => select(vec![0.0])],
@@ -35,7 +35,7 @@ fn tones_of_light_are_those_of_the_twin() {
                 shadows: row[2],
                 highlights: row[3],
                 gamma: row[4],
-                near: row[5],
+                at_near: row[5],
                 ..Hatching::default()
             };
             let [arriving, all] = [0, 1].map(|k| f64::from(row[k]));
@@ -48,7 +48,7 @@ fn tones_of_light_are_those_of_the_twin() {
 }
 
 #[test]
-fn surfaces_at_rest_have_the_normal_of_the_twin() {
+fn surfaces_at_rest_have_the_normal_of_the_reference() {
     let row = (vec(-1.0f32..=1.0, 9), 0u8..3, -12i32..12).prop_filter_map(
         "two directions",
         |(values, kind, exponent)| {

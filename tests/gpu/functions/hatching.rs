@@ -1,7 +1,7 @@
 //! Hatching: surfaces, families of planes, layers, tones.
 
 use bevy::math::{DMat4, DVec2, DVec3, Vec3};
-use bevy_comics::{Hatching, HatchingGround};
+use bevy_comics::{Hatching, effects::HatchingGround};
 use bevy_comics_testkit::reference::hatching::{Hatch, Surface, strokes_left};
 
 use super::*;
@@ -86,7 +86,7 @@ fn settings(row: &[f32; 12]) -> Hatching {
     }
 }
 
-/// Whether a coverage is that of the twin, there or a little beside it: where rounding decides which mark is
+/// Whether a coverage is that of the reference, there or a little beside it: where rounding decides which mark is
 /// meant, both are right.
 pub fn is_near(hatch: &Hatch, on: &Surface, tone: f64, found: f64) -> bool {
     let near = [-0.02, 0.0, 0.02].map(|by| {
@@ -102,9 +102,9 @@ pub fn is_near(hatch: &Hatch, on: &Surface, tone: f64, found: f64) -> bool {
 }
 
 /// Every tone, angle and level. Where rounding decides which line or which axis is meant, the
-/// twin a little beside it is as good.
+/// reference a little beside it is as good.
 #[test]
-fn strokes_are_those_of_the_twin() {
+fn strokes_match_the_reference() {
     let fraction = || 0.0f32..=1.0;
     let row = (
         (-1.0f32..=1.0, -1.0f32..=1.0),
@@ -180,7 +180,7 @@ fn strokes_are_those_of_the_twin() {
 }
 
 #[test]
-fn tones_and_grounds_are_those_of_the_twin() {
+fn tones_and_grounds_match_the_reference() {
     let row = (
         0.0f32..=1.0,
         0.0f32..=0.9,
@@ -231,7 +231,7 @@ fn tones_and_grounds_are_those_of_the_twin() {
 }
 
 #[test]
-fn strokes_are_left_as_by_the_twin() {
+fn strokes_are_left_as_by_the_reference() {
     let row = (0.0f32..=1.0, vec(0.0f32..=0.7, 4))
         .prop_map(|(calm, gaps)| [calm, gaps[0], gaps[1], gaps[2], gaps[3]]);
     for_batches(row, |rows| {

@@ -7,7 +7,7 @@ use bevy_comics_testkit::{
 
 use super::{
     bound::{floats, pairs, texture},
-    cartoon::Numbers,
+    toon::Numbers,
     *,
 };
 
@@ -85,7 +85,7 @@ fn rows(n: &mut Numbers, jump: [f32; 3], picture: impl Fn([u32; 2]) -> f64) -> V
 }
 
 /// Compares all rows. `texels`: of the depth of the picture.
-fn assert_is_twin(
+fn assert_matches_the_reference(
     n: &mut Numbers,
     definitions: &[Definition],
     picture: &wgpu::TextureView,
@@ -139,20 +139,20 @@ fn texels(n: &mut Numbers) -> Vec<f32> {
 }
 
 #[test]
-fn hidden_pixels_are_their_twin() {
+fn hidden_pixels_match_the_reference() {
     let mut n = Numbers::new(41);
     for definitions in [
         &[("OBJECT_IDS", None)][..],
         &[("OBJECT_IDS", None), ("OBLIQUE", None)],
     ] {
         let texels = texels(&mut n);
-        assert_is_twin(&mut n, definitions, &floats(SIZE, &texels), &texels);
+        assert_matches_the_reference(&mut n, definitions, &floats(SIZE, &texels), &texels);
     }
 }
 
 /// Of a multisampled picture, the first sample counts.
 #[test]
-fn hidden_pixels_of_a_multisampled_picture_are_their_twin() {
+fn hidden_pixels_of_a_multisampled_picture_match_the_reference() {
     let mut n = Numbers::new(42);
     let samples: Vec<Vec<f32>> = (0..4).map(|_| texels(&mut n)).collect();
     let layers: Vec<Vec<[f32; 4]>> = (samples.iter())
@@ -160,5 +160,5 @@ fn hidden_pixels_of_a_multisampled_picture_are_their_twin() {
         .collect();
     let picture = gpu().multisampled(wgpu::TextureFormat::R32Float, SIZE, &layers);
     let definitions = [("OBJECT_IDS", None), ("MULTISAMPLED_PICTURE", None)];
-    assert_is_twin(&mut n, &definitions, &picture, &samples[0]);
+    assert_matches_the_reference(&mut n, &definitions, &picture, &samples[0]);
 }

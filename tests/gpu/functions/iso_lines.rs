@@ -1,7 +1,7 @@
 //! Lines of equal values.
 
 use bevy::math::{DMat4, Mat4, Vec3};
-use bevy_comics::{IsoField, IsoLines};
+use bevy_comics::{IsoLines, effects::IsoField};
 use bevy_comics_testkit::reference::iso_lines::{iso_coverage, iso_error, iso_place, iso_value};
 
 use super::*;
@@ -13,7 +13,7 @@ const ISO: &str = "#import bevy_comics::effects::iso_lines::{
 
 /// Away from the middle between two lines, where rounding decides which one is nearest.
 #[test]
-fn the_coverage_of_lines_is_that_of_the_twin() {
+fn the_coverage_of_lines_matches_the_reference() {
     let row = (
         -30.0f32..=30.0,
         -0.4f32..=0.4,
@@ -64,7 +64,7 @@ fn values_are_those_of_the_world() {
     for field in [IsoField::Depth, IsoField::Height, IsoField::Distance] {
         let s = IsoLines {
             field,
-            centre: Vec3::new(1.0, -2.0, 0.5),
+            center: Vec3::new(1.0, -2.0, 0.5),
             ..IsoLines::default()
         };
         let number = field as u32;
@@ -74,7 +74,7 @@ fn values_are_those_of_the_world() {
                 &format!(
                     "var s: IsoLines;
                      s.field = {number}u;
-                     s.centre = vec3(1.0, -2.0, 0.5);
+                     s.center = vec3(1.0, -2.0, 0.5);
                      s.world_from_clip = mat4x4<f32>({columns});
                      let p = iso_place(s, vec2(i(0u), i(1u)), i(2u));
                      return vec4(iso_value(s, p, 0.25), 1e6 * iso_error(s, p), 0.0, 0.0);"

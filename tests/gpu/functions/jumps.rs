@@ -46,7 +46,7 @@ fn row() -> impl Strategy<Value = [f32; 14]> {
 }
 
 /// A contour is drawn only where the bound is reached, whatever the operator and the
-/// projection, and the bound is its twin.
+/// projection, and the bound matches its reference.
 #[test]
 fn the_search_leaves_out_no_contour() {
     for_batches(row(), |rows| {

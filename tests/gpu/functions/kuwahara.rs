@@ -1,9 +1,8 @@
 //! Paint against Kuwahara's filter, written out.
 
 use bevy_comics_testkit::reference::{
-    color,
-    means::{Sheet, means, root, square},
-    noise,
+    box_statistics::{Sheet, means, root, square},
+    color, noise,
     paint::{box_areas, chosen},
 };
 

@@ -4,7 +4,7 @@ use bevy_comics_testkit::reference::listed::{first_pixel, invocations};
 
 use super::{
     bound::{buffer, words},
-    cartoon::Numbers,
+    toon::Numbers,
     *,
 };
 

@@ -12,7 +12,7 @@ use bevy_comics_testkit::reference::{
 use super::*;
 
 #[test]
-fn the_memory_of_lines_is_that_of_the_twin() {
+fn the_memory_of_lines_matches_the_reference() {
     let ink = || 0.0f32..=1.0;
     let row = (
         (ink(), ink(), ink(), ink()),
@@ -52,7 +52,7 @@ fn the_memory_of_lines_is_that_of_the_twin() {
 }
 
 #[test]
-fn missing_lines_are_counted_like_the_twin() {
+fn missing_lines_are_counted_like_the_reference() {
     let row = (1u32..=128, 0u32..=17, any::<bool>(), 0.0f32..=0.1).prop_map(
         |(frames, missing, is_missing, speed)| {
             [frames as f32, missing as f32, f32::from(is_missing), speed]
@@ -79,7 +79,7 @@ fn missing_lines_are_counted_like_the_twin() {
 }
 
 #[test]
-fn unsteady_surfaces_are_those_of_the_twin() {
+fn unsteady_surfaces_match_the_reference() {
     let row = (1u32..=128, 0u32..=48, any::<bool>(), 0.0f32..=0.1).prop_map(
         |(frames, before, has_changed, speed)| {
             [frames as f32, before as f32, f32::from(has_changed), speed]
@@ -106,7 +106,7 @@ fn unsteady_surfaces_are_those_of_the_twin() {
 }
 
 #[test]
-fn cubic_weights_are_those_of_the_twin() {
+fn cubic_weights_match_the_reference() {
     for_batches((0.0f32..=1.0).prop_map(|f| [f]), |rows| {
         let results = gpu().evaluate(
             "#import bevy_comics::lines::memory::cubic_weights",
@@ -126,7 +126,7 @@ fn cubic_weights_are_those_of_the_twin() {
 }
 
 #[test]
-fn surface_ink_is_that_of_the_twin() {
+fn surface_ink_matches_the_reference() {
     let part = || 0.0f32..=1.0;
     let row = (part(), part(), part(), part(), 0.0f32..=2.0)
         .prop_map(|(r, g, b, darken, saturate)| [r, g, b, darken, saturate]);

@@ -1,31 +1,29 @@
-//! Compares the crate's WGSL functions with their twins, on random inputs and on
+//! Compares the crate's WGSL functions with their references, on random inputs and on
 //! edge cases.
 
 mod abstraction;
+mod ambient;
 mod art_map;
 mod bend;
 mod blocks;
 mod bound;
 mod budget;
-mod cartoon;
-mod cartoon_styles;
 mod color_harmony;
 mod color_styles;
+mod composite;
 mod contour_response;
 mod copy_normals;
 mod count;
 mod coverage;
+mod depth_layers;
 mod depth_map;
 mod depths;
 mod find;
-mod finish;
 mod focus;
 mod fog;
 mod fold;
 mod footprint;
-mod form;
 mod gaps;
-mod glint;
 pub mod halftone;
 mod hatch;
 mod hatching;
@@ -33,10 +31,10 @@ mod hidden;
 mod iso_lines;
 mod jumps;
 mod kuwahara;
+mod layer_lines;
 mod listed;
 mod memory;
 mod middles;
-mod near_middle_far;
 mod nested;
 mod normal;
 mod octahedral;
@@ -44,9 +42,9 @@ mod overshoot;
 mod owner_plane;
 mod paint;
 mod paper;
-mod plane_lines;
 mod planes;
 mod pressure;
+mod proxy;
 mod ramp;
 mod ramp_map;
 mod rect;
@@ -60,9 +58,11 @@ mod similarity;
 mod speed_lines;
 mod stipple;
 mod stroke_level;
-mod surroundings;
+mod stylized_highlight;
 mod tolerance;
 mod tone_ramp;
+mod toon;
+mod toon_styles;
 mod two_tone;
 mod visible;
 mod walk;
@@ -71,7 +71,8 @@ mod widths;
 
 use bevy::color::{Color, Hsva};
 use bevy_comics::{
-    BlackFlats, Colorization, ColorizationMode, ContourOperator, Contours, Desaturation, Form,
+    BlackFlats, Colorization, Contours, Desaturation,
+    effects::{ColorizationMode, ContourOperator, Equations},
 };
 use proptest::{
     collection::vec,
@@ -139,30 +140,30 @@ fn rgb(row: &[f32]) -> Rgb {
 }
 
 /// Largest difference of two linear colours in display codes; above 1 it is relative
-/// to the largest component of the twin's: components are mixed, and so are their rounding
+/// to the largest component of the reference's: components are mixed, and so are their rounding
 /// errors.
-fn codes_apart(gpu: [f32; 4], twin: Rgb) -> f64 {
+fn codes_apart(gpu: [f32; 4], reference: Rgb) -> f64 {
     let gpu = color::srgb_encode([gpu[0], gpu[1], gpu[2]].map(f64::from));
-    let twin = color::srgb_encode(twin);
-    let largest = twin
+    let reference = color::srgb_encode(reference);
+    let largest = reference
         .iter()
         .fold(1.0, |largest, x| f64::max(largest, x.abs()));
     (0..3)
-        .map(|i| (gpu[i] - twin[i]).abs() / largest / ONE_CODE)
+        .map(|i| (gpu[i] - reference[i]).abs() / largest / ONE_CODE)
         .fold(0.0, f64::max)
 }
 
-fn assert_same_color<const N: usize>(row: &[f32; N], gpu: [f32; 4], twin: Rgb) {
-    let apart = codes_apart(gpu, twin);
+fn assert_same_color<const N: usize>(row: &[f32; N], gpu: [f32; 4], reference: Rgb) {
+    let apart = codes_apart(gpu, reference);
     assert!(
         apart <= 1.0,
-        "{row:?}: {gpu:?} on the GPU, {twin:?} in the twin, {apart} codes apart"
+        "{row:?}: {gpu:?} on the GPU, {reference:?} in the reference, {apart} codes apart"
     );
 }
 
 /// Error in units in the last place of the expected value as `f32`.
-fn ulps(gpu: f32, twin: f64) -> f64 {
-    let unit = f64::from((twin as f32).abs().max(f32::MIN_POSITIVE));
+fn ulps(gpu: f32, reference: f64) -> f64 {
+    let unit = f64::from((reference as f32).abs().max(f32::MIN_POSITIVE));
     let ulp = 2f64.powi(unit.log2().floor() as i32 - 23);
-    (f64::from(gpu) - twin).abs() / ulp
+    (f64::from(gpu) - reference).abs() / ulp
 }

@@ -5,7 +5,7 @@ use bevy_comics_testkit::reference::nested::{mark_of_node, stroke_factor};
 use super::*;
 
 #[test]
-fn numbers_of_nodes_are_those_of_the_twin() {
+fn numbers_of_nodes_match_the_reference() {
     let row = (-64i32..=64, -64i32..=64, 0u32..=6, -20i32..=20, 0u32..=20).prop_map(
         |(x, y, twos, exponent, seed)| {
             let [x, y] = [x, y].map(|i| (i << twos) as f32);

@@ -1,4 +1,4 @@
-//! Decoding of the normal prepass, against its twin and against the encoding.
+//! Decoding of the normal prepass, against its reference and against the encoding.
 
 use super::*;
 use bevy_comics_testkit::reference::normal;

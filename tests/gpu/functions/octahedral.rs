@@ -1,4 +1,4 @@
-//! Vectors that are stored on a square against their twin.
+//! Vectors that are stored on a square against their reference.
 
 use bevy_comics_testkit::{device::gpu, reference::octahedral::octahedral};
 use proptest::prelude::Strategy;
@@ -7,19 +7,19 @@ use super::for_batches;
 
 /// Directions of the square on which octahedral vectors are stored.
 #[test]
-fn octahedral_vectors_are_their_twin() {
-    let import = "#import bevy_comics::cartoon::octahedral::octahedral";
+fn octahedral_vectors_match_the_reference() {
+    let import = "#import bevy_comics::toon::octahedral::octahedral";
     let body = "return vec4(octahedral(vec2(i(0u), i(1u))), 0.0);";
     let steps = [-1.0f32, -0.5, -0.0, 0.0, 0.25, 0.5, 0.75, 1.0];
     let edges = steps.into_iter().flat_map(|x| steps.map(|y| [x, y]));
     let check = |rows: &[[f32; 2]]| {
         for (row, found) in rows.iter().zip(gpu().evaluate(import, body, rows)) {
-            let twin = octahedral(row.map(f64::from));
-            for (found, twin) in found.into_iter().zip(twin) {
+            let reference = octahedral(row.map(f64::from));
+            for (found, reference) in found.into_iter().zip(reference) {
                 // Sums of numbers up to 1, divided by a length of at least 3^-0.5.
                 assert!(
-                    (f64::from(found) - twin).abs() < 1e-6,
-                    "{row:?}: {found}, not {twin}"
+                    (f64::from(found) - reference).abs() < 1e-6,
+                    "{row:?}: {found}, not {reference}"
                 );
             }
         }

@@ -13,7 +13,7 @@ fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// Points of arcs, straight lines included, evenly and unevenly far apart: the direction is that
-/// of the twin, and within 5 degrees that of the tangent.
+/// of the reference, and within 5 degrees that of the tangent.
 #[test]
 fn strokes_leave_along_the_tangent() {
     let row = (

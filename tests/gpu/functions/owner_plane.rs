@@ -7,7 +7,7 @@ use bevy_comics_testkit::{
 
 use super::{
     bound::{buffer, floats, pairs, texture, words},
-    cartoon::Numbers,
+    toon::Numbers,
     *,
 };
 
@@ -172,7 +172,7 @@ fn plane_row(n: &mut Numbers) -> PlaneRow {
 }
 
 /// Bits of the ends are those of `range.wgsl`.
-const PLANES: &str = "var p: LinePlanes;
+const PLANES: &str = "var p: LineLayers;
     p.by_objects = i(2u);
     p.borders = vec2(i(3u), i(4u));
     p.softness = i(5u);
@@ -190,7 +190,7 @@ fn assert_planes(n: &mut Numbers, definitions: &[Definition]) {
     let [borders, range, objects] =
         ["DEPTH_BORDERS", "VISIBLE_RANGE", "OBJECT_DEPTHS"].map(|name| has(definitions, name));
     let mut imports = "#import bevy_comics::lines::owner_plane::{owner_depth, owner_weights}
-        #import bevy_comics::lines::plane_lines::LinePlanes\n"
+        #import bevy_comics::lines::layer_lines::LineLayers\n"
         .to_owned();
     let mut body = PLANES.to_owned();
     if borders || range {
@@ -239,7 +239,7 @@ fn assert_planes(n: &mut Numbers, definitions: &[Definition]) {
 
 /// With borders that are set or found, in a range that is set or found, and without geometry.
 #[test]
-fn planes_of_owners_are_their_twin() {
+fn planes_of_owners_match_the_reference() {
     let mut n = Numbers::new(61);
     let objects = ["OBJECT_DEPTHS", "OBJECT_IDS"];
     let views: [&[&str]; 4] = [
@@ -250,7 +250,7 @@ fn planes_of_owners_are_their_twin() {
     ];
     for view in views {
         for more in [&[][..], &objects] {
-            let names = [&["DEPTH", "IN_PLANES"][..], view, more].concat();
+            let names = [&["DEPTH", "IN_LAYERS"][..], view, more].concat();
             let definitions: Vec<Definition> = names.iter().map(|name| (*name, None)).collect();
             assert_planes(&mut n, &definitions);
         }
@@ -270,7 +270,7 @@ fn crease_row(n: &mut Numbers) -> [f32; 9] {
 }
 
 #[test]
-fn creases_of_owners_are_their_twin() {
+fn creases_of_owners_match_the_reference() {
     let mut n = Numbers::new(62);
     let scene = Scene::new(&mut n);
     let imports = "#import bevy_comics::lines::abstraction::LineAbstraction

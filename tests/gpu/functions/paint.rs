@@ -1,10 +1,10 @@
 //! Paint and means over boxes.
 
-use bevy_comics::{Paint, PaintForm};
+use bevy_comics::{Paint, effects::PaintKernel};
 use bevy_comics_testkit::{
     painting::{QUADRANTS, RADII, SLOPES, edge_moved, noisy, quadrant, random},
     reference::{
-        means::{Means, Sheet, means, part_of_box, root, square},
+        box_statistics::{Means, Sheet, means, part_of_box, root, square},
         paint::{Scene, chosen, edge, reaching_share, sector_weight},
     },
 };
@@ -18,7 +18,7 @@ const PAINT: &str = "#import bevy_comics::effects::paint::{
         Paint, chosen, chosen_color, direction_of, no_choice, paint_radius, reaching_share, sector_direction,
         sector_weight,
     }
-    #import bevy_comics::effect::means::{
+    #import bevy_comics::effect::box_statistics::{
         half_side, mean_color, means_of_color, packed_means, part_of_box, root, square, unpacked_means,
         variance,
     }";
@@ -68,7 +68,7 @@ fn means_are_stored_as_they_are() {
 }
 
 #[test]
-fn parts_of_boxes_and_roots_are_those_of_the_twin() {
+fn parts_of_boxes_and_roots_match_the_reference() {
     let row = (0.0f32..20.0, -22i32..22, wide_component());
     for_batches(row.prop_map(|(half, by, c)| [half, by as f32, c]), |rows| {
         let body = "let c = vec3(i(2u));
@@ -88,10 +88,10 @@ fn parts_of_boxes_and_roots_are_those_of_the_twin() {
 }
 
 #[test]
-fn sectors_and_radii_are_those_of_the_twin() {
+fn sectors_and_radii_match_the_reference() {
     let s = Paint {
-        near: 2.0,
-        far: 9.0,
+        at_near: 2.0,
+        at_far: 9.0,
         ..Paint::default()
     };
     let s = expression("Paint", &["f32"; 4], &s, &view([96, 64], 1.25, 0.0));
@@ -120,7 +120,7 @@ fn sectors_and_radii_are_those_of_the_twin() {
 }
 
 #[test]
-fn boxes_that_are_too_small_count_as_the_twin_says() {
+fn boxes_that_are_too_small_count_as_the_reference_says() {
     let row = (0.0f32..9.0, 0.0f32..9.0, 0u32..10);
     let body = "return vec4(reaching_share(i(0u), i(1u), i32(i(2u))));";
     for_batches(row.prop_map(|(a, b, at)| [a, b, at as f32]), |rows| {
@@ -136,7 +136,7 @@ fn boxes_that_are_too_small_count_as_the_twin_says() {
 }
 
 #[test]
-fn directions_of_edges_are_those_of_the_twin() {
+fn directions_of_edges_match_the_reference() {
     let size = || prop_oneof![3 => -1.0f32..1.0, 1 => select(vec![0.0, 1e-6, -0.3, 0.3])];
     let row = (size(), size(), size(), size());
     // The tensor of two slopes.
@@ -164,7 +164,7 @@ fn directions_of_edges_are_those_of_the_twin() {
 }
 
 #[test]
-fn areas_are_chosen_as_the_twin_does() {
+fn areas_are_chosen_as_the_reference_does() {
     let area = || {
         (
             component(),
@@ -283,7 +283,7 @@ fn painted(sheet: &Sheet, s: &Paint) -> Sheet {
     scene.painted(s)
 }
 
-const FORMS: [PaintForm; 2] = [PaintForm::Box, PaintForm::Anisotropic];
+const FORMS: [PaintKernel; 2] = [PaintKernel::Box, PaintKernel::Anisotropic];
 
 /// Truth: the variance of noise on one colour falls to less than a tenth; a mean over one box of
 /// 25 pixels would be a twenty-fifth, but areas are chosen by their noise.
@@ -303,7 +303,7 @@ fn noise_is_painted_over() {
     };
     for form in FORMS {
         let s = Paint {
-            form,
+            kernel: form,
             ..Paint::default()
         };
         let fraction = variance(&painted(&sheet, &s)) / variance(&sheet);
@@ -335,8 +335,8 @@ fn brushes_of_two_widths_keep_to_their_sides() {
     });
     for (near, far) in [(0.0, 8.0), (1.0, 8.0), (3.0, 5.0), (8.0, 1.0), (4.5, 4.0)] {
         let s = Paint {
-            near,
-            far,
+            at_near: near,
+            at_far: far,
             ..Paint::default()
         };
         let scene = Scene {

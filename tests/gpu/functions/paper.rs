@@ -12,7 +12,7 @@ const IMPORTS: &str = "#import bevy_comics::effects::paper::{Paper, on_paper}";
 
 /// Light that no display shows included.
 #[test]
-fn ink_on_paper_is_that_of_the_twin() {
+fn ink_on_paper_matches_the_reference() {
     let row = || {
         let height = -1.0f32..=1.0;
         let colors = (wide_component(), wide_component(), component(), height);

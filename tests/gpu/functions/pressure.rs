@@ -20,7 +20,7 @@ fn place() -> impl Strategy<Value = [f32; 3]> {
 const NOISE: f64 = 1e-4;
 
 #[test]
-fn noise_of_a_solid_is_its_twin() {
+fn noise_of_a_solid_matches_the_reference() {
     let row = (place(), 0u32..65536).prop_map(|([x, y, z], seed)| [x, y, z, seed as f32]);
     for_batches(row, |rows| {
         let results = gpu().evaluate(
@@ -41,7 +41,7 @@ fn noise_of_a_solid_is_its_twin() {
 }
 
 #[test]
-fn nested_noise_and_its_factor_are_their_twins() {
+fn nested_noise_and_its_factor_match_the_reference() {
     let row = (place(), -1.0f32..6.0, 0u32..65536, 0.0f32..=1.0)
         .prop_map(|([x, y, z], level, seed, amount)| [x, y, z, level, seed as f32, amount]);
     for_batches(row, |rows| {
@@ -72,7 +72,7 @@ fn nested_noise_and_its_factor_are_their_twins() {
     });
 }
 
-/// A place that moves, turns and grows with an object is the same place; its twin agrees.
+/// A place that moves, turns and grows with an object is the same place; its reference agrees.
 #[test]
 fn places_on_an_object_go_with_it() {
     let row = (place(), place(), place(), 0.2f32..5.0).prop_map(|(at, origin, turn, scale)| {

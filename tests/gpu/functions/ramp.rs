@@ -1,7 +1,7 @@
-//! Tones of ramps against their twins.
+//! Tones of ramps against their references.
 
 use bevy::color::Color;
-use bevy_comics::{Ramp, RampStop};
+use bevy_comics::toon::{Ramp, RampStop};
 use bevy_comics_testkit::{device::gpu, reference::ramp};
 use proptest::prelude::{Just, Strategy, prop_oneof};
 
@@ -44,7 +44,7 @@ fn ramp_of(row: &[f32; ROW]) -> Ramp {
 }
 
 #[test]
-fn tones_of_ramps_are_their_twin() {
+fn tones_of_ramps_match_the_reference() {
     let body = "var ramp: Ramp;
          for (var k = 0u; k < 8u; k++) {
              let gray = i(3u * k + 1u);
@@ -53,20 +53,20 @@ fn tones_of_ramps_are_their_twin() {
          }
          return vec4(tone(ramp, i(24u), i(25u)).xy,
              shadowed_tone(ramp, i(24u), i(25u), i(26u)).xy);";
-    let import = "#import bevy_comics::cartoon::ramp::{Ramp, Stop, shadowed_tone, tone}";
+    let import = "#import bevy_comics::toon::ramp::{Ramp, Stop, shadowed_tone, tone}";
     for_batches(rows(), |rows| {
         for (row, found) in rows.iter().zip(gpu().evaluate(import, body, rows)) {
             let ramp = ramp_of(row);
             let [arriving, width, lit] = [24, 25, 26].map(|k| f64::from(row[k]));
             let tone = ramp::tone(&ramp, arriving, width);
             let shadowed = ramp::shadowed_tone(&ramp, arriving, width, lit);
-            let twin = [tone[0], tone[1], shadowed[0], shadowed[1]];
-            for (found, twin) in found.into_iter().zip(twin) {
+            let reference = [tone[0], tone[1], shadowed[0], shadowed[1]];
+            for (found, reference) in found.into_iter().zip(reference) {
                 // An edge rises by 750 per unit at most, times eight edges, times the rounding
                 // of its place: below 6e-4.
                 assert!(
-                    (f64::from(found) - twin).abs() < 0.2 * ONE_CODE,
-                    "{row:?}: {found}, not {twin}"
+                    (f64::from(found) - reference).abs() < 0.2 * ONE_CODE,
+                    "{row:?}: {found}, not {reference}"
                 );
             }
         }

@@ -2,9 +2,9 @@
 
 use bevy_comics_testkit::reference::{Rgb, ramp_map};
 
-use super::{cartoon::Numbers, *};
+use super::{toon::Numbers, *};
 
-const IMPORT: &str = "#import bevy_comics::cartoon::ramp_map::{map_row, map_shadowed, map_tone}
+const IMPORT: &str = "#import bevy_comics::toon::ramp_map::{map_row, map_shadowed, map_tone}
     @group(0) @binding(2) var sums: texture_2d<f32>;";
 
 /// Rows of tones that look random, as the crate rounds them.
@@ -79,16 +79,16 @@ fn tones_of_painted_ramps_are_areas_of_their_texels() {
             // Roundings of the mean, and of the part between two rows.
             let rest = 4e-6 + 1e-6 * f64::from(height);
             let slack = rest + if over > 0.0 { place_off / over } else { 0.0 };
-            let twins = [
+            let references = [
                 ramp_map::tone(&rows, detail, arriving, over),
                 ramp_map::shadowed(&rows, detail, arriving, over, lit),
             ];
-            for (found, twin) in [tones[k], shadowed[k]].into_iter().zip(twins) {
+            for (found, reference) in [tones[k], shadowed[k]].into_iter().zip(references) {
                 for c in 0..3 {
-                    let off = (f64::from(found[c]) - twin[c]).abs();
+                    let off = (f64::from(found[c]) - reference[c]).abs();
                     assert!(
                         off < slack,
-                        "{width}x{height}, {place:?}: {found:?}, not {twin:?}"
+                        "{width}x{height}, {place:?}: {found:?}, not {reference:?}"
                     );
                 }
             }

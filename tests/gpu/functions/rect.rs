@@ -1,4 +1,4 @@
-//! Light of rectangles against its twin.
+//! Light of rectangles against its reference.
 
 use bevy_comics_testkit::{device::gpu, reference::rect};
 
@@ -29,7 +29,7 @@ fn places() -> Vec<[f32; 5]> {
 fn light_of_a_rectangle_is_the_integral_over_it() {
     let rows = places();
     let results = gpu().evaluate(
-        "#import bevy_comics::cartoon::rect::{Rect, rect_light}",
+        "#import bevy_comics::toon::rect::{Rect, rect_light}",
         "let rect = Rect(vec3(i(0u), 0.0, 0.0), vec3(0.0, i(1u), 0.0));
          return vec4(rect_light(rect, vec3(i(2u), i(3u), i(4u))), 0.0);",
         &rows,
@@ -55,7 +55,7 @@ fn light_of_a_rectangle_is_the_integral_over_it() {
 fn a_mirror_shows_a_point_of_the_rectangle() {
     let rows = places();
     let results = gpu().evaluate(
-        "#import bevy_comics::cartoon::rect::{Rect, mirrored, rect_light}",
+        "#import bevy_comics::toon::rect::{Rect, mirrored, rect_light}",
         "let rect = Rect(vec3(i(0u), 0.0, 0.0), vec3(0.0, i(1u), 0.0));
          let at = vec3(i(2u), i(3u), i(4u));
          let point = vec3(i(0u) * sin(i(2u)), i(1u) * sin(i(3u)), 0.0);

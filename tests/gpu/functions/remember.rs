@@ -8,7 +8,7 @@ use bevy_comics_testkit::{
 
 use super::{
     bound::{floats, texture},
-    cartoon::Numbers,
+    toon::Numbers,
     *,
 };
 use crate::shaders::shader;
@@ -205,7 +205,7 @@ impl Scene {
         )
     }
 
-    /// What the twin knows of a pixel, and the pixel of the last frame.
+    /// What the reference knows of a pixel, and the pixel of the last frame.
     fn pixel(&self, at: At) -> (Pixel, At) {
         let ink = |of: &[[f32; 4]], at: At| {
             let stored = of[index(inside(SIZE, at))].map(f64::from);
@@ -257,7 +257,7 @@ fn is_doubtful(pixel: &Pixel) -> bool {
 
 /// Compares all pixels of a scene. Adds how many were covered, uncovered, limited, not seen in the
 /// last frame and not steady, and in how many something had vanished.
-fn assert_is_twin(scene: &Scene, tally: &mut [u32; 6]) {
+fn assert_matches_the_reference(scene: &Scene, tally: &mut [u32; 6]) {
     let mut doubtful = 0;
     for (at, [inks, depths]) in pixels().zip(scene.found()) {
         let (pixel, from) = scene.pixel(at);
@@ -305,13 +305,13 @@ fn add(tally: &mut [u32; 6], pixel: &Pixel, memory: &Memory) {
 /// Views that stand still, drift, and move; with grids that are as fine as the picture and finer; and
 /// without memory.
 #[test]
-fn remembered_pixels_are_their_twin() {
+fn remembered_pixels_match_the_reference() {
     let mut n = Numbers::new(31);
     let mut tally = [0; 6];
     for motions in [STILL, SLOW, MOVING] {
         for (scale, spacing, share) in [(1, 1, 0.125), (1, 2, 0.25), (2, 3, 0.125), (1, 1, 1.0)] {
             let scene = Scene::new(&mut n, scale, spacing, share, motions);
-            assert_is_twin(&scene, &mut tally);
+            assert_matches_the_reference(&scene, &mut tally);
         }
     }
     assert!(tally.iter().all(|count| *count > 200), "{tally:?}");

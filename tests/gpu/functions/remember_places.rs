@@ -7,7 +7,7 @@ use bevy_comics_testkit::{
 
 use super::{
     bound::{floats, texture},
-    cartoon::Numbers,
+    toon::Numbers,
     *,
 };
 use crate::shaders::shader;
@@ -38,7 +38,7 @@ fn texel(texels: &[[f32; 4]], at: At) -> [f64; 4] {
 /// In grids that are larger and smaller than 5 x 5 pixels, up to five pixels apart, and where there is
 /// only sky.
 #[test]
-fn depths_around_a_pixel_are_their_twin() {
+fn depths_around_a_pixel_match_the_reference() {
     const WIDTH: u32 = 40;
     const HEIGHT: u32 = 30;
     let mut n = Numbers::new(21);
@@ -88,7 +88,7 @@ fn depths_around_a_pixel_are_their_twin() {
 /// Inside and outside of the viewport, between pixels, and at their centres, where it is that of one
 /// pixel.
 #[test]
-fn ink_of_the_last_frame_is_its_twin() {
+fn ink_of_the_last_frame_matches_the_reference() {
     let mut n = Numbers::new(22);
     let texels = texels(&mut n);
     let view = gpu().texture(SIZE, &texels);
@@ -118,7 +118,7 @@ fn ink_of_the_last_frame_is_its_twin() {
 
 /// Grids that are coarser and finer than the viewport; the distance is at least a pixel.
 #[test]
-fn nearest_depths_of_the_last_frame_are_their_twin() {
+fn nearest_depths_of_the_last_frame_match_the_reference() {
     let mut n = Numbers::new(23);
     let texels = texels(&mut n);
     let view = gpu().texture(SIZE, &texels);
@@ -147,7 +147,7 @@ fn nearest_depths_of_the_last_frame_are_their_twin() {
 
 /// A fraction of what the projection makes of a raw depth.
 #[test]
-fn jumps_between_surfaces_are_their_twin() {
+fn jumps_between_surfaces_match_the_reference() {
     let mut n = Numbers::new(24);
     let rows: Vec<[f32; 4]> = (0..1024)
         .map(|_| {

@@ -11,7 +11,7 @@ use bevy_comics_testkit::{
 
 use super::{
     bound::{floats, pairs, texture},
-    cartoon::Numbers,
+    toon::Numbers,
     *,
 };
 
@@ -205,7 +205,10 @@ fn needed(n: u32) -> Option<&'static str> {
 }
 
 /// Compares all numbers at all borders. Returns how many of each are above 0.
-fn assert_is_twin(n: &mut Numbers, definitions: &[&str]) -> [u32; OF_A_BORDER as usize] {
+fn assert_matches_the_reference(
+    n: &mut Numbers,
+    definitions: &[&str],
+) -> [u32; OF_A_BORDER as usize] {
     let picture = Picture::new(n);
     let size = Picture::SIZE;
     let has = |name: &str| definitions.contains(&name);
@@ -267,10 +270,10 @@ fn assert_is_twin(n: &mut Numbers, definitions: &[&str]) -> [u32; OF_A_BORDER as
 
 /// At and outside of the borders of the grid, too.
 #[test]
-fn borders_of_pixels_are_their_twin() {
+fn borders_of_pixels_match_the_reference() {
     let mut n = Numbers::new(71);
     let all = &["DEPTH", "EXCESS", "NORMALS", "OBJECT_IDS"];
-    let positive = assert_is_twin(&mut n, all);
+    let positive = assert_matches_the_reference(&mut n, all);
     assert!(positive.iter().all(|count| *count > 20), "{positive:?}");
     let others: [&[&str]; 6] = [
         &["DEPTH"],
@@ -281,7 +284,7 @@ fn borders_of_pixels_are_their_twin() {
         &["DEPTH", "EXCESS", "NORMALS", "OBJECT_IDS", "BOUNDS"],
     ];
     for definitions in others {
-        assert_is_twin(&mut n, definitions);
+        assert_matches_the_reference(&mut n, definitions);
     }
 }
 

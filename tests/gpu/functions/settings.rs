@@ -1,11 +1,11 @@
 //! The settings of an effect as WGSL text, from the bytes of its uniform.
 
 use bevy::math::UVec4;
-use bevy_comics::{AnyEffect, ViewFacts};
+use bevy_comics::effect::{AnyEffect, EffectContext};
 
 /// A view of this size in physical pixels, at a scale factor, `seconds` after the start.
-pub fn view(size: [u32; 2], scale_factor: f32, seconds: f64) -> ViewFacts {
-    let mut facts = ViewFacts::default();
+pub fn view(size: [u32; 2], scale_factor: f32, seconds: f64) -> EffectContext {
+    let mut facts = EffectContext::default();
     facts.viewport = UVec4::new(0, 0, size[0], size[1]);
     facts.scale_factor = scale_factor;
     facts.seconds = seconds;
@@ -14,7 +14,12 @@ pub fn view(size: [u32; 2], scale_factor: f32, seconds: f64) -> ViewFacts {
 
 /// A WGSL expression of the struct `name`. `fields`: the type of each field, one of `vec3`,
 /// `vec2`, `f32`, `i32` and `u32`.
-pub fn expression(name: &str, fields: &[&str], effect: &dyn AnyEffect, view: &ViewFacts) -> String {
+pub fn expression(
+    name: &str,
+    fields: &[&str],
+    effect: &dyn AnyEffect,
+    view: &EffectContext,
+) -> String {
     let bytes = effect.uniform_bytes(view);
     let word = |at: usize| bytes[at..at + 4].try_into().expect("four bytes");
     let float = |at| format!("{:?}", f32::from_le_bytes(word(at)));

@@ -7,7 +7,7 @@ use super::*;
 
 /// Shadow maps in which a half plane, a stripe or scattered texels are lit.
 const MAP: &str = "
-    #import bevy_comics::cartoon::shadow_texels::{Filtered, texels_at, with_texels}
+    #import bevy_comics::toon::shadow_texels::{Filtered, texels_at, with_texels}
     fn texel(at: vec2<f32>) -> f32 {
         let d = dot(vec2(i(2u), i(3u)), at) + i(4u);
         let kind = u(5u);
@@ -50,7 +50,7 @@ fn texel(row: &[f32; 6]) -> impl Fn(i64, i64) -> f64 + '_ {
 
 /// The filter of 36 texels is that of the engine's nine samples, and its slope is its change.
 #[test]
-fn filtered_shadows_and_their_slopes_are_their_twin() {
+fn filtered_shadows_and_their_slopes_match_the_reference() {
     let row = (
         (4.0f32..=60.0, 4.0f32..=60.0),
         (0.0f32..6.3, -3.0f32..=3.0),
@@ -88,11 +88,11 @@ fn filtered_shadows_and_their_slopes_are_their_twin() {
 }
 
 const SUMS: &str =
-    "#import bevy_comics::cartoon::shadow_texels::{Filtered, slope_of_sums, with_sample}";
+    "#import bevy_comics::toon::shadow_texels::{Filtered, slope_of_sums, with_sample}";
 
 /// The slope of eight samples is that of the nearest plane, and exact where they are in one.
 #[test]
-fn slopes_of_eight_samples_are_their_twin() {
+fn slopes_of_eight_samples_match_the_reference() {
     let places: Vec<String> = (SAMPLES.iter().enumerate())
         .map(|(k, (at, weight))| {
             format!(

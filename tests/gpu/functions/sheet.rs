@@ -8,7 +8,7 @@ const SHEET: &str = "#import bevy_comics::effect::sheet::{bristles, sheet_height
     #import bevy_comics::lines::sheet::{Sheet, dry_ink, height_under, spread_width}";
 
 #[test]
-fn the_height_of_the_sheet_is_that_of_the_twin() {
+fn the_height_of_the_sheet_matches_the_reference() {
     let row = (0.0f32..=4000.0, 0.0f32..=4000.0, 0u16..=300, -1.0f32..=1.0)
         .prop_map(|(x, y, sheet, dry)| [x, y, f32::from(sheet), dry.abs(), dry]);
     for_batches(row, |rows| {
@@ -50,7 +50,7 @@ fn the_sheet_is_level() {
 
 /// Places, spreads and widths of every size: a line never vanishes, and never turns inside out.
 #[test]
-fn the_width_of_a_line_on_the_sheet_is_that_of_the_twin() {
+fn the_width_of_a_line_on_the_sheet_matches_the_reference() {
     let half_width = prop_oneof![4 => 0.0f32..16.0, 1 => select(vec![0.0, 0.25, 0.3, 1.0])];
     let row = (
         (0.0f32..2000.0, 0.0f32..2000.0),
@@ -101,7 +101,7 @@ fn the_width_of_a_line_on_the_sheet_is_that_of_the_twin() {
 
 /// Lines of every direction and width.
 #[test]
-fn the_ink_of_a_dry_brush_is_that_of_the_twin() {
+fn the_ink_of_a_dry_brush_matches_the_reference() {
     let row = (
         (0.0f32..2000.0, 0.0f32..2000.0),
         -3.15f32..3.15,

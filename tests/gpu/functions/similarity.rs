@@ -21,7 +21,7 @@ fn views() -> [Mat4; 3] {
 /// it: there, rounding decides about the axis. At the border between two octaves, both are seen
 /// equally, in either order.
 #[test]
-fn objects_are_followed_as_by_the_twin() {
+fn objects_are_followed_as_by_the_reference() {
     let row = (
         (-3.0f32..3.0, -2.0f32..2.0, -3.0f32..2.0),
         -6.0f32..6.0,

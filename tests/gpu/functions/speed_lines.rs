@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use bevy_comics::{Effect, SpeedLineKind, SpeedLines, ViewFacts};
+use bevy::math::Vec2;
+use bevy_comics::{Effect, SpeedLines, effect::EffectContext, effects::SpeedLineKind};
 use bevy_comics_testkit::reference::speed_lines::Drawing;
 
 use super::{
@@ -16,7 +17,7 @@ const FIELDS: [&str; 13] = [
     "vec3", "f32", "vec2", "vec2", "vec2", "f32", "f32", "i32", "u32", "f32", "u32", "f32", "f32",
 ];
 
-fn coverage(lines: &SpeedLines, facts: &ViewFacts, places: &[[f32; 2]]) -> Vec<f64> {
+fn coverage(lines: &SpeedLines, facts: &EffectContext, places: &[[f32; 2]]) -> Vec<f64> {
     let s = expression("SpeedLines", &FIELDS, lines, facts);
     let body = format!(
         "let s = {s};
@@ -26,21 +27,21 @@ fn coverage(lines: &SpeedLines, facts: &ViewFacts, places: &[[f32; 2]]) -> Vec<f
     found.iter().map(|v| f64::from(v[0])).collect()
 }
 
-fn twin(lines: &SpeedLines, facts: &ViewFacts) -> Drawing {
+fn reference(lines: &SpeedLines, facts: &EffectContext) -> Drawing {
     let size = [facts.viewport.z, facts.viewport.w].map(f64::from);
-    let centre = [lines.centre_x, lines.centre_y].map(f64::from);
+    let centre = lines.center.to_array().map(f64::from);
     Drawing {
         settings: *lines,
         size,
         scale: f64::from(facts.scale_factor),
         centre: [centre[0] * size[0], centre[1] * size[1]],
-        number: facts.drawing(lines.rate),
+        number: facts.animation_seed(lines.rate),
     }
 }
 
 /// Random places of every kind, with few and many, narrow and wide lines.
 #[test]
-fn the_coverage_of_speed_lines_is_that_of_the_twin() {
+fn the_coverage_of_speed_lines_matches_the_reference() {
     let facts = view([640, 360], 1.25, 0.4);
     for kind in [SpeedLineKind::Radial, SpeedLineKind::Parallel] {
         for (count, width, inner, angle, place, dry) in [
@@ -55,12 +56,12 @@ fn the_coverage_of_speed_lines_is_that_of_the_twin() {
                 width,
                 inner,
                 angle,
-                centre_x: place,
-                dry,
+                center: Vec2::new(place, 0.5),
+                dry_brush: dry,
                 ..SpeedLines::default()
             };
             assert_eq!(lines, lines.sanitized());
-            let drawing = twin(&lines, &facts);
+            let drawing = reference(&lines, &facts);
             let row = (0.0f32..=640.0, 0.0f32..=360.0).prop_map(|(x, y)| [x, y]);
             for_batches(row, |rows| {
                 let found = coverage(&lines, &facts, rows);
@@ -107,7 +108,7 @@ fn lines_cover_their_widths_around_a_circle() {
             width: 6.0,
             ..SpeedLines::default()
         };
-        let drawing = twin(&lines, &facts);
+        let drawing = reference(&lines, &facts);
         // Beyond the last inner end (0.3 * 500 * 1.8 = 270) and as far as the corners.
         for rho in [300.0, 450.0, 583.0] {
             let rho = rho * f64::from(scale);

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use bevy::math::{DVec2, DVec3};
-use bevy_comics::{Hatching, HatchingMarks};
+use bevy_comics::{Hatching, effects::HatchingMarks};
 use bevy_comics_testkit::reference::{
     hatching::{Hatch, Surface},
     stipple::disc_coverage,
@@ -31,7 +31,7 @@ fn change([x, y, long, short]: [f64; 4]) -> [DVec2; 2] {
 }
 
 #[test]
-fn discs_are_those_of_the_twin() {
+fn discs_match_the_reference() {
     let row = (
         (-3.0f32..=3.0, -3.0f32..=3.0),
         (0.0f32..=6.3, 0.0f32..=6.3, 0.05f32..=1.0, 0.02f32..=1.0),
@@ -65,10 +65,10 @@ fn discs_are_those_of_the_twin() {
     });
 }
 
-/// Every tone, angle and level. Where rounding decides which plane or which dot is meant, the twin a
+/// Every tone, angle and level. Where rounding decides which plane or which dot is meant, the reference a
 /// little beside it is as good.
 #[test]
-fn dots_are_those_of_the_twin() {
+fn dots_match_the_reference() {
     let fraction = || 0.0f32..=1.0;
     let row = (
         (-3.0f32..=3.0, -3.0f32..=3.0),

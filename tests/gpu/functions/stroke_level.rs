@@ -9,10 +9,10 @@ use super::{
 };
 
 #[test]
-fn levels_of_strokes_are_those_of_the_twin() {
+fn levels_of_strokes_match_the_reference() {
     for_batches(change(), |rows| {
         let results = gpu().evaluate(
-            "#import bevy_comics::cartoon::stroke_level::stroke_level",
+            "#import bevy_comics::toon::stroke_level::stroke_level",
             "return vec4(stroke_level(vec2(i(0u), i(1u)), vec2(i(2u), i(3u))), 0.0, 0.0, 0.0);",
             rows,
         );

@@ -42,7 +42,7 @@ fn row() -> impl Strategy<Value = [f32; 3]> {
 
 /// On both sides of the tolerance, in front of and behind what the prepass has.
 #[test]
-fn near_depths_are_their_twin() {
+fn near_depths_match_the_reference() {
     for (multisampled, definitions) in VIEWS {
         for_batches(row(), |batch| {
             let drawn = |[depth, slope, away]: [f32; 3]| {
@@ -61,8 +61,8 @@ fn near_depths_are_their_twin() {
                 if ((drawn - depth).abs() - limit).abs() <= 4.0 * 2f64.powi(-24) * limit {
                     continue;
                 }
-                let twin = is_near(drawn, depth, slope, multisampled);
-                assert_eq!(near, twin, "{row:?}, multisampled: {multisampled}");
+                let reference = is_near(drawn, depth, slope, multisampled);
+                assert_eq!(near, reference, "{row:?}, multisampled: {multisampled}");
                 decided += 1;
             }
             assert!(decided > rows.len() / 2, "{decided}");

@@ -1,4 +1,4 @@
-//! Tones of the picture against their twin.
+//! Tones of the picture against their reference.
 
 use bevy::color::Color;
 use bevy_comics::ToneRamp;
@@ -37,7 +37,7 @@ fn ramp(row: &[f32; ROW]) -> ToneRamp {
 }
 
 #[test]
-fn tones_by_depth_are_their_twin() {
+fn tones_by_depth_match_the_reference() {
     let body = "var lab: array<vec3<f32>, 6>;
          for (var k = 0u; k < 6u; k++) {
              lab[k] = linear_to_oklab(vec3(i(3u * k), i(3u * k + 1u), i(3u * k + 2u)));
@@ -59,9 +59,9 @@ fn tones_by_depth_are_their_twin() {
             let far = (f64::from(found[3]) - detail).abs();
             assert!(far < 3e-5, "{row:?}: {}, not {detail}", found[3]);
             let change = 0.1 * f64::from(row[31]);
-            let twin = tone_ramp::toned(&s, rgb(&row[28..31]), change, f64::from(found[3]));
-            let apart = codes_apart(found, twin);
-            assert!(apart < 0.5, "{row:?}: {found:?}, not {twin:?}");
+            let reference = tone_ramp::toned(&s, rgb(&row[28..31]), change, f64::from(found[3]));
+            let apart = codes_apart(found, reference);
+            assert!(apart < 0.5, "{row:?}: {found:?}, not {reference:?}");
         }
     });
 }

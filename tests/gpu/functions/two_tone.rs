@@ -8,7 +8,7 @@ use super::*;
 /// For every threshold, softness, lightness and change of it. The ends are whole: at a
 /// threshold of 0 everything is light, at 1 everything is dark.
 #[test]
-fn the_fraction_of_the_light_tone_is_that_of_the_twin() {
+fn the_fraction_of_the_light_tone_matches_the_reference() {
     let row = (component(), 0.0f32..=16.0, component(), 0.0f32..=0.5)
         .prop_map(|(threshold, softness, y, change)| [threshold, softness, y, change]);
     for_batches(row, |rows| {
@@ -46,7 +46,7 @@ fn the_fraction_of_the_light_tone_is_that_of_the_twin() {
 /// Before and after ink, at changes of the lightness that make the edge soft: at hard ones
 /// rounding decides.
 #[test]
-fn ink_on_tones_is_that_of_the_twin() {
+fn ink_on_tones_matches_the_reference() {
     let row = (component(), component(), 0.001f32..=0.5).prop_map(|(a, b, change)| [a, b, change]);
     for_batches(row, |rows| {
         let results = gpu().evaluate(

@@ -5,7 +5,7 @@ use proptest::prelude::{Strategy, any};
 
 use super::for_batches;
 
-const IMPORT: &str = "#import bevy_comics::cartoon::visible::{ViewRange, detail_in_range}";
+const IMPORT: &str = "#import bevy_comics::toon::visible::{ViewRange, detail_in_range}";
 /// Both ends of the range, offset, floor, far plane, extent, flags, unit; depth and distance.
 const BODY: &str =
     "let r = ViewRange(vec4(i(0u), i(1u), i(2u), i(3u)), vec4(i(4u), i(5u), i(6u), i(7u)));
@@ -79,13 +79,13 @@ fn detail_is_the_logarithm_of_the_distance() {
                     } else {
                         z(row[8])
                     };
-                    let twin = detail::in_range(depth, z(row[0]), z(row[1]));
+                    let reference = detail::in_range(depth, z(row[0]), z(row[1]));
                     // An orthographic depth is a distance within 2^-24 of 1000 units, as a fraction of
                     // one unit or more, for a logarithm of at least ln(1.3): 6e-5 / 0.26, at two ends.
-                    let wrong = (f64::from(found[0]) - twin).abs();
+                    let wrong = (f64::from(found[0]) - reference).abs();
                     assert!(
                         wrong < 5e-4,
-                        "{lens:?}, {row:?}: {} is not {twin}",
+                        "{lens:?}, {row:?}: {} is not {reference}",
                         found[0]
                     );
                 }

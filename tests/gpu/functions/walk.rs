@@ -26,7 +26,7 @@ fn row() -> impl Strategy<Value = [f32; 5]> {
 }
 
 /// Every step and every fold whose ink is not 0 after rounding is within the bound, and
-/// the bound is its twin.
+/// the bound matches its reference.
 #[test]
 fn the_walk_leaves_out_no_ink() {
     for_batches(row(), |rows| {

@@ -1,6 +1,6 @@
 //! How wide a line is at a crack: each factor.
 
-use bevy_comics::LineWeight;
+use bevy_comics::lines::LineWeight;
 use bevy_comics_testkit::reference::weight::{
     kind_weight, light_weight, nib_weight, perspective_weight, taper_weight,
 };
@@ -156,7 +156,7 @@ fn a_nib_is_thin_along_its_edge() {
         for (row, found) in rows.iter().zip(results) {
             let w = LineWeight {
                 nib_angle: row[0],
-                nib: row[2],
+                nib_roundness: row[2],
                 ..LineWeight::EVEN
             };
             let line = f64::from(row[1]).to_radians();

@@ -3,7 +3,7 @@
 use bevy::math::{DMat4, DVec3, EulerRot, Quat, Vec3};
 use bevy_comics_testkit::reference::{pressure::Frame as ObjectFrame, widths::line_width};
 
-use super::{cartoon::Numbers, *};
+use super::{toon::Numbers, *};
 
 const WIDTHS: &str = "#import bevy_comics::objects::widths::{line_width, pressure}
     #import bevy_pbr::mesh_bindings::mesh
@@ -119,7 +119,7 @@ fn row(n: &mut Numbers) -> (Row, f64) {
     (row, pixels)
 }
 
-fn twin(row: &Row, pixels: f64) -> f64 {
+fn reference(row: &Row, pixels: f64) -> f64 {
     let three = |at: usize| [row[at], row[at + 1], row[at + 2]].map(f64::from);
     let frame = ObjectFrame {
         origin: three(8),
@@ -133,13 +133,13 @@ fn twin(row: &Row, pixels: f64) -> f64 {
 /// In views of all kinds, for objects that are turned, stretched, or shrunk to a point. Pixels per
 /// unit are measured on the screen.
 #[test]
-fn widths_of_lines_are_their_twin() {
+fn widths_of_lines_match_the_reference() {
     let mut n = Numbers::new(311);
     let rows: Vec<(Row, f64)> = (0..8192).map(|_| row(&mut n)).collect();
     let inputs: Vec<Row> = rows.iter().map(|(row, _)| *row).collect();
     let mut pressed = 0;
     for ((row, pixels), found) in rows.iter().zip(found(&inputs)) {
-        let want = twin(row, *pixels);
+        let want = reference(row, *pixels);
         // As the noise of `pressure.rs`, of an amount up to 1 and a factor up to 2.
         assert!((found - want).abs() < 4e-4, "{row:?}: {found}, not {want}");
         let own = f64::from(row[5].clamp(0.0, 2.0)) * 127.0 / 255.0;

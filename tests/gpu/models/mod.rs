@@ -272,7 +272,7 @@ fn skin_has_its_color_and_chrome_does_not_clip() {
 #[ignore = "long: starts the example for each of many materials"]
 fn lit_colors_are_those_of_the_material_and_nothing_clips() {
     let folder = folder("lighting");
-    for more in [&["--hdr"][..], &["--material", "cartoon"]] {
+    for more in [&["--hdr"][..], &["--material", "toon"]] {
         assert_color_of_skin(&plain(&folder, "skin.glb", ball(SKIN, 0.0, 0.8), more));
     }
     for (name, gltf) in [

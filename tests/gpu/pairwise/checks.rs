@@ -1,7 +1,10 @@
 //! What holds in every row. A comment says what a check sees.
 
 use bevy::prelude::*;
-use bevy_comics::{ComicStyle, ComicsDiagnostics, ComicsStage, LeftOut, Sketch, StageOutcome};
+use bevy_comics::{
+    ComicStyle, ComicsDiagnostics, Sketch,
+    diagnostics::{ComicsStage, SkipReason, StageOutcome},
+};
 use image::RgbaImage;
 
 use super::{
@@ -47,7 +50,7 @@ pub fn assert_drawn_by(small: &Small, camera: Entity, style: &ComicStyle, what: 
     for effect in style.effects() {
         let name = effect.effect_type().name;
         let outcome = stages.outcome(ComicsStage::Effect(name));
-        let replaced = sketched && outcome == Some(StageOutcome::LeftOut(LeftOut::Replaced));
+        let replaced = sketched && outcome == Some(StageOutcome::Skipped(SkipReason::Replaced));
         let ran = stages.ran(ComicsStage::Effect(name));
         assert!(ran || replaced, "{what}: {name}: {outcome:?}");
     }

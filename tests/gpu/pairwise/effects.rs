@@ -3,10 +3,11 @@
 use std::collections::BTreeSet;
 
 use bevy_comics::{
-    Abstraction, BlackFlats, ColorHarmony, Colorization, ColorizationMode, ComicStyle, Contours,
-    Desaturation, EffectRegistry, Focus, FocusAt, Halftone, Hatching, IsoLines, Outlines, Paint,
-    Paper, PaperAnchor, Planes, PrintOffset, Sketch, SpeedLines, ToneBands, ToneRamp, TwoTone,
-    Vignette,
+    Abstraction, BlackFlats, ColorHarmony, Colorization, ComicStyle, Contours, DepthLayers,
+    Desaturation, Focus, Halftone, Hatching, IsoLines, Misregistration, Outlines, Paint, Paper,
+    Sketch, SpeedLines, ToneBands, ToneRamp, TwoTone, Vignette,
+    effect::EffectRegistry,
+    effects::{ColorizationMode, FocusAt, PaperAnchor},
 };
 
 /// A group's name and style.
@@ -91,7 +92,7 @@ fn sketch() -> ComicStyle {
 fn dots() -> ComicStyle {
     ComicStyle::new()
         .with(Halftone::default())
-        .with(PrintOffset::default())
+        .with(Misregistration::default())
 }
 
 fn strokes() -> ComicStyle {
@@ -108,7 +109,7 @@ fn paint() -> ComicStyle {
     };
     ComicStyle::new()
         .with(Abstraction::default())
-        .with(Planes::default())
+        .with(DepthLayers::default())
         .with(Paint::default())
         .with(focus)
 }

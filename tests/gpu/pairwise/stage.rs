@@ -19,13 +19,13 @@ use bevy::{
         view::{Msaa, ViewTarget},
     },
 };
-use bevy_comics::{CartoonLight, ComicStyle};
+use bevy_comics::{ComicStyle, ToonLight};
 use wgpu::util::TextureBlitter;
 
 use super::covering::{AntiAliasing, Area, Row, View};
 use crate::{
-    cartoon,
     small::{Small, options, unlit},
+    toon,
     upscaled::override_main_pass,
 };
 
@@ -118,7 +118,7 @@ pub fn app(deferred: bool) -> Small {
     small
 }
 
-/// A floor without light, a matt box with light, a cartoon sphere, and a pane of glass.
+/// A floor without light, a matt box with light, a toon sphere, and a pane of glass.
 fn put_things(small: &mut Small) {
     let floor = Plane3d::default().mesh().size(6.0, 6.0);
     let sand = unlit(Color::srgb(0.8, 0.7, 0.5));
@@ -132,9 +132,9 @@ fn put_things(small: &mut Small) {
     };
     let turned = Transform::from_xyz(-0.8, 0.6, 0.8).with_rotation(Quat::from_rotation_y(0.5));
     small.put(Cuboid::from_length(1.2), matt, turned);
-    let cartoon = cartoon::material(small, CartoonLight::default());
+    let toon = toon::material(small, ToonLight::default());
     let sphere = Sphere::new(0.8).mesh().uv(32, 18);
-    small.put_shared(sphere, cartoon, Transform::from_xyz(1.1, 0.8, -0.6));
+    small.put_shared(sphere, toon, Transform::from_xyz(1.1, 0.8, -0.6));
     let glass = StandardMaterial {
         alpha_mode: AlphaMode::Blend,
         ..unlit(Color::srgba(0.3, 0.8, 0.9, 0.5))

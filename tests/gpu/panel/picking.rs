@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use bevy_comics::ToonLook;
+use bevy_comics::toon::ToonShading;
 use serde_json::Value;
 
 use super::{
@@ -29,8 +29,8 @@ fn picture(window: &impl Session) -> image::RgbImage {
 }
 
 /// The light of the picked object.
-fn light(state: &Value) -> Option<ToonLook> {
-    ToonLook::from_ron(state["picked"]["light"].as_str()?).ok()
+fn light(state: &Value) -> Option<ToonShading> {
+    ToonShading::from_ron(state["picked"]["light"].as_str()?).ok()
 }
 
 fn pick(window: &impl Session, at: [f64; 2]) {
@@ -135,7 +135,7 @@ fn close(window: &impl Session) {
     assert_eq!(height(&window.state()), Some(4.0));
 }
 
-/// Makes the picked object a cartoon, gives it a ramp and lines of its own, and takes all of it
+/// Makes the picked object a toon, gives it a ramp and lines of its own, and takes all of it
 /// back and again.
 fn edit(window: &impl Session) {
     let plain = picture(window);
@@ -179,18 +179,18 @@ fn edit(window: &impl Session) {
     });
 }
 
-/// Saves the light as a look.
+/// Saves the light as a shading.
 fn save(window: &impl Session) {
-    window.click("look.name");
+    window.click("shading.name");
     window.type_text("glaze");
     window.frames(2);
-    window.click("look.save");
+    window.click("shading.save");
     window.until("the file", |state| {
-        state["widgets"]["look.saved"].is_array()
+        state["widgets"]["shading.saved"].is_array()
     });
     let path = window.folder().join("looks").join("glaze.toon.ron");
     let text = fs::read_to_string(path).expect("saved");
-    let saved = ToonLook::from_ron(&text).expect("it reads");
+    let saved = ToonShading::from_ron(&text).expect("it reads");
     let now = light(&window.state()).expect("a light");
     assert_eq!(saved.light, now.light.sanitized());
 }

@@ -3,14 +3,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use bevy_comics::EffectRegistry;
+use bevy_comics::effect::EffectRegistry;
 use bevy_comics_testkit::asked::{File, definitions, files, has_entry_point, reached};
 
 use super::{Definitions, fused, lines, materials, scene};
-use crate::cartoon_shaders;
+use crate::toon_shaders;
 
 /// The template of the fused pass; its text is that of the registry.
-const FUSED: &str = "effect/fused.wgsl";
+const FUSED: &str = "fused/fused.wgsl";
 
 /// Definitions that the lists need not have.
 const ALWAYS_SET: [(&str, &str); 1] = [("SAMPLES", "`wgsl::compose` sets it")];
@@ -29,8 +29,8 @@ fn entries() -> BTreeMap<&'static str, BTreeSet<&'static str>> {
     for (file, definitions) in &variants {
         add(file, definitions);
     }
-    for file in cartoon_shaders::FILES {
-        add(file, &cartoon_shaders::all());
+    for file in toon_shaders::FILES {
+        add(file, &toon_shaders::all());
     }
     entries
 }

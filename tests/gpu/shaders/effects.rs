@@ -1,6 +1,6 @@
 //! The effects with all of their variants.
 
-use bevy_comics::{EffectRegistry, Needs};
+use bevy_comics::effect::{EffectRegistry, Needs};
 
 use bevy_comics_testkit::wgsl::Definition;
 
@@ -21,8 +21,8 @@ pub const NEEDS: [(Needs, &[&str]); 13] = [
     (Needs::LIGHTNESS_CHANGE, &["LIGHTNESS_CHANGE"]),
     (Needs::PICTURE, &["CONTINUED"]),
     (Needs::BLUE_NOISE, &["BLUE_NOISE"]),
-    (Needs::MEANS, &["CONTINUED", "MEANS"]),
-    (Needs::NUMBERED, &["NUMBERED"]),
+    (Needs::BOX_STATISTICS, &["CONTINUED", "BOX_STATISTICS"]),
+    (Needs::AUX_SCALAR, &["AUX_SCALAR"]),
     (Needs::DEPTH_BORDERS, &["DEPTH_BORDERS"]),
     (Needs::OBJECT_DEPTHS, &["OBJECT_DEPTHS", "OBJECT_IDS"]),
 ];
@@ -66,7 +66,7 @@ pub fn picture_effects() -> [Modes; 10] {
                 ],
             ]),
         ),
-        ("planes", planes()),
+        ("depth_layers", planes()),
     ]
 }
 
@@ -192,15 +192,15 @@ fn color_harmony() -> Vec<Definitions> {
 
 fn planes() -> Vec<Definitions> {
     product(&[
-        vec![flags(&["PLANES", "MAP", "DEPTH"])],
+        vec![flags(&["DEPTH_LAYERS", "MAP", "DEPTH"])],
         optional(&["DEPTH_BORDERS"]),
         vec![
             Vec::new(),
-            flags(&["PLANES_OBJECTS", "OBJECT_DEPTHS", "OBJECT_IDS"]),
+            flags(&["DEPTH_LAYERS_OBJECTS", "OBJECT_DEPTHS", "OBJECT_IDS"]),
         ],
         vec![
-            vec![("PLANES_BANDS", Some(0))],
-            vec![("PLANES_BANDS", Some(1)), ("LIGHTNESS_CHANGE", None)],
+            vec![("DEPTH_LAYERS_BANDS", Some(0))],
+            vec![("DEPTH_LAYERS_BANDS", Some(1)), ("LIGHTNESS_CHANGE", None)],
         ],
     ])
 }
@@ -218,7 +218,7 @@ pub fn line_effects() -> [Modes; 2] {
                 ]),
                 product(&[
                     vec![flags(&["OUTLINES", "LINES", "LINE_OWNERS", "MAP", "DEPTH"])],
-                    vec![flags(&["IN_PLANES", "PLANE_INK"])],
+                    vec![flags(&["IN_LAYERS", "LAYER_INK"])],
                     optional(&["OBJECT_STYLES", "SURFACE_LINES", "DEPTH_BORDERS"]),
                     vec![Vec::new(), flags(&["OBJECT_DEPTHS", "OBJECT_IDS"])],
                 ]),
@@ -252,10 +252,10 @@ pub fn more_effects() -> [Modes; 6] {
         ),
         ("paint", paint()),
         (
-            "print_offset",
+            "misregistration",
             product(&[
-                vec![flags(&["PRINT_OFFSET", "CONTINUED"])],
-                optional(&["PRINT_OFFSET_BLACK_STAYS"]),
+                vec![flags(&["MISREGISTRATION", "CONTINUED"])],
+                optional(&["MISREGISTRATION_BLACK_STAYS"]),
             ]),
         ),
         (
@@ -279,9 +279,9 @@ fn focus() -> Vec<Definitions> {
     };
     product(&[
         vec![
-            style(&["FOCUS", "DEPTH", "NUMBERED"], 0),
-            style(&["FOCUS", "DEPTH", "NUMBERED"], 1),
-            style(&["FOCUS", "DEPTH", "CONTINUED", "MEANS"], 2),
+            style(&["FOCUS", "DEPTH", "AUX_SCALAR"], 0),
+            style(&["FOCUS", "DEPTH", "AUX_SCALAR"], 1),
+            style(&["FOCUS", "DEPTH", "CONTINUED", "BOX_STATISTICS"], 2),
             style(&["FOCUS", "DEPTH"], 3),
             style(&["FOCUS"], 4),
         ],
@@ -292,7 +292,7 @@ fn focus() -> Vec<Definitions> {
 fn paint() -> Vec<Definitions> {
     product(&[
         vec![flags(&["PAINT", "CONTINUED"])],
-        vec![flags(&["MEANS"]), flags(&["PAINT_ANISOTROPIC"])],
+        vec![flags(&["BOX_STATISTICS"]), flags(&["PAINT_ANISOTROPIC"])],
         vec![Vec::new(), flags(&["PAINT_FIGURES", "OBJECT_IDS"])],
         numbers("PAINT_EIGHTH", 0..2),
         // Brushes of one size may have a whole number of pixels.
@@ -363,8 +363,14 @@ pub fn debug_views() -> Vec<Definitions> {
             "DEPTH",
         ]),
         [
-            flags(&["VIEW_EFFECT", "VIEW_PLANES", "PLANES", "MAP", "DEPTH"]),
-            vec![("PLANES_BANDS", Some(0))],
+            flags(&[
+                "VIEW_EFFECT",
+                "VIEW_DEPTH_LAYERS",
+                "DEPTH_LAYERS",
+                "MAP",
+                "DEPTH",
+            ]),
+            vec![("DEPTH_LAYERS_BANDS", Some(0))],
         ]
         .concat(),
     ]

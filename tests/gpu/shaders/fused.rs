@@ -1,6 +1,6 @@
 //! The fused pass: modes of effects, combinations of effects, views.
 
-use bevy_comics::{DebugView, EffectRegistry};
+use bevy_comics::{diagnostics::DebugView, effect::EffectRegistry};
 use bevy_comics_testkit::wgsl::{Definition, check as check_text, module_with, written};
 
 use super::{

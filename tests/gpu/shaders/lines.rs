@@ -253,15 +253,15 @@ fn settling() -> Vec<Variant> {
             }
         }
         let weights: [&[&str]; 10] = [
-            &["IN_PLANES"],
-            &["IN_PLANES", "DEPTH_BORDERS"],
-            &["IN_PLANES", "VISIBLE_RANGE", "DEPTH_BORDERS"],
-            &["IN_PLANES", "VISIBLE_RANGE", "OBJECT_DEPTHS", "OBJECT_IDS"],
+            &["IN_LAYERS"],
+            &["IN_LAYERS", "DEPTH_BORDERS"],
+            &["IN_LAYERS", "VISIBLE_RANGE", "DEPTH_BORDERS"],
+            &["IN_LAYERS", "VISIBLE_RANGE", "OBJECT_DEPTHS", "OBJECT_IDS"],
             &["ABSTRACT_CREASES", "VISIBLE_RANGE"],
             &["ABSTRACT_CREASES", "OBJECT_DEPTHS", "OBJECT_IDS"],
             &[
                 "ABSTRACT_CREASES",
-                "IN_PLANES",
+                "IN_LAYERS",
                 "OBJECT_DEPTHS",
                 "OBJECT_IDS",
             ],
@@ -297,9 +297,9 @@ fn settled_pairs() -> Vec<Variant> {
         &[&[], &["IN_FOCUS"]],
         &[
             &[],
-            &["IN_PLANES"],
-            &["IN_PLANES", "DEPTH_BORDERS"],
-            &["IN_PLANES", "OBJECT_DEPTHS"],
+            &["IN_LAYERS"],
+            &["IN_LAYERS", "DEPTH_BORDERS"],
+            &["IN_LAYERS", "OBJECT_DEPTHS"],
         ],
         &[
             &[],
@@ -313,7 +313,7 @@ fn settled_pairs() -> Vec<Variant> {
 
 fn settled(mut names: Vec<&'static str>) -> Vec<&'static str> {
     let smooth = has(&names, "SMOOTH");
-    let on_map = ["PERSPECTIVE_WEIGHT", "IN_PLANES", "ABSTRACT_CREASES"];
+    let on_map = ["PERSPECTIVE_WEIGHT", "IN_LAYERS", "ABSTRACT_CREASES"];
     let reads_map = has_any(&names, &on_map);
     names.retain(|name| match *name {
         "NIB_WEIGHT" => smooth,

@@ -1,5 +1,5 @@
 //! Shaders that are composed with the engine's own modules: those of motion lines and of transparent
-//! meshes. Those of the cartoon material are in `cartoon_shaders`.
+//! meshes. Those of the toon material are in `toon_shaders`.
 
 use bevy::{prelude::*, render::view::Msaa, shader::Shader};
 use bevy_comics_testkit::wgsl::Library;
@@ -10,8 +10,8 @@ use super::{
     shader,
 };
 use crate::{
-    cartoon_shaders::ALWAYS,
     small::{Small, options, size},
+    toon_shaders::ALWAYS,
 };
 
 /// The crate's modules and the engine's, as an app loads them.

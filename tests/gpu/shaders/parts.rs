@@ -33,30 +33,54 @@ fn focused() -> Vec<Definitions> {
     };
     vec![
         focus(0, &[]),
-        focus(0, &["NUMBERED", "MULTISAMPLED"]),
+        focus(0, &["AUX_SCALAR", "MULTISAMPLED"]),
         focus(0, &["DRAWS_NUMBERS", "NUMBERS_FOCUS"]),
-        [focus(1, &["NUMBERED"]), vec![("FOCUS_PARALLEL", Some(1))]].concat(),
+        [focus(1, &["AUX_SCALAR"]), vec![("FOCUS_PARALLEL", Some(1))]].concat(),
         focus(3, &[]),
         focus(4, &[]),
-        focus(2, &["MEANS", "MULTISAMPLED"]),
-        focus(2, &["DRAWS_MEANS", "MEANS_DOWN", "MEANS", "BOXES_FOCUS"]),
+        focus(2, &["BOX_STATISTICS", "MULTISAMPLED"]),
+        focus(
+            2,
+            &[
+                "DRAWS_BOX_STATISTICS",
+                "BOX_STATISTICS_DOWN",
+                "BOX_STATISTICS",
+                "BOXES_FOCUS",
+            ],
+        ),
     ]
 }
 
 /// Passes that paint, or draw what that reads.
 fn painted() -> Vec<Definitions> {
-    let boxes = flags(&["PAINT", "MEANS", "DRAWS_MEANS", "MEANS_DOWN", "BOXES_PAINT"]);
+    let boxes = flags(&[
+        "PAINT",
+        "BOX_STATISTICS",
+        "DRAWS_BOX_STATISTICS",
+        "BOX_STATISTICS_DOWN",
+        "BOXES_PAINT",
+    ]);
     vec![
-        flags(&["PAINT", "MEANS"]),
-        flags(&["PAINT", "MEANS", "PAINT_FIGURES", "MULTISAMPLED"]),
+        flags(&["PAINT", "BOX_STATISTICS"]),
+        flags(&["PAINT", "BOX_STATISTICS", "PAINT_FIGURES", "MULTISAMPLED"]),
         flags(&["PAINT", "PAINT_ANISOTROPIC", "PAINT_FIGURES"]),
-        flags(&["PAINT", "DRAWS_MEANS", "BOXES_PAINT", "MAP", "DEPTH"]),
+        flags(&[
+            "PAINT",
+            "DRAWS_BOX_STATISTICS",
+            "BOXES_PAINT",
+            "MAP",
+            "DEPTH",
+        ]),
         [
-            flags(&["PAINT", "MEANS", "PAINT_WHOLE", "PAINT_FIGURES"]),
+            flags(&["PAINT", "BOX_STATISTICS", "PAINT_WHOLE", "PAINT_FIGURES"]),
             vec![("PAINT_EIGHTH", Some(1))],
         ]
         .concat(),
-        [flags(&["PAINT", "DRAWS_MEANS", "BOXES_PAINT"]), reaches(1)].concat(),
+        [
+            flags(&["PAINT", "DRAWS_BOX_STATISTICS", "BOXES_PAINT"]),
+            reaches(1),
+        ]
+        .concat(),
         [boxes.clone(), reaches(6)].concat(),
         boxes,
     ]
@@ -74,16 +98,16 @@ fn divided() -> Vec<Definitions> {
     ];
     let printed = vec![
         vec![],
-        flags(&["PRINT_OFFSET"]),
-        flags(&["PRINT_OFFSET", "PRINT_OFFSET_BLACK_STAYS"]),
-        flags(&["PRINT_OFFSET", "WITHOUT_PRINT_OFFSET", "TONE_BANDS"]),
+        flags(&["MISREGISTRATION"]),
+        flags(&["MISREGISTRATION", "MISREGISTRATION_BLACK_STAYS"]),
+        flags(&["MISREGISTRATION", "WITHOUT_MISREGISTRATION", "TONE_BANDS"]),
         flags(&["HALFTONE", "HALFTONE_CELLS", "LINES", "OUTLINES"]),
         flags(&[
             "OUTLINES",
             "LINES",
             "LINE_OWNERS",
             "SURFACE_LINES",
-            "PRINT_OFFSET",
+            "MISREGISTRATION",
         ]),
     ];
     let all_effects = [printed, painted(), focused()].concat();
@@ -195,8 +219,8 @@ fn bases() -> Vec<Definitions> {
         &[
             &[],
             &["LINE_OWNERS"],
-            &["LINE_OWNERS", "IN_PLANES"],
-            &["LINE_OWNERS", "IN_PLANES", "DEPTH_BORDERS"],
+            &["LINE_OWNERS", "IN_LAYERS"],
+            &["LINE_OWNERS", "IN_LAYERS", "DEPTH_BORDERS"],
         ],
         &[&[], &["CONTINUED"]],
         &[&[], &["FINISH"]],
@@ -216,7 +240,7 @@ fn base(mut names: Vec<&'static str>) -> Vec<&'static str> {
     let lines = outlines || sketch;
     names.retain(|name| match *name {
         "SKETCH_FADES" => sketch,
-        "OBJECT_STYLES" | "LINE_OWNERS" | "IN_PLANES" | "DEPTH_BORDERS" => lines,
+        "OBJECT_STYLES" | "LINE_OWNERS" | "IN_LAYERS" | "DEPTH_BORDERS" => lines,
         // Jumps of the depth map are looked for where it has the pixels of the view.
         "MULTISAMPLED" => !contours,
         _ => true,
@@ -240,8 +264,8 @@ fn base(mut names: Vec<&'static str>) -> Vec<&'static str> {
     if has(&names, "TONE_BANDS") {
         names.extend(["LIGHTNESS_CHANGE", "TONE_BANDS_FAITHFUL=0"]);
     }
-    if has(&names, "IN_PLANES") {
-        names.extend(["PLANES", "PLANES_BANDS=0", "MAP", "DEPTH"]);
+    if has(&names, "IN_LAYERS") {
+        names.extend(["DEPTH_LAYERS", "DEPTH_LAYERS_BANDS=0", "MAP", "DEPTH"]);
     }
     if !has(&names, "DEPTH") {
         names.retain(|name| !matches!(*name, "SAME_SIZE" | "MULTISAMPLED" | "OBLIQUE"));

@@ -6,7 +6,9 @@ use bevy::reflect::{
     structs::Struct,
 };
 use bevy_comics::{
-    AnyEffect, EffectRegistry, EffectType, FieldRange, Needs, Sheet, Variants, ViewFacts, presets,
+    effect::{AnyEffect, EffectContext, EffectRegistry, EffectType, FieldRange, Needs, Variants},
+    lines::Sheet,
+    presets,
 };
 use bevy_comics_testkit::scenes::noise::Random;
 
@@ -47,7 +49,7 @@ fn entries_of_variants_are_read() {
 }
 
 /// What an effect asks for: its variants, and the definitions of its needs.
-fn asked(effect: &dyn AnyEffect, facts: &ViewFacts) -> Vec<Asked> {
+fn asked(effect: &dyn AnyEffect, facts: &EffectContext) -> Vec<Asked> {
     let mut variants = Variants::default();
     effect.any_variants(facts, &mut variants);
     let prefix = effect.effect_type().name.to_uppercase();
@@ -57,7 +59,8 @@ fn asked(effect: &dyn AnyEffect, facts: &ViewFacts) -> Vec<Asked> {
         .collect();
     for (need, names) in NEEDS {
         // Of both, the means count.
-        let counts = need != Needs::NUMBERED || !effect.any_needs().contains(Needs::MEANS);
+        let counts =
+            need != Needs::AUX_SCALAR || !effect.any_needs().contains(Needs::BOX_STATISTICS);
         if effect.any_needs().contains(need) && counts {
             all.extend(names.iter().map(|name| ((*name).to_owned(), None)));
         }
@@ -70,7 +73,7 @@ fn has(mode: &Definitions, (name, number): &Asked) -> bool {
 }
 
 /// Every pair of what the effect asks for is in a listed mode.
-fn assert_listed(effect: &dyn AnyEffect, modes: &[Definitions], facts: &ViewFacts) {
+fn assert_listed(effect: &dyn AnyEffect, modes: &[Definitions], facts: &EffectContext) {
     let asked = asked(effect, facts);
     for (i, first) in asked.iter().enumerate() {
         for second in &asked[i..] {
@@ -84,9 +87,9 @@ fn assert_listed(effect: &dyn AnyEffect, modes: &[Definitions], facts: &ViewFact
 }
 
 /// Perspective and parallel views at several scales, on a smooth and on a rough sheet.
-fn views() -> Vec<ViewFacts> {
+fn views() -> Vec<EffectContext> {
     let sheet = Sheet {
-        spread: 1.0,
+        ink_bleed: 1.0,
         dry_brush: 0.5,
         corner: bevy::math::Vec2::ZERO,
         scale: 1.0,
@@ -96,7 +99,7 @@ fn views() -> Vec<ViewFacts> {
     let mut all = Vec::new();
     for scale_factor in [1.0, 1.5, 2.0] {
         for (depth_reference, sheet) in [(None, None), (Some(3.0), Some(sheet))] {
-            let mut facts = ViewFacts::default();
+            let mut facts = EffectContext::default();
             facts.scale_factor = scale_factor;
             facts.depth_reference = depth_reference;
             facts.sheet = sheet;

@@ -152,15 +152,15 @@ and instanced meshes are drawn as plain meshes of the same shape and colour are.
 /// Every effect.
 const ALL: &[&str] = &[];
 
-/// The effects that presets use and that the twin of the whole picture draws.
+/// The effects that presets use and that the reference of the whole picture draws.
 pub const OF_PRESETS: &[&str] = &[
     "tone_ramp",
     "tone_bands",
     "desaturation",
     "colorization",
     "color_harmony",
-    "planes",
-    "print_offset",
+    "depth_layers",
+    "misregistration",
     "halftone",
     "black_flats",
     "contours",
@@ -170,7 +170,7 @@ pub const OF_PRESETS: &[&str] = &[
     "vignette",
 ];
 
-/// Effects of looks that the twin of the whole picture does not draw.
+/// Effects of looks that the reference of the whole picture does not draw.
 pub const OF_LOOKS: &[&str] = &["hatching", "iso_lines"];
 
 /// `full_style` of `failures/mod.rs`.
@@ -235,27 +235,27 @@ pub const FACTS: &[Fact] = &[
     (&[NoCompute], MANY_PASSES, Run("failures::devices::a_device_without_compute_shaders_draws_a_style")),
 
     (&[Msaa2, Msaa4, Msaa8, Hdr], ALL, Unknown),
-    (DRAWN_TWICE, OF_PRESETS, Run("pictures::every_preset_is_its_twin_with_and_without_msaa")),
+    (DRAWN_TWICE, OF_PRESETS, Run("pictures::every_preset_matches_the_reference_with_and_without_msaa")),
     (DRAWN_TWICE, &["abstraction"], Run("abstraction::far_things_are_paler_and_have_fewer_tones")),
-    (DRAWN_TWICE, &["focus"], Run("focus::every_pixel_is_its_twins")),
-    (DRAWN, &["paint"], Run("paint::every_pixel_is_its_twins")),
+    (DRAWN_TWICE, &["focus"], Run("focus::every_pixel_matches_the_reference")),
+    (DRAWN, &["paint"], Run("paint::every_pixel_matches_the_reference")),
     (&[Msaa4], &["paint"], Run("paint::a_transparent_background_stays")),
     (DRAWN, &["hatching"], Run("hatching::flat_fields_keep_their_mean_tone")),
     (DRAWN, &["iso_lines"], Run("iso_lines::heights_are_right_in_perspective")),
-    (&[Msaa4], OF_LOOKS, Run("look_limits::looks_keep_their_limits")),
-    (DRAWN, &["two_tone"], Run("two_tone::every_pixel_is_its_twins")),
-    (DRAWN, &["speed_lines"], Run("speed_lines::every_pixel_is_its_twins")),
+    (&[Msaa4], OF_LOOKS, Run("style_limits::looks_keep_their_limits")),
+    (DRAWN, &["two_tone"], Run("two_tone::every_pixel_matches_the_reference")),
+    (DRAWN, &["speed_lines"], Run("speed_lines::every_pixel_matches_the_reference")),
 
-    (&[Hdr], EVERYTHING, Run("pictures::an_hdr_camera_is_its_twin")),
+    (&[Hdr], EVERYTHING, Run("pictures::an_hdr_camera_matches_the_reference")),
     (&[Hdr], &["tone_bands", "outlines"], Run("extremes::bright_light_grows_with_its_gain")),
     (&[Hdr], &["paint"], Run("paint::extreme_values_are_finite")),
     (&[Hdr], &["focus"], Run("focus::extreme_values_are_finite")),
-    (&[Hdr], &["print_offset"], Run("print_offset::light_and_settings_out_of_range_are_finite")),
+    (&[Hdr], &["misregistration"], Run("misregistration::light_and_settings_out_of_range_are_finite")),
     (&[Hdr], &["halftone"], Run("halftone::backgrounds_stay_transparent_and_light_stays_finite")),
     (&[Hdr], &["iso_lines"], Run("iso_lines::floors_to_the_horizon_are_finite_and_clear")),
-    (&[Hdr], &["two_tone"], Run("two_tone::every_pixel_is_its_twins")),
-    (&[Hdr], &["speed_lines"], Run("speed_lines::every_pixel_is_its_twins")),
-    (&[Hdr], &["paper"], Run("paper::every_pixel_is_its_twins")),
+    (&[Hdr], &["two_tone"], Run("two_tone::every_pixel_matches_the_reference")),
+    (&[Hdr], &["speed_lines"], Run("speed_lines::every_pixel_matches_the_reference")),
+    (&[Hdr], &["paper"], Run("paper::every_pixel_matches_the_reference")),
     (&[Hdr], &["vignette"], Run("hatched_material::extreme_strokes_are_finite")),
 
     (&[Taa, Fxaa, Smaa, Resolution, Deferred], ALL, Unknown),
@@ -266,7 +266,7 @@ pub const FACTS: &[Fact] = &[
     (&[Resolution], &["outlines"], Run("upscaled::outlines_are_where_the_geometry_is")),
     (&[Resolution], &["contours"], Run("upscaled::contours_are_where_the_geometry_is")),
     (&[Resolution], &["black_flats"], Run("upscaled::an_even_slope_is_as_steep_at_every_resolution")),
-    (&[Resolution], &["halftone", "print_offset", "speed_lines", "paper"], Run("upscaled::the_page_has_the_size_of_the_picture")),
+    (&[Resolution], &["halftone", "misregistration", "speed_lines", "paper"], Run("upscaled::the_page_has_the_size_of_the_picture")),
     (&[Deferred], FIRST_PAPER, Run("failures::views::a_deferred_camera_looks_like_a_forward_one")),
 
     (&[Orthographic, Oblique, OffCentre], ALL, Unknown),
@@ -276,20 +276,20 @@ pub const FACTS: &[Fact] = &[
     (&[Orthographic], &["colorization"], Run("percentiles::a_speck_does_not_stretch_an_orthographic_range")),
     (&[Orthographic], &["paint"], Run("paint::an_edge_stays_sharp")),
     (&[Orthographic], &["focus"], Run("focus::an_orthographic_view_has_a_focus")),
-    (&[Orthographic], &["print_offset"], Run("page_scale::plates_out_of_register_are_as_far_apart")),
+    (&[Orthographic], &["misregistration"], Run("page_scale::plates_out_of_register_are_as_far_apart")),
     (&[Orthographic], &["halftone"], Run("object_screen::dots_lie_on_their_object")),
     (&[Orthographic], &["iso_lines"], Run("iso_lines::heights_are_where_they_are")),
     (&[Orthographic], &["two_tone"], Run("two_tone::lines_stay_smooth")),
-    (&[Orthographic], &["speed_lines"], Run("speed_lines::every_pixel_is_its_twins")),
+    (&[Orthographic], &["speed_lines"], Run("speed_lines::every_pixel_matches_the_reference")),
     (&[Orthographic], &["paper"], Run("paper::the_mean_tone_stays")),
     (&[Oblique], &["colorization"], Run("smoothing_views::an_oblique_near_plane_that_moves_does_not_start_anew")),
 
     (&[Viewport, SplitScreen, SeveralCameras], ALL, Unknown),
     (&[Viewport], EVERYTHING, Run("pictures::a_viewport_is_styled_inside_and_untouched_outside")),
-    (&[Viewport], &["outlines"], Run("line_samples::a_multisampled_viewport_is_its_twin")),
+    (&[Viewport], &["outlines"], Run("line_samples::a_multisampled_viewport_matches_the_reference")),
     (&[Viewport], &["paint"], Run("paint::a_viewport_is_a_picture_of_its_own")),
     (&[Viewport], &["focus"], Run("focus::a_viewport_is_a_picture_of_its_own")),
-    (&[Viewport], &["print_offset", "tone_bands"], Run("print_offset::every_pixel_is_its_twins")),
+    (&[Viewport], &["misregistration", "tone_bands"], Run("misregistration::every_pixel_matches_the_reference")),
     (&[Viewport], &["halftone"], Run("halftone::viewports_are_pages_or_parts_of_one")),
     (&[Viewport], &["speed_lines"], Run("speed_lines::a_viewport_is_a_picture_of_its_own")),
     (&[Viewport], &["paper"], Run("paper::a_view_can_have_its_own_sheet")),
@@ -301,7 +301,7 @@ pub const FACTS: &[Fact] = &[
     (&[Morphed, OwnPipeline], ALL, Unknown),
     (&[Transparent], &["outlines", "desaturation", "colorization", "contours", "sketch"],
         Run("transparent_lines::it_is_drawn_as_an_opaque_mesh_would_be")),
-    (&[Skinned, Morphed], &["outlines"], Run("sections::pictures_with_sections_are_their_twins")),
+    (&[Skinned, Morphed], &["outlines"], Run("sections::pictures_with_sections_match_the_reference")),
     (&[Instanced], &["outlines"], Run("ids::touching_objects_of_like_depth_and_normal_have_an_edge")),
     (&[OwnPipeline], &["outlines"], NotSupported("no edges between objects")),
 ];

@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::Page;
 use crate::{
-    ComicStyle, Effect, EffectShader, EffectStage, EffectType, FieldRange, NoUniform, ViewFacts,
+    ComicStyle, Effect,
+    effect::{EffectContext, EffectShader, EffectStage, EffectType, FieldRange, NoUniform},
 };
 
 #[derive(Component, Reflect, Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -65,7 +66,7 @@ impl Effect for Rain {
         self
     }
 
-    fn uniform(&self, _: &ViewFacts) -> NoUniform {
+    fn uniform(&self, _: &EffectContext) -> NoUniform {
         NoUniform::default()
     }
 }

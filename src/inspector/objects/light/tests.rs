@@ -1,7 +1,10 @@
 use bevy::{asset::Assets, color::Color, ecs::name::Name};
 
 use super::*;
-use crate::{CartoonMaterial, CartoonScene, RampDetail, ToonLook};
+use crate::{
+    ToonMaterial, ToonScene,
+    toon::{RampDetail, ToonShading},
+};
 
 fn stop(at: f32) -> RampStop {
     RampStop::new(at, Color::WHITE)
@@ -11,7 +14,7 @@ fn stop(at: f32) -> RampStop {
 #[test]
 fn stops_keep_their_order_and_every_number_its_range() {
     let stops = vec![stop(0.75), stop(f32::NAN), stop(9.0), stop(0.25)];
-    let light = CartoonLight {
+    let light = ToonLight {
         highlight: -3.0,
         falloff: f32::NAN,
         ramp: Some(Ramp {
@@ -21,7 +24,7 @@ fn stops_keep_their_order_and_every_number_its_range() {
             }),
             ..Ramp::new(stops)
         }),
-        ..CartoonLight::default()
+        ..ToonLight::default()
     };
     let used = in_ranges(light.clone());
     assert_eq!((used.highlight, used.falloff), (0.0, 1.0));
@@ -34,11 +37,11 @@ fn stops_keep_their_order_and_every_number_its_range() {
     assert_eq!(used.sanitized(), light.sanitized());
     // As many stops as count, and never none.
     let many = Ramp::new((0..20).map(|_| stop(0.5)));
-    let of = |ramp| CartoonLight {
+    let of = |ramp| ToonLight {
         ramp: Some(ramp),
-        ..CartoonLight::default()
+        ..ToonLight::default()
     };
-    let count = |light: CartoonLight| in_ranges(light).ramp.expect("a ramp").stops.len();
+    let count = |light: ToonLight| in_ranges(light).ramp.expect("a ramp").stops.len();
     assert_eq!(count(of(many)), Ramp::MOST_STOPS);
     assert_eq!(in_ranges(of(Ramp::new([]))), of(Ramp::default()));
 }
@@ -46,34 +49,34 @@ fn stops_keep_their_order_and_every_number_its_range() {
 #[test]
 fn the_panel_says_what_it_edits() {
     let mut world = World::new();
-    let mut looks = Assets::<ToonLook>::default();
-    let look = looks.add(ToonLook {
+    let mut shadings = Assets::<ToonShading>::default();
+    let shading = shadings.add(ToonShading {
         name: "Skin".into(),
-        ..ToonLook::default()
+        ..ToonShading::default()
     });
-    let nameless = looks.add(ToonLook::default());
-    world.insert_resource(looks);
-    let scene = (Name::new("Hero"), CartoonScene::default());
+    let nameless = shadings.add(ToonShading::default());
+    world.insert_resource(shadings);
+    let scene = (Name::new("Hero"), ToonScene::default());
     let root = world.spawn(scene).id();
-    let material = Handle::<CartoonMaterial>::default();
+    let material = Handle::<ToonMaterial>::default();
     for (place, count, wanted) in [
         (
-            LightPlace::Look(look),
+            LightOwner::Shading(shading),
             3,
-            "Edits the look “Skin”, which is made by code. 3 meshes have it.",
+            "Edits the shading “Skin”, which is made by code. 3 meshes have it.",
         ),
         (
-            LightPlace::Look(nameless),
+            LightOwner::Shading(nameless),
             1,
-            "Edits the look, which is made by code. Only this mesh has it.",
+            "Edits the shading, which is made by code. Only this mesh has it.",
         ),
         (
-            LightPlace::Scene(root),
+            LightOwner::Scene(root),
             2,
-            "Edits CartoonScene::light of Hero. 2 meshes have it.",
+            "Edits ToonScene::light of Hero. 2 meshes have it.",
         ),
         (
-            LightPlace::Material(material),
+            LightOwner::Material(material),
             1,
             "Edits the material, which is made by code. Only this mesh has it.",
         ),

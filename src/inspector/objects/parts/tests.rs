@@ -14,20 +14,19 @@ fn hierarchy() -> (World, [Entity; 3]) {
 fn the_component_that_counts_is_edited() {
     let (mut world, [root, limb, mesh]) = hierarchy();
     assert_eq!(source::<OutlineStyle>(&world, mesh), None);
-    world.entity_mut(root).insert(OutlineStyle::default());
+    world.entity_mut(root).insert(OutlineStyle {
+        inherit: false,
+        ..OutlineStyle::default()
+    });
     assert_eq!(source::<OutlineStyle>(&world, mesh), None, "not inherited");
     assert_eq!(source::<OutlineStyle>(&world, root), Some(root));
-    let inherited = OutlineStyle {
-        inherit: true,
-        ..OutlineStyle::default()
-    };
-    world.entity_mut(root).insert(inherited);
+    world.entity_mut(root).insert(OutlineStyle::default());
     assert_eq!(source::<OutlineStyle>(&world, mesh), Some(root));
     // One in between ends it, even if it is not inherited itself.
-    world.entity_mut(limb).insert(NoOutlines::default());
+    world.entity_mut(limb).insert(NoOutlines { inherit: false });
     assert_eq!(source::<OutlineStyle>(&world, mesh), None);
     assert_eq!(source::<NoOutlines>(&world, mesh), None);
-    world.entity_mut(limb).insert(NoOutlines::INHERITED);
+    world.entity_mut(limb).insert(NoOutlines::default());
     assert_eq!(source::<NoOutlines>(&world, mesh), Some(limb));
     world.entity_mut(mesh).insert(OutlineStyle::default());
     assert_eq!(source::<OutlineStyle>(&world, mesh), Some(mesh));

@@ -223,7 +223,7 @@ fn odd_meshes_do_no_harm() {
     }
 }
 
-#[cfg(feature = "cartoon")]
+#[cfg(feature = "toon")]
 #[test]
 fn sides_that_a_material_leaves_out_are_not_picked() {
     use bevy::pbr::StandardMaterial;

@@ -8,7 +8,8 @@ use bevy::{
 
 use super::*;
 use crate::{
-    CartoonLight, CartoonMaterial, MeshSections, NoOutlines, OutlineStyle, ToonLook, ToonLookHandle,
+    NoOutlines, OutlineStyle, ToonLight, ToonMaterial, ToonShadingHandle, objects::MeshSections,
+    toon::ToonShading,
 };
 
 fn standard(page: &mut Page) -> Handle<StandardMaterial> {
@@ -18,27 +19,25 @@ fn standard(page: &mut Page) -> Handle<StandardMaterial> {
     })
 }
 
-/// The cartoon material of a mesh.
-fn cartoon(page: &Page, mesh: Entity) -> Option<&CartoonMaterial> {
-    let handle = page.world.get::<MeshMaterial3d<CartoonMaterial>>(mesh)?;
-    page.world
-        .resource::<Assets<CartoonMaterial>>()
-        .get(&handle.0)
+/// The toon material of a mesh.
+fn toon(page: &Page, mesh: Entity) -> Option<&ToonMaterial> {
+    let handle = page.world.get::<MeshMaterial3d<ToonMaterial>>(mesh)?;
+    page.world.resource::<Assets<ToonMaterial>>().get(&handle.0)
 }
 
 #[test]
-fn a_standard_material_becomes_a_cartoon_material_and_back() {
+fn a_standard_material_becomes_a_toon_material_and_back() {
     let mut page = Page::new();
-    page.world.init_resource::<Assets<CartoonMaterial>>();
+    page.world.init_resource::<Assets<ToonMaterial>>();
     let [red, other] = [standard(&mut page), standard(&mut page)];
-    let [mesh, twin, stranger] = [&red, &red, &other]
+    let [mesh, reference, stranger] = [&red, &red, &other]
         .map(|material| page.world.spawn(MeshMaterial3d(material.clone())).id());
     page.pick(mesh);
     page.click("light.convert");
-    for mesh in [mesh, twin] {
-        let material = cartoon(&page, mesh).expect("a cartoon material");
+    for mesh in [mesh, reference] {
+        let material = toon(&page, mesh).expect("a toon material");
         assert_eq!(material.base.base_color, Color::srgb(0.9, 0.1, 0.2));
-        assert_eq!(material.extension, CartoonLight::default());
+        assert_eq!(material.extension, ToonLight::default());
         assert!(
             !page
                 .world
@@ -46,28 +45,28 @@ fn a_standard_material_becomes_a_cartoon_material_and_back() {
                 .contains::<MeshMaterial3d<StandardMaterial>>()
         );
     }
-    assert!(cartoon(&page, stranger).is_none());
-    assert!(page.has("light.terminator"), "and can be edited");
-    page.drag("light.terminator", 0.1, 0.5);
-    let edited = cartoon(&page, twin).expect("shared").extension.clone();
-    assert!(edited.terminator > 0.2);
+    assert!(toon(&page, stranger).is_none());
+    assert!(page.has("light.shadow_threshold"), "and can be edited");
+    page.drag("light.shadow_threshold", 0.1, 0.5);
+    let edited = toon(&page, reference).expect("shared").extension.clone();
+    assert!(edited.shadow_threshold > 0.2);
     assert!(page.take(Way::Undo) && page.take(Way::Undo));
-    for mesh in [mesh, twin] {
+    for mesh in [mesh, reference] {
         let material = page.world.get::<MeshMaterial3d<StandardMaterial>>(mesh);
         assert_eq!(material.map(|material| &material.0), Some(&red));
-        assert!(cartoon(&page, mesh).is_none());
+        assert!(toon(&page, mesh).is_none());
     }
     assert!(page.has("light.convert"));
     // The redo of the edit finds the material of the redone conversion.
     assert!(page.take(Way::Redo) && page.take(Way::Redo));
-    assert_eq!(cartoon(&page, mesh).expect("again").extension, edited);
+    assert_eq!(toon(&page, mesh).expect("again").extension, edited);
     assert_eq!(page.history.steps(CAMERA), (2, 0));
 }
 
 /// All edited values of an object.
 #[derive(Clone, Debug, PartialEq)]
 struct Edited {
-    light: CartoonLight,
+    light: ToonLight,
     style: Option<OutlineStyle>,
     none: Option<NoOutlines>,
     sections: Option<MeshSections>,
@@ -76,16 +75,16 @@ struct Edited {
 #[test]
 fn light_lines_and_sections_are_undone_in_one_order() {
     let mut page = Page::new();
-    let look = page.add(ToonLook::default());
-    let (base, extension) = (StandardMaterial::default(), CartoonLight::default());
-    let material = page.add(CartoonMaterial { base, extension });
-    let bundle = (MeshMaterial3d(material), ToonLookHandle(look.clone()));
+    let shading = page.add(ToonShading::default());
+    let (base, extension) = (StandardMaterial::default(), ToonLight::default());
+    let material = page.add(ToonMaterial { base, extension });
+    let bundle = (MeshMaterial3d(material), ToonShadingHandle(shading.clone()));
     let mesh = page.world.spawn(bundle).id();
     page.pick(mesh);
     let state = |page: &Page| Edited {
         light: {
-            let looks = page.world.resource::<Assets<ToonLook>>();
-            looks.get(&look).expect("a look").light.clone()
+            let shadings = page.world.resource::<Assets<ToonShading>>();
+            shadings.get(&shading).expect("a shading").light.clone()
         },
         style: page.world.get::<OutlineStyle>(mesh).copied(),
         none: page.world.get::<NoOutlines>(mesh).copied(),
@@ -93,7 +92,7 @@ fn light_lines_and_sections_are_undone_in_one_order() {
     };
     let mut states = vec![state(&page)];
     let edit = |page: &mut Page, states: &mut Vec<Edited>, widget: &str| {
-        if widget.ends_with("angle") || widget.ends_with("terminator") {
+        if widget.ends_with("angle") || widget.ends_with("shadow_threshold") {
             page.drag(widget, 0.3, 0.6);
         } else {
             page.click(widget);
@@ -108,7 +107,7 @@ fn light_lines_and_sections_are_undone_in_one_order() {
         "outline_style.width.on",
         "mesh_sections",
         "mesh_sections.angle",
-        "light.terminator",
+        "light.shadow_threshold",
         "no_outlines",
         "light.ramp.stops.add",
         "outline_style",
@@ -135,10 +134,7 @@ fn light_lines_and_sections_are_undone_in_one_order() {
 #[test]
 fn the_style_of_a_figure_is_edited_on_its_root() {
     let mut page = Page::new();
-    let style = OutlineStyle {
-        inherit: true,
-        ..OutlineStyle::default()
-    };
+    let style = OutlineStyle::default();
     let root = page.world.spawn((Name::new("Hero"), style)).id();
     let part = page.world.spawn(ChildOf(root)).id();
     page.pick(part);
@@ -149,7 +145,7 @@ fn the_style_of_a_figure_is_edited_on_its_root() {
     assert!(!kinds.creases && kinds.silhouettes);
     assert!(!page.world.entity(part).contains::<OutlineStyle>());
     page.click("outline_style.reset");
-    assert!(!page.has("outline_style.source"), "no longer inherited");
+    assert_eq!(page.world.get::<OutlineStyle>(root), Some(&style));
 }
 
 /// The material that an edit changes is the one that the mesh shows last: its own, or the standard
@@ -157,7 +153,7 @@ fn the_style_of_a_figure_is_edited_on_its_root() {
 #[test]
 fn the_material_of_an_object_is_edited_and_undone() {
     let mut page = Page::new();
-    page.world.init_resource::<Assets<CartoonMaterial>>();
+    page.world.init_resource::<Assets<ToonMaterial>>();
     let red = standard(&mut page);
     let mesh = page.world.spawn(MeshMaterial3d(red.clone())).id();
     page.pick(mesh);
@@ -169,14 +165,14 @@ fn the_material_of_an_object_is_edited_and_undone() {
     assert!((rough(&page) - 0.5).abs() > 0.1, "{}", rough(&page));
     assert!(page.take(Way::Undo));
     assert_eq!(rough(&page), 0.5);
-    // As a cartoon material of its own.
+    // As a toon material of its own.
     page.click("light.convert");
     page.drag("material.metallic", 0.1, 0.5);
-    let material = cartoon(&page, mesh).expect("a cartoon material");
+    let material = toon(&page, mesh).expect("a toon material");
     assert!(material.base.metallic > 0.2, "{}", material.base.metallic);
     assert_eq!(material.base.base_color, Color::srgb(0.9, 0.1, 0.2));
     assert!(page.take(Way::Undo));
-    assert_eq!(cartoon(&page, mesh).expect("still").base.metallic, 0.0);
+    assert_eq!(toon(&page, mesh).expect("still").base.metallic, 0.0);
     // A material that has not loaded has no section.
     let none = page
         .world

@@ -11,22 +11,25 @@ use bevy::{
 
 use super::*;
 use crate::{
-    CartoonLight, CartoonMaterial, DetailAxis, FormShape, Glint, Hatching, Ramp, RampDetail,
-    RampStop, Rim, RimWidth, ShadedForm,
+    Hatching, ToonLight, ToonMaterial,
+    toon::{
+        DetailAxis, ProxyShape, Ramp, RampDetail, RampStop, Rim, RimWidth, ShadingProxy,
+        StylizedHighlight,
+    },
 };
 
 /// A picked mesh with a light, and its material.
-fn page_of(extension: CartoonLight) -> (Page, Handle<CartoonMaterial>) {
+fn page_of(extension: ToonLight) -> (Page, Handle<ToonMaterial>) {
     let mut page = Page::new();
     let base = StandardMaterial::default();
-    let material = page.add(CartoonMaterial { base, extension });
+    let material = page.add(ToonMaterial { base, extension });
     let mesh = page.world.spawn(MeshMaterial3d(material.clone())).id();
     page.pick(mesh);
     (page, material)
 }
 
-fn light(page: &Page, material: &Handle<CartoonMaterial>) -> CartoonLight {
-    let materials = page.world.resource::<Assets<CartoonMaterial>>();
+fn light(page: &Page, material: &Handle<ToonMaterial>) -> ToonLight {
+    let materials = page.world.resource::<Assets<ToonMaterial>>();
     materials
         .get(material)
         .expect("a material")
@@ -35,8 +38,8 @@ fn light(page: &Page, material: &Handle<CartoonMaterial>) -> CartoonLight {
 }
 
 /// A light with everything that it can have.
-fn full() -> CartoonLight {
-    CartoonLight {
+fn full() -> ToonLight {
+    ToonLight {
         ramp: Some(Ramp {
             detail: Some(RampDetail {
                 plain: vec![RampStop::default(), RampStop::new(0.5, Color::WHITE)],
@@ -44,13 +47,13 @@ fn full() -> CartoonLight {
             }),
             ..Ramp::new([0.9, 0.0, 0.4].map(|at| RampStop::new(at, Color::srgb(0.2, at, 0.5))))
         }),
-        glint: Some(Glint::default()),
-        form: Some(ShadedForm {
-            shape: FormShape::Ellipsoid {
+        stylized_highlight: Some(StylizedHighlight::default()),
+        proxy: Some(ShadingProxy {
+            shape: ProxyShape::Ellipsoid {
                 center: Vec3::new(0.0, 1.0, 2.0),
                 half_size: Vec3::ONE,
             },
-            ..ShadedForm::default()
+            ..ShadingProxy::default()
         }),
         rim: Some(Rim {
             width: RimWidth::Pixels(5.0),
@@ -58,7 +61,7 @@ fn full() -> CartoonLight {
         }),
         hatching: Some(Hatching::default()),
         art_map: Some(Handle::default()),
-        ..CartoonLight::default()
+        ..ToonLight::default()
     }
 }
 
@@ -114,7 +117,7 @@ fn every_value_of_a_light_has_a_widget_and_showing_it_changes_nothing() {
     assert!(page.has("light.ramp.stops.bar"));
 }
 
-fn places(light: &CartoonLight) -> Vec<f32> {
+fn places(light: &ToonLight) -> Vec<f32> {
     let ramp = light.ramp.as_ref().expect("a ramp");
     ramp.stops.iter().map(|stop| stop.at).collect()
 }
@@ -156,8 +159,15 @@ fn stops_are_added_removed_and_moved() {
 
 #[test]
 fn options_come_with_their_defaults_and_come_back_with_their_last_values() {
-    let (mut page, material) = page_of(CartoonLight::default());
-    for path in ["ramp", "glint", "form", "rim", "hatching", "ramp.detail"] {
+    let (mut page, material) = page_of(ToonLight::default());
+    for path in [
+        "ramp",
+        "stylized_highlight",
+        "proxy",
+        "rim",
+        "hatching",
+        "ramp.detail",
+    ] {
         page.click(&format!("light.{path}.on"));
     }
     let on = light(&page, &material);
@@ -165,21 +175,24 @@ fn options_come_with_their_defaults_and_come_back_with_their_last_values() {
         detail: Some(RampDetail::default()),
         ..Ramp::default()
     };
-    let wanted = CartoonLight {
+    let wanted = ToonLight {
         ramp: Some(ramp),
-        glint: Some(Glint::default()),
-        form: Some(ShadedForm::default()),
+        stylized_highlight: Some(StylizedHighlight::default()),
+        proxy: Some(ShadingProxy::default()),
         rim: Some(Rim::default()),
         hatching: Some(Hatching::default()),
-        ..CartoonLight::default()
+        ..ToonLight::default()
     };
     assert_eq!(on, wanted);
-    page.drag("light.glint.bar", 0.2, 0.5);
+    page.drag("light.stylized_highlight.bar", 0.2, 0.5);
     let before = light(&page, &material);
-    assert!(before.glint.expect("a sign").bar > 0.4, "{before:?}");
-    page.click("light.glint.on");
-    assert_eq!(light(&page, &material).glint, None);
-    page.click("light.glint.on");
+    assert!(
+        before.stylized_highlight.expect("a sign").bar > 0.4,
+        "{before:?}"
+    );
+    page.click("light.stylized_highlight.on");
+    assert_eq!(light(&page, &material).stylized_highlight, None);
+    page.click("light.stylized_highlight.on");
     assert_eq!(light(&page, &material), before);
 }
 
@@ -199,11 +212,11 @@ fn modes_with_a_number_and_vectors_are_edited() {
     page.click("light.rim.width.Pixels");
     assert_eq!(rim(&page), RimWidth::Pixels(wide), "its last width");
     // A mode that was never chosen has its documented defaults.
-    page.click("light.form.shape");
-    page.click("light.form.shape.Cylinder");
-    let form = light(&page, &material).form.expect("a form");
+    page.click("light.proxy.shape");
+    page.click("light.proxy.shape.Cylinder");
+    let form = light(&page, &material).proxy.expect("a form");
     let (center, half_size) = (Vec3::ZERO, Vec3::ONE);
-    assert_eq!(form.shape, FormShape::Cylinder { center, half_size });
+    assert_eq!(form.shape, ProxyShape::Cylinder { center, half_size });
     page.click("light.ramp.detail.axis");
     page.click("light.ramp.detail.axis.Rim");
     let axis = |page: &Page| {
@@ -212,8 +225,11 @@ fn modes_with_a_number_and_vectors_are_edited() {
     };
     assert_eq!(axis(&page), DetailAxis::Rim { power: 1.0 });
     // The first number of a vector.
-    page.drag("light.glint.offset", 0.2, 0.8);
-    let offset = light(&page, &material).glint.expect("a sign").offset;
+    page.drag("light.stylized_highlight.offset", 0.2, 0.8);
+    let offset = light(&page, &material)
+        .stylized_highlight
+        .expect("a sign")
+        .offset;
     assert!(
         offset.x > 0.0 && offset.x <= 8.0 && offset.y == 0.0,
         "{offset}"

@@ -5,17 +5,17 @@ mod body;
 mod clay;
 mod face;
 mod hair;
-mod looks;
 pub mod motion;
+mod shading;
 
 use bevy::{
     light::{CascadeShadowConfigBuilder, NotShadowCaster},
     prelude::*,
 };
-use bevy_comics::{MaterialName, OutlineGroup};
+use bevy_comics::{OutlineGroup, toon::MaterialName};
 
 use super::{
-    CartoonPart, ScenePart, Stage, Vantage,
+    ScenePart, Stage, ToonPart, Vantage,
     shape::{Shape, rgb},
     sky::Sky,
 };
@@ -192,8 +192,8 @@ pub fn spawn(stage: &mut Stage) -> Vantage {
     body(&mut shop, figure);
     hills(&mut shop);
     if let Some(looks) = &mut stage.looks {
-        let cartoon = CartoonPart(looks::scene(looks));
-        stage.commands.entity(figure).insert(cartoon);
+        let toon = ToonPart(shading::scene(looks));
+        stage.commands.entity(figure).insert(toon);
     }
 
     let light = DirectionalLight {

@@ -1,0 +1,113 @@
+//! Copies the plans of active cameras to the render world.
+
+use bevy::{
+    camera::{Camera, Camera3d, Projection},
+    ecs::{
+        entity::{Entity, EntityHashSet},
+        query::With,
+        system::{Commands, EntityCommands, Local, Query, Res},
+    },
+    math::Vec3,
+    render::{Extract, sync_world::RenderEntity},
+    time::{Real, Time},
+    transform::components::GlobalTransform,
+};
+
+use super::{CameraPlan, fog::Fogs, light::Lights};
+use crate::{
+    depth::{frame::DepthProjection, smoothing::CameraCuts},
+    effect::EffectTarget,
+    fused::{Plan, ViewPlan},
+    objects::{DepthWanted, DepthWrites, IdsWanted, ObjectStyles},
+};
+
+pub(super) fn extract_views(
+    mut commands: Commands,
+    cameras: Extract<
+        Query<
+            (
+                Entity,
+                RenderEntity,
+                &Camera,
+                &CameraPlan,
+                Option<&Projection>,
+                (Option<&CameraCuts>, Option<&EffectTarget>),
+            ),
+            With<Camera3d>,
+        >,
+    >,
+    (time, real_time): (Extract<Option<Res<Time>>>, Extract<Option<Res<Time<Real>>>>),
+    (objects, writes, lights, fogs, places): (
+        Extract<Res<ObjectStyles>>,
+        Extract<Res<DepthWrites>>,
+        Extract<Lights>,
+        Extract<Fogs>,
+        Extract<Query<&GlobalTransform>>,
+    ),
+    stale: Query<Entity, With<ViewPlan>>,
+    mut seen: Local<EntityHashSet>,
+) {
+    seen.clear();
+    let to_light = lights.to_light();
+    for (entity, render_entity, camera, asked, projection, (cuts, target)) in &cameras {
+        if !camera.is_active {
+            continue;
+        }
+        let clip_from_view = camera.clip_from_view();
+        seen.insert(render_entity);
+        let mut view = commands.entity(render_entity);
+        want_objects(&mut view, (entity, &asked.plan), !writes.cutoffs.is_empty());
+        view.insert(ViewPlan {
+            camera: entity,
+            plan: asked.plan.clone(),
+            number: asked.number,
+            projection: DepthProjection::new(&clip_from_view, projection),
+            clip_from_view,
+            scale_factor: camera.target_scaling_factor().unwrap_or(1.0),
+            widest_object: objects.max_width(),
+            to_light,
+            fog: fogs.of(entity),
+            target: target.and_then(|target| position_of(target, &places)),
+            time: time.as_ref().map_or(0.0, |time| time.elapsed_secs_f64()),
+            seconds: real_time.as_ref().map_or(0.0, |time| time.delta_secs()),
+            cuts: cuts.map_or(0, |cuts| cuts.0),
+        });
+    }
+    for entity in &stale {
+        if !seen.contains(&entity) {
+            commands
+                .entity(entity)
+                .remove::<(ViewPlan, IdsWanted, DepthWanted)>();
+        }
+    }
+}
+
+/// The world position that effects point at.
+fn position_of(target: &EffectTarget, places: &Query<&GlobalTransform>) -> Option<Vec3> {
+    let place = places.get(target.entity).ok()?;
+    Some(place.transform_point(target.offset))
+}
+
+/// Says what the pass of objects draws. During extraction, so that meshes are queued in the
+/// first frame that reads it: plans are chosen only after queueing.
+fn want_objects(view: &mut EntityCommands, (camera, plan): (Entity, &Plan), writes: bool) {
+    let wanted = IdsWanted {
+        ids: plan.draws_ids(),
+        layer: plan.marks,
+        widths: plan.draws_widths(),
+    };
+    if wanted.ids || wanted.layer {
+        view.insert(wanted);
+    } else {
+        view.remove::<IdsWanted>();
+    }
+    let can_write = plan.has_ids() && !plan.lacks.depth_copies;
+    if writes && can_write && plan.needs_depth() {
+        view.insert(DepthWanted {
+            camera,
+            normals: plan.needs_normals(),
+        });
+    } else {
+        view.remove::<DepthWanted>();
+    }
+}

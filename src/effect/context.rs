@@ -1,0 +1,91 @@
+//! What an effect is told about the view that it is drawn on.
+
+use bevy::math::{Mat4, UVec2, UVec4, Vec2, Vec3};
+
+use crate::{clock::drawing_seed, lines::Sheet};
+
+/// What an effect is told about the view that it is drawn on: for its shader variants and its
+/// uniform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct EffectContext {
+    /// The viewport in physical pixels: x and y of its top left corner in the
+    /// render target, width, height.
+    pub viewport: UVec4,
+    /// Width and height of the render target in physical pixels.
+    pub target_size: UVec2,
+    /// Physical pixels per logical pixel.
+    pub scale_factor: f32,
+    /// World position from normalized device coordinates and the texel of the depth texture.
+    pub world_from_clip: Mat4,
+    /// Clip space from world space.
+    pub clip_from_world: Mat4,
+    /// The same as `world_from_clip`, but relative to the eye: exact to a fraction of a pixel also
+    /// far from the world's origin.
+    pub relative_from_clip: Mat4,
+    /// World position of the eye.
+    pub eye: Vec3,
+    /// Unit vector towards the light that lines and strokes follow
+    /// ([`KeyLight`](crate::KeyLight)), in world space.
+    pub to_light: Vec3,
+    /// Number of [`CameraCut`](crate::CameraCut)s of the camera so far.
+    pub cuts: u32,
+    /// Seconds of the app's default clock ([`Time`](bevy::time::Time)).
+    pub seconds: f64,
+    /// Where the object that effects point at ([`EffectTarget`](crate::effect::EffectTarget)) is in
+    /// the viewport, in physical pixels from its top left corner; `None` if the camera has
+    /// none, or it is behind the camera.
+    pub target: Option<Vec2>,
+    /// The distance of that object along the view's axis, in world units.
+    pub target_depth: Option<f32>,
+    /// Two numbers that give the distance along the view's axis at a raw depth d: x / (d + y),
+    /// in an orthographic view x + y * d.
+    pub depth_axis: Vec2,
+    /// In an orthographic view: the distance in world units from which a perspective view of 45
+    /// degrees shows the same height.
+    pub depth_reference: Option<f32>,
+    /// The effect that requests the lines is not on the camera but implied by
+    /// another one ([`Effect::implied`](crate::Effect::implied)). Also true if no
+    /// effect requests lines.
+    pub lines_implied: bool,
+    /// The sheet that the view is printed on: that of the first effect in the chain that has one
+    /// ([`Effect::sheet`](crate::Effect::sheet)).
+    pub sheet: Option<Sheet>,
+}
+
+impl Default for EffectContext {
+    /// A view of 1280 by 720 physical pixels, at scale factor 1 and time 0, whose world
+    /// positions are its normalized device coordinates, with the depth of an infinite perspective
+    /// from 0.1 on.
+    fn default() -> Self {
+        Self {
+            viewport: UVec4::new(0, 0, 1280, 720),
+            target_size: UVec2::new(1280, 720),
+            scale_factor: 1.0,
+            world_from_clip: Mat4::IDENTITY,
+            clip_from_world: Mat4::IDENTITY,
+            relative_from_clip: Mat4::IDENTITY,
+            eye: Vec3::ZERO,
+            to_light: Vec3::Y,
+            cuts: 0,
+            seconds: 0.0,
+            target: None,
+            target_depth: None,
+            depth_axis: Vec2::new(0.1, 0.0),
+            depth_reference: None,
+            lines_implied: false,
+            sheet: None,
+        }
+    }
+}
+
+impl EffectContext {
+    /// Number of the drawing that is shown, as a seed for random numbers: 0 to 65535, then
+    /// from 0 again. `rate`: drawings per second; at 0 there is one drawing for all time.
+    ///
+    /// All effects that use the same rate change in the same frame, and stand still while the
+    /// game's clock does.
+    pub fn animation_seed(&self, rate: f32) -> u32 {
+        drawing_seed(self.seconds, rate)
+    }
+}

@@ -1,0 +1,134 @@
+//! Names of effects: which are free, and what they are called in shaders.
+
+use naga_oil::compose::get_preprocessor_data;
+
+use super::EffectType;
+
+/// The keys of a style file that do not name an effect.
+pub(crate) const FILE_KEYS: [&str; 4] = ["version", "name", "partial", "depth_map"];
+
+/// The modules of this crate that an effect may import.
+const MODULES: [&str; 23] = [
+    "bevy_comics::depth::map",
+    "bevy_comics::depth::normal",
+    "bevy_comics::depth::raw",
+    "bevy_comics::depth::view",
+    "bevy_comics::depth::window",
+    "bevy_comics::effect::blue_noise",
+    "bevy_comics::effect::color",
+    "bevy_comics::effect::footprint",
+    "bevy_comics::effect::box_statistics",
+    "bevy_comics::effect::nested",
+    "bevy_comics::effect::noise",
+    "bevy_comics::effect::aux_scalar",
+    "bevy_comics::effect::picture",
+    "bevy_comics::effect::pixel",
+    "bevy_comics::effect::screen",
+    "bevy_comics::effect::sheet",
+    "bevy_comics::effect::similarity",
+    "bevy_comics::effect::stipple",
+    "bevy_comics::effect::strokes",
+    "bevy_comics::lines::edge",
+    "bevy_comics::lines::read",
+    "bevy_comics::lines::surface",
+    "bevy_comics::objects",
+];
+
+/// Shader definitions of the fused pass that do not name an effect, in lower case.
+const DEFINITIONS: [&str; 38] = [
+    "depth",
+    "depth_borders",
+    "map",
+    "map_flags",
+    "visible_range",
+    "multisampled",
+    "samples",
+    "oblique",
+    "same_size",
+    "normals",
+    "object_ids",
+    "object_styles",
+    "object_anchors",
+    "object_depths",
+    "lines",
+    "lines_anywhere",
+    "line_owners",
+    "surface_lines",
+    "layer_ink",
+    "in_layers",
+    "lightness_change",
+    "blue_noise",
+    "finish",
+    "overlay",
+    "stored_srgb",
+    "stored_oklab",
+    "unstyled",
+    "unstyled_colors",
+    "unstyled_print",
+    "continued",
+    "layer",
+    "box_statistics",
+    "draws_box_statistics",
+    "box_statistics_down",
+    "max_radius",
+    "aux_scalar",
+    "draws_numbers",
+    "inside",
+];
+
+/// The shader definition of the effect with this name.
+pub(crate) fn definition(name: &str) -> String {
+    name.to_uppercase()
+}
+
+/// Why an effect cannot be registered beside the `known` ones; `None` if it can.
+pub(super) fn refuses(effect: &EffectType, known: &[&EffectType]) -> Option<&'static str> {
+    let name = effect.name;
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    // The shader composer reserves names that end with a digit or underscore.
+    if !name.starts_with(|c: char| c.is_ascii_lowercase())
+        || !name.ends_with(|c: char| c.is_ascii_lowercase())
+        || !name.chars().all(plain)
+    {
+        Some("its name is not in snake_case, or ends with a digit or an underscore")
+    } else if DEFINITIONS.contains(&name)
+        || FILE_KEYS.contains(&name)
+        || ["view_", "without_", "boxes_", "numbers_", "reaches_"]
+            .iter()
+            .any(|prefix| name.starts_with(prefix))
+    {
+        Some("its name is reserved")
+    } else if !defines(effect.shader.source, effect.shader.path) {
+        Some("its WGSL does not define the import path in SHADER.path")
+    } else if MODULES.contains(&effect.shader.path)
+        || known
+            .iter()
+            .any(|other| other.shader.path == effect.shader.path)
+    {
+        Some("another module has the same import path")
+    } else if imports_unknown(effect, known) {
+        Some("its WGSL imports a module of bevy_comics that does not exist")
+    } else if known.iter().any(|other| other.name == name) {
+        Some("another effect has the same name")
+    } else {
+        None
+    }
+}
+
+/// Whether a module defines this import path.
+fn defines(source: &str, path: &str) -> bool {
+    get_preprocessor_data(source).0.as_deref() == Some(path)
+}
+
+/// Whether an effect imports a module of this crate that does not exist. The
+/// engine waits for all imports of a shader, so such an effect would keep the
+/// fused pass of every camera from compiling.
+fn imports_unknown(effect: &EffectType, known: &[&EffectType]) -> bool {
+    let (_, imports, _) = get_preprocessor_data(effect.shader.source);
+    imports.iter().any(|import| {
+        let path = import.import.as_str();
+        path.starts_with("bevy_comics::")
+            && !MODULES.contains(&path)
+            && !known.iter().any(|other| other.shader.path == path)
+    })
+}

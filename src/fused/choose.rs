@@ -1,0 +1,204 @@
+//! Chooses the plan that every view draws in this frame: the requested one, or the
+//! last complete one while a pipeline of the requested one compiles. Then the
+//! services receive their requests, once.
+
+use crate::effect::EffectRegistry;
+use std::sync::Arc;
+
+use bevy::{
+    camera::MainPassResolutionOverride,
+    core_pipeline::prepass::ViewPrepassTextures,
+    ecs::{
+        component::Component,
+        entity::Entity,
+        query::{Or, With, Without},
+        system::{Commands, Query, Res, ResMut},
+    },
+    math::{Mat4, Vec3},
+    render::{
+        camera::{ExtractedCamera, TemporalJitter},
+        render_resource::PipelineCache,
+        view::{ExtractedView, ViewTarget},
+    },
+};
+
+use super::{
+    Plan,
+    prepare::FusedRequest,
+    requests::{Scene, Services},
+};
+use crate::{
+    depth::{
+        frame::DepthProjection,
+        request::{RangePasses, RangeRequest},
+    },
+    diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
+    lines::{
+        ViewFog, ViewMarks,
+        request::{LinePasses, LineRequest},
+    },
+    objects::{DepthWanted, IdRequest, IdsWanted, QueuedDepth},
+};
+
+/// On a view in the render world: the plan of its camera, and facts about the
+/// camera.
+#[derive(Component, Clone, Debug)]
+pub(crate) struct ViewPlan {
+    pub camera: Entity,
+    pub plan: Arc<Plan>,
+    /// The number of the plan in the main world; it grows with every change.
+    pub number: u64,
+    pub projection: DepthProjection,
+    pub clip_from_view: Mat4,
+    /// Physical pixels per logical pixel.
+    pub scale_factor: f32,
+    /// The largest line width that an object overrides, in logical pixels.
+    pub widest_object: f32,
+    /// Unit vector towards the light that lines follow, in world space.
+    pub to_light: Vec3,
+    /// The engine's distance fog of the camera.
+    pub fog: Option<ViewFog>,
+    /// World position of the object that effects point at.
+    pub target: Option<Vec3>,
+    /// Seconds of the app's default clock.
+    pub time: f64,
+    /// Real time since the last frame, in seconds. Not the game's time: the camera
+    /// of a paused game can still move.
+    pub seconds: f32,
+    /// Number of camera cuts so far.
+    pub cuts: u32,
+}
+
+/// On a view that a plan was chosen for: the last plan whose pipelines were all
+/// compiled, if there was one.
+#[derive(Component)]
+pub(crate) struct ReadyPlan(Option<Arc<Plan>>);
+
+/// All components that a choice puts on a view.
+type Chosen = (
+    (RangeRequest, RangePasses),
+    (LineRequest, LinePasses),
+    (IdRequest, IdsWanted, DepthWanted),
+    (FusedRequest, ReadyPlan),
+);
+
+/// A view that no longer has a plan or an extracted camera.
+type NotDrawn = Or<(Without<ViewPlan>, Without<ExtractedCamera>)>;
+
+pub(crate) fn choose_plans(
+    mut commands: Commands,
+    views: Query<(
+        Entity,
+        &ViewPlan,
+        &ExtractedCamera,
+        &ExtractedView,
+        (Option<&ViewPrepassTextures>, Option<&QueuedDepth>),
+        (Option<&ViewTarget>, Option<&ReadyPlan>),
+        (Option<&MainPassResolutionOverride>, Option<&TemporalJitter>),
+        Option<&ViewMarks>,
+    )>,
+    stale: Query<(Entity, Option<&ViewMarks>), (With<ReadyPlan>, NotDrawn)>,
+    (ledger, registry): (Res<StageLedger>, Res<EffectRegistry>),
+    mut services: Services,
+    mut cache: ResMut<PipelineCache>,
+) {
+    for (entity, marks) in &stale {
+        remove(entity, marks, &mut commands);
+    }
+    for (entity, view, camera, extracted, prepass, (target, ready), raster, marks) in &views {
+        if target.is_none() || extracted.viewport.z == 0 || extracted.viewport.w == 0 {
+            remove(entity, marks, &mut commands);
+            continue;
+        }
+        let scene = Scene::new(extracted, prepass, raster);
+        let wanted = scene.reduce(&view.plan);
+        report(&ledger, &registry, (view, &wanted), &scene);
+
+        // Drawn instead while a pipeline of the wanted plan compiles.
+        let last = ready
+            .and_then(|ready| ready.0.as_ref())
+            .map(|ready| scene.reduce(ready));
+        let last = last.filter(|last| *last != wanted);
+        let mut requests = services.requests(&cache, (&wanted, view), &scene, (extracted, camera));
+        // If the engine compiles pipelines synchronously, this compiles them now.
+        if requests.is_compiling(&cache) {
+            cache.process_queue();
+        }
+        let compiling = requests.is_compiling(&cache);
+        if compiling {
+            ledger.set_compiling(view.camera);
+            if ready.is_none() {
+                commands.entity(entity).insert(ReadyPlan(None));
+            }
+            if let Some(last) = &last {
+                requests = services.requests(&cache, (last, view), &scene, (extracted, camera));
+            }
+        } else {
+            ledger.set_drawn(view.camera, view.number);
+            let known = ready.and_then(|ready| ready.0.as_ref());
+            if !known.is_some_and(|known| Arc::ptr_eq(known, &wanted)) {
+                commands
+                    .entity(entity)
+                    .insert(ReadyPlan(Some(wanted.clone())));
+            }
+        }
+        requests.put(entity, marks.map(|marks| marks.layer), &mut commands);
+    }
+}
+
+/// Removes what a choice has put on a view.
+fn remove(view: Entity, marks: Option<&ViewMarks>, commands: &mut Commands) {
+    commands.entity(view).remove::<Chosen>();
+    #[cfg(feature = "objects")]
+    super::requests::remove_marks(view, marks.map(|marks| marks.layer), commands);
+    #[cfg(not(feature = "objects"))]
+    let _ = marks;
+}
+
+/// Reports for every stage why it does not run. Stages that run overwrite this
+/// later in the frame.
+fn report(
+    ledger: &StageLedger,
+    registry: &EffectRegistry,
+    (view, reduced): (&ViewPlan, &Plan),
+    scene: &Scene,
+) {
+    let wanted = &view.plan;
+    let camera = view.camera;
+    let missing = StageOutcome::Skipped(SkipReason::NoDepthPrepass);
+    let lacks_depth = wanted.needs_depth() && scene.depth.is_none();
+    if lacks_depth {
+        bevy::log::warn_once!(
+            "camera {camera} has no depth prepass: its effects that read depth are left out"
+        );
+    }
+    for stage in ComicsStage::SERVICES.iter().copied() {
+        let lost = lacks_depth
+            && match stage {
+                ComicsStage::DepthPrepass => true,
+                ComicsStage::DepthRange => wanted.needs_range(),
+                ComicsStage::RangeSmoothing => wanted.smooths(),
+                ComicsStage::RangeReadback => wanted.readback,
+                _ => false,
+            };
+        let outcome = if lost {
+            missing
+        } else {
+            StageOutcome::Skipped(wanted.reason(stage))
+        };
+        ledger.set(camera, stage, outcome);
+    }
+    for (stage, reason) in reduced.effect_stages(&registry.types()) {
+        // Drawn effects run in the fused pass, which overwrites this reason.
+        let reason = reason.unwrap_or(SkipReason::PipelineNotReady);
+        ledger.set(camera, stage, StageOutcome::Skipped(reason));
+    }
+    let nothing = StageOutcome::Skipped(SkipReason::NothingToDraw);
+    ledger.set(camera, ComicsStage::Stylize, nothing);
+    if scene.depth.is_some() {
+        ledger.set(camera, ComicsStage::DepthPrepass, StageOutcome::Ran);
+    }
+    if scene.normals {
+        ledger.set(camera, ComicsStage::NormalPrepass, StageOutcome::Ran);
+    }
+}

@@ -1,0 +1,123 @@
+//! Composes the WGSL of the fused pass from the registered effects.
+
+use crate::effect::{EffectRegistry, EffectStage, EffectType, names::definition};
+
+/// The template of the pass; lines that begin with `//@` are replaced.
+const RECIPE: &str = include_str!("fused.wgsl");
+
+/// Behind the effects that change colours: gives the objects with `NoStyle` theirs back.
+const RESTORE: &str = "#ifdef UNSTYLED_COLORS
+    p.color = mix(p.color, p.original, unstyled_fraction(pixel));
+#endif
+";
+
+impl EffectRegistry {
+    /// The WGSL of the fused pass before preprocessing. The code of each effect is
+    /// in an `#ifdef`: it runs only on cameras that have the effect.
+    pub fn shader(&self) -> String {
+        fused_pass(&self.types())
+    }
+}
+
+/// The WGSL of the fused pass with these effects, in this order.
+fn fused_pass(types: &[&EffectType]) -> String {
+    let colors = |effect: &&&EffectType| effect.stage <= EffectStage::Color;
+    let mut text = String::from("// Composed by bevy_comics.\n");
+    for line in RECIPE.lines() {
+        match line.trim() {
+            "//@members" => text.extend(types.iter().map(|effect| members(effect))),
+            "//@colors" => {
+                text.extend(types.iter().filter(colors).map(|effect| calls(effect)));
+                text.push_str(RESTORE);
+            }
+            "//@boxes" => text.extend(types.iter().filter(|e| e.half_box).map(|e| boxes(e))),
+            "//@numbers" => text.extend(types.iter().filter(|e| e.number).map(|e| numbers(e))),
+            "//@prints" => {
+                let prints = types.iter().filter(|e| e.stage == EffectStage::Print);
+                text.extend(prints.map(|effect| calls(effect)));
+            }
+            "//@calls" => {
+                let later = types.iter().filter(|e| e.stage > EffectStage::Print);
+                text.extend(later.map(|effect| calls(effect)));
+            }
+            _ => {
+                text.push_str(line);
+                text.push('\n');
+            }
+        }
+    }
+    text
+}
+
+/// The member of `Comics` that holds an effect's settings. Its type has the full
+/// module path, so that two effects may use the same struct name. The suffix
+/// `_settings` keeps the member's name different from every name that the template
+/// imports: the composer would replace equal names. The vector before it puts it at a multiple of 16 bytes.
+fn members(effect: &EffectType) -> String {
+    let Some(settings) = effect.shader.settings else {
+        return String::new();
+    };
+    let (name, definition) = (effect.name, definition(effect.name));
+    let path = effect.shader.path;
+    format!(
+        "#ifdef {definition}\n    {name}_before: vec4<u32>,\n    {name}_settings: {path}::{settings},\n\
+         #endif\n"
+    )
+}
+
+/// The shader definition that leaves out an effect, with the settings kept in the uniform.
+pub(super) fn left_out(name: &str) -> String {
+    format!("WITHOUT_{}", definition(name))
+}
+
+/// The shader definition of the passes that draw means for an effect.
+pub(super) fn boxes_of(name: &str) -> String {
+    format!("BOXES_{}", definition(name))
+}
+
+/// The shader definition of the pass that draws numbers for an effect.
+pub(super) fn numbers_of(name: &str) -> String {
+    format!("NUMBERS_{}", definition(name))
+}
+
+/// The call of the function that says what the numbers of an effect are.
+fn numbers(effect: &EffectType) -> String {
+    let (name, definition) = (effect.name, numbers_of(effect.name));
+    let path = effect.shader.path;
+    let arguments = arguments(effect);
+    format!("#ifdef {definition}\n    number = {path}::{name}_aux_scalar({arguments});\n#endif\n")
+}
+
+/// The call of the function that says how large the boxes of an effect are.
+fn boxes(effect: &EffectType) -> String {
+    let (name, definition) = (effect.name, boxes_of(effect.name));
+    let path = effect.shader.path;
+    let arguments = arguments(effect);
+    format!("#ifdef {definition}\n    half = {path}::{name}_half_box({arguments});\n#endif\n")
+}
+
+/// The arguments of an effect's functions.
+fn arguments(effect: &EffectType) -> String {
+    match effect.shader.settings {
+        Some(_) => format!("comics.{}_settings, p", effect.name),
+        None => "p".to_owned(),
+    }
+}
+
+/// The call of an effect's function, and of its debug view if it has one.
+fn calls(effect: &EffectType) -> String {
+    let (name, definition) = (effect.name, definition(effect.name));
+    let path = effect.shader.path;
+    let arguments = arguments(effect);
+    let without = left_out(name);
+    let mut call = format!(
+        "#ifdef {definition}\n#ifndef {without}\n    p = {path}::{name}({arguments});\n#endif\n"
+    );
+    if effect.view.is_some() {
+        call.push_str(&format!(
+            "#ifdef VIEW_{definition}\n    shown = {path}::{name}_view({arguments});\n#endif\n"
+        ));
+    }
+    call.push_str("#endif\n");
+    call
+}

@@ -1,0 +1,391 @@
+//! The key that selects a pipeline of the fused pass.
+
+use crate::effect::{
+    AffectedArea, AnyEffect, EffectContext, EffectStage, Needs, Variants, names::definition,
+};
+use bevy::{
+    camera::CompositingSpace,
+    math::{UVec2, Vec2, Vec4Swizzles},
+    render::render_resource::{
+        BindGroupLayoutDescriptor, SamplerBindingType, ShaderStages, TextureFormat,
+        TextureSampleType,
+        binding_types::{sampler, texture_2d, texture_2d_multisampled, uniform_buffer_sized},
+    },
+    shader::ShaderDefVal,
+};
+
+use super::{
+    Plan,
+    compose::left_out,
+    layers::LAYER_FORMAT,
+    part::Part,
+    passes::{Pass, Reads},
+    words::{Boxes, Drawn, Read, WORDS_FORMAT},
+};
+use crate::{
+    composite::DebugView,
+    depth::view::ViewUniform,
+    lines::{ink_entry, owners_entry, range_entry},
+    objects::{ids_entry, object_depths_entry, object_styles_entry},
+    samples,
+};
+
+/// The properties of a view that select a pipeline, besides its plan.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct KeyInputs {
+    pub format: TextureFormat,
+    pub space: Option<CompositingSpace>,
+    /// Samples per pixel of the depth texture, if there is one.
+    pub samples: Option<u32>,
+    pub oblique: bool,
+    pub view: ViewUniform,
+}
+
+/// Everything that is compiled into the fused pass: the effects, their modes and
+/// their inputs. All other settings are in the uniform.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct StylizeKey {
+    pub format: TextureFormat,
+    space: CompositingSpace,
+    pub samples: u32,
+    oblique: bool,
+    effects: Vec<&'static str>,
+    variants: Variants,
+    needs: Needs,
+    /// Whether the depth texture is bound.
+    pub depth: bool,
+    visible_range: bool,
+    pub lines: bool,
+    /// Lines have the colour of surfaces.
+    surface: bool,
+    /// Lines have other colours in near, middle and far.
+    pub layer_ink: bool,
+    pub object_styles: bool,
+    /// Some objects are left alone: by the colour effects of the pass, by its prints.
+    unstyled_colors: bool,
+    unstyled_print: bool,
+    view: Option<DebugView>,
+    map_flags: u32,
+    finish: bool,
+    same_size: bool,
+    pub part: Part,
+    /// The pass starts from a picture of an earlier one, and draws one for a later one.
+    pub continued: bool,
+    pub layer: bool,
+    pub draws: Drawn,
+    pub reads: Read,
+    /// All pixels that are drawn lie inside the viewport.
+    inside: bool,
+    /// Effects that are left out of [`Part::Base`] or belong to other passes, and whether
+    /// lines are left out too.
+    left_out: Vec<&'static str>,
+    without_lines: bool,
+}
+
+impl StylizeKey {
+    pub fn new(plan: &Plan, inputs: &KeyInputs, facts: &EffectContext) -> Self {
+        let needs = plan.needs();
+        let depth = needs.intersects(Needs::MAP | Needs::DEPTH);
+        let reads_pixels = depth || needs.intersects(Needs::NORMALS | Needs::IDS);
+        let lines = needs.intersects(Needs::LINES);
+        let mut variants = Variants::default();
+        for effect in plan.drawn() {
+            variants.effect = effect.effect_type().name;
+            effect.any_variants(facts, &mut variants);
+        }
+        variants.effect = "";
+        Self {
+            format: inputs.format,
+            space: inputs.space.unwrap_or(CompositingSpace::Linear),
+            // A pass that reads no prepass texture is the same for any number of
+            // samples.
+            samples: inputs.samples.filter(|_| reads_pixels).unwrap_or(1),
+            oblique: depth && inputs.oblique,
+            effects: plan.drawn().map(|e| e.effect_type().name).collect(),
+            variants,
+            needs,
+            depth,
+            visible_range: plan.draws_with_range(),
+            lines,
+            surface: lines && plan.lines.is_some_and(|lines| lines.color.is_surface()),
+            layer_ink: lines
+                && plan
+                    .line_modifiers(facts)
+                    .layers
+                    .is_some_and(|p| p.has_colors()),
+            object_styles: (lines && plan.object_styles)
+                || plan.unstyled
+                || needs.contains(Needs::OBJECT_ANCHORS),
+            unstyled_colors: plan.unstyled,
+            unstyled_print: plan.unstyled,
+            view: plan.view,
+            map_flags: if needs.contains(Needs::MAP) {
+                inputs.view.depth.flags
+            } else {
+                0
+            },
+            finish: plan.finish.weight < 1.0 || plan.finish.split > 0.0,
+            same_size: reads_pixels && inputs.view.depth_scale == Vec2::ONE,
+            part: Part::Whole,
+            continued: false,
+            layer: false,
+            draws: Drawn::Picture,
+            reads: Read::Picture,
+            inside: facts.viewport.xy() == UVec2::ZERO && facts.viewport.zw() == facts.target_size,
+            left_out: vec![],
+            without_lines: false,
+        }
+    }
+
+    /// Whether all effects draw over the picture, and their sum can be blended over it.
+    /// Not if the picture may have values that are no numbers: only a pass that reads the
+    /// picture replaces them.
+    pub fn can_overlay(&self, plan: &Plan, facts: &EffectContext) -> bool {
+        let bytes = matches!(self.format.block_copy_size(None), Some(..=4));
+        let plain = bytes
+            && self.format != TextureFormat::Rg11b10Ufloat
+            && self.view.is_none()
+            && !self.finish
+            && !self.continued
+            && self.reads == Read::Picture
+            && !self.reads_owners();
+        let local =
+            |effect: &dyn AnyEffect| effect.any_affected_area(facts) != AffectedArea::Everywhere;
+        plain && self.space == CompositingSpace::Linear && plan.drawn().all(local)
+    }
+
+    /// The key of one of the passes of a plan.
+    pub fn of_pass(&self, plan: &Plan, pass: &Pass) -> Self {
+        let inside = |i: &usize| pass.effects.contains(i);
+        let drawn = || plan.drawn().enumerate();
+        let has = |stage: fn(EffectStage) -> bool| {
+            drawn().any(|(i, effect)| inside(&i) && stage(effect.effect_type().stage))
+        };
+        let others = drawn().filter(|(i, _)| !inside(i));
+        Self {
+            format: if pass.layer {
+                LAYER_FORMAT
+            } else {
+                self.format
+            },
+            unstyled_colors: self.unstyled_colors && has(|stage| stage <= EffectStage::Color),
+            unstyled_print: self.unstyled_print && has(|stage| stage == EffectStage::Print),
+            view: self.view.filter(|_| !pass.layer),
+            finish: self.finish && !pass.layer,
+            continued: pass.continued && !matches!(pass.reads, Some(Reads::Numbers(_))),
+            layer: pass.layer,
+            reads: match pass.reads {
+                Some(Reads::Means(_)) => Read::Means,
+                Some(Reads::Numbers(_)) => Read::WithScalar,
+                None => Read::Picture,
+            },
+            inside: self.inside || pass.layer,
+            left_out: others
+                .map(|(_, effect)| effect.effect_type().name)
+                .collect(),
+            ..self.clone()
+        }
+    }
+
+    /// The key of a pass that draws its picture with the numbers of an effect.
+    pub fn numbered(&self, effect: &'static str) -> Self {
+        Self {
+            format: WORDS_FORMAT,
+            draws: Drawn::WithScalar(effect),
+            ..self.clone()
+        }
+    }
+
+    /// The keys of the passes that draw the means for this one, for an effect.
+    pub fn means_for(&self, plan: &Plan, effect: &'static str, facts: &EffectContext) -> [Self; 2] {
+        let found = plan.drawn().find(|e| e.effect_type().name == effect);
+        let reach = found.and_then(|effect| effect.any_max_radius(facts));
+        let boxes = Boxes { effect, reach };
+        let rows = (Drawn::Across(boxes), Read::Picture);
+        [rows, (Drawn::Down(boxes), Read::Means)].map(|(draws, reads)| Self {
+            format: WORDS_FORMAT,
+            view: None,
+            finish: false,
+            continued: true,
+            layer: true,
+            inside: true,
+            draws,
+            reads,
+            ..self.clone()
+        })
+    }
+
+    /// The entry point of the shader.
+    pub fn entry_point(&self) -> &'static str {
+        self.draws.entry_point()
+    }
+
+    /// The key of another part of the pass.
+    pub fn with_part(&self, part: Part) -> Self {
+        Self {
+            part,
+            ..self.clone()
+        }
+    }
+
+    /// The key of [`Part::Base`], without these effects and perhaps without lines.
+    pub fn base(&self, left_out: &[&'static str], without_lines: bool) -> Self {
+        Self {
+            left_out: [&self.left_out, left_out].concat(),
+            without_lines,
+            ..self.with_part(Part::Base)
+        }
+    }
+
+    /// Whether the pass applies an effect of the plan.
+    pub fn applies(&self, effect: &str) -> bool {
+        !self.left_out.contains(&effect)
+    }
+
+    /// Whether lines are read at any place.
+    pub fn reads_lines_anywhere(&self) -> bool {
+        self.needs.contains(Needs::LINES_ANYWHERE)
+    }
+
+    /// Whether a debug view replaces the picture.
+    pub fn is_view(&self) -> bool {
+        self.view.is_some()
+    }
+
+    /// Whether the pixels that own lines are read.
+    pub fn reads_owners(&self) -> bool {
+        self.surface || self.layer_ink
+    }
+
+    pub fn normals(&self) -> bool {
+        self.needs.contains(Needs::NORMALS)
+    }
+
+    pub fn ids(&self) -> bool {
+        self.needs.contains(Needs::IDS)
+    }
+
+    /// Whether the borders between near, middle and far are read.
+    fn borders(&self) -> bool {
+        self.needs.contains(Needs::DEPTH_BORDERS)
+    }
+
+    /// Whether the buffer of the visible range is bound, which holds the borders too.
+    pub fn reads_range(&self) -> bool {
+        self.visible_range || self.borders()
+    }
+
+    /// Whether the places of objects in the depth map are read.
+    pub fn places(&self) -> bool {
+        self.needs.contains(Needs::OBJECT_DEPTHS)
+    }
+
+    pub fn blue_noise(&self) -> bool {
+        self.needs.contains(Needs::BLUE_NOISE)
+    }
+
+    pub fn shader_defs(&self) -> Vec<ShaderDefVal> {
+        let space = match self.space {
+            CompositingSpace::Linear => None,
+            CompositingSpace::Srgb => Some("STORED_SRGB"),
+            CompositingSpace::Oklab => Some("STORED_OKLAB"),
+        };
+        let needs = self.needs;
+        let number = |name: &str, value| ShaderDefVal::UInt(name.into(), value);
+        [
+            (self.depth, "DEPTH"),
+            (needs.contains(Needs::MAP), "MAP"),
+            (self.visible_range, "VISIBLE_RANGE"),
+            (self.borders(), "DEPTH_BORDERS"),
+            (self.oblique, "OBLIQUE"),
+            (self.normals(), "NORMALS"),
+            (self.ids(), "OBJECT_IDS"),
+            (self.lines, "LINES"),
+            (needs.contains(Needs::LINES_ANYWHERE), "LINES_ANYWHERE"),
+            (self.reads_owners(), "LINE_OWNERS"),
+            (self.surface && self.part != Part::Base, "SURFACE_LINES"),
+            (self.layer_ink, "IN_LAYERS"),
+            (self.layer_ink && self.part != Part::Base, "LAYER_INK"),
+            (self.object_styles, "OBJECT_STYLES"),
+            (needs.contains(Needs::OBJECT_ANCHORS), "OBJECT_ANCHORS"),
+            (self.places(), "OBJECT_DEPTHS"),
+            (self.unstyled_colors || self.unstyled_print, "UNSTYLED"),
+            (self.unstyled_colors, "UNSTYLED_COLORS"),
+            (self.unstyled_print, "UNSTYLED_PRINT"),
+            (self.continued, "CONTINUED"),
+            (self.layer, "LAYER"),
+            (self.inside, "INSIDE"),
+            (needs.contains(Needs::LIGHTNESS_CHANGE), "LIGHTNESS_CHANGE"),
+            (self.blue_noise(), "BLUE_NOISE"),
+            (self.same_size, "SAME_SIZE"),
+            (self.finish, "FINISH"),
+            (self.part.is_overlay(), "OVERLAY"),
+            (self.without_lines, "WITHOUT_LINES"),
+        ]
+        .into_iter()
+        .filter_map(|(on, name)| on.then_some(name))
+        .chain(space)
+        .map(ShaderDefVal::from)
+        .chain(self.view.map(|_| "DEBUG_VIEW".into()))
+        .chain(self.view.into_iter().flat_map(view_definitions))
+        .chain(self.effects.iter().map(|name| definition(name).into()))
+        .chain(samples::definitions(self.samples))
+        .chain(self.draws.shader_defs())
+        .chain(self.reads.shader_def())
+        .chain(self.left_out.iter().map(|name| left_out(name).into()))
+        .chain([number("MAP_FLAGS", self.map_flags)])
+        .chain(self.variants.shader_defs())
+        .collect()
+    }
+
+    pub fn layout(&self) -> BindGroupLayoutDescriptor {
+        let unfilterable = TextureSampleType::Float { filterable: false };
+        let prepass = |binding| {
+            let texture = if self.samples > 1 {
+                texture_2d_multisampled(unfilterable)
+            } else {
+                texture_2d(unfilterable)
+            };
+            texture.build(binding, ShaderStages::FRAGMENT)
+        };
+        let fragment = ShaderStages::FRAGMENT;
+        let mut entries = vec![uniform_buffer_sized(false, None).build(1, fragment)];
+        if !self.part.is_overlay() {
+            entries.push(texture_2d(unfilterable).build(0, fragment));
+        }
+        let layer = texture_2d(TextureSampleType::Float { filterable: true });
+        let between = sampler(SamplerBindingType::Filtering);
+        let words = texture_2d(TextureSampleType::Uint);
+        let optional = [
+            (self.depth, prepass(2)),
+            (self.reads_range(), range_entry()),
+            (self.lines, ink_entry()),
+            (self.reads_owners(), owners_entry()),
+            (self.object_styles, object_styles_entry()),
+            (self.normals(), prepass(7)),
+            (self.ids(), ids_entry(self.samples > 1)),
+            (self.places(), object_depths_entry()),
+            (self.continued, layer.build(9, fragment)),
+            (self.continued, between.build(10, fragment)),
+            (self.blue_noise(), words.clone().build(11, fragment)),
+        ];
+        entries.extend(
+            optional
+                .into_iter()
+                .filter_map(|(on, entry)| on.then_some(entry)),
+        );
+        entries.extend(self.reads.binding().map(|at| words.build(at, fragment)));
+        BindGroupLayoutDescriptor::new("comics_stylize", &entries)
+    }
+}
+
+/// The shader definitions of a debug view.
+fn view_definitions(view: DebugView) -> Vec<ShaderDefVal> {
+    match view {
+        DebugView::Effect(name) => vec![
+            "VIEW_EFFECT".into(),
+            format!("VIEW_{}", definition(name)).into(),
+        ],
+        other => vec![other.shader_def().into()],
+    }
+}

@@ -1,0 +1,251 @@
+//! The passes of a view before the last one, and the textures that they draw: pictures for
+//! effects that read the picture at other places, and means over boxes or numbers beside them.
+
+use bevy::{
+    ecs::{
+        component::Component,
+        entity::Entity,
+        query::With,
+        resource::Resource,
+        system::{Commands, Query, Res, ResMut},
+    },
+    render::{
+        render_resource::{
+            AddressMode, BindGroup, BindGroupEntry, Extent3d, FilterMode, IntoBinding,
+            PipelineCache, RenderPipeline, Sampler, SamplerDescriptor, TextureDescriptor,
+            TextureDimension, TextureFormat, TextureUsages, TextureView,
+        },
+        renderer::{RenderContext, RenderDevice},
+        texture::{CachedTexture, TextureCache},
+    },
+};
+
+use super::{
+    key::StylizeKey,
+    pass::{attachment, described, entry},
+    prepare::{FusedRequest, Layer, LayerPass},
+    words::{Drawn, WORDS_FORMAT},
+};
+
+/// Linear light, multiplied by the opacity, and the opacity.
+pub(super) const LAYER_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+
+/// On a view in the render world: what its passes but the last one draw to.
+#[derive(Component)]
+pub(super) struct ViewLayers {
+    /// A pass cannot read what it draws to, so more than one pass draw to two in turns.
+    pictures: Vec<CachedTexture>,
+    /// The same of pictures with numbers.
+    numbered: Vec<CachedTexture>,
+    /// Means of rows and of boxes, or nothing.
+    means: Vec<CachedTexture>,
+}
+
+impl ViewLayers {
+    /// The texture that a pass draws to, and the next one reads.
+    fn picture(&self, pass: usize, key: &StylizeKey) -> Option<&TextureView> {
+        let textures = match key.draws {
+            Drawn::WithScalar(_) => &self.numbered,
+            _ => &self.pictures,
+        };
+        let at = pass % textures.len().max(1);
+        Some(&textures.get(at)?.default_view)
+    }
+
+    fn means(&self, step: usize) -> Option<&TextureView> {
+        Some(&self.means.get(step)?.default_view)
+    }
+}
+
+/// Reads between the centres of pixels.
+#[derive(Resource)]
+pub(super) struct LayerSampler(pub Sampler);
+
+impl LayerSampler {
+    pub fn new(device: &RenderDevice) -> Self {
+        Self(device.create_sampler(&SamplerDescriptor {
+            label: Some("comics_layer"),
+            address_mode_u: AddressMode::ClampToEdge,
+            address_mode_v: AddressMode::ClampToEdge,
+            mag_filter: FilterMode::Linear,
+            min_filter: FilterMode::Linear,
+            ..Default::default()
+        }))
+    }
+}
+
+pub(super) fn prepare_layers(
+    mut commands: Commands,
+    views: Query<(Entity, &FusedRequest)>,
+    layered: Query<Entity, With<ViewLayers>>,
+    (mut textures, device): (ResMut<TextureCache>, Res<RenderDevice>),
+) {
+    for (view, request) in &views {
+        let mut get = |format, count| {
+            let layer = || descriptor(request, format);
+            (0..count)
+                .map(|_| textures.get(&device, layer()))
+                .collect::<Vec<_>>()
+        };
+        let layers = || request.layers.iter();
+        // In turns by the number of the pass: two, even if only one of the passes draws to them.
+        let both = |draws: bool| if draws { layers().len().min(2) } else { 0 };
+        let is_numbered = |layer: &Layer| matches!(layer.picture.key.draws, Drawn::WithScalar(_));
+        let pictures = get(LAYER_FORMAT, both(!layers().all(is_numbered)));
+        let numbered = get(WORDS_FORMAT, both(layers().any(is_numbered)));
+        let has_means = layers().any(|layer| layer.means.is_some());
+        let means = get(WORDS_FORMAT, if has_means { 2 } else { 0 });
+        if !request.layers.is_empty() {
+            let layers = ViewLayers {
+                pictures,
+                numbered,
+                means,
+            };
+            commands.entity(view).insert(layers);
+        } else if layered.contains(view) {
+            commands.entity(view).remove::<ViewLayers>();
+        }
+    }
+    for view in &layered {
+        if !views.contains(view) {
+            commands.entity(view).remove::<ViewLayers>();
+        }
+    }
+}
+
+/// A texture of the viewport's size.
+fn descriptor(request: &FusedRequest, format: TextureFormat) -> TextureDescriptor<'static> {
+    let [_, _, width, height] = request.facts.viewport.to_array();
+    TextureDescriptor {
+        label: Some("comics_layer"),
+        size: Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: TextureDimension::D2,
+        format,
+        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
+        view_formats: &[],
+    }
+}
+
+/// What all passes of a view bind.
+pub(super) struct Inputs<'a> {
+    pub entries: Vec<BindGroupEntry<'a>>,
+    pub sampler: &'a LayerSampler,
+    pub cache: &'a PipelineCache,
+}
+
+/// What the passes before a pass have drawn for it.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Before<'a> {
+    picture: Option<&'a TextureView>,
+    /// Means, or the picture with numbers.
+    words: Option<&'a TextureView>,
+}
+
+impl Inputs<'_> {
+    pub fn bind_group(&self, ctx: &RenderContext, key: &StylizeKey, before: &Before) -> BindGroup {
+        let mut entries = self.entries.clone();
+        if let Some(picture) = before.picture {
+            entries.push(entry(9, picture.into_binding()));
+            entries.push(entry(10, (&self.sampler.0).into_binding()));
+        }
+        if let (Some(words), Some(binding)) = (before.words, key.reads.binding()) {
+            entries.push(entry(binding, words.into_binding()));
+        }
+        let layout = self.cache.get_bind_group_layout(&key.layout());
+        let device = ctx.render_device();
+        device.create_bind_group("comics_stylize", &layout, &entries)
+    }
+}
+
+/// The passes before the last one.
+pub(super) struct Layers<'a>(Vec<LayerDraw<'a>>);
+
+struct LayerDraw<'a> {
+    picture: Draw<'a>,
+    means: Option<[Draw<'a>; 2]>,
+}
+
+/// A full-screen pass that draws a texture for a later one.
+struct Draw<'a> {
+    key: &'a StylizeKey,
+    pipeline: &'a RenderPipeline,
+    texture: &'a TextureView,
+}
+
+impl<'a> Draw<'a> {
+    fn new(
+        cache: &'a PipelineCache,
+        pass: &'a LayerPass,
+        texture: Option<&'a TextureView>,
+    ) -> Option<Self> {
+        Some(Self {
+            key: &pass.key,
+            pipeline: cache.get_render_pipeline(pass.pipeline)?,
+            texture: texture?,
+        })
+    }
+
+    /// Returns what it has drawn.
+    fn record(&self, ctx: &mut RenderContext, inputs: &Inputs, before: &Before) -> &'a TextureView {
+        let bind_group = inputs.bind_group(ctx, self.key, before);
+        let attachments = [Some(attachment(self.texture, false))];
+        let encoder = ctx.command_encoder();
+        let mut pass = encoder.begin_render_pass(&described(&attachments));
+        pass.set_bind_group(0, &bind_group, &[]);
+        pass.set_pipeline(self.pipeline);
+        pass.draw(0..3, 0..1);
+        self.texture
+    }
+}
+
+impl<'a> Layers<'a> {
+    /// `None` if a pipeline or a texture is not ready in this frame.
+    pub fn new(
+        cache: &'a PipelineCache,
+        request: &'a FusedRequest,
+        textures: Option<&'a ViewLayers>,
+    ) -> Option<Self> {
+        let draws = request.layers.iter().enumerate().map(|(i, layer)| {
+            let textures = textures?;
+            let means = match &layer.means {
+                Some([across, down]) => Some([
+                    Draw::new(cache, across, textures.means(0))?,
+                    Draw::new(cache, down, textures.means(1))?,
+                ]),
+                None => None,
+            };
+            let texture = textures.picture(i, &layer.picture.key);
+            let picture = Draw::new(cache, &layer.picture, texture)?;
+            Some(LayerDraw { picture, means })
+        });
+        draws.collect::<Option<_>>().map(Self)
+    }
+
+    /// Returns what they have drawn for the last pass.
+    pub fn record(&self, ctx: &mut RenderContext, inputs: &Inputs) -> Before<'a> {
+        let mut before = Before::default();
+        for layer in &self.0 {
+            let drawn = Some(layer.picture.record(ctx, inputs, &before));
+            before = match layer.picture.key.draws {
+                Drawn::WithScalar(_) => Before {
+                    picture: None,
+                    words: drawn,
+                },
+                _ => Before {
+                    picture: drawn,
+                    words: None,
+                },
+            };
+            for draw in layer.means.iter().flatten() {
+                before.words = Some(draw.record(ctx, inputs, &before));
+            }
+        }
+        before
+    }
+}

@@ -1,0 +1,167 @@
+//! Turns the plan of a view into a request for its lines.
+
+use crate::effect::{AffectedArea, EffectContext, Needs};
+use bevy::math::Vec4Swizzles;
+
+use super::{Plan, ViewPlan, requests::Scene};
+use crate::{
+    depth::{ProjectionKind, view::ViewUniform},
+    lines::{
+        FogUniform, LineModifiers, LineWeight, MapJumps, MemoryRequest, Outlines, Sheet,
+        SheetUniform, request::LineRequest,
+    },
+    objects::Pressure,
+};
+
+/// The largest [`Effect::line_reach`](crate::effect::Effect::line_reach); `None` if an effect that
+/// reads lines does not know it.
+pub(super) fn line_reach(plan: &Plan, view: &EffectContext) -> Option<f32> {
+    plan.drawn()
+        .filter(|effect| effect.any_needs().contains(Needs::LINES))
+        .try_fold(0.0_f32, |reach, effect| {
+            Some(reach.max(effect.any_line_reach(view)?))
+        })
+}
+
+/// The jumps of the depth map that effects of the plan are limited to. `None` also if
+/// they are not looked for: in multisampled views, in views whose main pass has a
+/// resolution of its own, beside faithful lines, and under a debug view.
+pub(super) fn map_jumps(plan: &Plan, scene: &Scene, facts: &EffectContext) -> Option<MapJumps> {
+    let (_, samples) = scene.depth?;
+    let is_faithful = plan.lines.is_some_and(|lines| lines.has_faithful());
+    let has_window = samples == 1 && scene.main_pass_size.is_none();
+    if !has_window || is_faithful || plan.view.is_some() {
+        return None;
+    }
+    let jumps = plan
+        .drawn()
+        .filter_map(|effect| match effect.any_affected_area(facts) {
+            AffectedArea::AtJumps(jumps) => Some(jumps),
+            _ => None,
+        });
+    jumps.reduce(MapJumps::or)
+}
+
+pub(super) fn line_request(
+    view: &ViewPlan,
+    (plan, facts): (&Plan, &EffectContext),
+    scene: &Scene,
+    (uniform, jumps): (ViewUniform, Option<MapJumps>),
+) -> Option<LineRequest> {
+    let lines = plan.lines.filter(|_| plan.draws());
+    let settings = lines.or(jumps.map(|_| Outlines::BARE))?;
+    let (depth_size, samples) = scene.depth?;
+    let widest_object = if plan.object_styles {
+        view.widest_object
+    } else {
+        0.0
+    };
+    let widest = (widest_object, plan.vertex_widths);
+    let reach = settings.reach(view.scale_factor, widest, facts.sheet);
+    let reference = view.projection.jump_reference(&view.clip_from_view);
+    let grid_scale = view.scale_factor * uniform.depth_scale.max_element();
+    let modifiers = plan.line_modifiers(facts);
+    Some(LineRequest {
+        camera: view.camera,
+        settings,
+        view: uniform,
+        lines: settings.uniform(view.scale_factor, reference),
+        weight: settings
+            .weight
+            .uniform(grid_scale, view.to_light, settings.ink_budget),
+        boil: settings.boil.uniform(
+            view.scale_factor,
+            view.time,
+            settings.widest(widest_object, plan.vertex_widths),
+        ),
+        memory: memory_request(view, &settings, scene),
+        cuts: view.cuts,
+        motion: has_motion(scene),
+        fog: plan.fog.then(|| fog(view)),
+        focus: modifiers
+            .focus
+            .map(|focus| focus.uniform(facts.depth_axis, facts.depth_reference)),
+        layers: modifiers.layers,
+        abstraction: modifiers.abstraction,
+        sheet: sheet(facts),
+        depth_size,
+        samples,
+        size: scene.viewport.zw(),
+        rect: scene.drawn(),
+        jitter: scene.jitter,
+        reach,
+        steps: settings.steps(grid_scale),
+        specks: settings.min_length(grid_scale),
+        extension: settings.extension(grid_scale),
+        oblique: view.projection.kind() == ProjectionKind::Oblique,
+        visible_range: plan.depth_map.mapping.follows_visible_range(),
+        ids: plan.draws_ids(),
+        sections: plan.sections,
+        marks: false,
+        object_styles: plan.object_styles,
+        widths: plan.draws_widths(),
+        line_reach: line_reach(plan, facts).unwrap_or(0.0),
+        jumps,
+        map_flags: uniform.depth.flags,
+    })
+}
+
+/// The fog that lines fade into.
+fn fog(view: &ViewPlan) -> FogUniform {
+    let fog = view.fog.unwrap_or_default();
+    fog.uniform(&view.projection, &view.clip_from_view)
+}
+
+/// What lines are drawn on.
+fn sheet(facts: &EffectContext) -> SheetUniform {
+    let origin = facts.viewport.xy().as_vec2();
+    let uniform = |sheet: Sheet| sheet.uniform(origin);
+    facts.sheet.map(uniform).unwrap_or_default()
+}
+
+/// Whether the engine's motion vectors can be read.
+pub(super) fn has_motion(scene: &Scene) -> bool {
+    scene.motion && scene.depth.is_some_and(|(_, samples)| samples == 1)
+}
+
+/// The history that lines are blended with under temporal anti-aliasing.
+pub(super) fn memory_request(
+    view: &ViewPlan,
+    settings: &Outlines,
+    scene: &Scene,
+) -> Option<MemoryRequest> {
+    let is_jittered = scene.jitter.is_some() && has_motion(scene);
+    let uses_history = settings.history_weight > 0.0 && !settings.boil.moves();
+    (is_jittered && uses_history).then_some(MemoryRequest {
+        share: 1.0 - settings.history_weight,
+        cuts: view.cuts,
+    })
+}
+
+impl Plan {
+    /// What the effects change about lines.
+    pub fn line_modifiers(&self, facts: &EffectContext) -> LineModifiers {
+        let effects = self.drawn().map(|effect| effect.any_line_modifiers(facts));
+        effects.fold(LineModifiers::default(), LineModifiers::or)
+    }
+
+    /// Whether the widths of lines are drawn with the ids of objects.
+    pub fn draws_widths(&self) -> bool {
+        let presses = self
+            .lines
+            .is_some_and(|lines| lines.has_wide_lines() && lines.weight.pressure > 0.0);
+        self.has_ids() && (presses || self.vertex_widths)
+    }
+
+    /// The pressure of the lines whose widths are drawn. `scale`: physical pixels per logical
+    /// pixel.
+    pub fn pressure(&self, scale: f32) -> Option<Pressure> {
+        let lines = self.lines.filter(|_| self.draws_widths())?;
+        let LineWeight {
+            pressure,
+            pressure_length,
+            ..
+        } = lines.weight;
+        Some(Pressure::new(pressure, pressure_length * scale))
+    }
+}

@@ -1,0 +1,30 @@
+//! The fused pass: the plan of a camera, the choice of a plan whose pipelines are there, what the
+//! plan requests of the services, and the full-screen pass that is composed from all effects.
+
+mod blue_noise;
+mod choose;
+mod compiling;
+mod compose;
+mod context;
+mod errors;
+mod key;
+mod layers;
+mod lines;
+#[cfg(feature = "objects")]
+mod marks;
+mod missing;
+mod object_depths;
+mod part;
+mod pass;
+mod passes;
+mod plan;
+mod plugin;
+mod prepare;
+mod reasons;
+mod requests;
+mod words;
+
+pub(crate) use choose::ViewPlan;
+pub(crate) use missing::DeviceLacks;
+pub(crate) use plan::Plan;
+pub(crate) use plugin::FusedPlugin;

@@ -1,0 +1,33 @@
+//! The request for the places of objects in the depth map.
+
+use crate::effect::{EffectContext, Needs};
+use bevy::{math::Vec2, render::view::ExtractedView};
+
+use super::{Plan, ViewPlan};
+use crate::{
+    depth::{ProjectionKind, view::ViewUniform},
+    objects::{ObjectDepthRequest, ObjectEye},
+};
+
+/// What the effects of a plan ask for that treat objects as a whole.
+pub(super) fn object_depths(
+    (plan, view): (&Plan, &ViewPlan),
+    facts: &EffectContext,
+    uniform: ViewUniform,
+    extracted: &ExtractedView,
+) -> Option<ObjectDepthRequest> {
+    let wanted = plan.draws() && plan.needs().contains(Needs::OBJECT_DEPTHS);
+    wanted.then(|| ObjectDepthRequest {
+        eye: ObjectEye {
+            place: facts.eye,
+            orthographic: u32::from(view.projection.kind() == ProjectionKind::Orthographic),
+            forward: *extracted.world_from_view.forward(),
+            forgets: 0,
+            axis: facts.depth_axis,
+            spare: Vec2::ZERO,
+            view: uniform,
+        },
+        mapping: plan.depth_map.mapping,
+        cuts: view.cuts,
+    })
+}

@@ -1,0 +1,332 @@
+//! The fused full-screen pass: reads the picture of a camera once, applies every
+//! effect, and writes the picture once.
+
+use bevy::{
+    asset::{AssetServer, Handle},
+    core_pipeline::{FullscreenShader, prepass::ViewPrepassTextures},
+    ecs::{resource::Resource, system::Res},
+    render::{
+        diagnostic::RecordDiagnostics,
+        render_resource::{
+            BindGroup, BindGroupEntry, BindingResource, BlendState, ColorTargetState, ColorWrites,
+            FragmentState, IntoBinding, LoadOp, Operations, PipelineCache,
+            RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
+            RenderPipelineDescriptor, SpecializedRenderPipeline, StoreOp, TextureView,
+        },
+        renderer::{RenderContext, ViewQuery},
+        view::ViewTarget,
+    },
+    shader::Shader,
+};
+
+use super::{
+    blue_noise::BlueNoise,
+    errors::ShaderErrors,
+    key::StylizeKey,
+    layers::{Inputs, LayerSampler, Layers, ViewLayers},
+    prepare::{FusedRequest, ViewFused},
+};
+use crate::{
+    depth::{
+        prepare::ViewDepthRange,
+        surfaces::{OwnSurfaces, SurfaceParts, Surfaces},
+    },
+    diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
+    lines::{TileList, TileLists, ViewLines, tile_shader, vertices},
+    objects::{OBJECT_DEPTHS_BINDING, ObjectDepths, ObjectStyleBuffer, ViewObjectIds},
+};
+
+#[derive(Resource)]
+pub(crate) struct StylizePipeline {
+    fullscreen: FullscreenShader,
+    shader: Handle<Shader>,
+    tile: Handle<Shader>,
+}
+
+impl StylizePipeline {
+    pub fn new(
+        fullscreen: &FullscreenShader,
+        shader: Handle<Shader>,
+        assets: &AssetServer,
+    ) -> Self {
+        Self {
+            fullscreen: fullscreen.clone(),
+            shader,
+            tile: tile_shader(assets),
+        }
+    }
+}
+
+impl SpecializedRenderPipeline for StylizePipeline {
+    type Key = StylizeKey;
+
+    fn specialize(&self, key: Self::Key) -> RenderPipelineDescriptor {
+        let (vertex, primitive) = vertices(key.part.is_tiled(), &self.fullscreen, &self.tile);
+        let overlay = key.part.is_overlay();
+        RenderPipelineDescriptor {
+            label: Some("comics_stylize".into()),
+            layout: vec![key.layout()],
+            vertex,
+            primitive,
+            fragment: Some(FragmentState {
+                shader: self.shader.clone(),
+                shader_defs: key.shader_defs(),
+                entry_point: Some(key.entry_point().into()),
+                targets: vec![Some(ColorTargetState {
+                    format: key.format,
+                    blend: overlay.then_some(BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                    write_mask: ColorWrites::ALL,
+                })],
+            }),
+            ..Default::default()
+        }
+    }
+}
+
+/// The textures and buffers that the services have prepared for the view in this
+/// frame.
+type Found<'a> = (
+    SurfaceParts<'a>,
+    Option<&'a ViewDepthRange>,
+    Option<&'a ViewLines>,
+    (Option<&'a ViewObjectIds>, Option<&'a ObjectDepths>),
+);
+
+/// Draws the effects of the view. Calls `post_process_write`, which swaps the
+/// view's textures, only when all inputs are there: a swap without a draw would
+/// lose the picture.
+///
+/// `PRINTS`: draws the views whose colours are printed, the others otherwise.
+pub(super) fn stylize<const PRINTS: bool>(
+    view: ViewQuery<(
+        (&ViewTarget, &FusedRequest, &ViewFused, Option<&ViewLayers>),
+        (
+            (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),
+            Option<&ViewDepthRange>,
+            Option<&ViewLines>,
+            (Option<&ViewObjectIds>, Option<&ObjectDepths>),
+        ),
+    )>,
+    (object_styles, sampler): (Res<ObjectStyleBuffer>, Res<LayerSampler>),
+    blue_noise: Res<BlueNoise>,
+    (ledger, errors): (Res<StageLedger>, Res<ShaderErrors>),
+    cache: Res<PipelineCache>,
+    mut ctx: RenderContext,
+) {
+    let ((target, request, fused, layers), found) = view.into_inner();
+    if request.plan.runs_after_anti_aliasing() != PRINTS {
+        return;
+    }
+    let (_, _, lines, _) = found;
+    let layers = Layers::new(&cache, request, layers);
+    let (Some(draws), Some(layers)) = (Draws::new(&cache, request, lines), layers) else {
+        errors.report(&cache, request, &ledger);
+        return pass_through(request, &ledger, SkipReason::PipelineNotReady);
+    };
+    let inputs = if target.main_texture_format() == request.key.format {
+        inputs(&request.key, found, &object_styles, &blue_noise)
+    } else {
+        Err(SkipReason::PipelineNotReady)
+    };
+    let mut entries = match inputs {
+        Ok(entries) => entries,
+        Err(reason) => return pass_through(request, &ledger, reason),
+    };
+    entries.push(entry(1, fused.uniform.as_entire_binding()));
+    let destination = if request.key.part.is_overlay() {
+        target.main_texture_view()
+    } else {
+        let post = target.post_process_write();
+        entries.push(entry(0, post.source.into_binding()));
+        post.destination
+    };
+    let diagnostics = ctx.diagnostic_recorder();
+    let diagnostics = diagnostics.as_deref();
+    let span = diagnostics.time_span(ctx.command_encoder(), "comics_stylize");
+    let inputs = Inputs {
+        entries,
+        sampler: &sampler,
+        cache: &cache,
+    };
+    let before = layers.record(&mut ctx, &inputs);
+    let group = inputs.bind_group(&ctx, &request.key, &before);
+    draws.record(&mut ctx, destination, &group, request);
+    span.end(ctx.command_encoder());
+    ran(request, &ledger);
+}
+
+/// The draw calls of the pass.
+struct Draws<'a> {
+    base: Option<&'a RenderPipeline>,
+    pipeline: &'a RenderPipeline,
+    /// The tiles that `pipeline` draws, if it does not draw all pixels.
+    tiles: Option<&'a TileLists>,
+}
+
+impl<'a> Draws<'a> {
+    /// `None` if a pipeline or the tiles are not ready in this frame.
+    fn new(
+        cache: &'a PipelineCache,
+        request: &FusedRequest,
+        lines: Option<&'a ViewLines>,
+    ) -> Option<Self> {
+        let pipeline = cache.get_render_pipeline(request.pipeline)?;
+        let base = match request.base {
+            Some(base) => Some(cache.get_render_pipeline(base)?),
+            None => None,
+        };
+        let tiles = if request.key.part.is_tiled() {
+            Some(lines?.tiles()?)
+        } else {
+            None
+        };
+        Some(Self {
+            base,
+            pipeline,
+            tiles,
+        })
+    }
+
+    fn record(
+        &self,
+        ctx: &mut RenderContext,
+        destination: &TextureView,
+        bind_group: &BindGroup,
+        request: &FusedRequest,
+    ) {
+        // All pixels are drawn, except in an overlay.
+        let keeps = request.key.part.is_overlay();
+        let encoder = ctx.command_encoder();
+        let attachments = [Some(attachment(destination, keeps))];
+        let mut pass = encoder.begin_render_pass(&described(&attachments));
+        pass.set_bind_group(0, bind_group, &[]);
+        if let Some(base) = self.base {
+            pass.set_pipeline(base);
+            pass.draw(0..3, 0..1);
+        }
+        pass.set_pipeline(self.pipeline);
+        match self.tiles {
+            Some(tiles) => {
+                let [x, y, width, height] = request.facts.viewport.as_vec4().to_array();
+                pass.set_viewport(x, y, width, height, 0.0, 1.0);
+                tiles.draw(&mut pass, TileList::Inked);
+            }
+            None => pass.draw(0..3, 0..1),
+        }
+    }
+}
+
+/// `keeps`: what is there already, instead of clearing it.
+pub(super) fn attachment(view: &TextureView, keeps: bool) -> RenderPassColorAttachment<'_> {
+    RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: Operations {
+            load: if keeps {
+                LoadOp::Load
+            } else {
+                LoadOp::default()
+            },
+            store: StoreOp::Store,
+        },
+    }
+}
+
+pub(super) fn described<'a>(
+    attachments: &'a [Option<RenderPassColorAttachment<'a>>],
+) -> RenderPassDescriptor<'a> {
+    RenderPassDescriptor {
+        label: Some("comics_stylize"),
+        color_attachments: attachments,
+        ..Default::default()
+    }
+}
+
+/// Reports that the pass and its effects ran.
+fn ran(request: &FusedRequest, ledger: &StageLedger) {
+    for effect in request.plan.drawn() {
+        let stage = ComicsStage::Effect(effect.effect_type().name);
+        ledger.set(request.camera, stage, StageOutcome::Ran);
+    }
+    ledger.set(request.camera, ComicsStage::Stylize, StageOutcome::Ran);
+}
+
+/// Reports why the pass did not run. The picture stays as it is.
+fn pass_through(request: &FusedRequest, ledger: &StageLedger, reason: SkipReason) {
+    let outcome = StageOutcome::Skipped(reason);
+    ledger.set(request.camera, ComicsStage::Stylize, outcome);
+}
+
+pub(super) fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
+    BindGroupEntry { binding, resource }
+}
+
+/// The bindings of the pass besides the picture and the uniform; an error if one of
+/// them is missing in this frame.
+fn inputs<'a>(
+    key: &StylizeKey,
+    (surfaces, range, lines, (ids, places)): Found<'a>,
+    object_styles: &'a ObjectStyleBuffer,
+    blue_noise: &'a BlueNoise,
+) -> Result<Vec<BindGroupEntry<'a>>, SkipReason> {
+    let not_ready = SkipReason::PipelineNotReady;
+    let surfaces = Surfaces::from(surfaces);
+    let mut entries = Vec::new();
+    if key.depth {
+        let depth = surfaces.depth().ok_or(SkipReason::SampleCountMismatch)?;
+        entries.push(entry(2, sampled(depth, key.samples)?));
+    }
+    if key.reads_range() {
+        let keys = range.and_then(ViewDepthRange::drawn).ok_or(not_ready)?;
+        entries.push(entry(3, keys.as_entire_binding()));
+    }
+    if key.lines {
+        let lines = lines.ok_or(not_ready)?;
+        let ink = lines.found().ok_or(not_ready)?;
+        entries.push(entry(4, (&ink.default_view).into_binding()));
+    }
+    if key.reads_owners() {
+        let owners = lines.and_then(|lines| lines.owners.as_ref());
+        let owners = owners.ok_or(not_ready)?;
+        entries.push(entry(5, (&owners.default_view).into_binding()));
+    }
+    if key.object_styles {
+        let styles = object_styles.buffer().ok_or(not_ready)?;
+        entries.push(entry(6, styles.as_entire_binding()));
+    }
+    if key.normals() {
+        let normal = surfaces.normal().ok_or(not_ready)?;
+        entries.push(entry(7, sampled(normal, key.samples)?));
+    }
+    if key.ids() {
+        let ids = ids.ok_or(not_ready)?;
+        entries.push(entry(8, (&ids.view).into_binding()));
+    }
+    if key.places() {
+        let places = places.ok_or(not_ready)?;
+        entries.push(entry(
+            OBJECT_DEPTHS_BINDING,
+            places.table.as_entire_binding(),
+        ));
+    }
+    if key.blue_noise() {
+        let tile = blue_noise.view().ok_or(not_ready)?;
+        entries.push(entry(11, tile.into_binding()));
+    }
+    Ok(entries)
+}
+
+/// The binding of a prepass texture; an error if its number of samples is not the
+/// one that was compiled in.
+fn sampled(
+    texture: &bevy::render::texture::CachedTexture,
+    samples: u32,
+) -> Result<BindingResource<'_>, SkipReason> {
+    let view: &TextureView = &texture.default_view;
+    if texture.texture.sample_count() == samples {
+        Ok(view.into_binding())
+    } else {
+        Err(SkipReason::SampleCountMismatch)
+    }
+}

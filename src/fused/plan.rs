@@ -1,0 +1,382 @@
+//! The plan of a camera, made from its components. Whatever is not in the plan is
+//! neither compiled, bound, packed nor dispatched.
+
+use crate::effect::{AnyEffect, EffectStage, EffectType, Needs};
+use std::fmt::Debug;
+
+use bevy::ecs::world::EntityRef;
+
+use super::missing::DeviceLacks;
+use crate::{
+    composite::{DebugView, Finish, SplitView, StyleWeight},
+    depth::{DepthHistogram, DepthMap, VisibleDepthRange},
+    diagnostics::SkipReason,
+    lines::{Creases, LineFog, Outlines, Silhouettes, has_fog},
+    objects::ObjectChanges,
+};
+
+/// An effect in a camera's plan.
+#[derive(Clone, Debug)]
+pub(super) struct Planned {
+    /// Sanitised; its strength is above 0.
+    pub effect: Box<dyn AnyEffect>,
+    /// Not a component of the camera: another effect or the debug view implies it.
+    pub implied: bool,
+    /// Another effect of the plan replaces it.
+    pub replaced: bool,
+}
+
+impl PartialEq for Planned {
+    fn eq(&self, other: &Self) -> bool {
+        self.effect.equals(other.effect.as_ref())
+            && (self.implied, self.replaced) == (other.implied, other.replaced)
+    }
+}
+
+/// What a camera draws.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Plan {
+    pub depth_map: DepthMap,
+    /// In the order of the chain.
+    pub(super) effects: Vec<Planned>,
+    /// The other registered effects, and why they are not drawn.
+    pub(super) left_out: Vec<(&'static str, SkipReason)>,
+    /// The lines to find.
+    pub lines: Option<Outlines>,
+    /// Some object has its own line style, or no lines.
+    pub object_styles: bool,
+    /// Some mesh is divided into sections, and their borders are creases.
+    pub sections: bool,
+    /// The vertices of some mesh say how wide its lines are.
+    pub vertex_widths: bool,
+    /// The colour effects leave some object alone.
+    pub unstyled: bool,
+    /// Screens follow some object.
+    pub anchored: bool,
+    /// Some object is outlined by itself.
+    pub marks: bool,
+    /// Lines fade into the camera's distance fog.
+    pub fog: bool,
+    pub lacks: DeviceLacks,
+    /// The game reads the visible range.
+    pub readback: bool,
+    /// The game reads the histogram of depths.
+    pub histogram: bool,
+    /// Some material reads the smoothed visible range.
+    pub materials: bool,
+    pub finish: Finish,
+    /// The debug view that replaces the picture.
+    pub view: Option<DebugView>,
+}
+
+impl Plan {
+    /// The plan of a camera; `None` if none of its components requests anything.
+    /// `shown`: effects that are drawn instead of the camera's own of the same type.
+    pub fn new(
+        camera: EntityRef,
+        shown: &[Box<dyn AnyEffect>],
+        types: &[&'static EffectType],
+        objects: ObjectChanges,
+    ) -> Option<Self> {
+        let mut plan = Self {
+            depth_map: camera
+                .get::<DepthMap>()
+                .copied()
+                .unwrap_or_default()
+                .sanitized(),
+            object_styles: objects.any,
+            sections: objects.sections,
+            vertex_widths: objects.widths,
+            unstyled: objects.unstyled,
+            anchored: objects.anchored,
+            marks: objects.marks,
+            fog: has_fog(camera),
+            readback: camera.contains::<VisibleDepthRange>(),
+            histogram: camera.contains::<DepthHistogram>(),
+            finish: Finish::new(camera.get::<StyleWeight>(), camera.get::<SplitView>()),
+            view: camera.get::<DebugView>().copied().filter(|view| {
+                let known = |name| types.iter().any(|t| t.name == name && t.view.is_some());
+                match view {
+                    DebugView::Effect(name) => known(*name),
+                    view => !view.reads_ids() || cfg!(feature = "objects"),
+                }
+            }),
+            ..Self::default()
+        };
+        let asked = plan.collect(camera, shown, types);
+        if !(asked || plan.marks || plan.readback || plan.histogram || plan.view.is_some()) {
+            return None;
+        }
+        plan.show(types);
+        if plan.view.is_none() && (plan.finish.weight == 0.0 || plan.finish.split >= 1.0) {
+            plan.effects.clear();
+            plan.left_out = types
+                .iter()
+                .map(|t| (t.name, SkipReason::Negligible))
+                .collect();
+        }
+        plan.resolve();
+        Some(plan)
+    }
+
+    /// Adds the effects of the camera and those that they imply. Returns whether
+    /// the camera has any effect, negligible ones included.
+    fn collect(
+        &mut self,
+        camera: EntityRef,
+        shown: &[Box<dyn AnyEffect>],
+        types: &[&'static EffectType],
+    ) -> bool {
+        let of_camera = |effect: &&EffectType| {
+            let instead = shown.iter().find(|s| s.effect_type().name == effect.name);
+            let own = || (effect.get)(camera).map(AnyEffect::any_sanitized);
+            instead.cloned().or_else(own)
+        };
+        let own: Vec<_> = types.iter().map(of_camera).collect();
+        let implied: Vec<_> = own
+            .iter()
+            .flatten()
+            .filter(|effect| effect.any_strength() > 0.0)
+            .filter_map(|effect| effect.any_implied())
+            .collect();
+        let asked = own.iter().any(Option::is_some);
+        for (effect, own) in types.iter().zip(own) {
+            let is_own = own.is_some();
+            let found = own.or_else(|| {
+                let name = effect.name;
+                let mut implied = implied.iter();
+                implied.find(|i| i.effect_type().name == name).cloned()
+            });
+            match found {
+                Some(found) if found.any_strength() > 0.0 => self.effects.push(Planned {
+                    effect: found,
+                    implied: !is_own,
+                    replaced: false,
+                }),
+                Some(_) if is_own => self.left_out.push((effect.name, SkipReason::Negligible)),
+                _ => self.left_out.push((effect.name, SkipReason::NotRequested)),
+            }
+        }
+        asked
+    }
+
+    /// Adds the effect that a debug view shows, if the camera does not have it.
+    fn show(&mut self, types: &[&'static EffectType]) {
+        let Some(view) = self.view else {
+            return;
+        };
+        self.finish.weight = 1.0;
+        let DebugView::Effect(name) = view else {
+            return;
+        };
+        if self
+            .effects
+            .iter()
+            .any(|p| p.effect.effect_type().name == name)
+        {
+            return;
+        }
+        if let Some(effect) = types.iter().find(|effect| effect.name == name) {
+            let at = |name| types.iter().position(|t| t.name == name);
+            let own = at(name);
+            let before = self
+                .effects
+                .partition_point(|p| at(p.effect.effect_type().name) < own);
+            let effect = (effect.default)();
+            self.effects.insert(
+                before,
+                Planned {
+                    effect,
+                    implied: true,
+                    replaced: false,
+                },
+            );
+            self.left_out.retain(|(known, _)| *known != name);
+        }
+    }
+
+    /// Derives the lines, and the effects that are left out or replaced.
+    pub(super) fn resolve(&mut self) {
+        let asked = self.effects.iter().find_map(|p| p.effect.any_lines());
+        let has_ids = self.has_ids();
+        self.lines = asked
+            .map(Outlines::visible)
+            .map(|lines| Outlines {
+                objects: lines.objects.filter(|_| has_ids),
+                ..lines
+            })
+            .filter(|l| !l.is_empty());
+        self.show_lines();
+        let lost = self.lines.is_none();
+        let needs_lines = Needs::LINES | Needs::LINES_ANYWHERE;
+        self.leave_out(|effect| {
+            (lost && effect.any_needs().intersects(needs_lines)).then_some(SkipReason::NoSuchLines)
+        });
+        let replaced: Vec<&str> = self
+            .effects
+            .iter()
+            .flat_map(|p| p.effect.effect_type().replaces)
+            .copied()
+            .collect();
+        for planned in &mut self.effects {
+            planned.replaced = replaced.contains(&planned.effect.effect_type().name);
+        }
+        self.object_styles &= self.lines.is_some();
+        self.sections &= self.lines.is_some_and(|lines| lines.has_measured_creases());
+        self.vertex_widths &= self.lines.is_some_and(|lines| lines.has_wide_lines());
+        let color = |effect: &dyn AnyEffect| effect.effect_type().stage <= EffectStage::Print;
+        let colors = self.drawn().any(color);
+        self.unstyled &= colors;
+        self.fog &= self.lines.is_some_and(|lines| lines.fog == LineFog::Fade);
+        // The debug view of an effect that is not drawn shows nothing.
+        if let Some(DebugView::Effect(name)) = self.view
+            && !self.drawn().any(|effect| effect.effect_type().name == name)
+        {
+            self.view = None;
+        }
+    }
+
+    /// Adds the lines that a debug view shows.
+    fn show_lines(&mut self) {
+        let lines = self.lines.unwrap_or(Outlines::BARE);
+        match self.view {
+            Some(DebugView::Silhouettes) => {
+                let silhouettes = lines.silhouettes.or(Some(Silhouettes::default()));
+                self.lines = Some(Outlines {
+                    silhouettes,
+                    ..lines
+                });
+            }
+            Some(DebugView::Creases) => {
+                let creases = lines.creases.or(Some(Creases::default()));
+                self.lines = Some(Outlines { creases, ..lines });
+            }
+            _ => {}
+        }
+    }
+
+    /// Removes the effects for which there is a reason, and records it.
+    fn leave_out(&mut self, reason: impl Fn(&dyn AnyEffect) -> Option<SkipReason>) {
+        let left_out = &mut self.left_out;
+        self.effects.retain(|planned| {
+            let Some(reason) = reason(planned.effect.as_ref()) else {
+                return true;
+            };
+            left_out.push((planned.effect.effect_type().name, reason));
+            false
+        });
+    }
+
+    /// The effects that the fused pass applies, in order.
+    pub fn drawn(&self) -> impl Iterator<Item = &dyn AnyEffect> {
+        self.effects
+            .iter()
+            .filter(|planned| !planned.replaced)
+            .map(|planned| planned.effect.as_ref())
+    }
+
+    /// Whether the effect that requests the lines is implied, not on the camera.
+    /// Also true if no effect requests lines.
+    pub fn lines_implied(&self) -> bool {
+        self.effects
+            .iter()
+            .find(|p| p.effect.any_lines().is_some())
+            .is_none_or(|p| p.implied)
+    }
+
+    /// The inputs that the fused pass reads.
+    pub fn needs(&self) -> Needs {
+        let effects = self.drawn().map(AnyEffect::any_needs);
+        let needs = effects.fold(Needs::empty(), |all, one| all | one);
+        let needs = if needs.contains(Needs::LINES_ANYWHERE) {
+            needs | Needs::LINES
+        } else {
+            needs
+        };
+        let needs = if self.anchored {
+            needs
+        } else {
+            needs - Needs::OBJECT_ANCHORS
+        };
+        let needs = if self.has_ids() {
+            needs
+        } else {
+            needs - Needs::OBJECT_DEPTHS
+        };
+        let of_objects = Needs::OBJECT_ANCHORS | Needs::OBJECT_DEPTHS;
+        let needs = if self.unstyled || needs.intersects(of_objects) {
+            needs | Needs::IDS
+        } else {
+            needs
+        };
+        needs | self.view.map_or(Needs::empty(), DebugView::needs)
+    }
+
+    /// Whether anything is drawn.
+    pub fn draws(&self) -> bool {
+        self.drawn().next().is_some() || self.view.is_some()
+    }
+
+    pub(super) fn reads_map(&self) -> bool {
+        self.needs().contains(Needs::MAP)
+    }
+
+    /// Whether the fused pass reads the visible range.
+    pub fn draws_with_range(&self) -> bool {
+        self.reads_map() && self.depth_map.mapping.follows_visible_range()
+    }
+
+    pub(super) fn lines_read_map(&self) -> bool {
+        self.lines
+            .is_some_and(|lines| lines.fades() || lines.weight.perspective > 0.0)
+    }
+
+    /// Whether the range depends on earlier frames: it is smoothed or locked.
+    pub fn smooths(&self) -> bool {
+        let map = self.reads_map() || self.lines_read_map();
+        (self.materials || (map && self.depth_map.mapping.follows_visible_range()))
+            && (self.depth_map.smoothing.is_some() || self.depth_map.locked)
+    }
+
+    pub fn needs_range(&self) -> bool {
+        let map = self.reads_map() || self.lines_read_map();
+        self.readback
+            || self.histogram
+            || self.materials
+            || self.needs().contains(Needs::DEPTH_BORDERS)
+            || (map && self.depth_map.mapping.follows_visible_range())
+    }
+
+    pub fn needs_depth(&self) -> bool {
+        let read = Needs::MAP | Needs::DEPTH | Needs::NORMALS | Needs::IDS | Needs::DEPTH_BORDERS;
+        let view = self.view.is_some_and(DebugView::needs_depth);
+        self.readback
+            || self.marks
+            || self.histogram
+            || self.materials
+            || self.lines.is_some()
+            || self.needs().intersects(read)
+            || view
+    }
+
+    pub fn needs_normals(&self) -> bool {
+        let lines = self.lines;
+        lines.is_some_and(|lines| lines.creases.is_some() || lines.weight.reads_normals())
+            || self.needs().contains(Needs::NORMALS)
+    }
+
+    /// Whether the ids of objects are drawn for this camera.
+    pub fn draws_ids(&self) -> bool {
+        let lines = self.lines.is_some_and(|lines| {
+            let weighs = lines.silhouettes.is_some() && lines.weight.reads_ids();
+            lines.objects.is_some() || self.object_styles || self.sections || weighs
+        });
+        let ids = lines || self.draws_widths() || self.needs().contains(Needs::IDS);
+        self.has_ids() && ids
+    }
+
+    /// Whether object ids can be drawn.
+    pub fn has_ids(&self) -> bool {
+        cfg!(feature = "objects") && !self.lacks.object_ids
+    }
+}

@@ -1,0 +1,144 @@
+//! Writes the uniform of the fused pass for every view.
+
+use crate::effect::{EffectContext, encode};
+use std::sync::Arc;
+
+use bevy::{
+    ecs::{
+        component::Component,
+        entity::Entity,
+        query::{With, Without},
+        system::{Commands, Query, Res, ResMut},
+    },
+    render::{
+        render_resource::{Buffer, BufferDescriptor, BufferUsages, CachedRenderPipelineId},
+        renderer::{RenderDevice, RenderQueue},
+    },
+};
+
+use super::{Plan, blue_noise::BlueNoise, key::StylizeKey};
+use crate::{
+    depth::view::ViewUniform,
+    lines::{LineLayersUniform, LinesUniform},
+};
+
+/// On a view in the render world: draw its effects in this frame.
+#[derive(Component, Clone, Debug)]
+pub(crate) struct FusedRequest {
+    pub camera: Entity,
+    pub plan: Arc<Plan>,
+    /// The passes before the last one.
+    pub layers: Vec<Layer>,
+    pub key: StylizeKey,
+    pub pipeline: CachedRenderPipelineId,
+    /// Draws all pixels before the tiles of `pipeline`, see [`Part::Base`].
+    ///
+    /// [`Part::Base`]: super::part::Part::Base
+    pub base: Option<CachedRenderPipelineId>,
+    pub facts: EffectContext,
+    pub view: ViewUniform,
+    pub lines: Option<LinesUniform>,
+    pub line_layers: Option<LineLayersUniform>,
+}
+
+/// A pass that draws a picture for the next one, with numbers if that one reads them, and the
+/// passes that draw means over boxes of this picture: of rows, then of boxes.
+#[derive(Clone, Debug)]
+pub(crate) struct Layer {
+    pub picture: LayerPass,
+    pub means: Option<[LayerPass; 2]>,
+}
+
+/// A pass that draws a texture for a later one.
+#[derive(Clone, Debug)]
+pub(crate) struct LayerPass {
+    pub key: StylizeKey,
+    pub pipeline: CachedRenderPipelineId,
+}
+
+/// Bytes after the uniform. A shader whose WGSL struct is larger than
+/// [`Effect::Uniform`](crate::effect::Effect::Uniform) reads them. Without them the buffer
+/// would be too small for the shader: a validation error, which ends the app.
+const SLACK: u64 = 1024;
+
+impl FusedRequest {
+    /// The pipelines of all passes.
+    pub fn pipelines(&self) -> impl Iterator<Item = CachedRenderPipelineId> {
+        let passes = |layer: &Layer| {
+            let means = layer.means.iter().flatten();
+            let passes = [&layer.picture].into_iter().chain(means);
+            passes.map(|pass| pass.pipeline).collect::<Vec<_>>()
+        };
+        let layers = self.layers.iter().flat_map(passes);
+        layers.chain(self.base).chain([self.pipeline])
+    }
+
+    /// The bytes of `Comics` in `fused.wgsl`: only the parts that the key compiles
+    /// in, each at a multiple of 16 bytes, with 16 bytes before all but the first two.
+    fn uniform_bytes(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let pad = |bytes: &mut Vec<u8>| bytes.resize(bytes.len().next_multiple_of(16), 0);
+        for part in [
+            encode(&self.view),
+            encode(&self.plan.finish.uniform(self.facts.viewport.z)),
+        ] {
+            bytes.extend(part);
+            pad(&mut bytes);
+        }
+        let mut push = |part: Vec<u8>| {
+            bytes.extend([0; 16]);
+            bytes.extend(part);
+            pad(&mut bytes);
+        };
+        if let Some(lines) = self.lines.filter(|_| self.key.lines) {
+            push(encode(&lines));
+        }
+        if let Some(layers) = self.line_layers.filter(|_| self.key.layer_ink) {
+            push(encode(&layers));
+        }
+        for effect in self.plan.drawn() {
+            if effect.effect_type().shader.settings.is_some() {
+                push(effect.uniform_bytes(&self.facts));
+            }
+        }
+        bytes
+    }
+}
+
+/// On a view in the render world: the uniform buffer of its fused pass.
+#[derive(Component)]
+pub(crate) struct ViewFused {
+    pub uniform: Buffer,
+}
+
+pub(super) fn prepare_fused_pass(
+    mut commands: Commands,
+    views: Query<(Entity, &FusedRequest, Option<&ViewFused>)>,
+    stale: Query<Entity, (With<ViewFused>, Without<FusedRequest>)>,
+    (device, queue): (Res<RenderDevice>, Res<RenderQueue>),
+    mut blue_noise: ResMut<BlueNoise>,
+) {
+    if views.iter().any(|(_, request, _)| request.key.blue_noise()) {
+        blue_noise.prepare(&device, &queue);
+    }
+    for (entity, request, fused) in &views {
+        let bytes = request.uniform_bytes();
+        let fits = fused.filter(|fused| fused.uniform.size() >= bytes.len() as u64 + SLACK);
+        match fits {
+            Some(fused) => queue.write_buffer(&fused.uniform, 0, &bytes),
+            None => {
+                let uniform = device.create_buffer(&BufferDescriptor {
+                    label: Some("comics_uniform"),
+                    size: bytes.len() as u64 + SLACK,
+                    usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
+                    mapped_at_creation: false,
+                });
+                queue.write_buffer(&uniform, 0, &bytes);
+                commands.entity(entity).insert(ViewFused { uniform });
+            }
+        }
+    }
+    for entity in &stale {
+        commands.entity(entity).remove::<ViewFused>();
+    }
+}

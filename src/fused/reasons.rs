@@ -1,0 +1,71 @@
+//! Why a camera's plan leaves a stage out.
+
+use super::plan::Plan;
+use crate::diagnostics::{ComicsStage, SkipReason};
+use crate::effect::EffectType;
+
+impl Plan {
+    /// The stage of every effect, in the order of the chain, and why it does not
+    /// run; `None` if it is drawn.
+    pub fn effect_stages(
+        &self,
+        types: &[&'static EffectType],
+    ) -> Vec<(ComicsStage, Option<SkipReason>)> {
+        let reason = |name: &str| {
+            let left = self.left_out.iter().rev().find(|(known, _)| *known == name);
+            let planned = self
+                .effects
+                .iter()
+                .find(|p| p.effect.effect_type().name == name);
+            match (left, planned) {
+                (_, Some(p)) if p.replaced && p.implied => Some(SkipReason::NotRequested),
+                (_, Some(p)) if p.replaced => Some(SkipReason::Replaced),
+                (_, Some(_)) => None,
+                (Some((_, reason)), None) => Some(*reason),
+                (None, None) => Some(SkipReason::NotRequested),
+            }
+        };
+        types
+            .iter()
+            .map(|t| (ComicsStage::Effect(t.name), reason(t.name)))
+            .collect()
+    }
+
+    /// The reason that is reported if a stage does not run for this plan.
+    pub fn reason(&self, stage: ComicsStage) -> SkipReason {
+        let lines = self.lines.is_some();
+        let maps = self.reads_map() || self.lines_read_map();
+        match stage {
+            ComicsStage::Effect(_) | ComicsStage::RangeReadback | ComicsStage::MarkedObjects => {
+                SkipReason::NotRequested
+            }
+            ComicsStage::DepthPrepass => SkipReason::NoDepthStyle,
+            ComicsStage::TransparentDepth if self.lacks.depth_copies => SkipReason::NoDepthCopies,
+            ComicsStage::ObjectIds | ComicsStage::TransparentDepth if self.lacks.object_ids => {
+                SkipReason::NoStorageBuffers
+            }
+            ComicsStage::TransparentDepth if self.needs_depth() => SkipReason::NoSuchMeshes,
+            ComicsStage::TransparentDepth => SkipReason::NoDepthStyle,
+            ComicsStage::NormalPrepass
+            | ComicsStage::ObjectIds
+            | ComicsStage::ResolveSamples
+            | ComicsStage::SearchTiles
+            | ComicsStage::FindLines
+            | ComicsStage::DrawLines => SkipReason::NoSuchLines,
+            ComicsStage::RangeSmoothing
+                if self.depth_map.smoothing.is_none() && !self.depth_map.locked =>
+            {
+                SkipReason::NotRequested
+            }
+            ComicsStage::RangeSmoothing if self.lacks.compute_shaders && self.smooths() => {
+                SkipReason::NoComputeShaders
+            }
+            ComicsStage::DepthRange | ComicsStage::RangeSmoothing if maps => SkipReason::FixedRange,
+            ComicsStage::DepthRange | ComicsStage::RangeSmoothing if lines => {
+                SkipReason::NoMapStyle
+            }
+            ComicsStage::DepthRange | ComicsStage::RangeSmoothing => SkipReason::NoDepthStyle,
+            ComicsStage::Stylize => SkipReason::NothingToDraw,
+        }
+    }
+}

@@ -1,0 +1,392 @@
+//! Turns the plan of a view into requests to the services.
+
+use crate::effect::{AffectedArea, AnyEffect, EffectContext, Needs};
+use std::sync::Arc;
+
+use bevy::{
+    camera::MainPassResolutionOverride,
+    core_pipeline::prepass::ViewPrepassTextures,
+    ecs::{
+        entity::Entity,
+        system::{Commands, Res, ResMut, SystemParam},
+    },
+    math::{UVec2, UVec4, Vec2},
+    render::{
+        camera::{ExtractedCamera, TemporalJitter},
+        render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines},
+        view::ExtractedView,
+    },
+};
+
+#[cfg(feature = "objects")]
+use super::marks::{MarkPipelines, MarkRequests};
+use super::{
+    Plan, ViewPlan,
+    compiling::{are_compiling, is_compiling},
+    context::effect_context,
+    key::{KeyInputs, StylizeKey},
+    lines::{line_reach, line_request, map_jumps},
+    missing::Input,
+    object_depths::object_depths,
+    part::Part,
+    pass::StylizePipeline,
+    passes::{Reads, passes},
+    prepare::{FusedRequest, Layer, LayerPass},
+};
+use crate::{
+    depth::{
+        ProjectionKind, RawDepth,
+        request::{RangePasses, RangePipelines, RangeRequest, Reduction},
+        view::{ViewUniform, depth_rect},
+    },
+    lines::{
+        LineLayers,
+        request::{LinePasses, LinePipelines, LineRequest},
+    },
+    objects::{IdRequest, ObjectDepthRequest, QueuedDepth},
+};
+#[cfg(feature = "objects")]
+use crate::{lines::ViewMarks, objects::LayerRequest};
+
+/// The inputs that a view provides.
+#[derive(Clone, Copy)]
+pub(super) struct Scene {
+    pub viewport: UVec4,
+    /// Size of the main pass in pixels, if it differs from the viewport.
+    pub main_pass_size: Option<UVec2>,
+    /// By how much the engine has moved the main pass in this frame, in its pixels,
+    /// under temporal anti-aliasing.
+    pub jitter: Option<Vec2>,
+    /// Size in pixels and samples per pixel of the depth prepass, if there is one.
+    pub depth: Option<(UVec2, u32)>,
+    pub normals: bool,
+    /// The engine draws motion vectors.
+    pub motion: bool,
+    /// Transparent meshes are drawn with their ids.
+    ids_queued: bool,
+}
+
+impl Scene {
+    pub fn new(
+        extracted: &ExtractedView,
+        (prepass, queued): (Option<&ViewPrepassTextures>, Option<&QueuedDepth>),
+        // The engine sets both in the render world.
+        (resolution, jitter): (Option<&MainPassResolutionOverride>, Option<&TemporalJitter>),
+    ) -> Self {
+        let depth = prepass.and_then(|textures| textures.depth.as_ref());
+        Self {
+            viewport: extracted.viewport,
+            main_pass_size: resolution.map(|resolution| resolution.0),
+            jitter: jitter.map(|jitter| jitter.offset),
+            depth: depth.map(|depth| {
+                let texture = &depth.texture.texture;
+                let size = UVec2::new(texture.width(), texture.height());
+                (size, texture.sample_count())
+            }),
+            normals: prepass.is_some_and(|textures| textures.normal.is_some()),
+            motion: prepass.is_some_and(|textures| textures.motion_vectors.is_some()),
+            ids_queued: queued.is_some_and(|queued| queued.ids),
+        }
+    }
+
+    /// The part of the depth texture that the main pass draws: x, y, width, height.
+    pub fn drawn(&self) -> UVec4 {
+        depth_rect(self.viewport, self.main_pass_size)
+    }
+
+    /// The plan without the effects whose inputs this view does not provide.
+    pub fn reduce(&self, plan: &Arc<Plan>) -> Arc<Plan> {
+        let mut reduced = plan.clone();
+        // With OpenGL, no multisampled texture can be read.
+        let unreadable =
+            plan.lacks.depth_copies && self.depth.is_some_and(|(_, samples)| samples > 1);
+        if (self.depth.is_none() || unreadable) && reduced.needs_depth() {
+            reduced = Arc::new(reduced.without(Input::DepthPrepass));
+        }
+        if (!self.normals || unreadable) && reduced.needs_normals() {
+            reduced = Arc::new(reduced.without(Input::NormalPrepass));
+        }
+        reduced
+    }
+}
+
+/// The requests of one plan to the services, for one view, and their pipelines.
+pub(super) struct Requests {
+    range: Option<(RangeRequest, RangePasses)>,
+    lines: Option<(LineRequest, LinePasses)>,
+    ids: Option<IdRequest>,
+    places: Option<ObjectDepthRequest>,
+    #[cfg(feature = "objects")]
+    marks: Option<MarkRequests>,
+    fused: Option<FusedRequest>,
+}
+
+/// Creates requests from plans.
+#[derive(SystemParam)]
+pub(crate) struct Services<'w> {
+    ranges: RangePipelines<'w>,
+    pub(super) lines: LinePipelines<'w>,
+    stylize: ResMut<'w, SpecializedRenderPipelines<StylizePipeline>>,
+    stylize_pipeline: Res<'w, StylizePipeline>,
+    #[cfg(feature = "objects")]
+    pub(super) marks: MarkPipelines<'w>,
+}
+
+impl Services<'_> {
+    pub fn requests(
+        &mut self,
+        cache: &PipelineCache,
+        (plan, view): (&Arc<Plan>, &ViewPlan),
+        scene: &Scene,
+        (extracted, camera): (&ExtractedView, &ExtractedCamera),
+    ) -> Requests {
+        let uniform = view_uniform(view, plan, scene);
+        let facts = effect_context(view, plan, scene.viewport, (extracted, camera));
+        let jumps = map_jumps(plan, scene, &facts);
+        let places = object_depths((plan, view), &facts, uniform, extracted);
+        let lines = line_request(view, (plan, &facts), scene, (uniform, jumps)).map(|request| {
+            let passes = self.lines.get(cache, &request);
+            (request, passes)
+        });
+        let fused = plan.draws().then(|| {
+            let inputs = KeyInputs {
+                format: extracted.target_format,
+                space: camera.compositing_space,
+                samples: scene.depth.map(|(_, samples)| samples),
+                oblique: view.projection.kind() == ProjectionKind::Oblique,
+                view: uniform,
+            };
+            self.fused(cache, (plan, view.camera, facts), &inputs, lines.as_ref())
+        });
+        let range = range_request(view, plan, scene).map(|request| {
+            let passes = self.ranges.get(cache, &request);
+            (request, passes)
+        });
+        let ids = scene
+            .depth
+            .filter(|_| plan.draws() && plan.draws_ids() || scene.ids_queued)
+            .map(|(size, samples)| IdRequest {
+                camera: view.camera,
+                size,
+                samples,
+                pressure: plan.pressure(view.scale_factor),
+            });
+        #[cfg(feature = "objects")]
+        let marks = {
+            let scene = (scene, uniform);
+            self.mark_requests(cache, (plan, view), scene, (extracted, camera))
+        };
+        Requests {
+            range,
+            lines,
+            ids,
+            places,
+            #[cfg(feature = "objects")]
+            marks,
+            fused,
+        }
+    }
+
+    fn fused(
+        &mut self,
+        cache: &PipelineCache,
+        (plan, camera, facts): (&Arc<Plan>, Entity, EffectContext),
+        inputs: &KeyInputs,
+        lines: Option<&(LineRequest, LinePasses)>,
+    ) -> FusedRequest {
+        let all = StylizeKey::new(plan, inputs, &facts);
+        let passes = passes(plan);
+        let mut keys: Vec<_> = passes.iter().map(|p| all.of_pass(plan, p)).collect();
+        // What the layers draw besides their pictures, for the next pass.
+        let mut means = vec![None; passes.len() - 1];
+        for (i, pass) in passes.iter().enumerate().skip(1) {
+            match pass.reads {
+                Some(Reads::Means(effect)) => {
+                    means[i - 1] = Some(keys[i].means_for(plan, effect, &facts));
+                }
+                Some(Reads::Numbers(effect)) => keys[i - 1] = keys[i - 1].numbered(effect),
+                None => {}
+            }
+        }
+        // There is always a last pass, which draws the view's picture.
+        let whole = keys.pop().unwrap_or(all);
+        let chosen = ChosenPart::new((plan, &facts), &whole, lines);
+        let mut specialize = |key: &StylizeKey| {
+            let pipeline = &self.stylize_pipeline;
+            self.stylize.specialize(cache, pipeline, key.clone())
+        };
+        let base = (chosen.part == Part::Tiles)
+            .then(|| specialize(&whole.base(&chosen.local, chosen.without_lines)));
+        let mut pass = |key: StylizeKey| LayerPass {
+            pipeline: specialize(&key),
+            key,
+        };
+        let layers = keys.into_iter().zip(means).map(|(key, means)| Layer {
+            picture: pass(key),
+            means: means.map(|keys| keys.map(&mut pass)),
+        });
+        let key = whole.with_part(chosen.part);
+        FusedRequest {
+            camera,
+            plan: plan.clone(),
+            facts,
+            view: inputs.view,
+            lines: lines.map(|(request, _)| request.lines),
+            line_layers: plan.line_modifiers(&facts).layers.map(LineLayers::uniform),
+            layers: layers.collect(),
+            pipeline: specialize(&key),
+            base,
+            key,
+        }
+    }
+}
+
+/// What the last pass of a plan draws.
+struct ChosenPart {
+    part: Part,
+    /// Effects of the pass that change only some pixels.
+    local: Vec<&'static str>,
+    /// Lines are left out of the pixels that the tiles do not cover.
+    without_lines: bool,
+}
+
+impl ChosenPart {
+    fn new(
+        (plan, facts): (&Plan, &EffectContext),
+        whole: &StylizeKey,
+        lines: Option<&(LineRequest, LinePasses)>,
+    ) -> Self {
+        let jumps = |effect: &dyn AnyEffect| {
+            matches!(effect.any_affected_area(facts), AffectedArea::AtJumps(_))
+        };
+        let searches_jumps = plan.drawn().any(jumps);
+        let tiled = lines.filter(|(request, passes)| {
+            passes.are_tiles_complete() && (request.jumps.is_some() || !searches_jumps)
+        });
+        let without_lines = line_reach(plan, facts).is_some();
+        let is_local =
+            |effect: &dyn AnyEffect| effect.any_affected_area(facts) != AffectedArea::Everywhere;
+        let in_last = plan.drawn().filter(|e| whole.applies(e.effect_type().name));
+        let local: Vec<_> = in_last
+            .filter(|effect| is_local(*effect))
+            .map(|effect| effect.effect_type().name)
+            .collect();
+        let saves = |request: &LineRequest| {
+            let jumps = request.jumps.is_some() && !local.is_empty();
+            jumps || (without_lines && whole.reads_lines_anywhere())
+        };
+        let part = match (whole.can_overlay(plan, facts), tiled) {
+            (true, Some(_)) => Part::OverlaidTiles,
+            (true, None) => Part::Overlay,
+            (false, Some((request, _))) if saves(request) && !whole.is_view() => Part::Tiles,
+            (false, _) => Part::Whole,
+        };
+        Self {
+            part,
+            local,
+            without_lines,
+        }
+    }
+}
+
+fn view_uniform(view: &ViewPlan, plan: &Plan, scene: &Scene) -> ViewUniform {
+    ViewUniform::new(
+        scene.viewport,
+        scene.main_pass_size,
+        plan.depth_map.flip,
+        raw_depth(view, scene),
+        view.projection.frame(&plan.depth_map),
+    )
+}
+
+/// How the texels of the depth texture become raw depth.
+fn raw_depth(view: &ViewPlan, scene: &Scene) -> RawDepth {
+    view.projection.raw(&view.clip_from_view, scene.drawn())
+}
+
+fn range_request(view: &ViewPlan, plan: &Plan, scene: &Scene) -> Option<RangeRequest> {
+    let (_, samples) = scene.depth.filter(|_| plan.needs_range())?;
+    Some(RangeRequest {
+        camera: view.camera,
+        map: plan.depth_map,
+        projection: view.projection,
+        raw: raw_depth(view, scene),
+        rect: scene.drawn(),
+        samples,
+        smooths: plan.smooths(),
+        readback: plan.readback,
+        histogram: plan.histogram,
+        borders: plan.needs().contains(Needs::DEPTH_BORDERS),
+        #[cfg(feature = "toon")]
+        materials: plan.materials,
+        seconds: view.seconds,
+        cuts: view.cuts,
+    })
+}
+
+impl Requests {
+    /// Whether a pipeline is still compiling. A pipeline that failed is not: its
+    /// pass does not run, and the log says why.
+    pub fn is_compiling(&self, cache: &PipelineCache) -> bool {
+        let compute = |id| is_compiling(cache.get_compute_pipeline_state(id));
+        let render = |id: CachedRenderPipelineId| is_compiling(cache.get_render_pipeline_state(id));
+        let range = self.range.as_ref().is_some_and(|(_, passes)| {
+            let reduction = match passes.reduction {
+                Reduction::Compute { pipeline, .. } => compute(pipeline),
+                Reduction::PingPong { first, next } => render(first) || render(next),
+            };
+            let later = [passes.smoothing, passes.borders];
+            reduction || later.into_iter().flatten().any(compute)
+        });
+        let lines = self.lines.as_ref();
+        let lines = lines.is_some_and(|(_, passes)| are_compiling(passes, cache));
+        #[cfg(feature = "objects")]
+        let lines = lines
+            || (self.marks.as_ref())
+                .is_some_and(|m| are_compiling(m.passes(), cache) || render(m.pipeline()));
+        let fused = (self.fused.as_ref()).is_some_and(|f| f.pipelines().any(render));
+        range || lines || fused
+    }
+
+    /// Puts the requests on the view, and removes those of the last frame.
+    /// `layer`: the entity with the requests for the lines of marked objects.
+    pub fn put(self, entity: Entity, layer: Option<Entity>, commands: &mut Commands) {
+        let mut view = commands.entity(entity);
+        match self.range {
+            Some(range) => view.insert(range),
+            None => view.remove::<(RangeRequest, RangePasses)>(),
+        };
+        match self.lines {
+            Some(lines) => view.insert(lines),
+            None => view.remove::<(LineRequest, LinePasses)>(),
+        };
+        match self.ids {
+            Some(ids) => view.insert(ids),
+            None => view.remove::<IdRequest>(),
+        };
+        match self.places {
+            Some(places) => view.insert(places),
+            None => view.remove::<ObjectDepthRequest>(),
+        };
+        match self.fused {
+            Some(fused) => view.insert(fused),
+            None => view.remove::<FusedRequest>(),
+        };
+        #[cfg(feature = "objects")]
+        match self.marks {
+            Some(marks) => marks.put(entity, layer, commands),
+            None => remove_marks(entity, layer, commands),
+        }
+        #[cfg(not(feature = "objects"))]
+        let _ = layer;
+    }
+}
+
+/// Removes the requests for the lines of marked objects.
+#[cfg(feature = "objects")]
+pub(super) fn remove_marks(view: Entity, layer: Option<Entity>, commands: &mut Commands) {
+    if let Some(layer) = layer {
+        commands.entity(layer).despawn();
+    }
+    commands.entity(view).remove::<(LayerRequest, ViewMarks)>();
+}

@@ -1,0 +1,344 @@
+//! Files of the previous format version, some of whose entries, fields and values had other names.
+
+use std::{fmt::Write, ops::Range};
+
+/// What was renamed: entry of the file, old name, new name.
+pub(crate) type Renamed = &'static [(&'static str, &'static str, &'static str)];
+
+/// What version 3 of style files renamed.
+pub(super) const STYLE: Renamed = &[
+    ("abstraction", "near", "at_near"),
+    ("abstraction", "far", "at_far"),
+    ("abstraction", "by", "granularity"),
+    ("tone_bands", "form", "equations"),
+    ("desaturation", "form", "equations"),
+    ("colorization", "form", "equations"),
+    ("colorization", "Hue", "KeepHue"),
+    ("color_harmony", "form", "equations"),
+    ("color_harmony", "Quadratic", "SquareRoot"),
+    ("planes", "near", "foreground"),
+    ("planes", "far", "background"),
+    ("planes", "near_end", "foreground_end"),
+    ("planes", "far_start", "background_start"),
+    ("planes", "by", "granularity"),
+    ("planes", "planes", "depth_layers"),
+    ("paint", "form", "kernel"),
+    ("paint", "near", "at_near"),
+    ("paint", "far", "at_far"),
+    ("focus", "period", "cell_size"),
+    ("focus", "Centre", "Center"),
+    ("print_offset", "print_offset", "misregistration"),
+    ("halftone", "near", "at_near"),
+    ("halftone", "far", "at_far"),
+    ("halftone", "below", "shadows_only_below"),
+    ("halftone", "period", "cell_size"),
+    ("hatching", "near", "at_near"),
+    ("hatching", "far", "at_far"),
+    ("hatching", "calm", "simplify_small"),
+    ("contours", "form", "equations"),
+    ("outlines", "continuity", "hysteresis"),
+    ("outlines", "continuity_level", "hysteresis_ratio"),
+    ("outlines", "specks", "min_length"),
+    ("outlines", "bridge", "gap_closing"),
+    ("outlines", "persistence", "hold_frames"),
+    ("outlines", "budget", "ink_budget"),
+    ("outlines", "nib", "nib_roundness"),
+    ("outlines", "form", "equations"),
+    ("iso_lines", "centre", "center"),
+    ("speed_lines", "dry", "dry_brush"),
+    ("paper", "spread", "ink_bleed"),
+    ("depth_map", "near", "from"),
+    ("depth_map", "far", "to"),
+];
+
+/// What version 2 of shading files renamed.
+#[cfg(feature = "toon")]
+pub(crate) const SHADING: Renamed = &[
+    ("light", "terminator", "shadow_threshold"),
+    ("light", "projected_shadows", "cast_shadows"),
+    ("light", "backface_shadows", "form_shadows"),
+    ("light", "form", "proxy"),
+    ("light", "far_amount", "amount_at_far"),
+    ("light", "Share", "LightFraction"),
+    ("light", "near", "from"),
+    ("light", "glint", "stylized_highlight"),
+];
+
+/// The text of a file with the current names.
+pub(crate) struct Upgraded {
+    pub text: String,
+    edits: Vec<Edit>,
+}
+
+/// A word that was replaced.
+struct Edit {
+    line: usize,
+    /// Column of the new word, from 1.
+    column: usize,
+    entry: String,
+    old: String,
+    new: &'static str,
+}
+
+impl Upgraded {
+    /// A text that needs no change.
+    pub fn unchanged(text: &str) -> Self {
+        Self {
+            text: text.to_owned(),
+            edits: Vec::new(),
+        }
+    }
+
+    /// The column in the file of a column in the upgraded text.
+    pub fn original_column(&self, line: usize, column: usize) -> usize {
+        let shift: isize = self
+            .edits
+            .iter()
+            .filter(|edit| edit.line == line && edit.column < column)
+            .map(|edit| edit.new.len() as isize - edit.old.len() as isize)
+            .sum();
+        column.saturating_add_signed(-shift)
+    }
+
+    /// What to change in the file; `None` if it is up to date.
+    pub fn advice(&self) -> Option<String> {
+        let version = self.edits.iter().find(|edit| edit.entry == "version")?;
+        let mut advice = format!(
+            "this file has format version {}: set `version: {}`",
+            version.old, version.new
+        );
+        let mut told: Vec<(&str, &str)> = Vec::new();
+        for edit in &self.edits {
+            let rename = (edit.entry.as_str(), edit.old.as_str());
+            if edit.entry != "version" && !told.contains(&rename) {
+                told.push(rename);
+                let _ = write!(
+                    advice,
+                    ", rename `{}` to `{}` in `{}`",
+                    edit.old, edit.new, edit.entry
+                );
+            }
+        }
+        Some(advice)
+    }
+}
+
+/// The version that the text of a file states.
+pub(crate) fn version(text: &str) -> Option<u32> {
+    entry_words(text)
+        .into_iter()
+        .find(|word| word.entry == "version" && !word.is_key)
+        .and_then(|word| text[word.range].parse().ok())
+}
+
+/// The end of a text that grows: line and column from 1.
+struct End {
+    line: usize,
+    column: usize,
+}
+
+impl End {
+    /// Moves behind `more`.
+    fn pass(&mut self, more: &str) {
+        for c in more.chars() {
+            if c == '\n' {
+                self.line += 1;
+                self.column = 1;
+            } else {
+                self.column += 1;
+            }
+        }
+    }
+}
+
+/// The text of a file of the version before `version` with the current names. Takes time in
+/// proportion to the length of the text.
+pub(crate) fn upgraded(text: &str, version: &'static str, renamed: Renamed) -> Upgraded {
+    let mut upgraded = Upgraded {
+        text: String::with_capacity(text.len()),
+        edits: Vec::new(),
+    };
+    let mut end = End { line: 1, column: 1 };
+    let mut copied = 0;
+    for word in entry_words(text) {
+        let old = &text[word.range.clone()];
+        let new = if word.entry == "version" && !word.is_key {
+            Some(version)
+        } else {
+            renamed
+                .iter()
+                .find(|(entry, from, _)| *entry == word.entry && *from == old)
+                .map(|(_, _, to)| *to)
+        };
+        let Some(new) = new else { continue };
+        let before = &text[copied..word.range.start];
+        upgraded.text.push_str(before);
+        end.pass(before);
+        upgraded.edits.push(Edit {
+            line: end.line,
+            column: end.column,
+            entry: word.entry.to_owned(),
+            old: old.to_owned(),
+            new,
+        });
+        upgraded.text.push_str(new);
+        end.pass(new);
+        copied = word.range.end;
+    }
+    upgraded.text.push_str(&text[copied..]);
+    upgraded
+}
+
+/// A name or number inside of an entry.
+struct Word<'a> {
+    /// Name of the entry of the style, such as `contours`.
+    entry: &'a str,
+    /// Whether this is the entry's own name.
+    is_key: bool,
+    range: Range<usize>,
+}
+
+/// The words of a RON text, without those in strings and comments.
+fn entry_words(text: &str) -> Vec<Word<'_>> {
+    let mut words = Vec::new();
+    let (mut at, mut depth, mut entry) = (0, 0usize, "");
+    while let Some(c) = text[at..].chars().next() {
+        let rest = &text[at..];
+        let length = if rest.starts_with("//") {
+            rest.find('\n').unwrap_or(rest.len())
+        } else if rest.starts_with("/*") {
+            rest.find("*/").map_or(rest.len(), |end| end + 2)
+        } else if c == '"' {
+            string_length(rest)
+        } else if c.is_alphanumeric() || c == '_' {
+            let length = rest
+                .find(|c: char| !(c.is_alphanumeric() || c == '_'))
+                .unwrap_or(rest.len());
+            let is_key = depth == 1 && rest[length..].trim_start().starts_with(':');
+            if is_key {
+                entry = &rest[..length];
+            }
+            let range = at..at + length;
+            words.push(Word {
+                entry,
+                is_key,
+                range,
+            });
+            length
+        } else {
+            match c {
+                '(' | '[' | '{' => depth += 1,
+                ')' | ']' | '}' => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            c.len_utf8()
+        };
+        at += length;
+    }
+    words
+}
+
+/// The length of a string in quotes at the start of a text.
+fn string_length(text: &str) -> usize {
+    let mut escaped = false;
+    for (at, c) in text.char_indices().skip(1) {
+        match c {
+            _ if escaped => escaped = false,
+            '\\' => escaped = true,
+            '"' => return at + 1,
+            _ => {}
+        }
+    }
+    text.len()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{
+        ColorHarmony, ComicStyle, DepthLayers, Outlines,
+        effect::EffectRegistry,
+        effects::{Equations, HarmonyCurve},
+        style::{ComicStyleError, format},
+    };
+
+    const OLD: &str = r##"// specks in a comment stays
+(
+    version: 2,
+    name: "form: Faithful, \"specks\"",
+    color_harmony: (curve: Quadratic, form: Faithful),
+    planes: (near: (saturation: 0.5), near_end: 0.125),
+    outlines: (specks: 3, silhouettes: (form: Faithful), color: Ink, weight: (nib: 0.5)),
+)
+"##;
+
+    fn read(text: &str) -> Result<format::Read, ComicStyleError> {
+        format::read(text, &EffectRegistry::built_in().types())
+    }
+
+    #[test]
+    fn a_file_of_the_previous_version_reads_and_says_what_to_rename() {
+        let old = read(OLD).expect("readable");
+        let style = old.style;
+        assert_eq!(style.name, "form: Faithful, \"specks\"");
+        let harmony = style.get::<ColorHarmony>().expect("harmony");
+        assert_eq!(
+            (harmony.equations, harmony.curve),
+            (Equations::Faithful, HarmonyCurve::SquareRoot)
+        );
+        let layers = style.get::<DepthLayers>().expect("layers");
+        assert_eq!(
+            (layers.foreground.saturation, layers.foreground_end),
+            (0.5, 0.125)
+        );
+        let outlines = style.get::<Outlines>().expect("outlines");
+        assert_eq!(
+            (outlines.min_length, outlines.weight.nib_roundness),
+            (3, 0.5)
+        );
+        let advice = old.advice.as_deref().expect("an advice");
+        for expected in [
+            "format version 2: set `version: 3`",
+            "rename `planes` to `depth_layers` in `planes`",
+            "rename `near_end` to `foreground_end` in `planes`",
+            "rename `Quadratic` to `SquareRoot` in `color_harmony`",
+            "rename `nib` to `nib_roundness` in `outlines`",
+        ] {
+            assert!(advice.contains(expected), "{advice}");
+        }
+        // The advice is right: the file that it leads to reads the same, silently.
+        let new = style.to_ron().expect("writable");
+        let again = read(&new).expect("readable");
+        assert_eq!(again.style.to_ron().expect("writable"), new);
+        assert_eq!(again.advice, None);
+    }
+
+    #[test]
+    fn errors_in_a_file_of_the_previous_version_name_its_own_columns() {
+        let text = "(version: 2, outlines: (specks: 3, widht: 1))";
+        let at = text.find("widht").expect("there");
+        let error = ComicStyle::from_ron(text).expect_err("a wrong field");
+        let ComicStyleError::Syntax { line, column, .. } = error else {
+            panic!("{error}");
+        };
+        assert_eq!((line, column), (1, at + 1));
+    }
+
+    #[test]
+    fn new_names_in_old_files_and_old_names_in_new_files() {
+        assert!(read("(version: 2, outlines: (min_length: 3))").is_ok());
+        assert!(read("(version: 3, outlines: (specks: 3))").is_err());
+        assert!(read("(version: 1)").is_err());
+        assert!(read("(version: 4)").is_err());
+        // Broken texts are errors, not panics.
+        for text in [
+            "",
+            "(",
+            "\"",
+            "(version: 2, name: \"\\",
+            "/*",
+            "(version: 99999999999)",
+        ] {
+            assert!(read(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! The second axis of a ramp.
+
+use bevy::{
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use super::RampStop;
+use crate::settings::{FieldRange, clamp_or_default};
+
+/// A second ramp of a [`Ramp`](crate::toon::Ramp), and how much of each there is: the ramp itself where
+/// there is all detail, this one where there is none (X-Toon: Barla, Thollot and Markosian 2006).
+///
+/// Between the two, stops move, soften and change their colours, which are mixed in `OKLab`. The
+/// first stop becomes the first one, and so on. The shorter ramp's last tone takes the place of
+/// those that it lacks.
+#[derive(Reflect, Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct RampDetail {
+    /// The tones where there is no detail, as [`Ramp::stops`](crate::toon::Ramp::stops). Default: one
+    /// tone, white.
+    #[reflect(@FieldRange::linear(1.0, 8.0))]
+    pub plain: Vec<RampStop>,
+    /// Where there is detail. Default: [`DetailAxis::Depth`].
+    pub axis: DetailAxis,
+}
+
+/// Where a ramp has detail.
+///
+/// Distances are along the axis of the view, in world units.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub enum DetailAxis {
+    /// Near the eye: `1 - ln(z / from) / ln ratio`.
+    Depth {
+        /// All detail is nearer than this. Range 1e-4 to 1e6, default 1.
+        #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units"))]
+        from: f32,
+        /// No detail is farther than this multiple of `from`. Range 1.01 to 1e6, default 10.
+        #[reflect(@FieldRange::logarithmic(1.01, 1e6))]
+        ratio: f32,
+    },
+    /// At a distance: `1 - (|ln(z / distance)| - ln(1 + clear)) / ln ratio`.
+    Focus {
+        /// What is in focus. Range 1e-4 to 1e6, default 5.
+        #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units"))]
+        distance: f32,
+        /// How far from it there is all detail, as a fraction of it. Range 0 to 10, default 0.15.
+        #[reflect(@FieldRange::linear(0.0, 10.0))]
+        clear: f32,
+        /// From which multiple of it, and at which fraction, there is none; counted from the end
+        /// of what is clear. Range 1.01 to 1e6, default 3.
+        #[reflect(@FieldRange::logarithmic(1.01, 1e6))]
+        ratio: f32,
+    },
+    /// Where surfaces face the eye: `|n.v|^power`. The second ramp is that of rims.
+    Rim {
+        /// Range 0.05 to 8, default 1. The larger, the wider is the rim.
+        #[reflect(@FieldRange::logarithmic(0.05, 8.0))]
+        power: f32,
+    },
+    /// Where surfaces reflect the light: `max(r.v, 0)^power`, with the reflected light `r`. The
+    /// second ramp is that outside of highlights. In [`RampMode::LightFraction`](crate::toon::RampMode::LightFraction),
+    /// the mean of all lights.
+    Highlight {
+        /// Range 1 to 200, default 20. The larger, the smaller is the highlight.
+        #[reflect(@FieldRange::logarithmic(1.0, 200.0))]
+        power: f32,
+    },
+    /// The same everywhere.
+    Constant(
+        /// 1 is all detail, 0 none. Range 0 to 1, default 1.
+        #[reflect(@FieldRange::FRACTION)]
+        f32,
+    ),
+    /// Near the eye, between the nearest and the farthest thing that the camera sees:
+    /// `1 - ln(z / nearest) / ln(farthest / nearest)`.
+    ///
+    /// The range is that of the depth map, smoothed as [`DepthMap::smoothing`] says; where it is smaller
+    /// than [`DepthMap::floor`], that is the range. It is found for
+    /// cameras that have any component of this crate which reads depth or draws, such as an effect or
+    /// [`VisibleDepthRange`], up to 64 of them. In other views, such as those of a camera without
+    /// effects, and where nothing is seen in the depth prepass, there is all detail. Cameras with the
+    /// same viewport, place, axis and field of view on several targets have one range.
+    ///
+    /// [`DepthMap::smoothing`]: crate::DepthMap::smoothing
+    /// [`DepthMap::floor`]: crate::DepthMap::floor
+    /// [`VisibleDepthRange`]: crate::depth::VisibleDepthRange
+    VisibleRange,
+}
+
+impl Default for RampDetail {
+    fn default() -> Self {
+        Self {
+            plain: vec![RampStop::default()],
+            axis: DetailAxis::default(),
+        }
+    }
+}
+
+impl Default for DetailAxis {
+    fn default() -> Self {
+        Self::Depth {
+            from: 1.0,
+            ratio: 10.0,
+        }
+    }
+}
+
+impl DetailAxis {
+    /// Every number in its documented range; one that is not finite is replaced by its default.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        let distance = |z, default| clamp_or_default(z, default, 1e-4, 1e6);
+        let ratio = |r, default| clamp_or_default(r, default, 1.01, 1e6);
+        match self {
+            Self::Depth { from, ratio: r } => Self::Depth {
+                from: distance(from, 1.0),
+                ratio: ratio(r, 10.0),
+            },
+            Self::Focus {
+                distance: z,
+                clear,
+                ratio: r,
+            } => Self::Focus {
+                distance: distance(z, 5.0),
+                clear: clamp_or_default(clear, 0.15, 0.0, 10.0),
+                ratio: ratio(r, 3.0),
+            },
+            Self::Rim { power } => Self::Rim {
+                power: clamp_or_default(power, 1.0, 0.05, 8.0),
+            },
+            Self::Highlight { power } => Self::Highlight {
+                power: clamp_or_default(power, 20.0, 1.0, 200.0),
+            },
+            Self::Constant(detail) => Self::Constant(clamp_or_default(detail, 1.0, 0.0, 1.0)),
+            Self::VisibleRange => Self::VisibleRange,
+        }
+    }
+
+    /// The shader definition.
+    pub(super) fn definition(self) -> &'static str {
+        match self {
+            Self::Depth { .. } => "DETAIL_DEPTH",
+            Self::Focus { .. } => "DETAIL_FOCUS",
+            Self::Rim { .. } => "DETAIL_RIM",
+            Self::Highlight { .. } => "DETAIL_HIGHLIGHT",
+            Self::Constant(_) => "DETAIL_CONSTANT",
+            Self::VisibleRange => "DETAIL_VISIBLE",
+        }
+    }
+}
+
+/// `Detail` in `detail.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct DetailUniform {
+    distance: f32,
+    per_log: f32,
+    clear: f32,
+    number: f32,
+}
+
+impl From<DetailAxis> for DetailUniform {
+    fn from(axis: DetailAxis) -> Self {
+        let none = Self::default();
+        match axis.sanitized() {
+            DetailAxis::Depth { from, ratio } => Self {
+                distance: from,
+                per_log: ratio.ln().recip(),
+                ..none
+            },
+            DetailAxis::Focus {
+                distance,
+                clear,
+                ratio,
+            } => Self {
+                distance,
+                per_log: ratio.ln().recip(),
+                clear: clear.ln_1p(),
+                ..none
+            },
+            DetailAxis::Rim { power: number }
+            | DetailAxis::Highlight { power: number }
+            | DetailAxis::Constant(number) => Self { number, ..none },
+            DetailAxis::VisibleRange => none,
+        }
+    }
+}

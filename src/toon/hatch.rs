@@ -1,0 +1,165 @@
+//! Strokes on the toon material.
+
+use bevy::{render::render_resource::ShaderType, shader::ShaderDefVal};
+
+use super::ToonLight;
+use crate::{
+    effect::{Effect, Strokes},
+    effects::{Hatching, HatchingAnchor, HatchingMarks},
+    settings::clamp_or_default,
+};
+
+/// `Hatch` in `hatch.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct HatchUniform {
+    strokes: Strokes,
+    factor: f32,
+    rate: f32,
+    repeat: f32,
+    unused: f32,
+}
+
+/// The strokes of a material that are seen, in range.
+fn seen(light: &ToonLight) -> Option<Hatching> {
+    let hatching = light.hatching.map(Effect::sanitized);
+    hatching.filter(|hatching| hatching.opacity > 0.0)
+}
+
+impl From<&ToonLight> for HatchUniform {
+    fn from(light: &ToonLight) -> Self {
+        let Some(hatching) = seen(light) else {
+            return Self::default();
+        };
+        Self {
+            // A material does not know the scale factor of a window.
+            strokes: hatching.strokes(1.0, 0),
+            factor: hatching.at_near,
+            rate: hatching.rate,
+            repeat: clamp_or_default(light.art_map_repeat, 4.0, 0.01, 1000.0),
+            unused: 0.0,
+        }
+    }
+}
+
+/// What strokes are drawn from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum HatchKey {
+    Page(HatchingMarks),
+    Rest(HatchingMarks),
+    ArtMap,
+}
+
+impl HatchKey {
+    /// That of a material; `None` if it has no strokes.
+    pub(super) fn of(light: &ToonLight) -> Option<Self> {
+        let hatching = seen(light)?;
+        if light.art_map.is_some() {
+            return Some(Self::ArtMap);
+        }
+        Some(match hatching.anchor {
+            HatchingAnchor::Page => Self::Page(hatching.marks),
+            HatchingAnchor::Object => Self::Rest(hatching.marks),
+        })
+    }
+
+    /// Whether the vertex shader hands on the place of a vertex at rest.
+    /// `others`: the definitions of the mesh and the view.
+    pub(super) fn needs_rest(self, others: &[ShaderDefVal]) -> bool {
+        match self {
+            Self::Page(_) => false,
+            Self::Rest(_) => true,
+            Self::ArtMap => !others.contains(&"VERTEX_UVS_A".into()),
+        }
+    }
+
+    /// The shader definitions, in addition to others.
+    pub(super) fn definitions(self, others: &[ShaderDefVal]) -> Vec<ShaderDefVal> {
+        let mut all = vec!["HATCHED".into()];
+        if self.needs_rest(others) {
+            all.push("HATCH_REST".into());
+        }
+        match self {
+            Self::ArtMap => {
+                all.push("HATCH_ART_MAP".into());
+                if others.contains(&"WEBGL2".into()) {
+                    all.push("NO_TEXTURE_LEVELS".into());
+                }
+            }
+            Self::Page(HatchingMarks::Dots) | Self::Rest(HatchingMarks::Dots) => {
+                all.push("HATCH_DOTS".into());
+            }
+            _ => {}
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with(hatching: Hatching) -> ToonLight {
+        ToonLight {
+            hatching: Some(hatching),
+            ..ToonLight::default()
+        }
+    }
+
+    /// Whatever numbers a material has, all numbers of its uniform are finite.
+    #[test]
+    fn every_number_of_the_uniform_is_finite() {
+        for x in [f32::NAN, f32::INFINITY, -1.0, 0.0, 1e-45, 1e30] {
+            let hatching = Hatching {
+                shadows: x,
+                highlights: x,
+                gamma: x,
+                tones: u32::MAX,
+                spacing: x,
+                layers: 0,
+                layer_darkness: x,
+                angle: x,
+                length: x,
+                breaks: x,
+                wobble: x,
+                pressure: x,
+                rate: x,
+                at_near: x,
+                ..Hatching::default()
+            };
+            let light = ToonLight {
+                art_map_repeat: x,
+                ..with(hatching)
+            };
+            let uniform = HatchUniform::from(&light);
+            let text = format!("{uniform:?}");
+            assert!(
+                !text.contains("NaN") && !text.contains("inf"),
+                "{x}: {text}"
+            );
+            assert_eq!(uniform, HatchUniform::from(&light.sanitized()));
+        }
+    }
+
+    #[test]
+    fn the_uniform_can_be_one() {
+        HatchUniform::assert_uniform_compat();
+    }
+
+    #[test]
+    fn strokes_that_are_not_seen_are_not_compiled() {
+        assert_eq!(HatchKey::of(&ToonLight::default()), None);
+        let unseen = Hatching {
+            opacity: 0.0,
+            ..Hatching::default()
+        };
+        assert_eq!(HatchKey::of(&with(unseen)), None);
+        let map = ToonLight {
+            art_map: Some(bevy::asset::Handle::default()),
+            ..with(Hatching::default())
+        };
+        let key = HatchKey::of(&map).expect("strokes");
+        // A map lies on texture coordinates, or on the mesh at rest.
+        assert!(key.needs_rest(&[]));
+        assert!(!key.needs_rest(&["VERTEX_UVS_A".into()]));
+    }
+}

@@ -1,0 +1,122 @@
+//! Where the lighting of a mesh is set, for the panel.
+
+use bevy::{
+    asset::{Assets, Handle},
+    ecs::{entity::Entity, query::With, world::World},
+    pbr::{MeshMaterial3d, StandardMaterial},
+};
+
+use super::{ToonLight, ToonMaterial, ToonScene, ToonShading, ToonShadingHandle, scene::Original};
+
+/// What sets the lighting of a mesh last, so that an edit of it stays.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum LightOwner {
+    /// A shading: that of the mesh, of the name of its material, or of its scene.
+    Shading(Handle<ToonShading>),
+    /// [`ToonScene::light`] of this entity.
+    Scene(Entity),
+    /// The material itself.
+    Material(Handle<ToonMaterial>),
+}
+
+impl LightOwner {
+    /// `None` if the mesh has no toon material, or it has not loaded.
+    pub fn of(world: &World, mesh: Entity) -> Option<Self> {
+        let mesh = world.get_entity(mesh).ok()?;
+        let material = &mesh.get::<MeshMaterial3d<ToonMaterial>>()?.0;
+        let Some(original) = mesh.get::<Original>() else {
+            let own = mesh.get::<ToonShadingHandle>().map(|own| &own.0);
+            if let Some(shading) = own.filter(|shading| is_loaded(world, shading)) {
+                return Some(Self::Shading(shading.clone()));
+            }
+            let materials = world.get_resource::<Assets<ToonMaterial>>()?;
+            return materials
+                .contains(material)
+                .then(|| Self::Material(material.clone()));
+        };
+        let scene = world.get::<ToonScene>(original.root)?;
+        let shading = [original.shading.as_ref(), scene.shading.as_ref()]
+            .into_iter()
+            .flatten()
+            .find(|shading| is_loaded(world, shading));
+        Some(shading.map_or(Self::Scene(original.root), |shading| {
+            Self::Shading(shading.clone())
+        }))
+    }
+
+    /// The lighting; `None` if the place is gone.
+    pub fn light<'a>(&self, world: &'a World) -> Option<&'a ToonLight> {
+        match self {
+            Self::Shading(shading) => {
+                let shadings = world.get_resource::<Assets<ToonShading>>()?;
+                Some(&shadings.get(shading)?.light)
+            }
+            Self::Scene(root) => Some(&world.get::<ToonScene>(*root)?.light),
+            Self::Material(material) => {
+                let materials = world.get_resource::<Assets<ToonMaterial>>()?;
+                Some(&materials.get(material)?.extension)
+            }
+        }
+    }
+
+    /// The title of a shading; empty if it has none.
+    pub fn title<'a>(&self, world: &'a World) -> &'a str {
+        let shadings = world.get_resource::<Assets<ToonShading>>();
+        match self {
+            Self::Shading(shading) => shadings
+                .and_then(|shadings| shadings.get(shading))
+                .map_or("", |shading| &shading.name),
+            _ => "",
+        }
+    }
+
+    /// Sets the lighting; whether the place is still there.
+    pub fn set(&self, world: &mut World, light: ToonLight) -> bool {
+        match self {
+            Self::Shading(shading) => {
+                let shadings = world.get_resource_mut::<Assets<ToonShading>>();
+                let Some(mut shadings) = shadings else {
+                    return false;
+                };
+                let shading = shadings.get_mut(shading);
+                shading.map(|mut shading| shading.light = light).is_some()
+            }
+            Self::Scene(root) => {
+                let scene = world.get_mut::<ToonScene>(*root);
+                scene.map(|mut scene| scene.light = light).is_some()
+            }
+            Self::Material(material) => {
+                let materials = world.get_resource_mut::<Assets<ToonMaterial>>();
+                let Some(mut materials) = materials else {
+                    return false;
+                };
+                let material = materials.get_mut(material);
+                (material.map(|mut material| material.extension = light)).is_some()
+            }
+        }
+    }
+
+    /// The number of meshes whose lighting is set here.
+    pub fn meshes(&self, world: &mut World) -> usize {
+        let all: Vec<Entity> = world
+            .query_filtered::<Entity, With<MeshMaterial3d<ToonMaterial>>>()
+            .iter(world)
+            .collect();
+        let world = &*world;
+        let has_this = |mesh: &&Entity| Self::of(world, **mesh).as_ref() == Some(self);
+        all.iter().filter(has_this).count()
+    }
+}
+
+/// The standard material that a scene has replaced on a mesh.
+pub(crate) fn original_of(world: &World, mesh: Entity) -> Option<&Handle<StandardMaterial>> {
+    Some(&world.get::<Original>(mesh)?.material)
+}
+
+fn is_loaded(world: &World, shading: &Handle<ToonShading>) -> bool {
+    let shadings = world.get_resource::<Assets<ToonShading>>();
+    shadings.is_some_and(|shadings| shadings.contains(shading))
+}
+
+#[cfg(test)]
+mod tests;

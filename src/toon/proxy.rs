@@ -1,0 +1,221 @@
+//! Simpler forms that surfaces are shaded as.
+
+use bevy::{
+    camera::primitives::MeshAabb,
+    math::Vec3,
+    mesh::Mesh,
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::settings::{FieldRange, clamp_fields, clamp_or_default};
+
+/// Shades a mesh as if it had a simpler form, so that faces, bushes and clouds have large areas of
+/// one tone (Barla, Thollot and Markosian 2006). Lines, shadow maps and the silhouette stay those
+/// of the mesh.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ShadingProxy {
+    /// The simpler form. Default: [`ProxyShape::Up`].
+    pub shape: ProxyShape,
+    /// How much of its normals is used near the eye. Range 0 (the normals of the mesh) to 1,
+    /// default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub amount: f32,
+    /// The same far away. Range 0 to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub amount_at_far: f32,
+    /// Up to this distance along the axis of the view, `amount` counts. World units. Range 1e-4 to
+    /// 1e6, default 1.
+    #[reflect(@FieldRange::logarithmic(1e-4, 1e6).unit("units"))]
+    pub from: f32,
+    /// From this multiple of `from` on, `amount_at_far` counts; between, it changes with the
+    /// logarithm of the distance. Range 1.01 to 1e6, default 10.
+    #[reflect(@FieldRange::logarithmic(1.01, 1e6))]
+    pub ratio: f32,
+}
+
+/// The shape of a [`ShadingProxy`]. Sizes and places are in the space of the mesh; of skinned meshes,
+/// in that of their entity.
+#[derive(Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub enum ProxyShape {
+    /// An ellipsoid: heads, bushes, clouds.
+    Ellipsoid {
+        /// Its middle, in units of the mesh. Range -1e6 to 1e6.
+        #[reflect(@FieldRange::linear(-1e6, 1e6))]
+        center: Vec3,
+        /// From the middle to the border along the three axes. Range 1e-4 to 1e6.
+        #[reflect(@FieldRange::logarithmic(1e-4, 1e6))]
+        half_size: Vec3,
+    },
+    /// A cylinder along the longest axis of this box: limbs, trunks.
+    Cylinder {
+        /// Its middle, in units of the mesh. Range -1e6 to 1e6.
+        #[reflect(@FieldRange::linear(-1e6, 1e6))]
+        center: Vec3,
+        /// From the middle to the border along the three axes. Range 1e-4 to 1e6.
+        #[reflect(@FieldRange::logarithmic(1e-4, 1e6))]
+        half_size: Vec3,
+    },
+    /// A plane that faces upwards in the world: grass and leaves look like the ground.
+    #[default]
+    Up,
+    /// The mesh without its details: faces, hair and cloth.
+    ///
+    /// The normal of a vertex is the mean of those of the triangles around it, and of those of its
+    /// neighbours, again and again; vertices at one place count as one, so that seams and hard
+    /// edges disappear. Neighbours are weighted so that it does not matter how an area is divided into
+    /// triangles, and a ball keeps its normals. Normals follow bones and morph targets.
+    ///
+    /// They are made in a task when a mesh first has such a material, and kept in a vertex
+    /// attribute of the mesh, of 4 bytes a vertex; until then, and for meshes
+    /// without normals or whose data is only on the GPU, the mesh's own normals are used; the log
+    /// says so of the first one of these. Of all materials that are on a mesh, the one with most
+    /// rounds counts.
+    Smoothed {
+        /// How often neighbours are averaged: 0 is smooth shading, more remove larger details, as
+        /// wide as so many edges of the mesh. Range 0 to 50.
+        #[reflect(@FieldRange::linear(0.0, 50.0))]
+        rounds: u32,
+    },
+}
+
+impl Default for ShadingProxy {
+    fn default() -> Self {
+        Self {
+            shape: ProxyShape::default(),
+            amount: 1.0,
+            amount_at_far: 1.0,
+            from: 1.0,
+            ratio: 10.0,
+        }
+    }
+}
+
+impl ProxyShape {
+    /// The ellipsoid in the bounds of a mesh; `None` if it has no vertices.
+    #[must_use]
+    pub fn ellipsoid_of(mesh: &Mesh) -> Option<Self> {
+        let bounds = mesh.compute_aabb()?;
+        Some(Self::Ellipsoid {
+            center: bounds.center.into(),
+            half_size: bounds.half_extents.into(),
+        })
+    }
+
+    /// The cylinder in the bounds of a mesh; `None` if it has no vertices.
+    #[must_use]
+    pub fn cylinder_of(mesh: &Mesh) -> Option<Self> {
+        let bounds = mesh.compute_aabb()?;
+        Some(Self::Cylinder {
+            center: bounds.center.into(),
+            half_size: bounds.half_extents.into(),
+        })
+    }
+
+    fn sanitized(self) -> Self {
+        let place =
+            |v: Vec3| Vec3::from_array(v.to_array().map(|x| clamp_or_default(x, 0.0, -1e6, 1e6)));
+        let size =
+            |v: Vec3| Vec3::from_array(v.to_array().map(|x| clamp_or_default(x, 1.0, 1e-4, 1e6)));
+        match self {
+            Self::Ellipsoid { center, half_size } => Self::Ellipsoid {
+                center: place(center),
+                half_size: size(half_size),
+            },
+            Self::Cylinder { center, half_size } => Self::Cylinder {
+                center: place(center),
+                half_size: size(half_size),
+            },
+            Self::Up => Self::Up,
+            Self::Smoothed { rounds } => Self::Smoothed {
+                rounds: rounds.min(50),
+            },
+        }
+    }
+
+    /// The middle, and the factor of each axis.
+    fn weights(self) -> (Vec3, Vec3) {
+        match self {
+            Self::Ellipsoid { center, half_size } => (center, (half_size * half_size).recip()),
+            Self::Cylinder { center, half_size } => {
+                let longest = half_size.max_position();
+                let mut weights = (half_size * half_size).recip();
+                weights[longest] = 0.0;
+                (center, weights)
+            }
+            Self::Up | Self::Smoothed { .. } => (Vec3::ZERO, Vec3::ZERO),
+        }
+    }
+
+    /// What of it is compiled.
+    pub(super) fn key(self) -> ProxyKey {
+        match self {
+            Self::Up => ProxyKey::Up,
+            Self::Ellipsoid { .. } | Self::Cylinder { .. } => ProxyKey::Solid,
+            Self::Smoothed { .. } => ProxyKey::Smoothed,
+        }
+    }
+}
+
+/// The part of a form that selects a variant of the shader.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum ProxyKey {
+    Up,
+    Solid,
+    Smoothed,
+}
+
+impl ProxyKey {
+    /// The shader definitions. `is_smoothed`: the mesh has smoothed normals.
+    pub(super) fn definitions(self, is_smoothed: bool) -> &'static [&'static str] {
+        match self {
+            Self::Up => &["FORM", "FORM_UP"],
+            Self::Solid => &["FORM", "FORM_NORMAL"],
+            Self::Smoothed if is_smoothed => &["FORM", "FORM_NORMAL", "FORM_SMOOTHED"],
+            Self::Smoothed => &[],
+        }
+    }
+}
+
+impl ShadingProxy {
+    /// Every number in its documented range; one that is not finite is replaced by its default.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        Self {
+            shape: self.shape.sanitized(),
+            ..clamp_fields(self)
+        }
+    }
+}
+
+/// `Proxy` in `proxy.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct ProxyUniform {
+    center: Vec3,
+    amount: f32,
+    weights: Vec3,
+    amount_at_far: f32,
+    distance: f32,
+    per_log: f32,
+}
+
+impl From<&ShadingProxy> for ProxyUniform {
+    fn from(proxy: &ShadingProxy) -> Self {
+        let proxy = proxy.sanitized();
+        let (center, weights) = proxy.shape.weights();
+        Self {
+            center,
+            amount: proxy.amount,
+            weights,
+            amount_at_far: proxy.amount_at_far,
+            distance: proxy.from,
+            per_log: proxy.ratio.ln().recip(),
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Light along the borders of things.
+
+use bevy::{
+    color::Color,
+    math::Vec3,
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use crate::settings::{FieldRange, clamp_fields, clamp_or_default, color_serde, linear_rgb};
+
+/// A rim of light along the borders of things, as of a lamp behind them.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Rim {
+    /// How wide it is. Default: [`RimWidth::Facing`].
+    pub width: RimWidth,
+    /// The colour of the rim before tonemapping, whatever the light is. Components are clamped to
+    /// what a display shows; alpha is ignored. Default: white.
+    #[serde(with = "color_serde")]
+    pub color: Color,
+    /// How much of it covers the surface. Range 0 to 1, default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub strength: f32,
+    /// How much of it is only on the side of the brightest light. 0 is all around. Range 0 to 1,
+    /// default 1.
+    #[reflect(@FieldRange::FRACTION)]
+    pub lit_side: f32,
+}
+
+/// How wide a [`Rim`] is.
+#[derive(Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub enum RimWidth {
+    /// Where the surface turns away from the eye: wide on what is round. A flat face is all
+    /// rim or none.
+    Facing {
+        /// The rim is where the cosine between normal and eye is below this. Range 0 to 1, default
+        /// 0.35.
+        #[reflect(@FieldRange::FRACTION)]
+        share: f32,
+        /// Width of its edge, in the same unit. Range 0 to 1, default 0, which is anti-aliased.
+        #[reflect(@FieldRange::FRACTION)]
+        softness: f32,
+    },
+    /// The same width everywhere, in physical pixels, where something at least 2 % farther away is
+    /// beside the surface. It needs the depth prepass, which lines, for example, have; without it,
+    /// and with OpenGL and WebGL 2, the rim is as [`Facing`](Self::Facing).
+    Pixels(
+        /// Width in physical pixels. Range 1 to 64, default 3.
+        #[reflect(@FieldRange::linear(1.0, 64.0).unit("px"))]
+        f32,
+    ),
+}
+
+impl Default for RimWidth {
+    fn default() -> Self {
+        Self::Facing {
+            share: 0.35,
+            softness: 0.0,
+        }
+    }
+}
+
+impl Default for Rim {
+    fn default() -> Self {
+        Self {
+            width: RimWidth::default(),
+            color: Color::WHITE,
+            strength: 1.0,
+            lit_side: 1.0,
+        }
+    }
+}
+
+impl Rim {
+    /// Every number in its documented range; one that is not finite is replaced by its default.
+    #[must_use]
+    pub fn sanitized(self) -> Self {
+        Self {
+            width: match self.width {
+                RimWidth::Facing { share, softness } => RimWidth::Facing {
+                    share: clamp_or_default(share, 0.35, 0.0, 1.0),
+                    softness: clamp_or_default(softness, 0.0, 0.0, 1.0),
+                },
+                RimWidth::Pixels(pixels) => {
+                    RimWidth::Pixels(clamp_or_default(pixels, 3.0, 1.0, 64.0))
+                }
+            },
+            ..clamp_fields(self)
+        }
+    }
+}
+
+/// `Rim` in `rim.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct RimUniform {
+    color: Vec3,
+    strength: f32,
+    begin: f32,
+    softness: f32,
+    pixels: f32,
+    lit_side: f32,
+}
+
+impl From<&Rim> for RimUniform {
+    fn from(rim: &Rim) -> Self {
+        let rim = rim.sanitized();
+        let (share, softness, pixels) = match rim.width {
+            RimWidth::Facing { share, softness } => (share, softness, 0.0),
+            // Without a depth prepass, the default.
+            RimWidth::Pixels(pixels) => (0.35, 0.0, pixels),
+        };
+        Self {
+            color: linear_rgb(rim.color),
+            strength: rim.strength,
+            begin: 1.0 - share,
+            softness,
+            pixels,
+            lit_side: rim.lit_side,
+        }
+    }
+}

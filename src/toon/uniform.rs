@@ -1,0 +1,310 @@
+//! Settings of the toon material as its shader reads them.
+
+use bevy::{render::render_resource::ShaderType, shader::ShaderDefVal};
+
+use super::{
+    DetailAxis, HighlightFrame, HighlightShape, RimWidth, ToonLight,
+    detail::DetailUniform,
+    hatch::HatchKey,
+    proxy::{ProxyKey, ProxyUniform},
+    ramp::{RampKey, RampUniform},
+    rim::RimUniform,
+    stylized_highlight::StylizedHighlightUniform,
+};
+use crate::settings::clamp_or_default;
+
+/// The uniform: `Toon` in `bindings.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub struct ToonUniform {
+    detail: DetailUniform,
+    light: ToonLightUniform,
+    proxy: ProxyUniform,
+    stylized_highlight: StylizedHighlightUniform,
+    rim: RimUniform,
+    ramp: RampUniform,
+}
+
+/// `ToonLight` in `light.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+struct ToonLightUniform {
+    shadow_threshold: f32,
+    backface: f32,
+    projected: f32,
+    highlight: f32,
+    highlight_edge: f32,
+    falloff: f32,
+    environment: f32,
+}
+
+impl From<&ToonLight> for ToonUniform {
+    fn from(light: &ToonLight) -> Self {
+        let light = light.clone().sanitized();
+        let strength = |on: bool| if on { light.shadow_strength } else { 0.0 };
+        let ramp = light.drawn_ramp();
+        let detail = ramp.as_ref().and_then(|ramp| ramp.detail.as_ref());
+        Self {
+            light: ToonLightUniform {
+                shadow_threshold: light.shadow_threshold,
+                backface: strength(light.form_shadows),
+                projected: strength(light.cast_shadows),
+                highlight: light.highlight,
+                highlight_edge: light.highlight_edge,
+                falloff: light.falloff,
+                environment: light.flat_environment,
+            },
+            detail: detail.map(|d| d.axis.into()).unwrap_or_default(),
+            proxy: light.proxy.as_ref().map(Into::into).unwrap_or_default(),
+            stylized_highlight: light
+                .stylized_highlight
+                .as_ref()
+                .map(Into::into)
+                .unwrap_or_default(),
+            rim: light.rim.as_ref().map(Into::into).unwrap_or_default(),
+            ramp: ramp.as_deref().map(Into::into).unwrap_or_default(),
+        }
+    }
+}
+
+/// The settings that select a variant of the shader, in which all others are left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ToonKey {
+    ramp: Option<RampKey>,
+    /// Normals of another form.
+    proxy: Option<ProxyKey>,
+    stylized_highlight: Option<(HighlightShape, HighlightFrame)>,
+    vertex_threshold: bool,
+    threshold_map: bool,
+    pub(super) hatch: Option<HatchKey>,
+    rim: bool,
+    /// The rim has the same width everywhere.
+    even_rim: bool,
+    /// The ramp has detail by the visible range.
+    visible: bool,
+}
+
+impl From<&ToonLight> for ToonKey {
+    fn from(light: &ToonLight) -> Self {
+        let highlight = clamp_or_default(light.highlight, 1.0, 0.0, 4.0);
+        let stylized_highlight = light.stylized_highlight.filter(|_| highlight > 0.0);
+        let ramp = light.drawn_ramp();
+        let axis = ramp
+            .as_ref()
+            .and_then(|ramp| Some(ramp.detail.as_ref()?.axis));
+        Self {
+            ramp: ramp.map(|ramp| RampKey::new(&ramp, light.ramp_map.is_ready())),
+            proxy: light.proxy.map(|proxy| proxy.shape.key()),
+            stylized_highlight: stylized_highlight
+                .map(|stylized_highlight| (stylized_highlight.shape, stylized_highlight.frame)),
+            vertex_threshold: light.vertex_threshold,
+            threshold_map: light.threshold_map.is_some(),
+            hatch: HatchKey::of(light),
+            rim: light.rim.is_some(),
+            even_rim: (light.rim).is_some_and(|rim| matches!(rim.width, RimWidth::Pixels(_))),
+            visible: axis == Some(DetailAxis::VisibleRange),
+        }
+    }
+}
+
+impl ToonKey {
+    /// Whether the material reads smoothed normals.
+    pub(super) fn reads_smoothed(self) -> bool {
+        self.proxy == Some(ProxyKey::Smoothed)
+    }
+
+    /// What the vertex shader hands on beside what the engine's does. `smoothed`: normals of the
+    /// mesh are smoothed.
+    pub(super) fn vertex_definitions(
+        self,
+        others: &[ShaderDefVal],
+        smoothed: bool,
+    ) -> Vec<ShaderDefVal> {
+        let rest = self.hatch.is_some_and(|hatch| hatch.needs_rest(others));
+        let smoothed = smoothed && self.reads_smoothed();
+        let names = [
+            (rest, "HATCH_REST"),
+            (smoothed, "FORM_SMOOTHED"),
+            (
+                smoothed || self.proxy == Some(ProxyKey::Solid),
+                "FORM_NORMAL",
+            ),
+            (self.visible, "DETAIL_VISIBLE"),
+        ];
+        let used = names.into_iter().filter(|(is_used, _)| *is_used);
+        used.map(|(_, name)| name.into()).collect()
+    }
+
+    /// The shader definitions, in addition to those of the mesh and the view. `smoothed`: the mesh
+    /// has smoothed normals.
+    pub(super) fn definitions(self, others: &[ShaderDefVal], smoothed: bool) -> Vec<ShaderDefVal> {
+        let has = |names: &[&str]| {
+            let is_one = |d: &ShaderDefVal| matches!(d, ShaderDefVal::Bool(n, true) if names.contains(&n.as_str()));
+            others.iter().any(is_one)
+        };
+        let mut all = Vec::new();
+        if has(&["ENVIRONMENT_MAP", "IRRADIANCE_VOLUME"]) {
+            all.push("ENVIRONMENT".into());
+        }
+        // The engine's other filters, and soft shadows, are read as they are. WebGL 2 cannot read four
+        // texels at once.
+        let unlike = ["WEBGL2", "PCSS_SAMPLERS_AVAILABLE"];
+        if has(&["SHADOW_FILTER_METHOD_GAUSSIAN"]) && !has(&unlike) {
+            all.push("SLOPED_SHADOWS".into());
+        }
+        all.extend(self.ramp.into_iter().flat_map(RampKey::definitions));
+        if self.stylized_highlight.is_some() || self.rim {
+            all.push("KEY_LIGHT".into());
+        }
+        if let Some((shape, frame)) = self.stylized_highlight {
+            all.extend(["STYLIZED_HIGHLIGHT".into(), frame.definition().into()]);
+            all.push(ShaderDefVal::UInt(
+                "STYLIZED_HIGHLIGHT_SHAPE".into(),
+                shape as u32,
+            ));
+        }
+        let proxy = self
+            .proxy
+            .map_or(&[][..], |proxy| proxy.definitions(smoothed));
+        all.extend(proxy.iter().map(|name| ShaderDefVal::from(*name)));
+        let of_vertices = self.vertex_threshold && has(&["VERTEX_COLORS"]);
+        let of_map = self.threshold_map && has(&["VERTEX_UVS_A"]);
+        all.extend(of_vertices.then(|| "VERTEX_THRESHOLD".into()));
+        all.extend(of_map.then(|| "THRESHOLD_MAP".into()));
+        all.extend((of_vertices || of_map).then(|| "THRESHOLD".into()));
+        all.extend((self.hatch.into_iter()).flat_map(|hatch| hatch.definitions(others)));
+        if self.rim {
+            all.push("RIM".into());
+        }
+        if self.even_rim && has(&["DEPTH_PREPASS"]) {
+            all.push("DEPTH_RIM".into());
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy::math::{Vec2, Vec3};
+
+    use super::*;
+    use crate::toon::{
+        DetailAxis, ProxyShape, Ramp, RampDetail, Rim, ShadingProxy, StylizedHighlight,
+    };
+
+    /// A material whose numbers are all `x`.
+    fn odd(x: f32, axis: DetailAxis, shape: ProxyShape) -> ToonLight {
+        let plain = vec![];
+        ToonLight {
+            ramp: Some(Ramp {
+                detail: Some(RampDetail { plain, axis }),
+                ..Ramp::default()
+            }),
+            stylized_highlight: Some(StylizedHighlight {
+                size: x,
+                offset: Vec2::splat(x),
+                rotation: x,
+                scale: Vec2::splat(x),
+                split: Vec2::splat(x),
+                square: x,
+                bar: x,
+                points: 0,
+                sharpness: u32::MAX,
+                softness: x,
+                ..StylizedHighlight::default()
+            }),
+            proxy: Some(ShadingProxy {
+                shape,
+                amount: x,
+                amount_at_far: x,
+                from: x,
+                ratio: x,
+            }),
+            rim: Some(Rim {
+                width: RimWidth::Pixels(x),
+                strength: x,
+                lit_side: x,
+                ..Rim::default()
+            }),
+            ..ToonLight::default()
+        }
+    }
+
+    /// Whatever numbers a material has, all numbers of its uniform are finite.
+    #[test]
+    fn every_number_of_the_uniform_is_finite() {
+        for x in [
+            f32::NAN,
+            f32::INFINITY,
+            -f32::INFINITY,
+            -1.0,
+            0.0,
+            1e-45,
+            1e30,
+        ] {
+            let axes = [
+                DetailAxis::Depth { from: x, ratio: x },
+                DetailAxis::Focus {
+                    distance: x,
+                    clear: x,
+                    ratio: x,
+                },
+                DetailAxis::Rim { power: x },
+                DetailAxis::Highlight { power: x },
+                DetailAxis::Constant(x),
+                DetailAxis::VisibleRange,
+            ];
+            let [center, half_size] = [Vec3::splat(x); 2];
+            let shapes = [
+                ProxyShape::Up,
+                ProxyShape::Ellipsoid { center, half_size },
+                ProxyShape::Cylinder { center, half_size },
+                ProxyShape::Smoothed { rounds: u32::MAX },
+            ];
+            for (k, axis) in axes.into_iter().enumerate() {
+                let light = odd(x, axis, shapes[k % shapes.len()]);
+                let uniform = ToonUniform::from(&light);
+                let text = format!("{uniform:?}");
+                let is_finite = !text.contains("NaN") && !text.contains("inf");
+                assert!(is_finite, "{x}: {text}");
+                assert_eq!(uniform, ToonUniform::from(&light.sanitized()));
+            }
+        }
+    }
+
+    #[test]
+    fn the_uniform_can_be_one() {
+        ToonUniform::assert_uniform_compat();
+    }
+
+    #[test]
+    fn what_is_not_used_is_not_compiled() {
+        let plain = ToonKey::from(&ToonLight::default());
+        assert!(plain.definitions(&[], true).is_empty());
+        assert!(plain.vertex_definitions(&[], true).is_empty());
+        let ramp = ToonLight {
+            ramp: Some(Ramp::default()),
+            ..ToonLight::default()
+        };
+        let stops = ShaderDefVal::UInt("RAMP_STOPS".into(), 2);
+        let found = ToonKey::from(&ramp).definitions(&[], true);
+        assert_eq!(found, ["RAMP_SHARE".into(), stops]);
+    }
+
+    /// Borders of shadows come from the texels of shadow maps where the engine's filter is the one that
+    /// the shader knows, and four texels can be read at once.
+    #[test]
+    fn shadows_have_slopes_where_their_filter_is_known() {
+        let plain = ToonKey::from(&ToonLight::default());
+        let is_sloped = |names: &[&str]| {
+            let others: Vec<ShaderDefVal> = names.iter().map(|name| (*name).into()).collect();
+            let found = plain.definitions(&others, false);
+            found.contains(&"SLOPED_SHADOWS".into())
+        };
+        let gaussian = "SHADOW_FILTER_METHOD_GAUSSIAN";
+        assert!(is_sloped(&[gaussian]));
+        assert!(!is_sloped(&[]));
+        assert!(!is_sloped(&["SHADOW_FILTER_METHOD_TEMPORAL"]));
+        assert!(!is_sloped(&["SHADOW_FILTER_METHOD_HARDWARE_2X2"]));
+        assert!(!is_sloped(&[gaussian, "PCSS_SAMPLERS_AVAILABLE"]));
+        assert!(!is_sloped(&[gaussian, "WEBGL2"]));
+    }
+}

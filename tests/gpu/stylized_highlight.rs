@@ -1,0 +1,587 @@
+//! Signs of light and rims: their place, size and edges on a ball.
+
+use std::f32::consts::FRAC_PI_2;
+
+use bevy::{core_pipeline::prepass::DepthPrepass, math::DVec2, prelude::*};
+use bevy_comics::{
+    ToonLight,
+    toon::{HighlightFrame, HighlightShape, Rim, RimWidth, StylizedHighlight},
+};
+use bevy_comics_testkit::reference::stylized_highlight;
+use image::RgbaImage;
+
+use crate::{
+    ramp::{bright, drawn, put, room, set_light, sun},
+    small::{Small, linear},
+};
+
+const SIZE: u32 = 256;
+/// Of the ball, in units; the camera shows 2.
+const BALL: f64 = 0.95;
+const ROUGHNESS: f32 = 0.3;
+/// Makes the plain highlight 20 pixels wide.
+const EDGE: f32 = 0.05;
+/// The pixels of the ball's radius.
+const RADIUS: f64 = 0.5 * BALL * SIZE as f64;
+/// The brightness of a highlight in the picture.
+const PEAK: f64 = 0.8;
+
+fn signed(sign: StylizedHighlight) -> ToonLight {
+    let polish = 1.0 - 1.4 * ROUGHNESS;
+    ToonLight {
+        stylized_highlight: Some(sign),
+        highlight: PEAK as f32 / (polish * polish),
+        highlight_edge: EDGE,
+        ..default()
+    }
+}
+
+/// A black ball with smooth normals, under a light from the eye.
+fn ball(light: &ToonLight) -> Small {
+    ball_of(light, [256, 128])
+}
+
+/// The same of a mesh with these numbers of sectors and stacks.
+fn ball_of(light: &ToonLight, [sectors, stacks]: [u32; 2]) -> Small {
+    let mut small = room(UVec2::splat(SIZE), 0.0);
+    small.insert(Camera {
+        clear_color: Color::BLACK.into(),
+        ..default()
+    });
+    let mesh = Sphere::new(BALL as f32).mesh().uv(sectors, stacks);
+    put(&mut small, mesh, light, Transform::IDENTITY);
+    polish(&mut small);
+    sun(&mut small, Vec3::Z, bright(1.0));
+    small
+}
+
+/// Makes all materials black and shiny.
+fn polish(small: &mut Small) {
+    polish_to(small, ROUGHNESS);
+}
+
+fn polish_to(small: &mut Small, roughness: f32) {
+    let world = small.world();
+    let mut materials = world.resource_mut::<Assets<bevy_comics::ToonMaterial>>();
+    for (_, material) in materials.iter_mut() {
+        material.base.base_color = Color::BLACK;
+        material.base.perceptual_roughness = roughness;
+    }
+}
+
+/// Covered pixels, and the middle of what is covered, from the middle of the picture; up is
+/// positive.
+fn covered(picture: &RgbaImage) -> (f64, DVec2) {
+    let middle = 0.5 * f64::from(picture.width());
+    let (mut area, mut moment) = (0.0, DVec2::ZERO);
+    for (x, y, _) in picture.enumerate_pixels() {
+        let cover = linear(picture, x, y)[0] / PEAK;
+        area += cover;
+        moment += cover * DVec2::new(f64::from(x) + 0.5 - middle, middle - f64::from(y) - 0.5);
+    }
+    (area, moment / area.max(1e-9))
+}
+
+/// The same of the ball's geometry at four times the size. `half` is the half vector.
+fn true_cover(sign: &StylizedHighlight, half: [f64; 3]) -> (f64, DVec2) {
+    let radius =
+        stylized_highlight::stylized_highlight_radius(f64::from(EDGE), f64::from(ROUGHNESS));
+    let fine = 4;
+    let (mut area, mut moment) = (0.0, DVec2::ZERO);
+    let end = (RADIUS as i32 + 1) * fine;
+    for (i, j) in (-end..end).flat_map(|i| (-end..end).map(move |j| (i, j))) {
+        let at = DVec2::new(f64::from(i) + 0.5, f64::from(j) + 0.5) / f64::from(fine);
+        let [x, y] = [at.x / RADIUS, at.y / RADIUS];
+        let rest = 1.0 - x * x - y * y;
+        // What faces away from the light shows nothing.
+        if rest < 1e-4 {
+            continue;
+        }
+        let normal = [x, y, rest.sqrt()];
+        let frame = stylized_highlight::frame_along(normal, [1.0, 0.0, 0.0]);
+        let distance = match sign.shape {
+            HighlightShape::Faithful => {
+                stylized_highlight::faithful_distance(sign, frame, radius, normal, half)
+            }
+            _ => stylized_highlight::sign_distance(
+                sign,
+                radius,
+                stylized_highlight::place_of(frame, normal, half),
+            ),
+        };
+        if distance < 0.0 {
+            area += 1.0;
+            moment += at;
+        }
+    }
+    (area / f64::from(fine * fine), moment / area)
+}
+
+fn sign_of(shape: HighlightShape, change: fn(&mut StylizedHighlight)) -> StylizedHighlight {
+    let mut sign = StylizedHighlight {
+        shape,
+        ..StylizedHighlight::default()
+    };
+    change(&mut sign);
+    sign
+}
+
+/// Checks that signs are where the geometry of the ball says.
+fn check_cover(signs: &[StylizedHighlight]) {
+    let mut small = ball(&signed(StylizedHighlight::default()));
+    for &sign in signs {
+        set_light(&mut small, &signed(sign));
+        let (area, middle) = covered(&drawn(&mut small));
+        let (wanted, centre) = true_cover(&sign, [0.0, 0.0, 1.0]);
+        assert!(wanted > 300.0, "{sign:?}: {wanted} pixels");
+        assert!(
+            (area / wanted - 1.0).abs() < 0.01,
+            "{sign:?}: {area} pixels, not {wanted}"
+        );
+        let away = middle.distance(centre);
+        assert!(away < 0.5, "{sign:?}: {middle}, not {centre}");
+    }
+}
+
+/// Signs are where the geometry of the ball says: what moves, turns and bends them.
+#[test]
+fn signs_cover_what_they_should() {
+    check_cover(&[
+        sign_of(HighlightShape::Disc, |s| {
+            (s.scale, s.offset) = (Vec2::new(2.0, 0.8), Vec2::new(1.5, 0.7));
+        }),
+        sign_of(HighlightShape::Star, |s| {
+            (s.size, s.points, s.bar) = (2.0, 5, 0.5);
+        }),
+        sign_of(HighlightShape::Faithful, |s| {
+            (s.square, s.rotation) = (1.0, 30.0);
+        }),
+    ]);
+}
+
+/// The same of every shape and what changes it.
+#[test]
+#[ignore = "long: every shape of a sign"]
+fn signs_of_every_shape_cover_what_they_should() {
+    let of = sign_of;
+    check_cover(&[
+        StylizedHighlight::default(),
+        of(HighlightShape::Disc, |s| s.scale = Vec2::new(2.0, 0.8)),
+        of(HighlightShape::Disc, |s| s.split = Vec2::new(1.6, 0.0)),
+        of(HighlightShape::Disc, |s| s.offset = Vec2::new(1.5, 0.7)),
+        of(HighlightShape::Disc, |s| s.square = 1.0),
+        of(HighlightShape::Square, |s| s.square = 1.0),
+        of(HighlightShape::Window, |s| s.rotation = 20.0),
+        of(HighlightShape::Crescent, |s| s.size = 1.6),
+        of(HighlightShape::Star, |s| s.size = 2.0),
+        of(HighlightShape::Star, |s| {
+            (s.size, s.points, s.bar) = (2.0, 5, 0.5);
+        }),
+        of(HighlightShape::Streak, |s| {
+            (s.size, s.rotation) = (2.0, 45.0);
+        }),
+        of(HighlightShape::Faithful, |s| s.scale = Vec2::new(1.8, 1.0)),
+        of(HighlightShape::Faithful, |s| {
+            (s.square, s.rotation) = (1.0, 30.0);
+        }),
+        of(HighlightShape::Faithful, |s| s.split = Vec2::splat(0.6)),
+        of(HighlightShape::Faithful, |s| {
+            s.offset = Vec2::new(-1.2, 1.0);
+        }),
+    ]);
+}
+
+/// The plain disc has the area that its angle says, and is the highlight without a sign.
+#[test]
+fn a_disc_is_the_plain_highlight() {
+    let sign = signed(StylizedHighlight::default());
+    let mut small = ball(&sign);
+    let with = drawn(&mut small);
+    let plain = ToonLight {
+        stylized_highlight: None,
+        ..sign
+    };
+    set_light(&mut small, &plain);
+    let without = drawn(&mut small);
+    let tangent =
+        stylized_highlight::stylized_highlight_radius(f64::from(EDGE), f64::from(ROUGHNESS));
+    let sine2 = tangent * tangent / (1.0 + tangent * tangent);
+    let wanted = std::f64::consts::PI * RADIUS * RADIUS * sine2;
+    for picture in [&with, &without] {
+        let (area, _) = covered(picture);
+        assert!((area / wanted - 1.0).abs() < 0.01, "{area}, not {wanted}");
+    }
+    // Edges of the two are one pixel wide, one linear and one smooth.
+    let apart = |(a, b): (&u8, &u8)| a.abs_diff(*b) > 24;
+    let differ = with.as_raw().iter().zip(without.as_raw());
+    let differ = differ.filter(|&pair| apart(pair)).count();
+    let border = 2.0 * std::f64::consts::PI * RADIUS * sine2.sqrt();
+    assert!((differ as f64) < 3.0 * 0.5 * border, "{differ} channels");
+}
+
+/// Polished, between, and matt.
+#[test]
+fn discs_are_the_plain_highlight_of_some_roughness() {
+    check_roughness(&[0.0, 0.2, 0.6]);
+}
+
+#[test]
+#[ignore = "long: six roughnesses"]
+fn discs_are_the_plain_highlight_at_every_roughness() {
+    check_roughness(&[0.0, 0.1, 0.2, 0.35, 0.5, 0.6]);
+}
+
+/// The same over these roughnesses: the disc of the sign is the highlight. From 0.65 on, its peak is below
+/// a few codes and cannot be measured.
+fn check_roughness(all: &[f32]) {
+    let mut small = ball(&signed(StylizedHighlight::default()));
+    for roughness in all.iter().copied() {
+        let polish = (1.0 - 1.4 * roughness).max(0.01);
+        let light = ToonLight {
+            // As bright as the strength allows.
+            highlight: (PEAK as f32 / (polish * polish)).min(4.0),
+            ..signed(StylizedHighlight::default())
+        };
+        polish_to(&mut small, roughness);
+        let peak = f64::from(light.highlight * polish * polish);
+        let mut areas = [0.0; 2];
+        for (area, stylized_highlight) in areas.iter_mut().zip([light.stylized_highlight, None]) {
+            let light = ToonLight {
+                stylized_highlight,
+                ..light.clone()
+            };
+            set_light(&mut small, &light);
+            *area = covered(&drawn(&mut small)).0 * PEAK / peak;
+        }
+        let tangent =
+            stylized_highlight::stylized_highlight_radius(f64::from(EDGE), f64::from(roughness));
+        let sine2 = tangent * tangent / (1.0 + tangent * tangent);
+        let wanted = std::f64::consts::PI * RADIUS * RADIUS * sine2;
+        for area in areas {
+            // Smaller than the footprint of its edge: a dot.
+            if wanted < 30.0 {
+                assert!(area < 30.0, "{roughness}: {area}");
+                continue;
+            }
+            // A hundredth of the area, and of the edge, which is one pixel wide.
+            let border = 2.0 * std::f64::consts::PI * RADIUS * sine2.sqrt();
+            let slack = 0.01 * wanted + 0.01 * border;
+            assert!(
+                (area - wanted).abs() < slack,
+                "{roughness}: {area}, not {wanted}"
+            );
+        }
+    }
+}
+
+/// Checks that a sign covers the same when it is moved by these numbers of parts of a pixel.
+fn check_shifts(shifts: u32) {
+    let sign = StylizedHighlight {
+        shape: HighlightShape::Window,
+        rotation: 15.0,
+        ..StylizedHighlight::default()
+    };
+    let mut small = ball(&signed(sign));
+    small.headless.step(3);
+    let world = small.world();
+    let mut meshes = world.query_filtered::<Entity, With<Mesh3d>>();
+    let ball = meshes.single(world).expect("a ball");
+    let areas: Vec<f64> = (0..shifts)
+        .map(|shift| {
+            let moved = shift as f32 / shifts as f32 * 2.0 / SIZE as f32;
+            let at = Transform::from_xyz(moved, 0.37 * moved, 0.0);
+            small.world().entity_mut(ball).insert(at);
+            small.headless.step(1);
+            covered(&small.picture()).0
+        })
+        .collect();
+    let mean = areas.iter().sum::<f64>() / f64::from(shifts);
+    let variance = areas.iter().map(|a| (a - mean).powi(2)).sum::<f64>() / f64::from(shifts);
+    assert!(
+        variance.sqrt() < 0.01 * mean,
+        "{} of {mean}",
+        variance.sqrt()
+    );
+}
+
+/// Moved by parts of a pixel, a sign covers the same.
+#[test]
+fn signs_are_anti_aliased() {
+    check_shifts(16);
+}
+
+/// The same in finer steps.
+#[test]
+#[ignore = "long: 64 frames"]
+fn signs_are_anti_aliased_at_every_place() {
+    check_shifts(64);
+}
+
+/// A light turns by 80 degrees in 360 frames. Checks that in these frames, of which some follow one
+/// another, the sign moves smoothly, and is where the geometry says at every 90th. A sign that stood
+/// still for a frame would bend its way by 0.2 pixels.
+fn check_way(frames: impl Iterator<Item = i32>) {
+    let sign = StylizedHighlight {
+        shape: HighlightShape::Star,
+        size: 2.0,
+        ..StylizedHighlight::default()
+    };
+    // Fewer triangles: most of them would be smaller than a pixel.
+    let mut small = ball_of(&signed(sign), [128, 64]);
+    let world = small.world();
+    let mut suns = world.query_filtered::<Entity, With<DirectionalLight>>();
+    let sun = suns.single(world).expect("a sun");
+    let mut middles = vec![];
+    for frame in frames {
+        let degrees = frame as f32 / 4.5 - 40.0;
+        let angle = degrees.to_radians();
+        let to = Vec3::new(angle.sin(), 0.0, angle.cos());
+        let at = Transform::from_translation(to).looking_at(Vec3::ZERO, Vec3::Y);
+        small.world().entity_mut(sun).insert(at);
+        small.headless.step(if middles.is_empty() { 3 } else { 1 });
+        let picture = small.picture();
+        let middle = covered(&picture).1;
+        if frame % 90 == 0 {
+            small.headless.step(2);
+            assert!(small.picture() == picture, "{degrees}: the sign lags");
+            let half = stylized_highlight::unit([f64::from(to.x), 0.0, f64::from(to.z) + 1.0]);
+            let wanted = true_cover(&sign, half).1;
+            assert!(
+                middle.distance(wanted) < 0.5,
+                "{degrees}: {middle}, not {wanted}"
+            );
+        }
+        middles.push((frame, middle));
+    }
+    let (mut most, mut bends) = (0.0f64, 0);
+    for three in middles.windows(3) {
+        let [(first, a), (_, b), (last, c)] = [three[0], three[1], three[2]];
+        if last == first + 2 {
+            most = most.max((a - 2.0 * b + c).length());
+            bends += 1;
+        }
+    }
+    println!("largest of {bends} bends: {most}");
+    assert!(bends > 10 && most < 0.05, "{most}");
+    let [first, last] = [middles[0].1, middles[middles.len() - 1].1];
+    assert!(first.distance(last) > 60.0);
+}
+
+/// At both ends of the way and in the middle, and in 16 frames one after another.
+#[test]
+#[ignore = "long: many frames of a moving light"]
+fn signs_move_smoothly_with_the_light() {
+    check_way([0].into_iter().chain(180..=196).chain([360]));
+}
+
+/// The same in all frames of the way.
+#[test]
+#[ignore = "long: 361 frames"]
+fn signs_move_smoothly_all_the_way() {
+    check_way(0..=360);
+}
+
+/// Only the brightest light draws a sign; of two that are equal, none does.
+#[test]
+fn the_brightest_light_draws_the_sign() {
+    // A ring around the plain highlight.
+    let sign = StylizedHighlight {
+        offset: Vec2::new(2.5, 0.0),
+        ..StylizedHighlight::default()
+    };
+    let mut small = ball(&signed(sign));
+    let one = covered(&drawn(&mut small));
+    assert!(one.1.x > 40.0, "{one:?}");
+    let to = Vec3::new(-1.0, 0.0, 1.0);
+    let weak = sun(&mut small, to, bright(0.5));
+    let two = covered(&drawn(&mut small));
+    // The weaker one's highlight has half its light, and is where it is without a sign.
+    assert!(two.0 > 1.3 * one.0 && two.1.x < one.1.x, "{one:?}, {two:?}");
+    small.world().entity_mut(weak).insert(bright(1.0));
+    let equal = covered(&drawn(&mut small));
+    set_light(
+        &mut small,
+        &ToonLight {
+            stylized_highlight: None,
+            ..signed(sign)
+        },
+    );
+    let plain = covered(&drawn(&mut small));
+    assert!(equal.1.distance(plain.1) < 0.5, "{equal:?}, {plain:?}");
+}
+
+/// How much wider than high a sign is, as the logarithm of the ratio of the squares.
+fn wider_than_high(picture: &RgbaImage) -> f64 {
+    let (area, middle) = covered(picture);
+    let mut spread = DVec2::ZERO;
+    for (x, y, _) in picture.enumerate_pixels() {
+        let at = DVec2::new(f64::from(x) - 127.5, 127.5 - f64::from(y)) - middle;
+        spread += linear(picture, x, y)[0] / PEAK * at * at;
+    }
+    assert!(area > 500.0);
+    (spread.x / spread.y).ln()
+}
+
+/// In every frame, on a mesh with and without tangents, what is drawn is a sign of the same area.
+#[test]
+fn frames_turn_signs() {
+    let sign = |frame| StylizedHighlight {
+        shape: HighlightShape::Streak,
+        size: 2.0,
+        frame,
+        ..StylizedHighlight::default()
+    };
+    let mut small = ball(&signed(sign(HighlightFrame::View)));
+    let wide = |small: &mut Small| wider_than_high(&drawn(small));
+    assert!(wide(&mut small) > 1.0);
+    // The camera lies on its side: the sign of the world stays, that of the picture turns.
+    let turned = Transform::from_xyz(0.0, 0.0, 5.0).looking_at(Vec3::ZERO, Vec3::X);
+    small.insert(turned);
+    assert!(wide(&mut small) > 1.0);
+    set_light(&mut small, &signed(sign(HighlightFrame::World)));
+    assert!(wide(&mut small) < -1.0);
+    // A light from above: along it is upwards in the upright picture.
+    small.insert(Transform::from_xyz(0.0, 0.0, 5.0));
+    let world = small.world();
+    let mut suns = world.query_filtered::<Entity, With<DirectionalLight>>();
+    let old = suns.single(world).expect("a sun");
+    world.despawn(old);
+    sun(&mut small, Vec3::new(0.0, 1.0, 1.0), bright(1.0));
+    set_light(&mut small, &signed(sign(HighlightFrame::Light)));
+    assert!(wide(&mut small) < -0.5);
+    set_light(&mut small, &signed(sign(HighlightFrame::Tangent)));
+    assert!(wide(&mut small) > 0.5);
+}
+
+/// A sign in the frame of the tangents turns with its ball; without tangents it stays.
+#[test]
+fn tangents_turn_signs() {
+    let sign = StylizedHighlight {
+        shape: HighlightShape::Streak,
+        size: 2.0,
+        frame: HighlightFrame::Tangent,
+        ..StylizedHighlight::default()
+    };
+    let mut small = ball(&signed(sign));
+    // The seam of the texture is behind, and no pole of it in front.
+    let stands = Quat::from_rotation_x(FRAC_PI_2) * Quat::from_rotation_z(FRAC_PI_2);
+    for has_tangents in [false, true] {
+        if has_tangents {
+            let world = small.world();
+            let mut meshes = world.resource_mut::<Assets<Mesh>>();
+            for (_, mesh) in meshes.iter_mut() {
+                mesh.generate_tangents().expect("UVs");
+            }
+        }
+        let mut spread = [0.0, FRAC_PI_2].map(|turn| {
+            let world = small.world();
+            let mut balls = world.query_filtered::<&mut Transform, With<Mesh3d>>();
+            let mut at = balls.single_mut(world).expect("a ball");
+            at.rotation = Quat::from_rotation_z(turn) * stands;
+            wider_than_high(&drawn(&mut small))
+        });
+        // The direction of the tangents depends on the mesh; that they turn does not.
+        if spread[0] < 0.0 {
+            spread = spread.map(|log| -log);
+        }
+        let [before, after] = spread;
+        assert!(before > 0.5, "{spread:?}");
+        assert!((after < -0.5) == has_tangents, "{spread:?}");
+        assert!(has_tangents || (after - before).abs() < 0.05, "{spread:?}");
+    }
+}
+
+fn rimmed(width: RimWidth, lit_side: f32) -> ToonLight {
+    ToonLight {
+        highlight: 0.0,
+        rim: Some(Rim {
+            width,
+            color: Color::linear_rgb(PEAK as f32, PEAK as f32, PEAK as f32),
+            lit_side,
+            ..default()
+        }),
+        ..default()
+    }
+}
+
+/// Rims of a ball are rings of a known area.
+#[test]
+fn rims_are_as_wide_as_they_say() {
+    let share = 0.4;
+    let facing = RimWidth::Facing {
+        share,
+        softness: 0.0,
+    };
+    let mut small = ball(&rimmed(facing, 0.0));
+    small.insert(DepthPrepass);
+    let all = std::f64::consts::PI * RADIUS * RADIUS;
+    let (area, middle) = covered(&drawn(&mut small));
+    let wanted = all * f64::from(share * share);
+    assert!((area / wanted - 1.0).abs() < 0.02, "{area}, not {wanted}");
+    assert!(middle.length() < 0.3);
+    for pixels in [2.0f32, 5.0, 9.0] {
+        set_light(&mut small, &rimmed(RimWidth::Pixels(pixels), 0.0));
+        let (area, middle) = covered(&drawn(&mut small));
+        let wanted = all * (1.0 - (1.0 - f64::from(pixels) / RADIUS).powi(2));
+        // The border of the depth is that of whole pixels.
+        assert!(
+            (area / wanted - 1.0).abs() < 0.05,
+            "{pixels}: {area}, not {wanted}"
+        );
+        assert!(middle.length() < 1.0);
+    }
+    // On the side of a light from the right, and without the prepass as `Facing`.
+    let world = small.world();
+    let mut suns = world.query_filtered::<Entity, With<DirectionalLight>>();
+    let old = suns.single(world).expect("a sun");
+    world.despawn(old);
+    sun(&mut small, Vec3::X, bright(1.0));
+    set_light(&mut small, &rimmed(RimWidth::Pixels(5.0), 1.0));
+    let (_, middle) = covered(&drawn(&mut small));
+    assert!(middle.x > 0.4 * RADIUS, "{middle}");
+}
+
+/// Truth: the inner border of a rim of constant width is a straight line along a pillar that leans,
+/// where it should be. The border of the depth has the steps of pixels, or of their samples: half of
+/// a pixel, or of the half pixel that four samples are apart at most.
+#[test]
+fn rims_of_constant_width_have_straight_borders() {
+    let pixels = 8.0f64;
+    let radius = 0.35;
+    let pillar = || Cylinder::new(radius, 6.0).mesh().resolution(256);
+    let mut small = room(UVec2::splat(SIZE), 0.0);
+    for (msaa, limit) in [(Msaa::Off, 0.5), (Msaa::Sample4, 0.25)] {
+        for degrees in [3.0f64, 17.0, 40.0] {
+            small.clear();
+            small.insert((msaa, DepthPrepass));
+            let lean = degrees.to_radians();
+            let at = Transform::from_rotation(Quat::from_rotation_z(-lean as f32));
+            let light = rimmed(RimWidth::Pixels(pixels as f32), 0.0);
+            put(&mut small, pillar(), &light, at);
+            polish(&mut small);
+            sun(&mut small, Vec3::Z, bright(1.0));
+            let picture = drawn(&mut small);
+            let middle = 0.5 * f64::from(SIZE);
+            let inner = (f64::from(radius) * middle - pixels) / lean.cos();
+            let (mut sum, mut worst) = (0.0, 0.0f64);
+            let rows = 90..166;
+            for y in rows.clone() {
+                // Rows go down, and the pillar leans to the right.
+                let axis = middle + (middle - f64::from(y) - 0.5) * lean.tan();
+                // What is not covered between the axis and a place well inside of the rim.
+                let first = (axis - inner - 3.0).floor() as u32;
+                let last = axis.floor() as u32;
+                let bare = (first..last).map(|x| 1.0 - linear(&picture, x, y)[0] / PEAK);
+                // Across the border.
+                let off = (f64::from(last) - bare.sum::<f64>() - (axis - inner)) * lean.cos();
+                sum += off;
+                worst = worst.max(off.abs());
+            }
+            let mean = sum / f64::from(rows.end - rows.start);
+            assert!(
+                worst < limit && mean.abs() < 0.2,
+                "{msaa:?}, {degrees}: {worst}, {mean}"
+            );
+        }
+    }
+}

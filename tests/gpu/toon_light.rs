@@ -1,0 +1,583 @@
+//! The toon material under every kind of light of the engine, beside the standard material.
+
+use bevy::{
+    asset::RenderAssetUsages,
+    camera::Exposure,
+    image::Image,
+    light::{EnvironmentMapLight, IrradianceVolume, LightProbe, RectLight},
+    mesh::VertexAttributeValues,
+    pbr::{ContactShadows, DistanceFog, FogFalloff, Lightmap},
+    prelude::*,
+    render::{
+        render_resource::{
+            Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,
+        },
+        view::Msaa,
+    },
+};
+use bevy_comics::{ToonLight, ToonScene};
+use image::RgbaImage;
+
+use crate::small::{Object, Small, linear, size};
+
+/// The exposure of a camera with default settings.
+fn exposure() -> f32 {
+    Exposure::default().exposure()
+}
+
+/// An app without objects and ambient light.
+fn dark() -> Small {
+    dark_of(size())
+}
+
+fn dark_of(size: UVec2) -> Small {
+    let mut small = Small::new(size, Msaa::Off);
+    small.clear();
+    small.insert(Exposure::default());
+    small.world().insert_resource(GlobalAmbientLight {
+        brightness: 0.0,
+        ..default()
+    });
+    small
+}
+
+/// An image of one colour per layer, in linear light.
+fn layers(
+    small: &mut Small,
+    size: Extent3d,
+    dimension: TextureDimension,
+    colors: &[Vec3],
+) -> Handle<Image> {
+    let data = colors
+        .iter()
+        .flat_map(|c| c.extend(1.0).to_array())
+        .flat_map(|x| half::f16::from_f32(x).to_le_bytes())
+        .collect();
+    let mut image = Image::new(
+        size,
+        dimension,
+        data,
+        TextureFormat::Rgba16Float,
+        RenderAssetUsages::RENDER_WORLD,
+    );
+    if dimension == TextureDimension::D2 && colors.len() == 6 {
+        image.texture_view_descriptor = Some(TextureViewDescriptor {
+            dimension: Some(TextureViewDimension::Cube),
+            ..default()
+        });
+    }
+    small.world().resource_mut::<Assets<Image>>().add(image)
+}
+
+/// An environment of six colours, in the order +X, -X, +Y, -Y and towards -Z, +Z. A
+/// colour of 1 is white in the picture.
+fn environment(small: &mut Small, colors: [Vec3; 6]) -> EnvironmentMapLight {
+    let size = Extent3d {
+        width: 1,
+        height: 1,
+        depth_or_array_layers: 6,
+    };
+    let map = layers(small, size, TextureDimension::D2, &colors);
+    EnvironmentMapLight {
+        diffuse_map: map.clone(),
+        specular_map: map,
+        intensity: 1.0 / exposure(),
+        ..default()
+    }
+}
+
+/// A material without reflections: under an environment the standard material is its
+/// diffuse part alone.
+fn plain(color: Color) -> StandardMaterial {
+    StandardMaterial {
+        base_color: color,
+        perceptual_roughness: 1.0,
+        reflectance: 0.0,
+        ..default()
+    }
+}
+
+/// Pictures of objects with their standard materials and with the toon material.
+fn both(small: &mut Small, objects: &[Entity], light: ToonLight) -> (RgbaImage, RgbaImage) {
+    small.headless.step(3);
+    let standard = small.picture();
+    for object in objects {
+        let mut object = small.world().entity_mut(*object);
+        object.insert(ToonScene::new(light.clone()));
+    }
+    small.headless.step(3);
+    let toon = small.picture();
+    assert_eq!(small.errors(), 0);
+    (standard, toon)
+}
+
+/// The largest difference of a channel, in codes.
+fn apart(a: &RgbaImage, b: &RgbaImage) -> u8 {
+    let pairs = a.as_raw().iter().zip(b.as_raw());
+    pairs.map(|(a, b)| a.abs_diff(*b)).max().expect("pixels")
+}
+
+/// The light in the middle of the picture.
+fn middle(picture: &RgbaImage) -> Vec3 {
+    let (x, y) = (picture.width() / 2, picture.height() / 2);
+    Vec3::from_array(linear(picture, x, y).map(|c| c as f32))
+}
+
+fn ball(small: &mut Small) -> Entity {
+    let at = Transform::from_xyz(0.0, 0.4, 0.0);
+    small.put(
+        Sphere::new(1.6).mesh().uv(64, 32),
+        plain(Color::srgb(0.8, 0.7, 0.6)),
+        at,
+    )
+}
+
+const SKY: [Vec3; 6] = [
+    Vec3::splat(0.5),
+    Vec3::splat(0.5),
+    Vec3::new(0.7, 0.8, 1.0),
+    Vec3::splat(0.2),
+    Vec3::splat(0.5),
+    Vec3::splat(0.5),
+];
+
+/// The light of environments as on the standard material.
+fn smooth_light() -> ToonLight {
+    ToonLight {
+        flat_environment: 0.0,
+        ..default()
+    }
+}
+
+#[test]
+fn a_white_environment_lights_as_on_the_standard_material() {
+    let mut small = dark();
+    let white = environment(&mut small, [Vec3::splat(0.6); 6]);
+    small.insert(white);
+    let ball = ball(&mut small);
+    let (standard, toon) = both(&mut small, &[ball], ToonLight::default());
+    assert!(middle(&toon).x > 0.2, "{:?}", middle(&toon));
+    assert!(apart(&standard, &toon) <= 1);
+}
+
+/// `flat_environment` 0 is the standard material's light; 1 has the two tones of the
+/// brightest side and of the opposite one.
+#[test]
+fn an_environment_is_smooth_or_two_tones_with_its_mean() {
+    let mut small = dark();
+    let sky = environment(&mut small, SKY);
+    small.insert(sky);
+    let white = small.put(
+        Sphere::new(1.6).mesh().uv(64, 32),
+        plain(Color::WHITE),
+        Transform::from_xyz(0.0, 0.4, 0.0),
+    );
+    let (standard, smooth) = both(&mut small, &[white], smooth_light());
+    assert!(apart(&standard, &smooth) <= 1);
+    small.world().entity_mut(white).insert(ToonScene::default());
+    small.headless.step(6);
+    let flat = small.picture();
+    // Along Y: the mean of all sides, more and less half the difference of two of them.
+    let mean = SKY.iter().sum::<Vec3>() / 6.0;
+    let half = 0.5 * (SKY[2] - SKY[3]);
+    let (light, shade) = (mean + half, mean - half);
+    let near = |tone: Vec3| {
+        flat.enumerate_pixels()
+            .filter(|(x, y, _)| {
+                let light = linear(&flat, *x, *y).map(|c| c as f32);
+                Vec3::from_array(light).abs_diff_eq(tone.min(Vec3::ONE), 0.01)
+            })
+            .count()
+    };
+    let background = flat.get_pixel(0, 0);
+    let ball = flat.pixels().filter(|p| *p != background).count();
+    let (lit, dark) = (near(light), near(shade));
+    assert!(lit * 3 > ball && dark * 10 > ball, "{lit} {dark} of {ball}");
+    // Besides the border, every pixel has one of the two tones.
+    assert!((lit + dark) * 100 > ball * 90, "{lit} {dark} of {ball}");
+}
+
+#[test]
+fn probes_and_volumes_light_as_on_the_standard_material() {
+    let mut small = dark();
+    let probe = environment(&mut small, SKY);
+    let whole = Transform::from_scale(Vec3::splat(20.0));
+    let probe = small
+        .world()
+        .spawn((Object, LightProbe::default(), probe, whole))
+        .id();
+    let first = ball(&mut small);
+    let (standard, toon) = both(&mut small, &[first], smooth_light());
+    // The engine needs arrays of textures for reflection probes. CPU adapters have none, so
+    // that both pictures are black there.
+    assert!(apart(&standard, &toon) <= 1);
+
+    small.world().despawn(probe);
+    small.world().despawn(first);
+    let size = Extent3d {
+        width: 1,
+        height: 2,
+        depth_or_array_layers: 3,
+    };
+    let voxels = layers(&mut small, size, TextureDimension::D3, &SKY);
+    small.world().spawn((
+        Object,
+        LightProbe::default(),
+        IrradianceVolume {
+            voxels,
+            intensity: 1.0 / exposure(),
+            ..default()
+        },
+        whole,
+    ));
+    let second = ball(&mut small);
+    let (standard, toon) = both(&mut small, &[second], smooth_light());
+    assert!(middle(&toon).x > 0.1, "{:?}", middle(&toon));
+    assert!(apart(&standard, &toon) <= 1);
+}
+
+fn quad(size: f32) -> Mesh {
+    let quad = Plane3d::new(Vec3::Z, Vec2::splat(0.5 * size));
+    quad.mesh().build().with_generated_tangents().expect("UVs")
+}
+
+fn with_colors(mut mesh: Mesh) -> Mesh {
+    let colors = (0..mesh.count_vertices())
+        .map(|i| [1.0, 0.3 * i as f32, 0.4, 0.5])
+        .collect();
+    mesh.insert_attribute(
+        Mesh::ATTRIBUTE_COLOR,
+        VertexAttributeValues::Float32x4(colors),
+    );
+    mesh
+}
+
+/// A normal map of 2x2 texels that lean to four sides.
+fn normal_map(small: &mut Small) -> Handle<Image> {
+    let data = [
+        [200, 128, 220, 255],
+        [60, 128, 220, 255],
+        [128, 210, 210, 255],
+        [128, 50, 210, 255],
+    ];
+    let size = Extent3d {
+        width: 2,
+        height: 2,
+        depth_or_array_layers: 1,
+    };
+    let image = Image::new(
+        size,
+        TextureDimension::D2,
+        data.concat(),
+        TextureFormat::Rgba8Unorm,
+        RenderAssetUsages::RENDER_WORLD,
+    );
+    small.world().resource_mut::<Assets<Image>>().add(image)
+}
+
+/// Checks that under an environment alone, materials and meshes are drawn as the standard material draws
+/// them: those of which `is_checked` says so, by name and fog.
+fn check_materials(is_checked: impl Fn(&str, bool) -> bool) {
+    let mut small = dark();
+    let map = normal_map(&mut small);
+    let color = Color::srgba(0.8, 0.7, 0.6, 0.5);
+    let glow = LinearRgba::rgb(0.2, 0.1, 0.3);
+    let cases: [(&str, Mesh, StandardMaterial); 9] = [
+        ("vertex colours", with_colors(quad(3.0)), plain(color)),
+        (
+            "normal map",
+            quad(3.0),
+            StandardMaterial {
+                normal_map_texture: Some(map),
+                ..plain(color)
+            },
+        ),
+        (
+            "alpha mask",
+            with_colors(quad(3.0)),
+            StandardMaterial {
+                alpha_mode: AlphaMode::Mask(0.25),
+                ..plain(color)
+            },
+        ),
+        (
+            "blend",
+            quad(3.0),
+            StandardMaterial {
+                alpha_mode: AlphaMode::Blend,
+                ..plain(color)
+            },
+        ),
+        (
+            "premultiplied",
+            quad(3.0),
+            StandardMaterial {
+                alpha_mode: AlphaMode::Premultiplied,
+                ..plain(color)
+            },
+        ),
+        (
+            "add",
+            quad(3.0),
+            StandardMaterial {
+                alpha_mode: AlphaMode::Add,
+                ..plain(color)
+            },
+        ),
+        (
+            "emission of an opaque material",
+            quad(3.0),
+            StandardMaterial {
+                emissive: glow,
+                ..plain(color)
+            },
+        ),
+        (
+            "emission of a transparent one",
+            quad(3.0),
+            StandardMaterial {
+                emissive: glow,
+                alpha_mode: AlphaMode::Blend,
+                ..plain(color)
+            },
+        ),
+        (
+            "double-sided",
+            quad(3.0),
+            StandardMaterial {
+                double_sided: true,
+                cull_mode: None,
+                ..plain(color)
+            },
+        ),
+    ];
+    for fog in [false, true] {
+        if fog {
+            small.insert(DistanceFog {
+                color: Color::srgb(0.9, 0.9, 1.0),
+                falloff: FogFalloff::Linear {
+                    start: 2.0,
+                    end: 10.0,
+                },
+                ..default()
+            });
+        }
+        let sky = environment(&mut small, SKY);
+        small.insert(sky);
+        for (name, mesh, material) in &cases {
+            if !is_checked(name, fog) {
+                continue;
+            }
+            let mut at = Transform::from_xyz(0.4, 0.6, 0.0);
+            if *name == "double-sided" {
+                at.rotate_y(2.6);
+            }
+            let object = small.put(mesh.clone(), material.clone(), at);
+            let (standard, toon) = both(&mut small, &[object], smooth_light());
+            let far = apart(&standard, &toon);
+            assert!(far <= 1, "{name}, fog {fog}: {far} codes");
+            let mut plain_sky = toon.pixels().filter(|p| *p != toon.get_pixel(0, 0));
+            assert!(plain_sky.next().is_some(), "{name} is drawn");
+            small.world().despawn(object);
+        }
+    }
+}
+
+/// Vertices, textures and alpha.
+#[test]
+fn materials_are_those_of_the_standard_material() {
+    check_materials(|name, fog| match name {
+        "normal map" | "alpha mask" => !fog,
+        "emission of a transparent one" => fog,
+        _ => false,
+    });
+}
+
+/// All that materials and meshes can be, with and without fog.
+#[test]
+#[ignore = "long: every kind of material, with and without fog"]
+fn all_materials_are_those_of_the_standard_material() {
+    check_materials(|_, _| true);
+}
+
+/// Lights that are baked into a lightmap are not counted twice.
+#[test]
+fn a_lightmap_replaces_the_lights_that_are_baked_into_it() {
+    let mut small = dark();
+    let one = Extent3d {
+        width: 1,
+        height: 1,
+        depth_or_array_layers: 1,
+    };
+    let baked = 0.3 / exposure();
+    let image = layers(&mut small, one, TextureDimension::D2, &[Vec3::splat(0.3)]);
+    let mut mesh = Sphere::new(1.6).mesh().uv(32, 16);
+    let uv = vec![[0.5f32, 0.5]; mesh.count_vertices()];
+    mesh.insert_attribute(Mesh::ATTRIBUTE_UV_1, uv);
+    let object = small.put(
+        mesh,
+        StandardMaterial {
+            lightmap_exposure: baked / 0.3,
+            ..plain(Color::WHITE)
+        },
+        Transform::from_xyz(0.0, 0.4, 0.0),
+    );
+    let mut entity = small.world().entity_mut(object);
+    entity.insert((
+        Lightmap {
+            image,
+            uv_rect: Rect::new(0.0, 0.0, 1.0, 1.0),
+            bicubic_sampling: false,
+        },
+        ToonScene::default(),
+    ));
+    let camera = Transform::from_xyz(1.5, 2.4, 6.0);
+    let sun = move |affects: bool| {
+        (
+            Object,
+            DirectionalLight {
+                illuminance: 0.2 * std::f32::consts::PI / exposure(),
+                affects_lightmapped_mesh_diffuse: affects,
+                ..default()
+            },
+            camera.looking_at(Vec3::new(0.0, 0.4, 0.0), Vec3::Y),
+        )
+    };
+    let ambient = |affects: bool| GlobalAmbientLight {
+        brightness: 0.1 / exposure(),
+        affects_lightmapped_meshes: affects,
+        ..default()
+    };
+    for (sun_affects, ambient_affects, expected) in [
+        (false, false, 0.3),
+        (true, false, 0.5),
+        (false, true, 0.4),
+        (true, true, 0.6),
+    ] {
+        let light = small.world().spawn(sun(sun_affects)).id();
+        small.world().insert_resource(ambient(ambient_affects));
+        small.headless.step(6);
+        let found = middle(&small.picture()).x;
+        let what = format!("sun {sun_affects}, ambient {ambient_affects}");
+        assert!(
+            (found - expected).abs() < 0.01,
+            "{what}: {found}, not {expected}"
+        );
+        small.world().despawn(light);
+    }
+    // It replaces the light of the surroundings, too.
+    small.world().insert_resource(ambient(false));
+    let sky = environment(&mut small, SKY);
+    small.insert(sky);
+    small.headless.step(6);
+    let found = middle(&small.picture()).x;
+    assert!((found - 0.3).abs() < 0.01, "with an environment: {found}");
+    assert_eq!(small.errors(), 0);
+}
+
+/// Right below the middle of a rectangle, its light is what the integral says; the light
+/// ends at the plane of the rectangle.
+#[test]
+fn a_rect_light_lights_what_it_shines_at() {
+    let mut small = dark();
+    let (width, height, up) = (2.0f32, 1.0f32, 1.5f32);
+    let wanted = 0.4;
+    let ground = small.put(
+        Plane3d::default().mesh().size(12.0, 12.0),
+        plain(Color::WHITE),
+        Transform::IDENTITY,
+    );
+    let light = ToonLight {
+        falloff: 0.0,
+        ..default()
+    };
+    (small.world().entity_mut(ground)).insert(ToonScene::new(light));
+    small
+        .insert(Transform::from_xyz(0.0, 1.2, 3.0).looking_at(Vec3::new(0.02, 0.0, 0.02), Vec3::Y));
+    // Light at the ground from all points of the rectangle, of luminance 1.
+    let steps = 200;
+    let sum: f64 = (0..steps * steps)
+        .map(|i| {
+            let part = |i: i32, size: f32| {
+                (f64::from(i) + 0.5) / f64::from(steps) * f64::from(size) - 0.5 * f64::from(size)
+            };
+            let (x, y, h) = (
+                part(i % steps, width),
+                part(i / steps, height),
+                f64::from(up),
+            );
+            h * h / (x * x + y * y + h * h).powi(2)
+        })
+        .sum();
+    let illuminance = sum * f64::from(width * height) / f64::from(steps * steps);
+    let luminance = wanted * std::f64::consts::PI / illuminance / f64::from(exposure());
+    let light = RectLight {
+        intensity: luminance as f32 * width * height * std::f32::consts::PI,
+        width,
+        height,
+        range: 1000.0,
+        ..default()
+    };
+    let at = Transform::from_xyz(0.0, up, 0.0);
+    let lamp = small
+        .world()
+        .spawn((Object, light, at.looking_to(-Vec3::Y, Vec3::Z)))
+        .id();
+    small.headless.step(6);
+    let found = middle(&small.picture()).x;
+    assert!(
+        (f64::from(found) - wanted).abs() < 0.01,
+        "{found}, not {wanted}"
+    );
+    // Turned around, it shines away from the ground.
+    small
+        .world()
+        .entity_mut(lamp)
+        .insert(at.looking_to(Vec3::Y, Vec3::Z));
+    small.headless.step(6);
+    assert!(middle(&small.picture()).x < 0.001);
+    assert_eq!(small.errors(), 0);
+}
+
+/// A box on the ground has a shadow where it meets the ground, without shadow maps, and the
+/// shadow stands still.
+#[test]
+fn contact_shadows_are_drawn_and_stand_still() {
+    let mut small = dark_of(2 * size());
+    let color = plain(Color::WHITE);
+    let ground = small.put(
+        Plane3d::default().mesh().size(12.0, 12.0),
+        color.clone(),
+        Transform::IDENTITY,
+    );
+    let block = small.put(
+        Cuboid::new(1.0, 1.0, 1.0),
+        color,
+        Transform::from_xyz(0.0, 0.5, 0.0),
+    );
+    small.world().spawn((
+        Object,
+        DirectionalLight {
+            illuminance: 0.5 * std::f32::consts::PI / exposure(),
+            contact_shadows_enabled: true,
+            ..default()
+        },
+        Transform::from_xyz(-1.0, 1.0, -0.4).looking_at(Vec3::ZERO, Vec3::Y),
+    ));
+    let (_, without) = both(&mut small, &[ground, block], ToonLight::default());
+    small.insert(ContactShadows {
+        thickness: 0.6,
+        length: 0.6,
+        ..default()
+    });
+    small.headless.step(6);
+    let with = small.picture();
+    let lit = |p: &RgbaImage| p.pixels().filter(|p| p.0[0] > 150).count();
+    let lost = lit(&without) - lit(&with);
+    // The shadow reaches 0.41 and 0.16 units from two sides of the box: 0.6 square units,
+    // at 550 pixels each and seen at a slant of 20 degrees.
+    assert!((80..160).contains(&lost), "{lost} pixels in shadow");
+    small.headless.step(1);
+    assert_eq!(with, small.picture());
+    assert_eq!(small.errors(), 0);
+}
