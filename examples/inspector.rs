@@ -34,7 +34,7 @@ The inspector on a built-in scene. F10 opens and closes the panel.
                        in physical pixels (all of it)
     --scale FACTOR     scale factor of the window (the system's)
     --styles FOLDER    folder of style files (assets/styles)
-    --shadings FOLDER     folder of look files (assets/shading)
+    --shadings FOLDER     folder of shading files (assets/shading)
     --pictures FOLDER  folder of screenshots (screenshots)
     --memory FILE      file of the panel's settings, `none` for no file
     --open             start with the panel open

@@ -2,7 +2,7 @@
 //! between, as in films that are animated "on twos" (12 drawings a second).
 //!
 //! All that moves like this asks here, so that boiling lines, sketches, speed lines, grain
-//! and held poses of the same rate change in the same frame.
+//! and stepped animation of the same rate change in the same frame.
 
 /// A frame that is this many seconds early belongs to the next drawing. Clocks count
 /// nanoseconds: at 12 drawings and 60 frames a second, every fifth frame is a nanosecond

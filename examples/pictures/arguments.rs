@@ -10,10 +10,10 @@ usage: pictures styles [--size WxH] [--out FILE.png]         each style of the g
                                                               every scene in every preset; or the
                                                               middle of each, enlarged 2 to 8 times
        pictures banner [--out FILE.png]                       the README's first picture
-       pictures looks [--out FILE.png]                        a row of looks, for the page of examples
+       pictures style-row [--out FILE.png]                    a row of styles, for the page of examples
        pictures presets [--out FILE.png]                      the page of the presets
-       pictures gallery [--only NAME,NAME] [--out DIR]        docs/gallery: every look, and how they differ;
-                                                              or only the numbers of these looks
+       pictures gallery [--only NAME,NAME] [--out DIR]        docs/gallery: every style, and how they differ;
+                                                              or only the numbers of these styles
        pictures loops [--out DIR]                             docs/gallery: strokes and lines in motion
        pictures ramps [--out FILE.png]                        the ramps of the toon material
        pictures toon [--out DIR]                              signs, rims and X-Toon of the toon material
@@ -30,7 +30,7 @@ const PICTURES: [&str; 15] = [
     "styles",
     "contact-sheet",
     "banner",
-    "looks",
+    "style-row",
     "presets",
     "gallery",
     "loops",

@@ -1,4 +1,4 @@
-//! The gallery of looks: a picture and a page, with how far looks are from each other.
+//! The gallery of styles: a picture and a page, with how far styles are from each other.
 
 use std::{fmt::Write, fs, path::Path};
 
@@ -122,7 +122,7 @@ fn measure(looks: &[Preset]) -> Result<(Vec<Measured>, Measures), String> {
         let distances = apart[k].iter().copied().enumerate();
         let (other, distance) = distances
             .min_by(|a, b| a.1.total_cmp(&b.1))
-            .expect("a look");
+            .expect("a style");
         Measured {
             nearest: (looks[other], distance),
             own: Measures::mean(own),
@@ -172,12 +172,12 @@ fn method(least: f64, unstyled: &Measures) -> String {
     let percent = |part: f64| 100.0 * part;
     format!(
         "## Numbers\n\n\
-         Looks are measured on the village, the figure and the street, at 240x135 pixels. The page is not\n\
-         written if a look does not keep a limit. To judge by eye, `cargo run --example pictures -- contact-sheet\n\
-         --size 960x540` draws every scene in every look, and with `--zoom 4` the middle of each at four times the size.\n\n\
+         Styles are measured on the village, the figure and the street, at 240x135 pixels. The page is not\n\
+         written if a style does not keep a limit. To judge by eye, `cargo run --example pictures -- contact-sheet\n\
+         --size 960x540` draws every scene in every style, and with `--zoom 4` the middle of each at four times the size.\n\n\
          | number | is | limit |\n\
          |---|---|---|\n\
-         | nearest look | the mean of FLIP to the look that differs least (0: the same picture, 1: black and white) | at least {LEAST_APART}; the least is {least:.3} |\n\
+         | nearest style | the mean of FLIP to the style that differs least (0: the same picture, 1: black and white) | at least {LEAST_APART}; the least is {least:.3} |\n\
          | ink | the part of the picture that is darker than a quarter of the display's range | |\n\
          | clipped | the part that is black, and the part that is white | {:.0} % together, but for white on the white paper of `manga-page` and `hard-boiled` |\n\
          | contrast | pixels of geometry are divided by distance into three planes of the same size; the mean difference of the mean colours of near and middle, and of middle and far, in CIELAB | at least {LEAST_CONTRAST}, which is just noticeable; unstyled {:.1} |\n\
@@ -193,9 +193,9 @@ fn method(least: f64, unstyled: &Measures) -> String {
 fn page(measured: &[Measured], unstyled: &Measures) -> String {
     let least = measured.iter().map(|m| m.nearest.1).fold(1.0, f64::min);
     let mut text = format!(
-        "# Looks\n\n\
+        "# Gallery\n\n\
          {} presets, one picture each. Made by `cargo run --example pictures -- gallery`, which writes this\n\
-         page, too. How to use one: [styles and presets](../styles-and-presets.md). How looks are\n\
+         page, too. How to use one: [styles and presets](../styles-and-presets.md). How styles are\n\
          measured: [numbers](#numbers).\n{}",
         measured.len(),
         loops::SECTION,
@@ -207,7 +207,7 @@ fn page(measured: &[Measured], unstyled: &Measures) -> String {
             text,
             "\n## {title}\n\n![{title}]({look}.png)\n\n\
              `{look}` ([file](../../assets/styles/{look}.comic.ron)): {}\n\n\
-             *The {}. Nearest look: `{}`, {:.3}. Ink {:.0} %, clipped {:.1} % black and {:.1} % white.\n\
+             *The {}. Nearest style: `{}`, {:.3}. Ink {:.0} %, clipped {:.1} % black and {:.1} % white.\n\
              Contrast {:.1}, flicker {:.2}, fragments {:.1} %.*\n",
             intent(*look),
             scene_of(*look).name(),
@@ -238,7 +238,7 @@ pub fn write(folder: &Path, only: &str) -> Result<(), String> {
     }
     let failed = failures(&looks, &measured, &unstyled);
     if !failed.is_empty() {
-        return Err(format!("looks beyond the limits:\n{}", failed.join("\n")));
+        return Err(format!("styles beyond the limits:\n{}", failed.join("\n")));
     }
     if !only.is_empty() {
         return Ok(());

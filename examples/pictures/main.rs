@@ -4,7 +4,7 @@
 //! cargo run --example pictures -- styles [--size WxH] [--out FILE.png]
 //! cargo run --example pictures -- contact-sheet [--size WxH] [--zoom N] [--out FILE.png]
 //! cargo run --example pictures -- banner [--out FILE.png]
-//! cargo run --example pictures -- looks [--out FILE.png]
+//! cargo run --example pictures -- style-row [--out FILE.png]
 //! cargo run --example pictures -- presets [--out FILE.png]
 //! cargo run --example pictures -- gallery [--only NAME,NAME] [--out DIR]
 //! cargo run --example pictures -- loops [--out DIR]
@@ -65,7 +65,7 @@ fn run() -> Result<(), String> {
         "styles" => sheet::styles(*size, &or("target/styles.png")),
         "contact-sheet" => sheet::contact_sheet(*size, *zoom, &or("target/contact-sheet.png")),
         "banner" => sheet::banner(&or("target/banner.png")),
-        "looks" => sheet::looks(&or("target/looks.png")),
+        "style-row" => sheet::style_row(&or("target/style-row.png")),
         "presets" => sheet::presets(&or("target/presets.png")),
         "gallery" => gallery::write(&or("docs/gallery"), only),
         "loops" => loops::write(&or("docs/gallery")),

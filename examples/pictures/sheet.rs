@@ -103,7 +103,7 @@ pub fn contact_sheet(size: UVec2, zoom: u32, out: &Path) -> Result<(), String> {
     save(&grid(&rows, size, GAP), out)
 }
 
-/// The looks of the banner, from left to right; `None` is the original.
+/// The styles of the banner, from left to right; `None` is the original.
 const BANNER: [Look; 5] = [
     None,
     Some("saturday-morning"),
@@ -112,7 +112,7 @@ const BANNER: [Look; 5] = [
     Some("noir"),
 ];
 
-/// The picture at the top of the README: one scene in several looks, in slanted panels.
+/// The picture at the top of the README: one scene in several styles, in slanted panels.
 pub fn banner(out: &Path) -> Result<(), String> {
     /// Half the width of the gutter between two panels, pixels.
     const GUTTER: f32 = 3.0;
@@ -150,8 +150,8 @@ fn shoot_small(scene: BuiltIn, looks: &[Look]) -> Result<Vec<RgbaImage>, String>
     Ok(pictures.iter().map(reduced).collect())
 }
 
-/// A row of looks, for the page of the examples.
-pub fn looks(out: &Path) -> Result<(), String> {
+/// A row of styles, for the page of the examples.
+pub fn style_row(out: &Path) -> Result<(), String> {
     let looks = [
         "saturday-morning",
         "graphic-novel",

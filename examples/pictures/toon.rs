@@ -30,7 +30,7 @@ pub fn write(folder: &Path) -> Result<(), String> {
     save(&details(), &folder.join("details.png"))?;
     save(&painted::picture(), &folder.join("painted-ramps.png"))?;
     save(&rims(), &folder.join("rims.png"))?;
-    save(&forms(), &folder.join("forms.png"))?;
+    save(&forms(), &folder.join("proxies.png"))?;
     save(&smoothed::picture(), &folder.join("smoothed.png"))?;
     save(&strokes::picture(), &folder.join("hatched-material.png"))?;
     save(&tone_ramp(), &folder.join("tone-ramp.png"))?;

@@ -133,7 +133,7 @@ pub const SECTIONS: [Section; 21] = [
         "toon",
         toon::measure,
         "What does the toon material cost?",
-        "Cartoon material",
+        "Toon material",
     ),
     section(
         "growth",

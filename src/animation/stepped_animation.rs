@@ -113,7 +113,7 @@ struct Saved {
 }
 
 impl Poses {
-    /// Puts the held poses into the world.
+    /// Puts the stepped poses into the world.
     fn hold(&mut self, world: &mut World) {
         let roots = self.roots.get_or_insert_with(|| world.query());
         let members = members(world, roots);

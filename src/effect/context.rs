@@ -49,7 +49,7 @@ pub struct EffectContext {
     /// effect requests lines.
     pub lines_implied: bool,
     /// The sheet that the view is printed on: that of the first effect in the chain that has one
-    /// ([`Effect::sheet`](crate::Effect::sheet)).
+    /// ([`Effect::line_modifiers`](crate::Effect::line_modifiers)).
     pub sheet: Option<Sheet>,
 }
 

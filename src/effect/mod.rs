@@ -105,10 +105,10 @@ pub trait Effect:
     /// takes none. In the uniform buffer it starts at a multiple of 16 bytes.
     type Uniform: ShaderType + WriteInto;
 
-    /// The settings that are used. Values in range must be returned unchanged. Default: every number
-    /// is clamped to the [`FieldRange`] of its field, a number that is not finite is replaced by its
-    /// default, and colours are clamped to what a display shows. Fields of enums, and structs in
-    /// options, are not changed.
+    /// The settings that are used. Values in range must be returned unchanged. Default: every `f32`, `u32`,
+    /// `Vec2`, `Vec3` and `Option<f32>` with a [`FieldRange`] is clamped to it (if it is not finite, it
+    /// becomes its default), and every `Color` to what a display shows. Other types, fields without a
+    /// range, fields of enums and structs in options are not changed.
     #[must_use]
     fn sanitized(self) -> Self {
         clamp_fields(self)
@@ -192,8 +192,8 @@ pub trait Effect:
     fn uniform(&self, view: &EffectContext) -> Self::Uniform;
 
     /// Interpolates between this effect (`t` = 0) and `other` (`t` = 1). Default:
-    /// `f32` fields are interpolated linearly, or by ratio if their
-    /// [`FieldRange`](crate::effect::FieldRange) is logarithmic; colours are interpolated in
+    /// numbers (`f32`, `Vec2`, `Vec3`) are interpolated linearly, or by ratio if their
+    /// [`FieldRange`] is logarithmic; colours are interpolated in
     /// `OKLab`; all other fields keep this effect's values.
     #[must_use]
     fn mixed(&self, other: &Self, t: f32) -> Self {
@@ -203,8 +203,8 @@ pub trait Effect:
     /// Whether [`Effect::mixed`] leads from this effect to the other without a
     /// jump. If not, a transition fades the effect out, exchanges the settings at
     /// half time, and fades the effect in. Default: true if all fields are equal
-    /// that are neither `f32` nor `Color` nor marked by
-    /// [`BlendField`](crate::effect::BlendField).
+    /// that are neither `f32`, `Vec2`, `Vec3` nor `Color` nor marked by
+    /// [`BlendField`].
     fn same_modes(&self, other: &Self) -> bool {
         blend::same_modes(self, other)
     }

@@ -45,8 +45,8 @@ impl DeviceLacks {
         if self.compute_shaders {
             warn_once!(
                 "this device has no compute shaders: visible ranges are not smoothed, locked or \
-                 trimmed, borders of planes are not found, and lines are drawn without continuity, \
-                 bridges, budget, persistence and weights"
+                 trimmed, borders of depth layers are not found, and lines are drawn without \
+                 hysteresis, closed gaps, ink budget, held frames, weights and fog"
             );
         }
         if self.object_ids && cfg!(feature = "objects") {

@@ -44,8 +44,8 @@ pub struct Outlines {
     /// draws none. Without the crate's feature `objects`, none are drawn either.
     /// Default: [`ObjectEdges::default`].
     pub objects: Option<ObjectEdges>,
-    /// Width of the lines in logical pixels. Range 0.5 to 16, default 2. Lines in the
-    /// faithful form are four physical pixels wide instead.
+    /// Width of the lines in logical pixels. Range 0.5 to 16, default 2. Faithful lines
+    /// are four physical pixels wide instead.
     #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
     pub width: f32,
     /// Fraction of the width that is lost at the far end of the depth map. Range 0 to

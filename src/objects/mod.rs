@@ -165,9 +165,9 @@ pub(crate) struct IdRequest {
     allow(dead_code, reason = "only the feature `objects` draws ids")
 )]
 pub struct ViewObjectIds {
-    /// `Rg16Uint`: red is the [`object_id`](crate::testing::object_id) (0: no object). The low byte of
+    /// `Rg16Uint`: red is the [`object_id`] (0: no object). The low byte of
     /// green is the slot of the mesh's outline style (0: it has none), the high byte the
-    /// section of the mesh (0: it has none; see [`MeshSections`](crate::objects::MeshSections)).
+    /// section of the mesh (0: it has none; see [`MeshSections`]).
     pub texture: Texture,
     pub(crate) view: TextureView,
 }

@@ -8,11 +8,10 @@ use bevy::{
 
 use super::{FieldRange, clamp_color, clamp_or_default, clamp_vec2_or_default};
 
-/// The value with every number in the [`FieldRange`] of its field. A number that is not finite
-/// becomes that of the type's default. Colours are clamped to what a display shows.
-///
-/// Numbers in nested structs and `Option<f32>` are clamped, too; structs in options and fields of
-/// enums are not.
+/// The value with every `f32`, `u32`, `Vec2`, `Vec3` and `Option<f32>` in the [`FieldRange`] of its
+/// field, if it has one. A number that is not finite becomes that of the type's default. Colours are
+/// clamped to what a display shows. Nested structs are clamped with the default of the outer type;
+/// other types, structs in options and fields of enums are not changed.
 pub fn clamp_fields<T: Struct + Typed + Default>(mut value: T) -> T {
     clamp_struct(&mut value, &T::default());
     value
@@ -49,12 +48,14 @@ fn clamp_field(
 }
 
 fn clamp_number(value: &mut dyn PartialReflect, default: &dyn PartialReflect, range: FieldRange) {
-    let (low, high) = (range.min as f32, range.max as f32);
+    // The attribute is a game's: a range upside down is the same range.
+    let (least, most) = (range.min.min(range.max), range.max.max(range.min));
+    let (low, high) = (least as f32, most as f32);
     if let Some(number) = value.try_downcast_mut::<f32>() {
         let default = default.try_downcast_ref::<f32>().copied();
         *number = clamp_or_default(*number, default.unwrap_or(low), low, high);
     } else if let Some(number) = value.try_downcast_mut::<u32>() {
-        *number = (*number).clamp(range.min as u32, range.max as u32);
+        *number = (*number).clamp(least as u32, most as u32);
     } else if let Some(vector) = value.try_downcast_mut::<Vec2>() {
         let default = default.try_downcast_ref::<Vec2>().copied();
         *vector = clamp_vec2_or_default(*vector, default.unwrap_or(Vec2::splat(low)), low, high);

@@ -66,7 +66,7 @@ pub struct HueWheel;
 
 /// How a field changes during a transition between two styles.
 ///
-/// Without this attribute, `f32` numbers and colours are interpolated, and a field
+/// Without this attribute, `f32`, `Vec2`, `Vec3` and colours are interpolated, and a field
 /// of any other type is a mode: the effect fades out, changes the mode halfway, and
 /// fades in again.
 #[derive(Reflect, Clone, Copy, Debug, PartialEq, Eq)]

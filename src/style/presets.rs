@@ -222,7 +222,7 @@ pub(super) fn embed(app: &mut App) {
 mod tests {
     use super::*;
 
-    /// The first line of a look's file says what it is and what it was made for; its lines are those of
+    /// The first line of a style's file says what it is and what it was made for; its lines are those of
     /// the second paper or of later effects.
     #[test]
     fn looks_say_their_intent_and_do_not_lean_on_contours() {

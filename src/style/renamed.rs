@@ -2,7 +2,7 @@
 
 use std::{fmt::Write, ops::Range};
 
-/// What was renamed: entry of the file, old name, new name.
+/// What was renamed: entry of the file, or innermost entry around the name, old name, new name.
 pub(crate) type Renamed = &'static [(&'static str, &'static str, &'static str)];
 
 /// What version 3 of style files renamed.
@@ -61,6 +61,9 @@ pub(crate) const SHADING: Renamed = &[
     ("light", "far_amount", "amount_at_far"),
     ("light", "Share", "LightFraction"),
     ("light", "near", "from"),
+    ("hatching", "near", "at_near"),
+    ("hatching", "far", "at_far"),
+    ("hatching", "calm", "simplify_small"),
     ("light", "glint", "stylized_highlight"),
 ];
 
@@ -165,10 +168,12 @@ pub(crate) fn upgraded(text: &str, version: &'static str, renamed: Renamed) -> U
         let new = if word.entry == "version" && !word.is_key {
             Some(version)
         } else {
-            renamed
-                .iter()
-                .find(|(entry, from, _)| *entry == word.entry && *from == old)
-                .map(|(_, _, to)| *to)
+            let within = |name: &str| {
+                let found =
+                    (renamed.iter()).find(|(entry, from, _)| *entry == name && *from == old);
+                found.map(|(_, _, to)| *to)
+            };
+            within(word.within).or_else(|| within(word.entry))
         };
         let Some(new) = new else { continue };
         let before = &text[copied..word.range.start];
@@ -191,8 +196,10 @@ pub(crate) fn upgraded(text: &str, version: &'static str, renamed: Renamed) -> U
 
 /// A name or number inside of an entry.
 struct Word<'a> {
-    /// Name of the entry of the style, such as `contours`.
+    /// Name of the entry of the file, such as `contours`.
     entry: &'a str,
+    /// Name of the innermost entry around it.
+    within: &'a str,
     /// Whether this is the entry's own name.
     is_key: bool,
     range: Range<usize>,
@@ -201,7 +208,9 @@ struct Word<'a> {
 /// The words of a RON text, without those in strings and comments.
 fn entry_words(text: &str) -> Vec<Word<'_>> {
     let mut words = Vec::new();
-    let (mut at, mut depth, mut entry) = (0, 0usize, "");
+    let (mut at, mut entry, mut last_key) = (0, "", "");
+    // The key in front of every bracket that is open.
+    let mut open: Vec<&str> = Vec::new();
     while let Some(c) = text[at..].chars().next() {
         let rest = &text[at..];
         let length = if rest.starts_with("//") {
@@ -210,25 +219,34 @@ fn entry_words(text: &str) -> Vec<Word<'_>> {
             rest.find("*/").map_or(rest.len(), |end| end + 2)
         } else if c == '"' {
             string_length(rest)
+        } else if let Some(length) = raw_string_length(rest) {
+            length
         } else if c.is_alphanumeric() || c == '_' {
             let length = rest
                 .find(|c: char| !(c.is_alphanumeric() || c == '_'))
                 .unwrap_or(rest.len());
-            let is_key = depth == 1 && rest[length..].trim_start().starts_with(':');
+            let names_value = rest[length..].trim_start().starts_with(':');
+            let is_key = open.len() == 1 && names_value;
             if is_key {
                 entry = &rest[..length];
             }
             let range = at..at + length;
             words.push(Word {
                 entry,
+                within: open.last().copied().unwrap_or_default(),
                 is_key,
                 range,
             });
+            if names_value {
+                last_key = &rest[..length];
+            }
             length
         } else {
             match c {
-                '(' | '[' | '{' => depth += 1,
-                ')' | ']' | '}' => depth = depth.saturating_sub(1),
+                '(' | '[' | '{' => open.push(last_key),
+                ')' | ']' | '}' => {
+                    open.pop();
+                }
                 _ => {}
             }
             c.len_utf8()
@@ -236,6 +254,20 @@ fn entry_words(text: &str) -> Vec<Word<'_>> {
         at += length;
     }
     words
+}
+
+/// The length of a raw string at the start of a text, such as `r#"..."#`.
+fn raw_string_length(text: &str) -> Option<usize> {
+    let hashes = text
+        .strip_prefix('r')?
+        .bytes()
+        .take_while(|b| *b == b'#')
+        .count();
+    let start = 1 + hashes;
+    text[start..].strip_prefix('"')?;
+    let end = format!("\"{}", "#".repeat(hashes));
+    let found = text[start + 1..].find(&end);
+    Some(found.map_or(text.len(), |at| start + 1 + at + end.len()))
 }
 
 /// The length of a string in quotes at the start of a text.
@@ -268,6 +300,7 @@ mod tests {
     color_harmony: (curve: Quadratic, form: Faithful),
     planes: (near: (saturation: 0.5), near_end: 0.125),
     outlines: (specks: 3, silhouettes: (form: Faithful), color: Ink, weight: (nib: 0.5)),
+    hatching: (calm: 0.5),
 )
 "##;
 
@@ -340,5 +373,25 @@ mod tests {
         ] {
             assert!(read(text).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn raw_strings_are_no_names() {
+        let text = "(name: r#\"5\" specks\"#, version: 2, outlines: (specks: 3))";
+        let style = read(text).expect("readable").style;
+        assert_eq!(style.name, "5\" specks");
+        assert_eq!(style.get::<Outlines>().expect("outlines").min_length, 3);
+    }
+
+    #[test]
+    #[cfg(feature = "toon")]
+    fn the_innermost_entry_decides() {
+        let text = "(version: 1, light: (hatching: (near: 0.875, calm: 1), form: (near: 2)))";
+        let light = crate::toon::ToonShading::from_ron(text)
+            .expect("readable")
+            .light;
+        let hatching = light.hatching.expect("strokes");
+        assert_eq!((hatching.at_near, hatching.simplify_small), (0.875, 1.0));
+        assert_eq!(light.proxy.expect("a proxy").from, 2.0);
     }
 }

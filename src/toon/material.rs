@@ -144,8 +144,8 @@ pub struct ToonLight {
     ///
     /// [`spacing`](Hatching::spacing) and [`length`](Hatching::length) are in physical pixels,
     /// [`ink`](Hatching::ink) and [`paper`](Hatching::paper) are colours before tonemapping, and
-    /// [`near`](Hatching::at_near) is the factor of the darkness at all distances.
-    /// Dots stay on meshes as strokes do. [`far`](Hatching::at_far), [`source`](Hatching::source) and [`calm`](Hatching::simplify_small) have no
+    /// [`at_near`](Hatching::at_near) is the factor of the darkness at all distances.
+    /// Dots stay on meshes as strokes do. [`at_far`](Hatching::at_far), [`source`](Hatching::source) and [`simplify_small`](Hatching::simplify_small) have no
     /// meaning here.
     pub hatching: Option<Hatching>,
     /// The strokes of `hatching`, as a tonal art map. Default: `None`, strokes by planes. It is not

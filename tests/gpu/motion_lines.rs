@@ -360,7 +360,7 @@ fn they_are_not_in_the_prepass() {
     assert!(shots[0] == shots[1]);
 }
 
-/// With the rate of a held pose, lines change in the same frames.
+/// With the rate of a stepped animation, lines change in the same frames.
 #[test]
 fn they_can_be_drawn_on_twos() {
     let mut stage = Stage::new(MotionLines {

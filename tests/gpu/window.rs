@@ -104,7 +104,7 @@ impl Window {
             .arg("--styles")
             .arg(folder.join("styles"))
             .arg("--shadings")
-            .arg(folder.join("looks"))
+            .arg(folder.join("shadings"))
             .arg("--pictures")
             .arg(folder.join("pictures"))
             .args(arguments)

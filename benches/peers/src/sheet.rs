@@ -109,9 +109,9 @@ fn share_light(world: &mut World) {
             mode: RampMode::LightFraction,
             ..Ramp::new(stops)
         });
-        if let Some(form) = &mut look.light.form {
-            form.amount = 0.95;
-            form.far_amount = 0.95;
+        if let Some(proxy) = &mut look.light.proxy {
+            proxy.amount = 0.95;
+            proxy.amount_at_far = 0.95;
         }
     }
 }

@@ -29,7 +29,7 @@ pub fn ink(out: &mut String, folder: &Path) -> Result<(), String> {
     out.push_str(
         "### Whole and steady lines\n\nDashes for each 100 pixels of true line, on the models \
          above and on two shapes while they turn: half of the ends of lines, where no other line begins. \
-         `cut` lines do not continue along weak edges (`continuity` 0, `specks` 1); where a line continues \
+         `cut` lines do not continue along weak edges (`hysteresis` 0, `min_length` 1); where a line continues \
          along a weak edge that ends inside a surface, it has one more end than without, so a model may have more dashes with it. The next column has \
          those of continued lines whose end is within 2 pixels of the end of a true line (the borders of \
          pixels of the same view at four times the resolution, where the steps and folds of the truth are): \

@@ -43,7 +43,7 @@ pub struct Colorization {
     /// keeps the lightness; greys are tinted too. [`Equations::Faithful`] changes the HSV
     /// hue and keeps value and saturation; greys stay grey, and a hue between two
     /// others can be unrelated to both. Default: [`Equations::Corrected`]. Source of the
-    /// faithful form: \[CS\] Eq. 9 to 11 as printed.
+    /// faithful equations: \[CS\] Eq. 9 to 11 as printed.
     pub equations: Equations,
 }
 

@@ -16,7 +16,7 @@ use layer::LayerColorsUniform;
 use crate::{
     effect::{Effect, EffectContext, EffectShader, EffectStage, EffectView, Needs, Variants},
     lines::{LineLayers, LineModifiers},
-    settings::FieldRange,
+    settings::{FieldRange, clamp_fields},
 };
 
 /// Divides the picture into foreground, middle and background, and gives each layer its own colours
@@ -126,6 +126,15 @@ impl Effect for DepthLayers {
         explanation: "The layers of the picture: foreground in red, middle in yellow, background in blue.",
     });
     type Uniform = DepthLayersUniform;
+
+    fn sanitized(self) -> Self {
+        Self {
+            foreground: self.foreground.sanitized(),
+            middle: self.middle.sanitized(),
+            background: self.background.sanitized(),
+            ..clamp_fields(self)
+        }
+    }
 
     fn strength(&self) -> f32 {
         self.amount

@@ -30,7 +30,7 @@ pub struct Desaturation {
     /// Selects what stays constant while saturation is lost. [`Equations::Corrected`]
     /// keeps the luminance. [`Equations::Faithful`] keeps the HSV value, which makes full
     /// blue fourteen times as bright. Default: [`Equations::Corrected`]. Source of the
-    /// faithful form: \[CS\] Eq. 5.
+    /// faithful equations: \[CS\] Eq. 5.
     pub equations: Equations,
 }
 

@@ -20,7 +20,7 @@ use crate::{
 ///
 /// The sheet is fixed to the render target, so that the views of a split screen are printed
 /// on one sheet, unless [`anchor`](Self::anchor) gives each its own. Grain, shading and
-/// [`ink_bleed`](Self::spread) keep the mean tone of a flat area within 1 %, in linear light. Light
+/// [`ink_bleed`](Self::ink_bleed) keep the mean tone of a flat area within 1 %, in linear light. Light
 /// above 1 (HDR) and the background of a transparent camera have no grain. Reads no texture.
 ///
 /// The views of cameras with this effect are styled after FXAA and SMAA, which would smear the

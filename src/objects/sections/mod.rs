@@ -58,8 +58,8 @@ pub(crate) use table::{SectionBuffer, SectionTables, extract_sections, prepare_s
 ///
 /// Meshes of an [`OutlineGroup`](crate::OutlineGroup) and primitives of a glTF node continue
 /// each other: there, borders of sections that do not bend by 10 degrees are left out. If
-/// several entities above a mesh have the component, the nearest one counts. Creases of the
-/// faithful form know no sections.
+/// several entities above a mesh have the component, the nearest one counts. Faithful
+/// creases do not use sections.
 ///
 /// A mesh with [`ATTRIBUTE_MESH_SECTION`] has the sections of its author.
 ///

@@ -1,4 +1,4 @@
-//! The numbers of speed lines, two tones, paper, the vignette and held poses.
+//! The numbers of speed lines, two tones, paper, the vignette and stepped animation.
 
 use super::*;
 

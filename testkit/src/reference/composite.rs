@@ -1,4 +1,4 @@
-//! Reference of `finish/composite.wgsl`.
+//! Reference of `composite/composite.wgsl`.
 
 use super::{Rgb, Rgba, mix, noise};
 

@@ -80,7 +80,7 @@ impl HiddenWindow {
         fs::create_dir_all(folder.join("styles")).expect("a folder");
         let inspector = ComicsInspectorPlugin {
             styles: folder.join("styles"),
-            shadings: folder.join("looks"),
+            shadings: folder.join("shadings"),
             pictures: folder.join("pictures"),
             memory: None,
             ..default()

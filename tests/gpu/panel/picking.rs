@@ -188,7 +188,7 @@ fn save(window: &impl Session) {
     window.until("the file", |state| {
         state["widgets"]["shading.saved"].is_array()
     });
-    let path = window.folder().join("looks").join("glaze.toon.ron");
+    let path = window.folder().join("shadings").join("glaze.toon.ron");
     let text = fs::read_to_string(path).expect("saved");
     let saved = ToonShading::from_ron(&text).expect("it reads");
     let now = light(&window.state()).expect("a light");

@@ -14,7 +14,7 @@ pub trait Session {
     /// Physical pixels per logical pixel.
     fn scale(&self) -> f64;
 
-    /// The folder of the session, with the folders `styles`, `looks` and `pictures`.
+    /// The folder of the session, with the folders `styles`, `shadings` and `pictures`.
     fn folder(&self) -> &Path;
 
     fn state(&self) -> Value;
