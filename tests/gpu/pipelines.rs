@@ -60,6 +60,8 @@ fn set(value: &mut dyn Struct, path: &[&str], number: f64) -> bool {
         *slot = number as f32;
     } else if let Some(slot) = field.try_downcast_mut::<Option<f32>>() {
         *slot = Some(number as f32);
+    } else if let Some(slot) = field.try_downcast_mut::<Vec2>() {
+        *slot = Vec2::splat(number as f32);
     } else if let Some(slot) = field.try_downcast_mut::<u32>() {
         *slot = number as u32;
     } else {
