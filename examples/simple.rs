@@ -13,8 +13,7 @@ fn main() {
 fn setup(mut commands: Commands, assets: Res<AssetServer>) {
     let from = |x, y, z| Transform::from_xyz(x, y, z).looking_at(Vec3::ZERO, Vec3::Y);
     let eye = from(0.0, 12.0, 10.0);
-    let style = Comic(assets.load(presets::SATURDAY_MORNING.path()));
-    commands.spawn((Camera3d::default(), eye, style));
+    commands.spawn((Camera3d::default(), eye, Outlines::default()));
 
     let sun = DirectionalLight {
         shadow_maps_enabled: true,

@@ -103,7 +103,7 @@ fn any_number_of_a_material_is_clamped() {
         assert_eq!(key, ToonKey::from(&used), "{light:?}");
         assert!(definitions.len() < 40, "{definitions:?}");
         text.clear();
-        write!(text, "{uniform:?} {strokes:?}").expect("written");
+        write!(text, "{uniform:?} {strokes:?}").expect("a String can always be written to");
         let is_finite = !text.contains("NaN") && !text.contains("inf");
         assert!(is_finite, "{light:?}: {text}");
     }

@@ -62,7 +62,7 @@ impl HatchKey {
         })
     }
 
-    /// Whether the vertex shader hands on the place of a vertex at rest.
+    /// Whether the vertex shader outputs the position of a vertex at rest.
     /// `others`: the definitions of the mesh and the view.
     pub(super) fn needs_rest(self, others: &[ShaderDefVal]) -> bool {
         match self {

@@ -249,7 +249,7 @@ fn view_z_of(world_position: vec4<f32>) -> f32 {
     ), world_position);
 }
 
-// What the vertex shader hands on beside the engine's `VertexOutput`, see vertex.wgsl.
+// Outputs of the vertex shader besides `VertexOutput` of the engine, see vertex.wgsl.
 struct MoreInput {
     @builtin(front_facing) is_front: bool,
 #ifdef HATCH_REST

@@ -111,7 +111,7 @@ impl ToonKey {
         self.proxy == Some(ProxyKey::Smoothed)
     }
 
-    /// What the vertex shader hands on beside what the engine's does. `smoothed`: normals of the
+    /// Outputs of the vertex shader besides those of the engine's. `smoothed`: normals of the
     /// mesh are smoothed.
     pub(super) fn vertex_definitions(
         self,

@@ -1,4 +1,4 @@
-//! The vertex shader of materials that need more from vertices than the engine hands on.
+//! The vertex shader of materials that need more outputs than the engine's.
 
 use bevy::{
     asset::{Handle, uuid_handle},

@@ -1,4 +1,4 @@
-// The engine's vertex shader of meshes (bevy_pbr/src/render/mesh.wgsl), which hands on more: where a
+// The engine's vertex shader of meshes (bevy_pbr/src/render/mesh.wgsl), with more outputs: where a
 // vertex was before morphing and skinning, for strokes on surfaces; its normal on a simpler form; the
 // visible range of the view.
 

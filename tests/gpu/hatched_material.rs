@@ -1,4 +1,4 @@
-//! Strokes on the toon material: `hatch_light.wgsl`, and `vertex.wgsl`, which hands on the mesh at rest.
+//! Strokes on the toon material: `hatch_light.wgsl`, and `vertex.wgsl`, which outputs positions of the mesh at rest.
 
 use bevy::{
     camera::Hdr,

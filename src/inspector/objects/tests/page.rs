@@ -30,11 +30,11 @@ fn a_standard_material_becomes_a_toon_material_and_back() {
     let mut page = Page::new();
     page.world.init_resource::<Assets<ToonMaterial>>();
     let [red, other] = [standard(&mut page), standard(&mut page)];
-    let [mesh, reference, stranger] = [&red, &red, &other]
+    let [mesh, other_mesh, other_material] = [&red, &red, &other]
         .map(|material| page.world.spawn(MeshMaterial3d(material.clone())).id());
     page.pick(mesh);
     page.click("light.convert");
-    for mesh in [mesh, reference] {
+    for mesh in [mesh, other_mesh] {
         let material = toon(&page, mesh).expect("a toon material");
         assert_eq!(material.base.base_color, Color::srgb(0.9, 0.1, 0.2));
         assert_eq!(material.extension, ToonLight::default());
@@ -45,13 +45,13 @@ fn a_standard_material_becomes_a_toon_material_and_back() {
                 .contains::<MeshMaterial3d<StandardMaterial>>()
         );
     }
-    assert!(toon(&page, stranger).is_none());
+    assert!(toon(&page, other_material).is_none());
     assert!(page.has("light.shadow_threshold"), "and can be edited");
     page.drag("light.shadow_threshold", 0.1, 0.5);
-    let edited = toon(&page, reference).expect("shared").extension.clone();
+    let edited = toon(&page, other_mesh).expect("shared").extension.clone();
     assert!(edited.shadow_threshold > 0.2);
     assert!(page.take(Way::Undo) && page.take(Way::Undo));
-    for mesh in [mesh, reference] {
+    for mesh in [mesh, other_mesh] {
         let material = page.world.get::<MeshMaterial3d<StandardMaterial>>(mesh);
         assert_eq!(material.map(|material| &material.0), Some(&red));
         assert!(toon(&page, mesh).is_none());
