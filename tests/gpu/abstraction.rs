@@ -1,13 +1,9 @@
 //! The dial of abstraction in whole views.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    Abstraction, ComicStyle, DepthMap, DepthMapping, OutlineGroup, Outlines, ToneBands,
-    effects::Granularity, lines::Silhouettes, objects::ObjectAbstraction,
-};
-use bevy_comics_testkit::{studio::with_map, work::along_cracks};
+use bevy_comics::objects::ObjectAbstraction;
+use bevy_comics_testkit::work::along_cracks;
 
-use crate::small::{Small, options};
+use crate::prelude::*;
 
 /// Depth from 1 to 101 units.
 fn hundred(flip: bool) -> DepthMap {

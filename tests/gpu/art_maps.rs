@@ -1,17 +1,13 @@
 //! Strokes of tonal art maps on the toon material: `art_map.wgsl`, `stroke_level.wgsl`.
 
-use bevy::{
-    asset::RenderAssetUsages,
-    prelude::*,
-    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
-};
-use bevy_comics::{Hatching, ToonLight, toon::TonalArtMap};
+use bevy_comics::toon::TonalArtMap;
 
 use crate::{
-    hatched_material::{SIZE, assert_same, covers, differ, frames, light_from, mean, plain},
-    hatched_material::{seen_from, studio, tone},
+    hatched_material::{
+        SIZE, assert_same, covers, differ, frames, light_from, mean, plain, seen_from, studio, tone,
+    },
+    prelude::*,
     ramp::{put, room, set_light},
-    small::Small,
 };
 
 fn image(small: &mut Small, image: Image) -> Handle<Image> {

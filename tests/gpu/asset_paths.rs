@@ -1,16 +1,15 @@
 //! Untrusted files name no file outside the folder of assets.
 
-use std::{collections::BTreeSet, fs};
+use std::fs;
 
 use bevy::{
     asset::LoadState,
     ecs::message::MessageCursor,
-    prelude::*,
-    reflect::{NamedField, TypeInfo, Typed, UnnamedField, enums::VariantInfo},
+    reflect::{NamedField, Typed, UnnamedField, enums::VariantInfo},
 };
-use bevy_comics::{DepthMap, ToonLight, effect::EffectRegistry, toon::ToonShading};
 
 use crate::{
+    prelude::*,
     styles::Folder,
     toon_shading::{load, messages, wait, watching},
 };

@@ -1,26 +1,14 @@
 //! Transitions between styles: numbers, pictures, time.
 
-use std::time::Duration;
-
-use bevy::{asset::Assets, prelude::*, render::view::Msaa};
+use bevy::asset::Assets;
 use bevy_comics::{
-    Colorization, Comic, ComicStyle, ComicsDiagnostics, Contours, DepthMap, Desaturation, Sketch,
     StyleTransition,
-    diagnostics::ComicsStage,
-    effect::EffectRegistry,
-    presets,
     style::{StyleTransitionFinished, TransitionEasing},
 };
 use image::RgbaImage;
 use proptest::{prelude::ProptestConfig, test_runner::TestRunner};
 
-use bevy_comics_testkit::headless::HeadlessOptions;
-
-use crate::{
-    failures::prepasses::still,
-    small::{Small, options, size},
-    styles::styles,
-};
+use crate::{failures::prepasses::still, prelude::*, styles::styles};
 
 fn preset(name: &str) -> ComicStyle {
     let mut style = presets::find(name).expect(name).style();

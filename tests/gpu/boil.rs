@@ -1,14 +1,8 @@
 //! Lines that are drawn again several times a second.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    ComicStyle, Outlines,
-    lines::{LineBoil, LineWeight},
-};
-
 use crate::{
     pictures::{assert_pass_matches_the_reference, outlined},
-    small::{Small, black_ink, linear},
+    prelude::*,
     walls::{towards_the_sky, wall},
 };
 

@@ -1,18 +1,18 @@
 //! The borders between near, middle and far: the search against all pairs, and their motion.
 
-use std::sync::OnceLock;
-
 use bevy_comics_testkit::{
     device::gpu,
     reference::{
         borders::{Borders, Counted},
         histogram::{BINS, Bins},
     },
-    scenes::noise::Random,
     wgsl,
 };
 
-use crate::smoothing::{HOLD, SNAP};
+use crate::{
+    prelude::*,
+    smoothing::{HOLD, SNAP},
+};
 
 const ORTHOGRAPHIC: u32 = 1;
 

@@ -1,15 +1,10 @@
 //! Gaps in lines: closed up to the length that is asked for, and no further.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    ComicStyle, KeyLight, Outlines,
-    lines::{LineColor, LineWeight, Silhouettes},
-};
 use bevy_comics_testkit::truth::fragments;
 
 use crate::{
     pictures::{assert_pass_matches_the_reference, outlined},
-    small::{Object, Small, linear, unlit},
+    prelude::*,
     walls::{towards_the_sky, towards_the_sky_again, wall},
 };
 

@@ -2,18 +2,9 @@
 //! found and drawn by fragment shaders: slower, neither linked nor smooth, without weight, boil, fog and
 //! budget, but otherwise the same. The range is still found by compute shaders.
 
-use bevy::{
-    prelude::*,
-    render::{error_handler::RenderErrorHandler, view::Msaa},
-};
-use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, ComicsPlugin, Contours, Outlines, Sketch,
-    diagnostics::{ComicsStage, SkipReason, StageOutcome},
-    lines::LineWeight,
-};
-use bevy_comics_testkit::{
-    device::gpu, headless::HeadlessOptions, scenes::BuiltIn, studio::Studio, work::along_cracks,
-};
+use bevy_comics_testkit::{device::gpu, work::along_cracks};
+
+use crate::prelude::*;
 
 /// No multiple of the widths and heights of blocks, cells and tiles.
 const SIZE: UVec2 = UVec2::new(157, 91);

@@ -1,18 +1,17 @@
 //! Examples on the command line: their output files and their errors.
 
 use std::{
-    collections::{BTreeMap, BTreeSet},
     env,
     ffi::OsStr,
     fs,
-    path::{Path, PathBuf},
-    process::{Command, Output},
-    sync::{Arc, Mutex, PoisonError},
+    process::Output,
+    sync::{Arc, PoisonError},
 };
 
+use bevy_comics_testkit::reference::range;
 use serde_json::Value;
 
-use bevy_comics_testkit::reference::range;
+use crate::prelude::*;
 
 /// Builds an example with the profile of this test, in its target folder; nothing is compiled there if
 /// it was built with the tests. Returns what cargo says about the example and all that is linked into it.

@@ -1,14 +1,6 @@
 //! The cracks of a view against their reference, bit by bit: where they are, which of them are
 //! parts of lines, and what is stored of each.
 
-use std::collections::{HashMap, HashSet};
-
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    Outlines,
-    depth::VisibleDepthRange,
-    lines::{LineResponse, LineWeight},
-};
 use bevy_comics_testkit::{
     read_back::CrackWords,
     reference::{
@@ -18,13 +10,12 @@ use bevy_comics_testkit::{
         planes::column_word,
         resolve::Resolved,
     },
-    specimens::Specimen,
 };
 
 use crate::{
     line_quality::{show, turn},
     pictures::{outlined, view_of},
-    small::Small,
+    prelude::*,
 };
 
 /// Neither side is a multiple of the 32 pixels of a word, nor of the 4 of a block.

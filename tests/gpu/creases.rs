@@ -1,13 +1,7 @@
 //! Where creases lie: between pixels, where the two sides meet.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    ComicStyle, Outlines,
-    lines::{Creases, LineWeight},
-};
-
 use crate::{
-    small::{Small, black_ink, linear, unlit},
+    prelude::*,
     walls::{towards_the_sky, towards_the_sky_again, wall},
 };
 

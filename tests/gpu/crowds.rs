@@ -1,13 +1,9 @@
 //! Lines that crowd: how much of the picture they cover.
 
-use std::ops::Range;
-
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, Outlines};
 use bevy_comics_testkit::forest;
 
 use crate::{
-    small::{Object, Small, black_ink, unlit},
+    prelude::*,
     walls::{towards_the_sky, towards_the_sky_again, wall},
 };
 

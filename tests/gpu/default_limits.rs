@@ -1,25 +1,12 @@
 //! Everything at once within the default limits of WebGPU. They count the entries of bind group layouts,
 //! in use or not; `scripts/translate` counts what shaders use.
 
-use std::ops::Range;
-
-use bevy::{
-    asset::RenderAssetUsages,
-    core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass, NormalPrepass},
-    prelude::*,
-    render::{
-        render_resource::{Extent3d, TextureDimension, TextureFormat},
-        renderer::RenderDevice,
-        view::Msaa,
-    },
-};
-use bevy_comics::{Sketch, diagnostics::ComicsStage, objects::MeshSections, toon::TonalArtMap};
-use bevy_comics_testkit::headless::HeadlessOptions;
+use bevy_comics::toon::TonalArtMap;
 
 use crate::{
     pairwise::{compare::changed, effects::GROUPS},
+    prelude::*,
     sections::{none_has_sections, wait},
-    small::{Object, Small, options, size},
     toon, toon_shading,
 };
 

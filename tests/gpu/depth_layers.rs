@@ -1,18 +1,8 @@
 //! Near, middle and far in whole views.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    CameraCut, ComicStyle, DepthLayers, DepthMap, DepthMapping, Halftone, Hatching, Outlines,
-    depth::DepthHistogram,
-    diagnostics::DebugView,
-    effects::{
-        Granularity, HalftoneMode, HatchingAnchor, HatchingGround, LayerBorders, ScreenSampling,
-    },
-};
+use bevy_comics_testkit::{reference::color, work::along_cracks};
 
-use bevy_comics_testkit::{reference::color, studio::with_map, work::along_cracks};
-
-use crate::small::Small;
+use crate::prelude::*;
 
 /// What the debug view shows of near, middle and far, in codes.
 const SHOWN: [[u8; 3]; 3] = [[203, 69, 39], [231, 203, 89], [48, 108, 188]];
@@ -97,7 +87,7 @@ fn an_orthographic_view_has_three_layers() {
     small.insert((
         DebugView::Effect("depth_layers"),
         Projection::Orthographic(OrthographicProjection {
-            scaling_mode: bevy::camera::ScalingMode::FixedVertical {
+            scaling_mode: ScalingMode::FixedVertical {
                 viewport_height: 2.0 * 2.0 * 0.414_213_57,
             },
             near: 0.0,

@@ -1,12 +1,9 @@
 //! Lines along diagonal runs of cracks, where cracks to the east and to the south take turns.
 
-use bevy::prelude::*;
-use bevy_comics::Outlines;
-
 use crate::{
     outlines::put,
     pictures::{assert_pass_matches_the_reference, outlined},
-    small::Small,
+    prelude::*,
     walls::towards_the_sky,
 };
 

@@ -3,15 +3,7 @@
 //! `functions/`, extreme inputs of the range (denormal depth, odd sizes,
 //! viewports, samples) in `range.rs`.
 
-use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
-use bevy_comics::{
-    Colorization, ComicStyle, Contours, DepthMap, Desaturation, Outlines, ToneBands,
-    depth::VisibleDepthRange,
-    diagnostics::ComicsStage,
-    effects::{ColorizationMode, Equations},
-};
-
-use crate::small::{Small, unlit};
+use crate::prelude::*;
 
 /// An empty scene, seen from the origin.
 fn bare(size: UVec2) -> Small {

@@ -1,16 +1,9 @@
 //! `StyleWeight`, `SplitView`, debug views and the histogram, in pictures.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    ComicStyle, Contours, Desaturation, Outlines, Sketch, SplitView, StyleWeight, ToneBands,
-    depth::{DepthHistogram, VisibleDepthRange},
-    diagnostics::{ComicsStage, DebugView},
-};
+use bevy_comics_testkit::reference::color;
 use image::RgbaImage;
 
-use bevy_comics_testkit::reference::color;
-
-use crate::small::{Small, linear, size, with_option};
+use crate::prelude::*;
 
 fn styled() -> Small {
     let mut small = Small::new(size(), Msaa::Off);
@@ -92,7 +85,7 @@ fn is_grey(picture: &RgbaImage) -> bool {
     picture.pixels().all(|p| p[0] == p[1] && p[1] == p[2])
 }
 
-fn codes(picture: &RgbaImage) -> std::collections::BTreeSet<[u8; 3]> {
+fn codes(picture: &RgbaImage) -> BTreeSet<[u8; 3]> {
     picture.pixels().map(|p| [p[0], p[1], p[2]]).collect()
 }
 
@@ -228,7 +221,7 @@ fn the_histogram_counts_every_depth_once() {
     );
 
     // Also without smoothing, and in an empty view.
-    small.insert(bevy_comics::DepthMap {
+    small.insert(DepthMap {
         smoothing: None,
         ..default()
     });

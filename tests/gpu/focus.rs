@@ -1,17 +1,6 @@
 //! Focus in the picture of a camera.
 
-use bevy::{
-    camera::{Hdr, Viewport},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    ComicStyle, Desaturation, Focus, Outlines,
-    depth::VisibleDepthRange,
-    diagnostics::ComicsStage,
-    effect::EffectTarget,
-    effects::{FocusAt, FocusStyle},
-};
+use bevy_comics::effect::EffectTarget;
 use bevy_comics_testkit::reference::{
     Rgba,
     box_statistics::Sheet,
@@ -24,7 +13,7 @@ use half::f16;
 use crate::{
     halftone::covered,
     pictures::view_of,
-    small::{Small, linear, unlit},
+    prelude::*,
     walls::{towards_the_sky, unit_per_pixel},
 };
 

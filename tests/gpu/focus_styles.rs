@@ -1,11 +1,8 @@
 //! Focus by dots and by lines.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, Outlines, effects::FocusStyle, lines::Silhouettes};
-
 use crate::{
     focus::{at, figure, shot},
-    small::{Small, linear, unlit},
+    prelude::*,
 };
 
 const SIZE: UVec2 = UVec2::new(96, 96);

@@ -2,15 +2,13 @@
 
 use std::fmt::{Debug, Write};
 
-use bevy::ecs::world::{CommandQueue, World};
-use bevy::prelude::Commands;
-use bevy_comics::{
-    ComicStyle, ToonLight,
-    effect::EffectContext,
-    presets,
-    toon::{RampMap, ToonShading},
+use bevy::{
+    ecs::world::{CommandQueue, World},
+    prelude::Commands,
 };
 use bevy_comics_testkit::fuzz::{Counting, Texts, cases, check};
+
+use crate::prelude::*;
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;

@@ -3,16 +3,10 @@
 //! `rounding` are copied by hand from the pictures that a failing test leaves in
 //! the target folder.
 
-use std::path::{Path, PathBuf};
-
-use bevy::{math::UVec2, render::view::Msaa};
-use bevy_comics::{Contours, presets};
+use bevy_comics_testkit::studio::{golden_styles, hatched_theatre};
 use nv_flip::{FlipImageRgb8, FlipPool};
 
-use bevy_comics_testkit::{
-    scenes::BuiltIn,
-    studio::{Studio, golden_styles, hatched_theatre},
-};
+use crate::prelude::*;
 
 fn flip_mean(reference: &image::RgbaImage, picture: &image::RgbaImage) -> f32 {
     let rgb = |p: &image::RgbaImage| -> FlipImageRgb8 {

@@ -1,15 +1,14 @@
 //! Meshes that are one object: `OutlineGroup`, and the primitives of a glTF node.
 
-use std::{fs, path::Path, time::Duration};
+use std::fs;
 
-use bevy::{prelude::*, render::view::Msaa, world_serialization::WorldAssetRoot};
-use bevy_comics::{OutlineGroup, OutlineStyle, Outlines, testing::object_id};
+use bevy::world_serialization::WorldAssetRoot;
 use serde_json::json;
 
 use crate::{
     ids::{cube, material, put_two_cubes, seam, skinned_and_morphed, total, two_cubes},
     outlines::ink,
-    small::{Object, Small, options},
+    prelude::*,
 };
 
 /// The width of the pictures.
@@ -149,7 +148,7 @@ fn silhouettes_and_styles_inside_a_group_remain() {
     });
     ink(&mut small, silhouettes);
     let (_, output) = small.pass();
-    let red = |columns: std::ops::Range<usize>| {
+    let red = |columns: Range<usize>| {
         let pixels = output.pixels.iter().enumerate();
         let red = pixels.filter(|(_, p)| p[0] > 0.9 && p[1] < 0.05);
         red.filter(|(i, _)| columns.contains(&(i % WIDTH))).count()

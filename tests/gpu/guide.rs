@@ -1,14 +1,10 @@
 //! The README and the pages of `docs/` are correct.
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::fs;
 
-use bevy::render::view::Msaa;
-use bevy_comics::{ComicStyle, style::ComicStyleError};
+use bevy_comics::style::ComicStyleError;
 
-use crate::small::{Small, size};
+use crate::prelude::*;
 
 /// A page of `docs/`.
 pub fn page(name: &str) -> String {

@@ -1,36 +1,18 @@
 //! Halftone: mean tones, moire, continuity, and pictures against the reference.
 
-use bevy::{
-    anti_alias::{
-        contrast_adaptive_sharpening::ContrastAdaptiveSharpening, fxaa::Fxaa, smaa::Smaa,
-    },
-    camera::{Hdr, Viewport},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    ComicStyle, DepthMap, DepthMapping, Halftone, Outlines, Paper, ToneBands,
-    diagnostics::ComicsStage,
-    effects::{HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape},
-    lines::Silhouettes,
-};
+use bevy::anti_alias::contrast_adaptive_sharpening::ContrastAdaptiveSharpening;
 use bevy_comics_testkit::{
-    headless::HeadlessOptions,
     reference::{
         color,
         halftone::{Plate, inked, plate_tones},
     },
     screens::{
-        PERIODS, SHAPES, color_error, colors, grey_inks, ideal, in_phase, largest_jump, mean,
-        moire, moire_of_inks, tone_error,
+        PERIODS, color_error, colors, grey_inks, ideal, in_phase, largest_jump, mean, moire,
+        moire_of_inks, tone_error,
     },
-    studio::with_map,
 };
 
-use crate::{
-    pictures::assert_pass_matches_the_reference,
-    small::{Small, linear, options},
-};
+use crate::{pictures::assert_pass_matches_the_reference, prelude::*};
 
 fn ideal_spot(shape: ScreenShape, period: f32) -> Halftone {
     Halftone {

@@ -1,27 +1,12 @@
 //! Strokes on the toon material: `hatch_light.wgsl`, and `vertex.wgsl`, which outputs positions of the mesh at rest.
 
-use bevy::{
-    camera::Hdr,
-    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
-    light::DirectionalLightShadowMap,
-    mesh::{
-        VertexAttributeValues,
-        morph::{MeshMorphWeights, MorphAttributes, MorphWeights},
-        skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
-    },
-    prelude::*,
-};
-use bevy_comics::{
-    ComicStyle, Hatching, ToonLight, Vignette,
-    effects::{HatchingAnchor, HatchingGround},
-    toon::{Ramp, RampMode, RampStop},
-};
+use bevy::{light::DirectionalLightShadowMap, mesh::morph::MorphAttributes};
 use bevy_comics_testkit::reference::hatching::Hatch;
 use image::RgbaImage;
 
 use crate::{
+    prelude::*,
     ramp::{apart, bright, drawn, full, put, room, set_light, sun},
-    small::{Object, Small, linear},
 };
 
 pub const SIZE: UVec2 = UVec2::new(160, 160);
@@ -344,7 +329,7 @@ fn cast_shadows_are_hatched() {
         above,
     );
     let found = covers(&mut small);
-    let rows = |rows: std::ops::Range<u32>| {
+    let rows = |rows: Range<u32>| {
         let range = (rows.start * SIZE.x) as usize..(rows.end * SIZE.x) as usize;
         mean(&found[range])
     };

@@ -1,22 +1,11 @@
 //! Strokes that lie on things.
 
-use bevy::{
-    core_pipeline::tonemapping::Tonemapping,
-    math::{DVec2, DVec3},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    Abstraction, ComicStyle, Hatching,
-    effects::{HatchingAnchor, HatchingGround},
-    objects::PatternAnchor,
-};
 use bevy_comics_testkit::reference::{
     color,
     hatching::{Hatch, Surface},
 };
 
-use crate::small::{Object, Small, options, unlit};
+use crate::prelude::*;
 
 pub const SIZE: UVec2 = UVec2::new(160, 120);
 /// Walls that are turned by up to 60 degrees fill the view.
@@ -310,7 +299,7 @@ fn strokes_keep_their_width_through_an_octave() {
     // Strokes are slanted on the wall: a row cuts them at that slant.
     let across = s.axes()[0].truncate().as_dvec2().normalize().x.abs();
     let want = 2.0 * f64::from(s.spacing) * tone / across;
-    let mut grown = std::collections::BTreeSet::new();
+    let mut grown = BTreeSet::new();
     covers(&mut small, s);
     for zoom in 0..32u8 {
         let distance = 10.0 * (f32::from(zoom) / 32.0).exp2();

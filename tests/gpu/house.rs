@@ -1,12 +1,11 @@
 //! The layout of the crate: which module imports which.
 
-use std::{
-    collections::{BTreeMap, BTreeSet},
-    fs,
-    path::{Path, PathBuf},
-};
+use std::fs;
 
-use crate::support::{assert_is_test, file_of};
+use crate::{
+    prelude::*,
+    support::{assert_is_test, file_of},
+};
 
 fn source() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")

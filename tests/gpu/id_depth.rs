@@ -3,24 +3,10 @@
 //! No such device is at hand, so the engine's vertex shader is changed: it multiplies depth by a
 //! factor, in the pass of ids only. That pass is the one without normals.
 
-use bevy::{
-    asset::RenderAssetUsages,
-    prelude::*,
-    render::{
-        render_resource::{Extent3d, TextureDimension, TextureFormat},
-        view::Msaa,
-    },
-    shader::{Shader, Source},
-};
-use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, NoOutlines, Outlines,
-    diagnostics::{ComicsStage, StageOutcome},
-    objects::{DepthWrite, ObjectIdDepthTest},
-    testing::object_id,
-};
-use bevy_comics_testkit::read_back::IdImage;
+use bevy::shader::{Shader, Source};
+use bevy_comics::objects::ObjectIdDepthTest;
 
-use crate::small::{Small, options, unlit};
+use crate::prelude::*;
 
 /// Eight to seventeen steps of single-precision numbers, to both sides.
 const NUDGES: [f32; 2] = [1.000_001, 0.999_999];

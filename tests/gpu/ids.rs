@@ -1,24 +1,9 @@
 //! Object ids, and objects with lines of their own or none.
 
-use bevy::{
-    camera::primitives::MeshAabb,
-    mesh::{
-        VertexAttributeValues,
-        morph::{MeshMorphWeights, MorphWeights},
-        skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
-    },
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    NoOutlines, OutlineStyle, Outlines, lines::ObjectEdges, objects::OutlineKinds,
-    testing::object_id,
-};
+use bevy::camera::primitives::MeshAabb;
+use bevy_comics::objects::OutlineKinds;
 
-use crate::{
-    outlines::ink,
-    small::{Object, Small, unlit},
-};
+use crate::{outlines::ink, prelude::*};
 
 pub fn material(
     small: &mut Small,
@@ -76,7 +61,7 @@ pub fn seam(ink: &[f32]) -> f32 {
         .fold(1.0, f32::min)
 }
 
-pub fn total(ink: &[f32], columns: std::ops::Range<usize>) -> f32 {
+pub fn total(ink: &[f32], columns: Range<usize>) -> f32 {
     (0..60)
         .flat_map(|y| columns.clone().map(move |x| (x, y)))
         .map(|(x, y)| at(ink, x, y))

@@ -1,13 +1,9 @@
 //! Impact frames: what they show, for how long, and how often.
 
-use bevy::{camera::RenderTarget, prelude::*, render::view::Msaa};
-use bevy_comics::{
-    ComicsDiagnostics, Impact, Outlines, ReduceFlashing, SpeedLines, StyleWeight, TwoTone,
-    diagnostics::ImpactCounts,
-};
+use bevy_comics::{Impact, ReduceFlashing, diagnostics::ImpactCounts};
 use image::RgbaImage;
 
-use crate::small::{Small, linear};
+use crate::prelude::*;
 
 fn small() -> Small {
     let mut small = Small::new(UVec2::new(64, 44), Msaa::Off);

@@ -1,17 +1,11 @@
 //! Lines and dots on rough paper.
 
-use bevy::{camera::Viewport, prelude::*, render::view::Msaa};
-use bevy_comics::{
-    ComicStyle, Halftone, Outlines, Paper, Sketch, Vignette,
-    effects::{HalftoneMode, ScreenShape},
-    lines::LineBoil,
-};
-use bevy_comics_testkit::screens::{SHAPES, ideal};
+use bevy_comics_testkit::screens::ideal;
 
 use crate::{
     halftone::fill,
     pictures::{assert_pass_matches_the_reference, outlined},
-    small::{Small, black_ink, linear},
+    prelude::*,
     walls::{towards_the_sky, wall},
 };
 
@@ -348,7 +342,7 @@ fn extreme_inks_on_paper_are_finite() {
         (plain(9.0, 9.0), [2.0, 1.0]),
         (plain(-1.0, -1.0), [0.0, 0.0]),
     ] {
-        let used = bevy_comics::Effect::sanitized(paper);
+        let used = Effect::sanitized(paper);
         assert_eq!([used.ink_bleed, used.dry_brush], want);
     }
 }

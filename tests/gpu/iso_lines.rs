@@ -1,10 +1,9 @@
 //! Where lines of equal depth, height and distance lie.
 
-use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, IsoLines, effects::IsoField};
+use bevy_comics::effects::IsoField;
 
 use crate::{
-    small::{Small, black_ink, linear, unlit},
+    prelude::*,
     walls::{towards_the_sky, wall},
 };
 

@@ -1,16 +1,11 @@
 //! Lines under temporal anti-aliasing: the engine moves depth by a part of a pixel in
 //! every frame, and the lines stay at the edges that they belong to.
 
-use bevy::{
-    anti_alias::taa::TemporalAntiAliasing,
-    prelude::*,
-    render::{camera::TemporalJitter, view::Msaa},
-};
-use bevy_comics::Outlines;
+use bevy::render::camera::TemporalJitter;
 
 use crate::{
     outlines::{ink, put, removed},
-    small::Small,
+    prelude::*,
     upscaled::override_main_pass,
 };
 

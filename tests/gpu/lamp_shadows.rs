@@ -1,9 +1,9 @@
 //! Shadows of lamps: their borders against rays, and the engine's own shadows.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ToonLight, ToonMaterial, testing::object_id};
-
-use crate::toon::{HIGH, Kind, LOW, SIZE, Stage, blocked, ground_point_at, material, stage};
+use crate::{
+    prelude::*,
+    toon::{HIGH, Kind, LOW, SIZE, Stage, blocked, ground_point_at, material, stage},
+};
 
 fn lights() -> [(&'static str, Kind); 3] {
     let to = Vec3::new(0.3, 0.0, -0.2);

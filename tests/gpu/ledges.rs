@@ -1,12 +1,9 @@
 //! Faces that are seen so obliquely that they are thinner than a pixel: the creases along them
 //! are whole lines.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::Outlines;
-
 use crate::{
     outlines::{ink, put, removed},
-    small::Small,
+    prelude::*,
     walls::unit_per_pixel,
 };
 

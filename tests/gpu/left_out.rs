@@ -1,15 +1,6 @@
 //! What a view does not need does not run: passes, prepasses, range, effects.
 
-use bevy::{core_pipeline::prepass::DepthPrepass, prelude::*, render::view::Msaa};
-use bevy_comics::{
-    BlackFlats, Colorization, ComicsDiagnostics, Contours, DepthMap, DepthMapping, Desaturation,
-    Outlines, Sketch, ToneBands,
-    depth::VisibleDepthRange,
-    diagnostics::{ComicsStage, SkipReason, StageOutcome},
-    effects::ColorizationMode,
-};
-
-use crate::small::{Small, size};
+use crate::prelude::*;
 
 fn small() -> Small {
     Small::new(size(), Msaa::Off)
@@ -297,10 +288,7 @@ fn the_game_can_ask_for_the_range_alone() {
 #[test]
 fn both_passes_have_time_spans_in_the_engines_diagnostics() {
     use bevy::{diagnostic::DiagnosticsStore, render::diagnostic::RenderDiagnosticsPlugin};
-    let mut headless = bevy_comics_testkit::headless::Headless::new(
-        crate::small::options(size()),
-        (bevy_comics::ComicsPlugin, RenderDiagnosticsPlugin),
-    );
+    let mut headless = Headless::new(options(size()), (ComicsPlugin, RenderDiagnosticsPlugin));
     let target = headless.render_target();
     let camera = crate::small::camera(target, Msaa::Off);
     headless

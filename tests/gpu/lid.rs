@@ -1,20 +1,13 @@
 //! The teapot's lid has layers that lie close: the sides of its pixels where the geometry ends
 //! have a line.
 
-use std::collections::HashSet;
-
-use bevy::{
-    math::{DVec2, DVec3},
-    prelude::*,
-    render::{RenderApp, sync_world::RenderEntity, view::Msaa},
-};
-use bevy_comics::{ComicStyle, Outlines};
 use bevy_comics_testkit::{
     read_back,
     reference::planes::column_word,
-    scenes::{BuiltIn, Vantage, teapot},
-    studio::Studio,
+    scenes::{Vantage, teapot},
 };
+
+use crate::prelude::*;
 
 /// The size of figure 10 of the documents.
 const SIZE: UVec2 = UVec2::new(800, 450);
@@ -23,7 +16,7 @@ const STEPS: u32 = 12;
 /// Vertices of a patch.
 const VERTICES: usize = (STEPS as usize + 1) * (STEPS as usize + 1);
 /// The patches of the knob and the lid.
-const LID: std::ops::Range<usize> = 16..24;
+const LID: Range<usize> = 16..24;
 /// A jump of this fraction of the distance is a silhouette of full ink, by default.
 const JUMP: f64 = 0.02;
 

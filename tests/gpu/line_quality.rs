@@ -4,22 +4,14 @@
 
 use std::f32::consts::TAU;
 
-use bevy::{
-    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
-    prelude::*,
-    render::{sync_world::RenderEntity, view::Msaa},
-};
-use bevy_comics::{ComicStyle, Outlines};
 use bevy_comics_testkit::{
-    read_back::FloatImage,
     reference::color::srgb_encode,
-    specimens::Specimen,
-    truth::{FINE, Truth, fragments, ids_alone, line_ends, mask},
+    truth::{Truth, fragments, ids_alone, line_ends, mask},
 };
 
 use crate::{
     outlines::{look, put, removed},
-    small::Small,
+    prelude::*,
 };
 
 const SIZE: UVec2 = UVec2::new(120, 68);

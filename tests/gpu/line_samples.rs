@@ -1,19 +1,11 @@
 //! Lines of multisampled views: the sample of a pixel that they read.
 
-use bevy::{camera::Viewport, prelude::*, render::view::Msaa};
-use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, Outlines,
-    diagnostics::{ComicsStage, SkipReason, StageOutcome},
-    effects::Equations,
-    lines::Silhouettes,
-};
-
 use bevy_comics_testkit::reference::resolve::STANDARD_4;
 
 use crate::{
     outlines::{ink, look, put, removed},
     pictures::{assert_pass_matches_the_reference, outlined},
-    small::{Small, size},
+    prelude::*,
     walls::unit_per_pixel,
 };
 
@@ -176,7 +168,7 @@ fn samples_are_picked_only_for_lines_of_multisampled_views() {
         diagnostics.cameras[&small.camera].outcome(ComicsStage::ResolveSamples)
     };
     let lines = outlined(Outlines::default());
-    let contours = ComicStyle::default().with(bevy_comics::Contours::default());
+    let contours = ComicStyle::default().with(Contours::default());
     let left_out = |reason| Some(StageOutcome::Skipped(reason));
     let mut small = Small::new(size(), Msaa::Sample4);
     assert_eq!(outcome(&mut small, &lines), Some(StageOutcome::Ran));

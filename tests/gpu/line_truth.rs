@@ -1,21 +1,10 @@
 //! Whether lines are where the geometry says, and as wide as asked.
 
-use bevy::{
-    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
-    prelude::*,
-    render::{RenderApp, sync_world::RenderEntity, view::Msaa},
-};
-use bevy_comics::{ComicStyle, ComicsPlugin, OutlineStyle, Outlines, lines::Silhouettes};
-use bevy_comics_testkit::{
-    headless::HeadlessOptions,
-    scenes::BuiltIn,
-    studio::Studio,
-    truth::{FINE, Truth, ids_alone, line_ends, mask},
-};
+use bevy_comics_testkit::truth::{Truth, ids_alone, line_ends, mask};
 
 use crate::{
     outlines::{ink, look, put, removed},
-    small::Small,
+    prelude::*,
     walls::{self, unit_per_pixel},
 };
 

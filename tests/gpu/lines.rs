@@ -1,11 +1,8 @@
 //! Where the default contours draw lines, and where they must not.
 
-use bevy::{camera::ScalingMode, prelude::*, render::view::Msaa};
-use bevy_comics::{Contours, DepthMap, DepthMapping, effects::ContourOperator};
-
 use bevy_comics_testkit::read_back::DepthImage;
 
-use crate::small::{Small, black_ink, unlit};
+use crate::prelude::*;
 
 const OPERATORS: [ContourOperator; 4] = [
     ContourOperator::Prewitt,
@@ -95,7 +92,7 @@ fn a_grazing_ground_to_the_horizon_has_one_line_the_skyline() {
                 false_lines.is_empty(),
                 "{operator:?} from {name}: {false_lines:?}"
             );
-            let columns: std::collections::HashSet<_> = inked.iter().map(|(x, _)| *x).collect();
+            let columns: HashSet<_> = inked.iter().map(|(x, _)| *x).collect();
             // Pixels at the border of the picture lack a neighbour.
             assert!(
                 columns.len() >= 196,

@@ -1,19 +1,10 @@
 //! What the passes that complete cracks load, counted in their shaders, and how often they
 //! run. A cell has 4 x 8 = 32 pixels, and a word of a plane 32 rows of a column.
 
-use std::collections::BTreeSet;
-
-use bevy::{
-    prelude::*,
-    render::{
-        render_resource::{PipelineCache, PipelineDescriptor},
-        view::Msaa,
-    },
-};
-use bevy_comics::{ComicStyle, Outlines};
+use bevy::render::render_resource::{PipelineCache, PipelineDescriptor};
 use bevy_comics_testkit::{link_work, work::along_cracks};
 
-use crate::small::{Small, options};
+use crate::prelude::*;
 
 const CELL: f64 = 32.0;
 /// Words that tell a pass of `link.wgsl` whether a cell has anything to continue: found

@@ -1,12 +1,5 @@
 //! Whether lines are whole: dashes of responses around the threshold, and specks.
 
-use std::collections::HashMap;
-
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    Outlines,
-    lines::{Creases, Silhouettes},
-};
 use bevy_comics_testkit::reference::{
     crack::Crack,
     link::{Place, linked, without_specks},
@@ -14,7 +7,7 @@ use bevy_comics_testkit::reference::{
 
 use crate::{
     pictures::{assert_pass_matches_the_reference, outlined},
-    small::Small,
+    prelude::*,
 };
 
 /// A crack with a response: certain from 1 on, and there at all from `level` on.

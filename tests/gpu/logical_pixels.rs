@@ -1,13 +1,10 @@
 //! At a scale factor of 2, in a picture of twice as many pixels, settings in logical pixels mean
 //! twice as many of them.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, Outlines};
-
 use crate::{
     outlines::{ink, put},
     overshoot,
-    small::Small,
+    prelude::*,
     walls::unit_per_pixel,
 };
 

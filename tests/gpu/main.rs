@@ -71,6 +71,7 @@ mod pictures;
 mod pipelines;
 mod plugin_order;
 mod pool;
+mod prelude;
 mod pressure;
 mod proxy;
 mod ramp;

@@ -1,14 +1,8 @@
 //! Outlines of selected objects, and of the hidden parts of others.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    ComicStyle, Desaturation, Outlines, SelectionOutline, XRayOutline, diagnostics::ComicsStage,
-};
+use bevy_comics::{SelectionOutline, XRayOutline};
 
-use crate::{
-    outlines::put,
-    small::{Small, linear},
-};
+use crate::{outlines::put, prelude::*};
 
 /// Width and height of the picture; a unit of the scene is a pixel at the distance `half`.
 const SIZE: u32 = 96;

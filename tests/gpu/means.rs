@@ -1,15 +1,9 @@
 //! Means over boxes, as an effect of a game reads them.
 
-use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
-use bevy_comics::{
-    Effect, EffectPlugin,
-    diagnostics::ComicsStage,
-    effect::{EffectContext, EffectShader, EffectStage, Needs},
-};
 use bevy_comics_testkit::reference::box_statistics::{Means, Sheet, part_of_box};
 use serde::{Deserialize, Serialize};
 
-use crate::small::{Small, options};
+use crate::prelude::*;
 
 /// Shows the means: their colours, or luminance, variance and coverage.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -1,11 +1,8 @@
 //! What lines remember under temporal anti-aliasing: they stand still, and leave no ghosts.
 
-use bevy::{anti_alias::taa::TemporalAntiAliasing, prelude::*, render::view::Msaa};
-use bevy_comics::{CameraCut, ComicStyle, Outlines};
-
 use crate::{
     outlines::{put, removed},
-    small::Small,
+    prelude::*,
 };
 
 /// Width and height of the picture in pixels; a unit of the scene is a pixel.
@@ -402,6 +399,6 @@ fn object_edges_are_drawn_under_temporal_anti_aliasing() {
     small.style(&ComicStyle::default().with(Outlines::default()));
     small.headless.step(30);
     assert!(total(&small) > 400.0, "{}", total(&small));
-    assert!(small.ran(bevy_comics::diagnostics::ComicsStage::ObjectIds));
+    assert!(small.ran(ComicsStage::ObjectIds));
     assert_eq!(small.errors(), 0);
 }

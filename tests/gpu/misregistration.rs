@@ -1,23 +1,8 @@
 //! Plates out of register.
 
-use bevy::{
-    camera::{Hdr, Viewport},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    CameraCut, ComicStyle, Desaturation, Halftone, Misregistration, Outlines, SplitView, ToneBands,
-    diagnostics::{ComicsStage, DebugView},
-    effects::ScreenSampling,
-};
-
 use bevy_comics_testkit::reference::misregistration::strays;
 
-use crate::{
-    halftone::covered,
-    pictures::assert_pass_matches_the_reference,
-    small::{Small, linear, unlit},
-};
+use crate::{halftone::covered, pictures::assert_pass_matches_the_reference, prelude::*};
 
 const STILL: Misregistration = Misregistration {
     cyan: Vec2::ZERO,

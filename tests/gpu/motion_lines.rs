@@ -1,14 +1,9 @@
 //! Lines behind what moves: where they are, how wide they are, and when there are none.
 
-use bevy::{
-    mesh::VertexAttributeValues,
-    prelude::*,
-    render::view::Msaa,
-    time::{TimeUpdateStrategy, Virtual},
-};
-use bevy_comics::{CameraCut, MotionLines, Outlines, SteppedAnimation, lines::ObjectEdges};
+use bevy::time::{TimeUpdateStrategy, Virtual};
+use bevy_comics::{MotionLines, SteppedAnimation};
 
-use crate::small::{Object, Small, black_ink, unlit};
+use crate::prelude::*;
 
 const SIZE: UVec2 = UVec2::new(160, 96);
 /// Half of the size of the box.
@@ -278,7 +273,7 @@ fn they_go_with_their_object() {
 fn the_frame_rate_does_not_matter() {
     let [slow, fast] = [30u32, 144].map(|rate| {
         let mut stage = Stage::new(lines());
-        let frame = std::time::Duration::from_secs_f64(1.0 / f64::from(rate));
+        let frame = Duration::from_secs_f64(1.0 / f64::from(rate));
         let app = &mut stage.small.headless.app;
         app.insert_resource(TimeUpdateStrategy::ManualDuration(frame));
         let begin = stage.seconds();

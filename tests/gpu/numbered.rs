@@ -1,14 +1,8 @@
 //! The picture with a number at every pixel, as an effect of a game reads it.
 
-use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
-use bevy_comics::{
-    Desaturation, Effect, EffectPlugin,
-    diagnostics::ComicsStage,
-    effect::{EffectContext, EffectShader, EffectStage, Needs},
-};
 use serde::{Deserialize, Serialize};
 
-use crate::small::{Small, options};
+use crate::prelude::*;
 
 /// Shows the number and the red of the pixel to the left, and its own green.
 #[derive(Component, Reflect, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -1,26 +1,14 @@
 //! Screens that follow objects.
 
-use bevy::{
-    camera::ScalingMode,
-    math::{DMat4, DQuat, DVec3},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    ComicStyle, Halftone,
-    diagnostics::ComicsStage,
-    effects::{HalftoneMode, ScreenAnchor, ScreenSampling, ScreenShape},
-    objects::PatternAnchor,
-};
 use bevy_comics_testkit::{
     reference::{
         halftone::{Plate, followed_cover},
         similarity::{Similarity, similarity_of},
     },
-    screens::{SHAPES, ideal},
+    screens::ideal,
 };
 
-use crate::small::{Small, linear, options, unlit};
+use crate::prelude::*;
 
 const SIZE: UVec2 = UVec2::new(120, 90);
 

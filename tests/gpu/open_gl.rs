@@ -1,25 +1,7 @@
 //! Pictures with OpenGL, beside those with Vulkan, and within the limits of WebGL 2.
 
-use std::process::Command;
-
-use bevy::{
-    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
-    light::cluster::GlobalClusterSettings,
-    math::UVec2,
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, ToonLight,
-    diagnostics::{ComicsStage, SkipReason, StageOutcome},
-    presets,
-    toon::{Rim, RimWidth},
-};
-use bevy_comics_testkit::{
-    headless::{HeadlessOptions, adapter_of},
-    scenes::BuiltIn,
-    studio::{Studio, golden_styles},
-};
+use bevy::light::cluster::GlobalClusterSettings;
+use bevy_comics_testkit::{headless::adapter_of, studio::golden_styles};
 use image::RgbaImage;
 
 use crate::{
@@ -28,8 +10,7 @@ use crate::{
         compare::changed,
         effects::{GROUPS, Group, LINES},
     },
-    small::{self, Small},
-    toon,
+    prelude::*,
 };
 
 /// The APIs that are compared.
@@ -122,7 +103,7 @@ fn small(backends: wgpu::Backends, limits: Option<wgpu::Limits>, msaa: Msaa) -> 
     let options = HeadlessOptions {
         backends,
         limits,
-        ..small::options(small::size())
+        ..options(size())
     };
     Small::alone(options, msaa)
 }

@@ -1,16 +1,9 @@
 //! Properties of outlines, measured on rendered scenes: independence of scale, no
 //! false lines, the width as set.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    ComicStyle, Outlines,
-    effects::Equations,
-    lines::{Creases, Silhouettes},
-};
+use bevy_comics_testkit::work::along_cracks;
 
-use bevy_comics_testkit::{read_back::IdImage, work::along_cracks};
-
-use crate::small::{Object, Small, unlit};
+use crate::prelude::*;
 
 /// Ink of every pixel: the fraction of its light that the pass removed.
 pub fn removed(small: &Small) -> Vec<f32> {
@@ -142,7 +135,7 @@ fn an_orthographic_view_has_the_same_outlines_at_any_scale() {
             Projection::Orthographic(OrthographicProjection {
                 near: 0.0,
                 far,
-                scaling_mode: bevy::camera::ScalingMode::FixedVertical {
+                scaling_mode: ScalingMode::FixedVertical {
                     viewport_height: 5.0 * scale,
                 },
                 ..OrthographicProjection::default_3d()

@@ -3,16 +3,11 @@
 //!
 //! Tests add their files to one crate, so that it is compiled and linked once for all of them.
 
-use std::{
-    env, fs,
-    path::{Path, PathBuf},
-    process::Command,
-    sync::{Once, OnceLock},
-};
+use std::{env, fs, sync::Once};
 
 use serde_json::Value;
 
-use crate::{command_line::build, fresh_crate, own_effect};
+use crate::{command_line::build, fresh_crate, own_effect, prelude::*};
 
 pub const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 

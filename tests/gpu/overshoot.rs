@@ -1,15 +1,9 @@
 //! Lines that go on beyond their loose ends.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    Outlines,
-    lines::{LineBoil, LineWeight, Silhouettes},
-};
-
 use crate::{
     outlines::{ink, put, removed},
     pictures::{assert_pass_matches_the_reference, outlined},
-    small::Small,
+    prelude::*,
     walls::{towards_the_sky, wall},
 };
 
@@ -275,7 +269,7 @@ fn strokes_match_the_reference() {
             ..LineWeight::EVEN
         },
         // Many edges that end.
-        creases: Some(bevy_comics::lines::Creases {
+        creases: Some(Creases {
             angle: 100.0,
             ..default()
         }),

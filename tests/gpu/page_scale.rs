@@ -8,27 +8,13 @@
 //! and down. A screenshot without the scale factor, whose dots are an eighth as large, is farther
 //! from the screen, by more than the rounding of the display.
 
-use bevy::{
-    asset::RenderAssetUsages,
-    image::{Image, ImageSampler},
-    prelude::*,
-    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
-};
-use bevy_comics::{
-    ComicStyle, Focus, Halftone, Misregistration, Outlines, Paint, Paper, SpeedLines,
-    effects::{
-        FocusAt, FocusStyle, HalftoneMode, PaintKernel, ScreenSampling, ScreenShape, SpeedLineKind,
-    },
-};
+use bevy::image::ImageSampler;
 use bevy_comics_testkit::{
     reference::{color, noise},
-    screens::{SHAPES, ideal},
+    screens::ideal,
 };
 
-use crate::{
-    small::{Small, unlit},
-    walls::towards_the_sky,
-};
+use crate::{prelude::*, walls::towards_the_sky};
 
 const SCREEN: UVec2 = UVec2::new(48, 32);
 /// A screen for lines across all of it.

@@ -1,16 +1,5 @@
 //! Paint in the picture of a camera.
 
-use bevy::{
-    camera::{Hdr, Viewport},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    ComicStyle, Desaturation, Halftone, Misregistration, Paint, ToneBands,
-    depth::VisibleDepthRange,
-    diagnostics::{ComicsStage, DebugView},
-    effects::{PaintKernel, ScreenSampling},
-};
 use bevy_comics_testkit::reference::{
     Rgba,
     box_statistics::Sheet,
@@ -24,7 +13,7 @@ use half::f16;
 use crate::{
     halftone::covered,
     pictures::view_of,
-    small::{Small, linear, unlit},
+    prelude::*,
     walls::{towards_the_sky, wall},
 };
 

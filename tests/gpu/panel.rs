@@ -8,18 +8,19 @@ mod picking;
 pub mod session;
 mod toolkit;
 
-use std::{collections::HashSet, fs};
-
-use bevy_comics::{Colorization, ComicStyle, Contours, Sketch};
-use bevy_comics_testkit::scenes::BuiltIn;
-use image::RgbImage;
-use serde_json::Value;
+use std::fs;
 
 use self::{
     hidden::{Drawn, HiddenWindow, Shown},
     session::Session,
 };
-use crate::window::{START, Window, changed};
+use image::RgbImage;
+use serde_json::Value;
+
+use crate::{
+    prelude::*,
+    window::{START, Window, changed},
+};
 
 /// Size of the window in pixels: 820 x 600 logical pixels. Small, because a CPU may
 /// draw it: what takes longest is the scene.

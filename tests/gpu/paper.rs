@@ -1,18 +1,11 @@
 //! Paper in the picture of a camera.
 
-use bevy::{
-    camera::{Hdr, Viewport},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    ComicStyle, Halftone, Outlines, Paper, diagnostics::ComicsStage, effects::PaperAnchor,
-};
+use bevy_comics::effects::PaperAnchor;
 use bevy_comics_testkit::reference::paper;
 use image::imageops;
 
 use crate::{
-    small::{Small, linear, size, unlit, with_option},
+    prelude::*,
     walls::{towards_the_sky, wall},
 };
 

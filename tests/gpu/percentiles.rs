@@ -1,20 +1,11 @@
 //! Percentiles of orthographic views: the bins against their reference, the percentiles
 //! against sorted depths.
 
-use bevy::{
-    camera::{OrthographicProjection, ScalingMode},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    CameraCut, Colorization, ComicStyle, DepthMap,
-    depth::{DepthHistogram, RangeSmoothing, VisibleDepthRange},
-};
-use bevy_comics_testkit::{reference::histogram::Bins, scenes::noise::Random, studio::with_map};
+use bevy_comics_testkit::reference::histogram::Bins;
 
 use crate::{
+    prelude::*,
     range::{SHAPES, reduce_and_count},
-    small::{Small, options, unlit},
     smoothing::{Outliers, SMOOTH, frame, run},
 };
 

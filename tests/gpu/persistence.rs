@@ -1,21 +1,10 @@
 //! Lines that stay for some frames where their edges have become weak.
 
-use std::collections::HashMap;
-
-use bevy::{
-    core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{CameraCut, ComicStyle, Outlines, depth::VisibleDepthRange, lines::Silhouettes};
-use bevy_comics_testkit::{
-    reference::{
-        crack::{Crack, crack, jump},
-        link::{Place, joined, linked},
-        lives::Lives,
-        resolve::Resolved,
-    },
-    specimens::Specimen,
+use bevy_comics_testkit::reference::{
+    crack::{Crack, crack, jump},
+    link::{Place, joined, linked},
+    lives::Lives,
+    resolve::Resolved,
 };
 
 use crate::{
@@ -23,7 +12,7 @@ use crate::{
     line_quality::{show, turn},
     outlines::removed,
     pictures::{outlined, view_of},
-    small::Small,
+    prelude::*,
     walls::{towards_the_sky, wall},
 };
 

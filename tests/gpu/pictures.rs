@@ -1,39 +1,23 @@
 //! The whole fused pass against its reference, pixel by pixel. The reference starts from
 //! the texels that the pass read.
 
-use bevy::{
-    camera::{CompositingSpace, Hdr, Viewport},
-    prelude::*,
-    render::view::Msaa,
-};
+use bevy::camera::CompositingSpace;
 use bevy_comics::{
-    BlackFlats, ColorHarmony, Colorization, ComicStyle, Contours, DepthLayers, DepthMap,
-    DepthMapping, Desaturation, Halftone, Hatching, IsoLines, KeyLight, Misregistration, Outlines,
-    Paint, Paper, Sketch, ToneBands,
-    depth::VisibleDepthRange,
-    effects::{
-        ColorizationMode, ContourOperator, DepthLayer, Equations, Granularity, HarmonyCurve,
-        HarmonyMode, LayerBorders, ScreenSampling, ScreenShape,
-    },
-    lines::{Creases, LineColor, LineResponse, Silhouettes},
+    effects::HarmonyCurve,
     presets::{self, Preset},
 };
-
-use bevy_comics_testkit::{
-    reference::{
-        Rgba, color,
-        crack::jump,
-        draw::Ink,
-        fused::{Input, stylize},
-        map::{Frame, Projection},
-        resolve::{Prepass, Resolved},
-        sheet::Sheet,
-        view::View,
-    },
-    studio::with_map,
+use bevy_comics_testkit::reference::{
+    Rgba, color,
+    crack::jump,
+    draw::Ink,
+    fused::{Input, stylize},
+    map::{Frame, Projection},
+    resolve::{Prepass, Resolved},
+    sheet::Sheet,
+    view::View,
 };
 
-use crate::small::{Small, with_option};
+use crate::prelude::*;
 
 const ONE_CODE: f64 = 1.0 / 255.0;
 

@@ -1,17 +1,12 @@
 //! Dragging a slider compiles pipelines only where `docs/performance.md` says so.
 
 use bevy::{
-    prelude::*,
-    reflect::{PartialReflect, ReflectMut, ReflectRef, TypeInfo, structs::Struct},
-    render::{
-        RenderApp,
-        render_resource::{PipelineCache, PipelineDescriptor},
-        view::Msaa,
-    },
+    reflect::{PartialReflect, ReflectMut, ReflectRef, structs::Struct},
+    render::render_resource::{PipelineCache, PipelineDescriptor},
 };
-use bevy_comics::effect::{AnyEffect, EffectRegistry, FieldRange};
+use bevy_comics::effect::FieldRange;
 
-use crate::small::{Small, options};
+use crate::prelude::*;
 
 /// A number of an effect: the names of the fields that lead to it, and its range.
 struct Slider {
@@ -148,7 +143,7 @@ fn drag(steps: usize, is_dragged: impl Fn(&str) -> bool) -> usize {
             seen += 1;
         }
         let camera = small.camera;
-        let mut style = bevy_comics::ComicStyle::new();
+        let mut style = ComicStyle::new();
         style.depth_map = None;
         style.apply(&mut small.world().commands().entity(camera));
         small.world().flush();

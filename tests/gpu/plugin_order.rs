@@ -1,10 +1,6 @@
 //! `ComicsPlugin` before the engine's plugins does what it does after them.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{Comic, ComicsPlugin, DepthMap, OutlineStyle, Outlines, ToonScene, presets};
-use bevy_comics_testkit::headless::Headless;
-
-use crate::small::{camera, options};
+use crate::{prelude::*, small::camera};
 
 /// A scene that uses every part of the plugin: a style asset, the depth range,
 /// outlines, one object's own lines, the toon material.

@@ -1,10 +1,9 @@
 //! Apps that tests use one after another.
 
-use bevy::{light::PointLightShadowMap, prelude::*};
-use bevy_comics_testkit::{
-    headless::{Headless, HeadlessOptions},
-    pool::Pool,
-};
+use bevy::light::PointLightShadowMap;
+use bevy_comics_testkit::pool::Pool;
+
+use crate::prelude::*;
 
 #[derive(Component)]
 struct Mark;

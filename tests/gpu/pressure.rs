@@ -1,27 +1,15 @@
 //! The widths of lines that come from objects: pressure, and the widths of vertices.
 
-use std::ops::Range;
-
-use bevy::{
-    asset::RenderAssetUsages,
-    mesh::{Indices, PrimitiveTopology},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    ComicStyle, Outlines,
-    lines::{LineWeight, Silhouettes},
-    objects::{LineWidths, MeshSections},
-    testing::object_id,
-};
+use bevy::mesh::PrimitiveTopology;
+use bevy_comics::objects::LineWidths;
 use bevy_comics_testkit::reference::pressure::{
     Frame as ObjectFrame, pressure_factor, stored_factor,
 };
 
 use crate::{
     ids::{cube, material, skinned_and_morphed},
+    prelude::*,
     sections::{none_has_sections, wait},
-    small::{Small, black_ink, unlit},
     walls::{towards_the_sky, unit_per_pixel, wall},
 };
 

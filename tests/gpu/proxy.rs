@@ -1,10 +1,5 @@
 //! Surfaces that are shaded as simpler forms.
 
-use bevy::{math::DVec3, prelude::*};
-use bevy_comics::{
-    ToonLight,
-    toon::{ProxyShape, Ramp, RampMode, RampStop, ShadingProxy},
-};
 use bevy_comics_testkit::reference::toon::{
     per_light,
     surface::{Footprint, Surface},
@@ -12,9 +7,9 @@ use bevy_comics_testkit::reference::toon::{
 };
 
 use crate::{
+    prelude::*,
     ramp::{apart, bright, drawn, put, room, set_light, sun, with},
     ramp_pixels::arriving,
-    small::linear,
 };
 
 fn tones(form: Option<ShadingProxy>) -> ToonLight {
@@ -164,7 +159,7 @@ fn a_cube_as_a_ball_has_its_tones() {
         base: DVec3::ONE,
         around: DVec3::ZERO,
         shine: DVec3::ZERO,
-        exposure: f64::from(bevy::camera::Exposure::default().exposure()),
+        exposure: f64::from(Exposure::default().exposure()),
     };
     let mut seen = 0;
     for (x, y) in (0..160).flat_map(|x| (0..160).map(move |y| (x, y))) {

@@ -1,20 +1,9 @@
 //! Ramps of the toon material: tones, their places, edges and shadows.
 
-use bevy::{
-    asset::RenderAssetUsages,
-    camera::{Exposure, ScalingMode},
-    light::CascadeShadowConfigBuilder,
-    mesh::{Indices, PrimitiveTopology},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    ToonLight, ToonMaterial,
-    toon::{Ramp, RampBlend, RampMode, RampStop},
-};
+use bevy::{light::CascadeShadowConfigBuilder, mesh::PrimitiveTopology};
 use image::RgbaImage;
 
-use crate::small::{Object, Small, linear};
+use crate::prelude::*;
 
 const SIZE: UVec2 = UVec2::new(160, 160);
 
@@ -194,7 +183,7 @@ fn shares_do_not_depend_on_the_exposure() {
     };
     let mut small = stage(&light);
     let picture = drawn(&mut small);
-    let tones: std::collections::HashSet<_> = picture.pixels().collect();
+    let tones: HashSet<_> = picture.pixels().collect();
     assert!(tones.len() > 8, "{} tones", tones.len());
     for factor in [0.01f32, 100.0] {
         small.insert(Exposure {

@@ -1,16 +1,11 @@
 //! The second axis of ramps: where tones change, against its definition.
 
-use bevy::prelude::*;
-use bevy_comics::{
-    ToonLight,
-    toon::{DetailAxis, Ramp, RampBlend, RampDetail, RampMode, RampStop},
-};
 use bevy_comics_testkit::reference::detail;
 use image::RgbaImage;
 
 use crate::{
+    prelude::*,
     ramp::{MODES, apart, bright, drawn, put, room, set_light, sun, with},
-    small::{Small, linear},
 };
 
 const ORANGE: Color = Color::linear_rgb(0.9, 0.4, 0.1);

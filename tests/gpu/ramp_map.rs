@@ -1,23 +1,15 @@
 //! Painted ramps of the toon material: tones, edges, shadows, rows, files, and images that cannot be used.
 
-use bevy::{
-    asset::RenderAssetUsages,
-    prelude::*,
-    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
-};
-use bevy_comics::{
-    ToonLight, ToonMaterial, ToonShadingHandle,
-    toon::{DetailAxis, Ramp, RampBlend, RampDetail, RampMap, RampMode, RampStop, ToonShading},
-};
+use bevy_comics::ToonShadingHandle;
 use bevy_comics_testkit::reference::{Rgb, color::srgb_encode, ramp};
 use image::RgbaImage;
 
 use crate::{
+    prelude::*,
     ramp::{
         MODES, apart, bright, check_borders, check_caps, drawn, leaning, put, room, set_light,
         stage, sun, with,
     },
-    small::{Small, linear},
     styles::Folder,
     toon_shading::{mesh_with_shading, wait, watching},
 };
@@ -406,7 +398,7 @@ fn bad_images_leave_the_stops() {
         if apart(&wanted, &found) <= 1 {
             break;
         }
-        std::thread::sleep(std::time::Duration::from_millis(25));
+        std::thread::sleep(Duration::from_millis(25));
         found = drawn(&mut other);
     }
     // Compared within one app: another may draw in another order.
@@ -506,7 +498,7 @@ fn looks_name_their_images_by_path() {
     assert!(grey(&mut small).abs_diff(100) <= 1);
     greys(200).save(&file).expect("written");
     let changed = (0..100).any(|_| {
-        std::thread::sleep(std::time::Duration::from_millis(25));
+        std::thread::sleep(Duration::from_millis(25));
         grey(&mut small).abs_diff(200) <= 1
     });
     assert!(changed, "the change did not arrive");

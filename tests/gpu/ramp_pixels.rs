@@ -1,10 +1,5 @@
 //! A ball under several lights, in every mode of a ramp, against the reference of every pixel.
 
-use bevy::{camera::Exposure, math::DVec3, prelude::*};
-use bevy_comics::{
-    ToonLight,
-    toon::{DetailAxis, Ramp, RampBlend, RampDetail, RampMode, RampStop},
-};
 use bevy_comics_testkit::reference::{
     color::srgb_encode,
     detail,
@@ -16,8 +11,8 @@ use bevy_comics_testkit::reference::{
 };
 
 use crate::{
+    prelude::*,
     ramp::{bright, drawn, full, put, room, set_light, sun},
-    small::linear,
 };
 
 const SIZE: u32 = 100;

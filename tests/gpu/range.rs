@@ -1,7 +1,10 @@
 //! The depth range against a scan of all depths, bit for bit.
 
-use std::{collections::BTreeMap, sync::Mutex};
-
+use bevy_comics_testkit::{
+    device::gpu,
+    reference::{histogram::Bins, ping_pong, range},
+    wgsl,
+};
 use proptest::{
     collection::vec,
     prelude::{ProptestConfig, Strategy, any, prop_oneof},
@@ -9,11 +12,7 @@ use proptest::{
     test_runner::TestRunner,
 };
 
-use bevy_comics_testkit::{
-    device::gpu,
-    reference::{histogram::Bins, ping_pong, range},
-    wgsl,
-};
+use crate::prelude::*;
 
 pub const SHAPES: [&[&str]; 3] = [&["BARRIER_FREE"], &["SUBGROUP"], &[]];
 
@@ -112,7 +111,7 @@ pub fn reduce_and_count(
     let gpu = gpu();
     let counts = shape.contains(&"HISTOGRAM");
     let Reduction { layout, pipeline } = reduction(shape);
-    let extent = wgpu::Extent3d {
+    let extent = Extent3d {
         width: size[0],
         height: size[1],
         depth_or_array_layers: 1,
@@ -122,8 +121,8 @@ pub fn reduce_and_count(
         size: extent,
         mip_level_count: 1,
         sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::R32Float,
+        dimension: TextureDimension::D2,
+        format: TextureFormat::R32Float,
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
@@ -256,7 +255,7 @@ fn every_shape_finds_the_scan_of_any_depth_in_any_viewport() {
     };
     TestRunner::new(config)
         .run(&case, |(size, cut, values, seed, sky)| {
-            let mut random = bevy_comics_testkit::scenes::noise::Random::new(seed);
+            let mut random = Random::new(seed);
             let depths: Vec<f32> = (0..size[0] * size[1])
                 .map(|_| {
                     if f64::from(random.unit()) < sky {
@@ -291,7 +290,7 @@ fn every_shape_finds_the_scan_of_any_depth_in_any_viewport() {
 
 #[test]
 fn every_shape_counts_every_depth_once() {
-    let mut random = bevy_comics_testkit::scenes::noise::Random::new(11);
+    let mut random = Random::new(11);
     for size in [[1u32, 1], [7, 5], [129, 33], [300, 67], [256, 64]] {
         // Runs of equal depths, as in pictures, with sky and invalid depths between.
         let mut d = 0.5f32;
@@ -355,8 +354,7 @@ fn the_widest_and_the_tallest_texture_are_reduced() {
 fn the_papers_index_arithmetic_loses_no_pixel() {
     for width in 1..40usize {
         for height in 1..40usize {
-            let mut random =
-                bevy_comics_testkit::scenes::noise::Random::new((width * 100 + height) as u64);
+            let mut random = Random::new((width * 100 + height) as u64);
             let depths: Vec<f32> = (0..width * height).map(|_| random.unit()).collect();
             let (_, found) = ping_pong::reduce(&depths, width, height);
             assert_eq!(

@@ -1,19 +1,9 @@
 //! The depth range of rendered views, as the game reads it.
 
-use bevy::{
-    camera::{OrthographicProjection, PerspectiveProjection, Projection, ScalingMode, Viewport},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    DepthMap, DepthMapping,
-    depth::{ReductionMethod, VisibleDepthRange},
-    diagnostics::ComicsStage,
-};
-
+use bevy::camera::Projection;
 use bevy_comics_testkit::{headless, reference::range};
 
-use crate::small::{Reshaped, Small};
+use crate::{prelude::*, small::Reshaped};
 
 fn msaa_of(samples: u32) -> Msaa {
     Msaa::from_samples(samples)
@@ -198,8 +188,8 @@ fn an_empty_and_a_transparent_view_have_an_empty_range_and_a_defined_picture() {
     let mut small = Small::new(UVec2::new(48, 32), Msaa::Sample4);
     small
         .insert((
-            bevy_comics::Contours::default(),
-            bevy_comics::Desaturation::default(),
+            Contours::default(),
+            Desaturation::default(),
             VisibleDepthRange::default(),
         ))
         .settle();
@@ -232,7 +222,7 @@ fn an_empty_and_a_transparent_view_have_an_empty_range_and_a_defined_picture() {
 /// The slope of the depth map where there is nothing: no ink, and no NaN.
 #[test]
 fn the_sky_has_no_slope() {
-    let flats = bevy_comics::BlackFlats {
+    let flats = BlackFlats {
         slope: Some(0.02),
         value: None,
         ..default()

@@ -1,15 +1,14 @@
 //! The text of the report matches its tables, and the counted work has not grown.
 
-use std::{collections::HashMap, fs, path::PathBuf, process::Command};
+use std::fs;
 
-use bevy_comics::{ComicStyle, effect::EffectRegistry};
 use bevy_comics_testkit::{
     line_work,
     page_work::{self, PageCounter},
     work::{self, Work, WorkCounter},
 };
 
-use crate::command_line::example;
+use crate::{command_line::example, prelude::*};
 
 fn folder() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/report"))

@@ -1,11 +1,9 @@
 //! Rims of surfaces that are seen so obliquely that their depth changes by more from pixel to pixel
 //! than at the rim.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, Outlines, lines::LineWeight};
 use bevy_comics_testkit::scenes::shape::Shape;
 
-use crate::{line_truth::empty, outlines::put, small::Small, walls};
+use crate::{line_truth::empty, outlines::put, prelude::*, walls};
 
 const SIZE: UVec2 = UVec2::new(120, 120);
 
@@ -68,7 +66,7 @@ fn a_rim_has_one_width() {
     }));
     small.settle();
     let cracks = small.cracks().expect("lines");
-    let mut widths = std::collections::BTreeSet::new();
+    let mut widths = BTreeSet::new();
     for y in 20..100 {
         let row = &cracks.words[y * 120..(y + 1) * 120];
         widths.extend(

@@ -2,21 +2,14 @@
 //! in pictures of half its width and height.
 
 use bevy::{
-    core_pipeline::tonemapping::Tonemapping,
     ecs::system::RunSystemOnce,
     light::{PointLight, SpotLight},
-    prelude::*,
-    render::view::Msaa,
 };
-use bevy_comics::ComicStyle;
-use bevy_comics_testkit::{
-    scenes::{BuiltIn, ScenePart, Stage, Vantage},
-    truth::FINE,
-};
+use bevy_comics_testkit::scenes::{ScenePart, Stage, Vantage};
 
 use crate::{
     line_quality::{MOST_FRAGMENTS, Scores, inked, scored, truth},
-    small::Small,
+    prelude::*,
 };
 
 /// The report scores pictures of 480x270.

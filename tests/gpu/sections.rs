@@ -1,19 +1,12 @@
 //! Creases at the borders of the sections of meshes.
 
-use std::collections::HashSet;
-
-use bevy::{mesh::MeshBuilder, prelude::*, render::view::Msaa};
-use bevy_comics::{
-    ComicStyle, OutlineGroup, OutlineStyle, Outlines,
-    lines::Creases,
-    objects::{ATTRIBUTE_MESH_SECTION, MeshSections, OutlineKinds},
-};
-use bevy_comics_testkit::read_back::IdImage;
+use bevy::mesh::MeshBuilder;
+use bevy_comics::objects::{ATTRIBUTE_MESH_SECTION, OutlineKinds};
 
 use crate::{
     ids::skinned_and_morphed,
     pictures::{assert_pass_matches_the_reference, outlined},
-    small::{Object, Small, black_ink, unlit},
+    prelude::*,
     walls::{towards_the_sky, towards_the_sky_again, wall},
 };
 
@@ -40,7 +33,7 @@ pub fn wait(small: &mut Small, are_there: impl Fn(&IdImage) -> bool) {
             small.settle();
             return;
         }
-        std::thread::sleep(std::time::Duration::from_millis(5));
+        std::thread::sleep(Duration::from_millis(5));
     }
     panic!("the sections did not arrive");
 }

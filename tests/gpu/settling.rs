@@ -1,12 +1,12 @@
 //! The smoothed range in a view that stands still: it arrives, at any frame rate and
 //! scale, and does not depend on what came before.
 
-use bevy_comics_testkit::{
-    reference::smoothing::{SETTLE, Smoothing, WATCH},
-    scenes::noise::Random,
-};
+use bevy_comics_testkit::reference::smoothing::{SETTLE, Smoothing, WATCH};
 
-use crate::smoothing::{DEFAULT, Frame, HOLD, SMOOTH, depths, frame, run};
+use crate::{
+    prelude::*,
+    smoothing::{DEFAULT, Frame, HOLD, SMOOTH, depths, frame, run},
+};
 
 /// Raw depth under an orthographic projection from 0 to 1e5 units.
 fn deep(distance: f64) -> f32 {

@@ -1,11 +1,9 @@
 //! Lines under temporal anti-aliasing while the camera moves by a tenth of a pixel a frame.
 
-use bevy::prelude::*;
-
 use crate::{
     memory::{SIZE, outline, scene},
     outlines::removed,
-    small::Small,
+    prelude::*,
 };
 
 /// The width of the line along the upper side of the wall, and its middle, in every column.

@@ -2,29 +2,18 @@
 
 use bevy::{
     app::Plugins,
-    camera::{CameraProjection, PerspectiveProjection, RenderTarget, SubCameraView},
-    core_pipeline::tonemapping::{DebandDither, Tonemapping},
+    camera::{CameraProjection, SubCameraView},
     math::Vec3A,
-    prelude::*,
-    render::{
-        RenderApp,
-        error_handler::{RenderErrorHandler, RenderErrorPolicy},
-        sync_world::RenderEntity,
-        view::Msaa,
-    },
+    render::error_handler::RenderErrorPolicy,
 };
-use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, ComicsPlugin, Effect, Outlines, depth::VisibleDepthRange,
-    diagnostics::ComicsStage,
-};
-
 use bevy_comics_testkit::{
     before::BeforeStylize,
-    headless::{Headless, HeadlessOptions},
     pool::Pool,
-    read_back::{self, CrackWords, DepthImage, FloatImage, IdImage, WidthImage},
+    read_back::{self, CrackWords, DepthImage, WidthImage},
     reference::{color, resolve::Prepass},
 };
+
+use crate::prelude::*;
 
 /// Errors that the renderer reported.
 #[derive(Resource, Default)]

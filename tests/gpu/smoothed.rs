@@ -1,29 +1,13 @@
 //! Meshes that are shaded with smoothed normals: when they are made, and where the vertex shader
 //! brings them.
 
-use std::time::Duration;
-
-use bevy::{
-    asset::RenderAssetUsages,
-    camera::visibility::NoFrustumCulling,
-    core_pipeline::prepass::DepthPrepass,
-    mesh::{
-        VertexAttributeValues,
-        morph::{MeshMorphWeights, MorphAttributes, MorphWeights},
-        skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
-    },
-    prelude::*,
-};
-use bevy_comics::{
-    ToonLight, ToonMaterial,
-    toon::{ProxyShape, Ramp, RampMode, RampStop, ShadingProxy},
-};
+use bevy::{camera::visibility::NoFrustumCulling, mesh::morph::MorphAttributes};
 use bevy_comics_testkit::reference::octahedral::octahedral;
 use image::RgbaImage;
 
 use crate::{
+    prelude::*,
     ramp::{apart, bright, drawn, put, room, set_light, sun, with},
-    small::Small,
 };
 
 const SIZE: UVec2 = UVec2::new(128, 128);
@@ -246,7 +230,7 @@ fn backs_of_two_sided_surfaces_are_turned() {
     set_light(&mut small, &light(None));
     let wanted = drawn(&mut small);
     assert_eq!(apart(&found, &wanted), 0);
-    assert!(crate::small::linear(&found, 64, 64)[0] > 0.3);
+    assert!(linear(&found, 64, 64)[0] > 0.3);
 }
 
 /// Meshes whose data is gone, or that have no normals, are drawn as they are.

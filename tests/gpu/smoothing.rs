@@ -1,16 +1,15 @@
 //! The smoothed range, frame by frame, against its reference.
 
-use std::sync::OnceLock;
-
 use bevy_comics_testkit::{
     device::gpu,
     reference::{
         histogram::Bins,
         smoothing::{LONGEST_WATCHED, Range, SETTLE, Smoothing},
     },
-    scenes::noise::Random,
     wgsl,
 };
+
+use crate::prelude::*;
 
 const ORTHOGRAPHIC: u32 = 1;
 pub const SNAP: u32 = 2;

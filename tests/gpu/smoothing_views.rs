@@ -1,22 +1,8 @@
 //! The smoothed range in an app: what resets it and what does not.
 
-use bevy::{
-    camera::{CameraProjection, PerspectiveProjection},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    CameraCut, Colorization, ComicStyle, Contours, DepthMap,
-    depth::{RangeSmoothing, ReductionMethod, VisibleDepthRange},
-    diagnostics::ComicsStage,
-};
+use bevy::camera::CameraProjection;
 
-use bevy_comics_testkit::{
-    headless::{HeadlessOptions, new_target},
-    studio::with_map,
-};
-
-use crate::small::{Reshaped, Small, options, size, unlit};
+use crate::{prelude::*, small::Reshaped};
 
 /// Slow enough to see, exact once it has arrived.
 const SLOW: RangeSmoothing = RangeSmoothing {
@@ -86,7 +72,7 @@ fn a_cut_a_resize_and_another_near_plane_start_anew() {
             let larger = new_target(
                 small.world(),
                 size() + UVec2::new(8, 4),
-                wgpu::TextureFormat::Rgba8UnormSrgb,
+                TextureFormat::Rgba8UnormSrgb,
             );
             small.headless.target = larger;
             let target = small.headless.render_target();
@@ -326,7 +312,7 @@ fn percentiles_leave_a_speck_out_of_the_picture() {
 #[test]
 fn cameras_have_ranges_of_their_own() {
     let mut small = small();
-    let second = new_target(small.world(), size(), wgpu::TextureFormat::Rgba8UnormSrgb);
+    let second = new_target(small.world(), size(), TextureFormat::Rgba8UnormSrgb);
     let style = look(Some(SLOW));
     let other = small
         .world()

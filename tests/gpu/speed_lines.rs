@@ -1,17 +1,10 @@
 //! Speed lines in the picture of a camera.
 
-use bevy::{
-    camera::{Hdr, Viewport},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    SpeedLines, diagnostics::ComicsStage, effect::EffectTarget, effects::SpeedLineKind,
-};
+use bevy_comics::effect::EffectTarget;
 use bevy_comics_testkit::reference::speed_lines::Drawing;
 
 use crate::{
-    small::{Small, black_ink, linear, unlit},
+    prelude::*,
     walls::{towards_the_sky, wall},
 };
 

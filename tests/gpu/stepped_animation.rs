@@ -1,24 +1,10 @@
 //! Held poses: what is shown, and what the game sees of it.
 
-use bevy::{
-    asset::RenderAssetUsages,
-    camera::Hdr,
-    core_pipeline::prepass::{DepthPrepass, MotionVectorPrepass},
-    ecs::change_detection::DetectChanges,
-    mesh::{
-        Indices, VertexAttributeValues,
-        skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
-    },
-    prelude::*,
-    render::render_resource::PrimitiveTopology,
-};
+use bevy::{ecs::change_detection::DetectChanges, render::render_resource::PrimitiveTopology};
 use bevy_comics::SteppedAnimation;
 use image::RgbaImage;
 
-use crate::{
-    small::{Small, unlit},
-    walls::towards_the_sky,
-};
+use crate::{prelude::*, walls::towards_the_sky};
 
 const SIZE: UVec2 = UVec2::new(192, 64);
 
@@ -66,7 +52,7 @@ fn square(small: &mut Small, y: f32) -> Entity {
 }
 
 /// Centre of the white pixels of the rows, pixels from the left.
-fn place(picture: &RgbaImage, rows: std::ops::Range<u32>) -> f64 {
+fn place(picture: &RgbaImage, rows: Range<u32>) -> f64 {
     let white = picture
         .enumerate_pixels()
         .filter(|(_, y, p)| rows.contains(y) && p.0[..3] == [255; 3]);

@@ -2,23 +2,13 @@
 
 use std::f64::consts::PI;
 
-use bevy::{
-    core_pipeline::prepass::{DepthPrepass, NormalPrepass},
-    math::DVec2,
-    prelude::*,
-};
-use bevy_comics::{
-    Hatching, ToonLight,
-    effects::{HatchingAnchor, HatchingMarks},
-    objects::PatternAnchor,
-};
 use bevy_comics_testkit::reference::{color, hatching::Hatch, stipple::dot_radius};
 
 use crate::{
     hatched_material::{self, assert_same, frames, seen_from, studio},
     hatching::{FOV, LIGHTS, SIZE, WALLS, come_nearer, covers, empty, flat, mean, tilted},
+    prelude::*,
     ramp::put,
-    small::Small,
 };
 
 /// Dots of one size in rows, black on white paper.

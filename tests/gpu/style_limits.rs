@@ -1,8 +1,9 @@
 //! Looks keep the limits that the page of looks states.
 
-use bevy::math::UVec2;
-use bevy_comics::{presets, style::Preset};
-use bevy_comics_testkit::{scenes::BuiltIn, style_work::LookBench};
+use bevy_comics::style::Preset;
+use bevy_comics_testkit::style_work::LookBench;
+
+use crate::prelude::*;
 
 /// Strokes and iso-lines, in the scene that is drawn soonest.
 #[test]

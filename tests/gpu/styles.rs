@@ -1,21 +1,8 @@
 //! Style files: read, written, loaded, changed on disk, broken, removed.
 
-use std::{fs, time::Duration};
+use std::fs;
 
-use bevy::{color::Color, prelude::*, render::view::Msaa};
-use bevy_comics::{
-    BlackFlats, ColorHarmony, Colorization, Comic, ComicStyle, Contours, DepthLayers, DepthMap,
-    DepthMapping, Desaturation, Focus, Halftone, Hatching, Misregistration, Outlines, Paint, Paper,
-    Sketch, SpeedLines, ToneBands, TwoTone,
-    depth::{RangeSmoothing, ReductionMethod},
-    effects::{
-        ColorizationMode, ContourOperator, DepthLayer, Equations, FocusAt, FocusStyle,
-        HalftoneMode, HarmonyMode, HatchingAnchor, LayerBorders, PaintKernel, ScreenAnchor,
-        ScreenSampling, ScreenShape, SpeedLineKind,
-    },
-    lines::{Creases, LineBoil, LineColor, LineWeight, ObjectEdges, Silhouettes},
-    style::ComicStyleError,
-};
+use bevy_comics::style::ComicStyleError;
 use proptest::{
     option,
     prelude::{ProptestConfig, Strategy, any},
@@ -23,9 +10,7 @@ use proptest::{
     test_runner::TestRunner,
 };
 
-use bevy_comics_testkit::headless::HeadlessOptions;
-
-use crate::small::{Small, options, size, with_option};
+use crate::prelude::*;
 
 fn number() -> impl Strategy<Value = f32> {
     any::<f32>()
@@ -475,7 +460,7 @@ fn errors_name_the_line_and_what_is_wrong() {
 }
 
 /// A temporary folder, removed when dropped.
-pub struct Folder(pub std::path::PathBuf);
+pub struct Folder(pub PathBuf);
 
 impl Folder {
     pub fn new(name: &str) -> Self {

@@ -2,17 +2,12 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use bevy::{core_pipeline::prepass::DepthPrepass, math::DVec2, prelude::*};
-use bevy_comics::{
-    ToonLight,
-    toon::{HighlightFrame, HighlightShape, Rim, RimWidth, StylizedHighlight},
-};
 use bevy_comics_testkit::reference::stylized_highlight;
 use image::RgbaImage;
 
 use crate::{
+    prelude::*,
     ramp::{bright, drawn, put, room, set_light, sun},
-    small::{Small, linear},
 };
 
 const SIZE: u32 = 256;
@@ -62,7 +57,7 @@ fn polish(small: &mut Small) {
 
 fn polish_to(small: &mut Small, roughness: f32) {
     let world = small.world();
-    let mut materials = world.resource_mut::<Assets<bevy_comics::ToonMaterial>>();
+    let mut materials = world.resource_mut::<Assets<ToonMaterial>>();
     for (_, material) in materials.iter_mut() {
         material.base.base_color = Color::BLACK;
         material.base.perceptual_roughness = roughness;

@@ -3,13 +3,9 @@
 
 mod facts;
 
-use std::{collections::BTreeMap, fmt::Write, fs, path::Path, sync::LazyLock};
+use std::{fmt::Write, fs, sync::LazyLock};
 
-use bevy_comics::{
-    ComicStyle,
-    effect::{EffectRegistry, EffectType},
-    presets,
-};
+use bevy_comics::effect::EffectType;
 use facts::{FACTS, Feature, GROUPS, Group, Known, OF_LOOKS, OF_PRESETS, PAIRED};
 
 use crate::{
@@ -19,6 +15,7 @@ use crate::{
         effects,
     },
     pictures::known_forms,
+    prelude::*,
 };
 
 const HEAD: &str = "\

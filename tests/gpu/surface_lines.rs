@@ -1,12 +1,6 @@
 //! Lines in the colour of the surfaces that they belong to.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, Desaturation, NoStyle, Outlines, lines::LineColor};
-
-use crate::{
-    outlines::put,
-    small::{Small, linear},
-};
+use crate::{outlines::put, prelude::*};
 
 const SIZE: u32 = 80;
 

@@ -1,19 +1,10 @@
 //! Thresholds of the toon material from an image: where edges lie, and what their pixels cover.
 
-use bevy::{
-    asset::RenderAssetUsages,
-    math::Affine2,
-    prelude::*,
-    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
-};
-use bevy_comics::{
-    ToonLight, ToonMaterial,
-    toon::{Ramp, RampBlend, RampMode, RampStop},
-};
+use bevy::math::Affine2;
 
 use crate::{
+    prelude::*,
     ramp::{bright, put, room, sun, with},
-    small::{Small, linear},
 };
 
 const SIZE: UVec2 = UVec2::new(160, 16);

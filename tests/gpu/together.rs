@@ -2,17 +2,9 @@
 //! views alone, and with plain meshes. The effects are in the groups of `pairwise`.
 
 use bevy::{
-    camera::{RenderTarget, Viewport, primitives::Aabb, visibility::NoAutoAabb},
+    camera::{primitives::Aabb, visibility::NoAutoAabb},
     math::Vec3A,
-    mesh::{
-        VertexAttributeValues,
-        skinning::{SkinnedMesh, SkinnedMeshInverseBindposes},
-    },
-    prelude::*,
-    render::{render_resource::TextureFormat, view::Msaa},
 };
-use bevy_comics::{ComicStyle, objects::DepthWrite};
-use bevy_comics_testkit::headless::new_target;
 use image::RgbaImage;
 
 use crate::{
@@ -21,7 +13,8 @@ use crate::{
         compare::{changed, crop},
         effects::{GROUPS, Group},
     },
-    small::{self, Object, Small, unlit},
+    prelude::*,
+    small,
 };
 
 const SIZE: UVec2 = UVec2::new(96, 64);

@@ -1,17 +1,8 @@
 //! Tones of the picture by depth.
 
-use bevy::{core_pipeline::tonemapping::DebandDither, prelude::*, render::view::Msaa};
-use bevy_comics::{ComicStyle, DepthMap, DepthMapping, Desaturation, ToneBands, ToneRamp};
-use bevy_comics_testkit::{
-    reference::tone_ramp,
-    studio::{wear, with_map},
-};
+use bevy_comics_testkit::{reference::tone_ramp, studio::wear};
 
-use crate::{
-    pictures::assert_pass_matches_the_reference,
-    ramp::room,
-    small::{Small, linear},
-};
+use crate::{pictures::assert_pass_matches_the_reference, prelude::*, ramp::room};
 
 /// Unlit walls at several distances have the tones that the map says.
 #[test]
@@ -112,10 +103,7 @@ fn spread_at_an_edge(small: &mut Small, ramp: ToneRamp, dither: DebandDither) ->
     small.world().flush();
     let worn = small.headless.app.world().get::<DebandDither>(camera);
     assert_eq!(worn, Some(&DebandDither::Disabled));
-    small.insert((
-        dither,
-        bevy::core_pipeline::tonemapping::Tonemapping::Reinhard,
-    ));
+    small.insert((dither, Tonemapping::Reinhard));
     // After this tonemapping, the square of the place.
     let at = ramp.middle_at * ramp.middle_at;
     let gray = at / (1.0 - at);

@@ -1,19 +1,9 @@
 //! The toon material: light, shadows against a ray cast, and the conversion of
 //! scenes and back.
 
-use bevy::{
-    camera::Exposure,
-    core_pipeline::prepass::{DeferredPrepass, DepthPrepass, NormalPrepass},
-    light::CascadeShadowConfigBuilder,
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    Outlines, ToonLight, ToonMaterial, ToonScene, depth::VisibleDepthRange, lines::ObjectEdges,
-    testing::object_id,
-};
+use bevy::light::CascadeShadowConfigBuilder;
 
-use crate::small::{Object, Small};
+use crate::prelude::*;
 
 pub const SIZE: UVec2 = UVec2::new(240, 160);
 /// The object that casts the shadow: an axis-aligned box on the ground.

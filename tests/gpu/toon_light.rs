@@ -1,24 +1,13 @@
 //! The toon material under every kind of light of the engine, beside the standard material.
 
 use bevy::{
-    asset::RenderAssetUsages,
-    camera::Exposure,
-    image::Image,
     light::{EnvironmentMapLight, IrradianceVolume, LightProbe, RectLight},
-    mesh::VertexAttributeValues,
     pbr::{ContactShadows, DistanceFog, FogFalloff, Lightmap},
-    prelude::*,
-    render::{
-        render_resource::{
-            Extent3d, TextureDimension, TextureFormat, TextureViewDescriptor, TextureViewDimension,
-        },
-        view::Msaa,
-    },
+    render::render_resource::{TextureViewDescriptor, TextureViewDimension},
 };
-use bevy_comics::{ToonLight, ToonScene};
 use image::RgbaImage;
 
-use crate::small::{Object, Small, linear, size};
+use crate::prelude::*;
 
 /// The exposure of a camera with default settings.
 fn exposure() -> f32 {

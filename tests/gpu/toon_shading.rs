@@ -1,29 +1,22 @@
 //! Shadings of the toon material as files: read, written, loaded, changed on disk, broken; and the
 //! shadings of a scene by the names of its materials.
 
-use std::{fs, time::Duration};
+use std::fs;
 
 use bevy::{
     asset::{AssetLoadFailedEvent, AssetPath},
     ecs::message::{MessageCursor, Messages},
     gltf::GltfMaterialName,
-    prelude::*,
-    render::view::Msaa,
     world_serialization::WorldAssetRoot,
 };
 use bevy_comics::{
-    Hatching, ToonLight, ToonMaterial, ToonScene, ToonShadingHandle,
-    toon::{
-        DetailAxis, HighlightFrame, HighlightShape, MaterialName, ProxyShape, Ramp, RampBlend,
-        RampDetail, RampMap, RampMode, RampStop, Rim, RimWidth, ShadingProxy, StylizedHighlight,
-        ToonShading, ToonShadingError,
-    },
+    ToonShadingHandle,
+    toon::{MaterialName, ToonShadingError},
 };
-use bevy_comics_testkit::headless::HeadlessOptions;
 
 use crate::{
     models::gltf::{Gltf, Part, Shape},
-    small::{Small, options, size},
+    prelude::*,
     styles::Folder,
 };
 

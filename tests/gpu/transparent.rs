@@ -1,16 +1,10 @@
 //! The opacity of the picture, over a background that shows through.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    BlackFlats, Colorization, ComicStyle, Contours, Desaturation, Outlines, Sketch, SplitView,
-    StyleWeight, ToneBands, Vignette,
-    lines::Silhouettes,
-    presets::{self, Preset},
-};
+use bevy_comics::presets::{self, Preset};
 
 use crate::{
     pictures::{assert_pass_matches_the_reference, known_forms, outlined},
-    small::{Small, size},
+    prelude::*,
 };
 
 /// Half a code of the target for what it stores, and half for what it read.

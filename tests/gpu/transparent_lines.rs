@@ -1,30 +1,11 @@
 //! Transparent meshes with `DepthWrite`: lines and colour effects see them.
 
-use bevy::{
-    anti_alias::taa::TemporalAntiAliasing,
-    asset::RenderAssetUsages,
-    mesh::VertexAttributeValues,
-    prelude::*,
-    render::{
-        render_resource::{AsBindGroup, Extent3d, TextureDimension, TextureFormat},
-        view::Msaa,
-    },
-};
-use bevy_comics::{
-    Colorization, ComicStyle, ComicsDiagnostics, Contours, DepthMap, Desaturation, NoOutlines,
-    NoStyle, OutlineStyle, Outlines, Sketch,
-    depth::VisibleDepthRange,
-    diagnostics::{ComicsStage, DebugView, SkipReason, StageOutcome},
-    effects::Equations,
-    lines::{Creases, LineWeight, Silhouettes},
-    objects::DepthWrite,
-    testing::object_id,
-};
+use bevy::render::render_resource::AsBindGroup;
 
 use crate::{
     outlines::{ink, removed},
     pictures::outlined,
-    small::{Object, Small, options, size, unlit},
+    prelude::*,
 };
 
 /// The blend modes that the engine's depth prepass leaves out.
@@ -552,7 +533,7 @@ fn it_runs_only_where_it_does_something() {
     small.settle();
     assert_eq!(outcome(&small), no_meshes, "the prepass has it");
     change(&mut small, glass, |m| m.alpha_mode = AlphaMode::Blend);
-    let bands = ComicStyle::default().with(bevy_comics::ToneBands::default());
+    let bands = ComicStyle::default().with(ToneBands::default());
     small.style(&bands);
     small.settle();
     assert_eq!(

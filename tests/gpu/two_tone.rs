@@ -1,11 +1,9 @@
 //! Two tones in the picture of a camera.
 
-use bevy::{camera::Hdr, prelude::*, render::view::Msaa};
-use bevy_comics::{Outlines, TwoTone};
 use bevy_comics_testkit::reference::two_tone;
 
 use crate::{
-    small::{Small, black_ink, size},
+    prelude::*,
     walls::{towards_the_sky, wall},
 };
 

@@ -1,14 +1,8 @@
 //! Objects that the colour effects leave alone.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    Colorization, ComicStyle, Contours, Desaturation, NoStyle, OutlineStyle, Outlines, Sketch,
-    ToneBands, diagnostics::ComicsStage,
-};
-
 use crate::{
     ids::{cube, material},
-    small::{Small, size},
+    prelude::*,
 };
 
 /// Colour effects that change every colour of the small scene.

@@ -5,22 +5,13 @@
 //! light that the pass removes is where it belongs all the same.
 
 use bevy::{
-    camera::{MainPassResolutionOverride, Viewport},
-    prelude::*,
-    render::{Render, RenderApp, RenderSystems, camera::ExtractedCamera, view::Msaa},
+    camera::MainPassResolutionOverride,
+    render::{Render, RenderSystems, camera::ExtractedCamera},
 };
-use bevy_comics::{
-    BlackFlats, ComicStyle, Contours, Effect, Halftone, Misregistration, Outlines, Paper,
-    SpeedLines,
-    depth::VisibleDepthRange,
-    effects::{ContourOperator, Equations, ScreenSampling, ScreenShape},
-    lines::{Creases, Silhouettes},
-};
-use bevy_comics_testkit::screens::SHAPES;
 
 use crate::{
     outlines::{look, put, removed},
-    small::Small,
+    prelude::*,
     walls::{towards_the_sky, unit_per_pixel},
 };
 

@@ -1,9 +1,11 @@
 //! Vulkan's validation layer. `scripts/validate` runs all tests under it: every app checks after each
 //! frame and at its end that it has said nothing, the bare device whenever something is read.
 
-use std::{panic::catch_unwind, process::Command};
+use std::panic::catch_unwind;
 
 use bevy_comics_testkit::{device::gpu, validation, wgsl};
+
+use crate::prelude::*;
 
 /// The only test of this file, by its whole name.
 const TEST: &str = "validation::the_layer_is_active_where_it_is_wanted";
@@ -37,7 +39,7 @@ fn write_a_sample_mask() {
             },
             primitive: Default::default(),
             depth_stencil: Some(wgpu::DepthStencilState {
-                format: wgpu::TextureFormat::Depth32Float,
+                format: TextureFormat::Depth32Float,
                 depth_write_enabled: Some(true),
                 depth_compare: Some(wgpu::CompareFunction::Always),
                 stencil: Default::default(),

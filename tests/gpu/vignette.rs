@@ -1,11 +1,8 @@
 //! The vignette: its function against its reference, and the rule against geometry.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{Vignette, diagnostics::ComicsStage};
-
 use bevy_comics_testkit::reference::vignette;
 
-use crate::small::{Small, size};
+use crate::prelude::*;
 
 const INK: Color = Color::srgb(0.8, 0.1, 0.3);
 

@@ -1,22 +1,13 @@
 //! Detail of ramps by the visible range: `view_range.wgsl` and `visible.wgsl` in pictures.
 
-use bevy::{
-    camera::{ScalingMode, Viewport},
-    prelude::*,
-};
-use bevy_comics::{
-    DepthMap, ToonLight, ToonMaterial,
-    depth::VisibleDepthRange,
-    toon::{DetailAxis, RampMode},
-};
 use bevy_comics_testkit::reference::detail;
 use image::RgbaImage;
 
 use crate::{
+    prelude::*,
     ramp::{bright, drawn, room, set_light, sun},
     ramp_detail::{off, two_tones},
     range_views::{Tilted, finite},
-    small::Small,
 };
 
 const SIZE: UVec2 = UVec2::new(96, 32);
@@ -125,7 +116,7 @@ fn assert_detail_spans(scales: &[f32], distances: &[f32]) {
                     wrong < 2.0,
                     "{name}, {z} of {scale}: {wrong} codes from {detail}"
                 );
-                let red = crate::small::linear(&picture, 48, 16)[0];
+                let red = linear(&picture, 48, 16)[0];
                 assert!(red <= last, "{name}, {z}: {red} after {last}");
                 last = red;
                 ends_are_exact(&picture, name);
@@ -238,10 +229,7 @@ fn every_view_has_its_own_range() {
     };
     small.insert(lens(0, 0));
     let target = small.headless.render_target();
-    let other = (
-        crate::small::camera(target, Msaa::Off),
-        bevy::camera::Exposure::default(),
-    );
+    let other = (crate::small::camera(target, Msaa::Off), Exposure::default());
     let other = small.world().spawn(other).id();
     // It looks the other way.
     small.world().entity_mut(other).insert((

@@ -1,8 +1,6 @@
 //! Scenes of white walls before the sky.
 
-use bevy::{camera::ScalingMode, prelude::*, render::view::Msaa};
-
-use crate::small::{Small, unlit};
+use crate::prelude::*;
 
 /// An orthographic projection with one unit per pixel.
 pub fn unit_per_pixel(size: UVec2) -> OrthographicProjection {

@@ -2,21 +2,12 @@
 //! 0.02 pixels: of the ink of two pixels at the borders of a line, each is rounded by 0.004 in the
 //! texture of ink and by 0.0045 in the picture of 8 bits.
 
-use std::ops::Range;
-
-use bevy::{
-    pbr::{DistanceFog, FogFalloff},
-    prelude::*,
-    render::view::Msaa,
-};
-use bevy_comics::{
-    ComicStyle, KeyLight, OutlineGroup, Outlines,
-    lines::{LineFog, LineWeight, ObjectEdges, Silhouettes},
-};
+use bevy::pbr::{DistanceFog, FogFalloff};
+use bevy_comics::lines::LineFog;
 
 use crate::{
     pictures::{assert_pass_matches_the_reference, outlined},
-    small::{Object, Small, black_ink, linear, unlit},
+    prelude::*,
     walls::{towards_the_sky, wall},
 };
 

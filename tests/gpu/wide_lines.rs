@@ -1,16 +1,10 @@
 //! Wide lines against an exhaustive search.
 
-use bevy::{prelude::*, render::view::Msaa};
-use bevy_comics::{
-    ComicStyle, DepthMap, Outlines,
-    depth::VisibleDepthRange,
-    lines::{Creases, Silhouettes},
-};
 use bevy_comics_testkit::reference::{crack::Crack, draw::Cracks, view::View};
 
 use crate::{
     pictures::{assert_pass_matches_the_reference, frame, outlined},
-    small::Small,
+    prelude::*,
 };
 
 #[test]

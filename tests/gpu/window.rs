@@ -4,17 +4,16 @@
 use std::{
     cell::Cell,
     env, fs,
-    path::{Path, PathBuf},
-    process::{Child, Command, Stdio},
+    process::{Child, Stdio},
     sync::atomic::{AtomicU32, Ordering},
     thread::sleep,
-    time::{Duration, Instant},
+    time::Instant,
 };
 
 use image::RgbImage;
 use serde_json::Value;
 
-use crate::{command_line::example, panel::session::Session};
+use crate::{command_line::example, panel::session::Session, prelude::*};
 
 /// Time after which an expected state is given up, also on a slow machine.
 const PATIENCE: Duration = Duration::from_secs(120);

@@ -1,16 +1,15 @@
 //! Devices that lack something, or allow little, and what the engine cannot do.
 
-use std::{
-    collections::BTreeSet,
-    sync::{Arc, Mutex},
-};
+use std::sync::Arc;
 
-use bevy::render::{occlusion_culling::OcclusionCulling, renderer::RenderDevice};
-use bevy::{light::cluster::GlobalClusterSettings, pbr::Lightmap};
-use bevy_comics::{Halftone, Hatching, Outlines, Paint, Paper, objects::DepthWrite};
+use bevy::{
+    light::cluster::GlobalClusterSettings, pbr::Lightmap,
+    render::occlusion_culling::OcclusionCulling,
+};
 use bevy_comics_testkit::device::gpu;
 
 use super::*;
+use crate::prelude::*;
 
 /// A style that has passes of every kind: range, lines, screens, boxes, textures.
 fn many_passes() -> ComicStyle {

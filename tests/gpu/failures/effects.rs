@@ -1,14 +1,12 @@
 //! Effects of a game: broken ones, and what effects may read.
 
 use bevy::render::render_resource::ShaderType;
-use bevy_comics::{
-    Effect, EffectPlugin, Outlines,
-    effect::{EffectContext, EffectRegistry, EffectShader, EffectStage, Needs, NoUniform},
-};
+use bevy_comics::effect::NoUniform;
+use bevy_comics_testkit::before::BeforeStylize;
 use serde::{Deserialize, Serialize};
 
 use super::*;
-use bevy_comics_testkit::{before::BeforeStylize, headless::Headless};
+use crate::prelude::*;
 
 /// An effect that takes no settings: `$name`, its need, and its WGSL.
 macro_rules! test_effect {

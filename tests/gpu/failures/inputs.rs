@@ -1,11 +1,9 @@
 //! Invalid settings, invalid colours, missing depth.
 
+use bevy_comics::ComicsSystems;
+
 use super::*;
-use bevy_comics::{
-    ComicsSystems, Outlines, Sketch, ToneBands,
-    lines::{Creases, Silhouettes},
-};
-use bevy_comics_testkit::studio::with_map;
+use crate::prelude::*;
 
 /// Removes the depth prepass as soon as it is requested.
 fn forbid_prepass(mut commands: Commands, cameras: Query<Entity, With<DepthPrepass>>) {
@@ -45,7 +43,7 @@ fn without_a_prepass_effects_without_depth_still_run() {
 }
 
 /// Checks settings that are absurd in so many ways.
-fn check_absurd(ways: std::ops::Range<usize>) {
+fn check_absurd(ways: Range<usize>) {
     let wild = [
         f32::NAN,
         f32::INFINITY,
@@ -81,7 +79,7 @@ fn check_absurd(ways: std::ops::Range<usize>) {
                 amount: other,
                 ..default()
             })
-            .with(bevy_comics::BlackFlats {
+            .with(BlackFlats {
                 slope: Some(value),
                 value: Some(other),
                 depth_weight: value,

@@ -8,24 +8,7 @@ pub mod prepasses;
 mod recovery;
 mod views;
 
-use bevy::{
-    anti_alias::{fxaa::Fxaa, smaa::Smaa},
-    camera::{Hdr, RenderTarget, Viewport},
-    core_pipeline::prepass::{DeferredPrepass, DepthPrepass},
-    prelude::*,
-    render::{RenderApp, render_resource::TextureFormat, view::Msaa},
-};
-use bevy_comics::{
-    Colorization, ComicStyle, ComicsDiagnostics, ComicsPlugin, Contours, DepthMap, DepthMapping,
-    Desaturation,
-    depth::VisibleDepthRange,
-    diagnostics::{ComicsStage, SkipReason, StageOutcome},
-    effects::{ColorizationMode, Equations},
-};
-
-use bevy_comics_testkit::headless::{HeadlessOptions, new_target};
-
-use crate::small::{Object, Small, camera, options, size, with_option};
+use crate::{prelude::*, small::camera};
 
 fn full_style() -> ComicStyle {
     ComicStyle::default()

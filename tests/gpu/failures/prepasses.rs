@@ -1,11 +1,8 @@
 //! Prepasses: when this crate inserts and removes them.
 
-use std::time::Duration;
+use bevy::pbr::ScreenSpaceAmbientOcclusion;
 
-use bevy::{core_pipeline::prepass::NormalPrepass, pbr::ScreenSpaceAmbientOcclusion};
-use bevy_comics::{Outlines, ToneBands, depth::RangeSmoothing, lines::Creases};
-
-use super::*;
+use crate::prelude::*;
 
 fn has<C: Component>(small: &Small) -> bool {
     let world = small.headless.app.world();

@@ -2,25 +2,22 @@
 //!
 //! A device that is lost ends the app, since the engine's clusters of lights panic (Bevy 0.19.1).
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use bevy::render::{
     RenderStartup,
-    error_handler::{ErrorType, RenderErrorHandler, RenderErrorPolicy},
-    renderer::RenderDevice,
+    error_handler::{ErrorType, RenderErrorPolicy},
     settings::WgpuSettings,
 };
-use bevy_comics::{
-    OutlineStyle, SelectionOutline, XRayOutline,
-    objects::{DepthWrite, MeshSections},
-};
-use bevy_comics_testkit::{headless::Headless, validation};
+use bevy_comics::{SelectionOutline, XRayOutline};
+use bevy_comics_testkit::validation;
 use image::RgbaImage;
 
 use super::*;
 use crate::{
     pairwise::effects::{GROUPS, Group, LINES},
-    small::{RenderErrors, spawn_objects, unlit},
+    prelude::*,
+    small::{RenderErrors, spawn_objects},
 };
 
 /// How often the renderer was started in an app whose handler may ask for a new device. Devices of two

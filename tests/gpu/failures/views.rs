@@ -176,7 +176,7 @@ fn check_post_processes(cases: &[(Msaa, bool)]) {
         if hdr {
             small.insert((Hdr, bevy::post_process::bloom::Bloom::NATURAL));
         }
-        small.insert(bevy::core_pipeline::tonemapping::Tonemapping::TonyMcMapface);
+        small.insert(Tonemapping::TonyMcMapface);
         small.settle();
         let plain = small.picture();
         small.insert(Fxaa::default()).settle();

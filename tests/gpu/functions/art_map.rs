@@ -1,9 +1,9 @@
 //! Tonal art maps: thresholds, planes.
 
-use bevy::math::DVec3;
 use bevy_comics_testkit::reference::art_map::{ink_at, plane_tone, plane_weights};
 
 use super::*;
+use crate::prelude::*;
 
 const MAP: &str = "#import bevy_comics::toon::art_map::{ink_at, plane_tone, plane_weights}";
 
@@ -12,7 +12,7 @@ fn thresholds_and_planes_match_the_reference() {
     let row = (0.0f32..=1.0, 0.0f32..=1.0, vec(-1.0f32..=1.0, 3)).prop_filter_map(
         "a direction",
         |(tone, threshold, n)| {
-            let normal = bevy::math::Vec3::new(n[0], n[1], n[2]);
+            let normal = Vec3::new(n[0], n[1], n[2]);
             let n = normal.try_normalize().filter(|_| normal.length() > 0.1)?;
             Some([tone, threshold, n.x, n.y, n.z])
         },

@@ -1,13 +1,12 @@
 //! What is left of lines where they crowd.
 
-use std::collections::HashSet;
-
 use bevy_comics_testkit::reference::{
     budget::{budget_weight, line_density},
     link::Place,
 };
 
 use super::*;
+use crate::prelude::*;
 
 const BUDGET: &str = "#import bevy_comics::lines::budget::{
         budget_weight, column_weight, counted, line_density,

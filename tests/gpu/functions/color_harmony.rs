@@ -1,12 +1,10 @@
 //! Complementary colours and two hues.
 
-use bevy_comics::{
-    ColorHarmony,
-    effects::{HarmonyCurve, HarmonyMode},
-};
+use bevy_comics::effects::HarmonyCurve;
 use bevy_comics_testkit::reference::color_harmony;
 
 use super::*;
+use crate::prelude::*;
 
 const HARMONY: &str = "#import bevy_comics::effects::color_harmony::{ColorHarmony, harmonize}";
 

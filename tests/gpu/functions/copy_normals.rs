@@ -1,12 +1,12 @@
 //! The copy of the normal prepass: a whole pass, because it computes nothing.
 
-use bevy_comics_testkit::{drawing::Target, wgsl::Definition};
+use bevy_comics_testkit::drawing::Target;
 
 use super::{bound::texture, toon::Numbers, *};
-use crate::shaders::shader;
+use crate::{prelude::*, shaders::shader};
 
 /// The format of the engine's prepass.
-const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgb10a2Unorm;
+const FORMAT: TextureFormat = TextureFormat::Rgb10a2Unorm;
 const SIZE: [u32; 2] = [19, 7];
 
 /// Codes of ten bits, and two of alpha.

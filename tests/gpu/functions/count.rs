@@ -1,10 +1,9 @@
 //! The count of covered pixels without an object id.
 
-use std::sync::OnceLock;
-
 use bevy_comics_testkit::{reference::count::counts, wgsl};
 
 use super::{toon::Numbers, *};
+use crate::prelude::*;
 
 /// Pixels that a workgroup counts: 8 invocations in x and in y, of which each counts a row of 16
 /// pixels, and every fourth pixel of every fourth row.
@@ -53,8 +52,8 @@ impl Picture {
         let [depths, ids, rectangle] =
             [&depths[..], self.ids.as_flattened(), &viewport[..]].map(bytes);
         let size = [self.size[0], self.size[1], 1];
-        let depths = gpu.texture_of(wgpu::TextureFormat::R32Float, size, &depths);
-        let ids = gpu.texture_of(wgpu::TextureFormat::Rg32Uint, size, &ids);
+        let depths = gpu.texture_of(TextureFormat::R32Float, size, &depths);
+        let ids = gpu.texture_of(TextureFormat::Rg32Uint, size, &ids);
         let rectangle = gpu.buffer(&rectangle, wgpu::BufferUsages::UNIFORM);
         let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC;
         let found = gpu.buffer(&[0; 8], usage);

@@ -1,20 +1,17 @@
 //! The colours of near, middle and far.
 
 use bevy::color::ColorToComponents;
-use bevy_comics::{
-    DepthLayers,
-    effects::{DepthLayer, Granularity, LayerBorders},
-};
 use bevy_comics_testkit::reference::depth_layers;
 
 use super::*;
+use crate::prelude::*;
 
 const PLANES: &str = "#import bevy_comics::depth::map::layer_weights
     #import bevy_comics::effects::depth_layers::{LayerColors, DepthLayers, layers_color}";
 
 /// What the shader takes of a plane.
 fn packed(s: &DepthLayer) -> [f32; 6] {
-    let lab = bevy::color::Oklaba::from(s.tint).to_f32_array();
+    let lab = Oklaba::from(s.tint).to_f32_array();
     [
         lab[1] * s.tint_amount,
         lab[2] * s.tint_amount,

@@ -1,13 +1,8 @@
 //! The cracks that a fragment finds, which is run as a function.
 
-use bevy_comics::{
-    Outlines,
-    lines::{Creases, LineResponse, ObjectEdges, Silhouettes},
-};
 use bevy_comics_testkit::{
-    read_back::{FloatImage, IdImage},
-    reference::{crack::crack, view::View},
-    wgsl::{Definition, without_stage},
+    reference::{crack::crack, map::Projection, view::View},
+    wgsl::without_stage,
 };
 
 use super::{
@@ -16,7 +11,7 @@ use super::{
     toon::Numbers,
     *,
 };
-use crate::{cracks::is_rounded, shaders::shader};
+use crate::{cracks::is_rounded, prelude::*, shaders::shader};
 
 /// No step of a `Picture` is at a limit of these: a few would be at round numbers.
 fn outlines() -> Outlines {

@@ -1,12 +1,12 @@
 //! Focus: distances, radii, and what may be taken from where.
 
-use bevy_comics::{Effect, Focus, effect::EffectContext, effects::FocusAt};
 use bevy_comics_testkit::reference::{
     focus::{SKY, defocus, taken},
     smoothstep,
 };
 
 use super::{settings::expression, *};
+use crate::prelude::*;
 
 const FOCUS: &str = "#import bevy_comics::effects::focus::{
         Focus, defocus, nearness_of, reaching, taken,
@@ -29,7 +29,7 @@ fn focus() -> Focus {
 fn views() -> [EffectContext; 2] {
     let perspective = EffectContext::default();
     let mut orthographic = perspective;
-    orthographic.depth_axis = bevy::math::Vec2::new(52.0, -50.0);
+    orthographic.depth_axis = Vec2::new(52.0, -50.0);
     orthographic.depth_reference = Some(12.0);
     [perspective, orthographic]
 }

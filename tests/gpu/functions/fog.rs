@@ -1,9 +1,10 @@
 //! How much of a line the engine's distance fog hides.
 
-use bevy::math::{Mat4, Vec3, Vec4Swizzles};
+use bevy::math::Vec4Swizzles;
 use bevy_comics_testkit::reference::fog::{Falloff, fog_fraction};
 
 use super::*;
+use crate::prelude::*;
 
 const FOG: &str = "#import bevy_comics::lines::fog::{Fog, fog_distance, fog_fraction}";
 

@@ -1,9 +1,9 @@
 //! What a pixel covers: singular values.
 
-use bevy::math::DVec2;
 use bevy_comics_testkit::reference::footprint::singular_values;
 
 use super::*;
+use crate::prelude::*;
 
 const FOOTPRINT: &str = "#import bevy_comics::effect::footprint::singular_values";
 

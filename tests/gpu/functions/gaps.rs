@@ -1,7 +1,5 @@
 //! Gaps in lines that are closed.
 
-use std::collections::{HashMap, HashSet};
-
 use bevy_comics_testkit::reference::{
     crack::Crack,
     gaps::{gaps, source},
@@ -9,6 +7,7 @@ use bevy_comics_testkit::reference::{
 };
 
 use super::*;
+use crate::prelude::*;
 
 const GAPS: &str = "#import bevy_comics::lines::gaps::{gaps_between, source_step}";
 

@@ -1,17 +1,13 @@
 //! Screens and plates.
 
-use bevy::color::Color;
-use bevy_comics::{Halftone, effects::HalftoneMode};
-use bevy_comics_testkit::{
-    reference::{
-        blue_noise::blue_noise,
-        halftone::{Plate, inked, plate_cover, plate_tones, screen_amount},
-        screen,
-    },
-    screens::SHAPES,
+use bevy_comics_testkit::reference::{
+    blue_noise::blue_noise,
+    halftone::{Plate, inked, plate_cover, plate_tones, screen_amount},
+    screen,
 };
 
 use super::*;
+use crate::prelude::*;
 
 const HALFTONE: &str = "#import bevy_comics::effects::halftone::{
         Halftone, inked, page_screen, plate_cover, plate_tones, screen_amount,

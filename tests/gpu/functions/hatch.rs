@@ -1,10 +1,9 @@
 //! Strokes of the toon material: tones of light, surfaces at rest, drawings.
 
-use bevy::math::DVec3;
-use bevy_comics::Hatching;
 use bevy_comics_testkit::reference::hatch::{hatch_tone, rest_normal};
 
 use super::*;
+use crate::prelude::*;
 
 const HATCH: &str = "#import bevy_comics::toon::hatch::{Hatch, hatch_drawing, hatch_tone, light_share, rest_surface}";
 

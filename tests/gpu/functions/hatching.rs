@@ -1,10 +1,9 @@
 //! Hatching: surfaces, families of planes, layers, tones.
 
-use bevy::math::{DMat4, DVec2, DVec3, Vec3};
-use bevy_comics::{Hatching, effects::HatchingGround};
 use bevy_comics_testkit::reference::hatching::{Hatch, Surface, strokes_left};
 
 use super::*;
+use crate::prelude::*;
 
 const HATCHING: &str = "
     #import bevy_comics::effect::strokes::{Strokes, Surface, darkness, ground_color, hatched, page_at}

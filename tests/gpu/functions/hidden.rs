@@ -1,15 +1,13 @@
 //! Which pixels of marked objects are hidden in the picture.
 
-use bevy_comics_testkit::{
-    reference::hidden::{HIDDEN, in_front},
-    wgsl::Definition,
-};
+use bevy_comics_testkit::reference::hidden::{HIDDEN, in_front};
 
 use super::{
     bound::{floats, pairs, texture},
     toon::Numbers,
     *,
 };
+use crate::prelude::*;
 
 const MARKED: &str = "#import bevy_comics::depth::view::view
     #import bevy_comics::lines::hidden::marked_object
@@ -158,7 +156,7 @@ fn hidden_pixels_of_a_multisampled_picture_match_the_reference() {
     let layers: Vec<Vec<[f32; 4]>> = (samples.iter())
         .map(|texels| texels.iter().map(|depth| [*depth, 0.0, 0.0, 1.0]).collect())
         .collect();
-    let picture = gpu().multisampled(wgpu::TextureFormat::R32Float, SIZE, &layers);
+    let picture = gpu().multisampled(TextureFormat::R32Float, SIZE, &layers);
     let definitions = [("OBJECT_IDS", None), ("MULTISAMPLED_PICTURE", None)];
     assert_matches_the_reference(&mut n, &definitions, &picture, &samples[0]);
 }

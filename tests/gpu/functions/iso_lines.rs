@@ -1,10 +1,10 @@
 //! Lines of equal values.
 
-use bevy::math::{DMat4, Mat4, Vec3};
-use bevy_comics::{IsoLines, effects::IsoField};
+use bevy_comics::effects::IsoField;
 use bevy_comics_testkit::reference::iso_lines::{iso_coverage, iso_error, iso_place, iso_value};
 
 use super::*;
+use crate::prelude::*;
 
 const ISO: &str = "#import bevy_comics::effects::iso_lines::{
         IsoLines, iso_coverage, iso_error, iso_place, iso_value,

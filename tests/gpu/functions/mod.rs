@@ -69,18 +69,7 @@ mod walk;
 mod weight;
 mod widths;
 
-use bevy::color::{Color, Hsva};
-use bevy_comics::{
-    BlackFlats, Colorization, Contours, Desaturation,
-    effects::{ColorizationMode, ContourOperator, Equations},
-};
-use proptest::{
-    collection::vec,
-    prelude::{Just, ProptestConfig, Strategy, any, prop_oneof},
-    sample::select,
-    test_runner::TestRunner,
-};
-
+use bevy::color::Hsva;
 use bevy_comics_testkit::{
     device::gpu,
     reference::{
@@ -89,6 +78,14 @@ use bevy_comics_testkit::{
         window,
     },
 };
+use proptest::{
+    collection::vec,
+    prelude::{Just, ProptestConfig, Strategy, any, prop_oneof},
+    sample::select,
+    test_runner::TestRunner,
+};
+
+use crate::prelude::*;
 
 const COLOR: &str = "#import bevy_comics::effect::color::{srgb_encode, srgb_decode, linear_to_oklab, oklab_to_linear, finite, hue_of, hue_color}";
 

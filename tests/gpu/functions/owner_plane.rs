@@ -1,15 +1,14 @@
 //! Near, middle and far, and the abstraction, at the pixels that own lines.
 
-use bevy_comics_testkit::{
-    reference::owner_plane::{Creases, Placed, crease_left, depth, weights},
-    wgsl::Definition,
-};
+use bevy_comics_testkit::reference::map::Projection;
+use bevy_comics_testkit::reference::owner_plane::{Creases, Placed, crease_left, depth, weights};
 
 use super::{
     bound::{buffer, floats, pairs, texture, words},
     toon::Numbers,
     *,
 };
+use crate::prelude::*;
 
 const SIZE: [u32; 2] = [23, 11];
 /// Objects of the table, of which the last one stands for all ids behind it.

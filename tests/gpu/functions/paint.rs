@@ -1,6 +1,5 @@
 //! Paint and means over boxes.
 
-use bevy_comics::{Paint, effects::PaintKernel};
 use bevy_comics_testkit::{
     painting::{QUADRANTS, RADII, SLOPES, edge_moved, noisy, quadrant, random},
     reference::{
@@ -13,6 +12,7 @@ use super::{
     settings::{expression, view},
     *,
 };
+use crate::prelude::*;
 
 const PAINT: &str = "#import bevy_comics::effects::paint::{
         Paint, chosen, chosen_color, direction_of, no_choice, paint_radius, reaching_share, sector_direction,

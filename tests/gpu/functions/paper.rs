@@ -1,12 +1,12 @@
 //! Ink on paper.
 
-use bevy_comics::Paper;
 use bevy_comics_testkit::reference::paper::on_paper;
 
 use super::{
     settings::{expression, view},
     *,
 };
+use crate::prelude::*;
 
 const IMPORTS: &str = "#import bevy_comics::effects::paper::{Paper, on_paper}";
 

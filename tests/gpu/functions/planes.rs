@@ -1,12 +1,11 @@
 //! Where the planes of bits are stored.
 
-use std::collections::BTreeSet;
-
 use bevy_comics_testkit::reference::planes::{
     COLUMN_PLANES, Size, across_words, column_word, row_word, words,
 };
 
 use super::*;
+use crate::prelude::*;
 
 const PLANES: &str = "#import bevy_comics::lines::edge::Grid
     #import bevy_comics::lines::planes::{across_words, column_word, row_word}";

@@ -1,6 +1,5 @@
 //! Normals of simpler forms against their references.
 
-use bevy_comics::toon::DetailAxis;
 use bevy_comics_testkit::{
     device::gpu,
     reference::{detail, mix, proxy, stylized_highlight::unit},
@@ -8,6 +7,7 @@ use bevy_comics_testkit::{
 use proptest::{collection::vec, prelude::Strategy};
 
 use super::for_batches;
+use crate::prelude::*;
 
 const IMPORT: &str =
     "#import bevy_comics::toon::proxy::{Proxy, between, proxy_amount, proxy_normal}";

@@ -1,11 +1,10 @@
 //! Tones of ramps against their references.
 
-use bevy::color::Color;
-use bevy_comics::toon::{Ramp, RampStop};
 use bevy_comics_testkit::{device::gpu, reference::ramp};
 use proptest::prelude::{Just, Strategy, prop_oneof};
 
 use super::{ONE_CODE, for_batches};
+use crate::prelude::*;
 
 const STOPS: usize = Ramp::MOST_STOPS;
 /// Three numbers for each stop; then how much light arrives, its change over a pixel, and what

@@ -2,7 +2,7 @@
 
 use bevy_comics_testkit::{
     reference::remember::{At, inside, past_at, past_nearest, square},
-    wgsl::{Definition, without_stage},
+    wgsl::without_stage,
 };
 
 use super::{
@@ -10,7 +10,7 @@ use super::{
     toon::Numbers,
     *,
 };
-use crate::shaders::shader;
+use crate::{prelude::*, shaders::shader};
 
 const DEPTH: [Definition; 1] = [("DEPTH", None)];
 

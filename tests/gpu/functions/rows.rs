@@ -1,12 +1,9 @@
 //! What the walk down four columns of the grid finds at the borders of pixels.
 
-use bevy_comics_testkit::{
-    reference::{
-        hidden::{HIDDEN, in_front},
-        normal,
-        rows::{Border, across, border},
-    },
-    wgsl::Definition,
+use bevy_comics_testkit::reference::{
+    hidden::{HIDDEN, in_front},
+    normal,
+    rows::{Border, across, border},
 };
 
 use super::{
@@ -14,6 +11,7 @@ use super::{
     toon::Numbers,
     *,
 };
+use crate::prelude::*;
 
 /// Grids in one picture: x, y, width and height. They are narrower than a block of four columns, as
 /// wide, and wider; around them are other pixels.

@@ -1,7 +1,8 @@
 //! The settings of an effect as WGSL text, from the bytes of its uniform.
 
 use bevy::math::UVec4;
-use bevy_comics::effect::{AnyEffect, EffectContext};
+
+use crate::prelude::*;
 
 /// A view of this size in physical pixels, at a scale factor, `seconds` after the start.
 pub fn view(size: [u32; 2], scale_factor: f32, seconds: f64) -> EffectContext {

@@ -1,9 +1,9 @@
 //! The filters of shadow maps and their slopes.
 
-use bevy::math::DVec2;
 use bevy_comics_testkit::reference::shadow_texels::{SAMPLES, filtered, nearest_plane, slope};
 
 use super::*;
+use crate::prelude::*;
 
 /// Shadow maps in which a half plane, a stripe or scattered texels are lit.
 const MAP: &str = "

@@ -1,9 +1,10 @@
 //! How screens follow objects.
 
-use bevy::math::{DMat4, DQuat, DVec3, Mat4, Quat, Vec3};
+use bevy::math::Quat;
 use bevy_comics_testkit::reference::similarity::similarity_of;
 
 use super::*;
+use crate::prelude::*;
 
 const SIMILARITY: &str = "#import bevy_comics::effect::similarity::similarity_of";
 
@@ -83,7 +84,7 @@ fn check_size(row: &[f32], found: [f32; 4], want: [f64; 3]) {
 /// The length of the Y axis on the page, of that of an axis that lies on it.
 fn steepness(matrix: DMat4, rotation: DQuat) -> f64 {
     let seen = matrix * (rotation * DVec3::Y).extend(0.0);
-    let page = seen.truncate().truncate() * bevy::math::DVec2::new(1280.0, 720.0);
+    let page = seen.truncate().truncate() * DVec2::new(1280.0, 720.0);
     page.length() / (720.0 * matrix.row(1).truncate().length())
 }
 

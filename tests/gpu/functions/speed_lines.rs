@@ -2,14 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use bevy::math::Vec2;
-use bevy_comics::{Effect, SpeedLines, effect::EffectContext, effects::SpeedLineKind};
 use bevy_comics_testkit::reference::speed_lines::Drawing;
 
 use super::{
     settings::{expression, view},
     *,
 };
+use crate::prelude::*;
 
 const IMPORTS: &str = "#import bevy_comics::effects::speed_lines::{SpeedLines, atan_of_fraction, speed_line_coverage}";
 

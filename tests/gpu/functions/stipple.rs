@@ -2,8 +2,6 @@
 
 use std::f64::consts::PI;
 
-use bevy::math::{DVec2, DVec3};
-use bevy_comics::{Hatching, effects::HatchingMarks};
 use bevy_comics_testkit::reference::{
     hatching::{Hatch, Surface},
     stipple::disc_coverage,
@@ -13,6 +11,7 @@ use super::{
     hatching::{VIEW, is_near, view},
     *,
 };
+use crate::prelude::*;
 
 const STIPPLE: &str = "
     #import bevy_comics::effect::footprint::singular_values

@@ -1,12 +1,12 @@
 //! The level of strokes along an axis of a map.
 
-use bevy::math::DVec2;
 use bevy_comics_testkit::reference::{footprint::singular_values, stroke_level::stroke_level};
 
 use super::{
     footprint::{change, pair, rounding},
     *,
 };
+use crate::prelude::*;
 
 #[test]
 fn levels_of_strokes_match_the_reference() {

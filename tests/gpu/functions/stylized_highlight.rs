@@ -1,9 +1,5 @@
 //! Signs of light, rims and the detail of ramps against their references.
 
-use bevy::{color::Color, math::Vec2};
-use bevy_comics::toon::{
-    DetailAxis, HighlightShape, Ramp, RampStop, Rim, RimWidth, StylizedHighlight,
-};
 use bevy_comics_testkit::{
     device::gpu,
     reference::{detail, stylized_highlight, toon::rim},
@@ -11,6 +7,7 @@ use bevy_comics_testkit::{
 use proptest::{collection::vec, prelude::Strategy};
 
 use super::{ONE_CODE, for_batches};
+use crate::prelude::*;
 
 const IMPORT: &str = "#import bevy_comics::toon::stylized_highlight::{StylizedHighlight, Frame, frame_along, \
     stylized_highlight_coverage, stylized_highlight_radius, faithful_distance, moved, place_of, sign_distance}";

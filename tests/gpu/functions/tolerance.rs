@@ -1,11 +1,9 @@
 //! Whether the depth prepass shows a fragment, up to a tolerance.
 
-use bevy_comics_testkit::{
-    reference::tolerance::{is_near, tolerance},
-    wgsl::Definition,
-};
+use bevy_comics_testkit::reference::tolerance::{is_near, tolerance};
 
 use super::*;
+use crate::prelude::*;
 
 const NEAR: &str = "#import bevy_comics::objects::tolerance::is_near";
 

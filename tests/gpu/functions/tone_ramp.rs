@@ -1,11 +1,10 @@
 //! Tones of the picture against their reference.
 
-use bevy::color::Color;
-use bevy_comics::ToneRamp;
 use bevy_comics_testkit::{device::gpu, reference::tone_ramp};
 use proptest::{collection::vec, prelude::Strategy};
 
 use super::{codes_apart, for_batches, rgb};
+use crate::prelude::*;
 
 const IMPORT: &str = "#import bevy_comics::effects::tone_ramp::{ToneRamp, tone_detail, toned}
     #import bevy_comics::effect::color::linear_to_oklab";

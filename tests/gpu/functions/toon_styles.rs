@@ -1,8 +1,9 @@
 //! Lines, tone bands, sketch and toon light against their references.
 
-use super::*;
-use bevy_comics::{Sketch, ToneBands, ToonLight, effects::Equations};
 use bevy_comics_testkit::reference::{crack, edge, light, sketch, tone_bands};
+
+use super::*;
+use crate::prelude::*;
 
 const EDGE: &str = "#import bevy_comics::lines::edge::{gradient, gradient_extremes, edge_response, component_response, is_outdone, step_excess, step_response, fold, fold_response, is_ridge, is_rim_ridge, line_coverage, line_offset, pack_ink, unpack_crack, encode_ink, decode_ink}";
 

@@ -1,9 +1,9 @@
 //! Two tones by lightness.
 
-use bevy_comics::TwoTone;
 use bevy_comics_testkit::reference::two_tone::{inked_light_fraction, light_fraction};
 
 use super::*;
+use crate::prelude::*;
 
 /// For every threshold, softness, lightness and change of it. The ends are whole: at a
 /// threshold of 0 everything is light, at 1 everything is dark.

@@ -1,11 +1,12 @@
 //! How wide a line is at a crack: each factor.
 
-use bevy_comics::lines::LineWeight;
+use bevy_comics_testkit::reference::map::Projection;
 use bevy_comics_testkit::reference::weight::{
     kind_weight, light_weight, nib_weight, perspective_weight, taper_weight,
 };
 
 use super::*;
+use crate::prelude::*;
 
 const WEIGHT: &str = "#import bevy_comics::lines::weight::{
         Weight, kind_weight, light_weight, nib_weight, perspective_weight, taper_weight,

@@ -1,9 +1,10 @@
 //! The width of the lines of objects, at pixels of the pass that draws ids.
 
-use bevy::math::{DMat4, DVec3, EulerRot, Quat, Vec3};
+use bevy::math::{EulerRot, Quat};
 use bevy_comics_testkit::reference::{pressure::Frame as ObjectFrame, widths::line_width};
 
 use super::{toon::Numbers, *};
+use crate::prelude::*;
 
 const WIDTHS: &str = "#import bevy_comics::objects::widths::{line_width, pressure}
     #import bevy_pbr::mesh_bindings::mesh

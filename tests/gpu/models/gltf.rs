@@ -1,8 +1,10 @@
 //! Small glTF models made by code.
 
-use std::{fs, path::Path};
+use std::fs;
 
 use serde_json::{Value, json};
+
+use crate::prelude::*;
 
 /// A ball or a box with one material.
 #[derive(Clone, Copy)]

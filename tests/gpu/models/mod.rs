@@ -5,16 +5,16 @@ pub mod gltf;
 mod textures;
 mod turntable;
 
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use std::fs;
 
+use gltf::{Gltf, Part, Shape};
 use image::RgbImage;
 use serde_json::json;
 
-use crate::command_line::{folder, run};
-use gltf::{Gltf, Part, Shape};
+use crate::{
+    command_line::{folder, run},
+    prelude::*,
+};
 
 const SKIN: [f32; 3] = [0.78, 0.59, 0.43];
 

@@ -1,11 +1,14 @@
 //! Textures that cannot be shown are named, and the model is drawn without them.
 
-use std::{fs, path::Path};
+use std::fs;
 
 use serde_json::{Value, json};
 
 use super::{Gltf, SKIN, Shot, assert_color_of_skin, ball};
-use crate::command_line::{folder, run};
+use crate::{
+    command_line::{folder, run},
+    prelude::*,
+};
 
 /// A PNG of one colour.
 fn png(color: [u8; 3]) -> Vec<u8> {

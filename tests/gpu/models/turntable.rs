@@ -1,11 +1,11 @@
 //! Series of pictures: turntables and sheets of presets.
 
-use std::{collections::HashSet, fs, io::BufReader};
+use std::{fs, io::BufReader};
 
 use image::RgbImage;
 
 use super::{Gltf, Part, Shape, bounds, figure, files, render};
-use crate::command_line::folder;
+use crate::{command_line::folder, prelude::*};
 
 const GREEN: [f32; 3] = [0.1, 0.6, 0.1];
 const SIZE: (u32, u32) = (160, 120);
@@ -169,7 +169,7 @@ fn a_sheet_shows_the_model_in_the_presets_that_are_named() {
 #[test]
 #[ignore = "long: compiles the shaders of every preset"]
 fn a_sheet_shows_the_model_in_every_preset_with_its_name() {
-    let count = bevy_comics::presets::ALL.len() as u32 + 1;
+    let count = presets::ALL.len() as u32 + 1;
     let [pictures, labels] = sheet("sheet", "--presets", [6, count]);
     // The figures of the paper differ by thresholds that a plain model need not show.
     let least = count as usize - 4;

@@ -1,10 +1,5 @@
 //! What holds in every row. A comment says what a check sees.
 
-use bevy::prelude::*;
-use bevy_comics::{
-    ComicStyle, ComicsDiagnostics, Sketch,
-    diagnostics::{ComicsStage, SkipReason, StageOutcome},
-};
 use image::RgbaImage;
 
 use super::{
@@ -13,7 +8,7 @@ use super::{
     effects::{GROUPS, LINES},
     stage::OUTSIDE,
 };
-use crate::small::Small;
+use crate::prelude::*;
 
 /// The fraction of pixels in flat parts of the picture that may have another tone: pixels at which a
 /// threshold of dots, strokes or bands lies within one code. 2 % is the line between two bands of tone

@@ -1,7 +1,9 @@
 //! Pictures of the matrix: what they show, and how far apart they are.
 
-use bevy::math::{URect, UVec2};
+use bevy::math::URect;
 use image::RgbaImage;
+
+use crate::prelude::*;
 
 /// Display codes that two pictures of one tone may differ by. A picture of 8 bits, and the deferred
 /// renderer's colours of 8 bits, are off by one code each. The steepest curve between, of dots

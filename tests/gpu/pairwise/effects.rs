@@ -1,14 +1,8 @@
 //! The effects of the matrix, in groups.
 
-use std::collections::BTreeSet;
+use bevy_comics::effects::PaperAnchor;
 
-use bevy_comics::{
-    Abstraction, BlackFlats, ColorHarmony, Colorization, ComicStyle, Contours, DepthLayers,
-    Desaturation, Focus, Halftone, Hatching, IsoLines, Misregistration, Outlines, Paint, Paper,
-    Sketch, SpeedLines, ToneBands, ToneRamp, TwoTone, Vignette,
-    effect::EffectRegistry,
-    effects::{ColorizationMode, FocusAt, PaperAnchor},
-};
+use crate::prelude::*;
 
 /// A group's name and style.
 pub type Group = (&'static str, fn() -> ComicStyle);

@@ -7,12 +7,7 @@ pub mod covering;
 pub mod effects;
 mod stage;
 
-use std::collections::HashMap;
-
-use bevy::prelude::*;
-use bevy_comics::ComicStyle;
 use bevy_comics_testkit::headless;
-
 use checks::{
     Base, Shown, assert_drawn, assert_finite, assert_near, assert_outside, assert_silhouettes,
     assert_still, assert_styled,
@@ -22,7 +17,7 @@ use covering::{ANTI_ALIASING, AREAS, AntiAliasing, Area, Row, VIEWS, View, rows}
 use effects::{GROUPS, LINES};
 use stage::SIZE;
 
-use crate::small::Small;
+use crate::prelude::*;
 
 /// The tests that the rows are divided among, which run at the same time.
 pub const TESTS: [&str; 3] = [

@@ -1,33 +1,21 @@
 //! The scene of the matrix, and the camera of a row.
 
 use bevy::{
-    anti_alias::{fxaa::Fxaa, smaa::Smaa, taa::TemporalAntiAliasing},
-    camera::{
-        Hdr, MainPassResolutionOverride, OrthographicProjection, PerspectiveProjection, Projection,
-        RenderTarget, ScalingMode, SubCameraView, Viewport,
-    },
+    camera::{MainPassResolutionOverride, Projection, SubCameraView},
     core_pipeline::{
-        prepass::{DeferredPrepass, DepthPrepass},
         schedule::{Core3d, Core3dSystems},
-        tonemapping::{DebandDither, Tonemapping, tonemapping},
+        tonemapping::tonemapping,
     },
     pbr::DefaultOpaqueRendererMethod,
-    prelude::*,
     render::{
-        RenderApp,
-        renderer::{RenderContext, RenderDevice, ViewQuery},
-        view::{Msaa, ViewTarget},
+        renderer::{RenderContext, ViewQuery},
+        view::ViewTarget,
     },
 };
-use bevy_comics::{ComicStyle, ToonLight};
 use wgpu::util::TextureBlitter;
 
 use super::covering::{AntiAliasing, Area, Row, View};
-use crate::{
-    small::{Small, options, unlit},
-    toon,
-    upscaled::override_main_pass,
-};
+use crate::{prelude::*, toon, upscaled::override_main_pass};
 
 /// Size of the target.
 pub const SIZE: UVec2 = UVec2::new(144, 96);
@@ -69,14 +57,14 @@ fn upscale(
     let device = device.wgpu_device();
     let corner = device.create_texture(&wgpu::TextureDescriptor {
         label: Some("corner of the main pass"),
-        size: wgpu::Extent3d {
+        size: Extent3d {
             width: size.0.x,
             height: size.0.y,
             depth_or_array_layers: 1,
         },
         mip_level_count: 1,
         sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
+        dimension: TextureDimension::D2,
         format: picture.format(),
         usage: wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::TEXTURE_BINDING,
         view_formats: &[],

@@ -4,35 +4,25 @@
 use std::{
     cell::{Cell, RefCell},
     fs,
-    path::{Path, PathBuf},
     sync::atomic::{AtomicU32, Ordering},
-    time::Duration,
 };
 
 use bevy::{
-    camera::{RenderTarget, Viewport},
     input::{
         ButtonState,
         keyboard::{Key, KeyboardInput},
         mouse::MouseButtonInput,
     },
-    math::DVec2,
-    prelude::*,
-    render::view::Msaa,
     time::TimeUpdateStrategy,
     window::{CursorMoved, PrimaryWindow, Window, WindowRef, WindowResolution},
 };
-use bevy_comics::{ComicStyle, ComicsPlugin, inspector::ComicsInspectorPlugin};
-use bevy_comics_testkit::{
-    headless::HeadlessOptions,
-    panel_state::panel_state,
-    scenes::BuiltIn,
-    studio::{Studio, wear},
-};
+use bevy_comics::inspector::ComicsInspectorPlugin;
+use bevy_comics_testkit::{panel_state::panel_state, studio::wear};
 use image::{DynamicImage, RgbImage};
 use serde_json::Value;
 
 use super::session::Session;
+use crate::prelude::*;
 
 /// Frames after which an expected state is given up. The panel looks at its files four times a second.
 const PATIENCE: usize = 500;

@@ -1,7 +1,5 @@
 //! The borders of planes in the histogram of the panel.
 
-use bevy_comics::{ComicStyle, DepthLayers, effects::LayerBorders};
-use bevy_comics_testkit::scenes::BuiltIn;
 use serde_json::Value;
 
 use super::{
@@ -10,6 +8,7 @@ use super::{
     session::Session,
     tab_to,
 };
+use crate::prelude::*;
 
 /// The histogram is in the window without scrolling.
 const HEIGHT: u32 = 550;

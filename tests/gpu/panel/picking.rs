@@ -2,7 +2,6 @@
 
 use std::fs;
 
-use bevy_comics::toon::ToonShading;
 use serde_json::Value;
 
 use super::{
@@ -10,7 +9,10 @@ use super::{
     session::Session,
     teapot,
 };
-use crate::window::{Window, changed};
+use crate::{
+    prelude::*,
+    window::{Window, changed},
+};
 
 /// 1285 x 1000 logical pixels: all that is edited is in the window without scrolling.
 const WIDTH: u32 = 514;

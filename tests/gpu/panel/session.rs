@@ -1,10 +1,9 @@
 //! A session with the inspector: a window, and the mouse and the keyboard in front of it.
 
-use std::path::Path;
-
-use bevy_comics::ComicStyle;
 use image::RgbImage;
 use serde_json::Value;
+
+use crate::prelude::*;
 
 /// A window with the inspector, real or hidden, and what hands do there.
 pub trait Session {

@@ -1,17 +1,14 @@
 //! The panel beside a game's own egui windows, and the order of the plugins.
 
 use bevy::{
-    camera::{ImageRenderTarget, RenderTarget},
-    image::Image,
-    prelude::*,
+    camera::ImageRenderTarget,
     window::{PrimaryWindow, WindowResolution},
 };
-use bevy_comics::{
-    ComicsPlugin, Contours,
-    inspector::{ComicsInspector, ComicsInspectorPlugin},
-};
-use bevy_comics_testkit::headless::{self, Headless, HeadlessOptions, new_target};
+use bevy_comics::inspector::{ComicsInspector, ComicsInspectorPlugin};
+use bevy_comics_testkit::headless;
 use bevy_egui::{EguiContext, EguiContexts, EguiPlugin, EguiPrimaryContextPass, egui};
+
+use crate::prelude::*;
 
 fn options() -> HeadlessOptions {
     HeadlessOptions {

@@ -1,13 +1,10 @@
 //! Nothing of the shipped WGSL is left out: every entry point is composed, and every definition that a
 //! file asks for is set for some entry point that the file is a part of.
 
-use std::collections::{BTreeMap, BTreeSet};
-
-use bevy_comics::effect::EffectRegistry;
 use bevy_comics_testkit::asked::{File, definitions, files, has_entry_point, reached};
 
 use super::{Definitions, fused, lines, materials, scene};
-use crate::toon_shaders;
+use crate::{prelude::*, toon_shaders};
 
 /// The template of the fused pass; its text is that of the registry.
 const FUSED: &str = "fused/fused.wgsl";

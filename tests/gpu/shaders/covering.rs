@@ -1,10 +1,7 @@
 //! Rows of choices that together have every pair of choices that can be.
 
-use std::collections::BTreeSet;
-
-use bevy_comics_testkit::wgsl::Definition;
-
 use super::Definitions;
+use crate::prelude::*;
 
 /// One way of something, with its definitions. One that ends in `=` and a number has that value.
 pub type Choice = &'static [&'static str];

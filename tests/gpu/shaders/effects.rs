@@ -1,10 +1,7 @@
 //! The effects with all of their variants.
 
-use bevy_comics::effect::{EffectRegistry, Needs};
-
-use bevy_comics_testkit::wgsl::Definition;
-
 use super::{Definitions, flags, numbers, optional, product};
+use crate::prelude::*;
 
 /// An effect with all of its variants: the definitions that `variants` sets and
 /// those of its needs.

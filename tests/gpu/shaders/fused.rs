@@ -1,7 +1,6 @@
 //! The fused pass: modes of effects, combinations of effects, views.
 
-use bevy_comics::{diagnostics::DebugView, effect::EffectRegistry};
-use bevy_comics_testkit::wgsl::{Definition, check as check_text, module_with, written};
+use bevy_comics_testkit::wgsl::{check as check_text, module_with, written};
 
 use super::{
     Definitions,
@@ -9,6 +8,7 @@ use super::{
     effects::{self, debug_views, line_effects, picture_effects},
     flags, optional, parts, subsets,
 };
+use crate::prelude::*;
 
 /// The definitions that the plugin sets for a pass. Those about depth are left out where nothing
 /// reads it; one number is always set.

@@ -1,7 +1,7 @@
 //! Shaders that are composed with the engine's own modules: those of motion lines and of transparent
 //! meshes. Those of the toon material are in `toon_shaders`.
 
-use bevy::{prelude::*, render::view::Msaa, shader::Shader};
+use bevy::shader::Shader;
 use bevy_comics_testkit::wgsl::Library;
 
 use super::{
@@ -9,10 +9,7 @@ use super::{
     covering::{Choice, covering, definitions, has},
     shader,
 };
-use crate::{
-    small::{Small, options, size},
-    toon_shaders::ALWAYS,
-};
+use crate::{prelude::*, toon_shaders::ALWAYS};
 
 /// The crate's modules and the engine's, as an app loads them.
 pub fn library() -> Library {

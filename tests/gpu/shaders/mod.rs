@@ -12,9 +12,11 @@ mod parts;
 mod production;
 mod scene;
 
-use std::{collections::HashMap, fs, ops::Range};
+use std::fs;
 
-use bevy_comics_testkit::wgsl::{Definition, files, module_with};
+use bevy_comics_testkit::wgsl::{files, module_with};
+
+use crate::prelude::*;
 
 /// Definitions that are set together.
 pub type Definitions = Vec<Definition<'static>>;

@@ -1,21 +1,20 @@
 //! The lists of variants have what the effects ask for, with many settings.
 
 use bevy::reflect::{
-    PartialReflect, ReflectMut, TypeInfo,
+    PartialReflect, ReflectMut,
     enums::{DynamicEnum, DynamicVariant, Enum, VariantInfo},
     structs::Struct,
 };
 use bevy_comics::{
-    effect::{AnyEffect, EffectContext, EffectRegistry, EffectType, FieldRange, Needs, Variants},
+    effect::{EffectType, FieldRange, Variants},
     lines::Sheet,
-    presets,
 };
-use bevy_comics_testkit::scenes::noise::Random;
 
 use super::{
     Definitions,
     effects::{self, NEEDS},
 };
+use crate::prelude::*;
 
 /// Settings that are tried of every effect.
 const TRIES: usize = 400;
@@ -91,7 +90,7 @@ fn views() -> Vec<EffectContext> {
     let sheet = Sheet {
         ink_bleed: 1.0,
         dry_brush: 0.5,
-        corner: bevy::math::Vec2::ZERO,
+        corner: Vec2::ZERO,
         scale: 1.0,
         unit: 1.0,
         seed: 1,

@@ -1,13 +1,12 @@
 //! Light from all around and contact shadows, against references.
 
-use bevy::math::DVec3;
 use bevy_comics_testkit::{
     device::gpu,
     reference::{Rgb, toon::ambient::two_tones},
-    wgsl::Definition,
 };
 
 use super::Numbers;
+use crate::prelude::*;
 
 /// Light on the six axes, a normal, the setting, ambient light, and whether it affects lightmapped
 /// meshes.

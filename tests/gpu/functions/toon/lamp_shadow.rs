@@ -1,6 +1,5 @@
 //! Shadows of the sun with a hard edge. The shipped functions read real shadow maps.
 
-use bevy::math::{DMat4, DQuat, DVec3};
 use bevy_comics_testkit::{
     device::gpu,
     reference::toon::{
@@ -10,6 +9,7 @@ use bevy_comics_testkit::{
 };
 
 use super::Numbers;
+use crate::prelude::*;
 
 /// Texels along the side of a map, and the depths in them, in steps of 1 / 65535.
 const SIZE: u32 = 32;

@@ -1,7 +1,6 @@
 //! What arrives of the engine's light sources, and of light from all around.
 
-use bevy::math::{DVec2, DVec3, DVec4};
-use bevy_comics::ToonLight;
+use bevy::math::DVec4;
 use bevy_comics_testkit::{
     device::gpu,
     reference::{
@@ -12,10 +11,10 @@ use bevy_comics_testkit::{
             surface::{Surface, pixel_size},
         },
     },
-    wgsl::Definition,
 };
 
 use super::{Numbers, READ};
+use crate::prelude::*;
 
 /// A surface as in `super::READ`, then 32 numbers.
 const LAMP_ROW: usize = super::SETTINGS + 32;

@@ -9,15 +9,12 @@ mod reflect;
 mod signs;
 mod strokes;
 
-use bevy::{color::Color, math::DVec3};
-use bevy_comics::{
-    ToonLight,
-    toon::{DetailAxis, Ramp, RampBlend, RampDetail, RampStop},
-};
 use bevy_comics_testkit::reference::toon::{
     surface::{Arriving, Footprint, Surface},
     two_shades::Evenly,
 };
+
+use crate::prelude::*;
 
 /// Numbers that look random.
 pub struct Numbers(u64);

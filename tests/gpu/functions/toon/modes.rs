@@ -1,24 +1,17 @@
 //! What the modes of ramps make of several lights.
 
-use bevy::math::DVec3;
-use bevy_comics::{
-    ToonLight,
-    toon::{DetailAxis, RampBlend},
-};
 use bevy_comics_testkit::{
     device::gpu,
-    reference::{
-        toon::ambient::brightness,
-        toon::{
-            brightest, light_fraction, per_light, ramp_light, reflect,
-            surface::{Arriving, Surface},
-            two_shades::{self, Evenly},
-        },
+    reference::toon::{
+        ambient::brightness,
+        brightest, light_fraction, per_light, ramp_light, reflect,
+        surface::{Arriving, Surface},
+        two_shades::{self, Evenly},
     },
-    wgsl::Definition,
 };
 
 use super::{READ, Row, assert_color, evenly, lamps, light, rows, surface};
+use crate::prelude::*;
 
 const ROWS: usize = 4096;
 

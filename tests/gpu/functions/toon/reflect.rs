@@ -1,7 +1,5 @@
 //! Shadows and highlights of one light, and of several.
 
-use bevy::math::DVec3;
-use bevy_comics::toon::RampBlend;
 use bevy_comics_testkit::{
     device::gpu,
     reference::{
@@ -15,6 +13,7 @@ use bevy_comics_testkit::{
 };
 
 use super::{READ, Row, assert_color, lamps, light, rows, surface};
+use crate::prelude::*;
 
 /// How far rounding moves a smooth step over a cosine: by 1.5 over its width. The cosine of two unit
 /// vectors and a bias is right to 1e-6, and so is its change over a pixel.

@@ -1,13 +1,5 @@
 //! Signs of light and rims of a surface.
 
-use bevy::{
-    color::Color,
-    math::{DVec3, Vec2},
-};
-use bevy_comics::{
-    ToonLight,
-    toon::{HighlightFrame, HighlightShape, RampBlend, Rim, RimWidth, StylizedHighlight},
-};
 use bevy_comics_testkit::{
     device::gpu,
     reference::{
@@ -21,8 +13,11 @@ use bevy_comics_testkit::{
     },
 };
 
-use super::super::stylized_highlight::SHAPES;
-use super::{Numbers, READ, Row, assert_color, lamps, light, rows, surface, vector};
+use super::{
+    super::stylized_highlight::SHAPES, Numbers, READ, Row, assert_color, lamps, light, rows,
+    surface, vector,
+};
+use crate::prelude::*;
 
 const FRAMES: [(HighlightFrame, &[(&str, Option<u32>)]); 4] = [
     (HighlightFrame::View, &[]),

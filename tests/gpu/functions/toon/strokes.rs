@@ -1,21 +1,16 @@
 //! Strokes and dots of a surface of the toon material.
 
-use bevy::math::DVec3;
-use bevy_comics::{
-    Hatching,
-    effect::linear_rgb,
-    effects::{HatchingGround, HatchingMarks},
-};
+use bevy_comics::effect::linear_rgb;
 use bevy_comics_testkit::{
     device::gpu,
     reference::{
         hatch::hatch_tone,
         hatching::{Hatch, Surface},
     },
-    wgsl::Definition,
 };
 
 use super::Numbers;
+use crate::prelude::*;
 
 /// A pixel, a share of light, a colour, seconds, drawings per second, the factor of the darkness, the
 /// opacity, the ground; a place at rest with its changes over a pixel and its normal.
