@@ -11,6 +11,7 @@ use crate::{
         effects::{GROUPS, Group, LINES},
     },
     prelude::*,
+    toon,
 };
 
 /// The APIs that are compared.

@@ -47,8 +47,11 @@ fn number(row: &HashMap<String, String>, name: &str) -> f64 {
 #[test]
 fn every_effect_is_timed() {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    let timed = ["examples/report/page_styles.rs", "testkit/src/work.rs"]
-        .map(|path| fs::read_to_string(root.join(path)).expect(path));
+    let timed = [
+        "examples/report/page_styles.rs",
+        "crates/testkit/src/work.rs",
+    ]
+    .map(|path| fs::read_to_string(root.join(path)).expect(path));
     for effect in EffectRegistry::built_in().types() {
         let name = (effect.type_info)().type_path_table().short_path();
         let wanted = format!("{name}::default()");

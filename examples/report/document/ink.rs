@@ -180,7 +180,7 @@ pub fn straight(out: &mut String, folder: &Path) -> Result<(), String> {
     out.push_str(
         "\nHow far the middle of the ink of a line of 2 pixels is from its edge: the root mean \
          square over all columns and offsets. Accepted: a tenth more than what is aimed at for \
-         the slope, or than what one run of steps can tell (`testkit/src/straight_edges.rs`). \
+         the slope, or than what one run of steps can tell (`crates/testkit/src/straight_edges.rs`). \
          The largest of the slopes of each row, and the largest part of what is accepted.\n\n\
          | slopes | px | part |\n|---|---|---|\n",
     );

@@ -14,7 +14,7 @@ use crate::{
 const EXCEPTIONS: &str = "Two things that grow are not this crate's, and are left out:\n\n\
     - Bevy 0.19.1 keeps bind groups of cameras that are gone (`BinUnpackingBindGroups`): three for each, six \
     with a prepass, with this crate or without. The run removes them after each frame (`forget_gone_views` in \
-    `testkit/src/soak.rs`).\n\
+    `crates/testkit/src/soak.rs`).\n\
     - The first camera wears one look throughout, since lavapipe compiles shaders again for each change of looks \
     and keeps the memory. `SOAK=looks` changes nothing else, and an empty `SOAK` everything; tests change looks \
     in a short run that counts the resources of the GPU.\n\n";

@@ -5,7 +5,7 @@ use bevy_comics::{ToonScene, toon::ToonShading};
 
 macro_rules! looks {
     ($($name:literal),*) => {
-        [$(($name, include_str!(concat!("../../../../assets/shading/", $name, ".toon.ron")))),*]
+        [$(($name, include_str!(concat!("../../../../../assets/shading/", $name, ".toon.ron")))),*]
     };
 }
 

@@ -27,7 +27,7 @@ pub mod soak;
 pub mod specimens;
 pub mod style_work;
 // The crate's own stopwatch, included because it is private there.
-#[path = "../../src/timing/stopwatch.rs"]
+#[path = "../../../src/timing/stopwatch.rs"]
 mod stopwatch;
 pub mod straight_edges;
 pub mod strokes;
@@ -35,10 +35,10 @@ pub mod studio;
 pub mod truth;
 pub mod validation;
 // The order of the crate's grains, included because it is private there.
-#[path = "../../src/fused/blue_noise/void_and_cluster.rs"]
+#[path = "../../../src/fused/blue_noise/void_and_cluster.rs"]
 mod void_and_cluster;
 pub mod wgsl;
 pub mod work;
 
 /// The root of the repository.
-pub const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+pub const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
