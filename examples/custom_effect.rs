@@ -3,6 +3,7 @@
 
 use bevy::{input::common_conditions::input_just_pressed, prelude::*};
 use bevy_comics::{effect::*, prelude::*};
+use bevy_comics_inspector::ComicsInspectorPlugin;
 use serde::{Deserialize, Serialize};
 
 /// Rain in front of the scene. Near things hide what rains behind them.
@@ -64,13 +65,12 @@ impl Effect for Rain {
 }
 
 fn main() {
-    let mut app = App::new();
-    app.add_plugins((DefaultPlugins, ComicsPlugin, EffectPlugin::<Rain>::default()))
+    App::new()
+        .add_plugins((DefaultPlugins, ComicsPlugin, EffectPlugin::<Rain>::default()))
+        .add_plugins(ComicsInspectorPlugin::default())
         .add_systems(Startup, setup)
-        .add_systems(Update, toggle_rain.run_if(input_just_pressed(KeyCode::Space)));
-    #[cfg(feature = "inspector")]
-    app.add_plugins(bevy_comics::inspector::ComicsInspectorPlugin::default());
-    app.run();
+        .add_systems(Update, toggle_rain.run_if(input_just_pressed(KeyCode::Space)))
+        .run();
 }
 
 fn setup(mut commands: Commands, assets: Res<AssetServer>) {

@@ -10,11 +10,8 @@ use bevy::{
     render::view::Msaa,
     window::WindowResolution,
 };
-use bevy_comics::{
-    ComicStyle, ComicsPlugin,
-    inspector::{ComicsInspector, ComicsInspectorPlugin},
-    presets,
-};
+use bevy_comics::{ComicStyle, ComicsPlugin, presets};
+use bevy_comics_inspector::{ComicsInspector, ComicsInspectorPlugin};
 use bevy_comics_testkit::{
     orbit::{Orbit, OrbitPlugin},
     panel_state::panel_state,

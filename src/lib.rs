@@ -51,7 +51,8 @@
 //! | `toon` | the toon material (feature `toon`, on by default) |
 //! | [`effect`] | the trait for effects of your own, and what it needs |
 //! | [`diagnostics`] | which stages ran on which camera, and debug views |
-//! | `inspector` | a panel that edits styles while the game runs (feature `inspector`) |
+//!
+//! The crate `bevy_comics_inspector` is a panel that edits styles while the game runs.
 //!
 //! Equations are those of *Comics stylizations of 3D scenes using GPU* (Suarez, Belhadj, Boyer),
 //! cited as \[CS\], and of *Cartoon-Looking Rendering of 3D-Scenes* (Wang, after Decaudin), cited as
@@ -68,8 +69,6 @@ pub mod diagnostics;
 pub mod effect;
 pub mod effects;
 mod fused;
-#[cfg(feature = "inspector")]
-pub mod inspector;
 pub mod lines;
 #[cfg(any(feature = "objects", feature = "toon"))]
 mod motion_lines;
@@ -83,8 +82,6 @@ mod samples;
 mod schedule;
 mod settings;
 pub mod style;
-#[cfg(feature = "inspector")]
-mod timing;
 #[cfg(feature = "toon")]
 pub mod toon;
 
@@ -148,7 +145,6 @@ mod pages {
         FixedRange: "docs/fixed-range.md";
         SplitScreen: "docs/split-screen.md";
         TransparentThings: "docs/transparent-things.md";
-        Inspector: "docs/inspector.md";
         Print: "docs/print.md";
         Performance: "docs/performance.md";
         Benchmarks: "docs/benchmarks.md";

@@ -9,8 +9,9 @@ use bevy::{
 };
 use bevy_comics::{
     ComicsDiagnostics, ComicsPlugin, ToonScene, depth::VisibleDepthRange,
-    diagnostics::StageOutcome, inspector::ComicsInspectorPlugin, presets, style::Preset,
+    diagnostics::StageOutcome, presets, style::Preset,
 };
+use bevy_comics_inspector::ComicsInspectorPlugin;
 use bevy_comics_testkit::{
     orbit::{Orbit, OrbitPlugin},
     scenes::{BuiltIn, ScenePart, Stage, ToonPart, Vantage, figure::motion::MotionPlugin},

@@ -21,6 +21,7 @@ use std::path::PathBuf;
 
 use bevy::{camera::RenderTarget, prelude::*, window::WindowResolution};
 use bevy_comics::ComicsPlugin;
+use bevy_comics_inspector::ComicsInspectorPlugin;
 use bevy_comics_testkit::demo;
 
 use best::BestTimes;
@@ -175,8 +176,11 @@ fn open_window(options: Options) {
         lettered: true,
     };
     app.insert_resource(BestTimes::load(options.best))
-        .add_plugins((ComicsPlugin, InputPlugin, game));
-    #[cfg(feature = "inspector")]
-    app.add_plugins(bevy_comics::inspector::ComicsInspectorPlugin::default());
+        .add_plugins((
+            ComicsPlugin,
+            InputPlugin,
+            game,
+            ComicsInspectorPlugin::default(),
+        ));
     app.run();
 }

@@ -9,9 +9,8 @@ pub struct ScreenPlugin;
 impl Plugin for ScreenPlugin {
     fn build(&self, app: &mut App) {
         app.add_systems(Startup, spawn)
-            .add_systems(Update, (write, letter_sounds));
-        #[cfg(feature = "inspector")]
-        app.add_systems(OnEnter(Page::Photo), open_panel::<true>)
+            .add_systems(Update, (write, letter_sounds))
+            .add_systems(OnEnter(Page::Photo), open_panel::<true>)
             .add_systems(OnExit(Page::Photo), open_panel::<false>);
     }
 }
@@ -131,7 +130,6 @@ fn notice(game: &Game, page: Page, best: &BestTimes) -> String {
         }
         Page::Won => format!("ALL LANTERNS!\n\n{seconds:.1} s\n\nEnter: next level   R: again"),
         Page::Lost => "THE LIGHTS GO OUT.\n\nR: try again   Enter: title".into(),
-        Page::Photo if !cfg!(feature = "inspector") => "F: back".into(),
         Page::Photo | Page::Flying => String::new(),
     }
 }
@@ -210,10 +208,7 @@ fn letter_sounds(
 }
 
 /// The panel is open in the photo mode.
-#[cfg(feature = "inspector")]
-fn open_panel<const OPEN: bool>(
-    inspector: Option<ResMut<bevy_comics::inspector::ComicsInspector>>,
-) {
+fn open_panel<const OPEN: bool>(inspector: Option<ResMut<bevy_comics_inspector::ComicsInspector>>) {
     if let Some(mut inspector) = inspector {
         inspector.open = OPEN;
     }

@@ -1,10 +1,12 @@
-//! The depth map as a function of distance, for the panel.
+//! The depth map as a function of distance.
+
+use bevy::{camera::Projection, math::Mat4};
 
 use super::{DepthMap, ProjectionKind, frame::DepthProjection};
 
 /// Where distances along the view's axis, in world units, are in a view's depth map.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct MapAxis {
+pub struct DepthAxis {
     /// The distance with D = 0.
     near: f64,
     scale: Scale,
@@ -19,14 +21,29 @@ enum Scale {
     Logarithmic { octaves: f64, least: f64 },
 }
 
-impl MapAxis {
-    /// `seen`: the near and the far end of the visible range, as it is drawn with. `None` if the
-    /// map depends on it and it is not known.
+impl DepthAxis {
+    /// The axis of a camera's map.
+    ///
+    /// `clip_from_view` is [`Camera::clip_from_view`](bevy::camera::Camera::clip_from_view),
+    /// `projection` the camera's component, if it has one, and `visible` the distances of the near
+    /// and the far end of the visible range, such as [`DepthHistogram::drawn`]. Returns `None` if the
+    /// map depends on the visible range and that is not known, or if the map tells no distances
+    /// apart.
     pub fn new(
         map: &DepthMap,
-        projection: &DepthProjection,
-        seen: Option<(f32, f32)>,
+        clip_from_view: &Mat4,
+        projection: Option<&Projection>,
+        visible: Option<(f32, f32)>,
     ) -> Option<Self> {
+        let map = map.sanitized();
+        Self::of(
+            &map,
+            &DepthProjection::new(clip_from_view, projection),
+            visible,
+        )
+    }
+
+    fn of(map: &DepthMap, projection: &DepthProjection, seen: Option<(f32, f32)>) -> Option<Self> {
         let frame = projection.frame(map);
         let (near, far) = if map.mapping.follows_visible_range() {
             let (near, far) = seen?;
@@ -74,7 +91,7 @@ impl MapAxis {
         self.near.is_finite() && size.is_finite() && size > 0.0
     }
 
-    /// D at a distance, 0 to 1.
+    /// `D` at a distance, 0 to 1.
     pub fn place(&self, distance: f64) -> f64 {
         let d = match self.scale {
             Scale::Linear(length) => (distance - self.near) / length,
@@ -85,7 +102,7 @@ impl MapAxis {
         d.clamp(0.0, 1.0)
     }
 
-    /// The distance at D.
+    /// The distance at `D`.
     pub fn distance(&self, d: f64) -> f64 {
         match self.scale {
             Scale::Linear(length) => self.near + d * length,
@@ -189,7 +206,7 @@ mod tests {
                         orthographic_floor: 0.01,
                         ..DepthMap::default()
                     };
-                    let axis = MapAxis::new(&map, &projection, Some(seen)).expect("known");
+                    let axis = DepthAxis::of(&map, &projection, Some(seen)).expect("known");
                     for step in 0..=20 {
                         let z = 0.6 * 1000f64.powf(f64::from(step) / 20.0);
                         let place = axis.place(z);
@@ -214,15 +231,15 @@ mod tests {
     #[test]
     fn an_unknown_range_or_an_empty_one_has_no_places() {
         let map = DepthMap::default();
-        assert_eq!(MapAxis::new(&map, &perspective(), None), None);
+        assert_eq!(DepthAxis::of(&map, &perspective(), None), None);
         let one = Some((7.0, 7.0));
         let flat = DepthMap { floor: 0.0, ..map };
-        assert_eq!(MapAxis::new(&flat, &perspective(), one), None);
+        assert_eq!(DepthAxis::of(&flat, &perspective(), one), None);
         assert_eq!(
-            MapAxis::new(&map, &perspective(), Some((f32::NAN, 1.0))),
+            DepthAxis::of(&map, &perspective(), Some((f32::NAN, 1.0))),
             None
         );
         let infinite = Some((1.0, f32::INFINITY));
-        assert_eq!(MapAxis::new(&map, &perspective(), infinite), None);
+        assert_eq!(DepthAxis::of(&map, &perspective(), infinite), None);
     }
 }

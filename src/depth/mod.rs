@@ -1,8 +1,7 @@
 //! The service of the depth map: the range of visible depths, and the map that
 //! effects read distance from.
 
-#[cfg(feature = "inspector")]
-pub(crate) mod axis;
+mod axis;
 mod borders;
 pub(crate) mod follow;
 pub(crate) mod frame;
@@ -23,6 +22,7 @@ use bevy::{
 };
 use serde::{Deserialize, Serialize};
 
+pub use axis::DepthAxis;
 pub use frame::ProjectionKind;
 pub(crate) use frame::{DepthFrame, RawDepth};
 pub use readback::{DepthBin, DepthHistogram, VisibleDepthRange};

@@ -57,8 +57,6 @@ pub trait AnyEffect: Any + Send + Sync + std::fmt::Debug {
 
     /// As [`Effect::line_reach`].
     fn any_line_reach(&self, view: &EffectContext) -> Option<f32>;
-    /// As [`Effect::report_name`].
-    fn any_report_name(&self) -> Option<String>;
     /// The bytes of [`Effect::uniform`] in WGSL's uniform layout.
     fn uniform_bytes(&self, view: &EffectContext) -> Vec<u8>;
     /// Inserts a copy of the effect as a component of an entity.
@@ -149,10 +147,6 @@ impl<E: Effect> AnyEffect for E {
 
     fn any_line_reach(&self, view: &EffectContext) -> Option<f32> {
         self.line_reach(view)
-    }
-
-    fn any_report_name(&self) -> Option<String> {
-        self.report_name()
     }
 
     fn uniform_bytes(&self, view: &EffectContext) -> Vec<u8> {

@@ -221,13 +221,6 @@ pub trait Effect:
             self
         }
     }
-
-    /// The name under which `docs/report` lists the measured accuracy of the
-    /// effect's lines, if it does. The panel shows that accuracy beside the time.
-    /// Default: none.
-    fn report_name(&self) -> Option<String> {
-        None
-    }
 }
 
 /// Where an effect can change the picture.

@@ -38,7 +38,7 @@ pub struct EffectType {
     /// Gets the effect from an entity, if the entity has it.
     pub get: for<'w> fn(EntityRef<'w>) -> Option<&'w dyn AnyEffect>,
     /// Registers the effect's type and those of its fields.
-    pub(crate) register: fn(&mut TypeRegistry),
+    pub register: fn(&mut TypeRegistry),
     pub(crate) remove: fn(&mut bevy::ecs::world::EntityWorldMut),
     pub(crate) read: ReadEffect,
     pub(crate) blend: BlendEffects,

@@ -18,7 +18,7 @@ use bevy::{
     reflect::{Reflect, TypePath, std_traits::ReflectDefault},
 };
 
-use super::{ComicStyle, ComicStyleError, format};
+use super::{ComicStyle, ComicStyleError};
 use crate::effect::EffectRegistry;
 
 /// Gives a camera the style of a [`ComicStyle`] asset.
@@ -98,7 +98,7 @@ impl AssetLoader for StyleLoader {
         reader.read_to_end(&mut bytes).await?;
         let text = String::from_utf8(bytes)
             .map_err(|error| std::io::Error::new(std::io::ErrorKind::InvalidData, error))?;
-        let read = format::read(&text, &self.registry.types())?;
+        let read = self.registry.read_style(&text)?;
         if let Some(advice) = read.advice {
             warn!("{}: {advice}", load_context.path());
         }

@@ -56,10 +56,12 @@ pub enum ComicStyleError {
 const VERSION: u32 = 3;
 const PREVIOUS: u32 = VERSION - 1;
 
-/// A style that was read.
-pub(crate) struct Read {
+/// A style that was read from a text, see [`EffectRegistry::read_style`].
+#[derive(Clone, Debug)]
+pub struct ReadStyle {
+    /// The style.
     pub style: ComicStyle,
-    /// What to change in a file of an older version.
+    /// What to rename in the text, if it has the previous version of the format.
     pub advice: Option<String>,
 }
 
@@ -105,38 +107,42 @@ impl EffectRegistry {
     /// # Errors
     /// As [`ComicStyle::from_ron`].
     pub fn style_from_ron(&self, text: &str) -> Result<ComicStyle, ComicStyleError> {
-        let read = read(text, &self.types())?;
+        let read = self.read_style(text)?;
         if let Some(advice) = read.advice {
             warn!("{advice}");
         }
         Ok(read.style)
+    }
+
+    /// As [`style_from_ron`](Self::style_from_ron), but returns the advice for a text of the
+    /// previous version instead of logging it.
+    ///
+    /// # Errors
+    /// As [`ComicStyle::from_ron`].
+    pub fn read_style(&self, text: &str) -> Result<ReadStyle, ComicStyleError> {
+        let current = match stated_version(text) {
+            Some(PREVIOUS) => renamed::upgraded(text, "3", renamed::STYLE),
+            None | Some(VERSION) => Upgraded::unchanged(text),
+            Some(found) => return Err(ComicStyleError::Version { found }),
+        };
+        let style = parse(&current.text, &self.types()).map_err(|error| {
+            let at = error.span.start;
+            ComicStyleError::Syntax {
+                line: at.line,
+                column: current.original_column(at.line, at.col),
+                message: error.code.to_string(),
+            }
+        })?;
+        Ok(ReadStyle {
+            style,
+            advice: current.advice(),
+        })
     }
 }
 
 /// The version that a text states.
 pub(crate) fn stated_version(text: &str) -> Option<u32> {
     renamed::version(text)
-}
-
-/// Reads the text of a style file.
-pub(crate) fn read(text: &str, types: &[&'static EffectType]) -> Result<Read, ComicStyleError> {
-    let current = match stated_version(text) {
-        Some(PREVIOUS) => renamed::upgraded(text, "3", renamed::STYLE),
-        None | Some(VERSION) => Upgraded::unchanged(text),
-        Some(found) => return Err(ComicStyleError::Version { found }),
-    };
-    let style = parse(&current.text, types).map_err(|error| {
-        let at = error.span.start;
-        ComicStyleError::Syntax {
-            line: at.line,
-            column: current.original_column(at.line, at.col),
-            message: error.code.to_string(),
-        }
-    })?;
-    Ok(Read {
-        style,
-        advice: current.advice(),
-    })
 }
 
 fn parse(

@@ -123,8 +123,7 @@ impl ComicStyle {
     /// what it looked like before. Over a camera's own style it takes the place of
     /// the applied style, so that the camera has its own style again when that is
     /// removed.
-    #[cfg(feature = "inspector")]
-    pub(crate) fn edit(&self, camera: &mut EntityCommands) {
+    pub fn edit(&self, camera: &mut EntityCommands) {
         let style = self.clone();
         camera.queue(move |mut camera: EntityWorldMut| {
             let own = own_look(&camera);

@@ -21,7 +21,7 @@ use bevy::{
 };
 
 pub use apply::{Comic, ComicTemplate};
-pub use format::ComicStyleError;
+pub use format::{ComicStyleError, ReadStyle};
 pub use presets::Preset;
 pub use transition::{StyleTransition, StyleTransitionFinished, TransitionEasing};
 

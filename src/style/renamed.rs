@@ -304,8 +304,8 @@ mod tests {
 )
 "##;
 
-    fn read(text: &str) -> Result<format::Read, ComicStyleError> {
-        format::read(text, &EffectRegistry::built_in().types())
+    fn read(text: &str) -> Result<format::ReadStyle, ComicStyleError> {
+        EffectRegistry::built_in().read_style(text)
     }
 
     #[test]

@@ -157,7 +157,6 @@ fn a_style_can_become_the_cameras_own() {
     assert_eq!(look(&app, camera), own);
 }
 
-#[cfg(feature = "inspector")]
 #[test]
 fn an_edit_of_an_applied_style_leaves_the_own_look_alone() {
     let (mut app, camera) = app();

@@ -1,4 +1,4 @@
-//! Where the lighting of a mesh is set, for the panel.
+//! Where the lighting of a mesh is set.
 
 use bevy::{
     asset::{Assets, Handle},
@@ -8,9 +8,9 @@ use bevy::{
 
 use super::{ToonLight, ToonMaterial, ToonScene, ToonShading, ToonShadingHandle, scene::Original};
 
-/// What sets the lighting of a mesh last, so that an edit of it stays.
+/// What sets the lighting of a mesh last, so that an edit of it stays: for editors.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum LightOwner {
+pub enum LightOwner {
     /// A shading: that of the mesh, of the name of its material, or of its scene.
     Shading(Handle<ToonShading>),
     /// [`ToonScene::light`] of this entity.
@@ -96,6 +96,11 @@ impl LightOwner {
         }
     }
 
+    /// The standard material that a [`ToonScene`] has replaced on a mesh.
+    pub fn original_material(world: &World, mesh: Entity) -> Option<&Handle<StandardMaterial>> {
+        Some(&world.get::<Original>(mesh)?.material)
+    }
+
     /// The number of meshes whose lighting is set here.
     pub fn meshes(&self, world: &mut World) -> usize {
         let all: Vec<Entity> = world
@@ -106,11 +111,6 @@ impl LightOwner {
         let has_this = |mesh: &&Entity| Self::of(world, **mesh).as_ref() == Some(self);
         all.iter().filter(has_this).count()
     }
-}
-
-/// The standard material that a scene has replaced on a mesh.
-pub(crate) fn original_of(world: &World, mesh: Entity) -> Option<&Handle<StandardMaterial>> {
-    Some(&world.get::<Original>(mesh)?.material)
 }
 
 fn is_loaded(world: &World, shading: &Handle<ToonShading>) -> bool {

@@ -8,7 +8,6 @@ mod detail;
 mod fuzz;
 mod hatch;
 mod ignored;
-#[cfg(feature = "inspector")]
 mod light_owner;
 mod material;
 mod name;
@@ -38,8 +37,7 @@ use bevy::{
 
 pub use art_map::TonalArtMap;
 pub use detail::{DetailAxis, RampDetail};
-#[cfg(feature = "inspector")]
-pub(crate) use light_owner::{LightOwner, original_of};
+pub use light_owner::LightOwner;
 pub use material::{ToonLight, ToonMaterial};
 pub use name::MaterialName;
 pub use proxy::{ProxyShape, ShadingProxy};

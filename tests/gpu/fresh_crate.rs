@@ -25,7 +25,8 @@ use bevy::{
     prelude::*,
     window::PrimaryWindow,
 };
-use bevy_comics::{Outlines, inspector::ComicsInspector};
+use bevy_comics::Outlines;
+use bevy_comics_inspector::ComicsInspector;
 use bevy_comics_testkit::headless::{Headless, HeadlessOptions, plugins};
 
 pub mod readme {

@@ -26,8 +26,8 @@ pub mod screens;
 pub mod soak;
 pub mod specimens;
 pub mod style_work;
-// The crate's own stopwatch, included because it is private there.
-#[path = "../../../src/timing/stopwatch.rs"]
+// The panel's stopwatch, included because it is private there.
+#[path = "../../inspector/src/timing/stopwatch.rs"]
 mod stopwatch;
 pub mod straight_edges;
 pub mod strokes;

@@ -4,7 +4,7 @@ use bevy::{
     input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll, MouseScrollUnit},
     prelude::*,
 };
-use bevy_comics::inspector::ComicsInspector;
+use bevy_comics_inspector::ComicsInspector;
 
 use crate::scenes::Vantage;
 

@@ -3,9 +3,9 @@
 use bevy::{diagnostic::FrameCount, prelude::*};
 use bevy_comics::{
     ComicStyle, ComicsDiagnostics, OutlineStyle, SplitView, StyleTransition, StyleWeight,
-    ToonMaterial, diagnostics::DebugView, effect::EffectRegistry, inspector::ComicsInspector,
-    toon::ToonShading,
+    ToonMaterial, diagnostics::DebugView, effect::EffectRegistry, toon::ToonShading,
 };
+use bevy_comics_inspector::ComicsInspector;
 use serde_json::{Value, json};
 
 /// The state of the panel, and of these cameras.

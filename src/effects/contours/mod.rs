@@ -156,13 +156,6 @@ impl Effect for Contours {
             faithful: u32::from(self.is_faithful()),
         }
     }
-
-    fn report_name(&self) -> Option<String> {
-        Some(match self.equations {
-            Equations::Corrected => format!("{:?}", self.operator),
-            Equations::Faithful => format!("{:?}, faithful equations", self.operator),
-        })
-    }
 }
 
 impl Contours {

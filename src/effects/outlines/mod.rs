@@ -129,16 +129,6 @@ impl Effect for Outlines {
             ..self
         }
     }
-
-    fn report_name(&self) -> Option<String> {
-        let kinds = (&self.silhouettes, &self.creases, &self.objects);
-        Some(String::from(match kinds {
-            (Some(_), Some(_), Some(_)) => "all outlines",
-            (Some(_), Some(_), None) => "silhouettes + creases",
-            (Some(_), None, None) => "silhouettes",
-            _ => "other kinds of outline",
-        }))
-    }
 }
 
 #[cfg(test)]

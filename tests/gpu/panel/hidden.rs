@@ -16,7 +16,7 @@ use bevy::{
     time::TimeUpdateStrategy,
     window::{CursorMoved, PrimaryWindow, Window, WindowRef, WindowResolution},
 };
-use bevy_comics::inspector::ComicsInspectorPlugin;
+use bevy_comics_inspector::ComicsInspectorPlugin;
 use bevy_comics_testkit::{panel_state::panel_state, studio::wear};
 use image::{DynamicImage, RgbImage};
 use serde_json::Value;

@@ -4,7 +4,7 @@ use bevy::{
     camera::ImageRenderTarget,
     window::{PrimaryWindow, WindowResolution},
 };
-use bevy_comics::inspector::{ComicsInspector, ComicsInspectorPlugin};
+use bevy_comics_inspector::{ComicsInspector, ComicsInspectorPlugin};
 use bevy_comics_testkit::headless;
 use bevy_egui::{EguiContext, EguiContexts, EguiPlugin, EguiPrimaryContextPass, egui};
 
