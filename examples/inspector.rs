@@ -20,7 +20,7 @@ use bevy_comics_testkit::{
 };
 
 const HELP: &str = "\
-The inspector on a built-in scene. F10 opens and closes the panel.
+The inspector on a built-in scene. F10 closes and opens the panel.
 
     --scene NAME       mountains, teapot, theatre, village or figure (village)
     --style NAME       the first style: a preset, a style file, or `none` (graphic-novel)
@@ -34,7 +34,7 @@ The inspector on a built-in scene. F10 opens and closes the panel.
     --shadings FOLDER     folder of shading files (assets/shading)
     --pictures FOLDER  folder of screenshots (screenshots)
     --memory FILE      file of the panel's settings, `none` for no file
-    --open             start with the panel open
+    --closed           start with the panel closed
     --state FILE       write what the panel shows to a JSON file, every frame
     --bench FRAMES     print the mean time of this number of frames, then exit
     --bare             without the inspector
@@ -81,7 +81,7 @@ fn options() -> Result<Options, lexopt::Error> {
         viewport: None,
         scale: None,
         plugin: ComicsInspectorPlugin::default(),
-        open: false,
+        open: true,
         bare: false,
         state: None,
         bench: None,
@@ -112,7 +112,7 @@ fn options() -> Result<Options, lexopt::Error> {
                 options.plugin.memory = (path.as_os_str() != "none").then_some(path);
             }
             Long("bare") => options.bare = true,
-            Long("open") => options.open = true,
+            Long("closed") => options.open = false,
             Long("state") => options.state = Some(parser.value()?.into()),
             Long("bench") => options.bench = Some(parser.value()?.parse()?),
             Long("help") => {

@@ -107,6 +107,36 @@ fn a_style_is_tuned() {
     close(&window);
 }
 
+/// The width of the panel is the user's alone: no page changes it, wherever the panel is.
+#[test]
+fn pages_keep_the_width_of_the_panel() {
+    let window = hidden();
+    open(&window);
+    let side = |i: usize| {
+        window.state()["widgets"]["panel"][i]
+            .as_f64()
+            .expect("a side")
+    };
+    let width = || side(2) - side(0);
+    for dock in ["Right", "Left", "Window"] {
+        if dock != "Right" {
+            window.click("dock");
+            window.click(&format!("dock.{dock}"));
+            window.frames(2);
+        }
+        let chosen = width();
+        for page in [
+            "Presets", "Style", "Object", "Files", "Views", "Cost", "Photo",
+        ] {
+            window.click(&format!("tab.{page}"));
+            for frame in 0..10 {
+                window.frames(1);
+                assert_eq!(width(), chosen, "{dock}, {page}, frame {frame}");
+            }
+        }
+    }
+}
+
 #[test]
 fn effects_are_turned_off_and_on() {
     let window = hidden();

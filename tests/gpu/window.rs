@@ -95,7 +95,7 @@ impl Window {
         let app = Command::new(program)
             .args(["--scene", "teapot", "--style"])
             .arg(&start)
-            .args(["--memory", "none"])
+            .args(["--memory", "none", "--closed"])
             .args(["--size", &format!("{}x{}", size[0], size[1])])
             .args(["--scale", &scale.to_string()])
             .arg("--state")

@@ -17,7 +17,7 @@ use bevy::{
     math::Vec2,
     reflect::TypeRegistry,
 };
-use bevy_egui::egui::{self, Align2, Color32, ScrollArea, Ui};
+use bevy_egui::egui::{self, Align2, Color32, ScrollArea, Ui, UiBuilder};
 
 use self::{
     header::{cameras, chosen_camera},
@@ -190,6 +190,12 @@ impl Panel {
                 Some(self.show_docked(ui, world, &mut widgets))
             };
             self.place = place.map(|place| place * ui.ctx().zoom_factor());
+            if let Some(place) = self.place {
+                let [left, top] = [place.min.x, place.min.y];
+                widgets
+                    .rects
+                    .insert("panel".into(), [left, top, place.max.x, place.max.y]);
+            }
             self.pick(ui, world);
         }
         if self.memory != before
@@ -217,7 +223,9 @@ impl Panel {
             .default_height(560.0)
             .pivot(Align2::LEFT_TOP)
             .default_pos([16.0, 16.0])
-            .show(ui.ctx(), |ui| self.contents(ui, world, widgets));
+            .show(ui.ctx(), |ui| {
+                in_given_room(ui, |ui| self.contents(ui, world, widgets));
+            });
         shown.map(|shown| shown.response.rect)
     }
 
@@ -234,7 +242,9 @@ impl Panel {
             .resizable(true)
             .default_size(self.memory.width)
             .min_size(240.0)
-            .show_inside(ui, |ui| self.contents(ui, world, widgets));
+            .show_inside(ui, |ui| {
+                in_given_room(ui, |ui| self.contents(ui, world, widgets));
+            });
         self.memory.width = shown.response.rect.width().round();
         shown.response.rect
     }
@@ -334,6 +344,16 @@ impl Panel {
         let pressed = ui.input(|input| input.pointer.any_down());
         pressed.then_some(self.presses)
     }
+}
+
+/// Draws contents that do not change the size of what they are in: a row that is too wide is cut
+/// off, and the width stays what the user chose.
+fn in_given_room(ui: &mut Ui, contents: impl FnOnce(&mut Ui)) {
+    let room = ui.available_rect_before_wrap();
+    let mut inside = ui.new_child(UiBuilder::new().max_rect(room));
+    inside.shrink_clip_rect(room.expand(ui.visuals().clip_rect_margin));
+    contents(&mut inside);
+    ui.advance_cursor_after_rect(room);
 }
 
 /// The toolkit's options that differ from its defaults.

@@ -16,7 +16,7 @@ use bevy::{
 };
 use bevy_egui::{
     EguiTextureHandle, EguiUserTextures,
-    egui::{self, Button, Slider, TextureId, Ui, Vec2, vec2},
+    egui::{self, Button, Label, Slider, TextureId, Ui, Vec2, vec2},
 };
 
 use super::{
@@ -122,7 +122,7 @@ impl Entry {
         note(widgets, format!("presets.{}", self.name), &picture);
         match &self.style {
             Ok(style) => {
-                ui.label(&self.title);
+                ui.add(Label::new(&self.title).truncate());
                 picture.clicked().then(|| style.clone())
             }
             Err(error) => {
@@ -182,13 +182,15 @@ impl Presets {
     /// The thumbnails, in as many columns as fit.
     fn pictures(&mut self, ui: &mut Ui, widgets: &mut Widgets) {
         let wide = ui.available_width();
-        let columns = (wide / 170.0).floor().max(1.0);
-        let width = (wide / columns - 10.0).max(80.0);
+        let gap = ui.spacing().item_spacing.x;
+        let columns = ((wide + gap) / 170.0).floor().max(1.0);
+        let width = ((wide + gap) / columns - gap).floor().max(80.0);
         let size = vec2(width, width * HEIGHT as f32 / WIDTH as f32);
         ui.horizontal_wrapped(|ui| {
             for entry in self.entries.iter().flatten() {
                 ui.allocate_ui(vec2(width, size.y + 24.0), |ui| {
                     ui.vertical(|ui| {
+                        ui.set_max_width(width);
                         let thumbnail = self.thumbnails.get(&entry.name);
                         if let Some(style) = entry.show(ui, thumbnail, size, widgets) {
                             self.chosen = Some(style);
