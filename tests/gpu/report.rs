@@ -48,7 +48,7 @@ fn number(row: &HashMap<String, String>, name: &str) -> f64 {
 fn every_effect_is_timed() {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
     let timed = [
-        "examples/report/page_styles.rs",
+        "tools/report/page_styles.rs",
         "crates/testkit/src/work.rs",
     ]
     .map(|path| fs::read_to_string(root.join(path)).expect(path));

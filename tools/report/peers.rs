@@ -1,4 +1,4 @@
-//! Times of other crates in the same app and run: `benches/peers`, a separate workspace.
+//! Times of other crates in the same app and run: `tools/peers`, a separate workspace.
 
 use std::process::Command;
 
@@ -30,10 +30,10 @@ pub fn measure(run: &Run) -> Result<(), String> {
 
 /// Builds the program and starts it.
 fn through_cargo() -> Command {
-    let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers/Cargo.toml");
+    let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/tools/peers/Cargo.toml");
     // A separate target folder, unless the caller sets one.
     let target = std::env::var_os("PEERS_TARGET_DIR").map_or_else(
-        || concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers/target").into(),
+        || concat!(env!("CARGO_MANIFEST_DIR"), "/tools/peers/target").into(),
         std::path::PathBuf::from,
     );
     let mut cargo = Command::new(std::env::var("CARGO").unwrap_or_else(|_| "cargo".into()));

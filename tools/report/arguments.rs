@@ -19,7 +19,7 @@ const USAGE: &str = "cargo run --example report -- [OPTIONS]
 Without --only, everything is measured but soak, which draws 100,000 frames and has no times. Date, commit
 and seconds of each section are written to sections.csv in the folder of the report.
 
-The section peers builds benches/peers, or starts the program that the variable PEERS_PROGRAM names,
+The section peers builds tools/peers, or starts the program that the variable PEERS_PROGRAM names,
 also with --quick.";
 
 /// What the command line asks for.

@@ -2,9 +2,9 @@
 //! default settings, with the true lines of the same frames.
 //!
 //! ```text
-//! cargo run --manifest-path benches/peers/Cargo.toml
-//! cargo run --manifest-path benches/peers/Cargo.toml -- times FILE ROUNDS FRAMES
-//! cargo run --manifest-path benches/peers/Cargo.toml -- sheet FILE.png
+//! cargo run --manifest-path tools/peers/Cargo.toml
+//! cargo run --manifest-path tools/peers/Cargo.toml -- times FILE ROUNDS FRAMES
+//! cargo run --manifest-path tools/peers/Cargo.toml -- sheet FILE.png
 //! ```
 //!
 //! The second form times passes for the report: see `times.rs`. The third one draws a figure with

@@ -25,7 +25,7 @@ use crate::{save, sheet::grid};
 /// The first program of the README.
 mod first {
     #![allow(dead_code, reason = "its `main` opens a window")]
-    include!("../simple.rs");
+    include!("../../examples/simple.rs");
 
     pub fn add_to(app: &mut App) {
         app.add_systems(Startup, setup);
