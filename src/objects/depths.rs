@@ -39,7 +39,7 @@ use super::{
     ObjectDepthRequest, ObjectDepths, ObjectEye,
     abstraction::{BY_DISTANCE, ObjectAbstraction, dials},
     groups::{ObjectGroups, extract_object_groups},
-    ids::object_id,
+    object_id::object_id,
 };
 use crate::{
     depth::{DepthMapping, prepare::ViewDepthRange},

@@ -8,14 +8,11 @@ use bevy::{
         query::{With, Without},
         system::{Commands, Query, Res, ResMut},
     },
-    material::key::ErasedMaterialPipelineKey,
     math::UVec2,
-    mesh::MeshVertexBufferLayoutRef,
     render::{
         render_resource::{
-            CompareFunction, Extent3d, LoadOp, Operations, RenderPassColorAttachment,
-            RenderPassDepthStencilAttachment, RenderPassDescriptor, RenderPipelineDescriptor,
-            SpecializedMeshPipeline, SpecializedMeshPipelineError, StoreOp, TextureDescriptor,
+            Extent3d, LoadOp, Operations, RenderPassColorAttachment,
+            RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureDescriptor,
             TextureDimension, TextureFormat, TextureUsages,
         },
         renderer::RenderDevice,
@@ -23,10 +20,7 @@ use bevy::{
     },
 };
 
-use super::{
-    ID_FORMAT,
-    items::{IdVariant, ObjectIdSpecializer},
-};
+use super::ID_FORMAT;
 
 /// On a view in the render world: a request for the layer of marked objects.
 #[derive(Component)]
@@ -100,26 +94,5 @@ pub(super) fn prepare_layers(
     }
     for view in &stale {
         commands.entity(view).remove::<ViewLayer>();
-    }
-}
-
-/// The pipeline of a marked object: that of its id, with a depth test of its own.
-pub(super) struct MarkSpecializer(pub ObjectIdSpecializer);
-
-impl SpecializedMeshPipeline for MarkSpecializer {
-    type Key = (ErasedMaterialPipelineKey, IdVariant);
-
-    fn specialize(
-        &self,
-        key: Self::Key,
-        layout: &MeshVertexBufferLayoutRef,
-    ) -> Result<RenderPipelineDescriptor, SpecializedMeshPipelineError> {
-        let mut descriptor = self.0.specialize(key, layout)?;
-        descriptor.label = Some("comics_marked_objects".into());
-        if let Some(depth) = &mut descriptor.depth_stencil {
-            depth.depth_write_enabled = Some(true);
-            depth.depth_compare = Some(CompareFunction::GreaterEqual);
-        }
-        Ok(descriptor)
     }
 }

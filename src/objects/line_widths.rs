@@ -31,9 +31,9 @@ use bevy::{
 
 use super::{
     IdRequest, IdsWanted, ObjectStyles, ViewLineWidths,
-    components::inherit,
-    depth_test::with_prepass_depth,
-    items::{ObjectIdPipeline, ObjectTable},
+    inherit::inherit,
+    object_table::ObjectTable,
+    pipeline::{ObjectIdPipeline, with_prepass_depth},
     sections::SectionBuffer,
     widths::WIDTH_FORMAT,
 };

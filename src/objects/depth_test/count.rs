@@ -7,6 +7,7 @@ use std::sync::{
 };
 
 use bevy::{
+    asset::AssetServer,
     camera::{MainPassResolutionOverride, Viewport},
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::{
@@ -160,6 +161,18 @@ impl IdCount {
             state.store(FREE, Ordering::Release);
         });
     }
+}
+
+pub(super) fn init_count_pipeline(
+    mut commands: Commands,
+    assets: Res<AssetServer>,
+    views: Query<Entity, With<IdCount>>,
+) {
+    // This runs again after a lost device, whose buffers are no longer valid.
+    for view in &views {
+        commands.entity(view).remove::<IdCount>();
+    }
+    commands.insert_resource(CountPipeline::new(&assets));
 }
 
 /// Gives the views whose ids are drawn what counting needs, on devices with compute shaders.

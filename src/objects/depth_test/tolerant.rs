@@ -15,10 +15,8 @@ use bevy::{
     },
     render::{
         render_resource::{
-            BindGroup, BindGroupLayoutDescriptor, Extent3d, LoadOp, Operations,
-            RenderPassDepthStencilAttachment, ShaderStages, StoreOp, TextureDescriptor,
-            TextureDimension, TextureSampleType, TextureUsages,
-            binding_types::{texture_2d, texture_2d_multisampled},
+            BindGroup, Extent3d, LoadOp, Operations, RenderPassDepthStencilAttachment, StoreOp,
+            TextureDescriptor, TextureDimension, TextureUsages,
         },
         renderer::RenderDevice,
         texture::{CachedTexture, TextureCache},
@@ -49,24 +47,6 @@ impl TolerantIds {
             stencil_ops: None,
         }
     }
-}
-
-/// A layout of the pass, with the depth of the prepass.
-pub(in crate::objects) fn with_prepass_depth(
-    layout: &BindGroupLayoutDescriptor,
-    multisampled: bool,
-) -> BindGroupLayoutDescriptor {
-    let float = TextureSampleType::Float { filterable: false };
-    let texture = if multisampled {
-        texture_2d_multisampled(float)
-    } else {
-        texture_2d(float)
-    };
-    let mut layout = layout.clone();
-    layout
-        .entries
-        .push(texture.build(3, ShaderStages::FRAGMENT));
-    layout
 }
 
 /// The views whose ids are drawn, and those whose ids are no longer drawn.

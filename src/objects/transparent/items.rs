@@ -36,9 +36,10 @@ use bevy::{
 
 use crate::objects::{
     ID_FORMAT, QueuedDepth,
-    items::{ObjectIdPipeline, draw_function, in_prepass, reads_material},
+    items::draw_function,
     lightmaps::MeshLightmaps,
     phase::{Layer, ObjectIdItem},
+    pipeline::{ObjectIdPipeline, in_prepass, reads_material},
     table::DepthWrites,
 };
 
