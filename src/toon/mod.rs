@@ -6,6 +6,7 @@ mod art_strokes;
 mod detail;
 #[cfg(test)]
 mod fuzz;
+mod gltf_name;
 mod hatch;
 mod ignored;
 #[cfg(feature = "inspector")]
@@ -140,7 +141,7 @@ fn add_material(app: &mut App) -> bool {
         .add_systems(
             Update,
             (
-                (shading::apply_shadings, material::keep_forward).chain(),
+                (scene::apply_shadings, material::keep_forward).chain(),
                 ignored::warn_of_ignored,
                 ignored::warn_of_reflections,
                 view_range::ask_for_range,
@@ -152,7 +153,7 @@ fn add_material(app: &mut App) -> bool {
             (
                 scene::follow_materials,
                 scene::restore,
-                name::name_meshes,
+                gltf_name::name_meshes,
                 scene::choose_again,
                 scene::convert,
                 // Before the events of this frame: materials and sums arrive together.
