@@ -33,10 +33,7 @@ use crate::{
         request::{RangePasses, RangeRequest},
     },
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
-    lines::{
-        ViewFog, ViewMarks,
-        request::{LinePasses, LineRequest},
-    },
+    lines::{LinePasses, LineRequest, ViewFog, ViewMarks},
     objects::{DepthWanted, IdRequest, IdsWanted, QueuedDepth},
 };
 

@@ -7,8 +7,8 @@ use super::{Plan, ViewPlan, requests::Scene};
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
     lines::{
-        FogUniform, LineModifiers, LineWeight, MapJumps, MemoryRequest, Outlines, Sheet,
-        SheetUniform, request::LineRequest,
+        FogUniform, LineModifiers, LineRequest, LineWeight, MapJumps, MemoryRequest, Outlines,
+        Sheet, SheetUniform,
     },
     objects::Pressure,
 };

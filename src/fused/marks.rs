@@ -22,10 +22,7 @@ use super::{
 };
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
-    lines::{
-        MarkKey, MarkPipeline, Outlines, SheetUniform, ViewMarks,
-        request::{LinePasses, LineRequest},
-    },
+    lines::{LinePasses, LineRequest, MarkKey, MarkPipeline, Outlines, SheetUniform, ViewMarks},
     objects::{LayerRequest, Marks},
 };
 

@@ -39,10 +39,7 @@ use crate::{
         request::{RangePasses, RangePipelines, RangeRequest, Reduction},
         view::{ViewUniform, depth_rect},
     },
-    lines::{
-        LineLayers,
-        request::{LinePasses, LinePipelines, LineRequest},
-    },
+    lines::{LineLayers, LinePasses, LinePipelines, LineRequest},
     objects::{IdRequest, ObjectDepthRequest, QueuedDepth},
 };
 #[cfg(feature = "objects")]

@@ -16,7 +16,7 @@ use bevy::{
     shader::Shader,
 };
 
-use super::request::LineRequest;
+use crate::lines::request::LineRequest;
 
 /// Width and height of a tile in pixels.
 const TILE: u32 = 16;

@@ -2,7 +2,7 @@
 
 use bevy::{
     ecs::component::Component,
-    math::{UVec2, UVec4},
+    math::UVec4,
     render::{
         render_resource::{
             BindGroupEntry, Buffer, BufferDescriptor, BufferUsages, CommandEncoder, IntoBinding,
@@ -11,6 +11,8 @@ use bevy::{
         texture::CachedTexture,
     },
 };
+
+use crate::lines::request::words;
 
 /// The cracks of a view.
 pub(crate) enum CrackStore {
@@ -50,13 +52,8 @@ const BENDS: u64 = 4;
 /// Bytes of a word of a plane.
 const WORD: u64 = 4;
 
-/// Words of 32 pixels across and down the part of the depth texture with this rectangle.
-pub(super) fn words(rect: UVec4) -> UVec2 {
-    UVec2::new(rect.z.div_ceil(32), rect.w.div_ceil(32))
-}
-
 /// Bytes of the largest buffer of a view's cracks.
-pub(super) fn largest_buffer(rect: UVec4) -> u64 {
+pub(crate) fn largest_buffer(rect: UVec4) -> u64 {
     CRACKS * u64::from(rect.z) * u64::from(rect.w)
 }
 

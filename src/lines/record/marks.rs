@@ -25,13 +25,15 @@ use bevy::{
     shader::{Shader, ShaderDefVal},
 };
 
-use super::{
-    ViewLines,
-    pass::LinePassUniform,
-    request::{LinePasses, LineRequest},
-    tiles::{TileList, tile_shader, vertices},
+use crate::{
+    lines::{
+        passes::LinePasses,
+        prepare::ViewLines,
+        request::{LinePassUniform, LineRequest},
+        tiles::{TileList, tile_shader, vertices},
+    },
+    objects::{MarkStyleBuffer, object_styles_entry},
 };
-use crate::objects::{MarkStyleBuffer, object_styles_entry};
 
 /// On a view in the render world: the entity that has the requests for the lines of its marked
 /// objects, and the pipeline that draws them.

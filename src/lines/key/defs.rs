@@ -2,7 +2,8 @@
 
 use bevy::shader::ShaderDefVal;
 
-use super::key::{LineKey, Search};
+use super::line_key::LineKey;
+use crate::lines::request::Search;
 
 impl LineKey {
     fn common(&self) -> impl Iterator<Item = ShaderDefVal> + use<> {

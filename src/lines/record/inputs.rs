@@ -11,19 +11,21 @@ use bevy::render::{
 };
 
 use super::{
-    ViewLines,
-    cracks::{Ready, ReadyCells, ReadyCracks, ReadyFind, ReadyStrokes},
-    key::LineKey,
-    memory::{LineMemory, MemoryKey},
-    prepare::{Cracks, Tiles},
-    request::{CrackPasses, FindPass, LinePasses, LineRequest},
-    resolve::Resolved,
+    ready::{Ready, ReadyCells, ReadyCracks, ReadyFind, ReadyStrokes},
     sources::{NOT_READY, Reads, Sources, Texels, entry},
-    store::CrackStore,
 };
 use crate::{
     depth::prepare::ViewDepthRange,
     diagnostics::SkipReason,
+    lines::{
+        cracks::CrackStore,
+        find::Resolved,
+        key::LineKey,
+        memory::{LineMemory, MemoryKey},
+        passes::{CrackPasses, FindPass, LinePasses},
+        prepare::{Cracks, Tiles, ViewLines},
+        request::LineRequest,
+    },
     objects::{OBJECT_DEPTHS_BINDING, ObjectStyleBuffer},
 };
 
@@ -105,7 +107,7 @@ impl Inputs<'_> {
     pub(super) fn texels(&self) -> Result<Texels<'_>, SkipReason> {
         let (_, _, lines) = self.parts.0;
         match &lines.resolved {
-            Some(resolved) => Ok(resolved.texels()),
+            Some(resolved) => Ok(resolved.into()),
             None => self.prepass(),
         }
     }

@@ -3,15 +3,14 @@
 use bevy::render::render_resource::{ComputePipeline, IntoBinding};
 
 use super::{
-    cracks::{Ready, ReadyLives},
     inputs::Inputs,
-    key::LineKey,
-    prepare::Cracks,
-    request::CellPasses,
+    ready::{Ready, ReadyLives},
     sources::{NOT_READY, Reads, entry},
-    store::CrackBuffers,
 };
-use crate::diagnostics::SkipReason;
+use crate::{
+    diagnostics::SkipReason,
+    lines::{cracks::CrackBuffers, key::LineKey, passes::CellPasses, prepare::Cracks},
+};
 
 impl Inputs<'_> {
     /// The passes that continue lines.

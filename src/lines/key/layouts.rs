@@ -12,11 +12,14 @@ use bevy::{
     },
 };
 
-use super::{
-    key::{BLOCK_FORMAT, LineKey, Search},
-    pass::LinePassUniform,
+use super::line_key::LineKey;
+use crate::{
+    lines::{
+        request::{LinePassUniform, Search},
+        textures::BLOCK_FORMAT,
+    },
+    objects::{ids_entry, object_depths_entry, object_styles_entry, widths_entry},
 };
-use crate::objects::{ids_entry, object_depths_entry, object_styles_entry, widths_entry};
 
 impl LineKey {
     /// The layout entries of what finding reads. `normals`: the normals are read.

@@ -9,8 +9,8 @@ use bevy::{
         render_resource::{
             BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, ColorTargetState, ColorWrites,
             CommandEncoder, FragmentState, IntoBinding, RenderPassDescriptor, RenderPipeline,
-            RenderPipelineDescriptor, ShaderStages, ShaderType, SpecializedRenderPipeline,
-            TextureFormat, TextureSampleType, TextureUsages, TextureViewDescriptor,
+            RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline, TextureFormat,
+            TextureSampleType, TextureUsages, TextureViewDescriptor,
             binding_types::{texture_2d, uniform_buffer},
         },
         renderer::RenderDevice,
@@ -19,11 +19,10 @@ use bevy::{
     shader::{Shader, ShaderDefVal},
 };
 
-use super::{
-    draw::cleared,
-    pass::LinePassUniform,
-    prepare::descriptor,
+use crate::lines::{
+    request::{LinePassUniform, MemoryRequest},
     settings::Outlines,
+    textures::{cleared, descriptor},
     tiles::{TileList, TileLists, tile_shader, vertices},
 };
 
@@ -31,40 +30,6 @@ use super::{
 const INK_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 /// A raw depth, and a number of frames.
 const DEPTH_FORMAT: TextureFormat = TextureFormat::Rg32Float;
-
-/// Frames that a line may be missing in: the same in `memory.wgsl`.
-const MISSING: u32 = 16;
-
-/// `Memory` of `memory.wgsl`.
-#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct MemoryUniform {
-    share: f32,
-    spacing: i32,
-    tile_frames: u32,
-    unused: u32,
-}
-
-/// What a view's lines remember.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct MemoryRequest {
-    /// Fraction of each frame where lines move.
-    pub share: f32,
-    /// Number of camera cuts so far.
-    pub cuts: u32,
-}
-
-impl MemoryRequest {
-    /// The settings as shaders take them. `reach`: pixels of the grid within which lines are
-    /// drawn around their owners.
-    pub fn uniform(&self, reach: i32, is_new: bool) -> MemoryUniform {
-        MemoryUniform {
-            share: if is_new { 1.0 } else { self.share },
-            spacing: (reach / 2).max(1),
-            tile_frames: MISSING + 1,
-            unused: 0,
-        }
-    }
-}
 
 /// Selects the variant of the pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

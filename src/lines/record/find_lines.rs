@@ -3,15 +3,11 @@
 use std::sync::atomic::Ordering;
 
 use bevy::{
-    color::LinearRgba,
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::system::Res,
     render::{
         diagnostic::RecordDiagnostics,
-        render_resource::{
-            CommandEncoder, LoadOp, Operations, PipelineCache, RenderPassColorAttachment,
-            RenderPassDescriptor, RenderPipeline, StoreOp,
-        },
+        render_resource::{CommandEncoder, PipelineCache, RenderPassDescriptor, RenderPipeline},
         renderer::{RenderContext, ViewQuery},
         texture::CachedTexture,
     },
@@ -20,10 +16,8 @@ use bevy::{
 #[cfg(feature = "objects")]
 use super::marks::ViewMarks;
 use super::{
-    ViewLines,
-    cracks::{Ready, ReadyCracks, search_tiles},
     inputs::Inputs,
-    request::{LinePasses, LineRequest},
+    ready::{Ready, ReadyCracks, search_tiles},
     sources::Sources,
 };
 #[cfg(feature = "objects")]
@@ -34,6 +28,7 @@ use crate::{
 use crate::{
     depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
+    lines::{passes::LinePasses, prepare::ViewLines, request::LineRequest, textures::cleared},
     objects::{ObjectDepths, ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
 };
 #[cfg(feature = "objects")]
@@ -214,18 +209,5 @@ impl Inputs<'_> {
         if let Some(cracks) = cracks {
             cracks.draw_ink(&mut pass);
         }
-    }
-}
-
-/// A texture that is cleared to 0 before it is drawn to.
-pub(super) fn cleared(texture: &CachedTexture) -> RenderPassColorAttachment<'_> {
-    RenderPassColorAttachment {
-        view: &texture.default_view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: Operations {
-            load: LoadOp::Clear(LinearRgba::NONE.into()),
-            store: StoreOp::Store,
-        },
     }
 }

@@ -10,6 +10,7 @@ use crate::objects::ViewLayer;
 use crate::{
     depth::surfaces::{SurfaceParts, Surfaces},
     diagnostics::SkipReason,
+    lines::find::Resolved,
     objects::{ObjectDepths, ViewLineWidths, ViewObjectIds},
 };
 
@@ -87,6 +88,18 @@ pub(super) struct Reads {
     pub normals: bool,
     pub ids: bool,
     pub widths: bool,
+}
+
+impl<'a> From<&'a Resolved> for Texels<'a> {
+    fn from(resolved: &'a Resolved) -> Self {
+        let view = |texture: &'a CachedTexture| &texture.default_view;
+        Self {
+            depth: &resolved.depth.default_view,
+            normal: resolved.normal.as_ref().map(view),
+            ids: resolved.ids.as_ref().map(view),
+            widths: resolved.widths.as_ref().map(view),
+        }
+    }
 }
 
 impl<'a> Texels<'a> {

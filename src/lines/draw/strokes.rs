@@ -66,7 +66,7 @@ impl StrokeList {
 }
 
 /// An instance of `strokes.wgsl`.
-pub(super) fn stroke_layout() -> VertexBufferLayout {
+pub(crate) fn stroke_layout() -> VertexBufferLayout {
     let formats = [VertexFormat::Float32x4, VertexFormat::Uint32x4];
     VertexBufferLayout::from_vertex_formats(VertexStepMode::Instance, formats)
 }

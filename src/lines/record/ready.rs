@@ -8,14 +8,12 @@ use bevy::render::{
     texture::CachedTexture,
 };
 
-use super::{
-    draw::cleared,
-    key::WORKGROUP,
-    overshoot::StrokeList,
-    persistence::LineLives,
-    prepare::blocks,
-    request::LineRequest,
-    store::CrackBuffers,
+use crate::lines::{
+    cracks::CrackBuffers,
+    draw::StrokeList,
+    memory::LineLives,
+    request::{LineRequest, WORKGROUP, blocks},
+    textures::cleared,
     tiles::{TileList, TileLists},
 };
 

@@ -20,11 +20,12 @@ use bevy::{
     shader::{Shader, ShaderDefVal},
 };
 
-use super::{
-    draw::cleared, key::LineKey, pass::LinePassUniform, prepare::texture, request::LineRequest,
-    sources::Texels,
-};
 use crate::{
+    lines::{
+        key::LineKey,
+        request::{LinePassUniform, LineRequest},
+        textures::{cleared, texture},
+    },
     objects::{ID_FORMAT, WIDTH_FORMAT, ids_entry, widths_entry},
     samples,
 };
@@ -161,15 +162,6 @@ impl Resolved {
             normal: normal.map(|format| new("comics_resolved_normals", format)),
             ids: ids.map(|format| new("comics_resolved_ids", format)),
             widths: widths.map(|format| new("comics_resolved_widths", format)),
-        }
-    }
-
-    pub(super) fn texels(&self) -> Texels<'_> {
-        Texels {
-            depth: &self.depth.default_view,
-            normal: self.normal.as_ref().map(|normal| &normal.default_view),
-            ids: self.ids.as_ref().map(|ids| &ids.default_view),
-            widths: self.widths.as_ref().map(|widths| &widths.default_view),
         }
     }
 

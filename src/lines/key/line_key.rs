@@ -1,50 +1,15 @@
 //! The keys that select the variants of the line passes.
 
-use bevy::{math::Vec2, render::render_resource::TextureFormat};
+use bevy::math::Vec2;
 
-use super::{request::LineRequest, sheet::SheetKey, weight::WeightKey};
-use crate::settings::Equations;
-
-/// The two cracks of a pixel, see `Crack` in `edge.wgsl`.
-pub(crate) const CRACK_FORMAT: TextureFormat = TextureFormat::Rg32Uint;
-/// The two best cracks of a pixel's column, see `columns.wgsl`.
-pub(crate) const COLUMN_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
-/// The rows with cracks in a block of pixels.
-pub(crate) const BLOCK_FORMAT: TextureFormat = TextureFormat::R32Uint;
-/// The ink of a pixel, see `draw.wgsl`.
-pub(crate) const INK_FORMAT: TextureFormat = TextureFormat::Rgba8Unorm;
-/// How far away the pixel is that owns a pixel's line, see `draw.wgsl`.
-pub(crate) const OWNER_FORMAT: TextureFormat = TextureFormat::Rg8Sint;
-
-/// Columns and rows of a block: an invocation of `walk.wgsl` walks through one.
-pub(crate) const BLOCK: [u32; 2] = [4, 32];
-/// Cracks that a pass of `link.wgsl` continues lines by.
-pub(super) const LINK_STEPS: usize = 8;
-
-/// Blocks in a workgroup, side by side.
-pub(crate) const WORKGROUP: u32 = 32;
-
-/// The largest half width of a line in physical pixels: that of `pack_width` in
-/// `edge.wgsl`.
-const LARGEST_HALF_WIDTH: f32 = 31.0;
-
-/// Distance within which lines of this half width are searched around a pixel, both in
-/// physical pixels.
-pub(crate) fn reach(half_width: f32) -> i32 {
-    (half_width.min(LARGEST_HALF_WIDTH) + 1.0).ceil() as i32 - 1
-}
-
-/// How cracks near a pixel are searched.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(crate) enum Search {
-    /// One pixel around it, without a loop.
-    #[default]
-    Neighbours,
-    /// All pixels within reach.
-    Around,
-    /// The best crack of each column within reach, see `columns.wgsl`.
-    Columns,
-}
+use super::weight_key::WeightKey;
+use crate::{
+    lines::{
+        modifiers::SheetKey,
+        request::{LineRequest, Search},
+    },
+    settings::Equations,
+};
 
 /// What selects the shader variants of the passes that find and draw lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -1,8 +1,19 @@
 //! What effects change about lines.
 
-use super::{
-    abstraction::LineAbstraction, focus::LineFocus, layer_lines::LineLayers, sheet::Sheet,
-};
+mod abstraction;
+mod focus;
+mod layer_lines;
+mod sheet;
+
+pub use abstraction::LineAbstraction;
+pub use focus::LineFocus;
+pub use layer_lines::LineLayers;
+pub use sheet::Sheet;
+
+pub(crate) use abstraction::LineAbstractionUniform;
+pub(crate) use focus::LineFocusUniform;
+pub(crate) use layer_lines::LineLayersUniform;
+pub(crate) use sheet::{SheetKey, SheetUniform};
 
 /// What an effect changes about the lines of its camera
 /// ([`Effect::line_modifiers`](crate::Effect::line_modifiers)).

@@ -8,7 +8,7 @@ use bevy::{
     },
 };
 
-use super::{request::LineRequest, settings::Outlines};
+use crate::lines::{request::LineRequest, settings::Outlines};
 
 /// The lives of a view's lines, see `lives.wgsl`.
 pub(crate) struct LineLives {

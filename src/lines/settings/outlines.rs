@@ -13,10 +13,12 @@ use super::{
     color::LineColor,
     fog::LineFog,
     kinds::{Creases, LineResponse, ObjectEdges, Silhouettes, ramp},
-    sheet::Sheet,
     weight::LineWeight,
 };
-use crate::settings::{Equations, FieldRange, linear_rgb};
+use crate::{
+    lines::modifiers::Sheet,
+    settings::{Equations, FieldRange, linear_rgb},
+};
 
 /// Draws outlines: silhouettes, where one surface hides another; creases, where a
 /// surface bends sharply; and edges between objects (\[CL\] 2.1).
@@ -165,6 +167,16 @@ impl Outlines {
     };
 }
 
+/// The largest half width of a line in physical pixels: that of `pack_width` in
+/// `edge.wgsl`.
+const LARGEST_HALF_WIDTH: f32 = 31.0;
+
+/// Distance within which lines of this half width are searched around a pixel, both in
+/// physical pixels.
+fn reach(half_width: f32) -> i32 {
+    (half_width.min(LARGEST_HALF_WIDTH) + 1.0).ceil() as i32 - 1
+}
+
 /// Most borders of pixels that a line continues along weak edges, and most pixels that it
 /// overshoots by.
 const LONGEST: i32 = 64;
@@ -300,7 +312,7 @@ impl Outlines {
             return 0;
         }
         let half_width = 0.5 * widest * scale;
-        super::reach(sheet.map_or(half_width, |sheet| sheet.largest(half_width)))
+        reach(sheet.map_or(half_width, |sheet| sheet.largest(half_width)))
     }
 
     /// Width in logical pixels of the widest line that there can be; the parameters are those
