@@ -24,10 +24,11 @@ use bevy::{
 use super::{
     borders::ViewBorders,
     follow::{SmoothingUniform, ViewSmoothing},
+    passes::{RangePasses, Reduction},
     ping_pong::chain_textures,
     range::RangeView,
     readback::{RangeReadback, RangeReadings},
-    request::{RangePasses, RangeRequest, Reduction},
+    request::RangeRequest,
 };
 
 /// On a view in the render world: its visible range. It stays on the view, with the

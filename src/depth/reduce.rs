@@ -17,10 +17,10 @@ use bevy::{
 
 use super::{
     ReductionMethod,
+    passes::Reduction,
     ping_pong::{ChainSource, record_chain},
     prepare::{RangeUniforms, ViewDepthRange},
     range::{RangeKey, RangePipeline, RangeShape},
-    request::Reduction,
     surfaces::{OwnSurfaces, Surfaces},
 };
 use crate::diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome};

@@ -22,16 +22,9 @@ use bevy::{
     },
 };
 
-use super::{
-    Plan,
-    prepare::FusedRequest,
-    requests::{Scene, Services},
-};
+use super::{Plan, prepare::FusedRequest, requests::Services, scene::Scene};
 use crate::{
-    depth::{
-        frame::DepthProjection,
-        request::{RangePasses, RangeRequest},
-    },
+    depth::{frame::DepthProjection, passes::RangePasses, request::RangeRequest},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
     lines::{LinePasses, LineRequest, ViewFog, ViewMarks},
     objects::{DepthWanted, IdRequest, IdsWanted, QueuedDepth},
@@ -147,7 +140,7 @@ pub(crate) fn choose_plans(
 fn remove(view: Entity, marks: Option<&ViewMarks>, commands: &mut Commands) {
     commands.entity(view).remove::<Chosen>();
     #[cfg(feature = "objects")]
-    super::requests::remove_marks(view, marks.map(|marks| marks.layer), commands);
+    super::marks::remove_marks(view, marks.map(|marks| marks.layer), commands);
     #[cfg(not(feature = "objects"))]
     let _ = marks;
 }

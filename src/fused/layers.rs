@@ -6,14 +6,13 @@ use bevy::{
         component::Component,
         entity::Entity,
         query::With,
-        resource::Resource,
         system::{Commands, Query, Res, ResMut},
     },
     render::{
         render_resource::{
-            AddressMode, BindGroup, BindGroupEntry, Extent3d, FilterMode, IntoBinding,
-            PipelineCache, RenderPipeline, Sampler, SamplerDescriptor, TextureDescriptor,
-            TextureDimension, TextureFormat, TextureUsages, TextureView,
+            Extent3d, LoadOp, Operations, PipelineCache, RenderPassColorAttachment,
+            RenderPassDescriptor, RenderPipeline, StoreOp, TextureDescriptor, TextureDimension,
+            TextureFormat, TextureUsages, TextureView,
         },
         renderer::{RenderContext, RenderDevice},
         texture::{CachedTexture, TextureCache},
@@ -21,14 +20,11 @@ use bevy::{
 };
 
 use super::{
+    inputs::{Before, Inputs},
     key::StylizeKey,
-    pass::{attachment, described, entry},
     prepare::{FusedRequest, Layer, LayerPass},
-    words::{Drawn, WORDS_FORMAT},
+    words::{Drawn, LAYER_FORMAT, WORDS_FORMAT},
 };
-
-/// Linear light, multiplied by the opacity, and the opacity.
-pub(super) const LAYER_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 
 /// On a view in the render world: what its passes but the last one draw to.
 #[derive(Component)]
@@ -54,23 +50,6 @@ impl ViewLayers {
 
     fn means(&self, step: usize) -> Option<&TextureView> {
         Some(&self.means.get(step)?.default_view)
-    }
-}
-
-/// Reads between the centres of pixels.
-#[derive(Resource)]
-pub(super) struct LayerSampler(pub Sampler);
-
-impl LayerSampler {
-    pub fn new(device: &RenderDevice) -> Self {
-        Self(device.create_sampler(&SamplerDescriptor {
-            label: Some("comics_layer"),
-            address_mode_u: AddressMode::ClampToEdge,
-            address_mode_v: AddressMode::ClampToEdge,
-            mag_filter: FilterMode::Linear,
-            min_filter: FilterMode::Linear,
-            ..Default::default()
-        }))
     }
 }
 
@@ -132,34 +111,30 @@ fn descriptor(request: &FusedRequest, format: TextureFormat) -> TextureDescripto
     }
 }
 
-/// What all passes of a view bind.
-pub(super) struct Inputs<'a> {
-    pub entries: Vec<BindGroupEntry<'a>>,
-    pub sampler: &'a LayerSampler,
-    pub cache: &'a PipelineCache,
+/// `keeps`: what is there already, instead of clearing it.
+pub(super) fn attachment(view: &TextureView, keeps: bool) -> RenderPassColorAttachment<'_> {
+    RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: Operations {
+            load: if keeps {
+                LoadOp::Load
+            } else {
+                LoadOp::default()
+            },
+            store: StoreOp::Store,
+        },
+    }
 }
 
-/// What the passes before a pass have drawn for it.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Before<'a> {
-    picture: Option<&'a TextureView>,
-    /// Means, or the picture with numbers.
-    words: Option<&'a TextureView>,
-}
-
-impl Inputs<'_> {
-    pub fn bind_group(&self, ctx: &RenderContext, key: &StylizeKey, before: &Before) -> BindGroup {
-        let mut entries = self.entries.clone();
-        if let Some(picture) = before.picture {
-            entries.push(entry(9, picture.into_binding()));
-            entries.push(entry(10, (&self.sampler.0).into_binding()));
-        }
-        if let (Some(words), Some(binding)) = (before.words, key.reads.binding()) {
-            entries.push(entry(binding, words.into_binding()));
-        }
-        let layout = self.cache.get_bind_group_layout(&key.layout());
-        let device = ctx.render_device();
-        device.create_bind_group("comics_stylize", &layout, &entries)
+pub(super) fn described<'a>(
+    attachments: &'a [Option<RenderPassColorAttachment<'a>>],
+) -> RenderPassDescriptor<'a> {
+    RenderPassDescriptor {
+        label: Some("comics_stylize"),
+        color_attachments: attachments,
+        ..Default::default()
     }
 }
 

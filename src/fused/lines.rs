@@ -3,7 +3,7 @@
 use crate::effect::{AffectedArea, EffectContext, Needs};
 use bevy::math::Vec4Swizzles;
 
-use super::{Plan, ViewPlan, requests::Scene};
+use super::{Plan, ViewPlan, scene::Scene};
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
     lines::{

@@ -15,14 +15,13 @@ use bevy::{
     },
 };
 
-use super::{
-    Plan, ViewPlan,
-    lines::memory_request,
-    requests::{Scene, Services},
-};
+use super::{Plan, ViewPlan, lines::memory_request, scene::Scene};
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
-    lines::{LinePasses, LineRequest, MarkKey, MarkPipeline, Outlines, SheetUniform, ViewMarks},
+    lines::{
+        LinePasses, LinePipelines, LineRequest, MarkKey, MarkPipeline, Outlines, SheetUniform,
+        ViewMarks,
+    },
     objects::{LayerRequest, Marks},
 };
 
@@ -43,29 +42,25 @@ pub(super) struct MarkRequests {
     late: bool,
 }
 
-impl Services<'_> {
+impl MarkPipelines<'_> {
     /// The requests, if some object is marked and the view has a depth prepass.
-    pub(super) fn mark_requests(
+    pub fn requests(
         &mut self,
+        lines: &mut LinePipelines,
         cache: &PipelineCache,
         (plan, view): (&Plan, &ViewPlan),
         (scene, uniform): (&Scene, ViewUniform),
         (extracted, camera): (&ExtractedView, &ExtractedCamera),
     ) -> Option<MarkRequests> {
         let (size, samples) = scene.depth.filter(|_| plan.marks)?;
-        let widest = self.marks.marks.styles.max_width();
+        let widest = self.marks.styles.max_width();
         let request = request(view, (scene, uniform), widest)?;
-        let passes = self.lines.get(cache, &request);
+        let passes = lines.get(cache, &request);
         let key = MarkKey {
             format: extracted.target_format,
             space: camera.compositing_space.unwrap_or(CompositingSpace::Linear),
             tiled: passes.are_tiles_complete(),
         };
-        let MarkPipelines {
-            pipelines,
-            pipeline,
-            ..
-        } = &mut self.marks;
         Some(MarkRequests {
             layer: LayerRequest {
                 camera: view.camera,
@@ -73,7 +68,7 @@ impl Services<'_> {
                 samples,
             },
             lines: (request, passes),
-            pipeline: pipelines.specialize(cache, pipeline, key),
+            pipeline: self.pipelines.specialize(cache, &self.pipeline, key),
             key,
             late: plan.runs_after_anti_aliasing(),
         })
@@ -149,4 +144,12 @@ impl MarkRequests {
         };
         commands.entity(view).insert((self.layer, marks));
     }
+}
+
+/// Removes the requests for the lines of marked objects.
+pub(super) fn remove_marks(view: Entity, layer: Option<Entity>, commands: &mut Commands) {
+    if let Some(layer) = layer {
+        commands.entity(layer).despawn();
+    }
+    commands.entity(view).remove::<(LayerRequest, ViewMarks)>();
 }
