@@ -68,6 +68,7 @@ pub mod diagnostics;
 pub mod effect;
 pub mod effects;
 mod fused;
+mod gpu;
 #[cfg(feature = "inspector")]
 pub mod inspector;
 pub mod lines;

@@ -19,6 +19,7 @@ use crate::{
         surfaces::{SurfaceParts, Surfaces},
     },
     diagnostics::SkipReason,
+    gpu::entry,
     lines::ViewLines,
     objects::{OBJECT_DEPTHS_BINDING, ObjectDepths, ObjectStyleBuffer, ViewObjectIds},
 };
@@ -78,10 +79,6 @@ impl Inputs<'_> {
         let device = ctx.render_device();
         device.create_bind_group("comics_stylize", &layout, &entries)
     }
-}
-
-pub(super) fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
-    BindGroupEntry { binding, resource }
 }
 
 /// The bindings of the pass besides the picture and the uniform; an error if one of

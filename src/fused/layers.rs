@@ -8,11 +8,11 @@ use bevy::{
         query::With,
         system::{Commands, Query, Res, ResMut},
     },
+    math::UVec2,
     render::{
         render_resource::{
-            Extent3d, LoadOp, Operations, PipelineCache, RenderPassColorAttachment,
-            RenderPassDescriptor, RenderPipeline, StoreOp, TextureDescriptor, TextureDimension,
-            TextureFormat, TextureUsages, TextureView,
+            LoadOp, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
+            TextureDescriptor, TextureFormat, TextureUsages, TextureView,
         },
         renderer::{RenderContext, RenderDevice},
         texture::{CachedTexture, TextureCache},
@@ -25,6 +25,7 @@ use super::{
     prepare::{FusedRequest, Layer, LayerPass},
     words::{Drawn, LAYER_FORMAT, WORDS_FORMAT},
 };
+use crate::gpu::{attachment, texture};
 
 /// On a view in the render world: what its passes but the last one draw to.
 #[derive(Component)]
@@ -95,37 +96,13 @@ pub(super) fn prepare_layers(
 /// A texture of the viewport's size.
 fn descriptor(request: &FusedRequest, format: TextureFormat) -> TextureDescriptor<'static> {
     let [_, _, width, height] = request.facts.viewport.to_array();
-    TextureDescriptor {
-        label: Some("comics_layer"),
-        size: Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: TextureDimension::D2,
+    let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+    texture(
+        "comics_layer",
+        (UVec2::new(width, height), 1),
         format,
-        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    }
-}
-
-/// `keeps`: what is there already, instead of clearing it.
-pub(super) fn attachment(view: &TextureView, keeps: bool) -> RenderPassColorAttachment<'_> {
-    RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: Operations {
-            load: if keeps {
-                LoadOp::Load
-            } else {
-                LoadOp::default()
-            },
-            store: StoreOp::Store,
-        },
-    }
+        usage,
+    )
 }
 
 pub(super) fn described<'a>(
@@ -169,7 +146,7 @@ impl<'a> Draw<'a> {
     /// Returns what it has drawn.
     fn record(&self, ctx: &mut RenderContext, inputs: &Inputs, before: &Before) -> &'a TextureView {
         let bind_group = inputs.bind_group(ctx, self.key, before);
-        let attachments = [Some(attachment(self.texture, false))];
+        let attachments = [Some(attachment(self.texture, LoadOp::default()))];
         let encoder = ctx.command_encoder();
         let mut pass = encoder.begin_render_pass(&described(&attachments));
         pass.set_bind_group(0, &bind_group, &[]);

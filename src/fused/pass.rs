@@ -9,8 +9,8 @@ use bevy::{
         diagnostic::RecordDiagnostics,
         render_resource::{
             BindGroup, BlendState, ColorTargetState, ColorWrites, FragmentState, IntoBinding,
-            PipelineCache, RenderPipeline, RenderPipelineDescriptor, SpecializedRenderPipeline,
-            TextureView,
+            LoadOp, PipelineCache, RenderPipeline, RenderPipelineDescriptor,
+            SpecializedRenderPipeline, TextureView,
         },
         renderer::{RenderContext, ViewQuery},
         view::ViewTarget,
@@ -21,14 +21,15 @@ use bevy::{
 use super::{
     blue_noise::BlueNoise,
     errors::ShaderErrors,
-    inputs::{Inputs, LayerSampler, entries, entry},
+    inputs::{Inputs, LayerSampler, entries},
     key::StylizeKey,
-    layers::{Layers, ViewLayers, attachment, described},
+    layers::{Layers, ViewLayers, described},
     prepare::{FusedRequest, ViewFused},
 };
 use crate::{
     depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
+    gpu::{attachment, entry},
     lines::{TileList, TileLists, ViewLines, tile_shader, vertices},
     objects::{ObjectDepths, ObjectStyleBuffer, ViewObjectIds},
 };
@@ -183,9 +184,13 @@ impl<'a> Draws<'a> {
         request: &FusedRequest,
     ) {
         // All pixels are drawn, except in an overlay.
-        let keeps = request.key.part.is_overlay();
+        let load = if request.key.part.is_overlay() {
+            LoadOp::Load
+        } else {
+            LoadOp::default()
+        };
         let encoder = ctx.command_encoder();
-        let attachments = [Some(attachment(destination, keeps))];
+        let attachments = [Some(attachment(destination, load))];
         let mut pass = encoder.begin_render_pass(&described(&attachments));
         pass.set_bind_group(0, bind_group, &[]);
         if let Some(base) = self.base {

@@ -1,17 +1,17 @@
 //! The textures that the passes of lines write and read.
 
 use bevy::{
-    color::LinearRgba,
     math::UVec2,
     render::{
         render_resource::{
-            Extent3d, LoadOp, Operations, RenderPassColorAttachment, StoreOp, TextureDescriptor,
-            TextureDimension, TextureFormat, TextureUsages,
+            LoadOp, RenderPassColorAttachment, TextureDescriptor, TextureFormat, TextureUsages,
         },
         renderer::RenderDevice,
         texture::{CachedTexture, TextureCache},
     },
 };
+
+use crate::gpu;
 
 /// The two cracks of a pixel, see `Crack` in `edge.wgsl`.
 pub(crate) const CRACK_FORMAT: TextureFormat = TextureFormat::Rg32Uint;
@@ -39,31 +39,11 @@ pub(crate) fn descriptor(
     size: UVec2,
     (format, usage): (TextureFormat, TextureUsages),
 ) -> TextureDescriptor<'static> {
-    TextureDescriptor {
-        label: Some(label),
-        size: Extent3d {
-            width: size.x.max(1),
-            height: size.y.max(1),
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: TextureDimension::D2,
-        format,
-        usage: usage | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
-        view_formats: &[],
-    }
+    let usage = usage | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
+    gpu::texture(label, (size, 1), format, usage)
 }
 
 /// A texture that is cleared to 0 before it is drawn to.
 pub(crate) fn cleared(texture: &CachedTexture) -> RenderPassColorAttachment<'_> {
-    RenderPassColorAttachment {
-        view: &texture.default_view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: Operations {
-            load: LoadOp::Clear(LinearRgba::NONE.into()),
-            store: StoreOp::Store,
-        },
-    }
+    gpu::attachment(&texture.default_view, LoadOp::default())
 }

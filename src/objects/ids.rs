@@ -17,7 +17,7 @@ use bevy::{
     platform::collections::HashSet,
     render::{
         render_phase::{SortedRenderPhase, ViewSortedRenderPhases},
-        render_resource::{Extent3d, TextureDescriptor, TextureDimension, TextureUsages},
+        render_resource::TextureUsages,
         renderer::RenderDevice,
         sync_world::MainEntity,
         texture::TextureCache,
@@ -34,6 +34,7 @@ use super::{
     phase::ObjectIdItem,
     transparent::TransparentItems,
 };
+use crate::gpu::texture;
 
 /// Gets the textures of this frame from the engine's texture cache.
 pub(super) fn prepare_object_ids(
@@ -44,22 +45,11 @@ pub(super) fn prepare_object_ids(
     device: Res<RenderDevice>,
 ) {
     for (view, request, known) in &views {
-        let descriptor = TextureDescriptor {
-            label: Some("comics_object_ids"),
-            size: Extent3d {
-                width: request.size.x,
-                height: request.size.y,
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: request.samples,
-            dimension: TextureDimension::D2,
-            format: ID_FORMAT,
-            usage: TextureUsages::RENDER_ATTACHMENT
-                | TextureUsages::TEXTURE_BINDING
-                | TextureUsages::COPY_SRC,
-            view_formats: &[],
-        };
+        let usage = TextureUsages::RENDER_ATTACHMENT
+            | TextureUsages::TEXTURE_BINDING
+            | TextureUsages::COPY_SRC;
+        let size = (request.size, request.samples);
+        let descriptor = texture("comics_object_ids", size, ID_FORMAT, usage);
         let cached = textures.get(&device, descriptor);
         if known.is_none_or(|known| known.texture.id() != cached.texture.id()) {
             commands.entity(view).insert(ViewObjectIds {

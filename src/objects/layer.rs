@@ -11,9 +11,8 @@ use bevy::{
     math::UVec2,
     render::{
         render_resource::{
-            Extent3d, LoadOp, Operations, RenderPassColorAttachment,
-            RenderPassDepthStencilAttachment, RenderPassDescriptor, StoreOp, TextureDescriptor,
-            TextureDimension, TextureFormat, TextureUsages,
+            LoadOp, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
+            RenderPassDescriptor, StoreOp, TextureFormat, TextureUsages,
         },
         renderer::RenderDevice,
         texture::{CachedTexture, TextureCache},
@@ -21,6 +20,7 @@ use bevy::{
 };
 
 use super::ID_FORMAT;
+use crate::gpu;
 
 /// On a view in the render world: a request for the layer of marked objects.
 #[derive(Component)]
@@ -70,21 +70,9 @@ pub(super) fn prepare_layers(
 ) {
     for (view, request) in &views {
         let mut texture = |label, format: TextureFormat| {
-            let descriptor = TextureDescriptor {
-                label: Some(label),
-                size: Extent3d {
-                    width: request.size.x,
-                    height: request.size.y,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: request.samples,
-                dimension: TextureDimension::D2,
-                format,
-                usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            };
-            textures.get(&device, descriptor)
+            let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+            let size = (request.size, request.samples);
+            textures.get(&device, gpu::texture(label, size, format, usage))
         };
         let layer = ViewLayer {
             depth: texture("comics_marked_depth", CORE_3D_DEPTH_FORMAT),

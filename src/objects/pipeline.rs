@@ -15,10 +15,9 @@ use bevy::{
     platform::sync::Arc,
     render::{
         render_resource::{
-            BindGroupLayoutDescriptor, BindGroupLayoutEntries, ColorTargetState, ColorWrites,
-            CompareFunction, FragmentState, RenderPipelineDescriptor, ShaderStages,
-            SpecializedMeshPipeline, SpecializedMeshPipelineError, TextureFormat,
-            TextureSampleType,
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, CompareFunction, FragmentState,
+            RenderPipelineDescriptor, ShaderStages, SpecializedMeshPipeline,
+            SpecializedMeshPipelineError, TextureFormat, TextureSampleType,
             binding_types::{
                 storage_buffer_read_only, texture_2d, texture_2d_multisampled, uniform_buffer,
             },
@@ -29,6 +28,7 @@ use bevy::{
 };
 
 use super::{ID_FORMAT, Pressure, WIDTH_FORMAT, shading::has_sample_shading};
+use crate::gpu::definitions;
 
 /// The parts that all pipelines of this pass have in common.
 #[derive(Resource)]
@@ -116,14 +116,11 @@ pub(super) struct IdVariant {
 
 impl IdVariant {
     fn defs(self) -> impl Iterator<Item = ShaderDefVal> {
-        [
+        definitions([
             (self.widths, "LINE_WIDTHS"),
             (self.vertex_widths, "VERTEX_WIDTHS"),
             (self.tolerant, "TOLERANT"),
-        ]
-        .into_iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, name)| name.into())
+        ])
     }
 }
 
@@ -173,13 +170,6 @@ impl SpecializedMeshPipeline for ObjectIdSpecializer {
         } else {
             self.layout.clone()
         };
-        let target = |format| {
-            Some(ColorTargetState {
-                format,
-                blend: None,
-                write_mask: ColorWrites::ALL,
-            })
-        };
         let formats: &[TextureFormat] = if variant.widths {
             &[ID_FORMAT, WIDTH_FORMAT]
         } else {
@@ -200,7 +190,9 @@ impl SpecializedMeshPipeline for ObjectIdSpecializer {
             shader: self.shader.clone(),
             shader_defs,
             entry_point: Some("object_id".into()),
-            targets: formats.iter().copied().map(target).collect(),
+            targets: (formats.iter())
+                .map(|format| Some((*format).into()))
+                .collect(),
         });
         if let Some(depth) = &mut descriptor.depth_stencil {
             depth.depth_write_enabled = Some(variant.tolerant);

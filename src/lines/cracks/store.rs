@@ -4,15 +4,13 @@ use bevy::{
     ecs::component::Component,
     math::UVec4,
     render::{
-        render_resource::{
-            BindGroupEntry, Buffer, BufferDescriptor, BufferUsages, CommandEncoder, IntoBinding,
-        },
+        render_resource::{BindGroupEntry, Buffer, BufferUsages, CommandEncoder, IntoBinding},
         renderer::RenderDevice,
         texture::CachedTexture,
     },
 };
 
-use crate::lines::request::words;
+use crate::{gpu, lines::request::words};
 
 /// The cracks of a view.
 pub(crate) enum CrackStore {
@@ -26,10 +24,7 @@ impl CrackStore {
     /// The bindings of `stored.wgsl`, after this number of copies of the planes.
     pub fn entries(&self, copies: usize) -> Vec<BindGroupEntry<'_>> {
         match self {
-            Self::Texture(texture) => vec![BindGroupEntry {
-                binding: 11,
-                resource: (&texture.default_view).into_binding(),
-            }],
+            Self::Texture(texture) => vec![gpu::entry(11, (&texture.default_view).into_binding())],
             Self::Buffers(buffers) => {
                 let mut entries = vec![entry(11, &buffers.words), buffers.planes_entry(copies)];
                 entries.extend(buffers.bends.as_ref().map(|bends| entry(19, bends)));
@@ -40,10 +35,7 @@ impl CrackStore {
 }
 
 fn entry(binding: u32, buffer: &Buffer) -> BindGroupEntry<'_> {
-    BindGroupEntry {
-        binding,
-        resource: buffer.as_entire_binding(),
-    }
+    gpu::entry(binding, buffer.as_entire_binding())
 }
 
 /// Bytes of the cracks of a pixel, and of how their lines leave them.
@@ -108,16 +100,10 @@ impl CrackBuffers {
         let rows = u64::from(words.x) * u64::from(rect.w);
         let used = WORD * (8 * columns + rows);
         let before = before.map(|b| (Some(b.words), Some(b.planes), b.bends));
-        let enough = |buffer: &Buffer, size| buffer.size() >= size;
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
         let take = |size: u64, label, old: Option<Buffer>| {
-            old.filter(|old| enough(old, size)).unwrap_or_else(|| {
-                device.create_buffer(&BufferDescriptor {
-                    label: Some(label),
-                    size: size.max(16),
-                    usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
-                    mapped_at_creation: false,
-                })
-            })
+            old.filter(|old| old.size() >= size)
+                .unwrap_or_else(|| gpu::buffer(device, label, size.max(16), usage))
         };
         let (old_words, old_planes, old_bends) = before.unwrap_or_default();
         let old_planes = old_planes.map_or([None, None], |planes| planes.map(Some));

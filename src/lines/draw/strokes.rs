@@ -4,12 +4,12 @@ use bevy::{
     math::UVec4,
     mesh::VertexBufferLayout,
     render::{
-        render_resource::{
-            BindGroupEntry, Buffer, BufferDescriptor, BufferUsages, VertexFormat, VertexStepMode,
-        },
+        render_resource::{BindGroupEntry, Buffer, BufferUsages, VertexFormat, VertexStepMode},
         renderer::{RenderDevice, RenderQueue},
     },
 };
+
+use crate::gpu::{buffer, entry};
 
 /// Bytes of the arguments of the indirect draw and the number of ends, and of a stroke.
 const ARGUMENTS: u64 = 32;
@@ -34,16 +34,12 @@ impl StrokeList {
         let size = ARGUMENTS + STROKE * pixels.div_ceil(PIXELS).max(1);
         let list = before
             .filter(|list| list.buffer.size() >= size)
-            .unwrap_or_else(|| Self {
-                buffer: device.create_buffer(&BufferDescriptor {
-                    label: Some("comics_strokes"),
-                    size,
-                    usage: BufferUsages::STORAGE
-                        | BufferUsages::VERTEX
-                        | BufferUsages::INDIRECT
-                        | BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                }),
+            .unwrap_or_else(|| {
+                let drawn = BufferUsages::VERTEX | BufferUsages::INDIRECT;
+                let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | drawn;
+                Self {
+                    buffer: buffer(device, "comics_strokes", size, usage),
+                }
             });
         let empty: Vec<u8> = [4u32, 0, 0, 0, 0, 0, 0, 0].map(u32::to_le_bytes).concat();
         queue.write_buffer(&list.buffer, 0, &empty);
@@ -52,10 +48,7 @@ impl StrokeList {
 
     /// The binding of `ends.wgsl`.
     pub fn entry(&self) -> BindGroupEntry<'_> {
-        BindGroupEntry {
-            binding: 30,
-            resource: self.buffer.as_entire_binding(),
-        }
+        entry(30, self.buffer.as_entire_binding())
     }
 
     /// Draws the strokes.

@@ -8,10 +8,9 @@ use bevy::{
     math::UVec2,
     render::{
         render_resource::{
-            BindGroup, BindGroupLayoutDescriptor, ColorTargetState, ColorWrites, CommandEncoder,
-            FragmentState, RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor,
-            ShaderStages, SpecializedRenderPipeline, TextureFormat, TextureSampleType,
-            TextureUsages,
+            BindGroup, BindGroupLayoutDescriptor, CommandEncoder, FragmentState,
+            RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor, ShaderStages,
+            SpecializedRenderPipeline, TextureFormat, TextureSampleType, TextureUsages,
             binding_types::{texture_2d_multisampled, uniform_buffer},
         },
         renderer::RenderDevice,
@@ -21,6 +20,7 @@ use bevy::{
 };
 
 use crate::{
+    gpu::definitions,
     lines::{
         key::LineKey,
         request::{LinePassUniform, LineRequest},
@@ -85,16 +85,13 @@ impl ResolveKey {
     }
 
     fn defs(self) -> Vec<ShaderDefVal> {
-        [
+        definitions([
             (true, "DEPTH"),
             (self.oblique, "OBLIQUE"),
             (self.normals, "NORMALS"),
             (self.ids, "OBJECT_IDS"),
             (self.widths, "WIDTH_MAP"),
-        ]
-        .into_iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, name)| name.into())
+        ])
         .chain(samples::definitions(self.samples))
         .collect()
     }
@@ -119,11 +116,6 @@ impl SpecializedRenderPipeline for ResolvePipeline {
     type Key = ResolveKey;
 
     fn specialize(&self, key: ResolveKey) -> RenderPipelineDescriptor {
-        let target = |format| ColorTargetState {
-            format,
-            blend: None,
-            write_mask: ColorWrites::ALL,
-        };
         RenderPipelineDescriptor {
             label: Some("comics_resolve_samples".into()),
             layout: vec![key.layout()],
@@ -132,7 +124,7 @@ impl SpecializedRenderPipeline for ResolvePipeline {
                 shader: self.shader.clone(),
                 shader_defs: key.defs(),
                 entry_point: Some("resolve".into()),
-                targets: key.formats().map(|format| format.map(target)).to_vec(),
+                targets: key.formats().map(|format| format.map(Into::into)).to_vec(),
             }),
             ..Default::default()
         }

@@ -3,19 +3,16 @@
 use bevy::shader::ShaderDefVal;
 
 use super::line_key::LineKey;
-use crate::lines::request::Search;
+use crate::{gpu::definitions, lines::request::Search};
 
 impl LineKey {
     fn common(&self) -> impl Iterator<Item = ShaderDefVal> + use<> {
-        [
+        definitions([
             (self.same_size, "SAME_SIZE"),
             (self.oblique, "OBLIQUE"),
             (self.ids, "OBJECT_IDS"),
             (self.object_styles, "OBJECT_STYLES"),
-        ]
-        .into_iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, name)| name.into())
+        ])
     }
 
     pub fn find_defs(&self) -> Vec<ShaderDefVal> {
@@ -28,7 +25,7 @@ impl LineKey {
     pub fn settle_defs(&self) -> Vec<ShaderDefVal> {
         let weight = &self.weight;
         self.common()
-            .chain(names([
+            .chain(definitions([
                 (self.ledges, "LEDGES"),
                 (self.bridged, "BRIDGED"),
                 (self.smooth, "SMOOTH"),
@@ -59,12 +56,15 @@ impl LineKey {
 
     pub fn persist_defs(&self) -> Vec<ShaderDefVal> {
         self.common()
-            .chain(names([(self.motion, "MOTION"), (self.motion, "DEPTH")]))
+            .chain(definitions([
+                (self.motion, "MOTION"),
+                (self.motion, "DEPTH"),
+            ]))
             .collect()
     }
 
     pub fn ends_defs(&self) -> Vec<ShaderDefVal> {
-        names([
+        definitions([
             (true, "BLOCKS"),
             (true, "SMOOTH"),
             (self.varied, "VARIED"),
@@ -75,7 +75,7 @@ impl LineKey {
 
     pub fn strokes_defs(&self) -> Vec<ShaderDefVal> {
         self.common()
-            .chain(names([
+            .chain(definitions([
                 (self.boils, "BOIL"),
                 (self.sheet.spreads, "SPREAD"),
                 (self.sheet.streaks, "STREAKS"),
@@ -89,7 +89,7 @@ impl LineKey {
     /// `excess`: the excess of steps in depth is computed. It excludes creases too.
     fn crack_defs(&self, excess: bool) -> Vec<ShaderDefVal> {
         self.common()
-            .chain(names([
+            .chain(definitions([
                 (true, "DEPTH"),
                 (excess, "EXCESS"),
                 (self.silhouettes, "SILHOUETTES"),
@@ -109,25 +109,22 @@ impl LineKey {
     }
 
     pub fn walk_defs(&self) -> Vec<ShaderDefVal> {
-        let jumps = [
-            "JUMPS".into(),
-            ShaderDefVal::UInt("MAP_FLAGS".into(), self.map_flags),
-        ];
-        let jumps = self.jumps.then_some(jumps);
-        let cracks = self.has_cracks().then(|| "CRACKS".into());
-        let bridged = self.bridged.then(|| "BRIDGED".into());
+        let flags = ShaderDefVal::UInt("MAP_FLAGS".into(), self.map_flags);
         self.crack_defs(self.silhouettes || self.ledges)
             .into_iter()
-            .chain(["BOUNDS".into()])
-            .chain(cracks)
-            .chain(bridged)
-            .chain(jumps.into_iter().flatten())
+            .chain(definitions([
+                (true, "BOUNDS"),
+                (self.has_cracks(), "CRACKS"),
+                (self.bridged, "BRIDGED"),
+                (self.jumps, "JUMPS"),
+            ]))
+            .chain(self.jumps.then_some(flags))
             .collect()
     }
 
     pub fn faithful_defs(&self) -> Vec<ShaderDefVal> {
         self.common()
-            .chain(names([
+            .chain(definitions([
                 (true, "DEPTH"),
                 (self.faithful[0], "FAITHFUL_SILHOUETTES"),
                 (self.faithful[1], "FAITHFUL_CREASES"),
@@ -140,7 +137,7 @@ impl LineKey {
 
     pub fn draw_defs(&self) -> Vec<ShaderDefVal> {
         self.common()
-            .chain(names([
+            .chain(definitions([
                 (self.search == Search::Neighbours, "NEIGHBOURS"),
                 (self.search == Search::Columns, "COLUMNS"),
                 (!self.by_fragments, "BLOCKS"),
@@ -157,11 +154,4 @@ impl LineKey {
             ]))
             .collect()
     }
-}
-
-fn names<const N: usize>(flags: [(bool, &'static str); N]) -> impl Iterator<Item = ShaderDefVal> {
-    flags
-        .into_iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, name)| name.into())
 }

@@ -25,10 +25,7 @@ impl LineKey {
     /// The layout entries of what finding reads. `normals`: the normals are read.
     fn inputs(&self, normals: bool, stages: ShaderStages) -> Vec<BindGroupLayoutEntry> {
         let float = || texture_2d(TextureSampleType::Float { filterable: false });
-        let mut entries = vec![
-            uniform_buffer::<LinePassUniform>(false).build(1, stages),
-            float().build(2, stages),
-        ];
+        let mut entries = vec![float().build(2, stages)];
         let seen = |mut entry: BindGroupLayoutEntry| {
             entry.visibility = stages;
             entry
@@ -64,100 +61,83 @@ impl LineKey {
         if self.has_cracks() {
             entries.extend(written_buffers([16, 17]));
         }
-        BindGroupLayoutDescriptor::new("comics_walk", &entries)
+        layout("comics_walk", ShaderStages::COMPUTE, entries)
     }
 
     pub fn cells_layout(&self) -> BindGroupLayoutDescriptor {
-        let mut entries = self.inputs(self.creases, ShaderStages::COMPUTE);
-        entries.extend(read_buffers([16, 17]));
-        entries.extend(written_buffers([18, 21]));
-        BindGroupLayoutDescriptor::new("comics_find_in_cells", &entries)
+        let inputs = self.inputs(self.creases, ShaderStages::COMPUTE);
+        in_cells("comics_find_in_cells", inputs, [], [18, 21])
     }
 
     pub fn link_layout() -> BindGroupLayoutDescriptor {
-        let uniform = uniform_buffer::<LinePassUniform>(false).build(1, ShaderStages::COMPUTE);
-        let mut entries = vec![uniform];
-        entries.extend(read_buffers([16, 17, 20]));
-        entries.extend(written_buffers([21]));
-        BindGroupLayoutDescriptor::new("comics_link_lines", &entries)
+        in_cells("comics_link_lines", vec![], [20], [21])
     }
 
     pub fn bridge_layout() -> BindGroupLayoutDescriptor {
-        let uniform = uniform_buffer::<LinePassUniform>(false).build(1, ShaderStages::COMPUTE);
-        let mut entries = vec![uniform];
-        entries.extend(read_buffers([16, 17, 20]));
-        entries.extend(written_buffers([18, 21]));
-        BindGroupLayoutDescriptor::new("comics_bridge_lines", &entries)
+        in_cells("comics_bridge_lines", vec![], [20], [18, 21])
     }
 
     pub fn persist_layout(&self) -> BindGroupLayoutDescriptor {
-        let compute = ShaderStages::COMPUTE;
-        let mut entries = vec![uniform_buffer::<LinePassUniform>(false).build(1, compute)];
+        let mut entries = vec![];
         if self.motion {
             let float = || texture_2d(TextureSampleType::Float { filterable: false });
-            entries.extend([2, 24].map(|binding| float().build(binding, compute)));
+            entries.extend([2, 24].map(|at| float().build(at, ShaderStages::COMPUTE)));
         }
-        entries.extend(read_buffers([16, 17, 28]));
-        entries.extend(written_buffers([21, 29]));
-        BindGroupLayoutDescriptor::new("comics_persist_lines", &entries)
+        in_cells("comics_persist_lines", entries, [28], [21, 29])
     }
 
     pub fn ends_layout() -> BindGroupLayoutDescriptor {
-        let uniform = uniform_buffer::<LinePassUniform>(false).build(1, ShaderStages::COMPUTE);
-        let mut entries = vec![uniform];
-        entries.extend(read_buffers([11, 16, 17, 19, 20]));
-        entries.extend(written_buffers([30]));
-        BindGroupLayoutDescriptor::new("comics_line_ends", &entries)
+        in_cells("comics_line_ends", vec![], [11, 19, 20], [30])
     }
 
     pub fn strokes_layout(&self) -> BindGroupLayoutDescriptor {
-        let uniform = uniform_buffer::<LinePassUniform>(false);
-        let mut entries = vec![uniform.build(1, ShaderStages::VERTEX_FRAGMENT)];
-        if self.object_styles {
-            entries.push(ids_entry(false));
-        }
-        BindGroupLayoutDescriptor::new("comics_line_strokes", &entries)
+        let ids = self.object_styles.then(|| ids_entry(false));
+        layout("comics_line_strokes", ShaderStages::VERTEX_FRAGMENT, ids)
     }
 
     pub fn settle_layout(&self) -> BindGroupLayoutDescriptor {
         let mut entries = if self.reads_depth() {
             self.inputs(self.weight.light, ShaderStages::COMPUTE)
         } else {
-            let uniform = uniform_buffer::<LinePassUniform>(false);
-            vec![uniform.build(1, ShaderStages::COMPUTE)]
+            vec![]
         };
-        entries.extend(read_buffers([16, 17, 20]));
-        entries.extend(written_buffers([18]));
         if self.smooth {
             entries.extend(written_buffers([22]));
         }
-        BindGroupLayoutDescriptor::new("comics_settle_lines", &entries)
+        in_cells("comics_settle_lines", entries, [20], [18])
     }
 
     pub fn find_layout(&self) -> BindGroupLayoutDescriptor {
-        let entries = self.inputs(self.creases, ShaderStages::FRAGMENT);
-        BindGroupLayoutDescriptor::new("comics_find_lines", &entries)
+        let fragment = ShaderStages::FRAGMENT;
+        layout(
+            "comics_find_lines",
+            fragment,
+            self.inputs(self.creases, fragment),
+        )
     }
 
     pub fn faithful_layout(&self) -> BindGroupLayoutDescriptor {
-        let entries = self.inputs(self.faithful[1], ShaderStages::FRAGMENT);
-        BindGroupLayoutDescriptor::new("comics_faithful_lines", &entries)
+        let fragment = ShaderStages::FRAGMENT;
+        layout(
+            "comics_faithful_lines",
+            fragment,
+            self.inputs(self.faithful[1], fragment),
+        )
     }
 
     pub fn columns_layout(&self) -> BindGroupLayoutDescriptor {
-        BindGroupLayoutDescriptor::new("comics_line_columns", &self.stored())
+        layout("comics_line_columns", ShaderStages::FRAGMENT, self.stored())
     }
 
     /// The layout entries of a pass that searches stored cracks, see `stored.wgsl`.
     fn stored(&self) -> Vec<BindGroupLayoutEntry> {
         let fragment = ShaderStages::FRAGMENT;
-        let mut entries = vec![uniform_buffer::<LinePassUniform>(false).build(1, fragment)];
-        if self.by_fragments {
-            entries.push(texture_2d(TextureSampleType::Uint).build(11, fragment));
+        let mut entries = if self.by_fragments {
+            vec![texture_2d(TextureSampleType::Uint).build(11, fragment)]
         } else {
-            entries.push(storage_buffer_read_only_sized(false, None).build(11, fragment));
-            entries.push(planes_entry(fragment));
-        }
+            let cracks = storage_buffer_read_only_sized(false, None).build(11, fragment);
+            vec![cracks, planes_entry(fragment)]
+        };
         if self.smooth {
             entries.push(storage_buffer_read_only_sized(false, None).build(19, fragment));
         }
@@ -165,36 +145,50 @@ impl LineKey {
     }
 
     pub fn tiles_layout() -> BindGroupLayoutDescriptor {
-        let compute = ShaderStages::COMPUTE;
-        let entries = [
-            uniform_buffer::<LinePassUniform>(false).build(1, compute),
-            texture_2d(TextureSampleType::Uint).build(12, compute),
-            storage_buffer_sized(false, None).build(14, compute),
-            storage_buffer_sized(false, None).build(15, compute),
-            storage_buffer_sized(false, None).build(31, compute),
-        ];
-        BindGroupLayoutDescriptor::new("comics_list_tiles", &entries)
+        let blocks = texture_2d(TextureSampleType::Uint).build(12, ShaderStages::COMPUTE);
+        let lists = written_buffers([14, 15, 31]);
+        let entries = [blocks].into_iter().chain(lists);
+        layout("comics_list_tiles", ShaderStages::COMPUTE, entries)
     }
 
     pub fn draw_layout(&self) -> BindGroupLayoutDescriptor {
+        let fragment = ShaderStages::FRAGMENT;
         let mut entries = if self.search == Search::Columns {
-            let fragment = ShaderStages::FRAGMENT;
             let texture = |binding| texture_2d(TextureSampleType::Uint).build(binding, fragment);
-            let mut entries = vec![
-                uniform_buffer::<LinePassUniform>(false).build(1, fragment),
-                texture(13),
-            ];
+            let mut entries = vec![texture(13)];
             entries.extend((!self.by_fragments).then(|| texture(12)));
             entries.extend(self.bridged.then(|| planes_entry(fragment)));
             entries
         } else {
             self.stored()
         };
-        if self.object_styles {
-            entries.push(ids_entry(false));
-        }
-        BindGroupLayoutDescriptor::new("comics_draw_lines", &entries)
+        entries.extend(self.object_styles.then(|| ids_entry(false)));
+        layout("comics_draw_lines", fragment, entries)
     }
+}
+
+/// The layout of a pass: the uniform, and what it binds besides.
+fn layout(
+    label: &'static str,
+    stages: ShaderStages,
+    entries: impl IntoIterator<Item = BindGroupLayoutEntry>,
+) -> BindGroupLayoutDescriptor {
+    let uniform = uniform_buffer::<LinePassUniform>(false).build(1, stages);
+    let entries: Vec<_> = [uniform].into_iter().chain(entries).collect();
+    BindGroupLayoutDescriptor::new(label, &entries)
+}
+
+/// The layout of a pass over the cells with cracks, and the buffers that it reads and writes.
+fn in_cells<const READ: usize, const WRITTEN: usize>(
+    label: &'static str,
+    mut entries: Vec<BindGroupLayoutEntry>,
+    read: [u32; READ],
+    written: [u32; WRITTEN],
+) -> BindGroupLayoutDescriptor {
+    entries.extend(read_buffers([16, 17]));
+    entries.extend(read_buffers(read));
+    entries.extend(written_buffers(written));
+    layout(label, ShaderStages::COMPUTE, entries)
 }
 
 /// The layout entry of the depth that hides marked objects.

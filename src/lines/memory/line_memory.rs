@@ -7,10 +7,10 @@ use bevy::{
     math::UVec2,
     render::{
         render_resource::{
-            BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, ColorTargetState, ColorWrites,
-            CommandEncoder, FragmentState, IntoBinding, RenderPassDescriptor, RenderPipeline,
-            RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline, TextureFormat,
-            TextureSampleType, TextureUsages, TextureViewDescriptor,
+            BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, CommandEncoder, FragmentState,
+            IntoBinding, RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor,
+            ShaderStages, SpecializedRenderPipeline, TextureFormat, TextureSampleType,
+            TextureUsages, TextureViewDescriptor,
             binding_types::{texture_2d, uniform_buffer},
         },
         renderer::RenderDevice,
@@ -19,11 +19,14 @@ use bevy::{
     shader::{Shader, ShaderDefVal},
 };
 
-use crate::lines::{
-    request::{LinePassUniform, MemoryRequest},
-    settings::Outlines,
-    textures::{cleared, descriptor},
-    tiles::{TileList, TileLists, tile_shader, vertices},
+use crate::{
+    gpu::entry,
+    lines::{
+        request::{LinePassUniform, MemoryRequest},
+        settings::Outlines,
+        textures::{cleared, descriptor},
+        tiles::{TileList, TileLists, tile_shader, vertices},
+    },
 };
 
 /// Ink, finer than that of a frame: small steps towards it are not lost.
@@ -84,13 +87,6 @@ impl SpecializedRenderPipeline for MemoryPipeline {
 
     fn specialize(&self, key: MemoryKey) -> RenderPipelineDescriptor {
         let (vertex, primitive) = vertices(key.tiled, &self.fullscreen, &self.tile);
-        let target = |format| {
-            Some(ColorTargetState {
-                format,
-                blend: None,
-                write_mask: ColorWrites::ALL,
-            })
-        };
         RenderPipelineDescriptor {
             label: Some("comics_remember_lines".into()),
             layout: vec![MemoryKey::layout()],
@@ -100,7 +96,9 @@ impl SpecializedRenderPipeline for MemoryPipeline {
                 shader: self.shader.clone(),
                 shader_defs: key.defs(),
                 entry_point: Some("remember".into()),
-                targets: [INK_FORMAT, DEPTH_FORMAT].map(target).to_vec(),
+                targets: [INK_FORMAT, DEPTH_FORMAT]
+                    .map(|format| Some(format.into()))
+                    .to_vec(),
             }),
             ..Default::default()
         }
@@ -162,10 +160,10 @@ impl LineMemory {
     /// The bindings of the last frame.
     pub fn entries(&self) -> [BindGroupEntry<'_>; 2] {
         let past = &self.frames[1];
-        [(25, &past.ink), (26, &past.depth)].map(|(binding, texture)| BindGroupEntry {
-            binding,
-            resource: (&texture.default_view).into_binding(),
-        })
+        [
+            entry(25, (&past.ink.default_view).into_binding()),
+            entry(26, (&past.depth.default_view).into_binding()),
+        ]
     }
 
     /// Records the pass. `tiles`: those with ink; `None`: all pixels are drawn.

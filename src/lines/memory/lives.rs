@@ -3,12 +3,15 @@
 use bevy::{
     math::UVec2,
     render::{
-        render_resource::{BindGroupEntry, Buffer, BufferDescriptor, BufferUsages, CommandEncoder},
+        render_resource::{BindGroupEntry, Buffer, BufferUsages, CommandEncoder},
         renderer::RenderDevice,
     },
 };
 
-use crate::lines::{request::LineRequest, settings::Outlines};
+use crate::{
+    gpu::{buffer, entry},
+    lines::{request::LineRequest, settings::Outlines},
+};
 
 /// The lives of a view's lines, see `lives.wgsl`.
 pub(crate) struct LineLives {
@@ -41,15 +44,10 @@ impl LineLives {
             before.settings = settings;
             return before;
         }
-        let buffer = || {
-            device.create_buffer(&BufferDescriptor {
-                label: Some("comics_line_lives"),
-                // A word for four pixels of a row.
-                size: 4 * u64::from(size.x.div_ceil(4).max(1)) * u64::from(size.y.max(1)),
-                usage: BufferUsages::STORAGE | BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
+        // A word for four pixels of a row.
+        let bytes = 4 * u64::from(size.x.div_ceil(4).max(1)) * u64::from(size.y.max(1));
+        let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST;
+        let buffer = || buffer(device, "comics_line_lives", bytes, usage);
         Self {
             size,
             buffers: [buffer(), buffer()],
@@ -71,9 +69,9 @@ impl LineLives {
     /// The bindings of `persist.wgsl`: the last frame, and this one.
     pub fn entries(&self) -> [BindGroupEntry<'_>; 2] {
         let [now, past] = &self.buffers;
-        [(28, past), (29, now)].map(|(binding, buffer)| BindGroupEntry {
-            binding,
-            resource: buffer.as_entire_binding(),
-        })
+        [
+            entry(28, past.as_entire_binding()),
+            entry(29, now.as_entire_binding()),
+        ]
     }
 }

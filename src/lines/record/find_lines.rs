@@ -52,16 +52,15 @@ pub(crate) fn find_marks(
     let (marks, (prepass, own), layer) = view.into_inner();
     // Transparent meshes hide no marked object.
     let own = own.filter(|_| prepass_is_empty(&adapter));
-    let Ok(parts) = layers.get(marks.layer) else {
+    let Ok((request, passes, lines)) = layers.get(marks.layer) else {
         return;
     };
-    let (request, _, lines) = parts;
     let inputs = Inputs {
-        parts: (
-            parts,
-            Sources::new((Some(prepass), own), None, None).layer(layer),
-            None,
-        ),
+        request,
+        passes,
+        lines,
+        sources: Sources::new((Some(prepass), own), None, None).layer(layer),
+        range: None,
         styles: &styles.0,
         cache: &cache,
         device: ctx.render_device().clone(),
@@ -92,11 +91,13 @@ pub(crate) fn find_lines(
     cache: Res<PipelineCache>,
     mut ctx: RenderContext,
 ) {
-    let (parts, prepass, range, (ids, widths, places)) = view.into_inner();
-    let (request, passes, lines) = parts;
-    let sources = Sources::new(prepass, ids, widths).with_places(places);
+    let ((request, passes, lines), prepass, range, (ids, widths, places)) = view.into_inner();
     let inputs = Inputs {
-        parts: (parts, sources, range),
+        request,
+        passes,
+        lines,
+        sources: Sources::new(prepass, ids, widths).with_places(places),
+        range,
         styles: &object_styles,
         cache: &cache,
         device: ctx.render_device().clone(),
@@ -138,7 +139,7 @@ pub(crate) fn find_lines(
 impl Inputs<'_> {
     /// Records the passes of the view, or says why not.
     fn record(&self, ctx: &mut RenderContext) -> Result<(), SkipReason> {
-        let (request, passes, lines) = self.parts.0;
+        let (passes, lines) = (self.passes, self.lines);
         let resolve = self.resolve_pass()?;
         let search = self.search_passes()?;
         let faithful = self.faithful_pass()?;
@@ -153,12 +154,12 @@ impl Inputs<'_> {
         let encoder = ctx.command_encoder();
         if let Some((resolved, (pipeline, group))) = &resolve {
             let span = diagnostics.time_span(encoder, "comics_resolve_samples");
-            resolved.record(encoder, request, (pipeline, group));
+            resolved.record(encoder, self.request, (pipeline, group));
             span.end(encoder);
         }
         if let Some(search) = &search {
             let span = diagnostics.time_span(encoder, "comics_search_tiles");
-            search_tiles(encoder, search, request, passes.last_list());
+            search_tiles(encoder, search, self.request, passes.last_list());
             span.end(encoder);
         }
         if let Some(cracks) = &cracks {
@@ -187,11 +188,10 @@ impl Inputs<'_> {
         ink: &CachedTexture,
         (faithful, cracks): (Option<&Ready<RenderPipeline>>, Option<&ReadyCracks>),
     ) {
-        let (_, _, lines) = self.parts.0;
         if let Some(cracks) = cracks {
             cracks.search_columns(encoder);
         }
-        let targets: Vec<_> = [Some(ink), lines.owners.as_ref()]
+        let targets: Vec<_> = [Some(ink), self.lines.owners.as_ref()]
             .into_iter()
             .flatten()
             .map(|texture| Some(cleared(texture)))

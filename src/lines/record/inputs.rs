@@ -2,9 +2,9 @@
 
 use bevy::render::{
     render_resource::{
-        BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, BindingResource,
-        CachedComputePipelineId, CachedRenderPipelineId, ComputePipeline, IntoBinding,
-        PipelineCache, RenderPipeline, TextureView,
+        BindGroup, BindGroupEntry, BindGroupLayoutDescriptor, CachedComputePipelineId,
+        CachedRenderPipelineId, ComputePipeline, IntoBinding, PipelineCache, RenderPipeline,
+        TextureView,
     },
     renderer::RenderDevice,
     texture::CachedTexture,
@@ -12,11 +12,12 @@ use bevy::render::{
 
 use super::{
     ready::{Ready, ReadyCells, ReadyCracks, ReadyFind, ReadyStrokes},
-    sources::{NOT_READY, Reads, Sources, Texels, entry},
+    sources::{NOT_READY, Reads, Sources, Texels},
 };
 use crate::{
     depth::prepare::ViewDepthRange,
     diagnostics::SkipReason,
+    gpu::entry,
     lines::{
         cracks::CrackStore,
         find::Resolved,
@@ -29,16 +30,13 @@ use crate::{
     objects::{OBJECT_DEPTHS_BINDING, ObjectStyleBuffer},
 };
 
-/// What the passes of a view read: of the lines, of the scene, the visible range.
-pub(super) type ViewParts<'a> = (
-    (&'a LineRequest, &'a LinePasses, &'a ViewLines),
-    Sources<'a>,
-    Option<&'a ViewDepthRange>,
-);
-
-/// What the passes read.
+/// What the passes of a view read.
 pub(super) struct Inputs<'a> {
-    pub parts: ViewParts<'a>,
+    pub request: &'a LineRequest,
+    pub passes: &'a LinePasses,
+    pub lines: &'a ViewLines,
+    pub sources: Sources<'a>,
+    pub range: Option<&'a ViewDepthRange>,
     /// The table of the styles of objects.
     pub styles: &'a ObjectStyleBuffer,
     pub cache: &'a PipelineCache,
@@ -52,46 +50,46 @@ type MemoryPass<'a> = (&'a LineMemory, Ready<'a, RenderPipeline>);
 type ResolvePass<'a> = (&'a Resolved, Ready<'a, RenderPipeline>);
 
 impl Inputs<'_> {
-    /// The pass that draws the faithful equations, if there are any.
-    pub fn faithful_pass(&self) -> Result<Option<Ready<'_, RenderPipeline>>, SkipReason> {
-        let (_, passes, _) = self.parts.0;
-        let Some(id) = passes.faithful else {
-            return Ok(None);
-        };
-        let key = passes.key.for_faithful();
-        let entries = self.entries(&key, key.faithful[1])?;
-        let group = self.group(&key.faithful_layout(), &entries);
-        Ok(Some((self.pipeline(id)?, group)))
-    }
-
-    pub(super) fn pipeline(
+    /// A render pass that binds the uniform and these entries.
+    fn render(
         &self,
         id: CachedRenderPipelineId,
-    ) -> Result<&RenderPipeline, SkipReason> {
-        self.cache.get_render_pipeline(id).ok_or(NOT_READY)
+        layout: &BindGroupLayoutDescriptor,
+        entries: &[BindGroupEntry],
+    ) -> Result<Ready<'_, RenderPipeline>, SkipReason> {
+        let pipeline = self.cache.get_render_pipeline(id).ok_or(NOT_READY)?;
+        Ok((pipeline, self.group(layout, entries)?))
     }
 
-    pub(super) fn group(
+    /// A compute pass that binds the uniform and these entries.
+    pub(super) fn compute(
+        &self,
+        id: CachedComputePipelineId,
+        layout: &BindGroupLayoutDescriptor,
+        entries: &[BindGroupEntry],
+    ) -> Result<Ready<'_, ComputePipeline>, SkipReason> {
+        let pipeline = self.cache.get_compute_pipeline(id).ok_or(NOT_READY)?;
+        Ok((pipeline, self.group(layout, entries)?))
+    }
+
+    fn group(
         &self,
         layout: &BindGroupLayoutDescriptor,
         entries: &[BindGroupEntry],
-    ) -> BindGroup {
+    ) -> Result<BindGroup, SkipReason> {
+        let mut all = vec![entry(1, self.lines.uniform.binding().ok_or(NOT_READY)?)];
+        all.extend_from_slice(entries);
         let layout = self.cache.get_bind_group_layout(layout);
-        self.device
-            .create_bind_group("comics_lines", &layout, entries)
-    }
-
-    pub(super) fn uniform(&self) -> Result<BindingResource<'_>, SkipReason> {
-        let (_, _, lines) = self.parts.0;
-        lines.uniform.binding().ok_or(NOT_READY)
+        Ok(self.device.create_bind_group("comics_lines", &layout, &all))
     }
 
     /// The surfaces of the view.
     fn prepass(&self) -> Result<Texels<'_>, SkipReason> {
-        let ((request, ..), sources, _) = self.parts;
+        let sources = self.sources;
         let depth = sources.depth.ok_or(SkipReason::NoDepthPrepass)?;
         // Those of a game's prepasses can be of cameras with different samples.
-        let fits = |texture: &TextureView| texture.texture().sample_count() == request.samples;
+        let samples = self.request.samples;
+        let fits = |texture: &TextureView| texture.texture().sample_count() == samples;
         if !fits(&depth.default_view) || sources.normal.is_some_and(|normal| !fits(normal)) {
             return Err(SkipReason::SampleCountMismatch);
         }
@@ -105,8 +103,7 @@ impl Inputs<'_> {
 
     /// The textures that lines are found in.
     pub(super) fn texels(&self) -> Result<Texels<'_>, SkipReason> {
-        let (_, _, lines) = self.parts.0;
-        match &lines.resolved {
+        match &self.lines.resolved {
             Some(resolved) => Ok(resolved.into()),
             None => self.prepass(),
         }
@@ -114,45 +111,53 @@ impl Inputs<'_> {
 
     /// The pass that picks one sample of every pixel, if the view is multisampled.
     pub fn resolve_pass(&self) -> Result<Option<ResolvePass<'_>>, SkipReason> {
-        let (_, passes, lines) = self.parts.0;
-        let (Some((key, id)), Some(resolved)) = (&passes.resolve, &lines.resolved) else {
+        let (Some((key, id)), Some(resolved)) = (&self.passes.resolve, &self.lines.resolved) else {
             return Ok(None);
         };
-        let mut entries = vec![entry(1, self.uniform()?)];
         let reads = Reads {
             normals: key.normals,
             ids: key.ids,
             widths: key.widths,
         };
+        let mut entries = vec![];
         self.prepass()?.push(reads, &mut entries)?;
-        let group = self.group(&key.layout(), &entries);
-        Ok(Some((resolved, (self.pipeline(*id)?, group))))
+        Ok(Some((resolved, self.render(*id, &key.layout(), &entries)?)))
     }
 
     /// The pass that mixes the ink with that of the frames before, if lines remember.
     pub fn memory_pass(&self) -> Result<Option<MemoryPass<'_>>, SkipReason> {
-        let ((_, passes, lines), sources, _) = self.parts;
-        let (Some(id), Some(memory), Some(ink)) = (passes.memory, &lines.memory, &lines.ink) else {
+        let ViewLines { memory, ink, .. } = self.lines;
+        let (Some(id), Some(memory), Some(ink)) = (self.passes.memory, memory, ink) else {
             return Ok(None);
         };
-        let motion = sources.motion.ok_or(NOT_READY)?;
-        let mut entries = vec![entry(1, self.uniform()?)];
+        let motion = self.sources.motion.ok_or(NOT_READY)?;
+        let mut entries = vec![
+            entry(23, (&ink.default_view).into_binding()),
+            entry(24, motion.into_binding()),
+        ];
         self.prepass()?.push(Reads::default(), &mut entries)?;
-        entries.push(entry(23, (&ink.default_view).into_binding()));
-        entries.push(entry(24, motion.into_binding()));
         entries.extend(memory.entries());
-        let group = self.group(&MemoryKey::layout(), &entries);
-        Ok(Some((memory, (self.pipeline(id)?, group))))
+        let ready = self.render(id, &MemoryKey::layout(), &entries)?;
+        Ok(Some((memory, ready)))
     }
 
-    /// The bindings of the passes that find lines. `normals`: the normals too.
+    /// The pass that draws the faithful equations, if there are any.
+    pub fn faithful_pass(&self) -> Result<Option<Ready<'_, RenderPipeline>>, SkipReason> {
+        let Some(id) = self.passes.faithful else {
+            return Ok(None);
+        };
+        let key = self.passes.key.for_faithful();
+        let entries = self.entries(&key, key.faithful[1])?;
+        Ok(Some(self.render(id, &key.faithful_layout(), &entries)?))
+    }
+
+    /// What the passes that find lines bind of the scene. `normals`: the normals too.
     pub(super) fn entries(
         &self,
         key: &LineKey,
         normals: bool,
     ) -> Result<Vec<BindGroupEntry<'_>>, SkipReason> {
-        let (_, sources, range) = self.parts;
-        let mut entries = vec![entry(1, self.uniform()?)];
+        let mut entries = vec![];
         let reads = Reads {
             normals,
             ids: key.ids,
@@ -160,22 +165,46 @@ impl Inputs<'_> {
         };
         self.texels()?.push(reads, &mut entries)?;
         if key.visible_range || key.weight.found_borders {
-            let keys = range.and_then(ViewDepthRange::drawn).ok_or(NOT_READY)?;
-            entries.push(entry(3, keys.as_entire_binding()));
+            let keys = self.range.and_then(ViewDepthRange::drawn);
+            entries.push(entry(3, keys.ok_or(NOT_READY)?.as_entire_binding()));
         }
         if key.object_styles {
             let styles = self.styles.buffer().ok_or(NOT_READY)?;
             entries.push(entry(6, styles.as_entire_binding()));
         }
         if key.reads_places() {
-            let places = sources.places.ok_or(NOT_READY)?;
+            let places = self.sources.places.ok_or(NOT_READY)?;
             entries.push(entry(OBJECT_DEPTHS_BINDING, places.as_entire_binding()));
         }
         if key.marks {
-            let picture = sources.picture.ok_or(NOT_READY)?;
+            let picture = self.sources.picture.ok_or(NOT_READY)?;
             entries.push(entry(27, picture.into_binding()));
         }
         Ok(entries)
+    }
+
+    /// The passes that look for blocks with cracks and list the tiles near them, if there
+    /// are any.
+    pub fn search_passes(&self) -> Result<Option<[Ready<'_, ComputePipeline>; 2]>, SkipReason> {
+        let (Some([walk, list]), Some(tiles)) = (self.passes.search, &self.lines.tiles) else {
+            return Ok(None);
+        };
+        let key = self.passes.key.for_walk();
+        let mut walked = self.entries(&key, key.creases)?;
+        walked.push(texture_entry(10, &tiles.blocks));
+        if key.has_cracks() {
+            walked.extend(tiles.lists.cell_entries());
+        }
+        let mut listed = vec![texture_entry(12, &tiles.blocks)];
+        listed.extend(tiles.lists.entries());
+        Ok(Some([
+            self.compute(walk, &key.walk_layout(), &walked)?,
+            self.compute(list, &LineKey::tiles_layout(), &listed)?,
+        ]))
+    }
+
+    pub(super) fn tiles(&self) -> Result<&Tiles, SkipReason> {
+        self.lines.tiles.as_ref().ok_or(NOT_READY)
     }
 
     /// The passes of the lines along cracks.
@@ -184,22 +213,21 @@ impl Inputs<'_> {
         passes: &CrackPasses,
         cracks: &'a Cracks,
     ) -> Result<ReadyCracks<'a>, SkipReason> {
-        let key = self.parts.0.1.key.for_find();
-        let (_, _, lines) = self.parts.0;
+        let key = self.passes.key.for_find();
         let find = self.find_pass(passes.find, &key, cracks)?;
         let columns = match (passes.columns, &cracks.columns) {
             (Some(id), Some(columns)) => {
-                let layout = self.parts.0.1.key.for_columns().columns_layout();
-                let group = self.group(&layout, &self.stored(cracks)?);
-                Some(((self.pipeline(id)?, group), columns))
+                let layout = self.passes.key.for_columns().columns_layout();
+                let stored = cracks.store.entries(self.request.copies());
+                Some((self.render(id, &layout, &stored)?, columns))
             }
             _ => None,
         };
         Ok(ReadyCracks {
-            tiles: lines.tiles.as_ref().map(|tiles| &tiles.lists),
+            tiles: self.lines.tiles.as_ref().map(|tiles| &tiles.lists),
             columns,
             find,
-            ink: (self.pipeline(passes.draw)?, self.draw_group(cracks)?),
+            ink: self.draw_pass(passes.draw, cracks)?,
             strokes: self.strokes_pass(passes, cracks)?,
         })
     }
@@ -214,18 +242,17 @@ impl Inputs<'_> {
         let mut entries = self.entries(key, key.creases)?;
         match (pass, &cracks.store) {
             (FindPass::Pixels(id), CrackStore::Texture(texture)) => {
-                let group = self.group(&key.find_layout(), &entries);
-                Ok(ReadyFind::Pixels((self.pipeline(id)?, group), texture))
+                let ready = self.render(id, &key.find_layout(), &entries)?;
+                Ok(ReadyFind::Pixels(ready, texture))
             }
             (FindPass::Cells(passes), CrackStore::Buffers(buffers)) => {
                 let lists = &self.tiles()?.lists;
                 entries.extend(lists.cell_entries());
                 entries.extend(buffers.cell_entries());
-                let group = self.group(&key.cells_layout(), &entries);
                 Ok(ReadyFind::Cells(ReadyCells {
                     lists,
                     buffers,
-                    find: (self.compute(passes.find)?, group),
+                    find: self.compute(passes.find, &key.cells_layout(), &entries)?,
                     link: self.link_passes(&passes, buffers)?,
                     join: self.join_pass(&passes, buffers)?,
                     persist: self.persist_pass(&passes, buffers)?,
@@ -238,58 +265,26 @@ impl Inputs<'_> {
         }
     }
 
-    pub(super) fn tiles(&self) -> Result<&Tiles, SkipReason> {
-        let (_, _, lines) = self.parts.0;
-        lines.tiles.as_ref().ok_or(NOT_READY)
-    }
-
-    pub(super) fn compute(
+    /// The pass that draws the ink of cracks.
+    fn draw_pass(
         &self,
-        id: CachedComputePipelineId,
-    ) -> Result<&ComputePipeline, SkipReason> {
-        self.cache.get_compute_pipeline(id).ok_or(NOT_READY)
-    }
-
-    /// The bindings of a pass that searches stored cracks.
-    fn stored<'a>(&'a self, cracks: &'a Cracks) -> Result<Vec<BindGroupEntry<'a>>, SkipReason> {
-        let uniform = [entry(1, self.uniform()?)];
-        let copies = self.parts.0.0.copies();
-        let stored = cracks.store.entries(copies);
-        Ok(uniform.into_iter().chain(stored).collect())
-    }
-
-    /// The passes that look for blocks with cracks and list the tiles near them, if there
-    /// are any.
-    pub fn search_passes(&self) -> Result<Option<[Ready<'_, ComputePipeline>; 2]>, SkipReason> {
-        let (_, passes, lines) = self.parts.0;
-        let (Some([walk, list]), Some(tiles)) = (passes.search, &lines.tiles) else {
-            return Ok(None);
+        id: CachedRenderPipelineId,
+        cracks: &Cracks,
+    ) -> Result<Ready<'_, RenderPipeline>, SkipReason> {
+        let key = self.passes.key.for_draw();
+        let copies = self.request.copies();
+        let mut entries = match &cracks.columns {
+            None => cracks.store.entries(copies),
+            Some(columns) => vec![texture_entry(13, columns)],
         };
-        let key = passes.key.for_walk();
-        let mut walked = self.entries(&key, key.creases)?;
-        walked.push(entry(10, (&tiles.blocks.default_view).into_binding()));
-        if key.has_cracks() {
-            walked.extend(tiles.lists.cell_entries());
+        if let (Some(_), CrackStore::Buffers(buffers)) = (&cracks.columns, &cracks.store) {
+            entries.push(texture_entry(12, &self.tiles()?.blocks));
+            entries.extend(key.bridged.then(|| buffers.planes_entry(copies)));
         }
-        let walked = self.group(&key.walk_layout(), &walked);
-        let mut listed = self.searched((12, &tiles.blocks))?;
-        listed.extend(tiles.lists.entries());
-        let listed = self.group(&LineKey::tiles_layout(), &listed);
-        Ok(Some([
-            (self.compute(walk)?, walked),
-            (self.compute(list)?, listed),
-        ]))
-    }
-
-    /// The bindings of a pass that searches the texture at this binding.
-    fn searched<'a>(
-        &'a self,
-        (binding, texture): (u32, &'a CachedTexture),
-    ) -> Result<Vec<BindGroupEntry<'a>>, SkipReason> {
-        Ok(vec![
-            entry(1, self.uniform()?),
-            entry(binding, (&texture.default_view).into_binding()),
-        ])
+        if key.object_styles {
+            entries.push(self.ids()?);
+        }
+        self.render(id, &key.draw_layout(), &entries)
     }
 
     /// The pass that draws strokes beyond loose ends, if there is one.
@@ -301,35 +296,18 @@ impl Inputs<'_> {
         let (Some(id), Some(strokes)) = (passes.strokes, &cracks.strokes) else {
             return Ok(None);
         };
-        let key = self.parts.0.1.key.for_strokes();
-        let mut entries = vec![entry(1, self.uniform()?)];
-        if key.object_styles {
-            let ids = self.texels()?.ids.ok_or(NOT_READY)?;
-            entries.push(entry(8, ids.into_binding()));
-        }
-        let group = self.group(&key.strokes_layout(), &entries);
-        Ok(Some(((self.pipeline(id)?, group), strokes)))
+        let key = self.passes.key.for_strokes();
+        let ids = key.object_styles.then(|| self.ids()).transpose()?;
+        let ready = self.render(id, &key.strokes_layout(), ids.as_slice())?;
+        Ok(Some((ready, strokes)))
     }
 
-    fn draw_group(&self, cracks: &Cracks) -> Result<BindGroup, SkipReason> {
-        let (_, passes, _) = self.parts.0;
-        let key = passes.key.for_draw();
-        let mut entries = match (&cracks.columns, &cracks.store) {
-            (None, _) => self.stored(cracks)?,
-            (Some(columns), CrackStore::Texture(_)) => self.searched((13, columns))?,
-            (Some(columns), CrackStore::Buffers(buffers)) => {
-                let mut entries = self.searched((13, columns))?;
-                let blocks = &self.tiles()?.blocks.default_view;
-                entries.push(entry(12, blocks.into_binding()));
-                let planes = || buffers.planes_entry(self.parts.0.0.copies());
-                entries.extend(key.bridged.then(planes));
-                entries
-            }
-        };
-        if passes.key.object_styles {
-            let ids = self.texels()?.ids.ok_or(NOT_READY)?;
-            entries.push(entry(8, ids.into_binding()));
-        }
-        Ok(self.group(&key.draw_layout(), &entries))
+    fn ids(&self) -> Result<BindGroupEntry<'_>, SkipReason> {
+        let ids = self.texels()?.ids.ok_or(NOT_READY)?;
+        Ok(entry(8, ids.into_binding()))
     }
+}
+
+fn texture_entry(binding: u32, texture: &CachedTexture) -> BindGroupEntry<'_> {
+    entry(binding, (&texture.default_view).into_binding())
 }

@@ -13,10 +13,9 @@ use bevy::{
     render::{
         render_resource::{
             BindGroupEntry, BindGroupLayoutDescriptor, BlendState, CachedRenderPipelineId,
-            ColorTargetState, ColorWrites, FragmentState, IntoBinding, LoadOp, Operations,
-            PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
-            RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline, StoreOp,
-            TextureFormat, TextureSampleType,
+            ColorTargetState, ColorWrites, FragmentState, IntoBinding, LoadOp, PipelineCache,
+            RenderPassDescriptor, RenderPipelineDescriptor, ShaderStages,
+            SpecializedRenderPipeline, TextureFormat, TextureSampleType,
             binding_types::{texture_2d, uniform_buffer},
         },
         renderer::{RenderContext, ViewQuery},
@@ -26,6 +25,7 @@ use bevy::{
 };
 
 use crate::{
+    gpu::{attachment, entry},
     lines::{
         passes::LinePasses,
         prepare::ViewLines,
@@ -130,7 +130,7 @@ fn bindings<'a>(
         (4, (&lines.found()?.default_view).into_binding()),
         (6, styles.0.buffer()?.as_entire_binding()),
     ];
-    Some(resources.map(|(binding, resource)| BindGroupEntry { binding, resource }))
+    Some(resources.map(|(binding, resource)| entry(binding, resource)))
 }
 
 /// Draws the lines of the marked objects of the view over its picture. `LATE`: of the views
@@ -168,15 +168,7 @@ pub(crate) fn draw_marks<const LATE: bool>(
         .command_encoder()
         .begin_render_pass(&RenderPassDescriptor {
             label: Some("comics_draw_marks"),
-            color_attachments: &[Some(RenderPassColorAttachment {
-                view: target.main_texture_view(),
-                depth_slice: None,
-                resolve_target: None,
-                ops: Operations {
-                    load: LoadOp::Load,
-                    store: StoreOp::Store,
-                },
-            })],
+            color_attachments: &[Some(attachment(target.main_texture_view(), LoadOp::Load))],
             ..Default::default()
         });
     let [x, y, width, height] = request.view.viewport.as_vec4().to_array();

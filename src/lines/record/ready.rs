@@ -2,19 +2,22 @@
 
 use bevy::render::{
     render_resource::{
-        BindGroup, CommandEncoder, ComputePassDescriptor, ComputePipeline, LoadOp, Operations,
-        RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline, StoreOp,
+        BindGroup, CommandEncoder, ComputePassDescriptor, ComputePipeline, LoadOp,
+        RenderPassDescriptor, RenderPipeline,
     },
     texture::CachedTexture,
 };
 
-use crate::lines::{
-    cracks::CrackBuffers,
-    draw::StrokeList,
-    memory::LineLives,
-    request::{LineRequest, WORKGROUP, blocks},
-    textures::cleared,
-    tiles::{TileList, TileLists},
+use crate::{
+    gpu::{attachment, compute_pass},
+    lines::{
+        cracks::CrackBuffers,
+        draw::StrokeList,
+        memory::LineLives,
+        request::{LineRequest, WORKGROUP, blocks},
+        textures::cleared,
+        tiles::{TileList, TileLists},
+    },
 };
 
 /// A pass that is ready to be recorded: its pipeline and bindings.
@@ -74,12 +77,7 @@ impl ReadyCells<'_> {
         label: &str,
         (pipeline, group): &Ready<ComputePipeline>,
     ) {
-        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-            label: Some(label),
-            timestamp_writes: None,
-        });
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, group, &[]);
+        let mut pass = compute_pass(encoder, label, (pipeline, group), &[]);
         self.lists.dispatch_cells(&mut pass);
     }
 }
@@ -125,14 +123,10 @@ impl ReadyCracks<'_> {
         };
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("comics_line_columns"),
-            color_attachments: &[Some(RenderPassColorAttachment {
+            color_attachments: &[
                 // What lies between the tiles is not read.
-                ops: Operations {
-                    load: LoadOp::Load,
-                    store: StoreOp::Store,
-                },
-                ..cleared(texture)
-            })],
+                Some(attachment(&texture.default_view, LoadOp::Load)),
+            ],
             ..Default::default()
         });
         self.draw(&mut pass, columns, TileList::Columns);

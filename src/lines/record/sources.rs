@@ -1,7 +1,7 @@
 //! The textures of the scene that lines are found in.
 
 use bevy::render::{
-    render_resource::{BindGroupEntry, BindingResource, Buffer, IntoBinding, TextureView},
+    render_resource::{BindGroupEntry, Buffer, IntoBinding, TextureView},
     texture::CachedTexture,
 };
 
@@ -10,15 +10,12 @@ use crate::objects::ViewLayer;
 use crate::{
     depth::surfaces::{SurfaceParts, Surfaces},
     diagnostics::SkipReason,
+    gpu::entry,
     lines::find::Resolved,
     objects::{ObjectDepths, ViewLineWidths, ViewObjectIds},
 };
 
 pub(super) const NOT_READY: SkipReason = SkipReason::PipelineNotReady;
-
-pub(super) fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
-    BindGroupEntry { binding, resource }
-}
 
 /// The textures of the scene that lines are found in.
 #[derive(Clone, Copy, Default)]

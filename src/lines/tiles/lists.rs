@@ -8,15 +8,18 @@ use bevy::{
     mesh::VertexBufferLayout,
     render::{
         render_resource::{
-            BindGroupEntry, Buffer, BufferDescriptor, BufferUsages, PrimitiveState,
-            PrimitiveTopology, VertexFormat, VertexState, VertexStepMode,
+            BindGroupEntry, Buffer, BufferUsages, PrimitiveState, PrimitiveTopology, VertexFormat,
+            VertexState, VertexStepMode,
         },
         renderer::{RenderDevice, RenderQueue},
     },
     shader::Shader,
 };
 
-use crate::lines::request::LineRequest;
+use crate::{
+    gpu::{buffer, entry},
+    lines::request::LineRequest,
+};
 
 /// Width and height of a tile in pixels.
 const TILE: u32 = 16;
@@ -77,14 +80,8 @@ impl TileLists {
         let lists = before
             .filter(|lists| lists.room >= room)
             .unwrap_or_else(|| {
-                let buffer = |label, size, usage| {
-                    device.create_buffer(&BufferDescriptor {
-                        label: Some(label),
-                        size,
-                        usage: usage | BufferUsages::STORAGE,
-                        mapped_at_creation: false,
-                    })
-                };
+                let buffer =
+                    |label, size, usage| buffer(device, label, size, usage | BufferUsages::STORAGE);
                 let size = RECTANGLE * u64::from(LISTS * room);
                 let drawn = BufferUsages::INDIRECT | BufferUsages::COPY_DST;
                 Self {
@@ -126,18 +123,15 @@ impl TileLists {
     /// The bindings of `tiles.wgsl`.
     pub fn entries(&self) -> [BindGroupEntry<'_>; 3] {
         let buffers = [(14, &self.arguments), (15, &self.tiles), (31, &self.ages)];
-        buffers.map(|(binding, buffer)| BindGroupEntry {
-            binding,
-            resource: buffer.as_entire_binding(),
-        })
+        buffers.map(|(binding, buffer)| entry(binding, buffer.as_entire_binding()))
     }
 
     /// The bindings of the cells.
     pub fn cell_entries(&self) -> [BindGroupEntry<'_>; 2] {
-        [(16, &self.cell_counts), (17, &self.cells)].map(|(binding, buffer)| BindGroupEntry {
-            binding,
-            resource: buffer.as_entire_binding(),
-        })
+        [
+            entry(16, self.cell_counts.as_entire_binding()),
+            entry(17, self.cells.as_entire_binding()),
+        ]
     }
 
     /// Dispatches a compute pipeline for the cells.

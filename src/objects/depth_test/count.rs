@@ -21,8 +21,8 @@ use bevy::{
         camera::ExtractedCamera,
         render_phase::ViewSortedRenderPhases,
         render_resource::{
-            BindGroupEntries, Buffer, BufferDescriptor, BufferUsages, CachedComputePipelineId,
-            ComputePassDescriptor, PipelineCache, SpecializedComputePipelines, TextureView,
+            BindGroupEntries, Buffer, BufferUsages, CachedComputePipelineId, PipelineCache,
+            SpecializedComputePipelines, TextureView,
         },
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
         view::{ExtractedView, ViewDepthTexture},
@@ -36,6 +36,7 @@ use super::{
     watch::Reading,
 };
 use crate::{
+    gpu::{buffer, compute_pass},
     objects::{
         IdRequest, ViewObjectIds,
         phase::{Layer, ObjectIdItem},
@@ -78,14 +79,8 @@ pub(in crate::objects) struct IdCount {
 
 impl IdCount {
     fn new(device: &RenderDevice, request: &IdRequest, pipeline: CachedComputePipelineId) -> Self {
-        let buffer = |label, size, usage| {
-            device.create_buffer(&BufferDescriptor {
-                label: Some(label),
-                size,
-                usage: usage | BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
+        let buffer =
+            |label, size, usage| buffer(device, label, size, usage | BufferUsages::COPY_DST);
         let counted = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
         Self {
             camera: request.camera,
@@ -126,12 +121,7 @@ impl IdCount {
         let encoder = ctx.command_encoder();
         encoder.clear_buffer(&self.counts, 0, None);
         {
-            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-                label: Some("comics_count_ids"),
-                timestamp_writes: None,
-            });
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &group, &[]);
+            let mut pass = compute_pass(encoder, "comics_count_ids", (pipeline, &group), &[]);
             let across = viewport.z.div_ceil(STEP * STRIP * WORKGROUP);
             pass.dispatch_workgroups(across, viewport.w.div_ceil(STEP * WORKGROUP), 1);
         }
