@@ -7,7 +7,6 @@ use bevy::{
         hierarchy::ChildOf,
         system::{Commands, Res, ResMut, SystemParam},
     },
-    math::Vec4Swizzles,
     render::{
         camera::ExtractedCamera,
         render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines},
@@ -15,13 +14,10 @@ use bevy::{
     },
 };
 
-use super::{Plan, ViewPlan, lines::memory_request, scene::Scene};
+use super::{Plan, ViewPlan, lines::plain_request, scene::Scene};
 use crate::{
-    depth::{ProjectionKind, view::ViewUniform},
-    lines::{
-        LinePasses, LinePipelines, LineRequest, MarkKey, MarkPipeline, Outlines, SheetUniform,
-        ViewMarks,
-    },
+    depth::view::ViewUniform,
+    lines::{LinePasses, LinePipelines, LineRequest, MarkKey, MarkPipeline, Outlines, ViewMarks},
     objects::{LayerRequest, Marks},
 };
 
@@ -83,43 +79,12 @@ fn request(
     widest: f32,
 ) -> Option<LineRequest> {
     let settings = Outlines::MARKS;
-    let (depth_size, samples) = scene.depth?;
-    let reference = view.projection.jump_reference(&view.clip_from_view);
-    let grid_scale = view.scale_factor * uniform.depth_scale.max_element();
     Some(LineRequest {
-        camera: view.camera,
-        settings,
-        view: uniform,
-        lines: settings.uniform(view.scale_factor, reference),
-        weight: (settings.weight).uniform(grid_scale, view.to_light, settings.ink_budget),
-        boil: settings.boil.uniform(view.scale_factor, view.time, 0.0),
-        memory: memory_request(view, &settings, scene),
-        cuts: view.cuts,
-        motion: false,
-        fog: None,
-        focus: None,
-        layers: None,
-        abstraction: None,
-        sheet: SheetUniform::default(),
-        depth_size,
-        samples,
-        size: scene.viewport.zw(),
-        rect: scene.drawn(),
-        jitter: scene.jitter,
         reach: settings.reach(view.scale_factor, (widest, false), None),
-        steps: settings.steps(grid_scale),
-        specks: settings.min_length(grid_scale),
-        extension: 0.0,
-        oblique: view.projection.kind() == ProjectionKind::Oblique,
-        visible_range: false,
         ids: true,
-        sections: false,
         marks: true,
         object_styles: true,
-        widths: false,
-        line_reach: 0.0,
-        jumps: None,
-        map_flags: 0,
+        ..plain_request(view, settings, scene, uniform)?
     })
 }
 

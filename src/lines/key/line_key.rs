@@ -160,11 +160,7 @@ impl LineKey {
             abstracts_objects: false,
             visible_range: self.jumps && self.visible_range,
             links: false,
-            rims: false,
             bridged: self.bridged,
-            persists: false,
-            smooth: false,
-            weight: WeightKey::default(),
             jumps: self.jumps,
             map_flags: if self.jumps { self.map_flags } else { 0 },
             ..self.for_find()
@@ -174,56 +170,39 @@ impl LineKey {
     /// The part that finding depends on.
     pub fn for_find(self) -> Self {
         Self {
+            oblique: self.oblique,
+            silhouettes: self.silhouettes,
+            creases: self.creases,
+            object_edges: self.object_edges,
+            sections: self.sections,
+            marks: self.marks,
+            multisampled_picture: self.multisampled_picture,
             ids: self.object_edges || self.object_styles || self.sections || self.abstracts_objects,
-            links: self.settles(),
-            rims: false,
-            bridged: false,
-            persists: false,
-            motion: false,
-            overshoots: false,
-            smooth: false,
-            weight: WeightKey::default(),
-            faithful: [false; 2],
-            search: Search::default(),
+            object_styles: self.object_styles,
+            fading: self.fading,
+            abstracts: self.abstracts,
+            abstracts_objects: self.abstracts_objects,
             visible_range: (self.fading || self.abstracts) && self.visible_range,
-            boils: false,
-            sheet: SheetKey::default(),
-            surface: false,
-            inward: false,
-            varied: false,
-            jumps: false,
-            map_flags: 0,
-            ..self
+            links: self.settles(),
+            ledges: self.ledges,
+            same_size: self.same_size,
+            by_fragments: self.by_fragments,
+            ..Self::default()
         }
     }
 
     /// The part that the faithful equations depend on.
     pub fn for_faithful(self) -> Self {
         Self {
-            silhouettes: false,
-            creases: false,
-            object_edges: false,
-            sections: false,
-            marks: false,
-            multisampled_picture: false,
-            search: Search::default(),
+            oblique: self.oblique,
+            ids: self.ids,
+            object_styles: self.object_styles,
+            fading: self.fading,
             visible_range: self.fading && self.visible_range,
-            jumps: false,
-            map_flags: 0,
-            by_fragments: false,
-            abstracts: false,
-            abstracts_objects: false,
-            ledges: false,
-            rims: false,
-            bridged: false,
-            persists: false,
-            motion: false,
-            overshoots: false,
-            weight: WeightKey::default(),
-            boils: false,
-            sheet: SheetKey::default(),
-            varied: false,
-            ..self
+            faithful: self.faithful,
+            surface: self.surface,
+            same_size: self.same_size,
+            ..Self::default()
         }
     }
 

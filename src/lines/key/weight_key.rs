@@ -40,14 +40,8 @@ impl WeightKey {
             perspective: weight.perspective > 0.0,
             nib_roundness: weight.nib_roundness < 1.0 && lines.smooth,
             taper: weight.taper > 0.0,
-            map: false,
             budget: lines.ink_budget < 1.0,
-            fog: false,
-            focus: false,
-            layers: false,
-            found_borders: false,
-            by_objects: false,
-            abstracts: false,
+            ..Self::default()
         }
     }
 
