@@ -1,6 +1,6 @@
 //! Composes the WGSL of the fused pass from the registered effects.
 
-use crate::effect::{EffectRegistry, EffectStage, EffectType, names::definition};
+use crate::effect::{EffectRegistry, EffectStage, EffectType, definition};
 
 /// The template of the pass; lines that begin with `//@` are replaced.
 const RECIPE: &str = include_str!("fused.wgsl");

@@ -1,7 +1,7 @@
 //! The key that selects a pipeline of the fused pass.
 
 use crate::effect::{
-    AffectedArea, AnyEffect, EffectContext, EffectStage, Needs, Variants, names::definition,
+    AffectedArea, AnyEffect, EffectContext, EffectStage, Needs, Variants, definition,
 };
 use bevy::{
     camera::CompositingSpace,

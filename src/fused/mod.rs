@@ -25,9 +25,10 @@ mod prepare;
 mod reasons;
 mod requests;
 mod scene;
+mod view_plan;
 mod words;
 
-pub(crate) use choose::ViewPlan;
 pub(crate) use device::DeviceLacks;
 pub(crate) use plan::Plan;
 pub(crate) use plugin::FusedPlugin;
+pub(crate) use view_plan::ViewPlan;
