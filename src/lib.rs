@@ -69,6 +69,7 @@ pub mod diagnostics;
 pub mod effect;
 pub mod effects;
 mod fused;
+mod gpu;
 pub mod lines;
 #[cfg(any(feature = "objects", feature = "toon"))]
 mod motion_lines;

@@ -5,9 +5,9 @@ use bevy::{
     ecs::resource::Resource,
     render::{
         render_resource::{
-            BindGroupEntry, BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource,
-            Buffer, BufferDescriptor, BufferUsages, CachedComputePipelineId, CommandEncoder,
-            ComputePassDescriptor, ComputePipelineDescriptor, PipelineCache, ShaderStages,
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource, Buffer,
+            BufferUsages, CachedComputePipelineId, CommandEncoder, ComputePipelineDescriptor,
+            PipelineCache, ShaderStages,
             binding_types::{storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer},
         },
         renderer::RenderDevice,
@@ -16,6 +16,7 @@ use bevy::{
 };
 
 use super::follow::{SmoothingUniform, ViewSmoothing};
+use crate::gpu::{buffer, compute_pass, entry};
 
 /// Bytes of `BorderState` in `borders.wgsl`.
 const STATE_SIZE: u64 = 16;
@@ -28,12 +29,12 @@ pub(crate) struct ViewBorders {
 impl ViewBorders {
     pub fn new(device: &RenderDevice) -> Self {
         Self {
-            state: device.create_buffer(&BufferDescriptor {
-                label: Some("comics_depth_borders"),
-                size: STATE_SIZE,
-                usage: BufferUsages::STORAGE,
-                mapped_at_creation: false,
-            }),
+            state: buffer(
+                device,
+                "comics_depth_borders",
+                STATE_SIZE,
+                BufferUsages::STORAGE,
+            ),
         }
     }
 
@@ -50,7 +51,6 @@ impl ViewBorders {
         else {
             return;
         };
-        let entry = |binding, resource| BindGroupEntry { binding, resource };
         let bind_group = device.create_bind_group(
             "comics_depth_borders",
             &cache.get_bind_group_layout(&BorderPipeline::layout()),
@@ -61,12 +61,9 @@ impl ViewBorders {
                 entry(3, smoothing.drawn.as_entire_binding()),
             ],
         );
-        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-            label: Some("comics_depth_borders"),
-            timestamp_writes: None,
-        });
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, &bind_group, &[smoothing.uniform_offset]);
+        let offsets = [smoothing.uniform_offset];
+        let passed = (pipeline, &bind_group);
+        let mut pass = compute_pass(encoder, "comics_depth_borders", passed, &offsets);
         pass.dispatch_workgroups(1, 1, 1);
     }
 }

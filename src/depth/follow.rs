@@ -8,10 +8,9 @@ use bevy::{
     math::UVec2,
     render::{
         render_resource::{
-            BindGroupEntry, BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource,
-            Buffer, BufferDescriptor, BufferUsages, CommandEncoder, ComputePassDescriptor,
-            ComputePipeline, ComputePipelineDescriptor, PipelineCache, ShaderStages, ShaderType,
-            SpecializedComputePipeline,
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource, Buffer,
+            BufferUsages, CommandEncoder, ComputePipeline, ComputePipelineDescriptor,
+            PipelineCache, ShaderStages, ShaderType, SpecializedComputePipeline,
             binding_types::{storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer},
         },
         renderer::RenderDevice,
@@ -22,6 +21,7 @@ use bevy::{
 use super::{
     DepthMap, ProjectionKind, RangeSmoothing, frame::DepthProjection, request::RangeRequest,
 };
+use crate::gpu::{buffer, compute_pass, entry};
 
 /// Bits of [`SmoothingUniform::flags`], as in `level.wgsl`.
 const ORTHOGRAPHIC: u32 = 1;
@@ -121,14 +121,8 @@ pub(crate) struct ViewSmoothing {
 
 impl ViewSmoothing {
     pub fn new(device: &RenderDevice, request: &RangeRequest, size: UVec2) -> Self {
-        let buffer = |label, size, usage| {
-            device.create_buffer(&BufferDescriptor {
-                label: Some(label),
-                size,
-                usage: BufferUsages::STORAGE | usage,
-                mapped_at_creation: false,
-            })
-        };
+        let buffer =
+            |label, size, usage| buffer(device, label, size, BufferUsages::STORAGE | usage);
         Self {
             state: buffer("comics_range_state", STATE_SIZE, BufferUsages::COPY_SRC),
             drawn: buffer(
@@ -166,12 +160,9 @@ impl ViewSmoothing {
         if !wanted {
             self.histogram = None;
         } else if self.histogram.is_none() {
-            self.histogram = Some(device.create_buffer(&BufferDescriptor {
-                label: Some("comics_depth_histogram"),
-                size: HISTOGRAM_SIZE,
-                usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
-                mapped_at_creation: false,
-            }));
+            let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
+            let histogram = buffer(device, "comics_depth_histogram", HISTOGRAM_SIZE, usage);
+            self.histogram = Some(histogram);
         }
     }
 
@@ -200,7 +191,6 @@ impl ViewSmoothing {
         pipeline: &ComputePipeline,
         (uniforms, found): (BindingResource, &Buffer),
     ) {
-        let entry = |binding, resource| BindGroupEntry { binding, resource };
         let mut entries = vec![
             entry(0, uniforms),
             entry(1, found.as_entire_binding()),
@@ -216,12 +206,8 @@ impl ViewSmoothing {
             &cache.get_bind_group_layout(&layout),
             &entries,
         );
-        let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-            label: Some("comics_range_smoothing"),
-            timestamp_writes: None,
-        });
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, &bind_group, &[self.uniform_offset]);
+        let (passed, offsets) = ((pipeline, &bind_group), [self.uniform_offset]);
+        let mut pass = compute_pass(encoder, "comics_range_smoothing", passed, &offsets);
         pass.dispatch_workgroups(1, 1, 1);
         drop(pass);
         // A locked range ignores a cut; smoothing starts anew when it is unlocked.

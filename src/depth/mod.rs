@@ -5,6 +5,7 @@ mod axis;
 mod borders;
 pub(crate) mod follow;
 pub(crate) mod frame;
+pub(crate) mod passes;
 mod ping_pong;
 pub(crate) mod plugin;
 pub(crate) mod prepare;

@@ -8,11 +8,10 @@ use bevy::{
     render::{
         render_resource::{
             BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries, BindingResource,
-            Buffer, ColorTargetState, ColorWrites, CommandEncoder, Extent3d, FragmentState,
-            Operations, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor,
-            RenderPipeline, RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline,
-            TexelCopyBufferInfo, TexelCopyBufferLayout, TextureDescriptor, TextureDimension,
-            TextureFormat, TextureSampleType, TextureUsages, TextureView,
+            Buffer, CommandEncoder, Extent3d, FragmentState, LoadOp, PipelineCache,
+            RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor, ShaderStages,
+            SpecializedRenderPipeline, TexelCopyBufferInfo, TexelCopyBufferLayout, TextureFormat,
+            TextureSampleType, TextureUsages, TextureView,
             binding_types::{texture_2d, texture_2d_multisampled, uniform_buffer},
         },
         renderer::RenderDevice,
@@ -22,7 +21,10 @@ use bevy::{
 };
 
 use super::range::RangeView;
-use crate::samples;
+use crate::{
+    gpu::{attachment, definitions, texture},
+    samples,
+};
 
 const FORMAT: TextureFormat = TextureFormat::R32Uint;
 
@@ -72,14 +74,8 @@ impl SpecializedRenderPipeline for PingPongPipeline {
     type Key = (bool, u32, bool);
 
     fn specialize(&self, (first, samples, oblique): Self::Key) -> RenderPipelineDescriptor {
-        let mut shader_defs = Vec::new();
-        if first {
-            shader_defs.push("FIRST".into());
-        }
-        shader_defs.extend(samples::definitions(samples));
-        if oblique {
-            shader_defs.push("OBLIQUE".into());
-        }
+        let flags = definitions([(first, "FIRST"), (oblique, "OBLIQUE")]);
+        let shader_defs = flags.chain(samples::definitions(samples)).collect();
         let layout = if first {
             Self::first_layout(samples > 1)
         } else {
@@ -93,11 +89,7 @@ impl SpecializedRenderPipeline for PingPongPipeline {
                 shader: self.shader.clone(),
                 shader_defs,
                 entry_point: Some("reduce".into()),
-                targets: vec![Some(ColorTargetState {
-                    format: FORMAT,
-                    blend: None,
-                    write_mask: ColorWrites::ALL,
-                })],
+                targets: vec![Some(FORMAT.into())],
             }),
             ..Default::default()
         }
@@ -127,25 +119,10 @@ pub(crate) fn chain_textures(
     device: &RenderDevice,
     rect_size: UVec2,
 ) -> Vec<CachedTexture> {
-    let texture = |size: UVec2| {
-        let descriptor = TextureDescriptor {
-            label: Some("comics_ping_pong"),
-            size: Extent3d {
-                width: size.x,
-                height: size.y,
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: TextureDimension::D2,
-            format: FORMAT,
-            usage: TextureUsages::RENDER_ATTACHMENT
-                | TextureUsages::TEXTURE_BINDING
-                | TextureUsages::COPY_SRC,
-            view_formats: &[],
-        };
-        textures.get(device, descriptor)
-    };
+    let usage =
+        TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC;
+    let described = |size| texture("comics_ping_pong", (size, 1), FORMAT, usage);
+    let texture = |size| textures.get(device, described(size));
     chain_sizes(rect_size).into_iter().map(texture).collect()
 }
 
@@ -183,12 +160,7 @@ pub(crate) fn record_chain(
         };
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("comics_ping_pong"),
-            color_attachments: &[Some(RenderPassColorAttachment {
-                view: &target.default_view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: Operations::default(),
-            })],
+            color_attachments: &[Some(attachment(&target.default_view, LoadOp::default()))],
             ..Default::default()
         });
         if source.is_none() {

@@ -15,7 +15,7 @@ use bevy::{
     },
     math::Vec4Swizzles,
     render::{
-        render_resource::{Buffer, BufferDescriptor, BufferUsages, DynamicUniformBuffer},
+        render_resource::{Buffer, BufferUsages, DynamicUniformBuffer},
         renderer::{RenderDevice, RenderQueue},
         texture::{CachedTexture, TextureCache},
     },
@@ -24,11 +24,13 @@ use bevy::{
 use super::{
     borders::ViewBorders,
     follow::{SmoothingUniform, ViewSmoothing},
+    passes::{RangePasses, Reduction},
     ping_pong::chain_textures,
     range::RangeView,
     readback::{RangeReadback, RangeReadings},
-    request::{RangePasses, RangeRequest, Reduction},
+    request::RangeRequest,
 };
+use crate::gpu::buffer;
 
 /// On a view in the render world: its visible range. It stays on the view, with the
 /// state of its smoothing, as long as a range is requested.
@@ -113,21 +115,12 @@ pub(crate) fn prepare_view_ranges(
     uniforms.views.clear();
     uniforms.smoothings.clear();
     for (entity, request, passes, range) in &mut views {
+        let tools = (&*device, &mut *textures);
         match range {
-            Some(mut range) => range.prepare(
-                request,
-                *passes,
-                &mut uniforms,
-                (&device, textures.as_mut()),
-            ),
+            Some(mut range) => range.prepare(request, *passes, &mut uniforms, tools),
             None => {
                 let mut range = ViewDepthRange::new(&device, request, *passes);
-                range.prepare(
-                    request,
-                    *passes,
-                    &mut uniforms,
-                    (&device, textures.as_mut()),
-                );
+                range.prepare(request, *passes, &mut uniforms, tools);
                 commands.entity(entity).insert(range);
             }
         }
@@ -182,15 +175,9 @@ impl ViewDepthRange {
 }
 
 fn keys_buffer(device: &RenderDevice) -> Buffer {
-    device.create_buffer(&BufferDescriptor {
-        label: Some("comics_depth_range"),
-        size: 16,
-        usage: BufferUsages::STORAGE
-            | BufferUsages::UNIFORM
-            | BufferUsages::COPY_SRC
-            | BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
+    let copied = BufferUsages::COPY_SRC | BufferUsages::COPY_DST;
+    let usage = BufferUsages::STORAGE | BufferUsages::UNIFORM | copied;
+    buffer(device, "comics_depth_range", 16, usage)
 }
 
 /// Maps the copies of this frame. Runs after they were submitted.

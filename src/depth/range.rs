@@ -20,7 +20,7 @@ use bevy::{
 use wgpu_types::DeviceType;
 
 use super::{RawDepth, ReductionMethod};
-use crate::samples;
+use crate::{gpu::definitions, samples};
 
 /// `RangeView` of `range.wgsl` and `PingPongView` of `ping_pong.wgsl`.
 #[derive(ShaderType, Clone, Copy, Debug)]
@@ -150,15 +150,11 @@ impl SpecializedComputePipeline for RangePipeline {
             RangeShape::SharedMemory => {}
         }
         shader_defs.extend(samples::definitions(key.samples));
-        if key.oblique {
-            shader_defs.push("OBLIQUE".into());
-        }
-        if key.histogram {
-            shader_defs.push("HISTOGRAM".into());
-        }
-        if key.orthographic {
-            shader_defs.push("ORTHOGRAPHIC".into());
-        }
+        shader_defs.extend(definitions([
+            (key.oblique, "OBLIQUE"),
+            (key.histogram, "HISTOGRAM"),
+            (key.orthographic, "ORTHOGRAPHIC"),
+        ]));
         ComputePipelineDescriptor {
             label: Some("comics_depth_range".into()),
             layout: vec![Self::layout(key)],

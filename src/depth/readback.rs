@@ -17,13 +17,13 @@ use bevy::{
     },
     reflect::{Reflect, std_traits::ReflectDefault},
     render::{
-        render_resource::{Buffer, BufferDescriptor, BufferUsages, CommandEncoder},
+        render_resource::{Buffer, BufferUsages, CommandEncoder},
         renderer::RenderDevice,
     },
 };
 
 use super::{ProjectionKind, frame::DepthProjection};
-use crate::readback::map_words;
+use crate::{gpu::buffer, readback::map_words};
 
 /// The view depths of the nearest and farthest visible geometry of a camera. Put it
 /// on the camera; its value is updated.
@@ -246,12 +246,12 @@ impl RangeReadback {
             Some(index) => index,
             None if self.slots.len() < SLOTS => {
                 self.slots.push(Slot {
-                    buffer: device.create_buffer(&BufferDescriptor {
-                        label: Some("comics_range_readback"),
+                    buffer: buffer(
+                        device,
+                        "comics_range_readback",
                         size,
-                        usage: BufferUsages::COPY_DST | BufferUsages::MAP_READ,
-                        mapped_at_creation: false,
-                    }),
+                        BufferUsages::COPY_DST | BufferUsages::MAP_READ,
+                    ),
                     busy: Arc::default(),
                     copied: None,
                 });

@@ -8,8 +8,8 @@ use bevy::{
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
-            BindGroupEntry, BindingResource, CachedComputePipelineId, CachedRenderPipelineId,
-            ComputePassDescriptor, IntoBinding, PipelineCache, TextureView,
+            BindingResource, CachedComputePipelineId, CachedRenderPipelineId, IntoBinding,
+            PipelineCache, TextureView,
         },
         renderer::{RenderContext, ViewQuery},
     },
@@ -17,13 +17,16 @@ use bevy::{
 
 use super::{
     ReductionMethod,
+    passes::Reduction,
     ping_pong::{ChainSource, record_chain},
     prepare::{RangeUniforms, ViewDepthRange},
     range::{RangeKey, RangePipeline, RangeShape},
-    request::Reduction,
     surfaces::{OwnSurfaces, Surfaces},
 };
-use crate::diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome};
+use crate::{
+    diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
+    gpu::{compute_pass, entry},
+};
 
 /// Records the reduction, the smoothing and the readback of a view's visible range.
 pub(crate) fn reduce_depth_range(
@@ -145,7 +148,6 @@ impl Frame<'_> {
             histogram: histogram.is_some(),
             ..RangeKey::default()
         };
-        let entry = |binding, resource| BindGroupEntry { binding, resource };
         let mut entries = vec![
             entry(0, depth.into_binding()),
             entry(1, view),
@@ -171,15 +173,8 @@ impl Frame<'_> {
             smoothing.clear_histogram(encoder);
         }
         let (x, y) = shape.workgroups(range.request.rect);
-        {
-            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-                label: Some("comics_depth_range"),
-                timestamp_writes: None,
-            });
-            pass.set_pipeline(compute);
-            pass.set_bind_group(0, &bind_group, &[range.view_offset]);
-            pass.dispatch_workgroups(x, y, 1);
-        }
+        let (passed, offsets) = ((compute, &bind_group), [range.view_offset]);
+        compute_pass(encoder, "comics_depth_range", passed, &offsets).dispatch_workgroups(x, y, 1);
         span.end(encoder);
         Ok(shape.method())
     }

@@ -1,13 +1,18 @@
-//! An effect whose type is known only at run time.
+//! An effect whose type is known only at run time, and the description of its type.
 
 use std::any::Any;
 
 use bevy::{
-    ecs::world::EntityWorldMut, reflect::structs::Struct,
+    ecs::world::{EntityRef, EntityWorldMut},
+    reflect::{TypeInfo, TypeRegistry, structs::Struct},
     render::render_resource::encase::UniformBuffer,
 };
+use serde::Deserialize;
 
-use super::{AffectedArea, Effect, EffectContext, EffectType, Needs, Variants};
+use super::{
+    AffectedArea, Effect, EffectContext, EffectShader, EffectStage, EffectView, Needs, Variants,
+    blend,
+};
 use crate::lines::{LineModifiers, Outlines};
 
 /// An [`Effect`] whose type is known only at run time. Every effect implements it;
@@ -181,4 +186,105 @@ where
     let written = buffer.write(value);
     debug_assert!(written.is_ok(), "a uniform was not written");
     buffer.into_inner()
+}
+
+/// The description of an effect's type.
+pub struct EffectType {
+    /// [`Effect::NAME`].
+    pub name: &'static str,
+    /// [`Effect::STAGE`].
+    pub stage: EffectStage,
+    /// [`Effect::SHADER`].
+    pub shader: EffectShader,
+    /// [`Effect::REPLACES`].
+    pub replaces: &'static [&'static str],
+    /// [`Effect::VIEW`].
+    pub view: Option<EffectView>,
+    /// [`Effect::HALF_BOX`].
+    pub half_box: bool,
+    /// [`Effect::AUX_SCALAR`].
+    pub number: bool,
+    /// The reflection data of the type.
+    pub type_info: fn() -> &'static TypeInfo,
+    /// Creates an effect with default settings.
+    pub default: fn() -> Box<dyn AnyEffect>,
+    /// Gets the effect from an entity, if the entity has it.
+    pub get: for<'w> fn(EntityRef<'w>) -> Option<&'w dyn AnyEffect>,
+    /// Registers the effect's type and those of its fields.
+    pub register: fn(&mut TypeRegistry),
+    pub(crate) remove: fn(&mut EntityWorldMut),
+    pub(crate) read: ReadEffect,
+    pub(crate) blend: BlendEffects,
+}
+
+type ReadEffect = for<'a, 'de> fn(
+    &'a mut dyn erased_serde::Deserializer<'de>,
+) -> Result<Option<Box<dyn AnyEffect>>, erased_serde::Error>;
+
+/// Interpolates from the first effect (`t` = 0) to the second (`t` = 1). The flag
+/// says whether the mapping of the depth map changes.
+type BlendEffects =
+    fn(Option<&dyn AnyEffect>, Option<&dyn AnyEffect>, f32, bool) -> Option<Box<dyn AnyEffect>>;
+
+impl EffectType {
+    /// The description of an effect's type.
+    pub const fn of<E: Effect>() -> &'static Self {
+        const {
+            &Self {
+                name: E::NAME,
+                stage: E::STAGE,
+                shader: E::SHADER,
+                replaces: E::REPLACES,
+                view: E::VIEW,
+                half_box: E::HALF_BOX,
+                number: E::AUX_SCALAR,
+                type_info: E::type_info,
+                default: default::<E>,
+                get: get::<E>,
+                register: TypeRegistry::register::<E>,
+                remove: remove::<E>,
+                read: read::<E>,
+                blend: blended::<E>,
+            }
+        }
+    }
+}
+
+impl std::fmt::Debug for EffectType {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("EffectType")
+            .field("name", &self.name)
+            .field("stage", &self.stage)
+            .finish_non_exhaustive()
+    }
+}
+
+fn default<E: Effect>() -> Box<dyn AnyEffect> {
+    Box::new(E::default())
+}
+
+fn get<'w, E: Effect>(entity: EntityRef<'w>) -> Option<&'w dyn AnyEffect> {
+    entity.get::<E>().map(|effect| effect as &dyn AnyEffect)
+}
+
+fn remove<E: Effect>(entity: &mut EntityWorldMut) {
+    entity.remove::<E>();
+}
+
+fn read<E: Effect>(
+    deserializer: &mut dyn erased_serde::Deserializer<'_>,
+) -> Result<Option<Box<dyn AnyEffect>>, erased_serde::Error> {
+    let effect = Option::<E>::deserialize(deserializer)?;
+    Ok(effect.map(|effect| Box::new(effect) as Box<dyn AnyEffect>))
+}
+
+fn blended<E: Effect>(
+    a: Option<&dyn AnyEffect>,
+    b: Option<&dyn AnyEffect>,
+    t: f32,
+    remapped: bool,
+) -> Option<Box<dyn AnyEffect>> {
+    let typed = |effect: Option<&dyn AnyEffect>| effect?.as_any().downcast_ref::<E>().cloned();
+    let effect = blend::blend(typed(a), typed(b), t, remapped)?;
+    Some(Box::new(effect))
 }

@@ -28,17 +28,18 @@ pub use crate::settings::{
     BlendField, FieldRange, HueWheel, blend_color, blend_ratio, clamp_color,
     clamp_option_or_default, clamp_or_default, clamp_vec2_or_default, color_serde, linear_rgb,
 };
-pub use any::AnyEffect;
 pub(crate) use any::encode;
+pub use any::{AnyEffect, EffectType};
 pub(crate) use blend::mixed as mix_fields;
 pub use context::EffectContext;
 pub use needs::Needs;
-pub use registry::{EffectPlugin, EffectRegistry, EffectType};
+pub use registry::{EffectPlugin, EffectRegistry};
 pub use set::EffectSet;
 pub(crate) use strokes::Strokes;
 pub use target::EffectTarget;
 pub(crate) use target::place_in;
 pub use variants::Variants;
+pub(crate) use variants::definition;
 
 use crate::{
     diagnostics::ComicsStage,

@@ -1,4 +1,4 @@
-//! Names of effects: which are free, and what they are called in shaders.
+//! Names of effects: which are free.
 
 use naga_oil::compose::get_preprocessor_data;
 
@@ -75,11 +75,6 @@ const DEFINITIONS: [&str; 38] = [
     "draws_numbers",
     "inside",
 ];
-
-/// The shader definition of the effect with this name.
-pub(crate) fn definition(name: &str) -> String {
-    name.to_uppercase()
-}
 
 /// Why an effect cannot be registered beside the `known` ones; `None` if it can.
 pub(super) fn refuses(effect: &EffectType, known: &[&EffectType]) -> Option<&'static str> {

@@ -2,8 +2,6 @@
 
 use bevy::shader::ShaderDefVal;
 
-use super::names::definition;
-
 /// Modes of an effect that select a shader variant. Each becomes a shader
 /// definition, whose name is the effect's name in capitals, an underscore, and the
 /// variant's name: `MODE` of the effect `rain` becomes `RAIN_MODE`.
@@ -35,4 +33,9 @@ impl Variants {
             }
         })
     }
+}
+
+/// The shader definition of the effect with this name.
+pub(crate) fn definition(name: &str) -> String {
+    name.to_uppercase()
 }

@@ -2,6 +2,28 @@
 //!
 //! Each effect has a folder with its settings, their packing and one WGSL function.
 
+mod abstraction;
+mod black_flats;
+mod color_harmony;
+mod colorization;
+mod contours;
+mod depth_layers;
+mod desaturation;
+mod focus;
+mod halftone;
+mod hatching;
+mod iso_lines;
+mod misregistration;
+mod outlines;
+mod paint;
+mod paper;
+mod sketch;
+mod speed_lines;
+mod tone_bands;
+mod tone_ramp;
+mod two_tone;
+mod vignette;
+
 use std::sync::LazyLock;
 
 use bevy::app::App;
@@ -14,7 +36,6 @@ use crate::effect::{EffectPlugin, EffectRegistry, EffectType};
 macro_rules! effects {
     ($($module:ident: $Effect:ident $(, $Other:ident)*;)*) => {
         $(
-            mod $module;
             pub use $module::{$Effect $(, $Other)*};
         )*
 

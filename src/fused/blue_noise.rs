@@ -7,15 +7,16 @@ mod void_and_cluster;
 
 use bevy::{
     ecs::resource::Resource,
+    math::UVec2,
     render::{
         render_resource::{
-            Extent3d, TextureDataOrder, TextureDescriptor, TextureDimension, TextureFormat,
-            TextureUsages, TextureView, TextureViewDescriptor,
+            TextureDataOrder, TextureFormat, TextureUsages, TextureView, TextureViewDescriptor,
         },
         renderer::{RenderDevice, RenderQueue},
     },
 };
 
+use crate::gpu::texture;
 use void_and_cluster::{SIDE, classes};
 
 /// The tile as a texture, once an effect has needed it.
@@ -26,21 +27,12 @@ impl BlueNoise {
     /// Makes the texture if there is none yet.
     pub fn prepare(&mut self, device: &RenderDevice, queue: &RenderQueue) {
         self.0.get_or_insert_with(|| {
-            let side = SIDE as u32;
-            let described = TextureDescriptor {
-                label: Some("comics_blue_noise"),
-                size: Extent3d {
-                    width: side,
-                    height: side,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: TextureDimension::D2,
-                format: TextureFormat::Rgba32Uint,
-                usage: TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            };
+            let described = texture(
+                "comics_blue_noise",
+                (UVec2::splat(SIDE as u32), 1),
+                TextureFormat::Rgba32Uint,
+                TextureUsages::TEXTURE_BINDING,
+            );
             device
                 .create_texture_with_data(
                     queue,

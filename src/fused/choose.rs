@@ -14,7 +14,6 @@ use bevy::{
         query::{Or, With, Without},
         system::{Commands, Query, Res, ResMut},
     },
-    math::{Mat4, Vec3},
     render::{
         camera::{ExtractedCamera, TemporalJitter},
         render_resource::PipelineCache,
@@ -22,52 +21,13 @@ use bevy::{
     },
 };
 
-use super::{
-    Plan,
-    prepare::FusedRequest,
-    requests::{Scene, Services},
-};
+use super::{Plan, ViewPlan, prepare::FusedRequest, requests::Services, scene::Scene};
 use crate::{
-    depth::{
-        frame::DepthProjection,
-        request::{RangePasses, RangeRequest},
-    },
+    depth::{passes::RangePasses, request::RangeRequest},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
-    lines::{
-        ViewFog, ViewMarks,
-        request::{LinePasses, LineRequest},
-    },
+    lines::{LinePasses, LineRequest, ViewMarks},
     objects::{DepthWanted, IdRequest, IdsWanted, QueuedDepth},
 };
-
-/// On a view in the render world: the plan of its camera, and facts about the
-/// camera.
-#[derive(Component, Clone, Debug)]
-pub(crate) struct ViewPlan {
-    pub camera: Entity,
-    pub plan: Arc<Plan>,
-    /// The number of the plan in the main world; it grows with every change.
-    pub number: u64,
-    pub projection: DepthProjection,
-    pub clip_from_view: Mat4,
-    /// Physical pixels per logical pixel.
-    pub scale_factor: f32,
-    /// The largest line width that an object overrides, in logical pixels.
-    pub widest_object: f32,
-    /// Unit vector towards the light that lines follow, in world space.
-    pub to_light: Vec3,
-    /// The engine's distance fog of the camera.
-    pub fog: Option<ViewFog>,
-    /// World position of the object that effects point at.
-    pub target: Option<Vec3>,
-    /// Seconds of the app's default clock.
-    pub time: f64,
-    /// Real time since the last frame, in seconds. Not the game's time: the camera
-    /// of a paused game can still move.
-    pub seconds: f32,
-    /// Number of camera cuts so far.
-    pub cuts: u32,
-}
 
 /// On a view that a plan was chosen for: the last plan whose pipelines were all
 /// compiled, if there was one.
@@ -150,7 +110,7 @@ pub(crate) fn choose_plans(
 fn remove(view: Entity, marks: Option<&ViewMarks>, commands: &mut Commands) {
     commands.entity(view).remove::<Chosen>();
     #[cfg(feature = "objects")]
-    super::requests::remove_marks(view, marks.map(|marks| marks.layer), commands);
+    super::marks::remove_marks(view, marks.map(|marks| marks.layer), commands);
     #[cfg(not(feature = "objects"))]
     let _ = marks;
 }

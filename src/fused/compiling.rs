@@ -5,7 +5,7 @@ use bevy::{
     shader::ShaderCacheError,
 };
 
-use crate::lines::request::{FindPass, LinePasses};
+use crate::lines::{FindPass, LinePasses};
 
 /// Whether a pipeline of lines is still compiling.
 pub(super) fn are_compiling(passes: &LinePasses, cache: &PipelineCache) -> bool {

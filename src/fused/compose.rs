@@ -1,6 +1,6 @@
 //! Composes the WGSL of the fused pass from the registered effects.
 
-use crate::effect::{EffectRegistry, EffectStage, EffectType, names::definition};
+use crate::effect::{EffectRegistry, EffectStage, EffectType, definition};
 
 /// The template of the pass; lines that begin with `//@` are replaced.
 const RECIPE: &str = include_str!("fused.wgsl");
@@ -82,42 +82,40 @@ pub(super) fn numbers_of(name: &str) -> String {
 
 /// The call of the function that says what the numbers of an effect are.
 fn numbers(effect: &EffectType) -> String {
-    let (name, definition) = (effect.name, numbers_of(effect.name));
-    let path = effect.shader.path;
-    let arguments = arguments(effect);
-    format!("#ifdef {definition}\n    number = {path}::{name}_aux_scalar({arguments});\n#endif\n")
+    let number = call(effect, "_aux_scalar");
+    guarded(
+        &numbers_of(effect.name),
+        &format!("    number = {number};\n"),
+    )
 }
 
 /// The call of the function that says how large the boxes of an effect are.
 fn boxes(effect: &EffectType) -> String {
-    let (name, definition) = (effect.name, boxes_of(effect.name));
-    let path = effect.shader.path;
-    let arguments = arguments(effect);
-    format!("#ifdef {definition}\n    half = {path}::{name}_half_box({arguments});\n#endif\n")
+    let half = call(effect, "_half_box");
+    guarded(&boxes_of(effect.name), &format!("    half = {half};\n"))
 }
 
-/// The arguments of an effect's functions.
-fn arguments(effect: &EffectType) -> String {
+fn guarded(definition: &str, code: &str) -> String {
+    format!("#ifdef {definition}\n{code}#endif\n")
+}
+
+/// The call of a function of an effect, whose name ends so.
+fn call(effect: &EffectType, suffix: &str) -> String {
+    let (name, path) = (effect.name, effect.shader.path);
     match effect.shader.settings {
-        Some(_) => format!("comics.{}_settings, p", effect.name),
-        None => "p".to_owned(),
+        Some(_) => format!("{path}::{name}{suffix}(comics.{name}_settings, p)"),
+        None => format!("{path}::{name}{suffix}(p)"),
     }
 }
 
 /// The call of an effect's function, and of its debug view if it has one.
 fn calls(effect: &EffectType) -> String {
-    let (name, definition) = (effect.name, definition(effect.name));
-    let path = effect.shader.path;
-    let arguments = arguments(effect);
-    let without = left_out(name);
-    let mut call = format!(
-        "#ifdef {definition}\n#ifndef {without}\n    p = {path}::{name}({arguments});\n#endif\n"
-    );
+    let definition = definition(effect.name);
+    let (without, drawn) = (left_out(effect.name), call(effect, ""));
+    let mut code = format!("#ifndef {without}\n    p = {drawn};\n#endif\n");
     if effect.view.is_some() {
-        call.push_str(&format!(
-            "#ifdef VIEW_{definition}\n    shown = {path}::{name}_view({arguments});\n#endif\n"
-        ));
+        let shown = format!("    shown = {};\n", call(effect, "_view"));
+        code.push_str(&guarded(&format!("VIEW_{definition}"), &shown));
     }
-    call.push_str("#endif\n");
-    call
+    guarded(&definition, &code)
 }

@@ -43,23 +43,20 @@ pub(super) fn effect_context(
     EffectContext { sheet, ..context }
 }
 
-/// World position from normalized device coordinates; the identity for a projection that
-/// has no inverse.
+/// World position from normalized device coordinates.
 fn world_from_clip(view: &ViewPlan, extracted: &ExtractedView) -> Mat4 {
-    let matrix = extracted.world_from_view.to_matrix() * view.clip_from_view.inverse();
-    if matrix.is_finite() {
-        matrix
-    } else {
-        Mat4::IDENTITY
-    }
+    or_identity(extracted.world_from_view.to_matrix() * view.clip_from_view.inverse())
 }
 
-/// World axes relative to the eye from normalized device coordinates; the identity for a
-/// projection that has no inverse.
+/// World axes relative to the eye from normalized device coordinates.
 fn relative_from_clip(view: &ViewPlan, extracted: &ExtractedView) -> Mat4 {
     let mut world_from_view = extracted.world_from_view.to_matrix();
     world_from_view.w_axis = Vec4::W;
-    let matrix = world_from_view * view.clip_from_view.inverse();
+    or_identity(world_from_view * view.clip_from_view.inverse())
+}
+
+/// The identity for a projection that has no inverse.
+fn or_identity(matrix: Mat4) -> Mat4 {
     if matrix.is_finite() {
         matrix
     } else {

@@ -1,7 +1,7 @@
 //! The key that selects a pipeline of the fused pass.
 
 use crate::effect::{
-    AffectedArea, AnyEffect, EffectContext, EffectStage, Needs, Variants, names::definition,
+    AffectedArea, AnyEffect, EffectContext, EffectStage, Needs, Variants, definition,
 };
 use bevy::{
     camera::CompositingSpace,
@@ -17,10 +17,9 @@ use bevy::{
 use super::{
     Plan,
     compose::left_out,
-    layers::LAYER_FORMAT,
     part::Part,
     passes::{Pass, Reads},
-    words::{Boxes, Drawn, Read, WORDS_FORMAT},
+    words::{Boxes, Drawn, LAYER_FORMAT, Read, WORDS_FORMAT},
 };
 use crate::{
     composite::DebugView,

@@ -6,14 +6,13 @@ use bevy::{
         component::Component,
         entity::Entity,
         query::With,
-        resource::Resource,
         system::{Commands, Query, Res, ResMut},
     },
+    math::UVec2,
     render::{
         render_resource::{
-            AddressMode, BindGroup, BindGroupEntry, Extent3d, FilterMode, IntoBinding,
-            PipelineCache, RenderPipeline, Sampler, SamplerDescriptor, TextureDescriptor,
-            TextureDimension, TextureFormat, TextureUsages, TextureView,
+            LoadOp, PipelineCache, RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
+            TextureDescriptor, TextureFormat, TextureUsages, TextureView,
         },
         renderer::{RenderContext, RenderDevice},
         texture::{CachedTexture, TextureCache},
@@ -21,14 +20,12 @@ use bevy::{
 };
 
 use super::{
+    inputs::{Before, Inputs},
     key::StylizeKey,
-    pass::{attachment, described, entry},
     prepare::{FusedRequest, Layer, LayerPass},
-    words::{Drawn, WORDS_FORMAT},
+    words::{Drawn, LAYER_FORMAT, WORDS_FORMAT},
 };
-
-/// Linear light, multiplied by the opacity, and the opacity.
-pub(super) const LAYER_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
+use crate::gpu::{attachment, texture};
 
 /// On a view in the render world: what its passes but the last one draw to.
 #[derive(Component)]
@@ -54,23 +51,6 @@ impl ViewLayers {
 
     fn means(&self, step: usize) -> Option<&TextureView> {
         Some(&self.means.get(step)?.default_view)
-    }
-}
-
-/// Reads between the centres of pixels.
-#[derive(Resource)]
-pub(super) struct LayerSampler(pub Sampler);
-
-impl LayerSampler {
-    pub fn new(device: &RenderDevice) -> Self {
-        Self(device.create_sampler(&SamplerDescriptor {
-            label: Some("comics_layer"),
-            address_mode_u: AddressMode::ClampToEdge,
-            address_mode_v: AddressMode::ClampToEdge,
-            mag_filter: FilterMode::Linear,
-            min_filter: FilterMode::Linear,
-            ..Default::default()
-        }))
     }
 }
 
@@ -116,50 +96,22 @@ pub(super) fn prepare_layers(
 /// A texture of the viewport's size.
 fn descriptor(request: &FusedRequest, format: TextureFormat) -> TextureDescriptor<'static> {
     let [_, _, width, height] = request.facts.viewport.to_array();
-    TextureDescriptor {
-        label: Some("comics_layer"),
-        size: Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: TextureDimension::D2,
+    let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+    texture(
+        "comics_layer",
+        (UVec2::new(width, height), 1),
         format,
-        usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    }
+        usage,
+    )
 }
 
-/// What all passes of a view bind.
-pub(super) struct Inputs<'a> {
-    pub entries: Vec<BindGroupEntry<'a>>,
-    pub sampler: &'a LayerSampler,
-    pub cache: &'a PipelineCache,
-}
-
-/// What the passes before a pass have drawn for it.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Before<'a> {
-    picture: Option<&'a TextureView>,
-    /// Means, or the picture with numbers.
-    words: Option<&'a TextureView>,
-}
-
-impl Inputs<'_> {
-    pub fn bind_group(&self, ctx: &RenderContext, key: &StylizeKey, before: &Before) -> BindGroup {
-        let mut entries = self.entries.clone();
-        if let Some(picture) = before.picture {
-            entries.push(entry(9, picture.into_binding()));
-            entries.push(entry(10, (&self.sampler.0).into_binding()));
-        }
-        if let (Some(words), Some(binding)) = (before.words, key.reads.binding()) {
-            entries.push(entry(binding, words.into_binding()));
-        }
-        let layout = self.cache.get_bind_group_layout(&key.layout());
-        let device = ctx.render_device();
-        device.create_bind_group("comics_stylize", &layout, &entries)
+pub(super) fn described<'a>(
+    attachments: &'a [Option<RenderPassColorAttachment<'a>>],
+) -> RenderPassDescriptor<'a> {
+    RenderPassDescriptor {
+        label: Some("comics_stylize"),
+        color_attachments: attachments,
+        ..Default::default()
     }
 }
 
@@ -194,7 +146,7 @@ impl<'a> Draw<'a> {
     /// Returns what it has drawn.
     fn record(&self, ctx: &mut RenderContext, inputs: &Inputs, before: &Before) -> &'a TextureView {
         let bind_group = inputs.bind_group(ctx, self.key, before);
-        let attachments = [Some(attachment(self.texture, false))];
+        let attachments = [Some(attachment(self.texture, LoadOp::default()))];
         let encoder = ctx.command_encoder();
         let mut pass = encoder.begin_render_pass(&described(&attachments));
         pass.set_bind_group(0, &bind_group, &[]);

@@ -3,12 +3,12 @@
 use crate::effect::{AffectedArea, EffectContext, Needs};
 use bevy::math::Vec4Swizzles;
 
-use super::{Plan, ViewPlan, requests::Scene};
+use super::{Plan, ViewPlan, scene::Scene};
 use crate::{
     depth::{ProjectionKind, view::ViewUniform},
     lines::{
-        FogUniform, LineModifiers, LineWeight, MapJumps, MemoryRequest, Outlines, Sheet,
-        SheetUniform, request::LineRequest,
+        FogUniform, LineModifiers, LineRequest, LineWeight, MapJumps, MemoryRequest, Outlines,
+        Sheet, SheetUniform,
     },
     objects::Pressure,
 };
@@ -42,6 +42,7 @@ pub(super) fn map_jumps(plan: &Plan, scene: &Scene, facts: &EffectContext) -> Op
     jumps.reduce(MapJumps::or)
 }
 
+/// The request for the lines of a plan; `None` if there is nothing to find.
 pub(super) fn line_request(
     view: &ViewPlan,
     (plan, facts): (&Plan, &EffectContext),
@@ -50,32 +51,19 @@ pub(super) fn line_request(
 ) -> Option<LineRequest> {
     let lines = plan.lines.filter(|_| plan.draws());
     let settings = lines.or(jumps.map(|_| Outlines::BARE))?;
-    let (depth_size, samples) = scene.depth?;
     let widest_object = if plan.object_styles {
         view.widest_object
     } else {
         0.0
     };
     let widest = (widest_object, plan.vertex_widths);
-    let reach = settings.reach(view.scale_factor, widest, facts.sheet);
-    let reference = view.projection.jump_reference(&view.clip_from_view);
-    let grid_scale = view.scale_factor * uniform.depth_scale.max_element();
     let modifiers = plan.line_modifiers(facts);
     Some(LineRequest {
-        camera: view.camera,
-        settings,
-        view: uniform,
-        lines: settings.uniform(view.scale_factor, reference),
-        weight: settings
-            .weight
-            .uniform(grid_scale, view.to_light, settings.ink_budget),
         boil: settings.boil.uniform(
             view.scale_factor,
             view.time,
             settings.widest(widest_object, plan.vertex_widths),
         ),
-        memory: memory_request(view, &settings, scene),
-        cuts: view.cuts,
         motion: has_motion(scene),
         fog: plan.fog.then(|| fog(view)),
         focus: modifiers
@@ -84,25 +72,63 @@ pub(super) fn line_request(
         layers: modifiers.layers,
         abstraction: modifiers.abstraction,
         sheet: sheet(facts),
-        depth_size,
-        samples,
-        size: scene.viewport.zw(),
-        rect: scene.drawn(),
-        jitter: scene.jitter,
-        reach,
-        steps: settings.steps(grid_scale),
-        specks: settings.min_length(grid_scale),
-        extension: settings.extension(grid_scale),
-        oblique: view.projection.kind() == ProjectionKind::Oblique,
+        reach: settings.reach(view.scale_factor, widest, facts.sheet),
         visible_range: plan.depth_map.mapping.follows_visible_range(),
         ids: plan.draws_ids(),
         sections: plan.sections,
-        marks: false,
         object_styles: plan.object_styles,
         widths: plan.draws_widths(),
         line_reach: line_reach(plan, facts).unwrap_or(0.0),
         jumps,
         map_flags: uniform.depth.flags,
+        ..plain_request(view, settings, scene, uniform)?
+    })
+}
+
+/// A request for lines that depend on nothing but these settings and the view's depth.
+pub(super) fn plain_request(
+    view: &ViewPlan,
+    settings: Outlines,
+    scene: &Scene,
+    uniform: ViewUniform,
+) -> Option<LineRequest> {
+    let (depth_size, samples) = scene.depth?;
+    let reference = view.projection.jump_reference(&view.clip_from_view);
+    let grid_scale = view.scale_factor * uniform.depth_scale.max_element();
+    Some(LineRequest {
+        camera: view.camera,
+        settings,
+        view: uniform,
+        lines: settings.uniform(view.scale_factor, reference),
+        weight: (settings.weight).uniform(grid_scale, view.to_light, settings.ink_budget),
+        boil: settings.boil.uniform(view.scale_factor, view.time, 0.0),
+        memory: memory_request(view, &settings, scene),
+        cuts: view.cuts,
+        motion: false,
+        fog: None,
+        focus: None,
+        layers: None,
+        abstraction: None,
+        sheet: SheetUniform::default(),
+        depth_size,
+        samples,
+        size: scene.viewport.zw(),
+        rect: scene.drawn(),
+        jitter: scene.jitter,
+        reach: 0,
+        steps: settings.steps(grid_scale),
+        specks: settings.min_length(grid_scale),
+        extension: settings.extension(grid_scale),
+        oblique: view.projection.kind() == ProjectionKind::Oblique,
+        visible_range: false,
+        ids: false,
+        sections: false,
+        marks: false,
+        object_styles: false,
+        widths: false,
+        line_reach: 0.0,
+        jumps: None,
+        map_flags: 0,
     })
 }
 
@@ -120,16 +146,12 @@ fn sheet(facts: &EffectContext) -> SheetUniform {
 }
 
 /// Whether the engine's motion vectors can be read.
-pub(super) fn has_motion(scene: &Scene) -> bool {
+fn has_motion(scene: &Scene) -> bool {
     scene.motion && scene.depth.is_some_and(|(_, samples)| samples == 1)
 }
 
 /// The history that lines are blended with under temporal anti-aliasing.
-pub(super) fn memory_request(
-    view: &ViewPlan,
-    settings: &Outlines,
-    scene: &Scene,
-) -> Option<MemoryRequest> {
+fn memory_request(view: &ViewPlan, settings: &Outlines, scene: &Scene) -> Option<MemoryRequest> {
     let is_jittered = scene.jitter.is_some() && has_motion(scene);
     let uses_history = settings.history_weight > 0.0 && !settings.boil.moves();
     (is_jittered && uses_history).then_some(MemoryRequest {

@@ -7,7 +7,6 @@ use bevy::{
         hierarchy::ChildOf,
         system::{Commands, Res, ResMut, SystemParam},
     },
-    math::Vec4Swizzles,
     render::{
         camera::ExtractedCamera,
         render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines},
@@ -15,17 +14,10 @@ use bevy::{
     },
 };
 
-use super::{
-    Plan, ViewPlan,
-    lines::memory_request,
-    requests::{Scene, Services},
-};
+use super::{Plan, ViewPlan, lines::plain_request, scene::Scene};
 use crate::{
-    depth::{ProjectionKind, view::ViewUniform},
-    lines::{
-        MarkKey, MarkPipeline, Outlines, SheetUniform, ViewMarks,
-        request::{LinePasses, LineRequest},
-    },
+    depth::view::ViewUniform,
+    lines::{LinePasses, LinePipelines, LineRequest, MarkKey, MarkPipeline, Outlines, ViewMarks},
     objects::{LayerRequest, Marks},
 };
 
@@ -46,29 +38,25 @@ pub(super) struct MarkRequests {
     late: bool,
 }
 
-impl Services<'_> {
+impl MarkPipelines<'_> {
     /// The requests, if some object is marked and the view has a depth prepass.
-    pub(super) fn mark_requests(
+    pub fn requests(
         &mut self,
+        lines: &mut LinePipelines,
         cache: &PipelineCache,
         (plan, view): (&Plan, &ViewPlan),
         (scene, uniform): (&Scene, ViewUniform),
         (extracted, camera): (&ExtractedView, &ExtractedCamera),
     ) -> Option<MarkRequests> {
         let (size, samples) = scene.depth.filter(|_| plan.marks)?;
-        let widest = self.marks.marks.styles.max_width();
+        let widest = self.marks.styles.max_width();
         let request = request(view, (scene, uniform), widest)?;
-        let passes = self.lines.get(cache, &request);
+        let passes = lines.get(cache, &request);
         let key = MarkKey {
             format: extracted.target_format,
             space: camera.compositing_space.unwrap_or(CompositingSpace::Linear),
             tiled: passes.are_tiles_complete(),
         };
-        let MarkPipelines {
-            pipelines,
-            pipeline,
-            ..
-        } = &mut self.marks;
         Some(MarkRequests {
             layer: LayerRequest {
                 camera: view.camera,
@@ -76,7 +64,7 @@ impl Services<'_> {
                 samples,
             },
             lines: (request, passes),
-            pipeline: pipelines.specialize(cache, pipeline, key),
+            pipeline: self.pipelines.specialize(cache, &self.pipeline, key),
             key,
             late: plan.runs_after_anti_aliasing(),
         })
@@ -91,43 +79,12 @@ fn request(
     widest: f32,
 ) -> Option<LineRequest> {
     let settings = Outlines::MARKS;
-    let (depth_size, samples) = scene.depth?;
-    let reference = view.projection.jump_reference(&view.clip_from_view);
-    let grid_scale = view.scale_factor * uniform.depth_scale.max_element();
     Some(LineRequest {
-        camera: view.camera,
-        settings,
-        view: uniform,
-        lines: settings.uniform(view.scale_factor, reference),
-        weight: (settings.weight).uniform(grid_scale, view.to_light, settings.ink_budget),
-        boil: settings.boil.uniform(view.scale_factor, view.time, 0.0),
-        memory: memory_request(view, &settings, scene),
-        cuts: view.cuts,
-        motion: false,
-        fog: None,
-        focus: None,
-        layers: None,
-        abstraction: None,
-        sheet: SheetUniform::default(),
-        depth_size,
-        samples,
-        size: scene.viewport.zw(),
-        rect: scene.drawn(),
-        jitter: scene.jitter,
         reach: settings.reach(view.scale_factor, (widest, false), None),
-        steps: settings.steps(grid_scale),
-        specks: settings.min_length(grid_scale),
-        extension: 0.0,
-        oblique: view.projection.kind() == ProjectionKind::Oblique,
-        visible_range: false,
         ids: true,
-        sections: false,
         marks: true,
         object_styles: true,
-        widths: false,
-        line_reach: 0.0,
-        jumps: None,
-        map_flags: 0,
+        ..plain_request(view, settings, scene, uniform)?
     })
 }
 
@@ -152,4 +109,12 @@ impl MarkRequests {
         };
         commands.entity(view).insert((self.layer, marks));
     }
+}
+
+/// Removes the requests for the lines of marked objects.
+pub(super) fn remove_marks(view: Entity, layer: Option<Entity>, commands: &mut Commands) {
+    if let Some(layer) = layer {
+        commands.entity(layer).despawn();
+    }
+    commands.entity(view).remove::<(LayerRequest, ViewMarks)>();
 }

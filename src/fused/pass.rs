@@ -8,10 +8,9 @@ use bevy::{
     render::{
         diagnostic::RecordDiagnostics,
         render_resource::{
-            BindGroup, BindGroupEntry, BindingResource, BlendState, ColorTargetState, ColorWrites,
-            FragmentState, IntoBinding, LoadOp, Operations, PipelineCache,
-            RenderPassColorAttachment, RenderPassDescriptor, RenderPipeline,
-            RenderPipelineDescriptor, SpecializedRenderPipeline, StoreOp, TextureView,
+            BindGroup, BlendState, ColorTargetState, ColorWrites, FragmentState, IntoBinding,
+            LoadOp, PipelineCache, RenderPipeline, RenderPipelineDescriptor,
+            SpecializedRenderPipeline, TextureView,
         },
         renderer::{RenderContext, ViewQuery},
         view::ViewTarget,
@@ -22,18 +21,17 @@ use bevy::{
 use super::{
     blue_noise::BlueNoise,
     errors::ShaderErrors,
+    inputs::{Inputs, LayerSampler, entries},
     key::StylizeKey,
-    layers::{Inputs, LayerSampler, Layers, ViewLayers},
+    layers::{Layers, ViewLayers, described},
     prepare::{FusedRequest, ViewFused},
 };
 use crate::{
-    depth::{
-        prepare::ViewDepthRange,
-        surfaces::{OwnSurfaces, SurfaceParts, Surfaces},
-    },
+    depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
+    gpu::{attachment, entry},
     lines::{TileList, TileLists, ViewLines, tile_shader, vertices},
-    objects::{OBJECT_DEPTHS_BINDING, ObjectDepths, ObjectStyleBuffer, ViewObjectIds},
+    objects::{ObjectDepths, ObjectStyleBuffer, ViewObjectIds},
 };
 
 #[derive(Resource)]
@@ -83,15 +81,6 @@ impl SpecializedRenderPipeline for StylizePipeline {
     }
 }
 
-/// The textures and buffers that the services have prepared for the view in this
-/// frame.
-type Found<'a> = (
-    SurfaceParts<'a>,
-    Option<&'a ViewDepthRange>,
-    Option<&'a ViewLines>,
-    (Option<&'a ViewObjectIds>, Option<&'a ObjectDepths>),
-);
-
 /// Draws the effects of the view. Calls `post_process_write`, which swaps the
 /// view's textures, only when all inputs are there: a swap without a draw would
 /// lose the picture.
@@ -123,12 +112,12 @@ pub(super) fn stylize<const PRINTS: bool>(
         errors.report(&cache, request, &ledger);
         return pass_through(request, &ledger, SkipReason::PipelineNotReady);
     };
-    let inputs = if target.main_texture_format() == request.key.format {
-        inputs(&request.key, found, &object_styles, &blue_noise)
+    let found = if target.main_texture_format() == request.key.format {
+        entries(&request.key, found, &object_styles, &blue_noise)
     } else {
         Err(SkipReason::PipelineNotReady)
     };
-    let mut entries = match inputs {
+    let mut entries = match found {
         Ok(entries) => entries,
         Err(reason) => return pass_through(request, &ledger, reason),
     };
@@ -195,9 +184,13 @@ impl<'a> Draws<'a> {
         request: &FusedRequest,
     ) {
         // All pixels are drawn, except in an overlay.
-        let keeps = request.key.part.is_overlay();
+        let load = if request.key.part.is_overlay() {
+            LoadOp::Load
+        } else {
+            LoadOp::default()
+        };
         let encoder = ctx.command_encoder();
-        let attachments = [Some(attachment(destination, keeps))];
+        let attachments = [Some(attachment(destination, load))];
         let mut pass = encoder.begin_render_pass(&described(&attachments));
         pass.set_bind_group(0, bind_group, &[]);
         if let Some(base) = self.base {
@@ -216,33 +209,6 @@ impl<'a> Draws<'a> {
     }
 }
 
-/// `keeps`: what is there already, instead of clearing it.
-pub(super) fn attachment(view: &TextureView, keeps: bool) -> RenderPassColorAttachment<'_> {
-    RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: Operations {
-            load: if keeps {
-                LoadOp::Load
-            } else {
-                LoadOp::default()
-            },
-            store: StoreOp::Store,
-        },
-    }
-}
-
-pub(super) fn described<'a>(
-    attachments: &'a [Option<RenderPassColorAttachment<'a>>],
-) -> RenderPassDescriptor<'a> {
-    RenderPassDescriptor {
-        label: Some("comics_stylize"),
-        color_attachments: attachments,
-        ..Default::default()
-    }
-}
-
 /// Reports that the pass and its effects ran.
 fn ran(request: &FusedRequest, ledger: &StageLedger) {
     for effect in request.plan.drawn() {
@@ -256,77 +222,4 @@ fn ran(request: &FusedRequest, ledger: &StageLedger) {
 fn pass_through(request: &FusedRequest, ledger: &StageLedger, reason: SkipReason) {
     let outcome = StageOutcome::Skipped(reason);
     ledger.set(request.camera, ComicsStage::Stylize, outcome);
-}
-
-pub(super) fn entry(binding: u32, resource: BindingResource<'_>) -> BindGroupEntry<'_> {
-    BindGroupEntry { binding, resource }
-}
-
-/// The bindings of the pass besides the picture and the uniform; an error if one of
-/// them is missing in this frame.
-fn inputs<'a>(
-    key: &StylizeKey,
-    (surfaces, range, lines, (ids, places)): Found<'a>,
-    object_styles: &'a ObjectStyleBuffer,
-    blue_noise: &'a BlueNoise,
-) -> Result<Vec<BindGroupEntry<'a>>, SkipReason> {
-    let not_ready = SkipReason::PipelineNotReady;
-    let surfaces = Surfaces::from(surfaces);
-    let mut entries = Vec::new();
-    if key.depth {
-        let depth = surfaces.depth().ok_or(SkipReason::SampleCountMismatch)?;
-        entries.push(entry(2, sampled(depth, key.samples)?));
-    }
-    if key.reads_range() {
-        let keys = range.and_then(ViewDepthRange::drawn).ok_or(not_ready)?;
-        entries.push(entry(3, keys.as_entire_binding()));
-    }
-    if key.lines {
-        let lines = lines.ok_or(not_ready)?;
-        let ink = lines.found().ok_or(not_ready)?;
-        entries.push(entry(4, (&ink.default_view).into_binding()));
-    }
-    if key.reads_owners() {
-        let owners = lines.and_then(|lines| lines.owners.as_ref());
-        let owners = owners.ok_or(not_ready)?;
-        entries.push(entry(5, (&owners.default_view).into_binding()));
-    }
-    if key.object_styles {
-        let styles = object_styles.buffer().ok_or(not_ready)?;
-        entries.push(entry(6, styles.as_entire_binding()));
-    }
-    if key.normals() {
-        let normal = surfaces.normal().ok_or(not_ready)?;
-        entries.push(entry(7, sampled(normal, key.samples)?));
-    }
-    if key.ids() {
-        let ids = ids.ok_or(not_ready)?;
-        entries.push(entry(8, (&ids.view).into_binding()));
-    }
-    if key.places() {
-        let places = places.ok_or(not_ready)?;
-        entries.push(entry(
-            OBJECT_DEPTHS_BINDING,
-            places.table.as_entire_binding(),
-        ));
-    }
-    if key.blue_noise() {
-        let tile = blue_noise.view().ok_or(not_ready)?;
-        entries.push(entry(11, tile.into_binding()));
-    }
-    Ok(entries)
-}
-
-/// The binding of a prepass texture; an error if its number of samples is not the
-/// one that was compiled in.
-fn sampled(
-    texture: &bevy::render::texture::CachedTexture,
-    samples: u32,
-) -> Result<BindingResource<'_>, SkipReason> {
-    let view: &TextureView = &texture.default_view;
-    if texture.texture.sample_count() == samples {
-        Ok(view.into_binding())
-    } else {
-        Err(SkipReason::SampleCountMismatch)
-    }
 }

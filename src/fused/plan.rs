@@ -6,7 +6,7 @@ use std::fmt::Debug;
 
 use bevy::ecs::world::EntityRef;
 
-use super::missing::DeviceLacks;
+use super::device::DeviceLacks;
 use crate::{
     composite::{DebugView, Finish, SplitView, StyleWeight},
     depth::{DepthHistogram, DepthMap, VisibleDepthRange},

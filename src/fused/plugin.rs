@@ -27,7 +27,8 @@ use super::{
     blue_noise::BlueNoise,
     choose::choose_plans,
     errors::{ShaderErrors, file_path},
-    layers::{LayerSampler, prepare_layers},
+    inputs::LayerSampler,
+    layers::prepare_layers,
     pass::{StylizePipeline, stylize},
     prepare::{ViewFused, prepare_fused_pass},
 };

@@ -11,7 +11,7 @@ use bevy::{
         system::{Commands, Query, Res, ResMut},
     },
     render::{
-        render_resource::{Buffer, BufferDescriptor, BufferUsages, CachedRenderPipelineId},
+        render_resource::{Buffer, BufferUsages, CachedRenderPipelineId},
         renderer::{RenderDevice, RenderQueue},
     },
 };
@@ -19,6 +19,7 @@ use bevy::{
 use super::{Plan, blue_noise::BlueNoise, key::StylizeKey};
 use crate::{
     depth::view::ViewUniform,
+    gpu::buffer,
     lines::{LineLayersUniform, LinesUniform},
 };
 
@@ -127,12 +128,9 @@ pub(super) fn prepare_fused_pass(
         match fits {
             Some(fused) => queue.write_buffer(&fused.uniform, 0, &bytes),
             None => {
-                let uniform = device.create_buffer(&BufferDescriptor {
-                    label: Some("comics_uniform"),
-                    size: bytes.len() as u64 + SLACK,
-                    usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
-                    mapped_at_creation: false,
-                });
+                let size = bytes.len() as u64 + SLACK;
+                let usage = BufferUsages::UNIFORM | BufferUsages::COPY_DST;
+                let uniform = buffer(&device, "comics_uniform", size, usage);
                 queue.write_buffer(&uniform, 0, &bytes);
                 commands.entity(entity).insert(ViewFused { uniform });
             }

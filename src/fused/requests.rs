@@ -4,111 +4,42 @@ use crate::effect::{AffectedArea, AnyEffect, EffectContext, Needs};
 use std::sync::Arc;
 
 use bevy::{
-    camera::MainPassResolutionOverride,
-    core_pipeline::prepass::ViewPrepassTextures,
     ecs::{
         entity::Entity,
         system::{Commands, Res, ResMut, SystemParam},
     },
-    math::{UVec2, UVec4, Vec2},
     render::{
-        camera::{ExtractedCamera, TemporalJitter},
+        camera::ExtractedCamera,
         render_resource::{CachedRenderPipelineId, PipelineCache, SpecializedRenderPipelines},
         view::ExtractedView,
     },
 };
 
 #[cfg(feature = "objects")]
-use super::marks::{MarkPipelines, MarkRequests};
+use super::marks::{MarkPipelines, MarkRequests, remove_marks};
 use super::{
     Plan, ViewPlan,
     compiling::{are_compiling, is_compiling},
     context::effect_context,
     key::{KeyInputs, StylizeKey},
     lines::{line_reach, line_request, map_jumps},
-    missing::Input,
     object_depths::object_depths,
     part::Part,
     pass::StylizePipeline,
     passes::{Reads, passes},
     prepare::{FusedRequest, Layer, LayerPass},
+    scene::Scene,
 };
 use crate::{
     depth::{
         ProjectionKind, RawDepth,
-        request::{RangePasses, RangePipelines, RangeRequest, Reduction},
-        view::{ViewUniform, depth_rect},
+        passes::{RangePasses, RangePipelines, Reduction},
+        request::RangeRequest,
+        view::ViewUniform,
     },
-    lines::{
-        LineLayers,
-        request::{LinePasses, LinePipelines, LineRequest},
-    },
-    objects::{IdRequest, ObjectDepthRequest, QueuedDepth},
+    lines::{LineLayers, LinePasses, LinePipelines, LineRequest},
+    objects::{IdRequest, ObjectDepthRequest},
 };
-#[cfg(feature = "objects")]
-use crate::{lines::ViewMarks, objects::LayerRequest};
-
-/// The inputs that a view provides.
-#[derive(Clone, Copy)]
-pub(super) struct Scene {
-    pub viewport: UVec4,
-    /// Size of the main pass in pixels, if it differs from the viewport.
-    pub main_pass_size: Option<UVec2>,
-    /// By how much the engine has moved the main pass in this frame, in its pixels,
-    /// under temporal anti-aliasing.
-    pub jitter: Option<Vec2>,
-    /// Size in pixels and samples per pixel of the depth prepass, if there is one.
-    pub depth: Option<(UVec2, u32)>,
-    pub normals: bool,
-    /// The engine draws motion vectors.
-    pub motion: bool,
-    /// Transparent meshes are drawn with their ids.
-    ids_queued: bool,
-}
-
-impl Scene {
-    pub fn new(
-        extracted: &ExtractedView,
-        (prepass, queued): (Option<&ViewPrepassTextures>, Option<&QueuedDepth>),
-        // The engine sets both in the render world.
-        (resolution, jitter): (Option<&MainPassResolutionOverride>, Option<&TemporalJitter>),
-    ) -> Self {
-        let depth = prepass.and_then(|textures| textures.depth.as_ref());
-        Self {
-            viewport: extracted.viewport,
-            main_pass_size: resolution.map(|resolution| resolution.0),
-            jitter: jitter.map(|jitter| jitter.offset),
-            depth: depth.map(|depth| {
-                let texture = &depth.texture.texture;
-                let size = UVec2::new(texture.width(), texture.height());
-                (size, texture.sample_count())
-            }),
-            normals: prepass.is_some_and(|textures| textures.normal.is_some()),
-            motion: prepass.is_some_and(|textures| textures.motion_vectors.is_some()),
-            ids_queued: queued.is_some_and(|queued| queued.ids),
-        }
-    }
-
-    /// The part of the depth texture that the main pass draws: x, y, width, height.
-    pub fn drawn(&self) -> UVec4 {
-        depth_rect(self.viewport, self.main_pass_size)
-    }
-
-    /// The plan without the effects whose inputs this view does not provide.
-    pub fn reduce(&self, plan: &Arc<Plan>) -> Arc<Plan> {
-        let mut reduced = plan.clone();
-        // With OpenGL, no multisampled texture can be read.
-        let unreadable =
-            plan.lacks.depth_copies && self.depth.is_some_and(|(_, samples)| samples > 1);
-        if (self.depth.is_none() || unreadable) && reduced.needs_depth() {
-            reduced = Arc::new(reduced.without(Input::DepthPrepass));
-        }
-        if (!self.normals || unreadable) && reduced.needs_normals() {
-            reduced = Arc::new(reduced.without(Input::NormalPrepass));
-        }
-        reduced
-    }
-}
 
 /// The requests of one plan to the services, for one view, and their pipelines.
 pub(super) struct Requests {
@@ -125,11 +56,11 @@ pub(super) struct Requests {
 #[derive(SystemParam)]
 pub(crate) struct Services<'w> {
     ranges: RangePipelines<'w>,
-    pub(super) lines: LinePipelines<'w>,
+    lines: LinePipelines<'w>,
     stylize: ResMut<'w, SpecializedRenderPipelines<StylizePipeline>>,
     stylize_pipeline: Res<'w, StylizePipeline>,
     #[cfg(feature = "objects")]
-    pub(super) marks: MarkPipelines<'w>,
+    marks: MarkPipelines<'w>,
 }
 
 impl Services<'_> {
@@ -174,7 +105,8 @@ impl Services<'_> {
         #[cfg(feature = "objects")]
         let marks = {
             let scene = (scene, uniform);
-            self.mark_requests(cache, (plan, view), scene, (extracted, camera))
+            let lines = &mut self.lines;
+            (self.marks).requests(lines, cache, (plan, view), scene, (extracted, camera))
         };
         Requests {
             range,
@@ -380,13 +312,4 @@ impl Requests {
         #[cfg(not(feature = "objects"))]
         let _ = layer;
     }
-}
-
-/// Removes the requests for the lines of marked objects.
-#[cfg(feature = "objects")]
-pub(super) fn remove_marks(view: Entity, layer: Option<Entity>, commands: &mut Commands) {
-    if let Some(layer) = layer {
-        commands.entity(layer).despawn();
-    }
-    commands.entity(view).remove::<(LayerRequest, ViewMarks)>();
 }

@@ -4,6 +4,8 @@ use bevy::{render::render_resource::TextureFormat, shader::ShaderDefVal};
 
 use super::compose::{boxes_of, numbers_of};
 
+/// Linear light, multiplied by the opacity, and the opacity.
+pub(super) const LAYER_FORMAT: TextureFormat = TextureFormat::Rgba16Float;
 /// As `box_statistics.wgsl` and `aux_scalar.wgsl` pack them.
 pub(super) const WORDS_FORMAT: TextureFormat = TextureFormat::Rgba32Uint;
 

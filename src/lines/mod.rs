@@ -6,36 +6,20 @@
 //! closes gaps, and `settle.wgsl` completes them. In the tiles, `columns.wgsl`, for wide lines, and
 //! `draw.wgsl` draw their ink into a texture. Effects read the ink with `read.wgsl`.
 
-mod abstraction;
-mod boil;
-mod color;
-mod completing;
 mod cracks;
-mod defs;
 mod draw;
-mod focus;
-mod fog;
-mod inputs;
+mod find;
 mod key;
-mod kinds;
-mod layer_lines;
-mod layouts;
-mod marks;
 mod memory;
 mod modifiers;
-mod overshoot;
-mod pass;
-mod persistence;
+mod passes;
 mod pipelines;
 mod prepare;
-pub(crate) mod request;
-mod resolve;
+mod record;
+mod request;
 mod settings;
-mod sheet;
-mod sources;
-mod store;
+mod textures;
 mod tiles;
-mod weight;
 
 use bevy::{
     app::App,
@@ -57,36 +41,28 @@ use bevy::{
     shader::load_shader_library,
 };
 
-pub use abstraction::LineAbstraction;
-pub use boil::LineBoil;
-pub use color::LineColor;
-pub use focus::LineFocus;
+pub use cracks::ViewCracks;
+pub use modifiers::{LineAbstraction, LineFocus, LineLayers, LineModifiers, Sheet};
+pub use settings::{
+    Creases, LineBoil, LineColor, LineFog, LineResponse, LineWeight, MapJumps, ObjectEdges,
+    Outlines, Silhouettes,
+};
 
-pub use fog::LineFog;
-pub(crate) use fog::{FogUniform, ViewFog, has_fog};
-pub(crate) use key::reach;
-pub use kinds::{Creases, LineResponse, ObjectEdges, Silhouettes};
-pub use layer_lines::LineLayers;
-pub(crate) use layer_lines::LineLayersUniform;
-pub(crate) use layouts::{ink_entry, owners_entry, range_entry};
-#[cfg(feature = "objects")]
-pub(crate) use marks::MarkKey;
-pub(crate) use marks::{MarkPipeline, ViewMarks, draw_marks};
-pub(crate) use memory::MemoryRequest;
-pub use modifiers::LineModifiers;
+pub(crate) use key::{ink_entry, owners_entry, range_entry};
+pub(crate) use modifiers::{LineLayersUniform, SheetUniform};
+pub(crate) use passes::{FindPass, LinePasses, LinePipelines};
 pub(crate) use prepare::ViewLines;
-pub(crate) use settings::LinesUniform;
-pub use settings::{MapJumps, Outlines};
-pub use sheet::Sheet;
-pub(crate) use sheet::SheetUniform;
-pub use store::ViewCracks;
+#[cfg(feature = "objects")]
+pub(crate) use record::MarkKey;
+pub(crate) use record::{MarkPipeline, ViewMarks, draw_marks};
+pub(crate) use request::{LineRequest, MemoryRequest};
+pub(crate) use settings::{FogUniform, LinesUniform, ViewFog, has_fog};
 pub(crate) use tiles::{TileList, TileLists, tile_shader, vertices};
-pub use weight::LineWeight;
 
 use crate::schedule::{ComicsSystems, PrepareComics};
+use find::ResolvePipeline;
 use memory::MemoryPipeline;
 use pipelines::LineShaders;
-use resolve::ResolvePipeline;
 
 /// Finds the lines of the views that request them.
 pub(crate) fn build_render(app: &mut App) {
@@ -107,7 +83,7 @@ pub(crate) fn build_render(app: &mut App) {
         )
         .add_systems(
             Core3d,
-            draw::find_lines
+            record::find_lines
                 .in_set(ComicsSystems::Outlines)
                 .after(ComicsSystems::DepthRange)
                 .after(Core3dSystems::Prepass)
@@ -116,63 +92,63 @@ pub(crate) fn build_render(app: &mut App) {
     #[cfg(feature = "objects")]
     render_app.add_systems(
         Core3d,
-        draw::find_marks
+        record::find_marks
             .after(ComicsSystems::Outlines)
             .before(Core3dSystems::MainPass),
     );
 }
 
 fn load_shaders(app: &mut App) {
-    load_shader_library!(app, "edge.wgsl");
-    load_shader_library!(app, "coverage.wgsl");
-    load_shader_library!(app, "blocks.wgsl");
-    load_shader_library!(app, "rows.wgsl");
-    load_shader_library!(app, "crack.wgsl");
-    load_shader_library!(app, "ledge.wgsl");
-    load_shader_library!(app, "jumps.wgsl");
-    load_shader_library!(app, "read.wgsl");
-    load_shader_library!(app, "bend.wgsl");
-    load_shader_library!(app, "listed.wgsl");
-    load_shader_library!(app, "weight.wgsl");
-    load_shader_library!(app, "boil.wgsl");
-    load_shader_library!(app, "memory.wgsl");
-    load_shader_library!(app, "surface.wgsl");
-    load_shader_library!(app, "hidden.wgsl");
-    load_shader_library!(app, "budget.wgsl");
-    load_shader_library!(app, "focus.wgsl");
-    load_shader_library!(app, "abstraction.wgsl");
-    load_shader_library!(app, "layer_lines.wgsl");
-    load_shader_library!(app, "owner_plane.wgsl");
-    load_shader_library!(app, "fog.wgsl");
-    load_shader_library!(app, "fold.wgsl");
-    load_shader_library!(app, "pass.wgsl");
-    load_shader_library!(app, "planes.wgsl");
-    load_shader_library!(app, "read_planes.wgsl");
-    load_shader_library!(app, "gaps.wgsl");
-    load_shader_library!(app, "lives.wgsl");
-    load_shader_library!(app, "overshoot.wgsl");
-    load_shader_library!(app, "chain.wgsl");
-    load_shader_library!(app, "rim.wgsl");
-    load_shader_library!(app, "sheet.wgsl");
-    load_shader_library!(app, "stored.wgsl");
-    embedded_asset!(app, "walk.wgsl");
-    embedded_asset!(app, "cells.wgsl");
-    embedded_asset!(app, "link.wgsl");
-    embedded_asset!(app, "persist.wgsl");
-    embedded_asset!(app, "join.wgsl");
-    embedded_asset!(app, "bridge.wgsl");
-    embedded_asset!(app, "ends.wgsl");
-    embedded_asset!(app, "strokes.wgsl");
-    embedded_asset!(app, "settle.wgsl");
-    embedded_asset!(app, "tiles.wgsl");
-    embedded_asset!(app, "tile.wgsl");
-    embedded_asset!(app, "resolve.wgsl");
-    embedded_asset!(app, "find.wgsl");
-    embedded_asset!(app, "columns.wgsl");
-    embedded_asset!(app, "faithful.wgsl");
-    embedded_asset!(app, "draw.wgsl");
-    embedded_asset!(app, "remember.wgsl");
-    embedded_asset!(app, "marks.wgsl");
+    load_shader_library!(app, "cracks/edge.wgsl");
+    load_shader_library!(app, "draw/coverage.wgsl");
+    load_shader_library!(app, "tiles/blocks.wgsl");
+    load_shader_library!(app, "find/rows.wgsl");
+    load_shader_library!(app, "find/crack.wgsl");
+    load_shader_library!(app, "find/ledge.wgsl");
+    load_shader_library!(app, "find/jumps.wgsl");
+    load_shader_library!(app, "draw/read.wgsl");
+    load_shader_library!(app, "link/bend.wgsl");
+    load_shader_library!(app, "tiles/listed.wgsl");
+    load_shader_library!(app, "settings/weight.wgsl");
+    load_shader_library!(app, "settings/boil.wgsl");
+    load_shader_library!(app, "memory/memory.wgsl");
+    load_shader_library!(app, "draw/surface.wgsl");
+    load_shader_library!(app, "find/hidden.wgsl");
+    load_shader_library!(app, "link/budget.wgsl");
+    load_shader_library!(app, "modifiers/focus.wgsl");
+    load_shader_library!(app, "modifiers/abstraction.wgsl");
+    load_shader_library!(app, "modifiers/layer_lines.wgsl");
+    load_shader_library!(app, "modifiers/owner_plane.wgsl");
+    load_shader_library!(app, "settings/fog.wgsl");
+    load_shader_library!(app, "link/fold.wgsl");
+    load_shader_library!(app, "request/pass.wgsl");
+    load_shader_library!(app, "cracks/planes.wgsl");
+    load_shader_library!(app, "cracks/read_planes.wgsl");
+    load_shader_library!(app, "link/gaps.wgsl");
+    load_shader_library!(app, "memory/lives.wgsl");
+    load_shader_library!(app, "draw/overshoot.wgsl");
+    load_shader_library!(app, "link/chain.wgsl");
+    load_shader_library!(app, "link/rim.wgsl");
+    load_shader_library!(app, "modifiers/sheet.wgsl");
+    load_shader_library!(app, "cracks/stored.wgsl");
+    embedded_asset!(app, "find/walk.wgsl");
+    embedded_asset!(app, "find/cells.wgsl");
+    embedded_asset!(app, "link/link.wgsl");
+    embedded_asset!(app, "memory/persist.wgsl");
+    embedded_asset!(app, "link/join.wgsl");
+    embedded_asset!(app, "link/bridge.wgsl");
+    embedded_asset!(app, "draw/ends.wgsl");
+    embedded_asset!(app, "draw/strokes.wgsl");
+    embedded_asset!(app, "link/settle.wgsl");
+    embedded_asset!(app, "tiles/tiles.wgsl");
+    embedded_asset!(app, "tiles/tile.wgsl");
+    embedded_asset!(app, "find/resolve.wgsl");
+    embedded_asset!(app, "find/find.wgsl");
+    embedded_asset!(app, "draw/columns.wgsl");
+    embedded_asset!(app, "find/faithful.wgsl");
+    embedded_asset!(app, "draw/draw.wgsl");
+    embedded_asset!(app, "memory/remember.wgsl");
+    embedded_asset!(app, "record/marks.wgsl");
 }
 
 fn init_pipelines(

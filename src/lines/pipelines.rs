@@ -13,8 +13,9 @@ use bevy::{
 };
 
 use super::{
-    key::{COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT, LineKey, OWNER_FORMAT},
-    overshoot::stroke_layout,
+    draw::stroke_layout,
+    key::LineKey,
+    textures::{COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT, OWNER_FORMAT},
     tiles::{tile_shader, vertices},
 };
 
@@ -43,21 +44,21 @@ impl LineShaders {
     pub fn new(fullscreen: &FullscreenShader, assets: &AssetServer) -> Self {
         Self {
             fullscreen: fullscreen.clone(),
-            walk: load_embedded_asset!(assets, "walk.wgsl"),
-            cells: load_embedded_asset!(assets, "cells.wgsl"),
-            link: load_embedded_asset!(assets, "link.wgsl"),
-            join: load_embedded_asset!(assets, "join.wgsl"),
-            persist: load_embedded_asset!(assets, "persist.wgsl"),
-            bridge: load_embedded_asset!(assets, "bridge.wgsl"),
-            ends: load_embedded_asset!(assets, "ends.wgsl"),
-            strokes: load_embedded_asset!(assets, "strokes.wgsl"),
-            settle: load_embedded_asset!(assets, "settle.wgsl"),
-            tiles: load_embedded_asset!(assets, "tiles.wgsl"),
+            walk: load_embedded_asset!(assets, "find/walk.wgsl"),
+            cells: load_embedded_asset!(assets, "find/cells.wgsl"),
+            link: load_embedded_asset!(assets, "link/link.wgsl"),
+            join: load_embedded_asset!(assets, "link/join.wgsl"),
+            persist: load_embedded_asset!(assets, "memory/persist.wgsl"),
+            bridge: load_embedded_asset!(assets, "link/bridge.wgsl"),
+            ends: load_embedded_asset!(assets, "draw/ends.wgsl"),
+            strokes: load_embedded_asset!(assets, "draw/strokes.wgsl"),
+            settle: load_embedded_asset!(assets, "link/settle.wgsl"),
+            tiles: load_embedded_asset!(assets, "tiles/tiles.wgsl"),
             tile: tile_shader(assets),
-            find: load_embedded_asset!(assets, "find.wgsl"),
-            columns: load_embedded_asset!(assets, "columns.wgsl"),
-            faithful: load_embedded_asset!(assets, "faithful.wgsl"),
-            draw: load_embedded_asset!(assets, "draw.wgsl"),
+            find: load_embedded_asset!(assets, "find/find.wgsl"),
+            columns: load_embedded_asset!(assets, "draw/columns.wgsl"),
+            faithful: load_embedded_asset!(assets, "find/faithful.wgsl"),
+            draw: load_embedded_asset!(assets, "draw/draw.wgsl"),
         }
     }
 }

@@ -9,26 +9,22 @@ use bevy::{
         query::{With, Without},
         system::{Commands, Query, Res, ResMut},
     },
-    math::{UVec2, UVec4, Vec4Swizzles},
+    math::{UVec4, Vec4Swizzles},
     render::{
-        render_resource::{
-            Extent3d, TextureDescriptor, TextureDimension, TextureFormat, TextureUsages,
-            UniformBuffer,
-        },
+        render_resource::{TextureUsages, UniformBuffer},
         renderer::{RenderDevice, RenderQueue},
         texture::{CachedTexture, TextureCache},
     },
 };
 
 use super::{
-    key::{BLOCK, BLOCK_FORMAT, COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT, OWNER_FORMAT},
-    memory::LineMemory,
-    overshoot::StrokeList,
-    pass::LinePassUniform,
-    persistence::LineLives,
-    request::{FindPass, LinePasses, LineRequest},
-    resolve::Resolved,
-    store::{CrackBuffers, CrackStore, ViewCracks},
+    cracks::{CrackBuffers, CrackStore, ViewCracks},
+    draw::StrokeList,
+    find::Resolved,
+    memory::{LineLives, LineMemory},
+    passes::{FindPass, LinePasses},
+    request::{LinePassUniform, LineRequest, blocks},
+    textures::{BLOCK_FORMAT, COLUMN_FORMAT, CRACK_FORMAT, INK_FORMAT, OWNER_FORMAT, texture},
     tiles::TileLists,
 };
 
@@ -103,45 +99,6 @@ impl ViewLines {
         let found = self.found.load(Ordering::Relaxed);
         let remembered = self.memory.as_ref().map(LineMemory::ink);
         remembered.or(self.ink.as_ref()).filter(|_| found)
-    }
-}
-
-/// Number of blocks across and down a part of the depth texture.
-pub(crate) fn blocks(rect: UVec4) -> UVec2 {
-    UVec2::new(
-        rect.z.div_ceil(BLOCK[0]).max(1),
-        rect.w.div_ceil(BLOCK[1]).max(1),
-    )
-}
-
-pub(super) fn texture(
-    (textures, device): (&mut TextureCache, &RenderDevice),
-    label: &'static str,
-    size: UVec2,
-    (format, usage): (TextureFormat, TextureUsages),
-) -> CachedTexture {
-    textures.get(device, descriptor(label, size, (format, usage)))
-}
-
-/// A texture that passes of lines write and read.
-pub(super) fn descriptor(
-    label: &'static str,
-    size: UVec2,
-    (format, usage): (TextureFormat, TextureUsages),
-) -> TextureDescriptor<'static> {
-    TextureDescriptor {
-        label: Some(label),
-        size: Extent3d {
-            width: size.x.max(1),
-            height: size.y.max(1),
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: TextureDimension::D2,
-        format,
-        usage: usage | TextureUsages::TEXTURE_BINDING | TextureUsages::COPY_SRC,
-        view_formats: &[],
     }
 }
 

@@ -12,7 +12,7 @@ use bevy::{
     reflect::{Reflect, std_traits::ReflectDefault},
 };
 
-use super::components::inherit;
+use super::inherit::inherit;
 use crate::settings::{FieldRange, clamp_option_or_default, clamp_or_default};
 
 /// Makes this object more or less abstract than the camera's [`Abstraction`](crate::Abstraction)

@@ -13,7 +13,7 @@ use bevy::{
     transform::components::GlobalTransform,
 };
 
-use super::{components::inherit, table::ObjectStyleUniform};
+use super::{inherit::inherit, table::ObjectStyleUniform};
 
 /// The screens of a [`Halftone`](crate::Halftone) with
 /// [`ScreenAnchor::Object`](crate::effects::ScreenAnchor::Object) follow this object: the dots move, turn

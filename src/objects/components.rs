@@ -17,6 +17,7 @@ use bevy::{
 
 use super::{
     anchors::{PatternAnchor, anchors},
+    inherit::inherit,
     table::{ObjectStyleUniform, ObjectStyles, UNSTYLED},
 };
 use crate::settings::{FieldRange, clamp_color, clamp_option_or_default, linear_rgb};
@@ -157,28 +158,6 @@ impl OutlineStyle {
             kinds: u32::from(silhouettes) | u32::from(creases) << 1 | u32::from(objects) << 2,
             opacity: style.opacity.unwrap_or(1.0),
             ..Default::default()
-        }
-    }
-}
-
-/// Adds an entity with what a component of it says; if that is `inherited`, its descendants
-/// too, up to those that have the component themselves.
-pub(super) fn inherit<T: Copy>(
-    into: &mut EntityHashMap<T>,
-    (entity, said): (Entity, T),
-    inherited: bool,
-    children: &Query<&Children>,
-    has_own: impl Fn(Entity) -> bool,
-) {
-    into.insert(entity, said);
-    let mut below = vec![entity];
-    while inherited && let Some(parent) = below.pop() {
-        let children = children.get(parent).into_iter();
-        for child in children.flat_map(|c| c.iter().copied()) {
-            if !has_own(child) {
-                into.insert(child, said);
-                below.push(child);
-            }
         }
     }
 }

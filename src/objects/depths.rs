@@ -20,10 +20,10 @@ use bevy::{
     render::{
         Extract, ExtractSchedule, GpuResourceAppExt, Render, RenderStartup,
         render_resource::{
-            BindGroupEntry, BindGroupLayoutDescriptor, BindGroupLayoutEntries, Buffer,
-            BufferDescriptor, BufferUsages, CachedComputePipelineId, ComputePassDescriptor,
-            ComputePipelineDescriptor, PipelineCache, ShaderStages, ShaderType,
-            SpecializedComputePipeline, SpecializedComputePipelines, StorageBuffer, UniformBuffer,
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, BufferUsages,
+            CachedComputePipelineId, ComputePipelineDescriptor, PipelineCache, ShaderStages,
+            ShaderType, SpecializedComputePipeline, SpecializedComputePipelines, StorageBuffer,
+            UniformBuffer,
             binding_types::{
                 storage_buffer_read_only_sized, storage_buffer_sized, uniform_buffer,
                 uniform_buffer_sized,
@@ -39,10 +39,11 @@ use super::{
     ObjectDepthRequest, ObjectDepths, ObjectEye,
     abstraction::{BY_DISTANCE, ObjectAbstraction, dials},
     groups::{ObjectGroups, extract_object_groups},
-    ids::object_id,
+    object_id::object_id,
 };
 use crate::{
     depth::{DepthMapping, prepare::ViewDepthRange},
+    gpu::{buffer, compute_pass, entry},
     schedule::{ComicsSystems, PrepareComics},
 };
 
@@ -252,20 +253,11 @@ fn prepare_places(
             cuts: request.cuts,
         });
         if known.is_none() {
-            view.insert(ObjectDepths {
-                table: places_table(&device),
-            });
+            let usage = BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC;
+            let table = buffer(&device, "comics_object_depths", TABLE_SIZE, usage);
+            view.insert(ObjectDepths { table });
         }
     }
-}
-
-fn places_table(device: &RenderDevice) -> Buffer {
-    device.create_buffer(&BufferDescriptor {
-        label: Some("comics_object_depths"),
-        size: TABLE_SIZE,
-        usage: BufferUsages::STORAGE | BufferUsages::COPY_DST | BufferUsages::COPY_SRC,
-        mapped_at_creation: false,
-    })
 }
 
 /// Records the pass that finds the places of objects. Where it cannot run, they are unknown: those
@@ -287,7 +279,6 @@ fn place_objects(
         ctx.command_encoder().clear_buffer(&table.table, 0, None);
         return;
     };
-    let entry = |binding, resource| BindGroupEntry { binding, resource };
     let mut entries = vec![
         entry(0, uniform),
         entry(1, objects),
@@ -300,14 +291,8 @@ fn place_objects(
     let group = ctx
         .render_device()
         .create_bind_group("comics_object_depths", &layout, &entries);
-    let mut pass = ctx
-        .command_encoder()
-        .begin_compute_pass(&ComputePassDescriptor {
-            label: Some("comics_object_depths"),
-            timestamp_writes: None,
-        });
-    pass.set_pipeline(pipeline);
-    pass.set_bind_group(0, &group, &[]);
+    let encoder = ctx.command_encoder();
+    let mut pass = compute_pass(encoder, "comics_object_depths", (pipeline, &group), &[]);
     pass.dispatch_workgroups((bounds.buffer.get().len() as u32).div_ceil(64), 1, 1);
 }
 

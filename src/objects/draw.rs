@@ -7,10 +7,7 @@ use bevy::{
     render::{
         camera::ExtractedCamera,
         render_phase::{SortedRenderPhase, TrackedRenderPass, ViewSortedRenderPhases},
-        render_resource::{
-            LoadOp, Operations, RenderPassColorAttachment, RenderPassDescriptor, StoreOp,
-            TextureView,
-        },
+        render_resource::{LoadOp, RenderPassDescriptor, StoreOp},
         renderer::{RenderContext, ViewQuery},
         view::{ExtractedView, ViewDepthTexture},
     },
@@ -20,10 +17,13 @@ use super::{
     IdRequest, ViewLineWidths, ViewObjectIds,
     depth_test::{DepthTest, TOLERANT, TolerantIds},
     layer::{LayerRequest, ViewLayer},
-    line_widths::attachment,
+    line_widths::width_attachment,
     phase::{Layer, ObjectIdItem},
 };
-use crate::diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome};
+use crate::{
+    diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
+    gpu::attachment,
+};
 
 /// A view whose ids are drawn.
 type Ids = (
@@ -65,7 +65,10 @@ pub(super) fn draw_object_ids(
         render_layer(phase, &mut render_pass, (world, entity), layer)
     };
     if let Some((request, target, widths, own)) = ids {
-        let targets = [Some(cleared(&target.view)), widths.map(attachment)];
+        let targets = [
+            Some(attachment(&target.view, LoadOp::default())),
+            widths.map(width_attachment),
+        ];
         let pass = RenderPassDescriptor {
             label: Some("comics_object_ids"),
             color_attachments: &targets[..1 + usize::from(widths.is_some())],
@@ -88,7 +91,7 @@ pub(super) fn draw_object_ids(
         ledger.set(request.camera, ComicsStage::ObjectIds, outcome);
     }
     if let Some((request, layer)) = layer {
-        let targets = [Some(cleared(&layer.ids.default_view))];
+        let targets = [Some(attachment(&layer.ids.default_view, LoadOp::default()))];
         let outcome = draw(layer.pass(&targets), request.samples, Layer::Marked);
         let outcome = outcome.unwrap_or_else(StageOutcome::Skipped);
         ledger.set(request.camera, ComicsStage::MarkedObjects, outcome);
@@ -111,17 +114,4 @@ fn render_layer<'w>(
         error_once!("the object ids were not drawn: {error:?}");
         SkipReason::PipelineNotReady
     })
-}
-
-/// A texture of ids that is cleared before it is drawn to.
-fn cleared(view: &TextureView) -> RenderPassColorAttachment<'_> {
-    RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: Operations {
-            load: LoadOp::Clear(Default::default()),
-            store: StoreOp::Store,
-        },
-    }
 }

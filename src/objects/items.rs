@@ -1,29 +1,21 @@
-//! The pipelines and draw commands that draw the ids of objects.
+//! The draw commands and phase items of object ids.
 
 use bevy::{
-    asset::{AssetServer, Handle, load_embedded_asset},
     ecs::{
         entity::Entity,
-        resource::Resource,
         system::{
-            Commands, Res, ResMut, SystemParam, SystemParamItem,
+            Res, ResMut, SystemParam, SystemParamItem,
             lifetimeless::{Read, SRes},
         },
     },
     log::{error_once, warn_once},
-    material::{
-        AlphaMode, MaterialProperties,
-        key::{ErasedMaterialPipelineKey, ErasedMeshPipelineKey},
-    },
-    math::UVec4,
-    mesh::{Mesh, MeshVertexBufferLayoutRef},
+    material::key::{ErasedMaterialPipelineKey, ErasedMeshPipelineKey},
+    mesh::Mesh,
     pbr::{
-        DrawMesh, MeshPipelineKey, PreparedMaterial, PrepassFragmentShader, PrepassPipeline,
-        PrepassPipelineSpecializer, PrepassVertexShader, RenderMaterialInstances,
-        RenderMeshInstances, SetMaterialBindGroup, SetMeshBindGroup,
-        SetPrepassEmptyMaterialBindGroup, SetPrepassViewBindGroup,
+        DrawMesh, MeshPipelineKey, PreparedMaterial, RenderMaterialInstances, RenderMeshInstances,
+        SetMaterialBindGroup, SetMeshBindGroup, SetPrepassEmptyMaterialBindGroup,
+        SetPrepassViewBindGroup,
     },
-    platform::sync::Arc,
     render::{
         erased_render_asset::ErasedRenderAssets,
         mesh::RenderMesh,
@@ -32,188 +24,23 @@ use bevy::{
             DrawFunctionId, DrawFunctions, RenderCommand, RenderCommandResult, SetItemPipeline,
             TrackedRenderPass,
         },
-        render_resource::{
-            BindGroup, BindGroupLayoutDescriptor, BindGroupLayoutEntries, ColorTargetState,
-            ColorWrites, CompareFunction, FragmentState, PipelineCache, RenderPipelineDescriptor,
-            ShaderStages, SpecializedMeshPipeline, SpecializedMeshPipelineError,
-            SpecializedMeshPipelines, StorageBuffer, TextureFormat,
-            binding_types::{storage_buffer_read_only, uniform_buffer},
-        },
-        renderer::RenderAdapter,
+        render_resource::{PipelineCache, SpecializedMeshPipelines},
         sync_world::MainEntity,
     },
-    shader::{Shader, ShaderDefVal},
 };
 
 use super::{
-    ID_FORMAT, Pressure, WIDTH_FORMAT,
-    depth_test::{DepthTest, TolerantIds, with_prepass_depth},
-    layer::MarkSpecializer,
+    depth_test::{DepthTest, TolerantIds},
     lightmaps::MeshLightmaps,
     line_widths::{WideMeshes, WidthBindings},
+    object_table::ObjectTable,
     phase::{Layer, ObjectIdItem},
+    pipeline::{
+        IdVariant, MarkSpecializer, ObjectIdPipeline, ObjectIdSpecializer, in_prepass,
+        reads_material,
+    },
     sections::{SectionBuffer, SectionTables},
-    shading::has_sample_shading,
 };
-
-/// The parts that all pipelines of this pass have in common.
-#[derive(Resource)]
-pub(super) struct ObjectIdPipeline {
-    pub prepass: PrepassPipeline,
-    pub layout: BindGroupLayoutDescriptor,
-    /// The layout if the widths of lines are drawn too.
-    pub with_widths: BindGroupLayoutDescriptor,
-    /// Without and with sections.
-    shaders: [Handle<Shader>; 2],
-    shades_samples: bool,
-}
-
-pub(super) fn init_object_id_pipeline(
-    mut commands: Commands,
-    prepass: Res<PrepassPipeline>,
-    assets: Res<AssetServer>,
-    adapter: Res<RenderAdapter>,
-) {
-    let entries = BindGroupLayoutEntries::sequential(
-        ShaderStages::FRAGMENT,
-        (
-            storage_buffer_read_only::<Vec<UVec4>>(false),
-            storage_buffer_read_only::<Vec<u32>>(false),
-            uniform_buffer::<Pressure>(false),
-        ),
-    );
-    commands.insert_resource(ObjectIdPipeline {
-        shades_samples: has_sample_shading(&adapter),
-        prepass: prepass.clone(),
-        layout: BindGroupLayoutDescriptor::new("comics_objects", &entries[..2]),
-        with_widths: BindGroupLayoutDescriptor::new("comics_objects_with_widths", &entries),
-        shaders: [
-            load_embedded_asset!(assets.as_ref(), "ids.wgsl"),
-            load_embedded_asset!(assets.as_ref(), "sections.wgsl"),
-        ],
-    });
-}
-
-/// What is drawn of a mesh besides its id.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub(super) struct IdVariant {
-    /// The mesh is divided into sections.
-    sections: bool,
-    /// The widths of lines are drawn too.
-    widths: bool,
-    /// They are those of the mesh's vertices.
-    vertex_widths: bool,
-    /// Depth is compared with a tolerance.
-    tolerant: bool,
-}
-
-impl IdVariant {
-    fn defs(self) -> impl Iterator<Item = ShaderDefVal> {
-        [
-            (self.widths, "LINE_WIDTHS"),
-            (self.vertex_widths, "VERTEX_WIDTHS"),
-            (self.tolerant, "TOLERANT"),
-        ]
-        .into_iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, name)| name.into())
-    }
-}
-
-impl ObjectIdPipeline {
-    fn specializer(
-        &self,
-        properties: &Arc<MaterialProperties>,
-        variant: IdVariant,
-    ) -> ObjectIdSpecializer {
-        let layout = if variant.widths {
-            &self.with_widths
-        } else {
-            &self.layout
-        };
-        ObjectIdSpecializer {
-            prepass: PrepassPipelineSpecializer {
-                pipeline: self.prepass.clone(),
-                properties: properties.clone(),
-            },
-            layout: layout.clone(),
-            shader: self.shaders[usize::from(variant.sections)].clone(),
-            shades_samples: self.shades_samples,
-        }
-    }
-}
-
-pub(super) struct ObjectIdSpecializer {
-    prepass: PrepassPipelineSpecializer,
-    layout: BindGroupLayoutDescriptor,
-    shader: Handle<Shader>,
-    shades_samples: bool,
-}
-
-impl SpecializedMeshPipeline for ObjectIdSpecializer {
-    type Key = (ErasedMaterialPipelineKey, IdVariant);
-
-    fn specialize(
-        &self,
-        (key, variant): Self::Key,
-        layout: &MeshVertexBufferLayoutRef,
-    ) -> Result<RenderPipelineDescriptor, SpecializedMeshPipelineError> {
-        let mut descriptor = self.prepass.specialize(key, layout)?;
-        descriptor.label = Some("comics_object_ids".into());
-        let multisampled = descriptor.multisample.count > 1;
-        descriptor.layout[1] = if variant.tolerant {
-            with_prepass_depth(&self.layout, multisampled)
-        } else {
-            self.layout.clone()
-        };
-        let target = |format| {
-            Some(ColorTargetState {
-                format,
-                blend: None,
-                write_mask: ColorWrites::ALL,
-            })
-        };
-        let formats: &[TextureFormat] = if variant.widths {
-            &[ID_FORMAT, WIDTH_FORMAT]
-        } else {
-            &[ID_FORMAT]
-        };
-        // The engine's modules of meshes and views depend on the definitions.
-        let engine = variant
-            .widths
-            .then(|| descriptor.vertex.shader_defs.clone());
-        let mut shader_defs: Vec<_> = engine.into_iter().flatten().chain(variant.defs()).collect();
-        if variant.tolerant && multisampled {
-            shader_defs.push("TOLERANT_MULTISAMPLED".into());
-            if self.shades_samples {
-                shader_defs.push("SAMPLE_SHADING".into());
-            }
-        }
-        descriptor.fragment = Some(FragmentState {
-            shader: self.shader.clone(),
-            shader_defs,
-            entry_point: Some("object_id".into()),
-            targets: formats.iter().copied().map(target).collect(),
-        });
-        if let Some(depth) = &mut descriptor.depth_stencil {
-            depth.depth_write_enabled = Some(variant.tolerant);
-            depth.depth_compare = Some(if variant.tolerant {
-                CompareFunction::GreaterEqual
-            } else {
-                CompareFunction::Equal
-            });
-        }
-        Ok(descriptor)
-    }
-}
-
-/// Id, style slot, first word of the sections and bits of the least alpha of each object,
-/// indexed by the instance index of its phase item.
-#[derive(Resource, Default)]
-pub(super) struct ObjectTable {
-    pub objects: StorageBuffer<Vec<UVec4>>,
-    pub bind_group: Option<BindGroup>,
-}
 
 pub(super) struct SetObjectTable<const I: usize>;
 
@@ -276,21 +103,6 @@ pub(super) fn draw_function(
     } else {
         functions.id::<DrawId>()
     }
-}
-
-pub(super) fn reads_material(properties: &MaterialProperties) -> bool {
-    properties.get_shader(PrepassVertexShader).is_some()
-        || properties.get_shader(PrepassFragmentShader).is_some()
-}
-
-/// Whether the depth prepass draws meshes of this material.
-pub(super) fn in_prepass(properties: &MaterialProperties) -> bool {
-    properties.prepass_enabled
-        && !properties.reads_view_transmission_texture
-        && matches!(
-            properties.alpha_mode,
-            AlphaMode::Opaque | AlphaMode::AlphaToCoverage | AlphaMode::Mask(_)
-        )
 }
 
 /// What is drawn of an object.

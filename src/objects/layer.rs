@@ -8,25 +8,19 @@ use bevy::{
         query::{With, Without},
         system::{Commands, Query, Res, ResMut},
     },
-    material::key::ErasedMaterialPipelineKey,
     math::UVec2,
-    mesh::MeshVertexBufferLayoutRef,
     render::{
         render_resource::{
-            CompareFunction, Extent3d, LoadOp, Operations, RenderPassColorAttachment,
-            RenderPassDepthStencilAttachment, RenderPassDescriptor, RenderPipelineDescriptor,
-            SpecializedMeshPipeline, SpecializedMeshPipelineError, StoreOp, TextureDescriptor,
-            TextureDimension, TextureFormat, TextureUsages,
+            LoadOp, Operations, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
+            RenderPassDescriptor, StoreOp, TextureFormat, TextureUsages,
         },
         renderer::RenderDevice,
         texture::{CachedTexture, TextureCache},
     },
 };
 
-use super::{
-    ID_FORMAT,
-    items::{IdVariant, ObjectIdSpecializer},
-};
+use super::ID_FORMAT;
+use crate::gpu;
 
 /// On a view in the render world: a request for the layer of marked objects.
 #[derive(Component)]
@@ -76,21 +70,9 @@ pub(super) fn prepare_layers(
 ) {
     for (view, request) in &views {
         let mut texture = |label, format: TextureFormat| {
-            let descriptor = TextureDescriptor {
-                label: Some(label),
-                size: Extent3d {
-                    width: request.size.x,
-                    height: request.size.y,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: request.samples,
-                dimension: TextureDimension::D2,
-                format,
-                usage: TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            };
-            textures.get(&device, descriptor)
+            let usage = TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+            let size = (request.size, request.samples);
+            textures.get(&device, gpu::texture(label, size, format, usage))
         };
         let layer = ViewLayer {
             depth: texture("comics_marked_depth", CORE_3D_DEPTH_FORMAT),
@@ -100,26 +82,5 @@ pub(super) fn prepare_layers(
     }
     for view in &stale {
         commands.entity(view).remove::<ViewLayer>();
-    }
-}
-
-/// The pipeline of a marked object: that of its id, with a depth test of its own.
-pub(super) struct MarkSpecializer(pub ObjectIdSpecializer);
-
-impl SpecializedMeshPipeline for MarkSpecializer {
-    type Key = (ErasedMaterialPipelineKey, IdVariant);
-
-    fn specialize(
-        &self,
-        key: Self::Key,
-        layout: &MeshVertexBufferLayoutRef,
-    ) -> Result<RenderPipelineDescriptor, SpecializedMeshPipelineError> {
-        let mut descriptor = self.0.specialize(key, layout)?;
-        descriptor.label = Some("comics_marked_objects".into());
-        if let Some(depth) = &mut descriptor.depth_stencil {
-            depth.depth_write_enabled = Some(true);
-            depth.depth_compare = Some(CompareFunction::GreaterEqual);
-        }
-        Ok(descriptor)
     }
 }

@@ -19,9 +19,8 @@ use bevy::{
     render::{
         Extract,
         render_resource::{
-            BindGroup, BindGroupEntry, Extent3d, IntoBinding, LoadOp, Operations, PipelineCache,
-            RenderPassColorAttachment, StoreOp, TextureDescriptor, TextureDimension, TextureUsages,
-            TextureView, UniformBuffer,
+            BindGroup, IntoBinding, LoadOp, PipelineCache, RenderPassColorAttachment,
+            TextureUsages, TextureView, UniformBuffer,
         },
         renderer::{RenderDevice, RenderQueue},
         texture::TextureCache,
@@ -31,12 +30,13 @@ use bevy::{
 
 use super::{
     IdRequest, IdsWanted, ObjectStyles, ViewLineWidths,
-    components::inherit,
-    depth_test::with_prepass_depth,
-    items::{ObjectIdPipeline, ObjectTable},
+    inherit::inherit,
+    object_table::ObjectTable,
+    pipeline::{ObjectIdPipeline, with_prepass_depth},
     sections::SectionBuffer,
     widths::WIDTH_FORMAT,
 };
+use crate::gpu;
 
 /// The alpha of this mesh's vertex colours
 /// ([`Mesh::ATTRIBUTE_COLOR`](bevy::mesh::Mesh::ATTRIBUTE_COLOR)) is the width of its lines:
@@ -171,20 +171,19 @@ impl Drawing<'_> {
         // Without an object there is no group either.
         self.table.bind_group.as_ref()?;
         let mut pressure = UniformBuffer::from(request.pressure.unwrap_or_default());
-        let entry = |binding, resource| BindGroupEntry { binding, resource };
         let mut entries = vec![
-            entry(0, self.table.objects.binding()?),
-            entry(1, self.sections.buffer()?.as_entire_binding()),
+            gpu::entry(0, self.table.objects.binding()?),
+            gpu::entry(1, self.sections.buffer()?.as_entire_binding()),
         ];
         let mut layout = if widths {
             pressure.write_buffer(&self.device, &self.queue);
-            entries.push(entry(2, pressure.binding()?));
+            entries.push(gpu::entry(2, pressure.binding()?));
             self.shared.with_widths.clone()
         } else {
             self.shared.layout.clone()
         };
         if let Some(depth) = depth {
-            entries.push(entry(3, depth.into_binding()));
+            entries.push(gpu::entry(3, depth.into_binding()));
             layout = with_prepass_depth(&layout, request.samples > 1);
         }
         let layout = self.cache.get_bind_group_layout(&layout);
@@ -213,22 +212,11 @@ pub(super) fn prepare_line_widths(
             target.remove::<(ViewLineWidths, WidthBindings)>();
             continue;
         }
-        let descriptor = TextureDescriptor {
-            label: Some("comics_line_widths"),
-            size: Extent3d {
-                width: request.size.x,
-                height: request.size.y,
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: request.samples,
-            dimension: TextureDimension::D2,
-            format: WIDTH_FORMAT,
-            usage: TextureUsages::RENDER_ATTACHMENT
-                | TextureUsages::TEXTURE_BINDING
-                | TextureUsages::COPY_SRC,
-            view_formats: &[],
-        };
+        let usage = TextureUsages::RENDER_ATTACHMENT
+            | TextureUsages::TEXTURE_BINDING
+            | TextureUsages::COPY_SRC;
+        let size = (request.size, request.samples);
+        let descriptor = gpu::texture("comics_line_widths", size, WIDTH_FORMAT, usage);
         let texture = ViewLineWidths::from(textures.get(&drawing.device, descriptor));
         let bindings = WidthBindings(drawing.bind_group(request, true, None));
         target.insert((texture, bindings));
@@ -243,14 +231,7 @@ pub(super) fn prepare_line_widths(
 const ONE: f32 = 127.0 / 255.0;
 
 /// The attachment of the pass that draws widths, cleared to the factor 1.
-pub(super) fn attachment(widths: &ViewLineWidths) -> RenderPassColorAttachment<'_> {
-    RenderPassColorAttachment {
-        view: &widths.view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: Operations {
-            load: LoadOp::Clear(LinearRgba::rgb(ONE, ONE, ONE).into()),
-            store: StoreOp::Store,
-        },
-    }
+pub(super) fn width_attachment(widths: &ViewLineWidths) -> RenderPassColorAttachment<'_> {
+    let one = LinearRgba::rgb(ONE, ONE, ONE);
+    gpu::attachment(&widths.view, LoadOp::Clear(one.into()))
 }

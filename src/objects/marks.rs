@@ -20,7 +20,7 @@ use bevy::{
 };
 
 use super::{
-    components::inherit,
+    inherit::inherit,
     table::{HIDDEN_ONLY, ObjectStyleUniform, ObjectStyles},
 };
 use crate::settings::{FieldRange, clamp_color, clamp_or_default, linear_rgb};

@@ -17,6 +17,8 @@ mod groups;
 #[cfg(feature = "objects")]
 mod ids;
 #[cfg(feature = "objects")]
+mod inherit;
+#[cfg(feature = "objects")]
 mod items;
 #[cfg(feature = "objects")]
 mod layer;
@@ -28,7 +30,15 @@ mod line_widths;
 mod marks;
 mod object_depths;
 #[cfg(feature = "objects")]
+mod object_id;
+#[cfg(feature = "objects")]
+mod object_table;
+#[cfg(feature = "objects")]
 mod phase;
+#[cfg(feature = "objects")]
+mod pipeline;
+#[cfg(feature = "objects")]
+mod plugin;
 #[cfg(feature = "objects")]
 mod sections;
 #[cfg(feature = "objects")]
@@ -51,8 +61,6 @@ pub use depth_test::ObjectIdDepthTest;
 #[cfg(feature = "objects")]
 pub use groups::OutlineGroup;
 #[cfg(feature = "objects")]
-pub use ids::object_id;
-#[cfg(feature = "objects")]
 pub(crate) use layer::{LayerRequest, ViewLayer};
 #[cfg(feature = "objects")]
 pub use line_widths::LineWidths;
@@ -60,6 +68,8 @@ pub use line_widths::LineWidths;
 pub(crate) use marks::Marks;
 #[cfg(feature = "objects")]
 pub use marks::{SelectionOutline, XRayOutline};
+#[cfg(feature = "objects")]
+pub use object_id::object_id;
 #[cfg(feature = "objects")]
 pub use sections::{ATTRIBUTE_MESH_SECTION, MeshSections};
 #[cfg(feature = "objects")]
@@ -248,7 +258,7 @@ impl Plugin for ObjectsPlugin {
         // Ids are drawn with the engine's mesh pipelines, so they need its `PbrPlugin`.
         #[cfg(feature = "objects")]
         if app.is_plugin_added::<bevy::pbr::PbrPlugin>() {
-            ids::build(app);
+            plugin::build(app);
             sections::finish(app);
             transparent::finish(app);
         }

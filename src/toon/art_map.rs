@@ -1,14 +1,8 @@
 //! Maps of strokes at all tones and sizes.
 
-use bevy::{
-    asset::RenderAssetUsages,
-    image::Image,
-    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
-    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
-};
+use bevy::reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault};
 use serde::{Deserialize, Serialize};
 
-use super::art_strokes::levels;
 use crate::settings::clamp_or_default;
 
 /// A tonal art map: strokes of all tones and sizes in one image, for
@@ -81,25 +75,5 @@ impl TonalArtMap {
             crossing: clamp_or_default(self.crossing, default.crossing, 0.0, 1.0),
             seed: self.seed,
         }
-    }
-
-    /// Draws the map: an image of one channel with mip levels down to 16 texels.
-    #[must_use]
-    pub fn image(self) -> Image {
-        let map = self.sanitized();
-        let levels = levels(&map);
-        let mut image = Image::new_uninit(
-            Extent3d {
-                width: map.size,
-                height: map.size,
-                depth_or_array_layers: 1,
-            },
-            TextureDimension::D2,
-            TextureFormat::R8Unorm,
-            RenderAssetUsages::RENDER_WORLD,
-        );
-        image.texture_descriptor.mip_level_count = levels.len() as u32;
-        image.data = Some(levels.concat());
-        image
     }
 }

@@ -1,5 +1,11 @@
 //! Draws the strokes of a tonal art map.
 
+use bevy::{
+    asset::RenderAssetUsages,
+    image::Image,
+    render::render_resource::{Extent3d, TextureDimension, TextureFormat},
+};
+
 use super::TonalArtMap;
 
 /// The smallest mip level.
@@ -11,6 +17,28 @@ const DARKEST: f32 = 0.97;
 const CANDIDATES: usize = 12;
 /// Places along a stroke that become ink one after the other.
 const PLACES: u32 = 2048;
+
+impl TonalArtMap {
+    /// Draws the map: an image of one channel with mip levels down to 16 texels.
+    #[must_use]
+    pub fn image(self) -> Image {
+        let map = self.sanitized();
+        let levels = levels(&map);
+        let mut image = Image::new_uninit(
+            Extent3d {
+                width: map.size,
+                height: map.size,
+                depth_or_array_layers: 1,
+            },
+            TextureDimension::D2,
+            TextureFormat::R8Unorm,
+            RenderAssetUsages::RENDER_WORLD,
+        );
+        image.texture_descriptor.mip_level_count = levels.len() as u32;
+        image.data = Some(levels.concat());
+        image
+    }
+}
 
 /// Random numbers that are the same everywhere.
 struct Dice(u32);

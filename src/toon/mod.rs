@@ -6,6 +6,7 @@ mod art_strokes;
 mod detail;
 #[cfg(test)]
 mod fuzz;
+mod gltf_name;
 mod hatch;
 mod ignored;
 mod light_owner;
@@ -14,6 +15,7 @@ mod name;
 mod proxy;
 mod ramp;
 mod ramp_map;
+mod ramp_stop;
 mod ramp_sums;
 mod rim;
 mod rim_shader;
@@ -41,8 +43,9 @@ pub use light_owner::LightOwner;
 pub use material::{ToonLight, ToonMaterial};
 pub use name::MaterialName;
 pub use proxy::{ProxyShape, ShadingProxy};
-pub use ramp::{Ramp, RampBlend, RampMode, RampStop};
+pub use ramp::{Ramp, RampBlend, RampMode};
 pub use ramp_map::RampMap;
+pub use ramp_stop::RampStop;
 pub use rim::{Rim, RimWidth};
 pub use scene::ToonScene;
 pub use shading::{ToonShading, ToonShadingError, ToonShadingHandle, ToonShadingHandleTemplate};
@@ -138,7 +141,7 @@ fn add_material(app: &mut App) -> bool {
         .add_systems(
             Update,
             (
-                (shading::apply_shadings, material::keep_forward).chain(),
+                (scene::apply_shadings, material::keep_forward).chain(),
                 ignored::warn_of_ignored,
                 ignored::warn_of_reflections,
                 view_range::ask_for_range,
@@ -150,7 +153,7 @@ fn add_material(app: &mut App) -> bool {
             (
                 scene::follow_materials,
                 scene::restore,
-                name::name_meshes,
+                gltf_name::name_meshes,
                 scene::choose_again,
                 scene::convert,
                 // Before the events of this frame: materials and sums arrive together.

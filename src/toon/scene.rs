@@ -9,7 +9,7 @@ use bevy::{
         hierarchy::ChildOf,
         lifecycle::RemovedComponents,
         message::MessageReader,
-        query::{Changed, Or, With},
+        query::{Changed, Or, With, Without},
         reflect::ReflectComponent,
         resource::Resource,
         system::{Commands, Query, Res, ResMut, SystemParam},
@@ -302,6 +302,35 @@ pub(super) fn choose_again(
             commands
                 .entity(entity)
                 .insert((MeshMaterial3d(handle), chosen));
+        }
+    }
+}
+
+/// Gives the materials of single meshes their shadings. A [`ToonScene`] does
+/// it for its own copies.
+pub(super) fn apply_shadings(
+    meshes: Query<(Ref<ToonShadingHandle>, Ref<MeshMaterial3d<ToonMaterial>>), Without<Original>>,
+    mut events: MessageReader<AssetEvent<ToonShading>>,
+    shadings: Res<Assets<ToonShading>>,
+    mut materials: ResMut<Assets<ToonMaterial>>,
+) {
+    let changed: HashSet<_> = events.read().filter_map(shading::changed).collect();
+    for (handle, material) in &meshes {
+        let id = handle.0.id();
+        if !handle.is_changed() && !material.is_changed() && !changed.contains(&id) {
+            continue;
+        }
+        let Some(shading) = shadings.get(id) else {
+            continue;
+        };
+        let Some(before) = materials.get(&material.0) else {
+            continue;
+        };
+        let light = shading.with_maps_of(&before.extension);
+        if before.extension != light
+            && let Some(mut material) = materials.get_mut(&material.0)
+        {
+            material.extension = light;
         }
     }
 }

@@ -1,21 +1,9 @@
 //! Materials as files: the lighting of a toon material as an asset.
 
 use bevy::{
-    asset::{
-        Asset, AssetEvent, AssetId, AssetLoader, AssetPath, Assets, Handle, LoadContext, io::Reader,
-    },
-    ecs::{
-        change_detection::{DetectChanges, Ref},
-        component::Component,
-        message::MessageReader,
-        query::Without,
-        reflect::ReflectComponent,
-        system::{Query, Res, ResMut},
-        template::FromTemplate,
-    },
+    asset::{Asset, AssetEvent, AssetId, AssetLoader, AssetPath, Handle, LoadContext, io::Reader},
+    ecs::{component::Component, reflect::ReflectComponent, template::FromTemplate},
     log::warn,
-    pbr::MeshMaterial3d,
-    platform::collections::HashSet,
     reflect::{
         Reflect, ReflectDeserialize, ReflectSerialize, TypePath, std_traits::ReflectDefault,
     },
@@ -23,7 +11,7 @@ use bevy::{
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 use thiserror::Error;
 
-use super::{ToonLight, ToonMaterial, scene::Original};
+use super::ToonLight;
 use crate::style::{
     format,
     renamed::{self, Upgraded},
@@ -310,34 +298,5 @@ pub(super) fn changed(event: &AssetEvent<ToonShading>) -> Option<AssetId<ToonSha
     match event {
         AssetEvent::Added { id } | AssetEvent::Modified { id } => Some(*id),
         _ => None,
-    }
-}
-
-/// Gives the materials of single meshes their shadings. A [`ToonScene`](crate::ToonScene) does
-/// it for its own copies.
-pub(super) fn apply_shadings(
-    meshes: Query<(Ref<ToonShadingHandle>, Ref<MeshMaterial3d<ToonMaterial>>), Without<Original>>,
-    mut events: MessageReader<AssetEvent<ToonShading>>,
-    shadings: Res<Assets<ToonShading>>,
-    mut materials: ResMut<Assets<ToonMaterial>>,
-) {
-    let changed: HashSet<_> = events.read().filter_map(changed).collect();
-    for (handle, material) in &meshes {
-        let id = handle.0.id();
-        if !handle.is_changed() && !material.is_changed() && !changed.contains(&id) {
-            continue;
-        }
-        let Some(shading) = shadings.get(id) else {
-            continue;
-        };
-        let Some(before) = materials.get(&material.0) else {
-            continue;
-        };
-        let light = shading.with_maps_of(&before.extension);
-        if before.extension != light
-            && let Some(mut material) = materials.get_mut(&material.0)
-        {
-            material.extension = light;
-        }
     }
 }

@@ -47,11 +47,8 @@ fn number(row: &HashMap<String, String>, name: &str) -> f64 {
 #[test]
 fn every_effect_is_timed() {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR"));
-    let timed = [
-        "tools/report/page_styles.rs",
-        "crates/testkit/src/work.rs",
-    ]
-    .map(|path| fs::read_to_string(root.join(path)).expect(path));
+    let timed = ["tools/report/page_styles.rs", "crates/testkit/src/work.rs"]
+        .map(|path| fs::read_to_string(root.join(path)).expect(path));
     for effect in EffectRegistry::built_in().types() {
         let name = (effect.type_info)().type_path_table().short_path();
         let wanted = format!("{name}::default()");

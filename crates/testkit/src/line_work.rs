@@ -38,13 +38,13 @@ pub struct LineWork {
     pub bytes: f64,
 }
 
-pub(crate) const CELLS: &str = "bevy_comics/lines/cells.wgsl";
-const COLUMNS: &str = "bevy_comics/lines/columns.wgsl";
-const DRAW: &str = "bevy_comics/lines/draw.wgsl";
-pub(crate) const LINK: &str = "bevy_comics/lines/link.wgsl";
-const READ: &str = "bevy_comics/lines/read.wgsl";
-pub(crate) const READ_PLANES: &str = "bevy_comics/lines/read_planes.wgsl";
-pub(crate) const SETTLE: &str = "bevy_comics/lines/settle.wgsl";
+pub(crate) const CELLS: &str = "bevy_comics/lines/find/cells.wgsl";
+const COLUMNS: &str = "bevy_comics/lines/draw/columns.wgsl";
+const DRAW: &str = "bevy_comics/lines/draw/draw.wgsl";
+pub(crate) const LINK: &str = "bevy_comics/lines/link/link.wgsl";
+const READ: &str = "bevy_comics/lines/draw/read.wgsl";
+pub(crate) const READ_PLANES: &str = "bevy_comics/lines/cracks/read_planes.wgsl";
+pub(crate) const SETTLE: &str = "bevy_comics/lines/link/settle.wgsl";
 /// The files of the counted passes, and of the functions that they read textures with.
 const FILES: [&str; 12] = [
     "bevy_comics/depth/normal.wgsl",
@@ -57,7 +57,7 @@ const FILES: [&str; 12] = [
     READ,
     READ_PLANES,
     SETTLE,
-    "bevy_comics/lines/stored.wgsl",
+    "bevy_comics/lines/cracks/stored.wgsl",
     "bevy_comics/objects/objects.wgsl",
 ];
 
@@ -275,7 +275,7 @@ fn count_walk(definitions: &[ShaderDefVal], size: UVec2) -> f64 {
             ShaderDefVal::Int(..) => None,
         })
         .collect();
-    let text = std::fs::read_to_string(format!("{ROOT}/src/lines/walk.wgsl"));
+    let text = std::fs::read_to_string(format!("{ROOT}/src/lines/find/walk.wgsl"));
     let module = wgsl::module_with(&text.expect("the shader"), &definitions).expect("it compiles");
     let cracks = definitions.iter().any(|(name, _)| *name == "CRACKS");
     // Rows of a block, and those above and below that are read.

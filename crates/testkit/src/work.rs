@@ -287,7 +287,7 @@ const READERS: [&str; 5] = [
     "bevy_comics/depth/normal.wgsl",
     "bevy_comics/depth/view.wgsl",
     FUSED,
-    "bevy_comics/lines/read.wgsl",
+    "bevy_comics/lines/draw/read.wgsl",
     "bevy_comics/objects/objects.wgsl",
 ];
 

@@ -7,6 +7,7 @@ use std::sync::{
 };
 
 use bevy::{
+    asset::AssetServer,
     camera::{MainPassResolutionOverride, Viewport},
     core_pipeline::prepass::ViewPrepassTextures,
     ecs::{
@@ -20,8 +21,8 @@ use bevy::{
         camera::ExtractedCamera,
         render_phase::ViewSortedRenderPhases,
         render_resource::{
-            BindGroupEntries, Buffer, BufferDescriptor, BufferUsages, CachedComputePipelineId,
-            ComputePassDescriptor, PipelineCache, SpecializedComputePipelines, TextureView,
+            BindGroupEntries, Buffer, BufferUsages, CachedComputePipelineId, PipelineCache,
+            SpecializedComputePipelines, TextureView,
         },
         renderer::{RenderContext, RenderDevice, RenderQueue, ViewQuery},
         view::{ExtractedView, ViewDepthTexture},
@@ -35,6 +36,7 @@ use super::{
     watch::Reading,
 };
 use crate::{
+    gpu::{buffer, compute_pass},
     objects::{
         IdRequest, ViewObjectIds,
         phase::{Layer, ObjectIdItem},
@@ -77,14 +79,8 @@ pub(in crate::objects) struct IdCount {
 
 impl IdCount {
     fn new(device: &RenderDevice, request: &IdRequest, pipeline: CachedComputePipelineId) -> Self {
-        let buffer = |label, size, usage| {
-            device.create_buffer(&BufferDescriptor {
-                label: Some(label),
-                size,
-                usage: usage | BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
+        let buffer =
+            |label, size, usage| buffer(device, label, size, usage | BufferUsages::COPY_DST);
         let counted = BufferUsages::STORAGE | BufferUsages::COPY_SRC;
         Self {
             camera: request.camera,
@@ -125,12 +121,7 @@ impl IdCount {
         let encoder = ctx.command_encoder();
         encoder.clear_buffer(&self.counts, 0, None);
         {
-            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-                label: Some("comics_count_ids"),
-                timestamp_writes: None,
-            });
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &group, &[]);
+            let mut pass = compute_pass(encoder, "comics_count_ids", (pipeline, &group), &[]);
             let across = viewport.z.div_ceil(STEP * STRIP * WORKGROUP);
             pass.dispatch_workgroups(across, viewport.w.div_ceil(STEP * WORKGROUP), 1);
         }
@@ -160,6 +151,18 @@ impl IdCount {
             state.store(FREE, Ordering::Release);
         });
     }
+}
+
+pub(super) fn init_count_pipeline(
+    mut commands: Commands,
+    assets: Res<AssetServer>,
+    views: Query<Entity, With<IdCount>>,
+) {
+    // This runs again after a lost device, whose buffers are no longer valid.
+    for view in &views {
+        commands.entity(view).remove::<IdCount>();
+    }
+    commands.insert_resource(CountPipeline::new(&assets));
 }
 
 /// Gives the views whose ids are drawn what counting needs, on devices with compute shaders.

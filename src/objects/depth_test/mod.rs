@@ -17,7 +17,6 @@ use std::sync::{
 use bevy::{
     app::{App, SubApp},
     asset::embedded_asset,
-    core_pipeline::schedule::{Core3d, Core3dSystems},
     ecs::{
         reflect::ReflectResource,
         resource::Resource,
@@ -34,16 +33,16 @@ use bevy::{
 };
 
 use self::{
-    count::{Readings, map_counts, prepare_counts},
-    pipeline::{CountPipeline, init_count_pipeline},
+    count::{Readings, init_count_pipeline, map_counts, prepare_counts},
+    pipeline::CountPipeline,
     tolerant::prepare_tolerant_ids,
     watch::Watch,
 };
-use super::{draw::draw_object_ids, ids::prepare_object_table};
-use crate::schedule::{ComicsSystems, PrepareComics};
+use super::object_table::prepare_object_table;
+use crate::schedule::PrepareComics;
 
 pub(super) use count::count_ids;
-pub(super) use tolerant::{TolerantIds, with_prepass_depth};
+pub(super) use tolerant::TolerantIds;
 
 /// How the pass of object ids compares depth with the depth prepass. A resource of the main
 /// world; a change takes effect in the next frame.
@@ -179,13 +178,5 @@ pub(super) fn build_render(render_app: &mut SubApp) {
                     .in_set(PrepareComics::Services),
                 map_counts.in_set(RenderSystems::Cleanup),
             ),
-        )
-        .add_systems(
-            Core3d,
-            count_ids
-                .after(draw_object_ids)
-                .after(Core3dSystems::Prepass)
-                .before(ComicsSystems::DepthRange)
-                .before(Core3dSystems::MainPass),
         );
 }

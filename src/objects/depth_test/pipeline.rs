@@ -2,12 +2,7 @@
 
 use bevy::{
     asset::{AssetServer, Handle, load_embedded_asset},
-    ecs::{
-        entity::Entity,
-        query::With,
-        resource::Resource,
-        system::{Commands, Query, Res},
-    },
+    ecs::resource::Resource,
     render::render_resource::{
         BindGroupLayoutDescriptor, BindGroupLayoutEntries, ComputePipelineDescriptor, ShaderStages,
         SpecializedComputePipeline, TextureSampleType,
@@ -18,26 +13,18 @@ use bevy::{
     shader::Shader,
 };
 
-use super::count::IdCount;
-
 /// Counts missing ids. Its key: whether the view is multisampled.
 #[derive(Resource)]
 pub(super) struct CountPipeline {
     shader: Handle<Shader>,
 }
 
-pub(super) fn init_count_pipeline(
-    mut commands: Commands,
-    assets: Res<AssetServer>,
-    views: Query<Entity, With<IdCount>>,
-) {
-    // This runs again after a lost device, whose buffers are no longer valid.
-    for view in &views {
-        commands.entity(view).remove::<IdCount>();
+impl CountPipeline {
+    pub fn new(assets: &AssetServer) -> Self {
+        Self {
+            shader: load_embedded_asset!(assets, "count.wgsl"),
+        }
     }
-    commands.insert_resource(CountPipeline {
-        shader: load_embedded_asset!(assets.as_ref(), "count.wgsl"),
-    });
 }
 
 pub(super) fn count_layout(multisampled: bool) -> BindGroupLayoutDescriptor {

@@ -15,10 +15,7 @@ use bevy::{
     },
     render::{
         render_resource::{
-            BindGroup, BindGroupLayoutDescriptor, Extent3d, LoadOp, Operations,
-            RenderPassDepthStencilAttachment, ShaderStages, StoreOp, TextureDescriptor,
-            TextureDimension, TextureSampleType, TextureUsages,
-            binding_types::{texture_2d, texture_2d_multisampled},
+            BindGroup, LoadOp, Operations, RenderPassDepthStencilAttachment, StoreOp, TextureUsages,
         },
         renderer::RenderDevice,
         texture::{CachedTexture, TextureCache},
@@ -27,7 +24,10 @@ use bevy::{
 };
 
 use super::DepthTest;
-use crate::objects::{IdRequest, line_widths::Drawing};
+use crate::{
+    gpu::texture,
+    objects::{IdRequest, line_widths::Drawing},
+};
 
 /// On a view whose ids are drawn with a tolerance in this frame.
 #[derive(Component)]
@@ -49,24 +49,6 @@ impl TolerantIds {
             stencil_ops: None,
         }
     }
-}
-
-/// A layout of the pass, with the depth of the prepass.
-pub(in crate::objects) fn with_prepass_depth(
-    layout: &BindGroupLayoutDescriptor,
-    multisampled: bool,
-) -> BindGroupLayoutDescriptor {
-    let float = TextureSampleType::Float { filterable: false };
-    let texture = if multisampled {
-        texture_2d_multisampled(float)
-    } else {
-        texture_2d(float)
-    };
-    let mut layout = layout.clone();
-    layout
-        .entries
-        .push(texture.build(3, ShaderStages::FRAGMENT));
-    layout
 }
 
 /// The views whose ids are drawn, and those whose ids are no longer drawn.
@@ -105,20 +87,12 @@ pub(super) fn prepare_tolerant_ids(
             target.remove::<TolerantIds>();
             continue;
         };
-        let descriptor = TextureDescriptor {
-            label: Some("comics_object_id_depth"),
-            size: Extent3d {
-                width: request.size.x,
-                height: request.size.y,
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: request.samples,
-            dimension: TextureDimension::D2,
-            format: CORE_3D_DEPTH_FORMAT,
-            usage: TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        };
+        let descriptor = texture(
+            "comics_object_id_depth",
+            (request.size, request.samples),
+            CORE_3D_DEPTH_FORMAT,
+            TextureUsages::RENDER_ATTACHMENT,
+        );
         let widths = drawing.draws_widths(view.retained_view_entity);
         target.insert(TolerantIds {
             depth: textures.get(&device, descriptor),

@@ -32,8 +32,9 @@ use bevy::{
 
 use self::divide::Surface;
 use super::{
-    components::{assign_object_styles, inherit},
+    components::assign_object_styles,
     groups::{ObjectGroups, update_object_groups},
+    inherit::inherit,
     table::ObjectStyles,
 };
 use crate::settings::{FieldRange, clamp_or_default};

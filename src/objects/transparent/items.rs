@@ -25,9 +25,9 @@ use bevy::{
         render_asset::RenderAssets,
         render_phase::DrawFunctions,
         render_resource::{
-            BindGroupLayoutDescriptor, ColorTargetState, ColorWrites, CompareFunction,
-            FragmentState, PipelineCache, RenderPipelineDescriptor, SpecializedMeshPipeline,
-            SpecializedMeshPipelineError, SpecializedMeshPipelines, TextureFormat,
+            BindGroupLayoutDescriptor, CompareFunction, FragmentState, PipelineCache,
+            RenderPipelineDescriptor, SpecializedMeshPipeline, SpecializedMeshPipelineError,
+            SpecializedMeshPipelines, TextureFormat,
         },
         sync_world::MainEntity,
     },
@@ -36,9 +36,10 @@ use bevy::{
 
 use crate::objects::{
     ID_FORMAT, QueuedDepth,
-    items::{ObjectIdPipeline, draw_function, in_prepass, reads_material},
+    items::draw_function,
     lightmaps::MeshLightmaps,
     phase::{Layer, ObjectIdItem},
+    pipeline::{ObjectIdPipeline, in_prepass, reads_material},
     table::DepthWrites,
 };
 
@@ -95,17 +96,12 @@ impl SpecializedMeshPipeline for TransparentSpecializer {
         if key.cutoff {
             shader_defs.push("ALPHA_CUTOFF".into());
         }
-        let target = |format| ColorTargetState {
-            format,
-            blend: None,
-            write_mask: ColorWrites::ALL,
-        };
         descriptor.fragment = Some(FragmentState {
             shader: self.shader.clone(),
             shader_defs,
             entry_point: Some("surface".into()),
             targets: formats(key.targets)
-                .map(|format| format.map(target))
+                .map(|format| format.map(Into::into))
                 .to_vec(),
         });
         if let Some(depth) = &mut descriptor.depth_stencil {

@@ -29,7 +29,7 @@ use self::{
     items::{TransparentSpecializer, init_transparent_pipeline},
     pass::{NormalCopyPipeline, draw_transparent_depth, init_normal_copy, prepare_own_surfaces},
 };
-use super::{components::inherit, depth_test::count_ids, table::DepthWrites};
+use super::{depth_test::count_ids, inherit::inherit, table::DepthWrites};
 use crate::{
     depth::surfaces::prepass_is_empty,
     schedule::{ComicsSystems, PrepareComics},

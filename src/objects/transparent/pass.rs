@@ -18,17 +18,18 @@ use bevy::{
         world::World,
     },
     log::error_once,
+    math::UVec2,
     render::{
         camera::ExtractedCamera,
         diagnostic::RecordDiagnostics,
         render_phase::{SortedRenderPhase, ViewSortedRenderPhases},
         render_resource::{
             BindGroup, BindGroupEntries, BindGroupLayoutDescriptor, BindGroupLayoutEntries,
-            ColorTargetState, ColorWrites, FragmentState, LoadOp, MultisampleState, Operations,
-            PipelineCache, RenderPassColorAttachment, RenderPassDepthStencilAttachment,
-            RenderPassDescriptor, RenderPipeline, RenderPipelineDescriptor, ShaderStages,
-            SpecializedRenderPipeline, SpecializedRenderPipelines, StoreOp, TextureDescriptor,
-            TextureDimension, TextureFormat, TextureSampleType, TextureUsages, TextureView,
+            FragmentState, LoadOp, MultisampleState, Operations, PipelineCache,
+            RenderPassDepthStencilAttachment, RenderPassDescriptor, RenderPipeline,
+            RenderPipelineDescriptor, ShaderStages, SpecializedRenderPipeline,
+            SpecializedRenderPipelines, StoreOp, TextureFormat, TextureSampleType, TextureUsages,
+            TextureView,
             binding_types::{texture_2d, texture_2d_multisampled},
         },
         renderer::{RenderAdapter, RenderContext, RenderDevice, ViewQuery},
@@ -41,6 +42,7 @@ use bevy::{
 use crate::{
     depth::surfaces::{OwnNormals, OwnSurfaces},
     diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
+    gpu,
     objects::{
         DepthWanted, QueuedDepth, ViewObjectIds,
         phase::{Layer, ObjectIdItem},
@@ -85,10 +87,10 @@ impl SpecializedRenderPipeline for NormalCopyPipeline {
 
     fn specialize(&self, samples: u32) -> RenderPipelineDescriptor {
         let multisampled = samples > 1;
-        let shader_defs = [
+        let shader_defs = gpu::definitions([
             (multisampled, "MULTISAMPLED"),
             (multisampled && self.shades_samples, "SAMPLE_SHADING"),
-        ];
+        ]);
         RenderPipelineDescriptor {
             label: Some("comics_copy_normals".into()),
             layout: vec![copy_layout(samples)],
@@ -99,16 +101,9 @@ impl SpecializedRenderPipeline for NormalCopyPipeline {
             },
             fragment: Some(FragmentState {
                 shader: self.shader.clone(),
-                shader_defs: (shader_defs.into_iter())
-                    .filter(|(on, _)| *on)
-                    .map(|(_, name)| name.into())
-                    .collect(),
+                shader_defs: shader_defs.collect(),
                 entry_point: Some("copy_normal".into()),
-                targets: vec![Some(ColorTargetState {
-                    format: NORMAL_PREPASS_FORMAT,
-                    blend: None,
-                    write_mask: ColorWrites::ALL,
-                })],
+                targets: vec![Some(NORMAL_PREPASS_FORMAT.into())],
             }),
             ..Default::default()
         }
@@ -131,17 +126,9 @@ pub(super) fn prepare_own_surfaces(
         };
         let like = &depth.texture.texture;
         let mut texture = |label, format: TextureFormat, usage: TextureUsages| {
-            let descriptor = TextureDescriptor {
-                label: Some(label),
-                size: like.size(),
-                mip_level_count: 1,
-                sample_count: like.sample_count(),
-                dimension: TextureDimension::D2,
-                format,
-                usage: usage | TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING,
-                view_formats: &[],
-            };
-            textures.get(&device, descriptor)
+            let usage = usage | TextureUsages::RENDER_ATTACHMENT | TextureUsages::TEXTURE_BINDING;
+            let size = (UVec2::new(like.width(), like.height()), like.sample_count());
+            textures.get(&device, gpu::texture(label, size, format, usage))
         };
         let copied = TextureUsages::COPY_DST;
         let depth = texture("comics_own_depth", CORE_3D_DEPTH_FORMAT, copied);
@@ -280,7 +267,7 @@ impl<'a> Targets<'a> {
         };
         let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
             label: Some("comics_copy_normals"),
-            color_attachments: &[Some(attachment(target, false))],
+            color_attachments: &[Some(gpu::attachment(target, LoadOp::default()))],
             ..Default::default()
         });
         pass.set_pipeline(pipeline);
@@ -298,8 +285,8 @@ impl<'a> Targets<'a> {
         let mut pass = ctx.begin_tracked_render_pass(RenderPassDescriptor {
             label: Some("comics_transparent_depth"),
             color_attachments: &[
-                self.ids.map(|ids| attachment(ids, true)),
-                (self.normal.as_ref()).map(|(normal, ..)| attachment(normal, true)),
+                self.ids.map(|ids| gpu::attachment(ids, LoadOp::Load)),
+                (self.normal.as_ref()).map(|(normal, ..)| gpu::attachment(normal, LoadOp::Load)),
             ],
             depth_stencil_attachment: Some(RenderPassDepthStencilAttachment {
                 view: &self.depth.1.default_view,
@@ -322,22 +309,5 @@ impl<'a> Targets<'a> {
                 error_once!("transparent meshes wrote no depth: {error:?}");
                 SkipReason::PipelineNotReady
             })
-    }
-}
-
-/// `keep`: the texture keeps what it has.
-fn attachment(view: &TextureView, keep: bool) -> RenderPassColorAttachment<'_> {
-    RenderPassColorAttachment {
-        view,
-        depth_slice: None,
-        resolve_target: None,
-        ops: Operations {
-            load: if keep {
-                LoadOp::Load
-            } else {
-                LoadOp::Clear(Default::default())
-            },
-            store: StoreOp::Store,
-        },
     }
 }

@@ -8,7 +8,7 @@ use bevy::{
 };
 
 use super::*;
-use crate::toon::{MaterialName, scene, shading};
+use crate::toon::{MaterialName, scene};
 
 /// The part of the plugin that shadings and scenes need.
 fn app() -> App {
@@ -21,7 +21,7 @@ fn app() -> App {
         .add_systems(
             Update,
             (
-                shading::apply_shadings,
+                scene::apply_shadings,
                 scene::follow_materials,
                 scene::restore,
                 scene::choose_again,

@@ -146,7 +146,7 @@ fn assert_matches_the_reference(
     if surfaces {
         entries.extend([texture(7, &normals), texture(8, &objects)]);
     }
-    let source = without_stage(&shader("lines/find.wgsl"));
+    let source = without_stage(&shader("lines/find/find.wgsl"));
     let body = settings(outlines) + FOUND;
     let rows = rows();
     let results = gpu().evaluate_bound(&definitions, &entries, &source, &body, &rows);

@@ -172,7 +172,7 @@ impl Scene {
         let rows: Vec<[f32; 3]> = pixels()
             .flat_map(|[x, y]| [0, 1].map(|which| [x, y, which].map(|k| k as f32)))
             .collect();
-        let source = without_stage(&shader("lines/remember.wgsl"));
+        let source = without_stage(&shader("lines/memory/remember.wgsl"));
         let definitions = [("DEPTH", None)];
         let results = gpu().evaluate_bound(&definitions, &entries, &source, &self.body(), &rows);
         results

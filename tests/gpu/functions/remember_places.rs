@@ -20,7 +20,7 @@ const SIZE: [u32; 2] = [16, 12];
 
 /// The shader, whose entry point is a plain function.
 fn source() -> String {
-    without_stage(&shader("lines/remember.wgsl"))
+    without_stage(&shader("lines/memory/remember.wgsl"))
 }
 
 /// Random texels of the last frame.

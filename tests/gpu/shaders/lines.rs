@@ -73,15 +73,15 @@ fn finding() -> Vec<Variant> {
             if has_any(&kinds, &["SILHOUETTES", "CREASES"]) {
                 defs.push("EXCESS");
             }
-            add(&mut all, "lines/find.wgsl", &defs);
+            add(&mut all, "lines/find/find.wgsl", &defs);
             let completed = [&defs[..], &["COMPLETED"]].concat();
             let abstracts = [&completed[..], &["ABSTRACT_LINES"]].concat();
             for defs in [&defs, &completed, &abstracts] {
-                add(&mut all, "lines/cells.wgsl", defs);
+                add(&mut all, "lines/find/cells.wgsl", defs);
             }
             if has(&kinds, "CREASES") {
                 let ledges = [&completed[..], &["LEDGES"]].concat();
-                add(&mut all, "lines/cells.wgsl", &ledges);
+                add(&mut all, "lines/find/cells.wgsl", &ledges);
             }
         }
         for forms in subsets(&["FAITHFUL_SILHOUETTES", "FAITHFUL_CREASES", "OBJECT_STYLES"]) {
@@ -92,7 +92,7 @@ fn finding() -> Vec<Variant> {
             if has(&forms, "OBJECT_STYLES") {
                 defs.push("OBJECT_IDS");
             }
-            add(&mut all, "lines/faithful.wgsl", &defs);
+            add(&mut all, "lines/find/faithful.wgsl", &defs);
         }
     }
     all.extend(found_pairs());
@@ -127,8 +127,8 @@ fn found_pairs() -> Vec<Variant> {
         found(names)
     }
     [
-        pairs("lines/cells.wgsl", LISTS, completed),
-        pairs("lines/find.wgsl", LISTS, by_fragments),
+        pairs("lines/find/cells.wgsl", LISTS, completed),
+        pairs("lines/find/find.wgsl", LISTS, by_fragments),
     ]
     .concat()
 }
@@ -174,12 +174,12 @@ fn walking() -> Vec<Variant> {
         ],
         &[&[], &["VISIBLE_RANGE"]],
     ];
-    let mut all = pairs("lines/walk.wgsl", LISTS, walked);
+    let mut all = pairs("lines/find/walk.wgsl", LISTS, walked);
     for flags in ["MAP_FLAGS=0", "MAP_FLAGS=1", "MAP_FLAGS=2", "MAP_FLAGS=3"] {
         for view in subsets(&["OBLIQUE", "SAME_SIZE", "VISIBLE_RANGE"]) {
             let jumps = ["DEPTH", "BOUNDS", "JUMPS", flags];
             let names = [&jumps[..], &view[..]].concat();
-            add(&mut all, "lines/walk.wgsl", &names);
+            add(&mut all, "lines/find/walk.wgsl", &names);
         }
     }
     all
@@ -218,22 +218,22 @@ fn completing() -> Vec<Variant> {
         &["BLOCKS", "COMPLETED", "SMOOTH", "VARIED"],
     ];
     for defs in of_columns {
-        add(&mut all, "lines/columns.wgsl", defs);
+        add(&mut all, "lines/draw/columns.wgsl", defs);
     }
     for last in subsets(&["LAST"]) {
-        add(&mut all, "lines/link.wgsl", &last);
+        add(&mut all, "lines/link/link.wgsl", &last);
     }
-    add(&mut all, "lines/join.wgsl", &[]);
-    add(&mut all, "lines/bridge.wgsl", &[]);
-    add(&mut all, "lines/tiles.wgsl", &[]);
-    add(&mut all, "lines/tile.wgsl", &[]);
+    add(&mut all, "lines/link/join.wgsl", &[]);
+    add(&mut all, "lines/link/bridge.wgsl", &[]);
+    add(&mut all, "lines/tiles/tiles.wgsl", &[]);
+    add(&mut all, "lines/tiles/tile.wgsl", &[]);
     let motions: [&[&str]; 3] = [&[], &["MOTION", "DEPTH"], &["MOTION", "DEPTH", "OBLIQUE"]];
     for motion in motions {
-        add(&mut all, "lines/persist.wgsl", motion);
+        add(&mut all, "lines/memory/persist.wgsl", motion);
     }
     for varied in subsets(&["VARIED", "BRIDGED"]) {
         let defs = [&["BLOCKS", "SMOOTH"][..], &varied[..]].concat();
-        add(&mut all, "lines/ends.wgsl", &defs);
+        add(&mut all, "lines/draw/ends.wgsl", &defs);
     }
     all
 }
@@ -241,7 +241,7 @@ fn completing() -> Vec<Variant> {
 /// What leaves out cracks and makes lines smooth, wide and faint.
 fn settling() -> Vec<Variant> {
     let mut all = Vec::new();
-    let file = "lines/settle.wgsl";
+    let file = "lines/link/settle.wgsl";
     for smooth in [&[][..], &["SMOOTH"], &["SMOOTH", "FOLDS", "DEPTH"]] {
         for weight in [&[][..], &["WEIGHT", "DEPTH", "BUDGET"]] {
             for bridged in subsets(&["BRIDGED", "LEDGES", "RIMS"]) {
@@ -308,7 +308,7 @@ fn settled_pairs() -> Vec<Variant> {
         ],
         &[&[], &["VISIBLE_RANGE"]],
     ];
-    pairs("lines/settle.wgsl", LISTS, settled)
+    pairs("lines/link/settle.wgsl", LISTS, settled)
 }
 
 fn settled(mut names: Vec<&'static str>) -> Vec<&'static str> {
@@ -351,7 +351,7 @@ fn drawing() -> Vec<Variant> {
         for more in [&[][..], &["SURFACE"], &["SURFACE", "INWARD"]] {
             for line in subsets(&["BOIL", "TAPER", "SPREAD", "STREAKS"]) {
                 let defs = [styles, more, &line[..]].concat();
-                add(&mut all, "lines/strokes.wgsl", &defs);
+                add(&mut all, "lines/draw/strokes.wgsl", &defs);
             }
         }
         for search in [&[][..], &["NEIGHBOURS"], &["COLUMNS"]] {
@@ -363,27 +363,27 @@ fn drawing() -> Vec<Variant> {
             ] {
                 for sheet in subsets(&["SPREAD", "STREAKS"]) {
                     let defs = [styles, search, store, &sheet[..]].concat();
-                    add(&mut all, "lines/draw.wgsl", &defs);
+                    add(&mut all, "lines/draw/draw.wgsl", &defs);
                 }
                 let bridged = &["OWNERS", "BRIDGED", "SURFACE", "INWARD"];
                 if !store.is_empty() {
                     let defs = [styles, search, store, &bridged[..]].concat();
-                    add(&mut all, "lines/draw.wgsl", &defs);
+                    add(&mut all, "lines/draw/draw.wgsl", &defs);
                 }
             }
         }
     }
     for view in subsets(&["OBLIQUE", "NORMALS", "OBJECT_IDS", "WIDTH_MAP"]) {
         let defs = [&["DEPTH", "MULTISAMPLED"][..], &view[..]].concat();
-        add(&mut all, "lines/resolve.wgsl", &defs);
+        add(&mut all, "lines/find/resolve.wgsl", &defs);
     }
     for stored in [&[][..], &["STORED_SRGB"], &["STORED_OKLAB"]] {
         let defs = [&["OBJECT_STYLES"][..], stored].concat();
-        add(&mut all, "lines/marks.wgsl", &defs);
+        add(&mut all, "lines/record/marks.wgsl", &defs);
     }
     for view in subsets(&["OBLIQUE"]) {
         let defs = [&["DEPTH"][..], &view[..]].concat();
-        add(&mut all, "lines/remember.wgsl", &defs);
+        add(&mut all, "lines/memory/remember.wgsl", &defs);
     }
     all.extend(drawn_pairs());
     all
@@ -407,7 +407,7 @@ fn drawn_pairs() -> Vec<Variant> {
         &[&[], &["SPREAD"]],
         &[&[], &["STREAKS"]],
     ];
-    pairs("lines/draw.wgsl", LISTS, drawn)
+    pairs("lines/draw/draw.wgsl", LISTS, drawn)
 }
 
 fn drawn(mut names: Vec<&'static str>) -> Vec<&'static str> {

@@ -55,7 +55,7 @@ fn objects() -> Vec<Variant> {
             &["TOLERANT", "TOLERANT_MULTISAMPLED", "SAMPLE_SHADING"],
         ] {
             let defs = [widths, depth].concat();
-            // `objects/items.rs` builds both.
+            // `objects/pipeline.rs` builds both.
             for file in ["objects/ids.wgsl", "objects/sections.wgsl"] {
                 all.push((file, definitions(&defs)));
             }

@@ -1,4 +1,4 @@
-//! Reference of `effects/abstraction/abstraction.wgsl` and `lines/abstraction.wgsl`.
+//! Reference of `effects/abstraction/abstraction.wgsl` and `lines/modifiers/abstraction.wgsl`.
 
 use super::{Rgb, color::luminance, mix, smoothstep, tone_bands::band_tone};
 

@@ -1,4 +1,4 @@
-//! Reference of `lines/bend.wgsl`: how a line runs straight through the steps of cracks.
+//! Reference of `lines/link/bend.wgsl`: how a line runs straight through the steps of cracks.
 
 /// Cracks of a run that are seen from one of them, itself included.
 pub const LONGEST: usize = 32;

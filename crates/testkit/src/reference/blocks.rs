@@ -1,4 +1,4 @@
-//! Reference of `lines/blocks.wgsl`: which rows and pixels matter to a block or tile.
+//! Reference of `lines/tiles/blocks.wgsl`: which rows and pixels matter to a block or tile.
 
 /// Width and height of a tile in pixels.
 pub const TILE: i64 = 16;

@@ -1,4 +1,4 @@
-//! Reference of `lines/boil.wgsl`: how far lines are displaced.
+//! Reference of `lines/settings/boil.wgsl`: how far lines are displaced.
 
 use bevy_comics::lines::LineBoil;
 

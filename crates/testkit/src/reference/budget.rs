@@ -1,4 +1,4 @@
-//! Reference of `lines/budget.wgsl`: how much of the width of lines is left where they crowd.
+//! Reference of `lines/link/budget.wgsl`: how much of the width of lines is left where they crowd.
 
 use std::{collections::HashSet, f64::consts::FRAC_PI_4};
 

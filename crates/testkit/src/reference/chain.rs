@@ -1,4 +1,4 @@
-//! Reference of `lines/chain.wgsl`: lines are followed from crack to crack.
+//! Reference of `lines/link/chain.wgsl`: lines are followed from crack to crack.
 
 use std::{collections::HashSet, ops::RangeInclusive};
 

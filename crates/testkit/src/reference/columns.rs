@@ -1,4 +1,4 @@
-//! Reference of `lines/columns.wgsl`: the best two cracks of each pixel's column.
+//! Reference of `lines/draw/columns.wgsl`: the best two cracks of each pixel's column.
 
 use super::{
     crack::{Crack, SIDES},

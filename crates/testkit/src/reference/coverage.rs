@@ -1,4 +1,4 @@
-//! Reference of `lines/coverage.wgsl`: fractions of pixels that drawn lines cover.
+//! Reference of `lines/draw/coverage.wgsl`: fractions of pixels that drawn lines cover.
 
 /// Length in pixels of the ramp of coverage across a line with this direction.
 pub fn line_ramp(along: [f64; 2]) -> f64 {

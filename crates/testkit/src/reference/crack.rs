@@ -1,4 +1,4 @@
-//! Reference of `lines/crack.wgsl`: the cracks that lines run along.
+//! Reference of `lines/find/crack.wgsl`: the cracks that lines run along.
 
 use super::{
     edge::{

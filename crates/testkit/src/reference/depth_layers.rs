@@ -1,4 +1,4 @@
-//! Reference of `effects/depth_layers/depth_layers.wgsl`; that of `lines/planes.wgsl` has its name.
+//! Reference of `effects/depth_layers/depth_layers.wgsl`; that of `lines/cracks/planes.wgsl` has its name.
 
 use super::{
     Rgb,

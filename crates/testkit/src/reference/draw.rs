@@ -1,4 +1,4 @@
-//! Reference of `lines/draw.wgsl`: the ink of the lines at every pixel.
+//! Reference of `lines/draw/draw.wgsl`: the ink of the lines at every pixel.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,4 +1,4 @@
-//! Reference of `lines/edge.wgsl`: responses and line geometry.
+//! Reference of `lines/cracks/edge.wgsl`: responses and line geometry.
 
 use super::Rgb;
 

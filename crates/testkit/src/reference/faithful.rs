@@ -1,4 +1,4 @@
-//! Reference of `lines/faithful.wgsl`: the ink of the faithful equations.
+//! Reference of `lines/find/faithful.wgsl`: the ink of the faithful equations.
 
 use super::{
     crack::{ink, normal},

@@ -1,4 +1,4 @@
-//! Reference of `lines/fog.wgsl`: how much of a line the engine's distance fog hides.
+//! Reference of `lines/settings/fog.wgsl`: how much of a line the engine's distance fog hides.
 
 /// How fog grows with distance.
 #[derive(Clone, Copy, Debug, PartialEq)]

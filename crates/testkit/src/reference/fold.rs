@@ -1,4 +1,4 @@
-//! Reference of `lines/fold.wgsl`: where the two sides of a crease meet.
+//! Reference of `lines/link/fold.wgsl`: where the two sides of a crease meet.
 
 use std::collections::HashSet;
 

@@ -1,4 +1,4 @@
-//! Reference of `lines/hidden.wgsl`: which pixels of marked objects are hidden.
+//! Reference of `lines/find/hidden.wgsl`: which pixels of marked objects are hidden.
 
 /// By how much the picture is in front of a marked object, beyond a tenth of the jump that separates
 /// two surfaces there. Above 0, the object is hidden. `picture`, `own`: raw depths; `jump`: as a

@@ -1,4 +1,4 @@
-//! Reference of `lines/jumps.wgsl`: the bound below which the depth map does not depart from a
+//! Reference of `lines/find/jumps.wgsl`: the bound below which the depth map does not depart from a
 //! plane.
 
 use super::{

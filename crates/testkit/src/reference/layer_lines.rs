@@ -1,4 +1,4 @@
-//! Reference of `lines/layer_lines.wgsl`: lines of near, middle and far.
+//! Reference of `lines/modifiers/layer_lines.wgsl`: lines of near, middle and far.
 
 use bevy_comics::lines::LineLayers;
 

@@ -1,4 +1,4 @@
-//! Reference of `lines/link.wgsl`, `lines/join.wgsl` and `lines/settle.wgsl`: the cracks that are parts of lines,
+//! Reference of `lines/link/link.wgsl`, `lines/link/join.wgsl` and `lines/link/settle.wgsl`: the cracks that are parts of lines,
 //! and how these run. A graph of cracks and of the corners of pixels that they end at.
 
 use std::collections::{HashMap, HashSet};

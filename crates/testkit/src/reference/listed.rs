@@ -1,4 +1,4 @@
-//! Reference of `lines/listed.wgsl`: which cell of the list each invocation has.
+//! Reference of `lines/tiles/listed.wgsl`: which cell of the list each invocation has.
 
 /// Workgroups in a row of a dispatch, and invocations of a workgroup.
 const GROUPS: u32 = 1024;

@@ -1,4 +1,4 @@
-//! Reference of `lines/lives.wgsl` and `lines/persist.wgsl`: lines that stay where their edges have
+//! Reference of `lines/memory/lives.wgsl` and `lines/memory/persist.wgsl`: lines that stay where their edges have
 //! become weak. Without motion vectors.
 
 use std::collections::{HashMap, HashSet};

@@ -1,4 +1,4 @@
-//! Reference of `lines/memory.wgsl`: how lines remember the frames before.
+//! Reference of `lines/memory/memory.wgsl`: how lines remember the frames before.
 
 /// The number of frames in the memory, this one included.
 pub fn frames_at(before: f64, share: f64, speed: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! Reference of `lines/ends.wgsl`, `lines/overshoot.wgsl` and `lines/strokes.wgsl`: strokes that
+//! Reference of `lines/draw/ends.wgsl`, `lines/draw/overshoot.wgsl` and `lines/draw/strokes.wgsl`: strokes that
 //! extend lines beyond their loose ends.
 
 use std::collections::HashSet;

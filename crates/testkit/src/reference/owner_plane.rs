@@ -1,4 +1,4 @@
-//! Reference of `lines/owner_plane.wgsl`: near, middle and far, and the abstraction, where lines are.
+//! Reference of `lines/modifiers/owner_plane.wgsl`: near, middle and far, and the abstraction, where lines are.
 
 use super::{
     abstraction::{dialled, graded, lines},

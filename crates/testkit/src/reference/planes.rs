@@ -1,4 +1,4 @@
-//! Reference of `lines/planes.wgsl`: where planes of bits are stored.
+//! Reference of `lines/cracks/planes.wgsl`: where planes of bits are stored.
 
 /// Size of a grid in pixels.
 pub type Size = [i64; 2];

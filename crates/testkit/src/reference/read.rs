@@ -1,4 +1,4 @@
-//! Reference of `lines/read.wgsl`: the drawn lines at a place.
+//! Reference of `lines/draw/read.wgsl`: the drawn lines at a place.
 
 use super::{Rgb, Rgba, draw::Ink, mix, over};
 use bevy_comics::Outlines;

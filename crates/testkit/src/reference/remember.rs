@@ -1,4 +1,4 @@
-//! Reference of `lines/remember.wgsl`: ink that remembers the frames before.
+//! Reference of `lines/memory/remember.wgsl`: ink that remembers the frames before.
 
 use super::{
     Rgb,

@@ -1,4 +1,4 @@
-//! Reference of `lines/resolve.wgsl`: the sample of a pixel that lines read.
+//! Reference of `lines/find/resolve.wgsl`: the sample of a pixel that lines read.
 
 use super::view::View;
 use crate::read_back::{DepthImage, FloatImage, IdImage, WidthImage};

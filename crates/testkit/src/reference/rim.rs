@@ -1,4 +1,4 @@
-//! Reference of `lines/rim.wgsl`: where the rim of a surface is a single silhouette.
+//! Reference of `lines/link/rim.wgsl`: where the rim of a surface is a single silhouette.
 
 use std::collections::{HashMap, HashSet};
 

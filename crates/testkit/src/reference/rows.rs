@@ -1,4 +1,4 @@
-//! Reference of `lines/rows.wgsl`: what is known of the border between two pixels.
+//! Reference of `lines/find/rows.wgsl`: what is known of the border between two pixels.
 
 use super::{
     crack::SIDES,

@@ -1,4 +1,4 @@
-//! Reference of a part of `lines/draw.wgsl`: lines run straight between the middles of neighbouring
+//! Reference of a part of `lines/draw/draw.wgsl`: lines run straight between the middles of neighbouring
 //! cracks.
 
 use super::{

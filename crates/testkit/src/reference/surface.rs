@@ -1,4 +1,4 @@
-//! Reference of `lines/surface.wgsl`: lines in the colour of surfaces.
+//! Reference of `lines/draw/surface.wgsl`: lines in the colour of surfaces.
 
 /// The ink on a surface with a colour in linear light.
 pub fn surface_ink(color: [f64; 3], darken: f64, saturate: f64) -> [f64; 3] {

@@ -1,4 +1,4 @@
-//! Reference of `lines/walk.wgsl`: the bounds below which there is no crack.
+//! Reference of `lines/find/walk.wgsl`: the bounds below which there is no crack.
 
 /// Bounds are this much lower than where ink begins.
 pub const BELOW: f64 = 0.999;

@@ -1,4 +1,4 @@
-//! Reference of `lines/weight.wgsl`: how wide a line is at a crack.
+//! Reference of `lines/settings/weight.wgsl`: how wide a line is at a crack.
 
 use bevy_comics::{Outlines, lines::LineWeight};
 

@@ -1,0 +1,108 @@
+//! The pipelines that compute a view's visible range.
+
+use bevy::{
+    ecs::{
+        component::Component,
+        system::{Res, ResMut, SystemParam},
+    },
+    render::{
+        render_resource::{
+            CachedComputePipelineId, CachedRenderPipelineId, PipelineCache,
+            SpecializedComputePipelines, SpecializedRenderPipelines,
+        },
+        renderer::{RenderAdapterInfo, RenderDevice},
+    },
+};
+
+use super::{
+    ProjectionKind,
+    borders::BorderPipeline,
+    follow::SmoothingPipeline,
+    ping_pong::PingPongPipeline,
+    range::{RangeKey, RangePipeline, RangeShape},
+    request::RangeRequest,
+};
+
+/// The pipelines of one view's range.
+#[derive(Component, Clone, Copy, Debug)]
+pub(crate) struct RangePasses {
+    pub reduction: Reduction,
+    /// The pass that smooths or holds the range, if it runs.
+    pub smoothing: Option<CachedComputePipelineId>,
+    /// The pass that divides the depths, if it runs.
+    pub borders: Option<CachedComputePipelineId>,
+    /// Whether the reduction counts a histogram of the depths.
+    pub counts: bool,
+}
+
+/// The pipelines of a reduction.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Reduction {
+    Compute {
+        shape: RangeShape,
+        pipeline: CachedComputePipelineId,
+    },
+    PingPong {
+        first: CachedRenderPipelineId,
+        next: CachedRenderPipelineId,
+    },
+}
+
+/// Specializes the pipelines for requests.
+#[derive(SystemParam)]
+pub(crate) struct RangePipelines<'w> {
+    ranges: ResMut<'w, SpecializedComputePipelines<RangePipeline>>,
+    ping_pongs: ResMut<'w, SpecializedRenderPipelines<PingPongPipeline>>,
+    smoothings: ResMut<'w, SpecializedComputePipelines<SmoothingPipeline>>,
+    borders: ResMut<'w, SpecializedComputePipelines<BorderPipeline>>,
+    range: Res<'w, RangePipeline>,
+    ping_pong: Res<'w, PingPongPipeline>,
+    smoothing: Res<'w, SmoothingPipeline>,
+    border: Res<'w, BorderPipeline>,
+    adapter: Res<'w, RenderAdapterInfo>,
+    device: Res<'w, RenderDevice>,
+}
+
+impl RangePipelines<'_> {
+    /// The pipelines for a request; new ones are queued for compilation.
+    pub fn get(&mut self, cache: &PipelineCache, request: &RangeRequest) -> RangePasses {
+        let shape = RangeShape::choose(request.map.reduction, &self.adapter, &self.device);
+        let has_compute = self.device.limits().max_compute_workgroup_size_x > 0;
+        let reads_counts = request.histogram || request.borders;
+        let follows = (request.smooths || reads_counts) && has_compute;
+        let counts = follows && shape.is_some() && (reads_counts || request.has_outliers());
+        let kind = request.projection.kind();
+        let key = RangeKey {
+            samples: request.samples,
+            oblique: kind == ProjectionKind::Oblique,
+            histogram: counts,
+            orthographic: counts && kind == ProjectionKind::Orthographic,
+        };
+        let reduction = match shape {
+            Some(shape) => Reduction::Compute {
+                shape,
+                pipeline: self.ranges.specialize(cache, &self.range, (shape, key)),
+            },
+            None => {
+                let mut chain = |first| {
+                    let key = (first, key.samples, key.oblique);
+                    self.ping_pongs.specialize(cache, &self.ping_pong, key)
+                };
+                Reduction::PingPong {
+                    first: chain(true),
+                    next: chain(false),
+                }
+            }
+        };
+        let smoothing =
+            follows.then(|| (self.smoothings).specialize(cache, &self.smoothing, counts));
+        let borders =
+            (counts && request.borders).then(|| (self.borders).specialize(cache, &self.border, ()));
+        RangePasses {
+            reduction,
+            smoothing,
+            borders,
+            counts,
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! What a device lacks of what effects use.
+
+use bevy::{
+    log::warn_once,
+    render::{renderer::RenderAdapterInfo, settings::WgpuLimits},
+};
+
+use crate::depth::surfaces::prepass_is_empty;
+
+/// What a device lacks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct DeviceLacks {
+    pub compute_shaders: bool,
+    /// Storage buffers in vertex and fragment shaders, which object ids need.
+    pub object_ids: bool,
+    /// Copies of depth textures: see [`prepass_is_empty`].
+    pub depth_copies: bool,
+}
+
+impl DeviceLacks {
+    /// Most storage buffers of a stage of the pipelines that draw or read object ids, the engine's
+    /// included.
+    const ID_BUFFERS: u32 = 4;
+
+    pub fn new(limits: &WgpuLimits, adapter: &RenderAdapterInfo) -> Self {
+        Self {
+            compute_shaders: limits.max_compute_workgroup_size_x == 0,
+            object_ids: limits.max_storage_buffers_per_shader_stage < Self::ID_BUFFERS,
+            depth_copies: prepass_is_empty(adapter),
+        }
+    }
+
+    /// Warns once about each, with what is not drawn.
+    pub fn warn(self) {
+        if self.compute_shaders {
+            warn_once!(
+                "this device has no compute shaders: visible ranges are not smoothed, locked or \
+                 trimmed, borders of depth layers are not found, and lines are drawn without \
+                 hysteresis, closed gaps, ink budget, held frames, weights and fog"
+            );
+        }
+        if self.object_ids && cfg!(feature = "objects") {
+            warn_once!(
+                "this device has too few storage buffers for object ids: edges between objects, line \
+                 styles of objects, sections, marks, screens that follow objects and depth of \
+                 transparent meshes are not drawn"
+            );
+        }
+    }
+}

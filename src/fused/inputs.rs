@@ -1,0 +1,147 @@
+//! What the passes bind.
+
+use bevy::{
+    ecs::resource::Resource,
+    render::{
+        render_resource::{
+            AddressMode, BindGroup, BindGroupEntry, BindingResource, FilterMode, IntoBinding,
+            PipelineCache, Sampler, SamplerDescriptor, TextureView,
+        },
+        renderer::{RenderContext, RenderDevice},
+        texture::CachedTexture,
+    },
+};
+
+use super::{blue_noise::BlueNoise, key::StylizeKey};
+use crate::{
+    depth::{
+        prepare::ViewDepthRange,
+        surfaces::{SurfaceParts, Surfaces},
+    },
+    diagnostics::SkipReason,
+    gpu::entry,
+    lines::ViewLines,
+    objects::{OBJECT_DEPTHS_BINDING, ObjectDepths, ObjectStyleBuffer, ViewObjectIds},
+};
+
+/// Reads between the centres of pixels.
+#[derive(Resource)]
+pub(super) struct LayerSampler(pub Sampler);
+
+impl LayerSampler {
+    pub fn new(device: &RenderDevice) -> Self {
+        Self(device.create_sampler(&SamplerDescriptor {
+            label: Some("comics_layer"),
+            address_mode_u: AddressMode::ClampToEdge,
+            address_mode_v: AddressMode::ClampToEdge,
+            mag_filter: FilterMode::Linear,
+            min_filter: FilterMode::Linear,
+            ..Default::default()
+        }))
+    }
+}
+
+/// The textures and buffers that the services have prepared for the view in this
+/// frame.
+pub(super) type Found<'a> = (
+    SurfaceParts<'a>,
+    Option<&'a ViewDepthRange>,
+    Option<&'a ViewLines>,
+    (Option<&'a ViewObjectIds>, Option<&'a ObjectDepths>),
+);
+
+/// What all passes of a view bind.
+pub(super) struct Inputs<'a> {
+    pub entries: Vec<BindGroupEntry<'a>>,
+    pub sampler: &'a LayerSampler,
+    pub cache: &'a PipelineCache,
+}
+
+/// What the passes before a pass have drawn for it.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Before<'a> {
+    pub picture: Option<&'a TextureView>,
+    /// Means, or the picture with numbers.
+    pub words: Option<&'a TextureView>,
+}
+
+impl Inputs<'_> {
+    pub fn bind_group(&self, ctx: &RenderContext, key: &StylizeKey, before: &Before) -> BindGroup {
+        let mut entries = self.entries.clone();
+        if let Some(picture) = before.picture {
+            entries.push(entry(9, picture.into_binding()));
+            entries.push(entry(10, (&self.sampler.0).into_binding()));
+        }
+        if let (Some(words), Some(binding)) = (before.words, key.reads.binding()) {
+            entries.push(entry(binding, words.into_binding()));
+        }
+        let layout = self.cache.get_bind_group_layout(&key.layout());
+        let device = ctx.render_device();
+        device.create_bind_group("comics_stylize", &layout, &entries)
+    }
+}
+
+/// The bindings of the pass besides the picture and the uniform; an error if one of
+/// them is missing in this frame.
+pub(super) fn entries<'a>(
+    key: &StylizeKey,
+    (surfaces, range, lines, (ids, places)): Found<'a>,
+    object_styles: &'a ObjectStyleBuffer,
+    blue_noise: &'a BlueNoise,
+) -> Result<Vec<BindGroupEntry<'a>>, SkipReason> {
+    let not_ready = SkipReason::PipelineNotReady;
+    let surfaces = Surfaces::from(surfaces);
+    let mut entries = Vec::new();
+    if key.depth {
+        let depth = surfaces.depth().ok_or(SkipReason::SampleCountMismatch)?;
+        entries.push(entry(2, sampled(depth, key.samples)?));
+    }
+    if key.reads_range() {
+        let keys = range.and_then(ViewDepthRange::drawn).ok_or(not_ready)?;
+        entries.push(entry(3, keys.as_entire_binding()));
+    }
+    if key.lines {
+        let lines = lines.ok_or(not_ready)?;
+        let ink = lines.found().ok_or(not_ready)?;
+        entries.push(entry(4, (&ink.default_view).into_binding()));
+    }
+    if key.reads_owners() {
+        let owners = lines.and_then(|lines| lines.owners.as_ref());
+        let owners = owners.ok_or(not_ready)?;
+        entries.push(entry(5, (&owners.default_view).into_binding()));
+    }
+    if key.object_styles {
+        let styles = object_styles.buffer().ok_or(not_ready)?;
+        entries.push(entry(6, styles.as_entire_binding()));
+    }
+    if key.normals() {
+        let normal = surfaces.normal().ok_or(not_ready)?;
+        entries.push(entry(7, sampled(normal, key.samples)?));
+    }
+    if key.ids() {
+        let ids = ids.ok_or(not_ready)?;
+        entries.push(entry(8, (&ids.view).into_binding()));
+    }
+    if key.places() {
+        let places = places.ok_or(not_ready)?;
+        entries.push(entry(
+            OBJECT_DEPTHS_BINDING,
+            places.table.as_entire_binding(),
+        ));
+    }
+    if key.blue_noise() {
+        let tile = blue_noise.view().ok_or(not_ready)?;
+        entries.push(entry(11, tile.into_binding()));
+    }
+    Ok(entries)
+}
+
+/// The binding of a prepass texture; an error if its number of samples is not the
+/// one that was compiled in.
+fn sampled(texture: &CachedTexture, samples: u32) -> Result<BindingResource<'_>, SkipReason> {
+    if texture.texture.sample_count() == samples {
+        Ok((&texture.default_view).into_binding())
+    } else {
+        Err(SkipReason::SampleCountMismatch)
+    }
+}

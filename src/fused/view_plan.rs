@@ -1,0 +1,40 @@
+//! The plan of a view in the render world.
+
+use std::sync::Arc;
+
+use bevy::{
+    ecs::{component::Component, entity::Entity},
+    math::{Mat4, Vec3},
+};
+
+use super::Plan;
+use crate::{depth::frame::DepthProjection, lines::ViewFog};
+
+/// On a view in the render world: the plan of its camera, and facts about the
+/// camera.
+#[derive(Component, Clone, Debug)]
+pub(crate) struct ViewPlan {
+    pub camera: Entity,
+    pub plan: Arc<Plan>,
+    /// The number of the plan in the main world; it grows with every change.
+    pub number: u64,
+    pub projection: DepthProjection,
+    pub clip_from_view: Mat4,
+    /// Physical pixels per logical pixel.
+    pub scale_factor: f32,
+    /// The largest line width that an object overrides, in logical pixels.
+    pub widest_object: f32,
+    /// Unit vector towards the light that lines follow, in world space.
+    pub to_light: Vec3,
+    /// The engine's distance fog of the camera.
+    pub fog: Option<ViewFog>,
+    /// World position of the object that effects point at.
+    pub target: Option<Vec3>,
+    /// Seconds of the app's default clock.
+    pub time: f64,
+    /// Real time since the last frame, in seconds. Not the game's time: the camera
+    /// of a paused game can still move.
+    pub seconds: f32,
+    /// Number of camera cuts so far.
+    pub cuts: u32,
+}

@@ -1,0 +1,5 @@
+//! Finds cracks in depth, normals and object ids.
+
+mod resolve;
+
+pub(crate) use resolve::{ResolveKey, ResolvePipeline, Resolved};

@@ -1,0 +1,235 @@
+//! What the shaders of the line passes bind.
+
+use bevy::{
+    math::UVec4,
+    render::render_resource::{
+        BindGroupLayoutDescriptor, BindGroupLayoutEntry, ShaderStages, ShaderType,
+        StorageTextureAccess, TextureSampleType,
+        binding_types::{
+            storage_buffer_read_only_sized, storage_buffer_sized, texture_2d,
+            texture_2d_multisampled, texture_storage_2d, uniform_buffer, uniform_buffer_sized,
+        },
+    },
+};
+
+use super::line_key::LineKey;
+use crate::{
+    lines::{
+        request::{LinePassUniform, Search},
+        textures::BLOCK_FORMAT,
+    },
+    objects::{ids_entry, object_depths_entry, object_styles_entry, widths_entry},
+};
+
+impl LineKey {
+    /// The layout entries of what finding reads. `normals`: the normals are read.
+    fn inputs(&self, normals: bool, stages: ShaderStages) -> Vec<BindGroupLayoutEntry> {
+        let float = || texture_2d(TextureSampleType::Float { filterable: false });
+        let mut entries = vec![float().build(2, stages)];
+        let seen = |mut entry: BindGroupLayoutEntry| {
+            entry.visibility = stages;
+            entry
+        };
+        if self.visible_range || self.weight.found_borders {
+            entries.push(seen(range_entry()));
+        }
+        if self.object_styles {
+            entries.push(seen(object_styles_entry()));
+        }
+        if normals {
+            entries.push(float().build(7, stages));
+        }
+        if self.ids {
+            entries.push(seen(ids_entry(false)));
+        }
+        if self.reads_places() {
+            entries.push(seen(object_depths_entry()));
+        }
+        if self.marks {
+            entries.push(picture_entry(self.multisampled_picture, stages));
+        }
+        if self.weight.map {
+            entries.push(widths_entry(false, stages));
+        }
+        entries
+    }
+
+    pub fn walk_layout(&self) -> BindGroupLayoutDescriptor {
+        let mut entries = self.inputs(self.creases, ShaderStages::COMPUTE);
+        let blocks = texture_storage_2d(BLOCK_FORMAT, StorageTextureAccess::WriteOnly);
+        entries.push(blocks.build(10, ShaderStages::COMPUTE));
+        if self.has_cracks() {
+            entries.extend(written_buffers([16, 17]));
+        }
+        layout("comics_walk", ShaderStages::COMPUTE, entries)
+    }
+
+    pub fn cells_layout(&self) -> BindGroupLayoutDescriptor {
+        let inputs = self.inputs(self.creases, ShaderStages::COMPUTE);
+        in_cells("comics_find_in_cells", inputs, [], [18, 21])
+    }
+
+    pub fn link_layout() -> BindGroupLayoutDescriptor {
+        in_cells("comics_link_lines", vec![], [20], [21])
+    }
+
+    pub fn bridge_layout() -> BindGroupLayoutDescriptor {
+        in_cells("comics_bridge_lines", vec![], [20], [18, 21])
+    }
+
+    pub fn persist_layout(&self) -> BindGroupLayoutDescriptor {
+        let mut entries = vec![];
+        if self.motion {
+            let float = || texture_2d(TextureSampleType::Float { filterable: false });
+            entries.extend([2, 24].map(|at| float().build(at, ShaderStages::COMPUTE)));
+        }
+        in_cells("comics_persist_lines", entries, [28], [21, 29])
+    }
+
+    pub fn ends_layout() -> BindGroupLayoutDescriptor {
+        in_cells("comics_line_ends", vec![], [11, 19, 20], [30])
+    }
+
+    pub fn strokes_layout(&self) -> BindGroupLayoutDescriptor {
+        let ids = self.object_styles.then(|| ids_entry(false));
+        layout("comics_line_strokes", ShaderStages::VERTEX_FRAGMENT, ids)
+    }
+
+    pub fn settle_layout(&self) -> BindGroupLayoutDescriptor {
+        let mut entries = if self.reads_depth() {
+            self.inputs(self.weight.light, ShaderStages::COMPUTE)
+        } else {
+            vec![]
+        };
+        if self.smooth {
+            entries.extend(written_buffers([22]));
+        }
+        in_cells("comics_settle_lines", entries, [20], [18])
+    }
+
+    pub fn find_layout(&self) -> BindGroupLayoutDescriptor {
+        let fragment = ShaderStages::FRAGMENT;
+        layout(
+            "comics_find_lines",
+            fragment,
+            self.inputs(self.creases, fragment),
+        )
+    }
+
+    pub fn faithful_layout(&self) -> BindGroupLayoutDescriptor {
+        let fragment = ShaderStages::FRAGMENT;
+        layout(
+            "comics_faithful_lines",
+            fragment,
+            self.inputs(self.faithful[1], fragment),
+        )
+    }
+
+    pub fn columns_layout(&self) -> BindGroupLayoutDescriptor {
+        layout("comics_line_columns", ShaderStages::FRAGMENT, self.stored())
+    }
+
+    /// The layout entries of a pass that searches stored cracks, see `stored.wgsl`.
+    fn stored(&self) -> Vec<BindGroupLayoutEntry> {
+        let fragment = ShaderStages::FRAGMENT;
+        let mut entries = if self.by_fragments {
+            vec![texture_2d(TextureSampleType::Uint).build(11, fragment)]
+        } else {
+            let cracks = storage_buffer_read_only_sized(false, None).build(11, fragment);
+            vec![cracks, planes_entry(fragment)]
+        };
+        if self.smooth {
+            entries.push(storage_buffer_read_only_sized(false, None).build(19, fragment));
+        }
+        entries
+    }
+
+    pub fn tiles_layout() -> BindGroupLayoutDescriptor {
+        let blocks = texture_2d(TextureSampleType::Uint).build(12, ShaderStages::COMPUTE);
+        let lists = written_buffers([14, 15, 31]);
+        let entries = [blocks].into_iter().chain(lists);
+        layout("comics_list_tiles", ShaderStages::COMPUTE, entries)
+    }
+
+    pub fn draw_layout(&self) -> BindGroupLayoutDescriptor {
+        let fragment = ShaderStages::FRAGMENT;
+        let mut entries = if self.search == Search::Columns {
+            let texture = |binding| texture_2d(TextureSampleType::Uint).build(binding, fragment);
+            let mut entries = vec![texture(13)];
+            entries.extend((!self.by_fragments).then(|| texture(12)));
+            entries.extend(self.bridged.then(|| planes_entry(fragment)));
+            entries
+        } else {
+            self.stored()
+        };
+        entries.extend(self.object_styles.then(|| ids_entry(false)));
+        layout("comics_draw_lines", fragment, entries)
+    }
+}
+
+/// The layout of a pass: the uniform, and what it binds besides.
+fn layout(
+    label: &'static str,
+    stages: ShaderStages,
+    entries: impl IntoIterator<Item = BindGroupLayoutEntry>,
+) -> BindGroupLayoutDescriptor {
+    let uniform = uniform_buffer::<LinePassUniform>(false).build(1, stages);
+    let entries: Vec<_> = [uniform].into_iter().chain(entries).collect();
+    BindGroupLayoutDescriptor::new(label, &entries)
+}
+
+/// The layout of a pass over the cells with cracks, and the buffers that it reads and writes.
+fn in_cells<const READ: usize, const WRITTEN: usize>(
+    label: &'static str,
+    mut entries: Vec<BindGroupLayoutEntry>,
+    read: [u32; READ],
+    written: [u32; WRITTEN],
+) -> BindGroupLayoutDescriptor {
+    entries.extend(read_buffers([16, 17]));
+    entries.extend(read_buffers(read));
+    entries.extend(written_buffers(written));
+    layout(label, ShaderStages::COMPUTE, entries)
+}
+
+/// The layout entry of the depth that hides marked objects.
+fn picture_entry(multisampled: bool, stages: ShaderStages) -> BindGroupLayoutEntry {
+    let unfilterable = TextureSampleType::Float { filterable: false };
+    let texture = if multisampled {
+        texture_2d_multisampled(unfilterable)
+    } else {
+        texture_2d(unfilterable)
+    };
+    texture.build(27, stages)
+}
+
+/// The layout entry of planes of bits.
+fn planes_entry(stages: ShaderStages) -> BindGroupLayoutEntry {
+    storage_buffer_read_only_sized(false, None).build(20, stages)
+}
+
+/// The layout entries of buffers that compute passes read.
+fn read_buffers<const N: usize>(bindings: [u32; N]) -> [BindGroupLayoutEntry; N] {
+    bindings.map(|binding| {
+        storage_buffer_read_only_sized(false, None).build(binding, ShaderStages::COMPUTE)
+    })
+}
+
+/// The layout entries of buffers that compute passes write.
+fn written_buffers<const N: usize>(bindings: [u32; N]) -> [BindGroupLayoutEntry; N] {
+    bindings.map(|binding| storage_buffer_sized(false, None).build(binding, ShaderStages::COMPUTE))
+}
+
+/// The layout entry of the visible range, the same in all passes.
+pub(crate) fn range_entry() -> BindGroupLayoutEntry {
+    uniform_buffer_sized(false, Some(UVec4::min_size())).build(3, ShaderStages::FRAGMENT)
+}
+
+/// The layout entry of the pixels that own lines, in the fused pass.
+pub(crate) fn owners_entry() -> BindGroupLayoutEntry {
+    texture_2d(TextureSampleType::Sint).build(5, ShaderStages::FRAGMENT)
+}
+
+/// The layout entry of the ink in the fused pass.
+pub(crate) fn ink_entry() -> BindGroupLayoutEntry {
+    texture_2d(TextureSampleType::Float { filterable: false }).build(4, ShaderStages::FRAGMENT)
+}

@@ -1,0 +1,207 @@
+//! The pipelines of the lines of a view.
+
+use bevy::{
+    ecs::{
+        component::Component,
+        system::{Res, ResMut, SystemParam},
+    },
+    render::{
+        render_resource::{
+            CachedComputePipelineId, CachedRenderPipelineId, PipelineCache,
+            SpecializedComputePipelines, SpecializedRenderPipelines,
+        },
+        renderer::RenderDevice,
+    },
+};
+
+use super::{
+    cracks::largest_buffer,
+    find::{ResolveKey, ResolvePipeline},
+    key::LineKey,
+    memory::{MemoryKey, MemoryPipeline},
+    pipelines::{LinePass, LineShaders, SearchPass},
+    request::{LineRequest, Search},
+    tiles::TileList,
+};
+
+/// The pipelines of one view's lines.
+#[derive(Component, Clone, Copy, Debug)]
+pub(crate) struct LinePasses {
+    pub key: LineKey,
+    /// Picks one sample of every pixel, if the view is multisampled.
+    pub resolve: Option<(ResolveKey, CachedRenderPipelineId)>,
+    /// Looks for blocks with cracks or jumps, and lists their cells and the tiles near
+    /// them. `None`: all pixels are drawn.
+    pub search: Option<[CachedComputePipelineId; 2]>,
+    /// Finds and draws the lines along cracks, if there are any.
+    pub cracks: Option<CrackPasses>,
+    /// Draws the faithful lines, if there are any.
+    pub faithful: Option<CachedRenderPipelineId>,
+    /// Mixes the ink with that of the frames before.
+    pub memory: Option<CachedRenderPipelineId>,
+}
+
+impl LinePasses {
+    /// Whether any line is drawn; if not, only tiles are listed.
+    pub fn has_ink(&self) -> bool {
+        self.cracks.is_some() || self.faithful.is_some()
+    }
+
+    /// The last list of tiles that a pass draws.
+    pub fn last_list(&self) -> TileList {
+        match self.cracks {
+            Some(CrackPasses {
+                columns: Some(_), ..
+            }) => TileList::Columns,
+            _ => TileList::Inked,
+        }
+    }
+
+    /// Whether there is a list of all tiles that may have ink.
+    pub fn are_tiles_complete(&self) -> bool {
+        self.search.is_some() && self.faithful.is_none()
+    }
+}
+
+/// The pipelines that find cracks in cells.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CellPasses {
+    pub find: CachedComputePipelineId,
+    /// Continues lines by as many steps as a pass goes, and by the steps that are left.
+    pub link: Option<[CachedComputePipelineId; 2]>,
+    /// Joins lines over faces that are thinner than a pixel.
+    pub join: Option<CachedComputePipelineId>,
+    /// Keeps the lines of the last frames.
+    pub persist: Option<CachedComputePipelineId>,
+    /// Closes gaps.
+    pub bridge: Option<CachedComputePipelineId>,
+    /// Leaves out what is not part of a line, and makes lines smooth.
+    pub settle: Option<CachedComputePipelineId>,
+    /// Extends loose ends.
+    pub ends: Option<CachedComputePipelineId>,
+}
+
+impl CellPasses {
+    /// `continues`: lines continue along weak edges.
+    fn new(
+        key: &LineKey,
+        continues: bool,
+        compute: &mut impl FnMut(SearchPass) -> CachedComputePipelineId,
+    ) -> Self {
+        Self {
+            find: compute(SearchPass::Cells(key.for_find())),
+            link: continues.then(|| [false, true].map(|last| compute(SearchPass::Link { last }))),
+            join: key.ledges.then(|| compute(SearchPass::Join)),
+            persist: (key.persists).then(|| compute(SearchPass::Persist(key.for_persist()))),
+            bridge: key.bridged.then(|| compute(SearchPass::Bridge)),
+            settle: key
+                .settles()
+                .then(|| compute(SearchPass::Settle(key.for_settle()))),
+            ends: key
+                .overshoots
+                .then(|| compute(SearchPass::Ends(key.for_ends()))),
+        }
+    }
+
+    pub fn ids(&self) -> impl Iterator<Item = CachedComputePipelineId> {
+        let link = self.link.into_iter().flatten();
+        let rest = [self.join, self.persist, self.bridge, self.settle, self.ends];
+        let rest = rest.into_iter().flatten();
+        [self.find].into_iter().chain(link).chain(rest)
+    }
+}
+
+/// The pipelines that find cracks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum FindPass {
+    /// In the cells that the search for blocks has listed.
+    Cells(CellPasses),
+    /// In all pixels: without compute shaders.
+    Pixels(CachedRenderPipelineId),
+}
+
+/// The pipelines of the lines along cracks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CrackPasses {
+    pub find: FindPass,
+    /// `None` if only neighbouring pixels are searched.
+    pub columns: Option<CachedRenderPipelineId>,
+    pub draw: CachedRenderPipelineId,
+    /// Draws the strokes beyond loose ends.
+    pub strokes: Option<CachedRenderPipelineId>,
+}
+
+/// Specializes the pipelines for requests.
+#[derive(SystemParam)]
+pub(crate) struct LinePipelines<'w> {
+    computes: ResMut<'w, SpecializedComputePipelines<LineShaders>>,
+    renders: ResMut<'w, SpecializedRenderPipelines<LineShaders>>,
+    shaders: Res<'w, LineShaders>,
+    resolves: ResMut<'w, SpecializedRenderPipelines<ResolvePipeline>>,
+    resolve: Res<'w, ResolvePipeline>,
+    memories: ResMut<'w, SpecializedRenderPipelines<MemoryPipeline>>,
+    memory: Res<'w, MemoryPipeline>,
+    device: Res<'w, RenderDevice>,
+}
+
+impl LinePipelines<'_> {
+    /// Whether the device has what `walk.wgsl`, `tiles.wgsl` and `cells.wgsl` bind.
+    fn has_compute(&self, request: &LineRequest) -> bool {
+        let limits = self.device.limits();
+        // Those of `ends.wgsl`.
+        const BUFFERS: u32 = 6;
+        limits.max_compute_workgroup_size_x > 0
+            && limits.max_storage_textures_per_shader_stage > 0
+            && limits.max_storage_buffers_per_shader_stage >= BUFFERS
+            && limits.max_storage_buffer_binding_size >= largest_buffer(request.rect)
+    }
+
+    /// The pipelines for a request; new ones are queued for compilation.
+    pub fn get(&mut self, cache: &PipelineCache, request: &LineRequest) -> LinePasses {
+        let has_compute = self.has_compute(request);
+        let key = LineKey::new(request, !has_compute);
+        let computes = &mut self.computes;
+        let mut render = |pass| {
+            let renders = &mut self.renders;
+            renders.specialize(cache, &self.shaders, (pass, pass.part(key)))
+        };
+        let resolve = (request.samples > 1).then(|| {
+            let key = ResolveKey::new(&key, request.samples);
+            (key, self.resolves.specialize(cache, &self.resolve, key))
+        });
+        let faithful = key.has_faithful().then(|| render(LinePass::Faithful));
+        let cracks = key.has_cracks().then(|| CrackPasses {
+            find: if has_compute {
+                let mut compute = |pass| computes.specialize(cache, &self.shaders, pass);
+                FindPass::Cells(CellPasses::new(&key, request.steps > 0, &mut compute))
+            } else {
+                FindPass::Pixels(render(LinePass::Find))
+            },
+            columns: (key.search == Search::Columns).then(|| render(LinePass::Columns)),
+            draw: render(LinePass::Draw),
+            strokes: key.overshoots.then(|| render(LinePass::Strokes)),
+        });
+        let searches = has_compute && (key.has_cracks() || key.jumps);
+        let search = searches.then(|| {
+            let passes = [SearchPass::Walk(key.for_walk()), SearchPass::Tiles];
+            passes.map(|pass| computes.specialize(cache, &self.shaders, pass))
+        });
+        let mut passes = LinePasses {
+            key,
+            resolve,
+            search,
+            cracks,
+            faithful,
+            memory: None,
+        };
+        if request.memory.is_some() && passes.has_ink() {
+            let key = MemoryKey {
+                oblique: key.oblique,
+                tiled: passes.are_tiles_complete(),
+            };
+            let memory = self.memories.specialize(cache, &self.memory, key);
+            passes.memory = Some(memory);
+        }
+        passes
+    }
+}

@@ -1,0 +1,128 @@
+//! The passes that complete cracks, ready to be recorded: see `cells.wgsl` and those after it.
+
+use bevy::render::render_resource::{
+    BindGroupEntry, BindGroupLayoutDescriptor, CachedComputePipelineId, ComputePipeline,
+    IntoBinding,
+};
+
+use super::{
+    inputs::Inputs,
+    ready::{Ready, ReadyLives},
+    sources::{NOT_READY, Reads},
+};
+use crate::{
+    diagnostics::SkipReason,
+    gpu::entry,
+    lines::{cracks::CrackBuffers, key::LineKey, passes::CellPasses, prepare::Cracks},
+};
+
+type Compute<'a> = Ready<'a, ComputePipeline>;
+
+impl Inputs<'_> {
+    /// A pass over the cells with cracks.
+    fn in_cells(
+        &self,
+        id: CachedComputePipelineId,
+        layout: &BindGroupLayoutDescriptor,
+        entries: &[BindGroupEntry],
+    ) -> Result<Compute<'_>, SkipReason> {
+        let mut all = self.tiles()?.lists.cell_entries().to_vec();
+        all.extend_from_slice(entries);
+        self.compute(id, layout, &all)
+    }
+
+    /// The passes that continue lines.
+    pub(super) fn link_passes(
+        &self,
+        passes: &CellPasses,
+        buffers: &CrackBuffers,
+    ) -> Result<Vec<Compute<'_>>, SkipReason> {
+        let Some([full, last]) = passes.link else {
+            return Ok(vec![]);
+        };
+        let count = self.request.links();
+        let pass = |i: usize| {
+            let id = if i + 1 == count { last } else { full };
+            self.in_cells(id, &LineKey::link_layout(), &buffers.link_entries(i % 2))
+        };
+        (0..count).map(pass).collect()
+    }
+
+    /// The pass that joins lines over ledges, if there is one.
+    pub(super) fn join_pass(
+        &self,
+        passes: &CellPasses,
+        buffers: &CrackBuffers,
+    ) -> Result<Option<Compute<'_>>, SkipReason> {
+        let entries = buffers.link_entries(self.request.links() % 2);
+        let pass = |id| self.in_cells(id, &LineKey::link_layout(), &entries);
+        passes.join.map(pass).transpose()
+    }
+
+    /// The pass that closes gaps, if there is one.
+    pub(super) fn bridge_pass(
+        &self,
+        passes: &CellPasses,
+        buffers: &CrackBuffers,
+    ) -> Result<Option<Compute<'_>>, SkipReason> {
+        let entries = buffers.bridge_entries(self.request.joined() % 2);
+        let pass = |id| self.in_cells(id, &LineKey::bridge_layout(), &entries);
+        passes.bridge.map(pass).transpose()
+    }
+
+    /// The pass that completes cracks, if there is one.
+    pub(super) fn settle_pass(
+        &self,
+        passes: &CellPasses,
+        buffers: &CrackBuffers,
+    ) -> Result<Option<Compute<'_>>, SkipReason> {
+        let Some(id) = passes.settle else {
+            return Ok(None);
+        };
+        let key = self.passes.key.for_settle();
+        let mut entries = buffers.settle_entries(self.request.copies());
+        if key.reads_depth() {
+            entries.extend(self.entries(&key, key.weight.light)?);
+        }
+        Ok(Some(self.in_cells(id, &key.settle_layout(), &entries)?))
+    }
+
+    /// The pass that keeps the lines of the last frames, if there is one.
+    pub(super) fn persist_pass(
+        &self,
+        passes: &CellPasses,
+        buffers: &CrackBuffers,
+    ) -> Result<Option<ReadyLives<'_>>, SkipReason> {
+        let (Some(id), Some(lives)) = (passes.persist, &self.lines.lives) else {
+            return Ok(None);
+        };
+        let key = self.passes.key.for_persist();
+        let mut entries = vec![buffers.written_planes(self.request.joined())];
+        entries.extend(lives.entries());
+        if key.motion {
+            let motion = self.sources.motion.ok_or(NOT_READY)?;
+            self.texels()?.push(Reads::default(), &mut entries)?;
+            entries.push(entry(24, motion.into_binding()));
+        }
+        let ready = self.in_cells(id, &key.persist_layout(), &entries)?;
+        Ok(Some((ready, lives)))
+    }
+
+    /// The pass that finds loose ends, if there is one.
+    pub(super) fn ends_pass(
+        &self,
+        passes: &CellPasses,
+        cracks: &Cracks,
+    ) -> Result<Option<Compute<'_>>, SkipReason> {
+        let (Some(id), Some(strokes)) = (passes.ends, &cracks.strokes) else {
+            return Ok(None);
+        };
+        let mut entries = cracks.store.entries(self.request.copies());
+        entries.push(strokes.entry());
+        Ok(Some(self.in_cells(
+            id,
+            &LineKey::ends_layout(),
+            &entries,
+        )?))
+    }
+}

@@ -1,0 +1,213 @@
+//! Records the passes that find a view's lines and draw their ink.
+
+use std::sync::atomic::Ordering;
+
+use bevy::{
+    core_pipeline::prepass::ViewPrepassTextures,
+    ecs::system::Res,
+    render::{
+        diagnostic::RecordDiagnostics,
+        render_resource::{CommandEncoder, PipelineCache, RenderPassDescriptor, RenderPipeline},
+        renderer::{RenderContext, ViewQuery},
+        texture::CachedTexture,
+    },
+};
+
+#[cfg(feature = "objects")]
+use super::marks::ViewMarks;
+use super::{
+    inputs::Inputs,
+    ready::{Ready, ReadyCracks, search_tiles},
+    sources::Sources,
+};
+#[cfg(feature = "objects")]
+use crate::{
+    depth::surfaces::prepass_is_empty,
+    objects::{MarkStyleBuffer, ViewLayer},
+};
+use crate::{
+    depth::{prepare::ViewDepthRange, surfaces::OwnSurfaces},
+    diagnostics::{ComicsStage, SkipReason, StageLedger, StageOutcome},
+    lines::{passes::LinePasses, prepare::ViewLines, request::LineRequest, textures::cleared},
+    objects::{ObjectDepths, ObjectStyleBuffer, ViewLineWidths, ViewObjectIds},
+};
+#[cfg(feature = "objects")]
+use bevy::{ecs::system::Query, render::renderer::RenderAdapterInfo};
+
+/// Records the passes that find the lines of the marked objects of the view, and draw their
+/// ink.
+#[cfg(feature = "objects")]
+pub(crate) fn find_marks(
+    view: ViewQuery<(
+        &ViewMarks,
+        (&ViewPrepassTextures, Option<&OwnSurfaces>),
+        &ViewLayer,
+    )>,
+    layers: Query<(&LineRequest, &LinePasses, &ViewLines)>,
+    styles: Res<MarkStyleBuffer>,
+    ledger: Res<StageLedger>,
+    (cache, adapter): (Res<PipelineCache>, Res<RenderAdapterInfo>),
+    mut ctx: RenderContext,
+) {
+    let (marks, (prepass, own), layer) = view.into_inner();
+    // Transparent meshes hide no marked object.
+    let own = own.filter(|_| prepass_is_empty(&adapter));
+    let Ok((request, passes, lines)) = layers.get(marks.layer) else {
+        return;
+    };
+    let inputs = Inputs {
+        request,
+        passes,
+        lines,
+        sources: Sources::new((Some(prepass), own), None, None).layer(layer),
+        range: None,
+        styles: &styles.0,
+        cache: &cache,
+        device: ctx.render_device().clone(),
+    };
+    match inputs.record(&mut ctx) {
+        Ok(()) => lines.found.store(true, Ordering::Relaxed),
+        Err(reason) => {
+            let outcome = StageOutcome::Skipped(reason);
+            ledger.set(request.camera, ComicsStage::MarkedObjects, outcome);
+        }
+    }
+}
+
+/// Records the passes that find the lines of the view and draw their ink.
+pub(crate) fn find_lines(
+    view: ViewQuery<(
+        (&LineRequest, &LinePasses, &ViewLines),
+        (Option<&ViewPrepassTextures>, Option<&OwnSurfaces>),
+        Option<&ViewDepthRange>,
+        (
+            Option<&ViewObjectIds>,
+            Option<&ViewLineWidths>,
+            Option<&ObjectDepths>,
+        ),
+    )>,
+    object_styles: Res<ObjectStyleBuffer>,
+    ledger: Res<StageLedger>,
+    cache: Res<PipelineCache>,
+    mut ctx: RenderContext,
+) {
+    let ((request, passes, lines), prepass, range, (ids, widths, places)) = view.into_inner();
+    let inputs = Inputs {
+        request,
+        passes,
+        lines,
+        sources: Sources::new(prepass, ids, widths).with_places(places),
+        range,
+        styles: &object_styles,
+        cache: &cache,
+        device: ctx.render_device().clone(),
+    };
+    let outcome = match inputs.record(&mut ctx) {
+        Ok(()) => {
+            lines.found.store(true, Ordering::Relaxed);
+            StageOutcome::Ran
+        }
+        Err(reason) => StageOutcome::Skipped(reason),
+    };
+    let resolved = if request.samples > 1 {
+        outcome
+    } else {
+        StageOutcome::Skipped(SkipReason::SingleSampled)
+    };
+    let searched = if passes.search.is_some() {
+        outcome
+    } else if passes.key.has_cracks() || passes.key.jumps {
+        StageOutcome::Skipped(SkipReason::NoComputeShaders)
+    } else {
+        StageOutcome::Skipped(SkipReason::NoSuchLines)
+    };
+    let inked = if passes.has_ink() {
+        outcome
+    } else {
+        StageOutcome::Skipped(SkipReason::NoSuchLines)
+    };
+    for (stage, outcome) in [
+        (ComicsStage::ResolveSamples, resolved),
+        (ComicsStage::SearchTiles, searched),
+        (ComicsStage::FindLines, inked),
+        (ComicsStage::DrawLines, inked),
+    ] {
+        ledger.set(request.camera, stage, outcome);
+    }
+}
+
+impl Inputs<'_> {
+    /// Records the passes of the view, or says why not.
+    fn record(&self, ctx: &mut RenderContext) -> Result<(), SkipReason> {
+        let (passes, lines) = (self.passes, self.lines);
+        let resolve = self.resolve_pass()?;
+        let search = self.search_passes()?;
+        let faithful = self.faithful_pass()?;
+        let remember = self.memory_pass()?;
+        let cracks = match (&passes.cracks, &lines.cracks) {
+            (Some(passes), Some(cracks)) => Some(self.crack_passes(passes, cracks)?),
+            _ => None,
+        };
+
+        let diagnostics = ctx.diagnostic_recorder();
+        let diagnostics = diagnostics.as_deref();
+        let encoder = ctx.command_encoder();
+        if let Some((resolved, (pipeline, group))) = &resolve {
+            let span = diagnostics.time_span(encoder, "comics_resolve_samples");
+            resolved.record(encoder, self.request, (pipeline, group));
+            span.end(encoder);
+        }
+        if let Some(search) = &search {
+            let span = diagnostics.time_span(encoder, "comics_search_tiles");
+            search_tiles(encoder, search, self.request, passes.last_list());
+            span.end(encoder);
+        }
+        if let Some(cracks) = &cracks {
+            let span = diagnostics.time_span(encoder, "comics_find_lines");
+            cracks.find(encoder);
+            span.end(encoder);
+        }
+        let Some(ink) = &lines.ink else {
+            return Ok(());
+        };
+        let span = diagnostics.time_span(encoder, "comics_draw_lines");
+        self.draw_ink(encoder, ink, (faithful.as_ref(), cracks.as_ref()));
+        if let Some((memory, (pipeline, group))) = &remember {
+            let tiles = lines.tiles.as_ref().map(|tiles| &tiles.lists);
+            let tiles = tiles.filter(|_| passes.are_tiles_complete());
+            memory.record(encoder, (pipeline, group), tiles);
+        }
+        span.end(encoder);
+        Ok(())
+    }
+
+    /// Records the passes that draw the ink of all lines.
+    fn draw_ink(
+        &self,
+        encoder: &mut CommandEncoder,
+        ink: &CachedTexture,
+        (faithful, cracks): (Option<&Ready<RenderPipeline>>, Option<&ReadyCracks>),
+    ) {
+        if let Some(cracks) = cracks {
+            cracks.search_columns(encoder);
+        }
+        let targets: Vec<_> = [Some(ink), self.lines.owners.as_ref()]
+            .into_iter()
+            .flatten()
+            .map(|texture| Some(cleared(texture)))
+            .collect();
+        let mut pass = encoder.begin_render_pass(&RenderPassDescriptor {
+            label: Some("comics_draw_lines"),
+            color_attachments: &targets,
+            ..Default::default()
+        });
+        if let Some((pipeline, group)) = faithful {
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, group, &[]);
+            pass.draw(0..3, 0..1);
+        }
+        if let Some(cracks) = cracks {
+            cracks.draw_ink(&mut pass);
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! The textures of the scene that lines are found in.
+
+use bevy::render::{
+    render_resource::{BindGroupEntry, Buffer, IntoBinding, TextureView},
+    texture::CachedTexture,
+};
+
+#[cfg(feature = "objects")]
+use crate::objects::ViewLayer;
+use crate::{
+    depth::surfaces::{SurfaceParts, Surfaces},
+    diagnostics::SkipReason,
+    gpu::entry,
+    lines::find::Resolved,
+    objects::{ObjectDepths, ViewLineWidths, ViewObjectIds},
+};
+
+pub(super) const NOT_READY: SkipReason = SkipReason::PipelineNotReady;
+
+/// The textures of the scene that lines are found in.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Sources<'a> {
+    pub depth: Option<&'a CachedTexture>,
+    pub normal: Option<&'a TextureView>,
+    pub ids: Option<&'a TextureView>,
+    pub widths: Option<&'a TextureView>,
+    pub motion: Option<&'a TextureView>,
+    /// Places of objects in the depth map.
+    pub places: Option<&'a Buffer>,
+    /// Depth of the picture, which hides marked objects.
+    pub picture: Option<&'a TextureView>,
+}
+
+impl<'a> Sources<'a> {
+    /// The surfaces of the view, the object ids and the widths of lines.
+    pub fn new(
+        surfaces: SurfaceParts<'a>,
+        ids: Option<&'a ViewObjectIds>,
+        widths: Option<&'a ViewLineWidths>,
+    ) -> Self {
+        let surfaces = Surfaces::from(surfaces);
+        Self {
+            depth: surfaces.depth(),
+            normal: surfaces.normal().map(|normal| &normal.default_view),
+            ids: ids.map(|ids| &ids.view),
+            widths: widths.map(|widths| &widths.view),
+            motion: surfaces.motion().map(|motion| &motion.default_view),
+            places: None,
+            picture: None,
+        }
+    }
+
+    /// With the places of objects.
+    pub fn with_places(self, places: Option<&'a ObjectDepths>) -> Self {
+        let places = places.map(|places| &places.table);
+        Self { places, ..self }
+    }
+
+    /// Those of marked objects.
+    #[cfg(feature = "objects")]
+    pub fn layer(self, layer: &'a ViewLayer) -> Self {
+        Self {
+            depth: Some(&layer.depth),
+            normal: None,
+            ids: Some(&layer.ids.default_view),
+            widths: None,
+            motion: self.motion,
+            places: None,
+            picture: self.depth.map(|depth| &depth.default_view),
+        }
+    }
+}
+
+/// Textures with the depth, normal, object and width of lines of every pixel.
+pub(super) struct Texels<'a> {
+    pub depth: &'a TextureView,
+    pub normal: Option<&'a TextureView>,
+    pub ids: Option<&'a TextureView>,
+    pub widths: Option<&'a TextureView>,
+}
+
+/// Which textures a pass reads besides the depth.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Reads {
+    pub normals: bool,
+    pub ids: bool,
+    pub widths: bool,
+}
+
+impl<'a> From<&'a Resolved> for Texels<'a> {
+    fn from(resolved: &'a Resolved) -> Self {
+        let view = |texture: &'a CachedTexture| &texture.default_view;
+        Self {
+            depth: &resolved.depth.default_view,
+            normal: resolved.normal.as_ref().map(view),
+            ids: resolved.ids.as_ref().map(view),
+            widths: resolved.widths.as_ref().map(view),
+        }
+    }
+}
+
+impl<'a> Texels<'a> {
+    /// Adds the bindings: the depth, and what else is read.
+    pub fn push(
+        self,
+        reads: Reads,
+        entries: &mut Vec<BindGroupEntry<'a>>,
+    ) -> Result<(), SkipReason> {
+        entries.push(entry(2, self.depth.into_binding()));
+        if reads.normals {
+            let normal = self.normal.ok_or(NOT_READY)?;
+            entries.push(entry(7, normal.into_binding()));
+        }
+        if reads.ids {
+            let ids = self.ids.ok_or(NOT_READY)?;
+            entries.push(entry(8, ids.into_binding()));
+        }
+        if reads.widths {
+            let widths = self.widths.ok_or(NOT_READY)?;
+            entries.push(entry(9, widths.into_binding()));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,213 @@
+//! The request for the lines of a view.
+
+use bevy::{
+    ecs::{component::Component, entity::Entity},
+    math::{UVec2, UVec4, Vec2, Vec4},
+};
+
+use super::{
+    grid::{Grid, words},
+    memory::MemoryRequest,
+    uniform::LinePassUniform,
+};
+use crate::{
+    depth::view::ViewUniform,
+    lines::{
+        modifiers::{LineAbstraction, LineFocusUniform, LineLayers, SheetUniform},
+        settings::{BoilUniform, FogUniform, LinesUniform, MapJumps, Outlines, WeightUniform},
+    },
+};
+
+/// Cracks that a pass of `link.wgsl` continues lines by.
+const LINK_STEPS: usize = 8;
+
+/// How cracks near a pixel are searched.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(crate) enum Search {
+    /// One pixel around it, without a loop.
+    #[default]
+    Neighbours,
+    /// All pixels within reach.
+    Around,
+    /// The best crack of each column within reach, see `columns.wgsl`.
+    Columns,
+}
+
+/// On a view in the render world: a request for its lines, written in every frame by
+/// [`PrepareComics::Choose`](crate::schedule::PrepareComics::Choose).
+#[derive(Component, Clone, Debug)]
+pub(crate) struct LineRequest {
+    pub camera: Entity,
+    pub settings: Outlines,
+    pub view: ViewUniform,
+    pub lines: LinesUniform,
+    pub weight: WeightUniform,
+    pub boil: BoilUniform,
+    /// What lines remember.
+    pub memory: Option<MemoryRequest>,
+    /// Number of camera cuts so far.
+    pub cuts: u32,
+    /// The engine's motion vectors can be read.
+    pub motion: bool,
+    /// The fog that lines fade into.
+    pub fog: Option<FogUniform>,
+    /// What lines are in focus.
+    pub focus: Option<LineFocusUniform>,
+    /// How they differ between the depth layers.
+    pub layers: Option<LineLayers>,
+    /// How they follow the abstraction of the view.
+    pub abstraction: Option<LineAbstraction>,
+    /// The sheet that lines are drawn on.
+    pub sheet: SheetUniform,
+    /// Size in pixels of the depth texture, and its samples per pixel.
+    pub depth_size: UVec2,
+    pub samples: u32,
+    /// Size of the viewport in physical pixels.
+    pub size: UVec2,
+    /// The part of the depth texture that the main pass draws: x, y, width, height.
+    pub rect: UVec4,
+    /// By how much the engine has moved the main pass in this frame, in its pixels,
+    /// under temporal anti-aliasing.
+    pub jitter: Option<Vec2>,
+    /// Distance in physical pixels within which lines are searched around a pixel.
+    pub reach: i32,
+    /// Cracks that a line continues along weak edges.
+    pub steps: i32,
+    /// Borders of pixels that a piece of line must have.
+    pub specks: i32,
+    /// Pixels of the grid by which loose ends are extended.
+    pub extension: f32,
+    pub oblique: bool,
+    /// The depth map spans the visible range.
+    pub visible_range: bool,
+    /// Object ids are drawn and can be read.
+    pub ids: bool,
+    /// Some mesh is divided into sections.
+    pub sections: bool,
+    /// The lines are those of marked objects.
+    pub marks: bool,
+    /// Some object has an `OutlineStyle` or `NoOutlines`.
+    pub object_styles: bool,
+    /// The widths of lines are drawn and can be read.
+    pub widths: bool,
+    /// Physical pixels from a pixel within which the fused pass reads lines.
+    pub line_reach: f32,
+    /// Places that count as inked, besides lines: those of [`AffectedArea::AtJumps`].
+    ///
+    /// [`AffectedArea::AtJumps`]: crate::effect::AffectedArea::AtJumps
+    pub jumps: Option<MapJumps>,
+    /// Flags of the depth map.
+    pub map_flags: u32,
+}
+
+impl LineRequest {
+    /// Pixels within which cracks are searched around a pixel.
+    pub fn grid_reach(&self) -> i32 {
+        let aligned = self.view.depth_scale == Vec2::ONE
+            && self.jitter.is_none()
+            && !self.settings.boil.moves();
+        // Between the pixels of the grid, cracks half a pixel further away count.
+        self.reach.max(1) + i32::from(!aligned)
+    }
+
+    /// Whether lines know the places of objects in the depth map.
+    pub fn reads_places(&self) -> bool {
+        let layers = self.layers.is_some_and(|layers| layers.by_objects);
+        layers || self.abstraction.is_some_and(|a| a.by_objects)
+    }
+
+    /// Whether edges must be stronger where their object is abstract.
+    pub fn abstracts_objects(&self) -> bool {
+        let by_objects = |a: LineAbstraction| a.threshold > 1.0 && a.by_objects;
+        self.ids && self.abstraction.is_some_and(by_objects)
+    }
+
+    /// Whether the pixels that own lines are drawn, for the colour of lines.
+    pub fn needs_owners(&self) -> bool {
+        let own_colors = |layers: LineLayers| layers.has_colors();
+        self.settings.color.is_surface() || self.layers.is_some_and(own_colors)
+    }
+
+    /// Number of passes that link cracks.
+    pub fn links(&self) -> usize {
+        (self.steps as usize).div_ceil(LINK_STEPS)
+    }
+
+    /// Number of passes that link cracks, and that join lines.
+    pub fn joined(&self) -> usize {
+        self.links() + usize::from(self.settings.joins())
+    }
+
+    /// Number of passes that copy the planes of cracks and add to them.
+    pub fn copies(&self) -> usize {
+        self.joined() + usize::from(self.settings.gap_closing > 0)
+    }
+
+    /// Columns leave out too much where lines are hardly wider than a pixel of the grid.
+    pub fn search(&self) -> Search {
+        let reach = self.reach as f32 * self.view.depth_scale.min_element();
+        if self.grid_reach() == 1 {
+            Search::Neighbours
+        } else if reach < 2.0 {
+            Search::Around
+        } else {
+            Search::Columns
+        }
+    }
+
+    fn grid(&self) -> Grid {
+        let scale = self.view.depth_scale;
+        let jitter = self.jitter.unwrap_or(Vec2::ZERO);
+        // In columns, and where lines leave their cracks, cracks half a pixel further away count.
+        let beyond = self.settings.smooth && self.search() != Search::Neighbours;
+        let reach = self.grid_reach() + i32::from(beyond);
+        let read = self.line_reach + self.boil.amplitude;
+        let read = (read * scale.max_element() + self.extension).ceil() as i32;
+        let jumps = self.jumps.unwrap_or(MapJumps {
+            least: f32::MAX,
+            radius: 1.0,
+        });
+        Grid {
+            rect: self.rect.as_ivec4(),
+            // The engine draws at p - jitter what belongs at p, and temporal anti-aliasing
+            // undoes that in the picture. In orthographic views the engine moves by an
+            // amount that grows with distance: this offset is right at a distance of the
+            // view's width.
+            from_viewport: Vec4::new(scale.x, scale.y, -jitter.x, -jitter.y),
+            reach,
+            // Smooth lines leave their cracks by half a pixel.
+            inked: (reach + 1 + i32::from(self.settings.smooth) + read)
+                .max(jumps.radius.ceil() as i32),
+            jump_least: jumps.least,
+            jump_radius: jumps.radius.ceil(),
+            words: words(self.rect).as_ivec2(),
+            steps: self.steps,
+            specks: self.specks,
+            bridge: self.settings.gap_closing as i32,
+            persistence: self.settings.hold_frames as i32,
+            overshoot: self.extension,
+            unused: 0,
+        }
+    }
+
+    /// `is_new`: the memory has nothing in it yet.
+    pub fn uniform(&self, is_new: bool) -> LinePassUniform {
+        LinePassUniform {
+            view: self.view,
+            lines: self.lines,
+            grid: self.grid(),
+            weight: self.weight,
+            fog: self.fog.unwrap_or_default(),
+            focus: self.focus.unwrap_or_default(),
+            layers: self.layers.map(LineLayers::uniform).unwrap_or_default(),
+            abstraction: (self.abstraction)
+                .map(|a| a.uniform(self.view.flip != 0))
+                .unwrap_or_default(),
+            boil: self.boil,
+            memory: (self.memory)
+                .map(|memory| memory.uniform(self.grid_reach(), is_new))
+                .unwrap_or_default(),
+            sheet: self.sheet,
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! What lines remember of the frames before.
+
+use bevy::render::render_resource::ShaderType;
+
+/// Frames that a line may be missing in: the same in `memory.wgsl`.
+const MISSING: u32 = 16;
+
+/// `Memory` of `memory.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct MemoryUniform {
+    share: f32,
+    spacing: i32,
+    tile_frames: u32,
+    unused: u32,
+}
+
+/// What a view's lines remember.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct MemoryRequest {
+    /// Fraction of each frame where lines move.
+    pub share: f32,
+    /// Number of camera cuts so far.
+    pub cuts: u32,
+}
+
+impl MemoryRequest {
+    /// The settings as shaders take them. `reach`: pixels of the grid within which lines are
+    /// drawn around their owners.
+    pub fn uniform(&self, reach: i32, is_new: bool) -> MemoryUniform {
+        MemoryUniform {
+            share: if is_new { 1.0 } else { self.share },
+            spacing: (reach / 2).max(1),
+            tile_frames: MISSING + 1,
+            unused: 0,
+        }
+    }
+}

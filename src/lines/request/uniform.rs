@@ -1,0 +1,28 @@
+//! The uniform of the passes that find and draw lines: `pass.wgsl`.
+
+use bevy::render::render_resource::ShaderType;
+
+use super::{grid::Grid, memory::MemoryUniform};
+use crate::{
+    depth::view::ViewUniform,
+    lines::{
+        modifiers::{LineAbstractionUniform, LineFocusUniform, LineLayersUniform, SheetUniform},
+        settings::{BoilUniform, FogUniform, LinesUniform, WeightUniform},
+    },
+};
+
+/// The uniform of the passes that find and draw lines.
+#[derive(ShaderType, Clone, Copy, Debug, Default)]
+pub(crate) struct LinePassUniform {
+    pub view: ViewUniform,
+    pub lines: LinesUniform,
+    pub grid: Grid,
+    pub weight: WeightUniform,
+    pub fog: FogUniform,
+    pub focus: LineFocusUniform,
+    pub layers: LineLayersUniform,
+    pub abstraction: LineAbstractionUniform,
+    pub boil: BoilUniform,
+    pub memory: MemoryUniform,
+    pub sheet: SheetUniform,
+}

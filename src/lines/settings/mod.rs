@@ -1,0 +1,20 @@
+//! What games set about lines.
+
+mod boil;
+mod color;
+mod fog;
+mod kinds;
+mod outlines;
+mod weight;
+
+pub use boil::LineBoil;
+pub use color::LineColor;
+pub use fog::LineFog;
+pub use kinds::{Creases, LineResponse, ObjectEdges, Silhouettes};
+pub use outlines::{MapJumps, Outlines};
+pub use weight::LineWeight;
+
+pub(crate) use boil::BoilUniform;
+pub(crate) use fog::{FogUniform, ViewFog, has_fog};
+pub(crate) use outlines::LinesUniform;
+pub(crate) use weight::WeightUniform;

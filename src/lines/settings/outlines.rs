@@ -1,0 +1,479 @@
+//! The settings of lines: which lines are found, and their ink.
+
+use bevy::{
+    ecs::{component::Component, reflect::ReflectComponent},
+    math::Vec3,
+    reflect::{Reflect, ReflectDeserialize, ReflectSerialize, std_traits::ReflectDefault},
+    render::render_resource::ShaderType,
+};
+use serde::{Deserialize, Serialize};
+
+use super::{
+    boil::LineBoil,
+    color::LineColor,
+    fog::LineFog,
+    kinds::{Creases, LineResponse, ObjectEdges, Silhouettes, ramp},
+    weight::LineWeight,
+};
+use crate::{
+    lines::modifiers::Sheet,
+    settings::{Equations, FieldRange, linear_rgb},
+};
+
+/// Draws outlines: silhouettes, where one surface hides another; creases, where a
+/// surface bends sharply; and edges between objects (\[CL\] 2.1).
+///
+/// The three kinds are found separately, and where they overlap the strongest is
+/// drawn. By default the same settings fit a tabletop and a landscape, whatever the
+/// near and far planes. `Equations::Faithful`, which silhouettes and creases have each,
+/// computes the paper's equations instead.
+///
+/// Geometry that is not in the depth prepass has no outlines: over a transparent
+/// surface, the lines of the geometry behind it are drawn, unless it has the component
+/// `DepthWrite`. The components `OutlineStyle` and `NoOutlines` change the lines of single
+/// objects.
+#[derive(Component, Reflect, Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[reflect(Component, Default, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Outlines {
+    /// Draws lines where a surface ends in front of another one or of the sky;
+    /// `None` draws none. Default: [`Silhouettes::default`].
+    pub silhouettes: Option<Silhouettes>,
+    /// Draws lines along creases; `None` draws none and saves the normal prepass.
+    /// Default: [`Creases::default`].
+    pub creases: Option<Creases>,
+    /// Draws lines where two objects meet, whatever their depths and normals; `None`
+    /// draws none. Without the crate's feature `objects`, none are drawn either.
+    /// Default: [`ObjectEdges::default`].
+    pub objects: Option<ObjectEdges>,
+    /// Width of the lines in logical pixels. Range 0.5 to 16, default 2. Faithful lines
+    /// are four physical pixels wide instead.
+    #[reflect(@FieldRange::linear(0.5, 16.0).unit("px"))]
+    pub width: f32,
+    /// Fraction of the width that is lost at the far end of the depth map. Range 0 to
+    /// 1, default 0.
+    #[reflect(@FieldRange::FRACTION)]
+    pub width_fade: f32,
+    /// Fraction of the opacity that is lost at the far end of the depth map. Range 0
+    /// to 1, default 0.
+    #[reflect(@FieldRange::FRACTION)]
+    pub opacity_fade: f32,
+    /// How far lines continue along weak edges, in logical pixels: an edge that responds
+    /// below `edge_limit`, but not below `hysteresis_ratio`, has a line if it continues
+    /// one (hysteresis, Canny 1986). At most 64 physical pixels. Range 0 (not at all) to
+    /// 32, default 8.
+    #[reflect(@FieldRange::linear(0.0, 32.0).unit("px"))]
+    pub hysteresis: f32,
+    /// Response from which an edge continues a line, as a fraction of the kind's
+    /// `edge_limit`. Range 0.1 to 1 (only what responds above the limit), default 0.5.
+    #[reflect(@FieldRange::linear(0.1, 1.0))]
+    pub hysteresis_ratio: f32,
+    /// Leaves out pieces of line of fewer borders of pixels than this, at scale factor 1:
+    /// noise. Closed lines and pieces that meet others stay, however short they are. Range 1
+    /// (leaves out nothing) to 8, default 7.
+    #[reflect(@FieldRange::linear(1.0, 8.0))]
+    pub min_length: u32,
+    /// Closes gaps in lines, where nothing responds between two parts of a row or column of
+    /// borders of pixels: up to this many physical pixels, as along wires that are thinner than a
+    /// pixel. Real gaps are closed too. Needs compute shaders. Range 0 (closes none) to 3,
+    /// default 0. Morphological closing along the line.
+    #[reflect(@FieldRange::linear(0.0, 3.0).unit("px"))]
+    pub gap_closing: u32,
+    /// For how many frames a line stays where its edge has become weak: one that responds below
+    /// `edge_limit`, but not below `hysteresis_ratio`, has a line if there was one at most a pixel
+    /// away in the last frame (hysteresis in time). So lines flicker less in motion. What moves
+    /// by more than a pixel per frame is followed where the engine draws motion vectors, in views
+    /// with one sample. Lines are forgotten at a `CameraCut`. Needs `hysteresis` and compute
+    /// shaders. Range 0 (off) to 8, default 0.
+    #[reflect(@FieldRange::linear(0.0, 8.0))]
+    pub hold_frames: u32,
+    /// What a line loses where an edge is weak. Default: [`LineResponse::Width`].
+    pub response: LineResponse,
+    /// Whether lines run straight through the steps of pixels; otherwise they follow the
+    /// borders of pixels. Needs compute shaders. Default: `true`.
+    pub smooth: bool,
+    /// By how much lines go on beyond their loose ends, in their direction there, as strokes of a
+    /// draughtsman do; in logical pixels. A stroke is at most as long as its line. Closed lines
+    /// and lines that meet others have no loose ends. With `weight.taper`, lines become thinner
+    /// towards the end of the stroke. Needs `smooth` lines. At most 64 physical pixels. Range 0
+    /// (off) to 16, default 0.
+    #[reflect(@FieldRange::linear(0.0, 16.0).unit("px"))]
+    pub overshoot: f32,
+    /// How wide lines are in different places. Default: [`LineWeight::EVEN`].
+    pub weight: LineWeight,
+    /// Fraction of an area that lines may cover where they crowd, as on foliage or in the
+    /// distance: there they are thinner, and below 0.6 physical pixels fainter. Areas have
+    /// 24x32 physical pixels, and their middle counts most; a line that is alone in its area
+    /// keeps its width. Faithful lines have no budget. Needs compute shaders.
+    /// Range 0.05 to 1 (no limit), default 0.35.
+    #[reflect(@FieldRange::linear(0.05, 1.0))]
+    pub ink_budget: f32,
+    /// How lines move: as if each drawing of a film had been inked anew. Default:
+    /// [`LineBoil::STILL`].
+    pub boil: LineBoil,
+    /// Where the colour of lines comes from. Default: [`LineColor::Ink`].
+    pub color: LineColor,
+    /// Weight of the previous frames under temporal anti-aliasing, whose jitter lines would
+    /// otherwise follow. History is rejected where lines move fast, where something else comes into
+    /// view, and at a `CameraCut`. Lines that boil have no history, and neither have views without
+    /// the engine's motion vectors. Range 0 (no history) to 31/32, default 7/8.
+    #[reflect(@FieldRange::linear(0.0, 0.96875))]
+    pub history_weight: f32,
+    /// What happens to lines in the engine's `DistanceFog`, if the camera has it. Default:
+    /// [`LineFog::Fade`].
+    pub fog: LineFog,
+}
+
+impl Default for Outlines {
+    fn default() -> Self {
+        Self {
+            silhouettes: Some(Silhouettes::default()),
+            creases: Some(Creases::default()),
+            objects: Some(ObjectEdges::default()),
+            ..Self::NONE
+        }
+    }
+}
+
+impl Outlines {
+    /// No kind of line; everything else has its default.
+    pub const NONE: Self = Self {
+        silhouettes: None,
+        creases: None,
+        objects: None,
+        width: 2.0,
+        width_fade: 0.0,
+        opacity_fade: 0.0,
+        hysteresis: 8.0,
+        hysteresis_ratio: 0.5,
+        min_length: 7,
+        gap_closing: 0,
+        hold_frames: 0,
+        overshoot: 0.0,
+        response: LineResponse::Width,
+        smooth: true,
+        weight: LineWeight::EVEN,
+        ink_budget: 0.35,
+        boil: LineBoil::STILL,
+        color: LineColor::Ink,
+        history_weight: 0.875,
+        fog: LineFog::Fade,
+    };
+
+    /// Silhouettes only, the one kind that \[CL\] 3.2 implements, with the corrected equations.
+    pub const SILHOUETTES: Self = Self {
+        silhouettes: Some(Silhouettes::DEFAULT),
+        ..Self::NONE
+    };
+}
+
+/// The largest half width of a line in physical pixels: that of `pack_width` in
+/// `edge.wgsl`.
+const LARGEST_HALF_WIDTH: f32 = 31.0;
+
+/// Distance within which lines of this half width are searched around a pixel, both in
+/// physical pixels.
+fn reach(half_width: f32) -> i32 {
+    (half_width.min(LARGEST_HALF_WIDTH) + 1.0).ceil() as i32 - 1
+}
+
+/// Most borders of pixels that a line continues along weak edges, and most pixels that it
+/// overshoots by.
+const LONGEST: i32 = 64;
+
+impl Outlines {
+    /// No kind of line, and no factor that changes lines.
+    pub(crate) const BARE: Self = Self {
+        min_length: 3,
+        ink_budget: 1.0,
+        ..Self::NONE
+    };
+
+    /// The lines of marked objects: their styles say which kinds, and how wide they are.
+    #[cfg(feature = "objects")]
+    pub(crate) const MARKS: Self = Self {
+        silhouettes: Some(Silhouettes::DEFAULT),
+        objects: Some(ObjectEdges {
+            color: bevy::color::Color::BLACK,
+            opacity: 1.0,
+        }),
+        width: 0.5,
+        fog: LineFog::Ignore,
+        ..Self::BARE
+    };
+
+    /// The settings without the kinds that are invisible: those of opacity 0, and
+    /// object edges if the crate is built without the feature `objects`.
+    #[must_use]
+    pub fn visible(self) -> Self {
+        Self {
+            silhouettes: self.silhouettes.filter(|s| s.opacity > 0.0),
+            creases: self.creases.filter(|c| c.opacity > 0.0),
+            objects: self
+                .objects
+                .filter(|o| o.opacity > 0.0 && cfg!(feature = "objects")),
+            ..self
+        }
+    }
+
+    /// Whether all kinds of line are `None`.
+    pub fn is_empty(&self) -> bool {
+        self.silhouettes.is_none() && self.creases.is_none() && self.objects.is_none()
+    }
+
+    /// Whether cracks are linked to lines, added, or left out if they are not part of one.
+    pub(crate) fn links(&self) -> bool {
+        self.hysteresis > 0.0 || self.min_length > 1 || self.gap_closing > 0
+    }
+
+    /// Whether lines are joined where a face between two creases is thinner than a pixel.
+    pub(crate) fn joins(&self) -> bool {
+        self.hysteresis > 0.0 && self.has_measured_creases()
+    }
+
+    /// Whether lines stay where their edges have become weak. Without continuity there are
+    /// no weak edges.
+    pub(crate) fn persists(&self) -> bool {
+        self.hold_frames > 0 && self.hysteresis > 0.0
+    }
+
+    /// Whether loose ends of lines are extended.
+    pub(crate) fn overshoots(&self) -> bool {
+        self.overshoot > 0.0 && self.smooth
+    }
+
+    /// By how much loose ends are extended, in pixels of the grid, of which there are `scale`
+    /// per logical pixel.
+    pub(crate) fn extension(&self, scale: f32) -> f32 {
+        if self.overshoots() {
+            (self.overshoot * scale).min(LONGEST as f32)
+        } else {
+            0.0
+        }
+    }
+
+    /// Borders of pixels that a line continues along weak edges. `scale`: pixels of the
+    /// grid per logical pixel.
+    pub(crate) fn steps(&self, scale: f32) -> i32 {
+        ((self.hysteresis * scale).ceil() as i32).min(LONGEST)
+    }
+
+    /// Borders of pixels that a piece of line must have. `scale`: see [`steps`](Self::steps).
+    pub(crate) fn min_length(&self, scale: f32) -> i32 {
+        match self.min_length {
+            0 | 1 => 1,
+            min_length => ((min_length as f32 * scale).ceil() as i32).clamp(1, LONGEST),
+        }
+    }
+
+    /// Whether width or opacity decreases along the depth map, which is then read.
+    pub fn fades(&self) -> bool {
+        self.width_fade > 0.0 || self.opacity_fade > 0.0
+    }
+
+    /// Whether there are creases of the corrected equations.
+    pub(crate) fn has_measured_creases(&self) -> bool {
+        self.creases
+            .is_some_and(|c| c.equations == Equations::Corrected)
+    }
+
+    /// Whether any kind has the faithful equations, whose ink is not found along cracks.
+    pub(crate) fn has_faithful(&self) -> bool {
+        self.silhouettes
+            .is_some_and(|s| s.equations == Equations::Faithful)
+            || self
+                .creases
+                .is_some_and(|c| c.equations == Equations::Faithful)
+    }
+
+    /// Whether any kind uses `width`. The faithful lines have their own width.
+    pub(crate) fn has_wide_lines(&self) -> bool {
+        self.objects.is_some()
+            || self
+                .silhouettes
+                .is_some_and(|s| s.equations != Equations::Faithful)
+            || self
+                .creases
+                .is_some_and(|c| c.equations != Equations::Faithful)
+    }
+
+    /// Distance in physical pixels within which lines are searched around a pixel.
+    /// `scale` is physical pixels per logical pixel. `sheet`: what the lines are drawn on. `widest_object` is the width of
+    /// the widest line of any `OutlineStyle`, in logical pixels. `vertex_widths`: the
+    /// vertices of some mesh say how wide its lines are.
+    pub(crate) fn reach(
+        &self,
+        scale: f32,
+        (widest_object, vertex_widths): (f32, bool),
+        sheet: Option<Sheet>,
+    ) -> i32 {
+        let widest = self.widest(widest_object, vertex_widths);
+        if widest == 0.0 {
+            return 0;
+        }
+        let half_width = 0.5 * widest * scale;
+        reach(sheet.map_or(half_width, |sheet| sheet.largest(half_width)))
+    }
+
+    /// Width in logical pixels of the widest line that there can be; the parameters are those
+    /// of [`reach`](Self::reach).
+    pub(crate) fn widest(&self, widest_object: f32, vertex_widths: bool) -> f32 {
+        let own = if self.has_wide_lines() {
+            self.width
+        } else {
+            0.0
+        };
+        // Without compute shaders, all weights are 1.
+        own.max(widest_object) * self.weight.largest(vertex_widths).max(1.0)
+    }
+
+    /// The jump in depth from which one surface hides another, instead of meeting it:
+    /// the threshold of measured silhouettes. That of the faithful equations has another
+    /// meaning.
+    fn jump(&self) -> f32 {
+        let measured = self
+            .silhouettes
+            .filter(|s| s.equations == Equations::Corrected);
+        measured.unwrap_or_default().threshold
+    }
+
+    /// The settings as shaders take them. `scale` is physical pixels per logical
+    /// pixel, `reference` that of `DepthProjection::jump_reference`.
+    pub(crate) fn uniform(&self, scale: f32, reference: [f32; 2]) -> LinesUniform {
+        let s = self.silhouettes.unwrap_or_default();
+        let c = self.creases.unwrap_or_default();
+        let o = self.objects.unwrap_or_default();
+        let continues = self.hysteresis > 0.0;
+        // The faithful lines do not know weak edges.
+        let ends = |equations, limit, softness| {
+            let weak = continues && equations == Equations::Corrected;
+            ramp(
+                limit,
+                softness,
+                weak.then_some(self.hysteresis_ratio * limit),
+            )
+        };
+        let [silhouette_low, silhouette_high] = ends(s.equations, s.edge_limit, s.softness);
+        let [crease_low, crease_high] = ends(c.equations, c.edge_limit, c.softness);
+        let [ink_part, width_part] = self.response.parts();
+        let [surface_darken, surface_saturate] = self.color.factors();
+        let limit = |limit| if continues { limit } else { 0.0 };
+        LinesUniform {
+            silhouette_color: linear_rgb(s.color),
+            silhouette_opacity: s.opacity,
+            crease_color: linear_rgb(c.color),
+            crease_opacity: c.opacity,
+            object_color: linear_rgb(o.color),
+            object_opacity: o.opacity,
+            silhouette_low,
+            silhouette_high,
+            silhouette_k: s.k(),
+            silhouette_faithful: u32::from(s.equations == Equations::Faithful),
+            crease_low,
+            crease_high,
+            crease_k: c.k(),
+            crease_faithful: u32::from(c.equations == Equations::Faithful),
+            half_width: 0.5 * self.width * scale,
+            scale,
+            width_fade: self.width_fade,
+            opacity_fade: self.opacity_fade,
+            reference_factor: reference[0],
+            reference_constant: reference[1],
+            jump: self.jump(),
+            ink_part,
+            width_part,
+            silhouette_limit: limit(s.edge_limit),
+            crease_limit: limit(c.edge_limit),
+            surface_darken,
+            surface_saturate,
+            unused_x: 0.0,
+            unused_y: 0.0,
+            unused_z: 0.0,
+        }
+    }
+}
+
+/// Places where the depth map D departs from planes. At other places, every two opposite
+/// neighbours at the same distance, at most `radius`, have D less than `least` away from
+/// a plane through the pixel between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapJumps {
+    /// Smallest departure of D that counts.
+    pub least: f32,
+    /// Largest distance in physical pixels.
+    pub radius: f32,
+}
+
+impl MapJumps {
+    /// Places that satisfy either of two conditions.
+    pub(crate) fn or(self, other: Self) -> Self {
+        Self {
+            least: self.least.min(other.least),
+            radius: self.radius.max(other.radius),
+        }
+    }
+}
+
+/// `Lines` of `edge.wgsl`.
+#[derive(ShaderType, Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct LinesUniform {
+    silhouette_color: Vec3,
+    silhouette_opacity: f32,
+    crease_color: Vec3,
+    crease_opacity: f32,
+    object_color: Vec3,
+    object_opacity: f32,
+    silhouette_low: f32,
+    silhouette_high: f32,
+    silhouette_k: f32,
+    silhouette_faithful: u32,
+    crease_low: f32,
+    crease_high: f32,
+    crease_k: f32,
+    crease_faithful: u32,
+    half_width: f32,
+    scale: f32,
+    width_fade: f32,
+    opacity_fade: f32,
+    reference_factor: f32,
+    reference_constant: f32,
+    jump: f32,
+    ink_part: f32,
+    width_part: f32,
+    silhouette_limit: f32,
+    crease_limit: f32,
+    surface_darken: f32,
+    surface_saturate: f32,
+    unused_x: f32,
+    unused_y: f32,
+    unused_z: f32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether two surfaces meet at a crease does not depend on the form of silhouettes,
+    /// nor on the threshold of the faithful equations.
+    #[test]
+    fn creases_are_the_same_beside_faithful_silhouettes() {
+        let jump = |silhouettes| {
+            let settings = Outlines {
+                silhouettes,
+                creases: Some(Creases::default()),
+                ..Outlines::NONE
+            };
+            settings.uniform(1.0, [1.0, 0.0]).jump
+        };
+        let faithful = |threshold| Silhouettes {
+            equations: Equations::Faithful,
+            threshold,
+            ..Silhouettes::default()
+        };
+        let want = jump(Some(Silhouettes::default()));
+        assert_eq!(jump(None), want);
+        for threshold in [1e-6, 1e-4, 0.5, 1.0] {
+            assert_eq!(jump(Some(faithful(threshold))), want);
+        }
+    }
+}

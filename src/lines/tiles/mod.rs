@@ -1,0 +1,5 @@
+//! The tiles of pixels that may have ink, and the cells that have cracks.
+
+mod lists;
+
+pub(crate) use lists::{TileList, TileLists, tile_shader, vertices};

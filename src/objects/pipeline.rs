@@ -1,0 +1,228 @@
+//! The pipelines that draw the ids of objects.
+
+use bevy::{
+    asset::{AssetServer, Handle, load_embedded_asset},
+    ecs::{
+        resource::Resource,
+        system::{Commands, Res},
+    },
+    material::{AlphaMode, MaterialProperties, key::ErasedMaterialPipelineKey},
+    math::UVec4,
+    mesh::MeshVertexBufferLayoutRef,
+    pbr::{
+        PrepassFragmentShader, PrepassPipeline, PrepassPipelineSpecializer, PrepassVertexShader,
+    },
+    platform::sync::Arc,
+    render::{
+        render_resource::{
+            BindGroupLayoutDescriptor, BindGroupLayoutEntries, CompareFunction, FragmentState,
+            RenderPipelineDescriptor, ShaderStages, SpecializedMeshPipeline,
+            SpecializedMeshPipelineError, TextureFormat, TextureSampleType,
+            binding_types::{
+                storage_buffer_read_only, texture_2d, texture_2d_multisampled, uniform_buffer,
+            },
+        },
+        renderer::RenderAdapter,
+    },
+    shader::{Shader, ShaderDefVal},
+};
+
+use super::{ID_FORMAT, Pressure, WIDTH_FORMAT, shading::has_sample_shading};
+use crate::gpu::definitions;
+
+/// The parts that all pipelines of this pass have in common.
+#[derive(Resource)]
+pub(super) struct ObjectIdPipeline {
+    pub prepass: PrepassPipeline,
+    pub layout: BindGroupLayoutDescriptor,
+    /// The layout if the widths of lines are drawn too.
+    pub with_widths: BindGroupLayoutDescriptor,
+    /// Without and with sections.
+    shaders: [Handle<Shader>; 2],
+    shades_samples: bool,
+}
+
+pub(super) fn init_object_id_pipeline(
+    mut commands: Commands,
+    prepass: Res<PrepassPipeline>,
+    assets: Res<AssetServer>,
+    adapter: Res<RenderAdapter>,
+) {
+    let entries = BindGroupLayoutEntries::sequential(
+        ShaderStages::FRAGMENT,
+        (
+            storage_buffer_read_only::<Vec<UVec4>>(false),
+            storage_buffer_read_only::<Vec<u32>>(false),
+            uniform_buffer::<Pressure>(false),
+        ),
+    );
+    commands.insert_resource(ObjectIdPipeline {
+        shades_samples: has_sample_shading(&adapter),
+        prepass: prepass.clone(),
+        layout: BindGroupLayoutDescriptor::new("comics_objects", &entries[..2]),
+        with_widths: BindGroupLayoutDescriptor::new("comics_objects_with_widths", &entries),
+        shaders: [
+            load_embedded_asset!(assets.as_ref(), "ids.wgsl"),
+            load_embedded_asset!(assets.as_ref(), "sections.wgsl"),
+        ],
+    });
+}
+
+pub(super) fn reads_material(properties: &MaterialProperties) -> bool {
+    properties.get_shader(PrepassVertexShader).is_some()
+        || properties.get_shader(PrepassFragmentShader).is_some()
+}
+
+/// Whether the depth prepass draws meshes of this material.
+pub(super) fn in_prepass(properties: &MaterialProperties) -> bool {
+    properties.prepass_enabled
+        && !properties.reads_view_transmission_texture
+        && matches!(
+            properties.alpha_mode,
+            AlphaMode::Opaque | AlphaMode::AlphaToCoverage | AlphaMode::Mask(_)
+        )
+}
+
+/// A layout of the pass of ids, with the depth of the prepass.
+pub(super) fn with_prepass_depth(
+    layout: &BindGroupLayoutDescriptor,
+    multisampled: bool,
+) -> BindGroupLayoutDescriptor {
+    let float = TextureSampleType::Float { filterable: false };
+    let texture = if multisampled {
+        texture_2d_multisampled(float)
+    } else {
+        texture_2d(float)
+    };
+    let mut layout = layout.clone();
+    layout
+        .entries
+        .push(texture.build(3, ShaderStages::FRAGMENT));
+    layout
+}
+
+/// What is drawn of a mesh besides its id.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub(super) struct IdVariant {
+    /// The mesh is divided into sections.
+    pub sections: bool,
+    /// The widths of lines are drawn too.
+    pub widths: bool,
+    /// They are those of the mesh's vertices.
+    pub vertex_widths: bool,
+    /// Depth is compared with a tolerance.
+    pub tolerant: bool,
+}
+
+impl IdVariant {
+    fn defs(self) -> impl Iterator<Item = ShaderDefVal> {
+        definitions([
+            (self.widths, "LINE_WIDTHS"),
+            (self.vertex_widths, "VERTEX_WIDTHS"),
+            (self.tolerant, "TOLERANT"),
+        ])
+    }
+}
+
+impl ObjectIdPipeline {
+    pub fn specializer(
+        &self,
+        properties: &Arc<MaterialProperties>,
+        variant: IdVariant,
+    ) -> ObjectIdSpecializer {
+        let layout = if variant.widths {
+            &self.with_widths
+        } else {
+            &self.layout
+        };
+        ObjectIdSpecializer {
+            prepass: PrepassPipelineSpecializer {
+                pipeline: self.prepass.clone(),
+                properties: properties.clone(),
+            },
+            layout: layout.clone(),
+            shader: self.shaders[usize::from(variant.sections)].clone(),
+            shades_samples: self.shades_samples,
+        }
+    }
+}
+
+pub(super) struct ObjectIdSpecializer {
+    prepass: PrepassPipelineSpecializer,
+    layout: BindGroupLayoutDescriptor,
+    shader: Handle<Shader>,
+    shades_samples: bool,
+}
+
+impl SpecializedMeshPipeline for ObjectIdSpecializer {
+    type Key = (ErasedMaterialPipelineKey, IdVariant);
+
+    fn specialize(
+        &self,
+        (key, variant): Self::Key,
+        layout: &MeshVertexBufferLayoutRef,
+    ) -> Result<RenderPipelineDescriptor, SpecializedMeshPipelineError> {
+        let mut descriptor = self.prepass.specialize(key, layout)?;
+        descriptor.label = Some("comics_object_ids".into());
+        let multisampled = descriptor.multisample.count > 1;
+        descriptor.layout[1] = if variant.tolerant {
+            with_prepass_depth(&self.layout, multisampled)
+        } else {
+            self.layout.clone()
+        };
+        let formats: &[TextureFormat] = if variant.widths {
+            &[ID_FORMAT, WIDTH_FORMAT]
+        } else {
+            &[ID_FORMAT]
+        };
+        // The engine's modules of meshes and views depend on the definitions.
+        let engine = variant
+            .widths
+            .then(|| descriptor.vertex.shader_defs.clone());
+        let mut shader_defs: Vec<_> = engine.into_iter().flatten().chain(variant.defs()).collect();
+        if variant.tolerant && multisampled {
+            shader_defs.push("TOLERANT_MULTISAMPLED".into());
+            if self.shades_samples {
+                shader_defs.push("SAMPLE_SHADING".into());
+            }
+        }
+        descriptor.fragment = Some(FragmentState {
+            shader: self.shader.clone(),
+            shader_defs,
+            entry_point: Some("object_id".into()),
+            targets: (formats.iter())
+                .map(|format| Some((*format).into()))
+                .collect(),
+        });
+        if let Some(depth) = &mut descriptor.depth_stencil {
+            depth.depth_write_enabled = Some(variant.tolerant);
+            depth.depth_compare = Some(if variant.tolerant {
+                CompareFunction::GreaterEqual
+            } else {
+                CompareFunction::Equal
+            });
+        }
+        Ok(descriptor)
+    }
+}
+
+/// The pipeline of a marked object: that of its id, with a depth test of its own.
+pub(super) struct MarkSpecializer(pub ObjectIdSpecializer);
+
+impl SpecializedMeshPipeline for MarkSpecializer {
+    type Key = (ErasedMaterialPipelineKey, IdVariant);
+
+    fn specialize(
+        &self,
+        key: Self::Key,
+        layout: &MeshVertexBufferLayoutRef,
+    ) -> Result<RenderPipelineDescriptor, SpecializedMeshPipelineError> {
+        let mut descriptor = self.0.specialize(key, layout)?;
+        descriptor.label = Some("comics_marked_objects".into());
+        if let Some(depth) = &mut descriptor.depth_stencil {
+            depth.depth_write_enabled = Some(true);
+            depth.depth_compare = Some(CompareFunction::GreaterEqual);
+        }
+        Ok(descriptor)
+    }
+}
