@@ -146,29 +146,45 @@ fn sharp() -> Outlines {
     }
 }
 
-/// A step that is a line near by is none far away, and a large step is one at every distance.
+/// The ink of a near card and a far one with a step of this fraction, without abstraction and with that
+/// of their places, or of levels of their own.
+fn inks(small: &mut Small, step: f32, levels: Option<[f32; 2]>) -> [[usize; 2]; 2] {
+    let fronts = cards(small, [1.2, 75.0], step);
+    let style = ComicStyle::new().with(sharp());
+    wear(small, style.clone());
+    let without = ink(small);
+    for (front, level) in fronts.into_iter().zip(levels.into_iter().flatten()) {
+        let own = ObjectAbstraction::fixed(level);
+        small.world().entity_mut(front).insert(own);
+    }
+    let abstraction = Abstraction {
+        line_threshold: 8.0,
+        ..default()
+    };
+    wear(small, style.with(abstraction));
+    [without, ink(small)]
+}
+
+/// A step that is a line near by is none far away, and a large step is one at every distance. The
+/// lines of an object with a level of its own follow that, not its place.
 #[test]
 fn far_edges_must_be_stronger() {
     let mut small = before_white(Small::new(UVec2::new(96, 64), Msaa::Off));
-    let outlines = sharp();
     // At the threshold of 0.02 the response is 1, and above, the square of the ratio.
-    for (step, stays) in [(0.03, false), (0.3, true)] {
-        cards(&mut small, [1.2, 75.0], step);
-        let style = ComicStyle::new().with(outlines);
-        wear(&mut small, style.clone());
-        let without = ink(&mut small);
-        assert!(without[0] > 15 && without[1] > 15, "{step}: {without:?}");
-        let abstraction = Abstraction {
-            line_threshold: 8.0,
-            ..default()
-        };
-        wear(&mut small, style.with(abstraction));
-        let with = ink(&mut small);
-        assert_eq!(with[0], without[0], "{step}: near by");
-        if stays {
-            assert_eq!(with[1], without[1], "{step}: far away");
-        } else {
-            assert!(with[1] < without[1] / 2, "{step}: {with:?} of {without:?}");
+    for (step, levels, kept) in [
+        (0.03, None, [true, false]),
+        (0.3, None, [true, true]),
+        (0.03, Some([1.0, 0.0]), [false, true]),
+    ] {
+        let [without, with] = inks(&mut small, step, levels);
+        for card in 0..2 {
+            let what = format!("{step}, {levels:?}, {card}: {with:?} of {without:?}");
+            assert!(without[card] > 15, "{what}");
+            if kept[card] {
+                assert_eq!(with[card], without[card], "{what}");
+            } else {
+                assert!(with[card] < without[card] / 2, "{what}");
+            }
         }
     }
     assert_eq!(small.errors(), 0);
@@ -232,29 +248,6 @@ fn objects_have_colors_of_their_own_level() {
         assert!(found[1] <= 1 && found[0].abs_diff(plain) <= 1, "{found:?}");
         assert_eq!(small.errors(), 0);
     }
-}
-
-/// The lines of an object follow its level, not its place.
-#[test]
-fn objects_have_lines_of_their_own_level() {
-    let mut small = before_white(Small::new(UVec2::new(96, 64), Msaa::Off));
-    let fronts = cards(&mut small, [1.2, 75.0], 0.03);
-    let style = ComicStyle::new().with(sharp());
-    wear(&mut small, style.clone());
-    let without = ink(&mut small);
-    let abstraction = Abstraction {
-        line_threshold: 8.0,
-        ..default()
-    };
-    wear(&mut small, style.with(abstraction));
-    for (card, level) in [1.0, 0.0].into_iter().enumerate() {
-        let own = ObjectAbstraction::fixed(level);
-        small.world().entity_mut(fronts[card]).insert(own);
-    }
-    let with = ink(&mut small);
-    assert_eq!(with[1], without[1], "all detail far away");
-    assert!(with[0] < without[0] / 2, "{with:?} of {without:?}");
-    assert_eq!(small.errors(), 0);
 }
 
 /// One figure has one level: the lines of an object that extends in depth appear at the same step,

@@ -207,23 +207,38 @@ fn sheets_change_at_their_rate() {
     }
 }
 
-/// Black, white, and values out of range: nothing that is no number, no ink on nothing.
+/// Settings out of range, of paper and of speed lines, draw what the nearest end of their range
+/// draws, and nothing that is no number.
 #[test]
 fn extreme_values_are_finite() {
-    let mut small = Small::new(size(), Msaa::Off);
+    let mut small = flat(UVec2::new(96, 64), 1.0);
     small.insert(Hdr);
     for x in [f32::NAN, f32::INFINITY, -1e30, 0.0, 1e30] {
-        small
-            .insert(Paper {
-                grain: x,
-                shading: x,
-                size: x,
+        let paper = Paper {
+            grain: x,
+            shading: x,
+            size: x,
+            rate: x,
+            ..default()
+        };
+        for kind in [SpeedLineKind::Radial, SpeedLineKind::Parallel] {
+            let lines = SpeedLines {
+                kind,
+                center: Vec2::splat(x),
+                angle: x,
+                count: u32::MAX,
+                inner: x,
+                width: x,
+                dry_brush: x,
                 rate: x,
+                seed: u32::MAX,
                 ..default()
-            })
-            .settle();
-        let (_, after) = small.pass();
-        assert!(after.pixels.iter().flatten().all(|v| v.is_finite()), "{x}");
+            };
+            small.insert((paper, lines)).settle();
+            let (_, after) = small.pass();
+            let is_finite = after.pixels.iter().flatten().all(|v| v.is_finite());
+            assert!(is_finite, "{x}, {kind:?}");
+        }
     }
     assert_eq!(small.errors(), 0);
 }

@@ -199,37 +199,6 @@ fn ink_is_opaque_on_nothing() {
     }
 }
 
-/// Numbers out of range draw what the nearest end of their range draws, and nothing that is
-/// no number.
-#[test]
-fn extreme_values_are_finite() {
-    let mut small = page();
-    small.insert(Hdr);
-    for x in [f32::NAN, f32::INFINITY, -1e30, 0.0, 1e30] {
-        for kind in [SpeedLineKind::Radial, SpeedLineKind::Parallel] {
-            let lines = SpeedLines {
-                kind,
-                center: Vec2::splat(x),
-                angle: x,
-                count: u32::MAX,
-                inner: x,
-                width: x,
-                dry_brush: x,
-                rate: x,
-                seed: u32::MAX,
-                ..default()
-            };
-            small.insert(lines).settle();
-            let (_, after) = small.pass();
-            assert!(
-                after.pixels.iter().flatten().all(|v| v.is_finite()),
-                "{x}, {kind:?}"
-            );
-        }
-    }
-    assert_eq!(small.errors(), 0);
-}
-
 /// More ink the wider the lines are asked, and none with an opacity of 0.
 #[test]
 fn ink_follows_the_width() {

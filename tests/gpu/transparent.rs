@@ -109,11 +109,19 @@ fn an_empty_background_stays_empty() {
             ..default()
         })
         .with(Vignette { color, ..default() });
+    let light = TwoTone {
+        threshold: 0.0,
+        ..default()
+    };
     let mut small = small();
-    for msaa in [Msaa::Off, Msaa::Sample4] {
+    for (msaa, style) in [
+        (Msaa::Off, &style),
+        (Msaa::Sample4, &style),
+        (Msaa::Off, &ComicStyle::new().with(light)),
+    ] {
         again(&mut small, msaa);
         let (mut empty, mut changed) = (0, 0);
-        for (read, wrote) in pass(&mut small, &style) {
+        for (read, wrote) in pass(&mut small, style) {
             assert_eq!(read[3], wrote[3]);
             if read == [0.0; 4] {
                 assert_eq!(wrote, [0.0; 4]);

@@ -101,21 +101,3 @@ fn lines_stay_smooth() {
     let inverted = 96.0 * 64.0 - black_ink(&small.picture(), all());
     assert!((inverted / ink / kept - 1.0).abs() < 0.01, "{inverted}");
 }
-
-/// Nothing is painted where the background shows through.
-#[test]
-fn nothing_stays_nothing() {
-    let mut small = Small::new(size(), Msaa::Off);
-    small.clear();
-    small.insert(Camera {
-        clear_color: Color::NONE.into(),
-        ..default()
-    });
-    small
-        .insert(TwoTone {
-            threshold: 0.0,
-            ..default()
-        })
-        .settle();
-    assert!(small.picture().pixels().all(|p| p.0 == [0; 4]));
-}

@@ -1,20 +1,30 @@
 //! What paint does to pictures: of its reference, which whole pictures equal.
 
 use bevy_comics_testkit::{
-    painting::{RADII, SLOPES, edge_moved, random},
+    painting::{RADII, SLOPES, edge_moved, kuwahara_error, random},
     reference::{box_statistics::Sheet, paint::Scene},
 };
 
 use crate::prelude::*;
 
-fn painted(sheet: &Sheet, s: &Paint) -> Sheet {
+fn painted(sheet: &Sheet, depth: &dyn Fn([usize; 2]) -> f64, s: &Paint) -> Sheet {
     let scene = Scene {
         sheet,
-        depth: &|_| 0.0,
+        depth,
         id: &|_| 0,
         scale: 1.0,
     };
     scene.painted(s)
+}
+
+/// Truth: where only the four boxes at the corners count, and the least variance decides, a picture
+/// is painted as by the filter of Kuwahara (1976), computed from the pixels of its four squares.
+#[test]
+fn four_sharp_boxes_are_kuwaharas_filter() {
+    for radius in [2, 4, 6] {
+        let apart = kuwahara_error(radius);
+        assert!(apart < 1e-3, "{radius}: {apart}");
+    }
 }
 
 const FORMS: [PaintKernel; 2] = [PaintKernel::Box, PaintKernel::Anisotropic];
@@ -40,7 +50,7 @@ fn noise_is_painted_over() {
             kernel: form,
             ..Paint::default()
         };
-        let fraction = variance(&painted(&sheet, &s)) / variance(&sheet);
+        let fraction = variance(&painted(&sheet, &|_| 0.0, &s)) / variance(&sheet);
         assert!(fraction < 0.1, "{form:?}: {fraction}");
     }
 }
@@ -73,13 +83,8 @@ fn brushes_of_two_widths_keep_to_their_sides() {
             at_far: far,
             ..Paint::default()
         };
-        let scene = Scene {
-            sheet: &sheet,
-            depth: &|[x, _]| if x < 20 { 0.0 } else { 1.0 },
-            id: &|_| 0,
-            scale: 1.0,
-        };
-        let painted = scene.painted(&s);
+        let depth = |[x, _]: [usize; 2]| if x < 20 { 0.0 } else { 1.0 };
+        let painted = painted(&sheet, &depth, &s);
         for (i, (before, after)) in sheet.pixels.iter().zip(&painted.pixels).enumerate() {
             let apart = (before[1] - after[1]).abs();
             assert!(apart < 0.02, "{near}, {far}: {}: {apart}", i % 40);
