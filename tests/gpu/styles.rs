@@ -30,7 +30,7 @@ fn color(random: &mut Random) -> Color {
     Color::srgba_u8(r, g, b, a)
 }
 
-/// Sets every number, colour, kind and option inside of a value at random.
+/// Sets a value at random: of a struct, half of the fields.
 fn set_at_random(value: &mut dyn PartialReflect, random: &mut Random) {
     if let Some(x) = value.try_downcast_mut::<f32>() {
         *x = number(random);
@@ -52,7 +52,9 @@ fn set_inside_at_random(value: &mut dyn PartialReflect, random: &mut Random) {
     match value.reflect_mut() {
         ReflectMut::Struct(all) => {
             for i in 0..all.field_len() {
-                set_at_random(all.field_at_mut(i).expect("a field"), random);
+                if random.unit() < 0.5 {
+                    set_at_random(all.field_at_mut(i).expect("a field"), random);
+                }
             }
         }
         ReflectMut::Enum(kind) => {
@@ -91,7 +93,7 @@ pub fn styles() -> impl Strategy<Value = ComicStyle> {
             style.depth_map = Some(map);
         }
         for kind in EffectRegistry::built_in().types() {
-            if random.unit() < 0.5 {
+            if random.unit() < 0.4 {
                 let mut effect = (kind.default)();
                 set_at_random(effect.as_struct_mut(), &mut random);
                 style.insert_any(effect);
